@@ -1,0 +1,1 @@
+//! Criterion benchmarks; each judges its answer before it is timed.

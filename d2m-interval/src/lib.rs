@@ -1,0 +1,1 @@
+//! Rigorous, fast, portable interval arithmetic: outward-rounded in every operation, no_std.

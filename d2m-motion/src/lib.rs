@@ -1,0 +1,1 @@
+//! Rigid motions over time with certified enclosures: linear, screw, keyframes, and an open trait.

@@ -1,0 +1,1 @@
+//! First roots with proof: second-order inclusion functions, BBOI, IRD, HRFOI, interval Newton, path-jet isolator.
