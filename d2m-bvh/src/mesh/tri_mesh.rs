@@ -1,0 +1,135 @@
+//! The checked triangle mesh.
+
+use crate::MeshError;
+use glam::DVec3;
+
+/// Largest coordinate magnitude that a [`TriMesh`] accepts.
+///
+/// A product of five coordinate differences (the largest product that any test forms: area² times a length) stays
+/// below (2e60)⁵ < 1e302, so nothing overflows.
+pub const MAX_COORDINATE: f64 = 1e60;
+
+/// An indexed triangle mesh in its body frame: `f64` vertices, `u32` triangles, checked once and immutable.
+///
+/// **Promise.** Every coordinate is finite with magnitude at most [`MAX_COORDINATE`], every index is in range and
+/// there is at least one triangle. Nothing else is assumed: the mesh may be open, non-manifold or a soup, triangles may
+/// be degenerate (they are the segment or the point that their corners span) or duplicated, vertices may be unused
+/// (an unused vertex is not part of the body). Vertex and triangle numbers are those of the input, so answers can name
+/// them.
+///
+/// ```
+/// use d2m_bvh::{MeshError, TriMesh};
+/// use glam::DVec3;
+///
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let tetrahedron = TriMesh::try_new(corners.clone(), vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// assert_eq!(tetrahedron.triangle_count(), 4);
+/// assert_eq!(tetrahedron.corners(3), [DVec3::X, DVec3::Y, DVec3::Z]);
+///
+/// let refused = TriMesh::try_new(corners, vec![[0, 1, 4]]);
+/// assert_eq!(refused, Err(MeshError::IndexOutOfRange { triangle: 0, index: 4, vertex_count: 4 }));
+/// # Ok::<(), MeshError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Parts", into = "Parts"))]
+pub struct TriMesh {
+    vertices: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl TriMesh {
+    /// Checks and takes the two lists.
+    ///
+    /// # Errors
+    /// [`MeshError`] with index and value: no triangles, a coordinate that is NaN, infinite or larger than
+    /// [`MAX_COORDINATE`], an index out of range, more elements than a `u32` can number.
+    pub fn try_new(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        for (what, count) in [("vertices", vertices.len()), ("triangles", triangles.len())] {
+            if count > u32::MAX as usize {
+                return Err(MeshError::TooMany { what, count });
+            }
+        }
+        if triangles.is_empty() {
+            return Err(MeshError::NoTriangles);
+        }
+        for (vertex, position) in vertices.iter().enumerate() {
+            for (axis, value) in ['x', 'y', 'z'].into_iter().zip(position.to_array()) {
+                if !value.is_finite() {
+                    return Err(MeshError::NonFiniteVertex { vertex, axis, value });
+                }
+                if value.abs() > MAX_COORDINATE {
+                    return Err(MeshError::VertexTooLarge { vertex, axis, value });
+                }
+            }
+        }
+        for (triangle, corners) in triangles.iter().enumerate() {
+            for &index in corners {
+                if index as usize >= vertices.len() {
+                    return Err(MeshError::IndexOutOfRange { triangle, index, vertex_count: vertices.len() });
+                }
+            }
+        }
+        Ok(Self { vertices, triangles })
+    }
+
+    /// The vertices in the body frame, in input order.
+    pub fn vertices(&self) -> &[DVec3] {
+        &self.vertices
+    }
+
+    /// The triangles as triples of vertex indices, in input order and orientation (counter-clockwise from outside, if
+    /// the mesh bounds a solid).
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// How many vertices there are, unused ones included.
+    pub fn vertex_count(&self) -> usize {
+        self.vertices.len()
+    }
+
+    /// How many triangles there are, degenerate ones included.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// The three corner points of triangle number `triangle`.
+    ///
+    /// # Panics
+    /// If `triangle` is not below [`triangle_count`](Self::triangle_count).
+    pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|index| self.vertices[index as usize])
+    }
+
+    /// Gives the two lists back.
+    pub fn into_parts(self) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        (self.vertices, self.triangles)
+    }
+}
+
+/// The unchecked form that serde reads; [`TriMesh::try_new`] checks it.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Parts {
+    vertices: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Parts> for TriMesh {
+    type Error = MeshError;
+
+    fn try_from(parts: Parts) -> Result<Self, MeshError> {
+        let vertices = parts.vertices.into_iter().map(DVec3::from_array).collect();
+        Self::try_new(vertices, parts.triangles)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<TriMesh> for Parts {
+    fn from(mesh: TriMesh) -> Self {
+        let (vertices, triangles) = mesh.into_parts();
+        Self { vertices: vertices.into_iter().map(DVec3::to_array).collect(), triangles }
+    }
+}
