@@ -1,0 +1,45 @@
+use thiserror::Error;
+
+/// Bad input to a query. No query reports a hard case as an error, and none turns an error into "no contact".
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum QueryError {
+    /// The time window is reversed or not finite.
+    #[error("time window [{start}, {end}] must be finite and not reversed")]
+    BadWindow {
+        /// Requested first instant.
+        start: f64,
+        /// Requested last instant.
+        end: f64,
+    },
+    /// The tolerance is not a finite positive number.
+    #[error("tolerance {value} must be finite and positive")]
+    BadTolerance {
+        /// The refused value.
+        value: f64,
+    },
+    /// The wanted separation is negative or not finite.
+    #[error("min_separation {value} must be finite and not negative")]
+    BadMinSeparation {
+        /// The refused value.
+        value: f64,
+    },
+    /// A body has no triangle.
+    #[error("body {body} has no triangle")]
+    EmptyBody {
+        /// 0 for the first body, 1 for the second.
+        body: usize,
+    },
+    /// A filled solid was asked for, but the mesh does not close.
+    #[error("body {body} is not watertight: use Solid::Surface")]
+    NotWatertight {
+        /// 0 for the first body, 1 for the second.
+        body: usize,
+    },
+    /// The motion is not finite over the window, or leaves the range in which errors can be bounded.
+    #[error("motion of body {body} is not finite over the window")]
+    BadMotion {
+        /// 0 for the first body, 1 for the second.
+        body: usize,
+    },
+}

@@ -1,0 +1,120 @@
+use core::time::Duration;
+
+/// What counts as contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Solid {
+    /// The bodies are full: a body inside the other is in contact. For watertight meshes.
+    #[default]
+    Filled,
+    /// Only the surfaces count: open meshes, polygon soup, hollow shells.
+    Surface,
+}
+
+/// How far a query goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Mode {
+    /// The time of contact to the tolerance.
+    #[default]
+    Accurate,
+    /// Stop at leaf boxes: a certified early time, earlier than the true one by a bounded distance of motion.
+    Capoeira,
+    /// Only whether there is a contact; the reported time is any time of contact.
+    Exists,
+}
+
+/// Limits on the work of one query. A query that meets one answers `Undecided`.
+///
+/// Without limits a query still ends: a hard cap of [`Budget::HARD_NODE_TESTS`] applies always.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Budget {
+    /// Most node tests (one node against the children of another, or one step of a triangle pair).
+    pub node_tests: Option<u64>,
+    /// Most time on the clock. Looked at every few hundred node tests, so a query may exceed it by about 50 µs.
+    pub wall_clock: Option<Duration>,
+}
+
+impl Budget {
+    /// The cap on node tests that holds without any budget: about a minute of work.
+    pub const HARD_NODE_TESTS: u64 = 1 << 30;
+    /// No limit but the hard cap.
+    pub const UNLIMITED: Self = Self { node_tests: None, wall_clock: None };
+
+    /// At most `count` node tests.
+    pub const fn with_node_tests(mut self, count: u64) -> Self {
+        self.node_tests = Some(count);
+        self
+    }
+
+    /// At most `time` on the clock.
+    pub const fn with_wall_clock(mut self, time: Duration) -> Self {
+        self.wall_clock = Some(time);
+        self
+    }
+}
+
+/// Options of a query.
+///
+/// ```
+/// use d2m_bvh::{Mode, QueryOptions, Solid};
+/// let options = QueryOptions::default().with_solid(Solid::Surface).with_tolerance(1e-6);
+/// assert_eq!(options.tolerance, Some(1e-6));
+/// assert_eq!(options.mode, Mode::Accurate);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct QueryOptions {
+    /// δ, a distance in the scene's units. `None`: 1e-10 times the scene's length scale, the larger of the radii of
+    /// the two bodies about their own centres.
+    pub tolerance: Option<f64>,
+    /// What counts as contact.
+    pub solid: Solid,
+    /// How far the query goes.
+    pub mode: Mode,
+    /// Limits on the work.
+    pub budget: Budget,
+    /// Report the first time at which the distance is at most this. Zero: contact.
+    pub min_separation: f64,
+}
+
+impl QueryOptions {
+    /// Default options: accurate, filled solids, tolerance 1e-10 of the scene's length scale, no budget.
+    pub const DEFAULT: Self = Self {
+        tolerance: None,
+        solid: Solid::Filled,
+        mode: Mode::Accurate,
+        budget: Budget::UNLIMITED,
+        min_separation: 0.0,
+    };
+
+    /// With this tolerance δ, a distance.
+    pub const fn with_tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = Some(tolerance);
+        self
+    }
+
+    /// With this meaning of contact.
+    pub const fn with_solid(mut self, solid: Solid) -> Self {
+        self.solid = solid;
+        self
+    }
+
+    /// With this mode.
+    pub const fn with_mode(mut self, mode: Mode) -> Self {
+        self.mode = mode;
+        self
+    }
+
+    /// With this budget.
+    pub const fn with_budget(mut self, budget: Budget) -> Self {
+        self.budget = budget;
+        self
+    }
+
+    /// With this separation that counts as contact.
+    pub const fn with_min_separation(mut self, distance: f64) -> Self {
+        self.min_separation = distance;
+        self
+    }
+}
