@@ -1,1 +1,15 @@
 //! First roots with proof: second-order inclusion functions, BBOI, IRD, HRFOI, interval Newton, path-jet isolator.
+
+mod bboi;
+mod gamma;
+mod hrfoi;
+mod inclusion_function;
+mod ird;
+mod parabola;
+
+pub use bboi::bboi;
+pub use gamma::{Gamma, IntervalFunction, RootSearch, SearchLimits, SecondOrder, Settled};
+pub use hrfoi::hrfoi;
+pub use inclusion_function::InclusionFunction;
+pub use ird::intersect_root_domain;
+pub use parabola::Parabola;

@@ -1,0 +1,105 @@
+//! What the paper's root searches ask of a function: values, derivatives and Γ.
+
+use crate::InclusionFunction;
+use d2m_interval::Interval;
+
+/// A real function of time known through enclosures.
+pub trait IntervalFunction {
+    /// Encloses f over all times of `t`.
+    fn enclose(&mut self, t: Interval) -> Interval;
+}
+
+/// A function of class C² whose value, slope and second derivative can be enclosed.
+pub trait SecondOrder: IntervalFunction {
+    /// θ of f over the piece `t`: see [`InclusionFunction`].
+    fn inclusion_function(&mut self, t: Interval) -> InclusionFunction;
+}
+
+/// Γ, the validation of roots: not every root of f is a contact.
+pub trait Gamma {
+    /// `false` promises that no time in `t` is a contact; `true` promises nothing.
+    fn may_touch(&mut self, t: Interval) -> bool;
+
+    /// A closer look at a piece that would not shrink. The default knows nothing.
+    fn settle(&mut self, t: Interval) -> Settled {
+        let _ = t;
+        Settled::Open
+    }
+}
+
+/// Answer of [`Gamma::settle`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Settled {
+    /// No time of the piece is a contact.
+    Excluded,
+    /// At this time of the piece the features are certainly within the tolerance of a contact. Later times no longer
+    /// matter.
+    Near(f64),
+    /// Not decided.
+    Open,
+}
+
+/// Where a search stops.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SearchLimits {
+    /// ε_t: a bracket at most this wide is reported as it is.
+    pub time_tolerance: f64,
+    /// The most pieces that may be evaluated; then the answer is [`RootSearch::Undecided`].
+    pub evaluations: u32,
+}
+
+impl SearchLimits {
+    /// The default number of pieces. Hard families (fast rotation, 300 rad) need a few hundred to a few thousand.
+    pub const DEFAULT_EVALUATIONS: u32 = 1 << 18;
+
+    /// Stops at brackets of width `time_tolerance` (negative or NaN counts as 0), or after
+    /// [`Self::DEFAULT_EVALUATIONS`] pieces.
+    pub const fn new(time_tolerance: f64) -> Self {
+        let time_tolerance = if time_tolerance > 0.0 { time_tolerance } else { 0.0 };
+        Self { time_tolerance, evaluations: Self::DEFAULT_EVALUATIONS }
+    }
+
+    /// Replaces the number of pieces.
+    pub const fn with_evaluations(mut self, evaluations: u32) -> Self {
+        self.evaluations = evaluations;
+        self
+    }
+}
+
+/// Answer of [`bboi`](crate::bboi) and [`hrfoi`](crate::hrfoi).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RootSearch {
+    /// No contact in the domain.
+    None,
+    /// No contact before the lower end; the first contact is believed to lie in the bracket.
+    Bracket(Interval),
+    /// The budget ran out. No contact before this time.
+    Undecided {
+        /// The end of what was searched.
+        clear_until: f64,
+    },
+}
+
+/// The middle of a piece, or `None` where no double lies strictly inside it.
+///
+/// The paper's (t0 + t1)/2 "could evaluate to t0", as it says itself; then its recursion never ends.
+pub(crate) fn split_time(t: Interval) -> Option<f64> {
+    let (a, b) = (t.lo(), t.hi());
+    let middle = 0.5 * a + 0.5 * b;
+    (a < middle && middle < b).then_some(middle)
+}
+
+/// Handles a piece that is too narrow to split: the report, or `None` where the piece holds no contact.
+pub(crate) fn report<F: Gamma + ?Sized>(f: &mut F, piece: Interval) -> Option<RootSearch> {
+    if !f.may_touch(piece) {
+        return None;
+    }
+    match f.settle(piece) {
+        Settled::Excluded => None,
+        Settled::Near(at) if at >= piece.lo() && at < piece.hi() => {
+            Some(RootSearch::Bracket(Interval::new(piece.lo(), at)))
+        }
+        _ => Some(RootSearch::Bracket(piece)),
+    }
+}
