@@ -1,1 +1,33 @@
 //! Rigid motions over time with certified enclosures: linear, screw, keyframes, and an open trait.
+//!
+//! A body point `p` (body frame) is at `R(t)·(p − at) + x(t)` in the world at time `t`, where `at` is a fixed
+//! point of the body (the origin unless chosen otherwise). [`RigidMotion`] is the open trait: anything that can
+//! give a pose and a twist at a time, and enclose both over an interval of time, can be queried.
+//!
+//! **Invariant:** this crate knows poses, twists and paths of points, but no triangles and no meshes.
+mod double_double;
+mod error;
+mod keyframes;
+mod linear;
+mod path_jet;
+mod pose;
+mod rigid_motion;
+mod rotation;
+mod screw;
+#[cfg(feature = "serde")]
+mod serde_form;
+mod sin_cos;
+mod text;
+mod twist;
+
+pub use error::MotionError;
+pub use keyframes::{Keyframes, Span};
+pub use linear::LinearMotion;
+pub use path_jet::{PathJet, Remainder};
+pub use pose::{IntervalPose, Pose};
+pub use rigid_motion::RigidMotion;
+pub use screw::ScrewMotion;
+pub use twist::{IntervalTwist, Twist};
+
+#[cfg(test)]
+mod tests;

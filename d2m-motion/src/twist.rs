@@ -1,0 +1,45 @@
+//! How a body moves: linear and angular velocity, as numbers and as enclosures.
+use d2m_interval::IntervalVec3;
+use glam::DVec3;
+
+/// A twist: the linear velocity of the body point `at` and the angular velocity, both in world axes.
+///
+/// ```
+/// use d2m_motion::Twist;
+/// use glam::DVec3;
+/// let spin = Twist { linear: DVec3::X, angular: DVec3::Z };
+/// assert_eq!(spin.velocity_of(DVec3::X), DVec3::new(1.0, 1.0, 0.0));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Twist {
+    /// Velocity of the body point that the pose's translation follows, world axes, length per unit of time.
+    pub linear: DVec3,
+    /// Angular velocity, world axes, radians per unit of time.
+    pub angular: DVec3,
+}
+
+impl Twist {
+    /// No motion.
+    pub const ZERO: Self = Self { linear: DVec3::ZERO, angular: DVec3::ZERO };
+
+    /// Velocity of the point at `arm` (world axes) from the followed point: `linear + angular × arm`.
+    pub fn velocity_of(&self, arm: DVec3) -> DVec3 {
+        self.linear + self.angular.cross(arm)
+    }
+}
+
+/// A set of twists (or of twist rates) that contains the true one at every time of some interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IntervalTwist {
+    /// Encloses the linear part, world axes.
+    pub linear: IntervalVec3,
+    /// Encloses the angular part, world axes.
+    pub angular: IntervalVec3,
+}
+
+impl IntervalTwist {
+    /// Encloses the velocity of the point at `arm` (world axes) from the followed point.
+    pub fn enclose_velocity_of(&self, arm: IntervalVec3) -> IntervalVec3 {
+        self.linear + self.angular.cross(arm)
+    }
+}
