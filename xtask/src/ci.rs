@@ -1,0 +1,91 @@
+//! `cargo xtask ci`: every check that must never be red, each with its time.
+use crate::{TaskResult, tidy, workspace_root};
+use std::process::Command;
+use std::time::Instant;
+
+#[derive(clap::Args)]
+pub(crate) struct Options {
+    /// Go on after a failed step, and fail at the end.
+    #[arg(long)]
+    keep_going: bool,
+    /// Only the steps whose name contains this.
+    #[arg(long)]
+    only: Option<String>,
+}
+
+struct Step {
+    name: &'static str,
+    arguments: &'static [&'static str],
+    environment: &'static [(&'static str, &'static str)],
+}
+
+const fn step(name: &'static str, arguments: &'static [&'static str]) -> Step {
+    Step { name, arguments, environment: &[] }
+}
+
+/// In order of cost: what fails fast comes first.
+const STEPS: [Step; 6] = [
+    step("format", &["fmt", "--all", "--", "--check"]),
+    step("lints", &["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"]),
+    // Without its default features a library must still compile: no feature may be needed by accident.
+    step(
+        "features",
+        &[
+            "check",
+            "--locked",
+            "--no-default-features",
+            "-p=d2m-interval",
+            "-p=d2m-motion",
+            "-p=d2m-root",
+            "-p=d2m-feature",
+            "-p=d2m-bvh",
+            "-p=d2m-shapes",
+            "-p=d2m",
+        ],
+    ),
+    step("tests", &["test", "--workspace", "--locked", "--lib", "--bins", "--tests", "--examples"]),
+    step("doctests", &["test", "--workspace", "--locked", "--doc"]),
+    Step {
+        name: "documentation",
+        arguments: &["doc", "--workspace", "--no-deps", "--locked", "--lib"],
+        environment: &[("RUSTDOCFLAGS", "-D warnings")],
+    },
+];
+
+/// Runs the steps; an error names those that failed.
+pub(crate) fn run(options: &Options) -> TaskResult {
+    let wanted = |name: &str| options.only.as_ref().is_none_or(|only| name.contains(only.as_str()));
+    let mut failed = Vec::new();
+    let mut times = Vec::new();
+    let start = Instant::now();
+    let mut note = |name: &'static str, ok: bool, seconds: f64| {
+        times.push(format!("  {name:<14} {seconds:>7.1} s  {}", if ok { "ok" } else { "FAILED" }));
+        if !ok {
+            failed.push(name);
+        }
+        ok || options.keep_going
+    };
+    'steps: {
+        if wanted("tidy") {
+            let begin = Instant::now();
+            let ok = tidy::run().map_err(|error| eprintln!("{error}")).is_ok();
+            if !note("tidy", ok, begin.elapsed().as_secs_f64()) {
+                break 'steps;
+            }
+        }
+        for step in STEPS.iter().filter(|step| wanted(step.name)) {
+            eprintln!("xtask ci: {}: cargo {}", step.name, step.arguments.join(" "));
+            let begin = Instant::now();
+            let status = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+                .args(step.arguments)
+                .envs(step.environment.iter().copied())
+                .current_dir(workspace_root())
+                .status()?;
+            if !note(step.name, status.success(), begin.elapsed().as_secs_f64()) {
+                break 'steps;
+            }
+        }
+    }
+    eprintln!("xtask ci: {:.1} s in total\n{}", start.elapsed().as_secs_f64(), times.join("\n"));
+    if failed.is_empty() { Ok(()) } else { Err(format!("failed: {}", failed.join(", ")).into()) }
+}

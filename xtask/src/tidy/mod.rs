@@ -1,0 +1,16 @@
+//! `cargo xtask tidy`: the structure that the documents promise, held against the tree.
+mod map;
+mod sources;
+
+use crate::{TaskResult, workspace_root};
+
+/// Prints every disagreement; an error when there is one.
+pub(crate) fn run() -> TaskResult {
+    let root = workspace_root();
+    let mut findings = map::check(&root)?;
+    findings.extend(sources::check(&root)?);
+    for finding in &findings {
+        eprintln!("tidy: {finding}");
+    }
+    if findings.is_empty() { Ok(()) } else { Err(format!("tidy: {} finding(s)", findings.len()).into()) }
+}

@@ -1,0 +1,62 @@
+//! Trials: two motions over [0, 1], read from a file or drawn from a seed.
+mod file;
+mod generate;
+
+pub(crate) use file::{read, write};
+pub(crate) use generate::generate;
+
+use crate::TaskResult;
+use glam::{DQuat, DVec3};
+use std::path::PathBuf;
+
+/// A body point r is at R(t) r + x(t) with x(t) = position + t·velocity and
+/// R(t) = exp([angular_velocity] t)·R(rotation), t in [0, 1], everything in the world frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Movement {
+    /// Orientation at t = 0, unit to rounding; the mathematics normalises it.
+    pub(crate) rotation: DQuat,
+    /// Position of the body's origin at t = 0.
+    pub(crate) position: DVec3,
+    /// Units per unit of time.
+    pub(crate) velocity: DVec3,
+    /// Radians per unit of time.
+    pub(crate) angular_velocity: DVec3,
+}
+
+/// One query: both bodies' movements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Trial {
+    pub(crate) a: Movement,
+    pub(crate) b: Movement,
+}
+
+#[derive(clap::Args)]
+pub(crate) struct Options {
+    /// Relative speed of the centres, units per unit of time.
+    #[arg(long, default_value_t = 4.0)]
+    speed: f64,
+    /// How many trials.
+    #[arg(long, default_value_t = 256)]
+    count: usize,
+    /// Seed of the generator.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// File to write: CSV without header, 26 numbers a line.
+    #[arg(long)]
+    out: PathBuf,
+}
+
+/// `cargo xtask trials`.
+pub(crate) fn run(options: &Options) -> TaskResult {
+    let law = generate::Law { speed: options.speed, ..generate::Law::PAPER };
+    let trials = generate(&law, options.seed, options.count);
+    write(&options.out, &trials)?;
+    if read(&options.out)? != trials {
+        return Err(format!("{}: reads back differently", options.out.display()).into());
+    }
+    eprintln!("{} trials of seed {} in {}", options.count, options.seed, options.out.display());
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;
