@@ -1,7 +1,9 @@
 //! Triangle meshes, bounding-volume trees and certified tree-pair queries: time of contact, collide, distance.
 
+mod enclosing_sphere;
 mod mesh;
 mod query;
 
-pub use mesh::{MAX_COORDINATE, MeshError, TriMesh};
+pub use enclosing_sphere::EnclosingSphere;
+pub use mesh::{Edge, MAX_COORDINATE, MeshError, Topology, TriMesh, Validation};
 pub use query::{Budget, Contact, Mode, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window};

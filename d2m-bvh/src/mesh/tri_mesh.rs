@@ -130,6 +130,6 @@ impl TryFrom<Parts> for TriMesh {
 impl From<TriMesh> for Parts {
     fn from(mesh: TriMesh) -> Self {
         let (vertices, triangles) = mesh.into_parts();
-        Self { vertices: vertices.into_iter().map(DVec3::to_array).collect(), triangles }
+        Self { vertices: vertices.into_iter().map(|position| position.to_array()).collect(), triangles }
     }
 }

@@ -1,0 +1,92 @@
+use crate::{MAX_COORDINATE, MeshError, Topology, TriMesh, Validation};
+use glam::DVec3;
+
+const FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+
+fn corners() -> Vec<DVec3> {
+    vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z]
+}
+
+#[test]
+fn refusals_name_index_and_value() {
+    assert_eq!(TriMesh::try_new(corners(), vec![]), Err(MeshError::NoTriangles));
+    for value in [f64::INFINITY, f64::NEG_INFINITY, 1.1e60, -1e300, f64::NAN] {
+        let mut vertices = corners();
+        vertices[2].y = value;
+        let error = TriMesh::try_new(vertices, FACES.to_vec()).unwrap_err();
+        let message = error.to_string();
+        assert!(message.starts_with("vertex 2: coordinate y is"), "{message}");
+        assert_eq!(matches!(error, MeshError::NonFiniteVertex { .. }), !value.is_finite(), "{message}");
+    }
+    let mut vertices = corners();
+    vertices[0].x = MAX_COORDINATE;
+    assert!(TriMesh::try_new(vertices, FACES.to_vec()).is_ok());
+    let error = TriMesh::try_new(corners(), vec![[0, 1, 2], [0, u32::MAX, 1]]).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "triangle 1: vertex index 4294967295 is out of range, the mesh has 4 vertices"
+    );
+    assert!(TriMesh::try_new(vec![], vec![[0, 0, 0]]).is_err());
+}
+
+#[test]
+fn seams_are_welded_and_degenerate_and_repeated_triangles_are_harmless() {
+    // Every triangle with corners of its own, as an STL file has them, one zero negative.
+    let soup: Vec<DVec3> = FACES.iter().flatten().map(|&vertex| corners()[vertex as usize]).collect();
+    let mut soup: Vec<DVec3> =
+        soup.iter().map(|&p| if p == DVec3::X { DVec3::new(1.0, -0.0, 0.0) } else { p }).collect();
+    let mut faces: Vec<[u32; 3]> = (0..4).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
+    let clean = Validation::new(&TriMesh::try_new(soup.clone(), faces.clone()).unwrap());
+    assert!(clean.watertight && clean.consistently_oriented);
+    assert_eq!((clean.euler_characteristic, clean.components, clean.duplicate_vertices), (2, 1, 8));
+    assert!((clean.signed_volume - 1.0 / 6.0).abs() < 1e-15);
+    soup.push(DVec3::splat(7.0));
+    faces.push([1, 2, 0]); // the first triangle again
+    faces.push([5, 5, 5]);
+    faces.push([0, 1, 1]);
+    let noisy = Validation::new(&TriMesh::try_new(soup, faces).unwrap());
+    assert!(noisy.watertight && noisy.consistently_oriented);
+    assert_eq!((noisy.duplicate_triangles, noisy.degenerate_triangles, noisy.unused_vertices), (1, 2, 1));
+    assert_eq!(noisy.bounds_high, [1.0, 1.0, 1.0]);
+}
+
+#[test]
+fn open_flipped_and_non_manifold_meshes_are_seen() {
+    let open = Topology::new(&TriMesh::try_new(corners(), FACES[..3].to_vec()).unwrap());
+    assert!(!open.is_watertight() && !open.is_consistently_oriented());
+    let mut flipped = FACES;
+    flipped[1].swap(0, 1);
+    let flipped = TriMesh::try_new(corners(), flipped.to_vec()).unwrap();
+    let validation = Validation::new(&flipped);
+    assert!(validation.watertight && !validation.consistently_oriented);
+    assert_eq!(validation.inconsistent_edges, 3);
+    // Two tetrahedra glued along an edge: four sides there, still watertight and oriented.
+    let mut vertices = corners();
+    vertices.extend([-DVec3::X, -DVec3::Y]);
+    let mut faces = FACES.to_vec();
+    faces.extend([[0, 5, 4], [0, 4, 3], [0, 3, 5], [4, 5, 3]]);
+    let glued = TriMesh::try_new(vertices, faces).unwrap();
+    let validation = Validation::new(&glued);
+    assert_eq!((validation.non_manifold_edges, validation.components), (1, 1));
+    assert!(validation.watertight && validation.consistently_oriented);
+    assert!(!Topology::new(&glued).is_oriented_manifold());
+}
+
+#[test]
+fn every_neighbour_relation_is_mutual() {
+    let mesh = TriMesh::try_new(corners(), FACES.to_vec()).unwrap();
+    let topology = Topology::new(&mesh);
+    assert!(topology.is_oriented_manifold());
+    for triangle in 0..4 {
+        for side in 0..3 {
+            let other = topology.neighbour(triangle, side).unwrap();
+            let back = (0..3).filter(|&side| topology.neighbour(other, side) == Some(triangle)).count();
+            assert_eq!(back, 1);
+            let edge = topology.edges()[topology.edge_of(triangle, side).unwrap() as usize];
+            let corners = mesh.triangles()[triangle as usize];
+            let mut ends = [corners[side], corners[(side + 1) % 3]];
+            ends.sort_unstable();
+            assert_eq!(edge.vertices, ends);
+        }
+    }
+}
