@@ -1,0 +1,127 @@
+//! A triangle or convex polygon with its normal and side directions.
+
+use super::direction::{Direction, across, unit};
+use glam::DVec3;
+
+/// A triangle, prepared for [`point_triangle`](super::point_triangle()).
+///
+/// The normal n and the in-plane normals of the three sides, each with the extent of the triangle along it. Collapsed
+/// triangles (a segment, a point) get directions across and along what is left of them; every direction is sound.
+#[derive(Clone, Copy, Debug)]
+pub struct TriangleFace {
+    corners: [DVec3; 3],
+    normal: Direction,
+    sides: [Direction; 3],
+}
+
+impl TriangleFace {
+    /// Prepares the triangle with these corners.
+    pub fn new(corners: [DVec3; 3]) -> Self {
+        let (normal, sides) = directions(&corners);
+        let side = |i: usize| Direction::new(sides(i), &corners);
+        Self { corners, normal: Direction::new(normal, &corners), sides: [side(0), side(1), side(2)] }
+    }
+
+    /// The view that the tests take.
+    pub fn face(&self) -> Face<'_> {
+        Face { corners: &self.corners, normal: self.normal, sides: &self.sides }
+    }
+}
+
+/// A convex polygon, prepared for [`point_polygon`](super::point_polygon).
+///
+/// What is tested is the convex hull of the corners: a polygon that is not quite flat or not quite convex is replaced
+/// by its hull, never by something smaller.
+#[derive(Clone, Debug)]
+pub struct PolygonFace {
+    corners: Vec<DVec3>,
+    normal: Direction,
+    sides: Vec<Direction>,
+}
+
+impl PolygonFace {
+    /// Prepares the polygon with these corners, in order around it; `None` for fewer than three.
+    pub fn try_new(corners: &[DVec3]) -> Option<Self> {
+        if corners.len() < 3 {
+            return None;
+        }
+        let (normal, sides) = directions(corners);
+        let sides = (0..corners.len()).map(|i| Direction::new(sides(i), corners)).collect();
+        Some(Self { corners: corners.to_vec(), normal: Direction::new(normal, corners), sides })
+    }
+
+    /// The view that the tests take.
+    pub fn face(&self) -> Face<'_> {
+        Face { corners: &self.corners, normal: self.normal, sides: &self.sides }
+    }
+}
+
+/// A convex, nearly flat feature of the observer, at rest in its frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Face<'a> {
+    /// The corners, in order.
+    pub corners: &'a [DVec3],
+    /// About the unit normal.
+    pub normal: Direction,
+    /// About the unit in-plane normals of the sides.
+    pub sides: &'a [Direction],
+}
+
+/// The normal of a polygon and, by index, the in-plane normals of its sides; substitutes where it has collapsed.
+fn directions(corners: &[DVec3]) -> (DVec3, impl Fn(usize) -> DVec3 + '_) {
+    let n = corners.len();
+    let edge = move |i: usize| corners[(i + 1) % n] - corners[i];
+    let area = (1..n - 1)
+        .map(|i| (corners[i] - corners[0]).cross(corners[i + 1] - corners[0]))
+        .fold(DVec3::ZERO, |sum, a| sum + a);
+    let longest = (0..n).map(edge).max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+    let longest = longest.and_then(unit);
+    // A sliver's area vector is poor along its longest edge: take that component out.
+    let straight = |v: DVec3| longest.map_or(v, |l| v - l * v.dot(l));
+    let normal = unit(area).map(straight).and_then(unit).filter(|u| {
+        let size = corners.iter().fold(0.0f64, |m, c| m.max((*c - corners[0]).abs().max_element()));
+        u.is_finite() && area.abs().max_element() > 1e-30 * size * size
+    });
+    let (n_hat, flat) = match (normal, longest) {
+        (Some(u), _) => (u, true),
+        (None, Some(l)) => (across(l), false),
+        (None, None) => (DVec3::X, false),
+    };
+    let side = move |i: usize| {
+        let own = if flat { unit(n_hat.cross(edge(i))) } else { None };
+        own.unwrap_or_else(|| match (longest, i % 3) {
+            (Some(l), 0) => l,
+            (Some(l), _) => unit(n_hat.cross(l)).unwrap_or(DVec3::Y),
+            (None, 0) => DVec3::X,
+            (None, 1) => DVec3::Y,
+            (None, _) => DVec3::Z,
+        })
+    };
+    (n_hat, side)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn collapsed_triangles_have_finite_directions() {
+        let p = DVec3::new(1.0, 2.0, 3.0);
+        for corners in [
+            [p, p, p],
+            [p, p, p + DVec3::X],
+            [p, p + DVec3::X, p + 2.0 * DVec3::X],
+            [DVec3::ZERO, DVec3::X * 1e-300, DVec3::Y * 1e-300],
+            [DVec3::ZERO, DVec3::X * 1e50, DVec3::Y * 1e50],
+        ] {
+            let t = TriangleFace::new(corners);
+            for d in t.sides.iter().chain([&t.normal]) {
+                assert!(d.vector.is_finite() && (d.vector.length() - 1.0).abs() < 1e-9, "{corners:?}");
+                for c in corners {
+                    assert!(!d.certainly_apart(d2m_interval::IntervalVec3::point(c).dot_point(d.vector)));
+                }
+            }
+        }
+        assert!(PolygonFace::try_new(&[p, p]).is_none());
+    }
+}
