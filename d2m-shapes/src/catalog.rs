@@ -1,0 +1,389 @@
+//! Names, parameters and the text form.
+
+use crate::ShapeError;
+use crate::extrusion::{self, Prism};
+use crate::surface::Surface;
+use crate::{bodies, sphere, thread, tube};
+use d2m_bvh::TriMesh;
+use glam::DVec3;
+use std::fmt;
+use std::str::FromStr;
+
+/// A number that a shape takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Parameter {
+    /// Its name in the text form.
+    pub name: &'static str,
+    /// The value if it is not given.
+    pub default: f64,
+    /// Smallest value.
+    pub low: f64,
+    /// Largest value.
+    pub high: f64,
+    /// Whether it counts something.
+    pub integer: bool,
+    /// What it means.
+    pub description: &'static str,
+}
+
+/// One kind of shape.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct ShapeInfo {
+    /// Its name in the text form.
+    pub name: &'static str,
+    /// One line about it.
+    pub description: &'static str,
+    /// Its parameters.
+    pub parameters: &'static [Parameter],
+    build: fn(&Values) -> Surface,
+}
+
+const fn length(
+    name: &'static str,
+    default: f64,
+    low: f64,
+    high: f64,
+    description: &'static str,
+) -> Parameter {
+    Parameter { name, default, low, high, integer: false, description }
+}
+
+const fn count(
+    name: &'static str,
+    default: f64,
+    low: f64,
+    high: f64,
+    description: &'static str,
+) -> Parameter {
+    Parameter { name, default, low, high, integer: true, description }
+}
+
+const fn triangles(default: f64, low: f64) -> Parameter {
+    count("triangles", default, low, 2e7, "wanted number of triangles; the mesh has the nearest that fits")
+}
+
+/// Every shape that there is, in the order of `d2m info --shapes`.
+///
+/// ```
+/// assert!(d2m_shapes::SHAPES.iter().any(|shape| shape.name == "torus-knot"));
+/// ```
+pub const SHAPES: &[ShapeInfo] = &[
+    ShapeInfo {
+        name: "box",
+        description: "box with half sizes x, y, z",
+        parameters: &[
+            triangles(12.0, 12.0),
+            length("x", 0.577_350_269_189_625_7, 1e-6, 1e6, "half size along x"),
+            length("y", 0.577_350_269_189_625_7, 1e-6, 1e6, "half size along y"),
+            length("z", 0.577_350_269_189_625_7, 1e-6, 1e6, "half size along z"),
+        ],
+        build: |v| bodies::cuboid(v.count("triangles"), DVec3::new(v.get("x"), v.get("y"), v.get("z"))),
+    },
+    ShapeInfo {
+        name: "tetrahedron",
+        description: "regular tetrahedron",
+        parameters: &[],
+        build: |_| bodies::tetrahedron(),
+    },
+    ShapeInfo {
+        name: "icosphere",
+        description: "unit sphere from a divided icosahedron",
+        parameters: &[triangles(1280.0, 20.0)],
+        build: |v| sphere::icosphere(v.count("triangles")),
+    },
+    ShapeInfo {
+        name: "pebble",
+        description: "bumpy round stone",
+        parameters: &[
+            triangles(5120.0, 20.0),
+            count("seed", 1.0, 0.0, 1e9, "another stone for each seed"),
+            length("roughness", 0.6, 0.0, 1.0, "height of the bumps"),
+        ],
+        build: |v| sphere::pebble(v.count("triangles"), v.get("seed") as u64, v.get("roughness")),
+    },
+    ShapeInfo {
+        name: "torus",
+        description: "ring with a round section, axis z",
+        parameters: &[
+            triangles(3200.0, 18.0),
+            length("tube", 0.3, 0.01, 0.49, "radius of the tube; the ring's outer radius is 1"),
+        ],
+        build: |v| tube::torus(v.count("triangles"), v.get("tube")),
+    },
+    ShapeInfo {
+        name: "torus-knot",
+        description: "knotted tube: p turns about the axis, q about the ring",
+        parameters: &[
+            triangles(20000.0, 400.0),
+            count("p", 2.0, 1.0, 7.0, "turns about the axis"),
+            count("q", 3.0, 1.0, 7.0, "turns about the ring; no common divisor with p"),
+            length(
+                "tube",
+                0.3,
+                0.01,
+                0.45,
+                "radius of the tube before scaling; at most 0.9/max(p, q) or 0.45",
+            ),
+        ],
+        build: |v| tube::torus_knot(v.count("triangles"), [v.get("p"), v.get("q")], v.get("tube")),
+    },
+    ShapeInfo {
+        name: "chain-link",
+        description: "oblong ring, in the xy plane, long side along y",
+        parameters: &[
+            triangles(4000.0, 36.0),
+            length("straight", 1.5, 0.01, 20.0, "length of the straight sides over the radius of the bends"),
+            length("tube", 0.35, 0.01, 0.9, "radius of the tube over the radius of the bends"),
+        ],
+        build: |v| tube::chain_link(v.count("triangles"), v.get("straight"), v.get("tube")),
+    },
+    ShapeInfo {
+        name: "gear",
+        description: "spur gear with a bore, axis z",
+        parameters: &[
+            triangles(5000.0, 200.0),
+            count("teeth", 16.0, 4.0, 400.0, "number of teeth"),
+            length("depth", 0.15, 0.01, 0.5, "depth of the teeth; the tip radius is 1 before scaling"),
+            length("bore", 0.3, 0.05, 0.45, "radius of the bore"),
+            length("thickness", 0.4, 0.001, 4.0, "thickness along z"),
+        ],
+        build: |v| {
+            let prism = Prism { half_height: 0.5 * v.get("thickness"), bore: v.get("bore") };
+            extrusion::gear(v.count("triangles"), v.count("teeth"), v.get("depth"), prism)
+        },
+    },
+    ShapeInfo {
+        name: "paddle-wheel",
+        description: "flat blades on a hub, axis z",
+        parameters: &[
+            triangles(4000.0, 200.0),
+            count("blades", 8.0, 3.0, 24.0, "number of blades"),
+            length("thickness", 0.8, 0.001, 4.0, "length along z"),
+        ],
+        build: |v| {
+            let prism = Prism { half_height: 0.5 * v.get("thickness"), bore: 0.1 };
+            extrusion::paddle_wheel(v.count("triangles"), v.count("blades"), 0.3, 0.03, prism)
+        },
+    },
+    ShapeInfo {
+        name: "screw",
+        description: "screw along z with a round head; fits `nut`",
+        parameters: &[triangles(7000.0, 2000.0)],
+        build: |v| thread::screw(v.count("triangles")).scaled(thread::common_scale()),
+    },
+    ShapeInfo {
+        name: "nut",
+        description: "hexagonal nut on the thread of `screw`, both at the origin; pitch and scale are the screw's",
+        parameters: &[
+            triangles(5000.0, 1000.0),
+            length("clearance", 0.01, 0.0, 0.03, "radial play between the threads, before scaling"),
+        ],
+        build: |v| thread::nut(v.count("triangles"), v.get("clearance")).scaled(thread::common_scale()),
+    },
+    ShapeInfo {
+        name: "shaft",
+        description: "cylinder of radius 0.5 and length 1.6, axis z; fits `bearing`",
+        parameters: &[triangles(2560.0, 48.0)],
+        build: |v| extrusion::cylinder(v.count("triangles"), 0.5, 0.8),
+    },
+    ShapeInfo {
+        name: "bearing",
+        description: "ring about `shaft`, both at the origin",
+        parameters: &[triangles(2560.0, 64.0), length("clearance", 0.01, 1e-9, 0.2, "radial play")],
+        build: |v| extrusion::ring(v.count("triangles"), 0.9, 0.3, 0.5 + v.get("clearance")),
+    },
+    ShapeInfo {
+        name: "hollow-sphere",
+        description: "spherical shell: a cavity with a wall",
+        parameters: &[triangles(2560.0, 40.0), length("wall", 0.2, 1e-3, 0.9, "thickness of the wall")],
+        build: |v| sphere::hollow_sphere(v.count("triangles"), v.get("wall")),
+    },
+    ShapeInfo {
+        name: "hollow-box",
+        description: "cubic shell: a cavity with a wall",
+        parameters: &[
+            triangles(24.0, 24.0),
+            length("wall", 0.2, 1e-3, 0.9, "thickness of the wall over half the side"),
+        ],
+        build: |v| bodies::hollow_box(v.count("triangles"), v.get("wall")),
+    },
+    ShapeInfo {
+        name: "needle",
+        description: "double cone along z",
+        parameters: &[triangles(16.0, 6.0), length("aspect", 1000.0, 1.0, 1e9, "length over thickness")],
+        build: |v| bodies::needle(v.count("triangles"), v.get("aspect")),
+    },
+    ShapeInfo {
+        name: "plate",
+        description: "thin square plate of half size 1 across z",
+        parameters: &[triangles(12.0, 12.0), length("thickness", 1e-4, 1e-9, 1.0, "thickness along z")],
+        build: |v| bodies::cuboid(v.count("triangles"), DVec3::new(1.0, 1.0, 0.5 * v.get("thickness"))),
+    },
+];
+
+/// A shape with its parameters, not yet built.
+///
+/// ```
+/// use d2m_shapes::Shape;
+///
+/// let gear: Shape = "gear?teeth=24&triangles=1000".parse()?;
+/// assert_eq!(gear.to_string(), "gear?triangles=1000&teeth=24");
+/// let finer = gear.with("triangles", 100_000.0)?;
+/// assert!(finer.build().triangle_count() > 90_000);
+/// # Ok::<(), d2m_shapes::ShapeError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Shape {
+    info: &'static ShapeInfo,
+    given: Vec<Option<f64>>,
+}
+
+impl Shape {
+    /// The shape of that name with default parameters.
+    ///
+    /// # Errors
+    /// [`ShapeError::UnknownShape`], which lists the known ones.
+    pub fn new(name: &str) -> Result<Self, ShapeError> {
+        let info = SHAPES.iter().find(|info| info.name == name).ok_or_else(|| ShapeError::UnknownShape {
+            name: name.to_owned(),
+            known: join(SHAPES.iter().map(|info| info.name)),
+        })?;
+        Ok(Self { info, given: vec![None; info.parameters.len()] })
+    }
+
+    /// With another value of a parameter.
+    ///
+    /// # Errors
+    /// The parameter does not exist or the value is out of its range.
+    pub fn with(mut self, name: &str, value: f64) -> Result<Self, ShapeError> {
+        let slot = self.slot(name)?;
+        self.set(slot, value)?;
+        self.check()?;
+        Ok(self)
+    }
+
+    /// What kind of shape it is.
+    pub fn info(&self) -> &'static ShapeInfo {
+        self.info
+    }
+
+    /// The value of a parameter; none if the shape has no such parameter.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        let slot = self.slot(name).ok()?;
+        Some(self.given[slot].unwrap_or(self.info.parameters[slot].default))
+    }
+
+    /// Makes the mesh.
+    pub fn build(&self) -> TriMesh {
+        (self.info.build)(&Values(self)).into_mesh()
+    }
+
+    fn slot(&self, name: &str) -> Result<usize, ShapeError> {
+        let parameters = self.info.parameters;
+        parameters.iter().position(|parameter| parameter.name == name).ok_or_else(|| {
+            let known = join(parameters.iter().map(|parameter| parameter.name));
+            ShapeError::UnknownParameter {
+                shape: self.info.name,
+                name: name.to_owned(),
+                known: if known.is_empty() { "none".to_owned() } else { known },
+            }
+        })
+    }
+
+    fn set(&mut self, slot: usize, value: f64) -> Result<(), ShapeError> {
+        let Parameter { name, low, high, integer, .. } = self.info.parameters[slot];
+        if !(low..=high).contains(&value) || (integer && value.fract() != 0.0) {
+            return Err(ShapeError::OutOfRange { shape: self.info.name, name, value, low, high, integer });
+        }
+        self.given[slot] = Some(value);
+        Ok(())
+    }
+
+    /// What ranges alone cannot say.
+    fn check(&self) -> Result<(), ShapeError> {
+        let conflict = |reason: String| Err(ShapeError::Conflict { shape: self.info.name, reason });
+        if self.info.name == "torus-knot" {
+            let [p, q, tube] = ["p", "q", "tube"].map(|name| self.value(name).unwrap_or(1.0));
+            let (mut larger, mut smaller) = (p as u32, q as u32);
+            while smaller != 0 {
+                (larger, smaller) = (smaller, larger % smaller);
+            }
+            if larger != 1 {
+                return conflict(format!("p={p} and q={q} have the common divisor {larger}"));
+            }
+            let limit = (0.9 / p.max(q)).min(0.45);
+            if tube > limit {
+                return conflict(format!("tube={tube} is too thick for p={p}, q={q}: at most {limit:.4}"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Reads `name` or `name?parameter=value&parameter=value`.
+impl FromStr for Shape {
+    type Err = ShapeError;
+
+    fn from_str(text: &str) -> Result<Self, ShapeError> {
+        let (name, query) = text.split_once('?').unwrap_or((text, ""));
+        let mut shape = Self::new(name)?;
+        for part in query.split('&').filter(|part| !part.is_empty()) {
+            let Some((name, text)) = part.split_once('=') else {
+                return Err(ShapeError::MissingValue { shape: shape.info.name, text: part.to_owned() });
+            };
+            let slot = shape.slot(name)?;
+            let name = shape.info.parameters[slot].name;
+            if shape.given[slot].is_some() {
+                return Err(ShapeError::GivenTwice { shape: shape.info.name, name });
+            }
+            let not_a_number =
+                |_| ShapeError::NotANumber { shape: shape.info.name, name, text: text.to_owned() };
+            let value = text.parse().map_err(not_a_number)?;
+            shape.set(slot, value)?;
+        }
+        shape.check()?;
+        Ok(shape)
+    }
+}
+
+/// The text form, with the given parameters only.
+impl fmt::Display for Shape {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.info.name)?;
+        let mut separator = '?';
+        for (parameter, value) in self.info.parameters.iter().zip(&self.given) {
+            if let Some(value) = value {
+                write!(formatter, "{separator}{}={value}", parameter.name)?;
+                separator = '&';
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The mesh of a shape's text form, such as `torus-knot?triangles=70000`.
+///
+/// # Errors
+/// [`ShapeError`]: no such shape or parameter, a value that is no number or out of range.
+pub fn mesh(text: &str) -> Result<TriMesh, ShapeError> {
+    Ok(text.parse::<Shape>()?.build())
+}
+
+/// The values that builders look up; every name is one of the shape's own.
+struct Values<'a>(&'a Shape);
+
+impl Values<'_> {
+    fn get(&self, name: &str) -> f64 {
+        self.0.value(name).expect("builders ask for parameters of their own shape")
+    }
+
+    fn count(&self, name: &str) -> usize {
+        self.get(name) as usize
+    }
+}
+
+fn join<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    names.collect::<Vec<_>>().join(", ")
+}
