@@ -1,0 +1,125 @@
+//! From what the search found to the answer: witness points, normal, features in the meshes' numbers.
+
+use crate::search::{Closest, Found, Frame, Place, RelativeMotion, Scene, closest, corners, place_a};
+use crate::{Contact, MeshTree, StartState};
+use d2m_feature::FeaturePair;
+use glam::DVec3;
+
+/// The contact with all its data.
+pub(super) fn contact(scene: &Scene<'_>, found: &Found) -> Contact {
+    let time = crate::search::time_from(found.start, found.offset).max(scene.window.start());
+    let motion = RelativeMotion::new((scene.a.0, &scene.a.1), (scene.b.0, &scene.b.1), found.start);
+    let frame = motion.frame(time - found.start);
+    let b = corners(scene.b.0, found.triangles[1]);
+    let a = place_a(&frame, &corners(scene.a.0, found.triangles[0]));
+    let near = closest(&a, &b);
+    let start = match (time <= scene.window.start(), found.crossing) {
+        (false, _) => StartState::Apart,
+        (true, false) => StartState::Touching,
+        (true, true) => StartState::Overlapping,
+    };
+    let separation = if start == StartState::Overlapping { 0.0 } else { near.square.sqrt() };
+    describe(scene, &frame, time, &Witness { near, a, b, triangles: found.triangles, separation, start })
+}
+
+struct Witness {
+    near: Closest,
+    a: [DVec3; 3],
+    b: [DVec3; 3],
+    triangles: [u32; 2],
+    separation: f64,
+    start: StartState,
+}
+
+fn describe(scene: &Scene<'_>, frame: &Frame, time: f64, witness: &Witness) -> Contact {
+    let Witness { near, a, b, triangles, separation, start } = witness;
+    let side = &frame.sides[1];
+    let rb = &frame.rotation_b;
+    let turn = |p: DVec3| rb[0] * p.x + rb[1] * p.y + rb[2] * p.z;
+    let body = &scene.b;
+    let base = body.1.position() + body.1.linear_velocity() * (time - body.1.reference_time());
+    let world = |p: DVec3| base + turn(p + (body.0.center() - body.1.at()));
+    let normal = near.direction.normalize_or(DVec3::X);
+    let [pa, pb] = near.points;
+    let rate = side.velocity + side.omega_single.cross(pa - side.offset) - side.omega_wide.cross(pb);
+    Contact {
+        time_lo: time,
+        time_hi: time,
+        separation: *separation,
+        tolerance: scene.tolerance,
+        normal: turn(normal),
+        point_a: world(pa),
+        point_b: world(pb),
+        feature: feature(scene, near, *triangles),
+        triangle_a: triangles[0],
+        triangle_b: triangles[1],
+        barycentric_a: barycentric(a, pa, near.places[0]),
+        barycentric_b: barycentric(b, pb, near.places[1]),
+        closing_speed: rate.dot(normal),
+        start: *start,
+    }
+}
+
+/// The contact of a body inside the other: the vertex that shows it, and the nearest data that mean something.
+pub(super) fn contained(
+    scene: &Scene<'_>,
+    motion: &RelativeMotion,
+    a_is_inside: bool,
+    vertex: u32,
+    start: StartState,
+) -> Contact {
+    let frame = motion.frame(0.0);
+    let (tree_a, tree_b) = (scene.a.0, scene.b.0);
+    let holder = |tree: &MeshTree| {
+        tree.mesh().triangles().iter().position(|t| t.contains(&vertex)).unwrap_or(0) as u32
+    };
+    let triangles = if a_is_inside { [holder(tree_a), 0] } else { [0, holder(tree_b)] };
+    let corners =
+        |tree: &MeshTree, triangle: u32| tree.mesh().corners(triangle as usize).map(|p| p - tree.center());
+    let b = corners(tree_b, triangles[1]);
+    let a = place_a(&frame, &corners(tree_a, triangles[0]));
+    let near = closest(&a, &b);
+    let time = scene.window.start();
+    describe(scene, &frame, time, &Witness { near, a, b, triangles, separation: 0.0, start })
+}
+
+fn feature(scene: &Scene<'_>, near: &Closest, triangles: [u32; 2]) -> FeaturePair {
+    let a = scene.a.0.mesh().triangles()[triangles[0] as usize];
+    let b = scene.b.0.mesh().triangles()[triangles[1] as usize];
+    let edge = |t: [u32; 3], k: usize| {
+        let (p, q) = (t[k], t[(k + 1) % 3]);
+        [p.min(q), p.max(q)]
+    };
+    match near.places {
+        [Place::Edge(i), Place::Edge(j)] => FeaturePair::EdgeEdge { edge_a: edge(a, i), edge_b: edge(b, j) },
+        [Place::Corner(i), _] => FeaturePair::VertexFace { vertex: a[i], face: triangles[1] },
+        [_, Place::Corner(j)] => FeaturePair::FaceVertex { face: triangles[0], vertex: b[j] },
+        // Faces only meet at the corners or edges of one of them: never produced.
+        [Place::Face, _] => FeaturePair::FaceVertex { face: triangles[0], vertex: b[0] },
+        [_, Place::Face] => FeaturePair::VertexFace { vertex: a[0], face: triangles[1] },
+    }
+}
+
+/// Weights of the corners: not negative, sum one up to rounding.
+fn barycentric(corners: &[DVec3; 3], point: DVec3, place: Place) -> [f64; 3] {
+    let mut weights = [0.0; 3];
+    match place {
+        Place::Corner(i) => weights[i] = 1.0,
+        Place::Edge(i) => {
+            let j = (i + 1) % 3;
+            let edge = corners[j] - corners[i];
+            let x = ((point - corners[i]).dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
+            (weights[i], weights[j]) = (1.0 - x, x);
+        }
+        Place::Face => {
+            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+            for (k, weight) in weights.iter_mut().enumerate() {
+                let (p, q) = (corners[(k + 1) % 3] - point, corners[(k + 2) % 3] - point);
+                *weight = p.cross(q).dot(normal).max(0.0);
+            }
+            let sum: f64 = weights.iter().sum();
+            weights = weights.map(|w| w / sum);
+        }
+    }
+    weights
+}

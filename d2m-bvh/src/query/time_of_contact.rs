@@ -1,0 +1,120 @@
+//! The query for the first contact of two bodies.
+
+use super::containment::contains_point;
+use super::report::contact;
+use crate::search::{Outcome, RelativeMotion, Scene, Scratch, first_contact};
+use crate::{MeshTree, Moving, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window};
+use core::cell::RefCell;
+use d2m_motion::LinearMotion;
+use glam::DVec3;
+
+thread_local! {
+    /// Memory of the last search of this thread.
+    static SCRATCH: RefCell<Option<Box<Scratch>>> = const { RefCell::new(None) };
+}
+
+/// First time in `window` at which the two bodies touch.
+///
+/// Promise: never a missed contact, never a late one. See [`TimeOfContact`] and [`Contact`](crate::Contact) for what
+/// each answer certifies, and [`QueryOptions`] for what can be asked.
+///
+/// ```
+/// use d2m_bvh::{MeshTree, Moving, QueryOptions, TriMesh, Window, time_of_contact};
+/// use d2m_motion::LinearMotion;
+/// use glam::{DQuat, DVec3};
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
+/// let tree = MeshTree::new(mesh);
+/// let falling = LinearMotion::try_new(DVec3::Z * 2.0, DQuat::IDENTITY, -DVec3::Z * 4.0, DVec3::ZERO).unwrap();
+/// let answer = time_of_contact(
+///     Moving::new(&tree, &falling),
+///     Moving::new(&tree, &LinearMotion::REST),
+///     Window::UNIT,
+///     &QueryOptions::default(),
+/// ).unwrap();
+/// let contact = answer.contact().unwrap();
+/// assert!(contact.time_lo <= 0.25 && contact.time_lo > 0.25 - 1e-10);
+/// assert!((contact.closing_speed - 4.0).abs() < 1e-9);
+/// ```
+///
+/// # Errors
+/// Bad input only: a tolerance, separation or motion that is not finite, a filled solid that does not close.
+pub fn time_of_contact(
+    a: Moving<'_>,
+    b: Moving<'_>,
+    window: Window,
+    options: &QueryOptions,
+) -> Result<TimeOfContact, QueryError> {
+    check(options)?;
+    for (index, moving) in [&a, &b].into_iter().enumerate() {
+        if options.solid == Solid::Filled && !moving.body.is_watertight() {
+            return Err(QueryError::NotWatertight { body: index });
+        }
+    }
+    let (Some(motion_a), Some(motion_b)) = (a.motion.constant_twist(), b.motion.constant_twist()) else {
+        return Ok(TimeOfContact::Undecided { clear_until: window.start() });
+    };
+    let scene = Scene::new((a.body, motion_a), (b.body, motion_b), window, options);
+    if !(scene.size.is_finite() && scene.size < 1e150) {
+        let speed = |m: &LinearMotion| m.linear_velocity().length() + m.position().length();
+        return Err(QueryError::BadMotion { body: usize::from(speed(&motion_b) > speed(&motion_a)) });
+    }
+    let mut scratch = SCRATCH.take().unwrap_or_else(|| Box::new(Scratch::new()));
+    let outcome = first_contact(&scene, &options.budget, &mut scratch);
+    SCRATCH.set(Some(scratch));
+    let start_decided = match outcome {
+        Outcome::Found(found) => found.offset > 0.0 || found.start > window.start(),
+        Outcome::OutOfBudget(until) => until > window.start(),
+        Outcome::Separated => true,
+    };
+    if options.solid == Solid::Filled
+        && start_decided
+        && let Some(contained) = containment(&scene)
+    {
+        return Ok(contained);
+    }
+    Ok(match outcome {
+        Outcome::Separated => TimeOfContact::Separated,
+        Outcome::OutOfBudget(until) => TimeOfContact::Undecided { clear_until: until },
+        Outcome::Found(found) => TimeOfContact::Contact(contact(&scene, &found)),
+    })
+}
+
+fn check(options: &QueryOptions) -> Result<(), QueryError> {
+    if let Some(value) = options.tolerance
+        && !(value.is_finite() && value > 0.0)
+    {
+        return Err(QueryError::BadTolerance { value });
+    }
+    let value = options.min_separation;
+    if value.is_finite() && value >= 0.0 { Ok(()) } else { Err(QueryError::BadMinSeparation { value }) }
+}
+
+/// The answer when one body is inside the other at the start; the surfaces are known not to cross then.
+fn containment(scene: &Scene<'_>) -> Option<TimeOfContact> {
+    let start = scene.window.start();
+    let motion = RelativeMotion::new((scene.a.0, &scene.a.1), (scene.b.0, &scene.b.1), start);
+    let frame = motion.frame(0.0);
+    let inside = |outer: &MeshTree, inner: &MeshTree, side: usize| -> Option<(u32, DVec3)> {
+        // A body that holds another one holds its ball's middle region: the cheap look first.
+        let side = &frame.sides[side];
+        inner.component_vertices().iter().find_map(|&vertex| {
+            let p = inner.mesh().vertices()[vertex as usize] - inner.center();
+            let r = &side.rotation;
+            let q = r[0] * p.x + r[1] * p.y + r[2] * p.z + side.offset + outer.center();
+            contains_point(outer, q).then_some((vertex, q))
+        })
+    };
+    let (a, b) = (scene.a.0, scene.b.0);
+    let hit = inside(a, b, 0)
+        .map(|(vertex, _)| (false, vertex))
+        .or_else(|| inside(b, a, 1).map(|(vertex, _)| (true, vertex)));
+    let (a_is_inside, vertex) = hit?;
+    Some(TimeOfContact::Contact(super::report::contained(
+        scene,
+        &motion,
+        a_is_inside,
+        vertex,
+        StartState::Contained,
+    )))
+}

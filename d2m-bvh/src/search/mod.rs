@@ -1,0 +1,19 @@
+//! The search for the first contact of two trees: best first on proven times.
+
+mod base_pose;
+mod closest;
+mod dispatch;
+mod frame;
+mod lanes;
+mod node_test;
+mod queue;
+mod scene;
+mod triangle_pair;
+mod window;
+
+pub(crate) use closest::{Closest, Place, closest};
+pub(crate) use dispatch::first_contact;
+pub(crate) use frame::{Frame, RelativeMotion};
+pub(crate) use scene::{Scene, Scratch};
+pub(crate) use triangle_pair::place_a;
+pub(crate) use window::{Found, Outcome, corners, time_from};

@@ -1,0 +1,119 @@
+//! The queue of box pairs: a radix heap whose buckets are handed out whole while they are small.
+//!
+//! Keys are times as integers. The search takes the earliest keys; keys that come in are never below the last one
+//! handed out (monotone). An item moves to a lower bucket at most 32 times, so the work is bounded by 32 moves an item
+//! whatever the scene does.
+
+/// A pair of boxes and the time until which it is proven apart.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Item {
+    /// Time key.
+    pub(crate) key: u32,
+    /// Box of A.
+    pub(crate) a: u32,
+    /// Box of B.
+    pub(crate) b: u32,
+}
+
+/// Monotone queue. Bucket 0 holds keys equal to `last`, bucket i keys whose highest bit that differs is bit i − 1.
+#[derive(Debug)]
+pub(crate) struct Queue {
+    buckets: [Vec<Item>; 33],
+    last: u32,
+}
+
+impl Queue {
+    pub(crate) fn new() -> Self {
+        Self { buckets: [const { Vec::new() }; 33], last: 0 }
+    }
+
+    /// Empties the queue and restarts the keys at zero.
+    pub(crate) fn clear(&mut self) {
+        for bucket in &mut self.buckets {
+            bucket.clear();
+        }
+        self.last = 0;
+    }
+
+    /// Adds an item whose key is not below the last key handed out.
+    #[inline(always)]
+    pub(crate) fn push(&mut self, item: Item) {
+        debug_assert!(item.key >= self.last);
+        let bucket = 32 - (item.key ^ self.last).leading_zeros();
+        self.buckets[bucket as usize].push(item);
+    }
+
+    /// Moves the earliest items into `batch` (emptied first) and returns the least key of all live items, or None
+    /// when there is none. A batch has more than `target` items only if their keys are equal.
+    pub(crate) fn take(&mut self, batch: &mut Vec<Item>, target: usize) -> Option<u32> {
+        batch.clear();
+        loop {
+            let index = self.buckets.iter().position(|bucket| !bucket.is_empty())?;
+            let bucket = &mut self.buckets[index];
+            let least = bucket.iter().map(|item| item.key).min()?;
+            // The bits of `last` above the bucket's own stay what they were: the higher buckets remain valid.
+            self.last = least;
+            if index == 0 || bucket.len() <= target {
+                core::mem::swap(bucket, batch);
+                return Some(least);
+            }
+            let mut items = core::mem::take(bucket);
+            for item in items.drain(..) {
+                self.push(item);
+            }
+            self.buckets[index] = items;
+        }
+    }
+
+    /// Items waiting.
+    #[cfg(test)]
+    pub(crate) fn len(&self) -> usize {
+        self.buckets.iter().map(Vec::len).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_live_key_is_below_the_one_handed_out() {
+        let mut seed = 7u64;
+        let mut next = move || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) as u32
+        };
+        for target in [1, 4, 16, 64] {
+            let mut queue = Queue::new();
+            let mut live = std::collections::BTreeMap::new();
+            let mut batch = Vec::new();
+            for _ in 0..50 {
+                let key = next() >> 3;
+                queue.push(Item { key, a: 0, b: 0 });
+                *live.entry(key).or_insert(0) += 1;
+            }
+            let mut taken = 0;
+            while let Some(least) = queue.take(&mut batch, target) {
+                assert_eq!(Some(&least), live.keys().next());
+                for item in &batch {
+                    assert!(item.key >= least);
+                    let count = live.get_mut(&item.key).unwrap();
+                    *count -= 1;
+                    if *count == 0 {
+                        live.remove(&item.key);
+                    }
+                    taken += 1;
+                    if taken < 3000 {
+                        for shift in [4, 12, 20] {
+                            let key = item.key + (next() >> shift);
+                            queue.push(Item { key, a: 0, b: 0 });
+                            *live.entry(key).or_insert(0) += 1;
+                        }
+                    }
+                }
+                assert_eq!(queue.len(), live.values().sum::<usize>());
+            }
+            assert!(live.is_empty() && taken > 3000);
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Constants of one query.
+
+use super::base_pose::relative_position;
+use super::node_test::NodeScale;
+use super::queue::{Item, Queue};
+use super::triangle_pair::PairScale;
+use crate::tree::margin::{UNIT_F64, round_up};
+use crate::{MeshTree, QueryOptions, Window};
+use d2m_motion::LinearMotion;
+
+/// Factor of the error of a projected gap of two triangles; see docs/theory/engine.md.
+const TRIANGLE_ERROR: f64 = 128.0 * UNIT_F64;
+/// Factor of the error of frames, for node tests.
+const FRAME_ERROR: f64 = 256.0 * UNIT_F64;
+/// Most rotation, both bodies together, inside one window.
+const WINDOW_ANGLE: f64 = 0.3;
+
+/// Two bodies, their motions, and the bounds that hold over the whole query.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scene<'a> {
+    pub(crate) a: (&'a MeshTree, LinearMotion),
+    pub(crate) b: (&'a MeshTree, LinearMotion),
+    pub(crate) window: Window,
+    pub(crate) pair: PairScale,
+    /// Bound on every length that enters a position.
+    pub(crate) size: f64,
+    /// δ that is used.
+    pub(crate) tolerance: f64,
+    /// Longest window of the search.
+    pub(crate) longest: f64,
+    /// |ω|·ρ of both bodies, ρ the largest distance from the followed point.
+    spin_speed: f64,
+}
+
+impl<'a> Scene<'a> {
+    pub(crate) fn new(
+        a: (&'a MeshTree, LinearMotion),
+        b: (&'a MeshTree, LinearMotion),
+        window: Window,
+        options: &QueryOptions,
+    ) -> Self {
+        let reach = |(tree, motion): &(&MeshTree, LinearMotion)| {
+            tree.radius() + (tree.center() - motion.at()).length()
+        };
+        let (reach_a, reach_b) = (reach(&a), reach(&b));
+        let (spin_a, spin_b) = (a.1.angular_velocity().length(), b.1.angular_velocity().length());
+        let relative_velocity = a.1.linear_velocity() - b.1.linear_velocity();
+        let apart = relative_position(&a.1, &b.1, window.start())
+            .length()
+            .max(relative_position(&a.1, &b.1, window.end()).length());
+        let spin_speed = spin_a * reach_a + spin_b * reach_b;
+        let angle = spin_a + spin_b;
+        let longest =
+            if angle * window.length() > WINDOW_ANGLE { WINDOW_ANGLE / angle } else { window.length() };
+        let size = reach_a + reach_b + apart + relative_velocity.length() * longest + spin_speed * longest;
+        let error = TRIANGLE_ERROR * size;
+        let wanted = options.tolerance.unwrap_or(1e-10 * a.0.radius().max(b.0.radius()));
+        let tolerance = wanted.max(2.0 * error);
+        let level = options.min_separation + tolerance;
+        let acceleration = (spin_a * spin_a * reach_a + spin_b * spin_b * reach_b) * (1.0 + 1e-12);
+        let pair = PairScale { level, error, stop: level + tolerance + error, acceleration };
+        Self { a, b, window, pair, size, tolerance, longest, spin_speed }
+    }
+
+    /// Constants of the node tests of a window, with the first body's nodes opened, then the second's.
+    pub(crate) fn node_scales(&self, time_unit: f64) -> [NodeScale; 2] {
+        let one = |wide: &MeshTree, single: &MeshTree| {
+            let inverse_unit = 1.0 / wide.unit;
+            let speed_scale = time_unit * inverse_unit;
+            let acceleration = self.pair.acceleration * time_unit * speed_scale * (1.0 + 1e-6);
+            NodeScale {
+                ratio: single.unit * inverse_unit,
+                inverse_unit,
+                speed_scale,
+                time_unit,
+                floor: (self.pair.level * (1.0 + 1e-6) + FRAME_ERROR * self.size) * inverse_unit,
+                speed_floor: FRAME_ERROR * (self.spin_speed + self.size / time_unit) * speed_scale,
+                acceleration: round_up(acceleration),
+                choice: round_up(0.5 * acceleration + 1e-30),
+            }
+        };
+        [one(self.a.0, self.b.0), one(self.b.0, self.a.0)]
+    }
+}
+
+/// Memory that one search uses and the next one finds warm.
+#[derive(Debug)]
+pub(crate) struct Scratch {
+    pub(crate) queue: Queue,
+    pub(crate) batch: Vec<Item>,
+}
+
+impl Scratch {
+    pub(crate) fn new() -> Self {
+        Self { queue: Queue::new(), batch: Vec::new() }
+    }
+}

@@ -1,0 +1,267 @@
+//! The search itself: windows of limited rotation, and best first inside each.
+
+use super::frame::{Frame, RelativeMotion};
+use super::lanes::Lanes;
+use super::node_test::{NodeScale, Placed, entry_times};
+use super::queue::Item;
+use super::scene::{Scene, Scratch};
+use super::triangle_pair::{Look, look};
+use crate::tree::node::{Below, WIDTH};
+use crate::{Budget, MeshTree};
+use glam::DVec3;
+use std::time::Instant;
+
+/// Keys of a window run from 0 to this for its whole unit of time.
+const KEY_SCALE: f64 = 1_073_741_824.0; // 2³⁰
+/// Items that a batch may have before it is divided.
+const BATCH: usize = 16;
+
+/// A contact as the search knows it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found {
+    /// Start of the window of the search in which it lies, and the offset from there.
+    pub(crate) start: f64,
+    pub(crate) offset: f64,
+    pub(crate) triangles: [u32; 2],
+    /// Whether no direction kept the triangles apart: they cross, or come within the level of it.
+    pub(crate) crossing: bool,
+}
+
+/// Result of a search.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Outcome {
+    Separated,
+    Found(Found),
+    /// The budget ran out; free until this time.
+    OutOfBudget(f64),
+}
+
+/// One search.
+pub(crate) struct Search<'s> {
+    scene: &'s Scene<'s>,
+
+    scratch: &'s mut Scratch,
+    node_tests: u64,
+    most_tests: u64,
+    deadline: Option<Instant>,
+}
+
+/// What changes while a window is searched.
+struct State {
+    motion: RelativeMotion,
+    scales: [NodeScale; 2],
+    /// Seconds (scene time) of one step of the key.
+    step: f64,
+    /// Keys from here on do not matter.
+    limit: u32,
+    /// The same as an offset.
+    limit_offset: f64,
+    frame: Frame,
+    frame_key: u32,
+    found: Option<Found>,
+}
+
+impl<'s> Search<'s> {
+    pub(crate) fn new(scene: &'s Scene<'s>, budget: &'s Budget, scratch: &'s mut Scratch) -> Self {
+        Self {
+            scene,
+
+            scratch,
+            node_tests: 0,
+            most_tests: budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS),
+            deadline: budget.wall_clock.and_then(|time| Instant::now().checked_add(time)),
+        }
+    }
+
+    /// Searches window after window.
+    #[inline(always)]
+    pub(crate) fn run<L: Lanes>(mut self) -> Outcome {
+        let (mut start, end) = (self.scene.window.start(), self.scene.window.end());
+        loop {
+            let next = (start + self.scene.longest).min(end);
+            let next = if next > start { next } else { end };
+            match self.search_window::<L>(start, next) {
+                Outcome::Separated if next < end => start = next,
+                outcome => return outcome,
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn search_window<L: Lanes>(&mut self, start: f64, end: f64) -> Outcome {
+        let scene = self.scene;
+        let motion = RelativeMotion::new((scene.a.0, &scene.a.1), (scene.b.0, &scene.b.1), start);
+        // At least end − start, whatever its rounding.
+        let length = (end - start) * (1.0 + 1e-15);
+        let time_unit = power_of_two_from(length);
+        let step = time_unit / KEY_SCALE;
+        let mut state = State {
+            motion,
+            scales: scene.node_scales(time_unit),
+            step,
+            limit: (length / step).ceil() as u32 + 1,
+            // A tick more, so that the end itself is inside; what is found after the end does not count.
+            limit_offset: length + step,
+            frame: motion.frame(0.0),
+            frame_key: 0,
+            found: None,
+        };
+        self.scratch.queue.clear();
+        self.scratch.queue.push(Item { key: 0, a: 0, b: 0 });
+        let mut batch = core::mem::take(&mut self.scratch.batch);
+        let mut outcome = None;
+        while let Some(least) = self.scratch.queue.take(&mut batch, BATCH) {
+            if least >= state.limit {
+                break;
+            }
+            if self.out_of_budget() {
+                outcome = Some(Outcome::OutOfBudget(time_from(start, f64::from(least) * step)));
+                break;
+            }
+            if least != state.frame_key {
+                state.frame = state.motion.frame(f64::from(least) * step);
+                state.frame_key = least;
+            }
+            for item in &batch {
+                if item.key < state.limit {
+                    self.open::<L>(&mut state, *item);
+                }
+            }
+        }
+        self.scratch.batch = batch;
+        outcome.unwrap_or(match state.found {
+            Some(found) if found.offset <= length => Outcome::Found(found),
+            _ => Outcome::Separated,
+        })
+    }
+
+    fn out_of_budget(&self) -> bool {
+        self.node_tests >= self.most_tests || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+    }
+
+    #[inline(always)]
+    fn open<L: Lanes>(&mut self, state: &mut State, item: Item) {
+        let (tree_a, tree_b) = (self.scene.a.0, self.scene.b.0);
+        let split = |index: u32| (index as usize / WIDTH, index as usize % WIDTH);
+        let ((ia, la), (ib, lb)) = (split(item.a), split(item.b));
+        let (na, nb) = (&tree_a.nodes[ia], &tree_b.nodes[ib]);
+        let (wide_index, side) = match (na.below(la), nb.below(lb)) {
+            (Below::Triangle(a), Below::Triangle(b)) => return self.advance(state, item, [a, b]),
+            (Below::Node(a), Below::Triangle(_)) => (a, 0),
+            (Below::Triangle(_), Below::Node(b)) => (b, 1),
+            (Below::Node(a), Below::Node(b)) => {
+                if na.size[la] * state.scales[1].ratio.powi(3) as f32 >= nb.size[lb] {
+                    (a, 0)
+                } else {
+                    (b, 1)
+                }
+            }
+        };
+        self.node_tests += 1;
+        let (wide, single, lane) = if side == 0 {
+            (&tree_a.nodes[wide_index as usize], nb, lb)
+        } else {
+            (&tree_b.nodes[wide_index as usize], na, la)
+        };
+        let scale = &state.scales[side];
+        let boxed = single.oriented_box(lane);
+        let placed = Placed::new(&state.frame.sides[side], scale, (&boxed, single.origin), wide);
+        let times = entry_times::<L>(wide, &placed, scale);
+        // Room until the limit, rounded up.
+        let room = (state.limit - state.frame_key) as f32 * (1.0 / KEY_SCALE as f32) * (1.0 + 1e-6);
+        let mut bits = times.less_bits(L::splat(room)) & ((1 << wide.used) - 1);
+        let times = times.store();
+        while bits != 0 {
+            let lane = bits.trailing_zeros();
+            bits &= bits - 1;
+            let later = (times[lane as usize] * KEY_SCALE as f32) as u32;
+            let key = item.key.max(state.frame_key + later);
+            let child = wide_index * WIDTH as u32 + lane;
+            let item =
+                if side == 0 { Item { key, a: child, b: item.b } } else { Item { key, a: item.a, b: child } };
+            if key < state.limit {
+                self.scratch.queue.push(item);
+            }
+        }
+    }
+
+    /// Advances a pair of triangles until it is past the limit, waits for others, or is in contact.
+    #[inline(always)]
+    fn advance(&mut self, state: &mut State, item: Item, triangles: [u32; 2]) {
+        let a = corners(self.scene.a.0, triangles[0]);
+        let b = corners(self.scene.b.0, triangles[1]);
+        let mut frame = state.frame;
+        // Proven apart until here.
+        let mut known = f64::from(item.key) * state.step;
+        loop {
+            self.node_tests += 1;
+            let enough = state.limit_offset - frame.offset;
+            match look(&frame, &a, &b, &self.scene.pair, enough) {
+                Look::ClearFor(time) => {
+                    known = known.max(frame.offset + time);
+                    if known >= state.limit_offset {
+                        return;
+                    }
+                    let key = (known / state.step) as u32;
+                    if key > item.key + 1024 {
+                        if key < state.limit {
+                            self.scratch.queue.push(Item { key, ..item });
+                        }
+                        return;
+                    }
+                }
+                Look::Near { crossing } => {
+                    // Near at the time of the frame, which may be before what the boxes proved: look again there.
+                    if known > frame.offset {
+                        frame = state.motion.frame(known);
+                        continue;
+                    }
+                    if known < state.limit_offset {
+                        state.limit_offset = known;
+                        state.limit = ((known / state.step) as u32 + 1).min(state.limit);
+                        state.found =
+                            Some(Found { start: state.motion.start, offset: known, triangles, crossing });
+                    }
+                    return;
+                }
+            }
+            if known > frame.offset {
+                frame = state.motion.frame(known);
+            } else {
+                // The time left is below the resolution of time itself: as near as times can tell.
+                state.limit_offset = known;
+                state.limit = ((known / state.step) as u32 + 1).min(state.limit);
+                state.found =
+                    Some(Found { start: state.motion.start, offset: known, triangles, crossing: false });
+                return;
+            }
+        }
+    }
+}
+
+/// Corners relative to the tree's centre, body axes, scene units.
+#[inline(always)]
+pub(crate) fn corners(tree: &MeshTree, triangle: u32) -> [DVec3; 3] {
+    let [i, j, k] = tree.mesh.triangles()[triangle as usize];
+    let vertices = tree.mesh.vertices();
+    [
+        vertices[i as usize] - tree.center,
+        vertices[j as usize] - tree.center,
+        vertices[k as usize] - tree.center,
+    ]
+}
+
+/// The least power of two that is not below a positive `length`.
+fn power_of_two_from(length: f64) -> f64 {
+    let length = length.max(1e-290);
+    let power = f64::from_bits(length.to_bits() & (0x7ff << 52));
+    if power < length { 2.0 * power } else { power }
+}
+
+/// start + offset, rounded down.
+pub(crate) fn time_from(start: f64, offset: f64) -> f64 {
+    let sum = start + offset;
+    let back = sum - start;
+    let error = (start - (sum - back)) + (offset - back);
+    if error < 0.0 { sum.next_down() } else { sum }
+}

@@ -1,0 +1,127 @@
+//! Axes for a part of a surface: second moments and their eigenvectors.
+
+/// First and second moments of a piece of surface.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Moments {
+    weight: f64,
+    first: [f64; 3],
+    /// xx, yy, zz, xy, xz, yz.
+    second: [f64; 6],
+}
+
+impl Moments {
+    /// Adds a triangle, weighted by its area plus a trifle so that degenerate ones still count.
+    #[inline]
+    pub(super) fn add(&mut self, corners: &[[f64; 3]; 3]) {
+        let [a, b, c] = corners;
+        let e = sub(*b, *a);
+        let f = sub(*c, *a);
+        let n = cross(e, f);
+        let area = 0.5 * dot(n, n).sqrt() + 1e-12;
+        let sum = [a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]];
+        self.weight += area;
+        // ∫ x xᵀ over a triangle = area/12 (Σ p pᵀ + s sᵀ) with s the sum of the corners.
+        let w = area / 12.0;
+        for k in 0..3 {
+            self.first[k] += area / 3.0 * sum[k];
+            self.second[k] += w * (a[k] * a[k] + b[k] * b[k] + c[k] * c[k] + sum[k] * sum[k]);
+        }
+        for (slot, (i, j)) in [(3, (0, 1)), (4, (0, 2)), (5, (1, 2))] {
+            self.second[slot] += w * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + sum[i] * sum[j]);
+        }
+    }
+
+    /// Orthonormal axes, the longest extent first.
+    pub(super) fn axes(&self) -> [[f64; 3]; 3] {
+        let mean = self.first.map(|s| s / self.weight);
+        let s = self.second.map(|s| s / self.weight);
+        principal_axes([
+            [s[0] - mean[0] * mean[0], s[3] - mean[0] * mean[1], s[4] - mean[0] * mean[2]],
+            [s[3] - mean[0] * mean[1], s[1] - mean[1] * mean[1], s[5] - mean[1] * mean[2]],
+            [s[4] - mean[0] * mean[2], s[5] - mean[1] * mean[2], s[2] - mean[2] * mean[2]],
+        ])
+    }
+}
+
+/// Axes of one triangle: longest edge, the direction across it, the normal.
+pub(super) fn triangle_axes(corners: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    let edges = [sub(corners[1], corners[0]), sub(corners[2], corners[1]), sub(corners[0], corners[2])];
+    let longest =
+        (0..3).max_by(|&i, &j| dot(edges[i], edges[i]).total_cmp(&dot(edges[j], edges[j]))).unwrap_or(0);
+    complete(edges[longest], edges[(longest + 1) % 3])
+}
+
+/// An orthonormal frame from a first direction and a second one; anything where they do not define it.
+fn complete(first: [f64; 3], second: [f64; 3]) -> [[f64; 3]; 3] {
+    let length = dot(first, first).sqrt();
+    if length.is_nan() || length < 1e-150 {
+        return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    }
+    let x = first.map(|c| c / length);
+    let across = |v: [f64; 3]| {
+        let along = dot(v, x);
+        [v[0] - along * x[0], v[1] - along * x[1], v[2] - along * x[2]]
+    };
+    let mut y = across(second);
+    let scale = dot(second, second).sqrt();
+    if dot(y, y).sqrt().is_nan() || dot(y, y).sqrt() <= 1e-9 * scale {
+        let k = (0..3).min_by(|&i, &j| x[i].abs().total_cmp(&x[j].abs())).unwrap_or(0);
+        let mut unit = [0.0; 3];
+        unit[k] = 1.0;
+        y = across(unit);
+    }
+    let length = dot(y, y).sqrt();
+    let y = across(y.map(|c| c / length));
+    let length = dot(y, y).sqrt();
+    let y = y.map(|c| c / length);
+    [x, y, cross(x, y)]
+}
+
+/// Eigenvectors of a symmetric matrix by Jacobi rotations, the largest eigenvalue first.
+fn principal_axes(mut m: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]; // rows are the axes
+    for _ in 0..12 {
+        let off = m[0][1] * m[0][1] + m[0][2] * m[0][2] + m[1][2] * m[1][2];
+        let diagonal = m[0][0] * m[0][0] + m[1][1] * m[1][1] + m[2][2] * m[2][2];
+        if off.is_nan() || off <= 1e-26 * diagonal {
+            break;
+        }
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            if m[p][q] == 0.0 {
+                continue;
+            }
+            let theta = (m[q][q] - m[p][p]) / (2.0 * m[p][q]);
+            let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+            let c = 1.0 / (t * t + 1.0).sqrt();
+            let s = t * c;
+            for row in &mut m {
+                (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
+            }
+            let (mp, mq) = (m[p], m[q]);
+            for k in 0..3 {
+                m[p][k] = c * mp[k] - s * mq[k];
+                m[q][k] = s * mp[k] + c * mq[k];
+            }
+            let (vp, vq) = (v[p], v[q]);
+            for k in 0..3 {
+                v[p][k] = c * vp[k] - s * vq[k];
+                v[q][k] = s * vp[k] + c * vq[k];
+            }
+        }
+    }
+    let mut order = [0, 1, 2];
+    order.sort_by(|&i: &usize, &j: &usize| m[j][j].total_cmp(&m[i][i]));
+    complete(v[order[0]], v[order[1]])
+}
+
+pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(super) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}

@@ -1,0 +1,14 @@
+//! Outward rounding of what is stored in `f32`, and the constants of the node tests.
+//!
+//! u = 2⁻²⁴ and v = 2⁻⁵³ are the unit roundoffs of `f32` and `f64`. The derivations are in docs/theory/engine.md.
+
+/// u = 2⁻²⁴.
+pub(crate) const UNIT_F32: f64 = 1.0 / 16_777_216.0;
+/// v = 2⁻⁵³.
+pub(crate) const UNIT_F64: f64 = 1.0 / 9_007_199_254_740_992.0;
+
+/// The least `f32` that is not below `value`.
+pub(crate) fn round_up(value: f64) -> f32 {
+    let rounded = value as f32;
+    if f64::from(rounded) < value { rounded.next_up() } else { rounded }
+}

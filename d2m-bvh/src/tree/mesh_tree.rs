@@ -1,0 +1,83 @@
+use super::build;
+use super::node::WideNode;
+use crate::TriMesh;
+use glam::DVec3;
+
+/// A triangle mesh with its tree of oriented boxes: a rigid body ready for queries.
+///
+/// Promise: every box of the tree encloses its triangles in real arithmetic, so no query can overlook a triangle.
+///
+/// ```
+/// use d2m_bvh::{MeshTree, TriMesh};
+/// use glam::DVec3;
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let tree = MeshTree::new(mesh);
+/// assert_eq!(tree.mesh().triangle_count(), 4);
+/// assert!(tree.radius() >= 0.5 * 2f64.sqrt());
+/// # Ok::<(), d2m_bvh::MeshError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct MeshTree {
+    pub(crate) mesh: TriMesh,
+    pub(crate) nodes: Vec<WideNode>,
+    /// Body coordinates of the origin of local coordinates.
+    pub(crate) center: DVec3,
+    /// Power of two by which local coordinates are divided.
+    pub(crate) unit: f64,
+    /// Bound on |p − center| over the triangles, body units.
+    pub(crate) radius: f64,
+    pub(crate) watertight: bool,
+    /// One vertex of each connected component.
+    pub(crate) components: Vec<u32>,
+}
+
+impl MeshTree {
+    /// Builds the tree of a mesh. Deterministic.
+    pub fn new(mesh: TriMesh) -> Self {
+        build::build(mesh)
+    }
+
+    /// The mesh.
+    pub const fn mesh(&self) -> &TriMesh {
+        &self.mesh
+    }
+
+    /// Gives the mesh back.
+    pub fn into_mesh(self) -> TriMesh {
+        self.mesh
+    }
+
+    /// The centre about which the body's coordinates are kept, body frame: the middle of its bounding box.
+    pub const fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    /// A bound on the distance of every point of the body from [`Self::center`]; at most √3 times the least one.
+    pub const fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The power of two by which the stored boxes are divided: the least one that is not below the radius.
+    pub const fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    /// Does the surface close (each edge shared by an even number of triangles, as `Topology` counts them)?
+    pub const fn is_watertight(&self) -> bool {
+        self.watertight
+    }
+
+    /// One vertex of each connected component of the surface.
+    pub(crate) fn component_vertices(&self) -> &[u32] {
+        &self.components
+    }
+
+    /// Resident bytes: mesh, boxes and this structure.
+    pub fn memory_bytes(&self) -> usize {
+        size_of::<Self>()
+            + size_of_val(self.mesh.vertices())
+            + size_of_val(self.mesh.triangles())
+            + size_of_val(self.nodes.as_slice())
+    }
+}

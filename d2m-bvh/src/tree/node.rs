@@ -1,0 +1,131 @@
+//! Layout of the tree in memory. **Everything that walks a tree depends on this file only.**
+//!
+//! A *box* is one lane of a wide node: an oriented box around a part of the surface. Boxes are numbered
+//! `8·node + lane`; box 0 is the root and the only used lane of node 0. A box is either a leaf (one triangle) or has
+//! a wide node of at most eight boxes below it; the boxes below together hold the same triangles.
+//!
+//! Coordinates are *local*: body coordinates minus [`MeshTree::center`](crate::MeshTree::center), divided by the
+//! power of two [`MeshTree::unit`](crate::MeshTree::unit), so the body has a radius in (½, 1].
+//!
+//! Promise, in real arithmetic on the stored numbers: every point p (local) of every triangle of a box has
+//! |axisᵢ·(p − origin − center)| ≤ half_extentᵢ for i = 0, 1, 2 and |p − origin − center| ≤ radius.
+//! The axes are orthonormal up to their rounding to `f32`: |A·Aᵀ − I| ≤ 5.2·2⁻²⁴ in each entry.
+
+/// Lanes of a wide node.
+pub(crate) const WIDTH: usize = 8;
+
+/// Marks a child that is a triangle; the rest of the bits is its number.
+const LEAF: u32 = 1 << 31;
+
+/// What is below a box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Below {
+    /// A triangle of the mesh, by number.
+    Triangle(u32),
+    /// A wide node, by number.
+    Node(u32),
+}
+
+/// Up to eight boxes, lane by lane. 640 bytes, ten cache lines.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct WideNode {
+    /// Box centres relative to `origin`, by axis then lane.
+    pub(crate) center: [[f32; WIDTH]; 3],
+    /// Box axes: `axes[i][k]` is coordinate k of axis i of each lane.
+    pub(crate) axes: [[[f32; WIDTH]; 3]; 3],
+    /// Half extents along the three axes.
+    pub(crate) half_extent: [[f32; WIDTH]; 3],
+    /// Radius about the box centre.
+    pub(crate) radius: [f32; WIDTH],
+    /// What decides which of two boxes is opened: the larger one. Zero for a leaf, negative for an unused lane.
+    pub(crate) size: [f32; WIDTH],
+    /// Leaf flag and triangle number, or node number.
+    pub(crate) child: [u32; WIDTH],
+    /// Reference point of the centres, local coordinates.
+    pub(crate) origin: [f32; 3],
+    /// At least |center|₁ + radius of every lane.
+    pub(crate) extent: f32,
+    /// How many lanes are used: the first ones.
+    pub(crate) used: u32,
+    /// The box that this node is below (`8·node + lane`).
+    pub(crate) parent: u32,
+}
+
+impl WideNode {
+    /// A node without boxes. Unused lanes hold a point box so far away that no test meets it.
+    pub(crate) fn empty(origin: [f32; 3], parent: u32) -> Self {
+        let mut node = Self {
+            center: [[1e15; WIDTH]; 3],
+            axes: [[[0.0; WIDTH]; 3]; 3],
+            half_extent: [[0.0; WIDTH]; 3],
+            radius: [0.0; WIDTH],
+            size: [-1.0; WIDTH],
+            child: [u32::MAX; WIDTH],
+            origin,
+            extent: 0.0,
+            used: 0,
+            parent,
+        };
+        for i in 0..3 {
+            node.axes[i][i] = [1.0; WIDTH];
+        }
+        node
+    }
+
+    /// What is below lane `lane`.
+    #[inline(always)]
+    pub(crate) fn below(&self, lane: usize) -> Below {
+        let child = self.child[lane];
+        if child & LEAF != 0 { Below::Triangle(child & !LEAF) } else { Below::Node(child) }
+    }
+
+    /// Sets what is below lane `lane`.
+    pub(crate) fn set_below(&mut self, lane: usize, below: Below) {
+        self.child[lane] = match below {
+            Below::Triangle(triangle) => triangle | LEAF,
+            Below::Node(node) => node,
+        };
+    }
+
+    /// Sets the box of lane `lane`.
+    pub(crate) fn set_box(&mut self, lane: usize, oriented: &OrientedBox, size: f32) {
+        for i in 0..3 {
+            self.center[i][lane] = oriented.center[i];
+            self.half_extent[i][lane] = oriented.half_extent[i];
+            for k in 0..3 {
+                self.axes[i][k][lane] = oriented.axes[i][k];
+            }
+        }
+        self.radius[lane] = oriented.radius;
+        self.size[lane] = size;
+        let reach: f64 = oriented.center.iter().map(|c| f64::from(c.abs())).sum();
+        let reach = super::margin::round_up(reach + f64::from(oriented.radius));
+        self.extent = self.extent.max(reach);
+    }
+
+    /// The box of lane `lane`, read out.
+    #[inline(always)]
+    pub(crate) fn oriented_box(&self, lane: usize) -> OrientedBox {
+        let (c, h, a) = (&self.center, &self.half_extent, &self.axes);
+        OrientedBox {
+            center: [c[0][lane], c[1][lane], c[2][lane]],
+            axes: [
+                [a[0][0][lane], a[0][1][lane], a[0][2][lane]],
+                [a[1][0][lane], a[1][1][lane], a[1][2][lane]],
+                [a[2][0][lane], a[2][1][lane], a[2][2][lane]],
+            ],
+            half_extent: [h[0][lane], h[1][lane], h[2][lane]],
+            radius: self.radius[lane],
+        }
+    }
+}
+
+/// One box, with its centre relative to the origin of its wide node.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OrientedBox {
+    pub(crate) center: [f32; 3],
+    pub(crate) axes: [[f32; 3]; 3],
+    pub(crate) half_extent: [f32; 3],
+    pub(crate) radius: f32,
+}
