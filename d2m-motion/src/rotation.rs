@@ -42,13 +42,11 @@ impl RotationDd {
         Self(out)
     }
 
-    #[allow(dead_code)]
     pub(crate) fn apply(&self, v: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
         self.0.map(|row| row[0].mul(v[0]).add(row[1].mul(v[1])).add(row[2].mul(v[2])))
     }
 
     /// Transpose times vector.
-    #[allow(dead_code)]
     pub(crate) fn apply_transposed(&self, v: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
         let m = &self.0;
         [0, 1, 2].map(|j| m[0][j].mul(v[0]).add(m[1][j].mul(v[1])).add(m[2][j].mul(v[2])))

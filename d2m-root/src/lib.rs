@@ -5,6 +5,7 @@ mod gamma;
 mod hrfoi;
 mod inclusion_function;
 mod ird;
+mod isolator;
 mod parabola;
 
 pub use bboi::bboi;
@@ -12,4 +13,8 @@ pub use gamma::{Gamma, IntervalFunction, RootSearch, SearchLimits, SecondOrder, 
 pub use hrfoi::hrfoi;
 pub use inclusion_function::InclusionFunction;
 pub use ird::intersect_root_domain;
+pub use isolator::{
+    Band, Evidence, FirstRoot, Isolation, IsolatorOptions, Measurement, Piece, PieceTest, Quadratic, Verdict,
+    isolate,
+};
 pub use parabola::Parabola;

@@ -1,0 +1,67 @@
+//! Answers of a first-contact query.
+use d2m_root::Evidence;
+use glam::DVec3;
+
+/// First contact of two moving features over a window of time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FirstContact {
+    /// No contact anywhere in the window.
+    Clear,
+    /// The first contact lies in the bracket.
+    Contact(ContactBracket),
+    /// The limit of evaluations was reached; no contact before `clear_until`.
+    Undecided {
+        /// No contact from the start of the window to here.
+        clear_until: f64,
+    },
+}
+
+/// A two-sided enclosure of the first contact.
+///
+/// Promise: no contact in `[t0, lo)`; and, as the evidence says, a true contact at some time of `[lo, hi]`, or a time
+/// in it at which the features are within the tolerance (of the minimum separation).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactBracket {
+    /// No contact before this time of the window.
+    pub lo: f64,
+    /// Contact (or a distance within the tolerance) at some time up to this one.
+    pub hi: f64,
+    /// How the contact is known.
+    pub evidence: Evidence,
+    /// Proven upper bound of the distance (beyond the minimum separation) at some time of the bracket.
+    pub distance: f64,
+}
+
+/// Where and how two features touch. Plain floating point at one time: it describes, it proves nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactDetails {
+    /// The time that it describes (the start of the bracket).
+    pub time: f64,
+    /// Closest point on A, world.
+    pub point_a: DVec3,
+    /// Closest point on B, world.
+    pub point_b: DVec3,
+    /// Unit vector from A to B, world. Where the features touch, the normal of the face or the common normal of the
+    /// edges, on the side from which they approach; zero if neither exists.
+    pub normal: DVec3,
+    /// Weights of A's vertices at `point_a`: 1 for a vertex or sphere, 2 for an edge, 3 for a face; the rest are 0.
+    pub barycentric_a: [f64; 3],
+    /// Weights of B's vertices at `point_b`.
+    pub barycentric_b: [f64; 3],
+    /// Speed of approach along the normal; negative if the features separate.
+    pub closing_speed: f64,
+}
+
+impl ContactDetails {
+    /// The same contact with the bodies exchanged.
+    pub(crate) fn reversed(self) -> Self {
+        Self {
+            point_a: self.point_b,
+            point_b: self.point_a,
+            normal: -self.normal,
+            barycentric_a: self.barycentric_b,
+            barycentric_b: self.barycentric_a,
+            ..self
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Witness points, normal, weights and closing speed at one time, in plain floating point.
+use crate::closest::{self, ClosestPair};
+use crate::contact::ContactDetails;
+use crate::path::direction;
+use d2m_motion::{Pose, RigidMotion, Twist};
+use glam::DVec3;
+
+/// Difference of two closest points relative to the features' size below which its direction is rounding.
+const TOUCHING: f64 = 1e-7;
+
+pub(crate) fn point_triangle(
+    a: &dyn RigidMotion,
+    b: &dyn RigidMotion,
+    point: DVec3,
+    triangle: &[DVec3; 3],
+    time: f64,
+) -> ContactDetails {
+    let (on_a, on_b) = (a.pose_and_twist(time), b.pose_and_twist(time));
+    let p = on_a.0.transform_point(point);
+    let corners = triangle.map(|v| on_b.0.transform_point(v));
+    let normal = direction((corners[1] - corners[0]).cross(corners[2] - corners[0]));
+    let pair = closest::point_triangle(p, &corners, normal);
+    let size = (corners[1] - corners[0]).length().max((corners[2] - corners[0]).length());
+    let point_b = corners[0] * pair.b[0] + corners[1] * pair.b[1] + corners[2] * pair.b[2];
+    finish((on_a, p), (on_b, point_b), &pair, normal, size, time)
+}
+
+pub(crate) fn edge_edge(
+    a: &dyn RigidMotion,
+    b: &dyn RigidMotion,
+    edge_a: [DVec3; 2],
+    edge_b: [DVec3; 2],
+    time: f64,
+) -> ContactDetails {
+    let (on_a, on_b) = (a.pose_and_twist(time), b.pose_and_twist(time));
+    let [a0, a1] = edge_a.map(|v| on_a.0.transform_point(v));
+    let [b0, b1] = edge_b.map(|v| on_b.0.transform_point(v));
+    let (e, d) = ((a1 - a0) * 0.5, (b1 - b0) * 0.5);
+    let pair = closest::segment_segment((a0 + a1) * 0.5 - (b0 + b1) * 0.5, e, d);
+    let (point_a, point_b) = (a0 * pair.a[0] + a1 * pair.a[1], b0 * pair.b[0] + b1 * pair.b[1]);
+    finish((on_a, point_a), (on_b, point_b), &pair, direction(e.cross(d)), e.length().max(d.length()), time)
+}
+
+pub(crate) fn sphere_sphere(
+    a: &dyn RigidMotion,
+    b: &dyn RigidMotion,
+    ball_a: (DVec3, f64),
+    ball_b: (DVec3, f64),
+    time: f64,
+) -> ContactDetails {
+    let (on_a, on_b) = (a.pose_and_twist(time), b.pose_and_twist(time));
+    let (centre_a, centre_b) = (on_a.0.transform_point(ball_a.0), on_b.0.transform_point(ball_b.0));
+    let normal = (centre_b - centre_a).normalize_or_zero();
+    let (point_a, point_b) = (centre_a + normal * ball_a.1, centre_b - normal * ball_b.1);
+    let weights = [1.0, 0.0, 0.0];
+    let closing_speed = normal.dot(velocity(&on_a, point_a) - velocity(&on_b, point_b));
+    ContactDetails {
+        time,
+        point_a,
+        point_b,
+        normal,
+        barycentric_a: weights,
+        barycentric_b: weights,
+        closing_speed,
+    }
+}
+
+/// Velocity of the body point that is at `world`.
+fn velocity(body: &(Pose, Twist), world: DVec3) -> DVec3 {
+    body.1.velocity_of(world - body.0.translation)
+}
+
+fn finish(
+    a: ((Pose, Twist), DVec3),
+    b: ((Pose, Twist), DVec3),
+    pair: &ClosestPair,
+    contact_normal: DVec3,
+    size: f64,
+    time: f64,
+) -> ContactDetails {
+    let relative = velocity(&a.0, a.1) - velocity(&b.0, b.1);
+    let difference = -pair.difference;
+    let normal = if difference.length() > TOUCHING * size {
+        difference.normalize_or_zero()
+    } else {
+        let candidate = if contact_normal == DVec3::ZERO { -pair.separating } else { contact_normal };
+        let normal = candidate.normalize_or_zero();
+        // They approach along the normal from A to B.
+        if normal.dot(relative) < 0.0 { -normal } else { normal }
+    };
+    ContactDetails {
+        time,
+        point_a: a.1,
+        point_b: b.1,
+        normal,
+        barycentric_a: pair.a,
+        barycentric_b: pair.b,
+        closing_speed: normal.dot(relative),
+    }
+}

@@ -1,0 +1,402 @@
+//! Two moving bodies over a window of time: ask here for the first contact of a pair of features.
+use crate::contact::{ContactBracket, ContactDetails, FirstContact};
+use crate::details;
+use crate::edge_edge::EdgeEdgeTest;
+use crate::options::ContactOptions;
+use crate::path::{EnclosedPath, FeaturePath, FramedMotion, RigidPath};
+use crate::point_triangle::{PointTriangleTest, TrianglePlanes};
+use crate::sphere_sphere::SphereSphereTest;
+use d2m_motion::{LinearMotion, RelativeMotion, RigidMotion};
+use d2m_root::{FirstRoot, Isolation, IsolatorOptions, Piece, PieceTest, isolate};
+use glam::DVec3;
+
+const UP: f64 = 1.0 + 1e-14;
+
+/// Two motions of constant twist over a window `[t0, t1]`, with what all features of the two bodies share.
+///
+/// Geometry is given in body frames. Every query promises: no contact before the `lo` that it returns, and none at
+/// all when it returns [`FirstContact::Clear`] – in floating point, for every finite input.
+///
+/// ```
+/// use d2m_feature::{ContactOptions, FirstContact, PairMotion};
+/// use d2m_motion::LinearMotion;
+/// use glam::DVec3;
+/// let falling = LinearMotion::REST.with_position(DVec3::Z).with_linear_velocity(-2.0 * DVec3::Z);
+/// let pair = PairMotion::new(&falling, &LinearMotion::REST, 0.0, 1.0);
+/// let floor = [DVec3::new(-1.0, -1.0, 0.0), DVec3::X, DVec3::Y];
+/// let FirstContact::Contact(contact) = pair.point_triangle(DVec3::ZERO, &floor, &ContactOptions::new()) else {
+///     panic!("the point falls onto the floor");
+/// };
+/// assert!(contact.lo <= 0.5 && 0.5 <= contact.hi && contact.hi - contact.lo < 1e-12);
+/// ```
+#[derive(Debug, Clone)]
+pub struct PairMotion {
+    forward: FramedMotion,
+    backward: FramedMotion,
+    motions: [LinearMotion; 2],
+}
+
+/// A triangle of B prepared for many points of A over one window.
+#[derive(Debug, Clone)]
+pub struct PlacedTriangle {
+    vertices: [DVec3; 3],
+    planes: TrianglePlanes,
+}
+
+impl PairMotion {
+    /// Motion of body A and of body B over `[t0, t1]`.
+    ///
+    /// # Panics
+    /// If a time is not finite or `t0 > t1`.
+    pub fn new(a: &LinearMotion, b: &LinearMotion, t0: f64, t1: f64) -> Self {
+        assert!(t0 <= t1 && t0.is_finite() && t1.is_finite(), "window [{t0}, {t1}]");
+        let forward = RelativeMotion::new(a, b, t0, t1);
+        let backward = forward.reversed();
+        Self { forward: FramedMotion::new(forward), backward: FramedMotion::new(backward), motions: [*a, *b] }
+    }
+
+    /// The motions of A and B.
+    pub const fn motions(&self) -> &[LinearMotion; 2] {
+        &self.motions
+    }
+
+    /// Prepares a triangle of B (body frame) for [`PairMotion::point_placed`].
+    pub fn place_triangle(&self, triangle: &[DVec3; 3]) -> PlacedTriangle {
+        let vertices = triangle.map(|v| self.forward.motion.place_b(v));
+        PlacedTriangle { vertices: *triangle, planes: TrianglePlanes::new(vertices) }
+    }
+
+    /// First contact of a point of A with a triangle of B.
+    pub fn point_triangle(
+        &self,
+        point: DVec3,
+        triangle: &[DVec3; 3],
+        options: &ContactOptions,
+    ) -> FirstContact {
+        point_triangle(&self.forward, point, triangle, options)
+    }
+
+    /// First contact of a triangle of A with a point of B.
+    pub fn triangle_point(
+        &self,
+        triangle: &[DVec3; 3],
+        point: DVec3,
+        options: &ContactOptions,
+    ) -> FirstContact {
+        point_triangle(&self.backward, point, triangle, options)
+    }
+
+    /// First contact of a point of A with a prepared triangle of B.
+    pub fn point_placed(
+        &self,
+        point: DVec3,
+        triangle: &PlacedTriangle,
+        options: &ContactOptions,
+    ) -> FirstContact {
+        placed(&self.forward, point, triangle, options)
+    }
+
+    /// Where and how a point of A and a triangle of B touch at a time (the `lo` of a bracket).
+    pub fn point_triangle_details(&self, point: DVec3, triangle: &[DVec3; 3], time: f64) -> ContactDetails {
+        details::point_triangle(&self.motions[0], &self.motions[1], point, triangle, time)
+    }
+
+    /// Where and how a triangle of A and a point of B touch at a time.
+    pub fn triangle_point_details(&self, triangle: &[DVec3; 3], point: DVec3, time: f64) -> ContactDetails {
+        details::point_triangle(&self.motions[1], &self.motions[0], point, triangle, time).reversed()
+    }
+
+    /// Where and how an edge of A and an edge of B touch at a time.
+    pub fn edge_edge_details(&self, edge_a: [DVec3; 2], edge_b: [DVec3; 2], time: f64) -> ContactDetails {
+        details::edge_edge(&self.motions[0], &self.motions[1], edge_a, edge_b, time)
+    }
+
+    /// Where and how two balls (centre, radius) touch at a time.
+    pub fn sphere_sphere_details(
+        &self,
+        ball_a: (DVec3, f64),
+        ball_b: (DVec3, f64),
+        time: f64,
+    ) -> ContactDetails {
+        details::sphere_sphere(&self.motions[0], &self.motions[1], ball_a, ball_b, time)
+    }
+
+    /// First contact of an edge of A with an edge of B.
+    pub fn edge_edge(
+        &self,
+        edge_a: [DVec3; 2],
+        edge_b: [DVec3; 2],
+        options: &ContactOptions,
+    ) -> FirstContact {
+        // Seen from the slower body the bounds are smaller (8–16 % fewer evaluations).
+        if self.forward.motion.speed_b() <= self.forward.motion.speed_a() {
+            edge_edge(&self.forward, edge_a, edge_b, options)
+        } else {
+            edge_edge(&self.backward, edge_b, edge_a, options)
+        }
+    }
+
+    /// First contact of a ball of A (centre, radius) with a ball of B.
+    pub fn sphere_sphere(
+        &self,
+        ball_a: (DVec3, f64),
+        ball_b: (DVec3, f64),
+        options: &ContactOptions,
+    ) -> FirstContact {
+        sphere_sphere(&self.forward, ball_a, ball_b, options)
+    }
+}
+
+fn point_triangle(
+    framed: &FramedMotion,
+    point: DVec3,
+    triangle: &[DVec3; 3],
+    options: &ContactOptions,
+) -> FirstContact {
+    let vertices = triangle.map(|v| framed.motion.place_b(v));
+    placed(
+        framed,
+        point,
+        &PlacedTriangle { vertices: *triangle, planes: TrianglePlanes::new(vertices) },
+        options,
+    )
+}
+
+fn placed(
+    framed: &FramedMotion,
+    point: DVec3,
+    triangle: &PlacedTriangle,
+    options: &ContactOptions,
+) -> FirstContact {
+    let motion = &framed.motion;
+    let planes = &triangle.planes;
+    let path = RigidPath::new(framed, motion.place_a(point), DVec3::ZERO, planes.extent);
+    let (separation, reach) = (options.separation(), path.reach());
+    let tolerance = options.tolerance_for(planes.size, reach, 0.0);
+    if path.rounding() <= 0.25 * tolerance {
+        let test = PointTriangleTest { path, planes, tolerance, separation };
+        return answer(test, motion, options);
+    }
+    let framed = FramedMotion::new(motion.anchored(point, triangle.vertices[0]));
+    let planes = TrianglePlanes::new(triangle.vertices.map(|v| framed.motion.place_b(v)));
+    let path = RigidPath::new(&framed, DVec3::ZERO, DVec3::ZERO, planes.extent);
+    let tolerance = options.tolerance_for(planes.size, reach, path.rounding()).max(path.time_rounding());
+    let test = PointTriangleTest { path, planes: &planes, tolerance, separation };
+    answer(test, motion, options)
+}
+
+fn edge_edge(
+    framed: &FramedMotion,
+    edge_a: [DVec3; 2],
+    edge_b: [DVec3; 2],
+    options: &ContactOptions,
+) -> FirstContact {
+    let separation = options.separation();
+    // Half edges turn as differences, so that their error is relative to their own length.
+    let parts = |framed: &FramedMotion| -> (_, _, _, _) {
+        let half_a = framed.motion.turn_a((edge_a[1] - edge_a[0]) * 0.5);
+        let half_b = framed.motion.turn_b((edge_b[1] - edge_b[0]) * 0.5);
+        (framed.motion.place_a(edge_a[0]) + half_a, half_a, framed.motion.place_b(edge_b[0]) + half_b, half_b)
+    };
+    let build = |framed| {
+        let (point, half_a, middle, half_b) = parts(framed);
+        let extent = (middle.length() + half_a.length() + half_b.length()) * UP;
+        let path = RigidPath::new(framed, point, half_a, extent);
+        let half_lengths = (half_a.length() * UP, half_b.length() * UP);
+        EdgeEdgeTest { path, middle, half: half_b, half_lengths, tolerance: 0.0, separation }
+    };
+    let mut test = build(framed);
+    let length = 2.0 * test.half_lengths.0.max(test.half_lengths.1);
+    let reach = test.path.reach();
+    test.tolerance = options.tolerance_for(length, reach, 0.0);
+    if test.path.rounding() <= 0.25 * test.tolerance {
+        return answer(test, &framed.motion, options);
+    }
+    let anchored = FramedMotion::new(framed.motion.anchored(edge_a[0], edge_b[0]));
+    let mut test = build(&anchored);
+    test.tolerance =
+        options.tolerance_for(length, reach, test.path.rounding()).max(test.path.time_rounding());
+    answer(test, &framed.motion, options)
+}
+
+fn sphere_sphere(
+    framed: &FramedMotion,
+    ball_a: (DVec3, f64),
+    ball_b: (DVec3, f64),
+    options: &ContactOptions,
+) -> FirstContact {
+    let sum = ball_a.1.max(0.0) + ball_b.1.max(0.0);
+    let radii = (sum * (2.0 - UP), sum * UP);
+    let separation = options.separation();
+    fn build(
+        framed: &FramedMotion,
+        centres: [DVec3; 2],
+        radii: (f64, f64),
+        separation: f64,
+    ) -> SphereSphereTest<RigidPath<'_>> {
+        let centre = framed.motion.place_b(centres[1]);
+        let extent = (centre.length() + radii.1) * UP;
+        let path = RigidPath::new(framed, framed.motion.place_a(centres[0]), DVec3::ZERO, extent);
+        SphereSphereTest { path, centre, radii, tolerance: 0.0, separation, size: radii.1 }
+    }
+    let centres = [ball_a.0, ball_b.0];
+    let mut test = build(framed, centres, radii, separation);
+    let reach = test.path.reach();
+    test.tolerance = options.tolerance_for(sum, reach, 0.0);
+    if test.path.rounding() <= 0.25 * test.tolerance {
+        return answer(test, &framed.motion, options);
+    }
+    let anchored = FramedMotion::new(framed.motion.anchored(centres[0], centres[1]));
+    let mut test = build(&anchored, centres, radii, separation);
+    test.tolerance = options.tolerance_for(sum, reach, test.path.rounding()).max(test.path.time_rounding());
+    answer(test, &framed.motion, options)
+}
+
+/// Isolates and tells the answer in real time.
+fn answer<T: PieceTest>(mut test: T, motion: &RelativeMotion, options: &ContactOptions) -> FirstContact {
+    let limits = IsolatorOptions::new().with_max_evaluations(options.max_evaluations);
+    let window = Piece { lo: 0.0, hi: motion.duration() };
+    let Isolation { root, .. } = isolate(&mut test, window, &limits);
+    match root {
+        FirstRoot::Clear => FirstContact::Clear,
+        FirstRoot::Undecided { clear_until } => {
+            FirstContact::Undecided { clear_until: motion.time_down(clear_until) }
+        }
+        FirstRoot::Found { bracket, evidence, distance } => {
+            let lo = motion.time_down(bracket.lo);
+            let hi = motion.time_up(bracket.hi).max(lo);
+            FirstContact::Contact(ContactBracket { lo, hi, evidence, distance })
+        }
+    }
+}
+
+/// Two motions of any kind over a window, through their interval enclosures: the same tests, about ten times slower
+/// than [`PairMotion`], with the same promises as long as the enclosures keep theirs.
+pub struct EnclosedPairMotion<'a> {
+    a: &'a dyn RigidMotion,
+    b: &'a dyn RigidMotion,
+    window: Piece,
+}
+
+impl<'a> EnclosedPairMotion<'a> {
+    /// Motion of body A and of body B over `[t0, t1]`.
+    ///
+    /// # Panics
+    /// If a time is not finite or `t0 > t1`.
+    pub fn new(a: &'a dyn RigidMotion, b: &'a dyn RigidMotion, t0: f64, t1: f64) -> Self {
+        assert!(t0 <= t1 && t0.is_finite() && t1.is_finite(), "window [{t0}, {t1}]");
+        Self { a, b, window: Piece { lo: t0, hi: t1 } }
+    }
+
+    /// First contact of a point of A with a triangle of B (body frames).
+    pub fn point_triangle(
+        &self,
+        point: DVec3,
+        triangle: &[DVec3; 3],
+        options: &ContactOptions,
+    ) -> FirstContact {
+        point_triangle_enclosed(self.a, self.b, point, triangle, self.window, options)
+    }
+
+    /// First contact of a triangle of A with a point of B.
+    pub fn triangle_point(
+        &self,
+        triangle: &[DVec3; 3],
+        point: DVec3,
+        options: &ContactOptions,
+    ) -> FirstContact {
+        point_triangle_enclosed(self.b, self.a, point, triangle, self.window, options)
+    }
+
+    /// First contact of an edge of A with an edge of B.
+    pub fn edge_edge(
+        &self,
+        edge_a: [DVec3; 2],
+        edge_b: [DVec3; 2],
+        options: &ContactOptions,
+    ) -> FirstContact {
+        let (middle, half) = ((edge_b[0] + edge_b[1]) * 0.5, (edge_b[1] - edge_b[0]) * 0.5);
+        let half_a = (edge_a[1] - edge_a[0]) * 0.5;
+        let extent = (middle.length() + half_a.length() + half.length()) * UP;
+        let path = EnclosedPath::new(self.a, self.b, edge_a, self.window, extent);
+        let half_lengths = (half_a.length() * UP, half.length() * UP);
+        let tolerance =
+            options.tolerance_for(2.0 * half_lengths.0.max(half_lengths.1), extent, path.rounding());
+        let separation = options.separation();
+        let test = EdgeEdgeTest { path, middle, half, half_lengths, tolerance, separation };
+        self.answer(test, options)
+    }
+
+    /// First contact of a ball of A (centre, radius) with a ball of B.
+    pub fn sphere_sphere(
+        &self,
+        ball_a: (DVec3, f64),
+        ball_b: (DVec3, f64),
+        options: &ContactOptions,
+    ) -> FirstContact {
+        let sum = ball_a.1.max(0.0) + ball_b.1.max(0.0);
+        let radii = (sum * (2.0 - UP), sum * UP);
+        let extent = (ball_b.0.length() + radii.1) * UP;
+        let path = EnclosedPath::new(self.a, self.b, [ball_a.0; 2], self.window, extent);
+        let tolerance = options.tolerance_for(sum, extent, path.rounding());
+        let separation = options.separation();
+        let test = SphereSphereTest { path, centre: ball_b.0, radii, tolerance, separation, size: sum };
+        self.answer(test, options)
+    }
+
+    /// Where and how a point of A and a triangle of B touch at a time (the `lo` of a bracket).
+    pub fn point_triangle_details(&self, point: DVec3, triangle: &[DVec3; 3], time: f64) -> ContactDetails {
+        details::point_triangle(self.a, self.b, point, triangle, time)
+    }
+
+    /// Where and how a triangle of A and a point of B touch at a time.
+    pub fn triangle_point_details(&self, triangle: &[DVec3; 3], point: DVec3, time: f64) -> ContactDetails {
+        details::point_triangle(self.b, self.a, point, triangle, time).reversed()
+    }
+
+    /// Where and how an edge of A and an edge of B touch at a time.
+    pub fn edge_edge_details(&self, edge_a: [DVec3; 2], edge_b: [DVec3; 2], time: f64) -> ContactDetails {
+        details::edge_edge(self.a, self.b, edge_a, edge_b, time)
+    }
+
+    /// Where and how two balls (centre, radius) touch at a time.
+    pub fn sphere_sphere_details(
+        &self,
+        ball_a: (DVec3, f64),
+        ball_b: (DVec3, f64),
+        time: f64,
+    ) -> ContactDetails {
+        details::sphere_sphere(self.a, self.b, ball_a, ball_b, time)
+    }
+
+    fn answer<T: PieceTest>(&self, test: T, options: &ContactOptions) -> FirstContact {
+        answer_in(test, self.window, options)
+    }
+}
+
+fn point_triangle_enclosed(
+    a: &dyn RigidMotion,
+    b: &dyn RigidMotion,
+    point: DVec3,
+    triangle: &[DVec3; 3],
+    window: Piece,
+    options: &ContactOptions,
+) -> FirstContact {
+    let planes = TrianglePlanes::new(*triangle);
+    let path = EnclosedPath::new(a, b, [point; 2], window, planes.extent);
+    let tolerance = options.tolerance_for(planes.size, planes.extent, path.rounding());
+    let separation = options.separation();
+    answer_in(PointTriangleTest { path, planes: &planes, tolerance, separation }, window, options)
+}
+
+/// Isolates in real time.
+pub(crate) fn answer_in<T: PieceTest>(mut test: T, window: Piece, options: &ContactOptions) -> FirstContact {
+    let limits = IsolatorOptions::new().with_max_evaluations(options.max_evaluations);
+    match isolate(&mut test, window, &limits).root {
+        FirstRoot::Clear => FirstContact::Clear,
+        FirstRoot::Undecided { clear_until } => FirstContact::Undecided { clear_until },
+        FirstRoot::Found { bracket: Piece { lo, hi }, evidence, distance } => {
+            FirstContact::Contact(ContactBracket { lo, hi, evidence, distance })
+        }
+    }
+}

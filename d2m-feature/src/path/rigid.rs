@@ -1,0 +1,98 @@
+//! Jets in closed form, from frames that all features of a pair of bodies share.
+use super::FeaturePath;
+use d2m_motion::{Frame, PathJet, RelativeMotion, Remainder};
+use d2m_root::Piece;
+use glam::DVec3;
+
+/// A relative motion with its frame in the middle of the window: the time at which every feature of a pair of bodies
+/// is evaluated first, and most of them last.
+#[derive(Debug, Clone)]
+pub(crate) struct FramedMotion {
+    pub(crate) motion: RelativeMotion,
+    middle: f64,
+    frame: Frame,
+}
+
+impl FramedMotion {
+    pub(crate) fn new(motion: RelativeMotion) -> Self {
+        let middle = Piece { lo: 0.0, hi: motion.duration() }.mid();
+        let frame = motion.frame(middle);
+        Self { motion, middle, frame }
+    }
+
+    #[inline(always)]
+    fn frame(&self, tau: f64) -> Frame {
+        if tau == self.middle { self.frame } else { self.motion.frame(tau) }
+    }
+}
+
+/// A point and a direction of A with a constant relative twist.
+pub(crate) struct RigidPath<'a> {
+    motion: &'a FramedMotion,
+    point: DVec3,
+    direction: DVec3,
+    point_remainder: Remainder,
+    direction_remainder: Remainder,
+    speed: f64,
+    direction_speed: f64,
+}
+
+impl<'a> RigidPath<'a> {
+    /// `point` and `direction` as placed at the epoch; `extent` bounds the points of B that they are compared with.
+    pub(crate) fn new(framed: &'a FramedMotion, point: DVec3, direction: DVec3, extent: f64) -> Self {
+        let up = 1.0 + 1e-14;
+        let motion = &framed.motion;
+        let (radius, length) = (point.length() * up, direction.length() * up);
+        Self {
+            motion: framed,
+            point,
+            direction,
+            point_remainder: motion.point_remainder(radius, extent),
+            direction_remainder: motion.direction_remainder(length),
+            speed: motion.bound_speed(radius),
+            direction_speed: motion.bound_direction_derivative(1) * length * up,
+        }
+    }
+
+    /// How far the point can be from the origin of B's frame over the window.
+    pub(crate) fn reach(&self) -> f64 {
+        self.motion.motion.bound_reach(self.point.length())
+    }
+
+    /// How far the point moves while the time of the window cannot change by less: a few units in the last place.
+    pub(crate) fn time_rounding(&self) -> f64 {
+        32.0 * f64::EPSILON * self.motion.motion.duration() * (self.speed + self.direction_speed)
+    }
+}
+
+impl FeaturePath for RigidPath<'_> {
+    #[inline(always)]
+    fn point(&mut self, _: Piece, at: f64) -> PathJet {
+        self.motion.frame(at).point_jet(self.point, self.point_remainder)
+    }
+
+    #[inline(always)]
+    fn point_and_direction(&mut self, _: Piece, at: f64) -> (PathJet, PathJet) {
+        let frame = self.motion.frame(at);
+        (
+            frame.point_jet(self.point, self.point_remainder),
+            frame.direction_jet(self.direction, self.direction_remainder),
+        )
+    }
+
+    fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    fn direction_speed(&self) -> f64 {
+        self.direction_speed
+    }
+
+    fn jerk(&self) -> f64 {
+        self.point_remainder.m3
+    }
+
+    fn rounding(&self) -> f64 {
+        self.point_remainder.e0
+    }
+}

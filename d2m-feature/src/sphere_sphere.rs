@@ -1,0 +1,106 @@
+//! A moving sphere against a sphere that is fixed in B's frame (solid balls).
+use crate::path::{FeaturePath, along, direction, global, local, reach, widened};
+use crate::point_triangle::cleared;
+use d2m_root::{Measurement, Piece, PieceTest, Quadratic, Verdict};
+use glam::DVec3;
+
+/// The piece test of two balls: the path is A's centre.
+pub(crate) struct SphereSphereTest<P> {
+    pub(crate) path: P,
+    /// Centre of B.
+    pub(crate) centre: DVec3,
+    /// Sum of the radii: [lower, upper] bound.
+    pub(crate) radii: (f64, f64),
+    pub(crate) tolerance: f64,
+    pub(crate) separation: f64,
+    /// Distance of the centres at which the remainder is small enough.
+    pub(crate) size: f64,
+}
+
+const UP: f64 = 1.0 + 1e-14;
+
+impl<P: FeaturePath> PieceTest for SphereSphereTest<P> {
+    fn too_wide(&self, h: f64) -> bool {
+        self.path.jerk() * (h * h * h) > 6.0 * 0.7 * (self.size + 0.25 * self.path.speed() * h)
+    }
+
+    fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    fn resolution(&self) -> f64 {
+        let resolution = self.tolerance / (2.0 * self.path.speed());
+        if resolution.is_nan() { f64::INFINITY } else { resolution }
+    }
+
+    fn evaluate(&mut self, piece: Piece) -> Verdict {
+        let at = piece.mid();
+        let jet = self.path.point(piece, at);
+        let whole = local(piece, at);
+        let remainder = widened(jet.remainder, self.separation);
+        // A direction that separates for longest: from the centre of B to A at the end that is farther away, and in
+        // the middle; each is a half-space test of the ball about B.
+        let mut part = whole;
+        for _ in 0..2 {
+            for s in [part.lo, 0.5 * (part.lo + part.hi), part.hi] {
+                let n = direction(jet.at(s) - self.centre);
+                let q = along(&jet, n);
+                let limit = n.dot(self.centre) + (self.radii.1 + remainder.bound(reach(part)));
+                if s >= part.hi {
+                    let gap = q.at(part.hi) - limit;
+                    if gap > 0.0 {
+                        let back = Quadratic::bound_first_zero(gap, -q.slope_at(part.hi), q.curvature);
+                        if back > part.hi - part.lo {
+                            return Verdict::Clear;
+                        }
+                        part.hi -= back;
+                    }
+                } else {
+                    let gap = q.at(part.lo) - limit;
+                    if gap > 0.0 {
+                        let forth = Quadratic::bound_first_zero(gap, q.slope_at(part.lo), q.curvature);
+                        if forth > part.hi - part.lo {
+                            return Verdict::Clear;
+                        }
+                        part.lo += forth;
+                    }
+                }
+            }
+        }
+        // Just after the entry along the last direction the balls overlap, if the approach is clean: nothing to the
+        // right of such a time matters, and with a start apart a contact is certain.
+        let margin = remainder.bound(reach(whole));
+        let overlap =
+            |s: f64| (jet.at(s) - self.centre).length() * UP + margin < self.radii.0 + 2.0 * self.separation;
+        let n = direction(jet.at(part.lo) - self.centre);
+        let q = along(&jet, n);
+        let depth = q.at(part.lo) - n.dot(self.centre) - self.radii.0 - self.separation;
+        let inner = (depth + 2.0 * margin + 1e-15 * self.size).max(0.0);
+        let soon = part.lo + Quadratic::bound_first_zero(inner, q.slope_at(part.lo), q.curvature) * 1.000_001;
+        if soon < part.hi && overlap(soon) {
+            part.hi = soon;
+        }
+        let apart_first = (jet.at(whole.lo) - self.centre).length() * (2.0 - UP) - margin > self.radii.1;
+        let certain = apart_first && overlap(part.hi);
+        Verdict::Within { part: global(part, at, piece), certain }
+    }
+
+    fn measure(&mut self, piece: Piece, at: f64) -> Measurement {
+        let jet = self.path.point(piece, at);
+        let difference = jet.p - self.centre;
+        let distance = difference.length() * UP + jet.remainder.bound(0.0) - self.radii.0 - self.separation;
+        let whole = local(piece, at);
+        let margin = widened(jet.remainder, self.separation).bound(reach(whole));
+        let n = direction(difference);
+        let q = along(&jet, n);
+        let gap = q.value - n.dot(self.centre) - self.radii.1 - margin;
+        let mut clear = Piece { lo: 0.0, hi: 0.0 };
+        if gap > 0.0 {
+            clear = Piece {
+                lo: -Quadratic::bound_first_zero(gap, -q.slope, q.curvature),
+                hi: Quadratic::bound_first_zero(gap, q.slope, q.curvature),
+            };
+        }
+        cleared(clear, whole, at, piece, distance)
+    }
+}

@@ -1,0 +1,81 @@
+//! Four vertices that move on straight segments, each on its own: deforming meshes.
+mod edge_edge;
+mod linear;
+mod point_triangle;
+
+use crate::contact::FirstContact;
+use crate::options::ContactOptions;
+use crate::pair_motion::answer_in;
+use d2m_root::Piece;
+use edge_edge::StraightEdgeEdge;
+use glam::DVec3;
+use point_triangle::StraightPointTriangle;
+
+/// Four points, each moving from its start (t = 0) to its end (t = 1) at constant velocity: `(1 − t)·start + t·end`.
+///
+/// ```
+/// use d2m_feature::{ContactOptions, FirstContact, StraightPaths};
+/// use glam::DVec3;
+/// let triangle = [DVec3::new(-1.0, -1.0, 0.0), DVec3::X, DVec3::Y];
+/// let start = [DVec3::Z, triangle[0], triangle[1], triangle[2]];
+/// let end = [-DVec3::Z, triangle[0], triangle[1], triangle[2]];
+/// let paths = StraightPaths::new(start, end);
+/// let FirstContact::Contact(contact) = paths.point_triangle(&ContactOptions::new()) else { panic!() };
+/// assert!(contact.lo <= 0.5 && 0.5 <= contact.hi && contact.hi - contact.lo < 1e-10);
+/// let apart = ContactOptions::new().with_min_separation(0.25);
+/// let FirstContact::Contact(earlier) = paths.point_triangle(&apart) else { panic!() };
+/// assert!((earlier.lo - 0.375).abs() < 1e-9);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StraightPaths {
+    start: [DVec3; 4],
+    end: [DVec3; 4],
+}
+
+impl StraightPaths {
+    /// Starts and ends of the four points: point and triangle, or edge A and edge B.
+    pub const fn new(start: [DVec3; 4], end: [DVec3; 4]) -> Self {
+        Self { start, end }
+    }
+
+    /// First contact of the first point with the triangle of the other three, t in [0, 1].
+    pub fn point_triangle(&self, options: &ContactOptions) -> FirstContact {
+        let lines = Lines::new(self);
+        answer_in(StraightPointTriangle::new(&lines, options), Piece { lo: 0.0, hi: 1.0 }, options)
+    }
+
+    /// First contact of the edge of the first two points with the edge of the last two, t in [0, 1].
+    pub fn edge_edge(&self, options: &ContactOptions) -> FirstContact {
+        let lines = Lines::new(self);
+        answer_in(StraightEdgeEdge::new(&lines, options), Piece { lo: 0.0, hi: 1.0 }, options)
+    }
+}
+
+/// The four points as start and velocity, and what bounds their rounding.
+pub(crate) struct Lines {
+    start: [DVec3; 4],
+    velocity: [DVec3; 4],
+    /// Largest distance of any point from the origin at any time (the ends: convex), rounded up.
+    magnitude: f64,
+}
+
+impl Lines {
+    fn new(paths: &StraightPaths) -> Self {
+        // One common origin near the features: what is far from the world's origin keeps its digits.
+        let origin = paths.start[1];
+        let start = paths.start.map(|p| p - origin);
+        let end = paths.end.map(|p| p - origin);
+        let velocity = [0, 1, 2, 3].map(|i| paths.end[i] - paths.start[i]);
+        let largest =
+            |points: &[DVec3; 4]| points.iter().map(|p| p.length_squared()).fold(0.0, f64::max).sqrt();
+        let magnitude = largest(&start).max(largest(&end)) * (1.0 + 1e-14);
+        Self { start, velocity, magnitude }
+    }
+
+    /// Bound of the error of a sum of differences of the points at a time of the window, dotted with a vector of
+    /// length at most 1: 24 units of the magnitude for two points, 64 for the four of two edges
+    /// (docs/theory/features.md counts 20 and 54).
+    fn error(&self, units: f64) -> f64 {
+        units * (0.5 * f64::EPSILON) * self.magnitude
+    }
+}
