@@ -2,6 +2,7 @@
 
 mod enclosing_sphere;
 mod mesh;
+pub mod paper;
 mod query;
 mod search;
 mod tree;

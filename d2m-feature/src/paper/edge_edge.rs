@@ -65,6 +65,11 @@ impl<'a> EdgePair<'a> {
         Self { motion, mover, observer, jet: EdgeJet::new(frame, mover), options: *options }
     }
 
+    /// Replaces the most pieces of time that the search may evaluate.
+    pub const fn set_evaluations(&mut self, evaluations: u32) {
+        self.options.evaluations = evaluations;
+    }
+
     /// The first contact in `window`.
     pub fn first_contact(&mut self, window: Interval) -> RootSearch {
         let spin = self.jet.direction_jet().bound_speed();

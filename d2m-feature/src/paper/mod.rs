@@ -21,6 +21,6 @@ pub use face::{Face, PolygonFace, TriangleFace};
 pub use jet::PointJet;
 pub use options::PaperOptions;
 pub use point_triangle::{PointFace, point_polygon, point_triangle};
-pub use relative_motion::{RelativeFrame, RelativeMotion};
+pub use relative_motion::{Placement, RelativeFrame, RelativeMotion};
 pub use sphere_over_domain::{BodyOverDomain, SphereOverDomain, test_sphere_pair};
 pub use sphere_sphere::{Sphere, sphere_sphere};

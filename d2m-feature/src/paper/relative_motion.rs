@@ -25,7 +25,7 @@ use glam::DVec3;
 pub struct RelativeMotion<'a> {
     mover: &'a dyn RigidMotion,
     observer: &'a dyn RigidMotion,
-    linear: Option<(LinearMotion, LinearMotion)>,
+    linear: Option<(LinearBody, LinearBody)>,
 }
 
 impl core::fmt::Debug for RelativeMotion<'_> {
@@ -34,9 +34,47 @@ impl core::fmt::Debug for RelativeMotion<'_> {
     }
 }
 
+/// A motion with constant twist, its rotation prepared: R(t) = R₀ + sin θ·K R₀ + (1 − cos θ)·K² R₀ with θ = |ω|(t −
+/// t_ref) and K = \[ω/|ω|\] (Rodrigues).
+#[derive(Clone, Copy, Debug)]
+struct LinearBody {
+    motion: LinearMotion,
+    spin: Interval,
+    terms: [IntervalMat3; 3],
+}
+
+impl LinearBody {
+    fn new(motion: LinearMotion) -> Self {
+        let spin = IntervalVec3::point(motion.angular_velocity()).norm();
+        let start = IntervalMat3::from_quat_normalized(motion.orientation());
+        let mut terms = [start; 3];
+        if spin.lo() > 0.0 {
+            let axis = IntervalVec3::point(motion.angular_velocity()) * spin.recip();
+            terms[1] = skew(axis).mul_mat(start);
+            terms[2] = skew_squared(axis).mul_mat(start);
+        }
+        Self { motion, spin, terms }
+    }
+
+    fn rotation(&self, t: Interval) -> IntervalMat3 {
+        if self.motion.angular_velocity() == DVec3::ZERO {
+            return self.terms[0];
+        }
+        if self.spin.lo() <= 0.0 {
+            // |ω|² underflows: leave it to the motion itself.
+            return self.motion.enclose_pose(t).rotation;
+        }
+        let (sin, cos) = (self.spin * (t - self.motion.reference_time())).sin_cos();
+        let versine = 1.0 - cos;
+        let [r, s, v] = self.terms.map(IntervalMat3::rows);
+        IntervalMat3::from_rows(core::array::from_fn(|i| r[i] + s[i] * sin + v[i] * versine))
+    }
+}
+
 /// Everything of both bodies at the times of a span, world axes.
 struct State {
     mover: IntervalMat3,
+    mover_inverse: IntervalMat3,
     observer_inverse: IntervalMat3,
     at_mover: DVec3,
     at_observer: DVec3,
@@ -55,7 +93,7 @@ impl<'a> RelativeMotion<'a> {
     /// The motion of `mover` seen from `observer`.
     pub fn new(mover: &'a dyn RigidMotion, observer: &'a dyn RigidMotion) -> Self {
         let linear = mover.constant_twist().zip(observer.constant_twist());
-        Self { mover, observer, linear }
+        Self { mover, observer, linear: linear.map(|(m, o)| (LinearBody::new(m), LinearBody::new(o))) }
     }
 
     /// The roles exchanged.
@@ -63,28 +101,44 @@ impl<'a> RelativeMotion<'a> {
         Self { mover: self.observer, observer: self.mover, linear: self.linear.map(|(m, o)| (o, m)) }
     }
 
-    /// Encloses x_mover − x_observer, world axes, over the span.
-    pub fn enclose_offset(&self, t: Interval) -> IntervalVec3 {
-        if let Some((m, o)) = &self.linear {
-            linear_offset(m, o, t)
-        } else {
-            self.mover.enclose_pose(t).translation - self.observer.enclose_pose(t).translation
+    /// The mover as it stands in the observer's frame at one time.
+    pub fn placement(&self, t: f64) -> Placement {
+        let s = self.state(Interval::point(t));
+        Placement {
+            rotation: s.observer_inverse.mul_mat(s.mover),
+            offset: s.observer_inverse.mul_vec(s.offset) + s.at_observer,
+            at_mover: s.at_mover,
         }
     }
 
     fn state(&self, t: Interval) -> State {
+        if let Some((m, o)) = &self.linear {
+            let mover = m.rotation(t);
+            return State {
+                mover,
+                mover_inverse: mover.transpose(),
+                observer_inverse: o.rotation(t).transpose(),
+                at_mover: m.motion.at(),
+                at_observer: o.motion.at(),
+                offset: linear_offset(&m.motion, &o.motion, t),
+                velocity: IntervalVec3::point(m.motion.linear_velocity()) - o.motion.linear_velocity(),
+                acceleration: IntervalVec3::ZERO,
+                spin_mover: IntervalVec3::point(m.motion.angular_velocity()),
+                spin_observer: IntervalVec3::point(o.motion.angular_velocity()),
+                spin_rate_mover: IntervalVec3::ZERO,
+                spin_rate_observer: IntervalVec3::ZERO,
+            };
+        }
         let (m, o) = (self.mover.enclose_pose(t), self.observer.enclose_pose(t));
         let (mt, ot) = (self.mover.enclose_twist(t), self.observer.enclose_twist(t));
         let (mr, or) = (self.mover.enclose_twist_rate(t), self.observer.enclose_twist_rate(t));
         State {
             mover: m.rotation,
+            mover_inverse: m.rotation.transpose(),
             observer_inverse: o.rotation.transpose(),
             at_mover: m.at,
             at_observer: o.at,
-            offset: self
-                .linear
-                .as_ref()
-                .map_or_else(|| m.translation - o.translation, |(m, o)| linear_offset(m, o, t)),
+            offset: m.translation - o.translation,
             velocity: mt.linear - ot.linear,
             acceleration: mr.linear - or.linear,
             spin_mover: mt.angular,
@@ -96,14 +150,44 @@ impl<'a> RelativeMotion<'a> {
 
     /// The frame of the observer over `span`: every point of the mover then costs three matrix products.
     pub fn frame(&self, span: Interval) -> RelativeFrame {
-        let s = self.state(Interval::point(span.lo()));
+        let start = self.state(Interval::point(span.lo()));
+        let all = self.state(span);
+        Self::observers_frame(span, &start, &all)
+    }
+
+    /// The mover in the observer's frame and the observer in the mover's, over `span`.
+    ///
+    /// The matrices of the one are the transposes of the other's.
+    pub fn frames(&self, span: Interval) -> [RelativeFrame; 2] {
+        let start = self.state(Interval::point(span.lo()));
+        let all = self.state(span);
+        let first = Self::observers_frame(span, &start, &all);
+        let second = RelativeFrame {
+            span,
+            at_mover: start.at_observer,
+            constant: [
+                start.mover_inverse.mul_vec(-start.offset) + start.at_mover,
+                start.mover_inverse.mul_vec(start.spin_mover.cross(start.offset) - start.velocity),
+                all.mover_inverse.mul_vec(
+                    all.spin_rate_mover.cross(all.offset)
+                        + all.spin_mover.cross(all.velocity * 2.0 - all.spin_mover.cross(all.offset))
+                        - all.acceleration,
+                ),
+            ],
+            matrix: first.matrix.map(IntervalMat3::transpose),
+        };
+        [first, second]
+    }
+
+    fn observers_frame(span: Interval, start: &State, all: &State) -> RelativeFrame {
+        let s = start;
         let spin = s.spin_mover - s.spin_observer;
         let position = (s.observer_inverse.mul_vec(s.offset), s.observer_inverse.mul_mat(s.mover));
         let velocity = (
             s.observer_inverse.mul_vec(s.velocity - s.spin_observer.cross(s.offset)),
             s.observer_inverse.mul_mat(skew(spin).mul_mat(s.mover)),
         );
-        let s = self.state(span);
+        let s = all;
         let spin = s.spin_mover - s.spin_observer;
         let turn = s.spin_rate_mover - s.spin_rate_observer + s.spin_mover.cross(s.spin_observer);
         let drift = s.acceleration
@@ -158,6 +242,21 @@ fn skew_squared(v: IntervalVec3) -> IntervalMat3 {
 fn add(a: IntervalMat3, b: IntervalMat3) -> IntervalMat3 {
     let (a, b) = (a.rows(), b.rows());
     IntervalMat3::from_rows([a[0] + b[0], a[1] + b[1], a[2] + b[2]])
+}
+
+/// The relative position of two bodies at one time, up to rounding that it encloses.
+#[derive(Clone, Copy, Debug)]
+pub struct Placement {
+    rotation: IntervalMat3,
+    offset: IntervalVec3,
+    at_mover: DVec3,
+}
+
+impl Placement {
+    /// Encloses a point of the mover (its body frame) in the observer's frame.
+    pub fn enclose_point(&self, point: DVec3) -> IntervalVec3 {
+        self.rotation.mul_vec(IntervalVec3::point(point) - self.at_mover) + self.offset
+    }
 }
 
 /// The relative motion over one span: position and velocity at its start, acceleration throughout, each affine in the

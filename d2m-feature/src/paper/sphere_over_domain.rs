@@ -1,5 +1,6 @@
 //! Sphere-Over-Domain and Test-Sphere-Pair (section IV-D and Algorithm 5 of the paper).
 
+use super::PointJet;
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
 use d2m_motion::RigidMotion;
 use d2m_root::InclusionFunction;
@@ -47,6 +48,12 @@ impl BodyOverDomain {
     /// The stretch of time.
     pub const fn span(&self) -> Interval {
         self.span
+    }
+
+    /// The path of a body point over the stretch, world axes, relative to the scene centre.
+    pub fn jet(&self, point: DVec3) -> PointJet {
+        let s = self.sphere(point, 0.0);
+        PointJet::new(self.span, [s.position[0], s.velocity[0], s.acceleration])
     }
 
     /// The sphere with this centre (body frame) and radius over the stretch.

@@ -1,0 +1,173 @@
+//! Brute force over the collision geometry of two leaves (line 3 of Algorithm 6).
+
+use super::budget::{Exhausted, Meter};
+use super::sphere_tree::{Leaf, SphereTree};
+use d2m_feature::FeaturePair;
+use d2m_feature::paper::{
+    EdgePair, PaperOptions, PointFace, PointJet, RelativeFrame, RelativeMotion, TriangleFace,
+};
+use d2m_interval::{Interval, IntervalVec3};
+use d2m_root::RootSearch;
+use glam::DVec3;
+
+/// The earliest contact known so far.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Candidate {
+    /// No contact of the pair before `bracket.lo()`.
+    pub(crate) bracket: Interval,
+    pub(crate) feature: FeaturePair,
+    pub(crate) triangle_b: u32,
+    /// The search of the pair met its budget: nothing is known from `bracket.lo()` on.
+    pub(crate) undecided: bool,
+}
+
+/// An axis-aligned box.
+pub(super) type Box3 = IntervalVec3;
+
+/// The leaves of both bodies and how they move in each other's frames.
+pub(crate) struct LeafPair<'a> {
+    pub(crate) a: (&'a SphereTree, &'a Leaf),
+    pub(crate) b: (&'a SphereTree, &'a Leaf),
+    /// A seen from B, B seen from A.
+    pub(crate) motion: &'a [RelativeMotion<'a>; 2],
+    pub(crate) options: PaperOptions,
+}
+
+impl LeafPair<'_> {
+    /// Lowers `best` by every pair of features that may meet within `span`.
+    ///
+    /// The motion is enclosed once over `span`, in each body's frame. Swept boxes, the plane's parabolas and Γ then
+    /// dispose of nearly all pairs; only what is left is searched by itself.
+    pub(crate) fn search(
+        &self,
+        span: Interval,
+        best: &mut Option<Candidate>,
+        meter: &mut Meter,
+    ) -> Result<(), Exhausted> {
+        let frames = self.motion[0].frames(span);
+        self.points_and_faces(&frames[0], best, meter, false)?;
+        self.points_and_faces(&frames[1], best, meter, true)?;
+        self.edges(&frames[0], best, meter)
+    }
+
+    /// Vertices of A against triangles of B, or the other way round.
+    fn points_and_faces(
+        &self,
+        frame: &RelativeFrame,
+        best: &mut Option<Candidate>,
+        meter: &mut Meter,
+        swapped: bool,
+    ) -> Result<(), Exhausted> {
+        let ((tree, leaf), (face_tree, face_leaf)) =
+            if swapped { (self.b, self.a) } else { (self.a, self.b) };
+        let motion = &self.motion[usize::from(swapped)];
+        let boxes: Vec<Box3> = face_leaf.triangles.iter().map(|&f| hull(&face_tree.corners(f))).collect();
+        let Some(all) = boxes.iter().copied().reduce(Box3::hull) else { return Ok(()) };
+        let mut faces: Vec<Option<TriangleFace>> = vec![None; boxes.len()];
+        for &(vertex, own) in &leaf.vertices {
+            meter.spend()?;
+            let point = tree.vertex(vertex);
+            let jet = frame.jet(point);
+            let swept = swept_box(&jet);
+            if !meet(&swept, &all) {
+                continue;
+            }
+            for (i, &face) in face_leaf.triangles.iter().enumerate() {
+                if !meet(&swept, &boxes[i]) {
+                    continue;
+                }
+                let plane = faces[i].get_or_insert_with(|| TriangleFace::new(face_tree.corners(face))).face();
+                let Some(part) = PointFace::first_look(&plane, &jet) else { continue };
+                let Some(searched) = still_open(Interval::new(part.lo(), jet.span().hi()), best.as_ref())
+                else {
+                    continue;
+                };
+                meter.spend()?;
+                let options = self.options.with_evaluations(meter.evaluations());
+                let mut pair = PointFace::new(motion, point, plane, jet, &options);
+                let feature = if swapped {
+                    FeaturePair::FaceVertex { face, vertex }
+                } else {
+                    FeaturePair::VertexFace { vertex, face }
+                };
+                let triangle_b = if swapped { own } else { face };
+                lower(best, pair.first_contact(searched), feature, triangle_b);
+            }
+        }
+        Ok(())
+    }
+
+    /// Edges of A against edges of B, in B's frame.
+    fn edges(
+        &self,
+        frame: &RelativeFrame,
+        best: &mut Option<Candidate>,
+        meter: &mut Meter,
+    ) -> Result<(), Exhausted> {
+        let ((tree_a, leaf_a), (tree_b, leaf_b)) = (self.a, self.b);
+        let ends = |tree: &SphereTree, e: [u32; 2]| [tree.vertex(e[0]), tree.vertex(e[1])];
+        let boxes: Vec<Box3> = leaf_b.edges.iter().map(|(e, _)| hull(&ends(tree_b, *e))).collect();
+        let Some(all) = boxes.iter().copied().reduce(Box3::hull) else { return Ok(()) };
+        for &(edge_a, _) in &leaf_a.edges {
+            meter.spend()?;
+            let own = ends(tree_a, edge_a);
+            let swept = swept_box(&frame.jet(own[0])).hull(swept_box(&frame.jet(own[1])));
+            if !meet(&swept, &all) {
+                continue;
+            }
+            for (i, &(edge_b, triangle_b)) in leaf_b.edges.iter().enumerate() {
+                if !meet(&swept, &boxes[i]) {
+                    continue;
+                }
+                let mut pair =
+                    EdgePair::new(&self.motion[0], own, ends(tree_b, edge_b), frame, &self.options);
+                let Some(part) = pair.first_look() else { continue };
+                let Some(searched) = still_open(Interval::new(part.lo(), frame.span().hi()), best.as_ref())
+                else {
+                    continue;
+                };
+                meter.spend()?;
+                pair.set_evaluations(meter.evaluations());
+                let feature = FeaturePair::EdgeEdge { edge_a, edge_b };
+                lower(best, pair.first_contact(searched), feature, triangle_b);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The part of `searched` before the best contact so far.
+pub(crate) fn still_open(searched: Interval, best: Option<&Candidate>) -> Option<Interval> {
+    match best {
+        Some(known) if searched.lo() >= known.bracket.lo() => None,
+        Some(known) => Some(Interval::new(searched.lo(), searched.hi().min(known.bracket.lo()))),
+        None => Some(searched),
+    }
+}
+
+fn lower(best: &mut Option<Candidate>, found: RootSearch, feature: FeaturePair, triangle_b: u32) {
+    let (bracket, undecided) = match found {
+        RootSearch::None => return,
+        RootSearch::Bracket(bracket) => (bracket, false),
+        RootSearch::Undecided { clear_until } => (Interval::point(clear_until), true),
+    };
+    if best.as_ref().is_none_or(|known| bracket.lo() < known.bracket.lo()) {
+        *best = Some(Candidate { bracket, feature, triangle_b, undecided });
+    }
+}
+
+fn hull(points: &[DVec3]) -> Box3 {
+    let (lo, hi) =
+        points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
+    Box3::new(Interval::new(lo.x, hi.x), Interval::new(lo.y, hi.y), Interval::new(lo.z, hi.z))
+}
+
+/// All places of the point during the jet's span.
+fn swept_box(jet: &PointJet) -> Box3 {
+    jet.enclose(jet.offsets(jet.span()))
+}
+
+pub(super) fn meet(a: &Box3, b: &Box3) -> bool {
+    let meet = |a: Interval, b: Interval| !(a.hi() < b.lo() || b.hi() < a.lo());
+    meet(a.x, b.x) && meet(a.y, b.y) && meet(a.z, b.z)
+}

@@ -1,0 +1,174 @@
+//! How the bodies stand at the start of the window: apart, touching, overlapping, or one inside the other.
+
+use super::distance::{ClosestPair, MeshDistance, enclose_distance, visit_close_pairs};
+use super::sphere_tree::SphereTree;
+use crate::{Solid, StartState};
+use d2m_feature::paper::Placement;
+use d2m_interval::{Interval, IntervalVec3};
+use glam::DVec3;
+
+/// The start state with the closest pair where the bodies meet.
+#[derive(Clone, Debug)]
+pub(crate) enum Start {
+    /// Certainly further apart than the tolerance, and neither inside the other.
+    Apart,
+    /// In contact, or within the tolerance.
+    Meeting(StartState, Box<ClosestPair>),
+    /// The surfaces are apart, but no ray decided which side one lies on. Never seen; answered as undecided.
+    Unknown,
+}
+
+/// Judges the placement of A in B's frame (`places[0]`) and of B in A's (`places[1]`), with tolerance δ.
+pub(crate) fn classify_start(
+    a: &SphereTree,
+    b: &SphereTree,
+    places: &[Placement; 2],
+    tolerance: f64,
+    solid: Solid,
+) -> Start {
+    let found = enclose_distance(a, b, &places[0], 4.0 * tolerance);
+    if found.lower <= tolerance {
+        let Some(closest) = found.closest else { return Start::Unknown };
+        let crossing = first_crossing(a, b, &places[0], tolerance);
+        let state = if crossing.is_some() { StartState::Overlapping } else { StartState::Touching };
+        return Start::Meeting(state, Box::new(crossing.unwrap_or(closest)));
+    }
+    if solid == Solid::Surface {
+        return Start::Apart;
+    }
+    let inside = |bodies: (&SphereTree, &SphereTree), place: &Placement| {
+        bodies.0.component_vertices().iter().try_fold(false, |known, &v| {
+            // The surfaces are further apart than the tolerance, so rounding does not change the side.
+            let point = place.enclose_point(bodies.0.vertex(v)).mid();
+            Some(known || is_inside(bodies.1, point)?)
+        })
+    };
+    match (inside((a, b), &places[0]), inside((b, a), &places[1])) {
+        (Some(false), Some(false)) => Start::Apart,
+        (Some(true), _) | (_, Some(true)) => {
+            let MeshDistance { closest, .. } = enclose_distance(a, b, &places[0], f64::INFINITY);
+            closest.map_or(Start::Unknown, |pair| Start::Meeting(StartState::Contained, Box::new(pair)))
+        }
+        _ => Start::Unknown,
+    }
+}
+
+/// A pair of triangles one of which an edge of the other clearly passes through, by more than the tolerance.
+fn first_crossing(a: &SphereTree, b: &SphereTree, place: &Placement, tolerance: f64) -> Option<ClosestPair> {
+    let mut crossing = None;
+    visit_close_pairs(a, b, place, tolerance, |pair| {
+        let corners_b = b.corners(pair.triangle_b);
+        let passes = |edges: &[DVec3; 3], face: &[DVec3; 3]| {
+            (0..3).any(|i| passes_through(edges[i], edges[(i + 1) % 3], face, tolerance + pair.rounding))
+        };
+        if crossing.is_none()
+            && pair.detail.upper == 0.0
+            && (passes(&pair.corners_a, &corners_b) || passes(&corners_b, &pair.corners_a))
+        {
+            crossing = Some(*pair);
+        }
+        if crossing.is_some() { f64::NEG_INFINITY } else { f64::INFINITY }
+    });
+    crossing
+}
+
+/// Does the segment reach more than `margin` to either side of the face, and cross it well inside? An estimate: it only
+/// chooses between the words "touching" and "overlapping".
+fn passes_through(p: DVec3, q: DVec3, face: &[DVec3; 3], margin: f64) -> bool {
+    let [a, b, c] = *face;
+    let normal = (b - a).cross(c - a);
+    let length = normal.length();
+    if length == 0.0 {
+        return false;
+    }
+    let n = normal / length;
+    let (s, t) = ((p - a).dot(n), (q - a).dot(n));
+    if s.min(t) >= -margin || s.max(t) <= margin {
+        return false;
+    }
+    let x = p + (q - p) * (s / (s - t));
+    let turn = |u: DVec3, v: DVec3| (v - u).cross(x - u).dot(n) / (v - u).length();
+    turn(a, b).min(turn(b, c)).min(turn(c, a)) > margin
+}
+
+/// Directions tried before giving up.
+const RAYS: u32 = 64;
+
+/// Even–odd rule: does a ray from `point` leave the closed surface an odd number of times? `None` where every ray met
+/// something whose side rounding could not tell.
+///
+/// Every sign is certain or the ray is dropped for another, so an answer is right if `point` is off the surface.
+pub(crate) fn is_inside(tree: &SphereTree, point: DVec3) -> Option<bool> {
+    let ball = tree.bounding_sphere();
+    let off = (IntervalVec3::point(point) - ball.center).norm();
+    if (off - ball.radius).certainly_positive() {
+        return Some(false);
+    }
+    let mut seed = 0x9E37_79B9_7F4A_7C15u64;
+    let mut number = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    for _ in 0..RAYS {
+        let direction = DVec3::new(number(), number(), number());
+        if direction.length_squared() < 0.01 {
+            continue;
+        }
+        // Far outside the bounding sphere.
+        let far = point + direction * (4.0 * ball.radius / direction.length());
+        if let Some(crossings) = count_crossings(tree, point, far) {
+            return Some(crossings % 2 == 1);
+        }
+    }
+    None
+}
+
+/// The number of triangles that the segment from `p` to `q` passes through; `None` where one of them is not certain.
+fn count_crossings(tree: &SphereTree, p: DVec3, q: DVec3) -> Option<usize> {
+    let mut crossings = 0;
+    let mut open = vec![0u32];
+    let along = q - p;
+    while let Some(index) = open.pop() {
+        let node = tree.node(index);
+        let w = node.sphere.center - p;
+        // Distance of the centre from the line, with a margin far above its rounding error.
+        let squared = (w - along * (w.dot(along) / along.length_squared())).length_squared();
+        let reach = node.sphere.radius * (1.0 + 1e-9) + 1e-9 * (along.length() + w.length());
+        if squared > reach * reach {
+            continue;
+        }
+        if !node.is_leaf() {
+            open.extend(node.children);
+            continue;
+        }
+        for &t in tree.leaf(node).triangles.iter().filter(|&&t| tree.is_counted(t)) {
+            if crosses(p, q, &tree.corners(t))? {
+                crossings += 1;
+            }
+        }
+    }
+    Some(crossings)
+}
+
+/// Does the open segment pass through the interior of the triangle? `None` where a sign is uncertain.
+fn crosses(p: DVec3, q: DVec3, triangle: &[DVec3; 3]) -> Option<bool> {
+    let [a, b, c] = *triangle;
+    let volume = |u: DVec3, v: DVec3, w: DVec3, x: DVec3| {
+        let from = |y: DVec3| IntervalVec3::point(y) - u;
+        from(v).cross(from(w)).dot(from(x))
+    };
+    let (below, above) = (volume(a, b, c, p), volume(a, b, c, q));
+    if same_sign(below, above) {
+        return Some(false);
+    }
+    let turns = [volume(p, q, a, b), volume(p, q, b, c), volume(p, q, c, a)];
+    if turns.iter().any(|t| t.certainly_positive()) && turns.iter().any(|t| t.certainly_negative()) {
+        return Some(false);
+    }
+    let certain = |v: &Interval| v.certainly_positive() || v.certainly_negative();
+    (certain(&below) && certain(&above) && turns.iter().all(certain)).then_some(true)
+}
+
+fn same_sign(a: Interval, b: Interval) -> bool {
+    (a.certainly_positive() && b.certainly_positive()) || (a.certainly_negative() && b.certainly_negative())
+}
