@@ -1,5 +1,8 @@
 //! Options of a first-contact query.
 
+/// Features smaller than their reach by more than this factor are worth extended precision.
+const FAR: f64 = 1e5;
+
 /// What counts as contact of two features, and when to give up.
 ///
 /// ```
@@ -11,8 +14,8 @@
 #[non_exhaustive]
 pub struct ContactOptions {
     /// δ: features within this distance (beyond the separation) may be reported as in contact. `None`: 1e-10 times
-    /// the length of the features, and at least 1e-13 times the reach of the motion. It is raised to four times
-    /// the rounding error where the geometry is so far from its centre of rotation that doubles cannot tell.
+    /// the length of the features, and at least 1e-13 times the reach of the motion (unless that is more than 1e5
+    /// times the length). It is raised to four times the rounding error where doubles cannot tell.
     pub tolerance: Option<f64>,
     /// Distance at which features count as touching (≥ 0; 0: the features themselves).
     pub min_separation: f64,
@@ -41,10 +44,11 @@ impl ContactOptions {
         Self { max_evaluations, ..self }
     }
 
-    /// The tolerance for features of a given length, reach of motion and rounding.
-    pub(crate) fn tolerance_for(&self, length: f64, reach: f64, rounding: f64) -> f64 {
-        let wanted = self.tolerance.unwrap_or((1e-10 * length).max(1e-13 * reach));
-        wanted.max(4.0 * rounding)
+    /// The tolerance before rounding has its say, for features of a given length and a given reach of the motion.
+    pub(crate) fn wanted_tolerance(&self, length: f64, reach: f64) -> f64 {
+        let default =
+            if reach <= FAR * length { (1e-10 * length).max(1e-13 * reach) } else { 1e-10 * length };
+        self.tolerance.unwrap_or(default)
     }
 
     pub(crate) fn separation(&self) -> f64 {

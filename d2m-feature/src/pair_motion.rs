@@ -172,7 +172,7 @@ fn placed(
     let planes = &triangle.planes;
     let path = RigidPath::new(framed, motion.place_a(point), DVec3::ZERO, planes.extent);
     let (separation, reach) = (options.separation(), path.reach());
-    let tolerance = options.tolerance_for(planes.size, reach, 0.0);
+    let tolerance = options.wanted_tolerance(planes.size, reach);
     if path.rounding() <= 0.25 * tolerance {
         let test = PointTriangleTest { path, planes, tolerance, separation };
         return answer(test, motion, options);
@@ -180,7 +180,8 @@ fn placed(
     let framed = FramedMotion::new(motion.anchored(point, triangle.vertices[0]));
     let planes = TrianglePlanes::new(triangle.vertices.map(|v| framed.motion.place_b(v)));
     let path = RigidPath::new(&framed, DVec3::ZERO, DVec3::ZERO, planes.extent);
-    let tolerance = options.tolerance_for(planes.size, reach, path.rounding()).max(path.time_rounding());
+    let tolerance =
+        options.wanted_tolerance(planes.size, reach).max(4.0 * path.rounding()).max(path.time_rounding());
     let test = PointTriangleTest { path, planes: &planes, tolerance, separation };
     answer(test, motion, options)
 }
@@ -208,14 +209,16 @@ fn edge_edge(
     let mut test = build(framed);
     let length = 2.0 * test.half_lengths.0.max(test.half_lengths.1);
     let reach = test.path.reach();
-    test.tolerance = options.tolerance_for(length, reach, 0.0);
+    test.tolerance = options.wanted_tolerance(length, reach);
     if test.path.rounding() <= 0.25 * test.tolerance {
         return answer(test, &framed.motion, options);
     }
     let anchored = FramedMotion::new(framed.motion.anchored(edge_a[0], edge_b[0]));
     let mut test = build(&anchored);
-    test.tolerance =
-        options.tolerance_for(length, reach, test.path.rounding()).max(test.path.time_rounding());
+    test.tolerance = options
+        .wanted_tolerance(length, reach)
+        .max(4.0 * test.path.rounding())
+        .max(test.path.time_rounding());
     answer(test, &framed.motion, options)
 }
 
@@ -242,13 +245,14 @@ fn sphere_sphere(
     let centres = [ball_a.0, ball_b.0];
     let mut test = build(framed, centres, radii, separation);
     let reach = test.path.reach();
-    test.tolerance = options.tolerance_for(sum, reach, 0.0);
+    test.tolerance = options.wanted_tolerance(sum, reach);
     if test.path.rounding() <= 0.25 * test.tolerance {
         return answer(test, &framed.motion, options);
     }
     let anchored = FramedMotion::new(framed.motion.anchored(centres[0], centres[1]));
     let mut test = build(&anchored, centres, radii, separation);
-    test.tolerance = options.tolerance_for(sum, reach, test.path.rounding()).max(test.path.time_rounding());
+    test.tolerance =
+        options.wanted_tolerance(sum, reach).max(4.0 * test.path.rounding()).max(test.path.time_rounding());
     answer(test, &framed.motion, options)
 }
 
@@ -320,8 +324,9 @@ impl<'a> EnclosedPairMotion<'a> {
         let extent = (middle.length() + half_a.length() + half.length()) * UP;
         let path = EnclosedPath::new(self.a, self.b, edge_a, self.window, extent);
         let half_lengths = (half_a.length() * UP, half.length() * UP);
-        let tolerance =
-            options.tolerance_for(2.0 * half_lengths.0.max(half_lengths.1), extent, path.rounding());
+        let tolerance = options
+            .wanted_tolerance(2.0 * half_lengths.0.max(half_lengths.1), extent)
+            .max(4.0 * path.rounding());
         let separation = options.separation();
         let test = EdgeEdgeTest { path, middle, half, half_lengths, tolerance, separation };
         self.answer(test, options)
@@ -338,7 +343,7 @@ impl<'a> EnclosedPairMotion<'a> {
         let radii = (sum * (2.0 - UP), sum * UP);
         let extent = (ball_b.0.length() + radii.1) * UP;
         let path = EnclosedPath::new(self.a, self.b, [ball_a.0; 2], self.window, extent);
-        let tolerance = options.tolerance_for(sum, extent, path.rounding());
+        let tolerance = options.wanted_tolerance(sum, extent).max(4.0 * path.rounding());
         let separation = options.separation();
         let test = SphereSphereTest { path, centre: ball_b.0, radii, tolerance, separation, size: sum };
         self.answer(test, options)
@@ -384,7 +389,7 @@ fn point_triangle_enclosed(
 ) -> FirstContact {
     let planes = TrianglePlanes::new(*triangle);
     let path = EnclosedPath::new(a, b, [point; 2], window, planes.extent);
-    let tolerance = options.tolerance_for(planes.size, planes.extent, path.rounding());
+    let tolerance = options.wanted_tolerance(planes.size, planes.extent).max(4.0 * path.rounding());
     let separation = options.separation();
     answer_in(PointTriangleTest { path, planes: &planes, tolerance, separation }, window, options)
 }

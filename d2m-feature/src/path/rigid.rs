@@ -61,7 +61,7 @@ impl<'a> RigidPath<'a> {
 
     /// How far the point moves while the time of the window cannot change by less: a few units in the last place.
     pub(crate) fn time_rounding(&self) -> f64 {
-        32.0 * f64::EPSILON * self.motion.motion.duration() * (self.speed + self.direction_speed)
+        4.0 * f64::EPSILON * self.motion.motion.duration() * (self.speed + self.direction_speed)
     }
 }
 

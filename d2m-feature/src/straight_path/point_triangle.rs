@@ -27,7 +27,7 @@ impl<'a> StraightPointTriangle<'a> {
         let size = |a: usize, b: usize| (lines.start[a] - lines.start[b]).length();
         let length = size(1, 2).max(size(2, 3)).max(size(1, 3));
         let error = lines.error(24.0);
-        let tolerance = options.tolerance_for(length, lines.magnitude, error);
+        let tolerance = options.wanted_tolerance(length, lines.magnitude).max(4.0 * error);
         Self { lines, error, speed, tolerance, separation: options.separation() }
     }
 
