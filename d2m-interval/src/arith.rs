@@ -1,45 +1,115 @@
+//! The field operations, square, square root, and what is exact: negation, absolute value, minimum, maximum.
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use crate::{
     Interval,
-    round::{down, up},
+    round::{HALF_ULP, TINY, down, finite, finite_with, increment, two_product, two_sum, up},
+    simd::F64x2,
 };
 
-/// Product of end points: 0·∞ is 0.
+/// All products of an element of `a` and one of `b`, each end correctly rounded, for finite ends (callers check
+/// by [`finite_with`]).
 #[inline(always)]
-fn times(a: f64, b: f64) -> f64 {
-    if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
+pub(crate) fn products(a: F64x2, b: F64x2) -> F64x2 {
+    let (low, high) = (a.both_first(), a.both_second());
+    let crossed = b.swap();
+    let p = low.times(crossed);
+    let q = low.times(b.neg());
+    let r = high.times(b);
+    let s = high.times(crossed.neg());
+    p.max(q).max(s.max(r))
+}
+
+/// The same for one number on the right.
+#[inline(always)]
+pub(crate) fn products_with(a: F64x2, b: f64) -> F64x2 {
+    a.times(F64x2::splat(b)).max(a.swap().times(F64x2::splat(-b)))
 }
 
 #[inline(always)]
-fn max4(a: f64, b: f64, c: f64, d: f64) -> f64 {
-    let m = if a > b { a } else { b };
-    let n = if c > d { c } else { d };
-    if m > n { m } else { n }
+fn rounded(x: F64x2, slow: impl FnOnce() -> Interval) -> Interval {
+    let e = increment(x);
+    if finite(e) { Interval(x.plus(e)) } else { slow() }
+}
+
+/// Product of end points: 0·∞ is 0.
+fn end_product(a: f64, b: f64) -> f64 {
+    if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
+}
+
+#[cold]
+#[inline(never)]
+pub(crate) fn add_slow(a: Interval, b: Interval) -> Interval {
+    if a.is_empty() || b.is_empty() {
+        return Interval::EMPTY;
+    }
+    Interval::raw(down(a.lo() + b.lo()), up(a.hi() + b.hi()))
+}
+
+#[cold]
+#[inline(never)]
+pub(crate) fn mul_slow(a: Interval, b: Interval) -> Interval {
+    if a.is_empty() || b.is_empty() {
+        return Interval::EMPTY;
+    }
+    if a == Interval::ZERO || b == Interval::ZERO {
+        return Interval::ZERO;
+    }
+    let products = [(a.lo(), b.lo()), (a.lo(), b.hi()), (a.hi(), b.lo()), (a.hi(), b.hi())];
+    let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
+    for (x, y) in products {
+        let p = end_product(x, y);
+        lo = if p < lo { p } else { lo };
+        hi = if p > hi { p } else { hi };
+    }
+    Interval::raw(down(lo), up(hi))
+}
+
+#[cold]
+#[inline(never)]
+fn div_slow(a: Interval, b: Interval) -> Interval {
+    if a.is_empty() || b.is_empty() || b == Interval::ZERO {
+        return Interval::EMPTY;
+    }
+    if a == Interval::ZERO {
+        return Interval::ZERO;
+    }
+    if b.lo() < 0.0 && b.hi() > 0.0 {
+        return Interval::ENTIRE;
+    }
+    // The divisor keeps one sign; make it positive.
+    let (n, d) = if b.hi() <= 0.0 { (-a, -b) } else { (a, b) };
+    let upper = |n: f64| {
+        if n <= 0.0 {
+            if n == 0.0 || d.hi() == f64::INFINITY { 0.0 } else { up(n / d.hi()) }
+        } else if d.lo() == 0.0 || n == f64::INFINITY {
+            f64::INFINITY
+        } else {
+            up(n / d.lo())
+        }
+    };
+    Interval::raw(-upper(-n.lo()), upper(n.hi()))
 }
 
 impl Neg for Interval {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self::raw(-self.hi(), -self.lo())
+        Self(self.0.swap())
     }
 }
 
 impl Add for Interval {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, o: Self) -> Self {
-        if self.is_empty() || o.is_empty() {
-            return Self::EMPTY;
-        }
-        Self::raw(down(self.lo() + o.lo()), up(self.hi() + o.hi()))
+        rounded(self.0.plus(o.0), || add_slow(self, o))
     }
 }
 
 impl Sub for Interval {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, o: Self) -> Self {
         self + -o
     }
@@ -47,78 +117,109 @@ impl Sub for Interval {
 
 impl Mul for Interval {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        if self.is_empty() || o.is_empty() {
-            return Self::EMPTY;
-        }
-        let (a, b, c, d) = (
-            times(self.lo(), o.lo()),
-            times(self.lo(), o.hi()),
-            times(self.hi(), o.lo()),
-            times(self.hi(), o.hi()),
-        );
-        Self::raw(down(-max4(-a, -b, -c, -d)), up(max4(a, b, c, d)))
+        let x = products(self.0, o.0);
+        let e = increment(x);
+        if finite_with(self.0.max(o.0), e) { Self(x.plus(e)) } else { mul_slow(self, o) }
     }
 }
 
 impl Div for Interval {
     type Output = Self;
-    /// Hull of the quotients with non-zero divisors; empty when the divisor is `[0, 0]`.
-    #[inline]
+    /// Hull of the quotients with non-zero divisors: [`Interval::EMPTY`] when the divisor is `[0, 0]`,
+    /// unbounded when it holds zero. See [`Interval::div_pair`] for both pieces.
+    #[inline(always)]
     fn div(self, o: Self) -> Self {
-        if self.is_empty() || o.is_empty() || (o.lo() == 0.0 && o.hi() == 0.0) {
-            return Self::EMPTY;
-        }
-        if self.lo() == 0.0 && self.hi() == 0.0 {
-            return Self::ZERO;
-        }
-        if o.lo() < 0.0 && o.hi() > 0.0 {
-            return Self::ENTIRE;
-        }
-        // The divisor keeps one sign; make it positive.
-        let (n, d) = if o.hi() <= 0.0 { (-self, -o) } else { (self, o) };
-        let lo = if n.lo() >= 0.0 {
-            if d.hi() == f64::INFINITY { 0.0 } else { down(n.lo() / d.hi()) }
-        } else if d.lo() == 0.0 || n.lo() == f64::NEG_INFINITY {
-            f64::NEG_INFINITY
-        } else {
-            down(n.lo() / d.lo())
-        };
-        let hi = if n.hi() <= 0.0 {
-            if d.hi() == f64::INFINITY { 0.0 } else { up(n.hi() / d.hi()) }
-        } else if d.lo() == 0.0 || n.hi() == f64::INFINITY {
-            f64::INFINITY
-        } else {
-            up(n.hi() / d.lo())
-        };
-        Self::from_ends(lo, hi)
+        let zero = F64x2::splat(0.0);
+        let flip = o.0.second() < 0.0;
+        let (n, d) = if flip { (self.0.swap(), o.0.swap()) } else { (self.0, o.0) };
+        let (smallest, largest) = (d.both_first().neg(), d.both_second());
+        let x = n.over(n.lt(zero).select(largest, smallest));
+        let e = increment(x);
+        if finite(e) && d.first() < 0.0 && d.second() > 0.0 { Self(x.plus(e)) } else { div_slow(self, o) }
     }
 }
 
-macro_rules! mixed {
-    ($($op:ident $f:ident $opa:ident $fa:ident),*) => {$(
+impl Mul<f64> for Interval {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: f64) -> Self {
+        let x = products_with(self.0, o);
+        let e = increment(x);
+        if finite_with(self.0, e) { Self(x.plus(e)) } else { mul_slow(self, Self::point(o)) }
+    }
+}
+
+impl Mul<Interval> for f64 {
+    type Output = Interval;
+    #[inline(always)]
+    fn mul(self, o: Interval) -> Interval {
+        o * self
+    }
+}
+
+impl Add<f64> for Interval {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: f64) -> Self {
+        rounded(self.0.plus(Self::point_unchecked(o).0), || add_slow(self, Self::point(o)))
+    }
+}
+
+impl Add<Interval> for f64 {
+    type Output = Interval;
+    #[inline(always)]
+    fn add(self, o: Interval) -> Interval {
+        o + self
+    }
+}
+
+impl Sub<f64> for Interval {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: f64) -> Self {
+        self + -o
+    }
+}
+
+impl Sub<Interval> for f64 {
+    type Output = Interval;
+    #[inline(always)]
+    fn sub(self, o: Interval) -> Interval {
+        -o + self
+    }
+}
+
+impl Div<f64> for Interval {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, o: f64) -> Self {
+        self / Self::point(o)
+    }
+}
+
+impl Div<Interval> for f64 {
+    type Output = Interval;
+    #[inline(always)]
+    fn div(self, o: Interval) -> Interval {
+        Interval::point(self) / o
+    }
+}
+
+macro_rules! assign {
+    ($($op:ident $f:ident $by:ident),*) => {$(
+        impl $op for Interval {
+            #[inline(always)]
+            fn $f(&mut self, o: Self) { *self = self.$by(o); }
+        }
         impl $op<f64> for Interval {
-            type Output = Self;
-            #[inline]
-            fn $f(self, o: f64) -> Self { $op::$f(self, Self::point(o)) }
-        }
-        impl $op<Interval> for f64 {
-            type Output = Interval;
-            #[inline]
-            fn $f(self, o: Interval) -> Interval { $op::$f(Interval::point(self), o) }
-        }
-        impl $opa for Interval {
-            #[inline]
-            fn $fa(&mut self, o: Self) { *self = $op::$f(*self, o); }
-        }
-        impl $opa<f64> for Interval {
-            #[inline]
-            fn $fa(&mut self, o: f64) { *self = $op::$f(*self, Self::point(o)); }
+            #[inline(always)]
+            fn $f(&mut self, o: f64) { *self = self.$by(o); }
         }
     )*};
 }
-mixed!(Add add AddAssign add_assign, Sub sub SubAssign sub_assign, Mul mul MulAssign mul_assign, Div div DivAssign div_assign);
+assign!(AddAssign add_assign add, SubAssign sub_assign sub, MulAssign mul_assign mul, DivAssign div_assign div);
 
 impl core::iter::Sum for Interval {
     fn sum<I: Iterator<Item = Self>>(iter: I) -> Self {
@@ -126,16 +227,49 @@ impl core::iter::Sum for Interval {
     }
 }
 
+impl core::iter::Product for Interval {
+    fn product<I: Iterator<Item = Self>>(iter: I) -> Self {
+        iter.fold(Self::ONE, |a, b| a * b)
+    }
+}
+
+/// (mig, mag): the least and the greatest absolute value.
+#[inline(always)]
+pub(crate) fn magnitudes(a: F64x2) -> F64x2 {
+    let minus = a.neg();
+    let least = minus.max(minus.swap()).max(F64x2::splat(0.0));
+    least.first_and_second(a.max(a.swap()))
+}
+
 impl Interval {
-    /// `1/x`.
+    /// `1/x`, with the conventions of division.
     #[inline]
     pub fn recip(self) -> Self {
         Self::ONE / self
     }
 
     /// `x²`; never below zero.
-    #[inline]
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// let s = Interval::new(-1.0, 3.0).sqr();
+    /// assert!(s.lo() == 0.0 && s.contains(9.0) && s.hi() < 9.000_000_1);
+    /// ```
+    #[inline(always)]
     pub fn sqr(self) -> Self {
+        let m = magnitudes(self.0);
+        let x = m.times(m);
+        let e = increment(x);
+        if finite(e) {
+            Self(x.neg_first().plus(e).min(F64x2::new(0.0, f64::INFINITY)))
+        } else {
+            self.sqr_slow()
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn sqr_slow(self) -> Self {
         if self.is_empty() {
             return self;
         }
@@ -145,63 +279,83 @@ impl Interval {
     }
 
     /// `√x` over the part of the interval that is not negative; empty when there is none.
-    #[inline]
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// assert!(Interval::new(2.0, 2.0).sqrt().contains(std::f64::consts::SQRT_2));
+    /// assert_eq!(Interval::new(-2.0, 0.0).sqrt().lo(), 0.0);
+    /// assert!(Interval::new(-2.0, -1.0).sqrt().is_empty());
+    /// ```
+    #[inline(always)]
     pub fn sqrt(self) -> Self {
-        if self.is_empty() || self.hi() < 0.0 {
+        let zero = F64x2::splat(0.0);
+        let x = self.0.neg_first();
+        if x.second() < 0.0 {
             return Self::EMPTY;
         }
-        let lo = if self.lo() > 0.0 { down(self.lo().sqrt()) } else { 0.0 };
-        let hi = if self.hi() == 0.0 { 0.0 } else { up(self.hi().sqrt()) };
-        Self::raw(if lo > 0.0 { lo } else { 0.0 }, hi)
+        let s = zero.max(x).sqrt();
+        let e = s.times(F64x2::splat(HALF_ULP)).plus(F64x2::splat(TINY));
+        // The root of +∞ is +∞, and nothing is to be added.
+        let grown = s.neg_first().plus(e).min(F64x2::new(0.0, f64::INFINITY));
+        if s.first() < f64::INFINITY { Self(grown) } else { Self::EMPTY }
     }
 
     /// `|x|`.
     #[inline]
     pub fn abs(self) -> Self {
-        if self.is_empty() { self } else { Self::raw(self.mig(), self.mag()) }
+        if self.is_empty() { self } else { Self(magnitudes(self.0).neg_first()) }
     }
 
     /// `min(x, y)`, element by element.
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// assert_eq!(Interval::new(0.0, 5.0).min(Interval::new(1.0, 2.0)), Interval::new(0.0, 2.0));
+    /// ```
     #[inline]
     pub fn min(self, o: Self) -> Self {
         if self.is_empty() || o.is_empty() {
             return Self::EMPTY;
         }
-        Self::raw(
-            if self.lo() < o.lo() { self.lo() } else { o.lo() },
-            if self.hi() < o.hi() { self.hi() } else { o.hi() },
-        )
+        Self(self.0.max(o.0).first_and_second(self.0.min(o.0)))
     }
 
     /// `max(x, y)`, element by element.
     #[inline]
     pub fn max(self, o: Self) -> Self {
-        -((-self).min(-o))
+        if self.is_empty() || o.is_empty() {
+            return Self::EMPTY;
+        }
+        Self(self.0.min(o.0).first_and_second(self.0.max(o.0)))
     }
 
-    /// `xⁿ`.
-    pub fn powi(self, n: i32) -> Self {
-        if self.is_empty() {
-            return self;
+    /// `x·y + z`; unlike `x * y + z`, narrow when product and summand nearly cancel.
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// let x = Interval::point(1.0 + f64::EPSILON);
+    /// let y = x.mul_add(x, Interval::point(-1.0 - 2.0 * f64::EPSILON));
+    /// assert!(y.contains(f64::EPSILON * f64::EPSILON) && y.lo() > 0.0); // the product's last bit
+    /// ```
+    pub fn mul_add(self, y: Self, z: Self) -> Self {
+        if self.is_empty() || y.is_empty() || z.is_empty() {
+            return Self::EMPTY;
         }
-        if n < 0 {
-            return self.powi_unsigned(n.unsigned_abs()).recip();
+        let simple = self * y + z;
+        let large = 1.0e299;
+        if !(self.mag() < large && y.mag() < large && self.mag() * y.mag() < large && z.mag() < large) {
+            return simple;
         }
-        self.powi_unsigned(n.unsigned_abs())
-    }
-
-    fn powi_unsigned(self, n: u32) -> Self {
-        match n {
-            0 => Self::ONE,
-            1 => self,
-            _ if n.is_multiple_of(2) => self.powi_unsigned(n / 2).sqr(),
-            _ => {
-                let point = |x: f64| Self::raw(x, x) * Self::raw(x, x).powi_unsigned(n - 1);
-                if self.lo() == f64::NEG_INFINITY || self.hi() == f64::INFINITY {
-                    return self * self.powi_unsigned(n - 1);
-                }
-                point(self.lo()).hull(point(self.hi()))
-            }
+        let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (a, b) in [(self.lo(), y.lo()), (self.lo(), y.hi()), (self.hi(), y.lo()), (self.hi(), y.hi())] {
+            let (p, q) = two_product(a, b);
+            let (s, e) = two_sum(p, z.lo());
+            let low = down(s + (e + q));
+            let (s, e) = two_sum(p, z.hi());
+            let high = up(s + (e + q));
+            lo = if low < lo { low } else { lo };
+            hi = if high > hi { high } else { hi };
         }
+        Self::raw(lo, hi)
     }
 }

@@ -51,13 +51,13 @@ impl IntervalMat3 {
     /// `M v`.
     #[inline]
     pub fn mul_vec(self, v: IntervalVec3) -> IntervalVec3 {
-        IntervalVec3::new(self.rows[0].dot(v), self.rows[1].dot(v), self.rows[2].dot(v))
+        IntervalVec3::rows_times(&self.rows, v)
     }
 
     /// `M p`.
     #[inline]
     pub fn mul_point(self, p: DVec3) -> IntervalVec3 {
-        IntervalVec3::new(self.rows[0].dot_point(p), self.rows[1].dot_point(p), self.rows[2].dot_point(p))
+        IntervalVec3::rows_times_point(&self.rows, p)
     }
 
     /// `M N`.
@@ -86,20 +86,9 @@ impl IntervalMat3 {
 
     /// The rotation of the unit quaternion `q/|q|`; all matrices when `q` is zero or not finite.
     pub fn from_quat_normalized(q: DQuat) -> Self {
-        // Scaling by a power of two changes nothing in q/|q|; it is exact unless parts underflow,
-        // so only quaternions that need it are scaled.
-        let largest = q.x.abs().max(q.y.abs()).max(q.z.abs()).max(q.w.abs());
-        let scale = if largest > 1e100 {
-            f64::from_bits((1023 - 600) << 52)
-        } else if largest < 1e-100 {
-            f64::from_bits((1023 + 600) << 52)
-        } else {
-            1.0
-        };
-        let part = |a: f64| {
-            let p = Interval::point(a) * scale;
-            if scale == 1.0 { Interval::point(a) } else { p }
-        };
+        // Scaling by a power of two changes nothing in q/|q|, and keeps squares far from underflow.
+        let k = -exponent(q.x.abs().max(q.y.abs()).max(q.z.abs()).max(q.w.abs()));
+        let part = |a: f64| scaled(Interval::point(a), k);
         let (x, y, z, w) = (part(q.x), part(q.y), part(q.z), part(q.w));
         let (xx, yy, zz, ww) = (x.sqr(), y.sqr(), z.sqr(), w.sqr());
         let n = xx + yy + zz + ww;
@@ -125,18 +114,12 @@ impl IntervalMat3 {
         if omega == DVec3::ZERO {
             return Self::IDENTITY;
         }
-        let largest = omega.abs().max_element();
-        // Work with 2^k ω so that squares neither overflow nor vanish.
-        let (scale, back) = if largest > 1e100 {
-            (f64::from_bits((1023 - 600) << 52), f64::from_bits((1023 + 600) << 52))
-        } else if largest < 1e-100 {
-            (f64::from_bits((1023 + 600) << 52), f64::from_bits((1023 - 600) << 52))
-        } else {
-            (1.0, 1.0)
-        };
-        let w = if scale == 1.0 { IntervalVec3::point(omega) } else { IntervalVec3::point(omega) * scale };
+        // With 2^k ω squares neither overflow nor vanish.
+        let k = -exponent(omega.abs().max_element());
+        let part = |a: f64| scaled(Interval::point(a), k);
+        let w = IntervalVec3::new(part(omega.x), part(omega.y), part(omega.z));
         let length = w.norm();
-        let angle = length * t * if back == 1.0 { Interval::ONE } else { Interval::point(back) };
+        let angle = length * scaled(t, -k);
         let inverse = length.recip();
         let n = w * inverse;
         let (sin, cos) = angle.sin_cos();
@@ -159,6 +142,31 @@ impl IntervalMat3 {
             IntervalVec3::new(r.x.intersection(unit), r.y.intersection(unit), r.z.intersection(unit))
         }))
     }
+}
+
+/// The k with `2^k ≤ x < 2^(k+1)` where that is far from 0 (else 0: nothing to scale).
+fn exponent(x: f64) -> i32 {
+    let k = (x.to_bits() >> 52 & 2047) as i32 - 1023;
+    if k.abs() < 100 { 0 } else { k }
+}
+
+/// `x·2^k`, exactly unless that underflows.
+fn scaled(x: Interval, k: i32) -> Interval {
+    if k == 0 || x.is_empty() {
+        return x;
+    }
+    let power = |p: i32| f64::from_bits(((1023 + p) as u64) << 52);
+    let upper = |end: f64| {
+        let y = end * power(k / 2) * power(k - k / 2);
+        if end != 0.0 && y.abs() < 1e-290 {
+            1e-290
+        } else if y == f64::NEG_INFINITY {
+            -f64::MAX
+        } else {
+            y
+        }
+    };
+    Interval::raw(-upper(-x.lo()), upper(x.hi()))
 }
 
 impl Mul<IntervalVec3> for IntervalMat3 {

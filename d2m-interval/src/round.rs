@@ -1,19 +1,93 @@
-//! The one rounding formula.
+//! The one rounding formula. Proofs are in `docs/theory/interval.md`.
+//!
+//! For a double `x` that is the correctly rounded value of a real number `r`,
+//! `up(x) = max(x, −MAX) + (|max(x, −MAX)|·2⁻⁵³(1 + 2⁻⁵²) + 2⁻⁵⁰¹) ≥ r`, evaluated as written in doubles.
+//! A lower end point is kept negated, so that both ends round upwards, by the same instructions.
+//! Vector paths drop the `max` and check instead that increment and operands are finite; if they are not, they
+//! fall back to [`up`] on scalars, which also knows that 0·∞ is 0.
+use crate::simd::F64x2;
 
-/// Half an ulp, relative, with one part in 2⁵² to spare.
+/// `2⁻⁵³(1 + 2⁻⁵²)`: half an ulp, and a little.
 pub(crate) const HALF_ULP: f64 = f64::from_bits(0x3CA0_0000_0000_0001);
-/// 2⁻⁵⁰⁰: absorbs every underflow.
-pub(crate) const TINY: f64 = f64::from_bits((1023 - 500) << 52);
+/// `2⁻⁵⁰¹`: absorbs every underflow, and keeps products of such ends out of the subnormal range.
+/// (Half of the 2⁻⁵⁰⁰ that results may be too wide by: the other half is for the last place.)
+pub(crate) const TINY: f64 = f64::from_bits((1023 - 501) << 52);
+/// `3·2⁻⁵³(1 + 2⁻⁴⁰)`: a difference of two products (`cross`).
+pub(crate) const TWO_PRODUCTS: f64 = f64::from_bits(0x3CB8_0000_0000_1800);
+/// `4·2⁻⁵³(1 + 2⁻⁴⁰)`: a sum of three products (`dot`).
+pub(crate) const THREE_PRODUCTS: f64 = f64::from_bits(0x3CC0_0000_0000_1000);
 
-/// A number not below any real number whose correctly rounded value is `x`.
+/// A number not below any real number whose correctly rounded value is `x`; NaN gives NaN.
 #[inline(always)]
 pub(crate) fn up(x: f64) -> f64 {
-    let clamped = if -f64::MAX > x { -f64::MAX } else { x };
-    clamped + (clamped.abs() * HALF_ULP + TINY)
+    let x = if -f64::MAX > x { -f64::MAX } else { x };
+    x + (x.abs() * HALF_ULP + TINY)
 }
 
 /// The mirror image of [`up`].
 #[inline(always)]
 pub(crate) fn down(x: f64) -> f64 {
     -up(-x)
+}
+
+/// What [`up`] adds to both numbers.
+#[inline(always)]
+pub(crate) fn increment(x: F64x2) -> F64x2 {
+    x.abs().times(F64x2::splat(HALF_ULP)).plus(F64x2::splat(TINY))
+}
+
+/// Whether no number is NaN or +∞ (increments are never negative).
+#[inline(always)]
+pub(crate) fn finite(increment: F64x2) -> bool {
+    increment.lt(F64x2::splat(f64::INFINITY)).sign_bits() == 3
+}
+
+/// [`finite`], and no operand of a product has an infinite end: `largest` is the maximum of the operands.
+/// (The maximum of four products may hide the NaN that 0·∞ gives; it cannot hide it where an operand is empty,
+/// because then every product is infinite or NaN.)
+#[inline(always)]
+pub(crate) fn finite_with(largest: F64x2, increment: F64x2) -> bool {
+    // `max` returns its second operand when one is NaN.
+    finite(largest.max(increment))
+}
+
+/// `a + b = s + e` exactly (Knuth's two-sum), barring overflow.
+#[inline(always)]
+pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let s = a + b;
+    let c = s - a;
+    (s, (a - (s - c)) + (b - c))
+}
+
+/// `a + b = s + e` exactly when `|a| ≥ |b|` or `a = 0` (Dekker's fast two-sum).
+#[inline(always)]
+pub(crate) fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
+    let s = a + b;
+    (s, b - (s - a))
+}
+
+/// `a·b = p + e` exactly (Veltkamp, Dekker) for `|a|, |b| ≤ 2⁹⁹⁵`, `|a·b| ≤ 2¹⁰²¹`, and, `e` being a
+/// multiple of the product of the last places, when no part of it underflows (`|a·b| ≥ 2⁻⁹⁶⁰` suffices).
+#[inline(always)]
+pub(crate) fn two_product(a: f64, b: f64) -> (f64, f64) {
+    let (a1, a0) = halves(a);
+    let (b1, b0) = halves(b);
+    let p = a * b;
+    (p, ((a1 * b1 - p) + a1 * b0 + a0 * b1) + a0 * b0)
+}
+
+#[inline(always)]
+fn halves(a: f64) -> (f64, f64) {
+    let c = 134_217_729.0 * a; // 2²⁷ + 1
+    let high = c - (c - a);
+    (high, a - high)
+}
+
+/// `a − b` rounded upwards as IEEE 754 would: the least double that is not below it.
+pub(crate) fn difference_up(a: f64, b: f64) -> f64 {
+    let (s, e) = two_sum(a, -b);
+    if s.is_infinite() || s.is_nan() {
+        return if s == f64::NEG_INFINITY { -f64::MAX } else { s };
+    }
+    if e > 0.0 { s.next_up() } else { s }
 }

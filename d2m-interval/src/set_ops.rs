@@ -1,10 +1,15 @@
-use crate::{Interval, round::up};
+//! Sets and numbers of an interval: nothing here is rounded, except where stated.
+use crate::{
+    Interval,
+    round::{difference_up, two_sum},
+    simd::F64x2,
+};
 
 impl Interval {
     /// Whether this is the empty set.
     #[inline(always)]
     pub fn is_empty(self) -> bool {
-        self.lo() > self.hi()
+        -self.0.first() > self.0.second()
     }
 
     /// Whether this holds all real numbers.
@@ -13,109 +18,128 @@ impl Interval {
         self.lo() == f64::NEG_INFINITY && self.hi() == f64::INFINITY
     }
 
-    /// Whether the real number `x` lies inside; false for NaN and infinities.
+    /// Whether both end points are finite (also for the empty set).
     #[inline]
+    pub fn is_bounded(self) -> bool {
+        self.0.lt(F64x2::splat(f64::INFINITY)).sign_bits() == 3
+    }
+
+    /// Whether this is one number.
+    #[inline]
+    pub fn is_singleton(self) -> bool {
+        self.lo() == self.hi()
+    }
+
+    /// Whether the real number `x` lies inside; false for NaN and infinities.
+    #[inline(always)]
     pub fn contains(self, x: f64) -> bool {
-        self.lo() <= x && x <= self.hi() && x.is_finite()
+        self.lo() <= x && x <= self.hi() && x.abs() < f64::INFINITY
     }
 
     /// Whether zero lies inside.
     #[inline(always)]
     pub fn contains_zero(self) -> bool {
-        self.lo() <= 0.0 && 0.0 <= self.hi()
-    }
-
-    /// Whether every element of `self` is in `other`.
-    #[inline]
-    pub fn is_subset(self, other: Self) -> bool {
-        self.is_empty() || (other.lo() <= self.lo() && self.hi() <= other.hi())
+        F64x2::splat(0.0).le(self.0).sign_bits() == 3
     }
 
     /// Whether every element is known to be `> 0` (true for the empty set).
     #[inline(always)]
     pub fn certainly_positive(self) -> bool {
-        self.lo() > 0.0
+        self.0.first() < 0.0
     }
 
     /// Whether every element is known to be `< 0` (true for the empty set).
     #[inline(always)]
     pub fn certainly_negative(self) -> bool {
-        self.hi() < 0.0
+        self.0.second() < 0.0
     }
 
     /// The common elements.
-    #[inline]
-    pub fn intersection(self, other: Self) -> Self {
-        let lo = if self.lo() > other.lo() { self.lo() } else { other.lo() };
-        let hi = if self.hi() < other.hi() { self.hi() } else { other.hi() };
-        if lo <= hi { Self::raw(lo, hi) } else { Self::EMPTY }
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// let (x, y) = (Interval::new(0.0, 2.0), Interval::new(1.0, 3.0));
+    /// assert_eq!(x.intersection(y), Interval::new(1.0, 2.0));
+    /// assert!(x.intersection(Interval::new(5.0, 6.0)).is_empty());
+    /// ```
+    #[inline(always)]
+    pub fn intersection(self, o: Self) -> Self {
+        let common = Self(self.0.min(o.0));
+        if common.is_empty() { Self::EMPTY } else { common }
     }
 
     /// The smallest interval that holds both.
-    #[inline]
-    pub fn hull(self, other: Self) -> Self {
-        let lo = if self.lo() < other.lo() { self.lo() } else { other.lo() };
-        let hi = if self.hi() > other.hi() { self.hi() } else { other.hi() };
-        Self::raw(lo, hi)
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// assert_eq!(Interval::point(1.0).hull(Interval::point(3.0)), Interval::new(1.0, 3.0));
+    /// assert_eq!(Interval::EMPTY.hull(Interval::ONE), Interval::ONE);
+    /// ```
+    #[inline(always)]
+    pub fn hull(self, o: Self) -> Self {
+        Self(self.0.max(o.0))
     }
 
-    /// A finite element near the middle; NaN when empty.
-    #[inline]
+    /// The double nearest to the middle: NaN when empty, 0 when entire, ±MAX when unbounded on one side.
     pub fn mid(self) -> f64 {
-        if self.is_empty() {
+        let (lo, hi) = (self.lo(), self.hi());
+        if lo > hi {
             return f64::NAN;
         }
-        if self.is_entire() {
-            return 0.0;
+        if lo == f64::NEG_INFINITY {
+            return if hi == f64::INFINITY { 0.0 } else { -f64::MAX };
         }
-        let lo = if self.lo() < -f64::MAX { -f64::MAX } else { self.lo() };
-        let hi = if self.hi() > f64::MAX { f64::MAX } else { self.hi() };
-        let mid = lo * 0.5 + hi * 0.5;
-        mid.clamp(lo, hi)
+        if hi == f64::INFINITY {
+            return f64::MAX;
+        }
+        let sum = lo + hi;
+        if sum.abs() < f64::INFINITY { 0.5 * sum } else { 0.5 * lo + 0.5 * hi }
     }
 
-    /// `hi − lo`, rounded up; NaN when empty.
+    /// `hi − lo`, rounded up; NaN when empty, +∞ when unbounded.
     #[inline]
     pub fn width(self) -> f64 {
+        if self.is_empty() { f64::NAN } else { difference_up(self.hi(), self.lo()) }
+    }
+
+    /// The least double `r` with `self ⊆ [mid − r, mid + r]`; NaN when empty, +∞ when unbounded.
+    pub fn rad(self) -> f64 {
         if self.is_empty() {
             return f64::NAN;
         }
-        if self.lo() == self.hi() { 0.0 } else { up(self.hi() - self.lo()) }
-    }
-
-    /// A number `r` with `self ⊆ [mid − r, mid + r]`; NaN when empty.
-    #[inline]
-    pub fn rad(self) -> f64 {
         let mid = self.mid();
-        let below = if mid == self.lo() { 0.0 } else { up(mid - self.lo()) };
-        let above = if mid == self.hi() { 0.0 } else { up(self.hi() - mid) };
-        if mid.is_nan() || below > above { below } else { above }
+        let (below, above) = (difference_up(mid, self.lo()), difference_up(self.hi(), mid));
+        if below > above { below } else { above }
     }
 
-    /// The largest absolute value; NaN when empty.
+    /// The greatest absolute value; NaN when empty.
     #[inline]
     pub fn mag(self) -> f64 {
         if self.is_empty() {
             return f64::NAN;
         }
-        let (a, b) = (self.lo().abs(), self.hi().abs());
-        if a > b { a } else { b }
+        let (a, b) = (self.0.first(), self.0.second());
+        (if a > b { a } else { b }).abs()
     }
 
-    /// The smallest absolute value; NaN when empty.
+    /// The least absolute value; NaN when empty.
     #[inline]
     pub fn mig(self) -> f64 {
         if self.is_empty() {
             return f64::NAN;
         }
-        if self.contains_zero() {
-            return 0.0;
-        }
-        let (a, b) = (self.lo().abs(), self.hi().abs());
-        if a < b { a } else { b }
+        let (a, b) = (-self.0.first(), -self.0.second());
+        let least = if a > b { a } else { b };
+        if least > 0.0 { least } else { 0.0 }
     }
 
     /// `([lo, at], [at, hi])`, with `at` moved into the interval when it lies outside (or is NaN).
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// let (a, b) = Interval::new(0.0, 4.0).split(1.0);
+    /// assert_eq!((a.hi(), b), (1.0, Interval::new(1.0, 4.0)));
+    /// ```
     #[inline]
     pub fn split(self, at: f64) -> (Self, Self) {
         if self.is_empty() {
@@ -124,5 +148,74 @@ impl Interval {
         let at = if at.is_nan() { self.mid() } else { at };
         let at = at.clamp(self.lo(), self.hi()).clamp(-f64::MAX, f64::MAX);
         (Self::raw(self.lo(), at), Self::raw(at, self.hi()))
+    }
+
+    /// Both halves, split at [`Self::mid`].
+    #[inline]
+    pub fn bisect(self) -> (Self, Self) {
+        self.split(self.mid())
+    }
+
+    /// The quotients `{n/d : n ∈ self, d ∈ divisor, d ≠ 0}` as two pieces, the lower one first; a piece that is
+    /// not there is empty. For Newton steps with a derivative that holds zero.
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// let (left, right) = Interval::ONE.div_pair(Interval::new(-1.0, 2.0));
+    /// assert!(left.contains(-1.0) && !left.contains(-0.9) && right.contains(0.5) && !right.contains(0.4));
+    /// ```
+    pub fn div_pair(self, divisor: Self) -> (Self, Self) {
+        let splits = divisor.lo() < 0.0 && divisor.hi() > 0.0;
+        if self.is_empty() || !splits || self.contains_zero() {
+            return (self / divisor, Self::EMPTY);
+        }
+        let below = self / Self::raw(divisor.lo(), 0.0);
+        let above = self / Self::raw(0.0, divisor.hi());
+        if self.certainly_positive() { (below, above) } else { (above, below) }
+    }
+
+    /// The set `{x : x·d = n for some d ∈ self, n ∈ numerator}` as two pieces (the "reverse multiplication" of
+    /// IEEE 1788): as [`Self::div_pair`], but everything when zero is in both.
+    pub fn mul_rev_pair(self, numerator: Self) -> (Self, Self) {
+        if self.is_empty() || numerator.is_empty() {
+            return (Self::EMPTY, Self::EMPTY);
+        }
+        if self.contains_zero() && numerator.contains_zero() {
+            return (Self::ENTIRE, Self::EMPTY);
+        }
+        numerator.div_pair(self)
+    }
+
+    /// The narrowest `z` with `o + z ⊇ self`, when this is at least as wide as `o`; else entire.
+    /// Recovers a summand: `(x + y).cancel_minus(y)` encloses `x`.
+    pub fn cancel_minus(self, o: Self) -> Self {
+        if self.is_empty() && o.is_bounded() {
+            return Self::EMPTY;
+        }
+        if self.is_empty() || o.is_empty() || !self.is_bounded() || !o.is_bounded() {
+            return Self::ENTIRE;
+        }
+        // Wider or equal, exactly: compare hi − lo as sums of two doubles.
+        let exact = |x: Self| {
+            let (s, e) = two_sum(0.5 * x.hi(), -0.5 * x.lo());
+            (s, if x.mag() < 1e-300 { 0.0 } else { e })
+        };
+        let (a, b) = (exact(self), exact(o));
+        let narrower = if self.mag() < 1e-290 && o.mag() < 1e-290 {
+            // Halving may lose a bit down there, differences do not.
+            (self.hi() - self.lo()) < (o.hi() - o.lo())
+        } else {
+            a.0 < b.0 || (a.0 == b.0 && a.1 < b.1)
+        };
+        if narrower {
+            return Self::ENTIRE;
+        }
+        let (lo, hi) = (self.lo(), self.hi());
+        Self::raw(-difference_up(o.lo(), lo), difference_up(hi, o.hi()))
+    }
+
+    /// `cancel_minus` with the sign of `o` changed.
+    pub fn cancel_plus(self, o: Self) -> Self {
+        self.cancel_minus(-o)
     }
 }

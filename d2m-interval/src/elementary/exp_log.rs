@@ -1,0 +1,232 @@
+//! Exponentials and logarithms to the bases e, 2 and 10.
+use super::{
+    Ends,
+    constants::{INVERSE_FACTORIAL, INVERSE_ODD, LN_2, LN_2_PARTS, LN_10, LOG2_10, LOG2_E, LOG10_E},
+    double_double::Dd,
+    enclose, increasing,
+};
+use crate::Interval;
+
+/// 1.5·2⁵².
+const MAGIC: f64 = 6_755_399_441_055_744.0;
+
+fn nearest_integer(x: f64) -> f64 {
+    (x + MAGIC) - MAGIC
+}
+
+/// `value · 2^exponent` with 0.5 < value < 2 (or any moderate value).
+#[derive(Clone, Copy)]
+pub(super) struct Scaled {
+    pub(super) value: Dd,
+    pub(super) exponent: i32,
+}
+
+impl Scaled {
+    /// Ends of an enclosure of a positive number, given ends of `value`; correct in the subnormal range and
+    /// beyond the largest double, without rounding arithmetic.
+    pub(super) fn ends(self, (lo, hi): Ends) -> Ends {
+        (scale_down(lo, self.exponent), scale_up(hi, self.exponent))
+    }
+}
+
+/// The greatest double not above `x·2^k`, `x > 0` normal (0 when that is negative).
+fn scale_down(x: f64, k: i32) -> f64 {
+    scale(x, k, false)
+}
+
+/// The least double not below `x·2^k`, `x > 0` normal.
+fn scale_up(x: f64, k: i32) -> f64 {
+    scale(x, k, true)
+}
+
+fn scale(x: f64, k: i32, upwards: bool) -> f64 {
+    if x.is_infinite() || x <= 0.0 {
+        return x;
+    }
+    let bits = x.to_bits();
+    let exponent = (bits >> 52) as i32;
+    let target = exponent.saturating_add(k);
+    if target >= 2047 {
+        return if upwards { f64::INFINITY } else { f64::MAX };
+    }
+    if target >= 1 {
+        return f64::from_bits((bits & ((1 << 52) - 1)) | (target as u64) << 52);
+    }
+    // Subnormal: shift the mantissa, carry the rest upwards.
+    let mantissa = (bits & ((1 << 52) - 1)) | 1 << 52;
+    let shift = (1 - target) as u32;
+    let kept = mantissa.checked_shr(shift).unwrap_or(0);
+    let lost = shift >= 64 || mantissa & ((1 << shift) - 1) != 0;
+    f64::from_bits(kept + u64::from(upwards && lost))
+}
+
+/// `e^x` for a double-double |x| < 800: relative error below 2⁻⁶⁸, plus that of `x`, absolute.
+pub(super) fn exp_scaled(x: Dd) -> Scaled {
+    let k = nearest_integer(x.0 * LOG2_E.0);
+    let [a, b, c] = LN_2_PARTS;
+    // k·a and k·b are exact.
+    let r = Dd::sum(x.0, -k * a).plus(Dd(x.1, 0.0)).plus(Dd::sum(-k * b, -k * c));
+    exp_reduced(r, k as i32)
+}
+
+/// `2^k e^r` for |r| ≤ 0.35.
+fn exp_reduced(r: Dd, k: i32) -> Scaled {
+    Scaled { value: Dd::polynomial(r, &INVERSE_FACTORIAL[..18], 9), exponent: k }
+}
+
+fn exp_at(x: f64) -> Ends {
+    if x == 0.0 {
+        return (1.0, 1.0);
+    }
+    if x > 709.79 {
+        return (f64::MAX, f64::INFINITY);
+    }
+    if x < -745.2 {
+        return (0.0, 5e-324);
+    }
+    let y = exp_scaled(Dd(x, 0.0));
+    y.ends(enclose(y.value))
+}
+
+fn exp2_at(x: f64) -> Ends {
+    if x >= 1024.0 {
+        return (f64::MAX, f64::INFINITY);
+    }
+    if x < -1074.0 {
+        return (0.0, 5e-324);
+    }
+    let k = nearest_integer(x);
+    if x == k {
+        return (scale_down(1.0, k as i32), scale_up(1.0, k as i32));
+    }
+    let y = exp_reduced(Dd::product(x - k, 1.0).times(LN_2), k as i32);
+    y.ends(enclose(y.value))
+}
+
+fn exp10_at(x: f64) -> Ends {
+    if x == 0.0 {
+        return (1.0, 1.0);
+    }
+    if x > 308.3 {
+        return (f64::MAX, f64::INFINITY);
+    }
+    if x < -323.4 {
+        return (0.0, 5e-324);
+    }
+    let k = nearest_integer(x * LOG2_10.0);
+    let [a, b, c] = LN_2_PARTS;
+    let r = Dd(x, 0.0).times(LN_10).plus(Dd(-k * a, 0.0)).plus(Dd::sum(-k * b, -k * c));
+    let y = exp_reduced(r, k as i32);
+    y.ends(enclose(y.value))
+}
+
+/// `ln(n/d) = 2 atanh((n − d)/(n + d))` for `0.7 < n/d < 1.42`, given difference and sum.
+pub(super) fn ln_ratio(difference: Dd, sum: Dd) -> Dd {
+    let s = difference.over(sum);
+    s.scaled(2.0).times(Dd::polynomial(s.sqr(), &INVERSE_ODD[..15], 6))
+}
+
+/// Positive `x` as `m·2^e` with 1 ≤ m < 2; integer arithmetic on the representation, subnormals included.
+pub(super) fn mantissa_exponent(x: f64) -> (f64, i32) {
+    let bits = x.to_bits();
+    // A subnormal is bits·2⁻¹⁰⁷⁴, and `bits as f64` is exact.
+    let (bits, bias) = if bits >> 52 == 0 { ((bits as f64).to_bits(), 2097) } else { (bits, 1023) };
+    let m = f64::from_bits((bits & ((1 << 52) - 1)) | 1023 << 52);
+    (m, (bits >> 52) as i32 - bias)
+}
+
+/// Positive `x` as `m·2^e` with √½ ≤ m < √2 (nearly).
+fn split(x: f64) -> (f64, i32) {
+    let (m, e) = mantissa_exponent(x);
+    if m > core::f64::consts::SQRT_2 { (0.5 * m, e + 1) } else { (m, e) }
+}
+
+/// `ln x` for a positive double-double away from overflow: relative error below 2⁻⁶⁸.
+pub(super) fn ln_dd(x: Dd) -> Dd {
+    let (m, e) = split(x.0);
+    // The power of two that made m out of x, applied to the low part.
+    let low = x.1 / x.0 * m;
+    ln_parts(Dd(m, low), e)
+}
+
+fn ln_parts(m: Dd, e: i32) -> Dd {
+    let ln_m = ln_ratio(Dd::sum(m.0, -1.0).plus(Dd(m.1, 0.0)), Dd::sum(m.0, 1.0).plus(Dd(m.1, 0.0)));
+    if e == 0 { ln_m } else { LN_2.times(Dd(f64::from(e), 0.0)).plus(ln_m) }
+}
+
+/// `ln x` for a positive double, subnormals included.
+pub(super) fn ln_value(x: f64) -> Dd {
+    let (m, e) = split(x);
+    ln_parts(Dd(m, 0.0), e)
+}
+
+fn ln_at(x: f64) -> Ends {
+    if x == 1.0 { (0.0, 0.0) } else { enclose(ln_value(x)) }
+}
+
+fn log2_at(x: f64) -> Ends {
+    let (m, e) = split(x);
+    if m == 1.0 {
+        return (f64::from(e), f64::from(e));
+    }
+    enclose(ln_parts(Dd(m, 0.0), 0).times(LOG2_E).plus(Dd(f64::from(e), 0.0)))
+}
+
+fn log10_at(x: f64) -> Ends {
+    if x == 1.0 { (0.0, 0.0) } else { enclose(ln_value(x).times(LOG10_E)) }
+}
+
+/// A logarithm over the positive part of an interval.
+fn logarithm(x: Interval, at: impl Fn(f64) -> Ends) -> Interval {
+    if x.is_empty() || x.hi() <= 0.0 {
+        return Interval::EMPTY;
+    }
+    let lo = if x.lo() <= 0.0 { f64::NEG_INFINITY } else { at(x.lo()).0 };
+    let hi = if x.hi() == f64::INFINITY { f64::INFINITY } else { at(x.hi()).1 };
+    Interval::from_ends(lo, hi)
+}
+
+impl Interval {
+    /// `eˣ`.
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// let e = Interval::ONE.exp();
+    /// assert!(e.contains(std::f64::consts::E) && e.width() < 1e-15);
+    /// ```
+    pub fn exp(self) -> Self {
+        increasing(self, exp_at, 0.0, f64::INFINITY)
+    }
+
+    /// `2ˣ`.
+    pub fn exp2(self) -> Self {
+        increasing(self, exp2_at, 0.0, f64::INFINITY)
+    }
+
+    /// `10ˣ`.
+    pub fn exp10(self) -> Self {
+        increasing(self, exp10_at, 0.0, f64::INFINITY)
+    }
+
+    /// `ln x` over the positive part; empty when there is none.
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// assert!(Interval::point(2.0).ln().contains(std::f64::consts::LN_2));
+    /// assert_eq!(Interval::new(-1.0, 1.0).ln(), Interval::new(f64::NEG_INFINITY, 0.0));
+    /// assert!(Interval::new(-1.0, 0.0).ln().is_empty());
+    /// ```
+    pub fn ln(self) -> Self {
+        logarithm(self, ln_at)
+    }
+
+    /// `log₂ x` over the positive part; exact at powers of two.
+    pub fn log2(self) -> Self {
+        logarithm(self, log2_at)
+    }
+
+    /// `log₁₀ x` over the positive part.
+    pub fn log10(self) -> Self {
+        logarithm(self, log10_at)
+    }
+}

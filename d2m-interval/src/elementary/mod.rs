@@ -1,0 +1,53 @@
+//! Elementary functions, with this crate's own kernels: the same bits on every platform.
+//!
+//! `trig` holds the fast sine and cosine (two doubles of a vector at once, proven padding); everything else
+//! evaluates in double-double arithmetic, to about 2⁻⁷⁰, and is then rounded outwards, mostly to the
+//! tightest enclosure. Bounds are derived in `docs/theory/interval.md`.
+mod constants;
+mod double_double;
+mod exp_log;
+mod hyperbolic;
+mod inverse_trig;
+mod power;
+mod reduce;
+mod rounding_functions;
+mod sinc;
+mod trig;
+
+use crate::Interval;
+use double_double::Dd;
+
+/// Enclosure of one number, as (lower, upper) end.
+type Ends = (f64, f64);
+
+/// Doubles around a number that lies within a relative `2⁻⁶²` of `x`.
+#[inline]
+fn enclose(x: Dd) -> Ends {
+    enclose_within(x, 1.0 / 4_611_686_018_427_387_904.0)
+}
+
+/// Doubles around a number that lies within a relative `error` (at most 2⁻⁵⁸) of `x`.
+fn enclose_within(x: Dd, error: f64) -> Ends {
+    let Dd(high, low) = x;
+    if high.is_nan() {
+        return (f64::NEG_INFINITY, f64::INFINITY);
+    }
+    let doubt = high.abs() * error;
+    // Far from underflow, the sign of the low part tells on which side of `high` the number is.
+    let clear = high.abs() > 1e-250;
+    (
+        if clear && low > doubt { high } else { high.next_down() },
+        if clear && low < -doubt { high } else { high.next_up() },
+    )
+}
+
+/// A function that grows, evaluated at both ends; `at` encloses its value at a finite number.
+#[inline]
+fn increasing(x: Interval, at: impl Fn(f64) -> Ends, at_minus_infinity: f64, at_infinity: f64) -> Interval {
+    if x.is_empty() {
+        return x;
+    }
+    let lo = if x.lo() == f64::NEG_INFINITY { at_minus_infinity } else { at(x.lo()).0 };
+    let hi = if x.hi() == f64::INFINITY { at_infinity } else { at(x.hi()).1 };
+    Interval::from_ends(lo, hi)
+}

@@ -1,0 +1,208 @@
+//! Sine, cosine, tangent.
+//!
+//! Both ends of an interval travel through one vector: reduction by n·π/2 (three-part Cody–Waite), two Taylor
+//! polynomials, quadrant by bit masks. Extrema inside come from the quadrant numbers of the two ends.
+use super::{enclose, reduce::Reduced};
+use crate::{Interval, simd::F64x2};
+
+// π/2 in three parts: 33 bits, 33 bits, the rest. n·P1 and n·P2 are exact for |n| < 2²⁰.
+const P1: f64 = f64::from_bits(0x3FF9_21FB_5440_0000);
+const P2: f64 = f64::from_bits(0x3DD0_B461_1A60_0000);
+const P3: f64 = f64::from_bits(0x3BA3_198A_2E03_7073);
+/// 1.5·2⁵²: adding it rounds to the nearest integer, whose low bits are then the low bits of the double.
+const MAGIC: f64 = 6_755_399_441_055_744.0;
+/// Beyond, the slow path reduces with as many digits of π as it takes.
+const FAST_LIMIT: f64 = 524_288.0;
+/// 2⁻⁴⁵: a reduced argument below this share of the argument has lost too many digits.
+const CANCELLED: f64 = f64::from_bits((1023 - 45) << 52);
+/// (15/8)·2⁻⁵³: kernel error (0.73 units of 2⁻⁵³), final rounding (1 unit), and a margin.
+const PAD: f64 = f64::from_bits(0x3CAE_0000_0000_0000);
+/// 2⁻¹⁰⁰⁰, for underflow.
+const PAD_TINY: f64 = f64::from_bits((1023 - 1000) << 52);
+/// 2⁻³⁰: an end this near to an extremum counts as having it inside (the value there is 1 − 2⁻⁶¹).
+const NEAR: f64 = f64::from_bits((1023 - 30) << 52);
+
+const fn inverse_factorial(n: u64) -> f64 {
+    let (mut product, mut i) = (1u64, 2);
+    while i <= n {
+        product *= i;
+        i += 1;
+    }
+    1.0 / product as f64
+}
+
+#[inline(always)]
+fn constant(n: u64) -> F64x2 {
+    F64x2::splat(inverse_factorial(n))
+}
+
+/// (sine, cosine) of `r + r_low`, each as an unevaluated sum, for |r| ≤ π/4 + 2⁻³⁰.
+#[inline(always)]
+fn kernel(r: F64x2, r_low: F64x2) -> ([F64x2; 2], [F64x2; 2]) {
+    let z = r.times(r);
+    let z2 = z.times(z);
+    let z4 = z2.times(z2);
+    // sin r = r − r z (1/3! − z (1/5! − z/7! + z² (…)))
+    let a = constant(5).minus(z.times(constant(7)));
+    let b = constant(9).minus(z.times(constant(11)));
+    let c = constant(13).minus(z.times(constant(15))).plus(z2.times(constant(17)));
+    let p = constant(3).minus(z.times(a.plus(z2.times(b)).plus(z4.times(c))));
+    let half_z = z.times(F64x2::splat(0.5));
+    let one = F64x2::splat(1.0);
+    let c0 = one.minus(half_z);
+    let sin_tail = r_low.times(c0).minus(r.times(z.times(p)));
+    let sin = r.plus(sin_tail);
+    let sin_low = sin_tail.minus(sin.minus(r));
+    // cos r = 1 − z/2 + z² (1/4! − z (1/6! − z/8! + z² (…)))
+    let a = constant(6).minus(z.times(constant(8)));
+    let b = constant(10).minus(z.times(constant(12)));
+    let c = constant(14).minus(z.times(constant(16)));
+    let q = constant(4).minus(z.times(a.plus(z2.times(b)).plus(z4.times(c))));
+    let cos_tail = one.minus(c0).minus(half_z).plus(z2.times(q).minus(r.times(r_low)));
+    let cos = c0.plus(cos_tail);
+    let cos_low = cos_tail.minus(cos.minus(c0));
+    ([sin, sin_low], [cos, cos_low])
+}
+
+/// (−min, max) over two numbers, each known as high + low within the kernel's error.
+#[inline(always)]
+fn outer(high: F64x2, low: F64x2) -> F64x2 {
+    let size = high.abs();
+    let pad = size.times(F64x2::splat(PAD));
+    let pad = pad.plus(F64x2::splat(0.0).lt(size).and(F64x2::splat(PAD_TINY)));
+    // Upper bounds of (−first, second) and (−second, first).
+    let (h, l) = (high.neg_first(), low.neg_first());
+    let straight = h.plus(l.plus(pad));
+    let (h, l) = (high.swap().neg_first(), low.swap().neg_first());
+    let crossed = h.plus(l.plus(pad.swap()));
+    straight.max(crossed).min(F64x2::splat(1.0))
+}
+
+/// Which extrema to add, as (−min, max): 1 where the extremum is inside.
+#[inline(always)]
+fn extrema(min_inside: u32, max_inside: u32) -> F64x2 {
+    const TABLE: [F64x2; 4] =
+        [F64x2::new(-2.0, -2.0), F64x2::new(1.0, -2.0), F64x2::new(-2.0, 1.0), F64x2::new(1.0, 1.0)];
+    TABLE[((min_inside & 1) | (max_inside & 1) << 1) as usize]
+}
+
+/// Bit j is set when a multiple `m π/2` with `m ≡ j (mod 4)` has first ≤ m ≤ last.
+#[inline(always)]
+fn residues(first: i32, last: i32) -> u32 {
+    let count = (last - first + 1).clamp(0, 4);
+    let run = ((1u32 << count) - 1) << (first & 3);
+    run | run >> 4
+}
+
+impl Interval {
+    /// `(sin x, cos x)`: about the cost of one of them.
+    ///
+    /// Within 4 units in the last place of the tightest enclosure, for arguments of any size.
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// let (sin, cos) = Interval::new(1.0, 2.0).sin_cos();
+    /// assert_eq!(sin.hi(), 1.0); // π/2 is inside
+    /// assert!(sin.contains(1.5_f64.sin()) && cos.contains(1.5_f64.cos()));
+    /// ```
+    #[inline]
+    pub fn sin_cos(self) -> (Self, Self) {
+        let x = self.0.neg_first();
+        let turns = x.times(F64x2::splat(core::f64::consts::FRAC_2_PI)).plus(F64x2::splat(MAGIC));
+        let n = turns.minus(F64x2::splat(MAGIC));
+        let w = x.minus(n.times(F64x2::splat(P1)));
+        let t = n.times(F64x2::splat(P2));
+        let r1 = w.minus(t);
+        let b = r1.minus(w);
+        let e = w.minus(r1.minus(b)).minus(t.plus(b));
+        let low = e.minus(n.times(F64x2::splat(P3)));
+        let r = r1.plus(low);
+        let r_low = low.minus(r.minus(r1));
+        let size = x.abs();
+        let in_range = size.lt(F64x2::splat(FAST_LIMIT));
+        let kept = size.times(F64x2::splat(CANCELLED)).le(r.abs());
+        // The empty set is (+∞, −∞) here, and not in range.
+        if in_range.and(kept).sign_bits() != 3 {
+            return self.sin_cos_slow();
+        }
+        let ([s, s_low], [c, c_low]) = kernel(r, r_low);
+        let odd = turns.lowest_bit();
+        let sign = turns.second_bit_as_sign();
+        let sin = odd.select(c, s).xor(sign);
+        let sin_low = odd.select(c_low, s_low).xor(sign);
+        let sign = sign.xor(odd.and(F64x2::splat(-0.0)));
+        let cos = odd.select(s, c).xor(sign);
+        let cos_low = odd.select(s_low, c_low).xor(sign);
+        let quadrant = |turns: f64| turns.to_bits() as i32;
+        let first = quadrant(turns.first()) + i32::from(r.first() > NEAR);
+        let last = quadrant(turns.second()) - i32::from(r.second() < -NEAR);
+        let inside = residues(first, last);
+        (
+            Self(outer(sin, sin_low).max(extrema(inside >> 3, inside >> 1))),
+            Self(outer(cos, cos_low).max(extrema(inside >> 2, inside))),
+        )
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn sin_cos_slow(self) -> (Self, Self) {
+        if self.is_empty() {
+            return (self, self);
+        }
+        let all = Self::SIGNED_UNIT;
+        if !self.is_bounded() || self.hi() - self.lo() >= 6.25 {
+            return (all, all);
+        }
+        let (a, b) = (Reduced::new(self.lo()), Reduced::new(self.hi()));
+        let inside = a.multiples_to(&b, self);
+        let hull = |(u, v): (f64, f64), (s, t): (f64, f64)| {
+            Self::raw(if u < s { u } else { s }, if v > t { v } else { t }).intersection(all)
+        };
+        let (sin, cos) = (hull(a.sin(), b.sin()), hull(a.cos(), b.cos()));
+        let with = |x: Self, min: u32, max: u32| {
+            Self::raw(if min & 1 == 1 { -1.0 } else { x.lo() }, if max & 1 == 1 { 1.0 } else { x.hi() })
+        };
+        (with(sin, inside >> 3, inside >> 1), with(cos, inside >> 2, inside))
+    }
+
+    /// `sin x`.
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// let s = Interval::point(1e22).sin();
+    /// assert!(s.contains(-0.852_200_849_767_188_8) && s.width() < 1e-15);
+    /// ```
+    #[inline]
+    pub fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+
+    /// `cos x`.
+    #[inline]
+    pub fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+
+    /// `tan x`; entire when an odd multiple of π/2 is inside.
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// assert!(Interval::new(-1.0, 1.0).tan().contains(1.0_f64.tan()));
+    /// assert!(Interval::new(1.0, 2.0).tan().is_entire());
+    /// ```
+    pub fn tan(self) -> Self {
+        if self.is_empty() {
+            return self;
+        }
+        if !self.is_bounded() || self.hi() - self.lo() >= 3.15 {
+            return Self::ENTIRE;
+        }
+        let (a, b) = (Reduced::new(self.lo()), Reduced::new(self.hi()));
+        if a.multiples_to(&b, self) & 0b1010 != 0 {
+            return Self::ENTIRE;
+        }
+        let lo = if self.lo() == 0.0 { 0.0 } else { enclose(a.tan()).0 };
+        let hi = if self.hi() == 0.0 { 0.0 } else { enclose(b.tan()).1 };
+        Self::from_ends(lo, hi)
+    }
+}

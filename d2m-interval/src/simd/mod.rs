@@ -1,0 +1,57 @@
+//! Two doubles in one 128-bit vector: the only module with target-specific (and `unsafe`) code.
+//!
+//! Every back end has the same methods and the same bits as [`scalar`], which tests compare them with.
+//! The feature `scalar` forces the scalar twin.
+
+#[cfg(any(
+    test,
+    miri,
+    feature = "scalar",
+    not(any(
+        target_arch = "x86_64",
+        all(target_arch = "aarch64", target_feature = "neon"),
+        all(target_arch = "wasm32", target_feature = "simd128")
+    ))
+))]
+mod scalar;
+
+#[cfg(all(target_arch = "x86_64", not(miri), not(feature = "scalar")))]
+mod sse2;
+#[cfg(all(target_arch = "x86_64", not(miri), not(feature = "scalar")))]
+pub(crate) use sse2::F64x2;
+
+#[cfg(all(target_arch = "aarch64", target_feature = "neon", not(miri), not(feature = "scalar")))]
+mod neon;
+#[cfg(all(target_arch = "aarch64", target_feature = "neon", not(miri), not(feature = "scalar")))]
+pub(crate) use neon::F64x2;
+
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128", not(miri), not(feature = "scalar")))]
+mod wasm;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128", not(miri), not(feature = "scalar")))]
+pub(crate) use wasm::F64x2;
+
+#[cfg(any(
+    miri,
+    feature = "scalar",
+    not(any(
+        target_arch = "x86_64",
+        all(target_arch = "aarch64", target_feature = "neon"),
+        all(target_arch = "wasm32", target_feature = "simd128")
+    ))
+))]
+pub(crate) use scalar::F64x2;
+
+mod quad;
+pub(crate) use quad::F64x4;
+
+#[cfg(not(feature = "std"))]
+mod soft_sqrt;
+
+/// Correctly rounded square root of one number.
+#[inline(always)]
+pub(crate) fn sqrt(x: f64) -> f64 {
+    F64x2::splat(x).sqrt().first()
+}
+
+#[cfg(test)]
+mod tests;

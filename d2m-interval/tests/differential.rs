@@ -1,0 +1,83 @@
+//! Every operation against the exact reference; mutants must be caught by the same families.
+use d2m_interval::Interval;
+
+mod oracle;
+use oracle::families::{Binary, Unary, binary, run_all, run_binary, run_unary, unary};
+
+#[test]
+fn no_loss_and_tight() {
+    let mut bad = Vec::new();
+    run_all(10_000, 1, |outcome| {
+        println!(
+            "{:16} {:7} worst {} of {}  {}",
+            outcome.name, outcome.checked, outcome.worst, outcome.allowed, outcome.example
+        );
+        if !outcome.passed() {
+            bad.push(format!("{outcome:?}"));
+        }
+    });
+    assert!(bad.is_empty(), "{bad:#?}");
+}
+
+fn named_binary(name: &str) -> Binary {
+    binary().into_iter().find(|family| family.name == name).expect("known")
+}
+
+fn named_unary(name: &str) -> Unary {
+    unary().into_iter().find(|family| family.name == name).expect("known")
+}
+
+fn caught(name: &str, mutant: fn(Interval, Interval) -> Interval) {
+    let mut family = named_binary(name);
+    family.operation = mutant;
+    assert!(run_binary(&family, 2000, 7).lost > 0, "a mutant of {name} survives");
+}
+
+fn caught_unary(name: &str, mutant: fn(Interval) -> Interval) {
+    let mut family = named_unary(name);
+    family.operation = mutant;
+    assert!(run_unary(&family, 1000, 7).lost > 0, "a mutant of {name} survives");
+}
+
+#[test]
+fn mutants_without_outward_rounding_die() {
+    caught("add", |x, y| Interval::new(x.lo() + y.lo(), x.hi() + y.hi()));
+    caught("add", |x, y| Interval::new((x + y).lo(), x.hi() + y.hi()));
+    caught("add", |x, y| Interval::new(x.lo() + y.lo(), (x + y).hi()));
+    caught("mul", |x, y| {
+        let p = [x.lo() * y.lo(), x.lo() * y.hi(), x.hi() * y.lo(), x.hi() * y.hi()];
+        Interval::new(
+            p.into_iter().fold(f64::INFINITY, f64::min),
+            p.into_iter().fold(f64::NEG_INFINITY, f64::max),
+        )
+    });
+    caught("div", |x, y| {
+        let p = [x.lo() / y.lo(), x.lo() / y.hi(), x.hi() / y.lo(), x.hi() / y.hi()];
+        Interval::new(
+            p.into_iter().fold(f64::INFINITY, f64::min),
+            p.into_iter().fold(f64::NEG_INFINITY, f64::max),
+        )
+    });
+    caught_unary("sqrt", |x| Interval::new(x.lo().sqrt(), x.sqrt().hi()));
+    caught_unary("exp", |x| Interval::new(x.lo().exp(), x.hi().exp()));
+    // One last place inwards at one end.
+    caught_unary("exp", |x| Interval::new(x.exp().lo().next_up(), x.exp().hi()));
+    caught_unary("atan", |x| Interval::new(x.atan().lo(), x.atan().hi().next_down()));
+}
+
+#[test]
+fn mutants_of_the_quadrant_die() {
+    caught_unary("sin of moderate", |x| {
+        // The extremum inside is forgotten.
+        let (a, b) = (Interval::point(x.lo()).sin(), Interval::point(x.hi()).sin());
+        a.hull(b)
+    });
+    caught_unary("sin of moderate", Interval::cos);
+    caught_unary("cos of moderate", |x| -x.cos());
+    caught_unary("sin of moderate", |x| {
+        // The nearest rounded multiple of π decides.
+        let k = (x.lo() / std::f64::consts::PI).round();
+        let s = (x - k * std::f64::consts::PI).sin();
+        if k as i64 % 2 == 0 { s } else { -s }
+    });
+}
