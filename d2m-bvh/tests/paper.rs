@@ -1,0 +1,146 @@
+//! The reference method on scenes with a known answer.
+
+mod scenes;
+
+use d2m_bvh::paper::{Moving, SphereTree, time_of_contact};
+use d2m_bvh::{Budget, Mode, QueryError, QueryOptions, Solid, TimeOfContact, Window};
+use glam::DVec3;
+use scenes::{Expected, Scene};
+
+fn ask(scene: &Scene, options: &QueryOptions) -> TimeOfContact {
+    let trees = scene.meshes.clone().map(SphereTree::new);
+    time_of_contact(
+        Moving::new(&trees[0], &scene.motions[0]),
+        Moving::new(&trees[1], &scene.motions[1]),
+        scene.window,
+        &options.with_solid(scene.solid),
+    )
+    .expect("good input")
+}
+
+fn default_tolerance(scene: &Scene) -> f64 {
+    let radius = |i: usize| SphereTree::new(scene.meshes[i].clone()).bounding_sphere().radius;
+    1e-10 * radius(0).max(radius(1))
+}
+
+#[test]
+fn every_scene_has_its_answer() {
+    for scene in scenes::all() {
+        let started = std::time::Instant::now();
+        let answer = ask(&scene, &QueryOptions::DEFAULT);
+        println!("{}: {:.1} ms", scene.name, started.elapsed().as_secs_f64() * 1e3);
+        scene.check(&answer, default_tolerance(&scene));
+    }
+}
+
+#[test]
+fn a_wider_tolerance_keeps_its_band() {
+    for scene in scenes::all() {
+        if matches!(scene.expected, Expected::At { .. }) && !scene.name.contains("small") {
+            let answer = ask(&scene, &QueryOptions::DEFAULT.with_tolerance(1e-7));
+            scene.check(&answer, 1e-7);
+        }
+    }
+}
+
+/// Capoeira is early, never late, and its "separated" is true; its contact may be none.
+#[test]
+fn capoeira_is_early_and_never_late() {
+    for scene in scenes::all() {
+        match (scene.expected, ask(&scene, &QueryOptions::DEFAULT.with_mode(Mode::Capoeira))) {
+            (Expected::At { time, slack, .. }, TimeOfContact::Contact(c)) => {
+                assert!(c.time_lo <= time + slack, "{}: late", scene.name);
+            }
+            (Expected::Start(state), TimeOfContact::Contact(c)) => {
+                assert_eq!(c.start, state, "{}", scene.name)
+            }
+            (Expected::Separated, _) => {}
+            (expected, answer) => panic!("{}: {expected:?} {answer:?}", scene.name),
+        }
+    }
+}
+
+/// Every budget is kept, and what an undecided answer calls clear is clear.
+#[test]
+fn budgets_are_kept_and_honest() {
+    for scene in scenes::all() {
+        for tests in [0, 1, 2, 5, 20, 100, 1000] {
+            let options = QueryOptions::DEFAULT.with_budget(Budget::UNLIMITED.with_node_tests(tests));
+            match ask(&scene, &options) {
+                TimeOfContact::Undecided { clear_until } => match scene.expected {
+                    Expected::At { time, slack, .. } => {
+                        assert!(clear_until <= time + slack, "{} {tests}: {clear_until}", scene.name);
+                        assert!(clear_until >= scene.window.start());
+                    }
+                    Expected::Start(_) => assert_eq!(clear_until, scene.window.start()),
+                    Expected::Separated => assert!(scene.window.contains(clear_until)),
+                },
+                answer => scene.check(&answer, default_tolerance(&scene)),
+            }
+        }
+        let clock = Budget::UNLIMITED.with_wall_clock(core::time::Duration::ZERO);
+        let answer = ask(&scene, &QueryOptions::DEFAULT.with_budget(clock));
+        assert_eq!(answer, TimeOfContact::Undecided { clear_until: scene.window.start() });
+    }
+}
+
+#[test]
+fn bad_input_is_an_error_and_nothing_else() {
+    let scene = &scenes::all()[0];
+    let trees = scene.meshes.clone().map(SphereTree::new);
+    let moving = |i: usize| Moving::new(&trees[i], &scene.motions[i]);
+    let ask = |options: &QueryOptions| time_of_contact(moving(0), moving(1), scene.window, options);
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let refused = ask(&QueryOptions::DEFAULT.with_tolerance(bad));
+        assert!(matches!(refused, Err(QueryError::BadTolerance { .. })), "{bad}");
+    }
+    for bad in [-1.0, f64::NAN, f64::INFINITY] {
+        let refused = ask(&QueryOptions::DEFAULT.with_min_separation(bad));
+        assert!(matches!(refused, Err(QueryError::BadMinSeparation { .. })), "{bad}");
+    }
+    let unsupported = ask(&QueryOptions::DEFAULT.with_min_separation(0.5));
+    assert_eq!(unsupported, Ok(TimeOfContact::Undecided { clear_until: scene.window.start() }));
+    let sheet = SphereTree::new(scenes::soup(&[[DVec3::ZERO, DVec3::X, DVec3::Y]]));
+    let open = Moving::new(&sheet, &scene.motions[0]);
+    let refused = time_of_contact(moving(0), open, Window::UNIT, &QueryOptions::DEFAULT);
+    assert_eq!(refused, Err(QueryError::NotWatertight { body: 1 }));
+    let surface = QueryOptions::DEFAULT.with_solid(Solid::Surface);
+    assert!(time_of_contact(moving(0), open, Window::UNIT, &surface).is_ok());
+    let runaway = scene.motions[0].with_linear_velocity(DVec3::splat(1e300));
+    let refused =
+        time_of_contact(moving(0), Moving::new(&trees[1], &runaway), Window::UNIT, &QueryOptions::DEFAULT);
+    assert_eq!(refused, Err(QueryError::BadMotion { body: 1 }));
+}
+
+/// The same motions told only through the open trait give the same answers.
+#[test]
+fn any_rigid_motion_through_its_enclosures() {
+    use d2m_interval::Interval;
+    use d2m_motion::{IntervalPose, IntervalTwist, LinearMotion, Pose, RigidMotion, Twist};
+    struct Opaque(LinearMotion);
+    impl RigidMotion for Opaque {
+        fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+            self.0.pose_and_twist(t)
+        }
+        fn enclose_pose(&self, t: Interval) -> IntervalPose {
+            self.0.enclose_pose(t)
+        }
+        fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+            self.0.enclose_twist(t)
+        }
+        fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+            self.0.enclose_twist_rate(t)
+        }
+    }
+    for scene in scenes::all() {
+        let trees = scene.meshes.clone().map(SphereTree::new);
+        let motions = scene.motions.map(Opaque);
+        let answer = time_of_contact(
+            Moving::new(&trees[0], &motions[0]),
+            Moving::new(&trees[1], &motions[1]),
+            scene.window,
+            &QueryOptions::DEFAULT.with_solid(scene.solid),
+        );
+        scene.check(&answer.unwrap(), default_tolerance(&scene));
+    }
+}
