@@ -1,0 +1,170 @@
+use crate::Body;
+use crate::broad_phase::{SweptBox, candidates};
+use d2m_bvh::{Contact, QueryError, QueryOptions, TimeOfContact, Window, time_of_contact};
+
+/// Names a body of one [`World`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct BodyId(usize);
+
+impl BodyId {
+    /// Bodies are numbered in the order in which they were added, from 0.
+    pub const fn index(self) -> usize {
+        self.0
+    }
+}
+
+/// The first contact in a world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FirstContact {
+    /// Certified: no two bodies meet anywhere in the window.
+    Separated,
+    /// Certified: no two bodies meet before `contact.time_lo`, and these two do by `contact.time_hi`.
+    Contact {
+        /// The first body: the one added earlier.
+        a: BodyId,
+        /// The second body.
+        b: BodyId,
+        /// Their contact.
+        contact: Contact,
+    },
+    /// A pair's budget ran out. Certified: no contact of any pair in [start of the window, `clear_until`).
+    Undecided {
+        /// End of the part of the window that is proven free.
+        clear_until: f64,
+    },
+}
+
+/// What stopped a world query: bad input of one pair.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("bodies {} and {}: {error}", a.index(), b.index())]
+pub struct WorldError {
+    /// The first body of the pair.
+    pub a: BodyId,
+    /// The second body of the pair.
+    pub b: BodyId,
+    /// What is wrong with it.
+    pub error: QueryError,
+}
+
+/// Many moving bodies: a broad phase over the boxes that they sweep, and a pair query for what is left.
+///
+/// ```
+/// use d2m::glam::DVec3;
+/// use d2m::{Body, FirstContact, LinearMotion, MeshTree, QueryOptions, Window, World};
+/// use std::sync::Arc;
+///
+/// let cube = Arc::new(MeshTree::new(d2m::shapes::mesh("box")?));
+/// let mut world = World::new(QueryOptions::default());
+/// let wall = world.add(Body::new(Arc::clone(&cube), LinearMotion::REST));
+/// let start = LinearMotion::REST.with_position(DVec3::X * 9.0);
+/// let slow = world.add(Body::new(Arc::clone(&cube), start.with_linear_velocity(DVec3::X * -8.0)));
+/// let away = world.add(Body::new(cube, start.with_position(DVec3::Y * 50.0)));
+///
+/// let FirstContact::Contact { a, b, contact } = world.first_contact(Window::UNIT)? else { panic!() };
+/// assert_eq!((a, b), (wall, slow));
+/// assert!(contact.time_lo < contact.time_hi + 1e-12 && contact.closing_speed > 7.9);
+/// assert!(!world.candidates(Window::UNIT).contains(&(wall, away)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct World {
+    bodies: Vec<Body>,
+    options: QueryOptions,
+}
+
+impl World {
+    /// An empty world; `options` hold for every pair.
+    pub const fn new(options: QueryOptions) -> Self {
+        Self { bodies: Vec::new(), options }
+    }
+
+    /// Adds a body.
+    pub fn add(&mut self, body: Body) -> BodyId {
+        self.bodies.push(body);
+        BodyId(self.bodies.len() - 1)
+    }
+
+    /// The body of that name.
+    ///
+    /// # Panics
+    /// If the name belongs to another world that holds more bodies.
+    pub fn body(&self, id: BodyId) -> &Body {
+        &self.bodies[id.0]
+    }
+
+    /// Replaces a body, with another motion for the next window for instance.
+    ///
+    /// # Panics
+    /// If the name belongs to another world that holds more bodies.
+    pub fn set_body(&mut self, id: BodyId, body: Body) {
+        self.bodies[id.0] = body;
+    }
+
+    /// How many bodies there are.
+    pub fn len(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// Is the world empty?
+    pub fn is_empty(&self) -> bool {
+        self.bodies.is_empty()
+    }
+
+    /// The pairs that the broad phase cannot exclude, smaller id first, ascending. Every pair that comes within
+    /// `min_separation` during the window is among them.
+    pub fn candidates(&self, window: Window) -> Vec<(BodyId, BodyId)> {
+        let margin = self.options.min_separation;
+        let boxes: Vec<_> = self.bodies.iter().map(|body| SweptBox::enclose(body, window, margin)).collect();
+        candidates(&boxes).into_iter().map(|(a, b)| (BodyId(a), BodyId(b))).collect()
+    }
+
+    /// The first contact of each candidate pair over the whole window; separated pairs are left out.
+    ///
+    /// # Errors
+    /// Bad input of a pair, with its names.
+    pub fn contacts(&self, window: Window) -> Result<Vec<(BodyId, BodyId, TimeOfContact)>, WorldError> {
+        let mut found = Vec::new();
+        for (a, b) in self.candidates(window) {
+            let answer = self.pair(a, b, window)?;
+            if !answer.is_separated() {
+                found.push((a, b, answer));
+            }
+        }
+        Ok(found)
+    }
+
+    /// The first contact of any two bodies. Windows of later pairs end at the best time so far, so a crowded world
+    /// costs little more than its first contact. Of pairs that meet at the same `time_lo` the smallest ids win.
+    ///
+    /// # Errors
+    /// Bad input of a pair, with its names.
+    pub fn first_contact(&self, window: Window) -> Result<FirstContact, WorldError> {
+        let mut best: Option<(BodyId, BodyId, Contact)> = None;
+        let mut clear_until = f64::INFINITY;
+        for (a, b) in self.candidates(window) {
+            let end = best.map_or(window.end(), |(.., contact)| contact.time_hi.min(window.end()));
+            let shortened = Window::try_new(window.start(), end).unwrap_or(window);
+            match self.pair(a, b, shortened)? {
+                TimeOfContact::Separated => {}
+                TimeOfContact::Undecided { clear_until: until } => clear_until = clear_until.min(until),
+                TimeOfContact::Contact(contact) => {
+                    if best.is_none_or(|(.., old)| contact.time_lo < old.time_lo) {
+                        best = Some((a, b, contact));
+                    }
+                }
+            }
+        }
+        Ok(match best {
+            Some((a, b, contact)) if contact.time_lo <= clear_until => {
+                FirstContact::Contact { a, b, contact }
+            }
+            _ if clear_until < f64::INFINITY => FirstContact::Undecided { clear_until },
+            _ => FirstContact::Separated,
+        })
+    }
+
+    fn pair(&self, a: BodyId, b: BodyId, window: Window) -> Result<TimeOfContact, WorldError> {
+        time_of_contact(self.body(a).moving(), self.body(b).moving(), window, &self.options)
+            .map_err(|error| WorldError { a, b, error })
+    }
+}
