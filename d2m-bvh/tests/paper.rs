@@ -52,7 +52,7 @@ fn capoeira_is_early_and_never_late() {
                 assert!(c.time_lo <= time + slack, "{}: late", scene.name);
             }
             (Expected::Start(state), TimeOfContact::Contact(c)) => {
-                assert_eq!(c.start, state, "{}", scene.name)
+                assert_eq!(c.start, state, "{}", scene.name);
             }
             (Expected::Separated, _) => {}
             (expected, answer) => panic!("{}: {expected:?} {answer:?}", scene.name),
