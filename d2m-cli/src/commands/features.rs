@@ -144,7 +144,8 @@ struct Answer<'a> {
 pub(crate) fn run(args: &FeaturesArgs) -> Result<(), FeaturesError> {
     let options = options(args)?;
     let name = args.cases.display().to_string();
-    let file = File::open(&args.cases).map_err(|source| FeaturesError::File { path: name.clone(), source })?;
+    let file =
+        File::open(&args.cases).map_err(|source| FeaturesError::File { path: name.clone(), source })?;
     let mut cases = Vec::new();
     for (index, line) in BufReader::new(file).lines().enumerate() {
         let fail = |reason: String| FeaturesError::Line { path: name.clone(), line: index + 1, reason };
@@ -249,7 +250,8 @@ impl Question {
 
     /// The answer and the microseconds that the query alone took.
     fn answer(&self, options: &ContactOptions) -> (FirstContact, f64) {
-        let pair = |moving: &Moving| PairMotion::new(&moving.motion_a, &moving.motion_b, moving.t0, moving.t1);
+        let pair =
+            |moving: &Moving| PairMotion::new(&moving.motion_a, &moving.motion_b, moving.t0, moving.t1);
         match self {
             Self::PointTriangle { a, b, moving } => {
                 let pair = pair(moving);

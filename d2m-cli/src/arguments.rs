@@ -1,0 +1,128 @@
+//! The command line.
+
+use crate::commands::features::FeaturesArgs;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Certified continuous collision detection: when do two moving rigid bodies first touch?
+#[derive(Debug, Parser)]
+#[command(name = "d2m", version, about, propagate_version = true, arg_required_else_help = true)]
+pub(crate) struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// First time of contact of two moving meshes
+    Toc(TocArguments),
+    /// Many trials of one pair of meshes, from a CSV file to a CSV file
+    Batch(BatchArguments),
+    /// First contacts of moving points, triangles, edges and spheres, from JSON lines to JSON lines
+    Features(FeaturesArgs),
+    /// What is in a mesh, or which shapes are built in
+    Info(InfoArguments),
+}
+
+const MESH_HELP: &str = "Mesh file (.obj, .stl, .ply) or built-in shape such as shape:gear?triangles=5000";
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A motion is x=1,2,3;q=w,x,y,z;v=1,2,3;w=1,2,3[;at=1,2,3][;t=0]: position, orientation, velocity, angular velocity
+(radians per unit of time, world axes), the body point that x and v belong to, and the time that x and q belong to.
+What is left out is zero (q: unturned). @FILE reads the JSON form: the same keys, or {\"times\", \"spans\"} for keyframes.
+
+Example:
+  d2m toc shape:gear 'shape:torus-knot?triangles=70000' --motion-a 'x=-2,0,0;v=3,0,0;w=0,0,5' --motion-b 'w=0,1,0'")]
+pub(crate) struct TocArguments {
+    #[arg(value_name = "A", help = MESH_HELP)]
+    pub(crate) a: String,
+    #[arg(value_name = "B", help = MESH_HELP)]
+    pub(crate) b: String,
+    /// Motion of A; at rest if not given
+    #[arg(long, value_name = "M", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
+    pub(crate) motion_a: String,
+    /// Motion of B; at rest if not given
+    #[arg(long, value_name = "M", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
+    pub(crate) motion_b: String,
+    /// First and last time
+    #[arg(long, value_name = "T0,T1", default_value = "0,1", allow_hyphen_values = true)]
+    pub(crate) window: String,
+    #[command(flatten)]
+    pub(crate) query: QueryArguments,
+    /// Answer as one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Also write both meshes, posed at the contact, as an OBJ file
+    #[arg(long, value_name = "FILE")]
+    pub(crate) obj: Option<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Trials: 26 numbers a line, no header: qA(w,x,y,z), xA, vA, wA, qB(w,x,y,z), xB, vB, wB; time runs over [0, 1].
+Results: trial,status,toc,toc_hi,separation,microseconds,normal_x,normal_y,normal_z,point_x,point_y,point_z,feature,
+triangle_a,triangle_b; toc is the certified start of the time bracket (inf: separated); the point lies on A.")]
+pub(crate) struct BatchArguments {
+    #[arg(value_name = "A", help = MESH_HELP)]
+    pub(crate) a: String,
+    #[arg(value_name = "B", help = MESH_HELP)]
+    pub(crate) b: String,
+    /// Trials, CSV
+    #[arg(long, value_name = "T.csv")]
+    pub(crate) trials: PathBuf,
+    /// Results, CSV; - for standard output
+    #[arg(long, value_name = "R.csv")]
+    pub(crate) out: String,
+    /// Trials that are answered at the same time
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: u16,
+    #[command(flatten)]
+    pub(crate) query: QueryArguments,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct QueryArguments {
+    /// Method
+    #[arg(long, value_enum, default_value_t = Method::Accurate)]
+    pub(crate) mode: Method,
+    /// Distance that counts as contact [default: 1e-10 of the scene's length]
+    #[arg(long, value_name = "DELTA", allow_hyphen_values = true)]
+    pub(crate) tolerance: Option<String>,
+    /// Most node tests of a query; when they are used up the answer is "undecided"
+    #[arg(long, value_name = "NODES")]
+    pub(crate) budget: Option<u64>,
+    /// Bodies are full: one inside the other is in contact [default if both meshes are watertight]
+    #[arg(long, conflicts_with = "surface")]
+    pub(crate) solid: bool,
+    /// Only surfaces count [default if a mesh is open]
+    #[arg(long)]
+    pub(crate) surface: bool,
+}
+
+/// How a query is answered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Method {
+    /// The default engine, to the tolerance
+    Accurate,
+    /// The default engine, stopped at leaf boxes: earlier by a bounded amount, faster
+    Capoeira,
+    /// The reference method: the paper's, with its errata repaired
+    Paper,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct InfoArguments {
+    #[arg(value_name = "A", help = MESH_HELP, required_unless_present = "shapes")]
+    pub(crate) mesh: Option<String>,
+    /// List the built-in shapes with their parameters
+    #[arg(long, conflicts_with = "mesh")]
+    pub(crate) shapes: bool,
+    /// Answer as one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Also write the mesh as an OBJ file
+    #[arg(long, value_name = "FILE", requires = "mesh")]
+    pub(crate) obj: Option<String>,
+}

@@ -1,0 +1,123 @@
+//! `d2m info`: what is in a mesh, and which shapes there are.
+
+use crate::arguments::InfoArguments;
+use crate::failure::Failure;
+use crate::load::{Loaded, load};
+use crate::output::{Output, print};
+use d2m::bvh::{EnclosingSphere, Validation};
+use d2m::shapes::SHAPES;
+use serde_json::json;
+use std::fmt::Write;
+
+/// Runs the command.
+pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
+    let Some(source) = &arguments.mesh else {
+        return print(&if arguments.json { shapes_json() } else { shapes_text() });
+    };
+    let export = arguments.obj.as_deref().map(Output::new).transpose()?;
+    let body = load(source)?;
+    let validation = Validation::new(&body.mesh);
+    if let Some(export) = export {
+        let mut text = format!("# {source}\n");
+        for vertex in body.mesh.vertices() {
+            let _ = writeln!(text, "v {} {} {}", vertex.x, vertex.y, vertex.z);
+        }
+        for corners in body.mesh.triangles() {
+            let [a, b, c] = corners.map(|vertex| u64::from(vertex) + 1);
+            let _ = writeln!(text, "f {a} {b} {c}");
+        }
+        export.write(&text)?;
+    }
+    print(&if arguments.json { mesh_json(&body, &validation) } else { mesh_text(&body, &validation) })
+}
+
+fn mesh_text(body: &Loaded, validation: &Validation) -> String {
+    let sphere = EnclosingSphere::of_mesh(&body.mesh);
+    let mut text = format!("{}\n", body.name);
+    let mut line = |label: &str, value: String| {
+        let _ = writeln!(text, "  {label:<12}{value}"); // writing to a string cannot fail
+    };
+    let [low, high] = [validation.bounds_low, validation.bounds_high];
+    line("vertices", body.mesh.vertex_count().to_string());
+    line("triangles", body.mesh.triangle_count().to_string());
+    line(
+        "surface",
+        match (validation.watertight, validation.consistently_oriented) {
+            (true, true) if validation.signed_volume < 0.0 => "watertight, oriented inwards".to_owned(),
+            (true, true) => "watertight, oriented outwards".to_owned(),
+            (true, false) => "watertight, but faces disagree about the outside".to_owned(),
+            (false, _) => "open: usable with --surface only".to_owned(),
+        },
+    );
+    line(
+        "parts",
+        format!("{}, Euler characteristic {}", validation.components, validation.euler_characteristic),
+    );
+    line("area", format!("{:.6}", validation.area));
+    if validation.consistently_oriented {
+        line("volume", format!("{:.6}", validation.signed_volume));
+    }
+    line("box", format!("{low:?} to {high:?}"));
+    line("sphere", format!("centre {:?}, radius {}", sphere.center.to_array(), sphere.radius));
+    for (what, count) in [
+        ("degenerate triangles", validation.degenerate_triangles),
+        ("repeated triangles", validation.duplicate_triangles),
+        ("vertices at the place of another", validation.duplicate_vertices),
+        ("unused vertices", validation.unused_vertices),
+        ("boundary edges", validation.boundary_edges),
+        ("edges with more than two triangles", validation.non_manifold_edges),
+        ("edges whose triangles disagree about the outside", validation.inconsistent_edges),
+    ] {
+        if count > 0 {
+            line("note", format!("{count} {what}"));
+        }
+    }
+    text
+}
+
+fn mesh_json(body: &Loaded, validation: &Validation) -> String {
+    let sphere = EnclosingSphere::of_mesh(&body.mesh);
+    let object = json!({
+        "name": body.name,
+        "vertices": body.mesh.vertex_count(),
+        "triangles": body.mesh.triangle_count(),
+        "enclosing_sphere": { "center": sphere.center.to_array(), "radius": sphere.radius },
+        "validation": validation,
+    });
+    format!("{object}\n")
+}
+
+fn shapes_text() -> String {
+    let mut text = "Built-in shapes: shape:NAME or shape:NAME?parameter=value&parameter=value\n".to_owned();
+    for shape in SHAPES {
+        let _ = writeln!(text, "\n{}: {}", shape.name, shape.description);
+        for parameter in shape.parameters {
+            let _ = writeln!(
+                text,
+                "  {:<10} {} [default {}, {} to {}]",
+                parameter.name, parameter.description, parameter.default, parameter.low, parameter.high
+            );
+        }
+    }
+    text
+}
+
+fn shapes_json() -> String {
+    let shapes: Vec<_> = SHAPES
+        .iter()
+        .map(|shape| {
+            let parameters: Vec<_> = shape
+                .parameters
+                .iter()
+                .map(|p| {
+                    json!({
+                        "name": p.name, "description": p.description, "default": p.default,
+                        "low": p.low, "high": p.high, "integer": p.integer,
+                    })
+                })
+                .collect();
+            json!({ "name": shape.name, "description": shape.description, "parameters": parameters })
+        })
+        .collect();
+    format!("{}\n", json!(shapes))
+}

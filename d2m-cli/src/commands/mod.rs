@@ -1,0 +1,6 @@
+//! One module for each command.
+
+pub(crate) mod batch;
+pub(crate) mod features;
+pub(crate) mod info;
+pub(crate) mod toc;

@@ -1,0 +1,87 @@
+//! One prepared pair of bodies for every method.
+
+use crate::arguments::{Method, QueryArguments};
+use crate::failure::Failure;
+use crate::load::Loaded;
+use d2m::bvh::{Budget, MeshTree, Mode, Moving, QueryOptions, Solid, TimeOfContact, Window, time_of_contact};
+use d2m::motion::LinearMotion;
+use std::time::{Duration, Instant};
+
+/// A mesh with its tree and the name that the user gave it.
+pub(crate) struct Body {
+    pub(crate) name: String,
+    pub(crate) tree: MeshTree,
+}
+
+/// Two bodies and how they are asked.
+pub(crate) struct Pair {
+    pub(crate) a: Body,
+    pub(crate) b: Body,
+    pub(crate) solid: Solid,
+    pub(crate) preparation: Duration,
+    options: QueryOptions,
+}
+
+/// An answer with the time that the query alone took.
+pub(crate) struct Answer {
+    pub(crate) verdict: TimeOfContact,
+    pub(crate) took: Duration,
+}
+
+impl Pair {
+    /// Checks the options and builds the trees.
+    pub(crate) fn new(a: Loaded, b: Loaded, arguments: &QueryArguments) -> Result<Self, Failure> {
+        let mode = match arguments.mode {
+            Method::Accurate => Mode::Accurate,
+            Method::Capoeira => Mode::Capoeira,
+            Method::Paper => {
+                return Err(Failure::at("--mode", "the reference method is not part of this version"));
+            }
+        };
+        let mut options = QueryOptions::default().with_mode(mode);
+        if let Some(text) = &arguments.tolerance {
+            let tolerance: f64 =
+                text.parse().map_err(|_| Failure::at("--tolerance", format!("{text:?} is not a number")))?;
+            if !(tolerance > 0.0 && tolerance.is_finite()) {
+                return Err(Failure::at("--tolerance", format!("{text} is not a positive finite distance")));
+            }
+            options = options.with_tolerance(tolerance);
+        }
+        if let Some(node_tests) = arguments.budget {
+            options = options.with_budget(Budget::UNLIMITED.with_node_tests(node_tests));
+        }
+        let start = Instant::now();
+        let [a, b] = [a, b].map(|Loaded { name, mesh }| Body { name, tree: MeshTree::new(mesh) });
+        let preparation = start.elapsed();
+        let solid = choose_solid(&a, &b, arguments)?;
+        Ok(Self { a, b, solid, preparation, options: options.with_solid(solid) })
+    }
+
+    /// The time of contact in a window.
+    pub(crate) fn ask(&self, a: &LinearMotion, b: &LinearMotion, window: Window) -> Result<Answer, Failure> {
+        let (a, b) = (Moving::new(&self.a.tree, a), Moving::new(&self.b.tree, b));
+        let start = Instant::now();
+        let verdict = time_of_contact(a, b, window, &self.options);
+        let took = start.elapsed();
+        let verdict = verdict.map_err(|error| Failure::Input(error.to_string()))?;
+        Ok(Answer { verdict, took })
+    }
+}
+
+/// Filled if both meshes close, unless the user says otherwise.
+fn choose_solid(a: &Body, b: &Body, arguments: &QueryArguments) -> Result<Solid, Failure> {
+    if arguments.surface {
+        return Ok(Solid::Surface);
+    }
+    let open = [a, b].into_iter().find(|body| !body.tree.is_watertight());
+    match open {
+        None => Ok(Solid::Filled),
+        Some(body) if arguments.solid => {
+            Err(Failure::at(&body.name, "the mesh is not watertight, so it bounds no solid: use --surface"))
+        }
+        Some(body) => {
+            crate::output::note(&format!("d2m: note: {} is not watertight: only surfaces count", body.name));
+            Ok(Solid::Surface)
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! PLY, text or binary, read by `ply-rs-bw`.
+
+use super::{LoadError, fan};
+use d2m::bvh::TriMesh;
+use glam::DVec3;
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{Encoding, Property, PropertyAccess, PropertyAccessResult};
+
+pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, LoadError> {
+    let mut reader = Reader::new(bytes);
+    let parser = Parser::<Element>::new();
+    let header = parser.read_header(&mut reader).map_err(|error| fault(&error))?;
+    let is_text = header.encoding == Encoding::Ascii;
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for (name, definition) in &header.elements {
+        // Nothing would be read for each of them, however many the header states.
+        if definition.properties.is_empty() && !is_text && definition.count > 0 {
+            return Err(LoadError::new(format!("element {name:?} has no properties")));
+        }
+        let first_line = reader.line() + usize::from(is_text);
+        let elements =
+            parser.read_payload_for_element(&mut reader, definition, &header).map_err(|error| {
+                let error = fault(&error);
+                LoadError { line: error.line.filter(|_| is_text), ..error }
+            })?;
+        let at = |index: usize, reason: String| {
+            let line = is_text.then_some(first_line + index);
+            LoadError { line, reason: format!("{name} {index}: {reason}") }
+        };
+        match name.as_str() {
+            "vertex" => {
+                for (index, element) in elements.into_iter().enumerate() {
+                    vertices.push(element.position().map_err(|reason| at(index, reason))?);
+                }
+            }
+            "face" => {
+                for (index, element) in elements.into_iter().enumerate() {
+                    triangles.extend(fan(&element.polygon().map_err(|reason| at(index, reason))?));
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(TriMesh::try_new(vertices, triangles)?)
+}
+
+fn fault(error: &ParseError) -> LoadError {
+    // The parser's text starts with the line, quotes it, and spans several lines.
+    let text = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+    let reason = text
+        .strip_prefix("Line ")
+        .and_then(|rest| rest.split_once(": "))
+        .map_or(text.as_str(), |(_, rest)| rest);
+    LoadError { line: error.line(), reason: reason.to_owned() }
+}
+
+/// What matters of a vertex or a face.
+#[derive(Default)]
+struct Element {
+    coordinates: [Option<f64>; 3],
+    indices: Option<Vec<i64>>,
+}
+
+impl Element {
+    fn position(&self) -> Result<DVec3, String> {
+        let mut position = [0.0; 3];
+        for ((axis, value), slot) in ["x", "y", "z"].into_iter().zip(self.coordinates).zip(&mut position) {
+            *slot = value.ok_or_else(|| format!("{axis} is missing"))?;
+            if !slot.is_finite() {
+                return Err(format!("{axis} is {slot}, not a finite number"));
+            }
+        }
+        Ok(DVec3::from_array(position))
+    }
+
+    fn polygon(&self) -> Result<Vec<u32>, String> {
+        let indices = self.indices.as_ref().ok_or("the list vertex_indices is missing")?;
+        let check =
+            |&index: &i64| u32::try_from(index).map_err(|_| format!("vertex index {index} is out of range"));
+        indices.iter().map(check).collect()
+    }
+}
+
+impl PropertyAccess for Element {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        let axis = match name {
+            "x" => 0,
+            "y" => 1,
+            "z" => 2,
+            "vertex_indices" | "vertex_index" => {
+                self.indices = match property {
+                    Property::ListChar(list) => Some(list.into_iter().map(i64::from).collect()),
+                    Property::ListUChar(list) => Some(list.into_iter().map(i64::from).collect()),
+                    Property::ListShort(list) => Some(list.into_iter().map(i64::from).collect()),
+                    Property::ListUShort(list) => Some(list.into_iter().map(i64::from).collect()),
+                    Property::ListInt(list) => Some(list.into_iter().map(i64::from).collect()),
+                    Property::ListUInt(list) => Some(list.into_iter().map(i64::from).collect()),
+                    _ => return PropertyAccessResult::UnsupportedType,
+                };
+                return PropertyAccessResult::Set;
+            }
+            _ => return PropertyAccessResult::Ignored,
+        };
+        self.coordinates[axis] = Some(match property {
+            Property::Char(value) => value.into(),
+            Property::UChar(value) => value.into(),
+            Property::Short(value) => value.into(),
+            Property::UShort(value) => value.into(),
+            Property::Int(value) => value.into(),
+            Property::UInt(value) => value.into(),
+            Property::Float(value) => value.into(),
+            Property::Double(value) => value,
+            _ => return PropertyAccessResult::UnsupportedType,
+        });
+        PropertyAccessResult::Set
+    }
+}

@@ -1,0 +1,74 @@
+//! Results to files that are complete or absent, or to standard output.
+
+use crate::failure::Failure;
+use std::fs;
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+/// Writes a line to standard error; nobody listening is no reason to stop.
+pub(crate) fn note(text: &str) {
+    let _ = writeln!(io::stderr(), "{text}");
+}
+
+/// Writes to standard output.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    let mut stdout = io::stdout().lock();
+    let written = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
+    written.map_err(|error| match error.kind() {
+        ErrorKind::BrokenPipe => Failure::ClosedPipe,
+        _ => Failure::at("standard output", error),
+    })
+}
+
+/// Where a command's results go: `-` is standard output.
+#[derive(Debug)]
+pub(crate) enum Output {
+    Stdout,
+    File(PathBuf),
+}
+
+impl Output {
+    /// Names the place and refuses early what cannot be written later.
+    pub(crate) fn new(path: &str) -> Result<Self, Failure> {
+        if path == "-" {
+            return Ok(Self::Stdout);
+        }
+        let path = Path::new(path);
+        if path.is_dir() {
+            return Err(Failure::at(path.display(), "is a folder, not a file"));
+        }
+        let folder = folder_of(path);
+        if !folder.is_dir() {
+            return Err(Failure::at(path.display(), format!("there is no folder {}", folder.display())));
+        }
+        Ok(Self::File(path.to_owned()))
+    }
+
+    /// Writes everything at once: to a temporary file beside the target, which then replaces it.
+    pub(crate) fn write(&self, contents: &str) -> Result<(), Failure> {
+        let Self::File(path) = self else { return print(contents) };
+        // A device such as /dev/null must not be replaced.
+        let special = path.exists() && !path.is_file();
+        let written = if special { fs::write(path, contents) } else { replace(path, contents) };
+        written.map_err(|error| Failure::at(path.display(), format!("cannot be written: {error}")))
+    }
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+fn replace(path: &Path, contents: &str) -> io::Result<()> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let temporary = folder_of(path).join(format!(".{name}.{}.tmp", std::process::id()));
+    let written = fs::File::create(&temporary)
+        .and_then(|mut file| file.write_all(contents.as_bytes()).and_then(|()| file.sync_all()))
+        .and_then(|()| fs::rename(&temporary, path));
+    if written.is_err() {
+        let _ = fs::remove_file(&temporary);
+    }
+    written
+}

@@ -1,0 +1,190 @@
+//! Answers as text, CSV fields and JSON.
+
+use crate::engine::{Answer, Pair};
+use d2m::bvh::{Contact, Solid, StartState, TimeOfContact, Window};
+use d2m::feature::FeaturePair;
+use glam::DVec3;
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::time::Duration;
+
+/// One word for a verdict.
+pub(crate) fn status(verdict: &TimeOfContact) -> &'static str {
+    match verdict {
+        TimeOfContact::Separated => "separated",
+        TimeOfContact::Contact(_) => "contact",
+        TimeOfContact::Undecided { .. } => "undecided",
+    }
+}
+
+/// A feature pair without commas: `vertex_face:V:F`, `face_vertex:F:V`, `edge_edge:P-Q:R-S`, A's part first.
+pub(crate) fn feature_field(feature: FeaturePair) -> String {
+    match feature {
+        FeaturePair::VertexFace { vertex, face } => format!("vertex_face:{vertex}:{face}"),
+        FeaturePair::FaceVertex { face, vertex } => format!("face_vertex:{face}:{vertex}"),
+        FeaturePair::EdgeEdge { edge_a: [p, q], edge_b: [r, s] } => format!("edge_edge:{p}-{q}:{r}-{s}"),
+    }
+}
+
+fn feature_sentence(feature: FeaturePair) -> String {
+    match feature {
+        FeaturePair::VertexFace { vertex, face } => format!("vertex {vertex} of A against face {face} of B"),
+        FeaturePair::FaceVertex { face, vertex } => format!("face {face} of A against vertex {vertex} of B"),
+        FeaturePair::EdgeEdge { edge_a: [p, q], edge_b: [r, s] } => {
+            format!("edge {p}\u{2013}{q} of A against edge {r}\u{2013}{s} of B")
+        }
+    }
+}
+
+fn start_word(start: StartState) -> &'static str {
+    match start {
+        StartState::Apart => "apart",
+        StartState::Touching => "touching",
+        StartState::Overlapping => "overlapping",
+        StartState::Contained => "contained",
+    }
+}
+
+/// A duration as a person reads it.
+pub(crate) fn duration(time: Duration) -> String {
+    let microseconds = time.as_secs_f64() * 1e6;
+    match microseconds {
+        m if m < 1e3 => format!("{m:.1} µs"),
+        m if m < 1e6 => format!("{:.2} ms", m / 1e3),
+        m => format!("{:.2} s", m / 1e6),
+    }
+}
+
+/// A number with thin groups of thousands.
+fn count(number: usize) -> String {
+    let digits = number.to_string();
+    let groups: Vec<&str> =
+        digits.as_bytes().rchunks(3).rev().filter_map(|g| std::str::from_utf8(g).ok()).collect();
+    groups.join(" ")
+}
+
+fn vector(v: DVec3) -> String {
+    format!("({:.9}, {:.9}, {:.9})", v.x, v.y, v.z)
+}
+
+/// The answer for a person.
+pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
+    let mut text = String::new();
+    let mut line = |label: &str, value: String| {
+        let _ = writeln!(text, "  {label:<12}{value}"); // writing to a string cannot fail
+    };
+    let (start, end) = (window.start(), window.end());
+    let headline = match &answer.verdict {
+        TimeOfContact::Separated => {
+            line("certified", format!("no contact anywhere from {start} to {end}"));
+            "SEPARATED".to_owned()
+        }
+        TimeOfContact::Undecided { clear_until } => {
+            line("certified", format!("no contact from {start} until {clear_until}"));
+            line("then", "the budget was used up; a larger --budget may decide".to_owned());
+            "UNDECIDED".to_owned()
+        }
+        TimeOfContact::Contact(contact) => {
+            contact_lines(&mut line, contact);
+            format!("CONTACT at t = {}", contact.time_lo)
+        }
+    };
+    for (label, body) in [("A", &pair.a), ("B", &pair.b)] {
+        line(label, format!("{} · {} triangles", body.name, count(body.tree.mesh().triangle_count())));
+    }
+    let solid = match pair.solid {
+        Solid::Filled => "filled solids",
+        Solid::Surface => "surfaces only",
+    };
+    line("asked", format!("window [{start}, {end}] · {solid}"));
+    line(
+        "took",
+        format!("{} (after {} to build the trees)", duration(answer.took), duration(pair.preparation)),
+    );
+    format!("{headline}\n{text}")
+}
+
+fn contact_lines(line: &mut dyn FnMut(&str, String), contact: &Contact) {
+    let width = contact.time_hi - contact.time_lo;
+    line("time", format!("[{}, {}]  width {width:.2e}", contact.time_lo, contact.time_hi));
+    match contact.start {
+        StartState::Apart => {
+            line("certified", "no contact before; disjoint at the first of these times".to_owned());
+        }
+        start => line("certified", format!("in contact from the start of the window: {}", start_word(start))),
+    }
+    line("separation", format!("{:.4e} left then, tolerance {:.2e}", contact.separation, contact.tolerance));
+    line("normal", format!("{} from A to B", vector(contact.normal)));
+    for (label, point, triangle, weights) in [
+        ("point on A", contact.point_a, contact.triangle_a, contact.barycentric_a),
+        ("point on B", contact.point_b, contact.triangle_b, contact.barycentric_b),
+    ] {
+        let [p, q, r] = weights;
+        line(label, format!("{} · triangle {triangle} at {p:.6}, {q:.6}, {r:.6}", vector(point)));
+    }
+    line("features", feature_sentence(contact.feature));
+    line("closing", format!("{:.6} along the normal, per unit of time", contact.closing_speed));
+}
+
+/// The answer for a program.
+pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer) -> String {
+    let mut object = json!({
+        "status": status(&answer.verdict),
+        "microseconds": answer.took.as_secs_f64() * 1e6,
+        "window": [window.start(), window.end()],
+        "solid": matches!(pair.solid, Solid::Filled),
+        "triangles": [pair.a.tree.mesh().triangle_count(), pair.b.tree.mesh().triangle_count()],
+    });
+    let mut put = |key: &str, value: Value| {
+        object[key] = value;
+    };
+    match &answer.verdict {
+        TimeOfContact::Separated => {}
+        TimeOfContact::Undecided { clear_until } => put("clear_until", json!(clear_until)),
+        TimeOfContact::Contact(contact) => {
+            put("time", json!([contact.time_lo, contact.time_hi]));
+            put("separation", json!(contact.separation));
+            put("tolerance", json!(contact.tolerance));
+            put("start", json!(start_word(contact.start)));
+            put("normal", json!(contact.normal.to_array()));
+            put("point_a", json!(contact.point_a.to_array()));
+            put("point_b", json!(contact.point_b.to_array()));
+            put("feature", json!(feature_field(contact.feature)));
+            put("triangle_a", json!(contact.triangle_a));
+            put("triangle_b", json!(contact.triangle_b));
+            put("barycentric_a", json!(contact.barycentric_a));
+            put("barycentric_b", json!(contact.barycentric_b));
+            put("closing_speed", json!(contact.closing_speed));
+        }
+    }
+    format!("{object}\n")
+}
+
+/// The header of a result CSV.
+pub(crate) const CSV_HEADER: &str = "trial,status,toc,toc_hi,separation,microseconds,normal_x,normal_y,normal_z,point_x,point_y,point_z,feature,triangle_a,triangle_b\n";
+
+/// One line of a result CSV: numbers with 17 digits; what a verdict does not have is empty.
+pub(crate) fn csv_line(trial: usize, answer: &Answer) -> String {
+    let microseconds = answer.took.as_secs_f64() * 1e6;
+    let status = status(&answer.verdict);
+    match &answer.verdict {
+        TimeOfContact::Separated => format!("{trial},{status},inf,inf,,{microseconds:.3},,,,,,,,,\n"),
+        TimeOfContact::Undecided { clear_until } => {
+            format!("{trial},{status},{clear_until:.16e},inf,,{microseconds:.3},,,,,,,,,\n")
+        }
+        TimeOfContact::Contact(contact) => {
+            let three = |v: DVec3| format!("{:.16e},{:.16e},{:.16e}", v.x, v.y, v.z);
+            format!(
+                "{trial},{status},{:.16e},{:.16e},{:.16e},{microseconds:.3},{},{},{},{},{}\n",
+                contact.time_lo,
+                contact.time_hi,
+                contact.separation,
+                three(contact.normal),
+                three(contact.point_a),
+                feature_field(contact.feature),
+                contact.triangle_a,
+                contact.triangle_b,
+            )
+        }
+    }
+}
