@@ -3,14 +3,49 @@
 use crate::arguments::{Method, QueryArguments};
 use crate::failure::Failure;
 use crate::load::Loaded;
-use d2m::bvh::{Budget, MeshTree, Mode, Moving, QueryOptions, Solid, TimeOfContact, Window, time_of_contact};
+use d2m::bvh::paper::{self, SphereTree};
+use d2m::bvh::{
+    Budget, MeshTree, Mode, Moving, QueryOptions, Solid, TimeOfContact, Topology, TriMesh, Window,
+    time_of_contact,
+};
 use d2m::motion::LinearMotion;
 use std::time::{Duration, Instant};
 
 /// A mesh with its tree and the name that the user gave it.
 pub(crate) struct Body {
     pub(crate) name: String,
-    pub(crate) tree: MeshTree,
+    tree: Tree,
+}
+
+/// What the chosen method searches.
+enum Tree {
+    Engine(MeshTree),
+    Paper(Box<SphereTree>),
+}
+
+impl Body {
+    fn new(Loaded { name, mesh }: Loaded, method: Method) -> Self {
+        let tree = match method {
+            Method::Accurate | Method::Capoeira => Tree::Engine(MeshTree::new(mesh)),
+            Method::Paper => Tree::Paper(Box::new(SphereTree::new(mesh))),
+        };
+        Self { name, tree }
+    }
+
+    /// The mesh.
+    pub(crate) fn mesh(&self) -> &TriMesh {
+        match &self.tree {
+            Tree::Engine(tree) => tree.mesh(),
+            Tree::Paper(tree) => tree.mesh(),
+        }
+    }
+
+    fn is_watertight(&self) -> bool {
+        match &self.tree {
+            Tree::Engine(tree) => tree.is_watertight(),
+            Tree::Paper(tree) => Topology::new(tree.mesh()).is_watertight(),
+        }
+    }
 }
 
 /// Two bodies and how they are asked.
@@ -51,7 +86,7 @@ impl Pair {
             options = options.with_budget(Budget::UNLIMITED.with_node_tests(node_tests));
         }
         let start = Instant::now();
-        let [a, b] = [a, b].map(|Loaded { name, mesh }| Body { name, tree: MeshTree::new(mesh) });
+        let [a, b] = [a, b].map(|body| Body::new(body, arguments.mode));
         let preparation = start.elapsed();
         let solid = choose_solid(&a, &b, arguments)?;
         Ok(Self { a, b, solid, preparation, options: options.with_solid(solid) })
@@ -59,9 +94,17 @@ impl Pair {
 
     /// The time of contact in a window.
     pub(crate) fn ask(&self, a: &LinearMotion, b: &LinearMotion, window: Window) -> Result<Answer, Failure> {
-        let (a, b) = (Moving::new(&self.a.tree, a), Moving::new(&self.b.tree, b));
         let start = Instant::now();
-        let verdict = time_of_contact(a, b, window, &self.options);
+        let verdict = match (&self.a.tree, &self.b.tree) {
+            (Tree::Engine(tree_a), Tree::Engine(tree_b)) => {
+                time_of_contact(Moving::new(tree_a, a), Moving::new(tree_b, b), window, &self.options)
+            }
+            (Tree::Paper(tree_a), Tree::Paper(tree_b)) => {
+                let (a, b) = (paper::Moving::new(tree_a, a), paper::Moving::new(tree_b, b));
+                paper::time_of_contact(a, b, window, &self.options)
+            }
+            _ => unreachable!("both bodies of a pair are prepared for one method"),
+        };
         let took = start.elapsed();
         let verdict = verdict.map_err(|error| Failure::Input(error.to_string()))?;
         Ok(Answer { verdict, took })
@@ -73,7 +116,7 @@ fn choose_solid(a: &Body, b: &Body, arguments: &QueryArguments) -> Result<Solid,
     if arguments.surface {
         return Ok(Solid::Surface);
     }
-    let open = [a, b].into_iter().find(|body| !body.tree.is_watertight());
+    let open = [a, b].into_iter().find(|body| !body.is_watertight());
     match open {
         None => Ok(Solid::Filled),
         Some(body) if arguments.solid => {

@@ -90,7 +90,7 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
         }
     };
     for (label, body) in [("A", &pair.a), ("B", &pair.b)] {
-        line(label, format!("{} · {} triangles", body.name, count(body.tree.mesh().triangle_count())));
+        line(label, format!("{} · {} triangles", body.name, count(body.mesh().triangle_count())));
     }
     let solid = match pair.solid {
         Solid::Filled => "filled solids",
@@ -133,7 +133,7 @@ pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer) -> String {
         "microseconds": answer.took.as_secs_f64() * 1e6,
         "window": [window.start(), window.end()],
         "solid": matches!(pair.solid, Solid::Filled),
-        "triangles": [pair.a.tree.mesh().triangle_count(), pair.b.tree.mesh().triangle_count()],
+        "triangles": [pair.a.mesh().triangle_count(), pair.b.mesh().triangle_count()],
     });
     let mut put = |key: &str, value: Value| {
         object[key] = value;

@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<(), Failure> {
         for (name, body, motion) in [("A", &pair.a, &motion_a), ("B", &pair.b, &motion_b)] {
             if let Some(piece) = motion.piece_until(time) {
                 let _ = writeln!(text, "o {name}");
-                base += write_posed(&mut text, body.tree.mesh(), piece, time, base);
+                base += write_posed(&mut text, body.mesh(), piece, time, base);
             }
         }
         scene.write(&text)?;
