@@ -1,7 +1,13 @@
 //! Project tasks: `cargo xtask ci` runs every check that must never be red; `cargo xtask bench` and
 //! `cargo xtask report` print every figure that the documentation states.
+mod bench;
 mod ci;
+mod figure;
+mod judge;
+mod machine;
 mod random;
+mod report;
+mod statistics;
 mod tidy;
 mod trials;
 
@@ -24,6 +30,13 @@ enum Task {
     Ci(ci::Options),
     /// Fails when the map in ARCHITECTURE.md, the folders and the order of the crates disagree.
     Tidy,
+    /// Time and accuracy of every method on ten pairs of shapes; each answer is judged before its time counts.
+    Bench(bench::Options),
+    /// Tables and figures in docs/results, from the newest results of the bench.
+    Report(report::Options),
+    /// The process in which a peer's query runs, so that it can be ended.
+    #[command(hide = true)]
+    ParryCast(bench::StoppedOptions),
     /// Writes a file of random trials, 256 by default, by the law of the bench.
     Trials(trials::Options),
 }
@@ -32,6 +45,9 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().task {
         Task::Ci(options) => ci::run(&options),
         Task::Tidy => tidy::run(),
+        Task::Bench(options) => bench::run(&options),
+        Task::Report(options) => report::run(&options),
+        Task::ParryCast(options) => bench::run_stopped(&options),
         Task::Trials(options) => trials::run(&options),
     };
     match result {
@@ -48,4 +64,12 @@ fn workspace_root() -> std::path::PathBuf {
     let manifest =
         std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
     std::path::Path::new(&manifest).parent().expect("xtask lies in the workspace").to_path_buf()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn arguments_are_consistent() {
+        <super::Arguments as clap::CommandFactory>::command().debug_assert();
+    }
 }

@@ -3,7 +3,7 @@ mod file;
 mod generate;
 
 pub(crate) use file::{read, write};
-pub(crate) use generate::generate;
+pub(crate) use generate::{Law, generate};
 
 use crate::TaskResult;
 use glam::{DQuat, DVec3};
@@ -48,7 +48,7 @@ pub(crate) struct Options {
 
 /// `cargo xtask trials`.
 pub(crate) fn run(options: &Options) -> TaskResult {
-    let law = generate::Law { speed: options.speed, ..generate::Law::PAPER };
+    let law = Law { speed: options.speed, ..Law::PAPER };
     let trials = generate(&law, options.seed, options.count);
     write(&options.out, &trials)?;
     if read(&options.out)? != trials {

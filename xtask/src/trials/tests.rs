@@ -1,4 +1,3 @@
-use super::generate::Law;
 use super::*;
 
 #[test]

@@ -1,0 +1,92 @@
+//! The only place where the bench touches the product: one adapter per query.
+use super::body::{Body, Pair};
+use crate::judge::Claim;
+use crate::trials::{Movement, Trial};
+use d2m::bvh::{self, MeshTree, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window, paper};
+use d2m::motion::LinearMotion;
+
+type Error = Box<dyn std::error::Error>;
+
+/// Both bodies' motions over [0, 1].
+pub(crate) struct Motions {
+    a: LinearMotion,
+    b: LinearMotion,
+}
+
+impl Motions {
+    pub(crate) fn new(trial: &Trial) -> Result<Self, Error> {
+        let motion =
+            |m: &Movement| LinearMotion::try_new(m.position, m.rotation, m.velocity, m.angular_velocity);
+        Ok(Self { a: motion(&trial.a)?, b: motion(&trial.b)? })
+    }
+}
+
+/// An embedded shape by its text form.
+pub(crate) fn shape(text: &str) -> Result<TriMesh, Error> {
+    Ok(d2m::shapes::mesh(text)?)
+}
+
+/// The default engine's tree.
+pub(crate) fn build(mesh: TriMesh) -> MeshTree {
+    MeshTree::new(mesh)
+}
+
+/// Filled solids where both meshes close, surfaces otherwise.
+pub(crate) fn solid(pair: &Pair) -> Solid {
+    let closed = |body: &Body| body.tree.is_watertight();
+    if closed(&pair.a) && closed(&pair.b) { Solid::Filled } else { Solid::Surface }
+}
+
+/// The default engine's time of contact.
+pub(crate) fn time_of_contact(pair: &Pair, motions: &Motions, options: &QueryOptions) -> Claim {
+    let (a, b) = (Moving::new(&pair.a.tree, &motions.a), Moving::new(&pair.b.tree, &motions.b));
+    claim(bvh::time_of_contact(a, b, Window::UNIT, options))
+}
+
+/// The reference method's.
+pub(crate) fn paper(pair: &Pair, motions: &Motions, options: &QueryOptions) -> Claim {
+    let a = paper::Moving::new(pair.a.spheres(), &motions.a);
+    let b = paper::Moving::new(pair.b.spheres(), &motions.b);
+    claim(paper::time_of_contact(a, b, Window::UNIT, options))
+}
+
+fn claim(answer: Result<TimeOfContact, bvh::QueryError>) -> Claim {
+    match answer.expect("trials are valid input") {
+        TimeOfContact::Separated => Claim::Separated,
+        TimeOfContact::Contact(c) => Claim::Contact { lo: c.time_lo, hi: c.time_hi, tolerance: c.tolerance },
+        TimeOfContact::Undecided { clear_until } => Claim::Undecided { clear_until },
+    }
+}
+
+/// A deliberate fault, put on right answers to see whether the judge notices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Sabotage {
+    /// Contacts are reported this much too late.
+    Late(f64),
+    /// Contacts are reported as "separated".
+    Miss,
+}
+
+impl std::str::FromStr for Sabotage {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            None if text == "miss" => Ok(Self::Miss),
+            Some(("late", by)) => by.parse().map(Self::Late).map_err(|_| format!("no number: {by}")),
+            _ => Err("late=1e-6 or miss".into()),
+        }
+    }
+}
+
+impl Sabotage {
+    pub(crate) fn spoil(self, claim: Claim) -> Claim {
+        match (self, claim) {
+            (Self::Late(by), Claim::Contact { lo, hi, tolerance }) => {
+                Claim::Contact { lo: (lo + by).min(1.0), hi: (hi + by).min(1.0), tolerance }
+            }
+            (Self::Miss, Claim::Contact { .. }) => Claim::Separated,
+            _ => claim,
+        }
+    }
+}

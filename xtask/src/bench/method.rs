@@ -1,0 +1,161 @@
+//! The methods side by side, and how each is asked one question.
+use super::body::Pair;
+use super::engine::{self, Motions};
+use super::peers;
+use crate::judge::{Claim, Judge, Placement, advance, place};
+use crate::trials::Trial;
+use d2m::bvh::{Mode, QueryOptions};
+
+/// A row of the tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Method {
+    /// The default engine.
+    Accurate,
+    /// Its bounded-error mode.
+    Capoeira,
+    /// The paper's method.
+    Paper,
+    /// Conservative advancement over the judge's plain distance.
+    AdvanceOwn,
+    /// The same over parry's distance.
+    AdvanceParry,
+    /// parry's nonlinear shape cast, in a process of its own so that it can be stopped.
+    ParryCast,
+    /// parry's intersection test at the time of contact.
+    ParryIntersection,
+    /// parry's distance there.
+    ParryDistance,
+}
+
+/// What advancement over a plain distance stops at.
+pub(crate) const ADVANCE_STOP: f64 = 1e-9;
+
+impl Method {
+    pub(crate) const ALL: [Self; 8] = [
+        Self::Accurate,
+        Self::Capoeira,
+        Self::Paper,
+        Self::AdvanceOwn,
+        Self::AdvanceParry,
+        Self::ParryCast,
+        Self::ParryIntersection,
+        Self::ParryDistance,
+    ];
+
+    /// In files and on the command line.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Accurate => "accurate",
+            Self::Capoeira => "capoeira",
+            Self::Paper => "paper",
+            Self::AdvanceOwn => "advance-plain",
+            Self::AdvanceParry => "advance-parry",
+            Self::ParryCast => "parry-cast",
+            Self::ParryIntersection => "parry-intersection",
+            Self::ParryDistance => "parry-distance",
+        }
+    }
+
+    /// For a reader.
+    pub(crate) const fn title(self) -> &'static str {
+        match self {
+            Self::Accurate => "d2m accurate",
+            Self::Capoeira => "d2m Capoeira",
+            Self::Paper => "paper's method",
+            Self::AdvanceOwn => "advancement, plain trees",
+            Self::AdvanceParry => "advancement, parry",
+            Self::ParryCast => "parry nonlinear cast",
+            Self::ParryIntersection => "parry intersection at TOC",
+            Self::ParryDistance => "parry distance at TOC",
+        }
+    }
+
+    /// Asked at the time of contact that [`Self::Accurate`] found, rather than over the window.
+    pub(crate) const fn is_static(self) -> bool {
+        matches!(self, Self::ParryIntersection | Self::ParryDistance)
+    }
+
+    /// Promises a separation of at most 3.3 tolerances at `lo`.
+    pub(crate) const fn is_exact(self) -> bool {
+        matches!(self, Self::Accurate | Self::Paper | Self::AdvanceOwn)
+    }
+
+    /// Belongs to this project, so that a fault of it is a failure of the run.
+    pub(crate) const fn is_ours(self) -> bool {
+        matches!(self, Self::Accurate | Self::Capoeira | Self::Paper | Self::AdvanceOwn)
+    }
+}
+
+/// One question, ready to be asked again and again.
+pub(crate) struct Question<'a> {
+    pub(crate) pair: &'a Pair,
+    pub(crate) trial: &'a Trial,
+    motions: Motions,
+    options: QueryOptions,
+    /// For static methods: where the bodies are, and when.
+    at: f64,
+    places: (Placement, Placement),
+}
+
+impl<'a> Question<'a> {
+    pub(crate) fn new(
+        pair: &'a Pair,
+        trial: &'a Trial,
+        tolerance: f64,
+        at: f64,
+    ) -> Result<Self, Box<dyn std::error::Error>> {
+        let places = (place(&trial.a, at), place(&trial.b, at));
+        let options = QueryOptions::default().with_tolerance(tolerance).with_solid(engine::solid(pair));
+        Ok(Self { pair, trial, motions: Motions::new(trial)?, options, at, places })
+    }
+
+    fn judge(&self) -> Judge<'_> {
+        Judge { a: &self.pair.a.boxes, b: &self.pair.b.boxes, trial: self.trial }
+    }
+
+    /// Asks once. A static method answers "contact at the asked time" or "separated".
+    pub(crate) fn ask(&self, method: Method) -> Claim {
+        let (a, b) = (&self.pair.a, &self.pair.b);
+        let still = |distance: f64| {
+            if distance < f64::INFINITY { contact(self.at, ADVANCE_STOP) } else { Claim::Separated }
+        };
+        match method {
+            Method::Accurate => engine::time_of_contact(self.pair, &self.motions, &self.options),
+            Method::Capoeira => {
+                engine::time_of_contact(self.pair, &self.motions, &self.options.with_mode(Mode::Capoeira))
+            }
+            Method::Paper => engine::paper(self.pair, &self.motions, &self.options),
+            Method::AdvanceOwn => {
+                let judge = self.judge();
+                let mut hint = None;
+                self.advance(|t| judge.separation(t, &mut hint))
+            }
+            Method::AdvanceParry => {
+                let (ma, mb) = (a.parry(), b.parry());
+                self.advance(|t| peers::distance(ma, mb, &place(&self.trial.a, t), &place(&self.trial.b, t)))
+            }
+            Method::ParryCast => {
+                let hit = peers::cast(a.parry(), b.parry(), &self.trial.a, &self.trial.b);
+                hit.map_or(Claim::Separated, |t| contact(t, ADVANCE_STOP))
+            }
+            Method::ParryIntersection => {
+                let hit = peers::intersect(a.parry(), b.parry(), &self.places.0, &self.places.1);
+                if hit { still(0.0) } else { Claim::Separated }
+            }
+            Method::ParryDistance => {
+                still(peers::distance(a.parry(), b.parry(), &self.places.0, &self.places.1))
+            }
+        }
+    }
+
+    /// Conservative advancement over this distance, until near enough.
+    fn advance(&self, separation: impl FnMut(f64) -> f64) -> Claim {
+        let radii = [self.pair.a.boxes.radius, self.pair.b.boxes.radius];
+        let t = advance(self.trial, radii, (1.0, ADVANCE_STOP), separation);
+        if t < 1.0 { contact(t, ADVANCE_STOP) } else { Claim::Separated }
+    }
+}
+
+fn contact(t: f64, tolerance: f64) -> Claim {
+    Claim::Contact { lo: t, hi: t, tolerance }
+}

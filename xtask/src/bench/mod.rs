@@ -1,0 +1,119 @@
+//! `cargo xtask bench`: the paper's evaluation again, with peers, every answer judged before its time counts.
+mod body;
+mod catalogue;
+mod engine;
+mod method;
+mod peers;
+mod row;
+mod run;
+mod stopped;
+mod store;
+pub(crate) mod sweep;
+
+pub(crate) use method::Method;
+pub(crate) use row::Row;
+pub(crate) use store::{Store, slug};
+
+use crate::TaskResult;
+use catalogue::Entry;
+use std::path::PathBuf;
+
+#[derive(clap::Args, Clone, Debug)]
+pub(crate) struct Options {
+    /// Fewer trials, pairs and sweeps: under two minutes.
+    #[arg(long)]
+    quick: bool,
+    /// Only pairs whose name contains this.
+    #[arg(long)]
+    pair: Option<String>,
+    /// Only these methods, by name.
+    #[arg(long, value_delimiter = ',')]
+    method: Vec<String>,
+    /// Trials per pair and speed; 256 as in the paper, 24 with --quick.
+    #[arg(long)]
+    count: Option<usize>,
+    /// Times each fast query is asked; the least time counts.
+    #[arg(long, default_value_t = 5)]
+    rounds: usize,
+    /// Seed of the trials.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Tolerance, in units of the models' radius.
+    #[arg(long, default_value_t = 1e-10)]
+    tolerance: f64,
+    /// Seconds that a slow method may spend on one pair and speed; what is done by then counts.
+    #[arg(long)]
+    cap: Option<f64>,
+    /// Folder of OBJ models, with --trials.
+    #[arg(long, requires = "trials")]
+    models: Option<PathBuf>,
+    /// Folder of trial files `A__B__SPEED.csv`, with --models.
+    #[arg(long, requires = "models")]
+    trials: Option<PathBuf>,
+    /// Leave out the series over triangles, tolerance, spin, speed and threads.
+    #[arg(long)]
+    no_sweeps: bool,
+    /// A deliberate fault, to see it found: `late=1e-6` or `miss`.
+    #[arg(long = "break", hide = true)]
+    sabotage: Option<engine::Sabotage>,
+}
+
+impl Options {
+    fn count(&self) -> usize {
+        self.count.unwrap_or(if self.quick { 24 } else { 256 })
+    }
+
+    fn cap(&self) -> f64 {
+        self.cap.unwrap_or(if self.quick { 0.7 } else { 15.0 })
+    }
+
+    /// Series belong to whole runs on the embedded shapes.
+    fn wants_sweeps(&self) -> bool {
+        !self.no_sweeps && self.pair.is_none() && self.method.is_empty() && self.models.is_none()
+    }
+
+    /// Everything that the numbers depend on.
+    fn settings(&self) -> String {
+        format!(
+            "quick {}\ncount {}\nrounds {}\nseed {}\ntolerance {:e}\ncap {}\nmodels {:?}\ntrials {:?}\nbreak {:?}\n",
+            self.quick,
+            self.count(),
+            self.rounds,
+            self.seed,
+            self.tolerance,
+            self.cap(),
+            self.models.as_ref().and_then(|p| p.file_name()),
+            self.trials.as_ref().and_then(|p| p.file_name()),
+            self.sabotage,
+        )
+    }
+
+    fn entries(&self) -> Result<Vec<Entry>, Box<dyn std::error::Error>> {
+        let mut entries = match (&self.models, &self.trials) {
+            (Some(models), Some(trials)) => catalogue::files(models, trials, self.count())?,
+            _ => catalogue::embedded(self.seed, self.count()),
+        };
+        if let Some(wanted) = &self.pair {
+            entries.retain(|entry| entry.name.contains(wanted.as_str()));
+        }
+        if self.quick && self.pair.is_none() && self.models.is_none() {
+            entries.retain(|entry| catalogue::QUICK.contains(&entry.name.as_str()));
+        }
+        if entries.is_empty() { Err("no such pair".into()) } else { Ok(entries) }
+    }
+
+    fn methods(&self) -> Result<Vec<Method>, String> {
+        let find = |name: &String| {
+            let found = Method::ALL.into_iter().find(|method| method.name() == name);
+            found.ok_or_else(|| format!("no method {name}: {}", Method::ALL.map(Method::name).join(", ")))
+        };
+        if self.method.is_empty() { Ok(Method::ALL.to_vec()) } else { self.method.iter().map(find).collect() }
+    }
+}
+
+/// `cargo xtask bench`.
+pub(crate) fn run(options: &Options) -> TaskResult {
+    run::run(options)
+}
+
+pub(crate) use stopped::{Options as StoppedOptions, run as run_stopped};

@@ -1,0 +1,204 @@
+//! Asks, judges, stores.
+use super::body::Pair;
+use super::method::{Method, Question};
+use super::row::Row;
+use super::store::{KnownPair, Store};
+use super::{Options, peers, stopped, sweep};
+use crate::TaskResult;
+use crate::judge::{Claim, Judge, place};
+use crate::machine::Machine;
+use crate::statistics::Summary;
+use crate::trials::Trial;
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+use std::fmt::Write as _;
+use std::time::Instant;
+
+type Error = Box<dyn std::error::Error>;
+
+/// Answers of parry that are compared with the judge's, per pair, speed and method: it is slow.
+const PARRY_CHECKS: usize = 4;
+/// How far parry's distance may be from ours: it iterates to a tolerance of about this on its own.
+const PARRY_AGREES: f64 = 1e-7;
+
+pub(super) fn run(options: &Options) -> TaskResult {
+    let root = crate::workspace_root();
+    let machine = Machine::this(&root);
+    let store = Store::open(&root, &machine, &options.settings())?;
+    let (entries, methods) = (options.entries()?, options.methods()?);
+    let questions: usize = entries.iter().flat_map(|e| &e.trials).map(|t| t.1.len() * methods.len()).sum();
+    let progress = bar(questions);
+    let mut faults = Vec::new();
+    let say = |text: &str| if progress.is_hidden() { println!("{text}") } else { progress.println(text) };
+    for entry in &entries {
+        progress.set_message(format!("{}: trees", entry.name));
+        let pair = entry.load()?;
+        let triangles = [pair.a.triangle_count(), pair.b.triangle_count()];
+        say(&format!("{} ({} + {} triangles)", pair.name, triangles[0], triangles[1]));
+        let speeds = entry.trials.iter().map(|t| t.0).collect();
+        store.note_pair(&KnownPair { name: pair.name.clone(), triangles, speeds })?;
+        for (speed, trials) in &entry.trials {
+            let mut accurate = None;
+            for &method in &methods {
+                progress.set_message(format!("{} @{speed} {}", pair.name, method.name()));
+                let rows = if let Some(rows) = store.load(&pair.name, *speed, method.name()) {
+                    rows
+                } else {
+                    let setting = Setting { options, pair: &pair, speed: *speed, trials, method };
+                    let rows = setting.rows(accurate.as_deref())?;
+                    store.save(&pair.name, *speed, method.name(), &rows)?;
+                    rows
+                };
+                progress.inc(trials.len() as u64);
+                say(&line(*speed, method, &rows));
+                let name = &pair.name;
+                let bad = rows.iter().filter(|row| !row.fault.is_empty() && method.is_ours());
+                faults.extend(
+                    bad.map(|r| format!("{name} @{speed} {} trial {}: {}", method.name(), r.trial, r.fault)),
+                );
+                if method == Method::Accurate {
+                    accurate = Some(rows);
+                }
+            }
+        }
+    }
+    if options.wants_sweeps() {
+        progress.set_message("series");
+        faults.extend(sweep::run(options, &store, say)?);
+    }
+    progress.finish_and_clear();
+    for fault in faults.iter().take(20) {
+        println!("WRONG  {fault}");
+    }
+    println!("rows in {}; `cargo xtask report` makes tables and figures of them", store.folder.display());
+    if faults.is_empty() { Ok(()) } else { Err(format!("{} wrong answers", faults.len()).into()) }
+}
+
+fn bar(length: usize) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {eta} left  {msg}");
+    ProgressBar::new(length as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+/// A line for the terminal.
+fn line(speed: f64, method: Method, rows: &[Row]) -> String {
+    let times = Summary::of(rows.iter().filter(|r| r.fault.is_empty()).map(|r| r.microseconds));
+    let left = Summary::of(rows.iter().map(|r| r.separation));
+    let contacts = rows.iter().filter(|r| matches!(r.claim, Claim::Contact { .. })).count();
+    let wrong = rows.iter().filter(|r| !r.fault.is_empty()).count();
+    let mut text =
+        format!("  @{speed:<4} {:<26} {:>4} asked {contacts:>4} contacts", method.title(), rows.len());
+    if let Some(t) = times {
+        let _ = write!(text, "  {:>10.1} µs median  {:>10.1} worst", t.median, t.worst);
+    }
+    if let (Some(s), false) = (left, method.is_static()) {
+        let _ = write!(text, "  separation {:.1e} … {:.1e}", s.least, s.worst);
+    }
+    if wrong > 0 {
+        let _ = write!(text, "  {wrong} WRONG");
+    }
+    text
+}
+
+/// One file's worth of questions.
+pub(super) struct Setting<'a> {
+    pub(super) options: &'a Options,
+    pub(super) pair: &'a Pair,
+    pub(super) speed: f64,
+    pub(super) trials: &'a [Trial],
+    pub(super) method: Method,
+}
+
+impl Setting<'_> {
+    fn rows(&self, accurate: Option<&[Row]>) -> Result<Vec<Row>, Error> {
+        if self.method == Method::ParryCast {
+            return stopped::rows(self);
+        }
+        let times_of_contact = self.places(accurate);
+        let questions: Vec<(usize, Question<'_>)> = times_of_contact
+            .iter()
+            .map(|&(i, at)| Ok((i, Question::new(self.pair, &self.trials[i], self.options.tolerance, at)?)))
+            .collect::<Result<_, Error>>()?;
+        let asked = self.ask(&questions);
+        Ok(self.judged(&questions, asked))
+    }
+
+    /// Which trials, and the time for static methods: only those that end in contact.
+    fn places(&self, accurate: Option<&[Row]>) -> Vec<(usize, f64)> {
+        if !self.method.is_static() {
+            return (0..self.trials.len()).map(|i| (i, 0.0)).collect();
+        }
+        let rows = accurate.unwrap_or_default();
+        let contact = |row: &Row| match row.claim {
+            Claim::Contact { lo, .. } if row.fault.is_empty() => Some((row.trial, lo)),
+            _ => None,
+        };
+        rows.iter().filter_map(contact).collect()
+    }
+
+    /// Answers with the least time of the rounds, until the cap of a slow method.
+    fn ask(&self, questions: &[(usize, Question<'_>)]) -> Vec<(Claim, f64)> {
+        let slow = !matches!(self.method, Method::Accurate | Method::Capoeira);
+        let rounds = if slow { 1 } else { self.options.rounds.max(1) };
+        let begin = Instant::now();
+        let mut asked: Vec<(Claim, f64)> = Vec::new();
+        for round in 0..rounds {
+            for (place, (_, question)) in questions.iter().enumerate() {
+                if slow && begin.elapsed().as_secs_f64() > self.options.cap() {
+                    break;
+                }
+                let start = Instant::now();
+                let claim = std::hint::black_box(question.ask(self.method));
+                let microseconds = start.elapsed().as_secs_f64() * 1e6;
+                if round == 0 {
+                    asked.push((claim, microseconds));
+                } else {
+                    asked[place].1 = asked[place].1.min(microseconds);
+                }
+            }
+        }
+        asked
+    }
+
+    fn judged(&self, questions: &[(usize, Question<'_>)], asked: Vec<(Claim, f64)>) -> Vec<Row> {
+        let sabotage = self.options.sabotage.filter(|_| self.method == Method::Accurate);
+        let mut rows: Vec<Row> = questions
+            .par_iter()
+            .zip(asked)
+            .map(|((trial, question), (claim, microseconds))| {
+                let claim = sabotage.map_or(claim, |fault| fault.spoil(claim));
+                let verdict = if self.method.is_static() {
+                    Ok(f64::INFINITY)
+                } else {
+                    self.judge(question.trial).check(&claim, self.method.is_exact())
+                };
+                let (separation, fault) = match verdict {
+                    Ok(separation) => (separation, String::new()),
+                    Err(fault) => (f64::INFINITY, fault.to_string()),
+                };
+                Row { trial: *trial, claim, separation, parry_separation: f64::NAN, microseconds, fault }
+            })
+            .collect();
+        if self.method.is_ours() && self.method != Method::AdvanceOwn {
+            self.ask_parry(&mut rows);
+        }
+        rows
+    }
+
+    fn judge<'a>(&'a self, trial: &'a Trial) -> Judge<'a> {
+        Judge { a: &self.pair.a.boxes, b: &self.pair.b.boxes, trial }
+    }
+
+    /// The second opinion on the separation, on some trials.
+    fn ask_parry(&self, rows: &mut [Row]) {
+        let contacts = rows.iter_mut().filter(|row| row.separation.is_finite()).take(PARRY_CHECKS);
+        for row in contacts {
+            let Claim::Contact { lo, .. } = row.claim else { continue };
+            let trial = &self.trials[row.trial];
+            let (at_a, at_b) = (place(&trial.a, lo), place(&trial.b, lo));
+            row.parry_separation = peers::distance(self.pair.a.parry(), self.pair.b.parry(), &at_a, &at_b);
+            if (row.parry_separation - row.separation).abs() > PARRY_AGREES {
+                row.fault = format!("parry measures a separation of {:.3e}", row.parry_separation);
+            }
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! parry's nonlinear cast in a process of its own: a query may take minutes and cannot be interrupted, so the
+//! process is ended when the time is over.
+use super::Options as BenchOptions;
+use super::method::{Method, Question};
+use super::row::Row;
+use super::run::Setting;
+use crate::TaskResult;
+use crate::judge::{Claim, Judge};
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Command, Stdio};
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+type Error = Box<dyn std::error::Error>;
+
+#[derive(clap::Args)]
+#[group(skip)]
+pub(crate) struct Options {
+    #[command(flatten)]
+    bench: BenchOptions,
+    #[arg(long)]
+    speed: f64,
+}
+
+/// The child: a line `ready`, then a line `time microseconds` per trial until it is ended.
+pub(crate) fn run(options: &Options) -> TaskResult {
+    let entries = options.bench.entries()?;
+    let entry = entries.first().ok_or("no pair")?;
+    let trials = &entry.trials.iter().find(|t| t.0 == options.speed).ok_or("no such speed")?.1;
+    let pair = entry.load()?;
+    let _ = (pair.a.parry(), pair.b.parry());
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "ready")?;
+    for trial in trials {
+        let question = Question::new(&pair, trial, options.bench.tolerance, 0.0)?;
+        let start = Instant::now();
+        let claim = std::hint::black_box(question.ask(Method::ParryCast));
+        let microseconds = start.elapsed().as_secs_f64() * 1e6;
+        let time = if let Claim::Contact { lo, .. } = claim { lo } else { f64::INFINITY };
+        writeln!(out, "{time:?} {microseconds:?}")?;
+        out.flush()?;
+    }
+    Ok(())
+}
+
+/// What the child answers within the cap; the query that it was stopped in counts as undecided.
+pub(super) fn rows(setting: &Setting<'_>) -> Result<Vec<Row>, Error> {
+    let options = setting.options;
+    let mut command = Command::new(std::env::current_exe()?);
+    command.args(["parry-cast", "--speed", &setting.speed.to_string(), "--pair", &setting.pair.name]);
+    command.args(["--seed", &options.seed.to_string(), "--count", &setting.trials.len().to_string()]);
+    if let (Some(models), Some(trials)) = (&options.models, &options.trials) {
+        command.arg("--models").arg(models).arg("--trials").arg(trials);
+    }
+    let mut child = command.stdout(Stdio::piped()).spawn()?;
+    let lines = BufReader::new(child.stdout.take().ok_or("no output of the child")?).lines();
+    let (sender, receiver) = mpsc::channel();
+    let reader = std::thread::spawn(move || {
+        for line in lines.map_while(Result::ok) {
+            if sender.send(line).is_err() {
+                break;
+            }
+        }
+    });
+    // Meshes and trees do not count.
+    let ready = receiver.recv_timeout(Duration::from_secs(120));
+    let deadline = Instant::now() + Duration::from_secs_f64(options.cap());
+    let mut rows = Vec::new();
+    let mut last = Instant::now();
+    while ready.is_ok() && rows.len() < setting.trials.len() {
+        let left = deadline.saturating_duration_since(Instant::now());
+        match receiver.recv_timeout(left) {
+            Ok(line) => {
+                rows.extend(answer(setting, rows.len(), &line));
+                last = Instant::now();
+            }
+            Err(mpsc::RecvTimeoutError::Disconnected) => break,
+            Err(mpsc::RecvTimeoutError::Timeout) => {
+                rows.push(Row {
+                    trial: rows.len(),
+                    claim: Claim::Undecided { clear_until: 0.0 },
+                    separation: f64::INFINITY,
+                    parry_separation: f64::NAN,
+                    microseconds: last.elapsed().as_secs_f64() * 1e6,
+                    fault: String::new(),
+                });
+                break;
+            }
+        }
+    }
+    // Both fail only when the child has ended by itself.
+    let _ = child.kill();
+    let _ = child.wait();
+    let _ = reader.join();
+    if let Err(error) = ready {
+        return Err(format!("the process of the peer did not start: {error}").into());
+    }
+    Ok(rows)
+}
+
+fn answer(setting: &Setting<'_>, trial: usize, line: &str) -> Option<Row> {
+    let (time, microseconds) = line.split_once(' ')?;
+    let (time, microseconds): (f64, f64) = (time.parse().ok()?, microseconds.parse().ok()?);
+    let claim = if time.is_finite() {
+        Claim::Contact { lo: time, hi: time, tolerance: 1e-4 }
+    } else {
+        Claim::Separated
+    };
+    let judge = Judge { a: &setting.pair.a.boxes, b: &setting.pair.b.boxes, trial: &setting.trials[trial] };
+    let (separation, fault) = match judge.check(&claim, false) {
+        Ok(separation) => (separation, String::new()),
+        Err(fault) => (f64::INFINITY, fault.to_string()),
+    };
+    Some(Row { trial, claim, separation, parry_separation: f64::NAN, microseconds, fault })
+}

@@ -1,0 +1,135 @@
+//! Is an answer right? By conservative advancement and samples on the judge's own distance.
+use super::{BoxTree, Hint, place, separation};
+use crate::trials::Trial;
+
+/// What a method says about one trial over [0, 1].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Claim {
+    /// No contact in [0, 1].
+    Separated,
+    /// No contact before `lo`; within `tolerance` somewhere in [lo, hi].
+    Contact { lo: f64, hi: f64, tolerance: f64 },
+    /// No contact before this time.
+    Undecided { clear_until: f64 },
+}
+
+/// What is wrong with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Fault {
+    /// The bodies cross at a time that was claimed to be free.
+    Missed { at: f64 },
+    /// The bodies cross at `lo`.
+    Penetrates,
+    /// The separation left at `lo` is larger than 3.3 tolerances.
+    Far { separation: f64 },
+    /// Not a time in [0, 1], or reversed.
+    Nonsense,
+}
+
+impl std::fmt::Display for Fault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Missed { at } => write!(f, "late or missed: the bodies cross at t = {at:?}"),
+            Self::Penetrates => write!(f, "the bodies cross at the claimed time"),
+            Self::Far { separation } => write!(f, "separation {separation:.3e} at the claimed time"),
+            Self::Nonsense => write!(f, "not a time of the window"),
+        }
+    }
+}
+
+/// Judge of one trial: two meshes and their movement.
+pub(crate) struct Judge<'a> {
+    pub(crate) a: &'a BoxTree,
+    pub(crate) b: &'a BoxTree,
+    pub(crate) trial: &'a Trial,
+}
+
+/// Advancement stops at this separation, in units of the models' radius; from there on samples decide.
+const NEAR: f64 = 1e-9;
+/// Steps of advancement before samples decide.
+const STEPS: usize = 4000;
+/// A gap of the bounding spheres that is worth a step of its own.
+const FAR: f64 = 0.01;
+/// Samples of what advancement left open.
+const SAMPLES: usize = 24;
+
+/// Conservative advancement: the end of the part of [0, end] over which steps of distance / speed show the bodies
+/// apart, to a separation of `near`; `end` when that is all of it.
+///
+/// While the bounding spheres are apart their gap is the distance that counts. `separation` is asked at one time
+/// after the other.
+pub(crate) fn advance(
+    trial: &Trial,
+    radii: [f64; 2],
+    (end, near): (f64, f64),
+    mut separation: impl FnMut(f64) -> f64,
+) -> f64 {
+    let speed = trial.bound_speed(radii[0], radii[1]);
+    let mut t = 0.0;
+    for _ in 0..STEPS {
+        let centres = (trial.b.position - trial.a.position) + (trial.b.velocity - trial.a.velocity) * t;
+        let spheres = centres.length() - radii[0] - radii[1];
+        let gap = if spheres > FAR { spheres } else { separation(t) };
+        if gap <= near {
+            break;
+        }
+        // Short of the whole step, so that rounding of the distance never carries it too far.
+        t += gap * (1.0 - 1e-9) / speed;
+        if t >= end {
+            return end;
+        }
+    }
+    t
+}
+
+impl Judge<'_> {
+    /// Distance of the surfaces at this time, 0 when they cross.
+    pub(crate) fn separation(&self, t: f64, hint: &mut Hint) -> f64 {
+        separation(self.a, self.b, &place(&self.trial.a, t), &place(&self.trial.b, t), hint)
+    }
+
+    /// The time up to which advancement shows the bodies apart, in [0, end].
+    pub(crate) fn advance(&self, end: f64, near: f64) -> f64 {
+        let mut hint = None;
+        advance(self.trial, [self.a.radius, self.b.radius], (end, near), |t| self.separation(t, &mut hint))
+    }
+
+    /// The first sampled time in [0, end) at which the bodies cross, after what advancement shows free.
+    fn crossing_before(&self, end: f64) -> Option<f64> {
+        let free = self.advance(end, NEAR);
+        let samples = (0..SAMPLES).flat_map(|k| {
+            let even = (k as f64 + 0.5) / SAMPLES as f64;
+            // Even, and crowded towards the end with ratio 4: a late answer is late by little.
+            [free + (end - free) * even, end - (end - free) * 0.25f64.powi(k as i32)]
+        });
+        let mut times: Vec<f64> = samples.filter(|&t| t > free && t < end).collect();
+        times.sort_by(f64::total_cmp);
+        let mut hint = None;
+        times.into_iter().find(|&t| self.separation(t, &mut hint) == 0.0)
+    }
+
+    /// What is wrong with the claim; `Ok` with the separation at the claimed time otherwise (infinite if none is).
+    pub(crate) fn check(&self, claim: &Claim, exact: bool) -> Result<f64, Fault> {
+        let free_until = |end: f64| self.crossing_before(end).map_or(Ok(()), |at| Err(Fault::Missed { at }));
+        match *claim {
+            Claim::Separated => free_until(1.0).map(|()| f64::INFINITY),
+            Claim::Undecided { clear_until } => {
+                free_until(clear_until.clamp(0.0, 1.0)).map(|()| f64::INFINITY)
+            }
+            Claim::Contact { lo, hi, tolerance } => {
+                if !(0.0..=1.0).contains(&lo) || hi < lo {
+                    return Err(Fault::Nonsense);
+                }
+                let left = self.separation(lo, &mut None);
+                free_until(lo)?;
+                if left == 0.0 && lo > 0.0 {
+                    return Err(Fault::Penetrates);
+                }
+                if exact && left > 3.3 * tolerance {
+                    return Err(Fault::Far { separation: left });
+                }
+                Ok(left)
+            }
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! The judge: an independent static distance and a check of answers by it. Nothing here uses the engine's trees,
+//! bounds or kernels, so that a fault there cannot hide itself.
+mod answer;
+mod placement;
+mod separation;
+mod triangle;
+
+pub(crate) use answer::{Claim, Judge, advance};
+pub(crate) use placement::{Placement, place};
+pub(crate) use separation::{BoxTree, Hint, separation};
+
+#[cfg(test)]
+mod tests;

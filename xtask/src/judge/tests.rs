@@ -1,0 +1,88 @@
+use super::answer::Fault;
+use super::triangle::distance;
+use super::*;
+use crate::random::Random;
+use crate::trials::{Movement, Trial};
+use glam::{DQuat, DVec3};
+
+fn cube() -> BoxTree {
+    let vertices: Vec<DVec3> =
+        (0..8).map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) - 0.5).collect();
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles: Vec<[u32; 3]> =
+        quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
+    BoxTree::build(&vertices, &triangles)
+}
+
+fn movement(position: DVec3, velocity: DVec3) -> Movement {
+    Movement { rotation: DQuat::IDENTITY, position, velocity, angular_velocity: DVec3::ZERO }
+}
+
+#[test]
+fn distance_of_known_triangles() {
+    let flat = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let lifted = |h: f64, by: DVec3| flat.map(|p| p + DVec3::Z * h + by);
+    assert_eq!(distance(&flat, &lifted(0.25, DVec3::ZERO)), 0.25);
+    assert_eq!(distance(&flat, &lifted(0.0, DVec3::X * 3.0)), 2.0);
+    // Vertex over face, edge over edge, crossing, and a needle collapsed to a point.
+    let spike = [DVec3::new(0.2, 0.2, 0.5), DVec3::new(0.0, 0.0, 2.0), DVec3::new(1.0, 0.0, 2.0)];
+    assert!((distance(&flat, &spike) - 0.5).abs() < 1e-15);
+    let bridge = [DVec3::new(0.5, -1.0, 0.125), DVec3::new(0.5, 1.0, 0.125), DVec3::new(0.5, 0.0, 3.0)];
+    assert!((distance(&flat, &bridge) - 0.125).abs() < 1e-15);
+    let through = [DVec3::new(0.2, 0.2, -1.0), DVec3::new(0.2, 0.2, 1.0), DVec3::new(5.0, 5.0, 0.0)];
+    assert_eq!(distance(&flat, &through), 0.0);
+    assert!((distance(&flat, &[DVec3::new(0.1, 0.1, 0.7); 3]) - 0.7).abs() < 1e-15);
+}
+
+#[test]
+fn the_tree_finds_what_all_pairs_give() {
+    let mut random = Random::new(11);
+    let soup = |random: &mut Random| -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let vertices = (0..60).map(|_| random.direction() * random.range(0.2, 1.0)).collect();
+        (vertices, (0..20).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
+    };
+    for _ in 0..200 {
+        let (a, b) = (soup(&mut random), soup(&mut random));
+        let at = Placement::new(random.rotation(), random.direction());
+        let beside =
+            Placement::new(random.rotation(), at.position + random.direction() * random.range(0.5, 3.0));
+        let corners = |mesh: &(Vec<DVec3>, Vec<[u32; 3]>), at: &Placement| -> Vec<[DVec3; 3]> {
+            mesh.1.iter().map(|t| t.map(|i| at.apply(mesh.0[i as usize]))).collect()
+        };
+        let (ca, cb) = (corners(&a, &at), corners(&b, &beside));
+        let least = ca.iter().flat_map(|s| cb.iter().map(|t| distance(s, t))).fold(f64::INFINITY, f64::min);
+        let (ta, tb) = (BoxTree::build(&a.0, &a.1), BoxTree::build(&b.0, &b.1));
+        let found = separation(&ta, &tb, &at, &beside, &mut None);
+        assert!((found - least).abs() < 1e-13, "{found} {least}");
+    }
+}
+
+#[test]
+fn faults_are_found() {
+    let cube = cube();
+    // Faces at distance 2, closing at 4: contact at 1/2 exactly; turned by 45° about z so that an edge leads.
+    let trial = Trial {
+        a: movement(DVec3::ZERO, DVec3::ZERO),
+        b: movement(DVec3::new(3.0, 0.1, 0.2), DVec3::X * -4.0),
+    };
+    let judge = Judge { a: &cube, b: &cube, trial: &trial };
+    let claim = |lo: f64| Claim::Contact { lo, hi: 0.5, tolerance: 1e-10 };
+    let left = judge.check(&claim(0.5 - 0.5e-10), true).unwrap();
+    assert!((left - 2e-10).abs() < 1e-14);
+    assert!(matches!(
+        judge.check(&Claim::Contact { lo: 0.5 + 1e-6, hi: 0.6, tolerance: 1e-10 }, true),
+        Err(Fault::Missed { .. } | Fault::Penetrates)
+    ));
+    assert!(matches!(judge.check(&claim(0.49), true), Err(Fault::Far { .. })));
+    assert!(judge.check(&claim(0.49), false).is_ok(), "early is allowed where the mode says so");
+    assert!(matches!(judge.check(&Claim::Separated, true), Err(Fault::Missed { .. })));
+    assert!(matches!(judge.check(&Claim::Undecided { clear_until: 0.75 }, true), Err(Fault::Missed { .. })));
+    assert!(judge.check(&Claim::Undecided { clear_until: 0.25 }, true).is_ok());
+    assert_eq!(judge.check(&claim(0.7), true), Err(Fault::Nonsense));
+    assert!((judge.advance(1.0, 1e-9) - 0.5).abs() < 1e-9);
+
+    let passing = Trial { b: movement(DVec3::new(3.0, 1.5, 0.0), DVec3::X * -6.0), ..trial };
+    let judge = Judge { a: &cube, b: &cube, trial: &passing };
+    assert_eq!(judge.check(&Claim::Separated, true), Ok(f64::INFINITY));
+    assert!(matches!(judge.check(&claim(0.5), true), Err(Fault::Far { .. })));
+}
