@@ -21,7 +21,7 @@ pub(crate) fn certified_contact(
     let root = best.bracket.lo();
     let guess = {
         let (pose, _) = bodies[1].motion.pose_and_twist(root);
-        let middle = bodies[1].tree.corners(best.triangle_b).iter().sum::<DVec3>() / 3.0;
+        let middle = bodies[1].body.corners(best.triangle_b).iter().sum::<DVec3>() / 3.0;
         estimate_relative_velocity(bodies, root, pose.transform_point(middle)).length()
     };
     let disjoint = step_back(bodies, relative, (start, root), guess, tolerance)?;
@@ -36,7 +36,7 @@ pub(crate) fn early_contact(
     tolerance: f64,
 ) -> Option<Contact> {
     let time = best.bracket.lo();
-    let distance = enclose_distance(bodies[0].tree, bodies[1].tree, &relative.placement(time), f64::INFINITY);
+    let distance = enclose_distance(bodies[0].body, bodies[1].body, &relative.placement(time), f64::INFINITY);
     let pair = distance.closest?;
     Some(describe(bodies, &Disjoint { time, distance, pair }, best, tolerance))
 }
@@ -70,7 +70,7 @@ fn contact_of_pair(bodies: &[Moving<'_>; 2], time: f64, tolerance: f64, pair: &C
     let (pose, _): (Pose, _) = bodies[1].motion.pose_and_twist(time);
     let detail = &pair.detail;
     let direction = if detail.direction == DVec3::ZERO {
-        estimate_normal(bodies[1].tree, pair)
+        estimate_normal(bodies[1].body, pair)
     } else {
         detail.direction
     };
@@ -102,7 +102,7 @@ fn estimate_normal(tree: &SphereTree, pair: &ClosestPair) -> DVec3 {
 
 /// The features on which the closest points lie, where they are a vertex and a face or two edges.
 fn feature_of(bodies: &[Moving<'_>; 2], pair: &ClosestPair) -> Option<FeaturePair> {
-    let corners = |i: usize, t: u32| bodies[i].tree.mesh().triangles()[t as usize];
+    let corners = |i: usize, t: u32| bodies[i].body.mesh().triangles()[t as usize];
     let (a, b) = (corners(0, pair.triangle_a), corners(1, pair.triangle_b));
     let side = |t: [u32; 3], k: u8| {
         let (v, w) = (t[k as usize % 3], t[(k as usize + 1) % 3]);
@@ -124,6 +124,6 @@ fn feature_of(bodies: &[Moving<'_>; 2], pair: &ClosestPair) -> Option<FeaturePai
 
 /// Any pair of features of the two triangles.
 fn any_feature(bodies: &[Moving<'_>; 2], pair: &ClosestPair) -> FeaturePair {
-    let vertex = bodies[0].tree.mesh().triangles()[pair.triangle_a as usize][0];
+    let vertex = bodies[0].body.mesh().triangles()[pair.triangle_a as usize][0];
     FeaturePair::VertexFace { vertex, face: pair.triangle_b }
 }

@@ -7,6 +7,7 @@
 mod answer;
 mod budget;
 mod capoeira;
+mod cross_check;
 mod distance;
 mod leaf_pair;
 mod sphere_tree;
@@ -15,31 +16,18 @@ mod step_back;
 mod stretch;
 mod traverse;
 
+pub use cross_check::{CrossCheck, cross_check};
 pub use sphere_tree::SphereTree;
 
 use crate::{QueryError, QueryOptions, Solid, TimeOfContact, Window};
 use budget::Meter;
 use d2m_feature::paper::{PaperOptions, RelativeMotion};
 use d2m_interval::Interval;
-use d2m_motion::RigidMotion;
 use start::{Start, classify_start};
 use traverse::Search;
 
-/// A body and how it moves.
-#[derive(Clone, Copy)]
-pub struct Moving<'a> {
-    /// The body.
-    pub tree: &'a SphereTree,
-    /// Its motion, defined over the window of the query.
-    pub motion: &'a dyn RigidMotion,
-}
-
-impl<'a> Moving<'a> {
-    /// A body and its motion.
-    pub const fn new(tree: &'a SphereTree, motion: &'a dyn RigidMotion) -> Self {
-        Self { tree, motion }
-    }
-}
+/// A body with its sphere tree, and how it moves.
+pub type Moving<'a> = crate::Moving<'a, SphereTree>;
 
 /// The first contact of two moving meshes, by the reference method.
 ///
@@ -93,7 +81,7 @@ pub fn time_of_contact(
     let span = Interval::new(t0, t1);
     let tolerance = tolerance.max(4.0 * stretch::bound_rounding(&bodies, &relative, span));
     let places = [relative.placement(t0), relative.swapped().placement(t0)];
-    match classify_start(a.tree, b.tree, &places, tolerance, options.solid) {
+    match classify_start(a.body, b.body, &places, tolerance, options.solid) {
         Start::Apart => {}
         Start::Meeting(state, pair) => {
             return Ok(TimeOfContact::Contact(answer::contact_at_start(
@@ -127,13 +115,13 @@ fn validate(bodies: &[Moving<'_>; 2], window: Window, options: &QueryOptions) ->
     if !(options.min_separation >= 0.0 && options.min_separation.is_finite()) {
         return Err(QueryError::BadMinSeparation { value: options.min_separation });
     }
-    let radius = bodies.iter().map(|m| m.tree.bounding_sphere().radius).fold(0.0, f64::max);
+    let radius = bodies.iter().map(|m| m.body.bounding_sphere().radius).fold(0.0, f64::max);
     let tolerance = options.tolerance.unwrap_or(1e-10 * radius.max(f64::MIN_POSITIVE));
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(QueryError::BadTolerance { value: tolerance });
     }
     for (body, moving) in bodies.iter().enumerate() {
-        if options.solid == Solid::Filled && !moving.tree.is_watertight() {
+        if options.solid == Solid::Filled && !moving.body.is_watertight() {
             return Err(QueryError::NotWatertight { body });
         }
         if !stretch::is_bounded(moving, Interval::new(window.start(), window.end())) {

@@ -57,19 +57,22 @@ pub(crate) fn classify_start(
 fn first_crossing(a: &SphereTree, b: &SphereTree, place: &Placement, tolerance: f64) -> Option<ClosestPair> {
     let mut crossing = None;
     visit_close_pairs(a, b, place, tolerance, |pair| {
-        let corners_b = b.corners(pair.triangle_b);
-        let passes = |edges: &[DVec3; 3], face: &[DVec3; 3]| {
-            (0..3).any(|i| passes_through(edges[i], edges[(i + 1) % 3], face, tolerance + pair.rounding))
-        };
-        if crossing.is_none()
-            && pair.detail.upper == 0.0
-            && (passes(&pair.corners_a, &corners_b) || passes(&corners_b, &pair.corners_a))
-        {
+        if crossing.is_none() && pair.detail.upper == 0.0 && is_crossing(b, pair, tolerance) {
             crossing = Some(*pair);
         }
         if crossing.is_some() { f64::NEG_INFINITY } else { f64::INFINITY }
     });
     crossing
+}
+
+/// Does an edge of one triangle pass through the other one, reaching more than `margin` to both sides and crossing it
+/// more than `margin` from its outline? An estimate.
+pub(crate) fn is_crossing(b: &SphereTree, pair: &ClosestPair, margin: f64) -> bool {
+    let corners_b = b.corners(pair.triangle_b);
+    let passes = |edges: &[DVec3; 3], face: &[DVec3; 3]| {
+        (0..3).any(|i| passes_through(edges[i], edges[(i + 1) % 3], face, margin + pair.rounding))
+    };
+    passes(&pair.corners_a, &corners_b) || passes(&corners_b, &pair.corners_a)
 }
 
 /// Does the segment reach more than `margin` to either side of the face, and cross it well inside? An estimate: it only

@@ -48,7 +48,7 @@ pub(crate) fn step_back(
 ) -> Option<Disjoint> {
     let measure = |t: f64| {
         let place = relative.placement(t);
-        enclose_distance(bodies[0].tree, bodies[1].tree, &place, CUTOFF * tolerance)
+        enclose_distance(bodies[0].body, bodies[1].body, &place, CUTOFF * tolerance)
     };
     let speed = if closing_speed > 0.0 && closing_speed.is_finite() { closing_speed } else { 1.0 };
     // Distances: `near` below the band, `far` above it.
@@ -99,7 +99,7 @@ pub(crate) fn step_back(
     if best.is_none() {
         let time = far.map_or(start, |(t, _)| t);
         let place = relative.placement(time);
-        let distance = enclose_distance(bodies[0].tree, bodies[1].tree, &place, f64::INFINITY);
+        let distance = enclose_distance(bodies[0].body, bodies[1].body, &place, f64::INFINITY);
         if distance.lower > 0.0 {
             best = distance.closest.map(|pair| Disjoint { time, distance, pair });
         }

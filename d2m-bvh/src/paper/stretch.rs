@@ -37,7 +37,7 @@ pub(crate) fn longest(bodies: &[Moving<'_>; 2], window: Interval) -> f64 {
     let mut radius = 0.0f64;
     let twists = [0, 1].map(|i: usize| bodies[i].motion.enclose_twist(window));
     for (moving, twist) in bodies.iter().zip(&twists) {
-        let sphere = moving.tree.bounding_sphere();
+        let sphere = moving.body.bounding_sphere();
         let at = moving.motion.enclose_pose(Interval::point(window.lo())).at;
         let reach = sphere.radius + (sphere.center - at).length();
         acceleration += moving.motion.bound_acceleration(window, reach);
@@ -57,7 +57,7 @@ pub(crate) fn bound_rounding(
     relative: &RelativeMotion<'_>,
     window: Interval,
 ) -> f64 {
-    let sphere = bodies[0].tree.bounding_sphere();
+    let sphere = bodies[0].body.bounding_sphere();
     [window.lo(), window.hi()]
         .into_iter()
         .flat_map(|t| {

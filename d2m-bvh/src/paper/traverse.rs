@@ -56,8 +56,8 @@ impl Stretch {
     fn new(moving: &Moving<'_>) -> Self {
         Self {
             body: BodyOverDomain::new(moving.motion, Interval::ZERO, glam::DVec3::ZERO),
-            spheres: Lazy::new(moving.tree.node_count()),
-            vertices: Lazy::new(moving.tree.mesh().vertex_count()),
+            spheres: Lazy::new(moving.body.node_count()),
+            vertices: Lazy::new(moving.body.mesh().vertex_count()),
             corner_boxes: vec![],
             triangle_boxes: vec![],
         }
@@ -154,14 +154,14 @@ impl<'a> Search<'a> {
 
     /// Test-Sphere-Pair of two nodes.
     fn test(&mut self, a: u32, b: u32, searched: Interval) -> Option<Interval> {
-        let sphere_a = self.stretch[0].sphere(self.bodies[0].tree, a);
-        let sphere_b = self.stretch[1].sphere(self.bodies[1].tree, b);
+        let sphere_a = self.stretch[0].sphere(self.bodies[0].body, a);
+        let sphere_b = self.stretch[1].sphere(self.bodies[1].body, b);
         test_sphere_pair(&sphere_a, &sphere_b, self.epoch, searched)
     }
 
     /// Algorithm 6: lowers `self.best` by the contacts of the two subtrees within `span`.
     fn traverse(&mut self, span: Interval, a: u32, b: u32) -> Result<(), Stopped> {
-        let (tree_a, tree_b) = (self.bodies[0].tree, self.bodies[1].tree);
+        let (tree_a, tree_b) = (self.bodies[0].body, self.bodies[1].body);
         let (node_a, node_b) = (tree_a.node(a), tree_b.node(b));
         let stopped = Stopped { clear_until: span.lo() };
         if node_a.is_leaf() && node_b.is_leaf() {
@@ -212,8 +212,8 @@ impl<'a> Search<'a> {
     /// Does a swept box of a triangle of one leaf meet one of the other leaf?
     fn triangles_may_meet(&mut self, a: &Leaf, b: &Leaf, span: Interval) -> bool {
         let [of_a, of_b] = &mut self.stretch;
-        let all_a = of_a.sweep(self.bodies[0].tree, a, span);
-        let all_b = of_b.sweep(self.bodies[1].tree, b, span);
+        let all_a = of_a.sweep(self.bodies[0].body, a, span);
+        let all_b = of_b.sweep(self.bodies[1].body, b, span);
         meet(&all_a, &all_b)
             && of_a
                 .triangle_boxes
@@ -223,7 +223,7 @@ impl<'a> Search<'a> {
 
     /// Capoeira mode: the start of the overlap of two leaves stands for the contact of their content.
     fn offer_leaf_pair(&mut self, span: Interval, a: u32, b: u32) {
-        let (tree_a, tree_b) = (self.bodies[0].tree, self.bodies[1].tree);
+        let (tree_a, tree_b) = (self.bodies[0].body, self.bodies[1].body);
         let leaf_a = tree_a.leaf(tree_a.node(a));
         let triangle_b = tree_b.leaf(tree_b.node(b)).triangles[0];
         let vertex = leaf_a.corners[0];
