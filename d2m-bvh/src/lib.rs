@@ -10,7 +10,8 @@ mod tree;
 pub use enclosing_sphere::EnclosingSphere;
 pub use mesh::{Edge, MAX_COORDINATE, MeshError, Topology, TriMesh, Validation};
 pub use query::{
-    Budget, Contact, Mode, Moving, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window,
-    time_of_contact,
+    Budget, Contact, Distance, DistanceOptions, Mode, Moving, PairCache, Posed, QueryError, QueryOptions,
+    Solid, StartState, TimeOfContact, Window, collide, colliding_pairs, distance, distance_within,
+    time_of_contact, try_colliding_pair,
 };
 pub use tree::MeshTree;

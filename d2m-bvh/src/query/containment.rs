@@ -1,108 +1,117 @@
-//! Is a point inside a closed surface? Parity of the crossings of a ray that stays clear of edges.
+//! Is a point inside a closed surface? The parity of the crossings of a ray, with exact signs.
+//!
+//! The ray runs along +x from the point, which is thought of as moved by (0, ε, ε²) with an infinitesimal ε > 0: then it
+//! meets no edge and no corner. Each of the three sides of a triangle, seen along x, is crossed by a second ray along +y
+//! or not; an odd number of crossings means that the first ray's line meets the triangle. That answer for a side depends
+//! on the side and the point only, so the triangles at an edge never disagree, and orientation signs are exact: the
+//! parity is right for every closed surface and every point that is not on it, flat triangles included. (Edelsbrunner
+//! and Mücke, Simulation of Simplicity, ACM Trans. Graph. 9(1), 1990, doi:10.1145/77635.77639.)
 
+use super::static_pair::Scene;
 use crate::MeshTree;
 use crate::tree::node::{Below, WIDTH};
-use glam::DVec3;
+use d2m_feature::{orient2d, orient3d};
+use glam::{DVec2, DVec3};
+use std::cmp::Ordering;
 
-/// Directions that are tried one after the other; no two share a plane with a coordinate axis.
-const DIRECTIONS: [DVec3; 6] = [
-    DVec3::new(0.577_123, 0.601_717, 0.552_101),
-    DVec3::new(-0.267_191, 0.801_713, 0.534_571),
-    DVec3::new(0.842_113, -0.331_171, 0.425_507),
-    DVec3::new(0.151_197, 0.349_813, -0.924_557),
-    DVec3::new(-0.713_141, -0.517_271, 0.473_197),
-    DVec3::new(-0.419_813, 0.227_191, -0.878_713),
-];
-/// A crossing counts when it is at least this far from every edge, relative to the lengths involved.
-const CLEARANCE: f64 = 1e-11;
-
-/// Is `point` (body coordinates) inside the filled mesh? For points away from the surface. Parity of ray crossings;
-/// when every direction grazes an edge, the winding number.
+/// Is `point` (body coordinates) in the filled mesh? Exact for the surface whose corners are rounded to the
+/// coordinates from the tree's centre; a point on that surface is inside. The mesh must be watertight.
 pub(crate) fn contains_point(tree: &MeshTree, point: DVec3) -> bool {
-    let local = point - tree.center();
-    if local.length() > tree.radius() * (1.0 + 1e-12) {
+    contains_local_point(tree, point - tree.center())
+}
+
+/// The same for a point relative to the tree's centre.
+pub(crate) fn contains_local_point(tree: &MeshTree, point: DVec3) -> bool {
+    let far = point.abs().max_element();
+    if far.is_nan() || far > tree.radius() {
         return false;
     }
-    for direction in DIRECTIONS {
-        if let Some(crossings) = count_crossings(tree, local, direction) {
-            return crossings % 2 == 1;
-        }
-    }
-    winding(tree, local).round() as i64 % 2 != 0
-}
-
-fn corners(tree: &MeshTree, triangle: u32) -> [DVec3; 3] {
-    tree.mesh().corners(triangle as usize).map(|p| p - tree.center())
-}
-
-/// Crossings of the ray with the surface; None when one is too near an edge to be certain.
-fn count_crossings(tree: &MeshTree, from: DVec3, direction: DVec3) -> Option<u32> {
-    let start = from / tree.unit();
-    let direction = direction.normalize();
+    let start = point / tree.unit();
     let mut stack = vec![(0usize, 0usize)];
-    let mut count = 0;
+    let mut hits: Vec<[DVec3; 3]> = Vec::new();
     while let Some((index, lane)) = stack.pop() {
         let node = &tree.nodes[index];
         let boxed = node.oriented_box(lane);
-        let center =
-            DVec3::from_array([0, 1, 2].map(|k| f64::from(node.origin[k]) + f64::from(boxed.center[k])));
-        let to = center - start;
-        let radius = f64::from(boxed.radius) * (1.0 + 1e-6) + 1e-12;
-        let along = to.dot(direction);
-        if along < -radius || to.length_squared() - along * along > radius * radius {
+        // |axis·(p − c)| ≤ h for nearly orthonormal axes gives |p_k − c_k| ≤ Σ|axis_k| h + 5.2u r; 1e-6 > 5.2u.
+        let reach = |k: usize| {
+            let along: f64 =
+                (0..3).map(|i| f64::from(boxed.axes[i][k].abs()) * f64::from(boxed.half_extent[i])).sum();
+            along + 1e-6 * f64::from(boxed.radius) + 1e-15
+        };
+        let to = |k: usize| f64::from(node.origin[k]) + f64::from(boxed.center[k]) - start[k];
+        if to(1).abs() > reach(1) || to(2).abs() > reach(2) || to(0) < -reach(0) {
             continue;
         }
         match node.below(lane) {
-            Below::Triangle(triangle) => count += crosses(from, direction, &corners(tree, triangle))?,
+            Below::Triangle(triangle) => {
+                let corners = tree.mesh().corners(triangle as usize).map(|p| p - tree.center());
+                match crossing(point, &corners) {
+                    Crossing::None => {}
+                    Crossing::Ahead => hits.push(first_smallest(corners)),
+                    Crossing::Here => return true,
+                }
+            }
             Below::Node(child) => {
-                let used = tree.nodes[child as usize].used as usize;
-                stack.extend((0..used.min(WIDTH)).map(|lane| (child as usize, lane)));
+                let used = (tree.nodes[child as usize].used as usize).min(WIDTH);
+                stack.extend((0..used).map(|lane| (child as usize, lane)));
             }
         }
     }
-    Some(count)
+    // A repetition of a triangle with the same orientation is not part of the surface.
+    let new = |i: usize| !hits[..i].contains(&hits[i]);
+    (0..hits.len()).filter(|&i| new(i)).count() % 2 == 1
 }
 
-/// 1 when the ray crosses the inside of the triangle, 0 when it passes by, None when that is not certain.
-fn crosses(from: DVec3, direction: DVec3, corners: &[DVec3; 3]) -> Option<u32> {
-    let [a, b, c] = corners.map(|p| p - from);
-    let side = |p: DVec3, q: DVec3| p.cross(q).dot(direction);
-    let (u, v, w) = (side(a, b), side(b, c), side(c, a));
-    let size = a.length().max(b.length()).max(c.length());
-    let slack = CLEARANCE * size * size;
-    let (low, high) = (u.min(v).min(w), u.max(v).max(w));
-    if low < -slack && high > slack {
-        return Some(0);
-    }
-    if low <= slack && high >= -slack {
-        // Near an edge's line on the inner side of the others, or edge-on.
-        let ahead = a.dot(direction).max(b.dot(direction)).max(c.dot(direction));
-        return if ahead < 0.0 { Some(0) } else { None };
-    }
-    let normal = (b - a).cross(c - a);
-    // The plane is at distance t along the ray, a·normal = t direction·normal.
-    Some(u32::from(a.dot(normal) * direction.dot(normal) > 0.0))
+/// The same cyclic order with the least corner first: equal for repeated triangles.
+fn first_smallest(corners: [DVec3; 3]) -> [DVec3; 3] {
+    let key = |p: &DVec3| [p.x, p.y, p.z];
+    let first =
+        (0..3).min_by(|&i, &j| key(&corners[i]).partial_cmp(&key(&corners[j])).unwrap_or(Ordering::Equal));
+    let first = first.unwrap_or(0);
+    [corners[first], corners[(first + 1) % 3], corners[(first + 2) % 3]]
 }
 
-/// Winding number of the surface about the point: the sum of the signed solid angles over 4π.
-fn winding(tree: &MeshTree, from: DVec3) -> f64 {
-    let mut turns = 0.0;
-    for triangle in 0..tree.mesh().triangle_count() as u32 {
-        let [a, b, c] = corners(tree, triangle).map(|p| (p - from).normalize_or_zero());
-        let volume = a.cross(b).dot(c);
-        let shape = 1.0 + a.dot(b) + b.dot(c) + c.dot(a);
-        turns += angle_of(volume, shape);
-    }
-    turns / (2.0 * core::f64::consts::PI)
+/// How the ray along +x stands to a triangle.
+enum Crossing {
+    None,
+    Ahead,
+    /// The point is on the triangle.
+    Here,
 }
 
-/// The angle of the vector (x, y) in (−π, π], to about 1e-4: the sum above is rounded to an integer.
-fn angle_of(y: f64, x: f64) -> f64 {
-    use core::f64::consts::{FRAC_PI_2, PI};
-    let ratio = if x.abs() > y.abs() { y.abs() / x.abs() } else { x.abs() / y.abs().max(f64::MIN_POSITIVE) };
-    let z = ratio * ratio;
-    let angle = ratio * (0.999_866 - z * (0.330_299_5 - z * (0.180_141 - z * (0.085_133 - z * 0.020_835_1))));
-    let acute = if x.abs() > y.abs() { angle } else { FRAC_PI_2 - angle };
-    let upper = if x < 0.0 { PI - acute } else { acute };
-    if y < 0.0 { -upper } else { upper }
+fn crossing(point: DVec3, corners: &[DVec3; 3]) -> Crossing {
+    let flat = |p: DVec3| DVec2::new(p.y, p.z);
+    let here = flat(point);
+    let crosses = |p: DVec3, q: DVec3| {
+        let (p, q) = if p.z > point.z { (q, p) } else { (p, q) };
+        // From below, or level, to above; at a tie of the sign the moved point is beyond the side.
+        p.z <= point.z && q.z > point.z && orient2d(flat(p), flat(q), here) == Ordering::Greater
+    };
+    let [a, b, c] = *corners;
+    if !(crosses(a, b) ^ crosses(b, c) ^ crosses(c, a)) {
+        return Crossing::None;
+    }
+    // The normal's x component has the sign of the turn seen along x, and the ray ends on the triangle's far side.
+    let facing = orient2d(flat(a), flat(b), flat(c));
+    match orient3d(a, b, c, point) {
+        Ordering::Equal => Crossing::Here,
+        side if side == facing.reverse() => Crossing::Ahead,
+        _ => Crossing::None,
+    }
+}
+
+/// Which body holds the other, if one does (0: A holds a part of B, 1: B holds a part of A)? For surfaces whose
+/// placed triangles are more than `scene.error` apart: moving every corner to its placed position is then a motion
+/// without contact, so what is inside stays inside.
+pub(crate) fn one_holds_the_other(scene: &Scene<'_>) -> Option<usize> {
+    let (rows, back) = scene.pose.inverse();
+    let sides = [(rows, back), (scene.pose.rotation, scene.pose.offset)];
+    (0..2).find(|&outer| {
+        let (holder, inner) = (scene.trees[outer], scene.trees[1 - outer]);
+        let (r, offset) = &sides[outer];
+        inner.component_vertices().iter().any(|&vertex| {
+            let p = inner.mesh().vertices()[vertex as usize] - inner.center();
+            contains_local_point(holder, r[0] * p.x + r[1] * p.y + r[2] * p.z + *offset)
+        })
+    })
 }

@@ -42,4 +42,10 @@ pub enum QueryError {
         /// 0 for the first body, 1 for the second.
         body: usize,
     },
+    /// The pose is not finite, its quaternion is zero, or lengths exceed 1e100.
+    #[error("pose of body {body} is not finite, has a zero quaternion or exceeds 1e100")]
+    BadPose {
+        /// 0 for the first body, 1 for the second.
+        body: usize,
+    },
 }

@@ -1,17 +1,26 @@
 //! What a query is asked and what it answers.
 
+mod cache;
+mod collide;
 mod contact;
 mod containment;
+mod distance;
 mod error;
 mod moving;
 mod options;
+mod posed;
 mod report;
+mod static_pair;
 mod time_of_contact;
 mod window;
 
+pub use cache::PairCache;
+pub use collide::{collide, colliding_pairs, try_colliding_pair};
 pub use contact::{Contact, StartState, TimeOfContact};
+pub use distance::{Distance, DistanceOptions, distance, distance_within};
 pub use error::QueryError;
 pub use moving::Moving;
 pub use options::{Budget, Mode, QueryOptions, Solid};
+pub use posed::Posed;
 pub use time_of_contact::time_of_contact;
 pub use window::Window;

@@ -12,8 +12,11 @@ mod triangle_pair;
 mod window;
 
 pub(crate) use closest::{Closest, Place, closest};
-pub(crate) use dispatch::first_contact;
+pub(crate) use dispatch::{Isa, first_contact};
 pub(crate) use frame::{Frame, RelativeMotion};
+#[cfg(target_arch = "x86_64")]
+pub(crate) use lanes::Avx;
+pub(crate) use lanes::{Lanes, Portable};
 pub(crate) use scene::{Scene, Scratch};
 pub(crate) use triangle_pair::place_a;
 pub(crate) use window::{Found, Outcome, corners, time_from};

@@ -1,0 +1,165 @@
+//! Constants of one static query, and what its searches do at a pair of boxes.
+
+use super::RelativePose;
+use super::node_test::{Placed, Side, lower_bounds, overlaps};
+use crate::search::Lanes;
+use crate::tree::margin::UNIT_F64;
+use crate::tree::node::{Below, WIDTH};
+use crate::{MeshTree, Posed, QueryError};
+use glam::DVec3;
+
+/// A body whose radius is below this part of the size is one point as far as rounding can tell.
+const POINT_LIKE: f64 = 4.0 * UNIT_F64;
+
+/// Two bodies at rest, in the frame of B's tree. Working coordinates are divided by a power of two so that all lengths
+/// are at most one.
+#[derive(Debug)]
+pub(crate) struct Scene<'a> {
+    pub(crate) trees: [&'a MeshTree; 2],
+    pub(crate) pose: RelativePose,
+    /// The working unit.
+    pub(crate) unit: f64,
+    inverse_unit: f64,
+    /// Twice the bound on the distance between where triangles are placed and where they are, both bodies together,
+    /// working units. Triangles placed further apart than this are apart.
+    pub(crate) error: f64,
+    /// The same with the rounding of a projected gap: per unit length of the direction.
+    pub(crate) need: f64,
+    /// Bound on the rounding of a projected gap alone.
+    pub(crate) projection: f64,
+    offset: DVec3,
+    sides: [Side; 2],
+    /// What makes sizes of boxes of the two bodies comparable.
+    volume: [f64; 2],
+    point_like: [bool; 2],
+}
+
+/// What there is to do at a pair of boxes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Step {
+    /// Open the node below the box of this body.
+    Open(usize, u32),
+    /// Compare two triangles.
+    Compare([u32; 2]),
+}
+
+impl<'a> Scene<'a> {
+    pub(crate) fn try_new(a: Posed<'a>, b: Posed<'a>) -> Result<Self, QueryError> {
+        let pose = RelativePose::try_new(a, b)?;
+        let trees = [a.body, b.body];
+        let unit = power_of_two_above(pose.size);
+        let inverse_unit = 1.0 / unit;
+        let size = pose.size * inverse_unit;
+        let point_like = trees.map(|tree| tree.radius() <= POINT_LIKE * pose.size);
+        // All triangles of a point-like body stand for one: it may be off by the diameter.
+        let blur: f64 =
+            trees.iter().zip(point_like).map(|(t, p)| if p { 2.0 * t.radius() } else { 0.0 }).sum();
+        // Placing rounds by at most 9v(ρA + |T|) on A's side and 2v ρB on B's.
+        let error = 2.0 * ((pose.error + blur) * inverse_unit + 10.0 * UNIT_F64 * size) * (1.0 + 1e-12);
+        let projection = 8.0 * UNIT_F64 * size * (1.0 + 1e-12);
+        let (inverse, back) = pose.inverse();
+        let side = |wide: &MeshTree, single: &MeshTree, rotation, offset: DVec3| Side {
+            rotation,
+            offset: offset / wide.unit(),
+            ratio: single.unit() / wide.unit(),
+            floor: 2.0 * error * (unit / wide.unit()) + f64::from_bits((1023 - 60) << 52),
+            to_work: (wide.unit() * inverse_unit) as f32,
+        };
+        let cube = |x: f64| x * x * x;
+        Ok(Self {
+            trees,
+            pose,
+            unit,
+            inverse_unit,
+            error,
+            need: (error + projection) * (1.0 + 1e-12),
+            projection,
+            offset: pose.offset * inverse_unit,
+            sides: [side(a.body, b.body, inverse, back), side(b.body, a.body, pose.rotation, pose.offset)],
+            volume: trees.map(|tree| cube(tree.unit() * inverse_unit)),
+            point_like,
+        })
+    }
+
+    /// Corners of a triangle in working coordinates.
+    #[inline(always)]
+    pub(crate) fn place(&self, body: usize, triangle: u32) -> [DVec3; 3] {
+        let tree = self.trees[body];
+        let [p, q, r] = tree.mesh().corners(triangle as usize);
+        [self.place_point(body, p), self.place_point(body, q), self.place_point(body, r)]
+    }
+
+    #[inline(always)]
+    fn place_point(&self, body: usize, point: DVec3) -> DVec3 {
+        let p = (point - self.trees[body].center()) * self.inverse_unit;
+        let r = &self.pose.rotation;
+        if body == 1 { p } else { (r[0] * p.x + r[1] * p.y + r[2] * p.z) + self.offset }
+    }
+
+    /// What to do at a pair of boxes: open the larger one, the second at a tie.
+    #[inline(always)]
+    pub(crate) fn step(&self, pair: [u32; 2]) -> Step {
+        let ((size_a, below_a), (size_b, below_b)) = (self.look(0, pair[0]), self.look(1, pair[1]));
+        match (below_a, below_b) {
+            (Below::Triangle(a), Below::Triangle(b)) => Step::Compare([a, b]),
+            (Below::Node(a), Below::Triangle(_)) => Step::Open(0, a),
+            (Below::Triangle(_), Below::Node(b)) => Step::Open(1, b),
+            (Below::Node(a), Below::Node(b)) => {
+                if size_a > size_b {
+                    Step::Open(0, a)
+                } else {
+                    Step::Open(1, b)
+                }
+            }
+        }
+    }
+
+    /// Size of a box, and what is below it.
+    #[inline(always)]
+    fn look(&self, body: usize, index: u32) -> (f64, Below) {
+        let node = &self.trees[body].nodes[index as usize / WIDTH];
+        let lane = index as usize % WIDTH;
+        if self.point_like[body] {
+            return (0.0, Below::Triangle(0));
+        }
+        (f64::from(node.size[lane]) * self.volume[body], node.below(lane))
+    }
+
+    #[inline(always)]
+    fn placed(&self, wide: usize, node: u32, single: u32) -> Placed {
+        let tree = self.trees[1 - wide];
+        let from = &tree.nodes[single as usize / WIDTH];
+        let boxed = from.oriented_box(single as usize % WIDTH);
+        Placed::new(&self.sides[wide], &boxed, from.origin, &self.trees[wide].nodes[node as usize])
+    }
+
+    /// Lower bounds on the distances of the boxes of a node of body `wide` from a box of the other body, working units.
+    #[inline(always)]
+    pub(crate) fn bounds<L: Lanes>(&self, wide: usize, node: u32, single: u32) -> ([f32; 8], usize) {
+        let placed = self.placed(wide, node, single);
+        let node = &self.trees[wide].nodes[node as usize];
+        (lower_bounds::<L>(node, &placed, self.sides[wide].to_work), (node.used as usize).min(WIDTH))
+    }
+
+    /// Which boxes of a node of body `wide` are not proven apart from a box of the other body.
+    #[inline(always)]
+    pub(crate) fn overlaps<L: Lanes>(&self, wide: usize, node: u32, single: u32) -> u32 {
+        let placed = self.placed(wide, node, single);
+        overlaps::<L>(&self.trees[wide].nodes[node as usize], &placed)
+    }
+}
+
+/// The pair of boxes after opening one of the two.
+#[inline(always)]
+pub(crate) fn child(pair: [u32; 2], wide: usize, node: u32, lane: usize) -> [u32; 2] {
+    let mut pair = pair;
+    pair[wide] = node * WIDTH as u32 + lane as u32;
+    pair
+}
+
+/// The least power of two that is not below `x`, at least 2⁻⁶⁰⁰.
+fn power_of_two_above(x: f64) -> f64 {
+    let x = x.max(f64::from_bits((1023 - 600) << 52));
+    let power = f64::from_bits(x.to_bits() & (0x7ff << 52));
+    if power < x { 2.0 * power } else { power }
+}

@@ -1,0 +1,285 @@
+//! Static queries against brute force over all pairs of triangles, in rational arithmetic where it decides.
+
+mod exact;
+
+use d2m_bvh::{
+    DistanceOptions, MeshTree, PairCache, Posed, QueryError, Solid, StartState, TriMesh, collide,
+    colliding_pairs, distance, distance_within, try_colliding_pair,
+};
+use d2m_feature::triangle_distance;
+use d2m_motion::Pose;
+use dashu_ratio::RBig;
+use glam::{DQuat, DVec3};
+
+struct Random(u64);
+
+impl Random {
+    /// Uniform in [−1, 1).
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
+    }
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.next(), self.next(), self.next())
+    }
+    fn quaternion(&mut self) -> DQuat {
+        DQuat::from_xyzw(self.next(), self.next(), self.next(), self.next())
+    }
+}
+
+/// Corners (±1, ±1, ±1), or as moved by the map.
+fn cube(map: impl Fn(DVec3) -> DVec3) -> TriMesh {
+    let sign = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
+    let corners = (0..8).map(|i| map(DVec3::new(sign(i & 1), sign(i & 2), sign(i & 4)))).collect();
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    TriMesh::try_new(corners, triangles).unwrap()
+}
+
+fn tetrahedron(random: &mut Random, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
+    let corners = (0..4).map(|_| map(random.vector())).collect();
+    TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap()
+}
+
+/// Triangles with no connection; some flat, some mere points or repeated.
+fn soup(random: &mut Random, count: usize, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
+    let mut corners = Vec::new();
+    for i in 0..count {
+        let base = random.vector();
+        let (e, f) = (random.vector() * 0.3, random.vector() * 0.3);
+        let f = match i % 7 {
+            0 => e * 0.5,
+            1 => DVec3::ZERO,
+            _ => f,
+        };
+        corners.extend([base, base + e, base + f].map(&map));
+    }
+    let triangles = (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    TriMesh::try_new(corners, triangles).unwrap()
+}
+
+/// Least squared distance of the surfaces. Pairs that double precision puts far behind the best one are left out.
+fn brute_force(a: Posed<'_>, b: Posed<'_>, size: f64) -> RBig {
+    let place = |posed: Posed<'_>| -> Vec<[exact::Vector; 3]> {
+        let mesh = posed.body.mesh();
+        let one = |i: usize| mesh.corners(i).map(|p| exact::pose_point(&posed.pose, p));
+        (0..mesh.triangle_count()).map(one).collect()
+    };
+    let (ta, tb) = (place(a), place(b));
+    let round = |t: &[exact::Vector; 3]| {
+        t.each_ref().map(|p| DVec3::from_array(p.each_ref().map(|c| c.to_f64().value())))
+    };
+    let (fa, fb): (Vec<_>, Vec<_>) = (ta.iter().map(round).collect(), tb.iter().map(round).collect());
+    let mut pairs = Vec::new();
+    for (i, x) in fa.iter().enumerate() {
+        for (j, y) in fb.iter().enumerate() {
+            pairs.push((triangle_distance(x, y).upper, i, j));
+        }
+    }
+    let best = pairs.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
+    let near = pairs.into_iter().filter(|p| p.0 <= best + 1e-9 * size);
+    let mut least: Option<RBig> = None;
+    for (_, i, j) in near.take(12) {
+        let found = exact::triangle_triangle(&ta[i], &tb[j]);
+        if least.as_ref().is_none_or(|l| found < *l) {
+            least = Some(found);
+        }
+        if least == Some(RBig::ZERO) {
+            break;
+        }
+    }
+    least.unwrap()
+}
+
+fn check(a: Posed<'_>, b: Posed<'_>, what: &str) {
+    let length = |p: &Pose| (p.translation.length(), p.at.length());
+    let ((xa, aa), (xb, ab)) = (length(&a.pose), length(&b.pose));
+    let arms = (a.body.center() - a.pose.at).length() + (b.body.center() - b.pose.at).length();
+    let size = a.body.radius() + b.body.radius() + arms + (a.pose.translation - b.pose.translation).length();
+    let all = size + 1e-3 * (xa + xb) + 1e-3 * (aa + ab);
+    let square = brute_force(a, b, size);
+    let found = distance(a, b, Solid::Surface).unwrap();
+    let exact = |x: f64| RBig::try_from(x).unwrap();
+    assert!(exact(found.lower) * exact(found.lower) <= square, "{what}: lower {found:?}");
+    assert!(square <= exact(found.upper) * exact(found.upper), "{what}: upper {found:?}");
+    assert!(found.upper - found.lower < 2e-13 * all, "{what}: width {found:?} {all}");
+    assert!(found.lower <= found.value && found.value <= found.upper);
+    let truth = square.to_f64().value().sqrt();
+    assert!(
+        (found.point_a.distance(found.point_b) - truth).abs() < 1e-12 * (all + xa + xb),
+        "{what}: {found:?}"
+    );
+    for (weights, triangle, posed, point) in [
+        (found.barycentric_a, found.triangle_a, a, found.point_a),
+        (found.barycentric_b, found.triangle_b, b, found.point_b),
+    ] {
+        assert!(weights.iter().all(|w| (0.0..=1.0).contains(w)));
+        let [p, q, r] = posed.body.mesh().corners(triangle as usize);
+        let mut pose = posed.pose;
+        pose.rotation = pose.rotation.normalize();
+        let again = pose.transform_point(p * weights[0] + q * weights[1] + r * weights[2]);
+        assert!(again.distance(point) <= 1e-12 * (all + xa + xb));
+    }
+    // Never a false "no", and no "yes" that rounding does not excuse.
+    let hit = collide(a, b, Solid::Surface).unwrap();
+    assert!(hit || square > RBig::ZERO, "{what}: missed");
+    assert!(!hit || truth < 1e-13 * all, "{what}: false contact at {truth}");
+    assert_eq!(hit, !colliding_pairs(a, b).unwrap().is_empty());
+    assert_eq!(hit, try_colliding_pair(a, b).unwrap().is_some());
+    // A cutoff and a warm start change nothing.
+    let mut cache = PairCache::new();
+    for (i, j) in [(0, 0), (found.triangle_a, found.triangle_b), (u32::MAX, 0)] {
+        cache.remember([i, j]);
+        let options = DistanceOptions::default().with_solid(Solid::Surface);
+        assert_eq!(distance_within(a, b, &options, &mut cache).unwrap(), Some(found));
+        assert_eq!(cache.triangles(), Some([found.triangle_a, found.triangle_b]));
+        let options = options.with_cutoff(found.upper);
+        assert_eq!(distance_within(a, b, &options, &mut cache).unwrap(), Some(found));
+        let below = found.lower.next_down();
+        if below >= 0.0 {
+            let options = options.with_cutoff(below);
+            assert_eq!(distance_within(a, b, &options, &mut cache).unwrap(), None);
+        }
+    }
+}
+
+fn pose(random: &mut Random, spread: f64) -> Pose {
+    Pose {
+        rotation: random.quaternion(),
+        translation: random.vector() * spread,
+        at: random.vector() * 0.1 * spread,
+    }
+}
+
+#[test]
+fn random_solids_and_soups() {
+    let mut random = Random(7);
+    for round in 0..60 {
+        let scale = [1.0, 1e-6, 1e6, 1e-3][round % 4];
+        let ratio = [1.0, 1.0, 1e-3, 1e3, 1e-30][round % 5];
+        let a = MeshTree::new(match round % 3 {
+            0 => soup(&mut random, 9, |p| p * scale),
+            1 => tetrahedron(&mut random, |p| p * scale),
+            _ => cube(|p| p * scale),
+        });
+        let b = MeshTree::new(tetrahedron(&mut random, |p| p * (scale * ratio)));
+        let spread = scale * [0.3, 1.0, 3.0][round / 3 % 3];
+        let (pa, pb) = (pose(&mut random, spread), pose(&mut random, spread));
+        check(Posed::new(&a, pa), Posed::new(&b, pb), &format!("round {round}"));
+        check(Posed::new(&b, pb), Posed::new(&a, pa), &format!("round {round} swapped"));
+    }
+}
+
+#[test]
+fn far_from_the_origin() {
+    let mut random = Random(21);
+    for round in 0..12 {
+        let far = random.vector() * 1e6;
+        // Far in the body, in the world, or both.
+        let (in_body, in_world) = (round % 3 != 1, round % 3 != 0);
+        let shift = if in_body { far } else { DVec3::ZERO };
+        let (a, b) = (
+            MeshTree::new(tetrahedron(&mut random, |p| p + shift)),
+            MeshTree::new(tetrahedron(&mut random, |p| p + shift)),
+        );
+        let (mut pa, mut pb) = (pose(&mut random, 2.0), pose(&mut random, 2.0));
+        for pose in [&mut pa, &mut pb] {
+            pose.at += shift;
+            if in_world {
+                pose.translation += far;
+            }
+        }
+        check(Posed::new(&a, pa), Posed::new(&b, pb), &format!("offset {round}"));
+    }
+}
+
+#[test]
+fn touching_and_coplanar() {
+    let unit = MeshTree::new(cube(|p| p));
+    let at = |x: f64, y: f64, z: f64| {
+        Posed::new(&unit, Pose { translation: DVec3::new(x, y, z), ..Pose::IDENTITY })
+    };
+    // Face on face, edge on edge, corner on corner, shifted within the plane, and the same place.
+    for other in
+        [at(2.0, 0.0, 0.0), at(2.0, 2.0, 0.0), at(2.0, 2.0, 2.0), at(2.0, 0.5, 1.3), at(0.0, 0.0, 0.0)]
+    {
+        check(at(0.0, 0.0, 0.0), other, "touching");
+        assert!(collide(at(0.0, 0.0, 0.0), other, Solid::Filled).unwrap());
+    }
+    for gap in [1e-13, 1e-12, 1e-6] {
+        let other = at(2.0 + gap, 2.0 + gap, 2.0 + gap);
+        check(at(0.0, 0.0, 0.0), other, "nearly touching");
+        assert!(!collide(at(0.0, 0.0, 0.0), other, Solid::Filled).unwrap());
+    }
+    // A corner that stands on a face, turned by a rotation that is not exact.
+    let tilt = DQuat::from_xyzw(0.3, 0.1, -0.2, 0.9);
+    for gap in [-1e-9, 0.0, 1e-15, 1e-9] {
+        let corner = tilt.normalize() * DVec3::new(-1.0, -1.0, -1.0);
+        let pose =
+            Pose { rotation: tilt, translation: DVec3::new(0.1, 0.2, 1.0 - corner.z + gap), at: DVec3::ZERO };
+        check(at(0.0, 0.0, 0.0), Posed::new(&unit, pose), "corner on face");
+    }
+}
+
+#[test]
+fn one_inside_the_other() {
+    let mut random = Random(3);
+    let (big, small) = (MeshTree::new(cube(|p| p)), MeshTree::new(cube(|p| p * 0.1)));
+    // A shell: a cube with a cubic hole. What is in the hole is not in the body.
+    let (outer, inner) = (cube(|p| p).into_parts(), cube(|p| p * 0.5).into_parts());
+    let corners = [outer.0, inner.0].concat();
+    let shifted = inner.1.iter().map(|t| t.map(|i| i + 8));
+    let shell =
+        MeshTree::new(TriMesh::try_new(corners, outer.1.iter().copied().chain(shifted).collect()).unwrap());
+    for round in 0..200 {
+        // Also exactly at the middle and on planes of symmetry, where rays meet edges and corners.
+        let grid = |x: f64| (x * 4.0).round() * 0.2;
+        let place = random.vector();
+        let place =
+            if round % 2 == 0 { place } else { DVec3::new(grid(place.x), grid(place.y), grid(place.z)) };
+        let rotation = if round % 3 == 0 { DQuat::IDENTITY } else { random.quaternion() };
+        let pose = Pose { rotation, translation: place, at: DVec3::ZERO };
+        let (a, b) = (Posed::at_rest(&big), Posed::new(&small, pose));
+        let crosses = collide(a, b, Solid::Surface).unwrap();
+        assert!(
+            collide(a, b, Solid::Filled).unwrap() && collide(b, a, Solid::Filled).unwrap()
+                || !crosses && place.abs().max_element() > 1.0
+        );
+        let found = distance(b, a, Solid::Filled).unwrap();
+        if !crosses && place.abs().max_element() < 1.0 {
+            assert_eq!((found.state, found.value, found.lower), (StartState::Contained, 0.0, 0.0));
+        }
+        let cutoff = DistanceOptions::default().with_cutoff(1e-12);
+        let near = distance_within(a, b, &cutoff, &mut PairCache::new()).unwrap();
+        assert_eq!(near.is_some(), found.value == 0.0);
+        let in_shell = Posed::at_rest(&shell);
+        let hit = collide(in_shell, b, Solid::Filled).unwrap();
+        if !collide(in_shell, b, Solid::Surface).unwrap() {
+            let depth = place.abs().max_element();
+            assert_eq!(hit, depth > 0.5 && depth < 1.0, "{place}");
+        }
+    }
+}
+
+#[test]
+fn bad_input() {
+    let mut random = Random(1);
+    let (closed, open) = (MeshTree::new(cube(|p| p)), MeshTree::new(soup(&mut random, 3, |p| p)));
+    let good = Posed::at_rest(&closed);
+    assert_eq!(
+        collide(good, Posed::at_rest(&open), Solid::Filled),
+        Err(QueryError::NotWatertight { body: 1 })
+    );
+    for pose in [
+        Pose { rotation: DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), ..Pose::IDENTITY },
+        Pose { rotation: DQuat::from_xyzw(f64::NAN, 0.0, 0.0, 1.0), ..Pose::IDENTITY },
+        Pose { translation: DVec3::X * f64::INFINITY, ..Pose::IDENTITY },
+        Pose { at: DVec3::X * 1e200, ..Pose::IDENTITY },
+    ] {
+        let bad = Posed::new(&closed, pose);
+        assert_eq!(collide(good, bad, Solid::Filled), Err(QueryError::BadPose { body: 1 }));
+        assert_eq!(distance(bad, good, Solid::Filled), Err(QueryError::BadPose { body: 0 }));
+    }
+    let options = DistanceOptions::default().with_cutoff(-1.0);
+    assert!(distance_within(good, good, &options, &mut PairCache::new()).is_err());
+}
