@@ -5,8 +5,8 @@ use crate::failure::Failure;
 use crate::load::Loaded;
 use d2m::bvh::paper::{self, SphereTree};
 use d2m::bvh::{
-    Budget, MeshTree, Mode, Moving, QueryOptions, Solid, TimeOfContact, Topology, TriMesh, Window,
-    time_of_contact,
+    Budget, MeshTree, Mode, Moving, QueryError, QueryOptions, Solid, TimeOfContact, Topology, TriMesh,
+    Window, time_of_contact,
 };
 use d2m::motion::LinearMotion;
 use std::time::{Duration, Instant};
@@ -67,11 +67,8 @@ impl Pair {
     /// Checks the options and builds the trees.
     pub(crate) fn new(a: Loaded, b: Loaded, arguments: &QueryArguments) -> Result<Self, Failure> {
         let mode = match arguments.mode {
-            Method::Accurate => Mode::Accurate,
+            Method::Accurate | Method::Paper => Mode::Accurate,
             Method::Capoeira => Mode::Capoeira,
-            Method::Paper => {
-                return Err(Failure::at("--mode", "the reference method is not part of this version"));
-            }
         };
         let mut options = QueryOptions::default().with_mode(mode);
         if let Some(text) = &arguments.tolerance {
@@ -106,7 +103,13 @@ impl Pair {
             _ => unreachable!("both bodies of a pair are prepared for one method"),
         };
         let took = start.elapsed();
-        let verdict = verdict.map_err(|error| Failure::Input(error.to_string()))?;
+        let verdict = verdict.map_err(|error| match error {
+            QueryError::BadMotion { body } => Failure::at(
+                ["motion of A", "motion of B"][body.min(1)],
+                "it is not finite, or too fast or far, over the window",
+            ),
+            other => Failure::Input(other.to_string()),
+        })?;
         Ok(Answer { verdict, took })
     }
 }

@@ -12,17 +12,22 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, LoadError> {
     let header = parser.read_header(&mut reader).map_err(|error| fault(&error))?;
     let is_text = header.encoding == Encoding::Ascii;
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    let mut line = reader.line();
     for (name, definition) in &header.elements {
         // Nothing would be read for each of them, however many the header states.
         if definition.properties.is_empty() && !is_text && definition.count > 0 {
             return Err(LoadError::new(format!("element {name:?} has no properties")));
         }
-        let first_line = reader.line() + usize::from(is_text);
         let elements =
             parser.read_payload_for_element(&mut reader, definition, &header).map_err(|error| {
                 let error = fault(&error);
-                LoadError { line: error.line.filter(|_| is_text), ..error }
+                LoadError {
+                    line: error.line.filter(|_| is_text),
+                    reason: format!("{name}: {}", error.reason),
+                }
             })?;
+        let first_line = line;
+        line += elements.len();
         let at = |index: usize, reason: String| {
             let line = is_text.then_some(first_line + index);
             LoadError { line, reason: format!("{name} {index}: {reason}") }
@@ -44,14 +49,21 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, LoadError> {
     Ok(TriMesh::try_new(vertices, triangles)?)
 }
 
+/// The parser's messages span lines: what it says first, the text it quotes, and a chain of causes that is left out.
 fn fault(error: &ParseError) -> LoadError {
-    // The parser's text starts with the line, quotes it, and spans several lines.
-    let text = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-    let reason = text
-        .strip_prefix("Line ")
-        .and_then(|rest| rest.split_once(": "))
-        .map_or(text.as_str(), |(_, rest)| rest);
-    LoadError { line: error.line(), reason: reason.to_owned() }
+    let text = error.to_string();
+    let mut lines = text.lines().map(str::trim);
+    let first = lines.next().unwrap_or_default();
+    let first =
+        first.strip_prefix("Line ").and_then(|rest| rest.split_once(": ")).map_or(first, |(_, rest)| rest);
+    let quoted =
+        lines.find_map(|line| line.strip_prefix("String: '")).map(|line| line.trim_end_matches('\'').trim());
+    let reason = match quoted {
+        Some(quoted) if first.starts_with("Couldn't read") => format!("cannot read {quoted:?}"),
+        Some(quoted) => format!("{} found {quoted:?}", first.trim_end_matches('.')),
+        None => first.to_owned(),
+    };
+    LoadError { line: error.line(), reason }
 }
 
 /// What matters of a vertex or a face.

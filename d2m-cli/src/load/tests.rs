@@ -1,1 +1,256 @@
+//! Loaders: the same mesh in every format, faults with their places, and arbitrary bytes.
 
+use super::{LoadError, obj, ply, stl};
+use d2m::bvh::{Topology, TriMesh};
+use glam::DVec3;
+use proptest::prelude::*;
+
+fn tetrahedron() -> TriMesh {
+    d2m::shapes::mesh("tetrahedron").unwrap()
+}
+
+fn obj_text(mesh: &TriMesh) -> String {
+    let vertices = mesh.vertices().iter().map(|v| format!("v {} {} {}\n", v.x, v.y, v.z));
+    let faces = mesh.triangles().iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1));
+    vertices.chain(faces).collect()
+}
+
+fn stl_text(mesh: &TriMesh) -> String {
+    let facets = (0..mesh.triangle_count()).map(|triangle| {
+        let corners = mesh.corners(triangle).map(|v| format!("vertex {} {} {}\n", v.x, v.y, v.z));
+        format!("facet normal 0 0 0\nouter loop\n{}endloop\nendfacet\n", corners.concat())
+    });
+    format!("solid test\n{}endsolid test\n", facets.collect::<String>())
+}
+
+fn stl_binary(mesh: &TriMesh, title: &[u8]) -> Vec<u8> {
+    let mut bytes = title.to_vec();
+    bytes.resize(80, b' ');
+    bytes.extend((mesh.triangle_count() as u32).to_le_bytes());
+    for triangle in 0..mesh.triangle_count() {
+        bytes.extend([0; 12]);
+        for corner in mesh.corners(triangle) {
+            bytes.extend(corner.to_array().iter().flat_map(|&x| (x as f32).to_le_bytes()));
+        }
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+fn ply_header(format: &str, mesh: &TriMesh) -> String {
+    format!(
+        "ply\nformat {format} 1.0\ncomment test\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
+         property uchar red\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        mesh.vertex_count(),
+        mesh.triangle_count()
+    )
+}
+
+fn ply_text(mesh: &TriMesh) -> String {
+    let vertices = mesh.vertices().iter().map(|v| format!("{} {} {} 7\n", v.x, v.y, v.z));
+    let faces = mesh.triangles().iter().map(|[a, b, c]| format!("3 {a} {b} {c}\n"));
+    ply_header("ascii", mesh) + &vertices.chain(faces).collect::<String>()
+}
+
+fn ply_binary(mesh: &TriMesh, big: bool) -> Vec<u8> {
+    let mut bytes =
+        ply_header(if big { "binary_big_endian" } else { "binary_little_endian" }, mesh).into_bytes();
+    for vertex in mesh.vertices() {
+        let number = |x: f64| if big { x.to_be_bytes() } else { x.to_le_bytes() };
+        bytes.extend(vertex.to_array().into_iter().flat_map(number));
+        bytes.push(7);
+    }
+    for triangle in mesh.triangles() {
+        bytes.push(3);
+        let number = |x: u32| if big { x.to_be_bytes() } else { x.to_le_bytes() };
+        bytes.extend(triangle.iter().flat_map(|&index| number(index)));
+    }
+    bytes
+}
+
+#[test]
+fn every_format_gives_the_same_mesh() {
+    let mesh = tetrahedron();
+    assert_eq!(obj::parse(obj_text(&mesh).as_bytes()).unwrap(), mesh);
+    assert_eq!(ply::parse(ply_text(&mesh).as_bytes()).unwrap(), mesh);
+    for big in [false, true] {
+        assert_eq!(ply::parse(&ply_binary(&mesh, big)).unwrap(), mesh);
+    }
+    let from_text = stl::parse(stl_text(&mesh).as_bytes()).unwrap();
+    for loaded in [
+        stl::parse(&stl_binary(&mesh, b"made by hand")).unwrap(),
+        stl::parse(&stl_binary(&mesh, b"solid, but binary")).unwrap(),
+        stl::parse(stl_text(&mesh).to_ascii_uppercase().as_bytes()).unwrap(),
+    ] {
+        assert_eq!(loaded, from_text);
+        assert_eq!(loaded.vertex_count(), 4);
+        assert!(Topology::new(&loaded).is_oriented_manifold());
+    }
+    for triangle in 0..4 {
+        for (single, double) in from_text.corners(triangle).into_iter().zip(mesh.corners(triangle)) {
+            assert!(single.distance(double) < 1e-7);
+        }
+    }
+}
+
+#[test]
+fn obj_dialects() {
+    let text = "# a comment, b\u{e9}b\u{e9}\r\nmtllib none.mtl\no part\nv 0 0 0 # first\r\nv 1 0 0 1.0\nvt 0.5 0.5\nvn 0 0 1\n\
+                v 1 1 0\nv 0 1 0\nv 9 9 9\ng side\nusemtl red\nf 1/1/1 2//1 3/1 4 # quad\ns off\nl 1 2\np 1\nf -5 -3 \\\n -2\n\
+                f 1 2\n";
+    let mesh = obj::parse(text.as_bytes()).unwrap();
+    assert_eq!(mesh.triangles(), [[0, 1, 2], [0, 2, 3], [0, 2, 3]]);
+    assert_eq!(mesh.vertices()[4], DVec3::splat(9.0), "unused vertices keep their numbers");
+    // Two groups, and two vertices at one place: the first one names both.
+    let twice = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\ng a\nf 1 2 3\ng b\nf 4 3 2\n";
+    assert_eq!(obj::parse(twice.as_bytes()).unwrap().triangles(), [[0, 1, 2], [0, 2, 1]]);
+}
+
+#[test]
+fn polygons_in_ply_become_fans() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n\
+                element face 3\nproperty list uchar uint vertex_index\nelement edge 1\nproperty int vertex1\nend_header\n\
+                0 0 0\n1 0 0\n2 1 0\n1 2 0\n0 1 0\n5 0 1 2 3 4\n2 0 1\n4 4 3 2 1\n0\n";
+    let mesh = ply::parse(text.as_bytes()).unwrap();
+    assert_eq!(mesh.triangles(), [[0, 1, 2], [0, 2, 3], [0, 3, 4], [4, 3, 2], [4, 2, 1]]);
+}
+
+#[test]
+fn faults_name_the_place_and_the_value() {
+    let fault = |result: Result<TriMesh, LoadError>| {
+        let LoadError { line, reason } = result.unwrap_err();
+        (line, reason)
+    };
+    let text = |line: usize, reason: &str| (Some(line), reason.to_owned());
+    let obj = |text: &str| fault(obj::parse(text.as_bytes()));
+    assert_eq!(obj("v 0 0 0\nv 1 0 NaN\n"), text(2, "vertex 2: z is NaN, not a finite number"));
+    assert_eq!(obj("v 0 0 0\nv 1 1e999 0\n"), text(2, "vertex 2: y is 1e999, not a finite number"));
+    assert_eq!(obj("v 0 zero 0\n"), text(1, "vertex 1: y is \"zero\", not a number"));
+    assert_eq!(obj("\nv 0 0\n"), text(2, "vertex 1: z is missing"));
+    assert_eq!(obj("v 0 0 0\nf 1 1 4\n"), text(2, "vertex index 4 is out of range, the file has 1 vertices"));
+    assert_eq!(
+        obj("v 0 0 0\nf 1 0 1\n"),
+        text(2, "vertex index 0 is out of range, 1 vertices are given so far")
+    );
+    assert_eq!(
+        obj("v 0 0 0\nf 1 -2 1\n"),
+        text(2, "vertex index -2 is out of range, 1 vertices are given so far")
+    );
+    assert_eq!(obj("v 0 0 0\nf 1 x/1 1\n"), text(2, "face: \"x/1\" is not a vertex index"));
+    assert_eq!(obj("v 0 0 0\n"), (None, "the mesh has no triangles".to_owned()));
+    assert_eq!(obj("hello"), (None, "the mesh has no triangles".to_owned()));
+    let (place, reason) = obj("v 0 0 0\nv 1 0 1e70\nv 0 1 0\nf 1 2 3\n");
+    assert_eq!(
+        (place, reason.as_str()),
+        (None, "vertex 1: coordinate z is 1e70, larger than the limit of 1e60")
+    );
+
+    let stl = |text: &str| fault(stl::parse(text.as_bytes()));
+    let good = stl_text(&tetrahedron());
+    let lines: Vec<&str> = good.lines().collect();
+    let with = |index: usize, line: &str| {
+        let mut lines = lines.clone();
+        lines[index] = line;
+        lines.join("\n")
+    };
+    assert_eq!(stl(&with(10, "vertex 0 0 x")).0, Some(9));
+    assert!(stl(&with(10, "vertex 0 0 x")).1.starts_with("triangle 1: "));
+    assert!(stl(&with(10, "vertex 0 0 inf")).1.contains("inf"));
+    assert_eq!(
+        stl(&lines[..lines.len() - 1].join("\n")),
+        (None, "the text ends without \"endsolid\"".to_owned())
+    );
+    assert_eq!(stl("solid\nendsolid\n"), (None, "the mesh has no triangles".to_owned()));
+    let mut bytes = stl_binary(&tetrahedron(), b"title");
+    bytes[84 + 50 + 12..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    assert_eq!(
+        fault(stl::parse(&bytes)),
+        (None, "triangle 1, corner 0: coordinate NaN is not a finite number".to_owned())
+    );
+    let (_, reason) = fault(stl::parse(&bytes[..200]));
+    assert_eq!(reason, "the header states 4 triangles, 284 bytes, but the file has 200");
+
+    let ply = |text: &str| fault(ply::parse(text.as_bytes()));
+    let good = ply_text(&tetrahedron());
+    assert_eq!(
+        ply(&good.replace("3 1 3 2", "3 1 9 2")).1,
+        "triangle 3: vertex index 9 is out of range, the mesh has 4 vertices"
+    );
+    assert_eq!(
+        ply(&good.replace("3 1 3 2", "3 1 -3 2")),
+        text(19, "face 3: vertex index -3 is out of range")
+    );
+    assert_eq!(ply(&good.replace("3 1 3 2", "3 1 b 2")), text(19, "face: cannot read \"3 1 b 2\""));
+    assert_eq!(ply(&good.replace("3 1 3 2\n", "")).0, Some(19));
+    assert_eq!(ply(&good.replace("property double z\n", "")).0, Some(11));
+    assert_eq!(ply("hello"), text(1, "Expected magic number 'ply' found \"hello\""));
+    let mut bytes = ply_binary(&tetrahedron(), false);
+    let payload = bytes.len() - 4 * 13 - 4 * 25;
+    bytes[payload + 25 + 8..][..8].copy_from_slice(&f64::INFINITY.to_le_bytes());
+    assert_eq!(fault(ply::parse(&bytes)), (None, "vertex 1: y is inf, not a finite number".to_owned()));
+    assert!(ply::parse(&bytes[..bytes.len() - 1]).is_err());
+    let huge = "ply\nformat binary_little_endian 1.0\nelement nothing 99999999999999\nend_header\n";
+    assert_eq!(ply(huge), (None, "element \"nothing\" has no properties".to_owned()));
+    let huge = "ply\nformat binary_little_endian 1.0\nelement face 999999999999\n\
+                property list uint int vertex_indices\nend_header\n\u{7f}\u{7f}\u{7f}\u{7f}";
+    assert!(ply::parse(huge.as_bytes()).is_err());
+}
+
+/// Nothing panics, hangs or takes memory beyond measure; what is accepted is a checked mesh.
+fn survives(bytes: &[u8]) {
+    for parse in [obj::parse, stl::parse, ply::parse] {
+        if let Ok(mesh) = parse(bytes) {
+            assert!(mesh.triangle_count() <= bytes.len());
+        }
+    }
+}
+
+/// Bytes of a good file with some overwritten, cut or doubled.
+fn damaged(seed: Vec<u8>) -> impl Strategy<Value = Vec<u8>> {
+    let length = seed.len();
+    let edits = prop::collection::vec((0..length, any::<u8>(), 0..4_u8), 1..6);
+    edits.prop_map(move |edits| {
+        let mut bytes = seed.clone();
+        for (place, byte, kind) in edits {
+            let place = place.min(bytes.len().saturating_sub(1));
+            match kind {
+                0 if !bytes.is_empty() => bytes[place] = byte,
+                1 => bytes.truncate(place),
+                2 => bytes.insert(place, byte),
+                _ => bytes.extend_from_within(place.min(bytes.len())..),
+            }
+        }
+        bytes
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn arbitrary_bytes(bytes in prop::collection::vec(any::<u8>(), 0..600)) {
+        survives(&bytes);
+    }
+
+    #[test]
+    fn damaged_files(
+        obj in damaged(obj_text(&tetrahedron()).into_bytes()),
+        stl in damaged(stl_text(&tetrahedron()).into_bytes()),
+        stl_binary in damaged(stl_binary(&tetrahedron(), b"title")),
+        ply in damaged(ply_text(&tetrahedron()).into_bytes()),
+        little in damaged(ply_binary(&tetrahedron(), false)),
+        big in damaged(ply_binary(&tetrahedron(), true)),
+    ) {
+        for bytes in [obj, stl, stl_binary, ply, little, big] {
+            survives(&bytes);
+        }
+    }
+
+    #[test]
+    fn obj_words(words in prop::collection::vec(prop::sample::select(vec![
+        "v", "f", "vt", "vn", "1", "-1", "0", "1/2/3", "//", "1//9223372036854775807", "-9223372036854775808",
+        "18446744073709551616", "nan", "1e308", "#", "\\", "\n", "\n", "\n", "usemtl", "mtllib x", "o", "l", "p",
+    ]), 0..60)) {
+        survives(words.join(" ").as_bytes());
+    }
+}

@@ -1,0 +1,381 @@
+//! The command as scripts see it: formats, exit codes, messages, files that are complete or absent.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+fn d2m(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_d2m")).args(arguments).stdin(Stdio::null()).output().unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// A folder of its own for each test, removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).to_str().unwrap().to_owned()
+    }
+
+    fn file(&self, name: &str, contents: &str) -> String {
+        fs::write(self.0.join(name), contents).unwrap();
+        self.path(name)
+    }
+
+    fn names(&self) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(&self.0)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Exit code 3, nothing on standard output, one line on standard error that holds all the words.
+fn refused(arguments: &[&str], words: &[&str]) {
+    let output = d2m(arguments);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(3), "{arguments:?}: {message}");
+    assert!(output.stdout.is_empty(), "{arguments:?}: {}", stdout(&output));
+    assert_eq!(message.lines().count(), 1, "{arguments:?}: {message}");
+    for word in words {
+        assert!(message.contains(word), "{arguments:?}: {message:?} lacks {word:?}");
+    }
+}
+
+const BOX_AT: &str = "x=-3,0,0;v=4,0,0";
+/// Two boxes of half size 1 that meet at t = 1/4; then the same pair standing still; then one that turns away.
+const TRIALS: &str = "\
+1,0,0,0,-3,0,0,4,0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0
+1,0,0,0,-3,0,0,0,0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0
+
+2,0,0,0,-3,0.1,0.2,-4,0,0,0,0,3,1,0,0,0,0,0,0,0,0,0,0,1,0
+1,0,0,0,0.5,0,0,0,0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0
+";
+const UNIT_BOX: &str = "shape:box?x=1&y=1&z=1";
+const HEADER: &str = "trial,status,toc,toc_hi,separation,microseconds,normal_x,normal_y,normal_z,point_x,point_y,point_z,feature,triangle_a,triangle_b";
+
+#[test]
+fn batch_writes_the_documented_csv() {
+    let folder = Folder::new("batch");
+    let trials = folder.file("trials.csv", TRIALS);
+    for (mode, threads) in [("accurate", "1"), ("accurate", "3"), ("paper", "2"), ("capoeira", "1")] {
+        let out = folder.path("results.csv");
+        let run = d2m(&[
+            "batch",
+            UNIT_BOX,
+            UNIT_BOX,
+            "--trials",
+            &trials,
+            "--out",
+            &out,
+            "--mode",
+            mode,
+            "--threads",
+            threads,
+        ]);
+        assert_eq!(run.status.code(), Some(0), "{mode}: {}", stderr(&run));
+        assert!(run.stdout.is_empty());
+        assert!(
+            stderr(&run).starts_with("4 trials: 2 contact, 2 separated, 0 undecided; median "),
+            "{}",
+            stderr(&run)
+        );
+        assert_eq!(folder.names(), ["results.csv", "trials.csv"]);
+        let text = fs::read_to_string(&out).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[0], HEADER);
+        assert_eq!(lines.len(), 5);
+        let fields = |line: usize| lines[line].split(',').collect::<Vec<_>>();
+        assert!((1..5).all(|line| fields(line).len() == 15), "{text}");
+        let number = |line: usize, field: usize| fields(line)[field].parse::<f64>().unwrap();
+        assert_eq!(fields(1)[..2], ["0", "contact"]);
+        assert!(number(1, 2) <= 0.25 && number(1, 2) <= number(1, 3), "{text}");
+        assert!(number(1, 5) >= 0.0);
+        if mode != "capoeira" {
+            assert!(number(1, 2) > 0.25 - 1e-9);
+            assert!(number(1, 4) > 0.0 && number(1, 4) < 6e-10, "{text}");
+            assert!((number(1, 6) - 1.0).abs() < 1e-9 && (number(1, 9) + 1.0).abs() < 1e-8, "{text}");
+            assert!(number(1, 13) < 12.0 && number(1, 14) < 12.0);
+            assert!(
+                ["vertex_face:", "face_vertex:", "edge_edge:"].iter().any(|k| fields(1)[12].starts_with(k))
+            );
+        }
+        assert_eq!(fields(2)[..4], ["1", "separated", "inf", "inf"]);
+        assert_eq!(fields(3)[..3], ["2", "separated", "inf"]);
+        assert_eq!(fields(4)[..2], ["3", "contact"]);
+        assert_eq!(number(4, 2), 0.0);
+    }
+}
+
+#[test]
+fn threads_do_not_change_answers() {
+    let folder = Folder::new("threads");
+    let trials: Vec<String> = (0..40)
+        .map(|k| {
+            format!("1,0.1,0,{0},-3,{0},0.2,5,0,0,0,{0},1,1,0,0,{0},0,0,0,0,0,0,0,2,0\n", f64::from(k) * 0.05)
+        })
+        .collect();
+    let trials = folder.file("trials.csv", &trials.concat());
+    let answers = |threads: &str| {
+        let arguments =
+            ["batch", "shape:gear", "shape:torus", "--trials", &trials, "--out", "-", "--threads", threads];
+        let output = d2m(&arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let drop_time = |line: &str| {
+            let mut fields: Vec<&str> = line.split(',').collect();
+            fields.remove(5);
+            fields.join(",")
+        };
+        stdout(&output).lines().map(drop_time).collect::<Vec<_>>()
+    };
+    let alone = answers("1");
+    assert_eq!(alone.len(), 41);
+    assert_eq!(alone, answers("4"));
+}
+
+#[test]
+fn a_budget_is_answered_honestly() {
+    let folder = Folder::new("budget");
+    let trials = folder.file("trials.csv", "1,0,0,0,-3,0,0,4,0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0\n");
+    let output =
+        d2m(&["batch", "shape:pebble", "shape:gear", "--trials", &trials, "--out", "-", "--budget", "2"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = stdout(&output);
+    let fields: Vec<&str> = text.lines().nth(1).unwrap().split(',').collect();
+    assert_eq!(fields[1], "undecided", "{text}");
+    assert!((0.0..0.5).contains(&fields[2].parse::<f64>().unwrap()), "{text}");
+}
+
+#[test]
+fn toc_for_people_and_for_programs() {
+    let text = stdout(&d2m(&["toc", UNIT_BOX, UNIT_BOX, "--motion-a", BOX_AT]));
+    for word in
+        ["CONTACT at t = 0.24999999", "separation", "normal", "point on A", "features", "of B", "took"]
+    {
+        assert!(text.contains(word), "{text}");
+    }
+    let text = stdout(&d2m(&["toc", UNIT_BOX, UNIT_BOX, "--motion-a", "x=-3,0,0;v=-4,0,0"]));
+    assert!(text.starts_with("SEPARATED\n"), "{text}");
+    let json = d2m(&["toc", UNIT_BOX, UNIT_BOX, "--motion-a", BOX_AT, "--json", "--window", "0.1,0.5"]);
+    let value: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!(value["status"], "contact");
+    let time = value["time"][0].as_f64().unwrap();
+    assert!(time <= 0.25 && time > 0.25 - 1e-9);
+    assert!(value["separation"].as_f64().unwrap() > 0.0);
+    for key in ["normal", "point_a", "point_b", "barycentric_a", "barycentric_b"] {
+        assert_eq!(value[key].as_array().unwrap().len(), 3, "{key}");
+    }
+    let json = d2m(&["toc", UNIT_BOX, UNIT_BOX, "--motion-a", "x=-9,0,0", "--json"]);
+    let value: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!(value["status"], "separated");
+}
+
+#[test]
+fn solids_and_surfaces() {
+    let inside = ["toc", "shape:icosphere", "shape:box?x=3&y=3&z=3", "--motion-a", "v=0.1,0,0"];
+    assert!(stdout(&d2m(&inside)).contains("contained"));
+    assert!(stdout(&d2m(&[&inside[..], &["--surface"]].concat())).starts_with("SEPARATED"));
+    assert_eq!(d2m(&[&inside[..], &["--surface", "--solid"]].concat()).status.code(), Some(2));
+    let folder = Folder::new("open");
+    let open = folder.file("open.obj", "v -5 -5 3\nv 5 -5 3\nv 0 5 3\nf 1 2 3\n");
+    let fall = ["toc", &open, UNIT_BOX, "--motion-a", "v=0,0,-4"];
+    let output = d2m(&fall);
+    assert!(stdout(&output).starts_with("CONTACT at t = 0.49999999"), "{}", stdout(&output));
+    assert!(stderr(&output).contains("not watertight"));
+    refused(&[&fall[..], &["--solid"]].concat(), &["open.obj", "not watertight"]);
+}
+
+#[test]
+fn motions_from_files() {
+    let folder = Folder::new("motions");
+    let linear = folder.file("linear.json", r#"{"x": [-3, 0, 0], "v": [4, 0, 0]}"#);
+    let text = stdout(&d2m(&["toc", UNIT_BOX, UNIT_BOX, "--motion-a", &format!("@{linear}")]));
+    assert!(text.starts_with("CONTACT at t = 0.24999999"), "{text}");
+    // Waits for one unit of time, then comes.
+    let keyframes = folder.file(
+        "keyframes.json",
+        r#"{"times": [0, 1, 2], "spans": [{"x": [-3, 0, 0]}, {"x": [-3, 0, 0], "v": [4, 0, 0], "t": 1}]}"#,
+    );
+    let motion = format!("@{keyframes}");
+    let text = stdout(&d2m(&["toc", UNIT_BOX, UNIT_BOX, "--motion-a", &motion, "--window", "0,2"]));
+    assert!(text.starts_with("CONTACT at t = 1.24999999"), "{text}");
+    let text = stdout(&d2m(&["toc", UNIT_BOX, UNIT_BOX, "--motion-b", &motion, "--window", "0,1.2"]));
+    assert!(text.starts_with("SEPARATED"), "{text}");
+    refused(
+        &["toc", UNIT_BOX, UNIT_BOX, "--motion-a", &motion, "--window", "0,3"],
+        &["--motion-a", "do not cover", "3"],
+    );
+    let broken = folder.file("broken.json", "{\"x\": [1, 2");
+    refused(&["toc", UNIT_BOX, UNIT_BOX, "--motion-a", &format!("@{broken}")], &["broken.json", "line 1"]);
+    let unknown = folder.file("unknown.json", "{\"y\": 3}");
+    refused(&["toc", UNIT_BOX, UNIT_BOX, "--motion-a", &format!("@{unknown}")], &["unknown.json", "y"]);
+}
+
+#[test]
+fn bad_input_is_named_and_leaves_nothing() {
+    let folder = Folder::new("bad");
+    let trials = folder.file("good.csv", TRIALS);
+    let meshes = [
+        ("empty.obj", "", "is empty"),
+        ("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", "line 2: vertex 2: x is nan"),
+        ("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 7\n", "line 4: vertex index 7"),
+        ("none.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "no triangles"),
+        ("mesh.abc", "v 0 0 0\n", "unknown kind"),
+        ("mesh", "v 0 0 0\n", "unknown kind"),
+        ("words.stl", "hello", "neither"),
+        ("words.ply", "hello", "ply"),
+    ];
+    for (name, contents, word) in meshes {
+        let mesh = folder.file(name, contents);
+        let out = folder.path("out.csv");
+        refused(&["info", &mesh], &[name, word]);
+        refused(&["toc", UNIT_BOX, &mesh], &[name, word]);
+        refused(&["batch", &mesh, UNIT_BOX, "--trials", &trials, "--out", &out], &[name, word]);
+    }
+    refused(&["info", &folder.path("absent.obj")], &["absent.obj"]);
+    refused(&["info", &folder.path(".obj")], &[".obj"]);
+    fs::create_dir(folder.0.join("folder.obj")).unwrap();
+    refused(&["info", &folder.path("folder.obj")], &["folder.obj", "folder"]);
+    refused(&["info", "shape:sfere"], &["sfere", "icosphere"]);
+    refused(&["info", "shape:torus?triangles=many"], &["torus", "many"]);
+
+    let line = TRIALS.lines().next().unwrap();
+    let trials_files = [
+        ("empty.csv", String::new(), "is empty"),
+        ("blank.csv", "\n\n".to_owned(), "no trials"),
+        ("short.csv", format!("{line}\n1,2,3\n"), "line 2: expected 26 numbers"),
+        ("word.csv", format!("{line}\n{}\n", line.replace("-3", "x")), "line 2: field 5 (x1 of A): \"x\""),
+        ("nan.csv", line.replace("-3", "NaN"), "line 1: field 5 (x1 of A): NaN"),
+        ("zero.csv", line.replacen('1', "0", 1), "line 1: motion of A"),
+        ("binary.csv", "\u{0}\u{1}\u{2}".to_owned(), "line 1"),
+    ];
+    for (name, contents, word) in trials_files {
+        let file = folder.file(name, &contents);
+        let out = folder.path("out.csv");
+        refused(&["batch", UNIT_BOX, UNIT_BOX, "--trials", &file, "--out", &out], &[name, word]);
+    }
+    refused(
+        &["batch", UNIT_BOX, UNIT_BOX, "--trials", &trials, "--out", &folder.path("no/out.csv")],
+        &["no"],
+    );
+    refused(
+        &["batch", UNIT_BOX, UNIT_BOX, "--trials", &trials, "--out", &folder.path("folder.obj")],
+        &["folder"],
+    );
+    let cases = folder.file("cases.jsonl", "{\"id\": \"a\"}\n");
+    refused(&["features", &cases, "--out", &folder.path("out.jsonl")], &["cases.jsonl", "1"]);
+    refused(&["features", &folder.path("absent.jsonl"), "--out", "-"], &["absent.jsonl"]);
+    assert!(!folder.names().iter().any(|name| name.starts_with("out") || name.contains("tmp")));
+
+    for (option, value, word) in [
+        ("--window", "1,1", "empty"),
+        ("--window", "1,0", "reversed"),
+        ("--window", "0,inf", "finite"),
+        ("--window", "0", "T0,T1"),
+        ("--window", "a,b", "\"a\""),
+        ("--motion-a", "q=0,0,0,0", "(0, 0, 0, 0)"),
+        ("--motion-a", "v=1,2", "3 numbers"),
+        ("--motion-b", "v=nan,0,0", "nan"),
+        ("--motion-b", "u=1,2,3", "u"),
+        ("--motion-b", "v=1e300,0,0", "motion of B"),
+        ("--tolerance", "0", "positive"),
+        ("--tolerance", "-1e-9", "positive"),
+        ("--tolerance", "nan", "positive"),
+        ("--tolerance", "small", "not a number"),
+    ] {
+        refused(
+            &["toc", UNIT_BOX, UNIT_BOX, option, value],
+            &[option.trim_start_matches("--motion-b"), word],
+        );
+    }
+}
+
+#[test]
+fn bad_usage_exits_with_2() {
+    for arguments in [
+        &[][..],
+        &["toc"],
+        &["toc", UNIT_BOX],
+        &["batch", UNIT_BOX, UNIT_BOX, "--trials", "t.csv"],
+        &["batch", UNIT_BOX, UNIT_BOX, "--trials", "t.csv", "--out", "-", "--threads", "0"],
+        &["toc", UNIT_BOX, UNIT_BOX, "--mode", "fast"],
+        &["toc", UNIT_BOX, UNIT_BOX, "--no-such-option"],
+        &["info"],
+        &["frobnicate"],
+    ] {
+        assert_eq!(d2m(arguments).status.code(), Some(2), "{arguments:?}");
+    }
+    assert_eq!(d2m(&["--help"]).status.code(), Some(0));
+    assert_eq!(d2m(&["batch", "--help"]).status.code(), Some(0));
+}
+
+#[test]
+fn info_describes_meshes_and_shapes() {
+    let text = stdout(&d2m(&["info", "shape:torus?triangles=1000"]));
+    assert!(
+        text.contains("watertight, oriented outwards") && text.contains("Euler characteristic 0"),
+        "{text}"
+    );
+    let value: serde_json::Value =
+        serde_json::from_str(&stdout(&d2m(&["info", "shape:box", "--json"]))).unwrap();
+    assert_eq!((&value["triangles"], &value["validation"]["watertight"]), (&12.into(), &true.into()));
+    let shapes = stdout(&d2m(&["info", "--shapes"]));
+    for name in ["box", "icosphere", "torus-knot", "screw", "nut", "chain-link", "paddle-wheel"] {
+        assert!(shapes.contains(&format!("\n{name}: ")), "{name}");
+    }
+    assert!(
+        serde_json::from_str::<serde_json::Value>(&stdout(&d2m(&["info", "--shapes", "--json"]))).is_ok()
+    );
+}
+
+#[test]
+fn exported_meshes_load_again() {
+    let folder = Folder::new("export");
+    let obj = folder.path("gear.obj");
+    let before = stdout(&d2m(&["info", "shape:gear", "--obj", &obj]));
+    let after = stdout(&d2m(&["info", &obj]));
+    assert_eq!(before.lines().skip(1).collect::<Vec<_>>(), after.lines().skip(1).collect::<Vec<_>>());
+    let scene = folder.path("scene.obj");
+    let output = d2m(&["toc", UNIT_BOX, UNIT_BOX, "--motion-a", BOX_AT, "--obj", &scene]);
+    assert_eq!(output.status.code(), Some(0));
+    let text = fs::read_to_string(&scene).unwrap();
+    assert!(text.contains("\no A\n") && text.contains("\no B\n"));
+    let text = stdout(&d2m(&["info", &scene]));
+    assert!(text.contains("triangles   24") && text.contains("parts       2"), "{text}");
+}
+
+#[test]
+fn a_reader_that_leaves_early_is_no_error() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_d2m"))
+        .args(["info", "--shapes"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert!(output.stderr.is_empty(), "{}", stderr(&output));
+}
