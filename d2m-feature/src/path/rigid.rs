@@ -19,11 +19,6 @@ impl FramedMotion {
         let frame = motion.frame(middle);
         Self { motion, middle, frame }
     }
-
-    #[inline(always)]
-    fn frame(&self, tau: f64) -> Frame {
-        if tau == self.middle { self.frame } else { self.motion.frame(tau) }
-    }
 }
 
 /// A point and a direction of A with a constant relative twist.
@@ -68,16 +63,31 @@ impl<'a> RigidPath<'a> {
 impl FeaturePath for RigidPath<'_> {
     #[inline(always)]
     fn point(&mut self, _: Piece, at: f64) -> PathJet {
-        self.motion.frame(at).point_jet(self.point, self.point_remainder)
+        let framed = self.motion;
+        if at == framed.middle {
+            framed.frame.point_jet(self.point, self.point_remainder)
+        } else if framed.motion.is_anchored() {
+            framed.motion.frame(at).point_jet(self.point, self.point_remainder)
+        } else {
+            framed.motion.point_jet(at, self.point, self.point_remainder)
+        }
     }
 
     #[inline(always)]
     fn point_and_direction(&mut self, _: Piece, at: f64) -> (PathJet, PathJet) {
-        let frame = self.motion.frame(at);
-        (
-            frame.point_jet(self.point, self.point_remainder),
-            frame.direction_jet(self.direction, self.direction_remainder),
-        )
+        let framed = self.motion;
+        let point = (self.point, self.point_remainder);
+        let direction = (self.direction, self.direction_remainder);
+        let from = |frame: &Frame| {
+            (frame.point_jet(point.0, point.1), frame.direction_jet(direction.0, direction.1))
+        };
+        if at == framed.middle {
+            from(&framed.frame)
+        } else if framed.motion.is_anchored() {
+            from(&framed.motion.frame(at))
+        } else {
+            framed.motion.point_and_direction_jets(at, point, direction)
+        }
     }
 
     fn speed(&self) -> f64 {

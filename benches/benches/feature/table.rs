@@ -1,0 +1,133 @@
+//! The table of docs/theory/features.md: mean, p99 and largest time of a query by family, answers judged first.
+use crate::families::{Family, Kind, Planted, Random, plant};
+use d2m_feature::{ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, PlacedTriangle, StraightPaths};
+use std::hint::black_box;
+use std::time::Instant;
+
+/// The families of the table.
+pub const COLUMNS: [(&str, Family); 4] =
+    [("far", Family::Far), ("near", Family::Near), ("hit", Family::Hit), ("graze", Family::Graze)];
+
+/// A query with its setup done: what is timed is the question alone.
+pub struct Prepared {
+    planted: Planted,
+    pair: PairMotion,
+    triangle: PlacedTriangle,
+    straight: StraightPaths,
+}
+
+/// Ways to ask.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Closed-form jets.
+    Rigid,
+    /// Straight vertex paths.
+    Straight,
+    /// Interval enclosures.
+    Enclosed,
+}
+
+/// Queries of one family.
+pub fn queries(kind: Kind, family: Family, count: usize, seed: u64) -> Vec<Prepared> {
+    let mut random = Random::new(seed);
+    (0..count)
+        .map(|_| {
+            let planted = plant(kind, family, &mut random);
+            let pair =
+                PairMotion::new(&planted.motion_a, &planted.motion_b, planted.window.0, planted.window.1);
+            let triangle = pair.place_triangle(&planted.b);
+            let (start, end) = planted.straight();
+            Prepared { pair, triangle, straight: StraightPaths::new(start, end), planted }
+        })
+        .collect()
+}
+
+impl Prepared {
+    /// The answer.
+    pub fn ask(&self, method: Method, options: &ContactOptions) -> FirstContact {
+        let p = &self.planted;
+        let edge_b = [p.b[0], p.b[1]];
+        match (method, p.kind) {
+            (Method::Rigid, Kind::PointTriangle) => self.pair.point_placed(p.a[0], &self.triangle, options),
+            (Method::Rigid, Kind::EdgeEdge) => self.pair.edge_edge(p.a, edge_b, options),
+            (Method::Straight, Kind::PointTriangle) => self.straight.point_triangle(options),
+            (Method::Straight, Kind::EdgeEdge) => self.straight.edge_edge(options),
+            (Method::Enclosed, kind) => {
+                let pair = EnclosedPairMotion::new(&p.motion_a, &p.motion_b, p.window.0, p.window.1);
+                match kind {
+                    Kind::PointTriangle => pair.point_triangle(p.a[0], &p.b, options),
+                    Kind::EdgeEdge => pair.edge_edge(p.a, edge_b, options),
+                }
+            }
+        }
+    }
+
+    /// What is wrong with an answer: a planted clean crossing must be found, and not after it.
+    pub fn judge(&self, method: Method, answer: &FirstContact) -> Option<String> {
+        let p = &self.planted;
+        let slack = if method == Method::Straight { 1e-9 } else { 1e-13 };
+        match answer {
+            FirstContact::Clear if p.family == Family::Hit && method != Method::Straight => {
+                Some(format!("a planted contact was missed: {p:?}"))
+            }
+            FirstContact::Contact(contact) if p.family == Family::Hit && contact.lo > p.time + slack => {
+                Some(format!("late: {contact:?} {p:?}"))
+            }
+            FirstContact::Undecided { .. } => Some(format!("undecided: {p:?}")),
+            _ => None,
+        }
+    }
+}
+
+/// Prints the table.
+pub fn print(count: usize) {
+    let options = ContactOptions::new();
+    println!("mean / p99 / max ns a query, {count} queries a family, setup excluded");
+    println!("{:<22} {:>22} {:>22} {:>22} {:>22}", "", "far", "near", "hit", "graze");
+    for (name, kind, method) in [
+        ("rigid vertex/face", Kind::PointTriangle, Method::Rigid),
+        ("rigid edge/edge", Kind::EdgeEdge, Method::Rigid),
+        ("straight vertex/face", Kind::PointTriangle, Method::Straight),
+        ("straight edge/edge", Kind::EdgeEdge, Method::Straight),
+        ("enclosed vertex/face", Kind::PointTriangle, Method::Enclosed),
+        ("enclosed edge/edge", Kind::EdgeEdge, Method::Enclosed),
+    ] {
+        print!("{name:<22}");
+        for (_, family) in COLUMNS {
+            let count = if method == Method::Enclosed { count / 4 } else { count };
+            let queries = queries(kind, family, count, 7);
+            for query in &queries {
+                if let Some(wrong) = query.judge(method, &query.ask(method, &options)) {
+                    println!();
+                    panic!("{wrong}");
+                }
+            }
+            let row = measure(&queries, method, &options);
+            print!(" {:>22}", format!("{:.0} / {:.0} / {:.0}", row.0, row.1, row.2));
+        }
+        println!();
+    }
+}
+
+/// Mean, p99 and largest of the best of seven single times, the clock's own time taken off: robust on a busy machine.
+fn measure(queries: &[Prepared], method: Method, options: &ContactOptions) -> (f64, f64, f64) {
+    let best = |question: &dyn Fn()| {
+        (0..7).fold(f64::INFINITY, |best, _| {
+            let start = Instant::now();
+            question();
+            best.min(start.elapsed().as_secs_f64() * 1e9)
+        })
+    };
+    let clock = (0..100).fold(f64::INFINITY, |least: f64, _| least.min(best(&|| ())));
+    let mut singles: Vec<f64> = queries
+        .iter()
+        .map(|query| {
+            best(&|| {
+                black_box(query.ask(method, options));
+            }) - clock
+        })
+        .collect();
+    singles.sort_by(f64::total_cmp);
+    let mean = singles.iter().sum::<f64>() / singles.len() as f64;
+    (mean, singles[singles.len() * 99 / 100], singles[singles.len() - 1])
+}
