@@ -2,6 +2,7 @@
 //!
 //! Unit features, relative speed about 4, |ω| ≤ 3, t in [0, 1]. The contact is planted at a known time by placing A
 //! so that the features meet there; rounding moves the true time by some 1e-16, which the oracle finds.
+#![allow(unreachable_pub, dead_code)] // shared by tests, accuracy task and bench, each of which uses a part
 use d2m_motion::{LinearMotion, Pose, RigidMotion};
 use glam::{DQuat, DVec3};
 
@@ -174,7 +175,9 @@ pub fn plant(kind: Kind, family: Family, random: &mut Random) -> Planted {
     let gap = match family {
         Family::Far => random.between(0.7, 2.0),
         Family::Near => random.log_between(1e-6, 1e-2),
-        Family::Graze | Family::Tangent => random.log_between(1e-12, 1e-4) * if random.unit() < 0.5 { 1.0 } else { -1.0 },
+        Family::Graze | Family::Tangent => {
+            random.log_between(1e-12, 1e-4) * if random.unit() < 0.5 { 1.0 } else { -1.0 }
+        }
         _ => 0.0,
     };
     let motion_b = LinearMotion::try_new(random.ball(), random.turn(), random.ball(), w_b).expect("finite");
@@ -188,7 +191,9 @@ pub fn plant(kind: Kind, family: Family, random: &mut Random) -> Planted {
     let (turn_a, _) = start_a.pose_and_twist(time);
     let world_b = b.map(|p| pose_b.transform_point(p));
     let arms = a.map(|p| turn_a.transform_vector(p));
-    let inner = |random: &mut Random| if family == Family::Boundary { edge_of(random) } else { random.between(0.05, 0.95) };
+    let inner = |random: &mut Random| {
+        if family == Family::Boundary { edge_of(random) } else { random.between(0.05, 0.95) }
+    };
     let beside = matches!(family, Family::Near | Family::Graze);
     let (meet, arm, normal, outward) = match kind {
         Kind::PointTriangle => {
@@ -251,8 +256,7 @@ impl Planted {
     /// World positions of all vertices at a time, in plain floating point: A's two, B's three.
     pub fn world(&self, time: f64) -> ([DVec3; 2], [DVec3; 3]) {
         let place = |pose: Pose, p: DVec3| pose.transform_point(p);
-        let (pose_a, pose_b) =
-            (self.motion_a.pose_and_twist(time).0, self.motion_b.pose_and_twist(time).0);
+        let (pose_a, pose_b) = (self.motion_a.pose_and_twist(time).0, self.motion_b.pose_and_twist(time).0);
         (self.a.map(|p| place(pose_a, p)), self.b.map(|p| place(pose_b, p)))
     }
 
