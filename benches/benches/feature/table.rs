@@ -1,15 +1,17 @@
 //! The table of docs/theory/features.md: mean, p99 and largest time of a query by family, answers judged first.
 use crate::families::{Family, Kind, Planted, Random, plant};
-use d2m_feature::{ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, PlacedTriangle, StraightPaths};
+use d2m_feature::{
+    ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, PlacedTriangle, StraightPaths,
+};
 use std::hint::black_box;
 use std::time::Instant;
 
 /// The families of the table.
-pub const COLUMNS: [(&str, Family); 4] =
+pub(crate) const COLUMNS: [(&str, Family); 4] =
     [("far", Family::Far), ("near", Family::Near), ("hit", Family::Hit), ("graze", Family::Graze)];
 
 /// A query with its setup done: what is timed is the question alone.
-pub struct Prepared {
+pub(crate) struct Prepared {
     planted: Planted,
     pair: PairMotion,
     triangle: PlacedTriangle,
@@ -18,7 +20,7 @@ pub struct Prepared {
 
 /// Ways to ask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
+pub(crate) enum Method {
     /// Closed-form jets.
     Rigid,
     /// Straight vertex paths.
@@ -28,7 +30,7 @@ pub enum Method {
 }
 
 /// Queries of one family.
-pub fn queries(kind: Kind, family: Family, count: usize, seed: u64) -> Vec<Prepared> {
+pub(crate) fn queries(kind: Kind, family: Family, count: usize, seed: u64) -> Vec<Prepared> {
     let mut random = Random::new(seed);
     (0..count)
         .map(|_| {
@@ -44,7 +46,7 @@ pub fn queries(kind: Kind, family: Family, count: usize, seed: u64) -> Vec<Prepa
 
 impl Prepared {
     /// The answer.
-    pub fn ask(&self, method: Method, options: &ContactOptions) -> FirstContact {
+    pub(crate) fn ask(&self, method: Method, options: &ContactOptions) -> FirstContact {
         let p = &self.planted;
         let edge_b = [p.b[0], p.b[1]];
         match (method, p.kind) {
@@ -63,7 +65,7 @@ impl Prepared {
     }
 
     /// What is wrong with an answer: a planted clean crossing must be found, and not after it.
-    pub fn judge(&self, method: Method, answer: &FirstContact) -> Option<String> {
+    pub(crate) fn judge(&self, method: Method, answer: &FirstContact) -> Option<String> {
         let p = &self.planted;
         let slack = if method == Method::Straight { 1e-9 } else { 1e-13 };
         match answer {
@@ -80,7 +82,7 @@ impl Prepared {
 }
 
 /// Prints the table.
-pub fn print(count: usize) {
+pub(crate) fn print(count: usize) {
     let options = ContactOptions::new();
     println!("mean / p99 / max ns a query, {count} queries a family, setup excluded");
     println!("{:<22} {:>22} {:>22} {:>22} {:>22}", "", "far", "near", "hit", "graze");

@@ -80,7 +80,7 @@ impl<'a> EnclosedPath<'a> {
         );
         let at_b = IntervalVec3::point(pose_b.at);
         let shifted = |mut s: Seen| {
-            s.p = s.p + at_b;
+            s.p += at_b;
             s
         };
         match self.direction {

@@ -232,11 +232,11 @@ pub fn plant(kind: Kind, family: Family, random: &mut Random) -> Planted {
     let carried = twist_b.velocity_of(meet - pose_b.translation) - w_a.cross(arm);
     match family {
         Family::Tangent | Family::Coplanar => velocity -= normal * normal.dot(velocity),
-        Family::Hit | Family::Near | Family::Graze | Family::Fast | Family::Window => {
-            // Not too tangential.
-            if normal.dot(velocity).abs() < 0.5 {
-                velocity += normal * (1.0_f64).copysign(normal.dot(velocity));
-            }
+        // Not too tangential.
+        Family::Hit | Family::Near | Family::Graze | Family::Fast | Family::Window
+            if normal.dot(velocity).abs() < 0.5 =>
+        {
+            velocity += normal * (1.0_f64).copysign(normal.dot(velocity));
         }
         _ => {}
     }
