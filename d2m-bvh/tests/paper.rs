@@ -144,3 +144,44 @@ fn any_rigid_motion_through_its_enclosures() {
         scene.check(&answer.unwrap(), default_tolerance(&scene));
     }
 }
+
+/// Erratum 6. A tip dips 1e-8 into a wall, the closing speed at the contact is 2e-4 of the tip's: the paper's step of
+/// δ/v_n leaves another separation than it means to, and with a dip of nothing it is unbounded. Ours is measured.
+#[test]
+fn the_step_back_is_measured() {
+    use d2m_motion::LinearMotion;
+    let h = 0.0625;
+    let reach = (1.0f64 + h * h).sqrt();
+    for depth in [1e-6, 1e-8, 1e-9] {
+        let wall = scenes::plank(glam::dvec3(-4.0, reach - depth, -2.0), glam::dvec3(4.0, 2.0, 2.0));
+        let bar = scenes::plank(glam::dvec3(-1.0, -h, -h), glam::dvec3(1.0, h, h));
+        let turning = LinearMotion::REST.with_angular_velocity(glam::dvec3(0.0, 0.0, 2.0));
+        let trees = [bar, wall].map(SphereTree::new);
+        let tolerance = 1e-9;
+        let answer = time_of_contact(
+            Moving::new(&trees[0], &turning),
+            Moving::new(&trees[1], &LinearMotion::REST),
+            Window::UNIT,
+            &QueryOptions::DEFAULT.with_tolerance(tolerance),
+        )
+        .unwrap();
+        let contact = answer.contact().expect("the tip dips in");
+        assert!((tolerance..=3.3 * tolerance).contains(&contact.separation), "{depth:e}: {contact:?}");
+        // The tip is at height reach·sin(2t + atan h); its true distance at time_lo is the separation told.
+        let gap = |t: f64| (reach - depth) - reach * (2.0 * t + h.atan()).sin();
+        assert!(
+            (gap(contact.time_lo) - contact.separation).abs() < 1e-13,
+            "{depth:e}: {:e}",
+            gap(contact.time_lo) - contact.separation
+        );
+        let root = (((reach - depth) / reach).asin() - h.atan()) / 2.0;
+        let closing = 2.0 * reach * (2.0 * root + h.atan()).cos();
+        let literal = gap(root - tolerance / closing);
+        if depth < 2e-9 {
+            assert!(
+                literal > 1.2 * tolerance,
+                "{depth:e}: the literal step would have been right, {literal:e}"
+            );
+        }
+    }
+}
