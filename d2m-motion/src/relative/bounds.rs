@@ -6,7 +6,7 @@ use glam::DVec3;
 /// Rounding of a frame and of all dot products made with it, in units of 2⁻⁵³·S0 (docs/theory/features.md).
 const ROUNDING: f64 = 128.0;
 /// The same per radian of rotation: the angle ωτ is rounded.
-const ROUNDING_PER_RADIAN: f64 = 4.0;
+const ROUNDING_PER_RADIAN: f64 = 6.0;
 
 /// Scalars that every bound is made of; each is an upper bound.
 #[derive(Debug, Clone, Copy)]
@@ -25,7 +25,7 @@ pub(super) struct Bounds {
     pub(super) k2: f64,
     /// K3 = bc + 3wc + w³.
     pub(super) k3: f64,
-    /// k = 2⁻⁵³·(128 + 4(a + b)T).
+    /// k = 2⁻⁵³·(128 + 6(a + b)T).
     pub(super) rounding: f64,
 }
 
