@@ -23,6 +23,8 @@ pub(crate) enum Command {
     Features(FeaturesArgs),
     /// What is in a mesh, or which shapes are built in
     Info(InfoArguments),
+    /// The main job on built-in shapes: six scenes with their commands and answers
+    Demo,
 }
 
 const MESH_HELP: &str = "Mesh file (.obj, .stl, .ply) or built-in shape such as shape:gear?triangles=5000";

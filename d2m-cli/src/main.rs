@@ -24,6 +24,7 @@ fn main() -> ExitCode {
         Command::Batch(arguments) => commands::batch::run(arguments),
         Command::Features(arguments) => commands::features::run(arguments).map_err(Failure::from),
         Command::Info(arguments) => commands::info::run(arguments),
+        Command::Demo => commands::demo::run(),
     };
     match outcome {
         // A reader that closed the pipe has what it wanted.

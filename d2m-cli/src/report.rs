@@ -113,17 +113,29 @@ fn contact_lines(line: &mut dyn FnMut(&str, String), contact: &Contact) {
         }
         start => line("certified", format!("in contact from the start of the window: {}", start_word(start))),
     }
-    line("separation", format!("{:.4e} left then, tolerance {:.2e}", contact.separation, contact.tolerance));
-    line("normal", format!("{} from A to B", vector(contact.normal)));
+    // Bodies that overlap from the start have no separation, no normal and no closing speed.
+    let apart = matches!(contact.start, StartState::Apart | StartState::Touching);
+    if apart {
+        let left = format!("{:.4e} left then, tolerance {:.2e}", contact.separation, contact.tolerance);
+        line("separation", left);
+        line("normal", format!("{} from A to B", vector(contact.normal)));
+    }
     for (label, point, triangle, weights) in [
         ("point on A", contact.point_a, contact.triangle_a, contact.barycentric_a),
         ("point on B", contact.point_b, contact.triangle_b, contact.barycentric_b),
     ] {
+        if contact.start == StartState::Contained {
+            continue;
+        }
         let [p, q, r] = weights;
         line(label, format!("{} · triangle {triangle} at {p:.6}, {q:.6}, {r:.6}", vector(point)));
     }
-    line("features", feature_sentence(contact.feature));
-    line("closing", format!("{:.6} along the normal, per unit of time", contact.closing_speed));
+    if contact.start != StartState::Contained {
+        line("features", feature_sentence(contact.feature));
+    }
+    if apart {
+        line("closing", format!("{:.6} along the normal, per unit of time", contact.closing_speed));
+    }
 }
 
 /// The answer for a program.

@@ -351,6 +351,21 @@ fn info_describes_meshes_and_shapes() {
 }
 
 #[test]
+fn the_demo_answers_all_scenes() {
+    let output = d2m(&["demo"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = stdout(&output);
+    let verdicts: Vec<&str> = text
+        .lines()
+        .filter_map(|line| {
+            ["CONTACT", "SEPARATED", "UNDECIDED"].into_iter().find(|word| line.starts_with(word))
+        })
+        .collect();
+    assert_eq!(verdicts, ["CONTACT", "CONTACT", "SEPARATED", "CONTACT", "CONTACT", "CONTACT"], "{text}");
+    assert!(text.contains("from the start of the window: contained"), "{text}");
+}
+
+#[test]
 fn exported_meshes_load_again() {
     let folder = Folder::new("export");
     let obj = folder.path("gear.obj");

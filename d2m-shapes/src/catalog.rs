@@ -35,7 +35,7 @@ pub struct ShapeInfo {
     pub name: &'static str,
     /// One line about it.
     pub description: &'static str,
-    /// Its parameters.
+    /// Its own parameters; [`COMMON`] ones come on top.
     pub parameters: &'static [Parameter],
     build: fn(&Values) -> Surface,
 }
@@ -63,6 +63,9 @@ const fn count(
 const fn triangles(default: f64, low: f64) -> Parameter {
     count("triangles", default, low, 2e7, "wanted number of triangles; the mesh has the nearest that fits")
 }
+
+/// Parameters that every shape has besides its own.
+pub const COMMON: &[Parameter] = &[length("scale", 1.0, 1e-9, 1e9, "all lengths are multiplied by this")];
 
 /// Every shape that there is, in the order of `d2m info --shapes`.
 ///
@@ -250,7 +253,7 @@ impl Shape {
             name: name.to_owned(),
             known: join(SHAPES.iter().map(|info| info.name)),
         })?;
-        Ok(Self { info, given: vec![None; info.parameters.len()] })
+        Ok(Self { info, given: vec![None; info.parameters.len() + COMMON.len()] })
     }
 
     /// With another value of a parameter.
@@ -272,28 +275,39 @@ impl Shape {
     /// The value of a parameter; none if the shape has no such parameter.
     pub fn value(&self, name: &str) -> Option<f64> {
         let slot = self.slot(name).ok()?;
-        Some(self.given[slot].unwrap_or(self.info.parameters[slot].default))
+        Some(self.given[slot].unwrap_or(self.parameter(slot).default))
     }
 
     /// Makes the mesh.
     pub fn build(&self) -> TriMesh {
-        (self.info.build)(&Values(self)).into_mesh()
+        let values = Values(self);
+        let surface = (self.info.build)(&values);
+        let scale = values.get("scale");
+        if scale == 1.0 { surface.into_mesh() } else { surface.scaled(scale).into_mesh() }
+    }
+
+    /// The shape's own parameters, then the common ones.
+    fn parameters(&self) -> impl Iterator<Item = &'static Parameter> + use<> {
+        self.info.parameters.iter().chain(COMMON)
+    }
+
+    fn parameter(&self, slot: usize) -> &'static Parameter {
+        let own = self.info.parameters;
+        if slot < own.len() { &own[slot] } else { &COMMON[slot - own.len()] }
     }
 
     fn slot(&self, name: &str) -> Result<usize, ShapeError> {
-        let parameters = self.info.parameters;
-        parameters.iter().position(|parameter| parameter.name == name).ok_or_else(|| {
-            let known = join(parameters.iter().map(|parameter| parameter.name));
+        self.parameters().position(|parameter| parameter.name == name).ok_or_else(|| {
             ShapeError::UnknownParameter {
                 shape: self.info.name,
                 name: name.to_owned(),
-                known: if known.is_empty() { "none".to_owned() } else { known },
+                known: join(self.parameters().map(|parameter| parameter.name)),
             }
         })
     }
 
     fn set(&mut self, slot: usize, value: f64) -> Result<(), ShapeError> {
-        let Parameter { name, low, high, integer, .. } = self.info.parameters[slot];
+        let &Parameter { name, low, high, integer, .. } = self.parameter(slot);
         if !(low..=high).contains(&value) || (integer && value.fract() != 0.0) {
             return Err(ShapeError::OutOfRange { shape: self.info.name, name, value, low, high, integer });
         }
@@ -334,7 +348,7 @@ impl FromStr for Shape {
                 return Err(ShapeError::MissingValue { shape: shape.info.name, text: part.to_owned() });
             };
             let slot = shape.slot(name)?;
-            let name = shape.info.parameters[slot].name;
+            let name = shape.parameter(slot).name;
             if shape.given[slot].is_some() {
                 return Err(ShapeError::GivenTwice { shape: shape.info.name, name });
             }
@@ -353,7 +367,7 @@ impl fmt::Display for Shape {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(self.info.name)?;
         let mut separator = '?';
-        for (parameter, value) in self.info.parameters.iter().zip(&self.given) {
+        for (parameter, value) in self.parameters().zip(&self.given) {
             if let Some(value) = value {
                 write!(formatter, "{separator}{}={value}", parameter.name)?;
                 separator = '&';

@@ -13,7 +13,7 @@
 //! # Ok::<(), d2m_shapes::ShapeError>(())
 //! ```
 //!
-//! [`SHAPES`] lists names, parameters, defaults and ranges.
+//! [`SHAPES`] lists names, parameters, defaults and ranges; every shape also takes a `scale`.
 //!
 //! **Invariant.** This crate knows meshes but no motions, trees or queries.
 
@@ -28,5 +28,5 @@ mod thread;
 mod trigonometry;
 mod tube;
 
-pub use catalog::{Parameter, SHAPES, Shape, ShapeInfo, mesh};
+pub use catalog::{COMMON, Parameter, SHAPES, Shape, ShapeInfo, mesh};
 pub use error::ShapeError;

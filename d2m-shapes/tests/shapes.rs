@@ -59,6 +59,12 @@ fn every_shape_is_a_closed_oriented_manifold_of_the_wanted_size() {
 }
 
 #[test]
+fn scale_scales() {
+    assert!((farthest(&mesh("gear?scale=2.5").unwrap()) - 2.5).abs() < 1e-12);
+    assert!((farthest(&mesh("tetrahedron?scale=1e-6").unwrap()) - 1e-6).abs() < 1e-18);
+}
+
+#[test]
 fn a_million_triangles() {
     for name in ["torus-knot", "screw", "pebble"] {
         let count = mesh(&format!("{name}?triangles=1000000")).unwrap().triangle_count();
@@ -209,7 +215,7 @@ fn refusals_say_what_is_wrong() {
     assert!(message("").starts_with("there is no shape \"\""));
     assert_eq!(
         message("torus?radius=2"),
-        "shape torus: there is no parameter \"radius\"; it has triangles, tube"
+        "shape torus: there is no parameter \"radius\"; it has triangles, tube, scale"
     );
     assert_eq!(message("torus?triangles"), "shape torus: \"triangles\" should be parameter=value");
     assert_eq!(message("torus?triangles="), "shape torus: triangles= is not a number");
@@ -226,5 +232,5 @@ fn refusals_say_what_is_wrong() {
     }
     assert_eq!(message("torus-knot?p=2&q=4"), "shape torus-knot: p=2 and q=4 have the common divisor 2");
     assert!(message("torus-knot?q=5&tube=0.4").contains("too thick"));
-    assert_eq!(message("tetrahedron?x=1"), "shape tetrahedron: there is no parameter \"x\"; it has none");
+    assert_eq!(message("tetrahedron?x=1"), "shape tetrahedron: there is no parameter \"x\"; it has scale");
 }

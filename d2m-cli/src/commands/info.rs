@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::load::{Loaded, load};
 use crate::output::{Output, print};
 use d2m::bvh::{EnclosingSphere, Validation};
-use d2m::shapes::SHAPES;
+use d2m::shapes::{COMMON, SHAPES};
 use serde_json::json;
 use std::fmt::Write;
 
@@ -89,9 +89,10 @@ fn mesh_json(body: &Loaded, validation: &Validation) -> String {
 
 fn shapes_text() -> String {
     let mut text = "Built-in shapes: shape:NAME or shape:NAME?parameter=value&parameter=value\n".to_owned();
-    for shape in SHAPES {
-        let _ = writeln!(text, "\n{}: {}", shape.name, shape.description);
-        for parameter in shape.parameters {
+    let shapes = SHAPES.iter().map(|shape| (shape.name, shape.description, shape.parameters));
+    for (name, description, parameters) in shapes.chain([("every shape", "takes besides its own", COMMON)]) {
+        let _ = writeln!(text, "\n{name}: {description}");
+        for parameter in parameters {
             let _ = writeln!(
                 text,
                 "  {:<10} {} [default {}, {} to {}]",
@@ -109,6 +110,7 @@ fn shapes_json() -> String {
             let parameters: Vec<_> = shape
                 .parameters
                 .iter()
+                .chain(COMMON)
                 .map(|p| {
                     json!({
                         "name": p.name, "description": p.description, "default": p.default,

@@ -1,6 +1,7 @@
 //! One module for each command.
 
 pub(crate) mod batch;
+pub(crate) mod demo;
 pub(crate) mod features;
 pub(crate) mod info;
 pub(crate) mod toc;
