@@ -4,7 +4,8 @@ use super::engine::{self, Motions};
 use super::peers;
 use crate::judge::{Claim, Judge, Placement, advance, place};
 use crate::trials::Trial;
-use d2m::bvh::{Mode, QueryOptions};
+use d2m::bvh::{Budget, Mode, QueryOptions};
+use std::time::Duration;
 
 /// A row of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -92,6 +93,7 @@ pub(crate) struct Question<'a> {
     pub(crate) trial: &'a Trial,
     motions: Motions,
     options: QueryOptions,
+    cap: Duration,
     /// For static methods: where the bodies are, and when.
     at: f64,
     places: (Placement, Placement),
@@ -106,7 +108,13 @@ impl<'a> Question<'a> {
     ) -> Result<Self, Box<dyn std::error::Error>> {
         let places = (place(&trial.a, at), place(&trial.b, at));
         let options = QueryOptions::default().with_tolerance(tolerance).with_solid(engine::solid(pair));
-        Ok(Self { pair, trial, motions: Motions::new(trial)?, options, at, places })
+        Ok(Self { pair, trial, motions: Motions::new(trial)?, options, cap: Duration::MAX, at, places })
+    }
+
+    /// The reference method gives up after this many seconds.
+    pub(crate) fn with_cap(mut self, seconds: f64) -> Self {
+        self.cap = Duration::from_secs_f64(seconds);
+        self
     }
 
     fn judge(&self) -> Judge<'_> {
@@ -124,7 +132,10 @@ impl<'a> Question<'a> {
             Method::Capoeira => {
                 engine::time_of_contact(self.pair, &self.motions, &self.options.with_mode(Mode::Capoeira))
             }
-            Method::Paper => engine::paper(self.pair, &self.motions, &self.options),
+            Method::Paper => {
+                let budget = Budget::UNLIMITED.with_wall_clock(self.cap);
+                engine::paper(self.pair, &self.motions, &self.options.with_budget(budget))
+            }
             Method::AdvanceOwn => {
                 let judge = self.judge();
                 let mut hint = None;

@@ -18,6 +18,8 @@ type Error = Box<dyn std::error::Error>;
 
 /// Answers of parry that are compared with the judge's, per pair, speed and method: it is slow.
 const PARRY_CHECKS: usize = 4;
+/// Triangles of a pair beyond which parry's distance is not asked: one query then takes from seconds to minutes.
+const PARRY_TRIANGLES: usize = 50_000;
 /// How far parry's distance may be from ours: it iterates to a tolerance of about this on its own.
 const PARRY_AGREES: f64 = 1e-7;
 
@@ -110,16 +112,30 @@ pub(super) struct Setting<'a> {
 
 impl Setting<'_> {
     fn rows(&self, accurate: Option<&[Row]>) -> Result<Vec<Row>, Error> {
-        if self.method == Method::ParryCast {
-            return stopped::rows(self);
+        match self.method {
+            Method::ParryCast => return stopped::rows(self),
+            Method::AdvanceParry | Method::ParryDistance if self.triangle_count() > PARRY_TRIANGLES => {
+                return Ok(Vec::new());
+            }
+            _ => {}
         }
         let times_of_contact = self.places(accurate);
         let questions: Vec<(usize, Question<'_>)> = times_of_contact
             .iter()
-            .map(|&(i, at)| Ok((i, Question::new(self.pair, &self.trials[i], self.options.tolerance, at)?)))
+            .map(|&(i, at)| {
+                Ok((
+                    i,
+                    Question::new(self.pair, &self.trials[i], self.options.tolerance, at)?
+                        .with_cap(self.options.cap()),
+                ))
+            })
             .collect::<Result<_, Error>>()?;
         let asked = self.ask(&questions);
         Ok(self.judged(&questions, asked))
+    }
+
+    fn triangle_count(&self) -> usize {
+        self.pair.a.triangle_count() + self.pair.b.triangle_count()
     }
 
     /// Which trials, and the time for static methods: only those that end in contact.
@@ -178,7 +194,10 @@ impl Setting<'_> {
                 Row { trial: *trial, claim, separation, parry_separation: f64::NAN, microseconds, fault }
             })
             .collect();
-        if self.method.is_ours() && self.method != Method::AdvanceOwn {
+        if self.method.is_ours()
+            && self.method != Method::AdvanceOwn
+            && self.triangle_count() <= PARRY_TRIANGLES
+        {
             self.ask_parry(&mut rows);
         }
         rows

@@ -1,5 +1,5 @@
 //! Is an answer right? By conservative advancement and samples on the judge's own distance.
-use super::{BoxTree, Hint, place, separation};
+use super::{BoxTree, Hint, cross, place, separation};
 use crate::trials::Trial;
 
 /// What a method says about one trial over [0, 1].
@@ -45,13 +45,13 @@ pub(crate) struct Judge<'a> {
 }
 
 /// Advancement stops at this separation, in units of the models' radius; from there on samples decide.
-const NEAR: f64 = 1e-9;
+const NEAR: f64 = 1e-3;
 /// Steps of advancement before samples decide.
 const STEPS: usize = 4000;
 /// A gap of the bounding spheres that is worth a step of its own.
 const FAR: f64 = 0.01;
 /// Samples of what advancement left open.
-const SAMPLES: usize = 24;
+const SAMPLES: usize = 32;
 
 /// Conservative advancement: the end of the part of [0, end] over which steps of distance / speed show the bodies
 /// apart, to a separation of `near`; `end` when that is all of it.
@@ -104,8 +104,7 @@ impl Judge<'_> {
         });
         let mut times: Vec<f64> = samples.filter(|&t| t > free && t < end).collect();
         times.sort_by(f64::total_cmp);
-        let mut hint = None;
-        times.into_iter().find(|&t| self.separation(t, &mut hint) == 0.0)
+        times.into_iter().find(|&t| cross(self.a, self.b, &place(&self.trial.a, t), &place(&self.trial.b, t)))
     }
 
     /// What is wrong with the claim; `Ok` with the separation at the claimed time otherwise (infinite if none is).

@@ -7,7 +7,7 @@ mod triangle;
 
 pub(crate) use answer::{Claim, Judge, advance};
 pub(crate) use placement::{Placement, place};
-pub(crate) use separation::{BoxTree, Hint, separation};
+pub(crate) use separation::{BoxTree, Hint, cross, separation};
 
 #[cfg(test)]
 mod tests;

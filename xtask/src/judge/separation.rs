@@ -63,11 +63,23 @@ impl BoxTree {
 struct Search<'a> {
     a: &'a BoxTree,
     b: &'a BoxTree,
-    /// B seen from A.
+    /// B seen from A, and the matrices that its box tests need.
     place: Placement,
+    back: DMat3,
     absolute: DMat3,
+    absolute_back: DMat3,
     best: f64,
     closest: (u32, u32),
+}
+
+impl<'a> Search<'a> {
+    fn new(a: &'a BoxTree, b: &'a BoxTree, at_a: &Placement, at_b: &Placement, best: f64) -> Self {
+        let place = at_a.relative(at_b);
+        let m = place.matrix;
+        let absolute = DMat3::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs());
+        let (back, absolute_back) = (m.transpose(), absolute.transpose());
+        Self { a, b, place, back, absolute, absolute_back, best, closest: (0, 0) }
+    }
 }
 
 /// A pair of triangles that was the closest at a time nearby: where a search begins.
@@ -81,16 +93,19 @@ pub(crate) fn separation(
     at_b: &Placement,
     hint: &mut Hint,
 ) -> f64 {
-    let place = at_a.relative(at_b);
-    let m = place.matrix;
-    let absolute = DMat3::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs());
+    let mut search = Search::new(a, b, at_a, at_b, f64::INFINITY);
     let (i, j) = hint.unwrap_or((0, 0));
-    let mut search = Search { a, b, place, absolute, best: f64::INFINITY, closest: (i, j) };
     search.triangles(i, j);
-    let gap = search.gap(0, 0);
-    search.visit(0, 0, gap);
+    search.visit(0, 0, search.gap(0, 0));
     *hint = Some(search.closest);
     search.best
+}
+
+/// Do the surfaces cross? Much cheaper than the distance: boxes that are apart need no look.
+pub(crate) fn cross(a: &BoxTree, b: &BoxTree, at_a: &Placement, at_b: &Placement) -> bool {
+    let mut search = Search::new(a, b, at_a, at_b, f64::MIN_POSITIVE);
+    search.visit(0, 0, search.gap(0, 0));
+    search.best == 0.0
 }
 
 impl Search<'_> {
@@ -98,10 +113,12 @@ impl Search<'_> {
     fn gap(&self, i: u32, j: u32) -> f64 {
         let (a, b) = (&self.a.nodes[i as usize], &self.b.nodes[j as usize]);
         let between = self.place.apply(b.centre) - a.centre;
-        let on_a = between.abs() - a.half - self.absolute * b.half;
-        let turned = self.place.matrix.transpose() * between;
-        let on_b = turned.abs() - b.half - self.absolute.transpose() * a.half;
-        on_a.max_element().max(on_b.max_element())
+        let on_a = (between.abs() - a.half - self.absolute * b.half).max_element();
+        if on_a >= self.best {
+            return on_a;
+        }
+        let on_b = ((self.back * between).abs() - b.half - self.absolute_back * a.half).max_element();
+        on_a.max(on_b)
     }
 
     fn visit(&mut self, i: u32, j: u32, gap: f64) {
