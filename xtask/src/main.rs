@@ -1,5 +1,6 @@
 //! Project tasks: `cargo xtask ci` runs every check that must never be red; `cargo xtask bench` and
 //! `cargo xtask report` print every figure that the documentation states.
+mod accuracy;
 mod bench;
 mod ci;
 mod figure;
@@ -30,6 +31,8 @@ enum Task {
     Ci(ci::Options),
     /// Fails when the map in ARCHITECTURE.md, the folders and the order of the crates disagree.
     Tidy,
+    /// Random families against slow oracles; fails on any contact missed or late.
+    Accuracy(accuracy::Options),
     /// Time and accuracy of every method on ten pairs of shapes; each answer is judged before its time counts.
     Bench(bench::Options),
     /// Tables and figures in docs/results, from the newest results of the bench.
@@ -45,6 +48,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().task {
         Task::Ci(options) => ci::run(&options),
         Task::Tidy => tidy::run(),
+        Task::Accuracy(options) => accuracy::run(&options),
         Task::Bench(options) => bench::run(&options),
         Task::Report(options) => report::run(&options),
         Task::ParryCast(options) => bench::run_stopped(&options),

@@ -2,8 +2,8 @@
 use super::body::{Body, Pair};
 use crate::judge::Claim;
 use crate::trials::{Movement, Trial};
-use d2m::bvh::{self, MeshTree, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window, paper};
-use d2m::motion::LinearMotion;
+use d2m::bvh::{self, MeshTree, Moving, Posed, QueryOptions, Solid, TimeOfContact, TriMesh, Window, paper};
+use d2m::motion::{LinearMotion, RigidMotion};
 
 type Error = Box<dyn std::error::Error>;
 
@@ -45,9 +45,26 @@ pub(crate) fn time_of_contact(pair: &Pair, motions: &Motions, options: &QueryOpt
 
 /// The reference method's.
 pub(crate) fn paper(pair: &Pair, motions: &Motions, options: &QueryOptions) -> Claim {
-    let a = paper::Moving::new(pair.a.spheres(), &motions.a);
-    let b = paper::Moving::new(pair.b.spheres(), &motions.b);
+    let a = Moving::new(pair.a.spheres(), &motions.a);
+    let b = Moving::new(pair.b.spheres(), &motions.b);
     claim(paper::time_of_contact(a, b, Window::UNIT, options))
+}
+
+fn posed<'a>(pair: &'a Pair, motions: &Motions, t: f64) -> [Posed<'a>; 2] {
+    let posed = |body: &'a Body, motion: &LinearMotion| Posed::new(&body.tree, motion.pose_and_twist(t).0);
+    [posed(&pair.a, &motions.a), posed(&pair.b, &motions.b)]
+}
+
+/// The static test at a time, surfaces only as the peers do.
+pub(crate) fn collide(pair: &Pair, motions: &Motions, t: f64) -> bool {
+    let [a, b] = posed(pair, motions, t);
+    bvh::collide(a, b, Solid::Surface).expect("trials are valid input")
+}
+
+/// The static distance at a time.
+pub(crate) fn distance(pair: &Pair, motions: &Motions, t: f64) -> f64 {
+    let [a, b] = posed(pair, motions, t);
+    bvh::distance(a, b, Solid::Surface).expect("trials are valid input").lower
 }
 
 fn claim(answer: Result<TimeOfContact, bvh::QueryError>) -> Claim {

@@ -22,7 +22,11 @@ pub(crate) enum Method {
     AdvanceParry,
     /// parry's nonlinear shape cast, in a process of its own so that it can be stopped.
     ParryCast,
-    /// parry's intersection test at the time of contact.
+    /// One static query at the time of contact: the limit of what any search over the same trees can reach.
+    Collide,
+    /// The static distance there.
+    Distance,
+    /// parry's intersection test there.
     ParryIntersection,
     /// parry's distance there.
     ParryDistance,
@@ -32,13 +36,15 @@ pub(crate) enum Method {
 pub(crate) const ADVANCE_STOP: f64 = 1e-9;
 
 impl Method {
-    pub(crate) const ALL: [Self; 8] = [
+    pub(crate) const ALL: [Self; 10] = [
         Self::Accurate,
         Self::Capoeira,
         Self::Paper,
         Self::AdvanceOwn,
         Self::AdvanceParry,
         Self::ParryCast,
+        Self::Collide,
+        Self::Distance,
         Self::ParryIntersection,
         Self::ParryDistance,
     ];
@@ -52,6 +58,8 @@ impl Method {
             Self::AdvanceOwn => "advance-plain",
             Self::AdvanceParry => "advance-parry",
             Self::ParryCast => "parry-cast",
+            Self::Collide => "collide",
+            Self::Distance => "distance",
             Self::ParryIntersection => "parry-intersection",
             Self::ParryDistance => "parry-distance",
         }
@@ -66,6 +74,8 @@ impl Method {
             Self::AdvanceOwn => "advancement, plain trees",
             Self::AdvanceParry => "advancement, parry",
             Self::ParryCast => "parry nonlinear cast",
+            Self::Collide => "d2m collide at TOC",
+            Self::Distance => "d2m distance at TOC",
             Self::ParryIntersection => "parry intersection at TOC",
             Self::ParryDistance => "parry distance at TOC",
         }
@@ -73,7 +83,7 @@ impl Method {
 
     /// Asked at the time of contact that [`Self::Accurate`] found, rather than over the window.
     pub(crate) const fn is_static(self) -> bool {
-        matches!(self, Self::ParryIntersection | Self::ParryDistance)
+        matches!(self, Self::Collide | Self::Distance | Self::ParryIntersection | Self::ParryDistance)
     }
 
     /// Promises a separation of at most 3.3 tolerances at `lo`.
@@ -149,6 +159,14 @@ impl<'a> Question<'a> {
                 let hit = peers::cast(a.parry(), b.parry(), &self.trial.a, &self.trial.b);
                 hit.map_or(Claim::Separated, |t| contact(t, ADVANCE_STOP))
             }
+            Method::Collide => {
+                if engine::collide(self.pair, &self.motions, self.at) {
+                    still(0.0)
+                } else {
+                    Claim::Separated
+                }
+            }
+            Method::Distance => still(engine::distance(self.pair, &self.motions, self.at)),
             Method::ParryIntersection => {
                 let hit = peers::intersect(a.parry(), b.parry(), &self.places.0, &self.places.1);
                 if hit { still(0.0) } else { Claim::Separated }

@@ -10,6 +10,7 @@ mod stopped;
 mod store;
 pub(crate) mod sweep;
 
+pub(crate) use engine::Sabotage;
 pub(crate) use method::Method;
 pub(crate) use row::Row;
 pub(crate) use store::{Store, slug};

@@ -153,7 +153,8 @@ impl Setting<'_> {
 
     /// Answers with the least time of the rounds, until the cap of a slow method.
     fn ask(&self, questions: &[(usize, Question<'_>)]) -> Vec<(Claim, f64)> {
-        let slow = !matches!(self.method, Method::Accurate | Method::Capoeira);
+        let slow =
+            !matches!(self.method, Method::Accurate | Method::Capoeira | Method::Collide | Method::Distance);
         let rounds = if slow { 1 } else { self.options.rounds.max(1) };
         let begin = Instant::now();
         let mut asked: Vec<(Claim, f64)> = Vec::new();

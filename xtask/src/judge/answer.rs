@@ -44,7 +44,7 @@ pub(crate) struct Judge<'a> {
     pub(crate) trial: &'a Trial,
 }
 
-/// Advancement stops at this separation, in units of the models' radius; from there on samples decide.
+/// Advancement stops at this separation, in units of the larger radius; from there on samples decide.
 const NEAR: f64 = 1e-3;
 /// Steps of advancement before samples decide.
 const STEPS: usize = 4000;
@@ -96,7 +96,7 @@ impl Judge<'_> {
 
     /// The first sampled time in [0, end) at which the bodies cross, after what advancement shows free.
     fn crossing_before(&self, end: f64) -> Option<f64> {
-        let free = self.advance(end, NEAR);
+        let free = self.advance(end, NEAR * self.a.radius.max(self.b.radius));
         let samples = (0..SAMPLES).flat_map(|k| {
             let even = (k as f64 + 0.5) / SAMPLES as f64;
             // Even, and crowded towards the end with ratio 4: a late answer is late by little.
@@ -124,7 +124,8 @@ impl Judge<'_> {
                 if left == 0.0 && lo > 0.0 {
                     return Err(Fault::Penetrates);
                 }
-                if exact && left > 3.3 * tolerance {
+                // At the start of the window a body may be inside the other, however far its surface is.
+                if exact && lo > 0.0 && left > 3.3 * tolerance {
                     return Err(Fault::Far { separation: left });
                 }
                 Ok(left)

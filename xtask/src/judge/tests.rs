@@ -1,4 +1,3 @@
-use super::answer::Fault;
 use super::triangle::distance;
 use super::*;
 use crate::random::Random;

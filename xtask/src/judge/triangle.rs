@@ -31,7 +31,8 @@ fn volume(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
     (b - a).cross(c - a).dot(d - a)
 }
 
-fn pierces(p: DVec3, q: DVec3, t: &Corners) -> bool {
+/// Does the open segment cross the triangle?
+pub(crate) fn pierces(p: DVec3, q: DVec3, t: &Corners) -> bool {
     let (above, below) = (volume(t[0], t[1], t[2], p), volume(t[0], t[1], t[2], q));
     if !(above > 0.0 && below < 0.0 || above < 0.0 && below > 0.0) {
         return false;

@@ -1,0 +1,156 @@
+//! The engine on random scenes of a few triangles, against the judge's brute force.
+//!
+//! The law of the scenes: half of them are two closed solids, half triangle soups; sizes over three decades, aspect
+//! ratios up to 1e4 (needles, plates); the bodies are aimed at each other; speeds over ten decades, spins up to 300;
+//! one in eight stands still relative to the other, one in eight begins in overlap or inside.
+use super::{Outcome, Task};
+use crate::judge::{BoxTree, Claim, Fault, Judge, cross, place};
+use crate::random::Random;
+use crate::trials::{Movement, Trial};
+use d2m::bvh::{MeshTree, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact};
+use d2m::motion::LinearMotion;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Vertices and triangles, and whether they close.
+pub(super) struct Shape {
+    pub(super) vertices: Vec<DVec3>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) is_closed: bool,
+}
+
+pub(super) fn shape(random: &mut Random) -> Shape {
+    // Stretched along each axis by up to 100 either way, one time in four.
+    let thin = random.unit() < 0.25;
+    let stretch =
+        DVec3::from_array([(); 3].map(|()| if thin { 10f64.powf(random.range(-2.0, 2.0)) } else { 1.0 }));
+    let size = 10f64.powf(random.range(-1.0, 1.0)) / stretch.max_element();
+    let (points, triangles, is_closed): (Vec<DVec3>, Vec<[u32; 3]>, bool) = match random.bits() % 4 {
+        0 => {
+            let points = (0..4).map(|_| random.direction() * random.range(0.3, 1.0)).collect();
+            (points, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], true)
+        }
+        1 => {
+            let corner =
+                |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) - 0.5;
+            let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+            let halves = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
+            ((0..8).map(corner).collect(), halves.collect(), true)
+        }
+        _ => {
+            let count = 1 + random.bits() as u32 % 6;
+            let points = (0..3 * count).map(|_| random.direction() * random.range(0.1, 1.0)).collect();
+            (points, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(), false)
+        }
+    };
+    Shape { vertices: points.iter().map(|p| *p * stretch * size).collect(), triangles, is_closed }
+}
+
+/// Two shapes and how they move.
+struct Scene {
+    shapes: [Shape; 2],
+    trial: Trial,
+    solid: Solid,
+}
+
+fn scene(random: &mut Random) -> Scene {
+    let shapes = [shape(random), shape(random)];
+    let radius = |s: &Shape| s.vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
+    let reach = radius(&shapes[0]) + radius(&shapes[1]);
+    let along = random.direction();
+    let aside = random.direction() * reach * random.unit();
+    // Contact, if any, is likely near the middle of the window.
+    let speed = if random.unit() < 0.125 { 0.0 } else { reach * 10f64.powf(random.range(-3.0, 4.0)) };
+    let lead = if random.unit() < 0.125 { 0.0 } else { reach * random.range(0.3, 1.0) + 0.5 * speed };
+    let spins = [(); 2].map(|()| if random.unit() < 0.3 { 0.0 } else { 10f64.powf(random.range(-2.0, 2.5)) });
+    let mut movement = |sign: f64, spin: f64| Movement {
+        rotation: random.rotation(),
+        position: (along * lead + aside) * (-0.5 * sign),
+        velocity: along * (0.5 * sign * speed),
+        angular_velocity: random.direction() * spin,
+    };
+    let trial = Trial { a: movement(1.0, spins[0]), b: movement(-1.0, spins[1]) };
+    let solid = if shapes.iter().all(|s| s.is_closed) && random.unit() < 0.8 {
+        Solid::Filled
+    } else {
+        Solid::Surface
+    };
+    Scene { shapes, trial, solid }
+}
+
+impl Scene {
+    fn ask(&self) -> Claim {
+        let tree = |s: &Shape| {
+            MeshTree::new(
+                TriMesh::try_new(s.vertices.clone(), s.triangles.clone()).expect("finite and in range"),
+            )
+        };
+        let motion = |m: &Movement| {
+            LinearMotion::try_new(m.position, m.rotation, m.velocity, m.angular_velocity).expect("finite")
+        };
+        let (trees, motions) =
+            (self.shapes.each_ref().map(tree), [motion(&self.trial.a), motion(&self.trial.b)]);
+        let options = QueryOptions::default().with_solid(self.solid);
+        let (a, b) = (Moving::new(&trees[0], &motions[0]), Moving::new(&trees[1], &motions[1]));
+        match time_of_contact(a, b, Window::UNIT, &options).expect("valid input") {
+            TimeOfContact::Separated => Claim::Separated,
+            TimeOfContact::Contact(c) => {
+                Claim::Contact { lo: c.time_lo, hi: c.time_hi, tolerance: c.tolerance }
+            }
+            TimeOfContact::Undecided { clear_until } => Claim::Undecided { clear_until },
+        }
+    }
+}
+
+pub(super) fn run(task: &Task) -> Outcome {
+    let judged: Vec<(Claim, Option<(bool, String)>)> =
+        (0..task.count).into_par_iter().map(|index| case(task, index)).collect();
+    let mut outcome = Outcome { cases: judged.len(), ..Outcome::default() };
+    for (claim, fault) in judged {
+        outcome.contacts += usize::from(matches!(claim, Claim::Contact { .. }));
+        outcome.undecided += usize::from(matches!(claim, Claim::Undecided { .. }));
+        match fault {
+            Some((true, line)) => outcome.false_negatives.push(line),
+            Some((false, line)) => outcome.false_alarms.push(line),
+            None => {}
+        }
+    }
+    outcome
+}
+
+/// The claim, and what is wrong with it: whether it is a false negative, and a line that names the case.
+fn case(task: &Task, index: usize) -> (Claim, Option<(bool, String)>) {
+    let mut random = Random::new(task.seed.wrapping_mul(0x9e37_79b9).wrapping_add(index as u64));
+    let scene = scene(&mut random);
+    let claim = scene.ask();
+    let claim = task.sabotage.map_or(claim, |fault| fault.spoil(claim));
+    let trees = scene.shapes.each_ref().map(|s| BoxTree::build(&s.vertices, &s.triangles));
+    let judge = Judge { a: &trees[0], b: &trees[1], trial: &scene.trial };
+    let line =
+        |words: String| format!("seed {} case {index} ({:?}): {claim:?}: {words}", task.seed, scene.solid);
+    if scene.solid == Solid::Filled && begins_inside(&scene, &trees) {
+        let right = matches!(claim, Claim::Contact { lo: 0.0, .. } | Claim::Undecided { clear_until: 0.0 });
+        return (claim, (!right).then(|| (true, line("one body is inside the other at the start".into()))));
+    }
+    let fault = judge.check(&claim, true).err();
+    (claim, fault.map(|fault| (!matches!(fault, Fault::Far { .. }), line(fault.to_string()))))
+}
+
+/// Surfaces apart and a vertex of one inside the other, by the parity of a ray's crossings.
+fn begins_inside(scene: &Scene, trees: &[BoxTree; 2]) -> bool {
+    let at = [place(&scene.trial.a, 0.0), place(&scene.trial.b, 0.0)];
+    if cross(&trees[0], &trees[1], &at[0], &at[1]) {
+        return false;
+    }
+    let inside = |outer: usize, inner: usize| {
+        let point = at[outer].relative(&at[inner]).apply(scene.shapes[inner].vertices[0]);
+        let far = DVec3::new(0.363_821, 0.581_297, 0.727_941) * 1e4;
+        let shape = &scene.shapes[outer];
+        let hits = shape.triangles.iter().filter(|t| {
+            let corners = t.map(|i| shape.vertices[i as usize]);
+            crate::judge::pierces(point, point + far, &corners)
+        });
+        hits.count() % 2 == 1
+    };
+    inside(0, 1) || inside(1, 0)
+}

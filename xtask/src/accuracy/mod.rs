@@ -1,0 +1,103 @@
+//! `cargo xtask accuracy`: random families against slow oracles. Any false negative fails the run.
+mod mesh;
+mod reference;
+mod statics;
+
+use crate::TaskResult;
+use crate::bench::Sabotage;
+use std::time::{Duration, Instant};
+
+#[derive(clap::Args)]
+#[group(skip)]
+pub(crate) struct Options {
+    /// Cases of each family, about; families that are slow take a share of it.
+    #[arg(long, default_value_t = 20_000)]
+    count: usize,
+    /// Seed of the first round.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Go on with other seeds for this long.
+    #[arg(long)]
+    minutes: Option<f64>,
+    /// Only families whose name contains this.
+    #[arg(long)]
+    only: Option<String>,
+    /// A deliberate fault, to see it found: `late=1e-6` or `miss`.
+    #[arg(long = "break", hide = true)]
+    sabotage: Option<Sabotage>,
+}
+
+/// What a family found.
+#[derive(Debug, Default)]
+pub(crate) struct Outcome {
+    pub(crate) cases: usize,
+    /// Cases that end in contact.
+    pub(crate) contacts: usize,
+    /// Answers "undecided": allowed, counted.
+    pub(crate) undecided: usize,
+    /// Contacts missed or late: one line each. None is allowed.
+    pub(crate) false_negatives: Vec<String>,
+    /// Contacts reported where the distance stays above the tolerance's bound: one line each. None is allowed.
+    pub(crate) false_alarms: Vec<String>,
+}
+
+/// What a family is asked for.
+pub(crate) struct Task {
+    pub(crate) count: usize,
+    pub(crate) seed: u64,
+    pub(crate) sabotage: Option<Sabotage>,
+}
+
+type Family = (&'static str, usize, fn(&Task) -> Outcome);
+
+/// Name, the share of the count that a family takes (one in so many), and itself.
+const FAMILIES: [Family; 3] = [
+    ("mesh: engine on random small scenes", 1, mesh::run),
+    ("mesh: reference method and engine", 20, reference::run),
+    ("mesh: collide and distance at rest", 2, statics::run),
+];
+
+/// `cargo xtask accuracy`.
+pub(crate) fn run(options: &Options) -> TaskResult {
+    let begin = Instant::now();
+    let soak = options.minutes.map(|minutes| Duration::from_secs_f64(minutes * 60.0));
+    let mut seed = options.seed;
+    let (mut negatives, mut alarms, mut rounds) = (0, 0, 0);
+    loop {
+        for (name, share, family) in FAMILIES {
+            if options.only.as_ref().is_some_and(|only| !name.contains(only.as_str())) {
+                continue;
+            }
+            let start = Instant::now();
+            let count = options.count.div_ceil(share);
+            let found = family(&Task { count, seed, sabotage: options.sabotage });
+            println!(
+                "{name:<40} seed {seed}: {} cases, {} contacts, {} undecided, {} false negatives, {} false alarms, {:.1} s",
+                found.cases,
+                found.contacts,
+                found.undecided,
+                found.false_negatives.len(),
+                found.false_alarms.len(),
+                start.elapsed().as_secs_f64()
+            );
+            for line in found.false_negatives.iter().take(5) {
+                println!("  FALSE NEGATIVE  {line}");
+            }
+            for line in found.false_alarms.iter().take(5) {
+                println!("  false alarm  {line}");
+            }
+            negatives += found.false_negatives.len();
+            alarms += found.false_alarms.len();
+        }
+        rounds += 1;
+        seed += 1;
+        if soak.is_none_or(|time| begin.elapsed() >= time) {
+            break;
+        }
+    }
+    println!(
+        "{rounds} round(s), {negatives} false negatives, {alarms} false alarms, {:.1} s",
+        begin.elapsed().as_secs_f64()
+    );
+    if negatives + alarms == 0 { Ok(()) } else { Err("the promise is broken: see the lines above".into()) }
+}
