@@ -50,8 +50,10 @@ const NEAR: f64 = 1e-3;
 const STEPS: usize = 4000;
 /// A gap of the bounding spheres that is worth a step of its own.
 const FAR: f64 = 0.01;
-/// Samples of what advancement left open.
-const SAMPLES: usize = 32;
+/// Samples towards the end.
+const SAMPLES: i32 = 26;
+/// Steps of the walk through what advancement left open.
+const WALK: usize = 1000;
 
 /// Conservative advancement: the end of the part of [0, end] over which steps of distance / speed show the bodies
 /// apart, to a separation of `near`; `end` when that is all of it.
@@ -94,17 +96,31 @@ impl Judge<'_> {
         advance(self.trial, [self.a.radius, self.b.radius], (end, near), |t| self.separation(t, &mut hint))
     }
 
-    /// The first sampled time in [0, end) at which the bodies cross, after what advancement shows free.
+    /// A time in [0, end) at which the bodies cross, if advancement, a walk and samples find one.
+    ///
+    /// Advancement proves the first part free. The walk goes on from there by the distance / speed that is left, but
+    /// by no less than a small step: a crossing that lasts longer than that step is found. Samples crowd towards the
+    /// end with ratio 4, because a late answer is late by little.
     fn crossing_before(&self, end: f64) -> Option<f64> {
-        let free = self.advance(end, NEAR * self.a.radius.max(self.b.radius));
-        let samples = (0..SAMPLES).flat_map(|k| {
-            let even = (k as f64 + 0.5) / SAMPLES as f64;
-            // Even, and crowded towards the end with ratio 4: a late answer is late by little.
-            [free + (end - free) * even, end - (end - free) * 0.25f64.powi(k as i32)]
-        });
-        let mut times: Vec<f64> = samples.filter(|&t| t > free && t < end).collect();
-        times.sort_by(f64::total_cmp);
-        times.into_iter().find(|&t| cross(self.a, self.b, &place(&self.trial.a, t), &place(&self.trial.b, t)))
+        let size = self.a.radius.max(self.b.radius);
+        let free = self.advance(end, NEAR * size);
+        let cross_at = |t: f64| cross(self.a, self.b, &place(&self.trial.a, t), &place(&self.trial.b, t));
+        let crowded =
+            (0..SAMPLES).map(|k| end - (end - free) * 0.25f64.powi(k)).find(|&t| t < end && cross_at(t));
+        let speed = self.trial.bound_speed(self.a.radius, self.b.radius);
+        let least = (NEAR * size).min((end - free) * speed / 32.0);
+        let (mut t, mut hint) = (free, None);
+        for _ in 0..WALK {
+            if t >= end {
+                break;
+            }
+            let gap = self.separation(t, &mut hint);
+            if gap == 0.0 {
+                return Some(t);
+            }
+            t += gap.max(least) * (1.0 - 1e-9) / speed;
+        }
+        crowded
     }
 
     /// What is wrong with the claim; `Ok` with the separation at the claimed time otherwise (infinite if none is).
