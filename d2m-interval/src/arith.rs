@@ -341,21 +341,28 @@ impl Interval {
         if self.is_empty() || y.is_empty() || z.is_empty() {
             return Self::EMPTY;
         }
-        let simple = self * y + z;
-        let large = 1.0e299;
-        if !(self.mag() < large && y.mag() < large && self.mag() * y.mag() < large && z.mag() < large) {
-            return simple;
-        }
         let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
         for (a, b) in [(self.lo(), y.lo()), (self.lo(), y.hi()), (self.hi(), y.lo()), (self.hi(), y.hi())] {
-            let (p, q) = two_product(a, b);
-            let (s, e) = two_sum(p, z.lo());
-            let low = down(s + (e + q));
-            let (s, e) = two_sum(p, z.hi());
-            let high = up(s + (e + q));
+            let (low, high) = (-fused_up(a, b, z.lo(), true), fused_up(a, b, z.hi(), false));
             lo = if low < lo { low } else { lo };
             hi = if high > hi { high } else { hi };
         }
         Self::raw(lo, hi)
     }
+}
+
+/// An upper bound of `a·b + c`, or of its negative; for ends, so that 0·∞ is 0 and an infinite `c` stays.
+fn fused_up(a: f64, b: f64, c: f64, negated: bool) -> f64 {
+    let flip = |x: f64| if negated { -x } else { x };
+    let product = end_product(a, b);
+    if c.is_infinite() {
+        return flip(c);
+    }
+    let large = 1.0e299;
+    if !(a.abs() < large && b.abs() < large && product.abs() < large && c.abs() < large) {
+        return up(up(flip(product)) + flip(c));
+    }
+    let (p, q) = two_product(a, b);
+    let (s, e) = two_sum(p, c);
+    up(flip(s + (e + q)))
 }

@@ -19,3 +19,15 @@ pub enum IntervalError {
         hi: f64,
     },
 }
+
+/// Why a text is not an interval.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ParseIntervalError {
+    /// The text has none of the forms that [`Interval`](crate::Interval)'s `from_str` lists.
+    #[error("not an interval literal")]
+    Syntax,
+    /// The lower end point exceeds the upper one, or the interval would hold no real number.
+    #[error("interval literal with end points in the wrong order, or without a real number")]
+    Order,
+}

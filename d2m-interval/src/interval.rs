@@ -179,9 +179,3 @@ impl From<Interval> for (f64, f64) {
         (x.lo(), x.hi())
     }
 }
-
-impl core::fmt::Debug for Interval {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        write!(f, "[{:?}, {:?}]", self.lo(), self.hi())
-    }
-}

@@ -1,5 +1,7 @@
 //! Rigorous, fast, portable interval arithmetic: outward-rounded in every operation, no_std.
 #![cfg_attr(not(feature = "std"), no_std)]
+extern crate alloc;
+
 mod arith;
 mod compare;
 mod elementary;
@@ -11,15 +13,41 @@ mod round;
 mod serde_form;
 mod set_ops;
 mod simd;
+mod text;
 mod vec3;
 mod x4;
 
 pub use compare::Overlap;
-pub use error::IntervalError;
+pub use error::{IntervalError, ParseIntervalError};
 pub use interval::Interval;
 pub use mat3::IntervalMat3;
 pub use vec3::IntervalVec3;
 pub use x4::{IntervalVec3X4, IntervalX4};
+
+/// The narrowest interval that holds the number or interval that is written: `interval!(0.1)`, `interval!("1/3")`,
+/// `interval!("[0.1, 0.2]")`; with two arguments, [`Interval::new`].
+///
+/// # Panics
+/// When the text is not an interval.
+///
+/// ```
+/// use d2m_interval::{Interval, interval};
+/// let tenth = interval!(0.1);
+/// assert!((tenth * 10.0).contains(1.0) && tenth.lo() < tenth.hi());
+/// assert_eq!(interval!("[1, 2]"), interval!(1.0, 2.0));
+/// ```
+#[macro_export]
+macro_rules! interval {
+    ($text:literal) => {
+        match <$crate::Interval as ::core::str::FromStr>::from_str(::core::concat!($text)) {
+            Ok(interval) => interval,
+            Err(error) => panic!("{error}: {}", ::core::concat!($text)),
+        }
+    };
+    ($lo:expr, $hi:expr) => {
+        $crate::Interval::new($lo, $hi)
+    };
+}
 
 #[cfg(test)]
 mod tests;

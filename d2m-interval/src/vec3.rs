@@ -203,6 +203,37 @@ impl IntervalVec3 {
         self.norm_squared().sqrt()
     }
 
+    /// `self` turned by `angle` about the unit vector `axis` (right-handed), by Rodrigues' formula
+    /// `v cos θ + (k × v) sin θ + k (k·v)(1 − cos θ)`: with one increment for the sum of the three terms.
+    ///
+    /// ```
+    /// # use d2m_interval::{Interval, IntervalVec3};
+    /// # use glam::DVec3;
+    /// let [x, z] = [DVec3::X, DVec3::Z].map(IntervalVec3::point);
+    /// assert!(x.rotated(z, Interval::FRAC_PI_2).contains(DVec3::Y));
+    /// ```
+    #[inline(always)]
+    pub fn rotated(self, axis: Self, angle: Interval) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        let across = axis.cross(self);
+        let along = axis.dot(self) * (1.0 - cos);
+        let row = |v: Interval, c: Interval, k: Interval| {
+            sum3(products(cos.0, v.0), products(sin.0, c.0), products(along.0, k.0))
+        };
+        rounded3(
+            self.largest().max(across.largest()).max(axis.largest()).max(along.0),
+            [row(self.x, across.x, axis.x), row(self.y, across.y, axis.y), row(self.z, across.z, axis.z)],
+            || {
+                let row = |v, c, k| dot_slow(Self::new(cos, sin, along), Self::new(v, c, k));
+                Self::new(
+                    row(self.x, across.x, axis.x),
+                    row(self.y, across.y, axis.y),
+                    row(self.z, across.z, axis.z),
+                )
+            },
+        )
+    }
+
     /// The smallest box that holds both.
     #[inline]
     pub fn hull(self, o: Self) -> Self {
