@@ -85,6 +85,26 @@ fn main() {
     if let Some(path) = arguments.get(3) {
         std::fs::write(path, out).expect("writable results");
     }
+    let mut counts: Vec<_> = motions
+        .iter()
+        .map(|(ma, mb)| {
+            time_of_contact(Moving::new(&a, ma), Moving::new(&b, mb), Window::UNIT, &options)
+                .expect("good query");
+            d2m_bvh::last_search_counts()
+        })
+        .collect();
+    counts.sort_by_key(|c| c.node_tests + c.triangle_looks);
+    println!("{:?}", counts[counts.len() / 2]);
+    let mean = |f: fn(&d2m_bvh::SearchCounts) -> u64| counts.iter().map(f).sum::<u64>() / counts.len() as u64;
+    println!(
+        "means: windows {} frames {} tests {} queued {} looks {} closest {}",
+        mean(|c| c.windows),
+        mean(|c| c.frames),
+        mean(|c| c.node_tests),
+        mean(|c| c.queued),
+        mean(|c| c.triangle_looks),
+        mean(|c| c.closest_features)
+    );
     best.sort_by(f64::total_cmp);
     println!("median {:.2} us, worst {:.2} us", best[best.len() / 2], best[best.len() - 1]);
 }

@@ -9,9 +9,13 @@ mod tree;
 
 pub use enclosing_sphere::EnclosingSphere;
 pub use mesh::{Edge, MAX_COORDINATE, MeshError, Topology, TriMesh, Validation};
+#[doc(hidden)]
+pub use query::last_search_counts;
 pub use query::{
     Budget, Contact, Distance, DistanceOptions, Mode, Moving, PairCache, Posed, QueryError, QueryOptions,
     Solid, StartState, TimeOfContact, Window, collide, colliding_pairs, distance, distance_within,
     time_of_contact, try_colliding_pair,
 };
+#[doc(hidden)]
+pub use search::SearchCounts;
 pub use tree::MeshTree;

@@ -22,5 +22,5 @@ pub use error::QueryError;
 pub use moving::Moving;
 pub use options::{Budget, Mode, QueryOptions, Solid};
 pub use posed::Posed;
-pub use time_of_contact::time_of_contact;
+pub use time_of_contact::{last_search_counts, time_of_contact};
 pub use window::Window;

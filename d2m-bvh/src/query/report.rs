@@ -19,7 +19,12 @@ pub(super) fn contact(scene: &Scene<'_>, found: &Found) -> Contact {
         (true, true) => StartState::Overlapping,
     };
     let separation = if start == StartState::Overlapping { 0.0 } else { near.square.sqrt() };
-    describe(scene, &frame, time, &Witness { near, a, b, triangles: found.triangles, separation, start })
+    describe(
+        scene,
+        (&motion, &frame),
+        time,
+        &Witness { near, a, b, triangles: found.triangles, separation, start },
+    )
 }
 
 struct Witness {
@@ -31,17 +36,22 @@ struct Witness {
     start: StartState,
 }
 
-fn describe(scene: &Scene<'_>, frame: &Frame, time: f64, witness: &Witness) -> Contact {
+fn describe(
+    scene: &Scene<'_>,
+    (motion, frame): (&RelativeMotion, &Frame),
+    time: f64,
+    witness: &Witness,
+) -> Contact {
     let Witness { near, a, b, triangles, separation, start } = witness;
-    let side = &frame.sides[1];
-    let rb = &frame.rotation_b;
-    let turn = |p: DVec3| rb[0] * p.x + rb[1] * p.y + rb[2] * p.z;
+    let rb = motion.rotation_b(frame.offset);
+    let turn = |p: DVec3| rb.times(p).to_vec();
     let body = &scene.b;
     let base = body.1.position() + body.1.linear_velocity() * (time - body.1.reference_time());
     let world = |p: DVec3| base + turn(p + (body.0.center() - body.1.at()));
     let normal = near.direction.normalize_or(DVec3::X);
     let [pa, pb] = near.points;
-    let rate = side.velocity + side.omega_single.cross(pa - side.offset) - side.omega_wide.cross(pb);
+    let rate = frame.velocity.to_vec() + frame.omega_a.to_vec().cross(pa - frame.apart.to_vec())
+        - frame.omega_b.to_vec().cross(pb);
     Contact {
         time_lo: time,
         time_hi: time,
@@ -80,7 +90,7 @@ pub(super) fn contained(
     let a = place_a(&frame, &corners(tree_a, triangles[0]));
     let near = closest(&a, &b);
     let time = scene.window.start();
-    describe(scene, &frame, time, &Witness { near, a, b, triangles, separation: 0.0, start })
+    describe(scene, (motion, &frame), time, &Witness { near, a, b, triangles, separation: 0.0, start })
 }
 
 fn feature(scene: &Scene<'_>, near: &Closest, triangles: [u32; 2]) -> FeaturePair {

@@ -2,7 +2,7 @@
 
 use super::containment::contains_point;
 use super::report::contact;
-use crate::search::{Outcome, RelativeMotion, Scene, Scratch, first_contact};
+use crate::search::{Outcome, Quad, RelativeMotion, Scene, Scratch, first_contact};
 use crate::{MeshTree, Moving, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window};
 use core::cell::RefCell;
 use d2m_motion::LinearMotion;
@@ -80,6 +80,12 @@ pub fn time_of_contact(
     })
 }
 
+/// Counts of the last search of this thread.
+#[doc(hidden)]
+pub fn last_search_counts() -> crate::SearchCounts {
+    SCRATCH.with_borrow(|scratch| scratch.as_ref().map(|s| s.counts).unwrap_or_default())
+}
+
 fn check(options: &QueryOptions) -> Result<(), QueryError> {
     if let Some(value) = options.tolerance
         && !(value.is_finite() && value > 0.0)
@@ -95,20 +101,24 @@ fn containment(scene: &Scene<'_>) -> Option<TimeOfContact> {
     let start = scene.window.start();
     let motion = RelativeMotion::new((scene.a.0, &scene.a.1), (scene.b.0, &scene.b.1), start);
     let frame = motion.frame(0.0);
-    let inside = |outer: &MeshTree, inner: &MeshTree, side: usize| -> Option<(u32, DVec3)> {
-        // A body that holds another one holds its ball's middle region: the cheap look first.
-        let side = &frame.sides[side];
+    let place = |p: DVec3, of_b: bool| {
+        if of_b {
+            frame.rotation.transposed().times((Quad::from_vec(p) - frame.apart).to_vec()).to_vec()
+        } else {
+            (frame.rotation.times(p) + frame.apart).to_vec()
+        }
+    };
+    let inside = |outer: &MeshTree, inner: &MeshTree, of_b: bool| -> Option<(u32, DVec3)> {
         inner.component_vertices().iter().find_map(|&vertex| {
             let p = inner.mesh().vertices()[vertex as usize] - inner.center();
-            let r = &side.rotation;
-            let q = r[0] * p.x + r[1] * p.y + r[2] * p.z + side.offset + outer.center();
+            let q = place(p, of_b) + outer.center();
             contains_point(outer, q).then_some((vertex, q))
         })
     };
     let (a, b) = (scene.a.0, scene.b.0);
-    let hit = inside(a, b, 0)
+    let hit = inside(a, b, true)
         .map(|(vertex, _)| (false, vertex))
-        .or_else(|| inside(b, a, 1).map(|(vertex, _)| (true, vertex)));
+        .or_else(|| inside(b, a, false).map(|(vertex, _)| (true, vertex)));
     let (a_is_inside, vertex) = hit?;
     Some(TimeOfContact::Contact(super::report::contained(
         scene,

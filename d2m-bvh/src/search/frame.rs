@@ -4,7 +4,8 @@
 //! a rotating frame: no Coriolis terms). A point r of a body, seen from the followed point `at`, has velocity
 //! v + ω × r and an acceleration of length at most |ω|²|r|, at all times.
 
-use super::base_pose::{Columns, relative_position, rotation_at};
+use super::base_pose::{relative_position, rotation_at};
+use super::quad::{Matrix, Quad};
 use crate::MeshTree;
 use d2m_motion::LinearMotion;
 use glam::DVec3;
@@ -15,20 +16,20 @@ pub(crate) struct RelativeMotion {
     /// First instant of the window; offsets count from it.
     pub(crate) start: f64,
     /// x_A − x_B at the start (followed points), world axes.
-    position: DVec3,
-    velocity: DVec3,
+    position: Quad,
+    velocity: Quad,
     bodies: [Spin; 2],
 }
 
 /// Rotation of one body.
 #[derive(Clone, Copy, Debug)]
 struct Spin {
-    omega: DVec3,
+    omega: Quad,
     omega_squared: f64,
-    /// Columns of R, [ω]R and [ω]²R at the start.
-    rotation: Columns,
-    first: Columns,
-    second: Columns,
+    /// R, [ω]R and [ω]²R at the start.
+    rotation: Matrix,
+    first: Matrix,
+    second: Matrix,
     /// From the followed point to the centre of the tree, body axes.
     arm: DVec3,
 }
@@ -39,96 +40,89 @@ impl Spin {
         let rotation = rotation_at(motion, start);
         let first = rotation.map(|c| omega.cross(c));
         let second = first.map(|c| omega.cross(c));
-        Self { omega, omega_squared: omega.length_squared(), rotation, first, second, arm }
+        Self {
+            omega: Quad::from_vec(omega),
+            omega_squared: omega.length_squared(),
+            rotation: Matrix::from_columns(rotation),
+            first: Matrix::from_columns(first),
+            second: Matrix::from_columns(second),
+            arm,
+        }
     }
 
     /// R(s) = R + s·f₁(θ²)·[ω]R + s²·f₂(θ²)·[ω]²R, θ = |ω|s, f₁ = sin θ/θ, f₂ = (1 − cos θ)/θ². The Taylor sums
     /// leave out less than 2⁻⁶⁰ for |θ| ≤ 0.35.
     #[inline(always)]
-    fn at(&self, s: f64) -> Columns {
+    fn at(&self, s: f64) -> Matrix {
         let z = self.omega_squared * (s * s);
         let f1 = 1.0
             - z * (1.0 / 6.0
                 - z * (1.0 / 120.0
                     - z * (1.0 / 5040.0
-                        - z * (1.0 / 362_880.0 - z * (1.0 / 39_916_800.0 - z / 6_227_020_800.0)))));
+                        - z * (1.0 / 362_880.0 - z * (1.0 / 39_916_800.0 - z * (1.0 / 6_227_020_800.0))))));
         let f2 = 0.5
             - z * (1.0 / 24.0
                 - z * (1.0 / 720.0
                     - z * (1.0 / 40_320.0
-                        - z * (1.0 / 3_628_800.0 - z * (1.0 / 479_001_600.0 - z / 87_178_291_200.0)))));
-        let (f1, f2) = (f1 * s, f2 * (s * s));
-        let one = |k: usize| self.rotation[k] + (self.first[k] * f1 + self.second[k] * f2);
-        [one(0), one(1), one(2)]
+                        - z * (1.0 / 3_628_800.0
+                            - z * (1.0 / 479_001_600.0 - z * (1.0 / 87_178_291_200.0))))));
+        let (f1, f2) = (Quad::splat(f1 * s), Quad::splat(f2 * (s * s)));
+        let (r, p, q) = (&self.rotation.0, &self.first.0, &self.second.0);
+        Matrix([
+            r[0] + (p[0] * f1 + q[0] * f2),
+            r[1] + (p[1] * f1 + q[1] * f2),
+            r[2] + (p[2] * f1 + q[2] * f2),
+        ])
     }
 }
 
-/// The single body seen from the wide body at one time: "wide" is the body whose node is opened.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Side {
-    /// Axes of the single body in the wide body's frame.
-    pub(crate) rotation: Columns,
-    /// Centre of the single body's tree minus the wide one's, wide body's axes.
-    pub(crate) offset: DVec3,
-    /// Velocity of the first centre minus that of the second, wide body's axes.
-    pub(crate) velocity: DVec3,
-    pub(crate) omega_wide: DVec3,
-    pub(crate) omega_single: DVec3,
-}
-
-/// The relative state at one time.
+/// The relative state at one time, in the frame of B (an inertial one that coincides with it then).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     /// Offset from the start of the window.
     pub(crate) offset: f64,
-    /// `sides[0]`: nodes of A are opened against boxes of B; `sides[1]`: nodes of B against boxes of A.
-    pub(crate) sides: [Side; 2],
-    /// Axes of B in the world.
-    pub(crate) rotation_b: Columns,
-}
-
-#[inline(always)]
-fn transpose_mul(m: &Columns, p: DVec3) -> DVec3 {
-    DVec3::new(m[0].dot(p), m[1].dot(p), m[2].dot(p))
+    /// Axes of A.
+    pub(crate) rotation: Matrix,
+    /// Centre of A's tree minus that of B's.
+    pub(crate) apart: Quad,
+    /// Velocity of the first centre minus that of the second.
+    pub(crate) velocity: Quad,
+    pub(crate) omega_a: Quad,
+    pub(crate) omega_b: Quad,
 }
 
 impl RelativeMotion {
     pub(crate) fn new(a: (&MeshTree, &LinearMotion), b: (&MeshTree, &LinearMotion), start: f64) -> Self {
         Self {
             start,
-            position: relative_position(a.1, b.1, start),
-            velocity: a.1.linear_velocity() - b.1.linear_velocity(),
+            position: Quad::from_vec(relative_position(a.1, b.1, start)),
+            velocity: Quad::from_vec(a.1.linear_velocity() - b.1.linear_velocity()),
             bodies: [a, b].map(|(tree, motion)| Spin::new(motion, tree.center() - motion.at(), start)),
         }
+    }
+
+    /// Axes of B in the world at an offset.
+    pub(crate) fn rotation_b(&self, offset: f64) -> Matrix {
+        self.bodies[1].at(offset)
     }
 
     /// State at an offset with |ω|·|offset| ≤ 0.35 for both bodies.
     #[inline(always)]
     pub(crate) fn frame(&self, offset: f64) -> Frame {
-        let (ra, rb) = (self.bodies[0].at(offset), self.bodies[1].at(offset));
-        let apply = |m: &Columns, p: DVec3| m[0] * p.x + m[1] * p.y + m[2] * p.z;
-        let (arm_a, arm_b) = (apply(&ra, self.bodies[0].arm), apply(&rb, self.bodies[1].arm));
-        let (wa, wb) = (self.bodies[0].omega, self.bodies[1].omega);
+        let [body_a, body_b] = &self.bodies;
+        let (ra, rb) = (body_a.at(offset), body_b.at(offset));
+        let (arm_a, arm_b) = (ra.times(body_a.arm), rb.times(body_b.arm));
         // Centre of A minus centre of B, and its rate, world axes.
-        let apart = self.position + self.velocity * offset + (arm_a - arm_b);
-        let rate = self.velocity + (wa.cross(arm_a) - wb.cross(arm_b));
-        let a_in_b = [transpose_mul(&rb, ra[0]), transpose_mul(&rb, ra[1]), transpose_mul(&rb, ra[2])];
-        let b_in_a = [
-            DVec3::new(a_in_b[0].x, a_in_b[1].x, a_in_b[2].x),
-            DVec3::new(a_in_b[0].y, a_in_b[1].y, a_in_b[2].y),
-            DVec3::new(a_in_b[0].z, a_in_b[1].z, a_in_b[2].z),
-        ];
-        let side = |frame: &Columns, rotation: Columns, sign: f64, wide: DVec3, single: DVec3| Side {
-            rotation,
-            offset: transpose_mul(frame, apart) * sign,
-            velocity: transpose_mul(frame, rate) * sign,
-            omega_wide: transpose_mul(frame, wide),
-            omega_single: transpose_mul(frame, single),
-        };
+        let apart = self.position + self.velocity * Quad::splat(offset) + (arm_a - arm_b);
+        let rate = self.velocity + (body_a.omega.cross(arm_a) - body_b.omega.cross(arm_b));
+        let to_b = rb.transposed();
         Frame {
             offset,
-            sides: [side(&ra, b_in_a, -1.0, wa, wb), side(&rb, a_in_b, 1.0, wb, wa)],
-            rotation_b: rb,
+            rotation: Matrix([to_b.times_quad(ra.0[0]), to_b.times_quad(ra.0[1]), to_b.times_quad(ra.0[2])]),
+            apart: to_b.times_quad(apart),
+            velocity: to_b.times_quad(rate),
+            omega_a: to_b.times_quad(body_a.omega),
+            omega_b: to_b.times_quad(body_b.omega),
         }
     }
 }

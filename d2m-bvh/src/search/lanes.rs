@@ -1,6 +1,6 @@
 //! Eight `f32` lanes: one AVX register, or a portable array with the same bits.
 //!
-//! Only + − × ÷ √, maximum, comparison and sign removal, each correctly rounded by IEEE 754, and no fused
+//! Only + − × ÷ √, extrema, comparison and sign removal, each correctly rounded by IEEE 754, and no fused
 //! multiply-add: every implementation returns the same bits. This module holds the only `unsafe` code of the crate.
 
 use core::ops::{Add, Div, Mul, Sub};
@@ -19,14 +19,17 @@ pub(crate) trait Lanes:
     fn abs(self) -> Self;
     /// Correctly rounded square root.
     fn sqrt(self) -> Self;
-    /// `if self > other { self } else { other }` in each lane (so `other` when one is NaN).
-    fn max(self, other: Self) -> Self;
-    /// `if left < right { yes } else { no }` in each lane.
-    fn if_less(left: Self, right: Self, yes: Self, no: Self) -> Self;
-    /// `magnitude` with its sign flipped where `sign` is negative (or −0).
-    fn flip_sign(magnitude: Self, sign: Self) -> Self;
     /// Bit i is set when lane i of `self` is less than lane i of `other`.
     fn less_bits(self, other: Self) -> u32;
+    /// `if self > other { self } else { other }` in each lane (so `other` when one is NaN).
+    fn max(self, other: Self) -> Self;
+    /// `if self < other { self } else { other }` in each lane (so `other` when one is NaN).
+    fn min(self, other: Self) -> Self;
+    /// max(`least`, `base` + the integer part) in each lane, with `least` for what is not a number; and the bits of
+    /// the lanes where that is below `limit`. Lanes stay below 2³¹ − `base`.
+    fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32);
+    /// `magnitude` with its sign flipped where `sign` is negative (or −0).
+    fn flip_sign(magnitude: Self, sign: Self) -> Self;
 }
 
 /// Portable lanes.
@@ -72,28 +75,8 @@ impl Lanes for Portable {
         self.0
     }
     #[inline(always)]
-    fn abs(self) -> Self {
-        Self(self.0.map(f32::abs))
-    }
-    #[inline(always)]
     fn sqrt(self) -> Self {
         Self(self.0.map(f32::sqrt))
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a > b { a } else { b })
-    }
-    #[inline(always)]
-    fn if_less(left: Self, right: Self, yes: Self, no: Self) -> Self {
-        let mut out = [0.0; 8];
-        for (i, value) in out.iter_mut().enumerate() {
-            *value = if left.0[i] < right.0[i] { yes.0[i] } else { no.0[i] };
-        }
-        Self(out)
-    }
-    #[inline(always)]
-    fn flip_sign(magnitude: Self, sign: Self) -> Self {
-        magnitude.zip(sign, |m, s| f32::from_bits(m.to_bits() ^ (s.to_bits() & 0x8000_0000)))
     }
     #[inline(always)]
     fn less_bits(self, other: Self) -> u32 {
@@ -102,6 +85,32 @@ impl Lanes for Portable {
             bits |= u32::from(self.0[i] < other.0[i]) << i;
         }
         bits
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f32::abs))
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a < b { a } else { b })
+    }
+    #[inline(always)]
+    fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32) {
+        let (mut out, mut bits) = ([0; 8], 0);
+        for (lane, (key, x)) in out.iter_mut().zip(self.0).enumerate() {
+            let whole = if x.is_nan() { i32::MIN } else { x as i32 };
+            *key = base.wrapping_add(whole).max(least);
+            bits |= u32::from(*key < limit) << lane;
+        }
+        (out, bits)
+    }
+    #[inline(always)]
+    fn flip_sign(magnitude: Self, sign: Self) -> Self {
+        magnitude.zip(sign, |m, s| f32::from_bits(m.to_bits() ^ (s.to_bits() & 0x8000_0000)))
     }
 }
 
@@ -153,14 +162,19 @@ mod avx {
             out
         }
         #[inline(always)]
-        fn abs(self) -> Self {
-            // SAFETY: the processor has AVX (see the type).
-            Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
-        }
-        #[inline(always)]
         fn sqrt(self) -> Self {
             // SAFETY: the processor has AVX (see the type).
             Self(unsafe { _mm256_sqrt_ps(self.0) })
+        }
+        #[inline(always)]
+        fn less_bits(self, other: Self) -> u32 {
+            // SAFETY: the processor has AVX (see the type).
+            unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)) as u32 }
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            // SAFETY: the processor has AVX (see the type).
+            Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
         }
         #[inline(always)]
         fn max(self, other: Self) -> Self {
@@ -168,19 +182,26 @@ mod avx {
             Self(unsafe { _mm256_max_ps(self.0, other.0) })
         }
         #[inline(always)]
-        fn if_less(left: Self, right: Self, yes: Self, no: Self) -> Self {
+        fn min(self, other: Self) -> Self {
             // SAFETY: the processor has AVX (see the type).
-            Self(unsafe { _mm256_blendv_ps(no.0, yes.0, _mm256_cmp_ps::<_CMP_LT_OQ>(left.0, right.0)) })
+            Self(unsafe { _mm256_min_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32) {
+            let mut out = [0; 8];
+            // SAFETY: the processor has AVX2 (see the type); 32 bytes are writable and need no alignment.
+            unsafe {
+                let sum = _mm256_add_epi32(_mm256_cvttps_epi32(self.0), _mm256_set1_epi32(base));
+                let keys = _mm256_max_epi32(sum, _mm256_set1_epi32(least));
+                _mm256_storeu_si256(out.as_mut_ptr().cast(), keys);
+                let below = _mm256_cmpgt_epi32(_mm256_set1_epi32(limit), keys);
+                (out, _mm256_movemask_ps(_mm256_castsi256_ps(below)) as u32)
+            }
         }
         #[inline(always)]
         fn flip_sign(magnitude: Self, sign: Self) -> Self {
             // SAFETY: the processor has AVX (see the type).
             Self(unsafe { _mm256_xor_ps(magnitude.0, _mm256_and_ps(sign.0, _mm256_set1_ps(-0.0))) })
-        }
-        #[inline(always)]
-        fn less_bits(self, other: Self) -> u32 {
-            // SAFETY: the processor has AVX (see the type).
-            unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)) as u32 }
         }
     }
 }

@@ -6,6 +6,7 @@ mod dispatch;
 mod frame;
 mod lanes;
 mod node_test;
+mod quad;
 mod queue;
 mod scene;
 mod triangle_pair;
@@ -17,6 +18,8 @@ pub(crate) use frame::{Frame, RelativeMotion};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lanes::Avx;
 pub(crate) use lanes::{Lanes, Portable};
+pub(crate) use quad::Quad;
+pub use scene::SearchCounts;
 pub(crate) use scene::{Scene, Scratch};
 pub(crate) use triangle_pair::place_a;
 pub(crate) use window::{Found, Outcome, corners, time_from};

@@ -64,7 +64,9 @@ impl<'a> Scene<'a> {
 
     /// Constants of the node tests of a window, with the first body's nodes opened, then the second's.
     pub(crate) fn node_scales(&self, time_unit: f64) -> [NodeScale; 2] {
-        let one = |wide: &MeshTree, single: &MeshTree| {
+        let spins = [&self.a, &self.b]
+            .map(|body| round_up(body.1.angular_velocity().length() * time_unit * (1.0 + 1e-6)));
+        let one = |wide: &MeshTree, single: &MeshTree, spin: [f32; 2]| {
             let inverse_unit = 1.0 / wide.unit;
             let speed_scale = time_unit * inverse_unit;
             let acceleration = self.pair.acceleration * time_unit * speed_scale * (1.0 + 1e-6);
@@ -73,14 +75,32 @@ impl<'a> Scene<'a> {
                 inverse_unit,
                 speed_scale,
                 time_unit,
-                floor: (self.pair.level * (1.0 + 1e-6) + FRAME_ERROR * self.size) * inverse_unit,
-                speed_floor: FRAME_ERROR * (self.spin_speed + self.size / time_unit) * speed_scale,
+                spin,
+                floor: round_up((self.pair.level * (1.0 + 1e-6) + FRAME_ERROR * self.size) * inverse_unit),
+                speed_floor: round_up(FRAME_ERROR * (self.spin_speed + self.size / time_unit) * speed_scale),
                 acceleration: round_up(acceleration),
-                choice: round_up(0.5 * acceleration + 1e-30),
             }
         };
-        [one(self.a.0, self.b.0), one(self.b.0, self.a.0)]
+        [one(self.a.0, self.b.0, spins), one(self.b.0, self.a.0, [spins[1], spins[0]])]
     }
+}
+
+/// Counts of the work of one search, for profiles: the same on every machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct SearchCounts {
+    /// Windows that were searched.
+    pub windows: u64,
+    /// Batches handed out by the queue, each with its own frame.
+    pub frames: u64,
+    /// Wide nodes that were opened against a box.
+    pub node_tests: u64,
+    /// Pairs of boxes that were queued.
+    pub queued: u64,
+    /// Looks at pairs of triangles.
+    pub triangle_looks: u64,
+    /// Looks that needed the closest features.
+    pub closest_features: u64,
 }
 
 /// Memory that one search uses and the next one finds warm.
@@ -88,10 +108,11 @@ impl<'a> Scene<'a> {
 pub(crate) struct Scratch {
     pub(crate) queue: Queue,
     pub(crate) batch: Vec<Item>,
+    pub(crate) counts: SearchCounts,
 }
 
 impl Scratch {
     pub(crate) fn new() -> Self {
-        Self { queue: Queue::new(), batch: Vec::new() }
+        Self { queue: Queue::new(), batch: Vec::new(), counts: SearchCounts::default() }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::closest::closest;
 use super::frame::Frame;
+use super::quad::{Quad, QuadVec};
 use glam::DVec3;
 
 /// Distances and bounds of one search, in the units of the scene.
@@ -40,131 +41,151 @@ struct Placed {
     omega_b: DVec3,
 }
 
-#[inline(always)]
-fn moved(r: &[DVec3; 3], p: DVec3) -> DVec3 {
-    r[0] * p.x + r[1] * p.y + r[2] * p.z
-}
-
 /// Corners of A's triangle (tree-centred, body axes) moved into B's frame.
 #[inline(always)]
 pub(crate) fn place_a(frame: &Frame, corners: &[DVec3; 3]) -> [DVec3; 3] {
-    let side = &frame.sides[1];
-    let r = &side.rotation;
+    let r = &frame.rotation;
     [
-        moved(r, corners[0]) + side.offset,
-        moved(r, corners[1]) + side.offset,
-        moved(r, corners[2]) + side.offset,
+        (r.times(corners[0]) + frame.apart).to_vec(),
+        (r.times(corners[1]) + frame.apart).to_vec(),
+        (r.times(corners[2]) + frame.apart).to_vec(),
     ]
 }
 
-/// Looks at a pair at the time of the frame. `a`, `b`: corners relative to the trees' centres, body axes. Stops
-/// looking for a better direction once the pair is clear for `enough`.
+/// Looks at a pair at the time of the frame. `a`, `b`: corners relative to the trees' centres, body axes. `enough`:
+/// a longer clear time is of no use.
+#[inline(always)]
 pub(crate) fn look(frame: &Frame, a: &[DVec3; 3], b: &[DVec3; 3], scale: &PairScale, enough: f64) -> Look {
-    let side = &frame.sides[1];
     let placed = Placed {
         a: place_a(frame, a),
         b: *b,
-        velocity: side.velocity,
-        offset: side.offset,
-        omega_a: side.omega_single,
-        omega_b: side.omega_wide,
+        velocity: frame.velocity.to_vec(),
+        offset: frame.apart.to_vec(),
+        omega_a: frame.omega_a.to_vec(),
+        omega_b: frame.omega_b.to_vec(),
     };
-    let edges = |t: &[DVec3; 3]| [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
-    let (ea, eb) = (edges(&placed.a), edges(&placed.b));
+    let (direction, gap) = placed.widest_gap();
     let mut best = 0.0;
-    for normal in [eb[0].cross(eb[1]), ea[0].cross(ea[1])] {
-        best = placed.clear_for(normal, scale, best);
-        if best >= enough {
+    if gap > scale.level + scale.error {
+        best = placed.clear_for(direction, scale, best);
+        if best >= enough || gap > 16.0 * scale.stop {
             return Look::ClearFor(best);
         }
     }
-    for e in &ea {
-        for d in &eb {
-            best = placed.clear_for(e.cross(*d), scale, best);
-            if best >= enough {
-                return Look::ClearFor(best);
-            }
-        }
-    }
-    let near = closest(&placed.a, &placed.b);
-    best = placed.clear_for(near.direction, scale, best);
-    // The features' own directions attain the distance, so one of the two ends applies up to rounding.
-    let touching = near.square <= scale.stop * scale.stop;
-    if touching || best == 0.0 { Look::Near { crossing: !touching } } else { Look::ClearFor(best) }
+    placed.look_closely(scale, best)
 }
 
 impl Placed {
+    /// Of the 2 normals, the 9 products of edges, 3 edge normals and the line of centres: the direction with the
+    /// widest gap, and the gap for a unit direction (not positive when none separates).
+    #[inline(always)]
+    fn widest_gap(&self) -> (DVec3, f64) {
+        let (a, b) = (&self.a, &self.b);
+        let ea = [a[1] - a[0], a[2] - a[1], a[0] - a[2]];
+        let eb = [b[1] - b[0], b[2] - b[1], b[0] - b[2]];
+        let (normal_a, normal_b) = (ea[0].cross(ea[1]), eb[0].cross(eb[1]));
+        let across = QuadVec::new([eb[0], eb[1], eb[2], normal_a]);
+        let center = (b[0] + b[1] + b[2]) - (a[0] + a[1] + a[2]);
+        let first = QuadVec::new([normal_a, normal_b, center, b[0] - a[0]]);
+        // gap·|gap|/|n|², compared without dividing.
+        let mut best = Quad::splat(0.0);
+        let mut best_length = Quad::splat(1.0);
+        let mut best_axis = first;
+        for axis in [first, across.crossed_by(ea[0]), across.crossed_by(ea[1]), across.crossed_by(ea[2])] {
+            let (pa, pb) = (a, b);
+            let low_a = axis.dot(pa[0]).min(axis.dot(pa[1])).min(axis.dot(pa[2]));
+            let high_a = axis.dot(pa[0]).max(axis.dot(pa[1])).max(axis.dot(pa[2]));
+            let low_b = axis.dot(pb[0]).min(axis.dot(pb[1])).min(axis.dot(pb[2]));
+            let high_b = axis.dot(pb[0]).max(axis.dot(pb[1])).max(axis.dot(pb[2]));
+            let gap = (low_b - high_a).max(low_a - high_b).max(Quad::splat(0.0));
+            let square = gap * gap;
+            let length = axis.length_squared();
+            let (left, right) = (square * best_length, best * length);
+            best = Quad::if_greater(left, right, square, best);
+            best_length = Quad::if_greater(left, right, length, best_length);
+            for k in 0..3 {
+                best_axis.0[k] = Quad::if_greater(left, right, axis.0[k], best_axis.0[k]);
+            }
+        }
+        let mut lane = 0;
+        for other in 1..4 {
+            if best.0[other] * best_length.0[lane] > best.0[lane] * best_length.0[other] {
+                lane = other;
+            }
+        }
+        let axis = DVec3::new(best_axis.0[0].0[lane], best_axis.0[1].0[lane], best_axis.0[2].0[lane]);
+        (axis, (best.0[lane] / best_length.0[lane]).sqrt())
+    }
+
+    /// Near the end: the direction of the closest features too, and the distance itself.
+    #[cold]
+    #[inline(never)]
+    fn look_closely(&self, scale: &PairScale, known: f64) -> Look {
+        let near = closest(&self.a, &self.b);
+        let best = self.clear_for(near.direction, scale, known);
+        // The features' own directions attain the distance, so one of the two ends applies up to rounding.
+        let touching = near.square <= scale.stop * scale.stop;
+        if touching || best == 0.0 { Look::Near { crossing: !touching } } else { Look::ClearFor(best) }
+    }
+
     /// The larger of `known` and the time for which the direction keeps the pair apart.
     #[inline(always)]
     fn clear_for(&self, n: DVec3, scale: &PairScale, known: f64) -> f64 {
-        let pa = [n.dot(self.a[0]), n.dot(self.a[1]), n.dot(self.a[2])];
-        let pb = [n.dot(self.b[0]), n.dot(self.b[1]), n.dot(self.b[2])];
+        let (a, b) = (&self.a, &self.b);
+        let pa = [n.dot(a[0]), n.dot(a[1]), n.dot(a[2])];
+        let pb = [n.dot(b[0]), n.dot(b[1]), n.dot(b[2])];
         let forward = least(&pb) - greatest(&pa);
         let backward = least(&pa) - greatest(&pb);
         let length = n.length();
         let need = (scale.level + scale.error) * length;
         // Also when n is zero or not a number.
-        let separated = forward.max(backward) > need;
+        let separated = forward > need || backward > need;
         if !separated {
             return known;
         }
         let (turn_a, turn_b) = (n.cross(self.omega_a), n.cross(self.omega_b));
-        let drift = n.dot(self.velocity);
-        let drift = drift - turn_a.dot(self.offset);
-        let ra =
-            [drift + turn_a.dot(self.a[0]), drift + turn_a.dot(self.a[1]), drift + turn_a.dot(self.a[2])];
-        let rb = [turn_b.dot(self.b[0]), turn_b.dot(self.b[1]), turn_b.dot(self.b[2])];
+        let drift = n.dot(self.velocity) - turn_a.dot(self.offset);
+        let ra = [drift + turn_a.dot(a[0]), drift + turn_a.dot(a[1]), drift + turn_a.dot(a[2])];
+        let rb = [turn_b.dot(b[0]), turn_b.dot(b[1]), turn_b.dot(b[2])];
         let m = scale.acceleration * length;
         let s = if forward > backward {
             first_time((&pa, &ra), (&pb, &rb), need, m)
         } else {
             first_time((&pb, &rb), (&pa, &ra), need, m)
         };
-        known.max(s)
+        if s > known { s } else { known }
     }
 }
 
-fn least(values: &[f64; 3]) -> f64 {
-    values[0].min(values[1]).min(values[2])
+#[inline(always)]
+fn least(v: &[f64; 3]) -> f64 {
+    let m = if v[0] < v[1] { v[0] } else { v[1] };
+    if m < v[2] { m } else { v[2] }
 }
 
-fn greatest(values: &[f64; 3]) -> f64 {
-    values[0].max(values[1]).max(values[2])
+#[inline(always)]
+fn greatest(v: &[f64; 3]) -> f64 {
+    let m = if v[0] > v[1] { v[0] } else { v[1] };
+    if m > v[2] { m } else { v[2] }
 }
 
 /// First s ≥ 0 at which min(high + s·rate) − max(low + s·rate) − m s²/2 can be `need`. At s = 0 it is larger.
 #[inline(always)]
 fn first_time(low: (&[f64; 3], &[f64; 3]), high: (&[f64; 3], &[f64; 3]), need: f64, m: f64) -> f64 {
-    let pick = |at: f64| {
-        let (mut i, mut j) = (0, 0);
-        let value_low = |k: usize| low.0[k] + low.1[k] * at;
-        let value_high = |k: usize| high.0[k] + high.1[k] * at;
-        for k in 1..3 {
-            if value_low(k) > value_low(i) {
-                i = k;
-            }
-            if value_high(k) < value_high(j) {
-                j = k;
-            }
-        }
-        (i, j)
+    // Lowest corner now with the fastest closing rate: never late; exact when one corner is both.
+    let gap = least(high.0) - greatest(low.0) - need;
+    let mut s = root(gap, least(high.1) - greatest(low.1), m);
+    // Then from the other end: at the root of the pair that is lowest now, who is lowest? Each round can only raise
+    // the proven time.
+    let value = |at: f64| {
+        let l = [low.0[0] + low.1[0] * at, low.0[1] + low.1[1] * at, low.0[2] + low.1[2] * at];
+        let h = [high.0[0] + high.1[0] * at, high.0[1] + high.1[1] * at, high.0[2] + high.1[2] * at];
+        least(&h) - greatest(&l) - need
     };
-    let mut s = f64::INFINITY;
-    let mut pair = pick(0.0);
-    // Each round takes the pair of corners that is lowest at the present s; its root can only be earlier.
-    for _ in 0..9 {
-        let (i, j) = pair;
-        let gap = high.0[j] - low.0[i] - need;
-        s = s.min(root(gap, high.1[j] - low.1[i], m));
-        if s > 1e300 {
-            // No motion that closes this pair: look at the rates alone.
-            s = 1e300;
-        }
-        let next = pick(s);
-        if next == pair {
-            break;
-        }
-        pair = next;
+    // Concave in s: the chord from a proven time to a later one with a positive value is proven too.
+    let later = 2.0 * s;
+    if value(later) - 0.5 * m * later * later > 0.0 {
+        s = later;
     }
     s * (1.0 - 1e-12)
 }
@@ -178,6 +199,6 @@ fn root(g: f64, v: f64, m: f64) -> f64 {
     } else if m > 0.0 {
         (v + root) / m
     } else {
-        f64::INFINITY
+        1e300
     }
 }

@@ -2,7 +2,7 @@
 
 use super::frame::{Frame, RelativeMotion};
 use super::lanes::Lanes;
-use super::node_test::{NodeScale, Placed, entry_times};
+use super::node_test::{NodeFrame, NodeScale, Placed, entry_times};
 use super::queue::Item;
 use super::scene::{Scene, Scratch};
 use super::triangle_pair::{Look, look};
@@ -12,9 +12,9 @@ use glam::DVec3;
 use std::time::Instant;
 
 /// Keys of a window run from 0 to this for its whole unit of time.
-const KEY_SCALE: f64 = 1_073_741_824.0; // 2³⁰
+const KEY_SCALE: f64 = 536_870_912.0; // 2²⁹
 /// Items that a batch may have before it is divided.
-const BATCH: usize = 16;
+const BATCH: usize = 32;
 
 /// A contact as the search knows it.
 #[derive(Clone, Copy, Debug)]
@@ -57,12 +57,16 @@ struct State {
     /// The same as an offset.
     limit_offset: f64,
     frame: Frame,
+    node_frames: [NodeFrame; 2],
+    /// Size of A's units over that of B's.
+    size_ratio: f32,
     frame_key: u32,
     found: Option<Found>,
 }
 
 impl<'s> Search<'s> {
     pub(crate) fn new(scene: &'s Scene<'s>, budget: &'s Budget, scratch: &'s mut Scratch) -> Self {
+        scratch.counts = super::scene::SearchCounts::default();
         Self {
             scene,
 
@@ -95,17 +99,27 @@ impl<'s> Search<'s> {
         let length = (end - start) * (1.0 + 1e-15);
         let time_unit = power_of_two_from(length);
         let step = time_unit / KEY_SCALE;
+        let scales = scene.node_scales(time_unit);
+        let frame = motion.frame(0.0);
+        let limit = (length / step).ceil() as u32 + 1;
+        let left = time_left(limit, 0);
         let mut state = State {
             motion,
-            scales: scene.node_scales(time_unit),
+            node_frames: [
+                NodeFrame::new(&frame, &scales[0], false, left),
+                NodeFrame::new(&frame, &scales[1], true, left),
+            ],
+            size_ratio: scales[1].ratio.powi(3) as f32,
+            scales,
             step,
-            limit: (length / step).ceil() as u32 + 1,
+            limit,
             // A tick more, so that the end itself is inside; what is found after the end does not count.
             limit_offset: length + step,
-            frame: motion.frame(0.0),
+            frame,
             frame_key: 0,
             found: None,
         };
+        self.scratch.counts.windows += 1;
         self.scratch.queue.clear();
         self.scratch.queue.push(Item { key: 0, a: 0, b: 0 });
         let mut batch = core::mem::take(&mut self.scratch.batch);
@@ -118,8 +132,14 @@ impl<'s> Search<'s> {
                 outcome = Some(Outcome::OutOfBudget(time_from(start, f64::from(least) * step)));
                 break;
             }
+            self.scratch.counts.frames += 1;
             if least != state.frame_key {
                 state.frame = state.motion.frame(f64::from(least) * step);
+                let left = time_left(state.limit, least);
+                state.node_frames = [
+                    NodeFrame::new(&state.frame, &state.scales[0], false, left),
+                    NodeFrame::new(&state.frame, &state.scales[1], true, left),
+                ];
                 state.frame_key = least;
             }
             for item in &batch {
@@ -139,49 +159,57 @@ impl<'s> Search<'s> {
         self.node_tests >= self.most_tests || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
 
+    /// What is to be opened of a pair: the number of the wide node and 0 for A, 1 for B; or the two triangles.
+    #[inline(always)]
+    fn larger(&self, state: &State, item: Item) -> Result<(u32, usize), [u32; 2]> {
+        let split = |index: u32| (index as usize / WIDTH, index as usize % WIDTH);
+        let ((ia, la), (ib, lb)) = (split(item.a), split(item.b));
+        let (na, nb) = (&self.scene.a.0.nodes[ia], &self.scene.b.0.nodes[ib]);
+        match (na.below(la), nb.below(lb)) {
+            (Below::Triangle(a), Below::Triangle(b)) => Err([a, b]),
+            (Below::Node(a), Below::Triangle(_)) => Ok((a, 0)),
+            (Below::Triangle(_), Below::Node(b)) => Ok((b, 1)),
+            (Below::Node(a), Below::Node(b)) => {
+                if na.size[la] * state.size_ratio >= nb.size[lb] {
+                    Ok((a, 0))
+                } else {
+                    Ok((b, 1))
+                }
+            }
+        }
+    }
+
     #[inline(always)]
     fn open<L: Lanes>(&mut self, state: &mut State, item: Item) {
         let (tree_a, tree_b) = (self.scene.a.0, self.scene.b.0);
-        let split = |index: u32| (index as usize / WIDTH, index as usize % WIDTH);
-        let ((ia, la), (ib, lb)) = (split(item.a), split(item.b));
-        let (na, nb) = (&tree_a.nodes[ia], &tree_b.nodes[ib]);
-        let (wide_index, side) = match (na.below(la), nb.below(lb)) {
-            (Below::Triangle(a), Below::Triangle(b)) => return self.advance(state, item, [a, b]),
-            (Below::Node(a), Below::Triangle(_)) => (a, 0),
-            (Below::Triangle(_), Below::Node(b)) => (b, 1),
-            (Below::Node(a), Below::Node(b)) => {
-                if na.size[la] * state.scales[1].ratio.powi(3) as f32 >= nb.size[lb] {
-                    (a, 0)
-                } else {
-                    (b, 1)
-                }
-            }
+        let (wide_index, side) = match self.larger(state, item) {
+            Ok(choice) => choice,
+            Err(triangles) => return self.advance(state, item, triangles),
         };
+        let (na, la) = (&tree_a.nodes[item.a as usize / WIDTH], item.a as usize % WIDTH);
+        let (nb, lb) = (&tree_b.nodes[item.b as usize / WIDTH], item.b as usize % WIDTH);
         self.node_tests += 1;
+        self.scratch.counts.node_tests += 1;
         let (wide, single, lane) = if side == 0 {
             (&tree_a.nodes[wide_index as usize], nb, lb)
         } else {
             (&tree_b.nodes[wide_index as usize], na, la)
         };
         let scale = &state.scales[side];
-        let boxed = single.oriented_box(lane);
-        let placed = Placed::new(&state.frame.sides[side], scale, (&boxed, single.origin), wide);
+        let placed = Placed::new(&state.node_frames[side], scale, (single, lane), wide);
         let times = entry_times::<L>(wide, &placed, scale);
-        // Room until the limit, rounded up.
-        let room = (state.limit - state.frame_key) as f32 * (1.0 / KEY_SCALE as f32) * (1.0 + 1e-6);
-        let mut bits = times.less_bits(L::splat(room)) & ((1 << wide.used) - 1);
-        let times = times.store();
+        // What is not a number becomes the key of the item itself.
+        let steps = L::splat(1.25 * KEY_SCALE as f32).min(times * L::splat(KEY_SCALE as f32));
+        let (keys, below) = steps.keys(state.frame_key as i32, item.key as i32, state.limit as i32);
+        let mut bits = below & ((1 << wide.used) - 1);
+        let child = wide_index * WIDTH as u32;
         while bits != 0 {
             let lane = bits.trailing_zeros();
             bits &= bits - 1;
-            let later = (times[lane as usize] * KEY_SCALE as f32) as u32;
-            let key = item.key.max(state.frame_key + later);
-            let child = wide_index * WIDTH as u32 + lane;
-            let item =
-                if side == 0 { Item { key, a: child, b: item.b } } else { Item { key, a: item.a, b: child } };
-            if key < state.limit {
-                self.scratch.queue.push(item);
-            }
+            let key = keys[lane as usize & 7] as u32;
+            let (a, b) = if side == 0 { (child + lane, item.b) } else { (item.a, child + lane) };
+            self.scratch.counts.queued += 1;
+            self.scratch.queue.push(Item { key, a, b });
         }
     }
 
@@ -195,6 +223,7 @@ impl<'s> Search<'s> {
         let mut known = f64::from(item.key) * state.step;
         loop {
             self.node_tests += 1;
+            self.scratch.counts.triangle_looks += 1;
             let enough = state.limit_offset - frame.offset;
             match look(&frame, &a, &b, &self.scene.pair, enough) {
                 Look::ClearFor(time) => {
@@ -249,6 +278,11 @@ pub(crate) fn corners(tree: &MeshTree, triangle: u32) -> [DVec3; 3] {
         vertices[j as usize] - tree.center,
         vertices[k as usize] - tree.center,
     ]
+}
+
+/// Units of the window from key `now` to key `limit`, rounded up.
+fn time_left(limit: u32, now: u32) -> f32 {
+    (limit - now) as f32 * (1.0 / KEY_SCALE as f32) * (1.0 + 1e-6)
 }
 
 /// The least power of two that is not below a positive `length`.

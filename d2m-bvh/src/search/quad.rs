@@ -1,0 +1,145 @@
+//! Four `f64` side by side: plain arrays that the compiler turns into vector registers.
+
+use core::ops::{Add, Mul, Sub};
+use glam::DVec3;
+
+/// Four doubles.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+pub(crate) struct Quad(pub(crate) [f64; 4]);
+
+macro_rules! elementwise {
+    ($($operator:ident $method:ident $symbol:tt),*) => {$(
+        impl $operator for Quad {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                let (a, b) = (&self.0, &other.0);
+                Self([a[0] $symbol b[0], a[1] $symbol b[1], a[2] $symbol b[2], a[3] $symbol b[3]])
+            }
+        }
+    )*};
+}
+elementwise!(Add add +, Sub sub -, Mul mul *);
+
+impl Quad {
+    #[inline(always)]
+    pub(crate) const fn splat(x: f64) -> Self {
+        Self([x; 4])
+    }
+
+    #[inline(always)]
+    pub(crate) const fn from_vec(v: DVec3) -> Self {
+        Self([v.x, v.y, v.z, 0.0])
+    }
+
+    #[inline(always)]
+    pub(crate) const fn to_vec(self) -> DVec3 {
+        DVec3::new(self.0[0], self.0[1], self.0[2])
+    }
+
+    /// Vector product of the first three.
+    #[inline(always)]
+    pub(crate) fn cross(self, other: Self) -> Self {
+        let (a, b) = (&self.0, &other.0);
+        Self([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0], 0.0])
+    }
+
+    /// Each rounded to `f32`.
+    #[inline(always)]
+    pub(crate) fn narrow(self) -> [f32; 4] {
+        let a = &self.0;
+        [a[0] as f32, a[1] as f32, a[2] as f32, a[3] as f32]
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, op: impl Fn(f64, f64) -> f64) -> Self {
+        let (a, b) = (&self.0, &other.0);
+        Self([op(a[0], b[0]), op(a[1], b[1]), op(a[2], b[2]), op(a[3], b[3])])
+    }
+
+    /// The smaller; the second where one is not a number.
+    #[inline(always)]
+    pub(crate) fn min(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a < b { a } else { b })
+    }
+
+    /// The larger; the second where one is not a number.
+    #[inline(always)]
+    pub(crate) fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+
+    /// `if left > right { yes } else { no }`.
+    #[inline(always)]
+    pub(crate) fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
+        let (l, r, y, n) = (&left.0, &right.0, &yes.0, &no.0);
+        let pick = |k: usize| if l[k] > r[k] { y[k] } else { n[k] };
+        Self([pick(0), pick(1), pick(2), pick(3)])
+    }
+}
+
+/// Three quads: four vectors side by side.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct QuadVec(pub(crate) [Quad; 3]);
+
+impl QuadVec {
+    #[inline(always)]
+    pub(crate) fn new(v: [DVec3; 4]) -> Self {
+        Self([
+            Quad([v[0].x, v[1].x, v[2].x, v[3].x]),
+            Quad([v[0].y, v[1].y, v[2].y, v[3].y]),
+            Quad([v[0].z, v[1].z, v[2].z, v[3].z]),
+        ])
+    }
+
+    /// Scalar product of each with the same vector.
+    #[inline(always)]
+    pub(crate) fn dot(&self, p: DVec3) -> Quad {
+        self.0[0] * Quad::splat(p.x) + self.0[1] * Quad::splat(p.y) + self.0[2] * Quad::splat(p.z)
+    }
+
+    /// `e` × each.
+    #[inline(always)]
+    pub(crate) fn crossed_by(&self, e: DVec3) -> Self {
+        let [x, y, z] = self.0;
+        let (ex, ey, ez) = (Quad::splat(e.x), Quad::splat(e.y), Quad::splat(e.z));
+        Self([ey * z - ez * y, ez * x - ex * z, ex * y - ey * x])
+    }
+
+    #[inline(always)]
+    pub(crate) fn length_squared(&self) -> Quad {
+        let [x, y, z] = self.0;
+        x * x + y * y + z * z
+    }
+}
+
+/// Columns of a 3×3 matrix, each with a zero below.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Matrix(pub(crate) [Quad; 3]);
+
+impl Matrix {
+    pub(crate) fn from_columns(columns: [DVec3; 3]) -> Self {
+        Self(columns.map(Quad::from_vec))
+    }
+
+    #[inline(always)]
+    pub(crate) fn transposed(&self) -> Self {
+        let [a, b, c] = &self.0;
+        Self([
+            Quad([a.0[0], b.0[0], c.0[0], 0.0]),
+            Quad([a.0[1], b.0[1], c.0[1], 0.0]),
+            Quad([a.0[2], b.0[2], c.0[2], 0.0]),
+        ])
+    }
+
+    #[inline(always)]
+    pub(crate) fn times(&self, v: DVec3) -> Quad {
+        self.0[0] * Quad::splat(v.x) + self.0[1] * Quad::splat(v.y) + self.0[2] * Quad::splat(v.z)
+    }
+
+    #[inline(always)]
+    pub(crate) fn times_quad(&self, v: Quad) -> Quad {
+        self.times(v.to_vec())
+    }
+}
