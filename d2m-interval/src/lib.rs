@@ -9,8 +9,6 @@ mod error;
 mod interval;
 mod mat3;
 mod round;
-#[cfg(feature = "serde")]
-mod serde_form;
 mod set_ops;
 mod simd;
 mod text;
