@@ -177,11 +177,13 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
                 let value = w_n.value + sign * e_n.value - support;
                 let slope = w_n.slope + sign * e_n.slope;
                 let curvature = w_n.curvature + sign * e_n.curvature;
-                gap = value.min(gap);
-                if value > 0.0 {
-                    radii.lo = radii.lo.max(-Quadratic::bound_first_zero(value, -slope, curvature));
-                    radii.hi = radii.hi.min(Quadratic::bound_first_zero(value, slope, curvature));
+                // Also NaN ends here: f64::min would drop it.
+                if value.is_nan() || value <= 0.0 {
+                    return;
                 }
+                gap = value.min(gap);
+                radii.lo = radii.lo.max(-Quadratic::bound_first_zero(value, -slope, curvature));
+                radii.hi = radii.hi.min(Quadratic::bound_first_zero(value, slope, curvature));
             }
             if gap > best {
                 best = gap;

@@ -63,10 +63,11 @@ fn shared<const N: usize>(functions: &[Linear; N], margin: f64, s: f64, forward:
 }
 
 /// Cuts off both ends of `part` where all functions certainly share a sign; `None` if that is all of it. `margin`
-/// covers the error of the values and their change over 4·2⁻⁵³ of the piece. NaN excludes nothing.
+/// covers the error of the values and their change over 4·2⁻⁵³ of the piece. What is not finite excludes
+/// nothing.
 #[inline(always)]
 pub(super) fn clip<const N: usize>(functions: &[Linear; N], margin: f64, part: Piece) -> Option<Piece> {
-    if functions.iter().any(|f| f.value.is_nan() || f.slope.is_nan()) {
+    if functions.iter().any(|f| !(f.value.is_finite() && f.slope.is_finite())) {
         return Some(part);
     }
     let Piece { mut lo, mut hi } = part;

@@ -155,7 +155,9 @@ impl Quadratic {
     /// Bounds from below the minimum over `part`.
     #[inline(always)]
     pub fn bound_below(&self, part: Piece) -> f64 {
-        let ends = self.at(part.lo).min(self.at(part.hi));
+        let (left, right) = (self.at(part.lo), self.at(part.hi));
+        // NaN stays NaN, and excludes nothing: f64::min would drop it.
+        let ends = if left <= right || left.is_nan() { left } else { right };
         if self.curvature > 0.0 {
             // The chord minus the sagitta: exact at the ends, below in between.
             let width = part.hi - part.lo;
