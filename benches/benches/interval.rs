@@ -55,14 +55,24 @@ fn kernel<N: Number>(axis: Vec3<N>, angle: N, p: Vec3<N>, edges: [Vec3<N>; 2]) -
 
 /// The kernel with this crate's vectors.
 #[inline(always)]
-fn fused(axis: IntervalVec3, angle: Interval, p: IntervalVec3, edges: [IntervalVec3; 2]) -> (Interval, Interval) {
+fn fused(
+    axis: IntervalVec3,
+    angle: Interval,
+    p: IntervalVec3,
+    edges: [IntervalVec3; 2],
+) -> (Interval, Interval) {
     let q = p.rotated(axis, angle);
     (q.triple_product(edges[0], edges[1]), q.norm_squared())
 }
 
 /// Four kernels at once.
 #[inline(always)]
-fn batch(axis: IntervalVec3X4, angle: IntervalX4, p: IntervalVec3X4, edges: [IntervalVec3X4; 2]) -> (IntervalX4, IntervalX4) {
+fn batch(
+    axis: IntervalVec3X4,
+    angle: IntervalX4,
+    p: IntervalVec3X4,
+    edges: [IntervalVec3X4; 2],
+) -> (IntervalX4, IntervalX4) {
     let (sin, cos) = angle.sin_cos();
     let versine = IntervalX4::splat(Interval::ONE) - cos;
     let q = p.scaled(cos) + axis.cross(p).scaled(sin) + axis.scaled(axis.dot(p) * versine);
@@ -252,7 +262,14 @@ fn ours(criterion: &mut Criterion) {
     let cases = cases();
     let inputs: Vec<_> = cases
         .iter()
-        .map(|c| (IntervalVec3::point(c.axis), Interval::new(c.angle.0, c.angle.1), vector(c.p), c.edges.map(IntervalVec3::point)))
+        .map(|c| {
+            (
+                IntervalVec3::point(c.axis),
+                Interval::new(c.angle.0, c.angle.1),
+                vector(c.p),
+                c.edges.map(IntervalVec3::point),
+            )
+        })
         .collect();
     for (input, case) in inputs.iter().zip(&cases) {
         let (triple, norm) = fused(input.0, input.1, input.2, input.3);
@@ -309,10 +326,36 @@ fn operations(criterion: &mut Criterion) {
         )*};
     }
     time!(
-        "add" | a, b | a + b, "mul" | a, b | a * b, "div" | a, b | a / b, "sqr" | a, _ | a.sqr(), "sqrt" | a, _ | a.sqrt(),
-        "exp" | a, _ | a.exp(), "ln" | a, _ | a.ln(), "tan" | a, _ | a.tan(), "atan" | a, _ | a.atan(),
-        "asin" | a, _ | a.asin(), "sinc" | a, _ | a.sinc(), "powi 7" | a, _ | a.powi(7), "pow" | a, b | a.pow(b),
-        "atan2" | a, b | a.atan2(b), "sinh" | a, _ | a.sinh(),
+        "add" | a,
+        b | a + b,
+        "mul" | a,
+        b | a * b,
+        "div" | a,
+        b | a / b,
+        "sqr" | a,
+        _ | a.sqr(),
+        "sqrt" | a,
+        _ | a.sqrt(),
+        "exp" | a,
+        _ | a.exp(),
+        "ln" | a,
+        _ | a.ln(),
+        "tan" | a,
+        _ | a.tan(),
+        "atan" | a,
+        _ | a.atan(),
+        "asin" | a,
+        _ | a.asin(),
+        "sinc" | a,
+        _ | a.sinc(),
+        "powi 7" | a,
+        _ | a.powi(7),
+        "pow" | a,
+        b | a.pow(b),
+        "atan2" | a,
+        b | a.atan2(b),
+        "sinh" | a,
+        _ | a.sinh(),
     );
 }
 

@@ -197,7 +197,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(2000))]
+        #![proptest_config(ProptestConfig::with_cases(1000))]
         #[test]
         fn signs_are_exact(points in prop::array::uniform4(point())) {
             prop_assert_eq!(orient3d(points[0], points[1], points[2], points[3]), exact_orient3d(points));
@@ -207,10 +207,9 @@ mod tests {
 
         #[test]
         fn signs_are_exact_near_the_plane(a in point(), b in point(), c in point(), s in -1.0..2.0, t in -1.0..2.0, step in -2_i32..3) {
-            prop_assume!([a, b, c].iter().all(|p| p.abs().max_element() < 1e150));
+            let [a, b, c] = [a, b, c].map(|p| p.clamp(DVec3::splat(-1e150), DVec3::splat(1e150)));
             let mut d: DVec3 = a + (b - a) * s + (c - a) * t;
             d.z *= 1.0 + f64::from(step) * f64::EPSILON;
-            prop_assume!(d.is_finite());
             prop_assert_eq!(orient3d(a, b, c, d), exact_orient3d([a, b, c, d]));
             let d: DVec3 = a + (b - a) * s;
             prop_assert_eq!(orient2d(a.truncate(), b.truncate(), d.truncate()), exact_orient2d([a, b, d].map(DVec3::truncate)));

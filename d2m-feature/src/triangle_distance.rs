@@ -88,20 +88,11 @@ pub fn triangle_distance(a: &[DVec3; 3], b: &[DVec3; 3]) -> TriangleDistance {
     let origin = a[0];
     let extent = a.iter().chain(b).map(|&p| (p - origin).abs().max_element()).fold(0.0, f64::max);
     let scale = power_of_two_below(extent);
-    let [local_a, local_b] = [a, b].map(|triangle| triangle.map(|p| (p - origin) / scale));
-    let reach = local_a.iter().chain(&local_b).map(|p| p.length()).fold(0.0, f64::max) * (1.0 + LOSS);
-
-    let mut closest = closest_points(&local_a, &local_b);
-    let mut upper = closest.bound_distance(&local_a, &local_b, reach);
-    let mut lower = Separation { gap: 0.0, direction: DVec3::ZERO };
-    for direction in likely_directions(&local_a, &local_b, &closest) {
-        lower.consider(&local_a, &local_b, direction, reach);
-    }
-    if upper - lower.gap > 4.0 * LOSS * reach {
-        for direction in all_directions(&local_a, &local_b) {
-            lower.consider(&local_a, &local_b, direction, reach);
-        }
-    }
+    let shrink = 1.0 / scale;
+    let [local_a, local_b] = [a, b].map(|triangle| triangle.map(|p| (p - origin) * shrink));
+    let mut search = Search::new(&local_a, &local_b);
+    search.run();
+    let Search { mut closest, mut upper, lower, .. } = search;
     let meet = lower.gap <= 0.0 && triangles_intersect(a, b);
     if meet {
         upper = 0.0;
@@ -156,7 +147,9 @@ impl Separation {
         if !(size > 0.0 && size.is_finite()) {
             return;
         }
-        let direction = direction / power_of_two_below(size);
+        // Coordinates are about 1, so only lengths far from 1 could lose bits to underflow or overflow.
+        let safe = (1e-100..1e100).contains(&size);
+        let direction = if safe { direction } else { direction / power_of_two_below(size) };
         let length = direction.length();
         let range = |triangle: &[DVec3; 3]| {
             let [p, q, r] = triangle.map(|corner| corner.dot(direction));
@@ -172,20 +165,14 @@ impl Separation {
     }
 }
 
-/// Two points by their weights, and the square of their distance as computed.
+/// Two points by their weights.
 #[derive(Clone, Copy)]
 struct Closest {
     weights_a: [f64; 3],
     weights_b: [f64; 3],
-    squared: f64,
 }
 
 impl Closest {
-    fn new(weights_a: [f64; 3], weights_b: [f64; 3], a: &[DVec3; 3], b: &[DVec3; 3]) -> Self {
-        let squared = combine(weights_a, a).distance_squared(combine(weights_b, b));
-        Self { weights_a, weights_b, squared }
-    }
-
     /// The upper bound of the module's notes.
     fn bound_distance(&self, a: &[DVec3; 3], b: &[DVec3; 3], reach: f64) -> f64 {
         let excess = |[p, q, r]: [f64; 3]| (p + q + r - 1.0).abs() + f64::EPSILON;
@@ -195,36 +182,88 @@ impl Closest {
     }
 }
 
-/// The closest of nine side/side and six corner/face pairs.
-fn closest_points(a: &[DVec3; 3], b: &[DVec3; 3]) -> Closest {
-    let mut best = Closest { weights_a: [1.0, 0.0, 0.0], weights_b: [1.0, 0.0, 0.0], squared: f64::INFINITY };
-    let mut consider = |weights_a, weights_b| {
-        let candidate = Closest::new(weights_a, weights_b, a, b);
-        if candidate.squared < best.squared {
-            best = candidate;
-        }
-    };
-    for corner in 0..3 {
-        let mut weights = [0.0; 3];
-        weights[corner] = 1.0;
-        if let Some(foot) = try_foot(a, b[corner]) {
-            consider(foot, weights);
-        }
-        if let Some(foot) = try_foot(b, a[corner]) {
-            consider(weights, foot);
-        }
-    }
-    for side_a in 0..3 {
-        for side_b in 0..3 {
-            let (next_a, next_b) = ((side_a + 1) % 3, (side_b + 1) % 3);
-            let (s, t) = closest_on_segments([a[side_a], a[next_a]], [b[side_b], b[next_b]]);
-            let (mut weights_a, mut weights_b) = ([0.0; 3], [0.0; 3]);
-            (weights_a[side_a], weights_a[next_a]) = (1.0 - s, s);
-            (weights_b[side_b], weights_b[next_b]) = (1.0 - t, t);
-            consider(weights_a, weights_b);
+/// The best pair of points and the best direction so far.
+struct Search<'a> {
+    a: &'a [DVec3; 3],
+    b: &'a [DVec3; 3],
+    reach: f64,
+    squared: f64,
+    closest: Closest,
+    upper: f64,
+    lower: Separation,
+}
+
+impl<'a> Search<'a> {
+    fn new(a: &'a [DVec3; 3], b: &'a [DVec3; 3]) -> Self {
+        let reach = a.iter().chain(b).map(|p| p.length_squared()).fold(0.0, f64::max).sqrt() * (1.0 + LOSS);
+        let corner = [1.0, 0.0, 0.0];
+        Self {
+            a,
+            b,
+            reach,
+            squared: f64::INFINITY,
+            closest: Closest { weights_a: corner, weights_b: corner },
+            upper: f64::INFINITY,
+            lower: Separation { gap: 0.0, direction: DVec3::ZERO },
         }
     }
-    best
+
+    /// Nine side/side and six corner/face pairs; ends as soon as the bounds agree, which they do at the closest pair.
+    fn run(&mut self) {
+        let (a, b) = (self.a, self.b);
+        for pair in 0..9 {
+            let (i, j) = (pair / 3, pair % 3);
+            let (next_i, next_j) = ((i + 1) % 3, (j + 1) % 3);
+            let (along_a, along_b) = (a[next_i] - a[i], b[next_j] - b[j]);
+            let (s, t) = closest_on_segments(a[i], along_a, b[j], along_b);
+            let offset = (b[j] + along_b * t) - (a[i] + along_a * s);
+            if offset.length_squared() < self.squared {
+                let (mut weights_a, mut weights_b) = ([0.0; 3], [0.0; 3]);
+                (weights_a[i], weights_a[next_i]) = (1.0 - s, s);
+                (weights_b[j], weights_b[next_j]) = (1.0 - t, t);
+                self.take(Closest { weights_a, weights_b }, offset);
+                if self.is_tight() {
+                    return;
+                }
+            }
+        }
+        for corner in 0..3 {
+            let mut weights = [0.0; 3];
+            weights[corner] = 1.0;
+            let on_a = try_foot(a, b[corner]).map(|foot| Closest { weights_a: foot, weights_b: weights });
+            let on_b = try_foot(b, a[corner]).map(|foot| Closest { weights_a: weights, weights_b: foot });
+            for candidate in [on_a, on_b].into_iter().flatten() {
+                let offset = combine(candidate.weights_b, b) - combine(candidate.weights_a, a);
+                if offset.length_squared() < self.squared {
+                    self.take(candidate, offset);
+                }
+            }
+        }
+        if self.is_tight() {
+            return;
+        }
+        let kind = likely_direction(a, b, &self.closest);
+        self.lower.consider(a, b, kind, self.reach);
+        if self.is_tight() {
+            return;
+        }
+        for direction in all_directions(a, b) {
+            self.lower.consider(a, b, direction, self.reach);
+        }
+    }
+
+    /// Takes a closer pair, and the direction between its points.
+    fn take(&mut self, closest: Closest, offset: DVec3) {
+        self.closest = closest;
+        self.squared = offset.length_squared();
+        self.upper = closest.bound_distance(self.a, self.b, self.reach);
+        self.lower.consider(self.a, self.b, offset, self.reach);
+    }
+
+    /// The bounds differ by what rounding explains.
+    fn is_tight(&self) -> bool {
+        self.upper - self.lower.gap <= 5.0 * LOSS * self.reach
+    }
 }
 
 /// Weights of the foot of the perpendicular from `point` if it lies inside the triangle.
@@ -239,40 +278,37 @@ fn try_foot([a, b, c]: &[DVec3; 3], point: DVec3) -> Option<[f64; 3]> {
     (weights.iter().all(|&weight| weight >= 0.0) && sum > 0.0).then(|| weights.map(|weight| weight / sum))
 }
 
-/// Parameters in [0, 1] of the closest points of two segments.
+/// Parameters in [0, 1] of the closest points of the segments from p and from q.
 ///
 /// The lines' parameter comes from cross products, n = d₁ × d₂ and s = ((q − p) × d₂)·n/n², which keeps its accuracy for
 /// nearly parallel lines, unlike the usual difference of products d₁²d₂² − (d₁·d₂)². Then each parameter is minimised in
 /// turn, which is exact after the first clamp.
-fn closest_on_segments([p, p_end]: [DVec3; 2], [q, q_end]: [DVec3; 2]) -> (f64, f64) {
-    let (along_p, along_q) = (p_end - p, q_end - q);
+fn closest_on_segments(p: DVec3, along_p: DVec3, q: DVec3, along_q: DVec3) -> (f64, f64) {
     let normal = along_p.cross(along_q);
+    let offset = q - p;
     let ratio = |numerator: f64, denominator: f64| {
         let quotient = numerator / denominator;
         if quotient >= 0.0 { quotient.min(1.0) } else { 0.0 } // also for 0/0
     };
-    let start = ratio((q - p).cross(along_q).dot(normal), normal.length_squared());
-    let on_q = |s: f64| ratio((p + along_p * s - q).dot(along_q), along_q.length_squared());
-    let on_p = |t: f64| ratio((q + along_q * t - p).dot(along_p), along_p.length_squared());
-    let t = on_q(start);
-    (on_p(t), t)
+    let start = ratio(offset.cross(along_q).dot(normal), normal.length_squared());
+    let t = ratio((along_p * start - offset).dot(along_q), along_q.length_squared());
+    (ratio((offset + along_q * t).dot(along_p), along_p.length_squared()), t)
 }
 
-/// The one or two directions that belong to the kind of the closest points.
-fn likely_directions(a: &[DVec3; 3], b: &[DVec3; 3], closest: &Closest) -> [DVec3; 2] {
+/// The direction that belongs to the kind of the closest points.
+fn likely_direction(a: &[DVec3; 3], b: &[DVec3; 3], closest: &Closest) -> DVec3 {
     use TriangleFeature::{Corner, Face, Side};
     let side = |triangle: &[DVec3; 3], k: u8| triangle[(k as usize + 1) % 3] - triangle[k as usize];
     let across = |edge: DVec3, offset: DVec3| edge.cross(offset).cross(edge);
     let normal = |[p, q, r]: &[DVec3; 3]| (q - p).cross(r - p);
-    let kind = match (feature_of(closest.weights_a), feature_of(closest.weights_b)) {
+    match (feature_of(closest.weights_a), feature_of(closest.weights_b)) {
         (Face, _) => normal(a),
         (_, Face) => normal(b),
         (Side(k), Side(l)) => side(a, k).cross(side(b, l)),
         (Side(k), Corner(l)) => across(side(a, k), b[l as usize] - a[k as usize]),
         (Corner(k), Side(l)) => across(side(b, l), b[l as usize] - a[k as usize]),
         (Corner(k), Corner(l)) => b[l as usize] - a[k as usize],
-    };
-    [kind, combine(closest.weights_b, b) - combine(closest.weights_a, a)]
+    }
 }
 
 /// All directions in which the closest points of two triangles can lie: faces' normals, sides' cross products, corners'
@@ -317,10 +353,11 @@ fn try_common_point(a: &[DVec3; 3], b: &[DVec3; 3]) -> Option<Closest> {
             (weights[slot], weights[next]) = (1.0 - along, along);
             weights
         };
-        let on_a =
-            pierce([b[slot], b[next]], a).map(|(along, foot)| Closest::new(foot, weights(along), a, b));
+        let on_a = pierce([b[slot], b[next]], a)
+            .map(|(along, foot)| Closest { weights_a: foot, weights_b: weights(along) });
         on_a.or_else(|| {
-            pierce([a[slot], a[next]], b).map(|(along, foot)| Closest::new(weights(along), foot, a, b))
+            pierce([a[slot], a[next]], b)
+                .map(|(along, foot)| Closest { weights_a: weights(along), weights_b: foot })
         })
     })
 }
