@@ -47,6 +47,33 @@ pub fn cross_check(count: usize, seed: u64) -> CrossCheck {
     report
 }
 
+/// The same for one given scene: two meshes with their motions over `window`.
+///
+/// ```
+/// use d2m_bvh::{QueryOptions, TriMesh, Window, paper};
+/// use d2m_motion::LinearMotion;
+/// use glam::DVec3;
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let coming = LinearMotion::REST.with_position(DVec3::Z * 3.0).with_linear_velocity(DVec3::Z * -4.0);
+/// let bodies = [(mesh.clone(), coming), (mesh, LinearMotion::REST)];
+/// let report = paper::cross_check_scene(bodies, Window::UNIT, &QueryOptions::DEFAULT);
+/// assert_eq!((report.contacts, report.complaints.len()), (1, 0));
+/// # Ok::<(), d2m_bvh::MeshError>(())
+/// ```
+pub fn cross_check_scene(
+    bodies: [(TriMesh, LinearMotion); 2],
+    window: Window,
+    options: &QueryOptions,
+) -> CrossCheck {
+    let mut report = CrossCheck { scenes: 1, ..CrossCheck::default() };
+    let motions = [bodies[0].1, bodies[1].1];
+    let trees = bodies.map(|(mesh, _)| SphereTree::new(mesh));
+    let scene = Scene { name: String::new(), trees, motions, window, options: *options };
+    scene.judge(&mut report, "scene");
+    report
+}
+
 struct Scene {
     name: String,
     trees: [SphereTree; 2],
@@ -183,7 +210,10 @@ impl Oracle<'_> {
         let span = Interval::new(start, free);
         let speed = self.bound_speed(span);
         let mut t = start;
-        for _ in 0..400 {
+        // The larger the meshes, the fewer looks.
+        let leaves = self.a.body.leaf_count() + self.b.body.leaf_count();
+        let looks = (8000 / leaves).clamp(24, 400) as u32;
+        for _ in 0..looks {
             let (lower, _) = self.distance(t, f64::INFINITY);
             let step = lower / speed * (1.0 - 1e-9);
             if t + step >= free {
@@ -195,9 +225,10 @@ impl Oracle<'_> {
             t += step;
         }
         let left = free - t;
-        let mut times: Vec<f64> = (0..=160).map(|k| t + left * f64::from(k) / 160.0).collect();
-        for k in 1..48 {
-            let close = left * 0.5f64.powi(k);
+        let mut times: Vec<f64> = (0..=looks).map(|k| t + left * f64::from(k) / f64::from(looks)).collect();
+        let halvings = looks.min(48) as i32;
+        for k in 1..halvings {
+            let close = left * 0.5f64.powi(k * 48 / halvings);
             times.extend([free - close, hint - close, hint + close]);
         }
         times.retain(|x| *x >= start && (*x < free || (included && *x <= free)));

@@ -69,6 +69,7 @@ pub(crate) fn visit_close_pairs(
         ((*center - node.sphere.center).norm() - radii).lo()
     };
     let root = a.node(0);
+    let mut placed = PlacedLeaf::default();
     let mut open = vec![(f64::NEG_INFINITY, 0u32, 0u32, (centre(root), root.sphere.radius))];
     while let Some((least, index_a, index_b, sphere)) = open.pop() {
         if least > limit {
@@ -76,7 +77,8 @@ pub(crate) fn visit_close_pairs(
         }
         let (node_a, node_b) = (a.node(index_a), b.node(index_b));
         if node_a.is_leaf() && node_b.is_leaf() {
-            limit = limit.min(leaf_pairs(a, b, (node_a, node_b), place, limit, &mut visit));
+            placed.fill(a, index_a, place);
+            limit = limit.min(leaf_pairs(&placed, b, node_b, limit, &mut visit));
             continue;
         }
         let descend_a =
@@ -95,18 +97,38 @@ pub(crate) fn visit_close_pairs(
     }
 }
 
+/// The triangles of one leaf of A in B's frame.
+#[derive(Default)]
+struct PlacedLeaf {
+    node: u32,
+    triangles: Vec<(u32, [DVec3; 3], f64)>,
+}
+
+impl PlacedLeaf {
+    /// Keeps what is there if it is the same leaf: the search visits a leaf against many others in turn.
+    fn fill(&mut self, tree: &SphereTree, node: u32, place: &Placement) {
+        if self.node == node && !self.triangles.is_empty() {
+            return;
+        }
+        self.node = node;
+        self.triangles.clear();
+        for &triangle in &tree.leaf(tree.node(node)).triangles {
+            let enclosed = tree.corners(triangle).map(|p| place.enclose_point(p));
+            let corners = enclosed.map(IntervalVec3::mid);
+            let rounding = (0..3).map(|i| (enclosed[i] - corners[i]).norm().hi()).fold(0.0, f64::max);
+            self.triangles.push((triangle, corners, rounding));
+        }
+    }
+}
+
 fn leaf_pairs(
-    a: &SphereTree,
+    placed: &PlacedLeaf,
     b: &SphereTree,
-    (node_a, node_b): (&Node, &Node),
-    place: &Placement,
+    node_b: &Node,
     mut limit: f64,
     visit: &mut impl FnMut(&ClosestPair) -> f64,
 ) -> f64 {
-    for &triangle_a in &a.leaf(node_a).triangles {
-        let enclosed = a.corners(triangle_a).map(|p| place.enclose_point(p));
-        let corners_a = enclosed.map(IntervalVec3::mid);
-        let rounding = (0..3).map(|i| (enclosed[i] - corners_a[i]).norm().hi()).fold(0.0, f64::max);
+    for &(triangle_a, corners_a, rounding) in &placed.triangles {
         let box_a = bounds(&corners_a);
         for &triangle_b in &b.leaf(node_b).triangles {
             let corners_b = b.corners(triangle_b);
