@@ -2,7 +2,6 @@
 
 use crate::commands::features::FeaturesError;
 use std::fmt::Display;
-use std::io::ErrorKind;
 use thiserror::Error;
 
 /// Ends a command; all but the closed pipe with exit code 3.
@@ -26,7 +25,7 @@ impl Failure {
 impl From<FeaturesError> for Failure {
     fn from(error: FeaturesError) -> Self {
         match error {
-            FeaturesError::File { source, .. } if source.kind() == ErrorKind::BrokenPipe => Self::ClosedPipe,
+            FeaturesError::Output(failure) => failure,
             other => Self::Input(other.to_string()),
         }
     }

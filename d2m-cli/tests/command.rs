@@ -287,6 +287,8 @@ fn bad_input_is_named_and_leaves_nothing() {
     let cases = folder.file("cases.jsonl", "{\"id\": \"a\"}\n");
     refused(&["features", &cases, "--out", &folder.path("out.jsonl")], &["cases.jsonl", "1"]);
     refused(&["features", &folder.path("absent.jsonl"), "--out", "-"], &["absent.jsonl"]);
+    refused(&["features", &folder.path("blank.csv"), "--out", "-"], &["blank.csv", "no cases"]);
+    refused(&["features", &folder.path("empty.csv"), "--out", "-"], &["empty.csv", "no cases"]);
     assert!(!folder.names().iter().any(|name| name.starts_with("out") || name.contains("tmp")));
 
     for (option, value, word) in [
@@ -379,6 +381,31 @@ fn exported_meshes_load_again() {
     assert!(text.contains("\no A\n") && text.contains("\no B\n"));
     let text = stdout(&d2m(&["info", &scene]));
     assert!(text.contains("triangles   24") && text.contains("parts       2"), "{text}");
+}
+
+#[test]
+fn features_answer_line_by_line() {
+    let folder = Folder::new("features");
+    let rest = r#""motionB": {"q":[1,0,0,0],"x":[0,0,0],"v":[0,0,0],"w":[0,0,0]}, "t0": 0, "t1": 1"#;
+    let case = |id: &str, speed: &str| {
+        format!(
+            r#"{{"id": "{id}", "family": "f", "kind": "point_triangle", "A": {{"p":[0.25,0.25,1]}}, "B": {{"tri":[[0,0,0],[1,0,0],[0,1,0]]}}, "motionA": {{"q":[1,0,0,0],"x":[0,0,0],"v":[0,0,{speed}],"w":[0,0,0]}}, {rest}, "toc": "none"}}"#
+        )
+    };
+    let cases = folder.file("cases.jsonl", &format!("{}\n\n{}\n", case("falls", "-2"), case("rises", "2")));
+    let out = folder.path("results.jsonl");
+    let output = d2m(&["features", &cases, "--out", &out]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(folder.names(), ["cases.jsonl", "results.jsonl"]);
+    let text = fs::read_to_string(&out).unwrap();
+    let lines: Vec<serde_json::Value> =
+        text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!((&lines[0]["id"], &lines[0]["status"]), (&"falls".into(), &"hit".into()));
+    let time = |key: &str| lines[0][key].as_f64().unwrap();
+    assert!(time("t_lo") <= 0.5 && 0.5 - 1e-9 < time("t_lo") && time("t_lo") <= time("t_hi"), "{text}");
+    assert!(lines[0]["microseconds"].as_f64().unwrap() >= 0.0);
+    assert_eq!((&lines[1]["id"], &lines[1]["status"]), (&"rises".into(), &"miss".into()));
+    assert_eq!(stdout(&d2m(&["features", &cases, "--out", "-"])).lines().count(), 2);
 }
 
 #[test]

@@ -1,11 +1,13 @@
 //! `d2m features`: first contact of single feature pairs, JSON lines in, JSON lines out.
+use crate::failure::Failure;
+use crate::output::Output;
 use d2m::feature::{ContactOptions, FirstContact, PairMotion, StraightPaths};
 use d2m::motion::LinearMotion;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, BufRead, BufReader};
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// First contact of feature pairs (JSON lines).
@@ -16,7 +18,7 @@ pub(crate) struct FeaturesArgs {
     pub(crate) cases: PathBuf,
     /// Results, one JSON object a line: id, status (hit, miss, undecided), t_lo, t_hi, microseconds. `-`: stdout.
     #[arg(long)]
-    pub(crate) out: PathBuf,
+    pub(crate) out: String,
     /// Distance up to which features may be reported as touching [default: 1e-10 times their size].
     #[arg(long, value_name = "DISTANCE")]
     pub(crate) tolerance: Option<f64>,
@@ -49,9 +51,12 @@ pub(crate) enum FeaturesError {
         /// What is wrong with it.
         reason: String,
     },
-    /// An option is not a number that makes sense.
+    /// An option is not a number that makes sense, or a file has no case.
     #[error("{0}")]
     Option(String),
+    /// The results cannot be written.
+    #[error(transparent)]
+    Output(#[from] Failure),
 }
 
 #[derive(Deserialize)]
@@ -143,6 +148,7 @@ struct Answer<'a> {
 /// Answers every case of a file. Nothing is written unless every line is a case.
 pub(crate) fn run(args: &FeaturesArgs) -> Result<(), FeaturesError> {
     let options = options(args)?;
+    let out = Output::new(&args.out)?;
     let name = args.cases.display().to_string();
     let file =
         File::open(&args.cases).map_err(|source| FeaturesError::File { path: name.clone(), source })?;
@@ -157,6 +163,9 @@ pub(crate) fn run(args: &FeaturesArgs) -> Result<(), FeaturesError> {
         case.question.check().map_err(|reason| fail(format!("case {:?}: {reason}", case.id)))?;
         cases.push(case);
     }
+    if cases.is_empty() {
+        return Err(FeaturesError::Option(format!("{name}: there are no cases")));
+    }
     let mut text = Vec::new();
     for case in &cases {
         let (answer, microseconds) = case.question.answer(&options);
@@ -169,7 +178,7 @@ pub(crate) fn run(args: &FeaturesArgs) -> Result<(), FeaturesError> {
         serde_json::to_writer(&mut text, &line).expect("numbers and strings serialize");
         text.push(b'\n');
     }
-    write_whole(&args.out, &text)
+    Ok(out.write(&String::from_utf8_lossy(&text))?)
 }
 
 fn options(args: &FeaturesArgs) -> Result<ContactOptions, FeaturesError> {
@@ -186,27 +195,6 @@ fn options(args: &FeaturesArgs) -> Result<ContactOptions, FeaturesError> {
         return Err(FeaturesError::Option(message));
     }
     Ok(options.with_min_separation(args.min_separation))
-}
-
-/// Writes to a file beside the target and renames it, so that the target is never half-written; `-` is stdout.
-fn write_whole(path: &Path, text: &[u8]) -> Result<(), FeaturesError> {
-    let fail = |source| FeaturesError::File { path: path.display().to_string(), source };
-    if path == Path::new("-") {
-        return io::stdout().lock().write_all(text).map_err(fail);
-    }
-    let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(format!(".{}.part", std::process::id()));
-    let beside = path.with_file_name(name);
-    let written = File::create(&beside).and_then(|file| {
-        let mut file = BufWriter::new(file);
-        file.write_all(text)?;
-        file.flush()
-    });
-    written.and_then(|()| std::fs::rename(&beside, path)).map_err(|source| {
-        // The error that is reported is the first one; a file that cannot be removed stays.
-        let _ = std::fs::remove_file(&beside);
-        fail(source)
-    })
 }
 
 impl Question {
