@@ -40,6 +40,9 @@ enum Task {
     /// The process in which a peer's query runs, so that it can be ended.
     #[command(hide = true)]
     ParryCast(bench::StoppedOptions),
+    /// The program in which callgrind counts.
+    #[command(hide = true)]
+    CountedSet(bench::SetOptions),
     /// Writes a file of random trials, 256 by default, by the law of the bench.
     Trials(trials::Options),
 }
@@ -51,6 +54,7 @@ fn main() -> ExitCode {
         Task::Accuracy(options) => accuracy::run(&options),
         Task::Bench(options) => bench::run(&options),
         Task::Report(options) => report::run(&options),
+        Task::CountedSet(options) => bench::run_set(&options),
         Task::ParryCast(options) => bench::run_stopped(&options),
         Task::Trials(options) => trials::run(&options),
     };

@@ -2,7 +2,7 @@
 use super::body::Pair;
 use super::engine::{self, Motions};
 use super::peers;
-use crate::judge::{Claim, Judge, Placement, advance, place};
+use crate::judge::{Claim, Placement, advance, place};
 use crate::trials::Trial;
 use d2m::bvh::{Budget, Mode, QueryOptions};
 use std::time::Duration;
@@ -16,7 +16,7 @@ pub(crate) enum Method {
     Capoeira,
     /// The paper's method.
     Paper,
-    /// Conservative advancement over the judge's plain distance.
+    /// Conservative advancement over our own static distance.
     AdvanceOwn,
     /// The same over parry's distance.
     AdvanceParry,
@@ -55,7 +55,7 @@ impl Method {
             Self::Accurate => "accurate",
             Self::Capoeira => "capoeira",
             Self::Paper => "paper",
-            Self::AdvanceOwn => "advance-plain",
+            Self::AdvanceOwn => "advance-own",
             Self::AdvanceParry => "advance-parry",
             Self::ParryCast => "parry-cast",
             Self::Collide => "collide",
@@ -71,7 +71,7 @@ impl Method {
             Self::Accurate => "d2m accurate",
             Self::Capoeira => "d2m Capoeira",
             Self::Paper => "paper's method",
-            Self::AdvanceOwn => "advancement, plain trees",
+            Self::AdvanceOwn => "advancement, d2m distance",
             Self::AdvanceParry => "advancement, parry",
             Self::ParryCast => "parry nonlinear cast",
             Self::Collide => "d2m collide at TOC",
@@ -88,7 +88,7 @@ impl Method {
 
     /// Promises a separation of at most 3.3 tolerances at `lo`.
     pub(crate) const fn is_exact(self) -> bool {
-        matches!(self, Self::Accurate | Self::Paper | Self::AdvanceOwn)
+        matches!(self, Self::Accurate | Self::Paper)
     }
 
     /// Belongs to this project, so that a fault of it is a failure of the run.
@@ -127,10 +127,6 @@ impl<'a> Question<'a> {
         self
     }
 
-    fn judge(&self) -> Judge<'_> {
-        Judge { a: &self.pair.a.boxes, b: &self.pair.b.boxes, trial: self.trial }
-    }
-
     /// Asks once. A static method answers "contact at the asked time" or "separated".
     pub(crate) fn ask(&self, method: Method) -> Claim {
         let (a, b) = (&self.pair.a, &self.pair.b);
@@ -146,11 +142,7 @@ impl<'a> Question<'a> {
                 let budget = Budget::UNLIMITED.with_wall_clock(self.cap);
                 engine::paper(self.pair, &self.motions, &self.options.with_budget(budget))
             }
-            Method::AdvanceOwn => {
-                let judge = self.judge();
-                let mut hint = None;
-                self.advance(|t| judge.separation(t, &mut hint))
-            }
+            Method::AdvanceOwn => self.advance(|t| engine::distance(self.pair, &self.motions, t)),
             Method::AdvanceParry => {
                 let (ma, mb) = (a.parry(), b.parry());
                 self.advance(|t| peers::distance(ma, mb, &place(&self.trial.a, t), &place(&self.trial.b, t)))

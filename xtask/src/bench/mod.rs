@@ -1,8 +1,10 @@
 //! `cargo xtask bench`: the paper's evaluation again, with peers, every answer judged before its time counts.
 mod body;
 mod catalogue;
+mod check;
 mod engine;
 mod method;
+mod order;
 mod peers;
 mod row;
 mod run;
@@ -54,6 +56,12 @@ pub(crate) struct Options {
     /// Leave out the series over triangles, tolerance, spin, speed and threads.
     #[arg(long)]
     no_sweeps: bool,
+    /// Count the instructions of fixed queries under callgrind and compare with the baseline; measures no times.
+    #[arg(long)]
+    check: bool,
+    /// With --check: write the baseline instead.
+    #[arg(long, requires = "check")]
+    update_baseline: bool,
     /// A deliberate fault, to see it found: `late=1e-6` or `miss`.
     #[arg(long = "break", hide = true)]
     sabotage: Option<engine::Sabotage>,
@@ -114,7 +122,8 @@ impl Options {
 
 /// `cargo xtask bench`.
 pub(crate) fn run(options: &Options) -> TaskResult {
-    run::run(options)
+    if options.check { check::run(options.update_baseline) } else { run::run(options) }
 }
 
+pub(crate) use check::{SetOptions, run_set};
 pub(crate) use stopped::{Options as StoppedOptions, run as run_stopped};

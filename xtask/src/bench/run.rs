@@ -19,7 +19,7 @@ type Error = Box<dyn std::error::Error>;
 /// Answers of parry that are compared with the judge's, per pair, speed and method: it is slow.
 const PARRY_CHECKS: usize = 4;
 /// Triangles of a pair beyond which parry's distance is not asked: one query then takes from seconds to minutes.
-const PARRY_TRIANGLES: usize = 50_000;
+const PARRY_TRIANGLES: usize = 20_000;
 /// How far parry's distance may be from ours: it iterates to a tolerance of about this on its own.
 const PARRY_AGREES: f64 = 1e-7;
 

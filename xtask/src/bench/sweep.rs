@@ -24,13 +24,14 @@ pub(crate) struct Point {
 const HEADER: &str = "series,x,count,least,lower,median,upper,worst,mean";
 
 /// The series by name, in the order of the report.
-pub(crate) const NAMES: [&str; 7] = ["triangles", "build", "tolerance", "left", "spin", "speed", "threads"];
+pub(crate) const NAMES: [&str; 8] =
+    ["triangles", "build", "tolerance", "left", "spin", "speed", "threads", "order"];
 
 /// Measures the series that the store lacks. Returns what was judged wrong.
 pub(super) fn run(options: &Options, store: &Store, say: impl Fn(&str)) -> Result<Vec<String>, Error> {
     let mut sweep = Sweep { options, points: Vec::new(), wrong: Vec::new() };
-    let tasks: [&[&str]; 5] =
-        [&["triangles", "build"], &["tolerance", "left"], &["spin"], &["speed"], &["threads"]];
+    let tasks: [&[&str]; 6] =
+        [&["triangles", "build"], &["tolerance", "left"], &["spin"], &["speed"], &["threads"], &["order"]];
     for names in tasks {
         if names.iter().all(|name| store.load_text(&file(name)).is_some()) {
             continue;
@@ -40,7 +41,8 @@ pub(super) fn run(options: &Options, store: &Store, say: impl Fn(&str)) -> Resul
             "tolerance" => sweep.tolerance()?,
             "spin" => sweep.spin()?,
             "speed" => sweep.speed()?,
-            _ => sweep.threads()?,
+            "threads" => sweep.threads()?,
+            _ => sweep.order()?,
         }
         for name in names {
             let points: Vec<Point> =
@@ -229,6 +231,15 @@ impl Sweep<'_> {
                 let times = self.measure(&format!("speed {speed}"), &pair, &trials, ask)?.0;
                 self.note("speed", method.title(), speed, times);
             }
+        }
+        Ok(())
+    }
+
+    /// A curved motion cut into n pieces.
+    fn order(&mut self) -> Result<(), Error> {
+        for row in super::order::errors(if self.options.quick { 64 } else { 1024 })? {
+            self.note("order", "poses held", row.pieces as f64, row.held);
+            self.note("order", "linear pieces", row.pieces as f64, row.linear);
         }
         Ok(())
     }
