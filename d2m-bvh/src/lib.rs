@@ -18,4 +18,4 @@ pub use query::{
 };
 #[doc(hidden)]
 pub use search::SearchCounts;
-pub use tree::MeshTree;
+pub use tree::{MeshTree, TreeError};

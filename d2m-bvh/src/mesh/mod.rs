@@ -1,5 +1,6 @@
 //! Triangle meshes: the checked container, its edges and its quality counts.
 
+mod closedness;
 mod error;
 mod topology;
 mod tri_mesh;
@@ -8,6 +9,7 @@ mod validation;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use closedness::Closedness;
 pub use error::MeshError;
 pub use topology::{Edge, Topology};
 pub use tri_mesh::{MAX_COORDINATE, TriMesh};

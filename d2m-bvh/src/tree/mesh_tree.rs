@@ -1,6 +1,10 @@
 use super::build;
 use super::node::WideNode;
+#[cfg(feature = "serde")]
+use super::serde_form::TreeForm;
+use super::surface::Extent;
 use crate::TriMesh;
+use crate::mesh::Closedness;
 use glam::DVec3;
 
 /// A triangle mesh with its tree of oriented boxes: a rigid body ready for queries.
@@ -18,6 +22,8 @@ use glam::DVec3;
 /// # Ok::<(), d2m_bvh::MeshError>(())
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "TreeForm", into = "TreeForm"))]
 pub struct MeshTree {
     pub(crate) mesh: TriMesh,
     pub(crate) nodes: Vec<WideNode>,
@@ -33,9 +39,35 @@ pub struct MeshTree {
 }
 
 impl MeshTree {
-    /// Builds the tree of a mesh. Deterministic.
+    /// Builds the tree of a mesh. The same bits at any number of threads.
     pub fn new(mesh: TriMesh) -> Self {
-        build::build(mesh)
+        build::build(mesh, None)
+    }
+
+    /// As [`Self::new`]; tells `progress` how many triangles are done, and how many there are, about once every few
+    /// thousand triangles, from any thread.
+    ///
+    /// ```
+    /// use d2m_bvh::{MeshTree, TriMesh};
+    /// use glam::DVec3;
+    /// use std::sync::atomic::{AtomicUsize, Ordering};
+    /// let mesh = TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]])?;
+    /// let most = AtomicUsize::new(0);
+    /// let tree = MeshTree::with_progress(mesh, &|done, _all| {
+    ///     most.fetch_max(done, Ordering::Relaxed);
+    /// });
+    /// assert_eq!(most.into_inner(), tree.mesh().triangle_count());
+    /// # Ok::<(), d2m_bvh::MeshError>(())
+    /// ```
+    pub fn with_progress(mesh: TriMesh, progress: &(dyn Fn(usize, usize) + Sync)) -> Self {
+        build::build(mesh, Some(progress))
+    }
+
+    /// A tree from its boxes, and what is computed from the mesh alone.
+    pub(super) fn from_nodes(mesh: TriMesh, nodes: Vec<WideNode>, extent: &Extent) -> Self {
+        let Closedness { watertight, components } = Closedness::of(&mesh);
+        let Extent { center, radius, unit } = *extent;
+        Self { mesh, nodes, center, unit, radius, watertight, components }
     }
 
     /// The mesh.
@@ -68,7 +100,7 @@ impl MeshTree {
         self.watertight
     }
 
-    /// One vertex of each connected component of the surface.
+    /// One vertex of each part of the surface that hangs together through equal positions.
     pub(crate) fn component_vertices(&self) -> &[u32] {
         &self.components
     }

@@ -5,5 +5,13 @@ mod fit;
 pub(crate) mod margin;
 mod mesh_tree;
 pub(crate) mod node;
+mod refit;
+#[cfg(feature = "serde")]
+mod serde_form;
+mod surface;
+#[cfg(test)]
+mod tests;
+mod validate;
 
 pub use mesh_tree::MeshTree;
+pub use validate::TreeError;

@@ -26,6 +26,16 @@ pub(crate) enum Below {
     Node(u32),
 }
 
+impl Below {
+    /// With `base` added to the number of a node.
+    pub(crate) fn shifted(self, base: u32) -> Self {
+        match self {
+            Self::Triangle(triangle) => Self::Triangle(triangle),
+            Self::Node(node) => Self::Node(node + base),
+        }
+    }
+}
+
 /// Up to eight boxes, lane by lane. 640 bytes, ten cache lines.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
@@ -88,6 +98,16 @@ impl WideNode {
         };
     }
 
+    /// Adds `base` to the numbers of the nodes below, and above unless this node stays below a box outside its list.
+    pub(crate) fn shift(&mut self, base: u32, keeps_parent: bool) {
+        for lane in 0..self.used as usize {
+            self.set_below(lane, self.below(lane).shifted(base));
+        }
+        if !keeps_parent {
+            self.parent += base * WIDTH as u32;
+        }
+    }
+
     /// Sets the box of lane `lane`.
     pub(crate) fn set_box(&mut self, lane: usize, oriented: &OrientedBox, size: f32) {
         for i in 0..3 {
@@ -122,7 +142,7 @@ impl WideNode {
 }
 
 /// One box, with its centre relative to the origin of its wide node.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct OrientedBox {
     pub(crate) center: [f32; 3],
     pub(crate) axes: [[f32; 3]; 3],

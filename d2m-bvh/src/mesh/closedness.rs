@@ -1,0 +1,110 @@
+//! Does a surface close, and into how many parts does it fall? The two questions a solid needs answered, quickly.
+
+use crate::{Topology, TriMesh};
+use glam::DVec3;
+
+/// Answer of both questions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Closedness {
+    /// As [`Topology::is_watertight`].
+    pub(crate) watertight: bool,
+    /// The lowest vertex of each part that hangs together through equal positions, ascending.
+    pub(crate) components: Vec<u32>,
+}
+
+impl Closedness {
+    pub(crate) fn of(mesh: &TriMesh) -> Self {
+        let first = first_at_position(mesh.vertices());
+        Self {
+            // An oriented manifold closes and repeats no triangle. Anything else is looked at in full.
+            watertight: is_oriented_manifold(mesh, &first) || Topology::new(mesh).is_watertight(),
+            components: components(mesh, first),
+        }
+    }
+}
+
+/// For each vertex the lowest vertex with equal coordinates (−0 = 0).
+fn first_at_position(vertices: &[DVec3]) -> Vec<u32> {
+    const EMPTY: u32 = u32::MAX;
+    let mask = (2 * vertices.len()).next_power_of_two() - 1;
+    let mut table = vec![EMPTY; mask + 1];
+    let slot_of = |p: DVec3| {
+        let mix =
+            |h: u64, x: f64| (h ^ (x + 0.0).to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+        (mix(mix(mix(0, p.x), p.y), p.z) >> 7) as usize & mask
+    };
+    let mut first = Vec::with_capacity(vertices.len());
+    for (i, &p) in vertices.iter().enumerate() {
+        let mut slot = slot_of(p);
+        while table[slot] != EMPTY && vertices[table[slot] as usize] != p {
+            slot = (slot + 1) & mask;
+        }
+        if table[slot] == EMPTY {
+            table[slot] = i as u32;
+        }
+        first.push(table[slot]);
+    }
+    first
+}
+
+/// Does each side of a triangle run along an edge that exactly one other side runs along, the other way round?
+/// Sides without length, and meshes with more than 2³¹ vertices, are answered with no.
+fn is_oriented_manifold(mesh: &TriMesh, first: &[u32]) -> bool {
+    if first.len() >= 1 << 31 {
+        return false;
+    }
+    // The sides of each lower end, as (higher end, direction), one after the other.
+    let mut start = vec![0u32; first.len() + 1];
+    let sides = |triangle: &[u32; 3]| {
+        let [i, j, k] = triangle.map(|v| first[v as usize]);
+        [(i, j), (j, k), (k, i)]
+    };
+    for triangle in mesh.triangles() {
+        for (from, to) in sides(triangle) {
+            if from == to {
+                return false;
+            }
+            start[from.min(to) as usize + 1] += 1;
+        }
+    }
+    for i in 1..start.len() {
+        start[i] += start[i - 1];
+    }
+    let mut next = start.clone();
+    let mut other = vec![0u32; 3 * mesh.triangle_count()];
+    for triangle in mesh.triangles() {
+        for (from, to) in sides(triangle) {
+            let slot = &mut next[from.min(to) as usize];
+            other[*slot as usize] = from.max(to) << 1 | u32::from(from < to);
+            *slot += 1;
+        }
+    }
+    start.windows(2).all(|range| {
+        let around = &mut other[range[0] as usize..range[1] as usize];
+        around.sort_unstable();
+        // Sorted, and each pair with both directions: a third side along an edge would break a pair.
+        around.chunks(2).all(|pair| pair.len() == 2 && pair[0] & 1 == 0 && pair[1] == pair[0] + 1)
+    })
+}
+
+/// The lowest vertex of each set of triangles that share positions. `parent` is what [`first_at_position`] gives.
+fn components(mesh: &TriMesh, mut parent: Vec<u32>) -> Vec<u32> {
+    fn root(parent: &mut [u32], mut i: u32) -> u32 {
+        while parent[i as usize] != i {
+            parent[i as usize] = parent[parent[i as usize] as usize];
+            i = parent[i as usize];
+        }
+        i
+    }
+    for &[i, j, k] in mesh.triangles() {
+        for other in [j, k] {
+            let (x, y) = (root(&mut parent, i), root(&mut parent, other));
+            parent[x.max(y) as usize] = x.min(y);
+        }
+    }
+    let mut used = vec![false; parent.len()];
+    for triangle in mesh.triangles() {
+        used[root(&mut parent, triangle[0]) as usize] = true;
+    }
+    (0..used.len() as u32).filter(|&i| used[i as usize]).collect()
+}

@@ -1,0 +1,171 @@
+//! The triangles of a mesh in local coordinates, and boxes around some of them.
+
+use super::fit::{Moments, dot, sub, triangle_axes};
+use super::margin::{UNIT_F64, round_up};
+use super::node::OrientedBox;
+use crate::TriMesh;
+use glam::DVec3;
+
+/// Where local coordinates begin, how far the body reaches from there, and the unit they are divided by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Extent {
+    pub(super) center: DVec3,
+    pub(super) radius: f64,
+    pub(super) unit: f64,
+}
+
+impl Extent {
+    /// Middle of the bounding box of the used vertices, and a bound on the distance from it.
+    pub(super) fn of(mesh: &TriMesh) -> Self {
+        let used = || mesh.triangles().iter().flatten().map(|&i| mesh.vertices()[i as usize]);
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for p in used() {
+            (low, high) = (low.min(p), high.max(p));
+        }
+        Self::about(mesh, low * 0.5 + high * 0.5)
+    }
+
+    /// The least bound on the distance from a given centre.
+    pub(super) fn about(mesh: &TriMesh, center: DVec3) -> Self {
+        let used = mesh.triangles().iter().flatten().map(|&i| mesh.vertices()[i as usize]);
+        let square = used.map(|p| (p - center).length_squared()).fold(0.0, f64::max);
+        // Differences, squares, sum, root: relative error below 6v.
+        let radius = square.sqrt() * (1.0 + 16.0 * UNIT_F64);
+        Self { center, radius, unit: unit_of(radius) }
+    }
+}
+
+/// The least power of two that is not below `radius`, within the range where nothing over- or underflows.
+pub(super) fn unit_of(radius: f64) -> f64 {
+    if radius < 2f64.powi(-600) {
+        return if radius == 0.0 { 1.0 } else { 2f64.powi(-600) };
+    }
+    let power = f64::from_bits(radius.to_bits() & (0x7ff << 52));
+    if power < radius { 2.0 * power } else { power }
+}
+
+/// A mesh in local coordinates.
+pub(super) struct Surface<'a> {
+    points: Vec<[f64; 3]>,
+    triangles: &'a [[u32; 3]],
+}
+
+impl<'a> Surface<'a> {
+    pub(super) fn new(mesh: &'a TriMesh, extent: &Extent) -> Self {
+        let inverse = 1.0 / extent.unit;
+        let points = mesh.vertices().iter().map(|&p| ((p - extent.center) * inverse).to_array()).collect();
+        Self { points, triangles: mesh.triangles() }
+    }
+
+    #[inline(always)]
+    pub(super) fn corners(&self, triangle: u32) -> [[f64; 3]; 3] {
+        let [i, j, k] = self.triangles[triangle as usize];
+        [self.points[i as usize], self.points[j as usize], self.points[k as usize]]
+    }
+
+    /// Orthonormal axes of a part of the surface, the longest extent first.
+    pub(super) fn axes(&self, part: &[u32]) -> [[f64; 3]; 3] {
+        if let &[triangle] = part {
+            return triangle_axes(&self.corners(triangle));
+        }
+        let mut moments = Moments::default();
+        for &triangle in part {
+            moments.add(&self.corners(triangle));
+        }
+        moments.axes()
+    }
+
+    /// What puts a triangle before another one along an axis.
+    #[inline(always)]
+    pub(super) fn along(&self, triangle: u32, axis: [f64; 3]) -> f32 {
+        let [a, b, c] = self.corners(triangle);
+        (dot(a, axis) + dot(b, axis) + dot(c, axis)) as f32
+    }
+
+    /// The box of a part with the given axes: centre relative to `origin`, outward in real arithmetic. Also its size.
+    pub(super) fn enclose(&self, part: &[u32], axes: &[[f64; 3]; 3], origin: [f32; 3]) -> (OrientedBox, f32) {
+        let axes = axes.map(|axis| axis.map(|c| c as f32));
+        let wide = axes.map(|axis| axis.map(f64::from));
+        let from = origin.map(f64::from);
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for &triangle in part {
+            for p in self.corners(triangle) {
+                let p = sub(p, from);
+                for i in 0..3 {
+                    let along = dot(wide[i], p);
+                    low[i] = if along < low[i] { along } else { low[i] };
+                    high[i] = if along > high[i] { along } else { high[i] };
+                }
+            }
+        }
+        // The centre may be anything: the extents are measured from what it was rounded to.
+        let middle = [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]));
+        let center: [f32; 3] = [0, 1, 2].map(|k| (0..3).map(|i| wide[i][k] * middle[i]).sum::<f64>() as f32);
+        let mut reach = Reach::new(origin, center, &axes);
+        for &triangle in part {
+            for p in &self.corners(triangle) {
+                reach.add(p);
+            }
+        }
+        let (half_extent, radius) = reach.outward();
+        let boxed = OrientedBox { center, axes, half_extent, radius };
+        (boxed, size_of_box(&boxed))
+    }
+}
+
+/// What decides which box is opened: its volume, flat boxes taken a little thicker. Positive.
+pub(super) fn size_of_box(boxed: &OrientedBox) -> f32 {
+    let least = 1e-3 * boxed.radius;
+    boxed.half_extent.iter().map(|h| h.max(least)).product::<f32>().max(f32::MIN_POSITIVE)
+}
+
+/// How far points reach from the centre of a box, along its axes and in all.
+///
+/// Rounding, v = 2⁻⁵³, for a point p (local, itself within v of the real one in each coordinate; its unit is a power
+/// of two): p − origin − centre errs by v(|p| + |p − o| + |q|) and the projection by 3v|q|₁ more, in all less than
+/// 7v(|p|₁ + |o|₁ + |c|₁); [`SLACK`](Self::SLACK) is 8v of that.
+pub(super) struct Reach {
+    axes: [[f64; 3]; 3],
+    origin: [f64; 3],
+    center: [f64; 3],
+    half: [f64; 3],
+    square: f64,
+    norm: f64,
+}
+
+impl Reach {
+    const SLACK: f64 = 8.0 * UNIT_F64;
+
+    pub(super) fn new(origin: [f32; 3], center: [f32; 3], axes: &[[f32; 3]; 3]) -> Self {
+        Self {
+            axes: axes.map(|axis| axis.map(f64::from)),
+            origin: origin.map(f64::from),
+            center: center.map(f64::from),
+            half: [0.0; 3],
+            square: 0.0,
+            norm: 0.0,
+        }
+    }
+
+    /// Takes a point in local coordinates.
+    #[inline(always)]
+    pub(super) fn add(&mut self, p: &[f64; 3]) {
+        let q = sub(sub(*p, self.origin), self.center);
+        for i in 0..3 {
+            let along = dot(self.axes[i], q).abs();
+            self.half[i] = if along > self.half[i] { along } else { self.half[i] };
+        }
+        let (square, norm) = (dot(q, q), p[0].abs() + p[1].abs() + p[2].abs());
+        self.square = if square > self.square { square } else { self.square };
+        self.norm = if norm > self.norm { norm } else { self.norm };
+    }
+
+    /// Half extents and radius that enclose the points in real arithmetic. Monotone: a box made from more points is
+    /// at least as large, in every bit.
+    pub(super) fn outward(&self) -> ([f32; 3], f32) {
+        let sum = |v: &[f64; 3]| v[0].abs() + v[1].abs() + v[2].abs();
+        let slack = Self::SLACK * (self.norm + sum(&self.origin) + sum(&self.center));
+        let half = self.half.map(|h| round_up(h + slack));
+        (half, round_up(self.square.sqrt() * (1.0 + 8.0 * UNIT_F64) + slack))
+    }
+}

@@ -1,0 +1,224 @@
+//! Trees that were built, refitted, written and broken.
+
+use super::margin::UNIT_F64;
+use super::node::{Below, WIDTH};
+use super::surface::Surface;
+use super::*;
+use crate::TriMesh;
+use glam::DVec3;
+
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
+    }
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.next(), self.next(), self.next())
+    }
+}
+
+/// A closed torus-like surface of 2·across·around triangles with some noise.
+pub(crate) fn torus(across: u32, around: u32, noise: f64, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
+    let mut random = Random(u64::from(across));
+    let mut corners = Vec::new();
+    for i in 0..across {
+        for j in 0..around {
+            let turn = |k: u32, n: u32| f64::from(k) / f64::from(n) * core::f64::consts::TAU;
+            let ((s, c), (t, d)) = (turn(i, across).sin_cos(), turn(j, around).sin_cos());
+            let ring = 1.0 + 0.4 * d;
+            corners.push(map(DVec3::new(ring * c, ring * s, 0.4 * t) + random.vector() * noise));
+        }
+    }
+    let at = |i: u32, j: u32| (i % across) * around + j % around;
+    let mut triangles = Vec::new();
+    for i in 0..across {
+        for j in 0..around {
+            triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+            triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+        }
+    }
+    TriMesh::try_new(corners, triangles).unwrap()
+}
+
+fn hard_meshes() -> Vec<TriMesh> {
+    let mut random = Random(11);
+    let one = |corners: Vec<DVec3>| {
+        let count = corners.len() as u32 / 3;
+        TriMesh::try_new(corners, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect()).unwrap()
+    };
+    let shift = DVec3::splat(1e6);
+    vec![
+        torus(40, 20, 0.01, |p| p),
+        torus(90, 60, 0.0, |p| p * 1e-6),
+        torus(12, 9, 0.1, |p| p * 1e6 + shift),
+        torus(30, 20, 0.0, |p| p * DVec3::new(1.0, 1e-6, 1e3)),
+        torus(9, 5, 0.0, |p| p * 1e-250),
+        one(vec![DVec3::ZERO; 3]),
+        one(vec![DVec3::splat(0.1); 30]),
+        one((0..300).map(|i| DVec3::X * f64::from(i)).collect()),
+        one((0..300).map(|_| random.vector() * 1e50).collect()),
+        one((0..27).map(|i| random.vector() * 10f64.powi(-i)).collect()),
+    ]
+}
+
+#[test]
+fn built_and_refitted_trees_are_valid() {
+    let mut random = Random(4);
+    for (index, mesh) in hard_meshes().into_iter().enumerate() {
+        let mut tree = MeshTree::new(mesh);
+        assert_eq!(tree.validate(), Ok(()), "mesh {index}");
+        let moved = tree.mesh().vertices().iter().map(|&p| p + random.vector() * 0.3 * p.length()).collect();
+        tree.refit(moved).unwrap();
+        assert_eq!(tree.validate(), Ok(()), "mesh {index} refitted");
+        let before = tree.clone();
+        assert!(tree.refit(vec![DVec3::NAN; 3]).is_err());
+        assert_eq!(tree.mesh(), before.mesh());
+        assert_eq!(tree.validate(), Ok(()));
+    }
+}
+
+/// Boxes against corners in twice the precision: sums of two doubles, errors below 2⁻⁹⁸ of the terms.
+#[test]
+fn boxes_enclose_in_more_than_double_precision() {
+    fn two_sum(a: f64, b: f64) -> (f64, f64) {
+        let s = a + b;
+        let t = s - a;
+        (s, (a - (s - t)) + (b - t))
+    }
+    fn add(a: (f64, f64), b: f64) -> (f64, f64) {
+        let s = two_sum(a.0, b);
+        two_sum(s.0, s.1 + a.1)
+    }
+    // A double with at most 24 bits times another double: split it so that both products are exact.
+    fn mul24(a: (f64, f64), b: f64) -> (f64, f64) {
+        let high = f64::from(a.0 as f32);
+        let (rest, low) = (a.0 - high, a.1);
+        add(two_sum(high * b, rest * b), low * b)
+    }
+    let mut tightest = f64::INFINITY;
+    for mesh in hard_meshes().into_iter().take(4) {
+        let tree = MeshTree::new(mesh);
+        for leaf in &tree.nodes {
+            for lane in 0..leaf.used as usize {
+                let Below::Triangle(triangle) = leaf.below(lane) else { continue };
+                for corner in tree.mesh.corners(triangle as usize) {
+                    let (mut node, mut lane) = (leaf, lane);
+                    loop {
+                        let boxed = node.oriented_box(lane);
+                        let q = [0, 1, 2].map(|k| {
+                            let (high, low) = two_sum(corner[k], -tree.center[k]);
+                            let local = (high / tree.unit, low / tree.unit);
+                            add(add(local, -f64::from(node.origin[k])), -f64::from(boxed.center[k]))
+                        });
+                        for i in 0..3 {
+                            let mut sum = (0.0, 0.0);
+                            for (k, part) in q.iter().enumerate() {
+                                let term = mul24(*part, f64::from(boxed.axes[i][k]));
+                                sum = add(add(sum, term.0), term.1);
+                            }
+                            let left = f64::from(boxed.half_extent[i]) - sum.0.abs();
+                            assert!(left > 0.0, "{left:e}");
+                            tightest = tightest.min(left);
+                        }
+                        if std::ptr::eq(node, &raw const tree.nodes[0]) {
+                            break;
+                        }
+                        let parent = node.parent as usize;
+                        (node, lane) = (&tree.nodes[parent / WIDTH], parent % WIDTH);
+                    }
+                }
+            }
+        }
+    }
+    // Boxes are not blown up: somewhere only the slack is left.
+    assert!(tightest < 64.0 * UNIT_F64, "{tightest:e}");
+}
+
+#[test]
+fn any_shrunk_or_broken_tree_is_refused() {
+    let tree = MeshTree::new(torus(20, 10, 0.01, |p| p));
+    type Damage = fn(&mut MeshTree);
+    let damages: [(&str, Damage); 14] = [
+        ("half extent", |t| t.nodes[3].half_extent[1][2] *= 0.999),
+        ("half extent of the root", |t| t.nodes[0].half_extent[0][0] *= 1.0 - 1e-6),
+        ("radius", |t| t.nodes[2].radius[0] *= 0.999),
+        ("centre", |t| t.nodes[5].center[0][1] += 1e-3),
+        ("axis", |t| t.nodes[5].axes[0][0][1] *= 1.000_001),
+        ("not a number", |t| t.nodes[5].axes[1][0][1] = f32::NAN),
+        ("origin", |t| t.nodes[4].origin[1] += 1e-3),
+        ("extent", |t| t.nodes[4].extent *= 0.9),
+        ("link", |t| t.nodes[1].child[0] = 1),
+        ("node beyond the end", |t| t.nodes[1].child[0] = 1 << 20),
+        ("parent", |t| t.nodes[3].parent += 1),
+        ("repeated triangle", |t| {
+            let leaf = t.nodes.iter().position(|n| matches!(n.below(1), Below::Triangle(_))).unwrap();
+            t.nodes[leaf].child[0] = t.nodes[leaf].child[1];
+        }),
+        ("tree radius", |t| t.radius *= 0.9),
+        ("lane that is not used", |t| {
+            t.nodes[0].center[0][3] = 0.0;
+        }),
+    ];
+    assert_eq!(tree.validate(), Ok(()));
+    for (what, damage) in damages {
+        let mut broken = tree.clone();
+        damage(&mut broken);
+        assert!(broken.validate().is_err(), "{what}");
+    }
+}
+
+#[test]
+fn the_same_bits_at_any_number_of_threads() {
+    let mesh = torus(150, 60, 0.01, |p| p);
+    let bits = |tree: &MeshTree| format!("{:?}", tree.nodes);
+    let tree = MeshTree::new(mesh.clone());
+    assert_eq!(tree.validate(), Ok(()));
+    #[cfg(feature = "rayon")]
+    for threads in [1, 2, 5] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        assert!(bits(&tree) == bits(&pool.install(|| MeshTree::new(mesh.clone()))), "{threads} threads");
+    }
+    let most = std::sync::atomic::AtomicUsize::new(0);
+    let told = MeshTree::with_progress(mesh, &|done, all| {
+        assert_eq!(all, 18_000);
+        most.fetch_max(done, std::sync::atomic::Ordering::Relaxed);
+    });
+    assert_eq!(most.into_inner(), 18_000);
+    assert!(bits(&tree) == bits(&told));
+    assert!(tree.memory_bytes() <= 130 * 18_000, "{}", tree.memory_bytes() / 18_000);
+}
+
+#[test]
+fn moved_surfaces_keep_their_order() {
+    // A part of one triangle has its own axes: the box of a leaf is flat.
+    let mesh = torus(6, 5, 0.0, |p| p);
+    let tree = MeshTree::new(mesh.clone());
+    let extent = super::surface::Extent::of(&mesh);
+    let surface = Surface::new(&mesh, &extent);
+    let (boxed, _) = surface.enclose(&[7], &surface.axes(&[7]), [0.0; 3]);
+    assert!(boxed.half_extent[2] < 1e-6 && boxed.half_extent[0] > 0.05);
+    let mut same = tree.clone();
+    same.refit(mesh.vertices().to_vec()).unwrap();
+    assert_eq!(same.nodes.len(), tree.nodes.len());
+    for (x, y) in same.nodes.iter().zip(&tree.nodes) {
+        assert_eq!((x.child, x.used, x.parent), (y.child, y.used, y.parent));
+    }
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn a_written_tree_is_read_back_bit_for_bit_and_a_forged_one_refused() {
+    for mesh in [torus(30, 12, 0.01, |p| p), torus(3, 3, 0.0, |p| p * 1e-7)] {
+        let tree = MeshTree::new(mesh);
+        let text = serde_json::to_string(&tree).unwrap();
+        let back: MeshTree = serde_json::from_str(&text).unwrap();
+        assert_eq!(format!("{back:?}"), format!("{tree:?}"));
+        let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let half = value["nodes"][1]["boxes"][0]["half_extent"][0].as_f64().unwrap();
+        value["nodes"][1]["boxes"][0]["half_extent"][0] = (half * 0.99).into();
+        let refused = serde_json::from_value::<MeshTree>(value).unwrap_err().to_string();
+        assert!(refused.contains("does not enclose"), "{refused}");
+    }
+}
