@@ -1,4 +1,5 @@
 //! `cargo xtask accuracy`: random families against slow oracles. Any false negative fails the run.
+mod feature;
 mod mesh;
 mod reference;
 mod statics;
@@ -51,7 +52,11 @@ pub(crate) struct Task {
 type Family = (&'static str, usize, fn(&Task) -> Outcome);
 
 /// Name, the share of the count that a family takes (one in so many), and itself.
-const FAMILIES: [Family; 3] = [
+const FAMILIES: [Family; 7] = [
+    ("feature: rigid vertex/face", 10, feature::rigid_vertex_face),
+    ("feature: rigid edge/edge", 10, feature::rigid_edge_edge),
+    ("feature: straight vertex/face", 10, feature::straight_vertex_face),
+    ("feature: straight edge/edge", 10, feature::straight_edge_edge),
     ("mesh: engine on random small scenes", 1, mesh::run),
     ("mesh: reference method and engine", 20, reference::run),
     ("mesh: collide and distance at rest", 2, statics::run),
