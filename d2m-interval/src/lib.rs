@@ -1,26 +1,36 @@
 //! Rigorous, fast, portable interval arithmetic: outward-rounded in every operation, no_std.
-#![cfg_attr(not(feature = "std"), no_std)]
+#![no_std]
 extern crate alloc;
+#[cfg(any(test, feature = "std"))]
+extern crate std;
 
 mod arith;
 mod compare;
 mod elementary;
 mod error;
 mod interval;
+#[cfg(feature = "glam")]
 mod mat3;
 mod round;
 mod set_ops;
 mod simd;
 mod text;
+#[cfg(feature = "glam")]
 mod vec3;
+#[cfg(feature = "glam")]
+mod vec3_x4;
 mod x4;
 
 pub use compare::Overlap;
 pub use error::{IntervalError, ParseIntervalError};
 pub use interval::Interval;
+#[cfg(feature = "glam")]
 pub use mat3::IntervalMat3;
+#[cfg(feature = "glam")]
 pub use vec3::IntervalVec3;
-pub use x4::{IntervalVec3X4, IntervalX4};
+#[cfg(feature = "glam")]
+pub use vec3_x4::IntervalVec3X4;
+pub use x4::IntervalX4;
 
 /// The narrowest interval that holds the number or interval that is written: `interval!(0.1)`, `interval!("1/3")`,
 /// `interval!("[0.1, 0.2]")`; with two arguments, [`Interval::new`].
@@ -47,5 +57,5 @@ macro_rules! interval {
     };
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "glam"))]
 mod tests;

@@ -13,8 +13,10 @@ pub(crate) const HALF_ULP: f64 = f64::from_bits(0x3CA0_0000_0000_0001);
 /// (Half of the 2⁻⁵⁰⁰ that results may be too wide by: the other half is for the last place.)
 pub(crate) const TINY: f64 = f64::from_bits((1023 - 501) << 52);
 /// `3·2⁻⁵³(1 + 2⁻⁴⁰)`: a difference of two products (`cross`).
+#[cfg(feature = "glam")]
 pub(crate) const TWO_PRODUCTS: f64 = f64::from_bits(0x3CB8_0000_0000_1800);
 /// `4·2⁻⁵³(1 + 2⁻⁴⁰)`: a sum of three products (`dot`).
+#[cfg(feature = "glam")]
 pub(crate) const THREE_PRODUCTS: f64 = f64::from_bits(0x3CC0_0000_0000_1000);
 
 /// A number not below any real number whose correctly rounded value is `x`; NaN gives NaN.

@@ -7,8 +7,8 @@ const ENDS: [f64; 9] =
     [f64::NEG_INFINITY, -f64::MAX, -2.0, -1e-320, 0.0, 1e-320, 3.0, f64::MAX, f64::INFINITY];
 
 /// Every interval with ends from the list, and the empty one.
-fn all() -> Vec<Interval> {
-    let mut out = vec![Interval::EMPTY];
+fn all() -> std::vec::Vec<Interval> {
+    let mut out = std::vec![Interval::EMPTY];
     for lo in ENDS {
         out.extend(ENDS.iter().filter_map(|&hi| Interval::try_new(lo, hi).ok()));
     }

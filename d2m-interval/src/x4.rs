@@ -2,8 +2,8 @@
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::{
-    Interval, IntervalVec3,
-    round::{HALF_ULP, THREE_PRODUCTS, TINY, TWO_PRODUCTS},
+    Interval,
+    round::{HALF_ULP, TINY},
     simd::F64x4,
 };
 
@@ -19,18 +19,18 @@ use crate::{
 /// ```
 #[derive(Clone, Copy)]
 pub struct IntervalX4 {
-    neg_lo: F64x4,
-    hi: F64x4,
+    pub(crate) neg_lo: F64x4,
+    pub(crate) hi: F64x4,
 }
 
 /// Increment for one rounding, or for the stated share of the sizes.
 #[inline(always)]
-fn pad(size: F64x4, share: f64) -> F64x4 {
+pub(crate) fn pad(size: F64x4, share: f64) -> F64x4 {
     size.times(F64x4::splat(share)).plus(F64x4::splat(TINY))
 }
 
 #[inline(always)]
-fn finite(e: F64x4, f: F64x4) -> bool {
+pub(crate) fn finite(e: F64x4, f: F64x4) -> bool {
     let infinity = F64x4::splat(f64::INFINITY);
     e.lt_bits(infinity) & f.lt_bits(infinity) == 15
 }
@@ -91,7 +91,13 @@ impl IntervalX4 {
 
     /// `largest` is the maximum of the operands of products.
     #[inline(always)]
-    fn rounded(self, sizes: Self, share: f64, largest: F64x4, slow: impl FnOnce() -> Self) -> Self {
+    pub(crate) fn rounded(
+        self,
+        sizes: Self,
+        share: f64,
+        largest: F64x4,
+        slow: impl FnOnce() -> Self,
+    ) -> Self {
         let (e, f) = (pad(sizes.neg_lo, share), pad(sizes.hi, share));
         if finite(largest.max(e), f) {
             Self { neg_lo: self.neg_lo.plus(e), hi: self.hi.plus(f) }
@@ -101,23 +107,23 @@ impl IntervalX4 {
     }
 
     #[inline(always)]
-    fn largest(self) -> F64x4 {
+    pub(crate) fn largest(self) -> F64x4 {
         self.neg_lo.max(self.hi)
     }
 
     #[inline(always)]
-    fn size(self) -> Self {
+    pub(crate) fn size(self) -> Self {
         Self { neg_lo: self.neg_lo.abs(), hi: self.hi.abs() }
     }
 
     #[inline(always)]
-    fn sum(self, o: Self) -> Self {
+    pub(crate) fn sum(self, o: Self) -> Self {
         Self { neg_lo: self.neg_lo.plus(o.neg_lo), hi: self.hi.plus(o.hi) }
     }
 
     /// Products of the ends, not yet rounded up.
     #[inline(always)]
-    fn products(self, o: Self) -> Self {
+    pub(crate) fn products(self, o: Self) -> Self {
         let (a, b, c, d) = (self.neg_lo, self.hi, o.neg_lo, o.hi);
         let (minus_c, minus_d) = (c.neg(), d.neg());
         Self {
@@ -220,131 +226,5 @@ impl Div for IntervalX4 {
     type Output = Self;
     fn div(self, o: Self) -> Self {
         self.each(o, |x, y| x / y)
-    }
-}
-
-/// Four boxes of vectors.
-#[derive(Clone, Copy, Debug)]
-pub struct IntervalVec3X4 {
-    /// First coordinates.
-    pub x: IntervalX4,
-    /// Second coordinates.
-    pub y: IntervalX4,
-    /// Third coordinates.
-    pub z: IntervalX4,
-}
-
-impl IntervalVec3X4 {
-    /// From coordinates.
-    #[inline(always)]
-    pub const fn new(x: IntervalX4, y: IntervalX4, z: IntervalX4) -> Self {
-        Self { x, y, z }
-    }
-
-    /// From four boxes.
-    pub fn from_lanes(v: [IntervalVec3; 4]) -> Self {
-        Self::new(
-            IntervalX4::new(v.map(|v| v.x)),
-            IntervalX4::new(v.map(|v| v.y)),
-            IntervalX4::new(v.map(|v| v.z)),
-        )
-    }
-
-    /// The same box four times.
-    pub fn splat(v: IntervalVec3) -> Self {
-        Self::new(IntervalX4::splat(v.x), IntervalX4::splat(v.y), IntervalX4::splat(v.z))
-    }
-
-    /// One of the four.
-    ///
-    /// # Panics
-    /// When `i > 3`.
-    pub fn lane(self, i: usize) -> IntervalVec3 {
-        IntervalVec3::new(self.x.lane(i), self.y.lane(i), self.z.lane(i))
-    }
-
-    /// The four boxes.
-    pub fn lanes(self) -> [IntervalVec3; 4] {
-        core::array::from_fn(|i| self.lane(i))
-    }
-
-    #[inline(always)]
-    fn largest(self) -> F64x4 {
-        self.x.largest().max(self.y.largest()).max(self.z.largest())
-    }
-
-    /// `self · o`, with one increment for all roundings.
-    ///
-    /// ```
-    /// # use d2m_interval::{IntervalVec3, IntervalVec3X4};
-    /// # use glam::DVec3;
-    /// let v = IntervalVec3X4::splat(IntervalVec3::point(DVec3::new(1.0, 2.0, 3.0)));
-    /// assert!(v.dot(v).lane(0).contains(14.0));
-    /// ```
-    #[inline(always)]
-    pub fn dot(self, o: Self) -> IntervalX4 {
-        let (p, q, r) = (self.x.products(o.x), self.y.products(o.y), self.z.products(o.z));
-        let size = p.size().sum(q.size()).sum(r.size());
-        let largest = self.largest().max(o.largest());
-        p.sum(q).sum(r).rounded(size, THREE_PRODUCTS, largest, || {
-            let (a, b) = (self.lanes(), o.lanes());
-            IntervalX4::new(core::array::from_fn(|i| a[i].dot(b[i])))
-        })
-    }
-
-    /// `self × o`.
-    #[inline(always)]
-    pub fn cross(self, o: Self) -> Self {
-        let largest = self.largest().max(o.largest());
-        let minor = |a: IntervalX4, d: IntervalX4, b: IntervalX4, c: IntervalX4| {
-            let (p, q) = (a.products(d), -b.products(c));
-            p.sum(q).rounded(p.size().sum(q.size()), TWO_PRODUCTS, largest, || a * d - b * c)
-        };
-        Self::new(
-            minor(self.y, o.z, self.z, o.y),
-            minor(self.z, o.x, self.x, o.z),
-            minor(self.x, o.y, self.y, o.x),
-        )
-    }
-
-    /// `|self|²`; never below zero.
-    #[inline(always)]
-    pub fn norm_squared(self) -> IntervalX4 {
-        let zero = F64x4::splat(0.0);
-        let squares = |a: IntervalX4| {
-            let least = a.neg_lo.neg().max(a.hi.neg()).max(zero);
-            let greatest = a.neg_lo.max(a.hi);
-            (least.times(least), greatest.times(greatest))
-        };
-        let ((a, b), (c, d), (e, f)) = (squares(self.x), squares(self.y), squares(self.z));
-        let (l, g) = (a.plus(c).plus(e), b.plus(d).plus(f));
-        let (e, f) = (pad(l, THREE_PRODUCTS), pad(g, THREE_PRODUCTS));
-        if finite(e, f) {
-            IntervalX4 { neg_lo: l.neg().plus(e).min(zero), hi: g.plus(f) }
-        } else {
-            IntervalX4::new(self.lanes().map(IntervalVec3::norm_squared))
-        }
-    }
-
-    /// The vectors times four intervals.
-    #[inline(always)]
-    pub fn scaled(self, s: IntervalX4) -> Self {
-        Self::new(s * self.x, s * self.y, s * self.z)
-    }
-}
-
-impl Add for IntervalVec3X4 {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, o: Self) -> Self {
-        Self::new(self.x + o.x, self.y + o.y, self.z + o.z)
-    }
-}
-
-impl Sub for IntervalVec3X4 {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, o: Self) -> Self {
-        Self::new(self.x - o.x, self.y - o.y, self.z - o.z)
     }
 }

@@ -44,7 +44,8 @@ pub(crate) use scalar::F64x2;
 mod quad;
 pub(crate) use quad::F64x4;
 
-#[cfg(not(feature = "std"))]
+#[cfg(any(test, not(feature = "std")))]
+#[allow(dead_code)] // where a vector unit has square roots
 mod soft_sqrt;
 
 /// Correctly rounded square root of one number.

@@ -62,3 +62,22 @@ fn equals_the_scalar_twin() {
         }
     }
 }
+
+#[test]
+fn integer_square_root_is_correctly_rounded() {
+    let mut state = 3u64;
+    let mut check = |x: f64| {
+        let (soft, hard) = (super::soft_sqrt::sqrt(x), x.sqrt());
+        assert!(soft == hard || soft.is_nan() && hard.is_nan(), "{x:e}: {soft:e} {hard:e}");
+    };
+    VALUES.into_iter().for_each(&mut check);
+    for _ in 0..if cfg!(miri) { 100 } else { 200_000 } {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        check(f64::from_bits(state >> 1));
+        // Squares and their neighbours.
+        let root = ((state >> 38) as f64) * 1024.0 + 1.0;
+        check(root * root);
+        check((root * root).next_up());
+        check((root * root).next_down());
+    }
+}

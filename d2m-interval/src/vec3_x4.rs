@@ -1,0 +1,135 @@
+//! Four vectors of intervals at once.
+use core::ops::{Add, Sub};
+
+use crate::{
+    IntervalVec3, IntervalX4,
+    round::{THREE_PRODUCTS, TWO_PRODUCTS},
+    simd::F64x4,
+    x4::{finite, pad},
+};
+
+/// Four boxes of vectors.
+#[derive(Clone, Copy, Debug)]
+pub struct IntervalVec3X4 {
+    /// First coordinates.
+    pub x: IntervalX4,
+    /// Second coordinates.
+    pub y: IntervalX4,
+    /// Third coordinates.
+    pub z: IntervalX4,
+}
+
+impl IntervalVec3X4 {
+    /// From coordinates.
+    #[inline(always)]
+    pub const fn new(x: IntervalX4, y: IntervalX4, z: IntervalX4) -> Self {
+        Self { x, y, z }
+    }
+
+    /// From four boxes.
+    pub fn from_lanes(v: [IntervalVec3; 4]) -> Self {
+        Self::new(
+            IntervalX4::new(v.map(|v| v.x)),
+            IntervalX4::new(v.map(|v| v.y)),
+            IntervalX4::new(v.map(|v| v.z)),
+        )
+    }
+
+    /// The same box four times.
+    pub fn splat(v: IntervalVec3) -> Self {
+        Self::new(IntervalX4::splat(v.x), IntervalX4::splat(v.y), IntervalX4::splat(v.z))
+    }
+
+    /// One of the four.
+    ///
+    /// # Panics
+    /// When `i > 3`.
+    pub fn lane(self, i: usize) -> IntervalVec3 {
+        IntervalVec3::new(self.x.lane(i), self.y.lane(i), self.z.lane(i))
+    }
+
+    /// The four boxes.
+    pub fn lanes(self) -> [IntervalVec3; 4] {
+        core::array::from_fn(|i| self.lane(i))
+    }
+
+    #[inline(always)]
+    fn largest(self) -> F64x4 {
+        self.x.largest().max(self.y.largest()).max(self.z.largest())
+    }
+
+    /// `self · o`, with one increment for all roundings.
+    ///
+    /// ```
+    /// # use d2m_interval::{IntervalVec3, IntervalVec3X4};
+    /// # use glam::DVec3;
+    /// let v = IntervalVec3X4::splat(IntervalVec3::point(DVec3::new(1.0, 2.0, 3.0)));
+    /// assert!(v.dot(v).lane(0).contains(14.0));
+    /// ```
+    #[inline(always)]
+    pub fn dot(self, o: Self) -> IntervalX4 {
+        let (p, q, r) = (self.x.products(o.x), self.y.products(o.y), self.z.products(o.z));
+        let size = p.size().sum(q.size()).sum(r.size());
+        let largest = self.largest().max(o.largest());
+        p.sum(q).sum(r).rounded(size, THREE_PRODUCTS, largest, || {
+            let (a, b) = (self.lanes(), o.lanes());
+            IntervalX4::new(core::array::from_fn(|i| a[i].dot(b[i])))
+        })
+    }
+
+    /// `self × o`.
+    #[inline(always)]
+    pub fn cross(self, o: Self) -> Self {
+        let largest = self.largest().max(o.largest());
+        let minor = |a: IntervalX4, d: IntervalX4, b: IntervalX4, c: IntervalX4| {
+            let (p, q) = (a.products(d), -b.products(c));
+            p.sum(q).rounded(p.size().sum(q.size()), TWO_PRODUCTS, largest, || a * d - b * c)
+        };
+        Self::new(
+            minor(self.y, o.z, self.z, o.y),
+            minor(self.z, o.x, self.x, o.z),
+            minor(self.x, o.y, self.y, o.x),
+        )
+    }
+
+    /// `|self|²`; never below zero.
+    #[inline(always)]
+    pub fn norm_squared(self) -> IntervalX4 {
+        let zero = F64x4::splat(0.0);
+        let squares = |a: IntervalX4| {
+            let least = a.neg_lo.neg().max(a.hi.neg()).max(zero);
+            let greatest = a.neg_lo.max(a.hi);
+            (least.times(least), greatest.times(greatest))
+        };
+        let ((a, b), (c, d), (e, f)) = (squares(self.x), squares(self.y), squares(self.z));
+        let (l, g) = (a.plus(c).plus(e), b.plus(d).plus(f));
+        let (e, f) = (pad(l, THREE_PRODUCTS), pad(g, THREE_PRODUCTS));
+        if finite(e, f) {
+            IntervalX4 { neg_lo: l.neg().plus(e).min(zero), hi: g.plus(f) }
+        } else {
+            IntervalX4::new(self.lanes().map(IntervalVec3::norm_squared))
+        }
+    }
+
+    /// The vectors times four intervals.
+    #[inline(always)]
+    pub fn scaled(self, s: IntervalX4) -> Self {
+        Self::new(s * self.x, s * self.y, s * self.z)
+    }
+}
+
+impl Add for IntervalVec3X4 {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self::new(self.x + o.x, self.y + o.y, self.z + o.z)
+    }
+}
+
+impl Sub for IntervalVec3X4 {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Self::new(self.x - o.x, self.y - o.y, self.z - o.z)
+    }
+}
