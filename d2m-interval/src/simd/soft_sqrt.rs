@@ -3,7 +3,7 @@
 /// `√x`, rounded to nearest.
 pub(crate) fn sqrt(x: f64) -> f64 {
     let bits = x.to_bits();
-    if !(x > 0.0) || x == f64::INFINITY {
+    if x.is_nan() || x <= 0.0 || x == f64::INFINITY {
         return if x < 0.0 { f64::NAN } else { x };
     }
     let mut exponent = (bits >> 52) as i32 - 1075;

@@ -4,9 +4,7 @@ use d2m_interval::{Interval, IntervalVec3};
 use dashu_int::{IBig, ops::Abs};
 use glam::DVec3;
 
-use super::{
-    Fixed, atan, atan2, div, exp, fixed, ln, ln_2, mul, one, pi, quadrant, sin_cos, sqrt, to_double,
-};
+use super::{Fixed, atan, atan2, div, exp, fixed, ln, ln_2, mul, one, quadrant, sin_cos, sqrt, to_double};
 
 /// A small generator of random numbers (SplitMix64).
 pub(crate) struct Random(pub(crate) u64);
@@ -570,22 +568,24 @@ fn start(name: &'static str, allowed: u64) -> Outcome {
     Outcome { name, checked: 0, lost: 0, worst: 0, allowed, example: String::new() }
 }
 
-/// Every family with `count` tuples (a fiftieth of it where the reference is slow).
-pub(crate) fn run_all(count: u64, seed: u64, mut report: impl FnMut(&Outcome)) -> bool {
-    let mut passed = true;
-    let mut take = |outcome: Outcome| {
-        passed &= outcome.passed();
-        report(&outcome);
-    };
+/// One family, ready to run.
+pub(crate) type Job = Box<dyn Fn() -> Outcome + Send + Sync>;
+
+/// Every family with `count` tuples (a fiftieth of it where the reference is slow), independent of each other.
+pub(crate) fn jobs(count: u64, seed: u64) -> Vec<Job> {
+    let mut jobs: Vec<Job> = Vec::new();
     for family in binary() {
-        let slow = ["atan2", "pow"].contains(&family.name);
-        take(run_binary(&family, if slow { count / 50 } else { count }, seed));
+        let count = share_of(count, !["atan2", "pow"].contains(&family.name));
+        jobs.push(Box::new(move || run_binary(&family, count, seed)));
     }
     for family in unary() {
         let fast = ["sqr", "sqrt", "recip", "abs", "powi 3", "powi 8", "powi -3"].contains(&family.name);
-        take(run_unary(&family, if fast { count } else { count / 50 }, seed));
+        jobs.push(Box::new(move || run_unary(&family, share_of(count, fast), seed)));
     }
-    take(run_vectors(count, seed));
-    let _ = pi();
-    passed
+    jobs.push(Box::new(move || run_vectors(count, seed)));
+    jobs
+}
+
+fn share_of(count: u64, fast: bool) -> u64 {
+    if fast { count } else { count.div_ceil(50) }
 }

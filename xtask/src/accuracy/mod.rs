@@ -1,5 +1,6 @@
 //! `cargo xtask accuracy`: random families against slow oracles. Any false negative fails the run.
 mod feature;
+mod interval;
 mod mesh;
 mod reference;
 mod statics;
@@ -20,6 +21,9 @@ pub(crate) struct Options {
     /// Go on with other seeds for this long.
     #[arg(long)]
     minutes: Option<f64>,
+    /// Only families whose name contains this, as in `cargo xtask accuracy interval`.
+    #[arg(value_name = "FAMILY")]
+    family: Option<String>,
     /// Only families whose name contains this.
     #[arg(long)]
     only: Option<String>,
@@ -52,11 +56,12 @@ pub(crate) struct Task {
 type Family = (&'static str, usize, fn(&Task) -> Outcome);
 
 /// Name, the share of the count that a family takes (one in so many), and itself.
-const FAMILIES: [Family; 7] = [
+const FAMILIES: [Family; 8] = [
     ("feature: rigid vertex/face", 10, feature::rigid_vertex_face),
     ("feature: rigid edge/edge", 10, feature::rigid_edge_edge),
     ("feature: straight vertex/face", 10, feature::straight_vertex_face),
     ("feature: straight edge/edge", 10, feature::straight_edge_edge),
+    ("interval: every operation", 1, interval::run),
     ("mesh: engine on random small scenes", 1, mesh::run),
     ("mesh: reference method and engine", 20, reference::run),
     ("mesh: collide and distance at rest", 2, statics::run),
@@ -70,7 +75,8 @@ pub(crate) fn run(options: &Options) -> TaskResult {
     let (mut negatives, mut alarms, mut rounds) = (0, 0, 0);
     loop {
         for (name, share, family) in FAMILIES {
-            if options.only.as_ref().is_some_and(|only| !name.contains(only.as_str())) {
+            let wanted = options.only.iter().chain(&options.family).all(|only| name.contains(only.as_str()));
+            if !wanted {
                 continue;
             }
             let start = Instant::now();
