@@ -1,4 +1,4 @@
-//! Rigorous, fast, portable interval arithmetic: outward-rounded in every operation, no_std.
+#![doc = include_str!("../README.md")]
 #![no_std]
 extern crate alloc;
 #[cfg(any(test, feature = "std"))]
