@@ -25,7 +25,9 @@ pub enum StartState {
 pub struct Contact {
     /// Certified free until here.
     pub time_lo: f64,
-    /// By here the bodies were within `tolerance` of each other.
+    /// By here the bodies were within `tolerance` (and `min_separation`) of each other. Equal to `time_lo` when that
+    /// could not be shown: a pass that grazes at a distance between one tolerance and `separation`, and modes other
+    /// than accurate.
     pub time_hi: f64,
     /// Separation left at `time_lo`: a distance in (0, 3.3 `tolerance`], 0 when the bodies meet at the start.
     pub separation: f64,

@@ -1,5 +1,6 @@
 //! What a query is asked and what it answers.
 
+mod any_motion;
 mod cache;
 mod collide;
 mod contact;

@@ -17,9 +17,12 @@ pub enum Mode {
     /// The time of contact to the tolerance.
     #[default]
     Accurate,
-    /// Stop at leaf boxes: a certified early time, earlier than the true one by a bounded distance of motion.
+    /// Bounded error: stop at the first pair of triangles that come as close as their own size. `time_lo` is
+    /// certified as always; the distance then left is at most the `separation` of the answer, which is at most the sum
+    /// of the radii of the two triangles' boxes. Bodies that pass each other so closely count as in contact.
     Capoeira,
-    /// Only whether there is a contact; the reported time is any time of contact.
+    /// Only whether there is a contact: the answer may be any time of contact, and nothing is promised about the time
+    /// before it.
     Exists,
 }
 

@@ -5,8 +5,8 @@ use crate::{Contact, MeshTree, StartState};
 use d2m_feature::FeaturePair;
 use glam::DVec3;
 
-/// The contact with all its data.
-pub(super) fn contact(scene: &Scene<'_>, found: &Found) -> Contact {
+/// The contact with all its data; `bracket`: look for a time by which the tolerance was reached.
+pub(super) fn contact(scene: &Scene<'_>, found: &Found, bracket: bool) -> Contact {
     let time = crate::search::time_from(found.start, found.offset).max(scene.window.start());
     let motion = RelativeMotion::new((scene.a.0, &scene.a.1), (scene.b.0, &scene.b.1), found.start);
     let frame = motion.frame(time - found.start);
@@ -19,12 +19,40 @@ pub(super) fn contact(scene: &Scene<'_>, found: &Found) -> Contact {
         (true, true) => StartState::Overlapping,
     };
     let separation = if start == StartState::Overlapping { 0.0 } else { near.square.sqrt() };
-    describe(
-        scene,
-        (&motion, &frame),
-        time,
-        &Witness { near, a, b, triangles: found.triangles, separation, start },
-    )
+    let witness = Witness { near, a, b, triangles: found.triangles, separation, start };
+    let mut contact = describe(scene, (&motion, &frame), time, &witness);
+    if bracket && start == StartState::Apart {
+        contact.time_hi = reached_by(scene, &motion, found.triangles, &contact);
+    }
+    contact
+}
+
+/// A time by which the two triangles were certainly within the level; `time_lo` when a few steps of Newton's method
+/// along the normal find none.
+fn reached_by(scene: &Scene<'_>, motion: &RelativeMotion, triangles: [u32; 2], contact: &Contact) -> f64 {
+    let (mut time, mut distance, mut closing) = (contact.time_lo, contact.separation, contact.closing_speed);
+    // The points are on the triangles up to the error: a true upper bound of the distance.
+    let level = scene.pair.level - scene.pair.error;
+    let target = scene.pair.level - 0.5 * scene.tolerance;
+    let (a, b) = (corners(scene.a.0, triangles[0]), corners(scene.b.0, triangles[1]));
+    for _ in 0..8 {
+        if distance <= level {
+            return time;
+        }
+        if closing.is_nan() || closing <= 0.0 {
+            break;
+        }
+        time = (time + (distance - target) / closing).max(time.next_up());
+        // Frames hold for a little more than the longest window.
+        if time.is_nan() || time > scene.window.end() || time > motion.start + 1.1 * scene.longest {
+            break;
+        }
+        let frame = motion.frame(time - motion.start);
+        let near = closest(&place_a(&frame, &a), &b);
+        distance = near.square.sqrt();
+        closing = frame.closing_speed(near.points, near.direction.normalize_or_zero());
+    }
+    contact.time_lo
 }
 
 struct Witness {
@@ -50,8 +78,6 @@ fn describe(
     let world = |p: DVec3| base + turn(p + (body.0.center() - body.1.at()));
     let normal = near.direction.normalize_or(DVec3::X);
     let [pa, pb] = near.points;
-    let rate = frame.velocity.to_vec() + frame.omega_a.to_vec().cross(pa - frame.apart.to_vec())
-        - frame.omega_b.to_vec().cross(pb);
     Contact {
         time_lo: time,
         time_hi: time,
@@ -65,7 +91,7 @@ fn describe(
         triangle_b: triangles[1],
         barycentric_a: barycentric(a, pa, near.places[0]),
         barycentric_b: barycentric(b, pb, near.places[1]),
-        closing_speed: rate.dot(normal),
+        closing_speed: frame.closing_speed(near.points, normal),
         start: *start,
     }
 }

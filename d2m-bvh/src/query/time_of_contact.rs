@@ -1,11 +1,14 @@
 //! The query for the first contact of two bodies.
 
 use super::containment::contains_point;
+use super::distance::distance;
 use super::report::contact;
 use crate::search::{Outcome, Quad, RelativeMotion, Scene, Scratch, first_contact};
-use crate::{MeshTree, Moving, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window};
+use crate::{
+    MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window,
+};
 use core::cell::RefCell;
-use d2m_motion::LinearMotion;
+use d2m_motion::{LinearMotion, Pose};
 use glam::DVec3;
 
 thread_local! {
@@ -15,12 +18,15 @@ thread_local! {
 
 /// First time in `window` at which the two bodies touch.
 ///
+/// Constant twists (linear and screw motions) take the fast search; any other motion takes conservative advancement on
+/// certified static distances, which is slower by orders of magnitude and always [`Mode::Accurate`](crate::Mode).
+///
 /// Promise: never a missed contact, never a late one. See [`TimeOfContact`] and [`Contact`](crate::Contact) for what
 /// each answer certifies, and [`QueryOptions`] for what can be asked.
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, Moving, QueryOptions, TriMesh, Window, time_of_contact};
-/// use d2m_motion::LinearMotion;
+/// use d2m_motion::{LinearMotion, Pose};
 /// use glam::{DQuat, DVec3};
 /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
@@ -52,7 +58,7 @@ pub fn time_of_contact(
         }
     }
     let (Some(motion_a), Some(motion_b)) = (a.motion.constant_twist(), b.motion.constant_twist()) else {
-        return Ok(TimeOfContact::Undecided { clear_until: window.start() });
+        return super::any_motion::time_of_contact([a, b], window, options);
     };
     let scene = Scene::new((a.body, motion_a), (b.body, motion_b), window, options);
     if !(scene.size.is_finite() && scene.size < 1e150) {
@@ -60,7 +66,7 @@ pub fn time_of_contact(
         return Err(QueryError::BadMotion { body: usize::from(speed(&motion_b) > speed(&motion_a)) });
     }
     let mut scratch = SCRATCH.take().unwrap_or_else(|| Box::new(Scratch::new()));
-    let outcome = first_contact(&scene, &options.budget, &mut scratch);
+    let outcome = first_contact(&scene, options, &mut scratch);
     SCRATCH.set(Some(scratch));
     let start_decided = match outcome {
         Outcome::Found(found) => found.offset > 0.0 || found.start > window.start(),
@@ -76,7 +82,13 @@ pub fn time_of_contact(
     Ok(match outcome {
         Outcome::Separated => TimeOfContact::Separated,
         Outcome::OutOfBudget(until) => TimeOfContact::Undecided { clear_until: until },
-        Outcome::Found(found) => TimeOfContact::Contact(contact(&scene, &found)),
+        Outcome::Found(found) => {
+            let mut contact = contact(&scene, &found, options.mode == Mode::Accurate);
+            if contact.start == StartState::Touching && crosses_at_start(&scene)? {
+                (contact.start, contact.separation) = (StartState::Overlapping, 0.0);
+            }
+            TimeOfContact::Contact(contact)
+        }
     })
 }
 
@@ -94,6 +106,15 @@ fn check(options: &QueryOptions) -> Result<(), QueryError> {
     }
     let value = options.min_separation;
     if value.is_finite() && value >= 0.0 { Ok(()) } else { Err(QueryError::BadMinSeparation { value }) }
+}
+
+/// Do the surfaces cross at the start (up to rounding)? The search stops at the first pair that is near.
+fn crosses_at_start(scene: &Scene<'_>) -> Result<bool, QueryError> {
+    let posed = [&scene.a, &scene.b].map(|(tree, motion)| {
+        let m = motion.rebase(scene.window.start());
+        Posed::new(tree, Pose { rotation: m.orientation(), translation: m.position(), at: m.at() })
+    });
+    Ok(distance(posed[0], posed[1], Solid::Surface)?.state == StartState::Overlapping)
 }
 
 /// The answer when one body is inside the other at the start; the surfaces are known not to cross then.

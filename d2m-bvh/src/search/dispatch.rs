@@ -3,7 +3,7 @@
 use super::lanes::Portable;
 use super::scene::{Scene, Scratch};
 use super::window::{Outcome, Search};
-use crate::Budget;
+use crate::QueryOptions;
 
 /// Instruction sets that the search is compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,8 +34,8 @@ impl Isa {
 }
 
 /// Searches the window of the scene for the first contact.
-pub(crate) fn first_contact(scene: &Scene<'_>, budget: &Budget, scratch: &mut Scratch) -> Outcome {
-    first_contact_on(Isa::best(), scene, budget, scratch)
+pub(crate) fn first_contact(scene: &Scene<'_>, options: &QueryOptions, scratch: &mut Scratch) -> Outcome {
+    first_contact_on(Isa::best(), scene, options, scratch)
 }
 
 /// The same with a given instruction set, which the processor must have.
@@ -43,28 +43,28 @@ pub(crate) fn first_contact(scene: &Scene<'_>, budget: &Budget, scratch: &mut Sc
 pub(crate) fn first_contact_on(
     isa: Isa,
     scene: &Scene<'_>,
-    budget: &Budget,
+    options: &QueryOptions,
     scratch: &mut Scratch,
 ) -> Outcome {
     match isa {
-        Isa::Portable => Search::new(scene, budget, scratch).run::<Portable>(),
+        Isa::Portable => Search::new(scene, options, scratch).run::<Portable>(),
         // SAFETY: `Isa::best` found the feature on this processor (tests ask only for sets that it names).
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 => unsafe { avx2(scene, budget, scratch) },
+        Isa::Avx2 => unsafe { avx2(scene, options, scratch) },
         // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx512 => unsafe { avx512(scene, budget, scratch) },
+        Isa::Avx512 => unsafe { avx512(scene, options, scratch) },
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-fn avx2(scene: &Scene<'_>, budget: &Budget, scratch: &mut Scratch) -> Outcome {
-    Search::new(scene, budget, scratch).run::<super::lanes::Avx>()
+fn avx2(scene: &Scene<'_>, options: &QueryOptions, scratch: &mut Scratch) -> Outcome {
+    Search::new(scene, options, scratch).run::<super::lanes::Avx>()
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,avx512f,avx512vl,bmi1,bmi2,lzcnt,popcnt")]
-fn avx512(scene: &Scene<'_>, budget: &Budget, scratch: &mut Scratch) -> Outcome {
-    Search::new(scene, budget, scratch).run::<super::lanes::Avx>()
+fn avx512(scene: &Scene<'_>, options: &QueryOptions, scratch: &mut Scratch) -> Outcome {
+    Search::new(scene, options, scratch).run::<super::lanes::Avx>()
 }

@@ -91,6 +91,15 @@ pub(crate) struct Frame {
     pub(crate) omega_b: Quad,
 }
 
+impl Frame {
+    /// Speed at which two points, of A and of B, come together along a unit direction from A to B.
+    pub(crate) fn closing_speed(&self, points: [DVec3; 2], normal: DVec3) -> f64 {
+        let rate = self.velocity.to_vec() + self.omega_a.to_vec().cross(points[0] - self.apart.to_vec())
+            - self.omega_b.to_vec().cross(points[1]);
+        rate.dot(normal)
+    }
+}
+
 impl RelativeMotion {
     pub(crate) fn new(a: (&MeshTree, &LinearMotion), b: (&MeshTree, &LinearMotion), start: f64) -> Self {
         Self {

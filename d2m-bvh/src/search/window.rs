@@ -1,13 +1,14 @@
 //! The search itself: windows of limited rotation, and best first inside each.
 
+use super::closest::closest;
 use super::frame::{Frame, RelativeMotion};
 use super::lanes::Lanes;
 use super::node_test::{NodeFrame, NodeScale, Placed, entry_times};
 use super::queue::Item;
 use super::scene::{Scene, Scratch};
-use super::triangle_pair::{Look, look};
+use super::triangle_pair::{Look, look, place_a};
 use crate::tree::node::{Below, WIDTH};
-use crate::{Budget, MeshTree};
+use crate::{Budget, MeshTree, Mode, QueryOptions};
 use glam::DVec3;
 use std::time::Instant;
 
@@ -41,6 +42,7 @@ pub(crate) struct Search<'s> {
     scene: &'s Scene<'s>,
 
     scratch: &'s mut Scratch,
+    mode: Mode,
     node_tests: u64,
     most_tests: u64,
     deadline: Option<Instant>,
@@ -65,12 +67,14 @@ struct State {
 }
 
 impl<'s> Search<'s> {
-    pub(crate) fn new(scene: &'s Scene<'s>, budget: &'s Budget, scratch: &'s mut Scratch) -> Self {
+    pub(crate) fn new(scene: &'s Scene<'s>, options: &QueryOptions, scratch: &'s mut Scratch) -> Self {
+        let budget = &options.budget;
         scratch.counts = super::scene::SearchCounts::default();
         Self {
             scene,
 
             scratch,
+            mode: options.mode,
             node_tests: 0,
             most_tests: budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS),
             deadline: budget.wall_clock.and_then(|time| Instant::now().checked_add(time)),
@@ -218,6 +222,9 @@ impl<'s> Search<'s> {
     fn advance(&mut self, state: &mut State, item: Item, triangles: [u32; 2]) {
         let a = corners(self.scene.a.0, triangles[0]);
         let b = corners(self.scene.b.0, triangles[1]);
+        if self.mode == Mode::Capoeira && self.stop_early(state, item, &a, &b, triangles) {
+            return;
+        }
         let mut frame = state.frame;
         // Proven apart until here.
         let mut known = f64::from(item.key) * state.step;
@@ -245,6 +252,12 @@ impl<'s> Search<'s> {
                         frame = state.motion.frame(known);
                         continue;
                     }
+                    if self.mode == Mode::Exists && known < state.limit_offset {
+                        state.found =
+                            Some(Found { start: state.motion.start, offset: known, triangles, crossing });
+                        state.end();
+                        return;
+                    }
                     if known < state.limit_offset {
                         state.limit_offset = known;
                         state.limit = ((known / state.step) as u32 + 1).min(state.limit);
@@ -265,6 +278,42 @@ impl<'s> Search<'s> {
                 return;
             }
         }
+    }
+}
+
+impl State {
+    /// Nothing matters any more.
+    fn end(&mut self) {
+        self.limit = 0;
+        self.limit_offset = 0.0;
+    }
+}
+
+impl Search<'_> {
+    /// Capoeira: takes the pair as the answer when the triangles are as close as their boxes are large. What is
+    /// certified is the time of the frame: no live key is earlier.
+    fn stop_early(
+        &self,
+        state: &mut State,
+        item: Item,
+        a: &[DVec3; 3],
+        b: &[DVec3; 3],
+        triangles: [u32; 2],
+    ) -> bool {
+        let radius = |tree: &MeshTree, index: u32| {
+            f64::from(tree.nodes[index as usize / WIDTH].radius[index as usize % WIDTH]) * tree.unit
+        };
+        let size = radius(self.scene.a.0, item.a) + radius(self.scene.b.0, item.b);
+        let near = closest(&place_a(&state.frame, a), b);
+        let close = near.square <= size * size && (state.frame.offset > 0.0 || near.square > 0.0);
+        // At the very start the accurate look decides whether the bodies touch.
+        if close && (state.frame_key > 0 || state.motion.start > self.scene.window.start()) {
+            let offset = state.frame.offset;
+            state.found = Some(Found { start: state.motion.start, offset, triangles, crossing: false });
+            state.end();
+            return true;
+        }
+        false
     }
 }
 
