@@ -210,15 +210,21 @@ impl LinearMotion {
     }
 }
 
+/// Radians from which a pose is worth more than double precision: the rounding of the angle grows with it.
+const FEW_TURNS: f64 = 64.0;
+/// Radians up to which the extended sine and cosine are good: 2³⁰.
+const MANY_TURNS: f64 = 1_073_741_824.0;
+
 impl RigidMotion for LinearMotion {
     fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
         let s = t - self.reference_time;
-        let turn = crate::rotation::quat_of(self.angular_velocity, s);
-        let pose = Pose {
-            rotation: (turn * self.orientation.normalize()).normalize(),
-            translation: self.position + self.linear_velocity * s,
-            at: self.at,
+        let angle = self.angular_velocity.length() * s.abs();
+        let rotation = if angle > FEW_TURNS && angle < MANY_TURNS {
+            self.rotation_dd(t).to_quat()
+        } else {
+            (crate::rotation::quat_of(self.angular_velocity, s) * self.orientation.normalize()).normalize()
         };
+        let pose = Pose { rotation, translation: self.position + self.linear_velocity * s, at: self.at };
         (pose, Twist { linear: self.linear_velocity, angular: self.angular_velocity })
     }
 

@@ -1,6 +1,6 @@
 //! Rotations about a fixed axis: a quaternion in doubles, a matrix in double-double.
 use crate::double_double::{DoubleDouble, two_product};
-use crate::sin_cos::sin_cos;
+use crate::sin_cos::{LARGEST_ANGLE, sin_cos};
 use glam::{DMat3, DQuat, DVec3};
 
 /// exp([ω]s) as a unit quaternion, plain floating point with the project's own sine.
@@ -9,7 +9,10 @@ pub(crate) fn quat_of(omega: DVec3, s: f64) -> DQuat {
     if speed == 0.0 || s == 0.0 {
         return DQuat::IDENTITY;
     }
-    let (sin, cos) = sin_cos(0.5 * speed * s);
+    // Beyond the kernel's range the angle loses whole turns first: an estimate, but a finite one.
+    let half = 0.5 * speed * s;
+    let half = if half.abs() > LARGEST_ANGLE { half % core::f64::consts::TAU } else { half };
+    let (sin, cos) = sin_cos(half);
     let axis = omega * (sin / speed);
     DQuat::from_xyzw(axis.x, axis.y, axis.z, cos)
 }

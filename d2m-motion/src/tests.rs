@@ -225,3 +225,16 @@ fn serde_forms_are_checked() {
     assert_eq!(path.motions().len(), 1);
     assert!(serde_json::from_str::<Keyframes>(r#"{"times":[1,0],"spans":[{}]}"#).is_err());
 }
+
+#[test]
+fn poses_at_far_times_are_finite_and_near_ones_exact() {
+    let motion = LinearMotion::REST.with_angular_velocity(DVec3::new(0.3, -1.1, 2.0));
+    for t in [1e2, 1e5, 947_324.7, 1e8, 1e12, 1e30, -1e57] {
+        let (pose, _) = motion.pose_and_twist(t);
+        assert!(pose.rotation.is_finite() && (pose.rotation.length() - 1.0).abs() < 1e-12, "{t}: {pose:?}");
+    }
+    // 100 000 full turns of a quarter turn a unit of time: back where it was, up to what π/2 as a double misses.
+    let quarter = LinearMotion::REST.with_angular_velocity(DVec3::Z * core::f64::consts::FRAC_PI_2);
+    let (pose, _) = quarter.pose_and_twist(400_000.0);
+    assert!((pose.transform_vector(DVec3::X) - DVec3::X).length() < 1e-10, "{pose:?}");
+}

@@ -60,6 +60,11 @@ pub fn time_of_contact(
     let (Some(motion_a), Some(motion_b)) = (a.motion.constant_twist(), b.motion.constant_twist()) else {
         return super::any_motion::time_of_contact([a, b], window, options);
     };
+    for (body, motion) in [&motion_a, &motion_b].into_iter().enumerate() {
+        if !angle_is_bounded(motion, window) {
+            return Err(QueryError::BadMotion { body });
+        }
+    }
     let scene = Scene::new((a.body, motion_a), (b.body, motion_b), window, options);
     if !(scene.size.is_finite() && scene.size < 1e150) {
         let speed = |m: &LinearMotion| m.linear_velocity().length() + m.position().length();
@@ -96,6 +101,14 @@ pub fn time_of_contact(
 #[doc(hidden)]
 pub fn last_search_counts() -> crate::SearchCounts {
     SCRATCH.with_borrow(|scratch| scratch.as_ref().map(|s| s.counts).unwrap_or_default())
+}
+
+/// Does the rotation between the reference time and the window stay below 2⁴⁰ radians? The poses of the search are
+/// proven for less than 2⁵⁰.
+fn angle_is_bounded(motion: &LinearMotion, window: Window) -> bool {
+    let elapsed = |t: f64| (t - motion.reference_time()).abs();
+    let longest = elapsed(window.start()).max(elapsed(window.end()));
+    motion.angular_velocity().length() * longest < 1_099_511_627_776.0
 }
 
 fn check(options: &QueryOptions) -> Result<(), QueryError> {
