@@ -6,6 +6,7 @@
 //!
 //! **Invariant:** this crate knows single features and pairs of them, no meshes and no trees.
 
+mod batch;
 mod closest;
 mod contact;
 mod details;

@@ -43,6 +43,12 @@ pub struct PlacedTriangle {
     planes: TrianglePlanes,
 }
 
+impl PlacedTriangle {
+    pub(crate) const fn planes(&self) -> &TrianglePlanes {
+        &self.planes
+    }
+}
+
 impl PairMotion {
     /// Motion of body A and of body B over `[t0, t1]`.
     ///
@@ -53,6 +59,10 @@ impl PairMotion {
         let forward = RelativeMotion::new(a, b, t0, t1);
         let backward = forward.reversed();
         Self { forward: FramedMotion::new(forward), backward: FramedMotion::new(backward), motions: [*a, *b] }
+    }
+
+    pub(crate) const fn forward(&self) -> &FramedMotion {
+        &self.forward
     }
 
     /// The motions of A and B.

@@ -79,10 +79,19 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
         let remainder = widened(w.remainder, self.separation);
         let wide = remainder.bound(h);
 
-        // Spheres about both edges, along the line of centres.
+        // Along the line of the midpoints: all four corners w ± e ± d on one side.
         let distance = w.p.length();
-        let away = along(&w, w.p);
-        if away.bound_below(whole) > distance * (half_a + half_b + wide) * UP {
+        let (away, reach_a) = (along(&w, w.p), along(&e, w.p));
+        let sum = |a: &Quadratic, b: &Quadratic, sign: f64| Quadratic {
+            value: a.value + sign * b.value,
+            slope: a.slope + sign * b.slope,
+            curvature: a.curvature + sign * b.curvature,
+        };
+        let wide_e = e.remainder.bound(h);
+        let needed = (w.p.dot(d).abs() + distance * (wide + wide_e)) * UP;
+        if sum(&away, &reach_a, 1.0).bound_below(whole) > needed
+            && sum(&away, &reach_a, -1.0).bound_below(whole) > needed
+        {
             return Verdict::Clear;
         }
 
@@ -109,13 +118,12 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
         // At least |u|, and of the size of its rounding when k is all rounding.
         let u_length = half_b * k_length * UP;
         let (w_u, e_u) = (along(&w, u), along(&e, u));
-        let sum = |a: &Quadratic, b: &Quadratic, sign: f64| Quadratic {
-            value: a.value + sign * b.value,
-            slope: a.slope + sign * b.slope,
-            curvature: a.curvature + sign * b.curvature,
-        };
         let (first_a, second_a) = (sum(&w_u, &e_u, 1.0), sum(&w_u, &e_u, -1.0));
         let margin_a = |s: f64| u_length * (remainder.bound(s) + e.remainder.bound(s)) * UP;
+        // The first exclusion alone decides most pieces.
+        let Some(beside) = first_a.clip_shared_sign(&second_a, margin_a(reach(meeting)), meeting) else {
+            return Verdict::Clear;
+        };
         let js = es.map(|e| e.cross(k));
         let (w_j, cubic_j, quartic_j) = product(ws, js);
         let (first_b, second_b) = (sum(&w_j, &e_u, 1.0), sum(&w_j, &e_u, -1.0));
@@ -124,13 +132,13 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
             ((cubic_j + quartic_j * s) * s * s * s + k_length * product + u_length * e.remainder.bound(s))
                 * UP
         };
+        let Some(inside) = first_b.clip_shared_sign(&second_b, margin_b(reach(beside)), beside) else {
+            return Verdict::Clear;
+        };
         let overlap = |part: Piece| {
             let s = reach(part);
             let part = first_a.clip_shared_sign(&second_a, margin_a(s), part)?;
             first_b.clip_shared_sign(&second_b, margin_b(s), part)
-        };
-        let Some(inside) = overlap(meeting) else {
-            return Verdict::Clear;
         };
         // The same jets again with the remainder of the contracted piece.
         let margin = margin_f(reach(inside));

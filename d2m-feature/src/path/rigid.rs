@@ -19,6 +19,11 @@ impl FramedMotion {
         let frame = motion.frame(middle);
         Self { motion, middle, frame }
     }
+
+    /// The frame in the middle of the window.
+    pub(crate) fn middle_frame(&self) -> &Frame {
+        &self.frame
+    }
 }
 
 /// A point and a direction of A with a constant relative twist.

@@ -16,6 +16,15 @@ pub struct Frame {
 }
 
 impl Frame {
+    /// c_k and M_k for k = 0, 1, 2: `q⁽ᵏ⁾ = c_k + M_k r`.
+    ///
+    /// # Panics
+    /// If `order` is above 2.
+    #[inline(always)]
+    pub fn affine(&self, order: usize) -> (DVec3, &DMat3) {
+        (self.shift[order], &self.turn[order])
+    }
+
     /// Jet of the point of A at `r` ([`RelativeMotion::place_a`]) with the remainder of its class of points.
     #[inline(always)]
     pub fn point_jet(&self, r: DVec3, remainder: Remainder) -> PathJet {
