@@ -145,20 +145,15 @@ fn sphere_pairs_never_lose_an_overlap() {
 /// Erratum 1 at Algorithm 5, line 10: s̈/2 given to a θ that halves again loses the overlap.
 #[test]
 fn half_twice_loses_an_overlap() {
-    // The mover's sphere swings on a circle around the origin towards the observer's: s starts flat and falls.
+    // The mover's sphere swings on a circle, starting opposite to the observer's, where ṡ = 0: s = 2 + 2 cos t − r²,
+    // s̈ ≥ −2. They meet at t = 1/5.
     let mover = LinearMotion::REST.with_angular_velocity(DVec3::Z);
-    let rest = LinearMotion::REST;
-    let span = Interval::new(0.0, 1.0);
+    let span = Interval::new(0.0, 0.25);
+    let reach = (2.0 + 2.0 * 0.2f64.cos()).sqrt() - 0.5;
     let a = BodyOverDomain::new(&mover, span, DVec3::ZERO).sphere(DVec3::X, 0.5);
-    // In front, so that the first derivative at the start vanishes: distance² from (−3, 0, 0)… opposite side.
-    let b = BodyOverDomain::new(&rest, span, DVec3::ZERO).sphere(DVec3::new(-1.0, 0.0, 0.0), 1.375);
-    let hull = test_sphere_pair(&a, &b, 0.0, span).expect("they meet at about 0.7");
-    let distance = |t: f64| (DVec3::new(t.cos() + 1.0, t.sin(), 0.0)).length() - 1.875;
-    let meets = (0..=1000).map(|k| k as f64 / 1000.0).find(|t| distance(*t) <= 0.0).unwrap();
-    assert!(hull.contains(meets));
-    // The literal lower parabola with a quarter of s̈ instead of a half: s0 + s̈/4 x², s̈ ≥ its lower end.
-    let s0 = 4.0 - 1.875f64.powi(2);
-    let second = -2.0; // s = 2 + 2 cos t − r²: s̈ = −2 cos t ≥ −2
-    let literal = |x: f64| s0 + 0.25 * second * x * x;
-    assert!(literal(meets) > 0.0, "the literal text would have been right");
+    let b = BodyOverDomain::new(&LinearMotion::REST, span, DVec3::ZERO).sphere(-DVec3::X, reach);
+    let hull = test_sphere_pair(&a, &b, 0.0, span).expect("they meet at 1/5");
+    assert!(hull.lo() <= 0.2 + 1e-12 && hull.hi() == span.hi());
+    let literal = |x: f64| 4.0 - (reach + 0.5).powi(2) - 0.25 * 2.0 * x * x;
+    assert!(literal(span.hi()) > 0.0, "the literal text would have been right");
 }

@@ -216,6 +216,32 @@ fn near_is_never_lost() {
     assert!(b.lo() >= 0.69 && b.lo() <= 0.75 && b.hi() <= 0.75 + 1e-9);
 }
 
+/// A time within the tolerance is the answer where everything before it is then excluded: what lay behind it was dropped.
+#[test]
+fn near_is_the_bracket_if_the_rest_is_excluded() {
+    struct Once(bool);
+    impl IntervalFunction for Once {
+        fn enclose(&mut self, _: Interval) -> Interval {
+            Interval::new(-1.0, 1.0)
+        }
+    }
+    impl SecondOrder for Once {
+        fn inclusion_function(&mut self, t: Interval) -> InclusionFunction {
+            InclusionFunction::new(Interval::new(-1.0, 1.0), Interval::point(0.0), Interval::point(0.0), t)
+        }
+    }
+    impl Gamma for Once {
+        fn may_touch(&mut self, _: Interval) -> bool {
+            true
+        }
+        fn settle(&mut self, _: Interval) -> Settled {
+            if core::mem::replace(&mut self.0, false) { Settled::Near(0.75) } else { Settled::Excluded }
+        }
+    }
+    let b = bracket(hrfoi(&mut Once(true), Interval::new(0.0, 1.0), SearchLimits::new(1e-9)));
+    assert_eq!((b.lo(), b.hi()), (0.75, 0.75));
+}
+
 /// The work is a handful of evaluations on a simple crossing: shortening converges, bisection does not.
 #[test]
 fn simple_crossings_take_few_evaluations() {
