@@ -88,7 +88,7 @@ fn reject(
     separation: f64,
 ) -> [bool; 4] {
     let motion = &framed.motion;
-    let planes = triangles.map(|triangle| triangle.planes());
+    let planes = triangles.map(PlacedTriangle::planes);
     let r = Four3::gather(|i| motion.place_a(points[i]));
     let radius = r.dot(&r).iter().fold(0.0, |m: f64, &s| if s > m || s.is_nan() { s } else { m }).sqrt() * UP;
     let extent =
