@@ -31,3 +31,7 @@ pub use pair_motion::{EnclosedPairMotion, PairMotion, PlacedTriangle};
 pub use straight_path::StraightPaths;
 pub use triangle_distance::{TriangleDistance, TriangleFeature, triangle_distance};
 pub use triangle_intersection::triangles_intersect;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -31,5 +31,9 @@ pub use rigid_motion::RigidMotion;
 pub use screw::ScrewMotion;
 pub use twist::{IntervalTwist, Twist};
 
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;
+
 #[cfg(test)]
 mod tests;

@@ -18,3 +18,7 @@ pub use isolator::{
     isolate,
 };
 pub use parabola::Parabola;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;
