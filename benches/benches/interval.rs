@@ -73,9 +73,7 @@ fn batch(
     p: IntervalVec3X4,
     edges: [IntervalVec3X4; 2],
 ) -> (IntervalX4, IntervalX4) {
-    let (sin, cos) = angle.sin_cos();
-    let versine = IntervalX4::splat(Interval::ONE) - cos;
-    let q = p.scaled(cos) + axis.cross(p).scaled(sin) + axis.scaled(axis.dot(p) * versine);
+    let q = p.rotated(axis, angle);
     (q.dot(edges[0].cross(edges[1])), q.norm_squared())
 }
 

@@ -9,8 +9,9 @@ const ENDS: [f64; 9] =
 /// Every interval with ends from the list, and the empty one.
 fn all() -> std::vec::Vec<Interval> {
     let mut out = std::vec![Interval::EMPTY];
-    for lo in ENDS {
-        out.extend(ENDS.iter().filter_map(|&hi| Interval::try_new(lo, hi).ok()));
+    let ends = if cfg!(miri) { &ENDS[3..6] } else { &ENDS[..] };
+    for &lo in ends {
+        out.extend(ends.iter().filter_map(|&hi| Interval::try_new(lo, hi).ok()));
     }
     out
 }
@@ -90,6 +91,8 @@ fn lanes_equal_single_intervals() {
                 assert!(same(a.sqr().lane(l), x[l].sqr()));
                 assert!(same(a.sqrt().lane(l), x[l].sqrt()));
                 assert!(same(a.hull(b).lane(l), x[l].hull(y[l])));
+                let ((s, c), (t, d)) = (a.sin_cos(), x[l].sin_cos());
+                assert!(same(s.lane(l), t) && same(c.lane(l), d), "{:?}", x[l]);
                 assert_eq!(a.contains_zero() >> l & 1 == 1, x[l].contains_zero());
             }
         }
@@ -103,6 +106,16 @@ fn lanes_equal_single_intervals() {
         assert!(same(b.norm_squared().lane(l), w[l].norm_squared()));
         assert_eq!((a + b).lane(l), v[l] + w[l]);
         assert_eq!(a.scaled(b.x).lane(l), v[l] * w[l].x);
+        assert_eq!(a.rotated(b, b.x).lane(l), v[l].rotated(w[l], w[l].x));
+    }
+    for i in 0..if cfg!(miri) { 20 } else { 2000 } {
+        let f = 0.01 * f64::from(i) - 7.0;
+        let x = [0.0, 0.3, 1.7, 4.0].map(|w| Interval::new(f * (1.0 + w), f * (1.0 + w) + w));
+        let (s, c) = IntervalX4::new(x).sin_cos();
+        for (l, x) in x.into_iter().enumerate() {
+            let (t, d) = x.sin_cos();
+            assert!(same(s.lane(l), t) && same(c.lane(l), d), "{x:?} {:?}", s.lane(l));
+        }
     }
 }
 

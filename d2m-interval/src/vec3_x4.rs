@@ -2,7 +2,7 @@
 use core::ops::{Add, Sub};
 
 use crate::{
-    IntervalVec3, IntervalX4,
+    Interval, IntervalVec3, IntervalX4,
     round::{THREE_PRODUCTS, TWO_PRODUCTS},
     simd::F64x4,
     x4::{finite, pad},
@@ -90,6 +90,17 @@ impl IntervalVec3X4 {
             minor(self.z, o.x, self.x, o.z),
             minor(self.x, o.y, self.y, o.x),
         )
+    }
+
+    /// `self` turned by `angle` about the unit vectors `axis`, as [`IntervalVec3::rotated`].
+    #[inline(always)]
+    pub fn rotated(self, axis: Self, angle: IntervalX4) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        let across = axis.cross(self);
+        let along = axis.dot(self) * (IntervalX4::splat(Interval::ONE) - cos);
+        let factors = Self::new(cos, sin, along);
+        let row = |v, c, k| factors.dot(Self::new(v, c, k));
+        Self::new(row(self.x, across.x, axis.x), row(self.y, across.y, axis.y), row(self.z, across.z, axis.z))
     }
 
     /// `|self|²`; never below zero.

@@ -174,12 +174,6 @@ impl IntervalX4 {
         let (l, g) = (zero.max(self.neg_lo.neg()).sqrt(), zero.max(self.hi).sqrt());
         Self { neg_lo: l.neg().plus(pad(l, HALF_ULP)).min(zero), hi: g.plus(pad(g, HALF_ULP)) }
     }
-
-    /// `(sin x, cos x)`, lane by lane.
-    pub fn sin_cos(self) -> (Self, Self) {
-        let pairs = self.lanes().map(Interval::sin_cos);
-        (Self::new(pairs.map(|p| p.0)), Self::new(pairs.map(|p| p.1)))
-    }
 }
 
 impl core::fmt::Debug for IntervalX4 {

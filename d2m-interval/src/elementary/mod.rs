@@ -13,6 +13,7 @@ mod reduce;
 mod rounding_functions;
 mod sinc;
 mod trig;
+mod trig_x4;
 
 use crate::Interval;
 use double_double::Dd;

@@ -3,7 +3,10 @@
 //! Both ends of an interval travel through one vector: reduction by n·π/2 (three-part Cody–Waite), two Taylor
 //! polynomials, quadrant by bit masks. Extrema inside come from the quadrant numbers of the two ends.
 use super::{enclose, reduce::Reduced};
-use crate::{Interval, simd::F64x2};
+use crate::{
+    Interval,
+    simd::{F64x2, Vector},
+};
 
 // π/2 in three parts: 33 bits, 33 bits, the rest. n·P1 and n·P2 are exact for |n| < 2²⁰.
 const P1: f64 = f64::from_bits(0x3FF9_21FB_5440_0000);
@@ -12,15 +15,15 @@ const P3: f64 = f64::from_bits(0x3BA3_198A_2E03_7073);
 /// 1.5·2⁵²: adding it rounds to the nearest integer, whose low bits are then the low bits of the double.
 const MAGIC: f64 = 6_755_399_441_055_744.0;
 /// Beyond, the slow path reduces with as many digits of π as it takes.
-const FAST_LIMIT: f64 = 524_288.0;
+pub(super) const FAST_LIMIT: f64 = 524_288.0;
 /// 2⁻⁴⁵: a reduced argument below this share of the argument has lost too many digits.
-const CANCELLED: f64 = f64::from_bits((1023 - 45) << 52);
+pub(super) const CANCELLED: f64 = f64::from_bits((1023 - 45) << 52);
 /// (15/8)·2⁻⁵³: kernel error (0.73 units of 2⁻⁵³), final rounding (1 unit), and a margin.
-const PAD: f64 = f64::from_bits(0x3CAE_0000_0000_0000);
+pub(super) const PAD: f64 = f64::from_bits(0x3CAE_0000_0000_0000);
 /// 2⁻¹⁰⁰⁰, for underflow.
-const PAD_TINY: f64 = f64::from_bits((1023 - 1000) << 52);
+pub(super) const PAD_TINY: f64 = f64::from_bits((1023 - 1000) << 52);
 /// 2⁻³⁰: an end this near to an extremum counts as having it inside (the value there is 1 − 2⁻⁶¹).
-const NEAR: f64 = f64::from_bits((1023 - 30) << 52);
+pub(super) const NEAR: f64 = f64::from_bits((1023 - 30) << 52);
 
 const fn inverse_factorial(n: u64) -> f64 {
     let (mut product, mut i) = (1u64, 2);
@@ -32,32 +35,47 @@ const fn inverse_factorial(n: u64) -> f64 {
 }
 
 #[inline(always)]
-fn constant(n: u64) -> F64x2 {
-    F64x2::splat(inverse_factorial(n))
+fn constant<V: Vector>(n: u64) -> V {
+    V::splat(inverse_factorial(n))
+}
+
+/// (x·2/π + 1.5·2⁵², r, r_low): the nearest multiple of π/2 in the low bits of the first, `r + r_low` the rest.
+#[inline(always)]
+pub(super) fn reduce<V: Vector>(x: V) -> (V, V, V) {
+    let turns = x.times(V::splat(core::f64::consts::FRAC_2_PI)).plus(V::splat(MAGIC));
+    let n = turns.minus(V::splat(MAGIC));
+    let w = x.minus(n.times(V::splat(P1)));
+    let t = n.times(V::splat(P2));
+    let r1 = w.minus(t);
+    let b = r1.minus(w);
+    let e = w.minus(r1.minus(b)).minus(t.plus(b));
+    let low = e.minus(n.times(V::splat(P3)));
+    let r = r1.plus(low);
+    (turns, r, low.minus(r.minus(r1)))
 }
 
 /// (sine, cosine) of `r + r_low`, each as an unevaluated sum, for |r| ≤ π/4 + 2⁻³⁰.
 #[inline(always)]
-fn kernel(r: F64x2, r_low: F64x2) -> ([F64x2; 2], [F64x2; 2]) {
+pub(super) fn kernel<V: Vector>(r: V, r_low: V) -> ([V; 2], [V; 2]) {
     let z = r.times(r);
     let z2 = z.times(z);
     let z4 = z2.times(z2);
     // sin r = r − r z (1/3! − z (1/5! − z/7! + z² (…)))
-    let a = constant(5).minus(z.times(constant(7)));
-    let b = constant(9).minus(z.times(constant(11)));
-    let c = constant(13).minus(z.times(constant(15))).plus(z2.times(constant(17)));
-    let p = constant(3).minus(z.times(a.plus(z2.times(b)).plus(z4.times(c))));
-    let half_z = z.times(F64x2::splat(0.5));
-    let one = F64x2::splat(1.0);
+    let a = constant::<V>(5).minus(z.times(constant::<V>(7)));
+    let b = constant::<V>(9).minus(z.times(constant::<V>(11)));
+    let c = constant::<V>(13).minus(z.times(constant::<V>(15))).plus(z2.times(constant::<V>(17)));
+    let p = constant::<V>(3).minus(z.times(a.plus(z2.times(b)).plus(z4.times(c))));
+    let half_z = z.times(V::splat(0.5));
+    let one = V::splat(1.0);
     let c0 = one.minus(half_z);
     let sin_tail = r_low.times(c0).minus(r.times(z.times(p)));
     let sin = r.plus(sin_tail);
     let sin_low = sin_tail.minus(sin.minus(r));
     // cos r = 1 − z/2 + z² (1/4! − z (1/6! − z/8! + z² (…)))
-    let a = constant(6).minus(z.times(constant(8)));
-    let b = constant(10).minus(z.times(constant(12)));
-    let c = constant(14).minus(z.times(constant(16)));
-    let q = constant(4).minus(z.times(a.plus(z2.times(b)).plus(z4.times(c))));
+    let a = constant::<V>(6).minus(z.times(constant::<V>(8)));
+    let b = constant::<V>(10).minus(z.times(constant::<V>(12)));
+    let c = constant::<V>(14).minus(z.times(constant::<V>(16)));
+    let q = constant::<V>(4).minus(z.times(a.plus(z2.times(b)).plus(z4.times(c))));
     let cos_tail = one.minus(c0).minus(half_z).plus(z2.times(q).minus(r.times(r_low)));
     let cos = c0.plus(cos_tail);
     let cos_low = cos_tail.minus(cos.minus(c0));
@@ -88,7 +106,7 @@ fn extrema(min_inside: u32, max_inside: u32) -> F64x2 {
 
 /// Bit j is set when a multiple `m π/2` with `m ≡ j (mod 4)` has first ≤ m ≤ last.
 #[inline(always)]
-fn residues(first: i32, last: i32) -> u32 {
+pub(super) fn residues(first: i32, last: i32) -> u32 {
     let count = (last - first + 1).clamp(0, 4);
     let run = ((1u32 << count) - 1) << (first & 3);
     run | run >> 4
@@ -108,16 +126,7 @@ impl Interval {
     #[inline]
     pub fn sin_cos(self) -> (Self, Self) {
         let x = self.0.neg_first();
-        let turns = x.times(F64x2::splat(core::f64::consts::FRAC_2_PI)).plus(F64x2::splat(MAGIC));
-        let n = turns.minus(F64x2::splat(MAGIC));
-        let w = x.minus(n.times(F64x2::splat(P1)));
-        let t = n.times(F64x2::splat(P2));
-        let r1 = w.minus(t);
-        let b = r1.minus(w);
-        let e = w.minus(r1.minus(b)).minus(t.plus(b));
-        let low = e.minus(n.times(F64x2::splat(P3)));
-        let r = r1.plus(low);
-        let r_low = low.minus(r.minus(r1));
+        let (turns, r, r_low) = reduce(x);
         let size = x.abs();
         let in_range = size.lt(F64x2::splat(FAST_LIMIT));
         let kept = size.times(F64x2::splat(CANCELLED)).le(r.abs());

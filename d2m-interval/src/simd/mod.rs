@@ -48,6 +48,38 @@ pub(crate) use quad::F64x4;
 #[allow(dead_code)] // where a vector unit has square roots
 mod soft_sqrt;
 
+/// What kernels need that work on two or four doubles alike.
+pub(crate) trait Vector: Copy {
+    fn splat(x: f64) -> Self;
+    fn plus(self, o: Self) -> Self;
+    fn minus(self, o: Self) -> Self;
+    fn times(self, o: Self) -> Self;
+}
+
+macro_rules! vector {
+    ($($name:ident)*) => {$(
+        impl Vector for $name {
+            #[inline(always)]
+            fn splat(x: f64) -> Self {
+                Self::splat(x)
+            }
+            #[inline(always)]
+            fn plus(self, o: Self) -> Self {
+                self.plus(o)
+            }
+            #[inline(always)]
+            fn minus(self, o: Self) -> Self {
+                self.minus(o)
+            }
+            #[inline(always)]
+            fn times(self, o: Self) -> Self {
+                self.times(o)
+            }
+        }
+    )*};
+}
+vector!(F64x2 F64x4);
+
 /// Correctly rounded square root of one number.
 #[inline(always)]
 pub(crate) fn sqrt(x: f64) -> f64 {

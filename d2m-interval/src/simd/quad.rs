@@ -6,9 +6,11 @@ pub(crate) use halves::F64x4;
 
 #[cfg(all(target_arch = "x86_64", target_feature = "avx", not(miri), not(feature = "scalar")))]
 mod avx {
+    use crate::simd::F64x2;
     use core::arch::x86_64::{
-        __m256d, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_pd, _mm256_andnot_pd, _mm256_cmp_pd, _mm256_max_pd,
-        _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_set1_pd, _mm256_sqrt_pd, _mm256_xor_pd,
+        __m256d, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_blendv_pd,
+        _mm256_cmp_pd, _mm256_max_pd, _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_set1_pd,
+        _mm256_sqrt_pd, _mm256_sub_pd, _mm256_xor_pd,
     };
 
     /// An intrinsic of the vector unit that this module is compiled for.
@@ -44,6 +46,45 @@ mod avx {
         #[inline(always)]
         pub(crate) fn plus(self, o: Self) -> Self {
             Self(avx!(_mm256_add_pd(self.0, o.0)))
+        }
+        #[inline(always)]
+        pub(crate) fn minus(self, o: Self) -> Self {
+            Self(avx!(_mm256_sub_pd(self.0, o.0)))
+        }
+        #[inline(always)]
+        pub(crate) fn and(self, o: Self) -> Self {
+            Self(avx!(_mm256_and_pd(self.0, o.0)))
+        }
+        #[inline(always)]
+        pub(crate) fn xor(self, o: Self) -> Self {
+            Self(avx!(_mm256_xor_pd(self.0, o.0)))
+        }
+        /// Mask: all bits where `self < o`.
+        #[inline(always)]
+        pub(crate) fn lt(self, o: Self) -> Self {
+            Self(avx!(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, o.0)))
+        }
+        /// `yes` where the mask `self` is set, else `no`.
+        #[inline(always)]
+        pub(crate) fn select(self, yes: Self, no: Self) -> Self {
+            Self(avx!(_mm256_blendv_pd(no.0, yes.0, self.0)))
+        }
+        /// As the method of two doubles: integer shifts of 256 bits need AVX2.
+        #[inline(always)]
+        fn by_halves(self, f: impl Fn(F64x2) -> F64x2) -> Self {
+            let ([a, b, c, d], pack) = (self.to_array(), F64x2::pack);
+            let ([a, b], [c, d]) = (f(pack(a, b)).to_array(), f(pack(c, d)).to_array());
+            Self::new([a, b, c, d])
+        }
+        /// Mask: all bits where bit 0 of the number's representation is set.
+        #[inline(always)]
+        pub(crate) fn lowest_bit(self) -> Self {
+            self.by_halves(F64x2::lowest_bit)
+        }
+        /// The sign bit where bit 1 of the number's representation is set, else 0.
+        #[inline(always)]
+        pub(crate) fn second_bit_as_sign(self) -> Self {
+            self.by_halves(F64x2::second_bit_as_sign)
         }
         #[inline(always)]
         pub(crate) fn times(self, o: Self) -> Self {
@@ -106,6 +147,38 @@ mod halves {
         #[inline(always)]
         pub(crate) fn plus(self, o: Self) -> Self {
             Self(self.0.plus(o.0), self.1.plus(o.1))
+        }
+        #[inline(always)]
+        pub(crate) fn minus(self, o: Self) -> Self {
+            Self(self.0.minus(o.0), self.1.minus(o.1))
+        }
+        #[inline(always)]
+        pub(crate) fn and(self, o: Self) -> Self {
+            Self(self.0.and(o.0), self.1.and(o.1))
+        }
+        #[inline(always)]
+        pub(crate) fn xor(self, o: Self) -> Self {
+            Self(self.0.xor(o.0), self.1.xor(o.1))
+        }
+        /// Mask: all bits where `self < o`.
+        #[inline(always)]
+        pub(crate) fn lt(self, o: Self) -> Self {
+            Self(self.0.lt(o.0), self.1.lt(o.1))
+        }
+        /// `yes` where the mask `self` is set, else `no`.
+        #[inline(always)]
+        pub(crate) fn select(self, yes: Self, no: Self) -> Self {
+            Self(self.0.select(yes.0, no.0), self.1.select(yes.1, no.1))
+        }
+        /// Mask: all bits where bit 0 of the number's representation is set.
+        #[inline(always)]
+        pub(crate) fn lowest_bit(self) -> Self {
+            Self(self.0.lowest_bit(), self.1.lowest_bit())
+        }
+        /// The sign bit where bit 1 of the number's representation is set, else 0.
+        #[inline(always)]
+        pub(crate) fn second_bit_as_sign(self) -> Self {
+            Self(self.0.second_bit_as_sign(), self.1.second_bit_as_sign())
         }
         #[inline(always)]
         pub(crate) fn times(self, o: Self) -> Self {

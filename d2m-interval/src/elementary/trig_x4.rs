@@ -1,0 +1,82 @@
+//! Sine and cosine of four intervals: the kernel of `trig`, on all lower ends and all upper ends.
+use super::trig::{CANCELLED, FAST_LIMIT, NEAR, PAD, PAD_TINY, kernel, reduce, residues};
+use crate::{IntervalX4, simd::F64x4};
+
+/// Sine and cosine of four numbers, each as high + low, with the quadrants.
+struct Point {
+    turns: [f64; 4],
+    r: [f64; 4],
+    sin: (F64x4, F64x4),
+    cos: (F64x4, F64x4),
+}
+
+/// None when a number needs the slow path.
+#[inline(always)]
+fn point(x: F64x4) -> Option<Point> {
+    let (turns, r, r_low) = reduce(x);
+    let size = x.abs();
+    let in_range = size.lt_bits(F64x4::splat(FAST_LIMIT));
+    let kept = size.times(F64x4::splat(CANCELLED)).le_bits(r.abs());
+    if in_range & kept != 15 {
+        return None;
+    }
+    let ([s, s_low], [c, c_low]) = kernel(r, r_low);
+    let odd = turns.lowest_bit();
+    let sign = turns.second_bit_as_sign();
+    let sin = (odd.select(c, s).xor(sign), odd.select(c_low, s_low).xor(sign));
+    let sign = sign.xor(odd.and(F64x4::splat(-0.0)));
+    let cos = (odd.select(s, c).xor(sign), odd.select(s_low, c_low).xor(sign));
+    Some(Point { turns: turns.to_array(), r: r.to_array(), sin, cos })
+}
+
+/// Upper bounds of a number and of its negative.
+#[inline(always)]
+fn bounds((high, low): (F64x4, F64x4)) -> (F64x4, F64x4) {
+    let size = high.abs();
+    let pad = size.times(F64x4::splat(PAD));
+    let pad = pad.plus(F64x4::splat(0.0).lt(size).and(F64x4::splat(PAD_TINY)));
+    (high.plus(low.plus(pad)), high.neg().plus(low.neg().plus(pad)))
+}
+
+/// The hull of both, with the extrema (1 where inside, else −2), as (−lo, hi).
+#[inline(always)]
+fn hull(a: (F64x4, F64x4), b: (F64x4, F64x4), least: F64x4, greatest: F64x4) -> IntervalX4 {
+    let ((a, minus_a), (b, minus_b)) = (bounds(a), bounds(b));
+    let one = F64x4::splat(1.0);
+    IntervalX4 { neg_lo: minus_a.max(minus_b).min(one).max(least), hi: a.max(b).min(one).max(greatest) }
+}
+
+impl IntervalX4 {
+    /// `(sin x, cos x)`, four at once.
+    ///
+    /// ```
+    /// # use d2m_interval::{Interval, IntervalX4};
+    /// let (sin, cos) = IntervalX4::points([0.0, 1.0, 2.0, 3.0]).sin_cos();
+    /// assert!(sin.lane(1).contains(1.0_f64.sin()) && cos.lane(3).contains(3.0_f64.cos()));
+    /// ```
+    #[inline]
+    pub fn sin_cos(self) -> (Self, Self) {
+        let (Some(a), Some(b)) = (point(self.neg_lo.neg()), point(self.hi)) else {
+            return self.sin_cos_slow();
+        };
+        let mut ends = [[-2.0; 4]; 4];
+        for i in 0..4 {
+            let quadrant = |turns: f64| turns.to_bits() as i32;
+            let first = quadrant(a.turns[i]) + i32::from(a.r[i] > NEAR);
+            let last = quadrant(b.turns[i]) - i32::from(b.r[i] < -NEAR);
+            let inside = residues(first, last);
+            for (j, end) in ends.iter_mut().enumerate() {
+                end[i] = if inside >> j & 1 == 1 { 1.0 } else { -2.0 };
+            }
+        }
+        let [cos_max, sin_max, cos_min, sin_min] = ends.map(F64x4::new);
+        (hull(a.sin, b.sin, sin_min, sin_max), hull(a.cos, b.cos, cos_min, cos_max))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn sin_cos_slow(self) -> (Self, Self) {
+        let pairs = self.lanes().map(crate::Interval::sin_cos);
+        (Self::new(pairs.map(|p| p.0)), Self::new(pairs.map(|p| p.1)))
+    }
+}
