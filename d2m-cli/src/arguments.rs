@@ -95,6 +95,12 @@ pub(crate) struct QueryArguments {
     /// Most node tests of a query; when they are used up the answer is "undecided"
     #[arg(long, value_name = "NODES")]
     pub(crate) budget: Option<u64>,
+    /// Most seconds of a query; when they are used up the answer is "undecided"
+    #[arg(long, value_name = "SECONDS", default_value = "60", allow_hyphen_values = true)]
+    pub(crate) time_limit: String,
+    /// Distance at which bodies count as touching
+    #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true)]
+    pub(crate) min_separation: Option<String>,
     /// Bodies are full: one inside the other is in contact [default if both meshes are watertight]
     #[arg(long, conflicts_with = "surface")]
     pub(crate) solid: bool,

@@ -72,16 +72,22 @@ impl Pair {
         };
         let mut options = QueryOptions::default().with_mode(mode);
         if let Some(text) = &arguments.tolerance {
-            let tolerance: f64 =
-                text.parse().map_err(|_| Failure::at("--tolerance", format!("{text:?} is not a number")))?;
-            if !(tolerance > 0.0 && tolerance.is_finite()) {
-                return Err(Failure::at("--tolerance", format!("{text} is not a positive finite distance")));
-            }
-            options = options.with_tolerance(tolerance);
+            options =
+                options
+                    .with_tolerance(number("--tolerance", text, "a positive finite distance", |t| t > 0.0)?);
         }
+        if let Some(text) = &arguments.min_separation {
+            let wanted = "a finite distance that is not negative";
+            options = options.with_min_separation(number("--min-separation", text, wanted, |d| d >= 0.0)?);
+        }
+        let seconds =
+            number("--time-limit", &arguments.time_limit, "a positive number of seconds", |s| s > 0.0)?;
+        // Beyond a century there is no limit to speak of, and the type could not hold it.
+        let mut budget = Budget::UNLIMITED.with_wall_clock(Duration::from_secs_f64(seconds.min(3e9)));
         if let Some(node_tests) = arguments.budget {
-            options = options.with_budget(Budget::UNLIMITED.with_node_tests(node_tests));
+            budget = budget.with_node_tests(node_tests);
         }
+        options = options.with_budget(budget);
         let start = Instant::now();
         let [a, b] = [a, b].map(|body| Body::new(body, arguments.mode));
         let preparation = start.elapsed();
@@ -111,6 +117,16 @@ impl Pair {
             other => Failure::Input(other.to_string()),
         })?;
         Ok(Answer { verdict, took })
+    }
+}
+
+/// Reads an option's value and checks it.
+fn number(option: &str, text: &str, wanted: &str, is_wanted: impl Fn(f64) -> bool) -> Result<f64, Failure> {
+    let value: f64 = text.parse().map_err(|_| Failure::at(option, format!("{text:?} is not a number")))?;
+    if value.is_finite() && is_wanted(value) {
+        Ok(value)
+    } else {
+        Err(Failure::at(option, format!("{text} is not {wanted}")))
     }
 }
 

@@ -169,6 +169,29 @@ fn a_budget_is_answered_honestly() {
 }
 
 #[test]
+fn no_query_takes_longer_than_its_limit() {
+    let start = std::time::Instant::now();
+    let spin = "x=1.99,0,0;w=0,1e12,1";
+    for mode in ["accurate", "capoeira", "paper"] {
+        let arguments =
+            ["toc", "shape:box", "shape:box", "--motion-a", spin, "--time-limit", "0.2", "--mode", mode];
+        let output = d2m(&arguments);
+        assert!(stdout(&output).starts_with("UNDECIDED"), "{mode}: {}{}", stdout(&output), stderr(&output));
+    }
+    assert!(start.elapsed().as_secs() < 60);
+}
+
+#[test]
+fn a_wanted_separation_moves_the_contact() {
+    let apart = ["toc", UNIT_BOX, UNIT_BOX, "--motion-a", BOX_AT, "--min-separation", "0.5"];
+    let text = stdout(&d2m(&apart));
+    assert!(
+        text.starts_with("CONTACT at t = 0.12499999") || text.starts_with("CONTACT at t = 0.125"),
+        "{text}"
+    );
+}
+
+#[test]
 fn toc_for_people_and_for_programs() {
     let text = stdout(&d2m(&["toc", UNIT_BOX, UNIT_BOX, "--motion-a", BOX_AT]));
     for word in
@@ -306,6 +329,10 @@ fn bad_input_is_named_and_leaves_nothing() {
         ("--tolerance", "-1e-9", "positive"),
         ("--tolerance", "nan", "positive"),
         ("--tolerance", "small", "not a number"),
+        ("--time-limit", "0", "positive"),
+        ("--time-limit", "-1", "positive"),
+        ("--min-separation", "-1", "negative"),
+        ("--min-separation", "inf", "finite"),
     ] {
         refused(
             &["toc", UNIT_BOX, UNIT_BOX, option, value],

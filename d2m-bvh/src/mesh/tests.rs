@@ -90,3 +90,16 @@ fn every_neighbour_relation_is_mutual() {
         }
     }
 }
+
+#[test]
+fn degenerate_means_exactly_collinear() {
+    // Tiny and thin, but with area; then three multiples of one point.
+    let thin = vec![DVec3::ZERO, DVec3::X * 1e-200, DVec3::Y * 1e-200];
+    let count = |vertices: Vec<DVec3>| {
+        Validation::new(&TriMesh::try_new(vertices, vec![[0, 1, 2]]).unwrap()).degenerate_triangles
+    };
+    assert_eq!(count(thin), 0);
+    let p = DVec3::new(0.1, 0.7, -0.3);
+    assert_eq!(count(vec![p, p * 2.0, p * -4.0]), 1);
+    assert_eq!(count(vec![p, p * 3.0, p * 7.0]), 0, "fl(3p) is not on the line");
+}

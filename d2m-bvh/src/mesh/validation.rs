@@ -1,7 +1,8 @@
 //! What is unusual about a mesh: counts for a report, never a refusal.
 
 use crate::{Topology, TriMesh};
-use glam::DVec3;
+use d2m_feature::orient2d;
+use glam::{DVec2, DVec3, Vec3Swizzles};
 
 /// Counts of everything that a careful user would want to know about a mesh before asking about contacts.
 ///
@@ -26,8 +27,7 @@ use glam::DVec3;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Validation {
-    /// Triangles without area as computed in floating point: |(b − a) × (c − a)|² is zero. They count as segments or
-    /// points.
+    /// Triangles whose corners lie on a line or coincide, decided exactly. They count as segments or points.
     pub degenerate_triangles: usize,
     /// Triangles that repeat an earlier one with the same orientation.
     pub duplicate_triangles: usize,
@@ -84,7 +84,7 @@ impl Validation {
         for triangle in 0..mesh.triangle_count() {
             let [a, b, c] = mesh.corners(triangle);
             let twice = (b - a).cross(c - a);
-            degenerate_triangles += usize::from(twice.length_squared() == 0.0);
+            degenerate_triangles += usize::from(is_collinear(a, b, c));
             area += twice.length() * 0.5;
             volume += (a - middle).dot((b - middle).cross(c - middle)) / 6.0;
         }
@@ -114,4 +114,10 @@ impl Validation {
             bounds_high: high.to_array(),
         }
     }
+}
+
+/// All three axis-parallel projections are on a line, and then the points are.
+fn is_collinear(a: DVec3, b: DVec3, c: DVec3) -> bool {
+    let flat = |project: fn(DVec3) -> DVec2| orient2d(project(a), project(b), project(c)).is_eq();
+    flat(DVec3::xy) && flat(DVec3::yz) && flat(DVec3::zx)
 }
