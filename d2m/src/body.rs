@@ -16,17 +16,17 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub struct Body {
     tree: Arc<MeshTree>,
-    motion: Arc<dyn RigidMotion + Send + Sync>,
+    motion: Arc<dyn RigidMotion + Send>,
 }
 
 impl Body {
     /// A body with this mesh and motion.
-    pub fn new(tree: Arc<MeshTree>, motion: impl RigidMotion + Send + Sync + 'static) -> Self {
+    pub fn new(tree: Arc<MeshTree>, motion: impl RigidMotion + Send + 'static) -> Self {
         Self { tree, motion: Arc::new(motion) }
     }
 
     /// The same body with another motion.
-    pub fn with_motion(&self, motion: impl RigidMotion + Send + Sync + 'static) -> Self {
+    pub fn with_motion(&self, motion: impl RigidMotion + Send + 'static) -> Self {
         Self { tree: Arc::clone(&self.tree), motion: Arc::new(motion) }
     }
 

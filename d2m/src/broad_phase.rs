@@ -58,7 +58,9 @@ pub(crate) fn candidates(boxes: &[SweptBox]) -> Vec<(usize, usize)> {
     let mut pairs = Vec::new();
     for i in order {
         let start = boxes[i].axis(axis).lo();
-        open.retain(|&j| !(boxes[j].axis(axis).hi() < start));
+        // An end that is not a number compares false and stays open.
+        let ended = |j: usize| boxes[j].axis(axis).hi() < start;
+        open.retain(|&j| !ended(j));
         pairs.extend(open.iter().filter(|&&j| boxes[i].may_meet(&boxes[j])).map(|&j| (i.min(j), i.max(j))));
         open.push(i);
     }
