@@ -22,6 +22,9 @@ trait Number: Copy {
 
 type Vec3<N> = [N; 3];
 
+/// Axis, angle, point, two further vectors of the kernel.
+type KernelInput = (IntervalVec3, Interval, IntervalVec3, [IntervalVec3; 2]);
+
 fn dot<N: Number>(a: Vec3<N>, b: Vec3<N>) -> N {
     a[0].mul(b[0]).add(a[1].mul(b[1])).add(a[2].mul(b[2]))
 }
@@ -284,7 +287,7 @@ fn ours(criterion: &mut Criterion) {
     let fours: Vec<_> = inputs
         .chunks_exact(4)
         .map(|c| {
-            let four = |f: fn(&(IntervalVec3, Interval, IntervalVec3, [IntervalVec3; 2])) -> IntervalVec3| {
+            let four = |f: fn(&KernelInput) -> IntervalVec3| {
                 IntervalVec3X4::from_lanes([f(&c[0]), f(&c[1]), f(&c[2]), f(&c[3])])
             };
             let angle = IntervalX4::new([c[0].1, c[1].1, c[2].1, c[3].1]);

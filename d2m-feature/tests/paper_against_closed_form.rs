@@ -26,7 +26,7 @@ impl Case {
     /// Something that happens around `time`, off by `miss`.
     fn random(random: &mut Random, round: usize) -> Self {
         let (v, w) = [(1.0, 1.0), (512.0, 3.0), (0.25, 12.0), (4.0, 0.0), (0.0, 3.0), (1e5, 1.0)][round % 6];
-        let grid = round % 11 == 0;
+        let grid = round.is_multiple_of(11);
         let motions: [LinearMotion; 2] = core::array::from_fn(|_| {
             let m = random.motion(v, w);
             if grid {

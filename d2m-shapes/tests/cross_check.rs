@@ -6,7 +6,7 @@ use d2m_motion::LinearMotion;
 use d2m_shapes::mesh;
 use glam::{DVec3, dvec3};
 
-fn judge(a: &str, b: &str, motions: [LinearMotion; 2], window: Window) -> CrossCheck {
+fn judge(a: &str, b: &str, motions: &[LinearMotion; 2], window: Window) -> CrossCheck {
     let [x, y] = [a, b].map(|text| mesh(text).expect("a shape"));
     let options = QueryOptions::DEFAULT.with_solid(Solid::Filled);
     let report = cross_check_scene([(x, motions[0]), (y, motions[1])], window, &options);
@@ -24,11 +24,11 @@ fn moving(v: DVec3, w: DVec3) -> LinearMotion {
 fn a_screw_in_its_nut() {
     let (screw, nut) = ("screw?triangles=2000", "nut?triangles=2000&clearance=1e-4");
     let rest = LinearMotion::REST;
-    assert_eq!(judge(screw, nut, [rest, rest], Window::UNIT).contacts, 0);
+    assert_eq!(judge(screw, nut, &[rest, rest], Window::UNIT).contacts, 0);
     for push in [dvec3(0.0, 0.0, 1.0), dvec3(1.0, 0.25, 0.0)] {
-        assert_eq!(judge(screw, nut, [moving(push, DVec3::ZERO), rest], Window::UNIT).contacts, 1, "{push}");
+        assert_eq!(judge(screw, nut, &[moving(push, DVec3::ZERO), rest], Window::UNIT).contacts, 1, "{push}");
     }
     // Turned without advancing, the threads meet after a small angle.
     let turning = moving(DVec3::ZERO, dvec3(0.0, 0.0, 1.0));
-    assert_eq!(judge(screw, nut, [turning, rest], Window::UNIT).contacts, 1);
+    assert_eq!(judge(screw, nut, &[turning, rest], Window::UNIT).contacts, 1);
 }
