@@ -11,11 +11,12 @@ fn main() {
         println!("{complaint}");
     }
     println!(
-        "{} scenes, {} contacts, undecided {:?}, open brackets {:?}, {} complaints, {:.1} s",
+        "{} scenes, {} contacts, undecided {:?}, open brackets {:?}, loose {:?}, {} complaints, {:.1} s",
         report.scenes,
         report.contacts,
         report.undecided,
         report.open_brackets,
+        report.loose_brackets,
         report.complaints.len(),
         started.elapsed().as_secs_f64()
     );

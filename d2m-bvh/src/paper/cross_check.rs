@@ -20,6 +20,9 @@ pub struct CrossCheck {
     /// Contacts of the default engine and of the reference method whose bracket \[`time_lo`, `time_hi`\] holds no time
     /// (of 65 looked at) at which the distance could be within the tolerance.
     pub open_brackets: [usize; 2],
+    /// Contacts whose surfaces clearly meet well before `time_hi`, by more than half the tolerance: the bracket is loose,
+    /// as happens when a feature pair was lost and the step back had to make up for it.
+    pub loose_brackets: [usize; 2],
     /// What disagreed, one line each; empty when all is well.
     pub complaints: Vec<String>,
 }
@@ -128,6 +131,7 @@ impl Scene {
         let oracle = Oracle { a, b, relative: RelativeMotion::new(a.motion, b.motion) };
         for (i, (who, answer)) in answers.iter().enumerate() {
             report.open_brackets[i] += usize::from(oracle.is_open(answer));
+            report.loose_brackets[i] += usize::from(oracle.is_loose(answer));
             report.undecided[i] += usize::from(matches!(answer, TimeOfContact::Undecided { .. }));
             if let Some(fault) = oracle.fault(answer, &answers[1 - i].1, self.window) {
                 report.complaints.push(format!(
@@ -152,12 +156,12 @@ impl Oracle<'_> {
         (found.lower, found.upper)
     }
 
-    /// Do the surfaces meet at `t`, whatever rounding does to the pose?
-    fn meet(&self, t: f64) -> bool {
+    /// Do the surfaces meet at `t`, an edge passing through a face by more than `margin`?
+    fn meet(&self, t: f64, margin: f64) -> bool {
         let place = self.relative.placement(t);
         let mut meet = false;
         super::distance::visit_close_pairs(self.a.body, self.b.body, &place, 1e-9, |pair| {
-            meet |= pair.detail.upper == 0.0 && super::start::is_crossing(self.b.body, pair, 1e-13);
+            meet |= pair.detail.upper == 0.0 && super::start::is_crossing(self.b.body, pair, margin);
             if meet { f64::NEG_INFINITY } else { f64::INFINITY }
         });
         meet
@@ -198,6 +202,14 @@ impl Oracle<'_> {
         !close(c.time_hi) && !(0..64).any(|k| close(between(k)))
     }
 
+    /// Do the surfaces clearly meet before the contact's `time_hi`?
+    fn is_loose(&self, answer: &TimeOfContact) -> bool {
+        let Some(c) = answer.contact().filter(|c| c.start == crate::StartState::Apart) else { return false };
+        let length = c.time_hi - c.time_lo;
+        let at = |share: f64| self.meet(c.time_lo + length * share, 0.5 * c.tolerance);
+        (1..32).any(|k| at(f64::from(k) / 32.0) || at(0.5f64.powi(k)))
+    }
+
     fn scale(&self) -> f64 {
         self.a.body.bounding_sphere().radius.max(self.b.body.bounding_sphere().radius)
     }
@@ -232,7 +244,7 @@ impl Oracle<'_> {
             times.extend([free - close, hint - close, hint + close]);
         }
         times.retain(|x| *x >= start && (*x < free || (included && *x <= free)));
-        times.into_iter().find(|x| self.meet(*x))
+        times.into_iter().find(|x| self.meet(*x, 1e-13))
     }
 
     /// A bound of the relative speed of any two points of the bodies.
