@@ -1,4 +1,5 @@
 //! `cargo xtask tidy`: the structure that the documents promise, held against the tree.
+mod guarantees;
 mod map;
 mod sources;
 
@@ -9,6 +10,7 @@ pub(crate) fn run() -> TaskResult {
     let root = workspace_root();
     let mut findings = map::check(&root)?;
     findings.extend(sources::check(&root)?);
+    findings.extend(guarantees::check(&root)?);
     for finding in &findings {
         eprintln!("tidy: {finding}");
     }
