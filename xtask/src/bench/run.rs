@@ -20,6 +20,8 @@ type Error = Box<dyn std::error::Error>;
 const PARRY_CHECKS: usize = 4;
 /// Triangles of a pair beyond which parry's distance is not asked: one query then takes from seconds to minutes.
 const PARRY_TRIANGLES: usize = 20_000;
+/// And the paper's method: its trees and queries are made for models of the paper's size.
+const PAPER_TRIANGLES: usize = 300_000;
 /// How far parry's distance may be from ours: it iterates to a tolerance of about this on its own.
 const PARRY_AGREES: f64 = 1e-7;
 
@@ -117,6 +119,7 @@ impl Setting<'_> {
             Method::AdvanceParry | Method::ParryDistance if self.triangle_count() > PARRY_TRIANGLES => {
                 return Ok(Vec::new());
             }
+            Method::Paper if self.triangle_count() > PAPER_TRIANGLES => return Ok(Vec::new()),
             _ => {}
         }
         let times_of_contact = self.places(accurate);

@@ -108,7 +108,7 @@ impl Sweep<'_> {
     }
 
     fn count(&self) -> usize {
-        if self.options.quick { 16 } else { 128 }
+        self.options.count().div_ceil(2)
     }
 
     /// Least times of the rounds in microseconds and separations left, of judged answers only.
@@ -158,6 +158,7 @@ impl Sweep<'_> {
 
     /// Two equal knots from a thousand triangles a body to four million; also what their trees cost.
     fn triangles(&mut self) -> Result<(), Error> {
+        let single = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
         let most = if self.options.quick { 70_000 } else { 5_000_000 };
         for count in [1_000, 4_000, 16_000, 64_000, 256_000, 1_000_000, 4_000_000] {
             if count > most {
@@ -166,9 +167,9 @@ impl Sweep<'_> {
             let mesh = super::engine::shape(&format!("torus-knot?triangles={count}"))?;
             let triangles = mesh.triangle_count() as f64;
             let start = Instant::now();
-            let tree = super::engine::build(mesh.clone());
+            let tree = single.install(|| super::engine::build(mesh.clone()));
             let seconds = start.elapsed().as_secs_f64();
-            self.note("build", "µs per triangle", triangles, [seconds * 1e6 / triangles]);
+            self.note("build", "µs per triangle, one thread", triangles, [seconds * 1e6 / triangles]);
             self.note("build", "bytes per triangle", triangles, [tree.memory_bytes() as f64 / triangles]);
             drop(tree);
             let body = Body::new(mesh.vertices(), mesh.triangles().to_vec())?;
