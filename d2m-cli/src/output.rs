@@ -41,7 +41,21 @@ impl Output {
         if !folder.is_dir() {
             return Err(Failure::at(path.display(), format!("there is no folder {}", folder.display())));
         }
+        if path.metadata().is_ok_and(|metadata| metadata.permissions().readonly()) {
+            return Err(Failure::at(path.display(), "is read-only"));
+        }
         Ok(Self::File(path.to_owned()))
+    }
+
+    /// Refuses to replace one of the files that are read.
+    pub(crate) fn spare<'a>(self, inputs: impl IntoIterator<Item = &'a Path>) -> Result<Self, Failure> {
+        if let Self::File(path) = &self
+            && let Ok(target) = path.canonicalize()
+            && inputs.into_iter().any(|input| input.canonicalize().is_ok_and(|input| input == target))
+        {
+            return Err(Failure::at(path.display(), "is an input and would be overwritten"));
+        }
+        Ok(self)
     }
 
     /// Writes everything at once: to a temporary file beside the target, which then replaces it.

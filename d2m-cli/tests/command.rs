@@ -342,6 +342,25 @@ fn bad_input_is_named_and_leaves_nothing() {
 }
 
 #[test]
+fn inputs_and_read_only_files_are_not_replaced() {
+    let folder = Folder::new("protected");
+    let trials = folder.file("trials.csv", TRIALS);
+    let batch = ["batch", UNIT_BOX, UNIT_BOX, "--trials", &trials, "--out"];
+    refused(&[&batch[..], &[&trials]].concat(), &["trials.csv", "input"]);
+    let precious = folder.file("precious.csv", "1,2,3\n");
+    let mut permissions = fs::metadata(&precious).unwrap().permissions();
+    permissions.set_readonly(true);
+    fs::set_permissions(&precious, permissions).unwrap();
+    refused(&[&batch[..], &[&precious]].concat(), &["precious.csv", "read-only"]);
+    assert_eq!(fs::read_to_string(&precious).unwrap(), "1,2,3\n");
+    assert_eq!(fs::read_to_string(&trials).unwrap(), TRIALS);
+    // Replacing an old result is what a second run does.
+    let out = folder.file("old.csv", "old");
+    assert_eq!(d2m(&[&batch[..], &[&out]].concat()).status.code(), Some(0));
+    assert!(fs::read_to_string(&out).unwrap().starts_with(HEADER));
+}
+
+#[test]
 fn bad_usage_exits_with_2() {
     for arguments in [
         &[][..],

@@ -10,11 +10,13 @@ use crate::trials::{self, Trial};
 use d2m::bvh::Window;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
+use std::path::Path;
 use std::time::Instant;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
-    let out = Output::new(&arguments.out)?;
+    let inputs = [Path::new(&arguments.a), Path::new(&arguments.b), &arguments.trials];
+    let out = Output::new(&arguments.out)?.spare(inputs)?;
     let trials = trials::load(&arguments.trials)?;
     let pair = Pair::new(load(&arguments.a)?, load(&arguments.b)?, &arguments.query)?;
     // On a terminal only: indicatif stays silent elsewhere.

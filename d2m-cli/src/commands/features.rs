@@ -148,7 +148,7 @@ struct Answer<'a> {
 /// Answers every case of a file. Nothing is written unless every line is a case.
 pub(crate) fn run(args: &FeaturesArgs) -> Result<(), FeaturesError> {
     let options = options(args)?;
-    let out = Output::new(&args.out)?;
+    let out = Output::new(&args.out)?.spare([args.cases.as_path()])?;
     let name = args.cases.display().to_string();
     let file =
         File::open(&args.cases).map_err(|source| FeaturesError::File { path: name.clone(), source })?;

@@ -8,13 +8,17 @@ use d2m::bvh::{EnclosingSphere, Validation};
 use d2m::shapes::{COMMON, SHAPES};
 use serde_json::json;
 use std::fmt::Write;
+use std::path::Path;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     let Some(source) = &arguments.mesh else {
         return print(&if arguments.json { shapes_json() } else { shapes_text() });
     };
-    let export = arguments.obj.as_deref().map(Output::new).transpose()?;
+    let export = match &arguments.obj {
+        Some(path) => Some(Output::new(path)?.spare([Path::new(source)])?),
+        None => None,
+    };
     let body = load(source)?;
     let validation = Validation::new(&body.mesh);
     if let Some(export) = export {

@@ -10,6 +10,7 @@ use crate::report;
 use d2m::bvh::{TimeOfContact, TriMesh, Window};
 use d2m::motion::{LinearMotion, RigidMotion};
 use std::fmt::Write;
+use std::path::Path;
 use std::time::Duration;
 
 /// Runs the command.
@@ -19,7 +20,11 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<(), Failure> {
     let motion_b = Motion::parse("--motion-b", &arguments.motion_b)?;
     motion_a.require_window("--motion-a", window)?;
     motion_b.require_window("--motion-b", window)?;
-    let scene = arguments.obj.as_deref().map(Output::new).transpose()?;
+    let inputs = [Path::new(&arguments.a), Path::new(&arguments.b)];
+    let scene = match &arguments.obj {
+        Some(path) => Some(Output::new(path)?.spare(inputs)?),
+        None => None,
+    };
     let pair = Pair::new(load(&arguments.a)?, load(&arguments.b)?, &arguments.query)?;
     let answer = ask(&pair, &motion_a, &motion_b, window)?;
     if let Some(scene) = scene {
