@@ -185,3 +185,67 @@ fn the_step_back_is_measured() {
         }
     }
 }
+
+/// Motions that are not of constant twist: free fall, and a bar that spins up.
+#[test]
+fn accelerated_motions() {
+    use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
+    use d2m_motion::{IntervalPose, IntervalTwist, LinearMotion, Pose, RigidMotion, Twist};
+    use glam::{DQuat, dvec3};
+    /// x = from + ½ fall t², turned by ½ spin t² about z.
+    struct Accelerated {
+        from: DVec3,
+        fall: DVec3,
+        spin: f64,
+    }
+    impl RigidMotion for Accelerated {
+        fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+            let rotation = DQuat::from_rotation_z(0.5 * self.spin * t * t);
+            let translation = self.from + self.fall * (0.5 * t * t);
+            let twist = Twist { linear: self.fall * t, angular: DVec3::Z * (self.spin * t) };
+            (Pose { rotation, translation, at: DVec3::ZERO }, twist)
+        }
+        fn enclose_pose(&self, t: Interval) -> IntervalPose {
+            let half = t.sqr() * 0.5;
+            let translation = IntervalVec3::point(self.fall) * half + self.from;
+            IntervalPose {
+                rotation: IntervalMat3::rotation(DVec3::Z, half * self.spin),
+                translation,
+                at: DVec3::ZERO,
+            }
+        }
+        fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+            IntervalTwist {
+                linear: IntervalVec3::point(self.fall) * t,
+                angular: IntervalVec3::point(DVec3::Z * self.spin) * t,
+            }
+        }
+        fn enclose_twist_rate(&self, _: Interval) -> IntervalTwist {
+            IntervalTwist {
+                linear: IntervalVec3::point(self.fall),
+                angular: IntervalVec3::point(DVec3::Z * self.spin),
+            }
+        }
+    }
+    let first = |bodies: [d2m_bvh::TriMesh; 2], motion: &Accelerated| {
+        let trees = bodies.map(SphereTree::new);
+        let (a, b) = (Moving::new(&trees[0], motion), Moving::new(&trees[1], &LinearMotion::REST));
+        let answer = time_of_contact(a, b, Window::UNIT, &QueryOptions::DEFAULT).unwrap();
+        *answer.contact().expect("a contact")
+    };
+    // A gap of 2 under an acceleration of 16: t = 1/2 exactly.
+    let falling = Accelerated { from: dvec3(0.25, 0.125, 3.0), fall: dvec3(0.0, 0.0, -16.0), spin: 0.0 };
+    let cube = || scenes::cube(DVec3::ZERO, 1.0);
+    let contact = first([cube(), cube()], &falling);
+    assert!(contact.time_lo < 0.5 && contact.time_lo > 0.5 - 1e-10, "{contact:?}");
+    assert!((contact.closing_speed - 8.0).abs() < 1e-8);
+    // The bar of the scenes meets the wall at the same angle.
+    let h = 0.0625;
+    let bar = scenes::plank(dvec3(-1.0, -h, -h), dvec3(1.0, h, h));
+    let wall = scenes::plank(dvec3(-4.0, 0.5, -2.0), dvec3(4.0, 1.0, 2.0));
+    let angle = (0.5 / (1.0 + h * h).sqrt()).asin() - h.atan();
+    let spinning = Accelerated { from: DVec3::ZERO, fall: DVec3::ZERO, spin: 4.0 };
+    let contact = first([bar, wall], &spinning);
+    let truth = (angle / 2.0).sqrt();
+    assert!(contact.time_lo < truth + 1e-13 && contact.time_lo > truth - 1e-9, "{contact:?} {truth}");
+}
