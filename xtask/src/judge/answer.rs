@@ -1,5 +1,5 @@
 //! Is an answer right? By conservative advancement and samples on the judge's own distance.
-use super::{BoxTree, Hint, cross, place, separation};
+use super::{BoxTree, Hint, bound_separation, cross, place, separation};
 use crate::trials::Trial;
 
 /// What a method says about one trial over [0, 1].
@@ -86,14 +86,21 @@ pub(crate) fn advance(
 
 impl Judge<'_> {
     /// Distance of the surfaces at this time, 0 when they cross.
-    pub(crate) fn separation(&self, t: f64, hint: &mut Hint) -> f64 {
-        separation(self.a, self.b, &place(&self.trial.a, t), &place(&self.trial.b, t), hint)
+    pub(crate) fn separation(&self, t: f64) -> f64 {
+        separation(self.a, self.b, &place(&self.trial.a, t), &place(&self.trial.b, t), &mut None)
+    }
+
+    /// A lower bound of it, at least half of it, and 0 when they cross.
+    fn bound_separation(&self, t: f64, hint: &mut Hint) -> f64 {
+        bound_separation(self.a, self.b, &place(&self.trial.a, t), &place(&self.trial.b, t), hint)
     }
 
     /// The time up to which advancement shows the bodies apart, in [0, end].
     pub(crate) fn advance(&self, end: f64, near: f64) -> f64 {
         let mut hint = None;
-        advance(self.trial, [self.a.radius, self.b.radius], (end, near), |t| self.separation(t, &mut hint))
+        advance(self.trial, [self.a.radius, self.b.radius], (end, near), |t| {
+            self.bound_separation(t, &mut hint)
+        })
     }
 
     /// A time in [0, end) at which the bodies cross, if advancement, a walk and samples find one.
@@ -114,7 +121,7 @@ impl Judge<'_> {
             if t >= end {
                 break;
             }
-            let gap = self.separation(t, &mut hint);
+            let gap = self.bound_separation(t, &mut hint);
             if gap == 0.0 {
                 return Some(t);
             }
@@ -135,7 +142,7 @@ impl Judge<'_> {
                 if !(0.0..=1.0).contains(&lo) || hi < lo {
                     return Err(Fault::Nonsense);
                 }
-                let left = self.separation(lo, &mut None);
+                let left = self.separation(lo);
                 free_until(lo)?;
                 if left == 0.0 && lo > 0.0 {
                     return Err(Fault::Penetrates);

@@ -53,6 +53,8 @@ fn the_tree_finds_what_all_pairs_give() {
         let (ta, tb) = (BoxTree::build(&a.0, &a.1), BoxTree::build(&b.0, &b.1));
         let found = separation(&ta, &tb, &at, &beside, &mut None);
         assert!((found - least).abs() < 1e-13, "{found} {least}");
+        let bound = bound_separation(&ta, &tb, &at, &beside, &mut None);
+        assert!(bound <= least + 1e-13 && bound >= 0.5 * least - 1e-13, "{bound} {least}");
     }
 }
 
