@@ -249,3 +249,66 @@ fn accelerated_motions() {
     let truth = (angle / 2.0).sqrt();
     assert!(contact.time_lo < truth + 1e-13 && contact.time_lo > truth - 1e-9, "{contact:?} {truth}");
 }
+
+/// Any finite numbers at all: an answer or an error within the budget, never a panic.
+#[test]
+fn arbitrary_numbers_neither_panic_nor_hang() {
+    use d2m_bvh::TriMesh;
+    use d2m_motion::LinearMotion;
+    use glam::DQuat;
+    let mut state = 0x1234_5678_9ABC_DEF0u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state ^ (state >> 31)
+    };
+    let special = [0.0, -0.0, 1.0, -1.0, 1e-300, 1e30, -1e59, 0.1, f64::MIN_POSITIVE, 3.0, 5e-324];
+    let mut wild = 0.0f64;
+    let (mut answered, mut refused) = (0, 0);
+    for round in 0..1500 {
+        // From tame to wild: a share of the numbers has arbitrary bits.
+        let mut number = |tame: f64| {
+            let bits = next();
+            match bits % 16 {
+                0 if round % 3 == 0 => {
+                    let x = f64::from_bits(next());
+                    if x.is_finite() { x } else { tame }
+                }
+                1..=3 if round % 3 > 0 => special[(bits >> 8) as usize % special.len()],
+                _ => tame * ((bits >> 11) as f64 / (1u64 << 52) as f64 - 1.0),
+            }
+        };
+        let mut vector = |tame: f64| DVec3::new(number(tame), number(tame), number(tame));
+        let meshes: Vec<_> = (0..2)
+            .map(|_| {
+                let v: Vec<DVec3> = (0..5).map(|_| vector(1.0)).collect();
+                TriMesh::try_new(v, vec![[0, 1, 2], [2, 1, 3], [0, 3, 4]])
+            })
+            .collect();
+        let motions: Vec<_> = (0..2)
+            .map(|_| {
+                let (q, w) = (vector(1.0), vector(1.0));
+                let q = DQuat::from_xyzw(q.x, q.y, q.z, w.x);
+                LinearMotion::try_new(vector(2.0), q, vector(4.0), vector(3.0))
+            })
+            .collect();
+        let ends = vector(1.0);
+        let Ok(window) = Window::try_new(ends.x.min(ends.y), ends.x.max(ends.y)) else { continue };
+        let ([Ok(a), Ok(b)], [Ok(m), Ok(n)]) = (&meshes[..], &motions[..]) else { continue };
+        let trees = [a, b].map(|t| SphereTree::new(t.clone()));
+        let options = QueryOptions::DEFAULT
+            .with_solid(Solid::Surface)
+            .with_budget(Budget::UNLIMITED.with_node_tests(3000));
+        let started = std::time::Instant::now();
+        match time_of_contact(Moving::new(&trees[0], m), Moving::new(&trees[1], n), window, &options) {
+            Ok(TimeOfContact::Undecided { clear_until }) => assert!(window.contains(clear_until), "{round}"),
+            Ok(TimeOfContact::Contact(c)) => assert!(window.contains(c.time_lo), "{round}: {c:?}"),
+            Ok(TimeOfContact::Separated) => {}
+            Err(_) => refused += 1,
+        }
+        answered += 1;
+        wild = wild.max(started.elapsed().as_secs_f64());
+    }
+    println!("{answered} answered, {refused} refused, slowest {wild:.3} s");
+    assert!(answered > 500, "{answered}");
+    assert!(wild < 60.0, "{wild}");
+}
