@@ -14,7 +14,7 @@ pub use query::last_search_counts;
 pub use query::{
     Budget, Contact, Distance, DistanceOptions, Mode, Moving, PairCache, Posed, QueryError, QueryOptions,
     Solid, StartState, TimeOfContact, Window, collide, colliding_pairs, distance, distance_within,
-    time_of_contact, try_colliding_pair,
+    time_of_contact, time_of_contact_batch, try_colliding_pair,
 };
 #[doc(hidden)]
 pub use search::SearchCounts;

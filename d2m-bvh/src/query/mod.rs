@@ -1,6 +1,7 @@
 //! What a query is asked and what it answers.
 
 mod any_motion;
+mod batch;
 mod cache;
 mod collide;
 mod contact;
@@ -15,6 +16,7 @@ mod static_pair;
 mod time_of_contact;
 mod window;
 
+pub use batch::time_of_contact_batch;
 pub use cache::PairCache;
 pub use collide::{collide, colliding_pairs, try_colliding_pair};
 pub use contact::{Contact, StartState, TimeOfContact};
