@@ -5,6 +5,7 @@ mod fit;
 pub(crate) mod margin;
 mod mesh_tree;
 pub(crate) mod node;
+mod refine;
 mod refit;
 #[cfg(feature = "serde")]
 mod serde_form;

@@ -3,6 +3,7 @@
 use super::fit::{Moments, dot, sub, triangle_axes};
 use super::margin::{UNIT_F64, round_up};
 use super::node::OrientedBox;
+use super::refine::Extremes;
 use crate::TriMesh;
 use glam::DVec3;
 
@@ -44,6 +45,9 @@ pub(super) fn unit_of(radius: f64) -> f64 {
     if power < radius { 2.0 * power } else { power }
 }
 
+/// Triangles that are enough to find the axes of a box.
+const MOST_LOOKED_AT: usize = 256;
+
 /// A mesh in local coordinates.
 pub(super) struct Surface<'a> {
     points: Vec<[f64; 3]>,
@@ -82,9 +86,24 @@ impl<'a> Surface<'a> {
         (dot(a, axis) + dot(b, axis) + dot(c, axis)) as f32
     }
 
-    /// The box of a part with the given axes: centre relative to `origin`, outward in real arithmetic. Also its size.
+    /// Axes turned for a smaller box. Of large parts only every few triangles are looked at.
+    fn refined(&self, part: &[u32], axes: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+        if part.len() == 1 {
+            return *axes;
+        }
+        let mut extremes = Extremes::new(axes);
+        let stride = (part.len() / MOST_LOOKED_AT).max(1);
+        for &triangle in part.iter().step_by(stride) {
+            for p in &self.corners(triangle) {
+                extremes.add(p);
+            }
+        }
+        extremes.refined()
+    }
+
+    /// The box of a part with about the given axes: centre relative to `origin`, outward in real arithmetic. Also its size.
     pub(super) fn enclose(&self, part: &[u32], axes: &[[f64; 3]; 3], origin: [f32; 3]) -> (OrientedBox, f32) {
-        let axes = axes.map(|axis| axis.map(|c| c as f32));
+        let axes = self.refined(part, axes).map(|axis| axis.map(|c| c as f32));
         let wide = axes.map(|axis| axis.map(f64::from));
         let from = origin.map(f64::from);
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
