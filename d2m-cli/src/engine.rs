@@ -77,6 +77,9 @@ impl Pair {
                     .with_tolerance(number("--tolerance", text, "a positive finite distance", |t| t > 0.0)?);
         }
         if let Some(text) = &arguments.min_separation {
+            if arguments.mode == Method::Paper {
+                return Err(Failure::at("--min-separation", "the reference method has none"));
+            }
             let wanted = "a finite distance that is not negative";
             options = options.with_min_separation(number("--min-separation", text, wanted, |d| d >= 0.0)?);
         }

@@ -85,7 +85,7 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
             "UNDECIDED".to_owned()
         }
         TimeOfContact::Contact(contact) => {
-            contact_lines(&mut line, contact);
+            contact_lines(&mut line, contact, start);
             format!("CONTACT at t = {}", contact.time_lo)
         }
     };
@@ -104,12 +104,16 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
     format!("{headline}\n{text}")
 }
 
-fn contact_lines(line: &mut dyn FnMut(&str, String), contact: &Contact) {
+fn contact_lines(line: &mut dyn FnMut(&str, String), contact: &Contact, window_start: f64) {
     let width = contact.time_hi - contact.time_lo;
     line("time", format!("[{}, {}]  width {width:.2e}", contact.time_lo, contact.time_hi));
     match contact.start {
         StartState::Apart => {
             line("certified", "no contact before; disjoint at the first of these times".to_owned());
+        }
+        // A later keyframe begins with the bodies within the tolerance of each other.
+        start if contact.time_lo > window_start => {
+            line("certified", format!("no contact before; {} at this time", start_word(start)));
         }
         start => line("certified", format!("in contact from the start of the window: {}", start_word(start))),
     }

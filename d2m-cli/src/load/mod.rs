@@ -2,6 +2,7 @@
 
 mod obj;
 mod ply;
+mod polygon;
 mod stl;
 
 use crate::failure::Failure;
@@ -75,11 +76,6 @@ impl From<MeshError> for LoadError {
     fn from(error: MeshError) -> Self {
         Self::new(error.to_string())
     }
-}
-
-/// Cuts a polygon into a fan of triangles about its first corner; one or two corners have no area and give none.
-fn fan(polygon: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
-    polygon.windows(2).skip(1).map(|pair| [polygon[0], pair[0], pair[1]])
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 //! Vertex n of the mesh is then the first `v` line, counted from 0, with that position.
 
 use super::LoadError;
+use super::polygon::triangulate;
 use d2m::bvh::TriMesh;
 use glam::DVec3;
 use std::collections::HashMap;
@@ -31,8 +32,15 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, LoadError> {
         let positions = model.mesh.positions.chunks_exact(3).map(DVec3::from_slice);
         let positions: Vec<u32> =
             positions.map(|position| numbers.get(&key(position)).copied().unwrap_or(u32::MAX)).collect();
-        let corners = model.mesh.indices.chunks_exact(3);
-        triangles.extend(corners.map(|t| [t[0], t[1], t[2]].map(|index| positions[index as usize])));
+        let mut corners = model.mesh.indices.iter().map(|&index| positions[index as usize]);
+        // No list of corner counts means triangles only.
+        let all_triangles = vec![3; model.mesh.indices.len() / 3];
+        let counts =
+            if model.mesh.face_arities.is_empty() { &all_triangles } else { &model.mesh.face_arities };
+        for &count in counts {
+            let polygon: Vec<u32> = corners.by_ref().take(count as usize).collect();
+            triangles.extend(triangulate(&polygon, &scan.vertices));
+        }
     }
     Ok(TriMesh::try_new(scan.vertices, triangles)?)
 }

@@ -1,6 +1,7 @@
 //! PLY, text or binary, read by `ply-rs-bw`.
 
-use super::{LoadError, fan};
+use super::LoadError;
+use super::polygon::triangulate;
 use d2m::bvh::TriMesh;
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -11,7 +12,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, LoadError> {
     let parser = Parser::<Element>::new();
     let header = parser.read_header(&mut reader).map_err(|error| fault(&error))?;
     let is_text = header.encoding == Encoding::Ascii;
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    let (mut vertices, mut polygons) = (Vec::new(), Vec::new());
     let mut line = reader.line();
     for (name, definition) in &header.elements {
         // Nothing would be read for each of them, however many the header states.
@@ -40,12 +41,13 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, LoadError> {
             }
             "face" => {
                 for (index, element) in elements.into_iter().enumerate() {
-                    triangles.extend(fan(&element.polygon().map_err(|reason| at(index, reason))?));
+                    polygons.push(element.polygon().map_err(|reason| at(index, reason))?);
                 }
             }
             _ => {}
         }
     }
+    let triangles = polygons.iter().flat_map(|polygon| triangulate(polygon, &vertices)).collect();
     Ok(TriMesh::try_new(vertices, triangles)?)
 }
 
