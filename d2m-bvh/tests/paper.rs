@@ -312,3 +312,23 @@ fn arbitrary_numbers_neither_panic_nor_hang() {
     assert!(answered > 500, "{answered}");
     assert!(wild < 60.0, "{wild}");
 }
+
+/// Two surfaces that coincide: every triangle touches, none crosses, and the answer takes no time.
+#[test]
+fn coincident_surfaces_are_answered_at_once() {
+    let n = 96;
+    let v =
+        (0..=n).flat_map(|i| (0..=n).map(move |j| glam::dvec3(f64::from(i), f64::from(j), 0.0))).collect();
+    let at = |i: i32, j: i32| (i * (n + 1) + j) as u32;
+    let cell =
+        |i, j| [[at(i, j), at(i + 1, j), at(i, j + 1)], [at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]];
+    let t = (0..n).flat_map(|i| (0..n).flat_map(move |j| cell(i, j))).collect();
+    let tree = SphereTree::new(d2m_bvh::TriMesh::try_new(v, t).unwrap());
+    let rest = d2m_motion::LinearMotion::REST;
+    let body = Moving::new(&tree, &rest);
+    let started = std::time::Instant::now();
+    let options = QueryOptions::DEFAULT.with_solid(Solid::Surface);
+    let answer = time_of_contact(body, body, Window::UNIT, &options).unwrap();
+    assert_eq!(answer.contact().map(|c| c.start), Some(d2m_bvh::StartState::Touching));
+    assert!(started.elapsed().as_secs_f64() < 5.0);
+}

@@ -278,3 +278,43 @@ fn budgets_are_honest() {
         }
     }
 }
+
+/// Any finite numbers at all: an answer within the budget, never a panic; and the features' own window is kept.
+#[test]
+fn arbitrary_numbers_neither_panic_nor_hang() {
+    let mut random = Random(99);
+    let special = [0.0, -0.0, 1.0, -1.0, 1e-300, 1e30, -1e59, 0.1, f64::MIN_POSITIVE, 3.0, 5e-324, 1e150];
+    for round in 0..1500 {
+        let mut number = |tame: f64| {
+            let x = random.number();
+            let pick = (x.abs() * 4096.0) as usize;
+            if pick % 5 < round % 3 { special[pick % special.len()] } else { tame * x }
+        };
+        let mut vector = |tame: f64| dvec3(number(tame), number(tame), number(tame));
+        let motions: Vec<_> = (0..2)
+            .map(|_| {
+                let q = vector(1.0);
+                let q = glam::DQuat::from_xyzw(q.x, q.y, q.z, 0.5);
+                LinearMotion::try_new(vector(2.0), q, vector(4.0), vector(3.0))
+            })
+            .collect();
+        let ends = vector(1.0);
+        let [Ok(a), Ok(b)] = &motions[..] else { continue };
+        let window = Interval::new(ends.x.min(ends.y), ends.x.max(ends.y));
+        let motion = RelativeMotion::new(a, b);
+        let options = OPTIONS.with_evaluations(500);
+        let ball = |v: DVec3| Sphere { center: v, radius: v.x.abs() };
+        let (p, q, r, s) = (vector(1.0), vector(1.0), vector(1.0), vector(1.0));
+        for found in [
+            point_triangle(&motion, p, &[q, r, s], window, &options),
+            edge_edge(&motion, &[p, q], &[r, s], window, &options),
+            sphere_sphere(&motion, &ball(p), &ball(q), window, &options),
+        ] {
+            match found {
+                RootSearch::Bracket(t) => assert!(window.lo() <= t.lo() && t.hi() <= window.hi(), "{round}"),
+                RootSearch::Undecided { clear_until } => assert!(window.contains(clear_until), "{round}"),
+                RootSearch::None => {}
+            }
+        }
+    }
+}

@@ -15,12 +15,16 @@ pub(crate) struct Meter {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Exhausted;
 
+/// The cap without any budget, about a minute of work: tests cost more here than in the default engine, whose cap is
+/// [`Budget::HARD_NODE_TESTS`].
+const MOST_TESTS: u64 = Budget::HARD_NODE_TESTS >> 4;
+
 /// Tests between two looks at the clock.
 const CLOCK_STRIDE: u32 = 128;
 
 impl Meter {
     pub(crate) fn new(budget: &Budget) -> Self {
-        let left = budget.node_tests.unwrap_or(Budget::HARD_NODE_TESTS).min(Budget::HARD_NODE_TESTS);
+        let left = budget.node_tests.unwrap_or(MOST_TESTS).min(MOST_TESTS);
         let deadline = budget.wall_clock.and_then(|limit| Instant::now().checked_add(limit));
         Self { left, deadline, until_clock: 1 }
     }
@@ -37,6 +41,14 @@ impl Meter {
             }
         }
         Ok(())
+    }
+
+    /// Takes the pieces of time that a feature search has looked at off the budget.
+    pub(crate) fn charge(&mut self, looks: u32) {
+        self.left = self.left.saturating_sub(u64::from(looks));
+        if self.deadline.is_some() {
+            self.until_clock = 1;
+        }
     }
 
     /// The most pieces of time that one feature search may evaluate.

@@ -45,7 +45,8 @@ pub(crate) fn enclose_distance(
             found.upper = upper;
             found.closest = Some(*pair);
         }
-        found.upper
+        // Nothing is closer than a common point.
+        if pair.detail.upper == 0.0 { f64::NEG_INFINITY } else { found.upper }
     });
     if !found.lower.is_finite() {
         found.lower = 0.0;

@@ -91,7 +91,9 @@ impl LeafPair<'_> {
                     FeaturePair::VertexFace { vertex, face }
                 };
                 let triangle_b = if swapped { own } else { face };
-                lower(best, pair.first_contact(searched), feature, triangle_b);
+                let found = pair.first_contact(searched);
+                meter.charge(pair.looks());
+                lower(best, found, feature, triangle_b);
             }
         }
         Ok(())
@@ -129,7 +131,9 @@ impl LeafPair<'_> {
                 meter.spend()?;
                 pair.set_evaluations(meter.evaluations());
                 let feature = FeaturePair::EdgeEdge { edge_a, edge_b };
-                lower(best, pair.first_contact(searched), feature, triangle_b);
+                let found = pair.first_contact(searched);
+                meter.charge(pair.looks());
+                lower(best, found, feature, triangle_b);
             }
         }
         Ok(())

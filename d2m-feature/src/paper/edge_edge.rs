@@ -51,6 +51,7 @@ pub struct EdgePair<'a> {
     observer: [DVec3; 2],
     jet: EdgeJet,
     options: PaperOptions,
+    looks: u32,
 }
 
 impl<'a> EdgePair<'a> {
@@ -62,12 +63,17 @@ impl<'a> EdgePair<'a> {
         frame: &RelativeFrame,
         options: &PaperOptions,
     ) -> Self {
-        Self { motion, mover, observer, jet: EdgeJet::new(frame, mover), options: *options }
+        Self { motion, mover, observer, jet: EdgeJet::new(frame, mover), options: *options, looks: 0 }
     }
 
     /// Replaces the most pieces of time that the search may evaluate.
     pub const fn set_evaluations(&mut self, evaluations: u32) {
         self.options.evaluations = evaluations;
+    }
+
+    /// How many pieces of time have been looked at so far: what a budget is charged with.
+    pub const fn looks(&self) -> u32 {
+        self.looks
     }
 
     /// The first contact in `window`.
@@ -129,6 +135,7 @@ impl SecondOrder for EdgePair<'_> {
 
 impl Gamma for EdgePair<'_> {
     fn may_touch(&mut self, t: Interval) -> bool {
+        self.looks = self.looks.saturating_add(1);
         let x = self.look_at(t);
         gamma_edge_edge(&self.jet, &self.observer, x)
     }

@@ -87,6 +87,7 @@ pub struct PointFace<'a> {
     face: Face<'a>,
     jet: PointJet,
     options: PaperOptions,
+    looks: u32,
 }
 
 impl<'a> PointFace<'a> {
@@ -98,7 +99,12 @@ impl<'a> PointFace<'a> {
         jet: PointJet,
         options: &PaperOptions,
     ) -> Self {
-        Self { motion, point, face, jet, options: *options }
+        Self { motion, point, face, jet, options: *options, looks: 0 }
+    }
+
+    /// How many pieces of time have been looked at so far: what a budget is charged with.
+    pub const fn looks(&self) -> u32 {
+        self.looks
     }
 
     /// The first contact in `window`.
@@ -154,6 +160,7 @@ impl SecondOrder for PointFace<'_> {
 
 impl Gamma for PointFace<'_> {
     fn may_touch(&mut self, t: Interval) -> bool {
+        self.looks = self.looks.saturating_add(1);
         let x = self.look_at(t);
         let normal = &self.face.normal;
         !normal.certainly_apart(self.jet.range_along(normal.vector, x))
