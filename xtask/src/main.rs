@@ -47,8 +47,19 @@ enum Task {
     Trials(trials::Options),
 }
 
+impl Task {
+    /// Does its result depend on how fast the code is?
+    fn wants_optimised_code(&self) -> bool {
+        !matches!(self, Self::Ci(_) | Self::Tidy | Self::Report(_) | Self::Trials(_))
+    }
+}
+
 fn main() -> ExitCode {
-    let result = match Arguments::parse().task {
+    let task = Arguments::parse().task;
+    if cfg!(debug_assertions) && task.wants_optimised_code() {
+        return rerun_optimised();
+    }
+    let result = match task {
         Task::Ci(options) => ci::run(&options),
         Task::Tidy => tidy::run(),
         Task::Accuracy(options) => accuracy::run(&options),
@@ -62,6 +73,22 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("xtask: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The same call once more, built for release. (`cargo xtask ci` does not pay for that build.)
+fn rerun_optimised() -> ExitCode {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let status = std::process::Command::new(cargo)
+        .args(["run", "--release", "--quiet", "--package", "xtask", "--"])
+        .args(std::env::args_os().skip(1))
+        .status();
+    match status {
+        Ok(status) => status.code().map_or(ExitCode::FAILURE, |code| ExitCode::from(code as u8)),
+        Err(error) => {
+            eprintln!("xtask: cargo does not start: {error}");
             ExitCode::FAILURE
         }
     }
