@@ -19,7 +19,8 @@ const FIELDS: [&str; 13] = ["qw", "qx", "qy", "qz", "x1", "x2", "x3", "v1", "v2"
 /// Reads a file; blank lines are skipped.
 pub(crate) fn load(path: &Path) -> Result<Vec<Trial>, Failure> {
     let bytes = read(path)?;
-    parse(&String::from_utf8_lossy(&bytes)).map_err(|(line, reason)| match line {
+    let text = String::from_utf8_lossy(&bytes);
+    parse(text.trim_start_matches('\u{feff}')).map_err(|(line, reason)| match line {
         Some(line) => Failure::Input(format!("{}, line {line}: {reason}", path.display())),
         None => Failure::at(path.display(), reason),
     })

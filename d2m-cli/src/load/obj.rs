@@ -13,7 +13,8 @@ use std::collections::HashMap;
 use std::fmt::Write;
 
 pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, LoadError> {
-    let scan = Scan::new(&String::from_utf8_lossy(bytes))?;
+    let text = String::from_utf8_lossy(bytes);
+    let scan = Scan::new(text.trim_start_matches('\u{feff}'))?;
     let options = tobj::LoadOptions {
         triangulate: true,
         ignore_points: true,

@@ -44,6 +44,10 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, LoadError> {
                     polygons.push(element.polygon().map_err(|reason| at(index, reason))?);
                 }
             }
+            // Leaving them out would lose surface.
+            "tristrips" if !elements.is_empty() => {
+                return Err(LoadError::new("element \"tristrips\" is not supported: faces are needed"));
+            }
             _ => {}
         }
     }

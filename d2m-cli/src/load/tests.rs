@@ -107,6 +107,12 @@ fn obj_dialects() {
 }
 
 #[test]
+fn a_byte_order_mark_hides_no_vertex() {
+    let text = format!("\u{feff}{}", obj_text(&tetrahedron()));
+    assert_eq!(obj::parse(text.as_bytes()).unwrap(), tetrahedron());
+}
+
+#[test]
 fn polygons_in_ply_become_fans() {
     let text = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n\
                 element face 3\nproperty list uchar uint vertex_index\nelement edge 1\nproperty int vertex1\nend_header\n\
