@@ -111,7 +111,8 @@ fn cbrt_at(x: f64) -> Ends {
     // One step of Newton's method in double-double: the error of y is squared.
     let square = Dd::product(y, y);
     let rest = Dd(m, 0.0).minus(square.times(Dd(y, 0.0)));
-    if rest.0 == 0.0 {
+    // With at most 17 bits, y³ is a double, and so the rest is exact: y is the root.
+    if rest.0 == 0.0 && y.to_bits().trailing_zeros() >= 36 {
         return Scaled { value: Dd(y, 0.0), exponent: k }.ends((y, y));
     }
     let value = Dd::sum(y, rest.0 / (3.0 * square.0));
