@@ -180,20 +180,23 @@ fn placed(
 ) -> FirstContact {
     let motion = &framed.motion;
     let planes = &triangle.planes;
-    let path = RigidPath::new(framed, motion.place_a(point), DVec3::ZERO, planes.extent);
-    let (separation, reach) = (options.separation(), path.reach());
+    let separation = options.separation();
+    let path = RigidPath::new(framed, motion.place_a(point), DVec3::ZERO, planes.extent, separation);
+    let reach = path.reach();
     let tolerance = options.wanted_tolerance(planes.size, reach);
     if path.rounding() <= 0.25 * tolerance {
+        let window = path.window();
         let test = PointTriangleTest { path, planes, tolerance, separation };
-        return answer(test, motion, options);
+        return answer(test, window, motion, options);
     }
     let framed = FramedMotion::new(motion.anchored(point, triangle.vertices[0]));
     let planes = TrianglePlanes::new(triangle.vertices.map(|v| framed.motion.place_b(v)));
-    let path = RigidPath::new(&framed, DVec3::ZERO, DVec3::ZERO, planes.extent);
+    let path = RigidPath::new(&framed, DVec3::ZERO, DVec3::ZERO, planes.extent, separation);
     let tolerance =
         options.wanted_tolerance(planes.size, reach).max(4.0 * path.rounding()).max(path.time_rounding());
+    let window = path.window();
     let test = PointTriangleTest { path, planes: &planes, tolerance, separation };
-    answer(test, motion, options)
+    answer(test, window, motion, options)
 }
 
 fn edge_edge(
@@ -212,7 +215,7 @@ fn edge_edge(
     let build = |framed| {
         let (point, half_a, middle, half_b) = parts(framed);
         let extent = (middle.length() + half_a.length() + half_b.length()) * UP;
-        let path = RigidPath::new(framed, point, half_a, extent);
+        let path = RigidPath::new(framed, point, half_a, extent, separation);
         let half_lengths = (half_a.length() * UP, half_b.length() * UP);
         EdgeEdgeTest { path, middle, half: half_b, half_lengths, tolerance: 0.0, separation }
     };
@@ -221,7 +224,8 @@ fn edge_edge(
     let reach = test.path.reach();
     test.tolerance = options.wanted_tolerance(length, reach);
     if test.path.rounding() <= 0.25 * test.tolerance {
-        return answer(test, &framed.motion, options);
+        let window = test.path.window();
+        return answer(test, window, &framed.motion, options);
     }
     let anchored = FramedMotion::new(framed.motion.anchored(edge_a[0], edge_b[0]));
     let mut test = build(&anchored);
@@ -229,7 +233,8 @@ fn edge_edge(
         .wanted_tolerance(length, reach)
         .max(4.0 * test.path.rounding())
         .max(test.path.time_rounding());
-    answer(test, &framed.motion, options)
+    let window = test.path.window();
+    answer(test, window, &framed.motion, options)
 }
 
 fn sphere_sphere(
@@ -249,7 +254,7 @@ fn sphere_sphere(
     ) -> SphereSphereTest<RigidPath<'_>> {
         let centre = framed.motion.place_b(centres[1]);
         let extent = (centre.length() + radii.1) * UP;
-        let path = RigidPath::new(framed, framed.motion.place_a(centres[0]), DVec3::ZERO, extent);
+        let path = RigidPath::new(framed, framed.motion.place_a(centres[0]), DVec3::ZERO, extent, separation);
         SphereSphereTest { path, centre, radii, tolerance: 0.0, separation, size: radii.1 }
     }
     let centres = [ball_a.0, ball_b.0];
@@ -257,19 +262,32 @@ fn sphere_sphere(
     let reach = test.path.reach();
     test.tolerance = options.wanted_tolerance(sum, reach);
     if test.path.rounding() <= 0.25 * test.tolerance {
-        return answer(test, &framed.motion, options);
+        let window = test.path.window();
+        return answer(test, window, &framed.motion, options);
     }
     let anchored = FramedMotion::new(framed.motion.anchored(centres[0], centres[1]));
     let mut test = build(&anchored, centres, radii, separation);
     test.tolerance =
         options.wanted_tolerance(sum, reach).max(4.0 * test.path.rounding()).max(test.path.time_rounding());
-    answer(test, &framed.motion, options)
+    let window = test.path.window();
+    answer(test, window, &framed.motion, options)
 }
 
 /// Isolates and tells the answer in real time.
-fn answer<T: PieceTest>(mut test: T, motion: &RelativeMotion, options: &ContactOptions) -> FirstContact {
-    let limits = IsolatorOptions::new().with_max_evaluations(options.max_evaluations);
-    let window = Piece { lo: 0.0, hi: motion.duration() };
+fn answer<T: PieceTest>(
+    mut test: T,
+    window: Option<Piece>,
+    motion: &RelativeMotion,
+    options: &ContactOptions,
+) -> FirstContact {
+    let Some(window) = window else {
+        return FirstContact::Clear;
+    };
+    let mut limits = IsolatorOptions::new().with_max_evaluations(options.max_evaluations);
+    if window.lo > 0.0 {
+        // It starts where the spheres about both features meet.
+        limits = limits.with_start_apart();
+    }
     let Isolation { root, .. } = isolate(&mut test, window, &limits);
     match root {
         FirstRoot::Clear => FirstContact::Clear,

@@ -26,11 +26,15 @@ impl FramedMotion {
     }
 }
 
+/// Part of the window that may be left before it is searched as a whole, with the shared frame in its middle.
+const SHARED: f64 = 0.8;
+
 /// A point and a direction of A with a constant relative twist.
 pub(crate) struct RigidPath<'a> {
     motion: &'a FramedMotion,
     point: DVec3,
     direction: DVec3,
+    window: Option<Piece>,
     point_remainder: Remainder,
     direction_remainder: Remainder,
     speed: f64,
@@ -38,20 +42,51 @@ pub(crate) struct RigidPath<'a> {
 }
 
 impl<'a> RigidPath<'a> {
-    /// `point` and `direction` as placed at the epoch; `extent` bounds the points of B that they are compared with.
-    pub(crate) fn new(framed: &'a FramedMotion, point: DVec3, direction: DVec3, extent: f64) -> Self {
+    /// `point` and `direction` as placed at the epoch; `extent` bounds the points of B that they are compared with,
+    /// `separation` is the distance that counts as contact.
+    ///
+    /// Contact needs the followed points within `|point| + |direction| + extent + separation` of each other: that
+    /// part of the window is all that needs a look, and there the bounds are smaller.
+    pub(crate) fn new(
+        framed: &'a FramedMotion,
+        point: DVec3,
+        direction: DVec3,
+        extent: f64,
+        separation: f64,
+    ) -> Self {
         let up = 1.0 + 1e-14;
         let motion = &framed.motion;
         let (radius, length) = (point.length() * up, direction.length() * up);
+        let whole = Piece { lo: 0.0, hi: motion.duration() };
+        let (mut window, mut reach) = (Some(whole), f64::INFINITY);
+        if !motion.is_anchored() {
+            let distance = (radius + length + extent + separation) * up;
+            match motion.times_within(distance) {
+                None => window = None,
+                // Not worth another frame than the shared one in the middle.
+                Some((lo, hi)) if hi - lo > SHARED * whole.hi => {}
+                Some((lo, hi)) => {
+                    window = Some(Piece { lo, hi });
+                    // The pad of `times_within` is below this.
+                    reach = (distance + 1e-13 * motion.bound_reach(0.0)) * up;
+                }
+            }
+        }
         Self {
             motion: framed,
             point,
             direction,
-            point_remainder: motion.point_remainder(radius, extent),
+            window,
+            point_remainder: motion.point_remainder_within(radius, extent, reach),
             direction_remainder: motion.direction_remainder(length),
-            speed: motion.bound_speed(radius),
+            speed: motion.bound_speed_within(radius, reach),
             direction_speed: motion.bound_direction_derivative(1) * length * up,
         }
+    }
+
+    /// The part of the window in which a contact is possible at all.
+    pub(crate) const fn window(&self) -> Option<Piece> {
+        self.window
     }
 
     /// How far the point can be from the origin of B's frame over the window.

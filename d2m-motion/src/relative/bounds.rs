@@ -63,12 +63,60 @@ impl RelativeMotion {
         (self.bounds.reach + radius + self.arm()) * UP
     }
 
+    /// The part of the window (τ) in which the followed points come within `distance` of each other, rounded
+    /// outward; `None` if they never do. Straight relative motion of two points: no rotation matters.
+    ///
+    /// `|g + uτ| ≤ R` for `(τ − τ*)² ≤ (R² − d²)/|u|²`, `τ* = −g·u/|u|²`, `d = |g × u|/|u|`. R is padded by
+    /// 64·2⁻⁵³(|g| + |u|T): more than the errors of g, u, d and of |u|τ* (≤ |g|).
+    ///
+    /// ```
+    /// use d2m_motion::{LinearMotion, RelativeMotion};
+    /// use glam::DVec3;
+    /// let passing = LinearMotion::REST.with_position(-4.0 * DVec3::X).with_linear_velocity(8.0 * DVec3::X);
+    /// let relative = RelativeMotion::new(&passing, &LinearMotion::REST, 0.0, 1.0);
+    /// let (from, to) = relative.times_within(2.0).unwrap();
+    /// assert!(from <= 0.25 && from > 0.2499 && to >= 0.75 && to < 0.7501);
+    /// let beside = RelativeMotion::new(&passing.with_position(DVec3::splat(-4.0)), &LinearMotion::REST, 0.0, 1.0);
+    /// assert_eq!(beside.times_within(2.0), None);
+    /// ```
+    pub fn times_within(&self, distance: f64) -> Option<(f64, f64)> {
+        let (g, u) = (self.offset, self.velocity);
+        let square = u.length_squared();
+        let size = g.length();
+        let pad = 64.0 * UNIT * (size + self.bounds.speed * self.duration);
+        let radius = distance * UP + pad;
+        if !square.is_normal() {
+            // At rest, or out of the range of squares.
+            let apart = u == DVec3::ZERO && size > radius;
+            return (!apart).then_some((0.0, self.duration));
+        }
+        let speed = square.sqrt();
+        let nearest = g.cross(u).length() / speed;
+        if nearest > radius {
+            return None;
+        }
+        let half = ((radius - nearest) * (radius + nearest)).sqrt() / speed * UP;
+        let middle = -g.dot(u) / square;
+        let rounding = 16.0 * UNIT * (middle.abs() + half);
+        let (from, to) = (middle - half - rounding, middle + half + rounding);
+        if to < 0.0 || from > self.duration {
+            return None;
+        }
+        // f64::max and min drop a NaN: then it is the whole window.
+        Some((from.max(0.0), to.min(self.duration)))
+    }
+
     /// Bound V of the speed of a point of A within `radius` of A's followed point: `U + bY + wρ`.
     ///
     /// With an anchor, `radius` is from the anchor and the arm of the anchor is added.
     pub fn bound_speed(&self, radius: f64) -> f64 {
+        self.bound_speed_within(radius, self.bounds.reach)
+    }
+
+    /// The same while the followed points are within `reach` of each other: `Y = reach`.
+    pub fn bound_speed_within(&self, radius: f64, reach: f64) -> f64 {
         let k = &self.bounds;
-        (k.speed + k.b * k.reach + k.w * (radius + self.arm())) * UP
+        (k.speed + k.b * reach.min(k.reach) + k.w * (radius + self.arm())) * UP
     }
 
     /// Bound of the acceleration: `b(2U + bY) + K2·ρ`.
@@ -79,8 +127,13 @@ impl RelativeMotion {
 
     /// Bound M3 of the third derivative: `b²(3U + bY) + K3·ρ`.
     pub fn bound_jerk(&self, radius: f64) -> f64 {
+        self.bound_jerk_within(radius, self.bounds.reach)
+    }
+
+    /// The same while the followed points are within `reach` of each other.
+    fn bound_jerk_within(&self, radius: f64, reach: f64) -> f64 {
         let k = &self.bounds;
-        (k.b * k.b * (3.0 * k.speed + k.b * k.reach) + k.k3 * (radius + self.arm())) * UP
+        (k.b * k.b * (3.0 * k.speed + k.b * reach.min(k.reach)) + k.k3 * (radius + self.arm())) * UP
     }
 
     /// Bound of the k-th derivative of a direction of A of length 1, k = 1, 2, 3: `w`, `K2`, `K3`.
@@ -100,8 +153,15 @@ impl RelativeMotion {
     /// points of B of length at most `extent`: `E(h) + M3·h³/6`, `E(h) = k(S0 + S1·h + S2·h²)`,
     /// `S0 = Y + ρ + extent`, `S1 = 2(U + (a + b)S0)`, `S2 = 4((a + b)²S0 + bU)`.
     pub fn point_remainder(&self, radius: f64, extent: f64) -> Remainder {
+        self.point_remainder_within(radius, extent, self.bounds.reach)
+    }
+
+    /// The same for times at which the followed points are within `reach` of each other: `Y = reach`, plus 8·2⁻⁵³ of
+    /// the window's Y for the rounding of g + uτ itself.
+    pub fn point_remainder_within(&self, radius: f64, extent: f64, reach: f64) -> Remainder {
         let k = &self.bounds;
-        let s0 = k.reach + radius + extent + self.arm();
+        let here = if reach < k.reach { reach + k.reach * (8.0 * UNIT / k.rounding) } else { k.reach };
+        let s0 = here + radius + extent + self.arm();
         let turn = k.a + k.b;
         // An anchored frame brings the rounding of its own position: see `Frame::point_jet`.
         let e0 = if self.anchor.is_some() { (radius + extent) * k.rounding } else { s0 * k.rounding };
@@ -109,7 +169,7 @@ impl RelativeMotion {
             e0: e0 * UP,
             e1: 2.0 * (k.speed + turn * s0) * k.rounding * UP,
             e2: 4.0 * (turn * turn * s0 + k.b * k.speed) * k.rounding * UP,
-            m3: self.bound_jerk(radius),
+            m3: self.bound_jerk_within(radius, reach),
         }
     }
 

@@ -235,3 +235,43 @@ fn the_epoch_and_the_clock_are_rounded_outward() {
     let lost = RelativeMotion::new(&spinning, &LinearMotion::REST, 0.0, 1.0);
     assert_eq!(lost.point_remainder(1.0, 1.0).e0, f64::INFINITY);
 }
+
+#[test]
+fn the_part_of_the_window_within_reach_is_whole_and_its_remainders_hold() {
+    let mut random = Random(14);
+    let (mut never, mut part, mut inside) = (0, 0, 0);
+    for i in 0..20_000 {
+        let (motion, arm) = sample(&mut random, i);
+        let distance = motion.bounds.reach * random.unit();
+        let times = motion.times_within(distance);
+        match times {
+            None => never += 1,
+            Some((from, to)) => part += usize::from(to - from < 0.8 * motion.duration()),
+        }
+        let remainder = motion.point_remainder_within(arm.length(), 0.0, distance * (1.0 + 1e-12));
+        for j in 0..=8 {
+            let tau = motion.duration() * f64::from(j) / 8.0;
+            let at = DoubleDouble::from_f64(tau);
+            let x = [0, 1, 2].map(|i| motion.exact.offset[i].add(motion.exact.velocity[i].mul(at)).hi);
+            if DVec3::from_array(x).length() > distance * (1.0 - 1e-15) {
+                continue;
+            }
+            inside += 1;
+            let (from, to) = times.expect("a time within the distance");
+            assert!(from <= tau && tau <= to, "{motion:?} {distance} {tau}");
+            let jet = motion.point_jet(tau, arm, remainder);
+            let h = 0.01 * motion.duration();
+            for s in [-h, h] {
+                let near = DoubleDouble::from_f64(tau).add_f64(s);
+                let y = [0, 1, 2].map(|i| motion.exact.offset[i].add(motion.exact.velocity[i].mul(near)).hi);
+                if DVec3::from_array(y).length() <= distance {
+                    let error = difference(exact(&motion, arm, near), jet.p, jet.v, jet.a, s);
+                    assert!(error <= remainder.bound(h), "{error:e}");
+                }
+            }
+            let now = difference(exact(&motion, arm, at), jet.p, jet.v, jet.a, 0.0);
+            assert!(now <= remainder.e0, "{now:e} {:e}", remainder.e0);
+        }
+    }
+    assert!(never > 1000 && part > 1000 && inside > 10_000, "{never} {part} {inside}");
+}

@@ -85,7 +85,7 @@ pub fn isolate<T: PieceTest>(test: &mut T, window: Piece, options: &IsolatorOpti
     let mut evaluations = 0;
     // A time at which the distance was seen within the tolerance; nothing to its right matters.
     let mut seen: Option<(f64, f64)> = None;
-    let mut start_measured = false;
+    let mut start_measured = options.start_apart;
     let tolerance = test.tolerance();
     // No piece is narrower than a few units in the last place of the times it is made of.
     let resolution = test.resolution().max(4.0 * f64::EPSILON * window.lo.abs().max(window.hi.abs()));
