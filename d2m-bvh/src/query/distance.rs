@@ -216,6 +216,8 @@ struct Closest<'a> {
     upper_key: f32,
     /// Least lower bound of a pair whose enclosure was wider than expected.
     loose: f64,
+    /// The best pair's own direction; before there is one, from centre to centre.
+    along: [[f32; 3]; 2],
 }
 
 impl Closest<'_> {
@@ -241,6 +243,9 @@ impl Closest<'_> {
             self.best = Some(Best { distance, triangles, lower: 0.0 });
             self.upper = distance.upper;
             self.upper_key = round_up(distance.upper);
+            if distance.lower > 0.0 {
+                self.along = self.scene.directions(distance.direction);
+            }
         }
     }
 }
@@ -258,8 +263,9 @@ impl Task for Search<'_> {
     fn run<L: Lanes>(self) -> Found {
         let scene = self.scene;
         let upper = self.limit;
-        let mut closest =
-            Closest { scene, best: None, upper, upper_key: round_up(upper), loose: f64::INFINITY };
+        let along = scene.directions(scene.pose.offset);
+        let upper_key = round_up(upper);
+        let mut closest = Closest { scene, best: None, upper, upper_key, loose: f64::INFINITY, along };
         if let Some(triangles) = self.first {
             closest.compare(triangles);
         }
@@ -282,7 +288,7 @@ impl Task for Search<'_> {
             }
             match scene.step(pair) {
                 Step::Open(wide, node) => {
-                    let (bounds, used) = scene.bounds::<L>(wide, node, pair[1 - wide]);
+                    let (bounds, used) = scene.bounds::<L>(wide, node, pair[1 - wide], &closest.along);
                     let mut least: Option<(f32, [u32; 2])> = None;
                     for (lane, &bound) in bounds[..used].iter().enumerate() {
                         // Also when the bound is not a number.

@@ -33,6 +33,9 @@ pub(super) struct Placed {
     half: [f32; 3],
     radius: f32,
     margin: f32,
+    /// One more direction to look along, wide body's axes, of length at most one; what the box reaches along it.
+    along: [f32; 3],
+    reach_along: f32,
 }
 
 impl Placed {
@@ -48,8 +51,25 @@ impl Placed {
             half: [half[0] * ratio, half[1] * ratio, half[2] * ratio],
             radius: round_up(radius),
             margin: round_up(GAP_ERROR * (norm + f64::from(wide.extent) + radius) + side.floor),
+            along: [0.0; 3],
+            reach_along: 0.0,
         }
     }
+
+    /// With a direction of length at most one, wide body's axes.
+    #[inline(always)]
+    pub(super) fn looking_along(mut self, n: [f32; 3]) -> Self {
+        let (b, k) = (&self.axes, &self.half);
+        self.reach_along = size(n, b[0]) * k[0] + size(n, b[1]) * k[1] + size(n, b[2]) * k[2];
+        self.along = n;
+        self
+    }
+}
+
+/// |n·a|.
+#[inline(always)]
+fn size(n: [f32; 3], a: [f32; 3]) -> f32 {
+    (n[0] * a[0] + n[1] * a[1] + n[2] * a[2]).abs()
 }
 
 #[inline(always)]
@@ -105,10 +125,12 @@ fn gap<L: Lanes>(to: &[L; 3], n: &[L; 3], own: L, other: &[L; 3], size: [L; 3], 
     (dot(to, n).abs() - (own + dot(other, &size)) - margin).max(L::splat(0.0))
 }
 
-/// Gaps along the three axes of each lane's box, and along the three of the single box; not below zero. Last, the
-/// squared distance of the centres.
+/// Gaps along the three axes of each lane's box, and along the three of the single box.
+type Gaps<L> = ([L; 3], [L; 3]);
+
+/// The gaps, not below zero, and the vectors between the centres.
 #[inline(always)]
-fn gaps<L: Lanes>(wide: &WideNode, placed: &Placed) -> ([L; 3], [L; 3], L) {
+fn gaps<L: Lanes>(wide: &WideNode, placed: &Placed) -> (Gaps<L>, [L; 3]) {
     let center = load::<L>(&wide.center);
     let at = splat::<L>(&placed.center);
     let to = [at[0] - center[0], at[1] - center[1], at[2] - center[2]];
@@ -128,24 +150,30 @@ fn gaps<L: Lanes>(wide: &WideNode, placed: &Placed) -> ([L; 3], [L; 3], L) {
         gap(&to, &b[1], k[1], &h, [s[0][1], s[1][1], s[2][1]], m),
         gap(&to, &b[2], k[2], &h, [s[0][2], s[1][2], s[2][2]], m),
     ];
-    (own, foreign, dot(&to, &to))
+    ((own, foreign), to)
 }
 
 /// Lower bounds on the distances from the single box to each lane's box, in the working unit. A lane that holds no
 /// box may get any value.
 #[inline(always)]
 pub(super) fn lower_bounds<L: Lanes>(wide: &WideNode, placed: &Placed, to_work: f32) -> [f32; 8] {
-    let (own, foreign, square) = gaps::<L>(wide, placed);
+    let ((own, foreign), to) = gaps::<L>(wide, placed);
     // |d|²(1 + 16u) ≥ Σ gap² for either frame: the distance of the box to the other's hull with parallel sides.
     let boxes = dot(&own, &own).max(dot(&foreign, &foreign)).sqrt();
-    let balls = square.sqrt() - L::load(&wide.radius) - L::splat(placed.radius) - L::splat(placed.margin);
-    (boxes.max(balls) * L::splat(NORM_FACTOR) * L::splat(to_work)).store()
+    let margin = L::splat(placed.margin);
+    let balls = dot(&to, &to).sqrt() - L::load(&wide.radius) - L::splat(placed.radius) - margin;
+    // Along one more direction, as it is rounded: its length is at most one.
+    let n = splat::<L>(&placed.along);
+    let axes = [load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]), load::<L>(&wide.axes[2])];
+    let half = load::<L>(&wide.half_extent);
+    let along = gap(&to, &n, L::splat(placed.reach_along), &half, sizes(&n, &axes), margin);
+    (boxes.max(balls).max(along) * L::splat(NORM_FACTOR) * L::splat(to_work)).store()
 }
 
 /// Bit i is set when lane i is not proven apart from the single box.
 #[inline(always)]
 pub(super) fn overlaps<L: Lanes>(wide: &WideNode, placed: &Placed) -> u32 {
-    let (own, foreign, _) = gaps::<L>(wide, placed);
+    let ((own, foreign), _) = gaps::<L>(wide, placed);
     let most = own[0].max(own[1]).max(own[2].max(foreign[0])).max(foreign[1].max(foreign[2]));
     let used = (1u32 << wide.used.min(8)) - 1;
     !L::splat(0.0).less_bits(most) & used
@@ -166,6 +194,6 @@ impl Placed {
 /// The six gaps as computed before anything is taken off; zero where negative.
 #[cfg(test)]
 pub(super) fn margin_free_gaps<L: Lanes>(wide: &WideNode, placed: &Placed) -> Vec<[f32; 8]> {
-    let (own, foreign, _) = gaps::<L>(wide, &Placed { margin: 0.0, ..*placed });
+    let ((own, foreign), _) = gaps::<L>(wide, &Placed { margin: 0.0, ..*placed });
     own.into_iter().chain(foreign).map(L::store).collect()
 }

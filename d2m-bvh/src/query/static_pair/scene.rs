@@ -3,7 +3,7 @@
 use super::RelativePose;
 use super::node_test::{Placed, Side, lower_bounds, overlaps};
 use crate::search::Lanes;
-use crate::tree::margin::UNIT_F64;
+use crate::tree::margin::{UNIT_F32, UNIT_F64};
 use crate::tree::node::{Below, WIDTH};
 use crate::{MeshTree, Posed, QueryError};
 use glam::DVec3;
@@ -133,10 +133,26 @@ impl<'a> Scene<'a> {
         Placed::new(&self.sides[wide], &boxed, from.origin, &self.trees[wide].nodes[node as usize])
     }
 
-    /// Lower bounds on the distances of the boxes of a node of body `wide` from a box of the other body, working units.
+    /// A direction (B's axes) in the axes of A and of B, shortened to a length of at most one.
+    pub(crate) fn directions(&self, n: DVec3) -> [[f32; 3]; 2] {
+        // Rounding to f32 adds at most √3·2⁻²⁴ to the length.
+        let n = n.normalize_or_zero() * (1.0 - 4.0 * UNIT_F32);
+        let r = &self.pose.rotation;
+        let narrow = |v: DVec3| [v.x as f32, v.y as f32, v.z as f32];
+        [narrow(DVec3::new(r[0].dot(n), r[1].dot(n), r[2].dot(n))), narrow(n)]
+    }
+
+    /// Lower bounds on the distances of the boxes of a node of body `wide` from a box of the other body, working
+    /// units. Looks along the axes of both and along `along` (from [`Self::directions`]).
     #[inline(always)]
-    pub(crate) fn bounds<L: Lanes>(&self, wide: usize, node: u32, single: u32) -> ([f32; 8], usize) {
-        let placed = self.placed(wide, node, single);
+    pub(crate) fn bounds<L: Lanes>(
+        &self,
+        wide: usize,
+        node: u32,
+        single: u32,
+        along: &[[f32; 3]; 2],
+    ) -> ([f32; 8], usize) {
+        let placed = self.placed(wide, node, single).looking_along(along[wide]);
         let node = &self.trees[wide].nodes[node as usize];
         (lower_bounds::<L>(node, &placed, self.sides[wide].to_work), (node.used as usize).min(WIDTH))
     }
