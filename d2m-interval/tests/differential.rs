@@ -82,3 +82,36 @@ fn mutants_of_the_quadrant_die() {
         if k as i64 % 2 == 0 { s } else { -s }
     });
 }
+
+/// Where the reduced argument cancels, where the fast path ends, and at any size.
+#[test]
+fn sine_and_cosine_near_multiples_of_half_pi_and_at_any_size() {
+    let mut arguments = vec![
+        524_287.999_999_999_9,
+        524_288.0,
+        524_288.000_000_000_1,
+        f64::MAX,
+        6_381_956_970_095_103.0 * 2.0_f64.powi(797),
+    ];
+    for k in (1..334_000).step_by(1499) {
+        let x = f64::from(k) * std::f64::consts::FRAC_PI_2;
+        arguments.extend([x, x.next_up(), x.next_down(), x * (1.0 + 1e-9)]);
+    }
+    for exponent in (20..1023).step_by(7) {
+        arguments.push(1.234_567_890_123 * 2.0_f64.powi(exponent));
+    }
+    let fits = |result: Interval, exact: &oracle::Fixed| {
+        let tightest = Interval::new(oracle::to_double(exact, false), oracle::to_double(exact, true));
+        let ulp = tightest.mag().next_up() - tightest.mag();
+        tightest.is_subset(result) && result.is_subset(tightest + Interval::new(-4.0 * ulp, 4.0 * ulp))
+    };
+    for x in arguments {
+        for x in [x, -x] {
+            let (sin, cos) = Interval::point(x).sin_cos();
+            let (s, c) = oracle::sin_cos(&oracle::fixed(x));
+            assert!(fits(sin, &s) && fits(cos, &c), "{x:e}: {sin:?} {cos:?}");
+            let tan = Interval::point(x).tan();
+            assert!(fits(tan, &oracle::div(&s, &c)), "{x:e}: {tan:?}");
+        }
+    }
+}
