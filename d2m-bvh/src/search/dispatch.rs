@@ -16,6 +16,18 @@ pub(crate) enum Isa {
 }
 
 impl Isa {
+    /// All that this processor has.
+    #[cfg(test)]
+    pub(crate) fn all() -> Vec<Self> {
+        match Self::best() {
+            Self::Portable => vec![Self::Portable],
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => vec![Self::Portable, Self::Avx2],
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => vec![Self::Portable, Self::Avx2, Self::Avx512],
+        }
+    }
+
     /// The best one of this processor.
     pub(crate) fn best() -> Self {
         #[cfg(target_arch = "x86_64")]

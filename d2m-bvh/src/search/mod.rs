@@ -9,6 +9,8 @@ mod node_test;
 mod quad;
 mod queue;
 mod scene;
+#[cfg(test)]
+mod tests;
 mod triangle_pair;
 mod window;
 

@@ -111,6 +111,11 @@ pub(crate) struct Placed {
 }
 
 impl Placed {
+    #[cfg(test)]
+    pub(crate) fn gap_margin(&self) -> f32 {
+        self.gap_margin
+    }
+
     /// Moves box `lane` of node `single` into the frame of the wide body.
     #[inline(always)]
     pub(crate) fn new(

@@ -1,0 +1,228 @@
+//! Each bound against certified distances of triangles, with mutants that must be noticed.
+
+use super::dispatch::{Isa, first_contact_on};
+use super::frame::RelativeMotion;
+use super::lanes::{Lanes, Portable};
+use super::node_test::{NodeFrame, NodeScale, Placed, entry_times};
+use super::scene::{Scene, Scratch};
+use super::triangle_pair::{Look, look, place_a};
+use super::window::{Outcome, corners};
+use crate::tree::node::Below;
+use crate::{MeshTree, QueryOptions, TriMesh, Window};
+use d2m_feature::triangle_distance;
+use d2m_motion::LinearMotion;
+use glam::{DQuat, DVec3};
+
+/// Numbers in [−1, 1].
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
+    }
+    fn vec(&mut self) -> DVec3 {
+        DVec3::new(self.next(), self.next(), self.next())
+    }
+}
+
+/// Eight triangles of very different size and shape around the origin.
+fn soup(random: &mut Random) -> MeshTree {
+    let mut vertices = Vec::new();
+    for _ in 0..8 {
+        let middle = random.vec();
+        let size = 10f64.powf(1.5 * random.next() - 1.0);
+        for _ in 0..3 {
+            vertices.push(middle + random.vec() * size);
+        }
+    }
+    let triangles = (0..8).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    MeshTree::new(TriMesh::try_new(vertices, triangles).unwrap())
+}
+
+fn moving(random: &mut Random, apart: f64, speed: f64, spin: f64) -> LinearMotion {
+    let q = DQuat::from_xyzw(random.next(), random.next(), random.next(), random.next() + 1.2);
+    LinearMotion::try_new(random.vec() * apart, q, random.vec() * speed, random.vec() * spin).unwrap()
+}
+
+/// The least certified distance over the level at the end of all proven times, over `rounds` random pairs of nodes.
+/// At least one if the bound holds; close to one if it is sharp.
+fn least_ratio(rounds: u32, mutate: impl Fn(&mut NodeScale)) -> f64 {
+    let mut random = Random(11);
+    let mut least = f64::INFINITY;
+    let level = 0.01;
+    let options = QueryOptions::default().with_tolerance(level);
+    for round in 0..rounds {
+        let (a, b) = (soup(&mut random), soup(&mut random));
+        let (speed, spin) = ([0.3, 3.0, 30.0][round as usize % 3], [0.0, 1.0, 10.0][round as usize / 3 % 3]);
+        let motions = [moving(&mut random, 3.0, speed, spin), moving(&mut random, 0.0, speed, spin)];
+        let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
+        let unit = 2f64.powf(scene.longest.log2().ceil());
+        let mut scales = scene.node_scales(unit);
+        let motion = RelativeMotion::new((&a, &motions[0]), (&b, &motions[1]), 0.0);
+        let frame = motion.frame(0.0);
+        let left = (scene.longest / unit) as f32;
+        for (side, scale) in scales.iter_mut().enumerate() {
+            mutate(scale);
+            let (wide, single) = if side == 0 { (&a, &b) } else { (&b, &a) };
+            let node_frame = NodeFrame::new(&frame, scale, side == 1, left);
+            for lane in 0..8 {
+                let placed = Placed::new(&node_frame, scale, (&single.nodes[1], lane), &wide.nodes[1]);
+                let times = entry_times::<Portable>(&wide.nodes[1], &placed, scale).store();
+                for (other, &time) in times.iter().enumerate() {
+                    let (Below::Triangle(s), Below::Triangle(w)) =
+                        (single.nodes[1].below(lane), wide.nodes[1].below(other))
+                    else {
+                        panic!("eight triangles hang below one node");
+                    };
+                    if time <= 0.0 {
+                        continue;
+                    }
+                    let (ta, tb) = if side == 0 { (w, s) } else { (s, w) };
+                    for part in [0.0, 0.5, 1.0] {
+                        let offset = part * f64::from(time.min(left)) * unit;
+                        let placed = place_a(&motion.frame(offset), &corners(&a, ta));
+                        least = least.min(triangle_distance(&placed, &corners(&b, tb)).lower / level);
+                    }
+                }
+            }
+        }
+    }
+    least
+}
+
+#[test]
+fn entry_times_of_boxes_hold_and_are_sharp() {
+    let ratio = least_ratio(600, |_| ());
+    assert!((1.0 - 1e-6..1.1).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn mutants_of_the_entry_times_die() {
+    assert!(least_ratio(600, |scale| scale.floor *= 0.9) < 0.99, "nine tenths of the level");
+    assert!(least_ratio(600, |scale| scale.speed_scale *= 0.9) < 0.99, "nine tenths of the speed");
+}
+
+/// How far a triangle that spins about the z axis through the origin stays from the wall x = `wall`, at the end of the
+/// time that its box is proven clear of the wall's.
+fn room_at_the_end(triangle: [DVec3; 3], wall: f64, mutate: impl Fn(&mut NodeScale)) -> f64 {
+    let tree =
+        |corners: [DVec3; 3]| MeshTree::new(TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2]]).unwrap());
+    let corner = |y: f64, z: f64| DVec3::new(wall, y, z);
+    let (a, b) = (tree(triangle), tree([corner(-3.0, -1.0), corner(3.0, -1.0), corner(0.0, 3.0)]));
+    let spin = LinearMotion::REST.with_angular_velocity(DVec3::Z);
+    let options = QueryOptions::default().with_tolerance(1e-7);
+    let window = Window::try_new(0.0, 0.3).unwrap();
+    let scene = Scene::new((&a, spin), (&b, LinearMotion::REST), window, &options);
+    let motion = RelativeMotion::new((&a, &spin), (&b, &LinearMotion::REST), 0.0);
+    let mut scale = scene.node_scales(0.5)[1];
+    mutate(&mut scale);
+    let frame = NodeFrame::new(&motion.frame(0.0), &scale, true, 0.6);
+    let placed = Placed::new(&frame, &scale, (&a.nodes[0], 0), &b.nodes[0]);
+    let time = entry_times::<Portable>(&b.nodes[0], &placed, &scale).store()[0];
+    let frame = motion.frame(0.5 * f64::from(time.min(0.6)));
+    let plane = corners(&b, 0)[0].x;
+    place_a(&frame, &corners(&a, 0)).map(|p| p.x - plane).into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// A small triangle on a long arm swings across the wall: along the arm its speed is zero, only its acceleration
+/// closes the gap of 0.044, and at the end of the window it has closed by 1 − cos 0.3 = 0.0447.
+#[test]
+fn half_the_acceleration_is_noticed() {
+    let arm = [DVec3::new(1.0001, 0.0, 0.0), DVec3::new(1.0, 1e-4, 0.0), DVec3::new(1.0, 0.0, 1e-4)];
+    assert!(room_at_the_end(arm, 0.956, |_| ()) >= 1e-7);
+    assert!(room_at_the_end(arm, 0.956, |scale| scale.acceleration *= 0.5) < 1e-7);
+}
+
+/// A needle spins about its middle: its centre is at rest, its end closes the gap of 0.1.
+#[test]
+fn half_the_spin_is_noticed() {
+    let needle = [DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.0, -1.0, 0.0), DVec3::new(1e-3, 0.0, 0.0)];
+    assert!(room_at_the_end(needle, -0.1, |_| ()) >= 1e-7);
+    assert!(room_at_the_end(needle, -0.1, |scale| scale.spin = scale.spin.map(|s| 0.5 * s)) < 1e-7);
+}
+
+#[test]
+fn clear_times_of_triangle_pairs_hold_and_are_sharp() {
+    let mut random = Random(12);
+    let level = 1e-3;
+    let options = QueryOptions::default().with_tolerance(level);
+    let mut least = f64::INFINITY;
+    for round in 0..4000 {
+        let (a, b) = (soup(&mut random), soup(&mut random));
+        let (speed, spin) = ([0.3, 3.0, 30.0][round % 3], [0.0, 1.0, 10.0][round / 3 % 3]);
+        let motions = [moving(&mut random, 2.0, speed, spin), moving(&mut random, 0.0, speed, spin)];
+        let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
+        let motion = RelativeMotion::new((&a, &motions[0]), (&b, &motions[1]), 0.0);
+        let (ca, cb) = (corners(&a, 0), corners(&b, 0));
+        let Look::ClearFor(time) = look(&motion.frame(0.0), &ca, &cb, &scene.pair, 1e300) else { continue };
+        for part in [0.25, 0.5, 0.75, 1.0] {
+            let frame = motion.frame(part * time.min(scene.longest));
+            least = least.min(triangle_distance(&place_a(&frame, &ca), &cb).lower / level);
+        }
+    }
+    assert!((1.0 - 1e-9..1.2).contains(&least), "{least}");
+}
+
+/// Gap and margin of boxes at rest: what is called apart is apart, though the numbers are only `f32`.
+#[test]
+fn boxes_called_apart_at_rest_are_apart() {
+    // With the margin, nothing that touches is called apart; with none at all, something is.
+    let called_apart = |margin: f32| {
+        let mut random = Random(13);
+        let mut wrong = 0;
+        for _ in 0..20_000 {
+            let mut vertices: Vec<DVec3> = (0..3).map(|_| random.vec()).collect();
+            // B hangs on a corner of A and leads away from it: the true gap is zero or a rounding of the corner.
+            let shared = vertices[0];
+            let a = MeshTree::new(TriMesh::try_new(vertices.clone(), vec![[0, 1, 2]]).unwrap());
+            vertices[1] = shared * 2.0 - vertices[1];
+            vertices[2] = shared * 2.0 - vertices[2] + random.vec() * 0.2;
+            let b = MeshTree::new(TriMesh::try_new(vertices, vec![[0, 1, 2]]).unwrap());
+            let rest = LinearMotion::REST;
+            let options = QueryOptions::default().with_tolerance(1e-30);
+            let scene = Scene::new((&a, rest), (&b, rest), Window::UNIT, &options);
+            let mut scale = scene.node_scales(1.0)[1];
+            let motion = RelativeMotion::new((&a, &rest), (&b, &rest), 0.0);
+            let frame = NodeFrame::new(&motion.frame(0.0), &scale, true, 1.0);
+            let full = Placed::new(&frame, &scale, (&a.nodes[0], 0), &b.nodes[0]);
+            // What is left of the margin.
+            scale.floor -= (1.0 - margin) * full.gap_margin();
+            let placed = Placed::new(&frame, &scale, (&a.nodes[0], 0), &b.nodes[0]);
+            let time = entry_times::<Portable>(&b.nodes[0], &placed, &scale).store()[0];
+            wrong += u32::from(time > 0.0);
+        }
+        wrong
+    };
+    assert_eq!(called_apart(1.0), 0);
+    assert_eq!(called_apart(0.25), 0, "the margin has room: measured errors are below a quarter of it");
+    assert!(called_apart(-0.02) > 0, "less than no margin");
+}
+
+#[test]
+fn every_instruction_set_gives_the_same_bits() {
+    let mut random = Random(14);
+    let (mut scratch, mut found) = (Scratch::new(), 0);
+    for round in 0..300 {
+        let (a, b) = (soup(&mut random), soup(&mut random));
+        let motions =
+            [moving(&mut random, 3.0, 2.0, 3.0), moving(&mut random, 0.0, 2.0, [0.0, 30.0][round % 2])];
+        let options = QueryOptions::default();
+        let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
+        let mut run = |isa: Isa| {
+            let outcome = first_contact_on(isa, &scene, &options, &mut scratch);
+            let answer = match outcome {
+                Outcome::Separated => None,
+                Outcome::OutOfBudget(_) => panic!("no budget"),
+                Outcome::Found(f) => Some((f.start.to_bits(), f.offset.to_bits(), f.triangles)),
+            };
+            (answer, scratch.counts)
+        };
+        let portable = run(Isa::Portable);
+        found += u32::from(portable.0.is_some());
+        for isa in Isa::all() {
+            assert_eq!(portable, run(isa), "round {round} {isa:?}");
+        }
+    }
+    assert!(found > 50);
+}
