@@ -33,9 +33,10 @@ impl StraightEdgeEdge {
         let (w0, e0, d0) = combine(&lines.start);
         let (w1, e1, d1) = combine(&lines.velocity);
         let error = lines.error(64.0);
-        let size = (e0.length() + d0.length()).max((e0 + e1).length() + (d0 + d1).length());
-        let tolerance =
-            options.wanted_tolerance(2.0 * e0.length().max(d0.length()), lines.magnitude).max(4.0 * error);
+        let size = lines.magnitude;
+        let tolerance = options
+            .wanted_tolerance(2.0 * e0.length_squared().max(d0.length_squared()).sqrt(), lines.magnitude)
+            .max(4.0 * error);
         let speed = (w1.length() + e1.length() + d1.length()) * UP;
         let separation = options.separation();
         Self { w: (w0, w1), e: (e0, e1), d: (d0, d1), error, speed, size, tolerance, separation }

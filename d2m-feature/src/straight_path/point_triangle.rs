@@ -24,8 +24,8 @@ impl<'a> StraightPointTriangle<'a> {
     pub(super) fn new(lines: &'a Lines, options: &ContactOptions) -> Self {
         let v = &lines.velocity;
         let speed = (1..4).map(|i| (v[0] - v[i]).length_squared()).fold(0.0, f64::max).sqrt() * UP;
-        let size = |a: usize, b: usize| (lines.start[a] - lines.start[b]).length();
-        let length = size(1, 2).max(size(2, 3)).max(size(1, 3));
+        let square = |a: usize, b: usize| (lines.start[a] - lines.start[b]).length_squared();
+        let length = square(1, 2).max(square(2, 3)).max(square(1, 3)).sqrt();
         let error = lines.error(24.0);
         let tolerance = options.wanted_tolerance(length, lines.magnitude).max(4.0 * error);
         Self { lines, error, speed, tolerance, separation: options.separation() }

@@ -48,7 +48,7 @@ pub struct Isolation {
 const GOOD: f64 = 0.6;
 /// Above this part of its old width a piece is measured before it is bisected.
 const POOR: f64 = 0.95;
-const DEPTH: usize = 64;
+const DEPTH: usize = 32;
 
 /// Pieces to the right of the current one, the leftmost on top. When full, the top grows instead.
 struct Rest {
@@ -60,7 +60,7 @@ impl Rest {
     #[inline(always)]
     fn push(&mut self, piece: Piece) {
         if self.len == DEPTH {
-            // Covers more than it must: sound, and only after 64 bisections that left something to the right.
+            // Covers more than it must: sound, and only after 32 bisections that left something to the right.
             self.pieces[DEPTH - 1].lo = piece.lo;
         } else {
             self.pieces[self.len] = piece;
