@@ -16,6 +16,9 @@ pub(crate) struct Machine {
     pub(crate) commit_date: String,
     /// Were there changes that are in no commit?
     pub(crate) is_dirty: bool,
+    /// Load average of the last minute when the run began, where the system tells it.
+    #[serde(default)]
+    pub(crate) load: Option<f64>,
 }
 
 impl Machine {
@@ -31,6 +34,7 @@ impl Machine {
                 .unwrap_or_else(|| "unknown".into()),
             commit_date: output(root, "git", &["log", "-1", "--format=%cs"]).unwrap_or_default(),
             is_dirty: status.is_none_or(|text| !text.is_empty()),
+            load: load(),
         }
     }
 
@@ -53,6 +57,10 @@ fn cpu() -> String {
     name.or_else(|| output(Path::new("."), "sysctl", &["-n", "machdep.cpu.brand_string"]))
         .or_else(|| std::env::var("PROCESSOR_IDENTIFIER").ok())
         .unwrap_or_else(|| std::env::consts::ARCH.into())
+}
+
+fn load() -> Option<f64> {
+    std::fs::read_to_string("/proc/loadavg").ok()?.split_whitespace().next()?.parse().ok()
 }
 
 #[cfg(target_arch = "x86_64")]

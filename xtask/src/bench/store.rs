@@ -20,7 +20,10 @@ impl Store {
         }
         fs::create_dir_all(&folder)?;
         fs::write(folder.join("settings.txt"), settings)?;
-        fs::write(folder.join("machine.json"), serde_json::to_string_pretty(machine)?)?;
+        let description = folder.join("machine.json");
+        if !description.exists() {
+            fs::write(description, serde_json::to_string_pretty(machine)?)?;
+        }
         Ok(Self { folder })
     }
 

@@ -50,6 +50,12 @@ impl Axis {
             return (0..=count).map(|k| self.lo + k as f64 * step).map(|v| (v, plain(v))).collect();
         }
         let (first, last) = (self.lo.log10().round() as i32, self.hi.log10().round() as i32);
+        if last - first <= 2 {
+            // Few decades: also twice and five times.
+            let between = |e: i32| [1.0, 2.0, 5.0].map(|m| (m * 10f64.powi(e), multiple(m as i32, e)));
+            let all = (first..=last).flat_map(between);
+            return all.filter(|(v, _)| *v <= self.hi * (1.0 + 1e-9)).collect();
+        }
         let every = ((last - first) / 9 + 1) as usize;
         (first..=last).step_by(every).map(|e| (10f64.powi(e), decade(e))).collect()
     }
@@ -59,6 +65,15 @@ impl Axis {
 fn round_step(wish: f64) -> f64 {
     let power = 10f64.powf(wish.log10().floor());
     [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|&s| s >= wish * (1.0 - 1e-9)).unwrap_or(wish)
+}
+
+/// 10⁻¹⁰, 2·10⁻¹⁰, 0.5, 20.
+fn multiple(m: i32, e: i32) -> String {
+    match m {
+        1 => decade(e),
+        _ if (-3..=4).contains(&e) => plain(f64::from(m) * 10f64.powi(e)),
+        _ => format!("{m}·{}", decade(e)),
+    }
 }
 
 /// 0.01, 1, 1000, and 10⁻⁵ or 10⁶ beyond.

@@ -8,7 +8,7 @@ fn decades_hold_all_values_and_are_labelled() {
     assert_eq!(axis.place(1e-10), 0.0);
     assert!((axis.place(1e-9) - 1.0).abs() < 1e-12);
     let labels: Vec<String> = axis.ticks().into_iter().map(|t| t.1).collect();
-    assert_eq!(labels, ["10⁻¹⁰", "10⁻⁹"]);
+    assert_eq!(labels, ["10⁻¹⁰", "2·10⁻¹⁰", "5·10⁻¹⁰", "10⁻⁹"]);
     let wide: Vec<String> = Axis::decades("x", [0.01, 1e5]).ticks().into_iter().map(|t| t.1).collect();
     assert_eq!(wide, ["0.01", "0.1", "1", "10", "100", "1000", "10000", "10⁵"]);
     assert!(Axis::decades("x", [1e-12, 1e12]).ticks().len() <= 10);

@@ -56,6 +56,9 @@ fn section(page: &mut String, folder: &Path) -> Result<(), Error> {
         extensions.join(" ")
     )?;
     writeln!(page, "Settings: {}.\n", text(folder, "settings.txt").trim().replace('\n', ", "))?;
+    if let Some(load) = machine.load {
+        writeln!(page, "Load average when it began: {load:.1}. Above 1, other work inflates the times.\n")?;
+    }
     headline(page, &lines)?;
     ratios(page, &lines)?;
     verdicts(page, &lines)?;
@@ -112,7 +115,7 @@ fn ratios(page: &mut String, lines: &[Line]) -> Result<(), Error> {
         let ratio = |m: Method| {
             let speeds = of_pair.iter().filter(|l| l.method == Method::Accurate).map(|l| l.speed);
             let cell = |s: f64| match (find(s, Method::Accurate), find(s, m)) {
-                (Some(own), Some(still)) => format!("{:.2}", own.median / still.median),
+                (Some(own), Some(still)) => round(own.median / still.median),
                 _ => "–".into(),
             };
             speeds.map(cell).collect::<Vec<_>>().join(" / ")
@@ -185,7 +188,12 @@ fn both(
     pick: impl Fn(&Summary) -> f64,
 ) -> String {
     let of_method = lines.iter().filter(|l| l.method == method);
-    let cells: Vec<String> = of_method.map(|l| summary(l).map_or("–".into(), |s| round(pick(&s)))).collect();
+    let cell = |l: &&Line| {
+        // Stopped queries took longer than what was measured.
+        let more = if 2 * l.undecided > l.asked { "> " } else { "" };
+        summary(l).map_or("–".into(), |s| format!("{more}{}", round(pick(&s))))
+    };
+    let cells: Vec<String> = of_method.map(cell).collect();
     if cells.is_empty() { "–".into() } else { cells.join(" / ") }
 }
 
@@ -194,6 +202,7 @@ fn round(value: f64) -> String {
     match value {
         v if v >= 100.0 => format!("{v:.0}"),
         v if v >= 10.0 => format!("{v:.1}"),
-        v => format!("{v:.2}"),
+        v if v >= 0.1 => format!("{v:.2}"),
+        v => format!("{v:.4}"),
     }
 }
