@@ -83,7 +83,9 @@ fn main() {
         writeln!(out, "{trial},{time:?},{separation:e},{:.2}", best[trial]).unwrap();
     }
     if let Some(path) = arguments.get(3) {
-        std::fs::write(path, out).expect("writable results");
+        // A new file only: a path in the wrong place must not cost anybody data.
+        let mut file = std::fs::File::create_new(path).expect("results go to a file that does not exist yet");
+        std::io::Write::write_all(&mut file, out.as_bytes()).expect("writable results");
     }
     let mut counts: Vec<_> = motions
         .iter()
