@@ -152,3 +152,43 @@ fn nothing_before_the_contact_and_little_at_it() {
     // Each kind of answer is met often.
     assert!(seen.iter().all(|&n| n > 400), "{seen:?}");
 }
+
+/// With a wanted separation d: further apart than d before, and within 3.3 δ of it at the certified time.
+#[test]
+fn a_wanted_separation_is_kept_until_the_time() {
+    let mut random = Random(77);
+    let mut met = 0;
+    for scene in 0..1000 {
+        let trees = [(); 2].map(|()| MeshTree::new(mesh(&mut random, true)));
+        let motions = [(); 2].map(|()| motion(&mut random));
+        let wanted = [1e-6, 0.01, 0.3][scene % 3];
+        let between = |t: f64| {
+            let [a, b] = [0, 1].map(|body| Posed::new(&trees[body], motions[body].pose_and_twist(t).0));
+            distance(a, b, Solid::Filled).unwrap()
+        };
+        let options = QueryOptions::default().with_min_separation(wanted);
+        let [a, b] = [0, 1].map(|body| Moving::new(&trees[body], &motions[body]));
+        let answer = time_of_contact(a, b, Window::UNIT, &options).unwrap();
+        let what = format!("scene {scene}: {answer:?}");
+        let free_until = match answer {
+            TimeOfContact::Separated => 1.0,
+            TimeOfContact::Contact(contact) if contact.start == StartState::Apart => {
+                met += 1;
+                let found = between(contact.time_lo);
+                let above = found.value - wanted;
+                assert!(above > 0.0 && above <= 3.3 * contact.tolerance, "{what} {found:?}");
+                contact.time_lo
+            }
+            TimeOfContact::Contact(contact) => {
+                assert!(between(0.0).lower <= wanted + 3.3 * contact.tolerance, "{what}");
+                0.0
+            }
+            TimeOfContact::Undecided { .. } => panic!("{what}"),
+        };
+        for k in 0..24 {
+            let t = free_until * f64::from(k) / 24.0;
+            assert!(free_until == 0.0 || between(t).value > wanted, "{what}: too close at {t}");
+        }
+    }
+    assert!(met > 150, "{met}");
+}
