@@ -28,6 +28,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) tolerance: f64,
     /// Longest window of the search.
     pub(crate) longest: f64,
+    /// Reach of both bodies from their followed points, together.
+    reach: f64,
     /// |ω|·ρ of both bodies, ρ the largest distance from the followed point.
     spin_speed: f64,
 }
@@ -59,7 +61,23 @@ impl<'a> Scene<'a> {
         let level = options.min_separation + tolerance;
         let acceleration = (spin_a * spin_a * reach_a + spin_b * spin_b * reach_b) * (1.0 + 1e-12);
         let pair = PairScale { level, error, stop: level + tolerance + error, acceleration };
-        Self { a, b, window, pair, size, tolerance, longest, spin_speed }
+        Self { a, b, window, pair, size, tolerance, longest, reach: reach_a + reach_b, spin_speed }
+    }
+
+    /// A time, not before `start`, up to which the balls about the followed points (whatever the rotation) stay
+    /// further apart than the level.
+    pub(crate) fn balls_clear_until(&self, start: f64) -> f64 {
+        let apart = relative_position(&self.a.1, &self.b.1, start).length();
+        let room = apart - self.reach - self.pair.level - 1e-12 * self.size;
+        let speed = (self.a.1.linear_velocity() - self.b.1.linear_velocity()).length();
+        let end = self.window.end();
+        if room.is_nan() || room <= 0.0 {
+            start
+        } else if speed * (end - start) < room {
+            end
+        } else {
+            (start + room / speed * (1.0 - 1e-12)).next_down().clamp(start, end)
+        }
     }
 
     /// Constants of the node tests of a window, with the first body's nodes opened, then the second's.

@@ -86,6 +86,10 @@ impl<'s> Search<'s> {
     pub(crate) fn run<L: Lanes>(mut self) -> Outcome {
         let (mut start, end) = (self.scene.window.start(), self.scene.window.end());
         loop {
+            start = self.scene.balls_clear_until(start);
+            if start >= end && end > self.scene.window.start() {
+                return Outcome::Separated;
+            }
             let next = (start + self.scene.longest).min(end);
             let next = if next > start { next } else { end };
             match self.search_window::<L>(start, next) {
@@ -226,9 +230,16 @@ impl<'s> Search<'s> {
             return;
         }
         let mut frame = state.frame;
+        let mut steps = 0u32;
         // Proven apart until here.
         let mut known = f64::from(item.key) * state.step;
         loop {
+            steps += 1;
+            if steps.is_multiple_of(256) && self.out_of_budget() {
+                let key = ((known / state.step) as u32).max(item.key);
+                self.scratch.queue.push(Item { key, ..item });
+                return;
+            }
             self.node_tests += 1;
             self.scratch.counts.triangle_looks += 1;
             let enough = state.limit_offset - frame.offset;
