@@ -169,7 +169,7 @@ impl Sweep<'_> {
             let start = Instant::now();
             let tree = single.install(|| super::engine::build(mesh.clone()));
             let seconds = start.elapsed().as_secs_f64();
-            self.note("build", "µs per triangle, one thread", triangles, [seconds * 1e6 / triangles]);
+            self.note("build", "µs per triangle on one thread", triangles, [seconds * 1e6 / triangles]);
             self.note("build", "bytes per triangle", triangles, [tree.memory_bytes() as f64 / triangles]);
             drop(tree);
             let body = Body::new(mesh.vertices(), mesh.triangles().to_vec())?;
@@ -272,7 +272,7 @@ impl Sweep<'_> {
                     self.wrong.push(format!("{threads} threads give other answers than one"));
                 }
             }
-            self.note("threads", "d2m accurate, queries per second", threads as f64, rates);
+            self.note("threads", "d2m accurate", threads as f64, rates);
         }
         Ok(())
     }
