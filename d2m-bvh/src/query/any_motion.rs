@@ -81,6 +81,10 @@ pub(super) fn time_of_contact(
         }
         step = free;
         let next = if free >= until - t { until } else { (t + free).next_down().min(until) };
+        if free == 0.0 {
+            // The enclosures bound no speed (infinite, not a number): nothing can be promised beyond this time.
+            return Ok(TimeOfContact::Undecided { clear_until: t });
+        }
         if next <= t {
             // The time left is below the resolution of time itself.
             return Ok(TimeOfContact::Contact(describe(

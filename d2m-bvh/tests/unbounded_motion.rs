@@ -1,0 +1,36 @@
+//! A motion whose enclosures bound no speed: sound, useless, and never a reason to say "contact" or "clear".
+
+use d2m_bvh::{MeshTree, Moving, QueryOptions, TimeOfContact, TriMesh, Window, time_of_contact};
+use d2m_interval::{Interval, IntervalVec3};
+use d2m_motion::{IntervalPose, IntervalTwist, LinearMotion, Pose, RigidMotion, Twist};
+use glam::DVec3;
+
+/// Knows where it is at single times, and nothing about how fast it moves.
+struct Unbounded(LinearMotion);
+
+impl RigidMotion for Unbounded {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        self.0.pose_and_twist(t)
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        self.0.enclose_pose(t)
+    }
+    fn enclose_twist(&self, _: Interval) -> IntervalTwist {
+        let any = IntervalVec3 { x: Interval::ENTIRE, y: Interval::ENTIRE, z: Interval::ENTIRE };
+        IntervalTwist { linear: any, angular: any }
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.enclose_twist(t)
+    }
+}
+
+#[test]
+fn undecided_from_the_start() {
+    let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
+    let tree = MeshTree::new(mesh);
+    let away = Unbounded(LinearMotion::REST.with_position(DVec3::X * 5.0));
+    let (a, b) = (Moving::new(&tree, &away), Moving::new(&tree, &LinearMotion::REST));
+    let answer = time_of_contact(a, b, Window::UNIT, &QueryOptions::default()).unwrap();
+    assert_eq!(answer, TimeOfContact::Undecided { clear_until: 0.0 });
+}
