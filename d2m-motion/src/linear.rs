@@ -21,7 +21,7 @@ use glam::{DQuat, DVec3};
 /// # Ok::<(), d2m_motion::MotionError>(())
 /// ```
 ///
-/// Source: Zhang, X., Lee, M., Kim, Y. J.: the linear motion of continuous collision detection; DESIGN section 3.
+/// Source: "Accurate and Efficient Continuous Collision Detection" (D2M), section III and Appendix A.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinearMotion {
     position: DVec3,
