@@ -2,11 +2,12 @@
 use super::Lines;
 use super::linear::{Line, clear_above, clip};
 use super::point_triangle::corners;
+use super::triple_product::TripleProduct;
 use crate::closest;
 use crate::options::ContactOptions;
 use crate::path::{direction, global, local, reach};
 use crate::point_triangle::cleared;
-use d2m_root::{Band, Measurement, Piece, PieceTest, Quadratic, Verdict};
+use d2m_root::{Measurement, Piece, PieceTest, Quadratic, Verdict};
 use glam::DVec3;
 
 const UP: f64 = 1.0 + 1e-14;
@@ -75,23 +76,9 @@ impl PieceTest for StraightEdgeEdge {
             return Verdict::Clear;
         }
 
-        let k0 = e.p.cross(d.p);
-        let k1 = e.p.cross(d.v) + e.v.cross(d.p);
-        let k2 = e.v.cross(d.v);
-        let f = Quadratic {
-            value: w.p.dot(k0),
-            slope: w.p.dot(k1) + w.v.dot(k0),
-            curvature: 2.0 * (w.p.dot(k2) + w.v.dot(k1)),
-        };
-        let cubic = w.v.dot(k2).abs();
-        let (lw, le, ld) = (w.longest(h), e.longest(h), d.longest(h));
-        let rounding = 32.0 * UNIT * lw * le * ld + self.error * (le * ld + lw * ld + lw * le);
-        let far = self.separation * le * ld + rounding;
-        let band = |s: f64| {
-            let margin = (cubic * s * s * s + far) * UP;
-            Band { lo: -margin, hi: margin }
-        };
-        let Some(meeting) = f.clip(band(h), whole) else {
+        let volume = TripleProduct::new(&w, &e, &d, h, (self.error, self.separation));
+        let (f, k0) = (volume.quadratic, volume.normal);
+        let Some(meeting) = f.clip(volume.band(h), whole) else {
             return Verdict::Clear;
         };
         // Across either edge in the plane of both, frozen in the middle.
@@ -104,14 +91,14 @@ impl PieceTest for StraightEdgeEdge {
         let Some(inside) = overlap(meeting) else {
             return Verdict::Clear;
         };
-        let Some(meeting_again) = f.clip(band(reach(inside)), inside) else {
+        let Some(meeting_again) = f.clip(volume.band(reach(inside)), inside) else {
             return Verdict::Clear;
         };
         let Some(last) = overlap(meeting_again) else {
             return Verdict::Clear;
         };
         let certain = inside == meeting && last == meeting_again && {
-            let wide = band(h).hi;
+            let wide = volume.band(h).hi;
             let (first, second) = (f.at(whole.lo), f.at(whole.hi));
             let changes = (first > wide && second < -wide) || (first < -wide && second > wide);
             changes && self.seen_crossing(&w, &e, &d, k0, last)

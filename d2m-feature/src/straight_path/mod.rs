@@ -2,6 +2,7 @@
 mod edge_edge;
 mod linear;
 mod point_triangle;
+mod triple_product;
 
 use crate::contact::FirstContact;
 use crate::options::ContactOptions;

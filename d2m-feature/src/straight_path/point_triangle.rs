@@ -1,11 +1,12 @@
 //! A point and a triangle, all four vertices on straight paths.
 use super::Lines;
 use super::linear::{Line, Linear, clear_above, clip};
+use super::triple_product::TripleProduct;
 use crate::closest;
 use crate::options::ContactOptions;
 use crate::path::{direction, global, local, reach};
 use crate::point_triangle::cleared;
-use d2m_root::{Band, Measurement, Piece, PieceTest, Quadratic, Verdict};
+use d2m_root::{Measurement, Piece, PieceTest, Quadratic, Verdict};
 use glam::DVec3;
 
 const UP: f64 = 1.0 + 1e-14;
@@ -77,23 +78,9 @@ impl PieceTest for StraightPointTriangle<'_> {
         // The cubic: a·(e₁ × e₂) with e_i = b_i − b₀ = (p − b₀) − (p − b_i).
         let a = lines[0];
         let (e1, e2) = (minus(&a, &lines[1]), minus(&a, &lines[2]));
-        let n0 = e1.p.cross(e2.p);
-        let n1 = e1.p.cross(e2.v) + e1.v.cross(e2.p);
-        let n2 = e1.v.cross(e2.v);
-        let f = Quadratic {
-            value: a.p.dot(n0),
-            slope: a.p.dot(n1) + a.v.dot(n0),
-            curvature: 2.0 * (a.p.dot(n2) + a.v.dot(n1)),
-        };
-        let cubic = a.v.dot(n2).abs();
-        let (la, l1, l2) = (a.longest(h), e1.longest(h), e2.longest(h));
-        let rounding = 32.0 * UNIT * la * l1 * l2 + self.error * (l1 * l2 + la * l1 + la * l2);
-        let far = self.separation * l1 * l2 + rounding;
-        let band = |s: f64| {
-            let margin = (cubic * s * s * s + far) * UP;
-            Band { lo: -margin, hi: margin }
-        };
-        let Some(meeting) = f.clip(band(h), whole) else {
+        let volume = TripleProduct::new(&a, &e1, &e2, h, (self.error, self.separation));
+        let (f, n0) = (volume.quadratic, volume.normal);
+        let Some(meeting) = f.clip(volume.band(h), whole) else {
             return Verdict::Clear;
         };
         // In-plane side normals, frozen in the middle.
@@ -108,7 +95,7 @@ impl PieceTest for StraightPointTriangle<'_> {
         let Some(inside) = beside(meeting) else {
             return Verdict::Clear;
         };
-        let Some(meeting_again) = f.clip(band(reach(inside)), inside) else {
+        let Some(meeting_again) = f.clip(volume.band(reach(inside)), inside) else {
             return Verdict::Clear;
         };
         let Some(last) = beside(meeting_again) else {
@@ -116,7 +103,7 @@ impl PieceTest for StraightPointTriangle<'_> {
         };
         // A true crossing: f changes sign, only f has cut, and along n0 the point is seen inside throughout.
         let certain = inside == meeting && last == meeting_again && {
-            let wide = band(h).hi;
+            let wide = volume.band(h).hi;
             let (first, second) = (f.at(whole.lo), f.at(whole.hi));
             let changes = (first > wide && second < -wide) || (first < -wide && second > wide);
             changes && self.seen_inside(&lines, n0, last)
