@@ -16,6 +16,7 @@ pub use query::{
     Solid, StartState, TimeOfContact, Window, collide, colliding_pairs, distance, distance_within,
     time_of_contact, time_of_contact_batch, try_colliding_pair,
 };
+pub use search::InstructionSet;
 #[doc(hidden)]
 pub use search::SearchCounts;
 pub use tree::{MeshTree, TreeError};

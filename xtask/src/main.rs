@@ -6,6 +6,9 @@ mod ci;
 mod figure;
 mod judge;
 mod machine;
+mod mutants;
+#[path = "../../d2m-feature/tests/planted/mod.rs"]
+mod planted;
 mod random;
 mod report;
 mod statistics;
@@ -33,6 +36,8 @@ enum Task {
     Tidy,
     /// Random families against slow oracles; fails on any contact missed or late.
     Accuracy(accuracy::Options),
+    /// Deliberate faults in a copy of the sources, each of which a named test must notice; fails if one survives.
+    Mutants(mutants::Options),
     /// Time and accuracy of every method on ten pairs of shapes; each answer is judged before its time counts.
     Bench(bench::Options),
     /// Tables and figures in docs/results, from the newest results of the bench.
@@ -42,7 +47,7 @@ enum Task {
     ParryCast(bench::StoppedOptions),
     /// The program in which callgrind counts.
     #[command(hide = true)]
-    CountedSet(bench::SetOptions),
+    Counted(bench::CountedOptions),
     /// Writes a file of random trials, 256 by default, by the law of the bench.
     Trials(trials::Options),
 }
@@ -50,7 +55,7 @@ enum Task {
 impl Task {
     /// Does its result depend on how fast the code is?
     fn wants_optimised_code(&self) -> bool {
-        !matches!(self, Self::Ci(_) | Self::Tidy | Self::Report(_) | Self::Trials(_))
+        !matches!(self, Self::Ci(_) | Self::Tidy | Self::Mutants(_) | Self::Report(_) | Self::Trials(_))
     }
 }
 
@@ -63,9 +68,10 @@ fn main() -> ExitCode {
         Task::Ci(options) => ci::run(&options),
         Task::Tidy => tidy::run(),
         Task::Accuracy(options) => accuracy::run(&options),
+        Task::Mutants(options) => mutants::run(&options),
         Task::Bench(options) => bench::run(&options),
         Task::Report(options) => report::run(&options),
-        Task::CountedSet(options) => bench::run_set(&options),
+        Task::Counted(options) => bench::run_counted(&options),
         Task::ParryCast(options) => bench::run_stopped(&options),
         Task::Trials(options) => trials::run(&options),
     };

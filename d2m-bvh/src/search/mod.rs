@@ -4,6 +4,7 @@ mod base_pose;
 mod closest;
 mod dispatch;
 mod frame;
+mod instruction_set;
 mod lanes;
 mod node_test;
 mod quad;
@@ -15,8 +16,9 @@ mod triangle_pair;
 mod window;
 
 pub(crate) use closest::{Closest, Place, closest};
-pub(crate) use dispatch::{Isa, first_contact};
+pub(crate) use dispatch::first_contact;
 pub(crate) use frame::{Frame, RelativeMotion};
+pub use instruction_set::InstructionSet;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lanes::Avx;
 pub(crate) use lanes::{Lanes, Portable};

@@ -1,6 +1,7 @@
 //! Each bound against certified distances of triangles, with mutants that must be noticed.
 
-use super::dispatch::{Isa, first_contact_on};
+use super::InstructionSet;
+use super::dispatch::first_contact_on;
 use super::frame::RelativeMotion;
 use super::lanes::{Lanes, Portable};
 use super::node_test::{NodeFrame, NodeScale, Placed, entry_times};
@@ -209,8 +210,8 @@ fn every_instruction_set_gives_the_same_bits() {
             [moving(&mut random, 3.0, 2.0, 3.0), moving(&mut random, 0.0, 2.0, [0.0, 30.0][round % 2])];
         let options = QueryOptions::default();
         let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
-        let mut run = |isa: Isa| {
-            let outcome = first_contact_on(isa, &scene, &options, &mut scratch);
+        let mut run = |set: InstructionSet| {
+            let outcome = first_contact_on(set, &scene, &options, &mut scratch);
             let answer = match outcome {
                 Outcome::Separated => None,
                 Outcome::OutOfBudget(_) => panic!("no budget"),
@@ -218,10 +219,10 @@ fn every_instruction_set_gives_the_same_bits() {
             };
             (answer, scratch.counts)
         };
-        let portable = run(Isa::Portable);
+        let portable = run(InstructionSet::Portable);
         found += u32::from(portable.0.is_some());
-        for isa in Isa::all() {
-            assert_eq!(portable, run(isa), "round {round} {isa:?}");
+        for set in InstructionSet::available() {
+            assert_eq!(portable, run(set), "round {round} {set:?}");
         }
     }
     assert!(found > 50);

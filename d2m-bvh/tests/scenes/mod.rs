@@ -323,6 +323,30 @@ fn rotating(scenes: &mut Vec<Scene>) {
         turning(2.0),
         Expected::At { time: high / 2.0, slack: 1e-12, normal: None, kind: None },
     ));
+    scenes.push(second_root());
+}
+
+/// A tip on a circle dips through the plane of a face, beside it, and comes up through it from below: the plane has two
+/// roots within one stretch of the reference method, and the first one is no contact.
+///
+/// ```text
+///  tip ╲                ╱
+///  ─ ─ ─╲─ ─ ─ ══════╱═══════   the face begins between the roots
+///        ╲________.·╱
+/// ```
+fn second_root() -> Scene {
+    let (spin, root) = (0.01, 0.0025f64);
+    let height = -root.cos();
+    // The body hangs outside of the tip's circle, so that nothing else comes near the face.
+    let hanging = soup(&[[dvec3(0.0, -1.0, 0.0), dvec3(0.1, -2.0, 0.1), dvec3(-0.1, -2.0, -0.1)]]);
+    let face = soup(&[[dvec3(0.001, height, -0.5), dvec3(0.001, height, 0.5), dvec3(0.5, height, 0.0)]]);
+    let turning = LinearMotion::REST
+        .with_orientation(DQuat::from_rotation_z(-0.5 * spin))
+        .with_angular_velocity(DVec3::Z * spin);
+    let expected =
+        Expected::At { time: 0.75, slack: 1e-10, normal: Some(DVec3::Y), kind: Some(Kind::VertexFace) };
+    let name = "a tip dips beside a face and comes up through it";
+    Scene { solid: Solid::Surface, ..Scene::new(name, hanging, face, turning, expected) }
 }
 
 fn fast_and_thin(scenes: &mut Vec<Scene>) {

@@ -1,10 +1,7 @@
 //! Single feature pairs on planted contacts, against an oracle of 192 bits (the families of d2m-feature's tests).
-#[path = "../../../d2m-feature/tests/planted/mod.rs"]
-mod planted;
-
 use super::{Outcome, Task};
-use planted::families::{FAMILIES, Family, Kind};
-use planted::judge::{Tally, rigid_family, straight_family};
+use crate::planted::families::{FAMILIES, Family, Kind};
+use crate::planted::judge::{Tally, rigid_family, straight_family};
 use rayon::prelude::*;
 
 /// Queries of one piece of work.

@@ -4,6 +4,7 @@ mod interval;
 mod mesh;
 mod reference;
 mod statics;
+mod teeth;
 
 use crate::TaskResult;
 use crate::bench::Sabotage;
@@ -15,10 +16,10 @@ pub(crate) struct Options {
     /// Cases of each family, about; families that are slow take a share of it.
     #[arg(long, default_value_t = 20_000)]
     count: usize,
-    /// Seed of the first round.
+    /// Seed of the first round; the next one adds 1.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Go on with other seeds for this long.
+    /// A soak: go on with other seeds, all families each, for at least this long.
     #[arg(long)]
     minutes: Option<f64>,
     /// Only families whose name contains this, as in `cargo xtask accuracy interval`.
@@ -56,7 +57,7 @@ pub(crate) struct Task {
 type Family = (&'static str, usize, fn(&Task) -> Outcome);
 
 /// Name, the share of the count that a family takes (one in so many), and itself.
-const FAMILIES: [Family; 8] = [
+const FAMILIES: [Family; 9] = [
     ("feature: rigid vertex/face", 10, feature::rigid_vertex_face),
     ("feature: rigid edge/edge", 10, feature::rigid_edge_edge),
     ("feature: straight vertex/face", 10, feature::straight_vertex_face),
@@ -65,6 +66,7 @@ const FAMILIES: [Family; 8] = [
     ("mesh: engine on random small scenes", 1, mesh::run),
     ("mesh: reference method and engine", 20, reference::run),
     ("mesh: collide and distance at rest", 2, statics::run),
+    ("mutants: broken answers are noticed", 100, teeth::run),
 ];
 
 /// `cargo xtask accuracy`.
@@ -99,6 +101,12 @@ pub(crate) fn run(options: &Options) -> TaskResult {
             }
             negatives += found.false_negatives.len();
             alarms += found.false_alarms.len();
+            if !(found.false_negatives.is_empty() && found.false_alarms.is_empty()) {
+                println!(
+                    "  again: cargo xtask accuracy --count {} --seed {seed} --only \"{name}\"",
+                    options.count
+                );
+            }
         }
         rounds += 1;
         seed += 1;
@@ -107,7 +115,9 @@ pub(crate) fn run(options: &Options) -> TaskResult {
         }
     }
     println!(
-        "{rounds} round(s), {negatives} false negatives, {alarms} false alarms, {:.1} s",
+        "{rounds} round(s), seeds {} to {}, {negatives} false negatives, {alarms} false alarms, {:.1} s",
+        options.seed,
+        seed - 1,
         begin.elapsed().as_secs_f64()
     );
     if negatives + alarms == 0 { Ok(()) } else { Err("the promise is broken: see the lines above".into()) }

@@ -86,6 +86,11 @@ impl Method {
         matches!(self, Self::Collide | Self::Distance | Self::ParryIntersection | Self::ParryDistance)
     }
 
+    /// Asked once a trial, until the cap; the others are asked in rounds, and the least time counts.
+    pub(crate) const fn is_slow(self) -> bool {
+        !matches!(self, Self::Accurate | Self::Capoeira | Self::Collide | Self::Distance)
+    }
+
     /// Promises a separation of at most 3.3 tolerances at `lo`.
     pub(crate) const fn is_exact(self) -> bool {
         matches!(self, Self::Accurate | Self::Paper)

@@ -1,5 +1,7 @@
 //! Asks, judges, stores.
 use super::body::Pair;
+use super::catalogue::Entry;
+use super::clock::{Phases, processor_seconds};
 use super::method::{Method, Question};
 use super::row::Row;
 use super::store::{KnownPair, Store};
@@ -30,13 +32,14 @@ pub(super) fn run(options: &Options) -> TaskResult {
     let machine = Machine::this(&root);
     let store = Store::open(&root, &machine, &options.settings())?;
     let (entries, methods) = (options.entries()?, options.methods()?);
-    let questions: usize = entries.iter().flat_map(|e| &e.trials).map(|t| t.1.len() * methods.len()).sum();
-    let progress = bar(questions);
+    let begin = Instant::now();
+    let mut phases = Phases::default();
+    let progress = bar(seconds_left(options, &entries, &methods, &store));
     let mut faults = Vec::new();
     let say = |text: &str| if progress.is_hidden() { println!("{text}") } else { progress.println(text) };
     for entry in &entries {
         progress.set_message(format!("{}: trees", entry.name));
-        let pair = entry.load()?;
+        let pair = phases.time("trees", || entry.load())?;
         let triangles = [pair.a.triangle_count(), pair.b.triangle_count()];
         say(&format!("{} ({} + {} triangles)", pair.name, triangles[0], triangles[1]));
         let speeds = entry.trials.iter().map(|t| t.0).collect();
@@ -49,11 +52,11 @@ pub(super) fn run(options: &Options) -> TaskResult {
                     rows
                 } else {
                     let setting = Setting { options, pair: &pair, speed: *speed, trials, method };
-                    let rows = setting.rows(accurate.as_deref())?;
+                    let rows = setting.rows(accurate.as_deref(), &mut phases)?;
                     store.save(&pair.name, *speed, method.name(), &rows)?;
+                    progress.inc(milliseconds(expected_seconds(options, method, trials.len())));
                     rows
                 };
-                progress.inc(trials.len() as u64);
                 say(&line(*speed, method, &rows));
                 let name = &pair.name;
                 let bad = rows.iter().filter(|row| !row.fault.is_empty() && method.is_ours());
@@ -67,10 +70,24 @@ pub(super) fn run(options: &Options) -> TaskResult {
         }
     }
     if options.wants_sweeps() {
-        progress.set_message("series");
-        faults.extend(sweep::run(options, &store, say)?);
+        let started = std::cell::Cell::new(false);
+        let series = || {
+            sweep::run(options, &store, say, |name| {
+                progress.set_message(format!("series: {name}"));
+                if started.replace(true) {
+                    progress.inc(milliseconds(SERIES_SECONDS[usize::from(options.quick)]));
+                }
+            })
+        };
+        faults.extend(phases.time("series", series)?);
     }
     progress.finish_and_clear();
+    println!(
+        "{:.0} s, {:.0} s of processor time of all threads and peers: {}",
+        begin.elapsed().as_secs_f64(),
+        processor_seconds().unwrap_or(f64::NAN),
+        phases.words()
+    );
     for fault in faults.iter().take(20) {
         println!("WRONG  {fault}");
     }
@@ -78,9 +95,40 @@ pub(super) fn run(options: &Options) -> TaskResult {
     if faults.is_empty() { Ok(()) } else { Err(format!("{} wrong answers", faults.len()).into()) }
 }
 
-fn bar(length: usize) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {eta} left  {msg}");
-    ProgressBar::new(length as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+/// Seconds of a group of series, in a full and in a quick run, on a machine of 4 GHz.
+const SERIES_SECONDS: [f64; 2] = [60.0, 3.0];
+
+/// About how long a method is busy with the trials of one pair and speed. Only the progress bar believes it.
+fn expected_seconds(options: &Options, method: Method, trials: usize) -> f64 {
+    let judge = if method.is_static() { 0.0 } else { 0.01 * trials as f64 };
+    let rest = if method.is_slow() { options.cap() } else { 1e-4 * (options.rounds * trials) as f64 };
+    judge + rest
+}
+
+/// About how long what the store lacks will take.
+fn seconds_left(options: &Options, entries: &[Entry], methods: &[Method], store: &Store) -> f64 {
+    let mut seconds = 0.0;
+    for entry in entries {
+        for (speed, trials) in &entry.trials {
+            let open = methods.iter().filter(|m| store.load(&entry.name, *speed, m.name()).is_none());
+            seconds += open.map(|&m| expected_seconds(options, m, trials.len())).sum::<f64>();
+        }
+    }
+    if options.wants_sweeps() {
+        seconds += sweep::STEPS as f64 * SERIES_SECONDS[usize::from(options.quick)];
+    }
+    seconds
+}
+
+fn milliseconds(seconds: f64) -> u64 {
+    (1e3 * seconds) as u64
+}
+
+/// A bar over what is expected to take this long; it learns the true pace as it goes.
+fn bar(seconds: f64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:30} {percent} %, {eta} left  {msg}");
+    let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(milliseconds(seconds)).with_style(style)
 }
 
 /// A line for the terminal.
@@ -113,9 +161,9 @@ pub(super) struct Setting<'a> {
 }
 
 impl Setting<'_> {
-    fn rows(&self, accurate: Option<&[Row]>) -> Result<Vec<Row>, Error> {
+    fn rows(&self, accurate: Option<&[Row]>, phases: &mut Phases) -> Result<Vec<Row>, Error> {
         match self.method {
-            Method::ParryCast => return stopped::rows(self),
+            Method::ParryCast => return phases.time("asked", || stopped::rows(self)),
             Method::AdvanceParry | Method::ParryDistance if self.triangle_count() > PARRY_TRIANGLES => {
                 return Ok(Vec::new());
             }
@@ -133,8 +181,25 @@ impl Setting<'_> {
                 ))
             })
             .collect::<Result<_, Error>>()?;
-        let asked = self.ask(&questions);
-        Ok(self.judged(&questions, asked))
+        phases.time("lazy trees", || self.prepare());
+        // One thread asks and nothing else runs; only then all threads judge.
+        let asked = phases.time("asked", || self.ask(&questions));
+        Ok(phases.time("judged", || self.judged(&questions, asked)))
+    }
+
+    /// Builds what the method needs of the bodies and others do not.
+    fn prepare(&self) {
+        for body in [&self.pair.a, &self.pair.b] {
+            match self.method {
+                Method::Paper => {
+                    body.spheres();
+                }
+                Method::AdvanceParry | Method::ParryIntersection | Method::ParryDistance => {
+                    body.parry();
+                }
+                _ => {}
+            }
+        }
     }
 
     fn triangle_count(&self) -> usize {
@@ -156,8 +221,7 @@ impl Setting<'_> {
 
     /// Answers with the least time of the rounds, until the cap of a slow method.
     fn ask(&self, questions: &[(usize, Question<'_>)]) -> Vec<(Claim, f64)> {
-        let slow =
-            !matches!(self.method, Method::Accurate | Method::Capoeira | Method::Collide | Method::Distance);
+        let slow = self.method.is_slow();
         let rounds = if slow { 1 } else { self.options.rounds.max(1) };
         let begin = Instant::now();
         let mut asked: Vec<(Claim, f64)> = Vec::new();
@@ -213,15 +277,21 @@ impl Setting<'_> {
 
     /// The second opinion on the separation, on some trials.
     fn ask_parry(&self, rows: &mut [Row]) {
-        let contacts = rows.iter_mut().filter(|row| row.separation.is_finite()).take(PARRY_CHECKS);
-        for row in contacts {
-            let Claim::Contact { lo, .. } = row.claim else { continue };
+        let contacts: Vec<(&mut Row, f64)> = rows
+            .iter_mut()
+            .filter_map(|row| match row.claim {
+                Claim::Contact { lo, .. } if row.separation.is_finite() => Some((row, lo)),
+                _ => None,
+            })
+            .take(PARRY_CHECKS)
+            .collect();
+        contacts.into_par_iter().for_each(|(row, lo)| {
             let trial = &self.trials[row.trial];
             let (at_a, at_b) = (place(&trial.a, lo), place(&trial.b, lo));
             row.parry_separation = peers::distance(self.pair.a.parry(), self.pair.b.parry(), &at_a, &at_b);
             if (row.parry_separation - row.separation).abs() > PARRY_AGREES {
                 row.fault = format!("parry measures a separation of {:.3e}", row.parry_separation);
             }
-        }
+        });
     }
 }

@@ -6,6 +6,8 @@ pub(crate) struct Axis {
     pub(crate) lo: f64,
     pub(crate) hi: f64,
     logarithmic: bool,
+    /// Marked at whole numbers only.
+    whole: bool,
 }
 
 impl Axis {
@@ -22,14 +24,32 @@ impl Axis {
         // A hair inside the decade counts as the decade, so that 1e-10·(1 − 1e-12) does not open another one.
         let lo = 10f64.powf((lo.log10() + 1e-6).floor());
         let hi = 10f64.powf((hi.log10() - 1e-6).ceil());
-        Self { label: label.into(), lo, hi: if hi <= lo { lo * 10.0 } else { hi }, logarithmic: true }
+        Self {
+            label: label.into(),
+            lo,
+            hi: if hi <= lo { lo * 10.0 } else { hi },
+            logarithmic: true,
+            whole: false,
+        }
     }
 
     /// Linear, from 0 to a round number not below the largest.
     pub(crate) fn linear(label: &str, values: impl IntoIterator<Item = f64>) -> Self {
         let most = values.into_iter().filter(|v| v.is_finite()).fold(1e-300, f64::max);
         let step = round_step(most / 5.0);
-        Self { label: label.into(), lo: 0.0, hi: (most / step).ceil() * step, logarithmic: false }
+        Self {
+            label: label.into(),
+            lo: 0.0,
+            hi: (most / step).ceil() * step,
+            logarithmic: false,
+            whole: false,
+        }
+    }
+
+    /// Linear from 0 to a whole number above the largest, marked at whole numbers only.
+    pub(crate) fn counts(label: &str, values: impl IntoIterator<Item = f64>) -> Self {
+        let most = values.into_iter().filter(|v| v.is_finite()).fold(1.0, f64::max);
+        Self { label: label.into(), lo: 0.0, hi: most.ceil() + 1.0, logarithmic: false, whole: true }
     }
 
     /// 0 at `lo`, 1 at `hi`; clamped, so that nothing is drawn outside.
@@ -45,7 +65,7 @@ impl Axis {
     /// Places and labels of the marks: every decade, or every second, third … when there are many.
     pub(crate) fn ticks(&self) -> Vec<(f64, String)> {
         if !self.logarithmic {
-            let step = round_step((self.hi - self.lo) / 5.0);
+            let step = round_step((self.hi - self.lo) / 5.0).max(if self.whole { 1.0 } else { 0.0 });
             let count = ((self.hi - self.lo) / step + 1e-9) as usize;
             return (0..=count).map(|k| self.lo + k as f64 * step).map(|v| (v, plain(v))).collect();
         }

@@ -19,6 +19,8 @@ fn linear_axes_end_on_round_numbers() {
     let axis = Axis::linear("x", [0.3, 1.97]);
     assert_eq!((axis.lo, axis.hi), (0.0, 2.0));
     assert_eq!(axis.ticks().len(), 5);
+    let labels: Vec<String> = Axis::counts("x", [1.0, 2.0]).ticks().into_iter().map(|t| t.1).collect();
+    assert_eq!(labels, ["0", "1", "2", "3"]);
 }
 
 #[test]

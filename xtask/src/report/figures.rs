@@ -29,7 +29,7 @@ pub(super) fn draw(folder: &Path) -> DrawResult {
     let words = ("Separation at the time of contact, by pair", SEPARATION);
     by_pair(&lines, |l| l.separation, words, &folder.join("pairs-separation.svg"))?;
     by_pair(&lines, |l| l.time, ("Time per query, by pair", TIME), &folder.join("pairs-time.svg"))?;
-    for name in sweep::NAMES {
+    for name in sweep::NAMES.into_iter().filter(|name| *name != "instructions") {
         series(folder, name)?;
     }
     Ok(())
@@ -114,7 +114,7 @@ fn words(name: &str) -> (&'static str, &'static str, &'static str) {
         "triangles" => {
             ("Time against size: two torus knots", "triangles of each body", "median time of one query, µs")
         }
-        "build" => ("Cost of a tree", "triangles of the body", "per triangle"),
+        "build" => ("Cost of a tree", "triangles of the body", "µs or bytes per triangle"),
         "tolerance" => {
             ("Time against accuracy: two pebbles", "tolerance, in radii", "median time of one query, µs")
         }
@@ -133,8 +133,10 @@ fn words(name: &str) -> (&'static str, &'static str, &'static str) {
             "relative speed, radii per unit of time",
             "median time of one query, µs",
         ),
-        "order" => ("A curved motion cut into n pieces", "pieces n", "error of the time of contact"),
-        _ => ("Threads", "threads", "queries per second"),
+        "order" => {
+            ("A curved motion cut into n pieces", "pieces n", "error of the time of contact, in windows")
+        }
+        _ => ("A batch of queries on several threads: two pebbles", "threads", "queries per second"),
     }
 }
 
@@ -166,7 +168,7 @@ fn series(folder: &Path, name: &str) -> DrawResult {
     };
     let y = if name == "threads" { Axis::linear(y, all()) } else { Axis::decades(y, all()) };
     let xs = points.iter().map(|p| p.x);
-    let x = if name == "threads" { Axis::linear(x, xs) } else { Axis::decades(x, xs) };
+    let x = if name == "threads" { Axis::counts(x, xs) } else { Axis::decades(x, xs) };
     if ["triangles", "order"].contains(&name) {
         for series in &mut drawn {
             if let Some(e) = exponent(&series.points) {

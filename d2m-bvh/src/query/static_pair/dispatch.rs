@@ -1,6 +1,6 @@
-//! Runs a search with the widest vector instructions of the processor. Every choice gives the same bits.
+//! Runs a search with the vector instructions in use. Every choice gives the same bits.
 
-use crate::search::{Isa, Lanes, Portable};
+use crate::search::{InstructionSet, Lanes, Portable};
 
 /// A piece of work that is compiled once for each kind of lanes.
 pub(crate) trait Task {
@@ -10,22 +10,22 @@ pub(crate) trait Task {
     fn run<L: Lanes>(self) -> Self::Output;
 }
 
-/// Does the task with the best instruction set of this processor.
+/// Does the task with the instruction set in use.
 pub(crate) fn run<T: Task>(task: T) -> T::Output {
-    run_on(Isa::best(), task)
+    run_on(InstructionSet::in_use(), task)
 }
 
 /// The same with a given instruction set, which the processor must have.
 #[allow(unsafe_code)]
-pub(crate) fn run_on<T: Task>(isa: Isa, task: T) -> T::Output {
-    match isa {
-        Isa::Portable => task.run::<Portable>(),
-        // SAFETY: `Isa::best` found the features on this processor (tests ask only for sets that it names).
+pub(crate) fn run_on<T: Task>(set: InstructionSet, task: T) -> T::Output {
+    match set {
+        // SAFETY: `InstructionSet::in_use` found the features on this processor (tests ask only for available sets).
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 => unsafe { avx2(task) },
+        InstructionSet::Avx512 => unsafe { avx512(task) },
         // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx512 => unsafe { avx512(task) },
+        InstructionSet::Avx2 => unsafe { avx2(task) },
+        _ => task.run::<Portable>(),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::dispatch::{Task, run_on};
 use super::node_test::{Placed, Side, lower_bounds, margin_free_gaps};
 use super::*;
-use crate::search::{Isa, Lanes, Portable};
+use crate::search::{InstructionSet, Lanes, Portable};
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::{OrientedBox, WideNode};
 use glam::{DMat3, DQuat, DVec3};
@@ -182,7 +182,7 @@ fn every_kind_of_lanes_gives_the_same_bits() {
             to_work: 0.5,
         };
         let placed = Placed::new(&side, &single, [0.0; 3], &node).looking_along([0.3, -0.6, 0.7]);
-        let (bounds, bits) = run_on(Isa::Portable, Kernel(&node, &placed));
+        let (bounds, bits) = run_on(InstructionSet::Portable, Kernel(&node, &placed));
         let (best_bounds, best_bits) = run(Kernel(&node, &placed));
         assert_eq!(bounds.map(f32::to_bits), best_bounds.map(f32::to_bits));
         assert_eq!(bits, best_bits);

@@ -1,0 +1,65 @@
+//! Which vector instructions queries use. Every choice gives the same bits.
+
+use core::sync::atomic::{AtomicU8, Ordering};
+
+/// Vector instructions that the queries of this crate are compiled for, the plainest first.
+///
+/// A query uses the best set of the processor. The choice changes its time and nothing else: every answer has the same
+/// bits. So the limit below is one of the process and not an option of each query. It serves to measure what the
+/// instructions are worth, and to run under an emulator (valgrind, an old virtual machine) that promises instructions
+/// which it does not have.
+///
+/// ```
+/// use d2m_bvh::InstructionSet;
+/// InstructionSet::Portable.limit();
+/// assert_eq!(InstructionSet::in_use(), InstructionSet::Portable);
+/// InstructionSet::Avx512.limit(); // again the best that there is
+/// assert_eq!(Some(&InstructionSet::in_use()), InstructionSet::available().last());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum InstructionSet {
+    /// What the target of the build has: SSE2 on x86-64.
+    Portable,
+    /// AVX2 with BMI, LZCNT and POPCNT, on x86-64.
+    Avx2,
+    /// The same with AVX-512F and AVX-512VL.
+    Avx512,
+}
+
+const ALL: [InstructionSet; 3] = [InstructionSet::Portable, InstructionSet::Avx2, InstructionSet::Avx512];
+
+/// Index into [`ALL`].
+static LIMIT: AtomicU8 = AtomicU8::new(2);
+
+impl InstructionSet {
+    /// The sets that this processor has; the first is always [`InstructionSet::Portable`].
+    pub fn available() -> Vec<Self> {
+        let best = Self::best();
+        ALL.into_iter().filter(|set| *set <= best).collect()
+    }
+
+    /// The set that queries use now: the best of this processor up to the limit.
+    #[inline]
+    pub fn in_use() -> Self {
+        Self::best().min(ALL[usize::from(LIMIT.load(Ordering::Relaxed))])
+    }
+
+    /// From now on no query of this process uses a higher set than this one; no answer changes.
+    pub fn limit(self) {
+        LIMIT.store(self as u8, Ordering::Relaxed);
+    }
+
+    /// The best one of this processor.
+    #[inline]
+    fn best() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            use std::arch::is_x86_feature_detected as has;
+            if has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt") {
+                return if has!("avx512f") && has!("avx512vl") { Self::Avx512 } else { Self::Avx2 };
+            }
+        }
+        Self::Portable
+    }
+}

@@ -1,0 +1,81 @@
+//! A copy of the workspace in target/mutants, in which sources may be spoilt.
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+type Error = Box<dyn std::error::Error>;
+
+/// The copy; what is built of it lies beside it.
+pub(super) struct Copy {
+    source: PathBuf,
+    pub(super) root: PathBuf,
+    pub(super) build: PathBuf,
+}
+
+impl Copy {
+    /// Brings the copy up to date. A file that is the same already keeps its time, so that cargo need not build again.
+    pub(super) fn new(source: &Path) -> Result<Self, Error> {
+        let base = source.join("target/mutants");
+        let copy = Self { source: source.into(), root: base.join("workspace"), build: base.join("build") };
+        let files = listed(source)?;
+        for file in &files {
+            copy.restore(file)?;
+        }
+        remove_others(&copy.root, &copy.root, &files)?;
+        Ok(copy)
+    }
+
+    /// Makes a file what it is in the source again.
+    pub(super) fn restore(&self, file: &str) -> std::io::Result<()> {
+        let (from, to) = (self.source.join(file), self.root.join(file));
+        let wanted = fs::read(from)?;
+        if fs::read(&to).is_ok_and(|found| found == wanted) {
+            return Ok(());
+        }
+        fs::create_dir_all(to.parent().unwrap_or(&self.root))?;
+        fs::write(to, wanted)
+    }
+
+    /// Replaces the only occurrence of `from`.
+    pub(super) fn patch(&self, file: &str, from: &str, to: &str) -> Result<(), Error> {
+        let path = self.root.join(file);
+        let text = fs::read_to_string(&path).map_err(|e| format!("{file}: {e}"))?;
+        let found = text.matches(from).count();
+        if found != 1 {
+            return Err(format!("{file} holds the text {found} times instead of once: {from}").into());
+        }
+        Ok(fs::write(path, text.replace(from, to))?)
+    }
+}
+
+/// The files of the project, those not yet committed included.
+fn listed(source: &Path) -> Result<BTreeSet<String>, Error> {
+    let output = Command::new("git")
+        .args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"])
+        .current_dir(source)
+        .output()
+        .map_err(|e| format!("git: {e}"))?;
+    if !output.status.success() {
+        return Err(format!("git ls-files: {}", String::from_utf8_lossy(&output.stderr)).into());
+    }
+    let text = String::from_utf8(output.stdout)?;
+    let files = text.split('\0').filter(|file| !file.is_empty() && source.join(file).is_file());
+    Ok(files.map(String::from).collect())
+}
+
+/// Removes what an older copy held and the project no longer does.
+fn remove_others(root: &Path, folder: &Path, files: &BTreeSet<String>) -> std::io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            remove_others(root, &path, files)?;
+        } else {
+            let name = path.strip_prefix(root).unwrap_or(&path).display().to_string().replace('\\', "/");
+            if !files.contains(&name) {
+                fs::remove_file(&path)?;
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,173 @@
+//! Builds each mutant, runs the test that must notice it, and says whether it did.
+use super::copy::Copy;
+use super::{Change, MUTANTS, Mutant};
+use crate::{TaskResult, workspace_root};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+type Error = Box<dyn std::error::Error>;
+
+#[derive(clap::Args)]
+#[group(skip)]
+pub(crate) struct Options {
+    /// Only mutants of which the name, the file or the test contains this.
+    #[arg(long)]
+    only: Option<String>,
+    /// Print the table and do nothing.
+    #[arg(long)]
+    list: bool,
+}
+
+/// What became of a test.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum End {
+    Passed,
+    Failed,
+    /// Still running after the limit: a fault that hangs is noticed too.
+    Hung,
+}
+
+/// A test that takes this many times as long as with the right code hangs.
+const PATIENCE: u32 = 20;
+/// And at least this long.
+const LEAST: Duration = Duration::from_secs(120);
+
+/// `cargo xtask mutants`.
+pub(crate) fn run(options: &Options) -> TaskResult {
+    let wanted = |m: &&Mutant| options.only.as_ref().is_none_or(|only| m.row().contains(only.as_str()));
+    let mutants: Vec<&Mutant> = MUTANTS.iter().filter(wanted).collect();
+    if options.list {
+        mutants.iter().for_each(|m| println!("{}", m.row()));
+        return Ok(());
+    }
+    if mutants.is_empty() {
+        return Err("no such mutant (see --list)".into());
+    }
+    let root = workspace_root();
+    let findings = super::check(&root)?;
+    if !findings.is_empty() {
+        return Err(findings.join("\n").into());
+    }
+    let copy = Copy::new(&root)?;
+    let progress = bar(mutants.len());
+    let say = |text: &str| if progress.is_hidden() { println!("{text}") } else { progress.println(text) };
+
+    // With the right code every test passes; a mutant that lives in its test is dead then.
+    let mut times: BTreeMap<&str, Duration> = BTreeMap::new();
+    for mutant in &mutants {
+        if times.contains_key(mutant.test) {
+            continue;
+        }
+        progress.set_message(format!("right code: {}", mutant.test().1));
+        let program = build(&copy, mutant)?;
+        let begin = Instant::now();
+        if ask(&copy, &program, mutant, Duration::from_secs(3600))? != End::Passed {
+            return Err(format!("{} fails without any mutant", mutant.test).into());
+        }
+        times.insert(mutant.test, begin.elapsed());
+    }
+    let mut survivors = Vec::new();
+    for mutant in &mutants {
+        progress.set_message(mutant.name);
+        let word = match mutant.change {
+            Change::InTest => "killed in the test",
+            Change::Patch { file, from, to } => {
+                copy.patch(file, from, to)?;
+                let limit = LEAST.max(times[mutant.test] * PATIENCE);
+                let end = build(&copy, mutant).and_then(|program| ask(&copy, &program, mutant, limit));
+                copy.restore(file)?;
+                match end.map_err(|e| format!("mutant \"{}\": {e}", mutant.name))? {
+                    End::Failed => "killed",
+                    End::Hung => "killed (it hangs)",
+                    End::Passed => {
+                        survivors.push(mutant.name);
+                        "SURVIVES"
+                    }
+                }
+            }
+        };
+        say(&format!("{word:<18} {:<56} {}", mutant.name, mutant.test));
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    println!("{} mutants, {} survive", mutants.len(), survivors.len());
+    if survivors.is_empty() { Ok(()) } else { Err(format!("survivors: {}", survivors.join("; ")).into()) }
+}
+
+fn bar(length: usize) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {eta} left  {msg}");
+    let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+    let progress = ProgressBar::new(length as u64).with_style(style);
+    progress.enable_steady_tick(Duration::from_millis(500));
+    progress
+}
+
+/// Builds the target in which the test lives. A mutant that does not compile is an error of the table, not a kill.
+fn build(copy: &Copy, mutant: &Mutant) -> Result<PathBuf, Error> {
+    let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        .args(["test", "--locked", "--no-run", "--message-format=json"])
+        .args(mutant.target())
+        .current_dir(&copy.root)
+        .env("CARGO_TARGET_DIR", &copy.build)
+        // Each mutant is built once and asked once: most of the time is the compiler's.
+        .env("CARGO_PROFILE_DEV_OPT_LEVEL", "1")
+        .env("CARGO_PROFILE_DEV_DEBUG", "0")
+        .env_remove("CARGO_MANIFEST_DIR")
+        .output()?;
+    if !output.status.success() {
+        let text = String::from_utf8_lossy(&output.stderr);
+        let tail: Vec<&str> = text.lines().rev().take(5).collect();
+        let tail: Vec<&str> = tail.into_iter().rev().collect();
+        return Err(format!("does not compile: {}", tail.join("\n")).into());
+    }
+    let text = String::from_utf8_lossy(&output.stdout);
+    let messages = text.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    let program = messages
+        .filter(|m| m["reason"] == "compiler-artifact" && m["profile"]["test"] == true)
+        .filter_map(|m| m["executable"].as_str().map(PathBuf::from))
+        .last();
+    program.ok_or_else(|| "cargo names no test program".into())
+}
+
+/// Runs the one test.
+fn ask(copy: &Copy, program: &Path, mutant: &Mutant, limit: Duration) -> Result<End, Error> {
+    let (file, test) = mutant.test();
+    let folder = copy.root.join(file.split('/').next().unwrap_or_default());
+    let path = copy.build.join("output.txt");
+    let output = File::create(&path)?;
+    let mut child = Command::new(program)
+        .arg(test)
+        .current_dir(&folder)
+        .env("CARGO_MANIFEST_DIR", &folder)
+        .stdout(output.try_clone()?)
+        .stderr(output)
+        .stdin(Stdio::null())
+        .spawn()?;
+    let begin = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait()? {
+            break status;
+        }
+        if begin.elapsed() > limit {
+            child.kill()?;
+            child.wait()?;
+            return Ok(End::Hung);
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    };
+    if !status.success() {
+        // A panic, or an abort (overflow of the stack, a panic while panicking).
+        return Ok(End::Failed);
+    }
+    let text = std::fs::read_to_string(&path).unwrap_or_default();
+    if text.contains(&format!("{test} ... ok")) {
+        Ok(End::Passed)
+    } else {
+        Err(format!("{} is not among the tests of its target", mutant.test).into())
+    }
+}

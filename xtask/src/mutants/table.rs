@@ -1,0 +1,308 @@
+//! The deliberate faults. docs/guarantees.md holds the same table; `cargo xtask tidy` compares the two and checks that
+//! each text still occurs exactly once.
+
+/// A fault and the test that must notice it.
+pub(crate) struct Mutant {
+    pub(crate) name: &'static str,
+    pub(crate) change: Change,
+    /// `file.rs::test`.
+    pub(crate) test: &'static str,
+}
+
+/// What is wrong.
+#[derive(Clone, Copy)]
+pub(crate) enum Change {
+    /// In this file this text, which occurs once, becomes that.
+    Patch { file: &'static str, from: &'static str, to: &'static str },
+    /// The test makes the wrong variant itself and asserts that the same samples refute it.
+    InTest,
+}
+
+const fn patch(
+    name: &'static str,
+    file: &'static str,
+    from: &'static str,
+    to: &'static str,
+    test: &'static str,
+) -> Mutant {
+    Mutant { name, change: Change::Patch { file, from, to }, test }
+}
+
+const fn in_test(name: &'static str, test: &'static str) -> Mutant {
+    Mutant { name, change: Change::InTest, test }
+}
+
+pub(crate) const MUTANTS: [Mutant; 44] = [
+    // Intervals.
+    patch(
+        "no outward rounding",
+        "d2m-interval/src/round.rs",
+        "x.abs().times(F64x2::splat(HALF_ULP)).plus(F64x2::splat(TINY))",
+        "x.abs().times(F64x2::splat(0.0))",
+        "d2m-interval/tests/differential.rs::no_loss_and_tight",
+    ),
+    patch(
+        "underflow is not covered",
+        "d2m-interval/src/round.rs",
+        "pub(crate) const TINY: f64 = f64::from_bits((1023 - 501) << 52);",
+        "pub(crate) const TINY: f64 = 0.0;",
+        "d2m-interval/tests/special_cases.rs::overflow_and_underflow",
+    ),
+    patch(
+        "sine and cosine without the kernel's error",
+        "d2m-interval/src/elementary/trig.rs",
+        "pub(super) const PAD: f64 = f64::from_bits(0x3CAE_0000_0000_0000);",
+        "pub(super) const PAD: f64 = 0.0;",
+        "d2m-interval/tests/differential.rs::no_loss_and_tight",
+    ),
+    in_test(
+        "outward rounding removed on one side, one last place inwards",
+        "d2m-interval/tests/differential.rs::mutants_without_outward_rounding_die",
+    ),
+    in_test(
+        "a forgotten extremum, a wrong quadrant of sine and cosine",
+        "d2m-interval/tests/differential.rs::mutants_of_the_quadrant_die",
+    ),
+    // Motions.
+    patch(
+        "jerk of a path without 3U",
+        "d2m-motion/src/relative/bounds.rs",
+        "(3.0 * k.speed + k.b * reach.min(k.reach))",
+        "(k.b * reach.min(k.reach))",
+        "d2m-motion/src/relative/tests.rs::bounds_of_the_derivatives_hold_and_are_nearly_reached",
+    ),
+    patch(
+        "half of K2 in the acceleration of a path",
+        "d2m-motion/src/relative/bounds.rs",
+        "let k2 = (c + w * w) * UP;",
+        "let k2 = 0.5 * (c + w * w) * UP;",
+        "d2m-motion/src/relative/tests.rs::bounds_of_the_derivatives_hold_and_are_nearly_reached",
+    ),
+    patch(
+        "rounding of frames not counted",
+        "d2m-motion/src/relative/bounds.rs",
+        "const ROUNDING: f64 = 128.0;",
+        "const ROUNDING: f64 = 0.0;",
+        "d2m-motion/src/relative/tests.rs::remainders_hold_and_are_nearly_reached",
+    ),
+    in_test(
+        "K3 = w³, no bY in V, a remainder without E",
+        "d2m-motion/src/relative/tests.rs::bounds_of_the_derivatives_hold_and_are_nearly_reached",
+    ),
+    // Roots.
+    patch(
+        "½ twice in the inclusion function",
+        "d2m-root/src/inclusion_function.rs",
+        "Parabola::new(self.value.lo(), self.slope.lo(), self.second_derivative.lo())",
+        "Parabola::new(self.value.lo(), self.slope.lo(), 0.5 * self.second_derivative.lo())",
+        "d2m-root/tests/paper_errata.rs::half_twice_is_late",
+    ),
+    patch(
+        "what lies behind a refused root is dropped",
+        "d2m-root/src/hrfoi.rs",
+        "if part.hi() < piece.hi() {",
+        "if part.hi() < part.lo() {",
+        "d2m-root/tests/paper_errata.rs::a_refused_root_does_not_end_the_search",
+    ),
+    patch(
+        "a sphere pair is judged at the epoch",
+        "d2m-root/src/inclusion_function.rs",
+        "let p = if shift.hi() <= 0.0 {",
+        "let p = if shift.hi() < f64::INFINITY {",
+        "d2m-root/src/inclusion_function.rs::judged_at_the_start_of_what_is_searched",
+    ),
+    patch(
+        "the first zero of a quadratic rounded up",
+        "d2m-root/src/isolator/quadratic.rs",
+        "const EARLY: f64 = 1.0 - 16.0 * UNIT;",
+        "const EARLY: f64 = 1.0 + 16.0 * UNIT;",
+        "d2m-root/src/isolator/tests.rs::first_zeros_are_early_and_tight",
+    ),
+    patch(
+        "½ twice in the discriminant of the isolator",
+        "d2m-root/src/isolator/quadratic.rs",
+        "let product = 2.0 * gap * curvature;",
+        "let product = gap * curvature;",
+        "d2m-root/src/isolator/tests.rs::first_zeros_are_early_and_tight",
+    ),
+    patch(
+        "the isolator drops what lies behind a clear part",
+        "d2m-root/src/isolator/search.rs",
+        "rest.push(Piece { lo: clear_hi, ..piece });",
+        "",
+        "d2m-feature/tests/first_contact.rs::planted_contacts_are_never_missed_and_never_late",
+    ),
+    in_test("the paper's literal Algorithm 2", "d2m-root/tests/paper_errata.rs::half_twice_is_late"),
+    // Features.
+    patch(
+        "Γ inverted, paper's vertex/face",
+        "d2m-feature/src/paper/gamma/point_triangle.rs",
+        "!side.certainly_apart(",
+        "side.certainly_apart(",
+        "d2m-feature/tests/paper_planted.rs::planted_vertex_face",
+    ),
+    patch(
+        "Γ inverted, closed-form vertex/face",
+        "d2m-feature/src/point_triangle/mod.rs",
+        "Band { lo: lo - margin, hi: hi + margin }",
+        "Band { lo: hi + margin, hi: f64::INFINITY }",
+        "d2m-feature/tests/first_contact.rs::planted_contacts_are_never_missed_and_never_late",
+    ),
+    patch(
+        "the plane without the path's remainder",
+        "d2m-feature/src/point_triangle/mod.rs",
+        "let wide = remainder.bound(reach(whole));",
+        "let wide = 0.0 * remainder.bound(reach(whole));",
+        "d2m-feature/tests/first_contact.rs::planted_contacts_are_never_missed_and_never_late",
+    ),
+    in_test(
+        "the paper's literal Algorithm 5",
+        "d2m-feature/tests/paper_enclosures.rs::half_twice_loses_an_overlap",
+    ),
+    // Trees.
+    patch(
+        "extents of boxes not rounded outward",
+        "d2m-bvh/src/tree/surface.rs",
+        "let half = self.half.map(|h| round_up(h + slack));",
+        "let half = self.half.map(|h| (h + slack) as f32);",
+        "d2m-bvh/src/tree/tests.rs::boxes_enclose_in_more_than_double_precision",
+    ),
+    in_test("boxes of a tree shrunk", "d2m-bvh/src/tree/tests.rs::any_shrunk_or_broken_tree_is_refused"),
+    // The default engine.
+    patch(
+        "half of the spin of boxes",
+        "d2m-bvh/src/search/node_test.rs",
+        "L::splat(scale.spin[0]) * radius",
+        "L::splat(0.5 * scale.spin[0]) * radius",
+        "d2m-bvh/src/search/tests.rs::entry_times_of_boxes_hold_and_are_sharp",
+    ),
+    patch(
+        "gaps of boxes without their error: −0.02 of the margin",
+        "d2m-bvh/src/search/node_test.rs",
+        "gap_margin: GAP_ERROR * (norm(&center)",
+        "gap_margin: -0.02 * GAP_ERROR * (norm(&center)",
+        "d2m-bvh/src/search/tests.rs::boxes_called_apart_at_rest_are_apart",
+    ),
+    patch(
+        "no acceleration of boxes",
+        "d2m-bvh/src/search/scene.rs",
+        "acceleration: round_up(acceleration),",
+        "acceleration: 0.0 * acceleration as f32,",
+        "d2m-bvh/src/search/tests.rs::half_the_acceleration_is_noticed",
+    ),
+    patch(
+        "nine tenths of the level",
+        "d2m-bvh/src/search/scene.rs",
+        "floor: round_up((self.pair.level *",
+        "floor: round_up((0.9 * self.pair.level *",
+        "d2m-bvh/src/search/tests.rs::entry_times_of_boxes_hold_and_are_sharp",
+    ),
+    patch(
+        "½ twice in the time of triangles",
+        "d2m-bvh/src/search/triangle_pair.rs",
+        "let root = (v * v + 2.0 * m * g).sqrt();",
+        "let root = (v * v + m * g).sqrt();",
+        "d2m-bvh/src/search/tests.rs::clear_times_of_triangle_pairs_hold_and_are_sharp",
+    ),
+    patch(
+        "half of the acceleration of triangles",
+        "d2m-bvh/src/search/triangle_pair.rs",
+        "let m = scale.acceleration * length;",
+        "let m = 0.5 * scale.acceleration * length;",
+        "d2m-bvh/src/search/tests.rs::clear_times_of_triangle_pairs_hold_and_are_sharp",
+    ),
+    patch(
+        "the frame passes an item that waits",
+        "d2m-bvh/src/search/queue.rs",
+        "let least = bucket.iter().map(|item| item.key).min()?;",
+        "let least = bucket.iter().map(|item| item.key).max()?;",
+        "d2m-bvh/src/search/queue.rs::no_live_key_is_below_the_one_handed_out",
+    ),
+    patch(
+        "late by 1e-6",
+        "d2m-bvh/src/query/report.rs",
+        "let time = crate::search::time_from(found.start, found.offset)",
+        "let time = (1e-6 + crate::search::time_from(found.start, found.offset))",
+        "d2m-bvh/tests/engine.rs::separation_at_lo_is_what_is_promised_and_nothing_touches_before",
+    ),
+    patch(
+        "a contact is called clear",
+        "d2m-bvh/src/search/window.rs",
+        "Some(found) if found.offset <= length => Outcome::Found(found),",
+        "Some(found) if found.offset < 0.0 * length => Outcome::Found(found),",
+        "d2m-bvh/tests/engine.rs::separation_at_lo_is_what_is_promised_and_nothing_touches_before",
+    ),
+    patch(
+        "the end of the budget is called clear",
+        "d2m-bvh/src/query/time_of_contact.rs",
+        "Outcome::OutOfBudget(until) => TimeOfContact::Undecided { clear_until: until },",
+        "Outcome::OutOfBudget(_) => TimeOfContact::Separated,",
+        "d2m-bvh/tests/engine.rs::modes_and_budgets_are_consistent",
+    ),
+    patch(
+        "a body inside the other is not looked for",
+        "d2m-bvh/src/query/time_of_contact.rs",
+        "        && start_decided\n",
+        "        && !start_decided\n",
+        "d2m-bvh/tests/engine.rs::starts_that_touch_cross_or_hold",
+    ),
+    patch(
+        "twice the step of conservative advancement",
+        "d2m-bvh/src/query/any_motion.rs",
+        "(t + free).next_down().min(until)",
+        "(t + 2.0 * free).next_down().min(until)",
+        "d2m-bvh/tests/engine.rs::any_motion_agrees_with_the_closed_form",
+    ),
+    in_test(
+        "nine tenths of the level or of the speeds of boxes",
+        "d2m-bvh/src/search/tests.rs::mutants_of_the_entry_times_die",
+    ),
+    in_test("half of the spin of a needle", "d2m-bvh/src/search/tests.rs::half_the_spin_is_noticed"),
+    // Static queries.
+    patch(
+        "the distance's lower bound is its upper bound",
+        "d2m-bvh/src/query/distance.rs",
+        "Found::Pair(Best { lower: lower * (1.0 - 2.0 * UNIT_F64), ..best })",
+        "Found::Pair(Best { lower: lower.max(best.distance.upper * 1.0001), ..best })",
+        "d2m-bvh/tests/static_query.rs::random_solids_and_soups",
+    ),
+    patch(
+        "collide looks at the first child only",
+        "d2m-bvh/src/query/collide.rs",
+        "lanes &= lanes - 1;",
+        "lanes = 0;",
+        "d2m-bvh/tests/static_query.rs::random_solids_and_soups",
+    ),
+    // The reference method.
+    patch(
+        "only the first bracket of a vertex/face pair is searched",
+        "d2m-bvh/src/paper/leaf_pair.rs",
+        "still_open(Interval::new(part.lo(), jet.span().hi()), best.as_ref())",
+        "still_open(part, best.as_ref())",
+        "d2m-bvh/tests/paper.rs::every_scene_has_its_answer",
+    ),
+    patch(
+        "a leaf pair without its edges",
+        "d2m-bvh/src/paper/leaf_pair.rs",
+        "        self.edges(&frames[0], best, meter)\n",
+        "        Ok(())\n",
+        "d2m-bvh/tests/paper.rs::every_scene_has_its_answer",
+    ),
+    patch(
+        "only the earliest pair of spheres is followed",
+        "d2m-bvh/src/paper/traverse.rs",
+        "for (i, &(overlap, part_a, part_b)) in pairs.iter().enumerate() {",
+        "for (i, &(overlap, part_a, part_b)) in pairs.iter().enumerate().take(1) {",
+        "d2m-bvh/tests/paper.rs::every_scene_has_its_answer",
+    ),
+    in_test(
+        "answers of both methods early or late by 1e-8",
+        "d2m-bvh/src/paper/cross_check.rs::the_judge_has_teeth",
+    ),
+    // The evaluation itself.
+    in_test("an engine that is late by 1e-6, or misses", "xtask/src/judge/tests.rs::faults_are_found"),
+    in_test(
+        "accuracy and bench asked of a broken engine",
+        "xtask/src/accuracy/teeth.rs::a_broken_engine_is_noticed",
+    ),
+];
