@@ -1,12 +1,12 @@
-//! Two moving bodies over a window of time: ask here for the first contact of a pair of features.
+//! Two bodies of constant twist over a window of time: ask here for the first contact of a pair of features.
 use crate::contact::{ContactBracket, ContactDetails, FirstContact};
 use crate::details;
 use crate::edge_edge::EdgeEdgeTest;
 use crate::options::ContactOptions;
-use crate::path::{EnclosedPath, FeaturePath, FramedMotion, RigidPath};
+use crate::path::{FeaturePath, FramedMotion, RigidPath};
 use crate::point_triangle::{PointTriangleTest, TrianglePlanes};
 use crate::sphere_sphere::SphereSphereTest;
-use d2m_motion::{LinearMotion, RelativeMotion, RigidMotion};
+use d2m_motion::{LinearMotion, RelativeMotion};
 use d2m_root::{FirstRoot, Isolation, IsolatorOptions, Piece, PieceTest, isolate};
 use glam::DVec3;
 
@@ -302,129 +302,17 @@ fn answer<T: PieceTest>(
     }
 }
 
-/// Two motions of any kind over a window, through their interval enclosures: the same tests, about ten times slower
-/// than [`PairMotion`], with the same promises as long as the enclosures keep theirs.
-pub struct EnclosedPairMotion<'a> {
-    a: &'a dyn RigidMotion,
-    b: &'a dyn RigidMotion,
+/// Isolates in real time. `start_apart`: the caller knows that there is no contact at the start of the window.
+pub(crate) fn answer_in<T: PieceTest>(
+    mut test: T,
     window: Piece,
-}
-
-impl<'a> EnclosedPairMotion<'a> {
-    /// Motion of body A and of body B over `[t0, t1]`.
-    ///
-    /// # Panics
-    /// If a time is not finite or `t0 > t1`.
-    pub fn new(a: &'a dyn RigidMotion, b: &'a dyn RigidMotion, t0: f64, t1: f64) -> Self {
-        assert!(t0 <= t1 && t0.is_finite() && t1.is_finite(), "window [{t0}, {t1}]");
-        Self { a, b, window: Piece { lo: t0, hi: t1 } }
-    }
-
-    /// First contact of a point of A with a triangle of B (body frames).
-    pub fn point_triangle(
-        &self,
-        point: DVec3,
-        triangle: &[DVec3; 3],
-        options: &ContactOptions,
-    ) -> FirstContact {
-        point_triangle_enclosed(self.a, self.b, point, triangle, self.window, options)
-    }
-
-    /// First contact of a triangle of A with a point of B.
-    pub fn triangle_point(
-        &self,
-        triangle: &[DVec3; 3],
-        point: DVec3,
-        options: &ContactOptions,
-    ) -> FirstContact {
-        point_triangle_enclosed(self.b, self.a, point, triangle, self.window, options)
-    }
-
-    /// First contact of an edge of A with an edge of B.
-    pub fn edge_edge(
-        &self,
-        edge_a: [DVec3; 2],
-        edge_b: [DVec3; 2],
-        options: &ContactOptions,
-    ) -> FirstContact {
-        let (middle, half) = ((edge_b[0] + edge_b[1]) * 0.5, (edge_b[1] - edge_b[0]) * 0.5);
-        let half_a = (edge_a[1] - edge_a[0]) * 0.5;
-        let extent = (middle.length() + half_a.length() + half.length()) * UP;
-        let path = EnclosedPath::new(self.a, self.b, edge_a, self.window, extent);
-        let half_lengths = (half_a.length() * UP, half.length() * UP);
-        let tolerance = options
-            .wanted_tolerance(2.0 * half_lengths.0.max(half_lengths.1), extent)
-            .max(4.0 * path.rounding());
-        let separation = options.separation();
-        let test = EdgeEdgeTest { path, middle, half, half_lengths, tolerance, separation };
-        self.answer(test, options)
-    }
-
-    /// First contact of a ball of A (centre, radius) with a ball of B.
-    pub fn sphere_sphere(
-        &self,
-        ball_a: (DVec3, f64),
-        ball_b: (DVec3, f64),
-        options: &ContactOptions,
-    ) -> FirstContact {
-        let sum = ball_a.1.max(0.0) + ball_b.1.max(0.0);
-        let radii = (sum * (2.0 - UP), sum * UP);
-        let extent = (ball_b.0.length() + radii.1) * UP;
-        let path = EnclosedPath::new(self.a, self.b, [ball_a.0; 2], self.window, extent);
-        let tolerance = options.wanted_tolerance(sum, extent).max(4.0 * path.rounding());
-        let separation = options.separation();
-        let test = SphereSphereTest { path, centre: ball_b.0, radii, tolerance, separation, size: sum };
-        self.answer(test, options)
-    }
-
-    /// Where and how a point of A and a triangle of B touch at a time (the `lo` of a bracket).
-    pub fn point_triangle_details(&self, point: DVec3, triangle: &[DVec3; 3], time: f64) -> ContactDetails {
-        details::point_triangle(self.a, self.b, point, triangle, time)
-    }
-
-    /// Where and how a triangle of A and a point of B touch at a time.
-    pub fn triangle_point_details(&self, triangle: &[DVec3; 3], point: DVec3, time: f64) -> ContactDetails {
-        details::point_triangle(self.b, self.a, point, triangle, time).reversed()
-    }
-
-    /// Where and how an edge of A and an edge of B touch at a time.
-    pub fn edge_edge_details(&self, edge_a: [DVec3; 2], edge_b: [DVec3; 2], time: f64) -> ContactDetails {
-        details::edge_edge(self.a, self.b, edge_a, edge_b, time)
-    }
-
-    /// Where and how two balls (centre, radius) touch at a time.
-    pub fn sphere_sphere_details(
-        &self,
-        ball_a: (DVec3, f64),
-        ball_b: (DVec3, f64),
-        time: f64,
-    ) -> ContactDetails {
-        details::sphere_sphere(self.a, self.b, ball_a, ball_b, time)
-    }
-
-    fn answer<T: PieceTest>(&self, test: T, options: &ContactOptions) -> FirstContact {
-        answer_in(test, self.window, options)
-    }
-}
-
-fn point_triangle_enclosed(
-    a: &dyn RigidMotion,
-    b: &dyn RigidMotion,
-    point: DVec3,
-    triangle: &[DVec3; 3],
-    window: Piece,
+    start_apart: bool,
     options: &ContactOptions,
 ) -> FirstContact {
-    let planes = TrianglePlanes::new(*triangle);
-    let path = EnclosedPath::new(a, b, [point; 2], window, planes.extent);
-    let tolerance = options.wanted_tolerance(planes.size, planes.extent).max(4.0 * path.rounding());
-    let separation = options.separation();
-    answer_in(PointTriangleTest { path, planes: &planes, tolerance, separation }, window, options)
-}
-
-/// Isolates in real time.
-pub(crate) fn answer_in<T: PieceTest>(mut test: T, window: Piece, options: &ContactOptions) -> FirstContact {
-    let limits = IsolatorOptions::new().with_max_evaluations(options.max_evaluations);
+    let mut limits = IsolatorOptions::new().with_max_evaluations(options.max_evaluations);
+    if start_apart {
+        limits = limits.with_start_apart();
+    }
     match isolate(&mut test, window, &limits).root {
         FirstRoot::Clear => FirstContact::Clear,
         FirstRoot::Undecided { clear_until } => FirstContact::Undecided { clear_until },

@@ -13,7 +13,7 @@ fn planted_contacts_are_never_missed_and_never_late() {
         assert!(positives.is_none(), "{name}: {positives:?}");
         assert_eq!(tally.undecided, 0, "{name}");
     });
-    assert_eq!(rows, 36);
+    assert_eq!(rows, 56);
     // The families do plant contacts, and the oracle does find them.
     assert!(total.true_contacts > total.queries / 3, "{total:?}");
     assert!(total.hits >= total.true_contacts);

@@ -18,6 +18,7 @@ mod screw;
 #[cfg(feature = "serde")]
 mod serde_form;
 mod sin_cos;
+mod state;
 mod text;
 mod twist;
 
@@ -26,9 +27,10 @@ pub use keyframes::{Keyframes, Span};
 pub use linear::LinearMotion;
 pub use path_jet::{PathJet, Remainder};
 pub use pose::{IntervalPose, Pose};
-pub use relative::{Frame, RelativeMotion};
+pub use relative::{Frame, RelativeMotion, RelativeState};
 pub use rigid_motion::RigidMotion;
 pub use screw::ScrewMotion;
+pub use state::CertifiedState;
 pub use twist::{IntervalTwist, Twist};
 
 #[cfg(doctest)]

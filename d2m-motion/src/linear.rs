@@ -1,8 +1,9 @@
 //! The paper's motion: constant linear and angular velocity.
 use crate::double_double::DoubleDouble;
 use crate::error::require_finite;
-use crate::rotation::{RotationDd, rotate_dd};
-use crate::{IntervalPose, IntervalTwist, MotionError, Pose, RigidMotion, Twist};
+use crate::rotation::{RotationDd, Spin, from_quat_rounded, rotate_dd};
+use crate::sin_cos::LARGEST_ANGLE;
+use crate::{CertifiedState, IntervalPose, IntervalTwist, MotionError, Pose, RigidMotion, Twist};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
 use glam::{DQuat, DVec3};
 
@@ -250,6 +251,30 @@ impl RigidMotion for LinearMotion {
     fn enclose_twist_rate(&self, _: Interval) -> IntervalTwist {
         let zero = IntervalVec3::point(DVec3::ZERO);
         IntervalTwist { linear: zero, angular: zero }
+    }
+
+    /// In plain floating point: `u(96 + 8|ω||t − t_ref|)` for the rotation, `4u(|x0| + |v(t − t_ref)|)` for the
+    /// position, u = 2⁻⁵³ (docs/theory/features.md, "Any C² motion").
+    fn enclose_state(&self, t: f64) -> CertifiedState {
+        let unit = 0.5 * f64::EPSILON;
+        let s = t - self.reference_time;
+        let angle = self.angular_velocity.length() * s.abs();
+        let Some(start) = from_quat_rounded(self.orientation).filter(|_| angle < 0.5 * LARGEST_ANGLE) else {
+            let now = Interval::point(t);
+            return CertifiedState::from_enclosures(&self.enclose_pose(now), &self.enclose_twist(now));
+        };
+        let travelled = self.linear_velocity * s;
+        CertifiedState {
+            rotation: Spin::new(self.angular_velocity).rotation(s) * start,
+            position: self.position + travelled,
+            at: self.at,
+            linear: self.linear_velocity,
+            angular: self.angular_velocity,
+            rotation_radius: unit * (96.0 + 8.0 * angle),
+            position_radius: 4.0 * unit * (self.position.length() + travelled.length()) + 1e-150,
+            linear_radius: 0.0,
+            angular_radius: 0.0,
+        }
     }
 
     fn constant_twist(&self) -> Option<LinearMotion> {

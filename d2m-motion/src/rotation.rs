@@ -1,4 +1,4 @@
-//! Rotations about a fixed axis: a quaternion in doubles, a matrix in double-double.
+//! Rotations about a fixed axis: a quaternion or a matrix in doubles, a matrix in double-double.
 use crate::double_double::{DoubleDouble, two_product};
 use crate::sin_cos::{LARGEST_ANGLE, sin_cos};
 use glam::{DMat3, DQuat, DVec3};
@@ -15,6 +15,61 @@ pub(crate) fn quat_of(omega: DVec3, s: f64) -> DQuat {
     let (sin, cos) = sin_cos(half);
     let axis = omega * (sin / speed);
     DQuat::from_xyzw(axis.x, axis.y, axis.z, cos)
+}
+
+/// An angular velocity with its rounded length and direction.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Spin {
+    pub(crate) omega: DVec3,
+    pub(crate) speed: f64,
+    pub(crate) axis: DVec3,
+}
+
+impl Spin {
+    pub(crate) fn new(omega: DVec3) -> Self {
+        // Scaling keeps the squares of tiny and huge rates away from under- and overflow.
+        let scale = omega.abs().max_element();
+        if scale == 0.0 {
+            return Self { omega, speed: 0.0, axis: DVec3::ZERO };
+        }
+        let scaled = omega / scale;
+        let length = scaled.length();
+        Self { omega, speed: scale * length, axis: scaled / length }
+    }
+
+    /// exp([ω]τ) by Rodrigues: `c·1 + s[k] + (1 − c)kkᵀ`.
+    #[inline(always)]
+    pub(crate) fn rotation(&self, tau: f64) -> DMat3 {
+        if self.speed == 0.0 || tau == 0.0 {
+            return DMat3::IDENTITY;
+        }
+        let (sin, cos) = sin_cos(self.speed * tau);
+        let k = self.axis;
+        let s = k * sin;
+        let v = k * (1.0 - cos);
+        DMat3::from_cols(
+            DVec3::new(cos + v.x * k.x, v.x * k.y + s.z, v.x * k.z - s.y),
+            DVec3::new(v.y * k.x - s.z, cos + v.y * k.y, v.y * k.z + s.x),
+            DVec3::new(v.z * k.x + s.y, v.z * k.y - s.x, cos + v.z * k.z),
+        )
+    }
+}
+
+/// The rotation of `q/|q|` within 36·2⁻⁵³ (Frobenius); `None` where squares might under- or overflow.
+pub(crate) fn from_quat_rounded(q: DQuat) -> Option<DMat3> {
+    let (xx, yy, zz) = (q.x * q.x, q.y * q.y, q.z * q.z);
+    let norm = xx + yy + zz + q.w * q.w;
+    if !(1e-200..=1e200).contains(&norm) {
+        return None;
+    }
+    let s = 2.0 / norm;
+    let (xy, xz, yz) = (q.x * q.y, q.x * q.z, q.y * q.z);
+    let (wx, wy, wz) = (q.w * q.x, q.w * q.y, q.w * q.z);
+    Some(DMat3::from_cols(
+        DVec3::new(1.0 - s * (yy + zz), s * (xy + wz), s * (xz - wy)),
+        DVec3::new(s * (xy - wz), 1.0 - s * (xx + zz), s * (yz + wx)),
+        DVec3::new(s * (xz + wy), s * (yz - wx), 1.0 - s * (xx + yy)),
+    ))
 }
 
 /// A rotation matrix in double-double, row by row.

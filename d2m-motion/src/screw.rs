@@ -1,5 +1,7 @@
 //! Screw motion: a turn about an axis fixed in space plus a slide along it (Mozzi–Chasles).
-use crate::{IntervalPose, IntervalTwist, LinearMotion, MotionError, Pose, RigidMotion, Twist};
+use crate::{
+    CertifiedState, IntervalPose, IntervalTwist, LinearMotion, MotionError, Pose, RigidMotion, Twist,
+};
 use d2m_interval::Interval;
 use glam::DVec3;
 
@@ -157,6 +159,9 @@ impl RigidMotion for ScrewMotion {
     }
     fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
         self.linear.enclose_twist_rate(t)
+    }
+    fn enclose_state(&self, t: f64) -> CertifiedState {
+        self.linear.enclose_state(t)
     }
     fn constant_twist(&self) -> Option<LinearMotion> {
         Some(self.linear)

@@ -1,150 +1,161 @@
-//! Jets of any C² motion from its interval enclosures.
+//! Jets of any C² motion from what it encloses of itself.
 use super::FeaturePath;
-use d2m_interval::{Interval, IntervalVec3};
-use d2m_motion::{PathJet, Remainder, RigidMotion};
-use d2m_root::Piece;
+use d2m_motion::{PathJet, RelativeState, RigidMotion};
+use d2m_root::{Band, Piece, Quadratic};
 use glam::DVec3;
+
+const UP: f64 = 1.0 + 1e-14;
+/// Part of the window that may be left before it is searched as a whole, with the shared state in its middle.
+const SHARED: f64 = 0.8;
+
+/// Two motions over a window with their relative state in its middle: the time at which every feature of a pair of
+/// bodies is evaluated first.
+#[derive(Clone, Copy)]
+pub(crate) struct EnclosedMotions<'a> {
+    pub(crate) a: &'a dyn RigidMotion,
+    pub(crate) b: &'a dyn RigidMotion,
+    window: Piece,
+    middle: f64,
+    state: RelativeState,
+    /// The same for the middle alone: how strongly the path bends there, free of what the window adds.
+    instant: RelativeState,
+}
+
+impl<'a> EnclosedMotions<'a> {
+    pub(crate) fn new(a: &'a dyn RigidMotion, b: &'a dyn RigidMotion, window: Piece) -> Self {
+        let middle = window.mid();
+        let state = RelativeState::new(a, b, (window.lo, window.hi), middle);
+        let instant = RelativeState::new(a, b, (middle, middle), middle);
+        Self { a, b, window, middle, state, instant }
+    }
+
+    pub(crate) const fn window(&self) -> Piece {
+        self.window
+    }
+
+    /// The part of the window in which the followed points are within `distance` of each other; `None`: never.
+    ///
+    /// `|x_A − x_B| ≥ |g + us| − r` with the r of [`RelativeState::straight_line`], so contact needs
+    /// `|g + us|² ≤ (distance + r)²`. The squares' rounding is below 16·2⁻⁵³ of `(|g| + |u|h)²`, and so is their
+    /// change over the rounding of s.
+    fn times_within(&self, distance: f64) -> Option<Piece> {
+        let whole = super::local(self.window, self.middle);
+        let h = super::reach(whole) * UP;
+        let (g, u, stray) = self.state.straight_line(h);
+        let size = g.length() + u.length() * h;
+        let band = (distance + stray) * UP;
+        let square = band * band * UP + 64.0 * f64::EPSILON * (size * size) + 1e-290;
+        let squared = Quadratic {
+            value: g.length_squared(),
+            slope: 2.0 * g.dot(u),
+            curvature: 2.0 * u.length_squared(),
+        };
+        let part = squared.clip(Band { lo: f64::NEG_INFINITY, hi: square }, whole)?;
+        Some(super::global(part, self.middle, self.window))
+    }
+}
 
 /// A point and a direction of A seen from the body frame of B, in real time.
 pub(crate) struct EnclosedPath<'a> {
-    a: &'a dyn RigidMotion,
-    b: &'a dyn RigidMotion,
-    point: DVec3,
-    /// Difference of two body points of A, twice the half edge.
-    direction: Option<(DVec3, DVec3)>,
-    /// Rounding of dot products and comparisons made with the jets.
-    slack: f64,
-    speed: f64,
-    direction_speed: f64,
+    motions: &'a EnclosedMotions<'a>,
+    /// From A's followed point to the middle of the ends, body frame.
+    arm: DVec3,
+    /// Half the difference of the ends.
+    half: DVec3,
+    radius: f64,
+    length: f64,
+    extent: f64,
+    window: Option<Piece>,
 }
 
-/// Position, velocity and acceleration in B's frame over an interval of time.
-struct Seen {
-    p: IntervalVec3,
-    v: IntervalVec3,
-    a: IntervalVec3,
+/// How far features of B reach: from the origin of its frame, and from its followed point.
+#[derive(Clone, Copy)]
+pub(crate) struct Extent {
+    pub(crate) from_origin: f64,
+    pub(crate) from_followed: f64,
+}
+
+impl Extent {
+    /// Of a ball.
+    pub(crate) fn of(centre: DVec3, radius: f64, motions: &EnclosedMotions<'_>) -> Self {
+        let at = motions.state.at_b();
+        Self {
+            from_origin: (centre.length() + radius) * UP,
+            from_followed: ((centre - at).length() + radius + f64::EPSILON * at.length()) * UP,
+        }
+    }
 }
 
 impl<'a> EnclosedPath<'a> {
     /// `ends` are two body points of A: the path is that of their midpoint and of half their difference; equal ends
-    /// for a single point. `extent` bounds the points of B (body frame) that are compared with it.
+    /// for a single point. `extent` bounds the points of B that are compared with it, `separation` is the distance
+    /// that counts as contact.
     pub(crate) fn new(
-        a: &'a dyn RigidMotion,
-        b: &'a dyn RigidMotion,
+        motions: &'a EnclosedMotions<'a>,
         ends: [DVec3; 2],
-        window: Piece,
-        extent: f64,
+        extent: Extent,
+        separation: f64,
     ) -> Self {
-        let mut path = Self {
-            a,
-            b,
-            point: ends[0],
-            direction: (ends[0] != ends[1]).then_some((ends[0], ends[1])),
-            slack: 0.0,
-            speed: 0.0,
-            direction_speed: 0.0,
-        };
-        let over = Interval::new(window.lo, window.hi);
-        let (point, direction) = path.enclose(over);
-        path.speed = point.v.norm().hi();
-        path.direction_speed = direction.v.norm().hi();
-        let size = point.p.norm().hi() + direction.p.norm().hi() + extent;
-        path.slack = 64.0 * f64::EPSILON * size;
-        path
+        let at = motions.state.at_a();
+        let (first, last) = (ends[0] - at, ends[1] - at);
+        let half = (ends[1] - ends[0]) * 0.5;
+        let arm = (first + last) * 0.5;
+        // Bounds both ends, so that the rounding of the middle is relative to it.
+        let radius = first.length().max(last.length()) * UP;
+        let length = half.length() * UP;
+        let distance = (radius + extent.from_followed + separation) * UP;
+        let window = motions
+            .times_within(distance)
+            .map(|part| if part.width() > SHARED * motions.window.width() { motions.window } else { part });
+        Self { motions, arm, half, radius, length, extent: extent.from_origin, window }
     }
 
-    /// Point (midpoint of the ends) and direction (half the difference) over an interval of time.
-    fn enclose(&self, t: Interval) -> (Seen, Seen) {
-        let (pose_a, pose_b) = (self.a.enclose_pose(t), self.b.enclose_pose(t));
-        let (twist_a, twist_b) = (self.a.enclose_twist(t), self.b.enclose_twist(t));
-        let (rate_a, rate_b) = (self.a.enclose_twist_rate(t), self.b.enclose_twist_rate(t));
-        let back = pose_b.rotation.transpose();
-        // X, X1, X2 of docs/theory/features.md: the derivatives of R_Bᵀx are R_Bᵀ X_k.
-        let seen = |arm: IntervalVec3, along: Option<(IntervalVec3, IntervalVec3, IntervalVec3)>| {
-            let turn = twist_a.angular.cross(arm);
-            let turn_rate = rate_a.angular.cross(arm) + twist_a.angular.cross(turn);
-            let (x, x1, x2) = match along {
-                Some((x, v, a)) => (x + arm, v + turn, a + turn_rate),
-                None => (arm, turn, turn_rate),
-            };
-            let first = x1 - twist_b.angular.cross(x);
-            let second =
-                x2 - rate_b.angular.cross(x) - twist_b.angular.cross(x1) - twist_b.angular.cross(first);
-            Seen { p: back.mul_vec(x), v: back.mul_vec(first), a: back.mul_vec(second) }
-        };
-        let body = |p: DVec3| pose_a.rotation.mul_vec(IntervalVec3::point(p) - pose_a.at);
-        let centre = (
-            pose_a.translation - pose_b.translation,
-            twist_a.linear - twist_b.linear,
-            rate_a.linear - rate_b.linear,
-        );
-        let at_b = IntervalVec3::point(pose_b.at);
-        let shifted = |mut s: Seen| {
-            s.p += at_b;
-            s
-        };
-        match self.direction {
-            None => (
-                shifted(seen(body(self.point), Some(centre))),
-                Seen { p: IntervalVec3::ZERO, v: IntervalVec3::ZERO, a: IntervalVec3::ZERO },
-            ),
-            Some((p0, p1)) => {
-                let half = Interval::point(0.5);
-                let difference = (IntervalVec3::point(p1) - p0) * half;
-                let middle = (IntervalVec3::point(p1) + p0) * half - pose_a.at;
-                (
-                    shifted(seen(pose_a.rotation.mul_vec(middle), Some(centre))),
-                    seen(pose_a.rotation.mul_vec(difference), None),
-                )
-            }
+    /// The part of the window in which a contact is possible at all.
+    pub(crate) const fn window(&self) -> Option<Piece> {
+        self.window
+    }
+
+    #[inline(always)]
+    fn with_state<T>(&self, piece: Piece, at: f64, f: impl FnOnce(&RelativeState) -> T) -> T {
+        let shared = self.motions;
+        // The shared state knows the whole window: too much for a narrow piece that happens to have its middle.
+        if at == shared.middle && piece.width() > 0.5 * shared.window.width() {
+            f(&shared.state)
+        } else {
+            f(&RelativeState::new(shared.a, shared.b, (piece.lo, piece.hi), at))
         }
-    }
-
-    fn jets(&self, piece: Piece, at: f64) -> (PathJet, PathJet) {
-        let now = self.enclose(Interval::point(at));
-        let over = self.enclose(Interval::new(piece.lo, piece.hi));
-        (jet(&now.0, &over.0, self.slack), jet(&now.1, &over.1, self.slack))
-    }
-}
-
-/// Taylor with the enclosed second derivative: middle values as coefficients, half-widths as remainder.
-fn jet(now: &Seen, over: &Seen, slack: f64) -> PathJet {
-    let radius = |v: &IntervalVec3| DVec3::new(v.x.rad(), v.y.rad(), v.z.rad()).length() * (1.0 + 1e-14);
-    PathJet {
-        p: now.p.mid(),
-        v: now.v.mid(),
-        a: over.a.mid(),
-        remainder: Remainder {
-            e0: radius(&now.p) + slack,
-            e1: radius(&now.v) + 32.0 * f64::EPSILON * now.v.mid().length(),
-            e2: 0.5 * radius(&over.a) + 32.0 * f64::EPSILON * over.a.mid().length(),
-            m3: 0.0,
-        },
     }
 }
 
 impl FeaturePath for EnclosedPath<'_> {
+    #[inline(always)]
     fn point(&mut self, piece: Piece, at: f64) -> PathJet {
-        self.jets(piece, at).0
+        self.with_state(piece, at, |state| state.point_jet(self.arm, self.radius, self.extent))
     }
 
+    #[inline(always)]
     fn point_and_direction(&mut self, piece: Piece, at: f64) -> (PathJet, PathJet) {
-        self.jets(piece, at)
+        self.with_state(piece, at, |state| {
+            let point = state.point_jet(self.arm, self.radius, self.extent);
+            (point, state.direction_jet(self.half, self.length))
+        })
     }
 
     fn speed(&self) -> f64 {
-        self.speed
+        self.motions.state.bound_speed(self.radius)
     }
 
     fn direction_speed(&self) -> f64 {
-        self.direction_speed
+        self.motions.state.bound_turn_speed(self.length)
     }
 
     fn jerk(&self) -> f64 {
-        0.0
+        // Only a hint of how wide a piece may be; what is not finite says nothing.
+        let jerk = self.motions.instant.remainder(self.radius, 0.0).m3;
+        if jerk < f64::INFINITY { jerk } else { 0.0 }
     }
 
     fn rounding(&self) -> f64 {
-        self.slack
+        self.motions.instant.remainder(self.radius, self.extent).e0
     }
 }

@@ -2,7 +2,7 @@
 mod enclosed;
 mod rigid;
 
-pub(crate) use enclosed::EnclosedPath;
+pub(crate) use enclosed::{EnclosedMotions, EnclosedPath, Extent};
 pub(crate) use rigid::{FramedMotion, RigidPath};
 
 use d2m_motion::{PathJet, Remainder};

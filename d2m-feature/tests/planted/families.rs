@@ -3,7 +3,8 @@
 //! Unit features, relative speed about 4, |ω| ≤ 3, t in [0, 1]. The contact is planted at a known time by placing A
 //! so that the features meet there; rounding moves the true time by some 1e-16, which the oracle finds.
 #![allow(unreachable_pub, dead_code)] // shared by tests, accuracy task and bench, each of which uses a part
-use d2m_motion::{LinearMotion, Pose, RigidMotion};
+use d2m_interval::Interval;
+use d2m_motion::{IntervalPose, IntervalTwist, LinearMotion, Pose, RigidMotion, Twist};
 use glam::{DQuat, DVec3};
 
 /// Which features.
@@ -130,6 +131,25 @@ impl Random {
     pub fn turn(&mut self) -> DQuat {
         let axis = self.sphere();
         DQuat::from_axis_angle(axis, self.between(-3.1, 3.1))
+    }
+}
+
+/// A motion known only by what every [`RigidMotion`] must say of itself.
+#[derive(Debug, Clone, Copy)]
+pub struct Opaque(pub LinearMotion);
+
+impl RigidMotion for Opaque {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        self.0.pose_and_twist(t)
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        self.0.enclose_pose(t)
+    }
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist(t)
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist_rate(t)
     }
 }
 

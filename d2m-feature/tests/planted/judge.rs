@@ -1,8 +1,8 @@
 //! Asks the library and the oracle, and says what is wrong.
 #![allow(unreachable_pub, dead_code)] // shared by tests, accuracy task and bench, each of which uses a part
-use super::families::{FAMILIES, Family, Kind, Planted, Random, plant};
+use super::families::{FAMILIES, Family, Kind, Opaque, Planted, Random, plant};
 use super::oracle::{Vertices, big, distance, rigid, straight, true_contact};
-use d2m_feature::{ContactOptions, FirstContact, PairMotion, StraightPaths};
+use d2m_feature::{ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, StraightPaths};
 
 /// What a run saw.
 #[derive(Debug, Clone, Default)]
@@ -93,6 +93,30 @@ pub fn rigid_family(kind: Kind, family: Family, count: u64, seed: u64) -> Tally 
     tally
 }
 
+/// The same queries through [`EnclosedPairMotion`]: every other one with nothing but the enclosures that a motion must
+/// give.
+pub fn enclosed_family(kind: Kind, family: Family, count: u64, seed: u64) -> Tally {
+    let mut tally = Tally::default();
+    let mut random = Random::new(seed);
+    let options = ContactOptions::new();
+    for i in 0..count {
+        let query = plant(kind, family, &mut random);
+        let (a, b, (t0, t1)) = (&query.motion_a, &query.motion_b, query.window);
+        let (opaque_a, opaque_b) = (Opaque(*a), Opaque(*b));
+        let pair = if i % 2 == 0 {
+            EnclosedPairMotion::new(a, b, t0, t1)
+        } else {
+            EnclosedPairMotion::new(&opaque_a, &opaque_b, t0, t1)
+        };
+        let answer = match kind {
+            Kind::PointTriangle => pair.point_triangle(query.a[0], &query.b, &options),
+            Kind::EdgeEdge => pair.edge_edge(query.a, [query.b[0], query.b[1]], &options),
+        };
+        tally.judge(kind, &query, &rigid(&query), answer, query.window);
+    }
+    tally
+}
+
 /// Straight paths through the vertices of one family.
 pub fn straight_family(kind: Kind, family: Family, count: u64, seed: u64) -> Tally {
     let mut tally = Tally::default();
@@ -119,6 +143,9 @@ pub fn all(count: u64, seed: u64, mut report: impl FnMut(&str, &Tally)) -> Tally
             let seed = seed.wrapping_mul(64).wrapping_add(index as u64);
             let tally = rigid_family(kind, family, count, seed);
             report(&format!("rigid {kind:?} {family:?}"), &tally);
+            total.add(tally);
+            let tally = enclosed_family(kind, family, count, seed);
+            report(&format!("enclosed {kind:?} {family:?}"), &tally);
             total.add(tally);
             // A spinning body's tangents and far windows have no straight twin worth asking.
             if !matches!(family, Family::Window | Family::Fast) {

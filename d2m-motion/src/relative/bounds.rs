@@ -1,6 +1,7 @@
 //! Closed-form bounds of the relative motion and of the rounding of its frames.
-use super::{RelativeMotion, Spin, UNIT, UP};
+use super::{RelativeMotion, UNIT, UP};
 use crate::Remainder;
+use crate::rotation::Spin;
 use glam::DVec3;
 
 /// Rounding of a frame and of all dot products made with it, in units of 2⁻⁵³·S0 (docs/theory/features.md).

@@ -1,6 +1,5 @@
 //! The relative pose and its first two derivatives at one time, shared by all features of a pair of bodies.
-use super::{RelativeMotion, Spin};
-use crate::sin_cos::sin_cos;
+use super::RelativeMotion;
 use crate::{PathJet, Remainder};
 use glam::{DMat3, DVec3};
 
@@ -43,23 +42,6 @@ impl Frame {
     }
 }
 
-/// exp([ω]τ) by Rodrigues: `c·1 + s[k] + (1 − c)kkᵀ`.
-#[inline(always)]
-pub(super) fn rotation(spin: &Spin, tau: f64) -> DMat3 {
-    if spin.speed == 0.0 || tau == 0.0 {
-        return DMat3::IDENTITY;
-    }
-    let (sin, cos) = sin_cos(spin.speed * tau);
-    let k = spin.axis;
-    let s = k * sin;
-    let v = k * (1.0 - cos);
-    DMat3::from_cols(
-        DVec3::new(cos + v.x * k.x, v.x * k.y + s.z, v.x * k.z - s.y),
-        DVec3::new(v.y * k.x - s.z, cos + v.y * k.y, v.y * k.z + s.x),
-        DVec3::new(v.z * k.x + s.y, v.z * k.y - s.x, cos + v.z * k.z),
-    )
-}
-
 /// `[w] M`: the cross product with every column.
 #[inline(always)]
 fn cross_columns(w: DVec3, m: &DMat3) -> DMat3 {
@@ -94,8 +76,8 @@ impl Turning {
 impl RelativeMotion {
     #[inline(always)]
     fn turning(&self, tau: f64) -> Turning {
-        let rotation_a = rotation(&self.spin_a, tau);
-        let rotation_b = rotation(&self.spin_b, tau);
+        let rotation_a = self.spin_a.rotation(tau);
+        let rotation_b = self.spin_b.rotation(tau);
         let omega = self.spin_b.omega;
         let p = transpose_mul(&rotation_b, self.offset + self.velocity * tau);
         let u = transpose_mul(&rotation_b, self.velocity);
@@ -154,7 +136,7 @@ impl RelativeMotion {
 
     #[inline(always)]
     fn plain_frame(&self, tau: f64) -> Frame {
-        let rotation_a = rotation(&self.spin_a, tau);
+        let rotation_a = self.spin_a.rotation(tau);
         let x = self.offset + self.velocity * tau;
         if self.spin_b.speed == 0.0 {
             let w = self.spin_a.omega;
@@ -162,7 +144,7 @@ impl RelativeMotion {
             let m2 = cross_columns(w, &m1);
             return Frame { shift: [x, self.velocity, DVec3::ZERO], turn: [rotation_a, m1, m2], extra: 0.0 };
         }
-        let rotation_b = rotation(&self.spin_b, tau);
+        let rotation_b = self.spin_b.rotation(tau);
         let omega = self.spin_b.omega;
         let p = transpose_mul(&rotation_b, x);
         let u = transpose_mul(&rotation_b, self.velocity);

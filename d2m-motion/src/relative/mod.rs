@@ -2,17 +2,21 @@
 //!
 //! docs/theory/features.md derives every formula and every constant of this folder.
 mod anchor;
+mod any;
 mod bounds;
 mod frame;
 
 #[cfg(test)]
+mod any_tests;
+#[cfg(test)]
 mod tests;
 
+pub use any::RelativeState;
 pub use frame::Frame;
 
 use crate::LinearMotion;
 use crate::double_double::DoubleDouble;
-use crate::rotation::RotationDd;
+use crate::rotation::{RotationDd, Spin};
 use anchor::Anchor;
 use bounds::Bounds;
 use glam::{DMat3, DVec3};
@@ -59,14 +63,6 @@ pub struct RelativeMotion {
     anchor: Option<Anchor>,
 }
 
-/// An angular velocity with its rounded length and direction.
-#[derive(Debug, Clone, Copy)]
-struct Spin {
-    omega: DVec3,
-    speed: f64,
-    axis: DVec3,
-}
-
 /// The epoch in extended precision, for anchored frames.
 #[derive(Debug, Clone, Copy)]
 struct Exact {
@@ -74,19 +70,6 @@ struct Exact {
     velocity: [DoubleDouble; 3],
     rotation_a: RotationDd,
     rotation_b: RotationDd,
-}
-
-impl Spin {
-    fn new(omega: DVec3) -> Self {
-        // Scaling keeps the squares of tiny and huge rates away from under- and overflow.
-        let scale = omega.abs().max_element();
-        if scale == 0.0 {
-            return Self { omega, speed: 0.0, axis: DVec3::ZERO };
-        }
-        let scaled = omega / scale;
-        let length = scaled.length();
-        Self { omega, speed: scale * length, axis: scaled / length }
-    }
 }
 
 impl RelativeMotion {

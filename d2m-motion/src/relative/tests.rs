@@ -1,7 +1,6 @@
 //! Every bound of the relative motion, sampled: never above 1 of the bound, somewhere above 0.9 of it; and mutants of
 //! the bounds that the same samples refute.
 use super::RelativeMotion;
-use super::frame::rotation;
 use crate::double_double::DoubleDouble;
 use crate::rotation::exponential_dd;
 use crate::{LinearMotion, Remainder};
@@ -62,7 +61,7 @@ fn sample(random: &mut Random, i: usize) -> (RelativeMotion, DVec3) {
 /// First, second and third derivative of a point at τ; the third by the same recursion once more.
 fn derivatives(motion: &RelativeMotion, r: DVec3, tau: f64) -> [DVec3; 3] {
     let omega = motion.spin_b.omega;
-    let (turn_a, turn_b) = (rotation(&motion.spin_a, tau), rotation(&motion.spin_b, tau));
+    let (turn_a, turn_b) = (motion.spin_a.rotation(tau), motion.spin_b.rotation(tau));
     let back = turn_b.transpose();
     let p = back * (motion.offset + motion.velocity * tau);
     let u = back * motion.velocity;
@@ -96,8 +95,8 @@ fn bounds_of_the_derivatives_hold_and_are_nearly_reached() {
         for j in 0..4 {
             let tau = motion.duration() * f64::from(j) / 3.0;
             let q = derivatives(&motion, arm, tau).map(DVec3::length);
-            let back = rotation(&motion.spin_b, tau).transpose();
-            let z = back * (rotation(&motion.spin_a, tau) * arm);
+            let back = motion.spin_b.rotation(tau).transpose();
+            let z = back * (motion.spin_a.rotation(tau) * arm);
             let e = direction_derivatives(&motion, arm, z, back).map(DVec3::length);
             for order in 0..3 {
                 point[order] = point[order].max(q[order] / bounds[order]);

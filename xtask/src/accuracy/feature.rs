@@ -1,7 +1,7 @@
 //! Single feature pairs on planted contacts, against an oracle of 192 bits (the families of d2m-feature's tests).
 use super::{Outcome, Task};
 use crate::planted::families::{FAMILIES, Family, Kind};
-use crate::planted::judge::{Tally, rigid_family, straight_family};
+use crate::planted::judge::{Tally, enclosed_family, rigid_family, straight_family};
 use rayon::prelude::*;
 
 /// Queries of one piece of work.
@@ -17,6 +17,16 @@ pub(super) fn rigid_vertex_face(task: &Task) -> Outcome {
 /// Two edges, constant twists.
 pub(super) fn rigid_edge_edge(task: &Task) -> Outcome {
     run(task, Kind::EdgeEdge, rigid_family, |_| true)
+}
+
+/// A point and a triangle, any motion.
+pub(super) fn enclosed_vertex_face(task: &Task) -> Outcome {
+    run(task, Kind::PointTriangle, enclosed_family, |_| true)
+}
+
+/// Two edges, any motion.
+pub(super) fn enclosed_edge_edge(task: &Task) -> Outcome {
+    run(task, Kind::EdgeEdge, enclosed_family, |_| true)
 }
 
 /// A point and a triangle, straight vertex paths.

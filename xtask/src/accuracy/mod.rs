@@ -57,9 +57,11 @@ pub(crate) struct Task {
 type Family = (&'static str, usize, fn(&Task) -> Outcome);
 
 /// Name, the share of the count that a family takes (one in so many), and itself.
-const FAMILIES: [Family; 9] = [
+const FAMILIES: [Family; 11] = [
     ("feature: rigid vertex/face", 10, feature::rigid_vertex_face),
     ("feature: rigid edge/edge", 10, feature::rigid_edge_edge),
+    ("feature: any motion vertex/face", 10, feature::enclosed_vertex_face),
+    ("feature: any motion edge/edge", 10, feature::enclosed_edge_edge),
     ("feature: straight vertex/face", 10, feature::straight_vertex_face),
     ("feature: straight edge/edge", 10, feature::straight_edge_edge),
     ("interval: every operation", 1, interval::run),

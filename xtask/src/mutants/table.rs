@@ -32,7 +32,7 @@ const fn in_test(name: &'static str, test: &'static str) -> Mutant {
     Mutant { name, change: Change::InTest, test }
 }
 
-pub(crate) const MUTANTS: [Mutant; 44] = [
+pub(crate) const MUTANTS: [Mutant; 45] = [
     // Intervals.
     patch(
         "no outward rounding",
@@ -88,6 +88,10 @@ pub(crate) const MUTANTS: [Mutant; 44] = [
     in_test(
         "K3 = w³, no bY in V, a remainder without E",
         "d2m-motion/src/relative/tests.rs::bounds_of_the_derivatives_hold_and_are_nearly_reached",
+    ),
+    in_test(
+        "a term of the third derivative of any motion left out",
+        "d2m-motion/src/relative/any_tests.rs::the_third_derivative_is_bounded_with_every_term",
     ),
     // Roots.
     patch(
