@@ -6,7 +6,7 @@ use super::frame::RelativeMotion;
 use super::lanes::{Lanes, Portable};
 use super::node_test::{NodeFrame, NodeScale, Placed, entry_times};
 use super::scene::{Scene, Scratch};
-use super::triangle_pair::{Look, look, place_a};
+use super::triangle_pair::{Look, PairScale, look, place_a};
 use super::window::{Outcome, corners};
 use crate::tree::node::Below;
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
@@ -105,8 +105,8 @@ fn mutants_of_the_entry_times_die() {
 }
 
 /// How far a triangle that spins about the z axis through the origin stays from the wall x = `wall`, at the end of the
-/// time that its box is proven clear of the wall's.
-fn room_at_the_end(triangle: [DVec3; 3], wall: f64, mutate: impl Fn(&mut NodeScale)) -> f64 {
+/// time that its box is proven clear of the wall's. `opened`: 0 for the triangle's node, 1 for the wall's.
+fn room_at_the_end(triangle: [DVec3; 3], wall: f64, opened: usize, mutate: impl Fn(&mut NodeScale)) -> f64 {
     let tree =
         |corners: [DVec3; 3]| MeshTree::new(TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2]]).unwrap());
     let corner = |y: f64, z: f64| DVec3::new(wall, y, z);
@@ -116,11 +116,12 @@ fn room_at_the_end(triangle: [DVec3; 3], wall: f64, mutate: impl Fn(&mut NodeSca
     let window = Window::try_new(0.0, 0.3).unwrap();
     let scene = Scene::new((&a, spin), (&b, LinearMotion::REST), window, &options);
     let motion = RelativeMotion::new((&a, &spin), (&b, &LinearMotion::REST), 0.0);
-    let mut scale = scene.node_scales(0.5)[1];
+    let mut scale = scene.node_scales(0.5)[opened];
     mutate(&mut scale);
-    let frame = NodeFrame::new(&motion.frame(0.0), &scale, true, 0.6);
-    let placed = Placed::new(&frame, &scale, (&a.nodes[0], 0), &b.nodes[0]);
-    let time = entry_times::<Portable>(&b.nodes[0], &placed, &scale).store()[0];
+    let frame = NodeFrame::new(&motion.frame(0.0), &scale, opened == 1, 0.6);
+    let (wide, single) = if opened == 1 { (&b, &a) } else { (&a, &b) };
+    let placed = Placed::new(&frame, &scale, (&single.nodes[0], 0), &wide.nodes[0]);
+    let time = entry_times::<Portable>(&wide.nodes[0], &placed, &scale).store()[0];
     let frame = motion.frame(0.5 * f64::from(time.min(0.6)));
     let plane = corners(&b, 0)[0].x;
     place_a(&frame, &corners(&a, 0)).map(|p| p.x - plane).into_iter().fold(f64::INFINITY, f64::min)
@@ -131,16 +132,53 @@ fn room_at_the_end(triangle: [DVec3; 3], wall: f64, mutate: impl Fn(&mut NodeSca
 #[test]
 fn half_the_acceleration_is_noticed() {
     let arm = [DVec3::new(1.0001, 0.0, 0.0), DVec3::new(1.0, 1e-4, 0.0), DVec3::new(1.0, 0.0, 1e-4)];
-    assert!(room_at_the_end(arm, 0.956, |_| ()) >= 1e-7);
-    assert!(room_at_the_end(arm, 0.956, |scale| scale.acceleration *= 0.5) < 1e-7);
+    for opened in [0, 1] {
+        assert!(room_at_the_end(arm, 0.956, opened, |_| ()) >= 1e-7);
+        assert!(room_at_the_end(arm, 0.956, opened, |scale| scale.acceleration *= 0.5) < 1e-7);
+    }
+}
+
+/// The same arm and wall, looked at as triangles, while the arm also comes nearer by itself: what is left at the end of
+/// the time that they are proven clear.
+fn room_after_a_look(closing: f64, mutate: impl Fn(&mut PairScale)) -> f64 {
+    let tree =
+        |corners: [DVec3; 3]| MeshTree::new(TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2]]).unwrap());
+    let arm = [DVec3::new(1.0001, 0.0, 0.0), DVec3::new(1.0, 1e-4, 0.0), DVec3::new(1.0, 0.0, 1e-4)];
+    let wall = [(-3.0, -1.0), (3.0, -1.0), (0.0, 3.0)].map(|(y, z)| DVec3::new(0.956, y, z));
+    let (a, b) = (tree(arm), tree(wall));
+    let swing = LinearMotion::REST.with_angular_velocity(DVec3::Z).with_linear_velocity(DVec3::X * -closing);
+    let options = QueryOptions::default().with_tolerance(1e-7);
+    let window = Window::try_new(0.0, 0.3).unwrap();
+    let scene = Scene::new((&a, swing), (&b, LinearMotion::REST), window, &options);
+    let motion = RelativeMotion::new((&a, &swing), (&b, &LinearMotion::REST), 0.0);
+    let mut pair = scene.pair;
+    mutate(&mut pair);
+    let (ca, cb) = (corners(&a, 0), corners(&b, 0));
+    let Look::ClearFor(time) = look(&motion.frame(0.0), &ca, &cb, &pair, 1e300) else {
+        panic!("they begin apart")
+    };
+    // Frames hold for 0.35 rad.
+    let placed = place_a(&motion.frame(time.min(0.34)), &ca);
+    placed.map(|p| p.x - cb[0].x).into_iter().fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn half_the_acceleration_of_triangles_is_noticed() {
+    for closing in [0.0, 0.05] {
+        assert!(room_after_a_look(closing, |_| ()) >= 1e-7);
+        assert!(room_after_a_look(closing, |pair| pair.acceleration *= 0.5) < 1e-7);
+    }
 }
 
 /// A needle spins about its middle: its centre is at rest, its end closes the gap of 0.1.
 #[test]
 fn half_the_spin_is_noticed() {
     let needle = [DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.0, -1.0, 0.0), DVec3::new(1e-3, 0.0, 0.0)];
-    assert!(room_at_the_end(needle, -0.1, |_| ()) >= 1e-7);
-    assert!(room_at_the_end(needle, -0.1, |scale| scale.spin = scale.spin.map(|s| 0.5 * s)) < 1e-7);
+    for opened in [0, 1] {
+        assert!(room_at_the_end(needle, -0.1, opened, |_| ()) >= 1e-7);
+        let halved = |scale: &mut NodeScale| scale.spin = scale.spin.map(|s| 0.5 * s);
+        assert!(room_at_the_end(needle, -0.1, opened, halved) < 1e-7);
+    }
 }
 
 #[test]

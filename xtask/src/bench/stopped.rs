@@ -6,6 +6,7 @@ use super::row::Row;
 use super::run::Setting;
 use crate::TaskResult;
 use crate::judge::{Claim, Judge};
+use rayon::prelude::*;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Command, Stdio};
 use std::sync::mpsc;
@@ -65,19 +66,20 @@ pub(super) fn rows(setting: &Setting<'_>) -> Result<Vec<Row>, Error> {
     // Meshes and trees do not count.
     let ready = receiver.recv_timeout(Duration::from_secs(120));
     let deadline = Instant::now() + Duration::from_secs_f64(options.cap());
-    let mut rows = Vec::new();
+    let mut answers = Vec::new();
+    let mut stopped = None;
     let mut last = Instant::now();
-    while ready.is_ok() && rows.len() < setting.trials.len() {
+    while ready.is_ok() && answers.len() < setting.trials.len() {
         let left = deadline.saturating_duration_since(Instant::now());
         match receiver.recv_timeout(left) {
             Ok(line) => {
-                rows.extend(answer(setting, rows.len(), &line));
+                answers.push(line);
                 last = Instant::now();
             }
             Err(mpsc::RecvTimeoutError::Disconnected) => break,
             Err(mpsc::RecvTimeoutError::Timeout) => {
-                rows.push(Row {
-                    trial: rows.len(),
+                stopped = Some(Row {
+                    trial: answers.len(),
                     claim: Claim::Undecided { clear_until: 0.0 },
                     separation: f64::INFINITY,
                     parry_separation: f64::NAN,
@@ -95,7 +97,9 @@ pub(super) fn rows(setting: &Setting<'_>) -> Result<Vec<Row>, Error> {
     if let Err(error) = ready {
         return Err(format!("the process of the peer did not start: {error}").into());
     }
-    Ok(rows)
+    // Judged only now, so that the judge takes no time from the peer.
+    let judged = answers.par_iter().enumerate().filter_map(|(trial, line)| answer(setting, trial, line));
+    Ok(judged.collect::<Vec<Row>>().into_iter().chain(stopped).collect())
 }
 
 fn answer(setting: &Setting<'_>, trial: usize, line: &str) -> Option<Row> {

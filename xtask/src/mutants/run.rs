@@ -42,7 +42,9 @@ pub(crate) fn run(options: &Options) -> TaskResult {
     let wanted = |m: &&Mutant| options.only.as_ref().is_none_or(|only| m.row().contains(only.as_str()));
     let mutants: Vec<&Mutant> = MUTANTS.iter().filter(wanted).collect();
     if options.list {
-        mutants.iter().for_each(|m| println!("{}", m.row()));
+        for mutant in mutants {
+            println!("{}", mutant.row());
+        }
         return Ok(());
     }
     if mutants.is_empty() {
@@ -130,7 +132,7 @@ fn build(copy: &Copy, mutant: &Mutant) -> Result<PathBuf, Error> {
     let program = messages
         .filter(|m| m["reason"] == "compiler-artifact" && m["profile"]["test"] == true)
         .filter_map(|m| m["executable"].as_str().map(PathBuf::from))
-        .last();
+        .next_back();
     program.ok_or_else(|| "cargo names no test program".into())
 }
 

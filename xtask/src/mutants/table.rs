@@ -174,11 +174,18 @@ pub(crate) const MUTANTS: [Mutant; 45] = [
     in_test("boxes of a tree shrunk", "d2m-bvh/src/tree/tests.rs::any_shrunk_or_broken_tree_is_refused"),
     // The default engine.
     patch(
-        "half of the spin of boxes",
+        "half of the spin of the opened box",
         "d2m-bvh/src/search/node_test.rs",
         "L::splat(scale.spin[0]) * radius",
         "L::splat(0.5 * scale.spin[0]) * radius",
-        "d2m-bvh/src/search/tests.rs::entry_times_of_boxes_hold_and_are_sharp",
+        "d2m-bvh/src/search/tests.rs::half_the_spin_is_noticed",
+    ),
+    patch(
+        "half of the spin of the other box",
+        "d2m-bvh/src/search/node_test.rs",
+        "let swing = scale.spin[1] * radius;",
+        "let swing = 0.5 * scale.spin[1] * radius;",
+        "d2m-bvh/src/search/tests.rs::half_the_spin_is_noticed",
     ),
     patch(
         "gaps of boxes without their error: −0.02 of the margin",
@@ -206,14 +213,14 @@ pub(crate) const MUTANTS: [Mutant; 45] = [
         "d2m-bvh/src/search/triangle_pair.rs",
         "let root = (v * v + 2.0 * m * g).sqrt();",
         "let root = (v * v + m * g).sqrt();",
-        "d2m-bvh/src/search/tests.rs::clear_times_of_triangle_pairs_hold_and_are_sharp",
+        "d2m-bvh/src/search/tests.rs::half_the_acceleration_of_triangles_is_noticed",
     ),
     patch(
         "half of the acceleration of triangles",
         "d2m-bvh/src/search/triangle_pair.rs",
         "let m = scale.acceleration * length;",
         "let m = 0.5 * scale.acceleration * length;",
-        "d2m-bvh/src/search/tests.rs::clear_times_of_triangle_pairs_hold_and_are_sharp",
+        "d2m-bvh/src/search/tests.rs::half_the_acceleration_of_triangles_is_noticed",
     ),
     patch(
         "the frame passes an item that waits",
