@@ -41,7 +41,7 @@ pub(crate) fn check(root: &std::path::Path) -> std::io::Result<Vec<String>> {
     let page = std::fs::read_to_string(root.join("docs/guarantees.md"))?;
     let rows: Vec<String> = MUTANTS.iter().map(Mutant::row).collect();
     let mut findings = compare(&page, &rows);
-    for mutant in &MUTANTS {
+    for mutant in MUTANTS {
         let Change::Patch { file, from, .. } = mutant.change else { continue };
         let text = std::fs::read_to_string(root.join(file)).unwrap_or_default();
         let found = text.matches(from).count();
