@@ -1,6 +1,6 @@
 //! From what the search found to the answer: witness points, normal, features in the meshes' numbers.
 
-use crate::search::{Closest, Found, Frame, Place, RelativeMotion, Scene, closest, corners, place_a};
+use crate::search::{Closest, Found, Frame, Place, Quad, RelativeMotion, Scene, closest, corners, place_a};
 use crate::{Contact, MeshTree, StartState};
 use d2m_feature::FeaturePair;
 use glam::DVec3;
@@ -9,9 +9,9 @@ use glam::DVec3;
 pub(super) fn contact(scene: &Scene<'_>, found: &Found, bracket: bool) -> Contact {
     let time = crate::search::time_from(found.start, found.offset).max(scene.window.start());
     let motion = RelativeMotion::new((scene.a.0, &scene.a.1), (scene.b.0, &scene.b.1), found.start);
-    let frame = motion.frame(time - found.start);
+    let frame = motion.frame::<Quad>(time - found.start);
     let b = corners(scene.b.0, found.triangles[1]);
-    let a = place_a(&frame, &corners(scene.a.0, found.triangles[0]));
+    let a = place_a::<Quad>(&frame, &corners(scene.a.0, found.triangles[0]));
     let near = closest(&a, &b);
     let start = match (time <= scene.window.start(), found.crossing) {
         (false, _) => StartState::Apart,
@@ -47,8 +47,8 @@ fn reached_by(scene: &Scene<'_>, motion: &RelativeMotion, triangles: [u32; 2], c
         if time.is_nan() || time > scene.window.end() || time > motion.start + 1.1 * scene.longest {
             break;
         }
-        let frame = motion.frame(time - motion.start);
-        let near = closest(&place_a(&frame, &a), &b);
+        let frame = motion.frame::<Quad>(time - motion.start);
+        let near = closest(&place_a::<Quad>(&frame, &a), &b);
         distance = near.square.sqrt();
         closing = frame.closing_speed(near.points, near.direction.normalize_or_zero());
     }
@@ -72,7 +72,7 @@ fn describe(
 ) -> Contact {
     let Witness { near, a, b, triangles, separation, start } = witness;
     let rb = motion.rotation_b(frame.offset);
-    let turn = |p: DVec3| rb.times(p).to_vec();
+    let turn = |p: DVec3| rb.times::<Quad>(p).to_vec();
     let body = &scene.b;
     let base = body.1.position() + body.1.linear_velocity() * (time - body.1.reference_time());
     let world = |p: DVec3| base + turn(p + (body.0.center() - body.1.at()));
@@ -104,7 +104,7 @@ pub(super) fn contained(
     vertex: u32,
     start: StartState,
 ) -> Contact {
-    let frame = motion.frame(0.0);
+    let frame = motion.frame::<Quad>(0.0);
     let (tree_a, tree_b) = (scene.a.0, scene.b.0);
     let holder = |tree: &MeshTree| {
         tree.mesh().triangles().iter().position(|t| t.contains(&vertex)).unwrap_or(0) as u32
@@ -113,7 +113,7 @@ pub(super) fn contained(
     let corners =
         |tree: &MeshTree, triangle: u32| tree.mesh().corners(triangle as usize).map(|p| p - tree.center());
     let b = corners(tree_b, triangles[1]);
-    let a = place_a(&frame, &corners(tree_a, triangles[0]));
+    let a = place_a::<Quad>(&frame, &corners(tree_a, triangles[0]));
     let near = closest(&a, &b);
     let time = scene.window.start();
     describe(scene, (motion, &frame), time, &Witness { near, a, b, triangles, separation: 0.0, start })

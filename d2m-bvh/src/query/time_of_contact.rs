@@ -134,12 +134,12 @@ fn crosses_at_start(scene: &Scene<'_>) -> Result<bool, QueryError> {
 fn containment(scene: &Scene<'_>) -> Option<TimeOfContact> {
     let start = scene.window.start();
     let motion = RelativeMotion::new((scene.a.0, &scene.a.1), (scene.b.0, &scene.b.1), start);
-    let frame = motion.frame(0.0);
+    let frame = motion.frame::<Quad>(0.0);
     let place = |p: DVec3, of_b: bool| {
         if of_b {
-            frame.rotation.transposed().times((Quad::from_vec(p) - frame.apart).to_vec()).to_vec()
+            frame.rotation.transposed().times::<Quad>((Quad::from_vec(p) - frame.apart).to_vec()).to_vec()
         } else {
-            (frame.rotation.times(p) + frame.apart).to_vec()
+            (frame.rotation.times::<Quad>(p) + frame.apart).to_vec()
         }
     };
     let inside = |outer: &MeshTree, inner: &MeshTree, of_b: bool| -> Option<(u32, DVec3)> {

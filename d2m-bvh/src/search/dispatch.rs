@@ -33,11 +33,11 @@ pub(crate) fn first_contact_on(
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
 fn avx2(scene: &Scene<'_>, options: &QueryOptions, scratch: &mut Scratch) -> Outcome {
-    Search::new(scene, options, scratch).run::<super::lanes::Avx>()
+    Search::new(scene, options, scratch).run::<super::avx::Avx>()
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,avx512f,avx512vl,bmi1,bmi2,lzcnt,popcnt")]
 fn avx512(scene: &Scene<'_>, options: &QueryOptions, scratch: &mut Scratch) -> Outcome {
-    Search::new(scene, options, scratch).run::<super::lanes::Avx>()
+    Search::new(scene, options, scratch).run::<super::avx::Avx>()
 }

@@ -5,7 +5,7 @@
 //! v + ω × r and an acceleration of length at most |ω|²|r|, at all times.
 
 use super::base_pose::{relative_position, rotation_at};
-use super::quad::{Matrix, Quad};
+use super::quad::{Doubles, Matrix, Quad};
 use crate::MeshTree;
 use d2m_motion::LinearMotion;
 use glam::DVec3;
@@ -25,6 +25,8 @@ pub(crate) struct RelativeMotion {
 #[derive(Clone, Copy, Debug)]
 struct Spin {
     omega: Quad,
+    /// [ω].
+    cross: Matrix,
     omega_squared: f64,
     /// R, [ω]R and [ω]²R at the start.
     rotation: Matrix,
@@ -42,6 +44,7 @@ impl Spin {
         let second = first.map(|c| omega.cross(c));
         Self {
             omega: Quad::from_vec(omega),
+            cross: Matrix::cross(&Quad::from_vec(omega)),
             omega_squared: omega.length_squared(),
             rotation: Matrix::from_columns(rotation),
             first: Matrix::from_columns(first),
@@ -53,7 +56,7 @@ impl Spin {
     /// R(s) = R + s·f₁(θ²)·[ω]R + s²·f₂(θ²)·[ω]²R, θ = |ω|s, f₁ = sin θ/θ, f₂ = (1 − cos θ)/θ². The Taylor sums
     /// leave out less than 2⁻⁶⁰ for |θ| ≤ 0.35.
     #[inline(always)]
-    fn at(&self, s: f64) -> Matrix {
+    fn at<D: Doubles>(&self, s: f64) -> Matrix {
         let z = self.omega_squared * (s * s);
         let f1 = 1.0
             - z * (1.0 / 6.0
@@ -66,12 +69,12 @@ impl Spin {
                     - z * (1.0 / 40_320.0
                         - z * (1.0 / 3_628_800.0
                             - z * (1.0 / 479_001_600.0 - z * (1.0 / 87_178_291_200.0))))));
-        let (f1, f2) = (Quad::splat(f1 * s), Quad::splat(f2 * (s * s)));
+        let (f1, f2) = (D::splat(f1 * s), D::splat(f2 * (s * s)));
         let (r, p, q) = (&self.rotation.0, &self.first.0, &self.second.0);
         Matrix([
-            r[0] + (p[0] * f1 + q[0] * f2),
-            r[1] + (p[1] * f1 + q[1] * f2),
-            r[2] + (p[2] * f1 + q[2] * f2),
+            (D::load(&r[0]) + (D::load(&p[0]) * f1 + D::load(&q[0]) * f2)).store(),
+            (D::load(&r[1]) + (D::load(&p[1]) * f1 + D::load(&q[1]) * f2)).store(),
+            (D::load(&r[2]) + (D::load(&p[2]) * f1 + D::load(&q[2]) * f2)).store(),
         ])
     }
 }
@@ -112,26 +115,29 @@ impl RelativeMotion {
 
     /// Axes of B in the world at an offset.
     pub(crate) fn rotation_b(&self, offset: f64) -> Matrix {
-        self.bodies[1].at(offset)
+        self.bodies[1].at::<Quad>(offset)
     }
 
     /// State at an offset with |ω|·|offset| ≤ 0.35 for both bodies.
     #[inline(always)]
-    pub(crate) fn frame(&self, offset: f64) -> Frame {
+    pub(crate) fn frame<D: Doubles>(&self, offset: f64) -> Frame {
         let [body_a, body_b] = &self.bodies;
-        let (ra, rb) = (body_a.at(offset), body_b.at(offset));
-        let (arm_a, arm_b) = (ra.times(body_a.arm), rb.times(body_b.arm));
+        let (ra, rb) = (body_a.at::<D>(offset), body_b.at::<D>(offset));
+        let (arm_a, arm_b) = (ra.times::<D>(body_a.arm), rb.times::<D>(body_b.arm));
         // Centre of A minus centre of B, and its rate, world axes.
-        let apart = self.position + self.velocity * Quad::splat(offset) + (arm_a - arm_b);
-        let rate = self.velocity + (body_a.omega.cross(arm_a) - body_b.omega.cross(arm_b));
+        let velocity = D::load(&self.velocity);
+        let apart = D::load(&self.position) + velocity * D::splat(offset) + (arm_a - arm_b);
+        let (swing_a, swing_b): (D, D) =
+            (body_a.cross.times_quad(&arm_a.store()), body_b.cross.times_quad(&arm_b.store()));
+        let rate = velocity + (swing_a - swing_b);
         let to_b = rb.transposed();
         Frame {
             offset,
-            rotation: Matrix([to_b.times_quad(ra.0[0]), to_b.times_quad(ra.0[1]), to_b.times_quad(ra.0[2])]),
-            apart: to_b.times_quad(apart),
-            velocity: to_b.times_quad(rate),
-            omega_a: to_b.times_quad(body_a.omega),
-            omega_b: to_b.times_quad(body_b.omega),
+            rotation: to_b.times_matrix::<D>(&ra),
+            apart: to_b.times_quad::<D>(&apart.store()).store(),
+            velocity: to_b.times_quad::<D>(&rate.store()).store(),
+            omega_a: to_b.times_quad::<D>(&body_a.omega).store(),
+            omega_b: to_b.times_quad::<D>(&body_b.omega).store(),
         }
     }
 }

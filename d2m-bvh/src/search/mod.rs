@@ -1,8 +1,11 @@
 //! The search for the first contact of two trees: best first on proven times.
 
+#[cfg(target_arch = "x86_64")]
+mod avx;
 mod base_pose;
 mod closest;
 mod dispatch;
+mod expansion;
 mod frame;
 mod instruction_set;
 mod lanes;
@@ -15,12 +18,12 @@ mod tests;
 mod triangle_pair;
 mod window;
 
+#[cfg(target_arch = "x86_64")]
+pub(crate) use avx::Avx;
 pub(crate) use closest::{Closest, Place, closest};
 pub(crate) use dispatch::first_contact;
 pub(crate) use frame::{Frame, RelativeMotion};
 pub use instruction_set::InstructionSet;
-#[cfg(target_arch = "x86_64")]
-pub(crate) use lanes::Avx;
 pub(crate) use lanes::{Lanes, Portable};
 pub(crate) use quad::Quad;
 pub use scene::SearchCounts;

@@ -2,7 +2,7 @@
 
 use super::frame::Frame;
 use super::lanes::Lanes;
-use super::quad::{Matrix, Quad};
+use super::quad::{Doubles, Matrix, Quad};
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
 use glam::DVec3;
@@ -33,6 +33,9 @@ pub(crate) struct NodeScale {
 pub(crate) const GAP_ERROR: f32 = 48.0 * UNIT_F32 as f32;
 /// Factor of the speed's error bound.
 pub(crate) const SPEED_ERROR: f32 = 48.0 * UNIT_F32 as f32;
+/// Part of the acceleration times the time left that closing speeds are raised to: keeps axes along which the boxes
+/// part from being taken for the best ones.
+const HINT: f32 = 0.0625;
 /// What covers the roundings of the entry time and of unit axes.
 pub(crate) const ENTRY_FACTOR: f32 = 1.0 - 32.0 * UNIT_F32 as f32;
 
@@ -49,45 +52,49 @@ pub(crate) struct NodeFrame {
     /// ω_wide × each axis.
     turn: Matrix,
     omega_wide: [f32; 4],
-    /// κ = half the acceleration times the time that is left.
+    /// Least closing speed that is reckoned with.
     least: f32,
-    /// κ plus the error of speeds that does not depend on the boxes.
+    /// The error of speeds that does not depend on the boxes.
     speed_floor: f32,
 }
 
 impl NodeFrame {
-    /// `left`: no later time matters, counted from the frame. `wide_is_b`: nodes of B are opened against boxes of A; else the other way round.
+    /// `left`: no later time matters, counted from the frame (a hint). `wide_is_b`: nodes of B are opened against boxes of A; else the other way round.
     #[inline(always)]
-    pub(crate) fn new(frame: &Frame, scale: &NodeScale, wide_is_b: bool, left: f32) -> Self {
-        let least = 0.5 * scale.acceleration * left * (1.0 + 1e-6) + f32::MIN_POSITIVE;
+    pub(crate) fn new<D: Doubles>(frame: &Frame, scale: &NodeScale, wide_is_b: bool, left: f32) -> Self {
         let (length, speed, time) =
-            (Quad::splat(scale.inverse_unit), Quad::splat(scale.speed_scale), Quad::splat(scale.time_unit));
-        let (rotation, apart, velocity, omega_single, omega_wide) = if wide_is_b {
-            (frame.rotation, frame.apart, frame.velocity, frame.omega_a, frame.omega_b)
+            (D::splat(scale.inverse_unit), D::splat(scale.speed_scale), D::splat(scale.time_unit));
+        let (rotation, apart, velocity, omega_single, omega_wide): (Matrix, D, D, D, D) = if wide_is_b {
+            (
+                frame.rotation,
+                D::load(&frame.apart),
+                D::load(&frame.velocity),
+                D::load(&frame.omega_a),
+                D::load(&frame.omega_b),
+            )
         } else {
             let to_a = frame.rotation.transposed();
-            let zero = Quad::splat(0.0);
+            let zero = D::splat(0.0);
             (
                 to_a,
-                zero - to_a.times_quad(frame.apart),
-                zero - to_a.times_quad(frame.velocity),
-                to_a.times_quad(frame.omega_b),
-                to_a.times_quad(frame.omega_a),
+                zero - to_a.times_quad::<D>(&frame.apart),
+                zero - to_a.times_quad::<D>(&frame.velocity),
+                to_a.times_quad(&frame.omega_b),
+                to_a.times_quad(&frame.omega_a),
             )
         };
         let (omega_single, omega_wide) = (omega_single * time, omega_wide * time);
-        let [x, y, z, _] = omega_wide.0;
         let r = &rotation.0;
         Self {
             rotation,
-            narrow: [r[0].narrow(), r[1].narrow(), r[2].narrow()],
-            apart: apart * length,
-            velocity: velocity * speed,
-            swing: Matrix([omega_single.cross(r[0]), omega_single.cross(r[1]), omega_single.cross(r[2])]),
-            turn: Matrix([Quad([0.0, z, -y, 0.0]), Quad([-z, 0.0, x, 0.0]), Quad([y, -x, 0.0, 0.0])]),
+            narrow: [D::load(&r[0]).narrow(), D::load(&r[1]).narrow(), D::load(&r[2]).narrow()],
+            apart: (apart * length).store(),
+            velocity: (velocity * speed).store(),
+            swing: Matrix::cross(&omega_single.store()).times_matrix::<D>(&rotation),
+            turn: Matrix::cross(&omega_wide.store()),
             omega_wide: omega_wide.narrow(),
-            least,
-            speed_floor: scale.speed_floor + least,
+            least: scale.acceleration * left * HINT + scale.speed_floor,
+            speed_floor: scale.speed_floor,
         }
     }
 }
@@ -104,9 +111,9 @@ pub(crate) struct Placed {
     /// Bound on |ω × e| over the single box.
     swing: f32,
     gap_margin: f32,
-    /// Error of speeds, and κ.
+    /// Error of speeds.
     speed_margin: f32,
-    /// κ: half the acceleration times the time that is left.
+    /// Least closing speed that is reckoned with.
     least: f32,
 }
 
@@ -118,7 +125,7 @@ impl Placed {
 
     /// Moves box `lane` of node `single` into the frame of the wide body.
     #[inline(always)]
-    pub(crate) fn new(
+    pub(crate) fn new<L: Lanes>(
         frame: &NodeFrame,
         scale: &NodeScale,
         (single, lane): (&WideNode, usize),
@@ -128,8 +135,11 @@ impl Placed {
         let from = DVec3::new(at(0), at(1), at(2));
         let origin =
             DVec3::new(f64::from(wide.origin[0]), f64::from(wide.origin[1]), f64::from(wide.origin[2]));
-        let center = (frame.apart + frame.rotation.times(from) - Quad::from_vec(origin)).narrow();
-        let velocity = (frame.velocity + frame.swing.times(from) - frame.turn.times(origin)).narrow();
+        let apart = <L::Doubles as Doubles>::load(&frame.apart);
+        let velocity = <L::Doubles as Doubles>::load(&frame.velocity);
+        let here = <L::Doubles as Doubles>::load(&Quad::from_vec(origin));
+        let center = (apart + frame.rotation.times(from) - here).narrow();
+        let velocity = (velocity + frame.swing.times(from) - frame.turn.times(origin)).narrow();
         let ratio = scale.ratio as f32;
         let radius = single.radius[lane] * ratio;
         let half = &single.half_extent;
@@ -137,9 +147,9 @@ impl Placed {
         let swing = scale.spin[1] * radius;
         Self {
             axes: [
-                turned(frame, &single.axes[0], lane),
-                turned(frame, &single.axes[1], lane),
-                turned(frame, &single.axes[2], lane),
+                turned::<L>(frame, &single.axes[0], lane),
+                turned::<L>(frame, &single.axes[1], lane),
+                turned::<L>(frame, &single.axes[2], lane),
             ],
             half: [half[0][lane] * ratio, half[1][lane] * ratio, half[2][lane] * ratio],
             omega_wide: frame.omega_wide,
@@ -156,10 +166,8 @@ impl Placed {
 
 /// A stored axis in the wide body's frame.
 #[inline(always)]
-fn turned(frame: &NodeFrame, axis: &[[f32; 8]; 3], lane: usize) -> [f32; 4] {
-    let (r, x, y, z) = (&frame.narrow, axis[0][lane], axis[1][lane], axis[2][lane]);
-    let at = |k: usize| r[0][k] * x + r[1][k] * y + r[2][k] * z;
-    [at(0), at(1), at(2), at(3)]
+fn turned<L: Lanes>(frame: &NodeFrame, axis: &[[f32; 8]; 3], lane: usize) -> [f32; 4] {
+    L::combine(&frame.narrow, axis[0][lane], axis[1][lane], axis[2][lane])
 }
 
 /// Scalar product of lanes.
@@ -168,9 +176,10 @@ fn dot<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// |n·aᵢ| for the axes of the other box.
 #[inline(always)]
-fn row<L: Lanes>(axis: &[L; 3], others: &[[L; 3]; 3]) -> [L; 3] {
-    [dot(axis, &others[0]), dot(axis, &others[1]), dot(axis, &others[2])]
+fn sizes<L: Lanes>(n: &[L; 3], axes: &[[L; 3]; 3]) -> [L; 3] {
+    [dot(n, &axes[0]).abs(), dot(n, &axes[1]).abs(), dot(n, &axes[2]).abs()]
 }
 
 /// The same three values in each lane.
@@ -184,34 +193,41 @@ fn load<L: Lanes>(values: &[[f32; 8]; 3]) -> [L; 3] {
     [L::load(&values[0]), L::load(&values[1]), L::load(&values[2])]
 }
 
-/// What all axes of one test share.
-struct Shared<L> {
-    gap_margin: L,
-    /// Bound on what speeds differ from those of the centres, plus κ.
-    spread: L,
-    least: L,
+/// Along one axis: the gap, and the speed at which it closes at most, never less than a positive least one.
+#[derive(Clone, Copy)]
+struct Course<L> {
+    gap: L,
+    closing: L,
 }
 
-impl<L: Lanes> Shared<L> {
-    /// Time until an axis may stop separating: the centres are `along` apart on it, the boxes reach `reach`, the
-    /// centres' relative speed is `closing`.
+impl<L: Lanes> Course<L> {
+    /// The centres are `along` apart on the axis and part at `parting` (in the sense of the axis), the boxes and the
+    /// margin reach `reach`; speeds differ by at most `spread` from those of the centres.
     #[inline(always)]
-    fn time(&self, along: L, reach: L, closing: L) -> L {
-        let gap = along.abs() - (reach + self.gap_margin);
-        gap / (self.spread - L::flip_sign(closing, along)).max(self.least)
+    fn new(along: L, reach: L, parting: L, (spread, least): (L, L)) -> Self {
+        Self { gap: along.abs() - reach, closing: (spread - L::flip_sign(parting, along)).max(least) }
+    }
+
+    /// The one whose gap lasts longer without acceleration.
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        let (left, right) = (self.gap * other.closing, other.gap * self.closing);
+        Self {
+            gap: L::if_greater(left, right, self.gap, other.gap),
+            closing: L::if_greater(left, right, self.closing, other.closing),
+        }
     }
 }
 
 /// Lower bounds on the times, counted from the frame, until which each lane's box stays apart from the single one;
-/// 0 where nothing is known. In units of the window, not yet clipped.
+/// not positive, or not a number, where nothing is known. In units of the window, not yet clipped.
 #[inline(always)]
 pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &NodeScale) -> L {
     let center = load::<L>(&wide.center);
     let at = splat::<L>(&placed.center);
     let to = [at[0] - center[0], at[1] - center[1], at[2] - center[2]];
     let half = load::<L>(&wide.half_extent);
-    let radius = L::load(&wide.radius);
-    let axes = [load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]), load::<L>(&wide.axes[2])];
+    let a = [load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]), load::<L>(&wide.axes[2])];
     let w = splat::<L>(&placed.omega_wide);
     let base = splat::<L>(&placed.velocity);
     // Relative velocity at the centres.
@@ -220,27 +236,29 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
         base[1] - (w[2] * center[0] - w[0] * center[2]),
         base[2] - (w[0] * center[1] - w[1] * center[0]),
     ];
-    let single = [splat::<L>(&placed.axes[0]), splat::<L>(&placed.axes[1]), splat::<L>(&placed.axes[2])];
-    let single_half = [L::splat(placed.half[0]), L::splat(placed.half[1]), L::splat(placed.half[2])];
-    // cosine[i][j] = axis i of the lane · axis j of the single box.
-    let cosine = [row(&axes[0], &single), row(&axes[1], &single), row(&axes[2], &single)];
-    // |ω|·radius of both boxes, whatever the axis.
-    let spread = L::splat(scale.spin[0]) * radius + L::splat(placed.swing + placed.speed_margin);
-    let shared = Shared { gap_margin: L::splat(placed.gap_margin), spread, least: L::splat(placed.least) };
-    let reach = |i: usize| {
-        half[i]
-            + (single_half[0] * cosine[i][0].abs()
-                + (single_half[1] * cosine[i][1].abs() + single_half[2] * cosine[i][2].abs()))
-    };
-    let reach_single = |j: usize| {
-        single_half[j]
-            + (half[0] * cosine[0][j].abs() + (half[1] * cosine[1][j].abs() + half[2] * cosine[2][j].abs()))
-    };
-    let t0 = shared.time(dot(&to, &axes[0]), reach(0), dot(&v, &axes[0]));
-    let t1 = shared.time(dot(&to, &axes[1]), reach(1), dot(&v, &axes[1]));
-    let t2 = shared.time(dot(&to, &axes[2]), reach(2), dot(&v, &axes[2]));
-    let t3 = shared.time(dot(&to, &single[0]), reach_single(0), dot(&v, &single[0]));
-    let t4 = shared.time(dot(&to, &single[1]), reach_single(1), dot(&v, &single[1]));
-    let t5 = shared.time(dot(&to, &single[2]), reach_single(2), dot(&v, &single[2]));
-    t0.max(t1).max(t2.max(t3)).max(t4.max(t5)) * L::splat(ENTRY_FACTOR)
+    let b = [splat::<L>(&placed.axes[0]), splat::<L>(&placed.axes[1]), splat::<L>(&placed.axes[2])];
+    let k = [L::splat(placed.half[0]), L::splat(placed.half[1]), L::splat(placed.half[2])];
+    let margin = L::splat(placed.gap_margin);
+    // |ω|·radius of both boxes, whatever the axis, and the error of speeds.
+    let spread =
+        L::splat(scale.spin[0]) * L::load(&wide.radius) + L::splat(placed.swing + placed.speed_margin);
+    let speeds = (spread, L::splat(placed.least));
+    // |cosine| of axis i of the lane and axis j of the single box.
+    let s = [sizes(&a[0], &b), sizes(&a[1], &b), sizes(&a[2], &b)];
+    let own = [
+        Course::new(dot(&to, &a[0]), half[0] + margin + dot(&k, &s[0]), dot(&v, &a[0]), speeds),
+        Course::new(dot(&to, &a[1]), half[1] + margin + dot(&k, &s[1]), dot(&v, &a[1]), speeds),
+        Course::new(dot(&to, &a[2]), half[2] + margin + dot(&k, &s[2]), dot(&v, &a[2]), speeds),
+    ];
+    let t = [[s[0][0], s[1][0], s[2][0]], [s[0][1], s[1][1], s[2][1]], [s[0][2], s[1][2], s[2][2]]];
+    let foreign = [
+        Course::new(dot(&to, &b[0]), k[0] + margin + dot(&half, &t[0]), dot(&v, &b[0]), speeds),
+        Course::new(dot(&to, &b[1]), k[1] + margin + dot(&half, &t[1]), dot(&v, &b[1]), speeds),
+        Course::new(dot(&to, &b[2]), k[2] + margin + dot(&half, &t[2]), dot(&v, &b[2]), speeds),
+    ];
+    let best = own[0].or(own[1]).or(own[2].or(foreign[0])).or(foreign[1].or(foreign[2]));
+    // Root of gap − closing·s − acceleration·s²/2: no cancellation.
+    let twice = best.gap + best.gap;
+    let root = (best.closing * best.closing + L::splat(scale.acceleration) * twice).sqrt();
+    twice / (best.closing + root) * L::splat(ENTRY_FACTOR)
 }

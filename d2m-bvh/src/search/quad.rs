@@ -1,12 +1,31 @@
-//! Four `f64` side by side: plain arrays that the compiler turns into vector registers.
+//! Four `f64` side by side: the storage, and the operations for one instruction set.
 
 use core::ops::{Add, Mul, Sub};
 use glam::DVec3;
 
-/// Four doubles.
+/// Four doubles in memory.
 #[derive(Clone, Copy, Debug)]
-#[repr(align(32))]
+#[repr(C, align(32))]
 pub(crate) struct Quad(pub(crate) [f64; 4]);
+
+/// Four doubles in registers: each operation correctly rounded, no fused multiply-add, so every implementation returns
+/// the same bits. [`Quad`] is the portable one.
+pub(crate) trait Doubles: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    /// The same value four times.
+    fn splat(x: f64) -> Self;
+    /// From memory.
+    fn load(values: &Quad) -> Self;
+    /// To memory.
+    fn store(self) -> Quad;
+    /// Each rounded to `f32`.
+    fn narrow(self) -> [f32; 4];
+    /// The smaller; the second where one is not a number.
+    fn min(self, other: Self) -> Self;
+    /// The larger; the second where one is not a number.
+    fn max(self, other: Self) -> Self;
+    /// `if left > right { yes } else { no }`.
+    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self;
+}
 
 macro_rules! elementwise {
     ($($operator:ident $method:ident $symbol:tt),*) => {$(
@@ -24,11 +43,6 @@ elementwise!(Add add +, Sub sub -, Mul mul *);
 
 impl Quad {
     #[inline(always)]
-    pub(crate) const fn splat(x: f64) -> Self {
-        Self([x; 4])
-    }
-
-    #[inline(always)]
     pub(crate) const fn from_vec(v: DVec3) -> Self {
         Self([v.x, v.y, v.z, 0.0])
     }
@@ -38,77 +52,77 @@ impl Quad {
         DVec3::new(self.0[0], self.0[1], self.0[2])
     }
 
-    /// Vector product of the first three.
-    #[inline(always)]
-    pub(crate) fn cross(self, other: Self) -> Self {
-        let (a, b) = (&self.0, &other.0);
-        Self([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0], 0.0])
-    }
-
-    /// Each rounded to `f32`.
-    #[inline(always)]
-    pub(crate) fn narrow(self) -> [f32; 4] {
-        let a = &self.0;
-        [a[0] as f32, a[1] as f32, a[2] as f32, a[3] as f32]
-    }
-
     #[inline(always)]
     fn zip(self, other: Self, op: impl Fn(f64, f64) -> f64) -> Self {
         let (a, b) = (&self.0, &other.0);
         Self([op(a[0], b[0]), op(a[1], b[1]), op(a[2], b[2]), op(a[3], b[3])])
     }
+}
 
-    /// The smaller; the second where one is not a number.
+impl Doubles for Quad {
     #[inline(always)]
-    pub(crate) fn min(self, other: Self) -> Self {
+    fn splat(x: f64) -> Self {
+        Self([x; 4])
+    }
+    #[inline(always)]
+    fn load(values: &Quad) -> Self {
+        *values
+    }
+    #[inline(always)]
+    fn store(self) -> Quad {
+        self
+    }
+    #[inline(always)]
+    fn narrow(self) -> [f32; 4] {
+        let a = &self.0;
+        [a[0] as f32, a[1] as f32, a[2] as f32, a[3] as f32]
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
         self.zip(other, |a, b| if a < b { a } else { b })
     }
-
-    /// The larger; the second where one is not a number.
     #[inline(always)]
-    pub(crate) fn max(self, other: Self) -> Self {
+    fn max(self, other: Self) -> Self {
         self.zip(other, |a, b| if a > b { a } else { b })
     }
-
-    /// `if left > right { yes } else { no }`.
     #[inline(always)]
-    pub(crate) fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
+    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
         let (l, r, y, n) = (&left.0, &right.0, &yes.0, &no.0);
         let pick = |k: usize| if l[k] > r[k] { y[k] } else { n[k] };
         Self([pick(0), pick(1), pick(2), pick(3)])
     }
 }
 
-/// Three quads: four vectors side by side.
+/// Four vectors side by side.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct QuadVec(pub(crate) [Quad; 3]);
+pub(crate) struct QuadVec<D>(pub(crate) [D; 3]);
 
-impl QuadVec {
+impl<D: Doubles> QuadVec<D> {
     #[inline(always)]
     pub(crate) fn new(v: [DVec3; 4]) -> Self {
         Self([
-            Quad([v[0].x, v[1].x, v[2].x, v[3].x]),
-            Quad([v[0].y, v[1].y, v[2].y, v[3].y]),
-            Quad([v[0].z, v[1].z, v[2].z, v[3].z]),
+            D::load(&Quad([v[0].x, v[1].x, v[2].x, v[3].x])),
+            D::load(&Quad([v[0].y, v[1].y, v[2].y, v[3].y])),
+            D::load(&Quad([v[0].z, v[1].z, v[2].z, v[3].z])),
         ])
     }
 
     /// Scalar product of each with the same vector.
     #[inline(always)]
-    pub(crate) fn dot(&self, p: DVec3) -> Quad {
-        self.0[0] * Quad::splat(p.x) + self.0[1] * Quad::splat(p.y) + self.0[2] * Quad::splat(p.z)
+    pub(crate) fn dot(&self, p: DVec3) -> D {
+        self.0[0] * D::splat(p.x) + self.0[1] * D::splat(p.y) + self.0[2] * D::splat(p.z)
     }
 
     /// `e` × each.
     #[inline(always)]
     pub(crate) fn crossed_by(&self, e: DVec3) -> Self {
         let [x, y, z] = self.0;
-        let (ex, ey, ez) = (Quad::splat(e.x), Quad::splat(e.y), Quad::splat(e.z));
+        let (ex, ey, ez) = (D::splat(e.x), D::splat(e.y), D::splat(e.z));
         Self([ey * z - ez * y, ez * x - ex * z, ex * y - ey * x])
     }
 
     #[inline(always)]
-    pub(crate) fn length_squared(&self) -> Quad {
+    pub(crate) fn length_squared(&self) -> D {
         let [x, y, z] = self.0;
         x * x + y * y + z * z
     }
@@ -123,6 +137,13 @@ impl Matrix {
         Self(columns.map(Quad::from_vec))
     }
 
+    /// The matrix of v ↦ ω × v.
+    #[inline(always)]
+    pub(crate) const fn cross(omega: &Quad) -> Self {
+        let [x, y, z, _] = omega.0;
+        Self([Quad([0.0, z, -y, 0.0]), Quad([-z, 0.0, x, 0.0]), Quad([y, -x, 0.0, 0.0])])
+    }
+
     #[inline(always)]
     pub(crate) fn transposed(&self) -> Self {
         let [a, b, c] = &self.0;
@@ -134,12 +155,24 @@ impl Matrix {
     }
 
     #[inline(always)]
-    pub(crate) fn times(&self, v: DVec3) -> Quad {
-        self.0[0] * Quad::splat(v.x) + self.0[1] * Quad::splat(v.y) + self.0[2] * Quad::splat(v.z)
+    pub(crate) fn times<D: Doubles>(&self, v: DVec3) -> D {
+        D::load(&self.0[0]) * D::splat(v.x)
+            + D::load(&self.0[1]) * D::splat(v.y)
+            + D::load(&self.0[2]) * D::splat(v.z)
     }
 
     #[inline(always)]
-    pub(crate) fn times_quad(&self, v: Quad) -> Quad {
+    pub(crate) fn times_quad<D: Doubles>(&self, v: &Quad) -> D {
         self.times(v.to_vec())
+    }
+
+    /// The product with each column of the other.
+    #[inline(always)]
+    pub(crate) fn times_matrix<D: Doubles>(&self, other: &Self) -> Self {
+        Self([
+            self.times_quad::<D>(&other.0[0]).store(),
+            self.times_quad::<D>(&other.0[1]).store(),
+            self.times_quad::<D>(&other.0[2]).store(),
+        ])
     }
 }

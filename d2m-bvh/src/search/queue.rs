@@ -4,15 +4,25 @@
 //! handed out (monotone). An item moves to a lower bucket at most 32 times, so the work is bounded by 32 moves an item
 //! whatever the scene does.
 
+use crate::tree::node::LEAF;
+
 /// A pair of boxes and the time until which it is proven apart.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Item {
     /// Time key.
     pub(crate) key: u32,
-    /// Box of A.
-    pub(crate) a: u32,
-    /// Box of B.
-    pub(crate) b: u32,
+    /// Boxes of A and of B.
+    pub(crate) boxes: [u32; 2],
+    /// What is to be done: the number of the wide node to open, and [`Item::OF_B`] if it is one of B's; or
+    /// [`Item::TRIANGLES`] when both boxes are triangles.
+    pub(crate) open: u32,
+}
+
+impl Item {
+    /// The node to open is one of B's.
+    pub(crate) const OF_B: u32 = 1 << 30;
+    /// Nothing is left to open.
+    pub(crate) const TRIANGLES: u32 = LEAF;
 }
 
 /// Monotone queue. Bucket 0 holds keys equal to `last`, bucket i keys whose highest bit that differs is bit i − 1.
@@ -65,6 +75,14 @@ impl Queue {
         }
     }
 
+    /// Adds items whose keys are not below the last key handed out.
+    #[inline(always)]
+    pub(crate) fn extend(&mut self, items: &[Item]) {
+        for item in items {
+            self.push(*item);
+        }
+    }
+
     /// Items waiting.
     #[cfg(test)]
     pub(crate) fn len(&self) -> usize {
@@ -89,7 +107,7 @@ mod tests {
             let mut batch = Vec::new();
             for _ in 0..50 {
                 let key = next() >> 3;
-                queue.push(Item { key, a: 0, b: 0 });
+                queue.push(Item { key, boxes: [0; 2], open: 0 });
                 *live.entry(key).or_insert(0) += 1;
             }
             let mut taken = 0;
@@ -106,7 +124,7 @@ mod tests {
                     if taken < 3000 {
                         for shift in [4, 12, 20] {
                             let key = item.key + (next() >> shift);
-                            queue.push(Item { key, a: 0, b: 0 });
+                            queue.push(Item { key, boxes: [0; 2], open: 0 });
                             *live.entry(key).or_insert(0) += 1;
                         }
                     }

@@ -1,6 +1,7 @@
 //! Constants of one query.
 
 use super::base_pose::relative_position;
+use super::expansion::Expansion;
 use super::node_test::NodeScale;
 use super::queue::{Item, Queue};
 use super::triangle_pair::PairScale;
@@ -126,11 +127,20 @@ pub struct SearchCounts {
 pub(crate) struct Scratch {
     pub(crate) queue: Queue,
     pub(crate) batch: Vec<Item>,
+    /// The expansions of a batch, and the pairs they leave.
+    pub(crate) expansions: Vec<Expansion>,
+    pub(crate) fresh: Vec<Item>,
     pub(crate) counts: SearchCounts,
 }
 
 impl Scratch {
     pub(crate) fn new() -> Self {
-        Self { queue: Queue::new(), batch: Vec::new(), counts: SearchCounts::default() }
+        Self {
+            queue: Queue::new(),
+            batch: Vec::new(),
+            expansions: Vec::new(),
+            fresh: Vec::new(),
+            counts: SearchCounts::default(),
+        }
     }
 }

@@ -5,6 +5,7 @@ use super::dispatch::first_contact_on;
 use super::frame::RelativeMotion;
 use super::lanes::{Lanes, Portable};
 use super::node_test::{NodeFrame, NodeScale, Placed, entry_times};
+use super::quad::Quad;
 use super::scene::{Scene, Scratch};
 use super::triangle_pair::{Look, PairScale, look, place_a};
 use super::window::{Outcome, corners};
@@ -61,14 +62,15 @@ fn least_ratio(rounds: u32, mutate: impl Fn(&mut NodeScale)) -> f64 {
         let unit = 2f64.powf(scene.longest.log2().ceil());
         let mut scales = scene.node_scales(unit);
         let motion = RelativeMotion::new((&a, &motions[0]), (&b, &motions[1]), 0.0);
-        let frame = motion.frame(0.0);
+        let frame = motion.frame::<Quad>(0.0);
         let left = (scene.longest / unit) as f32;
         for (side, scale) in scales.iter_mut().enumerate() {
             mutate(scale);
             let (wide, single) = if side == 0 { (&a, &b) } else { (&b, &a) };
-            let node_frame = NodeFrame::new(&frame, scale, side == 1, left);
+            let node_frame = NodeFrame::new::<Quad>(&frame, scale, side == 1, left);
             for lane in 0..8 {
-                let placed = Placed::new(&node_frame, scale, (&single.nodes[1], lane), &wide.nodes[1]);
+                let placed =
+                    Placed::new::<Portable>(&node_frame, scale, (&single.nodes[1], lane), &wide.nodes[1]);
                 let times = entry_times::<Portable>(&wide.nodes[1], &placed, scale).store();
                 for (other, &time) in times.iter().enumerate() {
                     let (Below::Triangle(s), Below::Triangle(w)) =
@@ -76,13 +78,13 @@ fn least_ratio(rounds: u32, mutate: impl Fn(&mut NodeScale)) -> f64 {
                     else {
                         panic!("eight triangles hang below one node");
                     };
-                    if time <= 0.0 {
+                    if time.is_nan() || time <= 0.0 {
                         continue;
                     }
                     let (ta, tb) = if side == 0 { (w, s) } else { (s, w) };
                     for part in [0.0, 0.5, 1.0] {
                         let offset = part * f64::from(time.min(left)) * unit;
-                        let placed = place_a(&motion.frame(offset), &corners(&a, ta));
+                        let placed = place_a::<Quad>(&motion.frame::<Quad>(offset), &corners(&a, ta));
                         least = least.min(triangle_distance(&placed, &corners(&b, tb)).lower / level);
                     }
                 }
@@ -118,13 +120,13 @@ fn room_at_the_end(triangle: [DVec3; 3], wall: f64, opened: usize, mutate: impl 
     let motion = RelativeMotion::new((&a, &spin), (&b, &LinearMotion::REST), 0.0);
     let mut scale = scene.node_scales(0.5)[opened];
     mutate(&mut scale);
-    let frame = NodeFrame::new(&motion.frame(0.0), &scale, opened == 1, 0.6);
+    let frame = NodeFrame::new::<Quad>(&motion.frame::<Quad>(0.0), &scale, opened == 1, 0.6);
     let (wide, single) = if opened == 1 { (&b, &a) } else { (&a, &b) };
-    let placed = Placed::new(&frame, &scale, (&single.nodes[0], 0), &wide.nodes[0]);
+    let placed = Placed::new::<Portable>(&frame, &scale, (&single.nodes[0], 0), &wide.nodes[0]);
     let time = entry_times::<Portable>(&wide.nodes[0], &placed, &scale).store()[0];
-    let frame = motion.frame(0.5 * f64::from(time.min(0.6)));
+    let frame = motion.frame::<Quad>(0.5 * f64::from(time.min(0.6)));
     let plane = corners(&b, 0)[0].x;
-    place_a(&frame, &corners(&a, 0)).map(|p| p.x - plane).into_iter().fold(f64::INFINITY, f64::min)
+    place_a::<Quad>(&frame, &corners(&a, 0)).map(|p| p.x - plane).into_iter().fold(f64::INFINITY, f64::min)
 }
 
 /// A small triangle on a long arm swings across the wall: along the arm its speed is zero, only its acceleration
@@ -154,11 +156,11 @@ fn room_after_a_look(closing: f64, mutate: impl Fn(&mut PairScale)) -> f64 {
     let mut pair = scene.pair;
     mutate(&mut pair);
     let (ca, cb) = (corners(&a, 0), corners(&b, 0));
-    let Look::ClearFor(time) = look(&motion.frame(0.0), &ca, &cb, &pair, 1e300) else {
+    let Look::ClearFor(time) = look::<Quad>(&motion.frame::<Quad>(0.0), &ca, &cb, &pair, 1e300) else {
         panic!("they begin apart")
     };
     // Frames hold for 0.35 rad.
-    let placed = place_a(&motion.frame(time.min(0.34)), &ca);
+    let placed = place_a::<Quad>(&motion.frame::<Quad>(time.min(0.34)), &ca);
     placed.map(|p| p.x - cb[0].x).into_iter().fold(f64::INFINITY, f64::min)
 }
 
@@ -194,10 +196,13 @@ fn clear_times_of_triangle_pairs_hold_and_are_sharp() {
         let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
         let motion = RelativeMotion::new((&a, &motions[0]), (&b, &motions[1]), 0.0);
         let (ca, cb) = (corners(&a, 0), corners(&b, 0));
-        let Look::ClearFor(time) = look(&motion.frame(0.0), &ca, &cb, &scene.pair, 1e300) else { continue };
+        let Look::ClearFor(time) = look::<Quad>(&motion.frame::<Quad>(0.0), &ca, &cb, &scene.pair, 1e300)
+        else {
+            continue;
+        };
         for part in [0.25, 0.5, 0.75, 1.0] {
-            let frame = motion.frame(part * time.min(scene.longest));
-            least = least.min(triangle_distance(&place_a(&frame, &ca), &cb).lower / level);
+            let frame = motion.frame::<Quad>(part * time.min(scene.longest));
+            least = least.min(triangle_distance(&place_a::<Quad>(&frame, &ca), &cb).lower / level);
         }
     }
     assert!((1.0 - 1e-9..1.2).contains(&least), "{least}");
@@ -223,11 +228,11 @@ fn boxes_called_apart_at_rest_are_apart() {
             let scene = Scene::new((&a, rest), (&b, rest), Window::UNIT, &options);
             let mut scale = scene.node_scales(1.0)[1];
             let motion = RelativeMotion::new((&a, &rest), (&b, &rest), 0.0);
-            let frame = NodeFrame::new(&motion.frame(0.0), &scale, true, 1.0);
-            let full = Placed::new(&frame, &scale, (&a.nodes[0], 0), &b.nodes[0]);
+            let frame = NodeFrame::new::<Quad>(&motion.frame::<Quad>(0.0), &scale, true, 1.0);
+            let full = Placed::new::<Portable>(&frame, &scale, (&a.nodes[0], 0), &b.nodes[0]);
             // What is left of the margin.
             scale.floor -= (1.0 - margin) * full.gap_margin();
-            let placed = Placed::new(&frame, &scale, (&a.nodes[0], 0), &b.nodes[0]);
+            let placed = Placed::new::<Portable>(&frame, &scale, (&a.nodes[0], 0), &b.nodes[0]);
             let time = entry_times::<Portable>(&b.nodes[0], &placed, &scale).store()[0];
             wrong += u32::from(time > 0.0);
         }

@@ -2,7 +2,7 @@
 
 use super::closest::closest;
 use super::frame::Frame;
-use super::quad::{Quad, QuadVec};
+use super::quad::{Doubles, QuadVec};
 use glam::DVec3;
 
 /// Distances and bounds of one search, in the units of the scene.
@@ -43,28 +43,34 @@ struct Placed {
 
 /// Corners of A's triangle (tree-centred, body axes) moved into B's frame.
 #[inline(always)]
-pub(crate) fn place_a(frame: &Frame, corners: &[DVec3; 3]) -> [DVec3; 3] {
-    let r = &frame.rotation;
+pub(crate) fn place_a<D: Doubles>(frame: &Frame, corners: &[DVec3; 3]) -> [DVec3; 3] {
+    let (r, apart) = (&frame.rotation, D::load(&frame.apart));
     [
-        (r.times(corners[0]) + frame.apart).to_vec(),
-        (r.times(corners[1]) + frame.apart).to_vec(),
-        (r.times(corners[2]) + frame.apart).to_vec(),
+        (r.times::<D>(corners[0]) + apart).store().to_vec(),
+        (r.times::<D>(corners[1]) + apart).store().to_vec(),
+        (r.times::<D>(corners[2]) + apart).store().to_vec(),
     ]
 }
 
 /// Looks at a pair at the time of the frame. `a`, `b`: corners relative to the trees' centres, body axes. `enough`:
 /// a longer clear time is of no use.
 #[inline(always)]
-pub(crate) fn look(frame: &Frame, a: &[DVec3; 3], b: &[DVec3; 3], scale: &PairScale, enough: f64) -> Look {
+pub(crate) fn look<D: Doubles>(
+    frame: &Frame,
+    a: &[DVec3; 3],
+    b: &[DVec3; 3],
+    scale: &PairScale,
+    enough: f64,
+) -> Look {
     let placed = Placed {
-        a: place_a(frame, a),
+        a: place_a::<D>(frame, a),
         b: *b,
         velocity: frame.velocity.to_vec(),
         offset: frame.apart.to_vec(),
         omega_a: frame.omega_a.to_vec(),
         omega_b: frame.omega_b.to_vec(),
     };
-    let (direction, gap) = placed.widest_gap();
+    let (direction, gap) = placed.widest_gap::<D>();
     let mut best = 0.0;
     if gap > scale.level + scale.error {
         best = placed.clear_for(direction, scale, best);
@@ -79,42 +85,27 @@ impl Placed {
     /// Of the 2 normals, the 9 products of edges, 3 edge normals and the line of centres: the direction with the
     /// widest gap, and the gap for a unit direction (not positive when none separates).
     #[inline(always)]
-    fn widest_gap(&self) -> (DVec3, f64) {
+    fn widest_gap<D: Doubles>(&self) -> (DVec3, f64) {
         let (a, b) = (&self.a, &self.b);
         let ea = [a[1] - a[0], a[2] - a[1], a[0] - a[2]];
         let eb = [b[1] - b[0], b[2] - b[1], b[0] - b[2]];
         let (normal_a, normal_b) = (ea[0].cross(ea[1]), eb[0].cross(eb[1]));
-        let across = QuadVec::new([eb[0], eb[1], eb[2], normal_a]);
         let center = (b[0] + b[1] + b[2]) - (a[0] + a[1] + a[2]);
-        let first = QuadVec::new([normal_a, normal_b, center, b[0] - a[0]]);
-        // gap·|gap|/|n|², compared without dividing.
-        let mut best = Quad::splat(0.0);
-        let mut best_length = Quad::splat(1.0);
-        let mut best_axis = first;
-        for axis in [first, across.crossed_by(ea[0]), across.crossed_by(ea[1]), across.crossed_by(ea[2])] {
-            let (pa, pb) = (a, b);
-            let low_a = axis.dot(pa[0]).min(axis.dot(pa[1])).min(axis.dot(pa[2]));
-            let high_a = axis.dot(pa[0]).max(axis.dot(pa[1])).max(axis.dot(pa[2]));
-            let low_b = axis.dot(pb[0]).min(axis.dot(pb[1])).min(axis.dot(pb[2]));
-            let high_b = axis.dot(pb[0]).max(axis.dot(pb[1])).max(axis.dot(pb[2]));
-            let gap = (low_b - high_a).max(low_a - high_b).max(Quad::splat(0.0));
-            let square = gap * gap;
-            let length = axis.length_squared();
-            let (left, right) = (square * best_length, best * length);
-            best = Quad::if_greater(left, right, square, best);
-            best_length = Quad::if_greater(left, right, length, best_length);
-            for k in 0..3 {
-                best_axis.0[k] = Quad::if_greater(left, right, axis.0[k], best_axis.0[k]);
-            }
-        }
+        let mut best = Widest::<D>::of(&QuadVec::new([normal_a, normal_b, center, b[0] - a[0]]), a, b);
+        let across = QuadVec::new([eb[0], eb[1], eb[2], normal_a]);
+        best = best.or(&Widest::of(&across.crossed_by(ea[0]), a, b));
+        best = best.or(&Widest::of(&across.crossed_by(ea[1]), a, b));
+        best = best.or(&Widest::of(&across.crossed_by(ea[2]), a, b));
+        let (square, length) = (best.square.store().0, best.length.store().0);
         let mut lane = 0;
         for other in 1..4 {
-            if best.0[other] * best_length.0[lane] > best.0[lane] * best_length.0[other] {
+            if square[other] * length[lane] > square[lane] * length[other] {
                 lane = other;
             }
         }
-        let axis = DVec3::new(best_axis.0[0].0[lane], best_axis.0[1].0[lane], best_axis.0[2].0[lane]);
-        (axis, (best.0[lane] / best_length.0[lane]).sqrt())
+        let [x, y, z] = best.axis.0;
+        let axis = DVec3::new(x.store().0[lane], y.store().0[lane], z.store().0[lane]);
+        (axis, (square[lane] / length[lane]).sqrt())
     }
 
     /// Near the end: the direction of the closest features too, and the distance itself.
@@ -154,6 +145,46 @@ impl Placed {
             first_time((&pb, &rb), (&pa, &ra), need, m)
         };
         if s > known { s } else { known }
+    }
+}
+
+/// Directions side by side, the square of the gap along each (not normalised, zero when there is none) and of its length.
+struct Widest<D> {
+    axis: QuadVec<D>,
+    square: D,
+    length: D,
+}
+
+impl<D: Doubles> Widest<D> {
+    #[inline(always)]
+    fn of(axis: &QuadVec<D>, a: &[DVec3; 3], b: &[DVec3; 3]) -> Self {
+        // From corner 0 of A: its own projection is zero.
+        let zero = D::splat(0.0);
+        let (a1, a2) = (axis.dot(a[1] - a[0]), axis.dot(a[2] - a[0]));
+        let (b0, b1, b2) = (axis.dot(b[0] - a[0]), axis.dot(b[1] - a[0]), axis.dot(b[2] - a[0]));
+        let (low_a, high_a) = (a1.min(a2).min(zero), a1.max(a2).max(zero));
+        let (low_b, high_b) = (b0.min(b1).min(b2), b0.max(b1).max(b2));
+        let gap = (low_b - high_a).max(low_a - high_b).max(zero);
+        let length = axis.length_squared();
+        // No direction at all has a gap of zero.
+        let length = D::if_greater(length, zero, length, D::splat(1.0));
+        Self { axis: *axis, square: gap * gap, length }
+    }
+
+    /// In each lane the direction with the wider gap: gap²/|n|², compared without dividing.
+    #[inline(always)]
+    fn or(self, other: &Self) -> Self {
+        let (left, right) = (other.square * self.length, self.square * other.length);
+        let ([x, y, z], [u, v, w]) = (other.axis.0, self.axis.0);
+        Self {
+            axis: QuadVec([
+                D::if_greater(left, right, x, u),
+                D::if_greater(left, right, y, v),
+                D::if_greater(left, right, z, w),
+            ]),
+            square: D::if_greater(left, right, other.square, self.square),
+            length: D::if_greater(left, right, other.length, self.length),
+        }
     }
 }
 

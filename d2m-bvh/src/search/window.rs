@@ -1,19 +1,19 @@
 //! The search itself: windows of limited rotation, and best first inside each.
 
 use super::closest::closest;
+use super::expansion::{KEY_SCALE, Opening};
 use super::frame::{Frame, RelativeMotion};
 use super::lanes::Lanes;
-use super::node_test::{NodeFrame, NodeScale, Placed, entry_times};
+use super::node_test::NodeFrame;
+use super::quad::Quad;
 use super::queue::Item;
 use super::scene::{Scene, Scratch};
 use super::triangle_pair::{Look, look, place_a};
-use crate::tree::node::{Below, WIDTH};
+use crate::tree::node::WIDTH;
 use crate::{Budget, MeshTree, Mode, QueryOptions};
 use glam::DVec3;
 use std::time::Instant;
 
-/// Keys of a window run from 0 to this for its whole unit of time.
-const KEY_SCALE: f64 = 536_870_912.0; // 2²⁹
 /// Items that a batch may have before it is divided.
 const BATCH: usize = 32;
 
@@ -43,15 +43,14 @@ pub(crate) struct Search<'s> {
 
     scratch: &'s mut Scratch,
     mode: Mode,
-    node_tests: u64,
     most_tests: u64,
     deadline: Option<Instant>,
 }
 
 /// What changes while a window is searched.
-struct State {
+struct State<'a> {
     motion: RelativeMotion,
-    scales: [NodeScale; 2],
+    opening: Opening<'a>,
     /// Seconds (scene time) of one step of the key.
     step: f64,
     /// Keys from here on do not matter.
@@ -60,8 +59,6 @@ struct State {
     limit_offset: f64,
     frame: Frame,
     node_frames: [NodeFrame; 2],
-    /// Size of A's units over that of B's.
-    size_ratio: f32,
     frame_key: u32,
     found: Option<Found>,
 }
@@ -75,7 +72,6 @@ impl<'s> Search<'s> {
 
             scratch,
             mode: options.mode,
-            node_tests: 0,
             most_tests: budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS),
             deadline: budget.wall_clock.and_then(|time| Instant::now().checked_add(time)),
         }
@@ -108,17 +104,20 @@ impl<'s> Search<'s> {
         let time_unit = power_of_two_from(length);
         let step = time_unit / KEY_SCALE;
         let scales = scene.node_scales(time_unit);
-        let frame = motion.frame(0.0);
+        let frame = motion.frame::<L::Doubles>(0.0);
         let limit = (length / step).ceil() as u32 + 1;
         let left = time_left(limit, 0);
         let mut state = State {
             motion,
             node_frames: [
-                NodeFrame::new(&frame, &scales[0], false, left),
-                NodeFrame::new(&frame, &scales[1], true, left),
+                NodeFrame::new::<L::Doubles>(&frame, &scales[0], false, left),
+                NodeFrame::new::<L::Doubles>(&frame, &scales[1], true, left),
             ],
-            size_ratio: scales[1].ratio.powi(3) as f32,
-            scales,
+            opening: Opening {
+                nodes: [&scene.a.0.nodes, &scene.b.0.nodes],
+                scales,
+                size_ratios: [scales[1].ratio.powi(3).clamp(1e-30, 1e30) as f32, 1.0],
+            },
             step,
             limit,
             // A tick more, so that the end itself is inside; what is found after the end does not count.
@@ -129,7 +128,8 @@ impl<'s> Search<'s> {
         };
         self.scratch.counts.windows += 1;
         self.scratch.queue.clear();
-        self.scratch.queue.push(Item { key: 0, a: 0, b: 0 });
+        let open = state.opening.of_pair(0, 0);
+        self.scratch.queue.push(Item { key: 0, boxes: [0; 2], open });
         let mut batch = core::mem::take(&mut self.scratch.batch);
         let mut outcome = None;
         while let Some(least) = self.scratch.queue.take(&mut batch, BATCH) {
@@ -142,18 +142,16 @@ impl<'s> Search<'s> {
             }
             self.scratch.counts.frames += 1;
             if least != state.frame_key {
-                state.frame = state.motion.frame(f64::from(least) * step);
+                state.frame = state.motion.frame::<L::Doubles>(f64::from(least) * step);
                 let left = time_left(state.limit, least);
                 state.node_frames = [
-                    NodeFrame::new(&state.frame, &state.scales[0], false, left),
-                    NodeFrame::new(&state.frame, &state.scales[1], true, left),
+                    NodeFrame::new::<L::Doubles>(&state.frame, &state.opening.scales[0], false, left),
+                    NodeFrame::new::<L::Doubles>(&state.frame, &state.opening.scales[1], true, left),
                 ];
                 state.frame_key = least;
             }
-            for item in &batch {
-                if item.key < state.limit {
-                    self.open::<L>(&mut state, *item);
-                }
+            for items in batch.chunks(BATCH) {
+                self.open::<L>(&mut state, items);
             }
         }
         self.scratch.batch = batch;
@@ -164,66 +162,45 @@ impl<'s> Search<'s> {
     }
 
     fn out_of_budget(&self) -> bool {
-        self.node_tests >= self.most_tests || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+        let counts = &self.scratch.counts;
+        counts.node_tests + counts.triangle_looks >= self.most_tests
+            || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
 
-    /// What is to be opened of a pair: the number of the wide node and 0 for A, 1 for B; or the two triangles.
+    /// Opens at most [`BATCH`] items. Pairs of triangles first: they may lower the limit. Then all node tests, which
+    /// do not wait for each other, then their results.
     #[inline(always)]
-    fn larger(&self, state: &State, item: Item) -> Result<(u32, usize), [u32; 2]> {
-        let split = |index: u32| (index as usize / WIDTH, index as usize % WIDTH);
-        let ((ia, la), (ib, lb)) = (split(item.a), split(item.b));
-        let (na, nb) = (&self.scene.a.0.nodes[ia], &self.scene.b.0.nodes[ib]);
-        match (na.below(la), nb.below(lb)) {
-            (Below::Triangle(a), Below::Triangle(b)) => Err([a, b]),
-            (Below::Node(a), Below::Triangle(_)) => Ok((a, 0)),
-            (Below::Triangle(_), Below::Node(b)) => Ok((b, 1)),
-            (Below::Node(a), Below::Node(b)) => {
-                if na.size[la] * state.size_ratio >= nb.size[lb] {
-                    Ok((a, 0))
-                } else {
-                    Ok((b, 1))
-                }
+    fn open<L: Lanes>(&mut self, state: &mut State<'_>, items: &[Item]) {
+        for item in items {
+            if item.open & Item::TRIANGLES != 0 && item.key < state.limit {
+                self.advance::<L>(state, *item);
             }
         }
-    }
-
-    #[inline(always)]
-    fn open<L: Lanes>(&mut self, state: &mut State, item: Item) {
-        let (tree_a, tree_b) = (self.scene.a.0, self.scene.b.0);
-        let (wide_index, side) = match self.larger(state, item) {
-            Ok(choice) => choice,
-            Err(triangles) => return self.advance(state, item, triangles),
-        };
-        let (na, la) = (&tree_a.nodes[item.a as usize / WIDTH], item.a as usize % WIDTH);
-        let (nb, lb) = (&tree_b.nodes[item.b as usize / WIDTH], item.b as usize % WIDTH);
-        self.node_tests += 1;
-        self.scratch.counts.node_tests += 1;
-        let (wide, single, lane) = if side == 0 {
-            (&tree_a.nodes[wide_index as usize], nb, lb)
-        } else {
-            (&tree_b.nodes[wide_index as usize], na, la)
-        };
-        let scale = &state.scales[side];
-        let placed = Placed::new(&state.node_frames[side], scale, (single, lane), wide);
-        let times = entry_times::<L>(wide, &placed, scale);
-        // What is not a number becomes the key of the item itself.
-        let steps = L::splat(1.25 * KEY_SCALE as f32).min(times * L::splat(KEY_SCALE as f32));
-        let (keys, below) = steps.keys(state.frame_key as i32, item.key as i32, state.limit as i32);
-        let mut bits = below & ((1 << wide.used) - 1);
-        let child = wide_index * WIDTH as u32;
-        while bits != 0 {
-            let lane = bits.trailing_zeros();
-            bits &= bits - 1;
-            let key = keys[lane as usize & 7] as u32;
-            let (a, b) = if side == 0 { (child + lane, item.b) } else { (item.a, child + lane) };
-            self.scratch.counts.queued += 1;
-            self.scratch.queue.push(Item { key, a, b });
+        self.scratch.expansions.clear();
+        for item in items {
+            if item.open & Item::TRIANGLES == 0 && item.key < state.limit {
+                let times = (state.frame_key, state.limit);
+                let expansion = state.opening.expand::<L>(item, &state.node_frames, times);
+                self.scratch.expansions.push(expansion);
+            }
         }
+        self.scratch.counts.node_tests += self.scratch.expansions.len() as u64;
+        self.scratch.fresh.resize(WIDTH * BATCH + 1, Item::default());
+        let mut count = 0;
+        for expansion in &self.scratch.expansions {
+            expansion.append_to(&mut self.scratch.fresh, &mut count);
+        }
+        self.scratch.counts.queued += count as u64;
+        self.scratch.queue.extend(&self.scratch.fresh[..count]);
     }
 
     /// Advances a pair of triangles until it is past the limit, waits for others, or is in contact.
     #[inline(always)]
-    fn advance(&mut self, state: &mut State, item: Item, triangles: [u32; 2]) {
+    fn advance<L: Lanes>(&mut self, state: &mut State<'_>, item: Item) {
+        let triangles = [0, 1].map(|body| {
+            let index = item.boxes[body] as usize;
+            state.opening.nodes[body][index / WIDTH].triangle(index % WIDTH)
+        });
         let a = corners(self.scene.a.0, triangles[0]);
         let b = corners(self.scene.b.0, triangles[1]);
         if self.mode == Mode::Capoeira && self.stop_early(state, item, &a, &b, triangles) {
@@ -240,10 +217,9 @@ impl<'s> Search<'s> {
                 self.scratch.queue.push(Item { key, ..item });
                 return;
             }
-            self.node_tests += 1;
             self.scratch.counts.triangle_looks += 1;
             let enough = state.limit_offset - frame.offset;
-            match look(&frame, &a, &b, &self.scene.pair, enough) {
+            match look::<L::Doubles>(&frame, &a, &b, &self.scene.pair, enough) {
                 Look::ClearFor(time) => {
                     known = known.max(frame.offset + time);
                     if known >= state.limit_offset {
@@ -260,7 +236,7 @@ impl<'s> Search<'s> {
                 Look::Near { crossing } => {
                     // Near at the time of the frame, which may be before what the boxes proved: look again there.
                     if known > frame.offset {
-                        frame = state.motion.frame(known);
+                        frame = state.motion.frame::<L::Doubles>(known);
                         continue;
                     }
                     if self.mode == Mode::Exists && known < state.limit_offset {
@@ -279,7 +255,7 @@ impl<'s> Search<'s> {
                 }
             }
             if known > frame.offset {
-                frame = state.motion.frame(known);
+                frame = state.motion.frame::<L::Doubles>(known);
             } else {
                 // The time left is below the resolution of time itself: as near as times can tell.
                 state.limit_offset = known;
@@ -292,7 +268,7 @@ impl<'s> Search<'s> {
     }
 }
 
-impl State {
+impl State<'_> {
     /// Nothing matters any more.
     fn end(&mut self) {
         self.limit = 0;
@@ -305,7 +281,7 @@ impl Search<'_> {
     /// certified is the time of the frame: no live key is earlier.
     fn stop_early(
         &self,
-        state: &mut State,
+        state: &mut State<'_>,
         item: Item,
         a: &[DVec3; 3],
         b: &[DVec3; 3],
@@ -314,8 +290,8 @@ impl Search<'_> {
         let radius = |tree: &MeshTree, index: u32| {
             f64::from(tree.nodes[index as usize / WIDTH].radius[index as usize % WIDTH]) * tree.unit
         };
-        let size = radius(self.scene.a.0, item.a) + radius(self.scene.b.0, item.b);
-        let near = closest(&place_a(&state.frame, a), b);
+        let size = radius(self.scene.a.0, item.boxes[0]) + radius(self.scene.b.0, item.boxes[1]);
+        let near = closest(&place_a::<Quad>(&state.frame, a), b);
         let close = near.square <= size * size && (state.frame.offset > 0.0 || near.square > 0.0);
         // At the very start the accurate look decides whether the bodies touch.
         if close && (state.frame_key > 0 || state.motion.start > self.scene.window.start()) {

@@ -31,15 +31,42 @@ impl Moments {
         }
     }
 
-    /// Orthonormal axes, the longest extent first.
-    pub(super) fn axes(&self) -> [[f64; 3]; 3] {
+    /// Numbers that make up the moments, rounded up to a multiple of four.
+    pub(super) const LENGTH: usize = 12;
+
+    /// The numbers in `f32`; those of two pieces together are their sums.
+    pub(super) fn narrow(&self) -> [f32; Self::LENGTH] {
+        let (f, s) = (self.first, self.second);
+        [self.weight, f[0], f[1], f[2], s[0], s[1], s[2], s[3], s[4], s[5], 0.0, 0.0].map(|x| x as f32)
+    }
+
+    /// From such numbers.
+    pub(super) fn widen(numbers: &[f32; Self::LENGTH]) -> Self {
+        let [weight, f0, f1, f2, s0, s1, s2, s3, s4, s5, ..] = numbers.map(f64::from);
+        Self { weight, first: [f0, f1, f2], second: [s0, s1, s2, s3, s4, s5] }
+    }
+
+    /// Second moments about the centre.
+    fn covariance(&self) -> [[f64; 3]; 3] {
         let mean = self.first.map(|s| s / self.weight);
         let s = self.second.map(|s| s / self.weight);
-        principal_axes([
+        [
             [s[0] - mean[0] * mean[0], s[3] - mean[0] * mean[1], s[4] - mean[0] * mean[2]],
             [s[3] - mean[0] * mean[1], s[1] - mean[1] * mean[1], s[5] - mean[1] * mean[2]],
             [s[4] - mean[0] * mean[2], s[5] - mean[1] * mean[2], s[2] - mean[2] * mean[2]],
-        ])
+        ]
+    }
+
+    /// Orthonormal axes, the longest extent first.
+    pub(super) fn axes(&self) -> [[f64; 3]; 3] {
+        principal_axes(self.covariance())
+    }
+
+    /// √(λ₁λ₂ + λ₁λ₃ + λ₂λ₃) for the eigenvalues of the covariance: about the area of the box, up to a factor.
+    pub(super) fn spread(&self) -> f64 {
+        let m = self.covariance();
+        let minor = |i: usize, j: usize| m[i][i] * m[j][j] - m[i][j] * m[i][j];
+        (minor(0, 1) + minor(0, 2) + minor(1, 2)).max(0.0).sqrt()
     }
 }
 
@@ -83,7 +110,7 @@ fn principal_axes(mut m: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     for _ in 0..12 {
         let off = m[0][1] * m[0][1] + m[0][2] * m[0][2] + m[1][2] * m[1][2];
         let diagonal = m[0][0] * m[0][0] + m[1][1] * m[1][1] + m[2][2] * m[2][2];
-        if off.is_nan() || off <= 1e-26 * diagonal {
+        if off.is_nan() || off <= 1e-12 * diagonal {
             break;
         }
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {

@@ -9,6 +9,7 @@ mod refine;
 mod refit;
 #[cfg(feature = "serde")]
 mod serde_form;
+mod split;
 mod surface;
 #[cfg(test)]
 mod tests;

@@ -15,7 +15,7 @@
 pub(crate) const WIDTH: usize = 8;
 
 /// Marks a child that is a triangle; the rest of the bits is its number.
-const LEAF: u32 = 1 << 31;
+pub(crate) const LEAF: u32 = 1 << 31;
 
 /// What is below a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,7 +48,8 @@ pub(crate) struct WideNode {
     pub(crate) half_extent: [[f32; WIDTH]; 3],
     /// Radius about the box centre.
     pub(crate) radius: [f32; WIDTH],
-    /// What decides which of two boxes is opened: the larger one. Zero for a leaf, negative for an unused lane.
+    /// What decides which of two boxes is opened: the larger one. Zero for a leaf, positive for a node, negative for
+    /// an unused lane.
     pub(crate) size: [f32; WIDTH],
     /// Leaf flag and triangle number, or node number.
     pub(crate) child: [u32; WIDTH],
@@ -88,6 +89,12 @@ impl WideNode {
     pub(crate) fn below(&self, lane: usize) -> Below {
         let child = self.child[lane];
         if child & LEAF != 0 { Below::Triangle(child & !LEAF) } else { Below::Node(child) }
+    }
+
+    /// The triangle of a lane that has no node below it.
+    #[inline(always)]
+    pub(crate) fn triangle(&self, lane: usize) -> u32 {
+        self.child[lane] & !LEAF
     }
 
     /// Sets what is below lane `lane`.

@@ -176,8 +176,8 @@ pub(crate) const MUTANTS: &[Mutant] = &[
     patch(
         "half of the spin of the opened box",
         "d2m-bvh/src/search/node_test.rs",
-        "L::splat(scale.spin[0]) * radius",
-        "L::splat(0.5 * scale.spin[0]) * radius",
+        "L::splat(scale.spin[0]) * L::load(&wide.radius)",
+        "L::splat(0.5 * scale.spin[0]) * L::load(&wide.radius)",
         "d2m-bvh/src/search/tests.rs::half_the_spin_is_noticed",
     ),
     patch(

@@ -1,0 +1,167 @@
+//! The lanes in AVX registers. This module holds the only `unsafe` operations of the crate; the functions that may
+//! use it are entered through a check of the processor (`dispatch`).
+#![allow(unsafe_code)]
+
+use super::lanes::Lanes;
+use super::quad::{Doubles, Quad};
+#[allow(clippy::wildcard_imports)]
+use core::arch::x86_64::*;
+use core::ops::{Add, Div, Mul, Sub};
+
+/// One 256-bit register. Values exist only inside functions that were entered through a check for AVX2.
+#[derive(Clone, Copy)]
+pub(crate) struct Avx(__m256);
+
+macro_rules! avx_operator {
+    ($($operator:ident $method:ident $intrinsic:ident),*) => {$(
+        impl $operator for Avx {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: the processor has AVX (see the type).
+                Self(unsafe { $intrinsic(self.0, other.0) })
+            }
+        }
+    )*};
+}
+avx_operator!(Add add _mm256_add_ps, Sub sub _mm256_sub_ps, Mul mul _mm256_mul_ps, Div div _mm256_div_ps);
+
+impl Lanes for Avx {
+    type Doubles = AvxDoubles;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self(unsafe { _mm256_set1_ps(value) })
+    }
+    #[inline(always)]
+    fn load(values: &[f32; 8]) -> Self {
+        // SAFETY: eight floats are readable; no alignment is needed; AVX as above.
+        Self(unsafe { _mm256_loadu_ps(values.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self) -> [f32; 8] {
+        let mut out = [0.0; 8];
+        // SAFETY: eight floats are writable; no alignment is needed; AVX as above.
+        unsafe { _mm256_storeu_ps(out.as_mut_ptr(), self.0) };
+        out
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self(unsafe { _mm256_sqrt_ps(self.0) })
+    }
+    #[inline(always)]
+    fn less_bits(self, other: Self) -> u32 {
+        // SAFETY: the processor has AVX (see the type).
+        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)) as u32 }
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self(unsafe { _mm256_max_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self(unsafe { _mm256_min_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32) {
+        let mut out = [0; 8];
+        // SAFETY: the processor has AVX2 (see the type); 32 bytes are writable and need no alignment.
+        unsafe {
+            let sum = _mm256_add_epi32(_mm256_cvttps_epi32(self.0), _mm256_set1_epi32(base));
+            let keys = _mm256_max_epi32(sum, _mm256_set1_epi32(least));
+            _mm256_storeu_si256(out.as_mut_ptr().cast(), keys);
+            let below = _mm256_cmpgt_epi32(_mm256_set1_epi32(limit), keys);
+            (out, _mm256_movemask_ps(_mm256_castsi256_ps(below)) as u32)
+        }
+    }
+    #[inline(always)]
+    fn flip_sign(magnitude: Self, sign: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self(unsafe { _mm256_xor_ps(magnitude.0, _mm256_and_ps(sign.0, _mm256_set1_ps(-0.0))) })
+    }
+    #[inline(always)]
+    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self(unsafe { _mm256_blendv_ps(no.0, yes.0, _mm256_cmp_ps::<_CMP_GT_OQ>(left.0, right.0)) })
+    }
+    #[inline(always)]
+    fn combine(columns: &[[f32; 4]; 3], x: f32, y: f32, z: f32) -> [f32; 4] {
+        let mut out = [0.0; 4];
+        // SAFETY: four floats are readable in each column and writable in `out`; no alignment is needed; AVX as above.
+        unsafe {
+            let column = |k: usize| _mm_loadu_ps(columns[k].as_ptr());
+            let xy = _mm_add_ps(_mm_mul_ps(column(0), _mm_set1_ps(x)), _mm_mul_ps(column(1), _mm_set1_ps(y)));
+            _mm_storeu_ps(out.as_mut_ptr(), _mm_add_ps(xy, _mm_mul_ps(column(2), _mm_set1_ps(z))));
+        }
+        out
+    }
+}
+
+/// Four doubles in one register. Values exist only where those of [`Avx`] do.
+#[derive(Clone, Copy)]
+pub(crate) struct AvxDoubles(__m256d);
+
+macro_rules! doubles_operator {
+    ($($operator:ident $method:ident $intrinsic:ident),*) => {$(
+        impl $operator for AvxDoubles {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: the processor has AVX (see the type).
+                Self(unsafe { $intrinsic(self.0, other.0) })
+            }
+        }
+    )*};
+}
+doubles_operator!(Add add _mm256_add_pd, Sub sub _mm256_sub_pd, Mul mul _mm256_mul_pd);
+
+impl Doubles for AvxDoubles {
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self(unsafe { _mm256_set1_pd(x) })
+    }
+    #[inline(always)]
+    fn load(values: &Quad) -> Self {
+        // SAFETY: four doubles are readable, aligned to 32 bytes by the type; AVX as above.
+        Self(unsafe { _mm256_load_pd(values.0.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self) -> Quad {
+        let mut out = Quad([0.0; 4]);
+        // SAFETY: four doubles are writable, aligned to 32 bytes by the type; AVX as above.
+        unsafe { _mm256_store_pd(out.0.as_mut_ptr(), self.0) };
+        out
+    }
+    #[inline(always)]
+    fn narrow(self) -> [f32; 4] {
+        let mut out = [0.0; 4];
+        // SAFETY: four floats are writable; no alignment is needed; AVX as above.
+        unsafe { _mm_storeu_ps(out.as_mut_ptr(), _mm256_cvtpd_ps(self.0)) };
+        out
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self(unsafe { _mm256_min_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self(unsafe { _mm256_max_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self(unsafe { _mm256_blendv_pd(no.0, yes.0, _mm256_cmp_pd::<_CMP_GT_OQ>(left.0, right.0)) })
+    }
+}
