@@ -43,12 +43,6 @@ pub struct PlacedTriangle {
     planes: TrianglePlanes,
 }
 
-impl PlacedTriangle {
-    pub(crate) const fn planes(&self) -> &TrianglePlanes {
-        &self.planes
-    }
-}
-
 impl PairMotion {
     /// Motion of body A and of body B over `[t0, t1]`.
     ///

@@ -1,6 +1,7 @@
 //! First roots with proof: second-order inclusion functions, BBOI, IRD, HRFOI, interval Newton, path-jet isolator.
 
 mod bboi;
+mod first_zero;
 mod gamma;
 mod hrfoi;
 mod inclusion_function;
@@ -9,6 +10,7 @@ mod isolator;
 mod parabola;
 
 pub use bboi::bboi;
+pub use first_zero::{Differentiable, FirstZero, ZeroEvidence, first_zero};
 pub use gamma::{Gamma, IntervalFunction, RootSearch, SearchLimits, SecondOrder, Settled};
 pub use hrfoi::hrfoi;
 pub use inclusion_function::InclusionFunction;

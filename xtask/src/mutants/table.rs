@@ -93,6 +93,10 @@ pub(crate) const MUTANTS: &[Mutant] = &[
         "a term of the third derivative of any motion left out",
         "d2m-motion/src/relative/any_tests.rs::the_third_derivative_is_bounded_with_every_term",
     ),
+    in_test(
+        "no margin, no stray in a batch",
+        "d2m-feature/src/batch/tests.rs::planted_contacts_are_never_rejected_and_the_margin_is_needed",
+    ),
     // Roots.
     patch(
         "½ twice in the inclusion function",
