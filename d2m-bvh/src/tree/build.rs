@@ -5,7 +5,7 @@
 
 use super::mesh_tree::MeshTree;
 use super::node::{Below, OrientedBox, WIDTH, WideNode};
-use super::split::Chooser;
+use super::split::Splitter;
 use super::surface::{Extent, Surface};
 use crate::TriMesh;
 use core::sync::atomic::{AtomicUsize, Ordering};
@@ -31,14 +31,6 @@ struct Part<'o> {
     axes: [[f64; 3]; 3],
 }
 
-/// Memory of one thread.
-#[derive(Default)]
-struct Memory {
-    /// Keys for the selection.
-    keyed: Vec<(f32, u32)>,
-    chooser: Chooser,
-}
-
 /// Where the boxes of a node hang: the origin of the box above, and that box.
 struct Above {
     boxed: OrientedBox,
@@ -62,7 +54,7 @@ pub(super) fn build(mesh: TriMesh, progress: Option<Progress<'_>>) -> MeshTree {
     let mut nodes = Vec::with_capacity(total / 6 + 2);
     nodes.push(root);
     let above = Above { boxed, origin: [0.0; 3], parent: 0 };
-    let below = builder.below(Part { order: &mut order, axes }, &above, &mut nodes, &mut Memory::default());
+    let below = builder.below(Part { order: &mut order, axes }, &above, &mut nodes, &mut Splitter::default());
     nodes[0].set_below(0, below);
     if total <= GRAIN {
         builder.report(total);
@@ -80,27 +72,16 @@ impl Builder<'_> {
     }
 
     /// Splits a part in two, the first with a multiple of `step` triangles.
-    fn split<'o>(&self, part: Part<'o>, step: usize, memory: &mut Memory) -> (Part<'o>, Part<'o>) {
+    fn split<'o>(&self, part: Part<'o>, step: usize, splitter: &mut Splitter) -> (Part<'o>, Part<'o>) {
         let Part { order, axes } = part;
-        let count = order.len();
-        let half = ((count + step) / (2 * step)).max(1) * step;
-        let sample =
-            order.iter().step_by(Chooser::stride(count)).map(|&triangle| self.surface.corners(triangle));
-        let across = memory.chooser.direction(sample, &axes, half as f64 / count as f64);
-        let keyed = &mut memory.keyed;
-        keyed.clear();
-        keyed.extend(order.iter().map(|&triangle| (self.surface.along(triangle, across), triangle)));
-        keyed.select_nth_unstable_by(half, |x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
-        for (slot, (_, triangle)) in order.iter_mut().zip(keyed.iter()) {
-            *slot = *triangle;
-        }
+        let half = ((order.len() + step) / (2 * step)).max(1) * step;
+        let [a, b] = splitter.split(&self.surface, order, &axes, half);
         let (first, second) = order.split_at_mut(half);
-        let (a, b) = (self.surface.axes(first), self.surface.axes(second));
         (Part { order: first, axes: a }, Part { order: second, axes: b })
     }
 
     /// The up to eight parts of a part.
-    fn divide<'o>(&self, part: Part<'o>, memory: &mut Memory) -> Vec<Part<'o>> {
+    fn divide<'o>(&self, part: Part<'o>, splitter: &mut Splitter) -> Vec<Part<'o>> {
         if part.order.len() <= WIDTH {
             let singles = part.order.chunks_mut(1);
             return singles.map(|order| Part { axes: self.surface.axes(order), order }).collect();
@@ -119,7 +100,7 @@ impl Builder<'_> {
             if count(largest) <= full {
                 break;
             }
-            let (first, second) = self.split(parts.swap_remove(largest), step, memory);
+            let (first, second) = self.split(parts.swap_remove(largest), step, splitter);
             parts.push(first);
             parts.push(second);
         }
@@ -127,12 +108,18 @@ impl Builder<'_> {
     }
 
     /// Makes what is below a box: the triangle itself, or a node with up to eight parts, appended to `nodes`.
-    fn below(&self, part: Part<'_>, above: &Above, nodes: &mut Vec<WideNode>, memory: &mut Memory) -> Below {
+    fn below(
+        &self,
+        part: Part<'_>,
+        above: &Above,
+        nodes: &mut Vec<WideNode>,
+        splitter: &mut Splitter,
+    ) -> Below {
         if let &mut [triangle] = part.order {
             return Below::Triangle(triangle);
         }
         let is_large = part.order.len() > GRAIN;
-        let parts = self.divide(part, memory);
+        let parts = self.divide(part, splitter);
         let origin = [0, 1, 2].map(|k| above.origin[k] + above.boxed.center[k]);
         let index = nodes.len();
         let mut node = WideNode::empty(origin, above.parent);
@@ -156,7 +143,7 @@ impl Builder<'_> {
             }
         } else {
             for (lane, (part, above)) in hanging.into_iter().enumerate() {
-                let below = self.below(part, &above, nodes, memory);
+                let below = self.below(part, &above, nodes, splitter);
                 nodes[index].set_below(lane, below);
             }
         }
@@ -168,7 +155,7 @@ impl Builder<'_> {
         let one = |(part, above): (Part<'_>, Above)| {
             let count = part.order.len();
             let mut nodes = Vec::with_capacity(count / 6 + 2);
-            let below = self.below(part, &above, &mut nodes, &mut Memory::default());
+            let below = self.below(part, &above, &mut nodes, &mut Splitter::default());
             if count <= GRAIN {
                 self.report(count);
             }

@@ -5,6 +5,7 @@
 //! machine parts. No trigonometric function is called, so trees have the same bits on every platform.
 
 use super::fit::{Moments, dot, sub};
+use super::surface::Surface;
 
 /// Directions in the frame of the part's axes: the axes and the diagonals between two of them.
 const DIRECTIONS: [[f64; 3]; 9] = [
@@ -32,40 +33,61 @@ struct Sampled {
     along: [f32; DIRECTIONS.len()],
 }
 
-/// Memory of one thread for choosing directions.
+/// Axes of two halves.
+type Axes = [[[f64; 3]; 3]; 2];
+
+/// Memory of one thread for splitting parts.
 #[derive(Default)]
-pub(super) struct Chooser {
+pub(super) struct Splitter {
     sample: Vec<Sampled>,
+    /// Places along a direction, and triangles: numbers in the sample, or of the mesh.
     order: Vec<(f32, u32)>,
+    best_order: Vec<(f32, u32)>,
+    before: Vec<u32>,
 }
 
-impl Chooser {
-    /// How many triangles of a part there are to each one that is looked at.
-    pub(super) fn stride(count: usize) -> usize {
-        count.div_ceil(SAMPLE)
-    }
-
-    /// The direction, not normalised, across which the part should be cut. `part` gives the corners of the triangles to
-    /// look at; `lower` is the share of the triangles that comes first.
-    pub(super) fn direction(
+impl Splitter {
+    /// Puts the `half` triangles of a part that lie lowest along a good direction first. `axes` are those of the part;
+    /// returned are those of the halves.
+    pub(super) fn split(
         &mut self,
-        part: impl Iterator<Item = [[f64; 3]; 3]>,
+        surface: &Surface,
+        part: &mut [u32],
         axes: &[[f64; 3]; 3],
-        lower: f64,
-    ) -> [f64; 3] {
+        half: usize,
+    ) -> Axes {
         let directions =
             DIRECTIONS.map(|d| [0, 1, 2].map(|k| d[0] * axes[0][k] + d[1] * axes[1][k] + d[2] * axes[2][k]));
-        self.take(part, &directions);
+        let stride = part.len().div_ceil(SAMPLE);
+        self.take(part.iter().step_by(stride).map(|&triangle| surface.corners(triangle)), &directions);
+        let lower = half * self.sample.len() / part.len();
         let ranked = self.ranked();
-        let half = (lower * self.sample.len() as f64) as usize;
-        let mut best = (f32::INFINITY, ranked[0].1);
+        let mut best = (f32::INFINITY, ranked[0].1, [*axes; 2]);
         for &(_, direction) in &ranked[..FINALISTS] {
-            let size = self.size_of_halves(direction, half);
+            let (size, axes) = self.cut(direction, lower);
             if size < best.0 {
-                best = (size, direction);
+                best = (size, direction, axes);
+                core::mem::swap(&mut self.order, &mut self.best_order);
             }
         }
-        directions[best.1]
+        let (size, direction, axes) = best;
+        if stride == 1 && size < f32::INFINITY {
+            self.before.clear();
+            self.before.extend_from_slice(part);
+            for (slot, &(_, i)) in part.iter_mut().zip(&self.best_order) {
+                *slot = self.before[i as usize];
+            }
+            return axes;
+        }
+        let across = directions[direction];
+        self.order.clear();
+        self.order.extend(part.iter().map(|&triangle| (surface.along(triangle, across), triangle)));
+        partition(&mut self.order, half);
+        for (slot, &(_, triangle)) in part.iter_mut().zip(&self.order) {
+            *slot = triangle;
+        }
+        let (first, second) = part.split_at(half);
+        [surface.axes(first), surface.axes(second)]
     }
 
     fn take(&mut self, part: impl Iterator<Item = [[f64; 3]; 3]>, directions: &[[f64; 3]; 9]) {
@@ -112,18 +134,17 @@ impl Chooser {
         ranked
     }
 
-    /// Sum of the extents of both halves along their principal axes.
-    fn size_of_halves(&mut self, direction: usize, half: usize) -> f32 {
+    /// Cuts the sample: the sum of the extents of both halves along their principal axes, and these axes.
+    fn cut(&mut self, direction: usize, half: usize) -> (f32, Axes) {
         self.order.clear();
         self.order.extend(self.sample.iter().zip(0..).map(|(triangle, i)| (triangle.along[direction], i)));
-        if half < self.order.len() {
-            self.order.select_nth_unstable_by(half, |x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
-        }
+        partition(&mut self.order, half);
         let (first, second) = self.order.split_at(half);
-        self.size(first) + self.size(second)
+        let ((size, axes), (other_size, other_axes)) = (self.size(first), self.size(second));
+        (size + other_size, [axes, other_axes])
     }
 
-    fn size(&self, part: &[(f32, u32)]) -> f32 {
+    fn size(&self, part: &[(f32, u32)]) -> (f32, [[f64; 3]; 3]) {
         let mut sum = [0.0f32; Moments::LENGTH];
         for &(_, i) in part {
             for (sum, moment) in sum.iter_mut().zip(&self.sample[i as usize].moments) {
@@ -143,6 +164,13 @@ impl Chooser {
                 }
             }
         }
-        (high[0] - low[0]) + (high[1] - low[1]) + (high[2] - low[2])
+        ((high[0] - low[0]) + (high[1] - low[1]) + (high[2] - low[2]), axes)
+    }
+}
+
+/// Puts the `half` lowest first.
+fn partition(order: &mut [(f32, u32)], half: usize) {
+    if half < order.len() {
+        order.select_nth_unstable_by(half, |x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
     }
 }
