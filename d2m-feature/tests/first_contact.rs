@@ -3,6 +3,11 @@
 //! The same families with a million queries each: `cargo xtask accuracy`.
 mod planted;
 
+use d2m_feature::{ContactBracket, ContactOptions, FirstContact, PairMotion};
+use planted::families::{FAMILIES, Kind, Random, plant};
+use planted::judge::Tally;
+use planted::{oracle, quick};
+
 #[test]
 fn planted_contacts_are_never_missed_and_never_late() {
     let mut rows = 0;
@@ -17,4 +22,47 @@ fn planted_contacts_are_never_missed_and_never_late() {
     // The families do plant contacts, and the oracle does find them.
     assert!(total.true_contacts > total.queries / 3, "{total:?}");
     assert!(total.hits >= total.true_contacts);
+}
+
+/// The quick tier against the oracle, on right answers and on answers made late, early or clear.
+#[test]
+fn the_quick_tier_says_nothing_that_the_oracle_does_not() {
+    let options = ContactOptions::new();
+    let mut random = Random::new(77);
+    let (mut passed, mut asked, mut faults) = (0, 0, 0);
+    for kind in [Kind::PointTriangle, Kind::EdgeEdge] {
+        for family in FAMILIES {
+            for i in 0..12 {
+                let query = plant(kind, family, &mut random);
+                let pair = PairMotion::new(&query.motion_a, &query.motion_b, query.window.0, query.window.1);
+                let right = match kind {
+                    Kind::PointTriangle => pair.point_triangle(query.a[0], &query.b, &options),
+                    Kind::EdgeEdge => pair.edge_edge(query.a, [query.b[0], query.b[1]], &options),
+                };
+                let answer = match (i % 4, right) {
+                    (1, FirstContact::Contact(c)) => {
+                        FirstContact::Contact(ContactBracket { lo: c.lo + 1e-11, hi: c.hi + 1e-11, ..c })
+                    }
+                    (2, FirstContact::Contact(_)) => FirstContact::Clear,
+                    (3, FirstContact::Contact(c)) => {
+                        FirstContact::Contact(ContactBracket { lo: c.lo - 1e-6, hi: c.lo - 1e-6, ..c })
+                    }
+                    (_, right) => right,
+                };
+                let (exact, near) = (oracle::rigid(&query), quick::rigid(&query));
+                let mut tally = Tally::default();
+                tally.judge(kind, &query, &exact, answer, query.window);
+                let fault = !tally.false_negatives.is_empty() || !tally.false_positives.is_empty();
+                let verdict = quick::clearly_right(kind, &near, &answer, query.time, query.window);
+                if let Some(contact) = verdict {
+                    assert!(!fault, "{answer:?} {query:?}");
+                    assert!(!contact || tally.true_contacts == 1, "{answer:?} {query:?}");
+                    passed += 1;
+                }
+                asked += 1;
+                faults += usize::from(fault);
+            }
+        }
+    }
+    assert!(faults > 60 && passed + faults > asked * 8 / 10, "{passed} passed, {faults} faults of {asked}");
 }

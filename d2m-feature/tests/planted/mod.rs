@@ -2,3 +2,4 @@
 pub(crate) mod families;
 pub(crate) mod judge;
 pub(crate) mod oracle;
+pub(crate) mod quick;
