@@ -1,1 +1,3 @@
-//! Criterion benchmarks; each judges its answer before it is timed.
+//! Criterion benchmarks; each judges its answer before it is timed. Here: the scenes that several of them share.
+
+pub mod hard_scenes;

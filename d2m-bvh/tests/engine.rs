@@ -258,3 +258,32 @@ fn starts_that_touch_cross_or_hold() {
     assert_eq!(crossing.contact().unwrap().start, StartState::Overlapping);
     assert_eq!(crossing.contact().unwrap().separation, 0.0);
 }
+
+/// Faces meet head-on so fast that rounding raises the tolerance: the end of the bracket is still found.
+#[test]
+fn fast_faces_have_a_bracket() {
+    let cube = || {
+        let corner = |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) - 0.5;
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let halves = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
+        MeshTree::new(TriMesh::try_new((0..8).map(corner).collect(), halves.collect()).unwrap())
+    };
+    let (a, b) = (cube(), cube());
+    let mut random = Random(21);
+    let mut raised = 0;
+    for round in 0..400 {
+        let speed = [1e3, 1e5, 1e6][round % 3];
+        let from = DVec3::new(0.4 * random.next(), 0.4 * random.next(), 1.1 + random.next().abs());
+        let falling = motion(from, DQuat::IDENTITY, DVec3::NEG_Z * speed, DVec3::ZERO);
+        let window = Window::try_new(-0.25 * f64::from(round as u32 % 2), 1.0).unwrap();
+        let falling = falling.with_position(from + DVec3::Z * -window.start() * speed);
+        let still = LinearMotion::REST;
+        let answer = query([&a, &b], [&falling, &still], window, &QueryOptions::default());
+        let contact = answer.contact().expect("they meet");
+        raised += u32::from(contact.tolerance > 2e-10);
+        assert!(contact.time_hi > contact.time_lo, "round {round}: {contact:?}");
+        let left = (contact.time_hi - contact.time_lo) * speed;
+        assert!(left <= 3.3 * contact.tolerance + 1e-15 * speed, "round {round}: {left:e} {contact:?}");
+    }
+    assert!(raised > 200, "{raised}");
+}

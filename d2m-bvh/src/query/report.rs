@@ -27,30 +27,45 @@ pub(super) fn contact(scene: &Scene<'_>, found: &Found, bracket: bool) -> Contac
     contact
 }
 
-/// A time by which the two triangles were certainly within the level; `time_lo` when a few steps of Newton's method
-/// along the normal find none.
+/// Looks at most for the end of a bracket.
+const BRACKET_LOOKS: u32 = 24;
+
+/// A time by which the two triangles were certainly within the level; `time_lo` when none is found: Newton's method
+/// along the normal, and bisection once the triangles have passed each other.
 fn reached_by(scene: &Scene<'_>, motion: &RelativeMotion, triangles: [u32; 2], contact: &Contact) -> f64 {
-    let (mut time, mut distance, mut closing) = (contact.time_lo, contact.separation, contact.closing_speed);
-    // The points are on the triangles up to the error: a true upper bound of the distance.
+    // The closest points are on the triangles up to the error: a true upper bound of the distance. In the middle
+    // between that and no distance at all there is as much room on either side as there can be.
     let level = scene.pair.level - scene.pair.error;
-    let target = scene.pair.level - 0.5 * scene.tolerance;
+    let target = scene.pair.level - 0.5 * (scene.tolerance + scene.pair.error);
+    // Frames hold for a little more than the longest window.
+    let end = scene.window.end().min(motion.start + 1.1 * scene.longest);
     let (a, b) = (corners(scene.a.0, triangles[0]), corners(scene.b.0, triangles[1]));
-    for _ in 0..8 {
-        if distance <= level {
-            return time;
-        }
-        if closing.is_nan() || closing <= 0.0 {
-            break;
-        }
-        time = (time + (distance - target) / closing).max(time.next_up());
-        // Frames hold for a little more than the longest window.
-        if time.is_nan() || time > scene.window.end() || time > motion.start + 1.1 * scene.longest {
-            break;
-        }
+    let look = |time: f64| {
         let frame = motion.frame::<Quad>(time - motion.start);
         let near = closest(&place_a::<Quad>(&frame, &a), &b);
-        distance = near.square.sqrt();
-        closing = frame.closing_speed(near.points, near.direction.normalize_or_zero());
+        let normal = near.direction.normalize_or_zero();
+        (near.square.sqrt(), frame.closing_speed(near.points, normal), normal)
+    };
+    let (mut early, mut late) = (contact.time_lo, None);
+    let (mut distance, mut closing, first_normal) = look(early);
+    for _ in 0..BRACKET_LOOKS {
+        let time = match late {
+            None if closing > 0.0 => (early + (distance - target) / closing).max(early.next_up()).min(end),
+            None => break,
+            Some(late) => early + 0.5 * (late - early),
+        };
+        if time.is_nan() || time <= early {
+            break;
+        }
+        let (here, speed, normal) = look(time);
+        if here <= level {
+            return time;
+        }
+        if normal.dot(first_normal) < 0.0 {
+            late = Some(time);
+        } else {
+            (early, distance, closing) = (time, here, speed);
+        }
     }
     contact.time_lo
 }

@@ -7,12 +7,14 @@ mod closest;
 mod dispatch;
 mod expansion;
 mod frame;
+mod helix;
 mod instruction_set;
 mod lanes;
 mod node_test;
 mod quad;
 mod queue;
 mod scene;
+mod swept;
 #[cfg(test)]
 mod tests;
 mod triangle_pair;

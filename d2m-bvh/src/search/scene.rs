@@ -8,6 +8,7 @@ use super::triangle_pair::PairScale;
 use crate::tree::margin::{UNIT_F64, round_up};
 use crate::{MeshTree, QueryOptions, Window};
 use d2m_motion::LinearMotion;
+use glam::DVec3;
 
 /// Factor of the error of a projected gap of two triangles; see docs/theory/engine.md.
 const TRIANGLE_ERROR: f64 = 128.0 * UNIT_F64;
@@ -61,8 +62,17 @@ impl<'a> Scene<'a> {
         let tolerance = wanted.max(2.0 * error);
         let level = options.min_separation + tolerance;
         let acceleration = (spin_a * spin_a * reach_a + spin_b * spin_b * reach_b) * (1.0 + 1e-12);
-        let pair = PairScale { level, error, stop: level + tolerance + error, acceleration };
+        let arms = [&a, &b].map(|(tree, motion)| tree.center() - motion.at());
+        let swings = [spin_a * spin_a * reach_a, spin_b * spin_b * reach_b].map(|s| s * (1.0 + 1e-12));
+        let pair = PairScale { level, error, stop: level + tolerance + error, acceleration, arms, swings };
         Self { a, b, window, pair, size, tolerance, longest, reach: reach_a + reach_b, spin_speed }
+    }
+
+    /// Axis of the body that spins faster, world; none if neither does.
+    pub(crate) fn spin_axis(&self) -> Option<DVec3> {
+        let [a, b] = [&self.a, &self.b].map(|body| body.1.angular_velocity());
+        let faster = if a.length_squared() >= b.length_squared() { a } else { b };
+        faster.try_normalize()
     }
 
     /// A time, not before `start`, up to which the balls about the followed points (whatever the rotation) stay
@@ -120,6 +130,10 @@ pub struct SearchCounts {
     pub triangle_looks: u64,
     /// Looks that needed the closest features.
     pub closest_features: u64,
+    /// Attempts to skip time by the sweeps of the bodies.
+    pub sweeps: u64,
+    /// Pairs of boxes or triangles whose sweeps were compared.
+    pub swept_pairs: u64,
 }
 
 /// Memory that one search uses and the next one finds warm.

@@ -16,6 +16,19 @@ pub(crate) struct PairScale {
     pub(crate) stop: f64,
     /// Bound on the acceleration between the bodies.
     pub(crate) acceleration: f64,
+    /// From the followed point to the centre of the tree, body axes.
+    pub(crate) arms: [DVec3; 2],
+    /// |ω|²ρ of each body, ρ the largest distance from the followed point, rounded up.
+    pub(crate) swings: [f64; 2],
+}
+
+/// How much one look does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Care {
+    /// One direction and a bound on the acceleration: enough for most queries.
+    Quick,
+    /// Also the normals, and the corners' own accelerations: for pairs that stay close for long.
+    Thorough,
 }
 
 /// What one look at a pair gives.
@@ -39,6 +52,12 @@ struct Placed {
     offset: DVec3,
     omega_a: DVec3,
     omega_b: DVec3,
+    /// From the followed points to the centres of the trees.
+    arm_a: DVec3,
+    arm_b: DVec3,
+    /// No later time matters, counted from the frame.
+    enough: f64,
+    care: Care,
 }
 
 /// Corners of A's triangle (tree-centred, body axes) moved into B's frame.
@@ -57,10 +76,10 @@ pub(crate) fn place_a<D: Doubles>(frame: &Frame, corners: &[DVec3; 3]) -> [DVec3
 #[inline(always)]
 pub(crate) fn look<D: Doubles>(
     frame: &Frame,
-    a: &[DVec3; 3],
-    b: &[DVec3; 3],
+    (a, b): (&[DVec3; 3], &[DVec3; 3]),
     scale: &PairScale,
     enough: f64,
+    care: Care,
 ) -> Look {
     let placed = Placed {
         a: place_a::<D>(frame, a),
@@ -69,11 +88,20 @@ pub(crate) fn look<D: Doubles>(
         offset: frame.apart.to_vec(),
         omega_a: frame.omega_a.to_vec(),
         omega_b: frame.omega_b.to_vec(),
+        arm_a: frame.rotation.times::<D>(scale.arms[0]).store().to_vec(),
+        arm_b: scale.arms[1],
+        enough,
+        care,
     };
     let (direction, gap) = placed.widest_gap::<D>();
     let mut best = 0.0;
     if gap > scale.level + scale.error {
         best = placed.clear_for(direction, scale, best);
+        if best >= enough || care == Care::Quick && gap > 16.0 * scale.stop {
+            return Look::ClearFor(best);
+        }
+        // Faces that slide along each other: a normal lasts longer than the line to a corner that comes closer.
+        best = placed.clear_for(widest_normal(&placed.a, &placed.b), scale, best);
         if best >= enough || gap > 16.0 * scale.stop {
             return Look::ClearFor(best);
         }
@@ -138,14 +166,88 @@ impl Placed {
         let drift = n.dot(self.velocity) - turn_a.dot(self.offset);
         let ra = [drift + turn_a.dot(a[0]), drift + turn_a.dot(a[1]), drift + turn_a.dot(a[2])];
         let rb = [turn_b.dot(b[0]), turn_b.dot(b[1]), turn_b.dot(b[2])];
-        let m = scale.acceleration * length;
-        let s = if forward > backward {
+        if self.care == Care::Quick {
+            let m = scale.acceleration * length;
+            let s = if forward > backward {
+                first_time((&pa, &ra), (&pb, &rb), need, m)
+            } else {
+                first_time((&pb, &rb), (&pa, &ra), need, m)
+            };
+            return if s > known { s } else { known };
+        }
+        let s = self.clear_for_jets(n, scale, (forward > backward, need), [(pa, ra), (pb, rb)]);
+        if s > known { s } else { known }
+    }
+
+    /// The same with the corners' own accelerations; positions and rates along `n` are given.
+    #[inline(never)]
+    fn clear_for_jets(
+        &self,
+        n: DVec3,
+        scale: &PairScale,
+        (a_is_low, need): (bool, f64),
+        [(pa, ra), (pb, rb)]: [([f64; 3], [f64; 3]); 2],
+    ) -> f64 {
+        let (a, b, length) = (&self.a, &self.b, n.length());
+        let (turn_a, turn_b) = (n.cross(self.omega_a), n.cross(self.omega_b));
+        // |n·(ω × (ω × e))| = |(n × ω)·(ω × e)| ≤ |n × ω||ω||e|, and the same times |ω| for the next derivative.
+        let [swing_a, swing_b] = self.swings(scale, turn_a, turn_b);
+        let m = (swing_a + swing_b).min(scale.acceleration * length) * (1.0 + 1e-14);
+        let s = if a_is_low {
             first_time((&pa, &ra), (&pb, &rb), need, m)
         } else {
             first_time((&pb, &rb), (&pa, &ra), need, m)
         };
-        if s > known { s } else { known }
+        let speed = if a_is_low { least(&rb) - greatest(&ra) } else { least(&ra) - greatest(&rb) };
+        if s >= self.enough || m * s <= PATIENCE * speed.abs() {
+            return s;
+        }
+        let jerk = (swing_a * self.omega_a.length() + swing_b * self.omega_b.length()) * (1.0 + 1e-14);
+        let bend_a = self.omega_a * self.omega_a.dot(n) - n * self.omega_a.length_squared();
+        let bend_b = self.omega_b * self.omega_b.dot(n) - n * self.omega_b.length_squared();
+        let (arm_a, arm_b) = (self.arm_a - self.offset, self.arm_b);
+        let aa = [bend_a.dot(a[0] + arm_a), bend_a.dot(a[1] + arm_a), bend_a.dot(a[2] + arm_a)];
+        let ab = [bend_b.dot(b[0] + arm_b), bend_b.dot(b[1] + arm_b), bend_b.dot(b[2] + arm_b)];
+        let (of_a, of_b) = (Jets { at: pa, rate: ra, bend: aa }, Jets { at: pb, rate: rb, bend: ab });
+        s.max(if a_is_low {
+            first_time_of_jets(&of_a, &of_b, need, jerk, self.enough)
+        } else {
+            first_time_of_jets(&of_b, &of_a, need, jerk, self.enough)
+        })
     }
+
+    /// |n × ω||ω|ρ of both bodies.
+    #[inline(always)]
+    fn swings(&self, scale: &PairScale, turn_a: DVec3, turn_b: DVec3) -> [f64; 2] {
+        let one = |swing: f64, turn: DVec3, omega: DVec3| {
+            let square = omega.length_squared();
+            if square > 0.0 { swing * (turn.length_squared() / square).sqrt() } else { 0.0 }
+        };
+        [one(scale.swings[0], turn_a, self.omega_a), one(scale.swings[1], turn_b, self.omega_b)]
+    }
+}
+
+/// Of the two normals the one along which the gap is wider (not normalised).
+#[inline(always)]
+pub(crate) fn widest_normal(a: &[DVec3; 3], b: &[DVec3; 3]) -> DVec3 {
+    let along = |n: DVec3| {
+        let (pa, pb) = (a.map(|p| n.dot(p)), b.map(|p| n.dot(p)));
+        let gap = (least(&pb) - greatest(&pa)).max(least(&pa) - greatest(&pb));
+        (gap * gap.abs(), n.length_squared())
+    };
+    let (na, nb) = ((a[1] - a[0]).cross(a[2] - a[0]), (b[1] - b[0]).cross(b[2] - b[0]));
+    let ((ga, la), (gb, lb)) = (along(na), along(nb));
+    if ga * lb > gb * la { na } else { nb }
+}
+
+/// The first bound is good enough when the acceleration changes speeds by less than this part of them.
+const PATIENCE: f64 = 0.1;
+
+/// Positions, rates and accelerations of three corners along a direction.
+struct Jets {
+    at: [f64; 3],
+    rate: [f64; 3],
+    bend: [f64; 3],
 }
 
 /// Directions side by side, the square of the gap along each (not normalised, zero when there is none) and of its length.
@@ -232,4 +334,55 @@ fn root(g: f64, v: f64, m: f64) -> f64 {
     } else {
         1e300
     }
+}
+
+/// A time until which every pair of corners stays further apart than `need`, of which none beyond `enough` matters.
+///
+/// For each pair f(s) ≥ g + v s + a s²/2 − J s³/6, and for s ≤ S the last two terms are at least (a − J S/3) s²/2: a
+/// parabola, whose first root holds up to S. S starts where J would not matter, and moves towards the root.
+#[inline(never)]
+fn first_time_of_jets(low: &Jets, high: &Jets, need: f64, jerk: f64, enough: f64) -> f64 {
+    let pair = |k: usize| {
+        let (i, j) = (k / 3, k % 3);
+        let gap = high.at[j] - (low.at[i] + need);
+        (gap, high.rate[j] - low.rate[i], high.bend[j] - low.bend[i])
+    };
+    let pairs: [(f64, f64, f64); 9] = core::array::from_fn(pair);
+    let finite =
+        low.rate.iter().chain(&high.rate).chain(&low.bend).chain(&high.bend).map(|x| x.abs()).sum::<f64>()
+            + jerk;
+    if !finite.is_finite() {
+        return 0.0;
+    }
+    let first_root = |loss: f64| {
+        let mut first = f64::INFINITY;
+        for &(g, v, a) in &pairs {
+            let s = parabola_root(g, v, a - loss);
+            first = if s < first { s } else { first };
+        }
+        first
+    };
+    let mut span = first_root(0.0).min(enough * (1.0 + 1e-11));
+    let mut proven = 0.0;
+    for _ in 0..3 {
+        let s = first_root(jerk * span * (1.0 / 3.0 + 1e-15));
+        proven = s.min(span).max(proven);
+        if s >= 0.8 * span {
+            break;
+        }
+        span = (span * s).sqrt();
+    }
+    proven * (1.0 - 1e-12)
+}
+
+/// First root of g + v s + a s²/2, g > 0, never late; infinite when there is none.
+#[inline(always)]
+fn parabola_root(g: f64, v: f64, a: f64) -> f64 {
+    let bent = 2.0 * a * g;
+    // Too large by more than its rounding: the root of a closing pair is early.
+    let square = (v * v - bent) + 1e-15 * (v * v + bent.abs());
+    let root = square.max(0.0).sqrt();
+    let closing = v < 0.0;
+    let (above, below) = (if closing { 2.0 * g } else { v + root }, if closing { root - v } else { -a });
+    if square < 0.0 || !closing && a >= 0.0 { f64::INFINITY } else { above / below }
 }

@@ -3,12 +3,14 @@
 use super::closest::closest;
 use super::expansion::{KEY_SCALE, Opening};
 use super::frame::{Frame, RelativeMotion};
+use super::helix::screw_clear_until;
 use super::lanes::Lanes;
 use super::node_test::NodeFrame;
 use super::quad::Quad;
 use super::queue::Item;
 use super::scene::{Scene, Scratch};
-use super::triangle_pair::{Look, look, place_a};
+use super::swept::swept_clear_until;
+use super::triangle_pair::{Care, Look, look, place_a, widest_normal};
 use crate::tree::node::WIDTH;
 use crate::{Budget, MeshTree, Mode, QueryOptions};
 use glam::DVec3;
@@ -16,6 +18,11 @@ use std::time::Instant;
 
 /// Items that a batch may have before it is divided.
 const BATCH: usize = 32;
+/// Looks at pairs of triangles of one search that do little; ordinary queries need fewer.
+const QUICK_LOOKS: u64 = 192;
+/// Node tests, besides one for each triangle, before sweeps are looked at for the first time: ordinary queries end
+/// before that.
+const FIRST_SWEEP: u64 = 256;
 
 /// A contact as the search knows it.
 #[derive(Clone, Copy, Debug)]
@@ -37,14 +44,25 @@ pub(crate) enum Outcome {
     OutOfBudget(f64),
 }
 
+/// How a window ended.
+enum Step {
+    /// The answer of the whole search.
+    Answer(Outcome),
+    /// Apart until here: the end of the window, or later.
+    ClearUntil(f64),
+}
+
 /// One search.
 pub(crate) struct Search<'s> {
     scene: &'s Scene<'s>,
-
     scratch: &'s mut Scratch,
     mode: Mode,
     most_tests: u64,
     deadline: Option<Instant>,
+    /// The number of node tests from which on it is time to look at sweeps.
+    sweep_from: u64,
+    /// The triangles that were looked at last.
+    last_looked_at: [u32; 2],
 }
 
 /// What changes while a window is searched.
@@ -69,9 +87,11 @@ impl<'s> Search<'s> {
         scratch.counts = super::scene::SearchCounts::default();
         Self {
             scene,
-
             scratch,
             mode: options.mode,
+            sweep_from: FIRST_SWEEP
+                + (scene.a.0.mesh.triangle_count() + scene.b.0.mesh.triangle_count()) as u64,
+            last_looked_at: [0, 0],
             most_tests: budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS),
             deadline: budget.wall_clock.and_then(|time| Instant::now().checked_add(time)),
         }
@@ -89,14 +109,15 @@ impl<'s> Search<'s> {
             let next = (start + self.scene.longest).min(end);
             let next = if next > start { next } else { end };
             match self.search_window::<L>(start, next) {
-                Outcome::Separated if next < end => start = next,
-                outcome => return outcome,
+                Step::Answer(outcome) => return outcome,
+                Step::ClearUntil(until) if until >= end => return Outcome::Separated,
+                Step::ClearUntil(until) => start = until,
             }
         }
     }
 
     #[inline(always)]
-    fn search_window<L: Lanes>(&mut self, start: f64, end: f64) -> Outcome {
+    fn search_window<L: Lanes>(&mut self, start: f64, end: f64) -> Step {
         let scene = self.scene;
         let motion = RelativeMotion::new((scene.a.0, &scene.a.1), (scene.b.0, &scene.b.1), start);
         // At least end − start, whatever its rounding.
@@ -137,8 +158,16 @@ impl<'s> Search<'s> {
                 break;
             }
             if self.out_of_budget() {
-                outcome = Some(Outcome::OutOfBudget(time_from(start, f64::from(least) * step)));
+                outcome = Some(Step::Answer(Outcome::OutOfBudget(time_from(start, f64::from(least) * step))));
                 break;
+            }
+            if self.work() >= self.sweep_from {
+                let now = time_from(start, f64::from(least) * step);
+                let until = self.sweep(&state, now);
+                if until >= end {
+                    outcome = Some(Step::ClearUntil(until));
+                    break;
+                }
             }
             self.scratch.counts.frames += 1;
             if least != state.frame_key {
@@ -156,15 +185,41 @@ impl<'s> Search<'s> {
         }
         self.scratch.batch = batch;
         outcome.unwrap_or(match state.found {
-            Some(found) if found.offset <= length => Outcome::Found(found),
-            _ => Outcome::Separated,
+            Some(found) if found.offset <= length => Step::Answer(Outcome::Found(found)),
+            _ => Step::ClearUntil(end),
         })
     }
 
-    fn out_of_budget(&self) -> bool {
+    /// A time up to which the sweeps of the bodies are apart from `now` on; `now` if they are not for long.
+    #[cold]
+    #[inline(never)]
+    fn sweep(&mut self, state: &State<'_>, now: f64) -> f64 {
+        let [a, b] = self.last_looked_at;
+        let b = corners(self.scene.b.0, b);
+        let near = widest_normal(&place_a::<Quad>(&state.frame, &corners(self.scene.a.0, a)), &b);
+        let turn = state.motion.rotation_b(state.frame.offset);
+        let interest = turn.times::<Quad>(near).to_vec().normalize_or(DVec3::X);
+        let gain = self.scene.longest.min(self.scene.window.end() - now);
+        let limits = (gain, self.work() + FIRST_SWEEP);
+        let (mut until, mut pairs) = swept_clear_until(self.scene, now, limits, interest);
+        if until <= now && self.scratch.counts.sweeps > 0 {
+            let (later, more) = screw_clear_until(self.scene, now, limits);
+            (until, pairs) = (later, pairs + more);
+        }
+        self.scratch.counts.sweeps += 1;
+        self.scratch.counts.swept_pairs += pairs;
+        self.sweep_from = if until > now { self.work() + self.sweep_from / 4 } else { 4 * self.work() };
+        until
+    }
+
+    /// What the search has done, in node tests.
+    fn work(&self) -> u64 {
         let counts = &self.scratch.counts;
-        counts.node_tests + counts.triangle_looks >= self.most_tests
-            || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+        counts.node_tests + counts.triangle_looks + counts.swept_pairs
+    }
+
+    fn out_of_budget(&self) -> bool {
+        self.work() >= self.most_tests || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
 
     /// Opens at most [`BATCH`] items. Pairs of triangles first: they may lower the limit. Then all node tests, which
@@ -218,8 +273,11 @@ impl<'s> Search<'s> {
                 return;
             }
             self.scratch.counts.triangle_looks += 1;
+            self.last_looked_at = triangles;
             let enough = state.limit_offset - frame.offset;
-            match look::<L::Doubles>(&frame, &a, &b, &self.scene.pair, enough) {
+            let care =
+                if self.scratch.counts.triangle_looks > QUICK_LOOKS { Care::Thorough } else { Care::Quick };
+            match look::<L::Doubles>(&frame, (&a, &b), &self.scene.pair, enough, care) {
                 Look::ClearFor(time) => {
                     known = known.max(frame.offset + time);
                     if known >= state.limit_offset {

@@ -227,6 +227,35 @@ pub(crate) const MUTANTS: &[Mutant] = &[
         "d2m-bvh/src/search/tests.rs::half_the_acceleration_of_triangles_is_noticed",
     ),
     patch(
+        "the circles of a sweep smaller by 1e-5",
+        "d2m-bvh/src/search/swept.rs",
+        "(n - self.body.axis * along).length() * self.ring.far",
+        "(n - self.body.axis * along).length() * self.ring.far * 0.99999",
+        "d2m-bvh/src/search/swept.rs::sweeps_reach_exactly_as_far_as_the_bodies",
+    ),
+    patch(
+        "the hole of a sweep wider by 1e-5",
+        "d2m-bvh/src/search/swept.rs",
+        "take(outer.ring.near - far, -drift);",
+        "take(outer.ring.near + 1e-5 - far, -drift);",
+        "d2m-bvh/src/search/swept.rs::sweeps_inside_a_hole",
+    ),
+    patch(
+        "the drift of a sweep not counted",
+        "d2m-bvh/src/search/swept.rs",
+        "let drift = n.dot(self.velocity);",
+        "let drift = 0.9 * n.dot(self.velocity);",
+        "d2m-bvh/src/search/swept.rs::sweeps_end_in_time",
+    ),
+    in_test(
+        "another pitch, half of the climb, no drift of a screw",
+        "d2m-bvh/src/search/helix.rs::mutants_of_the_screw_die",
+    ),
+    in_test(
+        "half of the third derivative of triangles, accelerations about another point",
+        "d2m-bvh/src/search/tests.rs::mutants_of_the_third_derivative_die",
+    ),
+    patch(
         "the frame passes an item that waits",
         "d2m-bvh/src/search/queue.rs",
         "let least = bucket.iter().map(|item| item.key).min()?;",
@@ -243,8 +272,8 @@ pub(crate) const MUTANTS: &[Mutant] = &[
     patch(
         "a contact is called clear",
         "d2m-bvh/src/search/window.rs",
-        "Some(found) if found.offset <= length => Outcome::Found(found),",
-        "Some(found) if found.offset < 0.0 * length => Outcome::Found(found),",
+        "Some(found) if found.offset <= length => Step::Answer(Outcome::Found(found)),",
+        "Some(found) if found.offset < 0.0 * length => Step::Answer(Outcome::Found(found)),",
         "d2m-bvh/tests/engine.rs::separation_at_lo_is_what_is_promised_and_nothing_touches_before",
     ),
     patch(

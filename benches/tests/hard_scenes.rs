@@ -1,0 +1,118 @@
+//! The hard scenes in small sizes: the engine against brute force over all pairs of features, which shares nothing with
+//! its search: closed-form first contacts of each vertex with each face and each edge with each edge.
+
+use d2m::bvh::Window;
+use d2m::feature::{ContactOptions, FirstContact, PairMotion};
+use d2m::glam::DVec3;
+use d2m::{MeshTree, QueryOptions, Solid, TimeOfContact};
+use d2m_benches::hard_scenes::{
+    HardScene, grazing_cube, interlocked_rings, needles, shaft_in_bearing, sliding_box, table,
+};
+use std::collections::HashSet;
+
+/// Vertices, edges and faces, each once.
+struct Features {
+    vertices: Vec<DVec3>,
+    edges: Vec<[DVec3; 2]>,
+    faces: Vec<[DVec3; 3]>,
+}
+
+fn features(tree: &MeshTree) -> Features {
+    let mesh = tree.mesh();
+    let mut edges = HashSet::new();
+    for t in mesh.triangles() {
+        for k in 0..3 {
+            let (p, q) = (t[k], t[(k + 1) % 3]);
+            edges.insert([p.min(q), p.max(q)]);
+        }
+    }
+    let mut edges: Vec<_> = edges.into_iter().collect();
+    edges.sort_unstable();
+    let at = |i: u32| mesh.vertices()[i as usize];
+    Features {
+        vertices: mesh.vertices().to_vec(),
+        edges: edges.into_iter().map(|e| e.map(at)).collect(),
+        faces: mesh.triangles().iter().map(|t| t.map(at)).collect(),
+    }
+}
+
+/// Bracket of the first contact of any two features; none if all are proven clear.
+fn brute_force(scene: &HardScene, tolerance: f64) -> Option<(f64, f64)> {
+    let [a, b] = [0, 1].map(|k| features(&scene.bodies[k]));
+    let window = Window::UNIT;
+    let pair = PairMotion::new(&scene.motions[0], &scene.motions[1], window.start(), window.end());
+    let options = ContactOptions::new().with_tolerance(tolerance);
+    let mut first: Option<(f64, f64)> = None;
+    let mut take = |answer: FirstContact| match answer {
+        FirstContact::Clear => {}
+        FirstContact::Contact(c) => {
+            let (lo, hi) = first.unwrap_or((f64::INFINITY, f64::INFINITY));
+            first = Some((lo.min(c.lo), hi.min(c.hi)));
+        }
+        FirstContact::Undecided { .. } => panic!("{}: a pair of features is undecided", scene.name),
+    };
+    for face in &b.faces {
+        let placed = pair.place_triangle(face);
+        a.vertices.iter().for_each(|&p| take(pair.point_placed(p, &placed, &options)));
+    }
+    for face in &a.faces {
+        b.vertices.iter().for_each(|&p| take(pair.triangle_point(face, p, &options)));
+    }
+    for &ea in &a.edges {
+        b.edges.iter().for_each(|&eb| take(pair.edge_edge(ea, eb, &options)));
+    }
+    first
+}
+
+fn agree(scene: &HardScene) {
+    let tolerance = 1e-10;
+    let options = QueryOptions::default().with_solid(Solid::Surface).with_tolerance(tolerance);
+    let answer = scene.ask_with(&options);
+    assert_eq!(scene.fault(&answer), None);
+    match (answer, brute_force(scene, tolerance)) {
+        (TimeOfContact::Separated, None) => {}
+        (TimeOfContact::Contact(contact), Some((lo, hi))) => {
+            // Neither is later than the other's proof of contact, and both are about as early.
+            assert!(contact.time_lo <= hi, "{}: {} after {hi}", scene.name, contact.time_lo);
+            assert!((contact.time_lo - lo).abs() < 1e-6, "{}: {} and {lo}", scene.name, contact.time_lo);
+        }
+        (answer, other) => panic!("{}: {answer:?}, but features say {other:?}", scene.name),
+    }
+}
+
+#[test]
+fn small_scenes_agree_with_all_pairs_of_features() {
+    for drift in [0.0, 0.8] {
+        for gap in [1e-4, 1e-8, -1e-8, -1e-4] {
+            agree(&grazing_cube(12, gap, drift));
+        }
+    }
+    for gap in [1e-9, 1e-3] {
+        for turn in [0.0, 1.0, 3.0] {
+            agree(&sliding_box(12, gap, turn));
+            agree(&sliding_box(48, gap, turn));
+        }
+    }
+    for both in [false, true] {
+        agree(&shaft_in_bearing(64, 1e-2, 0.0, both));
+        agree(&shaft_in_bearing(64, 1e-6, 0.0, both));
+        agree(&shaft_in_bearing(64, 1e-2, 0.02, both));
+        agree(&shaft_in_bearing(64, 1e-6, 1e-5, both));
+    }
+    agree(&interlocked_rings(64, 0.0));
+    agree(&interlocked_rings(64, 0.8));
+    for spin in [0.0, 3.0, 40.0] {
+        agree(&needles(1e6, 1e-9, spin));
+        agree(&needles(1e3, -1e-9, spin));
+    }
+}
+
+#[test]
+fn the_table_in_small_sizes_is_as_constructed() {
+    for scene in table(0.02) {
+        if scene.name.contains("10 turns") {
+            continue;
+        }
+        assert_eq!(scene.fault(&scene.ask()), None, "{}", scene.name);
+    }
+}
