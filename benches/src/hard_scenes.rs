@@ -77,6 +77,9 @@ fn still() -> LinearMotion {
 
 /// A cube spins at |ω| = 300 about the cube's diagonal (−1, 1, 0) while its farthest corners, at distance 1, pass a
 /// face at `gap`; `drift`: speed along the face.
+///
+/// # Panics
+/// If a number is not finite.
 pub fn grazing_cube(triangles: usize, gap: f64, drift: f64) -> HardScene {
     let cube = tree(&format!("box?triangles={triangles}"));
     let wall = tree(&format!("box?triangles={triangles}&x=1&y=1&z=1"));
@@ -169,6 +172,9 @@ pub fn screw_in_nut(triangles: usize, clearance: f64, turns: f64, drift: f64) ->
 }
 
 /// Two interlocked rings; the second turns about its own axis. `drift` > 0.7: it meets the first.
+///
+/// # Panics
+/// If a number is not finite.
 pub fn interlocked_rings(triangles: usize, drift: f64) -> HardScene {
     let ring = tree(&format!("torus?triangles={triangles}&tube=0.2"));
     // Radius of the middle line 0.8: the second's passes through the centre of the first.
@@ -194,6 +200,9 @@ pub fn interlocked_rings(triangles: usize, drift: f64) -> HardScene {
 }
 
 /// Two needles of an aspect ratio cross at right angles and pass each other at `gap` (negative: they meet).
+///
+/// # Panics
+/// If a number is not finite.
 pub fn needles(aspect: f64, gap: f64, spin: f64) -> HardScene {
     let needle = tree(&format!("needle?triangles=16&aspect={aspect}"));
     let thick = 1.0 / aspect;
