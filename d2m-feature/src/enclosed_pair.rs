@@ -89,7 +89,7 @@ impl<'a> EnclosedPairMotion<'a> {
             .max(4.0 * path.rounding());
         let window = path.window();
         answer(
-            EdgeEdgeTest { path, middle, half, half_lengths, tolerance, separation },
+            EdgeEdgeTest { path, middle, half, half_lengths, tolerance, separation, inside: Piece::NONE },
             window,
             motions,
             options,
@@ -154,7 +154,7 @@ fn point_triangle(
     let path = EnclosedPath::new(motions, [point; 2], extent, separation);
     let tolerance = options.wanted_tolerance(planes.size, planes.extent).max(4.0 * path.rounding());
     let window = path.window();
-    answer(PointTriangleTest { path, planes: &planes, tolerance, separation }, window, motions, options)
+    answer(PointTriangleTest::new(path, &planes, tolerance, separation), window, motions, options)
 }
 
 /// Isolates in the part of the window in which the features come within reach of each other.

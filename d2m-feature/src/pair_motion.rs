@@ -180,7 +180,7 @@ fn placed(
     let tolerance = options.wanted_tolerance(planes.size, reach);
     if path.rounding() <= 0.25 * tolerance {
         let window = path.window();
-        let test = PointTriangleTest { path, planes, tolerance, separation };
+        let test = PointTriangleTest::new(path, planes, tolerance, separation);
         return answer(test, window, motion, options);
     }
     let framed = FramedMotion::new(motion.anchored(point, triangle.vertices[0]));
@@ -189,7 +189,7 @@ fn placed(
     let tolerance =
         options.wanted_tolerance(planes.size, reach).max(4.0 * path.rounding()).max(path.time_rounding());
     let window = path.window();
-    let test = PointTriangleTest { path, planes: &planes, tolerance, separation };
+    let test = PointTriangleTest::new(path, &planes, tolerance, separation);
     answer(test, window, motion, options)
 }
 
@@ -211,7 +211,15 @@ fn edge_edge(
         let extent = (middle.length() + half_a.length() + half_b.length()) * UP;
         let path = RigidPath::new(framed, point, half_a, extent, separation);
         let half_lengths = (half_a.length() * UP, half_b.length() * UP);
-        EdgeEdgeTest { path, middle, half: half_b, half_lengths, tolerance: 0.0, separation }
+        EdgeEdgeTest {
+            path,
+            middle,
+            half: half_b,
+            half_lengths,
+            tolerance: 0.0,
+            separation,
+            inside: Piece::NONE,
+        }
     };
     let mut test = build(framed);
     let length = 2.0 * test.half_lengths.0.max(test.half_lengths.1);

@@ -1,5 +1,5 @@
 //! A moving sphere against a sphere that is fixed in B's frame (solid balls).
-use crate::path::{FeaturePath, along, direction, global, local, reach, widened};
+use crate::path::{FeaturePath, along, direction, global, local, reach, widened, without_third};
 use crate::point_triangle::cleared;
 use d2m_root::{Measurement, Piece, PieceTest, Quadratic, Verdict};
 use glam::DVec3;
@@ -21,7 +21,7 @@ const UP: f64 = 1.0 + 1e-14;
 
 impl<P: FeaturePath> PieceTest for SphereSphereTest<P> {
     fn too_wide(&self, h: f64) -> bool {
-        self.path.jerk() * (h * h * h) > 6.0 * 0.7 * (self.size + 0.25 * self.path.speed() * h)
+        self.path.left_out(h) > 0.7 * (self.size + 0.25 * self.path.speed() * h)
     }
 
     fn tolerance(&self) -> f64 {
@@ -37,7 +37,7 @@ impl<P: FeaturePath> PieceTest for SphereSphereTest<P> {
         let at = piece.mid();
         let jet = self.path.point(piece, at);
         let whole = local(piece, at);
-        let remainder = widened(jet.remainder, self.separation);
+        let remainder = widened(without_third(&jet), self.separation);
         // A direction that separates for longest: from the centre of B to A at the end that is farther away, and in
         // the middle; each is a half-space test of the ball about B.
         let mut part = whole;
@@ -90,7 +90,7 @@ impl<P: FeaturePath> PieceTest for SphereSphereTest<P> {
         let difference = jet.p - self.centre;
         let distance = difference.length() * UP + jet.remainder.bound(0.0) - self.radii.0 - self.separation;
         let whole = local(piece, at);
-        let margin = widened(jet.remainder, self.separation).bound(reach(whole));
+        let margin = widened(without_third(&jet), self.separation).bound(reach(whole));
         let n = direction(difference);
         let q = along(&jet, n);
         let gap = q.value - n.dot(self.centre) - self.radii.1 - margin;

@@ -13,6 +13,7 @@ mod interval;
 mod mat3;
 mod round;
 mod set_ops;
+#[allow(missing_docs)] // methods named after the operation; public for the workspace only
 mod simd;
 mod text;
 #[cfg(feature = "glam")]
@@ -26,6 +27,9 @@ pub use error::{IntervalError, ParseIntervalError};
 pub use interval::Interval;
 #[cfg(feature = "glam")]
 pub use mat3::IntervalMat3;
+/// For the crates of this workspace: two doubles in one vector register, the same bits on every platform.
+#[doc(hidden)]
+pub use simd::F64x2;
 #[cfg(feature = "glam")]
 pub use vec3::IntervalVec3;
 #[cfg(feature = "glam")]

@@ -21,13 +21,14 @@ mod sin_cos;
 mod state;
 mod text;
 mod twist;
+mod two;
 
 pub use error::MotionError;
 pub use keyframes::{Keyframes, Span};
 pub use linear::LinearMotion;
 pub use path_jet::{PathJet, Remainder};
 pub use pose::{IntervalPose, Pose};
-pub use relative::{Frame, RelativeMotion, RelativeState};
+pub use relative::{Arm, ArmPair, Frame, RelativeMotion, RelativeState};
 pub use rigid_motion::RigidMotion;
 pub use screw::ScrewMotion;
 pub use state::CertifiedState;

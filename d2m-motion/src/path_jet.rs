@@ -1,8 +1,8 @@
-//! The one type between motions and feature tests: a second-order path with a proven remainder.
+//! The one type between motions and feature tests: a path to second or third order with a proven remainder.
 use glam::DVec3;
 
 /// Remainder of a jet as a function of the distance in time from its centre:
-/// `e0 + e1·h + e2·h² + m3·h³/6`, every coefficient ≥ 0, rounded up.
+/// `e0 + e1·h + e2·h² + m3·h³/6 + m4·h⁴/24`, every coefficient ≥ 0, rounded up.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Remainder {
     /// Rounding of the position (length).
@@ -11,20 +11,36 @@ pub struct Remainder {
     pub e1: f64,
     /// Rounding, or the half-width of an enclosure, of half the acceleration (length per time²).
     pub e2: f64,
-    /// Bound of the third derivative (length per time³).
+    /// Bound of the third derivative (length per time³), or its rounding where the jet holds it.
     pub m3: f64,
+    /// Bound of the fourth derivative (length per time⁴) where the jet holds the third, else 0.
+    pub m4: f64,
 }
 
 impl Remainder {
     /// Upper bound of the remainder for every |s| ≤ h, h ≥ 0.
     ///
-    /// The sum of non-negative products has relative error below 8·2⁻⁵³, which the last factor covers.
+    /// The sum of non-negative products has relative error below 12·2⁻⁵³, which the last factor covers.
     #[inline(always)]
     pub fn bound(&self, h: f64) -> f64 {
-        (self.e0 + h * (self.e1 + h * (self.e2 + h * (self.m3 * (1.0 / 6.0))))) * (1.0 + 1e-14)
+        let third = self.m3 * (1.0 / 6.0) + h * (self.m4 * (1.0 / 24.0));
+        (self.e0 + h * (self.e1 + h * (self.e2 + h * third))) * (1.0 + 1e-14)
+    }
+
+    /// A remainder that bounds `factor` ≥ 0 times this one (not rounded: scale where a later factor rounds up).
+    #[inline(always)]
+    pub fn scaled(self, factor: f64) -> Self {
+        Self {
+            e0: self.e0 * factor,
+            e1: self.e1 * factor,
+            e2: self.e2 * factor,
+            m3: self.m3 * factor,
+            m4: self.m4 * factor,
+        }
     }
 
     /// A remainder that bounds the sum of both (not rounded: add it where a later factor rounds up).
+    #[inline(always)]
     pub fn plus(self, other: Self) -> Self {
         let up = |x: f64| x * (1.0 + 4.0 * f64::EPSILON);
         Self {
@@ -32,11 +48,12 @@ impl Remainder {
             e1: up(self.e1 + other.e1),
             e2: up(self.e2 + other.e2),
             m3: up(self.m3 + other.m3),
+            m4: up(self.m4 + other.m4),
         }
     }
 }
 
-/// A path near one time: `|q(t + s) − p − v s − a s²/2| ≤ remainder(h)` for all `|s| ≤ h`, up to the largest `h`
+/// A path near one time: `|q(t + s) − p − v s − a s²/2 − j s³/6| ≤ remainder(h)` for all `|s| ≤ h`, up to the largest `h`
 /// for which it was made.
 ///
 /// ```
@@ -47,7 +64,8 @@ impl Remainder {
 ///     p: DVec3::X,
 ///     v: DVec3::Y,
 ///     a: -DVec3::X,
-///     remainder: Remainder { e0: 1e-16, e1: 0.0, e2: 0.0, m3: 1.0 },
+///     j: DVec3::ZERO,
+///     remainder: Remainder { e0: 1e-16, m3: 1.0, ..Remainder::default() },
 /// };
 /// let s = 0.1_f64;
 /// let q = DVec3::new(s.cos(), s.sin(), 0.0);
@@ -61,14 +79,29 @@ pub struct PathJet {
     pub v: DVec3,
     /// Acceleration at the centre.
     pub a: DVec3,
-    /// What the three leave out.
+    /// Third derivative at the centre; zero where the remainder covers it.
+    pub j: DVec3,
+    /// What these leave out.
     pub remainder: Remainder,
 }
 
 impl PathJet {
-    /// The polynomial `p + v s + a s²/2` in plain floating point.
+    /// The polynomial `p + v s + a s²/2 + j s³/6` in plain floating point.
     #[inline(always)]
     pub fn at(&self, s: f64) -> DVec3 {
-        self.p + (self.v + self.a * (0.5 * s)) * s
+        self.p + (self.v + (self.a + self.j * ((1.0 / 3.0) * s)) * (0.5 * s)) * s
+    }
+
+    /// The same path about the time `m` from the centre, without the third derivative: its remainder is that of the
+    /// piece plus `|j|·r³/6` within `r` of `m`.
+    #[inline(always)]
+    pub fn moved(&self, m: f64) -> Self {
+        Self {
+            p: self.at(m),
+            v: self.v + (self.a + self.j * (0.5 * m)) * m,
+            a: self.a + self.j * m,
+            j: DVec3::ZERO,
+            remainder: self.remainder,
+        }
     }
 }

@@ -44,6 +44,12 @@ impl Spin {
             return DMat3::IDENTITY;
         }
         let (sin, cos) = sin_cos(self.speed * tau);
+        self.rotation_of(sin, cos)
+    }
+
+    /// The same from the sine and cosine of the angle.
+    #[inline(always)]
+    pub(crate) fn rotation_of(&self, sin: f64, cos: f64) -> DMat3 {
         let k = self.axis;
         let s = k * sin;
         let v = k * (1.0 - cos);

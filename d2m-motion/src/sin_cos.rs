@@ -2,6 +2,7 @@
 //!
 //! Three-part Cody–Waite reduction by π/2 and polynomials of its own (Chebyshev interpolants; the remainder carried as a
 //! pair). |computed − true| ≤ 2·2⁻⁵³ for each of both, |x| ≤ 2¹⁹·π/2; docs/theory/features.md has the count.
+use d2m_interval::F64x2;
 
 const PIO2_1: f64 = 1.570_796_326_734_125_614_17; // first 33 bits of π/2
 const PIO2_2: f64 = 6.077_100_506_303_965_98e-11; // second 33 bits
@@ -40,14 +41,75 @@ pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
     }
 }
 
+/// [`sin_cos`] of two angles, side by side: the same numbers.
+///
+/// A small angle needs no reduction, and gets none: n = 0 leaves it as it is.
+#[inline(always)]
+pub(crate) fn sin_cos_two(x: F64x2) -> (F64x2, F64x2) {
+    let [x0, x1] = x.to_array();
+    // Also NaN goes this way.
+    if !(x0.abs() <= LARGEST_ANGLE && x1.abs() <= LARGEST_ANGLE) {
+        let ((s0, c0), (s1, c1)) = (sin_cos(x0), sin_cos(x1));
+        return (F64x2::pack(s0, s1), F64x2::pack(c0, c1));
+    }
+    let (round, one, half) = (F64x2::splat(ROUND), F64x2::splat(1.0), F64x2::splat(0.5));
+    let turns = x.times(F64x2::splat(core::f64::consts::FRAC_2_PI));
+    let shifted = turns.plus(round);
+    let n = shifted.minus(round);
+    let r = x.minus(n.times(F64x2::splat(PIO2_1)));
+    let t = n.times(F64x2::splat(PIO2_2));
+    let first = r.minus(t);
+    let lost = n.times(F64x2::splat(PIO2_2T)).minus(r.minus(first).minus(t));
+    let high = first.minus(lost);
+    let low = first.minus(high).minus(lost);
+    // The kernels below, term by term.
+    let z = high.times(high);
+    let half_z = half.times(z);
+    let w = one.minus(half_z);
+    let r = polynomial(&SIN, z);
+    let cubic = high.times(z).times(z.times(r).minus(F64x2::splat(1.0 / 6.0)));
+    let sin = high.plus(low.times(w).plus(cubic));
+    let r = polynomial(&COS, z);
+    let tail = z.times(z).times(r).minus(high.times(low));
+    let cos = w.plus(one.minus(w).minus(half_z).plus(tail));
+    // n mod 4: (s, c), (c, −s), (−s, −c), (−c, s). The second bit of n is the first of ⌊n/2⌋.
+    let odd = shifted.lowest_bit();
+    let upper = n.times(half).minus(F64x2::splat(0.25)).plus(round).lowest_bit();
+    let minus = F64x2::splat(-0.0);
+    (odd.select(cos, sin).xor(upper.and(minus)), odd.select(sin, cos).xor(upper.xor(odd).and(minus)))
+}
+
+#[inline(always)]
+fn polynomial<const N: usize>(coefficients: &[f64; N], z: F64x2) -> F64x2 {
+    let mut sum = F64x2::splat(coefficients[N - 1]);
+    for i in (0..N - 1).rev() {
+        sum = F64x2::splat(coefficients[i]).plus(z.times(sum));
+    }
+    sum
+}
+
+/// Coefficients of S and C below, lowest first.
+const SIN: [f64; 5] = [
+    0.008_333_333_333_330_948,
+    -0.000_198_412_698_367_585_74,
+    2.755_731_610_255_243e-6,
+    -2.505_113_184_500_181e-8,
+    1.591_812_929_473_593e-10,
+];
+const COS: [f64; 6] = [
+    0.041_666_666_666_666_664,
+    -0.001_388_888_888_888_739_8,
+    2.480_158_729_876_569e-5,
+    -2.755_731_727_172_979e-7,
+    2.087_614_626_840_206e-9,
+    -1.138_263_242_543_996_5e-11,
+];
+
 /// sin(x + y), |x| ≤ π/4 (1 + 2⁻³⁰), |y| ≤ ulp(x): x + x³·S(x²), S the Chebyshev interpolant of degree 5.
 #[inline(always)]
 fn kernel_sin(x: f64, y: f64) -> f64 {
     let z = x * x;
-    let r = 0.008_333_333_333_330_948
-        + z * (-0.000_198_412_698_367_585_74
-            + z * (2.755_731_610_255_243e-6
-                + z * (-2.505_113_184_500_181e-8 + z * 1.591_812_929_473_593e-10)));
+    let r = SIN[0] + z * (SIN[1] + z * (SIN[2] + z * (SIN[3] + z * SIN[4])));
     // sin(x + y) = x + (y·cos x + x³·(−1/6 + z·r)), with cos x = 1 − z/2 up to what |y| leaves of it.
     x + (y * (1.0 - 0.5 * z) + x * z * (z * r - 1.0 / 6.0))
 }
@@ -56,11 +118,7 @@ fn kernel_sin(x: f64, y: f64) -> f64 {
 #[inline(always)]
 fn kernel_cos(x: f64, y: f64) -> f64 {
     let z = x * x;
-    let r = 0.041_666_666_666_666_664
-        + z * (-0.001_388_888_888_888_739_8
-            + z * (2.480_158_729_876_569e-5
-                + z * (-2.755_731_727_172_979e-7
-                    + z * (2.087_614_626_840_206e-9 + z * -1.138_263_242_543_996_5e-11))));
+    let r = COS[0] + z * (COS[1] + z * (COS[2] + z * (COS[3] + z * (COS[4] + z * COS[5]))));
     let half = 0.5 * z;
     let w = 1.0 - half;
     // w + ((1 − w) − half) is 1 − half exactly; −x·y is the pair's second part.

@@ -1,7 +1,7 @@
 use crate::double_double::DoubleDouble;
-use crate::sin_cos::{LARGEST_ANGLE, sin_cos};
+use crate::sin_cos::{LARGEST_ANGLE, sin_cos, sin_cos_two};
 use crate::{Keyframes, LinearMotion, MotionError, Pose, RigidMotion, ScrewMotion, Span, Twist};
-use d2m_interval::Interval;
+use d2m_interval::{F64x2, Interval};
 use glam::{DQuat, DVec3};
 
 /// A small generator (SplitMix64), so that every run sees the same numbers.
@@ -42,6 +42,11 @@ fn sine_and_cosine_are_within_two_units() {
             x = (x / core::f64::consts::FRAC_PI_2).round() * core::f64::consts::FRAC_PI_2;
         }
         let (sin, cos) = sin_cos(x);
+        let other = random.signed() * if i % 3 == 0 { 0.7 } else { scale };
+        let (sins, coss) = sin_cos_two(F64x2::pack(x, other));
+        let [s0, s1] = sins.to_array();
+        let [c0, c1] = coss.to_array();
+        assert_eq!([(s0, c0), (s1, c1)], [(sin, cos), sin_cos(other)]);
         let (s, c) = DoubleDouble::from_f64(x).sin_cos();
         let unit = 0.5 * f64::EPSILON;
         worst = worst.max(((s.hi - sin) + s.lo).abs() / unit).max(((c.hi - cos) + c.lo).abs() / unit);

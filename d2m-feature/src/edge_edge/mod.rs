@@ -1,9 +1,11 @@
 //! A moving edge against an edge that is fixed in B's frame.
 use crate::closest;
-use crate::path::{FeaturePath, along, direction, global, local, reach, widened};
+use crate::path::{
+    FeaturePath, along, around, cubic_along, direction, global, local, padded, reach, widened, without_third,
+};
 use crate::point_triangle::cleared;
 use d2m_motion::PathJet;
-use d2m_root::{Band, Measurement, Piece, PieceTest, Quadratic, Verdict};
+use d2m_root::{Band, Cubic, Measurement, Piece, PieceTest, Quadratic, Verdict};
 use glam::DVec3;
 
 /// The piece test of two edges: the path is the midpoint of A's edge minus the midpoint of B's, and A's half edge.
@@ -17,11 +19,16 @@ pub(crate) struct EdgeEdgeTest<P> {
     pub(crate) half_lengths: (f64, f64),
     pub(crate) tolerance: f64,
     pub(crate) separation: f64,
+    /// A piece throughout which the lines certainly meet, if they do, inside both edges.
+    pub(crate) inside: Piece,
 }
+
+/// Part of the edges' size that they must move in half a piece for the line of the midpoints to be worth a look.
+const NEARBY: f64 = 1.0;
 
 /// Part of the feature's size that a remainder may reach before a piece is worth an evaluation (tuned like the one
 /// of vertex/face).
-const PATIENCE: f64 = 0.4;
+const PATIENCE: f64 = 0.06;
 const UP: f64 = 1.0 + 1e-14;
 
 /// `a·b` of two jets as a quadratic, and a bound of what the cubic and quartic terms add.
@@ -36,6 +43,35 @@ fn product(a: [DVec3; 3], b: [DVec3; 3]) -> (Quadratic, f64, f64) {
 }
 
 impl<P: FeaturePath> EdgeEdgeTest<P> {
+    /// The part of a piece in which the edges may be near: as a whole all four corners w ± e ± d on one side along
+    /// the line of the midpoints, from either end |w| ≤ |e| + |d| along the velocity.
+    #[inline(always)]
+    fn near(&self, w: &PathJet, e: &PathJet, whole: Piece, h: f64) -> Option<Piece> {
+        let of_w = widened(w.remainder, self.separation).bound(h);
+        let of_e = e.remainder.bound(h);
+        let distance = w.p.length();
+        if distance > self.half_lengths.0 {
+            let (away, left_out) = cubic_along(w, w.p).quadratic_near(0.0, h);
+            let (reach_a, left_out_e) = cubic_along(e, w.p).quadratic_near(0.0, h);
+            let needed = (w.p.dot(self.half).abs() + distance * (of_w + of_e) + left_out + left_out_e) * UP;
+            if away.plus(&reach_a).bound_below(whole) > needed
+                && away.minus(&reach_a).bound_below(whole) > needed
+            {
+                return None;
+            }
+        }
+        let (forth, left_out) = cubic_along(w, w.v).quadratic_near(0.0, h);
+        let reach = w.v.length() * (self.half_lengths.0 + of_w) + w.v.dot(self.half).abs() + left_out;
+        forth.clip(Band { lo: -reach * UP, hi: reach * UP }, whole)
+    }
+
+    /// True if a certain crossing in the part would be the answer.
+    #[inline(always)]
+    fn fine(&self, part: Piece, piece: Piece) -> bool {
+        let width = part.width();
+        width * (2.0 * self.speed()) <= self.tolerance || width <= 1e-15 * reach(piece)
+    }
+
     fn size(&self) -> f64 {
         self.half_lengths.0 + self.half_lengths.1
     }
@@ -56,7 +92,7 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
 impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
     #[inline(always)]
     fn too_wide(&self, h: f64) -> bool {
-        self.path.jerk() * (h * h * h) > 6.0 * PATIENCE * (self.size() + 0.25 * self.speed() * h)
+        self.path.left_out(h) > PATIENCE * (self.size() + 0.25 * self.speed() * h)
     }
 
     fn tolerance(&self) -> f64 {
@@ -77,91 +113,101 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
         let whole = local(piece, at);
         let h = reach(whole);
         let remainder = widened(w.remainder, self.separation);
-        let wide = remainder.bound(h);
 
-        // Along the line of the midpoints: all four corners w ± e ± d on one side.
-        let distance = w.p.length();
-        let (away, reach_a) = (along(&w, w.p), along(&e, w.p));
-        let sum = |a: &Quadratic, b: &Quadratic, sign: f64| Quadratic {
-            value: a.value + sign * b.value,
-            slope: a.slope + sign * b.slope,
-            curvature: a.curvature + sign * b.curvature,
-        };
-        let wide_e = e.remainder.bound(h);
-        let needed = (w.p.dot(d).abs() + distance * (wide + wide_e)) * UP;
-        if sum(&away, &reach_a, 1.0).bound_below(whole) > needed
-            && sum(&away, &reach_a, -1.0).bound_below(whole) > needed
-        {
-            return Verdict::Clear;
+        let known_inside = self.inside.holds(piece);
+        let mut searched = whole;
+        if !known_inside && self.speed() * h > NEARBY * self.size() {
+            match self.near(&w, &e, whole, h) {
+                None => return Verdict::Clear,
+                Some(near) => searched = near,
+            }
         }
 
-        // f = w·(e × d), zero when the lines meet.
-        let ws = [w.p, w.v, w.a];
-        let es = [e.p, e.v, e.a];
-        let ks = es.map(|e| e.cross(d));
-        let (f, cubic, quartic) = product(ws, ks);
-        // |w| over the piece, from the speed that its jet admits.
-        let length = distance + h * (w.v.length() + 0.5 * h * w.a.length());
-        let margin_f = |s: f64| {
-            let product = remainder.bound(s) * half_a + length * e.remainder.bound(s);
-            ((cubic + quartic * s) * s * s * s + half_b * product) * UP
+        // f = w·(e × d), zero when the lines meet: Taylor polynomials multiplied out to third order.
+        let (k0, k1, k2, k3) = (e.p.cross(d), e.v.cross(d), e.a.cross(d), e.j.cross(d));
+        let f = Cubic {
+            value: w.p.dot(k0),
+            slope: w.p.dot(k1) + w.v.dot(k0),
+            curvature: w.p.dot(k2) + w.a.dot(k0) + 2.0 * w.v.dot(k1),
+            jerk: w.p.dot(k3) + w.j.dot(k0) + 3.0 * (w.v.dot(k2) + w.a.dot(k1)),
         };
-        let wide_f = margin_f(h);
-        let Some(meeting) = f.clip(Band { lo: -wide_f, hi: wide_f }, whole) else {
+        // What the products of higher order add.
+        let fourth = ((1.0 / 6.0) * (w.v.dot(k3) + w.j.dot(k1)) + 0.25 * w.a.dot(k2)).abs();
+        let fifth = ((1.0 / 12.0) * (w.a.dot(k3) + w.j.dot(k2))).abs();
+        let sixth = ((1.0 / 36.0) * w.j.dot(k3)).abs();
+        let higher = |s: f64| {
+            let square = s * s;
+            square * square * (fourth + s * (fifth + s * sixth))
+        };
+        // |w| is at most what its speed admits, and at a contact both half edges and the separation; its jet adds its
+        // remainder.
+        let (there, touching) = (w.p.length() + h * self.path.speed(), self.size() + self.separation);
+        let apart = (if there < touching { there } else { touching }) + remainder.bound(h);
+        let factors = remainder.scaled(half_a).plus(e.remainder.scaled(apart)).scaled(half_b * UP);
+        let margin_f = |s: f64| (factors.bound(s) + higher(s)) * UP;
+        let Some(mut part) = f.clip(Band { lo: 0.0, hi: 0.0 }, margin_f, searched) else {
             return Verdict::Clear;
         };
-
-        // Γ with directions frozen in the middle: k = e × d, u = d × k.
-        let k = ks[0];
-        let u = d.cross(k);
-        let k_length = k.length() * UP;
-        // At least |u|, and of the size of its rounding when k is all rounding.
-        let u_length = half_b * k_length * UP;
-        let (w_u, e_u) = (along(&w, u), along(&e, u));
-        let (first_a, second_a) = (sum(&w_u, &e_u, 1.0), sum(&w_u, &e_u, -1.0));
-        let margin_a = |s: f64| u_length * (remainder.bound(s) + e.remainder.bound(s)) * UP;
-        // The first exclusion alone decides most pieces.
-        let Some(beside) = first_a.clip_shared_sign(&second_a, margin_a(reach(meeting)), meeting) else {
-            return Verdict::Clear;
+        let mut certain = known_inside;
+        if !known_inside {
+            // The jets about the middle of what is left.
+            let meeting = padded(part, at, whole);
+            let m = part.mid();
+            let s = reach(meeting);
+            let meeting = Piece { lo: meeting.lo - m, hi: meeting.hi - m };
+            let r = reach(meeting) * UP;
+            let margin_w = (remainder.bound(s) + (1.0 / 6.0) * w.j.length() * (r * r * r)) * UP;
+            let margin_e = (e.remainder.bound(s) + (1.0 / 6.0) * e.j.length() * (r * r * r)) * UP;
+            let (w, e) = (w.moved(m), e.moved(m));
+            let before = Piece { lo: part.lo - m, hi: part.hi - m };
+            // Γ with directions frozen there: k = e × d, u = d × k.
+            let k = e.p.cross(d);
+            let u = d.cross(k);
+            let k_length = k.length() * UP;
+            // At least |u|, and of the size of its rounding when k is all rounding.
+            let u_length = half_b * k_length * UP;
+            let (w_u, e_u) = (along(&w, u), along(&e, u));
+            let (first_a, second_a) = (w_u.plus(&e_u), w_u.minus(&e_u));
+            let margin_a = u_length * (margin_w + margin_e) * UP;
+            let Some(beside) = first_a.clip_shared_sign(&second_a, margin_a, before) else {
+                return Verdict::Clear;
+            };
+            let js = [e.p.cross(k), e.v.cross(k), e.a.cross(k)];
+            let (w_j, cubic_j, quartic_j) = product([w.p, w.v, w.a], js);
+            let (first_b, second_b) = (w_j.plus(&e_u), w_j.minus(&e_u));
+            // |w| there, up to what its jet admits.
+            let length = w.p.length() + r * (w.v.length() + 0.5 * r * w.a.length());
+            let product = margin_w * half_a + length * margin_e;
+            let margin_b =
+                ((cubic_j + quartic_j * r) * (r * r * r) + k_length * product + u_length * margin_e) * UP;
+            let Some(inside) = first_b.clip_shared_sign(&second_b, margin_b, beside) else {
+                return Verdict::Clear;
+            };
+            if inside != before {
+                part = Piece { lo: m + inside.lo, hi: m + inside.hi };
+            } else if e_u.bound_below(meeting) > u_length * margin_e * UP
+                && first_a.bound_below(meeting) > margin_a
+                && (-second_a).bound_below(meeting) > margin_a
+                && first_b.bound_below(meeting) > margin_b
+                && (-second_b).bound_below(meeting) > margin_b
+            {
+                // Only f has cut: the lines are certainly not parallel, and meet certainly inside both edges, for good.
+                certain = true;
+                self.inside = global(part, at, piece);
+            }
+        }
+        // A true crossing: f changes sign.
+        let changes = |between: Piece| {
+            let sign = |s: f64| {
+                let (of_w, of_e) = (remainder.bound(s.abs()), e.remainder.bound(s.abs()));
+                let product = half_b * (of_w * half_a + (w.at(s).length() + of_w) * of_e);
+                let (value, margin) = (f.at(s), (product + higher(s.abs())) * UP);
+                i32::from(value > margin) - i32::from(value < -margin)
+            };
+            sign(between.lo) * sign(between.hi) < 0
         };
-        let js = es.map(|e| e.cross(k));
-        let (w_j, cubic_j, quartic_j) = product(ws, js);
-        let (first_b, second_b) = (sum(&w_j, &e_u, 1.0), sum(&w_j, &e_u, -1.0));
-        let margin_b = |s: f64| {
-            let product = remainder.bound(s) * half_a + length * e.remainder.bound(s);
-            ((cubic_j + quartic_j * s) * s * s * s + k_length * product + u_length * e.remainder.bound(s))
-                * UP
-        };
-        let Some(inside) = first_b.clip_shared_sign(&second_b, margin_b(reach(beside)), beside) else {
-            return Verdict::Clear;
-        };
-        let overlap = |part: Piece| {
-            let s = reach(part);
-            let part = first_a.clip_shared_sign(&second_a, margin_a(s), part)?;
-            first_b.clip_shared_sign(&second_b, margin_b(s), part)
-        };
-        // The same jets again with the remainder of the contracted piece.
-        let margin = margin_f(reach(inside));
-        let Some(meeting_again) = f.clip(Band { lo: -margin, hi: margin }, inside) else {
-            return Verdict::Clear;
-        };
-        let Some(part) = overlap(meeting_again) else {
-            return Verdict::Clear;
-        };
-        // A true crossing: only f has cut, it changes sign, and throughout the rest the lines are certainly not
-        // parallel and meet certainly inside both edges.
-        let certain = inside == meeting && part == meeting_again && {
-            let (at_lo, at_hi) = (f.at(whole.lo), f.at(whole.hi));
-            let changes = (at_lo > wide_f && at_hi < -wide_f) || (at_lo < -wide_f && at_hi > wide_f);
-            let s = reach(part);
-            let (a, b) = (margin_a(s), margin_b(s));
-            changes
-                && e_u.bound_below(part) > u_length * e.remainder.bound(s) * UP
-                && first_a.bound_below(part) > a
-                && (-second_a).bound_below(part) > a
-                && first_b.bound_below(part) > b
-                && (-second_b).bound_below(part) > b
-        };
+        let certain =
+            certain && self.fine(part, piece) && (changes(searched) || changes(around(part, searched)));
         Verdict::Within { part: global(part, at, piece), certain }
     }
 
@@ -173,7 +219,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
             pair.difference.length() * UP + w.remainder.bound(0.0) + e.remainder.bound(0.0) - self.separation;
         let whole = local(piece, at);
         let s = reach(whole);
-        let margin = (widened(w.remainder, self.separation).bound(s) + e.remainder.bound(s)) * UP;
+        let margin = (widened(without_third(&w), self.separation).bound(s) + without_third(&e).bound(s)) * UP;
         let mut clear = Piece { lo: 0.0, hi: 0.0 };
         let mut best = 0.0;
         let mut consider = |n: DVec3| {

@@ -149,10 +149,11 @@ impl FeaturePath for EnclosedPath<'_> {
         self.motions.state.bound_turn_speed(self.length)
     }
 
-    fn jerk(&self) -> f64 {
-        // Only a hint of how wide a piece may be; what is not finite says nothing.
+    fn left_out(&self, h: f64) -> f64 {
+        // Only a hint of how wide a piece may be, a sixth of what jets to third order are held to; what is not finite
+        // says nothing.
         let jerk = self.motions.instant.remainder(self.radius, 0.0).m3;
-        if jerk < f64::INFINITY { jerk } else { 0.0 }
+        if jerk < f64::INFINITY { (1.0 / 36.0) * jerk * (h * h * h) } else { 0.0 }
     }
 
     fn rounding(&self) -> f64 {

@@ -6,7 +6,7 @@ pub(crate) use enclosed::{EnclosedMotions, EnclosedPath, Extent};
 pub(crate) use rigid::{FramedMotion, RigidPath};
 
 use d2m_motion::{PathJet, Remainder};
-use d2m_root::{Piece, Quadratic};
+use d2m_root::{Cubic, Piece, Quadratic};
 use glam::DVec3;
 
 /// The motion of features of A in the frame of B, as jets about the middle of a piece of time.
@@ -24,23 +24,32 @@ pub(crate) trait FeaturePath {
     /// Bound of the speed of the direction's tip.
     fn direction_speed(&self) -> f64;
 
-    /// Bound of the point's third derivative (0 if the path makes no use of one).
-    fn jerk(&self) -> f64;
+    /// Bound of what a jet of the point leaves out of the Taylor series on a piece of this half-width (0 if that is
+    /// not what limits the path).
+    fn left_out(&self, half_width: f64) -> f64;
 
     /// Rounding that no narrow piece gets below.
     fn rounding(&self) -> f64;
 }
 
 /// A jet along a direction, as a quadratic in the time from the jet's centre.
+/// (The third derivative is left to the remainder.)
 #[inline(always)]
 pub(crate) fn along(jet: &PathJet, d: DVec3) -> Quadratic {
     Quadratic { value: d.dot(jet.p), slope: d.dot(jet.v), curvature: d.dot(jet.a) }
 }
 
+/// A jet along a direction, as a cubic in the time from the jet's centre.
+#[inline(always)]
+pub(crate) fn cubic_along(jet: &PathJet, d: DVec3) -> Cubic {
+    Cubic { value: d.dot(jet.p), slope: d.dot(jet.v), curvature: d.dot(jet.a), jerk: d.dot(jet.j) }
+}
+
 /// The largest |s| of a part.
 #[inline(always)]
 pub(crate) fn reach(part: Piece) -> f64 {
-    part.lo.abs().max(part.hi.abs())
+    let (left, right) = (part.lo.abs(), part.hi.abs());
+    if left > right { left } else { right }
 }
 
 /// The piece relative to `at`, and back with the ends rounded outward and kept inside the piece.
@@ -52,27 +61,39 @@ pub(crate) fn local(piece: Piece, at: f64) -> Piece {
 /// The inverse of [`local`] for a part of the piece.
 #[inline(always)]
 pub(crate) fn global(part: Piece, at: f64, piece: Piece) -> Piece {
-    let below = |s: f64| {
-        let sum = at + s;
-        // The error of the sum, exactly, because |s| ≤ |at| or the sum is exact enough: two-sum.
-        let t = sum - at;
-        let error = (at - (sum - t)) + (s - t);
-        if error < 0.0 { sum.next_down() } else { sum }
-    };
-    let above = |s: f64| -> f64 {
+    // The error of a sum, exactly: two-sum.
+    let sum = |s: f64| {
         let sum = at + s;
         let t = sum - at;
-        let error = (at - (sum - t)) + (s - t);
-        if error > 0.0 { sum.next_up() } else { sum }
+        (sum, (at - (sum - t)) + (s - t))
     };
-    let lo = below(part.lo).max(piece.lo);
-    Piece { lo, hi: above(part.hi).min(piece.hi).max(lo) }
+    let ((lo, lo_error), (hi, hi_error)) = (sum(part.lo), sum(part.hi));
+    let lo = if lo_error < 0.0 { lo.next_down() } else { lo };
+    let hi = if hi_error > 0.0 { hi.next_up() } else { hi };
+    let lo = if lo > piece.lo { lo } else { piece.lo };
+    let hi = if hi < piece.hi { hi } else { piece.hi };
+    Piece { lo, hi: if hi > lo { hi } else { lo } }
+}
+
+/// The part with what [`global`] may add to it: up to 2⁻⁵²·|at + s| at either end, less than 2.3e-16(|at| + |s|).
+#[inline(always)]
+pub(crate) fn padded(part: Piece, at: f64, whole: Piece) -> Piece {
+    let pad = 2.3e-16 * (at.abs() + reach(whole));
+    let (lo, hi) = (part.lo - pad, part.hi + pad);
+    Piece { lo: if lo > whole.lo { lo } else { whole.lo }, hi: if hi < whole.hi { hi } else { whole.hi } }
 }
 
 /// Adds a distance that counts as contact to a remainder.
 #[inline(always)]
 pub(crate) fn widened(remainder: Remainder, separation: f64) -> Remainder {
     Remainder { e0: remainder.e0 + separation, ..remainder }
+}
+
+/// The remainder of the jet's part to second order: the third derivative counts as an error.
+#[inline(always)]
+pub(crate) fn without_third(jet: &PathJet) -> Remainder {
+    let m3 = (jet.remainder.m3 + jet.j.length()) * (1.0 + 1e-14);
+    Remainder { m3, ..jet.remainder }
 }
 
 /// A vector of length at most 1 (and at least 1 − 16·2⁻⁵³) along `v`; zero if `v` is zero or not finite.
@@ -87,4 +108,12 @@ pub(crate) fn direction(v: DVec3) -> DVec3 {
         return DVec3::ZERO;
     }
     v * ((1.0 - 4.0 * f64::EPSILON) / v.length())
+}
+
+/// The part and as much again on either side, inside the piece: where it is bracketed with signs that are certain.
+#[inline(always)]
+pub(crate) fn around(part: Piece, whole: Piece) -> Piece {
+    let width = part.width();
+    let (lo, hi) = (part.lo - width, part.hi + width);
+    Piece { lo: if lo > whole.lo { lo } else { whole.lo }, hi: if hi < whole.hi { hi } else { whole.hi } }
 }

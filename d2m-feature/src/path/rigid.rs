@@ -1,6 +1,6 @@
 //! Jets in closed form, from frames that all features of a pair of bodies share.
 use super::FeaturePath;
-use d2m_motion::{Frame, PathJet, RelativeMotion, Remainder};
+use d2m_motion::{Arm, ArmPair, Frame, PathJet, RelativeMotion, Remainder};
 use d2m_root::Piece;
 use glam::DVec3;
 
@@ -29,16 +29,29 @@ impl FramedMotion {
 /// Part of the window that may be left before it is searched as a whole, with the shared frame in its middle.
 const SHARED: f64 = 0.8;
 
+/// Part of the way of half a piece that the remainder of a jet to second order may reach before one to third order is
+/// made in place of using the shared frame.
+const COARSE: f64 = 0.5;
+
 /// A point and a direction of A with a constant relative twist.
 pub(crate) struct RigidPath<'a> {
     motion: &'a FramedMotion,
     point: DVec3,
     direction: DVec3,
+    /// What jets to third order need, once one is asked for.
+    third_order: Option<ThirdOrder>,
     window: Option<Piece>,
     point_remainder: Remainder,
     direction_remainder: Remainder,
+    fourth_derivative: f64,
     speed: f64,
     direction_speed: f64,
+}
+
+/// The vectors prepared for jets to third order, and the remainders of these.
+enum ThirdOrder {
+    Point(Arm, Remainder),
+    Pair(ArmPair, Remainder, Remainder),
 }
 
 impl<'a> RigidPath<'a> {
@@ -76,9 +89,11 @@ impl<'a> RigidPath<'a> {
             motion: framed,
             point,
             direction,
+            third_order: None,
             window,
             point_remainder: motion.point_remainder_within(radius, extent, reach),
             direction_remainder: motion.direction_remainder(length),
+            fourth_derivative: motion.bound_fourth_derivative_within(radius, reach),
             speed: motion.bound_speed_within(radius, reach),
             direction_speed: motion.bound_direction_derivative(1) * length * up,
         }
@@ -100,34 +115,60 @@ impl<'a> RigidPath<'a> {
     }
 }
 
+impl RigidPath<'_> {
+    /// True if the frame in the middle of the window serves this piece.
+    #[inline(always)]
+    fn frame_serves(&self, piece: Piece, at: f64) -> bool {
+        let h = 0.5 * piece.width();
+        at == self.motion.middle && self.point_remainder.m3 * (h * h) <= 6.0 * COARSE * self.speed
+    }
+}
+
 impl FeaturePath for RigidPath<'_> {
     #[inline(always)]
-    fn point(&mut self, _: Piece, at: f64) -> PathJet {
+    fn point(&mut self, piece: Piece, at: f64) -> PathJet {
         let framed = self.motion;
-        if at == framed.middle {
-            framed.frame.point_jet(self.point, self.point_remainder)
-        } else if framed.motion.is_anchored() {
-            framed.motion.frame(at).point_jet(self.point, self.point_remainder)
-        } else {
-            framed.motion.point_jet(at, self.point, self.point_remainder)
+        if self.frame_serves(piece, at) {
+            return framed.frame.point_jet(self.point, self.point_remainder);
         }
+        let motion = &framed.motion;
+        if motion.is_anchored() {
+            return motion.frame(at).point_jet(self.point, self.point_remainder);
+        }
+        if let Some(ThirdOrder::Point(arm, remainder)) = &self.third_order {
+            return motion.point_jet(at, arm, *remainder);
+        }
+        let remainder = motion.point_remainder_third_order(self.point_remainder, self.fourth_derivative);
+        let arm = motion.arm(self.point);
+        self.third_order = Some(ThirdOrder::Point(arm, remainder));
+        motion.point_jet(at, &arm, remainder)
     }
 
     #[inline(always)]
-    fn point_and_direction(&mut self, _: Piece, at: f64) -> (PathJet, PathJet) {
+    fn point_and_direction(&mut self, piece: Piece, at: f64) -> (PathJet, PathJet) {
         let framed = self.motion;
-        let point = (self.point, self.point_remainder);
-        let direction = (self.direction, self.direction_remainder);
         let from = |frame: &Frame| {
-            (frame.point_jet(point.0, point.1), frame.direction_jet(direction.0, direction.1))
+            (
+                frame.point_jet(self.point, self.point_remainder),
+                frame.direction_jet(self.direction, self.direction_remainder),
+            )
         };
-        if at == framed.middle {
-            from(&framed.frame)
-        } else if framed.motion.is_anchored() {
-            from(&framed.motion.frame(at))
-        } else {
-            framed.motion.point_and_direction_jets(at, point, direction)
+        if self.frame_serves(piece, at) {
+            return from(&framed.frame);
         }
+        let motion = &framed.motion;
+        if motion.is_anchored() {
+            return from(&motion.frame(at));
+        }
+        if let Some(ThirdOrder::Pair(arms, point, direction)) = &self.third_order {
+            return motion.point_and_direction_jets(at, arms, (*point, *direction));
+        }
+        let point = motion.point_remainder_third_order(self.point_remainder, self.fourth_derivative);
+        let length = self.direction.length() * (1.0 + 1e-14);
+        let direction = motion.direction_remainder_third_order(length);
+        let arms = ArmPair::new(&motion.arm(self.point), &motion.arm(self.direction));
+        self.third_order = Some(ThirdOrder::Pair(arms, point, direction));
+        motion.point_and_direction_jets(at, &arms, (point, direction))
     }
 
     fn speed(&self) -> f64 {
@@ -138,8 +179,14 @@ impl FeaturePath for RigidPath<'_> {
         self.direction_speed
     }
 
-    fn jerk(&self) -> f64 {
-        self.point_remainder.m3
+    #[inline(always)]
+    fn left_out(&self, h: f64) -> f64 {
+        let square = h * h;
+        if self.motion.motion.is_anchored() {
+            (1.0 / 6.0) * self.point_remainder.m3 * (h * square)
+        } else {
+            (1.0 / 24.0) * self.fourth_derivative * (square * square)
+        }
     }
 
     fn rounding(&self) -> f64 {

@@ -1,28 +1,28 @@
 //! Two edges, all four vertices on straight paths.
 use super::Lines;
-use super::linear::{Line, clear_above, clip};
+use super::linear::{Line, clear_above};
 use super::point_triangle::corners;
-use super::triple_product::TripleProduct;
+use super::triple_product::{Seen, TripleProduct};
 use crate::closest;
 use crate::options::ContactOptions;
-use crate::path::{direction, global, local, reach};
+use crate::path::{around, direction, global, local, padded, reach};
 use crate::point_triangle::cleared;
-use d2m_root::{Measurement, Piece, PieceTest, Quadratic, Verdict};
+use d2m_root::{Measurement, Piece, PieceTest, Verdict};
 use glam::DVec3;
 
 const UP: f64 = 1.0 + 1e-14;
-const UNIT: f64 = 0.5 * f64::EPSILON;
 
 /// The piece test. With the difference `w` of the midpoints and the half edges `e`, `d`: `f = w·(e × d)`, a cubic.
 pub(super) struct StraightEdgeEdge {
-    w: (DVec3, DVec3),
-    e: (DVec3, DVec3),
-    d: (DVec3, DVec3),
+    /// `w`, `e`, `d` from t = 0.
+    lines: [Line; 3],
     error: f64,
     speed: f64,
     size: f64,
     tolerance: f64,
     separation: f64,
+    /// A piece throughout which the edges, where they lie in a plane, cross inside both.
+    inside: Piece,
 }
 
 impl StraightEdgeEdge {
@@ -40,12 +40,24 @@ impl StraightEdgeEdge {
             .max(4.0 * error);
         let speed = (w1.length() + e1.length() + d1.length()) * UP;
         let separation = options.separation();
-        Self { w: (w0, w1), e: (e0, e1), d: (d0, d1), error, speed, size, tolerance, separation }
+        let lines = [Line { p: w0, v: w1 }, Line { p: e0, v: e1 }, Line { p: d0, v: d1 }];
+        Self { lines, error, speed, size, tolerance, separation, inside: Piece::NONE }
     }
 
     #[inline(always)]
     fn lines(&self, at: f64) -> [Line; 3] {
-        [self.w, self.e, self.d].map(|(p, v)| Line { p: p + v * at, v })
+        let [w, e, d] = &self.lines;
+        [w.from(at), e.from(at), d.from(at)]
+    }
+
+    /// All four corners `w ± e ± d` on one side throughout, seen along the line of the midpoints.
+    #[inline(always)]
+    fn apart(&self, [w, e, d]: &[Line; 3], h: f64) -> bool {
+        let n = w.p;
+        let margin = (self.error + self.separation) * n.length() * UP;
+        let (w, e, d) = (w.along(n), e.along(n), d.along(n));
+        let clear = |s: f64| w.at(s) - e.at(s).abs() - d.at(s).abs() > margin;
+        clear(-h) && clear(h)
     }
 }
 
@@ -65,45 +77,53 @@ impl PieceTest for StraightEdgeEdge {
 
     fn evaluate(&mut self, piece: Piece) -> Verdict {
         let at = piece.mid();
-        let [w, e, d] = self.lines(at);
+        let lines = self.lines(at);
         let whole = local(piece, at);
         let h = reach(whole);
-        let margin = self.error + self.separation;
-
-        // Along the line of the midpoints.
-        let length = w.p.length() * UP;
-        if clip(&corners(&w, &e, &d, w.p), margin * length, whole).is_none() {
+        let known_inside = self.inside.holds(piece);
+        if !known_inside && self.apart(&lines, h) {
             return Verdict::Clear;
         }
-
-        let volume = TripleProduct::new(&w, &e, &d, h, (self.error, self.separation));
-        let (f, k0) = (volume.quadratic, volume.normal);
-        let Some(meeting) = f.clip(volume.band(h), whole) else {
+        let [w, e, d] = &lines;
+        let lengths = [w.lengths(), e.lengths(), d.lengths()];
+        let errors = (self.error, self.separation);
+        let volume = TripleProduct::new(&lines, &lengths, h, errors);
+        let Some(mut part) = volume.clip(whole) else {
             return Verdict::Clear;
         };
-        // Across either edge in the plane of both, frozen in the middle.
-        let across = [direction(d.p.cross(k0)), direction(e.p.cross(k0))];
-        let families = across.map(|n| corners(&w, &e, &d, n));
-        let overlap = |part: Piece| {
-            let part = clip(&families[0], margin, part)?;
-            clip(&families[1], margin, part)
-        };
-        let Some(inside) = overlap(meeting) else {
-            return Verdict::Clear;
-        };
-        let Some(meeting_again) = f.clip(volume.band(reach(inside)), inside) else {
-            return Verdict::Clear;
-        };
-        let Some(last) = overlap(meeting_again) else {
-            return Verdict::Clear;
-        };
-        let certain = inside == meeting && last == meeting_again && {
-            let wide = volume.band(h).hi;
-            let (first, second) = (f.at(whole.lo), f.at(whole.hi));
-            let changes = (first > wide && second < -wide) || (first < -wide && second > wide);
-            changes && self.seen_crossing(&w, &e, &d, k0, last)
-        };
-        Verdict::Within { part: global(last, at, piece), certain }
+        let mut certain = known_inside;
+        if !known_inside {
+            // n = e × d, frozen in the middle. w + se = td gives s·N = −n·(w × d) and t·N = −n·(w × e), N = n·(e × d).
+            let n = volume.normal;
+            let length = n.length() * UP;
+            let padded = padded(part, at, whole);
+            let s = reach(padded);
+            let (lw, le, ld) = (lengths[0].within(s), lengths[1].within(s), lengths[2].within(s));
+            let (across_d, across_e) = (d.across(n), e.across(n));
+            let total = Seen::new(e, across_d, length, (le, ld), (self.error, 0.0));
+            let meeting = part;
+            let mut inside = true;
+            for seen in [
+                Seen::new(w, across_d, length, (lw, ld), errors),
+                Seen::new(w, across_e, length, (lw, le), errors),
+            ] {
+                let margin = (total.margin + seen.margin) * UP;
+                let (above, below) =
+                    (total.quadratic.plus(&seen.quadratic), seen.quadratic.minus(&total.quadratic));
+                let Some(beside) = above.clip_shared_sign(&below, margin, part) else {
+                    return Verdict::Clear;
+                };
+                part = beside;
+                inside =
+                    inside && above.bound_below(padded) > margin && (-below).bound_below(padded) > margin;
+            }
+            if inside && part == meeting && total.quadratic.bound_below(padded) > total.margin {
+                certain = true;
+                self.inside = global(part, at, piece);
+            }
+        }
+        let certain = certain && (volume.changes_sign(whole) || volume.changes_sign(around(part, whole)));
+        Verdict::Within { part: global(part, at, piece), certain }
     }
 
     fn measure(&mut self, piece: Piece, at: f64) -> Measurement {
@@ -133,32 +153,5 @@ impl PieceTest for StraightEdgeEdge {
             }
         }
         cleared(clear, whole, at, piece, distance)
-    }
-}
-
-impl StraightEdgeEdge {
-    /// Along the fixed direction n the two edges certainly cross in their interiors throughout the part: seen along
-    /// n, the ends of each lie on opposite sides of the other's line.
-    fn seen_crossing(&self, w: &Line, e: &Line, d: &Line, n: DVec3, part: Piece) -> bool {
-        let s = reach(part);
-        let length = n.length() * UP;
-        let triple = |x: &Line, y: &Line, sign: f64| {
-            let q = Quadratic {
-                value: n.dot(x.p.cross(y.p)),
-                slope: n.dot(x.p.cross(y.v) + x.v.cross(y.p)),
-                curvature: 2.0 * n.dot(x.v.cross(y.v)),
-            };
-            let (lx, ly) = (x.longest(s), y.longest(s));
-            let margin = length * (32.0 * UNIT * lx * ly + self.error * (lx + ly + self.error)) * UP;
-            let oriented = if sign < 0.0 { -q } else { q };
-            oriented.bound_below(part) > margin
-        };
-        let plus = |a: &Line, b: &Line, s: f64| Line { p: a.p + b.p * s, v: a.v + b.v * s };
-        // n·((w ± e) × d): ends of A against B's line; n·((w ∓ d) × e): ends of B against A's line.
-        let (a0, a1) = (plus(w, e, 1.0), plus(w, e, -1.0));
-        let (b0, b1) = (plus(w, d, 1.0), plus(w, d, -1.0));
-        ((triple(&a0, d, 1.0) && triple(&a1, d, -1.0)) || (triple(&a0, d, -1.0) && triple(&a1, d, 1.0)))
-            && ((triple(&b0, e, 1.0) && triple(&b1, e, -1.0))
-                || (triple(&b0, e, -1.0) && triple(&b1, e, 1.0)))
     }
 }

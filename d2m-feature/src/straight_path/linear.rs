@@ -1,8 +1,8 @@
-//! Linear functions of time that exclude a contact while they share a sign.
+//! Vectors and functions that are linear in time; functions exclude a contact while they share a sign.
 use d2m_root::Piece;
 use glam::DVec3;
 
-/// A vector that is linear in the time from the middle of a piece: `p + v·s`.
+/// A vector that is linear in the time from some moment: `p + v·s`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
     pub(super) p: DVec3,
@@ -10,15 +10,47 @@ pub(super) struct Line {
 }
 
 impl Line {
+    /// The same line with the time counted from `at`.
+    #[inline(always)]
+    pub(super) fn from(&self, at: f64) -> Self {
+        Self { p: self.p + self.v * at, v: self.v }
+    }
+
+    #[inline(always)]
+    pub(super) fn minus(&self, other: &Self) -> Self {
+        Self { p: self.p - other.p, v: self.v - other.v }
+    }
+
     #[inline(always)]
     pub(super) fn along(&self, d: DVec3) -> Linear {
         Linear { value: d.dot(self.p), slope: d.dot(self.v) }
     }
 
-    /// Upper bound of the length for |s| ≤ h, up to rounding.
+    /// `(p × n, v × n)`.
     #[inline(always)]
-    pub(super) fn longest(&self, h: f64) -> f64 {
-        self.p.length() + self.v.length() * h
+    pub(super) fn across(&self, n: DVec3) -> (DVec3, DVec3) {
+        (self.p.cross(n), self.v.cross(n))
+    }
+
+    /// The lengths of `p` and `v`.
+    #[inline(always)]
+    pub(super) fn lengths(&self) -> Lengths {
+        Lengths { p: self.p.length(), v: self.v.length() }
+    }
+}
+
+/// Lengths of a line's vectors.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lengths {
+    p: f64,
+    v: f64,
+}
+
+impl Lengths {
+    /// Upper bound of the line's length for |s| ≤ h, up to rounding.
+    #[inline(always)]
+    pub(super) fn within(&self, h: f64) -> f64 {
+        self.p + self.v * h
     }
 }
 
@@ -33,6 +65,12 @@ impl Linear {
     #[inline(always)]
     pub(super) fn at(&self, s: f64) -> f64 {
         self.value + self.slope * s
+    }
+
+    /// The least value for |s| ≤ h.
+    #[inline(always)]
+    pub(super) fn least(&self, h: f64) -> f64 {
+        self.value - self.slope.abs() * h
     }
 }
 
@@ -60,32 +98,6 @@ fn shared<const N: usize>(functions: &[Linear; N], margin: f64, s: f64, forward:
         }
     }
     reach * EARLY
-}
-
-/// Cuts off both ends of `part` where all functions certainly share a sign; `None` if that is all of it. `margin`
-/// covers the error of the values and their change over 4·2⁻⁵³ of the piece. What is not finite excludes
-/// nothing.
-#[inline(always)]
-pub(super) fn clip<const N: usize>(functions: &[Linear; N], margin: f64, part: Piece) -> Option<Piece> {
-    if functions.iter().any(|f| !(f.value.is_finite() && f.slope.is_finite())) {
-        return Some(part);
-    }
-    let Piece { mut lo, mut hi } = part;
-    let advance = shared(functions, margin, lo, 1.0);
-    if advance > 0.0 {
-        if advance > hi - lo {
-            return None;
-        }
-        lo += advance;
-    }
-    let retreat = shared(functions, margin, hi, -1.0);
-    if retreat > 0.0 {
-        if retreat > hi - lo {
-            return None;
-        }
-        hi -= retreat;
-    }
-    Some(Piece { lo, hi })
 }
 
 /// Around s = 0: how far to the left and right all functions certainly stay above `margin`.

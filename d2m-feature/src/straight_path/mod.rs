@@ -64,19 +64,36 @@ impl Lines {
     fn new(paths: &StraightPaths) -> Self {
         // One common origin near the features: what is far from the world's origin keeps its digits.
         let origin = paths.start[1];
-        let start = paths.start.map(|p| p - origin);
-        let end = paths.end.map(|p| p - origin);
-        let velocity = [0, 1, 2, 3].map(|i| paths.end[i] - paths.start[i]);
-        let largest =
-            |points: &[DVec3; 4]| points.iter().map(|p| p.length_squared()).fold(0.0, f64::max).sqrt();
-        let magnitude = largest(&start).max(largest(&end)) * (1.0 + 1e-14);
+        // Written out: a closure over an array is a call.
+        let ([s0, s1, s2, s3], [e0, e1, e2, e3]) = (paths.start, paths.end);
+        let start = [s0 - origin, DVec3::ZERO, s2 - origin, s3 - origin];
+        let velocity = [e0 - s0, e1 - s1, e2 - s2, e3 - s3];
+        let square = |p: DVec3| (p - origin).length_squared();
+        let starts = [start[0].length_squared(), start[2].length_squared(), start[3].length_squared()];
+        let ends = [square(e0), square(e1), square(e2), square(e3)];
+        let magnitude = larger(largest(&starts), largest(&ends)).sqrt() * (1.0 + 1e-14);
         Self { start, velocity, magnitude }
     }
 
     /// Bound of the error of a sum of differences of the points at a time of the window, dotted with a vector of
-    /// length at most 1: 24 units of the magnitude for two points, 64 for the four of two edges
-    /// (docs/theory/features.md counts 20 and 54).
+    /// length at most 1: 48 units of the magnitude for two points, 64 for the four of two edges
+    /// (docs/theory/features.md counts 36 and 54).
     fn error(&self, units: f64) -> f64 {
         units * (0.5 * f64::EPSILON) * self.magnitude
     }
+}
+
+/// The largest of non-negative numbers; a NaN is not counted (it excludes nothing later).
+#[inline(always)]
+fn largest<const N: usize>(numbers: &[f64; N]) -> f64 {
+    let mut most = 0.0;
+    for &number in numbers {
+        most = larger(number, most);
+    }
+    most
+}
+
+#[inline(always)]
+fn larger(x: f64, y: f64) -> f64 {
+    if x > y { x } else { y }
 }

@@ -1,52 +1,77 @@
 //! A point and a triangle, all four vertices on straight paths.
-use super::Lines;
-use super::linear::{Line, Linear, clear_above, clip};
-use super::triple_product::TripleProduct;
+use super::linear::{Line, Linear, clear_above};
+use super::triple_product::{Seen, TripleProduct};
+use super::{Lines, largest};
 use crate::closest;
 use crate::options::ContactOptions;
-use crate::path::{direction, global, local, reach};
+use crate::path::{around, direction, global, local, padded, reach};
 use crate::point_triangle::cleared;
-use d2m_root::{Measurement, Piece, PieceTest, Quadratic, Verdict};
+use d2m_root::{Band, Measurement, Piece, PieceTest, Verdict};
 use glam::DVec3;
 
 const UP: f64 = 1.0 + 1e-14;
-const UNIT: f64 = 0.5 * f64::EPSILON;
 
-/// The piece test. `f = (p − b₀)·((b₁ − b₀) × (b₂ − b₀))` is a cubic, known exactly up to rounding.
-pub(super) struct StraightPointTriangle<'a> {
-    lines: &'a Lines,
+/// The piece test. With `a` from a corner to the point and `e₁`, `e₂` from it to the others: `f = a·(e₁ × e₂)`, a cubic,
+/// known exactly up to rounding.
+pub(super) struct StraightPointTriangle {
+    /// From t = 0: `a`, `e₁`, `e₂`. The corner is the one across from the side that is longest at the start.
+    lines: [Line; 3],
     error: f64,
+    size: f64,
     speed: f64,
     tolerance: f64,
     separation: f64,
+    /// A piece throughout which the point is inside the triangle where it is in its plane.
+    inside: Piece,
 }
 
-impl<'a> StraightPointTriangle<'a> {
-    pub(super) fn new(lines: &'a Lines, options: &ContactOptions) -> Self {
-        let v = &lines.velocity;
-        let speed = (1..4).map(|i| (v[0] - v[i]).length_squared()).fold(0.0, f64::max).sqrt() * UP;
-        let square = |a: usize, b: usize| (lines.start[a] - lines.start[b]).length_squared();
-        let length = square(1, 2).max(square(2, 3)).max(square(1, 3)).sqrt();
-        let error = lines.error(24.0);
-        let tolerance = options.wanted_tolerance(length, lines.magnitude).max(4.0 * error);
-        Self { lines, error, speed, tolerance, separation: options.separation() }
+impl StraightPointTriangle {
+    pub(super) fn new(lines: &Lines, options: &ContactOptions) -> Self {
+        let Lines { start, velocity, .. } = lines;
+        let square = |a: usize, b: usize| (start[a] - start[b]).length_squared();
+        let squares = [square(2, 3), square(3, 1), square(1, 2)];
+        let (corner, first, second, square) = if squares[0] >= squares[1] && squares[0] >= squares[2] {
+            (1, 2, 3, squares[0])
+        } else if squares[1] >= squares[2] {
+            (2, 3, 1, squares[1])
+        } else {
+            (3, 1, 2, squares[2])
+        };
+        let between = |a: usize, b: usize| Line { p: start[a] - start[b], v: velocity[a] - velocity[b] };
+        let (a, e1, e2) = (between(0, corner), between(first, corner), between(second, corner));
+        let speeds = [a.v.length_squared(), (a.v - e1.v).length_squared(), (a.v - e2.v).length_squared()];
+        let speed = largest(&speeds).sqrt() * UP;
+        let error = lines.error(48.0);
+        let tolerance = options.wanted_tolerance(square.sqrt(), lines.magnitude).max(4.0 * error);
+        Self {
+            lines: [a, e1, e2],
+            error,
+            size: lines.magnitude,
+            speed,
+            tolerance,
+            separation: options.separation(),
+            inside: Piece::NONE,
+        }
     }
 
-    /// The vectors from the three vertices to the point, at a time.
+    /// The vectors from the three corners to the point.
     #[inline(always)]
-    fn differences(&self, at: f64) -> [Line; 3] {
-        let Lines { start, velocity, .. } = self.lines;
-        let now = [0, 1, 2, 3].map(|i| start[i] + velocity[i] * at);
-        [1, 2, 3].map(|i| Line { p: now[0] - now[i], v: velocity[0] - velocity[i] })
+    fn differences([a, e1, e2]: &[Line; 3]) -> [Line; 3] {
+        [*a, a.minus(e1), a.minus(e2)]
+    }
+
+    /// Outside throughout, seen along the line from the mean of the corners to the point.
+    #[inline(always)]
+    fn apart(&self, [a, e1, e2]: &[Line; 3], h: f64) -> bool {
+        let away = a.p * 3.0 - (e1.p + e2.p);
+        let margin = (self.error + self.separation) * away.length() * UP;
+        let (a, e1, e2) = (a.along(away), e1.along(away), e2.along(away));
+        let from = |e: Linear| Linear { value: a.value - e.value, slope: a.slope - e.slope };
+        [a, from(e1), from(e2)].iter().all(|f| f.least(h) > margin)
     }
 }
 
-/// `a − b`.
-fn minus(a: &Line, b: &Line) -> Line {
-    Line { p: a.p - b.p, v: a.v - b.v }
-}
-
-impl PieceTest for StraightPointTriangle<'_> {
+impl PieceTest for StraightPointTriangle {
     fn too_wide(&self, _: f64) -> bool {
         false
     }
@@ -62,57 +87,65 @@ impl PieceTest for StraightPointTriangle<'_> {
 
     fn evaluate(&mut self, piece: Piece) -> Verdict {
         let at = piece.mid();
-        let lines = self.differences(at);
+        let [a, e1, e2] = &self.lines;
+        let lines = [a.from(at), e1.from(at), e2.from(at)];
         let whole = local(piece, at);
         let h = reach(whole);
-        let margin = self.error + self.separation;
-
-        // Along the line from the vertices' mean to the point.
-        let away = lines[0].p + lines[1].p + lines[2].p;
-        let length = away.length() * UP;
-        let apart = lines.map(|line| line.along(away));
-        if clip(&apart, margin * length, whole).is_none() {
+        let known_inside = self.inside.holds(piece);
+        if !known_inside && self.apart(&lines, h) {
             return Verdict::Clear;
         }
-
-        // The cubic: a·(e₁ × e₂) with e_i = b_i − b₀ = (p − b₀) − (p − b_i).
-        let a = lines[0];
-        let (e1, e2) = (minus(&a, &lines[1]), minus(&a, &lines[2]));
-        let volume = TripleProduct::new(&a, &e1, &e2, h, (self.error, self.separation));
-        let (f, n0) = (volume.quadratic, volume.normal);
-        let Some(meeting) = f.clip(volume.band(h), whole) else {
+        let [a, e1, e2] = &lines;
+        let lengths = [a.lengths(), e1.lengths(), e2.lengths()];
+        let errors = (self.error, self.separation);
+        let volume = TripleProduct::new(&lines, &lengths, h, errors);
+        let Some(mut part) = volume.clip(whole) else {
             return Verdict::Clear;
         };
-        // In-plane side normals, frozen in the middle.
-        let sides = [e1.p, e2.p - e1.p, -e2.p].map(|edge| direction(edge.cross(n0)));
-        let families = sides.map(|side| lines.map(|line| line.along(side)));
-        let beside = |mut part: Piece| {
-            for family in &families {
-                part = clip(family, margin, part)?;
+        let mut certain = known_inside;
+        if !known_inside {
+            // Areas seen along n = e₁ × e₂, frozen in the middle, as parts of the triangle's: a = λ₁e₁ + λ₂e₂ gives
+            // n·(a × e₂) = λ₁·whole and n·(e₁ × a) = λ₂·whole; the third is what these leave of it.
+            let n = volume.normal;
+            let length = n.length() * UP;
+            let s = reach(padded(part, at, whole));
+            let (la, l1, l2) = (lengths[0].within(s), lengths[1].within(s), lengths[2].within(s));
+            let (across1, across2) = (e1.across(-n), e2.across(n));
+            let total = Seen::new(e1, across2, length, (l1, l2), (self.error, 0.0));
+            let first = Seen::new(a, across2, length, (la, l2), errors);
+            let second = Seen::new(a, across1, length, (la, l1), errors);
+            let third = Seen {
+                quadratic: total.quadratic.minus(&first.quadratic.plus(&second.quadratic)),
+                margin: (total.margin + first.margin + second.margin) * UP,
+            };
+            let areas = [first, second, third];
+            let in_plane = part;
+            let facing = total.quadratic.bound_below(padded(part, at, whole)) > total.margin;
+            if facing {
+                // A contact needs all three parts at least 0.
+                for area in &areas {
+                    let band = Band { lo: -area.margin, hi: f64::INFINITY };
+                    let Some(beside) = area.quadratic.clip(band, part) else {
+                        return Verdict::Clear;
+                    };
+                    part = beside;
+                }
             }
-            Some(part)
-        };
-        let Some(inside) = beside(meeting) else {
-            return Verdict::Clear;
-        };
-        let Some(meeting_again) = f.clip(volume.band(reach(inside)), inside) else {
-            return Verdict::Clear;
-        };
-        let Some(last) = beside(meeting_again) else {
-            return Verdict::Clear;
-        };
-        // A true crossing: f changes sign, only f has cut, and along n0 the point is seen inside throughout.
-        let certain = inside == meeting && last == meeting_again && {
-            let wide = volume.band(h).hi;
-            let (first, second) = (f.at(whole.lo), f.at(whole.hi));
-            let changes = (first > wide && second < -wide) || (first < -wide && second > wide);
-            changes && self.seen_inside(&lines, n0, last)
-        };
-        Verdict::Within { part: global(last, at, piece), certain }
+            let padded = padded(part, at, whole);
+            if facing
+                && part == in_plane
+                && areas.iter().all(|area| area.quadratic.bound_below(padded) > area.margin)
+            {
+                certain = true;
+                self.inside = global(part, at, piece);
+            }
+        }
+        let certain = certain && (volume.changes_sign(whole) || volume.changes_sign(around(part, whole)));
+        Verdict::Within { part: global(part, at, piece), certain }
     }
 
     fn measure(&mut self, piece: Piece, at: f64) -> Measurement {
-        let lines = self.differences(at);
+        let lines = Self::differences(&self.lines.map(|line| line.from(at)));
         let corners = lines.map(|line| -line.p);
         let normal = direction((corners[1] - corners[0]).cross(corners[2] - corners[0]));
         let pair = closest::point_triangle(DVec3::ZERO, &corners, normal);
@@ -129,7 +162,7 @@ impl PieceTest for StraightPointTriangle<'_> {
             }
         };
         consider(direction(pair.separating));
-        if distance < 1e-6 * self.lines.magnitude {
+        if distance < 1e-6 * self.size {
             consider(normal);
             consider(-normal);
             for i in 0..3 {
@@ -140,27 +173,7 @@ impl PieceTest for StraightPointTriangle<'_> {
     }
 }
 
-impl StraightPointTriangle<'_> {
-    /// Along the fixed direction n the point is certainly inside the triangle throughout the part: the three areas
-    /// `n·((b_i − p) × (b_j − p))`, quadratics in time, are certainly positive.
-    fn seen_inside(&self, lines: &[Line; 3], n: DVec3, part: Piece) -> bool {
-        let s = reach(part);
-        let length = n.length() * UP;
-        (0..3).all(|i| {
-            let (x, y) = (&lines[i], &lines[(i + 1) % 3]);
-            let area = Quadratic {
-                value: n.dot(x.p.cross(y.p)),
-                slope: n.dot(x.p.cross(y.v) + x.v.cross(y.p)),
-                curvature: 2.0 * n.dot(x.v.cross(y.v)),
-            };
-            let (lx, ly) = (x.longest(s), y.longest(s));
-            let margin = length * (32.0 * UNIT * lx * ly + self.error * (lx + ly + self.error)) * UP;
-            area.bound_below(part) > margin
-        })
-    }
-}
-
-/// Used by the edge test as well: the functions `w ± e ± d` along a direction.
+/// Used by the edge test: the functions `w ± e ± d` along a direction.
 pub(super) fn corners(w: &Line, e: &Line, d: &Line, n: DVec3) -> [Linear; 4] {
     let (w, e, d) = (w.along(n), e.along(n), d.along(n));
     let corner = |s: f64, t: f64| Linear {

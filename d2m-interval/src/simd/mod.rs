@@ -13,22 +13,23 @@
         all(target_arch = "wasm32", target_feature = "simd128")
     ))
 ))]
+#[allow(unreachable_pub)] // where tests alone use it
 mod scalar;
 
 #[cfg(all(target_arch = "x86_64", not(miri), not(feature = "scalar")))]
 mod sse2;
 #[cfg(all(target_arch = "x86_64", not(miri), not(feature = "scalar")))]
-pub(crate) use sse2::F64x2;
+pub use sse2::F64x2;
 
 #[cfg(all(target_arch = "aarch64", target_feature = "neon", not(miri), not(feature = "scalar")))]
 mod neon;
 #[cfg(all(target_arch = "aarch64", target_feature = "neon", not(miri), not(feature = "scalar")))]
-pub(crate) use neon::F64x2;
+pub use neon::F64x2;
 
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128", not(miri), not(feature = "scalar")))]
 mod wasm;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128", not(miri), not(feature = "scalar")))]
-pub(crate) use wasm::F64x2;
+pub use wasm::F64x2;
 
 #[cfg(any(
     miri,
@@ -39,7 +40,7 @@ pub(crate) use wasm::F64x2;
         all(target_arch = "wasm32", target_feature = "simd128")
     ))
 ))]
-pub(crate) use scalar::F64x2;
+pub use scalar::F64x2;
 
 mod quad;
 pub(crate) use quad::F64x4;

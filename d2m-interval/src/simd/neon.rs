@@ -21,25 +21,25 @@ macro_rules! neon {
 /// Two doubles. Comparisons with NaN are false; `max(a, b)` is `if a > b { a } else { b }`.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub(crate) struct F64x2(float64x2_t);
+pub struct F64x2(float64x2_t);
 
 impl F64x2 {
     #[inline(always)]
-    pub(crate) const fn new(first: f64, second: f64) -> Self {
+    pub const fn new(first: f64, second: f64) -> Self {
         // SAFETY: `[f64; 2]` and `float64x2_t` have the same size and every bit pattern is valid in both.
         Self(unsafe { core::mem::transmute::<[f64; 2], float64x2_t>([first, second]) })
     }
     /// As [`Self::new`], for values known at run time only.
     #[inline(always)]
-    pub(crate) fn pack(first: f64, second: f64) -> Self {
+    pub fn pack(first: f64, second: f64) -> Self {
         Self::new(first, second)
     }
     #[inline(always)]
-    pub(crate) fn splat(x: f64) -> Self {
+    pub fn splat(x: f64) -> Self {
         Self(neon!(vdupq_n_f64(x)))
     }
     #[inline(always)]
-    pub(crate) const fn to_array(self) -> [f64; 2] {
+    pub const fn to_array(self) -> [f64; 2] {
         // SAFETY: as in `new`.
         unsafe { core::mem::transmute::<float64x2_t, [f64; 2]>(self.0) }
     }
@@ -52,110 +52,110 @@ impl F64x2 {
         Self(neon!(vreinterpretq_f64_u64(bits)))
     }
     #[inline(always)]
-    pub(crate) fn first(self) -> f64 {
+    pub fn first(self) -> f64 {
         neon!(vgetq_lane_f64::<0>(self.0))
     }
     #[inline(always)]
-    pub(crate) fn second(self) -> f64 {
+    pub fn second(self) -> f64 {
         neon!(vgetq_lane_f64::<1>(self.0))
     }
     #[inline(always)]
-    pub(crate) fn plus(self, o: Self) -> Self {
+    pub fn plus(self, o: Self) -> Self {
         Self(neon!(vaddq_f64(self.0, o.0)))
     }
     #[inline(always)]
-    pub(crate) fn minus(self, o: Self) -> Self {
+    pub fn minus(self, o: Self) -> Self {
         Self(neon!(vsubq_f64(self.0, o.0)))
     }
     #[inline(always)]
-    pub(crate) fn times(self, o: Self) -> Self {
+    pub fn times(self, o: Self) -> Self {
         Self(neon!(vmulq_f64(self.0, o.0)))
     }
     #[inline(always)]
-    pub(crate) fn over(self, o: Self) -> Self {
+    pub fn over(self, o: Self) -> Self {
         Self(neon!(vdivq_f64(self.0, o.0)))
     }
     #[inline(always)]
-    pub(crate) fn sqrt(self) -> Self {
+    pub fn sqrt(self) -> Self {
         Self(neon!(vsqrtq_f64(self.0)))
     }
     #[inline(always)]
-    pub(crate) fn max(self, o: Self) -> Self {
+    pub fn max(self, o: Self) -> Self {
         // Not `fmax`: it treats NaN and signed zeros in another way than the other back ends.
         Self(neon!(vbslq_f64(vcgtq_f64(self.0, o.0), self.0, o.0)))
     }
     /// `if a < b { a } else { b }`.
     #[inline(always)]
-    pub(crate) fn min(self, o: Self) -> Self {
+    pub fn min(self, o: Self) -> Self {
         Self(neon!(vbslq_f64(vcltq_f64(self.0, o.0), self.0, o.0)))
     }
     #[inline(always)]
-    pub(crate) fn abs(self) -> Self {
+    pub fn abs(self) -> Self {
         Self(neon!(vabsq_f64(self.0)))
     }
     #[inline(always)]
-    pub(crate) fn neg(self) -> Self {
+    pub fn neg(self) -> Self {
         Self(neon!(vnegq_f64(self.0)))
     }
     /// Negates the first number.
     #[inline(always)]
-    pub(crate) fn neg_first(self) -> Self {
+    pub fn neg_first(self) -> Self {
         Self::from_bits(neon!(veorq_u64(self.bits(), Self::new(-0.0, 0.0).bits())))
     }
     #[inline(always)]
-    pub(crate) fn swap(self) -> Self {
+    pub fn swap(self) -> Self {
         Self(neon!(vextq_f64::<1>(self.0, self.0)))
     }
     #[inline(always)]
-    pub(crate) fn both_first(self) -> Self {
+    pub fn both_first(self) -> Self {
         Self(neon!(vdupq_laneq_f64::<0>(self.0)))
     }
     #[inline(always)]
-    pub(crate) fn both_second(self) -> Self {
+    pub fn both_second(self) -> Self {
         Self(neon!(vdupq_laneq_f64::<1>(self.0)))
     }
     /// The first number of `self` and the second of `o`.
     #[inline(always)]
-    pub(crate) fn first_and_second(self, o: Self) -> Self {
+    pub fn first_and_second(self, o: Self) -> Self {
         Self(neon!(vcopyq_laneq_f64::<1, 1>(self.0, o.0)))
     }
     /// Mask: all bits where `self < o`.
     #[inline(always)]
-    pub(crate) fn lt(self, o: Self) -> Self {
+    pub fn lt(self, o: Self) -> Self {
         Self::from_bits(neon!(vcltq_f64(self.0, o.0)))
     }
     /// Mask: all bits where `self <= o`.
     #[inline(always)]
-    pub(crate) fn le(self, o: Self) -> Self {
+    pub fn le(self, o: Self) -> Self {
         Self::from_bits(neon!(vcleq_f64(self.0, o.0)))
     }
     #[inline(always)]
-    pub(crate) fn and(self, o: Self) -> Self {
+    pub fn and(self, o: Self) -> Self {
         Self::from_bits(neon!(vandq_u64(self.bits(), o.bits())))
     }
     #[inline(always)]
-    pub(crate) fn xor(self, o: Self) -> Self {
+    pub fn xor(self, o: Self) -> Self {
         Self::from_bits(neon!(veorq_u64(self.bits(), o.bits())))
     }
     /// `yes` where the mask `self` is set, else `no`.
     #[inline(always)]
-    pub(crate) fn select(self, yes: Self, no: Self) -> Self {
+    pub fn select(self, yes: Self, no: Self) -> Self {
         Self(neon!(vbslq_f64(self.bits(), yes.0, no.0)))
     }
     /// Mask: all bits where bit 0 of the number's representation is set.
     #[inline(always)]
-    pub(crate) fn lowest_bit(self) -> Self {
+    pub fn lowest_bit(self) -> Self {
         let top = neon!(vshlq_n_s64::<63>(vreinterpretq_s64_f64(self.0)));
         Self(neon!(vreinterpretq_f64_s64(vshrq_n_s64::<63>(top))))
     }
     /// The sign bit where bit 1 of the number's representation is set, else 0.
     #[inline(always)]
-    pub(crate) fn second_bit_as_sign(self) -> Self {
+    pub fn second_bit_as_sign(self) -> Self {
         Self::from_bits(neon!(vandq_u64(vshlq_n_u64::<62>(self.bits()), vdupq_n_u64(1 << 63))))
     }
     /// The sign bits, first number in bit 0; of a mask, whether it is set.
     #[inline(always)]
-    pub(crate) fn sign_bits(self) -> u32 {
+    pub fn sign_bits(self) -> u32 {
         let bits = self.bits();
         let (first, second) = (neon!(vgetq_lane_u64::<0>(bits)), neon!(vgetq_lane_u64::<1>(bits)));
         (first >> 63) as u32 | ((second >> 63) as u32) << 1

@@ -3,7 +3,7 @@
 /// Two doubles. Comparisons with NaN are false; `max(a, b)` is `if a > b { a } else { b }`.
 #[derive(Clone, Copy)]
 #[repr(C, align(16))]
-pub(crate) struct F64x2([f64; 2]);
+pub struct F64x2([f64; 2]);
 
 const SIGN: u64 = 1 << 63;
 
@@ -15,28 +15,28 @@ fn mask(yes: bool) -> f64 {
 #[allow(dead_code)] // as a twin in tests, some methods have no other caller
 impl F64x2 {
     #[inline(always)]
-    pub(crate) const fn new(first: f64, second: f64) -> Self {
+    pub const fn new(first: f64, second: f64) -> Self {
         Self([first, second])
     }
     /// As [`Self::new`], for values known at run time only.
     #[inline(always)]
-    pub(crate) fn pack(first: f64, second: f64) -> Self {
+    pub fn pack(first: f64, second: f64) -> Self {
         Self([first, second])
     }
     #[inline(always)]
-    pub(crate) fn splat(x: f64) -> Self {
+    pub fn splat(x: f64) -> Self {
         Self([x, x])
     }
     #[inline(always)]
-    pub(crate) const fn to_array(self) -> [f64; 2] {
+    pub const fn to_array(self) -> [f64; 2] {
         self.0
     }
     #[inline(always)]
-    pub(crate) fn first(self) -> f64 {
+    pub fn first(self) -> f64 {
         self.0[0]
     }
     #[inline(always)]
-    pub(crate) fn second(self) -> f64 {
+    pub fn second(self) -> f64 {
         self.0[1]
     }
     #[inline(always)]
@@ -48,88 +48,88 @@ impl F64x2 {
         self.zip(o, |a, b| f64::from_bits(f(a.to_bits(), b.to_bits())))
     }
     #[inline(always)]
-    pub(crate) fn plus(self, o: Self) -> Self {
+    pub fn plus(self, o: Self) -> Self {
         self.zip(o, |a, b| a + b)
     }
     #[inline(always)]
-    pub(crate) fn minus(self, o: Self) -> Self {
+    pub fn minus(self, o: Self) -> Self {
         self.zip(o, |a, b| a - b)
     }
     #[inline(always)]
-    pub(crate) fn times(self, o: Self) -> Self {
+    pub fn times(self, o: Self) -> Self {
         self.zip(o, |a, b| a * b)
     }
     #[inline(always)]
-    pub(crate) fn over(self, o: Self) -> Self {
+    pub fn over(self, o: Self) -> Self {
         self.zip(o, |a, b| a / b)
     }
     #[inline(always)]
-    pub(crate) fn sqrt(self) -> Self {
+    pub fn sqrt(self) -> Self {
         #[cfg(feature = "std")]
         return Self(self.0.map(f64::sqrt));
         #[cfg(not(feature = "std"))]
         return Self(self.0.map(super::soft_sqrt::sqrt));
     }
     #[inline(always)]
-    pub(crate) fn max(self, o: Self) -> Self {
+    pub fn max(self, o: Self) -> Self {
         self.zip(o, |a, b| if a > b { a } else { b })
     }
     /// `if a < b { a } else { b }`.
     #[inline(always)]
-    pub(crate) fn min(self, o: Self) -> Self {
+    pub fn min(self, o: Self) -> Self {
         self.zip(o, |a, b| if a < b { a } else { b })
     }
     #[inline(always)]
-    pub(crate) fn abs(self) -> Self {
+    pub fn abs(self) -> Self {
         Self(self.0.map(f64::abs))
     }
     #[inline(always)]
-    pub(crate) fn neg(self) -> Self {
+    pub fn neg(self) -> Self {
         Self(self.0.map(|x| -x))
     }
     /// Negates the first number.
     #[inline(always)]
-    pub(crate) fn neg_first(self) -> Self {
+    pub fn neg_first(self) -> Self {
         Self([-self.0[0], self.0[1]])
     }
     #[inline(always)]
-    pub(crate) fn swap(self) -> Self {
+    pub fn swap(self) -> Self {
         Self([self.0[1], self.0[0]])
     }
     #[inline(always)]
-    pub(crate) fn both_first(self) -> Self {
+    pub fn both_first(self) -> Self {
         Self([self.0[0]; 2])
     }
     #[inline(always)]
-    pub(crate) fn both_second(self) -> Self {
+    pub fn both_second(self) -> Self {
         Self([self.0[1]; 2])
     }
     /// The first number of `self` and the second of `o`.
     #[inline(always)]
-    pub(crate) fn first_and_second(self, o: Self) -> Self {
+    pub fn first_and_second(self, o: Self) -> Self {
         Self([self.0[0], o.0[1]])
     }
     /// Mask: all bits where `self < o`.
     #[inline(always)]
-    pub(crate) fn lt(self, o: Self) -> Self {
+    pub fn lt(self, o: Self) -> Self {
         self.zip(o, |a, b| mask(a < b))
     }
     /// Mask: all bits where `self <= o`.
     #[inline(always)]
-    pub(crate) fn le(self, o: Self) -> Self {
+    pub fn le(self, o: Self) -> Self {
         self.zip(o, |a, b| mask(a <= b))
     }
     #[inline(always)]
-    pub(crate) fn and(self, o: Self) -> Self {
+    pub fn and(self, o: Self) -> Self {
         self.zip_bits(o, |a, b| a & b)
     }
     #[inline(always)]
-    pub(crate) fn xor(self, o: Self) -> Self {
+    pub fn xor(self, o: Self) -> Self {
         self.zip_bits(o, |a, b| a ^ b)
     }
     /// `yes` where the mask `self` is set, else `no`.
     #[inline(always)]
-    pub(crate) fn select(self, yes: Self, no: Self) -> Self {
+    pub fn select(self, yes: Self, no: Self) -> Self {
         let pick = |i: usize| {
             let m = self.0[i].to_bits();
             f64::from_bits(m & yes.0[i].to_bits() | !m & no.0[i].to_bits())
@@ -138,17 +138,17 @@ impl F64x2 {
     }
     /// Mask: all bits where bit 0 of the number's representation is set.
     #[inline(always)]
-    pub(crate) fn lowest_bit(self) -> Self {
+    pub fn lowest_bit(self) -> Self {
         Self(self.0.map(|x| mask(x.to_bits() & 1 == 1)))
     }
     /// The sign bit where bit 1 of the number's representation is set, else 0.
     #[inline(always)]
-    pub(crate) fn second_bit_as_sign(self) -> Self {
+    pub fn second_bit_as_sign(self) -> Self {
         Self(self.0.map(|x| f64::from_bits(x.to_bits() << 62 & SIGN)))
     }
     /// The sign bits, first number in bit 0; of a mask, whether it is set.
     #[inline(always)]
-    pub(crate) fn sign_bits(self) -> u32 {
+    pub fn sign_bits(self) -> u32 {
         (self.0[0].to_bits() >> 63) as u32 | ((self.0[1].to_bits() >> 63) as u32) << 1
     }
 }

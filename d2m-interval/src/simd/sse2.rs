@@ -20,133 +20,133 @@ macro_rules! sse2 {
 /// Two doubles. Comparisons with NaN are false; `max(a, b)` is `if a > b { a } else { b }`.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub(crate) struct F64x2(__m128d);
+pub struct F64x2(__m128d);
 
 impl F64x2 {
     #[inline(always)]
-    pub(crate) const fn new(first: f64, second: f64) -> Self {
+    pub const fn new(first: f64, second: f64) -> Self {
         // SAFETY: `[f64; 2]` and `__m128d` have the same size and every bit pattern is valid in both.
         Self(unsafe { core::mem::transmute::<[f64; 2], __m128d>([first, second]) })
     }
     /// As [`Self::new`], for values known at run time only.
     #[inline(always)]
-    pub(crate) fn pack(first: f64, second: f64) -> Self {
+    pub fn pack(first: f64, second: f64) -> Self {
         Self(sse2!(_mm_set_pd(second, first)))
     }
     #[inline(always)]
-    pub(crate) fn splat(x: f64) -> Self {
+    pub fn splat(x: f64) -> Self {
         Self(sse2!(_mm_set1_pd(x)))
     }
     #[inline(always)]
-    pub(crate) const fn to_array(self) -> [f64; 2] {
+    pub const fn to_array(self) -> [f64; 2] {
         // SAFETY: as in `new`.
         unsafe { core::mem::transmute::<__m128d, [f64; 2]>(self.0) }
     }
     #[inline(always)]
-    pub(crate) fn first(self) -> f64 {
+    pub fn first(self) -> f64 {
         sse2!(_mm_cvtsd_f64(self.0))
     }
     #[inline(always)]
-    pub(crate) fn second(self) -> f64 {
+    pub fn second(self) -> f64 {
         sse2!(_mm_cvtsd_f64(_mm_unpackhi_pd(self.0, self.0)))
     }
     #[inline(always)]
-    pub(crate) fn plus(self, o: Self) -> Self {
+    pub fn plus(self, o: Self) -> Self {
         Self(sse2!(_mm_add_pd(self.0, o.0)))
     }
     #[inline(always)]
-    pub(crate) fn minus(self, o: Self) -> Self {
+    pub fn minus(self, o: Self) -> Self {
         Self(sse2!(_mm_sub_pd(self.0, o.0)))
     }
     #[inline(always)]
-    pub(crate) fn times(self, o: Self) -> Self {
+    pub fn times(self, o: Self) -> Self {
         Self(sse2!(_mm_mul_pd(self.0, o.0)))
     }
     #[inline(always)]
-    pub(crate) fn over(self, o: Self) -> Self {
+    pub fn over(self, o: Self) -> Self {
         Self(sse2!(_mm_div_pd(self.0, o.0)))
     }
     #[inline(always)]
-    pub(crate) fn sqrt(self) -> Self {
+    pub fn sqrt(self) -> Self {
         Self(sse2!(_mm_sqrt_pd(self.0)))
     }
     #[inline(always)]
-    pub(crate) fn max(self, o: Self) -> Self {
+    pub fn max(self, o: Self) -> Self {
         Self(sse2!(_mm_max_pd(self.0, o.0)))
     }
     /// `if a < b { a } else { b }`.
     #[inline(always)]
-    pub(crate) fn min(self, o: Self) -> Self {
+    pub fn min(self, o: Self) -> Self {
         Self(sse2!(_mm_min_pd(self.0, o.0)))
     }
     #[inline(always)]
-    pub(crate) fn abs(self) -> Self {
+    pub fn abs(self) -> Self {
         Self(sse2!(_mm_andnot_pd(_mm_set1_pd(-0.0), self.0)))
     }
     #[inline(always)]
-    pub(crate) fn neg(self) -> Self {
+    pub fn neg(self) -> Self {
         Self(sse2!(_mm_xor_pd(_mm_set1_pd(-0.0), self.0)))
     }
     /// Negates the first number.
     #[inline(always)]
-    pub(crate) fn neg_first(self) -> Self {
+    pub fn neg_first(self) -> Self {
         Self(sse2!(_mm_xor_pd(_mm_set_pd(0.0, -0.0), self.0)))
     }
     #[inline(always)]
-    pub(crate) fn swap(self) -> Self {
+    pub fn swap(self) -> Self {
         Self(sse2!(_mm_shuffle_pd::<1>(self.0, self.0)))
     }
     #[inline(always)]
-    pub(crate) fn both_first(self) -> Self {
+    pub fn both_first(self) -> Self {
         Self(sse2!(_mm_unpacklo_pd(self.0, self.0)))
     }
     #[inline(always)]
-    pub(crate) fn both_second(self) -> Self {
+    pub fn both_second(self) -> Self {
         Self(sse2!(_mm_unpackhi_pd(self.0, self.0)))
     }
     /// The first number of `self` and the second of `o`.
     #[inline(always)]
-    pub(crate) fn first_and_second(self, o: Self) -> Self {
+    pub fn first_and_second(self, o: Self) -> Self {
         Self(sse2!(_mm_shuffle_pd::<2>(self.0, o.0)))
     }
     /// Mask: all bits where `self < o`.
     #[inline(always)]
-    pub(crate) fn lt(self, o: Self) -> Self {
+    pub fn lt(self, o: Self) -> Self {
         Self(sse2!(_mm_cmplt_pd(self.0, o.0)))
     }
     /// Mask: all bits where `self <= o`.
     #[inline(always)]
-    pub(crate) fn le(self, o: Self) -> Self {
+    pub fn le(self, o: Self) -> Self {
         Self(sse2!(_mm_cmple_pd(self.0, o.0)))
     }
     #[inline(always)]
-    pub(crate) fn and(self, o: Self) -> Self {
+    pub fn and(self, o: Self) -> Self {
         Self(sse2!(_mm_and_pd(self.0, o.0)))
     }
     #[inline(always)]
-    pub(crate) fn xor(self, o: Self) -> Self {
+    pub fn xor(self, o: Self) -> Self {
         Self(sse2!(_mm_xor_pd(self.0, o.0)))
     }
     /// `yes` where the mask `self` is set, else `no`.
     #[inline(always)]
-    pub(crate) fn select(self, yes: Self, no: Self) -> Self {
+    pub fn select(self, yes: Self, no: Self) -> Self {
         Self(sse2!(_mm_or_pd(_mm_and_pd(self.0, yes.0), _mm_andnot_pd(self.0, no.0))))
     }
     /// Mask: all bits where bit 0 of the number's representation is set.
     #[inline(always)]
-    pub(crate) fn lowest_bit(self) -> Self {
+    pub fn lowest_bit(self) -> Self {
         let top = sse2!(_mm_srai_epi32::<31>(_mm_slli_epi64::<63>(_mm_castpd_si128(self.0))));
         Self(sse2!(_mm_castsi128_pd(_mm_shuffle_epi32::<0b11_11_01_01>(top))))
     }
     /// The sign bit where bit 1 of the number's representation is set, else 0.
     #[inline(always)]
-    pub(crate) fn second_bit_as_sign(self) -> Self {
+    pub fn second_bit_as_sign(self) -> Self {
         let moved = sse2!(_mm_castsi128_pd(_mm_slli_epi64::<62>(_mm_castpd_si128(self.0))));
         Self(sse2!(_mm_and_pd(moved, _mm_set1_pd(-0.0))))
     }
     /// The sign bits, first number in bit 0; of a mask, whether it is set.
     #[inline(always)]
-    pub(crate) fn sign_bits(self) -> u32 {
+    pub fn sign_bits(self) -> u32 {
         sse2!(_mm_movemask_pd(self.0)) as u32
     }
 }

@@ -8,132 +8,132 @@ use core::arch::wasm32::{
 /// Two doubles. Comparisons with NaN are false; `max(a, b)` is `if a > b { a } else { b }`.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub(crate) struct F64x2(v128);
+pub struct F64x2(v128);
 
 impl F64x2 {
     #[inline(always)]
-    pub(crate) const fn new(first: f64, second: f64) -> Self {
+    pub const fn new(first: f64, second: f64) -> Self {
         Self(f64x2(first, second))
     }
     /// As [`Self::new`], for values known at run time only.
     #[inline(always)]
-    pub(crate) fn pack(first: f64, second: f64) -> Self {
+    pub fn pack(first: f64, second: f64) -> Self {
         Self(f64x2(first, second))
     }
     #[inline(always)]
-    pub(crate) fn splat(x: f64) -> Self {
+    pub fn splat(x: f64) -> Self {
         Self(f64x2_splat(x))
     }
     #[inline(always)]
-    pub(crate) const fn to_array(self) -> [f64; 2] {
+    pub const fn to_array(self) -> [f64; 2] {
         // SAFETY: `[f64; 2]` and `v128` have the same size and every bit pattern is valid in both.
         unsafe { core::mem::transmute::<v128, [f64; 2]>(self.0) }
     }
     #[inline(always)]
-    pub(crate) fn first(self) -> f64 {
+    pub fn first(self) -> f64 {
         f64x2_extract_lane::<0>(self.0)
     }
     #[inline(always)]
-    pub(crate) fn second(self) -> f64 {
+    pub fn second(self) -> f64 {
         f64x2_extract_lane::<1>(self.0)
     }
     #[inline(always)]
-    pub(crate) fn plus(self, o: Self) -> Self {
+    pub fn plus(self, o: Self) -> Self {
         Self(f64x2_add(self.0, o.0))
     }
     #[inline(always)]
-    pub(crate) fn minus(self, o: Self) -> Self {
+    pub fn minus(self, o: Self) -> Self {
         Self(f64x2_sub(self.0, o.0))
     }
     #[inline(always)]
-    pub(crate) fn times(self, o: Self) -> Self {
+    pub fn times(self, o: Self) -> Self {
         Self(f64x2_mul(self.0, o.0))
     }
     #[inline(always)]
-    pub(crate) fn over(self, o: Self) -> Self {
+    pub fn over(self, o: Self) -> Self {
         Self(f64x2_div(self.0, o.0))
     }
     #[inline(always)]
-    pub(crate) fn sqrt(self) -> Self {
+    pub fn sqrt(self) -> Self {
         Self(f64x2_sqrt(self.0))
     }
     #[inline(always)]
-    pub(crate) fn max(self, o: Self) -> Self {
+    pub fn max(self, o: Self) -> Self {
         // pmax(a, b) is `if a < b { b } else { a }`.
         Self(f64x2_pmax(o.0, self.0))
     }
     /// `if a < b { a } else { b }`.
     #[inline(always)]
-    pub(crate) fn min(self, o: Self) -> Self {
+    pub fn min(self, o: Self) -> Self {
         // pmin(a, b) is `if b < a { b } else { a }`.
         Self(f64x2_pmin(o.0, self.0))
     }
     #[inline(always)]
-    pub(crate) fn abs(self) -> Self {
+    pub fn abs(self) -> Self {
         Self(f64x2_abs(self.0))
     }
     #[inline(always)]
-    pub(crate) fn neg(self) -> Self {
+    pub fn neg(self) -> Self {
         Self(f64x2_neg(self.0))
     }
     /// Negates the first number.
     #[inline(always)]
-    pub(crate) fn neg_first(self) -> Self {
+    pub fn neg_first(self) -> Self {
         Self(v128_xor(self.0, f64x2(-0.0, 0.0)))
     }
     #[inline(always)]
-    pub(crate) fn swap(self) -> Self {
+    pub fn swap(self) -> Self {
         Self(i64x2_shuffle::<1, 0>(self.0, self.0))
     }
     #[inline(always)]
-    pub(crate) fn both_first(self) -> Self {
+    pub fn both_first(self) -> Self {
         Self(i64x2_shuffle::<0, 0>(self.0, self.0))
     }
     #[inline(always)]
-    pub(crate) fn both_second(self) -> Self {
+    pub fn both_second(self) -> Self {
         Self(i64x2_shuffle::<1, 1>(self.0, self.0))
     }
     /// The first number of `self` and the second of `o`.
     #[inline(always)]
-    pub(crate) fn first_and_second(self, o: Self) -> Self {
+    pub fn first_and_second(self, o: Self) -> Self {
         Self(i64x2_shuffle::<0, 3>(self.0, o.0))
     }
     /// Mask: all bits where `self < o`.
     #[inline(always)]
-    pub(crate) fn lt(self, o: Self) -> Self {
+    pub fn lt(self, o: Self) -> Self {
         Self(f64x2_lt(self.0, o.0))
     }
     /// Mask: all bits where `self <= o`.
     #[inline(always)]
-    pub(crate) fn le(self, o: Self) -> Self {
+    pub fn le(self, o: Self) -> Self {
         Self(f64x2_le(self.0, o.0))
     }
     #[inline(always)]
-    pub(crate) fn and(self, o: Self) -> Self {
+    pub fn and(self, o: Self) -> Self {
         Self(v128_and(self.0, o.0))
     }
     #[inline(always)]
-    pub(crate) fn xor(self, o: Self) -> Self {
+    pub fn xor(self, o: Self) -> Self {
         Self(v128_xor(self.0, o.0))
     }
     /// `yes` where the mask `self` is set, else `no`.
     #[inline(always)]
-    pub(crate) fn select(self, yes: Self, no: Self) -> Self {
+    pub fn select(self, yes: Self, no: Self) -> Self {
         Self(v128_bitselect(yes.0, no.0, self.0))
     }
     /// Mask: all bits where bit 0 of the number's representation is set.
     #[inline(always)]
-    pub(crate) fn lowest_bit(self) -> Self {
+    pub fn lowest_bit(self) -> Self {
         Self(i64x2_shr(i64x2_shl(self.0, 63), 63))
     }
     /// The sign bit where bit 1 of the number's representation is set, else 0.
     #[inline(always)]
-    pub(crate) fn second_bit_as_sign(self) -> Self {
+    pub fn second_bit_as_sign(self) -> Self {
         Self(v128_and(i64x2_shl(self.0, 62), u64x2_splat(1 << 63)))
     }
     /// The sign bits, first number in bit 0; of a mask, whether it is set.
     #[inline(always)]
-    pub(crate) fn sign_bits(self) -> u32 {
+    pub fn sign_bits(self) -> u32 {
         i64x2_bitmask(self.0) as u32
     }
 }

@@ -128,6 +128,7 @@ impl RelativeState {
                 + k * second)
                 * wide,
             m3: (b * b * (3.0 * speed + b * reach) + 3.0 * (beta * (speed + b * reach) + b * a_sup)) * UP,
+            m4: 0.0,
         };
         let turn_remainder = Remainder {
             e0: (ra + rb + k) * wide,
@@ -136,6 +137,7 @@ impl RelativeState {
                 + k * turn_second)
                 * wide,
             m3: (beta * w + 2.0 * b * lambda + b * c + 3.0 * w * (lambda + c) + w * w * w) * UP,
+            m4: 0.0,
         };
         Self {
             rotation_a: sa.rotation,
@@ -193,6 +195,7 @@ impl RelativeState {
             p: self.back(g + z) + self.at_b,
             v: self.back(g1 + z1),
             a: self.back(g2 + z2),
+            j: DVec3::ZERO,
             remainder: self.remainder(radius, extent),
         }
     }
@@ -206,11 +209,13 @@ impl RelativeState {
             p: self.back(z),
             v: self.back(z1),
             a: self.back(z2),
+            j: DVec3::ZERO,
             remainder: Remainder {
                 e0: r.e0 * length * UP,
                 e1: r.e1 * length * UP,
                 e2: r.e2 * length * UP,
                 m3: r.m3 * length * UP,
+                m4: 0.0,
             },
         }
     }
@@ -224,6 +229,7 @@ impl RelativeState {
             e1: (s.e1 + t.e1 * radius) * UP,
             e2: (s.e2 + t.e2 * radius) * UP,
             m3: (s.m3 + t.m3 * radius) * UP,
+            m4: 0.0,
         }
     }
 

@@ -26,6 +26,8 @@ pub(super) struct Bounds {
     pub(super) k2: f64,
     /// K3 = bc + 3wc + w³.
     pub(super) k3: f64,
+    /// K4 = b²c + 3bwc + 3cK2 + wK3.
+    pub(super) k4: f64,
     /// k = 2⁻⁵³·(128 + 6(a + b)T).
     pub(super) rounding: f64,
 }
@@ -48,20 +50,21 @@ impl Bounds {
         let c = difference.cross(spin_b.omega).length() * UP + 8.0 * UNIT * w * b;
         let k2 = (c + w * w) * UP;
         let k3 = (b * c + 3.0 * w * c + w * w * w) * UP;
+        let k4 = (b * b * c + 3.0 * b * w * c + 3.0 * c * k2 + w * k3) * UP;
         let turn = (a + b) * duration;
         let rounding = if turn <= crate::sin_cos::LARGEST_ANGLE {
             UNIT * (ROUNDING + ROUNDING_PER_RADIAN * turn) * UP
         } else {
             f64::INFINITY
         };
-        Self { speed, reach, a, b, w, k2, k3, rounding }
+        Self { speed, reach, a, b, w, k2, k3, k4, rounding }
     }
 }
 
 impl RelativeMotion {
     /// Bound of the distance from B's followed point of a point of A within `radius`: `Y + ρ`.
     pub fn bound_reach(&self, radius: f64) -> f64 {
-        (self.bounds.reach + radius + self.arm()) * UP
+        (self.bounds.reach + radius + self.anchor_arm()) * UP
     }
 
     /// The part of the window (τ) in which the followed points come within `distance` of each other, rounded
@@ -117,13 +120,13 @@ impl RelativeMotion {
     /// The same while the followed points are within `reach` of each other: `Y = reach`.
     pub fn bound_speed_within(&self, radius: f64, reach: f64) -> f64 {
         let k = &self.bounds;
-        (k.speed + k.b * reach.min(k.reach) + k.w * (radius + self.arm())) * UP
+        (k.speed + k.b * reach.min(k.reach) + k.w * (radius + self.anchor_arm())) * UP
     }
 
     /// Bound of the acceleration: `b(2U + bY) + K2·ρ`.
     pub fn bound_acceleration(&self, radius: f64) -> f64 {
         let k = &self.bounds;
-        (k.b * (2.0 * k.speed + k.b * k.reach) + k.k2 * (radius + self.arm())) * UP
+        (k.b * (2.0 * k.speed + k.b * k.reach) + k.k2 * (radius + self.anchor_arm())) * UP
     }
 
     /// Bound M3 of the third derivative: `b²(3U + bY) + K3·ρ`.
@@ -134,19 +137,20 @@ impl RelativeMotion {
     /// The same while the followed points are within `reach` of each other.
     fn bound_jerk_within(&self, radius: f64, reach: f64) -> f64 {
         let k = &self.bounds;
-        (k.b * k.b * (3.0 * k.speed + k.b * reach.min(k.reach)) + k.k3 * (radius + self.arm())) * UP
+        (k.b * k.b * (3.0 * k.speed + k.b * reach.min(k.reach)) + k.k3 * (radius + self.anchor_arm())) * UP
     }
 
-    /// Bound of the k-th derivative of a direction of A of length 1, k = 1, 2, 3: `w`, `K2`, `K3`.
+    /// Bound of the k-th derivative of a direction of A of length 1, k = 1, 2, 3, 4: `w`, `K2`, `K3`, `K4`.
     ///
     /// # Panics
-    /// If `order` is not 1, 2 or 3.
+    /// If `order` is not 1, 2, 3 or 4.
     pub fn bound_direction_derivative(&self, order: u32) -> f64 {
         match order {
             1 => self.bounds.w,
             2 => self.bounds.k2,
             3 => self.bounds.k3,
-            _ => panic!("derivative of order {order}: 1, 2 or 3 expected"),
+            4 => self.bounds.k4,
+            _ => panic!("derivative of order {order}: 1 to 4 expected"),
         }
     }
 
@@ -162,7 +166,7 @@ impl RelativeMotion {
     pub fn point_remainder_within(&self, radius: f64, extent: f64, reach: f64) -> Remainder {
         let k = &self.bounds;
         let here = if reach < k.reach { reach + k.reach * (8.0 * UNIT / k.rounding) } else { k.reach };
-        let s0 = here + radius + extent + self.arm();
+        let s0 = here + radius + extent + self.anchor_arm();
         let turn = k.a + k.b;
         // An anchored frame brings the rounding of its own position: see `Frame::point_jet`.
         let e0 = if self.anchor.is_some() { (radius + extent) * k.rounding } else { s0 * k.rounding };
@@ -171,7 +175,35 @@ impl RelativeMotion {
             e1: 2.0 * (k.speed + turn * s0) * k.rounding * UP,
             e2: 4.0 * (turn * turn * s0 + k.b * k.speed) * k.rounding * UP,
             m3: self.bound_jerk_within(radius, reach),
+            m4: 0.0,
         }
+    }
+
+    /// Bound M4 of the fourth derivative while the followed points are within `reach` of each other:
+    /// `b³(4U + bY) + K4·ρ`.
+    pub fn bound_fourth_derivative_within(&self, radius: f64, reach: f64) -> f64 {
+        let k = &self.bounds;
+        let y = reach.min(k.reach);
+        (k.b * k.b * k.b * (4.0 * k.speed + k.b * y) + k.k4 * (radius + self.anchor_arm())) * UP
+    }
+
+    /// The remainder of jets to third order of the points whose jets to second order have the remainder `second` of
+    /// [`RelativeMotion::point_remainder_within`]: `M4·h⁴/24` and the rounding of the third derivative,
+    /// `2k((a + b)³S0 + 3b²U)`, in place of `M3·h³/6`.
+    pub fn point_remainder_third_order(&self, second: Remainder, fourth_derivative: f64) -> Remainder {
+        let k = &self.bounds;
+        let turn = k.a + k.b;
+        let rounding = 2.0 * (turn * turn * turn * second.e0 + 3.0 * k.b * k.b * k.speed * k.rounding) * UP;
+        Remainder { m3: rounding, m4: fourth_derivative, ..second }
+    }
+
+    /// The same for directions: `K4·h⁴/24` of the length in place of `K3·h³/6`.
+    pub fn direction_remainder_third_order(&self, length: f64) -> Remainder {
+        let k = &self.bounds;
+        let second = self.direction_remainder(length);
+        let turn = k.a + k.b;
+        let rounding = 2.0 * turn * turn * turn * second.e0 * UP;
+        Remainder { m3: rounding, m4: k.k4 * length * UP, ..second }
     }
 
     /// Remainder of the jet of a direction of A of the given length: as a point with `g = u = 0`.
@@ -179,10 +211,16 @@ impl RelativeMotion {
         let k = &self.bounds;
         let turn = k.a + k.b;
         let e0 = length * k.rounding * UP;
-        Remainder { e0, e1: 2.0 * turn * e0 * UP, e2: 4.0 * turn * turn * e0 * UP, m3: k.k3 * length * UP }
+        Remainder {
+            e0,
+            e1: 2.0 * turn * e0 * UP,
+            e2: 4.0 * turn * turn * e0 * UP,
+            m3: k.k3 * length * UP,
+            m4: 0.0,
+        }
     }
 
-    fn arm(&self) -> f64 {
+    fn anchor_arm(&self) -> f64 {
         self.anchor.as_ref().map_or(0.0, |anchor| anchor.arm)
     }
 }

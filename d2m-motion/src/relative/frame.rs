@@ -1,6 +1,9 @@
 //! The relative pose and its first two derivatives at one time, shared by all features of a pair of bodies.
 use super::RelativeMotion;
+use crate::sin_cos::sin_cos_two;
+use crate::two::TwoVec3;
 use crate::{PathJet, Remainder};
+use d2m_interval::F64x2;
 use glam::{DMat3, DVec3};
 
 /// Three matrices and three vectors: `q⁽ᵏ⁾ = c_k + M_k r` for a point of A, `e⁽ᵏ⁾ = M_k d` for a direction.
@@ -31,6 +34,7 @@ impl Frame {
             p: self.shift[0] + self.turn[0] * r,
             v: self.shift[1] + self.turn[1] * r,
             a: self.shift[2] + self.turn[2] * r,
+            j: DVec3::ZERO,
             remainder: Remainder { e0: remainder.e0 + self.extra, ..remainder },
         }
     }
@@ -38,7 +42,7 @@ impl Frame {
     /// Jet of a direction of A (world axes at the epoch).
     #[inline(always)]
     pub fn direction_jet(&self, d: DVec3, remainder: Remainder) -> PathJet {
-        PathJet { p: self.turn[0] * d, v: self.turn[1] * d, a: self.turn[2] * d, remainder }
+        PathJet { p: self.turn[0] * d, v: self.turn[1] * d, a: self.turn[2] * d, j: DVec3::ZERO, remainder }
     }
 }
 
@@ -54,48 +58,78 @@ fn transpose_mul(m: &DMat3, v: DVec3) -> DVec3 {
     DVec3::new(m.x_axis.dot(v), m.y_axis.dot(v), m.z_axis.dot(v))
 }
 
-/// What the jets of single vectors need of a time: `R_A`, `R_B`, `P`, `W`, `W′`, `c_1`, `c_2` of [`Frame`].
-struct Turning {
-    rotation_a: DMat3,
-    rotation_b: DMat3,
-    w: DVec3,
-    w1: DVec3,
-    shift: [DVec3; 3],
+/// A vector of A, prepared for jets at many times: its parts along and across A's axis `k`, and `k × r`. Turned by
+/// an angle θ it is `along + cos θ·across + sin θ·turned`.
+#[derive(Debug, Clone, Copy)]
+pub struct Arm {
+    along: DVec3,
+    across: DVec3,
+    turned: DVec3,
 }
 
-impl Turning {
-    /// `z`, `W × z`, `W′ × z + W × (W × z)` for `z = R_BᵀR_A v`.
-    #[inline(always)]
-    fn turn(&self, v: DVec3) -> [DVec3; 3] {
-        let z = transpose_mul(&self.rotation_b, self.rotation_a * v);
-        let first = self.w.cross(z);
-        [z, first, self.w1.cross(z) + self.w.cross(first)]
+/// A point and a direction of A, prepared side by side.
+#[derive(Clone, Copy)]
+pub struct ArmPair {
+    along: TwoVec3,
+    across: TwoVec3,
+    turned: TwoVec3,
+}
+
+impl ArmPair {
+    /// Both side by side.
+    #[inline]
+    pub fn new(point: &Arm, direction: &Arm) -> Self {
+        Self {
+            along: TwoVec3::new(point.along, direction.along),
+            across: TwoVec3::new(point.across, direction.across),
+            turned: TwoVec3::new(point.turned, direction.turned),
+        }
     }
 }
 
 impl RelativeMotion {
-    #[inline(always)]
-    fn turning(&self, tau: f64) -> Turning {
-        let rotation_a = self.spin_a.rotation(tau);
-        let rotation_b = self.spin_b.rotation(tau);
-        let omega = self.spin_b.omega;
-        let p = transpose_mul(&rotation_b, self.offset + self.velocity * tau);
-        let u = transpose_mul(&rotation_b, self.velocity);
-        let w = transpose_mul(&rotation_b, self.spin_difference);
-        let c1 = u - omega.cross(p);
-        let c2 = (u + c1).cross(omega);
-        Turning { rotation_a, rotation_b, w, w1: w.cross(omega), shift: [p, c1, c2] }
+    /// Prepares a vector of A ([`RelativeMotion::place_a`], [`RelativeMotion::turn_a`]).
+    #[inline]
+    pub fn arm(&self, r: DVec3) -> Arm {
+        let k = self.spin_a.axis;
+        let along = k * k.dot(r);
+        Arm { along, across: r - along, turned: k.cross(r) }
     }
 
-    /// The jet of one point, as [`RelativeMotion::frame`] and [`Frame::point_jet`] give it, in fewer operations than
-    /// a frame takes. Not for anchored motions.
+    /// Sine and cosine of A's angle, and `R_B` at a time.
+    #[inline(always)]
+    fn turns(&self, tau: f64) -> ([f64; 2], DMat3) {
+        let angles = F64x2::pack(self.spin_a.speed, self.spin_b.speed).times(F64x2::splat(tau));
+        let (sin, cos) = sin_cos_two(angles);
+        ([sin.first(), cos.first()], self.spin_b.rotation_of(sin.second(), cos.second()))
+    }
+
+    /// The jet of one point to third order, in fewer operations than a frame takes; `remainder` is
+    /// [`RelativeMotion::point_remainder_third_order`]. Not for anchored motions.
+    ///
+    /// With `z = R_A r`, `x = g + uτ + z`: `q⁽ᵏ⁾ = R_Bᵀ X_k`, `X₀ = x`, `X₁ = x′ − ω_B × x`,
+    /// `X₂ = x″ − ω_B × x′ − ω_B × X₁`, `X₃ = x‴ − ω_B × (2x″ − ω_B × x′ + X₂)`.
     #[inline]
-    pub fn point_jet(&self, tau: f64, r: DVec3, remainder: Remainder) -> PathJet {
+    pub fn point_jet(&self, tau: f64, r: &Arm, remainder: Remainder) -> PathJet {
         debug_assert!(self.anchor.is_none());
-        let turning = self.turning(tau);
-        let [z, z1, z2] = turning.turn(r);
-        let [p, v, a] = turning.shift;
-        PathJet { p: p + z, v: v + z1, a: a + z2, remainder }
+        let ([sin, cos], back) = self.turns(tau);
+        let (a, omega) = (self.spin_a.speed, self.spin_b.omega);
+        let turning = r.across * cos + r.turned * sin;
+        let x = (self.offset + self.velocity * tau) + (r.along + turning);
+        let swing = (r.turned * cos - r.across * sin) * a;
+        let moved = self.velocity + swing;
+        let x1 = moved - omega.cross(x);
+        let bent = turning * (-a * a);
+        let dragged = omega.cross(moved);
+        let x2 = bent - dragged - omega.cross(x1);
+        let x3 = swing * (-a * a) - omega.cross(bent * 2.0 - dragged + x2);
+        PathJet {
+            p: transpose_mul(&back, x),
+            v: transpose_mul(&back, x1),
+            a: transpose_mul(&back, x2),
+            j: transpose_mul(&back, x3),
+            remainder,
+        }
     }
 
     /// The jets of a point and of a direction at one time. Not for anchored motions.
@@ -103,17 +137,30 @@ impl RelativeMotion {
     pub fn point_and_direction_jets(
         &self,
         tau: f64,
-        point: (DVec3, Remainder),
-        direction: (DVec3, Remainder),
+        arms: &ArmPair,
+        (point, direction): (Remainder, Remainder),
     ) -> (PathJet, PathJet) {
         debug_assert!(self.anchor.is_none());
-        let turning = self.turning(tau);
-        let [z, z1, z2] = turning.turn(point.0);
-        let [e, e1, e2] = turning.turn(direction.0);
-        let [p, v, a] = turning.shift;
+        let ([sin, cos], back) = self.turns(tau);
+        let (sin, cos, a) = (F64x2::splat(sin), F64x2::splat(cos), self.spin_a.speed);
+        let &ArmPair { along, across, turned } = arms;
+        let turning = across.scaled(cos) + turned.scaled(sin);
+        let only = |v: DVec3| TwoVec3::new(v, DVec3::ZERO);
+        let x = only(self.offset + self.velocity * tau) + (along + turning);
+        let swing = (turned.scaled(cos) - across.scaled(sin)).scaled(F64x2::splat(a));
+        let moved = only(self.velocity) + swing;
+        let omega = TwoVec3::splat(self.spin_b.omega);
+        let x1 = moved - omega.cross(x);
+        let bent = turning.scaled(F64x2::splat(-a * a));
+        let dragged = omega.cross(moved);
+        let x2 = bent - dragged - omega.cross(x1);
+        let x3 = swing.scaled(F64x2::splat(-a * a)) - omega.cross(bent + bent - dragged + x2);
+        let columns = [back.x_axis, back.y_axis, back.z_axis].map(TwoVec3::splat);
+        let seen = |v: TwoVec3| TwoVec3 { x: columns[0].dot(v), y: columns[1].dot(v), z: columns[2].dot(v) };
+        let (p, v, a, j) = (seen(x), seen(x1), seen(x2), seen(x3));
         (
-            PathJet { p: p + z, v: v + z1, a: a + z2, remainder: point.1 },
-            PathJet { p: e, v: e1, a: e2, remainder: direction.1 },
+            PathJet { p: p.first(), v: v.first(), a: a.first(), j: j.first(), remainder: point },
+            PathJet { p: p.second(), v: v.second(), a: a.second(), j: j.second(), remainder: direction },
         )
     }
 

@@ -12,7 +12,7 @@ mod any_tests;
 mod tests;
 
 pub use any::RelativeState;
-pub use frame::Frame;
+pub use frame::{Arm, ArmPair, Frame};
 
 use crate::LinearMotion;
 use crate::double_double::DoubleDouble;

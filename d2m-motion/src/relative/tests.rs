@@ -1,9 +1,9 @@
 //! Every bound of the relative motion, sampled: never above 1 of the bound, somewhere above 0.9 of it; and mutants of
 //! the bounds that the same samples refute.
-use super::RelativeMotion;
+use super::{ArmPair, RelativeMotion};
 use crate::double_double::DoubleDouble;
 use crate::rotation::exponential_dd;
-use crate::{LinearMotion, Remainder};
+use crate::{LinearMotion, PathJet, Remainder};
 use glam::{DQuat, DVec3};
 
 struct Random(u64);
@@ -58,8 +58,8 @@ fn sample(random: &mut Random, i: usize) -> (RelativeMotion, DVec3) {
     (RelativeMotion::new(&a, &b, 0.0, random.log(1e-3, 1.0)), arm)
 }
 
-/// First, second and third derivative of a point at τ; the third by the same recursion once more.
-fn derivatives(motion: &RelativeMotion, r: DVec3, tau: f64) -> [DVec3; 3] {
+/// First to fourth derivative of a point at τ, by the same recursion again and again.
+fn derivatives(motion: &RelativeMotion, r: DVec3, tau: f64) -> [DVec3; 4] {
     let omega = motion.spin_b.omega;
     let (turn_a, turn_b) = (motion.spin_a.rotation(tau), motion.spin_b.rotation(tau));
     let back = turn_b.transpose();
@@ -68,37 +68,42 @@ fn derivatives(motion: &RelativeMotion, r: DVec3, tau: f64) -> [DVec3; 3] {
     let p1 = u - omega.cross(p);
     let p2 = -omega.cross(u + p1);
     let p3 = omega.cross(omega.cross(u)) - omega.cross(p2);
-    let [z1, z2, z3] = direction_derivatives(motion, r, back * (turn_a * r), back);
-    [p1 + z1, p2 + z2, p3 + z3]
+    let p4 = -omega.cross(omega.cross(omega.cross(u)) + p3);
+    let [z1, z2, z3, z4] = direction_derivatives(motion, back * (turn_a * r), back);
+    [p1 + z1, p2 + z2, p3 + z3, p4 + z4]
 }
 
-fn direction_derivatives(motion: &RelativeMotion, _: DVec3, z: DVec3, back: glam::DMat3) -> [DVec3; 3] {
+fn direction_derivatives(motion: &RelativeMotion, z: DVec3, back: glam::DMat3) -> [DVec3; 4] {
     let omega = motion.spin_b.omega;
     let w = back * motion.spin_difference;
     let w1 = -omega.cross(w);
     let w2 = -omega.cross(w1);
+    let w3 = -omega.cross(w2);
     let z1 = w.cross(z);
     let z2 = w1.cross(z) + w.cross(z1);
-    [z1, z2, w2.cross(z) + 2.0 * w1.cross(z1) + w.cross(z2)]
+    let z3 = w2.cross(z) + 2.0 * w1.cross(z1) + w.cross(z2);
+    [z1, z2, z3, w3.cross(z) + 3.0 * (w2.cross(z1) + w1.cross(z2)) + w.cross(z3)]
 }
 
 #[test]
 fn bounds_of_the_derivatives_hold_and_are_nearly_reached() {
     let mut random = Random(11);
-    let (mut point, mut direction) = ([0.0_f64; 3], [0.0_f64; 3]);
-    // Mutants: K3 = w³; no 3U in M3; no bY in V; half of K2.
-    let mut mutants = [0.0_f64; 4];
+    let (mut point, mut direction) = ([0.0_f64; 4], [0.0_f64; 4]);
+    // Mutants: K3 = w³; no 3U in M3; no bY in V; half of K2; K4 = w⁴; no 4U in M4.
+    let mut mutants = [0.0_f64; 6];
     for i in 0..40_000 {
         let (motion, arm) = sample(&mut random, i);
         let (rho, k) = (arm.length(), &motion.bounds);
-        let bounds = [motion.bound_speed(rho), motion.bound_acceleration(rho), motion.bound_jerk(rho)];
+        let fourth = motion.bound_fourth_derivative_within(rho, f64::INFINITY);
+        let bounds =
+            [motion.bound_speed(rho), motion.bound_acceleration(rho), motion.bound_jerk(rho), fourth];
         for j in 0..4 {
             let tau = motion.duration() * f64::from(j) / 3.0;
             let q = derivatives(&motion, arm, tau).map(DVec3::length);
             let back = motion.spin_b.rotation(tau).transpose();
             let z = back * (motion.spin_a.rotation(tau) * arm);
-            let e = direction_derivatives(&motion, arm, z, back).map(DVec3::length);
-            for order in 0..3 {
+            let e = direction_derivatives(&motion, z, back).map(DVec3::length);
+            for order in 0..4 {
                 point[order] = point[order].max(q[order] / bounds[order]);
                 let bound = motion.bound_direction_derivative(order as u32 + 1) * rho;
                 if bound > 0.0 {
@@ -110,6 +115,9 @@ fn bounds_of_the_derivatives_hold_and_are_nearly_reached() {
             mutants[1] = mutants[1].max(q[2] / (k.b.powi(3) * k.reach + k.k3 * rho));
             mutants[2] = mutants[2].max(q[0] / (k.speed + k.w * rho));
             mutants[3] = mutants[3].max(q[1] / (k.b * (2.0 * k.speed + k.b * k.reach) + 0.5 * k.k2 * rho));
+            let base = k.b.powi(3) * (4.0 * k.speed + k.b * k.reach);
+            mutants[4] = mutants[4].max(q[3] / (base + k.w.powi(4) * rho));
+            mutants[5] = mutants[5].max(q[3] / (k.b.powi(4) * k.reach + k.k4 * rho));
         }
     }
     for ratio in point.into_iter().chain(direction) {
@@ -127,6 +135,12 @@ fn exact(motion: &RelativeMotion, r: DVec3, tau: DoubleDouble) -> [DoubleDouble;
     turn_b.apply_transposed(x)
 }
 
+/// How far x is from the jet at s.
+fn off(x: [DoubleDouble; 3], jet: &PathJet, s: f64) -> f64 {
+    let third = jet.j * (s * s * s / 6.0);
+    difference([0, 1, 2].map(|i| x[i].add_f64(-third[i])), jet.p, jet.v, jet.a, s)
+}
+
 fn difference(x: [DoubleDouble; 3], p: DVec3, v: DVec3, a: DVec3, s: f64) -> f64 {
     let d = [0, 1, 2].map(|i| {
         let jet = DoubleDouble::from_f64(a[i]).mul_f64(0.5 * s).add_f64(v[i]).mul_f64(s).add_f64(p[i]);
@@ -138,36 +152,42 @@ fn difference(x: [DoubleDouble; 3], p: DVec3, v: DVec3, a: DVec3, s: f64) -> f64
 #[test]
 fn remainders_hold_and_are_nearly_reached() {
     let mut random = Random(12);
-    let (mut taylor, mut rounding, mut without) = (0.0_f64, 0.0_f64, 0);
+    // To second order (frames) and to third order (single jets).
+    let (mut taylor, mut rounding, mut without) = ([0.0_f64; 2], [0.0_f64; 2], [0; 2]);
     for i in 0..6000 {
-        let (motion, arm) = sample(&mut random, i);
-        let remainder = motion.point_remainder(arm.length(), 0.0);
+        let (motion, arm) = sample(&mut random, i / 2);
+        let second = motion.point_remainder(arm.length(), 0.0);
         let tau = motion.duration() * random.unit();
-        let jet = if i % 2 == 0 {
-            motion.frame(tau).point_jet(arm, remainder)
+        let order = i % 2;
+        let jet = if order == 0 {
+            motion.frame(tau).point_jet(arm, second)
         } else {
-            motion.point_jet(tau, arm, remainder)
+            let fourth = motion.bound_fourth_derivative_within(arm.length(), f64::INFINITY);
+            let third = motion.point_remainder_third_order(second, fourth);
+            motion.point_jet(tau, &motion.arm(arm), third)
         };
+        let remainder = jet.remainder;
         let room = (motion.duration() - tau).min(tau);
         for h in [0.0, room * 1e-3, room * 0.05, room] {
             for s in [-h, h] {
                 let at = DoubleDouble::from_f64(tau).add_f64(s);
-                let error = difference(exact(&motion, arm, at), jet.p, jet.v, jet.a, s);
+                let error = off(exact(&motion, arm, at), &jet, s);
                 let bound = remainder.bound(h);
                 assert!(error <= bound, "{error:e} > {bound:e} at {h}");
+                let terms = [remainder.m3 * h * h * h / 6.0, remainder.m4 * h * h * h * h / 24.0];
                 if h == 0.0 {
-                    rounding = rounding.max(error / remainder.e0);
-                    without += usize::from(error > 0.0);
-                } else if remainder.m3 * h * h * h / 6.0 > 1e6 * remainder.e0 {
-                    taylor = taylor.max(error / bound);
+                    rounding[order] = rounding[order].max(error / remainder.e0);
+                    without[order] += usize::from(error > 0.0);
+                } else if terms[order] > 1e6 * remainder.e0 {
+                    taylor[order] = taylor[order].max(error / bound);
                 }
             }
         }
     }
-    assert!(taylor >= 0.9, "the third-order term is far from sharp: {taylor}");
+    assert!(taylor.iter().all(|t| *t >= 0.9), "the last term is far from sharp: {taylor:?}");
     // The counted rounding is some 30 times what is measured; without it most jets would be wrong.
-    assert!((0.004..=1.0).contains(&rounding), "{rounding}");
-    assert!(without > 6000, "a mutant without E survives: {without}");
+    assert!(rounding.iter().all(|r| (0.004..=1.0).contains(r)), "{rounding:?}");
+    assert!(without.iter().all(|n| *n > 3000), "a mutant without E survives: {without:?}");
 }
 
 #[test]
@@ -177,8 +197,9 @@ fn directions_and_anchors_keep_their_remainders() {
         let (motion, arm) = sample(&mut random, i);
         let tau = motion.duration() * random.unit();
         let remainder = motion.direction_remainder(arm.length());
-        let (_, jet) =
-            motion.point_and_direction_jets(tau, (DVec3::ZERO, Remainder::default()), (arm, remainder));
+        let third = motion.direction_remainder_third_order(arm.length());
+        let arms = ArmPair::new(&motion.arm(DVec3::ZERO), &motion.arm(arm));
+        let (_, jet) = motion.point_and_direction_jets(tau, &arms, (Remainder::default(), third));
         let other = motion.frame(tau).direction_jet(arm, remainder);
         assert!((jet.a - other.a).length() <= 1e-12 * (1.0 + jet.a.length()));
         let turned = |tau: DoubleDouble| {
@@ -187,8 +208,10 @@ fn directions_and_anchors_keep_their_remainders() {
             exponential_dd(motion.spin_b.omega, tau).apply_transposed(z)
         };
         let h = motion.duration() * 0.01;
-        let error = difference(turned(DoubleDouble::from_f64(tau).add_f64(h)), jet.p, jet.v, jet.a, h);
-        assert!(error <= remainder.bound(h), "{error:e}");
+        for jet in [jet, other] {
+            let error = off(turned(DoubleDouble::from_f64(tau).add_f64(h)), &jet, h);
+            assert!(error <= jet.remainder.bound(h), "{error:e}");
+        }
 
         // The same point through an anchor a million units out, on a motion about a far centre.
         let far = random.vector() * 1e6;
@@ -258,13 +281,15 @@ fn the_part_of_the_window_within_reach_is_whole_and_its_remainders_hold() {
             inside += 1;
             let (from, to) = times.expect("a time within the distance");
             assert!(from <= tau && tau <= to, "{motion:?} {distance} {tau}");
-            let jet = motion.point_jet(tau, arm, remainder);
+            let fourth = motion.bound_fourth_derivative_within(arm.length(), distance * (1.0 + 1e-12));
+            let remainder = motion.point_remainder_third_order(remainder, fourth);
+            let jet = motion.point_jet(tau, &motion.arm(arm), remainder);
             let h = 0.01 * motion.duration();
             for s in [-h, h] {
                 let near = DoubleDouble::from_f64(tau).add_f64(s);
                 let y = [0, 1, 2].map(|i| motion.exact.offset[i].add(motion.exact.velocity[i].mul(near)).hi);
                 if DVec3::from_array(y).length() <= distance {
-                    let error = difference(exact(&motion, arm, near), jet.p, jet.v, jet.a, s);
+                    let error = off(exact(&motion, arm, near), &jet, s);
                     assert!(error <= remainder.bound(h), "{error:e}");
                 }
             }

@@ -2,6 +2,7 @@
 //!
 //! **Invariant:** nothing here knows what is moving. A [`PieceTest`] answers for pieces of time; [`isolate`] decides
 //! which pieces to ask about, and keeps the promise "nothing before `lo`" from the promises of the test.
+mod cubic;
 mod options;
 mod quadratic;
 mod search;
@@ -9,6 +10,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 
+pub use cubic::Cubic;
 pub use options::IsolatorOptions;
 pub use quadratic::{Band, Quadratic};
 pub use search::{Evidence, FirstRoot, Isolation, isolate};
@@ -23,6 +25,21 @@ pub struct Piece {
 }
 
 impl Piece {
+    /// Holds no piece.
+    pub const NONE: Self = Self { lo: f64::INFINITY, hi: f64::NEG_INFINITY };
+
+    /// True if `part` lies in this piece.
+    ///
+    /// ```
+    /// use d2m_root::Piece;
+    /// let piece = Piece { lo: 0.0, hi: 1.0 };
+    /// assert!(piece.holds(piece) && !piece.holds(Piece { lo: 0.5, hi: 1.5 }) && !Piece::NONE.holds(piece));
+    /// ```
+    #[inline(always)]
+    pub fn holds(&self, part: Self) -> bool {
+        self.lo <= part.lo && part.hi <= self.hi
+    }
+
     /// A time inside, the middle up to rounding.
     #[inline(always)]
     pub fn mid(&self) -> f64 {

@@ -39,6 +39,26 @@ impl Quadratic {
         self.slope + self.curvature * s
     }
 
+    /// The sum, coefficient by coefficient.
+    #[inline(always)]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            slope: self.slope + other.slope,
+            curvature: self.curvature + other.curvature,
+        }
+    }
+
+    /// The difference, coefficient by coefficient.
+    #[inline(always)]
+    pub fn minus(&self, other: &Self) -> Self {
+        Self {
+            value: self.value - other.value,
+            slope: self.slope - other.slope,
+            curvature: self.curvature - other.curvature,
+        }
+    }
+
     /// A time σ ≥ 0 such that `gap + slope·x + curvature·x²/2 > 0` for all 0 ≤ x < σ, given `gap > 0`: the first
     /// positive root, rounded down; infinite if there is none.
     ///
@@ -69,8 +89,9 @@ impl Quadratic {
         } else {
             0.0
         };
-        // f64::max drops a NaN.
-        (root * EARLY).max(0.0)
+        let early = root * EARLY;
+        // A NaN becomes 0.
+        if early > 0.0 { early } else { 0.0 }
     }
 
     /// Cuts off both ends of `part` (times relative to s = 0) where the quadratic is certainly outside the band;
@@ -117,33 +138,36 @@ impl Quadratic {
     #[inline(always)]
     pub fn clip_shared_sign(&self, other: &Self, margin: f64, part: Piece) -> Option<Piece> {
         let Piece { mut lo, mut hi } = part;
-        let shared = |s: f64, direction: f64| {
-            let (f, g) = (self.at(s), other.at(s));
-            let sign = if f > margin && g > margin {
+        let shared = |f: f64, g: f64| {
+            if f > margin && g > margin {
                 1.0
             } else if f < -margin && g < -margin {
                 -1.0
             } else {
-                return 0.0;
-            };
-            let reach = |q: &Self, value: f64| {
-                Self::bound_first_zero(
-                    sign * value - margin,
-                    sign * direction * q.slope_at(s),
-                    sign * q.curvature,
-                )
-            };
-            reach(self, f).min(reach(other, g))
+                0.0
+            }
         };
-        let advance = shared(lo, 1.0);
-        if advance > 0.0 {
+        // How far from `s`, where the values are `f` and `g`, both keep the sign.
+        let keep = |s: f64, f: f64, g: f64, sign: f64, direction: f64| {
+            let first = |q: &Self, value: f64| {
+                let slope = sign * direction * q.slope_at(s);
+                Self::bound_first_zero(sign * value - margin, slope, sign * q.curvature)
+            };
+            let (a, b) = (first(self, f), first(other, g));
+            if a < b { a } else { b }
+        };
+        let (f_lo, g_lo) = (self.at(lo), other.at(lo));
+        let (f_hi, g_hi) = (self.at(hi), other.at(hi));
+        let (at_lo, at_hi) = (shared(f_lo, g_lo), shared(f_hi, g_hi));
+        if at_lo != 0.0 {
+            let advance = keep(lo, f_lo, g_lo, at_lo, 1.0);
             if advance > hi - lo {
                 return None;
             }
             lo += advance;
         }
-        let retreat = shared(hi, -1.0);
-        if retreat > 0.0 {
+        if at_hi != 0.0 {
+            let retreat = keep(hi, f_hi, g_hi, at_hi, -1.0);
             if retreat > hi - lo {
                 return None;
             }

@@ -99,6 +99,50 @@ fn clipping_keeps_every_time_in_the_band() {
     assert!(empty > 5000 && shorter > 5000, "{empty} {shorter}");
 }
 
+#[test]
+fn cubics_are_clipped_to_their_root_and_keep_every_time_in_the_band() {
+    let mut random = Random(3);
+    let (mut empty, mut tiny, mut worst) = (0, 0, 0.0_f64);
+    for _ in 0..50_000 {
+        let cubic = Cubic {
+            value: random.signed(),
+            slope: 4.0 * random.signed(),
+            curvature: 9.0 * random.signed(),
+            jerk: 20.0 * random.signed(),
+        };
+        let (m, r) = (random.signed(), random.unit());
+        let (quadratic, left_out) = cubic.quadratic_near(m, r);
+        let part = Piece { lo: -random.unit(), hi: random.unit() };
+        let constant = 1e-14 + 0.1 * (random.unit() - 0.5).max(0.0);
+        let margin = |h: f64| constant + 1e-3 * h * h * h * h;
+        let clipped = cubic.clip(Band { lo: -0.01, hi: 0.02 }, margin, part);
+        let root = cubic.clip(Band { lo: 0.0, hi: 0.0 }, |_| 1e-14, part);
+        empty += usize::from(clipped.is_none());
+        tiny += usize::from(root.is_some_and(|p| p.width() < 1e-3));
+        for i in 0..=64 {
+            let x = f64::from(i) / 32.0 - 1.0;
+            let difference = (cubic.at(m + r * x) - quadratic.at(r * x)).abs();
+            assert!(difference <= left_out + 1e-13, "{difference} {left_out}");
+            worst = worst.max(difference / (left_out + 1e-13));
+            let s = part.lo + part.width() * f64::from(i) / 64.0;
+            let keeps = |piece: Option<Piece>| piece.is_some_and(|p| p.lo <= s && s <= p.hi);
+            let (value, allowed) = (cubic.at(s), margin(s.abs()) - 1e-13);
+            if value >= -0.01 - allowed && value <= 0.02 + allowed && allowed > 0.0 {
+                assert!(keeps(clipped), "{cubic:?} {part:?} {s}");
+            }
+        }
+        // A change of sign between two samples stays inside.
+        for i in 0..64 {
+            let at = |i: i32| part.lo + part.width() * f64::from(i) / 64.0;
+            if cubic.at(at(i)) * cubic.at(at(i + 1)) < -1e-20 {
+                let kept = root.expect("a root is never lost");
+                assert!(kept.lo <= at(i + 1) && at(i) <= kept.hi, "{cubic:?} {part:?} {kept:?}");
+            }
+        }
+    }
+    assert!(empty > 5000 && tiny > 5000 && worst > 0.9, "{empty} {tiny} {worst}");
+}
+
 /// A distance |x(t)| with x a cubic: contact where it vanishes; every answer is exact up to 1e-14.
 struct Cubic {
     roots: [f64; 3],

@@ -159,8 +159,8 @@ pub(crate) const MUTANTS: &[Mutant] = &[
     patch(
         "the plane without the path's remainder",
         "d2m-feature/src/point_triangle/mod.rs",
-        "let wide = remainder.bound(reach(whole));",
-        "let wide = 0.0 * remainder.bound(reach(whole));",
+        "plane.clip(slab, |h| remainder.bound(h), searched)",
+        "plane.clip(slab, |h| 0.0 * remainder.bound(h), searched)",
         "d2m-feature/tests/first_contact.rs::planted_contacts_are_never_missed_and_never_late",
     ),
     in_test(

@@ -1,0 +1,73 @@
+//! Two vectors side by side, in the two halves of vector registers: the same bits as one after the other.
+use core::ops::{Add, Sub};
+use d2m_interval::F64x2;
+use glam::DVec3;
+
+/// Two vectors, component by component.
+#[derive(Clone, Copy)]
+pub(crate) struct TwoVec3 {
+    pub(crate) x: F64x2,
+    pub(crate) y: F64x2,
+    pub(crate) z: F64x2,
+}
+
+impl TwoVec3 {
+    #[inline(always)]
+    pub(crate) fn new(first: DVec3, second: DVec3) -> Self {
+        Self {
+            x: F64x2::pack(first.x, second.x),
+            y: F64x2::pack(first.y, second.y),
+            z: F64x2::pack(first.z, second.z),
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn splat(v: DVec3) -> Self {
+        Self { x: F64x2::splat(v.x), y: F64x2::splat(v.y), z: F64x2::splat(v.z) }
+    }
+
+    #[inline(always)]
+    pub(crate) fn first(self) -> DVec3 {
+        DVec3::new(self.x.first(), self.y.first(), self.z.first())
+    }
+
+    #[inline(always)]
+    pub(crate) fn second(self) -> DVec3 {
+        DVec3::new(self.x.second(), self.y.second(), self.z.second())
+    }
+
+    #[inline(always)]
+    pub(crate) fn dot(self, o: Self) -> F64x2 {
+        self.x.times(o.x).plus(self.y.times(o.y)).plus(self.z.times(o.z))
+    }
+
+    #[inline(always)]
+    pub(crate) fn cross(self, o: Self) -> Self {
+        Self {
+            x: self.y.times(o.z).minus(self.z.times(o.y)),
+            y: self.z.times(o.x).minus(self.x.times(o.z)),
+            z: self.x.times(o.y).minus(self.y.times(o.x)),
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn scaled(self, s: F64x2) -> Self {
+        Self { x: self.x.times(s), y: self.y.times(s), z: self.z.times(s) }
+    }
+}
+
+impl Add for TwoVec3 {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self { x: self.x.plus(o.x), y: self.y.plus(o.y), z: self.z.plus(o.z) }
+    }
+}
+
+impl Sub for TwoVec3 {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Self { x: self.x.minus(o.x), y: self.y.minus(o.y), z: self.z.minus(o.z) }
+    }
+}
