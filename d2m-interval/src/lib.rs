@@ -13,7 +13,7 @@ mod interval;
 mod mat3;
 mod round;
 mod set_ops;
-#[allow(missing_docs)] // methods named after the operation; public for the workspace only
+#[allow(missing_docs, clippy::should_implement_trait)] // named after the operation; for the workspace only
 mod simd;
 mod text;
 #[cfg(feature = "glam")]

@@ -47,8 +47,9 @@ pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
 #[inline(always)]
 pub(crate) fn sin_cos_two(x: F64x2) -> (F64x2, F64x2) {
     let [x0, x1] = x.to_array();
+    let proven = x0.abs() <= LARGEST_ANGLE && x1.abs() <= LARGEST_ANGLE;
     // Also NaN goes this way.
-    if !(x0.abs() <= LARGEST_ANGLE && x1.abs() <= LARGEST_ANGLE) {
+    if !proven {
         let ((s0, c0), (s1, c1)) = (sin_cos(x0), sin_cos(x1));
         return (F64x2::pack(s0, s1), F64x2::pack(c0, c1));
     }
@@ -82,8 +83,8 @@ pub(crate) fn sin_cos_two(x: F64x2) -> (F64x2, F64x2) {
 #[inline(always)]
 fn polynomial<const N: usize>(coefficients: &[f64; N], z: F64x2) -> F64x2 {
     let mut sum = F64x2::splat(coefficients[N - 1]);
-    for i in (0..N - 1).rev() {
-        sum = F64x2::splat(coefficients[i]).plus(z.times(sum));
+    for &coefficient in coefficients[..N - 1].iter().rev() {
+        sum = F64x2::splat(coefficient).plus(z.times(sum));
     }
     sum
 }

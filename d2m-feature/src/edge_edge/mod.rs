@@ -117,10 +117,10 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
         let known_inside = self.inside.holds(piece);
         let mut searched = whole;
         if !known_inside && self.speed() * h > NEARBY * self.size() {
-            match self.near(&w, &e, whole, h) {
-                None => return Verdict::Clear,
-                Some(near) => searched = near,
-            }
+            let Some(near) = self.near(&w, &e, whole, h) else {
+                return Verdict::Clear;
+            };
+            searched = near;
         }
 
         // f = w·(e × d), zero when the lines meet: Taylor polynomials multiplied out to third order.

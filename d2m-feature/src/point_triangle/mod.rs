@@ -61,10 +61,10 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
         let known_inside = self.inside.holds(piece);
         let mut searched = whole;
         if !known_inside && self.path.speed() * h > NEARBY * planes.radius {
-            match self.near(&jet, whole, h) {
-                None => return Verdict::Clear,
-                Some(near) => searched = near,
-            }
+            let Some(near) = self.near(&jet, whole, h) else {
+                return Verdict::Clear;
+            };
+            searched = near;
         }
 
         let plane = cubic_along(&jet, planes.normal);

@@ -103,7 +103,12 @@ mod tests {
                 p: DVec3::new(real(q[0]), real(q[1]), real(q[2])),
                 v: DVec3::new(real(q[3]), real(q[4]), real(q[5])),
             });
-            let volume = TripleProduct::new(&lines, &lines.map(|l| l.lengths()), 0.5, (0.0, 0.0));
+            let volume = TripleProduct::new(
+                &lines,
+                &[lines[0].lengths(), lines[1].lengths(), lines[2].lengths()],
+                0.5,
+                (0.0, 0.0),
+            );
             for j in [-32_i128, -17, 0, 5, 32] {
                 let at = |q: &[i128; 6]| [0, 1, 2].map(|i| 64 * q[i] + j * q[i + 3]);
                 let [a, b, c] = [at(&points[0]), at(&points[1]), at(&points[2])];

@@ -68,7 +68,7 @@ impl Cubic {
             let (left, right) = (lo.abs(), hi.abs());
             let allowed = (margin(if left > right { left } else { right }) + left_out) * UP;
             // Another round pays if less is allowed. Also NaN ends here.
-            if !(allowed < PAYS * last) {
+            if allowed.is_nan() || allowed >= PAYS * last {
                 break;
             }
             last = allowed;
