@@ -104,7 +104,7 @@ fn cubics_are_clipped_to_their_root_and_keep_every_time_in_the_band() {
     let mut random = Random(3);
     let (mut empty, mut tiny, mut worst) = (0, 0, 0.0_f64);
     for _ in 0..50_000 {
-        let cubic = Cubic {
+        let cubic = super::Cubic {
             value: random.signed(),
             slope: 4.0 * random.signed(),
             curvature: 9.0 * random.signed(),
