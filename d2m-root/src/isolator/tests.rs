@@ -124,7 +124,7 @@ fn cubics_are_clipped_to_their_root_and_keep_every_time_in_the_band() {
             let difference = (cubic.at(m + r * x) - quadratic.at(r * x)).abs();
             assert!(difference <= left_out + 1e-13, "{difference} {left_out}");
             worst = worst.max(difference / (left_out + 1e-13));
-            let s = part.lo + part.width() * f64::from(i) / 64.0;
+            let s = (part.lo + part.width() * f64::from(i) / 64.0).min(part.hi);
             let keeps = |piece: Option<Piece>| piece.is_some_and(|p| p.lo <= s && s <= p.hi);
             let (value, allowed) = (cubic.at(s), margin(s.abs()) - 1e-13);
             if value >= -0.01 - allowed && value <= 0.02 + allowed && allowed > 0.0 {
