@@ -99,13 +99,12 @@ fn main() {
     println!("{:?}", counts[counts.len() / 2]);
     let mean = |f: fn(&d2m_bvh::SearchCounts) -> u64| counts.iter().map(f).sum::<u64>() / counts.len() as u64;
     println!(
-        "means: windows {} frames {} tests {} queued {} looks {} closest {}",
+        "means: windows {} frames {} tests {} queued {} looks {}",
         mean(|c| c.windows),
         mean(|c| c.frames),
         mean(|c| c.node_tests),
         mean(|c| c.queued),
-        mean(|c| c.triangle_looks),
-        mean(|c| c.closest_features)
+        mean(|c| c.triangle_looks)
     );
     best.sort_by(f64::total_cmp);
     println!("median {:.2} us, worst {:.2} us", best[best.len() / 2], best[best.len() - 1]);

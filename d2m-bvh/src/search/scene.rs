@@ -128,8 +128,6 @@ pub struct SearchCounts {
     pub queued: u64,
     /// Looks at pairs of triangles.
     pub triangle_looks: u64,
-    /// Looks that needed the closest features.
-    pub closest_features: u64,
     /// Attempts to skip time by the sweeps of the bodies.
     pub sweeps: u64,
     /// Pairs of boxes or triangles whose sweeps were compared.

@@ -6,8 +6,9 @@
 
 use super::fit::dot;
 
-/// Directions, in the frame of the axes, whose extreme points are kept.
-const DIRECTIONS: [[f64; 3]; 13] = [
+/// Directions, in the frame of the axes, whose extreme points are kept: the axes, the diagonals between two of them, and
+/// those between all three.
+pub(super) const DIRECTIONS: [[f64; 3]; 13] = [
     [1.0, 0.0, 0.0],
     [0.0, 1.0, 0.0],
     [0.0, 0.0, 1.0],

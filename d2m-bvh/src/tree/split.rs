@@ -5,20 +5,11 @@
 //! machine parts. No trigonometric function is called, so trees have the same bits on every platform.
 
 use super::fit::{Moments, dot, sub};
+use super::refine::DIRECTIONS;
 use super::surface::Surface;
 
-/// Directions in the frame of the part's axes: the axes and the diagonals between two of them.
-const DIRECTIONS: [[f64; 3]; 9] = [
-    [1.0, 0.0, 0.0],
-    [0.0, 1.0, 0.0],
-    [0.0, 0.0, 1.0],
-    [1.0, 1.0, 0.0],
-    [1.0, -1.0, 0.0],
-    [1.0, 0.0, 1.0],
-    [1.0, 0.0, -1.0],
-    [0.0, 1.0, 1.0],
-    [0.0, 1.0, -1.0],
-];
+/// Directions that are tried: the axes of the part and the diagonals between two of them, the first of [`DIRECTIONS`].
+const CUTS: usize = 9;
 /// Triangles that a direction is chosen by.
 const SAMPLE: usize = 256;
 /// Directions that are tried with real boxes: those with the least second moments.
@@ -30,7 +21,7 @@ struct Sampled {
     corners: [[f32; 3]; 3],
     moments: [f32; Moments::LENGTH],
     /// Sum of the corners along the directions.
-    along: [f32; DIRECTIONS.len()],
+    along: [f32; CUTS],
 }
 
 /// Axes of two halves.
@@ -56,8 +47,10 @@ impl Splitter {
         axes: &[[f64; 3]; 3],
         half: usize,
     ) -> Axes {
-        let directions =
-            DIRECTIONS.map(|d| [0, 1, 2].map(|k| d[0] * axes[0][k] + d[1] * axes[1][k] + d[2] * axes[2][k]));
+        let directions: [[f64; 3]; CUTS] = core::array::from_fn(|cut| {
+            let d = DIRECTIONS[cut];
+            [0, 1, 2].map(|k| d[0] * axes[0][k] + d[1] * axes[1][k] + d[2] * axes[2][k])
+        });
         let stride = part.len().div_ceil(SAMPLE);
         self.take(part.iter().step_by(stride).map(|&triangle| surface.corners(triangle)), &directions);
         let lower = half * self.sample.len() / part.len();
@@ -90,7 +83,7 @@ impl Splitter {
         [surface.axes(first), surface.axes(second)]
     }
 
-    fn take(&mut self, part: impl Iterator<Item = [[f64; 3]; 3]>, directions: &[[f64; 3]; 9]) {
+    fn take(&mut self, part: impl Iterator<Item = [[f64; 3]; 3]>, directions: &[[f64; 3]; CUTS]) {
         self.sample.clear();
         let mut from = None;
         for corners in part {
@@ -108,15 +101,15 @@ impl Splitter {
     }
 
     /// The directions, those first that leave the least second moments on both sides of the middle.
-    fn ranked(&self) -> [(f64, usize); DIRECTIONS.len()] {
-        let mut middle = [0.0f32; DIRECTIONS.len()];
+    fn ranked(&self) -> [(f64, usize); CUTS] {
+        let mut middle = [0.0f32; CUTS];
         for triangle in &self.sample {
             for (sum, along) in middle.iter_mut().zip(&triangle.along) {
                 *sum += along;
             }
         }
         let share = 1.0 / self.sample.len() as f32;
-        let mut sides = [[[0.0f32; Moments::LENGTH]; 2]; DIRECTIONS.len()];
+        let mut sides = [[[0.0f32; Moments::LENGTH]; 2]; CUTS];
         for triangle in &self.sample {
             for (direction, sums) in sides.iter_mut().enumerate() {
                 let side = usize::from(triangle.along[direction] < middle[direction] * share);
@@ -125,7 +118,7 @@ impl Splitter {
                 }
             }
         }
-        let mut ranked = [(0.0, 0); DIRECTIONS.len()];
+        let mut ranked = [(0.0, 0); CUTS];
         for (direction, rank) in ranked.iter_mut().enumerate() {
             let spread = |side: usize| Moments::widen(&sides[direction][side]).spread();
             *rank = (spread(0) + spread(1), direction);
