@@ -95,6 +95,17 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
+    /// The same instant of the motion that runs backwards.
+    pub(crate) fn reversed<D: Doubles>(&self) -> Self {
+        let back = |v: &Quad| (D::splat(0.0) - D::load(v)).store();
+        Self {
+            velocity: back(&self.velocity),
+            omega_a: back(&self.omega_a),
+            omega_b: back(&self.omega_b),
+            ..*self
+        }
+    }
+
     /// Speed at which two points, of A and of B, come together along a unit direction from A to B.
     pub(crate) fn closing_speed(&self, points: [DVec3; 2], normal: DVec3) -> f64 {
         let rate = self.velocity.to_vec() + self.omega_a.to_vec().cross(points[0] - self.apart.to_vec())

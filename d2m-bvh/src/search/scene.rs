@@ -14,6 +14,8 @@ use glam::DVec3;
 const TRIANGLE_ERROR: f64 = 128.0 * UNIT_F64;
 /// Factor of the error of frames, for node tests.
 const FRAME_ERROR: f64 = 256.0 * UNIT_F64;
+/// Part of δ that pairs are followed to above the level. Large against roundings, small against δ.
+const SPARE: f64 = 1.0 / 64.0;
 /// Most rotation, both bodies together, inside one window.
 const WINDOW_ANGLE: f64 = 0.3;
 
@@ -64,7 +66,15 @@ impl<'a> Scene<'a> {
         let acceleration = (spin_a * spin_a * reach_a + spin_b * spin_b * reach_b) * (1.0 + 1e-12);
         let arms = [&a, &b].map(|(tree, motion)| tree.center() - motion.at());
         let swings = [spin_a * spin_a * reach_a, spin_b * spin_b * reach_b].map(|s| s * (1.0 + 1e-12));
-        let pair = PairScale { level, error, stop: level + tolerance + error, acceleration, arms, swings };
+        let pair = PairScale {
+            level,
+            error,
+            stop: level + tolerance + error,
+            spare: SPARE * tolerance,
+            acceleration,
+            arms,
+            swings,
+        };
         Self { a, b, window, pair, size, tolerance, longest, reach: reach_a + reach_b, spin_speed }
     }
 

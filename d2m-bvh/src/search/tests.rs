@@ -7,7 +7,7 @@ use super::lanes::{Lanes, Portable};
 use super::node_test::{NodeFrame, NodeScale, Placed, entry_times};
 use super::quad::Quad;
 use super::scene::{Scene, Scratch};
-use super::triangle_pair::{Care, Look, PairScale, look, place_a};
+use super::triangle_pair::{Care, Look, PairScale, apart_since, look, place_a};
 use super::window::{Outcome, corners};
 use crate::tree::node::Below;
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
@@ -141,14 +141,18 @@ fn half_the_acceleration_is_noticed() {
 }
 
 /// The same arm and wall, looked at as triangles, while the arm also comes nearer by itself: what is left at the end of
-/// the time that they are proven clear.
-fn room_after_a_look(closing: f64, mutate: impl Fn(&mut PairScale)) -> f64 {
+/// the time that they are proven clear after the arm points at the wall, or before that (the motion is then the one
+/// that runs backwards from there).
+fn room_after_a_look(closing: f64, backwards: bool, mutate: impl Fn(&mut PairScale)) -> f64 {
     let tree =
         |corners: [DVec3; 3]| MeshTree::new(TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2]]).unwrap());
     let arm = [DVec3::new(1.0001, 0.0, 0.0), DVec3::new(1.0, 1e-4, 0.0), DVec3::new(1.0, 0.0, 1e-4)];
     let wall = [(-3.0, -1.0), (3.0, -1.0), (0.0, 3.0)].map(|(y, z)| DVec3::new(0.956, y, z));
     let (a, b) = (tree(arm), tree(wall));
-    let swing = LinearMotion::REST.with_angular_velocity(DVec3::Z).with_linear_velocity(DVec3::X * -closing);
+    let sense = if backwards { -1.0 } else { 1.0 };
+    let swing = LinearMotion::REST
+        .with_angular_velocity(DVec3::Z)
+        .with_linear_velocity(DVec3::X * (-closing * sense));
     let options = QueryOptions::default().with_tolerance(1e-7);
     let window = Window::try_new(0.0, 0.3).unwrap();
     let scene = Scene::new((&a, swing), (&b, LinearMotion::REST), window, &options);
@@ -156,21 +160,34 @@ fn room_after_a_look(closing: f64, mutate: impl Fn(&mut PairScale)) -> f64 {
     let mut pair = scene.pair;
     mutate(&mut pair);
     let (ca, cb) = (corners(&a, 0), corners(&b, 0));
-    let Look::ClearFor(time) =
-        look::<Quad>(&motion.frame::<Quad>(0.0), (&ca, &cb), &pair, 1e300, Care::Quick)
-    else {
-        panic!("they begin apart")
+    let frame = motion.frame::<Quad>(0.0);
+    let time = if backwards {
+        // The longest span that is found clear.
+        let reversed = frame.reversed::<Quad>();
+        let (mut clear, mut unknown) = (0.0, 1.0);
+        for _ in 0..60 {
+            let span = 0.5 * (clear + unknown);
+            let apart = apart_since::<Quad>(&reversed, (&ca, &cb), &pair, span);
+            *(if apart { &mut clear } else { &mut unknown }) = span;
+        }
+        clear
+    } else {
+        match look::<Quad>(&frame, (&ca, &cb), &pair, 1e300, Care::Quick) {
+            Look::ClearFor(time) => time,
+            Look::Near { .. } => panic!("they begin apart"),
+        }
     };
+    assert!(time > 0.05);
     // Frames hold for 0.35 rad.
-    let placed = place_a::<Quad>(&motion.frame::<Quad>(time.min(0.34)), &ca);
+    let placed = place_a::<Quad>(&motion.frame::<Quad>(sense * time.min(0.34)), &ca);
     placed.map(|p| p.x - cb[0].x).into_iter().fold(f64::INFINITY, f64::min)
 }
 
 #[test]
 fn half_the_acceleration_of_triangles_is_noticed() {
-    for closing in [0.0, 0.05] {
-        assert!(room_after_a_look(closing, |_| ()) >= 1e-7);
-        assert!(room_after_a_look(closing, |pair| pair.acceleration *= 0.5) < 1e-7);
+    for (closing, backwards) in [(0.0, false), (0.05, false), (0.0, true), (0.05, true)] {
+        assert!(room_after_a_look(closing, backwards, |_| ()) >= 1e-7);
+        assert!(room_after_a_look(closing, backwards, |pair| pair.acceleration *= 0.5) < 1e-7);
     }
 }
 

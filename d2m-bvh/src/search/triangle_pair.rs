@@ -14,6 +14,9 @@ pub(crate) struct PairScale {
     pub(crate) error: f64,
     /// Contact when the distance is at most this: level + δ + error.
     pub(crate) stop: f64,
+    /// Pairs are followed to this much above the level, so that others that meet at the same features can be seen
+    /// apart at the time of the contact.
+    pub(crate) spare: f64,
     /// Bound on the acceleration between the bodies.
     pub(crate) acceleration: f64,
     /// From the followed point to the centre of the tree, body axes.
@@ -81,27 +84,16 @@ pub(crate) fn look<D: Doubles>(
     enough: f64,
     care: Care,
 ) -> Look {
-    let placed = Placed {
-        a: place_a::<D>(frame, a),
-        b: *b,
-        velocity: frame.velocity.to_vec(),
-        offset: frame.apart.to_vec(),
-        omega_a: frame.omega_a.to_vec(),
-        omega_b: frame.omega_b.to_vec(),
-        arm_a: frame.rotation.times::<D>(scale.arms[0]).store().to_vec(),
-        arm_b: scale.arms[1],
-        enough,
-        care,
-    };
+    let placed = Placed::new::<D>(frame, (a, b), scale, (enough, care));
     let (direction, gap) = placed.widest_gap::<D>();
-    let mut best = 0.0;
+    let (mut best, aim) = (0.0, scale.level + scale.spare);
     if gap > scale.level + scale.error {
-        best = placed.clear_for(direction, scale, best);
+        best = placed.clear_for(direction, scale, aim, best);
         if best >= enough || care == Care::Quick && gap > 16.0 * scale.stop {
             return Look::ClearFor(best);
         }
         // Faces that slide along each other: a normal lasts longer than the line to a corner that comes closer.
-        best = placed.clear_for(widest_normal(&placed.a, &placed.b), scale, best);
+        best = placed.clear_for(widest_normal(&placed.a, &placed.b), scale, aim, best);
         if best >= enough || gap > 16.0 * scale.stop {
             return Look::ClearFor(best);
         }
@@ -109,7 +101,43 @@ pub(crate) fn look<D: Doubles>(
     placed.look_closely(scale, best)
 }
 
+/// Are the triangles further apart than the level all the time from `span` before the frame up to its time? True only
+/// if that is proven. `frame` is to be one of the reversed motion: what has a bound on its acceleration is
+/// followed backwards as well as forwards.
+#[inline(always)]
+pub(crate) fn apart_since<D: Doubles>(
+    reversed: &Frame,
+    triangles: (&[DVec3; 3], &[DVec3; 3]),
+    scale: &PairScale,
+    span: f64,
+) -> bool {
+    let placed = Placed::new::<D>(reversed, triangles, scale, (span, Care::Quick));
+    let (direction, _) = placed.widest_gap::<D>();
+    placed.clear_for(direction, scale, scale.level, 0.0) >= span
+}
+
 impl Placed {
+    #[inline(always)]
+    fn new<D: Doubles>(
+        frame: &Frame,
+        (a, b): (&[DVec3; 3], &[DVec3; 3]),
+        scale: &PairScale,
+        (enough, care): (f64, Care),
+    ) -> Self {
+        Self {
+            a: place_a::<D>(frame, a),
+            b: *b,
+            velocity: frame.velocity.to_vec(),
+            offset: frame.apart.to_vec(),
+            omega_a: frame.omega_a.to_vec(),
+            omega_b: frame.omega_b.to_vec(),
+            arm_a: frame.rotation.times::<D>(scale.arms[0]).store().to_vec(),
+            arm_b: scale.arms[1],
+            enough,
+            care,
+        }
+    }
+
     /// Of the 2 normals, the 9 products of edges, 3 edge normals and the line of centres: the direction with the
     /// widest gap, and the gap for a unit direction (not positive when none separates).
     #[inline(always)]
@@ -141,22 +169,22 @@ impl Placed {
     #[inline(never)]
     fn look_closely(&self, scale: &PairScale, known: f64) -> Look {
         let near = closest(&self.a, &self.b);
-        let best = self.clear_for(near.direction, scale, known);
+        let best = self.clear_for(near.direction, scale, scale.level + scale.spare, known);
         // The features' own directions attain the distance, so one of the two ends applies up to rounding.
         let touching = near.square <= scale.stop * scale.stop;
         if touching || best == 0.0 { Look::Near { crossing: !touching } } else { Look::ClearFor(best) }
     }
 
-    /// The larger of `known` and the time for which the direction keeps the pair apart.
+    /// The larger of `known` and the time for which the direction keeps the pair further apart than `level`.
     #[inline(always)]
-    fn clear_for(&self, n: DVec3, scale: &PairScale, known: f64) -> f64 {
+    fn clear_for(&self, n: DVec3, scale: &PairScale, level: f64, known: f64) -> f64 {
         let (a, b) = (&self.a, &self.b);
         let pa = [n.dot(a[0]), n.dot(a[1]), n.dot(a[2])];
         let pb = [n.dot(b[0]), n.dot(b[1]), n.dot(b[2])];
         let forward = least(&pb) - greatest(&pa);
         let backward = least(&pa) - greatest(&pb);
         let length = n.length();
-        let need = (scale.level + scale.error) * length;
+        let need = (level + scale.error) * length;
         // Also when n is zero or not a number.
         let separated = forward > need || backward > need;
         if !separated {

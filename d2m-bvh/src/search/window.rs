@@ -10,7 +10,7 @@ use super::quad::Quad;
 use super::queue::Item;
 use super::scene::{Scene, Scratch};
 use super::swept::swept_clear_until;
-use super::triangle_pair::{Care, Look, look, place_a, widest_normal};
+use super::triangle_pair::{Care, Look, apart_since, look, place_a, widest_normal};
 use crate::tree::node::WIDTH;
 use crate::{Budget, MeshTree, Mode, QueryOptions};
 use glam::DVec3;
@@ -23,6 +23,10 @@ const QUICK_LOOKS: u64 = 192;
 /// Node tests, besides one for each triangle, before sweeps are looked at for the first time: ordinary queries end
 /// before that.
 const FIRST_SWEEP: u64 = 256;
+
+/// A pair of triangles is followed alone until its time has grown by one part in this many: what it finds early spares
+/// the queue what comes later, and pairs that meet at the same features need one look back each.
+const FOLLOWED: u32 = 16;
 
 /// A contact as the search knows it.
 #[derive(Clone, Copy, Debug)]
@@ -79,6 +83,8 @@ struct State<'a> {
     node_frames: [NodeFrame; 2],
     frame_key: u32,
     found: Option<Found>,
+    /// The time of what is found, in the motion that runs backwards; before something is found, of no meaning.
+    found_frame: Frame,
 }
 
 impl<'s> Search<'s> {
@@ -146,6 +152,7 @@ impl<'s> Search<'s> {
             frame,
             frame_key: 0,
             found: None,
+            found_frame: frame,
         };
         self.scratch.counts.windows += 1;
         self.scratch.queue.clear();
@@ -261,10 +268,17 @@ impl<'s> Search<'s> {
         if self.mode == Mode::Capoeira && self.stop_early(state, item, &a, &b, triangles) {
             return;
         }
-        let mut frame = state.frame;
-        let mut steps = 0u32;
         // Proven apart until here.
         let mut known = f64::from(item.key) * state.step;
+        if state.found.is_some() {
+            self.scratch.counts.triangle_looks += 1;
+            let span = (state.limit_offset - known) * (1.0 + 1e-15);
+            if apart_since::<L::Doubles>(&state.found_frame, (&a, &b), &self.scene.pair, span) {
+                return;
+            }
+        }
+        let mut frame = state.frame;
+        let mut steps = 0u32;
         loop {
             steps += 1;
             if steps.is_multiple_of(256) && self.out_of_budget() {
@@ -284,7 +298,7 @@ impl<'s> Search<'s> {
                         return;
                     }
                     let key = (known / state.step) as u32;
-                    if key > item.key + 1024 {
+                    if key > item.key + item.key / FOLLOWED + 1024 {
                         if key < state.limit {
                             self.scratch.queue.push(Item { key, ..item });
                         }
@@ -304,10 +318,8 @@ impl<'s> Search<'s> {
                         return;
                     }
                     if known < state.limit_offset {
-                        state.limit_offset = known;
-                        state.limit = ((known / state.step) as u32 + 1).min(state.limit);
-                        state.found =
-                            Some(Found { start: state.motion.start, offset: known, triangles, crossing });
+                        state.find(known, triangles, crossing);
+                        state.found_frame = frame.reversed::<L::Doubles>();
                     }
                     return;
                 }
@@ -316,10 +328,8 @@ impl<'s> Search<'s> {
                 frame = state.motion.frame::<L::Doubles>(known);
             } else {
                 // The time left is below the resolution of time itself: as near as times can tell.
-                state.limit_offset = known;
-                state.limit = ((known / state.step) as u32 + 1).min(state.limit);
-                state.found =
-                    Some(Found { start: state.motion.start, offset: known, triangles, crossing: false });
+                state.find(known, triangles, false);
+                state.found_frame = frame.reversed::<L::Doubles>();
                 return;
             }
         }
@@ -327,6 +337,13 @@ impl<'s> Search<'s> {
 }
 
 impl State<'_> {
+    /// A contact at this offset: nothing later matters.
+    fn find(&mut self, offset: f64, triangles: [u32; 2], crossing: bool) {
+        self.limit_offset = offset;
+        self.limit = ((offset / self.step) as u32 + 1).min(self.limit);
+        self.found = Some(Found { start: self.motion.start, offset, triangles, crossing });
+    }
+
     /// Nothing matters any more.
     fn end(&mut self) {
         self.limit = 0;
