@@ -12,7 +12,7 @@ pub(super) fn contact(scene: &Scene<'_>, found: &Found, bracket: bool) -> Contac
     let frame = motion.frame::<Quad>(time - found.start);
     let b = corners(scene.b.0, found.triangles[1]);
     let a = place_a::<Quad>(&frame, &corners(scene.a.0, found.triangles[0]));
-    let near = closest(&a, &b);
+    let near = closest::<Quad>(&a, &b);
     let start = match (time <= scene.window.start(), found.crossing) {
         (false, _) => StartState::Apart,
         (true, false) => StartState::Touching,
@@ -42,7 +42,7 @@ fn reached_by(scene: &Scene<'_>, motion: &RelativeMotion, triangles: [u32; 2], c
     let (a, b) = (corners(scene.a.0, triangles[0]), corners(scene.b.0, triangles[1]));
     let look = |time: f64| {
         let frame = motion.frame::<Quad>(time - motion.start);
-        let near = closest(&place_a::<Quad>(&frame, &a), &b);
+        let near = closest::<Quad>(&place_a::<Quad>(&frame, &a), &b);
         let normal = near.direction.normalize_or_zero();
         (near.square.sqrt(), frame.closing_speed(near.points, normal), normal)
     };
@@ -129,7 +129,7 @@ pub(super) fn contained(
         |tree: &MeshTree, triangle: u32| tree.mesh().corners(triangle as usize).map(|p| p - tree.center());
     let b = corners(tree_b, triangles[1]);
     let a = place_a::<Quad>(&frame, &corners(tree_a, triangles[0]));
-    let near = closest(&a, &b);
+    let near = closest::<Quad>(&a, &b);
     let time = scene.window.start();
     describe(scene, (motion, &frame), time, &Witness { near, a, b, triangles, separation: 0.0, start })
 }

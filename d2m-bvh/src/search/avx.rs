@@ -122,7 +122,7 @@ macro_rules! doubles_operator {
         }
     )*};
 }
-doubles_operator!(Add add _mm256_add_pd, Sub sub _mm256_sub_pd, Mul mul _mm256_mul_pd);
+doubles_operator!(Add add _mm256_add_pd, Sub sub _mm256_sub_pd, Mul mul _mm256_mul_pd, Div div _mm256_div_pd);
 
 impl Doubles for AvxDoubles {
     #[inline(always)]

@@ -1,5 +1,6 @@
 //! Closest points of two triangles: an upper bound on their distance with the features that attain it.
 
+use super::quad::{Doubles, Quad, QuadVec};
 use glam::DVec3;
 
 /// Where on a triangle a closest point lies.
@@ -25,30 +26,63 @@ pub(crate) struct Closest {
 
 /// Closest points of the two triangles' boundaries, and of corners against faces. For crossing triangles this is not
 /// zero: a crossing has to be found by other means.
-pub(crate) fn closest(a: &[DVec3; 3], b: &[DVec3; 3]) -> Closest {
-    let mut best = Closest {
-        square: f64::INFINITY,
-        points: [a[0], b[0]],
-        places: [Place::Corner(0), Place::Corner(0)],
-        direction: b[0] - a[0],
-    };
-    for i in 0..3 {
-        for j in 0..3 {
-            edge_edge(&mut best, (a, i), (b, j));
-        }
-    }
-    for i in 0..3 {
-        corner_face(&mut best, (a, i), b, false);
-        corner_face(&mut best, (b, i), a, true);
+#[inline(always)]
+pub(crate) fn closest<D: Doubles>(a: &[DVec3; 3], b: &[DVec3; 3]) -> Closest {
+    let (i, j) = closest_edges::<D>(a, b);
+    let mut best = edge_edge((a, i), (b, j));
+    let faces = [a, b].map(|t| (t, (t[1] - t[0]).cross(t[2] - t[0])));
+    for corner in 0..3 {
+        corner_face(&mut best, (a, corner), faces[1], false);
+        corner_face(&mut best, (b, corner), faces[0], true);
     }
     best
+}
+
+/// The edges, by number, that come closest: one of A against three of B at a time, in four lanes. The numbers are all
+/// that counts of the result; [`edge_edge`] says where on them.
+#[inline(always)]
+fn closest_edges<D: Doubles>(a: &[DVec3; 3], b: &[DVec3; 3]) -> (usize, usize) {
+    let from = QuadVec::<D>::new([b[0], b[1], b[2], b[0]]);
+    let to = QuadVec::<D>::new([b[1], b[2], b[0], b[1]]);
+    let d = to.minus(&from);
+    let dd = d.length_squared();
+    let mut squares = [Quad([0.0; 4]); 3];
+    for (i, square) in squares.iter_mut().enumerate() {
+        let e = a[(i + 1) % 3] - a[i];
+        let w = from.minus(&QuadVec::new([a[i]; 4]));
+        let k = d.crossed_by(e);
+        let (ee, we, de, wd) = (D::splat(e.length_squared()), w.dot(e), d.dot(e), w.dots(&d));
+        // As in `edge_edge`.
+        let s = clamp_ratios(w.crossed(&d).dots(&k), k.length_squared());
+        let t = clamp_ratios(s * de - wd, dd);
+        let s = clamp_ratios(we + t * de, ee);
+        let t = clamp_ratios(s * de - wd, dd);
+        let line = w.plus(&d.times(t)).minus(&QuadVec::new([e; 4]).times(s));
+        *square = line.length_squared().store();
+    }
+    let mut best = (0, 0);
+    for i in 0..3 {
+        for j in 0..3 {
+            if squares[i].0[j] < squares[best.0].0[best.1] {
+                best = (i, j);
+            }
+        }
+    }
+    best
+}
+
+#[inline(always)]
+fn clamp_ratios<D: Doubles>(numerator: D, denominator: D) -> D {
+    let zero = D::splat(0.0);
+    let ratio = (numerator / denominator).max(zero).min(D::splat(1.0));
+    D::if_greater(denominator, zero, ratio, zero)
 }
 
 fn clamp_ratio(numerator: f64, denominator: f64) -> f64 {
     if denominator > 0.0 { (numerator / denominator).clamp(0.0, 1.0) } else { 0.0 }
 }
 
-fn edge_edge(best: &mut Closest, (a, i): (&[DVec3; 3], usize), (b, j): (&[DVec3; 3], usize)) {
+fn edge_edge((a, i): (&[DVec3; 3], usize), (b, j): (&[DVec3; 3], usize)) -> Closest {
     let (a0, a1, b0, b1) = (a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]);
     let (e, d, w) = (a1 - a0, b1 - b0, b0 - a0);
     let k = e.cross(d);
@@ -70,9 +104,6 @@ fn edge_edge(best: &mut Closest, (a, i): (&[DVec3; 3], usize), (b, j): (&[DVec3;
     let (p, q) = (point(a0, a1, e, s), point(b0, b1, d, t));
     let line = q - p;
     let square = line.length_squared();
-    if square >= best.square {
-        return;
-    }
     let place = |index: usize, x: f64| {
         if x == 0.0 {
             Place::Corner(index)
@@ -95,12 +126,16 @@ fn edge_edge(best: &mut Closest, (a, i): (&[DVec3; 3], usize), (b, j): (&[DVec3;
         (_, Place::Edge(_)) => line - d * (line.dot(d) / dd),
         _ => line,
     };
-    *best = Closest { square, points: [p, q], places, direction };
+    Closest { square, points: [p, q], places, direction }
 }
 
-fn corner_face(best: &mut Closest, (corners, i): (&[DVec3; 3], usize), face: &[DVec3; 3], flipped: bool) {
+fn corner_face(
+    best: &mut Closest,
+    (corners, i): (&[DVec3; 3], usize),
+    (face, normal): (&[DVec3; 3], DVec3),
+    flipped: bool,
+) {
     let p = corners[i];
-    let normal = (face[1] - face[0]).cross(face[2] - face[0]);
     let nn = normal.length_squared();
     let height = (p - face[0]).dot(normal);
     if nn.is_nan() || nn <= 0.0 || height * height >= best.square * nn {

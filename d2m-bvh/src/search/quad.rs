@@ -1,6 +1,6 @@
 //! Four `f64` side by side: the storage, and the operations for one instruction set.
 
-use core::ops::{Add, Mul, Sub};
+use core::ops::{Add, Div, Mul, Sub};
 use glam::DVec3;
 
 /// Four doubles in memory.
@@ -10,7 +10,9 @@ pub(crate) struct Quad(pub(crate) [f64; 4]);
 
 /// Four doubles in registers: each operation correctly rounded, no fused multiply-add, so every implementation returns
 /// the same bits. [`Quad`] is the portable one.
-pub(crate) trait Doubles: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+pub(crate) trait Doubles:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
     /// The same value four times.
     fn splat(x: f64) -> Self;
     /// From memory.
@@ -39,7 +41,7 @@ macro_rules! elementwise {
         }
     )*};
 }
-elementwise!(Add add +, Sub sub -, Mul mul *);
+elementwise!(Add add +, Sub sub -, Mul mul *, Div div /);
 
 impl Quad {
     #[inline(always)]
@@ -121,10 +123,42 @@ impl<D: Doubles> QuadVec<D> {
         Self([ey * z - ez * y, ez * x - ex * z, ex * y - ey * x])
     }
 
+    /// Lane by lane: the scalar product.
+    #[inline(always)]
+    pub(crate) fn dots(&self, other: &Self) -> D {
+        let ([x, y, z], [u, v, w]) = (self.0, other.0);
+        x * u + y * v + z * w
+    }
+
+    /// Lane by lane: self × other.
+    #[inline(always)]
+    pub(crate) fn crossed(&self, other: &Self) -> Self {
+        let ([x, y, z], [u, v, w]) = (self.0, other.0);
+        Self([y * w - z * v, z * u - x * w, x * v - y * u])
+    }
+
+    #[inline(always)]
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        let ([x, y, z], [u, v, w]) = (self.0, other.0);
+        Self([x + u, y + v, z + w])
+    }
+
+    #[inline(always)]
+    pub(crate) fn minus(&self, other: &Self) -> Self {
+        let ([x, y, z], [u, v, w]) = (self.0, other.0);
+        Self([x - u, y - v, z - w])
+    }
+
+    /// Each times its own factor.
+    #[inline(always)]
+    pub(crate) fn times(&self, factors: D) -> Self {
+        let [x, y, z] = self.0;
+        Self([x * factors, y * factors, z * factors])
+    }
+
     #[inline(always)]
     pub(crate) fn length_squared(&self) -> D {
-        let [x, y, z] = self.0;
-        x * x + y * y + z * z
+        self.dots(self)
     }
 }
 

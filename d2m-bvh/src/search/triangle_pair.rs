@@ -98,7 +98,7 @@ pub(crate) fn look<D: Doubles>(
             return Look::ClearFor(best);
         }
     }
-    placed.look_closely(scale, best)
+    placed.look_closely::<D>(scale, best)
 }
 
 /// Are the triangles further apart than the level all the time from `span` before the frame up to its time? True only
@@ -165,10 +165,9 @@ impl Placed {
     }
 
     /// Near the end: the direction of the closest features too, and the distance itself.
-    #[cold]
-    #[inline(never)]
-    fn look_closely(&self, scale: &PairScale, known: f64) -> Look {
-        let near = closest(&self.a, &self.b);
+    #[inline(always)]
+    fn look_closely<D: Doubles>(&self, scale: &PairScale, known: f64) -> Look {
+        let near = closest::<D>(&self.a, &self.b);
         let best = self.clear_for(near.direction, scale, scale.level + scale.spare, known);
         // The features' own directions attain the distance, so one of the two ends applies up to rounding.
         let touching = near.square <= scale.stop * scale.stop;

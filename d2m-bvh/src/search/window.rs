@@ -265,7 +265,7 @@ impl<'s> Search<'s> {
         });
         let a = corners(self.scene.a.0, triangles[0]);
         let b = corners(self.scene.b.0, triangles[1]);
-        if self.mode == Mode::Capoeira && self.stop_early(state, item, &a, &b, triangles) {
+        if self.mode == Mode::Capoeira && self.stop_early::<L>(state, item, &a, &b, triangles) {
             return;
         }
         // Proven apart until here.
@@ -354,7 +354,7 @@ impl State<'_> {
 impl Search<'_> {
     /// Capoeira: takes the pair as the answer when the triangles are as close as their boxes are large. What is
     /// certified is the time of the frame: no live key is earlier.
-    fn stop_early(
+    fn stop_early<L: Lanes>(
         &self,
         state: &mut State<'_>,
         item: Item,
@@ -366,7 +366,7 @@ impl Search<'_> {
             f64::from(tree.nodes[index as usize / WIDTH].radius[index as usize % WIDTH]) * tree.unit
         };
         let size = radius(self.scene.a.0, item.boxes[0]) + radius(self.scene.b.0, item.boxes[1]);
-        let near = closest(&place_a::<Quad>(&state.frame, a), b);
+        let near = closest::<L::Doubles>(&place_a::<L::Doubles>(&state.frame, a), b);
         let close = near.square <= size * size && (state.frame.offset > 0.0 || near.square > 0.0);
         // At the very start the accurate look decides whether the bodies touch.
         if close && (state.frame_key > 0 || state.motion.start > self.scene.window.start()) {
