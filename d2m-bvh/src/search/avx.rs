@@ -84,6 +84,25 @@ impl Lanes for Avx {
         }
     }
     #[inline(always)]
+    fn larger(
+        (sizes, ratio, size): (&[f32; 8], f32, f32),
+        (children, flag): (&[u32; 8], u32),
+        other: u32,
+    ) -> [u32; 8] {
+        let mut out = [0; 8];
+        // SAFETY: the processor has AVX2 (see the type); 32 bytes are readable and writable, without alignment.
+        unsafe {
+            let sizes = _mm256_mul_ps(_mm256_loadu_ps(sizes.as_ptr()), _mm256_set1_ps(ratio));
+            let larger = _mm256_cmp_ps::<_CMP_GT_OQ>(sizes, _mm256_set1_ps(size));
+            let children = _mm256_loadu_si256(children.as_ptr().cast());
+            let flagged = _mm256_or_si256(children, _mm256_set1_epi32(flag as i32));
+            let open =
+                _mm256_blendv_epi8(_mm256_set1_epi32(other as i32), flagged, _mm256_castps_si256(larger));
+            _mm256_storeu_si256(out.as_mut_ptr().cast(), open);
+        }
+        out
+    }
+    #[inline(always)]
     fn flip_sign(magnitude: Self, sign: Self) -> Self {
         // SAFETY: the processor has AVX (see the type).
         Self(unsafe { _mm256_xor_ps(magnitude.0, _mm256_and_ps(sign.0, _mm256_set1_ps(-0.0))) })

@@ -3,10 +3,13 @@
 use super::lanes::Lanes;
 use super::node_test::{NodeFrame, NodeScale, Placed, entry_times};
 use super::queue::Item;
-use crate::tree::node::{LEAF, WIDTH, WideNode};
+use crate::tree::node::{WIDTH, WideNode};
 
 /// Keys of a window run from 0 to this for its whole unit of time.
 pub(crate) const KEY_SCALE: f64 = 536_870_912.0; // 2²⁹
+
+/// Where the box of A and that of B are in a pair of boxes in one word.
+const SHIFT: [u32; 2] = [0, 32];
 
 /// What the expansions of one frame share.
 #[derive(Clone, Copy, Debug)]
@@ -15,7 +18,8 @@ pub(crate) struct Opening<'a> {
     pub(crate) nodes: [&'a [WideNode]; 2],
     /// Constants when nodes of A, of B, are opened.
     pub(crate) scales: [NodeScale; 2],
-    /// Sizes of A's boxes are multiplied by the first, those of B's by the second, before they are compared.
+    /// Sizes of A's boxes are multiplied by the first, those of B's by the second, before they are compared: between
+    /// [`LEAST_SIZE`](crate::tree::node::LEAST_SIZE) and its inverse.
     pub(crate) size_ratios: [f32; 2],
 }
 
@@ -28,21 +32,19 @@ pub(crate) struct Expansion {
     open: [u32; WIDTH],
     /// Bit i is set when pair i is worth queueing.
     bits: u32,
-    /// The first box of the node that was opened, and whose it is: 0 for A, 1 for B.
-    first: u32,
-    side: usize,
-    /// The box of the other body.
-    single: u32,
+    /// The boxes of the first pair: see [`SHIFT`].
+    boxes: u64,
+    /// What is added to them from one pair to the next: the boxes of the node that was opened follow each other.
+    step: u64,
 }
 
 impl Opening<'_> {
-    /// What is to be done with a pair of boxes: the larger one is opened.
+    /// What is to be done with a pair of boxes: the larger one is opened. A triangle has no size, so it is never the larger.
     pub(crate) fn of_pair(&self, a: u32, b: u32) -> u32 {
         let (na, nb) = (&self.nodes[0][a as usize / WIDTH], &self.nodes[1][b as usize / WIDTH]);
         let (la, lb) = (a as usize % WIDTH, b as usize % WIDTH);
-        let (child_a, child_b) = (na.child[la], nb.child[lb]);
         let larger = na.size[la] * self.size_ratios[0] > nb.size[lb] * self.size_ratios[1];
-        if opens_first(child_a, child_b, larger) { child_a } else { child_b | Item::OF_B }
+        if larger { na.child[la] } else { nb.child[lb] | Item::OF_B }
     }
 
     /// Opens an item that is not a pair of triangles. Keys count from `now`, the key of the frame; pairs whose key is not below
@@ -55,7 +57,7 @@ impl Opening<'_> {
         (now, limit): (u32, u32),
     ) -> Expansion {
         let wide_index = item.open & !Item::OF_B;
-        let side = usize::from(item.open != wide_index);
+        let side = (item.open >> Item::OF_B.trailing_zeros()) as usize & 1;
         let other = 1 - side;
         let single = item.boxes[other];
         let wide = &self.nodes[side][wide_index as usize];
@@ -67,36 +69,36 @@ impl Opening<'_> {
         let steps = L::splat(1.25 * KEY_SCALE as f32).min(times * L::splat(KEY_SCALE as f32));
         let (keys, below) = steps.keys(now as i32, item.key as i32, limit as i32);
         let flags = [0, Item::OF_B];
-        let (size, child) = (node.size[lane] * self.size_ratios[other], node.child[lane]);
-        let mut open = [0; WIDTH];
-        for (lane, open) in open.iter_mut().enumerate() {
-            let larger = wide.size[lane] * self.size_ratios[side] > size;
-            let first = opens_first(wide.child[lane], child, larger);
-            *open = if first { wide.child[lane] | flags[side] } else { child | flags[other] };
-        }
+        let size = node.size[lane] * self.size_ratios[other];
+        let open = L::larger(
+            (&wide.size, self.size_ratios[side], size),
+            (&wide.child, flags[side]),
+            node.child[lane] | flags[other],
+        );
         let bits = below & ((1 << wide.used) - 1);
-        Expansion { keys, open, bits, first: wide_index * WIDTH as u32, side, single }
+        let first = u64::from(wide_index) * WIDTH as u64;
+        Expansion {
+            keys,
+            open,
+            bits,
+            boxes: (first << SHIFT[side]) | (u64::from(single) << SHIFT[other]),
+            step: 1 << SHIFT[side],
+        }
     }
-}
-
-/// Of two boxes with these children, the first is opened: a box with a node below it, the larger one of two.
-#[inline(always)]
-fn opens_first(first: u32, second: u32, first_is_larger: bool) -> bool {
-    let is_node = |child: u32| child & LEAF == 0;
-    if is_node(second) { is_node(first) && first_is_larger } else { is_node(first) }
 }
 
 impl Expansion {
     /// Appends the pairs worth queueing. Without a branch: which lanes they are cannot be predicted.
     #[inline(always)]
     pub(crate) fn append_to(&self, list: &mut [Item], count: &mut usize) {
-        let flip = |mine: u32| if self.side == 0 { [mine, self.single] } else { [self.single, mine] };
+        let mut boxes = self.boxes;
         for lane in 0..WIDTH {
             list[*count] = Item {
                 key: self.keys[lane] as u32,
-                boxes: flip(self.first + lane as u32),
+                boxes: [(boxes >> SHIFT[0]) as u32, (boxes >> SHIFT[1]) as u32],
                 open: self.open[lane],
             };
+            boxes += self.step;
             *count += (self.bits >> lane) as usize & 1;
         }
     }

@@ -32,6 +32,8 @@ pub(crate) trait Lanes:
     /// max(`least`, `base` + the integer part) in each lane, with `least` for what is not a number; and the bits of
     /// the lanes where that is below `limit`. Lanes stay below 2³¹ − `base`.
     fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32);
+    /// `children | flag` in the lanes where `sizes · ratio > size`, else `other`.
+    fn larger(sizes: (&[f32; 8], f32, f32), children: (&[u32; 8], u32), other: u32) -> [u32; 8];
     /// `magnitude` with its sign flipped where `sign` is negative (or −0).
     fn flip_sign(magnitude: Self, sign: Self) -> Self;
     /// `if left > right { yes } else { no }` in each lane.
@@ -117,6 +119,18 @@ impl Lanes for Portable {
             bits |= u32::from(*key < limit) << lane;
         }
         (out, bits)
+    }
+    #[inline(always)]
+    fn larger(
+        (sizes, ratio, size): (&[f32; 8], f32, f32),
+        (children, flag): (&[u32; 8], u32),
+        other: u32,
+    ) -> [u32; 8] {
+        let mut out = [other; 8];
+        for lane in 0..8 {
+            out[lane] = if sizes[lane] * ratio > size { children[lane] | flag } else { other };
+        }
+        out
     }
     #[inline(always)]
     fn flip_sign(magnitude: Self, sign: Self) -> Self {

@@ -143,7 +143,7 @@ impl<'s> Search<'s> {
             opening: Opening {
                 nodes: [&scene.a.0.nodes, &scene.b.0.nodes],
                 scales,
-                size_ratios: [scales[1].ratio.powi(3).clamp(1e-30, 1e30) as f32, 1.0],
+                size_ratios: [scales[1].ratio.powi(3).clamp(1e-18, 1e18) as f32, 1.0],
             },
             step,
             limit,

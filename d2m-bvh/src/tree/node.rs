@@ -17,6 +17,9 @@ pub(crate) const WIDTH: usize = 8;
 /// Marks a child that is a triangle; the rest of the bits is its number.
 pub(crate) const LEAF: u32 = 1 << 31;
 
+/// The least size of a box with a node below it: stays positive when it is multiplied by itself.
+pub(crate) const LEAST_SIZE: f32 = 1e-18;
+
 /// What is below a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Below {
@@ -48,8 +51,8 @@ pub(crate) struct WideNode {
     pub(crate) half_extent: [[f32; WIDTH]; 3],
     /// Radius about the box centre.
     pub(crate) radius: [f32; WIDTH],
-    /// What decides which of two boxes is opened: the larger one. Zero for a leaf, positive for a node, negative for
-    /// an unused lane.
+    /// What decides which of two boxes is opened: the larger one. Zero for a leaf, at least [`LEAST_SIZE`] for a node,
+    /// negative for an unused lane.
     pub(crate) size: [f32; WIDTH],
     /// Leaf flag and triangle number, or node number.
     pub(crate) child: [u32; WIDTH],

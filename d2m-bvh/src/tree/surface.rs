@@ -2,7 +2,7 @@
 
 use super::fit::{Moments, dot, sub, triangle_axes};
 use super::margin::{UNIT_F64, round_up};
-use super::node::OrientedBox;
+use super::node::{LEAST_SIZE, OrientedBox};
 use super::refine::Extremes;
 use crate::TriMesh;
 use glam::DVec3;
@@ -132,10 +132,10 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// What decides which box is opened: its volume, flat boxes taken a little thicker. Positive.
+/// What decides which box is opened: its volume, flat boxes taken a little thicker. Not zero.
 pub(super) fn size_of_box(boxed: &OrientedBox) -> f32 {
     let least = 1e-3 * boxed.radius;
-    boxed.half_extent.iter().map(|h| h.max(least)).product::<f32>().max(f32::MIN_POSITIVE)
+    boxed.half_extent.iter().map(|h| h.max(least)).product::<f32>().max(LEAST_SIZE)
 }
 
 /// How far points reach from the centre of a box, along its axes and in all.

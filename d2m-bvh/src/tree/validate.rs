@@ -2,7 +2,7 @@
 
 use super::margin::{UNIT_F32, UNIT_F64};
 use super::mesh_tree::MeshTree;
-use super::node::{Below, WIDTH, WideNode};
+use super::node::{Below, LEAST_SIZE, WIDTH, WideNode};
 use super::surface::{Extent, Reach, Surface, unit_of};
 use glam::DVec3;
 use thiserror::Error;
@@ -175,7 +175,7 @@ fn check_shapes(index: usize, node: &WideNode) -> Result<(), TreeError> {
                     .all(|&h| 0.0 <= h && f64::from(h) <= 1.0001 * f64::from(boxed.radius))
                 && f64::from(node.extent) >= center + f64::from(boxed.radius)
                 && size.is_finite()
-                && (if is_leaf { size == 0.0 } else { size >= 0.0 })
+                && (if is_leaf { size == 0.0 } else { size >= LEAST_SIZE })
                 && is_orthonormal(&boxed.axes)
         };
         if !fine {
