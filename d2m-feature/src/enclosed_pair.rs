@@ -76,24 +76,12 @@ impl<'a> EnclosedPairMotion<'a> {
         edge_b: [DVec3; 2],
         options: &ContactOptions,
     ) -> FirstContact {
-        let motions = &self.forward;
-        let separation = options.separation();
-        let (middle, half) = ((edge_b[0] + edge_b[1]) * 0.5, (edge_b[1] - edge_b[0]) * 0.5);
-        let half_a = (edge_a[1] - edge_a[0]) * 0.5;
-        let half_lengths = (half_a.length() * UP, half.length() * UP);
-        let extent = Extent::of(middle, half_lengths.1, motions);
-        let path = EnclosedPath::new(motions, edge_a, extent, separation);
-        let reach = extent.from_origin + half_lengths.0;
-        let tolerance = options
-            .wanted_tolerance(2.0 * half_lengths.0.max(half_lengths.1), reach)
-            .max(4.0 * path.rounding());
-        let window = path.window();
-        answer(
-            EdgeEdgeTest { path, middle, half, half_lengths, tolerance, separation, inside: Piece::NONE },
-            window,
-            motions,
-            options,
-        )
+        // Seen from the slower body the bounds are smaller.
+        if self.forward.turn_b() <= self.backward.turn_b() {
+            edge_edge(&self.forward, edge_a, edge_b, options)
+        } else {
+            edge_edge(&self.backward, edge_b, edge_a, options)
+        }
     }
 
     /// First contact of a ball of A (centre, radius) with a ball of B.
@@ -155,6 +143,30 @@ fn point_triangle(
     let tolerance = options.wanted_tolerance(planes.size, planes.extent).max(4.0 * path.rounding());
     let window = path.window();
     answer(PointTriangleTest::new(path, &planes, tolerance, separation), window, motions, options)
+}
+
+fn edge_edge(
+    motions: &EnclosedMotions<'_>,
+    edge_a: [DVec3; 2],
+    edge_b: [DVec3; 2],
+    options: &ContactOptions,
+) -> FirstContact {
+    let separation = options.separation();
+    let (middle, half) = ((edge_b[0] + edge_b[1]) * 0.5, (edge_b[1] - edge_b[0]) * 0.5);
+    let half_a = (edge_a[1] - edge_a[0]) * 0.5;
+    let half_lengths = (half_a.length() * UP, half.length() * UP);
+    let extent = Extent::of(middle, half_lengths.1, motions);
+    let path = EnclosedPath::new(motions, edge_a, extent, separation);
+    let reach = extent.from_origin + half_lengths.0;
+    let tolerance =
+        options.wanted_tolerance(2.0 * half_lengths.0.max(half_lengths.1), reach).max(4.0 * path.rounding());
+    let window = path.window();
+    answer(
+        EdgeEdgeTest { path, middle, half, half_lengths, tolerance, separation, inside: Piece::NONE },
+        window,
+        motions,
+        options,
+    )
 }
 
 /// Isolates in the part of the window in which the features come within reach of each other.

@@ -146,3 +146,25 @@ fn nothing_is_called_clear_when_the_numbers_run_out() {
     let pair = PairMotion::new(&falling(), &LinearMotion::REST, 0.25, 0.25);
     assert_eq!(pair.point_triangle(DVec3::ZERO, &floor, &options), FirstContact::Clear);
 }
+
+#[test]
+fn a_million_radians_a_window_are_decided_where_the_bodies_are_near_for_few() {
+    // Spinning on its way down; near the floor for a few thousandths of the window.
+    let falling = LinearMotion::REST.with_position(v(0.0, 0.0, 5e3)).with_linear_velocity(v(0.0, 0.0, -1e4));
+    let pair =
+        PairMotion::new(&falling.with_angular_velocity(v(0.0, 0.0, 1e6)), &LinearMotion::REST, 0.0, 1.0);
+    let floor = [v(-4.0, -4.0, 0.0), v(6.0, -4.0, 0.0), v(0.0, 8.0, 0.0)];
+    let options = ContactOptions::new();
+    let answer = pair.point_triangle(v(0.5, 0.0, 0.0), &floor, &options);
+    assert_lands(answer, "spinning");
+    let (a, b) = ([v(0.5, 0.0, 0.0), v(-0.5, 0.0, 0.0)], [v(0.0, 0.0, 0.0), v(0.0, 5.0, 0.0)]);
+    assert_lands(pair.edge_edge(a, b, &options), "edges");
+    // What never comes near needs no look at all; what nobody can follow is never called clear.
+    let aside = floor.map(|p| p + 100.0 * DVec3::X);
+    assert_eq!(pair.point_triangle(v(0.5, 0.0, 0.0), &aside, &options), FirstContact::Clear);
+    let mad =
+        PairMotion::new(&falling.with_angular_velocity(v(0.0, 0.0, 1e12)), &LinearMotion::REST, 0.0, 1.0);
+    let few = options.with_max_evaluations(1000);
+    let answer = mad.point_triangle(v(0.5, 0.0, 0.0), &floor, &few);
+    assert_ne!(answer, FirstContact::Clear);
+}

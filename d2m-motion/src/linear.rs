@@ -5,7 +5,7 @@ use crate::rotation::{RotationDd, Spin, from_quat_rounded, rotate_dd};
 use crate::sin_cos::LARGEST_ANGLE;
 use crate::{CertifiedState, IntervalPose, IntervalTwist, MotionError, Pose, RigidMotion, Twist};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 
 /// Constant twist: `x(t) = x0 + v·(t − t_ref)`, `R(t) = exp([ω]·(t − t_ref))·R0`.
 ///
@@ -14,7 +14,7 @@ use glam::{DQuat, DVec3};
 ///
 /// ```
 /// use d2m_motion::{LinearMotion, RigidMotion};
-/// use glam::{DQuat, DVec3};
+/// use glam::{DMat3, DQuat, DVec3};
 /// let motion = LinearMotion::try_new(DVec3::X, DQuat::IDENTITY, DVec3::Y, DVec3::ZERO)?;
 /// let (pose, _) = motion.pose_and_twist(2.0);
 /// assert_eq!(pose.transform_point(DVec3::ZERO), DVec3::new(1.0, 2.0, 0.0));
@@ -211,6 +211,43 @@ impl LinearMotion {
     }
 }
 
+/// Radians either way over which a rotation is enclosed about its middle: from there on interval arithmetic is tighter.
+const LITTLE: f64 = 1e-3;
+
+impl LinearMotion {
+    /// In plain floating point: `u(96 + 8|ω||t − t_ref|)` for the rotation, `4u(|x0| + |v(t − t_ref)|)` for the
+    /// position, u = 2⁻⁵³ (docs/theory/features.md, "Any C² motion"). `None` where that is not proven.
+    fn plain_state(&self, t: f64) -> Option<CertifiedState> {
+        let unit = 0.5 * f64::EPSILON;
+        let s = t - self.reference_time;
+        let angle = self.angular_velocity.length() * s.abs();
+        // Also NaN is not proven.
+        let start = from_quat_rounded(self.orientation).filter(|_| angle < 0.5 * LARGEST_ANGLE)?;
+        let travelled = self.linear_velocity * s;
+        Some(CertifiedState {
+            rotation: Spin::new(self.angular_velocity).rotation(s) * start,
+            position: self.position + travelled,
+            at: self.at,
+            linear: self.linear_velocity,
+            angular: self.angular_velocity,
+            rotation_radius: unit * (96.0 + 8.0 * angle),
+            position_radius: 4.0 * unit * (self.position.length() + travelled.length()) + 1e-150,
+            linear_radius: 0.0,
+            angular_radius: 0.0,
+        })
+    }
+}
+
+/// All matrices whose entries are within `radius` of those of a rotation: that of the operator norm holds for each.
+fn around(m: &DMat3, radius: f64) -> IntervalMat3 {
+    // One rounding of an end, of numbers up to 1 + radius.
+    let radius = radius + 2.0 * f64::EPSILON;
+    let entry = |x: f64| Interval::new(x - radius, x + radius);
+    let t = m.transpose();
+    let row = |v: DVec3| IntervalVec3::new(entry(v.x), entry(v.y), entry(v.z));
+    IntervalMat3::from_rows([row(t.x_axis), row(t.y_axis), row(t.z_axis)])
+}
+
 /// Radians from which a pose is worth more than double precision: the rounding of the angle grows with it.
 const FEW_TURNS: f64 = 64.0;
 /// Radians up to which the extended sine and cosine are good: 2³⁰.
@@ -229,15 +266,24 @@ impl RigidMotion for LinearMotion {
         (pose, Twist { linear: self.linear_velocity, angular: self.angular_velocity })
     }
 
+    /// Where the body turns little over `t`, the rotation in its middle in plain floating point and as far around it as it
+    /// turns: a fifth of the instructions of interval arithmetic.
     fn enclose_pose(&self, t: Interval) -> IntervalPose {
         let s = t - Interval::point(self.reference_time);
-        let start = IntervalMat3::from_quat_normalized(self.orientation);
-        let rotation = if self.angular_velocity == DVec3::ZERO {
-            start
-        } else {
-            IntervalMat3::rotation(self.angular_velocity, s).mul_mat(start)
-        };
         let translation = IntervalVec3::point(self.linear_velocity) * s + self.position;
+        // (No times at all: a NaN, which is not little.)
+        let turn = t.rad() * self.angular_velocity.length();
+        let plain = if turn <= LITTLE { self.plain_state(t.mid()) } else { None };
+        let rotation = if let Some(state) = plain {
+            around(&state.rotation, (state.rotation_radius + turn) * (1.0 + 1e-14))
+        } else {
+            let start = IntervalMat3::from_quat_normalized(self.orientation);
+            if self.angular_velocity == DVec3::ZERO {
+                start
+            } else {
+                IntervalMat3::rotation(self.angular_velocity, s).mul_mat(start)
+            }
+        };
         IntervalPose { rotation, translation, at: self.at }
     }
 
@@ -253,28 +299,12 @@ impl RigidMotion for LinearMotion {
         IntervalTwist { linear: zero, angular: zero }
     }
 
-    /// In plain floating point: `u(96 + 8|ω||t − t_ref|)` for the rotation, `4u(|x0| + |v(t − t_ref)|)` for the
-    /// position, u = 2⁻⁵³ (docs/theory/features.md, "Any C² motion").
+    /// In plain floating point where that is proven ([`CertifiedState`] says how far off it is).
     fn enclose_state(&self, t: f64) -> CertifiedState {
-        let unit = 0.5 * f64::EPSILON;
-        let s = t - self.reference_time;
-        let angle = self.angular_velocity.length() * s.abs();
-        let Some(start) = from_quat_rounded(self.orientation).filter(|_| angle < 0.5 * LARGEST_ANGLE) else {
+        self.plain_state(t).unwrap_or_else(|| {
             let now = Interval::point(t);
-            return CertifiedState::from_enclosures(&self.enclose_pose(now), &self.enclose_twist(now));
-        };
-        let travelled = self.linear_velocity * s;
-        CertifiedState {
-            rotation: Spin::new(self.angular_velocity).rotation(s) * start,
-            position: self.position + travelled,
-            at: self.at,
-            linear: self.linear_velocity,
-            angular: self.angular_velocity,
-            rotation_radius: unit * (96.0 + 8.0 * angle),
-            position_radius: 4.0 * unit * (self.position.length() + travelled.length()) + 1e-150,
-            linear_radius: 0.0,
-            angular_radius: 0.0,
-        }
+            CertifiedState::from_enclosures(&self.enclose_pose(now), &self.enclose_twist(now))
+        })
     }
 
     fn constant_twist(&self) -> Option<LinearMotion> {

@@ -1,7 +1,8 @@
 //! The project's own sine and cosine of a double, for frames: the same bits on every platform, a counted error.
 //!
 //! Three-part Cody–Waite reduction by π/2 and polynomials of its own (Chebyshev interpolants; the remainder carried as a
-//! pair). |computed − true| ≤ 2·2⁻⁵³ for each of both, |x| ≤ 2¹⁹·π/2; docs/theory/features.md has the count.
+//! pair). |computed − true| ≤ 2·2⁻⁵³ for each of both, |x| ≤ 8e5, and in double-double up to 1e9; docs/theory/features.md has the count.
+use crate::double_double::DoubleDouble;
 use d2m_interval::F64x2;
 
 const PIO2_1: f64 = 1.570_796_326_734_125_614_17; // first 33 bits of π/2
@@ -9,8 +10,10 @@ const PIO2_2: f64 = 6.077_100_506_303_965_98e-11; // second 33 bits
 const PIO2_2T: f64 = 2.022_266_248_795_950_63e-21; // π/2 − PIO2_1 − PIO2_2
 const ROUND: f64 = 6_755_399_441_055_744.0; // 1.5·2⁵²: adding it rounds to an integer
 
-/// The largest argument with a promised error.
-pub(crate) const LARGEST_ANGLE: f64 = 8e5;
+/// The largest argument that the three parts of π/2 reduce.
+const FEW_TURNS: f64 = 8e5;
+/// The largest argument with a promised error; from [`FEW_TURNS`] on in double-double, some fifty times slower.
+pub(crate) const LARGEST_ANGLE: f64 = 1e9;
 
 /// (sin x, cos x), each within 2·2⁻⁵³ absolutely for |x| ≤ [`LARGEST_ANGLE`]; NaN beyond it.
 #[inline]
@@ -21,6 +24,10 @@ pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
     // Also NaN goes this way: a caller must get NaN, never a plausible number.
     if x.is_nan() || x.abs() > LARGEST_ANGLE {
         return (f64::NAN, f64::NAN);
+    }
+    if x.abs() > FEW_TURNS {
+        let (sin, cos) = DoubleDouble::from_f64(x).sin_cos();
+        return (sin.hi, cos.hi);
     }
     let shifted = x * core::f64::consts::FRAC_2_PI + ROUND;
     let n = shifted - ROUND;
@@ -47,9 +54,9 @@ pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
 #[inline(always)]
 pub(crate) fn sin_cos_two(x: F64x2) -> (F64x2, F64x2) {
     let [x0, x1] = x.to_array();
-    let proven = x0.abs() <= LARGEST_ANGLE && x1.abs() <= LARGEST_ANGLE;
+    let few = x0.abs() <= FEW_TURNS && x1.abs() <= FEW_TURNS;
     // Also NaN goes this way.
-    if !proven {
+    if !few {
         let ((s0, c0), (s1, c1)) = (sin_cos(x0), sin_cos(x1));
         return (F64x2::pack(s0, s1), F64x2::pack(c0, c1));
     }

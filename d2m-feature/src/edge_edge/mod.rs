@@ -33,7 +33,7 @@ const UP: f64 = 1.0 + 1e-14;
 
 /// `a·b` of two jets as a quadratic, and a bound of what the cubic and quartic terms add.
 #[inline(always)]
-fn product(a: [DVec3; 3], b: [DVec3; 3]) -> (Quadratic, f64, f64) {
+fn product_of(a: [DVec3; 3], b: [DVec3; 3]) -> (Quadratic, f64, f64) {
     let quadratic = Quadratic {
         value: a[0].dot(b[0]),
         slope: a[0].dot(b[1]) + a[1].dot(b[0]),
@@ -46,14 +46,14 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
     /// The part of a piece in which the edges may be near: as a whole all four corners w ± e ± d on one side along
     /// the line of the midpoints, from either end |w| ≤ |e| + |d| along the velocity.
     #[inline(always)]
-    fn near(&self, w: &PathJet, e: &PathJet, whole: Piece, h: f64) -> Option<Piece> {
+    fn near(&self, w: &PathJet, e: &PathJet, d: DVec3, whole: Piece, h: f64) -> Option<Piece> {
         let of_w = widened(w.remainder, self.separation).bound(h);
         let of_e = e.remainder.bound(h);
         let distance = w.p.length();
         if distance > self.half_lengths.0 {
             let (away, left_out) = cubic_along(w, w.p).quadratic_near(0.0, h);
             let (reach_a, left_out_e) = cubic_along(e, w.p).quadratic_near(0.0, h);
-            let needed = (w.p.dot(self.half).abs() + distance * (of_w + of_e) + left_out + left_out_e) * UP;
+            let needed = (w.p.dot(d).abs() + distance * (of_w + of_e) + left_out + left_out_e) * UP;
             if away.plus(&reach_a).bound_below(whole) > needed
                 && away.minus(&reach_a).bound_below(whole) > needed
             {
@@ -61,7 +61,7 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
             }
         }
         let (forth, left_out) = cubic_along(w, w.v).quadratic_near(0.0, h);
-        let reach = w.v.length() * (self.half_lengths.0 + of_w) + w.v.dot(self.half).abs() + left_out;
+        let reach = w.v.length() * (self.half_lengths.0 + of_w) + w.v.dot(d).abs() + left_out;
         forth.clip(Band { lo: -reach * UP, hi: reach * UP }, whole)
     }
 
@@ -80,12 +80,10 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
         self.path.speed() + self.path.direction_speed()
     }
 
-    /// Jets of the difference of the midpoints and of A's half edge.
+    /// Jets of the difference of the midpoints and of A's half edge, and B's half edge.
     #[inline(always)]
-    fn jets(&mut self, piece: Piece, at: f64) -> (PathJet, PathJet) {
-        let (mut w, e) = self.path.point_and_direction(piece, at);
-        w.p -= self.middle;
-        (w, e)
+    fn jets(&mut self, piece: Piece, at: f64) -> (PathJet, PathJet, DVec3) {
+        self.path.edges(piece, at, (self.middle, self.half))
     }
 }
 
@@ -107,8 +105,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
     #[inline]
     fn evaluate(&mut self, piece: Piece) -> Verdict {
         let at = piece.mid();
-        let (w, e) = self.jets(piece, at);
-        let d = self.half;
+        let (w, e, d) = self.jets(piece, at);
         let (half_a, half_b) = self.half_lengths;
         let whole = local(piece, at);
         let h = reach(whole);
@@ -117,7 +114,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
         let known_inside = self.inside.holds(piece);
         let mut searched = whole;
         if !known_inside && self.speed() * h > NEARBY * self.size() {
-            let Some(near) = self.near(&w, &e, whole, h) else {
+            let Some(near) = self.near(&w, &e, d, whole, h) else {
                 return Verdict::Clear;
             };
             searched = near;
@@ -135,76 +132,102 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
         let fourth = ((1.0 / 6.0) * (w.v.dot(k3) + w.j.dot(k1)) + 0.25 * w.a.dot(k2)).abs();
         let fifth = ((1.0 / 12.0) * (w.a.dot(k3) + w.j.dot(k2))).abs();
         let sixth = ((1.0 / 36.0) * w.j.dot(k3)).abs();
-        let higher = |s: f64| {
-            let square = s * s;
-            square * square * (fourth + s * (fifth + s * sixth))
-        };
         // |w| is at most what its speed admits, and at a contact both half edges and the separation; its jet adds its
         // remainder.
         let (there, touching) = (w.p.length() + h * self.path.speed(), self.size() + self.separation);
         let apart = (if there < touching { there } else { touching }) + remainder.bound(h);
-        let factors = remainder.scaled(half_a).plus(e.remainder.scaled(apart)).scaled(half_b * UP);
-        let margin_f = |s: f64| (factors.bound(s) + higher(s)) * UP;
+        let sum = remainder.scaled(half_a).plus(e.remainder.scaled(apart)).scaled(half_b * UP);
+        let (third, fourth_sum) = ((1.0 / 6.0) * sum.m3, (1.0 / 24.0) * sum.m4 + fourth);
+        let margin_f = |s: f64| {
+            let high = third + s * (fourth_sum + s * (fifth + s * sixth));
+            (sum.e0 + s * (sum.e1 + s * (sum.e2 + s * high))) * UP
+        };
         let Some(mut part) = f.clip(Band { lo: 0.0, hi: 0.0 }, margin_f, searched) else {
             return Verdict::Clear;
         };
         let mut certain = known_inside;
         if !known_inside {
-            // The jets about the middle of what is left.
+            // About the middle of what is left.
             let meeting = padded(part, at, whole);
             let m = part.mid();
             let s = reach(meeting);
             let meeting = Piece { lo: meeting.lo - m, hi: meeting.hi - m };
             let r = reach(meeting) * UP;
-            let margin_w = (remainder.bound(s) + (1.0 / 6.0) * w.j.length() * (r * r * r)) * UP;
-            let margin_e = (e.remainder.bound(s) + (1.0 / 6.0) * e.j.length() * (r * r * r)) * UP;
-            let (w, e) = (w.moved(m), e.moved(m));
-            let before = Piece { lo: part.lo - m, hi: part.hi - m };
             // Γ with directions frozen there: k = e × d, u = d × k.
-            let k = e.p.cross(d);
+            let (w_m, e_m) = (w.at(m), e.at(m));
+            let k = e_m.cross(d);
             let u = d.cross(k);
             let k_length = k.length() * UP;
             // At least |u|, and of the size of its rounding when k is all rounding.
             let u_length = half_b * k_length * UP;
-            let (w_u, e_u) = (along(&w, u), along(&e, u));
-            let (first_a, second_a) = (w_u.plus(&e_u), w_u.minus(&e_u));
-            let margin_a = u_length * (margin_w + margin_e) * UP;
-            let Some(beside) = first_a.clip_shared_sign(&second_a, margin_a, before) else {
+            let (w_u, e_u, w_j) = (w_m.dot(u), e_m.dot(u), w_m.dot(e_m.cross(k)));
+            let (of_w, of_e) = (remainder.bound(s), e.remainder.bound(s));
+            // What the speeds admit.
+            let (stray_w, stray_e) = (self.path.speed() * r + of_w, self.path.direction_speed() * r + of_e);
+            let margin_a = u_length * (stray_w + stray_e) * UP;
+            let product = stray_w * half_a + (w_m.length() + stray_w) * stray_e;
+            let margin_b = (k_length * product + u_length * stray_e) * UP;
+            let (a, b) = ([w_u + e_u, w_u - e_u], [w_j + e_u, w_j - e_u]);
+            let shared =
+                |[f, g]: [f64; 2], margin: f64| (f > margin && g > margin) || (f < -margin && g < -margin);
+            if shared(a, margin_a) || shared(b, margin_b) {
                 return Verdict::Clear;
-            };
-            let js = [e.p.cross(k), e.v.cross(k), e.a.cross(k)];
-            let (w_j, cubic_j, quartic_j) = product([w.p, w.v, w.a], js);
-            let (first_b, second_b) = (w_j.plus(&e_u), w_j.minus(&e_u));
-            // |w| there, up to what its jet admits.
-            let length = w.p.length() + r * (w.v.length() + 0.5 * r * w.a.length());
-            let product = margin_w * half_a + length * margin_e;
-            let margin_b =
-                ((cubic_j + quartic_j * r) * (r * r * r) + k_length * product + u_length * margin_e) * UP;
-            let Some(inside) = first_b.clip_shared_sign(&second_b, margin_b, beside) else {
-                return Verdict::Clear;
-            };
-            if inside != before {
-                part = Piece { lo: m + inside.lo, hi: m + inside.hi };
-            } else if e_u.bound_below(meeting) > u_length * margin_e * UP
-                && first_a.bound_below(meeting) > margin_a
-                && (-second_a).bound_below(meeting) > margin_a
-                && first_b.bound_below(meeting) > margin_b
-                && (-second_b).bound_below(meeting) > margin_b
-            {
-                // Only f has cut: the lines are certainly not parallel, and meet certainly inside both edges, for good.
-                certain = true;
+            }
+            // The lines are certainly not parallel, and meet certainly inside both edges, for good.
+            certain = e_u > u_length * stray_e * UP
+                && a[0] > margin_a
+                && a[1] < -margin_a
+                && b[0] > margin_b
+                && b[1] < -margin_b;
+            if certain {
                 self.inside = global(part, at, piece);
+            } else {
+                // The same with jets.
+                let cube = (1.0 / 6.0) * (r * r * r);
+                let margin_w = (of_w + cube * w.j.length()) * UP;
+                let margin_e = (of_e + cube * e.j.length()) * UP;
+                let (w, e) = (w.moved(m), e.moved(m));
+                let before = Piece { lo: part.lo - m, hi: part.hi - m };
+                let (w_u, e_u) = (along(&w, u), along(&e, u));
+                let (first_a, second_a) = (w_u.plus(&e_u), w_u.minus(&e_u));
+                let margin_a = u_length * (margin_w + margin_e) * UP;
+                let Some(beside) = first_a.clip_shared_sign(&second_a, margin_a, before) else {
+                    return Verdict::Clear;
+                };
+                let js = [e.p.cross(k), e.v.cross(k), e.a.cross(k)];
+                let (w_j, cubic_j, quartic_j) = product_of([w.p, w.v, w.a], js);
+                let (first_b, second_b) = (w_j.plus(&e_u), w_j.minus(&e_u));
+                // |w| there, up to what its jet admits.
+                let length = w.p.length() + r * (w.v.length() + 0.5 * r * w.a.length());
+                let product = margin_w * half_a + length * margin_e;
+                let margin_b =
+                    ((cubic_j + quartic_j * r) * (r * r * r) + k_length * product + u_length * margin_e) * UP;
+                let Some(inside) = first_b.clip_shared_sign(&second_b, margin_b, beside) else {
+                    return Verdict::Clear;
+                };
+                if inside != before {
+                    part = Piece { lo: m + inside.lo, hi: m + inside.hi };
+                } else if e_u.bound_below(meeting) > u_length * margin_e * UP
+                    && first_a.bound_below(meeting) > margin_a
+                    && (-second_a).bound_below(meeting) > margin_a
+                    && first_b.bound_below(meeting) > margin_b
+                    && (-second_b).bound_below(meeting) > margin_b
+                {
+                    // Only f has cut.
+                    certain = true;
+                    self.inside = global(part, at, piece);
+                }
             }
         }
         // A true crossing: f changes sign.
         let changes = |between: Piece| {
-            let sign = |s: f64| {
-                let (of_w, of_e) = (remainder.bound(s.abs()), e.remainder.bound(s.abs()));
-                let product = half_b * (of_w * half_a + (w.at(s).length() + of_w) * of_e);
-                let (value, margin) = (f.at(s), (product + higher(s.abs())) * UP);
-                i32::from(value > margin) - i32::from(value < -margin)
-            };
-            sign(between.lo) * sign(between.hi) < 0
+            let s = reach(between);
+            let (of_w, of_e) = (remainder.bound(s), e.remainder.bound(s));
+            let product = half_b * (of_w * half_a + (there + of_w) * of_e);
+            let higher = s * s * s * s * (fourth + s * (fifth + s * sixth));
+            let margin = (product + higher) * UP;
+            let (first, last) = (f.at(between.lo), f.at(between.hi));
+            (first > margin && last < -margin) || (first < -margin && last > margin)
         };
         let certain =
             certain && self.fine(part, piece) && (changes(searched) || changes(around(part, searched)));
@@ -212,8 +235,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
     }
 
     fn measure(&mut self, piece: Piece, at: f64) -> Measurement {
-        let (w, e) = self.jets(piece, at);
-        let d = self.half;
+        let (w, e, d) = self.jets(piece, at);
         let pair = closest::segment_segment(w.p, e.p, d);
         let distance =
             pair.difference.length() * UP + w.remainder.bound(0.0) + e.remainder.bound(0.0) - self.separation;

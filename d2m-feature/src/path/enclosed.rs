@@ -33,6 +33,11 @@ impl<'a> EnclosedMotions<'a> {
         self.window
     }
 
+    /// Bound of the rate of turn of B over the window.
+    pub(crate) const fn turn_b(&self) -> f64 {
+        self.state.turn_b()
+    }
+
     /// The part of the window in which the followed points are within `distance` of each other; `None`: never.
     ///
     /// `|x_A − x_B| ≥ |g + us| − r` with the r of [`RelativeState::straight_line`], so contact needs
@@ -134,11 +139,12 @@ impl FeaturePath for EnclosedPath<'_> {
     }
 
     #[inline(always)]
-    fn point_and_direction(&mut self, piece: Piece, at: f64) -> (PathJet, PathJet) {
-        self.with_state(piece, at, |state| {
+    fn edges(&mut self, piece: Piece, at: f64, of_b: (DVec3, DVec3)) -> (PathJet, PathJet, DVec3) {
+        let of_a = self.with_state(piece, at, |state| {
             let point = state.point_jet(self.arm, self.radius, self.extent);
             (point, state.direction_jet(self.half, self.length))
-        })
+        });
+        super::against(of_a, of_b)
     }
 
     fn speed(&self) -> f64 {

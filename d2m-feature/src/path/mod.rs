@@ -15,8 +15,16 @@ pub(crate) trait FeaturePath {
     /// length at most 1 and the comparison with points of B within the extent given at construction.
     fn point(&mut self, piece: Piece, at: f64) -> PathJet;
 
-    /// Jets of the point and of the direction of A.
-    fn point_and_direction(&mut self, piece: Piece, at: f64) -> (PathJet, PathJet);
+    /// [`FeaturePath::point`] along a direction of length at most 1 that is fixed in B's frame, with the remainder.
+    #[inline(always)]
+    fn point_along(&mut self, piece: Piece, at: f64, d: DVec3) -> (Cubic, Remainder) {
+        let jet = self.point(piece, at);
+        (cubic_along(&jet, d), jet.remainder)
+    }
+
+    /// Jets of the point of A relative to a point of B and of the direction of A, and the direction of B: in axes that
+    /// turn with B, whichever they are at that time.
+    fn edges(&mut self, piece: Piece, at: f64, of_b: (DVec3, DVec3)) -> (PathJet, PathJet, DVec3);
 
     /// Bound of the point's speed.
     fn speed(&self) -> f64;
@@ -43,6 +51,13 @@ pub(crate) fn along(jet: &PathJet, d: DVec3) -> Quadratic {
 #[inline(always)]
 pub(crate) fn cubic_along(jet: &PathJet, d: DVec3) -> Cubic {
     Cubic { value: d.dot(jet.p), slope: d.dot(jet.v), curvature: d.dot(jet.a), jerk: d.dot(jet.j) }
+}
+
+/// The jets of an edge of A in axes in which the midpoint and the half edge of B are at rest.
+#[inline(always)]
+fn against(of_a: (PathJet, PathJet), (middle, half): (DVec3, DVec3)) -> (PathJet, PathJet, DVec3) {
+    let (point, direction) = of_a;
+    (PathJet { p: point.p - middle, ..point }, direction, half)
 }
 
 /// The largest |s| of a part.

@@ -1,7 +1,7 @@
 //! Jets in closed form, from frames that all features of a pair of bodies share.
 use super::FeaturePath;
 use d2m_motion::{Arm, ArmPair, Frame, PathJet, RelativeMotion, Remainder};
-use d2m_root::Piece;
+use d2m_root::{Cubic, Piece};
 use glam::DVec3;
 
 /// A relative motion with its frame in the middle of the window: the time at which every feature of a pair of bodies
@@ -49,9 +49,12 @@ pub(crate) struct RigidPath<'a> {
 }
 
 /// The vectors prepared for jets to third order, and the remainders of these.
+// One on the stack a query: a box would cost more than the room.
+#[allow(clippy::large_enum_variant)]
 enum ThirdOrder {
     Point(Arm, Remainder),
-    Pair(ArmPair, Remainder, Remainder),
+    /// Of A and of B, with the remainders of point and direction.
+    Edges([ArmPair; 2], (Remainder, Remainder)),
 }
 
 impl<'a> RigidPath<'a> {
@@ -145,13 +148,24 @@ impl FeaturePath for RigidPath<'_> {
     }
 
     #[inline(always)]
-    fn point_and_direction(&mut self, piece: Piece, at: f64) -> (PathJet, PathJet) {
+    fn point_along(&mut self, piece: Piece, at: f64, d: DVec3) -> (Cubic, Remainder) {
+        let motion = &self.motion.motion;
+        if let Some(ThirdOrder::Point(arm, remainder)) = &self.third_order
+            && !self.frame_serves(piece, at)
+        {
+            let [value, slope, curvature, jerk] = motion.point_along(at, arm, d);
+            return (Cubic { value, slope, curvature, jerk }, *remainder);
+        }
+        let jet = self.point(piece, at);
+        (super::cubic_along(&jet, d), jet.remainder)
+    }
+
+    #[inline(always)]
+    fn edges(&mut self, piece: Piece, at: f64, of_b: (DVec3, DVec3)) -> (PathJet, PathJet, DVec3) {
         let framed = self.motion;
         let from = |frame: &Frame| {
-            (
-                frame.point_jet(self.point, self.point_remainder),
-                frame.direction_jet(self.direction, self.direction_remainder),
-            )
+            let point = frame.point_jet(self.point, self.point_remainder);
+            super::against((point, frame.direction_jet(self.direction, self.direction_remainder)), of_b)
         };
         if self.frame_serves(piece, at) {
             return from(&framed.frame);
@@ -160,15 +174,17 @@ impl FeaturePath for RigidPath<'_> {
         if motion.is_anchored() {
             return from(&motion.frame(at));
         }
-        if let Some(ThirdOrder::Pair(arms, point, direction)) = &self.third_order {
-            return motion.point_and_direction_jets(at, arms, (*point, *direction));
+        if self.third_order.is_none() {
+            let point = motion.point_remainder_third_order(self.point_remainder, self.fourth_derivative);
+            let length = self.direction.length() * (1.0 + 1e-14);
+            let remainders = (point, motion.direction_remainder_third_order(length));
+            let arms = [motion.arms_a(self.point, self.direction), motion.arms_b(of_b.0, of_b.1)];
+            self.third_order = Some(ThirdOrder::Edges(arms, remainders));
         }
-        let point = motion.point_remainder_third_order(self.point_remainder, self.fourth_derivative);
-        let length = self.direction.length() * (1.0 + 1e-14);
-        let direction = motion.direction_remainder_third_order(length);
-        let arms = ArmPair::new(&motion.arm(self.point), &motion.arm(self.direction));
-        self.third_order = Some(ThirdOrder::Pair(arms, point, direction));
-        motion.point_and_direction_jets(at, &arms, (point, direction))
+        let Some(ThirdOrder::Edges([of_a, of_b], remainders)) = &self.third_order else {
+            unreachable!("a path of edges");
+        };
+        motion.edge_jets(at, (of_a, of_b), *remainders)
     }
 
     fn speed(&self) -> f64 {

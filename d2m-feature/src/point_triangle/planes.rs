@@ -1,5 +1,6 @@
 //! A triangle as four directions with the interval that it covers along each.
 use crate::path::direction;
+use d2m_root::Band;
 use glam::DVec3;
 
 /// The face normal and three in-plane edge normals with their support over the vertices.
@@ -27,6 +28,12 @@ pub(crate) struct TrianglePlanes {
 }
 
 impl TrianglePlanes {
+    /// The values of the triangle along its normal.
+    #[inline(always)]
+    pub(crate) const fn slab(&self) -> Band {
+        Band { lo: self.slab.0, hi: self.slab.1 }
+    }
+
     pub(crate) fn new(vertices: [DVec3; 3]) -> Self {
         let [a, b, c] = vertices;
         let edges = [b - a, c - b, a - c];

@@ -158,6 +158,11 @@ impl RelativeState {
         }
     }
 
+    /// Bound of the rate of turn of B over the piece.
+    pub const fn turn_b(&self) -> f64 {
+        self.b
+    }
+
     /// The body point of A that its motion follows.
     pub const fn at_a(&self) -> DVec3 {
         self.at_a

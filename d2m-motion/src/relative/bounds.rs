@@ -1,8 +1,9 @@
 //! Closed-form bounds of the relative motion and of the rounding of its frames.
+use super::frame::cross_columns;
 use super::{RelativeMotion, UNIT, UP};
 use crate::Remainder;
 use crate::rotation::Spin;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// Rounding of a frame and of all dot products made with it, in units of 2⁻⁵³·S0 (docs/theory/features.md).
 const ROUNDING: f64 = 128.0;
@@ -22,11 +23,11 @@ pub(super) struct Bounds {
     pub(super) b: f64,
     /// w = |ω_A − ω_B|.
     pub(super) w: f64,
-    /// K2 = c + w², c = |ω_A × ω_B|.
+    /// |ω_B × u|: of the velocity, only what is across B's axis turns.
+    pub(super) across: f64,
+    /// Kₖ = ‖Tₖ‖: see [`direction_bounds`].
     pub(super) k2: f64,
-    /// K3 = bc + 3wc + w³.
     pub(super) k3: f64,
-    /// K4 = b²c + 3bwc + 3cK2 + wK3.
     pub(super) k4: f64,
     /// k = 2⁻⁵³·(128 + 6(a + b)T).
     pub(super) rounding: f64,
@@ -46,19 +47,55 @@ impl Bounds {
             + 8.0 * UNIT * (offset.length() + speed * duration);
         let (a, b) = (spin_a.speed * UP, spin_b.speed * UP);
         let w = difference.length() * UP;
-        // |ω_A × ω_B| = |Ω × ω_B|; the rounding of the product is below 4u·wb.
-        let c = difference.cross(spin_b.omega).length() * UP + 8.0 * UNIT * w * b;
-        let k2 = (c + w * w) * UP;
-        let k3 = (b * c + 3.0 * w * c + w * w * w) * UP;
-        let k4 = (b * b * c + 3.0 * b * w * c + 3.0 * c * k2 + w * k3) * UP;
+        let across = spin_b.omega.cross(velocity).length() * UP + 8.0 * UNIT * b * speed;
+        let [k2, k3, k4] = direction_bounds(spin_a.omega, spin_b.omega, difference, a + b);
         let turn = (a + b) * duration;
         let rounding = if turn <= crate::sin_cos::LARGEST_ANGLE {
             UNIT * (ROUNDING + ROUNDING_PER_RADIAN * turn) * UP
         } else {
             f64::INFINITY
         };
-        Self { speed, reach, a, b, w, k2, k3, k4, rounding }
+        Self { speed, reach, a, b, w, across, k2, k3, k4, rounding }
     }
+}
+
+/// Bounds of the second to fourth derivative of a direction of A of length 1 in the axes of B: the norms of the
+/// constant matrices `T₁ = [ω_A − ω_B]`, `Tₖ₊₁ = Tₖ[ω_A] − [ω_B]Tₖ`, as `z⁽ᵏ⁾ = R_Bᵀ Tₖ R_A d`.
+///
+/// Rates are divided by `sum` ≥ |ω_A| + |ω_B| first: then every ‖Tₖ‖ ≤ 1, and rounding adds at most 64·2⁻⁵³
+/// (docs/theory/features.md). Exchanging A and B gives the same norms.
+fn direction_bounds(spin_a: DVec3, spin_b: DVec3, difference: DVec3, sum: f64) -> [f64; 3] {
+    if sum == 0.0 {
+        return [0.0; 3];
+    }
+    let scale = 1.0 / sum;
+    let (a, b) = (spin_a * scale, spin_b * scale);
+    let mut turn = cross_columns(difference * scale, &DMat3::IDENTITY);
+    let mut power = sum;
+    [(); 3].map(|()| {
+        // T[ω] is the transpose of −[ω]Tᵀ.
+        turn = -cross_columns(a, &turn.transpose()).transpose() - cross_columns(b, &turn);
+        power *= sum;
+        (norm(&turn) + 64.0 * UNIT) * power * UP
+    })
+}
+
+/// Upper bound of the operator norm, less than 1.08 of it: with the singular values σ, `(Σσ¹⁶)^(1/16)`, as
+/// `‖(MᵀM)⁴‖^(1/8)` (Frobenius norm).
+fn norm(m: &DMat3) -> f64 {
+    let largest = [m.x_axis, m.y_axis, m.z_axis].map(|v| v.abs().max_element());
+    let largest = largest[0].max(largest[1]).max(largest[2]);
+    // Also NaN ends here.
+    if largest == 0.0 || largest.is_nan() {
+        return largest;
+    }
+    let m = *m * (1.0 / largest);
+    let gram = m.transpose() * m;
+    let square = gram * gram;
+    let fourth = square * square;
+    let sum =
+        fourth.x_axis.length_squared() + fourth.y_axis.length_squared() + fourth.z_axis.length_squared();
+    largest * sum.sqrt().sqrt().sqrt().sqrt() * UP
 }
 
 impl RelativeMotion {
@@ -123,13 +160,13 @@ impl RelativeMotion {
         (k.speed + k.b * reach.min(k.reach) + k.w * (radius + self.anchor_arm())) * UP
     }
 
-    /// Bound of the acceleration: `b(2U + bY) + K2·ρ`.
+    /// Bound of the acceleration: `2|ω_B × u| + b²Y + K2·ρ`.
     pub fn bound_acceleration(&self, radius: f64) -> f64 {
         let k = &self.bounds;
-        (k.b * (2.0 * k.speed + k.b * k.reach) + k.k2 * (radius + self.anchor_arm())) * UP
+        (2.0 * k.across + k.b * k.b * k.reach + k.k2 * (radius + self.anchor_arm())) * UP
     }
 
-    /// Bound M3 of the third derivative: `b²(3U + bY) + K3·ρ`.
+    /// Bound M3 of the third derivative: `b(3|ω_B × u| + b²Y) + K3·ρ`.
     pub fn bound_jerk(&self, radius: f64) -> f64 {
         self.bound_jerk_within(radius, self.bounds.reach)
     }
@@ -137,7 +174,7 @@ impl RelativeMotion {
     /// The same while the followed points are within `reach` of each other.
     fn bound_jerk_within(&self, radius: f64, reach: f64) -> f64 {
         let k = &self.bounds;
-        (k.b * k.b * (3.0 * k.speed + k.b * reach.min(k.reach)) + k.k3 * (radius + self.anchor_arm())) * UP
+        (k.b * (3.0 * k.across + k.b * k.b * reach.min(k.reach)) + k.k3 * (radius + self.anchor_arm())) * UP
     }
 
     /// Bound of the k-th derivative of a direction of A of length 1, k = 1, 2, 3, 4: `w`, `K2`, `K3`, `K4`.
@@ -180,11 +217,11 @@ impl RelativeMotion {
     }
 
     /// Bound M4 of the fourth derivative while the followed points are within `reach` of each other:
-    /// `b³(4U + bY) + K4·ρ`.
+    /// `b²(4|ω_B × u| + b²Y) + K4·ρ`.
     pub fn bound_fourth_derivative_within(&self, radius: f64, reach: f64) -> f64 {
         let k = &self.bounds;
         let y = reach.min(k.reach);
-        (k.b * k.b * k.b * (4.0 * k.speed + k.b * y) + k.k4 * (radius + self.anchor_arm())) * UP
+        (k.b * k.b * (4.0 * k.across + k.b * k.b * y) + k.k4 * (radius + self.anchor_arm())) * UP
     }
 
     /// The remainder of jets to third order of the points whose jets to second order have the remainder `second` of

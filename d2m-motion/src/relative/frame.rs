@@ -48,7 +48,7 @@ impl Frame {
 
 /// `[w] M`: the cross product with every column.
 #[inline(always)]
-fn cross_columns(w: DVec3, m: &DMat3) -> DMat3 {
+pub(super) fn cross_columns(w: DVec3, m: &DMat3) -> DMat3 {
     DMat3::from_cols(w.cross(m.x_axis), w.cross(m.y_axis), w.cross(m.z_axis))
 }
 
@@ -58,8 +58,8 @@ fn transpose_mul(m: &DMat3, v: DVec3) -> DVec3 {
     DVec3::new(m.x_axis.dot(v), m.y_axis.dot(v), m.z_axis.dot(v))
 }
 
-/// A vector of A, prepared for jets at many times: its parts along and across A's axis `k`, and `k × r`. Turned by
-/// an angle θ it is `along + cos θ·across + sin θ·turned`.
+/// A vector of a body, prepared for jets at many times: its parts along and across the body's axis `k`, and `k × r`.
+/// Turned by an angle θ it is `along + cos θ·across + sin θ·turned`.
 #[derive(Debug, Clone, Copy)]
 pub struct Arm {
     along: DVec3,
@@ -67,7 +67,15 @@ pub struct Arm {
     turned: DVec3,
 }
 
-/// A point and a direction of A, prepared side by side.
+impl Arm {
+    #[inline(always)]
+    fn new(k: DVec3, r: DVec3) -> Self {
+        let along = k * k.dot(r);
+        Self { along, across: r - along, turned: k.cross(r) }
+    }
+}
+
+/// A point and a direction of one body, prepared side by side.
 #[derive(Clone, Copy)]
 pub struct ArmPair {
     along: TwoVec3,
@@ -76,14 +84,12 @@ pub struct ArmPair {
 }
 
 impl ArmPair {
-    /// Both side by side.
-    #[inline]
-    pub fn new(point: &Arm, direction: &Arm) -> Self {
-        Self {
-            along: TwoVec3::new(point.along, direction.along),
-            across: TwoVec3::new(point.across, direction.across),
-            turned: TwoVec3::new(point.turned, direction.turned),
-        }
+    #[inline(always)]
+    fn new(k: DVec3, point: DVec3, direction: DVec3) -> Self {
+        let r = TwoVec3::new(point, direction);
+        let k = TwoVec3::splat(k);
+        let along = k.scaled(k.dot(r));
+        Self { along, across: r - along, turned: k.cross(r) }
     }
 }
 
@@ -91,17 +97,31 @@ impl RelativeMotion {
     /// Prepares a vector of A ([`RelativeMotion::place_a`], [`RelativeMotion::turn_a`]).
     #[inline]
     pub fn arm(&self, r: DVec3) -> Arm {
-        let k = self.spin_a.axis;
-        let along = k * k.dot(r);
-        Arm { along, across: r - along, turned: k.cross(r) }
+        Arm::new(self.spin_a.axis, r)
     }
 
-    /// Sine and cosine of A's angle, and `R_B` at a time.
+    /// Prepares a vector of B ([`RelativeMotion::place_b`], [`RelativeMotion::turn_b`]).
+    #[inline]
+    fn arm_b(&self, r: DVec3) -> Arm {
+        Arm::new(self.spin_b.axis, r)
+    }
+
+    /// Prepares a point and a direction of A.
+    #[inline]
+    pub fn arms_a(&self, point: DVec3, direction: DVec3) -> ArmPair {
+        ArmPair::new(self.spin_a.axis, point, direction)
+    }
+
+    /// Prepares a point and a direction of B ([`RelativeMotion::place_b`], [`RelativeMotion::turn_b`]).
+    #[inline]
+    pub fn arms_b(&self, point: DVec3, direction: DVec3) -> ArmPair {
+        ArmPair::new(self.spin_b.axis, point, direction)
+    }
+
+    /// Sine and cosine of the angles of A and B at a time.
     #[inline(always)]
-    fn turns(&self, tau: f64) -> ([f64; 2], DMat3) {
-        let angles = F64x2::pack(self.spin_a.speed, self.spin_b.speed).times(F64x2::splat(tau));
-        let (sin, cos) = sin_cos_two(angles);
-        ([sin.first(), cos.first()], self.spin_b.rotation_of(sin.second(), cos.second()))
+    fn angles(&self, tau: f64) -> (F64x2, F64x2) {
+        sin_cos_two(F64x2::pack(self.spin_a.speed, self.spin_b.speed).times(F64x2::splat(tau)))
     }
 
     /// The jet of one point to third order, in fewer operations than a frame takes; `remainder` is
@@ -112,7 +132,9 @@ impl RelativeMotion {
     #[inline]
     pub fn point_jet(&self, tau: f64, r: &Arm, remainder: Remainder) -> PathJet {
         debug_assert!(self.anchor.is_none());
-        let ([sin, cos], back) = self.turns(tau);
+        let (sin, cos) = self.angles(tau);
+        let back = self.spin_b.rotation_of(sin.second(), cos.second());
+        let (sin, cos) = (sin.first(), cos.first());
         let (a, omega) = (self.spin_a.speed, self.spin_b.omega);
         let turning = r.across * cos + r.turned * sin;
         let x = (self.offset + self.velocity * tau) + (r.along + turning);
@@ -132,22 +154,56 @@ impl RelativeMotion {
         }
     }
 
-    /// The jets of a point and of a direction at one time. Not for anchored motions.
+    /// The jet of [`RelativeMotion::point_jet`] along a direction `n` of B: value and first three derivatives of `n·q`.
+    ///
+    /// In world axes: `x·N` with `N = R_B n`, differentiated as a product. With the parts `z_t`, `N_t` that turn,
+    /// `z″ = −a²z_t`, `z‴ = −a²z′`, `N″ = −b²N_t`, `N‴ = −b²N′`.
     #[inline]
-    pub fn point_and_direction_jets(
+    pub fn point_along(&self, tau: f64, r: &Arm, n: DVec3) -> [f64; 4] {
+        debug_assert!(self.anchor.is_none());
+        let (sin, cos) = self.angles(tau);
+        let (a, b) = (self.spin_a.speed, self.spin_b.speed);
+        let other = self.arm_b(n);
+        let across = TwoVec3::new(r.across, other.across);
+        let turned = TwoVec3::new(r.turned, other.turned);
+        let turning = across.scaled(cos) + turned.scaled(sin);
+        let swing = (turned.scaled(cos) - across.scaled(sin)).scaled(F64x2::pack(a, b));
+        let (z_t, n_t, z1, n1) = (turning.first(), turning.second(), swing.first(), swing.second());
+        let x = (self.offset + self.velocity * tau) + (r.along + z_t);
+        let n = other.along + n_t;
+        let x1 = self.velocity + z1;
+        let (aa, bb) = (a * a, b * b);
+        let (across, moved) = (x.dot(n1), x1.dot(n_t));
+        [
+            x.dot(n),
+            x1.dot(n) + across,
+            2.0 * x1.dot(n1) - (aa * z_t.dot(n) + bb * x.dot(n_t)),
+            -(aa * (z1.dot(n) + 3.0 * z_t.dot(n1)) + bb * (3.0 * moved + across)),
+        ]
+    }
+
+    /// Jets to third order of a point and of a direction of A, the point relative to one of B, and the direction of B:
+    /// all in the axes that have turned with B, told in world axes at the time. Not for anchored motions.
+    ///
+    /// Lengths and products of these do not depend on the axes, so nothing of A is turned back by `R_Bᵀ`.
+    #[inline(always)]
+    pub fn edge_jets(
         &self,
         tau: f64,
-        arms: &ArmPair,
+        (of_a, of_b): (&ArmPair, &ArmPair),
         (point, direction): (Remainder, Remainder),
-    ) -> (PathJet, PathJet) {
+    ) -> (PathJet, PathJet, DVec3) {
         debug_assert!(self.anchor.is_none());
-        let ([sin, cos], back) = self.turns(tau);
-        let (sin, cos, a) = (F64x2::splat(sin), F64x2::splat(cos), self.spin_a.speed);
-        let &ArmPair { along, across, turned } = arms;
-        let turning = across.scaled(cos) + turned.scaled(sin);
+        let (sin, cos) = self.angles(tau);
+        let a = self.spin_a.speed;
+        let other = of_b.along
+            + of_b.across.scaled(F64x2::splat(cos.second()))
+            + of_b.turned.scaled(F64x2::splat(sin.second()));
+        let (sin, cos) = (F64x2::splat(sin.first()), F64x2::splat(cos.first()));
+        let turning = of_a.across.scaled(cos) + of_a.turned.scaled(sin);
         let only = |v: DVec3| TwoVec3::new(v, DVec3::ZERO);
-        let x = only(self.offset + self.velocity * tau) + (along + turning);
-        let swing = (turned.scaled(cos) - across.scaled(sin)).scaled(F64x2::splat(a));
+        let x = only(self.offset + self.velocity * tau) + (of_a.along + turning);
+        let swing = (of_a.turned.scaled(cos) - of_a.across.scaled(sin)).scaled(F64x2::splat(a));
         let moved = only(self.velocity) + swing;
         let omega = TwoVec3::splat(self.spin_b.omega);
         let x1 = moved - omega.cross(x);
@@ -155,12 +211,16 @@ impl RelativeMotion {
         let dragged = omega.cross(moved);
         let x2 = bent - dragged - omega.cross(x1);
         let x3 = swing.scaled(F64x2::splat(-a * a)) - omega.cross(bent + bent - dragged + x2);
-        let columns = [back.x_axis, back.y_axis, back.z_axis].map(TwoVec3::splat);
-        let seen = |v: TwoVec3| TwoVec3 { x: columns[0].dot(v), y: columns[1].dot(v), z: columns[2].dot(v) };
-        let (p, v, a, j) = (seen(x), seen(x1), seen(x2), seen(x3));
         (
-            PathJet { p: p.first(), v: v.first(), a: a.first(), j: j.first(), remainder: point },
-            PathJet { p: p.second(), v: v.second(), a: a.second(), j: j.second(), remainder: direction },
+            PathJet {
+                p: x.first() - other.first(),
+                v: x1.first(),
+                a: x2.first(),
+                j: x3.first(),
+                remainder: point,
+            },
+            PathJet { p: x.second(), v: x1.second(), a: x2.second(), j: x3.second(), remainder: direction },
+            other.second(),
         )
     }
 

@@ -75,7 +75,7 @@ struct Exact {
 impl RelativeMotion {
     /// Motion of A relative to B over `[start, end]`.
     ///
-    /// Nothing is refused here: if a magnitude overflows or a rotation exceeds 8e5 radians over the window, the
+    /// Nothing is refused here: if a magnitude overflows or a rotation exceeds 1e9 radians over the window, the
     /// bounds come out infinite or NaN, and no test built on them excludes anything.
     pub fn new(a: &LinearMotion, b: &LinearMotion, start: f64, end: f64) -> Self {
         let (position_a, position_b) = (a.position_dd(start), b.position_dd(start));

@@ -67,15 +67,15 @@ pub(crate) const MUTANTS: &[Mutant] = &[
     patch(
         "jerk of a path without 3U",
         "d2m-motion/src/relative/bounds.rs",
-        "(3.0 * k.speed + k.b * reach.min(k.reach))",
-        "(k.b * reach.min(k.reach))",
+        "(3.0 * k.across + k.b * k.b * reach.min(k.reach))",
+        "(k.b * k.b * reach.min(k.reach))",
         "d2m-motion/src/relative/tests.rs::bounds_of_the_derivatives_hold_and_are_nearly_reached",
     ),
     patch(
         "half of K2 in the acceleration of a path",
         "d2m-motion/src/relative/bounds.rs",
-        "let k2 = (c + w * w) * UP;",
-        "let k2 = 0.5 * (c + w * w) * UP;",
+        "across, k2, k3, k4, rounding }",
+        "across, k2: 0.5 * k2, k3, k4, rounding }",
         "d2m-motion/src/relative/tests.rs::bounds_of_the_derivatives_hold_and_are_nearly_reached",
     ),
     patch(
@@ -159,8 +159,8 @@ pub(crate) const MUTANTS: &[Mutant] = &[
     patch(
         "the plane without the path's remainder",
         "d2m-feature/src/point_triangle/mod.rs",
-        "plane.clip(slab, |h| remainder.bound(h), searched)",
-        "plane.clip(slab, |h| 0.0 * remainder.bound(h), searched)",
+        "plane.clip(planes.slab(), |h| remainder.bound(h), searched)",
+        "plane.clip(planes.slab(), |h| 0.0 * remainder.bound(h), searched)",
         "d2m-feature/tests/first_contact.rs::planted_contacts_are_never_missed_and_never_late",
     ),
     in_test(
