@@ -1,9 +1,13 @@
 //! Queries on trees: time of contact, collide, distance; each judged before it is timed.
 use criterion::{Criterion, criterion_group, criterion_main};
-use d2m::bvh::{Posed, collide, distance};
+use d2m::bvh::{
+    PairCache, Posed, collide, contact_exists, distance, last_search_counts, time_of_contact_with,
+};
 use d2m::glam::DVec3;
 use d2m::{LinearMotion, MeshTree, Mode, Moving, QueryOptions, RigidMotion, Solid, Window, time_of_contact};
+use d2m_benches::hard_scenes::{HardScene, grazing_cube, intermeshing_bars};
 use std::hint::black_box;
+use std::time::Instant;
 
 fn queries(c: &mut Criterion) {
     let tree = |text: &str| MeshTree::new(d2m::shapes::mesh(text).expect("an embedded shape"));
@@ -49,5 +53,128 @@ fn queries(c: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, queries);
+/// Steps of a sequence.
+const STEPS: u32 = 256;
+
+/// The same pair asked again and again with slightly changed motions, with a cache and without; all answers are compared
+/// before anything is timed.
+fn sequences(c: &mut Criterion) {
+    let tree = |text: &str| MeshTree::new(d2m::shapes::mesh(text).expect("an embedded shape"));
+    let (a, b) = (tree("pebble?triangles=5856"), tree("pebble?triangles=5804&seed=2"));
+    let options = QueryOptions::default();
+    let step = |height: f64, k: u32| {
+        LinearMotion::REST
+            .with_position(DVec3::new(-2.5, 0.1, height - 2e-4 * f64::from(k)))
+            .with_linear_velocity(DVec3::new(4.0, 0.0, -1e-3 * f64::from(k)))
+            .with_angular_velocity(DVec3::new(0.3, 1.0 + 1e-4 * f64::from(k), -0.5))
+    };
+    for (name, height) in [("no contact", 2.1), ("contact", 0.6)] {
+        let motions: Vec<_> = (0..STEPS).map(|k| step(height, k)).collect();
+        let still = Moving::new(&b, &LinearMotion::REST);
+        let cold = || -> Vec<_> {
+            let ask = |m: &LinearMotion| {
+                time_of_contact(Moving::new(&a, m), still, Window::UNIT, &options).expect("valid input")
+            };
+            motions.iter().map(ask).collect()
+        };
+        let warm = || -> Vec<_> {
+            let mut cache = PairCache::new();
+            let ask = |m: &LinearMotion| {
+                time_of_contact_with(Moving::new(&a, m), still, Window::UNIT, &options, &mut cache)
+            };
+            motions.iter().map(ask).map(|answer| answer.expect("valid input")).collect()
+        };
+        let exists = |cached: bool| -> Vec<_> {
+            let mut cache = PairCache::new();
+            let mut ask = |m: &LinearMotion| {
+                if !cached {
+                    cache.clear();
+                }
+                contact_exists(Moving::new(&a, m), still, Window::UNIT, &options, &mut cache)
+                    .expect("valid input")
+            };
+            motions.iter().map(&mut ask).collect()
+        };
+        let answers = cold();
+        assert!(answers.iter().all(|answer| answer.contact().is_some() == (name == "contact")), "{name}");
+        assert_eq!(warm(), answers, "{name}");
+        assert_eq!(exists(true), exists(false), "{name}");
+        assert_eq!(exists(true), vec![Some(name == "contact"); motions.len()]);
+        println!(
+            "{name}, {STEPS} steps: time of contact with a cache {:.3} of without, whether there is one {:.3}",
+            ratio(warm, cold),
+            ratio(|| exists(true), || exists(false))
+        );
+        let mut group = c.benchmark_group(format!("sequence of {STEPS}, {name}"));
+        group.sample_size(20);
+        group.bench_function("time of contact", |b| b.iter(cold));
+        group.bench_function("time of contact, cache", |b| b.iter(warm));
+        group.bench_function("exists", |b| b.iter(|| exists(false)));
+        group.bench_function("exists, cache", |b| b.iter(|| exists(true)));
+        group.finish();
+    }
+}
+
+/// One hard query on one thread and on two; the answers and the counts are compared before anything is timed.
+fn threads(c: &mut Criterion) {
+    let pool = |n| rayon::ThreadPoolBuilder::new().num_threads(n).build().expect("threads");
+    let pools = [pool(1), pool(2)];
+    let surface = QueryOptions::default().with_solid(Solid::Surface);
+    for scene in [grazing_cube(4800, 1e-4, 0.0), intermeshing_bars(4800, 300.0, 0.0)] {
+        let ask = |pool: &rayon::ThreadPool, scene: &HardScene| {
+            pool.install(|| (scene.ask_with(&surface.with_parallel(true)), last_search_counts()))
+        };
+        let (one, two) = (ask(&pools[0], &scene), ask(&pools[1], &scene));
+        assert_eq!(scene.fault(&one.0), None);
+        assert_eq!(one, two, "{}", scene.name);
+        assert!(one.1.windows >= 50, "{:?}", one.1);
+        let busiest = || {
+            let [before, alone, shared] = [0, 1, 2].map(|asked| {
+                if asked > 0 {
+                    (0..20).for_each(|_| _ = black_box(ask(&pools[asked - 1], &scene)));
+                }
+                pools.each_ref().map(|pool| pool.broadcast(|_| processor_time()))
+            });
+            let most = |k: usize, from: &[Vec<f64>; 2], to: &[Vec<f64>; 2]| {
+                to[k].iter().zip(&from[k]).map(|(to, from)| to - from).fold(0.0, f64::max)
+            };
+            most(1, &alone, &shared) / most(0, &before, &alone)
+        };
+        println!(
+            "{}, {} windows: two threads take {:.3} of one; the busier one works {:.3} of one",
+            scene.name,
+            one.1.windows,
+            ratio(|| ask(&pools[1], &scene), || ask(&pools[0], &scene)),
+            busiest()
+        );
+        let mut group = c.benchmark_group(format!("threads, {}", scene.name));
+        group.sample_size(10);
+        group.bench_function("1", |b| b.iter(|| ask(&pools[0], &scene)));
+        group.bench_function("2", |b| b.iter(|| ask(&pools[1], &scene)));
+        group.finish();
+    }
+}
+
+/// Seconds that this thread has run, where the system tells.
+fn processor_time() -> f64 {
+    let running = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    running.and_then(|text| text.split(' ').next()?.parse::<f64>().ok()).map_or(f64::NAN, |n| n * 1e-9)
+}
+
+/// Median of the ratios of the times of two tasks that take turns.
+fn ratio<T, U>(first: impl Fn() -> T, second: impl Fn() -> U) -> f64 {
+    let mut ratios: Vec<f64> = (0..15)
+        .map(|_| {
+            let clock = Instant::now();
+            black_box(first());
+            let middle = clock.elapsed().as_secs_f64();
+            black_box(second());
+            middle / (clock.elapsed().as_secs_f64() - middle)
+        })
+        .collect();
+    ratios.sort_by(f64::total_cmp);
+    ratios[ratios.len() / 2]
+}
+
+criterion_group!(benches, queries, sequences, threads);
 criterion_main!(benches);

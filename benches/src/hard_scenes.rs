@@ -199,6 +199,32 @@ pub fn interlocked_rings(triangles: usize, drift: f64) -> HardScene {
     }
 }
 
+/// Two bars of length 2, axes of spin 1.45 apart, intermesh like the blades of a whisk: both turn at `spin` in the same sense,
+/// always at right angles. `phase`: B lags behind by so much; from 0.1 on they hit each other.
+///
+/// # Panics
+/// If a number is not finite.
+pub fn intermeshing_bars(triangles: usize, spin: f64, phase: f64) -> HardScene {
+    let bar = tree(&format!("box?triangles={triangles}&x=1&y=0.02&z=0.02"));
+    let turn = |angle: f64, x: f64| {
+        LinearMotion::try_new(DVec3::X * x, DQuat::from_rotation_z(angle), DVec3::ZERO, DVec3::Z * spin)
+            .expect("finite")
+    };
+    // Seen with A along x, B's middle is at 1.45 (cos θ, −sin θ): the ends are nearest at 45°, 1.45/√2 − 1 apart both ways.
+    let gap = 2f64.sqrt() * (1.45 / 2f64.sqrt() - 1.02);
+    let expected = if phase == 0.0 {
+        Expected::Clear { clearance: gap * (1.0 - 1e-9) }
+    } else {
+        Expected::Contact { from: 0.0, to: PI / spin }
+    };
+    HardScene {
+        name: format!("intermeshing bars at |w| = {spin}, {triangles} x2, phase {phase}"),
+        bodies: [bar.clone(), bar],
+        motions: [turn(0.0, 0.0), turn(0.5 * PI - phase, 1.45)],
+        expected,
+    }
+}
+
 /// Two needles of an aspect ratio cross at right angles and pass each other at `gap` (negative: they meet).
 ///
 /// # Panics
@@ -251,6 +277,8 @@ pub fn table(size: f64) -> Vec<HardScene> {
         screw_in_nut(count(15_360).max(2000), 1e-2, 0.5, 0.1),
         interlocked_rings(count(3200).max(64), 0.0),
         interlocked_rings(count(3200).max(64), 0.8),
+        intermeshing_bars(count(4800).max(12), 300.0, 0.0),
+        intermeshing_bars(count(4800).max(12), 300.0, 0.2),
         needles(1e6, 1e-9, 3.0),
         needles(1e6, -1e-9, 0.0),
     ]

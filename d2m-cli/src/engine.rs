@@ -98,6 +98,11 @@ impl Pair {
         Ok(Self { a, b, solid, preparation, options: options.with_solid(solid) })
     }
 
+    /// Each query on all threads of the machine: for single ones.
+    pub(crate) fn on_all_threads(self) -> Self {
+        Self { options: self.options.with_parallel(true), ..self }
+    }
+
     /// The time of contact in a window.
     pub(crate) fn ask(&self, a: &LinearMotion, b: &LinearMotion, window: Window) -> Result<Answer, Failure> {
         let start = Instant::now();

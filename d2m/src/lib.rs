@@ -34,8 +34,8 @@ pub use d2m_shapes as shapes;
 pub use glam;
 
 pub use d2m_bvh::{
-    Budget, Contact, MeshTree, Mode, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window,
-    time_of_contact,
+    Budget, Contact, MeshTree, Mode, Moving, PairCache, QueryOptions, Solid, TimeOfContact, TriMesh, Window,
+    contact_exists, time_of_contact, time_of_contact_with,
 };
 pub use d2m_motion::{LinearMotion, RigidMotion, ScrewMotion};
 

@@ -79,6 +79,10 @@ pub struct QueryOptions {
     pub budget: Budget,
     /// Report the first time at which the distance is at most this. Zero: contact.
     pub min_separation: f64,
+    /// Search spans of time side by side, on all threads of the current rayon pool (feature `rayon`). The answer has the
+    /// same bits at any number of threads. Of use for queries of more than about a millisecond with much
+    /// rotation (a span is 0.3 radians of both bodies together); those that are shorter do not notice it.
+    pub parallel: bool,
 }
 
 impl QueryOptions {
@@ -89,6 +93,7 @@ impl QueryOptions {
         mode: Mode::Accurate,
         budget: Budget::UNLIMITED,
         min_separation: 0.0,
+        parallel: false,
     };
 
     /// With this tolerance δ, a distance.
@@ -118,6 +123,12 @@ impl QueryOptions {
     /// With this separation that counts as contact.
     pub const fn with_min_separation(mut self, distance: f64) -> Self {
         self.min_separation = distance;
+        self
+    }
+
+    /// On all threads of the current rayon pool, or on one.
+    pub const fn with_parallel(mut self, parallel: bool) -> Self {
+        self.parallel = parallel;
         self
     }
 }

@@ -51,6 +51,19 @@ pub fn time_of_contact(
     window: Window,
     options: &QueryOptions,
 ) -> Result<TimeOfContact, QueryError> {
+    match scene_of(a, b, window, options)? {
+        Some(scene) => ask(&scene, options),
+        None => super::any_motion::time_of_contact([a, b], window, options),
+    }
+}
+
+/// The scene of a query that may be asked; `None` when a motion has no constant twist.
+pub(super) fn scene_of<'a>(
+    a: Moving<'a>,
+    b: Moving<'a>,
+    window: Window,
+    options: &QueryOptions,
+) -> Result<Option<Scene<'a>>, QueryError> {
     check(options)?;
     for (index, moving) in [&a, &b].into_iter().enumerate() {
         if options.solid == Solid::Filled && !moving.body.is_watertight() {
@@ -58,7 +71,7 @@ pub fn time_of_contact(
         }
     }
     let (Some(motion_a), Some(motion_b)) = (a.motion.constant_twist(), b.motion.constant_twist()) else {
-        return super::any_motion::time_of_contact([a, b], window, options);
+        return Ok(None);
     };
     for (body, motion) in [&motion_a, &motion_b].into_iter().enumerate() {
         if !angle_is_bounded(motion, window) {
@@ -70,8 +83,14 @@ pub fn time_of_contact(
         let speed = |m: &LinearMotion| m.linear_velocity().length() + m.position().length();
         return Err(QueryError::BadMotion { body: usize::from(speed(&motion_b) > speed(&motion_a)) });
     }
+    Ok(Some(scene))
+}
+
+/// Searches.
+pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfContact, QueryError> {
+    let window = scene.window;
     let mut scratch = SCRATCH.take().unwrap_or_else(|| Box::new(Scratch::new()));
-    let outcome = first_contact(&scene, options, &mut scratch);
+    let outcome = first_contact(scene, options, &mut scratch);
     SCRATCH.set(Some(scratch));
     let start_decided = match outcome {
         Outcome::Found(found) => found.offset > 0.0 || found.start > window.start(),
@@ -80,7 +99,7 @@ pub fn time_of_contact(
     };
     if options.solid == Solid::Filled
         && start_decided
-        && let Some(contained) = containment(&scene)
+        && let Some(contained) = containment(scene)
     {
         return Ok(contained);
     }
@@ -88,8 +107,8 @@ pub fn time_of_contact(
         Outcome::Separated => TimeOfContact::Separated,
         Outcome::OutOfBudget(until) => TimeOfContact::Undecided { clear_until: until },
         Outcome::Found(found) => {
-            let mut contact = contact(&scene, &found, options.mode == Mode::Accurate);
-            if contact.start == StartState::Touching && crosses_at_start(&scene)? {
+            let mut contact = contact(scene, &found, options.mode == Mode::Accurate);
+            if contact.start == StartState::Touching && crosses_at_start(scene)? {
                 (contact.start, contact.separation) = (StartState::Overlapping, 0.0);
             }
             TimeOfContact::Contact(contact)

@@ -12,32 +12,37 @@ pub(crate) fn first_contact(scene: &Scene<'_>, options: &QueryOptions, scratch: 
 }
 
 /// The same with a given instruction set, which the processor must have.
-#[allow(unsafe_code)]
 pub(crate) fn first_contact_on(
     set: InstructionSet,
     scene: &Scene<'_>,
     options: &QueryOptions,
     scratch: &mut Scratch,
 ) -> Outcome {
+    search_on(set, Search::new(scene, options, scratch))
+}
+
+/// Runs a search with a given instruction set, which the processor must have.
+#[allow(unsafe_code)]
+pub(super) fn search_on(set: InstructionSet, search: Search<'_>) -> Outcome {
     match set {
         // SAFETY: `InstructionSet::in_use` found the features on this processor (tests ask only for available sets).
         #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx512 => unsafe { avx512(scene, options, scratch) },
+        InstructionSet::Avx512 => unsafe { avx512(search) },
         // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx2 => unsafe { avx2(scene, options, scratch) },
-        _ => Search::new(scene, options, scratch).run::<Portable>(),
+        InstructionSet::Avx2 => unsafe { avx2(search) },
+        _ => search.run::<Portable>(),
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-fn avx2(scene: &Scene<'_>, options: &QueryOptions, scratch: &mut Scratch) -> Outcome {
-    Search::new(scene, options, scratch).run::<super::avx::Avx>()
+fn avx2(search: Search<'_>) -> Outcome {
+    search.run::<super::avx::Avx>()
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,avx512f,avx512vl,bmi1,bmi2,lzcnt,popcnt")]
-fn avx512(scene: &Scene<'_>, options: &QueryOptions, scratch: &mut Scratch) -> Outcome {
-    Search::new(scene, options, scratch).run::<super::avx::Avx>()
+fn avx512(search: Search<'_>) -> Outcome {
+    search.run::<super::avx::Avx>()
 }

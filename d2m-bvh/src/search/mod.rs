@@ -1,5 +1,7 @@
 //! The search for the first contact of two trees: best first on proven times.
 
+#[cfg(feature = "rayon")]
+mod ahead;
 #[cfg(target_arch = "x86_64")]
 mod avx;
 mod base_pose;
@@ -22,6 +24,7 @@ mod window;
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx::Avx;
+pub(crate) use base_pose::{Columns, relative_position, rotation_at};
 pub(crate) use closest::{Closest, Place, closest};
 pub(crate) use dispatch::first_contact;
 pub(crate) use frame::{Frame, RelativeMotion};

@@ -35,7 +35,7 @@ pub(crate) struct Scene<'a> {
     /// Reach of both bodies from their followed points, together.
     reach: f64,
     /// |ω|·ρ of both bodies, ρ the largest distance from the followed point.
-    spin_speed: f64,
+    pub(crate) spin_speed: f64,
 }
 
 impl<'a> Scene<'a> {
@@ -144,6 +144,38 @@ pub struct SearchCounts {
     pub swept_pairs: u64,
 }
 
+impl SearchCounts {
+    /// All in node tests.
+    pub(crate) const fn work(&self) -> u64 {
+        self.node_tests + self.triangle_looks + self.swept_pairs
+    }
+
+    /// With what `other` adds.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn with(&self, other: &Self) -> Self {
+        self.combined(other, u64::wrapping_add)
+    }
+
+    /// Without what was counted by `earlier`.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn without(&self, earlier: &Self) -> Self {
+        self.combined(earlier, u64::wrapping_sub)
+    }
+
+    #[cfg(feature = "rayon")]
+    fn combined(&self, other: &Self, op: impl Fn(u64, u64) -> u64) -> Self {
+        Self {
+            windows: op(self.windows, other.windows),
+            frames: op(self.frames, other.frames),
+            node_tests: op(self.node_tests, other.node_tests),
+            queued: op(self.queued, other.queued),
+            triangle_looks: op(self.triangle_looks, other.triangle_looks),
+            sweeps: op(self.sweeps, other.sweeps),
+            swept_pairs: op(self.swept_pairs, other.swept_pairs),
+        }
+    }
+}
+
 /// Memory that one search uses and the next one finds warm.
 #[derive(Debug)]
 pub(crate) struct Scratch {
@@ -153,6 +185,11 @@ pub(crate) struct Scratch {
     pub(crate) expansions: Vec<Expansion>,
     pub(crate) fresh: Vec<Item>,
     pub(crate) counts: SearchCounts,
+    /// The triangles that were looked at last.
+    pub(crate) last_looked_at: [u32; 2],
+    /// For windows that are searched ahead by other threads.
+    #[cfg(feature = "rayon")]
+    pub(crate) helpers: Vec<Scratch>,
 }
 
 impl Scratch {
@@ -163,6 +200,9 @@ impl Scratch {
             expansions: Vec::new(),
             fresh: Vec::new(),
             counts: SearchCounts::default(),
+            last_looked_at: [0, 0],
+            #[cfg(feature = "rayon")]
+            helpers: Vec::new(),
         }
     }
 }

@@ -19,7 +19,7 @@ use std::time::Instant;
 /// Items that a batch may have before it is divided.
 const BATCH: usize = 32;
 /// Looks at pairs of triangles of one search that do little; ordinary queries need fewer.
-const QUICK_LOOKS: u64 = 192;
+pub(super) const QUICK_LOOKS: u64 = 192;
 /// Node tests, besides one for each triangle, before sweeps are looked at for the first time: ordinary queries end
 /// before that.
 const FIRST_SWEEP: u64 = 256;
@@ -58,15 +58,24 @@ enum Step {
 
 /// One search.
 pub(crate) struct Search<'s> {
-    scene: &'s Scene<'s>,
-    scratch: &'s mut Scratch,
-    mode: Mode,
-    most_tests: u64,
-    deadline: Option<Instant>,
+    pub(super) scene: &'s Scene<'s>,
+    pub(super) scratch: &'s mut Scratch,
+    pub(super) limits: Limits,
+    /// Set for a single window that is searched before it is known what earlier ones give.
+    #[cfg(feature = "rayon")]
+    pub(super) ahead: Option<super::ahead::Ahead<'s>>,
+    #[cfg(feature = "rayon")]
+    parallel: bool,
+}
+
+/// How far a search goes, and when it tries something else.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    pub(super) mode: Mode,
+    pub(super) most_tests: u64,
+    pub(super) deadline: Option<Instant>,
     /// The number of node tests from which on it is time to look at sweeps.
-    sweep_from: u64,
-    /// The triangles that were looked at last.
-    last_looked_at: [u32; 2],
+    pub(super) sweep_from: u64,
 }
 
 /// What changes while a window is searched.
@@ -91,35 +100,79 @@ impl<'s> Search<'s> {
     pub(crate) fn new(scene: &'s Scene<'s>, options: &QueryOptions, scratch: &'s mut Scratch) -> Self {
         let budget = &options.budget;
         scratch.counts = super::scene::SearchCounts::default();
+        scratch.last_looked_at = [0, 0];
+        let limits = Limits {
+            mode: options.mode,
+            most_tests: budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS),
+            deadline: budget.wall_clock.and_then(|time| Instant::now().checked_add(time)),
+            sweep_from: FIRST_SWEEP
+                + (scene.a.0.mesh.triangle_count() + scene.b.0.mesh.triangle_count()) as u64,
+        };
         Self {
             scene,
             scratch,
-            mode: options.mode,
-            sweep_from: FIRST_SWEEP
-                + (scene.a.0.mesh.triangle_count() + scene.b.0.mesh.triangle_count()) as u64,
-            last_looked_at: [0, 0],
-            most_tests: budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS),
-            deadline: budget.wall_clock.and_then(|time| Instant::now().checked_add(time)),
+            limits,
+            #[cfg(feature = "rayon")]
+            ahead: None,
+            #[cfg(feature = "rayon")]
+            parallel: options.parallel,
         }
+    }
+
+    /// The search of one window ahead of its turn.
+    #[cfg(feature = "rayon")]
+    pub(super) fn of_window(
+        scene: &'s Scene<'s>,
+        limits: Limits,
+        scratch: &'s mut Scratch,
+        ahead: super::ahead::Ahead<'s>,
+    ) -> Self {
+        Self { scene, scratch, limits, ahead: Some(ahead), parallel: false }
     }
 
     /// Searches window after window.
     #[inline(always)]
     pub(crate) fn run<L: Lanes>(mut self) -> Outcome {
-        let (mut start, end) = (self.scene.window.start(), self.scene.window.end());
-        loop {
-            start = self.scene.balls_clear_until(start);
-            if start >= end && end > self.scene.window.start() {
+        let (first, end) = (self.scene.window.start(), self.scene.window.end());
+        #[cfg(feature = "rayon")]
+        let mut window = self.ahead.map_or_else(|| self.window_from(first), |ahead| Some(ahead.window));
+        #[cfg(not(feature = "rayon"))]
+        let mut window = self.window_from(first);
+        while let Some((start, next)) = window {
+            let clear_until = match self.search_window::<L>(start, next) {
+                Step::Answer(outcome) => return outcome,
+                Step::ClearUntil(until) => until,
+            };
+            #[cfg(feature = "rayon")]
+            if self.ahead.is_some() {
                 return Outcome::Separated;
             }
-            let next = (start + self.scene.longest).min(end);
-            let next = if next > start { next } else { end };
-            match self.search_window::<L>(start, next) {
-                Step::Answer(outcome) => return outcome,
-                Step::ClearUntil(until) if until >= end => return Outcome::Separated,
-                Step::ClearUntil(until) => start = until,
+            if clear_until >= end {
+                return Outcome::Separated;
             }
+            #[cfg(feature = "rayon")]
+            let clear_until = if self.parallel {
+                match self.search_ahead(clear_until) {
+                    Ok(until) => until,
+                    Err(outcome) => return outcome,
+                }
+            } else {
+                clear_until
+            };
+            window = self.window_from(clear_until);
         }
+        Outcome::Separated
+    }
+
+    /// The next window to be searched; `None` when nothing is left.
+    pub(super) fn window_from(&self, start: f64) -> Option<(f64, f64)> {
+        let end = self.scene.window.end();
+        let start = self.scene.balls_clear_until(start);
+        if start >= end && end > self.scene.window.start() {
+            return None;
+        }
+        let next = (start + self.scene.longest).min(end);
+        Some((start, if next > start { next } else { end }))
     }
 
     #[inline(always)]
@@ -168,7 +221,12 @@ impl<'s> Search<'s> {
                 outcome = Some(Step::Answer(Outcome::OutOfBudget(time_from(start, f64::from(least) * step))));
                 break;
             }
-            if self.work() >= self.sweep_from {
+            #[cfg(feature = "rayon")]
+            if self.ahead.is_some_and(|ahead| self.work() >= self.limits.sweep_from || ahead.is_useless()) {
+                outcome = Some(Step::Answer(Outcome::OutOfBudget(start)));
+                break;
+            }
+            if self.work() >= self.limits.sweep_from {
                 let now = time_from(start, f64::from(least) * step);
                 let until = self.sweep(&state, now);
                 if until >= end {
@@ -201,7 +259,7 @@ impl<'s> Search<'s> {
     #[cold]
     #[inline(never)]
     fn sweep(&mut self, state: &State<'_>, now: f64) -> f64 {
-        let [a, b] = self.last_looked_at;
+        let [a, b] = self.scratch.last_looked_at;
         let b = corners(self.scene.b.0, b);
         let near = widest_normal(&place_a::<Quad>(&state.frame, &corners(self.scene.a.0, a)), &b);
         let turn = state.motion.rotation_b(state.frame.offset);
@@ -215,18 +273,20 @@ impl<'s> Search<'s> {
         }
         self.scratch.counts.sweeps += 1;
         self.scratch.counts.swept_pairs += pairs;
-        self.sweep_from = if until > now { self.work() + self.sweep_from / 4 } else { 4 * self.work() };
+        let work = self.work();
+        let from = &mut self.limits.sweep_from;
+        *from = if until > now { work + *from / 4 } else { 4 * work };
         until
     }
 
     /// What the search has done, in node tests.
-    fn work(&self) -> u64 {
-        let counts = &self.scratch.counts;
-        counts.node_tests + counts.triangle_looks + counts.swept_pairs
+    pub(super) fn work(&self) -> u64 {
+        self.scratch.counts.work()
     }
 
     fn out_of_budget(&self) -> bool {
-        self.work() >= self.most_tests || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+        self.work() >= self.limits.most_tests
+            || self.limits.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
 
     /// Opens at most [`BATCH`] items. Pairs of triangles first: they may lower the limit. Then all node tests, which
@@ -265,7 +325,7 @@ impl<'s> Search<'s> {
         });
         let a = corners(self.scene.a.0, triangles[0]);
         let b = corners(self.scene.b.0, triangles[1]);
-        if self.mode == Mode::Capoeira && self.stop_early::<L>(state, item, &a, &b, triangles) {
+        if self.limits.mode == Mode::Capoeira && self.stop_early::<L>(state, item, &a, &b, triangles) {
             return;
         }
         // Proven apart until here.
@@ -287,7 +347,7 @@ impl<'s> Search<'s> {
                 return;
             }
             self.scratch.counts.triangle_looks += 1;
-            self.last_looked_at = triangles;
+            self.scratch.last_looked_at = triangles;
             let enough = state.limit_offset - frame.offset;
             let care =
                 if self.scratch.counts.triangle_looks > QUICK_LOOKS { Care::Thorough } else { Care::Quick };
@@ -311,7 +371,7 @@ impl<'s> Search<'s> {
                         frame = state.motion.frame::<L::Doubles>(known);
                         continue;
                     }
-                    if self.mode == Mode::Exists && known < state.limit_offset {
+                    if self.limits.mode == Mode::Exists && known < state.limit_offset {
                         state.found =
                             Some(Found { start: state.motion.start, offset: known, triangles, crossing });
                         state.end();

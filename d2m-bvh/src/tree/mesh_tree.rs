@@ -6,6 +6,7 @@ use super::surface::Extent;
 use crate::TriMesh;
 use crate::mesh::Closedness;
 use glam::DVec3;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A triangle mesh with its tree of oriented boxes: a rigid body ready for queries.
 ///
@@ -36,6 +37,26 @@ pub struct MeshTree {
     pub(crate) watertight: bool,
     /// One vertex of each connected component.
     pub(crate) components: Vec<u32>,
+    /// Tells this tree from every other one of the process; clones are the same tree.
+    pub(crate) stamp: Stamp,
+}
+
+/// The number of a tree; two trees with the same number have the same bits.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Stamp(u64);
+
+impl Stamp {
+    fn next() -> Self {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        Self(COUNT.fetch_add(1, Ordering::Relaxed))
+    }
+}
+
+impl core::fmt::Debug for Stamp {
+    /// Without the number, which says nothing about the tree.
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("Stamp")
+    }
 }
 
 impl MeshTree {
@@ -67,7 +88,8 @@ impl MeshTree {
     pub(super) fn from_nodes(mesh: TriMesh, nodes: Vec<WideNode>, extent: &Extent) -> Self {
         let Closedness { watertight, components } = Closedness::of(&mesh);
         let Extent { center, radius, unit } = *extent;
-        Self { mesh, nodes, center, unit, radius, watertight, components }
+        let stamp = Stamp::next();
+        Self { mesh, nodes, center, unit, radius, watertight, components, stamp }
     }
 
     /// The mesh.

@@ -16,4 +16,5 @@ mod tests;
 mod validate;
 
 pub use mesh_tree::MeshTree;
+pub(crate) use mesh_tree::Stamp;
 pub use validate::TreeError;

@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<(), Failure> {
         Some(path) => Some(Output::new(path)?.spare(inputs)?),
         None => None,
     };
-    let pair = Pair::new(load(&arguments.a)?, load(&arguments.b)?, &arguments.query)?;
+    let pair = Pair::new(load(&arguments.a)?, load(&arguments.b)?, &arguments.query)?.on_all_threads();
     let answer = ask(&pair, &motion_a, &motion_b, window)?;
     if let Some(scene) = scene {
         let time = match &answer.verdict {

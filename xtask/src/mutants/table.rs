@@ -291,6 +291,27 @@ pub(crate) const MUTANTS: &[Mutant] = &[
         "d2m-bvh/tests/engine.rs::starts_that_touch_cross_or_hold",
     ),
     patch(
+        "spins that differ from query to query count half",
+        "d2m-bvh/src/query/course.rs",
+        "let turning = (self.omegas[k] - earlier.omegas[k]).length() * common;",
+        "let turning = (self.omegas[k] - earlier.omegas[k]).length() * common * 0.5;",
+        "d2m-bvh/src/query/course.rs::deviations_hold_and_each_term_is_needed",
+    ),
+    patch(
+        "a refit body passes for the same",
+        "d2m-bvh/src/tree/refit.rs",
+        "*self = Self::from_nodes(mesh, nodes, &extent);",
+        "*self = Self { stamp: self.stamp, ..Self::from_nodes(mesh, nodes, &extent) };",
+        "d2m-bvh/tests/warm_start.rs::a_refit_is_noticed",
+    ),
+    patch(
+        "what other threads found is taken unexamined",
+        "d2m-bvh/src/search/ahead.rs",
+        "searched.filter(|searched| self.would_do_the_same(&known, searched))",
+        "searched",
+        "d2m-bvh/src/search/ahead.rs::any_number_of_threads_does_the_same",
+    ),
+    patch(
         "twice the step of conservative advancement",
         "d2m-bvh/src/query/any_motion.rs",
         "(t + free).next_down().min(until)",
