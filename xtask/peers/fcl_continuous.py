@@ -4,8 +4,8 @@ usage: fcl_continuous.py A.obj B.obj TRIALS.csv [--limit K]
 install: pip install numpy python-fcl
 
 Prints `trial,advance_toc,advance_microseconds,distance_microseconds,continuous_toc,continuous_microseconds`.
-FCL's continuous collision interpolates between the end poses, which is not the trial's motion when a body turns by
-more than a little: its time is printed for the clock, not for its accuracy.
+FCL's continuous collision is asked for linear motion between the end poses by conservative advancement, the settings
+nearest to the trials (bodies turn by less than pi); with its defaults it finds fewer contacts.
 """
 import csv
 import math
@@ -53,7 +53,8 @@ def model(mesh):
     return bvh
 
 
-def main(path_a, path_b, path_trials, limit):
+def rows(path_a, path_b, path_trials, limit):
+    """For each trial: the numbers of the printed table after `trial`."""
     meshes = load(path_a), load(path_b)
     radii = [float(np.linalg.norm(vertices, axis=1).max()) for vertices, _ in meshes]
     objects = [fcl.CollisionObject(model(mesh), fcl.Transform()) for mesh in meshes]
@@ -68,7 +69,6 @@ def main(path_a, path_b, path_trials, limit):
         spent[1] += 1
         return found
 
-    print("trial,advance_toc,advance_microseconds,distance_microseconds,continuous_toc,continuous_microseconds")
     for index, row in enumerate(csv.reader(open(path_trials))):
         if index >= limit:
             break
@@ -89,16 +89,32 @@ def main(path_a, path_b, path_trials, limit):
         for thing, body in zip(objects, bodies):
             thing.setTransform(fcl.Transform(*pose(body, 0.0)))
         ends = [fcl.Transform(*pose(body, 1.0)) for body in bodies]
-        request, result = fcl.ContinuousCollisionRequest(), fcl.ContinuousCollisionResult()
+        request = fcl.ContinuousCollisionRequest(
+            num_max_iterations=1000, ccd_motion_type=fcl.CCDMotionType.CCDM_LINEAR,
+            ccd_solver_type=fcl.CCDSolverType.CCDC_CONSERVATIVE_ADVANCEMENT)
+        result = fcl.ContinuousCollisionResult()
         start = time.perf_counter()
-        continuous = fcl.continuousCollide(objects[0], ends[0], objects[1], ends[1], request, result)
+        fcl.continuousCollide(objects[0], ends[0], objects[1], ends[1], request, result)
         clock = time.perf_counter() - start
-        print(f"{index},{float(toc)!r},{advance * 1e6:.1f},{spent[0] / spent[1] * 1e6:.1f},{float(continuous)!r},{clock * 1e6:.1f}")
+        continuous = result.time_of_contact if result.is_collide else math.inf
+        yield float(toc), advance * 1e6, spent[0] / spent[1] * 1e6, float(continuous), clock * 1e6
+
+
+def text(row):
+    """A row as the table has it."""
+    toc, advance, distance, continuous, clock = row
+    return f"{toc!r},{advance:.1f},{distance:.1f},{continuous!r},{clock:.1f}"
+
+
+def main(path_a, path_b, path_trials, limit):
+    print("trial,advance_toc,advance_microseconds,distance_microseconds,continuous_toc,continuous_microseconds")
+    for index, row in enumerate(rows(path_a, path_b, path_trials, limit)):
+        print(f"{index},{text(row)}")
 
 
 if __name__ == "__main__":
     words = sys.argv[1:]
-    most = int(words[words.index("--limit") + 1]) if "--limit" in words else 10**9
     if len(words) < 3:
         sys.exit(__doc__)
+    most = int(words[words.index("--limit") + 1]) if "--limit" in words else 10**9
     main(words[0], words[1], words[2], most)

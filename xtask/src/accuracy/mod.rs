@@ -125,7 +125,13 @@ pub(crate) fn run(options: &Options) -> TaskResult {
         }
         rounds += 1;
         seed += 1;
-        if soak.is_none_or(|time| begin.elapsed() >= time) {
+        let Some(time) = soak else { break };
+        let (spent, time) = (begin.elapsed().as_secs_f64() / 60.0, time.as_secs_f64() / 60.0);
+        println!(
+            "soak: {rounds} round(s) in {spent:.1} of {time:.1} min, about {:.1} min left, {negatives} false negatives",
+            (time - spent).max(0.0)
+        );
+        if spent >= time {
             break;
         }
     }

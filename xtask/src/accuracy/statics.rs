@@ -1,7 +1,7 @@
 //! `collide` and `distance` at rest, against all pairs of triangles.
 use super::mesh::{Shape, shape};
 use super::{Outcome, Task};
-use crate::judge::{BoxTree, Placement, separation};
+use crate::judge::{BoxTree, Hint, Placement, separation};
 use crate::random::Random;
 use d2m::bvh::{MeshTree, Posed, Solid, TriMesh, collide, distance};
 use d2m::motion::Pose;
@@ -23,7 +23,7 @@ pub(super) fn run(task: &Task) -> Outcome {
             at: DVec3::ZERO,
         });
         let at = poses.map(|pose| Placement::new(pose.rotation, pose.translation));
-        let least = separation(&trees[0], &trees[1], &at[0], &at[1], &mut None);
+        let least = separation(&trees[0], &trees[1], &at[0], &at[1], &mut Hint::default());
 
         let tree = |s: &Shape| {
             MeshTree::new(

@@ -5,6 +5,7 @@ use crate::judge::BoxTree;
 use d2m::bvh::paper::SphereTree;
 use d2m::bvh::{MeshTree, TriMesh};
 use glam::DVec3;
+use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
@@ -22,27 +23,41 @@ pub(crate) struct Body {
 
 impl Body {
     /// Scaled about the origin so that the farthest vertex is at distance 1, as the trials want it.
-    pub(crate) fn new(vertices: &[DVec3], triangles: Vec<[u32; 3]>) -> Result<Arc<Self>, Error> {
+    pub(crate) fn unit_mesh(vertices: &[DVec3], triangles: Vec<[u32; 3]>) -> Result<TriMesh, Error> {
         let radius = vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
         // Files are used as they are if they follow the convention already: the judge of others must agree on bits.
         let scale = if (radius - 1.0).abs() < 1e-6 { 1.0 } else { radius.recip() };
         let vertices: Vec<DVec3> = vertices.iter().map(|&v| v * scale).collect();
-        let boxes = BoxTree::build(&vertices, &triangles);
-        let tree = MeshTree::new(TriMesh::try_new(vertices, triangles)?);
-        Ok(Arc::new(Self { tree, boxes, parry: OnceLock::new(), spheres: OnceLock::new() }))
+        Ok(TriMesh::try_new(vertices, triangles)?)
     }
 
-    /// An embedded shape such as `gear` or `torus-knot?triangles=70000`.
-    pub(crate) fn embedded(spec: &str) -> Result<Arc<Self>, Error> {
+    /// An embedded shape such as `gear` or `torus-knot?triangles=70000`, scaled like that.
+    pub(crate) fn unit_shape(spec: &str) -> Result<TriMesh, Error> {
         let mesh = super::engine::shape(spec)?;
-        Self::new(mesh.vertices(), mesh.triangles().to_vec())
+        Self::unit_mesh(mesh.vertices(), mesh.triangles().to_vec())
     }
 
-    /// A model in an OBJ file.
-    pub(crate) fn from_file(path: &Path) -> Result<Arc<Self>, Error> {
+    /// A model in an OBJ file, scaled like that.
+    pub(crate) fn unit_file(path: &Path) -> Result<TriMesh, Error> {
         let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
         let (vertices, triangles) = parse_obj(&text).map_err(|e| format!("{}:{e}", path.display()))?;
-        Self::new(&vertices, triangles)
+        Self::unit_mesh(&vertices, triangles)
+    }
+
+    /// A mesh and the trees of engine and judge.
+    pub(crate) fn new(mesh: TriMesh) -> Arc<Self> {
+        Self::with_tree(super::engine::build(mesh))
+    }
+
+    /// The same where the engine's tree is there already.
+    pub(crate) fn with_tree(tree: MeshTree) -> Arc<Self> {
+        let boxes = BoxTree::build(tree.mesh().vertices(), tree.mesh().triangles());
+        Arc::new(Self { tree, boxes, parry: OnceLock::new(), spheres: OnceLock::new() })
+    }
+
+    /// The embedded shape with its trees.
+    pub(crate) fn embedded(spec: &str) -> Result<Arc<Self>, Error> {
+        Ok(Self::new(Self::unit_shape(spec)?))
     }
 
     pub(crate) fn triangle_count(&self) -> usize {
@@ -56,6 +71,18 @@ impl Body {
     pub(crate) fn spheres(&self) -> &SphereTree {
         self.spheres.get_or_init(|| SphereTree::new(self.tree.mesh().clone()))
     }
+}
+
+/// An OBJ file of a mesh, its numbers in full precision.
+pub(crate) fn write_obj(path: &Path, mesh: &TriMesh) -> std::io::Result<()> {
+    let mut text = String::new();
+    for v in mesh.vertices() {
+        let _ = writeln!(text, "v {} {} {}", v.x, v.y, v.z);
+    }
+    for [a, b, c] in mesh.triangles() {
+        let _ = writeln!(text, "f {} {} {}", a + 1, b + 1, c + 1);
+    }
+    std::fs::write(path, text)
 }
 
 /// The vertices and faces of an OBJ file in full precision; polygons become fans. An error begins with its line.
@@ -101,6 +128,12 @@ mod tests {
         let (vertices, triangles) = parse_obj(text).unwrap();
         assert_eq!(vertices[1], DVec3::X);
         assert_eq!(triangles, [[0, 1, 2], [0, 1, 2], [0, 2, 3]]);
+        let path = std::env::temp_dir().join(format!("d2m-body-{}.obj", std::process::id()));
+        let shape = Body::unit_shape("icosphere?triangles=80").unwrap();
+        write_obj(&path, &shape).unwrap();
+        let back = Body::unit_file(&path).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        assert!(back.vertices() == shape.vertices() && back.triangles() == shape.triangles());
         assert!(parse_obj("v 0 0\n").unwrap_err().starts_with("1: no three"));
         assert!(parse_obj("v 0 0 0\nf 1 0 1\n").unwrap_err().starts_with("2: no face"));
     }

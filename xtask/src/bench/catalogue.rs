@@ -1,6 +1,8 @@
 //! Which pairs the bench runs on: ten of embedded shapes, or those that a folder of trials names.
-use super::body::{Body, Pair};
+use super::body::{Body, Pair, write_obj};
+use super::store::slug;
 use crate::trials::{self, Law, Trial};
+use d2m::bvh::TriMesh;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -40,22 +42,43 @@ enum Shapes {
 }
 
 impl Entry {
+    /// The meshes of both bodies; one where they are equal.
+    pub(crate) fn meshes(&self) -> Result<Vec<TriMesh>, Error> {
+        match &self.shapes {
+            Shapes::Embedded(a, b) if a == b => Ok(vec![Body::unit_shape(a)?]),
+            Shapes::Embedded(a, b) => Ok(vec![Body::unit_shape(a)?, Body::unit_shape(b)?]),
+            Shapes::Files(a, b) if a == b => Ok(vec![Body::unit_file(a)?]),
+            Shapes::Files(a, b) => Ok(vec![Body::unit_file(a)?, Body::unit_file(b)?]),
+        }
+    }
+
     /// Builds or reads the meshes and their trees.
     pub(crate) fn load(&self) -> Result<Pair, Error> {
-        let (a, b) = match &self.shapes {
-            Shapes::Embedded(a, b) if a == b => {
-                let body = Body::embedded(a)?;
-                (Arc::clone(&body), body)
-            }
-            Shapes::Embedded(a, b) => (Body::embedded(a)?, Body::embedded(b)?),
-            Shapes::Files(a, b) if a == b => {
-                let body = Body::from_file(a)?;
-                (Arc::clone(&body), body)
-            }
-            Shapes::Files(a, b) => (Body::from_file(a)?, Body::from_file(b)?),
-        };
+        let mut bodies = self.meshes()?.into_iter().map(Body::new);
+        let a = bodies.next().ok_or("no mesh")?;
+        let b = bodies.next().unwrap_or_else(|| Arc::clone(&a));
         Ok(Pair { name: self.name.clone(), a, b })
     }
+
+    /// About how many triangles are to be read or made: for the progress bar.
+    pub(crate) fn triangles_about(&self) -> usize {
+        let of_spec = |spec: &String| {
+            let digits = spec.split_once("triangles=").map_or("1000", |parts| parts.1);
+            digits.split('&').next().and_then(|d| d.parse().ok()).unwrap_or(1000)
+        };
+        let of_file = |path: &PathBuf| std::fs::metadata(path).map_or(0, |m| m.len() as usize / 60);
+        match &self.shapes {
+            Shapes::Embedded(a, b) if a == b => of_spec(a),
+            Shapes::Embedded(a, b) => of_spec(a) + of_spec(b),
+            Shapes::Files(a, b) if a == b => of_file(a),
+            Shapes::Files(a, b) => of_file(a) + of_file(b),
+        }
+    }
+}
+
+/// The names of the ten pairs.
+pub(crate) fn pair_names() -> Vec<&'static str> {
+    PAIRS.iter().map(|pair| pair.0).collect()
 }
 
 /// The ten pairs with `count` trials of this seed at each speed.
@@ -72,6 +95,26 @@ pub(crate) fn embedded(seed: u64, count: usize) -> Vec<Entry> {
 fn draw(speed: f64, seed: u64, index: usize, count: usize) -> Vec<Trial> {
     let own = seed.wrapping_mul(1_000_003).wrapping_add(2 * index as u64 + u64::from(speed > 100.0));
     trials::generate(&Law { speed, ..Law::PAPER }, own, count)
+}
+
+/// Writes meshes and trials of the pair of this name as `--models` and `--trials` read them.
+pub(crate) fn export(wanted: &str, folder: &Path, seed: u64, count: usize) -> Result<(), Error> {
+    let entries = embedded(seed, count);
+    let entry = entries.iter().find(|e| e.name == wanted);
+    let entry = entry.ok_or_else(|| format!("no pair {wanted}: {}", pair_names().join(", ")))?;
+    std::fs::create_dir_all(folder)?;
+    let meshes = entry.meshes()?;
+    let name = slug(wanted);
+    let names: Vec<String> =
+        ["a", "b"].iter().take(meshes.len()).map(|end| format!("{name}-{end}")).collect();
+    for (name, mesh) in names.iter().zip(&meshes) {
+        write_obj(&folder.join(format!("{name}.obj")), mesh)?;
+    }
+    let (a, b) = (&names[0], &names[names.len() - 1]);
+    for (speed, list) in &entry.trials {
+        trials::write(&folder.join(format!("{a}__{b}__{speed}.csv")), list)?;
+    }
+    Ok(())
 }
 
 /// Files `A__B__SPEED.csv` in `trials`, models `A.obj` and `B.obj` in `models`.
@@ -104,4 +147,38 @@ pub(crate) fn files(models: &Path, folder: &Path, count: usize) -> Result<Vec<En
         entry.trials.sort_by(|s, t| s.0.total_cmp(&t.0));
     }
     Ok(entries)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let folder = std::env::temp_dir().join(format!("d2m-catalogue-{}", std::process::id()));
+        export("box/icosphere", &folder, 1, 3).unwrap();
+        let entries = files(&folder, &folder, 2).unwrap();
+        assert_eq!(entries.len(), 1);
+        assert_eq!(entries[0].trials[1].0, 512.0);
+        assert_eq!(entries[0].trials[1].1, embedded(1, 3)[1].trials[1].1[..2]);
+        let (read, made) = (entries[0].meshes().unwrap(), embedded(1, 3)[1].meshes().unwrap());
+        assert!(read[1].vertices() == made[1].vertices() && read[0].triangles() == made[0].triangles());
+        std::fs::remove_dir_all(&folder).unwrap();
+        assert!(export("no such pair", &folder, 1, 3).is_err());
+    }
+
+    #[test]
+    fn ten_pairs_with_trials_of_their_own() {
+        let entries = embedded(1, 2);
+        assert_eq!(entries.len(), 10);
+        let sizes: Vec<usize> = entries.iter().map(Entry::triangles_about).collect();
+        assert_eq!((sizes[0], sizes[2], sizes[9]), (476, 4572, 1114624));
+        assert!(QUICK.iter().all(|name| entries.iter().any(|e| e.name == *name)));
+        assert_ne!(entries[0].trials[0].1, entries[1].trials[0].1);
+        assert_eq!(
+            entries[3].trials[1].1,
+            embedded(1, 9)[3].trials[1].1[..2],
+            "a short run is the start of a long one"
+        );
+    }
 }

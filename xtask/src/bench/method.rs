@@ -152,10 +152,7 @@ impl<'a> Question<'a> {
                 let (ma, mb) = (a.parry(), b.parry());
                 self.advance(|t| peers::distance(ma, mb, &place(&self.trial.a, t), &place(&self.trial.b, t)))
             }
-            Method::ParryCast => {
-                let hit = peers::cast(a.parry(), b.parry(), &self.trial.a, &self.trial.b);
-                hit.map_or(Claim::Separated, |t| contact(t, ADVANCE_STOP))
-            }
+            Method::ParryCast => unreachable!("asked in a process of its own: bench/stopped.rs"),
             Method::Collide => {
                 if engine::collide(self.pair, &self.motions, self.at) {
                     still(0.0)
@@ -177,7 +174,7 @@ impl<'a> Question<'a> {
     /// Conservative advancement over this distance, until near enough.
     fn advance(&self, separation: impl FnMut(f64) -> f64) -> Claim {
         let radii = [self.pair.a.boxes.radius, self.pair.b.boxes.radius];
-        let t = advance(self.trial, radii, (1.0, ADVANCE_STOP), separation);
+        let t = advance(self.trial, radii, [0.0, 1.0], ADVANCE_STOP, separation);
         if t < 1.0 { contact(t, ADVANCE_STOP) } else { Claim::Separated }
     }
 }

@@ -6,15 +6,16 @@ mod clock;
 mod counted;
 mod engine;
 mod method;
-mod order;
 mod peers;
+mod progress;
 mod row;
 mod run;
+mod setting;
 mod stopped;
 mod store;
 pub(crate) mod sweep;
-pub(crate) mod variants;
 
+pub(crate) use catalogue::{export, pair_names};
 pub(crate) use engine::Sabotage;
 pub(crate) use method::Method;
 pub(crate) use row::Row;
@@ -26,8 +27,16 @@ use std::path::PathBuf;
 
 /// How long it takes, for `--help`.
 const DURATION: &str = "A whole run (ten pairs, two speeds, 256 trials, all methods, all series) takes about 40 minutes \
-    on two quiet cores, with --cap 5 about 25. It can be stopped at any time: with the same commit, machine and options \
-    it goes on where it was. Queries are timed on one thread while nothing else runs; judging uses all.";
+    on two quiet cores, with --cap 1 about 20. What matters most comes first: the engine on every pair, the series, the \
+    slow peers. It can be stopped at any time: with the same commit, machine and options it goes on where it was, and \
+    `cargo xtask report` shows what is there. Queries are timed on one thread while nothing else runs; judging uses all.";
+
+/// A part of a run.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+enum Only {
+    Pairs,
+    Series,
+}
 
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = DURATION)]
@@ -35,9 +44,18 @@ pub(crate) struct Options {
     /// Fewer trials, pairs and sweeps: under two minutes.
     #[arg(long)]
     quick: bool,
-    /// Only pairs whose name contains this.
+    /// Only the pairs, or only the series.
     #[arg(long)]
-    pair: Option<String>,
+    only: Option<Only>,
+    /// Only pairs whose name contains one of these.
+    #[arg(long, value_delimiter = ',')]
+    pair: Vec<String>,
+    /// Only these series, by name.
+    #[arg(long, value_delimiter = ',')]
+    series: Vec<String>,
+    /// Begin nothing new after so many minutes; the same command goes on later.
+    #[arg(long)]
+    minutes: Option<f64>,
     /// Only these methods, by name.
     #[arg(long, value_delimiter = ',')]
     method: Vec<String>,
@@ -62,9 +80,6 @@ pub(crate) struct Options {
     /// Folder of trial files `A__B__SPEED.csv`, with --models.
     #[arg(long, requires = "models")]
     trials: Option<PathBuf>,
-    /// Leave out the series over triangles, tolerance, spin, speed and threads.
-    #[arg(long)]
-    no_sweeps: bool,
     /// Count the instructions of fixed pieces of work under callgrind and compare with the baseline: fails if one needs
     /// 2 % more. Measures no times.
     #[arg(long)]
@@ -86,9 +101,15 @@ impl Options {
         self.cap.unwrap_or(if self.quick { 0.7 } else { 15.0 })
     }
 
+    /// Whoever names series wants no pairs.
+    fn wants_pairs(&self) -> bool {
+        self.only != Some(Only::Series) && self.series.is_empty()
+    }
+
     /// Series belong to whole runs on the embedded shapes.
-    fn wants_sweeps(&self) -> bool {
-        !self.no_sweeps && self.pair.is_none() && self.method.is_empty() && self.models.is_none()
+    fn wants_series(&self) -> bool {
+        let is_part = !self.pair.is_empty() || !self.method.is_empty() || self.models.is_some();
+        self.only == Some(Only::Series) || !self.series.is_empty() || (self.only.is_none() && !is_part)
     }
 
     /// Everything that the numbers depend on.
@@ -112,10 +133,10 @@ impl Options {
             (Some(models), Some(trials)) => catalogue::files(models, trials, self.count())?,
             _ => catalogue::embedded(self.seed, self.count()),
         };
-        if let Some(wanted) = &self.pair {
-            entries.retain(|entry| entry.name.contains(wanted.as_str()));
+        if !self.pair.is_empty() {
+            entries.retain(|entry| self.pair.iter().any(|wanted| entry.name.contains(wanted.as_str())));
         }
-        if self.quick && self.pair.is_none() && self.models.is_none() {
+        if self.quick && self.pair.is_empty() && self.models.is_none() {
             entries.retain(|entry| catalogue::QUICK.contains(&entry.name.as_str()));
         }
         if entries.is_empty() { Err("no such pair".into()) } else { Ok(entries) }

@@ -1,9 +1,9 @@
 //! parry's nonlinear cast in a process of its own: a query may take minutes and cannot be interrupted, so the
 //! process is ended when the time is over.
 use super::Options as BenchOptions;
-use super::method::{Method, Question};
+use super::peers;
 use super::row::Row;
-use super::run::Setting;
+use super::setting::Setting;
 use crate::TaskResult;
 use crate::judge::{Claim, Judge};
 use rayon::prelude::*;
@@ -28,16 +28,15 @@ pub(crate) fn run(options: &Options) -> TaskResult {
     let entries = options.bench.entries()?;
     let entry = entries.first().ok_or("no pair")?;
     let trials = &entry.trials.iter().find(|t| t.0 == options.speed).ok_or("no such speed")?.1;
-    let pair = entry.load()?;
-    let _ = (pair.a.parry(), pair.b.parry());
+    let meshes: Vec<peers::Mesh> = entry.meshes()?.iter().map(peers::mesh).collect();
+    let (a, b) = (meshes.first().ok_or("no mesh")?, meshes.last().ok_or("no mesh")?);
     let mut out = std::io::stdout().lock();
     writeln!(out, "ready")?;
     for trial in trials {
-        let question = Question::new(&pair, trial, options.bench.tolerance, 0.0)?;
         let start = Instant::now();
-        let claim = std::hint::black_box(question.ask(Method::ParryCast));
+        let hit = std::hint::black_box(peers::cast(a, b, &trial.a, &trial.b));
         let microseconds = start.elapsed().as_secs_f64() * 1e6;
-        let time = if let Claim::Contact { lo, .. } = claim { lo } else { f64::INFINITY };
+        let time = hit.unwrap_or(f64::INFINITY);
         writeln!(out, "{time:?} {microseconds:?}")?;
         out.flush()?;
     }
@@ -111,7 +110,8 @@ fn answer(setting: &Setting<'_>, trial: usize, line: &str) -> Option<Row> {
         Claim::Separated
     };
     let judge = Judge { a: &setting.pair.a.boxes, b: &setting.pair.b.boxes, trial: &setting.trials[trial] };
-    let (separation, fault) = match judge.check(&claim, false) {
+    let known = setting.known.get(trial).copied().unwrap_or_default();
+    let (separation, fault) = match judge.check_after(known, &claim, false) {
         Ok(separation) => (separation, String::new()),
         Err(fault) => (f64::INFINITY, fault.to_string()),
     };

@@ -8,6 +8,8 @@ pub(crate) struct Axis {
     logarithmic: bool,
     /// Marked at whole numbers only.
     whole: bool,
+    /// The lowest mark of a logarithmic axis stands for 0.
+    zero: bool,
 }
 
 impl Axis {
@@ -30,7 +32,16 @@ impl Axis {
             hi: if hi <= lo { lo * 10.0 } else { hi },
             logarithmic: true,
             whole: false,
+            zero: false,
         }
+    }
+
+    /// The same, with a decade more for 0 if that is among the numbers.
+    pub(crate) fn decades_and_zero(label: &str, values: impl IntoIterator<Item = f64>) -> Self {
+        let values: Vec<f64> = values.into_iter().collect();
+        let zero = values.contains(&0.0);
+        let axis = Self::decades(label, values);
+        Self { lo: if zero { axis.lo / 10.0 } else { axis.lo }, zero, ..axis }
     }
 
     /// Linear, from 0 to a round number not below the largest.
@@ -43,13 +54,21 @@ impl Axis {
             hi: (most / step).ceil() * step,
             logarithmic: false,
             whole: false,
+            zero: false,
         }
     }
 
     /// Linear from 0 to a whole number above the largest, marked at whole numbers only.
     pub(crate) fn counts(label: &str, values: impl IntoIterator<Item = f64>) -> Self {
         let most = values.into_iter().filter(|v| v.is_finite()).fold(1.0, f64::max);
-        Self { label: label.into(), lo: 0.0, hi: most.ceil() + 1.0, logarithmic: false, whole: true }
+        Self {
+            label: label.into(),
+            lo: 0.0,
+            hi: most.ceil() + 1.0,
+            logarithmic: false,
+            whole: true,
+            zero: false,
+        }
     }
 
     /// 0 at `lo`, 1 at `hi`; clamped, so that nothing is drawn outside.
@@ -68,6 +87,10 @@ impl Axis {
             let step = round_step((self.hi - self.lo) / 5.0).max(if self.whole { 1.0 } else { 0.0 });
             let count = ((self.hi - self.lo) / step + 1e-9) as usize;
             return (0..=count).map(|k| self.lo + k as f64 * step).map(|v| (v, plain(v))).collect();
+        }
+        if self.zero {
+            let rest = Self { lo: 10.0 * self.lo, zero: false, ..self.clone() };
+            return std::iter::once((self.lo, "0".into())).chain(rest.ticks()).collect();
         }
         let (first, last) = (self.lo.log10().round() as i32, self.hi.log10().round() as i32);
         if last - first <= 2 {

@@ -28,7 +28,7 @@ pub(crate) struct BoxPlot {
 
 const ROW: f64 = 15.0;
 const GAP: f64 = 14.0;
-const LEFT: f64 = 190.0;
+const LEFT: f64 = 205.0;
 const WIDTH: f64 = 900.0;
 const RIGHT: f64 = 30.0;
 

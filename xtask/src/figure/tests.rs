@@ -15,6 +15,16 @@ fn decades_hold_all_values_and_are_labelled() {
 }
 
 #[test]
+fn zero_has_a_place_on_a_logarithmic_axis() {
+    let axis = Axis::decades_and_zero("x", [0.0, 0.1, 300.0]);
+    assert_eq!((axis.place(0.0), axis.place(1000.0)), (0.0, 1.0));
+    assert!((axis.place(0.1) - 0.2).abs() < 1e-12);
+    let labels: Vec<String> = axis.ticks().into_iter().map(|t| t.1).collect();
+    assert_eq!(labels, ["0", "0.1", "1", "10", "100", "1000"]);
+    assert_eq!(Axis::decades_and_zero("x", [0.1, 300.0]).ticks().len(), 5);
+}
+
+#[test]
 fn linear_axes_end_on_round_numbers() {
     let axis = Axis::linear("x", [0.3, 1.97]);
     assert_eq!((axis.lo, axis.hi), (0.0, 2.0));

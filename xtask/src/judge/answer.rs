@@ -1,5 +1,5 @@
 //! Is an answer right? By conservative advancement and samples on the judge's own distance.
-use super::{BoxTree, Hint, bound_separation, cross, place, separation};
+use super::{BoxTree, Hint, bound_separation, cross, separation};
 use crate::trials::Trial;
 
 /// What a method says about one trial over [0, 1].
@@ -11,6 +11,17 @@ pub(crate) enum Claim {
     Contact { lo: f64, hi: f64, tolerance: f64 },
     /// No contact before this time.
     Undecided { clear_until: f64 },
+}
+
+impl Claim {
+    /// The time before which it says that nothing touches.
+    pub(crate) fn free_until(&self) -> f64 {
+        match *self {
+            Self::Separated => 1.0,
+            Self::Contact { lo, .. } => lo,
+            Self::Undecided { clear_until } => clear_until.clamp(0.0, 1.0),
+        }
+    }
 }
 
 /// What is wrong with it.
@@ -54,8 +65,13 @@ const FAR: f64 = 0.01;
 const SAMPLES: i32 = 26;
 /// Steps of the walk through what advancement left open.
 const WALK: usize = 1000;
+/// Pairs of boxes that advancement and walk may look at, about a second each: bodies of millions of triangles may
+/// fly along each other closely for long. Samples, more of them, look at what is left.
+const EFFORT: u64 = 1 << 23;
+/// Samples where the effort did not suffice.
+const EVEN: i32 = 64;
 
-/// Conservative advancement: the end of the part of [0, end] over which steps of distance / speed show the bodies
+/// Conservative advancement: the end of the part of [begin, end] over which steps of distance / speed show the bodies
 /// apart, to a separation of `near`; `end` when that is all of it.
 ///
 /// While the bounding spheres are apart their gap is the distance that counts. `separation` is asked at one time
@@ -63,11 +79,12 @@ const WALK: usize = 1000;
 pub(crate) fn advance(
     trial: &Trial,
     radii: [f64; 2],
-    (end, near): (f64, f64),
+    [begin, end]: [f64; 2],
+    near: f64,
     mut separation: impl FnMut(f64) -> f64,
 ) -> f64 {
     let speed = trial.bound_speed(radii[0], radii[1]);
-    let mut t = 0.0;
+    let mut t = begin;
     for _ in 0..STEPS {
         let centres = (trial.b.position - trial.a.position) + (trial.b.velocity - trial.a.velocity) * t;
         let spheres = centres.length() - radii[0] - radii[1];
@@ -87,38 +104,48 @@ pub(crate) fn advance(
 impl Judge<'_> {
     /// Distance of the surfaces at this time, 0 when they cross.
     pub(crate) fn separation(&self, t: f64) -> f64 {
-        separation(self.a, self.b, &place(&self.trial.a, t), &place(&self.trial.b, t), &mut None)
+        let [at_a, at_b] = self.trial.places(t);
+        separation(self.a, self.b, &at_a, &at_b, &mut Hint::default())
     }
 
     /// A lower bound of it, at least half of it, and 0 when they cross.
     fn bound_separation(&self, t: f64, hint: &mut Hint) -> f64 {
-        bound_separation(self.a, self.b, &place(&self.trial.a, t), &place(&self.trial.b, t), hint)
+        let [at_a, at_b] = self.trial.places(t);
+        bound_separation(self.a, self.b, &at_a, &at_b, hint)
     }
 
-    /// The time up to which advancement shows the bodies apart, in [0, end].
-    pub(crate) fn advance(&self, end: f64, near: f64) -> f64 {
-        let mut hint = None;
-        advance(self.trial, [self.a.radius, self.b.radius], (end, near), |t| {
-            self.bound_separation(t, &mut hint)
+    /// The time up to which advancement shows the bodies apart, in the window.
+    pub(crate) fn advance(&self, window: [f64; 2], near: f64) -> f64 {
+        let mut hint = Hint::default();
+        advance(self.trial, [self.a.radius, self.b.radius], window, near, |t| {
+            if hint.effort < EFFORT { self.bound_separation(t, &mut hint) } else { 0.0 }
         })
     }
 
-    /// A time in [0, end) at which the bodies cross, if advancement, a walk and samples find one.
+    /// A time in [begin, end) at which the bodies cross, if advancement, a walk and samples find one.
     ///
     /// Advancement proves the first part free. The walk goes on from there by the distance / speed that is left, but
     /// by no less than a small step: a crossing that lasts longer than that step is found. Samples crowd towards the
     /// end with ratio 4, because a late answer is late by little.
-    fn crossing_before(&self, end: f64) -> Option<f64> {
+    fn crossing_in(&self, [begin, end]: [f64; 2]) -> Option<f64> {
+        if end <= begin {
+            return None;
+        }
         let size = self.a.radius.max(self.b.radius);
-        let free = self.advance(end, NEAR * size);
-        let cross_at = |t: f64| cross(self.a, self.b, &place(&self.trial.a, t), &place(&self.trial.b, t));
-        let crowded =
-            (0..SAMPLES).map(|k| end - (end - free) * 0.25f64.powi(k)).find(|&t| t < end && cross_at(t));
+        let free = self.advance([begin, end], NEAR * size);
+        let cross_at = |&t: &f64| {
+            let [at_a, at_b] = self.trial.places(t);
+            t < end && cross(self.a, self.b, &at_a, &at_b)
+        };
+        let crowded = (0..SAMPLES).map(|k| end - (end - free) * 0.25f64.powi(k)).find(cross_at);
         let speed = self.trial.bound_speed(self.a.radius, self.b.radius);
         let least = (NEAR * size).min((end - free) * speed / 32.0);
-        let (mut t, mut hint) = (free, None);
+        let (mut t, mut hint) = (free, Hint::default());
         for _ in 0..WALK {
             if t >= end {
+                return crowded;
+            }
+            if hint.effort > EFFORT {
                 break;
             }
             let gap = self.bound_separation(t, &mut hint);
@@ -127,12 +154,20 @@ impl Judge<'_> {
             }
             t += gap.max(least) * (1.0 - 1e-9) / speed;
         }
-        crowded
+        let mut even = (0..EVEN).map(|k| t + (end - t) * f64::from(k) / f64::from(EVEN));
+        crowded.or_else(|| even.find(cross_at))
     }
 
     /// What is wrong with the claim; `Ok` with the separation at the claimed time otherwise (infinite if none is).
     pub(crate) fn check(&self, claim: &Claim, exact: bool) -> Result<f64, Fault> {
-        let free_until = |end: f64| self.crossing_before(end).map_or(Ok(()), |at| Err(Fault::Missed { at }));
+        self.check_after(0.0, claim, exact)
+    }
+
+    /// The same when an earlier claim about the same trial, found right, was already free before `known`
+    /// (see [`Claim::free_until`]): that part is not searched again.
+    pub(crate) fn check_after(&self, known: f64, claim: &Claim, exact: bool) -> Result<f64, Fault> {
+        let free_until =
+            |end: f64| self.crossing_in([known, end]).map_or(Ok(()), |at| Err(Fault::Missed { at }));
         match *claim {
             Claim::Separated => free_until(1.0).map(|()| f64::INFINITY),
             Claim::Undecided { clear_until } => {

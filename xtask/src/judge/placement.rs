@@ -29,11 +29,22 @@ impl Placement {
 
 /// The body's placement at time t.
 pub(crate) fn place(movement: &Movement, t: f64) -> Placement {
-    let turn = DQuat::from_scaled_axis(movement.angular_velocity * t);
-    Placement::new(turn * movement.rotation.normalize(), movement.position + movement.velocity * t)
+    Placement::new(turned(movement, t), movement.position + movement.velocity * t)
+}
+
+fn turned(movement: &Movement, t: f64) -> DQuat {
+    DQuat::from_scaled_axis(movement.angular_velocity * t) * movement.rotation.normalize()
 }
 
 impl Trial {
+    /// Both placements at time t in a frame that moves with A's origin: far from the origin of the world, or far from
+    /// the meeting place, doubles resolve less than the separations that are judged.
+    pub(crate) fn places(&self, t: f64) -> [Placement; 2] {
+        let (apart, speed) = (self.b.position - self.a.position, self.b.velocity - self.a.velocity);
+        let position = speed.mul_add(DVec3::splat(t), apart);
+        [Placement::new(turned(&self.a, t), DVec3::ZERO), Placement::new(turned(&self.b, t), position)]
+    }
+
     /// A bound on how fast the distance of two bodies of these radii about their origins can change.
     pub(crate) fn bound_speed(&self, radius_a: f64, radius_b: f64) -> f64 {
         let centres = (self.b.velocity - self.a.velocity).length();

@@ -72,6 +72,7 @@ struct Search<'a> {
     /// What may be this part of the best closer is not looked at.
     slack: f64,
     closest: (u32, u32),
+    effort: u64,
 }
 
 impl<'a> Search<'a> {
@@ -80,12 +81,18 @@ impl<'a> Search<'a> {
         let m = place.matrix;
         let absolute = DMat3::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs());
         let (back, absolute_back) = (m.transpose(), absolute.transpose());
-        Self { a, b, place, back, absolute, absolute_back, best, slack: 1.0, closest: (0, 0) }
+        Self { a, b, place, back, absolute, absolute_back, best, slack: 1.0, closest: (0, 0), effort: 0 }
     }
 }
 
-/// A pair of triangles that was the closest at a time nearby: where a search begins.
-pub(crate) type Hint = Option<(u32, u32)>;
+/// What one search leaves to the next at a time nearby.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Hint {
+    /// The closest pair of triangles, where the search begins.
+    closest: (u32, u32),
+    /// Pairs of boxes looked at so far.
+    pub(crate) effort: u64,
+}
 
 /// The distance of the surfaces: 0 when they cross, exact to rounding otherwise. The hint only saves time.
 pub(crate) fn separation(
@@ -96,10 +103,7 @@ pub(crate) fn separation(
     hint: &mut Hint,
 ) -> f64 {
     let mut search = Search::new(a, b, at_a, at_b, f64::INFINITY);
-    let (i, j) = hint.unwrap_or((0, 0));
-    search.triangles(i, j);
-    search.visit(0, 0, search.gap(0, 0));
-    *hint = Some(search.closest);
+    search.run(hint);
     search.best
 }
 
@@ -113,10 +117,7 @@ pub(crate) fn bound_separation(
 ) -> f64 {
     let mut search = Search::new(a, b, at_a, at_b, f64::INFINITY);
     search.slack = 0.5;
-    let (i, j) = hint.unwrap_or((0, 0));
-    search.triangles(i, j);
-    search.visit(0, 0, search.gap(0, 0));
-    *hint = Some(search.closest);
+    search.run(hint);
     search.best * search.slack
 }
 
@@ -128,6 +129,13 @@ pub(crate) fn cross(a: &BoxTree, b: &BoxTree, at_a: &Placement, at_b: &Placement
 }
 
 impl Search<'_> {
+    fn run(&mut self, hint: &mut Hint) {
+        let (i, j) = hint.closest;
+        self.triangles(i, j);
+        self.visit(0, 0, self.gap(0, 0));
+        *hint = Hint { closest: self.closest, effort: hint.effort + self.effort };
+    }
+
     /// A lower bound of the distance of two boxes: the largest gap along the six face normals.
     fn gap(&self, i: u32, j: u32) -> f64 {
         let (a, b) = (&self.a.nodes[i as usize], &self.b.nodes[j as usize]);
@@ -141,6 +149,7 @@ impl Search<'_> {
     }
 
     fn visit(&mut self, i: u32, j: u32, gap: f64) {
+        self.effort += 1;
         if gap >= self.best * self.slack || self.best <= 0.0 {
             return;
         }

@@ -51,9 +51,9 @@ fn the_tree_finds_what_all_pairs_give() {
         let (ca, cb) = (corners(&a, &at), corners(&b, &beside));
         let least = ca.iter().flat_map(|s| cb.iter().map(|t| distance(s, t))).fold(f64::INFINITY, f64::min);
         let (ta, tb) = (BoxTree::build(&a.0, &a.1), BoxTree::build(&b.0, &b.1));
-        let found = separation(&ta, &tb, &at, &beside, &mut None);
+        let found = separation(&ta, &tb, &at, &beside, &mut Hint::default());
         assert!((found - least).abs() < 1e-13, "{found} {least}");
-        let bound = bound_separation(&ta, &tb, &at, &beside, &mut None);
+        let bound = bound_separation(&ta, &tb, &at, &beside, &mut Hint::default());
         assert!(bound <= least + 1e-13 && bound >= 0.5 * least - 1e-13, "{bound} {least}");
     }
 }
@@ -80,7 +80,30 @@ fn faults_are_found() {
     assert!(matches!(judge.check(&Claim::Undecided { clear_until: 0.75 }, true), Err(Fault::Missed { .. })));
     assert!(judge.check(&Claim::Undecided { clear_until: 0.25 }, true).is_ok());
     assert_eq!(judge.check(&claim(0.7), true), Err(Fault::Nonsense));
-    assert!((judge.advance(1.0, 1e-9) - 0.5).abs() < 1e-9);
+    assert!((judge.advance([0.0, 1.0], 1e-9) - 0.5).abs() < 1e-9);
+
+    // What is known to be free is not searched again; what comes after it is.
+    let late = Claim::Contact { lo: 0.5 + 1e-6, hi: 0.6, tolerance: 1e-10 };
+    assert!(judge.check_after(claim(0.5 - 0.5e-10).free_until(), &late, true).is_err());
+    assert!(judge.check_after(0.5 - 0.5e-10, &claim(0.4), false).is_ok());
+
+    // As precise far from the origin of the world, and at speeds of which a rounding is larger than what is judged.
+    let far = DVec3::new(1e6, -1e6, 1e6);
+    let exact = |by: DVec3| movement(trial.b.position + by, trial.b.velocity);
+    let away = Trial { a: movement(far, DVec3::ZERO), b: exact(far) };
+    // What the shift itself rounds away.
+    let lost = (away.b.position - away.a.position).x - 3.0;
+    let left = Judge { a: &cube, b: &cube, trial: &away }.check(&claim(0.5 - 0.5e-10), true).unwrap();
+    assert!((left - 2e-10 - lost).abs() < 1e-14, "{left:e}");
+    let fast = Trial {
+        a: movement(DVec3::X * -2.5e5, DVec3::X * 5e5),
+        b: movement(DVec3::X * 250_001.0, DVec3::X * -5e5),
+    };
+    let late = Claim::Contact { lo: 0.5 + 1e-15, hi: 0.6, tolerance: 1e-10 };
+    let judge_fast = Judge { a: &cube, b: &cube, trial: &fast };
+    assert!(judge_fast.check(&late, true).is_err());
+    let left = judge_fast.separation(0.5 - 2f64.powi(-52));
+    assert!((left - 1e6 * 2f64.powi(-52)).abs() < 1e-15, "{left:e}");
 
     let passing = Trial { b: movement(DVec3::new(3.0, 1.5, 0.0), DVec3::X * -6.0), ..trial };
     let judge = Judge { a: &cube, b: &cube, trial: &passing };

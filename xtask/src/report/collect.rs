@@ -6,6 +6,7 @@ use std::path::Path;
 
 /// Writes `summary.csv`, the series, and what they were measured on.
 pub(super) fn collect(store: &Store, folder: &Path) -> Result<(), Box<dyn std::error::Error>> {
+    remove_old(folder)?;
     let mut lines = Vec::new();
     let mut all: BTreeMap<(u64, Method), Vec<Row>> = BTreeMap::new();
     for pair in store.pairs() {
@@ -29,8 +30,26 @@ pub(super) fn collect(store: &Store, folder: &Path) -> Result<(), Box<dyn std::e
             std::fs::write(folder.join(format!("series-{name}.csv")), sweep::write(&points))?;
         }
     }
+    let wrong = sweep::wrong(store);
+    if !wrong.is_empty() {
+        std::fs::write(folder.join("series-wrong.txt"), wrong)?;
+    }
+    super::peers::collect(store, folder)?;
     for name in ["machine.json", "settings.txt"] {
         std::fs::write(folder.join(name), store.load_text(name).unwrap_or_default())?;
+    }
+    Ok(())
+}
+
+/// Tables and figures of an earlier run must not pass for this one's.
+fn remove_old(folder: &Path) -> std::io::Result<()> {
+    for file in std::fs::read_dir(folder)? {
+        let path = file?.path();
+        let is_ours = path.extension().is_some_and(|e| e == "svg" || e == "csv")
+            || path.file_name().is_some_and(|name| name == "series-wrong.txt");
+        if is_ours {
+            std::fs::remove_file(path)?;
+        }
     }
     Ok(())
 }

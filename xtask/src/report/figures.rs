@@ -1,9 +1,9 @@
 //! The figures of one result folder.
 use super::table::{self, Line};
 use super::text;
-use crate::bench::{Method, sweep};
-use crate::figure::{Axis, BoxPlot, BoxRow, Group, LinePlot, Series};
-use crate::statistics::{Summary, exponent};
+use crate::bench::Method;
+use crate::figure::{BoxPlot, BoxRow, Group};
+use crate::statistics::Summary;
 use std::path::Path;
 
 type DrawResult = Result<(), Box<dyn std::error::Error>>;
@@ -29,10 +29,7 @@ pub(super) fn draw(folder: &Path) -> DrawResult {
     let words = ("Separation at the time of contact, by pair", SEPARATION);
     by_pair(&lines, |l| l.separation, words, &folder.join("pairs-separation.svg"))?;
     by_pair(&lines, |l| l.time, ("Time per query, by pair", TIME), &folder.join("pairs-time.svg"))?;
-    for name in sweep::NAMES.into_iter().filter(|name| *name != "instructions") {
-        series(folder, name)?;
-    }
-    Ok(())
+    super::series::draw(folder)
 }
 
 fn speeds(lines: &[Line]) -> Vec<f64> {
@@ -106,75 +103,4 @@ fn plot(title: &str, axis: &str, legend: Vec<String>, groups: Vec<Group>, path: 
         return Ok(());
     }
     BoxPlot { title: title.into(), axis: axis.into(), legend, groups }.draw(path)
-}
-
-/// Title and axes of a series.
-fn words(name: &str) -> (&'static str, &'static str, &'static str) {
-    match name {
-        "triangles" => {
-            ("Time against size: two torus knots", "triangles of each body", "median time of one query, µs")
-        }
-        "build" => ("Cost of a tree", "triangles of the body", "µs or bytes per triangle"),
-        "tolerance" => {
-            ("Time against accuracy: two pebbles", "tolerance, in radii", "median time of one query, µs")
-        }
-        "left" => (
-            "What the tolerance leaves",
-            "tolerance, in radii",
-            "separation at the time of contact, in radii",
-        ),
-        "spin" => (
-            "Time against spin: two pebbles",
-            "|ω| of each body, rad per unit of time",
-            "median time of one query, µs",
-        ),
-        "speed" => (
-            "Time against speed: two pebbles",
-            "relative speed, radii per unit of time",
-            "median time of one query, µs",
-        ),
-        "order" => {
-            ("A curved motion cut into n pieces", "pieces n", "error of the time of contact, in windows")
-        }
-        _ => ("A batch of queries on several threads: two pebbles", "threads", "queries per second"),
-    }
-}
-
-fn series(folder: &Path, name: &str) -> DrawResult {
-    let points = sweep::parse(&text(folder, &format!("series-{name}.csv")));
-    if points.is_empty() {
-        return Ok(());
-    }
-    let mut drawn: Vec<Series> = Vec::new();
-    for point in &points {
-        if drawn.last().is_none_or(|s| s.name != point.series) {
-            if let Some(place) = drawn.iter().position(|s| s.name == point.series) {
-                let found = drawn.remove(place);
-                drawn.push(found);
-            } else {
-                drawn.push(Series { name: point.series.clone(), points: Vec::new(), spread: Vec::new() });
-            }
-        }
-        let series = drawn.last_mut().expect("pushed above");
-        series.points.push((point.x, point.summary.median));
-        series.spread.push((point.summary.lower, point.summary.upper));
-    }
-    drawn.sort_by(|s, t| s.name.cmp(&t.name));
-    let (title, x, y) = words(name);
-    let all = || {
-        drawn
-            .iter()
-            .flat_map(|s| s.points.iter().map(|p| p.1).chain(s.spread.iter().flat_map(|p| [p.0, p.1])))
-    };
-    let y = if name == "threads" { Axis::linear(y, all()) } else { Axis::decades(y, all()) };
-    let xs = points.iter().map(|p| p.x);
-    let x = if name == "threads" { Axis::counts(x, xs) } else { Axis::decades(x, xs) };
-    if ["triangles", "order"].contains(&name) {
-        for series in &mut drawn {
-            if let Some(e) = exponent(&series.points) {
-                series.name = format!("{}: exponent {e:.2}", series.name);
-            }
-        }
-    }
-    LinePlot { title: title.into(), x, y, series: drawn }.draw(&folder.join(format!("series-{name}.svg")))
 }

@@ -2,6 +2,8 @@
 mod collect;
 mod figures;
 mod page;
+mod peers;
+mod series;
 mod table;
 
 use crate::TaskResult;

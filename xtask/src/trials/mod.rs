@@ -42,19 +42,31 @@ pub(crate) struct Options {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// File to write: CSV without header, 26 numbers a line.
-    #[arg(long)]
-    out: PathBuf,
+    #[arg(long, required_unless_present = "pair")]
+    out: Option<PathBuf>,
+    /// Instead: meshes and trials of this pair of the bench, as `bench --models DIR --trials DIR` reads them.
+    #[arg(long, requires = "folder")]
+    pair: Option<String>,
+    /// With --pair: where to; it is made if need be.
+    #[arg(long, requires = "pair")]
+    folder: Option<PathBuf>,
 }
 
 /// `cargo xtask trials`.
 pub(crate) fn run(options: &Options) -> TaskResult {
-    let law = Law { speed: options.speed, ..Law::PAPER };
-    let trials = generate(&law, options.seed, options.count);
-    write(&options.out, &trials)?;
-    if read(&options.out)? != trials {
-        return Err(format!("{}: reads back differently", options.out.display()).into());
+    if let (Some(pair), Some(folder)) = (&options.pair, &options.folder) {
+        crate::bench::export(pair, folder, options.seed, options.count)?;
+        eprintln!("{pair}: meshes and {} trials a speed in {}", options.count, folder.display());
     }
-    eprintln!("{} trials of seed {} in {}", options.count, options.seed, options.out.display());
+    if let Some(out) = &options.out {
+        let law = Law { speed: options.speed, ..Law::PAPER };
+        let trials = generate(&law, options.seed, options.count);
+        write(out, &trials)?;
+        if read(out)? != trials {
+            return Err(format!("{}: reads back differently", out.display()).into());
+        }
+        eprintln!("{} trials of seed {} in {}", options.count, options.seed, out.display());
+    }
     Ok(())
 }
 

@@ -1,7 +1,7 @@
 //! What vector instructions are worth: the same queries with each instruction set of this processor, in one run.
-use super::Options;
-use super::catalogue;
-use super::method::{Method, Question};
+use super::super::Options;
+use super::super::catalogue;
+use super::super::method::{Method, Question};
 use crate::judge::{Claim, Judge};
 use d2m::bvh::InstructionSet;
 use rayon::prelude::*;

@@ -1,0 +1,169 @@
+//! The questions of one pair, speed and method: asked on one thread, then judged on all.
+use super::body::Pair;
+use super::clock::Phases;
+use super::method::{Method, Question};
+use super::row::Row;
+use super::{Options, peers, stopped};
+use crate::judge::{Claim, Judge, place};
+use crate::trials::Trial;
+use rayon::prelude::*;
+use std::time::Instant;
+
+type Error = Box<dyn std::error::Error>;
+
+/// Answers of parry that are compared with the judge's, per pair, speed and method: it is slow.
+const PARRY_CHECKS: usize = 4;
+/// Triangles of a pair beyond which parry's distance is not asked: one query then takes from seconds to minutes.
+const PARRY_TRIANGLES: usize = 20_000;
+/// And the paper's method: its trees and queries are made for models of the paper's size.
+const PAPER_TRIANGLES: usize = 300_000;
+/// How far parry's distance may be from ours: it iterates to a tolerance of about this on its own.
+const PARRY_AGREES: f64 = 1e-7;
+
+/// One file's worth of questions.
+pub(super) struct Setting<'a> {
+    pub(super) options: &'a Options,
+    pub(super) pair: &'a Pair,
+    pub(super) speed: f64,
+    pub(super) trials: &'a [Trial],
+    pub(super) method: Method,
+    /// For each trial, the time before which an earlier answer, found right, said that nothing touches.
+    pub(super) known: &'a [f64],
+}
+
+impl Setting<'_> {
+    pub(super) fn rows(&self, accurate: Option<&[Row]>, phases: &mut Phases) -> Result<Vec<Row>, Error> {
+        match self.method {
+            Method::ParryCast => return phases.time("asked", || stopped::rows(self)),
+            Method::AdvanceParry | Method::ParryDistance if self.triangle_count() > PARRY_TRIANGLES => {
+                return Ok(Vec::new());
+            }
+            Method::Paper if self.triangle_count() > PAPER_TRIANGLES => return Ok(Vec::new()),
+            _ => {}
+        }
+        let times_of_contact = self.places(accurate);
+        let questions: Vec<(usize, Question<'_>)> = times_of_contact
+            .iter()
+            .map(|&(i, at)| {
+                Ok((
+                    i,
+                    Question::new(self.pair, &self.trials[i], self.options.tolerance, at)?
+                        .with_cap(self.options.cap()),
+                ))
+            })
+            .collect::<Result<_, Error>>()?;
+        phases.time("lazy trees", || self.prepare());
+        // One thread asks and nothing else runs; only then all threads judge.
+        let asked = phases.time("asked", || self.ask(&questions));
+        Ok(phases.time("judged", || self.judged(&questions, asked)))
+    }
+
+    /// Builds what the method needs of the bodies and others do not.
+    fn prepare(&self) {
+        for body in [&self.pair.a, &self.pair.b] {
+            match self.method {
+                Method::Paper => {
+                    body.spheres();
+                }
+                Method::AdvanceParry | Method::ParryIntersection | Method::ParryDistance => {
+                    body.parry();
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn triangle_count(&self) -> usize {
+        self.pair.a.triangle_count() + self.pair.b.triangle_count()
+    }
+
+    /// Which trials, and the time for static methods: only those that end in contact.
+    fn places(&self, accurate: Option<&[Row]>) -> Vec<(usize, f64)> {
+        if !self.method.is_static() {
+            return (0..self.trials.len()).map(|i| (i, 0.0)).collect();
+        }
+        let rows = accurate.unwrap_or_default();
+        let contact = |row: &Row| match row.claim {
+            Claim::Contact { lo, .. } if row.fault.is_empty() => Some((row.trial, lo)),
+            _ => None,
+        };
+        rows.iter().filter_map(contact).collect()
+    }
+
+    /// Answers with the least time of the rounds, until the cap of a slow method.
+    fn ask(&self, questions: &[(usize, Question<'_>)]) -> Vec<(Claim, f64)> {
+        let slow = self.method.is_slow();
+        let rounds = if slow { 1 } else { self.options.rounds.max(1) };
+        let begin = Instant::now();
+        let mut asked: Vec<(Claim, f64)> = Vec::new();
+        for round in 0..rounds {
+            for (place, (_, question)) in questions.iter().enumerate() {
+                if slow && begin.elapsed().as_secs_f64() > self.options.cap() {
+                    break;
+                }
+                let start = Instant::now();
+                let claim = std::hint::black_box(question.ask(self.method));
+                let microseconds = start.elapsed().as_secs_f64() * 1e6;
+                if round == 0 {
+                    asked.push((claim, microseconds));
+                } else {
+                    asked[place].1 = asked[place].1.min(microseconds);
+                }
+            }
+        }
+        asked
+    }
+
+    fn judged(&self, questions: &[(usize, Question<'_>)], asked: Vec<(Claim, f64)>) -> Vec<Row> {
+        let sabotage = self.options.sabotage.filter(|_| self.method == Method::Accurate);
+        let mut rows: Vec<Row> = questions
+            .par_iter()
+            .zip(asked)
+            .map(|((trial, question), (claim, microseconds))| {
+                let claim = sabotage.map_or(claim, |fault| fault.spoil(claim));
+                let verdict = if self.method.is_static() {
+                    Ok(f64::INFINITY)
+                } else {
+                    let known = self.known.get(*trial).copied().unwrap_or_default();
+                    self.judge(question.trial).check_after(known, &claim, self.method.is_exact())
+                };
+                let (separation, fault) = match verdict {
+                    Ok(separation) => (separation, String::new()),
+                    Err(fault) => (f64::INFINITY, fault.to_string()),
+                };
+                Row { trial: *trial, claim, separation, parry_separation: f64::NAN, microseconds, fault }
+            })
+            .collect();
+        if self.method.is_ours()
+            && self.method != Method::AdvanceOwn
+            && self.triangle_count() <= PARRY_TRIANGLES
+        {
+            self.ask_parry(&mut rows);
+        }
+        rows
+    }
+
+    fn judge<'a>(&'a self, trial: &'a Trial) -> Judge<'a> {
+        Judge { a: &self.pair.a.boxes, b: &self.pair.b.boxes, trial }
+    }
+
+    /// The second opinion on the separation, on some trials.
+    fn ask_parry(&self, rows: &mut [Row]) {
+        let contacts: Vec<(&mut Row, f64)> = rows
+            .iter_mut()
+            .filter_map(|row| match row.claim {
+                Claim::Contact { lo, .. } if row.separation.is_finite() => Some((row, lo)),
+                _ => None,
+            })
+            .take(PARRY_CHECKS)
+            .collect();
+        contacts.into_par_iter().for_each(|(row, lo)| {
+            let trial = &self.trials[row.trial];
+            let (at_a, at_b) = (place(&trial.a, lo), place(&trial.b, lo));
+            row.parry_separation = peers::distance(self.pair.a.parry(), self.pair.b.parry(), &at_a, &at_b);
+            if (row.parry_separation - row.separation).abs() > PARRY_AGREES {
+                row.fault = format!("parry measures a separation of {:.3e}", row.parry_separation);
+            }
+        });
+    }
+}

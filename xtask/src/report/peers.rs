@@ -1,0 +1,167 @@
+//! Peers outside of Rust, if `xtask/peers/run_all.py` was run: what their rows in `.bench/peers` come to.
+use super::page::round;
+use super::text;
+use crate::bench::{Method, Store};
+use crate::judge::Claim;
+use crate::statistics::Summary;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+
+type Error = Box<dyn std::error::Error>;
+
+const FILE: &str = "peers.csv";
+const HEADER: &str = "peer,on,asked,contacts,late,median_difference,worst_difference,time_median,time_worst";
+
+/// What one peer did on one set of questions. A difference is that of its time of contact from ours.
+#[derive(Debug, Default)]
+struct Found {
+    asked: usize,
+    contacts: usize,
+    /// Contacts missed, or later than ours by more than [`LATE`].
+    late: usize,
+    differences: Vec<f64>,
+    microseconds: Vec<f64>,
+}
+
+/// Of the window: what rounding of either side explains.
+const LATE: f64 = 1e-9;
+
+impl Found {
+    /// `ours` is infinite where there is no contact; NaN where the peer is only timed.
+    fn note(&mut self, toc: f64, ours: f64, microseconds: f64) {
+        self.asked += 1;
+        self.microseconds.push(microseconds);
+        if ours.is_nan() {
+            return;
+        }
+        self.contacts += usize::from(toc.is_finite());
+        self.late += usize::from(toc > ours + LATE);
+        if toc.is_finite() && ours.is_finite() {
+            self.differences.push((toc - ours).abs());
+        }
+    }
+
+    fn line(self, peer: &str, on: &str) -> String {
+        let Self { asked, contacts, late, .. } = self;
+        let number = |values: Vec<f64>, pick: [fn(&Summary) -> f64; 2]| {
+            let summary = Summary::of(values);
+            pick.map(|f| summary.as_ref().map_or(String::new(), |s| format!("{:.4e}", f(s)))).join(",")
+        };
+        let pick: [fn(&Summary) -> f64; 2] = [|s| s.median, |s| s.worst];
+        let (differences, times) = (number(self.differences, pick), number(self.microseconds, pick));
+        format!("{peer},{on},{asked},{contacts},{late},{differences},{times}")
+    }
+}
+
+/// Sums up the rows of the peers, against our answers to the same questions in the store.
+pub(super) fn collect(store: &Store, folder: &Path) -> Result<(), Error> {
+    let Some(rows) = store.folder.parent().map(|parent| parent.join("peers")) else { return Ok(()) };
+    let mut found: BTreeMap<(&str, String), Found> = BTreeMap::new();
+    for line in text(&rows, "fcl.csv").lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        let [pair, speed, trial, numbers @ ..] = &fields[..] else { continue };
+        let n: Vec<f64> = numbers.iter().filter_map(|f| f.parse().ok()).collect();
+        let (&[toc, clock, distance, continuous, continuous_clock], Ok(speed), Ok(trial)) =
+            (&n[..], speed.parse::<f64>(), trial.parse::<usize>())
+        else {
+            continue;
+        };
+        let accurate = store.load(pair, speed, Method::Accurate.name()).unwrap_or_default();
+        let Some(row) = accurate.iter().find(|row| row.trial == trial && row.fault.is_empty()) else {
+            continue;
+        };
+        let ours = if let Claim::Contact { lo, .. } = row.claim { lo } else { f64::INFINITY };
+        let on = format!("{pair} at speed {speed}");
+        let mut note = |peer, toc, ours, clock| {
+            found.entry((peer, on.clone())).or_default().note(toc, ours, clock);
+        };
+        note("FCL: advancement to 1e-9 over its distance", toc, ours, clock);
+        note("FCL: one distance, mean over the advancement", f64::NAN, f64::NAN, distance);
+        note("FCL: continuousCollide between the end poses", continuous, ours, continuous_clock);
+        note("d2m accurate", ours, ours, row.microseconds);
+    }
+    for line in text(&rows, "ipc.csv").lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        let n: Vec<f64> = fields.iter().filter_map(|f| f.parse().ok()).collect();
+        let &[_, rescaling, planted, toc, clock, ours, own_clock] = &n[..] else { continue };
+        let mut note = |peer, toc: f64, clock| {
+            // A pair may touch before the planted contact: the earlier of the two is the truth to both.
+            found.entry((peer, "planted vertex/face".into())).or_default().note(
+                toc,
+                planted.min(ours),
+                clock,
+            );
+        };
+        if rescaling == 0.8 {
+            note("IPC Toolkit: nonlinear point_triangle_ccd as it comes", toc, clock);
+            note("d2m features", ours, own_clock);
+        } else {
+            note("IPC Toolkit: the same with conservative_rescaling 0.999", toc, clock);
+        }
+    }
+    if found.is_empty() {
+        return Ok(());
+    }
+    let lines = found.into_iter().map(|((peer, on), found)| found.line(peer, &on) + "\n");
+    Ok(std::fs::write(folder.join(FILE), format!("{HEADER}\n{}", lines.collect::<String>()))?)
+}
+
+/// The section of the page.
+pub(super) fn write(page: &mut String, folder: &Path) -> Result<(), Error> {
+    let table = text(folder, FILE);
+    if table.is_empty() {
+        return Ok(());
+    }
+    writeln!(page, "### Peers outside of Rust\n")?;
+    writeln!(
+        page,
+        "From `xtask/peers/run_all.py`: the same meshes, trials and machine. Late: a contact missed, or later than \
+        ours by more than {LATE:e}.\n"
+    )?;
+    writeln!(
+        page,
+        "| peer | on | asked | contacts | late | median, worst difference of times | µs, median | worst |"
+    )?;
+    writeln!(page, "|---|---|---|---|---|---|---|---|")?;
+    for line in table.lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        let [peer, on, asked, contacts, late, middle, most, median, worst] = fields[..] else { continue };
+        let number = |f: &str| f.parse::<f64>().ok();
+        let times = |f: &str| number(f).map_or("–".into(), round);
+        let judged = number(middle).is_some();
+        let count = |f: &str| if judged { f.to_string() } else { "–".into() };
+        let small = |f: &str| number(f).map_or("–".into(), |v| format!("{v:.1e}"));
+        writeln!(
+            page,
+            "| {peer} | {on} | {asked} | {} | {} | {}, {} | {} | {} |",
+            count(contacts),
+            count(late),
+            small(middle),
+            small(most),
+            times(median),
+            times(worst)
+        )?;
+    }
+    Ok(writeln!(page)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn late_and_missed_contacts_are_counted() {
+        let mut found = Found::default();
+        let none = f64::INFINITY;
+        for (toc, ours) in [(0.5, 0.5), (0.4, 0.5), (0.6, 0.5), (none, 0.5), (none, none)] {
+            found.note(toc, ours, 10.0);
+        }
+        assert_eq!((found.asked, found.contacts, found.late), (5, 3, 2));
+        let line = found.line("p", "pair");
+        assert_eq!(line, "p,pair,5,3,2,1.0000e-1,1.0000e-1,1.0000e1,1.0000e1");
+        let mut timed = Found::default();
+        timed.note(f64::NAN, f64::NAN, 3.0);
+        assert_eq!(timed.line("p", "q"), "p,q,1,0,0,,,3.0000e0,3.0000e0");
+    }
+}
