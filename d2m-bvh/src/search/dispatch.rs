@@ -27,9 +27,6 @@ pub(super) fn search_on(set: InstructionSet, search: Search<'_>) -> Outcome {
     match set {
         // SAFETY: `InstructionSet::in_use` found the features on this processor (tests ask only for available sets).
         #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx512 => unsafe { avx512(search) },
-        // SAFETY: as above.
-        #[cfg(target_arch = "x86_64")]
         InstructionSet::Avx2 => unsafe { avx2(search) },
         _ => search.run::<Portable>(),
     }
@@ -38,11 +35,5 @@ pub(super) fn search_on(set: InstructionSet, search: Search<'_>) -> Outcome {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
 fn avx2(search: Search<'_>) -> Outcome {
-    search.run::<super::avx::Avx>()
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,avx512f,avx512vl,bmi1,bmi2,lzcnt,popcnt")]
-fn avx512(search: Search<'_>) -> Outcome {
     search.run::<super::avx::Avx>()
 }

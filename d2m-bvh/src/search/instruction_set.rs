@@ -13,7 +13,7 @@ use core::sync::atomic::{AtomicU8, Ordering};
 /// use d2m_bvh::InstructionSet;
 /// InstructionSet::Portable.limit();
 /// assert_eq!(InstructionSet::in_use(), InstructionSet::Portable);
-/// InstructionSet::Avx512.limit(); // again the best that there is
+/// InstructionSet::Avx2.limit(); // again the best that there is
 /// assert_eq!(Some(&InstructionSet::in_use()), InstructionSet::available().last());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -23,14 +23,12 @@ pub enum InstructionSet {
     Portable,
     /// AVX2 with BMI, LZCNT and POPCNT, on x86-64.
     Avx2,
-    /// The same with AVX-512F and AVX-512VL.
-    Avx512,
 }
 
-const ALL: [InstructionSet; 3] = [InstructionSet::Portable, InstructionSet::Avx2, InstructionSet::Avx512];
+const ALL: [InstructionSet; 2] = [InstructionSet::Portable, InstructionSet::Avx2];
 
 /// Index into [`ALL`].
-static LIMIT: AtomicU8 = AtomicU8::new(2);
+static LIMIT: AtomicU8 = AtomicU8::new(1);
 
 impl InstructionSet {
     /// The sets that this processor has; the first is always [`InstructionSet::Portable`].
@@ -57,7 +55,7 @@ impl InstructionSet {
         {
             use std::arch::is_x86_feature_detected as has;
             if has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt") {
-                return if has!("avx512f") && has!("avx512vl") { Self::Avx512 } else { Self::Avx2 };
+                return Self::Avx2;
             }
         }
         Self::Portable

@@ -28,6 +28,10 @@ const FIRST_SWEEP: u64 = 256;
 /// the queue what comes later, and pairs that meet at the same features need one look back each.
 const FOLLOWED: u32 = 16;
 
+/// The frame is renewed when the time has grown by more than one part in this many: an older one is as right, its
+/// bounds only begin earlier.
+const FRESH: u32 = 128;
+
 /// A contact as the search knows it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found {
@@ -235,7 +239,7 @@ impl<'s> Search<'s> {
                 }
             }
             self.scratch.counts.frames += 1;
-            if least != state.frame_key {
+            if least > state.frame_key + state.frame_key / FRESH {
                 state.frame = state.motion.frame::<L::Doubles>(f64::from(least) * step);
                 let left = time_left(state.limit, least);
                 state.node_frames = [

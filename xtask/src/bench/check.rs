@@ -2,7 +2,7 @@
 //!
 //! Instruction counts do not depend on what else the machine does. Each operation is counted with the portable
 //! instructions, and those that have a variant for AVX2 once more with it, where valgrind knows all its instructions
-//! (3.19 knows those of the static queries only); AVX-512 is beyond valgrind.
+//! (3.19 does not know all of them).
 use super::counted::{OPERATIONS, Operation};
 use crate::TaskResult;
 use indicatif::{ProgressBar, ProgressStyle};

@@ -21,9 +21,6 @@ pub(crate) fn run_on<T: Task>(set: InstructionSet, task: T) -> T::Output {
     match set {
         // SAFETY: `InstructionSet::in_use` found the features on this processor (tests ask only for available sets).
         #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx512 => unsafe { avx512(task) },
-        // SAFETY: as above.
-        #[cfg(target_arch = "x86_64")]
         InstructionSet::Avx2 => unsafe { avx2(task) },
         _ => task.run::<Portable>(),
     }
@@ -32,11 +29,5 @@ pub(crate) fn run_on<T: Task>(set: InstructionSet, task: T) -> T::Output {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
 fn avx2<T: Task>(task: T) -> T::Output {
-    task.run::<crate::search::Avx>()
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,avx512f,avx512vl,bmi1,bmi2,lzcnt,popcnt")]
-fn avx512<T: Task>(task: T) -> T::Output {
     task.run::<crate::search::Avx>()
 }
