@@ -9,7 +9,8 @@ pub enum FirstContact {
     Clear,
     /// The first contact lies in the bracket.
     Contact(ContactBracket),
-    /// The limit of evaluations was reached; no contact before `clear_until`.
+    /// The limit of evaluations was reached, or not even a distance could be bounded (rotations beyond 10⁹ rad); no
+    /// contact before `clear_until`.
     Undecided {
         /// No contact from the start of the window to here.
         clear_until: f64,

@@ -28,7 +28,7 @@ pub enum FirstRoot {
         /// Proven upper bound of the distance at some time of the bracket (0 for a crossing).
         distance: f64,
     },
-    /// The limit of evaluations was reached; no contact before `clear_until`.
+    /// The limit of evaluations was reached, or not even a distance could be bounded; no contact before `clear_until`.
     Undecided {
         /// All before this time is clear.
         clear_until: f64,
@@ -162,7 +162,11 @@ pub fn isolate<T: PieceTest>(test: &mut T, window: Piece, options: &IsolatorOpti
             }
             // Nothing could be said: halve, down to the last representable width.
             if mid <= piece.lo || mid >= piece.hi || (narrow && width <= 0.25 * resolution) {
-                break 'search found(piece, Evidence::Unresolved, cut.distance);
+                if cut.distance.is_finite() {
+                    break 'search found(piece, Evidence::Unresolved, cut.distance);
+                }
+                // Not even how far apart they are.
+                break 'search FirstRoot::Undecided { clear_until: piece.lo };
             }
             rest.push(Piece { lo: mid, ..piece });
             piece.hi = mid;
