@@ -345,6 +345,27 @@ mod tests {
         (least, won)
     }
 
+    /// A triangle, its copy turned by one radian and lifted a little, and a plate above: the copy's own place counts,
+    /// although one picture stands for both.
+    #[test]
+    fn triangles_of_a_class_count_where_they_are() {
+        let corners = [DVec3::X, DVec3::new(0.9, 0.1, -0.1), DVec3::new(0.8, 0.0, 0.0)];
+        let turn = DQuat::from_rotation_z(1.0);
+        let plate =
+            [DVec3::new(-2.0, -2.0, 1.02e-7), DVec3::new(2.0, -2.0, 1.02e-7), DVec3::new(0.0, 3.0, 1.02e-7)];
+        let plate = MeshTree::new(TriMesh::try_new(plate.into(), vec![[0, 1, 2]]).unwrap());
+        let options = QueryOptions::default().with_tolerance(1e-7);
+        let spin = LinearMotion::REST.with_angular_velocity(DVec3::Z * 5.0);
+        let until = |lift: f64| {
+            let lifted = corners.map(|p| turn * p + DVec3::Z * lift);
+            let pair = TriMesh::try_new([corners, lifted].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+            let pair = MeshTree::new(pair);
+            let scene = Scene::new((&pair, spin), (&plate, LinearMotion::REST), Window::UNIT, &options);
+            screw_clear_until(&scene, 0.0, (0.0, 1 << 13), [0, 0]).0
+        };
+        assert_eq!((until(0.0), until(1e-9), until(4e-9)), (1.0, 1.0, 0.0));
+    }
+
     #[test]
     fn pictures_that_are_apart_mean_bodies_that_are_apart() {
         let (least, won) = least_ratio(2400, |_| ());
