@@ -176,9 +176,10 @@ pub fn screw_in_nut(triangles: usize, clearance: f64, turns: f64, drift: f64) ->
     }
 }
 
-/// A screw with a thread of 16 turns goes through its nut by ten of them: five on either side of the middle.
+/// A screw with a thread of 16 turns goes through its nut by ten of them: five on either side of the middle. It has as
+/// many columns as the one of six turns, so more triangles.
 pub fn long_screw_in_nut(triangles: usize, clearance: f64) -> HardScene {
-    let screw = tree(&format!("screw?triangles={triangles}&turns=16"));
+    let screw = tree(&format!("screw?triangles={}&turns=16", triangles * 8 / 3));
     let nut = tree(&format!("nut?triangles={triangles}&turns=16&clearance={clearance}"));
     let unit = screw_unit(16);
     let motion = still()

@@ -264,14 +264,12 @@ impl Walk<'_> {
         {
             take(*direction, *fa, *fb);
         }
-        if self.directions > 1 {
-            if let (Some(p), Some(q)) = (trees[0].piece(cells[0]), trees[1].piece(cells[1])) {
-                for corners in [&p.corners, &q.corners] {
-                    for k in 0..3 {
-                        let (from, to) = (&corners[k], &corners[(k + 1) % 3]);
-                        let (alpha, beta) = (from.phi - to.phi, to.rho - from.rho);
-                        take((alpha, beta), p.reach(alpha, beta), q.reach(alpha, beta));
-                    }
+        let pieces = [0, 1].map(|k| trees[k].piece(cells[k]).filter(|_| self.directions > 1));
+        if let [Some(p), Some(q)] = pieces {
+            for corners in [&p.corners, &q.corners] {
+                for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (&corners[i], &corners[j])) {
+                    let (alpha, beta) = (from.phi - to.phi, to.rho - from.rho);
+                    take((alpha, beta), p.reach(alpha, beta), q.reach(alpha, beta));
                 }
             }
         }

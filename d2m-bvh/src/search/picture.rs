@@ -79,7 +79,7 @@ pub(super) struct Corner {
 }
 
 impl Corner {
-    /// `theta`: of a vertex; corners of triangles get their φ together.
+    /// Corners of triangles get their φ together.
     fn new(at: DVec3) -> Self {
         Self { at, rho: at.truncate().length(), phi: at.z }
     }
@@ -274,9 +274,8 @@ impl Pictures {
             }
             let (one, by) = (&mut narrow[class], turns[class]);
             // Moved along the screw until the first angles agree, where do the corners end?
-            for i in 0..3 {
-                let swing = if i > 0 { (turned[i - 1] - by[i - 1]).abs() } else { 0.0 };
-                let (c, d) = (&corners[i], &one.corners[i]);
+            let swings = [0.0, (turned[0] - by[0]).abs(), (turned[1] - by[1]).abs()];
+            for (swing, (c, d)) in swings.iter().zip(corners.iter().zip(&one.corners)) {
                 let beside = (c.rho - d.rho).abs() + (c.phi - d.phi).abs() + (far + screw.h.abs()) * swing;
                 one.slack = one.slack.max(beside * (1.0 + 1e-12));
             }

@@ -46,8 +46,8 @@ impl Ring {
     /// for bodies that spin only.
     fn of(corners: &[DVec3; 3], spins: bool) -> Self {
         let [low, high] = [f64::min, f64::max].map(|f| f(f(corners[0].z, corners[1].z), corners[2].z));
-        let flat = corners.map(|p| p.truncate());
-        let squares = flat.map(|p| p.length_squared());
+        let flat = corners.map(DVec3::truncate);
+        let squares = flat.map(DVec2::length_squared);
         if !spins {
             return Self { low, high, near: 0.0, far: f64::INFINITY };
         }
@@ -58,14 +58,15 @@ impl Ring {
 
 /// Square of the distance of the origin from a triangle in the plane, and the squares of the corners' distances.
 fn nearest_square(flat: &[DVec2; 3], squares: &[f64; 3]) -> f64 {
-    let sides = [0, 1, 2].map(|k| flat[k].perp_dot(flat[(k + 1) % 3]));
+    // With the edge, not with its end: a short edge does not magnify the rounding.
+    let edges = [0, 1, 2].map(|k| flat[(k + 1) % 3] - flat[k]);
+    let sides = [0, 1, 2].map(|k| flat[k].perp_dot(edges[k]));
     if sides.iter().all(|&s| s >= 0.0) || sides.iter().all(|&s| s <= 0.0) {
         return 0.0;
     }
     let mut least = squares[0].min(squares[1]).min(squares[2]);
     for k in 0..3 {
-        let edge = flat[(k + 1) % 3] - flat[k];
-        let (along, length) = (-flat[k].dot(edge), edge.length_squared());
+        let (along, length) = (-flat[k].dot(edges[k]), edges[k].length_squared());
         if along > 0.0 && along < length {
             least = least.min(sides[k] * sides[k] / length);
         }
