@@ -143,23 +143,28 @@ pub fn shaft_in_bearing(triangles: usize, clearance: f64, drift: f64, both: bool
     }
 }
 
-/// Pitch of the thread of `screw` and `nut` in their common scale.
-fn pitch() -> f64 {
-    // Before scaling: pitch 0.2; half of the thread 0.6 with the head 0.25 and radius 0.6.
-    0.2 / (0.85f64 * 0.85 + 0.36).sqrt()
+/// Length unit of `screw` and `nut` with so many turns: before scaling their pitch is 0.2, half of the thread 0.1 a turn,
+/// the head 0.25 high and its radius 0.6.
+fn screw_unit(turns: u32) -> f64 {
+    let bottom = 0.1 * f64::from(turns) + 0.25;
+    1.0 / (bottom * bottom + 0.36).sqrt()
 }
 
-/// A screw turns in its nut; `drift`: speed across the axis.
+/// A screw turns in its nut, in the middle of its thread of six turns at the start; `drift`: speed across the axis.
 pub fn screw_in_nut(triangles: usize, clearance: f64, turns: f64, drift: f64) -> HardScene {
     let screw = tree(&format!("screw?triangles={triangles}"));
     let nut = tree(&format!("nut?triangles={triangles}&clearance={clearance}"));
+    let unit = screw_unit(6);
     let motion = still()
         .with_angular_velocity(DVec3::Z * (2.0 * PI * turns))
-        .with_linear_velocity(DVec3::new(drift, 0.0, pitch() * turns));
-    let expected = if drift == 0.0 && clearance > 0.0 {
-        Expected::Clear { clearance: 0.0 }
-    } else {
+        .with_linear_velocity(DVec3::new(drift, 0.0, 0.2 * unit * turns));
+    // After two turns the head is at the nut.
+    let expected = if drift > 0.0 {
         Expected::Contact { from: 0.0, to: 1.0 }
+    } else if turns > 2.0 {
+        Expected::Contact { from: 2.0 / turns, to: 2.0 / turns }
+    } else {
+        Expected::Clear { clearance: 0.6 * clearance * unit }
     };
     HardScene {
         name: format!(
@@ -168,6 +173,24 @@ pub fn screw_in_nut(triangles: usize, clearance: f64, turns: f64, drift: f64) ->
         bodies: [screw, nut],
         motions: [motion, still()],
         expected,
+    }
+}
+
+/// A screw with a thread of 16 turns goes through its nut by ten of them: five on either side of the middle. It has as
+/// many columns as the one of six turns, so more triangles.
+pub fn long_screw_in_nut(triangles: usize, clearance: f64) -> HardScene {
+    let screw = tree(&format!("screw?triangles={}&turns=16", triangles * 8 / 3));
+    let nut = tree(&format!("nut?triangles={triangles}&turns=16&clearance={clearance}"));
+    let unit = screw_unit(16);
+    let motion = still()
+        .with_position(DVec3::Z * (-5.0 * 0.2 * unit))
+        .with_angular_velocity(DVec3::Z * (20.0 * PI))
+        .with_linear_velocity(DVec3::Z * (10.0 * 0.2 * unit));
+    HardScene {
+        name: format!("long screw in nut, clearance {clearance:e}, 10 turns, {triangles} x2"),
+        bodies: [screw, nut],
+        motions: [motion, still()],
+        expected: Expected::Clear { clearance: 0.6 * clearance * unit },
     }
 }
 
@@ -273,7 +296,9 @@ pub fn table(size: f64) -> Vec<HardScene> {
         shaft_in_bearing(count(2560).max(64), 1e-2, 0.015, false),
         screw_in_nut(count(15_360).max(2000), 3e-2, 0.5, 0.0),
         screw_in_nut(count(15_360).max(2000), 1e-2, 0.5, 0.0),
+        screw_in_nut(count(15_360).max(2000), 1e-4, 0.5, 0.0),
         screw_in_nut(count(15_360).max(2000), 1e-4, 10.0, 0.0),
+        long_screw_in_nut(count(15_360).max(2000), 1e-4),
         screw_in_nut(count(15_360).max(2000), 1e-2, 0.5, 0.1),
         interlocked_rings(count(3200).max(64), 0.0),
         interlocked_rings(count(3200).max(64), 0.8),

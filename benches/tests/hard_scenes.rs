@@ -1,14 +1,17 @@
 //! The hard scenes in small sizes: the engine against brute force over all pairs of features, which shares nothing with
 //! its search: closed-form first contacts of each vertex with each face and each edge with each edge.
 
-use d2m::bvh::Window;
+use d2m::bvh::{Posed, Window, distance};
 use d2m::feature::{ContactOptions, FirstContact, PairMotion};
 use d2m::glam::DVec3;
+use d2m::motion::RigidMotion;
 use d2m::{MeshTree, QueryOptions, Solid, TimeOfContact};
 use d2m_benches::hard_scenes::{
-    HardScene, grazing_cube, interlocked_rings, needles, shaft_in_bearing, sliding_box, table,
+    Expected, HardScene, grazing_cube, interlocked_rings, long_screw_in_nut, needles, screw_in_nut,
+    shaft_in_bearing, sliding_box, table,
 };
 use std::collections::HashSet;
+use std::f64::consts::PI;
 
 /// Vertices, edges and faces, each once.
 struct Features {
@@ -110,9 +113,34 @@ fn small_scenes_agree_with_all_pairs_of_features() {
 #[test]
 fn the_table_in_small_sizes_is_as_constructed() {
     for scene in table(0.02) {
-        if scene.name.contains("10 turns") {
-            continue;
-        }
         assert_eq!(scene.fault(&scene.ask()), None, "{}", scene.name);
+    }
+}
+
+/// The clearances that scenes of screws claim, by the static distance at times over the whole motion and, densely, over
+/// the step from one column of the mesh to the next, after which the same distances come again.
+#[test]
+fn screws_have_their_clearance() {
+    let scenes = [
+        long_screw_in_nut(2000, 1e-4),
+        screw_in_nut(2000, 1e-4, 0.5, 0.0),
+        screw_in_nut(15_360, 1e-4, 0.5, 0.0),
+        screw_in_nut(2000, 1e-2, 0.5, 0.0),
+    ];
+    for scene in scenes {
+        let Expected::Clear { clearance } = scene.expected else { panic!("{}", scene.name) };
+        let [screw, nut] = &scene.bodies;
+        let turns = scene.motions[0].angular_velocity().z / (2.0 * PI);
+        // A column is at least a 64th of a turn: both meshes repeat within an eighth.
+        let times =
+            (0..=40).map(|k| f64::from(k) / 40.0).chain((1..40).map(|k| f64::from(k) / (320.0 * turns)));
+        let mut least = f64::INFINITY;
+        for t in times {
+            let [a, b] = [0, 1].map(|k| scene.motions[k].pose_and_twist(t).0);
+            let apart =
+                distance(Posed::new(screw, a), Posed::new(nut, b), Solid::Filled).expect("watertight");
+            least = least.min(apart.lower);
+        }
+        assert!(least > clearance && least < 3.0 * clearance + 5e-3, "{}: {least}", scene.name);
     }
 }

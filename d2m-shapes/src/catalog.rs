@@ -173,8 +173,11 @@ pub const SHAPES: &[ShapeInfo] = &[
     ShapeInfo {
         name: "screw",
         description: "screw along z with a round head; fits `nut`",
-        parameters: &[triangles(7000.0, 2000.0)],
-        build: |v| thread::screw(v.count("triangles")).scaled(thread::common_scale()),
+        parameters: &[triangles(7000.0, 2000.0), count("turns", 6.0, 3.0, 40.0, "turns of the thread")],
+        build: |v| {
+            let turns = v.count("turns");
+            thread::screw(v.count("triangles"), turns).scaled(thread::common_scale(turns))
+        },
     },
     ShapeInfo {
         name: "nut",
@@ -182,8 +185,12 @@ pub const SHAPES: &[ShapeInfo] = &[
         parameters: &[
             triangles(5000.0, 1000.0),
             length("clearance", 0.01, 0.0, 0.03, "radial play between the threads, before scaling"),
+            count("turns", 6.0, 3.0, 40.0, "turns of the screw's thread, which set the common scale"),
         ],
-        build: |v| thread::nut(v.count("triangles"), v.get("clearance")).scaled(thread::common_scale()),
+        build: |v| {
+            let (clearance, turns) = (v.get("clearance"), v.count("turns"));
+            thread::nut(v.count("triangles"), clearance, turns).scaled(thread::common_scale(turns))
+        },
     },
     ShapeInfo {
         name: "shaft",

@@ -27,7 +27,6 @@ const CREST: f64 = 0.36;
 const FLANK_SLOPE: f64 = (CREST - ROOT) / (0.5 * PI);
 /// Climb per turn.
 const PITCH: f64 = 0.2;
-const TURNS: usize = 6;
 const HEAD_RADIUS: f64 = 0.6;
 const HEAD_HEIGHT: f64 = 0.25;
 const NUT_TURNS: usize = 2;
@@ -50,11 +49,11 @@ fn fit_columns(wanted: usize, unit: usize, triangles_of: impl Fn(usize) -> usize
     if triangles_of(next) - wanted < wanted.saturating_sub(triangles_of(columns)) { next } else { columns }
 }
 
-/// A screw along z, its thread centred at the origin, with a round head below.
-pub(crate) fn screw(triangles: usize) -> Surface {
-    let columns = fit_columns(triangles, 4, |columns| 2 * columns * (TURNS * columns + 3));
-    let rows = TURNS * columns;
-    let bottom = -0.5 * PITCH * TURNS as f64;
+/// A screw along z, its thread of so many turns centred at the origin, with a round head below.
+pub(crate) fn screw(triangles: usize, turns: usize) -> Surface {
+    let columns = fit_columns(triangles, 4, |columns| 2 * columns * (turns * columns + 3));
+    let rows = turns * columns;
+    let bottom = -0.5 * PITCH * turns as f64;
     let height = |row: usize| bottom + PITCH * row as f64 / columns as f64;
     // Rings: head's bottom, head's top, then the thread from its foot (in the plane of the head's top) upwards.
     let poles = [DVec3::Z * (bottom - HEAD_HEIGHT), DVec3::Z * height(rows)];
@@ -69,8 +68,9 @@ pub(crate) fn screw(triangles: usize) -> Surface {
     .outward()
 }
 
-/// A hexagonal nut about the middle of the screw's thread, in its place at the start: both at the origin, unturned.
-pub(crate) fn nut(triangles: usize, clearance: f64) -> Surface {
+/// A hexagonal nut about the middle of the thread of a screw of so many turns, in its place at the start: both at the
+/// origin, unturned.
+pub(crate) fn nut(triangles: usize, clearance: f64, turns: usize) -> Surface {
     // Inside rows, outside rows, and the two flat rings.
     let outside = |columns: usize| (NUT_TURNS * columns).div_ceil(3);
     let rows_of = |columns: usize| NUT_TURNS * columns + 1 + outside(columns) + 1;
@@ -82,8 +82,8 @@ pub(crate) fn nut(triangles: usize, clearance: f64) -> Surface {
     let rise = FLANK_SLOPE * 2.0 * half_step;
     let play = clearance
         + 2.0 * (0.13 * half_step * half_step * half_step * FLANK_SLOPE + rise * rise / (2.0 * ROOT));
-    // Rows per pitch equal columns, and the screw's thread starts a whole number of pitches lower: phases agree.
-    let start = (TURNS - NUT_TURNS) * columns / 2;
+    // Rows per pitch equal columns, and the screw's thread starts so many rows lower: phases agree.
+    let start = (turns - NUT_TURNS) * columns / 2;
     let hexagon = |column: usize| {
         let side = columns / 6;
         let (corner, share) = (column / side, (column % side) as f64 / side as f64);
@@ -103,8 +103,8 @@ pub(crate) fn nut(triangles: usize, clearance: f64) -> Surface {
     .outward()
 }
 
-/// The factor that brings the screw's farthest vertex to distance 1; the nut uses the same one.
-pub(crate) fn common_scale() -> f64 {
-    let bottom = 0.5 * PITCH * TURNS as f64 + HEAD_HEIGHT;
+/// The factor that brings the farthest vertex of a screw of so many turns to distance 1; the nut uses the same one.
+pub(crate) fn common_scale(turns: usize) -> f64 {
+    let bottom = 0.5 * PITCH * turns as f64 + HEAD_HEIGHT;
     1.0 / (bottom * bottom + HEAD_RADIUS * HEAD_RADIUS).sqrt()
 }

@@ -7,77 +7,26 @@
 //! See docs/theory/engine.md, "Screws".
 
 use super::base_pose::{relative_position, rotation_at};
+use super::picture::{DIRECTIONS, Pictures};
 use super::scene::Scene;
-use super::swept::{SWEEP_ERROR, nearest};
+use super::swept::SWEEP_ERROR;
 use super::window::corners;
-use d2m_interval::Interval;
+use d2m_motion::LinearMotion;
 use glam::DVec3;
 
-/// Directions (α, β) of F = αρ + βφ; any would do, in steps of about an eighth of half a turn.
-const DIRECTIONS: [(f64, f64); 8] = [
-    (1.0, 0.0),
-    (0.92, 0.39),
-    (0.71, 0.71),
-    (0.39, 0.92),
-    (0.0, 1.0),
-    (-0.39, 0.92),
-    (-0.71, 0.71),
-    (-0.92, 0.39),
-];
-/// How much less differences of heights count than those of ρ and φ in the shape of cells.
-const HEIGHT_WEIGHT: f64 = 0.1;
-/// Times that a triangle may be divided by four.
-const MOST_DIVISIONS: u32 = 5;
 /// Larger pairs of meshes are not pictured: a picture takes about 500 bytes a triangle.
 const MOST_TRIANGLES: usize = 1 << 18;
 /// Most leads that two pictures may be shifted by.
 const MOST_LEADS: f64 = 64.0;
 
-/// Bounds of what a part of a body covers.
-#[derive(Clone, Copy, Debug)]
-struct Picture {
-    /// Range of each F.
-    slabs: [(f64, f64); 8],
-    height: (f64, f64),
-    /// Least distance from the axis.
-    near: f64,
-}
-
-impl Picture {
-    fn with(&self, other: &Self) -> Self {
-        let both = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
-        Self {
-            slabs: std::array::from_fn(|j| both(self.slabs[j], other.slabs[j])),
-            height: both(self.height, other.height),
-            near: self.near.min(other.near),
-        }
-    }
-
-    fn extents(&self) -> [f64; 3] {
-        // Cells whose angles are not known differ by the rest only.
-        let length = |(low, high): (f64, f64)| if high < f64::INFINITY { high - low } else { 0.0 };
-        [length(self.slabs[0]), length(self.slabs[4]), HEIGHT_WEIGHT * length(self.height)]
-    }
-
-    fn middle(&self, dimension: usize) -> f64 {
-        let (low, high) = [self.slabs[0], self.slabs[4], self.height][dimension];
-        low + high
-    }
-
-    /// Is the angle of some point not known?
-    fn is_wide(&self) -> bool {
-        self.slabs[4].1 == f64::INFINITY
-    }
-}
-
 /// The common axis, and how A moves along it as seen from B.
-struct Screw {
+pub(super) struct Screw {
     axis: DVec3,
     /// Directions of the angles 0 and π/2.
     across: [DVec3; 2],
     /// φ = z − hθ.
-    h: f64,
-    lead: f64,
+    pub(super) h: f64,
+    pub(super) lead: f64,
     /// Speed of A's points along the axis.
     climb: f64,
     /// Distance of the two axes at the start, and how fast it grows.
@@ -118,109 +67,34 @@ impl Screw {
         (1.0 + (self.h / rho) * (self.h / rho)).sqrt()
     }
 
-    /// Of a triangle, corners from the axis, at their heights, or of a part of one; `anchor`: the whole one's first
-    /// corner, whose φ is taken from the first lead.
-    fn picture(&self, corners: &[DVec3; 3], anchor: DVec3) -> Picture {
-        let heights = corners.map(|p| self.axis.dot(p));
-        let flat: [DVec3; 3] = std::array::from_fn(|i| corners[i] - self.axis * heights[i]);
-        let near = nearest(&flat, self.axis);
-        let rho = flat.map(DVec3::length);
-        let range = |v: [f64; 3]| (v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2]));
-        let (height, far) = (range(heights), range(rho).1);
-        let mut picture = Picture { slabs: [(f64::NEG_INFINITY, f64::INFINITY); 8], height, near };
-        picture.slabs[0] = (near, far);
-        let turns = self.h != 0.0;
-        // Near the axis the angle means nothing.
-        if turns && near < 1e-2 * (far + self.h.abs()) {
-            return picture;
-        }
-        let phi: [f64; 3] = if turns {
-            let angle = |y: f64, x: f64| Interval::point(y).atan2(Interval::point(x)).mid();
-            let [u, w] = self.across;
-            let height = self.axis.dot(anchor);
-            let from = anchor - self.axis * height;
-            let first = angle(w.dot(from), u.dot(from));
-            let leads = ((height - self.h * first) / self.lead).floor() * self.lead;
-            // A triangle beside the axis turns by less than half a turn.
-            std::array::from_fn(|i| {
-                let turned = first + angle(self.axis.dot(from.cross(flat[i])), from.dot(flat[i]));
-                heights[i] - self.h * turned - leads
-            })
-        } else {
-            heights
+    /// Where points of both bodies (from the trees' centres, body axes) are at the start, from the axis, which is the
+    /// third coordinate. Heights count from B's followed point if it turns, else from A's; distances from the own axis,
+    /// or the other's.
+    fn places(&self, scene: &Scene<'_>, start: f64) -> [impl Fn(DVec3) -> DVec3; 2] {
+        let apart = relative_position(&scene.a.1, &scene.b.1, start);
+        let [spins_a, spins_b] = [&scene.a, &scene.b].map(|body| body.1.angular_velocity() != DVec3::ZERO);
+        let (from_a, from_b) = match (spins_a, spins_b) {
+            (true, true) => (self.axis * self.axis.dot(apart), DVec3::ZERO),
+            (true, false) => (DVec3::ZERO, -apart),
+            _ => (apart, DVec3::ZERO),
         };
-        // What ρ and θ may differ from their linear interpolation: half of the bound on the second derivative, 1/ρ and
-        // 1/ρ², times the square of a radius that holds the corners. ρ is convex: never above.
-        let radius = [0, 1, 2]
-            .map(|i| {
-                let middle = (corners[i] + corners[(i + 1) % 3]) * 0.5;
-                corners.iter().map(|p| (*p - middle).length_squared()).fold(0.0, f64::max)
-            })
-            .into_iter()
-            .fold(f64::INFINITY, f64::min);
-        let bend_rho = if near > 0.0 { 0.5 * radius / near } else { far };
-        let bend_phi = if turns { 0.5 * self.h.abs() * radius / (near * near) } else { 0.0 };
-        for (slab, (alpha, beta)) in picture.slabs.iter_mut().zip(DIRECTIONS).skip(1) {
-            let (low, high) = range(std::array::from_fn(|i| alpha * rho[i] + beta * phi[i]));
-            let (below, above) = if alpha > 0.0 { (alpha * bend_rho, 0.0) } else { (0.0, -alpha * bend_rho) };
-            let either = beta * bend_phi;
-            *slab = (low - (below + either) * (1.0 + 1e-12), high + (above + either) * (1.0 + 1e-12));
-        }
-        picture
+        [(&scene.a, from_a), (&scene.b, from_b)].map(|((tree, motion), from): (&(_, LinearMotion), _)| {
+            let tree: &crate::MeshTree = tree;
+            let r = rotation_at(motion, start);
+            let arm = tree.center() - motion.at();
+            let ([u, w], axis) = (self.across, self.axis);
+            move |p: DVec3| {
+                let p = p + arm;
+                let placed = r[0] * p.x + r[1] * p.y + r[2] * p.z + from;
+                DVec3::new(u.dot(placed), w.dot(placed), axis.dot(placed))
+            }
+        })
     }
-}
-
-/// A tree of pictures: the children of node i that is not a leaf are `first` and `first + 1`.
-struct Pictures {
-    nodes: Vec<(Picture, Below)>,
-    triangles: Vec<[DVec3; 3]>,
-}
-
-#[derive(Clone, Copy)]
-enum Below {
-    Nodes(u32),
-    Triangle(u32),
-}
-
-impl Pictures {
-    fn new(mut parts: Vec<(Picture, u32)>, triangles: &[[DVec3; 3]]) -> Self {
-        let mut tree = Self { nodes: Vec::with_capacity(2 * parts.len()), triangles: triangles.to_vec() };
-        if let Some(&(picture, triangle)) = parts.first() {
-            tree.nodes.push((picture, Below::Triangle(triangle)));
-            tree.divide(0, &mut parts);
-        }
-        tree
-    }
-
-    fn divide(&mut self, node: usize, parts: &mut [(Picture, u32)]) {
-        let all = parts[1..].iter().fold(parts[0].0, |all, part| all.with(&part.0));
-        if parts.len() == 1 {
-            self.nodes[node] = (all, Below::Triangle(parts[0].1));
-            return;
-        }
-        let extents = all.extents();
-        let dimension = (0..3).max_by(|&i, &j| extents[i].total_cmp(&extents[j])).unwrap_or(0);
-        let half = parts.len() / 2;
-        parts.select_nth_unstable_by(half, |p, q| p.0.middle(dimension).total_cmp(&q.0.middle(dimension)));
-        let first = self.nodes.len();
-        self.nodes[node] = (all, Below::Nodes(first as u32));
-        self.nodes.extend([(all, Below::Triangle(0)); 2]);
-        let (left, right) = parts.split_at_mut(half);
-        self.divide(first, left);
-        self.divide(first + 1, right);
-    }
-}
-
-/// A node of a tree, or a part of a triangle.
-enum Cell {
-    Node(usize),
-    Part { corners: [DVec3; 3], anchor: DVec3, divisions: u32 },
 }
 
 /// The search through two trees of pictures.
 struct Walk<'s> {
     screw: &'s Screw,
-    trees: [&'s Pictures; 2],
     /// What is added to φ of A.
     shift: f64,
     /// How many of the directions count: only ρ where angles are not known.
@@ -234,10 +108,16 @@ struct Walk<'s> {
 }
 
 /// The time (≥ `start`, ≤ the end of the scene's window) up to which the pictures stay further apart than the level,
-/// and the number of pairs that were looked at; `start` when the motion is no common screw, when less than `gain` would
-/// be won, or when more than `most` pairs are needed.
-pub(crate) fn screw_clear_until(scene: &Scene<'_>, start: f64, limits: (f64, u64)) -> (f64, u64) {
-    screw_clear_mutated(scene, start, limits, &|_| ())
+/// and the work in pairs that were looked at; `start` when the motion is no common screw, when less than `gain` would
+/// be won, or when more than `most` pairs are needed. `suspects`: triangles that may be the reason for that, so are
+/// looked at first.
+pub(crate) fn screw_clear_until(
+    scene: &Scene<'_>,
+    start: f64,
+    limits: (f64, u64),
+    suspects: [u32; 2],
+) -> (f64, u64) {
+    screw_clear_mutated(scene, start, limits, suspects, &|_| ())
 }
 
 /// The same with a change to the screw, for tests.
@@ -245,36 +125,18 @@ fn screw_clear_mutated(
     scene: &Scene<'_>,
     start: f64,
     (gain, most): (f64, u64),
+    suspects: [u32; 2],
     mutate: &dyn Fn(&mut Screw),
 ) -> (f64, u64) {
-    if scene.a.0.mesh.triangle_count() + scene.b.0.mesh.triangle_count() > MOST_TRIANGLES {
+    let triangles = scene.a.0.mesh.triangle_count() + scene.b.0.mesh.triangle_count();
+    if triangles > MOST_TRIANGLES {
         return (start, 0);
     }
     let Some(mut screw) = Screw::new(scene, start) else { return (start, 0) };
     mutate(&mut screw);
     let end = scene.window.end();
-    let apart = relative_position(&scene.a.1, &scene.b.1, start);
-    let [spins_a, spins_b] = [&scene.a, &scene.b].map(|body| body.1.angular_velocity() != DVec3::ZERO);
-    // Heights count from B's followed point if it turns, else from A's; distances from the own axis, or the other's.
-    let (from_a, from_b) = match (spins_a, spins_b) {
-        (true, true) => (screw.axis * screw.axis.dot(apart), DVec3::ZERO),
-        (true, false) => (DVec3::ZERO, -apart),
-        _ => (apart, DVec3::ZERO),
-    };
-    let trees = [(&scene.a, from_a), (&scene.b, from_b)].map(|((tree, motion), from)| {
-        let rotation = rotation_at(motion, start);
-        let arm = tree.center() - motion.at();
-        let place = |p: DVec3| rotation[0] * p.x + rotation[1] * p.y + rotation[2] * p.z + from;
-        let triangles: Vec<[DVec3; 3]> = (0..tree.mesh.triangle_count() as u32)
-            .map(|t| corners(tree, t).map(|p| place(p + arm)))
-            .collect();
-        let pictures = triangles.iter().zip(0..).map(|(corners, t)| (screw.picture(corners, corners[0]), t));
-        let (wide, narrow): (Vec<_>, Vec<_>) = pictures.partition(|(picture, _)| picture.is_wide());
-        [Pictures::new(narrow, &triangles), Pictures::new(wide, &triangles)]
-    });
     let mut walk = Walk {
         screw: &screw,
-        trees: [&trees[0][0], &trees[1][0]],
         shift: 0.0,
         directions: DIRECTIONS.len(),
         level: scene.pair.level + SWEEP_ERROR * (scene.size + scene.pair.level),
@@ -283,33 +145,26 @@ fn screw_clear_mutated(
         gain,
         left: most,
     };
-    for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-        walk.trees = [&trees[0][i], &trees[1][j]];
-        walk.directions = if i + j == 0 { DIRECTIONS.len() } else { 1 };
-        let [Some(a), Some(b)] = walk.trees.map(|tree| tree.nodes.first().map(|node| node.0.slabs[4])) else {
-            continue;
-        };
-        let leads = if i + j == 0 && screw.lead > 0.0 {
-            (((b.0 - a.1) / screw.lead).floor(), ((b.1 - a.0) / screw.lead).ceil())
-        } else {
-            (0.0, 0.0)
-        };
-        let count = leads.1 - leads.0;
-        if count.is_nan() || count > MOST_LEADS {
-            return (start, most - walk.left);
-        }
-        if i + j == 0 && screw.lead > 0.0 {
-            // Shifted by more, the whole pictures are a lead apart in φ.
-            let near = walk.trees.map(|tree| tree.nodes[0].0.near);
-            let rho = 0.5 * near[0].max(near[1]);
-            walk.clear = walk.clear.min(walk.clear_while(screw.lead / screw.steepness(rho), rho));
-        }
-        for lead in leads.0 as i64..=leads.1 as i64 {
-            walk.shift = lead as f64 * screw.lead;
-            if !walk.visit(&Cell::Node(0), &Cell::Node(0)) {
-                return (start, most - walk.left);
-            }
-        }
+    let places = screw.places(scene, start);
+    let probe = [0, 1].map(|body| {
+        let tree = [scene.a.0, scene.b.0][body];
+        let corners = corners(tree, suspects[body]).map(&places[body]);
+        Pictures::of_body(&screw, &corners, std::iter::once([0, 1, 2]))
+    });
+    if !walk.compare(probe) {
+        return (start, most - walk.left);
+    }
+    let whole = [0, 1].map(|body| {
+        let tree = [scene.a.0, scene.b.0][body];
+        let vertices: Vec<DVec3> =
+            tree.mesh.vertices().iter().map(|&p| places[body](p - tree.center())).collect();
+        Pictures::of_body(&screw, &vertices, tree.mesh.triangles().iter().copied())
+    });
+    // What the pictures themselves cost counts as well.
+    let apart = walk.compare(whole);
+    let work = most - walk.left + triangles as u64 / 2;
+    if !apart {
+        return (start, work);
     }
     let clear = walk.clear;
     let time = if clear >= walk.length {
@@ -317,69 +172,76 @@ fn screw_clear_mutated(
     } else {
         (start + clear * (1.0 - 1e-12)).next_down().clamp(start, end)
     };
-    (time, most - walk.left)
+    (time, work)
 }
 
 impl Walk<'_> {
-    fn picture(&self, body: usize, cell: &Cell) -> Picture {
-        match cell {
-            Cell::Node(node) => self.trees[body].nodes[*node].0,
-            Cell::Part { corners, anchor, .. } => self.screw.picture(corners, *anchor),
+    /// Lowers `clear` to what the bodies' pictures (with angles, without) allow; false when the walk is to end.
+    fn compare(&mut self, [mut a, mut b]: [[Pictures; 2]; 2]) -> bool {
+        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let (a, b) = (&mut a[i], &mut b[j]);
+            let (Some(first), Some(second)) = (a.cells.first(), b.cells.first()) else { continue };
+            let (first, second) = (first.picture, second.picture);
+            let angles = i + j == 0;
+            self.directions = if angles { DIRECTIONS.len() } else { 1 };
+            let lead = self.screw.lead;
+            let (phi_a, phi_b) = (first.slabs[4], second.slabs[4]);
+            let leads = if angles && lead > 0.0 {
+                (((phi_b.0 - phi_a.1) / lead).floor(), ((phi_b.1 - phi_a.0) / lead).ceil())
+            } else {
+                (0.0, 0.0)
+            };
+            let count = leads.1 - leads.0;
+            if count.is_nan() || count > MOST_LEADS {
+                return false;
+            }
+            if angles && lead > 0.0 {
+                // Shifted by more, the whole pictures are a lead apart in φ.
+                let rho = 0.5 * first.near.max(second.near);
+                let slack = first.slack + second.slack;
+                let apart = lead / self.screw.steepness(rho);
+                self.clear = self.clear.min(self.clear_while(apart.min(rho) - slack));
+            }
+            for k in leads.0 as i64..=leads.1 as i64 {
+                self.shift = k as f64 * lead;
+                if !self.visit([&mut *a, &mut *b], [0, 0]) {
+                    return false;
+                }
+            }
         }
+        true
     }
 
     /// Lowers `clear` to what the pair allows; false when the walk is to end.
-    fn visit(&mut self, a: &Cell, b: &Cell) -> bool {
+    fn visit(&mut self, [a, b]: [&mut Pictures; 2], cells: [usize; 2]) -> bool {
         if self.left == 0 {
             return false;
         }
         self.left -= 1;
-        let pictures = [self.picture(0, a), self.picture(1, b)];
-        let until = self.clear_for(&pictures[0], &pictures[1]);
+        let until = self.clear_for([a, b], cells);
         if until >= self.clear {
             return true;
         }
-        let inner = |body: usize, cell: &Cell| match cell {
-            Cell::Node(node) => matches!(self.trees[body].nodes[*node].1, Below::Nodes(_)),
-            Cell::Part { .. } => false,
-        };
-        let size = pictures.map(|picture| picture.extents().iter().sum::<f64>());
-        let open_a = match (inner(0, a), inner(1, b)) {
-            (true, false) => true,
-            (false, true) => false,
-            _ => size[0] > size[1],
-        };
-        let Some(parts) = self.open(usize::from(!open_a), if open_a { a } else { b }) else {
+        let (size_a, size_b) = (a.size(cells[0]), b.size(cells[1]));
+        let open_a = size_a > size_b;
+        let parts = if open_a { a.open(cells[0]) } else { b.open(cells[1]) };
+        if parts.is_empty() {
             self.clear = until;
             return self.clear > self.gain;
-        };
-        parts.iter().all(|part| if open_a { self.visit(part, b) } else { self.visit(a, part) })
-    }
-
-    /// What a cell is made of; none when it is as small as cells get.
-    fn open(&self, body: usize, cell: &Cell) -> Option<Vec<Cell>> {
-        let (corners, anchor, divisions) = match cell {
-            Cell::Node(node) => match self.trees[body].nodes[*node].1 {
-                Below::Nodes(first) => return Some([0, 1].map(|k| Cell::Node(first as usize + k)).into()),
-                Below::Triangle(triangle) => {
-                    let corners = self.trees[body].triangles[triangle as usize];
-                    (corners, corners[0], 0)
-                }
-            },
-            Cell::Part { corners, anchor, divisions } => (*corners, *anchor, *divisions),
-        };
-        if divisions == MOST_DIVISIONS {
-            return None;
         }
-        let [a, b, c] = corners;
-        let (p, q, r) = ((a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5);
-        let part = |corners| Cell::Part { corners, anchor, divisions: divisions + 1 };
-        Some([[a, p, r], [p, b, q], [r, q, c], [p, q, r]].map(part).into())
+        for part in parts {
+            let pair = if open_a { [part, cells[1]] } else { [cells[0], part] };
+            if !self.visit([a, b], pair) {
+                return false;
+            }
+        }
+        true
     }
 
     /// For how long the parts stay further apart than the level; at most the length of the span.
-    fn clear_for(&self, a: &Picture, b: &Picture) -> f64 {
+    fn clear_for(&self, trees: [&Pictures; 2], cells: [usize; 2]) -> f64 {
         let (screw, length) = (self.screw, self.length);
+        let (a, b) = (&trees[0].cells[cells[0]].picture, &trees[1].cells[cells[1]].picture);
         let mut best: f64 = 0.0;
         // Heights: the gap changes by the climb.
         for (gap, rate) in [(b.height.0 - a.height.1, -screw.climb), (a.height.0 - b.height.1, screw.climb)] {
@@ -388,29 +250,39 @@ impl Walk<'_> {
                 best = best.max(if -rate * length <= room { length } else { room / -rate });
             }
         }
-        // Points that are within ℓ of each other, ℓ at most half of ρ there, differ in F by at most
-        // (|α| + |β|√(1 + h²/(ρ/2)²))·ℓ.
+        // Points that are within ℓ of each other, ℓ at most half of ρ there, differ in F by at most |∇F| ℓ, with
+        // |∇F|² = α² + β²(1 + h²/(ρ/2)²): ∇ρ and ∇φ are at right angles.
         let rho = 0.5 * a.near.max(b.near);
-        if rho > 0.0 {
-            let steep = screw.steepness(rho);
-            let mut apart: f64 = 0.0;
-            for ((alpha, beta), (fa, fb)) in
-                DIRECTIONS.iter().zip(a.slabs.iter().zip(&b.slabs)).take(self.directions)
-            {
-                let moved = beta * self.shift;
-                let gap = (fb.0 - (fa.1 + moved)).max((fa.0 + moved) - fb.1);
-                let distance = gap / ((alpha.abs() + beta * steep) * (1.0 + 1e-12));
-                apart = if distance > apart { distance } else { apart };
-            }
-            best = best.max(self.clear_while(apart, rho));
+        if rho <= 0.0 {
+            return best;
         }
-        best
+        let steep = screw.steepness(rho);
+        let mut apart: f64 = 0.0;
+        let mut take = |(alpha, beta): (f64, f64), fa: (f64, f64), fb: (f64, f64)| {
+            let moved = beta * self.shift;
+            let gap = (fb.0 - (fa.1 + moved)).max((fa.0 + moved) - fb.1);
+            let distance = gap / ((alpha * alpha + beta * beta * steep * steep).sqrt() * (1.0 + 1e-12));
+            apart = if distance > apart { distance } else { apart };
+        };
+        for (direction, (fa, fb)) in DIRECTIONS.iter().zip(a.slabs.iter().zip(&b.slabs)).take(self.directions)
+        {
+            take(*direction, *fa, *fb);
+        }
+        let pieces = [0, 1].map(|k| trees[k].piece(cells[k]).filter(|_| self.directions > 1));
+        if let [Some(p), Some(q)] = pieces {
+            for corners in [&p.corners, &q.corners] {
+                for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (&corners[i], &corners[j])) {
+                    let (alpha, beta) = (from.phi - to.phi, to.rho - from.rho);
+                    take((alpha, beta), p.reach(alpha, beta), q.reach(alpha, beta));
+                }
+            }
+        }
+        best.max(self.clear_while(apart.min(rho) - (a.slack + b.slack)))
     }
 
-    /// For how long points whose pictures are `apart`, at least `rho` from the axis all the way, do not come within the
-    /// level.
-    fn clear_while(&self, apart: f64, rho: f64) -> f64 {
-        let room = apart.min(rho) - self.level - self.screw.offset;
+    /// For how long points that the common screw alone would keep `apart` do not come within the level.
+    fn clear_while(&self, apart: f64) -> f64 {
+        let room = apart - self.level - self.screw.offset;
         let drift = self.screw.drift;
         if room.is_nan() || room <= 0.0 {
             0.0
@@ -460,7 +332,7 @@ mod tests {
                 motion(spins.1, DVec3::ZERO, DVec3::ZERO),
             ];
             let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
-            let (until, _) = screw_clear_mutated(&scene, 0.0, (0.0, 1 << 13), &mutate);
+            let (until, _) = screw_clear_mutated(&scene, 0.0, (0.0, 1 << 13), [0, 0], &mutate);
             won += u32::from(until > 0.0);
             let world = |tree: &MeshTree, motion: &LinearMotion, t: f64| {
                 let (turn, x) = (rotation_at(motion, t), motion.position() + motion.linear_velocity() * t);
@@ -473,6 +345,27 @@ mod tests {
             }
         }
         (least, won)
+    }
+
+    /// A triangle, its copy turned by one radian and lifted a little, and a plate above: the copy's own place counts,
+    /// although one picture stands for both.
+    #[test]
+    fn triangles_of_a_class_count_where_they_are() {
+        let corners = [DVec3::X, DVec3::new(0.9, 0.1, -0.1), DVec3::new(0.8, 0.0, 0.0)];
+        let turn = DQuat::from_rotation_z(1.0);
+        let plate =
+            [DVec3::new(-2.0, -2.0, 1.02e-7), DVec3::new(2.0, -2.0, 1.02e-7), DVec3::new(0.0, 3.0, 1.02e-7)];
+        let plate = MeshTree::new(TriMesh::try_new(plate.into(), vec![[0, 1, 2]]).unwrap());
+        let options = QueryOptions::default().with_tolerance(1e-7);
+        let spin = LinearMotion::REST.with_angular_velocity(DVec3::Z * 5.0);
+        let until = |lift: f64| {
+            let lifted = corners.map(|p| turn * p + DVec3::Z * lift);
+            let pair = TriMesh::try_new([corners, lifted].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+            let pair = MeshTree::new(pair);
+            let scene = Scene::new((&pair, spin), (&plate, LinearMotion::REST), Window::UNIT, &options);
+            screw_clear_until(&scene, 0.0, (0.0, 1 << 13), [0, 0]).0
+        };
+        assert_eq!((until(0.0), until(1e-9), until(4e-9)), (1.0, 1.0, 0.0));
     }
 
     #[test]

@@ -13,6 +13,7 @@ mod helix;
 mod instruction_set;
 mod lanes;
 mod node_test;
+mod picture;
 mod quad;
 mod queue;
 mod scene;

@@ -14,7 +14,7 @@ use super::window::corners;
 use crate::MeshTree;
 use crate::tree::node::{Below, WIDTH};
 use d2m_motion::LinearMotion;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// Factor of the scene's size that covers all roundings here.
 pub(super) const SWEEP_ERROR: f64 = 1e-12;
@@ -42,18 +42,36 @@ impl Ring {
         }
     }
 
-    /// Of a triangle, corners from a point of the axis.
-    fn of(corners: &[DVec3; 3], axis: DVec3) -> Self {
-        let heights = corners.map(|p| axis.dot(p));
-        let flat = [0, 1, 2].map(|k| corners[k] - axis * heights[k]);
-        let far = flat.iter().map(|p| p.length_squared()).fold(0.0, f64::max).sqrt();
-        Self {
-            low: heights[0].min(heights[1]).min(heights[2]),
-            high: heights[0].max(heights[1]).max(heights[2]),
-            near: nearest(&flat, axis),
-            far,
+    /// Of a triangle, corners from a point of the axis, which is the third coordinate. Distances from the axis count
+    /// for bodies that spin only.
+    fn of(corners: &[DVec3; 3], spins: bool) -> Self {
+        let [low, high] = [f64::min, f64::max].map(|f| f(f(corners[0].z, corners[1].z), corners[2].z));
+        let flat = corners.map(DVec3::truncate);
+        let squares = flat.map(DVec2::length_squared);
+        if !spins {
+            return Self { low, high, near: 0.0, far: f64::INFINITY };
+        }
+        let far = squares[0].max(squares[1]).max(squares[2]).sqrt();
+        Self { low, high, near: nearest_square(&flat, &squares).sqrt(), far }
+    }
+}
+
+/// Square of the distance of the origin from a triangle in the plane, and the squares of the corners' distances.
+fn nearest_square(flat: &[DVec2; 3], squares: &[f64; 3]) -> f64 {
+    // With the edge, not with its end: a short edge does not magnify the rounding.
+    let edges = [0, 1, 2].map(|k| flat[(k + 1) % 3] - flat[k]);
+    let sides = [0, 1, 2].map(|k| flat[k].perp_dot(edges[k]));
+    if sides.iter().all(|&s| s >= 0.0) || sides.iter().all(|&s| s <= 0.0) {
+        return 0.0;
+    }
+    let mut least = squares[0].min(squares[1]).min(squares[2]);
+    for k in 0..3 {
+        let (along, length) = (-flat[k].dot(edges[k]), edges[k].length_squared());
+        if along > 0.0 && along < length {
+            least = least.min(sides[k] * sides[k] / length);
         }
     }
+    least
 }
 
 /// Distance of the origin from a triangle in a plane through it with normal `axis`.
@@ -95,17 +113,15 @@ impl<'a> Body<'a> {
         let spins = speed * (end - start) > STILL_ANGLE;
         let rotation = rotation_at(motion, start);
         let turn = |p: DVec3| rotation[0] * p.x + rotation[1] * p.y + rotation[2] * p.z;
-        let mut body = Self {
+        Self {
             tree,
             rotation,
             arm: turn(tree.center() - motion.at()),
             axis: if spins { omega / speed } else { interest },
             spins,
             turning: if spins { 0.0 } else { speed },
-            rings: vec![Ring::NONE; tree.nodes.len() * WIDTH],
-        };
-        body.measure(0);
-        body
+            rings: Vec::new(),
+        }
     }
 
     fn turn(&self, p: DVec3) -> DVec3 {
@@ -118,18 +134,53 @@ impl<'a> Body<'a> {
         corners(self.tree, triangle).map(|p| self.turn(p) + self.arm)
     }
 
-    /// Fills in the rings of a node's boxes and of all below.
-    fn measure(&mut self, node: usize) -> Ring {
+    /// Points (from the followed point) as seen along the axis, which becomes the third coordinate.
+    fn seen_along_axis(&self) -> impl Fn(DVec3) -> DVec3 + use<> {
+        let across = self.axis.any_orthonormal_vector();
+        let rows = [across, self.axis.cross(across), self.axis];
+        move |p| DVec3::from_array(rows.map(|row| row.dot(p)))
+    }
+
+    /// Fills in the rings of all boxes.
+    fn measure(&mut self) {
+        let (see, center) = (self.seen_along_axis(), self.tree.center());
+        let vertices = self.tree.mesh.vertices();
+        let places: Vec<DVec3> = vertices.iter().map(|&p| see(self.turn(p - center) + self.arm)).collect();
+        self.rings = vec![Ring::NONE; self.tree.nodes.len() * WIDTH];
+        self.measure_node(0, &places);
+    }
+
+    fn measure_node(&mut self, node: usize, places: &[DVec3]) -> Ring {
         let mut all = Ring::NONE;
         for lane in 0..self.tree.nodes[node].used as usize {
             let ring = match self.tree.nodes[node].below(lane) {
-                Below::Triangle(triangle) => Ring::of(&self.corners(triangle), self.axis),
-                Below::Node(below) => self.measure(below as usize),
+                Below::Triangle(triangle) => {
+                    let corners = self.tree.mesh.triangles()[triangle as usize];
+                    Ring::of(&corners.map(|vertex| places[vertex as usize]), self.spins)
+                }
+                Below::Node(below) => self.measure_node(below as usize, places),
             };
             self.rings[node * WIDTH + lane] = ring;
             all = all.with(ring);
         }
         all
+    }
+
+    /// A triangle whatever box holds it.
+    fn triangle(&self, triangle: u32) -> Part<'_> {
+        let corners = self.corners(triangle);
+        let center = (corners[0] + corners[1] + corners[2]) / 3.0;
+        Part {
+            body: self,
+            ring: Ring::of(&corners.map(self.seen_along_axis()), self.spins),
+            center,
+            axes: [DVec3::ZERO; 3],
+            half: [0.0; 3],
+            radius: corners.iter().map(|p| (*p - center).length()).fold(0.0, f64::max),
+            corners: Some(corners),
+            below: Below::Triangle(triangle),
+            speed: self.turning * corners.iter().map(|p| p.length()).fold(0.0, f64::max),
+        }
     }
 
     fn part(&self, index: u32) -> Part<'_> {
@@ -231,24 +282,31 @@ struct Sweep<'a> {
 
 /// The time (≥ `start`, ≤ the end of the scene's window) up to which the sweeps stay further apart than the level, and
 /// the number of pairs that were looked at; `start` when less than `gain` would be won or more than `most` pairs are
-/// needed. `interest`: a direction that may separate bodies at rest.
+/// needed. `interest`: a direction that may separate bodies at rest. `suspects`: triangles that may be the reason for
+/// winning nothing, so are looked at first.
 pub(crate) fn swept_clear_until(
     scene: &Scene<'_>,
     start: f64,
     (gain, most): (f64, u64),
     interest: DVec3,
+    suspects: [u32; 2],
 ) -> (f64, u64) {
     let end = scene.window.end();
     let span = (start, end);
     let interest = scene.spin_axis().unwrap_or(interest);
     let bodies = [&scene.a, &scene.b].map(|(tree, motion)| Body::new(tree, motion, span, interest));
-    let sweep = Sweep {
+    let mut sweep = Sweep {
         bodies,
         apart: -relative_position(&scene.a.1, &scene.b.1, start),
         velocity: scene.b.1.linear_velocity() - scene.a.1.linear_velocity(),
         level: scene.pair.level + SWEEP_ERROR * (scene.size + scene.pair.level),
         length: end - start,
     };
+    let [a, b] = [0, 1].map(|k| sweep.bodies[k].triangle(suspects[k]));
+    if sweep.clear_for(&a, &b) < gain {
+        return (start, 1);
+    }
+    sweep.bodies.iter_mut().for_each(Body::measure);
     let (clear, pairs) = sweep.earliest(gain, most);
     let time = if clear >= sweep.length {
         end
@@ -378,7 +436,7 @@ mod tests {
     fn clear(a: (&MeshTree, LinearMotion), b: (&MeshTree, LinearMotion), interest: DVec3) -> f64 {
         let options = QueryOptions::default().with_tolerance(1e-10);
         let scene = Scene::new(a, b, Window::UNIT, &options);
-        swept_clear_until(&scene, 0.0, (0.0, 1 << 20), interest).0
+        swept_clear_until(&scene, 0.0, (0.0, 1 << 20), interest, [0, 0]).0
     }
 
     fn at(x: DVec3, v: DVec3, w: DVec3) -> LinearMotion {

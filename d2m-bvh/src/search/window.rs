@@ -11,7 +11,7 @@ use super::queue::Item;
 use super::scene::{Scene, Scratch};
 use super::swept::swept_clear_until;
 use super::triangle_pair::{Care, Look, apart_since, look, place_a, widest_normal};
-use crate::tree::node::WIDTH;
+use crate::tree::node::{Below, WIDTH, WideNode};
 use crate::{Budget, MeshTree, Mode, QueryOptions};
 use glam::DVec3;
 use std::time::Instant;
@@ -20,9 +20,13 @@ use std::time::Instant;
 const BATCH: usize = 32;
 /// Looks at pairs of triangles of one search that do little; ordinary queries need fewer.
 pub(super) const QUICK_LOOKS: u64 = 192;
-/// Node tests, besides one for each triangle, before sweeps are looked at for the first time: ordinary queries end
-/// before that.
+/// Node tests, besides one for each [`TRIANGLES_A_TEST`] triangles, before sweeps are looked at for the first time:
+/// ordinary queries end before that, or are well on their way.
 const FIRST_SWEEP: u64 = 256;
+/// As many triangles are measured for a sweep in the time of one node test.
+const TRIANGLES_A_TEST: u64 = 8;
+/// A search that has come this part of its way is on its way: it gets a node test for each triangle before sweeps.
+const ON_ITS_WAY: f64 = 0.0625;
 
 /// A pair of triangles is followed alone until its time has grown by one part in this many: what it finds early spares
 /// the queue what comes later, and pairs that meet at the same features need one look back each.
@@ -109,8 +113,7 @@ impl<'s> Search<'s> {
             mode: options.mode,
             most_tests: budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS),
             deadline: budget.wall_clock.and_then(|time| Instant::now().checked_add(time)),
-            sweep_from: FIRST_SWEEP
-                + (scene.a.0.mesh.triangle_count() + scene.b.0.mesh.triangle_count()) as u64,
+            sweep_from: FIRST_SWEEP + triangle_count(scene) / TRIANGLES_A_TEST,
         };
         Self {
             scene,
@@ -232,7 +235,7 @@ impl<'s> Search<'s> {
             }
             if self.work() >= self.limits.sweep_from {
                 let now = time_from(start, f64::from(least) * step);
-                let until = self.sweep(&state, now);
+                let until = self.sweep(&state, now, batch[0].boxes);
                 if until >= end {
                     outcome = Some(Step::ClearUntil(until));
                     break;
@@ -259,10 +262,21 @@ impl<'s> Search<'s> {
         })
     }
 
-    /// A time up to which the sweeps of the bodies are apart from `now` on; `now` if they are not for long.
+    /// A time up to which the sweeps of the bodies are apart from `now` on; `now` if they are not for long. `boxes`: a
+    /// pair that may be near.
     #[cold]
     #[inline(never)]
-    fn sweep(&mut self, state: &State<'_>, now: f64) -> f64 {
+    fn sweep(&mut self, state: &State<'_>, now: f64, boxes: [u32; 2]) -> f64 {
+        let window = self.scene.window;
+        let patient = FIRST_SWEEP + triangle_count(self.scene);
+        if self.work() < patient && now - window.start() > ON_ITS_WAY * window.length() {
+            self.limits.sweep_from = patient;
+            return now;
+        }
+        if self.scratch.counts.triangle_looks == 0 {
+            self.scratch.last_looked_at =
+                [0, 1].map(|body| first_triangle(state.opening.nodes[body], boxes[body]));
+        }
         let [a, b] = self.scratch.last_looked_at;
         let b = corners(self.scene.b.0, b);
         let near = widest_normal(&place_a::<Quad>(&state.frame, &corners(self.scene.a.0, a)), &b);
@@ -270,9 +284,10 @@ impl<'s> Search<'s> {
         let interest = turn.times::<Quad>(near).to_vec().normalize_or(DVec3::X);
         let gain = self.scene.longest.min(self.scene.window.end() - now);
         let limits = (gain, self.work() + FIRST_SWEEP);
-        let (mut until, mut pairs) = swept_clear_until(self.scene, now, limits, interest);
-        if until <= now && self.scratch.counts.sweeps > 0 {
-            let (later, more) = screw_clear_until(self.scene, now, limits);
+        let (mut until, mut pairs) =
+            swept_clear_until(self.scene, now, limits, interest, self.scratch.last_looked_at);
+        if until <= now {
+            let (later, more) = screw_clear_until(self.scene, now, limits, self.scratch.last_looked_at);
             (until, pairs) = (later, pairs + more);
         }
         self.scratch.counts.sweeps += 1;
@@ -441,6 +456,18 @@ impl Search<'_> {
         }
         false
     }
+}
+
+/// A triangle in a box.
+fn first_triangle(nodes: &[WideNode], index: u32) -> u32 {
+    match nodes[index as usize / WIDTH].below(index as usize % WIDTH) {
+        Below::Triangle(triangle) => triangle,
+        Below::Node(node) => first_triangle(nodes, node * WIDTH as u32),
+    }
+}
+
+fn triangle_count(scene: &Scene<'_>) -> u64 {
+    (scene.a.0.mesh.triangle_count() + scene.b.0.mesh.triangle_count()) as u64
 }
 
 /// Corners relative to the tree's centre, body axes, scene units.
