@@ -94,7 +94,13 @@ pub(crate) struct Hint {
     pub(crate) effort: u64,
 }
 
+/// Distances below which the surfaces are looked for one after the other, in units of the larger radius.
+const CAPS: [f64; 3] = [1e-9, 1e-6, 1e-3];
+
 /// The distance of the surfaces: 0 when they cross, exact to rounding otherwise. The hint only saves time.
+///
+/// A search that begins with a small cap looks at few pairs. One that begins with none may wander through all pairs of
+/// millions of triangles that are merely near before it comes upon the nearest.
 pub(crate) fn separation(
     a: &BoxTree,
     b: &BoxTree,
@@ -103,7 +109,14 @@ pub(crate) fn separation(
     hint: &mut Hint,
 ) -> f64 {
     let mut search = Search::new(a, b, at_a, at_b, f64::INFINITY);
-    search.run(hint);
+    let size = a.radius.max(b.radius);
+    for cap in CAPS.map(|cap| cap * size).into_iter().chain([f64::INFINITY]) {
+        search.best = cap;
+        search.run(hint);
+        if search.best < cap {
+            break;
+        }
+    }
     search.best
 }
 
@@ -133,7 +146,7 @@ impl Search<'_> {
         let (i, j) = hint.closest;
         self.triangles(i, j);
         self.visit(0, 0, self.gap(0, 0));
-        *hint = Hint { closest: self.closest, effort: hint.effort + self.effort };
+        *hint = Hint { closest: self.closest, effort: hint.effort + std::mem::take(&mut self.effort) };
     }
 
     /// A lower bound of the distance of two boxes: the largest gap along the six face normals.
