@@ -247,6 +247,20 @@ pub(crate) const MUTANTS: &[Mutant] = &[
         "let drift = 0.9 * n.dot(self.velocity);",
         "d2m-bvh/src/search/swept.rs::sweeps_end_in_time",
     ),
+    patch(
+        "triangles of one class taken for equal",
+        "d2m-bvh/src/search/picture.rs",
+        "one.slack = one.slack.max(beside * (1.0 + 1e-12));",
+        "one.slack = one.slack.max(0.0 * beside);",
+        "d2m-bvh/src/search/helix.rs::triangles_of_a_class_count_where_they_are",
+    ),
+    patch(
+        "looking back with the velocities of looking forward",
+        "d2m-bvh/src/search/frame.rs",
+        "let back = |v: &Quad| (D::splat(0.0) - D::load(v)).store();",
+        "let back = |v: &Quad| D::load(v).store();",
+        "d2m-bvh/src/search/tests.rs::half_the_acceleration_of_triangles_is_noticed",
+    ),
     in_test(
         "another pitch, half of the climb, no drift of a screw",
         "d2m-bvh/src/search/helix.rs::mutants_of_the_screw_die",
