@@ -191,7 +191,11 @@ impl Search<'_> {
 
     fn triangles(&mut self, i: u32, j: u32) {
         let moved = self.b.corners[j as usize].map(|p| self.place.apply(p));
-        let distance = triangle::distance(&self.a.corners[i as usize], &moved);
+        let here = &self.a.corners[i as usize];
+        if triangle::are_apart(here, &moved, self.best) {
+            return;
+        }
+        let distance = triangle::distance(here, &moved);
         if distance < self.best {
             self.best = distance;
             self.closest = (i, j);

@@ -10,6 +10,19 @@ pub(crate) fn distance(a: &Corners, b: &Corners) -> f64 {
     if cross(a, b) { 0.0 } else { feature_distance(a, b) }
 }
 
+/// Are they at least `limit` apart along a coordinate axis or along the normal of one of them? Most pairs are, and need
+/// no more than that.
+pub(crate) fn are_apart(a: &Corners, b: &Corners, limit: f64) -> bool {
+    let normal = |t: &Corners| (t[1] - t[0]).cross(t[2] - t[0]);
+    [DVec3::X, DVec3::Y, DVec3::Z, normal(a), normal(b)].iter().any(|n| {
+        let (a, b) = (a.map(|p| n.dot(p)), b.map(|p| n.dot(p)));
+        let least = |v: [f64; 3]| v[0].min(v[1]).min(v[2]);
+        let most = |v: [f64; 3]| v[0].max(v[1]).max(v[2]);
+        let gap = (least(b) - most(a)).max(least(a) - most(b));
+        gap > limit * n.length()
+    })
+}
+
 /// The least distance over six vertex/face and nine edge/edge pairs.
 fn feature_distance(a: &Corners, b: &Corners) -> f64 {
     let mut least = f64::INFINITY;
