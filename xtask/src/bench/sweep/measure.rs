@@ -55,6 +55,8 @@ const ALL: [Step; 14] = [
 
 /// Triangles at most with `--quick`.
 const QUICK_TRIANGLES: usize = 70_000;
+/// Trials a point on millions of triangles.
+const FEW_TRIALS: usize = 16;
 
 /// The steps that are wanted and that the store lacks.
 pub(crate) fn open(options: &Options, store: &Store) -> Result<Vec<Step>, Error> {
@@ -208,8 +210,10 @@ impl Sweep<'_> {
         self.note("build", "bytes per triangle", triangles, [tree.memory_bytes() as f64 / triangles]);
         let body = Body::with_tree(tree);
         let pair = Pair { name: format!("knot {size}"), a: Arc::clone(&body), b: body };
+        // To judge one answer on millions of triangles takes seconds.
+        let count = if size > 500_000 { self.count().min(FEW_TRIALS) } else { self.count() };
         for speed in [4.0, 512.0] {
-            let mut flights = self.flights(&pair, speed);
+            let mut flights = Flights::at_speed(&pair, speed, self.options.seed, count);
             for method in [Method::Accurate, Method::Capoeira] {
                 let ask = (method, self.options.tolerance);
                 let times = self.measure(&format!("{size} triangles @{speed}"), &mut flights, ask)?.0;
