@@ -4,6 +4,9 @@ mod enclosing_sphere;
 mod mesh;
 pub mod paper;
 mod query;
+#[cfg(test)]
+#[path = "../tests/random/mod.rs"]
+mod random;
 mod search;
 mod tree;
 

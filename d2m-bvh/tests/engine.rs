@@ -1,5 +1,7 @@
 //! The default engine against certified static distances, against itself in other modes, and at extreme scales.
 
+mod random;
+
 use d2m_bvh::{
     Budget, MeshTree, Mode, Moving, Posed, QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window,
     distance, time_of_contact,
@@ -7,41 +9,13 @@ use d2m_bvh::{
 use d2m_interval::Interval;
 use d2m_motion::{IntervalPose, IntervalTwist, LinearMotion, Pose, RigidMotion, Twist};
 use glam::{DQuat, DVec3};
+use random::{Random, wavy_torus};
 
-/// A generator of numbers in [−1, 1].
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
-    }
-    fn vec(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-    fn turn(&mut self) -> DQuat {
-        DQuat::from_xyzw(self.next(), self.next(), self.next(), self.next() + 1.5)
-    }
-}
-
-/// A torus with wavy rings, so that it is nowhere convex and nowhere symmetric.
+/// A wavy torus of this size.
 fn torus(rings: u32, sides: u32, scale: f64) -> MeshTree {
-    let point = |i: u32, j: u32| {
-        let (u, v) = (f64::from(i) / f64::from(rings), f64::from(j) / f64::from(sides));
-        let (u, v) = (u * core::f64::consts::TAU, v * core::f64::consts::TAU);
-        let r = 0.3 * (1.0 + 0.2 * (3.0 * u).sin());
-        DVec3::new((1.0 + r * v.cos()) * u.cos(), (1.0 + r * v.cos()) * u.sin(), r * v.sin()) * scale
-    };
-    let vertices = (0..rings * sides).map(|k| point(k / sides, k % sides)).collect();
-    let mut triangles = Vec::new();
-    for i in 0..rings {
-        for j in 0..sides {
-            let at = |i: u32, j: u32| (i % rings) * sides + j % sides;
-            triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
-            triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
-        }
-    }
-    MeshTree::new(TriMesh::try_new(vertices, triangles).unwrap())
+    let (corners, triangles) = wavy_torus(rings, sides, 0.3);
+    let corners = corners.into_iter().map(|p| p * scale).collect();
+    MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
 }
 
 fn motion(x: DVec3, q: DQuat, v: DVec3, w: DVec3) -> LinearMotion {

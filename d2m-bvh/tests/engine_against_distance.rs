@@ -1,24 +1,17 @@
 //! The engine on random small scenes, judged by static queries: before the contact the bodies are apart at every time
 //! that is looked at, and at the certified time they are apart by (0, 3.3 δ].
 
+mod random;
+
 use d2m_bvh::{
     MeshTree, Moving, Posed, QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window, collide,
     distance, time_of_contact,
 };
 use d2m_motion::{LinearMotion, Pose, RigidMotion};
 use glam::{DQuat, DVec3};
-
-struct Random(u64);
+use random::Random;
 
 impl Random {
-    /// Uniform in [−1, 1).
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
-    }
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
     fn below(&mut self, count: usize) -> usize {
         ((self.next() * 0.5 + 0.5) * count as f64) as usize % count
     }
@@ -26,10 +19,10 @@ impl Random {
 
 /// Closed: tetrahedron, octahedron, box or ring with stretched axes. Open: some triangles.
 fn mesh(random: &mut Random, closed: bool) -> TriMesh {
-    let stretch = DVec3::new(0.2, 0.6, 1.0) + random.vector().abs();
+    let stretch = DVec3::new(0.2, 0.6, 1.0) + random.vec().abs();
     let (corners, triangles): (Vec<DVec3>, Vec<[u32; 3]>) = match (closed, random.below(4)) {
         (true, 0) => {
-            ((0..4).map(|_| random.vector()).collect(), vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+            ((0..4).map(|_| random.vec()).collect(), vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
         }
         (true, 1) => {
             let axes = [DVec3::X, DVec3::Y, DVec3::Z];
@@ -55,8 +48,8 @@ fn mesh(random: &mut Random, closed: bool) -> TriMesh {
         (false, _) => {
             let count = 1 + random.below(6) as u32;
             let corners = (0..count).flat_map(|_| {
-                let base = random.vector();
-                [base, base + random.vector() * 0.5, base + random.vector() * 0.5]
+                let base = random.vec();
+                [base, base + random.vec() * 0.5, base + random.vec() * 0.5]
             });
             (corners.collect(), (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
         }
@@ -68,11 +61,11 @@ fn motion(random: &mut Random) -> LinearMotion {
     let spin = [0.0, 1.0, 4.0, 12.0][random.below(4)];
     let speed = [0.0, 2.0, 6.0, 40.0][random.below(4)];
     let turned = DQuat::from_xyzw(random.next(), random.next(), random.next(), random.next());
-    let at = if random.below(3) == 0 { random.vector() } else { DVec3::ZERO };
-    let place = random.vector() * 3.0;
+    let at = if random.below(3) == 0 { random.vec() } else { DVec3::ZERO };
+    let place = random.vec() * 3.0;
     // Usually towards the middle, where the other one is.
-    let towards = (random.vector() - place) * (0.3 * speed);
-    LinearMotion::try_new(place, turned, towards, random.vector() * spin).unwrap().with_at(at)
+    let towards = (random.vec() - place) * (0.3 * speed);
+    LinearMotion::try_new(place, turned, towards, random.vec() * spin).unwrap().with_at(at)
 }
 
 /// Counts of what was seen: contacts, separations, meetings at the start.

@@ -2,6 +2,8 @@
 
 mod exact;
 
+mod random;
+
 use d2m_bvh::{
     DistanceOptions, MeshTree, PairCache, Posed, QueryError, Solid, StartState, TriMesh, collide,
     colliding_pairs, distance, distance_within, try_colliding_pair,
@@ -10,18 +12,9 @@ use d2m_feature::triangle_distance;
 use d2m_motion::Pose;
 use dashu_ratio::RBig;
 use glam::{DQuat, DVec3};
-
-struct Random(u64);
+use random::Random;
 
 impl Random {
-    /// Uniform in [−1, 1).
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
-    }
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
     fn quaternion(&mut self) -> DQuat {
         DQuat::from_xyzw(self.next(), self.next(), self.next(), self.next())
     }
@@ -37,7 +30,7 @@ fn cube(map: impl Fn(DVec3) -> DVec3) -> TriMesh {
 }
 
 fn tetrahedron(random: &mut Random, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
-    let corners = (0..4).map(|_| map(random.vector())).collect();
+    let corners = (0..4).map(|_| map(random.vec())).collect();
     TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap()
 }
 
@@ -45,8 +38,8 @@ fn tetrahedron(random: &mut Random, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
 fn soup(random: &mut Random, count: usize, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
     let mut corners = Vec::new();
     for i in 0..count {
-        let base = random.vector();
-        let (e, f) = (random.vector() * 0.3, random.vector() * 0.3);
+        let base = random.vec();
+        let (e, f) = (random.vec() * 0.3, random.vec() * 0.3);
         let f = match i % 7 {
             0 => e * 0.5,
             1 => DVec3::ZERO,
@@ -146,8 +139,8 @@ fn check(a: Posed<'_>, b: Posed<'_>, what: &str) {
 fn pose(random: &mut Random, spread: f64) -> Pose {
     Pose {
         rotation: random.quaternion(),
-        translation: random.vector() * spread,
-        at: random.vector() * 0.1 * spread,
+        translation: random.vec() * spread,
+        at: random.vec() * 0.1 * spread,
     }
 }
 
@@ -174,7 +167,7 @@ fn random_solids_and_soups() {
 fn far_from_the_origin() {
     let mut random = Random(21);
     for round in 0..12 {
-        let far = random.vector() * 1e6;
+        let far = random.vec() * 1e6;
         // Far in the body, in the world, or both.
         let (in_body, in_world) = (round % 3 != 1, round % 3 != 0);
         let shift = if in_body { far } else { DVec3::ZERO };
@@ -234,7 +227,7 @@ fn one_inside_the_other() {
     for round in 0..200 {
         // Also exactly at the middle and on planes of symmetry, where rays meet edges and corners.
         let grid = |x: f64| (x * 4.0).round() * 0.2;
-        let place = random.vector();
+        let place = random.vec();
         let place =
             if round % 2 == 0 { place } else { DVec3::new(grid(place.x), grid(place.y), grid(place.z)) };
         let rotation = if round % 3 == 0 { DQuat::IDENTITY } else { random.quaternion() };

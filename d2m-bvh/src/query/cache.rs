@@ -4,10 +4,12 @@ use crate::Solid;
 /// What a query of a pair of bodies leaves for the next one: the triangles that were closest, or met, and for bodies
 /// that did not meet how far apart they stayed.
 ///
-/// Bodies that move little between two queries meet again near the same place: looking there first gives an upper bound
-/// before the search starts. And bodies that stayed 0.1 apart stay apart when they move almost the same way again, where
-/// "almost" is a bound on the difference of all their points' positions below 0.1. Promise: a cache never changes an answer,
-/// not in one bit; a cache from other bodies is useless but harmless.
+/// Bodies that move little between two queries are closest, or meet, near the same place again: `distance_within` and
+/// [`contact_exists`](crate::contact_exists) look there first. And bodies that stayed 0.1 apart (lengths in the unit of
+/// the meshes) stay apart when they move almost the same way again, where "almost" is a bound on the difference of all their
+/// points' positions below 0.1: so [`time_of_contact_with`](crate::time_of_contact_with) need not search. Promise: a cache
+/// never changes an answer, not in one bit; a cache from other bodies is useless but harmless. Source: Section VI of the d2m
+/// paper; docs/theory/engine.md, "What one query proves for the next".
 ///
 /// ```
 /// let mut cache = d2m_bvh::PairCache::new();
@@ -102,7 +104,7 @@ impl PairCache {
         (2.0 * step <= most).then_some(room.min(most))
     }
 
-    /// Proven: along this course the bodies are further apart than `room` all the time. `wanted`: so much was tried for.
+    /// Proven: along this course the bodies are further apart than `room` all the time.
     pub(super) fn found_apart(&mut self, course: &Course, solid: Solid, room: f64) {
         self.apart = Some(Apart { course: *course, room, solid, age: 0.0 });
     }

@@ -82,21 +82,10 @@ impl Course {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
     use crate::{MeshTree, QueryOptions, TriMesh, Window};
     use d2m_motion::LinearMotion;
     use glam::DQuat;
-
-    struct Random(u64);
-
-    impl Random {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
-        }
-        fn vec(&mut self) -> DVec3 {
-            DVec3::new(self.next(), self.next(), self.next())
-        }
-    }
 
     fn course(trees: &[MeshTree; 2], motions: &[LinearMotion; 2], window: Window) -> Course {
         let scene =

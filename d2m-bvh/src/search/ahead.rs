@@ -153,35 +153,14 @@ mod tests {
     use super::super::dispatch::first_contact;
     use super::super::scene::Scene;
     use super::*;
+    use crate::random::{Random, wavy_torus};
     use crate::{Budget, MeshTree, Mode, QueryOptions, TriMesh, Window};
     use d2m_motion::LinearMotion;
     use glam::{DQuat, DVec3};
 
-    struct Random(u64);
-
-    impl Random {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
-        }
-        fn vec(&mut self) -> DVec3 {
-            DVec3::new(self.next(), self.next(), self.next())
-        }
-    }
-
     fn ring(rings: u32, sides: u32, tube: f64) -> MeshTree {
-        let point = |k: u32| {
-            let (i, j) = (f64::from(k / sides) / f64::from(rings), f64::from(k % sides) / f64::from(sides));
-            let (u, v) = (i * core::f64::consts::TAU, j * core::f64::consts::TAU);
-            let r = tube * (1.0 + 0.2 * (3.0 * u).sin());
-            DVec3::new((1.0 + r * v.cos()) * u.cos(), (1.0 + r * v.cos()) * u.sin(), r * v.sin())
-        };
-        let at = |i: u32, j: u32| (i % rings) * sides + j % sides;
-        let quads = (0..rings * sides).map(|k| (k / sides, k % sides));
-        let triangles = quads.flat_map(|(i, j)| {
-            [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
-        });
-        MeshTree::new(TriMesh::try_new((0..rings * sides).map(point).collect(), triangles.collect()).unwrap())
+        let (corners, triangles) = wavy_torus(rings, sides, tube);
+        MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
     }
 
     /// Interlocked rings that spin and drift, close to each other for long: every number of threads gives the outcome

@@ -9,24 +9,12 @@ use super::quad::Quad;
 use super::scene::{Scene, Scratch};
 use super::triangle_pair::{Care, Look, PairScale, apart_since, look, place_a};
 use super::window::{Outcome, corners};
+use crate::random::Random;
 use crate::tree::node::Below;
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
 use d2m_feature::triangle_distance;
 use d2m_motion::LinearMotion;
 use glam::{DQuat, DVec3};
-
-/// Numbers in [−1, 1].
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
-    }
-    fn vec(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-}
 
 /// Eight triangles of very different size and shape around the origin.
 fn soup(random: &mut Random) -> MeshTree {

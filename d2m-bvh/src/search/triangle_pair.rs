@@ -25,6 +25,14 @@ pub(crate) struct PairScale {
     pub(crate) swings: [f64; 2],
 }
 
+impl PairScale {
+    /// The distance down to which pairs are followed.
+    #[inline(always)]
+    fn aim(&self) -> f64 {
+        self.level + self.spare
+    }
+}
+
 /// How much one look does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Care {
@@ -86,7 +94,7 @@ pub(crate) fn look<D: Doubles>(
 ) -> Look {
     let placed = Placed::new::<D>(frame, (a, b), scale, (enough, care));
     let (direction, gap) = placed.widest_gap::<D>();
-    let (mut best, aim) = (0.0, scale.level + scale.spare);
+    let (mut best, aim) = (0.0, scale.aim());
     if gap > scale.level + scale.error {
         best = placed.clear_for(direction, scale, aim, best);
         if best >= enough || care == Care::Quick && gap > 16.0 * scale.stop {
@@ -102,8 +110,8 @@ pub(crate) fn look<D: Doubles>(
 }
 
 /// Are the triangles further apart than the level all the time from `span` before the frame up to its time? True only
-/// if that is proven. `frame` is to be one of the reversed motion: what has a bound on its acceleration is
-/// followed backwards as well as forwards.
+/// if that is proven. `reversed`: the frame with all velocities reversed ([`Frame::reversed`]); what has a bound on its
+/// acceleration is followed backwards as well as forwards.
 #[inline(always)]
 pub(crate) fn apart_since<D: Doubles>(
     reversed: &Frame,
@@ -168,7 +176,7 @@ impl Placed {
     #[inline(always)]
     fn look_closely<D: Doubles>(&self, scale: &PairScale, known: f64) -> Look {
         let near = closest::<D>(&self.a, &self.b);
-        let best = self.clear_for(near.direction, scale, scale.level + scale.spare, known);
+        let best = self.clear_for(near.direction, scale, scale.aim(), known);
         // The features' own directions attain the distance, so one of the two ends applies up to rounding.
         let touching = near.square <= scale.stop * scale.stop;
         if touching || best == 0.0 { Look::Near { crossing: !touching } } else { Look::ClearFor(best) }

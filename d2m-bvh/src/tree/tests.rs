@@ -5,19 +5,8 @@ use super::node::{Below, WIDTH};
 use super::surface::Surface;
 use super::*;
 use crate::TriMesh;
+use crate::random::Random;
 use glam::DVec3;
-
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
-    }
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-}
 
 /// A closed torus-like surface of 2·across·around triangles with some noise.
 pub(crate) fn torus(across: u32, around: u32, noise: f64, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
@@ -28,7 +17,7 @@ pub(crate) fn torus(across: u32, around: u32, noise: f64, map: impl Fn(DVec3) ->
             let turn = |k: u32, n: u32| f64::from(k) / f64::from(n) * core::f64::consts::TAU;
             let ((s, c), (t, d)) = (turn(i, across).sin_cos(), turn(j, around).sin_cos());
             let ring = 1.0 + 0.4 * d;
-            corners.push(map(DVec3::new(ring * c, ring * s, 0.4 * t) + random.vector() * noise));
+            corners.push(map(DVec3::new(ring * c, ring * s, 0.4 * t) + random.vec() * noise));
         }
     }
     let at = |i: u32, j: u32| (i % across) * around + j % around;
@@ -58,8 +47,8 @@ fn hard_meshes() -> Vec<TriMesh> {
         one(vec![DVec3::ZERO; 3]),
         one(vec![DVec3::splat(0.1); 30]),
         one((0..300).map(|i| DVec3::X * f64::from(i)).collect()),
-        one((0..300).map(|_| random.vector() * 1e50).collect()),
-        one((0..27).map(|i| random.vector() * 10f64.powi(-i)).collect()),
+        one((0..300).map(|_| random.vec() * 1e50).collect()),
+        one((0..27).map(|i| random.vec() * 10f64.powi(-i)).collect()),
     ]
 }
 
@@ -69,7 +58,7 @@ fn built_and_refitted_trees_are_valid() {
     for (index, mesh) in hard_meshes().into_iter().enumerate() {
         let mut tree = MeshTree::new(mesh);
         assert_eq!(tree.validate(), Ok(()), "mesh {index}");
-        let moved = tree.mesh().vertices().iter().map(|&p| p + random.vector() * 0.3 * p.length()).collect();
+        let moved = tree.mesh().vertices().iter().map(|&p| p + random.vec() * 0.3 * p.length()).collect();
         tree.refit(moved).unwrap();
         assert_eq!(tree.validate(), Ok(()), "mesh {index} refitted");
         let before = tree.clone();

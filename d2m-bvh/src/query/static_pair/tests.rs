@@ -3,30 +3,22 @@
 use super::dispatch::{Task, run_on};
 use super::node_test::{Placed, Side, lower_bounds, margin_free_gaps};
 use super::*;
+use crate::random::Random;
 use crate::search::{InstructionSet, Lanes, Portable};
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::{OrientedBox, WideNode};
 use glam::{DMat3, DQuat, DVec3};
 
-struct Random(u64);
-
 impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
-    }
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
     fn rotation(&mut self) -> DMat3 {
         DMat3::from_quat(DQuat::from_xyzw(self.next(), self.next(), self.next(), self.next()).normalize())
     }
     fn oriented_box(&mut self, size: f64, spread: f64) -> OrientedBox {
         let axes = self.rotation();
         let narrow = |v: DVec3| [v.x as f32, v.y as f32, v.z as f32];
-        let half = self.vector().abs() * size;
+        let half = self.vec().abs() * size;
         OrientedBox {
-            center: narrow(self.vector() * spread),
+            center: narrow(self.vec() * spread),
             axes: [narrow(axes.x_axis), narrow(axes.y_axis), narrow(axes.z_axis)],
             half_extent: narrow(half),
             // As a built box: the radius is at least each half extent.
@@ -65,7 +57,7 @@ fn gaps_err_by_less_than_the_margin_and_not_by_much_less() {
         node.used = 8;
         let single = random.oriented_box(spread * [1.0, 30.0][round % 2], spread);
         let rotation = random.rotation();
-        let offset = wide(node.origin) + random.vector() * 3.0 * spread;
+        let offset = wide(node.origin) + random.vec() * 3.0 * spread;
         let side = Side {
             rotation: [rotation.x_axis, rotation.y_axis, rotation.z_axis],
             offset,
@@ -111,7 +103,7 @@ fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
         node.used = 1;
         let single = random.oriented_box(1.0, 1.0);
         let rotation = random.rotation();
-        let offset = random.vector() * 6.0;
+        let offset = random.vec() * 6.0;
         let side = Side {
             rotation: [rotation.x_axis, rotation.y_axis, rotation.z_axis],
             offset,
@@ -122,7 +114,7 @@ fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
         // Without and with one more direction: any, or the one from centre to centre.
         let n = match round % 3 {
             0 => DVec3::ZERO,
-            1 => random.vector().normalize(),
+            1 => random.vec().normalize(),
             _ => offset.normalize(),
         };
         let n = n * (1.0 - 4.0 * UNIT_F32);
@@ -176,7 +168,7 @@ fn every_kind_of_lanes_gives_the_same_bits() {
         let r = random.rotation();
         let side = Side {
             rotation: [r.x_axis, r.y_axis, r.z_axis],
-            offset: random.vector(),
+            offset: random.vec(),
             ratio: 2.0,
             floor: 1e-9,
             to_work: 0.5,
