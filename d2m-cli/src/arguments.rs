@@ -1,6 +1,5 @@
 //! The command line.
 
-use crate::commands::features::FeaturesArgs;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -20,7 +19,7 @@ pub(crate) enum Command {
     /// Many trials of one pair of meshes, from a CSV file to a CSV file
     Batch(BatchArguments),
     /// First contacts of moving points, triangles, edges and spheres, from JSON lines to JSON lines
-    Features(FeaturesArgs),
+    Features(FeaturesArguments),
     /// What is in a mesh, or which shapes are built in
     Info(InfoArguments),
     /// The main job on built-in shapes: six scenes with their commands and answers
@@ -118,6 +117,33 @@ pub(crate) enum Method {
     Capoeira,
     /// The reference method: the paper's, with its errata repaired
     Paper,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A case: {\"id\", \"kind\", \"A\", \"B\", \"motionA\", \"motionB\", \"t0\", \"t1\"} with the kinds
+  point_triangle   A {\"p\": [x,y,z]}               B {\"tri\": [p,q,r]}
+  edge_edge        A {\"edge\": [p,q]}              B {\"edge\": [p,q]}
+  sphere_sphere    A {\"c\": [x,y,z], \"r\": radius}  B {\"c\", \"r\"}
+and motions {\"q\": [w,x,y,z], \"x\": [3], \"v\": [3], \"w\": [3]}; or, for four points that each move straight from t = 0 to 1,
+  {\"id\", \"kind\": \"point_triangle_linear\" or \"edge_edge_linear\", \"t0_points\": [4 points], \"t1_points\": [4 points]}.
+A result: {\"id\", \"status\": \"hit\", \"miss\" or \"undecided\", \"t_lo\", \"t_hi\", \"microseconds\"}.")]
+pub(crate) struct FeaturesArguments {
+    /// Cases, one JSON object a line
+    #[arg(value_name = "CASES.jsonl")]
+    pub(crate) cases: PathBuf,
+    /// Results, one JSON object a line; - for standard output
+    #[arg(long, value_name = "R.jsonl")]
+    pub(crate) out: String,
+    /// Distance up to which features may be reported as touching [default: 1e-10 times their size]
+    #[arg(long, value_name = "DELTA", allow_hyphen_values = true)]
+    pub(crate) tolerance: Option<String>,
+    /// Distance at which features count as touching
+    #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true)]
+    pub(crate) min_separation: Option<String>,
+    /// Evaluations after which a case is left undecided
+    #[arg(long, value_name = "COUNT", default_value_t = 1 << 20)]
+    pub(crate) budget: u32,
 }
 
 #[derive(Debug, Args)]

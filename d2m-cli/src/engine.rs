@@ -9,6 +9,7 @@ use d2m::bvh::{
     Window, time_of_contact,
 };
 use d2m::motion::LinearMotion;
+use glam::DVec3;
 use std::time::{Duration, Instant};
 
 /// A mesh with its tree and the name that the user gave it.
@@ -53,6 +54,8 @@ pub(crate) struct Pair {
     pub(crate) a: Body,
     pub(crate) b: Body,
     pub(crate) solid: Solid,
+    /// Distance at which the bodies count as touching.
+    pub(crate) min_separation: f64,
     pub(crate) preparation: Duration,
     options: QueryOptions,
 }
@@ -71,17 +74,16 @@ impl Pair {
             Method::Capoeira => Mode::Capoeira,
         };
         let mut options = QueryOptions::default().with_mode(mode);
+        let mut min_separation = 0.0;
         if let Some(text) = &arguments.tolerance {
-            options =
-                options
-                    .with_tolerance(number("--tolerance", text, "a positive finite distance", |t| t > 0.0)?);
+            options = options.with_tolerance(number("--tolerance", text, TOLERANCE, |t| t > 0.0)?);
         }
         if let Some(text) = &arguments.min_separation {
             if arguments.mode == Method::Paper {
                 return Err(Failure::at("--min-separation", "the reference method has none"));
             }
-            let wanted = "a finite distance that is not negative";
-            options = options.with_min_separation(number("--min-separation", text, wanted, |d| d >= 0.0)?);
+            min_separation = number("--min-separation", text, MIN_SEPARATION, |d| d >= 0.0)?;
+            options = options.with_min_separation(min_separation);
         }
         let seconds =
             number("--time-limit", &arguments.time_limit, "a positive number of seconds", |s| s > 0.0)?;
@@ -95,7 +97,7 @@ impl Pair {
         let [a, b] = [a, b].map(|body| Body::new(body, arguments.mode));
         let preparation = start.elapsed();
         let solid = choose_solid(&a, &b, arguments)?;
-        Ok(Self { a, b, solid, preparation, options: options.with_solid(solid) })
+        Ok(Self { a, b, solid, min_separation, preparation, options: options.with_solid(solid) })
     }
 
     /// Each query on all threads of the machine: for single ones.
@@ -118,18 +120,32 @@ impl Pair {
         };
         let took = start.elapsed();
         let verdict = verdict.map_err(|error| match error {
-            QueryError::BadMotion { body } => Failure::at(
-                ["motion of A", "motion of B"][body.min(1)],
-                "it is not finite, or too fast or far, over the window",
-            ),
+            QueryError::BadMotion { body } => {
+                let (place, motion) = [("motion of A", a), ("motion of B", b)][body.min(1)];
+                let triple = |vector: DVec3| format!("{:?}", vector.to_array());
+                let [x, v, w] = [motion.position(), motion.linear_velocity(), motion.angular_velocity()].map(triple);
+                let reason = format!(
+                    "x = {x}, v = {v}, w = {w}: over the window it is not finite, turns by 2^40 radians or goes too far"
+                );
+                Failure::at(place, reason)
+            }
             other => Failure::Input(other.to_string()),
         })?;
         Ok(Answer { verdict, took })
     }
 }
 
+/// What `--tolerance` and `--min-separation` take.
+pub(crate) const TOLERANCE: &str = "a positive finite distance";
+pub(crate) const MIN_SEPARATION: &str = "a finite distance that is not negative";
+
 /// Reads an option's value and checks it.
-fn number(option: &str, text: &str, wanted: &str, is_wanted: impl Fn(f64) -> bool) -> Result<f64, Failure> {
+pub(crate) fn number(
+    option: &str,
+    text: &str,
+    wanted: &str,
+    is_wanted: impl Fn(f64) -> bool,
+) -> Result<f64, Failure> {
     let value: f64 = text.parse().map_err(|_| Failure::at(option, format!("{text:?} is not a number")))?;
     if value.is_finite() && is_wanted(value) {
         Ok(value)

@@ -1,6 +1,5 @@
 //! Why a command stopped.
 
-use crate::commands::features::FeaturesError;
 use std::fmt::Display;
 use thiserror::Error;
 
@@ -19,14 +18,5 @@ impl Failure {
     /// Bad input at a place (a file, an option) with its reason.
     pub(crate) fn at(place: impl Display, reason: impl Display) -> Self {
         Self::Input(format!("{place}: {reason}"))
-    }
-}
-
-impl From<FeaturesError> for Failure {
-    fn from(error: FeaturesError) -> Self {
-        match error {
-            FeaturesError::Output(failure) => failure,
-            other => Self::Input(other.to_string()),
-        }
     }
 }

@@ -22,7 +22,7 @@ fn main() -> ExitCode {
     let outcome = match &arguments.command {
         Command::Toc(arguments) => commands::toc::run(arguments),
         Command::Batch(arguments) => commands::batch::run(arguments),
-        Command::Features(arguments) => commands::features::run(arguments).map_err(Failure::from),
+        Command::Features(arguments) => commands::features::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments),
         Command::Demo => commands::demo::run(),
     };

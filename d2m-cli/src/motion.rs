@@ -20,6 +20,9 @@ impl Motion {
             let motion = text.parse().map_err(|error| Failure::at(option, error))?;
             return Ok(Self::Linear(motion));
         };
+        if file.is_empty() {
+            return Err(Failure::at(option, "@ needs the name of a file"));
+        }
         let bytes = read(Path::new(file))?;
         let value: serde_json::Value =
             serde_json::from_slice(&bytes).map_err(|error| Failure::at(file, error))?;
@@ -77,7 +80,7 @@ pub(crate) fn parse_window(text: &str) -> Result<Window, Failure> {
     let (start, end) = (number(start)?, number(end)?);
     let window = Window::try_new(start, end).map_err(|error| fault(error.to_string()))?;
     if window.length() <= 0.0 {
-        return Err(fault(format!("the window from {start} to {end} is empty")));
+        return Err(fault(format!("the window from {start:?} to {end:?} is empty")));
     }
     Ok(window)
 }

@@ -33,6 +33,9 @@ impl Output {
         if path == "-" {
             return Ok(Self::Stdout);
         }
+        if path.is_empty() {
+            return Err(Failure::Input("the name of the file to write is empty".to_owned()));
+        }
         let path = Path::new(path);
         if path.is_dir() {
             return Err(Failure::at(path.display(), "is a folder, not a file"));
@@ -44,7 +47,9 @@ impl Output {
         if path.metadata().is_ok_and(|metadata| metadata.permissions().readonly()) {
             return Err(Failure::at(path.display(), "is read-only"));
         }
-        Ok(Self::File(path.to_owned()))
+        // What a link points to is written, and the link stays.
+        let target = if path.is_symlink() { path.canonicalize().ok() } else { None };
+        Ok(Self::File(target.unwrap_or_else(|| path.to_owned())))
     }
 
     /// Refuses to replace one of the files that are read.

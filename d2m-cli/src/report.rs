@@ -45,13 +45,25 @@ fn start_word(start: StartState) -> &'static str {
     }
 }
 
+/// Microseconds to three digits after the point: clocks have no more.
+pub(crate) fn microseconds(time: Duration) -> f64 {
+    time.as_nanos() as f64 / 1e3
+}
+
 /// A duration as a person reads it.
 pub(crate) fn duration(time: Duration) -> String {
-    let microseconds = time.as_secs_f64() * 1e6;
-    match microseconds {
+    match microseconds(time) {
         m if m < 1e3 => format!("{m:.1} µs"),
         m if m < 1e6 => format!("{:.2} ms", m / 1e3),
         m => format!("{:.2} s", m / 1e6),
+    }
+}
+
+/// A number as short as can be read back: in powers of ten where zeros would fill the line.
+pub(crate) fn short(number: f64) -> String {
+    match number.abs() {
+        size if size == 0.0 || (1e-5..1e16).contains(&size) => number.to_string(),
+        _ => format!("{number:e}"),
     }
 }
 
@@ -73,20 +85,21 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
     let mut line = |label: &str, value: String| {
         let _ = writeln!(text, "  {label:<12}{value}"); // writing to a string cannot fail
     };
-    let (start, end) = (window.start(), window.end());
+    let [start, end] = [window.start(), window.end()].map(short);
     let headline = match &answer.verdict {
         TimeOfContact::Separated => {
             line("certified", format!("no contact anywhere from {start} to {end}"));
             "SEPARATED".to_owned()
         }
         TimeOfContact::Undecided { clear_until } => {
-            line("certified", format!("no contact from {start} until {clear_until}"));
-            line("then", "the budget was used up; a larger --budget may decide".to_owned());
+            line("certified", format!("no contact from {start} until {}", short(*clear_until)));
+            let then = "the budget or the time was used up; a larger --budget or --time-limit may decide";
+            line("then", then.to_owned());
             "UNDECIDED".to_owned()
         }
         TimeOfContact::Contact(contact) => {
-            contact_lines(&mut line, contact, start);
-            format!("CONTACT at t = {}", contact.time_lo)
+            contact_lines(&mut line, contact, window.start());
+            format!("CONTACT at t = {}", short(contact.time_lo))
         }
     };
     for (label, body) in [("A", &pair.a), ("B", &pair.b)] {
@@ -96,7 +109,11 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
         Solid::Filled => "filled solids",
         Solid::Surface => "surfaces only",
     };
-    line("asked", format!("window [{start}, {end}] · {solid}"));
+    let nearer = match pair.min_separation {
+        0.0 => String::new(),
+        distance => format!(" · a distance of {} is contact", short(distance)),
+    };
+    line("asked", format!("window [{start}, {end}] · {solid}{nearer}"));
     line(
         "took",
         format!("{} (after {} to build the trees)", duration(answer.took), duration(pair.preparation)),
@@ -106,7 +123,7 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
 
 fn contact_lines(line: &mut dyn FnMut(&str, String), contact: &Contact, window_start: f64) {
     let width = contact.time_hi - contact.time_lo;
-    line("time", format!("[{}, {}]  width {width:.2e}", contact.time_lo, contact.time_hi));
+    line("time", format!("[{}, {}]  width {width:.2e}", short(contact.time_lo), short(contact.time_hi)));
     match contact.start {
         StartState::Apart => {
             line("certified", "no contact before; disjoint at the first of these times".to_owned());
@@ -146,9 +163,10 @@ fn contact_lines(line: &mut dyn FnMut(&str, String), contact: &Contact, window_s
 pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer) -> String {
     let mut object = json!({
         "status": status(&answer.verdict),
-        "microseconds": answer.took.as_secs_f64() * 1e6,
+        "microseconds": microseconds(answer.took),
         "window": [window.start(), window.end()],
         "solid": matches!(pair.solid, Solid::Filled),
+        "min_separation": pair.min_separation,
         "triangles": [pair.a.mesh().triangle_count(), pair.b.mesh().triangle_count()],
     });
     let mut put = |key: &str, value: Value| {
@@ -181,7 +199,7 @@ pub(crate) const CSV_HEADER: &str = "trial,status,toc,toc_hi,separation,microsec
 
 /// One line of a result CSV: numbers with 17 digits; what a verdict does not have is empty.
 pub(crate) fn csv_line(trial: usize, answer: &Answer) -> String {
-    let microseconds = answer.took.as_secs_f64() * 1e6;
+    let microseconds = microseconds(answer.took);
     let status = status(&answer.verdict);
     match &answer.verdict {
         TimeOfContact::Separated => format!("{trial},{status},inf,inf,,{microseconds:.3},,,,,,,,,\n"),

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::load::read;
+use d2m::bvh::MAX_COORDINATE;
 use d2m::motion::LinearMotion;
 use glam::{DQuat, DVec3};
 use std::path::Path;
@@ -9,6 +10,8 @@ use std::path::Path;
 /// One line of a trials file.
 #[derive(Debug, Clone)]
 pub(crate) struct Trial {
+    /// Line of the file, from 1.
+    pub(crate) line: usize,
     pub(crate) motion_a: LinearMotion,
     pub(crate) motion_b: LinearMotion,
 }
@@ -29,23 +32,28 @@ pub(crate) fn load(path: &Path) -> Result<Vec<Trial>, Failure> {
 fn parse(text: &str) -> Result<Vec<Trial>, (Option<usize>, String)> {
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let trials: Vec<Trial> = lines
-        .map(|(index, line)| parse_line(line).map_err(|reason| (Some(index + 1), reason)))
+        .map(|(index, line)| parse_line(line, index + 1).map_err(|reason| (Some(index + 1), reason)))
         .collect::<Result<_, _>>()?;
     if trials.is_empty() { Err((None, "there are no trials".to_owned())) } else { Ok(trials) }
 }
 
-fn parse_line(line: &str) -> Result<Trial, String> {
-    let count = line.split(',').count();
+fn parse_line(text: &str, line: usize) -> Result<Trial, String> {
+    let count = text.split(',').count();
     if count != 26 {
         return Err(format!("expected 26 numbers separated by commas, found {count}"));
     }
     let mut numbers = [0.0; 26];
-    for (index, (number, word)) in numbers.iter_mut().zip(line.split(',')).enumerate() {
+    for (index, (number, word)) in numbers.iter_mut().zip(text.split(',')).enumerate() {
         let place = || format!("field {} ({} of {})", index + 1, FIELDS[index % 13], ["A", "B"][index / 13]);
         *number =
             word.trim().parse().map_err(|_| format!("{}: {:?} is not a number", place(), word.trim()))?;
         if !f64::is_finite(*number) {
             return Err(format!("{}: {} is not finite", place(), word.trim()));
+        }
+        // Before hours of other trials, not after them.
+        if number.abs() > MAX_COORDINATE {
+            let word = word.trim();
+            return Err(format!("{}: {word} is larger than the limit of {MAX_COORDINATE:e}", place()));
         }
     }
     let motion = |n: &[f64], body: &str| {
@@ -54,7 +62,7 @@ fn parse_line(line: &str) -> Result<Trial, String> {
         LinearMotion::try_new(vector(4), orientation, vector(7), vector(10))
             .map_err(|error| format!("motion of {body}: {error}"))
     };
-    Ok(Trial { motion_a: motion(&numbers[..13], "A")?, motion_b: motion(&numbers[13..], "B")? })
+    Ok(Trial { line, motion_a: motion(&numbers[..13], "A")?, motion_b: motion(&numbers[13..], "B")? })
 }
 
 #[cfg(test)]
@@ -66,7 +74,7 @@ mod tests {
     #[test]
     fn order_of_the_fields() {
         let trials = parse(&format!("{LINE}\r\n\n {LINE}\n")).unwrap();
-        assert_eq!(trials.len(), 2);
+        assert_eq!((trials.len(), trials[0].line, trials[1].line), (2, 1, 3));
         assert_eq!(trials[0].motion_a.position(), DVec3::new(1.0, 2.0, 3.0));
         assert_eq!(trials[0].motion_a.linear_velocity(), DVec3::new(4.0, 5.0, 6.0));
         assert_eq!(trials[1].motion_b.angular_velocity(), DVec3::new(-7.0, -8.0, -9.0));
@@ -83,8 +91,10 @@ mod tests {
         assert_eq!(word, (Some(2), "field 21 (v1 of B): \"four\" is not a number".to_owned()));
         let infinite = fault(&LINE.replace("-9", "1e999"));
         assert_eq!(infinite, (Some(1), "field 26 (w3 of B): 1e999 is not finite".to_owned()));
+        let far = fault(&LINE.replace("-9", "1e300"));
+        assert_eq!(far, (Some(1), "field 26 (w3 of B): 1e300 is larger than the limit of 1e60".to_owned()));
         let zero = fault(&LINE.replacen('1', "0", 1));
         assert_eq!(zero.0, Some(1));
-        assert!(zero.1.starts_with("motion of A: orientation (0, 0, 0, 0)"), "{}", zero.1);
+        assert!(zero.1.starts_with("motion of A: orientation (0.0, 0.0, 0.0, 0.0)"), "{}", zero.1);
     }
 }

@@ -300,6 +300,8 @@ fn bad_input_is_named_and_leaves_nothing() {
         ("short.csv", format!("{line}\n1,2,3\n"), "line 2: expected 26 numbers"),
         ("word.csv", format!("{line}\n{}\n", line.replace("-3", "x")), "line 2: field 5 (x1 of A): \"x\""),
         ("nan.csv", line.replace("-3", "NaN"), "line 1: field 5 (x1 of A): NaN"),
+        ("far.csv", format!("\n{}", line.replace("-3", "1e300")), "line 2: field 5 (x1 of A): 1e300"),
+        ("fast.csv", format!("\n{line}\n{}9e12\n", &line[..line.len() - 1]), "line 3 (trial 1): motion of B"),
         ("zero.csv", line.replacen('1', "0", 1), "line 1: motion of A"),
         ("binary.csv", "\u{0}\u{1}\u{2}".to_owned(), "line 1"),
     ];
@@ -317,10 +319,24 @@ fn bad_input_is_named_and_leaves_nothing() {
         &["folder"],
     );
     let cases = folder.file("cases.jsonl", "{\"id\": \"a\"}\n");
-    refused(&["features", &cases, "--out", &folder.path("out.jsonl")], &["cases.jsonl", "1"]);
+    refused(
+        &["features", &cases, "--out", &folder.path("out.jsonl")],
+        &["cases.jsonl, line 1: missing field"],
+    );
+    let straight = r#"{"id": "a", "kind": "point_triangle_linear", "t0_points": [[0,0,1],[0,0,0],[1,0,0],[0,1,0]], "t1_points": [[0,0,-1],[0,0,0],[1,0,0],[0,1,0]]}"#;
+    for (fault, words) in [
+        ("{broken".to_owned(), "line 3: key must be a string (before column 2)"),
+        (straight.replace("point_triangle_linear", "point_cube"), "line 3: unknown variant `point_cube`"),
+        (straight.replace("-1]", "1e999]"), "line 3: number out of range"),
+    ] {
+        let cases = folder.file("third.jsonl", &format!("\u{feff}{straight}\n\n{fault}\n"));
+        refused(&["features", &cases, "--out", &folder.path("out.jsonl")], &["third.jsonl", words]);
+    }
+    refused(&["features", &cases, "--out", "-", "--tolerance", "0"], &["--tolerance", "positive"]);
+    refused(&["features", &cases, "--out", "-", "--min-separation", "-1"], &["--min-separation", "negative"]);
     refused(&["features", &folder.path("absent.jsonl"), "--out", "-"], &["absent.jsonl"]);
     refused(&["features", &folder.path("blank.csv"), "--out", "-"], &["blank.csv", "no cases"]);
-    refused(&["features", &folder.path("empty.csv"), "--out", "-"], &["empty.csv", "no cases"]);
+    refused(&["features", &folder.path("empty.csv"), "--out", "-"], &["empty.csv", "is empty"]);
     assert!(!folder.names().iter().any(|name| name.starts_with("out") || name.contains("tmp")));
 
     for (option, value, word) in [
@@ -329,11 +345,14 @@ fn bad_input_is_named_and_leaves_nothing() {
         ("--window", "0,inf", "finite"),
         ("--window", "0", "T0,T1"),
         ("--window", "a,b", "\"a\""),
-        ("--motion-a", "q=0,0,0,0", "(0, 0, 0, 0)"),
+        ("--motion-a", "q=0,0,0,0", "(0.0, 0.0, 0.0, 0.0)"),
         ("--motion-a", "v=1,2", "3 numbers"),
         ("--motion-b", "v=nan,0,0", "nan"),
         ("--motion-b", "u=1,2,3", "u"),
-        ("--motion-b", "v=1e300,0,0", "motion of B"),
+        ("--motion-b", "v=1e300,0,0", "motion of B: x = [0.0, 0.0, 0.0], v = [1e300, 0.0, 0.0]"),
+        ("--motion-b", "w=1e300,0,0", "turns by"),
+        ("--motion-b", "@", "name of a file"),
+        ("--window", "-1e308,1e308", "length"),
         ("--tolerance", "0", "positive"),
         ("--tolerance", "-1e-9", "positive"),
         ("--tolerance", "nan", "positive"),
@@ -356,6 +375,13 @@ fn inputs_and_read_only_files_are_not_replaced() {
     let trials = folder.file("trials.csv", TRIALS);
     let batch = ["batch", UNIT_BOX, UNIT_BOX, "--trials", &trials, "--out"];
     refused(&[&batch[..], &[&trials]].concat(), &["trials.csv", "input"]);
+    let motion = folder.file("motion.json", r#"{"x": [-3, 0, 0]}"#);
+    let from_file = format!("@{motion}");
+    refused(
+        &["toc", UNIT_BOX, UNIT_BOX, "--motion-b", &from_file, "--obj", &motion],
+        &["motion.json", "input"],
+    );
+    refused(&[&batch[..], &[""]].concat(), &["empty"]);
     let precious = folder.file("precious.csv", "1,2,3\n");
     let mut permissions = fs::metadata(&precious).unwrap().permissions();
     permissions.set_readonly(true);
@@ -367,6 +393,16 @@ fn inputs_and_read_only_files_are_not_replaced() {
     let out = folder.file("old.csv", "old");
     assert_eq!(d2m(&[&batch[..], &[&out]].concat()).status.code(), Some(0));
     assert!(fs::read_to_string(&out).unwrap().starts_with(HEADER));
+    // A link stays a link.
+    #[cfg(unix)]
+    {
+        let target = folder.file("target.csv", "old");
+        let link = folder.path("link.csv");
+        std::os::unix::fs::symlink("target.csv", &link).unwrap();
+        assert_eq!(d2m(&[&batch[..], &[&link]].concat()).status.code(), Some(0));
+        assert!(Path::new(&link).is_symlink());
+        assert!(fs::read_to_string(&target).unwrap().starts_with(HEADER));
+    }
 }
 
 #[test]

@@ -15,7 +15,9 @@ pub enum MotionError {
         value: f64,
     },
     /// The orientation is the zero quaternion (or too small to be normalised: norm below 1e-150 or above 1e150).
-    #[error("orientation ({w}, {x}, {y}, {z}) cannot be normalised: its norm must lie in [1e-150, 1e150]")]
+    #[error(
+        "orientation ({w:?}, {x:?}, {y:?}, {z:?}) cannot be normalised: its norm must lie in [1e-150, 1e150]"
+    )]
     OrientationNorm {
         /// Scalar part.
         w: f64,
@@ -41,7 +43,7 @@ pub enum MotionError {
         reason: &'static str,
     },
     /// Keyframes need at least two poses at strictly increasing finite times.
-    #[error("keyframe {index}, time {time}: {reason}")]
+    #[error("keyframe {index}, time {time:?}: {reason}")]
     Keyframes {
         /// Index of the offending keyframe.
         index: usize,

@@ -4,8 +4,8 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum QueryError {
-    /// The time window is reversed or not finite.
-    #[error("time window [{start}, {end}] must be finite and not reversed")]
+    /// The time window is reversed, or an end or its length is not finite.
+    #[error("time window [{start:?}, {end:?}] must be finite (its length too) and not reversed")]
     BadWindow {
         /// Requested first instant.
         start: f64,
@@ -13,22 +13,16 @@ pub enum QueryError {
         end: f64,
     },
     /// The tolerance is not a finite positive number.
-    #[error("tolerance {value} must be finite and positive")]
+    #[error("tolerance {value:?} must be finite and positive")]
     BadTolerance {
         /// The refused value.
         value: f64,
     },
     /// The wanted separation is negative or not finite.
-    #[error("min_separation {value} must be finite and not negative")]
+    #[error("min_separation {value:?} must be finite and not negative")]
     BadMinSeparation {
         /// The refused value.
         value: f64,
-    },
-    /// A body has no triangle.
-    #[error("body {body} has no triangle")]
-    EmptyBody {
-        /// 0 for the first body, 1 for the second.
-        body: usize,
     },
     /// A filled solid was asked for, but the mesh does not close.
     #[error("body {body} is not watertight: use Solid::Surface")]
@@ -37,7 +31,9 @@ pub enum QueryError {
         body: usize,
     },
     /// The motion is not finite over the window, or leaves the range in which errors can be bounded.
-    #[error("motion of body {body} is not finite over the window")]
+    #[error(
+        "motion of body {body} is not finite over the window, or turns or goes too far for bounds on its rounding"
+    )]
     BadMotion {
         /// 0 for the first body, 1 for the second.
         body: usize,

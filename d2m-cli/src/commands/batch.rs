@@ -28,7 +28,8 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     let answer = |(index, trial): (usize, &Trial)| {
         let answer = pair.ask(&trial.motion_a, &trial.motion_b, Window::UNIT);
         bar.inc(1);
-        answer.map_err(|failure| Failure::at(format!("trial {index}"), failure))
+        let place = || format!("{}, line {} (trial {index})", arguments.trials.display(), trial.line);
+        answer.map_err(|failure| Failure::at(place(), failure))
     };
     let answers: Result<Vec<Answer>, Failure> = if arguments.threads == 1 {
         trials.iter().enumerate().map(answer).collect()

@@ -1,63 +1,17 @@
 //! `d2m features`: first contact of single feature pairs, JSON lines in, JSON lines out.
+
+use crate::arguments::FeaturesArguments;
+use crate::engine::{MIN_SEPARATION, TOLERANCE, number};
 use crate::failure::Failure;
+use crate::load::read;
 use crate::output::Output;
+use crate::report::microseconds;
 use d2m::feature::{ContactOptions, FirstContact, PairMotion, StraightPaths};
 use d2m::motion::LinearMotion;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use std::fs::File;
-use std::io::{self, BufRead, BufReader};
-use std::path::PathBuf;
-use std::time::Instant;
-
-/// First contact of feature pairs (JSON lines).
-#[derive(Debug, clap::Args)]
-pub(crate) struct FeaturesArgs {
-    /// Cases, one JSON object a line: point_triangle, edge_edge, sphere_sphere (two motions), point_triangle_linear,
-    /// edge_edge_linear (t0_points, t1_points).
-    pub(crate) cases: PathBuf,
-    /// Results, one JSON object a line: id, status (hit, miss, undecided), t_lo, t_hi, microseconds. `-`: stdout.
-    #[arg(long)]
-    pub(crate) out: String,
-    /// Distance up to which features may be reported as touching [default: 1e-10 times their size].
-    #[arg(long, value_name = "DISTANCE")]
-    pub(crate) tolerance: Option<f64>,
-    /// Distance at which features count as touching.
-    #[arg(long, value_name = "DISTANCE", default_value_t = 0.0)]
-    pub(crate) min_separation: f64,
-    /// Evaluations after which a case is left undecided.
-    #[arg(long, value_name = "COUNT", default_value_t = 1 << 20)]
-    pub(crate) budget: u32,
-}
-
-/// Bad input: the message names file, line and value.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum FeaturesError {
-    /// A file cannot be read or written.
-    #[error("{path}: {source}")]
-    File {
-        /// Which file.
-        path: String,
-        /// Why not.
-        source: io::Error,
-    },
-    /// A line is not a case.
-    #[error("{path}:{line}: {reason}")]
-    Line {
-        /// Which file.
-        path: String,
-        /// Which line, from 1.
-        line: usize,
-        /// What is wrong with it.
-        reason: String,
-    },
-    /// An option is not a number that makes sense, or a file has no case.
-    #[error("{0}")]
-    Option(String),
-    /// The results cannot be written.
-    #[error(transparent)]
-    Output(#[from] Failure),
-}
+use std::path::Path;
+use std::time::{Duration, Instant};
 
 #[derive(Deserialize)]
 struct Case {
@@ -146,55 +100,61 @@ struct Answer<'a> {
 }
 
 /// Answers every case of a file. Nothing is written unless every line is a case.
-pub(crate) fn run(args: &FeaturesArgs) -> Result<(), FeaturesError> {
-    let options = options(args)?;
-    let out = Output::new(&args.out)?.spare([args.cases.as_path()])?;
-    let name = args.cases.display().to_string();
-    let file =
-        File::open(&args.cases).map_err(|source| FeaturesError::File { path: name.clone(), source })?;
-    let mut cases = Vec::new();
-    for (index, line) in BufReader::new(file).lines().enumerate() {
-        let fail = |reason: String| FeaturesError::Line { path: name.clone(), line: index + 1, reason };
-        let line = line.map_err(|error| fail(error.to_string()))?;
-        if line.trim().is_empty() {
-            continue;
-        }
-        let case: Case = serde_json::from_str(&line).map_err(|error| fail(error.to_string()))?;
-        case.question.check().map_err(|reason| fail(format!("case {:?}: {reason}", case.id)))?;
-        cases.push(case);
-    }
-    if cases.is_empty() {
-        return Err(FeaturesError::Option(format!("{name}: there are no cases")));
-    }
-    let mut text = Vec::new();
+pub(crate) fn run(arguments: &FeaturesArguments) -> Result<(), Failure> {
+    let options = options(arguments)?;
+    let out = Output::new(&arguments.out)?.spare([arguments.cases.as_path()])?;
+    let cases = read_cases(&arguments.cases)?;
+    let mut text = String::new();
     for case in &cases {
-        let (answer, microseconds) = case.question.answer(&options);
+        let (answer, took) = case.question.answer(&options);
         let (status, t_lo, t_hi) = match answer {
             FirstContact::Contact(contact) => ("hit", Some(contact.lo), Some(contact.hi)),
             FirstContact::Undecided { clear_until } => ("undecided", Some(clear_until), None),
             FirstContact::Clear => ("miss", None, None),
         };
-        let line = Answer { id: &case.id, status, t_lo, t_hi, microseconds };
-        serde_json::to_writer(&mut text, &line).expect("numbers and strings serialize");
-        text.push(b'\n');
+        let line = Answer { id: &case.id, status, t_lo, t_hi, microseconds: microseconds(took) };
+        text.push_str(&serde_json::to_string(&line).expect("numbers and strings serialize"));
+        text.push('\n');
     }
-    Ok(out.write(&String::from_utf8_lossy(&text))?)
+    out.write(&text)
 }
 
-fn options(args: &FeaturesArgs) -> Result<ContactOptions, FeaturesError> {
-    let mut options = ContactOptions::new().with_max_evaluations(args.budget);
-    if let Some(tolerance) = args.tolerance {
-        if !(tolerance > 0.0 && tolerance.is_finite()) {
-            let message = format!("--tolerance {tolerance}: a positive finite distance is needed");
-            return Err(FeaturesError::Option(message));
-        }
-        options = options.with_tolerance(tolerance);
+/// One case a line; blank lines are skipped.
+fn read_cases(path: &Path) -> Result<Vec<Case>, Failure> {
+    let bytes = read(path)?;
+    let text = String::from_utf8_lossy(&bytes);
+    let lines = text.trim_start_matches('\u{feff}').lines().enumerate();
+    let cases: Vec<Case> = lines
+        .filter(|(_, line)| !line.trim().is_empty())
+        .map(|(index, line)| {
+            read_case(line)
+                .map_err(|reason| Failure::Input(format!("{}, line {}: {reason}", path.display(), index + 1)))
+        })
+        .collect::<Result<_, _>>()?;
+    if cases.is_empty() { Err(Failure::at(path.display(), "there are no cases")) } else { Ok(cases) }
+}
+
+fn read_case(line: &str) -> Result<Case, String> {
+    let case: Case = serde_json::from_str(line).map_err(|error| {
+        // For the parser every line is the first; where it lost the thread is the end of what is wrong.
+        let (text, column) = (error.to_string(), error.column());
+        let what = text.split(" at line 1 column ").next().unwrap_or_default();
+        if column == 0 { what.to_owned() } else { format!("{what} (before column {column})") }
+    })?;
+    case.question.check().map_err(|reason| format!("case {:?}: {reason}", case.id))?;
+    Ok(case)
+}
+
+fn options(arguments: &FeaturesArguments) -> Result<ContactOptions, Failure> {
+    let mut options = ContactOptions::new().with_max_evaluations(arguments.budget);
+    if let Some(text) = &arguments.tolerance {
+        options = options.with_tolerance(number("--tolerance", text, TOLERANCE, |t| t > 0.0)?);
     }
-    if !(args.min_separation >= 0.0 && args.min_separation.is_finite()) {
-        let message = format!("--min-separation {}: a finite distance ≥ 0 is needed", args.min_separation);
-        return Err(FeaturesError::Option(message));
+    if let Some(text) = &arguments.min_separation {
+        let distance = number("--min-separation", text, MIN_SEPARATION, |d| d >= 0.0)?;
+        options = options.with_min_separation(distance);
     }
-    Ok(options.with_min_separation(args.min_separation))
+    Ok(options)
 }
 
 impl Question {
@@ -208,7 +168,7 @@ impl Question {
             if moving.t0.is_finite() && moving.t1.is_finite() && moving.t0 <= moving.t1 {
                 Ok(())
             } else {
-                Err(format!("window [{}, {}]: finite times in order are needed", moving.t0, moving.t1))
+                Err(format!("window [{:?}, {:?}]: finite times in order are needed", moving.t0, moving.t1))
             }
         };
         match self {
@@ -225,7 +185,7 @@ impl Question {
             Self::SphereSphere { a, b, moving } => {
                 points("A.c, B.c", &[a.c, b.c])?;
                 if let Some(r) = [a.r, b.r].into_iter().find(|r| !(*r >= 0.0 && r.is_finite())) {
-                    return Err(format!("radius {r}: a finite number ≥ 0 is needed"));
+                    return Err(format!("radius {r:?}: a finite number ≥ 0 is needed"));
                 }
                 window(moving)
             }
@@ -236,8 +196,8 @@ impl Question {
         }
     }
 
-    /// The answer and the microseconds that the query alone took.
-    fn answer(&self, options: &ContactOptions) -> (FirstContact, f64) {
+    /// The answer and the time that the query alone took.
+    fn answer(&self, options: &ContactOptions) -> (FirstContact, Duration) {
         let pair =
             |moving: &Moving| PairMotion::new(&moving.motion_a, &moving.motion_b, moving.t0, moving.t1);
         match self {
@@ -266,8 +226,8 @@ impl Question {
     }
 }
 
-fn timed(query: impl FnOnce() -> FirstContact) -> (FirstContact, f64) {
+fn timed(query: impl FnOnce() -> FirstContact) -> (FirstContact, Duration) {
     let start = Instant::now();
     let answer = query();
-    (answer, start.elapsed().as_secs_f64() * 1e6)
+    (answer, start.elapsed())
 }

@@ -4,6 +4,7 @@ use crate::arguments::InfoArguments;
 use crate::failure::Failure;
 use crate::load::{Loaded, load};
 use crate::output::{Output, print};
+use crate::report::short;
 use d2m::bvh::{EnclosingSphere, Validation};
 use d2m::shapes::{COMMON, SHAPES};
 use serde_json::json;
@@ -47,6 +48,7 @@ fn mesh_text(body: &Loaded, validation: &Validation) -> String {
     line(
         "surface",
         match (validation.watertight, validation.consistently_oriented) {
+            (true, true) if validation.signed_volume == 0.0 => "encloses nothing".to_owned(),
             (true, true) if validation.signed_volume < 0.0 => "watertight, oriented inwards".to_owned(),
             (true, true) => "watertight, oriented outwards".to_owned(),
             (true, false) => "watertight, but faces disagree about the outside".to_owned(),
@@ -57,12 +59,12 @@ fn mesh_text(body: &Loaded, validation: &Validation) -> String {
         "parts",
         format!("{}, Euler characteristic {}", validation.components, validation.euler_characteristic),
     );
-    line("area", format!("{:.6}", validation.area));
+    line("area", size(validation.area));
     if validation.consistently_oriented {
-        line("volume", format!("{:.6}", validation.signed_volume));
+        line("volume", size(validation.signed_volume));
     }
     line("box", format!("{low:?} to {high:?}"));
-    line("sphere", format!("centre {:?}, radius {}", sphere.center.to_array(), sphere.radius));
+    line("sphere", format!("centre {:?}, radius {}", sphere.center.to_array(), short(sphere.radius)));
     for (what, count) in [
         ("degenerate triangles", validation.degenerate_triangles),
         ("repeated triangles", validation.duplicate_triangles),
@@ -77,6 +79,15 @@ fn mesh_text(body: &Loaded, validation: &Validation) -> String {
         }
     }
     text
+}
+
+/// An area or a volume: six digits after the point where that tells something.
+fn size(number: f64) -> String {
+    match number.abs() {
+        0.0 => "0".to_owned(),
+        size if (1e-3..1e9).contains(&size) => format!("{number:.6}"),
+        _ => format!("{number:.6e}"),
+    }
 }
 
 fn mesh_json(body: &Loaded, validation: &Validation) -> String {

@@ -20,7 +20,9 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<(), Failure> {
     let motion_b = Motion::parse("--motion-b", &arguments.motion_b)?;
     motion_a.require_window("--motion-a", window)?;
     motion_b.require_window("--motion-b", window)?;
-    let inputs = [Path::new(&arguments.a), Path::new(&arguments.b)];
+    let motion_files = [&arguments.motion_a, &arguments.motion_b].map(|motion| motion.strip_prefix('@'));
+    let meshes = [&arguments.a, &arguments.b].map(String::as_str);
+    let inputs = motion_files.into_iter().flatten().chain(meshes).map(Path::new);
     let scene = match &arguments.obj {
         Some(path) => Some(Output::new(path)?.spare(inputs)?),
         None => None,

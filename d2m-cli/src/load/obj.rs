@@ -7,7 +7,7 @@
 
 use super::LoadError;
 use super::polygon::triangulate;
-use d2m::bvh::TriMesh;
+use d2m::bvh::{MAX_COORDINATE, TriMesh};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -62,7 +62,9 @@ impl Scan {
         // Absolute indices may run ahead of their vertices; they are checked at the end.
         let mut highest = (0, 0);
         let mut continued: Option<(usize, String)> = None;
-        for (line, content) in text.lines().enumerate().map(|(index, content)| (index + 1, content)) {
+        // The empty line at the end closes one that ends in a backslash.
+        for (index, content) in text.lines().chain([""]).enumerate() {
+            let line = index + 1;
             let content = content.split('#').next().unwrap_or_default().trim_end();
             let (line, content) = match continued.take() {
                 Some((line, start)) => (line, start + " " + content),
@@ -97,6 +99,9 @@ impl Scan {
             *coordinate = word.parse().map_err(|_| fault(format!("is {word:?}, not a number")))?;
             if !coordinate.is_finite() {
                 return Err(fault(format!("is {word}, not a finite number")));
+            }
+            if coordinate.abs() > MAX_COORDINATE {
+                return Err(fault(format!("is {word}, larger than the limit of {MAX_COORDINATE:e}")));
             }
             self.clean.push(' ');
             self.clean.push_str(word);

@@ -2,7 +2,7 @@
 
 use super::LoadError;
 use super::polygon::triangulate;
-use d2m::bvh::TriMesh;
+use d2m::bvh::{MAX_COORDINATE, TriMesh};
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{Encoding, Property, PropertyAccess, PropertyAccessResult};
@@ -86,6 +86,9 @@ impl Element {
             *slot = value.ok_or_else(|| format!("{axis} is missing"))?;
             if !slot.is_finite() {
                 return Err(format!("{axis} is {slot}, not a finite number"));
+            }
+            if slot.abs() > MAX_COORDINATE {
+                return Err(format!("{axis} is {slot:e}, larger than the limit of {MAX_COORDINATE:e}"));
             }
         }
         Ok(DVec3::from_array(position))
