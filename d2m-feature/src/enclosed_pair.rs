@@ -99,8 +99,8 @@ impl<'a> EnclosedPairMotion<'a> {
         let path = EnclosedPath::new(motions, [ball_a.0; 2], extent, separation);
         let tolerance = options.wanted_tolerance(sum, extent.from_origin).max(4.0 * path.rounding());
         let window = path.window();
-        let test = SphereSphereTest { path, centre: ball_b.0, radii, tolerance, separation, size: sum };
-        answer(test, window, motions, options)
+        let mut test = SphereSphereTest { path, centre: ball_b.0, radii, tolerance, separation, size: sum };
+        answer(&mut test, window, motions, options)
     }
 
     /// Where and how a point of A and a triangle of B touch at a time (the `lo` of a bracket).
@@ -142,7 +142,7 @@ fn point_triangle(
     let path = EnclosedPath::new(motions, [point; 2], extent, separation);
     let tolerance = options.wanted_tolerance(planes.size, planes.extent).max(4.0 * path.rounding());
     let window = path.window();
-    answer(PointTriangleTest::new(path, &planes, tolerance, separation), window, motions, options)
+    answer(&mut PointTriangleTest::new(path, &planes, tolerance, separation), window, motions, options)
 }
 
 fn edge_edge(
@@ -162,7 +162,7 @@ fn edge_edge(
         options.wanted_tolerance(2.0 * half_lengths.0.max(half_lengths.1), reach).max(4.0 * path.rounding());
     let window = path.window();
     answer(
-        EdgeEdgeTest { path, middle, half, half_lengths, tolerance, separation, inside: Piece::NONE },
+        &mut EdgeEdgeTest { path, middle, half, half_lengths, tolerance, separation, inside: Piece::NONE },
         window,
         motions,
         options,
@@ -171,7 +171,7 @@ fn edge_edge(
 
 /// Isolates in the part of the window in which the features come within reach of each other.
 fn answer<T: PieceTest>(
-    test: T,
+    test: &mut T,
     part: Option<Piece>,
     motions: &EnclosedMotions<'_>,
     options: &ContactOptions,

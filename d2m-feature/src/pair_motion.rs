@@ -180,8 +180,8 @@ fn placed(
     let tolerance = options.wanted_tolerance(planes.size, reach);
     if path.rounding() <= 0.25 * tolerance {
         let window = path.window();
-        let test = PointTriangleTest::new(path, planes, tolerance, separation);
-        return answer(test, window, motion, options);
+        let mut test = PointTriangleTest::new(path, planes, tolerance, separation);
+        return answer(&mut test, window, motion, options);
     }
     let framed = FramedMotion::new(motion.anchored(point, triangle.vertices[0]));
     let planes = TrianglePlanes::new(triangle.vertices.map(|v| framed.motion.place_b(v)));
@@ -189,8 +189,8 @@ fn placed(
     let tolerance =
         options.wanted_tolerance(planes.size, reach).max(4.0 * path.rounding()).max(path.time_rounding());
     let window = path.window();
-    let test = PointTriangleTest::new(path, &planes, tolerance, separation);
-    answer(test, window, motion, options)
+    let mut test = PointTriangleTest::new(path, &planes, tolerance, separation);
+    answer(&mut test, window, motion, options)
 }
 
 fn edge_edge(
@@ -227,7 +227,7 @@ fn edge_edge(
     test.tolerance = options.wanted_tolerance(length, reach);
     if test.path.rounding() <= 0.25 * test.tolerance {
         let window = test.path.window();
-        return answer(test, window, &framed.motion, options);
+        return answer(&mut test, window, &framed.motion, options);
     }
     let anchored = FramedMotion::new(framed.motion.anchored(edge_a[0], edge_b[0]));
     let mut test = build(&anchored);
@@ -236,7 +236,7 @@ fn edge_edge(
         .max(4.0 * test.path.rounding())
         .max(test.path.time_rounding());
     let window = test.path.window();
-    answer(test, window, &framed.motion, options)
+    answer(&mut test, window, &framed.motion, options)
 }
 
 fn sphere_sphere(
@@ -265,19 +265,19 @@ fn sphere_sphere(
     test.tolerance = options.wanted_tolerance(sum, reach);
     if test.path.rounding() <= 0.25 * test.tolerance {
         let window = test.path.window();
-        return answer(test, window, &framed.motion, options);
+        return answer(&mut test, window, &framed.motion, options);
     }
     let anchored = FramedMotion::new(framed.motion.anchored(centres[0], centres[1]));
     let mut test = build(&anchored, centres, radii, separation);
     test.tolerance =
         options.wanted_tolerance(sum, reach).max(4.0 * test.path.rounding()).max(test.path.time_rounding());
     let window = test.path.window();
-    answer(test, window, &framed.motion, options)
+    answer(&mut test, window, &framed.motion, options)
 }
 
 /// Isolates and tells the answer in real time.
 fn answer<T: PieceTest>(
-    mut test: T,
+    test: &mut T,
     window: Option<Piece>,
     motion: &RelativeMotion,
     options: &ContactOptions,
@@ -290,7 +290,7 @@ fn answer<T: PieceTest>(
         // It starts where the spheres about both features meet.
         limits = limits.with_start_apart();
     }
-    let Isolation { root, .. } = isolate(&mut test, window, &limits);
+    let Isolation { root, .. } = isolate(test, window, &limits);
     match root {
         FirstRoot::Clear => FirstContact::Clear,
         FirstRoot::Undecided { clear_until } => {
@@ -306,7 +306,7 @@ fn answer<T: PieceTest>(
 
 /// Isolates in real time. `start_apart`: the caller knows that there is no contact at the start of the window.
 pub(crate) fn answer_in<T: PieceTest>(
-    mut test: T,
+    test: &mut T,
     window: Piece,
     start_apart: bool,
     options: &ContactOptions,
@@ -315,7 +315,7 @@ pub(crate) fn answer_in<T: PieceTest>(
     if start_apart {
         limits = limits.with_start_apart();
     }
-    match isolate(&mut test, window, &limits).root {
+    match isolate(test, window, &limits).root {
         FirstRoot::Clear => FirstContact::Clear,
         FirstRoot::Undecided { clear_until } => FirstContact::Undecided { clear_until },
         FirstRoot::Found { bracket: Piece { lo, hi }, evidence, distance } => {

@@ -22,6 +22,7 @@ mod state;
 mod text;
 mod twist;
 mod two;
+mod two_jets;
 
 pub use error::MotionError;
 pub use keyframes::{Keyframes, Span};
@@ -33,6 +34,10 @@ pub use rigid_motion::RigidMotion;
 pub use screw::ScrewMotion;
 pub use state::CertifiedState;
 pub use twist::{IntervalTwist, Twist};
+/// For the crates of this workspace: vectors and jets of an edge's midpoint and half edge in the two halves of vector
+/// registers.
+#[doc(hidden)]
+pub use {two::TwoVec3, two_jets::TwoJets};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

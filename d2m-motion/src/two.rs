@@ -1,19 +1,23 @@
 //! Two vectors side by side, in the two halves of vector registers: the same bits as one after the other.
-use core::ops::{Add, Sub};
+use core::ops::{Add, Mul, Sub};
 use d2m_interval::F64x2;
 use glam::DVec3;
 
 /// Two vectors, component by component.
 #[derive(Clone, Copy)]
-pub(crate) struct TwoVec3 {
-    pub(crate) x: F64x2,
-    pub(crate) y: F64x2,
-    pub(crate) z: F64x2,
+pub struct TwoVec3 {
+    /// Both first components.
+    pub x: F64x2,
+    /// Both second components.
+    pub y: F64x2,
+    /// Both third components.
+    pub z: F64x2,
 }
 
 impl TwoVec3 {
+    /// Side by side.
     #[inline(always)]
-    pub(crate) fn new(first: DVec3, second: DVec3) -> Self {
+    pub fn new(first: DVec3, second: DVec3) -> Self {
         Self {
             x: F64x2::pack(first.x, second.x),
             y: F64x2::pack(first.y, second.y),
@@ -21,28 +25,51 @@ impl TwoVec3 {
         }
     }
 
+    /// The same twice.
     #[inline(always)]
-    pub(crate) fn splat(v: DVec3) -> Self {
+    pub fn splat(v: DVec3) -> Self {
         Self { x: F64x2::splat(v.x), y: F64x2::splat(v.y), z: F64x2::splat(v.z) }
     }
 
+    /// The first.
     #[inline(always)]
-    pub(crate) fn first(self) -> DVec3 {
+    pub fn first(self) -> DVec3 {
         DVec3::new(self.x.first(), self.y.first(), self.z.first())
     }
 
+    /// The second.
     #[inline(always)]
-    pub(crate) fn second(self) -> DVec3 {
+    pub fn second(self) -> DVec3 {
         DVec3::new(self.x.second(), self.y.second(), self.z.second())
     }
 
+    /// The first of each.
     #[inline(always)]
-    pub(crate) fn dot(self, o: Self) -> F64x2 {
+    pub fn firsts(self, o: Self) -> Self {
+        Self::new(self.first(), o.first())
+    }
+
+    /// The second of each.
+    #[inline(always)]
+    pub fn seconds(self, o: Self) -> Self {
+        Self::new(self.second(), o.second())
+    }
+
+    /// Exchanged.
+    #[inline(always)]
+    pub fn swap(self) -> Self {
+        Self { x: self.x.swap(), y: self.y.swap(), z: self.z.swap() }
+    }
+
+    /// Dot products, vector by vector.
+    #[inline(always)]
+    pub fn dot(self, o: Self) -> F64x2 {
         self.x.times(o.x).plus(self.y.times(o.y)).plus(self.z.times(o.z))
     }
 
+    /// Cross products, vector by vector.
     #[inline(always)]
-    pub(crate) fn cross(self, o: Self) -> Self {
+    pub fn cross(self, o: Self) -> Self {
         Self {
             x: self.y.times(o.z).minus(self.z.times(o.y)),
             y: self.z.times(o.x).minus(self.x.times(o.z)),
@@ -50,8 +77,9 @@ impl TwoVec3 {
         }
     }
 
+    /// Each times its own factor.
     #[inline(always)]
-    pub(crate) fn scaled(self, s: F64x2) -> Self {
+    pub fn scaled(self, s: F64x2) -> Self {
         Self { x: self.x.times(s), y: self.y.times(s), z: self.z.times(s) }
     }
 }
@@ -69,5 +97,13 @@ impl Sub for TwoVec3 {
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
         Self { x: self.x.minus(o.x), y: self.y.minus(o.y), z: self.z.minus(o.z) }
+    }
+}
+
+impl Mul<f64> for TwoVec3 {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, s: f64) -> Self {
+        self.scaled(F64x2::splat(s))
     }
 }

@@ -1,12 +1,16 @@
 //! A moving edge against an edge that is fixed in B's frame.
+mod products;
+
 use crate::closest;
 use crate::path::{
-    FeaturePath, along, around, cubic_along, direction, global, local, padded, reach, widened, without_third,
+    FeaturePath, along, around, direction, global, local, padded, reach, widened, without_third,
 };
 use crate::point_triangle::cleared;
-use d2m_motion::PathJet;
+use d2m_interval::F64x2;
+use d2m_motion::{TwoJets, TwoVec3};
 use d2m_root::{Band, Cubic, Measurement, Piece, PieceTest, Quadratic, Verdict};
 use glam::DVec3;
+use products::{TripleProduct, TwoQuadratics};
 
 /// The piece test of two edges: the path is the midpoint of A's edge minus the midpoint of B's, and A's half edge.
 pub(crate) struct EdgeEdgeTest<P> {
@@ -31,37 +35,38 @@ const NEARBY: f64 = 1.0;
 const PATIENCE: f64 = 0.06;
 const UP: f64 = 1.0 + 1e-14;
 
-/// `a·b` of two jets as a quadratic, and a bound of what the cubic and quartic terms add.
-#[inline(always)]
-fn product_of(a: [DVec3; 3], b: [DVec3; 3]) -> (Quadratic, f64, f64) {
-    let quadratic = Quadratic {
-        value: a[0].dot(b[0]),
-        slope: a[0].dot(b[1]) + a[1].dot(b[0]),
-        curvature: a[0].dot(b[2]) + a[2].dot(b[0]) + 2.0 * a[1].dot(b[1]),
-    };
-    (quadratic, 0.5 * (a[1].dot(b[2]) + a[2].dot(b[1])).abs(), 0.25 * a[2].dot(b[2]).abs())
-}
-
 impl<P: FeaturePath> EdgeEdgeTest<P> {
     /// The part of a piece in which the edges may be near: as a whole all four corners w ± e ± d on one side along
     /// the line of the midpoints, from either end |w| ≤ |e| + |d| along the velocity.
     #[inline(always)]
-    fn near(&self, w: &PathJet, e: &PathJet, d: DVec3, whole: Piece, h: f64) -> Option<Piece> {
-        let of_w = widened(w.remainder, self.separation).bound(h);
-        let of_e = e.remainder.bound(h);
-        let distance = w.p.length();
+    fn near(&self, jets: &TwoJets, d: DVec3, whole: Piece, h: f64) -> Option<Piece> {
+        let of_w = widened(jets.remainders[0], self.separation).bound(h);
+        let of_e = jets.remainders[1].bound(h);
+        let (w, v) = (jets.p.first(), jets.v.first());
+        let distance = w.length();
         if distance > self.half_lengths.0 {
-            let (away, left_out) = cubic_along(w, w.p).quadratic_near(0.0, h);
-            let (reach_a, left_out_e) = cubic_along(e, w.p).quadratic_near(0.0, h);
-            let needed = (w.p.dot(d).abs() + distance * (of_w + of_e) + left_out + left_out_e) * UP;
-            if away.plus(&reach_a).bound_below(whole) > needed
-                && away.minus(&reach_a).bound_below(whole) > needed
-            {
+            // Along w, of w and of e.
+            let axis = TwoVec3::splat(w);
+            let jerk = jets.j.dot(axis);
+            let away = TwoQuadratics {
+                value: jets.p.dot(axis),
+                slope: jets.v.dot(axis).plus(jerk.times(F64x2::splat(0.125 * (h * h)))),
+                curvature: jets.a.dot(axis),
+            };
+            let left_out = (jerk.first().abs() + jerk.second().abs()) * ((1.0 / 24.0) * (h * h * h));
+            let needed = (w.dot(d).abs() + distance * (of_w + of_e) + left_out) * UP;
+            if away.sum_and_difference().are_above(needed, whole) {
                 return None;
             }
         }
-        let (forth, left_out) = cubic_along(w, w.v).quadratic_near(0.0, h);
-        let reach = w.v.length() * (self.half_lengths.0 + of_w) + w.v.dot(d).abs() + left_out;
+        let along_v = Cubic {
+            value: w.dot(v),
+            slope: v.dot(v),
+            curvature: jets.a.first().dot(v),
+            jerk: jets.j.first().dot(v),
+        };
+        let (forth, left_out) = along_v.quadratic_about_centre(h);
+        let reach = v.length() * (self.half_lengths.0 + of_w) + v.dot(d).abs() + left_out;
         forth.clip(Band { lo: -reach * UP, hi: reach * UP }, whole)
     }
 
@@ -80,9 +85,9 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
         self.path.speed() + self.path.direction_speed()
     }
 
-    /// Jets of the difference of the midpoints and of A's half edge, and B's half edge.
+    /// Jets of the difference of the midpoints and of A's half edge, side by side, and B's half edge.
     #[inline(always)]
-    fn jets(&mut self, piece: Piece, at: f64) -> (PathJet, PathJet, DVec3) {
+    fn jets(&mut self, piece: Piece, at: f64) -> (TwoJets, DVec3) {
         self.path.edges(piece, at, (self.middle, self.half))
     }
 }
@@ -105,42 +110,36 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
     #[inline]
     fn evaluate(&mut self, piece: Piece) -> Verdict {
         let at = piece.mid();
-        let (w, e, d) = self.jets(piece, at);
+        let (jets, d) = self.jets(piece, at);
         let (half_a, half_b) = self.half_lengths;
         let whole = local(piece, at);
         let h = reach(whole);
-        let remainder = widened(w.remainder, self.separation);
+        let (remainder, remainder_e) = (widened(jets.remainders[0], self.separation), jets.remainders[1]);
 
         let known_inside = self.inside.holds(piece);
         let mut searched = whole;
         if !known_inside && self.speed() * h > NEARBY * self.size() {
-            let Some(near) = self.near(&w, &e, d, whole, h) else {
+            let Some(near) = self.near(&jets, d, whole, h) else {
                 return Verdict::Clear;
             };
             searched = near;
         }
 
-        // f = w·(e × d), zero when the lines meet: Taylor polynomials multiplied out to third order.
-        let (k0, k1, k2, k3) = (e.p.cross(d), e.v.cross(d), e.a.cross(d), e.j.cross(d));
-        let f = Cubic {
-            value: w.p.dot(k0),
-            slope: w.p.dot(k1) + w.v.dot(k0),
-            curvature: w.p.dot(k2) + w.a.dot(k0) + 2.0 * w.v.dot(k1),
-            jerk: w.p.dot(k3) + w.j.dot(k0) + 3.0 * (w.v.dot(k2) + w.a.dot(k1)),
-        };
-        // What the products of higher order add.
-        let fourth = ((1.0 / 6.0) * (w.v.dot(k3) + w.j.dot(k1)) + 0.25 * w.a.dot(k2)).abs();
-        let fifth = ((1.0 / 12.0) * (w.a.dot(k3) + w.j.dot(k2))).abs();
-        let sixth = ((1.0 / 36.0) * w.j.dot(k3)).abs();
+        // f = w·(e × d), zero when the lines meet.
+        let TripleProduct { cubic: f, fourth, fifth, sixth } = TripleProduct::new(&jets, d);
         // |w| is at most what its speed admits, and at a contact both half edges and the separation; its jet adds its
         // remainder.
-        let (there, touching) = (w.p.length() + h * self.path.speed(), self.size() + self.separation);
+        let (there, touching) =
+            (jets.p.first().length() + h * self.path.speed(), self.size() + self.separation);
         let apart = (if there < touching { there } else { touching }) + remainder.bound(h);
-        let sum = remainder.scaled(half_a).plus(e.remainder.scaled(apart)).scaled(half_b * UP);
-        let (third, fourth_sum) = ((1.0 / 6.0) * sum.m3, (1.0 / 24.0) * sum.m4 + fourth);
+        let (of_w, of_e) = (half_b * half_a * UP, half_b * apart * UP);
+        let e0 = remainder.e0 * of_w + remainder_e.e0 * of_e;
+        let e1 = remainder.e1 * of_w + remainder_e.e1 * of_e;
+        let e2 = remainder.e2 * of_w + remainder_e.e2 * of_e;
+        let third = (1.0 / 6.0) * (remainder.m3 * of_w + remainder_e.m3 * of_e);
+        let fourth_sum = (1.0 / 24.0) * (remainder.m4 * of_w + remainder_e.m4 * of_e) + fourth;
         let margin_f = |s: f64| {
-            let high = third + s * (fourth_sum + s * (fifth + s * sixth));
-            (sum.e0 + s * (sum.e1 + s * (sum.e2 + s * high))) * UP
+            (e0 + s * (e1 + s * (e2 + s * (third + s * (fourth_sum + s * (fifth + s * sixth)))))) * UP
         };
         let Some(mut part) = f.clip(Band { lo: 0.0, hi: 0.0 }, margin_f, searched) else {
             return Verdict::Clear;
@@ -154,14 +153,16 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
             let meeting = Piece { lo: meeting.lo - m, hi: meeting.hi - m };
             let r = reach(meeting) * UP;
             // Γ with directions frozen there: k = e × d, u = d × k.
-            let (w_m, e_m) = (w.at(m), e.at(m));
+            let there = jets.at(m);
+            let (w_m, e_m) = (there.first(), there.second());
             let k = e_m.cross(d);
             let u = d.cross(k);
             let k_length = k.length() * UP;
             // At least |u|, and of the size of its rounding when k is all rounding.
             let u_length = half_b * k_length * UP;
-            let (w_u, e_u, w_j) = (w_m.dot(u), e_m.dot(u), w_m.dot(e_m.cross(k)));
-            let (of_w, of_e) = (remainder.bound(s), e.remainder.bound(s));
+            let along_u = there.dot(TwoVec3::splat(u));
+            let (w_u, e_u, w_j) = (along_u.first(), along_u.second(), w_m.dot(e_m.cross(k)));
+            let (of_w, of_e) = (remainder.bound(s), remainder_e.bound(s));
             // What the speeds admit.
             let (stray_w, stray_e) = (self.path.speed() * r + of_w, self.path.direction_speed() * r + of_e);
             let margin_a = u_length * (stray_w + stray_e) * UP;
@@ -184,21 +185,26 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
             } else {
                 // The same with jets.
                 let cube = (1.0 / 6.0) * (r * r * r);
-                let margin_w = (of_w + cube * w.j.length()) * UP;
-                let margin_e = (of_e + cube * e.j.length()) * UP;
-                let (w, e) = (w.moved(m), e.moved(m));
+                let bent = jets.j.dot(jets.j).sqrt();
+                let margin_w = (of_w + cube * bent.first()) * UP;
+                let margin_e = (of_e + cube * bent.second()) * UP;
+                let moved = jets.moved(m);
                 let before = Piece { lo: part.lo - m, hi: part.hi - m };
-                let (w_u, e_u) = (along(&w, u), along(&e, u));
-                let (first_a, second_a) = (w_u.plus(&e_u), w_u.minus(&e_u));
+                let along_u = TwoQuadratics::along(&moved, u);
+                let e_u = along_u.second();
+                let first_a = along_u.first().plus(&e_u);
+                let second_a = along_u.first().minus(&e_u);
                 let margin_a = u_length * (margin_w + margin_e) * UP;
                 let Some(beside) = first_a.clip_shared_sign(&second_a, margin_a, before) else {
                     return Verdict::Clear;
                 };
-                let js = [e.p.cross(k), e.v.cross(k), e.a.cross(k)];
-                let (w_j, cubic_j, quartic_j) = product_of([w.p, w.v, w.a], js);
+                let TripleProduct { cubic: w_j, fourth: quartic_j, .. } = TripleProduct::new(&moved, k);
+                let cubic_j = (1.0 / 6.0) * w_j.jerk.abs();
+                let w_j = Quadratic { value: w_j.value, slope: w_j.slope, curvature: w_j.curvature };
                 let (first_b, second_b) = (w_j.plus(&e_u), w_j.minus(&e_u));
                 // |w| there, up to what its jet admits.
-                let length = w.p.length() + r * (w.v.length() + 0.5 * r * w.a.length());
+                let length =
+                    w_m.length() + r * (moved.v.first().length() + 0.5 * r * moved.a.first().length());
                 let product = margin_w * half_a + length * margin_e;
                 let margin_b =
                     ((cubic_j + quartic_j * r) * (r * r * r) + k_length * product + u_length * margin_e) * UP;
@@ -222,7 +228,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
         // A true crossing: f changes sign.
         let changes = |between: Piece| {
             let s = reach(between);
-            let (of_w, of_e) = (remainder.bound(s), e.remainder.bound(s));
+            let (of_w, of_e) = (remainder.bound(s), remainder_e.bound(s));
             let product = half_b * (of_w * half_a + (there + of_w) * of_e);
             let higher = s * s * s * s * (fourth + s * (fifth + s * sixth));
             let margin = (product + higher) * UP;
@@ -235,7 +241,8 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
     }
 
     fn measure(&mut self, piece: Piece, at: f64) -> Measurement {
-        let (w, e, d) = self.jets(piece, at);
+        let (jets, d) = self.jets(piece, at);
+        let [w, e] = jets.split();
         let pair = closest::segment_segment(w.p, e.p, d);
         let distance =
             pair.difference.length() * UP + w.remainder.bound(0.0) + e.remainder.bound(0.0) - self.separation;

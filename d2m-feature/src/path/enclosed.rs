@@ -1,6 +1,6 @@
 //! Jets of any C² motion from what it encloses of itself.
 use super::FeaturePath;
-use d2m_motion::{PathJet, RelativeState, RigidMotion};
+use d2m_motion::{PathJet, RelativeState, RigidMotion, TwoJets};
 use d2m_root::{Band, Piece, Quadratic};
 use glam::DVec3;
 
@@ -139,10 +139,10 @@ impl FeaturePath for EnclosedPath<'_> {
     }
 
     #[inline(always)]
-    fn edges(&mut self, piece: Piece, at: f64, of_b: (DVec3, DVec3)) -> (PathJet, PathJet, DVec3) {
+    fn edges(&mut self, piece: Piece, at: f64, of_b: (DVec3, DVec3)) -> (TwoJets, DVec3) {
         let of_a = self.with_state(piece, at, |state| {
             let point = state.point_jet(self.arm, self.radius, self.extent);
-            (point, state.direction_jet(self.half, self.length))
+            [point, state.direction_jet(self.half, self.length)]
         });
         super::against(of_a, of_b)
     }

@@ -5,7 +5,7 @@ mod rigid;
 pub(crate) use enclosed::{EnclosedMotions, EnclosedPath, Extent};
 pub(crate) use rigid::{FramedMotion, RigidPath};
 
-use d2m_motion::{PathJet, Remainder};
+use d2m_motion::{PathJet, Remainder, TwoJets};
 use d2m_root::{Cubic, Piece, Quadratic};
 use glam::DVec3;
 
@@ -22,9 +22,9 @@ pub(crate) trait FeaturePath {
         (cubic_along(&jet, d), jet.remainder)
     }
 
-    /// Jets of the point of A relative to a point of B and of the direction of A, and the direction of B: in axes that
-    /// turn with B, whichever they are at that time.
-    fn edges(&mut self, piece: Piece, at: f64, of_b: (DVec3, DVec3)) -> (PathJet, PathJet, DVec3);
+    /// Jets of the point of A relative to a point of B and of the direction of A, side by side, and the direction of B:
+    /// in axes that turn with B, whichever they are at that time.
+    fn edges(&mut self, piece: Piece, at: f64, of_b: (DVec3, DVec3)) -> (TwoJets, DVec3);
 
     /// Bound of the point's speed.
     fn speed(&self) -> f64;
@@ -55,9 +55,8 @@ pub(crate) fn cubic_along(jet: &PathJet, d: DVec3) -> Cubic {
 
 /// The jets of an edge of A in axes in which the midpoint and the half edge of B are at rest.
 #[inline(always)]
-fn against(of_a: (PathJet, PathJet), (middle, half): (DVec3, DVec3)) -> (PathJet, PathJet, DVec3) {
-    let (point, direction) = of_a;
-    (PathJet { p: point.p - middle, ..point }, direction, half)
+fn against([point, direction]: [PathJet; 2], (middle, half): (DVec3, DVec3)) -> (TwoJets, DVec3) {
+    (TwoJets::new(&PathJet { p: point.p - middle, ..point }, &direction), half)
 }
 
 /// The largest |s| of a part.

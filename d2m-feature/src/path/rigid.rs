@@ -1,6 +1,6 @@
 //! Jets in closed form, from frames that all features of a pair of bodies share.
 use super::FeaturePath;
-use d2m_motion::{Arm, ArmPair, Frame, PathJet, RelativeMotion, Remainder};
+use d2m_motion::{Arm, ArmPair, Frame, PathJet, RelativeMotion, Remainder, TwoJets};
 use d2m_root::{Cubic, Piece};
 use glam::DVec3;
 
@@ -54,7 +54,7 @@ pub(crate) struct RigidPath<'a> {
 enum ThirdOrder {
     Point(Arm, Remainder),
     /// Of A and of B, with the remainders of point and direction.
-    Edges([ArmPair; 2], (Remainder, Remainder)),
+    Edges([ArmPair; 2], [Remainder; 2]),
 }
 
 impl<'a> RigidPath<'a> {
@@ -161,11 +161,11 @@ impl FeaturePath for RigidPath<'_> {
     }
 
     #[inline(always)]
-    fn edges(&mut self, piece: Piece, at: f64, of_b: (DVec3, DVec3)) -> (PathJet, PathJet, DVec3) {
+    fn edges(&mut self, piece: Piece, at: f64, of_b: (DVec3, DVec3)) -> (TwoJets, DVec3) {
         let framed = self.motion;
         let from = |frame: &Frame| {
             let point = frame.point_jet(self.point, self.point_remainder);
-            super::against((point, frame.direction_jet(self.direction, self.direction_remainder)), of_b)
+            super::against([point, frame.direction_jet(self.direction, self.direction_remainder)], of_b)
         };
         if self.frame_serves(piece, at) {
             return from(&framed.frame);
@@ -177,7 +177,7 @@ impl FeaturePath for RigidPath<'_> {
         if self.third_order.is_none() {
             let point = motion.point_remainder_third_order(self.point_remainder, self.fourth_derivative);
             let length = self.direction.length() * (1.0 + 1e-14);
-            let remainders = (point, motion.direction_remainder_third_order(length));
+            let remainders = [point, motion.direction_remainder_third_order(length)];
             let arms = [motion.arms_a(self.point, self.direction), motion.arms_b(of_b.0, of_b.1)];
             self.third_order = Some(ThirdOrder::Edges(arms, remainders));
         }

@@ -184,12 +184,12 @@ impl<P: FeaturePath> PointTriangleTest<'_, P> {
         let limit = (planes.radius + remainder.bound(h)) * (1.0 + 1e-14);
         let distance = from_centre.p.length();
         if distance > planes.radius {
-            let (away, left_out) = cubic_along(&from_centre, from_centre.p).quadratic_near(0.0, h);
+            let (away, left_out) = cubic_along(&from_centre, from_centre.p).quadratic_about_centre(h);
             if away.bound_below(whole) > (limit * distance + left_out) * (1.0 + 1e-14) {
                 return None;
             }
         }
-        let (forth, left_out) = cubic_along(&from_centre, jet.v).quadratic_near(0.0, h);
+        let (forth, left_out) = cubic_along(&from_centre, jet.v).quadratic_about_centre(h);
         let reach = (limit * jet.v.length() + left_out) * (1.0 + 1e-14);
         forth.clip(Band { lo: -reach, hi: reach }, whole)
     }

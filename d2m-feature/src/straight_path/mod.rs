@@ -42,13 +42,18 @@ impl StraightPaths {
     /// First contact of the first point with the triangle of the other three, t in [0, 1].
     pub fn point_triangle(&self, options: &ContactOptions) -> FirstContact {
         let lines = Lines::new(self);
-        answer_in(StraightPointTriangle::new(&lines, options), Piece { lo: 0.0, hi: 1.0 }, false, options)
+        answer_in(
+            &mut StraightPointTriangle::new(&lines, options),
+            Piece { lo: 0.0, hi: 1.0 },
+            false,
+            options,
+        )
     }
 
     /// First contact of the edge of the first two points with the edge of the last two, t in [0, 1].
     pub fn edge_edge(&self, options: &ContactOptions) -> FirstContact {
         let lines = Lines::new(self);
-        answer_in(StraightEdgeEdge::new(&lines, options), Piece { lo: 0.0, hi: 1.0 }, false, options)
+        answer_in(&mut StraightEdgeEdge::new(&lines, options), Piece { lo: 0.0, hi: 1.0 }, false, options)
     }
 }
 

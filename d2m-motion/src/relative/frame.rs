@@ -2,7 +2,7 @@
 use super::RelativeMotion;
 use crate::sin_cos::sin_cos_two;
 use crate::two::TwoVec3;
-use crate::{PathJet, Remainder};
+use crate::{PathJet, Remainder, TwoJets};
 use d2m_interval::F64x2;
 use glam::{DMat3, DVec3};
 
@@ -182,8 +182,8 @@ impl RelativeMotion {
         ]
     }
 
-    /// Jets to third order of a point and of a direction of A, the point relative to one of B, and the direction of B:
-    /// all in the axes that have turned with B, told in world axes at the time. Not for anchored motions.
+    /// Jets to third order of a point of A relative to one of B and of a direction of A, side by side, and the direction
+    /// of B: all in the axes that have turned with B, told in world axes at the time. Not for anchored motions.
     ///
     /// Lengths and products of these do not depend on the axes, so nothing of A is turned back by `R_Bᵀ`.
     #[inline(always)]
@@ -191,37 +191,25 @@ impl RelativeMotion {
         &self,
         tau: f64,
         (of_a, of_b): (&ArmPair, &ArmPair),
-        (point, direction): (Remainder, Remainder),
-    ) -> (PathJet, PathJet, DVec3) {
+        remainders: [Remainder; 2],
+    ) -> (TwoJets, DVec3) {
         debug_assert!(self.anchor.is_none());
         let (sin, cos) = self.angles(tau);
         let a = self.spin_a.speed;
-        let other = of_b.along
-            + of_b.across.scaled(F64x2::splat(cos.second()))
-            + of_b.turned.scaled(F64x2::splat(sin.second()));
+        let other = of_b.along + of_b.across * cos.second() + of_b.turned * sin.second();
         let (sin, cos) = (F64x2::splat(sin.first()), F64x2::splat(cos.first()));
         let turning = of_a.across.scaled(cos) + of_a.turned.scaled(sin);
         let only = |v: DVec3| TwoVec3::new(v, DVec3::ZERO);
         let x = only(self.offset + self.velocity * tau) + (of_a.along + turning);
-        let swing = (of_a.turned.scaled(cos) - of_a.across.scaled(sin)).scaled(F64x2::splat(a));
+        let swing = (of_a.turned.scaled(cos) - of_a.across.scaled(sin)) * a;
         let moved = only(self.velocity) + swing;
         let omega = TwoVec3::splat(self.spin_b.omega);
         let x1 = moved - omega.cross(x);
-        let bent = turning.scaled(F64x2::splat(-a * a));
+        let bent = turning * (-a * a);
         let dragged = omega.cross(moved);
         let x2 = bent - dragged - omega.cross(x1);
-        let x3 = swing.scaled(F64x2::splat(-a * a)) - omega.cross(bent + bent - dragged + x2);
-        (
-            PathJet {
-                p: x.first() - other.first(),
-                v: x1.first(),
-                a: x2.first(),
-                j: x3.first(),
-                remainder: point,
-            },
-            PathJet { p: x.second(), v: x1.second(), a: x2.second(), j: x3.second(), remainder: direction },
-            other.second(),
-        )
+        let x3 = swing * (-a * a) - omega.cross(bent + bent - dragged + x2);
+        (TwoJets { p: x - only(other.first()), v: x1, a: x2, j: x3, remainders }, other.second())
     }
 
     /// True if frames are made in extended precision.

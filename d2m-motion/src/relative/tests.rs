@@ -203,7 +203,8 @@ fn directions_and_anchors_keep_their_remainders() {
         let third = motion.direction_remainder_third_order(arm.length());
         // In world axes: turned back for the comparison.
         let (mine, theirs) = (motion.arms_a(arm, arm), motion.arms_b(DVec3::ZERO, arm));
-        let (point, mut jet, half) = motion.edge_jets(tau, (&mine, &theirs), (Remainder::default(), third));
+        let (jets, half) = motion.edge_jets(tau, (&mine, &theirs), [Remainder::default(), third]);
+        let [point, mut jet] = jets.split();
         let back = motion.spin_b.rotation(tau).transpose();
         assert!((back * half - arm).length() <= 1e-14 * arm.length());
         let single = motion.point_jet(tau, &motion.arm(arm), Remainder::default());

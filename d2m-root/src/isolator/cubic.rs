@@ -39,6 +39,19 @@ impl Cubic {
         (quadratic, (1.0 / 24.0) * self.jerk.abs() * (r * r * r))
     }
 
+    /// [`Cubic::quadratic_near`] the time 0.
+    ///
+    /// ```
+    /// let cubic = d2m_root::Cubic { value: -0.25, slope: 1.0, curvature: 0.5, jerk: 6.0 };
+    /// assert_eq!(cubic.quadratic_about_centre(0.3), cubic.quadratic_near(0.0, 0.3));
+    /// ```
+    #[inline(always)]
+    pub fn quadratic_about_centre(&self, r: f64) -> (Quadratic, f64) {
+        let slope = self.slope + 0.125 * self.jerk * (r * r);
+        let quadratic = Quadratic { value: self.value, slope, curvature: self.curvature };
+        (quadratic, (1.0 / 24.0) * self.jerk.abs() * (r * r * r))
+    }
+
     /// Cuts off both ends of `part` where the cubic is certainly farther from the band than `margin` allows; `None` if
     /// that is all of it.
     ///
