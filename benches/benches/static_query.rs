@@ -56,6 +56,12 @@ fn static_queries(criterion: &mut Criterion) {
         group.bench_function("distance_far", |bench| {
             bench.iter(|| distance(black_box(pa), Posed::new(&b, far), Solid::Filled).unwrap());
         });
+        let deep = Posed::new(&b, Pose { translation: pb.pose.translation * 0.5, ..pb.pose });
+        if distance(pa, deep, Solid::Filled).unwrap().state == StartState::Overlapping {
+            group.bench_function("distance_overlapping", |bench| {
+                bench.iter(|| distance(black_box(pa), deep, Solid::Filled).unwrap());
+            });
+        }
         if a.mesh().triangle_count() > 10_000 {
             group.sample_size(20);
             group.bench_function("build", |bench| bench.iter(|| MeshTree::new(a.mesh().clone())));

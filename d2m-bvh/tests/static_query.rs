@@ -121,8 +121,10 @@ fn check(a: Posed<'_>, b: Posed<'_>, what: &str) {
     assert_eq!(hit, try_colliding_pair(a, b).unwrap().is_some());
     // A cutoff and a warm start change nothing.
     let mut cache = PairCache::new();
-    for (i, j) in [(0, 0), (found.triangle_a, found.triangle_b), (u32::MAX, 0)] {
-        cache.remember([i, j]);
+    let crossing = colliding_pairs(a, b).unwrap();
+    let starts = [[0, 0], [found.triangle_a, found.triangle_b], [u32::MAX, 0]];
+    for start in starts.into_iter().chain(crossing) {
+        cache.remember(start);
         let options = DistanceOptions::default().with_solid(Solid::Surface);
         assert_eq!(distance_within(a, b, &options, &mut cache).unwrap(), Some(found));
         assert_eq!(cache.triangles(), Some([found.triangle_a, found.triangle_b]));

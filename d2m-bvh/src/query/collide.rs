@@ -4,6 +4,8 @@ use super::containment::one_holds_the_other;
 use super::static_pair::{Scene, Step, Task, child, proven_apart, run};
 use crate::search::Lanes;
 use crate::{Posed, QueryError, Solid};
+use d2m_feature::triangle_distance;
+use glam::DVec3;
 
 /// Do two bodies at rest share a point?
 ///
@@ -30,7 +32,7 @@ use crate::{Posed, QueryError, Solid};
 pub fn collide(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<bool, QueryError> {
     check_solid(a, b, solid)?;
     let scene = Scene::try_new(a, b)?;
-    Ok(match run(Search { scene: &scene, most: 1 }) {
+    Ok(match run(Search { scene: &scene, most: 1, counts: may_touch }) {
         Found { boxes_apart: true, .. } => false,
         found => !found.pairs.is_empty() || (solid == Solid::Filled && one_holds_the_other(&scene).is_some()),
     })
@@ -43,7 +45,7 @@ pub fn collide(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<bool, QueryEr
 /// [`QueryError::BadPose`].
 pub fn try_colliding_pair(a: Posed<'_>, b: Posed<'_>) -> Result<Option<[u32; 2]>, QueryError> {
     let scene = Scene::try_new(a, b)?;
-    Ok(run(Search { scene: &scene, most: 1 }).pairs.first().copied())
+    Ok(run(Search { scene: &scene, most: 1, counts: may_touch }).pairs.first().copied())
 }
 
 /// All pairs of triangles, the first of A and the second of B, that are not proven apart, in ascending order. Every
@@ -61,9 +63,23 @@ pub fn try_colliding_pair(a: Posed<'_>, b: Posed<'_>) -> Result<Option<[u32; 2]>
 /// [`QueryError::BadPose`].
 pub fn colliding_pairs(a: Posed<'_>, b: Posed<'_>) -> Result<Vec<[u32; 2]>, QueryError> {
     let scene = Scene::try_new(a, b)?;
-    let mut pairs = run(Search { scene: &scene, most: usize::MAX }).pairs;
+    let mut pairs = run(Search { scene: &scene, most: usize::MAX, counts: may_touch }).pairs;
     pairs.sort_unstable();
     Ok(pairs)
+}
+
+/// The first pair of triangles, in the order of the trees, that cross as they are placed. Which one it is depends on the bodies
+/// and poses only.
+pub(super) fn crossing_pair(scene: &Scene<'_>) -> Option<[u32; 2]> {
+    run(Search { scene, most: 1, counts: cross }).pairs.first().copied()
+}
+
+fn may_touch(scene: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
+    !proven_apart(a, b, scene.error, scene.need)
+}
+
+fn cross(scene: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
+    may_touch(scene, a, b) && triangle_distance(a, b).upper == 0.0
 }
 
 /// Refuses filled bodies that do not close.
@@ -79,6 +95,8 @@ struct Search<'a> {
     scene: &'a Scene<'a>,
     /// How many pairs to find before stopping.
     most: usize,
+    /// Which pairs of placed triangles are found.
+    counts: fn(&Scene<'_>, &[DVec3; 3], &[DVec3; 3]) -> bool,
 }
 
 struct Found {
@@ -92,7 +110,7 @@ impl Task for Search<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Found {
-        let Self { scene, most } = self;
+        let Self { scene, most, counts } = self;
         let mut pairs = Vec::new();
         if scene.overlaps::<L>(0, 0, 0) == 0 {
             return Found { boxes_apart: true, pairs };
@@ -109,8 +127,7 @@ impl Task for Search<'_> {
                     }
                 }
                 Step::Compare([a, b]) => {
-                    let (ta, tb) = (scene.place(0, a), scene.place(1, b));
-                    if !proven_apart(&ta, &tb, scene.error, scene.need) {
+                    if counts(scene, &scene.place(0, a), &scene.place(1, b)) {
                         pairs.push([a, b]);
                         if pairs.len() >= most {
                             break;

@@ -1,6 +1,6 @@
 //! How far apart are two bodies at rest?
 
-use super::collide::check_solid;
+use super::collide::{check_solid, crossing_pair};
 use super::containment::one_holds_the_other;
 use super::static_pair::{Scene, Step, Task, child, gap_exceeds, run};
 use crate::search::Lanes;
@@ -126,6 +126,7 @@ pub fn distance_within(
     let without_limit = || run(Search { scene: &scene, first, limit: f64::INFINITY });
     let found = match run(Search { scene: &scene, first, limit }) {
         Found::Unclear => without_limit(),
+        Found::Pair(best) if best.distance.upper == 0.0 => Found::Pair(crossing(&scene, best)),
         found => found,
     };
     let state = match &found {
@@ -152,6 +153,13 @@ struct Best {
     triangles: [u32; 2],
     /// Lower bound over all pairs of placed triangles.
     lower: f64,
+}
+
+/// The pair that stands for all that cross, whichever of them was met first.
+fn crossing(scene: &Scene<'_>, met: Best) -> Best {
+    let [a, b] = crossing_pair(scene).unwrap_or(met.triangles);
+    let distance = triangle_distance(&scene.place(0, a), &scene.place(1, b));
+    Best { distance, triangles: [a, b], lower: 0.0 }
 }
 
 fn describe(scene: &Scene<'_>, bodies: [Posed<'_>; 2], best: &Best, state: StartState) -> Distance {
@@ -199,7 +207,8 @@ enum Found {
 ///
 /// The answer is the pair of triangles with the least (computed upper bound, numbers). A pair is left out only when it
 /// is proven that its computed bound is more than the best one so far; so neither the order of the search nor the pair
-/// that is looked at first has any influence on the answer.
+/// that is looked at first has any influence on the answer. Where triangles cross, their bound is zero: the search ends with the first
+/// such pair, and another, in a fixed order, chooses the one that is told.
 struct Search<'a> {
     scene: &'a Scene<'a>,
     first: Option<[u32; 2]>,
@@ -283,7 +292,7 @@ impl Task for Search<'_> {
                     None => break,
                 },
             };
-            if key > closest.upper_key {
+            if key > closest.upper_key || closest.upper == 0.0 {
                 break;
             }
             match scene.step(pair) {

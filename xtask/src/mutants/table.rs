@@ -352,6 +352,13 @@ pub(crate) const MUTANTS: &[Mutant] = &[
         "lanes = 0;",
         "d2m-bvh/tests/static_query.rs::random_solids_and_soups",
     ),
+    patch(
+        "the crossing pair that was met first is told",
+        "d2m-bvh/src/query/distance.rs",
+        "=> Found::Pair(crossing(&scene, best)),",
+        "=> Found::Pair(best),",
+        "d2m-bvh/tests/static_query.rs::random_solids_and_soups",
+    ),
     // The reference method.
     patch(
         "only the first bracket of a vertex/face pair is searched",
