@@ -9,7 +9,7 @@ use crate::path::{EnclosedMotions, EnclosedPath, Extent, FeaturePath};
 use crate::point_triangle::{PointTriangleTest, TrianglePlanes};
 use crate::sphere_sphere::SphereSphereTest;
 use d2m_motion::RigidMotion;
-use d2m_root::{Piece, PieceTest};
+use d2m_root::Piece;
 use glam::DVec3;
 
 const UP: f64 = 1.0 + 1e-14;
@@ -98,9 +98,9 @@ impl<'a> EnclosedPairMotion<'a> {
         let extent = Extent::of(ball_b.0, radii.1, motions);
         let path = EnclosedPath::new(motions, [ball_a.0; 2], extent, separation);
         let tolerance = options.wanted_tolerance(sum, extent.from_origin).max(4.0 * path.rounding());
-        let window = path.window();
+        let part = path.window();
         let mut test = SphereSphereTest { path, centre: ball_b.0, radii, tolerance, separation, size: sum };
-        answer(&mut test, window, motions, options)
+        answer_in(&mut test, part, motions.window().lo, options)
     }
 
     /// Where and how a point of A and a triangle of B touch at a time (the `lo` of a bracket).
@@ -141,8 +141,9 @@ fn point_triangle(
     let extent = Extent { from_origin: planes.extent, ..extent };
     let path = EnclosedPath::new(motions, [point; 2], extent, separation);
     let tolerance = options.wanted_tolerance(planes.size, planes.extent).max(4.0 * path.rounding());
-    let window = path.window();
-    answer(&mut PointTriangleTest::new(path, &planes, tolerance, separation), window, motions, options)
+    let part = path.window();
+    let mut test = PointTriangleTest::new(path, &planes, tolerance, separation);
+    answer_in(&mut test, part, motions.window().lo, options)
 }
 
 fn edge_edge(
@@ -160,25 +161,8 @@ fn edge_edge(
     let reach = extent.from_origin + half_lengths.0;
     let tolerance =
         options.wanted_tolerance(2.0 * half_lengths.0.max(half_lengths.1), reach).max(4.0 * path.rounding());
-    let window = path.window();
-    answer(
-        &mut EdgeEdgeTest { path, middle, half, half_lengths, tolerance, separation, inside: Piece::NONE },
-        window,
-        motions,
-        options,
-    )
-}
-
-/// Isolates in the part of the window in which the features come within reach of each other.
-fn answer<T: PieceTest>(
-    test: &mut T,
-    part: Option<Piece>,
-    motions: &EnclosedMotions<'_>,
-    options: &ContactOptions,
-) -> FirstContact {
-    let Some(part) = part else {
-        return FirstContact::Clear;
-    };
-    // A part that starts later starts where the spheres about both features meet.
-    answer_in(test, part, part.lo > motions.window().lo, options)
+    let part = path.window();
+    let mut test =
+        EdgeEdgeTest { path, middle, half, half_lengths, tolerance, separation, inside: Piece::NONE };
+    answer_in(&mut test, part, motions.window().lo, options)
 }

@@ -7,7 +7,7 @@ use crate::path::{FeaturePath, FramedMotion, RigidPath};
 use crate::point_triangle::{PointTriangleTest, TrianglePlanes};
 use crate::sphere_sphere::SphereSphereTest;
 use d2m_motion::{LinearMotion, RelativeMotion};
-use d2m_root::{FirstRoot, Isolation, IsolatorOptions, Piece, PieceTest, isolate};
+use d2m_root::{FirstRoot, IsolatorOptions, Piece, PieceTest, isolate};
 use glam::DVec3;
 
 const UP: f64 = 1.0 + 1e-14;
@@ -158,12 +158,8 @@ fn point_triangle(
     options: &ContactOptions,
 ) -> FirstContact {
     let vertices = triangle.map(|v| framed.motion.place_b(v));
-    placed(
-        framed,
-        point,
-        &PlacedTriangle { vertices: *triangle, planes: TrianglePlanes::new(vertices) },
-        options,
-    )
+    let triangle = PlacedTriangle { vertices: *triangle, planes: TrianglePlanes::new(vertices) };
+    placed(framed, point, &triangle, options)
 }
 
 fn placed(
@@ -172,25 +168,23 @@ fn placed(
     triangle: &PlacedTriangle,
     options: &ContactOptions,
 ) -> FirstContact {
-    let motion = &framed.motion;
-    let planes = &triangle.planes;
     let separation = options.separation();
-    let path = RigidPath::new(framed, motion.place_a(point), DVec3::ZERO, planes.extent, separation);
-    let reach = path.reach();
-    let tolerance = options.wanted_tolerance(planes.size, reach);
-    if path.rounding() <= 0.25 * tolerance {
-        let window = path.window();
-        let mut test = PointTriangleTest::new(path, planes, tolerance, separation);
-        return answer(&mut test, window, motion, options);
+    fn build<'a>(
+        framed: &'a FramedMotion,
+        point: DVec3,
+        planes: &'a TrianglePlanes,
+        separation: f64,
+    ) -> PointTriangleTest<'a, RigidPath<'a>> {
+        let point = framed.motion.place_a(point);
+        let path = RigidPath::new(framed, point, DVec3::ZERO, planes.extent, separation);
+        PointTriangleTest::new(path, planes, 0.0, separation)
     }
-    let framed = FramedMotion::new(motion.anchored(point, triangle.vertices[0]));
-    let planes = TrianglePlanes::new(triangle.vertices.map(|v| framed.motion.place_b(v)));
-    let path = RigidPath::new(&framed, DVec3::ZERO, DVec3::ZERO, planes.extent, separation);
-    let tolerance =
-        options.wanted_tolerance(planes.size, reach).max(4.0 * path.rounding()).max(path.time_rounding());
-    let window = path.window();
-    let mut test = PointTriangleTest::new(path, &planes, tolerance, separation);
-    answer(&mut test, window, motion, options)
+    let mut test = build(framed, point, &triangle.planes, separation);
+    first_contact(&mut test, framed, options).unwrap_or_else(|reach| {
+        let anchored = FramedMotion::new(framed.motion.anchored(point, triangle.vertices[0]));
+        let planes = TrianglePlanes::new(triangle.vertices.map(|v| anchored.motion.place_b(v)));
+        first_contact_anchored(&mut build(&anchored, point, &planes, separation), reach, &anchored, options)
+    })
 }
 
 fn edge_edge(
@@ -200,43 +194,28 @@ fn edge_edge(
     options: &ContactOptions,
 ) -> FirstContact {
     let separation = options.separation();
-    // Half edges turn as differences, so that their error is relative to their own length.
-    let parts = |framed: &FramedMotion| -> (_, _, _, _) {
+    fn build(
+        framed: &FramedMotion,
+        edge_a: [DVec3; 2],
+        edge_b: [DVec3; 2],
+        separation: f64,
+    ) -> EdgeEdgeTest<RigidPath<'_>> {
+        // Half edges turn as differences, so that their error is relative to their own length.
         let half_a = framed.motion.turn_a((edge_a[1] - edge_a[0]) * 0.5);
-        let half_b = framed.motion.turn_b((edge_b[1] - edge_b[0]) * 0.5);
-        (framed.motion.place_a(edge_a[0]) + half_a, half_a, framed.motion.place_b(edge_b[0]) + half_b, half_b)
-    };
-    let build = |framed| {
-        let (point, half_a, middle, half_b) = parts(framed);
-        let extent = (middle.length() + half_a.length() + half_b.length()) * UP;
+        let half = framed.motion.turn_b((edge_b[1] - edge_b[0]) * 0.5);
+        let point = framed.motion.place_a(edge_a[0]) + half_a;
+        let middle = framed.motion.place_b(edge_b[0]) + half;
+        let extent = (middle.length() + half_a.length() + half.length()) * UP;
         let path = RigidPath::new(framed, point, half_a, extent, separation);
-        let half_lengths = (half_a.length() * UP, half_b.length() * UP);
-        EdgeEdgeTest {
-            path,
-            middle,
-            half: half_b,
-            half_lengths,
-            tolerance: 0.0,
-            separation,
-            inside: Piece::NONE,
-        }
-    };
-    let mut test = build(framed);
-    let length = 2.0 * test.half_lengths.0.max(test.half_lengths.1);
-    let reach = test.path.reach();
-    test.tolerance = options.wanted_tolerance(length, reach);
-    if test.path.rounding() <= 0.25 * test.tolerance {
-        let window = test.path.window();
-        return answer(&mut test, window, &framed.motion, options);
+        let half_lengths = (half_a.length() * UP, half.length() * UP);
+        EdgeEdgeTest { path, middle, half, half_lengths, tolerance: 0.0, separation, inside: Piece::NONE }
     }
-    let anchored = FramedMotion::new(framed.motion.anchored(edge_a[0], edge_b[0]));
-    let mut test = build(&anchored);
-    test.tolerance = options
-        .wanted_tolerance(length, reach)
-        .max(4.0 * test.path.rounding())
-        .max(test.path.time_rounding());
-    let window = test.path.window();
-    answer(&mut test, window, &framed.motion, options)
+    let mut test = build(framed, edge_a, edge_b, separation);
+    first_contact(&mut test, framed, options).unwrap_or_else(|reach| {
+        let anchored = FramedMotion::new(framed.motion.anchored(edge_a[0], edge_b[0]));
+        let mut test = build(&anchored, edge_a, edge_b, separation);
+        first_contact_anchored(&mut test, reach, &anchored, options)
+    })
 }
 
 fn sphere_sphere(
@@ -245,77 +224,119 @@ fn sphere_sphere(
     ball_b: (DVec3, f64),
     options: &ContactOptions,
 ) -> FirstContact {
-    let sum = ball_a.1.max(0.0) + ball_b.1.max(0.0);
-    let radii = (sum * (2.0 - UP), sum * UP);
+    let size = ball_a.1.max(0.0) + ball_b.1.max(0.0);
     let separation = options.separation();
     fn build(
         framed: &FramedMotion,
         centres: [DVec3; 2],
-        radii: (f64, f64),
+        size: f64,
         separation: f64,
     ) -> SphereSphereTest<RigidPath<'_>> {
+        let radii = (size * (2.0 - UP), size * UP);
         let centre = framed.motion.place_b(centres[1]);
         let extent = (centre.length() + radii.1) * UP;
         let path = RigidPath::new(framed, framed.motion.place_a(centres[0]), DVec3::ZERO, extent, separation);
-        SphereSphereTest { path, centre, radii, tolerance: 0.0, separation, size: radii.1 }
+        SphereSphereTest { path, centre, radii, tolerance: 0.0, separation, size }
     }
     let centres = [ball_a.0, ball_b.0];
-    let mut test = build(framed, centres, radii, separation);
-    let reach = test.path.reach();
-    test.tolerance = options.wanted_tolerance(sum, reach);
-    if test.path.rounding() <= 0.25 * test.tolerance {
-        let window = test.path.window();
-        return answer(&mut test, window, &framed.motion, options);
+    let mut test = build(framed, centres, size, separation);
+    first_contact(&mut test, framed, options).unwrap_or_else(|reach| {
+        let anchored = FramedMotion::new(framed.motion.anchored(centres[0], centres[1]));
+        first_contact_anchored(&mut build(&anchored, centres, size, separation), reach, &anchored, options)
+    })
+}
+
+/// A piece test along a rigid path, built before its tolerance is known.
+trait RigidTest: PieceTest {
+    fn path(&self) -> &RigidPath<'_>;
+    /// Size of the features, for the default tolerance.
+    fn length(&self) -> f64;
+    fn set_tolerance(&mut self, tolerance: f64);
+}
+
+macro_rules! rigid_test {
+    ($test:ty, $length:expr) => {
+        impl RigidTest for $test {
+            fn path(&self) -> &RigidPath<'_> {
+                &self.path
+            }
+            fn length(&self) -> f64 {
+                $length(self)
+            }
+            fn set_tolerance(&mut self, tolerance: f64) {
+                self.tolerance = tolerance;
+            }
+        }
+    };
+}
+rigid_test!(PointTriangleTest<'_, RigidPath<'_>>, |test: &Self| test.planes.size);
+rigid_test!(EdgeEdgeTest<RigidPath<'_>>, |test: &Self| 2.0 * test.half_lengths.0.max(test.half_lengths.1));
+rigid_test!(SphereSphereTest<RigidPath<'_>>, |test: &Self| test.size);
+
+/// The answer of a test whose rounding the tolerance covers; if it does not, how far the features reach: they are to be
+/// asked again from anchors near them.
+fn first_contact(
+    test: &mut impl RigidTest,
+    framed: &FramedMotion,
+    options: &ContactOptions,
+) -> Result<FirstContact, f64> {
+    let reach = test.path().reach();
+    let tolerance = options.wanted_tolerance(test.length(), reach);
+    // Also NaN is asked again.
+    if test.path().rounding() <= 0.25 * tolerance {
+        test.set_tolerance(tolerance);
+        Ok(answer(test, framed, options))
+    } else {
+        Err(reach)
     }
-    let anchored = FramedMotion::new(framed.motion.anchored(centres[0], centres[1]));
-    let mut test = build(&anchored, centres, radii, separation);
-    test.tolerance =
-        options.wanted_tolerance(sum, reach).max(4.0 * test.path.rounding()).max(test.path.time_rounding());
-    let window = test.path.window();
-    answer(&mut test, window, &framed.motion, options)
+}
+
+/// The answer of a test from anchors, with the tolerance that the features would have without and what rounding needs.
+fn first_contact_anchored(
+    test: &mut impl RigidTest,
+    reach: f64,
+    anchored: &FramedMotion,
+    options: &ContactOptions,
+) -> FirstContact {
+    let path = test.path();
+    let rounding = (4.0 * path.rounding()).max(path.time_rounding());
+    test.set_tolerance(options.wanted_tolerance(test.length(), reach).max(rounding));
+    answer(test, anchored, options)
 }
 
 /// Isolates and tells the answer in real time.
-fn answer<T: PieceTest>(
-    test: &mut T,
-    window: Option<Piece>,
-    motion: &RelativeMotion,
-    options: &ContactOptions,
-) -> FirstContact {
-    let Some(window) = window else {
-        return FirstContact::Clear;
-    };
-    let mut limits = IsolatorOptions::new().with_max_evaluations(options.max_evaluations);
-    if window.lo > 0.0 {
-        // It starts where the spheres about both features meet.
-        limits = limits.with_start_apart();
-    }
-    let Isolation { root, .. } = isolate(test, window, &limits);
-    match root {
-        FirstRoot::Clear => FirstContact::Clear,
-        FirstRoot::Undecided { clear_until } => {
+fn answer(test: &mut impl RigidTest, framed: &FramedMotion, options: &ContactOptions) -> FirstContact {
+    let (motion, window) = (&framed.motion, test.path().window());
+    match answer_in(test, window, 0.0, options) {
+        FirstContact::Clear => FirstContact::Clear,
+        FirstContact::Undecided { clear_until } => {
             FirstContact::Undecided { clear_until: motion.time_down(clear_until) }
         }
-        FirstRoot::Found { bracket, evidence, distance } => {
-            let lo = motion.time_down(bracket.lo);
-            let hi = motion.time_up(bracket.hi).max(lo);
+        FirstContact::Contact(ContactBracket { lo, hi, evidence, distance }) => {
+            let lo = motion.time_down(lo);
+            let hi = motion.time_up(hi).max(lo);
             FirstContact::Contact(ContactBracket { lo, hi, evidence, distance })
         }
     }
 }
 
-/// Isolates in real time. `start_apart`: the caller knows that there is no contact at the start of the window.
-pub(crate) fn answer_in<T: PieceTest>(
-    test: &mut T,
-    window: Piece,
-    start_apart: bool,
+/// Isolates in the part of the window in which the features come within reach of each other, in the test's own time.
+#[inline]
+pub(crate) fn answer_in(
+    test: &mut impl PieceTest,
+    part: Option<Piece>,
+    start: f64,
     options: &ContactOptions,
 ) -> FirstContact {
+    let Some(part) = part else {
+        return FirstContact::Clear;
+    };
     let mut limits = IsolatorOptions::new().with_max_evaluations(options.max_evaluations);
-    if start_apart {
+    if part.lo > start {
+        // It starts where the spheres about both features meet.
         limits = limits.with_start_apart();
     }
-    match isolate(test, window, &limits).root {
+    match isolate(test, part, &limits).root {
         FirstRoot::Clear => FirstContact::Clear,
         FirstRoot::Undecided { clear_until } => FirstContact::Undecided { clear_until },
         FirstRoot::Found { bracket: Piece { lo, hi }, evidence, distance } => {

@@ -120,15 +120,7 @@ impl PairMotion {
         triangles: &TriangleQuad,
         min_separation: f64,
     ) -> [bool; 4] {
-        let (frame, h) = (self.forward().middle_frame(), self.half_window());
-        let separation = min_separation.max(0.0);
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has AVX2.
-            #[allow(unsafe_code)]
-            return each(unsafe { reject_points_avx(frame, h, points, triangles, separation) });
-        }
-        each(reject_points::<Portable>(frame, h, points, triangles, separation))
+        self.reject(&Pairs(points, triangles), min_separation)
     }
 
     /// For four edges of A against four edges of B, lane by lane: true where a look at the middle of the window
@@ -147,39 +139,35 @@ impl PairMotion {
     /// assert_eq!(pair.reject_edges(&a, &b, 0.0), [true, false, true, true]);
     /// ```
     pub fn reject_edges(&self, edges_a: &EdgeQuad, edges_b: &EdgeQuad, min_separation: f64) -> [bool; 4] {
-        let (frame, h) = (self.forward().middle_frame(), self.half_window());
-        let separation = min_separation.max(0.0);
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has AVX2.
-            #[allow(unsafe_code)]
-            return each(unsafe { reject_edges_avx(frame, h, edges_a, edges_b, separation) });
-        }
-        each(reject_edges::<Portable>(frame, h, edges_a, edges_b, separation))
+        self.reject(&Pairs(edges_a, edges_b), min_separation)
     }
 
     /// [`PairMotion::reject_points`] without vector registers of 256 bits, for measurements.
     #[doc(hidden)]
     pub fn reject_points_portable(&self, points: &PointQuad, triangles: &TriangleQuad) -> [bool; 4] {
-        each(reject_points::<Portable>(
-            self.forward().middle_frame(),
-            self.half_window(),
-            points,
-            triangles,
-            0.0,
-        ))
+        self.reject_portable(&Pairs(points, triangles), 0.0)
     }
 
     /// [`PairMotion::reject_edges`] without vector registers of 256 bits, for measurements.
     #[doc(hidden)]
     pub fn reject_edges_portable(&self, edges_a: &EdgeQuad, edges_b: &EdgeQuad) -> [bool; 4] {
-        each(reject_edges::<Portable>(
-            self.forward().middle_frame(),
-            self.half_window(),
-            edges_a,
-            edges_b,
-            0.0,
-        ))
+        self.reject_portable(&Pairs(edges_a, edges_b), 0.0)
+    }
+
+    fn reject(&self, pairs: &impl FourPairs, min_separation: f64) -> [bool; 4] {
+        let separation = min_separation.max(0.0);
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            let (frame, h) = (self.forward().middle_frame(), self.half_window());
+            // SAFETY: the processor has AVX2.
+            #[allow(unsafe_code)]
+            return each(unsafe { rejected_avx(pairs, frame, h, separation) });
+        }
+        self.reject_portable(pairs, separation)
+    }
+
+    fn reject_portable(&self, pairs: &impl FourPairs, separation: f64) -> [bool; 4] {
+        each(pairs.rejected::<Portable>(self.forward().middle_frame(), self.half_window(), separation))
     }
 }
 
@@ -187,22 +175,18 @@ fn each(bits: u32) -> [bool; 4] {
     [0, 1, 2, 3].map(|i| bits >> i & 1 == 1)
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn reject_points_avx(
-    frame: &Frame,
-    h: f64,
-    points: &PointQuad,
-    triangles: &TriangleQuad,
-    separation: f64,
-) -> u32 {
-    reject_points::<lanes::Avx>(frame, h, points, triangles, separation)
+/// Four features of A and four of B.
+struct Pairs<'a, A, B>(&'a A, &'a B);
+
+trait FourPairs {
+    /// Bits of the pairs that a look at the middle of a window of half-width `h` rules out.
+    fn rejected<L: Lanes>(&self, frame: &Frame, h: f64, separation: f64) -> u32;
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn reject_edges_avx(frame: &Frame, h: f64, a: &EdgeQuad, b: &EdgeQuad, separation: f64) -> u32 {
-    reject_edges::<lanes::Avx>(frame, h, a, b, separation)
+fn rejected_avx(pairs: &impl FourPairs, frame: &Frame, h: f64, separation: f64) -> u32 {
+    pairs.rejected::<lanes::Avx>(frame, h, separation)
 }
 
 /// The remainder of both sides, rounded up, plus the separation.
@@ -211,75 +195,75 @@ fn margins<L: Lanes>(a: &Four, b: &Four, separation: f64) -> L {
     (L::load(a) + L::load(b) + L::splat(separation)) * L::splat(UP)
 }
 
-#[inline(always)]
-fn reject_points<L: Lanes>(
-    frame: &Frame,
-    h: f64,
-    points: &PointQuad,
-    triangles: &TriangleQuad,
-    separation: f64,
-) -> u32 {
-    let r = Vectors::<L>::load(&points.arm);
-    let p = r.moved(frame, 0);
-    let up = L::splat(UP);
-    // The sphere about all places of the point and the one about the triangle: two of three far lanes end here.
-    let away = p.minus(&Vectors::load(&triangles.centre));
-    let square = away.dot(&away);
-    let radius = L::load(&triangles.radius);
-    let near = (radius + margins::<L>(&points.stray, &triangles.margin, separation)) * up;
-    let mut rejected = square.greater_bits(near * near * up);
-    if rejected == ALL {
-        return rejected;
-    }
-    // Beyond the sphere about the triangle, along the line of centres.
-    let jets = Jets::new(frame, &r, h);
-    let margin: L = margins(&points.margin, &triangles.margin, separation);
-    let needed = square.sqrt() * (radius + margin) * up;
-    rejected |= (square - jets.swing(&away)).greater_bits(needed);
-    for (normal, least, greatest) in &triangles.planes {
+impl FourPairs for Pairs<'_, PointQuad, TriangleQuad> {
+    #[inline(always)]
+    fn rejected<L: Lanes>(&self, frame: &Frame, h: f64, separation: f64) -> u32 {
+        let Self(points, triangles) = self;
+        let r = Vectors::<L>::load(&points.arm);
+        let p = r.moved(frame, 0);
+        let up = L::splat(UP);
+        // The sphere about all places of the point and the one about the triangle: two of three far lanes end here.
+        let away = p.minus(&Vectors::load(&triangles.centre));
+        let square = away.dot(&away);
+        let radius = L::load(&triangles.radius);
+        let near = (radius + margins::<L>(&points.stray, &triangles.margin, separation)) * up;
+        let mut rejected = square.greater_bits(near * near * up);
         if rejected == ALL {
-            break;
+            return rejected;
         }
-        let normal = Vectors::load(normal);
-        let value = normal.dot(&p);
-        let reach = (jets.swing(&normal) + margin) * up;
-        rejected |= (value - reach).greater_bits(L::load(greatest));
-        rejected |= L::load(least).greater_bits(value + reach);
+        // Beyond the sphere about the triangle, along the line of centres.
+        let jets = Jets::new(frame, &r, h);
+        let margin: L = margins(&points.margin, &triangles.margin, separation);
+        let needed = square.sqrt() * (radius + margin) * up;
+        rejected |= (square - jets.swing(&away)).greater_bits(needed);
+        for (normal, least, greatest) in &triangles.planes {
+            if rejected == ALL {
+                break;
+            }
+            let normal = Vectors::load(normal);
+            let value = normal.dot(&p);
+            let reach = (jets.swing(&normal) + margin) * up;
+            rejected |= (value - reach).greater_bits(L::load(greatest));
+            rejected |= L::load(least).greater_bits(value + reach);
+        }
+        rejected
     }
-    rejected
 }
 
-#[inline(always)]
-fn reject_edges<L: Lanes>(frame: &Frame, h: f64, a: &EdgeQuad, b: &EdgeQuad, separation: f64) -> u32 {
-    let r = Vectors::<L>::load(&a.middle);
-    let w = r.moved(frame, 0).minus(&Vectors::load(&b.middle));
-    let up = L::splat(UP);
-    let (length_a, length_b) = (L::load(&a.length), L::load(&b.length));
-    // Spheres about both edges.
-    let square = w.dot(&w);
-    let near = (length_a + length_b + margins::<L>(&a.stray, &b.margin, separation)) * up;
-    let mut rejected = square.greater_bits(near * near * up);
-    if rejected == ALL {
-        return rejected;
+impl FourPairs for Pairs<'_, EdgeQuad, EdgeQuad> {
+    #[inline(always)]
+    fn rejected<L: Lanes>(&self, frame: &Frame, h: f64, separation: f64) -> u32 {
+        let Self(a, b) = self;
+        let r = Vectors::<L>::load(&a.middle);
+        let w = r.moved(frame, 0).minus(&Vectors::load(&b.middle));
+        let up = L::splat(UP);
+        let (length_a, length_b) = (L::load(&a.length), L::load(&b.length));
+        // Spheres about both edges.
+        let square = w.dot(&w);
+        let near = (length_a + length_b + margins::<L>(&a.stray, &b.margin, separation)) * up;
+        let mut rejected = square.greater_bits(near * near * up);
+        if rejected == ALL {
+            return rejected;
+        }
+        // The edges themselves along the line of the midpoints.
+        let jets = Jets::new(frame, &r, h);
+        let margin: L = margins(&a.margin, &b.margin, separation);
+        let distance = square.sqrt();
+        let least = square - jets.swing(&w);
+        let (half_a, d) = (Vectors::load(&a.half), Vectors::load(&b.half));
+        let e = half_a.turned(frame, 0);
+        let along = w.dot(&e).abs() + w.dot(&d).abs();
+        rejected |= least.greater_bits((along + distance * (L::load(&a.turn) + margin)) * up);
+        if rejected == ALL {
+            return rejected;
+        }
+        // Along the common normal k = e × d: contact needs |k·w| ≤ |k·e(t)|, which starts at 0 and grows by its
+        // derivative. What rounding leaves of k·e and k·d goes with the lengths, not with |k|.
+        let k = e.cross(&d);
+        let e1 = half_a.turned(frame, 1);
+        let value = k.dot(&w).abs() - jets.swing(&k);
+        let turning = jets.h * k.dot(&e1).abs() + k.dot(&k).sqrt() * (L::load(&a.bend) + margin);
+        let rounding = L::splat(8.0 * f64::EPSILON) * length_a * length_b * (length_a + length_b);
+        rejected | value.greater_bits((turning + rounding) * up)
     }
-    // The edges themselves along the line of the midpoints.
-    let jets = Jets::new(frame, &r, h);
-    let margin: L = margins(&a.margin, &b.margin, separation);
-    let distance = square.sqrt();
-    let least = square - jets.swing(&w);
-    let (half_a, d) = (Vectors::load(&a.half), Vectors::load(&b.half));
-    let e = half_a.turned(frame, 0);
-    let along = w.dot(&e).abs() + w.dot(&d).abs();
-    rejected |= least.greater_bits((along + distance * (L::load(&a.turn) + margin)) * up);
-    if rejected == ALL {
-        return rejected;
-    }
-    // Along the common normal k = e × d: contact needs |k·w| ≤ |k·e(t)|, which starts at 0 and grows by its
-    // derivative. What rounding leaves of k·e and k·d goes with the lengths, not with |k|.
-    let k = e.cross(&d);
-    let e1 = half_a.turned(frame, 1);
-    let value = k.dot(&w).abs() - jets.swing(&k);
-    let turning = jets.h * k.dot(&e1).abs() + k.dot(&k).sqrt() * (L::load(&a.bend) + margin);
-    let rounding = L::splat(8.0 * f64::EPSILON) * length_a * length_b * (length_a + length_b);
-    rejected | value.greater_bits((turning + rounding) * up)
 }

@@ -33,6 +33,8 @@ pub struct StraightPaths {
     end: [DVec3; 4],
 }
 
+const WINDOW: Option<Piece> = Some(Piece { lo: 0.0, hi: 1.0 });
+
 impl StraightPaths {
     /// Starts and ends of the four points: point and triangle, or edge A and edge B.
     pub const fn new(start: [DVec3; 4], end: [DVec3; 4]) -> Self {
@@ -42,18 +44,13 @@ impl StraightPaths {
     /// First contact of the first point with the triangle of the other three, t in [0, 1].
     pub fn point_triangle(&self, options: &ContactOptions) -> FirstContact {
         let lines = Lines::new(self);
-        answer_in(
-            &mut StraightPointTriangle::new(&lines, options),
-            Piece { lo: 0.0, hi: 1.0 },
-            false,
-            options,
-        )
+        answer_in(&mut StraightPointTriangle::new(&lines, options), WINDOW, 0.0, options)
     }
 
     /// First contact of the edge of the first two points with the edge of the last two, t in [0, 1].
     pub fn edge_edge(&self, options: &ContactOptions) -> FirstContact {
         let lines = Lines::new(self);
-        answer_in(&mut StraightEdgeEdge::new(&lines, options), Piece { lo: 0.0, hi: 1.0 }, false, options)
+        answer_in(&mut StraightEdgeEdge::new(&lines, options), WINDOW, 0.0, options)
     }
 }
 
