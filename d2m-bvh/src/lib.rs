@@ -1,4 +1,4 @@
-//! Triangle meshes, bounding-volume trees and certified tree-pair queries: time of contact, collide, distance.
+#![doc = include_str!("../README.md")]
 
 mod enclosing_sphere;
 mod mesh;

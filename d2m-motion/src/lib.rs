@@ -1,10 +1,5 @@
-//! Rigid motions over time with certified enclosures: linear, screw, keyframes, and an open trait.
-//!
-//! A body point `p` (body frame) is at `R(t)·(p − at) + x(t)` in the world at time `t`, where `at` is a fixed
-//! point of the body (the origin unless chosen otherwise). [`RigidMotion`] is the open trait: anything that can
-//! give a pose and a twist at a time, and enclose both over an interval of time, can be queried.
-//!
-//! **Invariant:** this crate knows poses, twists and paths of points, but no triangles and no meshes.
+#![doc = include_str!("../README.md")]
+
 mod double_double;
 mod error;
 mod keyframes;
@@ -38,10 +33,6 @@ pub use twist::{IntervalTwist, Twist};
 /// registers.
 #[doc(hidden)]
 pub use {two::TwoVec3, two_jets::TwoJets};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeExamples;
 
 #[cfg(test)]
 mod tests;

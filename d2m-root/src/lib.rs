@@ -1,4 +1,4 @@
-//! First roots with proof: second-order inclusion functions, BBOI, IRD, HRFOI, interval Newton, path-jet isolator.
+#![doc = include_str!("../README.md")]
 
 mod bboi;
 mod first_zero;
@@ -20,7 +20,3 @@ pub use isolator::{
     Verdict, isolate,
 };
 pub use parabola::Parabola;
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeExamples;

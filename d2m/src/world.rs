@@ -1,6 +1,6 @@
 use crate::Body;
 use crate::broad_phase::{SweptBox, candidates};
-use d2m_bvh::{Contact, QueryError, QueryOptions, TimeOfContact, Window, time_of_contact};
+use d2m_bvh::{Contact, Mode, QueryError, QueryOptions, TimeOfContact, Window, time_of_contact};
 
 /// Names a body of one [`World`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -73,7 +73,8 @@ pub struct World {
 }
 
 impl World {
-    /// An empty world; `options` hold for every pair.
+    /// An empty world; `options` hold for every pair, but for [`Mode::Exists`], which is asked as accurate: a world
+    /// promises first contacts.
     pub const fn new(options: QueryOptions) -> Self {
         Self { bodies: Vec::new(), options }
     }
@@ -164,7 +165,39 @@ impl World {
     }
 
     fn pair(&self, a: BodyId, b: BodyId, window: Window) -> Result<TimeOfContact, WorldError> {
-        time_of_contact(self.body(a).moving(), self.body(b).moving(), window, &self.options)
+        let options = match self.options.mode {
+            Mode::Exists => self.options.with_mode(Mode::Accurate),
+            _ => self.options,
+        };
+        time_of_contact(self.body(a).moving(), self.body(b).moving(), window, &options)
             .map_err(|error| WorldError { a, b, error })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use d2m_bvh::MeshTree;
+    use d2m_motion::LinearMotion;
+    use glam::DVec3;
+    use std::sync::Arc;
+
+    /// With "any contact will do" the later of two would be as good as the first, and its time any time.
+    #[test]
+    fn first_contacts_are_first_in_any_mode() {
+        let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=1&y=1&z=1").unwrap()));
+        for mode in [Mode::Accurate, Mode::Exists] {
+            let mut world = World::new(QueryOptions::default().with_mode(mode));
+            world.add(Body::new(Arc::clone(&cube), LinearMotion::REST));
+            for (axis, distance) in [(DVec3::X, 7.0), (DVec3::Y, 5.0), (DVec3::Z, 6.0)] {
+                let coming = LinearMotion::REST.with_position(axis * distance);
+                world.add(Body::new(Arc::clone(&cube), coming.with_linear_velocity(axis * -8.0)));
+            }
+            let FirstContact::Contact { a, b, contact } = world.first_contact(Window::UNIT).unwrap() else {
+                panic!("three of them arrive")
+            };
+            assert_eq!((a.index(), b.index()), (0, 2), "{mode:?}");
+            assert!(contact.time_lo <= 0.375 && contact.time_lo > 0.375 - 1e-9, "{mode:?}: {contact:?}");
+        }
     }
 }

@@ -47,7 +47,7 @@ const STEPS: [Step; 6] = [
     step("doctests", &["test", "--workspace", "--locked", "--doc"]),
     Step {
         name: "documentation",
-        arguments: &["doc", "--workspace", "--no-deps", "--locked", "--lib"],
+        arguments: &["doc", "--workspace", "--no-deps", "--locked"],
         environment: &[("RUSTDOCFLAGS", "-D warnings")],
     },
 ];

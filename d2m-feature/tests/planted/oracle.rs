@@ -54,7 +54,7 @@ fn turned(quaternion: &(Big, Big3), p: &Big3) -> Big3 {
     sum.map(|x| x / &norm)
 }
 
-/// The quaternion of exp([w]t), up to its length: Taylor of a small turn, then repeated squaring.
+/// The quaternion of exp(\[w\]t), up to its length: Taylor of a small turn, then repeated squaring.
 fn exponential(w: &Big3, t: &Big) -> (Big, Big3) {
     let mut half = scale(w, &(t * big(0.5)));
     let mut doublings = 0;

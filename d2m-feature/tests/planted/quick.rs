@@ -99,7 +99,7 @@ fn turned((s, u): (Double2, V), p: V) -> V {
     sum.map(|x| x / norm)
 }
 
-/// The quaternion of exp([w]t): series of a small turn, then squared.
+/// The quaternion of exp(\[w\]t): series of a small turn, then squared.
 fn exponential(w: DVec3, t: Double2) -> (Double2, V) {
     let mut half = scale(vector(w), t * 0.5.into());
     let mut doublings = 0;

@@ -10,7 +10,7 @@ use glam::{DQuat, DVec3};
 use std::path::PathBuf;
 
 /// A body point r is at R(t) r + x(t) with x(t) = position + t·velocity and
-/// R(t) = exp([angular_velocity] t)·R(rotation), t in [0, 1], everything in the world frame.
+/// R(t) = exp(\[angular_velocity\] t)·R(rotation), t in [0, 1], everything in the world frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Movement {
     /// Orientation at t = 0, unit to rounding; the mathematics normalises it.
