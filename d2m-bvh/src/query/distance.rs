@@ -40,7 +40,8 @@ pub struct Distance {
     /// `point_b` in the corners of `triangle_b`.
     pub barycentric_b: [f64; 3],
     /// `Apart`: proven (`lower` > 0). `Touching`: apart by less than can be proven, or just touching. `Overlapping`:
-    /// the surfaces cross, up to rounding. `Contained`: the surfaces are apart and one body is inside the other; then
+    /// the surfaces cross, up to rounding; points and triangles are those of one pair of many that cross, which depends on
+    /// bodies and poses only. `Contained`: the surfaces are apart and one body is inside the other; then
     /// `value` and `lower` are zero, and points and triangles are those where the surfaces are closest.
     pub state: StartState,
 }
