@@ -32,7 +32,7 @@ const NEARBY: f64 = 1.0;
 
 /// Part of the feature's size that a remainder may reach before a piece is worth an evaluation (tuned like the one
 /// of vertex/face).
-const PATIENCE: f64 = 0.06;
+const PATIENCE: f64 = 0.045;
 const UP: f64 = 1.0 + 1e-14;
 
 impl<P: FeaturePath> EdgeEdgeTest<P> {
