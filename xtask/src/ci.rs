@@ -55,6 +55,10 @@ const STEPS: [Step; 6] = [
 /// Runs the steps; an error names those that failed.
 pub(crate) fn run(options: &Options) -> TaskResult {
     let wanted = |name: &str| options.only.as_ref().is_none_or(|only| name.contains(only.as_str()));
+    let names = || STEPS.iter().map(|step| step.name).chain(["tidy"]);
+    if !names().any(wanted) {
+        return Err(format!("no such step: {}", names().collect::<Vec<_>>().join(", ")).into());
+    }
     let mut failed = Vec::new();
     let mut times = Vec::new();
     let start = Instant::now();

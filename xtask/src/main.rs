@@ -100,6 +100,18 @@ fn rerun_optimised() -> ExitCode {
     }
 }
 
+/// Reads an option that must be a positive finite number.
+fn positive(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if number > 0.0 && number.is_finite() { Ok(number) } else { Err("not positive and finite".to_owned()) }
+}
+
+/// Reads a count that must not be 0: a run over nothing would pass.
+fn at_least_one(text: &str) -> Result<usize, String> {
+    let count: usize = text.parse().map_err(|_| "not a whole number".to_owned())?;
+    if count > 0 { Ok(count) } else { Err("nothing would be asked".to_owned()) }
+}
+
 /// The root of the workspace.
 fn workspace_root() -> std::path::PathBuf {
     let manifest =
@@ -109,6 +121,37 @@ fn workspace_root() -> std::path::PathBuf {
 
 #[cfg(test)]
 mod tests {
+    use super::{Arguments, Task, accuracy, ci};
+    use clap::Parser;
+
+    /// A gate that is asked for nothing must not pass, and no number makes it panic.
+    #[test]
+    fn nothing_to_do_is_no_success() {
+        let parse = |line: &str| Arguments::try_parse_from(line.split(' '));
+        for line in [
+            "xtask accuracy --count 0",
+            "xtask accuracy --minutes nan",
+            "xtask accuracy --minutes=-1",
+            "xtask bench --count 0",
+            "xtask bench --rounds 0",
+            "xtask bench --tolerance 0",
+            "xtask bench --cap inf",
+            "xtask bench --minutes nan",
+            "xtask trials --out x --count 0",
+            "xtask trials --out x --speed nan",
+        ] {
+            assert!(parse(line).is_err(), "{line}");
+        }
+        let Ok(Arguments { task: Task::Accuracy(options) }) = parse("xtask accuracy --only nosuch") else {
+            panic!("the name is judged later")
+        };
+        assert!(accuracy::run(&options).unwrap_err().to_string().contains("mesh: "));
+        let Ok(Arguments { task: Task::Ci(options) }) = parse("xtask ci --only nosuch") else {
+            panic!("the name is judged later")
+        };
+        assert!(ci::run(&options).unwrap_err().to_string().contains("doctests"));
+    }
+
     #[test]
     fn arguments_are_consistent() {
         <super::Arguments as clap::CommandFactory>::command().debug_assert();

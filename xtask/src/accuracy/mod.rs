@@ -14,13 +14,13 @@ use std::time::{Duration, Instant};
 #[group(skip)]
 pub(crate) struct Options {
     /// Cases of each family, about; families that are slow take a share of it.
-    #[arg(long, default_value_t = 20_000)]
+    #[arg(long, default_value_t = 20_000, value_parser = crate::at_least_one)]
     count: usize,
     /// Seed of the first round; the next one adds 1.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// A soak: go on with other seeds, all families each, for at least this long.
-    #[arg(long)]
+    #[arg(long, value_parser = crate::positive)]
     minutes: Option<f64>,
     /// Only families whose name contains this, as in `cargo xtask accuracy interval`.
     #[arg(value_name = "FAMILY")]
@@ -81,14 +81,19 @@ pub(crate) fn run(options: &Options) -> TaskResult {
     if let Some(threads) = options.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     }
+    let wanted =
+        |name: &str| options.only.iter().chain(&options.family).all(|only| name.contains(only.as_str()));
+    if !FAMILIES.iter().any(|family| wanted(family.0)) {
+        let names: Vec<_> = FAMILIES.iter().map(|family| family.0).collect();
+        return Err(format!("no such family; there are\n  {}", names.join("\n  ")).into());
+    }
     let begin = Instant::now();
     let soak = options.minutes.map(|minutes| Duration::from_secs_f64(minutes * 60.0));
     let mut seed = options.seed;
     let (mut negatives, mut alarms, mut rounds) = (0, 0, 0);
     loop {
         for (name, share, family) in FAMILIES {
-            let wanted = options.only.iter().chain(&options.family).all(|only| name.contains(only.as_str()));
-            if !wanted {
+            if !wanted(name) {
                 continue;
             }
             let start = Instant::now();

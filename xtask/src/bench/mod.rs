@@ -54,25 +54,25 @@ pub(crate) struct Options {
     #[arg(long, value_delimiter = ',')]
     series: Vec<String>,
     /// Begin nothing new after so many minutes; the same command goes on later.
-    #[arg(long)]
+    #[arg(long, value_parser = crate::positive)]
     minutes: Option<f64>,
     /// Only these methods, by name.
     #[arg(long, value_delimiter = ',')]
     method: Vec<String>,
     /// Trials per pair and speed; 256 as in the paper, 24 with --quick.
-    #[arg(long)]
+    #[arg(long, value_parser = crate::at_least_one)]
     count: Option<usize>,
     /// Times each fast query is asked; the least time counts.
-    #[arg(long, default_value_t = 5)]
+    #[arg(long, default_value_t = 5, value_parser = crate::at_least_one)]
     rounds: usize,
     /// Seed of the trials.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Tolerance, in units of the models' radius.
-    #[arg(long, default_value_t = 1e-10)]
+    #[arg(long, default_value_t = 1e-10, value_parser = crate::positive)]
     tolerance: f64,
     /// Seconds that a slow method may spend on one pair and speed; what is done by then counts.
-    #[arg(long)]
+    #[arg(long, value_parser = crate::positive)]
     cap: Option<f64>,
     /// Folder of OBJ models, with --trials.
     #[arg(long, requires = "trials")]

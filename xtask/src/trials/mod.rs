@@ -33,10 +33,10 @@ pub(crate) struct Trial {
 #[derive(clap::Args)]
 pub(crate) struct Options {
     /// Relative speed of the centres, units per unit of time.
-    #[arg(long, default_value_t = 4.0)]
+    #[arg(long, default_value_t = 4.0, value_parser = crate::positive)]
     speed: f64,
     /// How many trials.
-    #[arg(long, default_value_t = 256)]
+    #[arg(long, default_value_t = 256, value_parser = crate::at_least_one)]
     count: usize,
     /// Seed of the generator.
     #[arg(long, default_value_t = 1)]
