@@ -1,4 +1,4 @@
-//! Building trees; the tree is judged by a query before its construction is timed.
+//! Building trees; the tree is judged, box by box and by a query, before its construction is timed.
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use d2m::bvh::{Posed, collide};
 use d2m::{MeshTree, Solid};
@@ -11,6 +11,7 @@ fn build(c: &mut Criterion) {
             d2m::shapes::mesh(&format!("torus-knot?triangles={triangles}")).expect("an embedded shape");
         let tree = MeshTree::new(mesh.clone());
         assert!(tree.is_watertight());
+        tree.validate().expect("boxes that enclose their triangles");
         let itself = collide(Posed::at_rest(&tree), Posed::at_rest(&tree), Solid::Surface);
         assert_eq!(itself, Ok(true), "a body touches itself");
         group.throughput(Throughput::Elements(mesh.triangle_count() as u64));

@@ -3,6 +3,7 @@
 use crate::arguments::{Method, QueryArguments};
 use crate::failure::Failure;
 use crate::load::Loaded;
+use crate::output::{note, progress_bar};
 use d2m::bvh::paper::{self, SphereTree};
 use d2m::bvh::{
     Budget, MeshTree, Mode, Moving, QueryError, QueryOptions, Solid, TimeOfContact, Topology, TriMesh,
@@ -27,7 +28,7 @@ enum Tree {
 impl Body {
     fn new(Loaded { name, mesh }: Loaded, method: Method) -> Self {
         let tree = match method {
-            Method::Accurate | Method::Capoeira => Tree::Engine(MeshTree::new(mesh)),
+            Method::Accurate | Method::Capoeira => Tree::Engine(build(mesh)),
             Method::Paper => Tree::Paper(Box::new(SphereTree::new(mesh))),
         };
         Self { name, tree }
@@ -47,6 +48,18 @@ impl Body {
             Tree::Paper(tree) => Topology::new(tree.mesh()).is_watertight(),
         }
     }
+}
+
+/// Builds the tree; what takes a second or more shows how far it is.
+fn build(mesh: TriMesh) -> MeshTree {
+    const LARGE: usize = 500_000;
+    if mesh.triangle_count() < LARGE {
+        return MeshTree::new(mesh);
+    }
+    let bar = progress_bar(mesh.triangle_count(), "triangles in the tree");
+    let tree = MeshTree::with_progress(mesh, &|done, _| bar.set_position(done as u64));
+    bar.finish_and_clear();
+    tree
 }
 
 /// Two bodies and how they are asked.
@@ -166,7 +179,7 @@ fn choose_solid(a: &Body, b: &Body, arguments: &QueryArguments) -> Result<Solid,
             Err(Failure::at(&body.name, "the mesh is not watertight, so it bounds no solid: use --surface"))
         }
         Some(body) => {
-            crate::output::note(&format!("d2m: note: {} is not watertight: only surfaces count", body.name));
+            note(&format!("d2m: note: {} is not watertight: only surfaces count", body.name));
             Ok(Solid::Surface)
         }
     }

@@ -1,6 +1,7 @@
 //! Results to files that are complete or absent, or to standard output.
 
 use crate::failure::Failure;
+use indicatif::{ProgressBar, ProgressStyle};
 use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -8,6 +9,15 @@ use std::path::{Path, PathBuf};
 /// Writes a line to standard error; nobody listening is no reason to stop.
 pub(crate) fn note(text: &str) {
     let _ = writeln!(io::stderr(), "{text}");
+}
+
+/// A progress bar with the time left. On a terminal only: elsewhere it stays silent.
+pub(crate) fn progress_bar(length: usize, of: &str) -> ProgressBar {
+    let bar = ProgressBar::new(length as u64);
+    match ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {of}, {{eta}} left")) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
 }
 
 /// Writes to standard output.

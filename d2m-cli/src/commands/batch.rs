@@ -4,11 +4,10 @@ use crate::arguments::BatchArguments;
 use crate::engine::{Answer, Pair};
 use crate::failure::Failure;
 use crate::load::load;
-use crate::output::{Output, note};
+use crate::output::{Output, note, progress_bar};
 use crate::report;
 use crate::trials::{self, Trial};
 use d2m::bvh::Window;
-use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use std::path::Path;
 use std::time::Instant;
@@ -19,11 +18,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     let out = Output::new(&arguments.out)?.spare(inputs)?;
     let trials = trials::load(&arguments.trials)?;
     let pair = Pair::new(load(&arguments.a)?, load(&arguments.b)?, &arguments.query)?;
-    // On a terminal only: indicatif stays silent elsewhere.
-    let bar = ProgressBar::new(trials.len() as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} trials, {eta} left") {
-        bar.set_style(style);
-    }
+    let bar = progress_bar(trials.len(), "trials");
     let start = Instant::now();
     let answer = |(index, trial): (usize, &Trial)| {
         let answer = pair.ask(&trial.motion_a, &trial.motion_b, Window::UNIT);
