@@ -1,10 +1,4 @@
-//! Certified first contact of moving features: point/triangle, edge/edge, sphere/sphere; static triangle distance.
-//!
-//! [`PairMotion`] answers for two bodies of constant twist, [`EnclosedPairMotion`] for any motions that can enclose
-//! themselves. Every answer is a theorem about the code: docs/theory/features.md. [`paper`] holds the reference
-//! method's tests.
-//!
-//! **Invariant:** this crate knows single features and pairs of them, no meshes and no trees.
+#![doc = include_str!("../README.md")]
 
 mod batch;
 mod closest;
@@ -34,7 +28,3 @@ pub use pair_motion::{PairMotion, PlacedTriangle};
 pub use straight_path::StraightPaths;
 pub use triangle_distance::{TriangleDistance, TriangleFeature, triangle_distance};
 pub use triangle_intersection::triangles_intersect;
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeExamples;

@@ -1,6 +1,9 @@
 use crate::Body;
 use crate::broad_phase::{SweptBox, candidates};
-use d2m_bvh::{Contact, Mode, QueryError, QueryOptions, TimeOfContact, Window, time_of_contact};
+use d2m_bvh::{
+    Contact, Mode, PairCache, QueryError, QueryOptions, TimeOfContact, Window, time_of_contact_with,
+};
+use std::collections::BTreeMap;
 
 /// Names a body of one [`World`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -46,7 +49,9 @@ pub struct WorldError {
     pub error: QueryError,
 }
 
-/// Many moving bodies: a broad phase over the boxes that they sweep, and a pair query for what is left.
+/// Many moving bodies: a broad phase over the boxes that they sweep, and a pair query for what is left. Each candidate pair
+/// keeps a [`PairCache`] for the next window, which saves most searches of pairs that pass each other slowly and
+/// changes no bit of any answer.
 ///
 /// ```
 /// use d2m::glam::DVec3;
@@ -70,13 +75,15 @@ pub struct WorldError {
 pub struct World {
     bodies: Vec<Body>,
     options: QueryOptions,
+    /// Of the candidates of the last window.
+    caches: BTreeMap<(BodyId, BodyId), PairCache>,
 }
 
 impl World {
     /// An empty world; `options` hold for every pair, but for [`Mode::Exists`], which is asked as accurate: a world
     /// promises first contacts.
     pub const fn new(options: QueryOptions) -> Self {
-        Self { bodies: Vec::new(), options }
+        Self { bodies: Vec::new(), options, caches: BTreeMap::new() }
     }
 
     /// Adds a body.
@@ -123,9 +130,9 @@ impl World {
     ///
     /// # Errors
     /// Bad input of a pair, with its names.
-    pub fn contacts(&self, window: Window) -> Result<Vec<(BodyId, BodyId, TimeOfContact)>, WorldError> {
+    pub fn contacts(&mut self, window: Window) -> Result<Vec<(BodyId, BodyId, TimeOfContact)>, WorldError> {
         let mut found = Vec::new();
-        for (a, b) in self.candidates(window) {
+        for (a, b) in self.cached_candidates(window) {
             let answer = self.pair(a, b, window)?;
             if !answer.is_separated() {
                 found.push((a, b, answer));
@@ -139,10 +146,10 @@ impl World {
     ///
     /// # Errors
     /// Bad input of a pair, with its names.
-    pub fn first_contact(&self, window: Window) -> Result<FirstContact, WorldError> {
+    pub fn first_contact(&mut self, window: Window) -> Result<FirstContact, WorldError> {
         let mut best: Option<(BodyId, BodyId, Contact)> = None;
         let mut clear_until = f64::INFINITY;
-        for (a, b) in self.candidates(window) {
+        for (a, b) in self.cached_candidates(window) {
             let end = best.map_or(window.end(), |(.., contact)| contact.time_hi.min(window.end()));
             let shortened = Window::try_new(window.start(), end).unwrap_or(window);
             match self.pair(a, b, shortened)? {
@@ -164,12 +171,20 @@ impl World {
         })
     }
 
-    fn pair(&self, a: BodyId, b: BodyId, window: Window) -> Result<TimeOfContact, WorldError> {
+    /// The candidates; caches of other pairs are dropped.
+    fn cached_candidates(&mut self, window: Window) -> Vec<(BodyId, BodyId)> {
+        let candidates = self.candidates(window);
+        self.caches.retain(|pair, _| candidates.binary_search(pair).is_ok());
+        candidates
+    }
+
+    fn pair(&mut self, a: BodyId, b: BodyId, window: Window) -> Result<TimeOfContact, WorldError> {
         let options = match self.options.mode {
             Mode::Exists => self.options.with_mode(Mode::Accurate),
             _ => self.options,
         };
-        time_of_contact(self.body(a).moving(), self.body(b).moving(), window, &options)
+        let cache = self.caches.entry((a, b)).or_default();
+        time_of_contact_with(self.bodies[a.0].moving(), self.bodies[b.0].moving(), window, &options, cache)
             .map_err(|error| WorldError { a, b, error })
     }
 }
@@ -181,6 +196,41 @@ mod tests {
     use d2m_motion::LinearMotion;
     use glam::DVec3;
     use std::sync::Arc;
+
+    /// Steps of a world of its own, each a new one without caches, and steps of one world: the same answers.
+    #[test]
+    fn caches_change_nothing() {
+        let ring = Arc::new(MeshTree::new(d2m_shapes::mesh("torus?triangles=600").unwrap()));
+        let bodies = |step: u32| {
+            let passing = LinearMotion::REST
+                .with_position(DVec3::new(-2.0, 0.0, 1.2 - 0.02 * f64::from(step)))
+                .with_linear_velocity(DVec3::X * 4.0)
+                .with_angular_velocity(DVec3::Z);
+            let away = LinearMotion::REST.with_position(DVec3::Y * f64::from(step % 7));
+            [LinearMotion::REST, passing, away].map(|motion| Body::new(Arc::clone(&ring), motion))
+        };
+        let filled = |step: u32| {
+            let mut world = World::new(QueryOptions::default());
+            for body in bodies(step) {
+                world.add(body);
+            }
+            world
+        };
+        let (mut one, mut met, mut apart) = (filled(0), 0, 0);
+        for step in 0..40 {
+            for (k, body) in bodies(step).into_iter().enumerate() {
+                one.set_body(BodyId(k), body);
+            }
+            let contacts = one.contacts(Window::UNIT).unwrap();
+            assert_eq!(contacts, filled(step).contacts(Window::UNIT).unwrap(), "step {step}");
+            let first = one.first_contact(Window::UNIT).unwrap();
+            assert_eq!(first, filled(step).first_contact(Window::UNIT).unwrap(), "step {step}");
+            assert!(one.caches.keys().eq(&one.candidates(Window::UNIT)));
+            met += u32::from(!contacts.is_empty());
+            apart += u32::from(contacts.is_empty());
+        }
+        assert!(met > 10 && apart > 3, "{met} {apart}");
+    }
 
     /// With "any contact will do" the later of two would be as good as the first, and its time any time.
     #[test]
