@@ -1,4 +1,5 @@
 //! The one type between motions and feature tests: a path to second or third order with a proven remainder.
+use core::ops::{Add, Mul};
 use glam::DVec3;
 
 /// Remainder of a jet as a function of the distance in time from its centre:
@@ -85,11 +86,23 @@ pub struct PathJet {
     pub remainder: Remainder,
 }
 
+/// `p + v s + a s²/2 + j s³/6`, of one vector or of two side by side.
+#[inline(always)]
+pub(crate) fn position<V: Copy + Add<Output = V> + Mul<f64, Output = V>>([p, v, a, j]: [V; 4], s: f64) -> V {
+    p + (v + (a + j * ((1.0 / 3.0) * s)) * (0.5 * s)) * s
+}
+
+/// Its derivative `v + a s + j s²/2`.
+#[inline(always)]
+pub(crate) fn velocity<V: Copy + Add<Output = V> + Mul<f64, Output = V>>([v, a, j]: [V; 3], s: f64) -> V {
+    v + (a + j * (0.5 * s)) * s
+}
+
 impl PathJet {
     /// The polynomial `p + v s + a s²/2 + j s³/6` in plain floating point.
     #[inline(always)]
     pub fn at(&self, s: f64) -> DVec3 {
-        self.p + (self.v + (self.a + self.j * ((1.0 / 3.0) * s)) * (0.5 * s)) * s
+        position([self.p, self.v, self.a, self.j], s)
     }
 
     /// The same path about the time `m` from the centre, without the third derivative: its remainder is that of the
@@ -98,7 +111,7 @@ impl PathJet {
     pub fn moved(&self, m: f64) -> Self {
         Self {
             p: self.at(m),
-            v: self.v + (self.a + self.j * (0.5 * m)) * m,
+            v: velocity([self.v, self.a, self.j], m),
             a: self.a + self.j * m,
             j: DVec3::ZERO,
             remainder: self.remainder,

@@ -1,4 +1,5 @@
 //! Jets of two vectors about the same time, side by side.
+use crate::path_jet::{position, velocity};
 use crate::two::TwoVec3;
 use crate::{PathJet, Remainder};
 
@@ -43,7 +44,7 @@ impl TwoJets {
     /// [`PathJet::at`].
     #[inline(always)]
     pub fn at(&self, s: f64) -> TwoVec3 {
-        self.p + (self.v + (self.a + self.j * ((1.0 / 3.0) * s)) * (0.5 * s)) * s
+        position([self.p, self.v, self.a, self.j], s)
     }
 
     /// [`PathJet::moved`].
@@ -51,7 +52,7 @@ impl TwoJets {
     pub fn moved(&self, m: f64) -> Self {
         Self {
             p: self.at(m),
-            v: self.v + (self.a + self.j * (0.5 * m)) * m,
+            v: velocity([self.v, self.a, self.j], m),
             a: self.a + self.j * m,
             j: TwoVec3::splat(glam::DVec3::ZERO),
             remainders: self.remainders,

@@ -17,6 +17,8 @@ const HEADER: &str = "peer,on,asked,contacts,late,median_difference,worst_differ
 #[derive(Debug, Default)]
 struct Found {
     asked: usize,
+    /// Of them those that are compared with ours.
+    compared: usize,
     contacts: usize,
     /// Contacts missed, or later than ours by more than [`LATE`].
     late: usize,
@@ -35,6 +37,7 @@ impl Found {
         if ours.is_nan() {
             return;
         }
+        self.compared += 1;
         self.contacts += usize::from(toc.is_finite());
         self.late += usize::from(toc > ours + LATE);
         if toc.is_finite() && ours.is_finite() {
@@ -43,7 +46,9 @@ impl Found {
     }
 
     fn line(self, peer: &str, on: &str) -> String {
-        let Self { asked, contacts, late, .. } = self;
+        let asked = self.asked;
+        let [contacts, late] = [self.contacts, self.late]
+            .map(|count| if self.compared > 0 { count.to_string() } else { String::new() });
         let number = |values: Vec<f64>, pick: [fn(&Summary) -> f64; 2]| {
             let summary = Summary::of(values);
             pick.map(|f| summary.as_ref().map_or(String::new(), |s| format!("{:.4e}", f(s)))).join(",")
@@ -129,8 +134,7 @@ pub(super) fn write(page: &mut String, folder: &Path) -> Result<(), Error> {
         let [peer, on, asked, contacts, late, middle, most, median, worst] = fields[..] else { continue };
         let number = |f: &str| f.parse::<f64>().ok();
         let times = |f: &str| number(f).map_or("–".into(), round);
-        let judged = number(middle).is_some();
-        let count = |f: &str| if judged { f.to_string() } else { "–".into() };
+        let count = |f: &str| if f.is_empty() { "–".into() } else { f.to_string() };
         let small = |f: &str| number(f).map_or("–".into(), |v| format!("{v:.1e}"));
         writeln!(
             page,
@@ -160,8 +164,11 @@ mod tests {
         assert_eq!((found.asked, found.contacts, found.late), (5, 3, 2));
         let line = found.line("p", "pair");
         assert_eq!(line, "p,pair,5,3,2,1.0000e-1,1.0000e-1,1.0000e1,1.0000e1");
+        let mut blind = Found::default();
+        blind.note(none, 0.5, 3.0);
+        assert_eq!(blind.line("p", "q"), "p,q,1,0,1,,,3.0000e0,3.0000e0", "a peer that finds nothing misses");
         let mut timed = Found::default();
         timed.note(f64::NAN, f64::NAN, 3.0);
-        assert_eq!(timed.line("p", "q"), "p,q,1,0,0,,,3.0000e0,3.0000e0");
+        assert_eq!(timed.line("p", "q"), "p,q,1,,,,,3.0000e0,3.0000e0", "only timed: nothing is compared");
     }
 }
