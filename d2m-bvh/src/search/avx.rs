@@ -2,42 +2,111 @@
 //! use it are entered through a check of the processor (`dispatch`).
 #![allow(unsafe_code)]
 
-use super::lanes::Lanes;
+use super::expansion::Opened;
+use super::lanes::{Elementwise, Lanes};
 use super::quad::{Doubles, Quad};
+use super::queue::Item;
+use super::two::{Both, Two};
+use crate::tree::node::WIDTH;
 #[allow(clippy::wildcard_imports)]
 use core::arch::x86_64::*;
+use core::marker::PhantomData;
 use core::ops::{Add, Div, Mul, Sub};
 
-/// One 256-bit register. Values exist only inside functions that were entered through a check for AVX2.
+/// Which registers there are besides those of 256 bits.
+pub(crate) trait Registers: Copy {
+    /// Two times eight lanes.
+    type Two: Two<Avx<Self>>;
+}
+
+/// Registers of 256 bits only.
 #[derive(Clone, Copy)]
-pub(crate) struct Avx(__m256);
+pub(crate) struct Of256;
+
+impl Registers for Of256 {
+    type Two = Both<Avx<Self>>;
+}
+
+/// One 256-bit register. Values exist only inside functions that were entered through a check for AVX2, and for what
+/// `R` needs.
+#[derive(Clone, Copy)]
+pub(crate) struct Avx<R>(pub(super) __m256, PhantomData<R>);
+
+impl<R> Avx<R> {
+    #[inline(always)]
+    pub(super) const fn of(register: __m256) -> Self {
+        Self(register, PhantomData)
+    }
+}
+
+/// Numbers of the lanes whose bits are set, in their order: byte k of entry `bits` is the k-th.
+const ORDER: [u64; 256] = {
+    let mut order = [0; 256];
+    let mut bits = 0;
+    while bits < 256 {
+        let (mut lane, mut place) = (0, 0);
+        while lane < 8 {
+            if bits >> lane & 1 == 1 {
+                order[bits] |= lane << (8 * place);
+                place += 1;
+            }
+            lane += 1;
+        }
+        bits += 1;
+    }
+    order
+};
 
 macro_rules! avx_operator {
     ($($operator:ident $method:ident $intrinsic:ident),*) => {$(
-        impl $operator for Avx {
+        impl<R: Registers> $operator for Avx<R> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
                 // SAFETY: the processor has AVX (see the type).
-                Self(unsafe { $intrinsic(self.0, other.0) })
+                Self::of(unsafe { $intrinsic(self.0, other.0) })
             }
         }
     )*};
 }
 avx_operator!(Add add _mm256_add_ps, Sub sub _mm256_sub_ps, Mul mul _mm256_mul_ps, Div div _mm256_div_ps);
 
-impl Lanes for Avx {
-    type Doubles = AvxDoubles;
-
+impl<R: Registers> Elementwise for Avx<R> {
     #[inline(always)]
     fn splat(value: f32) -> Self {
         // SAFETY: the processor has AVX (see the type).
-        Self(unsafe { _mm256_set1_ps(value) })
+        Self::of(unsafe { _mm256_set1_ps(value) })
     }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_max_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn flip_sign(magnitude: Self, sign: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_xor_ps(magnitude.0, _mm256_and_ps(sign.0, _mm256_set1_ps(-0.0))) })
+    }
+    #[inline(always)]
+    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_blendv_ps(no.0, yes.0, _mm256_cmp_ps::<_CMP_GT_OQ>(left.0, right.0)) })
+    }
+}
+
+impl<R: Registers> Lanes for Avx<R> {
+    type Doubles = AvxDoubles;
+    type Two = R::Two;
+
     #[inline(always)]
     fn load(values: &[f32; 8]) -> Self {
         // SAFETY: eight floats are readable; no alignment is needed; AVX as above.
-        Self(unsafe { _mm256_loadu_ps(values.as_ptr()) })
+        Self::of(unsafe { _mm256_loadu_ps(values.as_ptr()) })
     }
     #[inline(always)]
     fn store(self) -> [f32; 8] {
@@ -49,7 +118,7 @@ impl Lanes for Avx {
     #[inline(always)]
     fn sqrt(self) -> Self {
         // SAFETY: the processor has AVX (see the type).
-        Self(unsafe { _mm256_sqrt_ps(self.0) })
+        Self::of(unsafe { _mm256_sqrt_ps(self.0) })
     }
     #[inline(always)]
     fn less_bits(self, other: Self) -> u32 {
@@ -57,19 +126,9 @@ impl Lanes for Avx {
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)) as u32 }
     }
     #[inline(always)]
-    fn abs(self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self(unsafe { _mm256_max_ps(self.0, other.0) })
-    }
-    #[inline(always)]
     fn min(self, other: Self) -> Self {
         // SAFETY: the processor has AVX (see the type).
-        Self(unsafe { _mm256_min_ps(self.0, other.0) })
+        Self::of(unsafe { _mm256_min_ps(self.0, other.0) })
     }
     #[inline(always)]
     fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32) {
@@ -103,14 +162,38 @@ impl Lanes for Avx {
         out
     }
     #[inline(always)]
-    fn flip_sign(magnitude: Self, sign: Self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self(unsafe { _mm256_xor_ps(magnitude.0, _mm256_and_ps(sign.0, _mm256_set1_ps(-0.0))) })
+    fn pack(pairs: &Opened, list: &mut [Item; WIDTH]) -> usize {
+        // SAFETY: the processor has AVX2 (see the type). Keys and numbers are eight
+        // words each; an item is four words in order, so the list is four times 32 writable bytes. No alignment is needed.
+        unsafe {
+            let order = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(ORDER[pairs.bits as usize & 255] as i64));
+            let wide = _mm256_add_epi32(_mm256_set1_epi32(pairs.first as i32), order);
+            let single = _mm256_set1_epi32(pairs.single as i32);
+            let wide_is_b = _mm256_set1_epi32(-i32::from(pairs.wide_is_b));
+            let a = _mm256_blendv_epi8(wide, single, wide_is_b);
+            let b = _mm256_blendv_epi8(single, wide, wide_is_b);
+            let key = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(pairs.keys.as_ptr().cast()), order);
+            let open = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(pairs.open.as_ptr().cast()), order);
+            // Items 0, 1 | 4, 5 and 2, 3 | 6, 7: first and second half; then each item whole.
+            let (low, high) = (_mm256_unpacklo_epi32(key, a), _mm256_unpackhi_epi32(key, a));
+            let (low_rest, high_rest) = (_mm256_unpacklo_epi32(b, open), _mm256_unpackhi_epi32(b, open));
+            let (i04, i15) = (_mm256_unpacklo_epi64(low, low_rest), _mm256_unpackhi_epi64(low, low_rest));
+            let (i26, i37) = (_mm256_unpacklo_epi64(high, high_rest), _mm256_unpackhi_epi64(high, high_rest));
+            let out: *mut __m256i = list.as_mut_ptr().cast();
+            _mm256_storeu_si256(out, _mm256_permute2x128_si256::<0x20>(i04, i15));
+            _mm256_storeu_si256(out.add(1), _mm256_permute2x128_si256::<0x20>(i26, i37));
+            _mm256_storeu_si256(out.add(2), _mm256_permute2x128_si256::<0x31>(i04, i15));
+            _mm256_storeu_si256(out.add(3), _mm256_permute2x128_si256::<0x31>(i26, i37));
+        }
+        pairs.bits.count_ones() as usize
     }
     #[inline(always)]
-    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self(unsafe { _mm256_blendv_ps(no.0, yes.0, _mm256_cmp_ps::<_CMP_GT_OQ>(left.0, right.0)) })
+    fn prefetch<T>(value: &T) {
+        let start: *const i8 = core::ptr::from_ref(value).cast();
+        for line in 0..size_of::<T>().div_ceil(64) {
+            // SAFETY: a prefetch reads nothing that the program sees, and the address is inside the value.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(64 * line)) };
+        }
     }
     #[inline(always)]
     fn combine(columns: &[[f32; 4]; 3], x: f32, y: f32, z: f32) -> [f32; 4] {

@@ -8,9 +8,6 @@ use crate::tree::node::{WIDTH, WideNode};
 /// Keys of a window run from 0 to this for its whole unit of time.
 pub(crate) const KEY_SCALE: f64 = 536_870_912.0; // 2²⁹
 
-/// Where the box of A and that of B are in a pair of boxes in one word.
-const SHIFT: [u32; 2] = [0, 32];
-
 /// What the expansions of one frame share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Opening<'a> {
@@ -23,19 +20,20 @@ pub(crate) struct Opening<'a> {
     pub(crate) size_ratios: [f32; 2],
 }
 
-/// The pairs below an opened one.
+/// The pairs below an opened one: each box of the node that was opened with the same box of the other body.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Expansion {
+pub(crate) struct Opened {
     /// Until when the pairs are proven apart.
-    keys: [i32; WIDTH],
+    pub(crate) keys: [i32; WIDTH],
     /// What is to be done with them: see [`Item::open`].
-    open: [u32; WIDTH],
+    pub(crate) open: [u32; WIDTH],
     /// Bit i is set when pair i is worth queueing.
-    bits: u32,
-    /// The boxes of the first pair: see [`SHIFT`].
-    boxes: u64,
-    /// What is added to them from one pair to the next: the boxes of the node that was opened follow each other.
-    step: u64,
+    pub(crate) bits: u32,
+    /// The node is one of B's.
+    pub(crate) wide_is_b: bool,
+    /// The first box of the node, and the box of the other body.
+    pub(crate) first: u32,
+    pub(crate) single: u32,
 }
 
 impl Opening<'_> {
@@ -55,9 +53,8 @@ impl Opening<'_> {
         item: &Item,
         frames: &[NodeFrame; 2],
         (now, limit): (u32, u32),
-    ) -> Expansion {
-        let wide_index = item.open & !Item::OF_B;
-        let side = (item.open >> Item::OF_B.trailing_zeros()) as usize & 1;
+    ) -> Opened {
+        let (wide_index, side) = (item.node(), item.side());
         let other = 1 - side;
         let single = item.boxes[other];
         let wide = &self.nodes[side][wide_index as usize];
@@ -76,30 +73,6 @@ impl Opening<'_> {
             node.child[lane] | flags[other],
         );
         let bits = below & ((1 << wide.used) - 1);
-        let first = u64::from(wide_index) * WIDTH as u64;
-        Expansion {
-            keys,
-            open,
-            bits,
-            boxes: (first << SHIFT[side]) | (u64::from(single) << SHIFT[other]),
-            step: 1 << SHIFT[side],
-        }
-    }
-}
-
-impl Expansion {
-    /// Appends the pairs worth queueing. Without a branch: which lanes they are cannot be predicted.
-    #[inline(always)]
-    pub(crate) fn append_to(&self, list: &mut [Item], count: &mut usize) {
-        let mut boxes = self.boxes;
-        for lane in 0..WIDTH {
-            list[*count] = Item {
-                key: self.keys[lane] as u32,
-                boxes: [(boxes >> SHIFT[0]) as u32, (boxes >> SHIFT[1]) as u32],
-                open: self.open[lane],
-            };
-            boxes += self.step;
-            *count += (self.bits >> lane) as usize & 1;
-        }
+        Opened { keys, open, bits, wide_is_b: side == 1, first: wide_index * WIDTH as u32, single }
     }
 }

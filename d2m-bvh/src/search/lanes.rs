@@ -3,30 +3,44 @@
 //! Only + − × ÷ √, extrema, comparison and sign removal, each correctly rounded by IEEE 754, and no fused
 //! multiply-add: every implementation returns the same bits.
 
+use super::expansion::Opened;
 use super::quad::{Doubles, Quad};
+use super::queue::Item;
+use super::two::{Both, Two};
+use crate::tree::node::WIDTH;
 use core::ops::{Add, Div, Mul, Sub};
 
-/// Eight lanes of `f32`.
-pub(crate) trait Lanes:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+/// What is done in each lane by itself.
+pub(crate) trait Elementwise:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
 {
-    /// Four `f64` of the same instruction set.
-    type Doubles: Doubles;
-
     /// The same value in each lane.
     fn splat(value: f32) -> Self;
+    /// Absolute value.
+    fn abs(self) -> Self;
+    /// `if self > other { self } else { other }` in each lane (so `other` when one is NaN).
+    fn max(self, other: Self) -> Self;
+    /// `magnitude` with its sign flipped where `sign` is negative (or −0).
+    fn flip_sign(magnitude: Self, sign: Self) -> Self;
+    /// `if left > right { yes } else { no }` in each lane.
+    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self;
+}
+
+/// Eight lanes of `f32`.
+pub(crate) trait Lanes: Elementwise + Div<Output = Self> {
+    /// Four `f64` of the same instruction set.
+    type Doubles: Doubles;
+    /// Two times eight lanes.
+    type Two: Two<Self>;
+
     /// Lanes from memory.
     fn load(values: &[f32; 8]) -> Self;
     /// Lanes to memory.
     fn store(self) -> [f32; 8];
-    /// Absolute value.
-    fn abs(self) -> Self;
     /// Correctly rounded square root.
     fn sqrt(self) -> Self;
     /// Bit i is set when lane i of `self` is less than lane i of `other`.
     fn less_bits(self, other: Self) -> u32;
-    /// `if self > other { self } else { other }` in each lane (so `other` when one is NaN).
-    fn max(self, other: Self) -> Self;
     /// `if self < other { self } else { other }` in each lane (so `other` when one is NaN).
     fn min(self, other: Self) -> Self;
     /// max(`least`, `base` + the integer part) in each lane, with `least` for what is not a number; and the bits of
@@ -34,10 +48,11 @@ pub(crate) trait Lanes:
     fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32);
     /// `children | flag` in the lanes where `sizes · ratio > size`, else `other`.
     fn larger(sizes: (&[f32; 8], f32, f32), children: (&[u32; 8], u32), other: u32) -> [u32; 8];
-    /// `magnitude` with its sign flipped where `sign` is negative (or −0).
-    fn flip_sign(magnitude: Self, sign: Self) -> Self;
-    /// `if left > right { yes } else { no }` in each lane.
-    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self;
+    /// Writes the pairs worth queueing to the start of the list, in the order of their lanes; how many. What is
+    /// behind them is of no meaning.
+    fn pack(pairs: &Opened, list: &mut [Item; WIDTH]) -> usize;
+    /// Asks for the memory of a value: a hint.
+    fn prefetch<T>(value: &T);
     /// x·c₀ + y·c₁ + z·c₂ for the columns c of a matrix.
     fn combine(columns: &[[f32; 4]; 3], x: f32, y: f32, z: f32) -> [f32; 4];
 }
@@ -71,13 +86,37 @@ macro_rules! portable_operator {
 }
 portable_operator!(Add add +, Sub sub -, Mul mul *, Div div /);
 
-impl Lanes for Portable {
-    type Doubles = Quad;
-
+impl Elementwise for Portable {
     #[inline(always)]
     fn splat(value: f32) -> Self {
         Self([value; 8])
     }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f32::abs))
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn flip_sign(magnitude: Self, sign: Self) -> Self {
+        magnitude.zip(sign, |m, s| f32::from_bits(m.to_bits() ^ (s.to_bits() & 0x8000_0000)))
+    }
+    #[inline(always)]
+    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
+        let mut out = no;
+        for i in 0..8 {
+            out.0[i] = if left.0[i] > right.0[i] { yes.0[i] } else { no.0[i] };
+        }
+        out
+    }
+}
+
+impl Lanes for Portable {
+    type Doubles = Quad;
+    type Two = Both<Self>;
+
     #[inline(always)]
     fn load(values: &[f32; 8]) -> Self {
         Self(*values)
@@ -97,14 +136,6 @@ impl Lanes for Portable {
             bits |= u32::from(self.0[i] < other.0[i]) << i;
         }
         bits
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(self.0.map(f32::abs))
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a > b { a } else { b })
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
@@ -133,17 +164,19 @@ impl Lanes for Portable {
         out
     }
     #[inline(always)]
-    fn flip_sign(magnitude: Self, sign: Self) -> Self {
-        magnitude.zip(sign, |m, s| f32::from_bits(m.to_bits() ^ (s.to_bits() & 0x8000_0000)))
+    fn pack(pairs: &Opened, list: &mut [Item; WIDTH]) -> usize {
+        // Without a branch: which lanes they are cannot be predicted.
+        let mut count = 0;
+        for lane in 0..WIDTH {
+            let (wide, single) = (pairs.first + lane as u32, pairs.single);
+            let boxes = if pairs.wide_is_b { [single, wide] } else { [wide, single] };
+            list[count] = Item { key: pairs.keys[lane] as u32, boxes, open: pairs.open[lane] };
+            count += (pairs.bits >> lane) as usize & usize::from(lane < WIDTH - 1);
+        }
+        count + (pairs.bits >> (WIDTH - 1)) as usize
     }
     #[inline(always)]
-    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
-        let mut out = no;
-        for i in 0..8 {
-            out.0[i] = if left.0[i] > right.0[i] { yes.0[i] } else { no.0[i] };
-        }
-        out
-    }
+    fn prefetch<T>(_: &T) {}
     #[inline(always)]
     fn combine(c: &[[f32; 4]; 3], x: f32, y: f32, z: f32) -> [f32; 4] {
         let at = |k: usize| c[0][k] * x + c[1][k] * y + c[2][k] * z;

@@ -4,6 +4,8 @@
 mod ahead;
 #[cfg(target_arch = "x86_64")]
 mod avx;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 mod base_pose;
 mod closest;
 mod dispatch;
@@ -21,10 +23,13 @@ mod swept;
 #[cfg(test)]
 mod tests;
 mod triangle_pair;
+mod two;
 mod window;
 
 #[cfg(target_arch = "x86_64")]
-pub(crate) use avx::Avx;
+pub(crate) use avx::{Avx, Of256};
+#[cfg(target_arch = "x86_64")]
+pub(crate) use avx512::Of512;
 pub(crate) use base_pose::{Columns, relative_position, rotation_at};
 pub(crate) use closest::{Closest, Place, closest};
 pub(crate) use dispatch::first_contact;

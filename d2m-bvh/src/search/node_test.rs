@@ -1,8 +1,9 @@
 //! One box of one body against the eight boxes of a wide node of the other: until when are they apart?
 
 use super::frame::Frame;
-use super::lanes::Lanes;
+use super::lanes::{Elementwise, Lanes};
 use super::quad::{Doubles, Matrix, Quad};
+use super::two::Two;
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
 use glam::DVec3;
@@ -172,20 +173,14 @@ fn turned<L: Lanes>(frame: &NodeFrame, axis: &[[f32; 8]; 3], lane: usize) -> [f3
 
 /// Scalar product of lanes.
 #[inline(always)]
-fn dot<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
+fn dot<T: Elementwise>(a: &[T; 3], b: &[T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// |n·aᵢ| for the axes of the other box.
-#[inline(always)]
-fn sizes<L: Lanes>(n: &[L; 3], axes: &[[L; 3]; 3]) -> [L; 3] {
-    [dot(n, &axes[0]).abs(), dot(n, &axes[1]).abs(), dot(n, &axes[2]).abs()]
 }
 
 /// The same three values in each lane.
 #[inline(always)]
-fn splat<L: Lanes>(values: &[f32; 4]) -> [L; 3] {
-    [L::splat(values[0]), L::splat(values[1]), L::splat(values[2])]
+fn splat<T: Elementwise>(values: &[f32; 4]) -> [T; 3] {
+    [T::splat(values[0]), T::splat(values[1]), T::splat(values[2])]
 }
 
 #[inline(always)]
@@ -193,19 +188,30 @@ fn load<L: Lanes>(values: &[[f32; 8]; 3]) -> [L; 3] {
     [L::load(&values[0]), L::load(&values[1]), L::load(&values[2])]
 }
 
-/// Along one axis: the gap, and the speed at which it closes at most, never less than a positive least one.
-#[derive(Clone, Copy)]
-struct Course<L> {
-    gap: L,
-    closing: L,
+/// One vector in the first eight lanes, another in the second.
+#[inline(always)]
+fn beside<L: Lanes>(first: &[L; 3], second: &[L; 3]) -> [L::Two; 3] {
+    [L::Two::of(first[0], second[0]), L::Two::of(first[1], second[1]), L::Two::of(first[2], second[2])]
 }
 
-impl<L: Lanes> Course<L> {
+#[inline(always)]
+fn both<L: Lanes>(half: &[L; 3]) -> [L::Two; 3] {
+    [L::Two::both(half[0]), L::Two::both(half[1]), L::Two::both(half[2])]
+}
+
+/// Along one axis: the gap, and the speed at which it closes at most, never less than a positive least one.
+#[derive(Clone, Copy)]
+struct Course<T> {
+    gap: T,
+    closing: T,
+}
+
+impl<T: Elementwise> Course<T> {
     /// The centres are `along` apart on the axis and part at `parting` (in the sense of the axis), the boxes and the
     /// margin reach `reach`; speeds differ by at most `spread` from those of the centres.
     #[inline(always)]
-    fn new(along: L, reach: L, parting: L, (spread, least): (L, L)) -> Self {
-        Self { gap: along.abs() - reach, closing: (spread - L::flip_sign(parting, along)).max(least) }
+    fn new(along: T, reach: T, parting: T, (spread, least): (T, T)) -> Self {
+        Self { gap: along.abs() - reach, closing: (spread - T::flip_sign(parting, along)).max(least) }
     }
 
     /// The one whose gap lasts longer without acceleration.
@@ -213,50 +219,72 @@ impl<L: Lanes> Course<L> {
     fn or(self, other: Self) -> Self {
         let (left, right) = (self.gap * other.closing, other.gap * self.closing);
         Self {
-            gap: L::if_greater(left, right, self.gap, other.gap),
-            closing: L::if_greater(left, right, self.closing, other.closing),
+            gap: T::if_greater(left, right, self.gap, other.gap),
+            closing: T::if_greater(left, right, self.closing, other.closing),
         }
     }
 }
 
 /// Lower bounds on the times, counted from the frame, until which each lane's box stays apart from the single one;
 /// not positive, or not a number, where nothing is known. In units of the window, not yet clipped.
+///
+/// The six axes are looked at in pairs: the first two of the lane's box, the first two of the single one, and the last
+/// of each.
 #[inline(always)]
 pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &NodeScale) -> L {
-    let center = load::<L>(&wide.center);
-    let at = splat::<L>(&placed.center);
+    // Twice, for the two axes of a pair: from the lane's centre to the single one's, and the velocity there.
+    let center = both::<L>(&load(&wide.center));
+    let at = splat::<L::Two>(&placed.center);
     let to = [at[0] - center[0], at[1] - center[1], at[2] - center[2]];
-    let half = load::<L>(&wide.half_extent);
-    let a = [load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]), load::<L>(&wide.axes[2])];
-    let w = splat::<L>(&placed.omega_wide);
-    let base = splat::<L>(&placed.velocity);
-    // Relative velocity at the centres.
+    let w = splat::<L::Two>(&placed.omega_wide);
+    let base = splat::<L::Two>(&placed.velocity);
     let v = [
         base[0] - (w[1] * center[2] - w[2] * center[1]),
         base[1] - (w[2] * center[0] - w[0] * center[2]),
         base[2] - (w[0] * center[1] - w[1] * center[0]),
     ];
+    let half = load::<L>(&wide.half_extent);
+    let a = [load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]), load::<L>(&wide.axes[2])];
     let b = [splat::<L>(&placed.axes[0]), splat::<L>(&placed.axes[1]), splat::<L>(&placed.axes[2])];
     let k = [L::splat(placed.half[0]), L::splat(placed.half[1]), L::splat(placed.half[2])];
-    let margin = L::splat(placed.gap_margin);
+    let margin = L::Two::splat(placed.gap_margin);
     // |ω|·radius of both boxes, whatever the axis, and the error of speeds.
     let spread =
         L::splat(scale.spin[0]) * L::load(&wide.radius) + L::splat(placed.swing + placed.speed_margin);
-    let speeds = (spread, L::splat(placed.least));
-    // |cosine| of axis i of the lane and axis j of the single box.
-    let s = [sizes(&a[0], &b), sizes(&a[1], &b), sizes(&a[2], &b)];
-    let own = [
-        Course::new(dot(&to, &a[0]), half[0] + margin + dot(&k, &s[0]), dot(&v, &a[0]), speeds),
-        Course::new(dot(&to, &a[1]), half[1] + margin + dot(&k, &s[1]), dot(&v, &a[1]), speeds),
-        Course::new(dot(&to, &a[2]), half[2] + margin + dot(&k, &s[2]), dot(&v, &a[2]), speeds),
+    let speeds = (L::Two::both(spread), L::Two::splat(placed.least));
+    let [own, foreign, last] = [beside(&a[0], &a[1]), beside(&b[0], &b[1]), beside(&a[2], &b[2])];
+    // |cosine| of axis i of the lane and axis j of the single box: for i = 0, 1 and each j; for i = 2 and j = 0, 1.
+    let s = [
+        dot(&own, &splat(&placed.axes[0])).abs(),
+        dot(&own, &splat(&placed.axes[1])).abs(),
+        dot(&own, &splat(&placed.axes[2])).abs(),
     ];
-    let t = [[s[0][0], s[1][0], s[2][0]], [s[0][1], s[1][1], s[2][1]], [s[0][2], s[1][2], s[2][2]]];
-    let foreign = [
-        Course::new(dot(&to, &b[0]), k[0] + margin + dot(&half, &t[0]), dot(&v, &b[0]), speeds),
-        Course::new(dot(&to, &b[1]), k[1] + margin + dot(&half, &t[1]), dot(&v, &b[1]), speeds),
-        Course::new(dot(&to, &b[2]), k[2] + margin + dot(&half, &t[2]), dot(&v, &b[2]), speeds),
-    ];
-    let best = own[0].or(own[1]).or(own[2].or(foreign[0])).or(foreign[1].or(foreign[2]));
+    let s2 = dot(&both(&a[2]), &foreign).abs();
+    let s22 = dot(&a[2], &b[2]).abs();
+    let reach_own = dot(
+        &[L::Two::splat(placed.half[0]), L::Two::splat(placed.half[1]), L::Two::splat(placed.half[2])],
+        &s,
+    );
+    let t = [L::Two::of(s[0].first(), s[1].first()), L::Two::of(s[0].second(), s[1].second()), s2];
+    let reach_foreign = dot(&both(&half), &t);
+    let reach_last =
+        L::Two::of(dot(&k, &[s2.first(), s2.second(), s22]), dot(&half, &[s[2].first(), s[2].second(), s22]));
+    let best =
+        Course::new(dot(&to, &own), L::Two::of(half[0], half[1]) + margin + reach_own, dot(&v, &own), speeds)
+            .or(Course::new(
+                dot(&to, &foreign),
+                L::Two::of(k[0], k[1]) + margin + reach_foreign,
+                dot(&v, &foreign),
+                speeds,
+            ))
+            .or(Course::new(
+                dot(&to, &last),
+                L::Two::of(half[2], k[2]) + margin + reach_last,
+                dot(&v, &last),
+                speeds,
+            ));
+    let best = Course { gap: best.gap.first(), closing: best.closing.first() }
+        .or(Course { gap: best.gap.second(), closing: best.closing.second() });
     // Root of gap − closing·s − acceleration·s²/2: no cancellation.
     let twice = best.gap + best.gap;
     let root = (best.closing * best.closing + L::splat(scale.acceleration) * twice).sqrt();

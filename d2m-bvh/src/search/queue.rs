@@ -8,6 +8,7 @@ use crate::tree::node::LEAF;
 
 /// A pair of boxes and the time until which it is proven apart.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub(crate) struct Item {
     /// Time key.
     pub(crate) key: u32,
@@ -23,55 +24,97 @@ impl Item {
     pub(crate) const OF_B: u32 = 1 << 30;
     /// Nothing is left to open.
     pub(crate) const TRIANGLES: u32 = LEAF;
+
+    /// Whose node is to be opened: 0 is A, 1 is B.
+    #[inline(always)]
+    pub(crate) const fn side(&self) -> usize {
+        (self.open >> Self::OF_B.trailing_zeros()) as usize & 1
+    }
+
+    /// The node to be opened, by number.
+    #[inline(always)]
+    pub(crate) const fn node(&self) -> u32 {
+        self.open & !Self::OF_B
+    }
 }
 
 /// Monotone queue. Bucket 0 holds keys equal to `last`, bucket i keys whose highest bit that differs is bit i − 1.
 #[derive(Debug)]
 pub(crate) struct Queue {
-    buckets: [Vec<Item>; 33],
+    buckets: [Bucket; 33],
+    /// Bit i is set when bucket i is not empty.
+    occupied: u64,
     last: u32,
+}
+
+/// Items in any order: the first `count`; the others are room.
+#[derive(Debug, Default)]
+struct Bucket {
+    items: Vec<Item>,
+    count: usize,
+}
+
+impl Bucket {
+    #[inline(always)]
+    fn push(&mut self, item: &Item) {
+        match self.items.get_mut(self.count) {
+            Some(place) => *place = *item,
+            None => self.grow(item),
+        }
+        self.count += 1;
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn grow(&mut self, item: &Item) {
+        self.items.resize((2 * self.count).max(16), *item);
+    }
 }
 
 impl Queue {
     pub(crate) fn new() -> Self {
-        Self { buckets: [const { Vec::new() }; 33], last: 0 }
+        Self { buckets: [const { Bucket { items: Vec::new(), count: 0 } }; 33], occupied: 0, last: 0 }
     }
 
     /// Empties the queue and restarts the keys at zero.
     pub(crate) fn clear(&mut self) {
         for bucket in &mut self.buckets {
-            bucket.clear();
+            bucket.count = 0;
         }
+        self.occupied = 0;
         self.last = 0;
     }
 
     /// Adds an item whose key is not below the last key handed out.
     #[inline(always)]
-    pub(crate) fn push(&mut self, item: Item) {
+    pub(crate) fn push(&mut self, item: &Item) {
         debug_assert!(item.key >= self.last);
         let bucket = 32 - (item.key ^ self.last).leading_zeros();
         self.buckets[bucket as usize].push(item);
+        self.occupied |= 1 << bucket;
     }
 
-    /// Moves the earliest items into `batch` (emptied first) and returns the least key of all live items, or None
-    /// when there is none. A batch has more than `target` items only if their keys are equal.
+    /// Moves the earliest items into `batch` (emptied first) and returns the least key of all live items; None when
+    /// there is none. A batch has more than `target` items only if their keys are equal.
     pub(crate) fn take(&mut self, batch: &mut Vec<Item>, target: usize) -> Option<u32> {
-        batch.clear();
         loop {
-            let index = self.buckets.iter().position(|bucket| !bucket.is_empty())?;
-            let bucket = &mut self.buckets[index];
-            let least = bucket.iter().map(|item| item.key).min()?;
+            let index = self.occupied.trailing_zeros() as usize;
+            let bucket = self.buckets.get_mut(index)?;
+            let count = core::mem::take(&mut bucket.count);
+            self.occupied &= self.occupied - 1;
+            let least = bucket.items[..count].iter().map(|item| item.key).min()?;
             // The bits of `last` above the bucket's own stay what they were: the higher buckets remain valid.
             self.last = least;
-            if index == 0 || bucket.len() <= target {
-                core::mem::swap(bucket, batch);
+            if index == 0 || count <= target {
+                batch.clear();
+                batch.extend_from_slice(&bucket.items[..count]);
                 return Some(least);
             }
-            let mut items = core::mem::take(bucket);
-            for item in items.drain(..) {
+            let items = core::mem::take(&mut bucket.items);
+            for item in &items[..count] {
                 self.push(item);
             }
-            self.buckets[index] = items;
+            self.buckets[index].items = items;
         }
     }
 
@@ -79,14 +122,14 @@ impl Queue {
     #[inline(always)]
     pub(crate) fn extend(&mut self, items: &[Item]) {
         for item in items {
-            self.push(*item);
+            self.push(item);
         }
     }
 
     /// Items waiting.
     #[cfg(test)]
     pub(crate) fn len(&self) -> usize {
-        self.buckets.iter().map(Vec::len).sum()
+        self.buckets.iter().map(|bucket| bucket.count).sum()
     }
 }
 
@@ -107,7 +150,7 @@ mod tests {
             let mut batch = Vec::new();
             for _ in 0..50 {
                 let key = next() >> 3;
-                queue.push(Item { key, boxes: [0; 2], open: 0 });
+                queue.push(&Item { key, boxes: [0; 2], open: 0 });
                 *live.entry(key).or_insert(0) += 1;
             }
             let mut taken = 0;
@@ -124,7 +167,7 @@ mod tests {
                     if taken < 3000 {
                         for shift in [4, 12, 20] {
                             let key = item.key + (next() >> shift);
-                            queue.push(Item { key, boxes: [0; 2], open: 0 });
+                            queue.push(&Item { key, boxes: [0; 2], open: 0 });
                             *live.entry(key).or_insert(0) += 1;
                         }
                     }

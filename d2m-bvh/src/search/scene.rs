@@ -1,7 +1,6 @@
 //! Constants of one query.
 
 use super::base_pose::relative_position;
-use super::expansion::Expansion;
 use super::node_test::NodeScale;
 use super::queue::{Item, Queue};
 use super::triangle_pair::PairScale;
@@ -181,8 +180,7 @@ impl SearchCounts {
 pub(crate) struct Scratch {
     pub(crate) queue: Queue,
     pub(crate) batch: Vec<Item>,
-    /// The expansions of a batch, and the pairs they leave.
-    pub(crate) expansions: Vec<Expansion>,
+    /// The pairs that a batch leaves.
     pub(crate) fresh: Vec<Item>,
     pub(crate) counts: SearchCounts,
     /// The triangles that were looked at last.
@@ -197,7 +195,6 @@ impl Scratch {
         Self {
             queue: Queue::new(),
             batch: Vec::new(),
-            expansions: Vec::new(),
             fresh: Vec::new(),
             counts: SearchCounts::default(),
             last_looked_at: [0, 0],

@@ -36,6 +36,9 @@ const FOLLOWED: u32 = 16;
 /// bounds only begin earlier.
 const FRESH: u32 = 128;
 
+/// Nodes are asked for so many items before they are opened: trees are larger than the caches near the processor.
+const AHEAD: usize = 2;
+
 /// A contact as the search knows it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found {
@@ -217,7 +220,7 @@ impl<'s> Search<'s> {
         self.scratch.counts.windows += 1;
         self.scratch.queue.clear();
         let open = state.opening.of_pair(0, 0);
-        self.scratch.queue.push(Item { key: 0, boxes: [0; 2], open });
+        self.scratch.queue.push(&Item { key: 0, boxes: [0; 2], open });
         let mut batch = core::mem::take(&mut self.scratch.batch);
         let mut outcome = None;
         while let Some(least) = self.scratch.queue.take(&mut batch, BATCH) {
@@ -309,28 +312,33 @@ impl<'s> Search<'s> {
     }
 
     /// Opens at most [`BATCH`] items. Pairs of triangles first: they may lower the limit. Then all node tests, which
-    /// do not wait for each other, then their results.
+    /// do not wait for each other, then all that they leave.
     #[inline(always)]
     fn open<L: Lanes>(&mut self, state: &mut State<'_>, items: &[Item]) {
+        for item in &items[..AHEAD.min(items.len())] {
+            state.prefetch::<L>(item);
+        }
         for item in items {
             if item.open & Item::TRIANGLES != 0 && item.key < state.limit {
                 self.advance::<L>(state, *item);
             }
         }
-        self.scratch.expansions.clear();
-        for item in items {
+        let fresh = &mut self.scratch.fresh;
+        fresh.resize(WIDTH * (BATCH + 1), Item::default());
+        let (mut tests, mut count) = (0, 0);
+        for (i, item) in items.iter().enumerate() {
+            if let Some(next) = items.get(i + AHEAD) {
+                state.prefetch::<L>(next);
+            }
             if item.open & Item::TRIANGLES == 0 && item.key < state.limit {
                 let times = (state.frame_key, state.limit);
-                let expansion = state.opening.expand::<L>(item, &state.node_frames, times);
-                self.scratch.expansions.push(expansion);
+                let opened = state.opening.expand::<L>(item, &state.node_frames, times);
+                let list = fresh[count..].first_chunk_mut().expect("room for eight more");
+                count += L::pack(&opened, list);
+                tests += 1;
             }
         }
-        self.scratch.counts.node_tests += self.scratch.expansions.len() as u64;
-        self.scratch.fresh.resize(WIDTH * BATCH + 1, Item::default());
-        let mut count = 0;
-        for expansion in &self.scratch.expansions {
-            expansion.append_to(&mut self.scratch.fresh, &mut count);
-        }
+        self.scratch.counts.node_tests += tests;
         self.scratch.counts.queued += count as u64;
         self.scratch.queue.extend(&self.scratch.fresh[..count]);
     }
@@ -362,7 +370,7 @@ impl<'s> Search<'s> {
             steps += 1;
             if steps.is_multiple_of(256) && self.out_of_budget() {
                 let key = ((known / state.step) as u32).max(item.key);
-                self.scratch.queue.push(Item { key, ..item });
+                self.scratch.queue.push(&Item { key, ..item });
                 return;
             }
             self.scratch.counts.triangle_looks += 1;
@@ -379,7 +387,7 @@ impl<'s> Search<'s> {
                     let key = (known / state.step) as u32;
                     if key > item.key + item.key / FOLLOWED + 1024 {
                         if key < state.limit {
-                            self.scratch.queue.push(Item { key, ..item });
+                            self.scratch.queue.push(&Item { key, ..item });
                         }
                         return;
                     }
@@ -416,6 +424,13 @@ impl<'s> Search<'s> {
 }
 
 impl State<'_> {
+    /// Asks for the node that the item opens.
+    #[inline(always)]
+    fn prefetch<L: Lanes>(&self, item: &Item) {
+        if item.open & Item::TRIANGLES == 0 {
+            L::prefetch(&self.opening.nodes[item.side()][item.node() as usize]);
+        }
+    }
     /// A contact at this offset: nothing later matters.
     fn find(&mut self, offset: f64, triangles: [u32; 2], crossing: bool) {
         self.limit_offset = offset;

@@ -1,5 +1,7 @@
 //! Runs a search with the vector instructions in use. Every choice gives the same bits.
 
+#[cfg(target_arch = "x86_64")]
+use crate::search::{Avx, Of256, Of512};
 use crate::search::{InstructionSet, Lanes, Portable};
 
 /// A piece of work that is compiled once for each kind of lanes.
@@ -22,6 +24,9 @@ pub(crate) fn run_on<T: Task>(set: InstructionSet, task: T) -> T::Output {
         // SAFETY: `InstructionSet::in_use` found the features on this processor (tests ask only for available sets).
         #[cfg(target_arch = "x86_64")]
         InstructionSet::Avx2 => unsafe { avx2(task) },
+        // SAFETY: the same.
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Avx512 => unsafe { avx512(task) },
         _ => task.run::<Portable>(),
     }
 }
@@ -29,5 +34,11 @@ pub(crate) fn run_on<T: Task>(set: InstructionSet, task: T) -> T::Output {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
 fn avx2<T: Task>(task: T) -> T::Output {
-    task.run::<crate::search::Avx>()
+    task.run::<Avx<Of256>>()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl,avx512bw,avx512dq,avx512vbmi2")]
+fn avx512<T: Task>(task: T) -> T::Output {
+    task.run::<Avx<Of512>>()
 }

@@ -1,0 +1,75 @@
+//! Two times eight lanes: one register where the processor has one that is wide enough, else two.
+
+use super::lanes::{Elementwise, Lanes};
+use core::ops::{Add, Mul, Sub};
+
+/// Two times eight lanes.
+pub(crate) trait Two<L: Lanes>: Elementwise {
+    /// From both halves.
+    fn of(first: L, second: L) -> Self;
+    /// The same lanes twice.
+    fn both(half: L) -> Self;
+    /// The first eight lanes.
+    fn first(self) -> L;
+    /// The second eight lanes.
+    fn second(self) -> L;
+}
+
+/// Two registers side by side.
+#[derive(Clone, Copy)]
+pub(crate) struct Both<L>(L, L);
+
+macro_rules! both_operator {
+    ($($operator:ident $method:ident $symbol:tt),*) => {$(
+        impl<L: Lanes> $operator for Both<L> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(self.0 $symbol other.0, self.1 $symbol other.1)
+            }
+        }
+    )*};
+}
+both_operator!(Add add +, Sub sub -, Mul mul *);
+
+impl<L: Lanes> Elementwise for Both<L> {
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Self(L::splat(value), L::splat(value))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.abs(), self.1.abs())
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(self.0.max(other.0), self.1.max(other.1))
+    }
+    #[inline(always)]
+    fn flip_sign(magnitude: Self, sign: Self) -> Self {
+        Self(L::flip_sign(magnitude.0, sign.0), L::flip_sign(magnitude.1, sign.1))
+    }
+    #[inline(always)]
+    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
+        Self(L::if_greater(left.0, right.0, yes.0, no.0), L::if_greater(left.1, right.1, yes.1, no.1))
+    }
+}
+
+impl<L: Lanes> Two<L> for Both<L> {
+    #[inline(always)]
+    fn of(first: L, second: L) -> Self {
+        Self(first, second)
+    }
+    #[inline(always)]
+    fn both(half: L) -> Self {
+        Self(half, half)
+    }
+    #[inline(always)]
+    fn first(self) -> L {
+        self.0
+    }
+    #[inline(always)]
+    fn second(self) -> L {
+        self.1
+    }
+}
