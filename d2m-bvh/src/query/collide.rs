@@ -1,8 +1,8 @@
 //! Do two bodies at rest touch?
 
 use super::containment::one_holds_the_other;
-use super::static_pair::{Scene, Step, Task, child, proven_apart, run};
-use crate::search::Lanes;
+use super::static_pair::{Scene, Step, child, proven_apart};
+use crate::search::{Lanes, Task, run};
 use crate::{Posed, QueryError, Solid};
 use d2m_feature::triangle_distance;
 use glam::DVec3;

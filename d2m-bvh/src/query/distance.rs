@@ -2,8 +2,8 @@
 
 use super::collide::{check_solid, crossing_pair};
 use super::containment::one_holds_the_other;
-use super::static_pair::{Scene, Step, Task, child, gap_exceeds, run};
-use crate::search::Lanes;
+use super::static_pair::{Scene, Step, child, gap_exceeds};
+use crate::search::{Lanes, Task, run};
 use crate::tree::margin::{UNIT_F64, round_up};
 use crate::{PairCache, Posed, QueryError, Solid, StartState};
 use d2m_feature::{TriangleDistance, triangle_distance};

@@ -1,73 +1,119 @@
 //! From what the search found to the answer: witness points, normal, features in the meshes' numbers.
 
-use crate::search::{Closest, Found, Frame, Place, Quad, RelativeMotion, Scene, closest, corners, place_a};
+use crate::search::{
+    Closest, Doubles, Found, Frame, Lanes, Place, Quad, RelativeMotion, Scene, Task, closest, corners,
+    place_a, run,
+};
 use crate::{Contact, MeshTree, StartState};
 use d2m_feature::FeaturePair;
 use glam::DVec3;
 
 /// The contact with all its data; `bracket`: look for a time by which the tolerance was reached.
 pub(super) fn contact(scene: &Scene<'_>, found: &Found, bracket: bool) -> Contact {
-    let time = crate::search::time_from(found.start, found.offset).max(scene.window.start());
-    let motion = RelativeMotion::new((scene.a.0, &scene.a.1), (scene.b.0, &scene.b.1), found.start);
-    let frame = motion.frame::<Quad>(time - found.start);
-    let b = corners(scene.b.0, found.triangles[1]);
-    let a = place_a::<Quad>(&frame, &corners(scene.a.0, found.triangles[0]));
-    let near = closest::<Quad>(&a, &b);
-    let start = match (time <= scene.window.start(), found.crossing) {
-        (false, _) => StartState::Apart,
-        (true, false) => StartState::Touching,
-        (true, true) => StartState::Overlapping,
-    };
-    let separation = if start == StartState::Overlapping { 0.0 } else { near.square.sqrt() };
-    let witness = Witness { near, a, b, triangles: found.triangles, separation, start };
-    let mut contact = describe(scene, (&motion, &frame), time, &witness);
-    if bracket && start == StartState::Apart {
-        contact.time_hi = reached_by(scene, &motion, found.triangles, &contact);
+    run(Report { scene, found, bracket })
+}
+
+struct Report<'r> {
+    scene: &'r Scene<'r>,
+    found: &'r Found,
+    bracket: bool,
+}
+
+impl Task for Report<'_> {
+    type Output = Contact;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Contact {
+        let Self { scene, found, bracket } = self;
+        let time = crate::search::time_from(found.start, found.offset).max(scene.window.start());
+        let motion = RelativeMotion::new((scene.a.0, &scene.a.1), (scene.b.0, &scene.b.1), found.start);
+        let pair = TrianglePair {
+            motion: &motion,
+            a: corners(scene.a.0, found.triangles[0]),
+            b: corners(scene.b.0, found.triangles[1]),
+        };
+        let (frame, near) = pair.at::<L::Doubles>(time);
+        let start = match (time <= scene.window.start(), found.crossing) {
+            (false, _) => StartState::Apart,
+            (true, false) => StartState::Touching,
+            (true, true) => StartState::Overlapping,
+        };
+        let separation = if start == StartState::Overlapping { 0.0 } else { near.square.sqrt() };
+        let a = place_a::<L::Doubles>(&frame, &pair.a);
+        let witness = Witness { near, a, b: pair.b, triangles: found.triangles, separation, start };
+        let mut contact = describe(scene, (&motion, &frame), time, &witness);
+        if bracket && start == StartState::Apart {
+            contact.time_hi = pair.reached_by::<L::Doubles>(scene, time, (&frame, &near));
+        }
+        contact
     }
-    contact
 }
 
 /// Looks at most for the end of a bracket.
 const BRACKET_LOOKS: u32 = 24;
 
-/// A time by which the two triangles were certainly within the level; `time_lo` when none is found: Newton's method
-/// along the normal, and bisection once the triangles have passed each other.
-fn reached_by(scene: &Scene<'_>, motion: &RelativeMotion, triangles: [u32; 2], contact: &Contact) -> f64 {
-    // The closest points are on the triangles up to the error: a true upper bound of the distance. In the middle
-    // between that and no distance at all there is as much room on either side as there can be.
-    let level = scene.pair.level - scene.pair.error;
-    let target = scene.pair.level - 0.5 * (scene.tolerance + scene.pair.error);
-    // Frames hold for a little more than the longest window.
-    let end = scene.window.end().min(motion.start + 1.1 * scene.longest);
-    let (a, b) = (corners(scene.a.0, triangles[0]), corners(scene.b.0, triangles[1]));
-    let look = |time: f64| {
-        let frame = motion.frame::<Quad>(time - motion.start);
-        let near = closest::<Quad>(&place_a::<Quad>(&frame, &a), &b);
-        let normal = near.direction.normalize_or_zero();
-        (near.square.sqrt(), frame.closing_speed(near.points, normal), normal)
-    };
-    let (mut early, mut late) = (contact.time_lo, None);
-    let (mut distance, mut closing, first_normal) = look(early);
-    for _ in 0..BRACKET_LOOKS {
-        let time = match late {
-            None if closing > 0.0 => (early + (distance - target) / closing).max(early.next_up()).min(end),
-            None => break,
-            Some(late) => early + 0.5 * (late - early),
-        };
-        if time.is_nan() || time <= early {
-            break;
-        }
-        let (here, speed, normal) = look(time);
-        if here <= level {
-            return time;
-        }
-        if normal.dot(first_normal) < 0.0 {
-            late = Some(time);
-        } else {
-            (early, distance, closing) = (time, here, speed);
-        }
+/// Two triangles, corners relative to the trees' centres in body axes, and how they move.
+struct TrianglePair<'r> {
+    motion: &'r RelativeMotion,
+    a: [DVec3; 3],
+    b: [DVec3; 3],
+}
+
+impl TrianglePair<'_> {
+    #[inline(always)]
+    fn at<D: Doubles>(&self, time: f64) -> (Frame, Closest) {
+        let frame = self.motion.frame::<D>(time - self.motion.start);
+        (frame, closest::<D>(&place_a::<D>(&frame, &self.a), &self.b))
     }
-    contact.time_lo
+
+    /// A time by which the triangles were certainly within the level; `time_lo` when none is found: Newton's method
+    /// along the normal, and bisection once the triangles have passed each other.
+    #[inline(always)]
+    fn reached_by<D: Doubles>(
+        &self,
+        scene: &Scene<'_>,
+        time_lo: f64,
+        (frame, near): (&Frame, &Closest),
+    ) -> f64 {
+        // The closest points are on the triangles up to the error: a true upper bound of the distance. In the middle
+        // between that and no distance at all there is as much room on either side as there can be.
+        let level = scene.pair.level - scene.pair.error;
+        let target = scene.pair.level - 0.5 * (scene.tolerance + scene.pair.error);
+        // Frames hold for a little more than the longest window.
+        let end = scene.window.end().min(self.motion.start + 1.1 * scene.longest);
+        let (mut early, mut late) = (time_lo, None);
+        let (mut distance, mut closing, first_normal) = course(frame, near);
+        for _ in 0..BRACKET_LOOKS {
+            let time = match late {
+                None if closing > 0.0 => {
+                    (early + (distance - target) / closing).max(early.next_up()).min(end)
+                }
+                None => break,
+                Some(late) => early + 0.5 * (late - early),
+            };
+            if time.is_nan() || time <= early {
+                break;
+            }
+            let (frame, near) = self.at::<D>(time);
+            let (here, speed, normal) = course(&frame, &near);
+            if here <= level {
+                return time;
+            }
+            if normal.dot(first_normal) < 0.0 {
+                late = Some(time);
+            } else {
+                (early, distance, closing) = (time, here, speed);
+            }
+        }
+        time_lo
+    }
+}
+
+/// Distance of the closest points, the speed at which they come together, the unit direction from A to B.
+#[inline(always)]
+fn course(frame: &Frame, near: &Closest) -> (f64, f64, DVec3) {
+    let normal = near.direction.normalize_or_zero();
+    (near.square.sqrt(), frame.closing_speed(near.points, normal), normal)
 }
 
 struct Witness {

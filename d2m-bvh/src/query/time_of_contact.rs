@@ -3,7 +3,7 @@
 use super::containment::contains_point;
 use super::distance::distance;
 use super::report::contact;
-use crate::search::{Outcome, Quad, RelativeMotion, Scene, Scratch, first_contact};
+use crate::search::{Outcome, Quad, RelativeMotion, Scene, Scratch, Search, run};
 use crate::{
     MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window,
 };
@@ -90,7 +90,7 @@ pub(super) fn scene_of<'a>(
 pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfContact, QueryError> {
     let window = scene.window;
     let mut scratch = SCRATCH.take().unwrap_or_else(|| Box::new(Scratch::new()));
-    let outcome = first_contact(scene, options, &mut scratch);
+    let outcome = run(Search::new(scene, options, &mut scratch));
     SCRATCH.set(Some(scratch));
     let start_decided = match outcome {
         Outcome::Found(found) => found.offset > 0.0 || found.start > window.start(),
@@ -156,7 +156,11 @@ fn containment(scene: &Scene<'_>) -> Option<TimeOfContact> {
     let frame = motion.frame::<Quad>(0.0);
     let place = |p: DVec3, of_b: bool| {
         if of_b {
-            frame.rotation.transposed().times::<Quad>((Quad::from_vec(p) - frame.apart).to_vec()).to_vec()
+            frame
+                .rotation
+                .transposed::<Quad>()
+                .times::<Quad>((Quad::from_vec(p) - frame.apart).to_vec())
+                .to_vec()
         } else {
             (frame.rotation.times::<Quad>(p) + frame.apart).to_vec()
         }

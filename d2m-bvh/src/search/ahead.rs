@@ -7,8 +7,7 @@
 //! falls into it with the true counts either: then the search by one thread would have done the same, operation by
 //! operation. Otherwise it is searched again. See docs/theory/engine.md, "Several threads".
 
-use super::InstructionSet;
-use super::dispatch::search_on;
+use super::dispatch::run;
 use super::scene::{Scratch, SearchCounts};
 use super::window::{Outcome, QUICK_LOOKS, Search};
 use std::sync::OnceLock;
@@ -117,7 +116,7 @@ impl Search<'_> {
                 }
                 scratch.counts = known;
                 let search = Search::of_window(scene, limits, scratch, ahead);
-                let outcome = search_on(InstructionSet::in_use(), search);
+                let outcome = run(search);
                 match outcome {
                     Outcome::OutOfBudget(_) => continue,
                     Outcome::Found(_) => _ = answered.fetch_min(number, Ordering::Relaxed),
@@ -150,7 +149,6 @@ impl Search<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::dispatch::first_contact;
     use super::super::scene::Scene;
     use super::*;
     use crate::random::{Random, wavy_torus};
@@ -193,7 +191,7 @@ mod tests {
             let scene = Scene::new((a, motions[0]), (b, motions[1]), Window::UNIT, &options);
             let mut ask = |options: &QueryOptions, threads: usize| {
                 let mut scratch = Scratch::new();
-                let outcome = pools[threads].install(|| first_contact(&scene, options, &mut scratch));
+                let outcome = pools[threads].install(|| run(Search::new(&scene, options, &mut scratch)));
                 helped += usize::from(!scratch.helpers.is_empty());
                 (format!("{outcome:?}"), scratch.counts)
             };

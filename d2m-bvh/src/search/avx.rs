@@ -262,6 +262,21 @@ impl Doubles for AvxDoubles {
         Self(unsafe { _mm256_max_pd(self.0, other.0) })
     }
     #[inline(always)]
+    fn transposed([a, b, c]: [Self; 3]) -> [Self; 3] {
+        // SAFETY: the processor has AVX (see the type).
+        unsafe {
+            let zero = _mm256_setzero_pd();
+            // First and third rows of a, b and of c, 0; then second and fourth.
+            let (even_ab, even_c) = (_mm256_unpacklo_pd(a.0, b.0), _mm256_unpacklo_pd(c.0, zero));
+            let (odd_ab, odd_c) = (_mm256_unpackhi_pd(a.0, b.0), _mm256_unpackhi_pd(c.0, zero));
+            [
+                Self(_mm256_permute2f128_pd::<0x20>(even_ab, even_c)),
+                Self(_mm256_permute2f128_pd::<0x20>(odd_ab, odd_c)),
+                Self(_mm256_permute2f128_pd::<0x31>(even_ab, even_c)),
+            ]
+        }
+    }
+    #[inline(always)]
     fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
         // SAFETY: the processor has AVX (see the type).
         Self(unsafe { _mm256_blendv_pd(no.0, yes.0, _mm256_cmp_pd::<_CMP_GT_OQ>(left.0, right.0)) })

@@ -109,11 +109,11 @@ fn sin_versine(angle: Pair) -> (f64, f64) {
     let z = x * x;
     let mut odd = 1.0;
     for k in [17.0, 15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0] {
-        odd = 1.0 - odd * z / (k * (k - 1.0));
+        odd = 1.0 - odd * (z * (1.0 / (k * (k - 1.0))));
     }
     let mut even = 1.0;
     for k in [18.0, 16.0, 14.0, 12.0, 10.0, 8.0, 6.0, 4.0] {
-        even = 1.0 - even * z / (k * (k - 1.0));
+        even = 1.0 - even * (z * (1.0 / (k * (k - 1.0))));
     }
     let versine = even * z * 0.5;
     let (sin, cos) = (x * odd + y * (1.0 - versine), 1.0 - (versine + x * y));

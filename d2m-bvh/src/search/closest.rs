@@ -78,10 +78,12 @@ fn clamp_ratios<D: Doubles>(numerator: D, denominator: D) -> D {
     D::if_greater(denominator, zero, ratio, zero)
 }
 
+#[inline(always)]
 fn clamp_ratio(numerator: f64, denominator: f64) -> f64 {
     if denominator > 0.0 { (numerator / denominator).clamp(0.0, 1.0) } else { 0.0 }
 }
 
+#[inline(always)]
 fn edge_edge((a, i): (&[DVec3; 3], usize), (b, j): (&[DVec3; 3], usize)) -> Closest {
     let (a0, a1, b0, b1) = (a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]);
     let (e, d, w) = (a1 - a0, b1 - b0, b0 - a0);
@@ -129,6 +131,7 @@ fn edge_edge((a, i): (&[DVec3; 3], usize), (b, j): (&[DVec3; 3], usize)) -> Clos
     Closest { square, points: [p, q], places, direction }
 }
 
+#[inline(always)]
 fn corner_face(
     best: &mut Closest,
     (corners, i): (&[DVec3; 3], usize),

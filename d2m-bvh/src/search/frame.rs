@@ -21,42 +21,53 @@ pub(crate) struct RelativeMotion {
     bodies: [Spin; 2],
 }
 
-/// Rotation of one body.
+/// Rotation of one body, and what it does to the arm from the followed point to the centre of the tree.
 #[derive(Clone, Copy, Debug)]
 struct Spin {
     omega: Quad,
-    /// [ω].
-    cross: Matrix,
+    /// ω in the body's own axes, where it stays.
+    omega_own: Quad,
     omega_squared: f64,
-    /// R, [ω]R and [ω]²R at the start.
+    /// The columns of R, the arm R·e and its rate ω × R·e; [ω] and [ω]² times them; all at the start, world axes.
+    now: [Quad; COLUMNS],
+    first: [Quad; COLUMNS],
+    second: [Quad; COLUMNS],
+}
+
+/// Vectors that turn with a body: see [`Turned`].
+const COLUMNS: usize = 5;
+
+/// Vectors that turn with a body, at one time, world axes.
+struct Turned {
+    /// Axes of the body.
     rotation: Matrix,
-    first: Matrix,
-    second: Matrix,
-    /// From the followed point to the centre of the tree, body axes.
-    arm: DVec3,
+    /// From the followed point to the centre of the tree, and its rate.
+    arm: Quad,
+    swing: Quad,
 }
 
 impl Spin {
     fn new(motion: &LinearMotion, arm: DVec3, start: f64) -> Self {
         let omega = motion.angular_velocity();
-        let rotation = rotation_at(motion, start);
-        let first = rotation.map(|c| omega.cross(c));
+        let [x, y, z] = rotation_at(motion, start);
+        let arm = x * arm.x + y * arm.y + z * arm.z;
+        let now = [x, y, z, arm, omega.cross(arm)];
+        let first = now.map(|c| omega.cross(c));
         let second = first.map(|c| omega.cross(c));
         Self {
             omega: Quad::from_vec(omega),
-            cross: Matrix::cross(&Quad::from_vec(omega)),
+            omega_own: Quad::from_vec(DVec3::new(x.dot(omega), y.dot(omega), z.dot(omega))),
             omega_squared: omega.length_squared(),
-            rotation: Matrix::from_columns(rotation),
-            first: Matrix::from_columns(first),
-            second: Matrix::from_columns(second),
-            arm,
+            now: now.map(Quad::from_vec),
+            first: first.map(Quad::from_vec),
+            second: second.map(Quad::from_vec),
         }
     }
 
-    /// R(s) = R + s·f₁(θ²)·[ω]R + s²·f₂(θ²)·[ω]²R, θ = |ω|s, f₁ = sin θ/θ, f₂ = (1 − cos θ)/θ². The Taylor sums
-    /// leave out less than 2⁻⁶⁰ for |θ| ≤ 0.35.
+    /// R(s) = R + s·f₁(θ²)·[ω]R + s²·f₂(θ²)·[ω]²R, θ = |ω|s, f₁ = sin θ/θ, f₂ = (1 − cos θ)/θ², and so every vector
+    /// that turns with the body. The Taylor sums leave out less than 2⁻⁶⁰ for |θ| ≤ 0.35.
     #[inline(always)]
-    fn at<D: Doubles>(&self, s: f64) -> Matrix {
+    fn at<D: Doubles>(&self, s: f64) -> Turned {
         let z = self.omega_squared * (s * s);
         let f1 = 1.0
             - z * (1.0 / 6.0
@@ -70,12 +81,13 @@ impl Spin {
                         - z * (1.0 / 3_628_800.0
                             - z * (1.0 / 479_001_600.0 - z * (1.0 / 87_178_291_200.0))))));
         let (f1, f2) = (D::splat(f1 * s), D::splat(f2 * (s * s)));
-        let (r, p, q) = (&self.rotation.0, &self.first.0, &self.second.0);
-        Matrix([
-            (D::load(&r[0]) + (D::load(&p[0]) * f1 + D::load(&q[0]) * f2)).store(),
-            (D::load(&r[1]) + (D::load(&p[1]) * f1 + D::load(&q[1]) * f2)).store(),
-            (D::load(&r[2]) + (D::load(&p[2]) * f1 + D::load(&q[2]) * f2)).store(),
-        ])
+        let mut out = [Quad([0.0; 4]); COLUMNS];
+        for (k, column) in out.iter_mut().enumerate() {
+            let turned = D::load(&self.first[k]) * f1 + D::load(&self.second[k]) * f2;
+            *column = (D::load(&self.now[k]) + turned).store();
+        }
+        let [x, y, z, arm, swing] = out;
+        Turned { rotation: Matrix([x, y, z]), arm, swing }
     }
 }
 
@@ -126,29 +138,27 @@ impl RelativeMotion {
 
     /// Axes of B in the world at an offset.
     pub(crate) fn rotation_b(&self, offset: f64) -> Matrix {
-        self.bodies[1].at::<Quad>(offset)
+        self.bodies[1].at::<Quad>(offset).rotation
     }
 
     /// State at an offset with |ω|·|offset| ≤ 0.35 for both bodies.
     #[inline(always)]
     pub(crate) fn frame<D: Doubles>(&self, offset: f64) -> Frame {
         let [body_a, body_b] = &self.bodies;
-        let (ra, rb) = (body_a.at::<D>(offset), body_b.at::<D>(offset));
-        let (arm_a, arm_b) = (ra.times::<D>(body_a.arm), rb.times::<D>(body_b.arm));
+        let (a, b) = (body_a.at::<D>(offset), body_b.at::<D>(offset));
         // Centre of A minus centre of B, and its rate, world axes.
         let velocity = D::load(&self.velocity);
-        let apart = D::load(&self.position) + velocity * D::splat(offset) + (arm_a - arm_b);
-        let (swing_a, swing_b): (D, D) =
-            (body_a.cross.times_quad(&arm_a.store()), body_b.cross.times_quad(&arm_b.store()));
-        let rate = velocity + (swing_a - swing_b);
-        let to_b = rb.transposed();
+        let moved = D::load(&self.position) + velocity * D::splat(offset);
+        let apart = moved + (D::load(&a.arm) - D::load(&b.arm));
+        let rate = velocity + (D::load(&a.swing) - D::load(&b.swing));
+        let to_b = b.rotation.transposed::<D>();
         Frame {
             offset,
-            rotation: to_b.times_matrix::<D>(&ra),
+            rotation: to_b.times_matrix::<D>(&a.rotation),
             apart: to_b.times_quad::<D>(&apart.store()).store(),
             velocity: to_b.times_quad::<D>(&rate.store()).store(),
             omega_a: to_b.times_quad::<D>(&body_a.omega).store(),
-            omega_b: to_b.times_quad::<D>(&body_b.omega).store(),
+            omega_b: body_b.omega_own,
         }
     }
 }

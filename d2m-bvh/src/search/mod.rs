@@ -26,18 +26,18 @@ mod triangle_pair;
 mod two;
 mod window;
 
-#[cfg(target_arch = "x86_64")]
-pub(crate) use avx::{Avx, Of256};
-#[cfg(target_arch = "x86_64")]
-pub(crate) use avx512::Of512;
 pub(crate) use base_pose::{Columns, relative_position, rotation_at};
 pub(crate) use closest::{Closest, Place, closest};
-pub(crate) use dispatch::first_contact;
+#[cfg(test)]
+pub(crate) use dispatch::run_on;
+pub(crate) use dispatch::{Task, run};
 pub(crate) use frame::{Frame, RelativeMotion};
 pub use instruction_set::InstructionSet;
-pub(crate) use lanes::{Lanes, Portable};
-pub(crate) use quad::Quad;
+pub(crate) use lanes::Lanes;
+#[cfg(test)]
+pub(crate) use lanes::Portable;
+pub(crate) use quad::{Doubles, Quad};
 pub use scene::SearchCounts;
 pub(crate) use scene::{Scene, Scratch};
 pub(crate) use triangle_pair::place_a;
-pub(crate) use window::{Found, Outcome, corners, time_from};
+pub(crate) use window::{Found, Outcome, Search, corners, time_from};

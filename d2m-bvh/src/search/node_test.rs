@@ -74,7 +74,7 @@ impl NodeFrame {
                 D::load(&frame.omega_b),
             )
         } else {
-            let to_a = frame.rotation.transposed();
+            let to_a = frame.rotation.transposed::<D>();
             let zero = D::splat(0.0);
             (
                 to_a,

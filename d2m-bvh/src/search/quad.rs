@@ -25,6 +25,8 @@ pub(crate) trait Doubles:
     fn min(self, other: Self) -> Self;
     /// The larger; the second where one is not a number.
     fn max(self, other: Self) -> Self;
+    /// The transposed matrix of three columns with zeros below.
+    fn transposed(columns: [Self; 3]) -> [Self; 3];
     /// `if left > right { yes } else { no }`.
     fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self;
 }
@@ -86,6 +88,14 @@ impl Doubles for Quad {
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         self.zip(other, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn transposed([a, b, c]: [Self; 3]) -> [Self; 3] {
+        [
+            Self([a.0[0], b.0[0], c.0[0], 0.0]),
+            Self([a.0[1], b.0[1], c.0[1], 0.0]),
+            Self([a.0[2], b.0[2], c.0[2], 0.0]),
+        ]
     }
     #[inline(always)]
     fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
@@ -167,10 +177,6 @@ impl<D: Doubles> QuadVec<D> {
 pub(crate) struct Matrix(pub(crate) [Quad; 3]);
 
 impl Matrix {
-    pub(crate) fn from_columns(columns: [DVec3; 3]) -> Self {
-        Self(columns.map(Quad::from_vec))
-    }
-
     /// The matrix of v ↦ ω × v.
     #[inline(always)]
     pub(crate) const fn cross(omega: &Quad) -> Self {
@@ -179,13 +185,10 @@ impl Matrix {
     }
 
     #[inline(always)]
-    pub(crate) fn transposed(&self) -> Self {
+    pub(crate) fn transposed<D: Doubles>(&self) -> Self {
         let [a, b, c] = &self.0;
-        Self([
-            Quad([a.0[0], b.0[0], c.0[0], 0.0]),
-            Quad([a.0[1], b.0[1], c.0[1], 0.0]),
-            Quad([a.0[2], b.0[2], c.0[2], 0.0]),
-        ])
+        let [x, y, z] = D::transposed([D::load(a), D::load(b), D::load(c)]);
+        Self([x.store(), y.store(), z.store()])
     }
 
     #[inline(always)]

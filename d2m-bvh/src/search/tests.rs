@@ -1,7 +1,7 @@
 //! Each bound against certified distances of triangles, with mutants that must be noticed.
 
 use super::InstructionSet;
-use super::dispatch::first_contact_on;
+use super::dispatch::run_on;
 use super::frame::RelativeMotion;
 use super::lanes::{Lanes, Portable};
 use super::node_test::{NodeFrame, NodeScale, Placed, entry_times};
@@ -260,7 +260,7 @@ fn every_instruction_set_gives_the_same_bits() {
         let options = QueryOptions::default();
         let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
         let mut run = |set: InstructionSet| {
-            let outcome = first_contact_on(set, &scene, &options, &mut scratch);
+            let outcome = run_on(set, Search::new(&scene, &options, &mut scratch));
             let answer = match outcome {
                 Outcome::Separated => None,
                 Outcome::OutOfBudget(_) => panic!("no budget"),

@@ -1,6 +1,7 @@
 //! The search itself: windows of limited rotation, and best first inside each.
 
 use super::closest::closest;
+use super::dispatch::Task;
 use super::expansion::{KEY_SCALE, Opening};
 use super::frame::{Frame, RelativeMotion};
 use super::helix::screw_clear_until;
@@ -107,6 +108,44 @@ struct State<'a> {
     found_frame: Frame,
 }
 
+impl Task for Search<'_> {
+    type Output = Outcome;
+
+    /// Searches window after window.
+    #[inline(always)]
+    fn run<L: Lanes>(mut self) -> Outcome {
+        let (first, end) = (self.scene.window.start(), self.scene.window.end());
+        #[cfg(feature = "rayon")]
+        let mut window = self.ahead.map_or_else(|| self.window_from(first), |ahead| Some(ahead.window));
+        #[cfg(not(feature = "rayon"))]
+        let mut window = self.window_from(first);
+        while let Some((start, next)) = window {
+            let clear_until = match self.search_window::<L>(start, next) {
+                Step::Answer(outcome) => return outcome,
+                Step::ClearUntil(until) => until,
+            };
+            #[cfg(feature = "rayon")]
+            if self.ahead.is_some() {
+                return Outcome::Separated;
+            }
+            if clear_until >= end {
+                return Outcome::Separated;
+            }
+            #[cfg(feature = "rayon")]
+            let clear_until = if self.parallel {
+                match self.search_ahead(clear_until) {
+                    Ok(until) => until,
+                    Err(outcome) => return outcome,
+                }
+            } else {
+                clear_until
+            };
+            window = self.window_from(clear_until);
+        }
+        Outcome::Separated
+    }
+}
+
 impl<'s> Search<'s> {
     pub(crate) fn new(scene: &'s Scene<'s>, options: &QueryOptions, scratch: &'s mut Scratch) -> Self {
         let budget = &options.budget;
@@ -138,40 +177,6 @@ impl<'s> Search<'s> {
         ahead: super::ahead::Ahead<'s>,
     ) -> Self {
         Self { scene, scratch, limits, ahead: Some(ahead), parallel: false }
-    }
-
-    /// Searches window after window.
-    #[inline(always)]
-    pub(crate) fn run<L: Lanes>(mut self) -> Outcome {
-        let (first, end) = (self.scene.window.start(), self.scene.window.end());
-        #[cfg(feature = "rayon")]
-        let mut window = self.ahead.map_or_else(|| self.window_from(first), |ahead| Some(ahead.window));
-        #[cfg(not(feature = "rayon"))]
-        let mut window = self.window_from(first);
-        while let Some((start, next)) = window {
-            let clear_until = match self.search_window::<L>(start, next) {
-                Step::Answer(outcome) => return outcome,
-                Step::ClearUntil(until) => until,
-            };
-            #[cfg(feature = "rayon")]
-            if self.ahead.is_some() {
-                return Outcome::Separated;
-            }
-            if clear_until >= end {
-                return Outcome::Separated;
-            }
-            #[cfg(feature = "rayon")]
-            let clear_until = if self.parallel {
-                match self.search_ahead(clear_until) {
-                    Ok(until) => until,
-                    Err(outcome) => return outcome,
-                }
-            } else {
-                clear_until
-            };
-            window = self.window_from(clear_until);
-        }
-        Outcome::Separated
     }
 
     /// The next window to be searched; `None` when nothing is left.

@@ -1,7 +1,6 @@
 //! What the static queries share: the relative pose with its error, the test of a box against eight boxes, the
 //! constants of one query. The bounds are derived in docs/theory/static-queries.md.
 
-mod dispatch;
 mod node_test;
 mod relative_pose;
 mod scene;
@@ -9,7 +8,6 @@ mod scene;
 pub(super) mod tests;
 mod triangles;
 
-pub(super) use dispatch::{Task, run};
 pub(super) use relative_pose::RelativePose;
 pub(super) use scene::{Scene, Step, child};
 pub(super) use triangles::{gap_exceeds, proven_apart};

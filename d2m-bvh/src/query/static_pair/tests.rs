@@ -1,10 +1,9 @@
 //! The error bounds of the node test, and the same bits from every kind of lanes.
 
-use super::dispatch::{Task, run_on};
 use super::node_test::{Placed, Side, lower_bounds, margin_free_gaps};
 use super::*;
 use crate::random::Random;
-use crate::search::{InstructionSet, Lanes, Portable};
+use crate::search::{InstructionSet, Lanes, Portable, Task, run, run_on};
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::{OrientedBox, WideNode};
 use glam::{DMat3, DQuat, DVec3};
