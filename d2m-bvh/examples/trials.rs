@@ -40,11 +40,6 @@ fn load(path: &str) -> MeshTree {
 }
 
 fn main() {
-    match std::env::var("D2M_SET").as_deref() {
-        Ok("avx2") => d2m_bvh::InstructionSet::Avx2.limit(),
-        Ok("portable") => d2m_bvh::InstructionSet::Portable.limit(),
-        _ => {}
-    }
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (a, b) = (load(&arguments[0]), load(&arguments[1]));
     let text = std::fs::read_to_string(&arguments[2]).expect("readable trials");

@@ -7,7 +7,7 @@ use super::lanes::{Lanes, Portable};
 use super::node_test::{NodeFrame, NodeScale, Placed, entry_times};
 use super::quad::Quad;
 use super::scene::{Scene, Scratch};
-use super::triangle_pair::{Care, Look, PairScale, apart_since, look, place_a};
+use super::triangle_pair::{Behind, Care, Look, PairScale, apart_since, look, place_a};
 use super::window::{Outcome, corners};
 use crate::random::Random;
 use crate::tree::node::Below;
@@ -130,14 +130,14 @@ fn half_the_acceleration_is_noticed() {
 
 /// The same arm and wall, looked at as triangles, while the arm also comes nearer by itself: what is left at the end of
 /// the time that they are proven clear after the arm points at the wall, or before that (the motion is then the one
-/// that runs backwards from there).
-fn room_after_a_look(closing: f64, backwards: bool, mutate: impl Fn(&mut PairScale)) -> f64 {
+/// that runs backwards from there, from a contact of the direction given).
+fn room_after_a_look(closing: f64, backwards: Option<DVec3>, mutate: impl Fn(&mut PairScale)) -> f64 {
     let tree =
         |corners: [DVec3; 3]| MeshTree::new(TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2]]).unwrap());
     let arm = [DVec3::new(1.0001, 0.0, 0.0), DVec3::new(1.0, 1e-4, 0.0), DVec3::new(1.0, 0.0, 1e-4)];
     let wall = [(-3.0, -1.0), (3.0, -1.0), (0.0, 3.0)].map(|(y, z)| DVec3::new(0.956, y, z));
     let (a, b) = (tree(arm), tree(wall));
-    let sense = if backwards { -1.0 } else { 1.0 };
+    let sense = if backwards.is_some() { -1.0 } else { 1.0 };
     let swing = LinearMotion::REST
         .with_angular_velocity(DVec3::Z)
         .with_linear_velocity(DVec3::X * (-closing * sense));
@@ -149,13 +149,13 @@ fn room_after_a_look(closing: f64, backwards: bool, mutate: impl Fn(&mut PairSca
     mutate(&mut pair);
     let (ca, cb) = (corners(&a, 0), corners(&b, 0));
     let frame = motion.frame::<Quad>(0.0);
-    let time = if backwards {
+    let time = if let Some(direction) = backwards {
         // The longest span that is found clear.
-        let reversed = frame.reversed::<Quad>();
+        let behind = Behind { reversed: frame.reversed::<Quad>(), direction };
         let (mut clear, mut unknown) = (0.0, 1.0);
         for _ in 0..60 {
             let span = 0.5 * (clear + unknown);
-            let apart = apart_since::<Quad>(&reversed, (&ca, &cb), &pair, span);
+            let apart = apart_since::<Quad>(&behind, (&ca, &cb), &pair, span);
             *(if apart { &mut clear } else { &mut unknown }) = span;
         }
         clear
@@ -173,9 +173,11 @@ fn room_after_a_look(closing: f64, backwards: bool, mutate: impl Fn(&mut PairSca
 
 #[test]
 fn half_the_acceleration_of_triangles_is_noticed() {
-    for (closing, backwards) in [(0.0, false), (0.05, false), (0.0, true), (0.05, true)] {
-        assert!(room_after_a_look(closing, backwards, |_| ()) >= 1e-7);
-        assert!(room_after_a_look(closing, backwards, |pair| pair.acceleration *= 0.5) < 1e-7);
+    for backwards in [None, Some(DVec3::ZERO), Some(DVec3::X), Some(-3.0 * DVec3::X), Some(DVec3::Y)] {
+        for closing in [0.0, 0.05] {
+            assert!(room_after_a_look(closing, backwards, |_| ()) >= 1e-7);
+            assert!(room_after_a_look(closing, backwards, |pair| pair.acceleration *= 0.5) < 1e-7);
+        }
     }
 }
 

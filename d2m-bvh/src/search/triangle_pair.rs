@@ -51,6 +51,8 @@ pub(crate) enum Look {
     Near {
         /// The features are further apart than that, yet no direction separates: the triangles cross.
         crossing: bool,
+        /// Along the shortest line from A to B, not normalised.
+        direction: DVec3,
     },
 }
 
@@ -109,17 +111,29 @@ pub(crate) fn look<D: Doubles>(
     placed.look_closely::<D>(scale, best)
 }
 
-/// Are the triangles further apart than the level all the time from `span` before the frame up to its time? True only
-/// if that is proven. `reversed`: the frame with all velocities reversed ([`Frame::reversed`]); what has a bound on its
-/// acceleration is followed backwards as well as forwards.
+/// The time of a contact, looked back from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Behind {
+    /// Its frame with all velocities reversed ([`Frame::reversed`]): what has a bound on its acceleration is followed
+    /// backwards as well as forwards.
+    pub(crate) reversed: Frame,
+    /// The direction of the contact, not normalised, or zero: most pairs that are near it are apart along it too.
+    pub(crate) direction: DVec3,
+}
+
+/// Are the triangles further apart than the level all the time from `span` before the contact up to its time? True
+/// only if that is proven.
 #[inline(always)]
 pub(crate) fn apart_since<D: Doubles>(
-    reversed: &Frame,
+    behind: &Behind,
     triangles: (&[DVec3; 3], &[DVec3; 3]),
     scale: &PairScale,
     span: f64,
 ) -> bool {
-    let placed = Placed::new::<D>(reversed, triangles, scale, (span, Care::Quick));
+    let placed = Placed::new::<D>(&behind.reversed, triangles, scale, (span, Care::Quick));
+    if placed.clear_for(behind.direction, scale, scale.level, 0.0) >= span {
+        return true;
+    }
     let (direction, _) = placed.widest_gap::<D>();
     placed.clear_for(direction, scale, scale.level, 0.0) >= span
 }
@@ -179,7 +193,11 @@ impl Placed {
         let best = self.clear_for(near.direction, scale, scale.aim(), known);
         // The features' own directions attain the distance, so one of the two ends applies up to rounding.
         let touching = near.square <= scale.stop * scale.stop;
-        if touching || best == 0.0 { Look::Near { crossing: !touching } } else { Look::ClearFor(best) }
+        if touching || best == 0.0 {
+            Look::Near { crossing: !touching, direction: near.direction }
+        } else {
+            Look::ClearFor(best)
+        }
     }
 
     /// The larger of `known` and the time for which the direction keeps the pair further apart than `level`.

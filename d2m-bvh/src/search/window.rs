@@ -11,7 +11,7 @@ use super::quad::Quad;
 use super::queue::Item;
 use super::scene::{Scene, Scratch};
 use super::swept::swept_clear_until;
-use super::triangle_pair::{Care, Look, apart_since, look, place_a, widest_normal};
+use super::triangle_pair::{Behind, Care, Look, apart_since, look, place_a, widest_normal};
 use crate::tree::node::{Below, WIDTH, WideNode};
 use crate::{Budget, MeshTree, Mode, QueryOptions};
 use glam::DVec3;
@@ -104,8 +104,8 @@ struct State<'a> {
     node_frames: [NodeFrame; 2],
     frame_key: u32,
     found: Option<Found>,
-    /// The time of what is found, in the motion that runs backwards; before something is found, of no meaning.
-    found_frame: Frame,
+    /// The time of what is found; before something is found, of no meaning.
+    behind: Behind,
 }
 
 impl Task for Search<'_> {
@@ -220,7 +220,7 @@ impl<'s> Search<'s> {
             frame,
             frame_key: 0,
             found: None,
-            found_frame: frame,
+            behind: Behind { reversed: frame, direction: DVec3::ZERO },
         };
         self.scratch.counts.windows += 1;
         self.scratch.queue.clear();
@@ -365,7 +365,7 @@ impl<'s> Search<'s> {
         if state.found.is_some() {
             self.scratch.counts.triangle_looks += 1;
             let span = (state.limit_offset - known) * (1.0 + 1e-15);
-            if apart_since::<L::Doubles>(&state.found_frame, (&a, &b), &self.scene.pair, span) {
+            if apart_since::<L::Doubles>(&state.behind, (&a, &b), &self.scene.pair, span) {
                 return;
             }
         }
@@ -397,7 +397,7 @@ impl<'s> Search<'s> {
                         return;
                     }
                 }
-                Look::Near { crossing } => {
+                Look::Near { crossing, direction } => {
                     // Near at the time of the frame, which may be before what the boxes proved: look again there.
                     if known > frame.offset {
                         frame = state.motion.frame::<L::Doubles>(known);
@@ -411,7 +411,7 @@ impl<'s> Search<'s> {
                     }
                     if known < state.limit_offset {
                         state.find(known, triangles, crossing);
-                        state.found_frame = frame.reversed::<L::Doubles>();
+                        state.behind = Behind { reversed: frame.reversed::<L::Doubles>(), direction };
                     }
                     return;
                 }
@@ -421,7 +421,7 @@ impl<'s> Search<'s> {
             } else {
                 // The time left is below the resolution of time itself: as near as times can tell.
                 state.find(known, triangles, false);
-                state.found_frame = frame.reversed::<L::Doubles>();
+                state.behind = Behind { reversed: frame.reversed::<L::Doubles>(), ..state.behind };
                 return;
             }
         }
