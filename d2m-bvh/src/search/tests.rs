@@ -8,7 +8,7 @@ use super::node_test::{NodeFrame, NodeScale, Placed, entry_times};
 use super::quad::Quad;
 use super::scene::{Scene, Scratch};
 use super::triangle_pair::{Behind, Care, Look, PairScale, apart_since, look, place_a};
-use super::window::{Outcome, corners};
+use super::window::{Outcome, Search, corners};
 use crate::random::Random;
 use crate::tree::node::Below;
 use crate::{MeshTree, QueryOptions, TriMesh, Window};

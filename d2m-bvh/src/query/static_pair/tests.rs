@@ -1,7 +1,6 @@
 //! The error bounds of the node test, and the same bits from every kind of lanes.
 
 use super::node_test::{Placed, Side, lower_bounds, margin_free_gaps};
-use super::*;
 use crate::random::Random;
 use crate::search::{InstructionSet, Lanes, Portable, Task, run, run_on};
 use crate::tree::margin::UNIT_F32;
