@@ -3,10 +3,10 @@
 #![allow(unsafe_code)]
 
 use super::expansion::Opened;
-use super::lanes::{Elementwise, Lanes};
+use super::lanes::Lanes;
 use super::quad::{Doubles, Quad};
 use super::queue::Item;
-use super::two::{Both, Two};
+use super::two::{Both, Elementwise, Two};
 use crate::tree::node::WIDTH;
 #[allow(clippy::wildcard_imports)]
 use core::arch::x86_64::*;
@@ -16,7 +16,9 @@ use core::ops::{Add, Div, Mul, Sub};
 /// Which registers there are besides those of 256 bits.
 pub(crate) trait Registers: Copy {
     /// Two times eight lanes.
-    type Two: Two<Avx<Self>>;
+    type Sixteen: Two<Avx<Self>>;
+    /// Two times four doubles.
+    type Eight: Two<AvxDoubles<Self>>;
 }
 
 /// Registers of 256 bits only.
@@ -24,7 +26,8 @@ pub(crate) trait Registers: Copy {
 pub(crate) struct Of256;
 
 impl Registers for Of256 {
-    type Two = Both<Avx<Self>>;
+    type Sixteen = Both<Avx<Self>>;
+    type Eight = Both<AvxDoubles<Self>>;
 }
 
 /// One 256-bit register. Values exist only inside functions that were entered through a check for AVX2, and for what
@@ -72,6 +75,8 @@ macro_rules! avx_operator {
 avx_operator!(Add add _mm256_add_ps, Sub sub _mm256_sub_ps, Mul mul _mm256_mul_ps, Div div _mm256_div_ps);
 
 impl<R: Registers> Elementwise for Avx<R> {
+    type Scalar = f32;
+
     #[inline(always)]
     fn splat(value: f32) -> Self {
         // SAFETY: the processor has AVX (see the type).
@@ -88,6 +93,11 @@ impl<R: Registers> Elementwise for Avx<R> {
         Self::of(unsafe { _mm256_max_ps(self.0, other.0) })
     }
     #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_min_ps(self.0, other.0) })
+    }
+    #[inline(always)]
     fn flip_sign(magnitude: Self, sign: Self) -> Self {
         // SAFETY: the processor has AVX (see the type).
         Self::of(unsafe { _mm256_xor_ps(magnitude.0, _mm256_and_ps(sign.0, _mm256_set1_ps(-0.0))) })
@@ -100,8 +110,8 @@ impl<R: Registers> Elementwise for Avx<R> {
 }
 
 impl<R: Registers> Lanes for Avx<R> {
-    type Doubles = AvxDoubles;
-    type Two = R::Two;
+    type Doubles = AvxDoubles<R>;
+    type Two = R::Sixteen;
 
     #[inline(always)]
     fn load(values: &[f32; 8]) -> Self {
@@ -124,11 +134,6 @@ impl<R: Registers> Lanes for Avx<R> {
     fn less_bits(self, other: Self) -> u32 {
         // SAFETY: the processor has AVX (see the type).
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)) as u32 }
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self::of(unsafe { _mm256_min_ps(self.0, other.0) })
     }
     #[inline(always)]
     fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32) {
@@ -210,32 +215,71 @@ impl<R: Registers> Lanes for Avx<R> {
 
 /// Four doubles in one register. Values exist only where those of [`Avx`] do.
 #[derive(Clone, Copy)]
-pub(crate) struct AvxDoubles(__m256d);
+pub(crate) struct AvxDoubles<R>(pub(super) __m256d, PhantomData<R>);
+
+impl<R> AvxDoubles<R> {
+    #[inline(always)]
+    pub(super) const fn of(register: __m256d) -> Self {
+        Self(register, PhantomData)
+    }
+}
 
 macro_rules! doubles_operator {
     ($($operator:ident $method:ident $intrinsic:ident),*) => {$(
-        impl $operator for AvxDoubles {
+        impl<R: Registers> $operator for AvxDoubles<R> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
                 // SAFETY: the processor has AVX (see the type).
-                Self(unsafe { $intrinsic(self.0, other.0) })
+                Self::of(unsafe { $intrinsic(self.0, other.0) })
             }
         }
     )*};
 }
 doubles_operator!(Add add _mm256_add_pd, Sub sub _mm256_sub_pd, Mul mul _mm256_mul_pd, Div div _mm256_div_pd);
 
-impl Doubles for AvxDoubles {
+impl<R: Registers> Elementwise for AvxDoubles<R> {
+    type Scalar = f64;
+
     #[inline(always)]
     fn splat(x: f64) -> Self {
         // SAFETY: the processor has AVX (see the type).
-        Self(unsafe { _mm256_set1_pd(x) })
+        Self::of(unsafe { _mm256_set1_pd(x) })
     }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_min_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_max_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_blendv_pd(no.0, yes.0, _mm256_cmp_pd::<_CMP_GT_OQ>(left.0, right.0)) })
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
+    }
+    #[inline(always)]
+    fn flip_sign(magnitude: Self, sign: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_xor_pd(magnitude.0, _mm256_and_pd(sign.0, _mm256_set1_pd(-0.0))) })
+    }
+}
+
+impl<R: Registers> Doubles for AvxDoubles<R> {
+    type Two = R::Eight;
+
     #[inline(always)]
     fn load(values: &Quad) -> Self {
         // SAFETY: four doubles are readable, aligned to 32 bytes by the type; AVX as above.
-        Self(unsafe { _mm256_load_pd(values.0.as_ptr()) })
+        Self::of(unsafe { _mm256_load_pd(values.0.as_ptr()) })
     }
     #[inline(always)]
     fn store(self) -> Quad {
@@ -252,14 +296,20 @@ impl Doubles for AvxDoubles {
         out
     }
     #[inline(always)]
-    fn min(self, other: Self) -> Self {
+    fn least(self) -> f64 {
         // SAFETY: the processor has AVX (see the type).
-        Self(unsafe { _mm256_min_pd(self.0, other.0) })
+        unsafe {
+            let half = _mm_min_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0));
+            _mm_cvtsd_f64(_mm_min_sd(half, _mm_unpackhi_pd(half, half)))
+        }
     }
     #[inline(always)]
-    fn max(self, other: Self) -> Self {
+    fn greatest(self) -> f64 {
         // SAFETY: the processor has AVX (see the type).
-        Self(unsafe { _mm256_max_pd(self.0, other.0) })
+        unsafe {
+            let half = _mm_max_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0));
+            _mm_cvtsd_f64(_mm_max_sd(half, _mm_unpackhi_pd(half, half)))
+        }
     }
     #[inline(always)]
     fn transposed([a, b, c]: [Self; 3]) -> [Self; 3] {
@@ -270,15 +320,10 @@ impl Doubles for AvxDoubles {
             let (even_ab, even_c) = (_mm256_unpacklo_pd(a.0, b.0), _mm256_unpacklo_pd(c.0, zero));
             let (odd_ab, odd_c) = (_mm256_unpackhi_pd(a.0, b.0), _mm256_unpackhi_pd(c.0, zero));
             [
-                Self(_mm256_permute2f128_pd::<0x20>(even_ab, even_c)),
-                Self(_mm256_permute2f128_pd::<0x20>(odd_ab, odd_c)),
-                Self(_mm256_permute2f128_pd::<0x31>(even_ab, even_c)),
+                Self::of(_mm256_permute2f128_pd::<0x20>(even_ab, even_c)),
+                Self::of(_mm256_permute2f128_pd::<0x20>(odd_ab, odd_c)),
+                Self::of(_mm256_permute2f128_pd::<0x31>(even_ab, even_c)),
             ]
         }
-    }
-    #[inline(always)]
-    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self(unsafe { _mm256_blendv_pd(no.0, yes.0, _mm256_cmp_pd::<_CMP_GT_OQ>(left.0, right.0)) })
     }
 }

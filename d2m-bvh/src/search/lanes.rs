@@ -6,28 +6,12 @@
 use super::expansion::Opened;
 use super::quad::{Doubles, Quad};
 use super::queue::Item;
-use super::two::{Both, Two};
+use super::two::{Both, Elementwise, Two};
 use crate::tree::node::WIDTH;
 use core::ops::{Add, Div, Mul, Sub};
 
-/// What is done in each lane by itself.
-pub(crate) trait Elementwise:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
-{
-    /// The same value in each lane.
-    fn splat(value: f32) -> Self;
-    /// Absolute value.
-    fn abs(self) -> Self;
-    /// `if self > other { self } else { other }` in each lane (so `other` when one is NaN).
-    fn max(self, other: Self) -> Self;
-    /// `magnitude` with its sign flipped where `sign` is negative (or −0).
-    fn flip_sign(magnitude: Self, sign: Self) -> Self;
-    /// `if left > right { yes } else { no }` in each lane.
-    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self;
-}
-
 /// Eight lanes of `f32`.
-pub(crate) trait Lanes: Elementwise + Div<Output = Self> {
+pub(crate) trait Lanes: Elementwise<Scalar = f32> + Div<Output = Self> {
     /// Four `f64` of the same instruction set.
     type Doubles: Doubles;
     /// Two times eight lanes.
@@ -41,8 +25,6 @@ pub(crate) trait Lanes: Elementwise + Div<Output = Self> {
     fn sqrt(self) -> Self;
     /// Bit i is set when lane i of `self` is less than lane i of `other`.
     fn less_bits(self, other: Self) -> u32;
-    /// `if self < other { self } else { other }` in each lane (so `other` when one is NaN).
-    fn min(self, other: Self) -> Self;
     /// max(`least`, `base` + the integer part) in each lane, with `least` for what is not a number; and the bits of
     /// the lanes where that is below `limit`. Lanes stay below 2³¹ − `base`.
     fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32);
@@ -87,6 +69,8 @@ macro_rules! portable_operator {
 portable_operator!(Add add +, Sub sub -, Mul mul *, Div div /);
 
 impl Elementwise for Portable {
+    type Scalar = f32;
+
     #[inline(always)]
     fn splat(value: f32) -> Self {
         Self([value; 8])
@@ -98,6 +82,10 @@ impl Elementwise for Portable {
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         self.zip(other, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a < b { a } else { b })
     }
     #[inline(always)]
     fn flip_sign(magnitude: Self, sign: Self) -> Self {
@@ -136,10 +124,6 @@ impl Lanes for Portable {
             bits |= u32::from(self.0[i] < other.0[i]) << i;
         }
         bits
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a < b { a } else { b })
     }
     #[inline(always)]
     fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32) {

@@ -1,9 +1,9 @@
 //! One box of one body against the eight boxes of a wide node of the other: until when are they apart?
 
 use super::frame::Frame;
-use super::lanes::{Elementwise, Lanes};
+use super::lanes::Lanes;
 use super::quad::{Doubles, Matrix, Quad};
-use super::two::Two;
+use super::two::{Elementwise, Two};
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
 use glam::DVec3;
@@ -179,7 +179,7 @@ fn dot<T: Elementwise>(a: &[T; 3], b: &[T; 3]) -> T {
 
 /// The same three values in each lane.
 #[inline(always)]
-fn splat<T: Elementwise>(values: &[f32; 4]) -> [T; 3] {
+fn splat<T: Elementwise<Scalar = f32>>(values: &[f32; 4]) -> [T; 3] {
     [T::splat(values[0]), T::splat(values[1]), T::splat(values[2])]
 }
 

@@ -1,5 +1,6 @@
 //! Four `f64` side by side: the storage, and the operations for one instruction set.
 
+use super::two::{Both, Elementwise, Two};
 use core::ops::{Add, Div, Mul, Sub};
 use glam::DVec3;
 
@@ -10,25 +11,22 @@ pub(crate) struct Quad(pub(crate) [f64; 4]);
 
 /// Four doubles in registers: each operation correctly rounded, no fused multiply-add, so every implementation returns
 /// the same bits. [`Quad`] is the portable one.
-pub(crate) trait Doubles:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
-{
-    /// The same value four times.
-    fn splat(x: f64) -> Self;
+pub(crate) trait Doubles: Elementwise<Scalar = f64> + Div<Output = Self> {
+    /// Two times four doubles.
+    type Two: Two<Self>;
+
     /// From memory.
     fn load(values: &Quad) -> Self;
     /// To memory.
     fn store(self) -> Quad;
     /// Each rounded to `f32`.
     fn narrow(self) -> [f32; 4];
-    /// The smaller; the second where one is not a number.
-    fn min(self, other: Self) -> Self;
-    /// The larger; the second where one is not a number.
-    fn max(self, other: Self) -> Self;
+    /// The smallest of the four.
+    fn least(self) -> f64;
+    /// The largest of the four.
+    fn greatest(self) -> f64;
     /// The transposed matrix of three columns with zeros below.
     fn transposed(columns: [Self; 3]) -> [Self; 3];
-    /// `if left > right { yes } else { no }`.
-    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self;
 }
 
 macro_rules! elementwise {
@@ -63,11 +61,40 @@ impl Quad {
     }
 }
 
-impl Doubles for Quad {
+impl Elementwise for Quad {
+    type Scalar = f64;
+
     #[inline(always)]
     fn splat(x: f64) -> Self {
         Self([x; 4])
     }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a < b { a } else { b })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
+        let (l, r, y, n) = (&left.0, &right.0, &yes.0, &no.0);
+        let pick = |k: usize| if l[k] > r[k] { y[k] } else { n[k] };
+        Self([pick(0), pick(1), pick(2), pick(3)])
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f64::abs))
+    }
+    #[inline(always)]
+    fn flip_sign(magnitude: Self, sign: Self) -> Self {
+        magnitude.zip(sign, |m, s| f64::from_bits(m.to_bits() ^ (s.to_bits() & (1 << 63))))
+    }
+}
+
+impl Doubles for Quad {
+    type Two = Both<Self>;
+
     #[inline(always)]
     fn load(values: &Quad) -> Self {
         *values
@@ -82,12 +109,16 @@ impl Doubles for Quad {
         [a[0] as f32, a[1] as f32, a[2] as f32, a[3] as f32]
     }
     #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a < b { a } else { b })
+    fn least(self) -> f64 {
+        let [a, b, c, d] = self.0;
+        let (low, high) = (if a < c { a } else { c }, if b < d { b } else { d });
+        if low < high { low } else { high }
     }
     #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a > b { a } else { b })
+    fn greatest(self) -> f64 {
+        let [a, b, c, d] = self.0;
+        let (low, high) = (if a > c { a } else { c }, if b > d { b } else { d });
+        if low > high { low } else { high }
     }
     #[inline(always)]
     fn transposed([a, b, c]: [Self; 3]) -> [Self; 3] {
@@ -97,15 +128,9 @@ impl Doubles for Quad {
             Self([a.0[2], b.0[2], c.0[2], 0.0]),
         ]
     }
-    #[inline(always)]
-    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
-        let (l, r, y, n) = (&left.0, &right.0, &yes.0, &no.0);
-        let pick = |k: usize| if l[k] > r[k] { y[k] } else { n[k] };
-        Self([pick(0), pick(1), pick(2), pick(3)])
-    }
 }
 
-/// Four vectors side by side.
+/// Vectors side by side: four, or eight where `D` is two times four doubles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct QuadVec<D>(pub(crate) [D; 3]);
 
@@ -119,18 +144,31 @@ impl<D: Doubles> QuadVec<D> {
         ])
     }
 
+    /// These four, then four others.
+    #[inline(always)]
+    pub(crate) fn beside(&self, other: &Self) -> QuadVec<D::Two> {
+        let ([x, y, z], [u, v, w]) = (self.0, other.0);
+        QuadVec([D::Two::of(x, u), D::Two::of(y, v), D::Two::of(z, w)])
+    }
+}
+
+impl<D: Elementwise<Scalar = f64>> QuadVec<D> {
+    /// The same vector in each place.
+    #[inline(always)]
+    pub(crate) fn splat(v: DVec3) -> Self {
+        Self([D::splat(v.x), D::splat(v.y), D::splat(v.z)])
+    }
+
     /// Scalar product of each with the same vector.
     #[inline(always)]
     pub(crate) fn dot(&self, p: DVec3) -> D {
-        self.0[0] * D::splat(p.x) + self.0[1] * D::splat(p.y) + self.0[2] * D::splat(p.z)
+        self.dots(&Self::splat(p))
     }
 
     /// `e` × each.
     #[inline(always)]
     pub(crate) fn crossed_by(&self, e: DVec3) -> Self {
-        let [x, y, z] = self.0;
-        let (ex, ey, ez) = (D::splat(e.x), D::splat(e.y), D::splat(e.z));
-        Self([ey * z - ez * y, ez * x - ex * z, ex * y - ey * x])
+        Self::splat(e).crossed(self)
     }
 
     /// Lane by lane: the scalar product.

@@ -2,7 +2,8 @@
 
 use super::closest::closest;
 use super::frame::Frame;
-use super::quad::{Doubles, QuadVec};
+use super::quad::{Doubles, Quad, QuadVec};
+use super::two::{Elementwise, Two};
 use glam::DVec3;
 
 /// Distances and bounds of one search, in the units of the scene.
@@ -97,14 +98,15 @@ pub(crate) fn look<D: Doubles>(
     let placed = Placed::new::<D>(frame, (a, b), scale, (enough, care));
     let (direction, gap) = placed.widest_gap::<D>();
     let (mut best, aim) = (0.0, scale.aim());
-    if gap > scale.level + scale.error {
-        best = placed.clear_for(direction, scale, aim, best);
-        if best >= enough || care == Care::Quick && gap > 16.0 * scale.stop {
+    if gap.exceeds(scale.level + scale.error) {
+        let far = gap.exceeds(16.0 * scale.stop);
+        best = placed.clear_for::<D>(direction, scale, aim, best);
+        if best >= enough || care == Care::Quick && far {
             return Look::ClearFor(best);
         }
         // Faces that slide along each other: a normal lasts longer than the line to a corner that comes closer.
-        best = placed.clear_for(widest_normal(&placed.a, &placed.b), scale, aim, best);
-        if best >= enough || gap > 16.0 * scale.stop {
+        best = placed.clear_for::<D>(widest_normal(&placed.a, &placed.b), scale, aim, best);
+        if best >= enough || far {
             return Look::ClearFor(best);
         }
     }
@@ -131,11 +133,11 @@ pub(crate) fn apart_since<D: Doubles>(
     span: f64,
 ) -> bool {
     let placed = Placed::new::<D>(&behind.reversed, triangles, scale, (span, Care::Quick));
-    if placed.clear_for(behind.direction, scale, scale.level, 0.0) >= span {
+    if placed.clear_for::<D>(behind.direction, scale, scale.level, 0.0) >= span {
         return true;
     }
     let (direction, _) = placed.widest_gap::<D>();
-    placed.clear_for(direction, scale, scale.level, 0.0) >= span
+    placed.clear_for::<D>(direction, scale, scale.level, 0.0) >= span
 }
 
 impl Placed {
@@ -161,36 +163,30 @@ impl Placed {
     }
 
     /// Of the 2 normals, the 9 products of edges, 3 edge normals and the line of centres: the direction with the
-    /// widest gap, and the gap for a unit direction (not positive when none separates).
+    /// widest gap, and the gap.
     #[inline(always)]
-    fn widest_gap<D: Doubles>(&self) -> (DVec3, f64) {
+    fn widest_gap<D: Doubles>(&self) -> (DVec3, Gap) {
         let (a, b) = (&self.a, &self.b);
         let ea = [a[1] - a[0], a[2] - a[1], a[0] - a[2]];
         let eb = [b[1] - b[0], b[2] - b[1], b[0] - b[2]];
         let (normal_a, normal_b) = (ea[0].cross(ea[1]), eb[0].cross(eb[1]));
         let center = (b[0] + b[1] + b[2]) - (a[0] + a[1] + a[2]);
-        let mut best = Widest::<D>::of(&QuadVec::new([normal_a, normal_b, center, b[0] - a[0]]), a, b);
-        let across = QuadVec::new([eb[0], eb[1], eb[2], normal_a]);
-        best = best.or(&Widest::of(&across.crossed_by(ea[0]), a, b));
-        best = best.or(&Widest::of(&across.crossed_by(ea[1]), a, b));
-        best = best.or(&Widest::of(&across.crossed_by(ea[2]), a, b));
-        let (square, length) = (best.square.store().0, best.length.store().0);
-        let mut lane = 0;
-        for other in 1..4 {
-            if square[other] * length[lane] > square[lane] * length[other] {
-                lane = other;
-            }
-        }
-        let [x, y, z] = best.axis.0;
-        let axis = DVec3::new(x.store().0[lane], y.store().0[lane], z.store().0[lane]);
-        (axis, (square[lane] / length[lane]).sqrt())
+        let first = QuadVec::<D>::new([normal_a, normal_b, center, b[0] - a[0]]);
+        let across = QuadVec::<D>::new([eb[0], eb[1], eb[2], normal_a]);
+        let ends = QuadVec::<D>::splat(ea[1]).beside(&QuadVec::splat(ea[2]));
+        let best = Widest::of(&first.beside(&across.crossed_by(ea[0])), a, b).or(&Widest::of(
+            &ends.crossed(&across.beside(&across)),
+            a,
+            b,
+        ));
+        best.halves::<D>().of_all()
     }
 
     /// Near the end: the direction of the closest features too, and the distance itself.
     #[inline(always)]
     fn look_closely<D: Doubles>(&self, scale: &PairScale, known: f64) -> Look {
         let near = closest::<D>(&self.a, &self.b);
-        let best = self.clear_for(near.direction, scale, scale.aim(), known);
+        let best = self.clear_for::<D>(near.direction, scale, scale.aim(), known);
         // The features' own directions attain the distance, so one of the two ends applies up to rounding.
         let touching = near.square <= scale.stop * scale.stop;
         if touching || best == 0.0 {
@@ -202,33 +198,34 @@ impl Placed {
 
     /// The larger of `known` and the time for which the direction keeps the pair further apart than `level`.
     #[inline(always)]
-    fn clear_for(&self, n: DVec3, scale: &PairScale, level: f64, known: f64) -> f64 {
-        let (a, b) = (&self.a, &self.b);
-        let pa = [n.dot(a[0]), n.dot(a[1]), n.dot(a[2])];
-        let pb = [n.dot(b[0]), n.dot(b[1]), n.dot(b[2])];
-        let forward = least(&pb) - greatest(&pa);
-        let backward = least(&pa) - greatest(&pb);
+    fn clear_for<D: Doubles>(&self, n: DVec3, scale: &PairScale, level: f64, known: f64) -> f64 {
+        let a = QuadVec::<D>::new([self.a[0], self.a[1], self.a[2], self.a[2]]);
+        let b = QuadVec::<D>::new([self.b[0], self.b[1], self.b[2], self.b[2]]);
+        let (pa, pb) = (a.dot(n), b.dot(n));
+        let (forward, backward) = (pb.least() - pa.greatest(), pa.least() - pb.greatest());
+        let a_is_low = forward > backward;
+        let gap = if a_is_low { forward } else { backward };
         let length = n.length();
         let need = (level + scale.error) * length;
         // Also when n is zero or not a number.
-        let separated = forward > need || backward > need;
+        let separated = gap > need;
         if !separated {
             return known;
         }
         let (turn_a, turn_b) = (n.cross(self.omega_a), n.cross(self.omega_b));
         let drift = n.dot(self.velocity) - turn_a.dot(self.offset);
-        let ra = [drift + turn_a.dot(a[0]), drift + turn_a.dot(a[1]), drift + turn_a.dot(a[2])];
-        let rb = [turn_b.dot(b[0]), turn_b.dot(b[1]), turn_b.dot(b[2])];
-        if self.care == Care::Quick {
-            let m = scale.acceleration * length;
-            let s = if forward > backward {
-                first_time((&pa, &ra), (&pb, &rb), need, m)
-            } else {
-                first_time((&pb, &rb), (&pa, &ra), need, m)
+        let (ra, rb) = (a.dot(turn_a) + D::splat(drift), b.dot(turn_b));
+        let s = if self.care == Care::Quick {
+            let (low, high) = if a_is_low { ((pa, ra), (pb, rb)) } else { ((pb, rb), (pa, ra)) };
+            first_time(low, high, need, scale.acceleration * length)
+        } else {
+            let corners = |values: D| {
+                let [x, y, z, _] = values.store().0;
+                [x, y, z]
             };
-            return if s > known { s } else { known };
-        }
-        let s = self.clear_for_jets(n, scale, (forward > backward, need), [(pa, ra), (pb, rb)]);
+            let of = [(corners(pa), corners(ra)), (corners(pb), corners(rb))];
+            self.clear_for_jets(n, scale, (a_is_low, need), of)
+        };
         if s > known { s } else { known }
     }
 
@@ -246,10 +243,12 @@ impl Placed {
         // |n·(ω × (ω × e))| = |(n × ω)·(ω × e)| ≤ |n × ω||ω||e|, and the same times |ω| for the next derivative.
         let [swing_a, swing_b] = self.swings(scale, turn_a, turn_b);
         let m = (swing_a + swing_b).min(scale.acceleration * length) * (1.0 + 1e-14);
+        let quad = |v: &[f64; 3]| Quad([v[0], v[1], v[2], v[2]]);
+        let ((qa, ua), (qb, ub)) = ((quad(&pa), quad(&ra)), (quad(&pb), quad(&rb)));
         let s = if a_is_low {
-            first_time((&pa, &ra), (&pb, &rb), need, m)
+            first_time((qa, ua), (qb, ub), need, m)
         } else {
-            first_time((&pb, &rb), (&pa, &ra), need, m)
+            first_time((qb, ub), (qa, ua), need, m)
         };
         let speed = if a_is_low { least(&rb) - greatest(&ra) } else { least(&ra) - greatest(&rb) };
         if s >= self.enough || m * s <= PATIENCE * speed.abs() {
@@ -310,7 +309,23 @@ struct Widest<D> {
     length: D,
 }
 
-impl<D: Doubles> Widest<D> {
+/// The widest gap that was found along a direction.
+#[derive(Clone, Copy)]
+pub(crate) struct Gap {
+    /// Square of the gap along a direction that is not normalised, zero when there is none.
+    square: f64,
+    /// Square of the direction's length.
+    length: f64,
+}
+
+impl Gap {
+    #[inline(always)]
+    fn exceeds(&self, limit: f64) -> bool {
+        self.square > limit * limit * self.length
+    }
+}
+
+impl<D: Elementwise<Scalar = f64>> Widest<D> {
     #[inline(always)]
     fn of(axis: &QuadVec<D>, a: &[DVec3; 3], b: &[DVec3; 3]) -> Self {
         // From corner 0 of A: its own projection is zero.
@@ -341,6 +356,39 @@ impl<D: Doubles> Widest<D> {
             length: D::if_greater(left, right, other.length, self.length),
         }
     }
+
+    /// In each lane the wider one of both halves.
+    #[inline(always)]
+    fn halves<H: Doubles<Two = D>>(self) -> Widest<H>
+    where
+        D: Two<H>,
+    {
+        let [x, y, z] = self.axis.0;
+        let first = Widest {
+            axis: QuadVec([x.first(), y.first(), z.first()]),
+            square: self.square.first(),
+            length: self.length.first(),
+        };
+        first.or(&Widest {
+            axis: QuadVec([x.second(), y.second(), z.second()]),
+            square: self.square.second(),
+            length: self.length.second(),
+        })
+    }
+}
+
+impl<D: Doubles> Widest<D> {
+    /// The widest of all lanes. Without a branch: which one it is cannot be predicted.
+    #[inline(always)]
+    fn of_all(self) -> (DVec3, Gap) {
+        let (square, length) = (self.square.store().0, self.length.store().0);
+        let i = wider(&square, &length, 0, 1);
+        let j = wider(&square, &length, 2, 3);
+        let lane = wider(&square, &length, i, j);
+        let [x, y, z] = self.axis.0;
+        let axis = DVec3::new(x.store().0[lane], y.store().0[lane], z.store().0[lane]);
+        (axis, Gap { square: square[lane], length: length[lane] })
+    }
 }
 
 #[inline(always)]
@@ -355,24 +403,23 @@ fn greatest(v: &[f64; 3]) -> f64 {
     if m > v[2] { m } else { v[2] }
 }
 
+/// Of two lanes the one with the wider gap.
+#[inline(always)]
+fn wider(square: &[f64; 4], length: &[f64; 4], i: usize, j: usize) -> usize {
+    [i, j][usize::from(square[j & 3] * length[i & 3] > square[i & 3] * length[j & 3])]
+}
+
 /// First s ≥ 0 at which min(high + s·rate) − max(low + s·rate) − m s²/2 can be `need`. At s = 0 it is larger.
 #[inline(always)]
-fn first_time(low: (&[f64; 3], &[f64; 3]), high: (&[f64; 3], &[f64; 3]), need: f64, m: f64) -> f64 {
+fn first_time<D: Doubles>(low: (D, D), high: (D, D), need: f64, m: f64) -> f64 {
     // Lowest corner now with the fastest closing rate: never late; exact when one corner is both.
-    let gap = least(high.0) - greatest(low.0) - need;
-    let mut s = root(gap, least(high.1) - greatest(low.1), m);
-    // Then from the other end: at the root of the pair that is lowest now, who is lowest? Each round can only raise
-    // the proven time.
-    let value = |at: f64| {
-        let l = [low.0[0] + low.1[0] * at, low.0[1] + low.1[1] * at, low.0[2] + low.1[2] * at];
-        let h = [high.0[0] + high.1[0] * at, high.0[1] + high.1[1] * at, high.0[2] + high.1[2] * at];
-        least(&h) - greatest(&l) - need
-    };
+    let gap = high.0.least() - low.0.greatest() - need;
+    let s = root(gap, high.1.least() - low.1.greatest(), m);
     // Concave in s: the chord from a proven time to a later one with a positive value is proven too.
     let later = 2.0 * s;
-    if value(later) - 0.5 * m * later * later > 0.0 {
-        s = later;
-    }
+    let (l, h) = (low.0 + low.1 * D::splat(later), high.0 + high.1 * D::splat(later));
+    let value = h.least() - l.greatest() - need;
+    let s = if value - 0.5 * m * later * later > 0.0 { later } else { s };
     s * (1.0 - 1e-12)
 }
 

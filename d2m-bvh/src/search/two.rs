@@ -1,17 +1,38 @@
-//! Two times eight lanes: one register where the processor has one that is wide enough, else two.
+//! What is done lane by lane, and twice as many lanes: one register where the processor has one that is wide enough,
+//! else two.
 
-use super::lanes::{Elementwise, Lanes};
 use core::ops::{Add, Mul, Sub};
 
-/// Two times eight lanes.
-pub(crate) trait Two<L: Lanes>: Elementwise {
+/// What is done in each lane by itself.
+pub(crate) trait Elementwise:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
+    /// What one lane holds.
+    type Scalar: Copy;
+
+    /// The same value in each lane.
+    fn splat(value: Self::Scalar) -> Self;
+    /// Absolute value.
+    fn abs(self) -> Self;
+    /// `if self > other { self } else { other }` in each lane (so `other` when one is NaN).
+    fn max(self, other: Self) -> Self;
+    /// `if self < other { self } else { other }` in each lane (so `other` when one is NaN).
+    fn min(self, other: Self) -> Self;
+    /// `magnitude` with its sign flipped where `sign` is negative (or −0).
+    fn flip_sign(magnitude: Self, sign: Self) -> Self;
+    /// `if left > right { yes } else { no }` in each lane.
+    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self;
+}
+
+/// Two times the lanes of `L`.
+pub(crate) trait Two<L: Elementwise>: Elementwise<Scalar = L::Scalar> {
     /// From both halves.
     fn of(first: L, second: L) -> Self;
     /// The same lanes twice.
     fn both(half: L) -> Self;
-    /// The first eight lanes.
+    /// The first half.
     fn first(self) -> L;
-    /// The second eight lanes.
+    /// The second half.
     fn second(self) -> L;
 }
 
@@ -21,7 +42,7 @@ pub(crate) struct Both<L>(L, L);
 
 macro_rules! both_operator {
     ($($operator:ident $method:ident $symbol:tt),*) => {$(
-        impl<L: Lanes> $operator for Both<L> {
+        impl<L: Elementwise> $operator for Both<L> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
@@ -32,9 +53,11 @@ macro_rules! both_operator {
 }
 both_operator!(Add add +, Sub sub -, Mul mul *);
 
-impl<L: Lanes> Elementwise for Both<L> {
+impl<L: Elementwise> Elementwise for Both<L> {
+    type Scalar = L::Scalar;
+
     #[inline(always)]
-    fn splat(value: f32) -> Self {
+    fn splat(value: L::Scalar) -> Self {
         Self(L::splat(value), L::splat(value))
     }
     #[inline(always)]
@@ -46,6 +69,10 @@ impl<L: Lanes> Elementwise for Both<L> {
         Self(self.0.max(other.0), self.1.max(other.1))
     }
     #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(self.0.min(other.0), self.1.min(other.1))
+    }
+    #[inline(always)]
     fn flip_sign(magnitude: Self, sign: Self) -> Self {
         Self(L::flip_sign(magnitude.0, sign.0), L::flip_sign(magnitude.1, sign.1))
     }
@@ -55,7 +82,7 @@ impl<L: Lanes> Elementwise for Both<L> {
     }
 }
 
-impl<L: Lanes> Two<L> for Both<L> {
+impl<L: Elementwise> Two<L> for Both<L> {
     #[inline(always)]
     fn of(first: L, second: L) -> Self {
         Self(first, second)
