@@ -47,14 +47,25 @@ pub(crate) struct Queue {
     last: u32,
 }
 
-/// Items in any order: the first `count`; the others are room.
-#[derive(Debug, Default)]
-struct Bucket {
+/// Items in any order.
+#[derive(Debug)]
+pub(crate) struct Bucket {
+    /// The first `count` of them; the others are room.
     items: Vec<Item>,
     count: usize,
+    /// The least of their keys.
+    least: u32,
 }
 
 impl Bucket {
+    pub(crate) const EMPTY: Self = Self { items: Vec::new(), count: 0, least: u32::MAX };
+
+    /// What it holds.
+    #[inline(always)]
+    pub(crate) fn items(&self) -> &[Item] {
+        &self.items[..self.count]
+    }
+
     #[inline(always)]
     fn push(&mut self, item: &Item) {
         match self.items.get_mut(self.count) {
@@ -62,6 +73,7 @@ impl Bucket {
             None => self.grow(item),
         }
         self.count += 1;
+        self.least = self.least.min(item.key);
     }
 
     #[cold]
@@ -69,17 +81,23 @@ impl Bucket {
     fn grow(&mut self, item: &Item) {
         self.items.resize((2 * self.count).max(16), *item);
     }
+
+    #[inline(always)]
+    fn clear(&mut self) {
+        self.count = 0;
+        self.least = u32::MAX;
+    }
 }
 
 impl Queue {
     pub(crate) fn new() -> Self {
-        Self { buckets: [const { Bucket { items: Vec::new(), count: 0 } }; 33], occupied: 0, last: 0 }
+        Self { buckets: [const { Bucket::EMPTY }; 33], occupied: 0, last: 0 }
     }
 
     /// Empties the queue and restarts the keys at zero.
     pub(crate) fn clear(&mut self) {
         for bucket in &mut self.buckets {
-            bucket.count = 0;
+            bucket.clear();
         }
         self.occupied = 0;
         self.last = 0;
@@ -96,25 +114,20 @@ impl Queue {
 
     /// Moves the earliest items into `batch` (emptied first) and returns the least key of all live items; None when
     /// there is none. A batch has more than `target` items only if their keys are equal.
-    pub(crate) fn take(&mut self, batch: &mut Vec<Item>, target: usize) -> Option<u32> {
+    #[inline(always)]
+    pub(crate) fn take(&mut self, batch: &mut Bucket, target: usize) -> Option<u32> {
+        batch.clear();
         loop {
             let index = self.occupied.trailing_zeros() as usize;
-            let bucket = self.buckets.get_mut(index)?;
-            let count = core::mem::take(&mut bucket.count);
+            core::mem::swap(self.buckets.get_mut(index)?, batch);
             self.occupied &= self.occupied - 1;
-            let least = bucket.items[..count].iter().map(|item| item.key).min()?;
             // The bits of `last` above the bucket's own stay what they were: the higher buckets remain valid.
-            self.last = least;
-            if index == 0 || count <= target {
-                batch.clear();
-                batch.extend_from_slice(&bucket.items[..count]);
-                return Some(least);
+            self.last = batch.least;
+            if index == 0 || batch.count <= target {
+                return Some(batch.least);
             }
-            let items = core::mem::take(&mut bucket.items);
-            for item in &items[..count] {
-                self.push(item);
-            }
-            self.buckets[index].items = items;
+            self.extend(batch.items());
+            batch.clear();
         }
     }
 
@@ -129,7 +142,7 @@ impl Queue {
     /// Items waiting.
     #[cfg(test)]
     pub(crate) fn len(&self) -> usize {
-        self.buckets.iter().map(|bucket| bucket.count).sum()
+        self.buckets.iter().map(|bucket| bucket.items().len()).sum()
     }
 }
 
@@ -147,7 +160,7 @@ mod tests {
         for target in [1, 4, 16, 64] {
             let mut queue = Queue::new();
             let mut live = std::collections::BTreeMap::new();
-            let mut batch = Vec::new();
+            let mut batch = Bucket::EMPTY;
             for _ in 0..50 {
                 let key = next() >> 3;
                 queue.push(&Item { key, boxes: [0; 2], open: 0 });
@@ -156,7 +169,7 @@ mod tests {
             let mut taken = 0;
             while let Some(least) = queue.take(&mut batch, target) {
                 assert_eq!(Some(&least), live.keys().next());
-                for item in &batch {
+                for item in batch.items() {
                     assert!(item.key >= least);
                     let count = live.get_mut(&item.key).unwrap();
                     *count -= 1;

@@ -2,7 +2,7 @@
 
 use super::base_pose::relative_position;
 use super::node_test::NodeScale;
-use super::queue::{Item, Queue};
+use super::queue::{Bucket, Item, Queue};
 use super::triangle_pair::PairScale;
 use crate::tree::margin::{UNIT_F64, round_up};
 use crate::{MeshTree, QueryOptions, Window};
@@ -179,7 +179,7 @@ impl SearchCounts {
 #[derive(Debug)]
 pub(crate) struct Scratch {
     pub(crate) queue: Queue,
-    pub(crate) batch: Vec<Item>,
+    pub(crate) batch: Bucket,
     /// The pairs that a batch leaves.
     pub(crate) fresh: Vec<Item>,
     pub(crate) counts: SearchCounts,
@@ -194,7 +194,7 @@ impl Scratch {
     pub(crate) fn new() -> Self {
         Self {
             queue: Queue::new(),
-            batch: Vec::new(),
+            batch: Bucket::EMPTY,
             fresh: Vec::new(),
             counts: SearchCounts::default(),
             last_looked_at: [0, 0],

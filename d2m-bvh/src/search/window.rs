@@ -8,7 +8,7 @@ use super::helix::screw_clear_until;
 use super::lanes::Lanes;
 use super::node_test::NodeFrame;
 use super::quad::Quad;
-use super::queue::Item;
+use super::queue::{Bucket, Item};
 use super::scene::{Scene, Scratch};
 use super::swept::swept_clear_until;
 use super::triangle_pair::{Behind, Care, Look, apart_since, look, place_a, widest_normal};
@@ -226,7 +226,7 @@ impl<'s> Search<'s> {
         self.scratch.queue.clear();
         let open = state.opening.of_pair(0, 0);
         self.scratch.queue.push(&Item { key: 0, boxes: [0; 2], open });
-        let mut batch = core::mem::take(&mut self.scratch.batch);
+        let mut batch = core::mem::replace(&mut self.scratch.batch, Bucket::EMPTY);
         let mut outcome = None;
         while let Some(least) = self.scratch.queue.take(&mut batch, BATCH) {
             if least >= state.limit {
@@ -243,7 +243,7 @@ impl<'s> Search<'s> {
             }
             if self.work() >= self.limits.sweep_from {
                 let now = time_from(start, f64::from(least) * step);
-                let until = self.sweep(&state, now, batch[0].boxes);
+                let until = self.sweep(&state, now, batch.items()[0].boxes);
                 if until >= end {
                     outcome = Some(Step::ClearUntil(until));
                     break;
@@ -259,7 +259,7 @@ impl<'s> Search<'s> {
                 ];
                 state.frame_key = least;
             }
-            for items in batch.chunks(BATCH) {
+            for items in batch.items().chunks(BATCH) {
                 self.open::<L>(&mut state, items);
             }
         }
