@@ -26,7 +26,7 @@ impl Task for Report<'_> {
     fn run<L: Lanes>(self) -> Contact {
         let Self { scene, found, bracket } = self;
         let time = crate::search::time_from(found.start, found.offset).max(scene.window.start());
-        let motion = RelativeMotion::new((scene.a.0, &scene.a.1), (scene.b.0, &scene.b.1), found.start);
+        let motion = RelativeMotion::new(scene, found.start);
         let pair = TrianglePair {
             motion: &motion,
             a: corners(scene.a.0, found.triangles[0]),

@@ -152,7 +152,7 @@ fn crosses_at_start(scene: &Scene<'_>) -> Result<bool, QueryError> {
 /// The answer when one body is inside the other at the start; the surfaces are known not to cross then.
 fn containment(scene: &Scene<'_>) -> Option<TimeOfContact> {
     let start = scene.window.start();
-    let motion = RelativeMotion::new((scene.a.0, &scene.a.1), (scene.b.0, &scene.b.1), start);
+    let motion = RelativeMotion::new(scene, start);
     let frame = motion.frame::<Quad>(0.0);
     let place = |p: DVec3, of_b: bool| {
         if of_b {

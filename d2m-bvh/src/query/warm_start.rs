@@ -168,7 +168,7 @@ fn meet_again(scene: &Scene<'_>, triangles: [u32; 2], after: f64) -> Option<f64>
     let (a, b) = (corners(scene.a.0, triangles[0]), corners(scene.b.0, triangles[1]));
     let mut time = (first + after).clamp(first, last);
     for _ in 0..STEPS {
-        let motion = RelativeMotion::new((scene.a.0, &scene.a.1), (scene.b.0, &scene.b.1), time);
+        let motion = RelativeMotion::new(scene, time);
         let frame = motion.frame::<Quad>(0.0);
         let placed = place_a::<Quad>(&frame, &a);
         let near = closest::<Quad>(&placed, &b);

@@ -7,7 +7,7 @@ use glam::DVec3;
 pub(crate) type Columns = [DVec3; 3];
 
 /// An unevaluated sum of two doubles.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair(pub(crate) f64, pub(crate) f64);
 
 pub(crate) fn two_sum(a: f64, b: f64) -> Pair {
@@ -57,26 +57,87 @@ pub(crate) fn relative_position(a: &LinearMotion, b: &LinearMotion, t: f64) -> D
 /// The rotation exp([ω](t − t_ref))·R(q/|q|) as columns; each entry within 16·2⁻⁵³ of the true one, for an angle
 /// of less than 2⁵⁰ radians.
 pub(crate) fn rotation_at(motion: &LinearMotion, t: f64) -> Columns {
-    let start = from_quaternion(motion.orientation().to_array());
-    let w = motion.angular_velocity();
-    let square = two_product(w.x, w.x).add(two_product(w.y, w.y)).add(two_product(w.z, w.z));
-    let elapsed = two_sum(t, -motion.reference_time());
-    if square.0 == 0.0 || elapsed.0 == 0.0 {
-        return start;
+    let turning = Turning::new(motion);
+    let turn = turning.until(t);
+    turning.start().map(|p| turning.wheel(p).at(&turn))
+}
+
+/// What the rotation of a motion is at all times: a turn about a fixed axis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turning {
+    reference_time: f64,
+    /// The orientation at the reference time.
+    start: Columns,
+    /// Unit vector; zero for a motion without rotation.
+    axis: DVec3,
+    /// |ω|.
+    speed: Pair,
+}
+
+/// Sine and 1 − cosine of the angle that a motion has turned by.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turn {
+    pub(crate) sin: f64,
+    pub(crate) versine: f64,
+}
+
+/// A vector p that turns about a unit axis k: p, k × p and k × (k × p) at the reference time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wheel {
+    pub(crate) p: DVec3,
+    pub(crate) across: DVec3,
+    pub(crate) inward: DVec3,
+}
+
+impl Wheel {
+    pub(crate) fn at(&self, turn: &Turn) -> DVec3 {
+        self.p + self.across * turn.sin + self.inward * turn.versine
     }
-    let root = square.0.sqrt();
-    let rest = square.add({
-        let p = two_product(root, root);
-        Pair(-p.0, -p.1)
-    });
-    let speed = two_sum(root, rest.0 / (2.0 * root));
-    let (sin, versine) = sin_versine(speed.mul(elapsed));
-    let k = w / speed.0;
-    let turn = |p: DVec3| {
-        let cross = k.cross(p);
-        p + cross * sin + k.cross(cross) * versine
-    };
-    start.map(turn)
+}
+
+impl Turning {
+    pub(crate) fn new(motion: &LinearMotion) -> Self {
+        let w = motion.angular_velocity();
+        let square = two_product(w.x, w.x).add(two_product(w.y, w.y)).add(two_product(w.z, w.z));
+        let (mut axis, mut speed) = (DVec3::ZERO, Pair(0.0, 0.0));
+        if square.0 > 0.0 {
+            let root = square.0.sqrt();
+            let rest = square.add({
+                let p = two_product(root, root);
+                Pair(-p.0, -p.1)
+            });
+            speed = two_sum(root, rest.0 / (2.0 * root));
+            axis = w / speed.0;
+        }
+        let start = from_quaternion(motion.orientation().to_array());
+        Self { reference_time: motion.reference_time(), start, axis, speed }
+    }
+
+    /// The columns of the orientation at the reference time.
+    pub(crate) const fn start(&self) -> Columns {
+        self.start
+    }
+
+    /// |ω|.
+    pub(crate) const fn speed(&self) -> f64 {
+        self.speed.0
+    }
+
+    /// How a vector that is `p` at the reference time turns.
+    pub(crate) fn wheel(&self, p: DVec3) -> Wheel {
+        let across = self.axis.cross(p);
+        Wheel { p, across, inward: self.axis.cross(across) }
+    }
+
+    /// From the reference time until `t`.
+    pub(crate) fn until(&self, t: f64) -> Turn {
+        let elapsed = two_sum(t, -self.reference_time);
+        if elapsed.0 == 0.0 || self.speed.0 == 0.0 {
+            return Turn { sin: 0.0, versine: 0.0 };
+        }
+        let (sin, versine) = sin_versine(self.speed.mul(elapsed));
+        Turn { sin, versine }
+    }
 }
 
 /// The rotation of q/|q|, q = [x, y, z, w], scaled first so that no square overflows.

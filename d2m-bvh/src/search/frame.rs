@@ -4,10 +4,9 @@
 //! a rotating frame: no Coriolis terms). A point r of a body, seen from the followed point `at`, has velocity
 //! v + ω × r and an acceleration of length at most |ω|²|r|, at all times.
 
-use super::base_pose::{relative_position, rotation_at};
+use super::base_pose::{Turning, relative_position};
 use super::quad::{Doubles, Matrix, Quad};
-use crate::MeshTree;
-use d2m_motion::LinearMotion;
+use super::scene::Scene;
 use glam::DVec3;
 
 /// The two motions over a window that starts at `start`.
@@ -18,12 +17,15 @@ pub(crate) struct RelativeMotion {
     /// x_A − x_B at the start (followed points), world axes.
     position: Quad,
     velocity: Quad,
-    bodies: [Spin; 2],
+    bodies: [Swing; 2],
 }
 
-/// Rotation of one body, and what it does to the arm from the followed point to the centre of the tree.
+/// Vectors that turn with a body.
+const COLUMNS: usize = 5;
+
+/// The rotation of one body over a window.
 #[derive(Clone, Copy, Debug)]
-struct Spin {
+struct Swing {
     omega: Quad,
     /// ω in the body's own axes, where it stays.
     omega_own: Quad,
@@ -34,9 +36,6 @@ struct Spin {
     second: [Quad; COLUMNS],
 }
 
-/// Vectors that turn with a body: see [`Turned`].
-const COLUMNS: usize = 5;
-
 /// Vectors that turn with a body, at one time, world axes.
 struct Turned {
     /// Axes of the body.
@@ -46,22 +45,33 @@ struct Turned {
     swing: Quad,
 }
 
-impl Spin {
-    fn new(motion: &LinearMotion, arm: DVec3, start: f64) -> Self {
-        let omega = motion.angular_velocity();
-        let [x, y, z] = rotation_at(motion, start);
-        let arm = x * arm.x + y * arm.y + z * arm.z;
-        let now = [x, y, z, arm, omega.cross(arm)];
-        let first = now.map(|c| omega.cross(c));
-        let second = first.map(|c| omega.cross(c));
-        Self {
+impl Swing {
+    /// For p = p₀ + s·u + (1 − c)·w, u = k × p₀, w = k × u: [ω]p = |ω|(c·u + s·w), [ω]²p = |ω|²(c·w − s·u), and
+    /// [ω]³ = −|ω|²[ω].
+    /// `arm`: from the followed point to the centre of the tree, body axes.
+    fn new(turning: &Turning, omega: DVec3, arm: DVec3, start: f64) -> Self {
+        let [x, y, z] = turning.start();
+        let vectors = [x, y, z, x * arm.x + y * arm.y + z * arm.z];
+        let (turn, speed) = (turning.until(start), turning.speed());
+        let (square, cos) = (speed * speed, 1.0 - turn.versine);
+        let mut out = Self {
             omega: Quad::from_vec(omega),
             omega_own: Quad::from_vec(DVec3::new(x.dot(omega), y.dot(omega), z.dot(omega))),
-            omega_squared: omega.length_squared(),
-            now: now.map(Quad::from_vec),
-            first: first.map(Quad::from_vec),
-            second: second.map(Quad::from_vec),
+            omega_squared: square,
+            now: [Quad([0.0; 4]); COLUMNS],
+            first: [Quad([0.0; 4]); COLUMNS],
+            second: [Quad([0.0; 4]); COLUMNS],
+        };
+        for (k, p) in vectors.into_iter().enumerate() {
+            let wheel = turning.wheel(p);
+            out.now[k] = Quad::from_vec(wheel.at(&turn));
+            out.first[k] = Quad::from_vec((wheel.across * cos + wheel.inward * turn.sin) * speed);
+            out.second[k] = Quad::from_vec((wheel.inward * cos - wheel.across * turn.sin) * square);
         }
+        let (arm, swing) = (3, 4);
+        (out.now[swing], out.first[swing]) = (out.first[arm], out.second[arm]);
+        out.second[swing] = Quad::from_vec(out.first[arm].to_vec() * -square);
+        out
     }
 
     /// R(s) = R + s·f₁(θ²)·[ω]R + s²·f₂(θ²)·[ω]²R, θ = |ω|s, f₁ = sin θ/θ, f₂ = (1 − cos θ)/θ², and so every vector
@@ -127,12 +137,20 @@ impl Frame {
 }
 
 impl RelativeMotion {
-    pub(crate) fn new(a: (&MeshTree, &LinearMotion), b: (&MeshTree, &LinearMotion), start: f64) -> Self {
+    /// Over the window of a search that begins at `start`.
+    #[inline(never)]
+    pub(crate) fn new(scene: &Scene<'_>, start: f64) -> Self {
+        let (a, b) = (&scene.a.1, &scene.b.1);
+        let [arm_a, arm_b] = scene.pair.arms;
+        let [turning_a, turning_b] = &scene.turnings;
         Self {
             start,
-            position: Quad::from_vec(relative_position(a.1, b.1, start)),
-            velocity: Quad::from_vec(a.1.linear_velocity() - b.1.linear_velocity()),
-            bodies: [a, b].map(|(tree, motion)| Spin::new(motion, tree.center() - motion.at(), start)),
+            position: Quad::from_vec(relative_position(a, b, start)),
+            velocity: Quad::from_vec(a.linear_velocity() - b.linear_velocity()),
+            bodies: [
+                Swing::new(turning_a, a.angular_velocity(), arm_a, start),
+                Swing::new(turning_b, b.angular_velocity(), arm_b, start),
+            ],
         }
     }
 

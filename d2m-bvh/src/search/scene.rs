@@ -1,6 +1,6 @@
 //! Constants of one query.
 
-use super::base_pose::relative_position;
+use super::base_pose::{Turning, relative_position};
 use super::node_test::NodeScale;
 use super::queue::{Bucket, Item, Queue};
 use super::triangle_pair::PairScale;
@@ -35,6 +35,8 @@ pub(crate) struct Scene<'a> {
     reach: f64,
     /// |ω|·ρ of both bodies, ρ the largest distance from the followed point.
     pub(crate) spin_speed: f64,
+    /// How the bodies turn.
+    pub(crate) turnings: [Turning; 2],
 }
 
 impl<'a> Scene<'a> {
@@ -74,7 +76,8 @@ impl<'a> Scene<'a> {
             arms,
             swings,
         };
-        Self { a, b, window, pair, size, tolerance, longest, reach: reach_a + reach_b, spin_speed }
+        let turnings = [Turning::new(&a.1), Turning::new(&b.1)];
+        Self { a, b, window, pair, size, tolerance, longest, reach: reach_a + reach_b, spin_speed, turnings }
     }
 
     /// Axis of the body that spins faster, world; none if neither does.

@@ -49,7 +49,7 @@ fn least_ratio(rounds: u32, mutate: impl Fn(&mut NodeScale)) -> f64 {
         let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
         let unit = 2f64.powf(scene.longest.log2().ceil());
         let mut scales = scene.node_scales(unit);
-        let motion = RelativeMotion::new((&a, &motions[0]), (&b, &motions[1]), 0.0);
+        let motion = RelativeMotion::new(&scene, 0.0);
         let frame = motion.frame::<Quad>(0.0);
         let left = (scene.longest / unit) as f32;
         for (side, scale) in scales.iter_mut().enumerate() {
@@ -105,7 +105,7 @@ fn room_at_the_end(triangle: [DVec3; 3], wall: f64, opened: usize, mutate: impl 
     let options = QueryOptions::default().with_tolerance(1e-7);
     let window = Window::try_new(0.0, 0.3).unwrap();
     let scene = Scene::new((&a, spin), (&b, LinearMotion::REST), window, &options);
-    let motion = RelativeMotion::new((&a, &spin), (&b, &LinearMotion::REST), 0.0);
+    let motion = RelativeMotion::new(&scene, 0.0);
     let mut scale = scene.node_scales(0.5)[opened];
     mutate(&mut scale);
     let frame = NodeFrame::new::<Quad>(&motion.frame::<Quad>(0.0), &scale, opened == 1, 0.6);
@@ -144,7 +144,7 @@ fn room_after_a_look(closing: f64, backwards: Option<DVec3>, mutate: impl Fn(&mu
     let options = QueryOptions::default().with_tolerance(1e-7);
     let window = Window::try_new(0.0, 0.3).unwrap();
     let scene = Scene::new((&a, swing), (&b, LinearMotion::REST), window, &options);
-    let motion = RelativeMotion::new((&a, &swing), (&b, &LinearMotion::REST), 0.0);
+    let motion = RelativeMotion::new(&scene, 0.0);
     let mut pair = scene.pair;
     mutate(&mut pair);
     let (ca, cb) = (corners(&a, 0), corners(&b, 0));
@@ -203,7 +203,7 @@ fn clear_times_of_triangle_pairs_hold_and_are_sharp() {
         let (speed, spin) = ([0.3, 3.0, 30.0][round % 3], [0.0, 1.0, 10.0][round / 3 % 3]);
         let motions = [moving(&mut random, 2.0, speed, spin), moving(&mut random, 0.0, speed, spin)];
         let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
-        let motion = RelativeMotion::new((&a, &motions[0]), (&b, &motions[1]), 0.0);
+        let motion = RelativeMotion::new(&scene, 0.0);
         let (ca, cb) = (corners(&a, 0), corners(&b, 0));
         let care = [Care::Quick, Care::Thorough][round / 9 % 2];
         let found = look::<Quad>(&motion.frame::<Quad>(0.0), (&ca, &cb), &scene.pair, scene.longest, care);
@@ -235,7 +235,7 @@ fn boxes_called_apart_at_rest_are_apart() {
             let options = QueryOptions::default().with_tolerance(1e-30);
             let scene = Scene::new((&a, rest), (&b, rest), Window::UNIT, &options);
             let mut scale = scene.node_scales(1.0)[1];
-            let motion = RelativeMotion::new((&a, &rest), (&b, &rest), 0.0);
+            let motion = RelativeMotion::new(&scene, 0.0);
             let frame = NodeFrame::new::<Quad>(&motion.frame::<Quad>(0.0), &scale, true, 1.0);
             let full = Placed::new::<Portable>(&frame, &scale, (&a.nodes[0], 0), &b.nodes[0]);
             // What is left of the margin.
@@ -290,7 +290,7 @@ fn thorough_looks_hold() {
         let (a, b) = (soup(&mut random), soup(&mut random));
         let motions = [moving(&mut random, 1.0, 0.1, 3.0), moving(&mut random, 0.0, 0.1, 3.0)];
         let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
-        let motion = RelativeMotion::new((&a, &motions[0]), (&b, &motions[1]), 0.0);
+        let motion = RelativeMotion::new(&scene, 0.0);
         for (s, t) in [(0, 0), (1, 5), (3, 2), (7, 7)] {
             let (ca, cb) = (corners(&a, s), corners(&b, t));
             let found = look::<Quad>(
@@ -324,7 +324,7 @@ fn room_after_a_thorough_look(mutate: impl Fn(&mut Scene<'_>)) -> f64 {
     let window = Window::try_new(0.0, 0.3).unwrap();
     let mut scene = Scene::new((&a, turn), (&b, LinearMotion::REST), window, &options);
     mutate(&mut scene);
-    let motion = RelativeMotion::new((&a, &turn), (&b, &LinearMotion::REST), 0.0);
+    let motion = RelativeMotion::new(&scene, 0.0);
     let (ca, cb) = (corners(&a, 0), corners(&b, 0));
     let found =
         look::<Quad>(&motion.frame::<Quad>(0.0), (&ca, &cb), &scene.pair, scene.longest, Care::Thorough);

@@ -193,7 +193,7 @@ impl<'s> Search<'s> {
     #[inline(always)]
     fn search_window<L: Lanes>(&mut self, start: f64, end: f64) -> Step {
         let scene = self.scene;
-        let motion = RelativeMotion::new((scene.a.0, &scene.a.1), (scene.b.0, &scene.b.1), start);
+        let motion = RelativeMotion::new(scene, start);
         // At least end − start, whatever its rounding.
         let length = (end - start) * (1.0 + 1e-15);
         let time_unit = power_of_two_from(length);
