@@ -323,8 +323,8 @@ fn room_after_a_thorough_look(mutate: impl Fn(&mut Scene<'_>)) -> f64 {
     let options = QueryOptions::default().with_tolerance(1e-7);
     let window = Window::try_new(0.0, 0.3).unwrap();
     let mut scene = Scene::new((&a, turn), (&b, LinearMotion::REST), window, &options);
-    mutate(&mut scene);
     let motion = RelativeMotion::new(&scene, 0.0);
+    mutate(&mut scene);
     let (ca, cb) = (corners(&a, 0), corners(&b, 0));
     let found =
         look::<Quad>(&motion.frame::<Quad>(0.0), (&ca, &cb), &scene.pair, scene.longest, Care::Thorough);
