@@ -117,6 +117,16 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
+    /// What is there before the first one.
+    pub(crate) const NONE: Self = Self {
+        offset: 0.0,
+        rotation: Matrix([Quad([0.0; 4]); 3]),
+        apart: Quad([0.0; 4]),
+        velocity: Quad([0.0; 4]),
+        omega_a: Quad([0.0; 4]),
+        omega_b: Quad([0.0; 4]),
+    };
+
     /// The same instant of the motion that runs backwards.
     pub(crate) fn reversed<D: Doubles>(&self) -> Self {
         let back = |v: &Quad| (D::splat(0.0) - D::load(v)).store();

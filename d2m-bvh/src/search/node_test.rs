@@ -60,6 +60,19 @@ pub(crate) struct NodeFrame {
 }
 
 impl NodeFrame {
+    /// What is there before the first one.
+    pub(crate) const NONE: Self = Self {
+        rotation: Matrix([Quad([0.0; 4]); 3]),
+        narrow: [[0.0; 4]; 3],
+        apart: Quad([0.0; 4]),
+        velocity: Quad([0.0; 4]),
+        swing: Matrix([Quad([0.0; 4]); 3]),
+        turn: Matrix([Quad([0.0; 4]); 3]),
+        omega_wide: [0.0; 4],
+        least: 0.0,
+        speed_floor: 0.0,
+    };
+
     /// `left`: no later time matters, counted from the frame (a hint). `wide_is_b`: nodes of B are opened against boxes of A; else the other way round.
     #[inline(always)]
     pub(crate) fn new<D: Doubles>(frame: &Frame, scale: &NodeScale, wide_is_b: bool, left: f32) -> Self {

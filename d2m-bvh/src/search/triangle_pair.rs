@@ -96,21 +96,28 @@ pub(crate) fn look<D: Doubles>(
     care: Care,
 ) -> Look {
     let placed = Placed::new::<D>(frame, (a, b), scale, (enough, care));
-    let (direction, gap) = placed.widest_gap::<D>();
-    let (mut best, aim) = (0.0, scale.aim());
-    if gap.exceeds(scale.level + scale.error) {
-        let far = gap.exceeds(16.0 * scale.stop);
-        best = placed.clear_for::<D>(direction, scale, aim, best);
-        if best >= enough || care == Care::Quick && far {
-            return Look::ClearFor(best);
+    let (mut direction, gap) = placed.widest_gap::<D>();
+    let (apart, far) = (gap.exceeds(scale.level + scale.error), gap.exceeds(16.0 * scale.stop));
+    let (mut best, mut touching) = (0.0, false);
+    // One piece of code for the three directions: the widest; a normal, which lasts longer than the line to a corner
+    // that comes closer when faces slide along each other; near the end that of the closest features, which attains
+    // the distance.
+    for attempt in if apart { 0 } else { 2 }..3 {
+        if attempt == 1 {
+            direction = widest_normal(&placed.a, &placed.b);
+        } else if attempt == 2 {
+            let near = closest::<D>(&placed.a, &placed.b);
+            direction = near.direction;
+            touching = near.square <= scale.stop * scale.stop;
         }
-        // Faces that slide along each other: a normal lasts longer than the line to a corner that comes closer.
-        best = placed.clear_for::<D>(widest_normal(&placed.a, &placed.b), scale, aim, best);
-        if best >= enough || far {
+        best = placed.clear_for::<D>(direction, scale, scale.aim(), best);
+        let enough_of_it = best >= enough || far && (attempt == 1 || care == Care::Quick);
+        if attempt < 2 && enough_of_it {
             return Look::ClearFor(best);
         }
     }
-    placed.look_closely::<D>(scale, best)
+    // One of the two ends applies up to rounding.
+    if touching || best == 0.0 { Look::Near { crossing: !touching, direction } } else { Look::ClearFor(best) }
 }
 
 /// The time of a contact, looked back from.
@@ -133,11 +140,16 @@ pub(crate) fn apart_since<D: Doubles>(
     span: f64,
 ) -> bool {
     let placed = Placed::new::<D>(&behind.reversed, triangles, scale, (span, Care::Quick));
-    if placed.clear_for::<D>(behind.direction, scale, scale.level, 0.0) >= span {
-        return true;
+    let mut direction = behind.direction;
+    for attempt in 0..2 {
+        if attempt == 1 {
+            (direction, _) = placed.widest_gap::<D>();
+        }
+        if placed.clear_for::<D>(direction, scale, scale.level, 0.0) >= span {
+            return true;
+        }
     }
-    let (direction, _) = placed.widest_gap::<D>();
-    placed.clear_for::<D>(direction, scale, scale.level, 0.0) >= span
+    false
 }
 
 impl Placed {
@@ -180,20 +192,6 @@ impl Placed {
             b,
         ));
         best.halves::<D>().of_all()
-    }
-
-    /// Near the end: the direction of the closest features too, and the distance itself.
-    #[inline(always)]
-    fn look_closely<D: Doubles>(&self, scale: &PairScale, known: f64) -> Look {
-        let near = closest::<D>(&self.a, &self.b);
-        let best = self.clear_for::<D>(near.direction, scale, scale.aim(), known);
-        // The features' own directions attain the distance, so one of the two ends applies up to rounding.
-        let touching = near.square <= scale.stop * scale.stop;
-        if touching || best == 0.0 {
-            Look::Near { crossing: !touching, direction: near.direction }
-        } else {
-            Look::ClearFor(best)
-        }
     }
 
     /// The larger of `known` and the time for which the direction keeps the pair further apart than `level`.

@@ -199,35 +199,29 @@ impl<'s> Search<'s> {
         let time_unit = power_of_two_from(length);
         let step = time_unit / KEY_SCALE;
         let scales = scene.node_scales(time_unit);
-        let frame = motion.frame::<L::Doubles>(0.0);
-        let limit = (length / step).ceil() as u32 + 1;
-        let left = time_left(limit, 0);
         let mut state = State {
             motion,
-            node_frames: [
-                NodeFrame::new::<L::Doubles>(&frame, &scales[0], false, left),
-                NodeFrame::new::<L::Doubles>(&frame, &scales[1], true, left),
-            ],
+            node_frames: [NodeFrame::NONE; 2],
             opening: Opening {
                 nodes: [&scene.a.0.nodes, &scene.b.0.nodes],
                 scales,
                 size_ratios: [scales[1].ratio.powi(3).clamp(1e-18, 1e18) as f32, 1.0],
             },
             step,
-            limit,
+            limit: (length / step).ceil() as u32 + 1,
             // A tick more, so that the end itself is inside; what is found after the end does not count.
             limit_offset: length + step,
-            frame,
+            frame: Frame::NONE,
             frame_key: 0,
             found: None,
-            behind: Behind { reversed: frame, direction: DVec3::ZERO },
+            behind: Behind { reversed: Frame::NONE, direction: DVec3::ZERO },
         };
         self.scratch.counts.windows += 1;
         self.scratch.queue.clear();
         let open = state.opening.of_pair(0, 0);
         self.scratch.queue.push(&Item { key: 0, boxes: [0; 2], open });
         let mut batch = core::mem::replace(&mut self.scratch.batch, Bucket::EMPTY);
-        let mut outcome = None;
+        let (mut outcome, mut begun) = (None, false);
         while let Some(least) = self.scratch.queue.take(&mut batch, BATCH) {
             if least >= state.limit {
                 break;
@@ -250,7 +244,7 @@ impl<'s> Search<'s> {
                 }
             }
             self.scratch.counts.frames += 1;
-            if least > state.frame_key + state.frame_key / FRESH {
+            if !begun || least > state.frame_key + state.frame_key / FRESH {
                 state.frame = state.motion.frame::<L::Doubles>(f64::from(least) * step);
                 let left = time_left(state.limit, least);
                 state.node_frames = [
@@ -258,6 +252,7 @@ impl<'s> Search<'s> {
                     NodeFrame::new::<L::Doubles>(&state.frame, &state.opening.scales[1], true, left),
                 ];
                 state.frame_key = least;
+                begun = true;
             }
             for items in batch.items().chunks(BATCH) {
                 self.open::<L>(&mut state, items);
@@ -398,22 +393,17 @@ impl<'s> Search<'s> {
                     }
                 }
                 Look::Near { crossing, direction } => {
-                    // Near at the time of the frame, which may be before what the boxes proved: look again there.
-                    if known > frame.offset {
-                        frame = state.motion.frame::<L::Doubles>(known);
-                        continue;
-                    }
-                    if self.limits.mode == Mode::Exists && known < state.limit_offset {
-                        state.found =
-                            Some(Found { start: state.motion.start, offset: known, triangles, crossing });
-                        state.end();
+                    // Near at the time of the frame, which may be before what the boxes proved: then look again there.
+                    if known <= frame.offset {
+                        if known < state.limit_offset {
+                            state.find(known, triangles, crossing);
+                            state.behind = Behind { reversed: frame.reversed::<L::Doubles>(), direction };
+                            if self.limits.mode == Mode::Exists {
+                                state.end();
+                            }
+                        }
                         return;
                     }
-                    if known < state.limit_offset {
-                        state.find(known, triangles, crossing);
-                        state.behind = Behind { reversed: frame.reversed::<L::Doubles>(), direction };
-                    }
-                    return;
                 }
             }
             if known > frame.offset {

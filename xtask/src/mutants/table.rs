@@ -222,8 +222,8 @@ pub(crate) const MUTANTS: &[Mutant] = &[
     patch(
         "half of the acceleration of triangles",
         "d2m-bvh/src/search/triangle_pair.rs",
-        "let m = scale.acceleration * length;",
-        "let m = 0.5 * scale.acceleration * length;",
+        "first_time(low, high, need, scale.acceleration * length)",
+        "first_time(low, high, need, 0.5 * scale.acceleration * length)",
         "d2m-bvh/src/search/tests.rs::half_the_acceleration_of_triangles_is_noticed",
     ),
     patch(
@@ -272,9 +272,16 @@ pub(crate) const MUTANTS: &[Mutant] = &[
     patch(
         "the frame passes an item that waits",
         "d2m-bvh/src/search/queue.rs",
-        "let least = bucket.iter().map(|item| item.key).min()?;",
-        "let least = bucket.iter().map(|item| item.key).max()?;",
+        "self.least = self.least.min(item.key);",
+        "self.least = item.key;",
         "d2m-bvh/src/search/queue.rs::no_live_key_is_below_the_one_handed_out",
+    ),
+    patch(
+        "registers pack the pairs of other lanes",
+        "d2m-bvh/src/search/avx.rs",
+        "order[bits] |= lane << (8 * place);",
+        "order[bits] |= (7 - lane) << (8 * place);",
+        "d2m-bvh/tests/instruction_sets.rs::a_limit_changes_no_bit_of_any_answer",
     ),
     patch(
         "late by 1e-6",
