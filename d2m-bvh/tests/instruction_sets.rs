@@ -35,5 +35,5 @@ fn a_limit_changes_no_bit_of_any_answer() {
         assert_eq!(InstructionSet::in_use(), set);
         assert_eq!(answers(), best, "{set:?}");
     }
-    InstructionSet::Avx2.limit();
+    InstructionSet::Avx512.limit();
 }

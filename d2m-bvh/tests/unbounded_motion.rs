@@ -1,6 +1,8 @@
 //! A motion whose enclosures bound no speed: sound, useless, and never a reason to say "contact" or "clear".
 
-use d2m_bvh::{MeshTree, Moving, QueryOptions, TimeOfContact, TriMesh, Window, time_of_contact};
+use d2m_bvh::{
+    MeshTree, Moving, QueryError, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact,
+};
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{IntervalPose, IntervalTwist, LinearMotion, Pose, RigidMotion, Twist};
 use glam::DVec3;
@@ -33,4 +35,28 @@ fn undecided_from_the_start() {
     let (a, b) = (Moving::new(&tree, &away), Moving::new(&tree, &LinearMotion::REST));
     let answer = time_of_contact(a, b, Window::UNIT, &QueryOptions::default()).unwrap();
     assert_eq!(answer, TimeOfContact::Undecided { clear_until: 0.0 });
+}
+
+/// An angular velocity whose square underflows turns the body all the same when the window is long enough: refused, and
+/// not taken for rest.
+#[test]
+fn slow_turns_over_long_windows() {
+    let arm = vec![DVec3::X * 0.9, DVec3::X, DVec3::new(0.95, 0.0, 0.1)];
+    let wall = vec![DVec3::new(-0.1, 0.95, -1.0), DVec3::new(-0.1, 0.95, 1.0), DVec3::new(0.2, 0.95, 0.0)];
+    let [a, b] = [arm, wall].map(|c| MeshTree::new(TriMesh::try_new(c, vec![[0, 1, 2]]).unwrap()));
+    let options = QueryOptions::default().with_solid(Solid::Surface);
+    for (speed, length, refused) in [(1.0, 3.0, false), (1e-130, 3e130, false), (1e-160, 3e160, true)] {
+        let turn = LinearMotion::REST.with_angular_velocity(DVec3::Z * speed);
+        let (a, b) = (Moving::new(&a, &turn), Moving::new(&b, &LinearMotion::REST));
+        let answer = time_of_contact(a, b, Window::try_new(0.0, length).unwrap(), &options);
+        match answer {
+            Err(error) => assert_eq!((error, refused), (QueryError::BadMotion { body: 0 }, true)),
+            Ok(answer) => assert!(!refused && answer.contact().is_some(), "{speed}: {answer:?}"),
+        }
+    }
+    // What turns by nothing to speak of is answered.
+    let still = LinearMotion::REST.with_angular_velocity(DVec3::Z * 1e-200);
+    let (a, b) = (Moving::new(&a, &still), Moving::new(&b, &LinearMotion::REST));
+    let answer = time_of_contact(a, b, Window::UNIT, &options).unwrap();
+    assert!(answer.is_separated());
 }

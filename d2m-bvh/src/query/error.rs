@@ -30,7 +30,9 @@ pub enum QueryError {
         /// 0 for the first body, 1 for the second.
         body: usize,
     },
-    /// The motion is not finite over the window, or leaves the range in which errors can be bounded.
+    /// The motion is not finite over the window, or leaves the range in which errors can be bounded: the reach of the
+    /// query stays below 1e150, the angle since the reference time below 2⁴⁰ rad; an angular velocity below 1e-140, whose
+    /// square underflows, must not turn the body by more than 1e-20 rad.
     #[error(
         "motion of body {body} is not finite over the window, or turns or goes too far for bounds on its rounding"
     )]

@@ -123,11 +123,14 @@ pub fn last_search_counts() -> crate::SearchCounts {
 }
 
 /// Does the rotation between the reference time and the window stay below 2⁴⁰ radians? The poses of the search are
-/// proven for less than 2⁵⁰.
+/// proven for less than 2⁵⁰. An angular velocity whose square is lost to underflow counts as none: then the angle has to
+/// be below all roundings.
 fn angle_is_bounded(motion: &LinearMotion, window: Window) -> bool {
     let elapsed = |t: f64| (t - motion.reference_time()).abs();
     let longest = elapsed(window.start()).max(elapsed(window.end()));
-    motion.angular_velocity().length() * longest < 1_099_511_627_776.0
+    let fastest = motion.angular_velocity().abs().max_element();
+    let most = if fastest < 1e-140 { 1e-20 } else { 1_099_511_627_776.0 };
+    fastest * longest * 1.8 < most
 }
 
 fn check(options: &QueryOptions) -> Result<(), QueryError> {
