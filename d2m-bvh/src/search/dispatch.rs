@@ -1,7 +1,8 @@
 //! Runs a piece of work with the vector instructions in use. Every choice gives the same bits.
 
 use super::InstructionSet;
-use super::lanes::{Lanes, Portable};
+use super::lanes::Lanes;
+use super::portable::Portable;
 #[cfg(target_arch = "x86_64")]
 use super::{
     avx::{Avx, Of256},

@@ -16,6 +16,7 @@ mod instruction_set;
 mod lanes;
 mod node_test;
 mod picture;
+mod portable;
 mod quad;
 mod queue;
 mod scene;
@@ -35,7 +36,7 @@ pub(crate) use frame::{Frame, RelativeMotion};
 pub use instruction_set::InstructionSet;
 pub(crate) use lanes::Lanes;
 #[cfg(test)]
-pub(crate) use lanes::Portable;
+pub(crate) use portable::Portable;
 pub(crate) use quad::{Doubles, Quad};
 pub use scene::SearchCounts;
 pub(crate) use scene::{Scene, Scratch};

@@ -3,6 +3,7 @@
 use super::two::{Both, Elementwise, Two};
 use core::ops::{Add, Div, Mul, Sub};
 use glam::DVec3;
+use wide::f64x4;
 
 /// Four doubles in memory.
 #[derive(Clone, Copy, Debug)]
@@ -35,8 +36,7 @@ macro_rules! elementwise {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                let (a, b) = (&self.0, &other.0);
-                Self([a[0] $symbol b[0], a[1] $symbol b[1], a[2] $symbol b[2], a[3] $symbol b[3]])
+                Self::of(self.register() $symbol other.register())
             }
         }
     )*};
@@ -55,9 +55,13 @@ impl Quad {
     }
 
     #[inline(always)]
-    fn zip(self, other: Self, op: impl Fn(f64, f64) -> f64) -> Self {
-        let (a, b) = (&self.0, &other.0);
-        Self([op(a[0], b[0]), op(a[1], b[1]), op(a[2], b[2]), op(a[3], b[3])])
+    const fn register(self) -> f64x4 {
+        f64x4::new(self.0)
+    }
+
+    #[inline(always)]
+    fn of(register: f64x4) -> Self {
+        Self(register.to_array())
     }
 }
 
@@ -70,25 +74,23 @@ impl Elementwise for Quad {
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a < b { a } else { b })
+        Self::if_greater(other, self, self, other)
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a > b { a } else { b })
+        Self::if_greater(self, other, self, other)
     }
     #[inline(always)]
     fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
-        let (l, r, y, n) = (&left.0, &right.0, &yes.0, &no.0);
-        let pick = |k: usize| if l[k] > r[k] { y[k] } else { n[k] };
-        Self([pick(0), pick(1), pick(2), pick(3)])
+        Self::of(left.register().simd_gt(right.register()).bitselect(yes.register(), no.register()))
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        Self(self.0.map(f64::abs))
+        Self::of(self.register().abs())
     }
     #[inline(always)]
     fn flip_sign(magnitude: Self, sign: Self) -> Self {
-        magnitude.zip(sign, |m, s| f64::from_bits(m.to_bits() ^ (s.to_bits() & (1 << 63))))
+        Self::of(magnitude.register() ^ (sign.register() & f64x4::splat(-0.0)))
     }
 }
 

@@ -3,8 +3,9 @@
 use super::InstructionSet;
 use super::dispatch::run_on;
 use super::frame::RelativeMotion;
-use super::lanes::{Lanes, Portable};
+use super::lanes::Lanes;
 use super::node_test::{NodeFrame, NodeScale, Placed, entry_times};
+use super::portable::Portable;
 use super::quad::Quad;
 use super::scene::{Scene, Scratch};
 use super::triangle_pair::{Behind, Care, Look, PairScale, apart_since, look, place_a};

@@ -6,7 +6,7 @@ use super::expansion::{KEY_SCALE, Opening};
 use super::frame::{Frame, RelativeMotion};
 use super::helix::screw_clear_until;
 use super::lanes::Lanes;
-use super::node_test::NodeFrame;
+use super::node_test::{NodeFrame, NodeScale};
 use super::quad::Quad;
 use super::queue::{Bucket, Item};
 use super::scene::{Scene, Scratch};
@@ -73,6 +73,8 @@ pub(crate) struct Search<'s> {
     pub(super) scene: &'s Scene<'s>,
     pub(super) scratch: &'s mut Scratch,
     pub(super) limits: Limits,
+    /// Of the last window, and its unit of time.
+    scales: Option<(f64, [NodeScale; 2])>,
     /// Set for a single window that is searched before it is known what earlier ones give.
     #[cfg(feature = "rayon")]
     pub(super) ahead: Option<super::ahead::Ahead<'s>>,
@@ -161,6 +163,7 @@ impl<'s> Search<'s> {
             scene,
             scratch,
             limits,
+            scales: None,
             #[cfg(feature = "rayon")]
             ahead: None,
             #[cfg(feature = "rayon")]
@@ -176,7 +179,7 @@ impl<'s> Search<'s> {
         scratch: &'s mut Scratch,
         ahead: super::ahead::Ahead<'s>,
     ) -> Self {
-        Self { scene, scratch, limits, ahead: Some(ahead), parallel: false }
+        Self { scene, scratch, limits, scales: None, ahead: Some(ahead), parallel: false }
     }
 
     /// The next window to be searched; `None` when nothing is left.
@@ -198,14 +201,18 @@ impl<'s> Search<'s> {
         let length = (end - start) * (1.0 + 1e-15);
         let time_unit = power_of_two_from(length);
         let step = time_unit / KEY_SCALE;
-        let scales = scene.node_scales(time_unit);
+        let scales = match self.scales {
+            Some((unit, scales)) if unit == time_unit => scales,
+            _ => scene.node_scales(time_unit),
+        };
+        self.scales = Some((time_unit, scales));
         let mut state = State {
             motion,
             node_frames: [NodeFrame::NONE; 2],
             opening: Opening {
                 nodes: [&scene.a.0.nodes, &scene.b.0.nodes],
                 scales,
-                size_ratios: [scales[1].ratio.powi(3).clamp(1e-18, 1e18) as f32, 1.0],
+                size_ratios: [cube(scales[1].ratio).clamp(1e-18, 1e18) as f32, 1.0],
             },
             step,
             limit: (length / step).ceil() as u32 + 1,
@@ -495,6 +502,10 @@ pub(crate) fn corners(tree: &MeshTree, triangle: u32) -> [DVec3; 3] {
 /// Units of the window from key `now` to key `limit`, rounded up.
 fn time_left(limit: u32, now: u32) -> f32 {
     (limit - now) as f32 * (1.0 / KEY_SCALE as f32) * (1.0 + 1e-6)
+}
+
+fn cube(x: f64) -> f64 {
+    x * x * x
 }
 
 /// The least power of two that is not below a positive `length`.
