@@ -60,3 +60,20 @@ fn slow_turns_over_long_windows() {
     let answer = time_of_contact(a, b, Window::UNIT, &options).unwrap();
     assert!(answer.is_separated());
 }
+
+/// The same of velocities.
+#[test]
+fn slow_drifts_over_long_windows() {
+    let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
+    let tree = MeshTree::new(mesh);
+    for (speed, length, refused) in [(1.0, 9.0, false), (1e-130, 9e130, false), (1e-160, 9e160, true)] {
+        let drift = LinearMotion::REST.with_position(DVec3::X * 5.0).with_linear_velocity(DVec3::X * -speed);
+        let (a, b) = (Moving::new(&tree, &LinearMotion::REST), Moving::new(&tree, &drift));
+        let window = Window::try_new(0.0, length).unwrap();
+        match time_of_contact(a, b, window, &QueryOptions::default()) {
+            Err(error) => assert_eq!((error, refused), (QueryError::BadMotion { body: 1 }, true)),
+            Ok(answer) => assert!(!refused && answer.contact().is_some(), "{speed}: {answer:?}"),
+        }
+    }
+}

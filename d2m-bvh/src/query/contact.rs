@@ -31,7 +31,7 @@ pub struct Contact {
     pub time_hi: f64,
     /// Separation left at `time_lo`: a distance in (0, 3.3 `tolerance`], 0 when the bodies meet at the start.
     pub separation: f64,
-    /// The tolerance δ that was used: the one asked for unless rounding errors of the scene forbid it.
+    /// The tolerance δ that was used: the one asked for unless rounding errors of the scene forbid it; at least 1e-100.
     pub tolerance: f64,
     /// Unit normal at `time_lo`, world frame, from A to B.
     pub normal: DVec3,

@@ -31,8 +31,8 @@ pub enum QueryError {
         body: usize,
     },
     /// The motion is not finite over the window, or leaves the range in which errors can be bounded: the reach of the
-    /// query stays below 1e150, the angle since the reference time below 2⁴⁰ rad; an angular velocity below 1e-140, whose
-    /// square underflows, must not turn the body by more than 1e-20 rad.
+    /// query stays below 1e150, the angle since the reference time below 2⁴⁰ rad. Speeds below 1e-140, whose squares
+    /// underflow, must not turn a body by more than 1e-20 rad or move it by more than 1e-110.
     #[error(
         "motion of body {body} is not finite over the window, or turns or goes too far for bounds on its rounding"
     )]

@@ -3,7 +3,7 @@
 use super::containment::contains_point;
 use super::distance::distance;
 use super::report::contact;
-use crate::search::{Outcome, Quad, RelativeMotion, Scene, Scratch, Search, run};
+use crate::search::{LEAST_TOLERANCE, Outcome, Quad, RelativeMotion, Scene, Scratch, Search, run};
 use crate::{
     MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window,
 };
@@ -78,6 +78,9 @@ pub(super) fn scene_of<'a>(
             return Err(QueryError::BadMotion { body });
         }
     }
+    if let Some(body) = drifts_unseen([&motion_a, &motion_b], window) {
+        return Err(QueryError::BadMotion { body });
+    }
     let scene = Scene::new((a.body, motion_a), (b.body, motion_b), window, options);
     if !(scene.size.is_finite() && scene.size < 1e150) {
         let speed = |m: &LinearMotion| m.linear_velocity().length() + m.position().length();
@@ -131,6 +134,15 @@ fn angle_is_bounded(motion: &LinearMotion, window: Window) -> bool {
     let fastest = motion.angular_velocity().abs().max_element();
     let most = if fastest < 1e-140 { 1e-20 } else { 1_099_511_627_776.0 };
     fastest * longest * 1.8 < most
+}
+
+/// A body whose velocity against the other one is so small that its square is lost to underflow, and which moves all the
+/// same over a window that is long enough.
+fn drifts_unseen([a, b]: [&LinearMotion; 2], window: Window) -> Option<usize> {
+    let size = |v: DVec3| v.abs().max_element();
+    let speed = size(a.linear_velocity() - b.linear_velocity());
+    let unseen = speed < 1e-140 && speed * window.length() > 1e-10 * LEAST_TOLERANCE;
+    unseen.then(|| usize::from(size(b.linear_velocity()) > size(a.linear_velocity())))
 }
 
 fn check(options: &QueryOptions) -> Result<(), QueryError> {

@@ -39,6 +39,6 @@ pub(crate) use lanes::Lanes;
 pub(crate) use portable::Portable;
 pub(crate) use quad::{Doubles, Quad};
 pub use scene::SearchCounts;
-pub(crate) use scene::{Scene, Scratch};
+pub(crate) use scene::{LEAST_TOLERANCE, Scene, Scratch};
 pub(crate) use triangle_pair::place_a;
 pub(crate) use window::{Found, Outcome, Search, corners, time_from};

@@ -13,6 +13,8 @@ use glam::DVec3;
 const TRIANGLE_ERROR: f64 = 128.0 * UNIT_F64;
 /// Factor of the error of frames, for node tests.
 const FRAME_ERROR: f64 = 256.0 * UNIT_F64;
+/// Least δ: large against every length whose square is lost to underflow.
+pub(crate) const LEAST_TOLERANCE: f64 = 1e-100;
 /// Part of δ that pairs are followed to above the level. Large against roundings, small against δ.
 const SPARE: f64 = 1.0 / 64.0;
 /// Most rotation, both bodies together, inside one window.
@@ -62,7 +64,7 @@ impl<'a> Scene<'a> {
         let size = reach_a + reach_b + apart + relative_velocity.length() * longest + spin_speed * longest;
         let error = TRIANGLE_ERROR * size;
         let wanted = options.tolerance.unwrap_or(1e-10 * a.0.radius().max(b.0.radius()));
-        let tolerance = wanted.max(2.0 * error);
+        let tolerance = wanted.max(2.0 * error).max(LEAST_TOLERANCE);
         let level = options.min_separation + tolerance;
         let acceleration = (spin_a * spin_a * reach_a + spin_b * spin_b * reach_b) * (1.0 + 1e-12);
         let arms = [&a, &b].map(|(tree, motion)| tree.center() - motion.at());

@@ -197,6 +197,7 @@ impl Placed {
     /// The larger of `known` and the time for which the direction keeps the pair further apart than `level`.
     #[inline(always)]
     fn clear_for<D: Doubles>(&self, n: DVec3, scale: &PairScale, level: f64, known: f64) -> f64 {
+        let n = lengthened(n);
         let a = QuadVec::<D>::new([self.a[0], self.a[1], self.a[2], self.a[2]]);
         let b = QuadVec::<D>::new([self.b[0], self.b[1], self.b[2], self.b[2]]);
         let (pa, pb) = (a.dot(n), b.dot(n));
@@ -205,8 +206,8 @@ impl Placed {
         let gap = if a_is_low { forward } else { backward };
         let length = n.length();
         let need = (level + scale.error) * length;
-        // Also when n is zero or not a number.
-        let separated = gap > need;
+        // Not when n is zero or not a number either, nor so short that its square is lost to underflow.
+        let separated = gap > need && length > SHORTEST;
         if !separated {
             return known;
         }
@@ -217,11 +218,7 @@ impl Placed {
             let (low, high) = if a_is_low { ((pa, ra), (pb, rb)) } else { ((pb, rb), (pa, ra)) };
             first_time(low, high, need, scale.acceleration * length)
         } else {
-            let corners = |values: D| {
-                let [x, y, z, _] = values.store().0;
-                [x, y, z]
-            };
-            let of = [(corners(pa), corners(ra)), (corners(pb), corners(rb))];
+            let of = [(three(pa), three(ra)), (three(pb), three(rb))];
             self.clear_for_jets(n, scale, (a_is_low, need), of)
         };
         if s > known { s } else { known }
@@ -288,6 +285,25 @@ pub(crate) fn widest_normal(a: &[DVec3; 3], b: &[DVec3; 3]) -> DVec3 {
     let (na, nb) = ((a[1] - a[0]).cross(a[2] - a[0]), (b[1] - b[0]).cross(b[2] - b[0]));
     let ((ga, la), (gb, lb)) = (along(na), along(nb));
     if ga * lb > gb * la { na } else { nb }
+}
+
+/// Directions that are used are longer than this: squares of their products are not lost to underflow.
+const SHORTEST: f64 = 1e-30;
+/// What rates are lowered by, so that the square of none underflows: a gap that grows less is never late.
+const LEAST_RATE: f64 = 1e-140;
+
+/// The direction, made longer when it is very short; zero stays zero.
+#[inline(always)]
+fn lengthened(n: DVec3) -> DVec3 {
+    let size = n.abs().max_element();
+    if size > SHORTEST || size == 0.0 { n } else { n / size }
+}
+
+/// The first three of four.
+#[inline(always)]
+fn three<D: Doubles>(values: D) -> [f64; 3] {
+    let [x, y, z, _] = values.store().0;
+    [x, y, z]
 }
 
 /// The first bound is good enough when the acceleration changes speeds by less than this part of them.
@@ -424,6 +440,7 @@ fn first_time<D: Doubles>(low: (D, D), high: (D, D), need: f64, m: f64) -> f64 {
 /// Root of g + v s − m s²/2 for g > 0: sums of terms of one sign only.
 #[inline(always)]
 fn root(g: f64, v: f64, m: f64) -> f64 {
+    let v = v - LEAST_RATE;
     let root = (v * v + 2.0 * m * g).sqrt();
     if v < 0.0 {
         2.0 * g / (root - v)
@@ -476,7 +493,7 @@ fn first_time_of_jets(low: &Jets, high: &Jets, need: f64, jerk: f64, enough: f64
 /// First root of g + v s + a s²/2, g > 0, never late; infinite when there is none.
 #[inline(always)]
 fn parabola_root(g: f64, v: f64, a: f64) -> f64 {
-    let bent = 2.0 * a * g;
+    let (v, bent) = (v - LEAST_RATE, 2.0 * a * g);
     // Too large by more than its rounding: the root of a closing pair is early.
     let square = (v * v - bent) + 1e-15 * (v * v + bent.abs());
     let root = square.max(0.0).sqrt();
