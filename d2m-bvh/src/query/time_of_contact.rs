@@ -131,9 +131,12 @@ pub fn last_search_counts() -> crate::SearchCounts {
 fn angle_is_bounded(motion: &LinearMotion, window: Window) -> bool {
     let elapsed = |t: f64| (t - motion.reference_time()).abs();
     let longest = elapsed(window.start()).max(elapsed(window.end()));
-    let fastest = motion.angular_velocity().abs().max_element();
-    let most = if fastest < 1e-140 { 1e-20 } else { 1_099_511_627_776.0 };
-    fastest * longest * 1.8 < most
+    let velocity = motion.angular_velocity();
+    if velocity.abs().max_element() < 1e-140 {
+        velocity.abs().element_sum() * longest < 1e-20
+    } else {
+        velocity.length() * longest < 1_099_511_627_776.0
+    }
 }
 
 /// A body whose velocity against the other one is so small that its square is lost to underflow, and which moves all the
