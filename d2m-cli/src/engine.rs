@@ -138,7 +138,7 @@ impl Pair {
                 let triple = |vector: DVec3| format!("{:?}", vector.to_array());
                 let [x, v, w] = [motion.position(), motion.linear_velocity(), motion.angular_velocity()].map(triple);
                 let reason = format!(
-                    "x = {x}, v = {v}, w = {w}: over the window it is not finite, turns by 2^40 radians or goes too far"
+                    "x = {x}, v = {v}, w = {w}: over the window it is not finite, turns by 2^40 radians, goes too far, or is too slow to be told from rest (below 1e-140) and moves all the same"
                 );
                 Failure::at(place, reason)
             }

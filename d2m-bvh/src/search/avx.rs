@@ -1,5 +1,5 @@
-//! The lanes in AVX registers. This module holds the only `unsafe` operations of the crate; the functions that may
-//! use it are entered through a check of the processor (`dispatch`).
+//! The lanes in AVX registers. This module and `avx512` hold the only `unsafe` operations of the crate; the
+//! functions that may use them are entered through a check of the processor (`dispatch`).
 #![allow(unsafe_code)]
 
 use super::expansion::Opened;
@@ -168,8 +168,8 @@ impl<R: Registers> Lanes for Avx<R> {
     }
     #[inline(always)]
     fn pack(pairs: &Opened, list: &mut [Item; WIDTH]) -> usize {
-        // SAFETY: the processor has AVX2 (see the type). Keys and numbers are eight
-        // words each; an item is four words in order, so the list is four times 32 writable bytes. No alignment is needed.
+        // SAFETY: the processor has AVX2 (see the type). Keys and what to open are eight words each; an item is four
+        // words in order (`repr(C)`), so the list is four times 32 writable bytes. No alignment is needed.
         unsafe {
             let order = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(ORDER[pairs.bits as usize & 255] as i64));
             let wide = _mm256_add_epi32(_mm256_set1_epi32(pairs.first as i32), order);

@@ -25,8 +25,75 @@ pub(crate) struct Sixteen(__m512);
 #[derive(Clone, Copy)]
 pub(crate) struct Eight(__m512d);
 
-macro_rules! operator {
-    ($($type:ident: $operator:ident $method:ident $intrinsic:ident),*) => {$(
+/// The operations of one kind of register: both kinds have the same ones, under other names.
+macro_rules! register {
+    (
+        $type:ident of $scalar:ty, two times $half:ident:
+        $add:ident $sub:ident $mul:ident $splat:ident $abs:ident $max:ident $min:ident
+        $xor:ident $and:ident $greater:ident $blend:ident
+        $whole:ident $insert:ident $twice:ident $low:ident $high:ident
+    ) => {
+        register!($type: Add add $add, Sub sub $sub, Mul mul $mul);
+
+        impl Elementwise for $type {
+            type Scalar = $scalar;
+
+            #[inline(always)]
+            fn splat(value: $scalar) -> Self {
+                // SAFETY: the processor has AVX-512 (see the type).
+                Self(unsafe { $splat(value) })
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                // SAFETY: the processor has AVX-512 (see the type).
+                Self(unsafe { $abs(self.0) })
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                // SAFETY: the processor has AVX-512 (see the type).
+                Self(unsafe { $max(self.0, other.0) })
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                // SAFETY: the processor has AVX-512 (see the type).
+                Self(unsafe { $min(self.0, other.0) })
+            }
+            #[inline(always)]
+            fn flip_sign(magnitude: Self, sign: Self) -> Self {
+                // SAFETY: the processor has AVX-512 (see the type).
+                Self(unsafe { $xor(magnitude.0, $and(sign.0, $splat(-0.0))) })
+            }
+            #[inline(always)]
+            fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
+                // SAFETY: the processor has AVX-512 (see the type).
+                Self(unsafe { $blend($greater::<_CMP_GT_OQ>(left.0, right.0), no.0, yes.0) })
+            }
+        }
+
+        impl Two<$half<Of512>> for $type {
+            #[inline(always)]
+            fn of(first: $half<Of512>, second: $half<Of512>) -> Self {
+                // SAFETY: the processor has AVX-512 (see the type).
+                Self(unsafe { $insert::<1>($whole(first.0), second.0) })
+            }
+            #[inline(always)]
+            fn both(half: $half<Of512>) -> Self {
+                // SAFETY: the processor has AVX-512 (see the type).
+                Self(unsafe { $twice(half.0) })
+            }
+            #[inline(always)]
+            fn first(self) -> $half<Of512> {
+                // SAFETY: the processor has AVX-512 (see the type).
+                $half::of(unsafe { $low(self.0) })
+            }
+            #[inline(always)]
+            fn second(self) -> $half<Of512> {
+                // SAFETY: the processor has AVX-512 (see the type).
+                $half::of(unsafe { $high::<1>(self.0) })
+            }
+        }
+    };
+    ($type:ident: $($operator:ident $method:ident $intrinsic:ident),*) => {$(
         impl $operator for $type {
             type Output = Self;
             #[inline(always)]
@@ -37,121 +104,12 @@ macro_rules! operator {
         }
     )*};
 }
-operator!(Sixteen: Add add _mm512_add_ps, Sixteen: Sub sub _mm512_sub_ps, Sixteen: Mul mul _mm512_mul_ps);
-operator!(Eight: Add add _mm512_add_pd, Eight: Sub sub _mm512_sub_pd, Eight: Mul mul _mm512_mul_pd);
 
-impl Elementwise for Sixteen {
-    type Scalar = f32;
-
-    #[inline(always)]
-    fn splat(value: f32) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_set1_ps(value) })
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_abs_ps(self.0) })
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_max_ps(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_min_ps(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn flip_sign(magnitude: Self, sign: Self) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_xor_ps(magnitude.0, _mm512_and_ps(sign.0, _mm512_set1_ps(-0.0))) })
-    }
-    #[inline(always)]
-    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_mask_blend_ps(_mm512_cmp_ps_mask::<_CMP_GT_OQ>(left.0, right.0), no.0, yes.0) })
-    }
-}
-
-impl Two<Avx<Of512>> for Sixteen {
-    #[inline(always)]
-    fn of(first: Avx<Of512>, second: Avx<Of512>) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_insertf32x8::<1>(_mm512_castps256_ps512(first.0), second.0) })
-    }
-    #[inline(always)]
-    fn both(half: Avx<Of512>) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_broadcast_f32x8(half.0) })
-    }
-    #[inline(always)]
-    fn first(self) -> Avx<Of512> {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Avx::of(unsafe { _mm512_castps512_ps256(self.0) })
-    }
-    #[inline(always)]
-    fn second(self) -> Avx<Of512> {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Avx::of(unsafe { _mm512_extractf32x8_ps::<1>(self.0) })
-    }
-}
-
-impl Elementwise for Eight {
-    type Scalar = f64;
-
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_set1_pd(value) })
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_abs_pd(self.0) })
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_max_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_min_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn flip_sign(magnitude: Self, sign: Self) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_xor_pd(magnitude.0, _mm512_and_pd(sign.0, _mm512_set1_pd(-0.0))) })
-    }
-    #[inline(always)]
-    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(left.0, right.0), no.0, yes.0) })
-    }
-}
-
-impl Two<AvxDoubles<Of512>> for Eight {
-    #[inline(always)]
-    fn of(first: AvxDoubles<Of512>, second: AvxDoubles<Of512>) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(first.0), second.0) })
-    }
-    #[inline(always)]
-    fn both(half: AvxDoubles<Of512>) -> Self {
-        // SAFETY: the processor has AVX-512 (see the type).
-        Self(unsafe { _mm512_broadcast_f64x4(half.0) })
-    }
-    #[inline(always)]
-    fn first(self) -> AvxDoubles<Of512> {
-        // SAFETY: the processor has AVX-512 (see the type).
-        AvxDoubles::of(unsafe { _mm512_castpd512_pd256(self.0) })
-    }
-    #[inline(always)]
-    fn second(self) -> AvxDoubles<Of512> {
-        // SAFETY: the processor has AVX-512 (see the type).
-        AvxDoubles::of(unsafe { _mm512_extractf64x4_pd::<1>(self.0) })
-    }
-}
+register!(Sixteen of f32, two times Avx:
+    _mm512_add_ps _mm512_sub_ps _mm512_mul_ps _mm512_set1_ps _mm512_abs_ps _mm512_max_ps _mm512_min_ps
+    _mm512_xor_ps _mm512_and_ps _mm512_cmp_ps_mask _mm512_mask_blend_ps
+    _mm512_castps256_ps512 _mm512_insertf32x8 _mm512_broadcast_f32x8 _mm512_castps512_ps256 _mm512_extractf32x8_ps);
+register!(Eight of f64, two times AvxDoubles:
+    _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_set1_pd _mm512_abs_pd _mm512_max_pd _mm512_min_pd
+    _mm512_xor_pd _mm512_and_pd _mm512_cmp_pd_mask _mm512_mask_blend_pd
+    _mm512_castpd256_pd512 _mm512_insertf64x4 _mm512_broadcast_f64x4 _mm512_castpd512_pd256 _mm512_extractf64x4_pd);
