@@ -6,7 +6,7 @@ use super::expansion::Opened;
 use super::lanes::Lanes;
 use super::quad::{Doubles, Quad};
 use super::queue::Item;
-use super::two::{Both, Elementwise, Two};
+use super::two::{Both, Bytes, Elementwise, Two};
 use crate::tree::node::WIDTH;
 #[allow(clippy::wildcard_imports)]
 use core::arch::x86_64::*;
@@ -16,7 +16,7 @@ use core::ops::{Add, Div, Mul, Sub};
 /// Which registers there are besides those of 256 bits.
 pub(crate) trait Registers: Copy {
     /// Two times eight lanes.
-    type Sixteen: Two<Avx<Self>>;
+    type Sixteen: Two<Avx<Self>> + Bytes;
     /// Two times four doubles.
     type Eight: Two<AvxDoubles<Self>>;
 }
@@ -106,6 +106,21 @@ impl<R: Registers> Elementwise for Avx<R> {
     fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
         // SAFETY: the processor has AVX (see the type).
         Self::of(unsafe { _mm256_blendv_ps(no.0, yes.0, _mm256_cmp_ps::<_CMP_GT_OQ>(left.0, right.0)) })
+    }
+}
+
+impl<R: Registers> Bytes for Avx<R> {
+    #[inline(always)]
+    fn byte_of(self, x: Self, y: Self, flip: Self) -> Self {
+        // SAFETY: the processor has AVX2 (see the type).
+        unsafe {
+            let upper = _mm256_srli_epi32::<8>(_mm256_castps_si256(self.0));
+            let two = _mm256_blendv_ps(self.0, _mm256_castsi256_ps(upper), _mm256_xor_ps(x.0, flip.0));
+            let upper = _mm256_srli_epi32::<16>(_mm256_castps_si256(two));
+            let one = _mm256_blendv_ps(two, _mm256_castsi256_ps(upper), _mm256_xor_ps(y.0, flip.0));
+            let byte = _mm256_and_si256(_mm256_castps_si256(one), _mm256_set1_epi32(255));
+            Self::of(_mm256_cvtepi32_ps(byte))
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::avx::{Avx, AvxDoubles, Registers};
-use super::two::{Elementwise, Two};
+use super::two::{Bytes, Elementwise, Two};
 #[allow(clippy::wildcard_imports)]
 use core::arch::x86_64::*;
 use core::ops::{Add, Mul, Sub};
@@ -113,3 +113,18 @@ register!(Eight of f64, two times AvxDoubles:
     _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_set1_pd _mm512_abs_pd _mm512_max_pd _mm512_min_pd
     _mm512_xor_pd _mm512_and_pd _mm512_cmp_pd_mask _mm512_mask_blend_pd
     _mm512_castpd256_pd512 _mm512_insertf64x4 _mm512_broadcast_f64x4 _mm512_castpd512_pd256 _mm512_extractf64x4_pd);
+
+impl Bytes for Sixteen {
+    #[inline(always)]
+    fn byte_of(self, x: Self, y: Self, flip: Self) -> Self {
+        // SAFETY: the processor has AVX-512 (see the type).
+        unsafe {
+            let x_is_negative = _mm512_movepi32_mask(_mm512_castps_si512(_mm512_xor_ps(x.0, flip.0)));
+            let y_is_negative = _mm512_movepi32_mask(_mm512_castps_si512(_mm512_xor_ps(y.0, flip.0)));
+            let four = _mm512_castps_si512(self.0);
+            let two = _mm512_mask_srli_epi32::<8>(four, x_is_negative, four);
+            let one = _mm512_mask_srli_epi32::<16>(two, y_is_negative, two);
+            Self(_mm512_cvtepi32_ps(_mm512_and_si512(one, _mm512_set1_epi32(255))))
+        }
+    }
+}

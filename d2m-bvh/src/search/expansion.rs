@@ -1,7 +1,8 @@
 //! Opening a pair of boxes: a box of one body against the eight boxes of a node of the other.
 
+use super::entry_time::entry_times;
 use super::lanes::Lanes;
-use super::node_test::{NodeFrame, NodeScale, Placed, entry_times};
+use super::node_test::{NodeFrame, NodeScale, Placed};
 use super::queue::Item;
 use crate::tree::node::{WIDTH, WideNode};
 

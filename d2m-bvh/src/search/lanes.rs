@@ -6,16 +6,16 @@
 use super::expansion::Opened;
 use super::quad::Doubles;
 use super::queue::Item;
-use super::two::{Elementwise, Two};
+use super::two::{Bytes, Two};
 use crate::tree::node::WIDTH;
 use core::ops::Div;
 
 /// Eight lanes of `f32`.
-pub(crate) trait Lanes: Elementwise<Scalar = f32> + Div<Output = Self> {
+pub(crate) trait Lanes: Bytes + Div<Output = Self> {
     /// Four `f64` of the same instruction set.
     type Doubles: Doubles;
     /// Two times eight lanes.
-    type Two: Two<Self>;
+    type Two: Two<Self> + Bytes;
 
     /// Lanes from memory.
     fn load(values: &[f32; 8]) -> Self;

@@ -9,6 +9,7 @@ mod avx512;
 mod base_pose;
 mod closest;
 mod dispatch;
+mod entry_time;
 mod expansion;
 mod frame;
 mod helix;

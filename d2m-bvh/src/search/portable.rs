@@ -4,10 +4,11 @@ use super::expansion::Opened;
 use super::lanes::Lanes;
 use super::quad::Quad;
 use super::queue::Item;
-use super::two::{Both, Elementwise};
+use super::two::{Both, Bytes, Elementwise};
 use crate::tree::node::WIDTH;
 use core::ops::{Add, Div, Mul, Sub};
-use wide::f32x8;
+use wide::bytemuck::cast;
+use wide::{f32x8, i32x8, u32x8};
 
 /// Portable lanes.
 #[derive(Clone, Copy)]
@@ -52,6 +53,18 @@ impl Elementwise for Portable {
     #[inline(always)]
     fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
         Self(left.0.simd_gt(right.0).bitselect(yes.0, no.0))
+    }
+}
+
+impl Bytes for Portable {
+    #[inline(always)]
+    fn byte_of(self, x: Self, y: Self, flip: Self) -> Self {
+        // All bits of a lane are those of its sign.
+        let sign = |v: Self| -> u32x8 { cast(cast::<_, i32x8>(v.0 ^ flip.0) >> 31_i32) };
+        let four: u32x8 = cast(self.0);
+        let two = sign(x).bitselect(four >> 8_u32, four);
+        let one = sign(y).bitselect(two >> 16_u32, two);
+        Self(f32x8::from_i32x8(cast(one & u32x8::splat(255))))
     }
 }
 

@@ -2,16 +2,17 @@
 
 use super::InstructionSet;
 use super::dispatch::run_on;
+use super::entry_time::entry_times;
 use super::frame::RelativeMotion;
 use super::lanes::Lanes;
-use super::node_test::{NodeFrame, NodeScale, Placed, entry_times};
+use super::node_test::{NodeFrame, NodeScale, Placed};
 use super::portable::Portable;
 use super::quad::Quad;
 use super::scene::{Scene, Scratch};
 use super::triangle_pair::{Behind, Care, Look, PairScale, apart_since, look, place_a};
 use super::window::{Outcome, Search, corners};
 use crate::random::Random;
-use crate::tree::node::Below;
+use crate::tree::node::WIDTH;
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
 use d2m_feature::triangle_distance;
 use d2m_motion::LinearMotion;
@@ -57,24 +58,31 @@ fn least_ratio(rounds: u32, mutate: impl Fn(&mut NodeScale)) -> f64 {
             mutate(scale);
             let (wide, single) = if side == 0 { (&a, &b) } else { (&b, &a) };
             let node_frame = NodeFrame::new::<Quad>(&frame, scale, side == 1, left);
-            for lane in 0..8 {
-                let placed =
-                    Placed::new::<Portable>(&node_frame, scale, (&single.nodes[1], lane), &wide.nodes[1]);
+            // Each triangle's box, and the one around all.
+            for index in (0..8).map(|lane| WIDTH + lane).chain([0]) {
+                let single_box = (&single.nodes[index / WIDTH], index % WIDTH);
+                let placed = Placed::new::<Portable>(&node_frame, scale, single_box, &wide.nodes[1]);
                 let times = entry_times::<Portable>(&wide.nodes[1], &placed, scale).store();
                 for (other, &time) in times.iter().enumerate() {
-                    let (Below::Triangle(s), Below::Triangle(w)) =
-                        (single.nodes[1].below(lane), wide.nodes[1].below(other))
-                    else {
-                        panic!("eight triangles hang below one node");
-                    };
                     if time.is_nan() || time <= 0.0 {
                         continue;
                     }
-                    let (ta, tb) = if side == 0 { (w, s) } else { (s, w) };
+                    let triangles_of = |tree: &MeshTree, index: usize| -> Vec<u32> {
+                        let lanes = if index == 0 { 0..WIDTH } else { index % WIDTH..index % WIDTH + 1 };
+                        lanes.map(|lane| tree.nodes[1].triangle(lane)).collect()
+                    };
+                    let (singles, wides) = (triangles_of(single, index), triangles_of(wide, WIDTH + other));
+                    let (of_a, of_b) = if side == 0 { (wides, singles) } else { (singles, wides) };
                     for part in [0.0, 0.5, 1.0] {
                         let offset = part * f64::from(time.min(left)) * unit;
-                        let placed = place_a::<Quad>(&motion.frame::<Quad>(offset), &corners(&a, ta));
-                        least = least.min(triangle_distance(&placed, &corners(&b, tb)).lower / level);
+                        let frame = motion.frame::<Quad>(offset);
+                        for &ta in &of_a {
+                            let placed = place_a::<Quad>(&frame, &corners(&a, ta));
+                            for &tb in &of_b {
+                                let lower = triangle_distance(&placed, &corners(&b, tb)).lower;
+                                least = least.min(lower / level);
+                            }
+                        }
                     }
                 }
             }
@@ -240,7 +248,7 @@ fn boxes_called_apart_at_rest_are_apart() {
             let frame = NodeFrame::new::<Quad>(&motion.frame::<Quad>(0.0), &scale, true, 1.0);
             let full = Placed::new::<Portable>(&frame, &scale, (&a.nodes[0], 0), &b.nodes[0]);
             // What is left of the margin.
-            scale.floor -= (1.0 - margin) * full.gap_margin();
+            scale.floor -= (1.0 - margin) * full.gap_margin;
             let placed = Placed::new::<Portable>(&frame, &scale, (&a.nodes[0], 0), &b.nodes[0]);
             let time = entry_times::<Portable>(&b.nodes[0], &placed, &scale).store()[0];
             wrong += u32::from(time > 0.0);

@@ -24,6 +24,20 @@ pub(crate) trait Elementwise:
     fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self;
 }
 
+/// Lanes of `f32` that may also hold four bytes each, as the bits of a number that is no NaN.
+pub(crate) trait Bytes: Elementwise<Scalar = f32> {
+    /// As a number, byte (x < 0) + 2·(y < 0) of the four bytes in each lane, counted from the lowest one. Signs are those
+    /// of zeros, too, and count as flipped where that of `flip` is negative.
+    fn byte_of(self, x: Self, y: Self, flip: Self) -> Self;
+}
+
+impl<L: Bytes> Bytes for Both<L> {
+    #[inline(always)]
+    fn byte_of(self, x: Self, y: Self, flip: Self) -> Self {
+        Self(self.0.byte_of(x.0, y.0, flip.0), self.1.byte_of(x.1, y.1, flip.1))
+    }
+}
+
 /// Two times the lanes of `L`.
 pub(crate) trait Two<L: Elementwise>: Elementwise<Scalar = L::Scalar> {
     /// From both halves.

@@ -1,5 +1,6 @@
 //! Trees of oriented boxes over a mesh.
 
+pub(crate) mod bevel;
 mod build;
 mod fit;
 pub(crate) mod margin;

@@ -1,5 +1,6 @@
 //! A tree in a file: the mesh, and the boxes as they are. Reading one checks every promise again.
 
+use super::bevel::{Bevels, MOST};
 use super::mesh_tree::MeshTree;
 use super::node::{Below, OrientedBox, WIDTH, WideNode};
 use super::surface::{Extent, size_of_box, unit_of};
@@ -29,6 +30,9 @@ struct BoxForm {
     center: [f32; 3],
     axes: [[f32; 3]; 3],
     half_extent: [f32; 3],
+    /// Nothing is cut off where they are left out.
+    #[serde(default)]
+    bevels: Bevels,
     radius: f32,
     below: BelowForm,
 }
@@ -44,12 +48,12 @@ impl From<MeshTree> for TreeForm {
     fn from(tree: MeshTree) -> Self {
         let one = |node: &WideNode| {
             let boxes = (0..node.used as usize).map(|lane| {
-                let OrientedBox { center, axes, half_extent, radius } = node.oriented_box(lane);
+                let OrientedBox { center, axes, half_extent, bevels, radius } = node.oriented_box(lane);
                 let below = match node.below(lane) {
                     Below::Triangle(triangle) => BelowForm::Triangle(triangle),
                     Below::Node(node) => BelowForm::Node(node),
                 };
-                BoxForm { center, axes, half_extent, radius, below }
+                BoxForm { center, axes, half_extent, bevels, radius, below }
             });
             NodeForm { origin: node.origin, boxes: boxes.collect() }
         };
@@ -70,10 +74,14 @@ impl TryFrom<TreeForm> for MeshTree {
             let mut node = WideNode::empty(from.origin, 0);
             node.used = from.boxes.len() as u32;
             for (lane, b) in from.boxes.iter().enumerate() {
+                if b.bevels.iter().flatten().any(|&steps| steps > MOST) {
+                    return Err(TreeError::Shape { node: index, lane });
+                }
                 let boxed = OrientedBox {
                     center: b.center,
                     axes: b.axes,
                     half_extent: b.half_extent,
+                    bevels: b.bevels,
                     radius: b.radius,
                 };
                 let (below, size) = match b.below {

@@ -1,5 +1,6 @@
 //! The triangles of a mesh in local coordinates, and boxes around some of them.
 
+use super::bevel::{Bevels, EdgeReach};
 use super::fit::{Moments, dot, sub, triangle_axes};
 use super::margin::{UNIT_F64, round_up};
 use super::node::{LEAST_SIZE, OrientedBox};
@@ -120,14 +121,16 @@ impl<'a> Surface<'a> {
         // The centre may be anything: the extents are measured from what it was rounded to.
         let middle = [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]));
         let center: [f32; 3] = [0, 1, 2].map(|k| (0..3).map(|i| wide[i][k] * middle[i]).sum::<f64>() as f32);
-        let mut reach = Reach::new(origin, center, &axes);
+        let about = [0, 1, 2].map(|i| 0.5 * (high[i] - low[i]));
+        let mut reach = Reach::new(origin, center, &axes, about);
         for &triangle in part {
             for p in &self.corners(triangle) {
                 reach.add(p);
             }
         }
         let (half_extent, radius) = reach.outward();
-        let boxed = OrientedBox { center, axes, half_extent, radius };
+        let bevels = reach.bevels(&half_extent);
+        let boxed = OrientedBox { center, axes, half_extent, bevels, radius };
         (boxed, size_of_box(&boxed))
     }
 }
@@ -148,6 +151,7 @@ pub(super) struct Reach {
     origin: [f64; 3],
     center: [f64; 3],
     half: [f64; 3],
+    edges: EdgeReach,
     square: f64,
     norm: f64,
 }
@@ -155,12 +159,14 @@ pub(super) struct Reach {
 impl Reach {
     const SLACK: f64 = 8.0 * UNIT_F64;
 
-    pub(super) fn new(origin: [f32; 3], center: [f32; 3], axes: &[[f32; 3]; 3]) -> Self {
+    /// `about`: the half extents as far as they are known.
+    pub(super) fn new(origin: [f32; 3], center: [f32; 3], axes: &[[f32; 3]; 3], about: [f64; 3]) -> Self {
         Self {
             axes: axes.map(|axis| axis.map(f64::from)),
             origin: origin.map(f64::from),
             center: center.map(f64::from),
             half: [0.0; 3],
+            edges: EdgeReach::new(about),
             square: 0.0,
             norm: 0.0,
         }
@@ -170,20 +176,39 @@ impl Reach {
     #[inline(always)]
     pub(super) fn add(&mut self, p: &[f64; 3]) {
         let q = sub(sub(*p, self.origin), self.center);
-        for i in 0..3 {
-            let along = dot(self.axes[i], q).abs();
-            self.half[i] = if along > self.half[i] { along } else { self.half[i] };
+        let along = [dot(self.axes[0], q), dot(self.axes[1], q), dot(self.axes[2], q)];
+        for (half, along) in self.half.iter_mut().zip(along) {
+            *half = if along.abs() > *half { along.abs() } else { *half };
         }
+        self.edges.add(&along);
         let (square, norm) = (dot(q, q), p[0].abs() + p[1].abs() + p[2].abs());
         self.square = if square > self.square { square } else { self.square };
         self.norm = if norm > self.norm { norm } else { self.norm };
     }
 
+    /// Bound on the error of coordinates along the axes.
+    fn slack(&self) -> f64 {
+        let sum = |v: &[f64; 3]| v[0].abs() + v[1].abs() + v[2].abs();
+        Self::SLACK * (self.norm + sum(&self.origin) + sum(&self.center))
+    }
+
+    /// What can be cut off the edges of the box with half extents that enclose the points.
+    fn bevels(&self, half_extent: &[f32; 3]) -> Bevels {
+        self.edges.bevels(half_extent, self.slack())
+    }
+
+    /// Is all of it proven to be in the box and its ball?
+    pub(super) fn is_within(&self, boxed: &OrientedBox) -> bool {
+        let (half, radius) = self.outward();
+        (0..3).all(|i| half[i] <= boxed.half_extent[i])
+            && radius <= boxed.radius
+            && self.edges.are_left_by(&boxed.bevels, &boxed.half_extent, self.slack())
+    }
+
     /// Half extents and radius that enclose the points in real arithmetic. Monotone: a box made from more points is
     /// at least as large, in every bit.
-    pub(super) fn outward(&self) -> ([f32; 3], f32) {
-        let sum = |v: &[f64; 3]| v[0].abs() + v[1].abs() + v[2].abs();
-        let slack = Self::SLACK * (self.norm + sum(&self.origin) + sum(&self.center));
+    fn outward(&self) -> ([f32; 3], f32) {
+        let slack = self.slack();
         let half = self.half.map(|h| round_up(h + slack));
         (half, round_up(self.square.sqrt() * (1.0 + 8.0 * UNIT_F64) + slack))
     }

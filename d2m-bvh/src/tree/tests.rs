@@ -1,5 +1,6 @@
 //! Trees that were built, refitted, written and broken.
 
+use super::bevel::{PAIRS, STEPS};
 use super::margin::UNIT_F64;
 use super::node::{Below, WIDTH};
 use super::surface::Surface;
@@ -87,6 +88,8 @@ fn boxes_enclose_in_more_than_double_precision() {
         add(two_sum(high * b, rest * b), low * b)
     }
     let mut tightest = f64::INFINITY;
+    // Of what is cut off the edges: how many, and how near it comes.
+    let (mut cut_off, mut nearest) = (0, f64::INFINITY);
     for mesh in hard_meshes().into_iter().take(4) {
         let tree = MeshTree::new(mesh);
         for leaf in &tree.nodes {
@@ -101,15 +104,28 @@ fn boxes_enclose_in_more_than_double_precision() {
                             let local = (high / tree.unit, low / tree.unit);
                             add(add(local, -f64::from(node.origin[k])), -f64::from(boxed.center[k]))
                         });
+                        let mut along = [0.0; 3];
                         for i in 0..3 {
                             let mut sum = (0.0, 0.0);
                             for (k, part) in q.iter().enumerate() {
                                 let term = mul24(*part, f64::from(boxed.axes[i][k]));
                                 sum = add(add(sum, term.0), term.1);
                             }
+                            along[i] = sum.0;
                             let left = f64::from(boxed.half_extent[i]) - sum.0.abs();
                             assert!(left > 0.0, "{left:e}");
                             tightest = tightest.min(left);
+                        }
+                        for (&(i, j), cuts) in PAIRS.iter().zip(&boxed.bevels) {
+                            let half = [i, j].map(|k| f64::from(boxed.half_extent[k]));
+                            for (place, &cut) in cuts.iter().enumerate().filter(|(_, cut)| **cut > 0) {
+                                let sign = |bit: usize| if place & bit == 0 { 1.0 } else { -1.0 };
+                                let at = sign(1) * along[i] / half[0] + sign(2) * along[j] / half[1];
+                                let room = (2.0 - f64::from(cut) / f64::from(STEPS)) - at;
+                                // Errors of this sum are below 1e-15.
+                                assert!(room > 1e-12, "{room:e}");
+                                (cut_off, nearest) = (cut_off + 1, nearest.min(room));
+                            }
                         }
                         if std::ptr::eq(node, &raw const tree.nodes[0]) {
                             break;
@@ -123,15 +139,27 @@ fn boxes_enclose_in_more_than_double_precision() {
     }
     // Boxes are not blown up: somewhere only the slack is left.
     assert!(tightest < 64.0 * UNIT_F64, "{tightest:e}");
+    assert!(cut_off > 1000 && nearest < 1e-4, "{cut_off} {nearest:e}");
+}
+
+/// Cuts one step more off an edge of the first box of a node.
+fn cut_more(tree: &mut MeshTree, node: usize) {
+    let bits = tree.nodes[node].bevels[0][0].to_bits();
+    tree.nodes[node].bevels[0][0] = f32::from_bits(bits + 1);
 }
 
 #[test]
 fn any_shrunk_or_broken_tree_is_refused() {
     let tree = MeshTree::new(torus(20, 10, 0.01, |p| p));
     type Damage = fn(&mut MeshTree);
-    let damages: [(&str, Damage); 14] = [
+    let damages: [(&str, Damage); 16] = [
         ("half extent", |t| t.nodes[3].half_extent[1][2] *= 0.999),
         ("half extent of the root", |t| t.nodes[0].half_extent[0][0] *= 1.0 - 1e-6),
+        ("edge of a part", |t| cut_more(t, 2)),
+        ("edge of a triangle", |t| {
+            let leaf = t.nodes.iter().position(|n| matches!(n.below(1), Below::Triangle(_))).unwrap();
+            cut_more(t, leaf);
+        }),
         ("radius", |t| t.nodes[2].radius[0] *= 0.999),
         ("centre", |t| t.nodes[5].center[0][1] += 1e-3),
         ("axis", |t| t.nodes[5].axes[0][0][1] *= 1.000_001),

@@ -145,12 +145,11 @@ impl MeshTree {
 /// Is the triangle proven to be inside the box and its ball? The same arithmetic as at construction.
 fn encloses(node: &WideNode, lane: usize, corners: &[[f64; 3]; 3]) -> bool {
     let boxed = node.oriented_box(lane);
-    let mut reach = Reach::new(node.origin, boxed.center, &boxed.axes);
+    let mut reach = Reach::new(node.origin, boxed.center, &boxed.axes, boxed.half_extent.map(f64::from));
     for p in corners {
         reach.add(p);
     }
-    let (half, radius) = reach.outward();
-    (0..3).all(|i| half[i] <= boxed.half_extent[i]) && radius <= boxed.radius
+    reach.is_within(&boxed)
 }
 
 fn check_shapes(index: usize, node: &WideNode) -> Result<(), TreeError> {

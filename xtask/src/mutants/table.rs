@@ -176,10 +176,31 @@ pub(crate) const MUTANTS: &[Mutant] = &[
         "d2m-bvh/src/tree/tests.rs::boxes_enclose_in_more_than_double_precision",
     ),
     in_test("boxes of a tree shrunk", "d2m-bvh/src/tree/tests.rs::any_shrunk_or_broken_tree_is_refused"),
+    patch(
+        "edges of boxes cut off two steps too far",
+        "d2m-bvh/src/tree/bevel.rs",
+        "(room - 1e-9).min(f64::from(MOST))",
+        "(room + 2.0).min(f64::from(MOST))",
+        "d2m-bvh/src/tree/tests.rs::boxes_enclose_in_more_than_double_precision",
+    ),
     // The default engine.
     patch(
-        "half of the spin of the opened box",
+        "the cut of another edge",
+        "d2m-bvh/src/search/entry_time.rs",
+        ".byte_of(cosines[i], cosines[j], along)",
+        ".byte_of(cosines[j], cosines[i], along)",
+        "d2m-bvh/src/search/entry_time.rs::bevelled_boxes_reach_as_far_as_their_points",
+    ),
+    patch(
+        "the cut of the opposite edge",
         "d2m-bvh/src/search/node_test.rs",
+        "bevels.to_bits().swap_bytes()",
+        "bevels.to_bits()",
+        "d2m-bvh/src/search/tests.rs::entry_times_of_boxes_hold_and_are_sharp",
+    ),
+    patch(
+        "half of the spin of the opened box",
+        "d2m-bvh/src/search/entry_time.rs",
         "L::splat(scale.spin[0]) * L::load(&wide.radius)",
         "L::splat(0.5 * scale.spin[0]) * L::load(&wide.radius)",
         "d2m-bvh/src/search/tests.rs::half_the_spin_is_noticed",

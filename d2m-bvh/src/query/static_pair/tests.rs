@@ -19,6 +19,7 @@ impl Random {
             center: narrow(self.vec() * spread),
             axes: [narrow(axes.x_axis), narrow(axes.y_axis), narrow(axes.z_axis)],
             half_extent: narrow(half),
+            bevels: [[0; 4]; 3],
             // As a built box: the radius is at least each half extent.
             radius: narrow(half)[0].max(narrow(half)[1]).max(narrow(half)[2]),
         }

@@ -1,0 +1,71 @@
+//! What is cut off the twelve edges of an oriented box: most parts of a surface leave its edges and corners empty.
+//!
+//! A point of the part has coordinates xᵢ along the axes, |xᵢ| ≤ hᵢ. The edge between the faces σxᵢ = hᵢ and τxⱼ = hⱼ
+//! (σ, τ = ±1) is cut off by the plane σxᵢ/hᵢ + τxⱼ/hⱼ = 2 − s. The box alone has s = 0; s = 1 cuts from the middle of one
+//! face to that of the other; a part that touches the edge has s = 0 again.
+
+/// The pairs of axes whose faces meet in edges.
+pub(crate) const PAIRS: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
+
+/// Steps of a stored cut in one half extent.
+pub(crate) const STEPS: f32 = 64.0;
+
+/// The largest stored cut. Four bytes that are not above it are never the bits of a NaN, so that they can be kept where
+/// numbers are.
+pub(crate) const MOST: u8 = 126;
+
+/// For each pair of axes the cuts s in steps, of the edge (σ, τ) at place (σ < 0) + 2·(τ < 0).
+pub(crate) type Bevels = [[u8; 4]; 3];
+
+/// How far points reach towards the edges of a box whose half extents are about known.
+pub(super) struct EdgeReach {
+    about: [f64; 3],
+    /// Largest σ·xᵢ·aboutⱼ + τ·xⱼ·aboutᵢ, in the order of [`Bevels`].
+    most: [[f64; 4]; 3],
+}
+
+impl EdgeReach {
+    pub(super) fn new(about: [f64; 3]) -> Self {
+        Self { about, most: [[f64::NEG_INFINITY; 4]; 3] }
+    }
+
+    /// Takes the coordinates of a point along the axes.
+    #[inline(always)]
+    pub(super) fn add(&mut self, along: &[f64; 3]) {
+        for (most, &(i, j)) in self.most.iter_mut().zip(&PAIRS) {
+            let (x, y) = (along[i] * self.about[j], along[j] * self.about[i]);
+            let (sum, difference) = (x + y, x - y);
+            for (most, value) in most.iter_mut().zip([sum, -difference, difference, -sum]) {
+                *most = if value > *most { value } else { *most };
+            }
+        }
+    }
+
+    /// How many steps could be cut off each edge, for the final half extents and coordinates that err by at most `slack`.
+    ///
+    /// σxᵢhⱼ + τxⱼhᵢ ≤ most + hᵢ(|hⱼ − aboutⱼ| + slack) + hⱼ(|hᵢ − aboutᵢ| + slack), since |xᵢ| ≤ hᵢ. The roundings are a few
+    /// v of numbers that are at most 2·hᵢ·hⱼ, so the result errs by less than 10⁻¹². Not a number where the box has no
+    /// such edge.
+    fn room(&self, half: &[f32; 3], slack: f64) -> [[f64; 4]; 3] {
+        let half = half.map(f64::from);
+        core::array::from_fn(|pair| {
+            let (i, j) = PAIRS[pair];
+            let off = |k: usize| (half[k] - self.about[k]).abs() + slack;
+            let more = half[i] * off(j) + half[j] * off(i);
+            self.most[pair].map(|most| f64::from(STEPS) * (2.0 - (most + more) / (half[i] * half[j])))
+        })
+    }
+
+    /// Cuts that leave all points.
+    pub(super) fn bevels(&self, half: &[f32; 3], slack: f64) -> Bevels {
+        let whole = |room: f64| if room >= 1.0 { (room - 1e-9).min(f64::from(MOST)) as u8 } else { 0 };
+        self.room(half, slack).map(|rooms| rooms.map(whole))
+    }
+
+    /// Do the cuts leave all points? Those of a box made from these and other points do.
+    pub(super) fn are_left_by(&self, bevels: &Bevels, half: &[f32; 3], slack: f64) -> bool {
+        let room = self.room(half, slack);
+        let all = bevels.iter().flatten().zip(room.iter().flatten());
+        all.into_iter().all(|(&cut, room)| cut == 0 || f64::from(cut) <= room - 1e-11)
+    }
+}
