@@ -53,7 +53,7 @@ impl<T: Elementwise> Course<T> {
         Self { gap: along.abs() - reach, closing: (spread - T::flip_sign(parting, along)).max(least) }
     }
 
-    /// The one whose gap lasts longer without acceleration.
+    /// The one whose gap lasts longer without acceleration; `other` where a gap is not a number.
     #[inline(always)]
     fn or(self, other: Self) -> Self {
         let (left, right) = (self.gap * other.closing, other.gap * self.closing);
@@ -66,13 +66,14 @@ impl<T: Elementwise> Course<T> {
 
 /// How far bevelled boxes reach from their centres along directions that have these cosines with their axes, or along
 /// the opposite ones where `along` is negative: Σ |cᵢ|hᵢ is what their corners reach. Of uᵢ = |cᵢ|hᵢ any w with w ≤ uᵢ,
-/// w ≤ uⱼ can be told as w(σxᵢ/hᵢ + τxⱼ/hⱼ), which is at most w(2 − s).
+/// w ≤ uⱼ can be told as w(σxᵢ/hᵢ + τxⱼ/hⱼ), which is at most w(2 − s). `USED`: how many pairs of axes are looked at; the
+/// cuts between the faces of the first one are the deepest.
 #[inline(always)]
-fn reach<T: Bytes>(half: &[T; 3], bevels: &[T; 3], cosines: &[T; 3], along: T) -> T {
+fn reach<T: Bytes, const USED: usize>(half: &[T; 3], bevels: &[T; 3], cosines: &[T; 3], along: T) -> T {
     let mut left = [half[0] * cosines[0].abs(), half[1] * cosines[1].abs(), half[2] * cosines[2].abs()];
     let corner = left[0] + left[1] + left[2];
     let mut steps = T::splat(0.0);
-    for pair in 0..3 {
+    for pair in 0..USED {
         let (i, j) = PAIRS[pair];
         let common = left[i].min(left[j]);
         (left[i], left[j]) = (left[i] - common, left[j] - common);
@@ -85,7 +86,7 @@ fn reach<T: Bytes>(half: &[T; 3], bevels: &[T; 3], cosines: &[T; 3], along: T) -
 /// not positive, or not a number, where nothing is known. In units of the window, not yet clipped.
 ///
 /// The six axes are looked at in pairs: the first two of the lane's box, the first two of the single one, and the last
-/// of each.
+/// of each; then the line of the centres.
 #[inline(always)]
 pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &NodeScale) -> L {
     // Twice, for the two axes of a pair: from the lane's centre to the single one's, and the velocity there.
@@ -124,9 +125,10 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
     let wide_bevels = load::<L>(&wide.bevels);
     let bevels = [L::splat(placed.bevels[0]), L::splat(placed.bevels[1]), L::splat(placed.bevels[2])];
     let [along_own, along_foreign, along_last] = [dot(&to, &own), dot(&to, &foreign), dot(&to, &last)];
-    let reach_own = reach(&both(&k), &both(&bevels), &with_own, along_own);
-    let reach_foreign = reach(&both(&half), &both(&wide_bevels), &with_foreign, along_foreign);
-    let reach_last = reach(&beside(&k, &half), &beside(&bevels, &wide_bevels), &with_last, along_last);
+    let reach_own = reach::<_, 1>(&both(&k), &both(&bevels), &with_own, along_own);
+    let reach_foreign = reach::<_, 1>(&both(&half), &both(&wide_bevels), &with_foreign, along_foreign);
+    let reach_last =
+        reach::<_, 3>(&beside(&k, &half), &beside(&bevels, &wide_bevels), &with_last, along_last);
     let first = L::Two::of(half[0], half[1]) + margin + reach_own;
     let second = L::Two::of(k[0], k[1]) + margin + reach_foreign;
     let third = L::Two::of(half[2], k[2]) + margin + reach_last;
@@ -135,6 +137,21 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
         .or(Course::new(along_last, third, dot(&v, &last), speeds));
     let best = Course { gap: best.gap.first(), closing: best.closing.first() }
         .or(Course { gap: best.gap.second(), closing: best.closing.second() });
+    // The line of the centres has known cosines with all axes. Where it has no length, nothing is known along it.
+    let with_line = [
+        L::Two::of(along_foreign.first(), along_own.first()),
+        L::Two::of(along_foreign.second(), along_own.second()),
+        L::Two::of(along_last.second(), along_last.first()),
+    ];
+    let forward = L::Two::splat(0.0);
+    let reach_line = reach::<_, 3>(&beside(&k, &half), &beside(&bevels, &wide_bevels), &with_line, forward);
+    let line = [to[0].first(), to[1].first(), to[2].first()];
+    let rate = [v[0].first(), v[1].first(), v[2].first()];
+    let square = dot(&line, &line);
+    let inverse = L::splat(1.0) / square.sqrt();
+    let gap = (square - (reach_line.first() + reach_line.second())) * inverse - L::splat(placed.gap_margin);
+    let closing = (spread - dot(&rate, &line) * inverse).max(L::splat(placed.least));
+    let best = Course { gap, closing }.or(best);
     // Root of gap − closing·s − acceleration·s²/2: no cancellation.
     let twice = best.gap + best.gap;
     let root = (best.closing * best.closing + L::splat(scale.acceleration) * twice).sqrt();
@@ -225,7 +242,7 @@ mod tests {
             let along = random.next() as f32;
             for _ in 0..20 {
                 let cosines: [f32; 3] = core::array::from_fn(|_| random.next() as f32);
-                let told = reach(
+                let told = reach::<_, 3>(
                     &half.map(Portable::splat),
                     &bevels,
                     &cosines.map(Portable::splat),

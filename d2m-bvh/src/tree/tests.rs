@@ -105,13 +105,13 @@ fn boxes_enclose_in_more_than_double_precision() {
                             add(add(local, -f64::from(node.origin[k])), -f64::from(boxed.center[k]))
                         });
                         let mut along = [0.0; 3];
-                        for i in 0..3 {
+                        for (i, place) in along.iter_mut().enumerate() {
                             let mut sum = (0.0, 0.0);
                             for (k, part) in q.iter().enumerate() {
                                 let term = mul24(*part, f64::from(boxed.axes[i][k]));
                                 sum = add(add(sum, term.0), term.1);
                             }
-                            along[i] = sum.0;
+                            *place = sum.0;
                             let left = f64::from(boxed.half_extent[i]) - sum.0.abs();
                             assert!(left > 0.0, "{left:e}");
                             tightest = tightest.min(left);

@@ -192,6 +192,13 @@ pub(crate) const MUTANTS: &[Mutant] = &[
         "d2m-bvh/src/search/entry_time.rs::bevelled_boxes_reach_as_far_as_their_points",
     ),
     patch(
+        "along the line of the centres one of the boxes has no size",
+        "d2m-bvh/src/search/entry_time.rs",
+        "(reach_line.first() + reach_line.second())",
+        "reach_line.first()",
+        "d2m-bvh/src/search/tests.rs::entry_times_of_boxes_hold_and_are_sharp",
+    ),
+    patch(
         "the cut of the opposite edge",
         "d2m-bvh/src/search/node_test.rs",
         "bevels.to_bits().swap_bytes()",
