@@ -85,11 +85,10 @@ fn reach<T: Bytes, const USED: usize>(half: &[T; 3], bevels: &[T; 3], cosines: &
 /// Lower bounds on the times, counted from the frame, until which each lane's box stays apart from the single one;
 /// not positive, or not a number, where nothing is known. In units of the window, not yet clipped.
 ///
-/// The six axes are looked at in pairs: the first two of the lane's box, the first two of the single one, and the last
-/// of each; then the line of the centres.
+/// Five directions are looked at: the middle axes of both boxes side by side, the last axes, and the line of the centres.
 #[inline(always)]
 pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &NodeScale) -> L {
-    // Twice, for the two axes of a pair: from the lane's centre to the single one's, and the velocity there.
+    // Twice, for the two axes: from the lane's centre to the single one's, and the velocity there.
     let center = both::<L>(&load(&wide.center));
     let at = splat::<L::Two>(&placed.center);
     let to = [at[0] - center[0], at[1] - center[1], at[2] - center[2]];
@@ -105,46 +104,42 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
     let b = [splat::<L>(&placed.axes[0]), splat::<L>(&placed.axes[1]), splat::<L>(&placed.axes[2])];
     let k = [L::splat(placed.half[0]), L::splat(placed.half[1]), L::splat(placed.half[2])];
     let margin = L::Two::splat(placed.gap_margin);
-    // |ω|·radius of both boxes, whatever the axis, and the error of speeds.
+    // |ω|·radius of both boxes, whatever the direction, and the error of speeds.
     let spread =
         L::splat(scale.spin[0]) * L::load(&wide.radius) + L::splat(placed.swing + placed.speed_margin);
     let speeds = (L::Two::both(spread), L::Two::splat(placed.least));
-    let [own, foreign, last] = [beside(&a[0], &a[1]), beside(&b[0], &b[1]), beside(&a[2], &b[2])];
-    // Cosine of axis i of the lane and axis j of the single box: for i = 0, 1 and each j; for i = 2 and j = 0, 1.
-    let s = [
-        dot(&own, &splat(&placed.axes[0])),
-        dot(&own, &splat(&placed.axes[1])),
-        dot(&own, &splat(&placed.axes[2])),
-    ];
-    let s2 = dot(&both(&a[2]), &foreign);
-    let s22 = dot(&a[2], &b[2]);
-    let with_own = s;
-    let with_foreign = [L::Two::of(s[0].first(), s[1].first()), L::Two::of(s[0].second(), s[1].second()), s2];
-    let with_last =
-        [L::Two::of(s2.first(), s[2].first()), L::Two::of(s2.second(), s[2].second()), L::Two::both(s22)];
-    let wide_bevels = load::<L>(&wide.bevels);
+
+    // Axes of the lane's box beside those of the single one, each against the axes of the other box.
+    let [middle, last] = [beside(&a[1], &b[1]), beside(&a[2], &b[2])];
+    let first_of_other = beside(&b[0], &a[0]);
+    let same = dot(&beside(&a[1], &a[2]), &beside(&b[1], &b[2]));
+    let middle_last = dot(&middle, &beside(&b[2], &a[2]));
+    let with_middle = [dot(&middle, &first_of_other), L::Two::both(same.first()), middle_last];
+    let last_middle = L::Two::of(middle_last.second(), middle_last.first());
+    let with_last = [dot(&last, &first_of_other), last_middle, L::Two::both(same.second())];
     let bevels = [L::splat(placed.bevels[0]), L::splat(placed.bevels[1]), L::splat(placed.bevels[2])];
-    let [along_own, along_foreign, along_last] = [dot(&to, &own), dot(&to, &foreign), dot(&to, &last)];
-    let reach_own = reach::<_, 1>(&both(&k), &both(&bevels), &with_own, along_own);
-    let reach_foreign = reach::<_, 1>(&both(&half), &both(&wide_bevels), &with_foreign, along_foreign);
-    let reach_last =
-        reach::<_, 3>(&beside(&k, &half), &beside(&bevels, &wide_bevels), &with_last, along_last);
-    let first = L::Two::of(half[0], half[1]) + margin + reach_own;
-    let second = L::Two::of(k[0], k[1]) + margin + reach_foreign;
-    let third = L::Two::of(half[2], k[2]) + margin + reach_last;
-    let best = Course::new(along_own, first, dot(&v, &own), speeds)
-        .or(Course::new(along_foreign, second, dot(&v, &foreign), speeds))
-        .or(Course::new(along_last, third, dot(&v, &last), speeds));
+    let (other_half, other_bevels) = (beside(&k, &half), beside(&bevels, &load(&wide.bevels)));
+    let [along_middle, along_last] = [dot(&to, &middle), dot(&to, &last)];
+    let reach_middle = reach::<_, 1>(&other_half, &other_bevels, &with_middle, along_middle);
+    let reach_last = reach::<_, 3>(&other_half, &other_bevels, &with_last, along_last);
+    let sum_middle = L::Two::of(half[1], k[1]) + margin + reach_middle;
+    let sum_last = L::Two::of(half[2], k[2]) + margin + reach_last;
+    let best = Course::new(along_middle, sum_middle, dot(&v, &middle), speeds).or(Course::new(
+        along_last,
+        sum_last,
+        dot(&v, &last),
+        speeds,
+    ));
     let best = Course { gap: best.gap.first(), closing: best.closing.first() }
         .or(Course { gap: best.gap.second(), closing: best.closing.second() });
-    // The line of the centres has known cosines with all axes. Where it has no length, nothing is known along it.
+
+    // The line of the centres: where it has no length, nothing is known along it.
     let with_line = [
-        L::Two::of(along_foreign.first(), along_own.first()),
-        L::Two::of(along_foreign.second(), along_own.second()),
+        dot(&to, &first_of_other),
+        L::Two::of(along_middle.second(), along_middle.first()),
         L::Two::of(along_last.second(), along_last.first()),
     ];
-    let forward = L::Two::splat(0.0);
-    let reach_line = reach::<_, 3>(&beside(&k, &half), &beside(&bevels, &wide_bevels), &with_line, forward);
+    let reach_line = reach::<_, 3>(&other_half, &other_bevels, &with_line, L::Two::splat(0.0));
     let line = [to[0].first(), to[1].first(), to[2].first()];
     let rate = [v[0].first(), v[1].first(), v[2].first()];
     let square = dot(&line, &line);
@@ -152,6 +147,7 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
     let gap = (square - (reach_line.first() + reach_line.second())) * inverse - L::splat(placed.gap_margin);
     let closing = (spread - dot(&rate, &line) * inverse).max(L::splat(placed.least));
     let best = Course { gap, closing }.or(best);
+
     // Root of gap − closing·s − acceleration·s²/2: no cancellation.
     let twice = best.gap + best.gap;
     let root = (best.closing * best.closing + L::splat(scale.acceleration) * twice).sqrt();
