@@ -237,5 +237,17 @@ fn a_written_tree_is_read_back_bit_for_bit_and_a_forged_one_refused() {
         value["nodes"][1]["boxes"][0]["half_extent"][0] = (half * 0.99).into();
         let refused = serde_json::from_value::<MeshTree>(value).unwrap_err().to_string();
         assert!(refused.contains("does not enclose"), "{refused}");
+        for forged in [127, 255] {
+            let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();
+            value["nodes"][1]["boxes"][0]["bevels"][0][0] = forged.into();
+            let refused = serde_json::from_value::<MeshTree>(value).unwrap_err().to_string();
+            assert!(refused.contains("box 0 of node 1"), "{refused}");
+        }
+        // Boxes without cuts, as they were written before there were some.
+        let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let plain = value["nodes"][1]["boxes"][0].as_object_mut().unwrap();
+        assert!(plain.remove("bevels").is_some());
+        let back: MeshTree = serde_json::from_value(value).unwrap();
+        assert_eq!(back.nodes[1].oriented_box(0).bevels, [[0; 4]; 3]);
     }
 }
