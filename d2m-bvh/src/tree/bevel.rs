@@ -17,28 +17,38 @@ pub(crate) const MOST: u8 = 126;
 /// For each pair of axes the cuts s in steps, of the edge (σ, τ) at place (σ < 0) + 2·(τ < 0).
 pub(crate) type Bevels = [[u8; 4]; 3];
 
-/// How far points reach towards the edges of a box whose half extents are about known.
+/// How far points reach towards the edges of a box whose half extents are about known. One pair of axes to a lane (the
+/// last lane is idle), so that all are done at once.
 pub(super) struct EdgeReach {
     about: [f64; 3],
-    /// Largest σ·xᵢ·aboutⱼ + τ·xⱼ·aboutᵢ, in the order of [`Bevels`].
-    most: [[f64; 4]; 3],
+    /// Ranges of xᵢ·aboutⱼ + xⱼ·aboutᵢ and of the difference.
+    sum: [[f64; 4]; 2],
+    difference: [[f64; 4]; 2],
 }
 
 impl EdgeReach {
     pub(super) fn new(about: [f64; 3]) -> Self {
-        Self { about, most: [[f64::NEG_INFINITY; 4]; 3] }
+        let nothing = [[f64::INFINITY; 4], [f64::NEG_INFINITY; 4]];
+        Self { about, sum: nothing, difference: nothing }
     }
 
     /// Takes the coordinates of a point along the axes.
     #[inline(always)]
-    pub(super) fn add(&mut self, along: &[f64; 3]) {
-        for (most, &(i, j)) in self.most.iter_mut().zip(&PAIRS) {
-            let (x, y) = (along[i] * self.about[j], along[j] * self.about[i]);
-            let (sum, difference) = (x + y, x - y);
-            for (most, value) in most.iter_mut().zip([sum, -difference, difference, -sum]) {
-                *most = if value > *most { value } else { *most };
+    pub(super) fn add(&mut self, [x, y, z]: [f64; 3]) {
+        let [a, b, c] = self.about;
+        let (first, second) = ([x * b, x * c, y * c, 0.0], [y * a, z * a, z * b, 0.0]);
+        for k in 0..4 {
+            let (sum, difference) = (first[k] + second[k], first[k] - second[k]);
+            for (range, value) in [(&mut self.sum, sum), (&mut self.difference, difference)] {
+                range[0][k] = if value < range[0][k] { value } else { range[0][k] };
+                range[1][k] = if value > range[1][k] { value } else { range[1][k] };
             }
         }
+    }
+
+    /// Largest σ·xᵢ·aboutⱼ + τ·xⱼ·aboutᵢ, in the order of [`Bevels`].
+    fn most(&self, pair: usize) -> [f64; 4] {
+        [self.sum[1][pair], -self.difference[0][pair], self.difference[1][pair], -self.sum[0][pair]]
     }
 
     /// How many steps could be cut off each edge, for the final half extents and coordinates that err by at most `slack`.
@@ -52,7 +62,7 @@ impl EdgeReach {
             let (i, j) = PAIRS[pair];
             let off = |k: usize| (half[k] - self.about[k]).abs() + slack;
             let more = half[i] * off(j) + half[j] * off(i);
-            self.most[pair].map(|most| f64::from(STEPS) * (2.0 - (most + more) / (half[i] * half[j])))
+            self.most(pair).map(|most| f64::from(STEPS) * (2.0 - (most + more) / (half[i] * half[j])))
         })
     }
 

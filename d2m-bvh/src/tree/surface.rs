@@ -180,7 +180,7 @@ impl Reach {
         for (half, along) in self.half.iter_mut().zip(along) {
             *half = if along.abs() > *half { along.abs() } else { *half };
         }
-        self.edges.add(&along);
+        self.edges.add(along);
         let (square, norm) = (dot(q, q), p[0].abs() + p[1].abs() + p[2].abs());
         self.square = if square > self.square { square } else { self.square };
         self.norm = if norm > self.norm { norm } else { self.norm };
