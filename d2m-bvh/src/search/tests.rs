@@ -260,6 +260,34 @@ fn boxes_called_apart_at_rest_are_apart() {
     assert!(called_apart(-0.02) > 0, "less than no margin");
 }
 
+/// A plate through the middle of another one, up to 1e30 times as large, or far off its middle: the line of the centres
+/// has no length, or one whose square is beyond `f32`. Nothing is called apart.
+#[test]
+fn lines_of_no_length_or_beyond_all_numbers_part_nothing() {
+    let plate = |size: f64, turn: fn(DVec3) -> DVec3| {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let corners = corners.map(|(x, y)| turn(DVec3::new(x, y, 0.0)) * size).to_vec();
+        MeshTree::new(TriMesh::try_new(corners, vec![[0, 1, 2], [0, 2, 3]]).unwrap())
+    };
+    for size in [1e-30, 1e-22, 1e-10, 1.0, 1e10, 1e22, 1e30] {
+        for off in [0.0, 0.4] {
+            let (a, b) = (plate(1.0, |p| p), plate(size, |p| DVec3::new(p.z, p.x, p.y)));
+            let at_b = LinearMotion::REST.with_position(DVec3::Y * off * size.max(1.0));
+            let options = QueryOptions::default();
+            let scene = Scene::new((&a, LinearMotion::REST), (&b, at_b), Window::UNIT, &options);
+            let frame = RelativeMotion::new(&scene, 0.0).frame::<Quad>(0.0);
+            for (side, scale) in scene.node_scales(1.0).iter().enumerate() {
+                let (wide, single) = if side == 0 { (&a, &b) } else { (&b, &a) };
+                let node_frame = NodeFrame::new::<Quad>(&frame, scale, side == 1, 1.0);
+                let placed =
+                    Placed::new::<Portable>(&node_frame, scale, (&single.nodes[0], 0), &wide.nodes[0]);
+                let time = entry_times::<Portable>(&wide.nodes[0], &placed, scale).store()[0];
+                assert!(time.is_nan() || time <= 0.0, "size {size:e}, {off} off, opened {side}: {time:e}");
+            }
+        }
+    }
+}
+
 #[test]
 fn every_instruction_set_gives_the_same_bits() {
     let mut random = Random(14);

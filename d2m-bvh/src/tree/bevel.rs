@@ -2,7 +2,8 @@
 //!
 //! A point of the part has coordinates xᵢ along the axes, |xᵢ| ≤ hᵢ. The edge between the faces σxᵢ = hᵢ and τxⱼ = hⱼ
 //! (σ, τ = ±1) is cut off by the plane σxᵢ/hᵢ + τxⱼ/hⱼ = 2 − s. The box alone has s = 0; s = 1 cuts from the middle of one
-//! face to that of the other; a part that touches the edge has s = 0 again.
+//! face to that of the other; a part that touches the edge has s = 0 again. In the box' own frame and half extents that is an
+//! 18-DOP (Klosowski et al. 1998, DOI 10.1109/2945.675649).
 
 /// The pairs of axes whose faces meet in edges.
 pub(crate) const PAIRS: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
