@@ -2,11 +2,11 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use d2m::glam::DVec3;
 use d2m::interval::Interval;
-use d2m::{LinearMotion, RigidMotion};
+use d2m::{ConstantTwist, RigidMotion};
 use std::hint::black_box;
 
 fn enclosures(c: &mut Criterion) {
-    let motion = LinearMotion::REST
+    let motion = ConstantTwist::REST
         .with_position(DVec3::new(1.0, -2.0, 0.5))
         .with_linear_velocity(DVec3::new(0.3, 4.0, -1.0))
         .with_angular_velocity(DVec3::new(1.0, -0.7, 2.0));

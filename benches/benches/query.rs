@@ -4,7 +4,7 @@ use d2m::bvh::{
     PairCache, Posed, collide, contact_exists, distance, last_search_counts, time_of_contact_with,
 };
 use d2m::glam::DVec3;
-use d2m::{LinearMotion, MeshTree, Mode, Moving, QueryOptions, RigidMotion, Solid, Window, time_of_contact};
+use d2m::{ConstantTwist, MeshTree, Mode, Moving, QueryOptions, RigidMotion, Solid, Window, time_of_contact};
 use d2m_benches::hard_scenes::{HardScene, grazing_cube, intermeshing_bars};
 use std::hint::black_box;
 use std::time::Instant;
@@ -16,11 +16,11 @@ fn queries(c: &mut Criterion) {
         ("pebble", tree("pebble?triangles=5856"), tree("pebble?triangles=5804&seed=2")),
         ("knot", tree("torus-knot?triangles=70000"), tree("torus-knot?triangles=70000")),
     ];
-    let a = LinearMotion::REST
+    let a = ConstantTwist::REST
         .with_position(DVec3::new(-2.0, 0.2, 0.1))
         .with_linear_velocity(DVec3::X * 2.0)
         .with_angular_velocity(DVec3::new(0.3, 1.0, -0.5));
-    let b = LinearMotion::REST
+    let b = ConstantTwist::REST
         .with_position(DVec3::X * 2.0)
         .with_linear_velocity(DVec3::X * -2.0)
         .with_angular_velocity(DVec3::new(-1.0, 0.2, 0.4));
@@ -32,7 +32,7 @@ fn queries(c: &mut Criterion) {
         };
         let answer = ask(&options);
         let contact = answer.contact().expect("they meet");
-        let at = |motion: &LinearMotion| motion.pose_and_twist(contact.time_lo).0;
+        let at = |motion: &ConstantTwist| motion.pose_and_twist(contact.time_lo).0;
         let (pose_a, pose_b) = (at(&a), at(&b));
         let still = || (Posed::new(mesh_a, pose_a), Posed::new(mesh_b, pose_b));
         let left = distance(still().0, still().1, Solid::Surface).expect("valid input");
@@ -63,30 +63,30 @@ fn sequences(c: &mut Criterion) {
     let (a, b) = (tree("pebble?triangles=5856"), tree("pebble?triangles=5804&seed=2"));
     let options = QueryOptions::default();
     let step = |height: f64, k: u32| {
-        LinearMotion::REST
+        ConstantTwist::REST
             .with_position(DVec3::new(-2.5, 0.1, height - 2e-4 * f64::from(k)))
             .with_linear_velocity(DVec3::new(4.0, 0.0, -1e-3 * f64::from(k)))
             .with_angular_velocity(DVec3::new(0.3, 1.0 + 1e-4 * f64::from(k), -0.5))
     };
     for (name, height) in [("no contact", 2.1), ("contact", 0.6)] {
         let motions: Vec<_> = (0..STEPS).map(|k| step(height, k)).collect();
-        let still = Moving::new(&b, &LinearMotion::REST);
+        let still = Moving::new(&b, &ConstantTwist::REST);
         let cold = || -> Vec<_> {
-            let ask = |m: &LinearMotion| {
+            let ask = |m: &ConstantTwist| {
                 time_of_contact(Moving::new(&a, m), still, Window::UNIT, &options).expect("valid input")
             };
             motions.iter().map(ask).collect()
         };
         let warm = || -> Vec<_> {
             let mut cache = PairCache::new();
-            let ask = |m: &LinearMotion| {
+            let ask = |m: &ConstantTwist| {
                 time_of_contact_with(Moving::new(&a, m), still, Window::UNIT, &options, &mut cache)
             };
             motions.iter().map(ask).map(|answer| answer.expect("valid input")).collect()
         };
         let exists = |cached: bool| -> Vec<_> {
             let mut cache = PairCache::new();
-            let mut ask = |m: &LinearMotion| {
+            let mut ask = |m: &ConstantTwist| {
                 if !cached {
                     cache.clear();
                 }

@@ -1,7 +1,7 @@
 //! Hard scenes: bodies that stay close for long, or turn fast, with answers known by construction.
 
 use d2m::glam::{DQuat, DVec3};
-use d2m::{LinearMotion, MeshTree, Moving, QueryOptions, Solid, TimeOfContact, Window, time_of_contact};
+use d2m::{ConstantTwist, MeshTree, Moving, QueryOptions, Solid, TimeOfContact, Window, time_of_contact};
 use std::f64::consts::PI;
 
 /// What the construction of a scene says about its answer over [0, 1].
@@ -29,7 +29,7 @@ pub struct HardScene {
     /// The meshes with their trees.
     pub bodies: [MeshTree; 2],
     /// Their motions.
-    pub motions: [LinearMotion; 2],
+    pub motions: [ConstantTwist; 2],
     /// The answer by construction.
     pub expected: Expected,
 }
@@ -71,8 +71,8 @@ fn tree(text: &str) -> MeshTree {
     MeshTree::new(d2m::shapes::mesh(text).expect("a shape of the project"))
 }
 
-fn still() -> LinearMotion {
-    LinearMotion::REST
+fn still() -> ConstantTwist {
+    ConstantTwist::REST
 }
 
 /// A cube spins at |ω| = 300 about the cube's diagonal (−1, 1, 0) while its farthest corners, at distance 1, pass a
@@ -85,7 +85,7 @@ pub fn grazing_cube(triangles: usize, gap: f64, drift: f64) -> HardScene {
     let wall = tree(&format!("box?triangles={triangles}&x=1&y=1&z=1"));
     let turn = DQuat::from_rotation_arc(DVec3::new(-1.0, 1.0, 0.0).normalize(), DVec3::Z);
     let spin =
-        LinearMotion::try_new(DVec3::new(0.0, -0.5 * drift, 0.0), turn, DVec3::Y * drift, DVec3::Z * 300.0)
+        ConstantTwist::try_new(DVec3::new(0.0, -0.5 * drift, 0.0), turn, DVec3::Y * drift, DVec3::Z * 300.0)
             .expect("finite");
     // A corner reaches 1 in each half turn.
     let expected = if gap > 0.0 {
@@ -201,7 +201,7 @@ pub fn long_screw_in_nut(triangles: usize, clearance: f64) -> HardScene {
 pub fn interlocked_rings(triangles: usize, drift: f64) -> HardScene {
     let ring = tree(&format!("torus?triangles={triangles}&tube=0.2"));
     // Radius of the middle line 0.8: the second's passes through the centre of the first.
-    let second = LinearMotion::try_new(
+    let second = ConstantTwist::try_new(
         DVec3::X * 0.8,
         DQuat::from_rotation_x(0.5 * PI),
         DVec3::X * drift,
@@ -230,7 +230,7 @@ pub fn interlocked_rings(triangles: usize, drift: f64) -> HardScene {
 pub fn intermeshing_bars(triangles: usize, spin: f64, phase: f64) -> HardScene {
     let bar = tree(&format!("box?triangles={triangles}&x=1&y=0.02&z=0.02"));
     let turn = |angle: f64, x: f64| {
-        LinearMotion::try_new(DVec3::X * x, DQuat::from_rotation_z(angle), DVec3::ZERO, DVec3::Z * spin)
+        ConstantTwist::try_new(DVec3::X * x, DQuat::from_rotation_z(angle), DVec3::ZERO, DVec3::Z * spin)
             .expect("finite")
     };
     // Seen with A along x, B's middle is at 1.45 (cos θ, −sin θ): the ends are nearest at 45°, 1.45/√2 − 1 apart both ways.
@@ -255,7 +255,7 @@ pub fn intermeshing_bars(triangles: usize, spin: f64, phase: f64) -> HardScene {
 pub fn needles(aspect: f64, gap: f64, spin: f64) -> HardScene {
     let needle = tree(&format!("needle?triangles=16&aspect={aspect}"));
     let thick = 1.0 / aspect;
-    let coming = LinearMotion::try_new(
+    let coming = ConstantTwist::try_new(
         DVec3::new(-1.0, 2.0 * thick + gap, 0.0),
         DQuat::from_rotation_x(0.5 * PI),
         DVec3::X * 2.0,

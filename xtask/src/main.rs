@@ -7,7 +7,7 @@ mod figure;
 mod judge;
 mod machine;
 mod mutants;
-#[path = "../../d2m-feature/tests/planted/mod.rs"]
+#[path = "../../crates/d2m-feature/tests/planted/mod.rs"]
 mod planted;
 mod random;
 mod report;

@@ -1,7 +1,7 @@
 //! Four at once: ns a feature of the shared-frame rejections, every rejection judged by the single test first.
 use crate::families::Random;
 use d2m_feature::{ContactOptions, EdgeQuad, FirstContact, PairMotion, PointQuad, TriangleQuad};
-use d2m_motion::LinearMotion;
+use d2m_motion::ConstantTwist;
 use glam::DVec3;
 use std::hint::black_box;
 use std::time::Instant;
@@ -17,7 +17,7 @@ struct Quads {
 pub(crate) fn print() {
     let mut random = Random::new(11);
     let mut motion = |v: f64| {
-        LinearMotion::try_new(random.ball(), random.turn(), random.ball() * v, random.ball() * 3.0)
+        ConstantTwist::try_new(random.ball(), random.turn(), random.ball() * v, random.ball() * 3.0)
             .expect("finite")
     };
     let pair = PairMotion::new(&motion(4.0), &motion(1.0), 0.0, 0.1);

@@ -2,7 +2,7 @@
 //!
 //! `cargo bench -p d2m-benches --bench feature` prints the table first; every answer is judged before it is timed.
 mod batch;
-#[path = "../../../d2m-feature/tests/planted/families.rs"]
+#[path = "../../../crates/d2m-feature/tests/planted/families.rs"]
 mod families;
 mod table;
 

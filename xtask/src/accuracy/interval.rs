@@ -3,7 +3,7 @@
 use super::Task;
 use rayon::prelude::*;
 
-#[path = "../../../d2m-interval/tests/oracle/mod.rs"]
+#[path = "../../../crates/d2m-interval/tests/oracle/mod.rs"]
 mod oracle;
 
 /// Runs all operations, prints a line for each: a result that loses the exact value is a false negative, one that

@@ -8,7 +8,7 @@ use crate::judge::{BoxTree, Claim, Fault, Judge, cross, place};
 use crate::random::Random;
 use crate::trials::{Movement, Trial};
 use d2m::bvh::{MeshTree, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact};
-use d2m::motion::LinearMotion;
+use d2m::motion::ConstantTwist;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -86,7 +86,7 @@ impl Scene {
             )
         };
         let motion = |m: &Movement| {
-            LinearMotion::try_new(m.position, m.rotation, m.velocity, m.angular_velocity).expect("finite")
+            ConstantTwist::try_new(m.position, m.rotation, m.velocity, m.angular_velocity).expect("finite")
         };
         let (trees, motions) =
             (self.shapes.each_ref().map(tree), [motion(&self.trial.a), motion(&self.trial.b)]);

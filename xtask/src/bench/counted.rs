@@ -7,7 +7,7 @@ use crate::trials::{self, Law};
 use d2m::bvh::{InstructionSet, MeshTree};
 use d2m::feature::{ContactOptions, PairMotion, StraightPaths};
 use d2m::interval::{Interval, IntervalVec3, IntervalVec3X4, IntervalX4};
-use d2m::motion::{LinearMotion, RelativeMotion};
+use d2m::motion::{ConstantTwist, RelativeMotion};
 use glam::DVec3;
 use std::hint::black_box;
 
@@ -186,7 +186,7 @@ fn interval_four() {
 fn jets() {
     let mut random = crate::random::Random::new(4);
     let motion = |random: &mut crate::random::Random| {
-        LinearMotion::REST
+        ConstantTwist::REST
             .with_position(random.direction() * 2.0)
             .with_linear_velocity(random.direction() * 4.0)
             .with_angular_velocity(random.direction() * 3.0)

@@ -3,20 +3,20 @@ use super::body::{Body, Pair};
 use crate::judge::Claim;
 use crate::trials::{Movement, Trial};
 use d2m::bvh::{self, MeshTree, Moving, Posed, QueryOptions, Solid, TimeOfContact, TriMesh, Window, paper};
-use d2m::motion::{LinearMotion, RigidMotion};
+use d2m::motion::{ConstantTwist, RigidMotion};
 
 type Error = Box<dyn std::error::Error>;
 
 /// Both bodies' motions over [0, 1].
 pub(crate) struct Motions {
-    a: LinearMotion,
-    b: LinearMotion,
+    a: ConstantTwist,
+    b: ConstantTwist,
 }
 
 impl Motions {
     pub(crate) fn new(trial: &Trial) -> Result<Self, Error> {
         let motion =
-            |m: &Movement| LinearMotion::try_new(m.position, m.rotation, m.velocity, m.angular_velocity);
+            |m: &Movement| ConstantTwist::try_new(m.position, m.rotation, m.velocity, m.angular_velocity);
         Ok(Self { a: motion(&trial.a)?, b: motion(&trial.b)? })
     }
 }
@@ -51,7 +51,7 @@ pub(crate) fn paper(pair: &Pair, motions: &Motions, options: &QueryOptions) -> C
 }
 
 fn posed<'a>(pair: &'a Pair, motions: &Motions, t: f64) -> [Posed<'a>; 2] {
-    let posed = |body: &'a Body, motion: &LinearMotion| Posed::new(&body.tree, motion.pose_and_twist(t).0);
+    let posed = |body: &'a Body, motion: &ConstantTwist| Posed::new(&body.tree, motion.pose_and_twist(t).0);
     [posed(&pair.a, &motions.a), posed(&pair.b, &motions.b)]
 }
 

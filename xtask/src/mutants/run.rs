@@ -1,6 +1,6 @@
 //! Builds each mutant, runs the test that must notice it, and says whether it did.
 use super::copy::Copy;
-use super::{Change, MUTANTS, Mutant};
+use super::{Change, Mutant, all};
 use crate::{TaskResult, workspace_root};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
@@ -40,7 +40,7 @@ const LEAST: Duration = Duration::from_secs(120);
 /// `cargo xtask mutants`.
 pub(crate) fn run(options: &Options) -> TaskResult {
     let wanted = |m: &&Mutant| options.only.as_ref().is_none_or(|only| m.row().contains(only.as_str()));
-    let mutants: Vec<&Mutant> = MUTANTS.iter().filter(wanted).collect();
+    let mutants: Vec<&Mutant> = all().filter(wanted).collect();
     if options.list {
         for mutant in mutants {
             println!("{}", mutant.row());
@@ -51,7 +51,7 @@ pub(crate) fn run(options: &Options) -> TaskResult {
         return Err("no such mutant (see --list)".into());
     }
     let root = workspace_root();
-    let findings = super::check(&root)?;
+    let findings = super::check(&root);
     if !findings.is_empty() {
         return Err(findings.join("\n").into());
     }
@@ -138,8 +138,8 @@ fn build(copy: &Copy, mutant: &Mutant) -> Result<PathBuf, Error> {
 
 /// Runs the one test.
 fn ask(copy: &Copy, program: &Path, mutant: &Mutant, limit: Duration) -> Result<End, Error> {
-    let (file, test) = mutant.test();
-    let folder = copy.root.join(file.split('/').next().unwrap_or_default());
+    let test = mutant.test().1;
+    let folder = copy.root.join(mutant.package_folder());
     let path = copy.build.join("output.txt");
     let output = File::create(&path)?;
     let mut child = Command::new(program)

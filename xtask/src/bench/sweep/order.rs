@@ -5,7 +5,7 @@
 //! Motions that hold still between poses (zeroth order) err by the length of a piece; linear motions through both
 //! poses (the paper's) by its square.
 use d2m::bvh::{MeshTree, Moving, Posed, QueryOptions, Solid, TriMesh, Window, collide, time_of_contact};
-use d2m::motion::{LinearMotion, Pose};
+use d2m::motion::{ConstantTwist, Pose};
 use dashu_float::DBig;
 use glam::{DQuat, DVec3};
 use std::str::FromStr;
@@ -85,14 +85,14 @@ impl Bodies {
 
     /// First order: constant twist from each pose to the next.
     fn linear(&self, height: f64, pieces: usize) -> Result<Option<f64>, Error> {
-        let plate = LinearMotion::REST.with_position(DVec3::NEG_Z);
+        let plate = ConstantTwist::REST.with_position(DVec3::NEG_Z);
         let options = QueryOptions::default().with_tolerance(1e-13);
         let length = 1.0 / pieces as f64;
         for k in 0..pieces {
             let (t0, t1) = (k as f64 * length, (k + 1) as f64 * length);
             let ((q0, x0), (q1, x1)) = (pose(height, t0), pose(height, t1));
             let turn = (q1 * q0.conjugate()).to_scaled_axis();
-            let motion = LinearMotion::try_new(x0, q0, (x1 - x0) / length, turn / length)?
+            let motion = ConstantTwist::try_new(x0, q0, (x1 - x0) / length, turn / length)?
                 .try_with_reference_time(t0)?;
             let (a, b) = (Moving::new(&self.spike, &motion), Moving::new(&self.plate, &plate));
             let answer = time_of_contact(a, b, Window::try_new(t0, t1)?, &options)?;

@@ -1,0 +1,132 @@
+//! The reference method: the paper's mesh query, readable first, with its errata repaired.
+//!
+//! Sphere trees ([`SphereTree`]), Test-Sphere-Pair, Traverse-Tree-Pair over a subdivided time domain, feature tests by
+//! the second-order root finder, and a certified step back. It answers the same question as the default engine with
+//! the same types and shares no search code with it, so each is a check of the other.
+
+mod answer;
+mod budget;
+mod capoeira;
+mod cross_check;
+mod distance;
+mod leaf_pair;
+mod sphere_tree;
+mod start;
+mod step_back;
+mod stretch;
+mod traverse;
+
+pub use cross_check::{CrossCheck, cross_check, cross_check_scene};
+pub use sphere_tree::SphereTree;
+
+use crate::{QueryError, QueryOptions, Solid, TimeOfContact, Window};
+use budget::Meter;
+use d2m_feature::paper::{PaperOptions, RelativeMotion};
+use d2m_interval::Interval;
+use start::{Start, classify_start};
+use traverse::Search;
+
+/// A body with its sphere tree, and how it moves.
+pub type Moving<'a> = crate::Moving<'a, SphereTree>;
+
+/// The first contact of two moving meshes, by the reference method.
+///
+/// Promise: as [`TimeOfContact`] says, for every motion whose enclosures are right. Separation left at `time_lo`: in
+/// \[δ, 3δ\] (measured there), where doubles of time are fine enough to choose it. In [`Mode::Capoeira`](crate::Mode)
+/// the search stops at leaf spheres: `time_lo` is certified free, `time_hi` the end of the overlap of the two spheres,
+/// `separation` what is left at `time_lo`, and a true contact may be missing. [`Mode::Exists`](crate::Mode) is answered
+/// like the accurate mode. A positive `min_separation` is not supported and answered as undecided from the start.
+///
+/// # Errors
+/// [`QueryError`] for a tolerance that is not positive and finite, a filled solid whose mesh does not close, or a
+/// motion that is not finite over the window.
+///
+/// ```
+/// use d2m_bvh::{QueryOptions, TimeOfContact, TriMesh, Window, paper};
+/// use d2m_motion::ConstantTwist;
+/// use glam::DVec3;
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let tree = paper::SphereTree::new(mesh);
+/// let coming = ConstantTwist::REST.with_position(DVec3::Z * 3.0).with_linear_velocity(DVec3::Z * -4.0);
+/// let answer = paper::time_of_contact(
+///     paper::Moving::new(&tree, &coming),
+///     paper::Moving::new(&tree, &ConstantTwist::REST),
+///     Window::UNIT,
+///     &QueryOptions::DEFAULT,
+/// )?;
+/// let contact = answer.contact().unwrap(); // its floor meets the tip of the other at t = 1/2
+/// assert!(contact.time_lo < 0.5 && contact.time_lo > 0.5 - 1e-9);
+/// assert!(contact.separation > 0.0 && contact.separation < 3.3e-10);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn time_of_contact(
+    a: Moving<'_>,
+    b: Moving<'_>,
+    window: Window,
+    options: &QueryOptions,
+) -> Result<TimeOfContact, QueryError> {
+    let bodies = [a, b];
+    let tolerance = validate(&bodies, window, options)?;
+    let relative = RelativeMotion::new(a.motion, b.motion);
+    let undecided = |clear_until: f64| Ok(TimeOfContact::Undecided { clear_until });
+    let (t0, t1) = (window.start(), window.end());
+    if options.min_separation > 0.0 {
+        return undecided(t0);
+    }
+    let mut meter = Meter::new(&options.budget);
+    if meter.spend().is_err() {
+        return undecided(t0);
+    }
+    let span = Interval::new(t0, t1);
+    let tolerance = tolerance.max(4.0 * stretch::bound_rounding(&bodies, &relative, span));
+    let places = [relative.placement(t0), relative.swapped().placement(t0)];
+    match classify_start(a.body, b.body, &places, tolerance, options.solid) {
+        Start::Apart => {}
+        Start::Meeting(state, pair) => {
+            return Ok(TimeOfContact::Contact(answer::contact_at_start(
+                &bodies, t0, tolerance, state, &pair,
+            )));
+        }
+        Start::Unknown => return undecided(t0),
+    }
+    let features = PaperOptions::DEFAULT.with_tolerance(0.5 * tolerance);
+    let mut search = Search::new(bodies, features, options.mode, meter);
+    let stopped = search.search_stretch(span, stretch::longest(&bodies, span)).err();
+    match (search.best, stopped) {
+        (None, None) => Ok(TimeOfContact::Separated),
+        (best, Some(stopped)) => {
+            undecided(best.map_or(stopped.clear_until, |b| b.bracket.lo().min(stopped.clear_until)))
+        }
+        (Some(best), None) if best.undecided => undecided(best.bracket.lo()),
+        (Some(best), None) => {
+            let found = if Search::stops_at_leaves(options.mode) {
+                answer::early_contact(&bodies, &relative, &best, tolerance)
+            } else {
+                answer::certified_contact(&bodies, &relative, (t0, &best), tolerance)
+            };
+            found.map_or_else(|| undecided(best.bracket.lo()), |contact| Ok(TimeOfContact::Contact(contact)))
+        }
+    }
+}
+
+/// Checks the input and returns the tolerance asked for.
+fn validate(bodies: &[Moving<'_>; 2], window: Window, options: &QueryOptions) -> Result<f64, QueryError> {
+    if !(options.min_separation >= 0.0 && options.min_separation.is_finite()) {
+        return Err(QueryError::BadMinSeparation { value: options.min_separation });
+    }
+    let radius = bodies.iter().map(|m| m.body.bounding_sphere().radius).fold(0.0, f64::max);
+    let tolerance = options.tolerance.unwrap_or(1e-10 * radius.max(f64::MIN_POSITIVE));
+    if !(tolerance > 0.0 && tolerance.is_finite()) {
+        return Err(QueryError::BadTolerance { value: tolerance });
+    }
+    for (body, moving) in bodies.iter().enumerate() {
+        if options.solid == Solid::Filled && !moving.body.is_watertight() {
+            return Err(QueryError::NotWatertight { body });
+        }
+        if !stretch::is_bounded(moving, Interval::new(window.start(), window.end())) {
+            return Err(QueryError::BadMotion { body });
+        }
+    }
+    Ok(tolerance)
+}

@@ -1,0 +1,205 @@
+//! The query for the first contact of two bodies.
+
+use super::containment::contains_point;
+use super::distance::distance;
+use super::report::contact;
+use crate::search::{LEAST_TOLERANCE, Outcome, Quad, RelativeMotion, Scene, Scratch, Search, run};
+use crate::{
+    MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window,
+};
+use core::cell::RefCell;
+use d2m_motion::{ConstantTwist, Pose};
+use glam::DVec3;
+
+thread_local! {
+    /// Memory of the last search of this thread.
+    static SCRATCH: RefCell<Option<Box<Scratch>>> = const { RefCell::new(None) };
+}
+
+/// First time in `window` at which the two bodies touch.
+///
+/// Constant twists (linear and screw motions) take the fast search; any other motion takes conservative advancement on
+/// certified static distances, which is slower by orders of magnitude and always [`Mode::Accurate`](crate::Mode).
+///
+/// Promise: never a missed contact, never a late one. See [`TimeOfContact`] and [`Contact`](crate::Contact) for what
+/// each answer certifies, and [`QueryOptions`] for what can be asked.
+///
+/// ```
+/// use d2m_bvh::{MeshTree, Moving, QueryOptions, TriMesh, Window, time_of_contact};
+/// use d2m_motion::{ConstantTwist, Pose};
+/// use glam::{DQuat, DVec3};
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
+/// let tree = MeshTree::new(mesh);
+/// let falling = ConstantTwist::try_new(DVec3::Z * 2.0, DQuat::IDENTITY, -DVec3::Z * 4.0, DVec3::ZERO).unwrap();
+/// let answer = time_of_contact(
+///     Moving::new(&tree, &falling),
+///     Moving::new(&tree, &ConstantTwist::REST),
+///     Window::UNIT,
+///     &QueryOptions::default(),
+/// ).unwrap();
+/// let contact = answer.contact().unwrap();
+/// assert!(contact.time_lo <= 0.25 && contact.time_lo > 0.25 - 1e-10);
+/// assert!((contact.closing_speed - 4.0).abs() < 1e-9);
+/// ```
+///
+/// # Errors
+/// Bad input only: a tolerance, separation or motion that is not finite, a filled solid that does not close.
+pub fn time_of_contact(
+    a: Moving<'_>,
+    b: Moving<'_>,
+    window: Window,
+    options: &QueryOptions,
+) -> Result<TimeOfContact, QueryError> {
+    match scene_of(a, b, window, options)? {
+        Some(scene) => ask(&scene, options),
+        None => super::any_motion::time_of_contact([a, b], window, options),
+    }
+}
+
+/// The scene of a query that may be asked; `None` when a motion has no constant twist.
+pub(super) fn scene_of<'a>(
+    a: Moving<'a>,
+    b: Moving<'a>,
+    window: Window,
+    options: &QueryOptions,
+) -> Result<Option<Scene<'a>>, QueryError> {
+    check(options)?;
+    for (index, moving) in [&a, &b].into_iter().enumerate() {
+        if options.solid == Solid::Filled && !moving.body.is_watertight() {
+            return Err(QueryError::NotWatertight { body: index });
+        }
+    }
+    let (Some(motion_a), Some(motion_b)) = (a.motion.constant_twist(), b.motion.constant_twist()) else {
+        return Ok(None);
+    };
+    for (body, motion) in [&motion_a, &motion_b].into_iter().enumerate() {
+        if !angle_is_bounded(motion, window) {
+            return Err(QueryError::BadMotion { body });
+        }
+    }
+    if let Some(body) = drifts_unseen([&motion_a, &motion_b], window) {
+        return Err(QueryError::BadMotion { body });
+    }
+    let scene = Scene::new((a.body, motion_a), (b.body, motion_b), window, options);
+    if !(scene.size.is_finite() && scene.size < 1e150) {
+        let speed = |m: &ConstantTwist| m.linear_velocity().length() + m.position().length();
+        return Err(QueryError::BadMotion { body: usize::from(speed(&motion_b) > speed(&motion_a)) });
+    }
+    Ok(Some(scene))
+}
+
+/// Searches.
+pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfContact, QueryError> {
+    let window = scene.window;
+    let mut scratch = SCRATCH.take().unwrap_or_else(|| Box::new(Scratch::new()));
+    let outcome = run(Search::new(scene, options, &mut scratch));
+    SCRATCH.set(Some(scratch));
+    let start_decided = match outcome {
+        Outcome::Found(found) => found.offset > 0.0 || found.start > window.start(),
+        Outcome::OutOfBudget(until) => until > window.start(),
+        Outcome::Separated => true,
+    };
+    if options.solid == Solid::Filled
+        && start_decided
+        && let Some(contained) = containment(scene)
+    {
+        return Ok(contained);
+    }
+    Ok(match outcome {
+        Outcome::Separated => TimeOfContact::Separated,
+        Outcome::OutOfBudget(until) => TimeOfContact::Undecided { clear_until: until },
+        Outcome::Found(found) => {
+            let mut contact = contact(scene, &found, options.mode == Mode::Accurate);
+            if contact.start == StartState::Touching && crosses_at_start(scene)? {
+                (contact.start, contact.separation) = (StartState::Overlapping, 0.0);
+            }
+            TimeOfContact::Contact(contact)
+        }
+    })
+}
+
+/// Counts of the last search of this thread.
+#[doc(hidden)]
+pub fn last_search_counts() -> crate::SearchCounts {
+    SCRATCH.with_borrow(|scratch| scratch.as_ref().map(|s| s.counts).unwrap_or_default())
+}
+
+/// Does the rotation between the reference time and the window stay below 2⁴⁰ radians? The poses of the search are
+/// proven for less than 2⁵⁰. An angular velocity whose square is lost to underflow counts as none: then the angle has to
+/// be below all roundings.
+fn angle_is_bounded(motion: &ConstantTwist, window: Window) -> bool {
+    let elapsed = |t: f64| (t - motion.reference_time()).abs();
+    let longest = elapsed(window.start()).max(elapsed(window.end()));
+    let velocity = motion.angular_velocity();
+    if velocity.abs().max_element() < 1e-140 {
+        velocity.abs().element_sum() * longest < 1e-20
+    } else {
+        velocity.length() * longest < 1_099_511_627_776.0
+    }
+}
+
+/// A body whose velocity against the other one is so small that its square is lost to underflow, and which moves all the
+/// same over a window that is long enough.
+fn drifts_unseen([a, b]: [&ConstantTwist; 2], window: Window) -> Option<usize> {
+    let size = |v: DVec3| v.abs().max_element();
+    let speed = size(a.linear_velocity() - b.linear_velocity());
+    let unseen = speed < 1e-140 && speed * window.length() > 1e-10 * LEAST_TOLERANCE;
+    unseen.then(|| usize::from(size(b.linear_velocity()) > size(a.linear_velocity())))
+}
+
+fn check(options: &QueryOptions) -> Result<(), QueryError> {
+    if let Some(value) = options.tolerance
+        && !(value.is_finite() && value > 0.0)
+    {
+        return Err(QueryError::BadTolerance { value });
+    }
+    let value = options.min_separation;
+    if value.is_finite() && value >= 0.0 { Ok(()) } else { Err(QueryError::BadMinSeparation { value }) }
+}
+
+/// Do the surfaces cross at the start (up to rounding)? The search stops at the first pair that is near.
+fn crosses_at_start(scene: &Scene<'_>) -> Result<bool, QueryError> {
+    let posed = [&scene.a, &scene.b].map(|(tree, motion)| {
+        let m = motion.rebase(scene.window.start());
+        Posed::new(tree, Pose { rotation: m.orientation(), translation: m.position(), at: m.at() })
+    });
+    Ok(distance(posed[0], posed[1], Solid::Surface)?.state == StartState::Overlapping)
+}
+
+/// The answer when one body is inside the other at the start; the surfaces are known not to cross then.
+fn containment(scene: &Scene<'_>) -> Option<TimeOfContact> {
+    let start = scene.window.start();
+    let motion = RelativeMotion::new(scene, start);
+    let frame = motion.frame::<Quad>(0.0);
+    let place = |p: DVec3, of_b: bool| {
+        if of_b {
+            frame
+                .rotation
+                .transposed::<Quad>()
+                .times::<Quad>((Quad::from_vec(p) - frame.apart).to_vec())
+                .to_vec()
+        } else {
+            (frame.rotation.times::<Quad>(p) + frame.apart).to_vec()
+        }
+    };
+    let inside = |outer: &MeshTree, inner: &MeshTree, of_b: bool| -> Option<(u32, DVec3)> {
+        inner.component_vertices().iter().find_map(|&vertex| {
+            let p = inner.mesh().vertices()[vertex as usize] - inner.center();
+            let q = place(p, of_b) + outer.center();
+            contains_point(outer, q).then_some((vertex, q))
+        })
+    };
+    let (a, b) = (scene.a.0, scene.b.0);
+    let hit = inside(a, b, true)
+        .map(|(vertex, _)| (false, vertex))
+        .or_else(|| inside(b, a, false).map(|(vertex, _)| (true, vertex)));
+    let (a_is_inside, vertex) = hit?;
+    Some(TimeOfContact::Contact(super::report::contained(
+        scene,
+        &motion,
+        a_is_inside,
+        vertex,
+        StartState::Contained,
+    )))
+}

@@ -1,0 +1,188 @@
+//! Queries that use what earlier ones left in a cache, and give the same bits as without.
+
+use super::course::Course;
+use super::time_of_contact::{ask, scene_of};
+use crate::search::{Quad, RelativeMotion, Scene, closest, corners, place_a};
+use crate::{Budget, Mode, Moving, PairCache, QueryError, QueryOptions, TimeOfContact, Window};
+use d2m_feature::triangles_intersect;
+
+/// As [`time_of_contact`](crate::time_of_contact), with a cache that one pair of bodies keeps from query to query, for
+/// instance from one step of a simulation to the next.
+///
+/// Promise: the answer has the same bits whatever the cache holds. What it saves: as long as bodies do not meet, a
+/// search proves now and then that they stay further apart than was asked, and the queries in between are answered by the
+/// bound on how differently they move, in less than a microsecond each. A contact is always searched for, at the same cost as without
+/// a cache; whether there is one, [`contact_exists`] tells faster. Nothing is saved with a budget, in
+/// [`Mode::Capoeira`], and for motions without a constant twist. Only a search that would end at the hard cap of
+/// [`Budget::HARD_NODE_TESTS`], after a minute, may be answered by the cache although it could not decide.
+///
+/// ```
+/// use d2m_bvh::{MeshTree, Moving, PairCache, QueryOptions, TriMesh, Window, time_of_contact, time_of_contact_with};
+/// use d2m_motion::ConstantTwist;
+/// use glam::DVec3;
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let tree = MeshTree::new(mesh);
+/// let still = Moving::new(&tree, &ConstantTwist::REST);
+/// let options = QueryOptions::default();
+/// let mut cache = PairCache::new();
+/// for step in 0..100 {
+///     // Passes above, each time a little lower, then does not pass any more.
+///     let height = 1.5 - 0.007 * f64::from(step);
+///     let passing = ConstantTwist::REST
+///         .with_position(DVec3::new(-2.0, 0.0, height))
+///         .with_linear_velocity(DVec3::X * 4.0)
+///         .with_angular_velocity(DVec3::Z);
+///     let moving = Moving::new(&tree, &passing);
+///     let answer = time_of_contact_with(moving, still, Window::UNIT, &options, &mut cache)?;
+///     assert_eq!(answer, time_of_contact(moving, still, Window::UNIT, &options)?);
+///     assert_eq!(answer.is_separated(), height > 1.0);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`time_of_contact`](crate::time_of_contact).
+pub fn time_of_contact_with(
+    a: Moving<'_>,
+    b: Moving<'_>,
+    window: Window,
+    options: &QueryOptions,
+    cache: &mut PairCache,
+) -> Result<TimeOfContact, QueryError> {
+    let Some(scene) = scene_of(a, b, window, options)? else {
+        return super::any_motion::time_of_contact([a, b], window, options);
+    };
+    if options.budget != Budget::UNLIMITED || options.mode == Mode::Capoeira {
+        return ask(&scene, options);
+    }
+    let course = Course::of(&scene);
+    let room = cache.room_along(&course, options.solid);
+    if room.is_some_and(|room| excludes_contact(&scene, room)) || more_room(&scene, &course, options, cache)?
+    {
+        return Ok(TimeOfContact::Separated);
+    }
+    let answer = ask(&scene, options)?;
+    match &answer {
+        TimeOfContact::Separated => cache.found_apart(&course, options.solid, options.min_separation),
+        TimeOfContact::Contact(contact) => {
+            let after = contact.time_lo - window.start();
+            cache.found_contact([contact.triangle_a, contact.triangle_b], after);
+        }
+        TimeOfContact::Undecided { .. } => {}
+    }
+    Ok(answer)
+}
+
+/// Do the bodies meet anywhere in the window? `None`: the budget ran out first. The mode of the options does not matter.
+///
+/// As [`time_of_contact`](crate::time_of_contact) with [`Mode::Exists`], but only yes or no, so that a cache can do more:
+/// when the two triangles that met last time are shown to meet again, the answer is yes without any search (Section
+/// VI of the d2m paper). Promise: the same answer whatever the cache holds, with the exceptions of
+/// [`time_of_contact_with`].
+///
+/// ```
+/// use d2m_bvh::{MeshTree, Moving, PairCache, QueryOptions, TriMesh, Window, contact_exists};
+/// use d2m_motion::ConstantTwist;
+/// use glam::DVec3;
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let tree = MeshTree::new(mesh);
+/// let still = Moving::new(&tree, &ConstantTwist::REST);
+/// let mut cache = PairCache::new();
+/// for step in 0..20 {
+///     let height = 2.0 + 0.2 * f64::from(step);
+///     let falling = ConstantTwist::REST
+///         .with_position(DVec3::Z * height)
+///         .with_linear_velocity(DVec3::Z * -4.0);
+///     let answer =
+///         contact_exists(Moving::new(&tree, &falling), still, Window::UNIT, &QueryOptions::default(), &mut cache)?;
+///     assert_eq!(answer, Some(height < 5.1));
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`time_of_contact`](crate::time_of_contact).
+pub fn contact_exists(
+    a: Moving<'_>,
+    b: Moving<'_>,
+    window: Window,
+    options: &QueryOptions,
+    cache: &mut PairCache,
+) -> Result<Option<bool>, QueryError> {
+    let options = options.with_mode(Mode::Exists);
+    if options.budget == Budget::UNLIMITED
+        && let Some(scene) = scene_of(a, b, window, &options)?
+        && let Some(triangles) = cache.within([&a, &b].map(|moving| moving.body.mesh().triangle_count()))
+        && let Some(after) = meet_again(&scene, triangles, cache.meeting)
+    {
+        cache.found_contact(triangles, after);
+        return Ok(Some(true));
+    }
+    Ok(match time_of_contact_with(a, b, window, &options, cache)? {
+        TimeOfContact::Separated => Some(false),
+        TimeOfContact::Contact(_) => Some(true),
+        TimeOfContact::Undecided { .. } => None,
+    })
+}
+
+/// Does a search of this scene find no contact when the bodies are further apart than `room` all the time? A contact
+/// ends at the stopping distance, up to the error of one look.
+fn excludes_contact(scene: &Scene<'_>, room: f64) -> bool {
+    room > scene.pair.stop + 2.0 * scene.pair.error
+}
+
+/// Searches for a larger separation than was asked for, so that the next queries need not. True: no contact now.
+fn more_room(
+    scene: &Scene<'_>,
+    course: &Course,
+    options: &QueryOptions,
+    cache: &mut PairCache,
+) -> Result<bool, QueryError> {
+    let Some(more) = cache.room_to_prove(course, scene.tolerance) else { return Ok(false) };
+    let room = options.min_separation + more;
+    if !excludes_contact(scene, room) {
+        return Ok(false);
+    }
+    let wider = options.with_min_separation(room);
+    let proven =
+        ask(&Scene::new(scene.a, scene.b, scene.window, &wider), &wider)? == TimeOfContact::Separated;
+    cache.attempted(proven);
+    if proven {
+        cache.found_apart(course, options.solid, room);
+    }
+    Ok(proven)
+}
+
+/// Steps towards the time at which two triangles meet.
+const STEPS: u32 = 8;
+
+/// A time after the start of the window at which two triangles are certainly within the level of each other; `None` when
+/// a few steps of Newton's method from `after` find none.
+fn meet_again(scene: &Scene<'_>, triangles: [u32; 2], after: f64) -> Option<f64> {
+    // The closest points are on the triangles up to the error, and so are the corners that are shown to cross.
+    let level = scene.pair.level - scene.pair.error;
+    let target = scene.pair.level - 0.5 * (scene.tolerance + scene.pair.error);
+    let (first, last) = (scene.window.start(), scene.window.end());
+    let (a, b) = (corners(scene.a.0, triangles[0]), corners(scene.b.0, triangles[1]));
+    let mut time = (first + after).clamp(first, last);
+    for _ in 0..STEPS {
+        let motion = RelativeMotion::new(scene, time);
+        let frame = motion.frame::<Quad>(0.0);
+        let placed = place_a::<Quad>(&frame, &a);
+        let near = closest::<Quad>(&placed, &b);
+        let distance = near.square.sqrt();
+        if distance <= level || triangles_intersect(&placed, &b) {
+            return Some(time - first);
+        }
+        let normal = near.direction.normalize_or_zero();
+        // Also backwards: triangles that have passed each other were together at some time.
+        let next = (time + (distance - target) / frame.closing_speed(near.points, normal)).clamp(first, last);
+        if next.is_nan() || next == time {
+            return None;
+        }
+        time = next;
+    }
+    None
+}

@@ -1,0 +1,191 @@
+//! One prepared pair of bodies for every method.
+
+use crate::arguments::{Method, QueryArguments};
+use crate::failure::Failure;
+use crate::load::Loaded;
+use crate::output::{note, progress_bar};
+use d2m::bvh::paper::{self, SphereTree};
+use d2m::bvh::{
+    Budget, MeshTree, Mode, Moving, QueryError, QueryOptions, Solid, TimeOfContact, Topology, TriMesh,
+    Window, time_of_contact,
+};
+use d2m::motion::ConstantTwist;
+use glam::DVec3;
+use std::time::{Duration, Instant};
+
+/// A mesh with its tree and the name that the user gave it.
+pub(crate) struct Body {
+    pub(crate) name: String,
+    tree: Tree,
+}
+
+/// What the chosen method searches.
+enum Tree {
+    Engine(MeshTree),
+    Paper(Box<SphereTree>),
+}
+
+impl Body {
+    fn new(Loaded { name, mesh }: Loaded, method: Method) -> Self {
+        let tree = match method {
+            Method::Accurate | Method::Capoeira => Tree::Engine(build(mesh)),
+            Method::Paper => Tree::Paper(Box::new(SphereTree::new(mesh))),
+        };
+        Self { name, tree }
+    }
+
+    /// The mesh.
+    pub(crate) fn mesh(&self) -> &TriMesh {
+        match &self.tree {
+            Tree::Engine(tree) => tree.mesh(),
+            Tree::Paper(tree) => tree.mesh(),
+        }
+    }
+
+    fn is_watertight(&self) -> bool {
+        match &self.tree {
+            Tree::Engine(tree) => tree.is_watertight(),
+            Tree::Paper(tree) => Topology::new(tree.mesh()).is_watertight(),
+        }
+    }
+}
+
+/// Builds the tree; what takes a second or more shows how far it is.
+fn build(mesh: TriMesh) -> MeshTree {
+    const LARGE: usize = 500_000;
+    if mesh.triangle_count() < LARGE {
+        return MeshTree::new(mesh);
+    }
+    let bar = progress_bar(mesh.triangle_count(), "triangles in the tree");
+    let tree = MeshTree::with_progress(mesh, &|done, _| bar.set_position(done as u64));
+    bar.finish_and_clear();
+    tree
+}
+
+/// Two bodies and how they are asked.
+pub(crate) struct Pair {
+    pub(crate) a: Body,
+    pub(crate) b: Body,
+    pub(crate) solid: Solid,
+    /// Distance at which the bodies count as touching.
+    pub(crate) min_separation: f64,
+    pub(crate) preparation: Duration,
+    options: QueryOptions,
+}
+
+/// An answer with the time that the query alone took.
+pub(crate) struct Answer {
+    pub(crate) verdict: TimeOfContact,
+    pub(crate) took: Duration,
+}
+
+impl Pair {
+    /// Checks the options and builds the trees.
+    pub(crate) fn new(a: Loaded, b: Loaded, arguments: &QueryArguments) -> Result<Self, Failure> {
+        let mode = match arguments.mode {
+            Method::Accurate | Method::Paper => Mode::Accurate,
+            Method::Capoeira => Mode::Capoeira,
+        };
+        let mut options = QueryOptions::default().with_mode(mode);
+        let mut min_separation = 0.0;
+        if let Some(text) = &arguments.tolerance {
+            options = options.with_tolerance(number("--tolerance", text, TOLERANCE, |t| t > 0.0)?);
+        }
+        if let Some(text) = &arguments.min_separation {
+            if arguments.mode == Method::Paper {
+                return Err(Failure::at("--min-separation", "the reference method has none"));
+            }
+            min_separation = number("--min-separation", text, MIN_SEPARATION, |d| d >= 0.0)?;
+            options = options.with_min_separation(min_separation);
+        }
+        let seconds =
+            number("--time-limit", &arguments.time_limit, "a positive number of seconds", |s| s > 0.0)?;
+        // Beyond a century there is no limit to speak of, and the type could not hold it.
+        let mut budget = Budget::UNLIMITED.with_wall_clock(Duration::from_secs_f64(seconds.min(3e9)));
+        if let Some(node_tests) = arguments.budget {
+            budget = budget.with_node_tests(node_tests);
+        }
+        options = options.with_budget(budget);
+        let start = Instant::now();
+        let [a, b] = [a, b].map(|body| Body::new(body, arguments.mode));
+        let preparation = start.elapsed();
+        let solid = choose_solid(&a, &b, arguments)?;
+        Ok(Self { a, b, solid, min_separation, preparation, options: options.with_solid(solid) })
+    }
+
+    /// Each query on all threads of the machine: for single ones.
+    pub(crate) fn on_all_threads(self) -> Self {
+        Self { options: self.options.with_parallel(true), ..self }
+    }
+
+    /// The time of contact in a window.
+    pub(crate) fn ask(
+        &self,
+        a: &ConstantTwist,
+        b: &ConstantTwist,
+        window: Window,
+    ) -> Result<Answer, Failure> {
+        let start = Instant::now();
+        let verdict = match (&self.a.tree, &self.b.tree) {
+            (Tree::Engine(tree_a), Tree::Engine(tree_b)) => {
+                time_of_contact(Moving::new(tree_a, a), Moving::new(tree_b, b), window, &self.options)
+            }
+            (Tree::Paper(tree_a), Tree::Paper(tree_b)) => {
+                let (a, b) = (paper::Moving::new(tree_a, a), paper::Moving::new(tree_b, b));
+                paper::time_of_contact(a, b, window, &self.options)
+            }
+            _ => unreachable!("both bodies of a pair are prepared for one method"),
+        };
+        let took = start.elapsed();
+        let verdict = verdict.map_err(|error| match error {
+            QueryError::BadMotion { body } => {
+                let (place, motion) = [("motion of A", a), ("motion of B", b)][body.min(1)];
+                let triple = |vector: DVec3| format!("{:?}", vector.to_array());
+                let [x, v, w] = [motion.position(), motion.linear_velocity(), motion.angular_velocity()].map(triple);
+                let reason = format!(
+                    "x = {x}, v = {v}, w = {w}: over the window it is not finite, turns by 2^40 radians, goes too far, or is too slow to be told from rest (below 1e-140) and moves all the same"
+                );
+                Failure::at(place, reason)
+            }
+            other => Failure::Input(other.to_string()),
+        })?;
+        Ok(Answer { verdict, took })
+    }
+}
+
+/// What `--tolerance` and `--min-separation` take.
+pub(crate) const TOLERANCE: &str = "a positive finite distance";
+pub(crate) const MIN_SEPARATION: &str = "a finite distance that is not negative";
+
+/// Reads an option's value and checks it.
+pub(crate) fn number(
+    option: &str,
+    text: &str,
+    wanted: &str,
+    is_wanted: impl Fn(f64) -> bool,
+) -> Result<f64, Failure> {
+    let value: f64 = text.parse().map_err(|_| Failure::at(option, format!("{text:?} is not a number")))?;
+    if value.is_finite() && is_wanted(value) {
+        Ok(value)
+    } else {
+        Err(Failure::at(option, format!("{text} is not {wanted}")))
+    }
+}
+
+/// Filled if both meshes close, unless the user says otherwise.
+fn choose_solid(a: &Body, b: &Body, arguments: &QueryArguments) -> Result<Solid, Failure> {
+    if arguments.surface {
+        return Ok(Solid::Surface);
+    }
+    let open = [a, b].into_iter().find(|body| !body.is_watertight());
+    match open {
+        None => Ok(Solid::Filled),
+        Some(body) if arguments.solid => {
+            Err(Failure::at(&body.name, "the mesh is not watertight, so it bounds no solid: use --surface"))
+        }
+        Some(body) => {
+            note(&format!("d2m: note: {} is not watertight: only surfaces count", body.name));
+            Ok(Solid::Surface)
+        }
+    }
+}

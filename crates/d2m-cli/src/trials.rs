@@ -1,0 +1,100 @@
+//! Trials: 26 numbers a line, the motions of A and of B.
+
+use crate::failure::Failure;
+use crate::load::read;
+use d2m::bvh::MAX_COORDINATE;
+use d2m::motion::ConstantTwist;
+use glam::{DQuat, DVec3};
+use std::path::Path;
+
+/// One line of a trials file.
+#[derive(Debug, Clone)]
+pub(crate) struct Trial {
+    /// Line of the file, from 1.
+    pub(crate) line: usize,
+    pub(crate) motion_a: ConstantTwist,
+    pub(crate) motion_b: ConstantTwist,
+}
+
+/// The names of the fields, for messages.
+const FIELDS: [&str; 13] = ["qw", "qx", "qy", "qz", "x1", "x2", "x3", "v1", "v2", "v3", "w1", "w2", "w3"];
+
+/// Reads a file; blank lines are skipped.
+pub(crate) fn load(path: &Path) -> Result<Vec<Trial>, Failure> {
+    let bytes = read(path)?;
+    let text = String::from_utf8_lossy(&bytes);
+    parse(text.trim_start_matches('\u{feff}')).map_err(|(line, reason)| match line {
+        Some(line) => Failure::Input(format!("{}, line {line}: {reason}", path.display())),
+        None => Failure::at(path.display(), reason),
+    })
+}
+
+fn parse(text: &str) -> Result<Vec<Trial>, (Option<usize>, String)> {
+    let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    let trials: Vec<Trial> = lines
+        .map(|(index, line)| parse_line(line, index + 1).map_err(|reason| (Some(index + 1), reason)))
+        .collect::<Result<_, _>>()?;
+    if trials.is_empty() { Err((None, "there are no trials".to_owned())) } else { Ok(trials) }
+}
+
+fn parse_line(text: &str, line: usize) -> Result<Trial, String> {
+    let count = text.split(',').count();
+    if count != 26 {
+        return Err(format!("expected 26 numbers separated by commas, found {count}"));
+    }
+    let mut numbers = [0.0; 26];
+    for (index, (number, word)) in numbers.iter_mut().zip(text.split(',')).enumerate() {
+        let place = || format!("field {} ({} of {})", index + 1, FIELDS[index % 13], ["A", "B"][index / 13]);
+        *number =
+            word.trim().parse().map_err(|_| format!("{}: {:?} is not a number", place(), word.trim()))?;
+        if !f64::is_finite(*number) {
+            return Err(format!("{}: {} is not finite", place(), word.trim()));
+        }
+        // Before hours of other trials, not after them.
+        if number.abs() > MAX_COORDINATE {
+            let word = word.trim();
+            return Err(format!("{}: {word} is larger than the limit of {MAX_COORDINATE:e}", place()));
+        }
+    }
+    let motion = |n: &[f64], body: &str| {
+        let vector = |at: usize| DVec3::new(n[at], n[at + 1], n[at + 2]);
+        let orientation = DQuat::from_xyzw(n[1], n[2], n[3], n[0]);
+        ConstantTwist::try_new(vector(4), orientation, vector(7), vector(10))
+            .map_err(|error| format!("motion of {body}: {error}"))
+    };
+    Ok(Trial { line, motion_a: motion(&numbers[..13], "A")?, motion_b: motion(&numbers[13..], "B")? })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LINE: &str = "1,0,0,0,1,2,3,4,5,6,7,8,9,0,1,0,0,-1,-2,-3,-4,-5,-6,-7,-8,-9";
+
+    #[test]
+    fn order_of_the_fields() {
+        let trials = parse(&format!("{LINE}\r\n\n {LINE}\n")).unwrap();
+        assert_eq!((trials.len(), trials[0].line, trials[1].line), (2, 1, 3));
+        assert_eq!(trials[0].motion_a.position(), DVec3::new(1.0, 2.0, 3.0));
+        assert_eq!(trials[0].motion_a.linear_velocity(), DVec3::new(4.0, 5.0, 6.0));
+        assert_eq!(trials[1].motion_b.angular_velocity(), DVec3::new(-7.0, -8.0, -9.0));
+        assert_eq!(trials[1].motion_b.orientation().x, 1.0);
+    }
+
+    #[test]
+    fn faults_name_line_and_field() {
+        let fault = |text: &str| parse(text).unwrap_err();
+        assert_eq!(fault("\n\n"), (None, "there are no trials".to_owned()));
+        let short = fault(&format!("{LINE}\n1,2,3\n"));
+        assert_eq!(short, (Some(2), "expected 26 numbers separated by commas, found 3".to_owned()));
+        let word = fault(&format!("\n{}", LINE.replace("-4", "four")));
+        assert_eq!(word, (Some(2), "field 21 (v1 of B): \"four\" is not a number".to_owned()));
+        let infinite = fault(&LINE.replace("-9", "1e999"));
+        assert_eq!(infinite, (Some(1), "field 26 (w3 of B): 1e999 is not finite".to_owned()));
+        let far = fault(&LINE.replace("-9", "1e300"));
+        assert_eq!(far, (Some(1), "field 26 (w3 of B): 1e300 is larger than the limit of 1e60".to_owned()));
+        let zero = fault(&LINE.replacen('1', "0", 1));
+        assert_eq!(zero.0, Some(1));
+        assert!(zero.1.starts_with("motion of A: orientation (0.0, 0.0, 0.0, 0.0)"), "{}", zero.1);
+    }
+}

@@ -1,0 +1,41 @@
+#![doc = include_str!("../README.md")]
+
+mod constant_twist;
+mod double_double;
+mod error;
+mod keyframes;
+mod path_jet;
+mod pose;
+mod relative;
+mod rigid_motion;
+mod rotation;
+mod screw;
+#[cfg(feature = "serde")]
+mod serde_form;
+mod sin_cos;
+mod state;
+mod text;
+mod twist;
+mod two;
+mod two_jets;
+
+pub use constant_twist::ConstantTwist;
+pub use error::MotionError;
+pub use keyframes::{Keyframes, Span};
+/// The name that `ConstantTwist` had before: it turns, so it was never linear.
+#[doc(hidden)]
+pub type LinearMotion = ConstantTwist;
+pub use path_jet::{PathJet, Remainder};
+pub use pose::{IntervalPose, Pose};
+pub use relative::{Arm, ArmPair, Frame, RelativeMotion, RelativeState};
+pub use rigid_motion::RigidMotion;
+pub use screw::ScrewMotion;
+pub use state::CertifiedState;
+pub use twist::{IntervalTwist, Twist};
+/// For the crates of this workspace: vectors and jets of an edge's midpoint and half edge in the two halves of vector
+/// registers.
+#[doc(hidden)]
+pub use {two::TwoVec3, two_jets::TwoJets};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,263 @@
+//! Closed-form bounds of the relative motion and of the rounding of its frames.
+use super::frame::cross_columns;
+use super::{RelativeMotion, UNIT, UP};
+use crate::Remainder;
+use crate::rotation::Spin;
+use glam::{DMat3, DVec3};
+
+/// Rounding of a frame and of all dot products made with it, in units of 2⁻⁵³·S0 (docs/theory/features.md).
+const ROUNDING: f64 = 128.0;
+/// The same per radian of rotation: the angle ωτ is rounded.
+const ROUNDING_PER_RADIAN: f64 = 6.0;
+
+/// Scalars that every bound is made of; each is an upper bound.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bounds {
+    /// U = |u|.
+    pub(super) speed: f64,
+    /// Y = max |g + uτ| over the window (convex: at one of the ends).
+    pub(super) reach: f64,
+    /// a = |ω_A|.
+    pub(super) a: f64,
+    /// b = |ω_B|.
+    pub(super) b: f64,
+    /// w = |ω_A − ω_B|.
+    pub(super) w: f64,
+    /// |ω_B × u|: of the velocity, only what is across B's axis turns.
+    pub(super) across: f64,
+    /// Kₖ = ‖Tₖ‖: see [`direction_bounds`].
+    pub(super) k2: f64,
+    pub(super) k3: f64,
+    pub(super) k4: f64,
+    /// k = 2⁻⁵³·(128 + 6(a + b)T).
+    pub(super) rounding: f64,
+}
+
+impl Bounds {
+    pub(super) fn new(
+        offset: DVec3,
+        velocity: DVec3,
+        spin_a: &Spin,
+        spin_b: &Spin,
+        difference: DVec3,
+        duration: f64,
+    ) -> Self {
+        let speed = velocity.length() * UP;
+        let reach = offset.length().max((offset + velocity * duration).length()) * UP
+            + 8.0 * UNIT * (offset.length() + speed * duration);
+        let (a, b) = (spin_a.speed * UP, spin_b.speed * UP);
+        let w = difference.length() * UP;
+        let across = spin_b.omega.cross(velocity).length() * UP + 8.0 * UNIT * b * speed;
+        let [k2, k3, k4] = direction_bounds(spin_a.omega, spin_b.omega, difference, a + b);
+        let turn = (a + b) * duration;
+        let rounding = if turn <= crate::sin_cos::LARGEST_ANGLE {
+            UNIT * (ROUNDING + ROUNDING_PER_RADIAN * turn) * UP
+        } else {
+            f64::INFINITY
+        };
+        Self { speed, reach, a, b, w, across, k2, k3, k4, rounding }
+    }
+}
+
+/// Bounds of the second to fourth derivative of a direction of A of length 1 in the axes of B: the norms of the
+/// constant matrices `T₁ = [ω_A − ω_B]`, `Tₖ₊₁ = Tₖ[ω_A] − [ω_B]Tₖ`, as `z⁽ᵏ⁾ = R_Bᵀ Tₖ R_A d`.
+///
+/// Rates are divided by `sum` ≥ |ω_A| + |ω_B| first: then every ‖Tₖ‖ ≤ 1, and rounding adds at most 64·2⁻⁵³
+/// (docs/theory/features.md). Exchanging A and B gives the same norms.
+fn direction_bounds(spin_a: DVec3, spin_b: DVec3, difference: DVec3, sum: f64) -> [f64; 3] {
+    if sum == 0.0 {
+        return [0.0; 3];
+    }
+    let scale = 1.0 / sum;
+    let (a, b) = (spin_a * scale, spin_b * scale);
+    let mut turn = cross_columns(difference * scale, &DMat3::IDENTITY);
+    let mut power = sum;
+    [(); 3].map(|()| {
+        // T[ω] is the transpose of −[ω]Tᵀ.
+        turn = -cross_columns(a, &turn.transpose()).transpose() - cross_columns(b, &turn);
+        power *= sum;
+        (norm(&turn) + 64.0 * UNIT) * power * UP
+    })
+}
+
+/// Upper bound of the operator norm, less than 1.08 of it: with the singular values σ, `(Σσ¹⁶)^(1/16)`, as
+/// `‖(MᵀM)⁴‖^(1/8)` (Frobenius norm).
+fn norm(m: &DMat3) -> f64 {
+    let largest = [m.x_axis, m.y_axis, m.z_axis].map(|v| v.abs().max_element());
+    let largest = largest[0].max(largest[1]).max(largest[2]);
+    // Also NaN ends here.
+    if largest == 0.0 || largest.is_nan() {
+        return largest;
+    }
+    let m = *m * (1.0 / largest);
+    let gram = m.transpose() * m;
+    let square = gram * gram;
+    let fourth = square * square;
+    let sum =
+        fourth.x_axis.length_squared() + fourth.y_axis.length_squared() + fourth.z_axis.length_squared();
+    largest * sum.sqrt().sqrt().sqrt().sqrt() * UP
+}
+
+impl RelativeMotion {
+    /// Bound of the distance from B's followed point of a point of A within `radius`: `Y + ρ`.
+    pub fn bound_reach(&self, radius: f64) -> f64 {
+        (self.bounds.reach + radius + self.anchor_arm()) * UP
+    }
+
+    /// The part of the window (τ) in which the followed points come within `distance` of each other, rounded
+    /// outward; `None` if they never do. Straight relative motion of two points: no rotation matters.
+    ///
+    /// `|g + uτ| ≤ R` for `(τ − τ*)² ≤ (R² − d²)/|u|²`, `τ* = −g·u/|u|²`, `d = |g × u|/|u|`. R is padded by
+    /// 64·2⁻⁵³(|g| + |u|T): more than the errors of g, u, d and of |u|τ* (≤ |g|).
+    ///
+    /// ```
+    /// use d2m_motion::{ConstantTwist, RelativeMotion};
+    /// use glam::DVec3;
+    /// let passing = ConstantTwist::REST.with_position(-4.0 * DVec3::X).with_linear_velocity(8.0 * DVec3::X);
+    /// let relative = RelativeMotion::new(&passing, &ConstantTwist::REST, 0.0, 1.0);
+    /// let (from, to) = relative.times_within(2.0).unwrap();
+    /// assert!(from <= 0.25 && from > 0.2499 && to >= 0.75 && to < 0.7501);
+    /// let beside = RelativeMotion::new(&passing.with_position(DVec3::splat(-4.0)), &ConstantTwist::REST, 0.0, 1.0);
+    /// assert_eq!(beside.times_within(2.0), None);
+    /// ```
+    pub fn times_within(&self, distance: f64) -> Option<(f64, f64)> {
+        let (g, u) = (self.offset, self.velocity);
+        let square = u.length_squared();
+        let size = g.length();
+        let pad = 64.0 * UNIT * (size + self.bounds.speed * self.duration);
+        let radius = distance * UP + pad;
+        if !square.is_normal() {
+            // At rest, or out of the range of squares.
+            let apart = u == DVec3::ZERO && size > radius;
+            return (!apart).then_some((0.0, self.duration));
+        }
+        let speed = square.sqrt();
+        let nearest = g.cross(u).length() / speed;
+        if nearest > radius {
+            return None;
+        }
+        let half = ((radius - nearest) * (radius + nearest)).sqrt() / speed * UP;
+        let middle = -g.dot(u) / square;
+        let rounding = 16.0 * UNIT * (middle.abs() + half);
+        let (from, to) = (middle - half - rounding, middle + half + rounding);
+        if to < 0.0 || from > self.duration {
+            return None;
+        }
+        // f64::max and min drop a NaN: then it is the whole window.
+        Some((from.max(0.0), to.min(self.duration)))
+    }
+
+    /// Bound V of the speed of a point of A within `radius` of A's followed point: `U + bY + wρ`.
+    ///
+    /// With an anchor, `radius` is from the anchor and the arm of the anchor is added.
+    pub fn bound_speed(&self, radius: f64) -> f64 {
+        self.bound_speed_within(radius, self.bounds.reach)
+    }
+
+    /// The same while the followed points are within `reach` of each other: `Y = reach`.
+    pub fn bound_speed_within(&self, radius: f64, reach: f64) -> f64 {
+        let k = &self.bounds;
+        (k.speed + k.b * reach.min(k.reach) + k.w * (radius + self.anchor_arm())) * UP
+    }
+
+    /// Bound of the acceleration: `2|ω_B × u| + b²Y + K2·ρ`.
+    pub fn bound_acceleration(&self, radius: f64) -> f64 {
+        let k = &self.bounds;
+        (2.0 * k.across + k.b * k.b * k.reach + k.k2 * (radius + self.anchor_arm())) * UP
+    }
+
+    /// Bound M3 of the third derivative: `b(3|ω_B × u| + b²Y) + K3·ρ`.
+    pub fn bound_jerk(&self, radius: f64) -> f64 {
+        self.bound_jerk_within(radius, self.bounds.reach)
+    }
+
+    /// The same while the followed points are within `reach` of each other.
+    fn bound_jerk_within(&self, radius: f64, reach: f64) -> f64 {
+        let k = &self.bounds;
+        (k.b * (3.0 * k.across + k.b * k.b * reach.min(k.reach)) + k.k3 * (radius + self.anchor_arm())) * UP
+    }
+
+    /// Bound of the k-th derivative of a direction of A of length 1, k = 1, 2, 3, 4: `w`, `K2`, `K3`, `K4`.
+    ///
+    /// # Panics
+    /// If `order` is not 1, 2, 3 or 4.
+    pub fn bound_direction_derivative(&self, order: u32) -> f64 {
+        match order {
+            1 => self.bounds.w,
+            2 => self.bounds.k2,
+            3 => self.bounds.k3,
+            4 => self.bounds.k4,
+            _ => panic!("derivative of order {order}: 1 to 4 expected"),
+        }
+    }
+
+    /// Remainder of every point jet with `|r| ≤ radius`, dotted with a vector of length at most 1 and compared with
+    /// points of B of length at most `extent`: `E(h) + M3·h³/6`, `E(h) = k(S0 + S1·h + S2·h²)`,
+    /// `S0 = Y + ρ + extent`, `S1 = 2(U + (a + b)S0)`, `S2 = 4((a + b)²S0 + bU)`.
+    pub fn point_remainder(&self, radius: f64, extent: f64) -> Remainder {
+        self.point_remainder_within(radius, extent, self.bounds.reach)
+    }
+
+    /// The same for times at which the followed points are within `reach` of each other: `Y = reach`, plus 8·2⁻⁵³ of
+    /// the window's Y for the rounding of g + uτ itself.
+    pub fn point_remainder_within(&self, radius: f64, extent: f64, reach: f64) -> Remainder {
+        let k = &self.bounds;
+        let here = if reach < k.reach { reach + k.reach * (8.0 * UNIT / k.rounding) } else { k.reach };
+        let s0 = here + radius + extent + self.anchor_arm();
+        let turn = k.a + k.b;
+        // An anchored frame brings the rounding of its own position: see `Frame::point_jet`.
+        let e0 = if self.anchor.is_some() { (radius + extent) * k.rounding } else { s0 * k.rounding };
+        Remainder {
+            e0: e0 * UP,
+            e1: 2.0 * (k.speed + turn * s0) * k.rounding * UP,
+            e2: 4.0 * (turn * turn * s0 + k.b * k.speed) * k.rounding * UP,
+            m3: self.bound_jerk_within(radius, reach),
+            m4: 0.0,
+        }
+    }
+
+    /// Bound M4 of the fourth derivative while the followed points are within `reach` of each other:
+    /// `b²(4|ω_B × u| + b²Y) + K4·ρ`.
+    pub fn bound_fourth_derivative_within(&self, radius: f64, reach: f64) -> f64 {
+        let k = &self.bounds;
+        let y = reach.min(k.reach);
+        (k.b * k.b * (4.0 * k.across + k.b * k.b * y) + k.k4 * (radius + self.anchor_arm())) * UP
+    }
+
+    /// The remainder of jets to third order of the points whose jets to second order have the remainder `second` of
+    /// [`RelativeMotion::point_remainder_within`]: `M4·h⁴/24` and the rounding of the third derivative,
+    /// `2k((a + b)³S0 + 3b²U)`, in place of `M3·h³/6`.
+    pub fn point_remainder_third_order(&self, second: Remainder, fourth_derivative: f64) -> Remainder {
+        let k = &self.bounds;
+        let turn = k.a + k.b;
+        let rounding = 2.0 * (turn * turn * turn * second.e0 + 3.0 * k.b * k.b * k.speed * k.rounding) * UP;
+        Remainder { m3: rounding, m4: fourth_derivative, ..second }
+    }
+
+    /// The same for directions: `K4·h⁴/24` of the length in place of `K3·h³/6`.
+    pub fn direction_remainder_third_order(&self, length: f64) -> Remainder {
+        let k = &self.bounds;
+        let second = self.direction_remainder(length);
+        let turn = k.a + k.b;
+        let rounding = 2.0 * turn * turn * turn * second.e0 * UP;
+        Remainder { m3: rounding, m4: k.k4 * length * UP, ..second }
+    }
+
+    /// Remainder of the jet of a direction of A of the given length: as a point with `g = u = 0`.
+    pub fn direction_remainder(&self, length: f64) -> Remainder {
+        let k = &self.bounds;
+        let turn = k.a + k.b;
+        let e0 = length * k.rounding * UP;
+        Remainder {
+            e0,
+            e1: 2.0 * turn * e0 * UP,
+            e2: 4.0 * turn * turn * e0 * UP,
+            m3: k.k3 * length * UP,
+            m4: 0.0,
+        }
+    }
+
+    fn anchor_arm(&self) -> f64 {
+        self.anchor.as_ref().map_or(0.0, |anchor| anchor.arm)
+    }
+}

@@ -1,0 +1,169 @@
+//! Screw motion: a turn about an axis fixed in space plus a slide along it (Mozzi–Chasles).
+use crate::{
+    CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, MotionError, Pose, RigidMotion, Twist,
+};
+use d2m_interval::Interval;
+use glam::DVec3;
+
+/// A rotation at constant rate about an axis fixed in space with a translation at constant speed along it.
+///
+/// It is the [`ConstantTwist`] of a body point on the axis with `v` parallel to `ω`, and is queried as that motion.
+/// Without rotation it is a plain translation. `v` equals `pitch·ω` up to one rounding a component; the motion with
+/// the rounded `v` is the one that is queried exactly.
+///
+/// ```
+/// use d2m_motion::{Pose, RigidMotion, ScrewMotion};
+/// use glam::{DQuat, DVec3};
+/// // A quarter turn about the vertical axis through (1, 0, 0), rising by 2, in unit time.
+/// let start = Pose::IDENTITY;
+/// let turn = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
+/// let end = Pose { rotation: turn, translation: DVec3::new(1.0, -1.0, 2.0), at: DVec3::ZERO };
+/// let screw = ScrewMotion::try_from_poses(start, end, 0.0, 1.0)?;
+/// assert!((screw.axis_point() - DVec3::X).length() < 1e-15);
+/// assert!((screw.pitch().unwrap() * std::f64::consts::FRAC_PI_2 - 2.0).abs() < 1e-14);
+/// let (pose, _) = screw.pose_and_twist(1.0);
+/// assert!((pose.transform_point(DVec3::ZERO) - end.translation).length() < 1e-14);
+/// # Ok::<(), d2m_motion::MotionError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScrewMotion {
+    linear: ConstantTwist,
+}
+
+impl ScrewMotion {
+    /// The screw with the given pose and twist at time `t0`. Every pose and twist has one.
+    ///
+    /// The twist's linear part is the velocity of the pose's point `at`. Axis: `x + ω × v/|ω|²`; pitch:
+    /// `ω·v/|ω|²` (length per radian).
+    ///
+    /// # Errors
+    /// A component that is not finite, or an orientation that cannot be normalised.
+    pub fn try_from_twist(pose: Pose, twist: Twist, t0: f64) -> Result<Self, MotionError> {
+        let given = ConstantTwist::try_new(pose.translation, pose.rotation, twist.linear, twist.angular)?
+            .try_with_at(pose.at)?
+            .try_with_reference_time(t0)?;
+        let square = twist.angular.length_squared();
+        if square == 0.0 || !square.is_normal() {
+            // No rotation to speak of: the axis is at infinity, and the translation is the screw.
+            return Ok(Self { linear: given.with_angular_velocity(DVec3::ZERO) });
+        }
+        let arm = twist.angular.cross(twist.linear) / square;
+        let pitch = twist.angular.dot(twist.linear) / square;
+        let at = pose.at + pose.rotation.normalize().conjugate() * arm;
+        let linear = given
+            .try_with_at(at)?
+            .with_position(pose.translation + arm)
+            .with_linear_velocity(twist.angular * pitch);
+        Ok(Self { linear })
+    }
+
+    /// The screw that takes the start pose at `t0` to the end pose at `t1` by the shorter turn.
+    ///
+    /// # Errors
+    /// A component that is not finite, times not increasing, or a turn so small that its axis is farther than
+    /// 1e12 times the displacement (then use a [`ConstantTwist`]).
+    pub fn try_from_poses(start: Pose, end: Pose, t0: f64, t1: f64) -> Result<Self, MotionError> {
+        if !(t0 < t1 && (t1 - t0).is_finite()) {
+            return Err(MotionError::Screw { reason: "the two times must be finite and increasing" });
+        }
+        let (q0, q1) = (start.rotation.normalize(), end.rotation.normalize());
+        let mut turn = q1 * q0.conjugate();
+        if turn.w < 0.0 {
+            turn = -turn;
+        }
+        let imaginary = DVec3::new(turn.x, turn.y, turn.z);
+        let sine = imaginary.length();
+        // The end position of the point that the start pose follows.
+        let displacement = q1 * (start.at - end.at) + end.translation - start.translation;
+        let span = t1 - t0;
+        let place = |at: DVec3, position: DVec3, v: DVec3, w: DVec3| {
+            ConstantTwist::try_new(position, start.rotation, v, w)?
+                .try_with_at(at)?
+                .try_with_reference_time(t0)
+        };
+        if sine == 0.0 {
+            let linear = place(start.at, start.translation, displacement / span, DVec3::ZERO)?;
+            return Ok(Self { linear });
+        }
+        if sine < 1e-12 {
+            return Err(MotionError::Screw { reason: "the turn is too small to have an axis" });
+        }
+        let axis = imaginary / sine;
+        // Accurate for small turns, where acos of the scalar part is not.
+        let angle = 2.0 * atan2_positive(sine, turn.w);
+        let along = axis * axis.dot(displacement);
+        let across = displacement - along;
+        let arm = 0.5 * (across + axis.cross(across) * (turn.w / sine));
+        let at = start.at + q0.conjugate() * arm;
+        let linear = place(at, start.translation + arm, along / span, axis * (angle / span))?;
+        Ok(Self { linear })
+    }
+
+    /// Takes a linear motion that is a screw already: its followed point is on the axis.
+    ///
+    /// # Errors
+    /// If `|v × ω| > 1e-14·|v||ω|`.
+    pub fn try_from_linear(linear: ConstantTwist) -> Result<Self, MotionError> {
+        let (v, w) = (linear.linear_velocity(), linear.angular_velocity());
+        if v.cross(w).length() > 1e-14 * v.length() * w.length() {
+            return Err(MotionError::Screw { reason: "linear and angular velocity are not parallel" });
+        }
+        Ok(Self { linear })
+    }
+
+    /// The motion that is queried.
+    pub const fn as_linear(&self) -> &ConstantTwist {
+        &self.linear
+    }
+
+    /// A world point on the axis (where it crosses at the reference time; the axis is fixed).
+    pub const fn axis_point(&self) -> DVec3 {
+        self.linear.position()
+    }
+
+    /// Unit direction of the axis, along ω; without rotation along v; zero at rest.
+    pub fn axis_direction(&self) -> DVec3 {
+        let (v, w) = (self.linear.linear_velocity(), self.linear.angular_velocity());
+        if w == DVec3::ZERO { v.normalize_or_zero() } else { w.normalize_or_zero() }
+    }
+
+    /// Translation per radian of turn, positive for a right-handed screw; `None` without rotation.
+    pub fn pitch(&self) -> Option<f64> {
+        let (v, w) = (self.linear.linear_velocity(), self.linear.angular_velocity());
+        (w != DVec3::ZERO).then(|| v.dot(w) / w.length_squared())
+    }
+}
+
+/// atan2(y, x) for y ≥ 0, x ≥ 0, by Newton steps on the project's own sine (no platform function).
+fn atan2_positive(y: f64, x: f64) -> f64 {
+    let mut angle = if y > x { core::f64::consts::FRAC_PI_2 - x / y * 0.8 } else { y / x * 0.8 };
+    for _ in 0..5 {
+        let (sin, cos) = crate::sin_cos::sin_cos(angle);
+        // sin(true − angle) and cos(true − angle) up to the common norm.
+        let (s, c) = (y * cos - x * sin, x * cos + y * sin);
+        let tangent = s / c;
+        angle += tangent - tangent * tangent * tangent / 3.0;
+    }
+    angle
+}
+
+impl RigidMotion for ScrewMotion {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        self.linear.pose_and_twist(t)
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        self.linear.enclose_pose(t)
+    }
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        self.linear.enclose_twist(t)
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.linear.enclose_twist_rate(t)
+    }
+    fn enclose_state(&self, t: f64) -> CertifiedState {
+        self.linear.enclose_state(t)
+    }
+    fn constant_twist(&self) -> Option<ConstantTwist> {
+        Some(self.linear)
+    }
+}

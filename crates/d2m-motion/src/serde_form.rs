@@ -1,0 +1,104 @@
+//! The serde forms of the motion types: the same keys as the text form, checked on the way in.
+use crate::{ConstantTwist, Keyframes, MotionError, ScrewMotion};
+use glam::{DQuat, DVec3};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LinearForm {
+    #[serde(default)]
+    x: [f64; 3],
+    #[serde(default = "identity")]
+    q: [f64; 4],
+    #[serde(default)]
+    v: [f64; 3],
+    #[serde(default)]
+    w: [f64; 3],
+    #[serde(default, skip_serializing_if = "is_zero")]
+    at: [f64; 3],
+    #[serde(default, skip_serializing_if = "is_zero_time")]
+    t: f64,
+}
+
+const fn identity() -> [f64; 4] {
+    [1.0, 0.0, 0.0, 0.0]
+}
+
+fn is_zero(v: &[f64; 3]) -> bool {
+    *v == [0.0; 3]
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // serde calls it with a reference
+fn is_zero_time(t: &f64) -> bool {
+    *t == 0.0
+}
+
+impl From<&ConstantTwist> for LinearForm {
+    fn from(m: &ConstantTwist) -> Self {
+        let q = m.orientation();
+        Self {
+            x: m.position().to_array(),
+            q: [q.w, q.x, q.y, q.z],
+            v: m.linear_velocity().to_array(),
+            w: m.angular_velocity().to_array(),
+            at: m.at().to_array(),
+            t: m.reference_time(),
+        }
+    }
+}
+
+impl TryFrom<LinearForm> for ConstantTwist {
+    type Error = MotionError;
+    fn try_from(form: LinearForm) -> Result<Self, MotionError> {
+        let [w, x, y, z] = form.q;
+        let (position, orientation) = (DVec3::from_array(form.x), DQuat::from_xyzw(x, y, z, w));
+        ConstantTwist::try_new(position, orientation, DVec3::from_array(form.v), DVec3::from_array(form.w))?
+            .try_with_at(DVec3::from_array(form.at))?
+            .try_with_reference_time(form.t)
+    }
+}
+
+impl Serialize for ConstantTwist {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        LinearForm::from(self).serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for ConstantTwist {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        LinearForm::deserialize(deserializer)?.try_into().map_err(D::Error::custom)
+    }
+}
+
+/// A screw is stored as its linear motion and checked to be one again.
+impl Serialize for ScrewMotion {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.as_linear().serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for ScrewMotion {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        ScrewMotion::try_from_linear(ConstantTwist::deserialize(deserializer)?).map_err(D::Error::custom)
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct KeyframesForm {
+    times: Vec<f64>,
+    spans: Vec<ConstantTwist>,
+}
+
+impl Serialize for Keyframes {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        KeyframesForm { times: self.times().to_vec(), spans: self.motions().to_vec() }.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Keyframes {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let form = KeyframesForm::deserialize(deserializer)?;
+        Keyframes::try_from_spans(form.times, form.spans).map_err(D::Error::custom)
+    }
+}

@@ -1,0 +1,88 @@
+//! Where a body is and how it moves at one time: plain numbers, each with a proven distance from the truth.
+use crate::{IntervalPose, IntervalTwist};
+use d2m_interval::{Interval, IntervalVec3};
+use glam::{DMat3, DVec3};
+
+/// Covers the rounding of fewer than 32 operations on non-negative numbers.
+const UP: f64 = 1.0 + 1e-14;
+/// More than the squares lose that underflow in a length.
+const UNDERFLOW: f64 = 1e-150;
+
+/// Pose and twist at one time as middle values with radii: what jets of any motion are made of.
+///
+/// Promise: the true rotation differs from `rotation` by a matrix of operator norm at most `rotation_radius`, and the
+/// true vectors lie within their radii of `position`, `linear` and `angular`. (One number a vector: the arithmetic on
+/// top is plain floating point with one bound, instead of intervals in every coordinate.) A radius of infinity says
+/// that nothing is known.
+///
+/// ```
+/// use d2m_motion::{CertifiedState, ConstantTwist, RigidMotion};
+/// use glam::DVec3;
+/// let motion = ConstantTwist::REST.with_angular_velocity(3.0 * DVec3::Z).with_linear_velocity(DVec3::X);
+/// let state = motion.enclose_state(0.5);
+/// assert!((state.rotation * DVec3::X - DVec3::new(1.5_f64.cos(), 1.5_f64.sin(), 0.0)).length() < 1e-13);
+/// assert!(state.rotation_radius < 1e-13 && state.linear == DVec3::X && state.linear_radius == 0.0);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CertifiedState {
+    /// Body frame to world frame; orthogonal up to the radius.
+    pub rotation: DMat3,
+    /// World position of the body point [`CertifiedState::at`].
+    pub position: DVec3,
+    /// The followed body point (body frame, exact).
+    pub at: DVec3,
+    /// Velocity of the followed point, world axes.
+    pub linear: DVec3,
+    /// Angular velocity, world axes.
+    pub angular: DVec3,
+    /// Bound of the operator norm of the error of `rotation`.
+    pub rotation_radius: f64,
+    /// Bound of the error of `position` (length).
+    pub position_radius: f64,
+    /// Bound of the error of `linear` (length per time).
+    pub linear_radius: f64,
+    /// Bound of the error of `angular` (radians per time).
+    pub angular_radius: f64,
+}
+
+impl CertifiedState {
+    /// The middles of enclosures at one time, with radii that reach their corners.
+    ///
+    /// The rotation's radius is the Frobenius norm of the half-widths. Unbounded enclosures give infinite radii.
+    pub fn from_enclosures(pose: &IntervalPose, twist: &IntervalTwist) -> Self {
+        let [row0, row1, row2] = pose.rotation.rows();
+        let rows = [ball(row0), ball(row1), ball(row2)];
+        let square = |r: f64| r * r;
+        let rotation_radius =
+            (square(rows[0].1) + square(rows[1].1) + square(rows[2].1)).sqrt() * UP + UNDERFLOW;
+        let (position, position_radius) = ball(pose.translation);
+        let (linear, linear_radius) = ball(twist.linear);
+        let (angular, angular_radius) = ball(twist.angular);
+        Self {
+            rotation: DMat3::from_cols(rows[0].0, rows[1].0, rows[2].0).transpose(),
+            position,
+            at: pose.at,
+            linear,
+            angular,
+            rotation_radius,
+            position_radius,
+            linear_radius,
+            angular_radius,
+        }
+    }
+}
+
+/// A ball about a box: `½(lo + hi)` with the length of the half-widths, plus one rounding of either.
+///
+/// With `|m − ½(lo + hi)| ≤ u|m|` and `½(hi − lo)` rounded within u of itself, a point of the box is within
+/// `½(hi − lo)(1 + u) + u|m|` of `m` in each coordinate. What is not finite becomes the ball of infinite radius
+/// about 0.
+#[inline]
+pub(crate) fn ball(v: IntervalVec3) -> (DVec3, f64) {
+    let middle = |i: Interval| 0.5 * (i.lo() + i.hi());
+    let half = |i: Interval| 0.5 * (i.hi() - i.lo());
+    let m = DVec3::new(middle(v.x), middle(v.y), middle(v.z));
+    let r = DVec3::new(half(v.x), half(v.y), half(v.z));
+    let radius = (r.length() + f64::EPSILON * m.length()) * UP + UNDERFLOW;
+    if radius < f64::INFINITY { (m, radius) } else { (DVec3::ZERO, f64::INFINITY) }
+}

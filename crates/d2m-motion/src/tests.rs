@@ -1,0 +1,250 @@
+use crate::double_double::DoubleDouble;
+use crate::sin_cos::{LARGEST_ANGLE, sin_cos, sin_cos_two};
+use crate::{ConstantTwist, Keyframes, MotionError, Pose, RigidMotion, ScrewMotion, Span, Twist};
+use d2m_interval::{F64x2, Interval};
+use glam::{DQuat, DVec3};
+
+/// A small generator (SplitMix64), so that every run sees the same numbers.
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 * (0.5_f64).powi(53)
+    }
+    fn signed(&mut self) -> f64 {
+        2.0 * self.unit() - 1.0
+    }
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.signed(), self.signed(), self.signed())
+    }
+    fn motion(&mut self, speed: f64) -> ConstantTwist {
+        let q = DQuat::from_xyzw(self.signed(), self.signed(), self.signed(), self.signed());
+        ConstantTwist::try_new(self.vector(), q, self.vector() * speed, self.vector() * speed)
+            .unwrap()
+            .with_at(self.vector())
+            .with_reference_time(self.signed())
+    }
+}
+
+#[test]
+fn sine_and_cosine_are_within_two_units() {
+    let mut random = Random(1);
+    let mut worst = 0.0_f64;
+    for i in 0..200_000 {
+        let scale = [1.0, 3.0, 100.0, 1e4, 8e5, LARGEST_ANGLE][i % 6];
+        let mut x = random.signed() * scale;
+        if i % 7 == 0 {
+            // Next to a multiple of π/2.
+            x = (x / core::f64::consts::FRAC_PI_2).round() * core::f64::consts::FRAC_PI_2;
+        }
+        let (sin, cos) = sin_cos(x);
+        let other = random.signed() * if i % 3 == 0 { 0.7 } else { scale };
+        let (sins, coss) = sin_cos_two(F64x2::pack(x, other));
+        let [s0, s1] = sins.to_array();
+        let [c0, c1] = coss.to_array();
+        assert_eq!([(s0, c0), (s1, c1)], [(sin, cos), sin_cos(other)]);
+        // A reduction of its own, for arguments of any size.
+        let unit = 0.5 * f64::EPSILON;
+        for (mine, theirs) in [sin, cos].into_iter().zip(<[Interval; 2]>::from(Interval::point(x).sin_cos()))
+        {
+            assert!(mine >= theirs.lo() - 2.0 * unit && mine <= theirs.hi() + 2.0 * unit, "{x}");
+        }
+        let (s, c) = DoubleDouble::from_f64(x).sin_cos();
+        worst = worst.max(((s.hi - sin) + s.lo).abs() / unit).max(((c.hi - cos) + c.lo).abs() / unit);
+    }
+    assert!(worst <= 2.0, "{worst}");
+    assert!(worst >= 0.7, "the error was not really measured: {worst}");
+    assert!(sin_cos(2e9).0.is_nan() && sin_cos(f64::NAN).1.is_nan() && sin_cos(f64::INFINITY).0.is_nan());
+}
+
+#[test]
+fn double_double_sine_satisfies_its_identities() {
+    let mut random = Random(2);
+    for _ in 0..2000 {
+        let x = DoubleDouble { hi: random.signed() * 50.0, lo: random.signed() * 1e-16 };
+        let (s, c) = x.sin_cos();
+        let one = s.mul(s).add(c.mul(c)).sub(DoubleDouble::ONE);
+        assert!(one.hi.abs() < 1e-29, "{one:?}");
+        // sin 2x = 2 sin x cos x
+        let (s2, _) = x.add(x).sin_cos();
+        let d = s2.sub(s.mul(c).mul_f64(2.0));
+        assert!(d.hi.abs() < 1e-28, "{d:?}");
+        assert!((s.hi - x.hi.sin()).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn enclosures_of_a_linear_motion_contain_it() {
+    let mut random = Random(3);
+    for i in 0..3000 {
+        let motion = random.motion([0.1, 3.0, 300.0][i % 3]);
+        let start = random.signed() * [1.0, 100.0][i % 2];
+        let width = random.unit() * [0.0, 1e-9, 1e-2, 1.0][i % 4];
+        let window = Interval::new(start, start + width);
+        let pose = motion.enclose_pose(window);
+        for j in 0..5 {
+            let t = if j == 4 { window.hi() } else { (start + width * 0.25 * f64::from(j)).min(window.hi()) };
+            let x = motion.position_dd(t);
+            let r = motion.rotation_dd(t).to_mat3();
+            for (k, enclosure) in
+                [pose.translation.x, pose.translation.y, pose.translation.z].iter().enumerate()
+            {
+                assert!(contains_dd(*enclosure, x[k]), "{motion:?} {t} {enclosure:?}");
+            }
+            for (row, enclosure) in pose.rotation.rows().iter().enumerate() {
+                for (column, e) in [enclosure.x, enclosure.y, enclosure.z].iter().enumerate() {
+                    let value = motion.rotation_dd(t).0[row][column];
+                    assert!(contains_dd(*e, value), "{motion:?} {t} {e:?} {value:?} {r:?}");
+                }
+            }
+            let point = random.vector();
+            let (plain, _) = motion.pose_and_twist(t);
+            let enclosed = pose.enclose_point(point);
+            let p = plain.transform_point(point);
+            let slack = 1e-12 * (1.0 + x[0].hi.abs() + x[1].hi.abs() + x[2].hi.abs());
+            assert!(enclosed.x.lo() - slack <= p.x && p.x <= enclosed.x.hi() + slack, "{motion:?} {t}");
+            let back = plain.inverse_transform_point(p);
+            assert!((back - point).length() < slack);
+        }
+    }
+}
+
+fn contains_dd(e: Interval, x: DoubleDouble) -> bool {
+    // hi + lo lies in [e.lo, e.hi]
+    let above = DoubleDouble::from_f64(e.hi()).sub(x);
+    let below = x.sub(DoubleDouble::from_f64(e.lo()));
+    above.hi >= 0.0 && below.hi >= 0.0
+}
+
+#[test]
+fn rebasing_keeps_the_motion_at_far_times() {
+    let mut random = Random(4);
+    for _ in 0..300 {
+        let motion = random.motion(2.0);
+        let t0 = 1e5 * random.signed();
+        let near = motion.rebase(t0);
+        let t = t0 + random.unit();
+        let (x, y) = (motion.position_dd(t), near.position_dd(t));
+        assert!((x[0].hi - y[0].hi).abs() <= 4.0 * f64::EPSILON * (1.0 + x[0].hi.abs()));
+        let (a, b) = (motion.rotation_dd(t).to_mat3(), near.rotation_dd(t).to_mat3());
+        assert!((a - b).to_cols_array().iter().all(|d| d.abs() < 4e-15), "{motion:?}");
+    }
+}
+
+#[test]
+fn accelerations_are_bounded() {
+    let mut random = Random(5);
+    for _ in 0..200 {
+        let motion = random.motion(3.0);
+        let window = Interval::new(0.0, 1.0);
+        let bound = motion.bound_acceleration(window, 1.0);
+        let w = motion.angular_velocity();
+        let arm = random.vector().normalize();
+        assert!(w.cross(w.cross(arm)).length() <= bound && bound <= w.length_squared() * (1.0 + 1e-12));
+    }
+}
+
+#[test]
+fn screws_join_poses_and_keep_twists() {
+    let mut random = Random(6);
+    for _ in 0..500 {
+        let a = random.motion(1.0).pose_and_twist(0.0).0;
+        let b = random.motion(1.0).pose_and_twist(0.0).0;
+        let screw = ScrewMotion::try_from_poses(a, b, -1.0, 2.0).unwrap();
+        let end = screw.pose_and_twist(2.0).0;
+        for point in [DVec3::ZERO, DVec3::X, DVec3::Y] {
+            assert!((end.transform_point(point) - b.transform_point(point)).length() < 1e-11, "{a:?} {b:?}");
+        }
+        let (v, w) = (screw.as_linear().linear_velocity(), screw.as_linear().angular_velocity());
+        assert!(v.cross(w).length() < 1e-13);
+        let twist = Twist { linear: random.vector(), angular: random.vector() };
+        let moved = ScrewMotion::try_from_twist(a, twist, 0.5).unwrap();
+        let (pose, now) = moved.pose_and_twist(0.5);
+        assert!((pose.transform_point(a.at) - a.translation).length() < 1e-11);
+        let arm = a.translation - pose.translation;
+        assert!((now.velocity_of(arm) - twist.linear).length() < 1e-12);
+        assert!(ScrewMotion::try_from_linear(*moved.as_linear()).is_ok());
+    }
+    let slide = ScrewMotion::try_from_twist(Pose::IDENTITY, Twist { linear: DVec3::X, ..Twist::ZERO }, 0.0);
+    assert_eq!(slide.as_ref().unwrap().pitch(), None);
+    assert_eq!(slide.unwrap().axis_direction(), DVec3::X);
+    assert!(ScrewMotion::try_from_poses(Pose::IDENTITY, Pose::IDENTITY, 1.0, 1.0).is_err());
+}
+
+#[test]
+fn keyframes_pass_through_their_poses() {
+    let mut random = Random(7);
+    for span in [Span::Linear, Span::Screw] {
+        let frames: Vec<(f64, Pose)> =
+            (0..6).map(|i| (f64::from(i) * 0.5, random.motion(1.0).pose_and_twist(0.0).0)).collect();
+        let path = Keyframes::try_new(&frames, span).unwrap();
+        for ((start, end, motion), pair) in path.spans().zip(frames.windows(2)) {
+            for (t, pose) in [(start, pair[0].1), (end, pair[1].1)] {
+                let got = motion.pose_and_twist(t).0;
+                assert!((got.transform_point(DVec3::Y) - pose.transform_point(DVec3::Y)).length() < 1e-11);
+            }
+        }
+        assert!(path.span_at(-0.1).is_none() && path.span_at(2.6).is_none() && path.span_at(2.5).is_some());
+    }
+    let still = (0.0, Pose::IDENTITY);
+    assert!(Keyframes::try_new(&[still], Span::Linear).is_err());
+    assert!(matches!(
+        Keyframes::try_new(&[still, still], Span::Linear),
+        Err(MotionError::Keyframes { index: 1, .. })
+    ));
+}
+
+#[test]
+fn text_round_trips_and_errors_name_the_key() {
+    let mut random = Random(8);
+    for _ in 0..100 {
+        let motion = random.motion(1.0);
+        assert_eq!(motion.to_string().parse::<ConstantTwist>(), Ok(motion));
+    }
+    for (text, expected) in [
+        ("x=1,2", "x: expected 3"),
+        ("x=1,2,z", "\"z\" is not a number"),
+        ("x=1,2,nan", "not finite"),
+        ("spin=1", "spin: unknown key"),
+        ("v=1,2,3;v=1,2,3", "v: given twice"),
+        ("hello", "expected key=value"),
+        ("q=0,0,0,0", "cannot be normalised"),
+    ] {
+        let message = text.parse::<ConstantTwist>().unwrap_err().to_string();
+        assert!(message.contains(expected), "{message}");
+    }
+    assert_eq!(" x = 1, 0,0 ; ".parse::<ConstantTwist>(), Ok(ConstantTwist::REST.with_position(DVec3::X)));
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn serde_forms_are_checked() {
+    let motion: ConstantTwist = serde_json::from_str(r#"{"x":[1,2,3],"q":[2,0,0,0],"w":[0,0,1]}"#).unwrap();
+    assert_eq!(motion.orientation().w, 2.0);
+    let text = serde_json::to_string(&motion).unwrap();
+    assert_eq!(serde_json::from_str::<ConstantTwist>(&text).unwrap(), motion);
+    assert!(serde_json::from_str::<ConstantTwist>(r#"{"q":[0,0,0,0]}"#).is_err());
+    assert!(serde_json::from_str::<ConstantTwist>(r#"{"position":[0,0,0]}"#).is_err());
+    assert!(serde_json::from_str::<ScrewMotion>(r#"{"v":[1,0,0],"w":[0,0,1]}"#).is_err());
+    let keys = r#"{"times":[0,1],"spans":[{"v":[1,0,0]}]}"#;
+    let path: Keyframes = serde_json::from_str(keys).unwrap();
+    assert_eq!(path.motions().len(), 1);
+    assert!(serde_json::from_str::<Keyframes>(r#"{"times":[1,0],"spans":[{}]}"#).is_err());
+}
+
+#[test]
+fn poses_at_far_times_are_finite_and_near_ones_exact() {
+    let motion = ConstantTwist::REST.with_angular_velocity(DVec3::new(0.3, -1.1, 2.0));
+    for t in [1e2, 1e5, 947_324.7, 1e8, 1e12, 1e30, -1e57] {
+        let (pose, _) = motion.pose_and_twist(t);
+        assert!(pose.rotation.is_finite() && (pose.rotation.length() - 1.0).abs() < 1e-12, "{t}: {pose:?}");
+    }
+    // 100 000 full turns of a quarter turn a unit of time: back where it was, up to what π/2 as a double misses.
+    let quarter = ConstantTwist::REST.with_angular_velocity(DVec3::Z * core::f64::consts::FRAC_PI_2);
+    let (pose, _) = quarter.pose_and_twist(400_000.0);
+    assert!((pose.transform_vector(DVec3::X) - DVec3::X).length() < 1e-10, "{pose:?}");
+}

@@ -1,0 +1,93 @@
+//! The text form of a motion, as the command line takes it: `x=1,2,3;q=w,x,y,z;v=…;w=…[;at=…][;t=…]`.
+use crate::{ConstantTwist, MotionError};
+use core::fmt;
+use core::str::FromStr;
+use glam::{DQuat, DVec3};
+
+fn text_error(key: &str, reason: impl Into<String>) -> MotionError {
+    MotionError::Text { key: key.to_string(), reason: reason.into() }
+}
+
+fn numbers<const N: usize>(key: &str, value: &str) -> Result<[f64; N], MotionError> {
+    let mut out = [0.0_f64; N];
+    let parts: Vec<&str> = value.split(',').collect();
+    if parts.len() != N {
+        return Err(text_error(
+            key,
+            format!("expected {N} numbers separated by commas, found {}", parts.len()),
+        ));
+    }
+    for (slot, part) in out.iter_mut().zip(parts) {
+        let part = part.trim();
+        *slot = part.parse().map_err(|_| text_error(key, format!("{part:?} is not a number")))?;
+        if !slot.is_finite() {
+            return Err(text_error(key, format!("{part} is not finite")));
+        }
+    }
+    Ok(out)
+}
+
+/// Reads `x=1,2,3;q=w,x,y,z;v=1,2,3;w=1,2,3;at=1,2,3;t=0`: position, orientation, linear velocity, angular velocity,
+/// followed body point, reference time. Every part may be left out (at rest, at the origin); none may come twice.
+///
+/// # Errors
+/// [`MotionError::Text`] naming the key.
+impl FromStr for ConstantTwist {
+    type Err = MotionError;
+
+    fn from_str(text: &str) -> Result<Self, MotionError> {
+        let mut motion = (DVec3::ZERO, DQuat::IDENTITY, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, 0.0);
+        let mut seen: Vec<&str> = Vec::new();
+        for part in text.split(';').map(str::trim).filter(|part| !part.is_empty()) {
+            let Some((key, value)) = part.split_once('=') else {
+                return Err(text_error(part, "expected key=value with key one of x, q, v, w, at, t"));
+            };
+            let key = key.trim();
+            if seen.contains(&key) {
+                return Err(text_error(key, "given twice"));
+            }
+            seen.push(key);
+            match key {
+                "x" => motion.0 = DVec3::from_array(numbers(key, value)?),
+                "q" => {
+                    let [w, x, y, z] = numbers(key, value)?;
+                    motion.1 = DQuat::from_xyzw(x, y, z, w);
+                }
+                "v" => motion.2 = DVec3::from_array(numbers(key, value)?),
+                "w" => motion.3 = DVec3::from_array(numbers(key, value)?),
+                "at" => motion.4 = DVec3::from_array(numbers(key, value)?),
+                "t" => [motion.5] = numbers(key, value)?,
+                _ => return Err(text_error(key, "unknown key: expected x, q, v, w, at or t")),
+            }
+        }
+        let (x, q, v, w, at, t) = motion;
+        ConstantTwist::try_new(x, q, v, w)?.try_with_at(at)?.try_with_reference_time(t)
+    }
+}
+
+/// The text form that [`FromStr`] reads, with all digits.
+impl fmt::Display for ConstantTwist {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let list = |f: &mut fmt::Formatter<'_>, key: &str, values: &[f64]| {
+            write!(f, "{key}=")?;
+            values.iter().enumerate().try_for_each(|(i, x)| {
+                if i > 0 {
+                    write!(f, ",")?;
+                }
+                write!(f, "{x:?}")
+            })
+        };
+        let q = self.orientation();
+        list(f, "x", &self.position().to_array())?;
+        list(f, ";q", &[q.w, q.x, q.y, q.z])?;
+        list(f, ";v", &self.linear_velocity().to_array())?;
+        list(f, ";w", &self.angular_velocity().to_array())?;
+        if self.at() != DVec3::ZERO {
+            list(f, ";at", &self.at().to_array())?;
+        }
+        if self.reference_time() != 0.0 {
+            list(f, ";t", &[self.reference_time()])?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,29 @@
+#![doc = include_str!("../README.md")]
+
+mod body;
+mod broad_phase;
+mod world;
+
+pub use body::Body;
+pub use world::{BodyId, FirstContact, World, WorldError};
+
+pub use d2m_bvh as bvh;
+pub use d2m_feature as feature;
+pub use d2m_interval as interval;
+pub use d2m_motion as motion;
+pub use d2m_root as root;
+pub use d2m_shapes as shapes;
+pub use glam;
+
+pub use d2m_bvh::{
+    Budget, Contact, MeshTree, Mode, Moving, PairCache, QueryOptions, Solid, TimeOfContact, TriMesh, Window,
+    contact_exists, time_of_contact, time_of_contact_with,
+};
+#[doc(hidden)]
+pub use d2m_motion::LinearMotion;
+pub use d2m_motion::{ConstantTwist, RigidMotion, ScrewMotion};
+
+/// The example of the repository's README, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;

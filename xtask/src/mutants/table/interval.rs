@@ -1,0 +1,35 @@
+//! Deliberate faults in `d2m-interval`.
+use super::{Mutant, in_test, patch};
+
+pub(super) const MUTANTS: &[Mutant] = &[
+    // Intervals.
+    patch(
+        "no outward rounding",
+        "crates/d2m-interval/src/round.rs",
+        "x.abs().times(F64x2::splat(HALF_ULP)).plus(F64x2::splat(TINY))",
+        "x.abs().times(F64x2::splat(0.0))",
+        "crates/d2m-interval/tests/differential.rs::no_loss_and_tight",
+    ),
+    patch(
+        "underflow is not covered",
+        "crates/d2m-interval/src/round.rs",
+        "pub(crate) const TINY: f64 = f64::from_bits((1023 - 501) << 52);",
+        "pub(crate) const TINY: f64 = 0.0;",
+        "crates/d2m-interval/tests/special_cases.rs::overflow_and_underflow",
+    ),
+    patch(
+        "sine and cosine without the kernel's error",
+        "crates/d2m-interval/src/elementary/trig.rs",
+        "pub(super) const PAD: f64 = f64::from_bits(0x3CAE_0000_0000_0000);",
+        "pub(super) const PAD: f64 = 0.0;",
+        "crates/d2m-interval/tests/differential.rs::no_loss_and_tight",
+    ),
+    in_test(
+        "outward rounding removed on one side, one last place inwards",
+        "crates/d2m-interval/tests/differential.rs::mutants_without_outward_rounding_die",
+    ),
+    in_test(
+        "a forgotten extremum, a wrong quadrant of sine and cosine",
+        "crates/d2m-interval/tests/differential.rs::mutants_of_the_quadrant_die",
+    ),
+];

@@ -1,0 +1,35 @@
+//! Deliberate faults in `d2m-motion`.
+use super::{Mutant, in_test, patch};
+
+pub(super) const MUTANTS: &[Mutant] = &[
+    // Motions.
+    patch(
+        "jerk of a path without 3U",
+        "crates/d2m-motion/src/relative/bounds.rs",
+        "(3.0 * k.across + k.b * k.b * reach.min(k.reach))",
+        "(k.b * k.b * reach.min(k.reach))",
+        "crates/d2m-motion/src/relative/tests.rs::bounds_of_the_derivatives_hold_and_are_nearly_reached",
+    ),
+    patch(
+        "half of K2 in the acceleration of a path",
+        "crates/d2m-motion/src/relative/bounds.rs",
+        "across, k2, k3, k4, rounding }",
+        "across, k2: 0.5 * k2, k3, k4, rounding }",
+        "crates/d2m-motion/src/relative/tests.rs::bounds_of_the_derivatives_hold_and_are_nearly_reached",
+    ),
+    patch(
+        "rounding of frames not counted",
+        "crates/d2m-motion/src/relative/bounds.rs",
+        "const ROUNDING: f64 = 128.0;",
+        "const ROUNDING: f64 = 0.0;",
+        "crates/d2m-motion/src/relative/tests.rs::remainders_hold_and_are_nearly_reached",
+    ),
+    in_test(
+        "K3 = w³, no bY in V, a remainder without E",
+        "crates/d2m-motion/src/relative/tests.rs::bounds_of_the_derivatives_hold_and_are_nearly_reached",
+    ),
+    in_test(
+        "a term of the third derivative of any motion left out",
+        "crates/d2m-motion/src/relative/any_tests.rs::the_third_derivative_is_bounded_with_every_term",
+    ),
+];
