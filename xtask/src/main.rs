@@ -1,24 +1,54 @@
 //! Project tasks: `cargo xtask ci` runs every check that must never be red; `cargo xtask bench` and
 //! `cargo xtask report` print every figure that the documentation states.
+//!
+//! Without the feature `full` only the checks are compiled, which takes seconds. A task of the evaluation starts this
+//! program again, with the feature and optimised.
+#[cfg(feature = "full")]
 mod accuracy;
+#[cfg(feature = "full")]
 mod bench;
 mod ci;
+#[cfg(feature = "full")]
 mod figure;
+#[cfg(feature = "full")]
 mod judge;
+#[cfg(feature = "full")]
 mod machine;
 mod mutants;
+#[cfg(feature = "full")]
 #[path = "../../crates/d2m-feature/tests/planted/mod.rs"]
 mod planted;
+#[cfg(feature = "full")]
 mod random;
+#[cfg(feature = "full")]
 mod report;
+#[cfg(feature = "full")]
 mod statistics;
 mod tidy;
+#[cfg(feature = "full")]
 mod trials;
 
-use clap::{Parser, Subcommand};
-use std::process::ExitCode;
+#[cfg(not(feature = "full"))]
+mod forwarded;
 
-/// What a task answers: an error is printed and becomes exit code 1.
+use clap::{Parser, Subcommand};
+#[cfg(not(feature = "full"))]
+use forwarded::Forwarded;
+use std::process::ExitCode;
+#[cfg(not(feature = "full"))]
+use {
+    Forwarded as Accuracy, Forwarded as Bench, Forwarded as Counted, Forwarded as Report,
+    Forwarded as Stopped, Forwarded as Trials,
+};
+#[cfg(feature = "full")]
+use {
+    accuracy::Options as Accuracy,
+    bench::{CountedOptions as Counted, Options as Bench, StoppedOptions as Stopped},
+    report::Options as Report,
+    trials::Options as Trials,
+};
+
+/// The result of a task: an error is printed and becomes exit code 1.
 type TaskResult = Result<(), Box<dyn std::error::Error>>;
 
 #[derive(Parser)]
@@ -34,41 +64,47 @@ enum Task {
     Ci(ci::Options),
     /// Fails when the map in ARCHITECTURE.md, the folders and the order of the crates disagree.
     Tidy,
-    /// Random families against slow oracles; fails on any contact missed or late.
-    Accuracy(accuracy::Options),
     /// Deliberate faults in a copy of the sources, each of which a named test must notice; fails if one survives.
     Mutants(mutants::Options),
+    /// Random families against slow oracles; fails on any contact missed or late.
+    #[command(disable_help_flag = !cfg!(feature = "full"))]
+    Accuracy(Accuracy),
     /// Time and accuracy of every method on ten pairs of shapes; each answer is judged before its time counts.
-    Bench(bench::Options),
+    #[command(disable_help_flag = !cfg!(feature = "full"))]
+    Bench(Bench),
     /// Tables and figures in docs/results, from the newest results of the bench.
-    Report(report::Options),
+    #[command(disable_help_flag = !cfg!(feature = "full"))]
+    Report(Report),
     /// The process in which a peer's query runs, so that it can be ended.
     #[command(hide = true)]
-    ParryCast(bench::StoppedOptions),
+    ParryCast(Stopped),
     /// The program in which callgrind counts.
     #[command(hide = true)]
-    Counted(bench::CountedOptions),
+    Counted(Counted),
     /// Writes a file of random trials, 256 by default, by the law of the bench.
-    Trials(trials::Options),
-}
-
-impl Task {
-    /// Does its result depend on how fast the code is?
-    fn wants_optimised_code(&self) -> bool {
-        !matches!(self, Self::Ci(_) | Self::Tidy | Self::Mutants(_) | Self::Report(_) | Self::Trials(_))
-    }
+    #[command(disable_help_flag = !cfg!(feature = "full"))]
+    Trials(Trials),
 }
 
 fn main() -> ExitCode {
-    let task = Arguments::parse().task;
-    if cfg!(debug_assertions) && task.wants_optimised_code() {
-        return rerun_optimised();
-    }
-    let result = match task {
+    #[cfg(not(feature = "full"))]
+    let result = match Arguments::parse().task {
         Task::Ci(options) => ci::run(&options),
         Task::Tidy => tidy::run(),
-        Task::Accuracy(options) => accuracy::run(&options),
         Task::Mutants(options) => mutants::run(&options),
+        Task::Accuracy(_)
+        | Task::Bench(_)
+        | Task::Report(_)
+        | Task::Counted(_)
+        | Task::ParryCast(_)
+        | Task::Trials(_) => return forwarded::run(),
+    };
+    #[cfg(feature = "full")]
+    let result = match Arguments::parse().task {
+        Task::Ci(options) => ci::run(&options),
+        Task::Tidy => tidy::run(),
+        Task::Mutants(options) => mutants::run(&options),
+        Task::Accuracy(options) => accuracy::run(&options),
         Task::Bench(options) => bench::run(&options),
         Task::Report(options) => report::run(&options),
         Task::Counted(options) => bench::run_counted(&options),
@@ -84,29 +120,15 @@ fn main() -> ExitCode {
     }
 }
 
-/// The same call once more, built for release. (`cargo xtask ci` does not pay for that build.)
-fn rerun_optimised() -> ExitCode {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let status = std::process::Command::new(cargo)
-        .args(["run", "--release", "--quiet", "--package", "xtask", "--"])
-        .args(std::env::args_os().skip(1))
-        .status();
-    match status {
-        Ok(status) => status.code().map_or(ExitCode::FAILURE, |code| ExitCode::from(code as u8)),
-        Err(error) => {
-            eprintln!("xtask: cargo does not start: {error}");
-            ExitCode::FAILURE
-        }
-    }
-}
-
 /// Reads an option that must be a positive finite number.
+#[cfg(feature = "full")]
 fn positive(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
     if number > 0.0 && number.is_finite() { Ok(number) } else { Err("not positive and finite".to_owned()) }
 }
 
 /// Reads a count that must not be 0: a run over nothing would pass.
+#[cfg(feature = "full")]
 fn at_least_one(text: &str) -> Result<usize, String> {
     let count: usize = text.parse().map_err(|_| "not a whole number".to_owned())?;
     if count > 0 { Ok(count) } else { Err("nothing would be asked".to_owned()) }
@@ -119,7 +141,7 @@ fn workspace_root() -> std::path::PathBuf {
     std::path::Path::new(&manifest).parent().expect("xtask lies in the workspace").to_path_buf()
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "full"))]
 mod tests {
     use super::{Arguments, Task, accuracy, ci};
     use clap::Parser;

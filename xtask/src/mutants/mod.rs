@@ -35,7 +35,9 @@ impl Mutant {
         let mut arguments = vec!["-p".to_string(), package.to_string()];
         match file.strip_prefix(package).and_then(|rest| rest.strip_prefix("/tests/")) {
             Some(test) => arguments.extend(["--test".into(), test.trim_end_matches(".rs").into()]),
-            None if package == "xtask" => arguments.extend(["--bin".into(), "xtask".into()]),
+            None if package == "xtask" => {
+                arguments.extend(["--features", "full", "--bin", "xtask"].map(String::from));
+            }
             None => arguments.push("--lib".into()),
         }
         arguments
@@ -73,7 +75,7 @@ mod tests {
         let of = |test| Mutant { name: "", change: Change::InTest, test }.target().join(" ");
         assert_eq!(of("crates/d2m-bvh/tests/engine.rs::f"), "-p d2m-bvh --test engine");
         assert_eq!(of("crates/d2m-bvh/src/search/tests.rs::f"), "-p d2m-bvh --lib");
-        assert_eq!(of("xtask/src/judge/tests.rs::f"), "-p xtask --bin xtask");
+        assert_eq!(of("xtask/src/judge/tests.rs::f"), "-p xtask --features full --bin xtask");
         let folder = |test| Mutant { name: "", change: Change::InTest, test }.package_folder();
         assert_eq!(folder("crates/d2m-bvh/tests/engine.rs::f"), "crates/d2m-bvh");
         assert_eq!(folder("xtask/src/judge/tests.rs::f"), "xtask");
