@@ -5,7 +5,7 @@ use super::distance::{ClosestPair, enclose_distance};
 use super::leaf_pair::Candidate;
 use super::sphere_tree::SphereTree;
 use super::step_back::{Disjoint, estimate_relative_velocity, step_back};
-use crate::{Contact, StartState};
+use crate::{Contact, Evidence, StartState};
 use d2m_feature::paper::RelativeMotion;
 use d2m_feature::{FeaturePair, TriangleFeature};
 use d2m_motion::Pose;
@@ -60,6 +60,10 @@ pub(crate) fn contact_at_start(
     let mut contact = contact_of_pair(bodies, time, tolerance, pair);
     contact.start = start;
     contact.separation = 0.0;
+    if start == StartState::Contained {
+        // Decided by certain signs while the surfaces are further apart than the tolerance.
+        contact.evidence = Evidence::Crossing;
+    }
     if start == StartState::Touching {
         contact.separation = (pair.detail.lower - pair.rounding).max(0.0);
     }
@@ -79,6 +83,7 @@ fn contact_of_pair(bodies: &[Moving<'_>; 2], time: f64, tolerance: f64, pair: &C
     Contact {
         time_lo: time,
         time_hi: time,
+        evidence: if detail.upper + pair.rounding <= tolerance { Evidence::Near } else { Evidence::Early },
         separation: 0.0,
         tolerance,
         normal,

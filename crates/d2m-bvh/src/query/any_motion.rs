@@ -7,7 +7,7 @@
 
 use super::contact::{Contact, StartState, TimeOfContact};
 use super::distance::{Distance, distance};
-use crate::{Moving, Posed, QueryError, QueryOptions, Window};
+use crate::{Evidence, Moving, Posed, QueryError, QueryOptions, Solid, Window};
 use d2m_feature::FeaturePair;
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
 use d2m_motion::{Pose, Twist};
@@ -24,6 +24,8 @@ struct Look {
     distance: Distance,
     lower: f64,
     upper: f64,
+    /// How far the true poses may be from those of the distance, both bodies together.
+    open: f64,
     twists: [Twist; 2],
     poses: [Pose; 2],
 }
@@ -57,14 +59,16 @@ pub(super) fn time_of_contact(
             } else {
                 look.distance.state
             };
-            return Ok(TimeOfContact::Contact(describe(&bodies, &look, (t, t), tolerance, state)));
+            let evidence = evidence(&bodies, &look, level)?;
+            let meeting = Meeting { time: t, evidence };
+            return Ok(TimeOfContact::Contact(describe(&bodies, &look, (t, meeting), tolerance, state)));
         }
         if look.lower <= level + tolerance + error {
-            let late = reached_by(&bodies, reach, &look, (t, window.end()), (options, level))?;
+            let meeting = reached_by(&bodies, reach, &look, (t, window.end()), (options, level))?;
             return Ok(TimeOfContact::Contact(describe(
                 &bodies,
                 &look,
-                (t, late),
+                (t, meeting),
                 tolerance,
                 StartState::Apart,
             )));
@@ -87,10 +91,14 @@ pub(super) fn time_of_contact(
         }
         if next <= t {
             // The time left is below the resolution of time itself.
+            let meeting = match evidence(&bodies, &self::look(&bodies, reach, until, options)?, level)? {
+                Evidence::Early => Meeting { time: t, evidence: Evidence::Early },
+                evidence => Meeting { time: until, evidence },
+            };
             return Ok(TimeOfContact::Contact(describe(
                 &bodies,
                 &look,
-                (t, until),
+                (t, meeting),
                 tolerance,
                 StartState::Apart,
             )));
@@ -138,6 +146,7 @@ fn look(
     let found =
         distance(Posed::new(bodies[0].body, poses[0]), Posed::new(bodies[1].body, poses[1]), options.solid)?;
     Ok(Look {
+        open,
         lower: found.lower - open * (1.0 + 1e-15),
         upper: found.upper + open * (1.0 + 1e-15),
         distance: found,
@@ -157,33 +166,51 @@ impl<I: Iterator<Item = Interval>> SumUp for I {
     }
 }
 
-/// A time by which the distance was certainly at most the level; `from` when a few tries find none.
+/// What is proven of the meeting, and for a time not after which one.
+#[derive(Clone, Copy)]
+struct Meeting {
+    time: f64,
+    evidence: Evidence,
+}
+
+/// What is proven of the meeting at the time of the look.
+fn evidence(bodies: &[Moving<'_>; 2], look: &Look, level: f64) -> Result<Evidence, QueryError> {
+    if look.distance.state == StartState::Contained {
+        // Moving from the poses of the distance to the true ones brings no surface to the other one.
+        let [a, b] = [0, 1].map(|k| Posed::new(bodies[k].body, look.poses[k]));
+        let surfaces = distance(a, b, Solid::Surface)?;
+        if surfaces.lower > look.open {
+            return Ok(Evidence::Crossing);
+        }
+    }
+    Ok(if look.upper <= level { Evidence::Near } else { Evidence::Early })
+}
+
+/// A time by which something is proven of the meeting; `from` when a few tries find none.
 fn reached_by(
     bodies: &[Moving<'_>; 2],
     reach: [f64; 2],
     at: &Look,
     (from, end): (f64, f64),
     (options, level): (&QueryOptions, f64),
-) -> Result<f64, QueryError> {
-    let (mut t, mut upper) = (from, at.upper);
-    let mut closing = closing_speed(at);
+) -> Result<Meeting, QueryError> {
     let target = options.min_separation + 0.5 * (level - options.min_separation);
+    let (mut t, mut upper, mut closing) = (from, at.upper, closing_speed(at));
+    let mut shown = evidence(bodies, at, level)?;
     for _ in 0..6 {
-        if upper <= level {
-            return Ok(t);
-        }
-        if closing.is_nan() || closing <= 0.0 || t >= end {
+        let passed = closing.is_nan() || closing <= 0.0 || t >= end;
+        if shown > Evidence::Early || passed {
             break;
         }
         t = (t + (upper - target) / closing).max(t.next_up()).min(end);
         let look = look(bodies, reach, t, options)?;
+        shown = evidence(bodies, &look, level)?;
         if look.distance.state != StartState::Apart {
-            return Ok(t);
+            break;
         }
-        upper = look.upper;
-        closing = closing_speed(&look);
+        (upper, closing) = (look.upper, closing_speed(&look));
     }
-    Ok(if upper <= level { t } else { from })
+    Ok(Meeting { time: if shown > Evidence::Early { t } else { from }, evidence: shown })
 }
 
 fn closing_speed(look: &Look) -> f64 {
@@ -194,7 +221,7 @@ fn closing_speed(look: &Look) -> f64 {
 fn describe(
     bodies: &[Moving<'_>; 2],
     look: &Look,
-    (time_lo, time_hi): (f64, f64),
+    (time_lo, meeting): (f64, Meeting),
     tolerance: f64,
     start: StartState,
 ) -> Contact {
@@ -203,7 +230,8 @@ fn describe(
     let corners = [0, 1].map(|k| bodies[k].body.mesh().triangles()[triangles[k] as usize]);
     Contact {
         time_lo,
-        time_hi,
+        time_hi: meeting.time,
+        evidence: meeting.evidence,
         separation: if start == StartState::Overlapping || start == StartState::Contained {
             0.0
         } else {

@@ -1,37 +1,54 @@
+use crate::Evidence;
 use d2m_feature::FeaturePair;
 use glam::DVec3;
 
 /// How the bodies stand at the first instant of the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 pub enum StartState {
-    /// Disjoint, and further apart than the tolerance certifies.
+    /// Disjoint, and further apart than `min_separation` + `tolerance`.
     #[default]
     Apart,
-    /// Within the tolerance of each other; disjoint or just touching.
+    /// Within `separation` of each other, which is at most 3.3 tolerances above `min_separation`; disjoint or just
+    /// touching, or too close for rounding to tell from crossing.
     Touching,
-    /// The surfaces cross.
+    /// The surfaces cross, as the triangles are placed in floating point; [`Evidence::Crossing`] says that this is proven.
     Overlapping,
     /// The surfaces do not cross and one body lies inside the other (only with `Solid::Filled`).
     Contained,
 }
 
-/// The first contact of two moving bodies A and B.
+/// The first contact of two moving bodies A and B: the first time at which their distance is at most
+/// `min_separation` (of the [`QueryOptions`](crate::QueryOptions); zero: they touch), up to the tolerance δ.
 ///
-/// Certified: no contact in [window start, `time_lo`), and the bodies are disjoint at `time_lo`, unless `start` is
-/// not [`StartState::Apart`], and then `time_lo` is the start of the window. Some time in [`time_lo`, `time_hi`] has
-/// a distance of at most `tolerance`.
+/// Certified, in every mode but [`Mode::Exists`](crate::Mode::Exists): the distance is above `min_separation` everywhere
+/// in [window start, `time_lo`], unless `start` is not [`StartState::Apart`], and then `time_lo` is the start of the
+/// window. What is proven of the meeting itself is said by `evidence`:
+///
+/// | `evidence` | some time in [`time_lo`, `time_hi`] |
+/// |---|---|
+/// | [`Crossing`](Evidence::Crossing) | the bodies share a point |
+/// | [`Near`](Evidence::Near) | the distance is at most `min_separation` + `tolerance` |
+/// | [`Early`](Evidence::Early) | nothing is known of the meeting |
+///
+/// The bracket is about the distance `min_separation` + `tolerance`: bodies that close slowly share a point (or come as
+/// near as `min_separation`) later than `time_hi`, by up to `tolerance` over the closing speed, or never.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Contact {
     /// Certified free until here.
     pub time_lo: f64,
-    /// By here the bodies were within `tolerance` (and `min_separation`) of each other. Equal to `time_lo` when that
-    /// could not be shown: a pass that grazes at a distance between one tolerance and `separation`, and modes other
-    /// than accurate.
+    /// By here the bodies had met in the sense of `evidence`. Equal to `time_lo` where nothing could be shown
+    /// ([`Evidence::Early`]), and where the bodies meet at the start already.
     pub time_hi: f64,
-    /// Separation left at `time_lo`: a distance in (0, 3.3 `tolerance`], 0 when the bodies meet at the start.
+    /// What is proven of the meeting.
+    pub evidence: Evidence,
+    /// Separation left at `time_lo`: a distance above `min_separation` by at most 3.3 `tolerance`, 0 when the surfaces cross
+    /// at the start. With [`Mode::Capoeira`](crate::Mode::Capoeira) as large as the boxes of the two triangles.
     pub separation: f64,
-    /// The tolerance δ that was used: the one asked for unless rounding errors of the scene forbid it; at least 1e-100.
+    /// The tolerance δ that was used: the one asked for unless rounding errors of the scene forbid it (then larger: 256
+    /// units of 2⁻⁵³ of its largest length); at least 1e-100. Every promise holds for this δ.
     pub tolerance: f64,
     /// Unit normal at `time_lo`, world frame, from A to B.
     pub normal: DVec3,
@@ -59,12 +76,18 @@ pub struct Contact {
 #[doc(alias = "time_of_impact")]
 #[doc(alias = "toi")]
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(tag = "status", rename_all = "lowercase")
+)]
 pub enum TimeOfContact {
     /// Certified: no contact anywhere in the window.
     Separated,
     /// The first contact.
     Contact(Contact),
-    /// The budget ran out. Certified: no contact in [start of the window, `clear_until`).
+    /// The budget ran out, or a hard cap that holds without one ([`Budget`](crate::Budget)), or the enclosures of a
+    /// motion are too wide. Certified: no contact in [start of the window, `clear_until`).
     Undecided {
         /// End of the part of the window that is proven free.
         clear_until: f64,

@@ -2,6 +2,7 @@ use core::time::Duration;
 
 /// What counts as contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 pub enum Solid {
     /// The bodies are full: a body inside the other is in contact. For watertight meshes.
     #[default]
@@ -12,14 +13,16 @@ pub enum Solid {
 
 /// How far a query goes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum Mode {
     /// The time of contact to the tolerance.
     #[default]
     Accurate,
-    /// Bounded error: stop at the first pair of triangles that come as close as their own size. `time_lo` is
-    /// certified as always; the distance then left is at most the `separation` of the answer, which is at most the sum
-    /// of the radii of the two triangles' boxes. Bodies that pass each other so closely count as in contact.
+    /// Early stop at the first pair of triangles that come as close as their own size. `time_lo` is certified as
+    /// always: no contact before. The contact itself is not: its evidence is [`Evidence::Early`](crate::Evidence::Early),
+    /// and bodies that pass each other so closely without touching are reported too. The distance left at `time_lo` is
+    /// the `separation` of the answer, at most the sum of the radii of the two triangles' boxes.
     Capoeira,
     /// Only whether there is a contact: the answer may be any time of contact, and nothing is promised about the time
     /// before it.
@@ -30,6 +33,11 @@ pub enum Mode {
 ///
 /// Without limits a query still ends: a hard cap of [`Budget::HARD_NODE_TESTS`] applies always.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 #[non_exhaustive]
 pub struct Budget {
     /// Most node tests (one node against the children of another, or one step of a triangle pair).
@@ -66,6 +74,11 @@ impl Budget {
 /// assert_eq!(options.mode, Mode::Accurate);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 #[non_exhaustive]
 pub struct QueryOptions {
     /// δ, a distance in the scene's units. `None`: 1e-10 times the scene's length scale, the larger of the radii of
@@ -77,7 +90,8 @@ pub struct QueryOptions {
     pub mode: Mode,
     /// Limits on the work.
     pub budget: Budget,
-    /// Report the first time at which the distance is at most this. Zero: contact.
+    /// Report the first time at which the distance is at most this, a length in the scene's units. Zero: contact. The
+    /// search stops at a distance of up to this plus 3.3 tolerances; see [`Contact`](crate::Contact).
     pub min_separation: f64,
     /// Search spans of time side by side, on all threads of the current rayon pool (feature `rayon`). The answer has the
     /// same bits at any number of threads. Of use for queries of more than about a millisecond with much

@@ -1,14 +1,16 @@
 //! From what the search found to the answer: witness points, normal, features in the meshes' numbers.
 
+use super::proven_crossing::proven_crossing;
 use crate::search::{
-    Closest, Doubles, Found, Frame, Lanes, Place, Quad, RelativeMotion, Scene, Task, closest, corners,
-    place_a, run,
+    Closest, Doubles, Found, Frame, Lanes, PairScale, Place, Quad, RelativeMotion, Scene, Task, closest,
+    corners, place_a, run,
 };
-use crate::{Contact, MeshTree, StartState};
-use d2m_feature::FeaturePair;
+use crate::{Contact, Evidence, MeshTree, StartState};
+use d2m_feature::{FeaturePair, triangles_intersect};
 use glam::DVec3;
 
-/// The contact with all its data; `bracket`: look for a time by which the tolerance was reached.
+/// The contact with all its data; `bracket`: look for a time by which the tolerance was reached, if that cannot be
+/// shown for `time_lo`.
 pub(super) fn contact(scene: &Scene<'_>, found: &Found, bracket: bool) -> Contact {
     run(Report { scene, found, bracket })
 }
@@ -40,17 +42,39 @@ impl Task for Report<'_> {
         };
         let separation = if start == StartState::Overlapping { 0.0 } else { near.square.sqrt() };
         let a = place_a::<L::Doubles>(&frame, &pair.a);
-        let witness = Witness { near, a, b: pair.b, triangles: found.triangles, separation, start };
-        let mut contact = describe(scene, (&motion, &frame), time, &witness);
-        if bracket && start == StartState::Apart {
-            contact.time_hi = pair.reached_by::<L::Doubles>(scene, time, (&frame, &near));
-        }
-        contact
+        // Pairs that were followed up to the stopping distance are above the level still.
+        let evidence = if start == StartState::Apart && !found.crossing {
+            Evidence::Early
+        } else {
+            pair.evidence::<L::Doubles>(scene, (&frame, &near))
+        };
+        let meeting = match evidence {
+            Evidence::Early if bracket => pair.reached_by::<L::Doubles>(scene, time, (&frame, &near)),
+            evidence => Meeting { time, evidence },
+        };
+        let witness = Witness { near, a, b: pair.b, triangles: found.triangles, separation, start, meeting };
+        describe(scene, (&motion, &frame), time, &witness)
     }
 }
 
 /// Looks at most for the end of a bracket.
 const BRACKET_LOOKS: u32 = 24;
+
+/// What is proven of the meeting of two bodies, and for a time not after which one.
+#[derive(Clone, Copy, Debug)]
+struct Meeting {
+    time: f64,
+    evidence: Evidence,
+}
+
+/// What the pair of triangles proves about the meeting of the bodies at the start of the window.
+pub(super) fn evidence_at_start(scene: &Scene<'_>, triangles: [u32; 2]) -> Evidence {
+    let motion = RelativeMotion::new(scene, scene.window.start());
+    let [a, b] = [corners(scene.a.0, triangles[0]), corners(scene.b.0, triangles[1])];
+    let pair = TrianglePair { motion: &motion, a, b };
+    let (frame, near) = pair.at::<Quad>(motion.start);
+    pair.evidence::<Quad>(scene, (&frame, &near))
+}
 
 /// Two triangles, corners relative to the trees' centres in body axes, and how they move.
 struct TrianglePair<'r> {
@@ -66,15 +90,32 @@ impl TrianglePair<'_> {
         (frame, closest::<D>(&place_a::<D>(&frame, &self.a), &self.b))
     }
 
-    /// A time by which the triangles were certainly within the level; `time_lo` when none is found: Newton's method
-    /// along the normal, and bisection once the triangles have passed each other.
+    /// What is proven of the meeting at the time of the frame.
+    ///
+    /// Placed corners of both bodies together are off by γ/2 at most (γ = `scene.pair.error`); the closest points are
+    /// points of the placed triangles, and their distance and the time of the frame round by less than the other half. So
+    /// a distance of at most L − γ is one of at most L in real arithmetic, and so is that of placed triangles that
+    /// share a point.
+    #[inline(always)]
+    fn evidence<D: Doubles>(&self, scene: &Scene<'_>, (frame, near): (&Frame, &Closest)) -> Evidence {
+        let PairScale { level, error, .. } = scene.pair;
+        let a = place_a::<D>(frame, &self.a);
+        if proven_crossing(&a, &self.b, error) {
+            return Evidence::Crossing;
+        }
+        let is_near = near.square.sqrt() <= level - error;
+        if is_near || triangles_intersect(&a, &self.b) { Evidence::Near } else { Evidence::Early }
+    }
+
+    /// A time by which the triangles were certainly within the level, or had met; `time_lo` when none is found: Newton's
+    /// method along the normal, and bisection once the triangles have passed each other.
     #[inline(always)]
     fn reached_by<D: Doubles>(
         &self,
         scene: &Scene<'_>,
         time_lo: f64,
         (frame, near): (&Frame, &Closest),
-    ) -> f64 {
+    ) -> Meeting {
         // The closest points are on the triangles up to the error: a true upper bound of the distance. In the middle
         // between that and no distance at all there is as much room on either side as there can be.
         let level = scene.pair.level - scene.pair.error;
@@ -97,7 +138,7 @@ impl TrianglePair<'_> {
             let (frame, near) = self.at::<D>(time);
             let (here, speed, normal) = course(&frame, &near);
             if here <= level {
-                return time;
+                return Meeting { time, evidence: Evidence::Near };
             }
             if normal.dot(first_normal) < 0.0 {
                 late = Some(time);
@@ -105,7 +146,15 @@ impl TrianglePair<'_> {
                 (early, distance, closing) = (time, here, speed);
             }
         }
-        time_lo
+        // Passed each other between two times that no time is between, or too fast for the steps.
+        if let Some(late) = late {
+            let (frame, near) = self.at::<D>(late);
+            let evidence = self.evidence::<D>(scene, (&frame, &near));
+            if evidence > Evidence::Early {
+                return Meeting { time: late, evidence };
+            }
+        }
+        Meeting { time: time_lo, evidence: Evidence::Early }
     }
 }
 
@@ -123,6 +172,7 @@ struct Witness {
     triangles: [u32; 2],
     separation: f64,
     start: StartState,
+    meeting: Meeting,
 }
 
 fn describe(
@@ -131,7 +181,7 @@ fn describe(
     time: f64,
     witness: &Witness,
 ) -> Contact {
-    let Witness { near, a, b, triangles, separation, start } = witness;
+    let Witness { near, a, b, triangles, separation, start, meeting } = witness;
     let rb = motion.rotation_b(frame.offset);
     let turn = |p: DVec3| rb.times::<Quad>(p).to_vec();
     let body = &scene.b;
@@ -141,7 +191,8 @@ fn describe(
     let [pa, pb] = near.points;
     Contact {
         time_lo: time,
-        time_hi: time,
+        time_hi: meeting.time,
+        evidence: meeting.evidence,
         separation: *separation,
         tolerance: scene.tolerance,
         normal: turn(normal),
@@ -177,7 +228,14 @@ pub(super) fn contained(
     let a = place_a::<Quad>(&frame, &corners(tree_a, triangles[0]));
     let near = closest::<Quad>(&a, &b);
     let time = scene.window.start();
-    describe(scene, (motion, &frame), time, &Witness { near, a, b, triangles, separation: 0.0, start })
+    // The surfaces are further apart than the level, so rounding moves no vertex to the other side of one.
+    let meeting = Meeting { time, evidence: Evidence::Crossing };
+    describe(
+        scene,
+        (motion, &frame),
+        time,
+        &Witness { near, a, b, triangles, separation: 0.0, start, meeting },
+    )
 }
 
 fn feature(scene: &Scene<'_>, near: &Closest, triangles: [u32; 2]) -> FeaturePair {

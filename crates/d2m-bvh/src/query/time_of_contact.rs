@@ -2,7 +2,7 @@
 
 use super::containment::contains_point;
 use super::distance::distance;
-use super::report::contact;
+use super::report::{contact, evidence_at_start};
 use crate::search::{LEAST_TOLERANCE, Outcome, Quad, RelativeMotion, Scene, Scratch, Search, run};
 use crate::{
     MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window,
@@ -110,9 +110,15 @@ pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfCon
         Outcome::Separated => TimeOfContact::Separated,
         Outcome::OutOfBudget(until) => TimeOfContact::Undecided { clear_until: until },
         Outcome::Found(found) => {
-            let mut contact = contact(scene, &found, options.mode == Mode::Accurate);
-            if contact.start == StartState::Touching && crosses_at_start(scene)? {
+            let mut contact = contact(scene, &found, options.mode != Mode::Capoeira);
+            if contact.start == StartState::Touching
+                && let Some(triangles) = crossing_at_start(scene)?
+            {
                 (contact.start, contact.separation) = (StartState::Overlapping, 0.0);
+                let evidence = evidence_at_start(scene, triangles);
+                if evidence >= contact.evidence {
+                    (contact.evidence, contact.time_hi) = (evidence, contact.time_lo);
+                }
             }
             TimeOfContact::Contact(contact)
         }
@@ -158,13 +164,14 @@ fn check(options: &QueryOptions) -> Result<(), QueryError> {
     if value.is_finite() && value >= 0.0 { Ok(()) } else { Err(QueryError::BadMinSeparation { value }) }
 }
 
-/// Do the surfaces cross at the start (up to rounding)? The search stops at the first pair that is near.
-fn crosses_at_start(scene: &Scene<'_>) -> Result<bool, QueryError> {
+/// A pair of triangles that cross at the start (up to rounding). The search stops at the first pair that is near.
+fn crossing_at_start(scene: &Scene<'_>) -> Result<Option<[u32; 2]>, QueryError> {
     let posed = [&scene.a, &scene.b].map(|(tree, motion)| {
         let m = motion.rebase(scene.window.start());
         Posed::new(tree, Pose { rotation: m.orientation(), translation: m.position(), at: m.at() })
     });
-    Ok(distance(posed[0], posed[1], Solid::Surface)?.state == StartState::Overlapping)
+    let found = distance(posed[0], posed[1], Solid::Surface)?;
+    Ok((found.state == StartState::Overlapping).then_some([found.triangle_a, found.triangle_b]))
 }
 
 /// The answer when one body is inside the other at the start; the surfaces are known not to cross then.

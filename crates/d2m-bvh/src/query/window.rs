@@ -9,6 +9,8 @@ use super::QueryError;
 /// assert!(Window::try_new(1.0, 0.0).is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "[f64; 2]", into = "[f64; 2]"))]
 pub struct Window {
     start: f64,
     end: f64,
@@ -48,5 +50,22 @@ impl Window {
     /// Is `time` inside, ends included?
     pub fn contains(self, time: f64) -> bool {
         self.start <= time && time <= self.end
+    }
+}
+
+/// The serde form [start, end], checked on the way in.
+#[cfg(feature = "serde")]
+impl TryFrom<[f64; 2]> for Window {
+    type Error = QueryError;
+
+    fn try_from([start, end]: [f64; 2]) -> Result<Self, QueryError> {
+        Self::try_new(start, end)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Window> for [f64; 2] {
+    fn from(window: Window) -> Self {
+        [window.start, window.end]
     }
 }

@@ -41,5 +41,5 @@ pub(crate) use portable::Portable;
 pub(crate) use quad::{Doubles, Quad};
 pub use scene::SearchCounts;
 pub(crate) use scene::{LEAST_TOLERANCE, Scene, Scratch};
-pub(crate) use triangle_pair::place_a;
+pub(crate) use triangle_pair::{PairScale, place_a};
 pub(crate) use window::{Found, Outcome, Search, corners, time_from};

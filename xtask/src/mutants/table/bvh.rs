@@ -21,6 +21,21 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "(room + 2.0).min(f64::from(MOST))",
         "crates/d2m-bvh/src/tree/tests.rs::boxes_enclose_in_more_than_double_precision",
     ),
+    // Evidence of contacts.
+    patch(
+        "what is a tolerance too far counts as near",
+        "crates/d2m-bvh/src/query/report.rs",
+        "near.square.sqrt() <= level - error;",
+        "near.square.sqrt() <= level + scene.tolerance;",
+        "crates/d2m-bvh/tests/evidence.rs::a_start_a_little_above_the_tolerance",
+    ),
+    patch(
+        "corners taken for exact in the proof of a crossing",
+        "crates/d2m-bvh/src/query/proven_crossing.rs",
+        "let blur = Interval::new(-error, error);",
+        "let blur = Interval::new(-0.5 * error, 0.5 * error);",
+        "crates/d2m-bvh/src/query/proven_crossing.rs::claims_hold_for_every_position_of_the_corners",
+    ),
     // The default engine.
     patch(
         "the cut of another edge",

@@ -1,0 +1,173 @@
+//! What a contact claims to prove of the meeting is true, judged by the certified static distance.
+
+#[path = "scenes/bodies.rs"]
+#[allow(dead_code, reason = "a part of the bodies")]
+mod bodies;
+
+use bodies::cube;
+use d2m_bvh::{
+    Contact, Evidence, MeshTree, Mode, Moving, Posed, QueryOptions, Solid, StartState, Window, distance,
+    time_of_contact,
+};
+use d2m_interval::Interval;
+use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
+use glam::{DQuat, DVec3};
+
+const DELTA: f64 = 1e-6;
+
+fn box_tree() -> MeshTree {
+    MeshTree::new(cube(DVec3::splat(-1.0), 2.0))
+}
+
+fn moving(x: DVec3, v: DVec3) -> ConstantTwist {
+    ConstantTwist::try_new(x, DQuat::IDENTITY, v, DVec3::ZERO).unwrap()
+}
+
+fn options() -> QueryOptions {
+    QueryOptions::default().with_tolerance(DELTA)
+}
+
+fn contact(a: &ConstantTwist, options: &QueryOptions) -> Contact {
+    let tree = box_tree();
+    let bodies = (Moving::new(&tree, a), Moving::new(&tree, &ConstantTwist::REST));
+    *time_of_contact(bodies.0, bodies.1, Window::UNIT, options).unwrap().contact().expect("a contact")
+}
+
+/// Upper bound on the distance at a time.
+fn upper_at(a: &ConstantTwist, time: f64) -> f64 {
+    let tree = box_tree();
+    let m = a.rebase(time);
+    let pose = Pose { rotation: m.orientation(), translation: m.position(), at: m.at() };
+    distance(Posed::new(&tree, pose), Posed::at_rest(&tree), Solid::Filled).unwrap().upper
+}
+
+#[test]
+fn near_is_near_at_the_end_of_the_bracket() {
+    for (x, v, separation) in [
+        (DVec3::new(0.1, 0.2, 4.0), DVec3::Z * -8.0, 0.0),
+        (DVec3::new(0.1, 0.2, 4.0), DVec3::new(0.1, 0.0, -8.0), 0.25),
+        (DVec3::new(0.1, 0.2, 2.0), DVec3::Z, 0.0),
+        (DVec3::new(0.1, 0.2, 2.25), DVec3::Z, 0.25),
+    ] {
+        let motion = moving(x, v);
+        let found = contact(&motion, &options().with_min_separation(separation));
+        assert_eq!(found.evidence, Evidence::Near, "{found:?}");
+        let left = upper_at(&motion, found.time_hi);
+        assert!(left <= (separation + found.tolerance) * (1.0 + 1e-9), "{left} {found:?}");
+    }
+}
+
+#[test]
+fn bodies_that_cross_or_hold_each_other_at_the_start_are_proven_to() {
+    let crossing = contact(&moving(DVec3::new(0.5, 1.25, 0.75), DVec3::ZERO), &options());
+    assert_eq!((crossing.evidence, crossing.start), (Evidence::Crossing, StartState::Overlapping));
+    let (large, small) = (MeshTree::new(cube(DVec3::splat(-8.0), 16.0)), box_tree());
+    let rest = ConstantTwist::REST;
+    let held =
+        time_of_contact(Moving::new(&small, &rest), Moving::new(&large, &rest), Window::UNIT, &options());
+    let held = *held.unwrap().contact().unwrap();
+    assert_eq!((held.evidence, held.start), (Evidence::Crossing, StartState::Contained));
+}
+
+/// At the start a little more than a tolerance apart: a contact by the rule of the search. Nothing is proven of bodies
+/// that part; bodies that close are near at the end of the bracket.
+#[test]
+fn a_start_a_little_above_the_tolerance() {
+    let place = |tolerances: f64| DVec3::new(0.1, 0.2, 2.0 + tolerances * DELTA);
+    let parting = contact(&moving(place(1.004), DVec3::Z), &options());
+    assert_eq!((parting.evidence, parting.start), (Evidence::Early, StartState::Touching));
+    assert_eq!(parting.time_hi, parting.time_lo);
+    for tolerances in [1.004, 1.5] {
+        let closing = moving(place(tolerances), DVec3::new(0.0, 0.1, -1.0));
+        let found = contact(&closing, &options());
+        assert_eq!(found.evidence, Evidence::Near, "{found:?}");
+        assert!(found.time_hi > 0.0 && upper_at(&closing, found.time_hi) <= DELTA * (1.0 + 1e-9));
+    }
+}
+
+#[test]
+fn an_early_stop_proves_no_contact() {
+    let passing = moving(DVec3::new(-4.0, 0.2, 2.01), DVec3::X * 8.0);
+    let found = contact(&passing, &options().with_mode(Mode::Capoeira));
+    assert_eq!((found.evidence, found.time_hi), (Evidence::Early, found.time_lo));
+    let exists = contact(&moving(DVec3::Z * 4.0, DVec3::Z * -8.0), &options().with_mode(Mode::Exists));
+    assert_eq!(exists.evidence, Evidence::Near);
+}
+
+/// A pass at 1.5 tolerances, by a vertex over a face.
+#[test]
+fn a_grazing_pass_above_the_tolerance_is_early() {
+    let passing = moving(DVec3::new(-4.0, 0.2, 2.0 + 1.5 * DELTA), DVec3::X * 8.0);
+    let found = contact(&passing, &options());
+    assert_eq!((found.evidence, found.time_hi), (Evidence::Early, found.time_lo));
+    assert!(found.time_lo > 0.2 && found.separation < 3.3 * DELTA);
+}
+
+/// The motion as any motion, its poses known to `blur` only.
+struct Blurred(ConstantTwist, f64);
+
+impl RigidMotion for Blurred {
+    fn pose_and_twist(&self, time: f64) -> (Pose, Twist) {
+        self.0.pose_and_twist(time)
+    }
+
+    fn enclose_pose(&self, time: Interval) -> IntervalPose {
+        let mut pose = self.0.enclose_pose(time);
+        pose.translation.x = pose.translation.x + Interval::new(-self.1, self.1);
+        pose
+    }
+
+    fn enclose_twist(&self, time: Interval) -> IntervalTwist {
+        self.0.enclose_twist(time)
+    }
+
+    fn enclose_twist_rate(&self, time: Interval) -> IntervalTwist {
+        self.0.enclose_twist_rate(time)
+    }
+}
+
+#[test]
+fn any_motion_claims_only_what_its_enclosures_show() {
+    let (tree, large) = (box_tree(), MeshTree::new(cube(DVec3::splat(-8.0), 16.0)));
+    let query = |body: &MeshTree, motion: &Blurred| {
+        let rest = ConstantTwist::REST;
+        let answer =
+            time_of_contact(Moving::new(&tree, motion), Moving::new(body, &rest), Window::UNIT, &options());
+        *answer.unwrap().contact().expect("a contact")
+    };
+    let falling = moving(DVec3::new(0.1, 0.2, 4.0), DVec3::Z * -8.0);
+    let found = query(&tree, &Blurred(falling, 0.0));
+    assert_eq!(found.evidence, Evidence::Near);
+    assert!(upper_at(&falling, found.time_hi) <= found.tolerance);
+    let inside = ConstantTwist::REST;
+    assert_eq!(query(&large, &Blurred(inside, 0.0)).evidence, Evidence::Crossing);
+    assert_eq!(query(&large, &Blurred(inside, 8.0)).evidence, Evidence::Early);
+    let across = moving(DVec3::X * 1.5, DVec3::ZERO);
+    assert_eq!(query(&tree, &Blurred(across, 0.0)).evidence, Evidence::Near);
+    assert_eq!(query(&tree, &Blurred(across, 1.0)).evidence, Evidence::Early);
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn answers_options_and_windows_survive_json() {
+    use d2m_bvh::{Budget, TimeOfContact};
+    use std::time::Duration;
+    let found = TimeOfContact::Contact(contact(&moving(DVec3::Z * 4.0, DVec3::Z * -8.0), &options()));
+    for answer in [found, TimeOfContact::Separated, TimeOfContact::Undecided { clear_until: 0.5 }] {
+        let text = serde_json::to_string(&answer).unwrap();
+        assert_eq!(serde_json::from_str::<TimeOfContact>(&text).unwrap(), answer, "{text}");
+    }
+    let text = serde_json::to_string(&found).unwrap();
+    for part in ["\"status\":\"contact\"", "\"evidence\":\"near\"", "\"start\":\"apart\"", "\"time_lo\":"] {
+        assert!(text.contains(part), "{text}");
+    }
+    let options = options()
+        .with_mode(Mode::Exists)
+        .with_solid(Solid::Surface)
+        .with_budget(Budget::UNLIMITED.with_wall_clock(Duration::from_millis(5)));
+    let text = serde_json::to_string(&options).unwrap();
+    assert_eq!(serde_json::from_str::<QueryOptions>(&text).unwrap(), options);
+    assert_eq!(serde_json::from_str::<QueryOptions>("{\"tolerance\":1e-6}").unwrap(), self::options());
+    assert_eq!(serde_json::from_str::<Window>("[0,1]").unwrap(), Window::UNIT);
+    assert!(serde_json::from_str::<Window>("[1,0]").is_err());
+}
