@@ -15,10 +15,10 @@ pub use mesh::{Edge, MAX_COORDINATE, MeshError, Topology, TriMesh, Validation};
 #[doc(hidden)]
 pub use query::last_search_counts;
 pub use query::{
-    Budget, Contact, Distance, DistanceOptions, Evidence, Mode, Moving, PairCache, Posed, QueryError,
-    QueryOptions, Solid, StartState, TimeOfContact, Window, collide, colliding_pairs, contact_exists,
-    distance, distance_within, time_of_contact, time_of_contact_batch, time_of_contact_with,
-    try_colliding_pair,
+    Budget, Contact, Distance, DistanceOptions, Evidence, Mode, Moving, PairCache, Posed, Proximity,
+    ProximityOptions, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window, collide,
+    colliding_pairs, contact_exists, distance, distance_within, proximities, proximities_with,
+    reduce_proximities, time_of_contact, time_of_contact_batch, time_of_contact_with, try_colliding_pair,
 };
 pub use search::InstructionSet;
 #[doc(hidden)]

@@ -16,8 +16,9 @@ pub use d2m_shapes as shapes;
 pub use glam;
 
 pub use d2m_bvh::{
-    Budget, Contact, MeshTree, Mode, Moving, PairCache, QueryOptions, Solid, TimeOfContact, TriMesh, Window,
-    contact_exists, time_of_contact, time_of_contact_with,
+    Budget, Contact, MeshTree, Mode, Moving, PairCache, Posed, Proximity, ProximityOptions, QueryError,
+    QueryOptions, Solid, TimeOfContact, TriMesh, Window, contact_exists, proximities, proximities_with,
+    reduce_proximities, time_of_contact, time_of_contact_with,
 };
 #[doc(hidden)]
 pub use d2m_motion::LinearMotion;

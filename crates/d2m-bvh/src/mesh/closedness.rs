@@ -24,7 +24,7 @@ impl Closedness {
 }
 
 /// For each vertex the lowest vertex with equal coordinates (−0 = 0).
-fn first_at_position(vertices: &[DVec3]) -> Vec<u32> {
+pub(super) fn first_at_position(vertices: &[DVec3]) -> Vec<u32> {
     const EMPTY: u32 = u32::MAX;
     let mask = (2 * vertices.len()).next_power_of_two() - 1;
     let mut table = vec![EMPTY; mask + 1];

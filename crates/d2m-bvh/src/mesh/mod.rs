@@ -1,5 +1,6 @@
 //! Triangle meshes: the checked container, its edges and its quality counts.
 
+mod adjacency;
 mod closedness;
 mod error;
 mod topology;
@@ -9,6 +10,7 @@ mod validation;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use adjacency::{Adjacency, NONE};
 pub(crate) use closedness::Closedness;
 pub use error::MeshError;
 pub use topology::{Edge, Topology};

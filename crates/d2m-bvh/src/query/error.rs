@@ -46,4 +46,14 @@ pub enum QueryError {
         /// 0 for the first body, 1 for the second.
         body: usize,
     },
+    /// The surfaces meet, or are apart by less than rounding can tell: they have no closest features.
+    #[error(
+        "triangle {triangle_a} of body 0 and triangle {triangle_b} of body 1 are not apart: no proximities"
+    )]
+    NotApart {
+        /// Triangle of the first body.
+        triangle_a: u32,
+        /// Triangle of the second body.
+        triangle_b: u32,
+    },
 }

@@ -4,9 +4,10 @@ use super::node::WideNode;
 use super::serde_form::TreeForm;
 use super::surface::Extent;
 use crate::TriMesh;
-use crate::mesh::Closedness;
+use crate::mesh::{Adjacency, Closedness};
 use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 
 /// A triangle mesh with its tree of oriented boxes: a rigid body ready for queries.
 ///
@@ -39,6 +40,8 @@ pub struct MeshTree {
     pub(crate) components: Vec<u32>,
     /// Tells this tree from every other one of the process; clones are the same tree.
     pub(crate) stamp: Stamp,
+    /// Computed when a query first asks for it; clones share it.
+    adjacency: OnceLock<Arc<Adjacency>>,
 }
 
 /// The number of a tree; two trees with the same number have the same bits.
@@ -89,7 +92,8 @@ impl MeshTree {
         let Closedness { watertight, components } = Closedness::of(&mesh);
         let Extent { center, radius, unit } = *extent;
         let stamp = Stamp::next();
-        Self { mesh, nodes, center, unit, radius, watertight, components, stamp }
+        let adjacency = OnceLock::new();
+        Self { mesh, nodes, center, unit, radius, watertight, components, stamp, adjacency }
     }
 
     /// The mesh.
@@ -127,11 +131,18 @@ impl MeshTree {
         &self.components
     }
 
-    /// Resident bytes: mesh, boxes and this structure.
+    /// Neighbours of vertices and edges: computed by the first query that needs them, in O(n log n) time.
+    pub(crate) fn adjacency(&self) -> &Adjacency {
+        self.adjacency.get_or_init(|| Arc::new(Adjacency::new(&self.mesh)))
+    }
+
+    /// Resident bytes: mesh, boxes, this structure, and the neighbours of vertices and edges once a query for
+    /// proximities has computed them.
     pub fn memory_bytes(&self) -> usize {
         size_of::<Self>()
             + size_of_val(self.mesh.vertices())
             + size_of_val(self.mesh.triangles())
             + size_of_val(self.nodes.as_slice())
+            + self.adjacency.get().map_or(0, |adjacency| adjacency.memory_bytes())
     }
 }

@@ -36,6 +36,21 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "let blur = Interval::new(-0.5 * error, 0.5 * error);",
         "crates/d2m-bvh/src/query/proven_crossing.rs::claims_hold_for_every_position_of_the_corners",
     ),
+    // Proximities.
+    patch(
+        "normal cones without slack for rounding",
+        "crates/d2m-bvh/src/query/proximities/feature_test.rs",
+        "let slack = direction.error + DIRECTION_ROUNDING + self.cone_slack;",
+        "let slack = self.cone_slack - DIRECTION_ROUNDING - direction.error;",
+        "crates/d2m-bvh/src/query/proximities/tests.rs::the_corners_of_a_patch_of_contact_are_all_there_and_once",
+    ),
+    patch(
+        "twins on neighbouring features not dropped",
+        "crates/d2m-bvh/src/query/proximities/candidate.rs",
+        "dropped[twin] = true;",
+        "dropped[twin] = false;",
+        "crates/d2m-bvh/src/query/proximities/tests.rs::repeated_positions_and_flat_triangles_are_found_once",
+    ),
     // The default engine.
     patch(
         "the cut of another edge",

@@ -89,6 +89,12 @@ impl<'a> Scene<'a> {
         [self.place_point(body, p), self.place_point(body, q), self.place_point(body, r)]
     }
 
+    /// A vertex in working coordinates.
+    #[inline(always)]
+    pub(crate) fn place_vertex(&self, body: usize, vertex: u32) -> DVec3 {
+        self.place_point(body, self.trees[body].mesh().vertices()[vertex as usize])
+    }
+
     #[inline(always)]
     fn place_point(&self, body: usize, point: DVec3) -> DVec3 {
         let p = (point - self.trees[body].center()) * self.inverse_unit;

@@ -1,0 +1,262 @@
+//! Against brute force over all pairs of features, written to be read and not to be fast.
+
+use super::*;
+use crate::random::{Random, wavy_torus};
+use crate::{MeshTree, TriMesh};
+use d2m_motion::Pose;
+
+/// The features of a placed mesh: vertices with their neighbours, edges with the third corners, triangles.
+struct Brute {
+    points: Vec<DVec3>,
+    triangles: Vec<[usize; 3]>,
+    edges: Vec<([usize; 2], Vec<usize>)>,
+}
+
+impl Brute {
+    /// Of a mesh without repeated positions.
+    fn new(mesh: &TriMesh, pose: &Pose) -> Self {
+        let points = mesh.vertices().iter().map(|&p| pose.transform_point(p)).collect();
+        let triangles: Vec<_> = mesh.triangles().iter().map(|t| t.map(|v| v as usize)).collect();
+        let mut edges: Vec<([usize; 2], Vec<usize>)> = Vec::new();
+        for t in &triangles {
+            for k in 0..3 {
+                let (p, q, r) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
+                let ends = [p.min(q), p.max(q)];
+                match edges.iter_mut().find(|(e, _)| *e == ends) {
+                    Some((_, thirds)) => thirds.push(r),
+                    None => edges.push((ends, vec![r])),
+                }
+            }
+        }
+        Self { points, triangles, edges }
+    }
+
+    /// Is n in the cone of a vertex, and how far from its border (a sine; negative outside)?
+    fn vertex_room(&self, vertex: usize, n: DVec3) -> f64 {
+        let next = self.edges.iter().filter(|(e, _)| e.contains(&vertex)).map(|(e, _)| e[0] + e[1] - vertex);
+        next.map(|w| -n.dot((self.points[w] - self.points[vertex]).normalize())).fold(1.0, f64::min)
+    }
+
+    fn edge_room(&self, edge: usize, at: DVec3, n: DVec3) -> f64 {
+        self.edges[edge].1.iter().map(|&w| -n.dot((self.points[w] - at).normalize())).fold(1.0, f64::min)
+    }
+
+    fn ends(&self, edge: usize) -> [DVec3; 2] {
+        self.edges[edge].0.map(|v| self.points[v])
+    }
+}
+
+/// The foot of p on a triangle's inside, and how far from its border (relative).
+fn foot_on_face(p: DVec3, [a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
+    let n = (b - a).cross(c - a);
+    let weight = |q: DVec3, r: DVec3| n.dot((r - q).cross(p - q)) / n.length_squared();
+    let w = [weight(b, c), weight(c, a), weight(a, b)];
+    (a * w[0] + b * w[1] + c * w[2], w[0].min(w[1]).min(w[2]))
+}
+
+fn foot_on_edge(p: DVec3, [a, b]: [DVec3; 2]) -> (DVec3, f64) {
+    let t = (p - a).dot(b - a) / (b - a).length_squared();
+    (a + (b - a) * t, t.min(1.0 - t))
+}
+
+fn crossing([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> ([DVec3; 2], f64) {
+    let (u, v) = (b - a, d - c);
+    let n = u.cross(v);
+    let s = (c - a).cross(v).dot(n) / n.length_squared();
+    let t = (c - a).cross(u).dot(n) / n.length_squared();
+    ([a + u * s, c + v * t], s.min(1.0 - s).min(t).min(1.0 - t))
+}
+
+/// All locally closest pairs of points, each with the distance of its conditions from their limits.
+fn brute_force(a: &Brute, b: &Brute, margin: f64) -> Vec<([DVec3; 2], f64)> {
+    let mut found = Vec::new();
+    let mut offer = |points: [DVec3; 2], room: &dyn Fn(DVec3) -> f64| {
+        let offset = points[1] - points[0];
+        if offset.length() <= margin {
+            found.push((points, room(offset.normalize())));
+        }
+    };
+    for (v, &p) in a.points.iter().enumerate() {
+        for (w, &q) in b.points.iter().enumerate() {
+            offer([p, q], &|n| a.vertex_room(v, n).min(b.vertex_room(w, -n)));
+        }
+        for e in 0..b.edges.len() {
+            let (q, inside) = foot_on_edge(p, b.ends(e));
+            offer([p, q], &|n| inside.min(a.vertex_room(v, n)).min(b.edge_room(e, q, -n)));
+        }
+        for t in &b.triangles {
+            let (q, inside) = foot_on_face(p, t.map(|v| b.points[v]));
+            offer([p, q], &|n| inside.min(a.vertex_room(v, n)));
+        }
+    }
+    for (w, &q) in b.points.iter().enumerate() {
+        for e in 0..a.edges.len() {
+            let (p, inside) = foot_on_edge(q, a.ends(e));
+            offer([p, q], &|n| inside.min(b.vertex_room(w, -n)).min(a.edge_room(e, p, n)));
+        }
+        for t in &a.triangles {
+            let (p, inside) = foot_on_face(q, t.map(|v| a.points[v]));
+            offer([p, q], &|n| inside.min(b.vertex_room(w, -n)));
+        }
+    }
+    for e in 0..a.edges.len() {
+        for f in 0..b.edges.len() {
+            let ([p, q], inside) = crossing(a.ends(e), b.ends(f));
+            offer([p, q], &|n| inside.min(a.edge_room(e, p, n)).min(b.edge_room(f, q, -n)));
+        }
+    }
+    found
+}
+
+fn cuboid(half: DVec3) -> TriMesh {
+    let corners = (0..8).map(|i| {
+        let sign = |bit: i32| if i & bit == 0 { -1.0 } else { 1.0 };
+        half * DVec3::new(sign(1), sign(2), sign(4))
+    });
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = quads.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    TriMesh::try_new(corners.collect(), triangles).unwrap()
+}
+
+fn bodies() -> Vec<TriMesh> {
+    let (corners, triangles) = wavy_torus(9, 6, 0.35);
+    let torus = TriMesh::try_new(corners, triangles).unwrap();
+    let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let tetrahedron = TriMesh::try_new(corners.clone(), vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]);
+    let sheet = TriMesh::try_new(corners, vec![[0, 1, 2], [0, 2, 3]]);
+    vec![torus, tetrahedron.unwrap(), sheet.unwrap(), cuboid(DVec3::new(1.0, 0.5, 0.25))]
+}
+
+#[test]
+fn holds_every_locally_closest_pair_that_brute_force_finds_once_and_no_other() {
+    let trees: Vec<_> = bodies().into_iter().map(MeshTree::new).collect();
+    let mut random = Random(11);
+    let (mut met, mut found_in_all) = (0, 0);
+    for round in 0..1200 {
+        let (a, b) = (&trees[round % 4], &trees[round / 4 % 4]);
+        let mut pose =
+            || Pose { rotation: random.turn().normalize(), translation: random.vec() * 1.6, at: DVec3::ZERO };
+        let poses = [pose(), pose()];
+        let margin = [0.05, 0.3, 2.0][round % 3];
+        let near = match proximities(Posed::new(a, poses[0]), Posed::new(b, poses[1]), margin) {
+            Ok(near) => near,
+            Err(QueryError::NotApart { .. }) => {
+                met += 1;
+                continue;
+            }
+            Err(error) => panic!("{error}"),
+        };
+        let (brute_a, brute_b) = (Brute::new(a.mesh(), &poses[0]), Brute::new(b.mesh(), &poses[1]));
+        let all = brute_force(&brute_a, &brute_b, margin);
+        let same = |points: &[DVec3; 2], p: &Proximity| {
+            points[0].distance(p.point_a) < 1e-11 && points[1].distance(p.point_b) < 1e-11
+        };
+        for (points, room) in all.iter().filter(|(_, room)| *room > 1e-9) {
+            let count = near.iter().filter(|p| same(points, p)).count();
+            assert_eq!(count, 1, "round {round}: {points:?} {room}");
+            found_in_all += 1;
+        }
+        for p in &near {
+            let true_one = |(points, room): &([DVec3; 2], f64)| *room > -1e-9 && same(points, p);
+            assert!(all.iter().any(true_one), "round {round}: {p:?}");
+            assert!((p.point_b - p.point_a - p.normal * p.distance).length() < 1e-12);
+        }
+        assert!(near.is_sorted_by(|p, q| p.distance <= q.distance));
+        let nearest =
+            crate::distance(Posed::new(a, poses[0]), Posed::new(b, poses[1]), crate::Solid::Surface).unwrap();
+        assert_eq!(nearest.value <= margin, !near.is_empty(), "round {round}");
+        assert!(near.is_empty() || (near[0].distance - nearest.value).abs() < 1e-13, "round {round}");
+    }
+    assert!(met < 600 && found_in_all > 300, "{met} {found_in_all}");
+}
+
+/// A box on a face that is parallel up to rounding: all corners of the patch, in any position and at any distance.
+#[test]
+fn the_corners_of_a_patch_of_contact_are_all_there_and_once() {
+    let (floor, brick) =
+        (MeshTree::new(cuboid(DVec3::new(5.0, 5.0, 1.0))), MeshTree::new(cuboid(DVec3::ONE)));
+    let mut random = Random(3);
+    for round in 0..200 {
+        let gap = [1e-3, 1e-6, 1e-9, 0.1][round % 4];
+        let world =
+            Pose { rotation: random.turn().normalize(), translation: random.vec() * 9.0, at: DVec3::ZERO };
+        // Every other one stands over the border, with its sides along the floor's or turned.
+        let over = if round % 2 == 0 {
+            random.vec() * DVec3::new(3.0, 3.0, 0.0)
+        } else {
+            DVec3::new(4.5, 1.25, 0.0)
+        };
+        let turn = glam::DQuat::from_xyzw(0.0, 0.0, if round % 3 == 0 { 0.0 } else { random.next() }, 1.0)
+            .normalize();
+        let at = Pose {
+            rotation: world.rotation * turn,
+            translation: world.transform_point(over + DVec3::Z * (2.0 + gap)),
+            at: DVec3::ZERO,
+        };
+        let near = proximities(Posed::new(&floor, world), Posed::new(&brick, at), 2.0 * gap).unwrap();
+        let up = world.rotation * DVec3::Z;
+        for p in &near {
+            assert!((p.normal - up).length() < 1e-12 && (p.distance - gap).abs() < 1e-13, "{p:?}");
+        }
+        // Corners of the intersection of the two rectangles: corners of one in the other, and crossings of sides.
+        let flat = |p: DVec3| {
+            glam::DVec2::new(world.inverse_transform_point(p).x, world.inverse_transform_point(p).y)
+        };
+        let square: Vec<_> = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|(x, y)| flat(at.transform_point(DVec3::new(x, y, -1.0))))
+            .to_vec();
+        let mut patch: Vec<_> = square.iter().copied().filter(|p| p.abs().max_element() < 5.0).collect();
+        for k in 0..4 {
+            let (p, q) = (square[k], square[(k + 1) % 4]);
+            let t = (5.0 - p.x) / (q.x - p.x);
+            if t > 1e-9 && t < 1.0 - 1e-9 {
+                patch.push(p + (q - p) * t);
+            }
+        }
+        assert!(patch.len() >= 4);
+        for corner in &patch {
+            let count = near.iter().filter(|p| flat(p.point_a).distance(*corner) < 1e-9).count();
+            assert_eq!(count, 1, "round {round}: {corner:?} of {patch:?}");
+        }
+        let manifold = reduce_proximities(&near, 0.1);
+        assert_eq!(manifold.len(), 4);
+        // The chosen four span the area of the patch, or nearly.
+        assert!(manifold.iter().all(|p| patch.iter().any(|c| flat(p.point_a).distance(*c) < 1e-9)));
+    }
+}
+
+#[test]
+fn repeated_positions_and_flat_triangles_are_found_once() {
+    // A quad as two triangles that share no vertex ids, one of them twice, and a needle along its side.
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];
+    let vertices =
+        vec![corners[0], corners[1], corners[2], corners[0], corners[2], corners[3], DVec3::X * 0.5];
+    let triangles = vec![[0, 1, 2], [3, 4, 5], [0, 1, 2], [0, 6, 1], [6, 6, 6]];
+    let quad = MeshTree::new(TriMesh::try_new(vertices, triangles).unwrap());
+    let point = MeshTree::new(TriMesh::try_new(vec![DVec3::ZERO], vec![[0, 0, 0]]).unwrap());
+    let over = |x: f64, y: f64| {
+        let pose = Pose { translation: DVec3::new(x, y, 0.25), ..Pose::IDENTITY };
+        proximities(Posed::at_rest(&quad), Posed::new(&point, pose), 0.3).unwrap()
+    };
+    for (x, y) in [(0.25, 0.5), (0.5, 0.5), (0.0, 0.0), (0.5, 0.0), (0.25, 0.0), (1.0, 1.0), (1.0, 0.5)] {
+        let near = over(x, y);
+        assert_eq!(near.len(), 1, "{x} {y}: {near:?}");
+        assert!(near[0].point_a.distance(DVec3::new(x, y, 0.0)) < 1e-15);
+        assert!(near[0].distance == 0.25 && near[0].normal.distance(DVec3::Z) < 1e-14);
+    }
+    assert!(over(1.5, 0.5).is_empty());
+}
+
+#[test]
+fn bad_margins_and_bodies_that_meet_are_refused() {
+    let tree = MeshTree::new(cuboid(DVec3::ONE));
+    let here = Posed::at_rest(&tree);
+    for margin in [-1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(proximities(here, here, margin), Err(QueryError::BadMinSeparation { .. })));
+    }
+    let touching = Posed::new(&tree, Pose { translation: DVec3::X * 2.0, ..Pose::IDENTITY });
+    assert!(matches!(proximities(here, touching, 0.1), Err(QueryError::NotApart { .. })));
+    let inside = MeshTree::new(cuboid(DVec3::splat(0.5)));
+    assert_eq!(proximities(here, Posed::at_rest(&inside), 0.4), Ok(vec![]));
+    assert_eq!(proximities(here, Posed::at_rest(&inside), 0.6).unwrap().len(), 8 * 3);
+}
