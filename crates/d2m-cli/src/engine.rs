@@ -26,7 +26,7 @@ enum Tree {
 }
 
 impl Body {
-    fn new(Loaded { name, mesh }: Loaded, method: Method) -> Self {
+    fn new(Loaded { name, mesh, .. }: Loaded, method: Method) -> Self {
         let tree = match method {
             Method::Accurate | Method::Capoeira => Tree::Engine(build(mesh)),
             Method::Paper => Tree::Paper(Box::new(SphereTree::new(mesh))),

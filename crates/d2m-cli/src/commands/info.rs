@@ -2,7 +2,7 @@
 
 use crate::arguments::InfoArguments;
 use crate::failure::Failure;
-use crate::load::{Loaded, load};
+use crate::load::{Loaded, PolygonCounts, Precision, load};
 use crate::output::{Output, print};
 use crate::report::short;
 use d2m::bvh::{EnclosingSphere, Validation};
@@ -63,9 +63,17 @@ fn mesh_text(body: &Loaded, validation: &Validation) -> String {
     if validation.consistently_oriented {
         line("volume", size(validation.signed_volume));
     }
+    if let Precision::Single(kind) = body.precision {
+        line("precision", format!("single: a {kind} holds no more than 24 bits of each coordinate"));
+    }
     line("box", format!("{low:?} to {high:?}"));
     line("sphere", format!("centre {:?}, radius {}", sphere.center.to_array(), short(sphere.radius)));
+    let PolygonCounts { cut, bent, crossing, without_area } = body.polygons;
     for (what, count) in [
+        ("polygons cut into triangles", cut),
+        ("of them not flat: the cut decides their shape", bent),
+        ("of them crossing themselves: their triangles overlap", crossing),
+        ("faces with fewer than three corners, left out", without_area),
         ("degenerate triangles", validation.degenerate_triangles),
         ("repeated triangles", validation.duplicate_triangles),
         ("vertices at the place of another", validation.duplicate_vertices),
@@ -97,6 +105,16 @@ fn mesh_json(body: &Loaded, validation: &Validation) -> String {
         "vertices": body.mesh.vertex_count(),
         "triangles": body.mesh.triangle_count(),
         "enclosing_sphere": { "center": sphere.center.to_array(), "radius": sphere.radius },
+        "precision": match body.precision {
+            Precision::Double => "double",
+            Precision::Single(_) => "single",
+        },
+        "polygons": {
+            "cut": body.polygons.cut,
+            "bent": body.polygons.bent,
+            "crossing": body.polygons.crossing,
+            "without_area": body.polygons.without_area,
+        },
         "validation": validation,
     });
     format!("{object}\n")

@@ -1,144 +1,128 @@
-//! Wavefront OBJ, read by `tobj`.
+//! Wavefront OBJ.
 //!
-//! `tobj` says neither in which line a fault is nor what is there, and it renumbers vertices by first use. So a scan of the
-//! `v` and `f` lines comes first: it names faults, hands clean lines on (without normals, textures, groups and comments,
-//! which do not matter here), and knows the positions in file order, by which the faces that `tobj` reads are numbered.
-//! Vertex n of the mesh is then the first `v` line, counted from 0, with that position.
+//! The `v` and `f` lines count; normals, textures, groups, materials, points and lines do not matter here. Coordinates
+//! are doubles, correctly rounded whatever their number of digits. Vertices keep the numbers of the file.
 
-use super::LoadError;
-use super::polygon::triangulate;
-use d2m::bvh::{MAX_COORDINATE, TriMesh};
+use super::polygon::Triangulation;
+use super::{LoadError, MeshFile, Precision, coordinate, excerpt};
+use d2m::bvh::TriMesh;
 use glam::DVec3;
-use std::collections::HashMap;
-use std::fmt::Write;
 
-pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, LoadError> {
+pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, LoadError> {
     let text = String::from_utf8_lossy(bytes);
-    let scan = Scan::new(text.trim_start_matches('\u{feff}'))?;
-    let options = tobj::LoadOptions {
-        triangulate: true,
-        ignore_points: true,
-        ignore_lines: true,
-        ..Default::default()
-    };
-    let no_materials = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
-    let (models, _) = tobj::load_obj_buf(&mut scan.clean.as_bytes(), &options, no_materials)
-        .map_err(|error| LoadError::new(error.to_string()))?;
-    let mut numbers = HashMap::with_capacity(scan.vertices.len());
-    for (number, &vertex) in scan.vertices.iter().enumerate().rev() {
-        numbers.insert(key(vertex), number as u32);
-    }
-    let mut triangles = Vec::new();
-    for model in &models {
-        let positions = model.mesh.positions.chunks_exact(3).map(DVec3::from_slice);
-        let positions: Vec<u32> =
-            positions.map(|position| numbers.get(&key(position)).copied().unwrap_or(u32::MAX)).collect();
-        let mut corners = model.mesh.indices.iter().map(|&index| positions[index as usize]);
-        // No list of corner counts means triangles only.
-        let all_triangles = vec![3; model.mesh.indices.len() / 3];
-        let counts =
-            if model.mesh.face_arities.is_empty() { &all_triangles } else { &model.mesh.face_arities };
-        for &count in counts {
-            let polygon: Vec<u32> = corners.by_ref().take(count as usize).collect();
-            triangles.extend(triangulate(&polygon, &scan.vertices));
+    let mut scan = Scan::default();
+    let mut statement = Vec::new();
+    for (index, content) in lines(text.trim_start_matches('\u{feff}')).enumerate() {
+        let content = content.split('#').next().unwrap_or_default().trim_end();
+        let (content, goes_on) = match content.strip_suffix('\\') {
+            Some(start) => (start, true),
+            None => (content, false),
+        };
+        statement.extend(content.split_whitespace().map(|word| Word { line: index + 1, text: word }));
+        if !goes_on {
+            scan.statement(&statement)?;
+            statement.clear();
         }
     }
-    Ok(TriMesh::try_new(scan.vertices, triangles)?)
+    scan.statement(&statement)?;
+    scan.finish()
 }
 
-fn key(position: DVec3) -> [u64; 3] {
-    position.to_array().map(f64::to_bits)
+/// Lines that end in a line feed, a carriage return, or both.
+fn lines(text: &str) -> impl Iterator<Item = &str> {
+    text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'))
 }
 
-/// The `v` lines as points, and the `v` and `f` lines without anything else.
+/// A word with its line, from 1: a statement may go on over lines that end in a backslash.
+#[derive(Clone, Copy)]
+struct Word<'a> {
+    line: usize,
+    text: &'a str,
+}
+
+#[derive(Default)]
 struct Scan {
     vertices: Vec<DVec3>,
-    clean: String,
+    /// Corners of all faces, and how many each has.
+    corners: Vec<u32>,
+    counts: Vec<usize>,
+    /// The highest index with its line: absolute indices may run ahead of their vertices.
+    highest: (usize, usize),
 }
 
 impl Scan {
-    fn new(text: &str) -> Result<Self, LoadError> {
-        let mut scan = Self { vertices: Vec::new(), clean: String::with_capacity(text.len()) };
-        // Absolute indices may run ahead of their vertices; they are checked at the end.
-        let mut highest = (0, 0);
-        let mut continued: Option<(usize, String)> = None;
-        // The empty line at the end closes one that ends in a backslash.
-        for (index, content) in text.lines().chain([""]).enumerate() {
-            let line = index + 1;
-            let content = content.split('#').next().unwrap_or_default().trim_end();
-            let (line, content) = match continued.take() {
-                Some((line, start)) => (line, start + " " + content),
-                None => (line, content.to_owned()),
-            };
-            if let Some(start) = content.strip_suffix('\\') {
-                continued = Some((line, start.to_owned()));
-                continue;
-            }
-            let mut words = content.split_whitespace();
-            match words.next() {
-                Some("v") => scan.vertex(words, line)?,
-                Some("f") => highest = highest.max(scan.face(words, line)?),
-                _ => {}
-            }
+    fn statement(&mut self, words: &[Word<'_>]) -> Result<(), LoadError> {
+        let Some((keyword, words)) = words.split_first() else { return Ok(()) };
+        match keyword.text {
+            "v" => self.vertex(keyword.line, words),
+            "f" | "fo" => self.face(words),
+            // Leaving them out would lose surface.
+            "surf" => Err(LoadError::at_line(keyword.line, "free-form surfaces are not supported")),
+            _ => Ok(()),
         }
-        let count = scan.vertices.len();
-        if highest.0 > count {
-            let reason = format!("vertex index {} is out of range, the file has {count} vertices", highest.0);
-            return Err(LoadError::at_line(highest.1, reason));
-        }
-        Ok(scan)
     }
 
-    fn vertex<'a>(&mut self, mut words: impl Iterator<Item = &'a str>, line: usize) -> Result<(), LoadError> {
+    fn vertex(&mut self, line: usize, words: &[Word<'_>]) -> Result<(), LoadError> {
         let number = self.vertices.len() + 1;
-        let mut position = [0.0_f64; 3];
-        self.clean.push('v');
-        for (axis, coordinate) in ["x", "y", "z"].into_iter().zip(&mut position) {
-            let fault = |what: String| LoadError::at_line(line, format!("vertex {number}: {axis} {what}"));
-            let word = words.next().ok_or_else(|| fault("is missing".to_owned()))?;
-            *coordinate = word.parse().map_err(|_| fault(format!("is {word:?}, not a number")))?;
-            if !coordinate.is_finite() {
-                return Err(fault(format!("is {word}, not a finite number")));
-            }
-            if coordinate.abs() > MAX_COORDINATE {
-                return Err(fault(format!("is {word}, larger than the limit of {MAX_COORDINATE:e}")));
-            }
-            self.clean.push(' ');
-            self.clean.push_str(word);
+        let mut position = [0.0; 3];
+        for (index, (axis, slot)) in ["x", "y", "z"].into_iter().zip(&mut position).enumerate() {
+            let word = words.get(index);
+            let line = word.map_or(line, |word| word.line);
+            *slot = coordinate(axis, word.map(|word| word.text))
+                .map_err(|reason| LoadError::at_line(line, format!("vertex {number}: {reason}")))?;
         }
-        self.clean.push('\n');
         self.vertices.push(DVec3::from_array(position));
         Ok(())
     }
 
-    /// Returns the highest index with its line.
-    fn face<'a>(
-        &mut self,
-        words: impl Iterator<Item = &'a str>,
-        line: usize,
-    ) -> Result<(usize, usize), LoadError> {
-        let count = self.vertices.len();
-        let mut highest = 0;
-        self.clean.push('f');
-        for word in words {
-            let index = word.split('/').next().unwrap_or_default();
-            let number: i64 = index
-                .parse()
-                .map_err(|_| LoadError::at_line(line, format!("face: {word:?} is not a vertex index")))?;
-            let absolute = if number < 0 {
-                count.checked_sub(number.unsigned_abs() as usize).map_or(0, |index| index + 1)
-            } else {
-                number as usize
-            };
-            if absolute == 0 {
-                let reason =
-                    format!("vertex index {number} is out of range, {count} vertices are given so far");
-                return Err(LoadError::at_line(line, reason));
-            }
-            highest = highest.max(absolute);
-            let _ = write!(self.clean, " {absolute}"); // writing to a string cannot fail
+    fn face(&mut self, words: &[Word<'_>]) -> Result<(), LoadError> {
+        for &Word { line, text } in words {
+            let absolute = self.corner(text).map_err(|reason| LoadError::at_line(line, reason))?;
+            self.highest = self.highest.max((absolute, line));
+            self.corners.push((absolute - 1) as u32);
         }
-        self.clean.push('\n');
-        Ok((highest, line))
+        self.counts.push(words.len());
+        Ok(())
+    }
+
+    /// The number of a vertex, from 1, of `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative ones count back from the last.
+    fn corner(&self, word: &str) -> Result<usize, String> {
+        let fault = || format!("face: {} is not a vertex index", excerpt(word));
+        let mut parts = word.split('/');
+        let number: i64 = parts.next().unwrap_or_default().parse().map_err(|_| fault())?;
+        let others_are_indices = parts.clone().all(|part| part.is_empty() || part.parse::<i64>().is_ok());
+        if parts.count() > 2 || !others_are_indices {
+            return Err(fault());
+        }
+        let count = self.vertices.len();
+        let absolute = match usize::try_from(number) {
+            Ok(absolute) => absolute,
+            Err(_) => usize::try_from(number.unsigned_abs())
+                .ok()
+                .and_then(|back| count.checked_sub(back))
+                .map_or(0, |index| index + 1),
+        };
+        if absolute == 0 {
+            return Err(format!("vertex index {number} is out of range, {count} vertices are given so far"));
+        }
+        Ok(absolute)
+    }
+
+    fn finish(self) -> Result<MeshFile, LoadError> {
+        let (count, (highest, line)) = (self.vertices.len(), self.highest);
+        if highest > count {
+            let reason = format!("vertex index {highest} is out of range, the file has {count} vertices");
+            return Err(LoadError::at_line(line, reason));
+        }
+        let mut triangulation = Triangulation::default();
+        let mut corners = self.corners.as_slice();
+        for &count in &self.counts {
+            let (polygon, rest) = corners.split_at(count);
+            triangulation.add(polygon, &self.vertices);
+            corners = rest;
+        }
+        let Triangulation { triangles, counts: polygons, .. } = triangulation;
+        let mesh = TriMesh::try_new(self.vertices, triangles)?;
+        Ok(MeshFile { mesh, polygons, precision: Precision::Double })
     }
 }

@@ -1,28 +1,30 @@
-//! STL, binary or text, read by `stl_io`. Equal corners become one vertex, so that the mesh has a topology.
+//! STL, binary (read by `stl_io`) or text. Equal corners become one vertex, so that the mesh has a topology.
+//!
+//! A binary file holds single precision. The numbers of a text are read as doubles: rounded to single precision they
+//! would be another body.
 
-use super::LoadError;
+use super::polygon::PolygonCounts;
+use super::{LoadError, MeshFile, Precision, coordinate, excerpt};
 use d2m::bvh::TriMesh;
 use glam::DVec3;
 use std::collections::HashMap;
-use std::io::{self, Cursor};
-use stl_io::Triangle;
+use std::io::Cursor;
 
 /// Bytes before the triangles of a binary file, and of each triangle.
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, LoadError> {
-    let mut soup = Soup::default();
+pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, LoadError> {
     // A binary file may start with "solid" too, so its exact length decides first.
     let stated =
         bytes.get(80..84).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize);
-    let needed = stated.map(|count| HEADER + RECORD * count);
-    let starts_as_text =
-        bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
-    if needed == Some(bytes.len()) {
-        binary(bytes, &mut soup)?;
-    } else if starts_as_text {
-        text(&String::from_utf8_lossy(bytes), &mut soup)?;
+    let needed = stated.map(|count| count.saturating_mul(RECORD).saturating_add(HEADER));
+    let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes).trim_ascii_start();
+    let starts_as_text = text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    let (soup, precision) = if needed == Some(bytes.len()) {
+        (binary(bytes)?, Precision::Single("binary STL"))
+    } else if starts_as_text && !bytes.contains(&0) {
+        (Text::new(&String::from_utf8_lossy(bytes)).parse()?, Precision::Double)
     } else {
         return Err(LoadError::new(match (stated, needed) {
             (Some(count), Some(needed)) => {
@@ -33,86 +35,138 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, LoadError> {
             }
             _ => format!("neither a text STL (\"solid\") nor a binary one: {} bytes only", bytes.len()),
         }));
-    }
-    Ok(TriMesh::try_new(soup.vertices, soup.triangles)?)
+    };
+    let mesh = TriMesh::try_new(soup.vertices, soup.triangles)?;
+    Ok(MeshFile { mesh, polygons: PolygonCounts::default(), precision })
 }
 
-fn binary(bytes: &[u8], soup: &mut Soup) -> Result<(), LoadError> {
+fn binary(bytes: &[u8]) -> Result<Soup, LoadError> {
+    let mut soup = Soup::default();
     // The reader takes any header that starts with "solid" for text.
     let without_title = [&[0; 80], &bytes[80..]].concat();
     let mut reader = Cursor::new(without_title);
     let triangles = stl_io::create_stl_reader(&mut reader);
-    for triangle in triangles.map_err(|error| LoadError::new(error.to_string()))? {
-        let triangle = triangle.map_err(|error| soup.fault(&error))?;
-        soup.add(&triangle)?;
+    for (number, triangle) in triangles.map_err(|error| LoadError::new(error.to_string()))?.enumerate() {
+        let triangle = triangle.map_err(|error| LoadError::new(format!("triangle {number}: {error}")))?;
+        let mut corners = [DVec3::ZERO; 3];
+        for (corner, (slot, vertex)) in corners.iter_mut().zip(triangle.vertices).enumerate() {
+            let coordinates: [f32; 3] = vertex.into();
+            if let Some(value) = coordinates.iter().find(|value| !value.is_finite()) {
+                let reason =
+                    format!("triangle {number}, corner {corner}: coordinate {value} is not a finite number");
+                return Err(LoadError::new(reason));
+            }
+            *slot = DVec3::from_array(coordinates.map(f64::from));
+        }
+        soup.add(corners);
     }
-    Ok(())
+    Ok(soup)
 }
 
-/// The lines between `solid` and `endsolid` of all parts of the file, seven for each triangle.
-fn text(text: &str, soup: &mut Soup) -> Result<(), LoadError> {
-    let mut clean = "solid \n".to_owned();
-    let mut places = Vec::new();
-    let mut is_open = false;
-    for (index, line) in text.lines().enumerate() {
-        let line = line.trim().to_ascii_lowercase();
-        match line.split_whitespace().next() {
-            None => {}
-            Some("solid") => is_open = true,
-            Some("endsolid") => is_open = false,
-            Some(_) => {
-                places.push(index + 1);
-                clean.push_str(&line);
-                clean.push('\n');
+/// The words of a text, with where they are.
+struct Text<'a> {
+    words: std::iter::Peekable<Box<dyn Iterator<Item = (usize, &'a str)> + 'a>>,
+    /// Line of the last word.
+    line: usize,
+}
+
+impl<'a> Text<'a> {
+    fn new(text: &'a str) -> Self {
+        let lines = text.trim_start_matches('\u{feff}').split('\n').enumerate();
+        let words =
+            lines.flat_map(|(index, line)| line.split_whitespace().map(move |word| (index + 1, word)));
+        let words: Box<dyn Iterator<Item = _> + 'a> = Box::new(words);
+        Self { words: words.peekable(), line: 1 }
+    }
+
+    /// All parts of the file, each from `solid` to `endsolid`; what stands behind these two words is a title.
+    fn parse(mut self) -> Result<Soup, LoadError> {
+        let mut soup = Soup::default();
+        let mut is_open = false;
+        while let Some((line, word)) = self.next() {
+            let is = |expected: &str| word.eq_ignore_ascii_case(expected);
+            if is("solid") || is("endsolid") {
+                is_open = is("solid");
+                while self.words.next_if(|&(next, _)| next == line).is_some() {}
+            } else if is("facet") && is_open {
+                let number = soup.triangles.len();
+                let corners = self.facet().map_err(|LoadError { line, reason }| {
+                    let reason = format!("triangle {number}: {reason}");
+                    LoadError { line, reason }
+                })?;
+                soup.add(corners);
+            } else {
+                let expected = if is_open { "\"facet\" or \"endsolid\"" } else { "\"solid\"" };
+                return Err(LoadError::at_line(
+                    line,
+                    format!("{expected} is expected, not {}", excerpt(word)),
+                ));
+            }
+        }
+        if is_open { Err(LoadError::new("the text ends without \"endsolid\"")) } else { Ok(soup) }
+    }
+
+    fn next(&mut self) -> Option<(usize, &'a str)> {
+        let found = self.words.next();
+        self.line = found.map_or(self.line, |(line, _)| line);
+        found
+    }
+
+    fn expect(&mut self, expected: &str) -> Result<(), LoadError> {
+        match self.next() {
+            Some((_, word)) if word.eq_ignore_ascii_case(expected) => Ok(()),
+            Some((line, word)) => {
+                Err(LoadError::at_line(line, format!("{expected:?} is expected, not {}", excerpt(word))))
+            }
+            None => {
+                Err(LoadError::at_line(self.line, format!("the text ends where {expected:?} is expected")))
             }
         }
     }
-    if is_open {
-        return Err(LoadError::new("the text ends without \"endsolid\""));
+
+    /// What follows the word `facet`. Normals are not read: writers put anything there.
+    fn facet(&mut self) -> Result<[DVec3; 3], LoadError> {
+        self.expect("normal")?;
+        for _ in 0..3 {
+            self.next();
+        }
+        self.expect("outer")?;
+        self.expect("loop")?;
+        let mut corners = [DVec3::ZERO; 3];
+        for (number, corner) in corners.iter_mut().enumerate() {
+            self.expect("vertex")?;
+            let mut position = [0.0; 3];
+            for (axis, slot) in ["x", "y", "z"].into_iter().zip(&mut position) {
+                let word = self.next().map(|(_, word)| word);
+                *slot = coordinate(axis, word)
+                    .map_err(|reason| LoadError::at_line(self.line, format!("corner {number}: {reason}")))?;
+            }
+            *corner = DVec3::from_array(position);
+        }
+        self.expect("endloop")?;
+        self.expect("endfacet")?;
+        Ok(corners)
     }
-    clean.push_str("endsolid\n");
-    let mut reader = Cursor::new(clean);
-    let triangles = stl_io::create_stl_reader(&mut reader);
-    for triangle in triangles.map_err(|error| LoadError::new(error.to_string()))? {
-        let number = soup.triangles.len();
-        let at_line = |error: LoadError| LoadError { line: places.get(7 * number).copied(), ..error };
-        let triangle = triangle.map_err(|error| at_line(soup.fault(&error)))?;
-        soup.add(&triangle).map_err(at_line)?;
-    }
-    Ok(())
 }
 
-/// Triangles with their corners welded.
+/// Triangles with their corners welded where they are equal.
 #[derive(Default)]
 struct Soup {
     vertices: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
-    known: HashMap<[u32; 3], u32>,
+    known: HashMap<[u64; 3], u32>,
 }
 
 impl Soup {
-    fn fault(&self, error: &io::Error) -> LoadError {
-        LoadError::new(format!("triangle {}: {error}", self.triangles.len()))
-    }
-
-    fn add(&mut self, triangle: &Triangle) -> Result<(), LoadError> {
-        let number = self.triangles.len();
-        let mut corners = [0; 3];
-        for (corner, (slot, vertex)) in corners.iter_mut().zip(triangle.vertices.iter().enumerate()) {
-            let coordinates: [f32; 3] = (*vertex).into();
-            if let Some(value) = coordinates.iter().find(|value| !value.is_finite()) {
-                let reason =
-                    format!("triangle {number}, corner {slot}: coordinate {value} is not a finite number");
-                return Err(LoadError::new(reason));
-            }
+    fn add(&mut self, corners: [DVec3; 3]) {
+        let corners = corners.map(|position| {
             // Adding 0 turns −0 into +0.
-            let coordinates = coordinates.map(|value| value + 0.0);
-            *corner = *self.known.entry(coordinates.map(f32::to_bits)).or_insert_with(|| {
-                self.vertices.push(DVec3::from_array(coordinates.map(f64::from)));
-                self.vertices.len() as u32 - 1
-            });
-        }
+            let position = position + DVec3::ZERO;
+            *self.known.entry(position.to_array().map(f64::to_bits)).or_insert_with(|| {
+                self.vertices.push(position);
+                (self.vertices.len() - 1) as u32
+            })
+        });
         self.triangles.push(corners);
-        Ok(())
     }
 }

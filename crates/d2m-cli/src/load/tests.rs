@@ -1,9 +1,26 @@
 //! Loaders: the same mesh in every format, faults with their places, and arbitrary bytes.
 
-use super::{LoadError, obj, ply, stl};
+use super::polygon::PolygonCounts;
+use super::{LoadError, MeshFile, Precision};
 use d2m::bvh::{Topology, TriMesh};
 use glam::DVec3;
 use proptest::prelude::*;
+
+mod obj {
+    pub(super) fn parse(bytes: &[u8]) -> Result<super::TriMesh, super::LoadError> {
+        super::super::obj::parse(bytes).map(|file| file.mesh)
+    }
+}
+mod stl {
+    pub(super) fn parse(bytes: &[u8]) -> Result<super::TriMesh, super::LoadError> {
+        super::super::stl::parse(bytes).map(|file| file.mesh)
+    }
+}
+mod ply {
+    pub(super) fn parse(bytes: &[u8]) -> Result<super::TriMesh, super::LoadError> {
+        super::super::ply::parse(bytes).map(|file| file.mesh)
+    }
+}
 
 fn tetrahedron() -> TriMesh {
     d2m::shapes::mesh("tetrahedron").unwrap()
@@ -76,20 +93,79 @@ fn every_format_gives_the_same_mesh() {
     for big in [false, true] {
         assert_eq!(ply::parse(&ply_binary(&mesh, big)).unwrap(), mesh);
     }
-    let from_text = stl::parse(stl_text(&mesh).as_bytes()).unwrap();
-    for loaded in [
-        stl::parse(&stl_binary(&mesh, b"made by hand")).unwrap(),
-        stl::parse(&stl_binary(&mesh, b"solid, but binary")).unwrap(),
-        stl::parse(stl_text(&mesh).to_ascii_uppercase().as_bytes()).unwrap(),
-    ] {
-        assert_eq!(loaded, from_text);
+    let single = stl::parse(&stl_binary(&mesh, b"made by hand")).unwrap();
+    assert_eq!(stl::parse(&stl_binary(&mesh, b"solid, but binary")).unwrap(), single);
+    let double = stl::parse(stl_text(&mesh).as_bytes()).unwrap();
+    assert_eq!(stl::parse(stl_text(&mesh).to_ascii_uppercase().as_bytes()).unwrap(), double);
+    for loaded in [&single, &double] {
         assert_eq!(loaded.vertex_count(), 4);
-        assert!(Topology::new(&loaded).is_oriented_manifold());
+        assert!(Topology::new(loaded).is_oriented_manifold());
     }
     for triangle in 0..4 {
-        for (single, double) in from_text.corners(triangle).into_iter().zip(mesh.corners(triangle)) {
-            assert!(single.distance(double) < 1e-7);
+        assert_eq!(double.corners(triangle), mesh.corners(triangle));
+        let rounded = mesh.corners(triangle).map(|corner| corner.as_vec3().as_dvec3());
+        assert_eq!(single.corners(triangle), rounded);
+    }
+}
+
+/// The digits of a text are the body, in every format and for any number of them; what is stored as single precision says so.
+#[test]
+fn texts_are_read_as_the_nearest_doubles() {
+    // Halfway cases, long mantissas, exponents of all sizes: as the compiler reads them.
+    let numbers: [(&str, f64); 9] = [
+        ("0.1", 0.1),
+        ("-1.00000005960464477539062500000000000000001", -1.000_000_059_604_644_8),
+        ("9007199254740993", 9_007_199_254_740_992.0),
+        ("9007199254740993.00000000000000000000000000000000000001", 9_007_199_254_740_994.0),
+        ("2.2250738585072011e-308", 2.225_073_858_507_201e-308),
+        ("4.9406564584124654e-324", 5e-324),
+        ("1e-999", 0.0),
+        ("+123456789012345678901234567890e-25", 12_345.678_901_234_567),
+        (".5E+1", 5.0),
+    ];
+    for three in numbers.chunks_exact(3) {
+        let words: Vec<&str> = three.iter().map(|(word, _)| *word).collect();
+        let position = DVec3::new(three[0].1, three[1].1, three[2].1);
+        let words = words.join(" ");
+        let obj_file = format!("v {words}\nv 7 0 0\nv 0 7 0\nf 1 2 3\n");
+        let stl_file = format!(
+            "solid\nfacet normal 0 0 nan\nouter loop\nvertex {words}\nvertex 7 0 0\nvertex 0 7 0\nendloop\nendfacet\nendsolid\n"
+        );
+        let ply_file = |kind: &str| {
+            format!(
+                "ply\nformat ascii 1.0\nelement vertex 3\nproperty {kind} x\nproperty {kind} y\nproperty {kind} z\n\
+                 element face 1\nproperty list uchar int vertex_indices\nend_header\n{words}\n7 0 0\n0 7 0\n3 0 1 2\n"
+            )
+        };
+        for file in [
+            super::obj::parse(obj_file.as_bytes()),
+            super::stl::parse(stl_file.as_bytes()),
+            super::ply::parse(ply_file("double").as_bytes()),
+            super::ply::parse(ply_file("float").as_bytes()),
+        ] {
+            let file = file.unwrap();
+            assert_eq!(file.mesh.vertices()[0], position, "{words}");
+            assert_eq!(file.precision, Precision::Double);
         }
+    }
+    let binary = super::stl::parse(&stl_binary(&tetrahedron(), b"")).unwrap();
+    assert_eq!(binary.precision, Precision::Single("binary STL"));
+    for big in [false, true] {
+        let double = ply_binary(&tetrahedron(), big);
+        assert_eq!(super::ply::parse(&double).unwrap().precision, Precision::Double);
+        let header =
+            ply_header(if big { "binary_big_endian" } else { "binary_little_endian" }, &tetrahedron());
+        let mut single = header.replace("double", "float").into_bytes();
+        for vertex in tetrahedron().vertices() {
+            let number = |x: f64| if big { (x as f32).to_be_bytes() } else { (x as f32).to_le_bytes() };
+            single.extend(vertex.to_array().into_iter().flat_map(number));
+            single.push(7);
+        }
+        single.extend(&double[double.len() - 4 * 13..]);
+        let single = super::ply::parse(&single).unwrap();
+        assert_eq!(single.precision, Precision::Single("PLY with float properties"));
+        let rounded: Vec<DVec3> = tetrahedron().vertices().iter().map(|v| v.as_vec3().as_dvec3()).collect();
+        assert_eq!(single.mesh.vertices(), rounded);
     }
 }
 
@@ -104,9 +180,41 @@ fn obj_dialects() {
     // The file may end with a line that promises another.
     let unfinished = format!("{}f 1 2 3 \\", obj_text(&tetrahedron()));
     assert_eq!(obj::parse(unfinished.as_bytes()).unwrap().triangle_count(), 5);
-    // Two groups, and two vertices at one place: the first one names both.
+    // Two groups, and two vertices at one place: they keep the numbers of the file.
     let twice = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\ng a\nf 1 2 3\ng b\nf 4 3 2\n";
-    assert_eq!(obj::parse(twice.as_bytes()).unwrap().triangles(), [[0, 1, 2], [0, 2, 1]]);
+    assert_eq!(obj::parse(twice.as_bytes()).unwrap().triangles(), [[0, 1, 2], [3, 2, 1]]);
+    // Lines may end in carriage returns alone.
+    let old = obj_text(&tetrahedron()).replace('\n', "\r");
+    assert_eq!(obj::parse(old.as_bytes()).unwrap(), tetrahedron());
+}
+
+/// Each line that goes on was once copied with all before it: 2 MB took a minute.
+#[test]
+fn long_statements_take_linear_time() {
+    let start = std::time::Instant::now();
+    let mut text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf".to_owned();
+    text.push_str(&" \\\n".repeat(700_000));
+    text.push_str(" 1 \\\n2 3 \\\n4\n");
+    text.push_str(&format!("v {} 1 2 \\\n", "0".repeat(1_000_000)));
+    let mesh = obj::parse(text.as_bytes()).unwrap();
+    assert_eq!(mesh.triangles(), [[0, 1, 2], [0, 2, 3]]);
+    assert!(start.elapsed().as_secs_f64() < 5.0, "{:?}", start.elapsed());
+    let fault = obj::parse(b"v 0 0 0\nf 1 1 \\\n 2\n").unwrap_err();
+    assert_eq!(fault.line, Some(3), "the line of the word, not of the statement");
+}
+
+#[test]
+fn concave_faces_are_cut_inside_themselves() {
+    // A dart seen from z: the diagonal from its first corner would leave it.
+    let text = "v 0 0 0\nv 2 1 0\nv 0 2 0\nv 0.5 1 0\nf 1 2 3 4\nf 2/1 3/2 4/3 1/4\nf -4 -3 -2 -1\n";
+    let MeshFile { mesh, polygons, .. } = super::obj::parse(text.as_bytes()).unwrap();
+    assert_eq!(polygons, PolygonCounts { cut: 3, ..Default::default() });
+    assert_eq!(mesh.triangle_count(), 6);
+    assert!(mesh.triangles().iter().all(|triangle| triangle.contains(&3) && triangle.contains(&1)));
+    let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+               element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n2 1 0\n0 2 0\n0.5 1 0\n4 0 1 2 3\n";
+    let mesh = ply::parse(ply.as_bytes()).unwrap();
+    assert!(mesh.triangles().iter().all(|triangle| triangle.contains(&3) && triangle.contains(&1)));
 }
 
 #[test]
@@ -158,9 +266,24 @@ fn faults_name_the_place_and_the_value() {
         lines[index] = line;
         lines.join("\n")
     };
-    assert_eq!(stl(&with(10, "vertex 0 0 x")).0, Some(9));
-    assert!(stl(&with(10, "vertex 0 0 x")).1.starts_with("triangle 1: "));
-    assert!(stl(&with(10, "vertex 0 0 inf")).1.contains("inf"));
+    assert_eq!(stl(&with(10, "vertex 0 0 x")), text(11, "triangle 1: corner 0: z is \"x\", not a number"));
+    assert_eq!(
+        stl(&with(10, "vertex 0 0 inf")),
+        text(11, "triangle 1: corner 0: z is inf, not a finite number")
+    );
+    assert_eq!(
+        stl(&with(10, "vertex 0 0 -1e99")),
+        text(11, "triangle 1: corner 0: z is -1e99, larger than the limit of 1e60")
+    );
+    assert_eq!(stl(&with(10, "vertex 0 0")), text(12, "triangle 1: corner 0: z is \"vertex\", not a number"));
+    assert_eq!(
+        stl(&with(13, "vertex 0 0 0")),
+        text(14, "triangle 1: \"endloop\" is expected, not \"vertex\"")
+    );
+    assert_eq!(
+        stl(&with(0, "solid\nfacets")),
+        text(2, "\"facet\" or \"endsolid\" is expected, not \"facets\"")
+    );
     assert_eq!(
         stl(&lines[..lines.len() - 1].join("\n")),
         (None, "the text ends without \"endsolid\"".to_owned())
@@ -185,9 +308,24 @@ fn faults_name_the_place_and_the_value() {
         ply(&good.replace("3 1 3 2", "3 1 -3 2")),
         text(19, "face 3: vertex index -3 is out of range")
     );
-    assert_eq!(ply(&good.replace("3 1 3 2", "3 1 b 2")), text(19, "face: cannot read \"3 1 b 2\""));
-    assert_eq!(ply(&good.replace("3 1 3 2\n", "")).0, Some(19));
+    assert_eq!(
+        ply(&good.replace("3 1 3 2", "3 1 b 2")),
+        text(19, "face 3: vertex index \"b\" is not a number")
+    );
+    assert_eq!(ply(&good.replace("3 1 3 2\n", "")), (None, "face: the file ends after 3 of 4".to_owned()));
     assert_eq!(ply(&good.replace("property double z\n", "")).0, Some(11));
+    assert_eq!(
+        ply(&good.replace("3 1 3 2", "3 1 3 2 0")),
+        text(19, "face 3: \"0\" is left after its properties")
+    );
+    assert_eq!(
+        ply(&(good.clone() + "\n3 1 3 2\n")),
+        text(21, "\"3 1 3 2\" is left after the elements that the header states")
+    );
+    assert_eq!(
+        ply(&good.replace("property uchar red\n", "property uchar red\nproperty int x\n")),
+        text(9, "\"x\" is defined for the second time")
+    );
     assert_eq!(ply("hello"), text(1, "Expected magic number 'ply' found \"hello\""));
     let far = ply_header("ascii", &tetrahedron()) + "0 0 -1e70 7\n1 0 0 7\n0 1 0 7\n0 0 1 7\n";
     let far = far + "3 0 1 2\n".repeat(4).as_str();
