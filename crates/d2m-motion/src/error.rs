@@ -52,6 +52,70 @@ pub enum MotionError {
         /// What is wrong with it.
         reason: &'static str,
     },
+    /// Two spans of a motion do not meet.
+    #[error(
+        "keyframe {index}, time {time:?}: the span that ends here and the one that begins are {gap:e} apart in {quantity}, more than {allowed:e}"
+    )]
+    Gap {
+        /// Index of the time at which they should meet.
+        index: usize,
+        /// That time.
+        time: f64,
+        /// `position` (units of length) or `rotation` (radians).
+        quantity: &'static str,
+        /// How far apart they are.
+        gap: f64,
+        /// What would have counted as rounding.
+        allowed: f64,
+    },
+    /// The turn between two keyframes is half a circle, which has no short way round.
+    #[error(
+        "keyframe {index}, time {time:?}: the turn from the keyframe before is half a circle, which has no short way round"
+    )]
+    HalfTurn {
+        /// Index of the later keyframe.
+        index: usize,
+        /// Its time.
+        time: f64,
+    },
+    /// A part of a motion that is made of several is not as it should be.
+    #[error("{place}: {reason}")]
+    Part {
+        /// Which part, such as `chain[2], axis` (indices count from 0).
+        place: String,
+        /// What is wrong with it, with the value.
+        reason: String,
+    },
+}
+
+impl MotionError {
+    /// The same fault of a part, with the place of what the part belongs to.
+    pub(crate) fn within(self, outer: &str) -> Self {
+        match self {
+            Self::Part { place, reason } => Self::Part { place: format!("{outer}, {place}"), reason },
+            other => Self::Part { place: outer.to_owned(), reason: other.to_string() },
+        }
+    }
+}
+
+/// A fault of a part.
+pub(crate) fn fault(place: String, reason: String) -> MotionError {
+    MotionError::Part { place, reason }
+}
+
+/// Index and description of the first fault of a list of times: fewer than two, one not finite, or not increasing.
+pub(crate) fn describe_times(times: &[f64]) -> Option<(usize, String)> {
+    if times.len() < 2 {
+        return Some((times.len(), "at least two times are needed".to_owned()));
+    }
+    times.iter().enumerate().find_map(|(index, &time)| {
+        if !time.is_finite() {
+            return Some((index, format!("{time} is not finite")));
+        }
+        let before = index.checked_sub(1).map(|i| times[i])?;
+        (before >= time)
+            .then(|| (index, format!("{time:?} does not come after {before:?}: times must increase")))
+    })
 }
 
 /// Refuses NaN and infinity.

@@ -1,6 +1,10 @@
 //! Poses at times, joined by motions of constant twist.
-use crate::error::require_finite;
-use crate::{ConstantTwist, MotionError, Pose, RigidMotion, ScrewMotion, Twist};
+use crate::error::{fault, require_finite};
+use crate::{
+    CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Kinematics, MotionError, Pose, RigidMotion,
+    ScrewMotion, Twist, TwistPiece,
+};
+use d2m_interval::Interval;
 use glam::DVec3;
 
 /// How two neighbouring keyframes are joined.
@@ -14,61 +18,140 @@ pub enum Span {
     Screw,
 }
 
+/// Part of the body's size plus the distance moved up to which two spans that do not meet count as rounded; and the angle
+/// (radians) up to which their rotations do.
+pub const LARGEST_GAP: f64 = 1e-9;
+/// A quaternion product of two unit quaternions rounds by less than this in each component: five roundings in each factor's
+/// normalisation and four products that are added, of numbers whose squares sum to 1.
+const PRODUCT_ROUNDING: f64 = 16.0 * 0.5 * f64::EPSILON;
+
 /// Poses at increasing times, each span between two of them a motion of constant twist.
 ///
-/// The motion is continuous up to rounding (a span ends within a few units in the last place of the next pose) but
-/// its twist jumps, so it is no [`RigidMotion`]: query it span by span, through [`Keyframes::spans`].
+/// The motion is continuous up to rounding (a span ends within a few units in the last place of the next pose, or within
+/// [`LARGEST_GAP`] where spans were given) and its twist jumps at the keyframes, which are its joints as a [`RigidMotion`].
+/// At a keyframe the pose of the span before it belongs to the time before, that of the span after it to the time after.
 ///
 /// ```
-/// use d2m_motion::{Keyframes, Pose, Span};
+/// use d2m_motion::{Keyframes, Pose, RigidMotion, Span};
 /// use glam::DVec3;
 /// let at = |x: f64| Pose { translation: DVec3::X * x, ..Pose::IDENTITY };
 /// let path = Keyframes::try_new(&[(0.0, at(0.0)), (1.0, at(2.0)), (3.0, at(0.0))], Span::Linear)?;
 /// assert_eq!(path.spans().count(), 2);
-/// assert_eq!(path.pose_and_twist(2.0).unwrap().0.translation, DVec3::X);
+/// assert_eq!(path.pose_and_twist(2.0).0.translation, DVec3::X);
+/// assert_eq!((path.smooth_until(0.5), path.smooth_until(1.0)), (Some(1.0), None));
 /// # Ok::<(), d2m_motion::MotionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Keyframes {
     times: Vec<f64>,
     motions: Vec<ConstantTwist>,
+    widest: Option<WidestGap>,
+}
+
+/// The joint that asks for the largest body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct WidestGap {
+    index: usize,
+    gap: f64,
+    moved: f64,
 }
 
 impl Keyframes {
     /// Joins poses at strictly increasing times.
     ///
     /// # Errors
-    /// Fewer than two keyframes, times not finite or not increasing, or a pose that is no pose.
+    /// Fewer than two keyframes, times not finite or not increasing, a pose that is no pose, or a turn of half a circle
+    /// between two poses, which has no short way round.
     pub fn try_new(keyframes: &[(f64, Pose)], span: Span) -> Result<Self, MotionError> {
         let times: Vec<f64> = keyframes.iter().map(|(time, _)| *time).collect();
         check_times(&times)?;
+        for (index, (_, pose)) in keyframes.iter().enumerate() {
+            check_pose(pose).map_err(|error| error.within(&format!("poses[{index}]")))?;
+        }
         let motions = keyframes
             .windows(2)
-            .map(|pair| {
+            .enumerate()
+            .map(|(index, pair)| {
                 let ((t0, start), (t1, end)) = (pair[0], pair[1]);
-                require_finite("position", &end.translation.to_array())?;
-                if span == Span::Screw
-                    && let Ok(screw) = ScrewMotion::try_from_poses(start, end, t0, t1)
-                {
-                    return Ok(*screw.as_linear());
+                if is_half_turn(&start, &end) {
+                    return Err(MotionError::HalfTurn { index: index + 1, time: t1 });
                 }
-                join_linear(start, end, t0, t1)
+                let linear = join_linear(start, end, t0, t1)?;
+                Ok(match span {
+                    Span::Linear => linear,
+                    Span::Screw => join_screw(start, end, [t0, t1]).unwrap_or(linear),
+                })
             })
             .collect::<Result<_, _>>()?;
-        Ok(Self { times, motions })
+        Ok(Self { times, motions, widest: None })
     }
 
     /// Puts spans together; `motions[i]` runs from `times[i]` to `times[i + 1]`.
     ///
+    /// Spans have to meet. What counts as rounding depends on the body ([`Keyframes::check_size`]); as long as that is not
+    /// known, its coordinates stand for its size.
+    ///
     /// # Errors
-    /// Times not finite or not increasing, or not one more than motions.
+    /// Times not finite or not increasing, or not one more than motions; spans that do not meet.
     pub fn try_from_spans(times: Vec<f64>, motions: Vec<ConstantTwist>) -> Result<Self, MotionError> {
         check_times(&times)?;
         if times.len() != motions.len() + 1 {
-            let reason = "there must be one more time than spans";
-            return Err(MotionError::Keyframes { index: motions.len(), time: f64::NAN, reason });
+            let reason = format!("{} times for {} spans: one more is needed", times.len(), motions.len());
+            return Err(fault("times".into(), reason));
         }
-        Ok(Self { times, motions })
+        let mut path = Self { times, motions, widest: None };
+        path.find_gaps()?;
+        Ok(path)
+    }
+
+    /// Measures the gaps at all joints, refuses those that no body explains and keeps the one that asks for the largest body.
+    fn find_gaps(&mut self) -> Result<(), MotionError> {
+        let mut moved = 0.0;
+        let mut widest: Option<(f64, WidestGap)> = None;
+        for index in 1..self.motions.len() {
+            let (time, before, after) = (self.times[index], &self.motions[index - 1], &self.motions[index]);
+            let v = before.linear_velocity().length();
+            moved += (v + before.angular_velocity().length() * before.at().length())
+                * (time - self.times[index - 1]);
+            let [p, q] = [before, after].map(|motion| {
+                Kinematics::following(&motion.enclose_kinematics(Interval::point(time)), DVec3::ZERO)
+            });
+            let turn = (p.rotation + q.rotation * -1.0).to_cols_array().iter().map(|x| x * x).sum::<f64>();
+            // The Frobenius norm of a difference of rotations by a small angle is √2 of it.
+            let angle = (0.5 * turn).sqrt() - p.rotation_radius - q.rotation_radius;
+            let error = |quantity, gap, allowed| MotionError::Gap { index, time, quantity, gap, allowed };
+            // Also what is no number is refused.
+            if !(angle <= LARGEST_GAP) {
+                return Err(error("rotation", angle, LARGEST_GAP));
+            }
+            let apart = (p.position.center - q.position.center) + (p.position_tail - q.position_tail);
+            let gap = apart.length() - p.position.radius - q.position.radius;
+            let coordinates = [before, after].map(|m| m.position().length().max(m.at().length()));
+            let allowed = LARGEST_GAP * (coordinates[0].max(coordinates[1]) + moved);
+            if !(gap <= allowed) {
+                return Err(error("position", gap, allowed));
+            }
+            let size = gap / LARGEST_GAP - moved;
+            if size > 0.0 && widest.is_none_or(|(largest, _)| size > largest) {
+                widest = Some((size, WidestGap { index, gap, moved }));
+            }
+        }
+        self.widest = widest.map(|(_, gap)| gap);
+        Ok(())
+    }
+
+    /// Do the spans meet, for a body of this size (a length)? Gaps of at most [`LARGEST_GAP`] of the size plus the distance
+    /// moved until then are rounding.
+    ///
+    /// # Errors
+    /// The joint with the widest gap.
+    pub fn check_size(&self, size: f64) -> Result<(), MotionError> {
+        let Some(WidestGap { index, gap, moved }) = self.widest else { return Ok(()) };
+        let allowed = LARGEST_GAP * (size + moved);
+        if gap <= allowed {
+            return Ok(());
+        }
+        Err(MotionError::Gap { index, time: self.times[index], quantity: "position", gap, allowed })
     }
 
     /// The keyframe times, increasing.
@@ -88,15 +171,105 @@ impl Keyframes {
 
     /// The span that holds time `t` (the later one at a keyframe), or `None` outside.
     pub fn span_at(&self, t: f64) -> Option<(f64, f64, &ConstantTwist)> {
-        let index = self.times.partition_point(|&time| time <= t).min(self.motions.len()).checked_sub(1)?;
-        let (start, end) = (self.times[index], self.times[index + 1]);
-        (t <= end).then(|| (start, end, &self.motions[index]))
+        if !(self.times[0] <= t && t <= self.times[self.motions.len()]) {
+            return None;
+        }
+        let index = self.index_from(t);
+        Some((self.times[index], self.times[index + 1], &self.motions[index]))
     }
 
-    /// Pose and twist at a time inside the keyframes, in plain floating point.
-    pub fn pose_and_twist(&self, t: f64) -> Option<(Pose, Twist)> {
-        self.span_at(t).map(|(_, _, motion)| motion.pose_and_twist(t))
+    /// The span that begins at or before `t`; the first or last one outside.
+    fn index_from(&self, t: f64) -> usize {
+        self.times.partition_point(|&time| time <= t).saturating_sub(1).min(self.motions.len() - 1)
     }
+
+    /// The span that ends at or after `t`.
+    fn index_until(&self, t: f64) -> usize {
+        self.times.partition_point(|&time| time < t).saturating_sub(1).min(self.motions.len() - 1)
+    }
+
+    /// The point that all spans are told by.
+    fn at(&self) -> DVec3 {
+        self.motions[0].at()
+    }
+
+    /// A hull over the spans that have a part of the interval.
+    fn over<T>(
+        &self,
+        t: Interval,
+        enclose: impl Fn(&ConstantTwist, Interval) -> T,
+        hull: impl Fn(T, T) -> T,
+    ) -> T {
+        let first = self.index_from(t.lo());
+        let last = if t.lo() < t.hi() { self.index_until(t.hi()).max(first) } else { first };
+        let part = |index: usize| {
+            let lo = if index == first { t.lo() } else { self.times[index] };
+            let hi = if index == last { t.hi() } else { self.times[index + 1] };
+            enclose(&self.motions[index], Interval::try_new(lo, hi).unwrap_or(Interval::ENTIRE))
+        };
+        (first + 1..=last).fold(part(first), |whole, index| hull(whole, part(index)))
+    }
+}
+
+impl RigidMotion for Keyframes {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        let (pose, twist) = self.motions[self.index_from(t)].pose_and_twist(t);
+        let at = self.at();
+        let arm = pose.rotation * (at - pose.at);
+        let translation = pose.translation + arm;
+        (Pose { translation, at, ..pose }, Twist { linear: twist.velocity_of(arm), ..twist })
+    }
+
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        let at = self.at();
+        let one = |motion: &ConstantTwist, t: Interval| {
+            let pose = motion.enclose_pose(t);
+            IntervalPose { translation: pose.enclose_point(at), at, ..pose }
+        };
+        self.over(t, one, |a, b| IntervalPose {
+            rotation: a.rotation.hull(b.rotation),
+            translation: a.translation.hull(b.translation),
+            at,
+        })
+    }
+
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        self.over(t, |motion, t| motion.enclose_kinematics(t).following(self.at()).to_twist(), hull)
+    }
+
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.over(t, |motion, t| motion.enclose_kinematics(t).following(self.at()).to_twist_rate(), hull)
+    }
+
+    fn domain(&self) -> Interval {
+        Interval::new(self.times[0], self.times[self.motions.len()])
+    }
+
+    fn smooth_until(&self, t: f64) -> Option<f64> {
+        let index = self.index_from(t);
+        (index + 1 < self.motions.len()).then(|| self.times[index + 1])
+    }
+
+    fn enclose_state(&self, t: f64) -> CertifiedState {
+        self.enclose_state_about(t, DVec3::ZERO)
+    }
+
+    fn enclose_state_about(&self, t: f64, origin: DVec3) -> CertifiedState {
+        self.enclose_kinematics(Interval::point(t)).state_about(origin)
+    }
+
+    fn enclose_kinematics(&self, t: Interval) -> Kinematics {
+        self.over(t, |motion, t| motion.enclose_kinematics(t).following(self.at()), |a, b| a.hull(&b))
+    }
+
+    fn constant_twist_from(&self, t: f64) -> Option<TwistPiece> {
+        let motion = self.motions[self.index_from(t)];
+        Some(TwistPiece { motion, until: self.smooth_until(t) })
+    }
+}
+
+fn hull(a: IntervalTwist, b: IntervalTwist) -> IntervalTwist {
+    IntervalTwist { linear: a.linear.hull(b.linear), angular: a.angular.hull(b.angular) }
 }
 
 fn check_times(times: &[f64]) -> Result<(), MotionError> {
@@ -115,6 +288,17 @@ fn check_times(times: &[f64]) -> Result<(), MotionError> {
         }
     }
     Ok(())
+}
+
+fn check_pose(pose: &Pose) -> Result<(), MotionError> {
+    require_finite("at", &pose.at.to_array())?;
+    ConstantTwist::try_new(pose.translation, pose.rotation, DVec3::ZERO, DVec3::ZERO).map(|_| ())
+}
+
+/// Does the turn from one pose to the other have the scalar part zero, up to the rounding of the quaternions?
+fn is_half_turn(start: &Pose, end: &Pose) -> bool {
+    let turn = end.rotation.normalize() * start.rotation.normalize().conjugate();
+    turn.w.abs() <= PRODUCT_ROUNDING
 }
 
 fn join_linear(start: Pose, end: Pose, t0: f64, t1: f64) -> Result<ConstantTwist, MotionError> {
@@ -136,4 +320,16 @@ fn join_linear(start: Pose, end: Pose, t0: f64, t1: f64) -> Result<ConstantTwist
         turn = -turn;
     }
     place(DVec3::new(turn.x, turn.y, turn.z) * (2.0 / span))
+}
+
+/// The screw between two poses; `None` where the line is closer to it than its rounding.
+///
+/// An axis at the distance d moves the body by some units in the last place of d, and the arc of a small turn θ over the
+/// chord c is c·θ/8 away from it.
+fn join_screw(start: Pose, end: Pose, [t0, t1]: [f64; 2]) -> Option<ConstantTwist> {
+    let screw = *ScrewMotion::try_from_poses(start, end, t0, t1).ok()?.as_linear();
+    let angle = screw.angular_velocity().length() * (t1 - t0);
+    let chord = (end.transform_point(start.at) - start.translation).length();
+    let arm = (screw.at() - start.at).length();
+    (4.0 * f64::EPSILON * arm <= chord * angle / 8.0 || chord == 0.0 || angle == 0.0).then_some(screw)
 }

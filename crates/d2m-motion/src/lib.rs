@@ -1,15 +1,24 @@
 #![doc = include_str!("../README.md")]
 
+mod any_motion;
+mod ball;
+mod chain;
+mod check_motion;
+mod composed;
 mod constant_twist;
 mod double_double;
 mod error;
+mod joint_value;
 mod keyframes;
+mod kinematics;
 mod path_jet;
 mod pose;
 mod relative;
 mod rigid_motion;
 mod rotation;
 mod screw;
+#[cfg(feature = "serde")]
+mod serde_any;
 #[cfg(feature = "serde")]
 mod serde_form;
 mod sin_cos;
@@ -19,16 +28,23 @@ mod twist;
 mod two;
 mod two_jets;
 
+pub use any_motion::AnyMotion;
+pub use ball::Ball;
+pub use chain::{Chain, Joint, JointKind};
+pub use check_motion::{MotionFault, check_motion};
+pub use composed::{Composed, Retimed};
 pub use constant_twist::ConstantTwist;
 pub use error::MotionError;
-pub use keyframes::{Keyframes, Span};
+pub use joint_value::JointValue;
+pub use keyframes::{Keyframes, LARGEST_GAP, Span};
+pub use kinematics::Kinematics;
 /// The name that `ConstantTwist` had before: it turns, so it was never linear.
 #[doc(hidden)]
 pub type LinearMotion = ConstantTwist;
 pub use path_jet::{PathJet, Remainder};
 pub use pose::{IntervalPose, Pose};
 pub use relative::{Arm, ArmPair, Frame, RelativeMotion, RelativeState};
-pub use rigid_motion::RigidMotion;
+pub use rigid_motion::{RigidMotion, TwistPiece};
 pub use screw::ScrewMotion;
 pub use state::CertifiedState;
 pub use twist::{IntervalTwist, Twist};
@@ -37,5 +53,7 @@ pub use twist::{IntervalTwist, Twist};
 #[doc(hidden)]
 pub use {two::TwoVec3, two_jets::TwoJets};
 
+#[cfg(all(test, feature = "serde"))]
+mod chain_tests;
 #[cfg(test)]
 mod tests;

@@ -1,17 +1,31 @@
-//! The open trait: any twice differentiable rigid motion that can enclose itself.
-use crate::{CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Pose, Twist};
+//! The open trait: any rigid motion, twice differentiable piece by piece, that can enclose itself.
+use crate::{CertifiedState, Chain, ConstantTwist, IntervalPose, IntervalTwist, Kinematics, Pose, Twist};
 use d2m_interval::{Interval, IntervalVec3};
+use glam::DVec3;
 
-/// A rigid motion with a continuous acceleration (C²), and proven enclosures of it over intervals of time.
+/// A piece of a motion during which its twist is constant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TwistPiece {
+    /// The motion during the piece, with its closed form.
+    pub motion: ConstantTwist,
+    /// When the piece ends; `None`: never.
+    pub until: Option<f64>,
+}
+
+/// A rigid motion whose pose is continuous and whose acceleration is continuous piece by piece (piecewise C²), with proven
+/// enclosures over intervals of time.
 ///
-/// Promise of an implementation, for every interval `t` inside the domain of the motion:
+/// Promise of an implementation, for every interval `t` inside [`RigidMotion::domain`]:
 /// * `enclose_pose(t)` contains the true pose, `enclose_twist(t)` the true twist and `enclose_twist_rate(t)` the
 ///   true derivative of the twist (acceleration of the followed point, angular acceleration) at every time of `t`;
 /// * the enclosures shrink towards the values as `t` shrinks (otherwise queries get slow, never wrong);
 /// * the body point `at` is the same at all times;
 /// * [`RigidMotion::pose_and_twist`] is the same motion up to rounding. It proves nothing.
 ///
-/// A motion that is only piecewise C² (keyframes) is to be queried span by span.
+/// **Joints.** Where two C² pieces meet, twist and twist rate may jump. Such times are told by
+/// [`RigidMotion::smooth_until`]. Over an interval with an interior the enclosures hold what is inside and the
+/// one-sided limits at its ends, seen from inside; at a single time, the piece that begins there (at the end of the domain: that
+/// ends there). [`check_motion`](crate::check_motion) holds a motion against all this by samples.
 pub trait RigidMotion: Sync {
     /// Pose and twist at one time, in plain floating point.
     fn pose_and_twist(&self, t: f64) -> (Pose, Twist);
@@ -25,14 +39,47 @@ pub trait RigidMotion: Sync {
     /// Encloses the time derivative of the twist (world axes) over an interval of time.
     fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist;
 
-    /// Pose and twist at one time with proven radii: what first contacts of single features are made of, once for each
-    /// time that a search looks at.
+    /// The times at which the motion is defined; nothing is promised outside. The default is all times.
+    fn domain(&self) -> Interval {
+        Interval::ENTIRE
+    }
+
+    /// The end of the C² piece that begins at `t` (or holds it): the first time after `t` at which twist or twist rate
+    /// may jump.
+    ///
+    /// `None`, the default, says that the motion is smooth from `t` to the end of its domain. A value that is not greater
+    /// than `t` is a fault of the implementation.
+    fn smooth_until(&self, t: f64) -> Option<f64> {
+        let _ = t;
+        None
+    }
+
+    /// Pose and twist at one time with proven radii: what a search looks at, once for each time.
     ///
     /// The default takes the middles of the enclosures at `t`, which is right for every motion. A motion that knows
     /// its own rounding can do it in plain floating point ([`ConstantTwist`] does, three times as fast).
     fn enclose_state(&self, t: f64) -> CertifiedState {
         let now = Interval::point(t);
         CertifiedState::from_enclosures(&self.enclose_pose(now), &self.enclose_twist(now))
+    }
+
+    /// [`RigidMotion::enclose_state`] with the position told from the world point `origin`.
+    ///
+    /// A motion far from the world's origin that keeps more than one double of its position loses nothing here; the
+    /// default subtracts.
+    fn enclose_state_about(&self, t: f64, origin: DVec3) -> CertifiedState {
+        Kinematics::from_state(&self.enclose_state(t)).state_about(origin)
+    }
+
+    /// Pose, twist and twist rate over a span of time at once, as middles with radii.
+    ///
+    /// The default goes through the three enclosures.
+    fn enclose_kinematics(&self, t: Interval) -> Kinematics {
+        Kinematics::from_enclosures(
+            &self.enclose_pose(t),
+            &self.enclose_twist(t),
+            &self.enclose_twist_rate(t),
+        )
     }
 
     /// Bounds the length of the acceleration of every body point within `radius` of `at`, over an interval of
@@ -48,28 +95,71 @@ pub trait RigidMotion: Sync {
     fn constant_twist(&self) -> Option<ConstantTwist> {
         None
     }
+
+    /// The constant twist that the motion follows from `t` on, if it does, and until when: searches then run on the closed
+    /// form. Of two pieces that meet at `t` it is the later one.
+    fn constant_twist_from(&self, t: f64) -> Option<TwistPiece> {
+        let _ = t;
+        self.constant_twist().map(|motion| TwistPiece { motion, until: None })
+    }
+
+    /// The motion as a [`Chain`], if it is one: two links of one arm are seen from their last common joint.
+    fn chain(&self) -> Option<&Chain> {
+        None
+    }
+}
+
+macro_rules! forward {
+    (methods) => {
+        fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+            (**self).pose_and_twist(t)
+        }
+        fn enclose_pose(&self, t: Interval) -> IntervalPose {
+            (**self).enclose_pose(t)
+        }
+        fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+            (**self).enclose_twist(t)
+        }
+        fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+            (**self).enclose_twist_rate(t)
+        }
+        fn domain(&self) -> Interval {
+            (**self).domain()
+        }
+        fn smooth_until(&self, t: f64) -> Option<f64> {
+            (**self).smooth_until(t)
+        }
+        fn enclose_state(&self, t: f64) -> CertifiedState {
+            (**self).enclose_state(t)
+        }
+        fn enclose_state_about(&self, t: f64, origin: DVec3) -> CertifiedState {
+            (**self).enclose_state_about(t, origin)
+        }
+        fn enclose_kinematics(&self, t: Interval) -> Kinematics {
+            (**self).enclose_kinematics(t)
+        }
+        fn bound_acceleration(&self, t: Interval, radius: f64) -> f64 {
+            (**self).bound_acceleration(t, radius)
+        }
+        fn constant_twist(&self) -> Option<ConstantTwist> {
+            (**self).constant_twist()
+        }
+        fn constant_twist_from(&self, t: f64) -> Option<TwistPiece> {
+            (**self).constant_twist_from(t)
+        }
+        fn chain(&self) -> Option<&Chain> {
+            (**self).chain()
+        }
+    };
+    ($pointer:ty) => {
+        impl<M: RigidMotion + Send + ?Sized> RigidMotion for $pointer {
+            forward!(methods);
+        }
+    };
 }
 
 impl<M: RigidMotion + ?Sized> RigidMotion for &M {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        (**self).pose_and_twist(t)
-    }
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        (**self).enclose_pose(t)
-    }
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        (**self).enclose_twist(t)
-    }
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        (**self).enclose_twist_rate(t)
-    }
-    fn enclose_state(&self, t: f64) -> CertifiedState {
-        (**self).enclose_state(t)
-    }
-    fn bound_acceleration(&self, t: Interval, radius: f64) -> f64 {
-        (**self).bound_acceleration(t, radius)
-    }
-    fn constant_twist(&self) -> Option<ConstantTwist> {
-        (**self).constant_twist()
-    }
+    forward!(methods);
 }
+forward!(Box<M>);
+forward!(std::sync::Arc<M>);

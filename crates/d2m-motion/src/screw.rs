@@ -1,6 +1,7 @@
 //! Screw motion: a turn about an axis fixed in space plus a slide along it (Mozzi–Chasles).
 use crate::{
-    CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, MotionError, Pose, RigidMotion, Twist,
+    CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Kinematics, MotionError, Pose, RigidMotion,
+    Twist,
 };
 use d2m_interval::Interval;
 use glam::DVec3;
@@ -162,6 +163,12 @@ impl RigidMotion for ScrewMotion {
     }
     fn enclose_state(&self, t: f64) -> CertifiedState {
         self.linear.enclose_state(t)
+    }
+    fn enclose_state_about(&self, t: f64, origin: DVec3) -> CertifiedState {
+        self.linear.enclose_state_about(t, origin)
+    }
+    fn enclose_kinematics(&self, t: Interval) -> Kinematics {
+        self.linear.enclose_kinematics(t)
     }
     fn constant_twist(&self) -> Option<ConstantTwist> {
         Some(self.linear)

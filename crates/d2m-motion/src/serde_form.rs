@@ -1,26 +1,26 @@
 //! The serde forms of the motion types: the same keys as the text form, checked on the way in.
-use crate::{ConstantTwist, Keyframes, MotionError, ScrewMotion};
+use crate::{ConstantTwist, MotionError, ScrewMotion};
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct LinearForm {
+pub(crate) struct LinearForm {
     #[serde(default)]
-    x: [f64; 3],
+    pub(crate) x: [f64; 3],
     #[serde(default = "identity")]
-    q: [f64; 4],
+    pub(crate) q: [f64; 4],
     #[serde(default)]
-    v: [f64; 3],
+    pub(crate) v: [f64; 3],
     #[serde(default)]
-    w: [f64; 3],
+    pub(crate) w: [f64; 3],
     #[serde(default, skip_serializing_if = "is_zero")]
-    at: [f64; 3],
+    pub(crate) at: [f64; 3],
     #[serde(default, skip_serializing_if = "is_zero_time")]
-    t: f64,
+    pub(crate) t: f64,
 }
 
-const fn identity() -> [f64; 4] {
+pub(crate) const fn identity() -> [f64; 4] {
     [1.0, 0.0, 0.0, 0.0]
 }
 
@@ -80,25 +80,5 @@ impl Serialize for ScrewMotion {
 impl<'de> Deserialize<'de> for ScrewMotion {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         ScrewMotion::try_from_linear(ConstantTwist::deserialize(deserializer)?).map_err(D::Error::custom)
-    }
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct KeyframesForm {
-    times: Vec<f64>,
-    spans: Vec<ConstantTwist>,
-}
-
-impl Serialize for Keyframes {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        KeyframesForm { times: self.times().to_vec(), spans: self.motions().to_vec() }.serialize(serializer)
-    }
-}
-
-impl<'de> Deserialize<'de> for Keyframes {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let form = KeyframesForm::deserialize(deserializer)?;
-        Keyframes::try_from_spans(form.times, form.spans).map_err(D::Error::custom)
     }
 }

@@ -5,23 +5,23 @@ use d2m_interval::{F64x2, Interval};
 use glam::{DQuat, DVec3};
 
 /// A small generator (SplitMix64), so that every run sees the same numbers.
-struct Random(u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         ((z ^ (z >> 31)) >> 11) as f64 * (0.5_f64).powi(53)
     }
-    fn signed(&mut self) -> f64 {
+    pub(crate) fn signed(&mut self) -> f64 {
         2.0 * self.unit() - 1.0
     }
-    fn vector(&mut self) -> DVec3 {
+    pub(crate) fn vector(&mut self) -> DVec3 {
         DVec3::new(self.signed(), self.signed(), self.signed())
     }
-    fn motion(&mut self, speed: f64) -> ConstantTwist {
+    pub(crate) fn motion(&mut self, speed: f64) -> ConstantTwist {
         let q = DQuat::from_xyzw(self.signed(), self.signed(), self.signed(), self.signed());
         ConstantTwist::try_new(self.vector(), q, self.vector() * speed, self.vector() * speed)
             .unwrap()

@@ -1,0 +1,117 @@
+//! Any of the motions that files can tell.
+use crate::{
+    CertifiedState, Chain, ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Kinematics, MotionError,
+    Pose, RigidMotion, ScrewMotion, Twist, TwistPiece,
+};
+use d2m_interval::Interval;
+use glam::DVec3;
+
+/// A constant twist, keyframes or a chain: what the JSON forms of motions hold (feature `serde`).
+///
+/// The JSON forms: `{"x", "q", "v", "w", "at", "t"}`, all optional; `{"times", "poses": [{"x", "q"}, …], "join": "linear" |
+/// "screw"}` or `{"times", "spans": [constant twist, …]}`; `{"chain": [{"x", "q", "joint", "axis", "value"}, …]}` with
+/// `joint` one of `fixed`, `revolute`, `prismatic` and `value` a polynomial `[c0, c1, …]` or `{"times", "pieces"}`.
+#[cfg_attr(feature = "serde", doc = "```")]
+#[cfg_attr(not(feature = "serde"), doc = "```ignore")]
+/// use d2m_motion::{AnyMotion, RigidMotion};
+/// let arm: AnyMotion = serde_json::from_str(
+///     r#"{"chain": [{"joint": "revolute", "axis": [0, 0, 1], "value": [0, 2]}, {"x": [1, 0, 0], "joint": "fixed"}]}"#,
+/// ).unwrap();
+/// assert_eq!(arm.pose_and_twist(0.0).1.linear, glam::DVec3::Y * 2.0);
+/// let fault = serde_json::from_str::<AnyMotion>(r#"{"times": [0, 0], "poses": [{}, {}]}"#).unwrap_err();
+/// assert!(fault.to_string().contains("keyframe 1, time 0.0: times must increase"));
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum AnyMotion {
+    /// Constant linear and angular velocity.
+    ConstantTwist(ConstantTwist),
+    /// Poses at times, joined.
+    Keyframes(Keyframes),
+    /// A link of an articulated arm.
+    Chain(Chain),
+}
+
+impl AnyMotion {
+    fn motion(&self) -> &dyn RigidMotion {
+        match self {
+            Self::ConstantTwist(motion) => motion,
+            Self::Keyframes(motion) => motion,
+            Self::Chain(motion) => motion,
+        }
+    }
+
+    /// [`Keyframes::check_size`]; other motions have no gaps.
+    ///
+    /// # Errors
+    /// Spans of keyframes that do not meet, for a body of this size.
+    pub fn check_size(&self, size: f64) -> Result<(), MotionError> {
+        match self {
+            Self::Keyframes(keyframes) => keyframes.check_size(size),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl From<ConstantTwist> for AnyMotion {
+    fn from(motion: ConstantTwist) -> Self {
+        Self::ConstantTwist(motion)
+    }
+}
+
+impl From<ScrewMotion> for AnyMotion {
+    fn from(motion: ScrewMotion) -> Self {
+        Self::ConstantTwist(*motion.as_linear())
+    }
+}
+
+impl From<Keyframes> for AnyMotion {
+    fn from(motion: Keyframes) -> Self {
+        Self::Keyframes(motion)
+    }
+}
+
+impl From<Chain> for AnyMotion {
+    fn from(motion: Chain) -> Self {
+        Self::Chain(motion)
+    }
+}
+
+impl RigidMotion for AnyMotion {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        self.motion().pose_and_twist(t)
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        self.motion().enclose_pose(t)
+    }
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        self.motion().enclose_twist(t)
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.motion().enclose_twist_rate(t)
+    }
+    fn domain(&self) -> Interval {
+        self.motion().domain()
+    }
+    fn smooth_until(&self, t: f64) -> Option<f64> {
+        self.motion().smooth_until(t)
+    }
+    fn enclose_state(&self, t: f64) -> CertifiedState {
+        self.motion().enclose_state(t)
+    }
+    fn enclose_state_about(&self, t: f64, origin: DVec3) -> CertifiedState {
+        self.motion().enclose_state_about(t, origin)
+    }
+    fn enclose_kinematics(&self, t: Interval) -> Kinematics {
+        self.motion().enclose_kinematics(t)
+    }
+    fn constant_twist(&self) -> Option<ConstantTwist> {
+        self.motion().constant_twist()
+    }
+    fn constant_twist_from(&self, t: f64) -> Option<TwistPiece> {
+        self.motion().constant_twist_from(t)
+    }
+    fn chain(&self) -> Option<&Chain> {
+        self.motion().chain()
+    }
+}

@@ -1,0 +1,144 @@
+//! A vector that is known up to a radius: the arithmetic of states with proven radii.
+use crate::state::ball;
+use d2m_interval::{Interval, IntervalVec3};
+use glam::{DMat3, DVec3};
+
+/// Unit roundoff of f64, 2⁻⁵³.
+const UNIT: f64 = 0.5 * f64::EPSILON;
+/// Covers the rounding of a bound made by fewer than 64 operations on non-negative numbers.
+const UP: f64 = 1.0 + 1e-14;
+
+/// Every vector within `radius` of `center`. An infinite radius (about zero) says that nothing is known.
+///
+/// ```
+/// use d2m_motion::Ball;
+/// use glam::DVec3;
+/// let sum = Ball::new(DVec3::X, 0.5).plus(Ball::point(DVec3::Y));
+/// assert!(sum.center == DVec3::new(1.0, 1.0, 0.0) && sum.radius >= 0.5 && sum.radius < 0.500_001);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ball {
+    /// The middle.
+    pub center: DVec3,
+    /// Bound of the distance of the truth from the middle.
+    pub radius: f64,
+}
+
+impl Ball {
+    /// Exactly zero.
+    pub const ZERO: Self = Self { center: DVec3::ZERO, radius: 0.0 };
+
+    /// All vectors within `radius` of `center`; everything when either is not finite.
+    pub fn new(center: DVec3, radius: f64) -> Self {
+        if center.is_finite() && radius < f64::INFINITY {
+            Self { center, radius }
+        } else {
+            Self { center: DVec3::ZERO, radius: f64::INFINITY }
+        }
+    }
+
+    /// Exactly this vector.
+    pub fn point(center: DVec3) -> Self {
+        Self::new(center, 0.0)
+    }
+
+    /// A ball about a box.
+    pub fn around_box(v: IntervalVec3) -> Self {
+        let (center, radius) = ball(v);
+        Self::new(center, radius)
+    }
+
+    /// A box about the ball.
+    pub fn to_box(self) -> IntervalVec3 {
+        let side = |x: f64| Interval::around(x, self.radius);
+        IntervalVec3::new(side(self.center.x), side(self.center.y), side(self.center.z))
+    }
+
+    /// Upper bound of the lengths of all its vectors.
+    pub fn bound_length(self) -> f64 {
+        up(length_up(self.center) + self.radius)
+    }
+
+    /// Encloses the sums with the vectors of another one.
+    ///
+    /// A component of the sum is off by at most u of itself.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        if other == Self::ZERO {
+            return self;
+        }
+        if self == Self::ZERO {
+            return other;
+        }
+        let center = self.center + other.center;
+        Self::new(center, up(self.radius + other.radius + UNIT * length_up(center)))
+    }
+
+    /// Encloses the differences.
+    #[must_use]
+    pub fn minus(self, other: Self) -> Self {
+        self.plus(Self { center: -other.center, ..other })
+    }
+
+    /// Encloses the products with the numbers within `radius` of `factor`.
+    #[must_use]
+    pub fn times(self, factor: f64, radius: f64) -> Self {
+        let center = self.center * factor;
+        let known = times_up(radius, self.bound_length());
+        Self::new(center, up(known + times_up(self.radius, factor.abs()) + rounding(center, UNIT)))
+    }
+
+    /// Encloses the cross products.
+    ///
+    /// A component of a × b is off by 2u(|a_y b_z| + |a_z b_y|) and the like, which is less than 4u|a||b| in length.
+    #[must_use]
+    pub fn cross(self, other: Self) -> Self {
+        let (long, wide) = (length_up(self.center), length_up(other.center));
+        let spread = times_up(self.radius, up(wide + other.radius)) + times_up(long, other.radius);
+        Self::new(self.center.cross(other.center), up(spread + times_up(4.0 * UNIT * long, wide)))
+    }
+
+    /// Encloses the vectors turned by every rotation within `radius` (operator norm) of the matrix.
+    ///
+    /// `|R a − R̃ ã| ≤ |a − ã| + ‖R − R̃‖|ã|`; the product rounds by 3u of |R̃||ã| in each component, √3·√3 of it in all.
+    #[must_use]
+    pub fn turned(self, rotation: &DMat3, radius: f64) -> Self {
+        if radius == 0.0 && *rotation == DMat3::IDENTITY {
+            return self;
+        }
+        let long = length_up(self.center);
+        let spread = times_up(radius + 10.0 * UNIT * (1.0 + radius), long);
+        Self::new(*rotation * self.center, up(self.radius + spread))
+    }
+
+    /// A ball about this one and another.
+    #[must_use]
+    pub fn hull(self, other: Self) -> Self {
+        let center = 0.5 * self.center + 0.5 * other.center;
+        let reach = |b: Self| up(length_up(b.center - center) + b.radius + 4.0 * UNIT * length_up(b.center));
+        Self::new(center, up(reach(self).max(reach(other))))
+    }
+}
+
+/// One rounding up of a sum or product of non-negative numbers; what is no number becomes infinite.
+pub(crate) fn up(x: f64) -> f64 {
+    let x = x * UP;
+    if x < f64::INFINITY { x } else { f64::INFINITY }
+}
+
+/// The rounding of a vector in units of `unit`, and what underflow may take; none of zero.
+fn rounding(v: DVec3, unit: f64) -> f64 {
+    times_up(unit, length_up(v))
+}
+
+/// Product of non-negative numbers, rounded up also where it underflows; zero times anything is zero.
+pub(crate) fn times_up(a: f64, b: f64) -> f64 {
+    if a == 0.0 || b == 0.0 { 0.0 } else { up(a * b) + f64::MIN_POSITIVE }
+}
+
+/// |v|, rounded up.
+pub(crate) fn length_up(v: DVec3) -> f64 {
+    let largest = v.abs().max_element();
+    // Squares of such numbers keep their digits; else √3 times the largest component.
+    if (1e-140..=1e150).contains(&largest) { v.length() * UP } else { largest * 1.733 }
+}

@@ -1,0 +1,127 @@
+//! A user's own motion held against its promises, by samples.
+use crate::RigidMotion;
+use core::fmt;
+use d2m_interval::{Interval, IntervalVec3};
+use glam::DVec3;
+
+/// A promise of [`RigidMotion`] that a motion was caught breaking.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct MotionFault {
+    /// The span of time that was asked for.
+    pub span: (f64, f64),
+    /// The method that does not keep its promise, and what of it.
+    pub what: &'static str,
+    /// What should have been enclosed.
+    pub value: DVec3,
+    /// The enclosure, as its lower and upper corner.
+    pub enclosure: (DVec3, DVec3),
+}
+
+impl fmt::Display for MotionFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (value, lo, hi) =
+            (self.value.to_array(), self.enclosure.0.to_array(), self.enclosure.1.to_array());
+        write!(
+            f,
+            "{} from {:?} to {:?}: {value:?} is not between {lo:?} and {hi:?}",
+            self.what, self.span.0, self.span.1
+        )
+    }
+}
+
+/// Samples a motion against its enclosures: which of its promises fails, and where.
+///
+/// At `samples` times and over spans of several lengths from each: the pose as computed lies in its enclosure, differences
+/// of poses and of twists over a span lie in what the enclosures of twist and twist rate allow, enclosures over a part lie
+/// inside those over the whole, the certified state agrees, the followed point stays the same, and `smooth_until` lies
+/// ahead. An empty answer proves nothing; a fault that is told is one (up to a rounding of 1e-9 of the values).
+///
+/// ```
+/// use d2m_motion::{ConstantTwist, check_motion};
+/// let spin = ConstantTwist::REST.with_angular_velocity(glam::DVec3::Z);
+/// assert!(check_motion(&spin, (0.0, 1.0), 100).is_empty());
+/// ```
+pub fn check_motion(motion: &dyn RigidMotion, (start, end): (f64, f64), samples: usize) -> Vec<MotionFault> {
+    let mut faults = Vec::new();
+    let domain = Interval::try_new(start, end).unwrap_or(Interval::EMPTY).intersection(motion.domain());
+    if domain.is_empty() || !domain.is_bounded() {
+        let span = (start, end);
+        let enclosure = (DVec3::splat(motion.domain().lo()), DVec3::splat(motion.domain().hi()));
+        faults.push(MotionFault { span, what: "domain", value: DVec3::splat(start), enclosure });
+        return faults;
+    }
+    for i in 0..=samples {
+        let t = domain.lo() + domain.width() * (i as f64 / samples.max(1) as f64);
+        for part in [0.0, 1e-4, 1e-2, 0.3] {
+            let t = t.min(domain.hi());
+            let until = (t + part * domain.width()).min(domain.hi());
+            // Promises about derivatives hold piece by piece.
+            let until = motion.smooth_until(t).map_or(until, |joint| until.min(joint));
+            check_span(motion, t, until.max(t), &mut faults);
+        }
+    }
+    faults
+}
+
+/// Rounding of what is computed in plain floating point, per unit of its size.
+const SLACK: f64 = 1e-9;
+
+fn check_span(motion: &dyn RigidMotion, t: f64, until: f64, faults: &mut Vec<MotionFault>) {
+    let span = Interval::new(t, until);
+    let (pose, twist, rate) =
+        (motion.enclose_pose(span), motion.enclose_twist(span), motion.enclose_twist_rate(span));
+    let mut hold = |what: &'static str, value: DVec3, enclosure: IntervalVec3, size: f64| {
+        let wide = DVec3::splat(SLACK * (size + value.abs().max_element()));
+        let outside = (enclosure.lo() - wide).cmpgt(value) | (enclosure.hi() + wide).cmplt(value);
+        // Also what is no number is a fault.
+        if outside.any() || !value.is_finite() {
+            let enclosure = (enclosure.lo(), enclosure.hi());
+            faults.push(MotionFault { span: (t, until), what, value, enclosure });
+        }
+    };
+    if let Some(joint) = motion.smooth_until(t) {
+        let ahead = IntervalVec3::point(DVec3::splat(joint)) - DVec3::splat(t);
+        hold(
+            "smooth_until",
+            DVec3::splat(f64::MIN_POSITIVE.max(t.next_up() - t)),
+            ahead.hull(IntervalVec3::point(DVec3::splat(f64::MAX))),
+            0.0,
+        );
+    }
+    let (now, speed) = motion.pose_and_twist(t);
+    hold("at", now.at, IntervalVec3::point(pose.at), 0.0);
+    let state = motion.enclose_state(t);
+    for time in [t, t + 0.37 * (until - t)] {
+        let (p, w) = motion.pose_and_twist(time);
+        hold("enclose_pose, translation", p.translation, pose.translation, 0.0);
+        for (axis, column) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().zip(pose.rotation.cols()) {
+            hold("enclose_pose, rotation", p.rotation * axis, column, 1.0);
+        }
+        hold("enclose_twist, linear", w.linear, twist.linear, 0.0);
+        hold("enclose_twist, angular", w.angular, twist.angular, 0.0);
+        let part = motion.enclose_kinematics(Interval::point(time));
+        hold(
+            "enclose_kinematics",
+            part.position.center + part.position_tail,
+            pose.translation,
+            part.position.radius / SLACK,
+        );
+    }
+    hold("enclose_state, position", state.position, pose.translation, state.position_radius / SLACK);
+    hold("enclose_state, linear", state.linear, twist.linear, state.linear_radius / SLACK);
+    hold("enclose_state, angular", state.angular, twist.angular, state.angular_radius / SLACK);
+    let h = until - t;
+    if h > 0.0 {
+        // A difference over a span is the span times a value of the derivative's hull (mean value, coordinate by coordinate).
+        let inside = t + 0.37 * h;
+        let (later, faster) = motion.pose_and_twist(inside);
+        let size = |a: DVec3, b: DVec3| (a.length() + b.length()) / (inside - t) * 1e-3;
+        let by = |a: DVec3, b: DVec3| (b - a) / (inside - t);
+        let moved = by(now.translation, later.translation);
+        hold("enclose_twist, linear (moved)", moved, twist.linear, size(now.translation, later.translation));
+        let (dv, dw) = (by(speed.linear, faster.linear), by(speed.angular, faster.angular));
+        hold("enclose_twist_rate, linear", dv, rate.linear, size(speed.linear, faster.linear));
+        hold("enclose_twist_rate, angular", dw, rate.angular, size(speed.angular, faster.angular));
+    }
+}

@@ -1,0 +1,274 @@
+//! The value of a joint over time: a polynomial, or one polynomial after another.
+use crate::MotionError;
+use crate::ball::up;
+use crate::double_double::{DoubleDouble, two_sum};
+use crate::error::{describe_times, fault};
+use d2m_interval::Interval;
+
+/// Largest jump between two pieces that counts as rounding (radians, or units of length).
+pub(crate) const LARGEST_JUMP: f64 = 1e-9;
+
+/// What a joint follows: an angle (radians) or a length as a function of time, twice differentiable but for the times at
+/// which pieces meet.
+///
+/// ```
+/// use d2m_motion::JointValue;
+/// let steady = JointValue::try_polynomial(vec![0.0, 2.0])?; // 2t
+/// assert_eq!(steady.value(1.5), 3.0);
+/// let pieces = JointValue::try_pieces(vec![0.0, 1.0, 2.0], vec![vec![0.0, 0.0, 1.0], vec![1.0, 2.0]])?;
+/// assert_eq!((pieces.value(0.5), pieces.value(1.5), pieces.next_time(0.5)), (0.25, 2.0, Some(1.0)));
+/// assert!(JointValue::try_pieces(vec![0.0, 1.0, 2.0], vec![vec![0.0], vec![0.1]]).is_err());
+/// # Ok::<(), d2m_motion::MotionError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointValue {
+    /// Ends of the pieces; none for one polynomial for all times.
+    times: Vec<f64>,
+    /// Coefficients of each piece in t − its first time (in t itself without times), lowest first, one after the other.
+    coefficients: Vec<f64>,
+    /// Where each piece begins among the coefficients, and their number.
+    starts: Vec<usize>,
+}
+
+/// A number within `radius` of `center`, with a second double for what the first leaves out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Enclosed {
+    pub(crate) center: DoubleDouble,
+    pub(crate) radius: f64,
+}
+
+/// Value, first and second derivative over a span of time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ValueOverTime {
+    pub(crate) value: Enclosed,
+    pub(crate) rate: Enclosed,
+    pub(crate) second: Enclosed,
+}
+
+impl Enclosed {
+    fn hull(self, other: Self) -> Self {
+        let center = DoubleDouble::from_f64(0.5 * self.center.hi + 0.5 * other.center.hi);
+        let reach = |e: Self| {
+            let apart = e.center.sub(center);
+            up(apart.hi.abs() + e.radius) + 4.0 * f64::EPSILON * apart.hi.abs()
+        };
+        Self { center, radius: up(reach(self).max(reach(other))) }
+    }
+
+    fn magnitude(self) -> f64 {
+        up(self.center.hi.abs() * (1.0 + f64::EPSILON) + self.radius)
+    }
+}
+
+impl JointValue {
+    /// Never changes.
+    ///
+    /// # Errors
+    /// A value that is not finite.
+    pub fn try_constant(value: f64) -> Result<Self, MotionError> {
+        Self::try_polynomial(vec![value])
+    }
+
+    /// `c[0] + c[1]·t + c[2]·t² + …`, t the time itself.
+    ///
+    /// # Errors
+    /// No coefficient, or one that is not finite.
+    pub fn try_polynomial(coefficients: Vec<f64>) -> Result<Self, MotionError> {
+        check_coefficients("value", &coefficients)?;
+        let starts = vec![0, coefficients.len()];
+        Ok(Self { times: Vec::new(), coefficients, starts })
+    }
+
+    /// From `times[i]` to `times[i + 1]` the polynomial `pieces[i]` in `t − times[i]`.
+    ///
+    /// # Errors
+    /// Times that are not finite or do not increase, not one more time than pieces, a piece without coefficients or with
+    /// one that is not finite, or a jump of more than 1e-9 where two pieces meet.
+    pub fn try_pieces(times: Vec<f64>, pieces: Vec<Vec<f64>>) -> Result<Self, MotionError> {
+        if let Some((index, reason)) = describe_times(&times) {
+            return Err(fault(format!("value, times[{index}]"), reason));
+        }
+        if times.len() != pieces.len() + 1 {
+            let reason = format!("{} times for {} pieces: one more is needed", times.len(), pieces.len());
+            return Err(fault("value, times".into(), reason));
+        }
+        let mut starts = vec![0];
+        let mut coefficients = Vec::new();
+        for (index, piece) in pieces.iter().enumerate() {
+            check_coefficients(&format!("value, pieces[{index}]"), piece)?;
+            coefficients.extend_from_slice(piece);
+            starts.push(coefficients.len());
+        }
+        let value = Self { times, coefficients, starts };
+        for index in 1..pieces.len() {
+            let time = value.times[index];
+            let (before, after) =
+                (value.over_piece(index - 1, time, time), value.over_piece(index, time, time));
+            let jump = before.value.center.sub(after.value.center).hi.abs();
+            // Also what is no number is a jump.
+            let rounding = before.value.radius + after.value.radius;
+            if !(jump <= LARGEST_JUMP + rounding) {
+                let reason =
+                    format!("the value jumps by {jump:?} at the time {time:?} (at most {LARGEST_JUMP:?})");
+                return Err(fault(format!("value, pieces[{index}]"), reason));
+            }
+        }
+        Ok(value)
+    }
+
+    /// The ends of the pieces; none for a polynomial for all times.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Coefficients of the pieces.
+    pub fn pieces(&self) -> impl Iterator<Item = &[f64]> {
+        self.starts.windows(2).map(|ends| &self.coefficients[ends[0]..ends[1]])
+    }
+
+    /// The times at which it is given.
+    pub fn domain(&self) -> Interval {
+        match (self.times.first(), self.times.last()) {
+            (Some(&first), Some(&last)) => Interval::new(first, last),
+            _ => Interval::ENTIRE,
+        }
+    }
+
+    /// The first time after `t` at which pieces meet; `None` when there is none.
+    pub fn next_time(&self, t: f64) -> Option<f64> {
+        let last = self.times.len().checked_sub(1)?;
+        let index = self.times.partition_point(|&time| time <= t).max(1);
+        (index < last).then(|| self.times[index])
+    }
+
+    /// The value at one time, rounded.
+    pub fn value(&self, t: f64) -> f64 {
+        self.over_piece(self.piece_from(t), t, t).value.center.hi
+    }
+
+    /// The piece that begins at or before `t` (the first one before, the last one after all).
+    fn piece_from(&self, t: f64) -> usize {
+        let count = self.starts.len() - 1;
+        self.times.partition_point(|&time| time <= t).saturating_sub(1).min(count - 1)
+    }
+
+    /// The piece that ends at or after `t`.
+    fn piece_until(&self, t: f64) -> usize {
+        let count = self.starts.len() - 1;
+        self.times.partition_point(|&time| time < t).saturating_sub(1).min(count - 1)
+    }
+
+    /// Value and derivatives from `lo` to `hi`; where pieces meet inside, the derivatives of both.
+    ///
+    /// At one time the piece that begins there counts, over a span those that have a part of it.
+    pub(crate) fn over(&self, lo: f64, hi: f64) -> ValueOverTime {
+        let first = self.piece_from(lo);
+        let last = if lo < hi { self.piece_until(hi).max(first) } else { first };
+        if first == last {
+            return self.over_piece(first, lo, hi);
+        }
+        let mut whole = self.over_piece(first, lo, self.times[first + 1]);
+        for piece in first + 1..=last {
+            let (from, to) = (self.times[piece], if piece == last { hi } else { self.times[piece + 1] });
+            let part = self.over_piece(piece, from, to);
+            whole = ValueOverTime {
+                value: whole.value.hull(part.value),
+                rate: whole.rate.hull(part.rate),
+                second: whole.second.hull(part.second),
+            };
+        }
+        whole
+    }
+
+    /// Taylor's expansion about the middle: `p(m + x) = Σ b_k x^k`, so `|p − b_0| ≤ Σ |b_k| r^k`, and likewise for the
+    /// derivatives.
+    fn over_piece(&self, piece: usize, lo: f64, hi: f64) -> ValueOverTime {
+        let coefficients = &self.coefficients[self.starts[piece]..self.starts[piece + 1]];
+        let origin = if self.times.is_empty() { 0.0 } else { self.times[piece] };
+        // No span at all: not a number, of which nothing is known.
+        let middle = Interval::try_new(lo, hi).map_or(f64::NAN, Interval::mid);
+        let (s, lost) = two_sum(middle, -origin);
+        // The middle as told from the piece's start is off by what the difference lost.
+        let half = if lo < hi { (hi - middle).max(middle - lo) * (1.0 + 2.0 * f64::EPSILON) } else { 0.0 };
+        let r = up(half + lost.abs());
+        let mut few = [(DoubleDouble::ZERO, 0.0); 8];
+        let mut many;
+        let terms = if let Some(terms) = few.get_mut(..coefficients.len()) {
+            terms
+        } else {
+            many = vec![(DoubleDouble::ZERO, 0.0); coefficients.len()];
+            &mut many[..]
+        };
+        taylor(coefficients, s, terms);
+        let term = |k: usize| terms.get(k).copied().unwrap_or((DoubleDouble::ZERO, 0.0));
+        // Horner on the magnitudes of what lies beyond the k-th derivative's own term: factors k!/(k − d)!.
+        let beyond = |derivative: usize| {
+            let mut sum = 0.0;
+            for k in (derivative + 1..terms.len()).rev() {
+                let factor = ((k + 1 - derivative)..=k).map(|i| i as f64).product::<f64>();
+                sum = up(sum * r + up(terms[k].0.hi.abs() + terms[k].1) * factor);
+            }
+            if r == 0.0 { 0.0 } else { up(sum * r) }
+        };
+        let part = |derivative: usize, factor: f64| {
+            let (b, error) = term(derivative);
+            let center = b.mul_f64(factor);
+            let radius = up(error * factor + beyond(derivative));
+            let known = center.hi.is_finite() && center.lo.is_finite() && radius < f64::INFINITY;
+            if known {
+                Enclosed { center, radius }
+            } else {
+                Enclosed { center: DoubleDouble::ZERO, radius: f64::INFINITY }
+            }
+        };
+        ValueOverTime { value: part(0, 1.0), rate: part(1, 1.0), second: part(2, 2.0) }
+    }
+}
+
+impl ValueOverTime {
+    pub(crate) fn rate_magnitude(&self) -> f64 {
+        self.rate.magnitude()
+    }
+}
+
+/// One step of Horner's scheme in pairs of doubles is off by less than this of the magnitudes that it adds.
+///
+/// A product with a double loses at most 2·2⁻¹⁰⁴ and a sum 4·2⁻¹⁰⁶ of the operands; 2⁻¹⁰⁰ leaves a factor of four.
+const STEP: f64 = f64::from_bits((1023 - 100) << 52);
+
+/// The coefficients about `s`, each with a bound of its error: repeated division by t − s.
+///
+/// Row after row `b_j ← b_j + s·b_{j+1}`; the same with magnitudes bounds what was added, and each of the at most n steps
+/// that a coefficient goes through in each of n rows adds [`STEP`] of that.
+fn taylor(coefficients: &[f64], s: f64, terms: &mut [(DoubleDouble, f64)]) {
+    let n = coefficients.len();
+    for (term, &c) in terms.iter_mut().zip(coefficients) {
+        *term = (DoubleDouble::from_f64(c), c.abs());
+    }
+    if s != 0.0 {
+        for row in 0..n {
+            for j in (row..n - 1).rev() {
+                let (next, size) = terms[j + 1];
+                terms[j].0 = terms[j].0.add(next.mul_f64(s));
+                terms[j].1 = up(terms[j].1 + size * s.abs());
+            }
+        }
+    }
+    let steps = (n * n) as f64 * STEP;
+    for (term, _) in terms.iter_mut().zip(0..) {
+        // Products below the smallest normal number lose at most that, each step.
+        term.1 = if s == 0.0 { 0.0 } else { up(term.1 * steps) + (n * n) as f64 * f64::MIN_POSITIVE };
+    }
+}
+
+fn check_coefficients(place: &str, coefficients: &[f64]) -> Result<(), MotionError> {
+    if coefficients.is_empty() {
+        return Err(fault(place.to_owned(), "a polynomial needs at least one coefficient".to_owned()));
+    }
+    match coefficients.iter().position(|c| !c.is_finite()) {
+        Some(index) => {
+            Err(fault(format!("{place}[{index}]"), format!("{} is not finite", coefficients[index])))
+        }
+        None => Ok(()),
+    }
+}

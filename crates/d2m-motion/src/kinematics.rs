@@ -1,0 +1,214 @@
+//! Pose, twist and twist rate over a span of time, each a middle value with a proven radius.
+use crate::ball::{Ball, length_up, up};
+use crate::double_double::two_sum;
+use crate::{CertifiedState, IntervalPose, IntervalTwist};
+use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
+use glam::{DMat3, DVec3};
+
+/// Unit roundoff of f64, 2⁻⁵³.
+const UNIT: f64 = 0.5 * f64::EPSILON;
+/// No two rotations are farther apart than this in the operator norm (and the middle is one up to rounding).
+const ANY_ROTATION: f64 = 2.0 + 1e-9;
+
+/// Where a body is, how it moves and how it accelerates, over a span of time or at one time.
+///
+/// Promise: at every time of the span the true rotation is within `rotation_radius` (operator norm) of `rotation`, the
+/// true position of the body point `at` within `position.radius` of `position.center + position_tail`, and velocity, angular
+/// velocity and their derivatives (world axes) within their balls. Composition of such sets is plain floating
+/// point with a running radius, so that a chain of many joints loses some units in the last place and no more.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Kinematics {
+    /// Body frame to world frame.
+    pub rotation: DMat3,
+    /// Bound of the operator norm of the error of `rotation`.
+    pub rotation_radius: f64,
+    /// World position of the body point [`Kinematics::at`].
+    pub position: Ball,
+    /// What the middle of `position` leaves out: a second double for each coordinate, for bodies far from the origin.
+    pub position_tail: DVec3,
+    /// The followed body point (body frame, exact).
+    pub at: DVec3,
+    /// Velocity of the followed point, world axes.
+    pub linear: Ball,
+    /// Angular velocity, world axes.
+    pub angular: Ball,
+    /// Acceleration of the followed point, world axes.
+    pub linear_rate: Ball,
+    /// Angular acceleration, world axes.
+    pub angular_rate: Ball,
+}
+
+impl Kinematics {
+    /// At rest with body frame = world frame.
+    pub const REST: Self = Self {
+        rotation: DMat3::IDENTITY,
+        rotation_radius: 0.0,
+        position: Ball::ZERO,
+        position_tail: DVec3::ZERO,
+        at: DVec3::ZERO,
+        linear: Ball::ZERO,
+        angular: Ball::ZERO,
+        linear_rate: Ball::ZERO,
+        angular_rate: Ball::ZERO,
+    };
+
+    /// The balls about enclosures.
+    pub fn from_enclosures(pose: &IntervalPose, twist: &IntervalTwist, rate: &IntervalTwist) -> Self {
+        let state = CertifiedState::from_enclosures(pose, twist);
+        Self {
+            linear_rate: Ball::around_box(rate.linear),
+            angular_rate: Ball::around_box(rate.angular),
+            ..Self::from_state(&state)
+        }
+        .with_rotation(state.rotation, state.rotation_radius)
+    }
+
+    /// A state at one time, with no acceleration.
+    pub(crate) fn from_state(state: &CertifiedState) -> Self {
+        Self {
+            rotation: state.rotation,
+            rotation_radius: state.rotation_radius,
+            position: Ball::new(state.position, state.position_radius),
+            position_tail: DVec3::ZERO,
+            at: state.at,
+            linear: Ball::new(state.linear, state.linear_radius),
+            angular: Ball::new(state.angular, state.angular_radius),
+            linear_rate: Ball::ZERO,
+            angular_rate: Ball::ZERO,
+        }
+    }
+
+    /// With another rotation; a radius that says nothing becomes that of all rotations.
+    pub(crate) fn with_rotation(self, rotation: DMat3, radius: f64) -> Self {
+        let known = radius < ANY_ROTATION && rotation.is_finite();
+        let (rotation, rotation_radius) =
+            if known { (rotation, radius) } else { (DMat3::IDENTITY, ANY_ROTATION) };
+        Self { rotation, rotation_radius, ..self }
+    }
+
+    /// The state with the position told from `origin`: `(position − origin)` is rounded once.
+    pub fn state_about(&self, origin: DVec3) -> CertifiedState {
+        let position = (self.position.center - origin) + self.position_tail;
+        // The first difference is exact up to u of itself, and so is the sum.
+        let rounding = 2.0 * UNIT * (length_up(self.position.center - origin) + length_up(position));
+        CertifiedState {
+            rotation: self.rotation,
+            position,
+            at: self.at,
+            linear: self.linear.center,
+            angular: self.angular.center,
+            rotation_radius: self.rotation_radius,
+            position_radius: up(self.position.radius + rounding),
+            linear_radius: self.linear.radius,
+            angular_radius: self.angular.radius,
+        }
+    }
+
+    /// Boxes about the pose.
+    pub fn to_pose(&self) -> IntervalPose {
+        let entry = |x: f64| Interval::around(x, self.rotation_radius).intersection(Interval::SIGNED_UNIT);
+        let t = self.rotation.transpose();
+        let row = |v: DVec3| IntervalVec3::new(entry(v.x), entry(v.y), entry(v.z));
+        IntervalPose {
+            rotation: IntervalMat3::from_rows([row(t.x_axis), row(t.y_axis), row(t.z_axis)]),
+            translation: self.position.to_box() + IntervalVec3::point(self.position_tail),
+            at: self.at,
+        }
+    }
+
+    /// Boxes about the twist.
+    pub fn to_twist(&self) -> IntervalTwist {
+        IntervalTwist { linear: self.linear.to_box(), angular: self.angular.to_box() }
+    }
+
+    /// Boxes about the twist rate.
+    pub fn to_twist_rate(&self) -> IntervalTwist {
+        IntervalTwist { linear: self.linear_rate.to_box(), angular: self.angular_rate.to_box() }
+    }
+
+    /// The motion of a body in a frame that itself moves so: `outer(t)·inner(t)`, over the same span.
+    ///
+    /// With e = R_o(x_i − at_o), w = R_o ω_i, ẋ = R_o v_i:
+    /// R = R_o R_i, x = x_o + e, v = v_o + ω_o × e + ẋ, ω = ω_o + w, α = α_o + ω_o × w + R_o α_i,
+    /// a = a_o + α_o × e + ω_o × (ω_o × e) + 2ω_o × ẋ + R_o a_i. The radii of the two rotations add, as
+    /// R_o R_i − R̃_o R̃_i = R_o(R_i − R̃_i) + (R_o − R̃_o)R̃_i with |R̃_i| ≤ 1 + r_i; the product of the middles rounds by 3u·√3·√3
+    /// in the Frobenius norm.
+    #[must_use]
+    pub fn then(&self, inner: &Self) -> Self {
+        let turn = |b: Ball| b.turned(&self.rotation, self.rotation_radius);
+        let arm = inner.position.minus(Ball::point(self.at)).plus(Ball::point(inner.position_tail));
+        let e = turn(arm);
+        let (relative, spin) = (turn(inner.linear), turn(inner.angular));
+        let across = self.angular.cross(e);
+        let coriolis = self.angular.cross(relative);
+        let (sum, lost) = two_sums(self.position.center, e.center);
+        let tail = self.position_tail + lost;
+        let still = inner.linear_rate == Ball::ZERO && inner.angular_rate == Ball::ZERO;
+        let turned_rate = |b: Ball| if still { Ball::ZERO } else { turn(b) };
+        let radius = up(self.rotation_radius * (1.0 + inner.rotation_radius)
+            + inner.rotation_radius
+            + 10.0 * UNIT * (1.0 + self.rotation_radius) * (1.0 + inner.rotation_radius));
+        Self {
+            position: Ball::new(sum, up(self.position.radius + e.radius + UNIT * length_up(tail))),
+            position_tail: if tail.is_finite() { tail } else { DVec3::ZERO },
+            at: inner.at,
+            linear: self.linear.plus(across).plus(relative),
+            angular: self.angular.plus(spin),
+            linear_rate: self
+                .linear_rate
+                .plus(self.angular_rate.cross(e))
+                .plus(self.angular.cross(across))
+                .plus(coriolis)
+                .plus(coriolis)
+                .plus(turned_rate(inner.linear_rate)),
+            angular_rate: self
+                .angular_rate
+                .plus(self.angular.cross(spin))
+                .plus(turned_rate(inner.angular_rate)),
+            ..*self
+        }
+        .with_rotation(self.rotation * inner.rotation, radius)
+    }
+
+    /// The same motion told by another body point: with e = R(at − at₀) the point is at x + e, moves with v + ω × e and
+    /// accelerates with a + α × e + ω × (ω × e).
+    #[must_use]
+    pub fn following(&self, at: DVec3) -> Self {
+        if at == self.at {
+            return *self;
+        }
+        let shift = Self { position: Ball::point(at), at, ..Self::REST };
+        Self { rotation: self.rotation, rotation_radius: self.rotation_radius, ..self.then(&shift) }
+    }
+
+    /// A set that contains this one and another (of the same followed point).
+    #[must_use]
+    pub fn hull(&self, other: &Self) -> Self {
+        let place = |k: &Self| k.position.plus(Ball::point(k.position_tail));
+        // Middle of the two; a matrix between two rotations is within half their distance of both.
+        let middle = (self.rotation + other.rotation) * 0.5;
+        let half = 0.5 * frobenius_up(&(self.rotation + other.rotation * -1.0)) + 4.0 * UNIT;
+        let wide = up(half + self.rotation_radius.max(other.rotation_radius));
+        Self {
+            position: place(self).hull(place(other)),
+            position_tail: DVec3::ZERO,
+            linear: self.linear.hull(other.linear),
+            angular: self.angular.hull(other.angular),
+            linear_rate: self.linear_rate.hull(other.linear_rate),
+            angular_rate: self.angular_rate.hull(other.angular_rate),
+            ..*self
+        }
+        .with_rotation(middle, wide)
+    }
+}
+
+/// Sums, coordinate by coordinate, and what they lose.
+fn two_sums(a: DVec3, b: DVec3) -> (DVec3, DVec3) {
+    let [x, y, z] = [0, 1, 2].map(|i| two_sum(a[i], b[i]));
+    (DVec3::new(x.0, y.0, z.0), DVec3::new(x.1, y.1, z.1))
+}
+
+fn frobenius_up(m: &DMat3) -> f64 {
+    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(length_up);
+    up((x * x + y * y + z * z).sqrt())
+}
