@@ -32,7 +32,9 @@ const MESH_HELP: &str = "Mesh file (.obj, .stl, .ply) or built-in shape such as 
 #[command(after_help = "\
 A motion is x=1,2,3;q=w,x,y,z;v=1,2,3;w=1,2,3[;at=1,2,3][;t=0]: position, orientation, velocity, angular velocity
 (radians per unit of time, world axes), the body point that x and v belong to, and the time that x and q belong to.
-What is left out is zero (q: unturned). @FILE reads the JSON form: the same keys, or {\"times\", \"spans\"} for keyframes.
+What is left out is zero (q: unturned). @FILE reads a JSON form: the same keys; {\"times\", \"poses\": [{\"x\", \"q\"}, ...], \"join\": \"linear\" or \"screw\"} or
+{\"times\", \"spans\"} for keyframes; {\"chain\": [{\"x\", \"q\", \"joint\", \"axis\", \"value\"}, ...]} for a link of an arm, with joint
+fixed, revolute or prismatic and value a polynomial [c0, c1, ...] or {\"times\", \"pieces\"}. The window must lie within the times.
 
 Example:
   d2m toc shape:gear 'shape:torus-knot?triangles=70000' --motion-a 'x=-2,0,0;v=3,0,0;w=0,0,5' --motion-b 'w=0,1,0'")]
@@ -62,7 +64,8 @@ pub(crate) struct TocArguments {
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Trials: 26 numbers a line, no header: qA(w,x,y,z), xA, vA, wA, qB(w,x,y,z), xB, vB, wB; time runs over [0, 1].
+Trials: 26 numbers a line, no header: qA(w,x,y,z), xA, vA, wA, qB(w,x,y,z), xB, vB, wB; time runs over [0, 1]. Or JSON lines
+{\"a\": motion, \"b\": motion, \"window\": [t0, t1]} with motions of any form of d2m toc.
 Results: trial,status,toc,toc_hi,separation,microseconds,normal_x,normal_y,normal_z,point_x,point_y,point_z,feature,
 triangle_a,triangle_b; toc is the certified start of the time bracket (inf: separated); the point lies on A.")]
 pub(crate) struct BatchArguments {

@@ -4,12 +4,13 @@ use crate::arguments::{Method, QueryArguments};
 use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::output::{note, progress_bar};
+use crate::trials::Trial;
 use d2m::bvh::paper::{self, SphereTree};
 use d2m::bvh::{
     Budget, MeshTree, Mode, Moving, QueryError, QueryOptions, Solid, TimeOfContact, Topology, TriMesh,
     Window, time_of_contact,
 };
-use d2m::motion::ConstantTwist;
+use d2m::motion::{AnyMotion, RigidMotion};
 use glam::DVec3;
 use std::time::{Duration, Instant};
 
@@ -118,13 +119,37 @@ impl Pair {
         Self { options: self.options.with_parallel(true), ..self }
     }
 
-    /// The time of contact in a window.
-    pub(crate) fn ask(
-        &self,
-        a: &ConstantTwist,
-        b: &ConstantTwist,
-        window: Window,
-    ) -> Result<Answer, Failure> {
+    /// The answer of a trial.
+    pub(crate) fn ask_trial(&self, trial: &Trial) -> Result<Answer, Failure> {
+        check_size("motion of A", &trial.motion_a, &self.a)?;
+        check_size("motion of B", &trial.motion_b, &self.b)?;
+        self.ask(&trial.motion_a, &trial.motion_b, trial.window)
+    }
+
+    /// The time of contact in a window, piece by piece where both motions have constant twists; the first contact is the
+    /// answer.
+    pub(crate) fn ask(&self, a: &AnyMotion, b: &AnyMotion, window: Window) -> Result<Answer, Failure> {
+        let mut took = Duration::ZERO;
+        let mut start = window.start();
+        loop {
+            let pieces = a.constant_twist_from(start).zip(b.constant_twist_from(start));
+            let Some((piece_a, piece_b)) = pieces else {
+                let rest = part(start, window.end())?;
+                let Answer { verdict, took: last } = self.ask_smooth([a, b], rest)?;
+                return Ok(Answer { verdict, took: took + last });
+            };
+            let ends = [piece_a.until, piece_b.until].into_iter().flatten();
+            let end = ends.fold(window.end(), f64::min);
+            let answer = self.ask_smooth([&piece_a.motion, &piece_b.motion], part(start, end)?)?;
+            took += answer.took;
+            if !answer.verdict.is_separated() || end >= window.end() {
+                return Ok(Answer { took, ..answer });
+            }
+            start = end;
+        }
+    }
+
+    fn ask_smooth(&self, [a, b]: [&dyn RigidMotion; 2], window: Window) -> Result<Answer, Failure> {
         let start = Instant::now();
         let verdict = match (&self.a.tree, &self.b.tree) {
             (Tree::Engine(tree_a), Tree::Engine(tree_b)) => {
@@ -140,10 +165,12 @@ impl Pair {
         let verdict = verdict.map_err(|error| match error {
             QueryError::BadMotion { body } => {
                 let (place, motion) = [("motion of A", a), ("motion of B", b)][body.min(1)];
+                let (pose, twist) = motion.pose_and_twist(window.start());
                 let triple = |vector: DVec3| format!("{:?}", vector.to_array());
-                let [x, v, w] = [motion.position(), motion.linear_velocity(), motion.angular_velocity()].map(triple);
+                let [x, v, w] = [pose.translation, twist.linear, twist.angular].map(triple);
+                let time = window.start();
                 let reason = format!(
-                    "x = {x}, v = {v}, w = {w}: over the window it is not finite, turns by 2^40 radians, goes too far, or is too slow to be told from rest (below 1e-140) and moves all the same"
+                    "x = {x}, v = {v}, w = {w} at the time {time:?}: over the window it is not finite, turns by 2^40 radians, goes too far, or is too slow to be told from rest (below 1e-140) and moves all the same"
                 );
                 Failure::at(place, reason)
             }
@@ -151,6 +178,21 @@ impl Pair {
         })?;
         Ok(Answer { verdict, took })
     }
+}
+
+fn part(start: f64, end: f64) -> Result<Window, Failure> {
+    Window::try_new(start, end).map_err(|error| Failure::at("window", error))
+}
+
+/// Spans of keyframes must meet, to a part of the body's size.
+pub(crate) fn check_size(place: &str, motion: &AnyMotion, body: &Body) -> Result<(), Failure> {
+    if !matches!(motion, AnyMotion::Keyframes(_)) {
+        return Ok(());
+    }
+    let vertices = body.mesh().vertices();
+    let (lo, hi) =
+        vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
+    motion.check_size((hi - lo).length()).map_err(|error| Failure::at(place, error))
 }
 
 /// What `--tolerance` and `--min-separation` take.

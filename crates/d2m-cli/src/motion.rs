@@ -3,71 +3,36 @@
 use crate::failure::Failure;
 use crate::load::read;
 use d2m::bvh::Window;
-use d2m::motion::{ConstantTwist, Keyframes};
+use d2m::motion::{AnyMotion, ConstantTwist, RigidMotion};
 use std::path::Path;
 
-/// A motion that the command line can name.
-#[derive(Debug)]
-pub(crate) enum Motion {
-    Linear(ConstantTwist),
-    Keyframes(Keyframes),
+/// Reads `x=…;q=…;v=…;w=…` or `@file.json`; `option` names the place in messages.
+pub(crate) fn parse_motion(option: &str, text: &str) -> Result<AnyMotion, Failure> {
+    let Some(file) = text.strip_prefix('@') else {
+        let motion: ConstantTwist = text.parse().map_err(|error| Failure::at(option, error))?;
+        return Ok(motion.into());
+    };
+    if file.is_empty() {
+        return Err(Failure::at(option, "@ needs the name of a file"));
+    }
+    let bytes = read(Path::new(file))?;
+    serde_json::from_slice(&bytes).map_err(|error| Failure::at(file, error))
 }
 
-impl Motion {
-    /// Reads `x=…;q=…;v=…;w=…` or `@file.json`; `option` names the place in messages.
-    pub(crate) fn parse(option: &str, text: &str) -> Result<Self, Failure> {
-        let Some(file) = text.strip_prefix('@') else {
-            let motion = text.parse().map_err(|error| Failure::at(option, error))?;
-            return Ok(Self::Linear(motion));
-        };
-        if file.is_empty() {
-            return Err(Failure::at(option, "@ needs the name of a file"));
-        }
-        let bytes = read(Path::new(file))?;
-        let value: serde_json::Value =
-            serde_json::from_slice(&bytes).map_err(|error| Failure::at(file, error))?;
-        let motion = if value.get("times").is_some() || value.get("spans").is_some() {
-            serde_json::from_value(value).map(Self::Keyframes)
-        } else {
-            serde_json::from_value(value).map(Self::Linear)
-        };
-        motion.map_err(|error| Failure::at(file, error))
+/// The window must lie within the times that the motion covers.
+pub(crate) fn require_window(place: &str, motion: &AnyMotion, window: Window) -> Result<(), Failure> {
+    let times = motion.domain();
+    if times.contains(window.start()) && times.contains(window.end()) {
+        return Ok(());
     }
-
-    /// The linear motion from `time` on, and when it ends.
-    pub(crate) fn piece_at(&self, time: f64) -> Option<(&ConstantTwist, f64)> {
-        match self {
-            Self::Linear(motion) => Some((motion, f64::INFINITY)),
-            Self::Keyframes(keyframes) => {
-                let (_, end, motion) =
-                    keyframes.spans().find(|&(start, end, _)| start <= time && time < end)?;
-                Some((motion, end))
-            }
-        }
-    }
-
-    /// The linear motion in force at the last instant before or at `time`.
-    pub(crate) fn piece_until(&self, time: f64) -> Option<&ConstantTwist> {
-        match self {
-            Self::Linear(motion) => Some(motion),
-            Self::Keyframes(keyframes) => keyframes.span_at(time).map(|(_, _, motion)| motion),
-        }
-    }
-
-    /// Keyframes must cover the window.
-    pub(crate) fn require_window(&self, option: &str, window: Window) -> Result<(), Failure> {
-        let Self::Keyframes(keyframes) = self else { return Ok(()) };
-        let (first, last) = (keyframes.times()[0], keyframes.times()[keyframes.times().len() - 1]);
-        if window.start() < first || window.end() > last {
-            let reason = format!(
-                "keyframes from {first} to {last} do not cover the window from {} to {}",
-                window.start(),
-                window.end()
-            );
-            return Err(Failure::at(option, reason));
-        }
-        Ok(())
-    }
+    let reason = format!(
+        "the motion covers the times from {:?} to {:?}, not the whole window from {:?} to {:?}",
+        times.lo(),
+        times.hi(),
+        window.start(),
+        window.end()
+    );
+    Err(Failure::at(place, reason))
 }
 
 /// Reads `t0,t1`; an empty or reversed window is refused.

@@ -1,10 +1,12 @@
-//! Trials: 26 numbers a line, the motions of A and of B.
+//! Trials: 26 numbers a line, the motions of A and of B, or a JSON object a line with motions of any form.
 
 use crate::failure::Failure;
 use crate::load::read;
-use d2m::bvh::MAX_COORDINATE;
-use d2m::motion::ConstantTwist;
+use crate::motion::require_window;
+use d2m::bvh::{MAX_COORDINATE, Window};
+use d2m::motion::{AnyMotion, ConstantTwist};
 use glam::{DQuat, DVec3};
+use serde::Deserialize;
 use std::path::Path;
 
 /// One line of a trials file.
@@ -12,8 +14,29 @@ use std::path::Path;
 pub(crate) struct Trial {
     /// Line of the file, from 1.
     pub(crate) line: usize,
-    pub(crate) motion_a: ConstantTwist,
-    pub(crate) motion_b: ConstantTwist,
+    pub(crate) motion_a: AnyMotion,
+    pub(crate) motion_b: AnyMotion,
+    pub(crate) window: Window,
+}
+
+/// A line of JSON.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TrialForm {
+    #[serde(default = "at_rest")]
+    a: AnyMotion,
+    #[serde(default = "at_rest")]
+    b: AnyMotion,
+    #[serde(default = "unit_window")]
+    window: [f64; 2],
+}
+
+const fn at_rest() -> AnyMotion {
+    AnyMotion::ConstantTwist(ConstantTwist::REST)
+}
+
+const fn unit_window() -> [f64; 2] {
+    [0.0, 1.0]
 }
 
 /// The names of the fields, for messages.
@@ -37,7 +60,23 @@ fn parse(text: &str) -> Result<Vec<Trial>, (Option<usize>, String)> {
     if trials.is_empty() { Err((None, "there are no trials".to_owned())) } else { Ok(trials) }
 }
 
+/// `{"a": motion, "b": motion, "window": [t0, t1]}`, each of which may be left out: at rest, from 0 to 1.
+fn parse_json(text: &str, line: usize) -> Result<Trial, String> {
+    // The line within the text is always 1, and the line of the file is told with the message.
+    let form: TrialForm = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    let [start, end] = form.window;
+    let window = Window::try_new(start, end).map_err(|error| format!("window: {error}"))?;
+    let trial = Trial { line, motion_a: form.a, motion_b: form.b, window };
+    for (place, motion) in [("a", &trial.motion_a), ("b", &trial.motion_b)] {
+        require_window(place, motion, window).map_err(|failure| failure.to_string())?;
+    }
+    Ok(trial)
+}
+
 fn parse_line(text: &str, line: usize) -> Result<Trial, String> {
+    if text.trim_start().starts_with('{') {
+        return parse_json(text, line);
+    }
     let count = text.split(',').count();
     if count != 26 {
         return Err(format!("expected 26 numbers separated by commas, found {count}"));
@@ -62,12 +101,14 @@ fn parse_line(text: &str, line: usize) -> Result<Trial, String> {
         ConstantTwist::try_new(vector(4), orientation, vector(7), vector(10))
             .map_err(|error| format!("motion of {body}: {error}"))
     };
-    Ok(Trial { line, motion_a: motion(&numbers[..13], "A")?, motion_b: motion(&numbers[13..], "B")? })
+    let (motion_a, motion_b) = (motion(&numbers[..13], "A")?.into(), motion(&numbers[13..], "B")?.into());
+    Ok(Trial { line, motion_a, motion_b, window: Window::UNIT })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use d2m::motion::RigidMotion;
 
     const LINE: &str = "1,0,0,0,1,2,3,4,5,6,7,8,9,0,1,0,0,-1,-2,-3,-4,-5,-6,-7,-8,-9";
 
@@ -75,10 +116,28 @@ mod tests {
     fn order_of_the_fields() {
         let trials = parse(&format!("{LINE}\r\n\n {LINE}\n")).unwrap();
         assert_eq!((trials.len(), trials[0].line, trials[1].line), (2, 1, 3));
-        assert_eq!(trials[0].motion_a.position(), DVec3::new(1.0, 2.0, 3.0));
-        assert_eq!(trials[0].motion_a.linear_velocity(), DVec3::new(4.0, 5.0, 6.0));
-        assert_eq!(trials[1].motion_b.angular_velocity(), DVec3::new(-7.0, -8.0, -9.0));
-        assert_eq!(trials[1].motion_b.orientation().x, 1.0);
+        let [a, b] = [&trials[0].motion_a, &trials[1].motion_b].map(|m| m.constant_twist().unwrap());
+        assert_eq!(a.position(), DVec3::new(1.0, 2.0, 3.0));
+        assert_eq!(a.linear_velocity(), DVec3::new(4.0, 5.0, 6.0));
+        assert_eq!(b.angular_velocity(), DVec3::new(-7.0, -8.0, -9.0));
+        assert_eq!(b.orientation().x, 1.0);
+    }
+
+    #[test]
+    fn lines_of_json_hold_any_motion() {
+        let arm = r#"{"chain": [{"joint": "revolute", "axis": [0, 0, 1], "value": {"times": [0, 2], "pieces": [[0, 1]]}}]}"#;
+        let line = format!("{LINE}\n{{\"a\": {arm}, \"window\": [0.5, 1.5]}}\n");
+        let trials = parse(&line).unwrap();
+        assert_eq!(trials[0].window, Window::UNIT);
+        assert_eq!((trials[1].window.start(), trials[1].window.end()), (0.5, 1.5));
+        assert!(matches!(&trials[1].motion_a, AnyMotion::Chain(chain) if chain.joints().len() == 1));
+        assert_eq!(trials[1].motion_b, at_rest());
+        let fault = |text: &str| parse(text).unwrap_err();
+        let outside = fault(&format!("{{\"b\": {arm}, \"window\": [1, 3]}}"));
+        assert_eq!(outside.0, Some(1));
+        assert!(outside.1.contains("b: the motion covers the times from 0.0 to 2.0"), "{}", outside.1);
+        assert!(fault("{\"c\": {}}").1.contains("unknown field `c`"));
+        assert!(fault("{\"window\": [1, 0]}").1.contains("window"));
     }
 
     #[test]

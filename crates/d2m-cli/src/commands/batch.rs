@@ -7,7 +7,6 @@ use crate::load::load;
 use crate::output::{Output, note, progress_bar};
 use crate::report;
 use crate::trials::{self, Trial};
-use d2m::bvh::Window;
 use rayon::prelude::*;
 use std::path::Path;
 use std::time::Instant;
@@ -21,7 +20,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     let bar = progress_bar(trials.len(), "trials");
     let start = Instant::now();
     let answer = |(index, trial): (usize, &Trial)| {
-        let answer = pair.ask(&trial.motion_a, &trial.motion_b, Window::UNIT);
+        let answer = pair.ask_trial(trial);
         bar.inc(1);
         let place = || format!("{}, line {} (trial {index})", arguments.trials.display(), trial.line);
         answer.map_err(|failure| Failure::at(place(), failure))
