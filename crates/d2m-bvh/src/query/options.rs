@@ -31,7 +31,8 @@ pub enum Mode {
 
 /// Limits on the work of one query. A query that meets one answers `Undecided`.
 ///
-/// Without limits a query still ends: a hard cap of [`Budget::HARD_NODE_TESTS`] applies always.
+/// Without limits a query still ends: the hard caps [`Budget::HARD_NODE_TESTS`] on its work and
+/// [`Budget::HARD_QUEUED_PAIRS`] on its memory apply always, and end in `Undecided` too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -49,7 +50,10 @@ pub struct Budget {
 impl Budget {
     /// The cap on node tests that holds without any budget: about a minute of work.
     pub const HARD_NODE_TESTS: u64 = 1 << 30;
-    /// No limit but the hard cap.
+    /// The cap on pairs of boxes that wait in the queue of a search, besides some 2¹⁵ between two looks at it. A
+    /// pair takes 16 bytes; with room that is kept for more, a search stays below 100 MB.
+    pub const HARD_QUEUED_PAIRS: usize = 1 << 20;
+    /// No limit but the hard caps.
     pub const UNLIMITED: Self = Self { node_tests: None, wall_clock: None };
 
     /// At most `count` node tests.

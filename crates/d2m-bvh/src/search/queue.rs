@@ -47,6 +47,9 @@ pub(crate) struct Queue {
     last: u32,
 }
 
+/// Room for more items than this is given back after use: 1 MB.
+const LARGE: usize = 1 << 16;
+
 /// Items in any order.
 #[derive(Debug)]
 pub(crate) struct Bucket {
@@ -82,6 +85,15 @@ impl Bucket {
         self.items.resize((2 * self.count).max(16), *item);
     }
 
+    /// Moves the last items, whose keys are all equal, to an empty bucket.
+    fn move_last(&mut self, count: usize, to: &mut Self) {
+        let rest = self.count - count;
+        for item in &self.items[rest..self.count] {
+            to.push(item);
+        }
+        self.count = rest;
+    }
+
     #[inline(always)]
     fn clear(&mut self) {
         self.count = 0;
@@ -112,22 +124,31 @@ impl Queue {
         self.occupied |= 1 << bucket;
     }
 
-    /// Moves the earliest items into `batch` (emptied first) and returns the least key of all live items; None when
-    /// there is none. A batch has more than `target` items only if their keys are equal.
+    /// Moves the earliest items into `batch` (emptied first), at most `target` of them, and returns the least key of all
+    /// live items; None when there is none. Of more items with equal keys the last that came in are handed out: what
+    /// they leave comes next if its keys are equal too, so the search goes depth first among equals, and its memory
+    /// does not grow with their number.
     #[inline(always)]
     pub(crate) fn take(&mut self, batch: &mut Bucket, target: usize) -> Option<u32> {
         batch.clear();
         loop {
             let index = self.occupied.trailing_zeros() as usize;
+            if index == 0 && self.buckets[0].count > target {
+                self.buckets[0].move_last(target, batch);
+                return Some(batch.least);
+            }
             core::mem::swap(self.buckets.get_mut(index)?, batch);
             self.occupied &= self.occupied - 1;
             // The bits of `last` above the bucket's own stay what they were: the higher buckets remain valid.
             self.last = batch.least;
-            if index == 0 || batch.count <= target {
+            if batch.count <= target {
                 return Some(batch.least);
             }
             self.extend(batch.items());
             batch.clear();
+            if batch.items.len() > LARGE {
+                batch.items = Vec::new();
+            }
         }
     }
 
@@ -140,15 +161,32 @@ impl Queue {
     }
 
     /// Items waiting.
-    #[cfg(test)]
     pub(crate) fn len(&self) -> usize {
-        self.buckets.iter().map(|bucket| bucket.items().len()).sum()
+        self.buckets.iter().map(|bucket| bucket.count).sum()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Each item leaves eight with the same key, ten levels deep: the queue holds the siblings along one path.
+    #[test]
+    fn equal_keys_are_searched_depth_first() {
+        let (mut queue, mut batch) = (Queue::new(), Bucket::EMPTY);
+        queue.push(&Item { key: 7, boxes: [10, 0], open: 0 });
+        let (mut most, mut taken) = (0, 0);
+        while taken < 10_000 && queue.take(&mut batch, 4).is_some() {
+            for item in batch.items() {
+                taken += 1;
+                for _ in 0..if item.boxes[0] > 0 { 8 } else { 0 } {
+                    queue.push(&Item { key: 7, boxes: [item.boxes[0] - 1, 0], open: 0 });
+                }
+            }
+            most = queue.len().max(most);
+        }
+        assert!(taken >= 10_000 && most <= 10 * 8 * 4, "{most} items waiting");
+    }
 
     #[test]
     fn no_live_key_is_below_the_one_handed_out() {
@@ -169,6 +207,7 @@ mod tests {
             let mut taken = 0;
             while let Some(least) = queue.take(&mut batch, target) {
                 assert_eq!(Some(&least), live.keys().next());
+                assert!(batch.items().len() <= target);
                 for item in batch.items() {
                     assert!(item.key >= least);
                     let count = live.get_mut(&item.key).unwrap();

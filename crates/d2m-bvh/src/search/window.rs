@@ -17,6 +17,9 @@ use crate::{Budget, MeshTree, Mode, QueryOptions};
 use glam::DVec3;
 use std::time::Instant;
 
+/// Batches between two looks at the length of the queue: it grows by less than 2¹⁵ items between them.
+const MEMORY_CHECK: u32 = 128;
+
 /// Items that a batch may have before it is divided.
 const BATCH: usize = 32;
 /// Looks at pairs of triangles of one search that do little; ordinary queries need fewer.
@@ -228,12 +231,14 @@ impl<'s> Search<'s> {
         let open = state.opening.of_pair(0, 0);
         self.scratch.queue.push(&Item { key: 0, boxes: [0; 2], open });
         let mut batch = core::mem::replace(&mut self.scratch.batch, Bucket::EMPTY);
-        let (mut outcome, mut begun) = (None, false);
+        let (mut outcome, mut begun, mut batches) = (None, false, 0u32);
         while let Some(least) = self.scratch.queue.take(&mut batch, BATCH) {
             if least >= state.limit {
                 break;
             }
-            if self.out_of_budget() {
+            batches += 1;
+            let full = batches % MEMORY_CHECK == 0 && self.scratch.queue.len() > Budget::HARD_QUEUED_PAIRS;
+            if full || self.out_of_budget() {
                 outcome = Some(Step::Answer(Outcome::OutOfBudget(time_from(start, f64::from(least) * step))));
                 break;
             }
@@ -433,10 +438,11 @@ impl State<'_> {
             L::prefetch(&self.opening.nodes[item.side()][item.node() as usize]);
         }
     }
-    /// A contact at this offset: nothing later matters.
+    /// A contact at this offset: nothing later matters, and nothing whose key is not below it can be earlier. The step
+    /// is a power of two, so the quotient is exact.
     fn find(&mut self, offset: f64, triangles: [u32; 2], crossing: bool) {
         self.limit_offset = offset;
-        self.limit = ((offset / self.step) as u32 + 1).min(self.limit);
+        self.limit = ((offset / self.step).ceil() as u32).min(self.limit);
         self.found = Some(Found { start: self.motion.start, offset, triangles, crossing });
     }
 
