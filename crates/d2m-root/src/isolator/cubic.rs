@@ -1,5 +1,12 @@
 //! A cubic in time, and the part of a piece in which it can be within a band.
-use super::{Band, Piece, Quadratic};
+//!
+//! **Invariant:** the coefficients are taken as they are, exactly; every rounding made here is counted here. The proofs
+//! of the constants are in `docs/theory/isolator.md`.
+use super::first_zero_bound::UNIT;
+use super::piece::{Piece, down, up};
+use super::quadratic::{LONGEST_REACH, UNDERFLOW};
+use super::time_unit::TimeUnit;
+use super::{Band, Quadratic};
 
 /// `value + slope·s + curvature·s²/2 + jerk·s³/6`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,8 +25,18 @@ pub struct Cubic {
 const ROUNDS: u32 = 4;
 /// Part of what the last round allowed that the next may allow for it to pay.
 const PAYS: f64 = 0.5;
-const UP: f64 = 1.0 + 1e-14;
+/// Error of a contraction, in units of 2⁻⁵³ and parts of |value|, |slope|·h, |curvature|·h² and |jerk|·h³ for times up to
+/// h: moving the cubic to the middle of a piece (1, 5, 7, 5⅓), what replacing s³ leaves out (0, 0, 0, ¼), evaluating the
+/// quadratic there (9, 18, 22½, 16⅛); and the rounding of this bound itself.
+const OF_VALUE: f64 = 11.0;
+const OF_SLOPE: f64 = 24.0;
+const OF_CURVATURE: f64 = 30.0;
+const OF_JERK: f64 = 22.0;
+/// Keeps a sum of three bounds above its exact value: more than its two roundings and this one.
+const SUM: f64 = 1.0 + 4.0 * UNIT;
 
+// In every product the coefficient comes first and the times after it: then what underflows is multiplied by times alone,
+// which `UNDERFLOW` covers. (A cube of a short time may vanish before a huge jerk meets it.)
 impl Cubic {
     /// The value at `s`, plain floating point.
     #[inline(always)]
@@ -33,10 +50,10 @@ impl Cubic {
     pub fn quadratic_near(&self, m: f64, r: f64) -> (Quadratic, f64) {
         let quadratic = Quadratic {
             value: self.at(m),
-            slope: self.slope + (self.curvature + 0.5 * self.jerk * m) * m + 0.125 * self.jerk * (r * r),
+            slope: self.slope + (self.curvature + 0.5 * self.jerk * m) * m + 0.125 * self.jerk * r * r,
             curvature: self.curvature + self.jerk * m,
         };
-        (quadratic, (1.0 / 24.0) * self.jerk.abs() * (r * r * r))
+        (quadratic, (1.0 / 24.0) * self.jerk.abs() * r * r * r)
     }
 
     /// [`Cubic::quadratic_near`] the time 0.
@@ -47,16 +64,26 @@ impl Cubic {
     /// ```
     #[inline(always)]
     pub fn quadratic_about_centre(&self, r: f64) -> (Quadratic, f64) {
-        let slope = self.slope + 0.125 * self.jerk * (r * r);
+        let slope = self.slope + 0.125 * self.jerk * r * r;
         let quadratic = Quadratic { value: self.value, slope, curvature: self.curvature };
-        (quadratic, (1.0 / 24.0) * self.jerk.abs() * (r * r * r))
+        (quadratic, (1.0 / 24.0) * self.jerk.abs() * r * r * r)
+    }
+
+    /// Bounds the error of what [`Cubic::clip`] computes on a piece up to the time `h` ≤ [`LONGEST_REACH`]. Infinite, or
+    /// NaN, if anything overflows there: no sum of the evaluation has larger terms.
+    #[inline(always)]
+    fn bound_error(&self, h: f64) -> f64 {
+        let higher = OF_CURVATURE * self.curvature.abs() + OF_JERK * self.jerk.abs() * h;
+        (OF_VALUE * self.value.abs() + (OF_SLOPE * self.slope.abs() + higher * h) * h) * UNIT + UNDERFLOW
     }
 
     /// Cuts off both ends of `part` where the cubic is certainly farther from the band than `margin` allows; `None` if
     /// that is all of it.
     ///
-    /// `margin(h)` bounds what counts as error for every |s| ≤ h: of the coefficients and of evaluating them, and the
-    /// change of the cubic over a time of 16·2⁻⁵³·h (the ends are rounded, four times at most). It grows with h.
+    /// `margin(h)` bounds the error of the coefficients for every |s| ≤ h, and grows with h. For it the coefficients
+    /// count as exact: what is rounded here is counted here. An end from which nothing can be cut stays as it is, and
+    /// a cubic or a piece that is not finite loses nothing. Values within 2⁻¹⁰⁰⁰ of the band are not told from it.
+    ///
     /// The cubic is moved to the middle of what is left as long as that pays: it converges cubically to a simple
     /// root, down to the margin there.
     ///
@@ -71,25 +98,52 @@ impl Cubic {
     /// ```
     #[inline(always)]
     pub fn clip(&self, band: Band, margin: impl Fn(f64) -> f64, part: Piece) -> Option<Piece> {
-        let Piece { mut lo, mut hi } = part;
+        if part.reach() <= LONGEST_REACH {
+            self.clip_within_reach(band, margin, part)
+        } else {
+            self.clip_far(band, &margin, part)
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn clip_far(&self, band: Band, margin: &dyn Fn(f64) -> f64, part: Piece) -> Option<Piece> {
+        let Some(unit) = TimeUnit::of(part) else { return Some(part) };
+        let margin = |h: f64| margin(h * unit.length());
+        let kept = unit.cubic(self).clip_within_reach(band, margin, unit.piece(part))?;
+        Some(unit.restored(kept, part))
+    }
+
+    #[inline(always)]
+    fn clip_within_reach(&self, band: Band, margin: impl Fn(f64) -> f64, part: Piece) -> Option<Piece> {
+        let mut part = part;
         let mut last = f64::INFINITY;
         for _ in 0..ROUNDS {
-            let m = lo + 0.5 * (hi - lo);
-            let moved = Piece { lo: lo - m, hi: hi - m };
-            let r = if -moved.lo > moved.hi { -moved.lo } else { moved.hi };
-            let (quadratic, left_out) = self.quadratic_near(m, r);
-            let (left, right) = (lo.abs(), hi.abs());
-            let allowed = (margin(if left > right { left } else { right }) + left_out) * UP;
+            let m = part.mid();
+            // Holds the piece about its middle, whatever the differences round to.
+            let moved = Piece { lo: down(part.lo - m), hi: up(part.hi - m) };
+            let (quadratic, left_out) = self.quadratic_near(m, moved.reach());
+            let h = part.reach();
+            let allowed = (margin(h) + left_out + self.bound_error(h)) * SUM;
             // Another round pays if less is allowed. Also NaN ends here.
             if allowed.is_nan() || allowed >= PAYS * last {
                 break;
             }
             last = allowed;
-            let kept = quadratic.clip(Band { lo: band.lo - allowed, hi: band.hi + allowed }, moved)?;
-            let (from, to) = (m + kept.lo, m + kept.hi);
-            lo = if from > lo { from } else { lo };
-            hi = if to < hi { to } else { hi };
+            let kept = quadratic.clip_beyond(band, allowed, moved)?;
+            // Only an end that was cut moves: adding the middle rounds, and a piece that has shrunk allows less.
+            if kept.lo > moved.lo {
+                let from = down(m + kept.lo);
+                part.lo = if from > part.lo { from } else { part.lo };
+            }
+            if kept.hi < moved.hi {
+                let to = up(m + kept.hi);
+                part.hi = if to < part.hi { to } else { part.hi };
+            }
+            if part.lo > part.hi {
+                return None;
+            }
         }
-        Some(Piece { lo, hi })
+        Some(part)
     }
 }

@@ -1,9 +1,25 @@
 //! A quadratic in time, and the first time at which it can enter a band.
-use super::Piece;
+//!
+//! **Invariant:** the coefficients are taken as they are, exactly; every rounding made here is counted here. The proofs
+//! of the constants are in `docs/theory/isolator.md`.
+use super::first_zero_bound::{UNIT, bound_first_zero, power_of_two};
+use super::piece::{Piece, down, up};
+use super::time_unit::TimeUnit;
 
-const UNIT: f64 = 0.5 * f64::EPSILON;
-/// Keeps a proven time of entry early: more than the 12 roundings of its formula.
-const EARLY: f64 = 1.0 - 16.0 * UNIT;
+/// Error of what [`Quadratic::clip`] and [`Quadratic::bound_below`] compute, in parts of
+/// |value| + |slope|·h + |curvature|·h² for times up to h: the value at an end (1, 3, 2 in these terms), the slope there
+/// over the width of the piece (0, 2, 4), the band (2, 2, 2); and the rounding of this bound itself.
+const EVALUATION: f64 = 9.0 * UNIT;
+
+/// 2²⁰: up to this time, `UNDERFLOW` covers every product that underflows. Beyond it another unit of time is taken.
+pub(super) const LONGEST_REACH: f64 = power_of_two(20);
+
+/// 2⁻¹⁰⁰⁰: at most 32 products, each off by at most 2⁻¹⁰⁷⁵ when it underflows, and then multiplied by at most the cube
+/// of [`LONGEST_REACH`]: below 2⁻¹⁰¹⁰.
+pub(super) const UNDERFLOW: f64 = power_of_two(-1000);
+
+/// Keeps the sagitta above its exact value: more than its four roundings.
+const SAGITTA: f64 = 1.0 + 8.0 * UNIT;
 
 /// `value + slope·s + curvature·s²/2`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,89 +75,135 @@ impl Quadratic {
         }
     }
 
-    /// A time σ ≥ 0 such that `gap + slope·x + curvature·x²/2 > 0` for all 0 ≤ x < σ, given `gap > 0`: the first
-    /// positive root, rounded down; infinite if there is none.
+    /// A time σ ≥ 0 such that `gap + slope·x + curvature·x²/2 > 0` for all 0 ≤ x ≤ σ, given `gap > 0`: the first
+    /// positive zero, rounded down; infinite if there is none.
+    ///
+    /// It holds for every finite argument, subnormal and huge ones too, and also if `gap` is up to 4·2⁻⁵³ of itself too
+    /// large. What is not finite, and a gap that is not positive, give 0: nothing is known.
     ///
     /// `2·gap/(√disc − slope)` for a falling start, `(slope + √disc)/(−curvature)` for a rising one: only sums of
     /// non-negative numbers, except in the discriminant of a falling start that levels out, which is inflated by
-    /// more than its error. An underflow in a square is covered by 1e-300. NaN gives 0.
+    /// more than its error.
     ///
     /// ```
     /// use d2m_root::Quadratic;
     /// let root = Quadratic::bound_first_zero(2.0, -3.0, 2.0); // 2 − 3x + x² = (x − 1)(x − 2)
     /// assert!(root <= 1.0 && root > 1.0 - 1e-14);
     /// assert_eq!(Quadratic::bound_first_zero(1.0, -1.0, 2.0), f64::INFINITY);
+    /// let early = Quadratic::bound_first_zero(1e120, 1.0, -1e200); // slope² and gap·curvature are far apart
+    /// assert!(early < 1.4143e-40 && early > 1.4142e-40);
     /// ```
     #[inline(always)]
     pub fn bound_first_zero(gap: f64, slope: f64, curvature: f64) -> f64 {
-        let square = slope * slope;
-        let product = 2.0 * gap * curvature;
-        let root = if slope < 0.0 {
-            let inflated = (square - product) + (8.0 * UNIT) * (square + product.abs()) + 1e-300;
-            if inflated < 0.0 {
-                return f64::INFINITY;
-            }
-            2.0 * gap / (inflated.sqrt() - slope)
-        } else if curvature < 0.0 {
-            ((square - product).sqrt() + slope) / -curvature
-        } else if slope >= 0.0 && curvature >= 0.0 {
-            return f64::INFINITY;
-        } else {
-            0.0
-        };
-        let early = root * EARLY;
-        // A NaN becomes 0.
-        if early > 0.0 { early } else { 0.0 }
+        bound_first_zero(gap, slope, curvature)
+    }
+
+    /// Bounds the error of what is computed on a piece up to the time `h` ≤ [`LONGEST_REACH`]. Infinite, or NaN, if
+    /// anything overflows there: no sum of the evaluation has larger terms.
+    #[inline(always)]
+    fn bound_error(&self, h: f64) -> f64 {
+        EVALUATION * (self.value.abs() + (self.slope.abs() + self.curvature.abs() * h) * h) + UNDERFLOW
     }
 
     /// Cuts off both ends of `part` (times relative to s = 0) where the quadratic is certainly outside the band;
     /// `None` if that is all of it.
     ///
-    /// The caller's band must include the error of the coefficients and of [`Quadratic::at`], and the change of the
-    /// quadratic over a time of 4·2⁻⁵³·max(|lo|, |hi|) (the ends are rounded).
+    /// The coefficients count as exact: the caller's band includes their error, and nothing else. Ends are cut to
+    /// doubles that are certain; an end from which nothing can be cut stays as it is, and a quadratic or a piece that is
+    /// not finite loses nothing. Values within 2⁻¹⁰⁰⁰ of the band are not told from it.
+    ///
+    /// ```
+    /// use d2m_root::{Band, Piece, Quadratic};
+    /// let falling = Quadratic { value: 1.0, slope: -1.0, curvature: 0.0 };
+    /// let (zero, part) = (Band { lo: 0.0, hi: 0.0 }, Piece { lo: 0.0, hi: 2.0 });
+    /// let kept = falling.clip(zero, part).unwrap();
+    /// assert!(kept.lo <= 1.0 && kept.hi >= 1.0 && kept.width() < 1e-13);
+    /// assert!(falling.clip(zero, Piece { lo: 1.5, hi: 2.0 }).is_none());
+    /// ```
     #[inline(always)]
     pub fn clip(&self, band: Band, part: Piece) -> Option<Piece> {
+        let h = part.reach();
+        if h <= LONGEST_REACH {
+            self.clip_beyond(band, self.bound_error(h), part)
+        } else {
+            self.clip_far(band, part)
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn clip_far(&self, band: Band, part: Piece) -> Option<Piece> {
+        let Some(unit) = TimeUnit::of(part) else { return Some(part) };
+        let kept = unit.quadratic(self).clip(band, unit.piece(part))?;
+        Some(unit.restored(kept, part))
+    }
+
+    /// [`Quadratic::clip`] where the quadratic is more than `allowed` outside the band. `allowed` includes the errors
+    /// of computing: it is at least [`Quadratic::bound_error`].
+    #[inline(always)]
+    pub(super) fn clip_beyond(&self, band: Band, allowed: f64, part: Piece) -> Option<Piece> {
         let Piece { mut lo, mut hi } = part;
+        let (below, above) = (band.lo - allowed, band.hi + allowed);
+        // No time of the piece is farther from its ends.
+        let width = up(hi - lo);
         let (left, slope) = (self.at(lo), self.slope_at(lo));
-        let advance = if left > band.hi {
-            Self::bound_first_zero(left - band.hi, slope, self.curvature)
-        } else if left < band.lo {
-            Self::bound_first_zero(band.lo - left, -slope, -self.curvature)
+        let advance = if left > above {
+            bound_first_zero(left - above, slope, self.curvature)
+        } else if left < below {
+            bound_first_zero(below - left, -slope, -self.curvature)
         } else {
             0.0
         };
         if advance > 0.0 {
-            if advance > hi - lo {
+            if advance > width {
                 return None;
             }
-            lo += advance;
+            let from = down(lo + advance);
+            lo = if from > lo { from } else { lo };
         }
         let (right, slope) = (self.at(hi), self.slope_at(hi));
-        let retreat = if right > band.hi {
-            Self::bound_first_zero(right - band.hi, -slope, self.curvature)
-        } else if right < band.lo {
-            Self::bound_first_zero(band.lo - right, slope, -self.curvature)
+        let retreat = if right > above {
+            bound_first_zero(right - above, -slope, self.curvature)
+        } else if right < below {
+            bound_first_zero(below - right, slope, -self.curvature)
         } else {
             0.0
         };
         if retreat > 0.0 {
-            if retreat > hi - lo {
+            if retreat > width {
                 return None;
             }
-            hi -= retreat;
+            let to = up(hi - retreat);
+            hi = if to < hi { to } else { hi };
         }
-        Some(Piece { lo, hi })
+        // Both ends may have been cut past each other: then nothing is left.
+        if lo > hi { None } else { Some(Piece { lo, hi }) }
     }
 
     /// Cuts off both ends of `part` where two quadratics certainly share a sign: `self` and `other` both above
-    /// `margin` or both below `−margin`. `None` if that is all of it. Same hypotheses as [`Quadratic::clip`].
+    /// `margin` or both below `−margin`. `None` if that is all of it. `margin` is for the error of the coefficients; all
+    /// else is as with [`Quadratic::clip`].
+    ///
+    /// ```
+    /// use d2m_root::{Piece, Quadratic};
+    /// let (f, g) = (Quadratic { value: -1.0, slope: 1.0, curvature: 0.0 },
+    ///               Quadratic { value: -3.0, slope: 1.0, curvature: 0.0 });
+    /// let kept = f.clip_shared_sign(&g, 0.0, Piece { lo: 0.0, hi: 4.0 }).unwrap(); // signs differ on [1, 3]
+    /// assert!(kept.lo <= 1.0 && kept.hi >= 3.0 && kept.width() < 2.0 + 1e-13);
+    /// ```
     #[inline(always)]
     pub fn clip_shared_sign(&self, other: &Self, margin: f64, part: Piece) -> Option<Piece> {
+        let h = part.reach();
+        if h > LONGEST_REACH || h.is_nan() {
+            return self.clip_shared_sign_far(other, margin, part);
+        }
         let Piece { mut lo, mut hi } = part;
+        let width = up(hi - lo);
+        let (margin_f, margin_g) = (margin + self.bound_error(h), margin + other.bound_error(h));
         let shared = |f: f64, g: f64| {
-            if f > margin && g > margin {
+            if f > margin_f && g > margin_g {
                 1.0
-            } else if f < -margin && g < -margin {
+            } else if f < -margin_f && g < -margin_g {
                 -1.0
             } else {
                 0.0
@@ -149,11 +211,11 @@ impl Quadratic {
         };
         // How far from `s`, where the values are `f` and `g`, both keep the sign.
         let keep = |s: f64, f: f64, g: f64, sign: f64, direction: f64| {
-            let first = |q: &Self, value: f64| {
+            let first = |q: &Self, value: f64, margin: f64| {
                 let slope = sign * direction * q.slope_at(s);
-                Self::bound_first_zero(sign * value - margin, slope, sign * q.curvature)
+                bound_first_zero(sign * value - margin, slope, sign * q.curvature)
             };
-            let (a, b) = (first(self, f), first(other, g));
+            let (a, b) = (first(self, f, margin_f), first(other, g, margin_g));
             if a < b { a } else { b }
         };
         let (f_lo, g_lo) = (self.at(lo), other.at(lo));
@@ -161,34 +223,67 @@ impl Quadratic {
         let (at_lo, at_hi) = (shared(f_lo, g_lo), shared(f_hi, g_hi));
         if at_lo != 0.0 {
             let advance = keep(lo, f_lo, g_lo, at_lo, 1.0);
-            if advance > hi - lo {
+            if advance > width {
                 return None;
             }
-            lo += advance;
+            let from = down(lo + advance);
+            lo = if from > lo { from } else { lo };
         }
         if at_hi != 0.0 {
             let retreat = keep(hi, f_hi, g_hi, at_hi, -1.0);
-            if retreat > hi - lo {
+            if retreat > width {
                 return None;
             }
-            hi -= retreat;
+            let to = up(hi - retreat);
+            hi = if to < hi { to } else { hi };
         }
-        Some(Piece { lo, hi })
+        if lo > hi { None } else { Some(Piece { lo, hi }) }
     }
 
-    /// Bounds from below the minimum over `part`.
+    #[cold]
+    #[inline(never)]
+    fn clip_shared_sign_far(&self, other: &Self, margin: f64, part: Piece) -> Option<Piece> {
+        let Some(unit) = TimeUnit::of(part) else { return Some(part) };
+        let (f, g) = (unit.quadratic(self), unit.quadratic(other));
+        let kept = f.clip_shared_sign(&g, margin, unit.piece(part))?;
+        Some(unit.restored(kept, part))
+    }
+
+    /// Bounds from below the minimum over `part`, for coefficients that count as exact; NaN or −∞ where nothing is known.
+    ///
+    /// The smaller value at an end, less the sagitta `curvature·width²/8` of an arch that hangs below its chord, less
+    /// the error of computing.
+    ///
+    /// ```
+    /// use d2m_root::{Piece, Quadratic};
+    /// let arch = Quadratic { value: 1.0, slope: 0.0, curvature: 2.0 }; // 1 + s²
+    /// let least = arch.bound_below(Piece { lo: -1.0, hi: 1.0 });
+    /// assert!(least <= 1.0 && least > 1.0 - 1e-14);
+    /// ```
     #[inline(always)]
     pub fn bound_below(&self, part: Piece) -> f64 {
+        let h = part.reach();
+        if h > LONGEST_REACH || h.is_nan() {
+            return self.bound_below_far(part);
+        }
         let (left, right) = (self.at(part.lo), self.at(part.hi));
         // NaN stays NaN, and excludes nothing: f64::min would drop it.
         let ends = if left <= right || left.is_nan() { left } else { right };
-        if self.curvature > 0.0 {
-            // The chord minus the sagitta: exact at the ends, below in between.
-            let width = part.hi - part.lo;
-            ends - self.curvature * width * width * 0.125 * (1.0 + 8.0 * UNIT)
+        let least = if self.curvature > 0.0 {
+            // Exact at the ends, below in between.
+            let width = up(part.hi - part.lo);
+            ends - self.curvature * width * width * 0.125 * SAGITTA
         } else {
             ends
-        }
+        };
+        least - self.bound_error(h)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn bound_below_far(&self, part: Piece) -> f64 {
+        let Some(unit) = TimeUnit::of(part) else { return f64::NAN };
+        unit.quadratic(self).bound_below(unit.piece(part))
     }
 }
 

@@ -1,0 +1,157 @@
+//! The first zero of a quadratic, bounded from below over the whole range of doubles.
+//!
+//! ```text
+//! q(x) = gap + slope·x + ½ curvature·x²,  gap > 0,   Δ = slope² − 2 gap·curvature
+//! falling (slope < 0)                    σ = 2 gap/(√Δ − slope)          Δ < 0: q > 0 for good
+//! rising, bent down (curvature < 0)      σ = (slope + √Δ)/(−curvature)
+//! else                                   q > 0 for good
+//! ```
+//! The proof of the constants is in `docs/theory/isolator.md`, section 1.
+
+/// Half a unit in the last place of 1: a rounded result is (1 + δ) times the exact one, |δ| ≤ `UNIT`, unless it
+/// underflows or overflows.
+pub(super) const UNIT: f64 = 0.5 * f64::EPSILON;
+
+/// Added to the discriminant, in parts of slope² + |2 gap·curvature|. Needed are 7: two products and their difference
+/// (2), the gap's own relative error (4), and this addition (1).
+const DISCRIMINANT: f64 = 8.0 * UNIT;
+
+/// Makes a computed zero early. Needed are 8 units: root, sum, quotient (4 with the product's half), the gap's own error
+/// (at most 4), less what the inflated discriminant leaves; the rest makes the bound strict.
+const EARLY: f64 = 1.0 - 16.0 * UNIT;
+
+/// 2⁻⁹⁰⁰: above it, what underflows in a product (2⁻¹⁰⁷⁵) is below 2⁻¹⁷⁵ of the discriminant.
+const LEAST_SIZE: f64 = power_of_two(-900);
+/// 2⁻¹⁰⁰⁰: above it, `EARLY` times a zero is not subnormal.
+const LEAST_ZERO: f64 = power_of_two(-1000);
+/// 2¹⁰⁰⁰: below it, and above `LEAST_ZERO`, nothing has overflowed on the way: an infinite discriminant or quotient makes
+/// the zero 0, infinite, or not a number.
+const GREATEST_ZERO: f64 = power_of_two(1000);
+/// Coefficients below 2⁻⁹⁰⁰ times the largest are lowered to −2⁻⁹⁰⁰ times it: a smaller coefficient is an earlier zero.
+const NEGLIGIBLE: i32 = -900;
+
+/// 2ⁿ for −1022 ≤ n ≤ 1023.
+pub(super) const fn power_of_two(n: i32) -> f64 {
+    f64::from_bits(((1023 + n) as u64) << 52)
+}
+
+/// See [`Quadratic::bound_first_zero`](super::Quadratic::bound_first_zero).
+#[inline(always)]
+pub(super) fn bound_first_zero(gap: f64, slope: f64, curvature: f64) -> f64 {
+    if slope >= 0.0 && curvature >= 0.0 {
+        // Infinite coefficients come from an overflow, and mean nothing.
+        let finite = gap < f64::INFINITY && slope < f64::INFINITY && curvature < f64::INFINITY;
+        return if gap > 0.0 && finite { f64::INFINITY } else { 0.0 };
+    }
+    let square = slope * slope;
+    let product = 2.0 * gap * curvature;
+    let size = square + product.abs();
+    // What is not a number is not in range either.
+    if gap > 0.0 && size > LEAST_SIZE {
+        let discriminant = discriminant(slope, square, product, size);
+        if discriminant < 0.0 {
+            return f64::INFINITY;
+        }
+        let zero = zero_of(gap, slope, curvature, discriminant);
+        if zero > LEAST_ZERO && zero < GREATEST_ZERO {
+            return zero * EARLY;
+        }
+    }
+    bound_scaled(gap, slope, curvature)
+}
+
+/// slope² − 2 gap·curvature; of a falling start, where the terms may cancel, inflated by more than its error.
+#[inline(always)]
+fn discriminant(slope: f64, square: f64, product: f64, size: f64) -> f64 {
+    if slope < 0.0 { (square - product) + DISCRIMINANT * size } else { square - product }
+}
+
+/// The first zero by the formulas above, for a discriminant that is not negative.
+#[inline(always)]
+fn zero_of(gap: f64, slope: f64, curvature: f64, discriminant: f64) -> f64 {
+    if slope < 0.0 {
+        2.0 * gap / (discriminant.sqrt() - slope)
+    } else {
+        (discriminant.sqrt() + slope) / -curvature
+    }
+}
+
+/// The same with the gap in [1, 2) and the larger of slope and curvature just below 1, by powers of two.
+#[cold]
+#[inline(never)]
+fn bound_scaled(gap: f64, slope: f64, curvature: f64) -> f64 {
+    // Not finite: nothing is known.
+    if !(gap > 0.0 && gap < f64::INFINITY && slope.is_finite() && curvature.is_finite()) {
+        return 0.0;
+    }
+    let (gap, value_exponent) = mantissa_and_exponent(gap);
+    let (b, slope_exponent) = mantissa_and_exponent(slope);
+    let (k, curvature_exponent) = mantissa_and_exponent(curvature);
+    // x = 2ᵗ·y: slope and curvature become b·2^(its exponent + t − e), k·2^(its exponent + 2t − e).
+    let by_slope = value_exponent - slope_exponent;
+    let by_curvature = (value_exponent - curvature_exponent).div_euclid(2);
+    let time_exponent = match (b == 0.0, k == 0.0) {
+        (true, true) => return f64::INFINITY,
+        (true, false) => by_curvature,
+        (false, true) => by_slope,
+        (false, false) => by_slope.min(by_curvature),
+    };
+    let scaled = |mantissa: f64, exponent: i32| {
+        if mantissa == 0.0 {
+            0.0
+        } else if exponent < NEGLIGIBLE {
+            -power_of_two(NEGLIGIBLE)
+        } else {
+            mantissa * power_of_two(exponent)
+        }
+    };
+    let bent_by = curvature_exponent + 2 * time_exponent - value_exponent;
+    if slope > 0.0 && bent_by < NEGLIGIBLE {
+        // Rising for long: the gap no longer matters, and leaving it out is early.
+        return scaled_down(2.0 * b / -k * EARLY, slope_exponent - curvature_exponent);
+    }
+    let slope = scaled(b, slope_exponent + time_exponent - value_exponent);
+    let curvature = scaled(k, bent_by);
+    if slope >= 0.0 && curvature >= 0.0 {
+        return f64::INFINITY;
+    }
+    let (square, product) = (slope * slope, 2.0 * gap * curvature);
+    let discriminant = discriminant(slope, square, product, square + product.abs());
+    if discriminant < 0.0 {
+        return f64::INFINITY;
+    }
+    scaled_down(zero_of(gap, slope, curvature, discriminant) * EARLY, time_exponent)
+}
+
+/// `x = mantissa · 2^exponent` with 1 ≤ |mantissa| < 2; (0, 0) for 0. `x` is finite.
+fn mantissa_and_exponent(x: f64) -> (f64, i32) {
+    if x == 0.0 {
+        return (0.0, 0);
+    }
+    let (x, shift) = if x.abs() < f64::MIN_POSITIVE { (x * power_of_two(64), 64) } else { (x, 0) };
+    let bits = x.to_bits();
+    let exponent = ((bits >> 52) & 0x7ff) as i32 - 1023 - shift;
+    (f64::from_bits(bits & !(0x7ff << 52) | 1.0_f64.to_bits()), exponent)
+}
+
+/// A double below `x·2ⁿ` when that is subnormal, else that; at most the largest double, at least 0.
+fn scaled_down(mut x: f64, mut n: i32) -> f64 {
+    while n > 1000 {
+        x *= power_of_two(1000);
+        n -= 1000;
+    }
+    while n < -1000 {
+        x *= power_of_two(-1000);
+        n += 1000;
+    }
+    let x = x * power_of_two(n);
+    if x > f64::MAX {
+        f64::MAX
+    } else if x >= 2.0 * f64::MIN_POSITIVE {
+        x
+    } else if x > 0.0 {
+        x.next_down()
+    } else {
+        0.0
+    }
+}

@@ -1,0 +1,68 @@
+//! Pieces of time, and the rounding of their ends.
+
+/// A piece of time `[lo, hi]`, lo ≤ hi.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    /// Start.
+    pub lo: f64,
+    /// End.
+    pub hi: f64,
+}
+
+impl Piece {
+    /// Holds no piece.
+    pub const NONE: Self = Self { lo: f64::INFINITY, hi: f64::NEG_INFINITY };
+
+    /// True if `part` lies in this piece.
+    ///
+    /// ```
+    /// use d2m_root::Piece;
+    /// let piece = Piece { lo: 0.0, hi: 1.0 };
+    /// assert!(piece.holds(piece) && !piece.holds(Piece { lo: 0.5, hi: 1.5 }) && !Piece::NONE.holds(piece));
+    /// ```
+    #[inline(always)]
+    pub fn holds(&self, part: Self) -> bool {
+        self.lo <= part.lo && part.hi <= self.hi
+    }
+
+    /// A time inside, the middle up to rounding.
+    ///
+    /// ```
+    /// use d2m_root::Piece;
+    /// assert_eq!(Piece { lo: 1.0, hi: 2.0 }.mid(), 1.5);
+    /// assert_eq!(Piece { lo: -f64::MAX, hi: f64::MAX }.mid(), 0.0);
+    /// ```
+    #[inline(always)]
+    pub fn mid(&self) -> f64 {
+        // The halves first: a difference of times may overflow.
+        self.lo + (0.5 * self.hi - 0.5 * self.lo)
+    }
+
+    /// `hi − lo` in plain floating point.
+    #[inline(always)]
+    pub fn width(&self) -> f64 {
+        self.hi - self.lo
+    }
+
+    /// The largest |s| of its times s; NaN if an end is NaN.
+    #[inline(always)]
+    pub(super) fn reach(&self) -> f64 {
+        let (left, right) = (self.lo.abs(), self.hi.abs());
+        if left > right || left.is_nan() { left } else { right }
+    }
+}
+
+/// A double not above the real number that was rounded to `x`; NaN for infinities.
+///
+/// The neighbour below `x` is at most 2⁻⁵²|x| away and the real number less than that, so that rounding
+/// x − 2⁻⁵²|x| gives the neighbour or less. Sums and differences below 2⁻¹⁰²¹ are exact; there 2⁻⁵²|x| may vanish.
+#[inline(always)]
+pub(super) fn down(x: f64) -> f64 {
+    x - x.abs() * f64::EPSILON
+}
+
+/// The mirror image of [`down`].
+#[inline(always)]
+pub(super) fn up(x: f64) -> f64 {
+    x + x.abs() * f64::EPSILON
+}
