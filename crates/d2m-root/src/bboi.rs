@@ -1,6 +1,6 @@
 //! Binary-Bisection-On-Intervals, Algorithm 1 of the paper.
 
-use crate::gamma::{report, split_time};
+use crate::gamma::{excludes_zero, report, split_time};
 use crate::{Gamma, IntervalFunction, RootSearch, SearchLimits};
 use d2m_interval::Interval;
 
@@ -8,7 +8,8 @@ use d2m_interval::Interval;
 ///
 /// Everything left of the bracket is certainly free of contact. The paper's recursion is a loop over a stack of
 /// pieces here, leftmost first; a piece in which no double lies is reported as it is (the paper: "(t0+t1)/2 could
-/// evaluate to t0"), and a budget ends what would take too long.
+/// evaluate to t0"), and a budget ends what would take too long. An unbounded domain is split by the number of doubles on
+/// either side; a bracket that reaches to infinity begins at the last double. An empty domain has no contact.
 ///
 /// ```
 /// use d2m_interval::Interval;
@@ -28,6 +29,9 @@ pub fn bboi<F>(f: &mut F, domain: Interval, limits: SearchLimits) -> RootSearch
 where
     F: IntervalFunction + Gamma + ?Sized,
 {
+    if domain.is_empty() {
+        return RootSearch::None;
+    }
     let mut stack = vec![domain];
     let mut evaluations = 0;
     while let Some(piece) = stack.pop() {
@@ -35,12 +39,11 @@ where
             return RootSearch::Undecided { clear_until: piece.lo() };
         }
         evaluations += 1;
-        let value = f.enclose(piece);
-        if value.certainly_positive() || value.certainly_negative() || !f.may_touch(piece) {
+        if excludes_zero(f.enclose(piece)) || !f.may_touch(piece) {
             continue;
         }
         match split_time(piece) {
-            Some(middle) if piece.hi() - piece.lo() > limits.time_tolerance => {
+            Some(middle) if piece.width() > limits.time_tolerance => {
                 stack.push(Interval::new(middle, piece.hi()));
                 stack.push(Interval::new(piece.lo(), middle));
             }

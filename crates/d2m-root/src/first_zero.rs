@@ -1,10 +1,13 @@
 //! First zero of a user's own function, with a proof that it exists.
 
-use crate::gamma::split_time;
+use crate::gamma::{excludes_zero, known, split_time};
 use crate::{IntervalFunction, SearchLimits};
 use d2m_interval::Interval;
 
 /// A continuously differentiable function known through enclosures of itself and of its derivative.
+///
+/// An empty enclosure (`√t` for t < 0) says that the function is not defined there. It proves nothing: [`first_zero`]
+/// takes it for "unknown".
 pub trait Differentiable: IntervalFunction {
     /// Encloses f′ over all times of `t`.
     fn enclose_derivative(&mut self, t: Interval) -> Interval;
@@ -14,13 +17,13 @@ pub trait Differentiable: IntervalFunction {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ZeroEvidence {
-    /// Exactly one: f′ has no zero where it was looked for, and f changes sign or interval Newton maps the piece into
-    /// itself.
+    /// Exactly one: on a bounded piece around the bracket f′ has no zero, and f changes sign or interval Newton maps the
+    /// piece into itself.
     Unique,
     /// At least one: f has certainly opposite signs at the ends of the bracket, or vanishes at one.
     SignChange,
-    /// Perhaps none: the bracket is as narrow as asked, and f is too small there to be told from zero (a double root,
-    /// a near miss, enclosures that do not shrink).
+    /// Perhaps none: the bracket is as narrow as requested, and f is too small there to be told from zero (a double
+    /// root, a near miss, enclosures that do not shrink), or it is not defined there.
     Undecided,
 }
 
@@ -48,13 +51,17 @@ pub enum FirstZero {
 ///
 /// Promise, if the enclosures keep theirs: f ≠ 0 in the domain left of the bracket, or of `clear_until`, or everywhere
 /// for [`FirstZero::None`]; and what the evidence says. A simple zero that the enclosures can tell from its neighbours is
-/// [`ZeroEvidence::Unique`], in a bracket as narrow as the rounding of f allows (which may be below or above
-/// `limits.time_tolerance`).
+/// [`ZeroEvidence::Unique`], in a bracket as narrow as the rounding of f allows (which may be below
+/// `limits.time_tolerance`, and is above it only where f cannot be told from zero at any time that would cut it).
+///
+/// The domain may be unbounded: pieces that reach to infinity are cut where half of the doubles lie on either side. Where
+/// f cannot be told from zero beyond the largest double, the bracket is `[MAX, ∞]` (or `[−∞, −MAX]`) with
+/// [`ZeroEvidence::Undecided`]. An empty domain has no zeros.
 ///
 /// ```text
 /// f′ ≠ 0 on the piece [a, b]:  N = m − f(m)/f′([a, b])        every zero of the piece is in N
 ///                              N ∩ [a, b] = ∅                 there is none
-///                              N ⊆ [a, b], or f(a)·f(b) < 0   there is exactly one
+///                              N ⊆ [a, b], or f(a)·f(b) < 0   there is exactly one (a, b finite, f defined at both)
 /// f′ may vanish:               f(a) > 0  ⇒  none before a + f(a)/max(−f′); the same from b
 /// ```
 ///
@@ -89,6 +96,9 @@ pub fn first_zero<F>(f: &mut F, domain: Interval, limits: SearchLimits) -> First
 where
     F: Differentiable + ?Sized,
 {
+    if domain.is_empty() {
+        return FirstZero::None;
+    }
     let mut stack = vec![domain];
     let mut evaluations = 0;
     while let Some(piece) = stack.pop() {
@@ -96,54 +106,61 @@ where
             return FirstZero::Undecided { clear_until: piece.lo() };
         }
         evaluations += 1;
-        let part = match look_at(f, piece) {
-            Look::Free => continue,
-            Look::Unique(part) => {
-                let bracket = narrowed(f, part);
+        let part = match examine(f, piece) {
+            Examined::Free => continue,
+            Examined::Unique { part, rising } => {
+                let bracket = narrowed(f, part, rising, limits.time_tolerance);
                 return FirstZero::Found { bracket, evidence: ZeroEvidence::Unique };
             }
-            Look::Perhaps(part) => part,
+            Examined::Perhaps(part) => part,
         };
-        let split = split_time(part).filter(|_| part.hi() - part.lo() > limits.time_tolerance);
+        if part.width() < SHRUNK * piece.width() {
+            stack.push(part);
+            continue;
+        }
+        let split = split_time(part).filter(|_| part.width() > limits.time_tolerance);
         let Some(middle) = split else {
-            let (first, last) = (f.enclose(part.lo().into()), f.enclose(part.hi().into()));
+            let (first, last) = (value_at(f, part.lo()), value_at(f, part.hi()));
             let zero = |value: Interval| value.lo() == 0.0 && value.hi() == 0.0;
             let proven = opposite(first, last) || zero(first) || zero(last);
             let evidence = if proven { ZeroEvidence::SignChange } else { ZeroEvidence::Undecided };
             return FirstZero::Found { bracket: part, evidence };
         };
-        if part.hi() - part.lo() <= 0.5 * (piece.hi() - piece.lo()) {
-            stack.push(part);
-        } else {
-            stack.push(Interval::new(middle, part.hi()));
-            stack.push(Interval::new(part.lo(), middle));
-        }
+        stack.push(Interval::new(middle, part.hi()));
+        stack.push(Interval::new(part.lo(), middle));
     }
     FirstZero::None
 }
 
-/// What one look tells of a piece.
-enum Look {
+/// A piece that shrank below this part of its width is examined again before it is halved.
+const SHRUNK: f64 = 0.5;
+
+/// What is known of a piece after one examination.
+enum Examined {
     /// No zero.
     Free,
-    /// Exactly one zero in the piece, and it lies in the part.
-    Unique(Interval),
+    /// Exactly one zero in the piece, and it lies in the part, where f is strictly monotone.
+    Unique { part: Interval, rising: bool },
     /// Every zero of the piece lies in the part.
     Perhaps(Interval),
+}
+
+/// f at one time; entire where there is none, or f is not defined.
+fn value_at<F: Differentiable + ?Sized>(f: &mut F, t: f64) -> Interval {
+    if t.is_finite() { known(f.enclose(Interval::point(t))) } else { Interval::ENTIRE }
 }
 
 fn opposite(a: Interval, b: Interval) -> bool {
     (a.certainly_positive() && b.certainly_negative()) || (a.certainly_negative() && b.certainly_positive())
 }
 
-fn look_at<F: Differentiable + ?Sized>(f: &mut F, piece: Interval) -> Look {
-    let value = f.enclose(piece);
-    if value.certainly_positive() || value.certainly_negative() {
-        return Look::Free;
+fn examine<F: Differentiable + ?Sized>(f: &mut F, piece: Interval) -> Examined {
+    if excludes_zero(f.enclose(piece)) {
+        return Examined::Free;
     }
-    let slope = f.enclose_derivative(piece);
-    let (first, last) = (f.enclose(piece.lo().into()), f.enclose(piece.hi().into()));
-    if !(slope.certainly_positive() || slope.certainly_negative()) {
+    let slope = known(f.enclose_derivative(piece));
+    let (first, last) = (value_at(f, piece.lo()), value_at(f, piece.hi()));
+    if !excludes_zero(slope) {
         return trimmed(piece, slope, first, last);
     }
     let same = |a: Interval, b: Interval| {
@@ -151,71 +168,113 @@ fn look_at<F: Differentiable + ?Sized>(f: &mut F, piece: Interval) -> Look {
             || (a.certainly_negative() && b.certainly_negative())
     };
     if same(first, last) {
-        return Look::Free;
+        return Examined::Free;
     }
     let step = newton(f, piece, slope);
     let part = step.intersection(piece);
     if part.is_empty() {
-        return Look::Free;
+        return Examined::Free;
     }
-    if opposite(first, last) || (piece.lo() <= step.lo() && step.hi() <= piece.hi()) {
-        return Look::Unique(part);
+    // Existence needs f to be defined on the whole piece, of which its ends are witnesses, and a step that is bounded: a
+    // value of which nothing is known "maps" the whole line into itself.
+    let defined = piece.is_bounded() && step.is_bounded() && !first.is_entire() && !last.is_entire();
+    if opposite(first, last) || (defined && step.is_subset(piece)) {
+        return Examined::Unique { part, rising: slope.certainly_positive() };
     }
-    Look::Perhaps(part)
+    Examined::Perhaps(part)
 }
 
-/// m − f(m)/f′.
+/// m − f(m)/f′, with every zero of the piece in it.
 fn newton<F: Differentiable + ?Sized>(f: &mut F, piece: Interval, slope: Interval) -> Interval {
-    let middle = Interval::point(split_time(piece).unwrap_or(piece.lo()));
-    middle - f.enclose(middle) / slope
+    let middle = split_time(piece).unwrap_or(if piece.lo().is_finite() { piece.lo() } else { piece.hi() });
+    known(Interval::point(middle) - value_at(f, middle) / slope)
 }
 
-/// Cuts off both ends of a piece as far as the slope cannot bring f to zero.
-fn trimmed(piece: Interval, slope: Interval, first: Interval, last: Interval) -> Look {
-    // How long a value at one end stays away from 0: |value| over the fastest approach, rounded down; `None`: for good.
-    let lasts = |value: Interval, steepest_fall: f64, steepest_rise: f64| {
-        let (size, approach) = if value.certainly_positive() {
-            (value.lo(), steepest_fall)
-        } else if value.certainly_negative() {
-            (-value.hi(), steepest_rise)
-        } else {
-            return Some(0.0);
-        };
-        let time = (Interval::point(size) / Interval::point(approach)).lo();
-        if approach <= 0.0 { None } else { Some(if time > 0.0 { time } else { 0.0 }) }
+/// How long a value stays away from zero, bounded from below.
+enum Lasts {
+    /// At no time of the piece can it come to zero.
+    ForGood,
+    /// Not before this time has passed.
+    For(f64),
+}
+
+/// |value| over the fastest approach.
+fn lasts(value: Interval, steepest_fall: f64, steepest_rise: f64) -> Lasts {
+    let (size, approach) = if value.certainly_positive() {
+        (value.lo(), steepest_fall)
+    } else if value.certainly_negative() {
+        (-value.hi(), steepest_rise)
+    } else {
+        return Lasts::For(0.0);
     };
+    if approach <= 0.0 {
+        return Lasts::ForGood;
+    }
+    let time = (Interval::point(size) / Interval::point(approach)).lo();
+    Lasts::For(if time > 0.0 { time } else { 0.0 })
+}
+
+/// Cuts off both ends of a piece as far as the slope cannot bring f to zero. No enclosure is empty.
+fn trimmed(piece: Interval, slope: Interval, first: Interval, last: Interval) -> Examined {
     let (fall, rise) = (-slope.lo(), slope.hi());
-    let (Some(from), Some(to)) = (lasts(first, fall, rise), lasts(last, rise, fall)) else {
-        return Look::Free;
+    let (Lasts::For(from), Lasts::For(to)) = (lasts(first, fall, rise), lasts(last, rise, fall)) else {
+        return Examined::Free;
     };
     let lo = (Interval::point(piece.lo()) + from).lo();
     let hi = (Interval::point(piece.hi()) - to).hi();
     if lo > piece.hi() || hi < piece.lo() || lo > hi {
-        return Look::Free;
+        return Examined::Free;
     }
-    // What is not a number cuts nothing.
-    let lo = if lo > piece.lo() { lo } else { piece.lo() };
-    let hi = if hi < piece.hi() { hi } else { piece.hi() };
-    Look::Perhaps(Interval::new(lo, hi))
+    Examined::Perhaps(Interval::new(lo.max(piece.lo()), hi.min(piece.hi())))
 }
 
-/// Newton steps on a piece with exactly one zero, until it shrinks no more.
-fn narrowed<F: Differentiable + ?Sized>(f: &mut F, mut part: Interval) -> Interval {
-    for _ in 0..64 {
-        let width = part.hi() - part.lo();
-        let slope = f.enclose_derivative(part);
-        if !(slope.certainly_positive() || slope.certainly_negative()) {
+/// Steps of [`narrowed`] at most: more than the doubles between any two can be halved, and a few Newton steps for each.
+const NARROWING_STEPS: u32 = 1024;
+/// A Newton step that leaves more than this of the width is followed by a cut at a time where the sign is certain.
+const PAYS: f64 = 0.75;
+
+/// Shrinks a piece with exactly one zero, on which f is strictly monotone: by Newton steps as long as they pay, below the
+/// tolerance too, and by the sign of f at times inside until the tolerance is reached or no sign is certain.
+fn narrowed<F: Differentiable + ?Sized>(
+    f: &mut F,
+    mut part: Interval,
+    rising: bool,
+    tolerance: f64,
+) -> Interval {
+    for _ in 0..NARROWING_STEPS {
+        let width = part.width();
+        let slope = known(f.enclose_derivative(part));
+        if excludes_zero(slope) {
+            let next = newton(f, part, slope).intersection(part);
+            if !next.is_empty() {
+                part = next;
+            }
+        }
+        if part.width() <= PAYS * width && part.width() > 0.0 {
+            continue;
+        }
+        if part.width() <= tolerance {
             break;
         }
-        let next = newton(f, part, slope).intersection(part);
-        if next.is_empty() {
-            break;
-        }
-        part = next;
-        let shrunk = part.hi() - part.lo();
-        if shrunk <= 0.0 || shrunk > 0.75 * width {
-            break;
-        }
+        let Some(cut) = cut_by_sign(f, part, rising) else { break };
+        part = cut;
     }
     part
+}
+
+/// The side of a time inside the part on which the zero lies, for the first such time at which f has a certain sign.
+fn cut_by_sign<F: Differentiable + ?Sized>(f: &mut F, part: Interval, rising: bool) -> Option<Interval> {
+    let middle = split_time(part)?;
+    let (left, right) = (Interval::new(part.lo(), middle), Interval::new(middle, part.hi()));
+    for time in [Some(middle), split_time(left), split_time(right)].into_iter().flatten() {
+        let value = value_at(f, time);
+        if excludes_zero(value) {
+            return Some(if value.certainly_negative() == rising {
+                Interval::new(time, part.hi())
+            } else {
+                Interval::new(part.lo(), time)
+            });
+        }
+    }
+    None
 }

@@ -5,7 +5,7 @@ use d2m_interval::Interval;
 
 /// A real function of time known through enclosures.
 pub trait IntervalFunction {
-    /// Encloses f over all times of `t`.
+    /// Encloses f over all times of `t`. An empty result ("not defined") proves nothing: searches take it for unknown.
     fn enclose(&mut self, t: Interval) -> Interval;
 }
 
@@ -43,7 +43,7 @@ pub enum Settled {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SearchLimits {
-    /// ε_t: a bracket at most this wide is reported as it is.
+    /// ε_t: a bracket at most this wide is reported as it is (one that reaches to infinity never is).
     pub time_tolerance: f64,
     /// The most pieces that may be evaluated; then the answer is [`RootSearch::Undecided`].
     pub evaluations: u32,
@@ -81,13 +81,36 @@ pub enum RootSearch {
     },
 }
 
-/// The middle of a piece, or `None` where no double lies strictly inside it.
+/// An empty enclosure says that a function is not defined, which proves nothing: entire instead.
+pub(crate) fn known(enclosure: Interval) -> Interval {
+    if enclosure.is_empty() { Interval::ENTIRE } else { enclosure }
+}
+
+/// True if the enclosure proves that its function does not vanish; an empty one proves nothing.
+pub(crate) fn excludes_zero(enclosure: Interval) -> bool {
+    let enclosure = known(enclosure);
+    enclosure.certainly_positive() || enclosure.certainly_negative()
+}
+
+/// The middle of a piece, or `None` where no double lies strictly inside it. Of an unbounded piece, the double that
+/// has half of the piece's doubles on either side.
 ///
 /// The paper's (t0 + t1)/2 "could evaluate to t0", as it says itself; then its recursion never ends.
 pub(crate) fn split_time(t: Interval) -> Option<f64> {
     let (a, b) = (t.lo(), t.hi());
-    let middle = 0.5 * a + 0.5 * b;
+    let middle = if t.is_bounded() { 0.5 * a + 0.5 * b } else { at_rank(i64::midpoint(rank(a), rank(b))) };
     (a < middle && middle < b).then_some(middle)
+}
+
+/// Doubles in order: 0 for 0, one more for each neighbour above.
+fn rank(x: f64) -> i64 {
+    let size = x.abs().to_bits().cast_signed();
+    if x < 0.0 { -size } else { size }
+}
+
+fn at_rank(rank: i64) -> f64 {
+    let size = f64::from_bits(rank.unsigned_abs());
+    if rank < 0 { -size } else { size }
 }
 
 /// Handles a piece that is too narrow to split: the report, or `None` where the piece holds no contact.

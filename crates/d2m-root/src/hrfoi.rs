@@ -1,6 +1,6 @@
 //! Hybrid-Root-Finder-On-Intervals, Algorithm 2 of the paper.
 
-use crate::gamma::{report, split_time};
+use crate::gamma::{excludes_zero, report, split_time};
 use crate::{Gamma, RootSearch, SearchLimits, SecondOrder, Settled, intersect_root_domain};
 use d2m_interval::Interval;
 
@@ -50,6 +50,9 @@ pub fn hrfoi<F>(f: &mut F, domain: Interval, limits: SearchLimits) -> RootSearch
 where
     F: SecondOrder + Gamma + ?Sized,
 {
+    if domain.is_empty() {
+        return RootSearch::None;
+    }
     let mut stack = vec![domain];
     let mut evaluations = 0;
     let mut near = None;
@@ -62,18 +65,23 @@ where
             continue;
         }
         let theta = f.inclusion_function(piece);
+        // Where θ overflows, or the piece has no start, f itself may be told from zero.
+        if !theta.range().is_bounded() && excludes_zero(f.enclose(piece)) {
+            continue;
+        }
         let Some(part) = intersect_root_domain(&theta) else { continue };
         if part.hi() < piece.hi() {
             stack.push(Interval::new(part.hi(), piece.hi()));
         }
-        let width = part.hi() - part.lo();
+        let width = part.width();
         let Some(middle) = split_time(part).filter(|_| width > limits.time_tolerance) else {
             if let Some(found) = report(f, part) {
                 return found;
             }
             continue;
         };
-        if width <= 0.5 * (piece.hi() - piece.lo()) {
+        // (An unbounded piece that stays unbounded has not shrunk.)
+        if width <= 0.5 * piece.width() && width < f64::INFINITY {
             stack.push(part);
             continue;
         }

@@ -33,13 +33,18 @@ pub struct InclusionFunction {
 
 impl InclusionFunction {
     /// θ with f(t0) ∈ `value`, f′(t0) ∈ `slope`, f″(t) ∈ `second_derivative` for all t in `domain` = \[t0, t1\].
+    ///
+    /// An empty enclosure says that f is not defined, which proves nothing: it counts as entire.
     pub const fn new(
         value: Interval,
         slope: Interval,
         second_derivative: Interval,
         domain: Interval,
     ) -> Self {
-        Self { value, slope, second_derivative, domain }
+        const fn known(x: Interval) -> Interval {
+            if x.lo() > x.hi() { Interval::ENTIRE } else { x }
+        }
+        Self { value: known(value), slope: known(slope), second_derivative: known(second_derivative), domain }
     }
 
     /// f(t0).
@@ -94,7 +99,8 @@ impl InclusionFunction {
         self.value + x * (self.slope + x * (self.second_derivative * 0.5))
     }
 
-    /// The hull of the times in `searched` at which f may be ≤ 0; `None` promises f > 0 on all of `searched`.
+    /// The hull of the times in `searched` at which f may be ≤ 0; `None` promises f > 0 on all of `searched` (also when
+    /// that is empty).
     ///
     /// `searched` must lie in the domain. The case distinction is made at the start of `searched`, the interval that
     /// is really looked at, and not at t0 (Algorithm 5 of the paper judges at the epoch and then takes the exit for
@@ -111,6 +117,9 @@ impl InclusionFunction {
     /// assert!((part.hi() - 2.0).abs() < 1e-12);
     /// ```
     pub fn nonpositive_hull(&self, searched: Interval) -> Option<Interval> {
+        if searched.is_empty() {
+            return None;
+        }
         let (a, b) = (searched.lo(), searched.hi());
         let shift = Interval::point(a) - self.domain.lo();
         let lower = self.lower();

@@ -3,6 +3,11 @@
 use crate::{InclusionFunction, Parabola};
 use d2m_interval::Interval;
 
+/// A piece that may begin at a zero is cut at this many times the time at which f has certainly left it, and this part of
+/// the piece later: far enough behind for the sign to be certain there. Any cut is sound.
+const BEHIND_LEAVING: f64 = 4.0;
+const PART_OF_PIECE: f64 = 1.0 / 1024.0;
+
 /// Shortens the domain of `function` to the part in which its first root can lie; `None` promises f ≠ 0 throughout.
 ///
 /// The result \[l, u\] promises f ≠ 0 on \[t0, l). It promises *nothing* about (u, t1\]: where u < t1, a root in
@@ -25,6 +30,9 @@ use d2m_interval::Interval;
 #[doc(alias = "IRD")]
 pub fn intersect_root_domain(function: &InclusionFunction) -> Option<Interval> {
     let domain = function.domain();
+    if domain.is_empty() {
+        return None;
+    }
     let value = function.value();
     if value.certainly_negative() {
         return intersect_root_domain(&function.negated());
@@ -48,7 +56,7 @@ pub fn intersect_root_domain(function: &InclusionFunction) -> Option<Interval> {
         return Some(domain);
     };
     let cut = match leaving.first_nonpositive() {
-        Some(x) => time(domain, 4.0 * x.hi() + width / 1024.0).hi().min(domain.hi()),
+        Some(x) => time(domain, BEHIND_LEAVING * x.hi() + PART_OF_PIECE * width).hi().min(domain.hi()),
         None => domain.hi(),
     };
     Some(Interval::new(domain.lo(), if cut > domain.lo() { cut } else { domain.hi() }))
@@ -91,6 +99,23 @@ mod tests {
         assert!(part.hi() < 1e-2, "and it is left as soon as the sign is certain: {part:?}");
         // The literal algorithm, sign taken from the upper end: rising from a positive value, no root.
         assert!(Parabola::new(1e-16, 1.0, 0.0).first_nonpositive().is_none());
+    }
+
+    /// Empty enclosures: nothing is known. (Each of them has both signs, and the sign was flipped without end.)
+    #[test]
+    fn empty_enclosures_prove_nothing() {
+        let (domain, point) = (Interval::new(0.0, 1.0), Interval::point);
+        for (value, slope, second) in [
+            (Interval::EMPTY, point(1.0), point(0.0)),
+            (point(1.0), Interval::EMPTY, point(0.0)),
+            (point(1.0), point(1.0), Interval::EMPTY),
+        ] {
+            let part = intersect_root_domain(&InclusionFunction::new(value, slope, second, domain));
+            assert_eq!(part.map(|p| p.hi()), Some(1.0), "{value:?} {slope:?} {second:?}");
+        }
+        let f = InclusionFunction::new(point(1.0), point(-1.0), point(0.0), Interval::EMPTY);
+        assert_eq!(intersect_root_domain(&f), None);
+        assert_eq!(f.nonpositive_hull(Interval::EMPTY), None);
     }
 
     /// Erratum 4, first half: f ≡ 0 keeps its domain instead of being discarded.

@@ -68,6 +68,9 @@ impl Parabola {
     /// assert!(Parabola::new(3.0, -2.0, 2.0).first_nonpositive().is_none()); // x² − 2x + 3
     /// ```
     pub fn first_nonpositive(self) -> Option<Interval> {
+        if self.value.is_nan() || self.slope.is_nan() || self.curvature.is_nan() {
+            return Some(Interval::new(0.0, f64::INFINITY));
+        }
         if self.value <= 0.0 {
             return Some(Interval::point(0.0));
         }
@@ -173,6 +176,13 @@ mod tests {
 
     #[test]
     fn overflow_and_not_a_number_stay_sound() {
+        for p in [
+            Parabola::new(f64::NAN, 1.0, 1.0),
+            Parabola::new(1.0, f64::NAN, 1.0),
+            Parabola::new(1.0, 1.0, f64::NAN),
+        ] {
+            assert_eq!(p.first_nonpositive(), Some(Interval::new(0.0, f64::INFINITY)));
+        }
         for p in [
             Parabola::new(1e300, -1e300, 1e300),
             Parabola::new(f64::INFINITY, -1.0, -1.0),

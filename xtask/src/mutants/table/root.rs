@@ -87,5 +87,19 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "",
         "crates/d2m-feature/tests/first_contact.rs::planted_contacts_are_never_missed_and_never_late",
     ),
+    patch(
+        "an empty enclosure excludes a zero",
+        "crates/d2m-root/src/gamma.rs",
+        "if enclosure.is_empty() { Interval::ENTIRE } else { enclosure }",
+        "enclosure",
+        "crates/d2m-root/tests/first_zero.rs::where_a_function_is_not_defined_nothing_is_excluded",
+    ),
+    patch(
+        "a step of which nothing is known proves a zero",
+        "crates/d2m-root/src/first_zero.rs",
+        "let defined = piece.is_bounded() && step.is_bounded() && !first.is_entire() && !last.is_entire();",
+        "let defined = true;",
+        "crates/d2m-root/tests/first_zero.rs::where_a_function_is_not_defined_nothing_is_excluded",
+    ),
     in_test("the paper's literal Algorithm 2", "crates/d2m-root/tests/paper_errata.rs::half_twice_is_late"),
 ];
