@@ -23,4 +23,4 @@ pub use query::{
 pub use search::InstructionSet;
 #[doc(hidden)]
 pub use search::SearchCounts;
-pub use tree::{MeshTree, TreeError};
+pub use tree::{MeshTree, TreeError, TreeFileError};

@@ -3,6 +3,8 @@
 mod adjacency;
 mod closedness;
 mod error;
+#[cfg(feature = "serde")]
+mod exact_number;
 mod topology;
 mod tri_mesh;
 mod validation;
@@ -13,6 +15,8 @@ mod tests;
 pub(crate) use adjacency::{Adjacency, NONE};
 pub(crate) use closedness::Closedness;
 pub use error::MeshError;
+#[cfg(feature = "serde")]
+pub(crate) use exact_number::ExactNumber;
 pub use topology::{Edge, Topology};
 pub use tri_mesh::{MAX_COORDINATE, TriMesh};
 pub use validation::Validation;

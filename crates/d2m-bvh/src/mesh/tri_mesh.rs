@@ -112,7 +112,7 @@ impl TriMesh {
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Parts {
-    vertices: Vec<[f64; 3]>,
+    vertices: Vec<[super::ExactNumber; 3]>,
     triangles: Vec<[u32; 3]>,
 }
 
@@ -121,8 +121,8 @@ impl TryFrom<Parts> for TriMesh {
     type Error = MeshError;
 
     fn try_from(parts: Parts) -> Result<Self, MeshError> {
-        let vertices = parts.vertices.into_iter().map(DVec3::from_array).collect();
-        Self::try_new(vertices, parts.triangles)
+        let position = |vertex: [super::ExactNumber; 3]| DVec3::from_array(vertex.map(|number| number.0));
+        Self::try_new(parts.vertices.into_iter().map(position).collect(), parts.triangles)
     }
 }
 
@@ -130,6 +130,7 @@ impl TryFrom<Parts> for TriMesh {
 impl From<TriMesh> for Parts {
     fn from(mesh: TriMesh) -> Self {
         let (vertices, triangles) = mesh.into_parts();
-        Self { vertices: vertices.into_iter().map(|position| position.to_array()).collect(), triangles }
+        let exact = |vertex: DVec3| vertex.to_array().map(super::ExactNumber);
+        Self { vertices: vertices.into_iter().map(exact).collect(), triangles }
     }
 }

@@ -1,7 +1,5 @@
 use super::build;
 use super::node::WideNode;
-#[cfg(feature = "serde")]
-use super::serde_form::TreeForm;
 use super::surface::Extent;
 use crate::TriMesh;
 use crate::mesh::{Adjacency, Closedness};
@@ -24,8 +22,6 @@ use std::sync::{Arc, OnceLock};
 /// # Ok::<(), d2m_bvh::MeshError>(())
 /// ```
 #[derive(Clone, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "TreeForm", into = "TreeForm"))]
 pub struct MeshTree {
     pub(crate) mesh: TriMesh,
     pub(crate) nodes: Vec<WideNode>,

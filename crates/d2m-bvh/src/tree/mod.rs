@@ -2,10 +2,12 @@
 
 pub(crate) mod bevel;
 mod build;
+mod file;
 mod fit;
 pub(crate) mod margin;
 mod mesh_tree;
 pub(crate) mod node;
+mod parts;
 mod refine;
 mod refit;
 #[cfg(feature = "serde")]
@@ -16,6 +18,7 @@ mod surface;
 mod tests;
 mod validate;
 
+pub use file::TreeFileError;
 pub use mesh_tree::MeshTree;
 pub(crate) use mesh_tree::Stamp;
 pub use validate::TreeError;

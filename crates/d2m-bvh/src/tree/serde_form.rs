@@ -1,39 +1,41 @@
-//! A tree in a file: the mesh, and the boxes as they are. Reading one checks every promise again.
+//! A tree in a serde format: the mesh, and the boxes as they are. Reading one checks every promise again.
+//!
+//! Many JSON libraries change the last place of a floating-point number, and a box that is a little smaller encloses
+//! nothing. So `f32` are written as their bits, integers that every library keeps, and `f64` as
+//! [`ExactNumber`](crate::mesh::ExactNumber). The form that was written before, with plain numbers in `center`, `axes`,
+//! `half_extent`, `radius` and `origin`, is read from self-describing formats where its numbers arrive unchanged.
 
-use super::bevel::{Bevels, MOST};
+use super::bevel::Bevels;
 use super::mesh_tree::MeshTree;
-use super::node::{Below, OrientedBox, WIDTH, WideNode};
-use super::surface::{Extent, size_of_box, unit_of};
+use super::node::{Below, LEAF, OrientedBox, WIDTH, WideNode};
+use super::parts::NodeParts;
 use super::validate::TreeError;
 use crate::TriMesh;
+use crate::mesh::ExactNumber;
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 /// What is written.
 #[derive(Serialize, Deserialize)]
-pub(super) struct TreeForm {
+struct TreeForm<Node> {
     mesh: TriMesh,
-    center: [f64; 3],
-    radius: f64,
-    nodes: Vec<NodeForm>,
+    center: [ExactNumber; 3],
+    radius: ExactNumber,
+    nodes: Vec<Node>,
 }
 
-/// A wide node: where its centres count from, and its boxes.
+/// A wide node: where its centers count from, and its boxes.
 #[derive(Serialize, Deserialize)]
 struct NodeForm {
-    origin: [f32; 3],
+    origin_bits: [u32; 3],
     boxes: Vec<BoxForm>,
 }
 
 #[derive(Serialize, Deserialize)]
 struct BoxForm {
-    center: [f32; 3],
-    axes: [[f32; 3]; 3],
-    half_extent: [f32; 3],
-    /// Nothing is cut off where they are left out.
-    #[serde(default)]
+    /// Of the center, the three axes, the half extents and the radius.
+    bits: [u32; 16],
     bevels: Bevels,
-    radius: f32,
     below: BelowForm,
 }
 
@@ -44,71 +46,142 @@ enum BelowForm {
     Node(u32),
 }
 
-impl From<MeshTree> for TreeForm {
-    fn from(tree: MeshTree) -> Self {
-        let one = |node: &WideNode| {
-            let boxes = (0..node.used as usize).map(|lane| {
-                let OrientedBox { center, axes, half_extent, bevels, radius } = node.oriented_box(lane);
-                let below = match node.below(lane) {
-                    Below::Triangle(triangle) => BelowForm::Triangle(triangle),
-                    Below::Node(node) => BelowForm::Node(node),
-                };
-                BoxForm { center, axes, half_extent, bevels, radius, below }
-            });
-            NodeForm { origin: node.origin, boxes: boxes.collect() }
+/// A node of either form.
+#[derive(Deserialize)]
+struct EitherNode {
+    origin_bits: Option<[u32; 3]>,
+    origin: Option<[f32; 3]>,
+    boxes: Vec<EitherBox>,
+}
+
+#[derive(Deserialize)]
+struct EitherBox {
+    bits: Option<[u32; 16]>,
+    center: Option<[f32; 3]>,
+    axes: Option<[[f32; 3]; 3]>,
+    half_extent: Option<[f32; 3]>,
+    radius: Option<f32>,
+    /// Nothing is cut off where they are left out.
+    #[serde(default)]
+    bevels: Bevels,
+    below: BelowForm,
+}
+
+impl Serialize for MeshTree {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let form = TreeForm {
+            mesh: self.mesh.clone(),
+            center: self.center.to_array().map(ExactNumber),
+            radius: ExactNumber(self.radius),
+            nodes: self.nodes.iter().map(NodeForm::from).collect(),
         };
-        let nodes = tree.nodes.iter().map(one).collect();
-        Self { mesh: tree.mesh, center: tree.center.to_array(), radius: tree.radius, nodes }
+        form.serialize(serializer)
     }
 }
 
-impl TryFrom<TreeForm> for MeshTree {
+impl<'de> Deserialize<'de> for MeshTree {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        if deserializer.is_human_readable() {
+            let form = TreeForm::<EitherNode>::deserialize(deserializer)?;
+            let mut nodes = Vec::with_capacity(form.nodes.len());
+            for (index, node) in form.nodes.into_iter().enumerate() {
+                nodes.push(node.try_into().map_err(|missing| {
+                    de::Error::custom(format_args!("node {index}: field `{missing}` is missing"))
+                })?);
+            }
+            let TreeForm { mesh, center, radius, .. } = form;
+            TreeForm { mesh, center, radius, nodes }.try_into().map_err(de::Error::custom)
+        } else {
+            TreeForm::<NodeForm>::deserialize(deserializer)?.try_into().map_err(de::Error::custom)
+        }
+    }
+}
+
+impl From<&WideNode> for NodeForm {
+    fn from(node: &WideNode) -> Self {
+        let boxes =
+            (0..node.used as usize).map(|lane| BoxForm::new(&node.oriented_box(lane), node.below(lane)));
+        Self { origin_bits: node.origin.map(f32::to_bits), boxes: boxes.collect() }
+    }
+}
+
+impl BoxForm {
+    fn new(boxed: &OrientedBox, below: Below) -> Self {
+        let OrientedBox { center: c, axes: [a, b, d], half_extent: h, bevels, radius } = *boxed;
+        let numbers = [
+            c[0], c[1], c[2], a[0], a[1], a[2], b[0], b[1], b[2], d[0], d[1], d[2], h[0], h[1], h[2], radius,
+        ];
+        let below = match below {
+            Below::Triangle(triangle) => BelowForm::Triangle(triangle),
+            Below::Node(node) => BelowForm::Node(node),
+        };
+        Self { bits: numbers.map(f32::to_bits), bevels, below }
+    }
+
+    fn boxed(&self) -> OrientedBox {
+        let n = self.bits.map(f32::from_bits);
+        let three = |at: usize| [n[at], n[at + 1], n[at + 2]];
+        OrientedBox {
+            center: three(0),
+            axes: [three(3), three(6), three(9)],
+            half_extent: three(12),
+            bevels: self.bevels,
+            radius: n[15],
+        }
+    }
+}
+
+impl TryFrom<EitherNode> for NodeForm {
+    type Error = &'static str;
+
+    fn try_from(node: EitherNode) -> Result<Self, &'static str> {
+        let origin_bits =
+            node.origin_bits.or(node.origin.map(|origin| origin.map(f32::to_bits))).ok_or("origin_bits")?;
+        let boxes = node.boxes.into_iter().map(BoxForm::try_from).collect::<Result<_, _>>()?;
+        Ok(Self { origin_bits, boxes })
+    }
+}
+
+impl TryFrom<EitherBox> for BoxForm {
+    type Error = &'static str;
+
+    fn try_from(form: EitherBox) -> Result<Self, &'static str> {
+        let EitherBox { bits, center, axes, half_extent, radius, bevels, below } = form;
+        if let Some(bits) = bits {
+            return Ok(Self { bits, bevels, below });
+        }
+        let center = center.ok_or("bits")?;
+        let axes = axes.ok_or("axes")?;
+        let half_extent = half_extent.ok_or("half_extent")?;
+        let radius = radius.ok_or("radius")?;
+        let boxed = OrientedBox { center, axes, half_extent, bevels, radius };
+        let form = Self::new(&boxed, Below::Node(0));
+        Ok(Self { below, ..form })
+    }
+}
+
+impl TryFrom<TreeForm<NodeForm>> for MeshTree {
     type Error = TreeError;
 
-    fn try_from(form: TreeForm) -> Result<Self, TreeError> {
-        let mut nodes = Vec::with_capacity(form.nodes.len());
-        for (index, from) in form.nodes.iter().enumerate() {
-            if from.boxes.len() > WIDTH {
+    fn try_from(form: TreeForm<NodeForm>) -> Result<Self, TreeError> {
+        let mut parts = NodeParts::with_capacity(form.nodes.len());
+        for (index, node) in form.nodes.iter().enumerate() {
+            if node.boxes.len() > WIDTH {
                 return Err(TreeError::Link { node: index });
             }
-            let mut node = WideNode::empty(from.origin, 0);
-            node.used = from.boxes.len() as u32;
-            for (lane, b) in from.boxes.iter().enumerate() {
-                if b.bevels.iter().flatten().any(|&steps| steps > MOST) {
-                    return Err(TreeError::Shape { node: index, lane });
-                }
-                let boxed = OrientedBox {
-                    center: b.center,
-                    axes: b.axes,
-                    half_extent: b.half_extent,
-                    bevels: b.bevels,
-                    radius: b.radius,
-                };
-                let (below, size) = match b.below {
-                    BelowForm::Triangle(triangle) if triangle < 1 << 31 => (Below::Triangle(triangle), 0.0),
-                    BelowForm::Node(child) if child < 1 << 31 => (Below::Node(child), size_of_box(&boxed)),
-                    BelowForm::Triangle(_) | BelowForm::Node(_) => {
+            parts.begin(node.origin_bits.map(f32::from_bits));
+            for form in &node.boxes {
+                let below = match form.below {
+                    BelowForm::Triangle(number) | BelowForm::Node(number) if number >= LEAF => {
                         return Err(TreeError::Link { node: index });
                     }
+                    BelowForm::Triangle(triangle) => Below::Triangle(triangle),
+                    BelowForm::Node(node) => Below::Node(node),
                 };
-                node.set_box(lane, &boxed, size);
-                node.set_below(lane, below);
-            }
-            nodes.push(node);
-        }
-        for index in 0..nodes.len() {
-            for lane in 0..nodes[index].used as usize {
-                if let Below::Node(child) = nodes[index].below(lane) {
-                    let child = child as usize;
-                    let below = nodes.get_mut(child).ok_or(TreeError::Link { node: child })?;
-                    below.parent = (index * WIDTH + lane) as u32;
-                }
+                parts.add(&form.boxed(), below)?;
             }
         }
-        let radius = form.radius;
-        let extent = Extent { center: DVec3::from_array(form.center), radius, unit: unit_of(radius) };
-        let tree = Self::from_nodes(form.mesh, nodes, &extent);
-        tree.validate()?;
-        Ok(tree)
+        let center = DVec3::from_array(form.center.map(|ExactNumber(number)| number));
+        parts.finish(form.mesh, center, form.radius.0)
     }
 }

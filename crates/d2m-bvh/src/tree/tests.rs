@@ -233,8 +233,9 @@ fn a_written_tree_is_read_back_bit_for_bit_and_a_forged_one_refused() {
         let back: MeshTree = serde_json::from_str(&text).unwrap();
         assert_eq!(format!("{back:?}"), format!("{tree:?}"));
         let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();
-        let half = value["nodes"][1]["boxes"][0]["half_extent"][0].as_f64().unwrap();
-        value["nodes"][1]["boxes"][0]["half_extent"][0] = (half * 0.99).into();
+        // The first half extent, a little less.
+        let half = f32::from_bits(value["nodes"][1]["boxes"][0]["bits"][12].as_u64().unwrap() as u32);
+        value["nodes"][1]["boxes"][0]["bits"][12] = (half * 0.99).to_bits().into();
         let refused = serde_json::from_value::<MeshTree>(value).unwrap_err().to_string();
         assert!(refused.contains("does not enclose"), "{refused}");
         for forged in [127, 255] {
@@ -243,11 +244,65 @@ fn a_written_tree_is_read_back_bit_for_bit_and_a_forged_one_refused() {
             let refused = serde_json::from_value::<MeshTree>(value).unwrap_err().to_string();
             assert!(refused.contains("box 0 of node 1"), "{refused}");
         }
-        // Boxes without cuts, as they were written before there were some.
+        // The old form: plain numbers, and boxes without cuts.
         let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();
+        for node in value["nodes"].as_array_mut().unwrap() {
+            let float = |bits: &serde_json::Value| f32::from_bits(bits.as_u64().unwrap() as u32);
+            let three = |bits: &serde_json::Value, at: usize| -> Vec<f32> {
+                (at..at + 3).map(|i| float(&bits[i])).collect()
+            };
+            let node = node.as_object_mut().unwrap();
+            let origin = node.remove("origin_bits").unwrap();
+            node.insert("origin".to_owned(), three(&origin, 0).into());
+            for boxed in node["boxes"].as_array_mut().unwrap() {
+                let boxed = boxed.as_object_mut().unwrap();
+                let bits = boxed.remove("bits").unwrap();
+                boxed.insert("center".to_owned(), three(&bits, 0).into());
+                let axes: Vec<Vec<f32>> = [3, 6, 9].iter().map(|&at| three(&bits, at)).collect();
+                boxed.insert("axes".to_owned(), serde_json::json!(axes));
+                boxed.insert("half_extent".to_owned(), three(&bits, 12).into());
+                boxed.insert("radius".to_owned(), float(&bits[15]).into());
+            }
+        }
+        let number = |text: &serde_json::Value| text.as_str().unwrap().parse::<f64>().unwrap();
+        value["radius"] = number(&value["radius"]).into();
+        for vertex in value["mesh"]["vertices"].as_array_mut().unwrap() {
+            *vertex = vertex.as_array().unwrap().iter().map(number).collect::<Vec<_>>().into();
+        }
+        let back: MeshTree = serde_json::from_str(&value.to_string()).unwrap();
+        assert_eq!(format!("{back:?}"), format!("{tree:?}"));
         let plain = value["nodes"][1]["boxes"][0].as_object_mut().unwrap();
         assert!(plain.remove("bevels").is_some());
         let back: MeshTree = serde_json::from_value(value).unwrap();
         assert_eq!(back.nodes[1].oriented_box(0).bevels, [[0; 4]; 3]);
     }
+}
+
+/// A JSON library that reads and writes numbers with fifteen digits (or as `f32`, or one off in the last place) changes
+/// nothing that was written.
+#[cfg(feature = "serde")]
+#[test]
+fn a_written_tree_holds_no_number_that_a_json_library_may_round() {
+    fn is_kept(value: &serde_json::Value) -> bool {
+        match value {
+            serde_json::Value::Number(number) => number.as_u64().is_some_and(|number| number < 1 << 53),
+            serde_json::Value::Array(values) => values.iter().all(is_kept),
+            serde_json::Value::Object(values) => values.values().all(is_kept),
+            _ => true,
+        }
+    }
+    let tree = MeshTree::new(torus(30, 12, 0.01, |p| p));
+    assert!(is_kept(&serde_json::to_value(&tree).unwrap()));
+    assert!(is_kept(&serde_json::to_value(tree.mesh()).unwrap()));
+    let read: TriMesh = serde_json::from_str(
+        r#"{"vertices": [[0, -1, 0.5], ["1e-300", "0.1", "2"], [1, 1, 1]], "triangles": [[0, 1, 2]]}"#,
+    )
+    .unwrap();
+    assert_eq!(read.vertices()[..2], [DVec3::new(0.0, -1.0, 0.5), DVec3::new(1e-300, 0.1, 2.0)]);
+    let refused = |number: &str| {
+        let text = format!(r#"{{"vertices": [["{number}", 0, 0]], "triangles": [[0, 0, 0]]}}"#);
+        serde_json::from_str::<TriMesh>(&text).unwrap_err().to_string()
+    };
+    assert!(refused("inf").contains("not a finite number"), "{}", refused("inf"));
+    assert!(refused("one").contains("one"), "{}", refused("one"));
 }

@@ -1,0 +1,274 @@
+//! A tree as bytes, for files that are read much faster than a tree is built.
+//!
+//! All numbers are little-endian, floating-point numbers as their bits. In this order:
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 8 | `d2mtree` and a zero |
+//! | 4 + 4 | version of the form (1), zero |
+//! | 3 × 8 | numbers of vertices, triangles and wide nodes |
+//! | 4 × 8 | center and radius of the body |
+//! | 24 each | vertices |
+//! | 12 each | triangles: three vertex numbers |
+//! | 16 + 80 a box each | wide nodes: origin (three `f32`), number of boxes; then of each box center, three axes, half extents (15 `f32`), what is cut off the edges (12 bytes), radius (`f32`), and the triangle (with the highest bit) or node below it |
+//! | 8 | [`checksum`] of all bytes before |
+
+use super::mesh_tree::MeshTree;
+use super::node::{Below, LEAF, OrientedBox, WIDTH};
+use super::parts::NodeParts;
+use super::validate::TreeError;
+use crate::{MeshError, TriMesh};
+use glam::DVec3;
+use thiserror::Error;
+
+const MAGIC: [u8; 8] = *b"d2mtree\0";
+const VERSION: u32 = 1;
+
+/// Bytes of the parts, as in the table above.
+const HEADER: usize = 8 + 4 + 4 + 3 * 8 + 4 * 8;
+const VERTEX: usize = 24;
+const TRIANGLE: usize = 12;
+const NODE: usize = 16;
+const BOX: usize = 80;
+const CHECKSUM: usize = 8;
+
+/// Why bytes are no tree.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum TreeFileError {
+    /// The first bytes are not those of a written tree.
+    #[error("this is not a written tree: it does not begin with \"d2mtree\"")]
+    NotATree,
+    /// Written by another version of this crate.
+    #[error("the tree was written in form {found}, and only form {expected} can be read", expected = VERSION)]
+    Version {
+        /// The form of the bytes.
+        found: u32,
+    },
+    /// Bytes are missing, or there are too many.
+    #[error("the tree has {found} bytes where its parts need {needed}")]
+    Length {
+        /// How many bytes there are.
+        found: usize,
+        /// How many bytes the stated parts take, as far as that is known.
+        needed: usize,
+    },
+    /// A byte was changed since the tree was written.
+    #[error("the tree is damaged: its checksum is {found:016x} and not {stated:016x}")]
+    Damaged {
+        /// The checksum of the bytes.
+        found: u64,
+        /// The checksum that was written.
+        stated: u64,
+    },
+    /// The mesh in it is none.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The boxes do not enclose the mesh, or are not linked into one tree.
+    #[error(transparent)]
+    Tree(#[from] TreeError),
+}
+
+impl MeshTree {
+    /// The tree as bytes, from which [`Self::try_from_bytes`] makes the same tree, bit for bit. The bytes are the same on
+    /// every platform.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let boxes: usize = self.nodes.iter().map(|node| node.used as usize).sum();
+        let length = HEADER
+            + VERTEX * self.mesh.vertex_count()
+            + TRIANGLE * self.mesh.triangle_count()
+            + NODE * self.nodes.len()
+            + BOX * boxes
+            + CHECKSUM;
+        let mut bytes = Vec::with_capacity(length);
+        bytes.extend(MAGIC);
+        bytes.extend(VERSION.to_le_bytes());
+        bytes.extend([0; 4]);
+        for count in [self.mesh.vertex_count(), self.mesh.triangle_count(), self.nodes.len()] {
+            bytes.extend((count as u64).to_le_bytes());
+        }
+        let about = self.center.to_array().into_iter().chain([self.radius]);
+        for number in about.chain(self.mesh.vertices().iter().flat_map(|vertex| vertex.to_array())) {
+            bytes.extend(number.to_le_bytes());
+        }
+        for &number in self.mesh.triangles().iter().flatten() {
+            bytes.extend(number.to_le_bytes());
+        }
+        for node in &self.nodes {
+            for number in node.origin {
+                bytes.extend(number.to_le_bytes());
+            }
+            bytes.extend(node.used.to_le_bytes());
+            for lane in 0..node.used as usize {
+                let OrientedBox { center, axes, half_extent, bevels, radius } = node.oriented_box(lane);
+                for number in center.into_iter().chain(axes.into_iter().flatten()).chain(half_extent) {
+                    bytes.extend(number.to_le_bytes());
+                }
+                bytes.extend(bevels.as_flattened());
+                bytes.extend(radius.to_le_bytes());
+                let below = match node.below(lane) {
+                    Below::Triangle(triangle) => triangle | LEAF,
+                    Below::Node(node) => node,
+                };
+                bytes.extend(below.to_le_bytes());
+            }
+        }
+        bytes.extend(checksum(&bytes).to_le_bytes());
+        debug_assert_eq!(bytes.len(), length);
+        bytes
+    }
+
+    /// The tree that [`Self::to_bytes`] has written.
+    ///
+    /// Promise: what is returned passed [`Self::validate`], so every query may rely on it wherever the bytes came from.
+    /// Takes memory in proportion to the bytes given, whatever they state.
+    ///
+    /// ```
+    /// use d2m_bvh::{MeshTree, TreeFileError, TriMesh};
+    /// use glam::DVec3;
+    /// let mesh = TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y * 0.1], vec![[0, 1, 2]])?;
+    /// let mut bytes = MeshTree::new(mesh).to_bytes();
+    /// let tree = MeshTree::try_from_bytes(&bytes)?;
+    /// assert_eq!(tree.mesh().vertices()[2], DVec3::Y * 0.1);
+    /// bytes[100] ^= 1;
+    /// assert!(matches!(MeshTree::try_from_bytes(&bytes), Err(TreeFileError::Damaged { .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`TreeFileError`]: other bytes, a byte that was changed, or forged bytes that are no tree.
+    pub fn try_from_bytes(bytes: &[u8]) -> Result<Self, TreeFileError> {
+        let length = |needed: usize| TreeFileError::Length { found: bytes.len(), needed };
+        if !bytes.starts_with(&MAGIC) {
+            return Err(TreeFileError::NotATree);
+        }
+        if bytes.len() < HEADER + CHECKSUM {
+            return Err(length(HEADER + CHECKSUM));
+        }
+        let mut reader = Reader { rest: &bytes[MAGIC.len()..bytes.len() - CHECKSUM] };
+        let version = reader.u32().ok_or(length(HEADER))?;
+        if version != VERSION {
+            return Err(TreeFileError::Version { found: version });
+        }
+        let (found, stated) = (checksum(&bytes[..bytes.len() - CHECKSUM]), u64_at_end(bytes));
+        if found != stated {
+            return Err(TreeFileError::Damaged { found, stated });
+        }
+        // What is read below is what was written, unless someone forged the checksum too.
+        let mut parse = || {
+            let _zero = reader.u32()?;
+            let counts = [reader.count()?, reader.count()?, reader.count()?];
+            let about = reader.f64s::<4>()?;
+            Some((counts, about))
+        };
+        let ([vertices, triangles, nodes], [x, y, z, radius]) = parse().ok_or(length(HEADER))?;
+        let least = [(vertices, VERTEX), (triangles, TRIANGLE), (nodes, NODE)]
+            .into_iter()
+            .try_fold(HEADER + CHECKSUM, |sum, (count, size)| sum.checked_add(count.checked_mul(size)?));
+        let needed = least.filter(|&least| least <= bytes.len());
+        let needed = needed.ok_or(length(least.unwrap_or(usize::MAX)))?;
+        let short = length(needed);
+        let mesh = reader.mesh(vertices, triangles).ok_or(short.clone())??;
+        let mut parts = NodeParts::with_capacity(nodes);
+        for index in 0..nodes {
+            let (origin, used) = reader.f32s::<3>().zip(reader.u32()).ok_or(short.clone())?;
+            if used as usize > WIDTH {
+                return Err(TreeError::Link { node: index }.into());
+            }
+            parts.begin(origin);
+            for _ in 0..used {
+                let (boxed, below) = reader.boxed().ok_or(short.clone())?;
+                parts.add(&boxed, below)?;
+            }
+        }
+        if !reader.rest.is_empty() {
+            return Err(length(bytes.len() - reader.rest.len()));
+        }
+        Ok(parts.finish(mesh, DVec3::new(x, y, z), radius)?)
+    }
+}
+
+/// Reads numbers; `None` where bytes are missing.
+struct Reader<'a> {
+    rest: &'a [u8],
+}
+
+impl Reader<'_> {
+    fn bytes<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (first, rest) = self.rest.split_first_chunk()?;
+        self.rest = rest;
+        Some(*first)
+    }
+
+    fn u32(&mut self) -> Option<u32> {
+        self.bytes().map(u32::from_le_bytes)
+    }
+
+    /// A number of parts; what no memory could hold is no number of parts.
+    fn count(&mut self) -> Option<usize> {
+        self.bytes().and_then(|bytes| usize::try_from(u64::from_le_bytes(bytes)).ok())
+    }
+
+    fn f32s<const N: usize>(&mut self) -> Option<[f32; N]> {
+        let mut numbers = [0.0; N];
+        for number in &mut numbers {
+            *number = self.bytes().map(f32::from_le_bytes)?;
+        }
+        Some(numbers)
+    }
+
+    fn f64s<const N: usize>(&mut self) -> Option<[f64; N]> {
+        let mut numbers = [0.0; N];
+        for number in &mut numbers {
+            *number = self.bytes().map(f64::from_le_bytes)?;
+        }
+        Some(numbers)
+    }
+
+    fn mesh(&mut self, vertices: usize, triangles: usize) -> Option<Result<TriMesh, MeshError>> {
+        let mut positions = Vec::with_capacity(vertices);
+        for _ in 0..vertices {
+            positions.push(DVec3::from_array(self.f64s()?));
+        }
+        let mut corners = Vec::with_capacity(triangles);
+        for _ in 0..triangles {
+            corners.push([self.u32()?, self.u32()?, self.u32()?]);
+        }
+        Some(TriMesh::try_new(positions, corners))
+    }
+
+    fn boxed(&mut self) -> Option<(OrientedBox, Below)> {
+        let center = self.f32s()?;
+        let axes = [self.f32s()?, self.f32s()?, self.f32s()?];
+        let half_extent = self.f32s()?;
+        let bevels = [self.bytes()?, self.bytes()?, self.bytes()?];
+        let [radius] = self.f32s()?;
+        let below = self.u32()?;
+        let below = if below & LEAF != 0 { Below::Triangle(below & !LEAF) } else { Below::Node(below) };
+        Some((OrientedBox { center, axes, half_extent, bevels, radius }, below))
+    }
+}
+
+fn u64_at_end(bytes: &[u8]) -> u64 {
+    bytes.last_chunk().map_or(0, |last| u64::from_le_bytes(*last))
+}
+
+/// Of the bytes in words of eight, the last filled up with zeros, and of their number. Each step is a bijection of the
+/// state for a given word and of the word for a given state, so bytes of one length that differ in one word only always have
+/// different checksums.
+fn checksum(bytes: &[u8]) -> u64 {
+    // 2⁶⁴ divided by the golden ratio: odd, so multiplication by it is a bijection, and its bits are well mixed.
+    const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
+    let step = |state: u64, word: u64| {
+        let product = (state ^ word).wrapping_mul(FACTOR);
+        product ^ (product >> 32)
+    };
+    let (words, rest) = bytes.as_chunks::<8>();
+    let state = words.iter().fold(bytes.len() as u64, |state, word| step(state, u64::from_le_bytes(*word)));
+    let mut last = [0; 8];
+    last[..rest.len()].copy_from_slice(rest);
+    step(state, u64::from_le_bytes(last))
+}
+
+#[cfg(test)]
+mod tests;
