@@ -20,13 +20,20 @@ pub(crate) enum Command {
     Batch(BatchArguments),
     /// First contacts of moving points, triangles, edges and spheres, from JSON lines to JSON lines
     Features(FeaturesArguments),
+    /// Distance of two bodies at rest, with the closest points
+    Distance(DistanceArguments),
+    /// Whether two bodies at rest share a point
+    Collide(CollideArguments),
     /// What is in a mesh, or which shapes are built in
     Info(InfoArguments),
+    /// Saves the search tree of a mesh; the file is a mesh argument like any other
+    Tree(TreeArguments),
     /// The main job on built-in shapes: six scenes with their commands and answers
     Demo,
 }
 
-const MESH_HELP: &str = "Mesh file (.obj, .stl, .ply) or built-in shape such as shape:gear?triangles=5000";
+const MESH_HELP: &str =
+    "Mesh file (.obj, .stl, .ply, a saved .d2mtree) or built-in shape such as shape:gear?triangles=5000";
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -57,6 +64,9 @@ pub(crate) struct TocArguments {
     /// Answer as one JSON object
     #[arg(long)]
     pub(crate) json: bool,
+    /// Exit with 10 on contact, 11 if separated, 12 if undecided
+    #[arg(long)]
+    pub(crate) exit_status: bool,
     /// Also write both meshes, posed at the contact, as an OBJ file
     #[arg(long, value_name = "FILE")]
     pub(crate) obj: Option<String>,
@@ -103,12 +113,96 @@ pub(crate) struct QueryArguments {
     /// Distance at which bodies count as touching
     #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true)]
     pub(crate) min_separation: Option<String>,
+    #[command(flatten)]
+    pub(crate) solid: SolidArguments,
+}
+
+/// What counts as a body.
+#[derive(Debug, Clone, Copy, Args)]
+pub(crate) struct SolidArguments {
     /// Bodies are full: one inside the other is in contact [default if both meshes are watertight]
     #[arg(long, conflicts_with = "surface")]
     pub(crate) solid: bool,
     /// Only surfaces count [default if a mesh is open]
     #[arg(long)]
     pub(crate) surface: bool,
+}
+
+/// Two bodies at rest.
+#[derive(Debug, Args)]
+pub(crate) struct PosedArguments {
+    #[arg(value_name = "A", help = MESH_HELP)]
+    pub(crate) a: String,
+    #[arg(value_name = "B", help = MESH_HELP)]
+    pub(crate) b: String,
+    /// Pose of A; the mesh as it is if not given
+    #[arg(long, value_name = "P", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
+    pub(crate) pose_a: String,
+    /// Pose of B; the mesh as it is if not given
+    #[arg(long, value_name = "P", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
+    pub(crate) pose_b: String,
+    #[command(flatten)]
+    pub(crate) solid: SolidArguments,
+    /// Answer as one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Exit with 10 if the bodies share a point (or cannot be told from bodies that do), with 11 if they are apart
+    #[arg(long)]
+    pub(crate) exit_status: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A pose is x=1,2,3;q=w,x,y,z[;at=1,2,3]: where the body point at (the origin if left out) is, and how the body is turned.
+@FILE reads the same keys from JSON.
+
+The answer holds the distance, the certified interval [lower, upper] that the true distance lies in, the closest points with
+their triangles, and the unit normal from A to B. Bodies that touch, cross or contain each other are at distance zero.
+status (in JSON): separated if the distance is proven to be above zero, contact otherwise; state says which kind.
+
+Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 separated.
+
+Example:
+  d2m distance shape:gear shape:torus --pose-a 'x=-3,0,0;q=0.7,0,0,0.7'")]
+pub(crate) struct DistanceArguments {
+    #[command(flatten)]
+    pub(crate) posed: PosedArguments,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A pose is x=1,2,3;q=w,x,y,z[;at=1,2,3]: where the body point at (the origin if left out) is, and how the body is turned.
+@FILE reads the same keys from JSON.
+
+separated is proven. contact is said whenever that cannot be proven: bodies that share a point, and bodies that are apart by
+less than the rounding of placing them. triangles names a pair of triangles that are not proven apart; there is none if one
+body is inside the other.
+
+Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 separated.
+
+Example:
+  d2m collide shape:gear shape:torus --pose-a 'x=0.5,0,0' --exit-status")]
+pub(crate) struct CollideArguments {
+    #[command(flatten)]
+    pub(crate) posed: PosedArguments,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+The file holds the mesh and its boxes bit for bit, with a checksum, and is the same on every platform. Reading it checks that
+the boxes enclose the mesh, so a damaged or forged file is refused.
+
+Exit codes: 0 written, 2 bad usage, 3 bad input.
+
+Example:
+  d2m tree bunny.obj --out bunny.d2mtree
+  d2m toc bunny.d2mtree shape:gear --motion-a 'x=-3,0,0;v=4,0,0'")]
+pub(crate) struct TreeArguments {
+    #[arg(value_name = "A", help = MESH_HELP)]
+    pub(crate) mesh: String,
+    /// File to write, with the extension .d2mtree
+    #[arg(long, value_name = "A.d2mtree")]
+    pub(crate) out: String,
 }
 
 /// How a query is answered.

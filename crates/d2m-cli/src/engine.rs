@@ -1,9 +1,9 @@
 //! One prepared pair of bodies for every method.
 
-use crate::arguments::{Method, QueryArguments};
+use crate::arguments::{Method, QueryArguments, SolidArguments};
 use crate::failure::Failure;
 use crate::load::Loaded;
-use crate::output::{note, progress_bar};
+use crate::output::note;
 use crate::trials::Trial;
 use d2m::bvh::paper::{self, SphereTree};
 use d2m::bvh::{
@@ -27,10 +27,11 @@ enum Tree {
 }
 
 impl Body {
-    fn new(Loaded { name, mesh, .. }: Loaded, method: Method) -> Self {
+    fn new(loaded: Loaded, method: Method) -> Self {
+        let name = loaded.name.clone();
         let tree = match method {
-            Method::Accurate | Method::Capoeira => Tree::Engine(build(mesh)),
-            Method::Paper => Tree::Paper(Box::new(SphereTree::new(mesh))),
+            Method::Accurate | Method::Capoeira => Tree::Engine(loaded.into_tree()),
+            Method::Paper => Tree::Paper(Box::new(SphereTree::new(loaded.into_mesh()))),
         };
         Self { name, tree }
     }
@@ -51,18 +52,6 @@ impl Body {
     }
 }
 
-/// Builds the tree; what takes a second or more shows how far it is.
-fn build(mesh: TriMesh) -> MeshTree {
-    const LARGE: usize = 500_000;
-    if mesh.triangle_count() < LARGE {
-        return MeshTree::new(mesh);
-    }
-    let bar = progress_bar(mesh.triangle_count(), "triangles in the tree");
-    let tree = MeshTree::with_progress(mesh, &|done, _| bar.set_position(done as u64));
-    bar.finish_and_clear();
-    tree
-}
-
 /// Two bodies and how they are asked.
 pub(crate) struct Pair {
     pub(crate) a: Body,
@@ -70,6 +59,8 @@ pub(crate) struct Pair {
     pub(crate) solid: Solid,
     /// Distance at which the bodies count as touching.
     pub(crate) min_separation: f64,
+    /// The tolerance that was asked for.
+    pub(crate) tolerance: Option<f64>,
     pub(crate) preparation: Duration,
     options: QueryOptions,
 }
@@ -110,8 +101,10 @@ impl Pair {
         let start = Instant::now();
         let [a, b] = [a, b].map(|body| Body::new(body, arguments.mode));
         let preparation = start.elapsed();
-        let solid = choose_solid(&a, &b, arguments)?;
-        Ok(Self { a, b, solid, min_separation, preparation, options: options.with_solid(solid) })
+        let solid =
+            choose_solid([(&a.name, a.is_watertight()), (&b.name, b.is_watertight())], arguments.solid)?;
+        let tolerance = options.tolerance;
+        Ok(Self { a, b, solid, min_separation, tolerance, preparation, options: options.with_solid(solid) })
     }
 
     /// Each query on all threads of the machine: for single ones.
@@ -214,19 +207,18 @@ pub(crate) fn number(
     }
 }
 
-/// Filled if both meshes close, unless the user says otherwise.
-fn choose_solid(a: &Body, b: &Body, arguments: &QueryArguments) -> Result<Solid, Failure> {
+/// Filled if both bodies (name, and whether it is watertight) close, unless the user says otherwise.
+pub(crate) fn choose_solid(bodies: [(&str, bool); 2], arguments: SolidArguments) -> Result<Solid, Failure> {
     if arguments.surface {
         return Ok(Solid::Surface);
     }
-    let open = [a, b].into_iter().find(|body| !body.is_watertight());
-    match open {
+    match bodies.into_iter().find(|(_, is_watertight)| !is_watertight) {
         None => Ok(Solid::Filled),
-        Some(body) if arguments.solid => {
-            Err(Failure::at(&body.name, "the mesh is not watertight, so it bounds no solid: use --surface"))
+        Some((name, _)) if arguments.solid => {
+            Err(Failure::at(name, "the mesh is not watertight, so it bounds no solid: use --surface"))
         }
-        Some(body) => {
-            note(&format!("d2m: note: {} is not watertight: only surfaces count", body.name));
+        Some((name, _)) => {
+            note(&format!("d2m: note: {name} is not watertight: only surfaces count"));
             Ok(Solid::Surface)
         }
     }

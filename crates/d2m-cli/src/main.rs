@@ -1,6 +1,7 @@
 //! The d2m command: certified time of contact of two meshes from the command line.
 //!
-//! Exit codes: 0 answered, 2 bad usage, 3 bad input (with file, line, index and value on stderr).
+//! Exit codes: 0 answered, 2 bad usage, 3 bad input (with file, line, index and value on stderr); where `--exit-status` asks
+//! for it 10 contact, 11 separated, 12 undecided.
 
 mod arguments;
 mod commands;
@@ -8,27 +9,34 @@ mod engine;
 mod failure;
 mod load;
 mod motion;
+mod outcome;
 mod output;
+mod posed;
 mod report;
 mod trials;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
 use failure::Failure;
+use outcome::Outcome;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let outcome = match &arguments.command {
         Command::Toc(arguments) => commands::toc::run(arguments),
-        Command::Batch(arguments) => commands::batch::run(arguments),
-        Command::Features(arguments) => commands::features::run(arguments),
-        Command::Info(arguments) => commands::info::run(arguments),
-        Command::Demo => commands::demo::run(),
+        Command::Batch(arguments) => commands::batch::run(arguments).map(Outcome::from),
+        Command::Features(arguments) => commands::features::run(arguments).map(Outcome::from),
+        Command::Distance(arguments) => commands::distance::run(arguments),
+        Command::Collide(arguments) => commands::collide::run(arguments),
+        Command::Info(arguments) => commands::info::run(arguments).map(Outcome::from),
+        Command::Tree(arguments) => commands::tree::run(arguments).map(Outcome::from),
+        Command::Demo => commands::demo::run().map(Outcome::from),
     };
     match outcome {
+        Ok(outcome) => ExitCode::from(outcome.code()),
         // A reader that closed the pipe has what it wanted.
-        Ok(()) | Err(Failure::ClosedPipe) => ExitCode::SUCCESS,
+        Err(Failure::ClosedPipe) => ExitCode::SUCCESS,
         Err(failure) => {
             output::note(&format!("d2m: {failure}"));
             ExitCode::from(3)

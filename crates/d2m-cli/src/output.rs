@@ -22,8 +22,12 @@ pub(crate) fn progress_bar(length: usize, of: &str) -> ProgressBar {
 
 /// Writes to standard output.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    print_bytes(text.as_bytes())
+}
+
+fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
-    let written = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
+    let written = stdout.write_all(bytes).and_then(|()| stdout.flush());
     written.map_err(|error| match error.kind() {
         ErrorKind::BrokenPipe => Failure::ClosedPipe,
         _ => Failure::at("standard output", error),
@@ -75,7 +79,12 @@ impl Output {
 
     /// Writes everything at once: to a temporary file beside the target, which then replaces it.
     pub(crate) fn write(&self, contents: &str) -> Result<(), Failure> {
-        let Self::File(path) = self else { return print(contents) };
+        self.write_bytes(contents.as_bytes())
+    }
+
+    /// As [`Self::write`], for what is no text.
+    pub(crate) fn write_bytes(&self, contents: &[u8]) -> Result<(), Failure> {
+        let Self::File(path) = self else { return print_bytes(contents) };
         // A device such as /dev/null must not be replaced.
         let special = path.exists() && !path.is_file();
         let written = if special { fs::write(path, contents) } else { replace(path, contents) };
@@ -90,11 +99,11 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-fn replace(path: &Path, contents: &str) -> io::Result<()> {
+fn replace(path: &Path, contents: &[u8]) -> io::Result<()> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let temporary = folder_of(path).join(format!(".{name}.{}.tmp", std::process::id()));
     let written = fs::File::create(&temporary)
-        .and_then(|mut file| file.write_all(contents.as_bytes()).and_then(|()| file.sync_all()))
+        .and_then(|mut file| file.write_all(contents).and_then(|()| file.sync_all()))
         .and_then(|()| fs::rename(&temporary, path));
     if written.is_err() {
         let _ = fs::remove_file(&temporary);

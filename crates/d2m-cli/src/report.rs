@@ -1,7 +1,7 @@
 //! Answers as text, CSV fields and JSON.
 
 use crate::engine::{Answer, Pair};
-use d2m::bvh::{Contact, Solid, StartState, TimeOfContact, Window};
+use d2m::bvh::{Contact, Evidence, Solid, StartState, TimeOfContact, Window};
 use d2m::feature::FeaturePair;
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -36,7 +36,7 @@ fn feature_sentence(feature: FeaturePair) -> String {
     }
 }
 
-fn start_word(start: StartState) -> &'static str {
+pub(crate) fn start_word(start: StartState) -> &'static str {
     match start {
         StartState::Apart => "apart",
         StartState::Touching => "touching",
@@ -75,7 +75,7 @@ fn count(number: usize) -> String {
     groups.join(" ")
 }
 
-fn vector(v: DVec3) -> String {
+pub(crate) fn vector(v: DVec3) -> String {
     format!("({:.9}, {:.9}, {:.9})", v.x, v.y, v.z)
 }
 
@@ -93,12 +93,13 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
         }
         TimeOfContact::Undecided { clear_until } => {
             line("certified", format!("no contact from {start} until {}", short(*clear_until)));
-            let then = "the budget or the time was used up; a larger --budget or --time-limit may decide";
+            let then =
+                "the budget or the time was used up (or the cap that holds without them); more may decide";
             line("then", then.to_owned());
             "UNDECIDED".to_owned()
         }
         TimeOfContact::Contact(contact) => {
-            contact_lines(&mut line, contact, window.start());
+            contact_lines(&mut line, contact, pair, window.start());
             format!("CONTACT at t = {}", short(contact.time_lo))
         }
     };
@@ -121,10 +122,30 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
     format!("{headline}\n{text}")
 }
 
-fn contact_lines(line: &mut dyn FnMut(&str, String), contact: &Contact, window_start: f64) {
+/// What is proven of the meeting itself.
+fn evidence_sentence(contact: &Contact, min_separation: f64) -> String {
+    let distance = short(min_separation);
+    match contact.evidence {
+        Evidence::Crossing => "crossing: the bodies share a point at one of these times".to_owned(),
+        Evidence::Near if min_separation > 0.0 => {
+            format!("near: at one of these times the distance is at most {distance} + tolerance")
+        }
+        Evidence::Near => "near: at one of these times the distance is at most the tolerance".to_owned(),
+        _ => "early: only that nothing meets before is proven; there may be no contact at all".to_owned(),
+    }
+}
+
+fn contact_lines(line: &mut dyn FnMut(&str, String), contact: &Contact, pair: &Pair, window_start: f64) {
     let width = contact.time_hi - contact.time_lo;
     line("time", format!("[{}, {}]  width {width:.2e}", short(contact.time_lo), short(contact.time_hi)));
     match contact.start {
+        StartState::Apart if pair.min_separation > 0.0 => {
+            let distance = short(pair.min_separation);
+            line(
+                "certified",
+                format!("further apart than {distance} before and at the first of these times"),
+            );
+        }
         StartState::Apart => {
             line("certified", "no contact before; disjoint at the first of these times".to_owned());
         }
@@ -134,10 +155,18 @@ fn contact_lines(line: &mut dyn FnMut(&str, String), contact: &Contact, window_s
         }
         start => line("certified", format!("in contact from the start of the window: {}", start_word(start))),
     }
+    line("evidence", evidence_sentence(contact, pair.min_separation));
     // Bodies that overlap from the start have no separation, no normal and no closing speed.
     let apart = matches!(contact.start, StartState::Apart | StartState::Touching);
     if apart {
-        let left = format!("{:.4e} left then, tolerance {:.2e}", contact.separation, contact.tolerance);
+        let raised = match pair.tolerance {
+            Some(asked) if contact.tolerance > asked => {
+                format!(" (raised from {asked:.2e}: the rounding of these lengths and times allows no less)")
+            }
+            _ => String::new(),
+        };
+        let left =
+            format!("{:.4e} left then, tolerance {:.2e}{raised}", contact.separation, contact.tolerance);
         line("separation", left);
         line("normal", format!("{} from A to B", vector(contact.normal)));
     }
@@ -172,44 +201,42 @@ pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer) -> String {
     let mut put = |key: &str, value: Value| {
         object[key] = value;
     };
+    // The fields of the API under their own names, and the bracket and the feature as in result files.
+    if let Ok(Value::Object(fields)) = serde_json::to_value(answer.verdict) {
+        for (key, value) in fields {
+            put(&key, value);
+        }
+    }
     match &answer.verdict {
         TimeOfContact::Separated => {}
-        TimeOfContact::Undecided { clear_until } => put("clear_until", json!(clear_until)),
+        TimeOfContact::Undecided { clear_until } => put("toc", json!(clear_until)),
         TimeOfContact::Contact(contact) => {
+            put("toc", json!(contact.time_lo));
+            put("toc_hi", json!(contact.time_hi));
             put("time", json!([contact.time_lo, contact.time_hi]));
-            put("separation", json!(contact.separation));
-            put("tolerance", json!(contact.tolerance));
-            put("start", json!(start_word(contact.start)));
-            put("normal", json!(contact.normal.to_array()));
-            put("point_a", json!(contact.point_a.to_array()));
-            put("point_b", json!(contact.point_b.to_array()));
+            put("point", json!(contact.point_a.to_array()));
             put("feature", json!(feature_field(contact.feature)));
-            put("triangle_a", json!(contact.triangle_a));
-            put("triangle_b", json!(contact.triangle_b));
-            put("barycentric_a", json!(contact.barycentric_a));
-            put("barycentric_b", json!(contact.barycentric_b));
-            put("closing_speed", json!(contact.closing_speed));
         }
     }
     format!("{object}\n")
 }
 
 /// The header of a result CSV.
-pub(crate) const CSV_HEADER: &str = "trial,status,toc,toc_hi,separation,microseconds,normal_x,normal_y,normal_z,point_x,point_y,point_z,feature,triangle_a,triangle_b\n";
+pub(crate) const CSV_HEADER: &str = "trial,status,toc,toc_hi,separation,microseconds,normal_x,normal_y,normal_z,point_x,point_y,point_z,feature,triangle_a,triangle_b,evidence,tolerance\n";
 
 /// One line of a result CSV: numbers with 17 digits; what a verdict does not have is empty.
 pub(crate) fn csv_line(trial: usize, answer: &Answer) -> String {
     let microseconds = microseconds(answer.took);
     let status = status(&answer.verdict);
     match &answer.verdict {
-        TimeOfContact::Separated => format!("{trial},{status},inf,inf,,{microseconds:.3},,,,,,,,,\n"),
+        TimeOfContact::Separated => format!("{trial},{status},inf,inf,,{microseconds:.3},,,,,,,,,,,\n"),
         TimeOfContact::Undecided { clear_until } => {
-            format!("{trial},{status},{clear_until:.16e},inf,,{microseconds:.3},,,,,,,,,\n")
+            format!("{trial},{status},{clear_until:.16e},inf,,{microseconds:.3},,,,,,,,,,,\n")
         }
         TimeOfContact::Contact(contact) => {
             let three = |v: DVec3| format!("{:.16e},{:.16e},{:.16e}", v.x, v.y, v.z);
             format!(
-                "{trial},{status},{:.16e},{:.16e},{:.16e},{microseconds:.3},{},{},{},{},{}\n",
+                "{trial},{status},{:.16e},{:.16e},{:.16e},{microseconds:.3},{},{},{},{},{},{},{:.16e}\n",
                 contact.time_lo,
                 contact.time_hi,
                 contact.separation,
@@ -218,6 +245,8 @@ pub(crate) fn csv_line(trial: usize, answer: &Answer) -> String {
                 feature_field(contact.feature),
                 contact.triangle_a,
                 contact.triangle_b,
+                contact.evidence,
+                contact.tolerance,
             )
         }
     }

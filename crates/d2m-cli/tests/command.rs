@@ -74,7 +74,7 @@ const TRIALS: &str = "\
 1,0,0,0,0.5,0,0,0,0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0
 ";
 const UNIT_BOX: &str = "shape:box?x=1&y=1&z=1";
-const HEADER: &str = "trial,status,toc,toc_hi,separation,microseconds,normal_x,normal_y,normal_z,point_x,point_y,point_z,feature,triangle_a,triangle_b";
+const HEADER: &str = "trial,status,toc,toc_hi,separation,microseconds,normal_x,normal_y,normal_z,point_x,point_y,point_z,feature,triangle_a,triangle_b,evidence,tolerance";
 
 #[test]
 fn batch_writes_the_documented_csv() {
@@ -108,7 +108,7 @@ fn batch_writes_the_documented_csv() {
         assert_eq!(lines[0], HEADER);
         assert_eq!(lines.len(), 5);
         let fields = |line: usize| lines[line].split(',').collect::<Vec<_>>();
-        assert!((1..5).all(|line| fields(line).len() == 15), "{text}");
+        assert!((1..5).all(|line| fields(line).len() == 17), "{text}");
         let number = |line: usize, field: usize| fields(line)[field].parse::<f64>().unwrap();
         assert_eq!(fields(1)[..2], ["0", "contact"]);
         assert!(number(1, 2) <= 0.25 && number(1, 2) <= number(1, 3), "{text}");

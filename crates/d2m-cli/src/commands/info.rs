@@ -21,13 +21,13 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
         None => None,
     };
     let body = load(source)?;
-    let validation = Validation::new(&body.mesh);
+    let validation = Validation::new(body.mesh());
     if let Some(export) = export {
         let mut text = format!("# {source}\n");
-        for vertex in body.mesh.vertices() {
+        for vertex in body.mesh().vertices() {
             let _ = writeln!(text, "v {} {} {}", vertex.x, vertex.y, vertex.z);
         }
-        for corners in body.mesh.triangles() {
+        for corners in body.mesh().triangles() {
             let [a, b, c] = corners.map(|vertex| u64::from(vertex) + 1);
             let _ = writeln!(text, "f {a} {b} {c}");
         }
@@ -37,14 +37,14 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
 }
 
 fn mesh_text(body: &Loaded, validation: &Validation) -> String {
-    let sphere = EnclosingSphere::of_mesh(&body.mesh);
+    let sphere = EnclosingSphere::of_mesh(body.mesh());
     let mut text = format!("{}\n", body.name);
     let mut line = |label: &str, value: String| {
         let _ = writeln!(text, "  {label:<12}{value}"); // writing to a string cannot fail
     };
     let [low, high] = [validation.bounds_low, validation.bounds_high];
-    line("vertices", body.mesh.vertex_count().to_string());
-    line("triangles", body.mesh.triangle_count().to_string());
+    line("vertices", body.mesh().vertex_count().to_string());
+    line("triangles", body.mesh().triangle_count().to_string());
     line(
         "surface",
         match (validation.watertight, validation.consistently_oriented) {
@@ -99,11 +99,11 @@ fn size(number: f64) -> String {
 }
 
 fn mesh_json(body: &Loaded, validation: &Validation) -> String {
-    let sphere = EnclosingSphere::of_mesh(&body.mesh);
+    let sphere = EnclosingSphere::of_mesh(body.mesh());
     let object = json!({
         "name": body.name,
-        "vertices": body.mesh.vertex_count(),
-        "triangles": body.mesh.triangle_count(),
+        "vertices": body.mesh().vertex_count(),
+        "triangles": body.mesh().triangle_count(),
         "enclosing_sphere": { "center": sphere.center.to_array(), "radius": sphere.radius },
         "precision": match body.precision {
             Precision::Double => "double",

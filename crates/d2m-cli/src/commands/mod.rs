@@ -1,7 +1,10 @@
 //! One module for each command.
 
 pub(crate) mod batch;
+pub(crate) mod collide;
 pub(crate) mod demo;
+pub(crate) mod distance;
 pub(crate) mod features;
 pub(crate) mod info;
 pub(crate) mod toc;
+pub(crate) mod tree;

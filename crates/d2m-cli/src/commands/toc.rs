@@ -5,6 +5,7 @@ use crate::engine::{Pair, check_size};
 use crate::failure::Failure;
 use crate::load::load;
 use crate::motion::{parse_motion, parse_window, require_window};
+use crate::outcome::Outcome;
 use crate::output::{Output, print};
 use crate::report;
 use d2m::bvh::{TimeOfContact, TriMesh};
@@ -13,7 +14,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 /// Runs the command.
-pub(crate) fn run(arguments: &TocArguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
     let window = parse_window(&arguments.window)?;
     let motion_a = parse_motion("--motion-a", &arguments.motion_a)?;
     let motion_b = parse_motion("--motion-b", &arguments.motion_b)?;
@@ -48,7 +49,8 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<(), Failure> {
         report::json(&pair, window, &answer)
     } else {
         report::text(&pair, window, &answer)
-    })
+    })?;
+    Ok(Outcome::from(&answer.verdict).asked(arguments.exit_status))
 }
 
 /// Appends the posed mesh and returns its number of vertices.

@@ -1,4 +1,4 @@
-//! Meshes from files and from built-in shapes.
+//! Meshes from files, from saved trees and from built-in shapes.
 
 mod bytes;
 mod obj;
@@ -10,7 +10,8 @@ pub(crate) use bytes::read;
 pub(crate) use polygon::PolygonCounts;
 
 use crate::failure::Failure;
-use d2m::bvh::{MAX_COORDINATE, MeshError, TriMesh};
+use crate::output::progress_bar;
+use d2m::bvh::{MAX_COORDINATE, MeshError, MeshTree, TriMesh};
 use d2m::shapes;
 use std::path::Path;
 
@@ -18,9 +19,53 @@ use std::path::Path;
 #[derive(Debug)]
 pub(crate) struct Loaded {
     pub(crate) name: String,
-    pub(crate) mesh: TriMesh,
     pub(crate) polygons: PolygonCounts,
     pub(crate) precision: Precision,
+    geometry: Geometry,
+}
+
+/// What an argument names.
+#[derive(Debug)]
+enum Geometry {
+    Mesh(TriMesh),
+    Tree(Box<MeshTree>),
+}
+
+impl Loaded {
+    fn exact(name: String, geometry: Geometry) -> Self {
+        Self { name, polygons: PolygonCounts::default(), precision: Precision::Double, geometry }
+    }
+
+    /// The mesh, as it is numbered in its file.
+    pub(crate) fn mesh(&self) -> &TriMesh {
+        match &self.geometry {
+            Geometry::Mesh(mesh) => mesh,
+            Geometry::Tree(tree) => tree.mesh(),
+        }
+    }
+
+    /// The mesh alone.
+    pub(crate) fn into_mesh(self) -> TriMesh {
+        match self.geometry {
+            Geometry::Mesh(mesh) => mesh,
+            Geometry::Tree(tree) => tree.into_mesh(),
+        }
+    }
+
+    /// The mesh with its tree, built if the file holds none. What takes a second or more shows how far it is.
+    pub(crate) fn into_tree(self) -> MeshTree {
+        const LARGE: usize = 500_000;
+        match self.geometry {
+            Geometry::Tree(tree) => *tree,
+            Geometry::Mesh(mesh) if mesh.triangle_count() < LARGE => MeshTree::new(mesh),
+            Geometry::Mesh(mesh) => {
+                let bar = progress_bar(mesh.triangle_count(), "triangles in the tree");
+                let tree = MeshTree::with_progress(mesh, &|done, _| bar.set_position(done as u64));
+                bar.finish_and_clear();
+                tree
+            }
+        }
+    }
 }
 
 /// What a file holds.
@@ -45,7 +90,7 @@ pub(crate) fn load(source: &str) -> Result<Loaded, Failure> {
     let name = source.to_owned();
     if let Some(text) = source.strip_prefix("shape:") {
         let mesh = shapes::mesh(text).map_err(|error| Failure::Input(error.to_string()))?;
-        return Ok(Loaded { name, mesh, polygons: PolygonCounts::default(), precision: Precision::Double });
+        return Ok(Loaded::exact(name, Geometry::Mesh(mesh)));
     }
     let path = Path::new(source);
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
@@ -53,8 +98,13 @@ pub(crate) fn load(source: &str) -> Result<Loaded, Failure> {
         "obj" => obj::parse,
         "stl" => stl::parse,
         "ply" => ply::parse,
+        "d2mtree" => {
+            let tree = MeshTree::try_from_bytes(&read(path)?).map_err(|error| Failure::at(source, error))?;
+            return Ok(Loaded::exact(name, Geometry::Tree(Box::new(tree))));
+        }
         _ => {
-            return Err(Failure::at(source, "unknown kind of mesh: expected .obj, .stl, .ply or shape:NAME"));
+            let expected = "expected .obj, .stl, .ply, .d2mtree or shape:NAME";
+            return Err(Failure::at(source, format!("unknown kind of mesh: {expected}")));
         }
     };
     let bytes = read(path)?;
@@ -62,7 +112,7 @@ pub(crate) fn load(source: &str) -> Result<Loaded, Failure> {
         Some(line) => Failure::Input(format!("{source}, line {line}: {}", error.reason)),
         None => Failure::at(source, error.reason),
     })?;
-    Ok(Loaded { name, mesh, polygons, precision })
+    Ok(Loaded { name, polygons, precision, geometry: Geometry::Mesh(mesh) })
 }
 
 /// Why a file holds no usable mesh.

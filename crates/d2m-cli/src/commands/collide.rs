@@ -1,0 +1,61 @@
+//! `d2m collide`: do two bodies at rest share a point?
+
+use super::distance::solid_word;
+use crate::arguments::CollideArguments;
+use crate::failure::Failure;
+use crate::outcome::Outcome;
+use crate::output::print;
+use crate::posed::PosedPair;
+use crate::report::{duration, microseconds};
+use d2m::bvh::{Solid, collide, try_colliding_pair};
+use serde_json::json;
+use std::fmt::Write;
+use std::time::Instant;
+
+/// Runs the command.
+pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
+    let pair = PosedPair::new(&arguments.posed)?;
+    let [a, b] = &pair.bodies;
+    let start = Instant::now();
+    let is_contact = collide(a.posed(), b.posed(), pair.solid).map_err(|error| pair.failure(error))?;
+    let took = start.elapsed();
+    let triangles = if is_contact {
+        try_colliding_pair(a.posed(), b.posed()).map_err(|error| pair.failure(error))?
+    } else {
+        None
+    };
+    print(&if arguments.posed.json {
+        let object = json!({
+            "status": if is_contact { "contact" } else { "separated" },
+            "triangle_a": triangles.map(|[a, _]| a),
+            "triangle_b": triangles.map(|[_, b]| b),
+            "contained": is_contact && triangles.is_none(),
+            "solid": pair.solid == Solid::Filled,
+            "triangles": pair.bodies.each_ref().map(|body| body.tree.mesh().triangle_count()),
+            "microseconds": microseconds(took),
+        });
+        format!("{object}\n")
+    } else {
+        let mut text = if is_contact { "CONTACT\n" } else { "SEPARATED\n" }.to_owned();
+        let mut line = |label: &str, value: String| {
+            let _ = writeln!(text, "  {label:<12}{value}"); // writing to a string cannot fail
+        };
+        match (is_contact, triangles) {
+            (false, _) => line("certified", "no point in common".to_owned()),
+            (true, Some([a, b])) => {
+                line("triangles", format!("{a} of A and {b} of B are not proven apart"));
+            }
+            (true, None) => {
+                line("contained", "the surfaces are apart and one body is inside the other".to_owned())
+            }
+        }
+        for (label, body) in ["A", "B"].into_iter().zip(&pair.bodies) {
+            line(label, format!("{} · {} triangles", body.name, body.tree.mesh().triangle_count()));
+        }
+        line("asked", solid_word(pair.solid).to_owned());
+        line("took", duration(took));
+        text
+    })?;
+    let outcome = if is_contact { Outcome::Contact } else { Outcome::Separated };
+    Ok(outcome.asked(arguments.posed.exit_status))
+}

@@ -1,0 +1,78 @@
+//! `d2m distance`: how far apart are two bodies at rest?
+
+use crate::arguments::DistanceArguments;
+use crate::failure::Failure;
+use crate::outcome::Outcome;
+use crate::output::print;
+use crate::posed::PosedPair;
+use crate::report::{duration, microseconds, short, start_word, vector};
+use d2m::bvh::{Distance, Solid, StartState, distance};
+use serde_json::json;
+use std::fmt::Write;
+use std::time::{Duration, Instant};
+
+/// Runs the command.
+pub(crate) fn run(arguments: &DistanceArguments) -> Result<Outcome, Failure> {
+    let pair = PosedPair::new(&arguments.posed)?;
+    let [a, b] = &pair.bodies;
+    let start = Instant::now();
+    let found = distance(a.posed(), b.posed(), pair.solid);
+    let took = start.elapsed();
+    let found = found.map_err(|error| pair.failure(error))?;
+    print(&if arguments.posed.json { to_json(&pair, &found, took) } else { to_text(&pair, &found, took) })?;
+    let outcome = if found.state == StartState::Apart { Outcome::Separated } else { Outcome::Contact };
+    Ok(outcome.asked(arguments.posed.exit_status))
+}
+
+fn to_text(pair: &PosedPair, found: &Distance, took: Duration) -> String {
+    let mut text = match found.state {
+        StartState::Apart => format!("DISTANCE {}\n", short(found.value)),
+        state => format!("DISTANCE 0: {}\n", start_word(state)),
+    };
+    let mut line = |label: &str, value: String| {
+        let _ = writeln!(text, "  {label:<12}{value}"); // writing to a string cannot fail
+    };
+    let surfaces = if found.state == StartState::Contained { " (of the surfaces)" } else { "" };
+    line("certified", format!("[{}, {}]{surfaces}", short(found.lower), short(found.upper)));
+    line("point on A", format!("{} · triangle {}", vector(found.point_a), found.triangle_a));
+    line("point on B", format!("{} · triangle {}", vector(found.point_b), found.triangle_b));
+    if found.state == StartState::Apart {
+        line("normal", format!("{} from A to B", vector(found.normal)));
+    }
+    for (label, body) in ["A", "B"].into_iter().zip(&pair.bodies) {
+        line(label, format!("{} · {} triangles", body.name, body.tree.mesh().triangle_count()));
+    }
+    line("asked", solid_word(pair.solid).to_owned());
+    line("took", duration(took));
+    text
+}
+
+/// What counts as a body, for a person.
+pub(super) fn solid_word(solid: Solid) -> &'static str {
+    match solid {
+        Solid::Filled => "filled solids",
+        Solid::Surface => "surfaces only",
+    }
+}
+
+fn to_json(pair: &PosedPair, found: &Distance, took: Duration) -> String {
+    let status = if found.state == StartState::Apart { "separated" } else { "contact" };
+    let object = json!({
+        "status": status,
+        "state": start_word(found.state),
+        "distance": found.value,
+        "lower": found.lower,
+        "upper": found.upper,
+        "normal": found.normal.to_array(),
+        "point_a": found.point_a.to_array(),
+        "point_b": found.point_b.to_array(),
+        "triangle_a": found.triangle_a,
+        "triangle_b": found.triangle_b,
+        "barycentric_a": found.barycentric_a,
+        "barycentric_b": found.barycentric_b,
+        "solid": pair.solid == Solid::Filled,
+        "triangles": pair.bodies.each_ref().map(|body| body.tree.mesh().triangle_count()),
+        "microseconds": microseconds(took),
+    });
+    format!("{object}\n")
+}

@@ -1,0 +1,46 @@
+//! What a command answered, for scripts that ask for it with `--exit-status`.
+
+use d2m::bvh::TimeOfContact;
+
+/// Ends a command that did its work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// Answered; what the answer is was not asked of the exit code.
+    Answered,
+    Contact,
+    Separated,
+    Undecided,
+}
+
+impl Outcome {
+    /// The answer itself if the user asked for it.
+    pub(crate) fn asked(self, exit_status: bool) -> Self {
+        if exit_status { self } else { Self::Answered }
+    }
+
+    /// The exit code. Clear of those of bad usage (2) and bad input (3), and of those that shells use (126 and more).
+    pub(crate) const fn code(self) -> u8 {
+        match self {
+            Self::Answered => 0,
+            Self::Contact => 10,
+            Self::Separated => 11,
+            Self::Undecided => 12,
+        }
+    }
+}
+
+impl From<()> for Outcome {
+    fn from((): ()) -> Self {
+        Self::Answered
+    }
+}
+
+impl From<&TimeOfContact> for Outcome {
+    fn from(verdict: &TimeOfContact) -> Self {
+        match verdict {
+            TimeOfContact::Contact(_) => Self::Contact,
+            TimeOfContact::Separated => Self::Separated,
+            TimeOfContact::Undecided { .. } => Self::Undecided,
+        }
+    }
+}

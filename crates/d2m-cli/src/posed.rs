@@ -1,0 +1,84 @@
+//! Two bodies at rest, as `d2m distance` and `d2m collide` take them.
+
+use crate::arguments::PosedArguments;
+use crate::engine::choose_solid;
+use crate::failure::Failure;
+use crate::load::{load, read};
+use d2m::bvh::{MeshTree, Posed, QueryError, Solid};
+use d2m::motion::{ConstantTwist, Pose};
+use glam::DVec3;
+use std::path::Path;
+
+/// A tree in a pose, with the name that the user gave it.
+pub(crate) struct Body {
+    pub(crate) name: String,
+    pub(crate) tree: MeshTree,
+    pose: Pose,
+}
+
+impl Body {
+    pub(crate) fn posed(&self) -> Posed<'_> {
+        Posed::new(&self.tree, self.pose)
+    }
+}
+
+/// Two bodies and what counts as one.
+pub(crate) struct PosedPair {
+    pub(crate) bodies: [Body; 2],
+    pub(crate) solid: Solid,
+}
+
+impl PosedPair {
+    /// Reads poses, then meshes.
+    pub(crate) fn new(arguments: &PosedArguments) -> Result<Self, Failure> {
+        let poses = [parse_pose("--pose-a", &arguments.pose_a)?, parse_pose("--pose-b", &arguments.pose_b)?];
+        let [a, b] = [load(&arguments.a)?, load(&arguments.b)?];
+        let [pose_a, pose_b] = poses;
+        let bodies = [(a, pose_a), (b, pose_b)].map(|(loaded, pose)| Body {
+            name: loaded.name.clone(),
+            tree: loaded.into_tree(),
+            pose,
+        });
+        let [a, b] = &bodies;
+        let solid = choose_solid(
+            [(&a.name, a.tree.is_watertight()), (&b.name, b.tree.is_watertight())],
+            arguments.solid,
+        )?;
+        Ok(Self { bodies, solid })
+    }
+
+    /// An error of a query, with the option that it comes from.
+    pub(crate) fn failure(&self, error: QueryError) -> Failure {
+        match error {
+            QueryError::BadPose { body } => {
+                let (option, pose) =
+                    [("--pose-a", 0), ("--pose-b", 1)].map(|(o, i)| (o, self.bodies[i].pose))[body.min(1)];
+                let [x, at] = [pose.translation, pose.at].map(|v| format!("{:?}", v.to_array()));
+                Failure::at(option, format!("x = {x}, at = {at}: lengths above 1e100 cannot be used"))
+            }
+            other => Failure::Input(other.to_string()),
+        }
+    }
+}
+
+/// Reads `x=…;q=…[;at=…]` or `@file.json` with these keys.
+fn parse_pose(option: &str, text: &str) -> Result<Pose, Failure> {
+    let (place, motion): (&str, ConstantTwist) = match text.strip_prefix('@') {
+        None => (option, text.parse().map_err(|error| Failure::at(option, error))?),
+        Some("") => return Err(Failure::at(option, "@ needs the name of a file")),
+        Some(file) => {
+            let bytes = read(Path::new(file))?;
+            (file, serde_json::from_slice(&bytes).map_err(|error| Failure::at(file, error))?)
+        }
+    };
+    for (key, velocity) in [("v", motion.linear_velocity()), ("w", motion.angular_velocity())] {
+        if velocity != DVec3::ZERO {
+            let value = velocity.to_array();
+            return Err(Failure::at(
+                place,
+                format!("{key} is {value:?}: a pose has x, q and at, but no velocity"),
+            ));
+        }
+    }
+    Ok(Pose { rotation: motion.orientation(), translation: motion.position(), at: motion.at() })
+}
