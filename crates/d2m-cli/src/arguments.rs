@@ -6,6 +6,9 @@ use std::path::PathBuf;
 /// Certified continuous collision detection: when do two moving rigid bodies first touch?
 #[derive(Debug, Parser)]
 #[command(name = "d2m", version, about, propagate_version = true, arg_required_else_help = true)]
+#[command(
+    after_help = "Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 separated, 12 undecided."
+)]
 pub(crate) struct Arguments {
     /// What to do.
     #[command(subcommand)]
@@ -43,6 +46,19 @@ What is left out is zero (q: unturned). @FILE reads a JSON form: the same keys; 
 {\"times\", \"spans\"} for keyframes; {\"chain\": [{\"x\", \"q\", \"joint\", \"axis\", \"value\"}, ...]} for a link of an arm, with joint
 fixed, revolute or prismatic and value a polynomial [c0, c1, ...] or {\"times\", \"pieces\"}. The window must lie within the times.
 
+The answer is contact, separated or undecided. That nothing meets before the bracket is proven, and so is separated, in
+every mode. What is proven of a contact itself is its evidence:
+  crossing  the bodies share a point at a time of the bracket
+  near      at a time of the bracket their distance is at most --min-separation plus the tolerance
+  early     nothing more; there may be no contact at all. The usual case of --mode capoeira, which stops at the first
+            triangles that come as close as their own size; rare otherwise
+With --min-separation D contact means a distance of at most D: bodies are further apart than D before the bracket. The tolerance is
+raised where the rounding of large lengths or times forbids it, and the answer states the one that was used. A bracket has no width
+where its end could not be shown (early), and where the bodies meet at the start of the window. undecided holds the time until which the
+window is proven free: the budget or the time limit was used up, or, without them, a cap of 2^30 node tests.
+
+Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 separated, 12 undecided.
+
 Example:
   d2m toc shape:gear 'shape:torus-knot?triangles=70000' --motion-a 'x=-2,0,0;v=3,0,0;w=0,0,5' --motion-b 'w=0,1,0'")]
 pub(crate) struct TocArguments {
@@ -77,7 +93,11 @@ pub(crate) struct TocArguments {
 Trials: 26 numbers a line, no header: qA(w,x,y,z), xA, vA, wA, qB(w,x,y,z), xB, vB, wB; time runs over [0, 1]. Or JSON lines
 {\"a\": motion, \"b\": motion, \"window\": [t0, t1]} with motions of any form of d2m toc.
 Results: trial,status,toc,toc_hi,separation,microseconds,normal_x,normal_y,normal_z,point_x,point_y,point_z,feature,
-triangle_a,triangle_b; toc is the certified start of the time bracket (inf: separated); the point lies on A.")]
+triangle_a,triangle_b,evidence,tolerance. toc is the certified start of the time bracket (inf: separated; undecided: the window is
+proven free until then); the point lies on A; evidence is crossing, near or early and tolerance the one that was used, as
+d2m toc --help explains. What an answer does not have is empty.
+
+Exit codes: 0 answered, 2 bad usage, 3 bad input. No results are written unless all trials are answered.")]
 pub(crate) struct BatchArguments {
     #[arg(value_name = "A", help = MESH_HELP)]
     pub(crate) a: String,
@@ -98,19 +118,19 @@ pub(crate) struct BatchArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct QueryArguments {
-    /// Method
+    /// Method; capoeira stops early: what it calls contact may be none
     #[arg(long, value_enum, default_value_t = Method::Accurate)]
     pub(crate) mode: Method,
     /// Distance that counts as contact [default: 1e-10 of the scene's length]
     #[arg(long, value_name = "DELTA", allow_hyphen_values = true)]
     pub(crate) tolerance: Option<String>,
-    /// Most node tests of a query; when they are used up the answer is "undecided"
+    /// Most node tests of a query; when they are used up the answer is "undecided" [default: a cap of 2^30]
     #[arg(long, value_name = "NODES")]
     pub(crate) budget: Option<u64>,
     /// Most seconds of a query; when they are used up the answer is "undecided"
     #[arg(long, value_name = "SECONDS", default_value = "60", allow_hyphen_values = true)]
     pub(crate) time_limit: String,
-    /// Distance at which bodies count as touching
+    /// Distance at which bodies count as in contact; they are proven further apart before
     #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true)]
     pub(crate) min_separation: Option<String>,
     #[command(flatten)]
@@ -224,7 +244,9 @@ A case: {\"id\", \"kind\", \"A\", \"B\", \"motionA\", \"motionB\", \"t0\", \"t1\
   sphere_sphere    A {\"c\": [x,y,z], \"r\": radius}  B {\"c\", \"r\"}
 and motions {\"q\": [w,x,y,z], \"x\": [3], \"v\": [3], \"w\": [3]}; or, for four points that each move straight from t = 0 to 1,
   {\"id\", \"kind\": \"point_triangle_linear\" or \"edge_edge_linear\", \"t0_points\": [4 points], \"t1_points\": [4 points]}.
-A result: {\"id\", \"status\": \"hit\", \"miss\" or \"undecided\", \"t_lo\", \"t_hi\", \"microseconds\"}.")]
+A result: {\"id\", \"status\": \"hit\", \"miss\" or \"undecided\", \"t_lo\", \"t_hi\", \"microseconds\"}.
+
+Exit codes: 0 answered, 2 bad usage, 3 bad input.")]
 pub(crate) struct FeaturesArguments {
     /// Cases, one JSON object a line
     #[arg(value_name = "CASES.jsonl")]
@@ -244,6 +266,7 @@ pub(crate) struct FeaturesArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Exit codes: 0 answered, 2 bad usage, 3 bad input.")]
 pub(crate) struct InfoArguments {
     #[arg(value_name = "A", help = MESH_HELP, required_unless_present = "shapes")]
     pub(crate) mesh: Option<String>,

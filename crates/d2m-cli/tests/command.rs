@@ -1,68 +1,11 @@
 //! The command as scripts see it: formats, exit codes, messages, files that are complete or absent.
 
+mod shell;
+
+use shell::{Folder, d2m, refused, stderr, stdout};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-
-fn d2m(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_d2m")).args(arguments).stdin(Stdio::null()).output().unwrap()
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-/// A folder of its own for each test, removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn path(&self, name: &str) -> String {
-        self.0.join(name).to_str().unwrap().to_owned()
-    }
-
-    fn file(&self, name: &str, contents: &str) -> String {
-        fs::write(self.0.join(name), contents).unwrap();
-        self.path(name)
-    }
-
-    fn names(&self) -> Vec<String> {
-        let mut names: Vec<String> = fs::read_dir(&self.0)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        names.sort();
-        names
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
-/// Exit code 3, nothing on standard output, one line on standard error that holds all the words.
-fn refused(arguments: &[&str], words: &[&str]) {
-    let output = d2m(arguments);
-    let message = stderr(&output);
-    assert_eq!(output.status.code(), Some(3), "{arguments:?}: {message}");
-    assert!(output.stdout.is_empty(), "{arguments:?}: {}", stdout(&output));
-    assert_eq!(message.lines().count(), 1, "{arguments:?}: {message}");
-    for word in words {
-        assert!(message.contains(word), "{arguments:?}: {message:?} lacks {word:?}");
-    }
-}
+use std::path::Path;
+use std::process::{Command, Stdio};
 
 const BOX_AT: &str = "x=-3,0,0;v=4,0,0";
 /// Two boxes of half size 1 that meet at t = 1/4; then the same pair standing still; then one that turns away.
@@ -257,7 +200,7 @@ fn motions_from_files() {
     assert!(text.starts_with("SEPARATED"), "{text}");
     refused(
         &["toc", UNIT_BOX, UNIT_BOX, "--motion-a", &motion, "--window", "0,3"],
-        &["--motion-a", "do not cover", "3"],
+        &["--motion-a", "covers the times from 0.0 to 2.0", "3"],
     );
     let broken = folder.file("broken.json", "{\"x\": [1, 2");
     refused(&["toc", UNIT_BOX, UNIT_BOX, "--motion-a", &format!("@{broken}")], &["broken.json", "line 1"]);
@@ -288,7 +231,7 @@ fn bad_input_is_named_and_leaves_nothing() {
     }
     refused(&["info", &folder.path("absent.obj")], &["absent.obj"]);
     refused(&["info", &folder.path(".obj")], &[".obj"]);
-    fs::create_dir(folder.0.join("folder.obj")).unwrap();
+    fs::create_dir(Path::new(&folder.path("")).join("folder.obj")).unwrap();
     refused(&["info", &folder.path("folder.obj")], &["folder.obj", "folder"]);
     refused(&["info", "shape:sfere"], &["sfere", "icosphere"]);
     refused(&["info", "shape:torus?triangles=many"], &["torus", "many"]);

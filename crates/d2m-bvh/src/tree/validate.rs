@@ -102,7 +102,7 @@ impl MeshTree {
                 }
             }
         }
-        // Every node hangs below exactly one box; that there is no ring is seen when climbing from the triangles.
+        // Every node hangs below exactly one box; that there is no ring is seen when walking down from the root.
         match (is_linked.iter().position(|&is| !is), is_held.iter().position(|&is| !is)) {
             (Some(node), _) => Err(TreeError::Link { node }),
             (_, Some(triangle)) => Err(TreeError::Triangle { triangle }),
@@ -110,35 +110,103 @@ impl MeshTree {
         }
     }
 
-    /// Climbs from each triangle to the root. Nodes in a ring would have no triangles below; they are counted.
+    /// Each box against the triangles below it.
     fn check_enclosures(&self, extent: &Extent) -> Result<(), TreeError> {
         let surface = Surface::new(&self.mesh, extent);
-        let mut is_climbed = vec![false; self.nodes.len()];
-        for (index, leaf) in self.nodes.iter().enumerate() {
-            for lane in 0..leaf.used as usize {
-                let Below::Triangle(triangle) = leaf.below(lane) else { continue };
-                let corners = surface.corners(triangle);
-                let (mut node, mut lane) = (index, lane);
-                for depth in 0.. {
-                    if !encloses(&self.nodes[node], lane, &corners) {
-                        return Err(TreeError::Enclosure { node, lane, triangle: triangle as usize });
+        let below = self.triangles_below()?;
+        let check = |(index, node): (usize, &WideNode)| {
+            for lane in 0..node.used as usize {
+                check_box(index, node, lane, below.of(index, lane), &surface)?;
+            }
+            Ok(())
+        };
+        #[cfg(feature = "rayon")]
+        {
+            use rayon::prelude::*;
+            // The first of all faults, whatever the number of threads.
+            let fault = self.nodes.par_iter().enumerate().find_map_first(|item| check(item).err());
+            fault.map_or(Ok(()), Err)
+        }
+        #[cfg(not(feature = "rayon"))]
+        self.nodes.iter().enumerate().try_for_each(check)
+    }
+
+    /// Walks down from the root. Nodes in a ring hang below no root: they are not met.
+    fn triangles_below(&self) -> Result<TrianglesBelow, TreeError> {
+        let mut triangles = Vec::with_capacity(self.mesh.triangle_count());
+        let mut first = vec![0; self.nodes.len()];
+        let mut ends = vec![[0; WIDTH]; self.nodes.len()];
+        let mut is_met = vec![false; self.nodes.len()];
+        is_met[0] = true;
+        // The nodes from the root to here, each with the next lane.
+        let mut path = vec![(0, 0)];
+        while let Some((index, lane)) = path.last_mut() {
+            let (node, index, current) = (&self.nodes[*index], *index, *lane);
+            if current > 0 {
+                ends[index][current - 1] = triangles.len() as u32;
+            }
+            if current >= node.used as usize {
+                path.pop();
+                continue;
+            }
+            *lane += 1;
+            match node.below(current) {
+                Below::Triangle(triangle) => triangles.push(triangle),
+                Below::Node(child) => {
+                    let child = child as usize;
+                    if path.len() > DEEPEST {
+                        return Err(TreeError::Link { node: child });
                     }
-                    is_climbed[node] = true;
-                    if node == 0 {
-                        break;
-                    }
-                    if depth > DEEPEST {
-                        return Err(TreeError::Link { node });
-                    }
-                    let parent = self.nodes[node].parent as usize;
-                    (node, lane) = (parent / WIDTH, parent % WIDTH);
+                    first[child] = triangles.len() as u32;
+                    is_met[child] = true;
+                    path.push((child, 0));
                 }
             }
         }
-        match is_climbed.iter().position(|&is| !is) {
+        match is_met.iter().position(|&is| !is) {
             Some(node) => Err(TreeError::Link { node }),
-            None => Ok(()),
+            None => Ok(TrianglesBelow { triangles, first, ends }),
         }
+    }
+}
+
+/// The triangles below each box: a part of one list, in the order of the tree.
+struct TrianglesBelow {
+    triangles: Vec<u32>,
+    /// Where the part of the first box of each node begins.
+    first: Vec<u32>,
+    /// Where the part of each box ends, and that of the next one begins.
+    ends: Vec<[u32; WIDTH]>,
+}
+
+impl TrianglesBelow {
+    fn of(&self, node: usize, lane: usize) -> &[u32] {
+        let start = if lane == 0 { self.first[node] } else { self.ends[node][lane - 1] };
+        &self.triangles[start as usize..self.ends[node][lane] as usize]
+    }
+}
+
+/// All triangles at once, and only where that is no proof one by one: what is proven of all points is proven of each.
+fn check_box(
+    index: usize,
+    node: &WideNode,
+    lane: usize,
+    triangles: &[u32],
+    surface: &Surface<'_>,
+) -> Result<(), TreeError> {
+    let boxed = node.oriented_box(lane);
+    let mut reach = Reach::new(node.origin, boxed.center, &boxed.axes, boxed.half_extent.map(f64::from));
+    for &triangle in triangles {
+        for corner in &surface.corners(triangle) {
+            reach.add(corner);
+        }
+    }
+    if reach.is_within(&boxed) {
+        return Ok(());
+    }
+    match triangles.iter().find(|&&triangle| !encloses(node, lane, &surface.corners(triangle))) {
+        None => Ok(()),
+        Some(&triangle) => Err(TreeError::Enclosure { node: index, lane, triangle: triangle as usize }),
     }
 }
 
