@@ -121,8 +121,7 @@ fn extreme_speeds_spins_offsets_and_scales() {
     }
 }
 
-/// The same scene in any unit of length: never late, never missed; and the same time wherever squares of products of
-/// edges neither overflow nor underflow.
+/// The same scene in any unit of length: never late, never missed, and the same time.
 #[test]
 fn any_unit_of_length() {
     let mut random = Random(77);
@@ -141,7 +140,7 @@ fn any_unit_of_length() {
         for power in [-305, -200, -165, -155, -150, -120, -100, -90, -80, -75, -60, -50, -40, -20, 20, 40, 59]
         {
             let answer = ask(10f64.powi(power));
-            let exact = (-20..=20).contains(&power);
+            let exact = power >= -300;
             match (&right, answer) {
                 (TimeOfContact::Contact(c), Ok(TimeOfContact::Contact(d))) => {
                     assert!(d.time_lo < c.time_lo + 1e-9, "round {round}, 1e{power}: {right:?} {d:?}");

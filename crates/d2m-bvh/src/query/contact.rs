@@ -6,7 +6,8 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 pub enum StartState {
-    /// Disjoint, and further apart than `min_separation` + `tolerance`.
+    /// Disjoint, and further apart than `min_separation`. `time_lo` is the start of the window all the same where the
+    /// bodies meet before the next number for a time.
     #[default]
     Apart,
     /// Within `separation` of each other, which is at most 3.3 tolerances above `min_separation`; disjoint or just
@@ -44,11 +45,12 @@ pub struct Contact {
     pub time_hi: f64,
     /// What is proven of the meeting.
     pub evidence: Evidence,
-    /// Separation left at `time_lo`: a distance above `min_separation` by at most 3.3 `tolerance`, 0 when the surfaces cross
-    /// at the start. With [`Mode::Capoeira`](crate::Mode::Capoeira) as large as the boxes of the two triangles.
+    /// Separation left at `time_lo`: a distance above `min_separation` by at most 3.3 `tolerance`, 0 when the surfaces
+    /// cross at the start. With [`Mode::Capoeira`](crate::Mode::Capoeira) as large as the boxes of the two triangles.
     pub separation: f64,
-    /// The tolerance δ that was used: the one asked for unless rounding errors of the scene forbid it (then larger: 256
-    /// units of 2⁻⁵³ of its largest length); at least 1e-100. Every promise holds for this δ.
+    /// The tolerance δ that was used: the one asked for, unless rounding errors of the scene forbid it (then larger: 256
+    /// units of 2⁻⁵³ of its largest length), or numbers for time are so far apart that the bodies move by more than that
+    /// from one to the next (then what is left at `time_lo`). Every promise holds for this δ.
     pub tolerance: f64,
     /// Unit normal at `time_lo`, world frame, from A to B.
     pub normal: DVec3,

@@ -6,7 +6,7 @@
 //! is largest at an end; ‖ΔR‖ at time τ is at most its value at the start plus |Δω|τ. So is the difference of any two
 //! distances. See docs/theory/engine.md, "What one query proves for the next".
 
-use crate::search::{Columns, Scene, relative_position, rotation_at};
+use crate::search::{Columns, Scene, Units, given_relative_position};
 use crate::tree::Stamp;
 use glam::DVec3;
 
@@ -18,6 +18,8 @@ const COURSE_ERROR: f64 = 1e-12;
 pub(super) struct Course {
     /// Which trees.
     stamps: [Stamp; 2],
+    /// What times and lengths are told in.
+    units: Units,
     /// Length of the window.
     length: f64,
     /// Followed point of A from that of B at the start, and its velocity.
@@ -25,8 +27,8 @@ pub(super) struct Course {
     velocity: DVec3,
     rotations: [Columns; 2],
     omegas: [DVec3; 2],
-    /// Followed points, body frames.
-    at: [DVec3; 2],
+    /// From the followed points to the centres of the trees, body frames.
+    arms: [DVec3; 2],
     /// Bounds on the distances of the bodies' points from them.
     reach: [f64; 2],
     /// Bound on the speed at which any two points come closer.
@@ -36,46 +38,52 @@ pub(super) struct Course {
 
 impl Course {
     pub(super) fn of(scene: &Scene<'_>) -> Self {
-        let (a, b, start) = (&scene.a, &scene.b, scene.window.start());
-        let velocity = a.1.linear_velocity() - b.1.linear_velocity();
+        let (a, b) = (&scene.a, &scene.b);
+        let velocity = a.motion.linear_velocity() - b.motion.linear_velocity();
         Self {
-            stamps: [a, b].map(|(tree, _)| tree.stamp),
-            length: scene.window.length(),
-            apart: relative_position(&a.1, &b.1, start),
+            stamps: [a, b].map(|body| body.tree.stamp),
+            units: scene.units,
+            length: scene.end,
+            apart: given_relative_position(&a.motion, &b.motion, 0.0),
             velocity,
-            rotations: [a, b].map(|(_, motion)| rotation_at(motion, start)),
-            omegas: [a, b].map(|(_, motion)| motion.angular_velocity()),
-            at: [a, b].map(|(_, motion)| motion.at()),
-            reach: [a, b].map(|(tree, motion)| tree.radius() + (tree.center() - motion.at()).length()),
+            rotations: [a, b].map(|body| body.motion.rotation(0.0)),
+            omegas: [a, b].map(|body| body.motion.angular_velocity()),
+            arms: [a, b].map(|body| body.motion.given_arm()),
+            reach: [a, b].map(|body| body.given_reach()),
             speed: velocity.length() + scene.spin_speed,
             size: scene.size,
         }
     }
 
     /// If the bodies are further apart than d at all times of `earlier`, they are further apart than d minus this at
-    /// all times of `self`. `None` for other bodies.
+    /// all times of `self`, in the unit of the meshes. `None` for other bodies.
     pub(super) fn deviation(&self, earlier: &Self) -> Option<f64> {
         if self.stamps != earlier.stamps {
             return None;
         }
-        let common = self.length.min(earlier.length);
-        let shift = self.apart - earlier.apart;
-        let later = shift + (self.velocity - earlier.velocity) * common;
+        // Units are powers of two.
+        let (length, time) =
+            (earlier.units.length() / self.units.length(), earlier.units.time() / self.units.time());
+        let common = self.length.min(earlier.length * time);
+        let shift = self.apart - earlier.apart * length;
+        let later = shift + (self.velocity - earlier.velocity * (length / time)) * common;
         let mut sum = shift.length().max(later.length());
         for k in 0..2 {
             let turned: f64 =
                 (0..3).map(|i| (self.rotations[k][i] - earlier.rotations[k][i]).length_squared()).sum();
-            let turning = (self.omegas[k] - earlier.omegas[k]).length() * common;
-            sum += (turned.sqrt() + turning) * self.reach[k] + (self.at[k] - earlier.at[k]).length();
+            let turning = (self.omegas[k] - earlier.omegas[k] / time).length() * common;
+            let moved = self.arms[k] - earlier.arms[k] * length;
+            sum += (turned.sqrt() + turning) * self.reach[k] + moved.length();
         }
         // A longer window: what is left after the common part.
         sum += self.speed * (self.length - common);
-        Some(sum * (1.0 + COURSE_ERROR) + COURSE_ERROR * (self.size + earlier.size))
+        let sum = sum * (1.0 + COURSE_ERROR) + COURSE_ERROR * (self.size + earlier.size * length);
+        Some(sum * self.units.length())
     }
 
     /// Both reaches: a deviation of that size is no small change.
     pub(super) fn extent(&self) -> f64 {
-        self.reach[0] + self.reach[1]
+        (self.reach[0] + self.reach[1]) * self.units.length()
     }
 }
 

@@ -30,9 +30,9 @@ pub enum QueryError {
         /// 0 for the first body, 1 for the second.
         body: usize,
     },
-    /// The motion is not finite over the window, or leaves the range in which errors can be bounded: the reach of the
-    /// query stays below 1e150, the angle since the reference time below 2⁴⁰ rad. Speeds below 1e-140, whose squares
-    /// underflow, must not turn a body by more than 1e-20 rad or move it by more than 1e-110.
+    /// The motion is not finite over the window, or leaves the range in which errors can be bounded: lengths and the
+    /// reach of the query stay below 2¹⁰⁰⁰, the angle since the reference time below 2⁴⁰ rad. A turn by less than 2⁻⁹⁰⁰ rad
+    /// over the window must not have begun so long ago that it adds up to 2⁻⁶⁴ rad.
     #[error(
         "motion of body {body} is not finite over the window, or turns or goes too far for bounds on its rounding"
     )]

@@ -2,8 +2,8 @@
 
 use super::proven_crossing::proven_crossing;
 use crate::search::{
-    Closest, Doubles, Found, Frame, Lanes, PairScale, Place, Quad, RelativeMotion, Scene, Task, closest,
-    corners, place_a, run,
+    Closest, Doubles, FRAME_REACH, Found, Frame, Lanes, PairScale, Place, Quad, RelativeMotion, Scene, Task,
+    closest, place_a, run,
 };
 use crate::{Contact, Evidence, MeshTree, StartState};
 use d2m_feature::{FeaturePair, triangles_intersect};
@@ -27,21 +27,20 @@ impl Task for Report<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) -> Contact {
         let Self { scene, found, bracket } = self;
-        let time = crate::search::time_from(found.start, found.offset).max(scene.window.start());
+        let [a, b] = [scene.a.corners(found.triangles[0]), scene.b.corners(found.triangles[1])];
         let motion = RelativeMotion::new(scene, found.start);
-        let pair = TrianglePair {
-            motion: &motion,
-            a: corners(scene.a.0, found.triangles[0]),
-            b: corners(scene.b.0, found.triangles[1]),
-        };
-        let (frame, near) = pair.at::<L::Doubles>(time);
-        let start = match (time <= scene.window.start(), found.crossing) {
+        let pair = TrianglePair { motion: &motion, a, b };
+        // What the clock of the caller has no number for is reported at the time before.
+        let time = scene.units.time_down(found.in_query());
+        let offset = scene.units.offset(time);
+        // Frames hold for the window of the search only.
+        let from = offset.max(found.start);
+        let (frame, near) = pair.at::<L::Doubles>(from);
+        let start = match (found.is_at_start(), found.crossing) {
             (false, _) => StartState::Apart,
             (true, false) => StartState::Touching,
             (true, true) => StartState::Overlapping,
         };
-        let separation = if start == StartState::Overlapping { 0.0 } else { near.square.sqrt() };
-        let a = place_a::<L::Doubles>(&frame, &pair.a);
         // Pairs that were followed up to the stopping distance are above the level still.
         let evidence = if start == StartState::Apart && !found.crossing {
             Evidence::Early
@@ -49,28 +48,61 @@ impl Task for Report<'_> {
             pair.evidence::<L::Doubles>(scene, (&frame, &near))
         };
         let meeting = match evidence {
-            Evidence::Early if bracket => pair.reached_by::<L::Doubles>(scene, time, (&frame, &near)),
-            evidence => Meeting { time, evidence },
+            Evidence::Early if bracket => pair.reached_by::<L::Doubles>(scene, from, (&frame, &near)),
+            evidence => Meeting { offset: from, evidence },
         };
-        let witness = Witness { near, a, b: pair.b, triangles: found.triangles, separation, start, meeting };
-        describe(scene, (&motion, &frame), time, &witness)
+        let witness = |near: Closest, frame: &Frame| Witness {
+            separation: if start == StartState::Overlapping { 0.0 } else { near.square.sqrt() },
+            a: place_a::<L::Doubles>(frame, &a),
+            b,
+            near,
+            triangles: found.triangles,
+            start,
+            meeting,
+        };
+        let mut contact = if from == offset {
+            describe(scene, (&motion, &frame), time, &witness(near, &frame))
+        } else {
+            let motion = RelativeMotion::new(scene, offset);
+            let (frame, near) = TrianglePair { motion: &motion, a, b }.at::<L::Doubles>(offset);
+            describe(scene, (&motion, &frame), time, &witness(near, &frame))
+        };
+        if bracket {
+            cover_what_is_left(&mut contact, scene);
+        }
+        contact
+    }
+}
+
+/// What a search leaves at most, in tolerances.
+const MOST_LEFT: f64 = 3.3;
+
+/// Where time cannot tell the tolerance apart, more of it is left: then the tolerance is what is left.
+fn cover_what_is_left(contact: &mut Contact, scene: &Scene<'_>) {
+    let length = scene.units.length();
+    let separation = (scene.pair.level - scene.tolerance) * length;
+    let left = contact.separation - separation;
+    if left > MOST_LEFT * contact.tolerance {
+        // The closest points are on the triangles up to the error.
+        contact.tolerance = left + scene.pair.error * length;
+        contact.evidence = contact.evidence.max(Evidence::Near);
     }
 }
 
 /// Looks at most for the end of a bracket.
 const BRACKET_LOOKS: u32 = 24;
 
-/// What is proven of the meeting of two bodies, and for a time not after which one.
+/// What is proven of the meeting of two bodies, and for a time not after which offset.
 #[derive(Clone, Copy, Debug)]
 struct Meeting {
-    time: f64,
+    offset: f64,
     evidence: Evidence,
 }
 
 /// What the pair of triangles proves about the meeting of the bodies at the start of the window.
 pub(super) fn evidence_at_start(scene: &Scene<'_>, triangles: [u32; 2]) -> Evidence {
-    let motion = RelativeMotion::new(scene, scene.window.start());
-    let [a, b] = [corners(scene.a.0, triangles[0]), corners(scene.b.0, triangles[1])];
+    let motion = RelativeMotion::new(scene, 0.0);
+    let [a, b] = [scene.a.corners(triangles[0]), scene.b.corners(triangles[1])];
     let pair = TrianglePair { motion: &motion, a, b };
     let (frame, near) = pair.at::<Quad>(motion.start);
     pair.evidence::<Quad>(scene, (&frame, &near))
@@ -85,8 +117,8 @@ struct TrianglePair<'r> {
 
 impl TrianglePair<'_> {
     #[inline(always)]
-    fn at<D: Doubles>(&self, time: f64) -> (Frame, Closest) {
-        let frame = self.motion.frame::<D>(time - self.motion.start);
+    fn at<D: Doubles>(&self, offset: f64) -> (Frame, Closest) {
+        let frame = self.motion.frame::<D>(offset - self.motion.start);
         (frame, closest::<D>(&place_a::<D>(&frame, &self.a), &self.b))
     }
 
@@ -107,13 +139,13 @@ impl TrianglePair<'_> {
         if is_near || triangles_intersect(&a, &self.b) { Evidence::Near } else { Evidence::Early }
     }
 
-    /// A time by which the triangles were certainly within the level, or had met; `time_lo` when none is found: Newton's
+    /// An offset by which the triangles were certainly within the level, or had met; `from` when none is found: Newton's
     /// method along the normal, and bisection once the triangles have passed each other.
     #[inline(always)]
     fn reached_by<D: Doubles>(
         &self,
         scene: &Scene<'_>,
-        time_lo: f64,
+        from: f64,
         (frame, near): (&Frame, &Closest),
     ) -> Meeting {
         // The closest points are on the triangles up to the error: a true upper bound of the distance. In the middle
@@ -121,29 +153,29 @@ impl TrianglePair<'_> {
         let level = scene.pair.level - scene.pair.error;
         let target = scene.pair.level - 0.5 * (scene.tolerance + scene.pair.error);
         // Frames hold for a little more than the longest window.
-        let end = scene.window.end().min(self.motion.start + 1.1 * scene.longest);
-        let (mut early, mut late) = (time_lo, None);
+        let end = scene.units.end_down().min(self.motion.start + FRAME_REACH * scene.longest);
+        let (mut early, mut late) = (from, None);
         let (mut distance, mut closing, first_normal) = course(frame, near);
         for _ in 0..BRACKET_LOOKS {
-            let time = match late {
+            let offset = match late {
                 None if closing > 0.0 => {
                     (early + (distance - target) / closing).max(early.next_up()).min(end)
                 }
                 None => break,
                 Some(late) => early + 0.5 * (late - early),
             };
-            if time.is_nan() || time <= early {
+            if offset.is_nan() || offset <= early {
                 break;
             }
-            let (frame, near) = self.at::<D>(time);
+            let (frame, near) = self.at::<D>(offset);
             let (here, speed, normal) = course(&frame, &near);
             if here <= level {
-                return Meeting { time, evidence: Evidence::Near };
+                return Meeting { offset, evidence: Evidence::Near };
             }
             if normal.dot(first_normal) < 0.0 {
-                late = Some(time);
+                late = Some(offset);
             } else {
-                (early, distance, closing) = (time, here, speed);
+                (early, distance, closing) = (offset, here, speed);
             }
         }
         // Passed each other between two times that no time is between, or too fast for the steps.
@@ -151,10 +183,10 @@ impl TrianglePair<'_> {
             let (frame, near) = self.at::<D>(late);
             let evidence = self.evidence::<D>(scene, (&frame, &near));
             if evidence > Evidence::Early {
-                return Meeting { time: late, evidence };
+                return Meeting { offset: late, evidence };
             }
         }
-        Meeting { time: time_lo, evidence: Evidence::Early }
+        Meeting { offset: from, evidence: Evidence::Early }
     }
 }
 
@@ -184,17 +216,20 @@ fn describe(
     let Witness { near, a, b, triangles, separation, start, meeting } = witness;
     let rb = motion.rotation_b(frame.offset);
     let turn = |p: DVec3| rb.times::<Quad>(p).to_vec();
-    let body = &scene.b;
-    let base = body.1.position() + body.1.linear_velocity() * (time - body.1.reference_time());
-    let world = |p: DVec3| base + turn(p + (body.0.center() - body.1.at()));
+    let (length, seconds) = (scene.units.length(), scene.units.time());
+    let base = scene.b.motion.estimate_position(motion.start + frame.offset);
+    let world = |p: DVec3| (base + turn(p + scene.b.motion.arm())) * length;
     let normal = near.direction.normalize_or(DVec3::X);
     let [pa, pb] = near.points;
     Contact {
         time_lo: time,
-        time_hi: meeting.time,
+        time_hi: match meeting.evidence {
+            Evidence::Early => time,
+            _ => scene.units.time_up(meeting.offset).clamp(time, scene.window.end()),
+        },
         evidence: meeting.evidence,
-        separation: *separation,
-        tolerance: scene.tolerance,
+        separation: *separation * length,
+        tolerance: scene.tolerance * length,
         normal: turn(normal),
         point_a: world(pa),
         point_b: world(pb),
@@ -203,7 +238,7 @@ fn describe(
         triangle_b: triangles[1],
         barycentric_a: barycentric(a, pa, near.places[0]),
         barycentric_b: barycentric(b, pb, near.places[1]),
-        closing_speed: frame.closing_speed(near.points, normal),
+        closing_speed: frame.closing_speed(near.points, normal) * length / seconds,
         start: *start,
     }
 }
@@ -217,19 +252,17 @@ pub(super) fn contained(
     start: StartState,
 ) -> Contact {
     let frame = motion.frame::<Quad>(0.0);
-    let (tree_a, tree_b) = (scene.a.0, scene.b.0);
+    let (tree_a, tree_b) = (scene.a.tree, scene.b.tree);
     let holder = |tree: &MeshTree| {
         tree.mesh().triangles().iter().position(|t| t.contains(&vertex)).unwrap_or(0) as u32
     };
     let triangles = if a_is_inside { [holder(tree_a), 0] } else { [0, holder(tree_b)] };
-    let corners =
-        |tree: &MeshTree, triangle: u32| tree.mesh().corners(triangle as usize).map(|p| p - tree.center());
-    let b = corners(tree_b, triangles[1]);
-    let a = place_a::<Quad>(&frame, &corners(tree_a, triangles[0]));
+    let b = scene.b.corners(triangles[1]);
+    let a = place_a::<Quad>(&frame, &scene.a.corners(triangles[0]));
     let near = closest::<Quad>(&a, &b);
     let time = scene.window.start();
     // The surfaces are further apart than the level, so rounding moves no vertex to the other side of one.
-    let meeting = Meeting { time, evidence: Evidence::Crossing };
+    let meeting = Meeting { offset: 0.0, evidence: Evidence::Crossing };
     describe(
         scene,
         (motion, &frame),
@@ -239,8 +272,8 @@ pub(super) fn contained(
 }
 
 fn feature(scene: &Scene<'_>, near: &Closest, triangles: [u32; 2]) -> FeaturePair {
-    let a = scene.a.0.mesh().triangles()[triangles[0] as usize];
-    let b = scene.b.0.mesh().triangles()[triangles[1] as usize];
+    let a = scene.a.tree.mesh().triangles()[triangles[0] as usize];
+    let b = scene.b.tree.mesh().triangles()[triangles[1] as usize];
     let edge = |t: [u32; 3], k: usize| {
         let (p, q) = (t[k], t[(k + 1) % 3]);
         [p.min(q), p.max(q)]

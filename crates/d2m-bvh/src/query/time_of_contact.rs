@@ -3,12 +3,12 @@
 use super::containment::contains_point;
 use super::distance::distance;
 use super::report::{contact, evidence_at_start};
-use crate::search::{LEAST_TOLERANCE, Outcome, Quad, RelativeMotion, Scene, Scratch, Search, run};
-use crate::{
-    MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window,
+use crate::search::{
+    Outcome, Quad, RelativeMotion, Scene, SceneBody, Scratch, Search, given_relative_position, run,
 };
+use crate::{Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window};
 use core::cell::RefCell;
-use d2m_motion::{ConstantTwist, Pose};
+use d2m_motion::Pose;
 use glam::DVec3;
 
 thread_local! {
@@ -26,7 +26,7 @@ thread_local! {
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, Moving, QueryOptions, TriMesh, Window, time_of_contact};
-/// use d2m_motion::{ConstantTwist, Pose};
+/// use d2m_motion::Pose;
 /// use glam::{DQuat, DVec3};
 /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
@@ -73,31 +73,17 @@ pub(super) fn scene_of<'a>(
     let (Some(motion_a), Some(motion_b)) = (a.motion.constant_twist(), b.motion.constant_twist()) else {
         return Ok(None);
     };
-    for (body, motion) in [&motion_a, &motion_b].into_iter().enumerate() {
-        if !angle_is_bounded(motion, window) {
-            return Err(QueryError::BadMotion { body });
-        }
-    }
-    if let Some(body) = drifts_unseen([&motion_a, &motion_b], window) {
-        return Err(QueryError::BadMotion { body });
-    }
-    let scene = Scene::new((a.body, motion_a), (b.body, motion_b), window, options);
-    if !(scene.size.is_finite() && scene.size < 1e150) {
-        let speed = |m: &ConstantTwist| m.linear_velocity().length() + m.position().length();
-        return Err(QueryError::BadMotion { body: usize::from(speed(&motion_b) > speed(&motion_a)) });
-    }
-    Ok(Some(scene))
+    Scene::try_new((a.body, motion_a), (b.body, motion_b), window, options).map(Some)
 }
 
 /// Searches.
 pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfContact, QueryError> {
-    let window = scene.window;
     let mut scratch = SCRATCH.take().unwrap_or_else(|| Box::new(Scratch::new()));
     let outcome = run(Search::new(scene, options, &mut scratch));
     SCRATCH.set(Some(scratch));
     let start_decided = match outcome {
-        Outcome::Found(found) => found.offset > 0.0 || found.start > window.start(),
-        Outcome::OutOfBudget(until) => until > window.start(),
+        Outcome::Found(found) => !found.is_at_start(),
+        Outcome::OutOfBudget(until) => until > 0.0,
         Outcome::Separated => true,
     };
     if options.solid == Solid::Filled
@@ -108,7 +94,7 @@ pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfCon
     }
     Ok(match outcome {
         Outcome::Separated => TimeOfContact::Separated,
-        Outcome::OutOfBudget(until) => TimeOfContact::Undecided { clear_until: until },
+        Outcome::OutOfBudget(until) => TimeOfContact::Undecided { clear_until: scene.units.time_down(until) },
         Outcome::Found(found) => {
             let mut contact = contact(scene, &found, options.mode != Mode::Capoeira);
             if contact.start == StartState::Touching
@@ -131,29 +117,6 @@ pub fn last_search_counts() -> crate::SearchCounts {
     SCRATCH.with_borrow(|scratch| scratch.as_ref().map(|s| s.counts).unwrap_or_default())
 }
 
-/// Does the rotation between the reference time and the window stay below 2⁴⁰ radians? The poses of the search are
-/// proven for less than 2⁵⁰. An angular velocity whose square is lost to underflow counts as none: then the angle has to
-/// be below all roundings.
-fn angle_is_bounded(motion: &ConstantTwist, window: Window) -> bool {
-    let elapsed = |t: f64| (t - motion.reference_time()).abs();
-    let longest = elapsed(window.start()).max(elapsed(window.end()));
-    let velocity = motion.angular_velocity();
-    if velocity.abs().max_element() < 1e-140 {
-        velocity.abs().element_sum() * longest < 1e-20
-    } else {
-        velocity.length() * longest < 1_099_511_627_776.0
-    }
-}
-
-/// A body whose velocity against the other one is so small that its square is lost to underflow, and which moves all the
-/// same over a window that is long enough.
-fn drifts_unseen([a, b]: [&ConstantTwist; 2], window: Window) -> Option<usize> {
-    let size = |v: DVec3| v.abs().max_element();
-    let speed = size(a.linear_velocity() - b.linear_velocity());
-    let unseen = speed < 1e-140 && speed * window.length() > 1e-10 * LEAST_TOLERANCE;
-    unseen.then(|| usize::from(size(b.linear_velocity()) > size(a.linear_velocity())))
-}
-
 fn check(options: &QueryOptions) -> Result<(), QueryError> {
     if let Some(value) = options.tolerance
         && !(value.is_finite() && value > 0.0)
@@ -166,9 +129,11 @@ fn check(options: &QueryOptions) -> Result<(), QueryError> {
 
 /// A pair of triangles that cross at the start (up to rounding). The search stops at the first pair that is near.
 fn crossing_at_start(scene: &Scene<'_>) -> Result<Option<[u32; 2]>, QueryError> {
-    let posed = [&scene.a, &scene.b].map(|(tree, motion)| {
-        let m = motion.rebase(scene.window.start());
-        Posed::new(tree, Pose { rotation: m.orientation(), translation: m.position(), at: m.at() })
+    // As seen from B's reference point, which may be far from the origin.
+    let apart = given_relative_position(&scene.a.motion, &scene.b.motion, 0.0) * scene.units.length();
+    let posed = [(&scene.a, apart), (&scene.b, DVec3::ZERO)].map(|(body, translation)| {
+        let m = body.given.rebase(scene.window.start());
+        Posed::new(body.tree, Pose { rotation: m.orientation(), translation, at: m.at() })
     });
     let found = distance(posed[0], posed[1], Solid::Surface)?;
     Ok((found.state == StartState::Overlapping).then_some([found.triangle_a, found.triangle_b]))
@@ -176,8 +141,7 @@ fn crossing_at_start(scene: &Scene<'_>) -> Result<Option<[u32; 2]>, QueryError> 
 
 /// The answer when one body is inside the other at the start; the surfaces are known not to cross then.
 fn containment(scene: &Scene<'_>) -> Option<TimeOfContact> {
-    let start = scene.window.start();
-    let motion = RelativeMotion::new(scene, start);
+    let motion = RelativeMotion::new(scene, 0.0);
     let frame = motion.frame::<Quad>(0.0);
     let place = |p: DVec3, of_b: bool| {
         if of_b {
@@ -190,14 +154,15 @@ fn containment(scene: &Scene<'_>) -> Option<TimeOfContact> {
             (frame.rotation.times::<Quad>(p) + frame.apart).to_vec()
         }
     };
-    let inside = |outer: &MeshTree, inner: &MeshTree, of_b: bool| -> Option<(u32, DVec3)> {
-        inner.component_vertices().iter().find_map(|&vertex| {
-            let p = inner.mesh().vertices()[vertex as usize] - inner.center();
-            let q = place(p, of_b) + outer.center();
+    let inside = |outer: &SceneBody<'_>, inner: &SceneBody<'_>, of_b: bool| -> Option<(u32, DVec3)> {
+        let (outer, length) = (outer.tree, scene.units.length());
+        inner.tree.component_vertices().iter().find_map(|&vertex| {
+            let p = inner.place(inner.tree.mesh().vertices()[vertex as usize]);
+            let q = place(p, of_b) * length + outer.center();
             contains_point(outer, q).then_some((vertex, q))
         })
     };
-    let (a, b) = (scene.a.0, scene.b.0);
+    let (a, b) = (&scene.a, &scene.b);
     let hit = inside(a, b, true)
         .map(|(vertex, _)| (false, vertex))
         .or_else(|| inside(b, a, false).map(|(vertex, _)| (true, vertex)));

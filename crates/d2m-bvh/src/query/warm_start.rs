@@ -2,7 +2,7 @@
 
 use super::course::Course;
 use super::time_of_contact::{ask, scene_of};
-use crate::search::{Quad, RelativeMotion, Scene, closest, corners, place_a};
+use crate::search::{Quad, RelativeMotion, Scene, closest, place_a};
 use crate::{Budget, Mode, Moving, PairCache, QueryError, QueryOptions, TimeOfContact, Window};
 use d2m_feature::triangles_intersect;
 
@@ -130,7 +130,7 @@ pub fn contact_exists(
 /// Does a search of this scene find no contact when the bodies are further apart than `room` all the time? A contact
 /// ends at the stopping distance, up to the error of one look.
 fn excludes_contact(scene: &Scene<'_>, room: f64) -> bool {
-    room > scene.pair.stop + 2.0 * scene.pair.error
+    room / scene.units.length() > scene.pair.stop + 2.0 * scene.pair.error
 }
 
 /// Searches for a larger separation than was asked for, so that the next queries need not. True: no contact now.
@@ -140,14 +140,15 @@ fn more_room(
     options: &QueryOptions,
     cache: &mut PairCache,
 ) -> Result<bool, QueryError> {
-    let Some(more) = cache.room_to_prove(course, scene.tolerance) else { return Ok(false) };
+    let Some(more) = cache.room_to_prove(course, scene.tolerance * scene.units.length()) else {
+        return Ok(false);
+    };
     let room = options.min_separation + more;
     if !excludes_contact(scene, room) {
         return Ok(false);
     }
     let wider = options.with_min_separation(room);
-    let proven =
-        ask(&Scene::new(scene.a, scene.b, scene.window, &wider), &wider)? == TimeOfContact::Separated;
+    let proven = ask(&scene.with_options(&wider), &wider)? == TimeOfContact::Separated;
     cache.attempted(proven);
     if proven {
         cache.found_apart(course, options.solid, room);
@@ -164,9 +165,9 @@ fn meet_again(scene: &Scene<'_>, triangles: [u32; 2], after: f64) -> Option<f64>
     // The closest points are on the triangles up to the error, and so are the corners that are shown to cross.
     let level = scene.pair.level - scene.pair.error;
     let target = scene.pair.level - 0.5 * (scene.tolerance + scene.pair.error);
-    let (first, last) = (scene.window.start(), scene.window.end());
-    let (a, b) = (corners(scene.a.0, triangles[0]), corners(scene.b.0, triangles[1]));
-    let mut time = (first + after).clamp(first, last);
+    let last = scene.units.end_down();
+    let (a, b) = (scene.a.corners(triangles[0]), scene.b.corners(triangles[1]));
+    let mut time = (after / scene.units.time()).clamp(0.0, last);
     for _ in 0..STEPS {
         let motion = RelativeMotion::new(scene, time);
         let frame = motion.frame::<Quad>(0.0);
@@ -174,11 +175,11 @@ fn meet_again(scene: &Scene<'_>, triangles: [u32; 2], after: f64) -> Option<f64>
         let near = closest::<Quad>(&placed, &b);
         let distance = near.square.sqrt();
         if distance <= level || triangles_intersect(&placed, &b) {
-            return Some(time - first);
+            return Some(time * scene.units.time());
         }
         let normal = near.direction.normalize_or_zero();
         // Also backwards: triangles that have passed each other were together at some time.
-        let next = (time + (distance - target) / frame.closing_speed(near.points, normal)).clamp(first, last);
+        let next = (time + (distance - target) / frame.closing_speed(near.points, normal)).clamp(0.0, last);
         if next.is_nan() || next == time {
             return None;
         }

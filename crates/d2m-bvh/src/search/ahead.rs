@@ -69,7 +69,7 @@ impl Search<'_> {
                     Outcome::Separated => start = window.1,
                     answer => return Err(answer),
                 }
-                if start >= self.scene.window.end() {
+                if start >= self.scene.end {
                     return Err(Outcome::Separated);
                 }
             }
@@ -88,7 +88,7 @@ impl Search<'_> {
         let each = (ROUND_WORK / mean).clamp(WINDOWS_A_THREAD.0, WINDOWS_A_THREAD.1);
         let most = (each * threads as u64).min(until_sweep) as usize;
         while windows.len() < most
-            && start < self.scene.window.end()
+            && start < self.scene.end
             && let Some(window) = self.window_from(start)
         {
             windows.push(window);

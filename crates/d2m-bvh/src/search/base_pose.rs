@@ -1,6 +1,6 @@
 //! The pose of a constant-twist motion at one time, accurate however far that time is from the reference time.
 
-use d2m_motion::ConstantTwist;
+use super::local_motion::LocalMotion;
 use glam::DVec3;
 
 /// Columns of a 3×3 matrix.
@@ -29,11 +29,11 @@ fn two_product(a: f64, b: f64) -> Pair {
 }
 
 impl Pair {
-    fn add(self, other: Self) -> Self {
+    pub(crate) fn add(self, other: Self) -> Self {
         let s = two_sum(self.0, other.0);
         two_sum(s.0, s.1 + (self.1 + other.1))
     }
-    fn times(self, x: f64) -> Self {
+    pub(crate) fn times(self, x: f64) -> Self {
         let p = two_product(self.0, x);
         two_sum(p.0, p.1 + self.1 * x)
     }
@@ -43,29 +43,38 @@ impl Pair {
     }
 }
 
-/// x_A(t) − x_B(t): differences and products carried as pairs, rounded once at the end.
-pub(crate) fn relative_position(a: &ConstantTwist, b: &ConstantTwist, t: f64) -> DVec3 {
-    let (ta, tb) = (two_sum(t, -a.reference_time()), two_sum(t, -b.reference_time()));
+/// x_A − x_B of the reference points in use at an offset: differences and products carried as pairs, rounded once at
+/// the end.
+pub(crate) fn relative_position(a: &LocalMotion, b: &LocalMotion, offset: f64) -> DVec3 {
+    difference([a, b], offset, a.shift() - b.shift())
+}
+
+/// The same of the given reference points.
+pub(crate) fn given_relative_position(a: &LocalMotion, b: &LocalMotion, offset: f64) -> DVec3 {
+    difference([a, b], offset, DVec3::ZERO)
+}
+
+fn difference([a, b]: [&LocalMotion; 2], offset: f64, shift: DVec3) -> DVec3 {
+    let (ta, tb) = (a.elapsed(offset), b.elapsed(offset));
     let one = |k: usize| {
-        let start = two_sum(a.position()[k], -b.position()[k]);
+        let start = two_sum(a.position()[k], -b.position()[k]).add(Pair(shift[k], 0.0));
         let moved = ta.times(a.linear_velocity()[k]).add(tb.times(-b.linear_velocity()[k]));
         start.add(moved).0
     };
     DVec3::new(one(0), one(1), one(2))
 }
 
-/// The rotation exp([ω](t − t_ref))·R(q/|q|) as columns; each entry within 16·2⁻⁵³ of the true one, for an angle
-/// of less than 2⁵⁰ radians.
-pub(crate) fn rotation_at(motion: &ConstantTwist, t: f64) -> Columns {
-    let turning = Turning::new(motion);
-    let turn = turning.until(t);
+/// The rotation exp([ω](t − t_ref))·R(q/|q|) at an offset as columns; each entry within 16·2⁻⁵³ of the true one, for
+/// an angle of less than 2⁵⁰ radians.
+pub(crate) fn rotation_at(motion: &LocalMotion, offset: f64) -> Columns {
+    let turning = motion.turning();
+    let turn = turning.after(motion.elapsed(offset));
     turning.start().map(|p| turning.wheel(p).at(&turn))
 }
 
 /// What the rotation of a motion is at all times: a turn about a fixed axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turning {
-    reference_time: f64,
     /// The orientation at the reference time.
     start: Columns,
     /// Unit vector; zero for a motion without rotation.
@@ -96,21 +105,25 @@ impl Wheel {
 }
 
 impl Turning {
-    pub(crate) fn new(motion: &ConstantTwist) -> Self {
-        let w = motion.angular_velocity();
-        let square = two_product(w.x, w.x).add(two_product(w.y, w.y)).add(two_product(w.z, w.z));
+    /// From the orientation [x, y, z, w] at the reference time and the angular velocity.
+    pub(crate) fn new(orientation: [f64; 4], omega: DVec3) -> Self {
         let (mut axis, mut speed) = (DVec3::ZERO, Pair(0.0, 0.0));
-        if square.0 > 0.0 {
+        let largest = omega.abs().max_element();
+        if largest > 0.0 {
+            // Divided by a power of two, so that no square over- or underflows.
+            let unit = power_of_two_below(largest);
+            let w = omega / unit;
+            let square = two_product(w.x, w.x).add(two_product(w.y, w.y)).add(two_product(w.z, w.z));
             let root = square.0.sqrt();
             let rest = square.add({
                 let p = two_product(root, root);
                 Pair(-p.0, -p.1)
             });
-            speed = two_sum(root, rest.0 / (2.0 * root));
-            axis = w / speed.0;
+            let length = two_sum(root, rest.0 / (2.0 * root));
+            axis = w / length.0;
+            speed = Pair(length.0 * unit, length.1 * unit);
         }
-        let start = from_quaternion(motion.orientation().to_array());
-        Self { reference_time: motion.reference_time(), start, axis, speed }
+        Self { start: from_quaternion(orientation), axis, speed }
     }
 
     /// The columns of the orientation at the reference time.
@@ -123,21 +136,30 @@ impl Turning {
         self.speed.0
     }
 
+    /// ω/|ω|; zero for a motion without rotation.
+    pub(crate) const fn axis(&self) -> DVec3 {
+        self.axis
+    }
+
     /// How a vector that is `p` at the reference time turns.
     pub(crate) fn wheel(&self, p: DVec3) -> Wheel {
         let across = self.axis.cross(p);
         Wheel { p, across, inward: self.axis.cross(across) }
     }
 
-    /// From the reference time until `t`.
-    pub(crate) fn until(&self, t: f64) -> Turn {
-        let elapsed = two_sum(t, -self.reference_time);
+    /// After a time, counted from the reference time.
+    pub(crate) fn after(&self, elapsed: Pair) -> Turn {
         if elapsed.0 == 0.0 || self.speed.0 == 0.0 {
             return Turn { sin: 0.0, versine: 0.0 };
         }
         let (sin, versine) = sin_versine(self.speed.mul(elapsed));
         Turn { sin, versine }
     }
+}
+
+/// The largest power of two that is not above a positive number; at least the least normal number.
+fn power_of_two_below(value: f64) -> f64 {
+    f64::from_bits(value.to_bits() & (0x7ff << 52)).max(f64::MIN_POSITIVE)
 }
 
 /// The rotation of q/|q|, q = [x, y, z, w], scaled first so that no square overflows.
@@ -189,7 +211,7 @@ fn sin_versine(angle: Pair) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use d2m_motion::RigidMotion;
+    use d2m_motion::{ConstantTwist, RigidMotion};
     use glam::DQuat;
 
     #[test]
@@ -204,7 +226,7 @@ mod tests {
             let w = DVec3::new(next(), next(), next()) * 10f64.powi(round % 5 - 2);
             let motion = ConstantTwist::try_new(DVec3::ZERO, q, DVec3::ZERO, w).unwrap();
             let t = next() * 10.0;
-            let got = rotation_at(&motion, t);
+            let got = rotation_at(&LocalMotion::unscaled(&motion), t);
             let enclosure = motion.enclose_pose(d2m_interval::Interval::point(t)).rotation.cols();
             for (column, enclosed) in got.iter().zip(enclosure) {
                 for (value, interval) in
@@ -225,7 +247,7 @@ mod tests {
             ConstantTwist::try_new(DVec3::ZERO, DQuat::IDENTITY, DVec3::ZERO, DVec3::new(0.0, 0.0, 3.0))
                 .unwrap();
         // sin and cos of exactly 300000 radians.
-        let got = rotation_at(&motion, 100_000.0);
+        let got = rotation_at(&LocalMotion::unscaled(&motion), 100_000.0);
         let (sin, cos) = (0.107_063_649_413_132_36, -0.994_252_168_704_872_3);
         assert!((got[0].x - cos).abs() < 1e-14);
         assert!((got[0].y - sin).abs() < 1e-14);

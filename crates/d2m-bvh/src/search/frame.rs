@@ -4,21 +4,25 @@
 //! a rotating frame: no Coriolis terms). A point r of a body, seen from the followed point `at`, has velocity
 //! v + ω × r and an acceleration of length at most |ω|²|r|, at all times.
 
-use super::base_pose::{Turning, relative_position};
+use super::base_pose::relative_position;
+use super::local_motion::LocalMotion;
 use super::quad::{Doubles, Matrix, Quad};
 use super::scene::Scene;
 use glam::DVec3;
 
-/// The two motions over a window that starts at `start`.
+/// The two motions over a window of the search that starts at the offset `start`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RelativeMotion {
-    /// First instant of the window; offsets count from it.
+    /// First instant of the window; offsets of frames count from it.
     pub(crate) start: f64,
     /// x_A − x_B at the start (followed points), world axes.
     position: Quad,
     velocity: Quad,
     bodies: [Swing; 2],
 }
+
+/// Frames hold for so many of the longest windows: for 0.33 radians, and they are proven for 0.35.
+pub(crate) const FRAME_REACH: f64 = 1.1;
 
 /// Vectors that turn with a body.
 const COLUMNS: usize = 5;
@@ -48,11 +52,11 @@ struct Turned {
 impl Swing {
     /// For p = p₀ + s·u + (1 − c)·w, u = k × p₀, w = k × u: [ω]p = |ω|(c·u + s·w), [ω]²p = |ω|²(c·w − s·u), and
     /// [ω]³ = −|ω|²[ω].
-    /// `arm`: from the followed point to the centre of the tree, body axes.
-    fn new(turning: &Turning, omega: DVec3, arm: DVec3, start: f64) -> Self {
+    fn new(motion: &LocalMotion, start: f64) -> Self {
+        let (turning, omega, arm) = (motion.turning(), motion.angular_velocity(), motion.arm());
         let [x, y, z] = turning.start();
         let vectors = [x, y, z, x * arm.x + y * arm.y + z * arm.z];
-        let (turn, speed) = (turning.until(start), turning.speed());
+        let (turn, speed) = (turning.after(motion.elapsed(start)), turning.speed());
         let (square, cos) = (speed * speed, 1.0 - turn.versine);
         let mut out = Self {
             omega: Quad::from_vec(omega),
@@ -150,17 +154,12 @@ impl RelativeMotion {
     /// Over the window of a search that begins at `start`.
     #[inline(never)]
     pub(crate) fn new(scene: &Scene<'_>, start: f64) -> Self {
-        let (a, b) = (&scene.a.1, &scene.b.1);
-        let [arm_a, arm_b] = scene.pair.arms;
-        let [turning_a, turning_b] = &scene.turnings;
+        let (a, b) = (&scene.a.motion, &scene.b.motion);
         Self {
             start,
             position: Quad::from_vec(relative_position(a, b, start)),
             velocity: Quad::from_vec(a.linear_velocity() - b.linear_velocity()),
-            bodies: [
-                Swing::new(turning_a, a.angular_velocity(), arm_a, start),
-                Swing::new(turning_b, b.angular_velocity(), arm_b, start),
-            ],
+            bodies: [Swing::new(a, start), Swing::new(b, start)],
         }
     }
 

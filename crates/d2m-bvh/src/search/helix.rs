@@ -6,16 +6,29 @@
 //!
 //! See docs/theory/engine.md, "Screws".
 
-use super::base_pose::{relative_position, rotation_at};
+use super::base_pose::relative_position;
 use super::picture::{DIRECTIONS, Pictures};
-use super::scene::Scene;
-use super::swept::SWEEP_ERROR;
-use super::window::corners;
-use d2m_motion::ConstantTwist;
+use super::scene::{Scene, SceneBody};
+use super::swept::after;
+use crate::tree::margin::{UNIT_F64, UP};
 use glam::DVec3;
 
 /// Larger pairs of meshes are not pictured: a picture takes about 500 bytes a triangle.
 const MOST_TRIANGLES: usize = 1 << 18;
+/// Factor of the scene's size that covers all roundings here. An angle errs by 64·2⁻⁵³ of the size over the distance from the
+/// axis and 8π·2⁻⁵³ of its own, and as much again with each division of a triangle; φ is h times as far off, and is
+/// divided by a steepness of at least h over the distance. Triangles have distances within a factor of 100
+/// ([`BESIDE`](super::picture::BESIDE)).
+const PICTURE_ERROR: f64 = 16_384.0 * UNIT_F64;
+/// Error of a unit axis as computed, as an angle.
+const AXIS_ERROR: f64 = 8.0 * UNIT_F64;
+/// Axes that are further from parallel (radians) are not taken for one: points would leave their screws by that part of
+/// their distance.
+const MOST_TILT: f64 = 1.0 / 1_048_576.0; // 2⁻²⁰
+/// See [`Screw::new`]: 2·1.0001 for both bodies, and roundings.
+const TILT_FACTOR: f64 = 2.125;
+/// Part of the speeds that the roundings of rate, climb and their quotient stand for: fewer than 16.
+const RATE_ERROR: f64 = 16.0 * UNIT_F64;
 /// Most leads that two pictures may be shifted by.
 const MOST_LEADS: f64 = 64.0;
 
@@ -29,7 +42,8 @@ pub(super) struct Screw {
     pub(super) lead: f64,
     /// Speed of A's points along the axis.
     climb: f64,
-    /// Distance of the two axes at the start, and how fast it grows.
+    /// Distance of the two axes at the start and what the angle between them moves points by, and how fast the rest of
+    /// the true motion leaves the screw.
     offset: f64,
     drift: f64,
 }
@@ -37,28 +51,41 @@ pub(super) struct Screw {
 impl Screw {
     /// None unless one body is at rest or both turn about parallel axes, and not alike.
     fn new(scene: &Scene<'_>, start: f64) -> Option<Self> {
-        let [wa, wb] = [&scene.a, &scene.b].map(|body| body.1.angular_velocity());
+        let (a, b) = (&scene.a, &scene.b);
+        let [wa, wb] = [a, b].map(|body| body.motion.angular_velocity());
+        let [ka, kb] = [a, b].map(|body| body.motion.turning().axis());
         let axis = scene.spin_axis()?;
         let both = wa != DVec3::ZERO && wb != DVec3::ZERO;
-        if both && wa.normalize().cross(wb.normalize()).length() > 1e-14 {
+        // The sine of the angle between the axes, and the cosine's sign is that of `rate`.
+        let tilt = if both { ka.cross(kb).length() + AXIS_ERROR } else { AXIS_ERROR };
+        if tilt > MOST_TILT {
             return None;
         }
         let rate = axis.dot(wa - wb);
-        let velocity = scene.a.1.linear_velocity() - scene.b.1.linear_velocity();
+        let spins = a.spin() + b.spin();
+        let velocity = a.motion.linear_velocity() - b.motion.linear_velocity();
         let climb = axis.dot(velocity);
         let flat = |p: DVec3| (p - axis * axis.dot(p)).length();
-        let offset = if both { flat(relative_position(&scene.a.1, &scene.b.1, start)) } else { 0.0 };
+        let apart = if both { flat(relative_position(&a.motion, &b.motion, start)) } else { 0.0 };
         let first = axis.any_orthonormal_vector();
         let h = climb / rate;
         let lead = 2.0 * std::f64::consts::PI * h.abs();
-        (h.is_finite() && rate.abs() > 1e-9 * (wa.length() + wb.length())).then_some(Self {
+        // A turn by θ about an axis that is tilted by ε moves a point by less than 2.01 ερ from where the turn about the
+        // other one does: exp(θ[k′]) = Q exp(θ[k]) Qᵀ with |Q − 1| ≤ 1.0001 ε.
+        let reach = a.reach() + b.reach();
+        let tilted = TILT_FACTOR * tilt * reach;
+        // The speeds as computed err by roundings of the speeds of both bodies, and by what the tilt takes from them.
+        let rate_error = (tilt * tilt + RATE_ERROR) * spins;
+        let climb_error = RATE_ERROR * velocity.length();
+        let strays = rate_error * reach + climb_error;
+        (h.is_finite() && lead.is_finite()).then_some(Self {
             axis,
             across: [first, axis.cross(first)],
             h,
             lead,
             climb,
-            offset: offset * (1.0 + 1e-12),
-            drift: flat(velocity) * (1.0 + 1e-12),
+            offset: (apart + tilted) * UP,
+            drift: (flat(velocity) + strays) * UP,
         })
     }
 
@@ -68,20 +95,20 @@ impl Screw {
     }
 
     /// Where points of both bodies (from the trees' centres, body axes) are at the start, from the axis, which is the
-    /// third coordinate. Heights count from B's followed point if it turns, else from A's; distances from the own axis,
+    /// third coordinate. Heights count from B's reference point if it turns, else from A's; distances from the own axis,
     /// or the other's.
     fn places(&self, scene: &Scene<'_>, start: f64) -> [impl Fn(DVec3) -> DVec3; 2] {
-        let apart = relative_position(&scene.a.1, &scene.b.1, start);
-        let [spins_a, spins_b] = [&scene.a, &scene.b].map(|body| body.1.angular_velocity() != DVec3::ZERO);
+        let apart = relative_position(&scene.a.motion, &scene.b.motion, start);
+        let [spins_a, spins_b] =
+            [&scene.a, &scene.b].map(|body| body.motion.angular_velocity() != DVec3::ZERO);
         let (from_a, from_b) = match (spins_a, spins_b) {
             (true, true) => (self.axis * self.axis.dot(apart), DVec3::ZERO),
             (true, false) => (DVec3::ZERO, -apart),
             _ => (apart, DVec3::ZERO),
         };
-        [(&scene.a, from_a), (&scene.b, from_b)].map(|((tree, motion), from): (&(_, ConstantTwist), _)| {
-            let tree: &crate::MeshTree = tree;
-            let r = rotation_at(motion, start);
-            let arm = tree.center() - motion.at();
+        [(&scene.a, from_a), (&scene.b, from_b)].map(|(body, from): (&SceneBody<'_>, _)| {
+            let r = body.motion.rotation(start);
+            let arm = body.motion.arm();
             let ([u, w], axis) = (self.across, self.axis);
             move |p: DVec3| {
                 let p = p + arm;
@@ -107,8 +134,8 @@ struct Walk<'s> {
     left: u64,
 }
 
-/// The time (≥ `start`, ≤ the end of the scene's window) up to which the pictures stay further apart than the level,
-/// and the work in pairs that were looked at; `start` when the motion is no common screw, when less than `gain` would
+/// The offset (≥ `start`, ≤ the end) up to which the pictures stay further apart than the level,
+/// and the work in pairs that were looked at; none when the motion is no common screw, when less than `gain` would
 /// be won, or when more than `most` pairs are needed. `suspects`: triangles that may be the reason for that, so are
 /// looked at first.
 pub(crate) fn screw_clear_until(
@@ -116,7 +143,7 @@ pub(crate) fn screw_clear_until(
     start: f64,
     limits: (f64, u64),
     suspects: [u32; 2],
-) -> (f64, u64) {
+) -> (Option<f64>, u64) {
     screw_clear_mutated(scene, start, limits, suspects, &|_| ())
 }
 
@@ -127,52 +154,44 @@ fn screw_clear_mutated(
     (gain, most): (f64, u64),
     suspects: [u32; 2],
     mutate: &dyn Fn(&mut Screw),
-) -> (f64, u64) {
-    let triangles = scene.a.0.mesh.triangle_count() + scene.b.0.mesh.triangle_count();
+) -> (Option<f64>, u64) {
+    let bodies = [&scene.a, &scene.b];
+    let triangles = bodies.map(|body| body.tree.mesh.triangle_count()).iter().sum::<usize>();
     if triangles > MOST_TRIANGLES {
-        return (start, 0);
+        return (None, 0);
     }
-    let Some(mut screw) = Screw::new(scene, start) else { return (start, 0) };
+    let Some(mut screw) = Screw::new(scene, start) else { return (None, 0) };
     mutate(&mut screw);
-    let end = scene.window.end();
+    let length = (scene.end - start).next_up();
     let mut walk = Walk {
         screw: &screw,
         shift: 0.0,
         directions: DIRECTIONS.len(),
-        level: scene.pair.level + SWEEP_ERROR * (scene.size + scene.pair.level),
-        length: end - start,
-        clear: end - start,
+        level: scene.pair.level + PICTURE_ERROR * (scene.size + scene.pair.level),
+        length,
+        clear: length,
         gain,
         left: most,
     };
     let places = screw.places(scene, start);
     let probe = [0, 1].map(|body| {
-        let tree = [scene.a.0, scene.b.0][body];
-        let corners = corners(tree, suspects[body]).map(&places[body]);
+        let corners = bodies[body].corners(suspects[body]).map(&places[body]);
         Pictures::of_body(&screw, &corners, std::iter::once([0, 1, 2]))
     });
     if !walk.compare(probe) {
-        return (start, most - walk.left);
+        return (None, most - walk.left);
     }
     let whole = [0, 1].map(|body| {
-        let tree = [scene.a.0, scene.b.0][body];
+        let mesh = &bodies[body].tree.mesh;
         let vertices: Vec<DVec3> =
-            tree.mesh.vertices().iter().map(|&p| places[body](p - tree.center())).collect();
-        Pictures::of_body(&screw, &vertices, tree.mesh.triangles().iter().copied())
+            mesh.vertices().iter().map(|&p| places[body](bodies[body].place(p))).collect();
+        Pictures::of_body(&screw, &vertices, mesh.triangles().iter().copied())
     });
     // What the pictures themselves cost counts as well.
     let apart = walk.compare(whole);
     let work = most - walk.left + triangles as u64 / 2;
-    if !apart {
-        return (start, work);
-    }
-    let clear = walk.clear;
-    let time = if clear >= walk.length {
-        end
-    } else {
-        (start + clear * (1.0 - 1e-12)).next_down().clamp(start, end)
-    };
-    (time, work)
+    let until = if apart { after(start, walk.clear, walk.length, scene.end) } else { None };
+    (until, work)
 }
 
 impl Walk<'_> {
@@ -247,7 +266,7 @@ impl Walk<'_> {
         for (gap, rate) in [(b.height.0 - a.height.1, -screw.climb), (a.height.0 - b.height.1, screw.climb)] {
             let room = gap - self.level;
             if room > 0.0 {
-                best = best.max(if -rate * length <= room { length } else { room / -rate });
+                best = best.max(if -rate * UP * length <= room { length } else { room / (-rate * UP) });
             }
         }
         // Points that are within ℓ of each other, ℓ at most half of ρ there, differ in F by at most |∇F| ℓ, with
@@ -261,7 +280,7 @@ impl Walk<'_> {
         let mut take = |(alpha, beta): (f64, f64), fa: (f64, f64), fb: (f64, f64)| {
             let moved = beta * self.shift;
             let gap = (fb.0 - (fa.1 + moved)).max((fa.0 + moved) - fb.1);
-            let distance = gap / ((alpha * alpha + beta * beta * steep * steep).sqrt() * (1.0 + 1e-12));
+            let distance = gap / ((alpha * alpha + beta * beta * steep * steep).sqrt() * UP);
             apart = if distance > apart { distance } else { apart };
         };
         for (direction, (fa, fb)) in DIRECTIONS.iter().zip(a.slabs.iter().zip(&b.slabs)).take(self.directions)
@@ -285,6 +304,7 @@ impl Walk<'_> {
         let room = apart - self.level - self.screw.offset;
         let drift = self.screw.drift;
         if room.is_nan() || room <= 0.0 {
+            // As long as nothing at all.
             0.0
         } else if drift * self.length <= room {
             self.length
@@ -296,6 +316,7 @@ impl Walk<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::local_motion::LocalMotion;
     use super::*;
     use crate::{MeshTree, QueryOptions, TriMesh, Window};
     use d2m_feature::triangle_distance;
@@ -333,9 +354,11 @@ mod tests {
             ];
             let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
             let (until, _) = screw_clear_mutated(&scene, 0.0, (0.0, 1 << 13), [0, 0], &mutate);
+            let until = until.unwrap_or(0.0);
             won += u32::from(until > 0.0);
             let world = |tree: &MeshTree, motion: &ConstantTwist, t: f64| {
-                let (turn, x) = (rotation_at(motion, t), motion.position() + motion.linear_velocity() * t);
+                let turn = LocalMotion::unscaled(motion).rotation(t);
+                let x = motion.position() + motion.linear_velocity() * t;
                 tree.mesh().corners(0).map(|p| turn[0] * p.x + turn[1] * p.y + turn[2] * p.z + x)
             };
             for k in (0..=100).filter(|_| until > 0.0) {
@@ -365,7 +388,7 @@ mod tests {
             let scene = Scene::new((&pair, spin), (&plate, ConstantTwist::REST), Window::UNIT, &options);
             screw_clear_until(&scene, 0.0, (0.0, 1 << 13), [0, 0]).0
         };
-        assert_eq!((until(0.0), until(1e-9), until(4e-9)), (1.0, 1.0, 0.0));
+        assert_eq!((until(0.0), until(1e-9), until(4e-9)), (Some(1.0), Some(1.0), None));
     }
 
     #[test]

@@ -15,6 +15,7 @@ mod frame;
 mod helix;
 mod instruction_set;
 mod lanes;
+mod local_motion;
 mod node_test;
 mod picture;
 mod portable;
@@ -26,20 +27,22 @@ mod swept;
 mod tests;
 mod triangle_pair;
 mod two;
+mod units;
 mod window;
 
-pub(crate) use base_pose::{Columns, relative_position, rotation_at};
+pub(crate) use base_pose::{Columns, given_relative_position};
 pub(crate) use closest::{Closest, Place, closest};
 #[cfg(test)]
 pub(crate) use dispatch::run_on;
 pub(crate) use dispatch::{Task, run};
-pub(crate) use frame::{Frame, RelativeMotion};
+pub(crate) use frame::{FRAME_REACH, Frame, RelativeMotion};
 pub use instruction_set::InstructionSet;
 pub(crate) use lanes::Lanes;
 #[cfg(test)]
 pub(crate) use portable::Portable;
 pub(crate) use quad::{Doubles, Quad};
 pub use scene::SearchCounts;
-pub(crate) use scene::{LEAST_TOLERANCE, Scene, Scratch};
+pub(crate) use scene::{Scene, SceneBody, Scratch};
 pub(crate) use triangle_pair::{PairScale, place_a};
-pub(crate) use window::{Found, Outcome, Search, corners, time_from};
+pub(crate) use units::Units;
+pub(crate) use window::{Found, Outcome, Search};

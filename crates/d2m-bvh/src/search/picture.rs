@@ -8,6 +8,7 @@
 
 use super::helix::Screw;
 use super::swept::nearest;
+use crate::tree::margin::UP;
 use d2m_interval::Interval;
 use glam::DVec3;
 use std::collections::HashMap;
@@ -30,6 +31,13 @@ const HEIGHT_WEIGHT: f64 = 0.1;
 const MOST_DIVISIONS: u8 = 7;
 /// Part of the greatest distance from the axis by which triangles of one class may differ.
 const CLASS_STEP: f64 = 1e-8;
+
+/// Triangles that come nearer to the axis than this part of their greatest distance and |h| have no angles.
+pub(super) const BESIDE: f64 = 0.01;
+/// Where the steps of φ and those of classes begin: not at zero or at whole leads, where a thread or a plane through the
+/// origin would be divided. Any numbers do.
+const FIRST_LEAD: f64 = 0.123_456;
+const FIRST_STEP: f64 = 0.387_654;
 
 /// Bounds of what a part of a body covers.
 #[derive(Clone, Copy, Debug)]
@@ -141,7 +149,7 @@ impl Piece {
         let either = beta.abs() * self.bend_phi;
         let (below, above) =
             if alpha > 0.0 { (alpha * self.bend_rho, 0.0) } else { (0.0, -alpha * self.bend_rho) };
-        (low - (below + either) * (1.0 + 1e-12), high + (above + either) * (1.0 + 1e-12))
+        (low - (below + either) * UP, high + (above + either) * UP)
     }
 
     /// Fills in the bends: half of the bound on the second derivative, 1/ρ and 1/ρ², times the square of a radius that
@@ -213,7 +221,7 @@ impl Pictures {
             let mut corners = triangle.map(|v| Corner::new(places[v as usize]));
             let near = nearest(&corners.map(|corner| corner.at.with_z(0.0)), DVec3::Z);
             let far = corners.iter().map(|corner| corner.rho).fold(0.0, f64::max);
-            let beside = near >= 1e-2 * (far + screw.h.abs());
+            let beside = near >= BESIDE * (far + screw.h.abs());
             let mut piece = Piece {
                 corners,
                 bend_rho: far,
@@ -246,8 +254,7 @@ impl Pictures {
             });
             if screw.h != 0.0 {
                 let first = corners[0].at.z - screw.h * theta[0];
-                // Not from a whole number of leads, where a thread might begin.
-                let first = first - ((first / screw.lead - 0.123_456).floor() * screw.lead);
+                let first = first - ((first / screw.lead - FIRST_LEAD).floor() * screw.lead);
                 corners[0].phi = first;
                 for i in [1, 2] {
                     corners[i].phi = first + (corners[i].at.z - corners[0].at.z) - screw.h * turned[i - 1];
@@ -264,8 +271,7 @@ impl Pictures {
                 turned[0] * farthest,
                 turned[1] * farthest,
             ]
-            // Not from zero, or a plane through the origin would be divided.
-            .map(|x| (x * step + 0.387_654).floor() as i64);
+            .map(|x| (x * step + FIRST_STEP).floor() as i64);
             let class = *classes.entry(key).or_insert(narrow.len() as u32) as usize;
             if class == narrow.len() {
                 narrow.push(piece.bent(screw.h));
@@ -277,7 +283,7 @@ impl Pictures {
             let swings = [0.0, (turned[0] - by[0]).abs(), (turned[1] - by[1]).abs()];
             for (swing, (c, d)) in swings.iter().zip(corners.iter().zip(&one.corners)) {
                 let beside = (c.rho - d.rho).abs() + (c.phi - d.phi).abs() + (far + screw.h.abs()) * swing;
-                one.slack = one.slack.max(beside * (1.0 + 1e-12));
+                one.slack = one.slack.max(beside * UP);
             }
             let heights = range(corners.map(|corner| corner.at.z));
             let all = one.shared.unwrap_or(range(one.corners.map(|corner| corner.at.z)));

@@ -1,11 +1,13 @@
 //! Constants of one query.
 
-use super::base_pose::{Turning, relative_position};
+use super::base_pose::relative_position;
+use super::local_motion::LocalMotion;
 use super::node_test::NodeScale;
 use super::queue::{Bucket, Item, Queue};
 use super::triangle_pair::PairScale;
-use crate::tree::margin::{UNIT_F64, round_up};
-use crate::{MeshTree, QueryOptions, Window};
+use super::units::Units;
+use crate::tree::margin::{DOWN, NARROW_UP, UNIT_F64, UP, round_up};
+use crate::{MeshTree, QueryError, QueryOptions, Window};
 use d2m_motion::ConstantTwist;
 use glam::DVec3;
 
@@ -13,19 +15,96 @@ use glam::DVec3;
 const TRIANGLE_ERROR: f64 = 128.0 * UNIT_F64;
 /// Factor of the error of frames, for node tests.
 const FRAME_ERROR: f64 = 256.0 * UNIT_F64;
-/// Least δ: large against every length whose square is lost to underflow.
-pub(crate) const LEAST_TOLERANCE: f64 = 1e-100;
+/// Factor of the error of the distance of two balls: positions err by less than 64·2⁻⁵³ of the size, and the few
+/// operations after that by less.
+const BALL_ERROR: f64 = 128.0 * UNIT_F64;
+/// Relative positions are sums of pairs: they err by less than 2⁻¹⁰⁰ of their terms. That is below 2⁻⁵² of a size which
+/// is at least this part of the terms.
+const PAIR_ERROR: f64 = 1.0 / 281_474_976_710_656.0; // 2⁻⁴⁸
+/// Least size: of bodies that are points at one place.
+const LEAST_SIZE: f64 = 1.0 / 18_446_744_073_709_551_616.0; // 2⁻⁶⁴
+/// δ as a part of the larger body's radius, if none is given.
+const DEFAULT_TOLERANCE: f64 = 1e-10;
 /// Part of δ that pairs are followed to above the level. Large against roundings, small against δ.
 const SPARE: f64 = 1.0 / 64.0;
-/// Most rotation, both bodies together, inside one window.
+/// Most rotation, both bodies together, inside one window: frames hold for 0.35 radians.
 const WINDOW_ANGLE: f64 = 0.3;
+/// Most radians between a reference time and the window: poses are proven for less than 2⁵⁰, and a window of
+/// [`WINDOW_ANGLE`] is then long against the resolution of offsets.
+const MOST_ANGLE: f64 = 1_099_511_627_776.0; // 2⁴⁰
+/// A spin below this (radians in a unit of time) loses part of its speed to underflow if it acts for long: it is refused
+/// unless the angle is below all roundings.
+const LEAST_SPIN: f64 = f64::from_bits((1023 - 900) << 52); // 2⁻⁹⁰⁰
+/// See [`LEAST_SPIN`]: below 2⁻⁶⁴ radians.
+const UNSEEN_ANGLE: f64 = 1.0 / 18_446_744_073_709_551_616.0;
+/// Longest length of a scene, in the unit of the meshes: what is computed from it stays below the largest number.
+const MOST_LENGTH: f64 = f64::from_bits((1023 + 1000) << 52); // 2¹⁰⁰⁰
 
-/// Two bodies, their motions, and the bounds that hold over the whole query.
+/// A body and its motion, in the units of the search.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SceneBody<'a> {
+    pub(crate) tree: &'a MeshTree,
+    pub(crate) motion: LocalMotion,
+    /// The motion as it was given.
+    pub(crate) given: ConstantTwist,
+    /// One over the unit of length.
+    per_length: f64,
+}
+
+impl<'a> SceneBody<'a> {
+    fn new(tree: &'a MeshTree, given: &ConstantTwist, units: &Units, start: f64) -> Self {
+        let motion = LocalMotion::new(given, tree.center(), start, units);
+        Self { tree, motion, given: *given, per_length: 1.0 / units.length() }
+    }
+
+    /// Corners relative to the tree's centre, body axes.
+    #[inline(always)]
+    pub(crate) fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        let [i, j, k] = self.tree.mesh.triangles()[triangle as usize];
+        let vertices = self.tree.mesh.vertices();
+        [i, j, k].map(|vertex| self.place(vertices[vertex as usize]))
+    }
+
+    /// A point of the body, relative to the tree's centre.
+    #[inline(always)]
+    pub(crate) fn place(&self, point: DVec3) -> DVec3 {
+        (point - self.tree.center) * self.per_length
+    }
+
+    /// The unit of the tree's boxes.
+    pub(crate) fn box_unit(&self) -> f64 {
+        self.tree.unit * self.per_length
+    }
+
+    /// Bound on the distance of the body's points from the reference point in use, and so from the axis of the spin.
+    pub(crate) fn reach(&self) -> f64 {
+        self.tree.radius() * self.per_length + self.motion.arm().length()
+    }
+
+    /// The same for the reference point that was given.
+    pub(crate) fn given_reach(&self) -> f64 {
+        self.tree.radius() * self.per_length + self.motion.given_arm().length()
+    }
+
+    /// The angle that it turns by in a time.
+    pub(crate) fn turns_by(&self, time: f64) -> f64 {
+        self.spin() * time
+    }
+
+    pub(crate) fn spin(&self) -> f64 {
+        self.motion.turning().speed()
+    }
+}
+
+/// Two bodies, their motions, and the bounds that hold over the whole query. All in the units of the search.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scene<'a> {
-    pub(crate) a: (&'a MeshTree, ConstantTwist),
-    pub(crate) b: (&'a MeshTree, ConstantTwist),
+    pub(crate) a: SceneBody<'a>,
+    pub(crate) b: SceneBody<'a>,
     pub(crate) window: Window,
+    pub(crate) units: Units,
+    /// The offset of the end of the window, not early.
+    pub(crate) end: f64,
     pub(crate) pair: PairScale,
     /// Bound on every length that enters a position.
     pub(crate) size: f64,
@@ -33,99 +112,180 @@ pub(crate) struct Scene<'a> {
     pub(crate) tolerance: f64,
     /// Longest window of the search.
     pub(crate) longest: f64,
-    /// Reach of both bodies from their followed points, together.
+    /// Reach of both bodies from their reference points, together.
     reach: f64,
-    /// |ω|·ρ of both bodies, ρ the largest distance from the followed point.
+    /// |ω|·ρ of both bodies, ρ the largest distance from the reference point.
     pub(crate) spin_speed: f64,
-    /// How the bodies turn.
-    pub(crate) turnings: [Turning; 2],
 }
 
 impl<'a> Scene<'a> {
+    /// The scene of a query with options that were checked.
+    ///
+    /// # Errors
+    /// [`QueryError::BadMotion`] where rounding cannot be bounded.
+    pub(crate) fn try_new(
+        a: (&'a MeshTree, ConstantTwist),
+        b: (&'a MeshTree, ConstantTwist),
+        window: Window,
+        options: &QueryOptions,
+    ) -> Result<Self, QueryError> {
+        let units = units_of([&a, &b], window).ok_or_else(|| {
+            let far = |m: &ConstantTwist| m.linear_velocity().length() + m.position().length();
+            QueryError::BadMotion { body: usize::from(far(&b.1) > far(&a.1)) }
+        })?;
+        Self::in_units([a, b], window, options, units)
+    }
+
+    fn in_units(
+        [a, b]: [(&'a MeshTree, ConstantTwist); 2],
+        window: Window,
+        options: &QueryOptions,
+        units: Units,
+    ) -> Result<Self, QueryError> {
+        let [a, b] = [&a, &b].map(|(tree, motion)| SceneBody::new(tree, motion, &units, window.start()));
+        let end = units.end_up();
+        for (body, it) in [&a, &b].into_iter().enumerate() {
+            // Also what is not a number is refused.
+            let bounded = it.motion.angle(end) < MOST_ANGLE && it.motion.terms() < f64::INFINITY;
+            let slow = it.spin() >= LEAST_SPIN || it.motion.angle(end) <= UNSEEN_ANGLE;
+            if !(bounded && slow) {
+                return Err(QueryError::BadMotion { body });
+            }
+        }
+        let apart = |offset: f64| relative_position(&a.motion, &b.motion, offset).length();
+        let apart = apart(0.0).max(apart(end));
+        let (reach_a, reach_b) = (a.reach(), b.reach());
+        let spin_speed = a.spin() * reach_a + b.spin() * reach_b;
+        let angle = a.spin() + b.spin();
+        let longest = if angle * end > WINDOW_ANGLE { WINDOW_ANGLE / angle } else { end };
+        let velocity = (a.motion.linear_velocity() - b.motion.linear_velocity()).length();
+        let moved = a.motion.shift().length() + b.motion.shift().length();
+        let size = reach_a + reach_b + moved + apart + (velocity + spin_speed) * longest;
+        let size = size.max(PAIR_ERROR * (a.motion.terms() + b.motion.terms())).max(LEAST_SIZE);
+        let mut scene = Self {
+            a,
+            b,
+            window,
+            units,
+            end,
+            pair: PairScale::NONE,
+            size,
+            tolerance: 0.0,
+            longest,
+            reach: reach_a + reach_b,
+            spin_speed,
+        };
+        scene.set_options(options);
+        Ok(scene)
+    }
+
+    /// The same scene with other options.
+    pub(crate) fn with_options(&self, options: &QueryOptions) -> Self {
+        let mut scene = *self;
+        scene.set_options(options);
+        scene
+    }
+
+    fn set_options(&mut self, options: &QueryOptions) {
+        let (a, b) = (&self.a, &self.b);
+        let error = TRIANGLE_ERROR * self.size;
+        let to_length = |length: f64| length * (1.0 / self.units.length());
+        let wanted = options
+            .tolerance
+            .map_or_else(|| DEFAULT_TOLERANCE * to_length(a.tree.radius().max(b.tree.radius())), to_length);
+        self.tolerance = wanted.max(2.0 * error);
+        let level = to_length(options.min_separation) + self.tolerance;
+        let swings = [a, b].map(|body| body.spin() * body.spin() * body.reach() * UP);
+        self.pair = PairScale {
+            level,
+            error,
+            stop: level + self.tolerance + error,
+            spare: SPARE * self.tolerance,
+            acceleration: (swings[0] + swings[1]) * UP,
+            arms: [a.motion.arm(), b.motion.arm()],
+            swings,
+        };
+    }
+
+    /// In the units of the caller, for tests.
+    #[cfg(test)]
     pub(crate) fn new(
         a: (&'a MeshTree, ConstantTwist),
         b: (&'a MeshTree, ConstantTwist),
         window: Window,
         options: &QueryOptions,
     ) -> Self {
-        let reach = |(tree, motion): &(&MeshTree, ConstantTwist)| {
-            tree.radius() + (tree.center() - motion.at()).length()
-        };
-        let (reach_a, reach_b) = (reach(&a), reach(&b));
-        let (spin_a, spin_b) = (a.1.angular_velocity().length(), b.1.angular_velocity().length());
-        let relative_velocity = a.1.linear_velocity() - b.1.linear_velocity();
-        let apart = relative_position(&a.1, &b.1, window.start())
-            .length()
-            .max(relative_position(&a.1, &b.1, window.end()).length());
-        let spin_speed = spin_a * reach_a + spin_b * reach_b;
-        let angle = spin_a + spin_b;
-        let longest =
-            if angle * window.length() > WINDOW_ANGLE { WINDOW_ANGLE / angle } else { window.length() };
-        let size = reach_a + reach_b + apart + relative_velocity.length() * longest + spin_speed * longest;
-        let error = TRIANGLE_ERROR * size;
-        let wanted = options.tolerance.unwrap_or(1e-10 * a.0.radius().max(b.0.radius()));
-        let tolerance = wanted.max(2.0 * error).max(LEAST_TOLERANCE);
-        let level = options.min_separation + tolerance;
-        let acceleration = (spin_a * spin_a * reach_a + spin_b * spin_b * reach_b) * (1.0 + 1e-12);
-        let arms = [&a, &b].map(|(tree, motion)| tree.center() - motion.at());
-        let swings = [spin_a * spin_a * reach_a, spin_b * spin_b * reach_b].map(|s| s * (1.0 + 1e-12));
-        let pair = PairScale {
-            level,
-            error,
-            stop: level + tolerance + error,
-            spare: SPARE * tolerance,
-            acceleration,
-            arms,
-            swings,
-        };
-        let turnings = [Turning::new(&a.1), Turning::new(&b.1)];
-        Self { a, b, window, pair, size, tolerance, longest, reach: reach_a + reach_b, spin_speed, turnings }
+        let units = Units::new(window, 1.0, 1.0);
+        Self::in_units([a, b], window, options, units).expect("a motion with bounded rounding")
     }
 
     /// Axis of the body that spins faster, world; none if neither does.
     pub(crate) fn spin_axis(&self) -> Option<DVec3> {
-        let [a, b] = [&self.a, &self.b].map(|body| body.1.angular_velocity());
-        let faster = if a.length_squared() >= b.length_squared() { a } else { b };
-        faster.try_normalize()
+        let faster = if self.a.spin() >= self.b.spin() { &self.a } else { &self.b };
+        let axis = faster.motion.turning().axis();
+        (axis != DVec3::ZERO).then_some(axis)
     }
 
-    /// A time, not before `start`, up to which the balls about the followed points (whatever the rotation) stay
+    /// An offset, not before `start`, up to which the balls about the reference points (whatever the rotation) stay
     /// further apart than the level.
     pub(crate) fn balls_clear_until(&self, start: f64) -> f64 {
-        let apart = relative_position(&self.a.1, &self.b.1, start).length();
-        let room = apart - self.reach - self.pair.level - 1e-12 * self.size;
-        let speed = (self.a.1.linear_velocity() - self.b.1.linear_velocity()).length();
-        let end = self.window.end();
+        let apart = relative_position(&self.a.motion, &self.b.motion, start).length();
+        let room = apart - self.reach - self.pair.level - BALL_ERROR * self.size;
+        let speed = (self.a.motion.linear_velocity() - self.b.motion.linear_velocity()).length() * UP;
         if room.is_nan() || room <= 0.0 {
             start
-        } else if speed * (end - start) < room {
-            end
+        } else if speed * (self.end - start) < room {
+            self.end
         } else {
-            (start + room / speed * (1.0 - 1e-12)).next_down().clamp(start, end)
+            (start + room / speed * DOWN).next_down().clamp(start, self.end)
         }
     }
 
     /// Constants of the node tests of a window, with the first body's nodes opened, then the second's.
     pub(crate) fn node_scales(&self, time_unit: f64) -> [NodeScale; 2] {
-        let spins = [&self.a, &self.b]
-            .map(|body| round_up(body.1.angular_velocity().length() * time_unit * (1.0 + 1e-6)));
-        let one = |wide: &MeshTree, single: &MeshTree, spin: [f32; 2]| {
-            let inverse_unit = 1.0 / wide.unit;
+        let spins = [&self.a, &self.b].map(|body| round_up(body.spin() * time_unit * NARROW_UP));
+        let one = |wide: &SceneBody<'_>, single: &SceneBody<'_>, spin: [f32; 2]| {
+            let inverse_unit = 1.0 / wide.box_unit();
             let speed_scale = time_unit * inverse_unit;
-            let acceleration = self.pair.acceleration * time_unit * speed_scale * (1.0 + 1e-6);
+            let acceleration = self.pair.acceleration * time_unit * speed_scale * NARROW_UP;
             NodeScale {
-                ratio: single.unit * inverse_unit,
+                ratio: single.box_unit() * inverse_unit,
                 inverse_unit,
                 speed_scale,
                 time_unit,
                 spin,
-                floor: round_up((self.pair.level * (1.0 + 1e-6) + FRAME_ERROR * self.size) * inverse_unit),
+                floor: round_up((self.pair.level * NARROW_UP + FRAME_ERROR * self.size) * inverse_unit),
                 speed_floor: round_up(FRAME_ERROR * (self.spin_speed + self.size / time_unit) * speed_scale),
                 acceleration: round_up(acceleration),
             }
         };
-        [one(self.a.0, self.b.0, spins), one(self.b.0, self.a.0, [spins[1], spins[0]])]
+        [one(&self.a, &self.b, spins), one(&self.b, &self.a, [spins[1], spins[0]])]
     }
+}
+
+/// Units in which the lengths of a scene are about one: lengths are measured by their largest coordinates, so nothing
+/// over- or underflows on the way. `None` when the scene has lengths that are not numbers, or larger than the largest
+/// unit.
+fn units_of(bodies: [&(&MeshTree, ConstantTwist); 2], window: Window) -> Option<Units> {
+    let largest = |v: DVec3| v.abs().max_element();
+    let [(tree_a, a), (tree_b, b)] = bodies;
+    let [arm_a, arm_b] = bodies.map(|(tree, motion)| largest(tree.center() - motion.at()));
+    let since = |motion: &ConstantTwist| window.start() - motion.reference_time();
+    // At rest the time means nothing.
+    let travelled = |motion: &ConstantTwist| {
+        let velocity = motion.linear_velocity();
+        if velocity == DVec3::ZERO { DVec3::ZERO } else { velocity * since(motion) }
+    };
+    let apart = largest((a.position() - b.position()) + (travelled(a) - travelled(b)));
+    let speed = largest(a.linear_velocity() - b.linear_velocity());
+    let resting = tree_a.radius().max(tree_b.radius()).max(arm_a).max(arm_b).max(apart);
+    let spin = largest(a.angular_velocity()).max(largest(b.angular_velocity()));
+    // A window of no length gets the time in which the bodies move by about their size.
+    let time = if window.length() > 0.0 { window.length() } else { 1.0 / (speed / resting).max(spin) };
+    let time = if time.is_finite() && time > 0.0 { time } else { 1.0 };
+    let length = resting.max(speed * window.length());
+    let all = [resting, length, apart, arm_a, arm_b];
+    all.iter().all(|x| *x <= MOST_LENGTH).then(|| Units::new(window, time, length))
 }
 
 /// Counts of the work of one search, for profiles: the same on every machine.

@@ -8,16 +8,21 @@
 //!
 //! See docs/theory/engine.md, "Sweeps".
 
-use super::base_pose::{relative_position, rotation_at};
-use super::scene::Scene;
-use super::window::corners;
-use crate::MeshTree;
+use super::base_pose::relative_position;
+use super::scene::{Scene, SceneBody};
+use crate::tree::margin::{DOWN, UNIT_F32, UNIT_F64, UP};
 use crate::tree::node::{Below, WIDTH};
-use d2m_motion::ConstantTwist;
 use glam::{DVec2, DVec3};
 
-/// Factor of the scene's size that covers all roundings here.
-pub(super) const SWEEP_ERROR: f64 = 1e-12;
+/// Factor of the scene's size that covers all roundings here. Lengths below the size come out of fewer than a hundred
+/// operations each: placing a point errs by 64·2⁻⁵³, an axis by 4·2⁻⁵³ of itself, turning a point into the axis' frame, its
+/// distance from the axis, a reach and the gap by less than 200·2⁻⁵³ more.
+pub(super) const SWEEP_ERROR: f64 = 4096.0 * UNIT_F64;
+/// Axes of boxes are rounded to `f32` and orthonormal up to 5.2·2⁻²⁴ (docs/theory/engine.md): a box reaches no further
+/// than its half extents say and this part of its radius.
+const AXES_ERROR: f64 = 6.0 * UNIT_F32;
+/// How much less the size of a part of a spinning body counts. Its parts are much like each other: they come last.
+const SPINNING_SIZE: f64 = 1.0 / 1024.0;
 /// A body that turns by less than this, in radians, is taken as at rest with an additional speed.
 const STILL_ANGLE: f64 = 0.5;
 
@@ -42,17 +47,15 @@ impl Ring {
         }
     }
 
-    /// Of a triangle, corners from a point of the axis, which is the third coordinate. Distances from the axis count
-    /// for bodies that spin only.
+    /// Of a triangle, corners from a point of the axis, which is the third coordinate. The least distance from the axis
+    /// counts for bodies that spin only.
     fn of(corners: &[DVec3; 3], spins: bool) -> Self {
         let [low, high] = [f64::min, f64::max].map(|f| f(f(corners[0].z, corners[1].z), corners[2].z));
         let flat = corners.map(DVec3::truncate);
         let squares = flat.map(DVec2::length_squared);
-        if !spins {
-            return Self { low, high, near: 0.0, far: f64::INFINITY };
-        }
         let far = squares[0].max(squares[1]).max(squares[2]).sqrt();
-        Self { low, high, near: nearest_square(&flat, &squares).sqrt(), far }
+        let near = if spins { nearest_square(&flat, &squares).sqrt() } else { 0.0 };
+        Self { low, high, near, far }
     }
 }
 
@@ -93,33 +96,31 @@ pub(super) fn nearest(flat: &[DVec3; 3], axis: DVec3) -> f64 {
 
 /// One body over the rest of the query.
 struct Body<'a> {
-    tree: &'a MeshTree,
-    /// Axes of the body and the tree's centre from the followed point, world axes, at the start.
+    body: &'a SceneBody<'a>,
+    /// Axes of the body and the tree's centre from the reference point, world axes, at the start.
     rotation: [DVec3; 3],
     arm: DVec3,
     /// Axis of the spin, or a direction of interest for a body at rest.
     axis: DVec3,
     spins: bool,
-    /// Bound on the speed that a body at rest has after all, for each unit of distance from its followed point.
-    turning: f64,
+    /// Angular velocity that a body at rest has after all.
+    turning: DVec3,
     /// Of each box, by number.
     rings: Vec<Ring>,
 }
 
 impl<'a> Body<'a> {
-    fn new(tree: &'a MeshTree, motion: &ConstantTwist, (start, end): (f64, f64), interest: DVec3) -> Self {
-        let omega = motion.angular_velocity();
-        let speed = omega.length();
-        let spins = speed * (end - start) > STILL_ANGLE;
-        let rotation = rotation_at(motion, start);
+    fn new(body: &'a SceneBody<'a>, spins: bool, start: f64, interest: DVec3) -> Self {
+        let motion = &body.motion;
+        let rotation = motion.rotation(start);
         let turn = |p: DVec3| rotation[0] * p.x + rotation[1] * p.y + rotation[2] * p.z;
         Self {
-            tree,
+            body,
             rotation,
-            arm: turn(tree.center() - motion.at()),
-            axis: if spins { omega / speed } else { interest },
+            arm: turn(motion.arm()),
+            axis: if spins { motion.turning().axis() } else { interest },
             spins,
-            turning: if spins { 0.0 } else { speed },
+            turning: if spins { DVec3::ZERO } else { motion.angular_velocity() },
             rings: Vec::new(),
         }
     }
@@ -131,7 +132,7 @@ impl<'a> Body<'a> {
 
     /// Corners of a triangle from the followed point.
     fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        corners(self.tree, triangle).map(|p| self.turn(p) + self.arm)
+        self.body.corners(triangle).map(|p| self.turn(p) + self.arm)
     }
 
     /// Points (from the followed point) as seen along the axis, which becomes the third coordinate.
@@ -143,19 +144,21 @@ impl<'a> Body<'a> {
 
     /// Fills in the rings of all boxes.
     fn measure(&mut self) {
-        let (see, center) = (self.seen_along_axis(), self.tree.center());
-        let vertices = self.tree.mesh.vertices();
-        let places: Vec<DVec3> = vertices.iter().map(|&p| see(self.turn(p - center) + self.arm)).collect();
-        self.rings = vec![Ring::NONE; self.tree.nodes.len() * WIDTH];
+        let (see, tree) = (self.seen_along_axis(), self.body.tree);
+        let vertices = tree.mesh.vertices();
+        let places: Vec<DVec3> =
+            vertices.iter().map(|&p| see(self.turn(self.body.place(p)) + self.arm)).collect();
+        self.rings = vec![Ring::NONE; tree.nodes.len() * WIDTH];
         self.measure_node(0, &places);
     }
 
     fn measure_node(&mut self, node: usize, places: &[DVec3]) -> Ring {
         let mut all = Ring::NONE;
-        for lane in 0..self.tree.nodes[node].used as usize {
-            let ring = match self.tree.nodes[node].below(lane) {
+        let tree = self.body.tree;
+        for lane in 0..tree.nodes[node].used as usize {
+            let ring = match tree.nodes[node].below(lane) {
                 Below::Triangle(triangle) => {
-                    let corners = self.tree.mesh.triangles()[triangle as usize];
+                    let corners = tree.mesh.triangles()[triangle as usize];
                     Ring::of(&corners.map(|vertex| places[vertex as usize]), self.spins)
                 }
                 Below::Node(below) => self.measure_node(below as usize, places),
@@ -179,14 +182,14 @@ impl<'a> Body<'a> {
             radius: corners.iter().map(|p| (*p - center).length()).fold(0.0, f64::max),
             corners: Some(corners),
             below: Below::Triangle(triangle),
-            speed: self.turning * corners.iter().map(|p| p.length()).fold(0.0, f64::max),
+            reach: self.from_spin(&corners),
         }
     }
 
     fn part(&self, index: u32) -> Part<'_> {
-        let (node, lane) = (&self.tree.nodes[index as usize / WIDTH], index as usize % WIDTH);
+        let (node, lane) = (&self.body.tree.nodes[index as usize / WIDTH], index as usize % WIDTH);
         let boxed = node.oriented_box(lane);
-        let unit = self.tree.unit;
+        let unit = self.body.box_unit();
         let local =
             DVec3::from_array([0, 1, 2].map(|k| f64::from(node.origin[k]) + f64::from(boxed.center[k])));
         let center = self.turn(local * unit) + self.arm;
@@ -199,12 +202,15 @@ impl<'a> Body<'a> {
         let half = boxed.half_extent.map(|h| f64::from(h) * unit);
         let radius = f64::from(boxed.radius) * unit;
         let ring = self.rings[index as usize];
-        // A body that is taken as at rest: how fast its points may be.
-        let reach = corners.map_or(center.length() + radius, |c| {
-            c.iter().map(|p| p.length_squared()).fold(0.0, f64::max).sqrt()
-        });
-        let speed = self.turning * reach;
-        Part { body: self, ring, center, axes, half, radius, corners, below, speed }
+        let reach = corners.map_or_else(|| self.from_spin(&[center]) + radius, |c| self.from_spin(&c));
+        Part { body: self, ring, center, axes, half, radius, corners, below, reach }
+    }
+
+    /// The largest distance of points from the axis about which a body at rest turns after all. It stays what it is.
+    fn from_spin(&self, points: &[DVec3]) -> f64 {
+        let axis = self.body.motion.turning().axis();
+        let across = |p: &DVec3| (*p - axis * axis.dot(*p)).length_squared();
+        points.iter().map(across).fold(0.0, f64::max).sqrt()
     }
 }
 
@@ -219,25 +225,26 @@ struct Part<'b> {
     radius: f64,
     corners: Option<[DVec3; 3]>,
     below: Below,
-    speed: f64,
+    /// The largest distance of its points from the axis of the spin, for a body at rest.
+    reach: f64,
 }
 
 impl Part<'_> {
     /// The farthest that the part's sweep reaches along a unit direction, from the followed point.
     fn reach(&self, n: DVec3) -> f64 {
+        // Each point is at most `far` from the axis at a height of the range.
         let along = n.dot(self.body.axis);
         let height = if along > 0.0 { along * self.ring.high } else { along * self.ring.low };
+        let ring = height + (n - self.body.axis * along).length() * self.ring.far;
         if self.body.spins {
-            return height + (n - self.body.axis * along).length() * self.ring.far;
+            return ring;
         }
         if let Some(corners) = &self.corners {
             return n.dot(corners[0]).max(n.dot(corners[1])).max(n.dot(corners[2]));
         }
         let boxed: f64 = (0..3).map(|i| self.half[i] * n.dot(self.axes[i]).abs()).sum();
-        // Axes that are rounded to f32 are orthonormal up to 5.2·2⁻²⁴ = 3.1e-7.
-        let boxed = n.dot(self.center) + boxed + 4e-7 * self.radius;
-        // Exactly along the direction of interest.
-        if along >= 1.0 - 1e-15 || along <= 1e-15 - 1.0 { boxed.min(height) } else { boxed }
+        // Boxes are rounded to f32, the range of heights is not.
+        (n.dot(self.center) + boxed + AXES_ERROR * self.radius).min(ring)
     }
 
     /// How far the part's points are from the axis of the other body, which goes through `from` (from the followed
@@ -246,10 +253,9 @@ impl Part<'_> {
         let across = |p: DVec3| p - axis * axis.dot(p);
         let apart = across(from);
         if self.body.spins {
-            if self.body.axis.cross(axis).length() > 1e-14 {
-                return (0.0, f64::INFINITY);
-            }
-            let shift = apart.length();
+            // Projections across two axes differ by the sine of the angle between them.
+            let farthest = self.ring.far + self.ring.low.abs().max(self.ring.high.abs());
+            let shift = apart.length() + self.body.axis.cross(axis).length() * farthest;
             return ((self.ring.near - shift).max(0.0), self.ring.far + shift);
         }
         if let Some(corners) = &self.corners {
@@ -260,10 +266,10 @@ impl Part<'_> {
         ((middle - self.radius).max(0.0), middle + self.radius)
     }
 
-    /// What decides which part is opened. Parts of a body that spins are much like each other: they come last.
+    /// What decides which part is opened.
     fn size(&self) -> f64 {
         if self.body.spins {
-            1e-3 * ((self.ring.high - self.ring.low) + (self.ring.far - self.ring.near))
+            SPINNING_SIZE * ((self.ring.high - self.ring.low) + (self.ring.far - self.ring.near))
         } else {
             self.radius
         }
@@ -280,9 +286,9 @@ struct Sweep<'a> {
     length: f64,
 }
 
-/// The time (≥ `start`, ≤ the end of the scene's window) up to which the sweeps stay further apart than the level, and
-/// the number of pairs that were looked at; `start` when less than `gain` would be won or more than `most` pairs are
-/// needed. `interest`: a direction that may separate bodies at rest. `suspects`: triangles that may be the reason for
+/// The offset (≥ `start`, ≤ the end) up to which the sweeps stay further apart than the level, and
+/// the number of pairs that were looked at; none when they are not apart for at least `gain`, or when more than `most`
+/// pairs are needed. `interest`: a direction that may separate bodies at rest. `suspects`: triangles that may be the reason for
 /// winning nothing, so are looked at first.
 pub(crate) fn swept_clear_until(
     scene: &Scene<'_>,
@@ -290,49 +296,54 @@ pub(crate) fn swept_clear_until(
     (gain, most): (f64, u64),
     interest: DVec3,
     suspects: [u32; 2],
-) -> (f64, u64) {
-    let end = scene.window.end();
-    let span = (start, end);
-    let interest = scene.spin_axis().unwrap_or(interest);
-    let bodies = [&scene.a, &scene.b].map(|(tree, motion)| Body::new(tree, motion, span, interest));
+) -> (Option<f64>, u64) {
+    let end = scene.end;
+    let spins = [&scene.a, &scene.b].map(|body| body.turns_by(end - start) > STILL_ANGLE);
+    let interest = if spins[0] || spins[1] { scene.spin_axis().unwrap_or(interest) } else { interest };
+    let bodies = [(&scene.a, spins[0]), (&scene.b, spins[1])]
+        .map(|(body, spins)| Body::new(body, spins, start, interest));
     let mut sweep = Sweep {
         bodies,
-        apart: -relative_position(&scene.a.1, &scene.b.1, start),
-        velocity: scene.b.1.linear_velocity() - scene.a.1.linear_velocity(),
+        apart: -relative_position(&scene.a.motion, &scene.b.motion, start),
+        velocity: scene.b.motion.linear_velocity() - scene.a.motion.linear_velocity(),
         level: scene.pair.level + SWEEP_ERROR * (scene.size + scene.pair.level),
-        length: end - start,
+        length: (end - start).next_up(),
     };
     let [a, b] = [0, 1].map(|k| sweep.bodies[k].triangle(suspects[k]));
-    if sweep.clear_for(&a, &b) < gain {
-        return (start, 1);
+    if sweep.clear_for(&a, &b).is_none_or(|until| until < gain) {
+        return (None, 1);
     }
     sweep.bodies.iter_mut().for_each(Body::measure);
     let (clear, pairs) = sweep.earliest(gain, most);
-    let time = if clear >= sweep.length {
-        end
-    } else {
-        (start + clear * (1.0 - 1e-12)).next_down().clamp(start, end)
-    };
-    (time, pairs)
+    (clear.and_then(|clear| after(start, clear, sweep.length, end)), pairs)
+}
+
+/// The offset up to which bodies are apart that are so for `clear` from `start` on: the end if that is `length`; none
+/// when no time is won.
+pub(super) fn after(start: f64, clear: f64, length: f64, end: f64) -> Option<f64> {
+    if clear >= length {
+        return Some(end);
+    }
+    let until = (start + clear * DOWN).next_down();
+    (until > start).then_some(until.min(end))
 }
 
 impl Sweep<'_> {
-    fn earliest(&self, gain: f64, most: u64) -> (f64, u64) {
+    /// The least of the times for which two triangles are apart, and how many pairs were looked at.
+    fn earliest(&self, gain: f64, most: u64) -> (Option<f64>, u64) {
         let (mut clear, mut pairs) = (self.length, 0);
         let mut stack = vec![(0u32, 0u32)];
         while let Some((a, b)) = stack.pop() {
             pairs += 1;
             let (part_a, part_b) = (self.bodies[0].part(a), self.bodies[1].part(b));
             let until = self.clear_for(&part_a, &part_b);
-            if until >= clear {
+            if until.is_some_and(|until| until >= clear) {
                 continue;
             }
             let open_a = match (part_a.below, part_b.below) {
                 (Below::Triangle(_), Below::Triangle(_)) => {
+                    let Some(until) = until.filter(|until| *until >= gain) else { return (None, pairs) };
                     clear = until;
-                    if clear < gain {
-                        return (0.0, pairs);
-                    }
                     continue;
                 }
                 (Below::Node(_), Below::Triangle(_)) => true,
@@ -340,12 +351,12 @@ impl Sweep<'_> {
                 (Below::Node(_), Below::Node(_)) => part_a.size() > part_b.size(),
             };
             if pairs >= most {
-                return (0.0, pairs);
+                return (None, pairs);
             }
             let below = |part: &Part<'_>| {
                 let Below::Node(node) = part.below else { return 0..0 };
                 let first = node * WIDTH as u32;
-                first..first + part.body.tree.nodes[node as usize].used
+                first..first + part.body.body.tree.nodes[node as usize].used
             };
             if open_a {
                 stack.extend(below(&part_a).map(|child| (child, b)));
@@ -353,29 +364,32 @@ impl Sweep<'_> {
                 stack.extend(below(&part_b).map(|child| (a, child)));
             }
         }
-        (clear, pairs)
+        (Some(clear), pairs)
     }
 
-    /// For how long the sweeps of the parts stay further apart than the level; at most the length of the span.
-    fn clear_for(&self, a: &Part<'_>, b: &Part<'_>) -> f64 {
-        let speed = a.speed + b.speed;
-        let mut best = 0.0;
-        // `gap` at the start, which changes at `rate`.
-        let mut take = |gap: f64, rate: f64| {
+    /// For how long the sweeps of the parts stay further apart than the level, at most the length of the span; none when
+    /// nothing tells them apart even now.
+    fn clear_for(&self, a: &Part<'_>, b: &Part<'_>) -> Option<f64> {
+        let mut best = None;
+        // `gap` at the start, which changes at `rate`, less the speed that parts of bodies at rest have along n or at all.
+        let mut take = |gap: f64, rate: f64, speed: f64| {
             let room = gap - self.level;
             if room > 0.0 {
-                let closing = speed * (1.0 + 1e-12) - rate;
-                let until = if closing * self.length <= room { self.length } else { room / closing };
-                if until > best {
-                    best = until;
+                let closing = speed * UP - rate;
+                let until = if closing * UP * self.length <= room { self.length } else { room / closing };
+                if best.is_none_or(|best| until > best) {
+                    best = Some(until);
                 }
             }
         };
+        // |n·(ω × e)| = |(n × ω)·e|, and what e has along ω does not count.
+        let speed_along = |part: &Part<'_>, n: DVec3| n.cross(part.body.turning).length() * part.reach;
         let mut along = |n: DVec3| {
             let forward = n.dot(self.apart);
             let drift = n.dot(self.velocity);
-            take(forward - b.reach(-n) - a.reach(n), drift);
-            take(-forward - b.reach(n) - a.reach(-n), -drift);
+            let speed = speed_along(a, n) + speed_along(b, n);
+            take(forward - b.reach(-n) - a.reach(n), drift, speed);
+            take(-forward - b.reach(n) - a.reach(-n), -drift, speed);
         };
         let unit = |v: DVec3| v.normalize_or_zero();
         for part in [a, b] {
@@ -406,9 +420,10 @@ impl Sweep<'_> {
             if outer.body.spins {
                 let axis = outer.body.axis;
                 let (near, far) = inner.distances(from, axis);
-                let drift = (self.velocity - axis * axis.dot(self.velocity)).length() * (1.0 + 1e-12);
-                take(outer.ring.near - far, -drift);
-                take(near - outer.ring.far, -drift);
+                let drift = (self.velocity - axis * axis.dot(self.velocity)).length() * UP;
+                let speed = inner.body.turning.length() * inner.reach;
+                take(outer.ring.near - far, -drift, speed);
+                take(near - outer.ring.far, -drift, speed);
             }
         }
         best
@@ -417,9 +432,11 @@ impl Sweep<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::local_motion::LocalMotion;
     use super::*;
-    use crate::{QueryOptions, TriMesh, Window};
+    use crate::{MeshTree, QueryOptions, TriMesh, Window};
     use d2m_feature::triangle_distance;
+    use d2m_motion::ConstantTwist;
     use glam::DQuat;
 
     /// A closed box.
@@ -436,7 +453,7 @@ mod tests {
     fn clear(a: (&MeshTree, ConstantTwist), b: (&MeshTree, ConstantTwist), interest: DVec3) -> f64 {
         let options = QueryOptions::default().with_tolerance(1e-10);
         let scene = Scene::new(a, b, Window::UNIT, &options);
-        swept_clear_until(&scene, 0.0, (0.0, 1 << 20), interest, [0, 0]).0
+        swept_clear_until(&scene, 0.0, (0.0, 1 << 20), interest, [0, 0]).0.unwrap_or(0.0)
     }
 
     fn at(x: DVec3, v: DVec3, w: DVec3) -> ConstantTwist {
@@ -520,7 +537,8 @@ mod tests {
             let until = clear((&a, motions[0]), (&b, motions[1]), DVec3::Y);
             won += u32::from(until > 0.0);
             let world = |tree: &MeshTree, motion: &ConstantTwist, t: f64| -> Vec<[DVec3; 3]> {
-                let (turn, x) = (rotation_at(motion, t), motion.position() + motion.linear_velocity() * t);
+                let turn = LocalMotion::unscaled(motion).rotation(t);
+                let x = motion.position() + motion.linear_velocity() * t;
                 let place = |p: DVec3| turn[0] * p.x + turn[1] * p.y + turn[2] * p.z + x;
                 (0..12).map(|k| tree.mesh().corners(k).map(|p| place(p - motion.at()))).collect()
             };

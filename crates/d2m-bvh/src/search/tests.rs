@@ -10,7 +10,7 @@ use super::portable::Portable;
 use super::quad::Quad;
 use super::scene::{Scene, Scratch};
 use super::triangle_pair::{Behind, Care, Look, PairScale, apart_since, look, place_a};
-use super::window::{Outcome, Search, corners};
+use super::window::{Outcome, Search};
 use crate::random::Random;
 use crate::tree::node::WIDTH;
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
@@ -77,9 +77,9 @@ fn least_ratio(rounds: u32, mutate: impl Fn(&mut NodeScale)) -> f64 {
                         let offset = part * f64::from(time.min(left)) * unit;
                         let frame = motion.frame::<Quad>(offset);
                         for &ta in &of_a {
-                            let placed = place_a::<Quad>(&frame, &corners(&a, ta));
+                            let placed = place_a::<Quad>(&frame, &scene.a.corners(ta));
                             for &tb in &of_b {
-                                let lower = triangle_distance(&placed, &corners(&b, tb)).lower;
+                                let lower = triangle_distance(&placed, &scene.b.corners(tb)).lower;
                                 least = least.min(lower / level);
                             }
                         }
@@ -122,8 +122,11 @@ fn room_at_the_end(triangle: [DVec3; 3], wall: f64, opened: usize, mutate: impl 
     let placed = Placed::new::<Portable>(&frame, &scale, (&single.nodes[0], 0), &wide.nodes[0]);
     let time = entry_times::<Portable>(&wide.nodes[0], &placed, &scale).store()[0];
     let frame = motion.frame::<Quad>(0.5 * f64::from(time.min(0.6)));
-    let plane = corners(&b, 0)[0].x;
-    place_a::<Quad>(&frame, &corners(&a, 0)).map(|p| p.x - plane).into_iter().fold(f64::INFINITY, f64::min)
+    let plane = scene.b.corners(0)[0].x;
+    place_a::<Quad>(&frame, &scene.a.corners(0))
+        .map(|p| p.x - plane)
+        .into_iter()
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// A small triangle on a long arm swings across the wall: along the arm its speed is zero, only its acceleration
@@ -156,7 +159,7 @@ fn room_after_a_look(closing: f64, backwards: Option<DVec3>, mutate: impl Fn(&mu
     let motion = RelativeMotion::new(&scene, 0.0);
     let mut pair = scene.pair;
     mutate(&mut pair);
-    let (ca, cb) = (corners(&a, 0), corners(&b, 0));
+    let (ca, cb) = (scene.a.corners(0), scene.b.corners(0));
     let frame = motion.frame::<Quad>(0.0);
     let time = if let Some(direction) = backwards {
         // The longest span that is found clear.
@@ -213,7 +216,7 @@ fn clear_times_of_triangle_pairs_hold_and_are_sharp() {
         let motions = [moving(&mut random, 2.0, speed, spin), moving(&mut random, 0.0, speed, spin)];
         let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
         let motion = RelativeMotion::new(&scene, 0.0);
-        let (ca, cb) = (corners(&a, 0), corners(&b, 0));
+        let (ca, cb) = (scene.a.corners(0), scene.b.corners(0));
         let care = [Care::Quick, Care::Thorough][round / 9 % 2];
         let found = look::<Quad>(&motion.frame::<Quad>(0.0), (&ca, &cb), &scene.pair, scene.longest, care);
         let Look::ClearFor(time) = found else { continue };
@@ -329,7 +332,7 @@ fn thorough_looks_hold() {
         let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
         let motion = RelativeMotion::new(&scene, 0.0);
         for (s, t) in [(0, 0), (1, 5), (3, 2), (7, 7)] {
-            let (ca, cb) = (corners(&a, s), corners(&b, t));
+            let (ca, cb) = (scene.a.corners(s), scene.b.corners(t));
             let found = look::<Quad>(
                 &motion.frame::<Quad>(0.0),
                 (&ca, &cb),
@@ -362,7 +365,7 @@ fn room_after_a_thorough_look(mutate: impl Fn(&mut Scene<'_>)) -> f64 {
     let mut scene = Scene::new((&a, turn), (&b, ConstantTwist::REST), window, &options);
     let motion = RelativeMotion::new(&scene, 0.0);
     mutate(&mut scene);
-    let (ca, cb) = (corners(&a, 0), corners(&b, 0));
+    let (ca, cb) = (scene.a.corners(0), scene.b.corners(0));
     let found =
         look::<Quad>(&motion.frame::<Quad>(0.0), (&ca, &cb), &scene.pair, scene.longest, Care::Thorough);
     let Look::ClearFor(time) = found else { panic!("0.004 apart") };

@@ -27,6 +27,17 @@ pub(crate) struct PairScale {
 }
 
 impl PairScale {
+    /// What is there before the first one.
+    pub(super) const NONE: Self = Self {
+        level: 0.0,
+        error: 0.0,
+        stop: 0.0,
+        spare: 0.0,
+        acceleration: 0.0,
+        arms: [DVec3::ZERO; 2],
+        swings: [0.0; 2],
+    };
+
     /// The distance down to which pairs are followed.
     #[inline(always)]
     fn aim(&self) -> f64 {

@@ -1,5 +1,6 @@
 //! The search itself: windows of limited rotation, and best first inside each.
 
+use super::base_pose::two_sum;
 use super::closest::closest;
 use super::dispatch::Task;
 use super::expansion::{KEY_SCALE, Opening};
@@ -9,16 +10,21 @@ use super::lanes::Lanes;
 use super::node_test::{NodeFrame, NodeScale};
 use super::quad::Quad;
 use super::queue::{Bucket, Item};
-use super::scene::{Scene, Scratch};
+use super::scene::{Scene, SceneBody, Scratch};
 use super::swept::swept_clear_until;
 use super::triangle_pair::{Behind, Care, Look, apart_since, look, place_a, widest_normal};
-use crate::tree::node::{Below, WIDTH, WideNode};
-use crate::{Budget, MeshTree, Mode, QueryOptions};
+use super::units::power_of_two_from;
+use crate::tree::margin::NARROW_UP;
+use crate::tree::node::{Below, LEAST_SIZE, WIDTH, WideNode};
+use crate::{Budget, Mode, QueryOptions};
 use glam::DVec3;
 use std::time::Instant;
 
 /// Batches between two looks at the length of the queue: it grows by less than 2¹⁵ items between them.
 const MEMORY_CHECK: u32 = 128;
+
+/// Least unit of time of a window, for those of no length: nothing moves by more than a rounding in it.
+const LEAST_SPAN: f64 = 1.0 / 1_152_921_504_606_846_976.0; // 2⁻⁶⁰
 
 /// Items that a batch may have before it is divided.
 const BATCH: usize = 32;
@@ -46,7 +52,7 @@ const AHEAD: usize = 2;
 /// A contact as the search knows it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found {
-    /// Start of the window of the search in which it lies, and the offset from there.
+    /// Start of the window of the search in which it lies (an offset of the query), and the offset from there.
     pub(crate) start: f64,
     pub(crate) offset: f64,
     pub(crate) triangles: [u32; 2],
@@ -54,12 +60,24 @@ pub(crate) struct Found {
     pub(crate) crossing: bool,
 }
 
+impl Found {
+    /// The offset in the query, not late.
+    pub(crate) fn in_query(&self) -> f64 {
+        sum_down(self.start, self.offset)
+    }
+
+    /// Is it at the very start of the query?
+    pub(crate) fn is_at_start(&self) -> bool {
+        self.start == 0.0 && self.offset == 0.0
+    }
+}
+
 /// Result of a search.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Outcome {
     Separated,
     Found(Found),
-    /// The budget ran out; free until this time.
+    /// The budget ran out; free until this offset.
     OutOfBudget(f64),
 }
 
@@ -99,7 +117,7 @@ pub(super) struct Limits {
 struct State<'a> {
     motion: RelativeMotion,
     opening: Opening<'a>,
-    /// Seconds (scene time) of one step of the key.
+    /// One step of the key, as a difference of offsets.
     step: f64,
     /// Keys from here on do not matter.
     limit: u32,
@@ -119,11 +137,11 @@ impl Task for Search<'_> {
     /// Searches window after window.
     #[inline(always)]
     fn run<L: Lanes>(mut self) -> Outcome {
-        let (first, end) = (self.scene.window.start(), self.scene.window.end());
+        let end = self.scene.end;
         #[cfg(feature = "rayon")]
-        let mut window = self.ahead.map_or_else(|| self.window_from(first), |ahead| Some(ahead.window));
+        let mut window = self.ahead.map_or_else(|| self.window_from(0.0), |ahead| Some(ahead.window));
         #[cfg(not(feature = "rayon"))]
-        let mut window = self.window_from(first);
+        let mut window = self.window_from(0.0);
         while let Some((start, next)) = window {
             let clear_until = match self.search_window::<L>(start, next) {
                 Step::Answer(outcome) => return outcome,
@@ -187,13 +205,13 @@ impl<'s> Search<'s> {
 
     /// The next window to be searched; `None` when nothing is left.
     pub(super) fn window_from(&self, start: f64) -> Option<(f64, f64)> {
-        let end = self.scene.window.end();
+        let end = self.scene.end;
         let start = self.scene.balls_clear_until(start);
-        if start >= end && end > self.scene.window.start() {
+        // A query of no length has one window.
+        if start >= end && end > 0.0 {
             return None;
         }
-        let next = (start + self.scene.longest).min(end);
-        Some((start, if next > start { next } else { end }))
+        Some((start, (start + self.scene.longest).min(end)))
     }
 
     #[inline(always)]
@@ -201,8 +219,8 @@ impl<'s> Search<'s> {
         let scene = self.scene;
         let motion = RelativeMotion::new(scene, start);
         // At least end − start, whatever its rounding.
-        let length = (end - start) * (1.0 + 1e-15);
-        let time_unit = power_of_two_from(length);
+        let length = (end - start).next_up();
+        let time_unit = power_of_two_from(length.max(LEAST_SPAN));
         let step = time_unit / KEY_SCALE;
         let scales = match self.scales {
             Some((unit, scales)) if unit == time_unit => scales,
@@ -213,9 +231,12 @@ impl<'s> Search<'s> {
             motion,
             node_frames: [NodeFrame::NONE; 2],
             opening: Opening {
-                nodes: [&scene.a.0.nodes, &scene.b.0.nodes],
+                nodes: [&scene.a.tree.nodes, &scene.b.tree.nodes],
                 scales,
-                size_ratios: [cube(scales[1].ratio).clamp(1e-18, 1e18) as f32, 1.0],
+                size_ratios: [
+                    cube(scales[1].ratio).clamp(LEAST_SIZE.into(), 1.0 / f64::from(LEAST_SIZE)) as f32,
+                    1.0,
+                ],
             },
             step,
             limit: (length / step).ceil() as u32 + 1,
@@ -239,7 +260,7 @@ impl<'s> Search<'s> {
             batches += 1;
             let full = batches % MEMORY_CHECK == 0 && self.scratch.queue.len() > Budget::HARD_QUEUED_PAIRS;
             if full || self.out_of_budget() {
-                outcome = Some(Step::Answer(Outcome::OutOfBudget(time_from(start, f64::from(least) * step))));
+                outcome = Some(Step::Answer(Outcome::OutOfBudget(sum_down(start, f64::from(least) * step))));
                 break;
             }
             #[cfg(feature = "rayon")]
@@ -248,9 +269,10 @@ impl<'s> Search<'s> {
                 break;
             }
             if self.work() >= self.limits.sweep_from {
-                let now = time_from(start, f64::from(least) * step);
-                let until = self.sweep(&state, now, batch.items()[0].boxes);
-                if until >= end {
+                let now = sum_down(start, f64::from(least) * step);
+                if let Some(until) = self.sweep(&state, now, batch.items()[0].boxes)
+                    && until >= end
+                {
                     outcome = Some(Step::ClearUntil(until));
                     break;
                 }
@@ -277,31 +299,30 @@ impl<'s> Search<'s> {
         })
     }
 
-    /// A time up to which the sweeps of the bodies are apart from `now` on; `now` if they are not for long. `boxes`: a
-    /// pair that may be near.
+    /// An offset up to which the sweeps of the bodies are apart from `now` on; none if they are not for long. `boxes`:
+    /// a pair that may be near.
     #[cold]
     #[inline(never)]
-    fn sweep(&mut self, state: &State<'_>, now: f64, boxes: [u32; 2]) -> f64 {
-        let window = self.scene.window;
+    fn sweep(&mut self, state: &State<'_>, now: f64, boxes: [u32; 2]) -> Option<f64> {
         let patient = FIRST_SWEEP + triangle_count(self.scene);
-        if self.work() < patient && now - window.start() > ON_ITS_WAY * window.length() {
+        if self.work() < patient && now > ON_ITS_WAY * self.scene.end {
             self.limits.sweep_from = patient;
-            return now;
+            return None;
         }
         if self.scratch.counts.triangle_looks == 0 {
             self.scratch.last_looked_at =
                 [0, 1].map(|body| first_triangle(state.opening.nodes[body], boxes[body]));
         }
         let [a, b] = self.scratch.last_looked_at;
-        let b = corners(self.scene.b.0, b);
-        let near = widest_normal(&place_a::<Quad>(&state.frame, &corners(self.scene.a.0, a)), &b);
+        let b = self.scene.b.corners(b);
+        let near = widest_normal(&place_a::<Quad>(&state.frame, &self.scene.a.corners(a)), &b);
         let turn = state.motion.rotation_b(state.frame.offset);
         let interest = turn.times::<Quad>(near).to_vec().normalize_or(DVec3::X);
-        let gain = self.scene.longest.min(self.scene.window.end() - now);
+        let gain = self.scene.longest.min(self.scene.end - now);
         let limits = (gain, self.work() + FIRST_SWEEP);
         let (mut until, mut pairs) =
             swept_clear_until(self.scene, now, limits, interest, self.scratch.last_looked_at);
-        if until <= now {
+        if until.is_none() {
             let (later, more) = screw_clear_until(self.scene, now, limits, self.scratch.last_looked_at);
             (until, pairs) = (later, pairs + more);
         }
@@ -309,7 +330,7 @@ impl<'s> Search<'s> {
         self.scratch.counts.swept_pairs += pairs;
         let work = self.work();
         let from = &mut self.limits.sweep_from;
-        *from = if until > now { work + *from / 4 } else { 4 * work };
+        *from = if until.is_some() { work + *from / 4 } else { 4 * work };
         until
     }
 
@@ -362,8 +383,7 @@ impl<'s> Search<'s> {
             let index = item.boxes[body] as usize;
             state.opening.nodes[body][index / WIDTH].triangle(index % WIDTH)
         });
-        let a = corners(self.scene.a.0, triangles[0]);
-        let b = corners(self.scene.b.0, triangles[1]);
+        let (a, b) = (self.scene.a.corners(triangles[0]), self.scene.b.corners(triangles[1]));
         if self.limits.mode == Mode::Capoeira && self.stop_early::<L>(state, item, &a, &b, triangles) {
             return;
         }
@@ -371,7 +391,7 @@ impl<'s> Search<'s> {
         let mut known = f64::from(item.key) * state.step;
         if state.found.is_some() {
             self.scratch.counts.triangle_looks += 1;
-            let span = (state.limit_offset - known) * (1.0 + 1e-15);
+            let span = (state.limit_offset - known).next_up();
             if apart_since::<L::Doubles>(&state.behind, (&a, &b), &self.scene.pair, span) {
                 return;
             }
@@ -464,14 +484,15 @@ impl Search<'_> {
         b: &[DVec3; 3],
         triangles: [u32; 2],
     ) -> bool {
-        let radius = |tree: &MeshTree, index: u32| {
-            f64::from(tree.nodes[index as usize / WIDTH].radius[index as usize % WIDTH]) * tree.unit
+        let radius = |body: &SceneBody<'_>, index: u32| {
+            let (node, lane) = (&body.tree.nodes[index as usize / WIDTH], index as usize % WIDTH);
+            f64::from(node.radius[lane]) * body.box_unit()
         };
-        let size = radius(self.scene.a.0, item.boxes[0]) + radius(self.scene.b.0, item.boxes[1]);
+        let size = radius(&self.scene.a, item.boxes[0]) + radius(&self.scene.b, item.boxes[1]);
         let near = closest::<L::Doubles>(&place_a::<L::Doubles>(&state.frame, a), b);
         let close = near.square <= size * size && (state.frame.offset > 0.0 || near.square > 0.0);
         // At the very start the accurate look decides whether the bodies touch.
-        if close && (state.frame_key > 0 || state.motion.start > self.scene.window.start()) {
+        if close && (state.frame_key > 0 || state.motion.start > 0.0) {
             let offset = state.frame.offset;
             state.found = Some(Found { start: state.motion.start, offset, triangles, crossing: false });
             state.end();
@@ -490,41 +511,20 @@ fn first_triangle(nodes: &[WideNode], index: u32) -> u32 {
 }
 
 fn triangle_count(scene: &Scene<'_>) -> u64 {
-    (scene.a.0.mesh.triangle_count() + scene.b.0.mesh.triangle_count()) as u64
-}
-
-/// Corners relative to the tree's centre, body axes, scene units.
-#[inline(always)]
-pub(crate) fn corners(tree: &MeshTree, triangle: u32) -> [DVec3; 3] {
-    let [i, j, k] = tree.mesh.triangles()[triangle as usize];
-    let vertices = tree.mesh.vertices();
-    [
-        vertices[i as usize] - tree.center,
-        vertices[j as usize] - tree.center,
-        vertices[k as usize] - tree.center,
-    ]
+    (scene.a.tree.mesh.triangle_count() + scene.b.tree.mesh.triangle_count()) as u64
 }
 
 /// Units of the window from key `now` to key `limit`, rounded up.
 fn time_left(limit: u32, now: u32) -> f32 {
-    (limit - now) as f32 * (1.0 / KEY_SCALE as f32) * (1.0 + 1e-6)
+    (limit - now) as f32 * (1.0 / KEY_SCALE as f32) * NARROW_UP as f32
 }
 
 fn cube(x: f64) -> f64 {
     x * x * x
 }
 
-/// The least power of two that is not below a positive `length`.
-fn power_of_two_from(length: f64) -> f64 {
-    let length = length.max(1e-290);
-    let power = f64::from_bits(length.to_bits() & (0x7ff << 52));
-    if power < length { 2.0 * power } else { power }
-}
-
-/// start + offset, rounded down.
-pub(crate) fn time_from(start: f64, offset: f64) -> f64 {
-    let sum = start + offset;
-    let back = sum - start;
-    let error = (start - (sum - back)) + (offset - back);
-    if error < 0.0 { sum.next_down() } else { sum }
+/// The sum of two offsets, rounded down.
+fn sum_down(start: f64, offset: f64) -> f64 {
+    let sum = two_sum(start, offset);
+    if sum.1 < 0.0 { sum.0.next_down() } else { sum.0 }
 }

@@ -7,6 +7,14 @@ pub(crate) const UNIT_F32: f64 = 1.0 / 16_777_216.0;
 /// v = 2⁻⁵³.
 pub(crate) const UNIT_F64: f64 = 1.0 / 9_007_199_254_740_992.0;
 
+/// Factor that raises a positive number by more than some 2000 roundings of terms of one sign could have lowered it:
+/// 2000·2⁻⁵³ < 2⁻⁴². Bounds that are used once a step, not once an operation, can afford it.
+pub(crate) const UP: f64 = 1.0 + 1.0 / 1_099_511_627_776.0; // 1 + 2⁻⁴⁰
+/// The same downwards.
+pub(crate) const DOWN: f64 = 1.0 - 1.0 / 1_099_511_627_776.0;
+/// Factor that covers sixteen roundings to `f32`.
+pub(crate) const NARROW_UP: f64 = 1.0 + 16.0 * UNIT_F32;
+
 /// The least `f32` that is not below `value`.
 pub(crate) fn round_up(value: f64) -> f32 {
     let rounded = value as f32;

@@ -29,18 +29,24 @@ impl Extent {
 
     /// The least bound on the distance from a given centre.
     pub(super) fn about(mesh: &TriMesh, center: DVec3) -> Self {
-        let used = mesh.triangles().iter().flatten().map(|&i| mesh.vertices()[i as usize]);
-        let square = used.map(|p| (p - center).length_squared()).fold(0.0, f64::max);
-        // Differences, squares, sum, root: relative error below 6v.
-        let radius = square.sqrt() * (1.0 + 16.0 * UNIT_F64);
+        let used = || mesh.triangles().iter().flatten().map(|&i| mesh.vertices()[i as usize] - center);
+        // In a unit in which no square over- or underflows.
+        let unit = unit_of(used().map(|p| p.abs().max_element()).fold(0.0, f64::max));
+        let square = used().map(|p| (p / unit).length_squared()).fold(0.0, f64::max);
+        // Differences, squares, sum, root: relative error below 6v. Below the normal numbers the product rounds.
+        let radius = square.sqrt() * (1.0 + 16.0 * UNIT_F64) * unit;
+        let radius = if radius < f64::MIN_POSITIVE && square > 0.0 { f64::MIN_POSITIVE } else { radius };
         Self { center, radius, unit: unit_of(radius) }
     }
 }
 
-/// The least power of two that is not below `radius`, within the range where nothing over- or underflows.
+/// The least unit of a tree: one over it is a number.
+const LEAST_UNIT: f64 = f64::from_bits((1023 - 1000) << 52); // 2⁻¹⁰⁰⁰
+
+/// The least power of two that is not below `radius`, and not below the least unit; one for a point.
 pub(super) fn unit_of(radius: f64) -> f64 {
-    if radius < 2f64.powi(-600) {
-        return if radius == 0.0 { 1.0 } else { 2f64.powi(-600) };
+    if radius < LEAST_UNIT {
+        return if radius == 0.0 { 1.0 } else { LEAST_UNIT };
     }
     let power = f64::from_bits(radius.to_bits() & (0x7ff << 52));
     if power < radius { 2.0 * power } else { power }

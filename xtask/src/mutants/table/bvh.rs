@@ -130,10 +130,45 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/src/search/swept.rs::sweeps_reach_exactly_as_far_as_the_bodies",
     ),
     patch(
+        "directions near the axis taken for the axis",
+        "crates/d2m-bvh/src/search/swept.rs",
+        "(n.dot(self.center) + boxed + AXES_ERROR * self.radius).min(ring)",
+        "(n.dot(self.center) + boxed + AXES_ERROR * self.radius).min(height)",
+        "crates/d2m-bvh/tests/clock_and_units.rs::a_step_is_never_overlooked_by_sweeps",
+    ),
+    patch(
+        "triangles whose sweeps meet count as apart",
+        "crates/d2m-bvh/src/search/swept.rs",
+        "until.filter(|until| *until >= gain) else",
+        "until.or(Some(self.length)) else",
+        "crates/d2m-bvh/src/search/swept.rs::nothing_meets_while_sweeps_are_apart",
+    ),
+    patch(
+        "times rounded to nearest",
+        "crates/d2m-bvh/src/search/units.rs",
+        "if sum.1 < 0.0 { sum.0.next_down() } else { sum.0 }",
+        "sum.0",
+        "crates/d2m-bvh/tests/clock_and_units.rs::a_start_at_large_times_is_not_a_contact",
+    ),
+    patch(
+        "what time cannot resolve is not in the tolerance",
+        "crates/d2m-bvh/src/query/report.rs",
+        "if left > MOST_LEFT * contact.tolerance {",
+        "if left > f64::MAX {",
+        "crates/d2m-bvh/tests/clock_and_units.rs::a_start_at_large_times_is_not_a_contact",
+    ),
+    patch(
+        "windows of ten times the angle",
+        "crates/d2m-bvh/src/search/scene.rs",
+        "const WINDOW_ANGLE: f64 = 0.3;",
+        "const WINDOW_ANGLE: f64 = 3.0;",
+        "crates/d2m-bvh/tests/clock_and_units.rs::windows_are_limited_in_angle_at_any_time",
+    ),
+    patch(
         "the hole of a sweep wider by 1e-5",
         "crates/d2m-bvh/src/search/swept.rs",
-        "take(outer.ring.near - far, -drift);",
-        "take(outer.ring.near + 1e-5 - far, -drift);",
+        "take(outer.ring.near - far, -drift, speed);",
+        "take(outer.ring.near + 1e-5 - far, -drift, speed);",
         "crates/d2m-bvh/src/search/swept.rs::sweeps_inside_a_hole",
     ),
     patch(
@@ -146,7 +181,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "triangles of one class taken for equal",
         "crates/d2m-bvh/src/search/picture.rs",
-        "one.slack = one.slack.max(beside * (1.0 + 1e-12));",
+        "one.slack = one.slack.max(beside * UP);",
         "one.slack = one.slack.max(0.0 * beside);",
         "crates/d2m-bvh/src/search/helix.rs::triangles_of_a_class_count_where_they_are",
     ),
@@ -182,8 +217,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "late by 1e-6",
         "crates/d2m-bvh/src/query/report.rs",
-        "let time = crate::search::time_from(found.start, found.offset)",
-        "let time = (1e-6 + crate::search::time_from(found.start, found.offset))",
+        "let time = scene.units.time_down(found.in_query());",
+        "let time = 1e-6 + scene.units.time_down(found.in_query());",
         "crates/d2m-bvh/tests/engine.rs::separation_at_lo_is_what_is_promised_and_nothing_touches_before",
     ),
     patch(
@@ -196,7 +231,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "the end of the budget is called clear",
         "crates/d2m-bvh/src/query/time_of_contact.rs",
-        "Outcome::OutOfBudget(until) => TimeOfContact::Undecided { clear_until: until },",
+        "Outcome::OutOfBudget(until) => TimeOfContact::Undecided { clear_until: scene.units.time_down(until) },",
         "Outcome::OutOfBudget(_) => TimeOfContact::Separated,",
         "crates/d2m-bvh/tests/engine.rs::modes_and_budgets_are_consistent",
     ),

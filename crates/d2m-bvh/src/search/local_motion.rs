@@ -1,0 +1,132 @@
+//! A constant twist on the clock and in the unit of length of a search.
+
+use super::base_pose::{Columns, Pair, Turning, two_sum};
+use super::units::Units;
+use d2m_motion::ConstantTwist;
+use glam::DVec3;
+
+/// A constant twist, times and lengths in [`Units`].
+///
+/// The reference point is moved where it is nearest to the centre of the body: along the axis of the spin, or anywhere
+/// if there is no spin. That changes its position by a vector that is the same at all times, and nothing else of the
+/// motion; so distances from it are distances from the axis as far as the body's centre is concerned.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LocalMotion {
+    position: DVec3,
+    linear_velocity: DVec3,
+    angular_velocity: DVec3,
+    /// From the given reference point to the one in use, world axes.
+    shift: DVec3,
+    /// From the reference point in use, and from the given one, to the centre of the tree, body axes.
+    arm: DVec3,
+    given_arm: DVec3,
+    turning: Turning,
+    /// From the reference time to the start of the window.
+    elapsed: Pair,
+}
+
+impl LocalMotion {
+    /// Of a body with this centre.
+    pub(crate) fn new(motion: &ConstantTwist, center: DVec3, start: f64, units: &Units) -> Self {
+        let (per_length, time) = (1.0 / units.length(), units.time());
+        let angular_velocity = motion.angular_velocity() * time;
+        let speed = per_length * time;
+        let linear_velocity = if speed.is_normal() {
+            motion.linear_velocity() * speed
+        } else {
+            motion.linear_velocity() * time * per_length
+        };
+        let turning = Turning::new(motion.orientation().to_array(), angular_velocity);
+        let given_arm = (center - motion.at()) * per_length;
+        let [x, y, z] = turning.start();
+        let turn = |p: DVec3| x * p.x + y * p.y + z * p.z;
+        let (shift, arm) = if angular_velocity == DVec3::ZERO {
+            (turn(given_arm), DVec3::ZERO)
+        } else {
+            // In body axes the axis of the spin stays where it is.
+            let k = turning.axis();
+            let k = DVec3::new(x.dot(k), y.dot(k), z.dot(k));
+            let along = k * k.dot(given_arm);
+            (turn(along), given_arm - along)
+        };
+        // The time means nothing for a body at rest.
+        let rests = angular_velocity == DVec3::ZERO && linear_velocity == DVec3::ZERO;
+        let since = two_sum(start, -motion.reference_time());
+        let elapsed = if rests { Pair(0.0, 0.0) } else { Pair(since.0 / time, since.1 / time) };
+        let position = motion.position() * per_length;
+        Self { position, linear_velocity, angular_velocity, shift, arm, given_arm, turning, elapsed }
+    }
+
+    /// The motion as it is: offsets count from time zero, in seconds, and the reference point stays.
+    #[cfg(test)]
+    pub(crate) fn unscaled(motion: &ConstantTwist) -> Self {
+        let units = Units::new(crate::Window::UNIT, 1.0, 1.0);
+        Self::new(motion, motion.at(), 0.0, &units)
+    }
+
+    /// World position of the given reference point at the reference time.
+    pub(crate) const fn position(&self) -> DVec3 {
+        self.position
+    }
+
+    /// Velocity of the reference point, world axes.
+    pub(crate) const fn linear_velocity(&self) -> DVec3 {
+        self.linear_velocity
+    }
+
+    /// Angular velocity, world axes.
+    pub(crate) const fn angular_velocity(&self) -> DVec3 {
+        self.angular_velocity
+    }
+
+    /// From the given reference point to the one in use, world axes, at all times.
+    pub(crate) const fn shift(&self) -> DVec3 {
+        self.shift
+    }
+
+    /// From the reference point in use to the centre of the tree, body axes.
+    pub(crate) const fn arm(&self) -> DVec3 {
+        self.arm
+    }
+
+    /// From the given reference point to the centre of the tree, body axes.
+    pub(crate) const fn given_arm(&self) -> DVec3 {
+        self.given_arm
+    }
+
+    /// How the body turns.
+    pub(crate) const fn turning(&self) -> &Turning {
+        &self.turning
+    }
+
+    /// From the reference time to an offset.
+    pub(crate) fn elapsed(&self, offset: f64) -> Pair {
+        let sum = two_sum(self.elapsed.0, offset);
+        two_sum(sum.0, sum.1 + self.elapsed.1)
+    }
+
+    /// World position of the reference point in use at an offset: for witness points, no bound rests on it.
+    pub(crate) fn estimate_position(&self, offset: f64) -> DVec3 {
+        let elapsed = self.elapsed(offset);
+        let one = |k: usize| elapsed.times(self.linear_velocity[k]).add(Pair(self.position[k], 0.0)).0;
+        DVec3::new(one(0), one(1), one(2)) + self.shift
+    }
+
+    /// The axes of the body at an offset.
+    pub(crate) fn rotation(&self, offset: f64) -> Columns {
+        super::base_pose::rotation_at(self, offset)
+    }
+
+    /// Bound on the terms of the position, up to an offset of one, by which its rounding is measured.
+    pub(crate) fn terms(&self) -> f64 {
+        let largest = |v: DVec3| v.abs().max_element();
+        let longest = (self.elapsed.0.abs() + 1.0).max(self.elapsed(1.0).0.abs());
+        largest(self.position) + largest(self.shift) + largest(self.linear_velocity) * longest
+    }
+
+    /// Bound on the angle between the reference time and any offset up to `end`.
+    pub(crate) fn angle(&self, end: f64) -> f64 {
+        let longest = self.elapsed.0.abs().max(self.elapsed(end).0.abs());
+        self.turning.speed() * longest
+    }
+}
