@@ -1,7 +1,6 @@
 //! First contact of single feature pairs: the table of times by family, then criterion's statistics of the same.
 //!
 //! `cargo bench -p d2m-benches --bench feature` prints the table first; every answer is judged before it is timed.
-mod batch;
 #[path = "../../../crates/d2m-feature/tests/planted/families.rs"]
 mod families;
 mod table;
@@ -14,7 +13,6 @@ use table::{COLUMNS, Method};
 
 fn main() {
     table::print(2000);
-    batch::print();
     let mut criterion = Criterion::default().configure_from_args();
     let options = ContactOptions::new();
     for (name, kind, method) in [

@@ -1,6 +1,5 @@
 #![doc = include_str!("../README.md")]
 
-mod batch;
 mod closest;
 mod contact;
 mod details;
@@ -18,7 +17,6 @@ mod straight_path;
 mod triangle_distance;
 mod triangle_intersection;
 
-pub use batch::{EdgeQuad, PointQuad, TriangleQuad};
 pub use contact::{ContactBracket, ContactDetails, FirstContact};
 pub use enclosed_pair::EnclosedPairMotion;
 pub use exact_sign::{orient2d, orient3d};

@@ -2,10 +2,6 @@
 use super::{Mutant, in_test, patch};
 
 pub(super) const MUTANTS: &[Mutant] = &[
-    in_test(
-        "no margin, no stray in a batch",
-        "crates/d2m-feature/src/batch/tests.rs::planted_contacts_are_never_rejected_and_the_margin_is_needed",
-    ),
     // Features.
     patch(
         "Γ inverted, paper's vertex/face",
