@@ -1,4 +1,5 @@
 //! Closest points of point/triangle and segment/segment at one time, made for certifying directions.
+use crate::accurate_cross::{Difference, accurate_cross};
 use glam::DVec3;
 
 /// A closest pair: weights and the difference vector from B to A.
@@ -65,9 +66,18 @@ pub(crate) fn point_triangle(p: DVec3, triangle: &[DVec3; 3], normal: DVec3) -> 
         let (u, v, w) = (area(1, 2), area(2, 0), area(0, 1));
         let sum = u + v + w;
         if u > 0.0 && v > 0.0 && w > 0.0 && sum > 0.0 && sum.is_finite() {
-            let b = [u / sum, v / sum, w / sum];
-            let point = local[0] * b[0] + local[1] * b[1] + local[2] * b[2];
-            if point.length_squared() <= best.0 {
+            let mut b = [u / sum, v / sum, w / sum];
+            let mut point = local[0] * b[0] + local[1] * b[1] + local[2] * b[2];
+            // Areas of a sliver are mostly rounding, which moves the point along it: back to the foot on the longest side's
+            // direction. Across it a wrong weight does little.
+            let edges = [local[1] - local[0], local[2] - local[1], local[0] - local[2]];
+            let squares = edges.map(DVec3::length_squared);
+            let i = (0..3).fold(0, |best, i| if squares[i] > squares[best] { i } else { best });
+            let s = -point.dot(edges[i]) / squares[i];
+            b[i] -= s;
+            b[(i + 1) % 3] += s;
+            point += edges[i] * s;
+            if b.iter().all(|&weight| weight >= 0.0) && point.length_squared() <= best.0 {
                 let side = if normal.dot(point) > 0.0 { -normal } else { normal };
                 return ClosestPair { a: [1.0, 0.0, 0.0], b, difference: -point, separating: side };
             }
@@ -75,6 +85,12 @@ pub(crate) fn point_triangle(p: DVec3, triangle: &[DVec3; 3], normal: DVec3) -> 
     }
     best.1
 }
+
+/// Squared sine of the angle between two edges below which their common normal is made with twice the digits.
+const SLIGHT: f64 = 1e-4;
+/// Squared sine of the angle between two edges from which they have a common normal: below 10⁻¹⁵ rad the edges themselves
+/// are rounded by more. The closest points from the ends serve then.
+const SIN_SQUARED: f64 = 1e-30;
 
 /// Closest points of the segments `w ± e` (A) and `± d` (B).
 pub(crate) fn segment_segment(w: DVec3, e: DVec3, d: DVec3) -> ClosestPair {
@@ -96,12 +112,19 @@ pub(crate) fn segment_segment(w: DVec3, e: DVec3, d: DVec3) -> ClosestPair {
         let inside = x > 0.0 && x < 1.0;
         offer(2.0 * x - 1.0, s, foot, if inside { orthogonal(foot, e) } else { foot });
     }
-    let k = e.cross(d);
+    let (e_squared, d_squared) = (e.length_squared(), d.length_squared());
+    let mut k = e.cross(d);
+    if k.length_squared() < SLIGHT * e_squared * d_squared {
+        // Rounding of e × d turns it by 2⁻⁵³ over the sine of the angle: with twice the digits by nothing that matters.
+        k = accurate_cross(Difference::from(e), Difference::from(d));
+    }
     let square = k.length_squared();
-    if square > 1e-26 * e.length_squared() * d.length_squared() && square.is_normal() {
-        // (w + s e − t d) ∥ k: s = −(w × d)·k/|k|², t = −(w × e)·k/|k|².
+    if square > SIN_SQUARED * e_squared * d_squared && square.is_normal() {
+        // (w + s e − t d) ∥ k: s = −(w × d)·k/|k|². For lines that are nearly parallel s is poor, but the closest point of
+        // the other line to any point of this one is not, and it is as close up to the square of the angle.
         let s = -w.cross(d).dot(k) / square;
-        let t = -w.cross(e).dot(k) / square;
+        let t = (w + e * s).dot(d) / d_squared;
+        let s = (d * t - w).dot(e) / e_squared;
         if s.abs() < 1.0 && t.abs() < 1.0 {
             let difference = w + e * s - d * t;
             let side = if difference.dot(k) < 0.0 { -k } else { k };

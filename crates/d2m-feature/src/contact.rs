@@ -9,8 +9,8 @@ pub enum FirstContact {
     Clear,
     /// The first contact lies in the bracket.
     Contact(ContactBracket),
-    /// The limit of evaluations was reached, or not even a distance could be bounded (rotations beyond 10⁹ rad); no
-    /// contact before `clear_until`.
+    /// The limit of evaluations was reached, or the numbers do not allow an answer (rotations beyond 10⁹ rad in the window,
+    /// quantities that differ by more than 2²⁰⁰, a clock too coarse to follow the features); no contact before `clear_until`.
     Undecided {
         /// No contact from the start of the window to here.
         clear_until: f64,
@@ -19,8 +19,9 @@ pub enum FirstContact {
 
 /// A two-sided enclosure of the first contact.
 ///
-/// Promise: no contact in `[t0, lo)`; and, as the evidence says, a true contact at some time of `[lo, hi]`, or a time
-/// in it at which the features are within the tolerance (of the minimum separation).
+/// Promise: no contact in `[t0, lo)`; and, as the evidence says, a true contact at some time of `[lo, hi]`
+/// ([`Evidence::Crossing`]), or a time in it at which the distance is proven to be at most `tolerance` beyond the minimum
+/// separation ([`Evidence::WithinTolerance`]; also for features that touch at the start, with `lo = hi = t0`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactBracket {
     /// No contact before this time of the window.
@@ -29,8 +30,12 @@ pub struct ContactBracket {
     pub hi: f64,
     /// How the contact is known.
     pub evidence: Evidence,
-    /// Proven upper bound of the distance (beyond the minimum separation) at some time of the bracket.
+    /// Proven upper bound of the distance (beyond the minimum separation) at some time of the bracket; 0 for a crossing,
+    /// negative where balls overlap.
     pub distance: f64,
+    /// The tolerance δ that was used: the one of the options, unless rounding or the clock cannot tell such a distance
+    /// from zero. Then it is as large as they need.
+    pub tolerance: f64,
 }
 
 /// Where and how two features touch. Plain floating point at one time: it describes, it proves nothing.

@@ -2,6 +2,7 @@
 use crate::closest::{self, ClosestPair};
 use crate::contact::ContactDetails;
 use crate::path::direction;
+use crate::sphere::Sphere;
 use d2m_motion::{Pose, RigidMotion, Twist};
 use glam::DVec3;
 
@@ -44,14 +45,15 @@ pub(crate) fn edge_edge(
 pub(crate) fn sphere_sphere(
     a: &dyn RigidMotion,
     b: &dyn RigidMotion,
-    ball_a: (DVec3, f64),
-    ball_b: (DVec3, f64),
+    sphere_a: Sphere,
+    sphere_b: Sphere,
     time: f64,
 ) -> ContactDetails {
     let (on_a, on_b) = (a.pose_and_twist(time), b.pose_and_twist(time));
-    let (centre_a, centre_b) = (on_a.0.transform_point(ball_a.0), on_b.0.transform_point(ball_b.0));
-    let normal = (centre_b - centre_a).normalize_or_zero();
-    let (point_a, point_b) = (centre_a + normal * ball_a.1, centre_b - normal * ball_b.1);
+    let (center_a, center_b) =
+        (on_a.0.transform_point(sphere_a.center), on_b.0.transform_point(sphere_b.center));
+    let normal = (center_b - center_a).normalize_or_zero();
+    let (point_a, point_b) = (center_a + normal * sphere_a.radius, center_b - normal * sphere_b.radius);
     let weights = [1.0, 0.0, 0.0];
     let closing_speed = normal.dot(velocity(&on_a, point_a) - velocity(&on_b, point_b));
     ContactDetails {

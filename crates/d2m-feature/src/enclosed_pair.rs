@@ -4,15 +4,15 @@ use crate::contact::{ContactDetails, FirstContact};
 use crate::details;
 use crate::edge_edge::EdgeEdgeTest;
 use crate::options::ContactOptions;
-use crate::pair_motion::answer_in;
 use crate::path::{EnclosedMotions, EnclosedPath, Extent, FeaturePath};
 use crate::point_triangle::{PointTriangleTest, TrianglePlanes};
+use crate::rigid_query::answer_in;
+use crate::rounding::{DOWN, UP, length_up};
+use crate::sphere::Sphere;
 use crate::sphere_sphere::SphereSphereTest;
 use d2m_motion::RigidMotion;
 use d2m_root::Piece;
 use glam::DVec3;
-
-const UP: f64 = 1.0 + 1e-14;
 
 /// Two motions of any kind over a window, with what all features of the two bodies share.
 ///
@@ -87,19 +87,21 @@ impl<'a> EnclosedPairMotion<'a> {
     /// First contact of a ball of A (centre, radius) with a ball of B.
     pub fn sphere_sphere(
         &self,
-        ball_a: (DVec3, f64),
-        ball_b: (DVec3, f64),
+        sphere_a: impl Into<Sphere>,
+        sphere_b: impl Into<Sphere>,
         options: &ContactOptions,
     ) -> FirstContact {
+        let (sphere_a, sphere_b) = (sphere_a.into(), sphere_b.into());
         let motions = &self.forward;
-        let sum = ball_a.1.max(0.0) + ball_b.1.max(0.0);
-        let radii = (sum * (2.0 - UP), sum * UP);
+        let sum = sphere_a.radius.max(0.0) + sphere_b.radius.max(0.0);
+        let radii = (sum * DOWN, sum * UP);
         let separation = options.separation();
-        let extent = Extent::of(ball_b.0, radii.1, motions);
-        let path = EnclosedPath::new(motions, [ball_a.0; 2], extent, separation);
+        let extent = Extent::of(sphere_b.center, radii.1, motions);
+        let path = EnclosedPath::new(motions, [sphere_a.center; 2], extent, separation);
         let tolerance = options.wanted_tolerance(sum, extent.from_origin).max(4.0 * path.rounding());
         let part = path.window();
-        let mut test = SphereSphereTest { path, centre: ball_b.0, radii, tolerance, separation, size: sum };
+        let mut test =
+            SphereSphereTest { path, center: sphere_b.center, radii, tolerance, separation, size: sum };
         answer_in(&mut test, part, motions.window().lo, options)
     }
 
@@ -121,11 +123,11 @@ impl<'a> EnclosedPairMotion<'a> {
     /// Where and how two balls (centre, radius) touch at a time.
     pub fn sphere_sphere_details(
         &self,
-        ball_a: (DVec3, f64),
-        ball_b: (DVec3, f64),
+        sphere_a: impl Into<Sphere>,
+        sphere_b: impl Into<Sphere>,
         time: f64,
     ) -> ContactDetails {
-        details::sphere_sphere(self.forward.a, self.forward.b, ball_a, ball_b, time)
+        details::sphere_sphere(self.forward.a, self.forward.b, sphere_a.into(), sphere_b.into(), time)
     }
 }
 
@@ -137,7 +139,7 @@ fn point_triangle(
 ) -> FirstContact {
     let separation = options.separation();
     let planes = TrianglePlanes::new(*triangle);
-    let extent = Extent::of(planes.centre, planes.radius, motions);
+    let extent = Extent::of(planes.center, planes.radius, motions);
     let extent = Extent { from_origin: planes.extent, ..extent };
     let path = EnclosedPath::new(motions, [point; 2], extent, separation);
     let tolerance = options.wanted_tolerance(planes.size, planes.extent).max(4.0 * path.rounding());
@@ -155,14 +157,12 @@ fn edge_edge(
     let separation = options.separation();
     let (middle, half) = ((edge_b[0] + edge_b[1]) * 0.5, (edge_b[1] - edge_b[0]) * 0.5);
     let half_a = (edge_a[1] - edge_a[0]) * 0.5;
-    let half_lengths = (half_a.length() * UP, half.length() * UP);
-    let extent = Extent::of(middle, half_lengths.1, motions);
+    let extent = Extent::of(middle, length_up(half), motions);
     let path = EnclosedPath::new(motions, edge_a, extent, separation);
-    let reach = extent.from_origin + half_lengths.0;
-    let tolerance =
-        options.wanted_tolerance(2.0 * half_lengths.0.max(half_lengths.1), reach).max(4.0 * path.rounding());
-    let part = path.window();
-    let mut test =
-        EdgeEdgeTest { path, middle, half, half_lengths, tolerance, separation, inside: Piece::NONE };
+    let (rounding, part) = (4.0 * path.rounding(), path.window());
+    let mut test = EdgeEdgeTest::new(path, middle, half, half_a, separation);
+    let (length_a, length_b) = test.half_lengths;
+    let reach = extent.from_origin + length_a;
+    test.tolerance = options.wanted_tolerance(2.0 * length_a.max(length_b), reach).max(rounding);
     answer_in(&mut test, part, motions.window().lo, options)
 }

@@ -1,21 +1,23 @@
-//! Two bodies of constant twist over a window of time: ask here for the first contact of a pair of features.
+//! Two bodies of constant twist over a window of time: query here for the first contact of a pair of features.
 use crate::contact::{ContactBracket, ContactDetails, FirstContact};
 use crate::details;
-use crate::edge_edge::EdgeEdgeTest;
 use crate::options::ContactOptions;
-use crate::path::{FeaturePath, FramedMotion, RigidPath};
-use crate::point_triangle::{PointTriangleTest, TrianglePlanes};
-use crate::sphere_sphere::SphereSphereTest;
+use crate::path::FramedMotion;
+use crate::point_triangle::TrianglePlanes;
+use crate::rigid_query;
+use crate::sphere::Sphere;
+use crate::units::Units;
 use d2m_motion::{ConstantTwist, RelativeMotion};
-use d2m_root::{FirstRoot, IsolatorOptions, Piece, PieceTest, isolate};
 use glam::DVec3;
-
-const UP: f64 = 1.0 + 1e-14;
 
 /// Two motions of constant twist over a window `[t0, t1]`, with what all features of the two bodies share.
 ///
-/// Geometry is given in body frames. Every query promises: no contact before the `lo` that it returns, and none at
-/// all when it returns [`FirstContact::Clear`] – in floating point, for every finite input.
+/// Every query promises: no contact before the `lo` that it returns, and none at all when it returns
+/// [`FirstContact::Clear`] – in floating point, for every finite input. Geometry is given in body frames.
+///
+/// The numbers of a query are multiplied by powers of two that bring lengths and times near one: answers are the same for
+/// every exact scaling of lengths or times, up to that scaling. Where quantities of one query differ by more than 2²⁰⁰ the
+/// answer may be [`FirstContact::Undecided`] from the start.
 ///
 /// ```
 /// use d2m_feature::{ContactOptions, FirstContact, PairMotion};
@@ -31,17 +33,37 @@ const UP: f64 = 1.0 + 1e-14;
 /// ```
 #[derive(Debug, Clone)]
 pub struct PairMotion {
-    forward: FramedMotion,
-    backward: FramedMotion,
     motions: [ConstantTwist; 2],
+    start: f64,
+    end: f64,
+    units: Units,
+    sides: Option<Sides>,
 }
 
-/// A triangle of B prepared for many points of A over one window.
+/// The relative motion seen from either body, in the units of the pair.
+#[derive(Debug, Clone)]
+struct Sides {
+    /// A seen from B.
+    forward: FramedMotion,
+    /// B seen from A.
+    backward: FramedMotion,
+}
+
+/// A triangle of B prepared for many points of A over one window ([`PairMotion::place_triangle`]).
 #[derive(Debug, Clone)]
 pub struct PlacedTriangle {
+    /// Body frame, as given.
     vertices: [DVec3; 3],
-    planes: TrianglePlanes,
+    size: f64,
+    /// In the units and the epoch frame of the pair that placed it.
+    planes: Option<TrianglePlanes>,
 }
+
+/// How many times the size of the features the relative motion may reach in their units: beyond it doubles say nothing
+/// about a contact, and products of four lengths would overflow.
+const LARGEST_REACH: f64 = f64::from_bits((1023 + 200) << 52);
+/// The size of features that are too small for the units of the motion, in these.
+const SMALL: f64 = f64::from_bits((1023 - 200) << 52);
 
 impl PairMotion {
     /// Motion of body A and of body B over `[t0, t1]`.
@@ -50,13 +72,22 @@ impl PairMotion {
     /// If a time is not finite or `t0 > t1`.
     pub fn new(a: &ConstantTwist, b: &ConstantTwist, t0: f64, t1: f64) -> Self {
         assert!(t0 <= t1 && t0.is_finite() && t1.is_finite(), "window [{t0}, {t1}]");
-        let forward = RelativeMotion::new(a, b, t0, t1);
-        let backward = forward.reversed();
-        Self { forward: FramedMotion::new(forward), backward: FramedMotion::new(backward), motions: [*a, *b] }
+        let motions = [*a, *b];
+        Self::in_units(motions, t0, t1, Units::of_motions(&motions, t0, t1))
     }
 
-    pub(crate) const fn forward(&self) -> &FramedMotion {
-        &self.forward
+    fn in_units(motions: [ConstantTwist; 2], start: f64, end: f64, units: Units) -> Self {
+        let (from, to) = (units.time(start), units.time(end));
+        let [a, b] = &motions;
+        let sides = match (units.try_motion(a, start), units.try_motion(b, start)) {
+            (Some(a), Some(b)) if from.is_finite() && to.is_finite() => {
+                let forward = RelativeMotion::new(&a, &b, from, to);
+                let backward = forward.reversed();
+                Some(Sides { forward: FramedMotion::new(forward), backward: FramedMotion::new(backward) })
+            }
+            _ => None,
+        };
+        Self { motions, start, end, units, sides }
     }
 
     /// The motions of A and B.
@@ -66,8 +97,14 @@ impl PairMotion {
 
     /// Prepares a triangle of B (body frame) for [`PairMotion::point_placed`].
     pub fn place_triangle(&self, triangle: &[DVec3; 3]) -> PlacedTriangle {
-        let vertices = triangle.map(|v| self.forward.motion.place_b(v));
-        PlacedTriangle { vertices: *triangle, planes: TrianglePlanes::new(vertices) }
+        let size = largest(triangle);
+        let planes = match &self.sides {
+            Some(sides) if self.units.serve(size) => {
+                Some(rigid_query::place(&sides.forward, &triangle.map(|v| self.units.point(v))))
+            }
+            _ => None,
+        };
+        PlacedTriangle { vertices: *triangle, size, planes }
     }
 
     /// First contact of a point of A with a triangle of B.
@@ -77,7 +114,11 @@ impl PairMotion {
         triangle: &[DVec3; 3],
         options: &ContactOptions,
     ) -> FirstContact {
-        point_triangle(&self.forward, point, triangle, options)
+        let size = largest(&[point]).max(largest(triangle));
+        self.answer(size, options, |sides, units, options| {
+            let (point, triangle) = (units.point(point), triangle.map(|v| units.point(v)));
+            rigid_query::point_triangle(&sides.forward, point, &triangle, options)
+        })
     }
 
     /// First contact of a triangle of A with a point of B.
@@ -87,42 +128,30 @@ impl PairMotion {
         point: DVec3,
         options: &ContactOptions,
     ) -> FirstContact {
-        point_triangle(&self.backward, point, triangle, options)
+        let size = largest(&[point]).max(largest(triangle));
+        self.answer(size, options, |sides, units, options| {
+            let (point, triangle) = (units.point(point), triangle.map(|v| units.point(v)));
+            rigid_query::point_triangle(&sides.backward, point, &triangle, options)
+        })
     }
 
-    /// First contact of a point of A with a prepared triangle of B.
+    /// First contact of a point of A with a triangle of B that this pair has prepared.
     pub fn point_placed(
         &self,
         point: DVec3,
         triangle: &PlacedTriangle,
         options: &ContactOptions,
     ) -> FirstContact {
-        placed(&self.forward, point, triangle, options)
-    }
-
-    /// Where and how a point of A and a triangle of B touch at a time (the `lo` of a bracket).
-    pub fn point_triangle_details(&self, point: DVec3, triangle: &[DVec3; 3], time: f64) -> ContactDetails {
-        details::point_triangle(&self.motions[0], &self.motions[1], point, triangle, time)
-    }
-
-    /// Where and how a triangle of A and a point of B touch at a time.
-    pub fn triangle_point_details(&self, triangle: &[DVec3; 3], point: DVec3, time: f64) -> ContactDetails {
-        details::point_triangle(&self.motions[1], &self.motions[0], point, triangle, time).reversed()
-    }
-
-    /// Where and how an edge of A and an edge of B touch at a time.
-    pub fn edge_edge_details(&self, edge_a: [DVec3; 2], edge_b: [DVec3; 2], time: f64) -> ContactDetails {
-        details::edge_edge(&self.motions[0], &self.motions[1], edge_a, edge_b, time)
-    }
-
-    /// Where and how two balls (centre, radius) touch at a time.
-    pub fn sphere_sphere_details(
-        &self,
-        ball_a: (DVec3, f64),
-        ball_b: (DVec3, f64),
-        time: f64,
-    ) -> ContactDetails {
-        details::sphere_sphere(&self.motions[0], &self.motions[1], ball_a, ball_b, time)
+        let size = largest(&[point]).max(triangle.size);
+        if let (Some(planes), Some(sides)) = (&triangle.planes, &self.sides)
+            && self.units.serve(size.max(options.separation()))
+        {
+            let units = &self.units;
+            let (point, vertices) = (units.point(point), triangle.vertices.map(|v| units.point(v)));
+            let options = options.in_units(units);
+            return self.back(rigid_query::point_placed(&sides.forward, point, &vertices, planes, &options));
+        }
+        self.point_triangle(point, &triangle.vertices, options)
     }
 
     /// First contact of an edge of A with an edge of B.
@@ -132,215 +161,177 @@ impl PairMotion {
         edge_b: [DVec3; 2],
         options: &ContactOptions,
     ) -> FirstContact {
-        // Seen from the slower body the bounds are smaller (8–16 % fewer evaluations).
-        if self.forward.motion.speed_b() <= self.forward.motion.speed_a() {
-            edge_edge(&self.forward, edge_a, edge_b, options)
-        } else {
-            edge_edge(&self.backward, edge_b, edge_a, options)
-        }
+        let size = largest(&edge_a).max(largest(&edge_b));
+        self.answer(size, options, |sides, units, options| {
+            let (edge_a, edge_b) = (edge_a.map(|v| units.point(v)), edge_b.map(|v| units.point(v)));
+            // Seen from the slower body the bounds are smaller (8–16 % fewer evaluations).
+            if sides.forward.motion.speed_b() <= sides.forward.motion.speed_a() {
+                rigid_query::edge_edge(&sides.forward, edge_a, edge_b, options)
+            } else {
+                rigid_query::edge_edge(&sides.backward, edge_b, edge_a, options)
+            }
+        })
     }
 
-    /// First contact of a ball of A (centre, radius) with a ball of B.
+    /// First contact of a solid sphere of A with one of B.
     pub fn sphere_sphere(
         &self,
-        ball_a: (DVec3, f64),
-        ball_b: (DVec3, f64),
+        sphere_a: impl Into<Sphere>,
+        sphere_b: impl Into<Sphere>,
         options: &ContactOptions,
     ) -> FirstContact {
-        sphere_sphere(&self.forward, ball_a, ball_b, options)
+        let (sphere_a, sphere_b) = (sphere_a.into(), sphere_b.into());
+        let size = largest(&[sphere_a.center, sphere_b.center]).max(sphere_a.radius.max(sphere_b.radius));
+        self.answer(size, options, |sides, units, options| {
+            let centers = [units.point(sphere_a.center), units.point(sphere_b.center)];
+            let radii = units.length(sphere_a.radius.max(0.0)) + units.length(sphere_b.radius.max(0.0));
+            rigid_query::sphere_sphere(&sides.forward, centers, radii, options)
+        })
     }
-}
 
-fn point_triangle(
-    framed: &FramedMotion,
-    point: DVec3,
-    triangle: &[DVec3; 3],
-    options: &ContactOptions,
-) -> FirstContact {
-    let vertices = triangle.map(|v| framed.motion.place_b(v));
-    let triangle = PlacedTriangle { vertices: *triangle, planes: TrianglePlanes::new(vertices) };
-    placed(framed, point, &triangle, options)
-}
-
-fn placed(
-    framed: &FramedMotion,
-    point: DVec3,
-    triangle: &PlacedTriangle,
-    options: &ContactOptions,
-) -> FirstContact {
-    let separation = options.separation();
-    fn build<'a>(
-        framed: &'a FramedMotion,
-        point: DVec3,
-        planes: &'a TrianglePlanes,
-        separation: f64,
-    ) -> PointTriangleTest<'a, RigidPath<'a>> {
-        let point = framed.motion.place_a(point);
-        let path = RigidPath::new(framed, point, DVec3::ZERO, planes.extent, separation);
-        PointTriangleTest::new(path, planes, 0.0, separation)
+    /// Where and how a point of A and a triangle of B touch at a time (the `lo` of a bracket).
+    pub fn point_triangle_details(&self, point: DVec3, triangle: &[DVec3; 3], time: f64) -> ContactDetails {
+        let size = largest(&[point]).max(largest(triangle));
+        self.details(size, time, |[a, b], units, time| {
+            details::point_triangle(a, b, units.point(point), &triangle.map(|v| units.point(v)), time)
+        })
     }
-    let mut test = build(framed, point, &triangle.planes, separation);
-    first_contact(&mut test, framed, options).unwrap_or_else(|reach| {
-        let anchored = FramedMotion::new(framed.motion.anchored(point, triangle.vertices[0]));
-        let planes = TrianglePlanes::new(triangle.vertices.map(|v| anchored.motion.place_b(v)));
-        first_contact_anchored(&mut build(&anchored, point, &planes, separation), reach, &anchored, options)
-    })
-}
 
-fn edge_edge(
-    framed: &FramedMotion,
-    edge_a: [DVec3; 2],
-    edge_b: [DVec3; 2],
-    options: &ContactOptions,
-) -> FirstContact {
-    let separation = options.separation();
-    fn build(
-        framed: &FramedMotion,
-        edge_a: [DVec3; 2],
-        edge_b: [DVec3; 2],
-        separation: f64,
-    ) -> EdgeEdgeTest<RigidPath<'_>> {
-        // Half edges turn as differences, so that their error is relative to their own length.
-        let half_a = framed.motion.turn_a((edge_a[1] - edge_a[0]) * 0.5);
-        let half = framed.motion.turn_b((edge_b[1] - edge_b[0]) * 0.5);
-        let point = framed.motion.place_a(edge_a[0]) + half_a;
-        let middle = framed.motion.place_b(edge_b[0]) + half;
-        let extent = (middle.length() + half_a.length() + half.length()) * UP;
-        let path = RigidPath::new(framed, point, half_a, extent, separation);
-        let half_lengths = (half_a.length() * UP, half.length() * UP);
-        EdgeEdgeTest { path, middle, half, half_lengths, tolerance: 0.0, separation, inside: Piece::NONE }
+    /// Where and how a triangle of A and a point of B touch at a time.
+    pub fn triangle_point_details(&self, triangle: &[DVec3; 3], point: DVec3, time: f64) -> ContactDetails {
+        let size = largest(&[point]).max(largest(triangle));
+        self.details(size, time, |[a, b], units, time| {
+            let triangle = triangle.map(|v| units.point(v));
+            details::point_triangle(b, a, units.point(point), &triangle, time).reversed()
+        })
     }
-    let mut test = build(framed, edge_a, edge_b, separation);
-    first_contact(&mut test, framed, options).unwrap_or_else(|reach| {
-        let anchored = FramedMotion::new(framed.motion.anchored(edge_a[0], edge_b[0]));
-        let mut test = build(&anchored, edge_a, edge_b, separation);
-        first_contact_anchored(&mut test, reach, &anchored, options)
-    })
-}
 
-fn sphere_sphere(
-    framed: &FramedMotion,
-    ball_a: (DVec3, f64),
-    ball_b: (DVec3, f64),
-    options: &ContactOptions,
-) -> FirstContact {
-    let size = ball_a.1.max(0.0) + ball_b.1.max(0.0);
-    let separation = options.separation();
-    fn build(
-        framed: &FramedMotion,
-        centres: [DVec3; 2],
+    /// Where and how an edge of A and an edge of B touch at a time.
+    pub fn edge_edge_details(&self, edge_a: [DVec3; 2], edge_b: [DVec3; 2], time: f64) -> ContactDetails {
+        let size = largest(&edge_a).max(largest(&edge_b));
+        self.details(size, time, |[a, b], units, time| {
+            let (edge_a, edge_b) = (edge_a.map(|v| units.point(v)), edge_b.map(|v| units.point(v)));
+            details::edge_edge(a, b, edge_a, edge_b, time)
+        })
+    }
+
+    /// Where and how two spheres touch at a time.
+    pub fn sphere_sphere_details(
+        &self,
+        sphere_a: impl Into<Sphere>,
+        sphere_b: impl Into<Sphere>,
+        time: f64,
+    ) -> ContactDetails {
+        let (sphere_a, sphere_b) = (sphere_a.into(), sphere_b.into());
+        let size = largest(&[sphere_a.center, sphere_b.center]).max(sphere_a.radius.max(sphere_b.radius));
+        self.details(size, time, |[a, b], units, time| {
+            let sphere = |s: Sphere| Sphere { center: units.point(s.center), radius: units.length(s.radius) };
+            details::sphere_sphere(a, b, sphere(sphere_a), sphere(sphere_b), time)
+        })
+    }
+
+    /// The answer of a query in units that serve features of this size.
+    #[inline(always)]
+    fn answer(
+        &self,
         size: f64,
-        separation: f64,
-    ) -> SphereSphereTest<RigidPath<'_>> {
-        let radii = (size * (2.0 - UP), size * UP);
-        let centre = framed.motion.place_b(centres[1]);
-        let extent = (centre.length() + radii.1) * UP;
-        let path = RigidPath::new(framed, framed.motion.place_a(centres[0]), DVec3::ZERO, extent, separation);
-        SphereSphereTest { path, centre, radii, tolerance: 0.0, separation, size }
-    }
-    let centres = [ball_a.0, ball_b.0];
-    let mut test = build(framed, centres, size, separation);
-    first_contact(&mut test, framed, options).unwrap_or_else(|reach| {
-        let anchored = FramedMotion::new(framed.motion.anchored(centres[0], centres[1]));
-        first_contact_anchored(&mut build(&anchored, centres, size, separation), reach, &anchored, options)
-    })
-}
-
-/// A piece test along a rigid path, built before its tolerance is known.
-trait RigidTest: PieceTest {
-    fn path(&self) -> &RigidPath<'_>;
-    /// Size of the features, for the default tolerance.
-    fn length(&self) -> f64;
-    fn set_tolerance(&mut self, tolerance: f64);
-}
-
-macro_rules! rigid_test {
-    ($test:ty, $length:expr) => {
-        impl RigidTest for $test {
-            fn path(&self) -> &RigidPath<'_> {
-                &self.path
+        options: &ContactOptions,
+        query: impl Fn(&Sides, &Units, &ContactOptions) -> FirstContact,
+    ) -> FirstContact {
+        let size = size.max(options.separation());
+        match &self.sides {
+            Some(sides) if self.units.serve(size) => {
+                self.back(query(sides, &self.units, &options.in_units(&self.units)))
             }
-            fn length(&self) -> f64 {
-                $length(self)
+            _ => self.answer_in_other_units(size, options, &query),
+        }
+    }
+
+    #[cold]
+    fn answer_in_other_units(
+        &self,
+        size: f64,
+        options: &ContactOptions,
+        query: &dyn Fn(&Sides, &Units, &ContactOptions) -> FirstContact,
+    ) -> FirstContact {
+        let undecided = FirstContact::Undecided { clear_until: self.start };
+        if !size.is_finite() {
+            return undecided;
+        }
+        if let Some(sides) = &self.sides
+            && self.units.dwarf(size)
+            && sides.never_near(&self.units, &self.motions)
+        {
+            return FirstContact::Clear;
+        }
+        let other = Self::in_units(self.motions, self.start, self.end, self.units.with_length_of(size));
+        match &other.sides {
+            // Also NaN is left undecided.
+            Some(sides) if sides.forward.motion.bound_reach(0.0) <= LARGEST_REACH => {
+                other.back(query(sides, &other.units, &options.in_units(&other.units)))
             }
-            fn set_tolerance(&mut self, tolerance: f64) {
-                self.tolerance = tolerance;
+            _ => undecided,
+        }
+    }
+
+    /// An answer in the units of the input, its times inside the window.
+    #[inline(always)]
+    fn back(&self, answer: FirstContact) -> FirstContact {
+        let units = &self.units;
+        match answer {
+            FirstContact::Clear => FirstContact::Clear,
+            FirstContact::Undecided { clear_until } => {
+                FirstContact::Undecided { clear_until: units.time_down(clear_until).max(self.start) }
+            }
+            FirstContact::Contact(contact) => {
+                let lo = units.time_down(contact.lo).max(self.start);
+                let hi = units.time_up(contact.hi).min(self.end).max(lo);
+                let (distance, tolerance) =
+                    (units.length_up(contact.distance), units.length_up(contact.tolerance));
+                FirstContact::Contact(ContactBracket { lo, hi, distance, tolerance, ..contact })
             }
         }
-    };
-}
-rigid_test!(PointTriangleTest<'_, RigidPath<'_>>, |test: &Self| test.planes.size);
-rigid_test!(EdgeEdgeTest<RigidPath<'_>>, |test: &Self| 2.0 * test.half_lengths.0.max(test.half_lengths.1));
-rigid_test!(SphereSphereTest<RigidPath<'_>>, |test: &Self| test.size);
-
-/// The answer of a test whose rounding the tolerance covers; if it does not, how far the features reach: they are to be
-/// asked again from anchors near them.
-fn first_contact(
-    test: &mut impl RigidTest,
-    framed: &FramedMotion,
-    options: &ContactOptions,
-) -> Result<FirstContact, f64> {
-    let reach = test.path().reach();
-    let tolerance = options.wanted_tolerance(test.length(), reach);
-    // Also NaN is asked again.
-    if test.path().rounding() <= 0.25 * tolerance {
-        test.set_tolerance(tolerance);
-        Ok(answer(test, framed, options))
-    } else {
-        Err(reach)
     }
-}
 
-/// The answer of a test from anchors, with the tolerance that the features would have without and what rounding needs.
-fn first_contact_anchored(
-    test: &mut impl RigidTest,
-    reach: f64,
-    anchored: &FramedMotion,
-    options: &ContactOptions,
-) -> FirstContact {
-    let path = test.path();
-    let rounding = (4.0 * path.rounding()).max(path.time_rounding());
-    test.set_tolerance(options.wanted_tolerance(test.length(), reach).max(rounding));
-    answer(test, anchored, options)
-}
-
-/// Isolates and tells the answer in real time.
-fn answer(test: &mut impl RigidTest, framed: &FramedMotion, options: &ContactOptions) -> FirstContact {
-    let (motion, window) = (&framed.motion, test.path().window());
-    match answer_in(test, window, 0.0, options) {
-        FirstContact::Clear => FirstContact::Clear,
-        FirstContact::Undecided { clear_until } => {
-            FirstContact::Undecided { clear_until: motion.time_down(clear_until) }
-        }
-        FirstContact::Contact(ContactBracket { lo, hi, evidence, distance }) => {
-            let lo = motion.time_down(lo);
-            let hi = motion.time_up(hi).max(lo);
-            FirstContact::Contact(ContactBracket { lo, hi, evidence, distance })
+    fn details(
+        &self,
+        size: f64,
+        time: f64,
+        describe: impl Fn([&ConstantTwist; 2], &Units, f64) -> ContactDetails,
+    ) -> ContactDetails {
+        let units = if self.units.serve(size) { self.units } else { self.units.with_length_of(size) };
+        let [a, b] = &self.motions;
+        let in_units = (units.try_motion(a, self.start), units.try_motion(b, self.start));
+        let (Some(a), Some(b)) = in_units else {
+            // Nothing better than the numbers as they are.
+            return describe([a, b], &Units::NONE, time);
+        };
+        let there = describe([&a, &b], &units, units.time(time));
+        ContactDetails {
+            time,
+            point_a: units.point_back(there.point_a),
+            point_b: units.point_back(there.point_b),
+            closing_speed: units.speed_back(there.closing_speed),
+            ..there
         }
     }
 }
 
-/// Isolates in the part of the window in which the features come within reach of each other, in the test's own time.
-#[inline]
-pub(crate) fn answer_in(
-    test: &mut impl PieceTest,
-    part: Option<Piece>,
-    start: f64,
-    options: &ContactOptions,
-) -> FirstContact {
-    let Some(part) = part else {
-        return FirstContact::Clear;
-    };
-    let mut limits = IsolatorOptions::new().with_max_evaluations(options.max_evaluations);
-    if part.lo > start {
-        // It starts where the spheres about both features meet.
-        limits = limits.with_start_apart();
+impl Sides {
+    /// True if features that are too small for the units certainly never come near each other.
+    fn never_near(&self, units: &Units, motions: &[ConstantTwist; 2]) -> bool {
+        let at = largest(&[units.point(motions[0].at()), units.point(motions[1].at())]);
+        // Each is within √3(size + at) of its reference point, and the separation is at most the size; 2√3 < 4.
+        self.forward.motion.times_within(4.0 * at + 8.0 * SMALL).is_none()
     }
-    match isolate(test, part, &limits).root {
-        FirstRoot::Clear => FirstContact::Clear,
-        FirstRoot::Undecided { clear_until } => FirstContact::Undecided { clear_until },
-        FirstRoot::Found { bracket: Piece { lo, hi }, evidence, distance } => {
-            FirstContact::Contact(ContactBracket { lo, hi, evidence, distance })
-        }
+}
+
+/// The largest magnitude of a coordinate.
+#[inline(always)]
+fn largest(points: &[DVec3]) -> f64 {
+    let mut most = DVec3::ZERO;
+    for p in points {
+        most = most.max(p.abs());
     }
+    most.max_element()
 }

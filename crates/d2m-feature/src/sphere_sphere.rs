@@ -1,27 +1,34 @@
-//! A moving sphere against a sphere that is fixed in B's frame (solid balls).
+//! A moving sphere against a sphere that is fixed in B's frame (solid spheres).
 use crate::path::{FeaturePath, along, direction, global, local, reach, widened, without_third};
 use crate::point_triangle::cleared;
+use crate::rounding::{DOWN, UNIT, length_up};
 use d2m_root::{Measurement, Piece, PieceTest, Quadratic, Verdict};
 use glam::DVec3;
 
-/// The piece test of two balls: the path is A's centre.
+/// The piece test of two spheres: the path is A's center.
 pub(crate) struct SphereSphereTest<P> {
     pub(crate) path: P,
-    /// Centre of B.
-    pub(crate) centre: DVec3,
+    /// Center of B.
+    pub(crate) center: DVec3,
     /// Sum of the radii: [lower, upper] bound.
     pub(crate) radii: (f64, f64),
     pub(crate) tolerance: f64,
     pub(crate) separation: f64,
-    /// Distance of the centres at which the remainder is small enough.
+    /// Distance of the centers at which the remainder is small enough.
     pub(crate) size: f64,
 }
 
-const UP: f64 = 1.0 + 1e-14;
+/// Part of the spheres' size that a remainder may reach before a piece is worth an evaluation (tuned; any value is sound).
+const PATIENCE: f64 = 0.7;
+/// Part of a guess of the time of overlap that is added to it: so that the spheres overlap there by more than rounding. It
+/// is only a guess, and tested.
+const LATER: f64 = 1e-6;
+/// Depth of overlap to aim for beyond the remainder, in units of 2⁻⁵³ of the size: a guess as well.
+const DEPTH: f64 = 8.0 * UNIT;
 
 impl<P: FeaturePath> PieceTest for SphereSphereTest<P> {
     fn too_wide(&self, h: f64) -> bool {
-        self.path.left_out(h) > 0.7 * (self.size + 0.25 * self.path.speed() * h)
+        self.path.left_out(h) > PATIENCE * (self.size + 0.25 * self.path.speed() * h)
     }
 
     fn tolerance(&self) -> f64 {
@@ -38,14 +45,14 @@ impl<P: FeaturePath> PieceTest for SphereSphereTest<P> {
         let jet = self.path.point(piece, at);
         let whole = local(piece, at);
         let remainder = widened(without_third(&jet), self.separation);
-        // A direction that separates for longest: from the centre of B to A at the end that is farther away, and in
-        // the middle; each is a half-space test of the ball about B.
+        // A direction that separates for longest: from the center of B to A at the end that is farther away, and in
+        // the middle; each is a half-space test of the sphere about B.
         let mut part = whole;
         for _ in 0..2 {
             for s in [part.lo, 0.5 * (part.lo + part.hi), part.hi] {
-                let n = direction(jet.at(s) - self.centre);
+                let n = direction(jet.at(s) - self.center);
                 let q = along(&jet, n);
-                let limit = n.dot(self.centre) + (self.radii.1 + remainder.bound(reach(part)));
+                let limit = n.dot(self.center) + (self.radii.1 + remainder.bound(reach(part)));
                 if s >= part.hi {
                     let gap = q.at(part.hi) - limit;
                     if gap > 0.0 {
@@ -67,33 +74,34 @@ impl<P: FeaturePath> PieceTest for SphereSphereTest<P> {
                 }
             }
         }
-        // Just after the entry along the last direction the balls overlap, if the approach is clean: nothing to the
+        // Just after the entry along the last direction the spheres overlap, if the approach is clean: nothing to the
         // right of such a time matters, and with a start apart a contact is certain.
         let margin = remainder.bound(reach(whole));
         let overlap =
-            |s: f64| (jet.at(s) - self.centre).length() * UP + margin < self.radii.0 + 2.0 * self.separation;
-        let n = direction(jet.at(part.lo) - self.centre);
+            |s: f64| length_up(jet.at(s) - self.center) + margin < self.radii.0 + 2.0 * self.separation;
+        let n = direction(jet.at(part.lo) - self.center);
         let q = along(&jet, n);
-        let depth = q.at(part.lo) - n.dot(self.centre) - self.radii.0 - self.separation;
-        let inner = (depth + 2.0 * margin + 1e-15 * self.size).max(0.0);
-        let soon = part.lo + Quadratic::bound_first_zero(inner, q.slope_at(part.lo), q.curvature) * 1.000_001;
+        let depth = q.at(part.lo) - n.dot(self.center) - self.radii.0 - self.separation;
+        let inner = (depth + 2.0 * margin + DEPTH * self.size).max(0.0);
+        let until = Quadratic::bound_first_zero(inner, q.slope_at(part.lo), q.curvature);
+        let soon = part.lo + until * (1.0 + LATER);
         if soon < part.hi && overlap(soon) {
             part.hi = soon;
         }
-        let apart_first = (jet.at(whole.lo) - self.centre).length() * (2.0 - UP) - margin > self.radii.1;
+        let apart_first = (jet.at(whole.lo) - self.center).length() * DOWN - margin > self.radii.1;
         let certain = apart_first && overlap(part.hi);
         Verdict::Within { part: global(part, at, piece), certain }
     }
 
     fn measure(&mut self, piece: Piece, at: f64) -> Measurement {
         let jet = self.path.point(piece, at);
-        let difference = jet.p - self.centre;
-        let distance = difference.length() * UP + jet.remainder.bound(0.0) - self.radii.0 - self.separation;
+        let difference = jet.p - self.center;
+        let distance = length_up(difference) + jet.remainder.bound(0.0) - self.radii.0 - self.separation;
         let whole = local(piece, at);
         let margin = widened(without_third(&jet), self.separation).bound(reach(whole));
         let n = direction(difference);
         let q = along(&jet, n);
-        let gap = q.value - n.dot(self.centre) - self.radii.1 - margin;
+        let gap = q.value - n.dot(self.center) - self.radii.1 - margin;
         let mut clear = Piece { lo: 0.0, hi: 0.0 };
         if gap > 0.0 {
             clear = Piece {

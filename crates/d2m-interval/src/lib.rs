@@ -28,6 +28,9 @@ pub use interval::Interval;
 #[cfg(feature = "glam")]
 pub use mat3::IntervalMat3;
 /// For the crates of this workspace: two doubles in one vector register, the same bits on every platform.
+/// For the crates of this workspace: sums and products without error.
+#[doc(hidden)]
+pub use round::{two_product, two_sum};
 #[doc(hidden)]
 pub use simd::F64x2;
 #[cfg(feature = "glam")]

@@ -55,7 +55,7 @@ pub(crate) fn finite_with(largest: F64x2, increment: F64x2) -> bool {
 
 /// `a + b = s + e` exactly (Knuth's two-sum), barring overflow.
 #[inline(always)]
-pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
+pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let s = a + b;
     let c = s - a;
     (s, (a - (s - c)) + (b - c))
@@ -71,7 +71,7 @@ pub(crate) fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
 /// `a·b = p + e` exactly (Veltkamp, Dekker) for `|a|, |b| ≤ 2⁹⁹⁵`, `|a·b| ≤ 2¹⁰²¹`, and, `e` being a
 /// multiple of the product of the last places, when no part of it underflows (`|a·b| ≥ 2⁻⁹⁶⁰` suffices).
 #[inline(always)]
-pub(crate) fn two_product(a: f64, b: f64) -> (f64, f64) {
+pub fn two_product(a: f64, b: f64) -> (f64, f64) {
     let (a1, a0) = halves(a);
     let (b1, b0) = halves(b);
     let p = a * b;

@@ -140,9 +140,18 @@ fn from_quat(q: DQuat) -> RotationDd {
     ])
 }
 
+/// The power of two 2ᵏ with the magnitude of `x` in [2ᵏ, 2ᵏ⁺¹), for x not zero; the least normal number for smaller ones.
+fn power_of_two_below(x: f64) -> f64 {
+    f64::from_bits(x.to_bits() & (0x7ff << 52)).max(f64::MIN_POSITIVE)
+}
+
 /// exp([ω]s) in double-double (Rodrigues).
 pub(crate) fn exponential_dd(omega: DVec3, s: DoubleDouble) -> RotationDd {
     let zero = DoubleDouble::ZERO;
+    // Rates near one: their squares neither under- nor overflow, and a power of two rounds nothing. (The largest power of
+    // two has no normal reciprocal: half of it will do.)
+    let rate = power_of_two_below(omega.abs().max_element()).min(0.5 * power_of_two_below(f64::MAX));
+    let (omega, s) = (omega * (1.0 / rate), DoubleDouble { hi: s.hi * rate, lo: s.lo * rate });
     let square = |x: f64| {
         let (hi, lo) = two_product(x, x);
         DoubleDouble { hi, lo }
@@ -167,5 +176,5 @@ pub(crate) fn exponential_dd(omega: DVec3, s: DoubleDouble) -> RotationDd {
 /// exp([ω]s)·R(q/|q|) in double-double.
 pub(crate) fn rotate_dd(omega: DVec3, s: DoubleDouble, q: DQuat) -> RotationDd {
     let start = from_quat(q);
-    if omega == DVec3::ZERO { start } else { exponential_dd(omega, s).mul(&start) }
+    if omega == DVec3::ZERO || s.hi == 0.0 { start } else { exponential_dd(omega, s).mul(&start) }
 }

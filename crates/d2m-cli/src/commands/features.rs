@@ -6,8 +6,9 @@ use crate::failure::Failure;
 use crate::load::read;
 use crate::output::Output;
 use crate::report::microseconds;
-use d2m::feature::{ContactOptions, FirstContact, PairMotion, StraightPaths};
+use d2m::feature::{self, ContactOptions, FirstContact, PairMotion, StraightPaths};
 use d2m::motion::ConstantTwist;
+use d2m::root::Evidence;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -96,6 +97,14 @@ struct Answer<'a> {
     t_lo: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     t_hi: Option<f64>,
+    /// Of a hit: `crossing` (the features are proven to meet within the bracket) or `near` (within the tolerance beyond
+    /// the minimum separation at a time of the bracket).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    evidence: Option<&'static str>,
+    /// Of a hit: the distance that was used as tolerance. It is larger than the one given where rounding or the clock
+    /// leave no choice.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tolerance: Option<f64>,
     microseconds: f64,
 }
 
@@ -107,12 +116,27 @@ pub(crate) fn run(arguments: &FeaturesArguments) -> Result<(), Failure> {
     let mut text = String::new();
     for case in &cases {
         let (answer, took) = case.question.answer(&options);
-        let (status, t_lo, t_hi) = match answer {
-            FirstContact::Contact(contact) => ("hit", Some(contact.lo), Some(contact.hi)),
-            FirstContact::Undecided { clear_until } => ("undecided", Some(clear_until), None),
-            FirstContact::Clear => ("miss", None, None),
+        let mut line = Answer {
+            id: &case.id,
+            status: "miss",
+            t_lo: None,
+            t_hi: None,
+            evidence: None,
+            tolerance: None,
+            microseconds: microseconds(took),
         };
-        let line = Answer { id: &case.id, status, t_lo, t_hi, microseconds: microseconds(took) };
+        match answer {
+            FirstContact::Clear => {}
+            FirstContact::Undecided { clear_until } => {
+                (line.status, line.t_lo) = ("undecided", Some(clear_until));
+            }
+            FirstContact::Contact(contact) => {
+                (line.status, line.t_lo, line.t_hi) = ("hit", Some(contact.lo), Some(contact.hi));
+                let crosses = contact.evidence == Evidence::Crossing;
+                line.evidence = Some(if crosses { "crossing" } else { "near" });
+                line.tolerance = Some(contact.tolerance);
+            }
+        }
         text.push_str(&serde_json::to_string(&line).expect("numbers and strings serialize"));
         text.push('\n');
     }
@@ -196,38 +220,23 @@ impl Question {
         }
     }
 
-    /// The answer and the time that the query alone took.
+    /// The answer and the time from the numbers of the case to it.
     fn answer(&self, options: &ContactOptions) -> (FirstContact, Duration) {
         let pair =
             |moving: &Moving| PairMotion::new(&moving.motion_a, &moving.motion_b, moving.t0, moving.t1);
-        match self {
-            Self::PointTriangle { a, b, moving } => {
-                let pair = pair(moving);
-                let triangle = pair.place_triangle(&b.tri);
-                timed(|| pair.point_placed(a.p, &triangle, options))
-            }
-            Self::EdgeEdge { a, b, moving } => {
-                let pair = pair(moving);
-                timed(|| pair.edge_edge(a.edge, b.edge, options))
-            }
-            Self::SphereSphere { a, b, moving } => {
-                let pair = pair(moving);
-                timed(|| pair.sphere_sphere((a.c, a.r), (b.c, b.r), options))
-            }
+        let sphere = |s: &Sphere| feature::Sphere { center: s.c, radius: s.r };
+        let start = Instant::now();
+        let answer = match self {
+            Self::PointTriangle { a, b, moving } => pair(moving).point_triangle(a.p, &b.tri, options),
+            Self::EdgeEdge { a, b, moving } => pair(moving).edge_edge(a.edge, b.edge, options),
+            Self::SphereSphere { a, b, moving } => pair(moving).sphere_sphere(sphere(a), sphere(b), options),
             Self::PointTriangleLinear(paths) => {
-                let paths = StraightPaths::new(paths.t0_points, paths.t1_points);
-                timed(|| paths.point_triangle(options))
+                StraightPaths::new(paths.t0_points, paths.t1_points).point_triangle(options)
             }
             Self::EdgeEdgeLinear(paths) => {
-                let paths = StraightPaths::new(paths.t0_points, paths.t1_points);
-                timed(|| paths.edge_edge(options))
+                StraightPaths::new(paths.t0_points, paths.t1_points).edge_edge(options)
             }
-        }
+        };
+        (answer, start.elapsed())
     }
-}
-
-fn timed(query: impl FnOnce() -> FirstContact) -> (FirstContact, Duration) {
-    let start = Instant::now();
-    let answer = query();
-    (answer, start.elapsed())
 }

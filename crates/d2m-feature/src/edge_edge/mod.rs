@@ -1,11 +1,13 @@
 //! A moving edge against an edge that is fixed in B's frame.
 mod products;
 
+use crate::accurate_cross::{Difference, accurate_cross};
 use crate::closest;
 use crate::path::{
     FeaturePath, along, around, direction, global, local, padded, reach, widened, without_third,
 };
 use crate::point_triangle::cleared;
+use crate::rounding::{CLOSE, UNDERFLOW, UNIT, UP, length_up};
 use d2m_interval::F64x2;
 use d2m_motion::{TwoJets, TwoVec3};
 use d2m_root::{Band, Cubic, Measurement, Piece, PieceTest, Quadratic, Verdict};
@@ -33,9 +35,23 @@ const NEARBY: f64 = 1.0;
 /// Part of the feature's size that a remainder may reach before a piece is worth an evaluation (tuned like the one
 /// of vertex/face).
 const PATIENCE: f64 = 0.045;
-const UP: f64 = 1.0 + 1e-14;
+/// Shortest half length that bounds are made for, as a part of the rounding of positions: shorter edges have the bounds of
+/// this one, 2⁻⁶⁰ of what is noticed. Products of a rounding (at least 2⁻²⁵⁰ in the units of a query) with two lengths then
+/// stay far above what underflows.
+const SHORTEST: f64 = f64::from_bits((1023 - 60) << 52);
+/// Part of the latest time of a piece to which a crossing's bracket may shrink when no shorter one can be told: some four
+/// units in the last place.
+const FEW_UNITS: f64 = 8.0 * UNIT;
 
 impl<P: FeaturePath> EdgeEdgeTest<P> {
+    /// `half_a` and `half` are the half edges of A and B, `middle` is the midpoint of B's edge.
+    pub(crate) fn new(path: P, middle: DVec3, half: DVec3, half_a: DVec3, separation: f64) -> Self {
+        let (length_a, length_b) = (length_up(half_a), length_up(half));
+        let shortest = SHORTEST * path.rounding();
+        let half_lengths = (length_a.max(shortest), length_b.max(shortest));
+        Self { path, middle, half, half_lengths, tolerance: 0.0, separation, inside: Piece::NONE }
+    }
+
     /// The part of a piece in which the edges may be near: as a whole all four corners w ± e ± d on one side along
     /// the line of the midpoints, from either end |w| ≤ |e| + |d| along the velocity.
     #[inline(always)]
@@ -43,7 +59,7 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
         let of_w = widened(jets.remainders[0], self.separation).bound(h);
         let of_e = jets.remainders[1].bound(h);
         let (w, v) = (jets.p.first(), jets.v.first());
-        let distance = w.length();
+        let distance = length_up(w);
         if distance > self.half_lengths.0 {
             // Along w, of w and of e.
             let axis = TwoVec3::splat(w);
@@ -66,7 +82,7 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
             jerk: jets.j.first().dot(v),
         };
         let (forth, left_out) = along_v.quadratic_about_centre(h);
-        let reach = v.length() * (self.half_lengths.0 + of_w) + v.dot(d).abs() + left_out;
+        let reach = length_up(v) * (self.half_lengths.0 + of_w) + v.dot(d).abs() + left_out;
         forth.clip(Band { lo: -reach * UP, hi: reach * UP }, whole)
     }
 
@@ -74,7 +90,7 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
     #[inline(always)]
     fn fine(&self, part: Piece, piece: Piece) -> bool {
         let width = part.width();
-        width * (2.0 * self.speed()) <= self.tolerance || width <= 1e-15 * reach(piece)
+        width * (2.0 * self.speed()) <= self.tolerance || width <= FEW_UNITS * reach(piece)
     }
 
     fn size(&self) -> f64 {
@@ -130,7 +146,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
         // |w| is at most what its speed admits, and at a contact both half edges and the separation; its jet adds its
         // remainder.
         let (there, touching) =
-            (jets.p.first().length() + h * self.path.speed(), self.size() + self.separation);
+            (length_up(jets.p.first()) + h * self.path.speed(), self.size() + self.separation);
         let apart = (if there < touching { there } else { touching }) + remainder.bound(h);
         let (of_w, of_e) = (half_b * half_a * UP, half_b * apart * UP);
         let e0 = remainder.e0 * of_w + remainder_e.e0 * of_e;
@@ -157,7 +173,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
             let (w_m, e_m) = (there.first(), there.second());
             let k = e_m.cross(d);
             let u = d.cross(k);
-            let k_length = k.length() * UP;
+            let k_length = length_up(k);
             // At least |u|, and of the size of its rounding when k is all rounding.
             let u_length = half_b * k_length * UP;
             let along_u = there.dot(TwoVec3::splat(u));
@@ -166,7 +182,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
             // What the speeds admit.
             let (stray_w, stray_e) = (self.path.speed() * r + of_w, self.path.direction_speed() * r + of_e);
             let margin_a = u_length * (stray_w + stray_e) * UP;
-            let product = stray_w * half_a + (w_m.length() + stray_w) * stray_e;
+            let product = stray_w * half_a + (length_up(w_m) + stray_w) * stray_e;
             let margin_b = (k_length * product + u_length * stray_e) * UP;
             let (a, b) = ([w_u + e_u, w_u - e_u], [w_j + e_u, w_j - e_u]);
             let shared =
@@ -186,8 +202,8 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
                 // The same with jets.
                 let cube = (1.0 / 6.0) * (r * r * r);
                 let bent = jets.j.dot(jets.j).sqrt();
-                let margin_w = (of_w + cube * bent.first()) * UP;
-                let margin_e = (of_e + cube * bent.second()) * UP;
+                let margin_w = (of_w + cube * bent.first() + UNDERFLOW) * UP;
+                let margin_e = (of_e + cube * bent.second() + UNDERFLOW) * UP;
                 let moved = jets.moved(m);
                 let before = Piece { lo: part.lo - m, hi: part.hi - m };
                 let along_u = TwoQuadratics::along(&moved, u);
@@ -204,7 +220,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
                 let (first_b, second_b) = (w_j.plus(&e_u), w_j.minus(&e_u));
                 // |w| there, up to what its jet admits.
                 let length =
-                    w_m.length() + r * (moved.v.first().length() + 0.5 * r * moved.a.first().length());
+                    length_up(w_m) + r * (length_up(moved.v.first()) + 0.5 * r * length_up(moved.a.first()));
                 let product = margin_w * half_a + length * margin_e;
                 let margin_b =
                     ((cubic_j + quartic_j * r) * (r * r * r) + k_length * product + u_length * margin_e) * UP;
@@ -245,7 +261,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
         let [w, e] = jets.split();
         let pair = closest::segment_segment(w.p, e.p, d);
         let distance =
-            pair.difference.length() * UP + w.remainder.bound(0.0) + e.remainder.bound(0.0) - self.separation;
+            length_up(pair.difference) + w.remainder.bound(0.0) + e.remainder.bound(0.0) - self.separation;
         let whole = local(piece, at);
         let s = reach(whole);
         let margin = (widened(without_third(&w), self.separation).bound(s) + without_third(&e).bound(s)) * UP;
@@ -274,8 +290,8 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
             }
         };
         consider(direction(pair.separating));
-        if distance < 1e-6 * self.size() {
-            let k = direction(e.p.cross(d));
+        if distance < CLOSE * self.size() {
+            let k = direction(accurate_cross(Difference::from(e.p), Difference::from(d)));
             consider(if k.dot(pair.difference) < 0.0 { -k } else { k });
             // In the common plane, across either edge.
             for edge in [d, e.p] {

@@ -15,6 +15,7 @@ mod relative_motion;
 mod sphere_over_domain;
 mod sphere_sphere;
 
+pub use crate::sphere::Sphere;
 pub use direction::Direction;
 pub use edge_edge::{EdgePair, edge_edge};
 pub use face::{Face, PolygonFace, TriangleFace};
@@ -23,4 +24,4 @@ pub use options::PaperOptions;
 pub use point_triangle::{PointFace, point_polygon, point_triangle};
 pub use relative_motion::{Placement, RelativeFrame, RelativeMotion};
 pub use sphere_over_domain::{BodyOverDomain, SphereOverDomain, test_sphere_pair};
-pub use sphere_sphere::{Sphere, sphere_sphere};
+pub use sphere_sphere::sphere_sphere;

@@ -2,20 +2,12 @@
 
 use super::point_triangle::fits;
 use super::{PaperOptions, PointJet, RelativeMotion};
+use crate::sphere::Sphere;
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_root::{Gamma, InclusionFunction, IntervalFunction, RootSearch, SecondOrder, Settled, hrfoi};
 use glam::DVec3;
 
-/// A ball: a centre in its body's frame and a radius.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sphere {
-    /// Centre, body frame.
-    pub center: DVec3,
-    /// Radius, not negative.
-    pub radius: f64,
-}
-
-/// First contact of two solid balls, each fixed in its body, in `window`. Balls that overlap at the start are in
+/// First contact of two solid spheres, each fixed in its body, in `window`. Spheres that overlap at the start are in
 /// contact there.
 ///
 /// f(t) = |γ|² − (r_A + r_B)², f′ = 2 γ·γ′, f″ = 2 (γ·γ″ + |γ′|²) (Appendix B; γ is taken in the observer's frame, in

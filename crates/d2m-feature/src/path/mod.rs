@@ -5,6 +5,7 @@ mod rigid;
 pub(crate) use enclosed::{EnclosedMotions, EnclosedPath, Extent};
 pub(crate) use rigid::{FramedMotion, RigidPath};
 
+use crate::rounding::{UNIT, UP, length_up};
 use d2m_motion::{PathJet, Remainder, TwoJets};
 use d2m_root::{Cubic, Piece, Quadratic};
 use glam::DVec3;
@@ -89,10 +90,14 @@ pub(crate) fn global(part: Piece, at: f64, piece: Piece) -> Piece {
     Piece { lo, hi: if hi > lo { hi } else { lo } }
 }
 
-/// The part with what [`global`] may add to it: up to 2⁻⁵²·|at + s| at either end, less than 2.3e-16(|at| + |s|).
+/// More than the 2⁻⁵² that an end may move outward when it is rounded, as a part of the time: one unit in the last place of
+/// a sum, and the rounding of this product.
+const OUTWARD: f64 = 2.1 * UNIT;
+
+/// The part with what [`global`] may add to it: up to 2⁻⁵²·|at + s| at either end, less than `OUTWARD`·(|at| + |s|).
 #[inline(always)]
 pub(crate) fn padded(part: Piece, at: f64, whole: Piece) -> Piece {
-    let pad = 2.3e-16 * (at.abs() + reach(whole));
+    let pad = OUTWARD * (at.abs() + reach(whole));
     let (lo, hi) = (part.lo - pad, part.hi + pad);
     Piece { lo: if lo > whole.lo { lo } else { whole.lo }, hi: if hi < whole.hi { hi } else { whole.hi } }
 }
@@ -106,22 +111,27 @@ pub(crate) fn widened(remainder: Remainder, separation: f64) -> Remainder {
 /// The remainder of the jet's part to second order: the third derivative counts as an error.
 #[inline(always)]
 pub(crate) fn without_third(jet: &PathJet) -> Remainder {
-    let m3 = (jet.remainder.m3 + jet.j.length()) * (1.0 + 1e-14);
+    let m3 = (jet.remainder.m3 + length_up(jet.j)) * UP;
     Remainder { m3, ..jet.remainder }
 }
+
+/// 2⁻⁴⁸⁰ and 2⁴⁸⁰: the squares of what lies between are normal, and so are their sums.
+const SQUARE_ROOTS: (f64, f64) = (f64::from_bits((1023 - 480) << 52), f64::from_bits((1023 + 480) << 52));
+/// Keeps a computed direction from being longer than 1: the length errs by 3.5·2⁻⁵³, the quotient and the product by 1 each.
+const SHORTER: f64 = 1.0 - 8.0 * UNIT;
 
 /// A vector of length at most 1 (and at least 1 − 16·2⁻⁵³) along `v`; zero if `v` is zero or not finite.
 #[inline]
 pub(crate) fn direction(v: DVec3) -> DVec3 {
     let scale = v.abs().max_element();
-    if !(1e-140..=1e140).contains(&scale) {
+    if !(SQUARE_ROOTS.0..=SQUARE_ROOTS.1).contains(&scale) {
         if scale > 0.0 && scale.is_finite() {
-            // Out of the range whose squares are normal: bring it there first.
-            return direction(v * (if scale < 1.0 { 1e150 } else { 1e-150 }));
+            // Out of the range whose squares are normal: bring it there first, by a power of two.
+            return direction(v * (if scale < 1.0 { SQUARE_ROOTS.1 } else { SQUARE_ROOTS.0 }));
         }
         return DVec3::ZERO;
     }
-    v * ((1.0 - 4.0 * f64::EPSILON) / v.length())
+    v * (SHORTER / v.length())
 }
 
 /// The part and as much again on either side, inside the piece: where it is bracketed with signs that are certain.

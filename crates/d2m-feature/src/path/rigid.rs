@@ -1,5 +1,6 @@
 //! Jets in closed form, from frames that all features of a pair of bodies share.
 use super::FeaturePath;
+use crate::rounding::{UNIT, UP, length_up};
 use d2m_motion::{Arm, ArmPair, Frame, PathJet, RelativeMotion, Remainder, TwoJets};
 use d2m_root::{Cubic, Piece};
 use glam::DVec3;
@@ -19,11 +20,6 @@ impl FramedMotion {
         let frame = motion.frame(middle);
         Self { motion, middle, frame }
     }
-
-    /// The frame in the middle of the window.
-    pub(crate) fn middle_frame(&self) -> &Frame {
-        &self.frame
-    }
 }
 
 /// Part of the window that may be left before it is searched as a whole, with the shared frame in its middle.
@@ -32,6 +28,13 @@ const SHARED: f64 = 0.8;
 /// Part of the way of half a piece that the remainder of a jet to second order may reach before one to third order is
 /// made in place of using the shared frame.
 const COARSE: f64 = 0.5;
+
+/// More than what `times_within` adds to a distance, as a part of the reach of the motion: 64·2⁻⁵³(|g| + |u|T), and
+/// |u|T ≤ 2Y, |g| ≤ Y; as much again for what rounding the two times adds.
+const PAD: f64 = 512.0 * UNIT;
+/// Units in the last place of the window's length that a bracket may keep: the two ends of a piece that can no longer be
+/// halved, each rounded outward, and as much again for the clock at its end.
+const CLOCK: f64 = 8.0 * UNIT;
 
 /// A point and a direction of A with a constant relative twist.
 pub(crate) struct RigidPath<'a> {
@@ -61,8 +64,8 @@ impl<'a> RigidPath<'a> {
     /// `point` and `direction` as placed at the epoch; `extent` bounds the points of B that they are compared with,
     /// `separation` is the distance that counts as contact.
     ///
-    /// Contact needs the followed points within `|point| + |direction| + extent + separation` of each other: that
-    /// part of the window is all that needs a look, and there the bounds are smaller.
+    /// Contact needs the reference points within `|point| + |direction| + extent + separation` of each other: that
+    /// part of the window is all that is searched, and there the bounds are smaller.
     pub(crate) fn new(
         framed: &'a FramedMotion,
         point: DVec3,
@@ -70,22 +73,19 @@ impl<'a> RigidPath<'a> {
         extent: f64,
         separation: f64,
     ) -> Self {
-        let up = 1.0 + 1e-14;
         let motion = &framed.motion;
-        let (radius, length) = (point.length() * up, direction.length() * up);
+        let (radius, length) = (length_up(point), length_up(direction));
         let whole = Piece { lo: 0.0, hi: motion.duration() };
         let (mut window, mut reach) = (Some(whole), f64::INFINITY);
-        if !motion.is_anchored() {
-            let distance = (radius + length + extent + separation) * up;
-            match motion.times_within(distance) {
-                None => window = None,
-                // Not worth another frame than the shared one in the middle.
-                Some((lo, hi)) if hi - lo > SHARED * whole.hi => {}
-                Some((lo, hi)) => {
-                    window = Some(Piece { lo, hi });
-                    // The pad of `times_within` is below this.
-                    reach = (distance + 1e-13 * motion.bound_reach(0.0)) * up;
-                }
+        let distance = (radius + length + extent + separation + motion.bound_anchor_arms()) * UP;
+        match motion.times_within(distance) {
+            None => window = None,
+            // Not worth another frame than the shared one in the middle.
+            Some((lo, hi)) if hi - lo > SHARED * whole.hi => {}
+            Some((lo, hi)) => {
+                window = Some(Piece { lo, hi });
+                // The pad of `times_within` is below this.
+                reach = (distance + PAD * motion.bound_reach(0.0)) * UP;
             }
         }
         Self {
@@ -98,7 +98,7 @@ impl<'a> RigidPath<'a> {
             direction_remainder: motion.direction_remainder(length),
             fourth_derivative: motion.bound_fourth_derivative_within(radius, reach),
             speed: motion.bound_speed_within(radius, reach),
-            direction_speed: motion.bound_direction_derivative(1) * length * up,
+            direction_speed: motion.bound_direction_derivative(1) * length * UP,
         }
     }
 
@@ -109,12 +109,12 @@ impl<'a> RigidPath<'a> {
 
     /// How far the point can be from the origin of B's frame over the window.
     pub(crate) fn reach(&self) -> f64 {
-        self.motion.motion.bound_reach(self.point.length())
+        self.motion.motion.bound_reach(length_up(self.point))
     }
 
     /// How far the point moves while the time of the window cannot change by less: a few units in the last place.
     pub(crate) fn time_rounding(&self) -> f64 {
-        4.0 * f64::EPSILON * self.motion.motion.duration() * (self.speed + self.direction_speed)
+        CLOCK * self.motion.motion.duration() * (self.speed + self.direction_speed)
     }
 }
 
@@ -176,7 +176,7 @@ impl FeaturePath for RigidPath<'_> {
         }
         if self.third_order.is_none() {
             let point = motion.point_remainder_third_order(self.point_remainder, self.fourth_derivative);
-            let length = self.direction.length() * (1.0 + 1e-14);
+            let length = length_up(self.direction);
             let remainders = [point, motion.direction_remainder_third_order(length)];
             let arms = [motion.arms_a(self.point, self.direction), motion.arms_b(of_b.0, of_b.1)];
             self.third_order = Some(ThirdOrder::Edges(arms, remainders));

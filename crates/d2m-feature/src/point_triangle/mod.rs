@@ -7,6 +7,7 @@ use crate::closest;
 use crate::path::{
     FeaturePath, along, around, cubic_along, direction, global, local, padded, reach, widened, without_third,
 };
+use crate::rounding::{CLOSE, UNIT, UP, length_up};
 use d2m_motion::{PathJet, Remainder};
 use d2m_root::{Band, Cubic, Measurement, Piece, PieceTest, Quadratic, Verdict};
 use glam::DVec3;
@@ -27,7 +28,12 @@ const NEARBY: f64 = 1.0;
 /// Part of the feature's size that a remainder may reach before a piece is worth an evaluation; tuned on the random
 /// families (far, near, hit, graze), where 0.5 to 1 differ by less than 3 %.
 const PATIENCE: f64 = 0.12;
-const UP: f64 = 1.0 + 1e-14;
+/// Part of the latest time of a piece to which a crossing's bracket may shrink when no shorter one can be told: some four
+/// units in the last place.
+const FEW_UNITS: f64 = 8.0 * UNIT;
+/// What the support of a side normal errs by and the side normals are tilted by, as a part of the extent: each is within
+/// 32·2⁻⁵³ of unit length and of the normal across the side, the dot product adds 3; in all below 90·2⁻⁵³.
+const TILT: f64 = 90.0 * UNIT;
 
 impl<'a, P> PointTriangleTest<'a, P> {
     pub(crate) const fn new(path: P, planes: &'a TrianglePlanes, tolerance: f64, separation: f64) -> Self {
@@ -97,7 +103,7 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
         let mut inside = self.is_inside(values, stray);
         if !inside {
             // Then with the jet.
-            let margin = rounding + (1.0 / 6.0) * jet.j.length() * (r * r * r) * UP;
+            let margin = rounding + (1.0 / 6.0) * length_up(jet.j) * (r * r * r) * UP;
             let here = jet.moved(m);
             let sides = [along(&here, s0), along(&here, s1), along(&here, s2)];
             let mut beside = Piece { lo: part.lo - m, hi: part.hi - m };
@@ -127,7 +133,7 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
         let jet = self.path.point(piece, at);
         let planes = self.planes;
         let pair = closest::point_triangle(jet.p, &planes.vertices, planes.normal);
-        let distance = pair.difference.length() * (1.0 + 1e-14) + jet.remainder.bound(0.0) - self.separation;
+        let distance = length_up(pair.difference) + jet.remainder.bound(0.0) - self.separation;
         let whole = local(piece, at);
         let margin = widened(without_third(&jet), self.separation).bound(reach(whole));
         let mut clear = Piece { lo: 0.0, hi: 0.0 };
@@ -146,7 +152,7 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
             }
         };
         consider(direction(pair.separating));
-        if distance < 1e-6 * planes.size {
+        if distance < CLOSE * planes.size {
             let side = if planes.normal.dot(pair.difference) < 0.0 { -planes.normal } else { planes.normal };
             consider(side);
             planes.sides.into_iter().for_each(consider);
@@ -171,7 +177,7 @@ impl<P: FeaturePath> PointTriangleTest<'_, P> {
     #[inline(always)]
     fn fine(&self, part: Piece, piece: Piece) -> bool {
         let width = part.width();
-        width * (2.0 * self.path.speed()) <= self.tolerance || width <= 1e-15 * reach(piece)
+        width * (2.0 * self.path.speed()) <= self.tolerance || width <= FEW_UNITS * reach(piece)
     }
 
     /// The part of a piece in which the point may be in the sphere about the triangle: as a whole along the line of
@@ -180,17 +186,17 @@ impl<P: FeaturePath> PointTriangleTest<'_, P> {
     fn near(&self, jet: &PathJet, whole: Piece, h: f64) -> Option<Piece> {
         let planes = self.planes;
         let remainder = widened(jet.remainder, self.separation);
-        let from_centre = PathJet { p: jet.p - planes.centre, ..*jet };
-        let limit = (planes.radius + remainder.bound(h)) * (1.0 + 1e-14);
-        let distance = from_centre.p.length();
+        let from_center = PathJet { p: jet.p - planes.center, ..*jet };
+        let limit = (planes.radius + remainder.bound(h)) * UP;
+        let distance = length_up(from_center.p);
         if distance > planes.radius {
-            let (away, left_out) = cubic_along(&from_centre, from_centre.p).quadratic_about_centre(h);
-            if away.bound_below(whole) > (limit * distance + left_out) * (1.0 + 1e-14) {
+            let (away, left_out) = cubic_along(&from_center, from_center.p).quadratic_about_centre(h);
+            if away.bound_below(whole) > (limit * distance + left_out) * UP {
                 return None;
             }
         }
-        let (forth, left_out) = cubic_along(&from_centre, jet.v).quadratic_about_centre(h);
-        let reach = (limit * jet.v.length() + left_out) * (1.0 + 1e-14);
+        let (forth, left_out) = cubic_along(&from_center, jet.v).quadratic_about_centre(h);
+        let reach = (limit * length_up(jet.v) + left_out) * UP;
         forth.clip(Band { lo: -reach, hi: reach }, whole)
     }
 
@@ -225,7 +231,7 @@ impl<P: FeaturePath> PointTriangleTest<'_, P> {
         let Some(prism) = &self.planes.prism else {
             return false;
         };
-        let pad = margin + 1e-14 * self.planes.extent;
+        let pad = margin + TILT * self.planes.extent;
         (0..3).all(|i| greatest[i] < prism[i] - pad)
     }
 }

@@ -1,7 +1,14 @@
 //! A triangle as four directions with the interval that it covers along each.
 use crate::path::direction;
+use crate::rounding::length_up;
 use d2m_root::Band;
 use glam::DVec3;
+
+/// Height over the longest side, as a part of it, from which a triangle's prism is told from rounding: side normals are
+/// tilted by up to some 10·2⁻⁵³ of 1/height (docs/theory/features.md, "Existence"), 10⁻¹⁰ here.
+const THICK: f64 = 1e-5;
+/// Size of a triangle as a part of its distance from the origin from which the same is true of its vertices' rounding.
+const NEAR: f64 = 1e-7;
 
 /// The face normal and three in-plane edge normals with their support over the vertices.
 ///
@@ -19,7 +26,7 @@ pub(crate) struct TrianglePlanes {
     /// A point inside all three sides below these values, and inside the slab, is on the triangle up to rounding;
     /// `None` if the triangle is too thin to say so.
     pub(crate) prism: Option<[f64; 3]>,
-    pub(crate) centre: DVec3,
+    pub(crate) center: DVec3,
     pub(crate) radius: f64,
     /// Longest side.
     pub(crate) size: f64,
@@ -56,13 +63,13 @@ impl TrianglePlanes {
         let size = squares[longest].sqrt();
         // Height over the longest side: the prism argument needs it far above rounding.
         let area = product.length();
-        let extent = vertices.iter().map(|v| v.length()).fold(0.0, f64::max) * (1.0 + 1e-14);
-        let prism = (area > 1e-5 * squares[longest] && size > 1e-7 * extent)
+        let extent = vertices.iter().map(|&v| length_up(v)).fold(0.0, f64::max);
+        let prism = (area > THICK * squares[longest] && size > NEAR * extent)
             .then(|| [0, 1, 2].map(|i| sides[i].dot(vertices[i]).min(sides[i].dot(vertices[(i + 1) % 3]))));
         let low = a.min(b).min(c);
         let high = a.max(b).max(c);
-        let centre = low + (high - low) * 0.5;
-        let radius = vertices.iter().map(|v| (*v - centre).length()).fold(0.0, f64::max) * (1.0 + 1e-14);
+        let center = low + (high - low) * 0.5;
+        let radius = vertices.iter().map(|&v| length_up(v - center)).fold(0.0, f64::max);
         Self {
             vertices,
             normal,
@@ -70,7 +77,7 @@ impl TrianglePlanes {
             slab: support(normal),
             side_support: sides.map(support),
             prism,
-            centre,
+            center,
             radius,
             size,
             extent,

@@ -3,14 +3,14 @@ use super::Lines;
 use super::linear::{Line, clear_above};
 use super::point_triangle::corners;
 use super::triple_product::{Seen, TripleProduct};
+use crate::accurate_cross::{Difference, accurate_cross};
 use crate::closest;
 use crate::options::ContactOptions;
 use crate::path::{around, direction, global, local, padded, reach};
 use crate::point_triangle::cleared;
+use crate::rounding::{CLOSE, UP, length_up};
 use d2m_root::{Measurement, Piece, PieceTest, Verdict};
 use glam::DVec3;
-
-const UP: f64 = 1.0 + 1e-14;
 
 /// The piece test. With the difference `w` of the midpoints and the half edges `e`, `d`: `f = w·(e × d)`, a cubic.
 pub(super) struct StraightEdgeEdge {
@@ -38,7 +38,7 @@ impl StraightEdgeEdge {
         let tolerance = options
             .wanted_tolerance(2.0 * e0.length_squared().max(d0.length_squared()).sqrt(), lines.magnitude)
             .max(4.0 * error);
-        let speed = (w1.length() + e1.length() + d1.length()) * UP;
+        let speed = length_up(w1) + length_up(e1) + length_up(d1);
         let separation = options.separation();
         let lines = [Line { p: w0, v: w1 }, Line { p: e0, v: e1 }, Line { p: d0, v: d1 }];
         Self { lines, error, speed, size, tolerance, separation, inside: Piece::NONE }
@@ -54,7 +54,7 @@ impl StraightEdgeEdge {
     #[inline(always)]
     fn apart(&self, [w, e, d]: &[Line; 3], h: f64) -> bool {
         let n = w.p;
-        let margin = (self.error + self.separation) * n.length() * UP;
+        let margin = (self.error + self.separation) * length_up(n);
         let (w, e, d) = (w.along(n), e.along(n), d.along(n));
         let clear = |s: f64| w.at(s) - e.at(s).abs() - d.at(s).abs() > margin;
         clear(-h) && clear(h)
@@ -95,7 +95,7 @@ impl PieceTest for StraightEdgeEdge {
         if !known_inside {
             // n = e × d, frozen in the middle. w + se = td gives s·N = −n·(w × d) and t·N = −n·(w × e), N = n·(e × d).
             let n = volume.normal;
-            let length = n.length() * UP;
+            let length = length_up(n);
             let padded = padded(part, at, whole);
             let s = reach(padded);
             let (lw, le, ld) = (lengths[0].within(s), lengths[1].within(s), lengths[2].within(s));
@@ -129,7 +129,7 @@ impl PieceTest for StraightEdgeEdge {
     fn measure(&mut self, piece: Piece, at: f64) -> Measurement {
         let [w, e, d] = self.lines(at);
         let pair = closest::segment_segment(w.p, e.p, d.p);
-        let distance = pair.difference.length() * UP + self.error - self.separation;
+        let distance = length_up(pair.difference) + self.error - self.separation;
         let whole = local(piece, at);
         let margin = self.error + self.separation;
         let mut clear = Piece { lo: 0.0, hi: 0.0 };
@@ -142,8 +142,8 @@ impl PieceTest for StraightEdgeEdge {
             }
         };
         consider(direction(pair.separating));
-        if distance < 1e-6 * self.size {
-            let k = direction(e.p.cross(d.p));
+        if distance < CLOSE * self.size {
+            let k = direction(accurate_cross(Difference::from(e.p), Difference::from(d.p)));
             consider(k);
             consider(-k);
             for edge in [e.p, d.p] {

@@ -4,15 +4,19 @@ mod linear;
 mod point_triangle;
 mod triple_product;
 
-use crate::contact::FirstContact;
+use crate::contact::{ContactBracket, FirstContact};
 use crate::options::ContactOptions;
-use crate::pair_motion::answer_in;
+use crate::rigid_query::answer_in;
+use crate::rounding::{UNIT, UP};
+use crate::units::Units;
 use d2m_root::Piece;
 use edge_edge::StraightEdgeEdge;
 use glam::DVec3;
 use point_triangle::StraightPointTriangle;
 
 /// Four points, each moving from its start (t = 0) to its end (t = 1) at constant velocity: `(1 − t)·start + t·end`.
+///
+/// Answers are the same for every exact scaling of the coordinates (finite; 2⁻⁹⁰⁰ to 2⁹⁰⁰ and beyond).
 ///
 /// ```
 /// use d2m_feature::{ContactOptions, FirstContact, StraightPaths};
@@ -41,16 +45,47 @@ impl StraightPaths {
         Self { start, end }
     }
 
+    /// The paths with lengths near one, and the units in which they are. The largest coordinate is in [1, 2), so that no
+    /// product of coordinates overflows, and what underflows is far below the rounding of the largest.
+    #[inline(always)]
+    fn in_units(&self) -> (Units, Self) {
+        let mut most = DVec3::ZERO;
+        for i in 0..4 {
+            most = most.max(self.start[i].abs()).max(self.end[i].abs());
+        }
+        let units = Units::of_size(most.max_element());
+        let scaled =
+            |[p, q, r, s]: [DVec3; 4]| [units.point(p), units.point(q), units.point(r), units.point(s)];
+        (units, Self { start: scaled(self.start), end: scaled(self.end) })
+    }
+
     /// First contact of the first point with the triangle of the other three, t in [0, 1].
     pub fn point_triangle(&self, options: &ContactOptions) -> FirstContact {
-        let lines = Lines::new(self);
-        answer_in(&mut StraightPointTriangle::new(&lines, options), WINDOW, 0.0, options)
+        let (units, paths) = self.in_units();
+        let options = options.in_units(&units);
+        let mut test = StraightPointTriangle::new(&Lines::new(&paths), &options);
+        back(answer_in(&mut test, WINDOW, 0.0, &options), &units)
     }
 
     /// First contact of the edge of the first two points with the edge of the last two, t in [0, 1].
     pub fn edge_edge(&self, options: &ContactOptions) -> FirstContact {
-        let lines = Lines::new(self);
-        answer_in(&mut StraightEdgeEdge::new(&lines, options), WINDOW, 0.0, options)
+        let (units, paths) = self.in_units();
+        let options = options.in_units(&units);
+        let mut test = StraightEdgeEdge::new(&Lines::new(&paths), &options);
+        back(answer_in(&mut test, WINDOW, 0.0, &options), &units)
+    }
+}
+
+/// A contact's distances in the units of the input.
+#[inline(always)]
+fn back(answer: FirstContact, units: &Units) -> FirstContact {
+    match answer {
+        FirstContact::Contact(contact) => FirstContact::Contact(ContactBracket {
+            distance: units.length_up(contact.distance),
+            tolerance: units.length_up(contact.tolerance),
+            ..contact
+        }),
+        other => other,
     }
 }
 
@@ -73,7 +108,7 @@ impl Lines {
         let square = |p: DVec3| (p - origin).length_squared();
         let starts = [start[0].length_squared(), start[2].length_squared(), start[3].length_squared()];
         let ends = [square(e0), square(e1), square(e2), square(e3)];
-        let magnitude = larger(largest(&starts), largest(&ends)).sqrt() * (1.0 + 1e-14);
+        let magnitude = larger(largest(&starts), largest(&ends)).sqrt() * UP;
         Self { start, velocity, magnitude }
     }
 
@@ -81,7 +116,7 @@ impl Lines {
     /// length at most 1: 48 units of the magnitude for two points, 64 for the four of two edges
     /// (docs/theory/features.md counts 36 and 54).
     fn error(&self, units: f64) -> f64 {
-        units * (0.5 * f64::EPSILON) * self.magnitude
+        units * UNIT * self.magnitude
     }
 }
 

@@ -6,10 +6,9 @@ use crate::closest;
 use crate::options::ContactOptions;
 use crate::path::{around, direction, global, local, padded, reach};
 use crate::point_triangle::cleared;
+use crate::rounding::{CLOSE, UNDERFLOW, UP, length_up};
 use d2m_root::{Band, Measurement, Piece, PieceTest, Verdict};
 use glam::DVec3;
-
-const UP: f64 = 1.0 + 1e-14;
 
 /// The piece test. With `a` from a corner to the point and `e₁`, `e₂` from it to the others: `f = a·(e₁ × e₂)`, a cubic,
 /// known exactly up to rounding.
@@ -40,7 +39,7 @@ impl StraightPointTriangle {
         let between = |a: usize, b: usize| Line { p: start[a] - start[b], v: velocity[a] - velocity[b] };
         let (a, e1, e2) = (between(0, corner), between(first, corner), between(second, corner));
         let speeds = [a.v.length_squared(), (a.v - e1.v).length_squared(), (a.v - e2.v).length_squared()];
-        let speed = largest(&speeds).sqrt() * UP;
+        let speed = largest(&speeds).sqrt() * UP + UNDERFLOW;
         let error = lines.error(48.0);
         let tolerance = options.wanted_tolerance(square.sqrt(), lines.magnitude).max(4.0 * error);
         Self {
@@ -64,7 +63,7 @@ impl StraightPointTriangle {
     #[inline(always)]
     fn apart(&self, [a, e1, e2]: &[Line; 3], h: f64) -> bool {
         let away = a.p * 3.0 - (e1.p + e2.p);
-        let margin = (self.error + self.separation) * away.length() * UP;
+        let margin = (self.error + self.separation) * length_up(away);
         let (a, e1, e2) = (a.along(away), e1.along(away), e2.along(away));
         let from = |e: Linear| Linear { value: a.value - e.value, slope: a.slope - e.slope };
         [a, from(e1), from(e2)].iter().all(|f| f.least(h) > margin)
@@ -107,7 +106,7 @@ impl PieceTest for StraightPointTriangle {
             // Areas seen along n = e₁ × e₂, frozen in the middle, as parts of the triangle's: a = λ₁e₁ + λ₂e₂ gives
             // n·(a × e₂) = λ₁·whole and n·(e₁ × a) = λ₂·whole; the third is what these leave of it.
             let n = volume.normal;
-            let length = n.length() * UP;
+            let length = length_up(n);
             let s = reach(padded(part, at, whole));
             let (la, l1, l2) = (lengths[0].within(s), lengths[1].within(s), lengths[2].within(s));
             let (across1, across2) = (e1.across(-n), e2.across(n));
@@ -149,7 +148,7 @@ impl PieceTest for StraightPointTriangle {
         let corners = lines.map(|line| -line.p);
         let normal = direction((corners[1] - corners[0]).cross(corners[2] - corners[0]));
         let pair = closest::point_triangle(DVec3::ZERO, &corners, normal);
-        let distance = pair.difference.length() * UP + self.error - self.separation;
+        let distance = length_up(pair.difference) + self.error - self.separation;
         let whole = local(piece, at);
         let margin = self.error + self.separation;
         let mut clear = Piece { lo: 0.0, hi: 0.0 };
@@ -162,7 +161,7 @@ impl PieceTest for StraightPointTriangle {
             }
         };
         consider(direction(pair.separating));
-        if distance < 1e-6 * self.size {
+        if distance < CLOSE * self.size {
             consider(normal);
             consider(-normal);
             for i in 0..3 {

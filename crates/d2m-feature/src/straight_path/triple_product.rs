@@ -1,10 +1,13 @@
 //! The cubic of four points on straight paths: zero when they lie in a plane.
 use super::linear::{Lengths, Line};
+use crate::rounding::{PRODUCT_UNDERFLOW, UNIT, UP};
 use d2m_root::{Band, Cubic, Piece, Quadratic};
 use glam::DVec3;
 
-const UP: f64 = 1.0 + 1e-14;
-const UNIT: f64 = 0.5 * f64::EPSILON;
+/// Rounding of the triple product in units of 2⁻⁵³·|a||b||c|: 76 are counted in docs/theory/features.md.
+const ROUNDING: f64 = 96.0;
+/// Rounding of x·(y × n) in units of 2⁻⁵³·|x||y||n|: 30 are counted there.
+const ROUNDING_OF_TWO: f64 = 48.0;
 
 /// `a·(b × c)` of three lines over |s| ≤ h, all four coefficients, and what a contact may have there.
 pub(super) struct TripleProduct {
@@ -16,8 +19,8 @@ pub(super) struct TripleProduct {
 }
 
 impl TripleProduct {
-    /// `lengths` are those of the lines, `error` bounds the error of each line's points; contact begins at a distance of `separation`. The roundings
-    /// are below 96·2⁻⁵³·|a||b||c| (docs/theory/features.md counts 76).
+    /// `lengths` are those of the lines, `error` bounds the error of each line's points; contact begins at a distance of
+    /// `separation`.
     #[inline(always)]
     pub(super) fn new(
         [a, b, c]: &[Line; 3],
@@ -35,8 +38,8 @@ impl TripleProduct {
             jerk: 6.0 * a.v.dot(n2),
         };
         let (la, lb, lc) = (lengths[0].within(h), lengths[1].within(h), lengths[2].within(h));
-        let rounding = 96.0 * UNIT * la * lb * lc + error * (lb * lc + la * lc + la * lb);
-        Self { cubic, normal: n0, far: (separation * lb * lc + rounding) * UP + 1e-300 }
+        let rounding = ROUNDING * UNIT * la * lb * lc + error * (lb * lc + la * lc + la * lb);
+        Self { cubic, normal: n0, far: (separation * lb * lc + rounding) * UP + PRODUCT_UNDERFLOW }
     }
 
     /// Cuts off both ends of a part of |s| ≤ h where a contact is impossible; `None` if that is all of it.
@@ -62,8 +65,8 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// `x·(y × n)` with `across = (y × n)` at s = 0 and its rate, `length` ≥ |n|, `lx` ≥ |x|, `ly` ≥ |y|. The roundings are below
-    /// 48·2⁻⁵³·|x||y||n| (docs/theory/features.md counts 30); a separation moves x by its length.
+    /// `x·(y × n)` with `across = (y × n)` at s = 0 and its rate, `length` ≥ |n|, `lx` ≥ |x|, `ly` ≥ |y|; a separation moves x
+    /// by its length.
     #[inline(always)]
     pub(super) fn new(
         x: &Line,
@@ -77,8 +80,8 @@ impl Seen {
             slope: x.p.dot(across.1) + x.v.dot(across.0),
             curvature: 2.0 * x.v.dot(across.1),
         };
-        let off = 48.0 * UNIT * lx * ly + error * (lx + ly + error) + separation * ly;
-        Self { quadratic, margin: length * off * UP + 1e-300 }
+        let off = ROUNDING_OF_TWO * UNIT * lx * ly + error * (lx + ly + error) + separation * ly;
+        Self { quadratic, margin: length * off * UP + PRODUCT_UNDERFLOW }
     }
 }
 

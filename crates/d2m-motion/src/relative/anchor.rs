@@ -20,6 +20,8 @@ pub(super) struct Anchor {
     arm_b: [DoubleDouble; 3],
     /// Upper bound of |arm_a|.
     pub(super) arm: f64,
+    /// Upper bound of |arm_a| + |arm_b|.
+    pub(super) arms: f64,
     /// Upper bound of everything that was added up.
     magnitude: f64,
 }
@@ -34,7 +36,10 @@ impl RelativeMotion {
         let length = |v: &[DoubleDouble; 3]| DVec3::new(v[0].hi, v[1].hi, v[2].hi).length() * UP;
         let (a, b) = (length(&arm_a), length(&arm_b));
         let magnitude = self.bounds.reach + a + b;
-        Self { anchor: Some(Anchor { point_a, point_b, arm_a, arm_b, arm: a, magnitude }), ..self.clone() }
+        Self {
+            anchor: Some(Anchor { point_a, point_b, arm_a, arm_b, arm: a, arms: (a + b) * UP, magnitude }),
+            ..self.clone()
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The motion of A seen from B about one time, for any two motions that can enclose themselves.
 //!
 //! docs/theory/features.md, "Any C² motion", derives the formulas, bounds and roundings of this file.
+use super::bounds::length;
 use super::{UNIT, UP};
 use crate::state::ball;
 use crate::{CertifiedState, PathJet, Remainder, RigidMotion};
@@ -45,8 +46,8 @@ pub struct RelativeState {
     /// Remainder of G, and of a vector of A of length 1.
     shift_remainder: Remainder,
     turn_remainder: Remainder,
-    /// Upper bounds over the piece: Y, U, b, w.
-    reach: f64,
+    /// Upper bounds over the piece: |ω_B × g|, U, b, w.
+    swept: f64,
     speed: f64,
     b: f64,
     w: f64,
@@ -99,15 +100,32 @@ impl RelativeState {
         let b = (omega.length() + r_omega + beta * h) * UP;
         let w = (spin.length() + r_spin + lambda * h) * UP;
         let reach = (g.length() + rx + speed * h) * UP;
+        // Of distance and velocity only what is across ω_B turns: |ω_B × g| and |ω_B × U| at the time of the state, what the
+        // radii and roundings add, and how fast both change, |α_B × g + ω_B × U| and |α_B × U + ω_B × A|.
+        let turned = omega.cross(g);
+        let dragged = omega.cross(u);
+        let dragging = ((length(dragged)
+            + 8.0 * UNIT * b * u.length()
+            + r_omega * speed
+            + b * rv
+            + h * (beta * speed + b * a_sup))
+            * UP)
+            .min(b * speed * UP);
+        let swept = ((length(turned)
+            + 8.0 * UNIT * b * g.length()
+            + r_omega * reach
+            + b * rx
+            + h * (beta * reach + dragging))
+            * UP)
+            .min(b * reach * UP);
         let across = omega.cross(spin);
         let c =
             (across.length() + 8.0 * UNIT * w * b + r_omega * w + b * r_spin + h * (beta * w + b * lambda))
                 * UP;
 
         // Values in world axes: G1 = U − ω_B × g, G2 = A − α_B × g − 2ω_B × U + ω_B × (ω_B × g), S = Λ − ω_B × Ω.
-        let turned = omega.cross(g);
         let shift =
-            [g, u - turned, (acceleration - alpha_b.cross(g)) - (2.0 * omega.cross(u) - omega.cross(turned))];
+            [g, u - turned, (acceleration - alpha_b.cross(g)) - (2.0 * dragged - omega.cross(turned))];
         let spin_rate = lambda_vector - across;
 
         // Lengths of the terms that are added, for the rounding; then what the radii add.
@@ -127,7 +145,11 @@ impl RelativeState {
                     + rb * second)
                 + k * second)
                 * wide,
-            m3: (b * b * (3.0 * speed + b * reach) + 3.0 * (beta * (speed + b * reach) + b * a_sup)) * UP,
+            // Of 3β(U + bY) the part α_B × (ω_B × g) is bounded by β|ω_B × g|; 2ω_B × (α_B × g) keeps its 2bβY.
+            m3: (b * (3.0 * dragging + b * swept)
+                + 3.0 * (beta * speed + b * a_sup)
+                + beta * (swept + 2.0 * b * reach))
+                * UP,
             m4: 0.0,
         };
         let turn_remainder = Remainder {
@@ -151,7 +173,7 @@ impl RelativeState {
             line_radii: [rx, rv, r_acceleration],
             shift_remainder,
             turn_remainder,
-            reach,
+            swept,
             speed,
             b,
             w,
@@ -238,9 +260,9 @@ impl RelativeState {
         }
     }
 
-    /// Bound of the speed over the piece, seen from B, of a point of A within `radius`: `U + bY + wρ`.
+    /// Bound of the speed over the piece, seen from B, of a point of A within `radius`: `U + bY⊥ + wρ`.
     pub fn bound_speed(&self, radius: f64) -> f64 {
-        (self.speed + self.b * self.reach + self.w * radius) * UP
+        (self.speed + self.swept + self.w * radius) * UP
     }
 
     /// Bound over the piece of the speed of the tip of a vector of A of the given length: `w·length`.

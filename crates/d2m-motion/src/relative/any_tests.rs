@@ -251,7 +251,7 @@ fn jets_of_accelerating_motions_keep_their_remainders() {
 }
 
 /// What a mutant leaves out of the bound of the third derivative.
-const TERMS: [&str; 8] = ["none", "3βU", "3βbY", "3bA", "b²(3U + bY)", "βw", "2bλ", "3wλ"];
+const TERMS: [&str; 8] = ["none", "3βU", "βb(Y⊥ + 2Y)", "3bA", "b²(3U⊥ + bY⊥)", "βw", "2bλ", "3wλ"];
 
 #[test]
 fn the_third_derivative_is_bounded_with_every_term() {
@@ -301,9 +301,9 @@ fn the_third_derivative_is_bounded_with_every_term() {
         let left_out = [
             0.0,
             3.0 * beta * speed,
-            3.0 * beta * b * y,
+            beta * (omega_b.cross(g).length() + 2.0 * b * y),
             3.0 * b * a.length(),
-            b * b * (3.0 * speed + b * y),
+            b * (3.0 * omega_b.cross(u).length() + b * omega_b.cross(g).length()),
             beta * w * rho,
             2.0 * b * lambda * rho,
             3.0 * w * lambda * rho,

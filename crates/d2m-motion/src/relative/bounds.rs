@@ -10,6 +10,49 @@ const ROUNDING: f64 = 128.0;
 /// The same per radian of rotation: the angle ωτ is rounded.
 const ROUNDING_PER_RADIAN: f64 = 6.0;
 
+/// Rounding of the orientations at the epoch, in units of 2⁻⁵³ per radian from the reference time to the epoch: the
+/// rotation is made in double-double, whose product |ω|(t − t_ref) and reduction by π/2 err by less than 2⁻⁹⁸ of the
+/// angle, 2⁻⁴⁵ units.
+const EPOCH_ROUNDING_PER_RADIAN: f64 = f64::from_bits((1023 - 45) << 52);
+/// Radians from the reference time to the epoch from which on nothing is known of the orientation: 2⁵³ quarter turns can
+/// no longer be counted in a double; 2⁵² radians are fewer.
+const LARGEST_EPOCH_ANGLE: f64 = f64::from_bits((1023 + 52) << 52);
+/// Rounding of a component `ω_i v_j − ω_j v_i` in units of 2⁻⁵³·(|ω_i|·m_j + |ω_j|·m_i), with v made of terms that add up
+/// to m in size: each product errs by 1, their difference by 2 at most, v by 4. Nothing is lost where ω is along v.
+const PRODUCT_ROUNDING: f64 = 16.0 * UNIT;
+
+/// Upper bound of |ω × v| for the true v, of which `v` differs by at most 4·2⁻⁵³ of `terms`, component by component.
+fn bound_product(omega: DVec3, v: DVec3, terms: DVec3) -> f64 {
+    let size = omega.abs();
+    let sums = DVec3::new(
+        size.y * terms.z + size.z * terms.y,
+        size.z * terms.x + size.x * terms.z,
+        size.x * terms.y + size.y * terms.x,
+    );
+    (length(omega.cross(v)) + PRODUCT_ROUNDING * length(sums)) * UP
+}
+
+/// Upper bound of a length, for vectors of any finite magnitude: scaled by a power of two so that no square under- or
+/// overflows.
+pub(super) fn length(v: DVec3) -> f64 {
+    let largest = v.abs().max_element();
+    // The squares of numbers in this range are normal, and so is their sum.
+    if (SMALL_SQUARE_ROOT..LARGE_SQUARE_ROOT).contains(&largest) || largest == 0.0 {
+        return v.length() * UP;
+    }
+    if !largest.is_finite() {
+        return f64::INFINITY;
+    }
+    let factor = if largest < 1.0 { LARGE_SQUARE_ROOT } else { SMALL_SQUARE_ROOT };
+    // Twice, so that also the smallest subnormal number is brought into the range.
+    (v * factor * factor).length() / factor / factor * UP
+}
+
+/// 2⁻⁴⁸⁰ and 2⁴⁸⁰: the squares of what lies between lose no bit that matters to a relative error of 2⁻⁵⁰, even with
+/// components 2⁻³⁰ of the largest.
+const SMALL_SQUARE_ROOT: f64 = f64::from_bits((1023 - 480) << 52);
+const LARGE_SQUARE_ROOT: f64 = f64::from_bits((1023 + 480) << 52);
+
 /// Scalars that every bound is made of; each is an upper bound.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bounds {
@@ -23,6 +66,9 @@ pub(super) struct Bounds {
     pub(super) b: f64,
     /// w = |ω_A − ω_B|.
     pub(super) w: f64,
+    /// bY⊥ = max |ω_B × (g + uτ)| over the window (convex: at one of the ends), Y⊥ the distance of A's reference point
+    /// from the axis of B: of the distance, only what is across B's axis turns.
+    pub(super) swept: f64,
     /// |ω_B × u|: of the velocity, only what is across B's axis turns.
     pub(super) across: f64,
     /// Kₖ = ‖Tₖ‖: see [`direction_bounds`].
@@ -41,21 +87,31 @@ impl Bounds {
         spin_b: &Spin,
         difference: DVec3,
         duration: f64,
+        epoch_angle: f64,
     ) -> Self {
-        let speed = velocity.length() * UP;
-        let reach = offset.length().max((offset + velocity * duration).length()) * UP
-            + 8.0 * UNIT * (offset.length() + speed * duration);
+        let speed = length(velocity);
+        let end = offset + velocity * duration;
+        let magnitude = length(offset) + speed * duration;
+        let reach = length(offset).max(length(end)) * UP + 8.0 * UNIT * magnitude;
         let (a, b) = (spin_a.speed * UP, spin_b.speed * UP);
-        let w = difference.length() * UP;
-        let across = spin_b.omega.cross(velocity).length() * UP + 8.0 * UNIT * b * speed;
+        let w = length(difference);
+        let terms = offset.abs() + velocity.abs() * duration;
+        let at_start = bound_product(spin_b.omega, offset, terms);
+        let swept = at_start.max(bound_product(spin_b.omega, end, terms)).min(b * reach * UP);
+        let across = bound_product(spin_b.omega, velocity, velocity.abs()).min(b * speed * UP);
         let [k2, k3, k4] = direction_bounds(spin_a.omega, spin_b.omega, difference, a + b);
         let turn = (a + b) * duration;
-        let rounding = if turn <= crate::sin_cos::LARGEST_ANGLE {
-            UNIT * (ROUNDING + ROUNDING_PER_RADIAN * turn) * UP
+        let rounding = if turn <= crate::sin_cos::LARGEST_ANGLE && epoch_angle <= LARGEST_EPOCH_ANGLE {
+            UNIT * (ROUNDING + ROUNDING_PER_RADIAN * turn + EPOCH_ROUNDING_PER_RADIAN * epoch_angle) * UP
         } else {
             f64::INFINITY
         };
-        Self { speed, reach, a, b, w, across, k2, k3, k4, rounding }
+        Self { speed, reach, a, b, w, swept, across, k2, k3, k4, rounding }
+    }
+
+    /// bY⊥ while the reference points are within `reach` of each other.
+    fn swept_within(&self, reach: f64) -> f64 {
+        (self.b * reach * UP).min(self.swept)
     }
 }
 
@@ -68,6 +124,10 @@ fn direction_bounds(spin_a: DVec3, spin_b: DVec3, difference: DVec3, sum: f64) -
     if sum == 0.0 {
         return [0.0; 3];
     }
+    if sum < SLOWEST {
+        // ‖Tₖ‖ ≤ sumᵏ ≤ sum² < 2⁻¹⁸⁰⁰, far below the smallest number.
+        return [f64::MIN_POSITIVE; 3];
+    }
     let scale = 1.0 / sum;
     let (a, b) = (spin_a * scale, spin_b * scale);
     let mut turn = cross_columns(difference * scale, &DMat3::IDENTITY);
@@ -79,6 +139,9 @@ fn direction_bounds(spin_a: DVec3, spin_b: DVec3, difference: DVec3, sum: f64) -
         (norm(&turn) + 64.0 * UNIT) * power * UP
     })
 }
+
+/// 2⁻⁹⁰⁰: rates below it have no quotient 1/rate that is certainly finite, and nothing turns that slowly.
+const SLOWEST: f64 = f64::from_bits((1023 - 900) << 52);
 
 /// Upper bound of the operator norm, less than 1.08 of it: with the singular values σ, `(Σσ¹⁶)^(1/16)`, as
 /// `‖(MᵀM)⁴‖^(1/8)` (Frobenius norm).
@@ -147,26 +210,27 @@ impl RelativeMotion {
         Some((from.max(0.0), to.min(self.duration)))
     }
 
-    /// Bound V of the speed of a point of A within `radius` of A's followed point: `U + bY + wρ`.
+    /// Bound V of the speed of a point of A within `radius` of A's followed point: `U + bY⊥ + wρ`.
     ///
-    /// With an anchor, `radius` is from the anchor and the arm of the anchor is added.
+    /// Y⊥ is the greatest distance of A's reference point from the axis of B's spin through B's: what lies along that axis
+    /// does not turn. With an anchor, `radius` is from the anchor and the arm of the anchor is added.
     pub fn bound_speed(&self, radius: f64) -> f64 {
         self.bound_speed_within(radius, self.bounds.reach)
     }
 
-    /// The same while the followed points are within `reach` of each other: `Y = reach`.
+    /// The same while the reference points are within `reach` of each other: `Y⊥ ≤ reach`.
     pub fn bound_speed_within(&self, radius: f64, reach: f64) -> f64 {
         let k = &self.bounds;
-        (k.speed + k.b * reach.min(k.reach) + k.w * (radius + self.anchor_arm())) * UP
+        (k.speed + k.swept_within(reach) + k.w * (radius + self.anchor_arm())) * UP
     }
 
-    /// Bound of the acceleration: `2|ω_B × u| + b²Y + K2·ρ`.
+    /// Bound of the acceleration: `2|ω_B × u| + b²Y⊥ + K2·ρ`.
     pub fn bound_acceleration(&self, radius: f64) -> f64 {
         let k = &self.bounds;
-        (2.0 * k.across + k.b * k.b * k.reach + k.k2 * (radius + self.anchor_arm())) * UP
+        (2.0 * k.across + k.b * k.swept + k.k2 * (radius + self.anchor_arm())) * UP
     }
 
-    /// Bound M3 of the third derivative: `b(3|ω_B × u| + b²Y) + K3·ρ`.
+    /// Bound M3 of the third derivative: `b(3|ω_B × u| + b²Y⊥) + K3·ρ`.
     pub fn bound_jerk(&self, radius: f64) -> f64 {
         self.bound_jerk_within(radius, self.bounds.reach)
     }
@@ -174,7 +238,7 @@ impl RelativeMotion {
     /// The same while the followed points are within `reach` of each other.
     fn bound_jerk_within(&self, radius: f64, reach: f64) -> f64 {
         let k = &self.bounds;
-        (k.b * (3.0 * k.across + k.b * k.b * reach.min(k.reach)) + k.k3 * (radius + self.anchor_arm())) * UP
+        (k.b * (3.0 * k.across + k.b * k.swept_within(reach)) + k.k3 * (radius + self.anchor_arm())) * UP
     }
 
     /// Bound of the k-th derivative of a direction of A of length 1, k = 1, 2, 3, 4: `w`, `K2`, `K3`, `K4`.
@@ -217,11 +281,11 @@ impl RelativeMotion {
     }
 
     /// Bound M4 of the fourth derivative while the followed points are within `reach` of each other:
-    /// `b²(4|ω_B × u| + b²Y) + K4·ρ`.
+    /// `b²(4|ω_B × u| + b²Y⊥) + K4·ρ`.
     pub fn bound_fourth_derivative_within(&self, radius: f64, reach: f64) -> f64 {
         let k = &self.bounds;
-        let y = reach.min(k.reach);
-        (k.b * k.b * (4.0 * k.across + k.b * k.b * y) + k.k4 * (radius + self.anchor_arm())) * UP
+        (k.b * k.b * (4.0 * k.across + k.b * k.swept_within(reach)) + k.k4 * (radius + self.anchor_arm()))
+            * UP
     }
 
     /// The remainder of jets to third order of the points whose jets to second order have the remainder `second` of
@@ -255,6 +319,13 @@ impl RelativeMotion {
             m3: k.k3 * length * UP,
             m4: 0.0,
         }
+    }
+
+    /// Bound of how far the anchors are from the reference points, added; 0 without anchors. Points within `radius` and
+    /// `extent` of the origins of a frame meet only while the reference points are within `radius + extent` and this of
+    /// each other.
+    pub fn bound_anchor_arms(&self) -> f64 {
+        self.anchor.as_ref().map_or(0.0, |anchor| anchor.arms)
     }
 
     fn anchor_arm(&self) -> f64 {

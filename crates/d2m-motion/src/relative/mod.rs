@@ -58,6 +58,8 @@ pub struct RelativeMotion {
     at_b: DVec3,
     rotation_a: DMat3,
     rotation_b: DMat3,
+    /// Radians that A and B turn from their reference times to the epoch, added.
+    epoch_angle: f64,
     bounds: Bounds,
     exact: Exact,
     anchor: Option<Anchor>,
@@ -92,6 +94,10 @@ impl RelativeMotion {
         let duration = if length.lo > 0.0 { length.hi.next_up() } else { length.hi };
         let (spin_a, spin_b) = (Spin::new(a.angular_velocity()), Spin::new(b.angular_velocity()));
         let spin_difference = spin_a.omega - spin_b.omega;
+        let from_reference = |motion: &ConstantTwist, spin: &Spin| {
+            if spin.speed == 0.0 { 0.0 } else { spin.speed * (start - motion.reference_time()).abs() }
+        };
+        let epoch_angle = (from_reference(a, &spin_a) + from_reference(b, &spin_b)) * UP;
         Self {
             start,
             end,
@@ -105,7 +111,8 @@ impl RelativeMotion {
             at_b: b.at(),
             rotation_a: exact.rotation_a.to_mat3(),
             rotation_b: exact.rotation_b.to_mat3(),
-            bounds: Bounds::new(offset, velocity, &spin_a, &spin_b, spin_difference, duration),
+            bounds: Bounds::new(offset, velocity, &spin_a, &spin_b, spin_difference, duration, epoch_angle),
+            epoch_angle,
             exact,
             anchor: None,
         }
@@ -130,7 +137,15 @@ impl RelativeMotion {
             at_b: self.at_a,
             rotation_a: self.rotation_b,
             rotation_b: self.rotation_a,
-            bounds: Bounds::new(offset, velocity, &self.spin_b, &self.spin_a, spin_difference, self.duration),
+            bounds: Bounds::new(
+                offset,
+                velocity,
+                &self.spin_b,
+                &self.spin_a,
+                spin_difference,
+                self.duration,
+                self.epoch_angle,
+            ),
             exact,
             anchor: None,
             ..*self

@@ -111,16 +111,16 @@ fn bounds_of_the_derivatives_hold_and_are_nearly_reached() {
                     direction[order] = direction[order].max(e[order] / bound);
                 }
             }
-            let base = k.b * (3.0 * k.across + k.b * k.b * k.reach);
+            let base = k.b * (3.0 * k.across + k.b * k.swept);
             mutants[0] = mutants[0].max(q[2] / (base + k.w.powi(3) * rho));
-            mutants[1] = mutants[1].max(q[2] / (k.b.powi(3) * k.reach + k.k3 * rho));
+            mutants[1] = mutants[1].max(q[2] / (k.b * k.b * k.swept + k.k3 * rho));
             mutants[2] = mutants[2].max(q[0] / (k.speed + k.w * rho));
-            mutants[3] = mutants[3].max(q[1] / (2.0 * k.across + k.b * k.b * k.reach + 0.5 * k.k2 * rho));
-            let base = k.b * k.b * (4.0 * k.across + k.b * k.b * k.reach);
+            mutants[3] = mutants[3].max(q[1] / (2.0 * k.across + k.b * k.swept + 0.5 * k.k2 * rho));
+            let base = k.b * k.b * (4.0 * k.across + k.b * k.swept);
             mutants[4] = mutants[4].max(q[3] / (base + k.w.powi(4) * rho));
-            mutants[5] = mutants[5].max(q[3] / (k.b.powi(4) * k.reach + k.k4 * rho));
+            mutants[5] = mutants[5].max(q[3] / (k.b.powi(3) * k.swept + k.k4 * rho));
             let along = motion.velocity.dot(motion.spin_b.axis).abs();
-            mutants[6] = mutants[6].max(q[1] / (k.b * (2.0 * along + k.b * k.reach) + k.k2 * rho));
+            mutants[6] = mutants[6].max(q[1] / (k.b * (2.0 * along + k.swept) + k.k2 * rho));
         }
     }
     for ratio in point.into_iter().chain(direction) {
@@ -317,4 +317,29 @@ fn the_part_of_the_window_within_reach_is_whole_and_its_remainders_hold() {
         }
     }
     assert!(never > 1000 && part > 1000 && inside > 10_000, "{never} {part} {inside}");
+}
+
+#[test]
+fn what_lies_along_the_axis_of_both_spins_does_not_turn() {
+    // Bodies that spin together and approach along their axis: seen from B nothing but a translation.
+    let spin = 58_747.322_521_259_95 * DVec3::Z;
+    let a = ConstantTwist::try_new(64.0 * DVec3::Z, DQuat::IDENTITY, -8.0 * DVec3::Z, spin).unwrap();
+    let b = ConstantTwist::REST.with_angular_velocity(spin);
+    let motion = RelativeMotion::new(&a, &b, 0.0, 8.0);
+    assert!(motion.bound_speed(1.0) < 8.0 * (1.0 + 1e-12), "{}", motion.bound_speed(1.0));
+    assert!(motion.bound_jerk(1.0) == 0.0 && motion.bound_fourth_derivative_within(1.0, 64.0) == 0.0);
+    // The same two bodies one unit beside each other turn about each other.
+    let beside = RelativeMotion::new(&a.with_position(DVec3::X), &b, 0.0, 8.0);
+    assert!(beside.bound_speed(1.0) > 58_747.0);
+}
+
+#[test]
+fn rotations_are_the_same_in_every_unit_of_time() {
+    let omega = DVec3::new(0.3, -1.2, 0.7);
+    let turned = exponential_dd(omega, DoubleDouble::from_f64(1.5)).to_mat3();
+    for k in [-1000, -600, -300, 300, 600, 1000] {
+        let (faster, shorter) = (2.0_f64.powi(k), 2.0_f64.powi(-k));
+        let same = exponential_dd(omega * faster, DoubleDouble::from_f64(1.5 * shorter)).to_mat3();
+        assert_eq!(turned, same, "2^{k}");
+    }
 }

@@ -1,0 +1,32 @@
+//! Constants of the error counts, each with where it comes from.
+use glam::DVec3;
+
+/// Unit roundoff, 2⁻⁵³.
+pub(crate) const UNIT: f64 = 0.5 * f64::EPSILON;
+
+/// Covers the rounding of a bound that is made of fewer than 64 operations on non-negative numbers: (1 + 2⁻⁵³)⁶⁴ is below
+/// 1 + 7.2e-15, and the product with this factor adds one more rounding.
+pub(crate) const UP: f64 = 1.0 + 1e-14;
+
+/// The same from below: at most 1 − 9.9e-15, so a product with it stays below the true value after 64 roundings.
+pub(crate) const DOWN: f64 = 2.0 - UP;
+
+/// 2⁻⁵⁰⁰: more than what a length loses to squares that underflow. Each of three squares loses at most 2⁻¹⁰⁷⁴, so the root
+/// loses at most √3·2⁻⁵³⁷. In the units of a query ([`Units`](crate::units::Units)) features are at least 2⁻²⁰⁰, so this is
+/// below 2⁻²⁰⁰ of every error bound.
+pub(crate) const UNDERFLOW: f64 = f64::from_bits((1023 - 500) << 52);
+
+/// Upper bound of the length of a computed vector.
+#[inline(always)]
+pub(crate) fn length_up(v: DVec3) -> f64 {
+    v.length() * UP + UNDERFLOW
+}
+
+/// Distance, as a part of the features' size, below which the difference of the closest points is no good direction:
+/// rounding of 2⁻⁵³ in positions turns it by 2⁻³³ there, and by more where it is smaller. The normal and the normals of the
+/// sides are tried as well then. (Any direction is sound.)
+pub(crate) const CLOSE: f64 = 1e-6;
+
+/// 2⁻¹⁰⁰⁰: more than sums of fewer than 2²⁰ products lose to underflow, where all factors are at most 2¹⁶: 2⁻¹⁰⁷⁴ each, times
+/// the factors that follow.
+pub(crate) const PRODUCT_UNDERFLOW: f64 = f64::from_bits((1023 - 1000) << 52);
