@@ -23,7 +23,9 @@
 //!   4u of itself. [`LOSS`] = 32u and the measured e are used.
 //! - Underflow loses at most 2⁻¹⁰⁷⁰ after scaling, covered by the floor 2⁻⁵⁰⁰.
 
+use crate::accurate_cross::{Difference, accurate_cross};
 use crate::triangle_intersection::triangles_intersect;
+use crate::units::Units;
 use glam::DVec3;
 
 /// Relative loss of both bounds: 32u.
@@ -85,11 +87,16 @@ pub struct TriangleDistance {
 /// assert_eq!(distance.feature_b, TriangleFeature::Corner(0));
 /// ```
 pub fn triangle_distance(a: &[DVec3; 3], b: &[DVec3; 3]) -> TriangleDistance {
-    let origin = a[0];
-    let extent = a.iter().chain(b).map(|&p| (p - origin).abs().max_element()).fold(0.0, f64::max);
+    // Powers of two: first so that no difference overflows, then so that the largest difference is near one.
+    let largest = a.iter().chain(b).fold(DVec3::ZERO, |most, p| most.max(p.abs())).max_element();
+    let units = Units::of_size(largest);
+    let [in_units_a, in_units_b] = [a, b].map(|triangle| triangle.map(|p| units.point(p)));
+    let origin = in_units_a[0];
+    let extent =
+        in_units_a.iter().chain(&in_units_b).map(|&p| (p - origin).abs().max_element()).fold(0.0, f64::max);
     let scale = power_of_two_below(extent);
     let shrink = 1.0 / scale;
-    let [local_a, local_b] = [a, b].map(|triangle| triangle.map(|p| (p - origin) * shrink));
+    let [local_a, local_b] = [in_units_a, in_units_b].map(|triangle| triangle.map(|p| (p - origin) * shrink));
     let mut search = Search::new(&local_a, &local_b);
     search.run();
     let Search { mut closest, mut upper, lower, .. } = search;
@@ -98,11 +105,12 @@ pub fn triangle_distance(a: &[DVec3; 3], b: &[DVec3; 3]) -> TriangleDistance {
         upper = 0.0;
         closest = try_common_point(&local_a, &local_b).unwrap_or(closest);
     }
-    let place = |weights, corners: &[DVec3; 3]| combine(weights, corners) * scale + origin;
+    let place = |weights, corners: &[DVec3; 3]| units.point_back(combine(weights, corners) * scale + origin);
+    let back = |distance: f64| units.length_back(distance * scale);
     TriangleDistance {
         // Scaling back is exact, except that it may round once in the subnormal range.
-        lower: if lower.gap > 0.0 { (lower.gap * scale).next_down() } else { 0.0 },
-        upper: if meet { 0.0 } else { (upper * scale).next_up() },
+        lower: if lower.gap > 0.0 { back(lower.gap).next_down() } else { 0.0 },
+        upper: if meet { 0.0 } else { back(upper).next_up() },
         point_a: place(closest.weights_a, &local_a),
         point_b: place(closest.weights_b, &local_b),
         barycentric_a: closest.weights_a,
@@ -295,18 +303,24 @@ fn closest_on_segments(p: DVec3, along_p: DVec3, q: DVec3, along_q: DVec3) -> (f
     (ratio((offset + along_q * t).dot(along_p), along_p.length_squared()), t)
 }
 
+/// The part of `offset` across `side`.
+fn across(side: Difference, offset: Difference) -> DVec3 {
+    accurate_cross(Difference::from(accurate_cross(side, offset)), side)
+}
+
 /// The direction that belongs to the kind of the closest points.
 fn likely_direction(a: &[DVec3; 3], b: &[DVec3; 3], closest: &Closest) -> DVec3 {
     use TriangleFeature::{Corner, Face, Side};
-    let side = |triangle: &[DVec3; 3], k: u8| triangle[(k as usize + 1) % 3] - triangle[k as usize];
-    let across = |edge: DVec3, offset: DVec3| edge.cross(offset).cross(edge);
-    let normal = |[p, q, r]: &[DVec3; 3]| (q - p).cross(r - p);
+    let side =
+        |triangle: &[DVec3; 3], k: u8| Difference::new(triangle[(k as usize + 1) % 3], triangle[k as usize]);
+    let normal = |&[p, q, r]: &[DVec3; 3]| accurate_cross(Difference::new(q, p), Difference::new(r, p));
+    let between = |k: u8, l: u8| Difference::new(b[l as usize], a[k as usize]);
     match (feature_of(closest.weights_a), feature_of(closest.weights_b)) {
         (Face, _) => normal(a),
         (_, Face) => normal(b),
-        (Side(k), Side(l)) => side(a, k).cross(side(b, l)),
-        (Side(k), Corner(l)) => across(side(a, k), b[l as usize] - a[k as usize]),
-        (Corner(k), Side(l)) => across(side(b, l), b[l as usize] - a[k as usize]),
+        (Side(k), Side(l)) => accurate_cross(side(a, k), side(b, l)),
+        (Side(k), Corner(l)) => across(side(a, k), between(k, l)),
+        (Corner(k), Side(l)) => across(side(b, l), between(k, l)),
         (Corner(k), Corner(l)) => b[l as usize] - a[k as usize],
     }
 }
@@ -314,23 +328,25 @@ fn likely_direction(a: &[DVec3; 3], b: &[DVec3; 3], closest: &Closest) -> DVec3 
 /// All directions in which the closest points of two triangles can lie: faces' normals, sides' cross products, corners'
 /// differences, corners' perpendiculars to sides, and perpendiculars to sides within the faces.
 fn all_directions(a: &[DVec3; 3], b: &[DVec3; 3]) -> impl Iterator<Item = DVec3> {
-    let sides = |t: &[DVec3; 3]| [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
+    let sides =
+        |&[p, q, r]: &[DVec3; 3]| [Difference::new(q, p), Difference::new(r, q), Difference::new(p, r)];
     let (a, b) = (*a, *b);
     let (sides_a, sides_b) = (sides(&a), sides(&b));
-    let normals = [sides_a[0].cross(sides_a[1]), sides_b[0].cross(sides_b[1])];
+    let normals = [accurate_cross(sides_a[0], sides_a[1]), accurate_cross(sides_b[0], sides_b[1])];
     (0..9).flat_map(move |pair| {
         let (i, j) = (pair / 3, pair % 3);
-        let offset = b[j] - a[i];
+        let offset = Difference::new(b[j], a[i]);
+        let within = |side: Difference, normal: DVec3| accurate_cross(side, Difference::from(normal));
         [
             normals[pair % 2],
-            sides_a[i].cross(sides_b[j]),
-            offset,
-            sides_a[i].cross(offset).cross(sides_a[i]),
-            sides_b[j].cross(offset).cross(sides_b[j]),
-            sides_a[i].cross(b[j] - a[(i + 1) % 3]).cross(sides_a[i]),
-            sides_b[j].cross(b[(j + 1) % 3] - a[i]).cross(sides_b[j]),
-            sides_a[i].cross(normals[j % 2]),
-            sides_b[j].cross(normals[i % 2]),
+            accurate_cross(sides_a[i], sides_b[j]),
+            b[j] - a[i],
+            across(sides_a[i], offset),
+            across(sides_b[j], offset),
+            across(sides_a[i], Difference::new(b[j], a[(i + 1) % 3])),
+            across(sides_b[j], Difference::new(b[(j + 1) % 3], a[i])),
+            within(sides_a[i], normals[j % 2]),
+            within(sides_b[j], normals[i % 2]),
         ]
     })
 }

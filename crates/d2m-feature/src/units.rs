@@ -154,6 +154,11 @@ impl Units {
         if there < f64::MIN_POSITIVE && x > 0.0 { there.next_up() } else { there }
     }
 
+    /// A length of these units in the input's, rounded to nearest where it is subnormal.
+    pub(crate) fn length_back(&self, x: f64) -> f64 {
+        scaled(x, self.length)
+    }
+
     /// A point of these units in the input's.
     pub(crate) fn point_back(&self, p: DVec3) -> DVec3 {
         DVec3::new(scaled(p.x, self.length), scaled(p.y, self.length), scaled(p.z, self.length))

@@ -170,4 +170,55 @@ proptest! {
         let width = check(a, b.map(|p| p + shift));
         prop_assert!(width < 3e-14, "{}", width);
     }
+
+    /// Edges that cross at an angle of 1e-15 to 0.1: their common normal is mostly rounding.
+    #[test]
+    fn edges_that_cross_at_small_angles(ends in prop::array::uniform4(0.3..1.0_f64), tops in prop::array::uniform4(-1.0..1.0_f64), angle in -15.0..-1.0_f64, gap in -14.0..0.0_f64, turn in prop::array::uniform4(-1.0..1.0_f64)) {
+        let turn = glam::DQuat::from_array(turn).normalize();
+        prop_assume!(turn.is_finite());
+        let (angle, gap) = (10_f64.powf(angle), 10_f64.powf(gap));
+        let along = DVec3::new(angle.cos(), angle.sin(), 0.0);
+        let a = [-ends[0] * DVec3::X, ends[1] * DVec3::X, DVec3::new(tops[0], tops[1], -1.0)];
+        let b = [-ends[2] * along, ends[3] * along, DVec3::new(tops[2], tops[3], 1.0)].map(|p| p + DVec3::Z * gap);
+        let width = check(a.map(|p| turn * p), b.map(|p| turn * p));
+        prop_assert!(width < 1e-13, "{}", width);
+    }
+
+    /// Triangles whose planes meet at an angle of 1e-15 to 0.1, side by side or one above the other.
+    #[test]
+    fn nearly_coplanar_triangles(a in prop::array::uniform3(point()), b in prop::array::uniform3(point()), angle in -15.0..-1.0_f64, gap in -14.0..0.0_f64, beside in -1.0..2.0_f64, turn in prop::array::uniform4(-1.0..1.0_f64)) {
+        let turn = glam::DQuat::from_array(turn).normalize();
+        prop_assume!(turn.is_finite());
+        let (angle, gap) = (10_f64.powf(angle), 10_f64.powf(gap));
+        let flat = |p: DVec3, slope: f64, height: f64| turn * DVec3::new(p.x, p.y, p.x * slope + height);
+        let width = check(a.map(|p| flat(p, 0.0, 0.0)), b.map(|p| flat(p + DVec3::X * beside, angle, gap)));
+        prop_assert!(width < 1e-13, "{}", width);
+    }
+
+    /// Sides of two slivers, nearly parallel, their long sides facing each other.
+    #[test]
+    fn slivers_that_cross_at_small_angles(heights in prop::array::uniform2(-15.0..0.0_f64), feet in prop::array::uniform2(0.0..1.0_f64), angle in -15.0..-1.0_f64, gap in -14.0..0.0_f64, turn in prop::array::uniform4(-1.0..1.0_f64)) {
+        let turn = glam::DQuat::from_array(turn).normalize();
+        prop_assume!(turn.is_finite());
+        let (angle, gap) = (10_f64.powf(angle), 10_f64.powf(gap));
+        let heights = heights.map(|height| 10_f64.powf(height));
+        let along = DVec3::new(angle.cos(), angle.sin(), 0.0);
+        let across = DVec3::new(-angle.sin(), angle.cos(), 0.0);
+        let a = [-DVec3::X, DVec3::X, DVec3::X * (2.0 * feet[0] - 1.0) + DVec3::new(0.0, 0.6, -0.8) * heights[0]];
+        let b = [-along, along, along * (2.0 * feet[1] - 1.0) + (across * 0.8 + DVec3::Z * 0.6) * heights[1]];
+        let width = check(a.map(|p| turn * p), b.map(|p| turn * (p + DVec3::Z * gap)));
+        prop_assert!(width < 1e-13, "{}", width);
+    }
+
+    /// Multiplied by a power of two, up to where the numbers end.
+    #[test]
+    fn exact_scalings_change_nothing(a in prop::array::uniform3(point()), b in prop::array::uniform3(point()), apart in 0.0..2.0, exponent in -900_i32..1020) {
+        let b = b.map(|p| p + DVec3::X * apart);
+        let factor = f64::from_bits(((1023 + exponent) as u64) << 52);
+        let (plain, twin) = (triangle_distance(&a, &b), triangle_distance(&a.map(|p| p * factor), &b.map(|p| p * factor)));
+        prop_assert_eq!((twin.barycentric_a, twin.barycentric_b), (plain.barycentric_a, plain.barycentric_b));
+        prop_assert_eq!(twin.direction, plain.direction);
+        prop_assert_eq!((twin.lower, twin.upper), (plain.lower * factor, plain.upper * factor));
+        prop_assert_eq!((twin.point_a, twin.point_b), (plain.point_a * factor, plain.point_b * factor));
+    }
 }
