@@ -118,10 +118,11 @@ impl Bounds {
 /// Bounds of the second to fourth derivative of a direction of A of length 1 in the axes of B: the norms of the
 /// constant matrices `T₁ = [ω_A − ω_B]`, `Tₖ₊₁ = Tₖ[ω_A] − [ω_B]Tₖ`, as `z⁽ᵏ⁾ = R_Bᵀ Tₖ R_A d`.
 ///
-/// Rates are divided by `sum` ≥ |ω_A| + |ω_B| first: then every ‖Tₖ‖ ≤ 1, and rounding adds at most 64·2⁻⁵³
-/// (docs/theory/features.md). Exchanging A and B gives the same norms.
+/// Rates are divided by `sum` ≥ |ω_A| + |ω_B| first: then ‖Tₖ₊₁‖ ≤ ‖Tₖ‖ ≤ 1, and rounding adds at most 64·2⁻⁵³
+/// of ‖T₁‖ (docs/theory/features.md). Exchanging A and B gives the same norms.
 fn direction_bounds(spin_a: DVec3, spin_b: DVec3, difference: DVec3, sum: f64) -> [f64; 3] {
-    if sum == 0.0 {
+    if sum == 0.0 || difference == DVec3::ZERO {
+        // Bodies that turn alike: nothing of A turns in the axes of B.
         return [0.0; 3];
     }
     if sum < SLOWEST {
@@ -131,14 +132,18 @@ fn direction_bounds(spin_a: DVec3, spin_b: DVec3, difference: DVec3, sum: f64) -
     let scale = 1.0 / sum;
     let (a, b) = (spin_a * scale, spin_b * scale);
     let mut turn = cross_columns(difference * scale, &DMat3::IDENTITY);
+    let rounding = TURN_ROUNDING * length(difference * scale) + f64::MIN_POSITIVE;
     let mut power = sum;
     [(); 3].map(|()| {
         // T[ω] is the transpose of −[ω]Tᵀ.
         turn = -cross_columns(a, &turn.transpose()).transpose() - cross_columns(b, &turn);
         power *= sum;
-        (norm(&turn) + 64.0 * UNIT) * power * UP
+        (norm(&turn) + rounding) * power * UP
     })
 }
+
+/// Rounding of Tₖ, k ≤ 4, as a part of ‖T₁‖ where rates are divided by their sum (docs/theory/features.md counts it).
+const TURN_ROUNDING: f64 = 64.0 * UNIT;
 
 /// 2⁻⁹⁰⁰: rates below it have no quotient 1/rate that is certainly finite, and nothing turns that slowly.
 const SLOWEST: f64 = f64::from_bits((1023 - 900) << 52);
