@@ -1,33 +1,60 @@
-use d2m_bvh::{MeshTree, Moving};
+use d2m_bvh::{MeshTree, Moving, Solid};
 use d2m_motion::RigidMotion;
 use std::sync::Arc;
+
+/// A motion that a [`Body`] holds, shared.
+pub type SharedMotion = Arc<dyn RigidMotion + Send + Sync>;
 
 /// A mesh and how it moves: what a [`World`](crate::World) holds. Cheap to clone; bodies may share one tree.
 ///
 /// ```
-/// use d2m::{Body, ConstantTwist, MeshTree, RigidMotion};
+/// use d2m::{Body, ConstantTwist, Group, MeshTree, RigidMotion, Solid};
 /// use std::sync::Arc;
 /// let tree = Arc::new(MeshTree::new(d2m::shapes::mesh("box")?));
-/// let body = Body::new(tree, ConstantTwist::REST);
+/// let body = Body::new(tree, ConstantTwist::REST).with_solid(Solid::Surface).with_group(Group(1));
 /// assert_eq!(body.tree().mesh().triangle_count(), 12);
 /// assert!(body.motion().constant_twist().is_some());
+/// assert_eq!((body.solid(), body.group()), (Some(Solid::Surface), Some(Group(1))));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone)]
 pub struct Body {
     tree: Arc<MeshTree>,
-    motion: Arc<dyn RigidMotion + Send>,
+    motion: SharedMotion,
+    solid: Option<Solid>,
+    group: Option<Group>,
 }
+
+/// Names a group of bodies, for [`World::ignore_groups`](crate::World::ignore_groups): a number that the user chooses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Group(pub u32);
 
 impl Body {
     /// A body with this mesh and motion.
     pub fn new(tree: Arc<MeshTree>, motion: impl RigidMotion + Send + 'static) -> Self {
-        Self { tree, motion: Arc::new(motion) }
+        Self::with_shared(tree, Arc::new(motion))
+    }
+
+    /// A body with this mesh and a motion that others may hold too.
+    pub fn with_shared(tree: Arc<MeshTree>, motion: SharedMotion) -> Self {
+        Self { tree, motion, solid: None, group: None }
     }
 
     /// The same body with another motion.
     pub fn with_motion(&self, motion: impl RigidMotion + Send + 'static) -> Self {
-        Self { tree: Arc::clone(&self.tree), motion: Arc::new(motion) }
+        Self { motion: Arc::new(motion), ..self.clone() }
+    }
+
+    /// The same body with this meaning of its mesh, instead of that of the world's options.
+    pub fn with_solid(mut self, solid: Solid) -> Self {
+        self.solid = Some(solid);
+        self
+    }
+
+    /// The same body in this group, instead of in none.
+    pub const fn with_group(mut self, group: Group) -> Self {
+        self.group = Some(group);
+        self
     }
 
     /// The mesh with its tree, in the body frame.
@@ -40,9 +67,28 @@ impl Body {
         &*self.motion
     }
 
+    /// The motion, to be shared with another body or plan.
+    pub fn shared_motion(&self) -> SharedMotion {
+        Arc::clone(&self.motion)
+    }
+
+    /// What the mesh means; none: what the world's options say.
+    pub const fn solid(&self) -> Option<Solid> {
+        self.solid
+    }
+
+    /// The group that the body is in.
+    pub const fn group(&self) -> Option<Group> {
+        self.group
+    }
+
     /// The form that the pair queries take.
     pub fn moving(&self) -> Moving<'_> {
         Moving::new(&self.tree, &*self.motion)
+    }
+
+    pub(crate) fn set_motion(&mut self, motion: SharedMotion) {
+        self.motion = motion;
     }
 }
 

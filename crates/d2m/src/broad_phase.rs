@@ -1,71 +1,76 @@
-//! Sweep and prune over the boxes that the bodies sweep.
+//! Sort and sweep over boxes along the axis on which they are spread most.
 
-use crate::Body;
-use d2m_bvh::Window;
-use d2m_interval::{Interval, IntervalVec3};
+use crate::swept_bounds::{SweptBox, round_up_sum};
 use glam::DVec3;
 
-/// An axis-aligned box, world frame, that a body never leaves over a window.
-///
-/// ```text
-/// centre path over the window ⊕ ball of the body's radius
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SweptBox {
-    bounds: IntervalVec3,
+/// A pair of boxes by their numbers, the smaller first.
+pub(crate) type IndexPair = [u32; 2];
+
+/// The order of the boxes along an axis, kept from one set of boxes to the next: sorting what is nearly in order takes
+/// linear time.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SweepOrder {
+    order: Vec<u32>,
 }
 
-impl SweptBox {
-    /// Encloses every point of `body` at every time of `window`, grown by `margin` on all sides.
-    pub(crate) fn enclose(body: &Body, window: Window, margin: f64) -> Self {
-        let pose = body.motion().enclose_pose(Interval::new(window.start(), window.end()));
-        let reach = Interval::point(body.tree().radius()) + margin;
-        let grow = Interval::new(-reach.hi(), reach.hi());
-        let center = pose.enclose_point(body.tree().center());
-        Self { bounds: center + IntervalVec3 { x: grow, y: grow, z: grow } }
-    }
-
-    /// Can the two boxes share a point? Answers yes when it cannot be excluded.
-    fn may_meet(&self, other: &Self) -> bool {
-        let apart = |a: Interval, b: Interval| a.hi() < b.lo() || b.hi() < a.lo();
-        let (a, b) = (&self.bounds, &other.bounds);
-        !(apart(a.x, b.x) || apart(a.y, b.y) || apart(a.z, b.z))
-    }
-
-    /// The axis along which the boxes are spread most.
-    fn sweep_axis(boxes: &[Self]) -> usize {
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for middle in boxes.iter().map(|b| b.bounds.mid()) {
-            low = low.min(middle);
-            high = high.max(middle);
+impl SweepOrder {
+    /// Every pair of boxes that may come within `separation`, each once, in any order. Empty boxes meet nothing.
+    ///
+    /// Never leaves out a pair that meets: what is dropped is proven apart along one axis.
+    pub(crate) fn pairs(&mut self, boxes: &[SweptBox], separation: f64) -> Vec<IndexPair> {
+        let axis = widest_axis(boxes);
+        let start = |i: u32| boxes[i as usize].low[axis];
+        if self.order.len() != boxes.len() {
+            self.order = (0..boxes.len() as u32).collect();
         }
-        (high - low).max_position()
-    }
-
-    fn axis(&self, axis: usize) -> Interval {
-        [self.bounds.x, self.bounds.y, self.bounds.z][axis]
+        // Stable and adaptive to runs; ends that are not a number sort somewhere and are handled below.
+        self.order.sort_by(|&i, &j| start(i).total_cmp(&start(j)));
+        let sorted: Vec<SweptBox> = self.order.iter().map(|&i| boxes[i as usize]).collect();
+        // A box with an end that is not a number is not excluded by any comparison: it is paired with all.
+        let unordered = |b: &SweptBox| b.low.is_nan() || b.high.is_nan();
+        let any_unordered = sorted.iter().any(unordered);
+        let mut pairs = Vec::new();
+        for (at, swept) in sorted.iter().enumerate() {
+            let end = round_up_sum(swept.high[axis], separation);
+            for (next, other) in sorted.iter().enumerate().skip(at + 1) {
+                if other.low[axis] > end && !any_unordered {
+                    break;
+                }
+                if swept.may_meet(other, separation) && !swept.is_empty() && !other.is_empty() {
+                    let (i, j) = (self.order[at], self.order[next]);
+                    pairs.push([i.min(j), i.max(j)]);
+                }
+            }
+        }
+        pairs
     }
 }
 
-/// Every pair of boxes that may meet, each pair once with the smaller number first, in ascending order.
-///
-/// Never leaves out a pair that meets: bodies whose boxes are proven disjoint along one axis are all that is dropped.
-pub(crate) fn candidates(boxes: &[SweptBox]) -> Vec<(usize, usize)> {
-    let axis = SweptBox::sweep_axis(boxes);
-    let mut order: Vec<usize> = (0..boxes.len()).collect();
-    order.sort_by(|&i, &j| boxes[i].axis(axis).lo().total_cmp(&boxes[j].axis(axis).lo()).then(i.cmp(&j)));
-    let mut open: Vec<usize> = Vec::new();
-    let mut pairs = Vec::new();
-    for i in order {
-        let start = boxes[i].axis(axis).lo();
-        // An end that is not a number compares false and stays open.
-        let ended = |j: usize| boxes[j].axis(axis).hi() < start;
-        open.retain(|&j| !ended(j));
-        pairs.extend(open.iter().filter(|&&j| boxes[i].may_meet(&boxes[j])).map(|&j| (i.min(j), i.max(j))));
-        open.push(i);
+/// The axis along which the boxes are spread most, against their own size there.
+fn widest_axis(boxes: &[SweptBox]) -> usize {
+    let (mut low, mut high, mut size) = (DVec3::INFINITY, DVec3::NEG_INFINITY, DVec3::ZERO);
+    for swept in boxes.iter().filter(|b| b.low.is_finite() && b.high.is_finite()) {
+        low = low.min(swept.low);
+        high = high.max(swept.low);
+        size += swept.high - swept.low;
     }
-    pairs.sort_unstable();
-    pairs
+    let spread = (high - low) / size;
+    // Any axis is right; a spread that is not a number is no reason to choose it.
+    (0..3).max_by(|&i, &j| spread[i].total_cmp(&spread[j])).unwrap_or(0)
+}
+
+/// The boxes that may come within `separation` of box `i`, each as a pair, in ascending order of the other.
+pub(crate) fn pairs_of(boxes: &[SweptBox], i: u32, separation: f64, mut found: impl FnMut(IndexPair)) {
+    let own = &boxes[i as usize];
+    if own.is_empty() {
+        return;
+    }
+    for (j, other) in boxes.iter().enumerate() {
+        let j = j as u32;
+        if own.may_meet(other, separation) && j != i && !other.is_empty() {
+            found([i.min(j), i.max(j)]);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -73,8 +78,12 @@ mod tests {
     use super::*;
 
     fn cube(center: DVec3, half: f64) -> SweptBox {
-        let side = |c: f64| Interval::new(c - half, c + half);
-        SweptBox { bounds: IntervalVec3 { x: side(center.x), y: side(center.y), z: side(center.z) } }
+        SweptBox { low: center - half, high: center + half }
+    }
+
+    fn sorted(mut pairs: Vec<IndexPair>) -> Vec<IndexPair> {
+        pairs.sort_unstable();
+        pairs
     }
 
     #[test]
@@ -84,30 +93,44 @@ mod tests {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (seed >> 11) as f64 / (1u64 << 53) as f64
         };
-        for _ in 0..200 {
-            let boxes: Vec<_> = (0..24)
+        let mut order = SweepOrder::default();
+        for round in 0..200 {
+            let mut boxes: Vec<_> = (0..24)
                 .map(|_| cube(DVec3::new(next(), next(), next()) * 10.0, next() * 1.5 + 0.01))
                 .collect();
+            boxes[round % 24] = SweptBox::EMPTY;
+            if round % 5 == 0 {
+                boxes[3] = SweptBox { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY };
+                boxes[4] = SweptBox { low: DVec3::NAN, high: DVec3::NAN };
+            }
+            let separation = [0.0, 0.3][round % 2];
             let mut all = Vec::new();
+            let mut one_by_one = Vec::new();
             for i in 0..boxes.len() {
                 for j in i + 1..boxes.len() {
-                    if boxes[i].may_meet(&boxes[j]) {
-                        all.push((i, j));
+                    if boxes[i].may_meet(&boxes[j], separation)
+                        && !boxes[i].is_empty()
+                        && !boxes[j].is_empty()
+                    {
+                        all.push([i as u32, j as u32]);
                     }
                 }
+                pairs_of(&boxes, i as u32, separation, |pair| one_by_one.push(pair));
             }
-            assert_eq!(candidates(&boxes), all);
+            assert_eq!(sorted(order.pairs(&boxes, separation)), all);
+            one_by_one.sort_unstable();
+            one_by_one.dedup();
+            assert_eq!(one_by_one, all);
         }
     }
 
     #[test]
-    fn touching_boxes_and_unbounded_boxes_are_kept() {
+    fn touching_boxes_are_kept_and_a_separation_is_rounded_up() {
         let boxes = [cube(DVec3::ZERO, 1.0), cube(DVec3::X * 2.0, 1.0), cube(DVec3::X * 50.0, 1.0)];
-        assert_eq!(candidates(&boxes), [(0, 1)]);
-        let anywhere = SweptBox {
-            bounds: IntervalVec3 { x: Interval::ENTIRE, y: Interval::ENTIRE, z: Interval::ENTIRE },
-        };
-        assert_eq!(candidates(&[boxes[0], anywhere, boxes[2]]), [(0, 1), (1, 2)]);
-        assert!(candidates(&[]).is_empty());
+        let mut order = SweepOrder::default();
+        assert_eq!(order.pairs(&boxes, 0.0), [[0, 1]]);
+        assert_eq!(sorted(order.pairs(&boxes, 46.0)), [[0, 1], [1, 2]]);
+        assert_eq!(order.pairs(&boxes, 45.9), [[0, 1]]);
+        assert!(order.pairs(&[], 0.0).is_empty());
     }
 }

@@ -2,10 +2,12 @@
 
 mod body;
 mod broad_phase;
+mod parallel;
+mod swept_bounds;
 mod world;
 
-pub use body::Body;
-pub use world::{BodyId, FirstContact, World, WorldError};
+pub use body::{Body, Group, SharedMotion};
+pub use world::{BodyId, FirstContact, PairContact, PairProximities, PlannedMotion, World, WorldError};
 
 pub use d2m_bvh as bvh;
 pub use d2m_feature as feature;
@@ -17,8 +19,8 @@ pub use glam;
 
 pub use d2m_bvh::{
     Budget, Contact, MeshTree, Mode, Moving, PairCache, Posed, Proximity, ProximityOptions, QueryError,
-    QueryOptions, Solid, TimeOfContact, TriMesh, Window, contact_exists, proximities, proximities_with,
-    reduce_proximities, time_of_contact, time_of_contact_with,
+    QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window, contact_exists, proximities,
+    proximities_with, reduce_proximities, time_of_contact, time_of_contact_with,
 };
 #[doc(hidden)]
 pub use d2m_motion::LinearMotion;

@@ -8,6 +8,7 @@ pub(crate) mod margin;
 mod mesh_tree;
 pub(crate) mod node;
 mod parts;
+mod placed_bounds;
 mod refine;
 mod refit;
 #[cfg(feature = "serde")]

@@ -1,5 +1,6 @@
 //! The deliberate faults, one file a crate. `cargo xtask tidy` checks that each text still occurs exactly once.
 mod bvh;
+mod facade;
 mod feature;
 mod interval;
 mod motion;
@@ -39,7 +40,15 @@ const fn in_test(name: &'static str, test: &'static str) -> Mutant {
 
 /// Every deliberate fault, in the order of the layers.
 pub(crate) fn all() -> impl Iterator<Item = &'static Mutant> {
-    [interval::MUTANTS, motion::MUTANTS, root::MUTANTS, feature::MUTANTS, bvh::MUTANTS, xtask::MUTANTS]
-        .into_iter()
-        .flatten()
+    [
+        interval::MUTANTS,
+        motion::MUTANTS,
+        root::MUTANTS,
+        feature::MUTANTS,
+        bvh::MUTANTS,
+        facade::MUTANTS,
+        xtask::MUTANTS,
+    ]
+    .into_iter()
+    .flatten()
 }

@@ -1,0 +1,69 @@
+//! Which pairs are of interest, and how far apart they are to stay.
+
+use crate::Group;
+use crate::broad_phase::IndexPair;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Ignored pairs and groups, and separations of single pairs.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PairFilter {
+    pairs: BTreeSet<IndexPair>,
+    groups: BTreeSet<[Group; 2]>,
+    separations: BTreeMap<IndexPair, f64>,
+}
+
+fn ordered<T: Ord>(a: T, b: T) -> [T; 2] {
+    if a <= b { [a, b] } else { [b, a] }
+}
+
+impl PairFilter {
+    /// Sets whether a pair is ignored; true if that is new.
+    pub(super) fn set_ignored(&mut self, a: u32, b: u32, ignored: bool) -> bool {
+        let pair = ordered(a, b);
+        if ignored { self.pairs.insert(pair) } else { self.pairs.remove(&pair) }
+    }
+
+    /// Sets whether the pairs of two groups are ignored; true if that is new.
+    pub(super) fn set_groups_ignored(&mut self, a: Group, b: Group, ignored: bool) -> bool {
+        let pair = ordered(a, b);
+        if ignored { self.groups.insert(pair) } else { self.groups.remove(&pair) }
+    }
+
+    /// Is this pair ignored, by itself or by its groups?
+    #[inline]
+    pub(super) fn ignores(&self, pair: IndexPair, groups: [Option<Group>; 2]) -> bool {
+        let by_group = || match groups {
+            [Some(a), Some(b)] => self.groups.contains(&ordered(a, b)),
+            _ => false,
+        };
+        (!self.pairs.is_empty() && self.pairs.contains(&pair)) || (!self.groups.is_empty() && by_group())
+    }
+
+    /// Sets the separation of a pair, or none of its own.
+    pub(super) fn set_separation(&mut self, a: u32, b: u32, separation: Option<f64>) {
+        match separation {
+            Some(distance) => self.separations.insert(ordered(a, b), distance),
+            None => self.separations.remove(&ordered(a, b)),
+        };
+    }
+
+    /// The separation of a pair, `usual` if it has none of its own.
+    #[inline]
+    pub(super) fn separation(&self, pair: IndexPair, usual: f64) -> f64 {
+        if self.separations.is_empty() {
+            return usual;
+        }
+        self.separations.get(&pair).copied().unwrap_or(usual)
+    }
+
+    /// The largest separation of any pair.
+    pub(super) fn largest_separation(&self, usual: f64) -> f64 {
+        self.separations.values().copied().fold(usual, f64::max)
+    }
+
+    /// Forgets what was said about a body.
+    pub(super) fn forget(&mut self, body: u32) {
+        self.pairs.retain(|pair| !pair.contains(&body));
+        self.separations.retain(|pair, _| !pair.contains(&body));
+    }
+}

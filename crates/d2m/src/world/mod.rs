@@ -1,0 +1,218 @@
+//! Many moving bodies.
+
+mod answers;
+mod filter;
+mod pair_state;
+mod plan;
+mod rest;
+mod schedule;
+mod search;
+mod slots;
+#[cfg(test)]
+mod tests;
+
+pub use answers::{BodyId, FirstContact, PairContact, PairProximities, WorldError};
+pub use plan::PlannedMotion;
+
+use crate::broad_phase::IndexPair;
+use crate::{Body, Group, SharedMotion};
+use d2m_bvh::{Mode, QueryOptions, Solid, Window};
+use d2m_motion::RigidMotion;
+use filter::PairFilter;
+use pair_state::PairState;
+use schedule::{Rules, Schedule};
+use slots::Slots;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Many moving bodies: a broad phase over the boxes that they sweep, and a certified pair query for what is left.
+///
+/// Everything that is proven is kept until one of the two bodies changes: boxes, how long a pair is free, its contact. So a
+/// simulation that goes from event to event pays for the pairs of the bodies that an event changes, not for all:
+///
+/// ```
+/// use d2m::glam::DVec3;
+/// use d2m::{Body, ConstantTwist, FirstContact, MeshTree, QueryOptions, RigidMotion, Window, World};
+/// use std::sync::Arc;
+///
+/// let cube = Arc::new(MeshTree::new(d2m::shapes::mesh("box")?));
+/// let mut world = World::new(QueryOptions::default().with_min_separation(1e-3));
+/// let wall = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+/// let flying = |x: f64, v: f64| {
+///     ConstantTwist::REST.with_position(DVec3::X * x).with_linear_velocity(DVec3::X * v)
+/// };
+/// let ball = world.add(Body::new(Arc::clone(&cube), flying(9.0, -8.0)));
+/// let away = world.add(Body::new(cube, flying(9.0, 0.0).with_position(DVec3::Y * 50.0)));
+/// assert!(!world.candidates(Window::UNIT).contains(&(wall, away)));
+///
+/// let (mut time, end, mut bounces) = (0.0, 1.0, 0);
+/// loop {
+///     // The window shrinks from its start: what was proven of the rest of it stands.
+///     match world.first_contact(Window::try_new(time, end)?)? {
+///         FirstContact::Separated => break,
+///         FirstContact::Contact { a, b, contact, .. } => {
+///             assert_eq!((a, b), (wall, ball));
+///             // Certified free until here: the bodies are apart, and nothing else has met.
+///             time = contact.time_lo;
+///             // Only the bodies that react get a new motion; it must hold from `time` on.
+///             let here = world.body(ball).motion().pose_and_twist(time).0.translation;
+///             world.set_motion(ball, flying(here.x, 8.0).with_reference_time(time));
+///             bounces += 1;
+///         }
+///         FirstContact::Undecided { clear_until } => time = clear_until,
+///     }
+/// }
+/// assert_eq!(bounces, 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// A query of a window within that of an earlier one, which starts no earlier than the last one did, uses the boxes of
+/// that one; any other computes them anew. Times before the start of the last query need not be covered by a new motion.
+///
+/// **Determinism.** Answers have the same bits at any number of threads. They may depend on earlier queries, in the last
+/// digits only: a contact that was found for a longer window stands.
+#[derive(Clone, Debug, Default)]
+pub struct World {
+    options: QueryOptions,
+    slots: Slots,
+    filter: PairFilter,
+    /// Of pairs that were searched.
+    states: BTreeMap<IndexPair, PairState>,
+    schedule: Schedule,
+    /// Places of bodies that changed since the schedule was made, and pairs whose rules did.
+    changed: Vec<u32>,
+    changed_pairs: Vec<IndexPair>,
+}
+
+impl World {
+    /// An empty world; `options` hold for every pair, but for [`Mode::Exists`], which is asked as accurate: a world
+    /// promises first contacts. The budget of the options is one for each query of the world, over all pairs.
+    pub fn new(options: QueryOptions) -> Self {
+        let options = match options.mode {
+            Mode::Exists => options.with_mode(Mode::Accurate),
+            _ => options,
+        };
+        Self { options, ..Self::default() }
+    }
+
+    /// The options of the world.
+    pub const fn options(&self) -> &QueryOptions {
+        &self.options
+    }
+
+    /// Adds a body.
+    pub fn add(&mut self, body: Body) -> BodyId {
+        let id = self.slots.insert(body);
+        self.changed.push(id.index);
+        id
+    }
+
+    /// Takes a body out; none if it is not there any more. Its name never means another body; what was said about its
+    /// pairs ([`Self::ignore_pair`], [`Self::set_min_separation`]) is forgotten.
+    pub fn remove(&mut self, id: BodyId) -> Option<Body> {
+        let body = self.slots.remove(id)?;
+        self.filter.forget(id.index);
+        self.states.retain(|pair, _| !pair.contains(&id.index));
+        self.changed.push(id.index);
+        Some(body)
+    }
+
+    /// The body of that name, if it is there.
+    pub fn get(&self, id: BodyId) -> Option<&Body> {
+        self.slots.get(id)
+    }
+
+    /// The body of that name.
+    ///
+    /// # Panics
+    /// If the body was removed, or the name belongs to another world.
+    pub fn body(&self, id: BodyId) -> &Body {
+        self.slots.get(id).unwrap_or_else(|| panic!("{id:?} is not in this world"))
+    }
+
+    /// The bodies' names, in the order of their places.
+    pub fn ids(&self) -> impl Iterator<Item = BodyId> + '_ {
+        self.slots.ids()
+    }
+
+    /// Replaces a body.
+    ///
+    /// # Panics
+    /// If the body was removed, or the name belongs to another world.
+    pub fn set_body(&mut self, id: BodyId, body: Body) {
+        *self.change(id) = body;
+    }
+
+    /// Gives a body another motion.
+    ///
+    /// # Panics
+    /// If the body was removed, or the name belongs to another world.
+    pub fn set_motion(&mut self, id: BodyId, motion: impl RigidMotion + Send + 'static) {
+        self.set_shared_motion(id, Arc::new(motion));
+    }
+
+    /// As [`Self::set_motion`], with a motion that others may hold too.
+    ///
+    /// # Panics
+    /// If the body was removed, or the name belongs to another world.
+    pub fn set_shared_motion(&mut self, id: BodyId, motion: SharedMotion) {
+        self.change(id).set_motion(motion);
+    }
+
+    fn change(&mut self, id: BodyId) -> &mut Body {
+        self.changed.push(id.index);
+        self.slots.get_mut(id).unwrap_or_else(|| panic!("{id:?} is not in this world"))
+    }
+
+    /// Whether contacts of these two bodies are ignored (they are not, at first).
+    pub fn ignore_pair(&mut self, a: BodyId, b: BodyId, ignored: bool) {
+        if self.filter.set_ignored(a.index, b.index, ignored) && !ignored {
+            self.changed_pairs.push([a.index.min(b.index), a.index.max(b.index)]);
+        }
+    }
+
+    /// Whether contacts between a body of one group and a body of the other are ignored; the two groups may be the same.
+    pub fn ignore_groups(&mut self, a: Group, b: Group, ignored: bool) {
+        if self.filter.set_groups_ignored(a, b, ignored) && !ignored {
+            self.schedule.clear();
+        }
+    }
+
+    /// The separation at which these two bodies count as in contact, instead of that of the options; `None`: that of the
+    /// options again. What is not finite or negative is refused by the next query.
+    pub fn set_min_separation(&mut self, a: BodyId, b: BodyId, separation: Option<f64>) {
+        self.filter.set_separation(a.index, b.index, separation);
+        self.changed_pairs.push([a.index.min(b.index), a.index.max(b.index)]);
+    }
+
+    /// How many bodies there are.
+    pub fn len(&self) -> usize {
+        self.slots.count()
+    }
+
+    /// Is the world empty?
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The pairs that the broad phase cannot exclude, smaller place first, ascending. Every pair that comes within its minimum
+    /// separation during the window, and is not ignored, is among them.
+    pub fn candidates(&self, window: Window) -> Vec<(BodyId, BodyId)> {
+        let mut schedule = Schedule::default();
+        schedule.prepare(self.rules(), window, &[]);
+        schedule.pairs().into_iter().map(|[a, b]| (self.slots.id(a), self.slots.id(b))).collect()
+    }
+
+    fn rules(&self) -> Rules<'_> {
+        Rules { slots: &self.slots, filter: &self.filter, separation: self.options.min_separation }
+    }
+
+    /// Is a pair of solids, or does only its surface count? Both have to be solid.
+    fn solid(&self, pair: IndexPair) -> Solid {
+        let filled = |place: u32| {
+            let own = self.slots.at(place).and_then(Body::solid);
+            own.unwrap_or(self.options.solid) == Solid::Filled
+        };
+        if pair.into_iter().all(filled) { Solid::Filled } else { Solid::Surface }
+    }
+}

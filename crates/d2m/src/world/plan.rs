@@ -1,0 +1,78 @@
+//! A planner's question: would this motion be free of contact?
+
+use super::schedule::Schedule;
+use super::{BodyId, FirstContact, World, WorldError};
+use crate::SharedMotion;
+use d2m_bvh::Window;
+
+/// A motion that a body might take.
+#[derive(Clone)]
+pub struct PlannedMotion {
+    /// The body, or link of an arm.
+    pub body: BodyId,
+    /// What it would do.
+    pub motion: SharedMotion,
+}
+
+impl core::fmt::Debug for PlannedMotion {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("PlannedMotion").field("body", &self.body).finish_non_exhaustive()
+    }
+}
+
+impl World {
+    /// If these bodies moved so, and all others as they do: would one of these touch anything, and when first? The world stays
+    /// as it is.
+    ///
+    /// [`FirstContact::Separated`] is a proof that the motion is free; of a [`FirstContact::Contact`] everything before
+    /// `contact.time_lo` is. Pairs of bodies that are not planned are not asked for. Ignored pairs and groups hold, so an
+    /// arm of several links, each a body, ignores the pairs of links that a joint connects. Fastest after another query of the world
+    /// whose window holds this one: then the boxes of the other bodies are known.
+    ///
+    /// ```
+    /// use d2m::glam::DVec3;
+    /// use d2m::{Body, ConstantTwist, FirstContact, MeshTree, PlannedMotion, QueryOptions, Window, World};
+    /// use std::sync::Arc;
+    /// let cube = Arc::new(MeshTree::new(d2m::shapes::mesh("box?x=1&y=1&z=1")?));
+    /// let mut world = World::new(QueryOptions::default());
+    /// let obstacle = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST.with_position(DVec3::X * 4.0)));
+    /// let tool = world.add(Body::new(cube, ConstantTwist::REST));
+    /// let plan = |velocity: DVec3| {
+    ///     let motion = Arc::new(ConstantTwist::REST.with_linear_velocity(velocity));
+    ///     [PlannedMotion { body: tool, motion }]
+    /// };
+    /// let straight = world.first_contact_of(&plan(DVec3::X * 6.0), Window::UNIT)?;
+    /// let FirstContact::Contact { a, contact, .. } = straight else { panic!("{straight:?}") };
+    /// assert_eq!(a, obstacle);
+    /// assert!((contact.time_lo - 0.5).abs() < 1e-9);
+    /// let around = world.first_contact_of(&plan(DVec3::new(6.0, 6.0, 0.0)), Window::UNIT)?;
+    /// assert_eq!(around, FirstContact::Separated);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Bad input of a pair, with its names.
+    ///
+    /// # Panics
+    /// If a body was removed, or its name belongs to another world.
+    pub fn first_contact_of(
+        &self,
+        plan: &[PlannedMotion],
+        window: Window,
+    ) -> Result<FirstContact, WorldError> {
+        let mut world = Self {
+            options: self.options,
+            slots: self.slots.clone(),
+            filter: self.filter.clone(),
+            ..Self::default()
+        };
+        for planned in plan {
+            world.set_shared_motion(planned.body, planned.motion.clone());
+        }
+        let mut planned = core::mem::take(&mut world.changed);
+        planned.sort_unstable();
+        planned.dedup();
+        world.schedule = Schedule::of_some(world.rules(), window, &planned, &self.schedule, &self.changed);
+        world.first_contact(window)
+    }
+}

@@ -1,0 +1,61 @@
+//! All bodies at one time.
+
+use super::{PairProximities, World, WorldError};
+use crate::broad_phase::SweepOrder;
+use crate::parallel::map_in_order;
+use crate::swept_bounds::SweptBox;
+use d2m_bvh::{Posed, ProximityOptions, proximities_with};
+
+impl World {
+    /// The locally closest features of all pairs at one time, ascending by places: [`d2m_bvh::proximities_with`] of every pair
+    /// within the margin that is not ignored.
+    ///
+    /// ```
+    /// use d2m::glam::DVec3;
+    /// use d2m::{Body, ConstantTwist, MeshTree, ProximityOptions, QueryOptions, World};
+    /// use std::sync::Arc;
+    /// let cube = Arc::new(MeshTree::new(d2m::shapes::mesh("box?x=1&y=1&z=1")?));
+    /// let mut world = World::new(QueryOptions::default());
+    /// for k in 0..5 {
+    ///     let height = DVec3::Z * (1.001 * f64::from(k));
+    ///     world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST.with_position(height)));
+    /// }
+    /// let near = world.proximities(0.0, &ProximityOptions::new(0.01))?;
+    /// assert_eq!(near.len(), 4);
+    /// assert!(near.iter().all(|pair| d2m::reduce_proximities(&pair.proximities, 0.1).len() == 4));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Bad input of a pair, with its names; bodies that are not apart are that here ([`d2m_bvh::QueryError::NotApart`]).
+    pub fn proximities(
+        &self,
+        time: f64,
+        options: &ProximityOptions,
+    ) -> Result<Vec<PairProximities>, WorldError> {
+        let places: Vec<u32> = (0..self.slots.places() as u32).collect();
+        let boxes = map_in_order(&places, |&place| {
+            self.slots.at(place).map_or(SweptBox::EMPTY, |body| SweptBox::enclose(body, time, time))
+        });
+        let mut pairs = SweepOrder::default().pairs(&boxes, options.margin);
+        pairs.retain(|&pair| !self.filter.ignores(pair, self.slots.groups(pair)));
+        pairs.sort_unstable();
+        let found = map_in_order(&pairs, |&pair| {
+            let posed = |place: u32| {
+                let body = self.slots.at(place)?;
+                Some(Posed::new(body.tree(), body.motion().pose_and_twist(time).0))
+            };
+            let [Some(a), Some(b)] = pair.map(posed) else { return Ok(Vec::new()) };
+            proximities_with(a, b, options)
+        });
+        let mut near = Vec::new();
+        for (pair, found) in pairs.into_iter().zip(found) {
+            let [a, b] = pair.map(|place| self.slots.id(place));
+            let proximities = found.map_err(|error| WorldError { a, b, error })?;
+            if !proximities.is_empty() {
+                near.push(PairProximities { a, b, proximities });
+            }
+        }
+        Ok(near)
+    }
+}

@@ -1,0 +1,285 @@
+//! The pairs that may meet within a span of time, by the time at which they may do so first.
+//!
+//! Boxes that the bodies sweep over the span are kept until a body changes or the span ends; the queue too. A query of a later
+//! window within the same span, after a few bodies have changed, costs what the pairs of those bodies cost.
+
+use super::filter::PairFilter;
+use super::pair_state::Entry;
+use super::slots::Slots;
+use crate::broad_phase::{IndexPair, SweepOrder, pairs_of};
+use crate::parallel::map_in_order;
+use crate::swept_bounds::{SliceRange, Slicing, Sweep, SweptBox, SweptSlices};
+use d2m_bvh::Window;
+use std::collections::BinaryHeap;
+
+/// Bodies that change one by one are compared with all others; from this part of all on the boxes are swept anew.
+const CHANGED_PART: usize = 4;
+/// A box over the span that is wider than this many radii of its body is worth cutting into slices: the box of a body that
+/// rests is two radii wide at most.
+const FAR: f64 = 3.0;
+
+/// So many stale entries are not worth a walk through the queue.
+const LEAST_STALE: usize = 1024;
+
+/// Smaller boxes of one body.
+#[derive(Clone, Debug)]
+enum Slices {
+    /// It moves so little that slices would not be smaller.
+    NotWorthIt,
+    /// Not needed so far.
+    Unknown,
+    Known(SweptSlices),
+}
+
+/// What is looked at when a pair is judged.
+#[derive(Clone, Copy)]
+pub(super) struct Rules<'a> {
+    pub(super) slots: &'a Slots,
+    pub(super) filter: &'a PairFilter,
+    /// Of pairs without a separation of their own.
+    pub(super) separation: f64,
+}
+
+/// Kept from query to query.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Schedule {
+    /// Boxes and queue hold for windows within this.
+    span: Option<Window>,
+    /// The start of the last window: boxes of changed bodies begin there.
+    from: f64,
+    largest_separation: f64,
+    hulls: Vec<SweptBox>,
+    slices: Vec<Slices>,
+    order: SweepOrder,
+    queue: BinaryHeap<Entry>,
+    /// Entries when stale ones were last dropped.
+    fresh: usize,
+}
+
+/// Were boxes and queue kept?
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Prepared {
+    /// But for changed bodies.
+    Kept,
+    /// They are all new.
+    Anew,
+}
+
+/// Part of the span in which a pair may meet.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MeetingSpan {
+    pub(super) start: f64,
+    pub(super) end: f64,
+    /// The pair is proven apart from `end` on to the end of the span.
+    pub(super) clear_after: f64,
+}
+
+impl Schedule {
+    /// Forgets everything: the next query starts from scratch.
+    pub(super) fn clear(&mut self) {
+        self.span = None;
+    }
+
+    /// Makes boxes and queue hold for `window`; `changed` are the places of bodies that changed since the last time.
+    pub(super) fn prepare(&mut self, rules: Rules<'_>, window: Window, changed: &[u32]) -> Prepared {
+        let largest = rules.filter.largest_separation(rules.separation);
+        let kept = self.span.filter(|span| {
+            span.start() <= window.start()
+                && window.end() <= span.end()
+                && self.from <= window.start()
+                && self.largest_separation == largest
+        });
+        self.from = window.start();
+        self.largest_separation = largest;
+        match kept {
+            Some(_) if changed.is_empty() => Prepared::Kept,
+            Some(span) => {
+                self.hulls.resize(rules.slots.places(), SweptBox::EMPTY);
+                self.slices.resize(rules.slots.places(), Slices::NotWorthIt);
+                self.enclose(rules.slots, span, changed);
+                if changed.len() * CHANGED_PART > rules.slots.places() {
+                    self.sweep(rules);
+                } else {
+                    self.insert(rules, changed);
+                }
+                Prepared::Kept
+            }
+            None => {
+                self.span = Some(window);
+                let all: Vec<u32> = (0..rules.slots.places() as u32).collect();
+                self.hulls = vec![SweptBox::EMPTY; all.len()];
+                self.slices = vec![Slices::NotWorthIt; all.len()];
+                self.enclose(rules.slots, window, &all);
+                self.sweep(rules);
+                Prepared::Anew
+            }
+        }
+    }
+
+    /// Boxes of some bodies over the rest of the span.
+    fn enclose(&mut self, slots: &Slots, span: Window, places: &[u32]) {
+        let from = self.from;
+        let boxes = map_in_order(places, |&place| {
+            let Some(body) = slots.at(place) else { return (SweptBox::EMPTY, Slices::NotWorthIt) };
+            let hull = SweptBox::enclose(body, from, span.end());
+            let wide = (hull.high - hull.low).max_element() > FAR * body.tree().radius();
+            (hull, if wide { Slices::Unknown } else { Slices::NotWorthIt })
+        });
+        for (&place, (hull, slices)) in places.iter().zip(boxes) {
+            self.hulls[place as usize] = hull;
+            self.slices[place as usize] = slices;
+        }
+    }
+
+    /// The queue from scratch.
+    fn sweep(&mut self, rules: Rules<'_>) {
+        let pairs = self.order.pairs(&self.hulls, self.largest_separation);
+        self.cut(rules.slots, &pairs);
+        let entries: Vec<Entry> = pairs.into_iter().filter_map(|pair| self.entry(rules, pair)).collect();
+        self.fresh = entries.len();
+        self.queue = BinaryHeap::from(entries);
+    }
+
+    /// Entries of changed bodies; their old ones are recognised by their versions.
+    fn insert(&mut self, rules: Rules<'_>, changed: &[u32]) {
+        let mut pairs = Vec::new();
+        for &place in changed {
+            pairs_of(&self.hulls, place, self.largest_separation, |pair| pairs.push(pair));
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        self.cut(rules.slots, &pairs);
+        for pair in pairs {
+            if let Some(entry) = self.entry(rules, pair) {
+                self.queue.push(entry);
+            }
+        }
+        if self.queue.len() > 2 * self.fresh + LEAST_STALE {
+            self.queue.retain(|entry| rules.slots.versions(entry.pair) == Some(entry.versions));
+            self.fresh = self.queue.len();
+        }
+    }
+
+    /// Computes the slices of all bodies of the pairs that have none yet.
+    fn cut(&mut self, slots: &Slots, pairs: &[IndexPair]) {
+        let Some(span) = self.span else { return };
+        let mut wanted: Vec<u32> = pairs
+            .iter()
+            .flatten()
+            .copied()
+            .filter(|&place| matches!(self.slices[place as usize], Slices::Unknown))
+            .collect();
+        wanted.sort_unstable();
+        wanted.dedup();
+        let (slicing, from) = (Slicing::new(span), self.from);
+        let boxes = map_in_order(&wanted, |&place| {
+            slots.at(place).map(|body| SweptSlices::enclose(body, &slicing, from))
+        });
+        for (&place, slices) in wanted.iter().zip(boxes) {
+            if let Some(slices) = slices {
+                self.slices[place as usize] = Slices::Known(slices);
+            }
+        }
+    }
+
+    /// The entry of a pair; none if it is ignored or proven apart for the rest of the span.
+    pub(super) fn entry(&self, rules: Rules<'_>, pair: IndexPair) -> Option<Entry> {
+        let versions = rules.slots.versions(pair)?;
+        if rules.filter.ignores(pair, rules.slots.groups(pair)) {
+            return None;
+        }
+        let meeting = self.meeting_span(rules, pair)?;
+        (meeting.end >= self.from).then(|| Entry { time: meeting.start.max(self.from), pair, versions })
+    }
+
+    /// When a pair may meet; none is a proof that it does not for the rest of the span.
+    pub(super) fn meeting_span(&self, rules: Rules<'_>, pair: IndexPair) -> Option<MeetingSpan> {
+        let span = self.span?;
+        let sweep = |place: u32| Sweep {
+            hull: &self.hulls[place as usize],
+            slices: match &self.slices[place as usize] {
+                Slices::Known(slices) => Some(slices),
+                Slices::Unknown | Slices::NotWorthIt => None,
+            },
+        };
+        let separation = rules.filter.separation(pair, rules.separation);
+        let SliceRange { first, last } = SliceRange::of_pair(sweep(pair[0]), sweep(pair[1]), separation)?;
+        let slicing = Slicing::new(span);
+        Some(MeetingSpan { start: slicing.time(first), end: slicing.time(last + 1), clear_after: span.end() })
+    }
+
+    /// Adds the pair again, after its separation has changed for instance.
+    pub(super) fn push_pair(&mut self, rules: Rules<'_>, pair: IndexPair) {
+        if self.span.is_some()
+            && pair.iter().all(|&place| (place as usize) < self.hulls.len())
+            && let Some(entry) = self.entry(rules, pair)
+        {
+            self.queue.push(entry);
+        }
+    }
+
+    /// The first entry that is not later than `limit`, unless its bodies have changed.
+    pub(super) fn pop(&mut self, slots: &Slots, limit: f64) -> Option<Entry> {
+        loop {
+            if self.queue.peek()?.time > limit {
+                return None;
+            }
+            let entry = self.queue.pop()?;
+            if slots.versions(entry.pair) == Some(entry.versions) {
+                return Some(entry);
+            }
+        }
+    }
+
+    /// Puts an entry into the queue.
+    pub(super) fn push(&mut self, entry: Entry) {
+        self.queue.push(entry);
+    }
+
+    /// The start of the last window.
+    pub(super) const fn from(&self) -> f64 {
+        self.from
+    }
+
+    /// All pairs that the boxes leave, ascending.
+    pub(super) fn pairs(&self) -> Vec<IndexPair> {
+        let mut pairs: Vec<_> = self.queue.iter().map(|entry| entry.pair).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+
+    /// A schedule with the pairs of some bodies only. `earlier` is that of the same bodies, but for these and the `stale`
+    /// ones, and lends its boxes where they hold.
+    pub(super) fn of_some(
+        rules: Rules<'_>,
+        window: Window,
+        some: &[u32],
+        earlier: &Self,
+        stale: &[u32],
+    ) -> Self {
+        let places = rules.slots.places();
+        let mut schedule = Self {
+            span: Some(window),
+            from: window.start(),
+            largest_separation: rules.filter.largest_separation(rules.separation),
+            hulls: vec![SweptBox::EMPTY; places],
+            slices: vec![Slices::NotWorthIt; places],
+            ..Self::default()
+        };
+        let lends = earlier.span.is_some_and(|span| {
+            span.start() <= window.start() && window.end() <= span.end() && earlier.from <= window.start()
+        });
+        let mut wanted: Vec<u32> = (0..places as u32).collect();
+        if lends {
+            let lent = earlier.hulls.len();
+            schedule.hulls[..lent].copy_from_slice(&earlier.hulls);
+            wanted = (lent as u32..places as u32).chain(some.iter().chain(stale).copied()).collect();
+            wanted.sort_unstable();
+            wanted.dedup();
+        }
+        schedule.enclose(rules.slots, window, &wanted);
+        schedule.insert(rules, some);
+        schedule
+    }
+}

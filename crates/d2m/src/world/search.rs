@@ -1,0 +1,364 @@
+//! The narrow phase: pairs in the order of the times at which they may meet first, in rounds.
+//!
+//! The rounds have fixed sizes and every pair of a round is searched up to the same time, so the answers do not depend on
+//! which thread is done first.
+
+use super::pair_state::{Entry, Known, PairState};
+use super::schedule::{MeetingSpan, Prepared, Rules};
+use super::{FirstContact, PairContact, World, WorldError};
+use crate::broad_phase::IndexPair;
+use crate::parallel::map_in_order;
+use d2m_bvh::{
+    Budget, Contact, PairCache, QueryError, QueryOptions, StartState, TimeOfContact, Window,
+    last_search_counts, time_of_contact_with,
+};
+use std::collections::BTreeSet;
+use std::time::Instant;
+
+/// Pairs of the first round; each round is twice as long as the one before, so what is searched beyond the first contact
+/// is at most about as much as what had to be searched.
+const FIRST_ROUND: usize = 2;
+/// Pairs of a round at most: enough for many threads.
+const LONGEST_ROUND: usize = 256;
+/// Part of the rest of a budget that a pair gets whose work is not counted: one of another motion than constant twists.
+const UNCOUNTED_PART: u64 = 8;
+
+/// What one pair is asked.
+struct Question {
+    pair: IndexPair,
+    entry: Entry,
+    window: Window,
+    /// Without a contact in the window the pair is proven free up to here.
+    clear_until: f64,
+    /// End of the span that the boxes hold for.
+    clear_after: f64,
+    options: QueryOptions,
+    cache: PairCache,
+}
+
+/// What came of it.
+struct Reply {
+    answer: Result<TimeOfContact, QueryError>,
+    cache: PairCache,
+    node_tests: u64,
+}
+
+/// When to stop.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Goal {
+    First,
+    All,
+}
+
+/// What is left of a budget over all pairs.
+struct Purse {
+    node_tests: Option<u64>,
+    deadline: Option<Instant>,
+}
+
+impl Purse {
+    fn new(budget: Budget) -> Self {
+        let deadline = budget.wall_clock.and_then(|time| Instant::now().checked_add(time));
+        Self { node_tests: budget.node_tests, deadline }
+    }
+
+    fn is_limited(&self) -> bool {
+        self.node_tests.is_some() || self.deadline.is_some()
+    }
+
+    fn is_empty(&self) -> bool {
+        self.node_tests == Some(0) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+    }
+
+    /// What one pair may use.
+    fn budget(&self, counted: bool) -> Budget {
+        let mut budget = Budget::UNLIMITED;
+        budget.node_tests =
+            self.node_tests.map(|left| if counted { left } else { left.div_ceil(UNCOUNTED_PART) });
+        budget.wall_clock = self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
+        budget
+    }
+
+    fn pay(&mut self, node_tests: u64) {
+        // Also a pair that is answered at once costs something.
+        self.node_tests = self.node_tests.map(|left| left.saturating_sub(node_tests.max(1)));
+    }
+}
+
+/// What a search has found so far.
+#[derive(Default)]
+struct Finding {
+    contacts: Vec<(IndexPair, Contact)>,
+    /// Pairs that could not be decided, and until when each is free.
+    undecided: Vec<(IndexPair, f64)>,
+    /// Pairs that were looked at: each once a search.
+    seen: BTreeSet<IndexPair>,
+    /// Entries that later queries need again.
+    kept: Vec<Entry>,
+}
+
+impl Finding {
+    /// The earliest contact, and of several the one of the smallest places.
+    fn best(&self) -> Option<&(IndexPair, Contact)> {
+        let rank = |(pair, contact): &(IndexPair, Contact)| (contact.time_lo, *pair);
+        self.contacts.iter().min_by(|x, y| {
+            let (x, y) = (rank(x), rank(y));
+            x.0.total_cmp(&y.0).then_with(|| x.1.cmp(&y.1))
+        })
+    }
+
+    /// The budget is used up: these pairs are free until their windows begin.
+    fn give_up(&mut self, questions: Vec<Question>) {
+        for question in questions {
+            self.undecided.push((question.pair, question.window.start()));
+            self.kept.push(question.entry);
+        }
+    }
+
+    fn undecided_from(&self) -> Option<f64> {
+        self.undecided.iter().map(|&(_, until)| until).reduce(f64::min)
+    }
+}
+
+impl World {
+    /// Every pair's first contact in the window, sorted by the end of what is proven free, then by places; pairs that are
+    /// proven apart for the whole window are left out. When the budget ran out, pairs that were not searched are reported as
+    /// undecided from the time on at which they may meet.
+    ///
+    /// # Errors
+    /// Bad input of a pair, with its names.
+    pub fn contacts(&mut self, window: Window) -> Result<Vec<PairContact>, WorldError> {
+        let finding = self.search(window, Goal::All)?;
+        let contacts =
+            finding.contacts.iter().map(|(pair, contact)| (pair, TimeOfContact::Contact(*contact)));
+        let undecided = finding
+            .undecided
+            .iter()
+            .map(|(pair, until)| (pair, TimeOfContact::Undecided { clear_until: *until }));
+        let mut all: Vec<_> =
+            contacts.chain(undecided).map(|(pair, answer)| self.named(*pair, answer)).collect();
+        all.sort_by(|x, y| {
+            x.clear_until().total_cmp(&y.clear_until()).then_with(|| (x.a, x.b).cmp(&(y.a, y.b)))
+        });
+        Ok(all)
+    }
+
+    /// The first contact of any two bodies, and all that may be as early.
+    ///
+    /// Pairs are searched in the order of the times at which their boxes meet, and only up to the best time so far.
+    ///
+    /// # Errors
+    /// Bad input of a pair, with its names.
+    pub fn first_contact(&mut self, window: Window) -> Result<FirstContact, WorldError> {
+        let finding = self.search(window, Goal::First)?;
+        let undecided = finding.undecided_from();
+        let Some(&(pair, contact)) = finding.best() else {
+            return Ok(match undecided {
+                Some(clear_until) => FirstContact::Undecided { clear_until },
+                None => FirstContact::Separated,
+            });
+        };
+        if let Some(clear_until) = undecided.filter(|&until| until < contact.time_lo) {
+            return Ok(FirstContact::Undecided { clear_until });
+        }
+        let others = finding
+            .contacts
+            .iter()
+            .filter(|(other, found)| *other != pair && found.time_lo <= contact.time_hi);
+        let mut overlapping: Vec<_> =
+            others.map(|(other, found)| self.named(*other, TimeOfContact::Contact(*found))).collect();
+        overlapping.sort_by(|x, y| {
+            x.clear_until().total_cmp(&y.clear_until()).then_with(|| (x.a, x.b).cmp(&(y.a, y.b)))
+        });
+        let [a, b] = pair.map(|place| self.slots.id(place));
+        Ok(FirstContact::Contact { a, b, contact, overlapping })
+    }
+
+    fn named(&self, pair: IndexPair, answer: TimeOfContact) -> PairContact {
+        let [a, b] = pair.map(|place| self.slots.id(place));
+        PairContact { a, b, answer }
+    }
+
+    fn search(&mut self, window: Window, goal: Goal) -> Result<Finding, WorldError> {
+        self.prepare(window);
+        let mut finding = Finding::default();
+        let mut purse = Purse::new(self.options.budget);
+        let mut round = if purse.is_limited() { 1 } else { FIRST_ROUND };
+        let outcome = loop {
+            let best = finding.best().filter(|_| goal == Goal::First);
+            let at_start =
+                |contact: &Contact| contact.time_lo <= window.start() && contact.start != StartState::Apart;
+            if best.is_some_and(|(_, contact)| at_start(contact)) {
+                break Ok(());
+            }
+            let limit = best.map_or(window.end(), |(_, contact)| contact.time_hi.min(window.end()));
+            let questions = self.next_round(window, limit, round, &mut finding);
+            if questions.is_empty() {
+                break Ok(());
+            }
+            if purse.is_limited() && purse.is_empty() {
+                finding.give_up(questions);
+                if goal == Goal::First {
+                    // What is left in the queue is free for longer.
+                    break Ok(());
+                }
+                continue;
+            }
+            if let Err(error) = self.ask(questions, &mut purse, &mut finding) {
+                break Err(error);
+            }
+            if !purse.is_limited() {
+                round = (2 * round).min(LONGEST_ROUND);
+            }
+        };
+        for entry in core::mem::take(&mut finding.kept) {
+            self.schedule.push(entry);
+        }
+        outcome.map(|()| finding)
+    }
+
+    fn prepare(&mut self, window: Window) {
+        let mut changed = core::mem::take(&mut self.changed);
+        changed.sort_unstable();
+        changed.dedup();
+        let rules =
+            Rules { slots: &self.slots, filter: &self.filter, separation: self.options.min_separation };
+        if self.schedule.prepare(rules, window, &changed) == Prepared::Anew {
+            let pairs = self.schedule.pairs();
+            self.states.retain(|pair, _| pairs.binary_search(pair).is_ok());
+        }
+        for pair in core::mem::take(&mut self.changed_pairs) {
+            self.schedule.push_pair(rules, pair);
+        }
+    }
+
+    /// The next questions in the order of their times; contacts that are known already go to the finding.
+    fn next_round(
+        &mut self,
+        window: Window,
+        limit: f64,
+        most: usize,
+        finding: &mut Finding,
+    ) -> Vec<Question> {
+        let mut questions: Vec<Question> = Vec::with_capacity(most);
+        while questions.len() < most {
+            let Some(entry) = self.schedule.pop(&self.slots, limit) else { break };
+            let pair = entry.pair;
+            // Twins of an entry: after a search, or after a change of the pair's separation.
+            if !finding.seen.insert(pair) {
+                continue;
+            }
+            let rules = self.rules();
+            let separation = rules.filter.separation(pair, rules.separation);
+            if rules.filter.ignores(pair, rules.slots.groups(pair)) {
+                continue;
+            }
+            let Some(meeting) = self.schedule.meeting_span(rules, pair) else { continue };
+            let state = self.states.get(&pair);
+            let valid = state.filter(|state| {
+                state.versions == entry.versions
+                    && state.separation == separation
+                    && state.from <= window.start()
+            });
+            let mut start = meeting.start.max(window.start());
+            match valid.map(|state| &state.known) {
+                Some(Known::Contact(contact)) if contact.time_lo >= window.start() => {
+                    finding.kept.push(entry);
+                    if contact.time_lo <= limit {
+                        finding.contacts.push((pair, **contact));
+                    }
+                    continue;
+                }
+                Some(&Known::ClearUntil(until)) if until >= meeting.clear_after => continue,
+                Some(&Known::ClearUntil(until)) if until >= limit => {
+                    finding.kept.push(Entry { time: until, ..entry });
+                    continue;
+                }
+                Some(&Known::ClearUntil(until)) => start = start.max(until),
+                Some(Known::Contact(_) | Known::Nothing) | None => {}
+            }
+            if start > limit {
+                finding.kept.push(Entry { time: start, ..entry });
+                continue;
+            }
+            let MeetingSpan { end, clear_after, .. } = meeting;
+            let (end, clear_until) = if end <= limit { (end, clear_after) } else { (limit, limit) };
+            // No window at all: the boxes part before the pair is asked.
+            let Ok(window) = Window::try_new(start, end) else { continue };
+            let options = self.options.with_min_separation(separation).with_solid(self.solid(pair));
+            let cache = state.map_or_else(PairCache::new, |state| *state.cache);
+            questions.push(Question { pair, entry, window, clear_until, clear_after, options, cache });
+        }
+        questions
+    }
+
+    /// Asks the questions of a round and keeps what is proven.
+    fn ask(
+        &mut self,
+        questions: Vec<Question>,
+        purse: &mut Purse,
+        finding: &mut Finding,
+    ) -> Result<(), WorldError> {
+        // The boxes prove what lies between the start of the query and that of a pair's own window.
+        let span_start = self.schedule.from();
+        let slots = &self.slots;
+        let counted = |pair: IndexPair| {
+            pair.iter()
+                .all(|&place| slots.at(place).is_some_and(|body| body.motion().constant_twist().is_some()))
+        };
+        let replies = map_in_order(&questions, |question| {
+            let mut cache = question.cache;
+            let counted = counted(question.pair);
+            let budget = if purse.is_limited() { purse.budget(counted) } else { Budget::UNLIMITED };
+            let [Some(a), Some(b)] = question.pair.map(|place| slots.at(place)) else {
+                return Reply { answer: Ok(TimeOfContact::Separated), cache, node_tests: 0 };
+            };
+            let options = question.options.with_budget(budget);
+            let answer = time_of_contact_with(a.moving(), b.moving(), question.window, &options, &mut cache);
+            let node_tests = if counted {
+                let counts = last_search_counts();
+                counts.node_tests + counts.triangle_looks + counts.swept_pairs
+            } else {
+                budget.node_tests.unwrap_or(0)
+            };
+            Reply { answer, cache, node_tests }
+        });
+        let mut failure = None;
+        for (question, reply) in questions.into_iter().zip(replies) {
+            purse.pay(reply.node_tests);
+            let Question { pair, entry, window, clear_until, clear_after, options, .. } = question;
+            let known = match reply.answer {
+                Err(error) => {
+                    let [a, b] = pair.map(|place| self.slots.id(place));
+                    failure = failure.or(Some(WorldError { a, b, error }));
+                    finding.kept.push(entry);
+                    continue;
+                }
+                Ok(TimeOfContact::Separated) => {
+                    // Free to the end of the span: nothing to do until one of the bodies changes.
+                    if clear_until < clear_after {
+                        finding.kept.push(Entry { time: clear_until, ..entry });
+                    }
+                    Known::ClearUntil(clear_until)
+                }
+                Ok(TimeOfContact::Undecided { clear_until }) => {
+                    finding.undecided.push((pair, clear_until));
+                    finding.kept.push(Entry { time: clear_until, ..entry });
+                    // Free before that time: the last number before it is proven.
+                    let until = clear_until.next_down();
+                    if until >= window.start() { Known::ClearUntil(until) } else { Known::Nothing }
+                }
+                Ok(TimeOfContact::Contact(contact)) => {
+                    finding.contacts.push((pair, contact));
+                    finding.kept.push(Entry { time: contact.time_lo, ..entry });
+                    Known::Contact(Box::new(contact))
+                }
+            };
+            let (versions, separation) = (entry.versions, options.min_separation);
+            let state =
+                PairState { versions, separation, from: span_start, known, cache: Box::new(reply.cache) };
+            self.states.insert(pair, state);
+        }
+        failure.map_or(Ok(()), Err)
+    }
+}

@@ -1,0 +1,192 @@
+use super::*;
+use d2m_bvh::{Budget, MeshTree, TimeOfContact};
+use d2m_motion::ConstantTwist;
+use glam::DVec3;
+
+fn cube() -> Arc<MeshTree> {
+    Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=1&y=1&z=1").unwrap()))
+}
+
+fn flying(from: DVec3, velocity: DVec3) -> ConstantTwist {
+    ConstantTwist::REST.with_position(from).with_linear_velocity(velocity)
+}
+
+/// Steps of a world of its own, each a new one without caches, and steps of one world: the same answers.
+#[test]
+fn caches_change_nothing() {
+    let ring = Arc::new(MeshTree::new(d2m_shapes::mesh("torus?triangles=600").unwrap()));
+    let bodies = |step: u32| {
+        let passing = flying(DVec3::new(-2.0, 0.0, 1.2 - 0.02 * f64::from(step)), DVec3::X * 4.0)
+            .with_angular_velocity(DVec3::Z);
+        let away = ConstantTwist::REST.with_position(DVec3::Y * f64::from(step % 7));
+        [ConstantTwist::REST, passing, away].map(|motion| Body::new(Arc::clone(&ring), motion))
+    };
+    let filled = |step: u32| {
+        let mut world = World::new(QueryOptions::default());
+        for body in bodies(step) {
+            world.add(body);
+        }
+        world
+    };
+    let (mut one, mut met, mut apart) = (filled(0), 0, 0);
+    let ids: Vec<_> = one.ids().collect();
+    for step in 0..40 {
+        for (id, body) in ids.iter().zip(bodies(step)) {
+            one.set_body(*id, body);
+        }
+        let contacts = one.contacts(Window::UNIT).unwrap();
+        assert_eq!(contacts, filled(step).contacts(Window::UNIT).unwrap(), "step {step}");
+        let first = one.first_contact(Window::UNIT).unwrap();
+        assert_eq!(first, filled(step).first_contact(Window::UNIT).unwrap(), "step {step}");
+        met += u32::from(!contacts.is_empty());
+        apart += u32::from(contacts.is_empty());
+    }
+    assert!(met > 10 && apart > 3, "{met} {apart}");
+}
+
+/// With "any contact will do" the later of two would be as good as the first, and its time any time.
+#[test]
+fn first_contacts_are_first_in_any_mode() {
+    let cube = cube();
+    for mode in [Mode::Accurate, Mode::Exists] {
+        let mut world = World::new(QueryOptions::default().with_mode(mode));
+        world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+        for (axis, distance) in [(DVec3::X, 7.0), (DVec3::Y, 5.0), (DVec3::Z, 6.0)] {
+            world.add(Body::new(Arc::clone(&cube), flying(axis * distance, axis * -8.0)));
+        }
+        let FirstContact::Contact { a, b, contact, overlapping } = world.first_contact(Window::UNIT).unwrap()
+        else {
+            panic!("three of them arrive")
+        };
+        assert_eq!((a.index(), b.index(), overlapping), (0, 2, vec![]), "{mode:?}");
+        assert!(contact.time_lo <= 0.375 && contact.time_lo > 0.375 - 1e-9, "{mode:?}: {contact:?}");
+    }
+}
+
+/// What meets at the same time is reported together, and what is proven of other pairs stays when two bodies change.
+#[test]
+fn an_event_asks_the_pairs_of_its_bodies_only() {
+    let cube = cube();
+    let mut world = World::new(QueryOptions::default());
+    // Three targets far from each other, each with a cube that comes in; the first two arrive together.
+    let mut arrivals = Vec::new();
+    for (k, distance) in [(0, 5.0), (1, 5.0), (2, 6.0)] {
+        let place = DVec3::Y * 20.0 * f64::from(k);
+        world.add(Body::new(Arc::clone(&cube), flying(place, DVec3::ZERO)));
+        arrivals.push(
+            world.add(Body::new(Arc::clone(&cube), flying(place + DVec3::X * distance, DVec3::X * -8.0))),
+        );
+    }
+    let first = world.first_contact(Window::UNIT).unwrap();
+    let FirstContact::Contact { b, contact, overlapping, .. } = first else { panic!("{first:?}") };
+    assert_eq!((b, overlapping.len()), (arrivals[0], 1));
+    assert_eq!(overlapping[0].b, arrivals[1]);
+    let known: Vec<_> = world.states.iter().map(|(pair, state)| (*pair, state.versions)).collect();
+    let time = contact.time_lo;
+    for &id in &arrivals[..2] {
+        let here = world.body(id).motion().pose_and_twist(time).0.translation;
+        world.set_motion(id, flying(here, DVec3::X * 8.0).with_reference_time(time));
+    }
+    let rest = Window::try_new(time, 1.0).unwrap();
+    let next = world.first_contact(rest).unwrap();
+    let FirstContact::Contact { b, contact, overlapping, .. } = next else { panic!("{next:?}") };
+    assert_eq!((b, overlapping.len()), (arrivals[2], 0));
+    assert!(contact.time_lo <= 0.5 && contact.time_lo > 0.5 - 1e-9);
+    // The third pair's proof, if it was searched before, is the old one.
+    for (pair, versions) in known.into_iter().filter(|(pair, _)| pair[1] == 5) {
+        assert_eq!(world.states[&pair].versions, versions);
+    }
+}
+
+#[test]
+fn removed_names_stay_dead_and_their_places_are_used_again() {
+    let cube = cube();
+    let mut world = World::new(QueryOptions::default());
+    let a = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+    let b = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+    let met = |world: &mut World| world.contacts(Window::UNIT).unwrap().len();
+    assert_eq!(met(&mut world), 1);
+    world.ignore_pair(a, b, true);
+    assert_eq!(met(&mut world), 0);
+    assert!(world.remove(b).is_some() && world.remove(b).is_none() && world.get(b).is_none());
+    assert_eq!(met(&mut world), 0);
+    let c = world.add(Body::new(cube, ConstantTwist::REST).with_group(Group(3)));
+    assert!(c.index() == b.index() && c != b && world.len() == 2);
+    // What was said about the removed body is not said about this one.
+    assert_eq!(met(&mut world), 1);
+    world.ignore_groups(Group(3), Group(3), true);
+    assert_eq!(met(&mut world), 1);
+    let grouped = world.body(a).clone().with_group(Group(3));
+    world.set_body(a, grouped);
+    assert_eq!(met(&mut world), 0);
+    world.ignore_groups(Group(3), Group(3), false);
+    assert_eq!(met(&mut world), 1);
+}
+
+#[test]
+fn separations_of_pairs_are_kept_and_may_change() {
+    let cube = cube();
+    let mut world = World::new(QueryOptions::default());
+    let a = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+    let b = world.add(Body::new(cube, flying(DVec3::X * 4.0, DVec3::X * -4.0)));
+    let mut time = |separation: Option<f64>| {
+        world.set_min_separation(a, b, separation);
+        let first = world.first_contact(Window::UNIT).unwrap();
+        let FirstContact::Contact { contact, .. } = first else { panic!("{first:?}") };
+        contact.time_lo
+    };
+    for (separation, expected) in
+        [(None, 0.5), (Some(1.0), 0.25), (Some(0.5), 0.375), (None, 0.5), (Some(2.5), 0.0)]
+    {
+        assert!((time(separation) - expected).abs() < 1e-9, "{separation:?}");
+    }
+    world.set_min_separation(a, b, Some(f64::NAN));
+    assert!(world.first_contact(Window::UNIT).is_err());
+}
+
+/// A budget is one over all pairs, ends in a proven time, and stops the search.
+#[test]
+fn a_budget_over_all_pairs_ends_in_a_proven_time() {
+    let ring = Arc::new(MeshTree::new(d2m_shapes::mesh("torus?triangles=600").unwrap()));
+    let filled = |budget: Budget| {
+        let mut world = World::new(QueryOptions::default().with_budget(budget));
+        for k in 0..12 {
+            let place = DVec3::new(1.7 * f64::from(k), 0.0, 0.0);
+            let turn = DVec3::new(0.3, 0.2 * f64::from(k), 1.0);
+            world.add(Body::new(
+                Arc::clone(&ring),
+                flying(place, DVec3::X * -0.1 * f64::from(k)).with_angular_velocity(turn),
+            ));
+        }
+        world
+    };
+    let FirstContact::Contact { contact, .. } =
+        filled(Budget::UNLIMITED).first_contact(Window::UNIT).unwrap()
+    else {
+        panic!("they turn into each other")
+    };
+    let all = filled(Budget::UNLIMITED).contacts(Window::UNIT).unwrap();
+    let (mut undecided, mut decided) = (0, 0);
+    for tests in [1, 10, 100, 1_000, 10_000, 100_000, 10_000_000] {
+        let budget = Budget::UNLIMITED.with_node_tests(tests);
+        match filled(budget).first_contact(Window::UNIT).unwrap() {
+            FirstContact::Undecided { clear_until } => {
+                assert!(clear_until <= contact.time_hi, "{tests}");
+                undecided += 1;
+            }
+            FirstContact::Contact { contact: found, .. } => {
+                assert!(found.time_lo <= contact.time_hi && contact.time_lo <= found.time_hi, "{tests}");
+                decided += 1;
+            }
+            FirstContact::Separated => panic!("{tests}: a contact was missed"),
+        }
+        // Nothing that meets is left out of the list.
+        let listed = filled(budget).contacts(Window::UNIT).unwrap();
+        for met in &all {
+            let same = listed.iter().find(|pair| (pair.a, pair.b) == (met.a, met.b)).expect("left out");
+            let TimeOfContact::Contact(contact) = met.answer else { panic!("no budget") };
+            assert!(same.clear_until() <= contact.time_hi, "{tests}");
+        }
+    }
+    assert!(undecided >= 2 && decided >= 2, "{undecided} {decided}");
+}

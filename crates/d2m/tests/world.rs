@@ -1,0 +1,327 @@
+//! Worlds of bodies with all kinds of motions, filters, removals and changes in any order, against brute force over all
+//! pairs: the same verdicts, brackets that overlap, and the same bits at any number of threads.
+
+use d2m::glam::{DQuat, DVec3};
+use d2m::interval::Interval;
+use d2m::motion::{IntervalPose, IntervalTwist, Pose, Twist};
+use d2m::{
+    Body, BodyId, ConstantTwist, Contact, FirstContact, Group, MeshTree, PairContact, PlannedMotion,
+    QueryOptions, RigidMotion, ScrewMotion, SharedMotion, Solid, TimeOfContact, TriMesh, Window, World,
+    time_of_contact,
+};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+struct Random(u64);
+
+impl Random {
+    /// Uniform in [0, 1).
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / 9_007_199_254_740_992.0
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        (self.next() * count as f64) as usize
+    }
+
+    fn vec(&mut self) -> DVec3 {
+        DVec3::new(self.next(), self.next(), self.next()) * 2.0 - 1.0
+    }
+}
+
+/// A motion that does not say that its twist is constant: the way of every other motion.
+struct Opaque(SharedMotion);
+
+impl RigidMotion for Opaque {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        self.0.pose_and_twist(t)
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        self.0.enclose_pose(t)
+    }
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist(t)
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist_rate(t)
+    }
+}
+
+const SIZE: f64 = 9.0;
+
+fn motion(random: &mut Random) -> SharedMotion {
+    let spin = if random.next() < 0.2 { 20.0 } else { 2.0 };
+    let turned = DQuat::from_scaled_axis(random.vec() * 3.0);
+    let twist = ConstantTwist::try_new(random.vec() * SIZE, turned, random.vec() * 3.0, random.vec() * spin);
+    let twist = twist.unwrap().with_at(random.vec() * 0.5);
+    match random.below(20) {
+        0 => Arc::new(Opaque(Arc::new(twist.with_angular_velocity(random.vec())))),
+        1..3 => Arc::new(ConstantTwist::REST.with_position(random.vec() * SIZE)),
+        3..5 => {
+            let end = twist.with_position(random.vec() * SIZE).pose_and_twist(1.0).0;
+            Arc::new(ScrewMotion::try_from_poses(twist.pose_and_twist(0.0).0, end, 0.0, 1.0).unwrap())
+        }
+        5..8 => Arc::new(twist.with_linear_velocity(random.vec() * 30.0)),
+        _ => Arc::new(twist),
+    }
+}
+
+fn trees() -> Vec<Arc<MeshTree>> {
+    let sheet =
+        TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE], vec![[0, 1, 2], [1, 3, 2]]);
+    let solids = ["box?x=0.5&y=0.4&z=0.3", "torus?triangles=200", "box?x=1.5&y=0.05&z=0.1"];
+    let mut trees: Vec<_> =
+        solids.iter().map(|name| MeshTree::new(d2m::shapes::mesh(name).unwrap())).collect();
+    trees.push(MeshTree::new(sheet.unwrap()));
+    trees.into_iter().map(Arc::new).collect()
+}
+
+fn body(random: &mut Random, trees: &[Arc<MeshTree>]) -> Body {
+    let tree = &trees[random.below(trees.len())];
+    let solid = if tree.is_watertight() && random.next() < 0.8 { Solid::Filled } else { Solid::Surface };
+    let body = Body::with_shared(Arc::clone(tree), motion(random)).with_solid(solid);
+    if random.next() < 0.4 { body.with_group(Group(random.below(3) as u32)) } else { body }
+}
+
+/// What the world should know, by other means.
+#[derive(Default)]
+struct Model {
+    bodies: BTreeMap<BodyId, Body>,
+    ignored: Vec<[BodyId; 2]>,
+    groups: Vec<[Group; 2]>,
+    separations: BTreeMap<[BodyId; 2], f64>,
+}
+
+type Found = (BodyId, BodyId, Contact);
+
+impl Model {
+    fn asks(&self, a: BodyId, b: BodyId) -> bool {
+        let by_name = self.ignored.contains(&[a, b]);
+        let by_group = match (self.bodies[&a].group(), self.bodies[&b].group()) {
+            (Some(g), Some(h)) => self.groups.iter().any(|pair| *pair == [g, h] || *pair == [h, g]),
+            _ => false,
+        };
+        !by_name && !by_group
+    }
+
+    /// All pairs, each by itself over the whole window.
+    fn contacts(&self, window: Window) -> Vec<Found> {
+        let ids: Vec<_> = self.bodies.keys().copied().collect();
+        let mut found = Vec::new();
+        for (k, &a) in ids.iter().enumerate() {
+            for &b in ids[k + 1..].iter().filter(|&&b| self.asks(a, b)) {
+                let (first, second) = (&self.bodies[&a], &self.bodies[&b]);
+                let filled = [first, second].iter().all(|body| body.solid() == Some(Solid::Filled));
+                let options = QueryOptions::default()
+                    .with_tolerance(1e-7)
+                    .with_solid(if filled { Solid::Filled } else { Solid::Surface })
+                    .with_min_separation(self.separations.get(&[a, b]).copied().unwrap_or(0.01));
+                match time_of_contact(first.moving(), second.moving(), window, &options).unwrap() {
+                    TimeOfContact::Contact(contact) => found.push((a, b, contact)),
+                    TimeOfContact::Separated => {}
+                    TimeOfContact::Undecided { .. } => panic!("no budget"),
+                }
+            }
+        }
+        found
+    }
+}
+
+/// Brackets that share a time; one without a proven end, of a pass that grazes, is as long as the tolerance allows.
+fn overlap(x: &Contact, y: &Contact) -> bool {
+    (x.time_lo <= y.time_hi && y.time_lo <= x.time_hi) || (x.time_lo - y.time_lo).abs() < 1e-4
+}
+
+/// A pass at a distance of about a tolerance may be answered either way.
+fn is_sure(contact: &Contact) -> bool {
+    contact.evidence != d2m::bvh::Evidence::Early
+}
+
+fn earliest<'a>(all: impl Iterator<Item = &'a Found>) -> Option<&'a Found> {
+    all.min_by(|x, y| x.2.time_lo.total_cmp(&y.2.time_lo))
+}
+
+/// A world, what is known about it by other means, and what it answered.
+struct Run {
+    random: Random,
+    trees: Vec<Arc<MeshTree>>,
+    world: World,
+    model: Model,
+    start: f64,
+    answers: (Vec<Vec<PairContact>>, Vec<FirstContact>),
+}
+
+impl Run {
+    fn new(seed: u64, count: usize) -> Self {
+        let options = QueryOptions::default().with_tolerance(1e-7).with_min_separation(0.01);
+        let mut run = Self {
+            random: Random(seed),
+            trees: trees(),
+            world: World::new(options),
+            model: Model::default(),
+            start: 0.0,
+            answers: Default::default(),
+        };
+        for _ in 0..count {
+            run.add();
+        }
+        run
+    }
+
+    fn add(&mut self) {
+        let body = body(&mut self.random, &self.trees);
+        let id = self.world.add(body.clone());
+        assert!(self.model.bodies.insert(id, body).is_none());
+    }
+
+    fn change(&mut self) {
+        let (random, world, model) = (&mut self.random, &mut self.world, &mut self.model);
+        let ids: Vec<_> = model.bodies.keys().copied().collect();
+        let (a, b) = (ids[random.below(ids.len())], ids[random.below(ids.len())]);
+        let (a, b) = (a.min(b), a.max(b));
+        match random.below(8) {
+            0 => {
+                world.remove(a);
+                model.bodies.remove(&a);
+                model.ignored.retain(|pair| !pair.contains(&a));
+                model.separations.retain(|pair, _| !pair.contains(&a));
+            }
+            1 => self.add(),
+            2 if a != b => {
+                model.ignored.push([a, b]);
+                world.ignore_pair(a, b, true);
+            }
+            3 if !model.ignored.is_empty() => {
+                let [a, b] = model.ignored.swap_remove(0);
+                model.ignored.retain(|pair| *pair != [a, b]);
+                world.ignore_pair(b, a, false);
+            }
+            4 => {
+                let pair = [Group(random.below(3) as u32), Group(random.below(3) as u32)];
+                let turned = [pair[1], pair[0]];
+                let count = model.groups.len();
+                model.groups.retain(|other| *other != pair && *other != turned);
+                let ignored = model.groups.len() == count;
+                if ignored {
+                    model.groups.push(pair);
+                }
+                world.ignore_groups(pair[0], pair[1], ignored);
+            }
+            5 if a != b => {
+                let separation = [0.0, 0.005, 0.2][random.below(3)];
+                model.separations.insert([a, b], separation);
+                world.set_min_separation(a, b, Some(separation));
+            }
+            _ => {
+                world.set_shared_motion(a, motion(random));
+                model.bodies.insert(a, world.body(a).clone());
+            }
+        }
+    }
+
+    /// Some changes and a query.
+    fn step(&mut self, compare: bool) {
+        for _ in 0..self.random.below(6) {
+            self.change();
+        }
+        let window = match self.random.below(4) {
+            0 => Window::UNIT,
+            1 => Window::try_new(0.1, 0.6).unwrap(),
+            _ => {
+                self.start = if self.start > 0.8 { 0.0 } else { self.start + 0.2 * self.random.next() };
+                Window::try_new(self.start, 1.0).unwrap()
+            }
+        };
+        let list = (self.random.next() < 0.5).then(|| self.world.contacts(window).unwrap());
+        let first = self.world.first_contact(window).unwrap();
+        if compare {
+            let all = self.model.contacts(window);
+            if let Some(list) = &list {
+                compare_lists(list, &all);
+            }
+            compare_first(&first, &all, window);
+            // A body that takes its own motion once more: the first contact of its own pairs.
+            let place = self.random.below(self.model.bodies.len());
+            let (&id, body) = self.model.bodies.iter().nth(place).unwrap();
+            let plan = [PlannedMotion { body: id, motion: body.shared_motion() }];
+            let planned = self.world.first_contact_of(&plan, window).unwrap();
+            let own: Vec<_> = all.into_iter().filter(|(a, b, _)| [a, b].contains(&&id)).collect();
+            compare_first(&planned, &own, window);
+        }
+        self.answers.0.extend(list);
+        self.answers.1.push(first);
+    }
+}
+
+fn compare_lists(list: &[PairContact], all: &[Found]) {
+    for (a, b, contact) in all.iter().filter(|(_, _, contact)| is_sure(contact)) {
+        let same = list.iter().find(|pair| (pair.a, pair.b) == (*a, *b));
+        let found = same.and_then(|pair| pair.answer.contact());
+        assert!(found.is_some_and(|found| overlap(found, contact)), "{contact:?} {found:?}");
+    }
+    for pair in list.iter().filter(|pair| pair.answer.contact().is_some_and(is_sure)) {
+        assert!(all.iter().any(|(a, b, _)| (*a, *b) == (pair.a, pair.b)), "{pair:?}");
+    }
+    assert!(list.is_sorted_by(|x, y| x.clear_until() <= y.clear_until()));
+}
+
+fn compare_first(first: &FirstContact, all: &[Found], window: Window) {
+    match (first, earliest(all.iter())) {
+        (FirstContact::Separated, None) => {}
+        (FirstContact::Separated, Some((_, _, contact))) => {
+            assert!(!is_sure(contact), "{contact:?}");
+            let next = earliest(all.iter().filter(|(_, _, contact)| is_sure(contact)));
+            assert!(next.is_none(), "{next:?}");
+        }
+        (FirstContact::Contact { a, b, contact, overlapping, .. }, Some((_, _, expected))) => {
+            assert!(overlap(contact, expected), "{contact:?} {expected:?}");
+            let same = all.iter().find(|(c, d, _)| (c, d) == (a, b));
+            assert!(same.is_some_and(|(_, _, other)| overlap(other, contact)) || !is_sure(contact));
+            // Whatever is certain to meet before this one's bracket ends is listed, unless the bodies met at the start.
+            if contact.time_lo > window.start() {
+                for (c, d, other) in all.iter().filter(|(_, _, other)| is_sure(other)) {
+                    let listed = overlapping.iter().any(|pair| (pair.a, pair.b) == (*c, *d));
+                    assert!(listed || (c, d) == (a, b) || other.time_hi >= contact.time_hi, "{other:?}");
+                }
+            }
+        }
+        (other, expected) => panic!("{other:?} but {expected:?}"),
+    }
+}
+
+#[test]
+fn changes_in_any_order_give_what_brute_force_gives() {
+    for seed in 0..12 {
+        let mut run = Run::new(seed, 25);
+        for _ in 0..10 {
+            run.step(true);
+        }
+    }
+}
+
+#[test]
+fn two_hundred_bodies_give_what_brute_force_gives() {
+    let mut run = Run::new(77, 200);
+    for _ in 0..3 {
+        run.step(true);
+    }
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let answers = [1, 2, 5].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut run = Run::new(5, 60);
+            for _ in 0..8 {
+                run.step(false);
+            }
+            run.answers
+        })
+    });
+    assert!(answers[0].0.iter().any(|list| !list.is_empty()));
+    assert_eq!(answers[0], answers[1]);
+    assert_eq!(answers[0], answers[2]);
+}
