@@ -28,5 +28,5 @@ pub use d2m_motion::{ConstantTwist, RigidMotion, ScrewMotion};
 
 /// The example of the repository's README, compiled and run.
 #[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
+#[doc = include_str!("../../../README.md")]
 struct Readme;

@@ -41,6 +41,7 @@ impl PairContact {
 }
 
 /// The first contact in a world.
+#[expect(clippy::large_enum_variant, reason = "one answer at a time, taken apart at once")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum FirstContact {
     /// Certified: no two bodies meet anywhere in the window.

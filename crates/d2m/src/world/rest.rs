@@ -14,7 +14,7 @@ impl World {
     /// use d2m::glam::DVec3;
     /// use d2m::{Body, ConstantTwist, MeshTree, ProximityOptions, QueryOptions, World};
     /// use std::sync::Arc;
-    /// let cube = Arc::new(MeshTree::new(d2m::shapes::mesh("box?x=1&y=1&z=1")?));
+    /// let cube = Arc::new(MeshTree::new(d2m::shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// let mut world = World::new(QueryOptions::default());
     /// for k in 0..5 {
     ///     let height = DVec3::Z * (1.001 * f64::from(k));

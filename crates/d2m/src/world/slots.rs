@@ -17,7 +17,7 @@ struct Slot {
 /// All places.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Slots {
-    slots: Vec<Slot>,
+    places: Vec<Slot>,
     free: Vec<u32>,
     last_version: u64,
 }
@@ -27,17 +27,17 @@ impl Slots {
         self.last_version += 1;
         let version = self.last_version;
         if let Some(index) = self.free.pop() {
-            let slot = &mut self.slots[index as usize];
+            let slot = &mut self.places[index as usize];
             (slot.version, slot.body) = (version, Some(body));
             return BodyId { index, generation: slot.generation };
         }
-        let index = self.slots.len() as u32;
-        self.slots.push(Slot { generation: 0, version, body: Some(body) });
+        let index = self.places.len() as u32;
+        self.places.push(Slot { generation: 0, version, body: Some(body) });
         BodyId { index, generation: 0 }
     }
 
     pub(super) fn remove(&mut self, id: BodyId) -> Option<Body> {
-        let slot = self.slots.get_mut(id.index as usize).filter(|slot| slot.generation == id.generation)?;
+        let slot = self.places.get_mut(id.index as usize).filter(|slot| slot.generation == id.generation)?;
         let body = slot.body.take()?;
         slot.generation += 1;
         self.free.push(id.index);
@@ -45,12 +45,12 @@ impl Slots {
     }
 
     pub(super) fn get(&self, id: BodyId) -> Option<&Body> {
-        self.slots.get(id.index as usize).filter(|slot| slot.generation == id.generation)?.body.as_ref()
+        self.places.get(id.index as usize).filter(|slot| slot.generation == id.generation)?.body.as_ref()
     }
 
     /// To be changed: gets a new version.
     pub(super) fn get_mut(&mut self, id: BodyId) -> Option<&mut Body> {
-        let slot = self.slots.get_mut(id.index as usize).filter(|slot| slot.generation == id.generation)?;
+        let slot = self.places.get_mut(id.index as usize).filter(|slot| slot.generation == id.generation)?;
         self.last_version += 1;
         slot.version = self.last_version;
         slot.body.as_mut()
@@ -58,24 +58,24 @@ impl Slots {
 
     /// How many places there are, empty ones included.
     pub(super) fn places(&self) -> usize {
-        self.slots.len()
+        self.places.len()
     }
 
     /// How many bodies there are.
     pub(super) fn count(&self) -> usize {
-        self.slots.len() - self.free.len()
+        self.places.len() - self.free.len()
     }
 
     pub(super) fn at(&self, place: u32) -> Option<&Body> {
-        self.slots.get(place as usize)?.body.as_ref()
+        self.places.get(place as usize)?.body.as_ref()
     }
 
     pub(super) fn id(&self, place: u32) -> BodyId {
-        BodyId { index: place, generation: self.slots[place as usize].generation }
+        BodyId { index: place, generation: self.places[place as usize].generation }
     }
 
     pub(super) fn ids(&self) -> impl Iterator<Item = BodyId> + '_ {
-        let used = self.slots.iter().enumerate().filter(|(_, slot)| slot.body.is_some());
+        let used = self.places.iter().enumerate().filter(|(_, slot)| slot.body.is_some());
         used.map(|(index, slot)| BodyId { index: index as u32, generation: slot.generation })
     }
 
@@ -83,7 +83,7 @@ impl Slots {
     #[inline]
     pub(super) fn versions(&self, pair: IndexPair) -> Option<Versions> {
         let version = |place: u32| {
-            let slot = self.slots.get(place as usize)?;
+            let slot = self.places.get(place as usize)?;
             slot.body.is_some().then_some(slot.version)
         };
         Some([version(pair[0])?, version(pair[1])?])

@@ -166,7 +166,7 @@ impl<'a> FeatureTest<'a> {
             weights[k] = inside.max(0.0);
         }
         let sum = weights[0] + weights[1] + weights[2];
-        if !(sum > 0.0) {
+        if sum.is_nan() || sum <= 0.0 {
             return;
         }
         let weights = weights.map(|weight| weight / sum);
@@ -221,7 +221,8 @@ impl<'a> FeatureTest<'a> {
         let sine = square.sqrt() / (lengths[0] * lengths[1]);
         // The edges leave each other by less than 4δ over the whole of the longer one: parallel as far as anyone can
         // tell, and the closest points next to an end of one of them stand for all.
-        if !(sine * lengths[0].max(lengths[1]) > 4.0 * delta) {
+        let spread = sine * lengths[0].max(lengths[1]);
+        if spread.is_nan() || spread <= 4.0 * delta {
             return;
         }
         let between = start[1] - start[0];

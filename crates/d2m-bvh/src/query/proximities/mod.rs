@@ -221,7 +221,7 @@ impl Task for Search<'_> {
                     let (bounds, used) = scene.bounds::<L>(wide, node, pair[1 - wide], &along);
                     for (lane, &bound) in bounds[..used].iter().enumerate() {
                         // A bound that is not a number drops nothing.
-                        if !(bound > key) {
+                        if bound.is_nan() || bound <= key {
                             stack.push(child(pair, wide, node, lane));
                         }
                     }
