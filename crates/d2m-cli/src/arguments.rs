@@ -31,6 +31,8 @@ pub(crate) enum Command {
     Info(InfoArguments),
     /// Saves the search tree of a mesh; the file is a mesh argument like any other
     Tree(TreeArguments),
+    /// A page of HTML that shows two moving meshes and their contact, or a scene, or a simulation
+    View(ViewArguments),
     /// The main job on built-in shapes: six scenes with their commands and answers
     Demo,
 }
@@ -90,7 +92,7 @@ pub(crate) struct TocArguments {
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Trials: 26 numbers a line, no header: qA(w,x,y,z), xA, vA, wA, qB(w,x,y,z), xB, vB, wB; time runs over [0, 1]. Or JSON lines
+Trials: 26 numbers a line (a header line is allowed): qA(w,x,y,z), xA, vA, wA, qB(w,x,y,z), xB, vB, wB; time runs over [0, 1]. Or JSON lines
 {\"a\": motion, \"b\": motion, \"window\": [t0, t1]} with motions of any form of d2m toc.
 Results: trial,status,toc,toc_hi,separation,microseconds,normal_x,normal_y,normal_z,point_x,point_y,point_z,feature,
 triangle_a,triangle_b,evidence,tolerance. toc is the certified start of the time bracket (inf: separated; undecided: the window is
@@ -103,7 +105,7 @@ pub(crate) struct BatchArguments {
     pub(crate) a: String,
     #[arg(value_name = "B", help = MESH_HELP)]
     pub(crate) b: String,
-    /// Trials, CSV
+    /// Trials, CSV or JSON lines; - for standard input
     #[arg(long, value_name = "T.csv")]
     pub(crate) trials: PathBuf,
     /// Results, CSV; - for standard output
@@ -279,4 +281,37 @@ pub(crate) struct InfoArguments {
     /// Also write the mesh as an OBJ file
     #[arg(long, value_name = "FILE", requires = "mesh")]
     pub(crate) obj: Option<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+The page is one file that needs no network: a time slider, the moving meshes, contact points with their normals.
+
+Exit codes: 0 written, 2 bad usage, 3 bad input.
+
+Examples:
+  d2m view shape:gear shape:torus --motion-a 'x=-2,0,0;v=3,0,0;w=0,0,5' --out view.html
+  d2m view scene.json --out view.html
+  d2m view run.jsonl --out view.html")]
+pub(crate) struct ViewArguments {
+    /// Mesh as for d2m toc, a scene (.json) or a simulation (.jsonl)
+    #[arg(value_name = "A")]
+    pub(crate) a: String,
+    /// The second mesh
+    #[arg(value_name = "B", help = MESH_HELP)]
+    pub(crate) b: Option<String>,
+    /// File to write; - for standard output
+    #[arg(long, value_name = "view.html")]
+    pub(crate) out: String,
+    /// Motion of A; at rest if not given
+    #[arg(long, value_name = "M", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
+    pub(crate) motion_a: String,
+    /// Motion of B; at rest if not given
+    #[arg(long, value_name = "M", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
+    pub(crate) motion_b: String,
+    /// First and last time
+    #[arg(long, value_name = "T0,T1", default_value = "0,1", allow_hyphen_values = true)]
+    pub(crate) window: String,
+    #[command(flatten)]
+    pub(crate) query: QueryArguments,
 }

@@ -20,3 +20,11 @@ impl Failure {
         Self::Input(format!("{place}: {reason}"))
     }
 }
+
+/// What is wrong with one line of JSON: for the parser every line is the first, and where it lost the thread is the end of what
+/// is wrong.
+pub(crate) fn json_fault(error: &serde_json::Error) -> String {
+    let (text, column) = (error.to_string(), error.column());
+    let what = text.split(" at line 1 column ").next().unwrap_or_default();
+    if column == 0 { what.to_owned() } else { format!("{what} (before column {column})") }
+}

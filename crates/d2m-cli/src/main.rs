@@ -14,6 +14,7 @@ mod output;
 mod posed;
 mod report;
 mod trials;
+mod view;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -22,7 +23,12 @@ use outcome::Outcome;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = Arguments::try_parse().unwrap_or_else(|error| {
+        if let Some(hint) = window_hint(std::env::args()) {
+            output::note(&hint);
+        }
+        error.exit()
+    });
     let outcome = match &arguments.command {
         Command::Toc(arguments) => commands::toc::run(arguments),
         Command::Batch(arguments) => commands::batch::run(arguments).map(Outcome::from),
@@ -31,6 +37,7 @@ fn main() -> ExitCode {
         Command::Collide(arguments) => commands::collide::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments).map(Outcome::from),
         Command::Tree(arguments) => commands::tree::run(arguments).map(Outcome::from),
+        Command::View(arguments) => commands::view::run(arguments).map(Outcome::from),
         Command::Demo => commands::demo::run().map(Outcome::from),
     };
     match outcome {
@@ -42,4 +49,15 @@ fn main() -> ExitCode {
             ExitCode::from(3)
         }
     }
+}
+
+/// What someone means who writes `--window 0 1`.
+fn window_hint(words: impl Iterator<Item = String>) -> Option<String> {
+    let words: Vec<String> = words.collect();
+    let two = words.windows(3).find(|three| {
+        three[0] == "--window"
+            && three[1..].iter().all(|word| word.trim_end_matches(',').parse::<f64>().is_ok())
+    })?;
+    let [start, end] = [&two[1], &two[2]].map(|word| word.trim_end_matches(','));
+    Some(format!("d2m: --window takes both times in one word: --window {start},{end}"))
 }

@@ -39,7 +39,9 @@ pub(crate) fn require_window(place: &str, motion: &AnyMotion, window: Window) ->
 pub(crate) fn parse_window(text: &str) -> Result<Window, Failure> {
     let fault = |reason: String| Failure::at("--window", reason);
     let Some((start, end)) = text.split_once(',') else {
-        return Err(fault(format!("{text:?} should be T0,T1")));
+        return Err(fault(format!(
+            "{text:?} should be T0,T1: two times with a comma between them, such as 0,1"
+        )));
     };
     let number = |word: &str| word.trim().parse().map_err(|_| fault(format!("{word:?} is not a number")));
     let (start, end) = (number(start)?, number(end)?);

@@ -1,6 +1,6 @@
 //! Trials: 26 numbers a line, the motions of A and of B, or a JSON object a line with motions of any form.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, json_fault};
 use crate::load::read;
 use crate::motion::require_window;
 use d2m::bvh::{MAX_COORDINATE, Window};
@@ -54,16 +54,25 @@ pub(crate) fn load(path: &Path) -> Result<Vec<Trial>, Failure> {
 
 fn parse(text: &str) -> Result<Vec<Trial>, (Option<usize>, String)> {
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    let mut lines = lines.peekable();
+    lines.next_if(|(_, line)| is_header(line));
     let trials: Vec<Trial> = lines
         .map(|(index, line)| parse_line(line, index + 1).map_err(|reason| (Some(index + 1), reason)))
         .collect::<Result<_, _>>()?;
     if trials.is_empty() { Err((None, "there are no trials".to_owned())) } else { Ok(trials) }
 }
 
+/// Names of columns: several fields, and none of them a number.
+fn is_header(line: &str) -> bool {
+    let mut fields = line.split(',').map(str::trim);
+    line.contains(',')
+        && !line.trim_start().starts_with('{')
+        && fields.all(|field| field.parse::<f64>().is_err())
+}
+
 /// `{"a": motion, "b": motion, "window": [t0, t1]}`, each of which may be left out: at rest, from 0 to 1.
 fn parse_json(text: &str, line: usize) -> Result<Trial, String> {
-    // The line within the text is always 1, and the line of the file is told with the message.
-    let form: TrialForm = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    let form: TrialForm = serde_json::from_str(text).map_err(|error| json_fault(&error))?;
     let [start, end] = form.window;
     let window = Window::try_new(start, end).map_err(|error| format!("window: {error}"))?;
     let trial = Trial { line, motion_a: form.a, motion_b: form.b, window };
@@ -138,6 +147,18 @@ mod tests {
         assert!(outside.1.contains("b: the motion covers the times from 0.0 to 2.0"), "{}", outside.1);
         assert!(fault("{\"c\": {}}").1.contains("unknown field `c`"));
         assert!(fault("{\"window\": [1, 0]}").1.contains("window"));
+    }
+
+    #[test]
+    fn a_header_line_is_skipped() {
+        let names: Vec<String> =
+            (0..26).map(|k| format!("{}{}", FIELDS[k % 13], ["A", "B"][k / 13])).collect();
+        let trials = parse(&format!("\n{}\r\n{LINE}\n", names.join(","))).unwrap();
+        assert_eq!((trials.len(), trials[0].line), (1, 3));
+        assert_eq!(parse("a,b,c\n").unwrap_err(), (None, "there are no trials".to_owned()));
+        // Only the first line is one, and not where a number stands in it.
+        assert_eq!(parse(&format!("{LINE}\na,b\n")).unwrap_err().0, Some(2));
+        assert_eq!(parse(&names.join(",").replace("qwA", "1")).unwrap_err().0, Some(1));
     }
 
     #[test]

@@ -349,6 +349,68 @@ fn inputs_and_read_only_files_are_not_replaced() {
 }
 
 #[test]
+fn two_words_for_the_window_are_explained() {
+    let output = d2m(&["toc", UNIT_BOX, UNIT_BOX, "--window", "0", "1"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("--window 0,1"), "{}", stderr(&output));
+    refused(&["toc", UNIT_BOX, UNIT_BOX, "--window", "0;1"], &["\"0;1\"", "such as 0,1"]);
+}
+
+#[test]
+fn trials_and_results_may_be_piped() {
+    let line = r#"{"a": {"x": [-3, 0, 0], "v": [4, 0, 0]}, "window": [0, 0.5]}"#;
+    let lines = format!("{line}\n\n{}\n", line.replace("0.5", "0.2"));
+    let arguments = ["batch", UNIT_BOX, UNIT_BOX, "--trials", "-", "--out", "-"];
+    let output = shell::d2m_with_input(&arguments, lines.as_bytes());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = stdout(&output);
+    let fields = |line: usize| text.lines().nth(line).unwrap().split(',').collect::<Vec<_>>();
+    assert_eq!((fields(1)[1], fields(2)[1]), ("contact", "separated"), "{text}");
+    assert!(["near", "crossing"].contains(&fields(1)[15]), "{text}");
+    assert!((fields(1)[16].parse::<f64>().unwrap() / 1.7e-10 - 1.0).abs() < 0.1, "{text}");
+    assert_eq!(fields(2)[15..], ["", ""]);
+    let header = d2m_csv_header();
+    let with_header = format!("{header}\n{}", TRIALS);
+    let output = shell::d2m_with_input(&arguments, with_header.as_bytes());
+    assert_eq!(stdout(&output).lines().count(), 5, "{}", stderr(&output));
+    let output = shell::d2m_with_input(&arguments, line.replace("-3", "-x").as_bytes());
+    assert_eq!(output.status.code(), Some(3));
+    assert!(
+        stderr(&output).contains("line 1: ") && stderr(&output).contains("column"),
+        "{}",
+        stderr(&output)
+    );
+    let output = shell::d2m_with_input(&arguments, b"");
+    assert!(stderr(&output).contains("standard input: is empty"), "{}", stderr(&output));
+}
+
+fn d2m_csv_header() -> String {
+    let names: Vec<String> = (0..26).map(|k| format!("c{k}_")).collect();
+    names.join(",")
+}
+
+#[test]
+fn a_view_is_one_page_that_fetches_nothing() {
+    let folder = Folder::new("view");
+    let page = folder.path("view.html");
+    let motion = ["--motion-a", "x=-3,0,0;v=4,0,0;w=0,0,2"];
+    let output = d2m(&[&["view", "shape:gear", UNIT_BOX, "--out", &page], &motion[..]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let html = fs::read_to_string(&page).unwrap();
+    assert!(html.starts_with("<!DOCTYPE html>") && html.trim_end().ends_with("</html>"));
+    assert!(html.contains("CONTACT at t = ") && !html.contains("{{"));
+    for word in ["<script src", "<link", "import(", "fetch("] {
+        let own = html.split("<script>").next().unwrap().to_owned() + html.rsplit("<script>").next().unwrap();
+        assert!(!own.contains(word), "{word}");
+    }
+    // A name cannot end the script.
+    let mesh = folder.file("<script>.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let output = d2m(&["view", &mesh, UNIT_BOX, "--out", "-"]);
+    assert!(!stdout(&output).contains("<script>.obj"), "{}", stderr(&output));
+    refused(&["view", "shape:gear", "--out", &page], &["B", "missing"]);
+}
+
+#[test]
 fn bad_usage_exits_with_2() {
     for arguments in [
         &[][..],

@@ -8,3 +8,4 @@ pub(crate) mod features;
 pub(crate) mod info;
 pub(crate) mod toc;
 pub(crate) mod tree;
+pub(crate) mod view;

@@ -1,0 +1,7 @@
+//! One page of HTML that shows bodies in motion, without anything that is fetched.
+
+mod flight;
+mod picture;
+
+pub(crate) use flight::{Flight, flights_of};
+pub(crate) use picture::{Mark, Picture};
