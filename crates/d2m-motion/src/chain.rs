@@ -203,6 +203,13 @@ impl Chain {
         self.joints.iter().zip(&other.joints).take_while(|(a, b)| a == b).count()
     }
 
+    /// The first joints alone: the motion of the frame that they carry.
+    #[must_use]
+    pub fn only_first(&self, count: usize) -> Self {
+        let joints = self.joints[..count.min(self.joints.len())].to_vec();
+        Self { joints, domain: self.domain }
+    }
+
     /// The chain without its first joints, as seen from the frame that they carry: at rest if none is left.
     #[must_use]
     pub fn without_first(&self, count: usize) -> Self {

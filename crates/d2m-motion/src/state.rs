@@ -1,7 +1,8 @@
 //! Where a body is and how it moves at one time: plain numbers, each with a proven distance from the truth.
-use crate::{IntervalPose, IntervalTwist};
+use crate::rotation::from_quat_rounded;
+use crate::{ConstantTwist, IntervalPose, IntervalTwist, Kinematics};
 use d2m_interval::{Interval, IntervalVec3};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 
 /// Covers the rounding of fewer than 32 operations on non-negative numbers.
 const UP: f64 = 1.0 + 1e-14;
@@ -69,6 +70,42 @@ impl CertifiedState {
             linear_radius,
             angular_radius,
         }
+    }
+}
+
+impl CertifiedState {
+    /// The same state told by another body point.
+    #[must_use]
+    pub fn following(&self, at: DVec3) -> Self {
+        Kinematics::from_state(self).following(at).state_about(DVec3::ZERO)
+    }
+
+    /// The motion that has this state (its middle) at time `t` and keeps its twist, and a bound of the operator norm of
+    /// the difference between its rotation at that time and the true one. `None` where the middle is not finite.
+    ///
+    /// The rotation of the quaternion is known within 36u (Frobenius norm), and so is how far it is from the middle.
+    ///
+    /// ```
+    /// use d2m_motion::{ConstantTwist, RigidMotion};
+    /// use glam::DVec3;
+    /// let spin = ConstantTwist::REST.with_angular_velocity(DVec3::Z);
+    /// let (again, radius) = spin.enclose_state(0.5).to_constant_twist(0.5).unwrap();
+    /// assert!(radius < 1e-13 && again.angular_velocity() == DVec3::Z);
+    /// ```
+    pub fn to_constant_twist(&self, t: f64) -> Option<(ConstantTwist, f64)> {
+        let motion = ConstantTwist::try_new(
+            self.position,
+            DQuat::from_mat3(&self.rotation).normalize(),
+            self.linear,
+            self.angular,
+        )
+        .and_then(|motion| motion.try_with_at(self.at)?.try_with_reference_time(t))
+        .ok()?;
+        let known = from_quat_rounded(motion.orientation())?;
+        let [x, y, z] =
+            [0, 1, 2].map(|column| (known.col(column) - self.rotation.col(column)).length_squared());
+        let radius = (x + y + z).sqrt() + 40.0 * 0.5 * f64::EPSILON + self.rotation_radius;
+        (radius < f64::INFINITY).then_some((motion, radius * UP))
     }
 }
 

@@ -40,6 +40,16 @@ pub enum QueryError {
         /// 0 for the first body, 1 for the second.
         body: usize,
     },
+    /// The window is not within the times that a motion covers.
+    #[error("motion of body {body} covers the times from {start:?} to {end:?}, which do not hold the window")]
+    OutsideMotion {
+        /// 0 for the first body, 1 for the second.
+        body: usize,
+        /// First time of the motion.
+        start: f64,
+        /// Last time of the motion.
+        end: f64,
+    },
     /// The pose is not finite, its quaternion is zero, or lengths exceed 1e100.
     #[error("pose of body {body} is not finite, has a zero quaternion or exceeds 1e100")]
     BadPose {

@@ -1,6 +1,5 @@
 //! What a query is asked and what it answers.
 
-mod any_motion;
 mod batch;
 mod cache;
 mod collide;
@@ -10,6 +9,8 @@ mod course;
 mod distance;
 mod error;
 mod evidence;
+mod fitted_twist;
+mod general_motion;
 mod moving;
 mod options;
 mod posed;

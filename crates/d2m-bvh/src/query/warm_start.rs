@@ -51,7 +51,7 @@ pub fn time_of_contact_with(
     cache: &mut PairCache,
 ) -> Result<TimeOfContact, QueryError> {
     let Some(scene) = scene_of(a, b, window, options)? else {
-        return super::any_motion::time_of_contact([a, b], window, options);
+        return super::general_motion::general_motion([a, b], window, options);
     };
     if options.budget != Budget::UNLIMITED || options.mode == Mode::Capoeira {
         return ask(&scene, options);

@@ -264,11 +264,18 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/src/search/ahead.rs::any_number_of_threads_does_the_same",
     ),
     patch(
-        "twice the step of conservative advancement",
-        "crates/d2m-bvh/src/query/any_motion.rs",
-        "(t + free).next_down().min(until)",
-        "(t + 2.0 * free).next_down().min(until)",
-        "crates/d2m-bvh/tests/engine.rs::any_motion_agrees_with_the_closed_form",
+        "half of the acceleration in the deviation of fitted twists",
+        "crates/d2m-bvh/src/query/fitted_twist.rs",
+        "let square = 0.5 * half * half;",
+        "let square = 0.25 * half * half;",
+        "crates/d2m-bvh/src/query/fitted_twist.rs::fitted_twists_stay_within_the_deviation",
+    ),
+    patch(
+        "the deviation of fitted twists is not taken from the gap",
+        "crates/d2m-bvh/src/query/general_motion.rs",
+        "(self.options.min_separation + deviation).next_up()",
+        "self.options.min_separation",
+        "crates/d2m-bvh/tests/general_motion.rs::velocities_that_vanish_at_the_contact",
     ),
     in_test(
         "nine tenths of the level or of the speeds of boxes",

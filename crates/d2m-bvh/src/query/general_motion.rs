@@ -1,0 +1,360 @@
+//! First contact of motions whose twists are not constant.
+//!
+//! Spans of time on which both twists are constant are searched as they are. On any other span two constant twists are
+//! fitted, whose distance differs by at most a proven D from that of the bodies, and the same search is asked for a
+//! distance that is larger by D: what it proves free is free. Where it finds a contact the span is shortened, with D
+//! like the square of the span, until D is a small part of the tolerance. docs/theory/motions.md, section 3.
+
+use super::fitted_twist::FittedTwists;
+use super::time_of_contact::{last_search_counts, time_of_contact};
+use crate::{
+    Budget, Contact, Evidence, Mode, Moving, QueryError, QueryOptions, Solid, StartState, TimeOfContact,
+    Window,
+};
+use d2m_feature::triangle_distance;
+use d2m_motion::{Chain, Pose, RigidMotion};
+use glam::DVec3;
+use std::time::Instant;
+
+/// δ as a part of the larger body's radius, if none is given: that of constant twists.
+const DEFAULT_TOLERANCE: f64 = 1e-10;
+/// The deviation is a small part of the tolerance when it is at most this part: the search is asked for a tolerance
+/// that is smaller by twice the deviation, so for at least three quarters.
+const SMALL_PART: f64 = 0.125;
+/// Part of the room between the bodies that a deviation may take.
+const PART_OF_ROOM: f64 = 0.25;
+/// Radii of a motion's enclosures at a single time, in units in the last place of the lengths that they are about, that count
+/// as rounding: then the tolerance is raised, as for constant twists. Wider enclosures end as undecided.
+const ROUNDINGS: f64 = 512.0 * f64::EPSILON;
+/// Longer by so much are spans after one that was free.
+const GROWTH: f64 = 4.0;
+/// A contact is expected after the gap has closed at the speed it closes with, and looked for this much longer.
+const OVERSHOOT: f64 = 1.25;
+/// Node tests that a fit counts for in a budget.
+const TESTS_A_FIT: u64 = 64;
+
+/// The query; options were checked before.
+pub(super) fn general_motion(
+    bodies: [Moving<'_>; 2],
+    window: Window,
+    options: &QueryOptions,
+) -> Result<TimeOfContact, QueryError> {
+    for (body, moving) in bodies.iter().enumerate() {
+        let times = moving.motion.domain();
+        if !(times.contains(window.start()) && times.contains(window.end())) {
+            return Err(QueryError::OutsideMotion { body, start: times.lo(), end: times.hi() });
+        }
+    }
+    if let (Some(a), Some(b)) = (bodies[0].motion.chain(), bodies[1].motion.chain()) {
+        let common = a.common_joints(b);
+        if common > 0 {
+            return from_common_joint(bodies, [a, b], common, window, options);
+        }
+    }
+    Advance::new(bodies, window, *options).run()
+}
+
+/// Two links of one arm, seen from the last joint that they have in common.
+fn from_common_joint(
+    bodies: [Moving<'_>; 2],
+    [a, b]: [&Chain; 2],
+    common: usize,
+    window: Window,
+    options: &QueryOptions,
+) -> Result<TimeOfContact, QueryError> {
+    let (rest_a, rest_b) = (a.without_first(common), b.without_first(common));
+    let seen = [Moving::new(bodies[0].body, &rest_a), Moving::new(bodies[1].body, &rest_b)];
+    let mut answer = Advance::new(seen, window, *options).run()?;
+    if let TimeOfContact::Contact(contact) = &mut answer {
+        let (frame, _) = a.only_first(common).pose_and_twist(contact.time_lo);
+        contact.normal = frame.transform_vector(contact.normal);
+        contact.point_a = frame.transform_point(contact.point_a);
+        contact.point_b = frame.transform_point(contact.point_b);
+    }
+    Ok(answer)
+}
+
+/// One query on its way through time.
+struct Advance<'a> {
+    bodies: [Moving<'a>; 2],
+    window: Window,
+    options: QueryOptions,
+    tolerance: f64,
+    deadline: Option<Instant>,
+    /// Node tests so far.
+    work: u64,
+    /// Proven free until here.
+    now: f64,
+    /// The next span is at most so long and deviates by at most so much.
+    longest: f64,
+    largest: f64,
+}
+
+/// How a span ended.
+enum Step {
+    /// Free from here on again.
+    FreeUntil(f64),
+    /// The answer of the whole query.
+    Answer(TimeOfContact),
+}
+
+impl<'a> Advance<'a> {
+    fn new(bodies: [Moving<'a>; 2], window: Window, options: QueryOptions) -> Self {
+        let radius = bodies[0].body.radius().max(bodies[1].body.radius());
+        Self {
+            bodies,
+            window,
+            options,
+            tolerance: options.tolerance.unwrap_or(DEFAULT_TOLERANCE * radius),
+            deadline: options.budget.wall_clock.and_then(|time| Instant::now().checked_add(time)),
+            work: 0,
+            now: window.start(),
+            longest: window.length(),
+            largest: f64::INFINITY,
+        }
+    }
+
+    fn run(mut self) -> Result<TimeOfContact, QueryError> {
+        loop {
+            if self.rest_of_budget().is_none() {
+                return Ok(TimeOfContact::Undecided { clear_until: self.now });
+            }
+            let pieces = self.bodies.map(|body| body.motion.constant_twist_from(self.now));
+            let step = if let [Some(a), Some(b)] = pieces {
+                let ends = [a.until, b.until].into_iter().flatten();
+                let until = ends.fold(self.window.end(), f64::min);
+                self.exact_span([&a.motion, &b.motion], until)?
+            } else {
+                self.fitted_span()?
+            };
+            match step {
+                Step::Answer(answer) => return Ok(answer),
+                Step::FreeUntil(time) if time >= self.window.end() => return Ok(TimeOfContact::Separated),
+                Step::FreeUntil(time) => self.now = time,
+            }
+        }
+    }
+
+    /// What is left of the budget; `None` when it is used up.
+    fn rest_of_budget(&self) -> Option<Budget> {
+        let mut rest = Budget::UNLIMITED;
+        let most = self.options.budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS);
+        if self.work >= most && self.work > 0 {
+            return None;
+        }
+        rest = rest.with_node_tests(most - self.work);
+        if let Some(deadline) = self.deadline {
+            rest = rest.with_wall_clock(deadline.checked_duration_since(Instant::now())?);
+        }
+        Some(rest)
+    }
+
+    /// Options for a span: bodies that are free of each other stay so until they touch, so that the inside of the one is
+    /// looked at for the other only at the start, and where pieces of a motion may miss each other by rounding.
+    fn options_of_span(&self) -> QueryOptions {
+        let starts = self.now == self.window.start() || self.begins_a_piece();
+        let solid = if starts { self.options.solid } else { Solid::Surface };
+        let budget = self.rest_of_budget().unwrap_or(Budget::UNLIMITED.with_node_tests(0));
+        QueryOptions { solid, budget, tolerance: Some(self.tolerance), ..self.options }
+    }
+
+    fn begins_a_piece(&self) -> bool {
+        let before = self.now.next_down();
+        self.bodies.iter().any(|body| body.motion.smooth_until(before) == Some(self.now))
+    }
+
+    /// A span on which both twists are constant, on the closed form.
+    fn exact_span(&mut self, motions: [&dyn RigidMotion; 2], until: f64) -> Result<Step, QueryError> {
+        if self.balls_apart(motions, until) {
+            return Ok(Step::FreeUntil(until));
+        }
+        let options = QueryOptions { tolerance: self.options.tolerance, ..self.options_of_span() };
+        Ok(match self.ask(motions, until, &options)? {
+            TimeOfContact::Separated => Step::FreeUntil(until),
+            TimeOfContact::Contact(contact) => Step::Answer(TimeOfContact::Contact(self.with_start(contact))),
+            undecided => Step::Answer(undecided),
+        })
+    }
+
+    /// Are the balls about the followed points apart over the span, whatever the bodies' turns? They move straight.
+    fn balls_apart(&self, motions: [&dyn RigidMotion; 2], until: f64) -> bool {
+        let [(a, v), (b, w)] = motions.map(|motion| motion.pose_and_twist(self.now));
+        let reach = [(0, a.at), (1, b.at)].map(|(k, at): (usize, DVec3)| {
+            let body = self.bodies[k].body;
+            body.radius() + (body.center() - at).length()
+        });
+        let (apart, length) = ((a.translation - b.translation).length(), until - self.now);
+        let closes = (v.linear - w.linear).length() * length;
+        // Poses round by units in the last place of these; a thousand times that is nothing to balls.
+        let size = a.translation.length()
+            + b.translation.length()
+            + (v.linear.length() + w.linear.length()) * length;
+        let rounding = 1024.0 * f64::EPSILON * (size + reach[0] + reach[1]);
+        apart - closes > reach[0] + reach[1] + self.options.min_separation + self.tolerance + rounding
+    }
+
+    fn ask(
+        &mut self,
+        [a, b]: [&dyn RigidMotion; 2],
+        until: f64,
+        options: &QueryOptions,
+    ) -> Result<TimeOfContact, QueryError> {
+        let span = Window::try_new(self.now, until)?;
+        let (a, b) = (Moving::new(self.bodies[0].body, a), Moving::new(self.bodies[1].body, b));
+        let answer = time_of_contact(a, b, span, options)?;
+        self.work += last_search_counts().work() + 1;
+        Ok(answer)
+    }
+
+    /// A span with fitted twists: free up to its end or up to where they come near.
+    fn fitted_span(&mut self) -> Result<Step, QueryError> {
+        let undecided = Step::Answer(TimeOfContact::Undecided { clear_until: self.now });
+        let Some((fitted, until)) = self.fit()? else { return Ok(undecided) };
+        let FittedTwists { twists, deviation, floor } = fitted;
+        let tolerance = self.tolerance.max(self.rounding_tolerance(floor));
+        let small = deviation <= SMALL_PART * tolerance;
+        let inner = if small { tolerance - 2.0 * deviation } else { deviation.max(tolerance) };
+        let mut options = self.options_of_span();
+        options.tolerance = Some(inner);
+        options.min_separation = (self.options.min_separation + deviation).next_up();
+        if options.mode == Mode::Exists {
+            options.mode = Mode::Accurate;
+        }
+        let contact = match self.ask([&twists[0], &twists[1]], until, &options)? {
+            TimeOfContact::Separated => {
+                self.longest = GROWTH * (until - self.now);
+                self.largest *= GROWTH;
+                return Ok(Step::FreeUntil(until));
+            }
+            TimeOfContact::Undecided { clear_until } => {
+                return Ok(Step::Answer(TimeOfContact::Undecided { clear_until }));
+            }
+            TimeOfContact::Contact(contact) => contact,
+        };
+        let early = options.mode == Mode::Capoeira && deviation <= PART_OF_ROOM * contact.separation;
+        if small || early {
+            let contact = Contact { tolerance: contact.tolerance.max(inner) + 2.0 * deviation, ..contact };
+            let contact = Contact { tolerance: contact.tolerance.max(tolerance), ..contact };
+            return Ok(Step::Answer(TimeOfContact::Contact(self.true_contact(contact))));
+        }
+        self.shorten(&contact, (deviation, floor), (tolerance, until));
+        if contact.time_lo <= self.now && self.longest <= 0.0 {
+            return Ok(undecided);
+        }
+        Ok(Step::FreeUntil(contact.time_lo.max(self.now)))
+    }
+
+    /// How long the next span may be, and how far it may deviate, after the fitted twists came near.
+    fn shorten(&mut self, contact: &Contact, (deviation, floor): (f64, f64), (tolerance, until): (f64, f64)) {
+        let room = self.room_at(contact);
+        let wanted = if room > GROWTH * tolerance { room * PART_OF_ROOM } else { 0.0 };
+        let least = SMALL_PART * tolerance;
+        self.largest = wanted.max(least).min(0.5 * deviation);
+        let span = until - self.now;
+        // Enclosures that are this wide at single times get no better.
+        let hopeless = floor > 0.5 * self.largest.max(least) && deviation <= 2.0 * floor;
+        let closes = if contact.closing_speed > 0.0 {
+            OVERSHOOT * (room.max(0.0) + tolerance) / contact.closing_speed
+        } else {
+            span
+        };
+        self.longest = if hopeless { 0.0 } else { span.min(closes) };
+    }
+
+    /// About how far apart the two triangles of a contact are in truth, less the wanted separation.
+    fn room_at(&self, contact: &Contact) -> f64 {
+        let corners = |k: usize, triangle: u32| {
+            let (pose, _) = self.bodies[k].motion.pose_and_twist(contact.time_lo);
+            self.bodies[k].body.mesh().corners(triangle as usize).map(|p| pose.transform_point(p))
+        };
+        let apart = triangle_distance(&corners(0, contact.triangle_a), &corners(1, contact.triangle_b));
+        apart.upper - self.options.min_separation
+    }
+
+    /// Fits over a span that begins now and deviates by little enough; `None` when no span does.
+    fn fit(&mut self) -> Result<Option<(FittedTwists, f64)>, QueryError> {
+        let joints = self.bodies.map(|body| body.motion.smooth_until(self.now));
+        // A joint that is not ahead is a fault of the motion: then nothing is known.
+        if joints.iter().flatten().any(|&joint| !(joint > self.now)) && self.now < self.window.end() {
+            return Ok(None);
+        }
+        let end = joints.into_iter().flatten().fold(self.window.end(), f64::min);
+        let poses = self.bodies.map(|body| body.motion.pose_and_twist(self.now).0);
+        for (body, Pose { rotation, translation, .. }) in poses.iter().enumerate() {
+            if !(rotation.is_finite() && translation.is_finite()) {
+                return Err(QueryError::BadMotion { body });
+            }
+        }
+        let largest = self.largest.min(self.usual_deviation(&poses));
+        let mut until = (self.now + self.longest).min(end).max(self.now.next_up().min(end));
+        loop {
+            self.work += TESTS_A_FIT;
+            let fitted = FittedTwists::new(&self.bodies, (self.now, until), poses[1].translation);
+            let shortest = until <= self.now.next_up();
+            if let Some(fitted) = fitted {
+                let tolerance = self.tolerance.max(self.rounding_tolerance(fitted.floor));
+                let enough = largest.max(SMALL_PART * tolerance).max(2.0 * fitted.floor);
+                if fitted.deviation <= enough {
+                    return Ok(Some((fitted, until)));
+                }
+                if shortest {
+                    return Ok(None);
+                }
+                // The deviation goes like the square of the span, or its root where a radius of a velocity rules.
+                let part = (enough / fitted.deviation).sqrt().clamp(1e-3, 0.5);
+                until = (self.now + part * (until - self.now)).max(self.now.next_up()).min(end);
+            } else {
+                if shortest {
+                    return Ok(None);
+                }
+                until = (self.now + 0.0625 * (until - self.now)).max(self.now.next_up()).min(end);
+            }
+        }
+    }
+
+    /// A deviation that is little against the bodies, or against the room between the balls about them.
+    fn usual_deviation(&self, poses: &[Pose; 2]) -> f64 {
+        let [a, b] = [0, 1].map(|k| {
+            let body = self.bodies[k].body;
+            (poses[k].transform_point(body.center()), body.radius())
+        });
+        let room = (a.0 - b.0).length() - a.1 - b.1;
+        PART_OF_ROOM * room.max(a.1.min(b.1)).max(SMALL_PART * a.1.max(b.1))
+    }
+
+    /// The tolerance that enclosures of a certain width at single times need; zero if they are wider than rounding explains.
+    fn rounding_tolerance(&self, floor: f64) -> f64 {
+        let size = self.bodies.iter().map(|body| {
+            let (pose, _) = body.motion.pose_and_twist(self.now);
+            pose.translation.length() + body.body.radius() + (body.body.center() - pose.at).length()
+        });
+        if floor <= ROUNDINGS * size.sum::<f64>() { 2.0 * floor / SMALL_PART } else { 0.0 }
+    }
+
+    /// Data of the fitted motions told by the true ones: points by their weights, speeds by the true twists. That the
+    /// fitted motions' features cross says of the true ones only that they are near.
+    fn true_contact(&self, contact: Contact) -> Contact {
+        let at = |k: usize, triangle: u32, weights: [f64; 3]| {
+            let (pose, twist) = self.bodies[k].motion.pose_and_twist(contact.time_lo);
+            let corners = self.bodies[k].body.mesh().corners(triangle as usize);
+            let point = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
+            let place = pose.transform_point(point);
+            (place, twist.velocity_of(place - pose.translation))
+        };
+        let (point_a, speed_a) = at(0, contact.triangle_a, contact.barycentric_a);
+        let (point_b, speed_b) = at(1, contact.triangle_b, contact.barycentric_b);
+        let inside = contact.start == StartState::Contained;
+        let evidence = match contact.evidence {
+            Evidence::Crossing if !inside => Evidence::Near,
+            evidence => evidence,
+        };
+        let closing_speed = (speed_a - speed_b).dot(contact.normal);
+        self.with_start(Contact { point_a, point_b, evidence, closing_speed, ..contact })
+    }
+
+    /// How the bodies stood at the start of the whole window, not of a span.
+    fn with_start(&self, contact: Contact) -> Contact {
+        let start = if self.now == self.window.start() { contact.start } else { StartState::Apart };
+        Contact { start, ..contact }
+    }
+}
