@@ -17,8 +17,9 @@ pub use query::last_search_counts;
 pub use query::{
     Budget, Contact, Distance, DistanceOptions, Evidence, Mode, Moving, PairCache, Posed, Proximity,
     ProximityOptions, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window, collide,
-    colliding_pairs, contact_exists, distance, distance_within, proximities, proximities_with,
-    reduce_proximities, time_of_contact, time_of_contact_batch, time_of_contact_with, try_colliding_pair,
+    collide_within, colliding_pairs, contact_exists, distance, distance_within, proximities,
+    proximities_with, reduce_proximities, time_of_contact, time_of_contact_batch, time_of_contact_with,
+    try_colliding_pair,
 };
 pub use search::InstructionSet;
 #[doc(hidden)]

@@ -220,10 +220,11 @@ fn touching_and_coplanar() {
 fn one_inside_the_other() {
     let mut random = Random(3);
     let (big, small) = (MeshTree::new(cube(|p| p)), MeshTree::new(cube(|p| p * 0.1)));
-    // A shell: a cube with a cubic hole. What is in the hole is not in the body.
+    // A shell: a cube with a cubic hole, whose surface has its outside towards the middle. What is in the hole is not in
+    // the body.
     let (outer, inner) = (cube(|p| p).into_parts(), cube(|p| p * 0.5).into_parts());
     let corners = [outer.0, inner.0].concat();
-    let shifted = inner.1.iter().map(|t| t.map(|i| i + 8));
+    let shifted = inner.1.iter().map(|&[i, j, k]| [i + 8, k + 8, j + 8]);
     let shell =
         MeshTree::new(TriMesh::try_new(corners, outer.1.iter().copied().chain(shifted).collect()).unwrap());
     for round in 0..200 {

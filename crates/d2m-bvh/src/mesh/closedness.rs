@@ -8,6 +8,10 @@ use glam::DVec3;
 pub(crate) struct Closedness {
     /// As [`Topology::is_watertight`].
     pub(crate) watertight: bool,
+    /// As [`Topology::is_consistently_oriented`].
+    pub(crate) oriented: bool,
+    /// Triangles that repeat an earlier one with the same orientation, ascending.
+    pub(crate) repeated: Vec<u32>,
     /// The lowest vertex of each part that hangs together through equal positions, ascending.
     pub(crate) components: Vec<u32>,
 }
@@ -15,11 +19,14 @@ pub(crate) struct Closedness {
 impl Closedness {
     pub(crate) fn of(mesh: &TriMesh) -> Self {
         let first = first_at_position(mesh.vertices());
-        Self {
-            // An oriented manifold closes and repeats no triangle. Anything else is looked at in full.
-            watertight: is_oriented_manifold(mesh, &first) || Topology::new(mesh).is_watertight(),
-            components: components(mesh, first),
-        }
+        // An oriented manifold closes and repeats no triangle. Anything else is looked at in full.
+        let (watertight, oriented, repeated) = if is_oriented_manifold(mesh, &first) {
+            (true, true, Vec::new())
+        } else {
+            let topology = Topology::new(mesh);
+            (topology.is_watertight(), topology.is_consistently_oriented(), topology.repeated().to_vec())
+        };
+        Self { watertight, oriented, repeated, components: components(mesh, first) }
     }
 }
 

@@ -65,7 +65,7 @@ pub struct Topology {
     triangle_edges: Vec<[u32; 3]>,
     position_count: usize,
     face_count: usize,
-    duplicate_count: usize,
+    repeated: Vec<u32>,
     component_count: usize,
 }
 
@@ -77,12 +77,12 @@ impl Topology {
         let mut sides: Vec<Side> = Vec::with_capacity(3 * mesh.triangle_count());
         let mut used = vec![false; mesh.vertex_count()];
         let mut components = DisjointSets::new(mesh.vertex_count());
-        let mut duplicate_count = 0;
+        let mut repeated = Vec::new();
         let mut face_count = 0;
         for (triangle, corners) in mesh.triangles().iter().enumerate() {
             let corners = corners.map(|vertex| representative[vertex as usize]);
             if !seen.insert(smallest_first(corners)) {
-                duplicate_count += 1;
+                repeated.push(triangle as u32);
                 continue;
             }
             if corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0] {
@@ -135,15 +135,7 @@ impl Topology {
         let roots = (0..mesh.vertex_count() as u32)
             .filter(|&vertex| used[vertex as usize] && components.root(vertex) == vertex);
         let component_count = roots.count();
-        Self {
-            representative,
-            edges,
-            triangle_edges,
-            position_count,
-            face_count,
-            duplicate_count,
-            component_count,
-        }
+        Self { representative, edges, triangle_edges, position_count, face_count, repeated, component_count }
     }
 
     /// The unique edges, sorted by their ends.
@@ -212,7 +204,12 @@ impl Topology {
 
     /// Triangles that repeat an earlier one with the same orientation.
     pub fn duplicate_count(&self) -> usize {
-        self.duplicate_count
+        self.repeated.len()
+    }
+
+    /// The triangles that repeat an earlier one with the same orientation, ascending.
+    pub(crate) fn repeated(&self) -> &[u32] {
+        &self.repeated
     }
 }
 

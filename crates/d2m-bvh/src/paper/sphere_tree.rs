@@ -64,6 +64,7 @@ pub struct SphereTree {
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
     watertight: bool,
+    oriented: bool,
     component_vertices: Vec<u32>,
     counted: Vec<bool>,
 }
@@ -99,6 +100,7 @@ impl SphereTree {
         assign_features(&mesh, &topology, &mut leaves);
         Self {
             watertight: topology.is_watertight(),
+            oriented: topology.is_consistently_oriented(),
             component_vertices: component_vertices(&mesh, &topology),
             counted: counted_triangles(&mesh, &topology),
             mesh,
@@ -130,6 +132,11 @@ impl SphereTree {
     /// Does the surface close?
     pub const fn is_watertight(&self) -> bool {
         self.watertight
+    }
+
+    /// Does the surface agree about its outside?
+    pub(crate) const fn is_consistently_oriented(&self) -> bool {
+        self.oriented
     }
 
     pub(crate) fn node(&self, index: u32) -> &Node {

@@ -102,8 +102,8 @@ fn passes_through(p: DVec3, q: DVec3, face: &[DVec3; 3], margin: f64) -> bool {
 /// Directions tried before giving up.
 const RAYS: u32 = 64;
 
-/// Even–odd rule: does a ray from `point` leave the closed surface an odd number of times? `None` where every ray met
-/// something whose side rounding could not tell.
+/// Is the winding number of the closed surface about `point` not zero (odd, where the surface does not agree about its
+/// outside)? `None` where every ray met something whose side rounding could not tell.
 ///
 /// Every sign is certain or the ray is dropped for another, so an answer is right if `point` is off the surface.
 pub(crate) fn is_inside(tree: &SphereTree, point: DVec3) -> Option<bool> {
@@ -125,14 +125,16 @@ pub(crate) fn is_inside(tree: &SphereTree, point: DVec3) -> Option<bool> {
         // Far outside the bounding sphere.
         let far = point + direction * (4.0 * ball.radius / direction.length());
         if let Some(crossings) = count_crossings(tree, point, far) {
-            return Some(crossings % 2 == 1);
+            let odd_only = !tree.is_consistently_oriented();
+            return Some(if odd_only { crossings % 2 != 0 } else { crossings != 0 });
         }
     }
     None
 }
 
-/// The number of triangles that the segment from `p` to `q` passes through; `None` where one of them is not certain.
-fn count_crossings(tree: &SphereTree, p: DVec3, q: DVec3) -> Option<usize> {
+/// The number of triangles that the segment from `p` to `q` passes the way of their normals, less those that it passes
+/// against it; `None` where one of them is not certain.
+fn count_crossings(tree: &SphereTree, p: DVec3, q: DVec3) -> Option<i64> {
     let mut crossings = 0;
     let mut open = vec![0u32];
     let along = q - p;
@@ -150,16 +152,15 @@ fn count_crossings(tree: &SphereTree, p: DVec3, q: DVec3) -> Option<usize> {
             continue;
         }
         for &t in tree.leaf(node).triangles.iter().filter(|&&t| tree.is_counted(t)) {
-            if crosses(p, q, &tree.corners(t))? {
-                crossings += 1;
-            }
+            crossings += crosses(p, q, &tree.corners(t))?;
         }
     }
     Some(crossings)
 }
 
-/// Does the open segment pass through the interior of the triangle? `None` where a sign is uncertain.
-fn crosses(p: DVec3, q: DVec3, triangle: &[DVec3; 3]) -> Option<bool> {
+/// 1 if the open segment passes through the interior of the triangle the way of its normal, −1 against it, 0 if it does
+/// not; `None` where a sign is uncertain.
+fn crosses(p: DVec3, q: DVec3, triangle: &[DVec3; 3]) -> Option<i64> {
     let [a, b, c] = *triangle;
     let volume = |u: DVec3, v: DVec3, w: DVec3, x: DVec3| {
         let from = |y: DVec3| IntervalVec3::point(y) - u;
@@ -167,14 +168,15 @@ fn crosses(p: DVec3, q: DVec3, triangle: &[DVec3; 3]) -> Option<bool> {
     };
     let (below, above) = (volume(a, b, c, p), volume(a, b, c, q));
     if same_sign(below, above) {
-        return Some(false);
+        return Some(0);
     }
     let turns = [volume(p, q, a, b), volume(p, q, b, c), volume(p, q, c, a)];
     if turns.iter().any(|t| t.certainly_positive()) && turns.iter().any(|t| t.certainly_negative()) {
-        return Some(false);
+        return Some(0);
     }
     let certain = |v: &Interval| v.certainly_positive() || v.certainly_negative();
-    (certain(&below) && certain(&above) && turns.iter().all(certain)).then_some(true)
+    let sign = if above.certainly_positive() { 1 } else { -1 };
+    (certain(&below) && certain(&above) && turns.iter().all(certain)).then_some(sign)
 }
 
 fn same_sign(a: Interval, b: Interval) -> bool {

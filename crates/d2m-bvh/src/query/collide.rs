@@ -1,9 +1,10 @@
 //! Do two bodies at rest touch?
 
+use super::allowance::{Allowance, Exhausted};
 use super::containment::one_holds_the_other;
 use super::static_pair::{Scene, Step, child, proven_apart};
 use crate::search::{Lanes, Task, run};
-use crate::{Posed, QueryError, Solid};
+use crate::{Budget, Posed, QueryError, Solid};
 use d2m_feature::triangle_distance;
 use glam::DVec3;
 
@@ -32,10 +33,42 @@ use glam::DVec3;
 pub fn collide(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<bool, QueryError> {
     check_solid(a, b, solid)?;
     let scene = Scene::try_new(a, b)?;
-    Ok(match run(Search { scene: &scene, most: 1, counts: may_touch }) {
-        Found { boxes_apart: true, .. } => false,
-        found => !found.pairs.is_empty() || (solid == Solid::Filled && one_holds_the_other(&scene).is_some()),
-    })
+    // What a budget without limits leaves open is not proven apart.
+    Ok(may_collide(&scene, solid, &mut Allowance::unlimited()).unwrap_or(true))
+}
+
+/// As [`collide`] within a budget; `None`: it ran out, and nothing is known.
+///
+/// ```
+/// use d2m_bvh::{Budget, MeshTree, Posed, Solid, TriMesh, collide_within};
+/// use glam::DVec3;
+/// use std::time::Duration;
+/// let mesh = TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]])?;
+/// let tree = MeshTree::new(mesh);
+/// let (a, b) = (Posed::at_rest(&tree), Posed::at_rest(&tree));
+/// let budget = Budget::UNLIMITED.with_wall_clock(Duration::from_millis(10));
+/// assert_eq!(collide_within(a, b, Solid::Surface, &budget)?, Some(true));
+/// assert_eq!(collide_within(a, b, Solid::Surface, &Budget::UNLIMITED.with_node_tests(0))?, None);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`collide`].
+pub fn collide_within(
+    a: Posed<'_>,
+    b: Posed<'_>,
+    solid: Solid,
+    budget: &Budget,
+) -> Result<Option<bool>, QueryError> {
+    check_solid(a, b, solid)?;
+    let scene = Scene::try_new(a, b)?;
+    Ok(may_collide(&scene, solid, &mut Allowance::new(budget)).ok())
+}
+
+fn may_collide(scene: &Scene<'_>, solid: Solid, allowance: &mut Allowance) -> Result<bool, Exhausted> {
+    let found = search(scene, Wanted { most: 1, counts: may_touch }, allowance)?;
+    Ok(!found.pairs.is_empty()
+        || solid == Solid::Filled && !found.boxes_apart && one_holds_the_other(scene, allowance)?.is_some())
 }
 
 /// A pair of triangles, one of each body, that is not proven apart; `None` is a proof that the surfaces are disjoint.
@@ -45,7 +78,7 @@ pub fn collide(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<bool, QueryEr
 /// [`QueryError::BadPose`].
 pub fn try_colliding_pair(a: Posed<'_>, b: Posed<'_>) -> Result<Option<[u32; 2]>, QueryError> {
     let scene = Scene::try_new(a, b)?;
-    Ok(run(Search { scene: &scene, most: 1, counts: may_touch }).pairs.first().copied())
+    Ok(search_all(&scene, Wanted { most: 1, counts: may_touch }).first().copied())
 }
 
 /// All pairs of triangles, the first of A and the second of B, that are not proven apart, in ascending order. Every
@@ -63,7 +96,16 @@ pub fn try_colliding_pair(a: Posed<'_>, b: Posed<'_>) -> Result<Option<[u32; 2]>
 /// [`QueryError::BadPose`].
 pub fn colliding_pairs(a: Posed<'_>, b: Posed<'_>) -> Result<Vec<[u32; 2]>, QueryError> {
     let scene = Scene::try_new(a, b)?;
-    let mut pairs = run(Search { scene: &scene, most: usize::MAX, counts: may_touch }).pairs;
+    let found = search_all(&scene, Wanted { most: usize::MAX, counts: may_touch });
+    // The first triangle of a body that is one point as far as rounding can tell stands for all.
+    let all = |body: usize, triangle: u32| match scene.trees[body].mesh().triangle_count() as u32 {
+        count if scene.is_point_like(body) => 0..count,
+        _ => triangle..triangle + 1,
+    };
+    let mut pairs: Vec<[u32; 2]> = found
+        .iter()
+        .flat_map(|&[a, b]| all(0, a).flat_map(move |a| all(1, b).map(move |b| [a, b])))
+        .collect();
     pairs.sort_unstable();
     Ok(pairs)
 }
@@ -71,7 +113,25 @@ pub fn colliding_pairs(a: Posed<'_>, b: Posed<'_>) -> Result<Vec<[u32; 2]>, Quer
 /// The first pair of triangles, in the order of the trees, that cross as they are placed. Which one it is depends on the bodies
 /// and poses only.
 pub(super) fn crossing_pair(scene: &Scene<'_>) -> Option<[u32; 2]> {
-    run(Search { scene, most: 1, counts: cross }).pairs.first().copied()
+    search_all(scene, Wanted { most: 1, counts: cross }).first().copied()
+}
+
+/// The same within an allowance.
+pub(super) fn crossing_pair_within(
+    scene: &Scene<'_>,
+    allowance: &mut Allowance,
+) -> Result<Option<[u32; 2]>, Exhausted> {
+    Ok(search(scene, Wanted { most: 1, counts: cross }, allowance)?.pairs.first().copied())
+}
+
+/// All that is wanted, without a limit on the work.
+fn search_all(scene: &Scene<'_>, wanted: Wanted) -> Vec<[u32; 2]> {
+    search(scene, wanted, &mut Allowance::unlimited())
+        .map_or_else(|Exhausted| Vec::new(), |found| found.pairs)
+}
+
+fn search(scene: &Scene<'_>, wanted: Wanted, allowance: &mut Allowance) -> Result<Found, Exhausted> {
+    run(Search { scene, wanted, allowance })
 }
 
 fn may_touch(scene: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
@@ -90,13 +150,20 @@ pub(super) fn check_solid(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<()
     }
 }
 
-/// Depth first over the pairs of boxes that are not proven apart.
-struct Search<'a> {
-    scene: &'a Scene<'a>,
+/// What a search is for.
+#[derive(Clone, Copy)]
+struct Wanted {
     /// How many pairs to find before stopping.
     most: usize,
     /// Which pairs of placed triangles are found.
     counts: fn(&Scene<'_>, &[DVec3; 3], &[DVec3; 3]) -> bool,
+}
+
+/// Depth first over the pairs of boxes that are not proven apart.
+struct Search<'a> {
+    scene: &'a Scene<'a>,
+    wanted: Wanted,
+    allowance: &'a mut Allowance,
 }
 
 struct Found {
@@ -106,18 +173,19 @@ struct Found {
 }
 
 impl Task for Search<'_> {
-    type Output = Found;
+    type Output = Result<Found, Exhausted>;
 
     #[inline(always)]
-    fn run<L: Lanes>(self) -> Found {
-        let Self { scene, most, counts } = self;
+    fn run<L: Lanes>(self) -> Self::Output {
+        let Self { scene, wanted: Wanted { most, counts }, allowance } = self;
         let mut pairs = Vec::new();
         if scene.overlaps::<L>(0, 0, 0) == 0 {
-            return Found { boxes_apart: true, pairs };
+            return Ok(Found { boxes_apart: true, pairs });
         }
         let mut stack = Vec::with_capacity(256);
         stack.push([0u32; 2]);
         while let Some(pair) = stack.pop() {
+            allowance.step()?;
             match scene.step(pair) {
                 Step::Open(wide, node) => {
                     let mut lanes = scene.overlaps::<L>(wide, node, pair[1 - wide]);
@@ -136,6 +204,6 @@ impl Task for Search<'_> {
                 }
             }
         }
-        Found { boxes_apart: false, pairs }
+        Ok(Found { boxes_apart: false, pairs })
     }
 }

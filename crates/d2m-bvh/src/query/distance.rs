@@ -1,5 +1,6 @@
 //! How far apart are two bodies at rest?
 
+use super::allowance::Allowance;
 use super::collide::{check_solid, crossing_pair};
 use super::containment::one_holds_the_other;
 use super::static_pair::{Scene, Step, child, gap_exceeds};
@@ -133,7 +134,7 @@ pub fn distance_within(
     let state = match &found {
         Found::Pair(best) if best.distance.upper == 0.0 => StartState::Overlapping,
         Found::Pair(best) if best.lower <= scene.error => StartState::Touching,
-        _ if options.solid == Solid::Filled && one_holds_the_other(&scene).is_some() => StartState::Contained,
+        _ if options.solid == Solid::Filled && holds(&scene) => StartState::Contained,
         _ => StartState::Apart,
     };
     let found = match (found, state) {
@@ -145,6 +146,11 @@ pub fn distance_within(
     cache.remember(best.triangles);
     let answer = describe(&scene, [a, b], &best, state);
     Ok((answer.lower <= options.cutoff).then_some(answer))
+}
+
+/// Does one body hold a part of the other? Without a limit on the work.
+fn holds(scene: &Scene<'_>) -> bool {
+    one_holds_the_other(scene, &mut Allowance::unlimited()) != Ok(None)
 }
 
 /// The closest pair of triangles, working units.

@@ -1,5 +1,6 @@
 //! What a query is asked and what it answers.
 
+mod allowance;
 mod batch;
 mod cache;
 mod collide;
@@ -20,11 +21,12 @@ mod report;
 mod static_pair;
 mod time_of_contact;
 mod warm_start;
+mod winding;
 mod window;
 
 pub use batch::time_of_contact_batch;
 pub use cache::PairCache;
-pub use collide::{collide, colliding_pairs, try_colliding_pair};
+pub use collide::{collide, collide_within, colliding_pairs, try_colliding_pair};
 pub use contact::{Contact, StartState, TimeOfContact};
 pub use distance::{Distance, DistanceOptions, distance, distance_within};
 pub use error::QueryError;

@@ -4,7 +4,12 @@ use core::time::Duration;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 pub enum Solid {
-    /// The bodies are full: a body inside the other is in contact. For watertight meshes.
+    /// The bodies are solid: a body inside the other is in contact. For watertight meshes.
+    ///
+    /// A point is in the solid where the winding number of the surface about it is not zero. So parts that overlap are
+    /// solid where they overlap, a part that is inside out is solid, and a cavity is a part inside another one with
+    /// the opposite orientation; equal triangles with equal orientation count once, with opposite orientation they cancel.
+    /// Where faces disagree about the outside there is no winding number, and the parity of the crossings of a ray decides.
     #[default]
     Filled,
     /// Only the surfaces count: open meshes, polygon soup, hollow shells.

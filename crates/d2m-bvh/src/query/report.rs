@@ -1,5 +1,6 @@
 //! From what the search found to the answer: witness points, normal, features in the meshes' numbers.
 
+use super::containment::Held;
 use super::proven_crossing::proven_crossing;
 use crate::search::{
     Closest, Doubles, FRAME_REACH, Found, Frame, Lanes, PairScale, Place, Quad, RelativeMotion, Scene, Task,
@@ -244,19 +245,15 @@ fn describe(
 }
 
 /// The contact of a body inside the other: the vertex that shows it, and the nearest data that mean something.
-pub(super) fn contained(
-    scene: &Scene<'_>,
-    motion: &RelativeMotion,
-    a_is_inside: bool,
-    vertex: u32,
-    start: StartState,
-) -> Contact {
+pub(super) fn contained(scene: &Scene<'_>, held: &Held) -> Contact {
+    let (motion, vertex) = (&RelativeMotion::new(scene, 0.0), held.vertex);
+    let start = StartState::Contained;
     let frame = motion.frame::<Quad>(0.0);
     let (tree_a, tree_b) = (scene.a.tree, scene.b.tree);
     let holder = |tree: &MeshTree| {
         tree.mesh().triangles().iter().position(|t| t.contains(&vertex)).unwrap_or(0) as u32
     };
-    let triangles = if a_is_inside { [holder(tree_a), 0] } else { [0, holder(tree_b)] };
+    let triangles = if held.by == 1 { [holder(tree_a), 0] } else { [0, holder(tree_b)] };
     let b = scene.b.corners(triangles[1]);
     let a = place_a::<Quad>(&frame, &scene.a.corners(triangles[0]));
     let near = closest::<Quad>(&a, &b);

@@ -1,11 +1,11 @@
 //! The query for the first contact of two bodies.
 
-use super::containment::contains_point;
-use super::distance::distance;
-use super::report::{contact, evidence_at_start};
-use crate::search::{
-    Outcome, Quad, RelativeMotion, Scene, SceneBody, Scratch, Search, given_relative_position, run,
-};
+use super::allowance::{Allowance, Exhausted};
+use super::collide::crossing_pair_within;
+use super::containment::{Held, held_vertex};
+use super::report::{contact, contained, evidence_at_start};
+use super::static_pair;
+use crate::search::{Outcome, Quad, RelativeMotion, Scene, Scratch, Search, given_relative_position, run};
 use crate::{Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window};
 use core::cell::RefCell;
 use d2m_motion::Pose;
@@ -79,19 +79,31 @@ pub(super) fn scene_of<'a>(
 
 /// Searches.
 pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfContact, QueryError> {
+    let mut allowance = Allowance::new(&options.budget);
+    // Decided first: what the budget leaves open at the start would leave everything open.
+    let held = match options.solid {
+        Solid::Filled => held_at_start(scene, &mut allowance),
+        Solid::Surface => Ok(None),
+    };
+    let Ok(held) = held else { return Ok(TimeOfContact::Undecided { clear_until: scene.window.start() }) };
+    let options = &options.with_budget(allowance.rest());
     let mut scratch = SCRATCH.take().unwrap_or_else(|| Box::new(Scratch::new()));
-    let outcome = run(Search::new(scene, options, &mut scratch));
+    let mut search = Search::new(scene, options, &mut scratch);
+    if held.is_some() {
+        // The surfaces at the start decide the rest.
+        search = search.of_start();
+    }
+    let outcome = run(search);
     SCRATCH.set(Some(scratch));
-    let start_decided = match outcome {
+    let surfaces_are_apart = match outcome {
         Outcome::Found(found) => !found.is_at_start(),
         Outcome::OutOfBudget(until) => until > 0.0,
         Outcome::Separated => true,
     };
-    if options.solid == Solid::Filled
-        && start_decided
-        && let Some(contained) = containment(scene)
+    if let Some(held) = held
+        && surfaces_are_apart
     {
-        return Ok(contained);
+        return Ok(TimeOfContact::Contact(contained(scene, &held)));
     }
     Ok(match outcome {
         Outcome::Separated => TimeOfContact::Separated,
@@ -99,7 +111,7 @@ pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfCon
         Outcome::Found(found) => {
             let mut contact = contact(scene, &found, options.mode != Mode::Capoeira);
             if contact.start == StartState::Touching
-                && let Some(triangles) = crossing_at_start(scene)?
+                && let Some(triangles) = crossing_at_start(scene, &allowance)?
             {
                 (contact.start, contact.separation) = (StartState::Overlapping, 0.0);
                 let evidence = evidence_at_start(scene, triangles);
@@ -128,51 +140,39 @@ fn check(options: &QueryOptions) -> Result<(), QueryError> {
     if value.is_finite() && value >= 0.0 { Ok(()) } else { Err(QueryError::BadMinSeparation { value }) }
 }
 
-/// A pair of triangles that cross at the start (up to rounding). The search stops at the first pair that is near.
-fn crossing_at_start(scene: &Scene<'_>) -> Result<Option<[u32; 2]>, QueryError> {
+/// Steps of the search for a pair of triangles that cross at the start: bodies that touch all over their surfaces without
+/// crossing would take as many as they have pairs.
+const CROSSING_STEPS: u64 = 1 << 12;
+
+/// A pair of triangles that cross at the start (up to rounding), if one is found soon. The search stops at the first
+/// pair that is near.
+fn crossing_at_start(scene: &Scene<'_>, allowance: &Allowance) -> Result<Option<[u32; 2]>, QueryError> {
     // As seen from B's reference point, which may be far from the origin.
     let apart = given_relative_position(&scene.a.motion, &scene.b.motion, 0.0) * scene.units.length();
-    let posed = [(&scene.a, apart), (&scene.b, DVec3::ZERO)].map(|(body, translation)| {
+    let [a, b] = [(&scene.a, apart), (&scene.b, DVec3::ZERO)].map(|(body, translation)| {
         let m = body.given.rebase(scene.window.start());
         Posed::new(body.tree, Pose { rotation: m.orientation(), translation, at: m.at() })
     });
-    let found = distance(posed[0], posed[1], Solid::Surface)?;
-    Ok((found.state == StartState::Overlapping).then_some([found.triangle_a, found.triangle_b]))
+    let at_rest = static_pair::Scene::try_new(a, b)?;
+    Ok(crossing_pair_within(&at_rest, &mut allowance.at_most(CROSSING_STEPS)).unwrap_or(None))
 }
 
-/// The answer when one body is inside the other at the start; the surfaces are known not to cross then.
-fn containment(scene: &Scene<'_>) -> Option<TimeOfContact> {
-    let motion = RelativeMotion::new(scene, 0.0);
-    let frame = motion.frame::<Quad>(0.0);
-    let place = |p: DVec3, of_b: bool| {
-        if of_b {
-            frame
-                .rotation
-                .transposed::<Quad>()
-                .times::<Quad>((Quad::from_vec(p) - frame.apart).to_vec())
-                .to_vec()
-        } else {
-            (frame.rotation.times::<Quad>(p) + frame.apart).to_vec()
-        }
-    };
-    let inside = |outer: &SceneBody<'_>, inner: &SceneBody<'_>, of_b: bool| -> Option<(u32, DVec3)> {
-        let (outer, length) = (outer.tree, scene.units.length());
-        inner.tree.component_vertices().iter().find_map(|&vertex| {
-            let p = inner.place(inner.tree.mesh().vertices()[vertex as usize]);
-            let q = place(p, of_b) * length + outer.center();
-            contains_point(outer, q).then_some((vertex, q))
-        })
-    };
-    let (a, b) = (&scene.a, &scene.b);
-    let hit = inside(a, b, true)
-        .map(|(vertex, _)| (false, vertex))
-        .or_else(|| inside(b, a, false).map(|(vertex, _)| (true, vertex)));
-    let (a_is_inside, vertex) = hit?;
-    Some(TimeOfContact::Contact(super::report::contained(
-        scene,
-        &motion,
-        a_is_inside,
-        vertex,
-        StartState::Contained,
-    )))
+/// A part of a body in the other solid at the start, if the surfaces do not touch then.
+fn held_at_start(scene: &Scene<'_>, allowance: &mut Allowance) -> Result<Option<Held>, Exhausted> {
+    let frame = RelativeMotion::new(scene, 0.0).frame::<Quad>(0.0);
+    let (a, b, unit) = (scene.a.tree, scene.b.tree, scene.units.length());
+    // Balls that are apart by more than places and this sum are rounded.
+    if frame.apart.to_vec().length() > (a.radius() + b.radius()) / unit + scene.pair.error {
+        return Ok(None);
+    }
+    let back = frame.rotation.transposed::<Quad>();
+    // The unit is a power of two.
+    let to_a =
+        |p: DVec3| back.times::<Quad>((Quad::from_vec(p / unit) - frame.apart).to_vec()).to_vec() * unit;
+    let to_b = |p: DVec3| (frame.rotation.times::<Quad>(p / unit) + frame.apart).to_vec() * unit;
+    let in_a = held_vertex(a, b, to_a, allowance)?.map(|vertex| Held { by: 0, vertex });
+    Ok(match in_a {
+        Some(held) => Some(held),
+        None => held_vertex(b, a, to_b, allowance)?.map(|vertex| Held { by: 1, vertex }),
+    })
 }

@@ -42,7 +42,7 @@ pub(crate) use lanes::Lanes;
 pub(crate) use portable::Portable;
 pub(crate) use quad::{Doubles, Quad};
 pub use scene::SearchCounts;
-pub(crate) use scene::{Scene, SceneBody, Scratch};
+pub(crate) use scene::{Scene, Scratch};
 pub(crate) use triangle_pair::{PairScale, place_a};
 pub(crate) use units::Units;
 pub(crate) use window::{Found, Outcome, Search};

@@ -111,6 +111,8 @@ pub(super) struct Limits {
     pub(super) deadline: Option<Instant>,
     /// The number of node tests from which on it is time to look at sweeps.
     pub(super) sweep_from: u64,
+    /// Only whether the bodies meet at the start matters.
+    pub(super) only_start: bool,
 }
 
 /// What changes while a window is searched.
@@ -179,6 +181,7 @@ impl<'s> Search<'s> {
             most_tests: budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS),
             deadline: budget.wall_clock.and_then(|time| Instant::now().checked_add(time)),
             sweep_from: FIRST_SWEEP + triangle_count(scene) / TRIANGLES_A_TEST,
+            only_start: false,
         };
         Self {
             scene,
@@ -190,6 +193,12 @@ impl<'s> Search<'s> {
             #[cfg(feature = "rayon")]
             parallel: options.parallel,
         }
+    }
+
+    /// A search that ends with `Separated` when the bodies are proven apart at the start.
+    pub(crate) fn of_start(mut self) -> Self {
+        self.limits.only_start = true;
+        self
     }
 
     /// The search of one window ahead of its turn.
@@ -255,6 +264,10 @@ impl<'s> Search<'s> {
         let (mut outcome, mut begun, mut batches) = (None, false, 0u32);
         while let Some(least) = self.scratch.queue.take(&mut batch, BATCH) {
             if least >= state.limit {
+                break;
+            }
+            if self.limits.only_start && least > 0 {
+                outcome = Some(Step::Answer(Outcome::Separated));
                 break;
             }
             batches += 1;

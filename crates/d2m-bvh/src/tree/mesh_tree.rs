@@ -32,6 +32,10 @@ pub struct MeshTree {
     /// Bound on |p − center| over the triangles, body units.
     pub(crate) radius: f64,
     pub(crate) watertight: bool,
+    /// Does the surface agree about its outside, so that it has a winding number about every point?
+    pub(crate) oriented: bool,
+    /// Triangles that repeat an earlier one with the same orientation, ascending: not part of the surface.
+    pub(crate) repeated: Vec<u32>,
     /// One vertex of each connected component.
     pub(crate) components: Vec<u32>,
     /// Tells this tree from every other one of the process; clones are the same tree.
@@ -85,11 +89,23 @@ impl MeshTree {
 
     /// A tree from its boxes, and what is computed from the mesh alone.
     pub(super) fn from_nodes(mesh: TriMesh, nodes: Vec<WideNode>, extent: &Extent) -> Self {
-        let Closedness { watertight, components } = Closedness::of(&mesh);
+        let Closedness { watertight, oriented, repeated, components } = Closedness::of(&mesh);
         let Extent { center, radius, unit } = *extent;
         let stamp = Stamp::next();
         let adjacency = OnceLock::new();
-        Self { mesh, nodes, center, unit, radius, watertight, components, stamp, adjacency }
+        Self {
+            mesh,
+            nodes,
+            center,
+            unit,
+            radius,
+            watertight,
+            oriented,
+            repeated,
+            components,
+            stamp,
+            adjacency,
+        }
     }
 
     /// The mesh.

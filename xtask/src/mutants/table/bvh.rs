@@ -21,6 +21,21 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "(room + 2.0).min(f64::from(MOST))",
         "crates/d2m-bvh/src/tree/tests.rs::boxes_enclose_in_more_than_double_precision",
     ),
+    // Solids.
+    patch(
+        "parity instead of the winding number",
+        "crates/d2m-bvh/src/query/winding.rs",
+        "if self.tree.oriented { winding != 0 } else { odd }",
+        "odd",
+        "crates/d2m-bvh/tests/several_parts.rs::a_solid_is_where_the_winding_number_is_not_zero",
+    ),
+    patch(
+        "crossings of a backward ray counted as those of a forward one",
+        "crates/d2m-bvh/src/query/winding.rs",
+        "if self.backward { -sign } else { sign }",
+        "sign",
+        "crates/d2m-bvh/src/query/winding.rs::winding_numbers_of_boxes_are_counted_exactly",
+    ),
     // Evidence of contacts.
     patch(
         "what is a tolerance too far counts as near",

@@ -81,6 +81,11 @@ impl<'a> Scene<'a> {
         })
     }
 
+    /// Is the body one point as far as rounding can tell? Its first triangle then stands for all of them.
+    pub(crate) fn is_point_like(&self, body: usize) -> bool {
+        self.point_like[body]
+    }
+
     /// Corners of a triangle in working coordinates.
     #[inline(always)]
     pub(crate) fn place(&self, body: usize, triangle: u32) -> [DVec3; 3] {
