@@ -147,10 +147,9 @@ impl Ray<'_> {
         let facing = orient2d(flat(a), flat(b), flat(c));
         match orient3d(a, b, c, point) {
             Ordering::Equal => Crossing::Here,
-            // Seen backwards, in a mirror, the normal is the other way round.
+            // Seen in a mirror all signs change, which is the same to us.
             side if side == facing.reverse() => {
-                let sign = if facing == Ordering::Greater { 1 } else { -1 };
-                Crossing::Ahead(if self.backward { -sign } else { sign })
+                Crossing::Ahead(if facing == Ordering::Greater { 1 } else { -1 })
             }
             _ => Crossing::None,
         }

@@ -29,13 +29,6 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "odd",
         "crates/d2m-bvh/tests/several_parts.rs::a_solid_is_where_the_winding_number_is_not_zero",
     ),
-    patch(
-        "crossings of a backward ray counted as those of a forward one",
-        "crates/d2m-bvh/src/query/winding.rs",
-        "if self.backward { -sign } else { sign }",
-        "sign",
-        "crates/d2m-bvh/src/query/winding.rs::winding_numbers_of_boxes_are_counted_exactly",
-    ),
     // Evidence of contacts.
     patch(
         "what is a tolerance too far counts as near",
