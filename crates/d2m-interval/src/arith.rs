@@ -3,7 +3,10 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 
 use crate::{
     Interval,
-    round::{HALF_ULP, TINY, down, finite, finite_with, increment, two_product, two_sum, up},
+    round::{
+        HALF_ULP, TINY, down, finite, finite_with, increment, mantissa_and_exponent, power_of_two,
+        two_product, two_sum, up,
+    },
     simd::F64x2,
 };
 
@@ -351,6 +354,9 @@ impl Interval {
     }
 }
 
+/// 2⁹⁹⁰: below it, no step of [`two_product`] or of the sum overflows.
+const LARGE: f64 = power_of_two(990);
+
 /// An upper bound of `a·b + c`, or of its negative; for ends, so that 0·∞ is 0 and an infinite `c` stays.
 fn fused_up(a: f64, b: f64, c: f64, negated: bool) -> f64 {
     let flip = |x: f64| if negated { -x } else { x };
@@ -358,11 +364,51 @@ fn fused_up(a: f64, b: f64, c: f64, negated: bool) -> f64 {
     if c.is_infinite() {
         return flip(c);
     }
-    let large = 1.0e299;
-    if !(a.abs() < large && b.abs() < large && product.abs() < large && c.abs() < large) {
-        return up(up(flip(product)) + flip(c));
+    if !(a.abs() < LARGE && b.abs() < LARGE && product.abs() < LARGE && c.abs() < LARGE) {
+        return if a.is_infinite() || b.is_infinite() {
+            // ±∞, or c alone for 0·∞.
+            up(flip(product + c))
+        } else {
+            fused_up_large(a, b, c, negated)
+        };
     }
     let (p, q) = two_product(a, b);
     let (s, e) = two_sum(p, c);
     up(flip(s + (e + q)))
+}
+
+/// A term below 2⁻⁶⁰⁰ of another one is left out: the result is rounded up by half a last place at least.
+const NEGLIGIBLE: i32 = -600;
+
+/// [`fused_up`] for finite operands, with the larger one of product and summand scaled to about 1 by a power of two.
+#[cold]
+fn fused_up_large(a: f64, b: f64, c: f64, negated: bool) -> f64 {
+    let ((a, of_a), (b, of_b), (c, of_c)) =
+        (mantissa_and_exponent(a), mantissa_and_exponent(b), mantissa_and_exponent(c));
+    let (p, q) = two_product(a, b);
+    let of_product = of_a + of_b;
+    let exponent = match (p == 0.0, c == 0.0) {
+        (true, _) => of_c,
+        (_, true) => of_product,
+        _ => of_product.max(of_c),
+    };
+    let scale = |of_term: i32| {
+        let shift = of_term - exponent;
+        if shift < NEGLIGIBLE { 0.0 } else { power_of_two(shift.min(0)) }
+    };
+    let (of_product, of_c) = (scale(of_product), scale(of_c));
+    let (s, e) = two_sum(p * of_product, c * of_c);
+    let sum = s + (e + q * of_product);
+    if sum == 0.0 {
+        // Exactly: what cancels in the first sum leaves no error there.
+        return up(0.0);
+    }
+    scaled_up(up(if negated { -sum } else { sum }), exponent)
+}
+
+/// `x·2ⁿ` for |x| ≥ 2⁻⁶⁰⁰ and −300 ≤ n ≤ 2046, so that nothing underflows; ∞ above the doubles and −MAX below.
+fn scaled_up(x: f64, n: i32) -> f64 {
+    let half = n / 2;
+    let scaled = x * power_of_two(half) * power_of_two(n - half);
+    if scaled < -f64::MAX { -f64::MAX } else { scaled }
 }

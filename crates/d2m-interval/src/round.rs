@@ -85,6 +85,38 @@ fn halves(a: f64) -> (f64, f64) {
     (high, a - high)
 }
 
+/// `2ⁿ` for −1022 ≤ n ≤ 1023.
+pub(crate) const fn power_of_two(n: i32) -> f64 {
+    f64::from_bits(((1023 + n) as u64) << 52)
+}
+
+/// `x = mantissa · 2^exponent` with 1 ≤ |mantissa| < 2, for finite x; (0, 0) for 0.
+pub(crate) fn mantissa_and_exponent(x: f64) -> (f64, i32) {
+    if x == 0.0 {
+        return (0.0, 0);
+    }
+    let (x, shift) = if x.abs() < f64::MIN_POSITIVE { (x * power_of_two(64), 64) } else { (x, 0) };
+    let bits = x.to_bits();
+    (f64::from_bits(bits & !(0x7ff << 52) | 1.0_f64.to_bits()), (bits >> 52 & 0x7ff) as i32 - 1023 - shift)
+}
+
+/// Whether `a − b < c − d`, exactly, for finite numbers with a ≥ b and c ≥ d.
+pub(crate) fn difference_is_less(a: f64, b: f64, c: f64, d: f64) -> bool {
+    if a - b == f64::INFINITY && c - d == f64::INFINITY {
+        // a, c > 0 > b, d: then a − c and b − d do not overflow.
+        return exact_difference(a, c) < exact_difference(b, d);
+    }
+    // At most one overflows, and is the larger one.
+    exact_difference(a, b) < exact_difference(c, d)
+}
+
+/// `a − b` as its rounded value and the rest, which compare like the exact differences; (∞, 0) when it overflows.
+fn exact_difference(a: f64, b: f64) -> (f64, f64) {
+    // Dekker's sum of the larger and the smaller one cannot overflow after its first step.
+    let (s, e) = if a.abs() >= b.abs() { fast_two_sum(a, -b) } else { fast_two_sum(-b, a) };
+    if s.is_infinite() { (s, 0.0) } else { (s, e) }
+}
+
 /// `a − b` rounded upwards as IEEE 754 would: the least double that is not below it.
 pub(crate) fn difference_up(a: f64, b: f64) -> f64 {
     let (s, e) = two_sum(a, -b);

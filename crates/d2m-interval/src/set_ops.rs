@@ -1,7 +1,7 @@
 //! Sets and numbers of an interval: nothing here is rounded, except where stated.
 use crate::{
     Interval,
-    round::{difference_up, two_sum},
+    round::{difference_is_less, difference_up},
     simd::F64x2,
 };
 
@@ -186,8 +186,14 @@ impl Interval {
         numerator.div_pair(self)
     }
 
-    /// The narrowest `z` with `o + z ⊇ self`, when this is at least as wide as `o`; else entire.
+    /// The narrowest `z` with `o + z ⊇ self`, when this is at least as wide as `o` (compared exactly); else entire.
     /// Recovers a summand: `(x + y).cancel_minus(y)` encloses `x`.
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// assert_eq!(Interval::new(1.0, 5.0).cancel_minus(Interval::new(0.0, 2.0)), Interval::new(1.0, 3.0));
+    /// assert!(Interval::point(1.0).cancel_minus(Interval::new(0.0, 5e-324)).is_entire());
+    /// ```
     pub fn cancel_minus(self, o: Self) -> Self {
         if self.is_empty() && o.is_bounded() {
             return Self::EMPTY;
@@ -195,19 +201,7 @@ impl Interval {
         if self.is_empty() || o.is_empty() || !self.is_bounded() || !o.is_bounded() {
             return Self::ENTIRE;
         }
-        // Wider or equal, exactly: compare hi − lo as sums of two doubles.
-        let exact = |x: Self| {
-            let (s, e) = two_sum(0.5 * x.hi(), -0.5 * x.lo());
-            (s, if x.mag() < 1e-300 { 0.0 } else { e })
-        };
-        let (a, b) = (exact(self), exact(o));
-        let narrower = if self.mag() < 1e-290 && o.mag() < 1e-290 {
-            // Halving may lose a bit down there, differences do not.
-            (self.hi() - self.lo()) < (o.hi() - o.lo())
-        } else {
-            a.0 < b.0 || (a.0 == b.0 && a.1 < b.1)
-        };
-        if narrower {
+        if difference_is_less(self.hi(), self.lo(), o.hi(), o.lo()) {
             return Self::ENTIRE;
         }
         let (lo, hi) = (self.lo(), self.hi());

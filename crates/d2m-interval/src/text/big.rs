@@ -1,56 +1,83 @@
 //! Unsigned integers of any size, for exact decimal input: only what parsing needs.
+//!
+//! To the base 10⁹, so that reading decimal digits and multiplying by powers of ten are linear in the digits; a power of
+//! two takes one pass for every 32 bits.
 use alloc::vec::Vec;
 use core::cmp::Ordering;
 
-/// Little-endian words, without leading zeros.
+/// One word holds nine decimal digits.
+const BASE: u64 = 1_000_000_000;
+const DIGITS_PER_WORD: usize = 9;
+
+/// Little-endian words below [`BASE`], without leading zeros.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Big(Vec<u32>);
 
 impl Big {
-    pub(super) fn from_u64(x: u64) -> Self {
-        let mut big = Self(alloc::vec![x as u32, (x >> 32) as u32]);
-        big.trim();
-        big
+    pub(super) fn from_u64(mut x: u64) -> Self {
+        let mut words = Vec::new();
+        while x > 0 {
+            words.push((x % BASE) as u32);
+            x /= BASE;
+        }
+        Self(words)
     }
 
-    fn trim(&mut self) {
+    /// From decimal digits (ASCII), the first one first.
+    pub(super) fn from_decimal(digits: &[u8]) -> Self {
+        let word = |chunk: &[u8]| chunk.iter().fold(0, |n, b| n * 10 + u32::from(b - b'0'));
+        Self(digits.rchunks(DIGITS_PER_WORD).map(word).collect()).trimmed()
+    }
+
+    fn trimmed(mut self) -> Self {
         while self.0.last() == Some(&0) {
             self.0.pop();
         }
+        self
     }
 
     pub(super) fn is_zero(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// `self·factor + term`.
-    pub(super) fn push_digit(&mut self, factor: u32, term: u32) {
-        let mut carry = u64::from(term);
+    /// Words: what an operation costs.
+    pub(super) fn words(&self) -> usize {
+        self.0.len()
+    }
+
+    /// `self·factor + term`, for a factor and a term up to 2³².
+    pub(super) fn multiply_add(&mut self, factor: u64, term: u64) {
+        let mut carry = term;
         for word in &mut self.0 {
-            carry += u64::from(*word) * u64::from(factor);
-            *word = carry as u32;
-            carry >>= 32;
+            carry += u64::from(*word) * factor;
+            *word = (carry % BASE) as u32;
+            carry /= BASE;
         }
-        if carry != 0 {
-            self.0.push(carry as u32);
+        while carry != 0 {
+            self.0.push((carry % BASE) as u32);
+            carry /= BASE;
         }
     }
 
-    pub(super) fn times_power(mut self, base: u32, exponent: u32) -> Self {
-        for _ in 0..exponent {
-            self.push_digit(base, 0);
+    /// `self·10^exponent`.
+    pub(super) fn times_power_of_ten(mut self, exponent: usize) -> Self {
+        if self.is_zero() {
+            return self;
         }
-        self.trim();
+        self.multiply_add(10_u64.pow((exponent % DIGITS_PER_WORD) as u32), 0);
+        let mut words = alloc::vec![0; exponent / DIGITS_PER_WORD];
+        words.append(&mut self.0);
+        Self(words)
+    }
+
+    /// `self·2^exponent`.
+    pub(super) fn times_power_of_two(mut self, mut exponent: usize) -> Self {
+        while exponent > 0 {
+            let bits = exponent.min(32);
+            self.multiply_add(1 << bits, 0);
+            exponent -= bits;
+        }
         self
-    }
-
-    pub(super) fn shifted(&self, bits: u32) -> Self {
-        let mut words = alloc::vec![0; (bits / 32) as usize];
-        words.extend(&self.0);
-        let mut big = Self(words);
-        big.push_digit(1 << (bits % 32), 0);
-        big.trim();
-        big
     }
 
     pub(super) fn times(&self, o: &Self) -> Self {
@@ -59,14 +86,12 @@ impl Big {
             let mut carry = 0u64;
             for (j, &b) in o.0.iter().enumerate() {
                 carry += u64::from(words[i + j]) + u64::from(a) * u64::from(b);
-                words[i + j] = carry as u32;
-                carry >>= 32;
+                words[i + j] = (carry % BASE) as u32;
+                carry /= BASE;
             }
             words[i + o.0.len()] = carry as u32;
         }
-        let mut big = Self(words);
-        big.trim();
-        big
+        Self(words).trimmed()
     }
 
     pub(super) fn plus(&self, o: &Self) -> Self {
@@ -74,13 +99,11 @@ impl Big {
         let (mut words, mut carry) = (Vec::with_capacity(long.0.len() + 1), 0u64);
         for (i, &a) in long.0.iter().enumerate() {
             carry += u64::from(a) + u64::from(short.0.get(i).copied().unwrap_or(0));
-            words.push(carry as u32);
-            carry >>= 32;
+            words.push((carry % BASE) as u32);
+            carry /= BASE;
         }
         words.push(carry as u32);
-        let mut big = Self(words);
-        big.trim();
-        big
+        Self(words).trimmed()
     }
 
     /// `self − o` for `self ≥ o`.
@@ -89,29 +112,23 @@ impl Big {
         for (i, &a) in self.0.iter().enumerate() {
             let d = i64::from(a) - i64::from(o.0.get(i).copied().unwrap_or(0)) - borrow;
             borrow = i64::from(d < 0);
-            words.push(d as u32);
+            words.push((d + borrow * BASE as i64) as u32);
         }
-        let mut big = Self(words);
-        big.trim();
-        big
+        Self(words).trimmed()
     }
 
-    /// Number of binary digits.
-    pub(super) fn bits(&self) -> i64 {
-        self.0.last().map_or(0, |top| 32 * self.0.len() as i64 - i64::from(top.leading_zeros()))
+    /// Number of decimal digits; 0 for zero.
+    pub(super) fn digits(&self) -> usize {
+        let top = self.0.last().map_or(0, |top| top.ilog10() as usize + 1);
+        self.0.len().saturating_sub(1) * DIGITS_PER_WORD + top
     }
 
-    /// The first 64 binary digits (fewer when there are fewer), the rest cut off.
+    /// The first 18 decimal digits, the rest cut off; filled up with zeros when there are fewer.
     pub(super) fn leading(&self) -> u64 {
-        let bits = self.bits();
-        let from = (bits - 64).max(0);
-        let mut value = 0u64;
-        for i in 0..bits.min(64) {
-            let at = from + i;
-            let bit = self.0[(at / 32) as usize] >> (at % 32) & 1;
-            value |= u64::from(bit) << i;
-        }
-        value
+        // Three words hold at least 19 digits, if there are that many.
+        let top = self.0.iter().rev().take(3).fold(0u128, |n, w| n * u128::from(BASE) + u128::from(*w));
+        let digits = top.checked_ilog10().map_or(0, |log| log + 1);
+        (if digits > 18 { top / 10_u128.pow(digits - 18) } else { top * 10_u128.pow(18 - digits) }) as u64
     }
 }
 
