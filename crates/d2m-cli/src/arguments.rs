@@ -27,6 +27,8 @@ pub(crate) enum Command {
     Distance(DistanceArguments),
     /// Whether two bodies at rest share a point
     Collide(CollideArguments),
+    /// Rigid bodies under gravity, contacts and friction, from a scene file to a run file
+    Simulate(SimulateArguments),
     /// What is in a mesh, or which shapes are built in
     Info(InfoArguments),
     /// Saves the search tree of a mesh; the file is a mesh argument like any other
@@ -265,6 +267,28 @@ pub(crate) struct FeaturesArguments {
     /// Evaluations after which a case is left undecided
     #[arg(long, value_name = "COUNT", default_value_t = 1 << 20)]
     pub(crate) budget: u32,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A scene: {\"bodies\": [{\"name\", \"mesh\", \"scale\", \"kind\": \"dynamic\" | \"kinematic\" | \"static\", \"pose\": {\"x\", \"q\"},
+\"velocity\": {\"v\", \"w\"}, \"motion\", \"density\" or \"mass\", \"center\", \"inertia\", \"restitution\", \"friction\", \"group\",
+\"solid\"}], \"ignore\": [[name or group, name or group]], \"pairs\": [{\"a\", \"b\", \"restitution\", \"friction\"}],
+\"simulation\": {\"gravity\", \"step\", \"end\", \"gap\", \"max_events\"}}.
+A run: a line with the bodies' masses, then a line for each segment, in which every body flies a constant twist about its
+center of mass: {\"t0\", \"t1\", \"bodies\" or \"changed\", \"contacts\", \"skipped\", \"wall\"}.
+No two bodies ever share a point in a segment. A run that cannot go on ends with exit code 3 and the segments so far.
+Exit codes: 0 done, 2 bad usage, 3 bad input or a run that cannot go on.")]
+pub(crate) struct SimulateArguments {
+    /// Scene, JSON
+    #[arg(value_name = "SCENE.json")]
+    pub(crate) scene: PathBuf,
+    /// Run, one JSON object a line; - for standard output
+    #[arg(long, value_name = "RUN.jsonl")]
+    pub(crate) out: String,
+    /// Threads; the run has the same numbers at any number of them
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: u16,
 }
 
 #[derive(Debug, Args)]

@@ -13,6 +13,7 @@ mod outcome;
 mod output;
 mod posed;
 mod report;
+mod simulation;
 mod trials;
 mod view;
 
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
         Command::Features(arguments) => commands::features::run(arguments).map(Outcome::from),
         Command::Distance(arguments) => commands::distance::run(arguments),
         Command::Collide(arguments) => commands::collide::run(arguments),
+        Command::Simulate(arguments) => commands::simulate::run(arguments).map(Outcome::from),
         Command::Info(arguments) => commands::info::run(arguments).map(Outcome::from),
         Command::Tree(arguments) => commands::tree::run(arguments).map(Outcome::from),
         Command::View(arguments) => commands::view::run(arguments).map(Outcome::from),

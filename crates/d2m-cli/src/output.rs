@@ -14,7 +14,7 @@ pub(crate) fn note(text: &str) {
 /// A progress bar with the time left. On a terminal only: elsewhere it stays silent.
 pub(crate) fn progress_bar(length: usize, of: &str) -> ProgressBar {
     let bar = ProgressBar::new(length as u64);
-    match ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {of}, {{eta}} left")) {
+    match ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {of}, {{eta}} left {{msg}}")) {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
     }

@@ -1,0 +1,8 @@
+//! Simulations: scene files in, run files out.
+
+mod fields;
+mod run_file;
+mod scene;
+
+pub(crate) use run_file::{header, segment};
+pub(crate) use scene::{Scene, read_scene};

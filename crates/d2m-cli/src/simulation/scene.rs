@@ -1,0 +1,283 @@
+//! Scene files of simulations.
+
+use super::fields::{Fields, short};
+use crate::failure::Failure;
+use crate::load::{load, read};
+use crate::motion::require_window;
+use d2m::bvh::{MeshTree, Solid, TriMesh, Window};
+use d2m::motion::AnyMotion;
+use d2m_dynamics::{Body, BodyId, Kind, Mass, MassProperties, Motion, Simulation, SimulationOptions};
+use glam::{DMat3, DVec3};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A scene, ready to run.
+#[derive(Debug)]
+pub(crate) struct Scene {
+    pub(crate) simulation: Simulation,
+    pub(crate) names: Vec<String>,
+    pub(crate) ids: Vec<BodyId>,
+    pub(crate) end: f64,
+}
+
+const SCENE_KEYS: &[&str] =
+    &["bodies", "ignore", "pairs", "simulation", "window", "min_separation", "tolerance"];
+const BODY_KEYS: &[&str] = &[
+    "name",
+    "mesh",
+    "scale",
+    "kind",
+    "pose",
+    "velocity",
+    "motion",
+    "group",
+    "solid",
+    "density",
+    "mass",
+    "center",
+    "inertia",
+    "restitution",
+    "friction",
+];
+
+/// Reads a scene and the meshes it names, relative to its folder.
+pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
+    let bytes = read(path)?;
+    let value: Value = serde_json::from_slice(&bytes).map_err(|error| Failure::at(path.display(), error))?;
+    let scene = Fields::new(path.display().to_string(), &value, SCENE_KEYS)?;
+    let (options, end) = simulation_options(&scene)?;
+    let mut simulation = Simulation::new(options).map_err(|error| Failure::at(path.display(), error))?;
+    let list = scene.required("bodies")?;
+    let Some(list) = list.as_array() else {
+        return Err(scene.fault("bodies", format!("{} should be a list", short(list))));
+    };
+    if list.is_empty() {
+        return Err(scene.fault("bodies", "the list is empty"));
+    }
+    let mut reader = Reader { folder: path.parent().unwrap_or(Path::new("")), trees: BTreeMap::new(), end };
+    let (mut names, mut ids, mut groups) = (Vec::new(), Vec::new(), Vec::new());
+    for (index, value) in list.iter().enumerate() {
+        let place = match value.get("name").and_then(Value::as_str) {
+            Some(name) => format!("{}, body {name:?} (index {index})", path.display()),
+            None => format!("{}, body {index}", path.display()),
+        };
+        let fields = Fields::new(place, value, BODY_KEYS)?;
+        let body = reader.body(&fields)?;
+        if names.contains(&body.name) {
+            return Err(fields.fault("name", format!("{:?} is the name of an earlier body", body.name)));
+        }
+        names.push(body.name.clone());
+        groups.push(fields.text("group")?.map(str::to_owned));
+        ids.push(simulation.add(&body).map_err(|error| Failure::at(fields.place(), error))?);
+    }
+    let tagged = |tag: &str| -> Vec<BodyId> {
+        let is = |k: &usize| names[*k] == tag || groups[*k].as_deref() == Some(tag);
+        (0..names.len()).filter(is).map(|k| ids[k]).collect()
+    };
+    for (index, [a, b]) in ignored(&scene)?.into_iter().enumerate() {
+        for name in [&a, &b] {
+            if tagged(name).is_empty() {
+                return Err(scene.fault("ignore", format!("entry {index}: no body or group {name:?}")));
+            }
+        }
+        for &one in &tagged(&a) {
+            for &two in tagged(&b).iter().filter(|two| **two != one) {
+                simulation.ignore(one, two);
+            }
+        }
+    }
+    pairs(&scene, &names, &ids, &mut simulation)?;
+    Ok(Scene { simulation, names, ids, end })
+}
+
+fn simulation_options(scene: &Fields<'_>) -> Result<(SimulationOptions, f64), Failure> {
+    let mut options = SimulationOptions::default();
+    let default = Value::Object(serde_json::Map::new());
+    let value = scene.get("simulation").unwrap_or(&default);
+    let fields = Fields::new(
+        format!("{}, simulation", scene.place()),
+        value,
+        &["gravity", "step", "end", "gap", "max_events"],
+    )?;
+    if let Some(gravity) = fields.vector("gravity")? {
+        options = options.with_gravity(gravity);
+    }
+    let positive = |key: &str, default: f64| -> Result<f64, Failure> {
+        let value = fields.number(key)?.unwrap_or(default);
+        if value > 0.0 { Ok(value) } else { Err(fields.fault(key, format!("{value:?} should be positive"))) }
+    };
+    options = options.with_step(positive("step", options.step)?).with_gap(positive("gap", options.gap)?);
+    if let Some(value) = fields.get("max_events") {
+        let count = value.as_u64().and_then(|count| u32::try_from(count).ok());
+        let fault =
+            || fields.fault("max_events", format!("{} should be a whole number below 2^32", short(value)));
+        options = options.with_max_events(count.ok_or_else(fault)?);
+    }
+    Ok((options, positive("end", 5.0)?))
+}
+
+fn ignored(scene: &Fields<'_>) -> Result<Vec<[String; 2]>, Failure> {
+    let Some(value) = scene.get("ignore") else { return Ok(Vec::new()) };
+    serde_json::from_value(value.clone())
+        .map_err(|_| scene.fault("ignore", format!("{} should be a list of pairs of names", short(value))))
+}
+
+fn pairs(
+    scene: &Fields<'_>,
+    names: &[String],
+    ids: &[BodyId],
+    simulation: &mut Simulation,
+) -> Result<(), Failure> {
+    let Some(value) = scene.get("pairs") else { return Ok(()) };
+    let Some(list) = value.as_array() else {
+        return Err(scene.fault("pairs", format!("{} should be a list", short(value))));
+    };
+    for (index, value) in list.iter().enumerate() {
+        let place = format!("{}, pairs, entry {index}", scene.place());
+        let fields = Fields::new(place, value, &["a", "b", "restitution", "friction"])?;
+        let body = |key: &str| -> Result<BodyId, Failure> {
+            fields.required(key)?;
+            let name = fields.text(key)?.unwrap_or_default();
+            let found = names.iter().position(|other| other == name);
+            found.map(|k| ids[k]).ok_or_else(|| fields.fault(key, format!("no body {name:?}")))
+        };
+        let (a, b) = (body("a")?, body("b")?);
+        let (restitution, friction) = simulation.pair(a, b);
+        let restitution = fields.number("restitution")?.unwrap_or(restitution);
+        let friction = fields.number("friction")?.unwrap_or(friction);
+        let set = simulation.set_pair(a, b, restitution, friction);
+        set.map_err(|error| Failure::at(fields.place(), error))?;
+    }
+    Ok(())
+}
+
+struct Reader<'p> {
+    folder: &'p Path,
+    /// By mesh and scale, as written.
+    trees: BTreeMap<(String, String), Arc<MeshTree>>,
+    end: f64,
+}
+
+impl Reader<'_> {
+    fn body(&mut self, fields: &Fields<'_>) -> Result<Body, Failure> {
+        fields.required("name")?;
+        let name = fields.text("name")?.unwrap_or_default();
+        let tree = self.tree(fields)?;
+        let mut body = Body::new(name, Arc::clone(&tree));
+        body.solid = match fields.flag("solid")? {
+            Some(true) if !tree.is_watertight() => {
+                return Err(fields.fault("solid", "true, but the mesh is not watertight"));
+            }
+            Some(true) => Some(Solid::Filled),
+            Some(false) => Some(Solid::Surface),
+            None => None,
+        };
+        let motion = match fields.get("motion") {
+            Some(value) => Some(self.motion(fields, value)?),
+            None => None,
+        };
+        let kind = fields.text("kind")?.unwrap_or("dynamic");
+        body.kind = match (kind, motion) {
+            ("dynamic", None) => Kind::Dynamic,
+            ("static", None) => Kind::Static,
+            ("kinematic", Some(motion)) => Kind::Kinematic(motion),
+            // A kinematic body without a motion rests where its pose is.
+            ("kinematic", None) => Kind::Static,
+            ("dynamic" | "static", Some(_)) => {
+                return Err(fields.fault("motion", format!("a {kind} body follows none; is it kinematic?")));
+            }
+            _ => return Err(fields.fault("kind", format!("{kind:?} is not dynamic, kinematic or static"))),
+        };
+        if let Some(pose) = fields.get("pose") {
+            let pose = Fields::new(format!("{}, pose", fields.place()), pose, &["x", "q"])?;
+            body.position = pose.vector("x")?.unwrap_or_default();
+            body.orientation = pose.quaternion("q")?.unwrap_or_default();
+        }
+        if let Some(velocity) = fields.get("velocity") {
+            let velocity = Fields::new(format!("{}, velocity", fields.place()), velocity, &["v", "w"])?;
+            body.linear_velocity = velocity.vector("v")?.unwrap_or_default();
+            body.angular_velocity = velocity.vector("w")?.unwrap_or_default();
+        }
+        body.restitution = fields.number("restitution")?.unwrap_or(0.0);
+        body.friction = fields.number("friction")?.unwrap_or(0.0);
+        self.mass(fields, &mut body)?;
+        Ok(body)
+    }
+
+    /// What is given counts; what is not follows from the closed mesh.
+    fn mass(&self, fields: &Fields<'_>, body: &mut Body) -> Result<(), Failure> {
+        let (density, mass) = (fields.number("density")?, fields.number("mass")?);
+        let (center, inertia): (Option<DVec3>, Option<DMat3>) =
+            (fields.vector("center")?, fields.matrix("inertia")?);
+        if density.is_some() && mass.is_some() {
+            return Err(fields.fault("density", "a body has a density or a mass, not both"));
+        }
+        if !matches!(body.kind, Kind::Dynamic) {
+            return Ok(());
+        }
+        let mesh = body.tree.mesh();
+        let fault = |error| Failure::at(fields.place(), error);
+        body.mass = match (mass, center, inertia) {
+            (Some(mass), Some(center), Some(inertia)) => {
+                Mass::Given(MassProperties::try_new(mass, center, inertia).map_err(fault)?)
+            }
+            (mass, None, None) => mass.map_or(Mass::Density(density.unwrap_or(1000.0)), Mass::Total),
+            _ => {
+                let whole = match mass {
+                    Some(mass) => MassProperties::try_from_mass(mesh, mass),
+                    None => MassProperties::try_from_density(mesh, density.unwrap_or(1000.0)),
+                };
+                let whole = whole.map_err(fault)?;
+                let (center, inertia) = (center.unwrap_or(whole.center), inertia.unwrap_or(whole.inertia));
+                Mass::Given(MassProperties::try_new(whole.mass, center, inertia).map_err(fault)?)
+            }
+        };
+        Ok(())
+    }
+
+    fn tree(&mut self, fields: &Fields<'_>) -> Result<Arc<MeshTree>, Failure> {
+        fields.required("mesh")?;
+        let name = fields.text("mesh")?.unwrap_or_default();
+        let scale = match fields.get("scale") {
+            None => DVec3::ONE,
+            Some(Value::Number(_)) => DVec3::splat(fields.number("scale")?.unwrap_or(1.0)),
+            Some(_) => fields.vector("scale")?.unwrap_or(DVec3::ONE),
+        };
+        if scale.to_array().contains(&0.0) {
+            return Err(fields.fault("scale", format!("{scale} has a zero")));
+        }
+        let key = (name.to_owned(), format!("{scale:?}"));
+        if let Some(tree) = self.trees.get(&key) {
+            return Ok(Arc::clone(tree));
+        }
+        let source = if name.starts_with("shape:") {
+            name.to_owned()
+        } else {
+            self.folder.join(name).to_string_lossy().into_owned()
+        };
+        let mesh = load(&source).map_err(|error| Failure::at(fields.place(), error))?.mesh().clone();
+        let mesh = if scale == DVec3::ONE {
+            mesh
+        } else {
+            let (vertices, triangles) = mesh.into_parts();
+            let mirrored = scale.x * scale.y * scale.z < 0.0;
+            let turn = |[a, b, c]: [u32; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
+            let vertices = vertices.into_iter().map(|p| p * scale).collect();
+            let scaled = TriMesh::try_new(vertices, triangles.into_iter().map(turn).collect());
+            scaled.map_err(|error| fields.fault("scale", error))?
+        };
+        let tree = Arc::new(MeshTree::new(mesh));
+        self.trees.insert(key, Arc::clone(&tree));
+        Ok(tree)
+    }
+
+    fn motion(&self, fields: &Fields<'_>, value: &Value) -> Result<Motion, Failure> {
+        let motion: AnyMotion =
+            serde_json::from_value(value.clone()).map_err(|error| fields.fault("motion", error))?;
+        let window = Window::try_new(0.0, self.end).map_err(|error| fields.fault("motion", error))?;
+        require_window(&format!("{}, motion", fields.place()), &motion, window)?;
+        Ok(Arc::new(motion))
+    }
+}

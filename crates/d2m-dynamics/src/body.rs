@@ -1,0 +1,163 @@
+//! Bodies as they are described to a simulation.
+
+use crate::MassProperties;
+use d2m_bvh::{MeshTree, Solid};
+use d2m_motion::RigidMotion;
+use glam::{DQuat, DVec3};
+use std::sync::Arc;
+
+/// Names a body of one [`Simulation`](crate::Simulation).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct BodyId(pub(crate) u32);
+
+impl BodyId {
+    /// Bodies are numbered in the order in which they were added, from 0.
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A motion that a kinematic body follows, whatever meets it.
+pub type Motion = Arc<dyn RigidMotion + Send + Sync>;
+
+/// What moves a body.
+#[derive(Clone)]
+pub enum Kind {
+    /// Forces and contacts.
+    Dynamic,
+    /// Nothing.
+    Static,
+    /// A motion of the mesh frame over the time of the simulation.
+    Kinematic(Motion),
+}
+
+impl core::fmt::Debug for Kind {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Dynamic => "Dynamic",
+            Self::Static => "Static",
+            Self::Kinematic(_) => "Kinematic",
+        })
+    }
+}
+
+/// Where the mass of a dynamic body comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Mass {
+    /// Density of the closed mesh.
+    Density(f64),
+    /// Mass of the closed mesh, evenly spread.
+    Total(f64),
+    /// Given; the only choice for open meshes.
+    Given(MassProperties),
+}
+
+/// A body to be added to a [`Simulation`](crate::Simulation).
+///
+/// Default: dynamic, mesh frame = world frame, at rest, density 1000, no restitution, no friction; solid if its mesh is
+/// watertight.
+///
+/// ```
+/// use d2m_bvh::MeshTree;
+/// use d2m_dynamics::{Body, Kind};
+/// use glam::DVec3;
+/// use std::sync::Arc;
+/// let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// let floor = Body::new("floor", Arc::clone(&cube)).with_kind(Kind::Static).with_position(DVec3::Y * -0.5);
+/// let ball = Body::new("cube", cube).with_position(DVec3::Y).with_restitution(0.8);
+/// assert_eq!(ball.restitution, 0.8);
+/// assert!(matches!(floor.kind, Kind::Static));
+/// # Ok::<(), d2m_shapes::ShapeError>(())
+/// ```
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Body {
+    /// Name in messages.
+    pub name: String,
+    /// Mesh and tree, shared with other bodies of the same shape.
+    pub tree: Arc<MeshTree>,
+    /// What moves it.
+    pub kind: Kind,
+    /// World position of the mesh frame's origin at the start. A kinematic body takes it from its motion.
+    pub position: DVec3,
+    /// Turn of the mesh frame at the start; normalised, zero is refused.
+    pub orientation: DQuat,
+    /// Velocity of the center of mass, world axes.
+    pub linear_velocity: DVec3,
+    /// Angular velocity, world axes.
+    pub angular_velocity: DVec3,
+    /// Of a dynamic body; the others need none.
+    pub mass: Mass,
+    /// Of a contact counts the greater restitution of the two bodies; from 0 to 1.
+    pub restitution: f64,
+    /// Coulomb's coefficient; of a contact counts the mean of the two bodies'.
+    pub friction: f64,
+    /// Solid, or only a surface. `None`: solid if the mesh is watertight.
+    pub solid: Option<Solid>,
+}
+
+impl Body {
+    /// A body with the defaults above.
+    pub fn new(name: impl Into<String>, tree: Arc<MeshTree>) -> Self {
+        Self {
+            name: name.into(),
+            tree,
+            kind: Kind::Dynamic,
+            position: DVec3::ZERO,
+            orientation: DQuat::IDENTITY,
+            linear_velocity: DVec3::ZERO,
+            angular_velocity: DVec3::ZERO,
+            mass: Mass::Density(1000.0),
+            restitution: 0.0,
+            friction: 0.0,
+            solid: None,
+        }
+    }
+
+    /// With this kind.
+    pub fn with_kind(self, kind: Kind) -> Self {
+        Self { kind, ..self }
+    }
+
+    /// With the origin of the mesh frame here.
+    pub fn with_position(self, position: DVec3) -> Self {
+        Self { position, ..self }
+    }
+
+    /// With the mesh frame turned so.
+    pub fn with_orientation(self, orientation: DQuat) -> Self {
+        Self { orientation, ..self }
+    }
+
+    /// With this velocity of the center of mass.
+    pub fn with_linear_velocity(self, linear_velocity: DVec3) -> Self {
+        Self { linear_velocity, ..self }
+    }
+
+    /// With this angular velocity, world axes.
+    pub fn with_angular_velocity(self, angular_velocity: DVec3) -> Self {
+        Self { angular_velocity, ..self }
+    }
+
+    /// With this mass.
+    pub fn with_mass(self, mass: Mass) -> Self {
+        Self { mass, ..self }
+    }
+
+    /// With this restitution.
+    pub fn with_restitution(self, restitution: f64) -> Self {
+        Self { restitution, ..self }
+    }
+
+    /// With this friction.
+    pub fn with_friction(self, friction: f64) -> Self {
+        Self { friction, ..self }
+    }
+
+    /// Solid or surface, whatever the mesh says.
+    pub fn with_solid(self, solid: Solid) -> Self {
+        Self { solid: Some(solid), ..self }
+    }
+}

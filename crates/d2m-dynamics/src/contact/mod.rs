@@ -1,0 +1,11 @@
+//! Contacts of bodies that are close: rows, their solution, impacts.
+
+mod impact;
+mod point;
+mod rows;
+mod solver;
+
+pub(crate) use impact::impact;
+pub(crate) use point::{ContactPoint, Material, tangents};
+pub(crate) use rows::{HIT, Span, select};
+pub(crate) use solver::{Solver, SolverBody};

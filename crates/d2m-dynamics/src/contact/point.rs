@@ -1,0 +1,54 @@
+//! A contact point with its impulse.
+
+use d2m_feature::FeaturePair;
+use glam::DVec3;
+
+/// How two bodies touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Material {
+    pub(crate) restitution: f64,
+    pub(crate) friction: f64,
+}
+
+/// A pair of closest features of two bodies, and the impulse between them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ContactPoint {
+    /// Body numbers.
+    pub(crate) a: usize,
+    pub(crate) b: usize,
+    pub(crate) feature: FeaturePair,
+    /// Unit, from a to b.
+    pub(crate) normal: DVec3,
+    /// Two unit vectors that complete the normal.
+    pub(crate) tangents: [DVec3; 2],
+    pub(crate) distance: f64,
+    /// The distance that the pair keeps.
+    pub(crate) gap: f64,
+    /// From the centers of mass to the closest points.
+    pub(crate) arm_a: DVec3,
+    pub(crate) arm_b: DVec3,
+    /// Middle of the closest points.
+    pub(crate) point: DVec3,
+    pub(crate) material: Material,
+    /// Impulses on b along the normal and the tangents.
+    pub(crate) impulse: f64,
+    pub(crate) sliding: [f64; 2],
+}
+
+impl ContactPoint {
+    /// The impulse on b.
+    pub(crate) fn total(&self) -> DVec3 {
+        self.normal * self.impulse + self.tangents[0] * self.sliding[0] + self.tangents[1] * self.sliding[1]
+    }
+}
+
+/// Two unit vectors that make a right-handed frame with a unit normal (Duff et al. 2017).
+pub(crate) fn tangents(normal: DVec3) -> [DVec3; 2] {
+    let sign = if normal.z < 0.0 { -1.0 } else { 1.0 };
+    let a = -1.0 / (sign + normal.z);
+    let b = normal.x * normal.y * a;
+    [
+        DVec3::new(1.0 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x),
+        DVec3::new(b, sign + normal.y * normal.y * a, -normal.y),
+    ]
+}

@@ -1,0 +1,74 @@
+//! Which contacts the velocities of a flight have to heed, and how.
+
+use super::{ContactPoint, Solver};
+use glam::DVec3;
+
+/// Times and speeds of a flight that is to be solved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Span {
+    /// From now to the end of the step.
+    pub(crate) remaining: f64,
+    /// The length of a step.
+    pub(crate) step: f64,
+    /// Contacts that close faster may bounce.
+    pub(crate) resting_speed: f64,
+}
+
+/// Contacts that have been hit: what a flight ends at, plus the slack of its query.
+pub(crate) const HIT: f64 = 0.625;
+/// The part of the gap to which curvature may bring a contact within a flight.
+const KEPT: f64 = 0.45;
+/// The part of the gap that a step restores at most where it is missing.
+const RESTORED: f64 = 0.25;
+
+/// A contact that counts, and the rate along its normal that the velocities of the flight have at least. The momenta need
+/// no more than zero: what restores the gap or makes room for rotation adds no energy.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row {
+    /// Place in the list of contacts.
+    pub(crate) contact: usize,
+    pub(crate) target: f64,
+}
+
+/// Contacts that close slower than the resting speed, and those that have been hit. The others are left to fly and to
+/// bounce: a row would brake them before they meet.
+///
+/// With distance d, gap g, time τ and the bound m on the acceleration along the normal by rotation,
+///
+/// ```text
+/// rate ≥ (g − d)/τ + m τ/2                        beyond the gap
+/// rate ≥ max(0, (0.45 g − d)/τ + m τ/2)        within it; and what is missing to the gap, a quarter of it a step
+/// ```
+pub(crate) fn select(
+    found: &[ContactPoint],
+    solver: &Solver,
+    span: Span,
+    spin: impl Fn(usize) -> DVec3,
+) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (k, contact) in found.iter().enumerate() {
+        let closing = -solver.rate(k);
+        let (d, gap, tau) = (contact.distance, contact.gap, span.remaining);
+        let bounces = contact.material.restitution > 0.0;
+        let slow = if bounces { span.resting_speed } else { span.resting_speed.max(gap / span.step) };
+        let hit = d <= HIT * gap || (!bounces && d <= gap);
+        if closing > slow && !hit {
+            continue;
+        }
+        let bend = |body: usize, arm: DVec3| {
+            let omega = spin(body);
+            omega.cross(contact.normal).length() * omega.length() * arm.length()
+        };
+        let curved = 0.5 * tau * (bend(contact.a, contact.arm_a) + bend(contact.b, contact.arm_b));
+        let most = gap / tau;
+        let target = if d > gap {
+            (curved - (d - gap) / tau).min(most)
+        } else {
+            let restore = (gap - d).min(RESTORED * gap) / span.step;
+            let room = curved - (d - KEPT * gap) / tau;
+            restore.max(room).clamp(0.0, most)
+        };
+        rows.push(Row { contact: k, target });
+    }
+    rows
+}

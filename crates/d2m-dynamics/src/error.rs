@@ -1,0 +1,139 @@
+//! What can be wrong with a body, a scene or a step.
+
+use d2m_bvh::QueryError;
+use glam::{DMat3, DVec3};
+
+/// Why a body has no usable mass properties.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MassError {
+    /// The mass is not finite and positive.
+    #[error("mass {value:?} must be finite and positive")]
+    Mass {
+        /// The refused value.
+        value: f64,
+    },
+    /// The density is not finite and positive.
+    #[error("density {value:?} must be finite and positive")]
+    Density {
+        /// The refused value.
+        value: f64,
+    },
+    /// The center of mass is not finite.
+    #[error("center {value} must be finite")]
+    Center {
+        /// The refused value.
+        value: DVec3,
+    },
+    /// The inertia is not symmetric and positive definite.
+    #[error("inertia {value} must be finite, symmetric and positive definite")]
+    Inertia {
+        /// The refused value.
+        value: DMat3,
+    },
+    /// The surface has an edge that not as many triangles run through one way as the other.
+    #[error(
+        "the mesh is open or not consistently oriented at the edge from {from} to {to}: give mass, center and inertia"
+    )]
+    Open {
+        /// One end of the edge, mesh frame.
+        from: DVec3,
+        /// The other end.
+        to: DVec3,
+    },
+    /// Two parts of the surface overlap, so the integrals would count points twice.
+    #[error(
+        "the parts of triangle {first} and triangle {second} overlap: give mass, center and inertia, or join them"
+    )]
+    PartsOverlap {
+        /// A triangle of one part.
+        first: usize,
+        /// A triangle of the other part.
+        second: usize,
+    },
+    /// The mesh encloses no volume, up to rounding.
+    #[error("the mesh encloses a volume of {value:?}, so it has no mass: give mass, center and inertia")]
+    NoVolume {
+        /// The volume, rounded.
+        value: f64,
+    },
+}
+
+/// What is wrong with a body or a setting of a [`Simulation`](crate::Simulation).
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SimulationError {
+    /// A setting that must be finite and positive (or not negative) is not.
+    #[error("{name} {value:?} must be finite and {wanted}")]
+    BadOption {
+        /// Its name.
+        name: &'static str,
+        /// The refused value.
+        value: f64,
+        /// What it should be.
+        wanted: &'static str,
+    },
+    /// A number of a body that is not finite, negative where it must not be, or a quaternion without direction.
+    #[error("body {body}: {name} {value} cannot be used")]
+    BadBody {
+        /// The body's name.
+        body: String,
+        /// Which number.
+        name: &'static str,
+        /// The refused value, as text.
+        value: String,
+    },
+    /// Mass properties.
+    #[error("body {body}: {error}")]
+    Mass {
+        /// The body's name.
+        body: String,
+        /// What is wrong with them.
+        error: MassError,
+    },
+    /// Two bodies share a point, or are not proven apart, before anything has moved.
+    #[error("bodies {a} and {b} intersect at the start")]
+    Intersecting {
+        /// The first body's name.
+        a: String,
+        /// The second body's name.
+        b: String,
+    },
+    /// A pair of bodies that cannot be queried.
+    #[error("bodies {a} and {b}: {error}")]
+    Query {
+        /// The first body's name.
+        a: String,
+        /// The second body's name.
+        b: String,
+        /// What is wrong with them.
+        error: QueryError,
+    },
+    /// A snapshot of another simulation.
+    #[error("the snapshot has {found} bodies, the simulation {expected}")]
+    Snapshot {
+        /// Bodies of the snapshot.
+        found: usize,
+        /// Bodies of the simulation.
+        expected: usize,
+    },
+}
+
+/// Why a simulation cannot go on. The segments before it stand.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StepError {
+    /// Bodies that follow their motion leave a dynamic body no place.
+    #[error("at time {time}: body {pushing} crushes body {crushed}, which cannot give way")]
+    Crushed {
+        /// The kinematic body, or the body that is held against it.
+        pushing: String,
+        /// The dynamic body.
+        crushed: String,
+        /// When.
+        time: f64,
+    },
+    /// Set-up that was found wanting at the first step.
+    #[error(transparent)]
+    Setup(#[from] SimulationError),
+}

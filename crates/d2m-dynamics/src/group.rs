@@ -1,0 +1,225 @@
+//! Bodies that are in contact with each other, and the velocities of their next flights.
+
+use crate::SimulationOptions;
+use crate::contact::{ContactPoint, HIT, Solver, SolverBody, Span, impact, select};
+use crate::rigid_body::{RigidBody, Velocity};
+use glam::{DMat3, DVec3};
+
+/// Changes of rates in a sweep below this part of a gap a step end the iteration.
+const PRECISION: f64 = 1e-5;
+/// Sweeps times contacts of one solution.
+const WORK: usize = 200_000;
+/// Sweeps at least, and at most.
+const SWEEPS: (usize, usize) = (30, 4000);
+/// Sweeps for what need not be exact.
+const RESTORING: u32 = 200;
+/// Solutions with the spin of the flight's middle put right.
+const CORRECTIONS: u32 = 3;
+
+/// The contacts of bodies that impulses connect, bodies by their numbers.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Island {
+    pub(crate) contacts: Vec<ContactPoint>,
+}
+
+/// What an island's bodies get: velocities of the next flight and additions to the momenta.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Solved {
+    pub(crate) bodies: Vec<Push>,
+    /// Impulses of restitution, of resting contact.
+    pub(crate) impacts: Vec<ContactPoint>,
+    pub(crate) rests: Vec<ContactPoint>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Push {
+    pub(crate) body: usize,
+    pub(crate) velocity: Velocity,
+    pub(crate) horizon: f64,
+    pub(crate) momentum: DVec3,
+    pub(crate) angular_momentum: DVec3,
+}
+
+/// The islands of some contacts: bodies that impulses move connect, the others do not. In the order of their first contact.
+pub(crate) fn islands(bodies: &[RigidBody], contacts: Vec<ContactPoint>) -> Vec<Island> {
+    let mut parent: Vec<usize> = (0..bodies.len()).collect();
+    fn root(parent: &mut [usize], mut i: usize) -> usize {
+        while parent[i] != i {
+            parent[i] = parent[parent[i]];
+            i = parent[i];
+        }
+        i
+    }
+    let moves = |i: usize| bodies[i].is_dynamic() && !bodies[i].held;
+    for c in contacts.iter().filter(|c| moves(c.a) && moves(c.b)) {
+        let (i, j) = (root(&mut parent, c.a), root(&mut parent, c.b));
+        parent[i.max(j)] = i.min(j);
+    }
+    let mut place = vec![usize::MAX; bodies.len()];
+    let mut found: Vec<Island> = Vec::new();
+    for c in contacts {
+        let body = if moves(c.a) { c.a } else { c.b };
+        let top = root(&mut parent, body);
+        if place[top] == usize::MAX {
+            place[top] = found.len();
+            found.push(Island::default());
+        }
+        found[place[top]].contacts.push(c);
+    }
+    found
+}
+
+/// When and how long.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Clock {
+    pub(crate) now: f64,
+    /// End of the step.
+    pub(crate) end: f64,
+}
+
+/// Impacts, then the velocities of the flights that begin now. The contacts' impulses are where the iteration begins.
+pub(crate) fn solve(
+    bodies: &[RigidBody],
+    island: &Island,
+    clock: Clock,
+    options: &SimulationOptions,
+) -> Solved {
+    let mut members: Vec<usize> = island.contacts.iter().flat_map(|c| [c.a, c.b]).collect();
+    members.sort_unstable();
+    members.dedup();
+    let place = |body: usize| members.binary_search(&body).unwrap_or_default();
+    let mut states: Vec<RigidBody> = members.iter().map(|&i| bodies[i].clone()).collect();
+    let moves = |state: &RigidBody| state.is_dynamic() && !state.held;
+    let mut added = vec![(DVec3::ZERO, DVec3::ZERO); members.len()];
+    let mut solved = Solved::default();
+
+    let hit: Vec<ContactPoint> = island
+        .contacts
+        .iter()
+        .filter(|c| c.material.restitution > 0.0 && c.distance <= HIT * c.gap)
+        .copied()
+        .collect();
+    if !hit.is_empty() {
+        let inertia: Vec<(f64, DMat3)> = states.iter().map(world_inertia).collect();
+        let start = states
+            .iter()
+            .map(|s| {
+                if moves(s) {
+                    body_at(s, s.velocity(), s.inverse_inertia_at(s.orientation))
+                } else {
+                    still(s)
+                }
+            })
+            .collect();
+        let mut solver = Solver::new(start, &hit, place);
+        solved.impacts = impact(&mut solver, &hit, &inertia, options.resting_speed());
+        add(&solved.impacts, &mut added, place);
+        for (state, (p, l)) in states.iter_mut().zip(&added) {
+            if moves(state) {
+                state.momentum += *p;
+                state.angular_momentum += *l;
+            }
+        }
+    }
+
+    let horizons: Vec<f64> = states.iter().map(|s| s.horizon_within(clock.end, options.step)).collect();
+    let end = horizons.iter().copied().fold(clock.end, f64::min);
+    let span =
+        Span { remaining: end - clock.now, step: options.step, resting_speed: options.resting_speed() };
+    let prepare = |s: &RigidBody, v: Velocity| {
+        let middle = s.turned(v.angular, 0.5 * span.remaining);
+        body_at(s, v, s.inverse_inertia_at(middle))
+    };
+    let free: Vec<SolverBody> = states
+        .iter()
+        .map(|s| if moves(s) { prepare(s, s.flight_velocity(end, options.gravity)) } else { still(s) })
+        .collect();
+    let solver = Solver::new(free.clone(), &island.contacts, place);
+    let rows = select(&island.contacts, &solver, span, |body| free[place(body)].velocity.angular);
+    let mut contacts: Vec<ContactPoint> = rows.iter().map(|row| island.contacts[row.contact]).collect();
+    let targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
+    let sweeps = (WORK / contacts.len().max(1)).clamp(SWEEPS.0, SWEEPS.1) as u32;
+    let precision = PRECISION * options.gap / options.step;
+
+    let mut solver = Solver::new(free, &contacts, place);
+    solver.warm_start(&contacts);
+    let physical: Vec<f64> = targets.iter().map(|target| target.min(0.0)).collect();
+    for correction in 0.. {
+        solver.iterate(&mut contacts, &physical, precision, sweeps);
+        if correction == CORRECTIONS || !put_right(&mut solver, &states, &contacts, span, place, precision) {
+            break;
+        }
+        let bodies = solver.bodies;
+        solver = Solver::new(bodies, &contacts, place);
+    }
+    add(&contacts, &mut added, place);
+    solved.rests.clone_from(&contacts);
+    // What restores the gap, or makes room for rotation, moves the bodies in this flight and leaves no momentum.
+    if targets.iter().any(|&target| target > 0.0) {
+        solver.iterate(&mut contacts, &targets, precision, sweeps.min(RESTORING));
+    }
+    let flights: Vec<Velocity> = solver.bodies.iter().map(|body| body.velocity).collect();
+    for (k, _) in states.iter().enumerate().filter(|(_, s)| moves(s)) {
+        let (momentum, angular_momentum) = added[k];
+        solved.bodies.push(Push {
+            body: members[k],
+            velocity: flights[k],
+            horizon: end,
+            momentum,
+            angular_momentum,
+        });
+    }
+    solved
+}
+
+fn body_at(state: &RigidBody, velocity: Velocity, inverse_inertia: DMat3) -> SolverBody {
+    SolverBody { inverse_mass: state.inverse_mass, inverse_inertia, velocity }
+}
+
+/// A body that impulses do not move.
+fn still(state: &RigidBody) -> SolverBody {
+    let velocity =
+        Velocity { linear: state.flight.linear_velocity(), angular: state.flight.angular_velocity() };
+    SolverBody { inverse_mass: 0.0, inverse_inertia: DMat3::ZERO, velocity }
+}
+
+fn world_inertia(state: &RigidBody) -> (f64, DMat3) {
+    let r = DMat3::from_quat(state.orientation);
+    (state.mass, r * state.inertia * r.transpose())
+}
+
+fn add(contacts: &[ContactPoint], added: &mut [(DVec3, DVec3)], place: impl Fn(usize) -> usize) {
+    for c in contacts {
+        let impulse = c.total();
+        let (a, b) = (place(c.a), place(c.b));
+        added[a].0 -= impulse;
+        added[a].1 -= c.arm_a.cross(impulse);
+        added[b].0 += impulse;
+        added[b].1 += c.arm_b.cross(impulse);
+    }
+}
+
+/// The spins that belong to the angular momenta with the impulses, where the linear ones are off by more than rounding.
+fn put_right(
+    solver: &mut Solver,
+    states: &[RigidBody],
+    contacts: &[ContactPoint],
+    span: Span,
+    place: impl Fn(usize) -> usize,
+    precision: f64,
+) -> bool {
+    let mut added = vec![(DVec3::ZERO, DVec3::ZERO); states.len()];
+    add(contacts, &mut added, place);
+    let mut worst = 0.0f64;
+    for ((body, state), (_, turn)) in solver.bodies.iter_mut().zip(states).zip(&added) {
+        if body.inverse_mass == 0.0 {
+            continue;
+        }
+        let middle = state.angular_momentum + state.torque * (0.5 * span.remaining) + *turn;
+        let spin = state.midpoint_spin(middle, span.remaining);
+        worst = worst.max((spin - body.velocity.angular).length() * state.radius);
+        body.velocity.angular = spin;
+        body.inverse_inertia = state.inverse_inertia_at(state.turned(spin, 0.5 * span.remaining));
+    }
+    worst > precision
+}

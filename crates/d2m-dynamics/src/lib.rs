@@ -1,0 +1,26 @@
+#![doc = include_str!("../README.md")]
+#![forbid(unsafe_code)]
+
+mod body;
+mod broad_phase;
+mod contact;
+mod error;
+mod group;
+mod mass;
+mod options;
+mod pairs;
+mod parallel;
+mod record;
+mod rigid_body;
+mod simulation;
+mod sleep;
+mod snapshot;
+mod step;
+
+pub use body::{Body, BodyId, Kind, Mass, Motion};
+pub use error::{MassError, SimulationError, StepError};
+pub use mass::MassProperties;
+pub use options::SimulationOptions;
+pub use record::{ContactImpulse, Segment};
+pub use simulation::{Simulation, StepReport};
+pub use snapshot::Snapshot;

@@ -1,0 +1,142 @@
+//! Mass, center of mass and inertia of a solid.
+
+mod compensated;
+mod parts;
+
+use crate::MassError;
+use compensated::Sum;
+use d2m_bvh::TriMesh;
+use glam::{DMat3, DVec3};
+
+/// Mass, center of mass and inertia of a body, in the axes of its mesh.
+///
+/// ```
+/// use d2m_dynamics::MassProperties;
+/// let mesh = d2m_shapes::mesh("box?x=0.5&y=1&z=1.5")?;
+/// let brick = MassProperties::try_from_density(&mesh, 2.0)?;
+/// assert!((brick.mass - 12.0).abs() < 1e-12); // 1 × 2 × 3 at density 2
+/// assert!((brick.inertia.x_axis.x - 13.0).abs() < 1e-12); // m (2² + 3²) / 12
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct MassProperties {
+    /// Mass, positive.
+    pub mass: f64,
+    /// Center of mass, mesh frame.
+    pub center: DVec3,
+    /// Inertia about the center, mesh axes; symmetric and positive definite.
+    pub inertia: DMat3,
+}
+
+/// How far an inertia may be from symmetric, relative to its largest entry: what a text of nine digits loses.
+const ASYMMETRY: f64 = 1e-8;
+
+impl MassProperties {
+    /// Given numbers, checked.
+    ///
+    /// # Errors
+    /// [`MassError`]: a mass that is not positive, an inertia that is not symmetric and positive definite, a number that
+    /// is not finite.
+    pub fn try_new(mass: f64, center: DVec3, inertia: DMat3) -> Result<Self, MassError> {
+        if !(mass.is_finite() && mass > 0.0) {
+            return Err(MassError::Mass { value: mass });
+        }
+        if !center.is_finite() {
+            return Err(MassError::Center { value: center });
+        }
+        let symmetric = (inertia + inertia.transpose()) * 0.5;
+        let difference = inertia - inertia.transpose();
+        let size = largest(&inertia);
+        let minor = symmetric.x_axis.x * symmetric.y_axis.y - symmetric.x_axis.y * symmetric.x_axis.y;
+        let definite = symmetric.x_axis.x > 0.0 && minor > 0.0 && symmetric.determinant() > 0.0;
+        if !inertia.is_finite() || largest(&difference) > ASYMMETRY * size || !definite {
+            return Err(MassError::Inertia { value: inertia });
+        }
+        if !symmetric.inverse().is_finite() {
+            return Err(MassError::Inertia { value: inertia });
+        }
+        Ok(Self { mass, center, inertia: symmetric })
+    }
+
+    /// Of a closed mesh of constant density, by the exact integrals of the polyhedron: with the vertices a, b, c of each
+    /// triangle relative to a point inside the bounding box, s = a + b + c and the volume d = a·(b × c)/6 of a tetrahedron,
+    ///
+    /// ```text
+    /// V = Σ d    V c = Σ d s/4    ∫ x xᵀ = Σ d (aaᵀ + bbᵀ + ccᵀ + ssᵀ)/20    inertia = tr(M) 1 − M, M about c
+    /// ```
+    ///
+    /// Sums are compensated, so the number of triangles costs no digits. The orientation may be inward. Hollow parts
+    /// (a surface inside another one, oriented the other way) are no solid.
+    ///
+    /// # Errors
+    /// [`MassError`]: a density that is not positive, a surface that is not closed or not consistently oriented, parts that
+    /// overlap (their integral would count twice), no volume.
+    pub fn try_from_density(mesh: &TriMesh, density: f64) -> Result<Self, MassError> {
+        if !(density.is_finite() && density > 0.0) {
+            return Err(MassError::Density { value: density });
+        }
+        parts::check(mesh)?;
+        let solid = integrate(mesh);
+        Self::try_new(solid.mass * density, solid.center, solid.inertia * density)
+            .map_err(|_| MassError::NoVolume { value: solid.mass })
+    }
+
+    /// As [`Self::try_from_density`] with the density that gives this mass.
+    ///
+    /// # Errors
+    /// As [`Self::try_from_density`].
+    pub fn try_from_mass(mesh: &TriMesh, mass: f64) -> Result<Self, MassError> {
+        let unit = Self::try_from_density(mesh, 1.0)?;
+        Self::try_new(mass, unit.center, unit.inertia * (mass / unit.mass))
+    }
+}
+
+fn largest(m: &DMat3) -> f64 {
+    m.to_cols_array().into_iter().fold(0.0, |most, x| x.abs().max(most))
+}
+
+/// Integrals of density one; a mesh that is oriented inward counts as outward.
+pub(crate) fn integrate(mesh: &TriMesh) -> MassProperties {
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for corners in mesh.triangles() {
+        for &index in corners {
+            let p = mesh.vertices()[index as usize];
+            (low, high) = (low.min(p), high.max(p));
+        }
+    }
+    let origin = 0.5 * (low + high);
+    let mut volume = Sum::ZERO;
+    let mut first = [Sum::ZERO; 3];
+    let mut second = [Sum::ZERO; 6];
+    for triangle in 0..mesh.triangle_count() {
+        let [a, b, c] = mesh.corners(triangle).map(|p| p - origin);
+        let d = a.dot(b.cross(c)) / 6.0;
+        let s = a + b + c;
+        volume.add(d);
+        for k in 0..3 {
+            first[k].add(d * s[k] / 4.0);
+        }
+        for (entry, (j, k)) in second.iter_mut().zip(ENTRIES) {
+            entry.add(d * (a[j] * a[k] + b[j] * b[k] + c[j] * c[k] + s[j] * s[k]) / 20.0);
+        }
+    }
+    let sign = if volume.value() < 0.0 { -1.0 } else { 1.0 };
+    let volume = sign * volume.value();
+    let middle = DVec3::from_array(first.map(|sum| sign * sum.value())) / volume;
+    let mut moment = DMat3::ZERO;
+    for (entry, (j, k)) in second.iter().zip(ENTRIES) {
+        let value = sign * entry.value() - volume * middle[j] * middle[k];
+        moment.col_mut(j)[k] = value;
+        moment.col_mut(k)[j] = value;
+    }
+    let trace = moment.x_axis.x + moment.y_axis.y + moment.z_axis.z;
+    let inertia = DMat3::from_diagonal(DVec3::splat(trace)) - moment;
+    MassProperties { mass: volume, center: origin + middle, inertia }
+}
+
+/// The entries of a symmetric matrix.
+const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,198 @@
+//! What is known of pairs of bodies, and the queries about them.
+
+use crate::contact::{ContactPoint, Material, tangents};
+use crate::rigid_body::RigidBody;
+use d2m_bvh::{
+    Budget, Moving, PairCache, Proximity, ProximityOptions, QueryError, QueryOptions, Solid, StartState,
+    TimeOfContact, Window, proximities_with, reduce_proximities, time_of_contact_with,
+};
+use d2m_feature::FeaturePair;
+use d2m_motion::Pose;
+use glam::DVec3;
+
+/// The part of the gap at which a flight ends.
+const STOP: f64 = 0.5;
+/// Of the distance of a pair that is closer than that, the part at which its next flight ends.
+const HALF: f64 = 0.5;
+/// The tolerance of a query: this part of the separation. A flight then ends between it and 1.21 times it.
+const SLACK: f64 = 0.0625;
+/// A separation below this part of the gap is not halved further: the pair is held.
+const LEAST: f64 = 1e-6;
+
+/// Sine of the angle by which features may be tilted and still be one contact: the far corners of a box that lies almost flat.
+const TILT: f64 = 0.1;
+
+/// Length of the difference of two unit vectors up to which the normal of a contact is that of a face beside it. Where a vertex
+/// lies over an edge, the direction between them turns by the offset over the gap, however small that is: without
+/// friction equal boxes on each other would slide apart.
+const FLAT: f64 = 0.02;
+
+/// A pair of bodies that may come close.
+#[derive(Clone, Debug)]
+pub(crate) struct Pair {
+    pub(crate) cache: PairCache,
+    /// The distance that these two keep.
+    pub(crate) gap: f64,
+    /// The closest features when last measured, with the impulses of the last step.
+    pub(crate) contacts: Vec<ContactPoint>,
+    /// Their least distance; none: further apart than the margin.
+    pub(crate) nearest: Option<f64>,
+}
+
+impl Pair {
+    pub(crate) const fn new(gap: f64) -> Self {
+        Self { cache: PairCache::new(), gap, contacts: Vec::new(), nearest: None }
+    }
+
+    /// The separation at which a flight of the pair ends.
+    pub(crate) fn separation(&self) -> f64 {
+        let stop = STOP * self.gap;
+        self.nearest.map_or(stop, |nearest| stop.min(HALF * nearest))
+    }
+}
+
+/// How a flight of two bodies ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Outcome {
+    /// Certified free until the end of the window.
+    Clear,
+    /// Certified free before `lo`; close at some time until `hi`.
+    Meets { lo: f64, hi: f64 },
+    /// The budget of the query is used up; certified free until then.
+    ClearUntil(f64),
+    /// Closer than can be certified.
+    Stuck,
+}
+
+pub(crate) fn solid_of(a: &RigidBody, b: &RigidBody) -> Solid {
+    if a.solid == Solid::Filled && b.solid == Solid::Filled { Solid::Filled } else { Solid::Surface }
+}
+
+/// When do two bodies come within `separation` on their flights?
+pub(crate) fn fly(
+    a: &RigidBody,
+    b: &RigidBody,
+    window: Window,
+    separation: f64,
+    gap: f64,
+    node_tests: u64,
+    cache: &mut PairCache,
+) -> Result<Outcome, QueryError> {
+    let mut separation = separation;
+    while separation >= LEAST * gap {
+        let options = QueryOptions::default()
+            .with_solid(solid_of(a, b))
+            .with_min_separation(separation)
+            .with_tolerance(SLACK * separation)
+            .with_budget(Budget::UNLIMITED.with_node_tests(node_tests));
+        let moving = (Moving::new(&*a.tree, &a.flight), Moving::new(&*b.tree, &b.flight));
+        match time_of_contact_with(moving.0, moving.1, window, &options, cache)? {
+            TimeOfContact::Separated => return Ok(Outcome::Clear),
+            TimeOfContact::Undecided { clear_until } => return Ok(Outcome::ClearUntil(clear_until)),
+            TimeOfContact::Contact(contact) => match contact.start {
+                StartState::Apart => return Ok(Outcome::Meets { lo: contact.time_lo, hi: contact.time_hi }),
+                StartState::Touching => separation *= HALF,
+                _ => return Ok(Outcome::Stuck),
+            },
+        }
+    }
+    Ok(Outcome::Stuck)
+}
+
+/// The closest features of two bodies within `margin` at a time of their flights; `pair` numbers the bodies.
+pub(crate) fn measure(
+    bodies: &[RigidBody],
+    pair: (usize, usize),
+    time: f64,
+    margin: f64,
+    gap: f64,
+    material: Material,
+) -> Result<Vec<ContactPoint>, QueryError> {
+    let (a, b) = (&bodies[pair.0], &bodies[pair.1]);
+    let (posed_a, posed_b) = (a.posed_at(time), b.posed_at(time));
+    let options = ProximityOptions::new(margin).with_cone_slack(TILT);
+    let wide = proximities_with(posed_a, posed_b, &options)?;
+    let faces = face_normals(&wide, [a, b], [&posed_a.pose, &posed_b.pose]);
+    let flat: Vec<Option<Proximity>> = wide.iter().map(|p| along(p, &faces, FLAT)).collect();
+    let askew = |k: usize| flat[k].is_none() && is_edges(&wide[k]);
+    let exact: Vec<Proximity> = if (0..wide.len()).any(askew) {
+        let found = proximities_with(posed_a, posed_b, &options.with_cone_slack(0.0))?;
+        found.iter().map(|p| along(p, &faces, FLAT).unwrap_or(*p)).collect()
+    } else {
+        Vec::new()
+    };
+    let straight = |k: usize| match flat[k] {
+        None if askew(k) => straightened(&wide[k], &exact),
+        None => Some(wide[k]),
+        flat => flat,
+    };
+    let found: Vec<Proximity> = (0..wide.len()).filter_map(straight).collect();
+    let found = reduce_proximities(&found, TILT);
+    let contact = |p: &Proximity| ContactPoint {
+        a: pair.0,
+        b: pair.1,
+        feature: p.feature,
+        normal: p.normal,
+        tangents: tangents(p.normal),
+        distance: p.distance,
+        gap,
+        arm_a: p.point_a - posed_a.pose.translation,
+        arm_b: p.point_b - posed_b.pose.translation,
+        point: 0.5 * (p.point_a + p.point_b),
+        material,
+        impulse: 0.0,
+        sliding: [0.0; 2],
+    };
+    Ok(found.iter().filter(|p| p.normal.is_normalized()).map(contact).collect())
+}
+
+fn is_edges(p: &Proximity) -> bool {
+    matches!(p.feature, FeaturePair::EdgeEdge { .. })
+}
+
+/// The normals of the faces that hold the points, from A to B as the proximities have it.
+fn face_normals(found: &[Proximity], bodies: [&RigidBody; 2], poses: [&Pose; 2]) -> Vec<DVec3> {
+    let mut faces: Vec<[u32; 2]> = Vec::new();
+    for p in found {
+        faces.extend([[0, p.triangle_a], [1, p.triangle_b]]);
+    }
+    faces.sort_unstable();
+    faces.dedup();
+    let normal = |&[body, triangle]: &[u32; 2]| {
+        let (mesh, pose) = (bodies[body as usize].tree.mesh(), poses[body as usize]);
+        let [a, b, c] = mesh.corners(triangle as usize);
+        pose.transform_vector((b - a).cross(c - a)).try_normalize()
+    };
+    faces.iter().filter_map(normal).flat_map(|n| [n, -n]).collect()
+}
+
+/// The proximity with the nearest of these normals and the distance along it, if there is one within `most`.
+fn along(p: &Proximity, normals: &[DVec3], most: f64) -> Option<Proximity> {
+    let nearest =
+        normals.iter().copied().reduce(|m, n| if n.dot(p.normal) > m.dot(p.normal) { n } else { m })?;
+    let distance = nearest.dot(p.point_b - p.point_a);
+    let mut straight = *p;
+    (straight.normal, straight.distance) = (nearest, distance);
+    ((nearest - p.normal).length() <= most && distance > 0.0).then_some(straight)
+}
+
+/// Two edges whose common normal is outside of their cones would push askew: where faces are almost parallel they get the
+/// normal of a locally closest pair. Without one they are no contact.
+fn straightened(p: &Proximity, exact: &[Proximity]) -> Option<Proximity> {
+    if exact.iter().any(|q| q.feature == p.feature) {
+        return Some(*p);
+    }
+    let normals: Vec<DVec3> = exact.iter().map(|q| q.normal).collect();
+    along(p, &normals, TILT)
+}
+
+/// Takes over the impulses of contacts of the same features.
+pub(crate) fn remember(contacts: &mut [ContactPoint], old: &[ContactPoint]) {
+    for contact in contacts {
+        if let Some(before) = old.iter().find(|before| before.feature == contact.feature) {
+            let impulse = before.total();
+            contact.impulse = impulse.dot(contact.normal).max(0.0);
+            contact.sliding = contact.tangents.map(|t| impulse.dot(t));
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! What a step reports: segments in which every body flies a constant twist.
+
+use crate::BodyId;
+use d2m_motion::ConstantTwist;
+use glam::DVec3;
+
+/// An impulse at a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ContactImpulse {
+    /// The first body.
+    pub a: BodyId,
+    /// The second body.
+    pub b: BodyId,
+    /// Middle of the two closest points, world frame.
+    pub point: DVec3,
+    /// Unit normal from a to b.
+    pub normal: DVec3,
+    /// Impulse on a (its opposite acts on b): mass times speed, world axes.
+    pub impulse: DVec3,
+    /// When.
+    pub time: f64,
+}
+
+/// A span of time in which every body moves with a constant twist about its center of mass.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Segment {
+    /// First instant.
+    pub start: f64,
+    /// Last instant; the next segment begins here.
+    pub end: f64,
+    /// The bodies whose twist is another one than in the segment before, with their motions from `start` on (all the bodies
+    /// in the first segment); the others fly on.
+    pub changed: Vec<(BodyId, ConstantTwist)>,
+    /// Impulses at the end of the segment.
+    pub contacts: Vec<ContactImpulse>,
+    /// The length of the segment if bodies stand still in it because the events of the step were used up, else zero.
+    pub skipped: f64,
+}
+
+/// The segments as they become complete. One is kept back: impulses at the start of a step belong to the segment that ends
+/// there.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Recorder {
+    done: Vec<Segment>,
+    last: Option<Segment>,
+    open: Option<Segment>,
+}
+
+impl Recorder {
+    /// Starts with a segment without length that holds the first velocities.
+    pub(crate) fn begin(&mut self, time: f64, bodies: Vec<(BodyId, ConstantTwist)>) {
+        let segment =
+            |changed| Segment { start: time, end: time, changed, contacts: Vec::new(), skipped: 0.0 };
+        self.last = Some(segment(bodies));
+        self.open = Some(segment(Vec::new()));
+    }
+
+    pub(crate) fn has_begun(&self) -> bool {
+        self.last.is_some()
+    }
+
+    /// Ends the open segment at `time`; without length it stays open. `skipping`: bodies stood still in it.
+    pub(crate) fn cut(&mut self, time: f64, skipping: bool) {
+        let Some(open) = &mut self.open else { return };
+        if time <= open.start {
+            return;
+        }
+        open.end = time;
+        open.skipped = if skipping { time - open.start } else { 0.0 };
+        let next =
+            Segment { start: time, end: time, changed: Vec::new(), contacts: Vec::new(), skipped: 0.0 };
+        let closed = self.open.replace(next);
+        self.done.extend(self.last.take());
+        self.last = closed;
+    }
+
+    /// Bodies that fly anew from the start of the open segment.
+    pub(crate) fn change(&mut self, body: BodyId, flight: ConstantTwist) {
+        let Some(open) = &mut self.open else { return };
+        match open.changed.binary_search_by_key(&body, |(id, _)| *id) {
+            Ok(place) => open.changed[place].1 = flight,
+            Err(place) => open.changed.insert(place, (body, flight)),
+        }
+    }
+
+    /// Impulses at the start of the open segment.
+    pub(crate) fn contact(&mut self, impulse: ContactImpulse) {
+        if let Some(last) = &mut self.last {
+            last.contacts.push(impulse);
+        }
+    }
+
+    /// What is complete.
+    pub(crate) fn take(&mut self) -> Vec<Segment> {
+        core::mem::take(&mut self.done)
+    }
+
+    /// Everything up to the last cut.
+    pub(crate) fn finish(&mut self) -> Vec<Segment> {
+        self.done.extend(self.last.take());
+        self.open = None;
+        self.take()
+    }
+}

@@ -1,0 +1,357 @@
+//! The state of a body and the constant twist that it flies.
+
+use crate::body::{Body, Kind, Mass};
+use crate::{MassProperties, SimulationError};
+use d2m_bvh::{MeshTree, Posed, Solid};
+use d2m_interval::Interval;
+use d2m_motion::{ConstantTwist, Pose, RigidMotion};
+use glam::{DMat3, DQuat, DVec3};
+use std::sync::Arc;
+
+/// Radians that a body which is no sphere turns in one flight at most: the midpoint twist is found by a contraction
+/// whose factor is half of this, and its energy is off by the square.
+const MOST_TURN: f64 = 0.25;
+/// Flights of one body in a step at most, as long as nothing meets it; a body that turns faster flies longer ones.
+const MOST_FLIGHTS: f64 = 64.0;
+/// How far the twist of a kinematic flight may lead off the motion between its ends, of the gap.
+const OFF_MOTION: f64 = 0.01;
+/// Halvings of a step to keep to that.
+const MOST_HALVINGS: u32 = 8;
+
+/// A body of a simulation. `position` is that of the center of mass.
+#[derive(Clone)]
+pub(crate) struct RigidBody {
+    pub(crate) name: String,
+    pub(crate) tree: Arc<MeshTree>,
+    pub(crate) solid: Solid,
+    pub(crate) kind: Kind,
+    /// Center of mass (of a body without mass: of its volume or its bounding box), mesh frame.
+    pub(crate) center: DVec3,
+    /// No point of the body is further from the center; rounded up.
+    pub(crate) radius: f64,
+    /// Zero for bodies that forces cannot move, as are the other masses.
+    pub(crate) mass: f64,
+    pub(crate) inverse_mass: f64,
+    pub(crate) inertia: DMat3,
+    pub(crate) inverse_inertia: DMat3,
+    pub(crate) restitution: f64,
+    pub(crate) friction: f64,
+
+    /// When the rest of the state holds.
+    pub(crate) time: f64,
+    pub(crate) position: DVec3,
+    pub(crate) orientation: DQuat,
+    pub(crate) momentum: DVec3,
+    pub(crate) angular_momentum: DVec3,
+    /// Of the user, over the next step.
+    pub(crate) force: DVec3,
+    pub(crate) torque: DVec3,
+    /// From `time` on, until `horizon` at most.
+    pub(crate) flight: ConstantTwist,
+    pub(crate) horizon: f64,
+    /// Changes with every flight.
+    pub(crate) version: u64,
+    /// Stands still until the end of the step.
+    pub(crate) held: bool,
+    pub(crate) asleep: bool,
+    /// For how long its surface has been slow.
+    pub(crate) quiet: f64,
+}
+
+/// A velocity and an angular velocity, world axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Velocity {
+    pub(crate) linear: DVec3,
+    pub(crate) angular: DVec3,
+}
+
+impl RigidBody {
+    pub(crate) fn try_new(body: &Body, time: f64) -> Result<Self, SimulationError> {
+        let bad = |name: &'static str, value: String| SimulationError::BadBody {
+            body: body.name.clone(),
+            name,
+            value,
+        };
+        let vectors = [
+            ("position", body.position),
+            ("velocity", body.linear_velocity),
+            ("angular velocity", body.angular_velocity),
+        ];
+        if let Some((name, value)) = vectors.into_iter().find(|(_, v)| !v.is_finite()) {
+            return Err(bad(name, value.to_string()));
+        }
+        let q = body.orientation;
+        let norm = q.length();
+        if !(norm.is_finite() && norm > 0.0) {
+            return Err(bad("orientation", q.to_string()));
+        }
+        if !(0.0..=1.0).contains(&body.restitution) {
+            return Err(bad("restitution", body.restitution.to_string()));
+        }
+        if !(body.friction.is_finite() && body.friction >= 0.0) {
+            return Err(bad("friction", body.friction.to_string()));
+        }
+        let mesh = body.tree.mesh();
+        let given = |error| SimulationError::Mass { body: body.name.clone(), error };
+        let properties = match (&body.kind, body.mass) {
+            (Kind::Dynamic, Mass::Density(density)) => {
+                Some(MassProperties::try_from_density(mesh, density).map_err(given)?)
+            }
+            (Kind::Dynamic, Mass::Total(mass)) => {
+                Some(MassProperties::try_from_mass(mesh, mass).map_err(given)?)
+            }
+            (Kind::Dynamic, Mass::Given(p)) => {
+                Some(MassProperties::try_new(p.mass, p.center, p.inertia).map_err(given)?)
+            }
+            _ => None,
+        };
+        let center = properties.map_or_else(|| middle(&body.tree), |p| p.center);
+        let farthest = mesh.triangles().iter().flatten().map(|&v| {
+            let arm = mesh.vertices()[v as usize] - center;
+            arm.length()
+        });
+        // A difference, three squares, two sums and a root: five roundings of relative size 2⁻⁵³ are fewer than 8ε.
+        let radius = farthest.fold(0.0, f64::max) * (1.0 + 8.0 * f64::EPSILON) + f64::MIN_POSITIVE;
+        let kind = body.kind.clone();
+        let (mesh_position, orientation) = match &kind {
+            Kind::Kinematic(motion) => {
+                let (pose, _) = motion.pose_and_twist(time);
+                (pose.transform_point(DVec3::ZERO), pose.rotation.normalize())
+            }
+            _ => (body.position, q.normalize()),
+        };
+        let position = mesh_position + orientation * center;
+        let (mass, inertia) = properties.map_or((0.0, DMat3::ZERO), |p| (p.mass, p.inertia));
+        let dynamic = properties.is_some();
+        let inverse_inertia = if dynamic { inertia.inverse() } else { DMat3::ZERO };
+        let rotation = DMat3::from_quat(orientation);
+        let solid =
+            body.solid.unwrap_or(if body.tree.is_watertight() { Solid::Filled } else { Solid::Surface });
+        let rest = ConstantTwist::try_new(position, orientation, DVec3::ZERO, DVec3::ZERO)
+            .and_then(|flight| flight.try_with_at(center))
+            .and_then(|flight| flight.try_with_reference_time(time))
+            .map_err(|_| bad("position", position.to_string()))?;
+        Ok(Self {
+            name: body.name.clone(),
+            tree: Arc::clone(&body.tree),
+            solid,
+            kind,
+            center,
+            radius,
+            mass,
+            inverse_mass: if dynamic { 1.0 / mass } else { 0.0 },
+            inertia,
+            inverse_inertia,
+            restitution: body.restitution,
+            friction: body.friction,
+            time,
+            position,
+            orientation,
+            momentum: body.linear_velocity * mass,
+            angular_momentum: rotation * (inertia * (rotation.transpose() * body.angular_velocity)),
+            force: DVec3::ZERO,
+            torque: DVec3::ZERO,
+            flight: rest,
+            horizon: f64::INFINITY,
+            version: 0,
+            held: false,
+            asleep: false,
+            quiet: 0.0,
+        })
+    }
+
+    pub(crate) fn is_dynamic(&self) -> bool {
+        self.inverse_mass > 0.0
+    }
+
+    pub(crate) fn is_kinematic(&self) -> bool {
+        matches!(self.kind, Kind::Kinematic(_))
+    }
+
+    /// Does it move, or may it be moved, in this step?
+    pub(crate) fn is_awake(&self) -> bool {
+        (self.is_dynamic() && !self.asleep) || self.is_kinematic()
+    }
+
+    /// Where the flight has it at a time.
+    pub(crate) fn pose_at(&self, time: f64) -> Pose {
+        self.flight.pose_and_twist(time).0
+    }
+
+    pub(crate) fn posed_at(&self, time: f64) -> Posed<'_> {
+        Posed::new(&self.tree, self.pose_at(time))
+    }
+
+    fn force(&self, gravity: DVec3) -> DVec3 {
+        self.force + gravity * self.mass
+    }
+
+    /// Moves the state along the flight: forces act on the momenta for as long as it lasted.
+    pub(crate) fn advance(&mut self, time: f64, gravity: DVec3) {
+        if time > self.time {
+            let pose = self.pose_at(time);
+            (self.position, self.orientation) = (pose.translation, pose.rotation);
+            if self.is_dynamic() && !self.held && !self.asleep {
+                let elapsed = time - self.time;
+                self.momentum += self.force(gravity) * elapsed;
+                self.angular_momentum += self.torque * elapsed;
+            }
+            self.time = time;
+        }
+    }
+
+    /// Velocity at `time`, as the momenta have it.
+    pub(crate) fn velocity(&self) -> Velocity {
+        let r = DMat3::from_quat(self.orientation);
+        let angular = r * (self.inverse_inertia * (r.transpose() * self.angular_momentum));
+        Velocity { linear: self.momentum * self.inverse_mass, angular }
+    }
+
+    /// Velocity of a flight until `horizon`, in which forces and gyroscopic terms are those of its middle.
+    pub(crate) fn flight_velocity(&self, horizon: f64, gravity: DVec3) -> Velocity {
+        let half = 0.5 * (horizon - self.time);
+        let linear = (self.momentum + self.force(gravity) * half) * self.inverse_mass;
+        let angular = self.midpoint_spin(self.angular_momentum + self.torque * half, 2.0 * half);
+        Velocity { linear, angular }
+    }
+
+    /// The angular velocity ω with ω = R I⁻¹ Rᵀ L at R = exp([ω] h/2) R₀: a flight of length h with it has the angular momentum
+    /// L in its middle, and so have all the flights of a body that nothing meets.
+    pub(crate) fn midpoint_spin(&self, angular_momentum: DVec3, h: f64) -> DVec3 {
+        let mut omega = self.inverse_inertia_at(self.orientation) * angular_momentum;
+        for _ in 0..64 {
+            let next = self.inverse_inertia_at(self.turned(omega, 0.5 * h)) * angular_momentum;
+            let change = (next - omega).abs().max_element();
+            omega = next;
+            if change <= 2.0 * f64::EPSILON * omega.abs().max_element() {
+                break;
+            }
+        }
+        omega
+    }
+
+    /// The orientation after a turn with an angular velocity for a time.
+    pub(crate) fn turned(&self, omega: DVec3, time: f64) -> DQuat {
+        let spin = ConstantTwist::try_new(DVec3::ZERO, self.orientation, DVec3::ZERO, omega);
+        spin.map_or(self.orientation, |spin| spin.pose_and_twist(time).0.rotation)
+    }
+
+    pub(crate) fn inverse_inertia_at(&self, orientation: DQuat) -> DMat3 {
+        let r = DMat3::from_quat(orientation);
+        r * self.inverse_inertia * r.transpose()
+    }
+
+    /// How long the next flight may be at most: the step, or what a body that is no sphere takes for a small turn.
+    pub(crate) fn horizon_within(&self, end: f64, step: f64) -> f64 {
+        if !self.is_dynamic() {
+            return end;
+        }
+        let d = self.inverse_inertia;
+        let spread = DVec3::new(d.x_axis.x, d.y_axis.y, d.z_axis.z);
+        let round = spread.max_element() - spread.min_element() <= 1e-9 * spread.max_element()
+            && d.x_axis.y.abs().max(d.x_axis.z.abs()).max(d.y_axis.z.abs()) <= 1e-9 * spread.max_element();
+        let speed = self.velocity().angular.length();
+        if round || speed * (end - self.time) <= MOST_TURN {
+            return end;
+        }
+        let length = (MOST_TURN / speed).max(step / MOST_FLIGHTS);
+        // Equal parts of what is left.
+        let parts = ((end - self.time) / length).ceil().max(1.0);
+        let horizon = self.time + (end - self.time) / parts;
+        if parts > 1.0 && horizon > self.time && horizon < end { horizon } else { end }
+    }
+
+    /// Starts a flight at `time`, of which exactly these numbers are certified and reported.
+    pub(crate) fn fly(&mut self, velocity: Velocity, horizon: f64) {
+        self.flight = ConstantTwist::REST
+            .with_at(self.center)
+            .with_position(self.position)
+            .with_orientation(self.orientation)
+            .with_linear_velocity(velocity.linear)
+            .with_angular_velocity(velocity.angular)
+            .with_reference_time(self.time);
+        self.horizon = horizon;
+        self.version += 1;
+    }
+
+    /// The flight with the velocities as given, for the first line of a run.
+    pub(crate) fn first_flight(&self) -> ConstantTwist {
+        let velocity = if self.is_dynamic() { self.velocity() } else { Velocity::default() };
+        self.flight.with_linear_velocity(velocity.linear).with_angular_velocity(velocity.angular)
+    }
+
+    /// The velocity that a user sees: that of the last flight, or the one given before the first.
+    pub(crate) fn shown_velocity(&self) -> Velocity {
+        if self.is_dynamic() && self.version == 0 && !self.asleep {
+            return self.velocity();
+        }
+        Velocity { linear: self.flight.linear_velocity(), angular: self.flight.angular_velocity() }
+    }
+
+    /// Speed that no point of the surface exceeds in this flight.
+    pub(crate) fn surface_speed(&self) -> f64 {
+        self.flight.linear_velocity().length() + self.flight.angular_velocity().length() * self.radius
+    }
+
+    /// The next piece of a kinematic body's motion: the twist about its center that joins the poses at its ends, as long
+    /// as the motion stays close to it.
+    pub(crate) fn follow(&mut self, end: f64, gap: f64) {
+        let Kind::Kinematic(motion) = &self.kind else { return };
+        let place = |time: f64| {
+            let (pose, _) = motion.pose_and_twist(time);
+            (pose.transform_point(self.center), pose.rotation.normalize())
+        };
+        let start = self.time;
+        let (x0, q0) = place(start);
+        let mut horizon = motion.smooth_until(start).map_or(end, |joint| end.min(joint));
+        let mut velocity = Velocity::default();
+        for halving in 0..=MOST_HALVINGS {
+            let length = horizon - start;
+            let (x1, q1) = place(horizon);
+            velocity = Velocity {
+                linear: (x1 - x0) / length,
+                angular: rotation_vector(q1 * q0.conjugate()) / length,
+            };
+            let off = [0.25, 0.5, 0.75].map(|part| {
+                let time = start + part * length;
+                let (x, q) = place(time);
+                let flown = x0 + velocity.linear * (time - start);
+                let turn = ConstantTwist::REST.with_orientation(q0).with_angular_velocity(velocity.angular);
+                let turned = turn.pose_and_twist(time - start).0.rotation;
+                (x - flown).length() + rotation_vector(q * turned.conjugate()).length() * self.radius
+            });
+            let worst = off.into_iter().fold(0.0, f64::max);
+            let middle = start + 0.5 * length;
+            if worst <= OFF_MOTION * gap || halving == MOST_HALVINGS || !(middle > start && middle < horizon)
+            {
+                break;
+            }
+            horizon = middle;
+        }
+        (self.position, self.orientation) = (x0, q0);
+        self.fly(velocity, horizon);
+    }
+}
+
+/// Of a mesh without mass: the center of its volume if it is closed, of its bounding box otherwise.
+fn middle(tree: &MeshTree) -> DVec3 {
+    if tree.is_watertight() {
+        let solid = crate::mass::integrate(tree.mesh());
+        if solid.center.is_finite() && (solid.center - tree.center()).length() <= 2.0 * tree.radius() {
+            return solid.center;
+        }
+    }
+    DVec3::ZERO
+}
+
+/// Axis times angle in [0, π] of a rotation, world axes; the same bits on every platform.
+pub(crate) fn rotation_vector(q: DQuat) -> DVec3 {
+    let q = if q.w < 0.0 { -q } else { q };
+    let axis = DVec3::new(q.x, q.y, q.z);
+    let sine = axis.length();
+    if sine == 0.0 {
+        return DVec3::ZERO;
+    }
+    let half = Interval::point(sine).atan2(Interval::point(q.w)).mid();
+    axis * (2.0 * half / sine)
+}

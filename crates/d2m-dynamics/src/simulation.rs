@@ -1,0 +1,348 @@
+//! The simulation: bodies, settings, time.
+
+use crate::contact::Material;
+use crate::pairs::{Pair, solid_of};
+use crate::record::Recorder;
+use crate::rigid_body::RigidBody;
+use crate::step::Step;
+use crate::{
+    Body, BodyId, ContactImpulse, MassProperties, Segment, SimulationError, SimulationOptions, StepError,
+};
+use d2m_bvh::{DistanceOptions, PairCache, QueryError, StartState, distance_within};
+use d2m_motion::Pose;
+use glam::{DQuat, DVec3};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What happened in a step.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct StepReport {
+    /// The segments that are complete now. The last segment of a step is complete after the next one (its impulses are
+    /// those of that step's velocity solve); [`Simulation::finish`] gives it.
+    pub segments: Vec<Segment>,
+    /// Contact events in this step.
+    pub events: u32,
+    /// Pairs of bodies that were queried for a time of contact.
+    pub queries: u64,
+}
+
+impl StepReport {
+    /// The impulses of all segments, in the order of time.
+    pub fn contacts(&self) -> impl Iterator<Item = &ContactImpulse> {
+        self.segments.iter().flat_map(|segment| &segment.contacts)
+    }
+}
+
+/// Rigid bodies that never pass through each other.
+///
+/// Promise: no two bodies (not ignored, at least one of them dynamic) share a point at any time of any [`Segment`]. Every
+/// segment ends at a time until which its very numbers are certified. The same bits at any number of threads.
+///
+/// ```
+/// use d2m_bvh::MeshTree;
+/// use d2m_dynamics::{Body, Simulation, SimulationOptions};
+/// use glam::DVec3;
+/// use std::sync::Arc;
+/// let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
+/// let one = Body::new("one", cube).with_restitution(1.0);
+/// let two = one.clone().with_position(DVec3::X * 2.0);
+/// let one = simulation.add(&one.with_linear_velocity(DVec3::X * 2.0))?;
+/// let two = simulation.add(&two)?;
+/// while simulation.time() < 1.0 {
+///     simulation.step()?;
+/// }
+/// assert!(simulation.linear_velocity(one).length() < 1e-9);
+/// assert!((simulation.linear_velocity(two) - DVec3::X * 2.0).length() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone)]
+pub struct Simulation {
+    pub(crate) options: SimulationOptions,
+    pub(crate) bodies: Vec<RigidBody>,
+    pub(crate) pairs: BTreeMap<(usize, usize), Pair>,
+    pub(crate) ignored: BTreeSet<(usize, usize)>,
+    pub(crate) materials: BTreeMap<(usize, usize), Material>,
+    pub(crate) time: f64,
+    /// Steps since the start, which began at time 0.
+    pub(crate) steps: u64,
+    pub(crate) recorder: Recorder,
+    /// Bodies below this number have been checked for intersections.
+    pub(crate) checked: usize,
+}
+
+impl core::fmt::Debug for Simulation {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Simulation")
+            .field("time", &self.time)
+            .field("bodies", &self.bodies.len())
+            .finish_non_exhaustive()
+    }
+}
+
+impl Simulation {
+    /// An empty simulation at time 0.
+    ///
+    /// # Errors
+    /// A setting that is not finite and positive.
+    pub fn new(options: SimulationOptions) -> Result<Self, SimulationError> {
+        options.check()?;
+        Ok(Self {
+            options,
+            bodies: Vec::new(),
+            pairs: BTreeMap::new(),
+            ignored: BTreeSet::new(),
+            materials: BTreeMap::new(),
+            time: 0.0,
+            steps: 0,
+            recorder: Recorder::default(),
+            checked: 0,
+        })
+    }
+
+    /// Adds a body. A body that is added later appears in the segments from the next step on.
+    ///
+    /// # Errors
+    /// Numbers that cannot be used, mass properties that are missing.
+    pub fn add(&mut self, body: &Body) -> Result<BodyId, SimulationError> {
+        let body = RigidBody::try_new(body, self.time)?;
+        let id = BodyId(self.bodies.len() as u32);
+        self.bodies.push(body);
+        Ok(id)
+    }
+
+    /// These two bodies may pass through each other.
+    pub fn ignore(&mut self, a: BodyId, b: BodyId) {
+        self.ignored.insert(key(a, b));
+    }
+
+    /// Restitution and friction of one pair, instead of what follows from its bodies.
+    ///
+    /// # Errors
+    /// A restitution outside [0, 1], a friction that is negative or not finite.
+    pub fn set_pair(
+        &mut self,
+        a: BodyId,
+        b: BodyId,
+        restitution: f64,
+        friction: f64,
+    ) -> Result<(), SimulationError> {
+        if !(0.0..=1.0).contains(&restitution) {
+            let (name, value) = ("restitution", restitution);
+            return Err(SimulationError::BadOption { name, value, wanted: "in [0, 1]" });
+        }
+        if !(friction.is_finite() && friction >= 0.0) {
+            let (name, value) = ("friction", friction);
+            return Err(SimulationError::BadOption { name, value, wanted: "not negative" });
+        }
+        self.materials.insert(key(a, b), Material { restitution, friction });
+        Ok(())
+    }
+
+    /// Restitution and friction of a pair.
+    pub fn pair(&self, a: BodyId, b: BodyId) -> (f64, f64) {
+        let material = self.material(a.index(), b.index());
+        (material.restitution, material.friction)
+    }
+
+    /// A force through the center of mass and a torque, world axes, over the next step; gravity comes on top. Wakes the body.
+    ///
+    /// # Panics
+    /// If a component is not finite.
+    pub fn set_force(&mut self, body: BodyId, force: DVec3, torque: DVec3) {
+        assert!(force.is_finite() && torque.is_finite(), "a force must be finite");
+        let body = &mut self.bodies[body.index()];
+        (body.force, body.torque) = (force, torque);
+        wake(body, self.time);
+    }
+
+    /// Adds an impulse at the center of mass and an angular impulse, world axes. Wakes the body.
+    ///
+    /// # Panics
+    /// If a component is not finite.
+    pub fn apply_impulse(&mut self, body: BodyId, impulse: DVec3, angular: DVec3) {
+        assert!(impulse.is_finite() && angular.is_finite(), "an impulse must be finite");
+        let body = &mut self.bodies[body.index()];
+        if body.is_dynamic() {
+            body.momentum += impulse;
+            body.angular_momentum += angular;
+        }
+        wake(body, self.time);
+    }
+
+    /// Advances by one step: to the next multiple of [`SimulationOptions::step`].
+    ///
+    /// # Errors
+    /// [`StepError`]; the segments until then are those of [`Self::finish`].
+    pub fn step(&mut self) -> Result<StepReport, StepError> {
+        let mut steps = self.steps + 1;
+        while steps as f64 * self.options.step <= self.time {
+            steps += 1;
+        }
+        let report = self.step_to(steps as f64 * self.options.step);
+        self.steps = steps;
+        report
+    }
+
+    /// Advances to a time, as one step of whatever length.
+    ///
+    /// # Errors
+    /// As [`Self::step`]; also an end that is not after the present time.
+    pub fn step_to(&mut self, end: f64) -> Result<StepReport, StepError> {
+        if !(end.is_finite() && end > self.time) {
+            let wanted = "after the present time";
+            return Err(SimulationError::BadOption { name: "end of the step", value: end, wanted }.into());
+        }
+        self.check_start()?;
+        Step::new(self, end).run()
+    }
+
+    /// The segments that are not reported yet, at the end of a run.
+    pub fn finish(&mut self) -> Vec<Segment> {
+        self.recorder.finish()
+    }
+
+    /// The present time.
+    pub const fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// The settings.
+    pub const fn options(&self) -> &SimulationOptions {
+        &self.options
+    }
+
+    /// How many bodies there are.
+    pub fn len(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// Are there none?
+    pub fn is_empty(&self) -> bool {
+        self.bodies.is_empty()
+    }
+
+    /// The body's name.
+    pub fn name(&self, body: BodyId) -> &str {
+        &self.bodies[body.index()].name
+    }
+
+    /// Mass properties; `None` of static and kinematic bodies.
+    pub fn mass_properties(&self, body: BodyId) -> Option<MassProperties> {
+        let body = &self.bodies[body.index()];
+        let (mass, center, inertia) = (body.mass, body.center, body.inertia);
+        body.is_dynamic().then_some(MassProperties { mass, center, inertia })
+    }
+
+    /// The point of the mesh frame that positions are those of: the center of mass.
+    pub fn center(&self, body: BodyId) -> DVec3 {
+        self.bodies[body.index()].center
+    }
+
+    /// World position of the center of mass.
+    pub fn position(&self, body: BodyId) -> DVec3 {
+        self.pose(body).translation
+    }
+
+    /// Turn of the mesh frame.
+    pub fn orientation(&self, body: BodyId) -> DQuat {
+        self.pose(body).rotation
+    }
+
+    /// Pose of the mesh frame, followed at the center of mass.
+    pub fn pose(&self, body: BodyId) -> Pose {
+        self.bodies[body.index()].pose_at(self.time)
+    }
+
+    /// Velocity of the center of mass in the last flight.
+    pub fn linear_velocity(&self, body: BodyId) -> DVec3 {
+        self.bodies[body.index()].shown_velocity().linear
+    }
+
+    /// Angular velocity in the last flight, world axes.
+    pub fn angular_velocity(&self, body: BodyId) -> DVec3 {
+        self.bodies[body.index()].shown_velocity().angular
+    }
+
+    /// Angular momentum about the center of mass, world axes.
+    pub fn angular_momentum(&self, body: BodyId) -> DVec3 {
+        self.bodies[body.index()].angular_momentum
+    }
+
+    /// Does the body sleep?
+    pub fn is_asleep(&self, body: BodyId) -> bool {
+        self.bodies[body.index()].asleep
+    }
+
+    /// Bodies added since the last step must not intersect any other.
+    fn check_start(&mut self) -> Result<(), StepError> {
+        let first = self.checked;
+        for b in first..self.bodies.len() {
+            for a in 0..b {
+                if self.meets(a, b) {
+                    self.check_pair(a, b)?;
+                }
+            }
+        }
+        self.checked = self.bodies.len();
+        if self.recorder.has_begun() {
+            for k in first..self.bodies.len() {
+                self.recorder.change(BodyId(k as u32), self.bodies[k].flight);
+            }
+        } else {
+            let flights = (0..self.bodies.len()).map(|k| (BodyId(k as u32), self.bodies[k].first_flight()));
+            self.recorder.begin(self.time, flights.collect());
+        }
+        Ok(())
+    }
+
+    /// Pairs that start closer than the gap keep what they have.
+    fn check_pair(&mut self, a: usize, b: usize) -> Result<(), SimulationError> {
+        let gap = self.options.gap;
+        let (one, two) = (&self.bodies[a], &self.bodies[b]);
+        let names = || (one.name.clone(), two.name.clone());
+        let options = DistanceOptions::default().with_solid(solid_of(one, two)).with_cutoff(gap);
+        let posed = (one.posed_at(self.time), two.posed_at(self.time));
+        let found = distance_within(posed.0, posed.1, &options, &mut PairCache::new());
+        let found = found.map_err(|error| query_error(one, two, error))?;
+        let Some(found) = found else { return Ok(()) };
+        if found.state != StartState::Apart {
+            let (a, b) = names();
+            return Err(SimulationError::Intersecting { a, b });
+        }
+        if found.lower < gap {
+            self.pairs.insert((a, b), Pair::new(found.lower));
+        }
+        Ok(())
+    }
+
+    /// May these two meet, so that the simulation looks after them?
+    pub(crate) fn meets(&self, a: usize, b: usize) -> bool {
+        (self.bodies[a].is_dynamic() || self.bodies[b].is_dynamic())
+            && !self.ignored.contains(&(a.min(b), a.max(b)))
+    }
+
+    pub(crate) fn material(&self, a: usize, b: usize) -> Material {
+        let (one, two) = (&self.bodies[a], &self.bodies[b]);
+        self.materials.get(&(a.min(b), a.max(b))).copied().unwrap_or(Material {
+            restitution: one.restitution.max(two.restitution),
+            friction: 0.5 * (one.friction + two.friction),
+        })
+    }
+}
+
+fn key(a: BodyId, b: BodyId) -> (usize, usize) {
+    (a.index().min(b.index()), a.index().max(b.index()))
+}
+
+fn wake(body: &mut RigidBody, time: f64) {
+    if body.asleep {
+        body.asleep = false;
+        body.time = time;
+    }
+    body.quiet = 0.0;
+}
+
+pub(crate) fn query_error(a: &RigidBody, b: &RigidBody, error: QueryError) -> SimulationError {
+    SimulationError::Query { a: a.name.clone(), b: b.name.clone(), error }
+}

@@ -1,0 +1,83 @@
+//! Rest: islands whose surfaces have been slow for long enough do not move until something comes close.
+
+use crate::contact::ContactPoint;
+use crate::rigid_body::{RigidBody, Velocity};
+use crate::{Simulation, SimulationOptions};
+
+/// How long, in seconds of gravity's scale or plain units of time without gravity.
+const QUIET_TIME: f64 = 0.5;
+/// The part of the gap by which a surface may move in that time.
+const QUIET_WAY: f64 = 0.1;
+
+fn quiet_speed(options: &SimulationOptions) -> f64 {
+    QUIET_WAY * options.gap / QUIET_TIME
+}
+
+impl Simulation {
+    /// After a step of length `step`: counts how long each body has been slow, and puts islands to sleep that touch
+    /// something, all of whose bodies have been slow long enough, and that touch nothing that moves.
+    pub(crate) fn put_to_sleep(&mut self, step: f64) {
+        if !self.options.sleeping {
+            return;
+        }
+        let limit = quiet_speed(&self.options);
+        for body in self.bodies.iter_mut().filter(|body| body.is_dynamic() && !body.asleep) {
+            let slow = body.surface_speed() <= limit && !body.held;
+            body.quiet = if slow { body.quiet + step } else { 0.0 };
+        }
+        if !self.bodies.iter().any(|body| body.quiet >= QUIET_TIME && !body.asleep) {
+            return;
+        }
+        let mut parent: Vec<usize> = (0..self.bodies.len()).collect();
+        let mut held_up = vec![false; self.bodies.len()];
+        let mut restless: Vec<bool> = self
+            .bodies
+            .iter()
+            .map(|body| body.is_dynamic() && !body.asleep && body.quiet < QUIET_TIME)
+            .collect();
+        let pressed = |contact: &ContactPoint| contact.impulse > 0.0;
+        for (&(a, b), pair) in &self.pairs {
+            if !pair.contacts.iter().any(pressed) {
+                continue;
+            }
+            let dynamic = |i: usize| self.bodies[i].is_dynamic();
+            let moving = |i: usize| self.bodies[i].is_kinematic() && self.bodies[i].surface_speed() > 0.0;
+            if dynamic(a) && dynamic(b) {
+                let (i, j) = (root(&mut parent, a), root(&mut parent, b));
+                parent[i.max(j)] = i.min(j);
+            }
+            (held_up[a], held_up[b]) = (true, true);
+            restless[a] |= moving(b);
+            restless[b] |= moving(a);
+        }
+        let mut awake = vec![false; self.bodies.len()];
+        for i in 0..self.bodies.len() {
+            if restless[i] || !held_up[i] {
+                awake[root(&mut parent, i)] = true;
+            }
+        }
+        for i in 0..self.bodies.len() {
+            let top = root(&mut parent, i);
+            let body = &mut self.bodies[i];
+            if body.is_dynamic() && !body.asleep && held_up[i] && !awake[top] {
+                sleep(body);
+            }
+        }
+    }
+}
+
+fn root(parent: &mut [usize], mut i: usize) -> usize {
+    while parent[i] != i {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    i
+}
+
+/// No momentum and no motion from now on; reported with the next segment.
+fn sleep(body: &mut RigidBody) {
+    body.asleep = true;
+    body.quiet = 0.0;
+    (body.momentum, body.angular_momentum) = Default::default();
+    body.fly(Velocity::default(), f64::INFINITY);
+}

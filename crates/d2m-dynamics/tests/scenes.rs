@@ -1,0 +1,208 @@
+//! Scenes with what must happen, and the promise: nothing ever meets.
+
+use d2m_bvh::{MeshTree, Moving, QueryOptions, Window, time_of_contact};
+use d2m_dynamics::{Body, BodyId, Kind, Segment, Simulation, SimulationOptions};
+use d2m_motion::ConstantTwist;
+use glam::{DQuat, DVec3};
+use std::sync::Arc;
+
+fn tree(shape: &str) -> Arc<MeshTree> {
+    Arc::new(MeshTree::new(d2m_shapes::mesh(shape).unwrap()))
+}
+
+fn cube() -> Arc<MeshTree> {
+    tree("box?x=0.5&y=0.5&z=0.5")
+}
+
+fn floor() -> Body {
+    Body::new("floor", tree("box?x=10&y=0.5&z=10")).with_kind(Kind::Static).with_position(DVec3::Y * -0.5)
+}
+
+/// Runs until `end` and returns all segments.
+fn run(simulation: &mut Simulation, end: f64) -> Vec<Segment> {
+    let mut segments = Vec::new();
+    while simulation.time() < end - 1e-9 {
+        segments.extend(simulation.step().unwrap().segments);
+    }
+    segments.extend(simulation.finish());
+    segments
+}
+
+/// Flies the reported twists again: they join, and no two bodies meet in any segment.
+fn judge(segments: &[Segment], trees: &[Arc<MeshTree>]) {
+    let mut flights: Vec<ConstantTwist> = Vec::new();
+    for (k, segment) in segments.iter().enumerate() {
+        for (id, flight) in &segment.changed {
+            if k == 0 {
+                assert_eq!(flights.len(), id.index());
+                flights.push(*flight);
+                continue;
+            }
+            let before = flights[id.index()].rebase(segment.start);
+            let (x, y) = (before.position(), flight.position());
+            assert!((x - y).length() <= 1e-12 * (1.0 + x.length()), "segment {k}: {x} {y}");
+            assert!(before.orientation().dot(flight.orientation()).abs() > 1.0 - 1e-14);
+            flights[id.index()] = *flight;
+        }
+        if k > 0 {
+            assert_eq!(segment.start.to_bits(), segments[k - 1].end.to_bits());
+        }
+        let window = Window::try_new(segment.start, segment.end).unwrap();
+        for a in 0..trees.len() {
+            for b in a + 1..trees.len() {
+                let moving = |i: usize| Moving::new(&*trees[i], &flights[i]);
+                let answer = time_of_contact(moving(a), moving(b), window, &QueryOptions::default()).unwrap();
+                assert!(answer.is_separated(), "segment {k}: {a} and {b} meet: {answer:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_tumbling_pile_never_intersects_and_comes_to_rest() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let (block, ring) = (cube(), tree("torus?triangles=400"));
+    let mut trees = vec![tree("box?x=10&y=0.5&z=10")];
+    simulation.add(&floor().with_friction(0.5)).unwrap();
+    for k in 0..6 {
+        let shape = if k % 2 == 0 { &block } else { &ring };
+        let height = 1.5 + 1.7 * f64::from(k);
+        let turn = DQuat::from_xyzw(0.3 * f64::from(k), 0.2, -0.1, 1.0);
+        let body = Body::new(format!("body {k}"), Arc::clone(shape)).with_position(DVec3::Y * height);
+        let body = body.with_orientation(turn).with_friction(0.5).with_angular_velocity(DVec3::X * 2.0);
+        simulation.add(&body).unwrap();
+        trees.push(Arc::clone(shape));
+    }
+    let segments = run(&mut simulation, 2.5);
+    assert!(segments.iter().all(|s| s.skipped == 0.0));
+    judge(&segments, &trees);
+}
+
+/// Velocities are exchanged, energy and momentum kept.
+#[test]
+fn head_on() {
+    let options = SimulationOptions::default().with_gravity(DVec3::ZERO);
+    let mut simulation = Simulation::new(options).unwrap();
+    let shape = cube();
+    let body = |x: f64, v: f64| {
+        Body::new(format!("{x}"), Arc::clone(&shape))
+            .with_position(DVec3::X * x)
+            .with_linear_velocity(DVec3::X * v)
+            .with_restitution(1.0)
+    };
+    let a = simulation.add(&body(-2.0, 2.0)).unwrap();
+    let b = simulation.add(&body(2.0, -1.0)).unwrap();
+    let segments = run(&mut simulation, 2.0);
+    assert!((simulation.linear_velocity(a) - DVec3::NEG_X).length() < 1e-9);
+    assert!((simulation.linear_velocity(b) - DVec3::X * 2.0).length() < 1e-9);
+    judge(&segments, &[Arc::clone(&shape), shape]);
+}
+
+/// A stack of ten boxes stands, and sleeps.
+#[test]
+fn a_stack_stands() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    simulation.add(&floor().with_friction(0.5)).unwrap();
+    let shape = cube();
+    let ids: Vec<BodyId> = (0..10)
+        .map(|k| {
+            let body = Body::new(format!("box {k}"), Arc::clone(&shape)).with_friction(0.5);
+            simulation.add(&body.with_position(DVec3::Y * (0.501 + 1.001 * f64::from(k)))).unwrap()
+        })
+        .collect();
+    let before: Vec<DVec3> = ids.iter().map(|&id| simulation.position(id)).collect();
+    run(&mut simulation, 3.0);
+    for (id, start) in ids.iter().zip(before) {
+        assert!((simulation.position(*id) - start).length() < 1e-3);
+        assert!(simulation.is_asleep(*id));
+    }
+}
+
+/// 100 m a step against a plate of a millimeter.
+#[test]
+fn a_bullet_stops_at_a_plate() {
+    let options = SimulationOptions::default().with_gravity(DVec3::ZERO).with_gap(1e-4);
+    let mut simulation = Simulation::new(options).unwrap();
+    let (plate, bullet) = (tree("box?x=0.0005&y=1&z=1"), tree("box?x=0.005&y=0.005&z=0.005"));
+    simulation.add(&Body::new("plate", Arc::clone(&plate)).with_kind(Kind::Static)).unwrap();
+    let shot = Body::new("bullet", Arc::clone(&bullet)).with_position(DVec3::new(-12.34, 0.1, 0.05));
+    let id = simulation.add(&shot.with_linear_velocity(DVec3::X * 10_000.0)).unwrap();
+    let segments = run(&mut simulation, 0.1);
+    let x = simulation.position(id).x;
+    assert!(-0.0056 - 1e-4 < x && x < -0.0055, "{x}");
+    judge(&segments, &[plate, bullet]);
+}
+
+/// The momentum of a body that tumbles about its middle axis is that of each flight's middle.
+#[test]
+fn tumbling_keeps_angular_momentum_and_energy() {
+    let options = SimulationOptions::default().with_gravity(DVec3::ZERO).with_step(0.01);
+    let mut simulation = Simulation::new(options).unwrap();
+    let brick = Body::new("brick", tree("box?x=0.5&y=1&z=1.5"));
+    let id = simulation.add(&brick.with_angular_velocity(DVec3::new(0.1, 8.0, 0.0))).unwrap();
+    let p = simulation.mass_properties(id).unwrap();
+    let before = simulation.angular_momentum(id);
+    let mut energies = Vec::new();
+    for segment in run(&mut simulation, 4.0).iter().skip(1) {
+        let flight = segment.changed[0].1;
+        let middle = flight.rebase(0.5 * (segment.start + segment.end));
+        let r = glam::DMat3::from_quat(middle.orientation());
+        let (w, inertia) = (flight.angular_velocity(), r * p.inertia * r.transpose());
+        assert!((inertia * w - before).length() < 1e-11 * before.length());
+        energies.push(0.5 * w.dot(inertia * w));
+    }
+    let (low, high) = energies.iter().fold((f64::INFINITY, 0.0f64), |(l, h), &e| (l.min(e), h.max(e)));
+    assert!(high / low - 1.0 < 1e-3, "{low} {high}");
+}
+
+#[test]
+fn the_same_bits_at_any_number_of_threads_and_after_a_snapshot() {
+    let build = || {
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        simulation.add(&floor().with_friction(0.4)).unwrap();
+        let shape = cube();
+        for k in 0..12 {
+            let place =
+                DVec3::new(0.3 * f64::from(k % 3), 0.8 + 1.2 * f64::from(k / 3), 0.2 * f64::from(k % 2));
+            let place = place + DVec3::X * 1.2 * f64::from(k % 3);
+            let body = Body::new(format!("{k}"), Arc::clone(&shape)).with_position(place).with_friction(0.4);
+            simulation.add(&body.with_restitution(0.3)).unwrap();
+        }
+        simulation
+    };
+    let threads = |count: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
+        pool.install(|| run(&mut build(), 1.0))
+    };
+    let one = threads(1);
+    assert_eq!(one, threads(2));
+    let mut simulation = build();
+    run(&mut simulation, 0.5);
+    let snapshot = simulation.snapshot();
+    let first = run(&mut simulation, 1.0);
+    let mut other = build();
+    other.restore(&snapshot).unwrap();
+    let second = run(&mut other, 1.0);
+    assert_eq!(first.last().unwrap().changed, second.last().unwrap().changed);
+    assert_eq!(simulation.snapshot(), other.snapshot());
+}
+
+#[test]
+fn intersecting_starts_and_crushing_are_named() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let shape = cube();
+    simulation.add(&Body::new("one", Arc::clone(&shape))).unwrap();
+    simulation.add(&Body::new("two", Arc::clone(&shape)).with_position(DVec3::X * 0.9)).unwrap();
+    let message = simulation.step().unwrap_err().to_string();
+    assert_eq!(message, "bodies one and two intersect at the start");
+
+    let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
+    let wall = |name: &str, x: f64| Body::new(name, Arc::clone(&shape)).with_position(DVec3::X * x);
+    simulation.add(&wall("wall", 1.5).with_kind(Kind::Static)).unwrap();
+    simulation.add(&wall("nut", 0.0)).unwrap();
+    let press = ConstantTwist::REST.with_position(DVec3::X * -1.5).with_linear_velocity(DVec3::X * 2.0);
+    simulation.add(&wall("press", 0.0).with_kind(Kind::Kinematic(Arc::new(press)))).unwrap();
+    let error = (0..1000).find_map(|_| simulation.step().err()).expect("the press closes");
+    assert!(error.to_string().contains("press") && error.to_string().contains("nut"), "{error}");
+    assert!(simulation.time() < 1.0 && !simulation.finish().is_empty());
+}
