@@ -257,7 +257,7 @@ impl Reader<'_> {
         } else {
             self.folder.join(name).to_string_lossy().into_owned()
         };
-        let mesh = load(&source).map_err(|error| Failure::at(fields.place(), error))?.mesh().clone();
+        let mesh = load(&source).map_err(|error| Failure::at(fields.place(), error))?.into_mesh();
         let mesh = if scale == DVec3::ONE {
             mesh
         } else {
