@@ -24,13 +24,60 @@ pub(crate) struct Closest {
     pub(crate) direction: DVec3,
 }
 
+/// Square of the least sine of the angle between two edges whose cross product is a direction. The product errs by
+/// 2·2⁻⁵³|e||d|, so its angle by 2·2⁻⁵³ over the sine. What it has along the edges is taken off ([`across`]); the rest tilts
+/// the direction by less than a per cent, about the edges, along which it then sees nothing of them but roundings. Below that
+/// angle the line between the closest points serves, which is off by a rounding over the distance (at least 2·256·2⁻⁵³ of
+/// the size where it matters) times the angle: less than a rounding.
+const LEAST_SINE_SQUARED: f64 = 1.0 / 4_951_760_157_141_521_099_596_496_896.0; // 2⁻⁹²
+
+/// A direction without what it has along an edge. Cross products of edges at a small angle are wrong by a rounding over
+/// that angle, and what they have along the edges counts in full in the gap.
+#[inline(always)]
+pub(super) fn across(direction: DVec3, edge: DVec3) -> DVec3 {
+    direction - edge * (direction.dot(edge) / edge.length_squared())
+}
+
+/// A triangle is a sliver when twice its area is below this part of the square of its longest edge: then its normal, which errs
+/// by a rounding over that part, is made accurate.
+const SLIVER: f64 = 1.0 / 1024.0;
+
+/// The normal of a triangle, not normalised; at right angles to its longest edge up to a rounding, also for slivers.
+#[inline(always)]
+pub(super) fn face_normal(t: &[DVec3; 3]) -> DVec3 {
+    let normal = (t[1] - t[0]).cross(t[2] - t[0]);
+    let edges = [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
+    let squares = edges.map(DVec3::length_squared);
+    let longest = squares[0].max(squares[1]).max(squares[2]);
+    let is_sliver = normal.length_squared() < SLIVER * SLIVER * longest * longest;
+    if is_sliver { sliver_normal(&edges, &squares) } else { normal }
+}
+
+#[cold]
+#[inline(never)]
+fn sliver_normal(edges: &[DVec3; 3], squares: &[f64; 3]) -> DVec3 {
+    let longest = (0..3).max_by(|&i, &j| squares[i].total_cmp(&squares[j])).unwrap_or(0);
+    let [next, other] = [1, 2].map(|k| edges[(longest + k) % 3]);
+    across_all(next.cross(other), &[next, edges[longest]])
+}
+
+/// The direction across the edges, which are nearly parallel, the longest last: twice, since the first time leaves a rounding of
+/// what it takes off. Zero where nothing is left.
+pub(super) fn across_all(direction: DVec3, edges: &[DVec3; 2]) -> DVec3 {
+    let mut n = direction;
+    for edge in edges.iter().chain(edges).filter(|edge| **edge != DVec3::ZERO) {
+        n = across(n, *edge);
+    }
+    n
+}
+
 /// Closest points of the two triangles' boundaries, and of corners against faces. For crossing triangles this is not
 /// zero: a crossing has to be found by other means.
 #[inline(always)]
 pub(crate) fn closest<D: Doubles>(a: &[DVec3; 3], b: &[DVec3; 3]) -> Closest {
     let (i, j) = closest_edges::<D>(a, b);
     let mut best = edge_edge((a, i), (b, j));
-    let faces = [a, b].map(|t| (t, (t[1] - t[0]).cross(t[2] - t[0])));
+    let faces = [a, b].map(|t| (t, face_normal(t)));
     for corner in 0..3 {
         corner_face(&mut best, (a, corner), faces[1], false);
         corner_face(&mut best, (b, corner), faces[0], true);
@@ -117,15 +164,12 @@ fn edge_edge((a, i): (&[DVec3; 3], usize), (b, j): (&[DVec3; 3], usize)) -> Clos
     };
     let places = [place(i, s), place(j, t)];
     let direction = match (places[0], places[1]) {
-        (Place::Edge(_), Place::Edge(_)) if kk > 1e-24 * ee * dd => {
-            if k.dot(line) < 0.0 {
-                -k
-            } else {
-                k
-            }
+        (Place::Edge(_), Place::Edge(_)) if kk > LEAST_SINE_SQUARED * ee * dd => {
+            let k = across(k, if ee > dd { e } else { d });
+            if k.dot(line) < 0.0 { -k } else { k }
         }
-        (Place::Edge(_), _) => line - e * (line.dot(e) / ee),
-        (_, Place::Edge(_)) => line - d * (line.dot(d) / dd),
+        (Place::Edge(_), _) => across(line, e),
+        (_, Place::Edge(_)) => across(line, d),
         _ => line,
     };
     Closest { square, points: [p, q], places, direction }

@@ -21,6 +21,7 @@ mod picture;
 mod portable;
 mod quad;
 mod queue;
+mod refined_directions;
 mod scene;
 mod swept;
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::closest::closest;
 use super::frame::Frame;
 use super::quad::{Doubles, Quad, QuadVec};
+use super::refined_directions::refined_directions;
 use super::two::{Elementwise, Two};
 use glam::DVec3;
 
@@ -127,6 +128,9 @@ pub(crate) fn look<D: Doubles>(
             return Look::ClearFor(best);
         }
     }
+    if !touching && best == 0.0 {
+        best = placed.clear_along_refined::<D>(scale);
+    }
     // One of the two ends applies up to rounding.
     if touching || best == 0.0 { Look::Near { crossing: !touching, direction } } else { Look::ClearFor(best) }
 }
@@ -233,6 +237,18 @@ impl Placed {
             self.clear_for_jets(n, scale, (a_is_low, need), of)
         };
         if s > known { s } else { known }
+    }
+
+    /// The largest time along directions that are made accurate for slivers and for edges that are nearly parallel: needed
+    /// only where the others separate nothing although the features are apart, or where triangles cross.
+    #[cold]
+    #[inline(never)]
+    fn clear_along_refined<D: Doubles>(&self, scale: &PairScale) -> f64 {
+        let mut best = 0.0;
+        for direction in refined_directions(&self.a, &self.b) {
+            best = self.clear_for::<D>(direction, scale, scale.aim(), best);
+        }
+        best
     }
 
     /// The same with the corners' own accelerations; positions and rates along `n` are given.

@@ -166,6 +166,20 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/tests/clock_and_units.rs::a_start_at_large_times_is_not_a_contact",
     ),
     patch(
+        "products of nearly parallel edges as they are",
+        "crates/d2m-bvh/src/search/closest.rs",
+        "let k = across(k, if ee > dd { e } else { d });",
+        "",
+        "crates/d2m-bvh/tests/near_parallel.rs::small_angles_leave_few_tolerances",
+    ),
+    patch(
+        "normals of slivers as they are",
+        "crates/d2m-bvh/src/search/closest.rs",
+        "if is_sliver { sliver_normal(&edges, &squares) } else { normal }",
+        "if is_sliver && false { sliver_normal(&edges, &squares) } else { normal }",
+        "crates/d2m-bvh/tests/near_parallel.rs::small_angles_leave_few_tolerances",
+    ),
+    patch(
         "windows of ten times the angle",
         "crates/d2m-bvh/src/search/scene.rs",
         "const WINDOW_ANGLE: f64 = 0.3;",
