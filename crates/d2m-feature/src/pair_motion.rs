@@ -55,8 +55,17 @@ pub struct PlacedTriangle {
     /// Body frame, as given.
     vertices: [DVec3; 3],
     size: f64,
-    /// In the units and the epoch frame of the pair that placed it.
-    planes: Option<TrianglePlanes>,
+    /// In the units of the pair that placed it, if these serve it.
+    placed: Option<InUnits>,
+}
+
+/// A triangle in the units of a pair.
+#[derive(Debug, Clone)]
+struct InUnits {
+    /// Body frame.
+    vertices: [DVec3; 3],
+    /// In the epoch frame.
+    planes: TrianglePlanes,
 }
 
 /// How many times the size of the features the relative motion may reach in their units: beyond it doubles say nothing
@@ -98,13 +107,14 @@ impl PairMotion {
     /// Prepares a triangle of B (body frame) for [`PairMotion::point_placed`].
     pub fn place_triangle(&self, triangle: &[DVec3; 3]) -> PlacedTriangle {
         let size = largest(triangle);
-        let planes = match &self.sides {
+        let placed = match &self.sides {
             Some(sides) if self.units.serve(size) => {
-                Some(rigid_query::place(&sides.forward, &triangle.map(|v| self.units.point(v))))
+                let vertices = triangle.map(|v| self.units.point(v));
+                Some(InUnits { vertices, planes: rigid_query::place(&sides.forward, &vertices) })
             }
             _ => None,
         };
-        PlacedTriangle { vertices: *triangle, size, planes }
+        PlacedTriangle { vertices: *triangle, size, placed }
     }
 
     /// First contact of a point of A with a triangle of B.
@@ -143,13 +153,12 @@ impl PairMotion {
         options: &ContactOptions,
     ) -> FirstContact {
         let size = largest(&[point]).max(triangle.size);
-        if let (Some(planes), Some(sides)) = (&triangle.planes, &self.sides)
+        if let (Some(InUnits { vertices, planes }), Some(sides)) = (&triangle.placed, &self.sides)
             && self.units.serve(size.max(options.separation()))
         {
             let units = &self.units;
-            let (point, vertices) = (units.point(point), triangle.vertices.map(|v| units.point(v)));
-            let options = options.in_units(units);
-            return self.back(rigid_query::point_placed(&sides.forward, point, &vertices, planes, &options));
+            let (point, options) = (units.point(point), options.in_units(units));
+            return self.back(rigid_query::point_placed(&sides.forward, point, vertices, planes, &options));
         }
         self.point_triangle(point, &triangle.vertices, options)
     }
@@ -329,9 +338,12 @@ impl Sides {
 /// The largest magnitude of a coordinate.
 #[inline(always)]
 fn largest(points: &[DVec3]) -> f64 {
-    let mut most = DVec3::ZERO;
+    let mut most = 0.0;
     for p in points {
-        most = most.max(p.abs());
+        for x in [p.x.abs(), p.y.abs(), p.z.abs()] {
+            // (What is not a number is not counted: it excludes nothing later.)
+            most = if x > most { x } else { most };
+        }
     }
-    most.max_element()
+    most
 }

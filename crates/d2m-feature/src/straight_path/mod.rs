@@ -37,6 +37,11 @@ pub struct StraightPaths {
     end: [DVec3; 4],
 }
 
+/// 2⁻¹⁰⁰ and 2¹⁰⁰: products of three lengths between them, and of what rounding leaves of them, stay within 2±⁵⁰⁰, far from
+/// what under- or overflows.
+const SMALLEST: f64 = f64::from_bits((1023 - 100) << 52);
+const LARGEST: f64 = f64::from_bits((1023 + 100) << 52);
+
 const WINDOW: Option<Piece> = Some(Piece { lo: 0.0, hi: 1.0 });
 
 impl StraightPaths {
@@ -45,39 +50,52 @@ impl StraightPaths {
         Self { start, end }
     }
 
-    /// The paths with lengths near one, and the units in which they are. The largest coordinate is in [1, 2), so that no
-    /// product of coordinates overflows, and what underflows is far below the rounding of the largest.
-    #[inline(always)]
-    fn in_units(&self) -> (Units, Self) {
-        let mut most = DVec3::ZERO;
-        for i in 0..4 {
-            most = most.max(self.start[i].abs()).max(self.end[i].abs());
-        }
-        let units = Units::of_size(most.max_element());
-        let scaled =
-            |[p, q, r, s]: [DVec3; 4]| [units.point(p), units.point(q), units.point(r), units.point(s)];
-        (units, Self { start: scaled(self.start), end: scaled(self.end) })
-    }
-
     /// First contact of the first point with the triangle of the other three, t in [0, 1].
     pub fn point_triangle(&self, options: &ContactOptions) -> FirstContact {
-        let (units, paths) = self.in_units();
-        let options = options.in_units(&units);
-        let mut test = StraightPointTriangle::new(&Lines::new(&paths), &options);
-        back(answer_in(&mut test, WINDOW, 0.0, &options), &units)
+        self.answer(options, |lines, options| {
+            answer_in(&mut StraightPointTriangle::new(lines, options), WINDOW, 0.0, options)
+        })
     }
 
     /// First contact of the edge of the first two points with the edge of the last two, t in [0, 1].
     pub fn edge_edge(&self, options: &ContactOptions) -> FirstContact {
-        let (units, paths) = self.in_units();
-        let options = options.in_units(&units);
-        let mut test = StraightEdgeEdge::new(&Lines::new(&paths), &options);
-        back(answer_in(&mut test, WINDOW, 0.0, &options), &units)
+        self.answer(options, |lines, options| {
+            answer_in(&mut StraightEdgeEdge::new(lines, options), WINDOW, 0.0, options)
+        })
+    }
+
+    /// The answer in units in which no product of coordinates over- or underflows: those of the input, if the largest
+    /// difference is in [2⁻¹⁰⁰, 2¹⁰⁰].
+    #[inline(always)]
+    fn answer(
+        &self,
+        options: &ContactOptions,
+        query: impl Fn(&Lines, &ContactOptions) -> FirstContact,
+    ) -> FirstContact {
+        let lines = Lines::new(self);
+        if (SMALLEST..=LARGEST).contains(&lines.magnitude) {
+            query(&lines, options)
+        } else {
+            self.answer_in_other_units(options, &query)
+        }
+    }
+
+    /// The largest coordinate is brought into [1, 2): what underflows then is far below its rounding.
+    #[cold]
+    fn answer_in_other_units(
+        &self,
+        options: &ContactOptions,
+        query: &dyn Fn(&Lines, &ContactOptions) -> FirstContact,
+    ) -> FirstContact {
+        let most = self.start.iter().chain(&self.end).fold(DVec3::ZERO, |most, p| most.max(p.abs()));
+        let units = Units::of_size(most.max_element());
+        let scaled = |points: [DVec3; 4]| points.map(|p| units.point(p));
+        let paths = Self { start: scaled(self.start), end: scaled(self.end) };
+        back(query(&Lines::new(&paths), &options.in_units(&units)), &units)
     }
 }
 
 /// A contact's distances in the units of the input.
-#[inline(always)]
 fn back(answer: FirstContact, units: &Units) -> FirstContact {
     match answer {
         FirstContact::Contact(contact) => FirstContact::Contact(ContactBracket {
