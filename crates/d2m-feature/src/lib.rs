@@ -9,6 +9,7 @@ mod edge_edge;
 mod enclosed_pair;
 mod exact_sign;
 mod feature_pair;
+mod motion_in_units;
 mod options;
 mod pair_motion;
 pub mod paper;

@@ -337,7 +337,7 @@ impl Sides {
 
 /// The largest magnitude of a coordinate.
 #[inline(always)]
-fn largest(points: &[DVec3]) -> f64 {
+pub(crate) fn largest(points: &[DVec3]) -> f64 {
     let mut most = 0.0;
     for p in points {
         for x in [p.x.abs(), p.y.abs(), p.z.abs()] {

@@ -3,7 +3,7 @@
 //! Every test works with products of up to six lengths and speeds; in the units of the input these may under- or overflow
 //! although each number is finite. So all numbers of a query are multiplied by powers of two first, which rounds nothing:
 //! verdicts, brackets relative to the window and feature pairs are the same for every exact scaling of lengths or times.
-use d2m_motion::ConstantTwist;
+use d2m_motion::{CertifiedState, ConstantTwist};
 use glam::DVec3;
 
 /// The exponent of zero: smaller than every other one, with room to add to it.
@@ -112,6 +112,34 @@ impl Units {
     /// The same units of time with lengths in units of features whose largest number is `size`.
     pub(crate) fn with_length_of(&self, size: f64) -> Self {
         Self::new(exponent(size), self.time)
+    }
+
+    /// The units of any two motions about the middle of a window, from their states there: lengths in units of the
+    /// distance of the reference points, of how far they move and of their body frames'.
+    pub(crate) fn of_states(states: &[CertifiedState; 2], start: f64, end: f64) -> Self {
+        let window = exponent(end - start);
+        let [a, b] = states;
+        let place =
+            vector_exponent(a.position - b.position).max(vector_exponent(a.at)).max(vector_exponent(b.at));
+        let speed = vector_exponent(a.linear - b.linear);
+        let length = place.max(if speed.min(window) == OF_ZERO { OF_ZERO } else { speed + window });
+        let known = |k: i32| if k < OF_ZERO / 2 { 0 } else { k };
+        Self::new(known(length), known(window))
+    }
+
+    /// Lengths are multiplied by two to the minus this.
+    pub(crate) const fn length_exponent(&self) -> i32 {
+        self.length
+    }
+
+    /// Times are multiplied by two to the minus this, rates by two to this.
+    pub(crate) const fn time_exponent(&self) -> i32 {
+        self.time
+    }
+
+    /// Speeds are multiplied by two to this.
+    pub(crate) const fn speed_exponent(&self) -> i32 {
+        self.time - self.length
     }
 
     /// True if features whose largest number is `size` (in the input's units) need no other units.

@@ -152,3 +152,117 @@ fn what_is_clear_stays_apart() {
     }
     assert!(clear > 500, "{clear}");
 }
+
+/// Motions whose enclosures are right but say nothing useful, or only up to a joint.
+#[derive(Debug, Clone, Copy)]
+struct Wide(d2m_motion::ConstantTwist, f64);
+
+impl RigidMotion for Wide {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        self.0.pose_and_twist(t)
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        let pose = self.0.enclose_pose(t);
+        let wide = Interval::new(-self.1, self.1);
+        IntervalPose { translation: pose.translation + IntervalVec3::new(wide, wide, wide), ..pose }
+    }
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist(t)
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist_rate(t)
+    }
+}
+
+#[test]
+fn wide_enclosures_are_no_contact() {
+    let falling = d2m_motion::ConstantTwist::REST
+        .with_position(DVec3::Z)
+        .with_linear_velocity(DVec3::X)
+        .with_angular_velocity(DVec3::Z);
+    let still = d2m_motion::ConstantTwist::REST;
+    let floor = [DVec3::new(-4.0, -4.0, 0.0), DVec3::new(6.0, -4.0, 0.0), DVec3::new(0.0, 8.0, 0.0)];
+    for (width, clear) in [(0.0, true), (1e-12, true), (0.3, true), (0.7, false), (f64::MAX, false)] {
+        let wide = Wide(falling, width);
+        let pair = EnclosedPairMotion::new(&wide, &still, 0.0, 1.0);
+        let answer = pair.point_triangle(DVec3::ZERO, &floor, &ContactOptions::new());
+        // A unit above the floor all the time.
+        assert!(!matches!(answer, FirstContact::Contact(_)), "{width}: {answer:?}");
+        assert!(!clear || width > 0.01 || answer == FirstContact::Clear, "{width}: {answer:?}");
+    }
+}
+
+/// A point that falls, and is thrown to the side at a joint: the twist jumps.
+#[derive(Debug, Clone, Copy)]
+struct Bounce {
+    joint: f64,
+    speeds: [DVec3; 2],
+}
+
+impl Bounce {
+    fn speed(&self, t: f64) -> DVec3 {
+        self.speeds[usize::from(t >= self.joint)]
+    }
+}
+
+impl RigidMotion for Bounce {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        let before = t.min(self.joint);
+        let translation = DVec3::Z + self.speeds[0] * before + self.speeds[1] * (t - before);
+        let pose = Pose { rotation: DQuat::IDENTITY, translation, at: DVec3::ZERO };
+        (pose, Twist { linear: self.speed(t), angular: DVec3::ZERO })
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        let joint = Interval::point(self.joint);
+        let before = t.min(joint);
+        let translation = IntervalVec3::point(DVec3::Z)
+            + IntervalVec3::point(self.speeds[0]) * before
+            + IntervalVec3::point(self.speeds[1]) * (t.max(joint) - joint);
+        IntervalPose { rotation: IntervalMat3::IDENTITY, translation, at: DVec3::ZERO }
+    }
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        let first = IntervalVec3::point(self.speed(t.lo()));
+        let inner = if t.lo() < t.hi() && t.hi() <= self.joint { self.speeds[0] } else { self.speed(t.hi()) };
+        let last = IntervalVec3::point(inner);
+        let linear = IntervalVec3::new(first.x.hull(last.x), first.y.hull(last.y), first.z.hull(last.z));
+        IntervalTwist { linear, angular: IntervalVec3::point(DVec3::ZERO) }
+    }
+    fn enclose_twist_rate(&self, _: Interval) -> IntervalTwist {
+        let zero = IntervalVec3::point(DVec3::ZERO);
+        IntervalTwist { linear: zero, angular: zero }
+    }
+    fn smooth_until(&self, t: f64) -> Option<f64> {
+        (t < self.joint).then_some(self.joint)
+    }
+    fn domain(&self) -> Interval {
+        Interval::new(-10.0, 10.0)
+    }
+}
+
+#[test]
+fn twists_that_jump_are_searched_piece_by_piece() {
+    let options = ContactOptions::new();
+    let still = d2m_motion::ConstantTwist::REST;
+    let floor = [DVec3::new(-4.0, -4.0, 0.0), DVec3::new(6.0, -4.0, 0.0), DVec3::new(0.0, 8.0, 0.0)];
+    // At rest until the joint, then down by two units per unit of time: contact half a unit of time later.
+    for joint in [0.125, 0.25, 0.4, 0.5] {
+        let motion = Bounce { joint, speeds: [DVec3::ZERO, -2.0 * DVec3::Z] };
+        let pair = EnclosedPairMotion::new(&motion, &still, 0.0, 1.0);
+        let FirstContact::Contact(contact) = pair.point_triangle(DVec3::ZERO, &floor, &options) else {
+            panic!("{joint}")
+        };
+        assert!(contact.lo <= joint + 0.5 && contact.lo > joint + 0.5 - 1e-9, "{joint}: {contact:?}");
+        // Down at first, up from the joint on: contact only if the joint comes late.
+        let motion = Bounce { joint, speeds: [-2.0 * DVec3::Z, 3.0 * DVec3::Z] };
+        let pair = EnclosedPairMotion::new(&motion, &still, 0.0, 1.0);
+        match pair.point_triangle(DVec3::ZERO, &floor, &options) {
+            FirstContact::Clear => assert!(joint < 0.5),
+            FirstContact::Contact(contact) => assert!(joint == 0.5 && contact.lo <= 0.5, "{contact:?}"),
+            other => panic!("{other:?}"),
+        }
+        // Nothing is promised outside of the domain.
+        let outside = EnclosedPairMotion::new(&motion, &still, 0.0, 11.0);
+        let answer = outside.point_triangle(DVec3::ZERO, &floor, &options);
+        assert_eq!(answer, FirstContact::Undecided { clear_until: 0.0 });
+    }
+}

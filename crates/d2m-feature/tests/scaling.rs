@@ -1,10 +1,12 @@
 //! Metamorphic twins: lengths and times multiplied by powers of two change no verdict and no relative time.
 mod planted;
 
-use d2m_feature::{ContactBracket, ContactOptions, FirstContact, PairMotion, StraightPaths};
+use d2m_feature::{
+    ContactBracket, ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, StraightPaths,
+};
 use d2m_motion::ConstantTwist;
 use glam::DVec3;
-use planted::families::{FAMILIES, Kind, Planted, Random, plant};
+use planted::families::{FAMILIES, Kind, Opaque, Planted, Random, plant};
 
 /// `2ᵏ` for −1022 ≤ k ≤ 1023.
 fn power(k: i32) -> f64 {
@@ -120,6 +122,53 @@ fn exact_scalings_change_no_verdict_and_no_relative_time() {
         }
     }
     assert!(same > 240 * (SCALES.len() - 2) && hits > 100, "{same} twins, {hits} hits");
+}
+
+fn enclosed(query: &Planted, opaque: bool) -> FirstContact {
+    let (a, b) = (Opaque(query.motion_a), Opaque(query.motion_b));
+    let (t0, t1) = query.window;
+    let pair = if opaque {
+        EnclosedPairMotion::new(&a, &b, t0, t1)
+    } else {
+        EnclosedPairMotion::new(&query.motion_a, &query.motion_b, t0, t1)
+    };
+    let options = ContactOptions::new();
+    match query.kind {
+        Kind::PointTriangle => pair.point_triangle(query.a[0], &query.b, &options),
+        Kind::EdgeEdge => pair.edge_edge(query.a, [query.b[0], query.b[1]], &options),
+    }
+}
+
+/// Constant twists through their own states: the same bits. Interval enclosures are made in the units of the input, where
+/// they have an absolute width of 2⁻⁵⁰⁰: the same verdict up to lengths of 2±³⁰⁰.
+#[test]
+fn exact_scalings_of_enclosed_motions() {
+    let mut random = Random::new(7);
+    let mut hits = 0;
+    for kind in [Kind::PointTriangle, Kind::EdgeEdge] {
+        for family in FAMILIES {
+            for _ in 0..4 {
+                let query = plant(kind, family, &mut random);
+                let answers = [enclosed(&query, false), enclosed(&query, true)];
+                hits += usize::from(matches!(answers[0], FirstContact::Contact(_)));
+                for (length, time) in SCALES {
+                    let Some(twin) = scaled_query(&query, length, time) else { continue };
+                    let other = back(enclosed(&twin, false), length, time);
+                    assert_eq!(other, answers[0], "2^{length} 2^{time} {query:?}");
+                    if length.abs() + time.abs() > 300 {
+                        continue;
+                    }
+                    match (back(enclosed(&twin, true), length, time), answers[1]) {
+                        (FirstContact::Contact(c), FirstContact::Contact(d)) => {
+                            assert!((c.lo - d.lo).abs() < 1e-9, "2^{length} 2^{time} {query:?}");
+                        }
+                        (other, answer) => assert_eq!(other, answer, "2^{length} 2^{time} {query:?}"),
+                    }
+                }
+            }
+        }
+    }
+    assert!(hits > 30, "{hits}");
 }
 
 #[test]

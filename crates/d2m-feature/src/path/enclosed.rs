@@ -1,10 +1,11 @@
 //! Jets of any C² motion from what it encloses of itself.
 use super::FeaturePath;
-use d2m_motion::{PathJet, RelativeState, RigidMotion, TwoJets};
+use crate::motion_in_units::MotionInUnits;
+use crate::rounding::{PRODUCT_UNDERFLOW, UNIT, UP, length_up};
+use d2m_motion::{PathJet, RelativeState, TwoJets};
 use d2m_root::{Band, Piece, Quadratic};
 use glam::DVec3;
 
-const UP: f64 = 1.0 + 1e-14;
 /// Part of the window that may be left before it is searched as a whole, with the shared state in its middle.
 const SHARED: f64 = 0.8;
 
@@ -12,8 +13,8 @@ const SHARED: f64 = 0.8;
 /// bodies is evaluated first.
 #[derive(Clone, Copy)]
 pub(crate) struct EnclosedMotions<'a> {
-    pub(crate) a: &'a dyn RigidMotion,
-    pub(crate) b: &'a dyn RigidMotion,
+    a: MotionInUnits<'a>,
+    b: MotionInUnits<'a>,
     window: Piece,
     middle: f64,
     state: RelativeState,
@@ -22,15 +23,31 @@ pub(crate) struct EnclosedMotions<'a> {
 }
 
 impl<'a> EnclosedMotions<'a> {
-    pub(crate) fn new(a: &'a dyn RigidMotion, b: &'a dyn RigidMotion, window: Piece) -> Self {
+    pub(crate) fn new(a: MotionInUnits<'a>, b: MotionInUnits<'a>, window: Piece) -> Self {
         let middle = window.mid();
-        let state = RelativeState::new(a, b, (window.lo, window.hi), middle);
-        let instant = RelativeState::new(a, b, (middle, middle), middle);
+        let state = RelativeState::new(&a, &b, (window.lo, window.hi), middle);
+        let instant = RelativeState::new(&a, &b, (middle, middle), middle);
         Self { a, b, window, middle, state, instant }
     }
 
     pub(crate) const fn window(&self) -> Piece {
         self.window
+    }
+
+    /// Bound of the distance of the reference points over the window.
+    pub(crate) fn bound_distance(&self) -> f64 {
+        let h = super::reach(super::local(self.window, self.middle)) * UP;
+        let (g, u, stray) = self.state.straight_line(h);
+        (length_up(g) + length_up(u) * h + stray) * UP
+    }
+
+    /// The reference points of A and B, body frames.
+    pub(crate) const fn at_a(&self) -> DVec3 {
+        self.state.at_a()
+    }
+
+    pub(crate) const fn at_b(&self) -> DVec3 {
+        self.state.at_b()
     }
 
     /// Bound of the rate of turn of B over the window.
@@ -43,13 +60,13 @@ impl<'a> EnclosedMotions<'a> {
     /// `|x_A − x_B| ≥ |g + us| − r` with the r of [`RelativeState::straight_line`], so contact needs
     /// `|g + us|² ≤ (distance + r)²`. The squares' rounding is below 16·2⁻⁵³ of `(|g| + |u|h)²`, and so is their
     /// change over the rounding of s.
-    fn times_within(&self, distance: f64) -> Option<Piece> {
+    pub(crate) fn times_within(&self, distance: f64) -> Option<Piece> {
         let whole = super::local(self.window, self.middle);
         let h = super::reach(whole) * UP;
         let (g, u, stray) = self.state.straight_line(h);
-        let size = g.length() + u.length() * h;
+        let size = length_up(g) + length_up(u) * h;
         let band = (distance + stray) * UP;
-        let square = band * band * UP + 64.0 * f64::EPSILON * (size * size) + 1e-290;
+        let square = band * band * UP + SQUARES * (size * size) + PRODUCT_UNDERFLOW;
         let squared = Quadratic {
             value: g.length_squared(),
             slope: 2.0 * g.dot(u),
@@ -59,6 +76,9 @@ impl<'a> EnclosedMotions<'a> {
         Some(super::global(part, self.middle, self.window))
     }
 }
+
+/// Rounding of |g + us|² and its change over the rounding of s, as a part of (|g| + |u|h)²: both below 16·2⁻⁵³.
+const SQUARES: f64 = 128.0 * UNIT;
 
 /// A point and a direction of A seen from the body frame of B, in real time.
 pub(crate) struct EnclosedPath<'a> {
@@ -82,11 +102,11 @@ pub(crate) struct Extent {
 
 impl Extent {
     /// Of a ball.
-    pub(crate) fn of(centre: DVec3, radius: f64, motions: &EnclosedMotions<'_>) -> Self {
+    pub(crate) fn of(center: DVec3, radius: f64, motions: &EnclosedMotions<'_>) -> Self {
         let at = motions.state.at_b();
         Self {
-            from_origin: (centre.length() + radius) * UP,
-            from_followed: ((centre - at).length() + radius + f64::EPSILON * at.length()) * UP,
+            from_origin: (length_up(center) + radius) * UP,
+            from_followed: (length_up(center - at) + radius + 2.0 * UNIT * length_up(at)) * UP,
         }
     }
 }
@@ -106,8 +126,8 @@ impl<'a> EnclosedPath<'a> {
         let half = (ends[1] - ends[0]) * 0.5;
         let arm = (first + last) * 0.5;
         // Bounds both ends, so that the rounding of the middle is relative to it.
-        let radius = first.length().max(last.length()) * UP;
-        let length = half.length() * UP;
+        let radius = length_up(first).max(length_up(last));
+        let length = length_up(half);
         let distance = (radius + extent.from_followed + separation) * UP;
         let window = motions
             .times_within(distance)
@@ -127,7 +147,7 @@ impl<'a> EnclosedPath<'a> {
         if at == shared.middle && piece.width() > 0.5 * shared.window.width() {
             f(&shared.state)
         } else {
-            f(&RelativeState::new(shared.a, shared.b, (piece.lo, piece.hi), at))
+            f(&RelativeState::new(&shared.a, &shared.b, (piece.lo, piece.hi), at))
         }
     }
 }
