@@ -1,6 +1,6 @@
 //! Motions as the command line takes them.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, parse_json};
 use crate::load::read;
 use d2m::bvh::Window;
 use d2m::motion::{AnyMotion, ConstantTwist, RigidMotion};
@@ -15,8 +15,7 @@ pub(crate) fn parse_motion(option: &str, text: &str) -> Result<AnyMotion, Failur
     if file.is_empty() {
         return Err(Failure::at(option, "@ needs the name of a file"));
     }
-    let bytes = read(Path::new(file))?;
-    serde_json::from_slice(&bytes).map_err(|error| Failure::at(file, error))
+    parse_json(file, &read(Path::new(file))?)
 }
 
 /// The window must lie within the times that the motion covers.

@@ -2,7 +2,7 @@
 
 use crate::arguments::PosedArguments;
 use crate::engine::choose_solid;
-use crate::failure::Failure;
+use crate::failure::{Failure, parse_json};
 use crate::load::{load, read};
 use d2m::bvh::{MeshTree, Posed, QueryError, Solid};
 use d2m::motion::{ConstantTwist, Pose};
@@ -66,10 +66,7 @@ fn parse_pose(option: &str, text: &str) -> Result<Pose, Failure> {
     let (place, motion): (&str, ConstantTwist) = match text.strip_prefix('@') {
         None => (option, text.parse().map_err(|error| Failure::at(option, error))?),
         Some("") => return Err(Failure::at(option, "@ needs the name of a file")),
-        Some(file) => {
-            let bytes = read(Path::new(file))?;
-            (file, serde_json::from_slice(&bytes).map_err(|error| Failure::at(file, error))?)
-        }
+        Some(file) => (file, parse_json(file, &read(Path::new(file))?)?),
     };
     for (key, velocity) in [("v", motion.linear_velocity()), ("w", motion.angular_velocity())] {
         if velocity != DVec3::ZERO {

@@ -62,7 +62,7 @@ fn parse(text: &str) -> Result<Vec<Trial>, (Option<usize>, String)> {
     if trials.is_empty() { Err((None, "there are no trials".to_owned())) } else { Ok(trials) }
 }
 
-/// Names of columns: several fields, and none of them a number.
+/// Names of columns: several fields of printed characters, and none of them a number.
 fn is_header(line: &str) -> bool {
     let mut fields = line.split(',').map(str::trim);
     line.contains(',')
@@ -72,7 +72,7 @@ fn is_header(line: &str) -> bool {
 
 /// `{"a": motion, "b": motion, "window": [t0, t1]}`, each of which may be left out: at rest, from 0 to 1.
 fn parse_json(text: &str, line: usize) -> Result<Trial, String> {
-    let form: TrialForm = serde_json::from_str(text).map_err(|error| json_fault(&error))?;
+    let form: TrialForm = serde_json::from_str(text).map_err(|error| json_fault(&error, text))?;
     let [start, end] = form.window;
     let window = Window::try_new(start, end).map_err(|error| format!("window: {error}"))?;
     let trial = Trial { line, motion_a: form.a, motion_b: form.b, window };

@@ -2,7 +2,7 @@
 
 use crate::arguments::FeaturesArguments;
 use crate::engine::{MIN_SEPARATION, TOLERANCE, number};
-use crate::failure::Failure;
+use crate::failure::{Failure, json_fault};
 use crate::load::read;
 use crate::output::Output;
 use crate::report::microseconds;
@@ -159,12 +159,7 @@ fn read_cases(path: &Path) -> Result<Vec<Case>, Failure> {
 }
 
 fn read_case(line: &str) -> Result<Case, String> {
-    let case: Case = serde_json::from_str(line).map_err(|error| {
-        // For the parser every line is the first; where it lost the thread is the end of what is wrong.
-        let (text, column) = (error.to_string(), error.column());
-        let what = text.split(" at line 1 column ").next().unwrap_or_default();
-        if column == 0 { what.to_owned() } else { format!("{what} (before column {column})") }
-    })?;
+    let case: Case = serde_json::from_str(line).map_err(|error| json_fault(&error, line))?;
     case.question.check().map_err(|reason| format!("case {:?}: {reason}", case.id))?;
     Ok(case)
 }

@@ -7,7 +7,7 @@ use crate::load::load;
 use crate::motion::{parse_motion, parse_window, require_window};
 use crate::output::Output;
 use crate::report;
-use crate::view::{Mark, Picture, flights_of};
+use crate::view::{Mark, Picture, flights_of, picture_of_run};
 use d2m::bvh::{StartState, TimeOfContact};
 use std::path::Path;
 
@@ -15,8 +15,14 @@ use std::path::Path;
 pub(crate) fn run(arguments: &ViewArguments) -> Result<(), Failure> {
     let inputs = [Some(&arguments.a), arguments.b.as_ref()].into_iter().flatten();
     let out = Output::new(&arguments.out)?.spare(inputs.map(Path::new))?;
-    let Some(b) = &arguments.b else { return Err(Failure::at("B", "the second mesh is missing")) };
-    let picture = pair(arguments, b)?;
+    let extension = Path::new(&arguments.a).extension().unwrap_or_default().to_ascii_lowercase();
+    let is_run = extension == "jsonl";
+    let picture = match &arguments.b {
+        Some(b) if is_run => return Err(Failure::at(b, "a simulation is viewed alone")),
+        Some(b) => pair(arguments, b)?,
+        None if is_run => picture_of_run(Path::new(&arguments.a))?,
+        None => return Err(Failure::at("B", "the second mesh is missing")),
+    };
     out.write(&picture.to_html())
 }
 

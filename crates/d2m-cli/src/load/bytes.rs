@@ -6,7 +6,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 /// Most bytes of an input that does not know its length (a pipe, a device): such a one may never end.
-const MOST_BYTES: u64 = 1 << 32;
+const MOST_BYTES: u64 = 1 << 30;
 
 /// The bytes of a file, or of standard input for `-`; there must be some.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {

@@ -148,7 +148,7 @@ fn coordinate(axis: &str, word: Option<&str>) -> Result<f64, String> {
         check_coordinate(axis, value)?;
         Ok(value)
     } else {
-        Err(format!("{axis} is {word}, not a finite number"))
+        Err(format!("{axis} is {}, not a finite number", excerpt(word).trim_matches('"')))
     }
 }
 
@@ -163,7 +163,7 @@ fn check_coordinate(axis: &str, value: f64) -> Result<(), String> {
 }
 
 /// Words of a file in quotes, as a message shows them: damaged files have long ones.
-fn excerpt(text: &str) -> String {
+pub(crate) fn excerpt(text: &str) -> String {
     const MOST_CHARACTERS: usize = 60;
     match text.char_indices().nth(MOST_CHARACTERS) {
         None => format!("{text:?}"),
