@@ -75,8 +75,17 @@ fn count(number: usize) -> String {
     groups.join(" ")
 }
 
+/// With so many digits after the point, or in powers of ten where that would fill the line or show nothing.
+fn fixed(number: f64, digits: usize) -> String {
+    match number.abs() {
+        size if size >= 1e9 || (0.0 < size && size < 1e-5) => format!("{number:.digits$e}"),
+        _ => format!("{number:.digits$}"),
+    }
+}
+
 pub(crate) fn vector(v: DVec3) -> String {
-    format!("({:.9}, {:.9}, {:.9})", v.x, v.y, v.z)
+    let [x, y, z] = v.to_array().map(|number| fixed(number, 9));
+    format!("({x}, {y}, {z})")
 }
 
 /// The answer for a person.
@@ -184,7 +193,7 @@ fn contact_lines(line: &mut dyn FnMut(&str, String), contact: &Contact, pair: &P
         line("features", feature_sentence(contact.feature));
     }
     if apart {
-        line("closing", format!("{:.6} along the normal, per unit of time", contact.closing_speed));
+        line("closing", format!("{} along the normal, per unit of time", fixed(contact.closing_speed, 6)));
     }
 }
 

@@ -292,7 +292,6 @@ fn bad_input_is_named_and_leaves_nothing() {
         ("--motion-a", "v=1,2", "3 numbers"),
         ("--motion-b", "v=nan,0,0", "nan"),
         ("--motion-b", "u=1,2,3", "u"),
-        ("--motion-b", "v=1e300,0,0", "motion of B: x = [0.0, 0.0, 0.0], v = [1e300, 0.0, 0.0]"),
         ("--motion-b", "w=1e300,0,0", "turns by"),
         ("--motion-b", "@", "name of a file"),
         ("--window", "-1e308,1e308", "length"),
