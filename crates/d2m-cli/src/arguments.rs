@@ -29,6 +29,8 @@ pub(crate) enum Command {
     Collide(CollideArguments),
     /// Rigid bodies under gravity, contacts and friction, from a scene file to a run file
     Simulate(SimulateArguments),
+    /// Contacts of many moving bodies, from a scene file
+    Scene(SceneArguments),
     /// What is in a mesh, or which shapes are built in
     Info(InfoArguments),
     /// Saves the search tree of a mesh; the file is a mesh argument like any other
@@ -289,6 +291,42 @@ pub(crate) struct SimulateArguments {
     /// Threads; the run has the same numbers at any number of them
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: u16,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A scene: {\"window\": [0, 1], \"bodies\": [{\"name\", \"mesh\", \"scale\", \"motion\", \"group\", \"solid\"}, ...],
+\"ignore\": [[\"arm\", \"base\"], ...], \"min_separation\": 0, \"tolerance\": 1e-10}. A mesh is a file, relative to the scene's folder, or shape:...;
+scale is one number or three; a motion has any JSON form of d2m toc, at rest if left out; solid is whether the mesh is watertight if
+left out; ignore lists pairs of names of bodies or groups.
+
+The answer lists the first contact of each pair, sorted by time; pairs that are proven apart all the time are left out. With --first the
+search stops at the first contact of all; contacts whose time brackets overlap its bracket are listed too. Before a bracket nothing of
+the pair meets: that is proven. The answers are bitwise the same at any number of threads.
+
+Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 separated, 12 undecided.
+
+Example:
+  d2m scene docs/scenes/robot-arm.json --first")]
+pub(crate) struct SceneArguments {
+    /// Scene file, JSON
+    #[arg(value_name = "SCENE.json")]
+    pub(crate) scene: PathBuf,
+    /// Stop at the first contact of all
+    #[arg(long)]
+    pub(crate) first: bool,
+    /// Threads [default: all of the machine]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Most seconds of the search, which then runs on one thread; pairs that are not decided by then are "undecided"
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub(crate) time_limit: Option<String>,
+    /// Answer as one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Exit with 10 if there is a contact, 11 if all pairs are separated, 12 if undecided
+    #[arg(long)]
+    pub(crate) exit_status: bool,
 }
 
 #[derive(Debug, Args)]

@@ -13,6 +13,7 @@ mod outcome;
 mod output;
 mod posed;
 mod report;
+mod scene;
 mod simulation;
 mod trials;
 mod view;
@@ -37,6 +38,7 @@ fn main() -> ExitCode {
         Command::Distance(arguments) => commands::distance::run(arguments),
         Command::Collide(arguments) => commands::collide::run(arguments),
         Command::Simulate(arguments) => commands::simulate::run(arguments).map(Outcome::from),
+        Command::Scene(arguments) => commands::scene::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments).map(Outcome::from),
         Command::Tree(arguments) => commands::tree::run(arguments).map(Outcome::from),
         Command::View(arguments) => commands::view::run(arguments).map(Outcome::from),

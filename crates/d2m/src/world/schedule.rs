@@ -241,6 +241,11 @@ impl Schedule {
         self.from
     }
 
+    /// How many entries wait.
+    pub(super) fn waiting(&self) -> usize {
+        self.queue.len()
+    }
+
     /// All pairs that the boxes leave, ascending.
     pub(super) fn pairs(&self) -> Vec<IndexPair> {
         let mut pairs: Vec<_> = self.queue.iter().map(|entry| entry.pair).collect();

@@ -128,7 +128,20 @@ impl World {
     /// # Errors
     /// Bad input of a pair, with its names.
     pub fn contacts(&mut self, window: Window) -> Result<Vec<PairContact>, WorldError> {
-        let finding = self.search(window, Goal::All)?;
+        self.contacts_with_progress(window, &|_, _| ())
+    }
+
+    /// As [`Self::contacts`]; calls `progress` after each round with the number of pairs that are done, and of all pairs
+    /// that the broad phase leaves.
+    ///
+    /// # Errors
+    /// Bad input of a pair, with its names.
+    pub fn contacts_with_progress(
+        &mut self,
+        window: Window,
+        progress: &dyn Fn(usize, usize),
+    ) -> Result<Vec<PairContact>, WorldError> {
+        let finding = self.search(window, Goal::All, progress)?;
         let contacts =
             finding.contacts.iter().map(|(pair, contact)| (pair, TimeOfContact::Contact(*contact)));
         let undecided = finding
@@ -150,7 +163,7 @@ impl World {
     /// # Errors
     /// Bad input of a pair, with its names.
     pub fn first_contact(&mut self, window: Window) -> Result<FirstContact, WorldError> {
-        let finding = self.search(window, Goal::First)?;
+        let finding = self.search(window, Goal::First, &|_, _| ())?;
         let undecided = finding.undecided_from();
         let Some(&(pair, contact)) = finding.best() else {
             return Ok(match undecided {
@@ -179,7 +192,12 @@ impl World {
         PairContact { a, b, answer }
     }
 
-    fn search(&mut self, window: Window, goal: Goal) -> Result<Finding, WorldError> {
+    fn search(
+        &mut self,
+        window: Window,
+        goal: Goal,
+        progress: &dyn Fn(usize, usize),
+    ) -> Result<Finding, WorldError> {
         self.prepare(window);
         let mut finding = Finding::default();
         let mut purse = Purse::new(self.options.budget);
@@ -207,6 +225,7 @@ impl World {
             if let Err(error) = self.ask(questions, &mut purse, &mut finding) {
                 break Err(error);
             }
+            progress(finding.seen.len(), finding.seen.len() + self.schedule.waiting());
             if !purse.is_limited() {
                 round = (2 * round).min(LONGEST_ROUND);
             }

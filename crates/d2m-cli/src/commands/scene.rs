@@ -1,0 +1,144 @@
+//! `d2m scene`: the contacts of many bodies.
+
+use crate::arguments::SceneArguments;
+use crate::engine::number;
+use crate::failure::Failure;
+use crate::outcome::Outcome;
+use crate::output::{print, progress_bar};
+use crate::report::{feature_field, short, vector};
+use crate::scene::Scene;
+use d2m::bvh::{Budget, QueryOptions, TimeOfContact, Window};
+use d2m::{FirstContact, PairContact, WorldError};
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::time::Duration;
+
+/// A contact of two bodies by number; none of them where only the time is known.
+struct Row {
+    bodies: Option<[usize; 2]>,
+    answer: TimeOfContact,
+}
+
+impl From<PairContact> for Row {
+    fn from(pair: PairContact) -> Self {
+        Self { bodies: Some([pair.a.index(), pair.b.index()]), answer: pair.answer }
+    }
+}
+
+/// Runs the command.
+pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
+    let scene = Scene::read(&arguments.scene)?;
+    let mut options = QueryOptions::default();
+    if let Some(text) = &arguments.time_limit {
+        let is_time = |seconds: f64| Duration::try_from_secs_f64(seconds).is_ok();
+        let seconds = number("--time-limit", text, "a number of seconds that is not negative", is_time)?;
+        options = options.with_budget(Budget::UNLIMITED.with_wall_clock(Duration::from_secs_f64(seconds)));
+    }
+    let mut world = scene.world(options);
+    let named = |error: WorldError| {
+        let [a, b] = [error.a, error.b].map(|id| &scene.bodies[id.index()].name);
+        Failure::at(arguments.scene.display(), format!("bodies {a:?} and {b:?}: {}", error.error))
+    };
+    let threads = arguments.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| Failure::at("--threads", error))?;
+    let bar = progress_bar(0, "pairs");
+    let progress = |done: usize, all: usize| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    };
+    let rows: Vec<Row> = pool.install(|| {
+        if !arguments.first {
+            let contacts = world.contacts_with_progress(scene.window, &progress).map_err(named)?;
+            return Ok(contacts.into_iter().map(Row::from).collect());
+        }
+        Ok(match world.first_contact(scene.window).map_err(named)? {
+            FirstContact::Separated => Vec::new(),
+            FirstContact::Undecided { clear_until } => {
+                vec![Row { bodies: None, answer: TimeOfContact::Undecided { clear_until } }]
+            }
+            FirstContact::Contact { a, b, contact, overlapping, .. } => {
+                let first =
+                    Row { bodies: Some([a.index(), b.index()]), answer: TimeOfContact::Contact(contact) };
+                std::iter::once(first).chain(overlapping.into_iter().map(Row::from)).collect()
+            }
+        })
+    })?;
+    bar.finish_and_clear();
+    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    print(&if arguments.json {
+        json(scene.window, &names, &rows)
+    } else {
+        text(scene.window, &names, &rows)
+    })?;
+    let outcome = if rows.iter().any(|row| row.answer.contact().is_some()) {
+        Outcome::Contact
+    } else if rows.is_empty() {
+        Outcome::Separated
+    } else {
+        Outcome::Undecided
+    };
+    Ok(outcome.asked(arguments.exit_status))
+}
+
+/// The answer for a program.
+fn json(window: Window, names: &[&str], rows: &[Row]) -> String {
+    let contacts: Vec<Value> = rows
+        .iter()
+        .map(|row| {
+            let [a, b] = [0, 1].map(|k| row.bodies.map(|bodies| names[bodies[k]]));
+            match &row.answer {
+                TimeOfContact::Contact(contact) => json!({
+                    "a": a, "b": b, "status": "contact",
+                    "toc": contact.time_lo, "toc_hi": contact.time_hi,
+                    "separation": contact.separation, "tolerance": contact.tolerance,
+                    "evidence": contact.evidence.to_string(),
+                    "normal": contact.normal.to_array(), "point": contact.point_a.to_array(),
+                    "feature": feature_field(contact.feature),
+                    "triangle_a": contact.triangle_a, "triangle_b": contact.triangle_b,
+                }),
+                TimeOfContact::Undecided { clear_until } => {
+                    json!({ "a": a, "b": b, "status": "undecided", "toc": clear_until })
+                }
+                TimeOfContact::Separated => json!({ "a": a, "b": b, "status": "separated" }),
+            }
+        })
+        .collect();
+    format!("{}\n", json!({ "window": [window.start(), window.end()], "contacts": contacts }))
+}
+
+/// The answer for a person.
+fn text(window: Window, names: &[&str], rows: &[Row]) -> String {
+    let [start, end] = [window.start(), window.end()].map(short);
+    let mut text = match rows.len() {
+        0 => format!("SEPARATED: certified, no contact of {} bodies from {start} to {end}\n", names.len()),
+        1 => format!("1 answer about {} bodies from {start} to {end}\n", names.len()),
+        count => format!("{count} answers about {} bodies from {start} to {end}\n", names.len()),
+    };
+    for row in rows {
+        let pair = match row.bodies {
+            Some([a, b]) => format!("{} \u{2013} {}", names[a], names[b]),
+            None => "all pairs".to_owned(),
+        };
+        // Writing to a string cannot fail.
+        let _ = match &row.answer {
+            TimeOfContact::Contact(contact) => writeln!(
+                text,
+                "  t = {:<22} {pair}: {} at {}, {:.2e} apart then",
+                short(contact.time_lo),
+                contact.evidence,
+                vector(contact.point_a),
+                contact.separation
+            ),
+            TimeOfContact::Undecided { clear_until } => {
+                writeln!(
+                    text,
+                    "  t = {:<22} {pair}: undecided, certified free until then",
+                    short(*clear_until)
+                )
+            }
+            TimeOfContact::Separated => Ok(()),
+        };
+    }
+    text
+}
