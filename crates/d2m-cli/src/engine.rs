@@ -122,6 +122,10 @@ impl Pair {
     /// The time of contact in a window, piece by piece where both motions have constant twists; the first contact is the
     /// answer.
     pub(crate) fn ask(&self, a: &AnyMotion, b: &AnyMotion, window: Window) -> Result<Answer, Failure> {
+        // The engine does that itself.
+        if matches!(self.a.tree, Tree::Engine(_)) {
+            return self.ask_smooth([a, b], window);
+        }
         let mut took = Duration::ZERO;
         let mut start = window.start();
         loop {

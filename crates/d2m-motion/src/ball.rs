@@ -83,6 +83,9 @@ impl Ball {
     /// Encloses the products with the numbers within `radius` of `factor`.
     #[must_use]
     pub fn times(self, factor: f64, radius: f64) -> Self {
+        if self == Self::ZERO || (factor, radius) == (0.0, 0.0) {
+            return Self::ZERO;
+        }
         let center = self.center * factor;
         let known = times_up(radius, self.bound_length());
         Self::new(center, up(known + times_up(self.radius, factor.abs()) + rounding(center, UNIT)))
@@ -93,6 +96,9 @@ impl Ball {
     /// A component of a × b is off by 2u(|a_y b_z| + |a_z b_y|) and the like, which is less than 4u|a||b| in length.
     #[must_use]
     pub fn cross(self, other: Self) -> Self {
+        if self == Self::ZERO || other == Self::ZERO {
+            return Self::ZERO;
+        }
         let (long, wide) = (length_up(self.center), length_up(other.center));
         let spread = times_up(self.radius, up(wide + other.radius)) + times_up(long, other.radius);
         Self::new(self.center.cross(other.center), up(spread + times_up(4.0 * UNIT * long, wide)))
@@ -103,7 +109,7 @@ impl Ball {
     /// `|R a − R̃ ã| ≤ |a − ã| + ‖R − R̃‖|ã|`; the product rounds by 3u of |R̃||ã| in each component, √3·√3 of it in all.
     #[must_use]
     pub fn turned(self, rotation: &DMat3, radius: f64) -> Self {
-        if radius == 0.0 && *rotation == DMat3::IDENTITY {
+        if self == Self::ZERO || (radius == 0.0 && *rotation == DMat3::IDENTITY) {
             return self;
         }
         let long = length_up(self.center);

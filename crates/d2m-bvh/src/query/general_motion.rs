@@ -169,7 +169,7 @@ impl<'a> Advance<'a> {
             return Ok(Step::FreeUntil(until));
         }
         let options = QueryOptions { tolerance: self.options.tolerance, ..self.options_of_span() };
-        Ok(match self.ask(motions, until, &options)? {
+        Ok(match self.ask(motions, Window::try_new(self.now, until)?, &options)? {
             TimeOfContact::Separated => Step::FreeUntil(until),
             TimeOfContact::Contact(contact) => Step::Answer(TimeOfContact::Contact(self.with_start(contact))),
             undecided => Step::Answer(undecided),
@@ -196,10 +196,9 @@ impl<'a> Advance<'a> {
     fn ask(
         &mut self,
         [a, b]: [&dyn RigidMotion; 2],
-        until: f64,
+        span: Window,
         options: &QueryOptions,
     ) -> Result<TimeOfContact, QueryError> {
-        let span = Window::try_new(self.now, until)?;
         let (a, b) = (Moving::new(self.bodies[0].body, a), Moving::new(self.bodies[1].body, b));
         let answer = time_of_contact(a, b, span, options)?;
         self.work += last_search_counts().work() + 1;
@@ -210,7 +209,7 @@ impl<'a> Advance<'a> {
     fn fitted_span(&mut self) -> Result<Step, QueryError> {
         let undecided = Step::Answer(TimeOfContact::Undecided { clear_until: self.now });
         let Some((fitted, until)) = self.fit()? else { return Ok(undecided) };
-        let FittedTwists { twists, deviation, floor } = fitted;
+        let FittedTwists { twists, clock, deviation, floor } = fitted;
         let tolerance = self.tolerance.max(self.rounding_tolerance(floor));
         let small = deviation <= SMALL_PART * tolerance;
         let inner = if small { tolerance - 2.0 * deviation } else { deviation.max(tolerance) };
@@ -220,16 +219,25 @@ impl<'a> Advance<'a> {
         if options.mode == Mode::Exists {
             options.mode = Mode::Accurate;
         }
-        let contact = match self.ask([&twists[0], &twists[1]], until, &options)? {
+        let (first, last) = clock.span(self.now, until);
+        let contact = match self.ask([&twists[0], &twists[1]], Window::try_new(first, last)?, &options)? {
             TimeOfContact::Separated => {
                 self.longest = GROWTH * (until - self.now);
                 self.largest *= GROWTH;
                 return Ok(Step::FreeUntil(until));
             }
             TimeOfContact::Undecided { clear_until } => {
+                let clear_until = clock.time_down(clear_until, self.now).min(until);
                 return Ok(Step::Answer(TimeOfContact::Undecided { clear_until }));
             }
-            TimeOfContact::Contact(contact) => contact,
+            TimeOfContact::Contact(contact) => {
+                let time_lo = clock.time_down(contact.time_lo, self.now).min(until);
+                let time_hi = match contact.evidence {
+                    Evidence::Early => time_lo,
+                    _ => clock.time_up(contact.time_hi, until).max(time_lo),
+                };
+                Contact { time_lo, time_hi, ..contact }
+            }
         };
         let early = options.mode == Mode::Capoeira && deviation <= PART_OF_ROOM * contact.separation;
         if small || early {
