@@ -295,8 +295,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "the deviation of fitted twists is not taken from the gap",
         "crates/d2m-bvh/src/query/general_motion.rs",
-        "(self.options.min_separation + deviation).next_up()",
-        "self.options.min_separation",
+        "(self.options.min_separation + deviation).next_up();",
+        "self.options.min_separation;\n        options.tolerance = Some(tolerance);",
         "crates/d2m-bvh/tests/general_motion.rs::velocities_that_vanish_at_the_contact",
     ),
     in_test(

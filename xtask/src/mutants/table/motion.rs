@@ -24,6 +24,20 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "const ROUNDING: f64 = 0.0;",
         "crates/d2m-motion/src/relative/tests.rs::remainders_hold_and_are_nearly_reached",
     ),
+    patch(
+        "Coriolis acceleration once in a composition",
+        "crates/d2m-motion/src/kinematics.rs",
+        ".plus(coriolis)\n                .plus(coriolis)",
+        ".plus(coriolis)",
+        "crates/d2m-motion/src/chain_tests.rs::enclosures_of_chains_hold_and_are_tight",
+    ),
+    patch(
+        "nine tenths of a span in the value of a joint",
+        "crates/d2m-motion/src/joint_value.rs",
+        "let r = up(half + lost.abs());",
+        "let r = up(0.9 * half + lost.abs());",
+        "crates/d2m-motion/src/chain_tests.rs::enclosures_of_chains_hold_and_are_tight",
+    ),
     in_test(
         "K3 = w³, no bY in V, a remainder without E",
         "crates/d2m-motion/src/relative/tests.rs::bounds_of_the_derivatives_hold_and_are_nearly_reached",
