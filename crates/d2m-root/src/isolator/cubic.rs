@@ -3,7 +3,7 @@
 //! **Invariant:** the coefficients are taken as they are, exactly; every rounding made here is counted here. The proofs
 //! of the constants are in `docs/theory/isolator.md`.
 use super::first_zero_bound::UNIT;
-use super::piece::{Piece, down, up};
+use super::piece::Piece;
 use super::quadratic::{LONGEST_REACH, UNDERFLOW};
 use super::time_unit::TimeUnit;
 use super::{Band, Quadratic};
@@ -27,11 +27,12 @@ const ROUNDS: u32 = 4;
 const PAYS: f64 = 0.5;
 /// Error of a contraction, in units of 2⁻⁵³ and parts of |value|, |slope|·h, |curvature|·h² and |jerk|·h³ for times up to
 /// h: moving the cubic to the middle of a piece (1, 5, 7, 5⅓), what replacing s³ leaves out (0, 0, 0, ¼), evaluating the
-/// quadratic there (9, 18, 22½, 16⅛); and the rounding of this bound itself.
+/// quadratic there (9, 18, 22½, 16⅛), times that are rounded by 4·2⁻⁵³·h (0, 4, 4, 2); and the rounding of this bound
+/// itself.
 const OF_VALUE: f64 = 11.0;
-const OF_SLOPE: f64 = 24.0;
-const OF_CURVATURE: f64 = 30.0;
-const OF_JERK: f64 = 22.0;
+const OF_SLOPE: f64 = 28.0;
+const OF_CURVATURE: f64 = 34.0;
+const OF_JERK: f64 = 24.0;
 /// Keeps a sum of three bounds above its exact value: more than its two roundings and this one.
 const SUM: f64 = 1.0 + 4.0 * UNIT;
 
@@ -98,7 +99,7 @@ impl Cubic {
     /// ```
     #[inline(always)]
     pub fn clip(&self, band: Band, margin: impl Fn(f64) -> f64, part: Piece) -> Option<Piece> {
-        if part.reach() <= LONGEST_REACH {
+        if part.is_within(LONGEST_REACH) {
             self.clip_within_reach(band, margin, part)
         } else {
             self.clip_far(band, &margin, part)
@@ -118,28 +119,24 @@ impl Cubic {
     fn clip_within_reach(&self, band: Band, margin: impl Fn(f64) -> f64, part: Piece) -> Option<Piece> {
         let mut part = part;
         let mut last = f64::INFINITY;
+        // Parts of the piece reach no farther.
+        let error = self.bound_error(part.reach());
         for _ in 0..ROUNDS {
             let m = part.mid();
-            // Holds the piece about its middle, whatever the differences round to.
-            let moved = Piece { lo: down(part.lo - m), hi: up(part.hi - m) };
+            let moved = Piece { lo: part.lo - m, hi: part.hi - m };
             let (quadratic, left_out) = self.quadratic_near(m, moved.reach());
-            let h = part.reach();
-            let allowed = (margin(h) + left_out + self.bound_error(h)) * SUM;
+            let allowed = (margin(part.reach()) + left_out + error) * SUM;
             // Another round pays if less is allowed. Also NaN ends here.
             if allowed.is_nan() || allowed >= PAYS * last {
                 break;
             }
             last = allowed;
             let kept = quadratic.clip_beyond(band, allowed, moved)?;
-            // Only an end that was cut moves: adding the middle rounds, and a piece that has shrunk allows less.
-            if kept.lo > moved.lo {
-                let from = down(m + kept.lo);
-                part.lo = if from > part.lo { from } else { part.lo };
-            }
-            if kept.hi < moved.hi {
-                let to = up(m + kept.hi);
-                part.hi = if to < part.hi { to } else { part.hi };
-            }
+            // Only an end that was cut moves: the middle plus what was subtracted from it may be another double, and once
+            // the piece has shrunk, so has what is allowed for that.
+            let (from, to) = (m + kept.lo, m + kept.hi);
+            part.lo = if (kept.lo > moved.lo) & (from > part.lo) { from } else { part.lo };
+            part.hi = if (kept.hi < moved.hi) & (to < part.hi) { to } else { part.hi };
             if part.lo > part.hi {
                 return None;
             }

@@ -20,8 +20,8 @@ const DISCRIMINANT: f64 = 8.0 * UNIT;
 /// (at most 4), less what the inflated discriminant leaves; the rest makes the bound strict.
 const EARLY: f64 = 1.0 - 16.0 * UNIT;
 
-/// 2⁻⁹⁰⁰: above it, what underflows in a product (2⁻¹⁰⁷⁵) is below 2⁻¹⁷⁵ of the discriminant.
-const LEAST_SIZE: f64 = power_of_two(-900);
+/// 2⁻⁹⁰⁰: beyond it, what underflows in a discriminant (2⁻¹⁰⁷⁵ a product) is below 2⁻¹⁷⁰ of it.
+const LEAST_DISCRIMINANT: f64 = power_of_two(-900);
 /// 2⁻¹⁰⁰⁰: above it, `EARLY` times a zero is not subnormal.
 const LEAST_ZERO: f64 = power_of_two(-1000);
 /// 2¹⁰⁰⁰: below it, and above `LEAST_ZERO`, nothing has overflowed on the way: an infinite discriminant or quotient makes
@@ -35,35 +35,33 @@ pub(super) const fn power_of_two(n: i32) -> f64 {
     f64::from_bits(((1023 + n) as u64) << 52)
 }
 
-/// See [`Quadratic::bound_first_zero`](super::Quadratic::bound_first_zero).
+/// See [`Quadratic::bound_first_zero`](super::Quadratic::bound_first_zero); for a positive gap, and coefficients that have
+/// not overflowed.
 #[inline(always)]
 pub(super) fn bound_first_zero(gap: f64, slope: f64, curvature: f64) -> f64 {
-    if slope >= 0.0 && curvature >= 0.0 {
-        // Infinite coefficients come from an overflow, and mean nothing.
-        let finite = gap < f64::INFINITY && slope < f64::INFINITY && curvature < f64::INFINITY;
-        return if gap > 0.0 && finite { f64::INFINITY } else { 0.0 };
-    }
     let square = slope * slope;
     let product = 2.0 * gap * curvature;
-    let size = square + product.abs();
-    // What is not a number is not in range either.
-    if gap > 0.0 && size > LEAST_SIZE {
-        let discriminant = discriminant(slope, square, product, size);
-        if discriminant < 0.0 {
+    let discriminant = if slope < 0.0 {
+        // Its terms may cancel: inflated by more than its error.
+        let inflated = (square - product) + DISCRIMINANT * (square + product.abs());
+        if inflated < -LEAST_DISCRIMINANT {
             return f64::INFINITY;
         }
-        let zero = zero_of(gap, slope, curvature, discriminant);
-        if zero > LEAST_ZERO && zero < GREATEST_ZERO {
-            return zero * EARLY;
-        }
+        inflated
+    } else if curvature < 0.0 {
+        square - product
+    } else if slope >= 0.0 && curvature >= 0.0 {
+        return f64::INFINITY;
+    } else {
+        return 0.0;
+    };
+    let zero = zero_of(gap, slope, curvature, discriminant);
+    // What is not a number is not in range either.
+    if (discriminant > LEAST_DISCRIMINANT) & (zero > LEAST_ZERO) & (zero < GREATEST_ZERO) {
+        zero * EARLY
+    } else {
+        bound_scaled(gap, slope, curvature)
     }
-    bound_scaled(gap, slope, curvature)
-}
-
-/// slope² − 2 gap·curvature; of a falling start, where the terms may cancel, inflated by more than its error.
-#[inline(always)]
-fn discriminant(slope: f64, square: f64, product: f64, size: f64) -> f64 {
-    if slope < 0.0 { (square - product) + DISCRIMINANT * size } else { square - product }
 }
 
 /// The first zero by the formulas above, for a discriminant that is not negative.
@@ -90,6 +88,9 @@ fn bound_scaled(gap: f64, slope: f64, curvature: f64) -> f64 {
     // x = 2ᵗ·y: slope and curvature become b·2^(its exponent + t − e), k·2^(its exponent + 2t − e).
     let by_slope = value_exponent - slope_exponent;
     let by_curvature = (value_exponent - curvature_exponent).div_euclid(2);
+    if slope >= 0.0 && curvature >= 0.0 {
+        return f64::INFINITY;
+    }
     let time_exponent = match (b == 0.0, k == 0.0) {
         (true, true) => return f64::INFINITY,
         (true, false) => by_curvature,
@@ -116,7 +117,8 @@ fn bound_scaled(gap: f64, slope: f64, curvature: f64) -> f64 {
         return f64::INFINITY;
     }
     let (square, product) = (slope * slope, 2.0 * gap * curvature);
-    let discriminant = discriminant(slope, square, product, square + product.abs());
+    let inflation = if slope < 0.0 { DISCRIMINANT * (square + product.abs()) } else { 0.0 };
+    let discriminant = (square - product) + inflation;
     if discriminant < 0.0 {
         return f64::INFINITY;
     }

@@ -44,24 +44,24 @@ impl Piece {
         self.hi - self.lo
     }
 
-    /// The largest |s| of its times s; NaN if an end is NaN.
+    /// The largest |s| of its times s, if neither end is NaN.
     #[inline(always)]
     pub(super) fn reach(&self) -> f64 {
         let (left, right) = (self.lo.abs(), self.hi.abs());
-        if left > right || left.is_nan() { left } else { right }
+        if left > right { left } else { right }
+    }
+
+    /// Whether its ends are in order and up to `reach` from zero; false if one is NaN.
+    #[inline(always)]
+    pub(super) fn is_within(&self, reach: f64) -> bool {
+        (self.reach() <= reach) & (self.lo <= self.hi)
     }
 }
 
-/// A double not above the real number that was rounded to `x`; NaN for infinities.
+/// A double not below the real number that was rounded to `x`; NaN for infinities.
 ///
-/// The neighbour below `x` is at most 2⁻⁵²|x| away and the real number less than that, so that rounding
-/// x − 2⁻⁵²|x| gives the neighbour or less. Sums and differences below 2⁻¹⁰²¹ are exact; there 2⁻⁵²|x| may vanish.
-#[inline(always)]
-pub(super) fn down(x: f64) -> f64 {
-    x - x.abs() * f64::EPSILON
-}
-
-/// The mirror image of [`down`].
+/// The neighbour above `x` is at most 2⁻⁵²|x| away and the real number less than that, so that rounding
+/// x + 2⁻⁵²|x| gives the neighbour or more. Sums and differences below 2⁻¹⁰²¹ are exact; there 2⁻⁵²|x| may vanish.
 #[inline(always)]
 pub(super) fn up(x: f64) -> f64 {
     x + x.abs() * f64::EPSILON

@@ -3,13 +3,14 @@
 //! **Invariant:** the coefficients are taken as they are, exactly; every rounding made here is counted here. The proofs
 //! of the constants are in `docs/theory/isolator.md`.
 use super::first_zero_bound::{UNIT, bound_first_zero, power_of_two};
-use super::piece::{Piece, down, up};
+use super::piece::{Piece, up};
 use super::time_unit::TimeUnit;
 
 /// Error of what [`Quadratic::clip`] and [`Quadratic::bound_below`] compute, in parts of
 /// |value| + |slope|·h + |curvature|·h² for times up to h: the value at an end (1, 3, 2 in these terms), the slope there
-/// over the width of the piece (0, 2, 4), the band (2, 2, 2); and the rounding of this bound itself.
-const EVALUATION: f64 = 9.0 * UNIT;
+/// over the width of the piece (0, 2, 4), the band (2, 2, 2), times that are rounded by 3·2⁻⁵³·h (0, 3, 3); and the
+/// rounding of this bound itself.
+const EVALUATION: f64 = 12.0 * UNIT;
 
 /// 2²⁰: up to this time, `UNDERFLOW` covers every product that underflows. Beyond it another unit of time is taken.
 pub(super) const LONGEST_REACH: f64 = power_of_two(20);
@@ -95,7 +96,12 @@ impl Quadratic {
     /// ```
     #[inline(always)]
     pub fn bound_first_zero(gap: f64, slope: f64, curvature: f64) -> f64 {
-        bound_first_zero(gap, slope, curvature)
+        // Infinite coefficients come from an overflow, and mean nothing.
+        let known = (gap > 0.0)
+            & (gap < f64::INFINITY)
+            & (slope.abs() < f64::INFINITY)
+            & (curvature.abs() < f64::INFINITY);
+        if known { bound_first_zero(gap, slope, curvature) } else { 0.0 }
     }
 
     /// Bounds the error of what is computed on a piece up to the time `h` ≤ [`LONGEST_REACH`]. Infinite, or NaN, if
@@ -122,9 +128,8 @@ impl Quadratic {
     /// ```
     #[inline(always)]
     pub fn clip(&self, band: Band, part: Piece) -> Option<Piece> {
-        let h = part.reach();
-        if h <= LONGEST_REACH {
-            self.clip_beyond(band, self.bound_error(h), part)
+        if part.is_within(LONGEST_REACH) {
+            self.clip_beyond(band, self.bound_error(part.reach()), part)
         } else {
             self.clip_far(band, part)
         }
@@ -139,13 +144,12 @@ impl Quadratic {
     }
 
     /// [`Quadratic::clip`] where the quadratic is more than `allowed` outside the band. `allowed` includes the errors
-    /// of computing: it is at least [`Quadratic::bound_error`].
+    /// of computing: it is at least [`Quadratic::bound_error`]. An end from which nothing is cut stays.
     #[inline(always)]
     pub(super) fn clip_beyond(&self, band: Band, allowed: f64, part: Piece) -> Option<Piece> {
         let Piece { mut lo, mut hi } = part;
         let (below, above) = (band.lo - allowed, band.hi + allowed);
-        // No time of the piece is farther from its ends.
-        let width = up(hi - lo);
+        let width = hi - lo;
         let (left, slope) = (self.at(lo), self.slope_at(lo));
         let advance = if left > above {
             bound_first_zero(left - above, slope, self.curvature)
@@ -154,13 +158,10 @@ impl Quadratic {
         } else {
             0.0
         };
-        if advance > 0.0 {
-            if advance > width {
-                return None;
-            }
-            let from = down(lo + advance);
-            lo = if from > lo { from } else { lo };
+        if advance > width {
+            return None;
         }
+        lo += advance;
         let (right, slope) = (self.at(hi), self.slope_at(hi));
         let retreat = if right > above {
             bound_first_zero(right - above, -slope, self.curvature)
@@ -169,13 +170,10 @@ impl Quadratic {
         } else {
             0.0
         };
-        if retreat > 0.0 {
-            if retreat > width {
-                return None;
-            }
-            let to = up(hi - retreat);
-            hi = if to < hi { to } else { hi };
+        if retreat > width {
+            return None;
         }
+        hi -= retreat;
         // Both ends may have been cut past each other: then nothing is left.
         if lo > hi { None } else { Some(Piece { lo, hi }) }
     }
@@ -193,12 +191,12 @@ impl Quadratic {
     /// ```
     #[inline(always)]
     pub fn clip_shared_sign(&self, other: &Self, margin: f64, part: Piece) -> Option<Piece> {
-        let h = part.reach();
-        if h > LONGEST_REACH || h.is_nan() {
+        if !part.is_within(LONGEST_REACH) {
             return self.clip_shared_sign_far(other, margin, part);
         }
+        let h = part.reach();
         let Piece { mut lo, mut hi } = part;
-        let width = up(hi - lo);
+        let width = hi - lo;
         let (margin_f, margin_g) = (margin + self.bound_error(h), margin + other.bound_error(h));
         let shared = |f: f64, g: f64| {
             if f > margin_f && g > margin_g {
@@ -226,16 +224,14 @@ impl Quadratic {
             if advance > width {
                 return None;
             }
-            let from = down(lo + advance);
-            lo = if from > lo { from } else { lo };
+            lo += advance;
         }
         if at_hi != 0.0 {
             let retreat = keep(hi, f_hi, g_hi, at_hi, -1.0);
             if retreat > width {
                 return None;
             }
-            let to = up(hi - retreat);
-            hi = if to < hi { to } else { hi };
+            hi -= retreat;
         }
         if lo > hi { None } else { Some(Piece { lo, hi }) }
     }
@@ -262,8 +258,7 @@ impl Quadratic {
     /// ```
     #[inline(always)]
     pub fn bound_below(&self, part: Piece) -> f64 {
-        let h = part.reach();
-        if h > LONGEST_REACH || h.is_nan() {
+        if !part.is_within(LONGEST_REACH) {
             return self.bound_below_far(part);
         }
         let (left, right) = (self.at(part.lo), self.at(part.hi));
@@ -276,7 +271,7 @@ impl Quadratic {
         } else {
             ends
         };
-        least - self.bound_error(h)
+        least - self.bound_error(part.reach())
     }
 
     #[cold]

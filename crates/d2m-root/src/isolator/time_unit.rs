@@ -9,10 +9,10 @@ use super::{Cubic, Piece, Quadratic};
 pub(super) struct TimeUnit(f64);
 
 impl TimeUnit {
-    /// For a piece; `None` if it is not bounded, or not beyond 1.
+    /// For a piece; `None` if it is not bounded, not beyond 1, or no piece.
     pub(super) fn of(part: Piece) -> Option<Self> {
         let reach = part.reach();
-        (reach >= 1.0 && reach < f64::INFINITY).then(|| {
+        (part.is_within(f64::MAX) && reach >= 1.0).then(|| {
             // The exponent's bits alone: the largest power of two that is not above.
             Self(f64::from_bits(reach.to_bits() & (0x7ff << 52)))
         })
