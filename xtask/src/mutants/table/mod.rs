@@ -1,5 +1,6 @@
 //! The deliberate faults, one file a crate. `cargo xtask tidy` checks that each text still occurs exactly once.
 mod bvh;
+mod cli;
 mod facade;
 mod feature;
 mod interval;
@@ -47,6 +48,7 @@ pub(crate) fn all() -> impl Iterator<Item = &'static Mutant> {
         feature::MUTANTS,
         bvh::MUTANTS,
         facade::MUTANTS,
+        cli::MUTANTS,
         xtask::MUTANTS,
     ]
     .into_iter()
