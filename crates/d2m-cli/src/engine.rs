@@ -74,36 +74,13 @@ pub(crate) struct Answer {
 impl Pair {
     /// Checks the options and builds the trees.
     pub(crate) fn new(a: Loaded, b: Loaded, arguments: &QueryArguments) -> Result<Self, Failure> {
-        let mode = match arguments.mode {
-            Method::Accurate | Method::Paper => Mode::Accurate,
-            Method::Capoeira => Mode::Capoeira,
-        };
-        let mut options = QueryOptions::default().with_mode(mode);
-        let mut min_separation = 0.0;
-        if let Some(text) = &arguments.tolerance {
-            options = options.with_tolerance(number("--tolerance", text, TOLERANCE, |t| t > 0.0)?);
-        }
-        if let Some(text) = &arguments.min_separation {
-            if arguments.mode == Method::Paper {
-                return Err(Failure::at("--min-separation", "the reference method has none"));
-            }
-            min_separation = number("--min-separation", text, MIN_SEPARATION, |d| d >= 0.0)?;
-            options = options.with_min_separation(min_separation);
-        }
-        let seconds =
-            number("--time-limit", &arguments.time_limit, "a positive number of seconds", |s| s > 0.0)?;
-        // Beyond a century there is no limit to speak of, and the type could not hold it.
-        let mut budget = Budget::UNLIMITED.with_wall_clock(Duration::from_secs_f64(seconds.min(3e9)));
-        if let Some(node_tests) = arguments.budget {
-            budget = budget.with_node_tests(node_tests);
-        }
-        options = options.with_budget(budget);
+        let options = options_of(arguments)?;
         let start = Instant::now();
         let [a, b] = [a, b].map(|body| Body::new(body, arguments.mode));
         let preparation = start.elapsed();
         let solid =
             choose_solid([(&a.name, a.is_watertight()), (&b.name, b.is_watertight())], arguments.solid)?;
-        let tolerance = options.tolerance;
+        let (tolerance, min_separation) = (options.tolerance, options.min_separation);
         Ok(Self { a, b, solid, min_separation, tolerance, preparation, options: options.with_solid(solid) })
     }
 
@@ -190,6 +167,32 @@ pub(crate) fn check_size(place: &str, motion: &AnyMotion, body: &Body) -> Result
     let (lo, hi) =
         vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
     motion.check_size((hi - lo).length()).map_err(|error| Failure::at(place, error))
+}
+
+/// The options of queries, but for what counts as a body.
+pub(crate) fn options_of(arguments: &QueryArguments) -> Result<QueryOptions, Failure> {
+    let mode = match arguments.mode {
+        Method::Accurate | Method::Paper => Mode::Accurate,
+        Method::Capoeira => Mode::Capoeira,
+    };
+    let mut options = QueryOptions::default().with_mode(mode);
+    if let Some(text) = &arguments.tolerance {
+        options = options.with_tolerance(number("--tolerance", text, TOLERANCE, |t| t > 0.0)?);
+    }
+    if let Some(text) = &arguments.min_separation {
+        if arguments.mode == Method::Paper {
+            return Err(Failure::at("--min-separation", "the reference method has none"));
+        }
+        let distance = number("--min-separation", text, MIN_SEPARATION, |d| d >= 0.0)?;
+        options = options.with_min_separation(distance);
+    }
+    let seconds = number("--time-limit", &arguments.time_limit, "a positive number of seconds", |s| s > 0.0)?;
+    // Beyond a century there is no limit to speak of, and the type could not hold it.
+    let mut budget = Budget::UNLIMITED.with_wall_clock(Duration::from_secs_f64(seconds.min(3e9)));
+    if let Some(node_tests) = arguments.budget {
+        budget = budget.with_node_tests(node_tests);
+    }
+    Ok(options.with_budget(budget))
 }
 
 /// What `--tolerance` and `--min-separation` take.

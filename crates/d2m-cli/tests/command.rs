@@ -389,27 +389,6 @@ fn d2m_csv_header() -> String {
 }
 
 #[test]
-fn a_view_is_one_page_that_fetches_nothing() {
-    let folder = Folder::new("view");
-    let page = folder.path("view.html");
-    let motion = ["--motion-a", "x=-3,0,0;v=4,0,0;w=0,0,2"];
-    let output = d2m(&[&["view", "shape:gear", UNIT_BOX, "--out", &page], &motion[..]].concat());
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let html = fs::read_to_string(&page).unwrap();
-    assert!(html.starts_with("<!DOCTYPE html>") && html.trim_end().ends_with("</html>"));
-    assert!(html.contains("CONTACT at t = ") && !html.contains("{{"));
-    for word in ["<script src", "<link", "import(", "fetch("] {
-        let own = html.split("<script>").next().unwrap().to_owned() + html.rsplit("<script>").next().unwrap();
-        assert!(!own.contains(word), "{word}");
-    }
-    // A name cannot end the script.
-    let mesh = folder.file("<script>.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    let output = d2m(&["view", &mesh, UNIT_BOX, "--out", "-"]);
-    assert!(!stdout(&output).contains("<script>.obj"), "{}", stderr(&output));
-    refused(&["view", "shape:gear", "--out", &page], &["B", "missing"]);
-}
-
-#[test]
 fn bad_usage_exits_with_2() {
     for arguments in [
         &[][..],

@@ -1,13 +1,13 @@
 //! `d2m view`: a page of HTML that shows what moves.
 
 use crate::arguments::ViewArguments;
-use crate::engine::{Pair, check_size};
+use crate::engine::{Pair, check_size, options_of};
 use crate::failure::Failure;
 use crate::load::load;
 use crate::motion::{parse_motion, parse_window, require_window};
 use crate::output::Output;
 use crate::report;
-use crate::view::{Mark, Picture, flights_of, picture_of_run};
+use crate::view::{Mark, Picture, flights_of, picture_of_run, picture_of_scene};
 use d2m::bvh::{StartState, TimeOfContact};
 use std::path::Path;
 
@@ -16,11 +16,14 @@ pub(crate) fn run(arguments: &ViewArguments) -> Result<(), Failure> {
     let inputs = [Some(&arguments.a), arguments.b.as_ref()].into_iter().flatten();
     let out = Output::new(&arguments.out)?.spare(inputs.map(Path::new))?;
     let extension = Path::new(&arguments.a).extension().unwrap_or_default().to_ascii_lowercase();
-    let is_run = extension == "jsonl";
+    let (is_run, is_scene) = (extension == "jsonl", extension == "json");
     let picture = match &arguments.b {
-        Some(b) if is_run => return Err(Failure::at(b, "a simulation is viewed alone")),
+        Some(b) if is_run || is_scene => {
+            return Err(Failure::at(b, "a scene or a simulation is viewed alone"));
+        }
         Some(b) => pair(arguments, b)?,
         None if is_run => picture_of_run(Path::new(&arguments.a))?,
+        None if is_scene => picture_of_scene(Path::new(&arguments.a), options_of(&arguments.query)?)?,
         None => return Err(Failure::at("B", "the second mesh is missing")),
     };
     out.write(&picture.to_html())

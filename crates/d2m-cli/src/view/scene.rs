@@ -1,0 +1,51 @@
+//! The picture of a scene.
+
+use super::{Mark, Picture, flights_of};
+use crate::failure::Failure;
+use crate::report::short;
+use crate::scene::Scene;
+use d2m::bvh::{MeshTree, QueryOptions, StartState};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Reads a scene and asks for its contacts.
+pub(crate) fn picture_of_scene(path: &Path, options: QueryOptions) -> Result<Picture, Failure> {
+    let scene = Scene::read(path)?;
+    let mut world = scene.world(options);
+    let contacts = world.contacts(scene.window).map_err(|error| {
+        let [a, b] = [error.a, error.b].map(|id| &scene.bodies[id.index()].name);
+        Failure::at(path.display(), format!("bodies {a:?} and {b:?}: {}", error.error))
+    })?;
+    let [start, end] = [scene.window.start(), scene.window.end()];
+    let headline = format!("{} bodies from t = {} to {}", scene.bodies.len(), short(start), short(end));
+    let undecided = contacts.iter().filter(|pair| pair.answer.contact().is_none()).count();
+    let mut facts = vec![format!("{} pairs in contact", contacts.len() - undecided)];
+    if undecided > 0 {
+        facts.push(format!("{undecided} pairs undecided"));
+    }
+    for pair in &contacts {
+        if let Some(contact) = pair.answer.contact() {
+            let [a, b] = [pair.a, pair.b].map(|id| &scene.bodies[id.index()].name);
+            facts.push(format!("t = {}: {a} and {b} ({})", short(contact.time_lo), contact.evidence));
+        }
+    }
+    facts.truncate(12);
+    let mut picture = Picture::new(headline, facts, [start, end], false);
+    let mut meshes: Vec<(Arc<MeshTree>, usize)> = Vec::new();
+    for body in &scene.bodies {
+        let known = meshes.iter().find(|(tree, _)| Arc::ptr_eq(tree, &body.tree)).map(|&(_, number)| number);
+        let number = known.unwrap_or_else(|| {
+            let number = picture.add_mesh(body.tree.mesh());
+            meshes.push((Arc::clone(&body.tree), number));
+            number
+        });
+        picture.add_body(&body.name, number, &flights_of(&body.motion, scene.window));
+    }
+    for contact in contacts.iter().filter_map(|pair| pair.answer.contact()) {
+        if contact.start != StartState::Contained {
+            let (point, normal) = ((contact.point_a + contact.point_b) * 0.5, contact.normal);
+            picture.add_mark(&Mark { from: contact.time_lo, until: end, point, normal });
+        }
+    }
+    Ok(picture)
+}
