@@ -267,7 +267,7 @@ pub(crate) struct FeaturesArguments {
     #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true)]
     pub(crate) min_separation: Option<String>,
     /// Evaluations after which a case is left undecided
-    #[arg(long, value_name = "COUNT", default_value_t = 1 << 20)]
+    #[arg(long, value_name = "COUNT", default_value_t = d2m::feature::ContactOptions::new().max_evaluations)]
     pub(crate) budget: u32,
 }
 

@@ -82,12 +82,12 @@ impl PairMotion {
     pub fn new(a: &ConstantTwist, b: &ConstantTwist, t0: f64, t1: f64) -> Self {
         assert!(t0 <= t1 && t0.is_finite() && t1.is_finite(), "window [{t0}, {t1}]");
         let motions = [*a, *b];
-        Self::in_units(motions, t0, t1, Units::of_motions(&motions, t0, t1))
+        Self::in_units(&motions, t0, t1, Units::of_motions(&motions, t0, t1))
     }
 
-    fn in_units(motions: [ConstantTwist; 2], start: f64, end: f64, units: Units) -> Self {
+    fn in_units(motions: &[ConstantTwist; 2], start: f64, end: f64, units: Units) -> Self {
         let (from, to) = (units.time(start), units.time(end));
-        let [a, b] = &motions;
+        let [a, b] = motions;
         let sides = match (units.try_motion(a, start), units.try_motion(b, start)) {
             (Some(a), Some(b)) if from.is_finite() && to.is_finite() => {
                 let forward = RelativeMotion::new(&a, &b, from, to);
@@ -96,7 +96,7 @@ impl PairMotion {
             }
             _ => None,
         };
-        Self { motions, start, end, units, sides }
+        Self { motions: *motions, start, end, units, sides }
     }
 
     /// The motions of A and B.
@@ -273,7 +273,7 @@ impl PairMotion {
         {
             return FirstContact::Clear;
         }
-        let other = Self::in_units(self.motions, self.start, self.end, self.units.with_length_of(size));
+        let other = Self::in_units(&self.motions, self.start, self.end, self.units.with_length_of(size));
         match &other.sides {
             // Also NaN is left undecided.
             Some(sides) if sides.forward.motion.bound_reach(0.0) <= LARGEST_REACH => {

@@ -11,8 +11,8 @@ use glam::DVec3;
 
 /// Part of the tolerance that rounding may take before positions are made in extended precision.
 const PART_OF_ROUNDING: f64 = 0.25;
-/// What an evaluation in extended precision counts as: it takes some 16 times as long.
-const COST_OF_ANCHORS: u32 = 16;
+/// What an evaluation in extended precision counts as: it takes some 16 to 32 times as long.
+const COST_OF_ANCHORS: u32 = 32;
 
 /// Prepares a triangle of B.
 pub(crate) fn place(framed: &FramedMotion, triangle: &[DVec3; 3]) -> TrianglePlanes {
@@ -198,7 +198,7 @@ pub(crate) fn answer_in(
         return FirstContact::Clear;
     };
     let tolerance = test.tolerance();
-    if !(tolerance < f64::INFINITY) {
+    if tolerance.is_nan() || tolerance == f64::INFINITY {
         // Nothing is known of where the features are.
         return FirstContact::Undecided { clear_until: part.lo };
     }

@@ -78,14 +78,14 @@ impl Units {
         }
         let length = place.max(if speed == OF_ZERO { OF_ZERO } else { speed + until + 1 });
         let length = if length < OF_ZERO / 2 { 0 } else { length };
-        let time = if window != OF_ZERO {
-            window
-        } else {
+        let time = if window == OF_ZERO {
             // No length of time: so that the rates are at most about one.
             let turning = if rate == OF_ZERO { -OF_ZERO } else { -rate };
             let moving = if speed == OF_ZERO { -OF_ZERO } else { length - speed };
             let least = turning.min(moving);
             if least == -OF_ZERO { 0 } else { least }
+        } else {
+            window
         };
         Self::new(length, time)
     }
