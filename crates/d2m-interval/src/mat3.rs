@@ -92,9 +92,12 @@ impl IntervalMat3 {
     /// 2·8u + u. Padded by 10u and 20u, which leaves more than the rounding of the ends.
     pub fn from_quat_normalized(q: DQuat) -> Self {
         const UNIT: f64 = 0.5 * f64::EPSILON;
+        // Between them no square overflows, and one that underflows is far below u of the sum.
+        const SMALLEST_SQUARE: f64 = 1e-200;
+        const LARGEST_SQUARE: f64 = 1e200;
         let (xx, yy, zz) = (q.x * q.x, q.y * q.y, q.z * q.z);
         let n = xx + yy + zz + q.w * q.w;
-        if !(1e-200..=1e200).contains(&n) {
+        if !(SMALLEST_SQUARE..=LARGEST_SQUARE).contains(&n) {
             return Self::from_quat_scaled(q);
         }
         let s = 2.0 / n;
@@ -182,11 +185,13 @@ fn scaled(x: Interval, k: i32) -> Interval {
     if k == 0 || x.is_empty() {
         return x;
     }
+    // A smaller end may have lost bits; this is above it, and below 2⁻⁵⁰⁰.
+    const FAR_FROM_UNDERFLOW: f64 = 1e-290;
     let power = |p: i32| f64::from_bits(((1023 + p) as u64) << 52);
     let upper = |end: f64| {
         let y = end * power(k / 2) * power(k - k / 2);
-        if end != 0.0 && y.abs() < 1e-290 {
-            1e-290
+        if end != 0.0 && y.abs() < FAR_FROM_UNDERFLOW {
+            FAR_FROM_UNDERFLOW
         } else if y == f64::NEG_INFINITY {
             -f64::MAX
         } else {

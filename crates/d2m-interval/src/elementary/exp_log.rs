@@ -74,15 +74,24 @@ fn exp_reduced(r: Dd, k: i32) -> Scaled {
     Scaled { value: Dd::polynomial(r, &INVERSE_FACTORIAL[..18], 9), exponent: k }
 }
 
+/// ln MAX = 709.782…: eˣ is greater than every double above.
+const EXP_OVERFLOWS: f64 = 709.79;
+/// ln 2⁻¹⁰⁷⁴ = −744.44…: eˣ is less than every positive double below.
+const EXP_UNDERFLOWS: f64 = -745.2;
+/// log₁₀ MAX = 308.254….
+const EXP10_OVERFLOWS: f64 = 308.3;
+/// log₁₀ 2⁻¹⁰⁷⁴ = −323.306….
+const EXP10_UNDERFLOWS: f64 = -323.4;
+
 fn exp_at(x: f64) -> Ends {
     if x == 0.0 {
         return (1.0, 1.0);
     }
-    if x > 709.79 {
+    if x > EXP_OVERFLOWS {
         return (f64::MAX, f64::INFINITY);
     }
-    if x < -745.2 {
-        return (0.0, 5e-324);
+    if x < EXP_UNDERFLOWS {
+        return (0.0, f64::from_bits(1));
     }
     let y = exp_scaled(Dd(x, 0.0));
     y.ends(enclose(y.value))
@@ -93,7 +102,7 @@ fn exp2_at(x: f64) -> Ends {
         return (f64::MAX, f64::INFINITY);
     }
     if x < -1074.0 {
-        return (0.0, 5e-324);
+        return (0.0, f64::from_bits(1));
     }
     let k = nearest_integer(x);
     if x == k {
@@ -107,11 +116,11 @@ fn exp10_at(x: f64) -> Ends {
     if x == 0.0 {
         return (1.0, 1.0);
     }
-    if x > 308.3 {
+    if x > EXP10_OVERFLOWS {
         return (f64::MAX, f64::INFINITY);
     }
-    if x < -323.4 {
-        return (0.0, 5e-324);
+    if x < EXP10_UNDERFLOWS {
+        return (0.0, f64::from_bits(1));
     }
     let k = nearest_integer(x * LOG2_10.0);
     let [a, b, c] = LN_2_PARTS;

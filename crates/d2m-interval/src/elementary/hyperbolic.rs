@@ -11,6 +11,8 @@ use crate::Interval;
 
 /// Below, `sinh x` and its relatives are `x` within a relative 2⁻⁶²: x² < 2⁻⁶⁶.
 const LINEAR: f64 = 1e-10;
+/// Above, asinh x and acosh x are ln 2x within 1/(4x²) < 10⁻³⁶/4.
+const LARGE: f64 = 1e18;
 
 const fn odd_factorials() -> [Dd; 11] {
     let mut out = [Dd(0.0, 0.0); 11];
@@ -115,7 +117,7 @@ fn asinh_at(x: f64) -> Ends {
         if x < LINEAR {
             return (x.next_down(), x);
         }
-        if x > 1e18 {
+        if x > LARGE {
             // ln(2x) + 1/(4x²) − …
             return enclose(ln_dd(Dd(x, 0.0)).plus(super::constants::LN_2));
         }
@@ -130,7 +132,7 @@ fn acosh_at(x: f64) -> Ends {
     if x == 1.0 {
         return (0.0, 0.0);
     }
-    if x > 1e18 {
+    if x > LARGE {
         return enclose(ln_dd(Dd(x, 0.0)).plus(super::constants::LN_2));
     }
     // w = (x − 1) + √((x − 1)(x + 1)), acosh x = ln(1 + w)

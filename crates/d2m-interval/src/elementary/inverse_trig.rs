@@ -12,6 +12,13 @@ use crate::Interval;
 /// The ends of an enclosure of π/2, π.
 const HALF_PI: Ends = (core::f64::consts::FRAC_PI_2, Interval::FRAC_PI_2.hi());
 
+/// Below, atan x and asin x are x within a relative x² < 2⁻⁶⁶, on the known side of it.
+const LINEAR: f64 = 1e-10;
+/// Above, π/2 − atan x < 10⁻²⁰; π/2 is 6·10⁻¹⁷ from the nearer of its two doubles.
+const NEARLY_RIGHT: f64 = 1e20;
+/// Below, |π/2 − acos x| < 2·10⁻³⁰: between the same two doubles.
+const FLAT: f64 = 1e-30;
+
 const fn alternating() -> [Dd; 12] {
     let mut out = [Dd(0.0, 0.0); 12];
     let mut i = 0;
@@ -53,9 +60,9 @@ fn odd(x: f64, at: impl Fn(f64) -> Ends) -> Ends {
 
 fn atan_at(x: f64) -> Ends {
     odd(x, |x| {
-        if x < 1e-10 {
+        if x < LINEAR {
             (x.next_down(), x)
-        } else if x > 1e20 {
+        } else if x > NEARLY_RIGHT {
             HALF_PI
         } else {
             enclose(first_quadrant(Dd(x, 0.0), Dd::ONE))
@@ -70,7 +77,7 @@ fn co_sine(x: f64) -> Dd {
 
 fn asin_at(x: f64) -> Ends {
     odd(x, |x| {
-        if x < 1e-10 {
+        if x < LINEAR {
             (x, x.next_up())
         } else if x >= 1.0 {
             HALF_PI
@@ -85,7 +92,7 @@ fn acos_at(x: f64) -> Ends {
         (0.0, 0.0)
     } else if x <= -1.0 {
         (Interval::PI.lo(), Interval::PI.hi())
-    } else if x.abs() < 1e-30 {
+    } else if x.abs() < FLAT {
         HALF_PI
     } else if x > 0.0 {
         enclose(first_quadrant(co_sine(x), Dd(x, 0.0)))

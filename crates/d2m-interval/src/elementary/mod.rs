@@ -27,6 +27,9 @@ fn enclose(x: Dd) -> Ends {
     enclose_within(x, 1.0 / 4_611_686_018_427_387_904.0)
 }
 
+/// Above, the low part of a double-double has not underflowed: it is a multiple of 2⁻¹⁰⁶ of the high part at least.
+const WITH_LOW_PART: f64 = 1e-250;
+
 /// Doubles around a number that lies within a relative `error` (at most 2⁻⁵⁸) of `x`.
 fn enclose_within(x: Dd, error: f64) -> Ends {
     let Dd(high, low) = x;
@@ -35,7 +38,7 @@ fn enclose_within(x: Dd, error: f64) -> Ends {
     }
     let doubt = high.abs() * error;
     // Far from underflow, the sign of the low part tells on which side of `high` the number is.
-    let clear = high.abs() > 1e-250;
+    let clear = high.abs() > WITH_LOW_PART;
     (
         if clear && low > doubt { high } else { high.next_down() },
         if clear && low < -doubt { high } else { high.next_up() },

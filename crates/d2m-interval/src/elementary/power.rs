@@ -8,6 +8,11 @@ use super::{
 };
 use crate::Interval;
 
+/// e^±800 is out of the range of doubles, also if the exponent is off by a few 2⁻⁵³ of itself.
+const OUT_OF_RANGE: f64 = 800.0;
+/// e^s with 0 < |s| < 10⁻¹⁸ lies between 1 and its neighbour on that side, 2⁻⁵³ = 1.1·10⁻¹⁶ away.
+const NEXT_TO_ONE: f64 = 1e-18;
+
 /// `x^n` for finite `x > 0`, `n ≥ 1`: relative error below `n·2⁻⁹⁸`.
 fn power(x: f64, n: u32) -> Scaled {
     // x = m·2^e with 1 ≤ m < 2, and the same for every partial product.
@@ -74,15 +79,15 @@ fn real_power(x: f64, y: f64) -> Ends {
         return (x, x);
     }
     let ln = ln_value(x);
-    // Beyond ±800 the result is out of range whatever the rest is; products stay in range so.
+    // Products stay in range so.
     let size = ln.0 * y;
-    if size > 800.0 {
+    if size > OUT_OF_RANGE {
         return (f64::MAX, f64::INFINITY);
     }
-    if size < -800.0 {
-        return (0.0, 5e-324);
+    if size < -OUT_OF_RANGE {
+        return (0.0, f64::from_bits(1));
     }
-    if size.abs() < 1e-18 {
+    if size.abs() < NEXT_TO_ONE {
         return if grows { (1.0, 1.0_f64.next_up()) } else { (1.0_f64.next_down(), 1.0) };
     }
     // |ln x| ≥ 2⁻⁵⁴ here or x = 1, so |y| < 2⁶⁴ and all products stay in range.

@@ -22,6 +22,9 @@ fn digits(start: i32) -> u64 {
     if offset == 0 { word(index) } else { word(index) << offset | word(index + 1) >> (64 - offset) }
 }
 
+/// Below, sin r and tan r are r to within a relative 10⁻²⁰⁰, and products of the series would underflow.
+const LINEAR: f64 = 1e-100;
+
 impl Reduced {
     /// `x` finite.
     pub(super) fn new(x: f64) -> Self {
@@ -108,7 +111,7 @@ impl Reduced {
     }
 
     pub(super) fn sin_value(&self) -> Dd {
-        if self.r.0.abs() < 1e-100 && self.quadrant & 1 == 0 {
+        if self.r.0.abs() < LINEAR && self.quadrant & 1 == 0 {
             return if self.quadrant == 0 { self.r } else { self.r.neg() };
         }
         self.sin_cos().0
@@ -124,7 +127,7 @@ impl Reduced {
 
     /// Not for x = 0.
     pub(super) fn tan(&self) -> Dd {
-        if self.r.0.abs() < 1e-100 && self.quadrant & 1 == 0 {
+        if self.r.0.abs() < LINEAR && self.quadrant & 1 == 0 {
             return self.r;
         }
         let (s, c) = self.sin_cos();

@@ -39,7 +39,7 @@ fn uncertain(centre: &str, rest: &str) -> Result<Interval, ParseIntervalError> {
         return syntax();
     }
     let mut centre = Number::read(centre)?;
-    centre.decimal = centre.decimal + power;
+    centre.decimal += power;
     let (mut lo, mut hi) = centre.enclose();
     if rest == "?" {
         lo = f64::NEG_INFINITY;

@@ -135,8 +135,8 @@ impl Cubic {
             // Only an end that was cut moves: the middle plus what was subtracted from it may be another double, and once
             // the piece has shrunk, so has what is allowed for that.
             let (from, to) = (m + kept.lo, m + kept.hi);
-            part.lo = if (kept.lo > moved.lo) & (from > part.lo) { from } else { part.lo };
-            part.hi = if (kept.hi < moved.hi) & (to < part.hi) { to } else { part.hi };
+            part.lo = if kept.lo > moved.lo && from > part.lo { from } else { part.lo };
+            part.hi = if kept.hi < moved.hi && to < part.hi { to } else { part.hi };
             if part.lo > part.hi {
                 return None;
             }

@@ -57,7 +57,7 @@ pub(super) fn bound_first_zero(gap: f64, slope: f64, curvature: f64) -> f64 {
     };
     let zero = zero_of(gap, slope, curvature, discriminant);
     // What is not a number is not in range either.
-    if (discriminant > LEAST_DISCRIMINANT) & (zero > LEAST_ZERO) & (zero < GREATEST_ZERO) {
+    if discriminant > LEAST_DISCRIMINANT && zero > LEAST_ZERO && zero < GREATEST_ZERO {
         zero * EARLY
     } else {
         bound_scaled(gap, slope, curvature)

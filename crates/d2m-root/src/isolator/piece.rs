@@ -54,7 +54,7 @@ impl Piece {
     /// Whether its ends are in order and up to `reach` from zero; false if one is NaN.
     #[inline(always)]
     pub(super) fn is_within(&self, reach: f64) -> bool {
-        (self.reach() <= reach) & (self.lo <= self.hi)
+        self.reach() <= reach && self.lo <= self.hi
     }
 }
 

@@ -97,10 +97,10 @@ impl Quadratic {
     #[inline(always)]
     pub fn bound_first_zero(gap: f64, slope: f64, curvature: f64) -> f64 {
         // Infinite coefficients come from an overflow, and mean nothing.
-        let known = (gap > 0.0)
-            & (gap < f64::INFINITY)
-            & (slope.abs() < f64::INFINITY)
-            & (curvature.abs() < f64::INFINITY);
+        let known = gap > 0.0
+            && gap < f64::INFINITY
+            && slope.abs() < f64::INFINITY
+            && curvature.abs() < f64::INFINITY;
         if known { bound_first_zero(gap, slope, curvature) } else { 0.0 }
     }
 

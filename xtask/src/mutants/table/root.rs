@@ -41,7 +41,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "an end of a piece is rebuilt from its middle, though nothing was cut",
         "crates/d2m-root/src/isolator/cubic.rs",
-        "part.lo = if (kept.lo > moved.lo) & (from > part.lo) { from } else { part.lo };",
+        "part.lo = if kept.lo > moved.lo && from > part.lo { from } else { part.lo };",
         "part.lo = if from > part.lo { from } else { part.lo };",
         "crates/d2m-root/tests/exact.rs::a_linear_function_keeps_its_zero_at_an_end",
     ),
@@ -69,14 +69,14 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "a discriminant that underflows",
         "crates/d2m-root/src/isolator/first_zero_bound.rs",
-        "(discriminant > LEAST_DISCRIMINANT)",
-        "(discriminant >= 0.0)",
+        "discriminant > LEAST_DISCRIMINANT &&",
+        "discriminant >= 0.0 &&",
         "crates/d2m-root/tests/exact.rs::products_beyond_the_range_of_doubles_are_not_late",
     ),
     patch(
         "a zero that overflows",
         "crates/d2m-root/src/isolator/first_zero_bound.rs",
-        " & (zero < GREATEST_ZERO) {",
+        " && zero < GREATEST_ZERO {",
         " {",
         "crates/d2m-root/tests/exact.rs::products_beyond_the_range_of_doubles_are_not_late",
     ),
