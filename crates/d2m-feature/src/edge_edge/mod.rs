@@ -208,8 +208,8 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
                 let before = Piece { lo: part.lo - m, hi: part.hi - m };
                 let along_u = TwoQuadratics::along(&moved, u);
                 let e_u = along_u.second();
-                let first_a = along_u.first().plus(&e_u);
-                let second_a = along_u.first().minus(&e_u);
+                let first_a = along_u.first() + e_u;
+                let second_a = along_u.first() - e_u;
                 let margin_a = u_length * (margin_w + margin_e) * UP;
                 let Some(beside) = first_a.clip_shared_sign(&second_a, margin_a, before) else {
                     return Verdict::Clear;
@@ -217,7 +217,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
                 let TripleProduct { cubic: w_j, fourth: quartic_j, .. } = TripleProduct::new(&moved, k);
                 let cubic_j = (1.0 / 6.0) * w_j.jerk.abs();
                 let w_j = Quadratic { value: w_j.value, slope: w_j.slope, curvature: w_j.curvature };
-                let (first_b, second_b) = (w_j.plus(&e_u), w_j.minus(&e_u));
+                let (first_b, second_b) = (w_j + e_u, w_j - e_u);
                 // |w| there, up to what its jet admits.
                 let length =
                     length_up(w_m) + r * (length_up(moved.v.first()) + 0.5 * r * length_up(moved.a.first()));

@@ -142,7 +142,7 @@ mod tests {
         for seed in 1..50 {
             let jets = TwoJets::new(&jet(seed), &jet(seed + 50));
             let pair = TwoQuadratics::along(&jets, DVec3::new(1.0, -2.0, 1.0));
-            let (sum, difference) = (pair.first().plus(&pair.second()), pair.first().minus(&pair.second()));
+            let (sum, difference) = (pair.first() + pair.second(), pair.first() - pair.second());
             let both = pair.sum_and_difference();
             let least = [sum, difference].map(|q| q.bound_below(part));
             let least = least[0].min(least[1]);

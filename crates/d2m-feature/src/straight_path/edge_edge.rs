@@ -108,8 +108,7 @@ impl PieceTest for StraightEdgeEdge {
                 Seen::new(w, across_e, length, (lw, le), errors),
             ] {
                 let margin = (total.margin + seen.margin) * UP;
-                let (above, below) =
-                    (total.quadratic.plus(&seen.quadratic), seen.quadratic.minus(&total.quadratic));
+                let (above, below) = (total.quadratic + seen.quadratic, seen.quadratic - total.quadratic);
                 let Some(beside) = above.clip_shared_sign(&below, margin, part) else {
                     return Verdict::Clear;
                 };

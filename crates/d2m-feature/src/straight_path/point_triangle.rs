@@ -114,7 +114,7 @@ impl PieceTest for StraightPointTriangle {
             let first = Seen::new(a, across2, length, (la, l2), errors);
             let second = Seen::new(a, across1, length, (la, l1), errors);
             let third = Seen {
-                quadratic: total.quadratic.minus(&first.quadratic.plus(&second.quadratic)),
+                quadratic: total.quadratic - (first.quadratic + second.quadratic),
                 margin: (total.margin + first.margin + second.margin) * UP,
             };
             let areas = [first, second, third];

@@ -56,26 +56,6 @@ impl Quadratic {
         self.slope + self.curvature * s
     }
 
-    /// The sum, coefficient by coefficient.
-    #[inline(always)]
-    pub fn plus(&self, other: &Self) -> Self {
-        Self {
-            value: self.value + other.value,
-            slope: self.slope + other.slope,
-            curvature: self.curvature + other.curvature,
-        }
-    }
-
-    /// The difference, coefficient by coefficient.
-    #[inline(always)]
-    pub fn minus(&self, other: &Self) -> Self {
-        Self {
-            value: self.value - other.value,
-            slope: self.slope - other.slope,
-            curvature: self.curvature - other.curvature,
-        }
-    }
-
     /// A time σ ≥ 0 such that `gap + slope·x + curvature·x²/2 > 0` for all 0 ≤ x ≤ σ, given `gap > 0`: the first
     /// positive zero, rounded down; infinite if there is none.
     ///
@@ -279,6 +259,32 @@ impl Quadratic {
     fn bound_below_far(&self, part: Piece) -> f64 {
         let Some(unit) = TimeUnit::of(part) else { return f64::NAN };
         unit.quadratic(self).bound_below(unit.piece(part))
+    }
+}
+
+/// Coefficient by coefficient, in plain floating point.
+impl core::ops::Add for Quadratic {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            slope: self.slope + other.slope,
+            curvature: self.curvature + other.curvature,
+        }
+    }
+}
+
+/// Coefficient by coefficient, in plain floating point.
+impl core::ops::Sub for Quadratic {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            value: self.value - other.value,
+            slope: self.slope - other.slope,
+            curvature: self.curvature - other.curvature,
+        }
     }
 }
 

@@ -48,7 +48,12 @@ pub struct Isolation {
 const GOOD: f64 = 0.6;
 /// Above this part of its old width a piece is measured before it is bisected.
 const POOR: f64 = 0.95;
+/// Pieces that wait at most.
 const DEPTH: usize = 32;
+/// No piece is divided below four last places of the times it is made of.
+const RESOLVABLE: f64 = 4.0 * f64::EPSILON;
+/// Below this part of the resolution, a piece that nothing can be said about is not halved again.
+const GIVE_UP: f64 = 0.25;
 
 /// Pieces to the right of the current one, the leftmost on top. When full, the top grows instead.
 struct Rest {
@@ -87,8 +92,7 @@ pub fn isolate<T: PieceTest>(test: &mut T, window: Piece, options: &IsolatorOpti
     let mut seen: Option<(f64, f64)> = None;
     let mut start_measured = options.start_apart;
     let tolerance = test.tolerance();
-    // No piece is narrower than a few units in the last place of the times it is made of.
-    let resolution = test.resolution().max(4.0 * f64::EPSILON * window.lo.abs().max(window.hi.abs()));
+    let resolution = test.resolution().max(RESOLVABLE * window.reach());
     let found = |bracket, evidence, distance| FirstRoot::Found { bracket, evidence, distance };
     let root = 'search: loop {
         let next = 'piece: {
@@ -161,7 +165,7 @@ pub fn isolate<T: PieceTest>(test: &mut T, window: Piece, options: &IsolatorOpti
                 }
             }
             // Nothing could be said: halve, down to the last representable width.
-            if mid <= piece.lo || mid >= piece.hi || (narrow && width <= 0.25 * resolution) {
+            if mid <= piece.lo || mid >= piece.hi || (narrow && width <= GIVE_UP * resolution) {
                 if cut.distance.is_finite() {
                     break 'search found(piece, Evidence::Unresolved, cut.distance);
                 }
