@@ -69,6 +69,11 @@ const SLACK: f64 = 1e-9;
 
 fn check_span(motion: &dyn RigidMotion, t: f64, until: f64, faults: &mut Vec<MotionFault>) {
     let span = Interval::new(t, until);
+    if let Some(joint) = motion.smooth_until(t).filter(|&joint| joint.is_nan() || joint <= t) {
+        let ahead = (DVec3::splat(t.next_up()), DVec3::splat(motion.domain().hi()));
+        let what = "smooth_until";
+        faults.push(MotionFault { span: (t, until), what, value: DVec3::splat(joint), enclosure: ahead });
+    }
     let (pose, twist, rate) =
         (motion.enclose_pose(span), motion.enclose_twist(span), motion.enclose_twist_rate(span));
     let mut hold = |what: &'static str, value: DVec3, enclosure: IntervalVec3, size: f64| {
@@ -80,15 +85,6 @@ fn check_span(motion: &dyn RigidMotion, t: f64, until: f64, faults: &mut Vec<Mot
             faults.push(MotionFault { span: (t, until), what, value, enclosure });
         }
     };
-    if let Some(joint) = motion.smooth_until(t) {
-        let ahead = IntervalVec3::point(DVec3::splat(joint)) - DVec3::splat(t);
-        hold(
-            "smooth_until",
-            DVec3::splat(f64::MIN_POSITIVE.max(t.next_up() - t)),
-            ahead.hull(IntervalVec3::point(DVec3::splat(f64::MAX))),
-            0.0,
-        );
-    }
     let (now, speed) = motion.pose_and_twist(t);
     hold("at", now.at, IntervalVec3::point(pose.at), 0.0);
     let state = motion.enclose_state(t);
@@ -123,5 +119,47 @@ fn check_span(motion: &dyn RigidMotion, t: f64, until: f64, faults: &mut Vec<Mot
         let (dv, dw) = (by(speed.linear, faster.linear), by(speed.angular, faster.angular));
         hold("enclose_twist_rate, linear", dv, rate.linear, size(speed.linear, faster.linear));
         hold("enclose_twist_rate, angular", dw, rate.angular, size(speed.angular, faster.angular));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ConstantTwist, IntervalPose, IntervalTwist, Pose, Twist};
+
+    /// A turning body with one promise broken.
+    struct Broken(ConstantTwist, &'static str);
+
+    impl RigidMotion for Broken {
+        fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+            self.0.pose_and_twist(t)
+        }
+        fn enclose_pose(&self, t: Interval) -> IntervalPose {
+            self.0.enclose_pose(if self.1 == "enclose_pose" { Interval::point(t.lo()) } else { t })
+        }
+        fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+            let twist = self.0.enclose_twist(t);
+            let slow = IntervalTwist { angular: twist.angular * Interval::point(0.5), ..twist };
+            if self.1 == "enclose_twist" { slow } else { twist }
+        }
+        fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+            let rate = self.0.enclose_twist_rate(t);
+            let other = IntervalTwist { linear: rate.linear + DVec3::X, ..rate };
+            if self.1 == "enclose_twist_rate" { other } else { rate }
+        }
+        fn smooth_until(&self, t: f64) -> Option<f64> {
+            (self.1 == "smooth_until").then_some(t - 0.5)
+        }
+    }
+
+    #[test]
+    fn broken_promises_are_named() {
+        let turn = ConstantTwist::REST.with_angular_velocity(DVec3::Z).with_linear_velocity(DVec3::X);
+        for what in ["enclose_pose", "enclose_twist", "enclose_twist_rate", "smooth_until"] {
+            let faults = check_motion(&Broken(turn, what), (0.0, 2.0), 10);
+            assert!(faults.iter().any(|fault| fault.what.starts_with(what)), "{what}: {faults:?}");
+        }
+        assert!(check_motion(&Broken(turn, ""), (0.0, 2.0), 10).is_empty());
+        assert_eq!(check_motion(&turn, (1.0, 0.0), 10)[0].what, "domain");
     }
 }

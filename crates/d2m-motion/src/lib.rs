@@ -22,6 +22,7 @@ mod serde_any;
 #[cfg(feature = "serde")]
 mod serde_form;
 mod sin_cos;
+mod spline;
 mod state;
 mod text;
 mod twist;
@@ -46,6 +47,7 @@ pub use pose::{IntervalPose, Pose};
 pub use relative::{Arm, ArmPair, Frame, RelativeMotion, RelativeState};
 pub use rigid_motion::{RigidMotion, TwistPiece};
 pub use screw::ScrewMotion;
+pub use spline::{Spline, SplineDegree};
 pub use state::CertifiedState;
 pub use twist::{IntervalTwist, Twist};
 /// For the crates of this workspace: vectors and jets of an edge's midpoint and half edge in the two halves of vector

@@ -136,7 +136,7 @@ impl ScrewMotion {
 }
 
 /// atan2(y, x) for y ≥ 0, x ≥ 0, by Newton steps on the project's own sine (no platform function).
-fn atan2_positive(y: f64, x: f64) -> f64 {
+pub(crate) fn atan2_positive(y: f64, x: f64) -> f64 {
     let mut angle = if y > x { core::f64::consts::FRAC_PI_2 - x / y * 0.8 } else { y / x * 0.8 };
     for _ in 0..5 {
         let (sin, cos) = crate::sin_cos::sin_cos(angle);

@@ -1,4 +1,5 @@
 //! How a body moves: linear and angular velocity, as numbers and as enclosures.
+use crate::Pose;
 use d2m_interval::IntervalVec3;
 use glam::DVec3;
 
@@ -21,6 +22,27 @@ pub struct Twist {
 impl Twist {
     /// No motion.
     pub const ZERO: Self = Self { linear: DVec3::ZERO, angular: DVec3::ZERO };
+
+    /// The twist whose parts are given in body axes.
+    ///
+    /// ```
+    /// use d2m_motion::{Pose, Twist};
+    /// use glam::DVec3;
+    /// let pose = Pose::from_axis_angle(DVec3::ZERO, DVec3::Z, std::f64::consts::FRAC_PI_2);
+    /// let ahead = Twist::from_body_axes(&pose, DVec3::X, DVec3::Z);
+    /// assert!((ahead.linear - DVec3::Y).length() < 1e-15 && (ahead.angular - DVec3::Z).length() < 1e-15);
+    /// let (linear, _) = ahead.to_body_axes(&pose);
+    /// assert!((linear - DVec3::X).length() < 1e-15);
+    /// ```
+    pub fn from_body_axes(pose: &Pose, linear: DVec3, angular: DVec3) -> Self {
+        Self { linear: pose.transform_vector(linear), angular: pose.transform_vector(angular) }
+    }
+
+    /// Linear and angular part in body axes.
+    pub fn to_body_axes(&self, pose: &Pose) -> (DVec3, DVec3) {
+        let back = pose.rotation.conjugate();
+        (back * self.linear, back * self.angular)
+    }
 
     /// Velocity of the point at `arm` (world axes) from the followed point: `linear + angular × arm`.
     pub fn velocity_of(&self, arm: DVec3) -> DVec3 {

@@ -1,0 +1,358 @@
+//! Smooth motions through poses: cubic and quintic Hermite splines, each span a chain of joints.
+use crate::error::fault;
+use crate::screw::atan2_positive;
+use crate::{
+    CertifiedState, Chain, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Kinematics,
+    MotionError, Pose, RigidMotion, Twist,
+};
+use d2m_interval::Interval;
+use glam::{DQuat, DVec3};
+
+/// How smooth a [`Spline`] is at its poses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum SplineDegree {
+    /// Velocities are continuous (C¹), accelerations jump.
+    #[default]
+    Cubic,
+    /// Accelerations are continuous too (C²): they vanish at every pose, against the body itself.
+    Quintic,
+}
+
+/// A smooth motion through poses at times.
+///
+/// Between two poses the body origin follows the Hermite polynomial of the velocities at both ends, and the body turns by
+/// R₀·∏ exp([kᵢ]βᵢ(u)), with βᵢ the cumulative Bernstein polynomials of the degree and kᵢ chosen so that poses and angular
+/// velocities at both ends are the wanted ones. Each span is a [`Chain`] of three prismatic and three or five
+/// revolute joints, so everything is enclosed as there.
+///
+/// ```
+/// use d2m_motion::{Pose, RigidMotion, Spline, SplineDegree};
+/// use glam::{DQuat, DVec3};
+/// let pose = |x: f64, turn: f64| Pose {
+///     translation: DVec3::new(x, x * x, 0.0),
+///     rotation: DQuat::from_rotation_z(turn),
+///     at: DVec3::ZERO,
+/// };
+/// let path = Spline::try_through(&[(0.0, pose(0.0, 0.0)), (1.0, pose(1.0, 0.5)), (3.0, pose(2.0, 2.0))], SplineDegree::Cubic)?;
+/// let (there, _) = path.pose_and_twist(1.0);
+/// assert!((there.translation - DVec3::new(1.0, 1.0, 0.0)).length() < 1e-15);
+/// assert_eq!(path.smooth_until(0.0), Some(1.0));
+/// # Ok::<(), d2m_motion::MotionError>(())
+/// ```
+///
+/// Source: M.-J. Kim, M.-S. Kim, S. Y. Shin, "A general construction scheme for unit quaternion curves with simple high order
+/// derivatives", SIGGRAPH 1995, DOI 10.1145/218380.218486.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spline {
+    times: Vec<f64>,
+    spans: Vec<Chain>,
+}
+
+impl Spline {
+    /// Through poses, with velocities from the neighbours: the weighted mean of the mean velocities before and after (Catmull
+    /// and Rom), at the ends that of the only span.
+    ///
+    /// # Errors
+    /// As [`Spline::try_with_twists`].
+    pub fn try_through(keyframes: &[(f64, Pose)], degree: SplineDegree) -> Result<Self, MotionError> {
+        check(keyframes.iter().map(|(time, pose)| (*time, *pose)))?;
+        let mean: Vec<Twist> = keyframes
+            .windows(2)
+            .map(|pair| {
+                let ((t0, start), (t1, end)) = (pair[0], pair[1]);
+                let h = t1 - t0;
+                let linear = (end.transform_point(DVec3::ZERO) - start.transform_point(DVec3::ZERO)) / h;
+                // In the axes of either body, where it is the same.
+                let turn = start.rotation.normalize().conjugate() * end.rotation.normalize();
+                Twist { linear, angular: rotation_vector(turn) / h }
+            })
+            .collect();
+        let last = mean.len();
+        let twists: Vec<(f64, Pose, Twist)> = keyframes
+            .iter()
+            .enumerate()
+            .map(|(i, &(time, pose))| {
+                let twist = if i == 0 {
+                    mean[0]
+                } else if i == last {
+                    mean[last - 1]
+                } else {
+                    let (before, after) = (time - keyframes[i - 1].0, keyframes[i + 1].0 - time);
+                    let part = after / (before + after);
+                    Twist {
+                        linear: mean[i - 1].linear * part + mean[i].linear * (1.0 - part),
+                        angular: mean[i - 1].angular * part + mean[i].angular * (1.0 - part),
+                    }
+                };
+                (time, pose, Twist { angular: pose.rotation.normalize() * twist.angular, ..twist })
+            })
+            .collect();
+        Self::try_with_twists(&twists, degree)
+    }
+
+    /// Through poses with the given twists there (world axes; the linear part is the velocity of the pose's point `at`).
+    ///
+    /// # Errors
+    /// Fewer than two poses, times not finite or not increasing, a pose or twist that is not finite, or between two poses
+    /// a turn of half a circle that is left to be made.
+    pub fn try_with_twists(
+        keyframes: &[(f64, Pose, Twist)],
+        degree: SplineDegree,
+    ) -> Result<Self, MotionError> {
+        check(keyframes.iter().map(|(time, pose, _)| (*time, *pose)))?;
+        let spans = keyframes
+            .windows(2)
+            .enumerate()
+            .map(|(i, pair)| {
+                span([pair[0], pair[1]], degree).map_err(|error| error.within(&format!("poses[{}]", i + 1)))
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self { times: keyframes.iter().map(|(time, ..)| *time).collect(), spans })
+    }
+
+    /// The times of the poses.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    fn index_from(&self, t: f64) -> usize {
+        self.times.partition_point(|&time| time <= t).saturating_sub(1).min(self.spans.len() - 1)
+    }
+
+    fn index_until(&self, t: f64) -> usize {
+        self.times.partition_point(|&time| time < t).saturating_sub(1).min(self.spans.len() - 1)
+    }
+
+    fn over<T>(&self, t: Interval, one: impl Fn(&Chain, Interval) -> T, hull: impl Fn(T, T) -> T) -> T {
+        let first = self.index_from(t.lo());
+        let last = if t.lo() < t.hi() { self.index_until(t.hi()).max(first) } else { first };
+        let part = |index: usize| {
+            let lo = if index == first { t.lo() } else { self.times[index] };
+            let hi = if index == last { t.hi() } else { self.times[index + 1] };
+            one(&self.spans[index], Interval::try_new(lo, hi).unwrap_or(Interval::ENTIRE))
+        };
+        (first + 1..=last).fold(part(first), |whole, index| hull(whole, part(index)))
+    }
+}
+
+fn check(keyframes: impl Iterator<Item = (f64, Pose)>) -> Result<(), MotionError> {
+    let frames: Vec<(f64, Pose)> = keyframes.collect();
+    // The same times and poses that keyframes take.
+    crate::Keyframes::try_new(&frames, crate::Span::Linear).map(|_| ())
+}
+
+/// The rotation vector of a unit quaternion, of length at most π.
+fn rotation_vector(q: DQuat) -> DVec3 {
+    let q = if q.w < 0.0 { -q } else { q };
+    let imaginary = DVec3::new(q.x, q.y, q.z);
+    let sine = imaginary.length();
+    // Below 1e-8 the vector part is half the angle to the last place.
+    if sine < 1e-8 { imaginary * 2.0 } else { imaginary * (2.0 * atan2_positive(sine, q.w) / sine) }
+}
+
+/// exp of a rotation vector.
+fn quaternion(v: DVec3) -> DQuat {
+    crate::rotation::quat_of(v, 1.0)
+}
+
+/// Coefficients in u of the cumulative Bernstein polynomials Σ_{j ≥ i} C(n, j) u^j (1 − u)^(n − j), i from 1 to n.
+fn cumulative(degree: SplineDegree) -> Vec<Vec<f64>> {
+    match degree {
+        SplineDegree::Cubic => {
+            vec![vec![0.0, 3.0, -3.0, 1.0], vec![0.0, 0.0, 3.0, -2.0], vec![0.0, 0.0, 0.0, 1.0]]
+        }
+        SplineDegree::Quintic => vec![
+            vec![0.0, 5.0, -10.0, 10.0, -5.0, 1.0],
+            vec![0.0, 0.0, 10.0, -20.0, 15.0, -4.0],
+            vec![0.0, 0.0, 0.0, 10.0, -15.0, 6.0],
+            vec![0.0, 0.0, 0.0, 0.0, 5.0, -4.0],
+            vec![0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+        ],
+    }
+}
+
+fn span(
+    [(t0, start, v0), (t1, end, v1)]: [(f64, Pose, Twist); 2],
+    degree: SplineDegree,
+) -> Result<Chain, MotionError> {
+    let h = t1 - t0;
+    let (q0, q1) = (start.rotation.normalize(), end.rotation.normalize());
+    let curves = cumulative(degree);
+    let n = curves.len() as f64;
+    // Over [t0, t1] as polynomials in t − t0.
+    let in_time = |scale: f64, u: &[f64]| {
+        let mut unit = scale;
+        let coefficients = u
+            .iter()
+            .map(|c| {
+                let value = c * unit;
+                unit /= h;
+                value
+            })
+            .collect();
+        JointValue::try_pieces(vec![t0, t1], vec![coefficients])
+    };
+    // Positions: control points P0, P0 + v0 h/n (twice for no acceleration), and the same from the end.
+    let from_at = |pose: &Pose, twist: &Twist| {
+        let arm = pose.rotation.normalize() * (DVec3::ZERO - pose.at);
+        (pose.translation + arm, twist.velocity_of(arm))
+    };
+    let ((p0, s0), (p1, s1)) = (from_at(&start, &v0), from_at(&end, &v1));
+    let (first, last) = (s0 * (h / n), s1 * (h / n));
+    let steps: Vec<DVec3> = match degree {
+        SplineDegree::Cubic => vec![first, p1 - p0 - first - last, last],
+        SplineDegree::Quintic => vec![first, first, p1 - p0 - (first + last) * 2.0, last, last],
+    };
+    let mut joints = Vec::new();
+    for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+        let mut sum = vec![0.0; curves[0].len()];
+        for (step, curve) in steps.iter().zip(&curves) {
+            sum.iter_mut().zip(curve).for_each(|(s, c)| *s += step.dot(axis) * c);
+        }
+        let position = if axis == DVec3::X { p0 } else { DVec3::ZERO };
+        joints.push(Joint::try_new(
+            position,
+            DQuat::IDENTITY,
+            JointKind::Prismatic { axis, value: in_time(1.0, &sum)? },
+        )?);
+    }
+    // Turns, in body axes.
+    let (first, last) = (q0.conjugate() * v0.angular * (h / n), q1.conjugate() * v1.angular * (h / n));
+    let (before, after) = match degree {
+        SplineDegree::Cubic => (quaternion(first), quaternion(last)),
+        SplineDegree::Quintic => (quaternion(first) * quaternion(first), quaternion(last) * quaternion(last)),
+    };
+    let left = before.conjugate() * q0.conjugate() * q1 * after.conjugate();
+    if left.w.abs() <= 16.0 * f64::EPSILON {
+        return Err(fault(
+            "rotation".into(),
+            "what is left to turn is half a circle, which has no short way round".into(),
+        ));
+    }
+    let middle = rotation_vector(left);
+    let turns: Vec<DVec3> = match degree {
+        SplineDegree::Cubic => vec![first, middle, last],
+        SplineDegree::Quintic => vec![first, first, middle, last, last],
+    };
+    let mut orientation = q0;
+    for (turn, curve) in turns.iter().zip(&curves) {
+        let angle = turn.length();
+        if angle == 0.0 {
+            continue;
+        }
+        let kind = JointKind::Revolute { axis: *turn, value: in_time(angle, curve)? };
+        joints.push(Joint::try_new(DVec3::ZERO, orientation, kind)?);
+        orientation = DQuat::IDENTITY;
+    }
+    if orientation != DQuat::IDENTITY {
+        joints.push(Joint::try_new(DVec3::ZERO, orientation, JointKind::Fixed)?);
+    }
+    Chain::try_new(joints)
+}
+
+impl RigidMotion for Spline {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        self.spans[self.index_from(t)].pose_and_twist(t)
+    }
+
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        self.over(t, RigidMotion::enclose_pose, |a, b| IntervalPose {
+            rotation: a.rotation.hull(b.rotation),
+            translation: a.translation.hull(b.translation),
+            at: a.at,
+        })
+    }
+
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        self.over(t, RigidMotion::enclose_twist, hull)
+    }
+
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.over(t, RigidMotion::enclose_twist_rate, hull)
+    }
+
+    fn domain(&self) -> Interval {
+        Interval::new(self.times[0], self.times[self.spans.len()])
+    }
+
+    fn smooth_until(&self, t: f64) -> Option<f64> {
+        let index = self.index_from(t);
+        (index + 1 < self.spans.len()).then(|| self.times[index + 1])
+    }
+
+    fn enclose_state(&self, t: f64) -> CertifiedState {
+        self.spans[self.index_from(t)].enclose_state(t)
+    }
+
+    fn enclose_state_about(&self, t: f64, origin: DVec3) -> CertifiedState {
+        self.spans[self.index_from(t)].enclose_state_about(t, origin)
+    }
+
+    fn enclose_kinematics(&self, t: Interval) -> Kinematics {
+        self.over(t, RigidMotion::enclose_kinematics, |a, b| a.hull(&b))
+    }
+}
+
+fn hull(a: IntervalTwist, b: IntervalTwist) -> IntervalTwist {
+    IntervalTwist { linear: a.linear.hull(b.linear), angular: a.angular.hull(b.angular) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::Random;
+
+    #[test]
+    fn splines_pass_through_poses_with_their_twists() {
+        let mut random = Random(21);
+        for degree in [SplineDegree::Cubic, SplineDegree::Quintic] {
+            for _ in 0..60 {
+                let frames: Vec<(f64, Pose, Twist)> = (0..5)
+                    .map(|i| {
+                        let (pose, _) = random.motion(1.0).pose_and_twist(0.0);
+                        let twist = Twist { linear: random.vector(), angular: random.vector() };
+                        (f64::from(i) + 0.3 * random.unit(), pose, twist)
+                    })
+                    .collect();
+                let path = Spline::try_with_twists(&frames, degree).unwrap();
+                for (i, (time, pose, twist)) in frames.iter().enumerate() {
+                    let sides = [*time, if i == 0 { *time } else { time.next_down() }];
+                    for t in sides {
+                        let state = path.enclose_state(t).following(pose.at);
+                        assert!((state.position - pose.translation).length() < 1e-11, "{degree:?} {i}");
+                        assert!((state.rotation * DVec3::X - pose.rotation * DVec3::X).length() < 1e-11);
+                        assert!(
+                            (state.linear - twist.linear).length() < 1e-9,
+                            "{degree:?} {i} {}",
+                            state.linear
+                        );
+                        assert!((state.angular - twist.angular).length() < 1e-9);
+                    }
+                    if degree == SplineDegree::Quintic {
+                        let rate = path.enclose_kinematics(Interval::point(*time));
+                        assert!(
+                            rate.angular_rate.center.length() < 1e-9
+                                && rate.linear_rate.center.length() < 1e-9
+                        );
+                    }
+                }
+                let (start, end) = (frames[0].0, frames[4].0);
+                let faults = crate::check_motion(&path, (start, end), 30);
+                assert!(faults.is_empty(), "{}", faults[0]);
+            }
+        }
+    }
+
+    #[test]
+    fn velocities_come_from_the_neighbours() {
+        let frame = |t: f64| (t, Pose { translation: DVec3::new(t * t, 1.0, -t), ..Pose::IDENTITY });
+        let path = Spline::try_through(&[frame(0.0), frame(1.0), frame(3.0)], SplineDegree::Cubic).unwrap();
+        // Of a parabola the weighted mean of chords is the tangent.
+        assert!((path.pose_and_twist(1.0).1.linear - DVec3::new(2.0, 0.0, -1.0)).length() < 1e-14);
+        let half = Pose { rotation: DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0), ..Pose::IDENTITY };
+        let fault = Spline::try_through(&[(0.0, Pose::IDENTITY), (1.0, half)], SplineDegree::Cubic);
+        assert!(fault.unwrap_err().to_string().contains("half a circle"));
+        assert!(Spline::try_through(&[(0.0, Pose::IDENTITY)], SplineDegree::Cubic).is_err());
+    }
+}
