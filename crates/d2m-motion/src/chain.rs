@@ -134,7 +134,7 @@ impl Joint {
 fn sin_cos_of(angle: DoubleDouble) -> (f64, f64) {
     /// 2π to 2⁻¹⁰⁵.
     const TURN: DoubleDouble = DoubleDouble { hi: core::f64::consts::TAU, lo: 2.449_293_598_294_706_4e-16 };
-    if !(angle.hi.abs() <= LARGEST_ANGLE) {
+    if angle.hi.is_nan() || angle.hi.abs() > LARGEST_ANGLE {
         return (f64::NAN, f64::NAN);
     }
     let turns = if angle.hi.abs() > 4.0 { (angle.hi / TURN.hi).round() } else { 0.0 };

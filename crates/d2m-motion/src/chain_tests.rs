@@ -141,7 +141,7 @@ fn states_of_chains_are_within_their_radii() {
             .sum();
         // The operator norm is at least the Frobenius norm over √3.
         assert!((turn / 3.0).sqrt() <= state.rotation_radius && state.rotation_radius < 1e-12);
-        let [v, w] = twist_at(&chain, if t == 0.5 + start { t } else { t });
+        let [v, w] = twist_at(&chain, t);
         let slack = 1e-12 * (1.0 + state.linear.length() + state.angular.length());
         if (t - start - 0.5).abs() > 1e-3 {
             assert!(

@@ -84,6 +84,7 @@ impl JointValue {
     /// # Errors
     /// Times that are not finite or do not increase, not one more time than pieces, a piece without coefficients or with
     /// one that is not finite, or a jump of more than 1e-9 where two pieces meet.
+    #[expect(clippy::needless_pass_by_value, reason = "as its sister, and as every caller has it")]
     pub fn try_pieces(times: Vec<f64>, pieces: Vec<Vec<f64>>) -> Result<Self, MotionError> {
         if let Some((index, reason)) = describe_times(&times) {
             return Err(fault(format!("value, times[{index}]"), reason));
@@ -107,7 +108,7 @@ impl JointValue {
             let jump = before.value.center.sub(after.value.center).hi.abs();
             // Also what is no number is a jump.
             let rounding = before.value.radius + after.value.radius;
-            if !(jump <= LARGEST_JUMP + rounding) {
+            if jump.is_nan() || jump > LARGEST_JUMP + rounding {
                 let reason =
                     format!("the value jumps by {jump:?} at the time {time:?} (at most {LARGEST_JUMP:?})");
                 return Err(fault(format!("value, pieces[{index}]"), reason));

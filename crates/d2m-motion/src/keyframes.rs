@@ -121,14 +121,14 @@ impl Keyframes {
             let angle = (0.5 * turn).sqrt() - p.rotation_radius - q.rotation_radius;
             let error = |quantity, gap, allowed| MotionError::Gap { index, time, quantity, gap, allowed };
             // Also what is no number is refused.
-            if !(angle <= LARGEST_GAP) {
+            if angle.is_nan() || angle > LARGEST_GAP {
                 return Err(error("rotation", angle, LARGEST_GAP));
             }
             let apart = (p.position.center - q.position.center) + (p.position_tail - q.position_tail);
             let gap = apart.length() - p.position.radius - q.position.radius;
             let coordinates = [before, after].map(|m| m.position().length().max(m.at().length()));
             let allowed = LARGEST_GAP * (coordinates[0].max(coordinates[1]) + moved);
-            if !(gap <= allowed) {
+            if gap.is_nan() || gap > allowed {
                 return Err(error("position", gap, allowed));
             }
             let size = gap / LARGEST_GAP - moved;

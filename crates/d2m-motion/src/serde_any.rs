@@ -161,7 +161,7 @@ impl From<&Joint> for JointForm {
             x: joint.position().to_array(),
             q: [q.w, q.x, q.y, q.z],
             joint: Some(name.to_owned()),
-            axis: axis.map(|axis| axis.to_array()),
+            axis: axis.map(DVec3::to_array),
             value: value.map(ValueForm::from),
         }
     }

@@ -31,7 +31,7 @@ const GROWTH: f64 = 4.0;
 /// A contact is expected after the gap has closed at the speed it closes with, and looked for this much longer.
 const OVERSHOOT: f64 = 1.25;
 /// Node tests that a fit counts for in a budget.
-const TESTS_A_FIT: u64 = 64;
+const TESTS_A_FIT: u64 = 256;
 
 /// The query; options were checked before.
 pub(super) fn general_motion(
@@ -172,25 +172,28 @@ impl<'a> Advance<'a> {
         Ok(match self.ask(motions, Window::try_new(self.now, until)?, &options)? {
             TimeOfContact::Separated => Step::FreeUntil(until),
             TimeOfContact::Contact(contact) => Step::Answer(TimeOfContact::Contact(self.with_start(contact))),
-            undecided => Step::Answer(undecided),
+            undecided @ TimeOfContact::Undecided { .. } => Step::Answer(undecided),
         })
     }
 
     /// Are the balls about the followed points apart over the span, whatever the bodies' turns? They move straight.
+    ///
+    /// Positions with their proven radii; the few operations after that round by less than 32 units in the last place of the
+    /// lengths that they add.
     fn balls_apart(&self, motions: [&dyn RigidMotion; 2], until: f64) -> bool {
-        let [(a, v), (b, w)] = motions.map(|motion| motion.pose_and_twist(self.now));
-        let reach = [(0, a.at), (1, b.at)].map(|(k, at): (usize, DVec3)| {
+        let [a, b] = motions.map(|motion| motion.enclose_state(self.now));
+        let reach = |k: usize, at: DVec3| {
             let body = self.bodies[k].body;
             body.radius() + (body.center() - at).length()
-        });
-        let (apart, length) = ((a.translation - b.translation).length(), until - self.now);
-        let closes = (v.linear - w.linear).length() * length;
-        // Poses round by units in the last place of these; a thousand times that is nothing to balls.
-        let size = a.translation.length()
-            + b.translation.length()
-            + (v.linear.length() + w.linear.length()) * length;
-        let rounding = 1024.0 * f64::EPSILON * (size + reach[0] + reach[1]);
-        apart - closes > reach[0] + reach[1] + self.options.min_separation + self.tolerance + rounding
+        };
+        let reach = reach(0, a.at) + reach(1, b.at);
+        let apart = (a.position - b.position).length();
+        let closes = (a.linear - b.linear).length() * (until - self.now);
+        let unknown = a.position_radius + b.position_radius;
+        let size = a.position.length() + b.position.length() + closes + reach + unknown;
+        let level = self.options.min_separation + self.tolerance;
+        // What is not a number is not apart.
+        apart - closes > reach + level + unknown + 32.0 * f64::EPSILON * (size + level)
     }
 
     fn ask(
@@ -283,7 +286,8 @@ impl<'a> Advance<'a> {
     fn fit(&mut self) -> Result<Option<(FittedTwists, f64)>, QueryError> {
         let joints = self.bodies.map(|body| body.motion.smooth_until(self.now));
         // A joint that is not ahead is a fault of the motion: then nothing is known.
-        if joints.iter().flatten().any(|&joint| !(joint > self.now)) && self.now < self.window.end() {
+        let behind = |joint: f64| joint.is_nan() || joint <= self.now;
+        if joints.into_iter().flatten().any(behind) && self.now < self.window.end() {
             return Ok(None);
         }
         let end = joints.into_iter().flatten().fold(self.window.end(), f64::min);
@@ -357,7 +361,7 @@ impl<'a> Advance<'a> {
             evidence => evidence,
         };
         let closing_speed = (speed_a - speed_b).dot(contact.normal);
-        self.with_start(Contact { point_a, point_b, evidence, closing_speed, ..contact })
+        self.with_start(Contact { evidence, point_a, point_b, closing_speed, ..contact })
     }
 
     /// How the bodies stood at the start of the whole window, not of a span.
