@@ -22,7 +22,7 @@ pub enum ZeroEvidence {
     Unique,
     /// At least one: f has certainly opposite signs at the ends of the bracket, or vanishes at one.
     SignChange,
-    /// Perhaps none: the bracket is as narrow as requested, and f is too small there to be told from zero (a double
+    /// Perhaps none: the bracket is as narrow as requested, and f is too small there to be distinguished from zero (a double
     /// root, a near miss, enclosures that do not shrink), or it is not defined there.
     Undecided,
 }
@@ -52,10 +52,10 @@ pub enum FirstZero {
 /// Promise, if the enclosures keep theirs: f ≠ 0 in the domain left of the bracket, or of `clear_until`, or everywhere
 /// for [`FirstZero::None`]; and what the evidence says. A simple zero that the enclosures can tell from its neighbours is
 /// [`ZeroEvidence::Unique`], in a bracket as narrow as the rounding of f allows (which may be below
-/// `limits.time_tolerance`, and is above it only where f cannot be told from zero at any time that would cut it).
+/// `limits.time_tolerance`, and is above it only where f cannot be distinguished from zero at any time that would cut it).
 ///
 /// The domain may be unbounded: pieces that reach to infinity are cut where half of the doubles lie on either side. Where
-/// f cannot be told from zero beyond the largest double, the bracket is `[MAX, ∞]` (or `[−∞, −MAX]`) with
+/// f cannot be distinguished from zero beyond the largest double, the bracket is `[MAX, ∞]` (or `[−∞, −MAX]`) with
 /// [`ZeroEvidence::Undecided`]. An empty domain has no zeros.
 ///
 /// ```text

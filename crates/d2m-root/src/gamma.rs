@@ -20,7 +20,7 @@ pub trait Gamma {
     /// `false` promises that no time in `t` is a contact; `true` promises nothing.
     fn may_touch(&mut self, t: Interval) -> bool;
 
-    /// A closer look at a piece that would not shrink. The default knows nothing.
+    /// A more expensive test of a piece that would not shrink. The default decides nothing.
     fn settle(&mut self, t: Interval) -> Settled {
         let _ = t;
         Settled::Open

@@ -65,7 +65,7 @@ where
             continue;
         }
         let theta = f.inclusion_function(piece);
-        // Where θ overflows, or the piece has no start, f itself may be told from zero.
+        // Where θ overflows, or the piece has no start, f itself may be certainly not zero.
         if !theta.range().is_bounded() && excludes_zero(f.enclose(piece)) {
             continue;
         }

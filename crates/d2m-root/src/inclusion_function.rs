@@ -103,7 +103,7 @@ impl InclusionFunction {
     /// that is empty).
     ///
     /// `searched` must lie in the domain. The case distinction is made at the start of `searched`, the interval that
-    /// is really looked at, and not at t0 (Algorithm 5 of the paper judges at the epoch and then takes the exit for
+    /// is really searched, and not at t0 (Algorithm 5 of the paper judges at the epoch and then takes the exit for
     /// the entry). The hull may hold times at which f > 0 in between; times outside it are certain.
     ///
     /// ```

@@ -37,7 +37,7 @@ fn enclose_within(x: Dd, error: f64) -> Ends {
         return (f64::NEG_INFINITY, f64::INFINITY);
     }
     let doubt = high.abs() * error;
-    // Far from underflow, the sign of the low part tells on which side of `high` the number is.
+    // Far from underflow, the sign of the low part shows on which side of `high` the number is.
     let clear = high.abs() > WITH_LOW_PART;
     (
         if clear && low > doubt { high } else { high.next_down() },

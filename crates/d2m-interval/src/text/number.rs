@@ -221,7 +221,7 @@ impl Number {
 
     /// Whether this is certainly greater than `o`: exact, where rounding might hide that they are in the wrong order.
     ///
-    /// Two numbers between the same doubles are not told apart where only digits that were cut off differ, or where it
+    /// Two numbers between the same doubles are not ordered where only digits that were cut off differ, or where it
     /// takes more than [`MOST_PRODUCTS`] or [`MOST_BITS`].
     pub(super) fn is_greater(&self, o: &Self) -> bool {
         match (self.negative, o.negative) {

@@ -83,7 +83,7 @@ impl Cubic {
     ///
     /// `margin(h)` bounds the error of the coefficients for every |s| ≤ h, and grows with h. For it the coefficients
     /// count as exact: what is rounded here is counted here. An end from which nothing can be cut stays as it is, and
-    /// a cubic or a piece that is not finite loses nothing. Values within 2⁻¹⁰⁰⁰ of the band are not told from it.
+    /// a cubic or a piece that is not finite loses nothing. Values within 2⁻¹⁰⁰⁰ of the band are not distinguished from it.
     ///
     /// The cubic is moved to the middle of what is left as long as that pays: it converges cubically to a simple
     /// root, down to the margin there.

@@ -1,7 +1,7 @@
 //! First contact of something that can be excluded, contracted and measured on pieces of time: from the left.
 //!
 //! **Invariant:** nothing here knows what is moving. A [`PieceTest`] answers for pieces of time; [`isolate`] decides
-//! which pieces to ask about, and keeps the promise "nothing before `lo`" from the promises of the test.
+//! which pieces to evaluate, and keeps the promise "nothing before `lo`" from the promises of the test.
 mod cubic;
 mod first_zero_bound;
 mod options;
@@ -45,7 +45,7 @@ pub struct Measurement {
     pub clear_hi: f64,
 }
 
-/// A question about contact that can be asked piece by piece.
+/// A test for contact that can be evaluated piece by piece.
 pub trait PieceTest {
     /// True if an evaluation of a piece of this half-width would not pay: it is then bisected unevaluated.
     fn too_wide(&self, half_width: f64) -> bool;

@@ -96,7 +96,7 @@ impl Quadratic {
     ///
     /// The coefficients count as exact: the caller's band includes their error, and nothing else. Ends are cut to
     /// doubles that are certain; an end from which nothing can be cut stays as it is, and a quadratic or a piece that is
-    /// not finite loses nothing. Values within 2⁻¹⁰⁰⁰ of the band are not told from it.
+    /// not finite loses nothing. Values within 2⁻¹⁰⁰⁰ of the band are not distinguished from it.
     ///
     /// ```
     /// use d2m_root::{Band, Piece, Quadratic};
