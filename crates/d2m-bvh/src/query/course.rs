@@ -6,12 +6,14 @@
 //! is largest at an end; ‖ΔR‖ at time τ is at most its value at the start plus |Δω|τ. So is the difference of any two
 //! distances. See docs/theory/engine.md, "What one query proves for the next".
 
-use crate::search::{Columns, Scene, Units, given_relative_position};
+use crate::search::{Columns, Pair, Scene, Units, given_relative_position};
 use crate::tree::Stamp;
+use crate::tree::margin::UNIT_F64;
 use glam::DVec3;
 
-/// Part of the sizes of both scenes that covers all roundings here.
-const COURSE_ERROR: f64 = 1e-12;
+/// Part of the sizes of both scenes, and of the deviation, that covers all roundings here: positions err by 64·2⁻⁵³ of the size, entries
+/// of rotations by 16·2⁻⁵³, and some thirty operations follow.
+const COURSE_ERROR: f64 = 4096.0 * UNIT_F64;
 
 /// Two bodies over a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +46,7 @@ impl Course {
             stamps: [a, b].map(|body| body.tree.stamp),
             units: scene.units,
             length: scene.end,
-            apart: given_relative_position(&a.motion, &b.motion, 0.0),
+            apart: DVec3::from_array(given_relative_position(&a.motion, &b.motion).map(Pair::rounded)),
             velocity,
             rotations: [a, b].map(|body| body.motion.rotation(0.0)),
             omegas: [a, b].map(|body| body.motion.angular_velocity()),

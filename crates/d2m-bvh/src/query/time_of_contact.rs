@@ -5,7 +5,9 @@ use super::collide::crossing_pair_within;
 use super::containment::{Held, held_vertex};
 use super::report::{contact, contained, evidence_at_start};
 use super::static_pair;
-use crate::search::{Outcome, Quad, RelativeMotion, Scene, Scratch, Search, given_relative_position, run};
+use crate::search::{
+    Outcome, Pair, Quad, RelativeMotion, Scene, Scratch, Search, given_relative_position, run,
+};
 use crate::{Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window};
 use core::cell::RefCell;
 use d2m_motion::Pose;
@@ -148,7 +150,8 @@ const CROSSING_STEPS: u64 = 1 << 12;
 /// pair that is near.
 fn crossing_at_start(scene: &Scene<'_>, allowance: &Allowance) -> Result<Option<[u32; 2]>, QueryError> {
     // As seen from B's reference point, which may be far from the origin.
-    let apart = given_relative_position(&scene.a.motion, &scene.b.motion, 0.0) * scene.units.length();
+    let apart = given_relative_position(&scene.a.motion, &scene.b.motion).map(Pair::rounded);
+    let apart = DVec3::from_array(apart) * scene.units.length();
     let [a, b] = [(&scene.a, apart), (&scene.b, DVec3::ZERO)].map(|(body, translation)| {
         let m = body.given.rebase(scene.window.start());
         Posed::new(body.tree, Pose { rotation: m.orientation(), translation, at: m.at() })

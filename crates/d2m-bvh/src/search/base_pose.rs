@@ -29,6 +29,11 @@ fn two_product(a: f64, b: f64) -> Pair {
 }
 
 impl Pair {
+    /// The nearest double.
+    pub(crate) const fn rounded(self) -> f64 {
+        self.0
+    }
+
     pub(crate) fn add(self, other: Self) -> Self {
         let s = two_sum(self.0, other.0);
         two_sum(s.0, s.1 + (self.1 + other.1))
@@ -43,25 +48,42 @@ impl Pair {
     }
 }
 
-/// x_A − x_B of the reference points in use at an offset: differences and products carried as pairs, rounded once at
-/// the end.
-pub(crate) fn relative_position(a: &LocalMotion, b: &LocalMotion, offset: f64) -> DVec3 {
-    difference([a, b], offset, a.shift() - b.shift())
+/// How the reference point of one body moves against that of another: on a straight line, in pairs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Track {
+    start: [Pair; 3],
+    velocity: [Pair; 3],
 }
 
-/// The same of the given reference points.
-pub(crate) fn given_relative_position(a: &LocalMotion, b: &LocalMotion, offset: f64) -> DVec3 {
-    difference([a, b], offset, DVec3::ZERO)
+impl Track {
+    /// x_A − x_B of the reference points in use.
+    pub(crate) fn new(a: &LocalMotion, b: &LocalMotion) -> Self {
+        let shift = a.shift() - b.shift();
+        let given = given_relative_position(a, b);
+        Self {
+            start: [0, 1, 2].map(|k| given[k].add(Pair(shift[k], 0.0))),
+            velocity: [0, 1, 2].map(|k| two_sum(a.linear_velocity()[k], -b.linear_velocity()[k])),
+        }
+    }
+
+    /// At an offset, rounded once.
+    pub(crate) fn at(&self, offset: f64) -> DVec3 {
+        let one = |k: usize| self.start[k].add(self.velocity[k].times(offset)).0;
+        DVec3::new(one(0), one(1), one(2))
+    }
 }
 
-fn difference([a, b]: [&LocalMotion; 2], offset: f64, shift: DVec3) -> DVec3 {
-    let (ta, tb) = (a.elapsed(offset), b.elapsed(offset));
-    let one = |k: usize| {
-        let start = two_sum(a.position()[k], -b.position()[k]).add(Pair(shift[k], 0.0));
-        let moved = ta.times(a.linear_velocity()[k]).add(tb.times(-b.linear_velocity()[k]));
-        start.add(moved).0
-    };
-    DVec3::new(one(0), one(1), one(2))
+/// x_A − x_B of the given reference points at the start.
+pub(crate) fn given_relative_position(a: &LocalMotion, b: &LocalMotion) -> [Pair; 3] {
+    [0, 1, 2].map(|k| {
+        let apart = two_sum(a.position()[k], -b.position()[k]);
+        let moved = [(a, 1.0), (b, -1.0)].map(|(motion, sign)| {
+            let elapsed = motion.elapsed_at_start();
+            // Most motions are told from the start.
+            if elapsed.0 == 0.0 { Pair(0.0, 0.0) } else { elapsed.times(sign * motion.linear_velocity()[k]) }
+        });
+        apart.add(moved[0].add(moved[1]))
+    })
 }
 
 /// The rotation exp([ω](t − t_ref))·R(q/|q|) at an offset as columns; each entry within 16·2⁻⁵³ of the true one, for

@@ -8,6 +8,8 @@ use crate::tree::node::{WIDTH, WideNode};
 
 /// Keys of a window run from 0 to this for its whole unit of time.
 pub(crate) const KEY_SCALE: f64 = 536_870_912.0; // 2²⁹
+/// Later times get this key: beyond every window, and with a key of now still a number of 31 bits.
+const LATEST_KEY: f32 = 1.25 * KEY_SCALE as f32;
 
 /// What the expansions of one frame share.
 #[derive(Clone, Copy, Debug)]
@@ -64,7 +66,7 @@ impl Opening<'_> {
         let placed = Placed::new::<L>(&frames[side], scale, (node, lane), wide);
         let times = entry_times::<L>(wide, &placed, scale);
         // What is not a number becomes the key of the item itself.
-        let steps = L::splat(1.25 * KEY_SCALE as f32).min(times * L::splat(KEY_SCALE as f32));
+        let steps = L::splat(LATEST_KEY).min(times * L::splat(KEY_SCALE as f32));
         let (keys, below) = steps.keys(now as i32, item.key as i32, limit as i32);
         let flags = [0, Item::OF_B];
         let size = node.size[lane] * self.size_ratios[other];

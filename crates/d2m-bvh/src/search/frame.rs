@@ -4,7 +4,6 @@
 //! a rotating frame: no Coriolis terms). A point r of a body, seen from the followed point `at`, has velocity
 //! v + ω × r and an acceleration of length at most |ω|²|r|, at all times.
 
-use super::base_pose::relative_position;
 use super::local_motion::LocalMotion;
 use super::quad::{Doubles, Matrix, Quad};
 use super::scene::Scene;
@@ -157,7 +156,7 @@ impl RelativeMotion {
         let (a, b) = (&scene.a.motion, &scene.b.motion);
         Self {
             start,
-            position: Quad::from_vec(relative_position(a, b, start)),
+            position: Quad::from_vec(scene.track.at(start)),
             velocity: Quad::from_vec(a.linear_velocity() - b.linear_velocity()),
             bodies: [Swing::new(a, start), Swing::new(b, start)],
         }

@@ -6,7 +6,6 @@
 //!
 //! See docs/theory/engine.md, "Screws".
 
-use super::base_pose::relative_position;
 use super::picture::{DIRECTIONS, Pictures};
 use super::scene::{Scene, SceneBody};
 use super::swept::after;
@@ -66,7 +65,7 @@ impl Screw {
         let velocity = a.motion.linear_velocity() - b.motion.linear_velocity();
         let climb = axis.dot(velocity);
         let flat = |p: DVec3| (p - axis * axis.dot(p)).length();
-        let apart = if both { flat(relative_position(&a.motion, &b.motion, start)) } else { 0.0 };
+        let apart = if both { flat(scene.track.at(start)) } else { 0.0 };
         let first = axis.any_orthonormal_vector();
         let h = climb / rate;
         let lead = 2.0 * std::f64::consts::PI * h.abs();
@@ -98,7 +97,7 @@ impl Screw {
     /// third coordinate. Heights count from B's reference point if it turns, else from A's; distances from the own axis,
     /// or the other's.
     fn places(&self, scene: &Scene<'_>, start: f64) -> [impl Fn(DVec3) -> DVec3; 2] {
-        let apart = relative_position(&scene.a.motion, &scene.b.motion, start);
+        let apart = scene.track.at(start);
         let [spins_a, spins_b] =
             [&scene.a, &scene.b].map(|body| body.motion.angular_velocity() != DVec3::ZERO);
         let (from_a, from_b) = match (spins_a, spins_b) {

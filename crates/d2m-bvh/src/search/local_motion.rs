@@ -28,7 +28,7 @@ pub(crate) struct LocalMotion {
 impl LocalMotion {
     /// Of a body with this centre.
     pub(crate) fn new(motion: &ConstantTwist, center: DVec3, start: f64, units: &Units) -> Self {
-        let (per_length, time) = (1.0 / units.length(), units.time());
+        let (per_length, time, per_time) = (1.0 / units.length(), units.time(), 1.0 / units.time());
         let angular_velocity = motion.angular_velocity() * time;
         let speed = per_length * time;
         let linear_velocity = if speed.is_normal() {
@@ -52,7 +52,7 @@ impl LocalMotion {
         // The time means nothing for a body at rest.
         let rests = angular_velocity == DVec3::ZERO && linear_velocity == DVec3::ZERO;
         let since = two_sum(start, -motion.reference_time());
-        let elapsed = if rests { Pair(0.0, 0.0) } else { Pair(since.0 / time, since.1 / time) };
+        let elapsed = if rests { Pair(0.0, 0.0) } else { Pair(since.0 * per_time, since.1 * per_time) };
         let position = motion.position() * per_length;
         Self { position, linear_velocity, angular_velocity, shift, arm, given_arm, turning, elapsed }
     }
@@ -97,6 +97,11 @@ impl LocalMotion {
     /// How the body turns.
     pub(crate) const fn turning(&self) -> &Turning {
         &self.turning
+    }
+
+    /// From the reference time to the start of the window.
+    pub(crate) const fn elapsed_at_start(&self) -> Pair {
+        self.elapsed
     }
 
     /// From the reference time to an offset.

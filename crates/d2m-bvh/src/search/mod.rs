@@ -31,7 +31,7 @@ mod two;
 mod units;
 mod window;
 
-pub(crate) use base_pose::{Columns, given_relative_position};
+pub(crate) use base_pose::{Columns, Pair, given_relative_position};
 pub(crate) use closest::{Closest, Place, closest};
 #[cfg(test)]
 pub(crate) use dispatch::run_on;

@@ -1,6 +1,6 @@
 //! Constants of one query.
 
-use super::base_pose::relative_position;
+use super::base_pose::Track;
 use super::local_motion::LocalMotion;
 use super::node_test::NodeScale;
 use super::queue::{Bucket, Item, Queue};
@@ -101,6 +101,8 @@ impl<'a> SceneBody<'a> {
 pub(crate) struct Scene<'a> {
     pub(crate) a: SceneBody<'a>,
     pub(crate) b: SceneBody<'a>,
+    /// Reference point of A from that of B.
+    pub(crate) track: Track,
     pub(crate) window: Window,
     pub(crate) units: Units,
     /// The offset of the end of the window, not early.
@@ -152,8 +154,8 @@ impl<'a> Scene<'a> {
                 return Err(QueryError::BadMotion { body });
             }
         }
-        let apart = |offset: f64| relative_position(&a.motion, &b.motion, offset).length();
-        let apart = apart(0.0).max(apart(end));
+        let track = Track::new(&a.motion, &b.motion);
+        let apart = track.at(0.0).length().max(track.at(end).length());
         let (reach_a, reach_b) = (a.reach(), b.reach());
         let spin_speed = a.spin() * reach_a + b.spin() * reach_b;
         let angle = a.spin() + b.spin();
@@ -165,6 +167,7 @@ impl<'a> Scene<'a> {
         let mut scene = Self {
             a,
             b,
+            track,
             window,
             units,
             end,
@@ -229,7 +232,7 @@ impl<'a> Scene<'a> {
     /// An offset, not before `start`, up to which the balls about the reference points (whatever the rotation) stay
     /// further apart than the level.
     pub(crate) fn balls_clear_until(&self, start: f64) -> f64 {
-        let apart = relative_position(&self.a.motion, &self.b.motion, start).length();
+        let apart = self.track.at(start).length();
         let room = apart - self.reach - self.pair.level - BALL_ERROR * self.size;
         let speed = (self.a.motion.linear_velocity() - self.b.motion.linear_velocity()).length() * UP;
         if room.is_nan() || room <= 0.0 {

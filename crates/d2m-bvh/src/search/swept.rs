@@ -8,7 +8,6 @@
 //!
 //! See docs/theory/engine.md, "Sweeps".
 
-use super::base_pose::relative_position;
 use super::scene::{Scene, SceneBody};
 use crate::tree::margin::{DOWN, UNIT_F32, UNIT_F64, UP};
 use crate::tree::node::{Below, WIDTH};
@@ -304,7 +303,7 @@ pub(crate) fn swept_clear_until(
         .map(|(body, spins)| Body::new(body, spins, start, interest));
     let mut sweep = Sweep {
         bodies,
-        apart: -relative_position(&scene.a.motion, &scene.b.motion, start),
+        apart: -scene.track.at(start),
         velocity: scene.b.motion.linear_velocity() - scene.a.motion.linear_velocity(),
         level: scene.pair.level + SWEEP_ERROR * (scene.size + scene.pair.level),
         length: (end - start).next_up(),

@@ -5,6 +5,7 @@ use super::frame::Frame;
 use super::quad::{Doubles, Quad, QuadVec};
 use super::refined_directions::refined_directions;
 use super::two::{Elementwise, Two};
+use crate::tree::margin::{DOWN, UNIT_F64, UP};
 use glam::DVec3;
 
 /// Distances and bounds of one search, in the units of the scene.
@@ -109,7 +110,7 @@ pub(crate) fn look<D: Doubles>(
 ) -> Look {
     let placed = Placed::new::<D>(frame, (a, b), scale, (enough, care));
     let (mut direction, gap) = placed.widest_gap::<D>();
-    let (apart, far) = (gap.exceeds(scale.level + scale.error), gap.exceeds(16.0 * scale.stop));
+    let (apart, far) = (gap.exceeds(scale.level + scale.error), gap.exceeds(FAR_STOPS * scale.stop));
     let (mut best, mut touching) = (0.0, false);
     // One piece of code for the three directions: the widest; a normal, which lasts longer than the line to a corner
     // that comes closer when faces slide along each other; near the end that of the closest features, which attains
@@ -264,7 +265,7 @@ impl Placed {
         let (turn_a, turn_b) = (n.cross(self.omega_a), n.cross(self.omega_b));
         // |n·(ω × (ω × e))| = |(n × ω)·(ω × e)| ≤ |n × ω||ω||e|, and the same times |ω| for the next derivative.
         let [swing_a, swing_b] = self.swings(scale, turn_a, turn_b);
-        let m = (swing_a + swing_b).min(scale.acceleration * length) * (1.0 + 1e-14);
+        let m = (swing_a + swing_b).min(scale.acceleration * length) * UP;
         let quad = |v: &[f64; 3]| Quad([v[0], v[1], v[2], v[2]]);
         let ((qa, ua), (qb, ub)) = ((quad(&pa), quad(&ra)), (quad(&pb), quad(&rb)));
         let s = if a_is_low {
@@ -276,7 +277,7 @@ impl Placed {
         if s >= self.enough || m * s <= PATIENCE * speed.abs() {
             return s;
         }
-        let jerk = (swing_a * self.omega_a.length() + swing_b * self.omega_b.length()) * (1.0 + 1e-14);
+        let jerk = (swing_a * self.omega_a.length() + swing_b * self.omega_b.length()) * UP;
         let bend_a = self.omega_a * self.omega_a.dot(n) - n * self.omega_a.length_squared();
         let bend_b = self.omega_b * self.omega_b.dot(n) - n * self.omega_b.length_squared();
         let (arm_a, arm_b) = (self.arm_a - self.offset, self.arm_b);
@@ -314,10 +315,18 @@ pub(crate) fn widest_normal(a: &[DVec3; 3], b: &[DVec3; 3]) -> DVec3 {
     if ga * lb > gb * la { na } else { nb }
 }
 
-/// Directions that are used are longer than this: squares of their products are not lost to underflow.
+/// Directions that are used are longer than this: lengths and times are about one, and the products of up to four of them and of
+/// gaps of at least 2⁻⁵³ are not lost to underflow.
 const SHORTEST: f64 = 1e-30;
-/// What rates are lowered by, so that the square of none underflows: a gap that grows less is never late.
+/// What rates are lowered by, so that none is zero and the square of none underflows: a gap that grows less is never late, and the
+/// unit of time is short against what this rate takes.
 const LEAST_RATE: f64 = 1e-140;
+/// Stands for "at no time": longer than every window, and finite, so that no product with a rate of zero is undefined.
+const NEVER: f64 = 1e300;
+/// Features closer than so many stopping distances are looked at themselves.
+const FAR_STOPS: f64 = 16.0;
+/// The discriminant v² − 2ag errs by at most 2·2⁻⁵³(v² + |2ag|); twice that and some room.
+const DISCRIMINANT_ERROR: f64 = 8.0 * UNIT_F64;
 
 /// The direction, made longer when it is very short; zero stays zero.
 #[inline(always)]
@@ -461,7 +470,7 @@ fn first_time<D: Doubles>(low: (D, D), high: (D, D), need: f64, m: f64) -> f64 {
     let (l, h) = (low.0 + low.1 * D::splat(later), high.0 + high.1 * D::splat(later));
     let value = h.least() - l.greatest() - need;
     let s = if value - 0.5 * m * later * later > 0.0 { later } else { s };
-    s * (1.0 - 1e-12)
+    s * DOWN
 }
 
 /// Root of g + v s − m s²/2 for g > 0: sums of terms of one sign only.
@@ -474,7 +483,7 @@ fn root(g: f64, v: f64, m: f64) -> f64 {
     } else if m > 0.0 {
         (v + root) / m
     } else {
-        1e300
+        NEVER
     }
 }
 
@@ -504,17 +513,17 @@ fn first_time_of_jets(low: &Jets, high: &Jets, need: f64, jerk: f64, enough: f64
         }
         first
     };
-    let mut span = first_root(0.0).min(enough * (1.0 + 1e-11));
+    let mut span = first_root(0.0).min(enough * (UP * UP));
     let mut proven = 0.0;
     for _ in 0..3 {
-        let s = first_root(jerk * span * (1.0 / 3.0 + 1e-15));
+        let s = first_root(jerk * span * (1.0 / 3.0 * UP));
         proven = s.min(span).max(proven);
         if s >= 0.8 * span {
             break;
         }
         span = (span * s).sqrt();
     }
-    proven * (1.0 - 1e-12)
+    proven * DOWN
 }
 
 /// First root of g + v s + a s²/2, g > 0, never late; infinite when there is none.
@@ -522,7 +531,7 @@ fn first_time_of_jets(low: &Jets, high: &Jets, need: f64, jerk: f64, enough: f64
 fn parabola_root(g: f64, v: f64, a: f64) -> f64 {
     let (v, bent) = (v - LEAST_RATE, 2.0 * a * g);
     // Too large by more than its rounding: the root of a closing pair is early.
-    let square = (v * v - bent) + 1e-15 * (v * v + bent.abs());
+    let square = (v * v - bent) + DISCRIMINANT_ERROR * (v * v + bent.abs());
     let root = square.max(0.0).sqrt();
     let closing = v < 0.0;
     let (above, below) = (if closing { 2.0 * g } else { v + root }, if closing { root - v } else { -a });

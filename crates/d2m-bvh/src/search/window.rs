@@ -41,6 +41,8 @@ const ON_ITS_WAY: f64 = 0.0625;
 /// A pair of triangles is followed alone until its time has grown by one part in this many: what it finds early spares
 /// the queue what comes later, and pairs that meet at the same features need one look back each.
 const FOLLOWED: u32 = 16;
+/// And by so many steps of the key: some 2e-6 of the window.
+const FOLLOWED_KEYS: u32 = 1024;
 
 /// The frame is renewed when the time has grown by more than one part in this many: an older one is as right, its
 /// bounds only begin earlier.
@@ -430,7 +432,7 @@ impl<'s> Search<'s> {
                         return;
                     }
                     let key = (known / state.step) as u32;
-                    if key > item.key + item.key / FOLLOWED + 1024 {
+                    if key > item.key + item.key / FOLLOWED + FOLLOWED_KEYS {
                         if key < state.limit {
                             self.scratch.queue.push(&Item { key, ..item });
                         }

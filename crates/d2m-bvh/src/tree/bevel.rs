@@ -5,6 +5,8 @@
 //! face to that of the other; a part that touches the edge has s = 0 again. In the box' own frame and half extents that is an
 //! 18-DOP (Klosowski et al. 1998, DOI 10.1109/2945.675649).
 
+use super::margin::UNIT_F64;
+
 /// The pairs of axes whose faces meet in edges.
 pub(crate) const PAIRS: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
 
@@ -14,6 +16,11 @@ pub(crate) const STEPS: f32 = 64.0;
 /// The largest stored cut. Four bytes that are not above it are never the bits of a NaN, so that they can be kept where
 /// numbers are.
 pub(crate) const MOST: u8 = 126;
+
+/// Bound on the error of a room in steps: eight roundings of numbers that are at most twice the product they are divided by.
+const ROOM_ERROR: f64 = STEPS as f64 * 64.0 * UNIT_F64;
+/// What is taken off a room before it is rounded down: so much more than its error that boxes of more points pass, too.
+const CUT_SLACK: f64 = 1024.0 * ROOM_ERROR;
 
 /// For each pair of axes the cuts s in steps, of the edge (σ, τ) at place (σ < 0) + 2·(τ < 0).
 pub(crate) type Bevels = [[u8; 4]; 3];
@@ -55,7 +62,7 @@ impl EdgeReach {
     /// How many steps could be cut off each edge, for the final half extents and coordinates that err by at most `slack`.
     ///
     /// σxᵢhⱼ + τxⱼhᵢ ≤ most + hᵢ(|hⱼ − aboutⱼ| + slack) + hⱼ(|hᵢ − aboutᵢ| + slack), since |xᵢ| ≤ hᵢ. The roundings are a few
-    /// v of numbers that are at most 2·hᵢ·hⱼ, so the result errs by less than 10⁻¹². Not a number where the box has no
+    /// v of numbers that are at most 2·hᵢ·hⱼ, so the result errs by less than [`ROOM_ERROR`]. Not a number where the box has no
     /// such edge.
     fn room(&self, half: &[f32; 3], slack: f64) -> [[f64; 4]; 3] {
         let half = half.map(f64::from);
@@ -69,7 +76,7 @@ impl EdgeReach {
 
     /// Cuts that leave all points.
     pub(super) fn bevels(&self, half: &[f32; 3], slack: f64) -> Bevels {
-        let whole = |room: f64| if room >= 1.0 { (room - 1e-9).min(f64::from(MOST)) as u8 } else { 0 };
+        let whole = |room: f64| if room >= 1.0 { (room - CUT_SLACK).min(f64::from(MOST)) as u8 } else { 0 };
         self.room(half, slack).map(|rooms| rooms.map(whole))
     }
 
@@ -77,6 +84,6 @@ impl EdgeReach {
     pub(super) fn are_left_by(&self, bevels: &Bevels, half: &[f32; 3], slack: f64) -> bool {
         let room = self.room(half, slack);
         let all = bevels.iter().flatten().zip(room.iter().flatten());
-        all.into_iter().all(|(&cut, room)| cut == 0 || f64::from(cut) <= room - 1e-11)
+        all.into_iter().all(|(&cut, room)| cut == 0 || f64::from(cut) <= room - ROOM_ERROR)
     }
 }

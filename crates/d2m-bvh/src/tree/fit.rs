@@ -17,7 +17,7 @@ impl Moments {
         let e = sub(*b, *a);
         let f = sub(*c, *a);
         let n = cross(e, f);
-        let area = 0.5 * dot(n, n).sqrt() + 1e-12;
+        let area = 0.5 * dot(n, n).sqrt() + LEAST_AREA;
         let sum = [a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]];
         self.weight += area;
         // ∫ x xᵀ over a triangle = area/12 (Σ p pᵀ + s sᵀ) with s the sum of the corners.
@@ -70,6 +70,17 @@ impl Moments {
     }
 }
 
+// Axes may be any: boxes are measured along what comes out. These numbers only keep out what is not a number.
+
+/// What the area of a triangle (the body has radius one) counts at least: degenerate ones have a place, too.
+const LEAST_AREA: f64 = 1e-12;
+/// A direction shorter than this is none: its square is about lost to underflow.
+const SHORTEST: f64 = 1e-150;
+/// Sine of the angle below which a second direction is no other one.
+const LEAST_SINE: f64 = 1e-9;
+/// Part of the square of the diagonal at which a matrix counts as diagonal: axes within 1e-6.
+const OFF_DIAGONAL: f64 = 1e-12;
+
 /// Axes of one triangle: longest edge, the direction across it, the normal.
 pub(super) fn triangle_axes(corners: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     let edges = [sub(corners[1], corners[0]), sub(corners[2], corners[1]), sub(corners[0], corners[2])];
@@ -81,7 +92,7 @@ pub(super) fn triangle_axes(corners: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
 /// An orthonormal frame from a first direction and a second one; anything where they do not define it.
 fn complete(first: [f64; 3], second: [f64; 3]) -> [[f64; 3]; 3] {
     let length = dot(first, first).sqrt();
-    if length.is_nan() || length < 1e-150 {
+    if length.is_nan() || length < SHORTEST {
         return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     }
     let x = first.map(|c| c / length);
@@ -91,7 +102,7 @@ fn complete(first: [f64; 3], second: [f64; 3]) -> [[f64; 3]; 3] {
     };
     let mut y = across(second);
     let scale = dot(second, second).sqrt();
-    if dot(y, y).sqrt().is_nan() || dot(y, y).sqrt() <= 1e-9 * scale {
+    if dot(y, y).sqrt().is_nan() || dot(y, y).sqrt() <= LEAST_SINE * scale {
         let k = (0..3).min_by(|&i, &j| x[i].abs().total_cmp(&x[j].abs())).unwrap_or(0);
         let mut unit = [0.0; 3];
         unit[k] = 1.0;
@@ -110,7 +121,7 @@ fn principal_axes(mut m: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     for _ in 0..12 {
         let off = m[0][1] * m[0][1] + m[0][2] * m[0][2] + m[1][2] * m[1][2];
         let diagonal = m[0][0] * m[0][0] + m[1][1] * m[1][1] + m[2][2] * m[2][2];
-        if off.is_nan() || off <= 1e-12 * diagonal {
+        if off.is_nan() || off <= OFF_DIAGONAL * diagonal {
             break;
         }
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {

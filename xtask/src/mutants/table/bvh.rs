@@ -17,7 +17,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "edges of boxes cut off two steps too far",
         "crates/d2m-bvh/src/tree/bevel.rs",
-        "(room - 1e-9).min(f64::from(MOST))",
+        "(room - CUT_SLACK).min(f64::from(MOST))",
         "(room + 2.0).min(f64::from(MOST))",
         "crates/d2m-bvh/src/tree/tests.rs::boxes_enclose_in_more_than_double_precision",
     ),
