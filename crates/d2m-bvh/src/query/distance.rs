@@ -238,12 +238,13 @@ struct Closest<'a> {
 
 impl Closest<'_> {
     #[inline(always)]
-    fn compare(&mut self, triangles: [u32; 2]) {
+    /// True if the pair is closer than all so far.
+    fn compare(&mut self, triangles: [u32; 2]) -> bool {
         let (a, b) = (self.scene.place(0, triangles[0]), self.scene.place(1, triangles[1]));
         if let Some(best) = &self.best {
             // Along the best pair's own direction: most of its neighbours are left out by this.
             if gap_exceeds(best.distance.direction, &a, &b, self.upper + self.scene.projection) {
-                return;
+                return false;
             }
         }
         let distance = triangle_distance(&a, &b);
@@ -263,6 +264,7 @@ impl Closest<'_> {
                 self.along = self.scene.directions(distance.direction);
             }
         }
+        better
     }
 }
 
@@ -287,7 +289,7 @@ impl Task for Search<'_> {
         }
         let mut queue = BinaryHeap::with_capacity(512);
         let mut next = Some((0.0f32, [0u32; 2]));
-        // Descend greedily to the first pair of triangles, then best first.
+        // Descend greedily to a pair of triangles, as long as that is closer than the one before; then best first.
         let mut descending = closest.best.is_none();
         loop {
             let (key, pair) = match next.take() {
@@ -327,8 +329,8 @@ impl Task for Search<'_> {
                     next = least;
                 }
                 Step::Compare(triangles) => {
-                    closest.compare(triangles);
-                    descending = false;
+                    // On as long as it pays: each closer pair has a better direction for all that follow.
+                    descending = closest.compare(triangles);
                 }
             }
         }

@@ -44,6 +44,14 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "let blur = Interval::new(-0.5 * error, 0.5 * error);",
         "crates/d2m-bvh/src/query/proven_crossing.rs::claims_hold_for_every_position_of_the_corners",
     ),
+    // Static queries.
+    patch(
+        "a triangle reaches less far along a direction than its corners",
+        "crates/d2m-bvh/src/query/static_pair/node_test.rs",
+        "round_up((high - middle).max(middle - low));",
+        "round_up(0.5 * (high - middle).min(middle - low));",
+        "crates/d2m-bvh/tests/static_query.rs::random_solids_and_soups",
+    ),
     // Proximities.
     patch(
         "normal cones without slack for rounding",

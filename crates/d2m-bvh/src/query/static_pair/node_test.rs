@@ -35,6 +35,8 @@ pub(super) struct Placed {
     margin: f32,
     /// One more direction to look along, wide body's axes, of length at most one; what the box reaches along it.
     along: [f32; 3],
+    /// Middle of what it covers along that direction, from the node's origin.
+    at_along: f32,
     reach_along: f32,
 }
 
@@ -52,6 +54,7 @@ impl Placed {
             radius: round_up(radius),
             margin: round_up(GAP_ERROR * (norm + f64::from(wide.extent) + radius) + side.floor),
             along: [0.0; 3],
+            at_along: 0.0,
             reach_along: 0.0,
         }
     }
@@ -61,6 +64,23 @@ impl Placed {
     pub(super) fn looking_along(mut self, n: [f32; 3]) -> Self {
         let (b, k) = (&self.axes, &self.half);
         self.reach_along = size(n, b[0]) * k[0] + size(n, b[1]) * k[1] + size(n, b[2]) * k[2];
+        let c = &self.center;
+        self.at_along = n[0] * c[0] + n[1] * c[1] + n[2] * c[2];
+        self.along = n;
+        self
+    }
+
+    /// With a direction, for a box around one triangle: what the triangle itself covers, which may be much less than its
+    /// box does. Corners from the node's origin, wide body's axes and unit.
+    #[inline(always)]
+    pub(super) fn looking_at_triangle_along(mut self, n: [f32; 3], corners: &[DVec3; 3]) -> Self {
+        let direction = vector(n);
+        let [p, q, r] = [direction.dot(corners[0]), direction.dot(corners[1]), direction.dot(corners[2])];
+        let (low, high) = (p.min(q).min(r), p.max(q).max(r));
+        self.at_along = (0.5 * (low + high)) as f32;
+        // From the middle as it is rounded.
+        let middle = f64::from(self.at_along);
+        self.reach_along = round_up((high - middle).max(middle - low));
         self.along = n;
         self
     }
@@ -166,7 +186,10 @@ pub(super) fn lower_bounds<L: Lanes>(wide: &WideNode, placed: &Placed, to_work: 
     let n = splat::<L>(&placed.along);
     let axes = [load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]), load::<L>(&wide.axes[2])];
     let half = load::<L>(&wide.half_extent);
-    let along = gap(&to, &n, L::splat(placed.reach_along), &half, sizes(&n, &axes), margin);
+    let center = load::<L>(&wide.center);
+    let between = (L::splat(placed.at_along) - dot(&center, &n)).abs();
+    let reach = L::splat(placed.reach_along) + dot(&half, &sizes(&n, &axes));
+    let along = (between - reach - margin).max(L::splat(0.0));
     (boxes.max(balls).max(along) * L::splat(NORM_FACTOR) * L::splat(to_work)).store()
 }
 

@@ -163,9 +163,30 @@ impl<'a> Scene<'a> {
         single: u32,
         along: &[[f32; 3]; 2],
     ) -> ([f32; 8], usize) {
-        let placed = self.placed(wide, node, single).looking_along(along[wide]);
+        let placed = self.placed(wide, node, single);
+        let tree = self.trees[1 - wide];
+        let placed = match tree.nodes[single as usize / WIDTH].below(single as usize % WIDTH) {
+            Below::Triangle(triangle) => {
+                let corners = self.corners_in(wide, triangle, self.trees[wide].nodes[node as usize].origin);
+                placed.looking_at_triangle_along(along[wide], &corners)
+            }
+            Below::Node(_) => placed.looking_along(along[wide]),
+        };
         let node = &self.trees[wide].nodes[node as usize];
         (lower_bounds::<L>(node, &placed, self.sides[wide].to_work), (node.used as usize).min(WIDTH))
+    }
+
+    /// Corners of a triangle of the other body from the origin of a node of body `wide`, in its axes and unit.
+    #[inline(always)]
+    fn corners_in(&self, wide: usize, triangle: u32, origin: [f32; 3]) -> [DVec3; 3] {
+        let (tree, side) = (self.trees[1 - wide], &self.sides[wide]);
+        let scale = 1.0 / self.trees[wide].unit();
+        let shift =
+            side.offset - DVec3::new(f64::from(origin[0]), f64::from(origin[1]), f64::from(origin[2]));
+        tree.mesh().corners(triangle as usize).map(|corner| {
+            let p = (corner - tree.center()) * scale;
+            side.rotation[0] * p.x + side.rotation[1] * p.y + side.rotation[2] * p.z + shift
+        })
     }
 
     /// Which boxes of a node of body `wide` are not proven apart from a box of the other body.
