@@ -1,7 +1,7 @@
 //! A moving sphere against a sphere that is fixed in B's frame (solid spheres).
 use crate::path::{FeaturePath, along, direction, global, local, reach, widened, without_third};
 use crate::point_triangle::cleared;
-use crate::rounding::{DOWN, UNIT, length_up};
+use crate::rounding::{DOWN, PART_OF_WAY, UNIT, length_up};
 use d2m_root::{Measurement, Piece, PieceTest, Quadratic, Verdict};
 use glam::DVec3;
 
@@ -28,7 +28,7 @@ const DEPTH: f64 = 8.0 * UNIT;
 
 impl<P: FeaturePath> PieceTest for SphereSphereTest<P> {
     fn too_wide(&self, h: f64) -> bool {
-        self.path.left_out(h) > PATIENCE * (self.size + 0.25 * self.path.speed() * h)
+        self.path.left_out(h) > PATIENCE * (self.size + PART_OF_WAY * self.path.speed() * h)
     }
 
     fn tolerance(&self) -> f64 {

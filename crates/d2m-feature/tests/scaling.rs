@@ -1,12 +1,15 @@
 //! Metamorphic twins: lengths and times multiplied by powers of two change no verdict and no relative time.
 mod planted;
 
+use d2m_feature::paper::{self, PaperOptions, RelativeMotion};
 use d2m_feature::{
     ContactBracket, ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, StraightPaths,
 };
+use d2m_interval::Interval;
 use d2m_motion::ConstantTwist;
+use d2m_root::{Evidence, RootSearch};
 use glam::DVec3;
-use planted::families::{FAMILIES, Kind, Opaque, Planted, Random, plant};
+use planted::families::{FAMILIES, Family, Kind, Opaque, Planted, Random, plant};
 
 /// `2ᵏ` for −1022 ≤ k ≤ 1023.
 fn power(k: i32) -> f64 {
@@ -241,4 +244,48 @@ fn features_and_motions_of_different_sizes() {
             }
         }
     }
+}
+
+/// The reference method works in the units of the input with intervals of an absolute width of 2⁻⁵⁰⁰: it may say less there,
+/// but never that there is no contact where there is one.
+#[test]
+fn the_reference_method_misses_nothing_in_any_unit() {
+    let mut random = Random::new(8);
+    let mut hits = 0;
+    for kind in [Kind::PointTriangle, Kind::EdgeEdge] {
+        for family in [Family::Hit, Family::Boundary, Family::Window] {
+            for _ in 0..3 {
+                let query = plant(kind, family, &mut random);
+                let FirstContact::Contact(contact) = rigid(&query) else { continue };
+                if contact.evidence != Evidence::Crossing {
+                    continue;
+                }
+                for (length, time) in SCALES {
+                    let Some(twin) = scaled_query(&query, length, time) else { continue };
+                    let motion = RelativeMotion::new(&twin.motion_a, &twin.motion_b);
+                    let window = Interval::new(twin.window.0, twin.window.1);
+                    let tolerance = scaled(1e-10, length).unwrap();
+                    let options = PaperOptions::DEFAULT.with_tolerance(tolerance).with_evaluations(2000);
+                    let found = match kind {
+                        Kind::PointTriangle => {
+                            paper::point_triangle(&motion, twin.a[0], &twin.b, window, &options)
+                        }
+                        Kind::EdgeEdge => {
+                            paper::edge_edge(&motion, &twin.a, &[twin.b[0], twin.b[1]], window, &options)
+                        }
+                    };
+                    let hi = scaled(contact.hi, time).unwrap();
+                    match found {
+                        RootSearch::Bracket(bracket) => assert!(bracket.lo() <= hi, "2^{length} 2^{time}"),
+                        RootSearch::Undecided { clear_until } => {
+                            assert!(clear_until <= hi, "2^{length} 2^{time}: {clear_until}");
+                        }
+                        RootSearch::None => panic!("2^{length} 2^{time}: missed {query:?}"),
+                    }
+                    hits += 1;
+                }
+            }
+        }
+    }
+    assert!(hits > 200, "{hits}");
 }

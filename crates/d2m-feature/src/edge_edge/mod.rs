@@ -7,7 +7,7 @@ use crate::path::{
     FeaturePath, along, around, direction, global, local, padded, reach, widened, without_third,
 };
 use crate::point_triangle::cleared;
-use crate::rounding::{CLOSE, UNDERFLOW, UNIT, UP, length_up};
+use crate::rounding::{CLOSE, PART_OF_WAY, UNDERFLOW, UNIT, UP, length_up};
 use d2m_interval::F64x2;
 use d2m_motion::{TwoJets, TwoVec3};
 use d2m_root::{Band, Cubic, Measurement, Piece, PieceTest, Quadratic, Verdict};
@@ -111,7 +111,7 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
 impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
     #[inline(always)]
     fn too_wide(&self, h: f64) -> bool {
-        self.path.left_out(h) > PATIENCE * (self.size() + 0.25 * self.speed() * h)
+        self.path.left_out(h) > PATIENCE * (self.size() + PART_OF_WAY * self.speed() * h)
     }
 
     fn tolerance(&self) -> f64 {

@@ -67,6 +67,10 @@ pub struct Face<'a> {
     pub sides: &'a [Direction],
 }
 
+/// Area of a polygon, as a part of its squared size, below which its normal is taken across its longest edge instead: far below
+/// rounding (2⁻⁵³), and any direction is sound.
+const FLAT: f64 = 1e-30;
+
 /// The normal of a polygon and, by index, the in-plane normals of its sides; substitutes where it has collapsed.
 fn directions(corners: &[DVec3]) -> (DVec3, impl Fn(usize) -> DVec3 + '_) {
     let n = corners.len();
@@ -80,7 +84,7 @@ fn directions(corners: &[DVec3]) -> (DVec3, impl Fn(usize) -> DVec3 + '_) {
     let straight = |v: DVec3| longest.map_or(v, |l| v - l * v.dot(l));
     let normal = unit(area).map(straight).and_then(unit).filter(|u| {
         let size = corners.iter().fold(0.0f64, |m, c| m.max((*c - corners[0]).abs().max_element()));
-        u.is_finite() && area.abs().max_element() > 1e-30 * size * size
+        u.is_finite() && area.abs().max_element() > FLAT * size * size
     });
     let (n_hat, flat) = match (normal, longest) {
         (Some(u), _) => (u, true),

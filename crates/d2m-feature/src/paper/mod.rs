@@ -2,6 +2,9 @@
 //!
 //! Readable first. The tests work for every [`RigidMotion`](d2m_motion::RigidMotion) through its enclosures; the
 //! closed-form tests of the crate are the fast ones.
+//!
+//! **Range.** Numbers are taken as they are, in intervals that have an absolute width of 2⁻⁵⁰⁰. With lengths and times of 2⁻³⁰⁰ to
+//! 2³⁰⁰ that is nothing; beyond, brackets get wide or the search ends undecided, but no contact is missed.
 
 mod closest;
 mod direction;

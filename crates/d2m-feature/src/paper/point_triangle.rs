@@ -176,7 +176,7 @@ impl Gamma for PointFace<'_> {
         let c = estimate_on_polygon(p, self.face.corners, self.face.normal.vector);
         // `c` is on the polygon up to rounding of its own computation.
         let size = self.face.corners.iter().fold(0.0f64, |m, k| m.max(k.abs().max_element()));
-        let off = Interval::point(size.max(c.abs().max_element())) * 1e-15;
+        let off = Interval::point(size.max(c.abs().max_element())) * ON_FACE;
         let inside = estimate_is_on(&self.face, c);
         if inside
             && t.contains(time)
@@ -204,11 +204,15 @@ impl Gamma for PointFace<'_> {
     }
 }
 
-/// Is `c` on the face within 1e-15 of its size? Judged along all its directions.
+/// What a point that is computed to lie on a face is taken to be off it, as a part of the largest coordinate: the foot is a
+/// sum of three products of weights and corners, some 8·2⁻⁵³.
+const ON_FACE: f64 = 1e-15;
+
+/// Is `c` on the face within [`ON_FACE`] of its size for each corner? Judged along all its directions.
 fn estimate_is_on(face: &Face<'_>, c: DVec3) -> bool {
     face.sides.iter().chain([&face.normal]).all(|d| {
         let v = d.vector.dot(c);
-        let slack = 1e-15 * (1.0 + face.corners.len() as f64) * c.abs().max_element().max(d.extent.mag());
+        let slack = ON_FACE * (1.0 + face.corners.len() as f64) * c.abs().max_element().max(d.extent.mag());
         v >= d.extent.lo() - slack && v <= d.extent.hi() + slack
     })
 }

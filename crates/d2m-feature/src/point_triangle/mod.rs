@@ -7,7 +7,7 @@ use crate::closest;
 use crate::path::{
     FeaturePath, along, around, cubic_along, direction, global, local, padded, reach, widened, without_third,
 };
-use crate::rounding::{CLOSE, UNIT, UP, length_up};
+use crate::rounding::{CLOSE, PART_OF_WAY, UNIT, UP, length_up};
 use d2m_motion::{PathJet, Remainder};
 use d2m_root::{Band, Cubic, Measurement, Piece, PieceTest, Quadratic, Verdict};
 use glam::DVec3;
@@ -44,7 +44,7 @@ impl<'a, P> PointTriangleTest<'a, P> {
 impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
     #[inline(always)]
     fn too_wide(&self, h: f64) -> bool {
-        self.path.left_out(h) > PATIENCE * (self.planes.size + 0.25 * self.path.speed() * h)
+        self.path.left_out(h) > PATIENCE * (self.planes.size + PART_OF_WAY * self.path.speed() * h)
     }
 
     fn tolerance(&self) -> f64 {

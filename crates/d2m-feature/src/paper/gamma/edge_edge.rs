@@ -37,6 +37,10 @@ impl EdgeJet {
     }
 }
 
+/// Squared sine of the angle between two edges from which they count as not parallel: at 10⁻¹⁰ rad rounding turns their cross
+/// product by 10⁻⁶. Only a choice of axes hangs on it, and every axis is sound.
+const SIN_SQUARED: f64 = 1e-20;
+
 /// `false` promises that the edges do not meet at any time of the offsets `x`.
 ///
 /// The paper projects both thickened edges along k = e × d (for parallel edges along (c − a) × (d − a)) and asks
@@ -56,7 +60,7 @@ pub(crate) fn gamma_edge_edge(edge: &EdgeJet, fixed: &[DVec3; 2], x: Interval) -
     let d = fixed[1] - fixed[0];
     let (Some(e), Some(d)) = (unit(e), unit(d)) else { return true };
     let k = e.cross(d);
-    let k = if k.length_squared() > 1e-20 {
+    let k = if k.length_squared() > SIN_SQUARED {
         k
     } else {
         let a = edge.start.enclose(middle).mid();
