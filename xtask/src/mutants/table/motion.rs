@@ -6,8 +6,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "jerk of a path without 3U",
         "crates/d2m-motion/src/relative/bounds.rs",
-        "(3.0 * k.across + k.b * k.b * reach.min(k.reach))",
-        "(k.b * k.b * reach.min(k.reach))",
+        "(3.0 * k.across + k.b * k.swept_within(reach))",
+        "(k.b * k.swept_within(reach))",
         "crates/d2m-motion/src/relative/tests.rs::bounds_of_the_derivatives_hold_and_are_nearly_reached",
     ),
     patch(
