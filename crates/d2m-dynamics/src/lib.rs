@@ -5,6 +5,7 @@ mod body;
 mod broad_phase;
 mod contact;
 mod error;
+mod faces;
 mod group;
 mod mass;
 mod options;

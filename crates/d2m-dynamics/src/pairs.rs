@@ -1,10 +1,11 @@
 //! What is known of pairs of bodies, and the queries about them.
 
 use crate::contact::{ContactPoint, Material, tangents};
+use crate::faces::vertices_of;
 use crate::rigid_body::RigidBody;
 use d2m_bvh::{
-    Budget, Moving, PairCache, Proximity, ProximityOptions, QueryError, QueryOptions, Solid, StartState,
-    TimeOfContact, Window, proximities_with, reduce_proximities, time_of_contact_with,
+    Budget, Contact, Moving, PairCache, Proximity, ProximityOptions, QueryError, QueryOptions, Solid,
+    StartState, TimeOfContact, Window, proximities_with, reduce_proximities, time_of_contact_with,
 };
 use d2m_feature::FeaturePair;
 use d2m_motion::Pose;
@@ -57,7 +58,7 @@ pub(crate) enum Outcome {
     /// Certified free until the end of the window.
     Clear,
     /// Certified free before `lo`; close at some time until `hi`.
-    Meets { lo: f64, hi: f64 },
+    Meets { lo: f64, hi: f64, normal: DVec3, closing: f64 },
     /// The budget of the query is used up; certified free until then.
     ClearUntil(f64),
     /// Closer than can be certified.
@@ -90,13 +91,18 @@ pub(crate) fn fly(
             TimeOfContact::Separated => return Ok(Outcome::Clear),
             TimeOfContact::Undecided { clear_until } => return Ok(Outcome::ClearUntil(clear_until)),
             TimeOfContact::Contact(contact) => match contact.start {
-                StartState::Apart => return Ok(Outcome::Meets { lo: contact.time_lo, hi: contact.time_hi }),
+                StartState::Apart => return Ok(met(&contact)),
                 StartState::Touching => separation *= HALF,
                 _ => return Ok(Outcome::Stuck),
             },
         }
     }
     Ok(Outcome::Stuck)
+}
+
+fn met(contact: &Contact) -> Outcome {
+    let (lo, hi) = (contact.time_lo, contact.time_hi);
+    Outcome::Meets { lo, hi, normal: contact.normal, closing: contact.closing_speed }
 }
 
 /// The closest features of two bodies within `margin` at a time of their flights; `pair` numbers the bodies.
@@ -112,21 +118,23 @@ pub(crate) fn measure(
     let (posed_a, posed_b) = (a.posed_at(time), b.posed_at(time));
     let options = ProximityOptions::new(margin).with_cone_slack(TILT);
     let wide = proximities_with(posed_a, posed_b, &options)?;
-    let faces = face_normals(&wide, [a, b], [&posed_a.pose, &posed_b.pose]);
-    let flat: Vec<Option<Proximity>> = wide.iter().map(|p| along(p, &faces, FLAT)).collect();
-    let askew = |k: usize| flat[k].is_none() && is_edges(&wide[k]);
-    let exact: Vec<Proximity> = if (0..wide.len()).any(askew) {
-        let found = proximities_with(posed_a, posed_b, &options.with_cone_slack(0.0))?;
-        found.iter().map(|p| along(p, &faces, FLAT).unwrap_or(*p)).collect()
+    let flatten = |p: &Proximity| flattened(p, [a, b], [&posed_a.pose, &posed_b.pose]);
+    let exact: Vec<Proximity> = if wide.iter().any(is_edges) {
+        proximities_with(posed_a, posed_b, &options.with_cone_slack(0.0))?
     } else {
         Vec::new()
     };
-    let straight = |k: usize| match flat[k] {
-        None if askew(k) => straightened(&wide[k], &exact),
-        None => Some(wide[k]),
-        flat => flat,
+    let normals: Vec<DVec3> = exact.iter().map(|p| flatten(p).unwrap_or(*p).normal).collect();
+    let straight = |p: &Proximity| {
+        // Two edges whose common normal is outside of their cones would push askew: where faces are almost parallel they
+        // get the normal of a locally closest pair. Without one they are no contact.
+        if is_edges(p) && !exact.iter().any(|q| q.feature == p.feature) {
+            along(p, &normals, TILT)
+        } else {
+            Some(flatten(p).unwrap_or(*p))
+        }
     };
-    let found: Vec<Proximity> = (0..wide.len()).filter_map(straight).collect();
+    let found: Vec<Proximity> = wide.iter().filter_map(straight).collect();
     let found = reduce_proximities(&found, TILT);
     let contact = |p: &Proximity| ContactPoint {
         a: pair.0,
@@ -150,20 +158,15 @@ fn is_edges(p: &Proximity) -> bool {
     matches!(p.feature, FeaturePair::EdgeEdge { .. })
 }
 
-/// The normals of the faces that hold the points, from A to B as the proximities have it.
-fn face_normals(found: &[Proximity], bodies: [&RigidBody; 2], poses: [&Pose; 2]) -> Vec<DVec3> {
-    let mut faces: Vec<[u32; 2]> = Vec::new();
-    for p in found {
-        faces.extend([[0, p.triangle_a], [1, p.triangle_b]]);
-    }
-    faces.sort_unstable();
-    faces.dedup();
-    let normal = |&[body, triangle]: &[u32; 2]| {
-        let (mesh, pose) = (bodies[body as usize].tree.mesh(), poses[body as usize]);
-        let [a, b, c] = mesh.corners(triangle as usize);
-        pose.transform_vector((b - a).cross(c - a)).try_normalize()
+/// The proximity with the normal of a face at its features, if that is almost its own.
+fn flattened(p: &Proximity, bodies: [&RigidBody; 2], poses: [&Pose; 2]) -> Option<Proximity> {
+    let vertices = vertices_of(p.feature, bodies.map(|body| body.tree.mesh()));
+    let normal = |k: usize| {
+        let direction = poses[k].rotation.conjugate() * p.normal;
+        bodies[k].faces.nearest(&vertices[k], direction).map(|normal| poses[k].transform_vector(normal))
     };
-    faces.iter().filter_map(normal).flat_map(|n| [n, -n]).collect()
+    let normals: Vec<DVec3> = (0..2).filter_map(normal).collect();
+    along(p, &normals, FLAT)
 }
 
 /// The proximity with the nearest of these normals and the distance along it, if there is one within `most`.
@@ -176,23 +179,16 @@ fn along(p: &Proximity, normals: &[DVec3], most: f64) -> Option<Proximity> {
     ((nearest - p.normal).length() <= most && distance > 0.0).then_some(straight)
 }
 
-/// Two edges whose common normal is outside of their cones would push askew: where faces are almost parallel they get the
-/// normal of a locally closest pair. Without one they are no contact.
-fn straightened(p: &Proximity, exact: &[Proximity]) -> Option<Proximity> {
-    if exact.iter().any(|q| q.feature == p.feature) {
-        return Some(*p);
-    }
-    let normals: Vec<DVec3> = exact.iter().map(|q| q.normal).collect();
-    along(p, &normals, TILT)
-}
-
 /// Takes over the impulses of contacts of the same features.
 pub(crate) fn remember(contacts: &mut [ContactPoint], old: &[ContactPoint]) {
     for contact in contacts {
         if let Some(before) = old.iter().find(|before| before.feature == contact.feature) {
             let impulse = before.total();
             contact.impulse = impulse.dot(contact.normal).max(0.0);
-            contact.sliding = contact.tangents.map(|t| impulse.dot(t));
+            // The normal has turned a little: without friction what was along it must not push along the tangents.
+            if contact.material.friction > 0.0 {
+                contact.sliding = contact.tangents.map(|t| impulse.dot(t));
+            }
         }
     }
 }

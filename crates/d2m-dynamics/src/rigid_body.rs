@@ -1,6 +1,7 @@
 //! The state of a body and the constant twist that it flies.
 
 use crate::body::{Body, Kind, Mass};
+use crate::faces::Faces;
 use crate::{MassProperties, SimulationError};
 use d2m_bvh::{MeshTree, Posed, Solid};
 use d2m_interval::Interval;
@@ -23,6 +24,7 @@ const MOST_HALVINGS: u32 = 8;
 pub(crate) struct RigidBody {
     pub(crate) name: String,
     pub(crate) tree: Arc<MeshTree>,
+    pub(crate) faces: Arc<Faces>,
     pub(crate) solid: Solid,
     pub(crate) kind: Kind,
     /// Center of mass (of a body without mass: of its volume or its bounding box), mesh frame.
@@ -53,6 +55,10 @@ pub(crate) struct RigidBody {
     pub(crate) version: u64,
     /// Stands still until the end of the step.
     pub(crate) held: bool,
+    /// Nothing touches it in this flight.
+    pub(crate) free: bool,
+    /// How often this flight has been planned anew.
+    pub(crate) replans: u32,
     pub(crate) asleep: bool,
     /// For how long its surface has been slow.
     pub(crate) quiet: f64,
@@ -66,7 +72,7 @@ pub(crate) struct Velocity {
 }
 
 impl RigidBody {
-    pub(crate) fn try_new(body: &Body, time: f64) -> Result<Self, SimulationError> {
+    pub(crate) fn try_new(body: &Body, faces: Arc<Faces>, time: f64) -> Result<Self, SimulationError> {
         let bad = |name: &'static str, value: String| SimulationError::BadBody {
             body: body.name.clone(),
             name,
@@ -134,6 +140,7 @@ impl RigidBody {
         Ok(Self {
             name: body.name.clone(),
             tree: Arc::clone(&body.tree),
+            faces,
             solid,
             kind,
             center,
@@ -155,6 +162,8 @@ impl RigidBody {
             horizon: f64::INFINITY,
             version: 0,
             held: false,
+            free: false,
+            replans: 0,
             asleep: false,
             quiet: 0.0,
         })
@@ -291,6 +300,13 @@ impl RigidBody {
     /// Speed that no point of the surface exceeds in this flight.
     pub(crate) fn surface_speed(&self) -> f64 {
         self.flight.linear_velocity().length() + self.flight.angular_velocity().length() * self.radius
+    }
+
+    /// How fast a point of this body and one of another may come together in their present flights.
+    pub(crate) fn bound_approach(&self, other: &Self) -> f64 {
+        let speed = |body: &Self| if body.version == 0 { body.velocity() } else { body.shown_velocity() };
+        let (a, b) = (speed(self), speed(other));
+        (a.linear - b.linear).length() + a.angular.length() * self.radius + b.angular.length() * other.radius
     }
 
     /// The next piece of a kinematic body's motion: the twist about its center that joins the poses at its ends, as long

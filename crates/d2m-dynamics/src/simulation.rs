@@ -1,6 +1,7 @@
 //! The simulation: bodies, settings, time.
 
 use crate::contact::Material;
+use crate::faces::Faces;
 use crate::pairs::{Pair, solid_of};
 use crate::record::Recorder;
 use crate::rigid_body::RigidBody;
@@ -12,6 +13,7 @@ use d2m_bvh::{DistanceOptions, PairCache, QueryError, StartState, distance_withi
 use d2m_motion::Pose;
 use glam::{DQuat, DVec3};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// What happened in a step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -105,7 +107,10 @@ impl Simulation {
     /// # Errors
     /// Numbers that cannot be used, mass properties that are missing.
     pub fn add(&mut self, body: &Body) -> Result<BodyId, SimulationError> {
-        let body = RigidBody::try_new(body, self.time)?;
+        let same = self.bodies.iter().find(|other| Arc::ptr_eq(&other.tree, &body.tree));
+        let faces =
+            same.map_or_else(|| Arc::new(Faces::new(body.tree.mesh())), |other| Arc::clone(&other.faces));
+        let body = RigidBody::try_new(body, faces, self.time)?;
         let id = BodyId(self.bodies.len() as u32);
         self.bodies.push(body);
         Ok(id)

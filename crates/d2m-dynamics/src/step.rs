@@ -15,6 +15,19 @@ use std::collections::{BTreeMap, BinaryHeap};
 /// Events of one pair at one and the same time, after which it is held.
 const MOST_AT_ONCE: u32 = 8;
 
+/// Features within this many gaps are measured in any case.
+const AROUND: f64 = 1.5;
+/// And those within this many times the way that two bodies come closer in what is left of the step.
+const APPROACH: f64 = 2.0;
+
+/// Flights of a body are planned anew at most so often before something happens to it.
+const MOST_REPLANS: u32 = 3;
+/// Part of a body's speed that a flight's early end may leave in it from gravity to come.
+const LOST_SPEED: f64 = 1e-3;
+/// How much later than expected a flight that is planned anew ends, as a part of what it was cut by: the body should meet
+/// what it meets before that.
+const SPARE_TIME: f64 = 0.02;
+
 /// Something that ends flights: at `time`, of bodies that have not begun another flight since.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Event {
@@ -24,6 +37,9 @@ struct Event {
     bodies: [usize; 2],
     versions: [u64; 2],
     cause: Cause,
+    /// From the first body to the second, and how fast they close along it.
+    normal: DVec3,
+    closing: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -106,6 +122,9 @@ impl<'s> Step<'s> {
         self.resolve(self.start, awake, true)?;
         let mut last = (f64::NEG_INFINITY, BTreeMap::<[usize; 2], u32>::new());
         while let Some(event) = self.next_event() {
+            if self.plan_anew(&event)? {
+                continue;
+            }
             let (met, seeds) = self.gather(event);
             if event.time > last.0 {
                 last = (event.time, BTreeMap::new());
@@ -146,6 +165,69 @@ impl<'s> Step<'s> {
 
     fn is_current(&self, event: &Event) -> bool {
         (0..2).all(|k| self.sim.bodies[event.bodies[k]].version == event.versions[k])
+    }
+
+    /// A flight that ends early has the velocity of the middle of a longer one: too fast for a body that falls, by what
+    /// gravity adds in half of the rest. Bodies that nothing else touches get flights that were planned to end about when
+    /// they meet. True if the flights are others now; then the event is none.
+    ///
+    /// With the acceleration g along the normal between the two bodies, a flight of length L closes at c₀ + g L/2, where the
+    /// planned one, of length H, closed at c = c₀ + g H/2; they meet after s at c, so L (c + g (L − H)/2) = s c.
+    fn plan_anew(&mut self, event: &Event) -> Result<bool, StepError> {
+        if event.cause != Cause::Contact {
+            return Ok(false);
+        }
+        let (now, gravity) = (self.sim.time, self.sim.options.gravity);
+        let acceleration = |body: &RigidBody| {
+            if body.is_dynamic() { gravity + body.force * body.inverse_mass } else { DVec3::ZERO }
+        };
+        let bodies = event.bodies.map(|i| &self.sim.bodies[i]);
+        let horizon = bodies[0].horizon.min(bodies[1].horizon).min(self.end);
+        let early = horizon - event.time;
+        let planable = |body: &RigidBody| {
+            let lost = acceleration(body).length() * early;
+            body.is_dynamic()
+                && body.free
+                && !body.held
+                && !body.asleep
+                && body.horizon > event.time
+                && body.replans < MOST_REPLANS
+                && lost > LOST_SPEED * body.flight.linear_velocity().length()
+        };
+        if !event.bodies.into_iter().any(|i| planable(&self.sim.bodies[i]))
+            || early <= 0.0
+            || event.closing <= 0.0
+        {
+            return Ok(false);
+        }
+        let pull = event.normal.dot(acceleration(bodies[0]) - acceleration(bodies[1]));
+        let (s, h) = (event.time - now, horizon - now);
+        let rate = event.closing - 0.5 * pull * h;
+        let root = rate * rate + 2.0 * pull * s * event.closing;
+        // The root of L (rate + pull L/2) = s closing that stays finite without pull.
+        let length = if root > 0.0 && rate + root.sqrt() > 0.0 {
+            (2.0 * s * event.closing / (rate + root.sqrt())).clamp(s, h)
+        } else {
+            s
+        };
+        let planned = now + length + SPARE_TIME * (h - length);
+        if !(planned > event.time && planned < horizon) {
+            return Ok(false);
+        }
+        // All that fall, so that the energy of the segment is that of its own middle.
+        let falling: Vec<usize> =
+            (0..self.sim.bodies.len()).filter(|&i| planable(&self.sim.bodies[i])).collect();
+        for &i in &falling {
+            let body = &mut self.sim.bodies[i];
+            body.advance(now, gravity);
+            let until = planned.min(body.horizon);
+            let velocity = body.flight_velocity(until, gravity);
+            body.fly(velocity, until);
+            body.replans += 1;
+            self.sim.recorder.change(BodyId(i as u32), body.flight);
+        }
+        self.query(now, &falling)?;
+        Ok(true)
     }
 
     /// All events whose brackets overlap the first one's, and the bodies of them.
@@ -246,6 +328,7 @@ impl<'s> Step<'s> {
                 body.momentum += push.momentum;
                 body.angular_momentum += push.angular_momentum;
                 body.fly(push.velocity, push.horizon);
+                body.free = false;
                 flying[push.body] = true;
             }
             self.keep(part, time, first);
@@ -256,6 +339,7 @@ impl<'s> Step<'s> {
                 let horizon = body.horizon_within(end, self.sim.options.step);
                 let velocity = body.flight_velocity(horizon, gravity);
                 body.fly(velocity, horizon);
+                (body.free, body.replans) = (true, 0);
             }
             if body.is_dynamic() && !body.held {
                 self.sim.recorder.change(BodyId(i as u32), body.flight);
@@ -323,9 +407,13 @@ impl<'s> Step<'s> {
             let new: Vec<Key> =
                 self.partners(&boxes, &wave).into_iter().filter(|key| !measured.contains_key(key)).collect();
             let sim = &*self.sim;
-            let margin = self.margin;
+            let (most, step) = (self.margin, self.end - time);
             let found = parallel::map(new, |key| {
                 let gap = sim.pairs.get(&key).map_or(sim.options.gap, |pair| pair.gap);
+                // What is further apart than the present motion leads needs no row; if forces lead there all the same, the
+                // flight ends at an event.
+                let way = APPROACH * sim.bodies[key.0].bound_approach(&sim.bodies[key.1]) * step;
+                let margin = (AROUND * sim.options.gap + way).min(most);
                 (key, measure(&sim.bodies, key, time, margin, gap, sim.material(key.0, key.1)))
             });
             let mut next = Vec::new();
@@ -413,8 +501,9 @@ impl<'s> Step<'s> {
             let body = &self.sim.bodies[i];
             if body.horizon < end {
                 let (bodies, versions) = ([i, i], [body.version; 2]);
-                let event =
-                    Event { time: body.horizon, by: body.horizon, bodies, versions, cause: Cause::Horizon };
+                let (normal, closing) = (DVec3::ZERO, 0.0);
+                let (time, by, cause) = (body.horizon, body.horizon, Cause::Horizon);
+                let event = Event { time, by, bodies, versions, cause, normal, closing };
                 self.heap.push(Reverse(event));
             }
         }
@@ -447,10 +536,14 @@ impl<'s> Step<'s> {
                 bodies: [key.0, key.1],
                 versions: [a.version, b.version],
                 cause,
+                normal: DVec3::ZERO,
+                closing: 0.0,
             };
             let event = match answer {
                 Ok(Outcome::Clear) => continue,
-                Ok(Outcome::Meets { lo, hi }) => event(lo, hi, Cause::Contact),
+                Ok(Outcome::Meets { lo, hi, normal, closing }) => {
+                    Event { normal, closing, ..event(lo, hi, Cause::Contact) }
+                }
                 Ok(Outcome::ClearUntil(until)) if until > time => event(until, until, Cause::Budget),
                 Ok(Outcome::ClearUntil(_) | Outcome::Stuck) => event(time, time, Cause::Stuck),
                 Err(error) => {
