@@ -8,6 +8,12 @@ use d2m::bvh::{MeshTree, QueryOptions, StartState};
 use std::path::Path;
 use std::sync::Arc;
 
+/// Lines of text beside the picture: the first contacts.
+const MOST_FACTS: usize = 8;
+
+/// Part of the window for which a contact is marked: bodies fly on through each other.
+const MARKED: f64 = 0.05;
+
 /// Reads a scene and asks for its contacts.
 pub(crate) fn picture_of_scene(path: &Path, options: QueryOptions) -> Result<Picture, Failure> {
     let scene = Scene::read(path)?;
@@ -29,7 +35,7 @@ pub(crate) fn picture_of_scene(path: &Path, options: QueryOptions) -> Result<Pic
             facts.push(format!("t = {}: {a} and {b} ({})", short(contact.time_lo), contact.evidence));
         }
     }
-    facts.truncate(12);
+    facts.truncate(MOST_FACTS);
     let mut picture = Picture::new(headline, facts, [start, end], false);
     let mut meshes: Vec<(Arc<MeshTree>, usize)> = Vec::new();
     for body in &scene.bodies {
@@ -44,7 +50,12 @@ pub(crate) fn picture_of_scene(path: &Path, options: QueryOptions) -> Result<Pic
     for contact in contacts.iter().filter_map(|pair| pair.answer.contact()) {
         if contact.start != StartState::Contained {
             let (point, normal) = ((contact.point_a + contact.point_b) * 0.5, contact.normal);
-            picture.add_mark(&Mark { from: contact.time_lo, until: end, point, normal });
+            picture.add_mark(&Mark {
+                from: contact.time_lo,
+                until: contact.time_lo + MARKED * scene.window.length(),
+                point,
+                normal,
+            });
         }
     }
     Ok(picture)
