@@ -268,15 +268,15 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "a body inside the other is not looked for",
         "crates/d2m-bvh/src/query/time_of_contact.rs",
-        "        && start_decided\n",
-        "        && !start_decided\n",
+        "Solid::Filled => held_at_start(scene, &mut allowance),",
+        "Solid::Filled => Ok(None),",
         "crates/d2m-bvh/tests/engine.rs::starts_that_touch_cross_or_hold",
     ),
     patch(
         "spins that differ from query to query count half",
         "crates/d2m-bvh/src/query/course.rs",
-        "let turning = (self.omegas[k] - earlier.omegas[k]).length() * common;",
-        "let turning = (self.omegas[k] - earlier.omegas[k]).length() * common * 0.5;",
+        "let turning = (self.omegas[k] - earlier.omegas[k] / time).length() * common;",
+        "let turning = (self.omegas[k] - earlier.omegas[k] / time).length() * common * 0.5;",
         "crates/d2m-bvh/src/query/course.rs::deviations_hold_and_each_term_is_needed",
     ),
     patch(
