@@ -46,6 +46,9 @@ impl Body {
     }
 
     /// The same body with this meaning of its mesh, instead of that of the world's options.
+    ///
+    /// A pair counts as solids if both bodies do; of any other pair only the surfaces count, so an open sheet that is wholly
+    /// inside of a solid from the start is not reported.
     pub fn with_solid(mut self, solid: Solid) -> Self {
         self.solid = Some(solid);
         self
