@@ -15,9 +15,9 @@ pub use mesh::{Edge, MAX_COORDINATE, MeshError, Topology, TriMesh, Validation};
 #[doc(hidden)]
 pub use query::last_search_counts;
 pub use query::{
-    Budget, Contact, Distance, DistanceOptions, Evidence, Mode, Moving, PairCache, Posed, Proximity,
-    ProximityOptions, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window, collide,
-    collide_within, colliding_pairs, contact_exists, distance, distance_within, proximities,
+    Budget, Contact, Distance, DistanceOptions, Evidence, MeshPart, MeshParts, Mode, Moving, PairCache,
+    Posed, Proximity, ProximityOptions, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window,
+    collide, collide_within, colliding_pairs, contact_exists, distance, distance_within, proximities,
     proximities_with, reduce_proximities, time_of_contact, time_of_contact_batch, time_of_contact_with,
     try_colliding_pair,
 };

@@ -94,8 +94,23 @@ fn is_oriented_manifold(mesh: &TriMesh, first: &[u32]) -> bool {
     })
 }
 
-/// The lowest vertex of each set of triangles that share positions. `parent` is what [`first_at_position`] gives.
-fn components(mesh: &TriMesh, mut parent: Vec<u32>) -> Vec<u32> {
+/// For each vertex that a triangle uses a vertex that stands for its connected part.
+pub(crate) fn part_roots(mesh: &TriMesh) -> Vec<u32> {
+    joined(mesh, first_at_position(mesh.vertices()))
+}
+
+/// The lowest vertex of each set of triangles that share positions. `first` is what [`first_at_position`] gives.
+fn components(mesh: &TriMesh, first: Vec<u32>) -> Vec<u32> {
+    let roots = joined(mesh, first);
+    let mut used = vec![false; roots.len()];
+    for triangle in mesh.triangles() {
+        used[roots[triangle[0] as usize] as usize] = true;
+    }
+    (0..used.len() as u32).filter(|&i| used[i as usize]).collect()
+}
+
+/// For each vertex the lowest one of its set.
+fn joined(mesh: &TriMesh, mut parent: Vec<u32>) -> Vec<u32> {
     fn root(parent: &mut [u32], mut i: u32) -> u32 {
         while parent[i as usize] != i {
             parent[i as usize] = parent[parent[i as usize] as usize];
@@ -109,9 +124,5 @@ fn components(mesh: &TriMesh, mut parent: Vec<u32>) -> Vec<u32> {
             parent[x.max(y) as usize] = x.min(y);
         }
     }
-    let mut used = vec![false; parent.len()];
-    for triangle in mesh.triangles() {
-        used[root(&mut parent, triangle[0]) as usize] = true;
-    }
-    (0..used.len() as u32).filter(|&i| used[i as usize]).collect()
+    (0..parent.len() as u32).map(|i| root(&mut parent, i)).collect()
 }

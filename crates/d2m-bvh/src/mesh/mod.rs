@@ -13,7 +13,7 @@ mod validation;
 mod tests;
 
 pub(crate) use adjacency::{Adjacency, NONE};
-pub(crate) use closedness::Closedness;
+pub(crate) use closedness::{Closedness, part_roots};
 pub use error::MeshError;
 #[cfg(feature = "serde")]
 pub(crate) use exact_number::ExactNumber;

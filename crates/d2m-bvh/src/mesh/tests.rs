@@ -103,3 +103,21 @@ fn degenerate_means_exactly_collinear() {
     assert_eq!(count(vec![p, p * 2.0, p * -4.0]), 1);
     assert_eq!(count(vec![p, p * 3.0, p * 7.0]), 0, "fl(3p) is not on the line");
 }
+
+#[test]
+fn pinched_vertices_are_counted() {
+    let validation = |vertices: Vec<DVec3>, faces: Vec<[u32; 3]>| {
+        Validation::new(&TriMesh::try_new(vertices, faces).unwrap())
+    };
+    assert_eq!(validation(corners(), FACES.to_vec()).pinched_vertices, 0);
+    assert_eq!(validation(corners(), FACES[..2].to_vec()).pinched_vertices, 0);
+    // Two tetrahedra that share one vertex, and two that share an edge, where all triangles are joined.
+    let mut vertices = corners();
+    vertices.extend([-DVec3::X, -DVec3::Y, -DVec3::Z]);
+    let second = [[0, 4, 5], [0, 6, 4], [0, 5, 6], [4, 6, 5]];
+    assert_eq!(validation(vertices.clone(), [FACES, second].concat()).pinched_vertices, 1);
+    // The same with a vertex of its own at that position, and one triangle twice.
+    vertices.push(DVec3::ZERO);
+    let second = second.map(|t: [u32; 3]| t.map(|i| if i == 0 { 7 } else { i }));
+    assert_eq!(validation(vertices, [&FACES[..], &second[..], &second[..1]].concat()).pinched_vertices, 1);
+}

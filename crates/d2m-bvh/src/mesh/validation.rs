@@ -41,6 +41,8 @@ pub struct Validation {
     pub non_manifold_edges: usize,
     /// Edges with two triangles that disagree about the outside.
     pub inconsistent_edges: usize,
+    /// Positions at which the surface hangs together by the vertex alone: the triangles there form several fans.
+    pub pinched_vertices: usize,
     /// Parts that hang together through shared positions.
     pub components: usize,
     /// Positions − edges + faces.
@@ -104,6 +106,7 @@ impl Validation {
                 .iter()
                 .filter(|edge| edge.incidence() == 2 && !edge.is_consistently_oriented())
                 .count(),
+            pinched_vertices: pinched_vertices(mesh, topology),
             components: topology.component_count(),
             euler_characteristic: topology.euler_characteristic(),
             watertight: topology.is_watertight(),
@@ -120,4 +123,45 @@ impl Validation {
 fn is_collinear(a: DVec3, b: DVec3, c: DVec3) -> bool {
     let flat = |project: fn(DVec3) -> DVec2| orient2d(project(a), project(b), project(c)).is_eq();
     flat(DVec3::xy) && flat(DVec3::yz) && flat(DVec3::zx)
+}
+
+/// Positions whose triangles are not all joined through edges at that position.
+fn pinched_vertices(mesh: &TriMesh, topology: &Topology) -> usize {
+    // Union–find over the corners of triangles, numbered 3·triangle + slot.
+    let mut parent: Vec<u32> = (0..3 * mesh.triangle_count() as u32).collect();
+    fn root(parent: &mut [u32], mut i: u32) -> u32 {
+        while parent[i as usize] != i {
+            parent[i as usize] = parent[parent[i as usize] as usize];
+            i = parent[i as usize];
+        }
+        i
+    }
+    let mut first_side = vec![None; topology.edges().len()];
+    let at =
+        |corner: u32| topology.representative(mesh.triangles()[corner as usize / 3][corner as usize % 3]);
+    let sides = (0..mesh.triangle_count() as u32).flat_map(|t| (0..3).map(move |slot| (t, slot)));
+    let mut counted = vec![false; parent.len()];
+    for (triangle, slot) in sides {
+        let Some(edge) = topology.edge_of(triangle, slot) else { continue };
+        let ends = [3 * triangle + slot as u32, 3 * triangle + (slot as u32 + 1) % 3];
+        counted[ends[0] as usize] = true;
+        let Some(first) = first_side[edge as usize] else {
+            first_side[edge as usize] = Some(ends);
+            continue;
+        };
+        for end in ends {
+            let other: [u32; 2] = first;
+            let same = if at(other[0]) == at(end) { other[0] } else { other[1] };
+            let (x, y) = (root(&mut parent, end), root(&mut parent, same));
+            parent[x.max(y) as usize] = x.min(y);
+        }
+    }
+    let mut fans = vec![0u8; mesh.vertex_count()];
+    for corner in 0..parent.len() as u32 {
+        if counted[corner as usize] && root(&mut parent, corner) == corner {
+            let fans = &mut fans[at(corner) as usize];
+            *fans = fans.saturating_add(1);
+        }
+    }
+    fans.iter().filter(|&&fans| fans > 1).count()
 }

@@ -29,7 +29,7 @@ thread_local! {
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, Moving, QueryOptions, TriMesh, Window, time_of_contact};
-/// use d2m_motion::Pose;
+/// use d2m_motion::ConstantTwist;
 /// use glam::{DQuat, DVec3};
 /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();

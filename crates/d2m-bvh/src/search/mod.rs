@@ -8,6 +8,7 @@ mod avx;
 mod avx512;
 mod base_pose;
 mod closest;
+mod crowd;
 mod dispatch;
 mod entry_time;
 mod expansion;

@@ -85,6 +85,21 @@ impl Bucket {
         self.items.resize((2 * self.count).max(16), *item);
     }
 
+    /// Drops the items for which `keep` is false.
+    pub(crate) fn retain(&mut self, keep: impl Fn(&Item) -> bool) {
+        let mut kept = 0;
+        self.least = u32::MAX;
+        for index in 0..self.count {
+            let item = self.items[index];
+            if keep(&item) {
+                self.items[kept] = item;
+                self.least = self.least.min(item.key);
+                kept += 1;
+            }
+        }
+        self.count = kept;
+    }
+
     /// Moves the last items, whose keys are all equal, to an empty bucket.
     fn move_last(&mut self, count: usize, to: &mut Self) {
         let rest = self.count - count;
@@ -160,7 +175,22 @@ impl Queue {
         }
     }
 
-    /// Items waiting.
+    /// Drops the items for which `keep` is false.
+    pub(crate) fn retain(&mut self, keep: impl Fn(&Item) -> bool) {
+        for (index, bucket) in self.buckets.iter_mut().enumerate() {
+            bucket.retain(&keep);
+            if bucket.count == 0 {
+                self.occupied &= !(1 << index);
+            }
+        }
+    }
+
+    /// Items waiting, in any order.
+    pub(crate) fn items(&self) -> impl Iterator<Item = &Item> {
+        self.buckets.iter().flat_map(Bucket::items)
+    }
+
+    /// How many items are waiting.
     pub(crate) fn len(&self) -> usize {
         self.buckets.iter().map(|bucket| bucket.count).sum()
     }

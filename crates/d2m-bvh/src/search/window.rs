@@ -2,6 +2,7 @@
 
 use super::base_pose::two_sum;
 use super::closest::closest;
+use super::crowd::Patience;
 use super::dispatch::Task;
 use super::expansion::{KEY_SCALE, Opening};
 use super::frame::{Frame, RelativeMotion};
@@ -20,6 +21,10 @@ use crate::{Budget, Mode, QueryOptions};
 use glam::DVec3;
 use std::time::Instant;
 
+/// A pair that is followed out of turn is left after so many steps; ordinary contacts take fewer than ten.
+const MOST_STEPS_ALONE: u32 = 64;
+/// Batches between two looks at how many pairs wait, for a plane between them.
+const CROWD_CHECK: u32 = 32;
 /// Batches between two looks at the length of the queue: it grows by less than 2¹⁵ items between them.
 const MEMORY_CHECK: u32 = 128;
 
@@ -27,7 +32,7 @@ const MEMORY_CHECK: u32 = 128;
 const LEAST_SPAN: f64 = 1.0 / 1_152_921_504_606_846_976.0; // 2⁻⁶⁰
 
 /// Items that a batch may have before it is divided.
-const BATCH: usize = 32;
+pub(super) const BATCH: usize = 32;
 /// Looks at pairs of triangles of one search that do little; ordinary queries need fewer.
 pub(super) const QUICK_LOOKS: u64 = 192;
 /// Node tests, besides one for each [`TRIANGLES_A_TEST`] triangles, before sweeps are looked at for the first time:
@@ -118,21 +123,21 @@ pub(super) struct Limits {
 }
 
 /// What changes while a window is searched.
-struct State<'a> {
-    motion: RelativeMotion,
-    opening: Opening<'a>,
+pub(super) struct State<'a> {
+    pub(super) motion: RelativeMotion,
+    pub(super) opening: Opening<'a>,
     /// One step of the key, as a difference of offsets.
-    step: f64,
+    pub(super) step: f64,
     /// Keys from here on do not matter.
-    limit: u32,
+    pub(super) limit: u32,
     /// The same as an offset.
-    limit_offset: f64,
-    frame: Frame,
-    node_frames: [NodeFrame; 2],
-    frame_key: u32,
-    found: Option<Found>,
+    pub(super) limit_offset: f64,
+    pub(super) frame: Frame,
+    pub(super) node_frames: [NodeFrame; 2],
+    pub(super) frame_key: u32,
+    pub(super) found: Option<Found>,
     /// The time of what is found; before something is found, of no meaning.
-    behind: Behind,
+    pub(super) behind: Behind,
 }
 
 impl Task for Search<'_> {
@@ -264,6 +269,7 @@ impl<'s> Search<'s> {
         self.scratch.queue.push(&Item { key: 0, boxes: [0; 2], open });
         let mut batch = core::mem::replace(&mut self.scratch.batch, Bucket::EMPTY);
         let (mut outcome, mut begun, mut batches) = (None, false, 0u32);
+        let mut patience = Patience::new();
         while let Some(least) = self.scratch.queue.take(&mut batch, BATCH) {
             if least >= state.limit {
                 break;
@@ -303,9 +309,10 @@ impl<'s> Search<'s> {
                 state.frame_key = least;
                 begun = true;
             }
-            for items in batch.items().chunks(BATCH) {
-                self.open::<L>(&mut state, items);
+            if batches % CROWD_CHECK == 0 {
+                self.thin_out::<L>(&mut state, (least, batches), &mut batch, &mut patience);
             }
+            self.open::<L>(&mut state, batch.items());
         }
         self.scratch.batch = batch;
         outcome.unwrap_or(match state.found {
@@ -368,7 +375,7 @@ impl<'s> Search<'s> {
         }
         for item in items {
             if item.open & Item::TRIANGLES != 0 && item.key < state.limit {
-                self.advance::<L>(state, *item);
+                self.advance::<L>(state, *item, false);
             }
         }
         let fresh = &mut self.scratch.fresh;
@@ -391,9 +398,9 @@ impl<'s> Search<'s> {
         self.scratch.queue.extend(&self.scratch.fresh[..count]);
     }
 
-    /// Advances a pair of triangles until it is past the limit, waits for others, or is in contact.
+    /// Advances a pair of triangles until it is past the limit, waits for others (not if `alone`), or is in contact.
     #[inline(always)]
-    fn advance<L: Lanes>(&mut self, state: &mut State<'_>, item: Item) {
+    pub(super) fn advance<L: Lanes>(&mut self, state: &mut State<'_>, item: Item, alone: bool) {
         let triangles = [0, 1].map(|body| {
             let index = item.boxes[body] as usize;
             state.opening.nodes[body][index / WIDTH].triangle(index % WIDTH)
@@ -415,6 +422,9 @@ impl<'s> Search<'s> {
         let mut steps = 0u32;
         loop {
             steps += 1;
+            if alone && steps > MOST_STEPS_ALONE {
+                return;
+            }
             if steps.is_multiple_of(256) && self.out_of_budget() {
                 let key = ((known / state.step) as u32).max(item.key);
                 self.scratch.queue.push(&Item { key, ..item });
@@ -432,7 +442,7 @@ impl<'s> Search<'s> {
                         return;
                     }
                     let key = (known / state.step) as u32;
-                    if key > item.key + item.key / FOLLOWED + FOLLOWED_KEYS {
+                    if !alone && key > item.key + item.key / FOLLOWED + FOLLOWED_KEYS {
                         if key < state.limit {
                             self.scratch.queue.push(&Item { key, ..item });
                         }

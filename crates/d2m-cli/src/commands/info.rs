@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::load::{Loaded, PolygonCounts, Precision, load};
 use crate::output::{Output, print};
 use crate::report::short;
-use d2m::bvh::{EnclosingSphere, Validation};
+use d2m::bvh::{EnclosingSphere, MeshParts, Validation};
 use d2m::shapes::{COMMON, SHAPES};
 use serde_json::json;
 use std::fmt::Write;
@@ -22,6 +22,7 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     };
     let body = load(source)?;
     let validation = Validation::new(body.mesh());
+    let parts = MeshParts::new(body.mesh());
     if let Some(export) = export {
         let mut text = format!("# {source}\n");
         for vertex in body.mesh().vertices() {
@@ -33,10 +34,17 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
         }
         export.write(&text)?;
     }
-    print(&if arguments.json { mesh_json(&body, &validation) } else { mesh_text(&body, &validation) })
+    print(&if arguments.json {
+        mesh_json(&body, &validation, &parts)
+    } else {
+        mesh_text(&body, &validation, &parts)
+    })
 }
 
-fn mesh_text(body: &Loaded, validation: &Validation) -> String {
+/// Volumes that differ by less than this part are shown once: sums of many triangles round.
+const VOLUME_ROUNDING: f64 = 1e-9;
+
+fn mesh_text(body: &Loaded, validation: &Validation, parts: &MeshParts) -> String {
     let sphere = EnclosingSphere::of_mesh(body.mesh());
     let mut text = format!("{}\n", body.name);
     let mut line = |label: &str, value: String| {
@@ -62,6 +70,11 @@ fn mesh_text(body: &Loaded, validation: &Validation) -> String {
     line("area", size(validation.area));
     if validation.consistently_oriented {
         line("volume", size(validation.signed_volume));
+        if let Some(volume) = parts.solid_volume
+            && (volume - validation.signed_volume).abs() > VOLUME_ROUNDING * validation.signed_volume.abs()
+        {
+            line("solid", format!("{}, where the winding number is not zero", size(volume)));
+        }
     }
     if let Precision::Single(kind) = body.precision {
         line("precision", format!("single: a {kind} holds no more than 24 bits of each coordinate"));
@@ -81,6 +94,9 @@ fn mesh_text(body: &Loaded, validation: &Validation) -> String {
         ("boundary edges", validation.boundary_edges),
         ("edges with more than two triangles", validation.non_manifold_edges),
         ("edges whose triangles disagree about the outside", validation.inconsistent_edges),
+        ("vertices that alone hold the surface together (pinched)", validation.pinched_vertices),
+        ("pairs of parts cross or touch: solid where the winding number is not zero", parts.crossing.len()),
+        ("parts inside out: solid all the same", parts.inverted_count()),
     ] {
         if count > 0 {
             line("note", format!("{count} {what}"));
@@ -98,7 +114,7 @@ fn size(number: f64) -> String {
     }
 }
 
-fn mesh_json(body: &Loaded, validation: &Validation) -> String {
+fn mesh_json(body: &Loaded, validation: &Validation, parts: &MeshParts) -> String {
     let sphere = EnclosingSphere::of_mesh(body.mesh());
     let object = json!({
         "name": body.name,
@@ -116,6 +132,7 @@ fn mesh_json(body: &Loaded, validation: &Validation) -> String {
             "without_area": body.polygons.without_area,
         },
         "validation": validation,
+        "parts": parts,
     });
     format!("{object}\n")
 }

@@ -21,6 +21,21 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "(room + 2.0).min(f64::from(MOST))",
         "crates/d2m-bvh/src/tree/tests.rs::boxes_enclose_in_more_than_double_precision",
     ),
+    // Crowds.
+    patch(
+        "planes are checked at one end of the span only",
+        "crates/d2m-bvh/src/search/crowd.rs",
+        "if enough(now, need[0]) && enough(later, need[1]) {",
+        "if enough(now, need[0]) {",
+        "crates/d2m-bvh/src/search/crowd.rs::what_a_plane_parts_stays_apart",
+    ),
+    patch(
+        "what is bent is left out",
+        "crates/d2m-bvh/src/search/crowd.rs",
+        "level + 0.5 * acceleration * span * span",
+        "level",
+        "crates/d2m-bvh/src/search/crowd.rs::what_a_plane_parts_stays_apart",
+    ),
     // Solids.
     patch(
         "parity instead of the winding number",

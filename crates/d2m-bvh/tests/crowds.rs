@@ -1,0 +1,106 @@
+//! Many pairs of triangles that come together at the same time: the work does not grow with their number.
+
+use d2m_bvh::{
+    Budget, MeshTree, Moving, QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window,
+    last_search_counts, time_of_contact,
+};
+use d2m_motion::ConstantTwist;
+use glam::DVec3;
+
+#[path = "random/mod.rs"]
+mod random;
+use random::Random;
+
+/// Node tests and looks at triangles of one query, at most.
+const MOST_WORK: u64 = 200_000;
+
+fn tree(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> MeshTree {
+    MeshTree::new(TriMesh::try_new(vertices, triangles).unwrap())
+}
+
+/// Apex at the origin, base circle at z = up, closed.
+fn cone(n: u32, up: f64) -> MeshTree {
+    let mut vertices = vec![DVec3::ZERO, DVec3::Z * up];
+    vertices.extend((0..n).map(|k| {
+        let angle = f64::from(k) / f64::from(n) * core::f64::consts::TAU;
+        DVec3::new(angle.cos(), angle.sin(), up)
+    }));
+    let fan = |k: u32| (2 + k, 2 + (k + 1) % n);
+    let triangles = (0..n).flat_map(|k| [[0, fan(k).1, fan(k).0], [1, fan(k).0, fan(k).1]]);
+    tree(vertices, triangles.collect())
+}
+
+/// Slivers from the origin in all directions of a half-space; their ends stray from it by up to a thousandth.
+fn spikes(random: &mut Random, n: u32, up: f64) -> MeshTree {
+    let (mut vertices, mut triangles) = (vec![DVec3::ZERO], Vec::new());
+    for _ in 0..n {
+        let d = random.vec().normalize();
+        let first = vertices.len() as u32;
+        vertices.push(DVec3::new(d.x, d.y, d.z.abs() * up));
+        vertices.push(vertices[first as usize] + random.vec() * 1e-3);
+        triangles.push([0, first, first + 1]);
+    }
+    tree(vertices, triangles)
+}
+
+/// One triangle many times.
+fn copies(n: u32) -> MeshTree {
+    tree(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]; n as usize])
+}
+
+fn query(a: &MeshTree, b: &MeshTree, motion: &ConstantTwist, options: &QueryOptions) -> TimeOfContact {
+    let options = options.with_budget(Budget::UNLIMITED.with_node_tests(20 * MOST_WORK));
+    time_of_contact(Moving::new(a, motion), Moving::new(b, &ConstantTwist::REST), Window::UNIT, &options)
+        .unwrap()
+}
+
+fn falling(place: DVec3) -> ConstantTwist {
+    ConstantTwist::REST.with_position(place).with_linear_velocity(-DVec3::Z)
+}
+
+#[track_caller]
+fn meets_at(answer: &TimeOfContact, time: f64) {
+    let work = last_search_counts();
+    let contact = answer.contact().unwrap_or_else(|| panic!("{answer:?} {work:?}"));
+    assert!(contact.time_lo <= time && contact.time_lo > time - 4.0 * contact.tolerance, "{contact:?}");
+    assert!(contact.separation <= 3.3 * contact.tolerance, "{contact:?}");
+    assert!(work.node_tests + work.triangle_looks + work.swept_pairs < MOST_WORK, "{work:?}");
+}
+
+#[test]
+fn fans_meet_at_their_apexes() {
+    let options = QueryOptions::default();
+    for n in [400, 1500] {
+        let (a, b) = (cone(n, 1.0), cone(n, -1.0));
+        meets_at(&query(&a, &b, &falling(DVec3::Z * 0.5), &options), 0.5);
+        // Obliquely: the line between the apexes separates nothing else.
+        let oblique = DVec3::new(0.25, 0.125, 0.5);
+        let motion = ConstantTwist::REST.with_position(oblique).with_linear_velocity(-oblique);
+        meets_at(&query(&a, &b, &motion, &options), 1.0);
+        let touching = query(&a, &b, &ConstantTwist::REST, &options);
+        assert_eq!(touching.contact().unwrap().start, StartState::Touching);
+        assert!(last_search_counts().node_tests < 2000);
+    }
+}
+
+#[test]
+fn stars_meet_at_their_centers() {
+    let mut random = Random(5);
+    let (a, b) = (spikes(&mut random, 1500, 1.0), spikes(&mut random, 1500, -1.0));
+    let surfaces = QueryOptions::default().with_solid(Solid::Surface);
+    meets_at(&query(&a, &b, &falling(DVec3::Z * 0.5), &surfaces), 0.5);
+}
+
+#[test]
+fn copies_of_a_face_meet() {
+    let (a, b) = (copies(700), copies(700));
+    let surfaces = QueryOptions::default().with_solid(Solid::Surface);
+    meets_at(&query(&a, &b, &falling(DVec3::Z * 0.5), &surfaces), 0.5);
+    let same = query(&a, &b, &ConstantTwist::REST, &surfaces);
+    assert_eq!(same.contact().unwrap().start, StartState::Overlapping);
+    assert!(last_search_counts().node_tests < 2000);
+    // Past each other at a thousandth of a tolerance more than the search needs: no contact.
+    let passing =
+        ConstantTwist::REST.with_position(DVec3::new(-2.0, 0.0, 1e-6)).with_linear_velocity(DVec3::X * 4.0);
+    assert!(query(&a, &b, &passing, &surfaces).is_separated());
+}
