@@ -87,17 +87,16 @@ impl Bucket {
 
     /// Drops the items for which `keep` is false.
     pub(crate) fn retain(&mut self, keep: impl Fn(&Item) -> bool) {
-        let mut kept = 0;
-        self.least = u32::MAX;
+        let (mut kept, mut least) = (0, u32::MAX);
         for index in 0..self.count {
             let item = self.items[index];
             if keep(&item) {
                 self.items[kept] = item;
-                self.least = self.least.min(item.key);
+                least = least.min(item.key);
                 kept += 1;
             }
         }
-        self.count = kept;
+        (self.count, self.least) = (kept, least);
     }
 
     /// Moves the last items, whose keys are all equal, to an empty bucket.
