@@ -1,6 +1,7 @@
 //! The deliberate faults, one file a crate. `cargo xtask tidy` checks that each text still occurs exactly once.
 mod bvh;
 mod cli;
+mod dynamics;
 mod facade;
 mod feature;
 mod interval;
@@ -49,6 +50,7 @@ pub(crate) fn all() -> impl Iterator<Item = &'static Mutant> {
         bvh::MUTANTS,
         facade::MUTANTS,
         cli::MUTANTS,
+        dynamics::MUTANTS,
         xtask::MUTANTS,
     ]
     .into_iter()
