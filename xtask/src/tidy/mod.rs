@@ -1,5 +1,6 @@
 //! `cargo xtask tidy`: the structure that the documents promise, held against the tree.
 mod guarantees;
+mod literals;
 mod map;
 mod sources;
 
@@ -11,6 +12,7 @@ pub(crate) fn run() -> TaskResult {
     let mut findings = map::check(&root)?;
     findings.extend(sources::check(&root)?);
     findings.extend(guarantees::check(&root)?);
+    findings.extend(literals::check(&root)?);
     findings.extend(crate::mutants::check(&root));
     for finding in &findings {
         eprintln!("tidy: {finding}");

@@ -50,7 +50,7 @@ fn names_a_machine(line: &str, path: &str) -> bool {
 }
 
 /// Text files of the project: everything but hidden folders, build output and generated results.
-fn files(root: &Path) -> std::io::Result<Vec<PathBuf>> {
+pub(super) fn files(root: &Path) -> std::io::Result<Vec<PathBuf>> {
     let (mut found, mut open) = (Vec::new(), vec![root.to_path_buf()]);
     while let Some(folder) = open.pop() {
         for entry in fs::read_dir(folder)? {
