@@ -10,6 +10,10 @@
 use crate::TriMesh;
 use glam::DVec3;
 
+/// 2⁻⁵³: a squared radius that shrinks by less does not shrink. It ends the exchanges and proves nothing; the sphere
+/// is measured afterwards.
+const HALF_ULP: f64 = 0.5 * f64::EPSILON;
+
 /// No input is known that takes more than 30 exchanges; after this many the best ball so far is returned.
 const MAX_EXCHANGES: usize = 200;
 
@@ -46,7 +50,7 @@ impl EnclosingSphere {
         for _ in 0..MAX_EXCHANGES {
             let (farthest, squared) = farthest_point(points, center);
             // Exchanges stop improving only when the ball is minimal to rounding.
-            if squared >= best.0 * (1.0 - 1e-16) && best.0.is_finite() && support.contains(farthest) {
+            if squared >= best.0 * (1.0 - HALF_ULP) && best.0.is_finite() && support.contains(farthest) {
                 best = if squared < best.0 { (squared, center) } else { best };
                 break;
             }

@@ -3,6 +3,12 @@ use crate::state::ball;
 use d2m_interval::{Interval, IntervalVec3};
 use glam::{DMat3, DVec3};
 
+/// Squares of components between these keep all digits and three of them stay finite: 2⁻⁴⁵⁰ and 2⁵⁰⁰.
+const LEAST_SQUARED: f64 = f64::from_bits((1023 - 450) << 52);
+const MOST_SQUARED: f64 = f64::from_bits((1023 + 500) << 52);
+/// Above √3 = 1.73205…, by more than the rounding of a product.
+const ABOVE_ROOT_OF_THREE: f64 = 1.733;
+
 /// Unit roundoff of f64, 2⁻⁵³.
 const UNIT: f64 = 0.5 * f64::EPSILON;
 /// Covers the rounding of a bound made by fewer than 64 operations on non-negative numbers.
@@ -146,5 +152,9 @@ pub(crate) fn times_up(a: f64, b: f64) -> f64 {
 pub(crate) fn length_up(v: DVec3) -> f64 {
     let largest = v.abs().max_element();
     // Squares of such numbers keep their digits; else √3 times the largest component.
-    if (1e-140..=1e150).contains(&largest) { v.length() * UP } else { largest * 1.733 }
+    if (LEAST_SQUARED..=MOST_SQUARED).contains(&largest) {
+        v.length() * UP
+    } else {
+        largest * ABOVE_ROOT_OF_THREE
+    }
 }

@@ -10,6 +10,14 @@ use crate::{
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
 use glam::{DMat3, DQuat, DVec3};
 
+/// Norms of quaternions that are taken: their squares neither over- nor underflow.
+const LEAST_NORM: f64 = 1e-150;
+const MOST_NORM: f64 = 1e150;
+/// More than what squares that underflow take from a length: below 2⁻⁵³⁷, the root of the least double.
+const UNDERFLOW: f64 = 1e-150;
+/// 1 + 2⁻⁴⁶: a sum and a product, of non-negative numbers, round by 2⁻⁵³ each.
+const SUM_ROUNDING: f64 = 1.0 + 64.0 * f64::EPSILON;
+
 /// Constant twist: `x(t) = x0 + v·(t − t_ref)`, `R(t) = exp([ω]·(t − t_ref))·R0`.
 ///
 /// A body point `p` is at `R(t)·(p − at) + x(t)`. `ω` is in world axes, radians per unit of time. `R0` is the
@@ -78,7 +86,7 @@ impl ConstantTwist {
         require_finite("at", &self.at.to_array())?;
         let DQuat { x, y, z, w } = self.orientation;
         let largest = x.abs().max(y.abs()).max(z.abs()).max(w.abs());
-        if !(1e-150..=1e150).contains(&largest) {
+        if !(LEAST_NORM..=MOST_NORM).contains(&largest) {
             return Err(MotionError::OrientationNorm { w, x, y, z });
         }
         Ok(self)
@@ -242,7 +250,7 @@ impl ConstantTwist {
             linear: self.linear_velocity,
             angular: self.angular_velocity,
             rotation_radius: unit * (96.0 + 8.0 * angle),
-            position_radius: 4.0 * unit * (self.position.length() + travelled.length()) + 1e-150,
+            position_radius: 4.0 * unit * (self.position.length() + travelled.length()) + UNDERFLOW,
             linear_radius: 0.0,
             angular_radius: 0.0,
         })
@@ -286,7 +294,7 @@ impl RigidMotion for ConstantTwist {
         let turn = t.rad() * self.angular_velocity.length();
         let plain = if turn <= LITTLE { self.plain_state(t.mid()) } else { None };
         let rotation = if let Some(state) = plain {
-            around(&state.rotation, (state.rotation_radius + turn) * (1.0 + 1e-14))
+            around(&state.rotation, (state.rotation_radius + turn) * SUM_ROUNDING)
         } else {
             let start = IntervalMat3::from_quat_normalized(self.orientation);
             if self.angular_velocity == DVec3::ZERO {

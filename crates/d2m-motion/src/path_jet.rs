@@ -2,6 +2,9 @@
 use core::ops::{Add, Mul};
 use glam::DVec3;
 
+/// 1 + 2⁻⁴⁶, more than ten times what the roundings of a remainder's bound add up to.
+const SUM_ROUNDING: f64 = 1.0 + 64.0 * f64::EPSILON;
+
 /// Remainder of a jet as a function of the distance in time from its centre:
 /// `e0 + e1·h + e2·h² + m3·h³/6 + m4·h⁴/24`, every coefficient ≥ 0, rounded up.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -21,11 +24,11 @@ pub struct Remainder {
 impl Remainder {
     /// Upper bound of the remainder for every |s| ≤ h, h ≥ 0.
     ///
-    /// The sum of non-negative products has relative error below 12·2⁻⁵³, which the last factor covers.
+    /// The sum of non-negative products has relative error below 12·2⁻⁵³, which [`SUM_ROUNDING`] covers.
     #[inline(always)]
     pub fn bound(&self, h: f64) -> f64 {
         let third = self.m3 * (1.0 / 6.0) + h * (self.m4 * (1.0 / 24.0));
-        (self.e0 + h * (self.e1 + h * (self.e2 + h * third))) * (1.0 + 1e-14)
+        (self.e0 + h * (self.e1 + h * (self.e2 + h * third))) * SUM_ROUNDING
     }
 
     /// A remainder that bounds `factor` ≥ 0 times this one (not rounded: scale where a later factor rounds up).

@@ -3,6 +3,10 @@ use crate::double_double::{DoubleDouble, two_product};
 use crate::sin_cos::{LARGEST_ANGLE, sin_cos};
 use glam::{DMat3, DQuat, DVec3};
 
+/// Squared norms of quaternions between these lose nothing to under- or overflow in products of four.
+const LEAST_SQUARED_NORM: f64 = 1e-200;
+const MOST_SQUARED_NORM: f64 = 1e200;
+
 /// exp([ω]s) as a unit quaternion, plain floating point with the project's own sine.
 pub(crate) fn quat_of(omega: DVec3, s: f64) -> DQuat {
     let speed = omega.length();
@@ -65,7 +69,7 @@ impl Spin {
 pub(crate) fn from_quat_rounded(q: DQuat) -> Option<DMat3> {
     let (xx, yy, zz) = (q.x * q.x, q.y * q.y, q.z * q.z);
     let norm = xx + yy + zz + q.w * q.w;
-    if !(1e-200..=1e200).contains(&norm) {
+    if !(LEAST_SQUARED_NORM..=MOST_SQUARED_NORM).contains(&norm) {
         return None;
     }
     let s = 2.0 / norm;

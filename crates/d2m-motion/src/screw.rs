@@ -6,6 +6,12 @@ use crate::{
 use d2m_interval::Interval;
 use glam::DVec3;
 
+/// Sine of half the smallest turn that is given an axis: it lies up to 1e12 displacements away, documented. It refuses and
+/// proves nothing.
+const LEAST_SINE: f64 = 1e-12;
+/// Sine of the angle up to which velocities count as parallel, documented. The motion is used as it is given.
+const PARALLEL: f64 = 1e-14;
+
 /// A rotation at constant rate about an axis fixed in space with a translation at constant speed along it.
 ///
 /// It is the [`ConstantTwist`] of a body point on the axis with `v` parallel to `ω`, and is queried as that motion.
@@ -86,7 +92,7 @@ impl ScrewMotion {
             let linear = place(start.at, start.translation, displacement / span, DVec3::ZERO)?;
             return Ok(Self { linear });
         }
-        if sine < 1e-12 {
+        if sine < LEAST_SINE {
             return Err(MotionError::Screw { reason: "the turn is too small to have an axis" });
         }
         let axis = imaginary / sine;
@@ -103,10 +109,10 @@ impl ScrewMotion {
     /// Takes a linear motion that is a screw already: its followed point is on the axis.
     ///
     /// # Errors
-    /// If `|v × ω| > 1e-14·|v||ω|`.
+    /// If `|v × ω| > 1e-14·|v||ω|`: some fifty units of rounding. The motion that is queried is the given one all the same.
     pub fn try_from_linear(linear: ConstantTwist) -> Result<Self, MotionError> {
         let (v, w) = (linear.linear_velocity(), linear.angular_velocity());
-        if v.cross(w).length() > 1e-14 * v.length() * w.length() {
+        if v.cross(w).length() > PARALLEL * v.length() * w.length() {
             return Err(MotionError::Screw { reason: "linear and angular velocity are not parallel" });
         }
         Ok(Self { linear })

@@ -8,6 +8,9 @@ use crate::{
 use d2m_interval::Interval;
 use glam::{DQuat, DVec3};
 
+/// Below it the vector part of a unit quaternion is half the rotation vector to the last place: x − sin x < x³/6.
+const SMALL_SINE: f64 = 1e-8;
+
 /// How smooth a [`Spline`] is at its poses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
@@ -147,8 +150,7 @@ fn rotation_vector(q: DQuat) -> DVec3 {
     let q = if q.w < 0.0 { -q } else { q };
     let imaginary = DVec3::new(q.x, q.y, q.z);
     let sine = imaginary.length();
-    // Below 1e-8 the vector part is half the angle to the last place.
-    if sine < 1e-8 { imaginary * 2.0 } else { imaginary * (2.0 * atan2_positive(sine, q.w) / sine) }
+    if sine < SMALL_SINE { imaginary * 2.0 } else { imaginary * (2.0 * atan2_positive(sine, q.w) / sine) }
 }
 
 /// exp of a rotation vector.

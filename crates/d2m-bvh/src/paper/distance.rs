@@ -6,6 +6,9 @@ use d2m_feature::{TriangleDistance, triangle_distance};
 use d2m_interval::{Interval, IntervalVec3};
 use glam::DVec3;
 
+/// The distance of two boxes takes fewer than ten roundings of 2⁻⁵³ each; 2⁻⁴⁰ is far more than they add up to.
+const BOX_ROUNDING: f64 = 1.0 - 1.0 / 1_099_511_627_776.0;
+
 /// The distance of two surfaces at one time, enclosed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MeshDistance {
@@ -133,7 +136,7 @@ fn leaf_pairs(
         let box_a = bounds(&corners_a);
         for &triangle_b in &b.leaf(node_b).triangles {
             let corners_b = b.corners(triangle_b);
-            if boxes_apart(box_a, bounds(&corners_b)) * (1.0 - 1e-12) > limit + rounding {
+            if boxes_apart(box_a, bounds(&corners_b)) * BOX_ROUNDING > limit + rounding {
                 continue;
             }
             let detail = triangle_distance(&corners_a, &corners_b);

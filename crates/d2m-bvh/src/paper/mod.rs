@@ -26,6 +26,9 @@ use d2m_interval::Interval;
 use start::{Start, classify_start};
 use traverse::Search;
 
+/// δ where none is asked for, in units of the larger radius: the documented default.
+const DEFAULT_TOLERANCE: f64 = 1e-10;
+
 /// A body with its sphere tree, and how it moves.
 pub type Moving<'a> = crate::Moving<'a, SphereTree>;
 
@@ -116,7 +119,7 @@ fn validate(bodies: &[Moving<'_>; 2], window: Window, options: &QueryOptions) ->
         return Err(QueryError::BadMinSeparation { value: options.min_separation });
     }
     let radius = bodies.iter().map(|m| m.body.bounding_sphere().radius).fold(0.0, f64::max);
-    let tolerance = options.tolerance.unwrap_or(1e-10 * radius.max(f64::MIN_POSITIVE));
+    let tolerance = options.tolerance.unwrap_or(DEFAULT_TOLERANCE * radius.max(f64::MIN_POSITIVE));
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(QueryError::BadTolerance { value: tolerance });
     }

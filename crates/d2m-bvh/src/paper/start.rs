@@ -7,6 +7,10 @@ use d2m_feature::paper::Placement;
 use d2m_interval::{Interval, IntervalVec3};
 use glam::DVec3;
 
+/// The distance of a point from a line takes some twenty roundings of 2⁻⁵³ of the lengths at hand, and cancellation at
+/// most squares them: below 2⁻²⁶ of the lengths where the square of the distance is lost altogether.
+const LINE_ROUNDING: f64 = 1.0 / 16_777_216.0;
+
 /// The start state with the closest pair where the bodies meet.
 #[derive(Clone, Debug)]
 pub(crate) enum Start {
@@ -143,7 +147,8 @@ fn count_crossings(tree: &SphereTree, p: DVec3, q: DVec3) -> Option<i64> {
         let w = node.sphere.center - p;
         // Distance of the centre from the line, with a margin far above its rounding error.
         let squared = (w - along * (w.dot(along) / along.length_squared())).length_squared();
-        let reach = node.sphere.radius * (1.0 + 1e-9) + 1e-9 * (along.length() + w.length());
+        let reach =
+            node.sphere.radius * (1.0 + LINE_ROUNDING) + LINE_ROUNDING * (along.length() + w.length());
         if squared > reach * reach {
             continue;
         }

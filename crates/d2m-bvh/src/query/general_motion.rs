@@ -16,6 +16,10 @@ use d2m_motion::{Chain, Pose, RigidMotion};
 use glam::DVec3;
 use std::time::Instant;
 
+/// A span is shortened at most to this part of itself before it is measured again: ten such steps go from any window to
+/// below the resolution of time. It chooses spans and proves nothing.
+const LEAST_PART: f64 = 1.0 / 1024.0;
+
 /// δ as a part of the larger body's radius, if none is given: that of constant twists.
 const DEFAULT_TOLERANCE: f64 = 1e-10;
 /// The deviation is a small part of the tolerance when it is at most this part: the search is asked for a tolerance
@@ -313,7 +317,7 @@ impl<'a> Advance<'a> {
                     return Ok(None);
                 }
                 // The deviation goes like the square of the span, or its root where a radius of a velocity rules.
-                let part = (enough / fitted.deviation).sqrt().clamp(1e-3, 0.5);
+                let part = (enough / fitted.deviation).sqrt().clamp(LEAST_PART, 0.5);
                 until = (self.now + part * (until - self.now)).max(self.now.next_up()).min(end);
             } else {
                 if shortest {

@@ -204,12 +204,15 @@ fn from_quaternion(q: [f64; 4]) -> Columns {
 fn sin_versine(angle: Pair) -> (f64, f64) {
     use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
     const ROUND: f64 = 6_755_399_441_055_744.0; // 1.5·2⁵²: adding it rounds to an integer
+    // π/2 less its double, and less that: the second and the third double of π/2.
+    const HALF_PI_MIDDLE: f64 = 6.123_233_995_736_766e-17;
+    const HALF_PI_LOW: f64 = -1.497_384_904_859_17e-33;
     let shifted = angle.0 * FRAC_2_PI + ROUND;
     let turns = shifted - ROUND;
     let reduced = angle
         .add(two_product(-turns, FRAC_PI_2))
-        .add(two_product(-turns, 6.123_233_995_736_766e-17))
-        .add(two_product(-turns, -1.497_384_904_859_17e-33));
+        .add(two_product(-turns, HALF_PI_MIDDLE))
+        .add(two_product(-turns, HALF_PI_LOW));
     let (x, y) = (reduced.0, reduced.1);
     let z = x * x;
     let mut odd = 1.0;

@@ -6,6 +6,10 @@
 
 use super::fit::dot;
 
+/// A flat box counts as this thick, in units of its extents' sum, when outlines are compared. It chooses axes and proves
+/// nothing.
+const FLAT: f64 = 1e-3;
+
 /// Directions, in the frame of the axes, whose extreme points are kept: the axes, the diagonals between two of them, and
 /// those between all three.
 pub(super) const DIRECTIONS: [[f64; 3]; 13] = [
@@ -96,7 +100,7 @@ fn rotate<const N: usize>(rows: &mut [[f64; N]; 3], (i, j): (usize, usize), c: f
 fn turned(mut axes: [[f64; 3]; 3], mut points: [[f64; FEW]; 3]) -> [[f64; 3]; 3] {
     let mut size = [0, 1, 2].map(|i| extent(&points[i], &points[i], 1.0, 0.0));
     // So that a flat box still has a smallest outline.
-    let floor = 1e-3 * (size[0] + size[1] + size[2]);
+    let floor = FLAT * (size[0] + size[1] + size[2]);
     for t in TURNS {
         let scale = 1.0 / (1.0 + t * t);
         for k in 0..3 {

@@ -7,6 +7,10 @@ use crate::tree::margin::UNIT_F64;
 use d2m_feature::FeaturePair;
 use glam::DVec3;
 
+/// A squared distance of two points takes some ten roundings of 2⁻⁵³ each; 2⁻⁴⁰ is far more than they add up to, and
+/// only lets candidates pass.
+const DISTANCE_ROUNDING: f64 = 1.0 + 1.0 / 1_099_511_627_776.0;
+
 /// A foot may be this many δ outside of its feature: two for the points it is made from on either body, as much for
 /// its own roundings.
 const FOOT_ERRORS: f64 = 8.0;
@@ -96,8 +100,8 @@ impl<'a> FeatureTest<'a> {
             scene,
             adjacency: scene.trees.map(crate::MeshTree::adjacency),
             // Distances come from points that are rounded once more.
-            limit_squared: limit * limit * (1.0 + 1e-12),
-            limit: limit * (1.0 + 1e-12),
+            limit_squared: limit * limit * DISTANCE_ROUNDING,
+            limit: limit * DISTANCE_ROUNDING,
             cone_slack,
             found: Vec::new(),
         }

@@ -8,6 +8,9 @@ use crate::tree::node::{Below, WIDTH};
 use crate::{MeshTree, Posed, QueryError};
 use glam::DVec3;
 
+/// Sums and products of up to ten non-negative terms round by 2⁻⁵³ each; 2⁻⁴⁰ covers them all.
+const SUM_ROUNDING: f64 = 1.0 + 1.0 / 1_099_511_627_776.0;
+
 /// A body whose radius is below this part of the size is one point as far as rounding can tell.
 const POINT_LIKE: f64 = 4.0 * UNIT_F64;
 
@@ -55,8 +58,8 @@ impl<'a> Scene<'a> {
         let blur: f64 =
             trees.iter().zip(point_like).map(|(t, p)| if p { 2.0 * t.radius() } else { 0.0 }).sum();
         // Placing rounds by at most 9v(ρA + |T|) on A's side and 2v ρB on B's.
-        let error = 2.0 * ((pose.error + blur) * inverse_unit + 10.0 * UNIT_F64 * size) * (1.0 + 1e-12);
-        let projection = 8.0 * UNIT_F64 * size * (1.0 + 1e-12);
+        let error = 2.0 * ((pose.error + blur) * inverse_unit + 10.0 * UNIT_F64 * size) * SUM_ROUNDING;
+        let projection = 8.0 * UNIT_F64 * size * SUM_ROUNDING;
         let (inverse, back) = pose.inverse();
         let side = |wide: &MeshTree, single: &MeshTree, rotation, offset: DVec3| Side {
             rotation,
@@ -72,7 +75,7 @@ impl<'a> Scene<'a> {
             unit,
             inverse_unit,
             error,
-            need: (error + projection) * (1.0 + 1e-12),
+            need: (error + projection) * SUM_ROUNDING,
             projection,
             offset: pose.offset * inverse_unit,
             sides: [side(a.body, b.body, inverse, back), side(b.body, a.body, pose.rotation, pose.offset)],

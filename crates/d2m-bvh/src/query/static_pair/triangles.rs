@@ -3,10 +3,13 @@
 use d2m_feature::triangle_distance;
 use glam::DVec3;
 
+/// 1 + 2⁻⁴⁶: sixteen times the eight roundings of the compared squares.
+const SQUARES_ROUNDING: f64 = 1.0 + 64.0 * f64::EPSILON;
+
 /// Is the gap of the projections onto `n` or `−n` proven to be more than `need` times |n|? Not for n = 0.
 ///
 /// `need` holds the wanted distance and the rounding of the projections. The comparison is of squares, whose own
-/// roundings (at most 8·2⁻⁵³) the factor covers; when squares underflow, n and the gap are too small to be judged
+/// roundings (at most 8·2⁻⁵³) [`SQUARES_ROUNDING`] covers; when squares underflow, n and the gap are too small to be judged
 /// and the answer is no.
 #[inline(always)]
 pub(crate) fn gap_exceeds(n: DVec3, a: &[DVec3; 3], b: &[DVec3; 3], need: f64) -> bool {
@@ -14,7 +17,7 @@ pub(crate) fn gap_exceeds(n: DVec3, a: &[DVec3; 3], b: &[DVec3; 3], need: f64) -
     let (low_b, high_b) = range(n.dot(b[0]), n.dot(b[1]), n.dot(b[2]));
     let gap = larger(low_b - high_a, low_a - high_b);
     let square = n.length_squared();
-    gap > 0.0 && square > f64::MIN_POSITIVE && gap * gap > need * need * square * (1.0 + 1e-14)
+    gap > 0.0 && square > f64::MIN_POSITIVE && gap * gap > need * need * square * SQUARES_ROUNDING
 }
 
 #[inline(always)]
