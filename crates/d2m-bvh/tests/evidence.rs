@@ -113,7 +113,7 @@ impl RigidMotion for Blurred {
 
     fn enclose_pose(&self, time: Interval) -> IntervalPose {
         let mut pose = self.0.enclose_pose(time);
-        pose.translation.x = pose.translation.x + Interval::new(-self.1, self.1);
+        pose.translation.x += Interval::new(-self.1, self.1);
         pose
     }
 

@@ -369,7 +369,7 @@ fn trials_and_results_may_be_piped() {
     assert!((fields(1)[16].parse::<f64>().unwrap() / 1.7e-10 - 1.0).abs() < 0.1, "{text}");
     assert_eq!(fields(2)[15..], ["", ""]);
     let header = d2m_csv_header();
-    let with_header = format!("{header}\n{}", TRIALS);
+    let with_header = format!("{header}\n{TRIALS}");
     let output = shell::d2m_with_input(&arguments, with_header.as_bytes());
     assert_eq!(stdout(&output).lines().count(), 5, "{}", stderr(&output));
     let output = shell::d2m_with_input(&arguments, line.replace("-3", "-x").as_bytes());

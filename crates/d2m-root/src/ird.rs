@@ -111,7 +111,7 @@ mod tests {
             (point(1.0), point(1.0), Interval::EMPTY),
         ] {
             let part = intersect_root_domain(&InclusionFunction::new(value, slope, second, domain));
-            assert_eq!(part.map(|p| p.hi()), Some(1.0), "{value:?} {slope:?} {second:?}");
+            assert_eq!(part.map(d2m_interval::Interval::hi), Some(1.0), "{value:?} {slope:?} {second:?}");
         }
         let f = InclusionFunction::new(point(1.0), point(-1.0), point(0.0), Interval::EMPTY);
         assert_eq!(intersect_root_domain(&f), None);

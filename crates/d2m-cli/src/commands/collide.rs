@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
                 line("triangles", format!("{a} of A and {b} of B are not proven apart"));
             }
             (true, None) => {
-                line("contained", "the surfaces are apart and one body is inside the other".to_owned())
+                line("contained", "the surfaces are apart and one body is inside the other".to_owned());
             }
         }
         for (label, body) in ["A", "B"].into_iter().zip(&pair.bodies) {

@@ -20,12 +20,9 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<(), Failure> {
     let name = arguments.scene.display().to_string();
     let (text, took, stopped) = pool.install(|| simulate(scene, &name));
     out.write(&text)?;
-    match stopped {
-        Some(error) => Err(Failure::at(name, error)),
-        None => {
-            note(&format!("simulated in {}", duration(took)));
-            Ok(())
-        }
+    if let Some(error) = stopped { Err(Failure::at(name, error)) } else {
+        note(&format!("simulated in {}", duration(took)));
+        Ok(())
     }
 }
 

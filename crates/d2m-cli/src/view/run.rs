@@ -122,13 +122,10 @@ pub(crate) fn picture_of_run(path: &Path) -> Result<Picture, Failure> {
             Failure::at(scene.display(), format!("body {:?} of the run is not in it", body.name))
         })?;
         let key = format!("{} {:?}", look.mesh, look.scale);
-        let number = match meshes.get(&key) {
-            Some(&number) => number,
-            None => {
-                let number = picture.add_mesh(&look.load(&scene)?);
-                meshes.insert(key, number);
-                number
-            }
+        let number = if let Some(&number) = meshes.get(&key) { number } else {
+            let number = picture.add_mesh(&look.load(&scene)?);
+            meshes.insert(key, number);
+            number
         };
         picture.add_body(&body.name, number, flights);
     }

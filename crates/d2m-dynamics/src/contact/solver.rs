@@ -210,13 +210,10 @@ impl Solver {
         let limit = contact.material.friction * contact.impulse;
         let length = |x: [f64; 2]| (x[0] * x[0] + x[1] * x[1]).sqrt();
         let stopped = p.stopping(rates).map(|less| [0, 1].map(|k| contact.sliding[k] - less[k]));
-        let wanted = match stopped.filter(|x| length(*x) <= limit) {
-            Some(stopped) => stopped,
-            None => {
-                let wanted = [0, 1].map(|k| contact.sliding[k] - rates[k] * p.step);
-                let shorten = (limit / length(wanted)).min(1.0);
-                if limit > 0.0 { wanted.map(|x| x * shorten) } else { [0.0; 2] }
-            }
+        let wanted = if let Some(stopped) = stopped.filter(|x| length(*x) <= limit) { stopped } else {
+            let wanted = [0, 1].map(|k| contact.sliding[k] - rates[k] * p.step);
+            let shorten = (limit / length(wanted)).min(1.0);
+            if limit > 0.0 { wanted.map(|x| x * shorten) } else { [0.0; 2] }
         };
         let mut change = 0.0f64;
         for k in 0..2 {
