@@ -198,7 +198,7 @@ fn exact_scalings_change_nothing() {
                     Some([c.time_lo / time, c.time_hi / time, c.separation / length, c.tolerance / length])
                 }
                 TimeOfContact::Separated => None,
-                undecided => panic!("{undecided:?}"),
+                undecided @ TimeOfContact::Undecided { .. } => panic!("{undecided:?}"),
             }
         };
         let right = ask(0, 0);

@@ -26,7 +26,9 @@ fn joined(parts: &[TriMesh]) -> MeshTree {
 
 fn inverted(mesh: TriMesh) -> TriMesh {
     let (vertices, mut triangles) = mesh.into_parts();
-    triangles.iter_mut().for_each(|t| t.swap(0, 1));
+    for t in &mut triangles {
+        t.swap(0, 1);
+    }
     TriMesh::try_new(vertices, triangles).unwrap()
 }
 
@@ -64,7 +66,7 @@ fn a_solid_is_where_the_winding_number_is_not_zero() {
     let probe = MeshTree::new(about(DVec3::ZERO, 0.25));
     let (large, small) = (about(DVec3::ZERO, 4.0), about(DVec3::ZERO, 2.0));
     let beside = about(DVec3::X * 2.0, 3.0);
-    check(&joined(&[large.clone()]), &probe, true);
+    check(&joined(std::slice::from_ref(&large)), &probe, true);
     // Two and three parts over the probe, a repeated one, one inside out alone.
     check(&joined(&[large.clone(), beside.clone()]), &probe, true);
     check(&joined(&[large.clone(), beside.clone(), small.clone()]), &probe, true);

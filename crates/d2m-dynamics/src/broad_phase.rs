@@ -74,7 +74,8 @@ pub(crate) fn candidates(boxes: &[Aabb], wanted: impl Fn(usize, usize) -> bool) 
     let mut pairs = Vec::new();
     for i in order {
         let start = boxes[i].low[axis];
-        open.retain(|&j| !(boxes[j].high[axis] < start));
+        // A box that is not finite stays: it excludes nothing.
+        open.retain(|&j| boxes[j].high[axis] >= start || boxes[j].high[axis].is_nan());
         for &j in &open {
             let (a, b) = (i.min(j), i.max(j));
             if boxes[i].may_meet(&boxes[j]) && wanted(a, b) {

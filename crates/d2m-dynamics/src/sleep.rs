@@ -51,14 +51,13 @@ impl Simulation {
             restless[b] |= moving(a);
         }
         let mut awake = vec![false; self.bodies.len()];
-        for i in 0..self.bodies.len() {
-            if restless[i] || !held_up[i] {
+        for (i, held_up) in held_up.iter().enumerate() {
+            if restless[i] || !held_up {
                 awake[root(&mut parent, i)] = true;
             }
         }
-        for i in 0..self.bodies.len() {
+        for (i, body) in self.bodies.iter_mut().enumerate() {
             let top = root(&mut parent, i);
-            let body = &mut self.bodies[i];
             if body.is_dynamic() && !body.asleep && held_up[i] && !awake[top] {
                 sleep(body);
             }

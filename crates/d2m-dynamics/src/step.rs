@@ -10,7 +10,7 @@ use crate::{BodyId, ContactImpulse, Simulation, StepError, StepReport, parallel}
 use d2m_bvh::{QueryError, Window};
 use glam::DVec3;
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
 /// Events of one pair at one and the same time, after which it is held.
 const MOST_AT_ONCE: u32 = 8;
@@ -388,7 +388,7 @@ impl<'s> Step<'s> {
         let mut member = vec![false; boxes.len()];
         let mut group = Vec::new();
         let mut wave = seeds;
-        let mut measured: BTreeMap<Key, ()> = BTreeMap::new();
+        let mut measured: BTreeSet<Key> = BTreeSet::new();
         let mut contacts = Vec::new();
         let mut near: Vec<Key> = Vec::new();
         while !wave.is_empty() {
@@ -405,7 +405,7 @@ impl<'s> Step<'s> {
                 group.push(i);
             }
             let new: Vec<Key> =
-                self.partners(&boxes, &wave).into_iter().filter(|key| !measured.contains_key(key)).collect();
+                self.partners(&boxes, &wave).into_iter().filter(|key| !measured.contains(key)).collect();
             let sim = &*self.sim;
             let (most, step) = (self.margin, self.end - time);
             let found = parallel::map(new, |key| {
@@ -418,7 +418,7 @@ impl<'s> Step<'s> {
             });
             let mut next = Vec::new();
             for (key, answer) in found {
-                measured.insert(key, ());
+                measured.insert(key);
                 let mut points = match answer {
                     Ok(points) => points,
                     // Closer than rounding: the query of the flight says so, too.
@@ -462,7 +462,7 @@ impl<'s> Step<'s> {
             let measured = &measured;
             let bodies = &self.sim.bodies;
             self.sim.pairs.retain(|key, _| {
-                measured.contains_key(key) || !(bodies[key.0].is_awake() || bodies[key.1].is_awake())
+                measured.contains(key) || !(bodies[key.0].is_awake() || bodies[key.1].is_awake())
             });
         }
         group.sort_unstable();

@@ -51,7 +51,7 @@ impl Course {
             rotations: [a, b].map(|body| body.motion.rotation(0.0)),
             omegas: [a, b].map(|body| body.motion.angular_velocity()),
             arms: [a, b].map(|body| body.motion.given_arm()),
-            reach: [a, b].map(|body| body.given_reach()),
+            reach: [a.given_reach(), b.given_reach()],
             speed: velocity.length() + scene.spin_speed,
             size: scene.size,
         }

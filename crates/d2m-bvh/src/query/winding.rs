@@ -197,7 +197,7 @@ mod tests {
         let mut number = |most: u32| ((random.next() + 1.0) * 0.5 * f64::from(most)) as u32 % most;
         let (mut inside, mut outside) = (0, 0);
         for _ in 0..200 {
-            let parts: Vec<(DVec3, DVec3, bool)> = (0..1 + number(5))
+            let parts: Vec<(DVec3, DVec3, bool)> = (0..=number(5))
                 .map(|_| {
                     let mut ends = || {
                         let low = number(6);

@@ -94,7 +94,7 @@ pub(super) fn nearest(flat: &[DVec3; 3], axis: DVec3) -> f64 {
 }
 
 /// One body over the rest of the query.
-struct Body<'a> {
+struct SweptBody<'a> {
     body: &'a SceneBody<'a>,
     /// Axes of the body and the tree's centre from the reference point, world axes, at the start.
     rotation: [DVec3; 3],
@@ -108,7 +108,7 @@ struct Body<'a> {
     rings: Vec<Ring>,
 }
 
-impl<'a> Body<'a> {
+impl<'a> SweptBody<'a> {
     fn new(body: &'a SceneBody<'a>, spins: bool, start: f64, interest: DVec3) -> Self {
         let motion = &body.motion;
         let rotation = motion.rotation(start);
@@ -181,7 +181,7 @@ impl<'a> Body<'a> {
             radius: corners.iter().map(|p| (*p - center).length()).fold(0.0, f64::max),
             corners: Some(corners),
             below: Below::Triangle(triangle),
-            reach: self.from_spin(&corners),
+            reach: self.reach_from_spin(&corners),
         }
     }
 
@@ -201,12 +201,13 @@ impl<'a> Body<'a> {
         let half = boxed.half_extent.map(|h| f64::from(h) * unit);
         let radius = f64::from(boxed.radius) * unit;
         let ring = self.rings[index as usize];
-        let reach = corners.map_or_else(|| self.from_spin(&[center]) + radius, |c| self.from_spin(&c));
+        let reach =
+            corners.map_or_else(|| self.reach_from_spin(&[center]) + radius, |c| self.reach_from_spin(&c));
         Part { body: self, ring, center, axes, half, radius, corners, below, reach }
     }
 
     /// The largest distance of points from the axis about which a body at rest turns after all. It stays what it is.
-    fn from_spin(&self, points: &[DVec3]) -> f64 {
+    fn reach_from_spin(&self, points: &[DVec3]) -> f64 {
         let axis = self.body.motion.turning().axis();
         let across = |p: &DVec3| (*p - axis * axis.dot(*p)).length_squared();
         points.iter().map(across).fold(0.0, f64::max).sqrt()
@@ -215,7 +216,7 @@ impl<'a> Body<'a> {
 
 /// A box of a body, or a triangle.
 struct Part<'b> {
-    body: &'b Body<'b>,
+    body: &'b SweptBody<'b>,
     ring: Ring,
     /// From the followed point, world axes at the start.
     center: DVec3,
@@ -277,7 +278,7 @@ impl Part<'_> {
 
 /// Two bodies over the rest of the query.
 struct Sweep<'a> {
-    bodies: [Body<'a>; 2],
+    bodies: [SweptBody<'a>; 2],
     /// Followed point of B from that of A at the start, and its velocity.
     apart: DVec3,
     velocity: DVec3,
@@ -300,7 +301,7 @@ pub(crate) fn swept_clear_until(
     let spins = [&scene.a, &scene.b].map(|body| body.turns_by(end - start) > STILL_ANGLE);
     let interest = if spins[0] || spins[1] { scene.spin_axis().unwrap_or(interest) } else { interest };
     let bodies = [(&scene.a, spins[0]), (&scene.b, spins[1])]
-        .map(|(body, spins)| Body::new(body, spins, start, interest));
+        .map(|(body, spins)| SweptBody::new(body, spins, start, interest));
     let mut sweep = Sweep {
         bodies,
         apart: -scene.track.at(start),
@@ -312,7 +313,7 @@ pub(crate) fn swept_clear_until(
     if sweep.clear_for(&a, &b).is_none_or(|until| until < gain) {
         return (None, 1);
     }
-    sweep.bodies.iter_mut().for_each(Body::measure);
+    sweep.bodies.iter_mut().for_each(SweptBody::measure);
     let (clear, pairs) = sweep.earliest(gain, most);
     (clear.and_then(|clear| after(start, clear, sweep.length, end)), pairs)
 }

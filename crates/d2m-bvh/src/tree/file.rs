@@ -88,7 +88,7 @@ impl MeshTree {
             bytes.extend((count as u64).to_le_bytes());
         }
         let about = self.center.to_array().into_iter().chain([self.radius]);
-        for number in about.chain(self.mesh.vertices().iter().flat_map(|vertex| vertex.to_array())) {
+        for number in about.chain(self.mesh.vertices().iter().flat_map(glam::DVec3::to_array)) {
             bytes.extend(number.to_le_bytes());
         }
         for &number in self.mesh.triangles().iter().flatten() {

@@ -20,7 +20,9 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<(), Failure> {
     let name = arguments.scene.display().to_string();
     let (text, took, stopped) = pool.install(|| simulate(scene, &name));
     out.write(&text)?;
-    if let Some(error) = stopped { Err(Failure::at(name, error)) } else {
+    if let Some(error) = stopped {
+        Err(Failure::at(name, error))
+    } else {
         note(&format!("simulated in {}", duration(took)));
         Ok(())
     }

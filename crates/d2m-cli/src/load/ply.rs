@@ -41,7 +41,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, LoadError> {
                 .read_payload_for_element(&mut reader, definition, &header)
                 .map_err(|error| LoadError::new(format!("{name}: {}", fault(&error).reason)))?;
             for (index, element) in elements.into_iter().enumerate() {
-                let added = parts.add(name, element);
+                let added = parts.add(name, &element);
                 added.map_err(|reason| LoadError::new(format!("{name} {index}: {reason}")))?;
             }
         }
@@ -106,7 +106,7 @@ fn read_text(text: &str, first_line: usize, header: &Header, parts: &mut Parts) 
             let mut element = Element::default();
             element
                 .read_words(words, definition)
-                .and_then(|()| parts.add(name, element))
+                .and_then(|()| parts.add(name, &element))
                 .map_err(|reason| LoadError::at_line(line, format!("{name} {index}: {reason}")))?;
         }
     }
@@ -144,7 +144,7 @@ struct Parts {
 }
 
 impl Parts {
-    fn add(&mut self, name: &str, element: Element) -> Result<(), String> {
+    fn add(&mut self, name: &str, element: &Element) -> Result<(), String> {
         match name {
             "vertex" => self.vertices.push(element.position()?),
             "face" => self.polygons.push(element.polygon()?),

@@ -116,7 +116,11 @@ impl MeshLibrary {
         if let Some(tree) = self.trees.get(&key) {
             return Ok(Arc::clone(tree));
         }
-        let source = if mesh.starts_with("shape:") { mesh.to_owned() } else { self.folder.join(mesh).to_string_lossy().into_owned() };
+        let source = if mesh.starts_with("shape:") {
+            mesh.to_owned()
+        } else {
+            self.folder.join(mesh).to_string_lossy().into_owned()
+        };
         let loaded = load(&source)?;
         let tree = if scale == DVec3::ONE {
             loaded.into_tree()

@@ -181,10 +181,9 @@ impl Reader<'_> {
         let kind = fields.text("kind")?.unwrap_or("dynamic");
         body.kind = match (kind, motion) {
             ("dynamic", None) => Kind::Dynamic,
-            ("static", None) => Kind::Static,
-            ("kinematic", Some(motion)) => Kind::Kinematic(motion),
             // A kinematic body without a motion rests where its pose is.
-            ("kinematic", None) => Kind::Static,
+            ("static" | "kinematic", None) => Kind::Static,
+            ("kinematic", Some(motion)) => Kind::Kinematic(motion),
             ("dynamic" | "static", Some(_)) => {
                 return Err(fields.fault("motion", format!("a {kind} body follows none; is it kinematic?")));
             }
@@ -202,12 +201,12 @@ impl Reader<'_> {
         }
         body.restitution = fields.number("restitution")?.unwrap_or(0.0);
         body.friction = fields.number("friction")?.unwrap_or(0.0);
-        self.mass(fields, &mut body)?;
+        Self::mass(fields, &mut body)?;
         Ok(body)
     }
 
     /// What is given counts; what is not follows from the closed mesh.
-    fn mass(&self, fields: &Fields<'_>, body: &mut Body) -> Result<(), Failure> {
+    fn mass(fields: &Fields<'_>, body: &mut Body) -> Result<(), Failure> {
         let (density, mass) = (fields.number("density")?, fields.number("mass")?);
         let (center, inertia): (Option<DVec3>, Option<DMat3>) =
             (fields.vector("center")?, fields.matrix("inertia")?);

@@ -122,14 +122,18 @@ pub(crate) fn picture_of_run(path: &Path) -> Result<Picture, Failure> {
             Failure::at(scene.display(), format!("body {:?} of the run is not in it", body.name))
         })?;
         let key = format!("{} {:?}", look.mesh, look.scale);
-        let number = if let Some(&number) = meshes.get(&key) { number } else {
+        let number = if let Some(&number) = meshes.get(&key) {
+            number
+        } else {
             let number = picture.add_mesh(&look.load(&scene)?);
             meshes.insert(key, number);
             number
         };
         picture.add_body(&body.name, number, flights);
     }
-    marks.iter().for_each(|mark| picture.add_mark(mark));
+    for mark in &marks {
+        picture.add_mark(mark);
+    }
     Ok(picture)
 }
 

@@ -157,8 +157,8 @@ impl Solver {
             }
             let ratio = square / last;
             last = square;
-            if !(ratio <= 1.0) {
-                direction.iter_mut().for_each(|d| *d = [0.0; 3]);
+            if ratio.is_nan() || ratio > 1.0 {
+                direction.fill([0.0; 3]);
                 continue;
             }
             for (k, contact) in contacts.iter_mut().enumerate() {
@@ -210,16 +210,18 @@ impl Solver {
         let limit = contact.material.friction * contact.impulse;
         let length = |x: [f64; 2]| (x[0] * x[0] + x[1] * x[1]).sqrt();
         let stopped = p.stopping(rates).map(|less| [0, 1].map(|k| contact.sliding[k] - less[k]));
-        let wanted = if let Some(stopped) = stopped.filter(|x| length(*x) <= limit) { stopped } else {
+        let wanted = if let Some(stopped) = stopped.filter(|x| length(*x) <= limit) {
+            stopped
+        } else {
             let wanted = [0, 1].map(|k| contact.sliding[k] - rates[k] * p.step);
             let shorten = (limit / length(wanted)).min(1.0);
             if limit > 0.0 { wanted.map(|x| x * shorten) } else { [0.0; 2] }
         };
         let mut change = 0.0f64;
-        for k in 0..2 {
-            let added = wanted[k] - contact.sliding[k];
+        for (k, wanted) in wanted.into_iter().enumerate() {
+            let added = wanted - contact.sliding[k];
             if added != 0.0 {
-                contact.sliding[k] = wanted[k];
+                contact.sliding[k] = wanted;
                 self.push(p, &p.tangents[k], added);
                 change = change.max(added.abs() / p.tangents[k].mass);
             }
