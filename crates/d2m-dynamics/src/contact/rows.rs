@@ -60,7 +60,8 @@ pub(crate) fn select(
             omega.cross(contact.normal).length() * omega.length() * arm.length()
         };
         let curved = 0.5 * tau * (bend(contact.a, contact.arm_a) + bend(contact.b, contact.arm_b));
-        let most = gap / tau;
+        // A gap in a step: in a short rest of one, making room at once would be a jerk.
+        let most = gap / span.step;
         let target = if d > gap {
             (curved - (d - gap) / tau).min(most)
         } else {
