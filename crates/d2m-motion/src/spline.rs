@@ -25,7 +25,7 @@ pub enum SplineDegree {
 /// A smooth motion through poses at times.
 ///
 /// Between two poses the body origin follows the Hermite polynomial of the velocities at both ends, and the body turns by
-/// R₀·∏ exp([kᵢ]βᵢ(u)), with βᵢ the cumulative Bernstein polynomials of the degree and kᵢ chosen so that poses and angular
+/// R₀·∏ exp(\[kᵢ\]βᵢ(u)), with βᵢ the cumulative Bernstein polynomials of the degree and kᵢ chosen so that poses and angular
 /// velocities at both ends are the wanted ones. Each span is a [`Chain`] of three prismatic and three or five
 /// revolute joints, so everything is enclosed as there.
 ///
