@@ -1,5 +1,6 @@
 //! `cargo xtask accuracy`: random families against slow oracles. Any false negative fails the run.
 mod feature;
+mod hostile;
 mod interval;
 mod mesh;
 mod reference;
@@ -31,6 +32,9 @@ pub(crate) struct Options {
     /// Threads of the feature families; all processors by default. Answers do not depend on it.
     #[arg(long)]
     threads: Option<usize>,
+    /// Asks one scene again that a run has kept, and judges it.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["minutes", "family", "only"])]
+    case: Option<std::path::PathBuf>,
     /// A deliberate fault, to see it found: `late=1e-6` or `miss`.
     #[arg(long = "break", hide = true)]
     sabotage: Option<Sabotage>,
@@ -62,7 +66,7 @@ pub(crate) struct Task {
 type Family = (&'static str, usize, fn(&Task) -> Outcome);
 
 /// Name, the share of the count that a family takes (one in so many), and itself.
-const FAMILIES: [Family; 11] = [
+const FAMILIES: [Family; 12] = [
     ("feature: rigid vertex/face", 1, feature::rigid_vertex_face),
     ("feature: rigid edge/edge", 1, feature::rigid_edge_edge),
     ("feature: any motion vertex/face", 1, feature::enclosed_vertex_face),
@@ -71,6 +75,7 @@ const FAMILIES: [Family; 11] = [
     ("feature: straight edge/edge", 1, feature::straight_edge_edge),
     ("interval: every operation", 1, interval::run),
     ("mesh: engine on random small scenes", 1, mesh::run),
+    ("mesh: hostile scenes and their twins", 10, hostile::run),
     ("mesh: reference method and engine", 20, reference::run),
     ("mesh: collide and distance at rest", 2, statics::run),
     ("mutants: broken answers are noticed", 100, teeth::run),
@@ -78,6 +83,9 @@ const FAMILIES: [Family; 11] = [
 
 /// `cargo xtask accuracy`.
 pub(crate) fn run(options: &Options) -> TaskResult {
+    if let Some(path) = &options.case {
+        return hostile::replay(path);
+    }
     if let Some(threads) = options.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     }

@@ -8,7 +8,7 @@ mod triangle;
 pub(crate) use answer::{Claim, Fault, Judge, advance};
 pub(crate) use placement::{Placement, place};
 pub(crate) use separation::{BoxTree, Hint, bound_separation, cross, separation};
-pub(crate) use triangle::pierces;
+pub(crate) use triangle::{distance, pierces};
 
 #[cfg(test)]
 mod tests;

@@ -1,0 +1,325 @@
+//! The hostile families: scenes at the edges of what the search assumes, each with the times at which the construction
+//! puts its contact.
+use super::scene::{Body, Scene};
+use super::shapes::Shape;
+use crate::random::Random;
+use d2m::Solid;
+use d2m::motion::ConstantTwist;
+use glam::{DQuat, DVec3};
+
+/// A maker of scenes, and the name that a report shows.
+pub(super) type Family = (&'static str, fn(&mut Random) -> Scene);
+
+pub(super) const FAMILIES: [Family; 13] = [
+    ("steps", steps),
+    ("sheets", sheets),
+    ("parallel edges", parallel_edges),
+    ("overlapping parts", overlapping_parts),
+    ("coincident faces", coincident_faces),
+    ("cones", cones),
+    ("slivers", slivers),
+    ("far reference points", far_reference_points),
+    ("large times", large_times),
+    ("windows without length", windows_without_length),
+    ("tiny and huge windows", windows),
+    ("spinning together", spinning_together),
+    ("nearly still", nearly_still),
+];
+
+fn body(shape: Shape, x: DVec3, v: DVec3, w: DVec3) -> Body {
+    let motion = ConstantTwist::try_new(x, DQuat::IDENTITY, v, w).expect("finite");
+    Body { vertices: shape.vertices, triangles: shape.triangles, motion }
+}
+
+fn scene(a: Body, b: Body, planted: Vec<f64>) -> Scene {
+    Scene {
+        bodies: [a, b],
+        window: [0.0, 1.0],
+        solid: Solid::Filled,
+        tolerance: None,
+        min_separation: 0.0,
+        planted,
+    }
+}
+
+/// A length between 10^lo and 10^hi.
+fn decade(random: &mut Random, lo: f64, hi: f64) -> f64 {
+    10f64.powf(random.range(lo, hi))
+}
+
+/// The same motion told about another reference point of the body.
+fn about(body: Body, by: DVec3) -> Body {
+    let m = body.motion;
+    let motion = m.with_at(m.at() + by).with_position(m.position() + m.orientation().normalize() * by);
+    // A body that turns about another point needs that point's velocity: v + ω × by, which changes with time; so only
+    // bodies that do not turn, or turn about the direction of `by`, keep their motion.
+    Body { motion, ..body }
+}
+
+/// A block slides over a plate towards a step that is twice as high as the gap below it.
+fn steps(random: &mut Random) -> Scene {
+    let step = decade(random, -12.0, -3.0);
+    let plate = Shape::stepped_plate(step);
+    let half = DVec3::new(random.range(0.1, 0.6), random.range(0.1, 0.9), 0.25);
+    let block = Shape::cuboid(half, DVec3::ZERO);
+    let from = -1.5 + half.x;
+    let speed = random.range(1.0, 3.0);
+    let height = 0.25 + 0.5 * step;
+    // A slow spin about the vertical, with or without a common one.
+    let spin = if random.unit() < 0.5 { DVec3::ZERO } else { DVec3::Z * random.range(-20.0, 20.0) };
+    let own = if random.unit() < 0.5 { DVec3::ZERO } else { DVec3::Z * decade(random, -3.0, 0.0) };
+    let contact = (-half.x - from) / speed;
+    let mut a = body(plate, DVec3::ZERO, DVec3::ZERO, own);
+    let mut b = body(block, DVec3::new(from, 0.0, height), DVec3::X * speed, spin);
+    if random.unit() < 0.4 {
+        let along = DVec3::Z * decade(random, 0.0, 4.0);
+        a = about(a, along);
+        b = about(b, -along);
+    }
+    let later = [0.01, 0.1, 0.3].map(|more| (contact + more).min(1.0));
+    scene(a, b, [contact].into_iter().chain(later).chain([1.0]).collect())
+}
+
+/// Thin plates that pass, slide on, spin beside or cut each other at gaps of 1e-12 … 1e-3.
+fn sheets(random: &mut Random) -> Scene {
+    let thickness = decade(random, -9.0, -1.0);
+    let gap = decade(random, -12.0, -3.0) * if random.unit() < 0.5 { 1.0 } else { -1.0 };
+    let sheet = |w: f64, h: f64| Shape::cuboid(DVec3::new(w, h, 0.5 * thickness), DVec3::ZERO);
+    let lower = sheet(1.0, 1.0);
+    let upper = sheet(random.range(0.2, 1.0), random.range(0.2, 1.0));
+    let tilt = if random.unit() < 0.3 { decade(random, -12.0, -2.0) } else { 0.0 };
+    let height = thickness + gap;
+    let v = DVec3::new(
+        random.range(-2.0, 2.0),
+        random.range(-2.0, 2.0),
+        if random.unit() < 0.5 { 0.0 } else { -gap * random.range(0.0, 2.0) },
+    );
+    let spin = DVec3::Z * if random.unit() < 0.5 { 0.0 } else { decade(random, -2.0, 2.0) };
+    let mut b =
+        body(upper, DVec3::new(-v.x * 0.5, -v.y * 0.5, height) + DVec3::X * random.range(-2.5, 2.5), v, spin);
+    b.motion = b.motion.with_orientation(DQuat::from_xyzw(0.5 * tilt, 0.0, 0.0, 1.0));
+    scene(body(lower, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO), b, vec![0.25, 0.5, 0.75, 1.0])
+}
+
+/// Edges of wedges that cross at an angle of 1e-15 … 1e-3 and come together.
+fn parallel_edges(random: &mut Random) -> Scene {
+    let wedge = Shape::extruded(&[(0.0, 0.0), (-1.0, -1.0), (1.0, -1.0)], 1.0);
+    let angle = decade(random, -15.0, -3.0);
+    let aside = random.range(-0.5, 0.5) * if random.unit() < 0.5 { 1.0 } else { angle };
+    let start = decade(random, -6.0, 0.0);
+    let speed = start * random.range(1.0, 3.0);
+    let mut upper = body(
+        wedge.clone(),
+        DVec3::new(if random.unit() < 0.5 { 0.0 } else { aside * angle }, aside, start),
+        DVec3::Z * -speed,
+        if random.unit() < 0.5 { DVec3::ZERO } else { DVec3::Z * decade(random, -15.0, 1.0) },
+    );
+    // Upside down, then turned by the angle about the vertical.
+    let flip = DQuat::from_xyzw(0.0, 1.0, 0.0, 0.0);
+    let turn = DQuat::from_xyzw(0.0, 0.0, 0.5 * angle, 1.0);
+    upper.motion = upper.motion.with_orientation(turn * flip);
+    let contact = start / speed;
+    let lower = body(wedge, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+    scene(lower, upper, vec![contact * (1.0 + 1e-9), contact + 1e-6, contact + 0.01, 1.0])
+}
+
+/// A solid of several closed parts, some of which overlap, are turned inside out or repeated; a probe flies in or starts
+/// inside.
+fn overlapping_parts(random: &mut Random) -> Scene {
+    let mut union = Shape::default();
+    for _ in 0..2 + random.bits() % 3 {
+        let half = DVec3::new(random.range(0.2, 1.0), random.range(0.2, 1.0), random.range(0.2, 1.0));
+        let part = Shape::cuboid(half, random.direction() * random.range(0.0, 0.8));
+        let part = if random.unit() < 0.2 { part.inverted() } else { part };
+        union = union.with(&part);
+        if random.unit() < 0.15 {
+            union = union.with(&part);
+        }
+    }
+    let size = decade(random, -2.0, -0.5);
+    let mut probe = Shape::tetrahedron(random, size);
+    if random.unit() < 0.3 {
+        probe = probe.with(&Shape::tetrahedron(random, 0.05).moved(random.direction() * 2.0));
+    }
+    let inside = random.unit() < 0.6;
+    let away = if inside { random.range(0.0, 0.7) } else { 3.0 };
+    let x = random.direction() * away;
+    let v = if inside { random.direction() * 0.1 } else { x * -1.5 };
+    let spin = random.direction() * random.range(0.0, 3.0);
+    let a = body(union, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+    scene(a, body(probe, x, v, spin), vec![0.0, 0.3, 0.5, 0.65, 0.8])
+}
+
+/// Boxes whose faces, edges or corners coincide at the start, slide on each other or part.
+fn coincident_faces(random: &mut Random) -> Scene {
+    let quarter = |random: &mut Random| f64::from((random.bits() % 9) as u32) * 0.25 - 1.0;
+    let a = Shape::cuboid(DVec3::splat(0.5), DVec3::ZERO);
+    let b =
+        if random.unit() < 0.3 { a.clone() } else { Shape::cuboid(DVec3::new(0.25, 0.5, 1.0), DVec3::ZERO) };
+    let x = DVec3::new(quarter(random), quarter(random), quarter(random));
+    let v = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::new(0.0, 0.0, -0.5)]
+        [random.bits() as usize % 4];
+    let spin = if random.unit() < 0.6 { DVec3::ZERO } else { DVec3::Z * quarter(random) };
+    let lead = if random.unit() < 0.5 { v * 0.5 } else { DVec3::ZERO };
+    let mut scene = scene(
+        body(a, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO),
+        body(b, x - lead, v, spin),
+        vec![0.0, 0.25, 0.5, 0.5 + 1e-9, 0.75, 1.0],
+    );
+    if random.unit() < 0.3 {
+        scene.solid = Solid::Surface;
+    }
+    scene
+}
+
+/// Cones that meet apex to apex, apex to side, or pass closely.
+fn cones(random: &mut Random) -> Scene {
+    let sides = 3 + random.bits() as u32 % 60;
+    let cone = |random: &mut Random| Shape::cone(sides, decade(random, -3.0, 0.0), 1.0);
+    let (lower, upper) = (cone(random), cone(random));
+    let aside =
+        if random.unit() < 0.4 { DVec3::ZERO } else { random.direction() * decade(random, -12.0, -1.0) };
+    let start = decade(random, -3.0, 0.0);
+    let mut b =
+        body(upper, aside + DVec3::Z * start, DVec3::Z * (-2.0 * start), DVec3::Z * random.range(0.0, 9.0));
+    b.motion = b.motion.with_orientation(DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0));
+    let spin = if random.unit() < 0.5 { DVec3::ZERO } else { random.direction() * random.range(0.0, 2.0) };
+    scene(body(lower, DVec3::ZERO, DVec3::ZERO, spin), b, vec![0.5, 0.5 + 1e-7, 0.51, 0.6, 1.0])
+}
+
+/// Needles and blades of aspect up to 1e12 that are aimed at each other.
+fn slivers(random: &mut Random) -> Scene {
+    let sliver = |random: &mut Random| {
+        let aspect = decade(random, 0.0, 12.0);
+        Shape::sliver(random, aspect)
+    };
+    let (a, b) = (sliver(random), sliver(random));
+    let along = random.direction();
+    let aside = random.direction() * random.range(0.0, 0.5);
+    let spin = |random: &mut Random| {
+        random.direction() * if random.unit() < 0.4 { 0.0 } else { decade(random, -2.0, 2.0) }
+    };
+    let (spin_a, spin_b) = (spin(random), spin(random));
+    let a = body(a, DVec3::ZERO, DVec3::ZERO, spin_a);
+    let b = body(b, along * -2.0 + aside, along * 4.0, spin_b);
+    scene(a, b, vec![0.3, 0.4, 0.5, 0.6, 0.7])
+}
+
+/// The reference point 1e1 … 1e6 away, along the spin, or across it for bodies that only fly.
+fn far_reference_points(random: &mut Random) -> Scene {
+    let mut scene = generic(random);
+    for body in &mut scene.bodies {
+        let far = decade(random, 1.0, 6.0);
+        let w = body.motion.angular_velocity();
+        let along = if w == DVec3::ZERO { random.direction() } else { w.normalize() };
+        *body = about(body.clone(), body.motion.orientation().normalize().conjugate() * (along * far));
+    }
+    scene
+}
+
+/// Two random solids that are aimed at each other.
+fn generic(random: &mut Random) -> Scene {
+    let shape = |random: &mut Random| match random.bits() % 3 {
+        0 => Shape::tetrahedron(random, 1.0),
+        1 => Shape::cuboid(
+            DVec3::new(random.range(0.1, 1.0), random.range(0.1, 1.0), random.range(0.1, 1.0)),
+            DVec3::ZERO,
+        ),
+        _ => Shape::cone(3 + random.bits() as u32 % 9, 0.7, 1.0),
+    };
+    let (a, b) = (shape(random), shape(random));
+    let along = random.direction();
+    let aside = random.direction() * random.range(0.0, 1.5);
+    let spin = |random: &mut Random| {
+        if random.unit() < 0.3 { DVec3::ZERO } else { random.direction() * decade(random, -2.0, 2.0) }
+    };
+    let (spin_a, spin_b) = (spin(random), spin(random));
+    let speed = decade(random, 0.0, 3.0);
+    let a = body(a, DVec3::ZERO, DVec3::ZERO, spin_a);
+    let b = body(b, along * (-0.5 * speed) + aside, along * speed, spin_b);
+    scene(a, b, vec![0.4, 0.45, 0.5, 0.55, 0.6])
+}
+
+/// A window at 1e3 … 1e17, poses given there or at time 0.
+fn large_times(random: &mut Random) -> Scene {
+    let mut scene = generic(random);
+    let start = decade(random, 3.0, 17.0) * if random.unit() < 0.5 { 1.0 } else { -1.0 };
+    // As long as the clock allows: at least some units in the last place.
+    let least = (start.next_up() - start).abs();
+    let length = (least * decade(random, 0.0, 6.0)).max(decade(random, -2.0, 2.0));
+    let end = start + length;
+    let length = end - start;
+    for body in &mut scene.bodies {
+        let m = body.motion;
+        body.motion = m
+            .with_linear_velocity(m.linear_velocity() / length)
+            .with_angular_velocity(m.angular_velocity() / length)
+            .with_reference_time(start);
+        if random.unit() < 0.2 && start.abs() * m.angular_velocity().length() < 1e9 * length {
+            // The same velocities, and a pose at the origin of time: another motion, as good as this one.
+            let back = body.motion.linear_velocity() * start;
+            body.motion = body.motion.with_reference_time(0.0).with_position(body.motion.position() - back);
+        }
+    }
+    scene.window = [start, end];
+    scene.planted = scene.planted.iter().map(|t| start + t * length).collect();
+    scene
+}
+
+/// One instant, at a time at which the bodies may cross.
+fn windows_without_length(random: &mut Random) -> Scene {
+    let mut scene = generic(random);
+    let at = random.range(0.3, 0.7);
+    scene.window = [at, at];
+    scene.planted = vec![at];
+    scene
+}
+
+/// Windows of a few units in the last place, and of 1e3 … 1e9 with little speed or much spin.
+fn windows(random: &mut Random) -> Scene {
+    let mut scene = generic(random);
+    if random.unit() < 0.5 {
+        let at = random.range(0.3, 0.7);
+        let end = (0..random.bits() % 4).fold(at, |t, _| t.next_up())
+            + if random.unit() < 0.5 { 0.0 } else { decade(random, -15.0, -6.0) };
+        scene.window = [at, end];
+        scene.planted = vec![at, 0.5 * (at + end), end];
+    } else {
+        let long = decade(random, 3.0, 9.0);
+        for body in &mut scene.bodies {
+            let m = body.motion;
+            body.motion = m.with_linear_velocity(m.linear_velocity() / long);
+            if random.unit() < 0.8 {
+                body.motion = body.motion.with_angular_velocity(m.angular_velocity() / long);
+            }
+        }
+        scene.window = [0.0, long];
+        scene.planted = scene.planted.iter().map(|t| t * long).collect();
+    }
+    scene
+}
+
+/// Bodies that turn alike, fast, and drift towards each other.
+fn spinning_together(random: &mut Random) -> Scene {
+    let mut scene = generic(random);
+    let spin = random.direction() * decade(random, 0.0, 3.0);
+    let other = if random.unit() < 0.5 { spin } else { spin * (1.0 + decade(random, -12.0, -3.0)) };
+    let [a, b] = &mut scene.bodies;
+    a.motion = a.motion.with_angular_velocity(spin);
+    b.motion = b.motion.with_angular_velocity(other);
+    scene
+}
+
+/// Bodies at a small distance that hardly move.
+fn nearly_still(random: &mut Random) -> Scene {
+    let gap = decade(random, -9.0, -1.0);
+    let a = Shape::cuboid(DVec3::splat(0.5), DVec3::ZERO);
+    let b = Shape::cuboid(DVec3::new(0.5, 0.3, 0.5), DVec3::ZERO);
+    let v = random.direction() * (gap * decade(random, -3.0, 0.5));
+    let spin = random.direction() * (gap * decade(random, -3.0, 0.5));
+    scene(
+        body(a, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO),
+        body(b, DVec3::X * (1.0 + gap), v, spin),
+        vec![0.5, 0.9, 1.0],
+    )
+}

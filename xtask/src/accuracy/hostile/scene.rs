@@ -1,0 +1,160 @@
+//! A scene of the hostile families: two bodies, a window, options; asked, written down and read back.
+use d2m::bvh::Evidence;
+use d2m::motion::ConstantTwist;
+use d2m::{Budget, MeshTree, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact};
+use glam::{DQuat, DVec3};
+use serde_json::{Value, json};
+use std::time::Duration;
+
+/// A query that takes longer counts as undecided.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// A mesh and how it moves.
+#[derive(Clone, Debug)]
+pub(crate) struct Body {
+    pub(crate) vertices: Vec<DVec3>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    pub(crate) motion: ConstantTwist,
+}
+
+/// One query.
+#[derive(Clone, Debug)]
+pub(crate) struct Scene {
+    pub(crate) bodies: [Body; 2],
+    pub(crate) window: [f64; 2],
+    pub(crate) solid: Solid,
+    pub(crate) tolerance: Option<f64>,
+    pub(crate) min_separation: f64,
+    /// Times at which the construction puts a contact, or nearly: where the oracle tests first.
+    pub(crate) planted: Vec<f64>,
+}
+
+/// An answer, as far as it is judged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Answer {
+    Separated,
+    Contact {
+        lo: f64,
+        hi: f64,
+        separation: f64,
+        tolerance: f64,
+        evidence: Evidence,
+        starts_apart: bool,
+    },
+    Undecided {
+        clear_until: f64,
+    },
+    /// Bad input, by the library's own word.
+    Refused,
+}
+
+impl Answer {
+    /// The time before which it says that nothing touches.
+    pub(crate) fn free_until(&self, window: [f64; 2]) -> f64 {
+        match *self {
+            Self::Separated => window[1],
+            Self::Contact { lo, .. } => lo,
+            Self::Undecided { clear_until } => clear_until.clamp(window[0], window[1]),
+            Self::Refused => window[0],
+        }
+    }
+}
+
+impl Scene {
+    pub(crate) fn ask(&self) -> Answer {
+        let mesh =
+            |body: &Body| TriMesh::try_new(body.vertices.clone(), body.triangles.clone()).map(MeshTree::new);
+        let (Ok(a), Ok(b)) = (mesh(&self.bodies[0]), mesh(&self.bodies[1])) else { return Answer::Refused };
+        let Ok(window) = Window::try_new(self.window[0], self.window[1]) else { return Answer::Refused };
+        let mut options = QueryOptions::default()
+            .with_solid(self.solid)
+            .with_min_separation(self.min_separation)
+            .with_budget(Budget::UNLIMITED.with_wall_clock(PATIENCE));
+        if let Some(tolerance) = self.tolerance {
+            options = options.with_tolerance(tolerance);
+        }
+        let [a, b] = [(&a, &self.bodies[0].motion), (&b, &self.bodies[1].motion)]
+            .map(|(tree, motion)| Moving::new(tree, motion));
+        match time_of_contact(a, b, window, &options) {
+            Err(_) => Answer::Refused,
+            Ok(TimeOfContact::Separated) => Answer::Separated,
+            Ok(TimeOfContact::Undecided { clear_until }) => Answer::Undecided { clear_until },
+            Ok(TimeOfContact::Contact(c)) => Answer::Contact {
+                lo: c.time_lo,
+                hi: c.time_hi,
+                separation: c.separation,
+                tolerance: c.tolerance,
+                evidence: c.evidence,
+                starts_apart: c.start == d2m::bvh::StartState::Apart,
+            },
+        }
+    }
+
+    /// The larger extent of the two meshes.
+    pub(crate) fn size(&self) -> f64 {
+        let extent = |body: &Body| {
+            let (lo, hi) = body
+                .vertices
+                .iter()
+                .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
+            (hi - lo).max_element()
+        };
+        extent(&self.bodies[0]).max(extent(&self.bodies[1]))
+    }
+
+    /// Everything that is needed to ask again, exactly: numbers as the bits of a double beside their decimals.
+    pub(crate) fn to_json(&self) -> Value {
+        let body = |b: &Body| {
+            let m = &b.motion;
+            json!({
+                "vertices": b.vertices.iter().map(DVec3::to_array).collect::<Vec<_>>(),
+                "triangles": b.triangles,
+                "x": m.position().to_array(),
+                "q": [m.orientation().w, m.orientation().x, m.orientation().y, m.orientation().z],
+                "v": m.linear_velocity().to_array(),
+                "w": m.angular_velocity().to_array(),
+                "at": m.at().to_array(),
+                "t": m.reference_time(),
+            })
+        };
+        json!({
+            "bodies": [body(&self.bodies[0]), body(&self.bodies[1])],
+            "window": self.window,
+            "solid": self.solid == Solid::Filled,
+            "tolerance": self.tolerance,
+            "min_separation": self.min_separation,
+            "planted": self.planted,
+        })
+    }
+
+    /// What [`Self::to_json`] wrote.
+    pub(crate) fn from_json(value: &Value) -> Option<Self> {
+        let numbers = |v: &Value| -> Option<Vec<f64>> { v.as_array()?.iter().map(Value::as_f64).collect() };
+        let vec3 = |v: &Value| numbers(v).filter(|n| n.len() == 3).map(|n| DVec3::new(n[0], n[1], n[2]));
+        let body = |v: &Value| -> Option<Body> {
+            let vertices = v["vertices"].as_array()?.iter().map(vec3).collect::<Option<_>>()?;
+            let triangle = |t: &Value| -> Option<[u32; 3]> {
+                let ids =
+                    t.as_array()?.iter().map(|i| i.as_u64().map(|i| i as u32)).collect::<Option<Vec<_>>>()?;
+                ids.try_into().ok()
+            };
+            let triangles = v["triangles"].as_array()?.iter().map(triangle).collect::<Option<_>>()?;
+            let q = numbers(&v["q"]).filter(|q| q.len() == 4)?;
+            let rotation = DQuat::from_xyzw(q[1], q[2], q[3], q[0]);
+            let motion =
+                ConstantTwist::try_new(vec3(&v["x"])?, rotation, vec3(&v["v"])?, vec3(&v["w"])?).ok()?;
+            let motion = motion.try_with_at(vec3(&v["at"])?).ok()?;
+            let motion = motion.try_with_reference_time(v["t"].as_f64()?).ok()?;
+            Some(Body { vertices, triangles, motion })
+        };
+        let window = numbers(&value["window"]).filter(|w| w.len() == 2)?;
+        Some(Self {
+            bodies: [body(&value["bodies"][0])?, body(&value["bodies"][1])?],
+            window: [window[0], window[1]],
+            solid: if value["solid"].as_bool()? { Solid::Filled } else { Solid::Surface },
+            tolerance: value["tolerance"].as_f64(),
+            min_separation: value["min_separation"].as_f64()?,
+            planted: numbers(&value["planted"])?,
+        })
+    }
+}
