@@ -10,8 +10,9 @@ use glam::{DQuat, DVec3};
 /// A maker of scenes, and the name that a report shows.
 pub(super) type Family = (&'static str, fn(&mut Random) -> Scene);
 
-pub(super) const FAMILIES: [Family; 13] = [
+pub(super) const FAMILIES: [Family; 14] = [
     ("steps", steps),
+    ("fine steps", fine_steps),
     ("sheets", sheets),
     ("parallel edges", parallel_edges),
     ("overlapping parts", overlapping_parts),
@@ -78,6 +79,33 @@ fn steps(random: &mut Random) -> Scene {
     }
     let later = [0.01, 0.1, 0.3].map(|more| (contact + more).min(1.0));
     scene(a, b, [contact].into_iter().chain(later).chain([1.0]).collect())
+}
+
+/// A step under a sliding block in meshes of a thousand triangles each, turned anyhow in their own coordinates, with
+/// reference points up to 100 away: long closeness without contact, then a contact.
+fn fine_steps(random: &mut Random) -> Scene {
+    let step = decade(random, -10.0, -5.0);
+    let turn = random.rotation();
+    let plate = Shape::stepped_plate(step).refined(3).turned(turn);
+    let half = DVec3::new(random.range(0.1, 0.6), random.range(0.1, 0.9), 0.25);
+    let block = Shape::cuboid(half, DVec3::ZERO).refined(3).turned(turn);
+    let from = -1.5 + half.x;
+    let speed = random.range(1.0, 3.0);
+    let contact = (-half.x - from) / speed;
+    let place = turn * DVec3::new(from, 0.0, 0.25 + 0.5 * step);
+    let mut a = body(plate, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+    let mut b = body(block, place, turn * DVec3::X * speed, DVec3::ZERO);
+    if random.unit() < 0.6 {
+        a = about(a, random.direction() * decade(random, -1.0, 2.0));
+    }
+    if random.unit() < 0.3 {
+        b = about(b, random.direction() * decade(random, -1.0, 2.0));
+    }
+    let mut scene = scene(a, b, vec![contact, (contact + 0.05).min(1.0), (contact + 0.4).min(1.0), 1.0]);
+    if random.unit() < 0.5 {
+        scene.solid = Solid::Surface;
+    }
+    scene
 }
 
 /// Thin plates that pass, slide on, spin beside or cut each other at gaps of 1e-12 … 1e-3.

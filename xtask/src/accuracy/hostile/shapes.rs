@@ -1,6 +1,7 @@
 //! Small closed meshes of the hostile families.
 use crate::random::Random;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
+use std::collections::BTreeMap;
 
 /// Vertices and triangles, oriented outwards.
 #[derive(Clone, Debug, Default)]
@@ -89,6 +90,34 @@ impl Shape {
         let first = self.vertices.len() as u32;
         self.vertices.extend(&other.vertices);
         self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| i + first)));
+        self
+    }
+
+    /// Every triangle cut in four, so many times: the same surface with more to search.
+    pub(super) fn refined(mut self, times: u32) -> Self {
+        for _ in 0..times {
+            let mut middles = BTreeMap::new();
+            let mut triangles = Vec::with_capacity(4 * self.triangles.len());
+            for t in &self.triangles {
+                let mut middle = |i: u32, j: u32| {
+                    *middles.entry((i.min(j), i.max(j))).or_insert_with(|| {
+                        self.vertices.push(self.vertices[i as usize].midpoint(self.vertices[j as usize]));
+                        self.vertices.len() as u32 - 1
+                    })
+                };
+                let [p, q, r] = [middle(t[0], t[1]), middle(t[1], t[2]), middle(t[2], t[0])];
+                triangles.extend([[t[0], p, r], [p, t[1], q], [r, q, t[2]], [p, q, r]]);
+            }
+            self.triangles = triangles;
+        }
+        self
+    }
+
+    /// Turned in the mesh's own coordinates, up to rounding.
+    pub(super) fn turned(mut self, turn: DQuat) -> Self {
+        for p in &mut self.vertices {
+            *p = turn * *p;
+        }
         self
     }
 
