@@ -155,12 +155,14 @@ fn parallel_edges(random: &mut Random) -> Scene {
 /// inside.
 fn overlapping_parts(random: &mut Random) -> Scene {
     let mut union = Shape::default();
+    // Repeated triangles count once, which could leave nothing of a part that is turned inside out: never both.
+    let repeats = random.unit() < 0.4;
     for _ in 0..2 + random.bits() % 3 {
         let half = DVec3::new(random.range(0.2, 1.0), random.range(0.2, 1.0), random.range(0.2, 1.0));
         let part = Shape::cuboid(half, random.direction() * random.range(0.0, 0.8));
-        let part = if random.unit() < 0.2 { part.inverted() } else { part };
+        let part = if !repeats && random.unit() < 0.3 { part.inverted() } else { part };
         union = union.with(&part);
-        if random.unit() < 0.15 {
+        if repeats && random.unit() < 0.5 {
             union = union.with(&part);
         }
     }
