@@ -9,11 +9,25 @@ use glam::DVec3;
 /// An edge crosses a triangle if its ends are on different sides of the triangle's plane and the line through the edge
 /// passes the three sides of the triangle on the same side: five signs of 3 × 3 determinants, enclosed in intervals
 /// over all positions of the corners.
+///
+/// Plain arithmetic chooses the edges that are worth the proof: those whose ends seem to be on different sides.
 pub(super) fn proven_crossing(a: &[DVec3; 3], b: &[DVec3; 3], error: f64) -> bool {
     let blur = Interval::new(-error, error);
-    let wide = |t: &[DVec3; 3]| t.map(|p| IntervalVec3::point(p) + IntervalVec3::new(blur, blur, blur));
-    let (a, b) = (wide(a), wide(b));
-    (0..3).any(|k| crosses([a[k], a[(k + 1) % 3]], &b) || crosses([b[k], b[(k + 1) % 3]], &a))
+    let wide = |p: DVec3| IntervalVec3::point(p) + IntervalVec3::new(blur, blur, blur);
+    let pierces = |edges: &[DVec3; 3], face: &[DVec3; 3]| {
+        let sides = seeming_sides(edges, face);
+        (0..3).any(|k| {
+            let next = (k + 1) % 3;
+            sides[k] * sides[next] < 0.0 && crosses([edges[k], edges[next]].map(wide), &face.map(wide))
+        })
+    };
+    pierces(a, b) || pierces(b, a)
+}
+
+/// Signs of the volumes of a face with three points, up to rounding: which side of its plane each seems to be on.
+fn seeming_sides(points: &[DVec3; 3], face: &[DVec3; 3]) -> [f64; 3] {
+    let normal = (face[1] - face[0]).cross(face[2] - face[0]);
+    points.map(|p| normal.dot(p - face[0]).signum())
 }
 
 /// Does the edge certainly pass through the triangle?
