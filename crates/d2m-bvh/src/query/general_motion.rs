@@ -6,6 +6,7 @@
 //! like the square of the span, until D is a small part of the tolerance. docs/theory/motions.md, section 3.
 
 use super::fitted_twist::FittedTwists;
+use super::report::MOST_LEFT;
 use super::time_of_contact::{last_search_counts, time_of_contact};
 use crate::{
     Budget, Contact, Evidence, Mode, Moving, QueryError, QueryOptions, Solid, StartState, TimeOfContact,
@@ -365,7 +366,19 @@ impl<'a> Advance<'a> {
             evidence => evidence,
         };
         let closing_speed = (speed_a - speed_b).dot(contact.normal);
-        self.with_start(Contact { evidence, point_a, point_b, closing_speed, ..contact })
+        let contact = self.with_start(Contact { evidence, point_a, point_b, closing_speed, ..contact });
+        self.with_what_time_leaves(contact)
+    }
+
+    /// Where numbers for time are too far apart for the tolerance, more is left at `time_lo` than the search left on its
+    /// own clock: then the tolerance is what is left there, as for constant twists. A larger one takes no promise back.
+    fn with_what_time_leaves(&self, contact: Contact) -> Contact {
+        let left = self.room_at(&contact);
+        let covered = left.is_nan() || left <= MOST_LEFT * contact.tolerance;
+        if covered || contact.start != StartState::Apart || self.options.mode == Mode::Capoeira {
+            return contact;
+        }
+        Contact { separation: left + self.options.min_separation, tolerance: left, ..contact }
     }
 
     /// How the bodies stood at the start of the whole window, not of a span.

@@ -76,7 +76,7 @@ impl Task for Report<'_> {
 }
 
 /// What a search leaves at most, in tolerances.
-const MOST_LEFT: f64 = 3.3;
+pub(super) const MOST_LEFT: f64 = 3.3;
 
 /// Where time cannot tell the tolerance apart, more of it is left: then the tolerance is what is left.
 fn cover_what_is_left(contact: &mut Contact, scene: &Scene<'_>) {

@@ -75,6 +75,10 @@ impl Search<'_> {
         let known = f64::from(least) * state.step;
         if state.found.is_none() {
             self.dive::<L>(state, batch.items()[0]);
+            // Nothing that waits can be earlier than what was found, or matters any more.
+            if least >= state.limit {
+                return;
+            }
         }
         let most = VERTICES_A_PAIR * waiting.max(BATCH * batches as usize);
         let Some(group) = self.group(state, batch.items(), most) else { return };
