@@ -84,9 +84,9 @@ pub(crate) fn twin(scene: &Scene, random: &mut Random) -> (Scene, Change) {
             let [t0, t1] = out.window;
             let cut = t0 + (t1 - t0) * random.unit();
             if random.unit() < 0.5 {
-                out.window[0] = cut
+                out.window[0] = cut;
             } else {
-                out.window[1] = cut
+                out.window[1] = cut;
             }
             Change { keeps_first: false, ..Change::of("window cut") }
         }
