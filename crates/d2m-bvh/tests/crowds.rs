@@ -11,7 +11,7 @@ use glam::DVec3;
 mod random;
 use random::Random;
 
-/// Node tests and looks at triangles of one query, at most.
+/// Node tests and tests of triangle pairs of one query, at most.
 const MOST_WORK: u64 = 200_000;
 
 fn tree(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> MeshTree {
@@ -30,7 +30,7 @@ fn cone(n: u32, up: f64) -> MeshTree {
     tree(vertices, triangles.collect())
 }
 
-/// Slivers from the origin in all directions of a half-space; their ends stray from it by up to a thousandth.
+/// Slivers from the origin in all directions of a half-space; their ends deviate from it by up to a thousandth.
 fn spikes(random: &mut Random, n: u32, up: f64) -> MeshTree {
     let (mut vertices, mut triangles) = (vec![DVec3::ZERO], Vec::new());
     for _ in 0..n {

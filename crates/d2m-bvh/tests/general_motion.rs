@@ -54,7 +54,7 @@ fn query(
         .unwrap()
 }
 
-/// Certified distance of the bodies at a time, told near `origin` so that the judge's own rounding does not matter.
+/// Certified distance of the bodies at a time, expressed near `origin` so that the judge's own rounding does not matter.
 fn distance_at(trees: [&MeshTree; 2], motions: [&dyn RigidMotion; 2], t: f64, origin: DVec3) -> (f64, f64) {
     let posed = [0, 1].map(|k| {
         let state = motions[k].enclose_state_about(t, origin);
@@ -279,7 +279,7 @@ fn contacts_at_joints_are_found_once() {
             let rest = Window::try_new(0.3, 1.0).unwrap();
             let later = query([&a, &b], [&path, &ConstantTwist::REST], rest, &options);
             assert_eq!(later.contact().is_some_and(|c| c.time_lo == 0.3), meets);
-            // The same joint in a chain, whose pieces are not told as twists.
+            // The same joint in a chain, whose pieces are not stated as twists.
             let x = JointValue::try_pieces(
                 vec![0.0, 0.3, 1.0],
                 vec![vec![4.0, (touch - 4.0) / 0.3], vec![touch, (3.0 - touch) / 0.7]],

@@ -8,7 +8,7 @@ use d2m_motion::{ConstantTwist, Pose, RigidMotion, Spline, SplineDegree};
 use glam::{DQuat, DVec3, dvec3};
 
 /// From one double for time to the next the bodies move by many tolerances: what is left at `time_lo` is covered by the
-/// tolerance that is told.
+/// tolerance that is reported.
 #[test]
 fn what_is_left_is_covered() {
     let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];

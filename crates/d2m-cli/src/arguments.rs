@@ -172,7 +172,7 @@ pub(crate) struct PosedArguments {
     /// Answer as one JSON object
     #[arg(long)]
     pub(crate) json: bool,
-    /// Exit with 10 if the bodies share a point (or cannot be told from bodies that do), with 11 if they are apart
+    /// Exit with 10 if the bodies share a point (or cannot be distinguished from bodies that do), with 11 if they are apart
     #[arg(long)]
     pub(crate) exit_status: bool,
 }

@@ -59,7 +59,7 @@ pub(crate) struct Pair {
     pub(crate) solid: Solid,
     /// Distance at which the bodies count as touching.
     pub(crate) min_separation: f64,
-    /// The tolerance that was asked for.
+    /// The tolerance that the user gave.
     pub(crate) tolerance: Option<f64>,
     pub(crate) preparation: Duration,
     options: QueryOptions,

@@ -13,7 +13,7 @@ pub(crate) enum Outcome {
 }
 
 impl Outcome {
-    /// The answer itself if the user asked for it.
+    /// The answer itself if the user wants it.
     pub(crate) fn asked(self, exit_status: bool) -> Self {
         if exit_status { self } else { Self::Answered }
     }

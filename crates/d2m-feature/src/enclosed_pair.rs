@@ -84,7 +84,7 @@ impl<'a> EnclosedPairMotion<'a> {
         pair
     }
 
-    /// Both motions from a time to the first joint of either; `None` if that cannot be told in these units, or where a
+    /// Both motions from a time to the first joint of either; `None` if that cannot be expressed in these units, or where a
     /// motion is not defined.
     fn try_piece(&self, from: f64, units: &Units) -> Option<SmoothPiece<'a>> {
         let mut end = self.end;

@@ -1,4 +1,4 @@
-//! A smooth piece of any motion, told in other units of length and time.
+//! A smooth piece of any motion, expressed in other units of length and time.
 use crate::units::{Units, scaled};
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
@@ -25,7 +25,7 @@ enum Source<'a> {
 }
 
 impl<'a> MotionInUnits<'a> {
-    /// `None` where a number overflows or no time could be told exactly.
+    /// `None` where a number overflows or no time could be expressed exactly.
     pub(crate) fn try_new(
         motion: &'a dyn RigidMotion,
         units: &Units,

@@ -8,7 +8,7 @@ use glam::DVec3;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct MotionFault {
-    /// The span of time that was asked for.
+    /// The span of time that was checked.
     pub span: (f64, f64),
     /// The method that does not keep its promise, and what of it.
     pub what: &'static str,
@@ -35,7 +35,7 @@ impl fmt::Display for MotionFault {
 /// At `samples` times and over spans of several lengths from each: the pose as computed lies in its enclosure, differences
 /// of poses and of twists over a span lie in what the enclosures of twist and twist rate allow, enclosures over a part lie
 /// inside those over the whole, the certified state agrees, the followed point stays the same, and `smooth_until` lies
-/// ahead. An empty answer proves nothing; a fault that is told is one (up to a rounding of 1e-9 of the values).
+/// ahead. An empty answer proves nothing; a fault that is reported is one (up to a rounding of 1e-9 of the values).
 ///
 /// ```
 /// use d2m_motion::{ConstantTwist, check_motion};

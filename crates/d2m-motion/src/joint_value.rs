@@ -189,7 +189,7 @@ impl JointValue {
         // No span at all: not a number, of which nothing is known.
         let middle = Interval::try_new(lo, hi).map_or(f64::NAN, Interval::mid);
         let (s, lost) = two_sum(middle, -origin);
-        // The middle as told from the piece's start is off by what the difference lost.
+        // The middle relative to the piece's start is off by what the difference lost.
         let half = if lo < hi { (hi - middle).max(middle - lo) * (1.0 + 2.0 * f64::EPSILON) } else { 0.0 };
         let r = up(half + lost.abs());
         let mut few = [(DoubleDouble::ZERO, 0.0); 8];

@@ -188,7 +188,7 @@ impl Keyframes {
         self.times.partition_point(|&time| time < t).saturating_sub(1).min(self.motions.len() - 1)
     }
 
-    /// The point that all spans are told by.
+    /// The reference point of all spans.
     fn at(&self) -> DVec3 {
         self.motions[0].at()
     }

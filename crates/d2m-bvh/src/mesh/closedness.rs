@@ -19,7 +19,7 @@ pub(crate) struct Closedness {
 impl Closedness {
     pub(crate) fn of(mesh: &TriMesh) -> Self {
         let first = first_at_position(mesh.vertices());
-        // An oriented manifold closes and repeats no triangle. Anything else is looked at in full.
+        // An oriented manifold closes and repeats no triangle. Anything else is examined in full.
         let (watertight, oriented, repeated) = if is_oriented_manifold(mesh, &first) {
             (true, true, Vec::new())
         } else {

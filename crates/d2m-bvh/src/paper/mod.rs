@@ -26,7 +26,7 @@ use d2m_interval::Interval;
 use start::{Start, classify_start};
 use traverse::Search;
 
-/// δ where none is asked for, in units of the larger radius: the documented default.
+/// δ where the options give none, in units of the larger radius: the documented default.
 const DEFAULT_TOLERANCE: f64 = 1e-10;
 
 /// A body with its sphere tree, and how it moves.

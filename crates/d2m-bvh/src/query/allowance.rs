@@ -1,7 +1,7 @@
 use crate::Budget;
 use std::time::Instant;
 
-/// Steps between two looks at the clock: some microseconds of work.
+/// Steps between two readings of the clock: some microseconds of work.
 const STEPS_A_LOOK: u32 = 64;
 
 /// What is left of the [`Budget`] of a query for what it does besides its search: containment, the state at the start.

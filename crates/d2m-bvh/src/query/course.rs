@@ -20,7 +20,7 @@ const COURSE_ERROR: f64 = 4096.0 * UNIT_F64;
 pub(super) struct Course {
     /// Which trees.
     stamps: [Stamp; 2],
-    /// What times and lengths are told in.
+    /// The units of times and lengths.
     units: Units,
     /// Length of the window.
     length: f64,

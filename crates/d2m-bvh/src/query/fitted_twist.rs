@@ -10,7 +10,7 @@ use glam::DVec3;
 /// The constant twists that have the states of two motions at one time of a span.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FittedTwists {
-    /// The two motions over the fitted clock, their positions told from the origin that was asked for.
+    /// The two motions over the fitted clock, their positions relative to the origin that was given.
     pub(super) twists: [ConstantTwist; 2],
     /// The time by which they go.
     pub(super) clock: FittedClock,
@@ -20,7 +20,7 @@ pub(super) struct FittedTwists {
     pub(super) floor: f64,
 }
 
-/// One motion, told by one body point.
+/// One motion, expressed by one body point.
 struct Fit {
     twist: ConstantTwist,
     state: CertifiedState,
@@ -38,7 +38,7 @@ const POLE_WITHIN: f64 = 16.0;
 impl FittedTwists {
     /// Fits in the middle of the span; `None` where the motions' enclosures know too little, whatever the span.
     ///
-    /// Each motion is told by the point that it follows and by the one that accelerates least; what gives the smaller
+    /// Each motion is expressed by its reference point and by the one that accelerates least; what gives the smaller
     /// deviation is taken.
     pub(super) fn new(bodies: &[Moving<'_>; 2], span: (f64, f64), origin: DVec3) -> Option<Self> {
         let (from, to) = span;

@@ -1,7 +1,7 @@
 //! First contact of motions whose twists are not constant.
 //!
 //! Spans of time on which both twists are constant are searched as they are. On any other span two constant twists are
-//! fitted, whose distance differs by at most a proven D from that of the bodies, and the same search is asked for a
+//! fitted, whose distance differs by at most a proven D from that of the bodies, and the same search is given a
 //! distance that is larger by D: what it proves free is free. Where it finds a contact the span is shortened, with D
 //! like the square of the span, until D is a small part of the tolerance. docs/theory/motions.md, section 3.
 
@@ -23,7 +23,7 @@ const LEAST_PART: f64 = 1.0 / 1024.0;
 
 /// δ as a part of the larger body's radius, if none is given: that of constant twists.
 const DEFAULT_TOLERANCE: f64 = 1e-10;
-/// The deviation is a small part of the tolerance when it is at most this part: the search is asked for a tolerance
+/// The deviation is a small part of the tolerance when it is at most this part: the search is given a tolerance
 /// that is smaller by twice the deviation, so for at least three quarters.
 const SMALL_PART: f64 = 0.125;
 /// Part of the room between the bodies that a deviation may take.
@@ -155,7 +155,7 @@ impl<'a> Advance<'a> {
     }
 
     /// Options for a span: bodies that are free of each other stay so until they touch, so that the inside of the one is
-    /// looked at for the other only at the start, and where pieces of a motion may miss each other by rounding.
+    /// tested for the other only at the start, and where pieces of a motion may miss each other by rounding.
     fn options_of_span(&self) -> QueryOptions {
         let starts = self.now == self.window.start() || self.begins_a_piece();
         let solid = if starts { self.options.solid } else { Solid::Surface };
@@ -348,7 +348,7 @@ impl<'a> Advance<'a> {
         if floor <= ROUNDINGS * size.sum::<f64>() { 2.0 * floor / SMALL_PART } else { 0.0 }
     }
 
-    /// Data of the fitted motions told by the true ones: points by their weights, speeds by the true twists. That the
+    /// Data of the fitted motions expressed by the true ones: points by their weights, speeds by the true twists. That the
     /// fitted motions' features cross says of the true ones only that they are near.
     fn true_contact(&self, contact: Contact) -> Contact {
         let at = |k: usize, triangle: u32, weights: [f64; 3]| {

@@ -55,7 +55,7 @@ pub struct Budget {
 impl Budget {
     /// The cap on node tests that holds without any budget: about a minute of work.
     pub const HARD_NODE_TESTS: u64 = 1 << 30;
-    /// The cap on pairs of boxes that wait in the queue of a search, besides some 2¹⁵ between two looks at it. A
+    /// The cap on pairs of boxes that wait in the queue of a search, besides some 2¹⁵ between two checks of it. A
     /// pair takes 16 bytes; with room that is kept for more, a search stays below 100 MB.
     pub const HARD_QUEUED_PAIRS: usize = 1 << 20;
     /// No limit but the hard caps.

@@ -79,7 +79,7 @@ pub(crate) fn given_relative_position(a: &LocalMotion, b: &LocalMotion) -> [Pair
         let apart = two_sum(a.position()[k], -b.position()[k]);
         let moved = [(a, 1.0), (b, -1.0)].map(|(motion, sign)| {
             let elapsed = motion.elapsed_at_start();
-            // Most motions are told from the start.
+            // Most motions state their pose at the start.
             if elapsed.0 == 0.0 { Pair(0.0, 0.0) } else { elapsed.times(sign * motion.linear_velocity()[k]) }
         });
         apart.add(moved[0].add(moved[1]))

@@ -38,7 +38,7 @@ const VERTICES_A_TEST: u64 = 16;
 /// Part of the tolerance above the wanted separation that a plane leaves at least.
 const PLANE_ROOM: f64 = 0.25;
 
-/// When a search looks at its crowd next.
+/// When a search examines its crowd next.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patience {
     pairs: usize,
@@ -324,7 +324,7 @@ mod tests {
         MeshTree::new(TriMesh::try_new(vertices, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).unwrap())
     }
 
-    /// Bodies that a plane parts are further apart than the level at all times of the span; not if the gap is looked at
+    /// Bodies that a plane parts are further apart than the level at all times of the span; not if the gap is measured
     /// at one end only, nor without what accelerations take.
     #[test]
     fn what_a_plane_parts_stays_apart() {

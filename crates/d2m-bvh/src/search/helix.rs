@@ -134,7 +134,7 @@ struct Walk<'s> {
 }
 
 /// The offset (≥ `start`, ≤ the end) up to which the pictures stay further apart than the level,
-/// and the work in pairs that were looked at; none when the motion is no common screw, when less than `gain` would
+/// and the work in pairs that were tested; none when the motion is no common screw, when less than `gain` would
 /// be won, or when more than `most` pairs are needed. `suspects`: triangles that may be the reason for that, so are
 /// looked at first.
 pub(crate) fn screw_clear_until(

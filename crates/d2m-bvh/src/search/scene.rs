@@ -351,7 +351,7 @@ pub(crate) struct Scratch {
     /// The pairs that a batch leaves.
     pub(crate) fresh: Vec<Item>,
     pub(crate) counts: SearchCounts,
-    /// The triangles that were looked at last.
+    /// The triangles that were tested last.
     pub(crate) last_looked_at: [u32; 2],
     /// For windows that are searched ahead by other threads.
     #[cfg(feature = "rayon")]

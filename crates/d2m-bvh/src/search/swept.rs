@@ -287,7 +287,7 @@ struct Sweep<'a> {
 }
 
 /// The offset (≥ `start`, ≤ the end) up to which the sweeps stay further apart than the level, and
-/// the number of pairs that were looked at; none when they are not apart for at least `gain`, or when more than `most`
+/// the number of pairs that were tested; none when they are not apart for at least `gain`, or when more than `most`
 /// pairs are needed. `interest`: a direction that may separate bodies at rest. `suspects`: triangles that may be the reason for
 /// winning nothing, so are looked at first.
 pub(crate) fn swept_clear_until(
@@ -329,7 +329,7 @@ pub(super) fn after(start: f64, clear: f64, length: f64, end: f64) -> Option<f64
 }
 
 impl Sweep<'_> {
-    /// The least of the times for which two triangles are apart, and how many pairs were looked at.
+    /// The least of the times for which two triangles are apart, and how many pairs were tested.
     fn earliest(&self, gain: f64, most: u64) -> (Option<f64>, u64) {
         let (mut clear, mut pairs) = (self.length, 0);
         let mut stack = vec![(0u32, 0u32)];

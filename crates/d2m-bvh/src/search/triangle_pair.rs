@@ -323,7 +323,7 @@ const SHORTEST: f64 = 1e-30;
 const LEAST_RATE: f64 = 1e-140;
 /// Stands for "at no time": longer than every window, and finite, so that no product with a rate of zero is undefined.
 const NEVER: f64 = 1e300;
-/// Features closer than so many stopping distances are looked at themselves.
+/// Features closer than so many stopping distances are tested themselves.
 const FAR_STOPS: f64 = 16.0;
 /// The discriminant v² − 2ag errs by at most 2·2⁻⁵³(v² + |2ag|); twice that and some room.
 const DISCRIMINANT_ERROR: f64 = 8.0 * UNIT_F64;

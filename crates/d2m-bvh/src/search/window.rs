@@ -23,9 +23,9 @@ use std::time::Instant;
 
 /// A pair that is followed out of turn is left after so many steps; ordinary contacts take fewer than ten.
 const MOST_STEPS_ALONE: u32 = 64;
-/// Batches between two looks at how many pairs wait, for a plane between them.
+/// Batches between two counts of the pairs that wait, for a plane between them.
 const CROWD_CHECK: u32 = 32;
-/// Batches between two looks at the length of the queue: it grows by less than 2¹⁵ items between them.
+/// Batches between two checks of the queue's length: it grows by less than 2¹⁵ items between them.
 const MEMORY_CHECK: u32 = 128;
 
 /// Least unit of time of a window, for those of no length: nothing moves by more than a rounding in it.

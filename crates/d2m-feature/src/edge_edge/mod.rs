@@ -39,7 +39,7 @@ const PATIENCE: f64 = 0.045;
 /// this one, 2⁻⁶⁰ of what is noticed. Products of a rounding (at least 2⁻²⁵⁰ in the units of a query) with two lengths then
 /// stay far above what underflows.
 const SHORTEST: f64 = f64::from_bits((1023 - 60) << 52);
-/// Part of the latest time of a piece to which a crossing's bracket may shrink when no shorter one can be told: some four
+/// Part of the latest time of a piece to which a crossing's bracket may shrink when no shorter one can be proven: some four
 /// units in the last place.
 const FEW_UNITS: f64 = 8.0 * UNIT;
 

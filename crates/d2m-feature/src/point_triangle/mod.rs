@@ -28,7 +28,7 @@ const NEARBY: f64 = 1.0;
 /// Part of the feature's size that a remainder may reach before a piece is worth an evaluation; tuned on the random
 /// families (far, near, hit, graze), where 0.5 to 1 differ by less than 3 %.
 const PATIENCE: f64 = 0.12;
-/// Part of the latest time of a piece to which a crossing's bracket may shrink when no shorter one can be told: some four
+/// Part of the latest time of a piece to which a crossing's bracket may shrink when no shorter one can be proven: some four
 /// units in the last place.
 const FEW_UNITS: f64 = 8.0 * UNIT;
 /// What the support of a side normal errs by and the side normals are tilted by, as a part of the extent: each is within

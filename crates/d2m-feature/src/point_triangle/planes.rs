@@ -4,7 +4,7 @@ use crate::rounding::length_up;
 use d2m_root::Band;
 use glam::DVec3;
 
-/// Height over the longest side, as a part of it, from which a triangle's prism is told from rounding: side normals are
+/// Height over the longest side, as a part of it, from which a triangle's prism is distinguished from rounding: side normals are
 /// tilted by up to some 10·2⁻⁵³ of 1/height (docs/theory/features.md, "Existence"), 10⁻¹⁰ here.
 const THICK: f64 = 1e-5;
 /// Size of a triangle as a part of its distance from the origin from which the same is true of its vertices' rounding.
