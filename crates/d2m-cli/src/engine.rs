@@ -144,7 +144,7 @@ impl Pair {
                 let [x, v, w] = [pose.translation, twist.linear, twist.angular].map(triple);
                 let time = window.start();
                 let reason = format!(
-                    "x = {x}, v = {v}, w = {w} at the time {time:?}: over the window it is not finite, turns by 2^40 radians, goes too far, or is too slow to be told from rest (below 1e-140) and moves all the same"
+                    "x = {x}, v = {v}, w = {w} at the time {time:?}: over the window it is not finite, turns by 2^40 radians, goes too far, or spins so slowly that the speed is lost to underflow"
                 );
                 Failure::at(place, reason)
             }
