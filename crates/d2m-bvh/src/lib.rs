@@ -1,27 +1,46 @@
 #![doc = include_str!("../README.md")]
 
+mod allowance;
+mod contact;
 mod enclosing_sphere;
+mod error;
+mod evidence;
+mod lanes;
 mod mesh;
+mod moving;
+mod options;
+mod pair_cache;
 pub mod paper;
+mod posed;
 mod query;
 #[cfg(test)]
 #[path = "../tests/random/mod.rs"]
 mod random;
+mod resting;
 mod search;
 mod tree;
+mod window;
 
+pub use contact::{Contact, StartState, TimeOfContact};
 pub use enclosing_sphere::EnclosingSphere;
+pub use error::QueryError;
+pub use evidence::Evidence;
+pub use lanes::InstructionSet;
 pub use mesh::{Edge, MAX_COORDINATE, MeshError, Topology, TriMesh, Validation};
+pub use moving::Moving;
+pub use options::{Budget, Mode, QueryOptions, Solid};
+pub use pair_cache::PairCache;
+pub use posed::Posed;
 #[doc(hidden)]
 pub use query::last_search_counts;
-pub use query::{
-    Budget, Contact, Distance, DistanceOptions, Evidence, MeshPart, MeshParts, Mode, Moving, PairCache,
-    Posed, Proximity, ProximityOptions, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window,
-    collide, collide_within, colliding_pairs, contact_exists, distance, distance_within, proximities,
-    proximities_with, reduce_proximities, time_of_contact, time_of_contact_batch, time_of_contact_with,
-    try_colliding_pair,
+pub use query::{contact_exists, time_of_contact, time_of_contact_batch, time_of_contact_with};
+pub use resting::collide::{collide, collide_within, colliding_pairs, try_colliding_pair};
+pub use resting::distance::{Distance, DistanceOptions, distance, distance_within};
+pub use resting::parts::{MeshPart, MeshParts};
+pub use resting::proximities::{
+    Proximity, ProximityOptions, proximities, proximities_with, reduce_proximities,
 };
-pub use search::InstructionSet;
 #[doc(hidden)]
 pub use search::SearchCounts;
 pub use tree::{MeshTree, TreeError, TreeFileError};
+pub use window::Window;

@@ -2,7 +2,7 @@
 //!
 //! docs/theory/motions.md, section 3, derives the bound.
 
-use super::Moving;
+use crate::Moving;
 use d2m_interval::Interval;
 use d2m_motion::{Ball, CertifiedState, ConstantTwist, Kinematics};
 use glam::DVec3;

@@ -1,11 +1,12 @@
 //! From what the search found to the answer: witness points, normal, features in the meshes' numbers.
 
-use super::containment::Held;
 use super::proven_crossing::proven_crossing;
-use crate::search::{
-    Closest, Doubles, FRAME_REACH, Found, Frame, Lanes, PairScale, Place, Quad, RelativeMotion, Scene, Task,
-    closest, place_a, run,
-};
+use crate::lanes::{Doubles, Lanes, Quad, Task, run};
+use crate::resting::containment::Held;
+use crate::search::motion::frame::{FRAME_REACH, Frame, RelativeMotion};
+use crate::search::triangle_pair::closest::{Closest, Place, closest};
+use crate::search::triangle_pair::separating_axis::{PairScale, place_a};
+use crate::search::{Found, Scene};
 use crate::{Contact, Evidence, MeshTree, StartState};
 use d2m_feature::{FeaturePair, triangles_intersect};
 use glam::DVec3;

@@ -1,13 +1,14 @@
 //! The query for the first contact of two bodies.
 
-use super::allowance::{Allowance, Exhausted};
-use super::collide::crossing_pair_within;
-use super::containment::{Held, held_vertex};
 use super::report::{contact, contained, evidence_at_start};
-use super::static_pair;
-use crate::search::{
-    Outcome, Pair, Quad, RelativeMotion, Scene, Scratch, Search, given_relative_position, run,
-};
+use crate::allowance::{Allowance, Exhausted};
+use crate::lanes::{Quad, run};
+use crate::resting::collide::crossing_pair_within;
+use crate::resting::containment::{Held, held_vertex};
+use crate::resting::node_pair;
+use crate::search::motion::base_pose::{Pair, given_relative_position};
+use crate::search::motion::frame::RelativeMotion;
+use crate::search::{Outcome, Scene, Scratch, Search};
 use crate::{Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window};
 use core::cell::RefCell;
 use d2m_motion::Pose;
@@ -156,7 +157,7 @@ fn crossing_at_start(scene: &Scene<'_>, allowance: &Allowance) -> Result<Option<
         let m = body.given.rebase(scene.window.start());
         Posed::new(body.tree, Pose { rotation: m.orientation(), translation, at: m.at() })
     });
-    let at_rest = static_pair::Scene::try_new(a, b)?;
+    let at_rest = node_pair::Scene::try_new(a, b)?;
     Ok(crossing_pair_within(&at_rest, &mut allowance.at_most(CROSSING_STEPS)).unwrap_or(None))
 }
 

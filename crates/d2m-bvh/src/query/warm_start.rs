@@ -1,8 +1,12 @@
 //! Queries that use what earlier ones left in a cache, and give the same bits as without.
 
-use super::course::Course;
 use super::time_of_contact::{ask, scene_of};
-use crate::search::{Quad, RelativeMotion, Scene, closest, place_a};
+use crate::lanes::Quad;
+use crate::search::Scene;
+use crate::search::motion::frame::RelativeMotion;
+use crate::search::motion::relative_trajectory::Course;
+use crate::search::triangle_pair::closest::closest;
+use crate::search::triangle_pair::separating_axis::place_a;
 use crate::{Budget, Mode, Moving, PairCache, QueryError, QueryOptions, TimeOfContact, Window};
 use d2m_feature::triangles_intersect;
 

@@ -11,14 +11,14 @@
 //!
 //! See docs/theory/engine.md, "Crowds".
 
-use super::frame::Frame;
-use super::lanes::Lanes;
-use super::quad::Quad;
+use super::best_first::{BATCH, Search, State};
+use super::motion::frame::Frame;
 use super::queue::{Bucket, Item};
 use super::scene::SceneBody;
-use super::triangle_pair::place_a;
-use super::window::{BATCH, Search, State};
+use super::triangle_pair::separating_axis::place_a;
 use crate::Mode;
+use crate::lanes::Lanes;
+use crate::lanes::Quad;
 use crate::tree::node::{Below, WIDTH};
 use glam::DVec3;
 
@@ -311,7 +311,7 @@ impl Moving {
 
 #[cfg(test)]
 mod tests {
-    use super::super::frame::RelativeMotion;
+    use super::super::motion::frame::RelativeMotion;
     use super::super::scene::Scene;
     use super::*;
     use crate::random::Random;

@@ -1,11 +1,11 @@
 //! Constants of one query.
 
-use super::base_pose::Track;
-use super::local_motion::LocalMotion;
-use super::node_test::NodeScale;
+use super::motion::base_pose::Track;
+use super::motion::local_motion::LocalMotion;
+use super::motion::units::Units;
+use super::node_pair::node_test::NodeScale;
 use super::queue::{Bucket, Item, Queue};
-use super::triangle_pair::PairScale;
-use super::units::Units;
+use super::triangle_pair::separating_axis::PairScale;
 use crate::tree::margin::{DOWN, NARROW_UP, UNIT_F64, UP, round_up};
 use crate::{MeshTree, QueryError, QueryOptions, Window};
 use d2m_motion::ConstantTwist;

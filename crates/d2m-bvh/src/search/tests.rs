@@ -1,16 +1,16 @@
 //! Each bound against certified distances of triangles, with mutants that must be noticed.
 
-use super::InstructionSet;
-use super::dispatch::run_on;
-use super::entry_time::entry_times;
-use super::frame::RelativeMotion;
-use super::lanes::Lanes;
-use super::node_test::{NodeFrame, NodeScale, Placed};
-use super::portable::Portable;
-use super::quad::Quad;
+use super::best_first::{Outcome, Search};
+use super::motion::frame::RelativeMotion;
+use super::node_pair::entry_time::entry_times;
+use super::node_pair::node_test::{NodeFrame, NodeScale, Placed};
 use super::scene::{Scene, Scratch};
-use super::triangle_pair::{Behind, Care, Look, PairScale, apart_since, look, place_a};
-use super::window::{Outcome, Search};
+use super::triangle_pair::separating_axis::{Behind, Care, Look, PairScale, apart_since, look, place_a};
+use crate::lanes::InstructionSet;
+use crate::lanes::Lanes;
+use crate::lanes::Portable;
+use crate::lanes::Quad;
+use crate::lanes::run_on;
 use crate::random::Random;
 use crate::tree::node::WIDTH;
 use crate::{MeshTree, QueryOptions, TriMesh, Window};

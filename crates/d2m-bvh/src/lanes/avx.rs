@@ -1,0 +1,344 @@
+//! The lanes in AVX registers. This module and `avx512` hold the only `unsafe` operations of the crate; the
+//! functions that may use them are entered through a check of the processor (`dispatch`).
+#![allow(unsafe_code)]
+
+use super::eight::Lanes;
+use super::quad::{Doubles, Quad};
+use super::two::{Both, Bytes, Elementwise, Two};
+use crate::search::node_pair::expansion::Opened;
+use crate::search::queue::Item;
+use crate::tree::node::WIDTH;
+#[allow(clippy::wildcard_imports)]
+use core::arch::x86_64::*;
+use core::marker::PhantomData;
+use core::ops::{Add, Div, Mul, Sub};
+
+/// Which registers there are besides those of 256 bits.
+pub(crate) trait Registers: Copy {
+    /// Two times eight lanes.
+    type Sixteen: Two<Avx<Self>> + Bytes;
+    /// Two times four doubles.
+    type Eight: Two<AvxDoubles<Self>>;
+}
+
+/// Registers of 256 bits only.
+#[derive(Clone, Copy)]
+pub(crate) struct Of256;
+
+impl Registers for Of256 {
+    type Sixteen = Both<Avx<Self>>;
+    type Eight = Both<AvxDoubles<Self>>;
+}
+
+/// One 256-bit register. Values exist only inside functions that were entered through a check for AVX2, and for what
+/// `R` needs.
+#[derive(Clone, Copy)]
+pub(crate) struct Avx<R>(pub(super) __m256, PhantomData<R>);
+
+impl<R> Avx<R> {
+    #[inline(always)]
+    pub(super) const fn of(register: __m256) -> Self {
+        Self(register, PhantomData)
+    }
+}
+
+/// Numbers of the lanes whose bits are set, in their order: byte k of entry `bits` is the k-th.
+const ORDER: [u64; 256] = {
+    let mut order = [0; 256];
+    let mut bits = 0;
+    while bits < 256 {
+        let (mut lane, mut place) = (0, 0);
+        while lane < 8 {
+            if bits >> lane & 1 == 1 {
+                order[bits] |= lane << (8 * place);
+                place += 1;
+            }
+            lane += 1;
+        }
+        bits += 1;
+    }
+    order
+};
+
+macro_rules! avx_operator {
+    ($($operator:ident $method:ident $intrinsic:ident),*) => {$(
+        impl<R: Registers> $operator for Avx<R> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: the processor has AVX (see the type).
+                Self::of(unsafe { $intrinsic(self.0, other.0) })
+            }
+        }
+    )*};
+}
+avx_operator!(Add add _mm256_add_ps, Sub sub _mm256_sub_ps, Mul mul _mm256_mul_ps, Div div _mm256_div_ps);
+
+impl<R: Registers> Elementwise for Avx<R> {
+    type Scalar = f32;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_set1_ps(value) })
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_max_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_min_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn flip_sign(magnitude: Self, sign: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_xor_ps(magnitude.0, _mm256_and_ps(sign.0, _mm256_set1_ps(-0.0))) })
+    }
+    #[inline(always)]
+    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_blendv_ps(no.0, yes.0, _mm256_cmp_ps::<_CMP_GT_OQ>(left.0, right.0)) })
+    }
+}
+
+impl<R: Registers> Bytes for Avx<R> {
+    #[inline(always)]
+    fn byte_of(self, x: Self, y: Self, flip: Self) -> Self {
+        // SAFETY: the processor has AVX2 (see the type).
+        unsafe {
+            let upper = _mm256_srli_epi32::<8>(_mm256_castps_si256(self.0));
+            let two = _mm256_blendv_ps(self.0, _mm256_castsi256_ps(upper), _mm256_xor_ps(x.0, flip.0));
+            let upper = _mm256_srli_epi32::<16>(_mm256_castps_si256(two));
+            let one = _mm256_blendv_ps(two, _mm256_castsi256_ps(upper), _mm256_xor_ps(y.0, flip.0));
+            let byte = _mm256_and_si256(_mm256_castps_si256(one), _mm256_set1_epi32(255));
+            Self::of(_mm256_cvtepi32_ps(byte))
+        }
+    }
+}
+
+impl<R: Registers> Lanes for Avx<R> {
+    type Doubles = AvxDoubles<R>;
+    type Two = R::Sixteen;
+
+    #[inline(always)]
+    fn load(values: &[f32; 8]) -> Self {
+        // SAFETY: eight floats are readable; no alignment is needed; AVX as above.
+        Self::of(unsafe { _mm256_loadu_ps(values.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self) -> [f32; 8] {
+        let mut out = [0.0; 8];
+        // SAFETY: eight floats are writable; no alignment is needed; AVX as above.
+        unsafe { _mm256_storeu_ps(out.as_mut_ptr(), self.0) };
+        out
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_sqrt_ps(self.0) })
+    }
+    #[inline(always)]
+    fn less_bits(self, other: Self) -> u32 {
+        // SAFETY: the processor has AVX (see the type).
+        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)) as u32 }
+    }
+    #[inline(always)]
+    fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32) {
+        let mut out = [0; 8];
+        // SAFETY: the processor has AVX2 (see the type); 32 bytes are writable and need no alignment.
+        unsafe {
+            let sum = _mm256_add_epi32(_mm256_cvttps_epi32(self.0), _mm256_set1_epi32(base));
+            let keys = _mm256_max_epi32(sum, _mm256_set1_epi32(least));
+            _mm256_storeu_si256(out.as_mut_ptr().cast(), keys);
+            let below = _mm256_cmpgt_epi32(_mm256_set1_epi32(limit), keys);
+            (out, _mm256_movemask_ps(_mm256_castsi256_ps(below)) as u32)
+        }
+    }
+    #[inline(always)]
+    fn larger(
+        (sizes, ratio, size): (&[f32; 8], f32, f32),
+        (children, flag): (&[u32; 8], u32),
+        other: u32,
+    ) -> [u32; 8] {
+        let mut out = [0; 8];
+        // SAFETY: the processor has AVX2 (see the type); 32 bytes are readable and writable, without alignment.
+        unsafe {
+            let sizes = _mm256_mul_ps(_mm256_loadu_ps(sizes.as_ptr()), _mm256_set1_ps(ratio));
+            let larger = _mm256_cmp_ps::<_CMP_GT_OQ>(sizes, _mm256_set1_ps(size));
+            let children = _mm256_loadu_si256(children.as_ptr().cast());
+            let flagged = _mm256_or_si256(children, _mm256_set1_epi32(flag as i32));
+            let open =
+                _mm256_blendv_epi8(_mm256_set1_epi32(other as i32), flagged, _mm256_castps_si256(larger));
+            _mm256_storeu_si256(out.as_mut_ptr().cast(), open);
+        }
+        out
+    }
+    #[inline(always)]
+    fn pack(pairs: &Opened, list: &mut [Item; WIDTH]) -> usize {
+        // SAFETY: the processor has AVX2 (see the type). Keys and what to open are eight words each; an item is four
+        // words in order (`repr(C)`), so the list is four times 32 writable bytes. No alignment is needed.
+        unsafe {
+            let order = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(ORDER[pairs.bits as usize & 255] as i64));
+            let wide = _mm256_add_epi32(_mm256_set1_epi32(pairs.first as i32), order);
+            let single = _mm256_set1_epi32(pairs.single as i32);
+            let wide_is_b = _mm256_set1_epi32(-i32::from(pairs.wide_is_b));
+            let a = _mm256_blendv_epi8(wide, single, wide_is_b);
+            let b = _mm256_blendv_epi8(single, wide, wide_is_b);
+            let key = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(pairs.keys.as_ptr().cast()), order);
+            let open = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(pairs.open.as_ptr().cast()), order);
+            // Items 0, 1 | 4, 5 and 2, 3 | 6, 7: first and second half; then each item whole.
+            let (low, high) = (_mm256_unpacklo_epi32(key, a), _mm256_unpackhi_epi32(key, a));
+            let (low_rest, high_rest) = (_mm256_unpacklo_epi32(b, open), _mm256_unpackhi_epi32(b, open));
+            let (i04, i15) = (_mm256_unpacklo_epi64(low, low_rest), _mm256_unpackhi_epi64(low, low_rest));
+            let (i26, i37) = (_mm256_unpacklo_epi64(high, high_rest), _mm256_unpackhi_epi64(high, high_rest));
+            let out: *mut __m256i = list.as_mut_ptr().cast();
+            _mm256_storeu_si256(out, _mm256_permute2x128_si256::<0x20>(i04, i15));
+            _mm256_storeu_si256(out.add(1), _mm256_permute2x128_si256::<0x20>(i26, i37));
+            _mm256_storeu_si256(out.add(2), _mm256_permute2x128_si256::<0x31>(i04, i15));
+            _mm256_storeu_si256(out.add(3), _mm256_permute2x128_si256::<0x31>(i26, i37));
+        }
+        pairs.bits.count_ones() as usize
+    }
+    #[inline(always)]
+    fn prefetch<T>(value: &T) {
+        let start: *const i8 = core::ptr::from_ref(value).cast();
+        for line in 0..size_of::<T>().div_ceil(64) {
+            // SAFETY: a prefetch reads nothing that the program sees, and the address is inside the value.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(64 * line)) };
+        }
+    }
+    #[inline(always)]
+    fn combine(columns: &[[f32; 4]; 3], x: f32, y: f32, z: f32) -> [f32; 4] {
+        let mut out = [0.0; 4];
+        // SAFETY: four floats are readable in each column and writable in `out`; no alignment is needed; AVX as above.
+        unsafe {
+            let column = |k: usize| _mm_loadu_ps(columns[k].as_ptr());
+            let xy = _mm_add_ps(_mm_mul_ps(column(0), _mm_set1_ps(x)), _mm_mul_ps(column(1), _mm_set1_ps(y)));
+            _mm_storeu_ps(out.as_mut_ptr(), _mm_add_ps(xy, _mm_mul_ps(column(2), _mm_set1_ps(z))));
+        }
+        out
+    }
+}
+
+/// Four doubles in one register. Values exist only where those of [`Avx`] do.
+#[derive(Clone, Copy)]
+pub(crate) struct AvxDoubles<R>(pub(super) __m256d, PhantomData<R>);
+
+impl<R> AvxDoubles<R> {
+    #[inline(always)]
+    pub(super) const fn of(register: __m256d) -> Self {
+        Self(register, PhantomData)
+    }
+}
+
+macro_rules! doubles_operator {
+    ($($operator:ident $method:ident $intrinsic:ident),*) => {$(
+        impl<R: Registers> $operator for AvxDoubles<R> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: the processor has AVX (see the type).
+                Self::of(unsafe { $intrinsic(self.0, other.0) })
+            }
+        }
+    )*};
+}
+doubles_operator!(Add add _mm256_add_pd, Sub sub _mm256_sub_pd, Mul mul _mm256_mul_pd, Div div _mm256_div_pd);
+
+impl<R: Registers> Elementwise for AvxDoubles<R> {
+    type Scalar = f64;
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_set1_pd(x) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_min_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_max_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_blendv_pd(no.0, yes.0, _mm256_cmp_pd::<_CMP_GT_OQ>(left.0, right.0)) })
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
+    }
+    #[inline(always)]
+    fn flip_sign(magnitude: Self, sign: Self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::of(unsafe { _mm256_xor_pd(magnitude.0, _mm256_and_pd(sign.0, _mm256_set1_pd(-0.0))) })
+    }
+}
+
+impl<R: Registers> Doubles for AvxDoubles<R> {
+    type Two = R::Eight;
+
+    #[inline(always)]
+    fn load(values: &Quad) -> Self {
+        // SAFETY: four doubles are readable, aligned to 32 bytes by the type; AVX as above.
+        Self::of(unsafe { _mm256_load_pd(values.0.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self) -> Quad {
+        let mut out = Quad([0.0; 4]);
+        // SAFETY: four doubles are writable, aligned to 32 bytes by the type; AVX as above.
+        unsafe { _mm256_store_pd(out.0.as_mut_ptr(), self.0) };
+        out
+    }
+    #[inline(always)]
+    fn narrow(self) -> [f32; 4] {
+        let mut out = [0.0; 4];
+        // SAFETY: four floats are writable; no alignment is needed; AVX as above.
+        unsafe { _mm_storeu_ps(out.as_mut_ptr(), _mm256_cvtpd_ps(self.0)) };
+        out
+    }
+    #[inline(always)]
+    fn least(self) -> f64 {
+        // SAFETY: the processor has AVX (see the type).
+        unsafe {
+            let half = _mm_min_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0));
+            _mm_cvtsd_f64(_mm_min_sd(half, _mm_unpackhi_pd(half, half)))
+        }
+    }
+    #[inline(always)]
+    fn greatest(self) -> f64 {
+        // SAFETY: the processor has AVX (see the type).
+        unsafe {
+            let half = _mm_max_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0));
+            _mm_cvtsd_f64(_mm_max_sd(half, _mm_unpackhi_pd(half, half)))
+        }
+    }
+    #[inline(always)]
+    fn transposed([a, b, c]: [Self; 3]) -> [Self; 3] {
+        // SAFETY: the processor has AVX (see the type).
+        unsafe {
+            let zero = _mm256_setzero_pd();
+            // First and third rows of a, b and of c, 0; then second and fourth.
+            let (even_ab, even_c) = (_mm256_unpacklo_pd(a.0, b.0), _mm256_unpacklo_pd(c.0, zero));
+            let (odd_ab, odd_c) = (_mm256_unpackhi_pd(a.0, b.0), _mm256_unpackhi_pd(c.0, zero));
+            [
+                Self::of(_mm256_permute2f128_pd::<0x20>(even_ab, even_c)),
+                Self::of(_mm256_permute2f128_pd::<0x20>(odd_ab, odd_c)),
+                Self::of(_mm256_permute2f128_pd::<0x31>(even_ab, even_c)),
+            ]
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! Eight `f32` lanes: what the searches ask of an instruction set.
+//!
+//! Only + − × ÷ √, extrema, comparison and sign removal, each correctly rounded by IEEE 754, and no fused
+//! multiply-add: every implementation returns the same bits.
+
+use super::quad::Doubles;
+use super::two::{Bytes, Two};
+use crate::search::node_pair::expansion::Opened;
+use crate::search::queue::Item;
+use crate::tree::node::WIDTH;
+use core::ops::Div;
+
+/// Eight lanes of `f32`.
+pub(crate) trait Lanes: Bytes + Div<Output = Self> {
+    /// Four `f64` of the same instruction set.
+    type Doubles: Doubles;
+    /// Two times eight lanes.
+    type Two: Two<Self> + Bytes;
+
+    /// Lanes from memory.
+    fn load(values: &[f32; 8]) -> Self;
+    /// Lanes to memory.
+    fn store(self) -> [f32; 8];
+    /// Correctly rounded square root.
+    fn sqrt(self) -> Self;
+    /// Bit i is set when lane i of `self` is less than lane i of `other`.
+    fn less_bits(self, other: Self) -> u32;
+    /// max(`least`, `base` + the integer part) in each lane, with `least` for what is not a number; and the bits of
+    /// the lanes where that is below `limit`. Lanes stay below 2³¹ − `base`.
+    fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32);
+    /// `children | flag` in the lanes where `sizes · ratio > size`, else `other`.
+    fn larger(sizes: (&[f32; 8], f32, f32), children: (&[u32; 8], u32), other: u32) -> [u32; 8];
+    /// Writes the pairs worth queueing to the start of the list, in the order of their lanes; how many. What is
+    /// behind them is of no meaning.
+    fn pack(pairs: &Opened, list: &mut [Item; WIDTH]) -> usize;
+    /// Asks for the memory of a value: a hint.
+    fn prefetch<T>(value: &T);
+    /// x·c₀ + y·c₁ + z·c₂ for the columns c of a matrix.
+    fn combine(columns: &[[f32; 4]; 3], x: f32, y: f32, z: f32) -> [f32; 4];
+}

@@ -1,0 +1,132 @@
+//! The lanes that every target has: in vector registers where its plainest processor has some.
+
+use super::eight::Lanes;
+use super::quad::Quad;
+use super::two::{Both, Bytes, Elementwise};
+use crate::search::node_pair::expansion::Opened;
+use crate::search::queue::Item;
+use crate::tree::node::WIDTH;
+use core::ops::{Add, Div, Mul, Sub};
+use wide::bytemuck::cast;
+use wide::{f32x8, i32x8, u32x8};
+
+/// Portable lanes.
+#[derive(Clone, Copy)]
+pub(crate) struct Portable(f32x8);
+
+macro_rules! portable_operator {
+    ($($operator:ident $method:ident $symbol:tt),*) => {$(
+        impl $operator for Portable {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(self.0 $symbol other.0)
+            }
+        }
+    )*};
+}
+portable_operator!(Add add +, Sub sub -, Mul mul *, Div div /);
+
+impl Elementwise for Portable {
+    type Scalar = f32;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Self(f32x8::splat(value))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.abs())
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::if_greater(self, other, self, other)
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::if_greater(other, self, self, other)
+    }
+    #[inline(always)]
+    fn flip_sign(magnitude: Self, sign: Self) -> Self {
+        Self(magnitude.0 ^ (sign.0 & f32x8::splat(-0.0)))
+    }
+    #[inline(always)]
+    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
+        Self(left.0.simd_gt(right.0).bitselect(yes.0, no.0))
+    }
+}
+
+impl Bytes for Portable {
+    #[inline(always)]
+    fn byte_of(self, x: Self, y: Self, flip: Self) -> Self {
+        // All bits of a lane are those of its sign.
+        let sign = |v: Self| -> u32x8 { cast(cast::<_, i32x8>(v.0 ^ flip.0) >> 31_i32) };
+        let four: u32x8 = cast(self.0);
+        let two = sign(x).bitselect(four >> 8_u32, four);
+        let one = sign(y).bitselect(two >> 16_u32, two);
+        Self(f32x8::from_i32x8(cast(one & u32x8::splat(255))))
+    }
+}
+
+impl Lanes for Portable {
+    type Doubles = Quad;
+    type Two = Both<Self>;
+
+    #[inline(always)]
+    fn load(values: &[f32; 8]) -> Self {
+        Self(f32x8::new(*values))
+    }
+    #[inline(always)]
+    fn store(self) -> [f32; 8] {
+        self.0.to_array()
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
+    #[inline(always)]
+    fn less_bits(self, other: Self) -> u32 {
+        self.0.simd_lt(other.0).to_bitmask()
+    }
+    #[inline(always)]
+    fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32) {
+        let (mut out, mut bits) = ([0; 8], 0);
+        for (lane, (key, x)) in out.iter_mut().zip(self.store()).enumerate() {
+            let whole = if x.is_nan() { i32::MIN } else { x as i32 };
+            *key = base.wrapping_add(whole).max(least);
+            bits |= u32::from(*key < limit) << lane;
+        }
+        (out, bits)
+    }
+    #[inline(always)]
+    fn larger(
+        (sizes, ratio, size): (&[f32; 8], f32, f32),
+        (children, flag): (&[u32; 8], u32),
+        other: u32,
+    ) -> [u32; 8] {
+        let mut out = [other; 8];
+        for lane in 0..8 {
+            out[lane] = if sizes[lane] * ratio > size { children[lane] | flag } else { other };
+        }
+        out
+    }
+    #[inline(always)]
+    fn pack(pairs: &Opened, list: &mut [Item; WIDTH]) -> usize {
+        // Without a branch: which lanes they are cannot be predicted.
+        let mut count = 0;
+        for lane in 0..WIDTH {
+            let (wide, single) = (pairs.first + lane as u32, pairs.single);
+            let boxes = if pairs.wide_is_b { [single, wide] } else { [wide, single] };
+            list[count] = Item { key: pairs.keys[lane] as u32, boxes, open: pairs.open[lane] };
+            count += (pairs.bits >> lane) as usize & usize::from(lane < WIDTH - 1);
+        }
+        count + (pairs.bits >> (WIDTH - 1)) as usize
+    }
+    #[inline(always)]
+    fn prefetch<T>(_: &T) {}
+    #[inline(always)]
+    fn combine(c: &[[f32; 4]; 3], x: f32, y: f32, z: f32) -> [f32; 4] {
+        let at = |k: usize| c[0][k] * x + c[1][k] * y + c[2][k] * z;
+        [at(0), at(1), at(2), at(3)]
+    }
+}

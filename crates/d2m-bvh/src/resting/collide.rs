@@ -1,0 +1,209 @@
+//! Do two bodies at rest touch?
+
+use super::containment::one_holds_the_other;
+use super::node_pair::{Scene, Step, child, proven_apart};
+use crate::allowance::{Allowance, Exhausted};
+use crate::lanes::{Lanes, Task, run};
+use crate::{Budget, Posed, QueryError, Solid};
+use d2m_feature::triangle_distance;
+use glam::DVec3;
+
+/// Do two bodies at rest share a point?
+///
+/// Promise: `false` is proven, in real arithmetic, for the poses as given. `true` is said whenever that cannot be
+/// proven: when the bodies touch, and when they are apart by less than the roundings of placing them, at most about
+/// 64·2⁻⁵³ times the largest length (radii, distance of the centres, offsets from the followed points).
+///
+/// ```
+/// use d2m_bvh::{MeshTree, Posed, Solid, TriMesh, collide};
+/// use d2m_motion::Pose;
+/// use glam::DVec3;
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let tree = MeshTree::new(mesh);
+/// let at = |x: f64| Posed::new(&tree, Pose { translation: DVec3::X * x, ..Pose::IDENTITY });
+/// assert!(collide(at(0.0), at(0.9), Solid::Filled)?);
+/// assert!(!collide(at(0.0), at(1.0 + 1e-13), Solid::Filled)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`QueryError::BadPose`], and [`QueryError::NotWatertight`] with [`Solid::Filled`].
+#[doc(alias = "intersects")]
+pub fn collide(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<bool, QueryError> {
+    check_solid(a, b, solid)?;
+    let scene = Scene::try_new(a, b)?;
+    // What a budget without limits leaves open is not proven apart.
+    Ok(may_collide(&scene, solid, &mut Allowance::unlimited()).unwrap_or(true))
+}
+
+/// As [`collide`] within a budget; `None`: it ran out, and nothing is known.
+///
+/// ```
+/// use d2m_bvh::{Budget, MeshTree, Posed, Solid, TriMesh, collide_within};
+/// use glam::DVec3;
+/// use std::time::Duration;
+/// let mesh = TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]])?;
+/// let tree = MeshTree::new(mesh);
+/// let (a, b) = (Posed::at_rest(&tree), Posed::at_rest(&tree));
+/// let budget = Budget::UNLIMITED.with_wall_clock(Duration::from_millis(10));
+/// assert_eq!(collide_within(a, b, Solid::Surface, &budget)?, Some(true));
+/// assert_eq!(collide_within(a, b, Solid::Surface, &Budget::UNLIMITED.with_node_tests(0))?, None);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`collide`].
+pub fn collide_within(
+    a: Posed<'_>,
+    b: Posed<'_>,
+    solid: Solid,
+    budget: &Budget,
+) -> Result<Option<bool>, QueryError> {
+    check_solid(a, b, solid)?;
+    let scene = Scene::try_new(a, b)?;
+    Ok(may_collide(&scene, solid, &mut Allowance::new(budget)).ok())
+}
+
+fn may_collide(scene: &Scene<'_>, solid: Solid, allowance: &mut Allowance) -> Result<bool, Exhausted> {
+    let found = search(scene, Wanted { most: 1, counts: may_touch }, allowance)?;
+    Ok(!found.pairs.is_empty()
+        || solid == Solid::Filled && !found.boxes_apart && one_holds_the_other(scene, allowance)?.is_some())
+}
+
+/// A pair of triangles, one of each body, that is not proven apart; `None` is a proof that the surfaces are disjoint.
+/// Which pair of several it is depends on the bodies and poses only. Says nothing about one body inside the other.
+///
+/// # Errors
+/// [`QueryError::BadPose`].
+pub fn try_colliding_pair(a: Posed<'_>, b: Posed<'_>) -> Result<Option<[u32; 2]>, QueryError> {
+    let scene = Scene::try_new(a, b)?;
+    Ok(search_all(&scene, Wanted { most: 1, counts: may_touch }).first().copied())
+}
+
+/// All pairs of triangles, the first of A and the second of B, that are not proven apart, in ascending order. Every
+/// pair that shares a point is among them; the others are apart by roundings only (see [`collide`]).
+///
+/// ```
+/// use d2m_bvh::{MeshTree, Posed, TriMesh, colliding_pairs};
+/// use glam::DVec3;
+/// let one = |z: f64| TriMesh::try_new(vec![DVec3::Z * z, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap();
+/// let (low, high) = (MeshTree::new(one(0.0)), MeshTree::new(one(1.0)));
+/// assert_eq!(colliding_pairs(Posed::at_rest(&low), Posed::at_rest(&high)).unwrap(), [[0, 0]]);
+/// ```
+///
+/// # Errors
+/// [`QueryError::BadPose`].
+pub fn colliding_pairs(a: Posed<'_>, b: Posed<'_>) -> Result<Vec<[u32; 2]>, QueryError> {
+    let scene = Scene::try_new(a, b)?;
+    let found = search_all(&scene, Wanted { most: usize::MAX, counts: may_touch });
+    // The first triangle of a body that is one point as far as rounding can tell stands for all.
+    let all = |body: usize, triangle: u32| match scene.trees[body].mesh().triangle_count() as u32 {
+        count if scene.is_point_like(body) => 0..count,
+        _ => triangle..triangle + 1,
+    };
+    let mut pairs: Vec<[u32; 2]> = found
+        .iter()
+        .flat_map(|&[a, b]| all(0, a).flat_map(move |a| all(1, b).map(move |b| [a, b])))
+        .collect();
+    pairs.sort_unstable();
+    Ok(pairs)
+}
+
+/// The first pair of triangles, in the order of the trees, that cross as they are placed. Which one it is depends on the bodies
+/// and poses only.
+pub(crate) fn crossing_pair(scene: &Scene<'_>) -> Option<[u32; 2]> {
+    search_all(scene, Wanted { most: 1, counts: cross }).first().copied()
+}
+
+/// The same within an allowance.
+pub(crate) fn crossing_pair_within(
+    scene: &Scene<'_>,
+    allowance: &mut Allowance,
+) -> Result<Option<[u32; 2]>, Exhausted> {
+    Ok(search(scene, Wanted { most: 1, counts: cross }, allowance)?.pairs.first().copied())
+}
+
+/// All that is wanted, without a limit on the work.
+fn search_all(scene: &Scene<'_>, wanted: Wanted) -> Vec<[u32; 2]> {
+    search(scene, wanted, &mut Allowance::unlimited())
+        .map_or_else(|Exhausted| Vec::new(), |found| found.pairs)
+}
+
+fn search(scene: &Scene<'_>, wanted: Wanted, allowance: &mut Allowance) -> Result<Found, Exhausted> {
+    run(Search { scene, wanted, allowance })
+}
+
+fn may_touch(scene: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
+    !proven_apart(a, b, scene.error, scene.need)
+}
+
+fn cross(scene: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
+    may_touch(scene, a, b) && triangle_distance(a, b).upper == 0.0
+}
+
+/// Refuses filled bodies that do not close.
+pub(crate) fn check_solid(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<(), QueryError> {
+    match [a, b].iter().position(|posed| solid == Solid::Filled && !posed.body.is_watertight()) {
+        Some(body) => Err(QueryError::NotWatertight { body }),
+        None => Ok(()),
+    }
+}
+
+/// What a search is for.
+#[derive(Clone, Copy)]
+struct Wanted {
+    /// How many pairs to find before stopping.
+    most: usize,
+    /// Which pairs of placed triangles are found.
+    counts: fn(&Scene<'_>, &[DVec3; 3], &[DVec3; 3]) -> bool,
+}
+
+/// Depth first over the pairs of boxes that are not proven apart.
+struct Search<'a> {
+    scene: &'a Scene<'a>,
+    wanted: Wanted,
+    allowance: &'a mut Allowance,
+}
+
+struct Found {
+    /// The boxes around the whole bodies are apart already.
+    boxes_apart: bool,
+    pairs: Vec<[u32; 2]>,
+}
+
+impl Task for Search<'_> {
+    type Output = Result<Found, Exhausted>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Output {
+        let Self { scene, wanted: Wanted { most, counts }, allowance } = self;
+        let mut pairs = Vec::new();
+        if scene.overlaps::<L>(0, 0, 0) == 0 {
+            return Ok(Found { boxes_apart: true, pairs });
+        }
+        let mut stack = Vec::with_capacity(256);
+        stack.push([0u32; 2]);
+        while let Some(pair) = stack.pop() {
+            allowance.step()?;
+            match scene.step(pair) {
+                Step::Open(wide, node) => {
+                    let mut lanes = scene.overlaps::<L>(wide, node, pair[1 - wide]);
+                    while lanes != 0 {
+                        stack.push(child(pair, wide, node, lanes.trailing_zeros() as usize));
+                        lanes &= lanes - 1;
+                    }
+                }
+                Step::Compare([a, b]) => {
+                    if counts(scene, &scene.place(0, a), &scene.place(1, b)) {
+                        pairs.push([a, b]);
+                        if pairs.len() >= most {
+                            break;
+                        }
+                    }
+                }
+            }
+        }
+        Ok(Found { boxes_apart: false, pairs })
+    }
+}

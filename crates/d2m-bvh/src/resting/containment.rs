@@ -1,0 +1,55 @@
+//! Which body holds a part of the other one?
+//!
+//! Where no two surfaces touch, each connected part of a surface is entirely in the other solid or entirely outside of it, so
+//! one vertex of each part decides. If no part of either surface is in the other solid, the solids share no point: a
+//! common point would be in a region of one solid whose boundary is in no region of the other, and the other way round.
+
+use super::node_pair::Scene;
+use super::winding::contains;
+use crate::MeshTree;
+use crate::allowance::{Allowance, Exhausted};
+use glam::DVec3;
+
+/// A part of a body inside the other one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Held {
+    /// The body that holds: 0 is A, 1 is B.
+    pub(crate) by: usize,
+    /// A vertex of the other body that is inside.
+    pub(crate) vertex: u32,
+}
+
+/// A vertex of `inner` in the solid `holder`, one of each connected part of its surface. `place`: from the center of
+/// `inner`, in its axes, to coordinates from the center of `holder`, in the axes of that.
+pub(crate) fn held_vertex(
+    holder: &MeshTree,
+    inner: &MeshTree,
+    place: impl Fn(DVec3) -> DVec3,
+    allowance: &mut Allowance,
+) -> Result<Option<u32>, Exhausted> {
+    for &vertex in inner.component_vertices() {
+        allowance.step()?;
+        let p = place(inner.mesh().vertices()[vertex as usize] - inner.center());
+        if contains(holder, p, allowance)? {
+            return Ok(Some(vertex));
+        }
+    }
+    Ok(None)
+}
+
+/// Does one body hold a part of the other? For surfaces whose placed triangles are more than `scene.error` apart: moving
+/// every vertex to its placed position is then a motion without contact, so what is inside stays inside.
+pub(crate) fn one_holds_the_other(
+    scene: &Scene<'_>,
+    allowance: &mut Allowance,
+) -> Result<Option<Held>, Exhausted> {
+    let (rows, back) = scene.pose.inverse();
+    let sides = [(rows, back), (scene.pose.rotation, scene.pose.offset)];
+    for (by, (r, offset)) in sides.into_iter().enumerate() {
+        let place = |p: DVec3| r[0] * p.x + r[1] * p.y + r[2] * p.z + offset;
+        if let Some(vertex) = held_vertex(scene.trees[by], scene.trees[1 - by], place, allowance)? {
+            return Ok(Some(Held { by, vertex }));
+        }
+    }
+    Ok(None)
+}

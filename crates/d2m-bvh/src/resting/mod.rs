@@ -1,0 +1,9 @@
+//! Queries of bodies at rest: contact, distance, closest features, containment.
+
+pub(crate) mod collide;
+pub(crate) mod containment;
+pub(crate) mod distance;
+pub(crate) mod node_pair;
+pub(crate) mod parts;
+pub(crate) mod proximities;
+mod winding;

@@ -1,0 +1,216 @@
+//! Constants of one static query, and what its searches do at a pair of boxes.
+
+use super::RelativePose;
+use super::node_test::{Placed, Side, lower_bounds, overlaps};
+use crate::lanes::Lanes;
+use crate::tree::margin::{UNIT_F32, UNIT_F64};
+use crate::tree::node::{Below, WIDTH};
+use crate::{MeshTree, Posed, QueryError};
+use glam::DVec3;
+
+/// Sums and products of up to ten non-negative terms round by 2⁻⁵³ each; 2⁻⁴⁰ covers them all.
+const SUM_ROUNDING: f64 = 1.0 + 1.0 / 1_099_511_627_776.0;
+
+/// A body whose radius is below this part of the size is one point as far as rounding can tell.
+const POINT_LIKE: f64 = 4.0 * UNIT_F64;
+
+/// Two bodies at rest, in the frame of B's tree. Working coordinates are divided by a power of two so that all lengths
+/// are at most one.
+#[derive(Debug)]
+pub(crate) struct Scene<'a> {
+    pub(crate) trees: [&'a MeshTree; 2],
+    pub(crate) pose: RelativePose,
+    /// The working unit.
+    pub(crate) unit: f64,
+    inverse_unit: f64,
+    /// Twice the bound on the distance between where triangles are placed and where they are, both bodies together,
+    /// working units. Triangles placed further apart than this are apart.
+    pub(crate) error: f64,
+    /// The same with the rounding of a projected gap: per unit length of the direction.
+    pub(crate) need: f64,
+    /// Bound on the rounding of a projected gap alone.
+    pub(crate) projection: f64,
+    offset: DVec3,
+    sides: [Side; 2],
+    /// What makes sizes of boxes of the two bodies comparable.
+    volume: [f64; 2],
+    point_like: [bool; 2],
+}
+
+/// What there is to do at a pair of boxes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Step {
+    /// Open the node below the box of this body.
+    Open(usize, u32),
+    /// Compare two triangles.
+    Compare([u32; 2]),
+}
+
+impl<'a> Scene<'a> {
+    pub(crate) fn try_new(a: Posed<'a>, b: Posed<'a>) -> Result<Self, QueryError> {
+        let pose = RelativePose::try_new(a, b)?;
+        let trees = [a.body, b.body];
+        let unit = power_of_two_above(pose.size);
+        let inverse_unit = 1.0 / unit;
+        let size = pose.size * inverse_unit;
+        let point_like = trees.map(|tree| tree.radius() <= POINT_LIKE * pose.size);
+        // All triangles of a point-like body stand for one: it may be off by the diameter.
+        let blur: f64 =
+            trees.iter().zip(point_like).map(|(t, p)| if p { 2.0 * t.radius() } else { 0.0 }).sum();
+        // Placing rounds by at most 9v(ρA + |T|) on A's side and 2v ρB on B's.
+        let error = 2.0 * ((pose.error + blur) * inverse_unit + 10.0 * UNIT_F64 * size) * SUM_ROUNDING;
+        let projection = 8.0 * UNIT_F64 * size * SUM_ROUNDING;
+        let (inverse, back) = pose.inverse();
+        let side = |wide: &MeshTree, single: &MeshTree, rotation, offset: DVec3| Side {
+            rotation,
+            offset: offset / wide.unit(),
+            ratio: single.unit() / wide.unit(),
+            floor: 2.0 * error * (unit / wide.unit()) + f64::from_bits((1023 - 60) << 52),
+            to_work: (wide.unit() * inverse_unit) as f32,
+        };
+        let cube = |x: f64| x * x * x;
+        Ok(Self {
+            trees,
+            pose,
+            unit,
+            inverse_unit,
+            error,
+            need: (error + projection) * SUM_ROUNDING,
+            projection,
+            offset: pose.offset * inverse_unit,
+            sides: [side(a.body, b.body, inverse, back), side(b.body, a.body, pose.rotation, pose.offset)],
+            volume: trees.map(|tree| cube(tree.unit() * inverse_unit)),
+            point_like,
+        })
+    }
+
+    /// Is the body one point as far as rounding can tell? Its first triangle then stands for all of them.
+    pub(crate) fn is_point_like(&self, body: usize) -> bool {
+        self.point_like[body]
+    }
+
+    /// Corners of a triangle in working coordinates.
+    #[inline(always)]
+    pub(crate) fn place(&self, body: usize, triangle: u32) -> [DVec3; 3] {
+        let tree = self.trees[body];
+        let [p, q, r] = tree.mesh().corners(triangle as usize);
+        [self.place_point(body, p), self.place_point(body, q), self.place_point(body, r)]
+    }
+
+    /// A vertex in working coordinates.
+    #[inline(always)]
+    pub(crate) fn place_vertex(&self, body: usize, vertex: u32) -> DVec3 {
+        self.place_point(body, self.trees[body].mesh().vertices()[vertex as usize])
+    }
+
+    #[inline(always)]
+    fn place_point(&self, body: usize, point: DVec3) -> DVec3 {
+        let p = (point - self.trees[body].center()) * self.inverse_unit;
+        let r = &self.pose.rotation;
+        if body == 1 { p } else { (r[0] * p.x + r[1] * p.y + r[2] * p.z) + self.offset }
+    }
+
+    /// What to do at a pair of boxes: open the larger one, the second at a tie.
+    #[inline(always)]
+    pub(crate) fn step(&self, pair: [u32; 2]) -> Step {
+        let ((size_a, below_a), (size_b, below_b)) = (self.look(0, pair[0]), self.look(1, pair[1]));
+        match (below_a, below_b) {
+            (Below::Triangle(a), Below::Triangle(b)) => Step::Compare([a, b]),
+            (Below::Node(a), Below::Triangle(_)) => Step::Open(0, a),
+            (Below::Triangle(_), Below::Node(b)) => Step::Open(1, b),
+            (Below::Node(a), Below::Node(b)) => {
+                if size_a > size_b {
+                    Step::Open(0, a)
+                } else {
+                    Step::Open(1, b)
+                }
+            }
+        }
+    }
+
+    /// Size of a box, and what is below it.
+    #[inline(always)]
+    fn look(&self, body: usize, index: u32) -> (f64, Below) {
+        let node = &self.trees[body].nodes[index as usize / WIDTH];
+        let lane = index as usize % WIDTH;
+        if self.point_like[body] {
+            return (0.0, Below::Triangle(0));
+        }
+        (f64::from(node.size[lane]) * self.volume[body], node.below(lane))
+    }
+
+    #[inline(always)]
+    fn placed(&self, wide: usize, node: u32, single: u32) -> Placed {
+        let tree = self.trees[1 - wide];
+        let from = &tree.nodes[single as usize / WIDTH];
+        let boxed = from.oriented_box(single as usize % WIDTH);
+        Placed::new(&self.sides[wide], &boxed, from.origin, &self.trees[wide].nodes[node as usize])
+    }
+
+    /// A direction (B's axes) in the axes of A and of B, shortened to a length of at most one.
+    pub(crate) fn directions(&self, n: DVec3) -> [[f32; 3]; 2] {
+        // Rounding to f32 adds at most √3·2⁻²⁴ to the length.
+        let n = n.normalize_or_zero() * (1.0 - 4.0 * UNIT_F32);
+        let r = &self.pose.rotation;
+        let narrow = |v: DVec3| [v.x as f32, v.y as f32, v.z as f32];
+        [narrow(DVec3::new(r[0].dot(n), r[1].dot(n), r[2].dot(n))), narrow(n)]
+    }
+
+    /// Lower bounds on the distances of the boxes of a node of body `wide` from a box of the other body, working
+    /// units. Looks along the axes of both and along `along` (from [`Self::directions`]).
+    #[inline(always)]
+    pub(crate) fn bounds<L: Lanes>(
+        &self,
+        wide: usize,
+        node: u32,
+        single: u32,
+        along: &[[f32; 3]; 2],
+    ) -> ([f32; 8], usize) {
+        let placed = self.placed(wide, node, single);
+        let tree = self.trees[1 - wide];
+        let placed = match tree.nodes[single as usize / WIDTH].below(single as usize % WIDTH) {
+            Below::Triangle(triangle) => {
+                let corners = self.corners_in(wide, triangle, self.trees[wide].nodes[node as usize].origin);
+                placed.looking_at_triangle_along(along[wide], &corners)
+            }
+            Below::Node(_) => placed.looking_along(along[wide]),
+        };
+        let node = &self.trees[wide].nodes[node as usize];
+        (lower_bounds::<L>(node, &placed, self.sides[wide].to_work), (node.used as usize).min(WIDTH))
+    }
+
+    /// Corners of a triangle of the other body from the origin of a node of body `wide`, in its axes and unit.
+    #[inline(always)]
+    fn corners_in(&self, wide: usize, triangle: u32, origin: [f32; 3]) -> [DVec3; 3] {
+        let (tree, side) = (self.trees[1 - wide], &self.sides[wide]);
+        let scale = 1.0 / self.trees[wide].unit();
+        let shift =
+            side.offset - DVec3::new(f64::from(origin[0]), f64::from(origin[1]), f64::from(origin[2]));
+        tree.mesh().corners(triangle as usize).map(|corner| {
+            let p = (corner - tree.center()) * scale;
+            side.rotation[0] * p.x + side.rotation[1] * p.y + side.rotation[2] * p.z + shift
+        })
+    }
+
+    /// Which boxes of a node of body `wide` are not proven apart from a box of the other body.
+    #[inline(always)]
+    pub(crate) fn overlaps<L: Lanes>(&self, wide: usize, node: u32, single: u32) -> u32 {
+        let placed = self.placed(wide, node, single);
+        overlaps::<L>(&self.trees[wide].nodes[node as usize], &placed)
+    }
+}
+
+/// The pair of boxes after opening one of the two.
+#[inline(always)]
+pub(crate) fn child(pair: [u32; 2], wide: usize, node: u32, lane: usize) -> [u32; 2] {
+    let mut pair = pair;
+    pair[wide] = node * WIDTH as u32 + lane as u32;
+    pair
+}
+
+/// The least power of two that is not below `x`, at least 2⁻⁶⁰⁰.
+fn power_of_two_above(x: f64) -> f64 {
+    let x = x.max(f64::from_bits((1023 - 600) << 52));
+    let power = f64::from_bits(x.to_bits() & (0x7ff << 52));
+    if power < x { 2.0 * power } else { power }
+}

@@ -1,0 +1,181 @@
+//! The error bounds of the node test, and the same bits from every kind of lanes.
+
+use super::node_test::{Placed, Side, lower_bounds, margin_free_gaps};
+use crate::lanes::{InstructionSet, Lanes, Portable, Task, run, run_on};
+use crate::random::Random;
+use crate::tree::margin::UNIT_F32;
+use crate::tree::node::{OrientedBox, WideNode};
+use glam::{DMat3, DQuat, DVec3};
+
+impl Random {
+    fn rotation(&mut self) -> DMat3 {
+        DMat3::from_quat(DQuat::from_xyzw(self.next(), self.next(), self.next(), self.next()).normalize())
+    }
+    fn oriented_box(&mut self, size: f64, spread: f64) -> OrientedBox {
+        let axes = self.rotation();
+        let narrow = |v: DVec3| [v.x as f32, v.y as f32, v.z as f32];
+        let half = self.vec().abs() * size;
+        OrientedBox {
+            center: narrow(self.vec() * spread),
+            axes: [narrow(axes.x_axis), narrow(axes.y_axis), narrow(axes.z_axis)],
+            half_extent: narrow(half),
+            bevels: [[0; 4]; 3],
+            // As a built box: the radius is at least each half extent.
+            radius: narrow(half)[0].max(narrow(half)[1]).max(narrow(half)[2]),
+        }
+    }
+}
+
+fn wide(v: [f32; 3]) -> DVec3 {
+    DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2]))
+}
+
+/// Corners of a box: the body is their hull, cut with the ball.
+fn corners(b: &OrientedBox) -> Vec<DVec3> {
+    // Points with axis·p = ±h, by the inverse of the rounded axes.
+    let m = DMat3::from_cols(wide(b.axes[0]), wide(b.axes[1]), wide(b.axes[2])).transpose().inverse();
+    let sign = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
+    (0..8)
+        .map(|i| {
+            wide(b.center) + m * (DVec3::new(sign(i & 1), sign(i & 2), sign(i & 4)) * wide(b.half_extent))
+        })
+        .collect()
+}
+
+#[test]
+fn gaps_err_by_less_than_the_margin_and_not_by_much_less() {
+    let mut random = Random(5);
+    let mut worst = 0.0f64;
+    for round in 0..20_000 {
+        let mut node = WideNode::empty([random.next() as f32, random.next() as f32, 0.0], 0);
+        let spread = [1.0, 1e-3, 1e-1][round % 3];
+        let boxes: Vec<_> = (0..8).map(|_| random.oriented_box(spread, spread)).collect();
+        for (lane, b) in boxes.iter().enumerate() {
+            node.set_box(lane, b, 1.0);
+        }
+        node.used = 8;
+        let single = random.oriented_box(spread * [1.0, 30.0][round % 2], spread);
+        let rotation = random.rotation();
+        let offset = wide(node.origin) + random.vec() * 3.0 * spread;
+        let side = Side {
+            rotation: [rotation.x_axis, rotation.y_axis, rotation.z_axis],
+            offset,
+            ratio: 1.0,
+            floor: 0.0,
+            to_work: 1.0,
+        };
+        let placed = Placed::new(&side, &single, [0.0; 3], &node);
+        let gaps = margin_free_gaps::<Portable>(&node, &placed);
+        let b: Vec<DVec3> =
+            corners(&single).into_iter().map(|p| rotation * p + offset - wide(node.origin)).collect();
+        let scale = UNIT_F32 * placed.margin_scale();
+        for lane in 0..8 {
+            let a = corners(&boxes[lane]);
+            for (index, gap) in gaps.iter().enumerate() {
+                let axis =
+                    if index < 3 { wide(boxes[lane].axes[index]) } else { wide(placed.axis(index - 3)) };
+                let range = |points: &[DVec3]| {
+                    points
+                        .iter()
+                        .map(|p| axis.dot(*p))
+                        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)))
+                };
+                let ((la, ha), (lb, hb)) = (range(&a), range(&b));
+                let truth = (lb - ha).max(la - hb);
+                if gap[lane] > 0.0 {
+                    worst = worst.max((f64::from(gap[lane]) - truth) / scale);
+                }
+            }
+        }
+    }
+    assert!(worst < 29.0 && worst > 1.0, "{worst}");
+}
+
+#[test]
+fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
+    let mut random = Random(9);
+    let mut best = 0.0f64;
+    for round in 0..3000 {
+        let mut node = WideNode::empty([0.0; 3], 0);
+        let boxed = random.oriented_box(1.0, 1.0);
+        node.set_box(0, &boxed, 1.0);
+        node.used = 1;
+        let single = random.oriented_box(1.0, 1.0);
+        let rotation = random.rotation();
+        let offset = random.vec() * 6.0;
+        let side = Side {
+            rotation: [rotation.x_axis, rotation.y_axis, rotation.z_axis],
+            offset,
+            ratio: 1.0,
+            floor: 0.0,
+            to_work: 1.0,
+        };
+        // Without and with one more direction: any, or the one from centre to centre.
+        let n = match round % 3 {
+            0 => DVec3::ZERO,
+            1 => random.vec().normalize(),
+            _ => offset.normalize(),
+        };
+        let n = n * (1.0 - 4.0 * UNIT_F32);
+        let placed = Placed::new(&side, &single, [0.0; 3], &node);
+        let placed = placed.looking_along([n.x as f32, n.y as f32, n.z as f32]);
+        let bound = f64::from(lower_bounds::<Portable>(&node, &placed, 1.0)[0]);
+        // The ball that belongs to a box holds the mesh, not the corners; leave boxes out whose ball is smaller.
+        let (a, b) = (corners(&boxed), corners(&single));
+        let b: Vec<DVec3> = b.into_iter().map(|p| rotation * p + offset).collect();
+        let mid = |p: &[DVec3]| p.iter().fold(DVec3::ZERO, |s, &x| s + x) / 8.0;
+        let (ca, cb) = (mid(&a), mid(&b));
+        // Points of both the box and the ball.
+        for _ in 0..50 {
+            let pick = |points: &[DVec3], c: DVec3, r: f32, random: &mut Random| {
+                let i = (random.next().abs() * 8.0) as usize % 8;
+                let j = (random.next().abs() * 8.0) as usize % 8;
+                let p = points[i].lerp(points[j], random.next().abs());
+                let d = p - c;
+                c + d * (f64::from(r) / d.length()).min(1.0)
+            };
+            let p = pick(&a, ca, boxed.radius, &mut random);
+            let q = pick(&b, cb, single.radius, &mut random);
+            let apart = p.distance(q);
+            assert!(bound <= apart * (1.0 + 1e-12), "{bound} {apart}");
+            best = best.max(bound / apart);
+        }
+    }
+    assert!(best > 0.9, "{best}");
+}
+
+struct Kernel<'a>(&'a WideNode, &'a Placed);
+
+impl Task for Kernel<'_> {
+    type Output = ([f32; 8], u32);
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Output {
+        (lower_bounds::<L>(self.0, self.1, 0.25), super::node_test::overlaps::<L>(self.0, self.1))
+    }
+}
+
+#[test]
+fn every_kind_of_lanes_gives_the_same_bits() {
+    let mut random = Random(2);
+    for _ in 0..500 {
+        let mut node = WideNode::empty([0.1, 0.2, 0.3], 0);
+        node.used = 8;
+        for lane in 0..8 {
+            node.set_box(lane, &random.oriented_box(0.4, 1.0), 1.0);
+        }
+        let single = random.oriented_box(0.5, 1.0);
+        let r = random.rotation();
+        let side = Side {
+            rotation: [r.x_axis, r.y_axis, r.z_axis],
+            offset: random.vec(),
+            ratio: 2.0,
+            floor: 1e-9,
+            to_work: 0.5,
+        };
+        let placed = Placed::new(&side, &single, [0.0; 3], &node).looking_along([0.3, -0.6, 0.7]);
+        let (bounds, bits) = run_on(InstructionSet::Portable, Kernel(&node, &placed));
+        let (best_bounds, best_bits) = run(Kernel(&node, &placed));
+        assert_eq!(bounds.map(f32::to_bits), best_bounds.map(f32::to_bits));
+        assert_eq!(bits, best_bits);
+    }
+}

@@ -1,0 +1,84 @@
+//! The clock and the unit of length of one search.
+
+use super::base_pose::two_sum;
+use crate::Window;
+
+/// Units are powers of two between this one and its inverse: both can be multiplied with and divided by.
+const LEAST_UNIT: f64 = f64::from_bits((1023 - 1000) << 52); // 2⁻¹⁰⁰⁰
+
+/// Times of a search are *offsets*: they count from the first instant of the query's window, in units of a power of two
+/// that is about as long as the window. Lengths are in units of a power of two that is about as large as the scene.
+///
+/// So neither a window far from time zero nor a scene in unusual units costs precision or range, and a query whose
+/// numbers are all multiplied by a power of two is searched in the same way, bit by bit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Units {
+    window: Window,
+    time: f64,
+    length: f64,
+}
+
+impl Units {
+    /// Units for a window, with a unit of time and of length that are at least about as large as these.
+    pub(crate) fn new(window: Window, time: f64, length: f64) -> Self {
+        Self { window, time: unit_from(time), length: unit_from(length) }
+    }
+
+    /// Seconds in the unit of time.
+    pub(crate) const fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// The unit of length in that of the meshes.
+    pub(crate) const fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// The offset of the end of the window, not early.
+    pub(crate) fn end_up(&self) -> f64 {
+        let length = two_sum(self.window.end(), -self.window.start());
+        (if length.1 > 0.0 { length.0.next_up() } else { length.0 }) / self.time
+    }
+
+    /// The offset of the end of the window, not late.
+    pub(crate) fn end_down(&self) -> f64 {
+        let length = two_sum(self.window.end(), -self.window.start());
+        (if length.1 < 0.0 { length.0.next_down() } else { length.0 }) / self.time
+    }
+
+    /// The time at an offset, not late.
+    pub(crate) fn time_down(&self, offset: f64) -> f64 {
+        // Exact, if not below the normal numbers.
+        let seconds = offset * self.time;
+        let seconds = if seconds < f64::MIN_POSITIVE { 0.0 } else { seconds };
+        let sum = two_sum(self.window.start(), seconds);
+        if sum.1 < 0.0 { sum.0.next_down() } else { sum.0 }
+    }
+
+    /// The time at an offset, not early.
+    pub(crate) fn time_up(&self, offset: f64) -> f64 {
+        let seconds = offset * self.time;
+        let seconds = if offset > 0.0 { seconds.max(f64::MIN_POSITIVE) } else { 0.0 };
+        let sum = two_sum(self.window.start(), seconds);
+        if sum.1 > 0.0 { sum.0.next_up() } else { sum.0 }
+    }
+
+    /// The offset of a time, to half a unit in the last place.
+    pub(crate) fn offset(&self, time: f64) -> f64 {
+        (time - self.window.start()) / self.time
+    }
+}
+
+/// The least power of two that is not below a number, within the range of units; one for zero.
+fn unit_from(value: f64) -> f64 {
+    if value == 0.0 {
+        return 1.0;
+    }
+    power_of_two_from(value.clamp(LEAST_UNIT, 1.0 / LEAST_UNIT))
+}
+
+/// The least power of two that is not below a normal positive number.
+pub(crate) fn power_of_two_from(value: f64) -> f64 {
+    let power = f64::from_bits(value.to_bits() & (0x7ff << 52));
+    if power < value { 2.0 * power } else { power }
+}

@@ -1,0 +1,260 @@
+//! Until when are a placed box and the eight boxes of a wide node apart?
+
+use super::node_test::{NodeScale, Placed};
+use crate::lanes::Lanes;
+use crate::lanes::{Bytes, Elementwise, Two};
+use crate::tree::bevel::{PAIRS, STEPS};
+use crate::tree::margin::UNIT_F32;
+use crate::tree::node::WideNode;
+
+/// What covers the roundings of the entry time and of unit axes.
+pub(crate) const ENTRY_FACTOR: f32 = 1.0 - 32.0 * UNIT_F32 as f32;
+
+/// Scalar product of lanes.
+#[inline(always)]
+fn dot<T: Elementwise>(a: &[T; 3], b: &[T; 3]) -> T {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The same three values in each lane.
+#[inline(always)]
+fn splat<T: Elementwise<Scalar = f32>>(values: &[f32; 4]) -> [T; 3] {
+    [T::splat(values[0]), T::splat(values[1]), T::splat(values[2])]
+}
+
+#[inline(always)]
+fn load<L: Lanes>(values: &[[f32; 8]; 3]) -> [L; 3] {
+    [L::load(&values[0]), L::load(&values[1]), L::load(&values[2])]
+}
+
+/// One vector in the first eight lanes, another in the second.
+#[inline(always)]
+fn beside<L: Lanes>(first: &[L; 3], second: &[L; 3]) -> [L::Two; 3] {
+    [L::Two::of(first[0], second[0]), L::Two::of(first[1], second[1]), L::Two::of(first[2], second[2])]
+}
+
+#[inline(always)]
+fn both<L: Lanes>(half: &[L; 3]) -> [L::Two; 3] {
+    [L::Two::both(half[0]), L::Two::both(half[1]), L::Two::both(half[2])]
+}
+
+/// Along one axis: the gap, and the speed at which it closes at most, never less than a positive least one.
+#[derive(Clone, Copy)]
+struct Course<T> {
+    gap: T,
+    closing: T,
+}
+
+impl<T: Elementwise> Course<T> {
+    /// The centres are `along` apart on the axis and part at `parting` (in the sense of the axis), the boxes and the
+    /// margin reach `reach`; speeds differ by at most `spread` from those of the centres.
+    #[inline(always)]
+    fn new(along: T, reach: T, parting: T, (spread, least): (T, T)) -> Self {
+        Self { gap: along.abs() - reach, closing: (spread - T::flip_sign(parting, along)).max(least) }
+    }
+
+    /// The one whose gap lasts longer without acceleration; `other` where a gap is not a number.
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        let (left, right) = (self.gap * other.closing, other.gap * self.closing);
+        Self {
+            gap: T::if_greater(left, right, self.gap, other.gap),
+            closing: T::if_greater(left, right, self.closing, other.closing),
+        }
+    }
+}
+
+/// How far bevelled boxes reach from their centres along directions that have these cosines with their axes, or along
+/// the opposite ones where `along` is negative: Σ |cᵢ|hᵢ is what their corners reach. Of uᵢ = |cᵢ|hᵢ any w with w ≤ uᵢ,
+/// w ≤ uⱼ can be told as w(σxᵢ/hᵢ + τxⱼ/hⱼ), which is at most w(2 − s). `USED`: how many pairs of axes are looked at; the
+/// cuts between the faces of the first one are the deepest.
+#[inline(always)]
+fn reach<T: Bytes, const USED: usize>(half: &[T; 3], bevels: &[T; 3], cosines: &[T; 3], along: T) -> T {
+    let mut left = [half[0] * cosines[0].abs(), half[1] * cosines[1].abs(), half[2] * cosines[2].abs()];
+    let corner = left[0] + left[1] + left[2];
+    let mut steps = T::splat(0.0);
+    for pair in 0..USED {
+        let (i, j) = PAIRS[pair];
+        let common = left[i].min(left[j]);
+        (left[i], left[j]) = (left[i] - common, left[j] - common);
+        steps = steps + common * bevels[pair].byte_of(cosines[i], cosines[j], along);
+    }
+    corner - steps * T::splat(1.0 / STEPS)
+}
+
+/// Lower bounds on the times, counted from the frame, until which each lane's box stays apart from the single one;
+/// not positive, or not a number, where nothing is known. In units of the window, not yet clipped.
+///
+/// Five directions are looked at: the middle axes of both boxes side by side, the last axes, and the line of the centres.
+#[inline(always)]
+pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &NodeScale) -> L {
+    // Twice, for the two axes: from the lane's centre to the single one's, and the velocity there.
+    let center = both::<L>(&load(&wide.center));
+    let at = splat::<L::Two>(&placed.center);
+    let to = [at[0] - center[0], at[1] - center[1], at[2] - center[2]];
+    let w = splat::<L::Two>(&placed.omega_wide);
+    let base = splat::<L::Two>(&placed.velocity);
+    let v = [
+        base[0] - (w[1] * center[2] - w[2] * center[1]),
+        base[1] - (w[2] * center[0] - w[0] * center[2]),
+        base[2] - (w[0] * center[1] - w[1] * center[0]),
+    ];
+    let half = load::<L>(&wide.half_extent);
+    let a = [load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]), load::<L>(&wide.axes[2])];
+    let b = [splat::<L>(&placed.axes[0]), splat::<L>(&placed.axes[1]), splat::<L>(&placed.axes[2])];
+    let k = [L::splat(placed.half[0]), L::splat(placed.half[1]), L::splat(placed.half[2])];
+    let margin = L::Two::splat(placed.gap_margin);
+    // |ω|·radius of both boxes, whatever the direction, and the error of speeds.
+    let spread =
+        L::splat(scale.spin[0]) * L::load(&wide.radius) + L::splat(placed.swing + placed.speed_margin);
+    let speeds = (L::Two::both(spread), L::Two::splat(placed.least));
+
+    // Axes of the lane's box beside those of the single one, each against the axes of the other box.
+    let [middle, last] = [beside(&a[1], &b[1]), beside(&a[2], &b[2])];
+    let first_of_other = beside(&b[0], &a[0]);
+    let same = dot(&beside(&a[1], &a[2]), &beside(&b[1], &b[2]));
+    let middle_last = dot(&middle, &beside(&b[2], &a[2]));
+    let with_middle = [dot(&middle, &first_of_other), L::Two::both(same.first()), middle_last];
+    let last_middle = L::Two::of(middle_last.second(), middle_last.first());
+    let with_last = [dot(&last, &first_of_other), last_middle, L::Two::both(same.second())];
+    let bevels = [L::splat(placed.bevels[0]), L::splat(placed.bevels[1]), L::splat(placed.bevels[2])];
+    let (other_half, other_bevels) = (beside(&k, &half), beside(&bevels, &load(&wide.bevels)));
+    let [along_middle, along_last] = [dot(&to, &middle), dot(&to, &last)];
+    let reach_middle = reach::<_, 1>(&other_half, &other_bevels, &with_middle, along_middle);
+    let reach_last = reach::<_, 3>(&other_half, &other_bevels, &with_last, along_last);
+    let sum_middle = L::Two::of(half[1], k[1]) + margin + reach_middle;
+    let sum_last = L::Two::of(half[2], k[2]) + margin + reach_last;
+    let best = Course::new(along_middle, sum_middle, dot(&v, &middle), speeds).or(Course::new(
+        along_last,
+        sum_last,
+        dot(&v, &last),
+        speeds,
+    ));
+    let best = Course { gap: best.gap.first(), closing: best.closing.first() }
+        .or(Course { gap: best.gap.second(), closing: best.closing.second() });
+
+    // The line of the centres: where it has no length, nothing is known along it.
+    let with_line = [
+        dot(&to, &first_of_other),
+        L::Two::of(along_middle.second(), along_middle.first()),
+        L::Two::of(along_last.second(), along_last.first()),
+    ];
+    let reach_line = reach::<_, 3>(&other_half, &other_bevels, &with_line, L::Two::splat(0.0));
+    let line = [to[0].first(), to[1].first(), to[2].first()];
+    let rate = [v[0].first(), v[1].first(), v[2].first()];
+    let square = dot(&line, &line);
+    let inverse = L::splat(1.0) / square.sqrt();
+    let gap = (square - (reach_line.first() + reach_line.second())) * inverse - L::splat(placed.gap_margin);
+    let closing = (spread - dot(&rate, &line) * inverse).max(L::splat(placed.least));
+    let best = Course { gap, closing }.or(best);
+
+    // Root of gap − closing·s − acceleration·s²/2: no cancellation.
+    let twice = best.gap + best.gap;
+    let root = (best.closing * best.closing + L::splat(scale.acceleration) * twice).sqrt();
+    twice / (best.closing + root) * L::splat(ENTRY_FACTOR)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::InstructionSet;
+    use crate::lanes::Portable;
+    use crate::lanes::{Task, run_on};
+    use crate::random::Random;
+
+    /// Bytes chosen by signs, by lanes and by twice as many.
+    struct Choice([[f32; 8]; 4]);
+
+    impl Task for Choice {
+        type Output = [[u32; 8]; 3];
+
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Self::Output {
+            let [four, x, y, flip] =
+                [L::load(&self.0[0]), L::load(&self.0[1]), L::load(&self.0[2]), L::load(&self.0[3])];
+            let zero = L::splat(0.0);
+            let (two, one) = (L::Two::of(zero, four), L::Two::both(flip));
+            let second = two.byte_of(L::Two::of(x, x), L::Two::of(y, y), one);
+            [four.byte_of(x, y, flip), second.first(), second.second()]
+                .map(|lanes| lanes.store().map(f32::to_bits))
+        }
+    }
+
+    #[test]
+    fn bytes_are_chosen_by_signs_with_every_instruction_set() {
+        let mut random = Random(21);
+        for _ in 0..2000 {
+            let mut number = || random.next() as f32;
+            let signs: [[f32; 8]; 3] = core::array::from_fn(|_| {
+                core::array::from_fn(|k| if k == 3 { -0.0 * number().signum() } else { number() })
+            });
+            let bytes: [[u8; 4]; 8] =
+                core::array::from_fn(|_| core::array::from_fn(|_| ((number() + 1.0) * 63.4) as u8));
+            let four = bytes.map(|b| f32::from_bits(u32::from_le_bytes(b)));
+            let expected: [u32; 8] = core::array::from_fn(|k| {
+                let is_negative =
+                    |v: &[f32; 8]| usize::from(v[k].is_sign_negative() != signs[2][k].is_sign_negative());
+                f32::from(bytes[k][is_negative(&signs[0]) + 2 * is_negative(&signs[1])]).to_bits()
+            });
+            let wanted = [expected, [0; 8], expected];
+            for set in InstructionSet::available() {
+                assert_eq!(run_on(set, Choice([four, signs[0], signs[1], signs[2]])), wanted, "{set:?}");
+            }
+        }
+    }
+
+    /// Points in a box from which all edges are cut off, pushed out until they are on its surface: none is beyond its
+    /// reach, and together they come near it.
+    #[test]
+    fn bevelled_boxes_reach_as_far_as_their_points() {
+        let mut random = Random(22);
+        let mut sharpest = 0.0f32;
+        for _ in 0..300 {
+            let half: [f32; 3] = core::array::from_fn(|_| 10f64.powf(1.5 * random.next() - 1.5) as f32);
+            let cuts: [[u8; 4]; 3] =
+                core::array::from_fn(|_| core::array::from_fn(|_| ((random.next() + 1.0) * 63.4) as u8));
+            let room = |q: [f32; 3]| {
+                // The largest number that the point, in half extents, may be multiplied with.
+                let mut most = q.iter().map(|x| 1.0 / x.abs()).fold(f32::INFINITY, f32::min);
+                for (&(i, j), cuts) in PAIRS.iter().zip(&cuts) {
+                    for (place, &cut) in cuts.iter().enumerate() {
+                        let sign = |bit: usize| if place & bit == 0 { 1.0 } else { -1.0 };
+                        let towards = sign(1) * q[i] + sign(2) * q[j];
+                        if towards > 0.0 {
+                            most = most.min((2.0 - f32::from(cut) / STEPS) / towards);
+                        }
+                    }
+                }
+                most
+            };
+            let points: Vec<[f32; 3]> = (0..400)
+                .map(|_| {
+                    let q: [f32; 3] = core::array::from_fn(|_| random.next() as f32);
+                    let most = room(q);
+                    core::array::from_fn(|k| q[k] * most * half[k])
+                })
+                .collect();
+            let bevels = cuts.map(|cuts| Portable::splat(f32::from_bits(u32::from_le_bytes(cuts))));
+            let along = random.next() as f32;
+            for _ in 0..20 {
+                let cosines: [f32; 3] = core::array::from_fn(|_| random.next() as f32);
+                let told = reach::<_, 3>(
+                    &half.map(Portable::splat),
+                    &bevels,
+                    &cosines.map(Portable::splat),
+                    Portable::splat(along),
+                )
+                .store()[0];
+                let direction = cosines.map(|c| c * along.signum());
+                let farthest = points
+                    .iter()
+                    .map(|p| direction[0] * p[0] + direction[1] * p[1] + direction[2] * p[2])
+                    .fold(f32::NEG_INFINITY, f32::max);
+                let corner: f32 = (0..3).map(|k| half[k] * cosines[k].abs()).sum();
+                assert!(farthest <= told + 1e-6 * corner, "{farthest} {told}");
+                sharpest = sharpest.max(farthest / told);
+            }
+        }
+        assert!(sharpest > 0.999, "{sharpest}");
+    }
+}

@@ -1,0 +1,81 @@
+//! Opening a pair of boxes: a box of one body against the eight boxes of a node of the other.
+
+use super::entry_time::entry_times;
+use super::node_test::{NodeFrame, NodeScale, Placed};
+use crate::lanes::Lanes;
+use crate::search::queue::Item;
+use crate::tree::node::{WIDTH, WideNode};
+
+/// Keys of a window run from 0 to this for its whole unit of time.
+pub(crate) const KEY_SCALE: f64 = 536_870_912.0; // 2²⁹
+/// Later times get this key: beyond every window, and with a key of now still a number of 31 bits.
+const LATEST_KEY: f32 = 1.25 * KEY_SCALE as f32;
+
+/// What the expansions of one frame share.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Opening<'a> {
+    /// Wide nodes of A and of B.
+    pub(crate) nodes: [&'a [WideNode]; 2],
+    /// Constants when nodes of A, of B, are opened.
+    pub(crate) scales: [NodeScale; 2],
+    /// Sizes of A's boxes are multiplied by the first, those of B's by the second, before they are compared: between
+    /// [`LEAST_SIZE`](crate::tree::node::LEAST_SIZE) and its inverse.
+    pub(crate) size_ratios: [f32; 2],
+}
+
+/// The pairs below an opened one: each box of the node that was opened with the same box of the other body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Opened {
+    /// Until when the pairs are proven apart.
+    pub(crate) keys: [i32; WIDTH],
+    /// What is to be done with them: see [`Item::open`].
+    pub(crate) open: [u32; WIDTH],
+    /// Bit i is set when pair i is worth queueing.
+    pub(crate) bits: u32,
+    /// The node is one of B's.
+    pub(crate) wide_is_b: bool,
+    /// The first box of the node, and the box of the other body.
+    pub(crate) first: u32,
+    pub(crate) single: u32,
+}
+
+impl Opening<'_> {
+    /// What is to be done with a pair of boxes: the larger one is opened. A triangle has no size, so it is never the larger.
+    pub(crate) fn of_pair(&self, a: u32, b: u32) -> u32 {
+        let (na, nb) = (&self.nodes[0][a as usize / WIDTH], &self.nodes[1][b as usize / WIDTH]);
+        let (la, lb) = (a as usize % WIDTH, b as usize % WIDTH);
+        let larger = na.size[la] * self.size_ratios[0] > nb.size[lb] * self.size_ratios[1];
+        if larger { na.child[la] } else { nb.child[lb] | Item::OF_B }
+    }
+
+    /// Opens an item that is not a pair of triangles. Keys count from `now`, the key of the frame; pairs whose key is not below
+    /// `limit` are not worth queueing.
+    #[inline(always)]
+    pub(crate) fn expand<L: Lanes>(
+        &self,
+        item: &Item,
+        frames: &[NodeFrame; 2],
+        (now, limit): (u32, u32),
+    ) -> Opened {
+        let (wide_index, side) = (item.node(), item.side());
+        let other = 1 - side;
+        let single = item.boxes[other];
+        let wide = &self.nodes[side][wide_index as usize];
+        let (node, lane) = (&self.nodes[other][single as usize / WIDTH], single as usize % WIDTH);
+        let scale = &self.scales[side];
+        let placed = Placed::new::<L>(&frames[side], scale, (node, lane), wide);
+        let times = entry_times::<L>(wide, &placed, scale);
+        // What is not a number becomes the key of the item itself.
+        let steps = L::splat(LATEST_KEY).min(times * L::splat(KEY_SCALE as f32));
+        let (keys, below) = steps.keys(now as i32, item.key as i32, limit as i32);
+        let flags = [0, Item::OF_B];
+        let size = node.size[lane] * self.size_ratios[other];
+        let open = L::larger(
+            (&wide.size, self.size_ratios[side], size),
+            (&wide.child, flags[side]),
+            node.child[lane] | flags[other],
+        );
+        let bits = below & ((1 << wide.used) - 1);
+        Opened { keys, open, bits, wide_is_b: side == 1, first: wide_index * WIDTH as u32, single }
+    }
+}

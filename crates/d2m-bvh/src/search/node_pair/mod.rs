@@ -1,0 +1,5 @@
+//! A box of one body against the eight boxes of a node of the other: until when are they apart?
+
+pub(crate) mod entry_time;
+pub(crate) mod expansion;
+pub(crate) mod node_test;

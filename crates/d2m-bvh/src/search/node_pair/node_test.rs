@@ -1,0 +1,186 @@
+//! One box of one body, placed in the frame of a wide node of the other.
+
+use crate::lanes::Lanes;
+use crate::lanes::{Doubles, Matrix, Quad};
+use crate::search::motion::frame::Frame;
+use crate::tree::margin::UNIT_F32;
+use crate::tree::node::WideNode;
+use glam::DVec3;
+
+/// Constants of one search for one choice of the wide body. Lengths are in units of that body's tree, times in
+/// units of the window.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NodeScale {
+    /// Unit of the single body over that of the wide one, a power of two.
+    pub(crate) ratio: f64,
+    /// One over the unit of the wide body.
+    pub(crate) inverse_unit: f64,
+    /// Unit of time over the unit of length of the wide body.
+    pub(crate) speed_scale: f64,
+    /// Unit of time.
+    pub(crate) time_unit: f64,
+    /// |ω|·(unit of time) of the wide and of the single body, rounded up.
+    pub(crate) spin: [f32; 2],
+    /// What is added to every margin: the level that counts as contact and the errors of the frame.
+    pub(crate) floor: f32,
+    /// The same for speeds.
+    pub(crate) speed_floor: f32,
+    /// Bound on the acceleration between the bodies.
+    pub(crate) acceleration: f32,
+}
+
+/// Factor of the gap's error bound; see docs/theory/engine.md.
+pub(crate) const GAP_ERROR: f32 = 48.0 * UNIT_F32 as f32;
+/// Factor of the speed's error bound.
+pub(crate) const SPEED_ERROR: f32 = 48.0 * UNIT_F32 as f32;
+/// Part of the acceleration times the time left that closing speeds are raised to: keeps axes along which the boxes
+/// part from being taken for the best ones.
+const HINT: f32 = 0.0625;
+
+/// The single body in the frame of the wide body at one time, in the units of [`NodeScale`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NodeFrame {
+    rotation: Matrix,
+    /// The same rounded to `f32`.
+    narrow: [[f32; 4]; 3],
+    apart: Quad,
+    velocity: Quad,
+    /// ω_single × each column of the rotation.
+    swing: Matrix,
+    /// ω_wide × each axis.
+    turn: Matrix,
+    omega_wide: [f32; 4],
+    /// Least closing speed that is reckoned with.
+    least: f32,
+    /// The error of speeds that does not depend on the boxes.
+    speed_floor: f32,
+}
+
+impl NodeFrame {
+    /// What is there before the first one.
+    pub(crate) const NONE: Self = Self {
+        rotation: Matrix([Quad([0.0; 4]); 3]),
+        narrow: [[0.0; 4]; 3],
+        apart: Quad([0.0; 4]),
+        velocity: Quad([0.0; 4]),
+        swing: Matrix([Quad([0.0; 4]); 3]),
+        turn: Matrix([Quad([0.0; 4]); 3]),
+        omega_wide: [0.0; 4],
+        least: 0.0,
+        speed_floor: 0.0,
+    };
+
+    /// `left`: no later time matters, counted from the frame (a hint). `wide_is_b`: nodes of B are opened against boxes of A; else the other way round.
+    #[inline(always)]
+    pub(crate) fn new<D: Doubles>(frame: &Frame, scale: &NodeScale, wide_is_b: bool, left: f32) -> Self {
+        let (length, speed, time) =
+            (D::splat(scale.inverse_unit), D::splat(scale.speed_scale), D::splat(scale.time_unit));
+        let (rotation, apart, velocity, omega_single, omega_wide): (Matrix, D, D, D, D) = if wide_is_b {
+            (
+                frame.rotation,
+                D::load(&frame.apart),
+                D::load(&frame.velocity),
+                D::load(&frame.omega_a),
+                D::load(&frame.omega_b),
+            )
+        } else {
+            let to_a = frame.rotation.transposed::<D>();
+            let zero = D::splat(0.0);
+            (
+                to_a,
+                zero - to_a.times_quad::<D>(&frame.apart),
+                zero - to_a.times_quad::<D>(&frame.velocity),
+                to_a.times_quad(&frame.omega_b),
+                to_a.times_quad(&frame.omega_a),
+            )
+        };
+        let (omega_single, omega_wide) = (omega_single * time, omega_wide * time);
+        let r = &rotation.0;
+        Self {
+            rotation,
+            narrow: [D::load(&r[0]).narrow(), D::load(&r[1]).narrow(), D::load(&r[2]).narrow()],
+            apart: (apart * length).store(),
+            velocity: (velocity * speed).store(),
+            swing: Matrix::cross(&omega_single.store()).times_matrix::<D>(&rotation),
+            turn: Matrix::cross(&omega_wide.store()),
+            omega_wide: omega_wide.narrow(),
+            least: scale.acceleration * left * HINT + scale.speed_floor,
+            speed_floor: scale.speed_floor,
+        }
+    }
+}
+
+/// A single box in the frame of the wide body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placed {
+    pub(super) center: [f32; 4],
+    pub(super) axes: [[f32; 4]; 3],
+    pub(super) half: [f32; 3],
+    /// Of the opposite edges: for the opposite of a direction.
+    pub(super) bevels: [f32; 3],
+    /// Velocity of the centre against the origin of the wide node as a point of the wide body.
+    pub(super) velocity: [f32; 4],
+    pub(super) omega_wide: [f32; 4],
+    /// Bound on |ω × e| over the single box.
+    pub(super) swing: f32,
+    pub(crate) gap_margin: f32,
+    /// Error of speeds.
+    pub(super) speed_margin: f32,
+    /// Least closing speed that is reckoned with.
+    pub(super) least: f32,
+}
+
+impl Placed {
+    /// Moves box `lane` of node `single` into the frame of the wide body.
+    #[inline(always)]
+    pub(crate) fn new<L: Lanes>(
+        frame: &NodeFrame,
+        scale: &NodeScale,
+        (single, lane): (&WideNode, usize),
+        wide: &WideNode,
+    ) -> Self {
+        let at = |k: usize| (f64::from(single.origin[k]) + f64::from(single.center[k][lane])) * scale.ratio;
+        let from = DVec3::new(at(0), at(1), at(2));
+        let origin =
+            DVec3::new(f64::from(wide.origin[0]), f64::from(wide.origin[1]), f64::from(wide.origin[2]));
+        let apart = <L::Doubles as Doubles>::load(&frame.apart);
+        let velocity = <L::Doubles as Doubles>::load(&frame.velocity);
+        let here = <L::Doubles as Doubles>::load(&Quad::from_vec(origin));
+        let center = (apart + frame.rotation.times(from) - here).narrow();
+        let velocity = (velocity + frame.swing.times(from) - frame.turn.times(origin)).narrow();
+        let ratio = scale.ratio as f32;
+        let radius = single.radius[lane] * ratio;
+        let (half, bevels) = (&single.half_extent, &single.bevels);
+        let norm = |v: &[f32; 4]| v[0].abs() + v[1].abs() + v[2].abs();
+        let swing = scale.spin[1] * radius;
+        Self {
+            axes: [
+                turned::<L>(frame, &single.axes[0], lane),
+                turned::<L>(frame, &single.axes[1], lane),
+                turned::<L>(frame, &single.axes[2], lane),
+            ],
+            half: [half[0][lane] * ratio, half[1][lane] * ratio, half[2][lane] * ratio],
+            bevels: [opposite(bevels[0][lane]), opposite(bevels[1][lane]), opposite(bevels[2][lane])],
+            omega_wide: frame.omega_wide,
+            swing,
+            gap_margin: GAP_ERROR * (norm(&center) + wide.extent + radius) + scale.floor,
+            speed_margin: SPEED_ERROR * (norm(&velocity) + scale.spin[0] * wide.extent + swing)
+                + frame.speed_floor,
+            least: frame.least,
+            center,
+            velocity,
+        }
+    }
+}
+
+/// The four bytes for the opposites of directions.
+#[inline(always)]
+fn opposite(bevels: f32) -> f32 {
+    f32::from_bits(bevels.to_bits().swap_bytes())
+}
+
+/// A stored axis in the wide body's frame.
+#[inline(always)]
+fn turned<L: Lanes>(frame: &NodeFrame, axis: &[[f32; 8]; 3], lane: usize) -> [f32; 4] {
+    L::combine(&frame.narrow, axis[0][lane], axis[1][lane], axis[2][lane])
+}

@@ -1,0 +1,213 @@
+//! Windows searched side by side by several threads, with the bits of a search by one.
+//!
+//! How a window is searched depends on its span, and on what was done before it only in this: looks at triangles are
+//! thorough from a number of looks on, sweeps are tried from an amount of work on, and the budget ends. A window that is
+//! searched ahead starts from the counts of an earlier moment, which are never above the true ones, and gives up where
+//! it would try sweeps or the budget ends. When its turn comes, what it found is taken only if nothing of the three
+//! falls into it with the true counts either: then the search by one thread would have done the same, operation by
+//! operation. Otherwise it is searched again. See docs/theory/engine.md, "Several threads".
+
+use super::best_first::{Outcome, QUICK_LOOKS, Search};
+use super::scene::{Scratch, SearchCounts};
+use crate::lanes::run;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Work of a search, in node tests, before it is worth while to wake other threads.
+const FIRST_WORK: u64 = 1024;
+/// Work of each thread before the results are taken, for windows like those so far: more than it costs to wake it.
+const ROUND_WORK: u64 = 4096;
+/// Windows of each thread before the results are taken, at least and at most.
+const WINDOWS_A_THREAD: (u64, u64) = (4, 512);
+
+/// A window that is searched ahead.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ahead<'r> {
+    pub(super) window: (f64, f64),
+    number: usize,
+    /// The least number of a window with an answer.
+    answered: &'r AtomicUsize,
+}
+
+impl Ahead<'_> {
+    /// Is there an answer in an earlier window?
+    pub(super) fn is_useless(&self) -> bool {
+        self.answered.load(Ordering::Relaxed) < self.number
+    }
+}
+
+/// What the search of one window gave.
+#[derive(Clone, Copy, Debug)]
+struct Searched {
+    outcome: Outcome,
+    /// Of this window alone.
+    counts: SearchCounts,
+    last_looked_at: [u32; 2],
+}
+
+impl Search<'_> {
+    /// Searches windows from `start` on, side by side while that is worth while. The time up to which that proves the
+    /// bodies apart, or the answer.
+    pub(super) fn search_ahead(&mut self, mut start: f64) -> Result<f64, Outcome> {
+        loop {
+            let windows = self.windows_worth_searching(start);
+            if windows.len() < 2 {
+                return Ok(start);
+            }
+            let known = self.scratch.counts;
+            let results = self.search_side_by_side(&windows);
+            for (window, searched) in windows.iter().zip(results) {
+                let Some(searched) = searched.filter(|searched| self.would_do_the_same(&known, searched))
+                else {
+                    return Ok(start);
+                };
+                if searched.counts.triangle_looks > 0 {
+                    self.scratch.last_looked_at = searched.last_looked_at;
+                }
+                self.scratch.counts = self.scratch.counts.with(&searched.counts);
+                match searched.outcome {
+                    Outcome::Separated => start = window.1,
+                    answer => return Err(answer),
+                }
+                if start >= self.scene.end {
+                    return Err(Outcome::Separated);
+                }
+            }
+        }
+    }
+
+    /// The next windows: so many that the threads are busy, and the search goes on without sweeps for so long.
+    fn windows_worth_searching(&self, mut start: f64) -> Vec<(f64, f64)> {
+        let (counts, threads) = (&self.scratch.counts, rayon::current_num_threads());
+        let mut windows = Vec::new();
+        if threads < 2 || self.work() < FIRST_WORK {
+            return windows;
+        }
+        let mean = ((counts.node_tests + counts.triangle_looks) / counts.windows.max(1)).max(1);
+        let until_sweep = self.limits.sweep_from.saturating_sub(self.work()) / mean;
+        let each = (ROUND_WORK / mean).clamp(WINDOWS_A_THREAD.0, WINDOWS_A_THREAD.1);
+        let most = (each * threads as u64).min(until_sweep) as usize;
+        while windows.len() < most
+            && start < self.scene.end
+            && let Some(window) = self.window_from(start)
+        {
+            windows.push(window);
+            start = window.1;
+        }
+        windows
+    }
+
+    /// What each window gives from the counts of now on; none where it was given up.
+    fn search_side_by_side(&mut self, windows: &[(f64, f64)]) -> Vec<Option<Searched>> {
+        let threads = rayon::current_num_threads().min(windows.len());
+        let (next, answered) = (AtomicUsize::new(0), AtomicUsize::new(usize::MAX));
+        let results: Vec<OnceLock<Searched>> = windows.iter().map(|_| OnceLock::new()).collect();
+        let (scene, limits, known) = (self.scene, self.limits, self.scratch.counts);
+        let work = |scratch: &mut Scratch| {
+            // In the order of time, so that little is wasted after an answer.
+            loop {
+                let number = next.fetch_add(1, Ordering::Relaxed);
+                if number >= windows.len() {
+                    return;
+                }
+                let ahead = Ahead { window: windows[number], number, answered: &answered };
+                if ahead.is_useless() {
+                    return;
+                }
+                scratch.counts = known;
+                let search = Search::of_window(scene, limits, scratch, ahead);
+                let outcome = run(search);
+                match outcome {
+                    Outcome::OutOfBudget(_) => continue,
+                    Outcome::Found(_) => _ = answered.fetch_min(number, Ordering::Relaxed),
+                    Outcome::Separated => {}
+                }
+                let (counts, last_looked_at) = (scratch.counts.without(&known), scratch.last_looked_at);
+                // Each number is handed out once.
+                _ = results[number].set(Searched { outcome, counts, last_looked_at });
+            }
+        };
+        let helpers = &mut self.scratch.helpers;
+        helpers.resize_with(threads.max(helpers.len()), Scratch::new);
+        rayon::scope(|scope| {
+            for helper in &mut helpers[..threads] {
+                scope.spawn(|_| work(helper));
+            }
+        });
+        results.into_iter().map(OnceLock::into_inner).collect()
+    }
+
+    /// Would the window have been searched in the same way from the true counts as from those `known` before?
+    fn would_do_the_same(&self, known: &SearchCounts, searched: &Searched) -> bool {
+        let after = self.scratch.counts.with(&searched.counts);
+        let same_care = after.triangle_looks <= QUICK_LOOKS
+            || known.triangle_looks >= QUICK_LOOKS
+            || searched.counts.triangle_looks == 0;
+        same_care && after.work() < self.limits.sweep_from && after.work() < self.limits.most_tests
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::scene::Scene;
+    use super::*;
+    use crate::random::{Random, wavy_torus};
+    use crate::{Budget, MeshTree, Mode, QueryOptions, TriMesh, Window};
+    use d2m_motion::ConstantTwist;
+    use glam::{DQuat, DVec3};
+
+    fn ring(rings: u32, sides: u32, tube: f64) -> MeshTree {
+        let (corners, triangles) = wavy_torus(rings, sides, tube);
+        MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
+    }
+
+    /// Interlocked rings that spin and drift, close to each other for long: every number of threads gives the outcome
+    /// and the counts of one thread, whatever the mode and wherever a budget ends.
+    #[test]
+    fn any_number_of_threads_does_the_same() {
+        let mut random = Random(9);
+        let trees = [ring(16, 6, 0.3), ring(24, 8, 0.35), ring(8, 4, 0.25)];
+        let pools = [1, 2, 3, 8].map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap());
+        let (mut found, mut apart, mut ended, mut helped) = (0, 0, 0, 0);
+        for round in 0..40 {
+            let (a, b) = (&trees[round % 3], &trees[round / 3 % 3]);
+            let spin = [10.0, 60.0, 300.0][round % 3];
+            let upright = DQuat::from_rotation_x(1.57 + 0.2 * random.next());
+            let drift = random.vec() * [0.0, 0.02, 0.2, 0.6][round / 2 % 4];
+            let place = DVec3::X * (0.9 + 0.15 * random.next());
+            let motions = [
+                ConstantTwist::try_new(
+                    DVec3::ZERO,
+                    DQuat::IDENTITY,
+                    drift,
+                    (DVec3::Z + random.vec() * 0.05) * spin,
+                ),
+                ConstantTwist::try_new(place, upright, DVec3::ZERO, DVec3::Y * spin * random.next()),
+            ]
+            .map(Result::unwrap);
+            let options = QueryOptions::default()
+                .with_parallel(true)
+                .with_mode([Mode::Accurate, Mode::Exists, Mode::Capoeira][round / 5 % 3]);
+            let scene = Scene::new((a, motions[0]), (b, motions[1]), Window::UNIT, &options);
+            let mut ask = |options: &QueryOptions, threads: usize| {
+                let mut scratch = Scratch::new();
+                let outcome = pools[threads].install(|| run(Search::new(&scene, options, &mut scratch)));
+                helped += usize::from(!scratch.helpers.is_empty());
+                (format!("{outcome:?}"), scratch.counts)
+            };
+            let (_, all) = ask(&options, 0);
+            for part in [2.0, 0.999, 0.4] {
+                let budget = Budget::UNLIMITED.with_node_tests((all.work() as f64 * part) as u64 + 1);
+                let options = options.with_budget(budget);
+                let alone = ask(&options.with_parallel(false), 0);
+                for threads in 0..4 {
+                    assert_eq!(ask(&options, threads), alone, "scene {round}, {part} of the work");
+                }
+                found += u32::from(alone.0.contains("Found"));
+                apart += u32::from(alone.0.contains("Separated"));
+                ended += u32::from(alone.0.contains("OutOfBudget"));
+            }
+        }
+        assert!(found > 15 && apart > 15 && ended > 15 && helped > 60, "{found} {apart} {ended} {helped}");
+    }
+}
