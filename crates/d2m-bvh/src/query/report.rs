@@ -11,14 +11,19 @@ use crate::{Contact, Evidence, MeshTree, StartState};
 use d2m_feature::{FeaturePair, triangles_intersect};
 use glam::DVec3;
 
-/// The contact with all its data; `bracket`: look for a time by which the tolerance was reached, if that cannot be
+/// The contact with all its data, of a scene and its motion over the window of the search; `bracket`: look for a time by which the tolerance was reached, if that cannot be
 /// shown for `time_lo`.
-pub(super) fn contact(scene: &Scene<'_>, found: &Found, bracket: bool) -> Contact {
-    run(Report { scene, found, bracket })
+pub(super) fn contact(
+    (scene, motion): (&Scene<'_>, &RelativeMotion),
+    found: &Found,
+    bracket: bool,
+) -> Contact {
+    run(Report { scene, motion, found, bracket })
 }
 
 struct Report<'r> {
     scene: &'r Scene<'r>,
+    motion: &'r RelativeMotion,
     found: &'r Found,
     bracket: bool,
 }
@@ -28,10 +33,9 @@ impl Task for Report<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Contact {
-        let Self { scene, found, bracket } = self;
-        let [a, b] = [scene.a.corners(found.triangles[0]), scene.b.corners(found.triangles[1])];
-        let motion = RelativeMotion::new(scene, found.start);
-        let pair = TrianglePair { motion: &motion, a, b };
+        let Self { scene, motion, found, bracket } = self;
+        let (a, b) = (scene.a.corners(found.triangles[0]), scene.b.corners(found.triangles[1]));
+        let pair = TrianglePair { motion, a, b };
         // What the clock of the caller has no number for is reported at the time before.
         let time = scene.units.time_down(found.in_query());
         let offset = scene.units.offset(time);
@@ -63,7 +67,7 @@ impl Task for Report<'_> {
             meeting,
         };
         let mut contact = if from == offset {
-            describe(scene, (&motion, &frame), time, &witness(near, &frame))
+            describe(scene, (motion, &frame), time, &witness(near, &frame))
         } else {
             let motion = RelativeMotion::new(scene, offset);
             let (frame, near) = TrianglePair { motion: &motion, a, b }.at::<L::Doubles>(offset);

@@ -97,7 +97,19 @@ pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfCon
         search = search.of_start();
     }
     let outcome = run(search);
+    let answer = answer(scene, options, (outcome, held), (&scratch, &allowance));
     SCRATCH.set(Some(scratch));
+    answer
+}
+
+/// From what a search with this memory found, and what holds at the start, to the answer. What is left to decide is done
+/// within the allowance.
+fn answer(
+    scene: &Scene<'_>,
+    options: &QueryOptions,
+    (outcome, held): (Outcome, Option<Held>),
+    (scratch, allowance): (&Scratch, &Allowance),
+) -> Result<TimeOfContact, QueryError> {
     let surfaces_are_apart = match outcome {
         Outcome::Found(found) => !found.is_at_start(),
         Outcome::OutOfBudget(until) => until > 0.0,
@@ -112,9 +124,11 @@ pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfCon
         Outcome::Separated => TimeOfContact::Separated,
         Outcome::OutOfBudget(until) => TimeOfContact::Undecided { clear_until: scene.units.time_down(until) },
         Outcome::Found(found) => {
-            let mut contact = contact(scene, &found, options.mode != Mode::Capoeira);
+            let known = scratch.found_in.filter(|motion| motion.start == found.start);
+            let motion = known.unwrap_or_else(|| RelativeMotion::new(scene, found.start));
+            let mut contact = contact((scene, &motion), &found, options.mode != Mode::Capoeira);
             if contact.start == StartState::Touching
-                && let Some(triangles) = crossing_at_start(scene, &allowance)?
+                && let Some(triangles) = crossing_at_start(scene, allowance)?
             {
                 (contact.start, contact.separation) = (StartState::Overlapping, 0.0);
                 let evidence = evidence_at_start(scene, triangles);
@@ -163,6 +177,9 @@ fn crossing_at_start(scene: &Scene<'_>, allowance: &Allowance) -> Result<Option<
 
 /// A part of a body in the other solid at the start, if the surfaces do not touch then.
 fn held_at_start(scene: &Scene<'_>, allowance: &mut Allowance) -> Result<Option<Held>, Exhausted> {
+    if scene.balls_are_apart_at_start() {
+        return Ok(None);
+    }
     let frame = RelativeMotion::new(scene, 0.0).frame::<Quad>(0.0);
     let (a, b, unit) = (scene.a.tree, scene.b.tree, scene.units.length());
     // Balls that are apart by more than places and this sum are rounded.

@@ -316,7 +316,10 @@ impl<'s> Search<'s> {
         }
         self.scratch.batch = batch;
         outcome.unwrap_or(match state.found {
-            Some(found) if found.offset <= length => Step::Answer(Outcome::Found(found)),
+            Some(found) if found.offset <= length => {
+                self.scratch.found_in = Some(state.motion);
+                Step::Answer(Outcome::Found(found))
+            }
             _ => Step::ClearUntil(end),
         })
     }
@@ -401,10 +404,11 @@ impl<'s> Search<'s> {
     /// Advances a pair of triangles until it is past the limit, waits for others (not if `alone`), or is in contact.
     #[inline(always)]
     pub(super) fn advance<L: Lanes>(&mut self, state: &mut State<'_>, item: Item, alone: bool) {
-        let triangles = [0, 1].map(|body| {
+        let triangle = |body: usize| {
             let index = item.boxes[body] as usize;
             state.opening.nodes[body][index / WIDTH].triangle(index % WIDTH)
-        });
+        };
+        let triangles = [triangle(0), triangle(1)];
         let (a, b) = (self.scene.a.corners(triangles[0]), self.scene.b.corners(triangles[1]));
         if self.limits.mode == Mode::Capoeira && self.stop_early::<L>(state, item, &a, &b, triangles) {
             return;

@@ -1,6 +1,7 @@
 //! Constants of one query.
 
 use super::motion::base_pose::Track;
+use super::motion::frame::RelativeMotion;
 use super::motion::local_motion::LocalMotion;
 use super::motion::units::Units;
 use super::node_pair::node_test::NodeScale;
@@ -52,6 +53,7 @@ pub(crate) struct SceneBody<'a> {
 }
 
 impl<'a> SceneBody<'a> {
+    #[inline(always)]
     fn new(tree: &'a MeshTree, given: &ConstantTwist, units: &Units, start: f64) -> Self {
         let motion = LocalMotion::new(given, tree.center(), start, units);
         Self { tree, motion, given: *given, per_length: 1.0 / units.length() }
@@ -62,7 +64,8 @@ impl<'a> SceneBody<'a> {
     pub(crate) fn corners(&self, triangle: u32) -> [DVec3; 3] {
         let [i, j, k] = self.tree.mesh.triangles()[triangle as usize];
         let vertices = self.tree.mesh.vertices();
-        [i, j, k].map(|vertex| self.place(vertices[vertex as usize]))
+        // Written out: a closure mapped over the array is not inlined into code for other instruction sets.
+        [self.place(vertices[i as usize]), self.place(vertices[j as usize]), self.place(vertices[k as usize])]
     }
 
     /// A point of the body, relative to the tree's centre.
@@ -125,6 +128,7 @@ impl<'a> Scene<'a> {
     ///
     /// # Errors
     /// [`QueryError::BadMotion`] where rounding cannot be bounded.
+    #[inline]
     pub(crate) fn try_new(
         a: (&'a MeshTree, ConstantTwist),
         b: (&'a MeshTree, ConstantTwist),
@@ -138,13 +142,16 @@ impl<'a> Scene<'a> {
         Self::in_units([a, b], window, options, units)
     }
 
+    // Bodies and scenes are large: written out and inlined, they are built in place.
+    #[inline(always)]
     fn in_units(
         [a, b]: [(&'a MeshTree, ConstantTwist); 2],
         window: Window,
         options: &QueryOptions,
         units: Units,
     ) -> Result<Self, QueryError> {
-        let [a, b] = [&a, &b].map(|(tree, motion)| SceneBody::new(tree, motion, &units, window.start()));
+        let start = window.start();
+        let (a, b) = (SceneBody::new(a.0, &a.1, &units, start), SceneBody::new(b.0, &b.1, &units, start));
         let end = units.end_up();
         for (body, it) in [&a, &b].into_iter().enumerate() {
             // Also what is not a number is refused.
@@ -208,6 +215,11 @@ impl<'a> Scene<'a> {
             arms: [a.motion.arm(), b.motion.arm()],
             swings,
         };
+    }
+
+    /// Are the balls about the reference points that hold the bodies apart at the start?
+    pub(crate) fn balls_are_apart_at_start(&self) -> bool {
+        self.track.at(0.0).length() > self.reach + BALL_ERROR * self.size
     }
 
     /// In the units of the caller, for tests.
@@ -353,6 +365,8 @@ pub(crate) struct Scratch {
     pub(crate) counts: SearchCounts,
     /// The triangles that were tested last.
     pub(crate) last_looked_at: [u32; 2],
+    /// The motion over the window of the last contact that a search with this memory found.
+    pub(crate) found_in: Option<RelativeMotion>,
     /// For windows that are searched ahead by other threads.
     #[cfg(feature = "rayon")]
     pub(crate) helpers: Vec<Scratch>,
@@ -366,6 +380,7 @@ impl Scratch {
             fresh: Vec::new(),
             counts: SearchCounts::default(),
             last_looked_at: [0, 0],
+            found_in: None,
             #[cfg(feature = "rayon")]
             helpers: Vec::new(),
         }

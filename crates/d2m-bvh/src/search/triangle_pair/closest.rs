@@ -77,7 +77,7 @@ pub(super) fn across_all(direction: DVec3, edges: &[DVec3; 2]) -> DVec3 {
 pub(crate) fn closest<D: Doubles>(a: &[DVec3; 3], b: &[DVec3; 3]) -> Closest {
     let (i, j) = closest_edges::<D>(a, b);
     let mut best = edge_edge((a, i), (b, j));
-    let faces = [a, b].map(|t| (t, face_normal(t)));
+    let faces = [(a, face_normal(a)), (b, face_normal(b))];
     for corner in 0..3 {
         corner_face(&mut best, (a, corner), faces[1], false);
         corner_face(&mut best, (b, corner), faces[0], true);
