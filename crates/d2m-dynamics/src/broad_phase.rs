@@ -1,7 +1,7 @@
 //! Boxes about what bodies sweep, and which of them meet.
 
 use crate::rigid_body::RigidBody;
-use d2m_motion::{Pose, RigidMotion};
+use d2m_motion::Pose;
 use glam::DVec3;
 
 /// An axis-aligned box, world frame, rounded outward.
@@ -23,7 +23,7 @@ impl Aabb {
         let start = body.flight.position();
         let elapsed = end - body.flight.reference_time();
         let travel = body.flight.linear_velocity() * elapsed;
-        if travel == DVec3::ZERO && body.flight.angular_velocity() == DVec3::ZERO {
+        if is_at_rest(body) {
             return Self::posed(body, &body.pose_at(end), margin);
         }
         let finish = start + travel;
@@ -49,14 +49,51 @@ impl Aabb {
         Self { low: low - reach, high: high + reach }
     }
 
-    /// Encloses the body at one time of its flight.
-    pub(crate) fn at(body: &RigidBody, time: f64, margin: f64) -> Self {
-        Self::posed(body, &body.flight.pose_and_twist(time).0, margin)
-    }
-
     /// Can the boxes share a point? Yes when a bound is not a number.
+    #[inline]
     pub(crate) fn may_meet(&self, other: &Self) -> bool {
         !(self.low.cmpgt(other.high).any() || other.low.cmpgt(self.high).any())
+    }
+}
+
+fn is_at_rest(body: &RigidBody) -> bool {
+    body.flight.linear_velocity() == DVec3::ZERO && body.flight.angular_velocity() == DVec3::ZERO
+}
+
+/// What each body sweeps on its present flight, computed when it begins another one.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SweptBoxes {
+    boxes: Vec<Aabb>,
+    /// Of which flight, until when, and by how much the box is grown.
+    known: Vec<Known>,
+}
+
+/// What a box is for: it holds as long as these are the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Known {
+    version: u64,
+    /// None: the body stands still.
+    end: Option<f64>,
+    margin: f64,
+}
+
+impl SweptBoxes {
+    /// The boxes of the flights to `end`, grown by `margin`.
+    pub(crate) fn update(&mut self, bodies: &[RigidBody], end: f64, margin: f64) -> &[Aabb] {
+        for (i, body) in bodies.iter().enumerate() {
+            let known = Known { version: body.version, end: (!is_at_rest(body)).then_some(end), margin };
+            if self.known.get(i) == Some(&known) {
+                continue;
+            }
+            let swept = Aabb::swept(body, end, margin);
+            if i < self.boxes.len() {
+                (self.boxes[i], self.known[i]) = (swept, known);
+            } else {
+                self.boxes.push(swept);
+                self.known.push(known);
+            }
+        }
+        &self.boxes
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::SimulationOptions;
 use crate::contact::{ContactPoint, HIT, Solver, SolverBody, Span, impact, select};
-use crate::rigid_body::{RigidBody, Velocity};
+use crate::rigid_body::{Momenta, RigidBody, Velocity};
 use glam::{DMat3, DVec3};
 
 /// Changes of rates in a sweep below this part of a gap a step end the iteration.
@@ -13,6 +13,8 @@ const WORK: usize = 200_000;
 const SWEEPS: (usize, usize) = (30, 4000);
 /// Sweeps for what need not be exact.
 const RESTORING: u32 = 200;
+/// The part of the greatest kinetic energy by which that of a flight may differ from that of the momenta, to make room.
+const UNBALANCED: f64 = 1.0 / 1024.0;
 /// Solutions with the spin of the flight's middle put right.
 const CORRECTIONS: u32 = 3;
 
@@ -36,8 +38,9 @@ pub(crate) struct Push {
     pub(crate) body: usize,
     pub(crate) velocity: Velocity,
     pub(crate) horizon: f64,
-    pub(crate) momentum: DVec3,
-    pub(crate) angular_momentum: DVec3,
+    /// By impacts, and by contacts at rest.
+    pub(crate) impact: Momenta,
+    pub(crate) rest: Momenta,
 }
 
 /// The islands of some contacts: bodies that impulses move connect, the others do not. In the order of their first contact.
@@ -78,11 +81,13 @@ pub(crate) struct Clock {
 }
 
 /// Impacts, then the velocities of the flights that begin now. The contacts' impulses are where the iteration begins.
+/// `energy`: the greatest kinetic energy that all bodies together have had.
 pub(crate) fn solve(
     bodies: &[RigidBody],
     island: &Island,
     clock: Clock,
     options: &SimulationOptions,
+    energy: f64,
 ) -> Solved {
     let mut members: Vec<usize> = island.contacts.iter().flat_map(|c| [c.a, c.b]).collect();
     members.sort_unstable();
@@ -90,7 +95,7 @@ pub(crate) fn solve(
     let place = |body: usize| members.binary_search(&body).unwrap_or_default();
     let mut states: Vec<RigidBody> = members.iter().map(|&i| bodies[i].clone()).collect();
     let moves = |state: &RigidBody| state.is_dynamic() && !state.held;
-    let mut added = vec![(DVec3::ZERO, DVec3::ZERO); members.len()];
+    let mut impacts = vec![Momenta::default(); members.len()];
     let mut solved = Solved::default();
 
     let hit: Vec<ContactPoint> = island
@@ -113,11 +118,10 @@ pub(crate) fn solve(
             .collect();
         let mut solver = Solver::new(start, &hit, place);
         solved.impacts = impact(&mut solver, &hit, &inertia, options.resting_speed());
-        add(&solved.impacts, &mut added, place);
-        for (state, (p, l)) in states.iter_mut().zip(&added) {
+        add(&solved.impacts, &mut impacts, place);
+        for (state, added) in states.iter_mut().zip(&impacts) {
             if moves(state) {
-                state.momentum += *p;
-                state.angular_momentum += *l;
+                state.push(*added);
             }
         }
     }
@@ -143,30 +147,49 @@ pub(crate) fn solve(
 
     let mut solver = Solver::new(free, &contacts, place);
     solver.warm_start(&contacts);
-    let physical: Vec<f64> = targets.iter().map(|target| target.min(0.0)).collect();
+    let pushing: Vec<f64> = targets.iter().map(|target| target.min(0.0)).collect();
     for correction in 0.. {
-        solver.iterate(&mut contacts, &physical, precision, sweeps);
+        solver.iterate(&mut contacts, &pushing, precision, sweeps);
         if correction == CORRECTIONS || !put_right(&mut solver, &states, &contacts, span, place, precision) {
             break;
         }
         let bodies = solver.bodies;
         solver = Solver::new(bodies, &contacts, place);
     }
-    add(&contacts, &mut added, place);
+    let mut rests = vec![Momenta::default(); members.len()];
+    add(&contacts, &mut rests, place);
     solved.rests.clone_from(&contacts);
     // What restores the gap, or makes room for rotation, moves the bodies in this flight and leaves no momentum.
+    let physical: Vec<Velocity> = solver.bodies.iter().map(|body| body.velocity).collect();
+    let mut part = 1.0;
     if targets.iter().any(|&target| target > 0.0) {
+        let inertia: Vec<(f64, DMat3)> = states.iter().map(world_inertia).collect();
+        let before = solver.doubled_energy(&inertia);
         solver.iterate(&mut contacts, &targets, precision, sweeps.min(RESTORING));
+        let change = 0.5 * (solver.doubled_energy(&inertia) - before).abs();
+        let lifted: f64 = states.iter().filter(|s| moves(s)).map(|s| s.mass).sum::<f64>()
+            * options.gravity.length()
+            * options.gap;
+        let most = UNBALANCED * energy + lifted;
+        // Rates are linear in the velocities: a part of the way makes room for a part.
+        part = if change > most { most / change } else { 1.0 };
     }
-    let flights: Vec<Velocity> = solver.bodies.iter().map(|body| body.velocity).collect();
+    let blend = |from: DVec3, to: DVec3| if part < 1.0 { from + (to - from) * part } else { to };
+    let flights: Vec<Velocity> = physical
+        .iter()
+        .zip(&solver.bodies)
+        .map(|(from, to)| Velocity {
+            linear: blend(from.linear, to.velocity.linear),
+            angular: blend(from.angular, to.velocity.angular),
+        })
+        .collect();
     for (k, _) in states.iter().enumerate().filter(|(_, s)| moves(s)) {
-        let (momentum, angular_momentum) = added[k];
         solved.bodies.push(Push {
             body: members[k],
             velocity: flights[k],
             horizon: end,
-            momentum,
-            angular_momentum,
+            impact: impacts[k],
+            rest: rests[k],
         });
     }
     solved
@@ -188,14 +211,14 @@ fn world_inertia(state: &RigidBody) -> (f64, DMat3) {
     (state.mass, r * state.inertia * r.transpose())
 }
 
-fn add(contacts: &[ContactPoint], added: &mut [(DVec3, DVec3)], place: impl Fn(usize) -> usize) {
+fn add(contacts: &[ContactPoint], added: &mut [Momenta], place: impl Fn(usize) -> usize) {
     for c in contacts {
         let impulse = c.total();
         let (a, b) = (place(c.a), place(c.b));
-        added[a].0 -= impulse;
-        added[a].1 -= c.arm_a.cross(impulse);
-        added[b].0 += impulse;
-        added[b].1 += c.arm_b.cross(impulse);
+        added[a].linear -= impulse;
+        added[a].angular -= c.arm_a.cross(impulse);
+        added[b].linear += impulse;
+        added[b].angular += c.arm_b.cross(impulse);
     }
 }
 
@@ -208,14 +231,14 @@ fn put_right(
     place: impl Fn(usize) -> usize,
     precision: f64,
 ) -> bool {
-    let mut added = vec![(DVec3::ZERO, DVec3::ZERO); states.len()];
+    let mut added = vec![Momenta::default(); states.len()];
     add(contacts, &mut added, place);
     let mut worst = 0.0f64;
-    for ((body, state), (_, turn)) in solver.bodies.iter_mut().zip(states).zip(&added) {
+    for ((body, state), added) in solver.bodies.iter_mut().zip(states).zip(&added) {
         if body.inverse_mass == 0.0 {
             continue;
         }
-        let middle = state.angular_momentum + state.torque * (0.5 * span.remaining) + *turn;
+        let middle = state.angular_momentum + state.torque * (0.5 * span.remaining) + added.angular;
         let spin = state.midpoint_spin(middle, span.remaining);
         worst = worst.max((spin - body.velocity.angular).length() * state.radius);
         body.velocity.angular = spin;

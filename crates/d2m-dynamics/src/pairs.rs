@@ -38,11 +38,13 @@ pub(crate) struct Pair {
     pub(crate) contacts: Vec<ContactPoint>,
     /// Their least distance; none: further apart than the margin.
     pub(crate) nearest: Option<f64>,
+    /// When they were measured last.
+    pub(crate) measured: Option<f64>,
 }
 
 impl Pair {
     pub(crate) const fn new(gap: f64) -> Self {
-        Self { cache: PairCache::new(), gap, contacts: Vec::new(), nearest: None }
+        Self { cache: PairCache::new(), gap, contacts: Vec::new(), nearest: None, measured: None }
     }
 
     /// The separation at which a flight of the pair ends.

@@ -57,8 +57,8 @@ pub(crate) struct RigidBody {
     pub(crate) held: bool,
     /// Nothing touches it in this flight.
     pub(crate) free: bool,
-    /// How often this flight has been planned anew.
-    pub(crate) replans: u32,
+    /// The momenta at the start of this flight without the impulses of contacts at rest.
+    pub(crate) unpushed: Option<Momenta>,
     pub(crate) asleep: bool,
     /// For how long its surface has been slow.
     pub(crate) quiet: f64,
@@ -67,6 +67,13 @@ pub(crate) struct RigidBody {
 /// A velocity and an angular velocity, world axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Velocity {
+    pub(crate) linear: DVec3,
+    pub(crate) angular: DVec3,
+}
+
+/// A momentum and an angular momentum about the center of mass, world axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Momenta {
     pub(crate) linear: DVec3,
     pub(crate) angular: DVec3,
 }
@@ -163,7 +170,7 @@ impl RigidBody {
             version: 0,
             held: false,
             free: false,
-            replans: 0,
+            unpushed: None,
             asleep: false,
             quiet: 0.0,
         })
@@ -206,7 +213,35 @@ impl RigidBody {
                 self.angular_momentum += self.torque * elapsed;
             }
             self.time = time;
+            self.unpushed = None;
         }
+    }
+
+    pub(crate) fn momenta(&self) -> Momenta {
+        Momenta { linear: self.momentum, angular: self.angular_momentum }
+    }
+
+    pub(crate) fn push(&mut self, added: Momenta) {
+        self.momentum += added.linear;
+        self.angular_momentum += added.angular;
+    }
+
+    /// Takes back what contacts at rest did for a flight that begins at `time`.
+    pub(crate) fn undo(&mut self, time: f64) {
+        if self.time == time
+            && let Some(before) = self.unpushed.take()
+        {
+            (self.momentum, self.angular_momentum) = (before.linear, before.angular);
+        }
+    }
+
+    /// The kinetic energy of the present flight, at its start.
+    pub(crate) fn flight_energy(&self) -> f64 {
+        if !self.is_dynamic() || self.asleep || self.held {
+            return 0.0;
+        }
+        let spin = self.flight.orientation().conjugate() * self.flight.angular_velocity();
+        0.5 * (self.mass * self.flight.linear_velocity().length_squared() + spin.dot(self.inertia * spin))
     }
 
     /// Velocity at `time`, as the momenta have it.

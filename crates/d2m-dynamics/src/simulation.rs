@@ -1,5 +1,6 @@
 //! The simulation: bodies, settings, time.
 
+use crate::broad_phase::SweptBoxes;
 use crate::contact::Material;
 use crate::faces::Faces;
 use crate::pairs::{Pair, solid_of};
@@ -69,6 +70,10 @@ pub struct Simulation {
     /// Steps since the start, which began at time 0.
     pub(crate) steps: u64,
     pub(crate) recorder: Recorder,
+    /// Boxes about the flights of the bodies.
+    pub(crate) swept: SweptBoxes,
+    /// The greatest kinetic energy of all bodies together so far.
+    pub(crate) greatest_energy: f64,
     /// Bodies below this number have been checked for intersections.
     pub(crate) checked: usize,
 }
@@ -98,6 +103,8 @@ impl Simulation {
             time: 0.0,
             steps: 0,
             recorder: Recorder::default(),
+            swept: SweptBoxes::default(),
+            greatest_energy: 0.0,
             checked: 0,
         })
     }

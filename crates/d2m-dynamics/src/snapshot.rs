@@ -35,6 +35,7 @@ pub struct Snapshot {
     time: f64,
     steps: u64,
     checked: usize,
+    greatest_energy: f64,
     bodies: Vec<BodyState>,
     pairs: Vec<PairState>,
 }
@@ -125,6 +126,7 @@ impl Simulation {
             time: self.time,
             steps: self.steps,
             checked: self.checked,
+            greatest_energy: self.greatest_energy,
             bodies: bodies.collect(),
             pairs: pairs.collect(),
         }
@@ -165,6 +167,7 @@ impl Simulation {
             body.asleep = state.asleep;
             body.quiet = state.quiet;
             body.held = false;
+            body.unpushed = None;
         }
         let whole =
             |pair: &&PairState| pair.bodies.iter().all(|&i| i < expected) && pair.bodies[0] < pair.bodies[1];
@@ -184,6 +187,8 @@ impl Simulation {
         self.options = snapshot.options;
         (self.time, self.steps) = (snapshot.time, snapshot.steps);
         self.checked = snapshot.checked.min(expected);
+        self.greatest_energy = snapshot.greatest_energy;
+        self.swept = crate::broad_phase::SweptBoxes::default();
         self.recorder = crate::record::Recorder::default();
         Ok(())
     }

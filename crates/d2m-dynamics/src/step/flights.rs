@@ -1,0 +1,106 @@
+//! When flights end.
+
+use super::event::{Cause, Event};
+use super::{Key, Step};
+use crate::broad_phase::candidates;
+use crate::pairs::{Outcome, Pair, fly};
+use crate::simulation::query_error;
+use crate::{StepError, parallel};
+use d2m_bvh::Window;
+use glam::DVec3;
+use std::cmp::Reverse;
+
+/// From so many bodies on, all boxes are swept at once instead of compared with each of them.
+const MANY: usize = 16;
+
+impl Step<'_> {
+    /// When do the flights of these bodies end? Every pair with one of them that may meet until the end of the step is
+    /// queried.
+    pub(super) fn query(&mut self, time: f64, changed: &[usize]) -> Result<(), StepError> {
+        let end = self.end;
+        for &i in changed {
+            let body = &self.sim.bodies[i];
+            if body.horizon < end {
+                let (bodies, versions) = ([i, i], [body.version; 2]);
+                let (normal, closing) = (DVec3::ZERO, 0.0);
+                let (time, by, cause) = (body.horizon, body.horizon, Cause::Horizon);
+                let event = Event { time, by, bodies, versions, cause, normal, closing };
+                self.heap.push(Reverse(event));
+            }
+        }
+        // Two bodies are queried if boxes that hold the separation between them meet.
+        let keys = self.partners(changed);
+        let gap = self.sim.options.gap;
+        let jobs: Vec<(Key, Pair)> = keys
+            .into_iter()
+            .map(|key| (key, self.sim.pairs.remove(&key).unwrap_or_else(|| Pair::new(gap))))
+            .collect();
+        self.report.queries += jobs.len() as u64;
+        let (bodies, node_tests) = (&self.sim.bodies, self.sim.options.node_tests);
+        let answers = parallel::map(jobs, |(key, mut pair)| {
+            let (a, b) = (&bodies[key.0], &bodies[key.1]);
+            let until = end.min(a.horizon).min(b.horizon);
+            let answer = Window::try_new(time, until).and_then(|window| {
+                fly(a, b, window, pair.separation(), pair.gap, node_tests, &mut pair.cache)
+            });
+            (key, pair, answer)
+        });
+        let mut failed = None;
+        for (key, pair, answer) in answers {
+            self.sim.pairs.insert(key, pair);
+            let (a, b) = (&self.sim.bodies[key.0], &self.sim.bodies[key.1]);
+            let event = |time: f64, by: f64, cause: Cause| Event {
+                time,
+                by,
+                bodies: [key.0, key.1],
+                versions: [a.version, b.version],
+                cause,
+                normal: DVec3::ZERO,
+                closing: 0.0,
+            };
+            let event = match answer {
+                Ok(Outcome::Clear) => continue,
+                Ok(Outcome::Meets { lo, hi, normal, closing }) => {
+                    Event { normal, closing, ..event(lo, hi, Cause::Contact) }
+                }
+                Ok(Outcome::ClearUntil(until)) if until > time => event(until, until, Cause::Budget),
+                Ok(Outcome::ClearUntil(_) | Outcome::Stuck) => event(time, time, Cause::Stuck),
+                Err(error) => {
+                    failed = failed.or(Some(query_error(a, b, error)));
+                    continue;
+                }
+            };
+            self.heap.push(Reverse(event));
+        }
+        failed.map_or(Ok(()), |error| Err(error.into()))
+    }
+
+    /// The pairs of one of these bodies and any other whose boxes over their flights meet, and that may meet; ascending. The
+    /// boxes are grown by the gap and by half of the margin at least.
+    pub(super) fn partners(&mut self, of: &[usize]) -> Vec<Key> {
+        let margin = self.sim.options.gap.max(0.5 * self.margin);
+        let mut swept = core::mem::take(&mut self.sim.swept);
+        let boxes = swept.update(&self.sim.bodies, self.end, margin);
+        let sim = &*self.sim;
+        let mut pairs = Vec::new();
+        if of.len() >= MANY {
+            let mut is_one = vec![false; boxes.len()];
+            for &i in of {
+                is_one[i] = true;
+            }
+            pairs = candidates(boxes, |a, b| (is_one[a] || is_one[b]) && sim.meets(a, b));
+        } else {
+            for &i in of {
+                for j in (0..boxes.len()).filter(|&j| j != i) {
+                    if boxes[i].may_meet(&boxes[j]) && sim.meets(i, j) {
+                        pairs.push((i.min(j), i.max(j)));
+                    }
+                }
+            }
+            pairs.sort_unstable();
+            pairs.dedup();
+        }
+        self.sim.swept = swept;
+        pairs
+    }
+}

@@ -1,0 +1,65 @@
+//! Bodies that can go no further in a step stand still until its end.
+
+use super::event::Event;
+use super::{Key, Step};
+use crate::pairs::Pair;
+use crate::rigid_body::{RigidBody, Velocity};
+use crate::{BodyId, StepError};
+
+impl Step<'_> {
+    /// The bodies of these events stand still until the end of the step.
+    pub(super) fn hold(&mut self, time: f64, events: &[Event]) -> Result<(), StepError> {
+        let mut changed = Vec::new();
+        for event in events {
+            let [a, b] = event.bodies;
+            let moving = |i: usize| {
+                let body = &self.sim.bodies[i];
+                body.is_kinematic() && body.surface_speed() > 0.0
+            };
+            let free = |body: &RigidBody| body.is_dynamic() && !body.held;
+            let is_free = [a, b].map(|i| free(&self.sim.bodies[i]));
+            if let Some((pushing, crushed)) = [(a, b, is_free[1]), (b, a, is_free[0])]
+                .into_iter()
+                .find_map(|(p, c, free)| (moving(p) && !free).then_some((p, c)))
+            {
+                return Err(self.crushed(pushing, crushed, time));
+            }
+            if is_free == [false, false] {
+                return Err(self.crushed(a, b, time));
+            }
+            for (i, free) in [a, b].into_iter().zip(is_free) {
+                if free {
+                    let gravity = self.sim.options.gravity;
+                    let body = &mut self.sim.bodies[i];
+                    body.advance(time, gravity);
+                    body.held = true;
+                    body.asleep = false;
+                    body.fly(Velocity::default(), self.end);
+                    self.sim.recorder.change(BodyId(i as u32), body.flight);
+                    changed.push(i);
+                    self.holding = true;
+                }
+            }
+        }
+        // The other bodies of the events that were gathered fly on as they did: they are queried against those held.
+        let others = events.iter().flat_map(|event| event.bodies).filter(|&i| !self.sim.bodies[i].held);
+        let mut seeds: Vec<usize> = others.chain(changed).collect();
+        seeds.sort_unstable();
+        seeds.dedup();
+        self.query(time, &seeds)
+    }
+
+    fn crushed(&self, pushing: usize, crushed: usize, time: f64) -> StepError {
+        let name = |i: usize| self.sim.bodies[i].name.clone();
+        // Whoever follows its motion against the body that is crushed is the one to name.
+        let drives =
+            |i: &usize| self.sim.bodies[*i].is_kinematic() && self.sim.bodies[*i].surface_speed() > 0.0;
+        let partner = |(key, pair): (&Key, &Pair)| {
+            let other = if key.0 == crushed { key.1 } else { key.0 };
+            ((key.0 == crushed || key.1 == crushed) && pair.nearest.is_some()).then_some(other)
+        };
+        let driver = self.sim.pairs.iter().filter_map(partner).find(drives);
+        let pushing = driver.unwrap_or(pushing);
+        StepError::Crushed { pushing: name(pushing), crushed: name(crushed), time }
+    }
+}

@@ -1,0 +1,185 @@
+//! One step: a velocity solve, then flights from contact to contact.
+
+mod connected;
+mod event;
+mod flights;
+mod hold;
+mod plan;
+mod resolve;
+
+use crate::contact::ContactPoint;
+use crate::rigid_body::RigidBody;
+use crate::{Simulation, StepError, StepReport};
+use event::{Cause, Event};
+use glam::DVec3;
+use plan::Replans;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+
+/// Events of one pair at one and the same time, after which it is held.
+const MOST_AT_ONCE: u32 = 8;
+
+/// Why velocities are solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Occasion {
+    /// The step begins.
+    Start,
+    /// Bodies meet, or flights end.
+    Event,
+    /// Flights that have just begun are to end at `until` at the latest.
+    Plan { until: f64 },
+}
+
+/// A step in progress.
+pub(crate) struct Step<'s> {
+    sim: &'s mut Simulation,
+    start: f64,
+    end: f64,
+    /// Features up to this distance are contacts that a flight may have to heed.
+    margin: f64,
+    heap: BinaryHeap<Reverse<Event>>,
+    report: StepReport,
+    holding: bool,
+    replans: Replans,
+    /// The end of flights that were planned anew.
+    planned: Option<f64>,
+    /// Impulses of the present instant, and those of contacts that flights could still be planned without.
+    impulses: Vec<ContactPoint>,
+    undoable: Vec<ContactPoint>,
+}
+
+type Key = (usize, usize);
+
+impl<'s> Step<'s> {
+    pub(crate) fn new(sim: &'s mut Simulation, end: f64) -> Self {
+        let options = &sim.options;
+        let slow = options.resting_speed().max(options.gap / options.step);
+        let margin = options.gap + slow * options.step;
+        let start = sim.time;
+        Self {
+            sim,
+            start,
+            end,
+            margin,
+            heap: BinaryHeap::new(),
+            report: StepReport::default(),
+            holding: false,
+            replans: Replans::default(),
+            planned: None,
+            impulses: Vec::new(),
+            undoable: Vec::new(),
+        }
+    }
+
+    pub(crate) fn run(mut self) -> Result<StepReport, StepError> {
+        let outcome = self.fly_through();
+        // Also after an error: what was flown until then is certified.
+        let time = if outcome.is_ok() { self.end } else { self.sim.time };
+        self.finish(time);
+        outcome?;
+        self.report.segments = self.sim.recorder.take();
+        Ok(self.report)
+    }
+
+    fn fly_through(&mut self) -> Result<(), StepError> {
+        let awake: Vec<usize> =
+            (0..self.sim.bodies.len()).filter(|&i| self.sim.bodies[i].is_awake()).collect();
+        if awake.is_empty() {
+            return Ok(());
+        }
+        for &i in &awake {
+            self.sim.bodies[i].time = self.start;
+        }
+        self.resolve(self.start, awake, Occasion::Start)?;
+        let mut last = (f64::NEG_INFINITY, BTreeMap::<[usize; 2], u32>::new());
+        while let Some(event) = self.next_event() {
+            if self.plan_anew(&event)? {
+                continue;
+            }
+            let (met, seeds) = self.gather(event);
+            if event.time > last.0 {
+                last = (event.time, BTreeMap::new());
+            }
+            self.report_impulses();
+            self.sim.recorder.cut(event.time, self.holding);
+            self.sim.time = event.time;
+            let held = |i: usize| self.sim.bodies[i].held;
+            let over = self.report.events >= self.sim.options.max_events;
+            let (hold, go_on): (Vec<Event>, Vec<Event>) = met.into_iter().partition(|event| {
+                let count = last.1.entry(event.bodies).or_default();
+                *count += 1;
+                let again = *count > MOST_AT_ONCE;
+                event.cause != Cause::Horizon
+                    && (over || again || event.cause == Cause::Stuck || event.bodies.into_iter().any(held))
+            });
+            if hold.is_empty() {
+                self.report.events +=
+                    go_on.iter().filter(|event| event.cause != Cause::Horizon).count() as u32;
+                self.resolve(event.time, seeds, Occasion::Event)?;
+            } else {
+                self.hold(event.time, &hold)?;
+                // Those whose bodies fly on as before are next.
+                self.heap.extend(go_on.into_iter().map(Reverse));
+            }
+        }
+        Ok(())
+    }
+
+    /// The next event before the end of the step whose bodies still fly as they did.
+    fn next_event(&mut self) -> Option<Event> {
+        while let Some(Reverse(event)) = self.heap.pop() {
+            if self.is_current(&event) {
+                return (event.time < self.end).then_some(event);
+            }
+        }
+        None
+    }
+
+    fn is_current(&self, event: &Event) -> bool {
+        (0..2).all(|k| self.sim.bodies[event.bodies[k]].version == event.versions[k])
+    }
+
+    /// All events whose brackets overlap the first one's, and the bodies of them.
+    fn gather(&mut self, first: Event) -> (Vec<Event>, Vec<usize>) {
+        let mut met = vec![first];
+        while let Some(Reverse(event)) = self.heap.peek().copied() {
+            if event.time > first.by || event.time >= self.end {
+                break;
+            }
+            self.heap.pop();
+            if self.is_current(&event) {
+                met.push(event);
+            }
+        }
+        let mut seeds: Vec<usize> = met.iter().flat_map(|event| event.bodies).collect();
+        // Flights that were planned to end here end with the event: what is left of them would be a segment far from their
+        // middle.
+        if let Some(planned) = self.planned.take() {
+            let ends = |body: &RigidBody| body.is_dynamic() && !body.held && body.horizon == planned;
+            seeds.extend((0..self.sim.bodies.len()).filter(|&i| ends(&self.sim.bodies[i])));
+        }
+        seeds.sort_unstable();
+        seeds.dedup();
+        (met, seeds)
+    }
+
+    /// Everything to the end of the step.
+    fn finish(&mut self, time: f64) {
+        let gravity = self.sim.options.gravity;
+        self.report_impulses();
+        self.sim.recorder.cut(time, self.holding);
+        let length = time - self.start;
+        for body in self.sim.bodies.iter_mut().filter(|body| RigidBody::is_awake(body)) {
+            body.advance(time, gravity);
+            body.time = time;
+            body.held = false;
+        }
+        for body in &mut self.sim.bodies {
+            (body.force, body.torque) = (DVec3::ZERO, DVec3::ZERO);
+        }
+        let energy: f64 = self.sim.bodies.iter().map(RigidBody::flight_energy).sum();
+        self.sim.greatest_energy = self.sim.greatest_energy.max(energy);
+        self.sim.time = time;
+        self.sim.put_to_sleep(length);
+    }
+}

@@ -1,0 +1,88 @@
+//! No energy is gained, measured at the middles of the reported flights by nothing but their numbers and the masses.
+
+use d2m_bvh::MeshTree;
+use d2m_dynamics::{Body, BodyId, Kind, Segment, Simulation, SimulationOptions};
+use d2m_motion::{ConstantTwist, RigidMotion};
+use glam::{DMat3, DQuat, DVec3};
+use std::sync::Arc;
+
+fn tree(shape: &str) -> Arc<MeshTree> {
+    Arc::new(MeshTree::new(d2m_shapes::mesh(shape).unwrap()))
+}
+
+/// What the segments say of the energy.
+struct Energy {
+    /// The greatest rise above a value before.
+    rise: f64,
+    /// The greatest kinetic energy.
+    kinetic: f64,
+}
+
+fn run(simulation: &mut Simulation, ids: &[BodyId], end: f64) -> Energy {
+    let mut segments: Vec<Segment> = Vec::new();
+    while simulation.time() < end {
+        segments.extend(simulation.step().unwrap().segments);
+    }
+    segments.extend(simulation.finish());
+    let gravity = simulation.options().gravity;
+    let mut flights = vec![ConstantTwist::REST; ids.len()];
+    let mut energy = Energy { rise: 0.0, kinetic: 0.0 };
+    let mut least = f64::INFINITY;
+    for segment in &segments {
+        assert_eq!(segment.skipped, 0.0);
+        for (id, flight) in &segment.changed {
+            flights[id.index()] = *flight;
+        }
+        let middle = 0.5 * (segment.start + segment.end);
+        let (mut kinetic, mut potential) = (0.0, 0.0);
+        for &id in ids {
+            let Some(p) = simulation.mass_properties(id) else { continue };
+            let (pose, twist) = flights[id.index()].pose_and_twist(middle);
+            let spin = DMat3::from_quat(pose.rotation).transpose() * twist.angular;
+            kinetic += 0.5 * (p.mass * twist.linear.length_squared() + spin.dot(p.inertia * spin));
+            potential -= p.mass * gravity.dot(pose.translation);
+        }
+        energy.kinetic = energy.kinetic.max(kinetic);
+        least = least.min(kinetic + potential);
+        energy.rise = energy.rise.max(kinetic + potential - least);
+    }
+    energy
+}
+
+/// Links meet in the middles of steps while all of them fall: flights that events cut must not keep the velocities of
+/// longer ones.
+#[test]
+fn a_falling_chain_gains_none() {
+    let link = tree("torus?triangles=400&tube=0.15");
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let mut ids = Vec::new();
+    for k in 0..4 {
+        let turn = DQuat::from_rotation_x(f64::from(k % 2) * core::f64::consts::FRAC_PI_2);
+        let body = Body::new(format!("link {k}"), Arc::clone(&link))
+            .with_position(DVec3::X * 1.2 * f64::from(k))
+            .with_orientation(turn);
+        let body = if k == 0 { body.with_kind(Kind::Static) } else { body };
+        ids.push(simulation.add(&body).unwrap());
+    }
+    let energy = run(&mut simulation, &ids, 3.0);
+    assert!(energy.rise <= energy.kinetic / 256.0, "{} of {}", energy.rise, energy.kinetic);
+}
+
+/// Cards that fall over meet each other and the floor in the middles of steps.
+#[test]
+fn bodies_that_lean_on_each_other_gain_none() {
+    let card = tree("box?x=0.5&y=0.02&z=0.3");
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let floor = Body::new("floor", tree("box?x=10&y=0.5&z=10")).with_kind(Kind::Static);
+    let mut ids = vec![simulation.add(&floor.with_position(DVec3::Y * -0.5).with_friction(0.3)).unwrap()];
+    for k in 0..6 {
+        let side = if k % 2 == 0 { -1.0 } else { 1.0 };
+        let body = Body::new(format!("card {k}"), Arc::clone(&card))
+            .with_position(DVec3::new(0.3 * side + 2.0 * f64::from(k / 2), 0.6 + 0.1 * f64::from(k / 2), 0.0))
+            .with_orientation(DQuat::from_rotation_z(-1.1 * side))
+            .with_friction(0.3);
+        ids.push(simulation.add(&body).unwrap());
+    }
+    let energy = run(&mut simulation, &ids, 2.0);
+    assert!(energy.rise <= energy.kinetic / 128.0, "{} of {}", energy.rise, energy.kinetic);
+}
