@@ -36,6 +36,7 @@ pub(crate) fn point_placed(
     options: &ContactOptions,
 ) -> FirstContact {
     let separation = options.separation();
+    #[inline(always)]
     fn build<'a>(
         framed: &'a FramedMotion,
         point: DVec3,
@@ -61,6 +62,7 @@ pub(crate) fn edge_edge(
     options: &ContactOptions,
 ) -> FirstContact {
     let separation = options.separation();
+    #[inline(always)]
     fn build(
         framed: &FramedMotion,
         edge_a: [DVec3; 2],
@@ -91,6 +93,7 @@ pub(crate) fn sphere_sphere(
     options: &ContactOptions,
 ) -> FirstContact {
     let separation = options.separation();
+    #[inline(always)]
     fn build(
         framed: &FramedMotion,
         centers: [DVec3; 2],

@@ -300,3 +300,29 @@ fn the_reference_knows_signs() {
     assert!(on(-5.0, 0.999) && on(2.001, 9.0) && !on(0.0, 1.0) && !on(0.0, 3.0) && !on(1.2, 1.3));
     assert_eq!(exact(0.5), RBig::ONE / RBig::from(2));
 }
+
+/// Half the smallest number is zero: the piece's end would be evaluated at its start.
+#[test]
+fn half_of_the_shortest_piece_is_not_exact() {
+    let (value, end) = (2.0_f64.powi(-53), f64::from_bits(1));
+    let cubic = Cubic { value, slope: -2.0_f64.powi(1021), curvature: 0.0, jerk: 0.0 };
+    let (zero, piece) = (Band { lo: 0.0, hi: 0.0 }, Piece { lo: 0.0, hi: end });
+    assert_eq!(cubic.at(end), 0.0);
+    let kept = cubic.clip(zero, |_| 0.0, piece).expect("the end is a zero");
+    assert_eq!(kept.hi, end);
+}
+
+/// Callers that bound all errors themselves must cover the rounding of the evaluation: debug builds check it.
+#[test]
+#[cfg(debug_assertions)]
+fn an_error_bound_that_leaves_out_rounding_is_noticed() {
+    let quadratic = Quadratic { value: 1.0, slope: -1.0, curvature: 0.0 };
+    let (zero, piece) = (Band { lo: 0.0, hi: 0.0 }, Piece { lo: 0.0, hi: 2.0 });
+    let enough = quadratic.bound_evaluation(2.0);
+    assert!(quadratic.clip_beyond(zero, enough, piece).is_some());
+    assert!(std::panic::catch_unwind(|| quadratic.clip_beyond(zero, 0.5 * enough, piece)).is_err());
+    let cubic = Cubic { value: 1.0, slope: -1.0, curvature: 0.0, jerk: 0.0 };
+    let enough = cubic.bound_evaluation(2.0);
+    assert!(cubic.clip_beyond(zero, |_| enough, piece).is_some());
+    assert!(std::panic::catch_unwind(|| cubic.clip_beyond(zero, |_| 0.5 * enough, piece)).is_err());
+}

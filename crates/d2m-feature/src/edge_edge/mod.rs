@@ -45,6 +45,7 @@ const FEW_UNITS: f64 = 8.0 * UNIT;
 
 impl<P: FeaturePath> EdgeEdgeTest<P> {
     /// `half_a` and `half` are the half edges of A and B, `middle` is the midpoint of B's edge.
+    #[inline(always)]
     pub(crate) fn new(path: P, middle: DVec3, half: DVec3, half_a: DVec3, separation: f64) -> Self {
         let (length_a, length_b) = (length_up(half_a), length_up(half));
         let shortest = SHORTEST * path.rounding();
@@ -71,7 +72,7 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
             };
             let left_out = (jerk.first().abs() + jerk.second().abs()) * ((1.0 / 24.0) * (h * h * h));
             let needed = (w.dot(d).abs() + distance * (of_w + of_e) + left_out) * UP;
-            if away.sum_and_difference().are_above(needed, whole) {
+            if away.sum_and_difference().exceed(needed, whole) {
                 return None;
             }
         }
@@ -83,7 +84,7 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
         };
         let (forth, left_out) = along_v.quadratic_about_centre(h);
         let reach = length_up(v) * (self.half_lengths.0 + of_w) + v.dot(d).abs() + left_out;
-        forth.clip(Band { lo: -reach * UP, hi: reach * UP }, whole)
+        forth.clip_beyond(Band { lo: 0.0, hi: 0.0 }, reach * UP, whole)
     }
 
     /// True if a certain crossing in the part would be the answer.
@@ -211,7 +212,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
                 let first_a = along_u.first() + e_u;
                 let second_a = along_u.first() - e_u;
                 let margin_a = u_length * (margin_w + margin_e) * UP;
-                let Some(beside) = first_a.clip_shared_sign(&second_a, margin_a, before) else {
+                let Some(beside) = first_a.clip_shared_sign_beyond(&second_a, margin_a, before) else {
                     return Verdict::Clear;
                 };
                 let TripleProduct { cubic: w_j, fourth: quartic_j, .. } = TripleProduct::new(&moved, k);
@@ -224,16 +225,16 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
                 let product = margin_w * half_a + length * margin_e;
                 let margin_b =
                     ((cubic_j + quartic_j * r) * (r * r * r) + k_length * product + u_length * margin_e) * UP;
-                let Some(inside) = first_b.clip_shared_sign(&second_b, margin_b, beside) else {
+                let Some(inside) = first_b.clip_shared_sign_beyond(&second_b, margin_b, beside) else {
                     return Verdict::Clear;
                 };
                 if inside != before {
                     part = Piece { lo: m + inside.lo, hi: m + inside.hi };
-                } else if e_u.bound_below(meeting) > u_length * margin_e * UP
-                    && first_a.bound_below(meeting) > margin_a
-                    && (-second_a).bound_below(meeting) > margin_a
-                    && first_b.bound_below(meeting) > margin_b
-                    && (-second_b).bound_below(meeting) > margin_b
+                } else if e_u.exceeds(u_length * margin_e * UP, meeting)
+                    && first_a.exceeds(margin_a, meeting)
+                    && (-second_a).exceeds(margin_a, meeting)
+                    && first_b.exceeds(margin_b, meeting)
+                    && (-second_b).exceeds(margin_b, meeting)
                 {
                     // Only f has cut.
                     certain = true;

@@ -1,4 +1,6 @@
 //! Products of two jets that lie side by side: two at a time.
+use crate::path::reach;
+use crate::rounding::PRODUCT_UNDERFLOW;
 use d2m_interval::F64x2;
 use d2m_motion::{TwoJets, TwoVec3};
 use d2m_root::{Cubic, Piece, Quadratic};
@@ -76,22 +78,27 @@ impl TwoQuadratics {
         Self { value: both(self.value), slope: both(self.slope), curvature: both(self.curvature) }
     }
 
-    /// Both are certainly above a number throughout a piece: [`Quadratic::bound_below`], two at a time.
+    /// Both are certainly above a margin throughout a piece: [`Quadratic::exceeds`], two at a time, under its hypothesis, which
+    /// debug builds check: the margin includes [`Quadratic::bound_evaluation`] of either.
     #[inline(always)]
-    pub(super) fn are_above(&self, number: f64, part: Piece) -> bool {
+    pub(super) fn exceed(&self, margin: f64, part: Piece) -> bool {
+        debug_assert!([self.first(), self.second()].iter().all(|q| {
+            let error = q.bound_evaluation(reach(part));
+            !error.is_finite() || margin + PRODUCT_UNDERFLOW >= error || margin.is_nan()
+        }));
         let at = |s: f64| {
             let bend = F64x2::splat(0.5).times(self.curvature);
             let s = F64x2::splat(s);
             self.value.plus(self.slope.plus(bend.times(s)).times(s))
         };
-        // The chord minus the sagitta; NaN is above nothing.
+        // The chord minus the sagitta, which errs by 5 roundings; NaN is above nothing.
         let width = part.hi - part.lo;
         let sagitta = self
             .curvature
             .max(F64x2::splat(0.0))
             .times(F64x2::splat(width * width * (0.125 * (1.0 + 4.0 * f64::EPSILON))));
-        let number = F64x2::splat(number).plus(sagitta);
-        let above = number.lt(at(part.lo)).and(number.lt(at(part.hi)));
+        let margin = F64x2::splat(margin).plus(sagitta);
+        let above = margin.lt(at(part.lo)).and(margin.lt(at(part.hi)));
         above.sign_bits() == 0b11
     }
 }
@@ -146,14 +153,17 @@ mod tests {
             let both = pair.sum_and_difference();
             let least = [sum, difference].map(|q| q.bound_below(part));
             let least = least[0].min(least[1]);
-            assert!(both.are_above(least - 1e-12 * (1.0 + least.abs()), part));
-            assert!(!both.are_above(least + 1e-12 * (1.0 + least.abs()), part));
+            // Raised until the least value is above all that is rounded.
+            let raised = F64x2::splat(1.0 - least);
+            let both = TwoQuadratics { value: both.value.plus(raised), ..both };
+            assert!(both.exceed(1.0 - 1e-12 * (1.0 + least.abs()), part));
+            assert!(!both.exceed(1.0 + 1e-12 * (1.0 + least.abs()), part));
             // Nothing is above what is not a number, and what is not a number is above nothing.
-            assert!(!both.are_above(f64::NAN, part));
+            assert!(!both.exceed(f64::NAN, part));
             for broken in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
                 let slope = F64x2::pack(broken, 0.0);
                 let bent = TwoQuadratics { slope, curvature: slope, ..both };
-                assert!(!bent.are_above(-1e300, part));
+                assert!(!bent.exceed(1.0, part));
             }
         }
     }

@@ -66,6 +66,7 @@ impl<'a> RigidPath<'a> {
     ///
     /// Contact needs the reference points within `|point| + |direction| + extent + separation` of each other: that
     /// part of the window is all that is searched, and there the bounds are smaller.
+    #[inline(always)]
     pub(crate) fn new(
         framed: &'a FramedMotion,
         point: DVec3,

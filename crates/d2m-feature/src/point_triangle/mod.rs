@@ -65,7 +65,7 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
             // All that is left to know is when the plane is crossed.
             let (plane, remainder) = self.path.point_along(piece, at, planes.normal);
             let remainder = widened(remainder, self.separation);
-            let Some(part) = plane.clip(planes.slab(), |h| remainder.bound(h), whole) else {
+            let Some(part) = plane.clip_beyond(planes.slab(), |h| remainder.bound(h), whole) else {
                 return Verdict::Clear;
             };
             return self.crossing(&plane, &remainder, part, (whole, at, piece));
@@ -81,7 +81,7 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
             searched = near;
         }
         let plane = cubic_along(&jet, planes.normal);
-        let Some(mut part) = plane.clip(planes.slab(), |h| remainder.bound(h), searched) else {
+        let Some(mut part) = plane.clip_beyond(planes.slab(), |h| remainder.bound(h), searched) else {
             return Verdict::Clear;
         };
         // About the middle of what is left: first with what the speed admits.
@@ -109,14 +109,13 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
             let mut beside = Piece { lo: part.lo - m, hi: part.hi - m };
             let before = beside;
             for (side, (lo, hi)) in sides.iter().zip(planes.side_support) {
-                let Some(left) = side.clip(Band { lo: lo - margin, hi: hi + margin }, beside) else {
+                let Some(left) = side.clip_beyond(Band { lo, hi }, margin, beside) else {
                     return Verdict::Clear;
                 };
                 beside = left;
             }
             if beside == before {
-                let least = |side: Quadratic| -(-side).bound_below(in_prism);
-                inside = self.is_inside(sides.map(least), margin);
+                inside = self.stays_inside(&sides, margin, in_prism);
             } else {
                 part = Piece { lo: m + beside.lo, hi: m + beside.hi };
             }
@@ -191,13 +190,13 @@ impl<P: FeaturePath> PointTriangleTest<'_, P> {
         let distance = length_up(from_center.p);
         if distance > planes.radius {
             let (away, left_out) = cubic_along(&from_center, from_center.p).quadratic_about_centre(h);
-            if away.bound_below(whole) > (limit * distance + left_out) * UP {
+            if away.exceeds((limit * distance + left_out) * UP, whole) {
                 return None;
             }
         }
         let (forth, left_out) = cubic_along(&from_center, jet.v).quadratic_about_centre(h);
         let reach = (limit * length_up(jet.v) + left_out) * UP;
-        forth.clip(Band { lo: -reach, hi: reach }, whole)
+        forth.clip_beyond(Band { lo: 0.0, hi: 0.0 }, reach, whole)
     }
 
     /// What is left of a piece in which the path is certainly inside the prism. `searched` is what the plane has cut.
@@ -222,6 +221,19 @@ impl<P: FeaturePath> PointTriangleTest<'_, P> {
         let (first, last) = (plane.at(between.lo), plane.at(between.hi));
         let (low, high) = (self.planes.slab.0 - margin, self.planes.slab.1 + margin);
         (first > high && last < low) || (first < low && last > high)
+    }
+
+    /// A path along the side normals, up to the margin, certainly stays inside the triangle's prism.
+    #[inline(always)]
+    fn stays_inside(&self, sides: &[Quadratic; 3], margin: f64, part: Piece) -> bool {
+        let Some(prism) = &self.planes.prism else {
+            return false;
+        };
+        let pad = margin + TILT * self.planes.extent;
+        (0..3).all(|i| {
+            let below = Quadratic { value: prism[i] - sides[i].value, ..-sides[i] };
+            below.exceeds(pad, part)
+        })
     }
 
     /// A path whose greatest values along the side normals are these, up to the margin, is certainly inside the

@@ -109,14 +109,13 @@ impl PieceTest for StraightEdgeEdge {
             ] {
                 let margin = (total.margin + seen.margin) * UP;
                 let (above, below) = (total.quadratic + seen.quadratic, seen.quadratic - total.quadratic);
-                let Some(beside) = above.clip_shared_sign(&below, margin, part) else {
+                let Some(beside) = above.clip_shared_sign_beyond(&below, margin, part) else {
                     return Verdict::Clear;
                 };
                 part = beside;
-                inside =
-                    inside && above.bound_below(padded) > margin && (-below).bound_below(padded) > margin;
+                inside = inside && above.exceeds(margin, padded) && (-below).exceeds(margin, padded);
             }
-            if inside && part == meeting && total.quadratic.bound_below(padded) > total.margin {
+            if inside && part == meeting && total.quadratic.exceeds(total.margin, padded) {
                 certain = true;
                 self.inside = global(part, at, piece);
             }

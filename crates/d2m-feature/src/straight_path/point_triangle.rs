@@ -119,12 +119,12 @@ impl PieceTest for StraightPointTriangle {
             };
             let areas = [first, second, third];
             let in_plane = part;
-            let facing = total.quadratic.bound_below(padded(part, at, whole)) > total.margin;
+            let facing = total.quadratic.exceeds(total.margin, padded(part, at, whole));
             if facing {
                 // A contact needs all three parts at least 0.
                 for area in &areas {
-                    let band = Band { lo: -area.margin, hi: f64::INFINITY };
-                    let Some(beside) = area.quadratic.clip(band, part) else {
+                    let positive = Band { lo: 0.0, hi: f64::INFINITY };
+                    let Some(beside) = area.quadratic.clip_beyond(positive, area.margin, part) else {
                         return Verdict::Clear;
                     };
                     part = beside;
@@ -133,7 +133,7 @@ impl PieceTest for StraightPointTriangle {
             let padded = padded(part, at, whole);
             if facing
                 && part == in_plane
-                && areas.iter().all(|area| area.quadratic.bound_below(padded) > area.margin)
+                && areas.iter().all(|area| area.quadratic.exceeds(area.margin, padded))
             {
                 certain = true;
                 self.inside = global(part, at, piece);

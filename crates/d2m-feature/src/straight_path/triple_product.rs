@@ -4,10 +4,10 @@ use crate::rounding::{PRODUCT_UNDERFLOW, UNIT, UP};
 use d2m_root::{Band, Cubic, Piece, Quadratic};
 use glam::DVec3;
 
-/// Rounding of the triple product in units of 2⁻⁵³·|a||b||c|: 76 are counted in docs/theory/features.md.
-const ROUNDING: f64 = 96.0;
-/// Rounding of x·(y × n) in units of 2⁻⁵³·|x||y||n|: 30 are counted there.
-const ROUNDING_OF_TWO: f64 = 48.0;
+/// Rounding of the triple product in units of 2⁻⁵³·|a||b||c|: 158 are counted in docs/theory/features.md.
+const ROUNDING: f64 = 176.0;
+/// Rounding of x·(y × n) in units of 2⁻⁵³·|x||y||n|: 46 are counted there.
+const ROUNDING_OF_TWO: f64 = 56.0;
 
 /// `a·(b × c)` of three lines over |s| ≤ h, all four coefficients, and what a contact may have there.
 pub(super) struct TripleProduct {
@@ -45,7 +45,7 @@ impl TripleProduct {
     /// Cuts off both ends of a part of |s| ≤ h where a contact is impossible; `None` if that is all of it.
     #[inline(always)]
     pub(super) fn clip(&self, part: Piece) -> Option<Piece> {
-        self.cubic.clip(Band { lo: 0.0, hi: 0.0 }, |_| self.far, part)
+        self.cubic.clip_beyond(Band { lo: 0.0, hi: 0.0 }, |_| self.far, part)
     }
 
     /// True if the cubic certainly has opposite signs at two times.

@@ -10,6 +10,10 @@ const ROUNDING: f64 = 128.0;
 /// The same per radian of rotation: the angle ωτ is rounded.
 const ROUNDING_PER_RADIAN: f64 = 6.0;
 
+/// Rounding of the third derivative and of what is computed with it along a direction, in units of the rounding of positions
+/// times (a + b)³S0 + 3b²U (docs/theory/features.md, "Single jets").
+const ROUNDING_OF_THIRD: f64 = 3.0;
+
 /// Rounding of the orientations at the epoch, in units of 2⁻⁵³ per radian from the reference time to the epoch: the
 /// rotation is made in double-double, whose product |ω|(t − t_ref) and reduction by π/2 err by less than 2⁻⁹⁸ of the
 /// angle, 2⁻⁴⁵ units.
@@ -295,11 +299,12 @@ impl RelativeMotion {
 
     /// The remainder of jets to third order of the points whose jets to second order have the remainder `second` of
     /// [`RelativeMotion::point_remainder_within`]: `M4·h⁴/24` and the rounding of the third derivative,
-    /// `2k((a + b)³S0 + 3b²U)`, in place of `M3·h³/6`.
+    /// `3k((a + b)³S0 + 3b²U)`, in place of `M3·h³/6`.
     pub fn point_remainder_third_order(&self, second: Remainder, fourth_derivative: f64) -> Remainder {
         let k = &self.bounds;
         let turn = k.a + k.b;
-        let rounding = 2.0 * (turn * turn * turn * second.e0 + 3.0 * k.b * k.b * k.speed * k.rounding) * UP;
+        let size = turn * turn * turn * second.e0 + 3.0 * k.b * k.b * k.speed * k.rounding;
+        let rounding = ROUNDING_OF_THIRD * size * UP;
         Remainder { m3: rounding, m4: fourth_derivative, ..second }
     }
 
@@ -308,7 +313,7 @@ impl RelativeMotion {
         let k = &self.bounds;
         let second = self.direction_remainder(length);
         let turn = k.a + k.b;
-        let rounding = 2.0 * turn * turn * turn * second.e0 * UP;
+        let rounding = ROUNDING_OF_THIRD * turn * turn * turn * second.e0 * UP;
         Remainder { m3: rounding, m4: k.k4 * length * UP, ..second }
     }
 

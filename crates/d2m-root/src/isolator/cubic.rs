@@ -2,7 +2,7 @@
 //!
 //! **Invariant:** the coefficients are taken as they are, exactly; every rounding made here is counted here. The proofs
 //! of the constants are in `docs/theory/isolator.md`.
-use super::first_zero_bound::UNIT;
+use super::first_zero_bound::{UNIT, power_of_two};
 use super::piece::Piece;
 use super::quadratic::{LONGEST_REACH, UNDERFLOW};
 use super::time_unit::TimeUnit;
@@ -33,6 +33,10 @@ const OF_VALUE: f64 = 11.0;
 const OF_SLOPE: f64 = 28.0;
 const OF_CURVATURE: f64 = 34.0;
 const OF_JERK: f64 = 24.0;
+/// 2⁻⁹⁰⁰: for a shorter piece the error is bounded as for this one. Half its width may be subnormal, so that an end is off
+/// by 2⁻¹⁰⁷⁴, and not by a part of the time.
+const SHORTEST_REACH: f64 = power_of_two(-900);
+
 /// Keeps a sum of three bounds above its exact value: more than its two roundings and this one.
 const SUM: f64 = 1.0 + 4.0 * UNIT;
 
@@ -70,10 +74,17 @@ impl Cubic {
         (quadratic, (1.0 / 24.0) * self.jerk.abs() * r * r * r)
     }
 
-    /// Bounds the error of what [`Cubic::clip`] computes on a piece up to the time `h` ≤ [`LONGEST_REACH`]. Infinite, or
-    /// NaN, if anything overflows there: no sum of the evaluation has larger terms.
+    /// Bounds the rounding of everything that is computed on a piece up to the time `h` ≤ 2²⁰: 2⁻⁵³ of
+    /// 11|value| + 28|slope|·h + 34|curvature|·h² + 24|jerk|·h³, and 2⁻¹⁰⁰⁰ for what underflows. Infinite, or NaN, if
+    /// anything overflows there: no sum of the evaluation has larger terms.
+    ///
+    /// ```
+    /// let cube = d2m_root::Cubic { value: 0.0, slope: 0.0, curvature: 0.0, jerk: 6.0 };
+    /// assert!(cube.bound_evaluation(1.0) > 71.0 * f64::EPSILON && cube.bound_evaluation(1.0) < 1e-13);
+    /// ```
     #[inline(always)]
-    fn bound_error(&self, h: f64) -> f64 {
+    pub fn bound_evaluation(&self, h: f64) -> f64 {
+        let h = if h > SHORTEST_REACH { h } else { SHORTEST_REACH };
         let higher = OF_CURVATURE * self.curvature.abs() + OF_JERK * self.jerk.abs() * h;
         (OF_VALUE * self.value.abs() + (OF_SLOPE * self.slope.abs() + higher * h) * h) * UNIT + UNDERFLOW
     }
@@ -100,10 +111,37 @@ impl Cubic {
     #[inline(always)]
     pub fn clip(&self, band: Band, margin: impl Fn(f64) -> f64, part: Piece) -> Option<Piece> {
         if part.is_within(LONGEST_REACH) {
-            self.clip_within_reach(band, margin, part)
+            // Parts of the piece reach no farther.
+            let error = self.bound_evaluation(part.reach());
+            self.clip_rounds(band, |h| margin(h) + error, part)
         } else {
             self.clip_far(band, &margin, part)
         }
+    }
+
+    /// [`Cubic::clip`] for callers that know a bound of all errors: cuts where the cubic is more than `allowed(h)` outside
+    /// the band, for every |s| ≤ h.
+    ///
+    /// Hypotheses, which debug builds check for the whole piece: `allowed(h)` is at least [`Cubic::bound_evaluation`] of h
+    /// (besides the error of the coefficients, where they have one) and grows with h, and |s| is at most 2²⁰.
+    ///
+    /// ```
+    /// use d2m_root::{Band, Cubic, Piece};
+    /// let cubic = Cubic { value: -0.25, slope: 1.0, curvature: 0.0, jerk: 6.0 };
+    /// let part = cubic.clip_beyond(Band { lo: 0.0, hi: 0.0 }, |_| 1e-13, Piece { lo: -1.0, hi: 1.0 }).unwrap();
+    /// assert!(part.width() < 1e-5 && cubic.at(part.lo) < 0.0 && cubic.at(part.hi) > 0.0);
+    /// ```
+    #[inline(always)]
+    pub fn clip_beyond(&self, band: Band, allowed: impl Fn(f64) -> f64, part: Piece) -> Option<Piece> {
+        debug_assert!(self.covers(allowed(part.reach()), part));
+        self.clip_rounds(band, allowed, part)
+    }
+
+    /// The hypotheses of [`Cubic::clip_beyond`]. Where everything is zero nothing underflows; what overflows or is not a
+    /// number cuts nothing.
+    fn covers(&self, allowed: f64, part: Piece) -> bool {
+        let error = self.bound_evaluation(part.reach());
+        !error.is_finite() || (part.is_within(LONGEST_REACH) && !(allowed + UNDERFLOW < error))
     }
 
     #[cold]
@@ -111,35 +149,46 @@ impl Cubic {
     fn clip_far(&self, band: Band, margin: &dyn Fn(f64) -> f64, part: Piece) -> Option<Piece> {
         let Some(unit) = TimeUnit::of(part) else { return Some(part) };
         let margin = |h: f64| margin(h * unit.length());
-        let kept = unit.cubic(self).clip_within_reach(band, margin, unit.piece(part))?;
+        let kept = unit.cubic(self).clip(band, margin, unit.piece(part))?;
         Some(unit.restored(kept, part))
     }
 
+    /// In rounds, each about the middle of what is left; `allowed` includes [`Cubic::bound_evaluation`] of the piece.
     #[inline(always)]
-    fn clip_within_reach(&self, band: Band, margin: impl Fn(f64) -> f64, part: Piece) -> Option<Piece> {
+    fn clip_rounds(&self, band: Band, allowed: impl Fn(f64) -> f64, part: Piece) -> Option<Piece> {
         let mut part = part;
+        let mut reach = part.reach();
         let mut last = f64::INFINITY;
-        // Parts of the piece reach no farther.
-        let error = self.bound_error(part.reach());
         for _ in 0..ROUNDS {
-            let m = part.mid();
-            let moved = Piece { lo: part.lo - m, hi: part.hi - m };
-            let (quadratic, left_out) = self.quadratic_near(m, moved.reach());
-            let allowed = (margin(part.reach()) + left_out + error) * SUM;
+            // The piece is [m − r, m + r] up to rounding, which is counted with the times.
+            let width = part.hi - part.lo;
+            let r = 0.5 * width;
+            let m = part.lo + r;
+            let (quadratic, left_out) = self.quadratic_near(m, r);
+            let allowed = (allowed(reach) + left_out) * SUM;
             // Another round pays if less is allowed. Also NaN ends here.
-            if allowed.is_nan() || allowed >= PAYS * last {
+            let pays = allowed < PAYS * last;
+            if !pays {
                 break;
             }
             last = allowed;
-            let kept = quadratic.clip_beyond(band, allowed, moved)?;
-            // Only an end that was cut moves: the middle plus what was subtracted from it may be another double, and once
-            // the piece has shrunk, so has what is allowed for that.
-            let (from, to) = (m + kept.lo, m + kept.hi);
-            part.lo = if kept.lo > moved.lo && from > part.lo { from } else { part.lo };
-            part.hi = if kept.hi < moved.hi && to < part.hi { to } else { part.hi };
-            if part.lo > part.hi {
+            let band = band.padded(allowed);
+            let Quadratic { value, slope, curvature } = quadratic;
+            // At both ends at once: even and odd powers of the time.
+            let bend = curvature * r;
+            let (even, odd) = (value + 0.5 * bend * r, slope * r);
+            let advance = band.bound_entry(even - odd, slope - bend, curvature);
+            if advance > width {
                 return None;
             }
+            let retreat = band.bound_entry(even + odd, -(slope + bend), curvature);
+            if retreat > width {
+                return None;
+            }
+            // An end that is not cut stays: the middle plus what was subtracted from it may be another double, and once
+            // the piece has shrunk, so has what is allowed for that.
+            part = part.shortened(advance, retreat)?;
+            reach = part.reach();
         }
         Some(part)
     }

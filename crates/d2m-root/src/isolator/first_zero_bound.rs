@@ -22,11 +22,9 @@ const EARLY: f64 = 1.0 - 16.0 * UNIT;
 
 /// 2⁻⁹⁰⁰: beyond it, what underflows in a discriminant (2⁻¹⁰⁷⁵ a product) is below 2⁻¹⁷⁰ of it.
 const LEAST_DISCRIMINANT: f64 = power_of_two(-900);
-/// 2⁻¹⁰⁰⁰: above it, `EARLY` times a zero is not subnormal.
+/// 2⁻¹⁰⁰⁰: above it, `EARLY` times a zero is not subnormal, and the discriminant of a falling start has not overflowed: an
+/// infinite one makes the zero 0 or not a number. (That of a rising start makes it infinite.)
 const LEAST_ZERO: f64 = power_of_two(-1000);
-/// 2¹⁰⁰⁰: below it, and above `LEAST_ZERO`, nothing has overflowed on the way: an infinite discriminant or quotient makes
-/// the zero 0, infinite, or not a number.
-const GREATEST_ZERO: f64 = power_of_two(1000);
 /// Coefficients below 2⁻⁹⁰⁰ times the largest are lowered to −2⁻⁹⁰⁰ times it: a smaller coefficient is an earlier zero.
 const NEGLIGIBLE: i32 = -900;
 
@@ -35,33 +33,37 @@ pub(super) const fn power_of_two(n: i32) -> f64 {
     f64::from_bits(((1023 + n) as u64) << 52)
 }
 
+/// A gap between them, with a discriminant beyond `LEAST_DISCRIMINANT`, has no zero above 2⁸⁵¹.
+pub(super) const USUAL_GAPS: (f64, f64) = (power_of_two(-400), power_of_two(400));
+
 /// See [`Quadratic::bound_first_zero`](super::Quadratic::bound_first_zero); for a positive gap, and coefficients that have
-/// not overflowed.
+/// not overflowed. A zero beyond 2¹⁰²³ may come out as infinite.
 #[inline(always)]
 pub(super) fn bound_first_zero(gap: f64, slope: f64, curvature: f64) -> f64 {
     let square = slope * slope;
     let product = 2.0 * gap * curvature;
-    let discriminant = if slope < 0.0 {
+    // Whatever is not a number, too small or too large for the comparisons is bounded with other exponents.
+    if slope < 0.0 {
         // Its terms may cancel: inflated by more than its error.
-        let inflated = (square - product) + DISCRIMINANT * (square + product.abs());
-        if inflated < -LEAST_DISCRIMINANT {
+        let discriminant = (square - product) + DISCRIMINANT * (square + product.abs());
+        if discriminant > LEAST_DISCRIMINANT {
+            let zero = 2.0 * gap / (discriminant.sqrt() - slope);
+            if zero > LEAST_ZERO {
+                return zero * EARLY;
+            }
+        } else if discriminant < -LEAST_DISCRIMINANT {
             return f64::INFINITY;
         }
-        inflated
     } else if curvature < 0.0 {
-        square - product
+        let discriminant = square - product;
+        let zero = (discriminant.sqrt() + slope) / -curvature;
+        if discriminant > LEAST_DISCRIMINANT && zero > LEAST_ZERO && zero < f64::INFINITY {
+            return zero * EARLY;
+        }
     } else if slope >= 0.0 && curvature >= 0.0 {
         return f64::INFINITY;
-    } else {
-        return 0.0;
-    };
-    let zero = zero_of(gap, slope, curvature, discriminant);
-    // What is not a number is not in range either.
-    if discriminant > LEAST_DISCRIMINANT && zero > LEAST_ZERO && zero < GREATEST_ZERO {
-        zero * EARLY
-    } else {
-        bound_scaled(gap, slope, curvature)
     }
+    bound_scaled(gap, slope, curvature)
 }
 
 /// The first zero by the formulas above, for a discriminant that is not negative.
@@ -77,7 +79,7 @@ fn zero_of(gap: f64, slope: f64, curvature: f64, discriminant: f64) -> f64 {
 /// The same with the gap in [1, 2) and the larger of slope and curvature just below 1, by powers of two.
 #[cold]
 #[inline(never)]
-fn bound_scaled(gap: f64, slope: f64, curvature: f64) -> f64 {
+pub(super) fn bound_scaled(gap: f64, slope: f64, curvature: f64) -> f64 {
     // Not finite: nothing is known.
     if !(gap > 0.0 && gap < f64::INFINITY && slope.is_finite() && curvature.is_finite()) {
         return 0.0;

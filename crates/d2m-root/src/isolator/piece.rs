@@ -44,6 +44,14 @@ impl Piece {
         self.hi - self.lo
     }
 
+    /// Without what is cut off either end; `None` if nothing is left. An end from which nothing is cut stays as it is.
+    #[inline(always)]
+    pub(super) fn shortened(self, advance: f64, retreat: f64) -> Option<Self> {
+        let (lo, hi) = (self.lo + advance, self.hi - retreat);
+        // Both ends may have been cut past each other.
+        if lo > hi { None } else { Some(Self { lo, hi }) }
+    }
+
     /// The largest |s| of its times s, if neither end is NaN.
     #[inline(always)]
     pub(super) fn reach(&self) -> f64 {

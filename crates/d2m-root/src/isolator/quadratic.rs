@@ -2,7 +2,7 @@
 //!
 //! **Invariant:** the coefficients are taken as they are, exactly; every rounding made here is counted here. The proofs
 //! of the constants are in `docs/theory/isolator.md`.
-use super::first_zero_bound::{UNIT, bound_first_zero, power_of_two};
+use super::first_zero_bound::{UNIT, USUAL_GAPS, bound_first_zero, bound_scaled, power_of_two};
 use super::piece::{Piece, up};
 use super::time_unit::TimeUnit;
 
@@ -42,6 +42,26 @@ pub struct Band {
     pub hi: f64,
 }
 
+impl Band {
+    /// With as much more on either side.
+    #[inline(always)]
+    pub(super) fn padded(self, by: f64) -> Self {
+        Self { lo: self.lo - by, hi: self.hi + by }
+    }
+
+    /// How long a quadratic that starts with these numbers is certainly outside of the band; 0 if it starts inside.
+    #[inline(always)]
+    pub(super) fn bound_entry(self, value: f64, slope: f64, curvature: f64) -> f64 {
+        if value > self.hi {
+            bound_first_zero(value - self.hi, slope, curvature)
+        } else if value < self.lo {
+            bound_first_zero(self.lo - value, -slope, -curvature)
+        } else {
+            0.0
+        }
+    }
+}
+
 impl Quadratic {
     /// The value at `s`, plain floating point: relative to `|value| + |slope·s| + |curvature·s²|` the error is
     /// below 4·2⁻⁵³.
@@ -76,19 +96,30 @@ impl Quadratic {
     /// ```
     #[inline(always)]
     pub fn bound_first_zero(gap: f64, slope: f64, curvature: f64) -> f64 {
-        // Infinite coefficients come from an overflow, and mean nothing.
-        let known = gap > 0.0
-            && gap < f64::INFINITY
-            && slope.abs() < f64::INFINITY
-            && curvature.abs() < f64::INFINITY;
-        if known { bound_first_zero(gap, slope, curvature) } else { 0.0 }
+        // Infinite coefficients come from an overflow, and mean nothing. (−∞ makes the discriminant infinite or no number.)
+        let usual =
+            gap > USUAL_GAPS.0 && gap < USUAL_GAPS.1 && slope < f64::INFINITY && curvature < f64::INFINITY;
+        if usual { bound_first_zero(gap, slope, curvature) } else { bound_scaled(gap, slope, curvature) }
     }
 
-    /// Bounds the error of what is computed on a piece up to the time `h` ≤ [`LONGEST_REACH`]. Infinite, or NaN, if
-    /// anything overflows there: no sum of the evaluation has larger terms.
+    /// Bounds the rounding of everything that is computed on a piece up to the time `h` ≤ 2²⁰: 12·2⁻⁵³ of
+    /// |value| + |slope|·h + |curvature|·h², and 2⁻¹⁰⁰⁰ for what underflows. Infinite, or NaN, if anything overflows there:
+    /// no sum of the evaluation has larger terms.
+    ///
+    /// ```
+    /// let arch = d2m_root::Quadratic { value: 1.0, slope: 0.0, curvature: 2.0 };
+    /// assert!(arch.bound_evaluation(2.0) > 53.0 * f64::EPSILON && arch.bound_evaluation(2.0) < 2e-14);
+    /// ```
     #[inline(always)]
-    fn bound_error(&self, h: f64) -> f64 {
+    pub fn bound_evaluation(&self, h: f64) -> f64 {
         EVALUATION * (self.value.abs() + (self.slope.abs() + self.curvature.abs() * h) * h) + UNDERFLOW
+    }
+
+    /// The hypotheses of [`Quadratic::clip_beyond`]. Where everything is zero nothing underflows; what overflows or is not
+    /// a number cuts nothing.
+    fn covers(&self, allowed: f64, part: Piece) -> bool {
+        let error = self.bound_evaluation(part.reach());
+        !error.is_finite() || (part.is_within(LONGEST_REACH) && !(allowed + UNDERFLOW < error))
     }
 
     /// Cuts off both ends of `part` (times relative to s = 0) where the quadratic is certainly outside the band;
@@ -109,7 +140,7 @@ impl Quadratic {
     #[inline(always)]
     pub fn clip(&self, band: Band, part: Piece) -> Option<Piece> {
         if part.is_within(LONGEST_REACH) {
-            self.clip_beyond(band, self.bound_error(part.reach()), part)
+            self.clip_beyond(band, self.bound_evaluation(part.reach()), part)
         } else {
             self.clip_far(band, part)
         }
@@ -123,39 +154,34 @@ impl Quadratic {
         Some(unit.restored(kept, part))
     }
 
-    /// [`Quadratic::clip`] where the quadratic is more than `allowed` outside the band. `allowed` includes the errors
-    /// of computing: it is at least [`Quadratic::bound_error`]. An end from which nothing is cut stays.
+    /// [`Quadratic::clip`] for callers that know a bound of all errors: cuts where the quadratic is more than `allowed`
+    /// outside the band.
+    ///
+    /// Hypotheses, which debug builds check: `allowed` is at least [`Quadratic::bound_evaluation`] of the piece's largest
+    /// |s| (besides the error of the coefficients, where they have one), and that is at most 2²⁰.
+    ///
+    /// ```
+    /// use d2m_root::{Band, Piece, Quadratic};
+    /// let falling = Quadratic { value: 1.0, slope: -1.0, curvature: 0.0 };
+    /// let (zero, part) = (Band { lo: 0.0, hi: 0.0 }, Piece { lo: 0.0, hi: 2.0 });
+    /// let kept = falling.clip_beyond(zero, 0.125, part).unwrap();
+    /// assert!(kept.lo <= 0.875 && kept.hi >= 1.125 && kept.width() < 0.25 + 1e-13);
+    /// ```
     #[inline(always)]
-    pub(super) fn clip_beyond(&self, band: Band, allowed: f64, part: Piece) -> Option<Piece> {
-        let Piece { mut lo, mut hi } = part;
-        let (below, above) = (band.lo - allowed, band.hi + allowed);
+    pub fn clip_beyond(&self, band: Band, allowed: f64, part: Piece) -> Option<Piece> {
+        debug_assert!(self.covers(allowed, part));
+        let Piece { lo, hi } = part;
+        let band = band.padded(allowed);
         let width = hi - lo;
-        let (left, slope) = (self.at(lo), self.slope_at(lo));
-        let advance = if left > above {
-            bound_first_zero(left - above, slope, self.curvature)
-        } else if left < below {
-            bound_first_zero(below - left, -slope, -self.curvature)
-        } else {
-            0.0
-        };
+        let advance = band.bound_entry(self.at(lo), self.slope_at(lo), self.curvature);
         if advance > width {
             return None;
         }
-        lo += advance;
-        let (right, slope) = (self.at(hi), self.slope_at(hi));
-        let retreat = if right > above {
-            bound_first_zero(right - above, -slope, self.curvature)
-        } else if right < below {
-            bound_first_zero(below - right, slope, -self.curvature)
-        } else {
-            0.0
-        };
+        let retreat = band.bound_entry(self.at(hi), -self.slope_at(hi), self.curvature);
         if retreat > width {
             return None;
         }
-        hi -= retreat;
-        // Both ends may have been cut past each other: then nothing is left.
-        if lo > hi { None } else { Some(Piece { lo, hi }) }
+        part.shortened(advance, retreat)
     }
 
     /// Cuts off both ends of `part` where two quadratics certainly share a sign: `self` and `other` both above
@@ -171,49 +197,54 @@ impl Quadratic {
     /// ```
     #[inline(always)]
     pub fn clip_shared_sign(&self, other: &Self, margin: f64, part: Piece) -> Option<Piece> {
-        if !part.is_within(LONGEST_REACH) {
-            return self.clip_shared_sign_far(other, margin, part);
+        if part.is_within(LONGEST_REACH) {
+            let h = part.reach();
+            let (mine, others) = (self.bound_evaluation(h), other.bound_evaluation(h));
+            self.clip_shared_sign_beyond(other, margin + if mine > others { mine } else { others }, part)
+        } else {
+            self.clip_shared_sign_far(other, margin, part)
         }
-        let h = part.reach();
-        let Piece { mut lo, mut hi } = part;
+    }
+
+    /// [`Quadratic::clip_shared_sign`] where both quadratics are more than `allowed` on the same side of zero, under the
+    /// hypotheses of [`Quadratic::clip_beyond`].
+    ///
+    /// ```
+    /// use d2m_root::{Piece, Quadratic};
+    /// let (f, g) = (Quadratic { value: -1.0, slope: 1.0, curvature: 0.0 },
+    ///               Quadratic { value: -3.0, slope: 1.0, curvature: 0.0 });
+    /// let kept = f.clip_shared_sign_beyond(&g, 0.25, Piece { lo: 0.0, hi: 4.0 }).unwrap();
+    /// assert!(kept.lo <= 0.75 && kept.hi >= 3.25 && kept.width() < 2.5 + 1e-13);
+    /// ```
+    #[inline(always)]
+    pub fn clip_shared_sign_beyond(&self, other: &Self, allowed: f64, part: Piece) -> Option<Piece> {
+        debug_assert!(self.covers(allowed, part) && other.covers(allowed, part));
+        let Piece { lo, hi } = part;
         let width = hi - lo;
-        let (margin_f, margin_g) = (margin + self.bound_error(h), margin + other.bound_error(h));
-        let shared = |f: f64, g: f64| {
-            if f > margin_f && g > margin_g {
+        // How far both keep a sign that they share, from values and slopes at an end.
+        let shared = |f: [f64; 2], g: [f64; 2]| {
+            let first = |sign: f64, [value, slope]: [f64; 2], curvature: f64| {
+                bound_first_zero(sign * value - allowed, sign * slope, sign * curvature)
+            };
+            let sign = if f[0] > allowed && g[0] > allowed {
                 1.0
-            } else if f < -margin_f && g < -margin_g {
+            } else if f[0] < -allowed && g[0] < -allowed {
                 -1.0
             } else {
-                0.0
-            }
-        };
-        // How far from `s`, where the values are `f` and `g`, both keep the sign.
-        let keep = |s: f64, f: f64, g: f64, sign: f64, direction: f64| {
-            let first = |q: &Self, value: f64, margin: f64| {
-                let slope = sign * direction * q.slope_at(s);
-                bound_first_zero(sign * value - margin, slope, sign * q.curvature)
+                return 0.0;
             };
-            let (a, b) = (first(self, f, margin_f), first(other, g, margin_g));
+            let (a, b) = (first(sign, f, self.curvature), first(sign, g, other.curvature));
             if a < b { a } else { b }
         };
-        let (f_lo, g_lo) = (self.at(lo), other.at(lo));
-        let (f_hi, g_hi) = (self.at(hi), other.at(hi));
-        let (at_lo, at_hi) = (shared(f_lo, g_lo), shared(f_hi, g_hi));
-        if at_lo != 0.0 {
-            let advance = keep(lo, f_lo, g_lo, at_lo, 1.0);
-            if advance > width {
-                return None;
-            }
-            lo += advance;
+        let advance = shared([self.at(lo), self.slope_at(lo)], [other.at(lo), other.slope_at(lo)]);
+        if advance > width {
+            return None;
         }
-        if at_hi != 0.0 {
-            let retreat = keep(hi, f_hi, g_hi, at_hi, -1.0);
-            if retreat > width {
-                return None;
-            }
-            hi -= retreat;
+        let retreat = shared([self.at(hi), -self.slope_at(hi)], [other.at(hi), -other.slope_at(hi)]);
+        if retreat > width {
+            return None;
         }
-        if lo > hi { None } else { Some(Piece { lo, hi }) }
+        part.shortened(advance, retreat)
     }
 
     #[cold]
@@ -238,20 +269,41 @@ impl Quadratic {
     /// ```
     #[inline(always)]
     pub fn bound_below(&self, part: Piece) -> f64 {
-        if !part.is_within(LONGEST_REACH) {
-            return self.bound_below_far(part);
+        if part.is_within(LONGEST_REACH) {
+            self.least(part) - self.bound_evaluation(part.reach())
+        } else {
+            self.bound_below_far(part)
         }
+    }
+
+    /// True if the quadratic is certainly above `margin` throughout a piece, under the hypotheses of
+    /// [`Quadratic::clip_beyond`]: the margin includes all errors. Nothing is above NaN, and NaN is above nothing.
+    ///
+    /// ```
+    /// use d2m_root::{Piece, Quadratic};
+    /// let arch = Quadratic { value: 1.0, slope: 0.0, curvature: 2.0 }; // 1 + s²
+    /// let piece = Piece { lo: -1.0, hi: 1.0 };
+    /// assert!(arch.exceeds(0.99, piece) && !arch.exceeds(1.01, piece));
+    /// ```
+    #[inline(always)]
+    pub fn exceeds(&self, margin: f64, part: Piece) -> bool {
+        debug_assert!(self.covers(margin, part));
+        self.least(part) > margin
+    }
+
+    /// The minimum over a piece within [`LONGEST_REACH`], below the true one but for [`Quadratic::bound_evaluation`].
+    #[inline(always)]
+    fn least(&self, part: Piece) -> f64 {
         let (left, right) = (self.at(part.lo), self.at(part.hi));
         // NaN stays NaN, and excludes nothing: f64::min would drop it.
         let ends = if left <= right || left.is_nan() { left } else { right };
-        let least = if self.curvature > 0.0 {
+        if self.curvature > 0.0 {
             // Exact at the ends, below in between.
             let width = up(part.hi - part.lo);
             ends - self.curvature * width * width * 0.125 * SAGITTA
         } else {
             ends
-        };
-        least - self.bound_error(part.reach())
+        }
     }
 
     #[cold]

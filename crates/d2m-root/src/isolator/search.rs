@@ -48,35 +48,46 @@ pub struct Isolation {
 const GOOD: f64 = 0.6;
 /// Above this part of its old width a piece is measured before it is bisected.
 const POOR: f64 = 0.95;
-/// Pieces that wait at most.
-const DEPTH: usize = 32;
+/// Pieces that wait without memory of their own.
+const FEW: usize = 6;
 /// No piece is divided below four last places of the times it is made of.
 const RESOLVABLE: f64 = 4.0 * f64::EPSILON;
 /// Below this part of the resolution, a piece that nothing can be said about is not halved again.
 const GIVE_UP: f64 = 0.25;
 
-/// Pieces to the right of the current one, the leftmost on top. When full, the top grows instead.
+/// Pieces to the right of the current one, the leftmost on top: the first ones in place, as most searches need no more.
 struct Rest {
-    pieces: [Piece; DEPTH],
+    few: [Piece; FEW],
     len: usize,
+    more: Vec<Piece>,
 }
 
 impl Rest {
+    const fn new(window: Piece) -> Self {
+        Self { few: [window; FEW], len: 0, more: Vec::new() }
+    }
+
     #[inline(always)]
     fn push(&mut self, piece: Piece) {
-        if self.len == DEPTH {
-            // Covers more than it must: sound, and only after 32 bisections that left something to the right.
-            self.pieces[DEPTH - 1].lo = piece.lo;
-        } else {
-            self.pieces[self.len] = piece;
-            self.len += 1;
+        match self.few.get_mut(self.len) {
+            Some(place) => *place = piece,
+            None => self.more.push(piece),
         }
+        self.len += 1;
     }
 
     #[inline(always)]
     fn pop(&mut self) -> Option<Piece> {
         self.len = self.len.checked_sub(1)?;
-        Some(self.pieces[self.len])
+        match self.few.get(self.len) {
+            Some(piece) => Some(*piece),
+            None => self.more.pop(),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.len = 0;
+        self.more.clear();
     }
 }
 
@@ -85,7 +96,7 @@ impl Rest {
 /// Promise: if the test's promises hold, there is no contact in `[window.lo, bracket.lo)`, and none at all when the
 /// answer is [`FirstRoot::Clear`]. It ends after at most `max_evaluations` evaluations and measurements.
 pub fn isolate<T: PieceTest>(test: &mut T, window: Piece, options: &IsolatorOptions) -> Isolation {
-    let mut rest = Rest { pieces: [window; DEPTH], len: 0 };
+    let mut rest = Rest::new(window);
     let mut piece = window;
     let mut evaluations = 0;
     // A time at which the distance was seen within the tolerance; nothing to its right matters.
@@ -146,7 +157,7 @@ pub fn isolate<T: PieceTest>(test: &mut T, window: Piece, options: &IsolatorOpti
                         break 'search found(bracket, Evidence::WithinTolerance, cut.distance);
                     }
                     seen = Some((mid, cut.distance));
-                    rest.len = 0;
+                    rest.clear();
                     piece.hi = mid;
                     continue 'search;
                 }

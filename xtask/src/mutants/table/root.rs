@@ -41,8 +41,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "an end of a piece is rebuilt from its middle, though nothing was cut",
         "crates/d2m-root/src/isolator/cubic.rs",
-        "part.lo = if kept.lo > moved.lo && from > part.lo { from } else { part.lo };",
-        "part.lo = if from > part.lo { from } else { part.lo };",
+        "part = part.shortened(advance, retreat)?;",
+        "part = Piece { lo: (m - r) + advance, hi: (m + r) - retreat };",
         "crates/d2m-root/tests/exact.rs::a_linear_function_keeps_its_zero_at_an_end",
     ),
     patch(
@@ -69,16 +69,30 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "a discriminant that underflows",
         "crates/d2m-root/src/isolator/first_zero_bound.rs",
-        "discriminant > LEAST_DISCRIMINANT &&",
-        "discriminant >= 0.0 &&",
+        "discriminant > LEAST_DISCRIMINANT && zero",
+        "discriminant >= 0.0 && zero",
         "crates/d2m-root/tests/exact.rs::products_beyond_the_range_of_doubles_are_not_late",
     ),
     patch(
         "a zero that overflows",
         "crates/d2m-root/src/isolator/first_zero_bound.rs",
-        " && zero < GREATEST_ZERO {",
+        " && zero < f64::INFINITY {",
         " {",
         "crates/d2m-root/tests/exact.rs::products_beyond_the_range_of_doubles_are_not_late",
+    ),
+    patch(
+        "half of the shortest piece counts as exact",
+        "crates/d2m-root/src/isolator/cubic.rs",
+        "const SHORTEST_REACH: f64 = power_of_two(-900);",
+        "const SHORTEST_REACH: f64 = 0.0 * power_of_two(-900);",
+        "crates/d2m-root/tests/exact.rs::half_of_the_shortest_piece_is_not_exact",
+    ),
+    patch(
+        "what an error bound must cover is not checked",
+        "crates/d2m-root/src/isolator/quadratic.rs",
+        "&& !(allowed + UNDERFLOW < error))",
+        "&& !(allowed + UNDERFLOW < 0.0 * error))",
+        "crates/d2m-root/tests/exact.rs::an_error_bound_that_leaves_out_rounding_is_noticed",
     ),
     patch(
         "the isolator drops what lies behind a clear part",
