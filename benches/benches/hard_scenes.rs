@@ -1,4 +1,4 @@
-//! The table of hard scenes of docs/theory/engine.md: `cargo bench -p d2m-benches --bench hard_scenes [-- WORDS [ROUNDS]]`.
+//! The table of hard scenes of docs/experiments.md: `cargo bench -p d2m-benches --bench hard_scenes [-- WORDS [ROUNDS]]`.
 //! Every answer is judged by the construction of its scene before it is timed.
 use d2m::bvh::last_search_counts;
 use d2m_benches::hard_scenes::{HardScene, table};

@@ -55,14 +55,14 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "Γ inverted, closed-form vertex/face",
         "crates/d2m-feature/src/point_triangle/mod.rs",
-        "Band { lo: lo - margin, hi: hi + margin }",
-        "Band { lo: hi + margin, hi: f64::INFINITY }",
+        "side.clip_beyond(Band { lo, hi }, margin, beside)",
+        "side.clip_beyond(Band { lo: hi + 2.0 * margin, hi: f64::INFINITY }, margin, beside)",
         "crates/d2m-feature/tests/first_contact.rs::planted_contacts_are_never_missed_and_never_late",
     ),
     patch(
         "the plane without the path's remainder",
         "crates/d2m-feature/src/point_triangle/mod.rs",
-        "plane.clip(planes.slab(), |h| remainder.bound(h), searched)",
+        "plane.clip_beyond(planes.slab(), |h| remainder.bound(h), searched)",
         "plane.clip(planes.slab(), |h| 0.0 * remainder.bound(h), searched)",
         "crates/d2m-feature/tests/first_contact.rs::planted_contacts_are_never_missed_and_never_late",
     ),
