@@ -2,12 +2,9 @@
 //! functions that may use them are entered through a check of the processor (`dispatch`).
 #![allow(unsafe_code)]
 
-use super::eight::Lanes;
+use super::eight::{Lanes, Rows};
 use super::quad::{Doubles, Quad};
 use super::two::{Both, Bytes, Elementwise, Two};
-use crate::search::node_pair::expansion::Opened;
-use crate::search::queue::Item;
-use crate::tree::node::WIDTH;
 #[allow(clippy::wildcard_imports)]
 use core::arch::x86_64::*;
 use core::marker::PhantomData;
@@ -182,21 +179,21 @@ impl<R: Registers> Lanes for Avx<R> {
         out
     }
     #[inline(always)]
-    fn pack(pairs: &Opened, list: &mut [Item; WIDTH]) -> usize {
-        // SAFETY: the processor has AVX2 (see the type). Keys and what to open are eight words each; an item is four
-        // words in order (`repr(C)`), so the list is four times 32 writable bytes. No alignment is needed.
+    fn pack(rows: &Rows, list: &mut [[u32; 4]; 8]) -> usize {
+        // SAFETY: the processor has AVX2 (see the type). Keys and tags are eight words each, the list is four times 32
+        // writable bytes. No alignment is needed.
         unsafe {
-            let order = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(ORDER[pairs.bits as usize & 255] as i64));
-            let wide = _mm256_add_epi32(_mm256_set1_epi32(pairs.first as i32), order);
-            let single = _mm256_set1_epi32(pairs.single as i32);
-            let wide_is_b = _mm256_set1_epi32(-i32::from(pairs.wide_is_b));
-            let a = _mm256_blendv_epi8(wide, single, wide_is_b);
-            let b = _mm256_blendv_epi8(single, wide, wide_is_b);
-            let key = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(pairs.keys.as_ptr().cast()), order);
-            let open = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(pairs.open.as_ptr().cast()), order);
-            // Items 0, 1 | 4, 5 and 2, 3 | 6, 7: first and second half; then each item whole.
+            let order = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(ORDER[rows.wanted as usize & 255] as i64));
+            let counting = _mm256_add_epi32(_mm256_set1_epi32(rows.counting as i32), order);
+            let constant = _mm256_set1_epi32(rows.constant as i32);
+            let swap = _mm256_set1_epi32(-i32::from(rows.counting_is_third));
+            let a = _mm256_blendv_epi8(counting, constant, swap);
+            let b = _mm256_blendv_epi8(constant, counting, swap);
+            let key = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(rows.keys.as_ptr().cast()), order);
+            let tag = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(rows.tags.as_ptr().cast()), order);
+            // Rows 0, 1 | 4, 5 and 2, 3 | 6, 7: first and second half; then each row whole.
             let (low, high) = (_mm256_unpacklo_epi32(key, a), _mm256_unpackhi_epi32(key, a));
-            let (low_rest, high_rest) = (_mm256_unpacklo_epi32(b, open), _mm256_unpackhi_epi32(b, open));
+            let (low_rest, high_rest) = (_mm256_unpacklo_epi32(b, tag), _mm256_unpackhi_epi32(b, tag));
             let (i04, i15) = (_mm256_unpacklo_epi64(low, low_rest), _mm256_unpackhi_epi64(low, low_rest));
             let (i26, i37) = (_mm256_unpacklo_epi64(high, high_rest), _mm256_unpackhi_epi64(high, high_rest));
             let out: *mut __m256i = list.as_mut_ptr().cast();
@@ -205,7 +202,7 @@ impl<R: Registers> Lanes for Avx<R> {
             _mm256_storeu_si256(out.add(2), _mm256_permute2x128_si256::<0x31>(i04, i15));
             _mm256_storeu_si256(out.add(3), _mm256_permute2x128_si256::<0x31>(i26, i37));
         }
-        pairs.bits.count_ones() as usize
+        rows.wanted.count_ones() as usize
     }
     #[inline(always)]
     fn prefetch<T>(value: &T) {

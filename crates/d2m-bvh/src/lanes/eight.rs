@@ -5,10 +5,25 @@
 
 use super::quad::Doubles;
 use super::two::{Bytes, Two};
-use crate::search::node_pair::expansion::Opened;
-use crate::search::queue::Item;
-use crate::tree::node::WIDTH;
 use core::ops::Div;
+
+/// Eight rows of four words, one a lane: a key, two numbers, a tag. One of the numbers counts up from lane to lane, the
+/// other is the same in all of them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rows {
+    /// First word.
+    pub(crate) keys: [i32; 8],
+    /// The number that counts up, in lane 0.
+    pub(crate) counting: u32,
+    /// The number that stays.
+    pub(crate) constant: u32,
+    /// The number that counts up is the third word and the other one the second; else the other way round.
+    pub(crate) counting_is_third: bool,
+    /// Fourth word.
+    pub(crate) tags: [u32; 8],
+    /// Bit i is set when row i is wanted.
+    pub(crate) wanted: u32,
+}
 
 /// Eight lanes of `f32`.
 pub(crate) trait Lanes: Bytes + Div<Output = Self> {
@@ -30,9 +45,9 @@ pub(crate) trait Lanes: Bytes + Div<Output = Self> {
     fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32);
     /// `children | flag` in the lanes where `sizes · ratio > size`, else `other`.
     fn larger(sizes: (&[f32; 8], f32, f32), children: (&[u32; 8], u32), other: u32) -> [u32; 8];
-    /// Writes the pairs worth queueing to the start of the list, in the order of their lanes; how many. What is
-    /// behind them is of no meaning.
-    fn pack(pairs: &Opened, list: &mut [Item; WIDTH]) -> usize;
+    /// Writes the wanted rows to the start of the list, in the order of their lanes, and returns how many there are. What
+    /// is behind them has no meaning.
+    fn pack(rows: &Rows, list: &mut [[u32; 4]; 8]) -> usize;
     /// Asks for the memory of a value: a hint.
     fn prefetch<T>(value: &T);
     /// x·c₀ + y·c₁ + z·c₂ for the columns c of a matrix.

@@ -14,7 +14,7 @@ mod two;
 #[cfg(test)]
 pub(crate) use dispatch::run_on;
 pub(crate) use dispatch::{Task, run};
-pub(crate) use eight::Lanes;
+pub(crate) use eight::{Lanes, Rows};
 pub use instruction_set::InstructionSet;
 #[cfg(test)]
 pub(crate) use portable::Portable;

@@ -1,11 +1,8 @@
 //! The lanes that every target has: in vector registers where its plainest processor has some.
 
-use super::eight::Lanes;
+use super::eight::{Lanes, Rows};
 use super::quad::Quad;
 use super::two::{Both, Bytes, Elementwise};
-use crate::search::node_pair::expansion::Opened;
-use crate::search::queue::Item;
-use crate::tree::node::WIDTH;
 use core::ops::{Add, Div, Mul, Sub};
 use wide::bytemuck::cast;
 use wide::{f32x8, i32x8, u32x8};
@@ -111,16 +108,16 @@ impl Lanes for Portable {
         out
     }
     #[inline(always)]
-    fn pack(pairs: &Opened, list: &mut [Item; WIDTH]) -> usize {
+    fn pack(rows: &Rows, list: &mut [[u32; 4]; 8]) -> usize {
         // Without a branch: which lanes they are cannot be predicted.
         let mut count = 0;
-        for lane in 0..WIDTH {
-            let (wide, single) = (pairs.first + lane as u32, pairs.single);
-            let boxes = if pairs.wide_is_b { [single, wide] } else { [wide, single] };
-            list[count] = Item { key: pairs.keys[lane] as u32, boxes, open: pairs.open[lane] };
-            count += (pairs.bits >> lane) as usize & usize::from(lane < WIDTH - 1);
+        for lane in 0..8 {
+            let (counting, constant) = (rows.counting + lane as u32, rows.constant);
+            let [a, b] = if rows.counting_is_third { [constant, counting] } else { [counting, constant] };
+            list[count] = [rows.keys[lane] as u32, a, b, rows.tags[lane]];
+            count += (rows.wanted >> lane) as usize & usize::from(lane < 7);
         }
-        count + (pairs.bits >> (WIDTH - 1)) as usize
+        count + (rows.wanted >> 7) as usize
     }
     #[inline(always)]
     fn prefetch<T>(_: &T) {}

@@ -382,7 +382,7 @@ impl<'s> Search<'s> {
             }
         }
         let fresh = &mut self.scratch.fresh;
-        fresh.resize(WIDTH * (BATCH + 1), Item::default());
+        fresh.resize(WIDTH * (BATCH + 1), [0; 4]);
         let (mut tests, mut count) = (0, 0);
         for (i, item) in items.iter().enumerate() {
             if let Some(next) = items.get(i + AHEAD) {
@@ -398,7 +398,8 @@ impl<'s> Search<'s> {
         }
         self.scratch.counts.node_tests += tests;
         self.scratch.counts.queued += count as u64;
-        self.scratch.queue.extend(&self.scratch.fresh[..count]);
+        let fresh = self.scratch.fresh[..count].iter();
+        self.scratch.queue.extend(fresh.map(|row| Item::from_row(*row)));
     }
 
     /// Advances a pair of triangles until it is past the limit, waits for others (not if `alone`), or is in contact.

@@ -124,10 +124,10 @@ impl Search<'_> {
         while item.open & Item::TRIANGLES == 0 {
             self.scratch.counts.node_tests += 1;
             let opened = state.opening.expand::<L>(&item, &state.node_frames, (state.frame_key, state.limit));
-            let mut list = [Item::default(); WIDTH];
+            let mut list = [[0; 4]; WIDTH];
             let count = L::pack(&opened, &mut list);
-            match list[..count].iter().min_by_key(|next| next.key) {
-                Some(next) => item = *next,
+            match list[..count].iter().map(|row| Item::from_row(*row)).min_by_key(|next| next.key) {
+                Some(next) => item = next,
                 None => return,
             }
         }

@@ -8,7 +8,6 @@ use crate::tree::node::LEAF;
 
 /// A pair of boxes and the time until which it is proven apart.
 #[derive(Clone, Copy, Debug, Default)]
-#[repr(C)]
 pub(crate) struct Item {
     /// Time key.
     pub(crate) key: u32,
@@ -24,6 +23,12 @@ impl Item {
     pub(crate) const OF_B: u32 = 1 << 30;
     /// Nothing is left to open.
     pub(crate) const TRIANGLES: u32 = LEAF;
+
+    /// From four words in the order of the fields.
+    #[inline(always)]
+    pub(crate) const fn from_row([key, a, b, open]: [u32; 4]) -> Self {
+        Self { key, boxes: [a, b], open }
+    }
 
     /// Whose node is to be opened: 0 is A, 1 is B.
     #[inline(always)]
@@ -158,7 +163,7 @@ impl Queue {
             if batch.count <= target {
                 return Some(batch.least);
             }
-            self.extend(batch.items());
+            self.extend(batch.items().iter().copied());
             batch.clear();
             if batch.items.len() > LARGE {
                 batch.items = Vec::new();
@@ -168,9 +173,9 @@ impl Queue {
 
     /// Adds items whose keys are not below the last key handed out.
     #[inline(always)]
-    pub(crate) fn extend(&mut self, items: &[Item]) {
+    pub(crate) fn extend(&mut self, items: impl Iterator<Item = Item>) {
         for item in items {
-            self.push(item);
+            self.push(&item);
         }
     }
 

@@ -5,7 +5,7 @@ use super::motion::frame::RelativeMotion;
 use super::motion::local_motion::LocalMotion;
 use super::motion::units::Units;
 use super::node_pair::node_test::NodeScale;
-use super::queue::{Bucket, Item, Queue};
+use super::queue::{Bucket, Queue};
 use super::triangle_pair::separating_axis::PairScale;
 use crate::tree::margin::{DOWN, NARROW_UP, UNIT_F64, UP, round_up};
 use crate::{MeshTree, QueryError, QueryOptions, Window};
@@ -361,7 +361,7 @@ pub(crate) struct Scratch {
     pub(crate) queue: Queue,
     pub(crate) batch: Bucket,
     /// The pairs that a batch leaves.
-    pub(crate) fresh: Vec<Item>,
+    pub(crate) fresh: Vec<[u32; 4]>,
     pub(crate) counts: SearchCounts,
     /// The triangles that were tested last.
     pub(crate) last_looked_at: [u32; 2],

@@ -2,7 +2,7 @@
 
 use super::entry_time::entry_times;
 use super::node_test::{NodeFrame, NodeScale, Placed};
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Rows};
 use crate::search::queue::Item;
 use crate::tree::node::{WIDTH, WideNode};
 
@@ -23,22 +23,6 @@ pub(crate) struct Opening<'a> {
     pub(crate) size_ratios: [f32; 2],
 }
 
-/// The pairs below an opened one: each box of the node that was opened with the same box of the other body.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Opened {
-    /// Until when the pairs are proven apart.
-    pub(crate) keys: [i32; WIDTH],
-    /// What is to be done with them: see [`Item::open`].
-    pub(crate) open: [u32; WIDTH],
-    /// Bit i is set when pair i is worth queueing.
-    pub(crate) bits: u32,
-    /// The node is one of B's.
-    pub(crate) wide_is_b: bool,
-    /// The first box of the node, and the box of the other body.
-    pub(crate) first: u32,
-    pub(crate) single: u32,
-}
-
 impl Opening<'_> {
     /// What is to be done with a pair of boxes: the larger one is opened. A triangle has no size, so it is never the larger.
     pub(crate) fn of_pair(&self, a: u32, b: u32) -> u32 {
@@ -48,7 +32,8 @@ impl Opening<'_> {
         if larger { na.child[la] } else { nb.child[lb] | Item::OF_B }
     }
 
-    /// Opens an item that is not a pair of triangles. Keys count from `now`, the key of the frame; pairs whose key is not below
+    /// Opens an item that is not a pair of triangles: the pairs of each box of its node with the other body's box, as rows
+    /// of an [`Item`]; wanted are those worth queueing, their keys are times until which they are proven apart. Keys count from `now`, the key of the frame; pairs whose key is not below
     /// `limit` are not worth queueing.
     #[inline(always)]
     pub(crate) fn expand<L: Lanes>(
@@ -56,7 +41,7 @@ impl Opening<'_> {
         item: &Item,
         frames: &[NodeFrame; 2],
         (now, limit): (u32, u32),
-    ) -> Opened {
+    ) -> Rows {
         let (wide_index, side) = (item.node(), item.side());
         let other = 1 - side;
         let single = item.boxes[other];
@@ -70,12 +55,18 @@ impl Opening<'_> {
         let (keys, below) = steps.keys(now as i32, item.key as i32, limit as i32);
         let flags = [0, Item::OF_B];
         let size = node.size[lane] * self.size_ratios[other];
-        let open = L::larger(
+        let tags = L::larger(
             (&wide.size, self.size_ratios[side], size),
             (&wide.child, flags[side]),
             node.child[lane] | flags[other],
         );
-        let bits = below & ((1 << wide.used) - 1);
-        Opened { keys, open, bits, wide_is_b: side == 1, first: wide_index * WIDTH as u32, single }
+        Rows {
+            keys,
+            counting: wide_index * WIDTH as u32,
+            constant: single,
+            counting_is_third: side == 1,
+            tags,
+            wanted: below & ((1 << wide.used) - 1),
+        }
     }
 }
