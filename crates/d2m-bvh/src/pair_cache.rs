@@ -1,5 +1,5 @@
 use crate::Solid;
-use crate::search::motion::relative_trajectory::Course;
+use crate::search::relative_trajectory::Course;
 
 /// What a query of a pair of bodies leaves for the next one: the triangles that were closest, or met, and for bodies
 /// that did not meet how far apart they stayed.

@@ -1,4 +1,5 @@
 //! `cargo xtask tidy`: the structure that the documents promise, held against the tree.
+mod arrows;
 mod guarantees;
 mod literals;
 mod map;
@@ -10,6 +11,7 @@ use crate::{TaskResult, workspace_root};
 pub(crate) fn run() -> TaskResult {
     let root = workspace_root();
     let mut findings = map::check(&root)?;
+    findings.extend(arrows::check(&root)?);
     findings.extend(sources::check(&root)?);
     findings.extend(guarantees::check(&root)?);
     findings.extend(literals::check(&root)?);

@@ -11,9 +11,7 @@ mod portable;
 mod quad;
 mod two;
 
-#[cfg(test)]
-pub(crate) use dispatch::run_on;
-pub(crate) use dispatch::{Task, run};
+pub(crate) use dispatch::{Task, run, run_on};
 pub(crate) use eight::{Lanes, Rows};
 pub use instruction_set::InstructionSet;
 #[cfg(test)]

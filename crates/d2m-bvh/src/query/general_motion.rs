@@ -5,15 +5,15 @@
 //! distance that is larger by D: what it proves free is free. Where it finds a contact the span is shortened, with D
 //! like the square of the span, until D is a small part of the tolerance. docs/theory/motions.md, section 3.
 
+use super::constant_twist::{ask, last_search_counts, scene_of_twists};
 use super::fitted_twist::FittedTwists;
 use super::report::MOST_LEFT;
-use super::time_of_contact::{last_search_counts, time_of_contact};
 use crate::{
     Budget, Contact, Evidence, Mode, Moving, QueryError, QueryOptions, Solid, StartState, TimeOfContact,
     Window,
 };
 use d2m_feature::triangle_distance;
-use d2m_motion::{Chain, Pose, RigidMotion};
+use d2m_motion::{Chain, ConstantTwist, Pose, RigidMotion};
 use glam::DVec3;
 use std::time::Instant;
 
@@ -169,8 +169,8 @@ impl<'a> Advance<'a> {
     }
 
     /// A span on which both twists are constant, on the closed form.
-    fn exact_span(&mut self, motions: [&dyn RigidMotion; 2], until: f64) -> Result<Step, QueryError> {
-        if self.balls_apart(motions, until) {
+    fn exact_span(&mut self, motions: [&ConstantTwist; 2], until: f64) -> Result<Step, QueryError> {
+        if self.balls_apart([motions[0], motions[1]], until) {
             return Ok(Step::FreeUntil(until));
         }
         let options = QueryOptions { tolerance: self.options.tolerance, ..self.options_of_span() };
@@ -203,12 +203,12 @@ impl<'a> Advance<'a> {
 
     fn ask(
         &mut self,
-        [a, b]: [&dyn RigidMotion; 2],
+        [a, b]: [&ConstantTwist; 2],
         span: Window,
         options: &QueryOptions,
     ) -> Result<TimeOfContact, QueryError> {
-        let (a, b) = (Moving::new(self.bodies[0].body, a), Moving::new(self.bodies[1].body, b));
-        let answer = time_of_contact(a, b, span, options)?;
+        let bodies = self.bodies.map(|moving| moving.body);
+        let answer = ask(&scene_of_twists([(bodies[0], *a), (bodies[1], *b)], span, options)?, options)?;
         self.work += last_search_counts().work() + 1;
         Ok(answer)
     }

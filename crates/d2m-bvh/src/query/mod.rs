@@ -1,6 +1,7 @@
 //! What a user asks of moving bodies, and how it is answered.
 
 mod batch;
+mod constant_twist;
 mod fitted_twist;
 mod general_motion;
 mod proven_crossing;
@@ -9,5 +10,6 @@ mod time_of_contact;
 mod warm_start;
 
 pub use batch::time_of_contact_batch;
-pub use time_of_contact::{last_search_counts, time_of_contact};
+pub use constant_twist::last_search_counts;
+pub use time_of_contact::time_of_contact;
 pub use warm_start::{contact_exists, time_of_contact_with};

@@ -69,7 +69,7 @@ impl Task for Report<'_> {
         let mut contact = if from == offset {
             describe(scene, (motion, &frame), time, &witness(near, &frame))
         } else {
-            let motion = RelativeMotion::new(scene, offset);
+            let motion = scene.relative_motion(offset);
             let (frame, near) = TrianglePair { motion: &motion, a, b }.at::<L::Doubles>(offset);
             describe(scene, (&motion, &frame), time, &witness(near, &frame))
         };
@@ -107,7 +107,7 @@ struct Meeting {
 
 /// What the pair of triangles proves about the meeting of the bodies at the start of the window.
 pub(super) fn evidence_at_start(scene: &Scene<'_>, triangles: [u32; 2]) -> Evidence {
-    let motion = RelativeMotion::new(scene, 0.0);
+    let motion = scene.relative_motion(0.0);
     let [a, b] = [scene.a.corners(triangles[0]), scene.b.corners(triangles[1])];
     let pair = TrianglePair { motion: &motion, a, b };
     let (frame, near) = pair.at::<Quad>(motion.start);
@@ -251,7 +251,7 @@ fn describe(
 
 /// The contact of a body inside the other: the vertex that shows it, and the nearest data that mean something.
 pub(super) fn contained(scene: &Scene<'_>, held: &Held) -> Contact {
-    let (motion, vertex) = (&RelativeMotion::new(scene, 0.0), held.vertex);
+    let (motion, vertex) = (&scene.relative_motion(0.0), held.vertex);
     let start = StartState::Contained;
     let frame = motion.frame::<Quad>(0.0);
     let (tree_a, tree_b) = (scene.a.tree, scene.b.tree);

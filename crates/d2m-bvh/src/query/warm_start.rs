@@ -1,10 +1,10 @@
 //! Queries that use what earlier ones left in a cache, and give the same bits as without.
 
-use super::time_of_contact::{ask, scene_of};
+use super::constant_twist::{ask, scene_of};
+use super::general_motion::general_motion;
 use crate::lanes::Quad;
 use crate::search::Scene;
-use crate::search::motion::frame::RelativeMotion;
-use crate::search::motion::relative_trajectory::Course;
+use crate::search::relative_trajectory::Course;
 use crate::search::triangle_pair::closest::closest;
 use crate::search::triangle_pair::separating_axis::place_a;
 use crate::{Budget, Mode, Moving, PairCache, QueryError, QueryOptions, TimeOfContact, Window};
@@ -55,7 +55,7 @@ pub fn time_of_contact_with(
     cache: &mut PairCache,
 ) -> Result<TimeOfContact, QueryError> {
     let Some(scene) = scene_of(a, b, window, options)? else {
-        return super::general_motion::general_motion([a, b], window, options);
+        return general_motion([a, b], window, options);
     };
     if options.budget != Budget::UNLIMITED || options.mode == Mode::Capoeira {
         return ask(&scene, options);
@@ -173,7 +173,7 @@ fn meet_again(scene: &Scene<'_>, triangles: [u32; 2], after: f64) -> Option<f64>
     let (a, b) = (scene.a.corners(triangles[0]), scene.b.corners(triangles[1]));
     let mut time = (after / scene.units.time()).clamp(0.0, last);
     for _ in 0..STEPS {
-        let motion = RelativeMotion::new(scene, time);
+        let motion = scene.relative_motion(time);
         let frame = motion.frame::<Quad>(0.0);
         let placed = place_a::<Quad>(&frame, &a);
         let near = closest::<Quad>(&placed, &b);

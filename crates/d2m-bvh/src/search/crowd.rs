@@ -11,10 +11,10 @@
 //!
 //! See docs/theory/engine.md, "Crowds".
 
-use super::best_first::{BATCH, Search, State};
 use super::motion::frame::Frame;
 use super::queue::{Bucket, Item};
 use super::scene::SceneBody;
+use super::state::{BATCH, Search, State};
 use super::triangle_pair::separating_axis::place_a;
 use crate::Mode;
 use crate::lanes::Lanes;
@@ -311,7 +311,6 @@ impl Moving {
 
 #[cfg(test)]
 mod tests {
-    use super::super::motion::frame::RelativeMotion;
     use super::super::scene::Scene;
     use super::*;
     use crate::random::Random;
@@ -339,7 +338,7 @@ mod tests {
             });
             let options = QueryOptions::default().with_tolerance(1e-3);
             let scene = Scene::try_new((&a, motion_a), (&b, motion_b), Window::UNIT, &options).unwrap();
-            let motion = RelativeMotion::new(&scene, 0.0);
+            let motion = scene.relative_motion(0.0);
             let frame = motion.frame::<Quad>(0.0);
             let span = scene.longest * (0.6 + 0.4 * random.next());
             let group = [&scene.a, &scene.b].map(|body| {
@@ -379,7 +378,7 @@ mod tests {
         let twist = ConstantTwist::try_new(random.vec(), random.turn(), random.vec(), random.vec()).unwrap();
         let options = QueryOptions::default();
         let scene = Scene::try_new((&a, twist), (&b, ConstantTwist::REST), Window::UNIT, &options).unwrap();
-        let frame = RelativeMotion::new(&scene, 0.0).frame::<Quad>(0.0);
+        let frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
         for n in [DVec3::X, random.vec().normalize(), random.vec().normalize()] {
             let points = [&scene.a, &scene.b].map(|body| {
                 let mut group = Group::new(body);

@@ -3,16 +3,20 @@
 mod best_first;
 mod crowd;
 pub(crate) mod motion;
-pub(crate) mod node_pair;
+mod node_pair;
+mod over_time;
+mod pairs;
 #[cfg(feature = "rayon")]
 mod parallel;
-pub(crate) mod queue;
+mod queue;
+pub(crate) mod relative_trajectory;
 mod scene;
 mod skip;
+mod state;
 #[cfg(test)]
 mod tests;
 pub(crate) mod triangle_pair;
 
-pub(crate) use best_first::{Found, Outcome, Search};
 pub use scene::SearchCounts;
 pub(crate) use scene::{Scene, Scratch};
+pub(crate) use state::{Found, Outcome, Search};

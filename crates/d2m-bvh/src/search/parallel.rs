@@ -7,9 +7,10 @@
 //! falls into it with the true counts either: then the search by one thread would have done the same, operation by
 //! operation. Otherwise it is searched again. See docs/theory/engine.md, "Several threads".
 
-use super::best_first::{Outcome, QUICK_LOOKS, Search};
+use super::best_first::OneWindow;
 use super::scene::{Scratch, SearchCounts};
-use crate::lanes::run;
+use super::state::{Ahead, Outcome, QUICK_LOOKS, Search, Step, SubWindow};
+use crate::lanes::run_on;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -20,64 +21,48 @@ const ROUND_WORK: u64 = 4096;
 /// Windows of each thread before the results are taken, at least and at most.
 const WINDOWS_A_THREAD: (u64, u64) = (4, 512);
 
-/// A window that is searched ahead.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Ahead<'r> {
-    pub(super) window: (f64, f64),
-    number: usize,
-    /// The least number of a window with an answer.
-    answered: &'r AtomicUsize,
-}
-
-impl Ahead<'_> {
-    /// Is there an answer in an earlier window?
-    pub(super) fn is_useless(&self) -> bool {
-        self.answered.load(Ordering::Relaxed) < self.number
-    }
-}
-
 /// What the search of one window gave.
 #[derive(Clone, Copy, Debug)]
 struct Searched {
-    outcome: Outcome,
-    /// Of this window alone.
+    /// The answer; none: apart all along.
+    answer: Option<Outcome>,
+    /// Of this sub-window alone.
     counts: SearchCounts,
     last_looked_at: [u32; 2],
 }
 
 impl Search<'_> {
-    /// Searches windows from `start` on, side by side while that is worth while. The time up to which that proves the
-    /// bodies apart, or the answer.
-    pub(super) fn search_ahead(&mut self, mut start: f64) -> Result<f64, Outcome> {
+    /// Searches sub-windows from `start` on by several threads, while that pays.
+    pub(super) fn search_in_parallel(&mut self, mut start: f64) -> Step {
         loop {
             let windows = self.windows_worth_searching(start);
             if windows.len() < 2 {
-                return Ok(start);
+                return Step::ClearUntil(start);
             }
             let known = self.scratch.counts;
-            let results = self.search_side_by_side(&windows);
+            let results = self.search_at_once(&windows);
             for (window, searched) in windows.iter().zip(results) {
                 let Some(searched) = searched.filter(|searched| self.would_do_the_same(&known, searched))
                 else {
-                    return Ok(start);
+                    return Step::ClearUntil(start);
                 };
                 if searched.counts.triangle_looks > 0 {
                     self.scratch.last_looked_at = searched.last_looked_at;
                 }
                 self.scratch.counts = self.scratch.counts.with(&searched.counts);
-                match searched.outcome {
-                    Outcome::Separated => start = window.1,
-                    answer => return Err(answer),
+                match searched.answer {
+                    None => start = window.end,
+                    Some(answer) => return Step::Answer(answer),
                 }
                 if start >= self.scene.end {
-                    return Err(Outcome::Separated);
+                    return Step::ClearUntil(start);
                 }
             }
         }
     }
 
     /// The next windows: so many that the threads are busy, and the search goes on without sweeps for so long.
-    fn windows_worth_searching(&self, mut start: f64) -> Vec<(f64, f64)> {
+    fn windows_worth_searching(&self, mut start: f64) -> Vec<SubWindow> {
         let (counts, threads) = (&self.scratch.counts, rayon::current_num_threads());
         let mut windows = Vec::new();
         if threads < 2 || self.work() < FIRST_WORK {
@@ -92,17 +77,18 @@ impl Search<'_> {
             && let Some(window) = self.window_from(start)
         {
             windows.push(window);
-            start = window.1;
+            start = window.end;
         }
         windows
     }
 
     /// What each window gives from the counts of now on; none where it was given up.
-    fn search_side_by_side(&mut self, windows: &[(f64, f64)]) -> Vec<Option<Searched>> {
+    fn search_at_once(&mut self, windows: &[SubWindow]) -> Vec<Option<Searched>> {
         let threads = rayon::current_num_threads().min(windows.len());
         let (next, answered) = (AtomicUsize::new(0), AtomicUsize::new(usize::MAX));
         let results: Vec<OnceLock<Searched>> = windows.iter().map(|_| OnceLock::new()).collect();
         let (scene, limits, known) = (self.scene, self.limits, self.scratch.counts);
+        let instructions = self.instructions;
         let work = |scratch: &mut Scratch| {
             // In the order of time, so that little is wasted after an answer.
             loop {
@@ -110,21 +96,32 @@ impl Search<'_> {
                 if number >= windows.len() {
                     return;
                 }
-                let ahead = Ahead { window: windows[number], number, answered: &answered };
+                let ahead = Ahead { number, answered: &answered };
                 if ahead.is_useless() {
                     return;
                 }
                 scratch.counts = known;
-                let search = Search::of_window(scene, limits, scratch, ahead);
-                let outcome = run(search);
-                match outcome {
-                    Outcome::OutOfBudget(_) => continue,
-                    Outcome::Found(_) => _ = answered.fetch_min(number, Ordering::Relaxed),
-                    Outcome::Separated => {}
+                let mut search = Search {
+                    scene,
+                    scratch,
+                    limits,
+                    instructions,
+                    scales: None,
+                    ahead: Some(ahead),
+                    parallel: false,
+                };
+                let step = run_on(instructions, OneWindow { search: &mut search, window: windows[number] });
+                let answer = match step {
+                    Step::Answer(Outcome::OutOfBudget(_)) => continue,
+                    Step::Answer(answer) => Some(answer),
+                    Step::ClearUntil(_) => None,
+                };
+                if let Some(Outcome::Found(_)) = answer {
+                    answered.fetch_min(number, Ordering::Relaxed);
                 }
                 let (counts, last_looked_at) = (scratch.counts.without(&known), scratch.last_looked_at);
                 // Each number is handed out once.
-                _ = results[number].set(Searched { outcome, counts, last_looked_at });
+                _ = results[number].set(Searched { answer, counts, last_looked_at });
             }
         };
         let helpers = &mut self.scratch.helpers;
@@ -191,7 +188,7 @@ mod tests {
             let scene = Scene::new((a, motions[0]), (b, motions[1]), Window::UNIT, &options);
             let mut ask = |options: &QueryOptions, threads: usize| {
                 let mut scratch = Scratch::new();
-                let outcome = pools[threads].install(|| run(Search::new(&scene, options, &mut scratch)));
+                let outcome = pools[threads].install(|| Search::new(&scene, options, &mut scratch).run());
                 helped += usize::from(!scratch.helpers.is_empty());
                 (format!("{outcome:?}"), scratch.counts)
             };

@@ -1,8 +1,8 @@
 //! Constants of one query.
 
-use super::motion::base_pose::Track;
 use super::motion::frame::RelativeMotion;
 use super::motion::local_motion::LocalMotion;
+use super::motion::track::Track;
 use super::motion::units::Units;
 use super::node_pair::node_test::NodeScale;
 use super::queue::{Bucket, Queue};
@@ -220,6 +220,11 @@ impl<'a> Scene<'a> {
     /// Are the balls about the reference points that hold the bodies apart at the start?
     pub(crate) fn balls_are_apart_at_start(&self) -> bool {
         self.track.at(0.0).length() > self.reach + BALL_ERROR * self.size
+    }
+
+    /// The motion over the window of a search that begins at `start`.
+    pub(crate) fn relative_motion(&self, start: f64) -> RelativeMotion {
+        RelativeMotion::new([&self.a.motion, &self.b.motion], &self.track, start)
     }
 
     /// In the units of the caller, for tests.

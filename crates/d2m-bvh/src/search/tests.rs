@@ -1,16 +1,14 @@
 //! Each bound against certified distances of triangles, with mutants that must be noticed.
 
-use super::best_first::{Outcome, Search};
-use super::motion::frame::RelativeMotion;
 use super::node_pair::entry_time::entry_times;
 use super::node_pair::node_test::{NodeFrame, NodeScale, Placed};
 use super::scene::{Scene, Scratch};
+use super::state::{Outcome, Search};
 use super::triangle_pair::separating_axis::{Behind, Care, Look, PairScale, apart_since, look, place_a};
 use crate::lanes::InstructionSet;
 use crate::lanes::Lanes;
 use crate::lanes::Portable;
 use crate::lanes::Quad;
-use crate::lanes::run_on;
 use crate::random::Random;
 use crate::tree::node::WIDTH;
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
@@ -51,7 +49,7 @@ fn least_ratio(rounds: u32, mutate: impl Fn(&mut NodeScale)) -> f64 {
         let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
         let unit = 2f64.powf(scene.longest.log2().ceil());
         let mut scales = scene.node_scales(unit);
-        let motion = RelativeMotion::new(&scene, 0.0);
+        let motion = scene.relative_motion(0.0);
         let frame = motion.frame::<Quad>(0.0);
         let left = (scene.longest / unit) as f32;
         for (side, scale) in scales.iter_mut().enumerate() {
@@ -114,7 +112,7 @@ fn room_at_the_end(triangle: [DVec3; 3], wall: f64, opened: usize, mutate: impl 
     let options = QueryOptions::default().with_tolerance(1e-7);
     let window = Window::try_new(0.0, 0.3).unwrap();
     let scene = Scene::new((&a, spin), (&b, ConstantTwist::REST), window, &options);
-    let motion = RelativeMotion::new(&scene, 0.0);
+    let motion = scene.relative_motion(0.0);
     let mut scale = scene.node_scales(0.5)[opened];
     mutate(&mut scale);
     let frame = NodeFrame::new::<Quad>(&motion.frame::<Quad>(0.0), &scale, opened == 1, 0.6);
@@ -156,7 +154,7 @@ fn room_after_a_look(closing: f64, backwards: Option<DVec3>, mutate: impl Fn(&mu
     let options = QueryOptions::default().with_tolerance(1e-7);
     let window = Window::try_new(0.0, 0.3).unwrap();
     let scene = Scene::new((&a, swing), (&b, ConstantTwist::REST), window, &options);
-    let motion = RelativeMotion::new(&scene, 0.0);
+    let motion = scene.relative_motion(0.0);
     let mut pair = scene.pair;
     mutate(&mut pair);
     let (ca, cb) = (scene.a.corners(0), scene.b.corners(0));
@@ -215,7 +213,7 @@ fn clear_times_of_triangle_pairs_hold_and_are_sharp() {
         let (speed, spin) = ([0.3, 3.0, 30.0][round % 3], [0.0, 1.0, 10.0][round / 3 % 3]);
         let motions = [moving(&mut random, 2.0, speed, spin), moving(&mut random, 0.0, speed, spin)];
         let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
-        let motion = RelativeMotion::new(&scene, 0.0);
+        let motion = scene.relative_motion(0.0);
         let (ca, cb) = (scene.a.corners(0), scene.b.corners(0));
         let care = [Care::Quick, Care::Thorough][round / 9 % 2];
         let found = look::<Quad>(&motion.frame::<Quad>(0.0), (&ca, &cb), &scene.pair, scene.longest, care);
@@ -247,7 +245,7 @@ fn boxes_called_apart_at_rest_are_apart() {
             let options = QueryOptions::default().with_tolerance(1e-30);
             let scene = Scene::new((&a, rest), (&b, rest), Window::UNIT, &options);
             let mut scale = scene.node_scales(1.0)[1];
-            let motion = RelativeMotion::new(&scene, 0.0);
+            let motion = scene.relative_motion(0.0);
             let frame = NodeFrame::new::<Quad>(&motion.frame::<Quad>(0.0), &scale, true, 1.0);
             let full = Placed::new::<Portable>(&frame, &scale, (&a.nodes[0], 0), &b.nodes[0]);
             // What is left of the margin.
@@ -278,7 +276,7 @@ fn lines_of_no_length_or_beyond_all_numbers_part_nothing() {
             let at_b = ConstantTwist::REST.with_position(DVec3::Y * off * size.max(1.0));
             let options = QueryOptions::default();
             let scene = Scene::new((&a, ConstantTwist::REST), (&b, at_b), Window::UNIT, &options);
-            let frame = RelativeMotion::new(&scene, 0.0).frame::<Quad>(0.0);
+            let frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
             for (side, scale) in scene.node_scales(1.0).iter().enumerate() {
                 let (wide, single) = if side == 0 { (&a, &b) } else { (&b, &a) };
                 let node_frame = NodeFrame::new::<Quad>(&frame, scale, side == 1, 1.0);
@@ -302,7 +300,7 @@ fn every_instruction_set_gives_the_same_bits() {
         let options = QueryOptions::default();
         let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
         let mut run = |set: InstructionSet| {
-            let outcome = run_on(set, Search::new(&scene, &options, &mut scratch));
+            let outcome = Search { instructions: set, ..Search::new(&scene, &options, &mut scratch) }.run();
             let answer = match outcome {
                 Outcome::Separated => None,
                 Outcome::OutOfBudget(_) => panic!("no budget"),
@@ -330,7 +328,7 @@ fn thorough_looks_hold() {
         let (a, b) = (soup(&mut random), soup(&mut random));
         let motions = [moving(&mut random, 1.0, 0.1, 3.0), moving(&mut random, 0.0, 0.1, 3.0)];
         let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
-        let motion = RelativeMotion::new(&scene, 0.0);
+        let motion = scene.relative_motion(0.0);
         for (s, t) in [(0, 0), (1, 5), (3, 2), (7, 7)] {
             let (ca, cb) = (scene.a.corners(s), scene.b.corners(t));
             let found = look::<Quad>(
@@ -363,7 +361,7 @@ fn room_after_a_thorough_look(mutate: impl Fn(&mut Scene<'_>)) -> f64 {
     let options = QueryOptions::default().with_tolerance(1e-7);
     let window = Window::try_new(0.0, 0.3).unwrap();
     let mut scene = Scene::new((&a, turn), (&b, ConstantTwist::REST), window, &options);
-    let motion = RelativeMotion::new(&scene, 0.0);
+    let motion = scene.relative_motion(0.0);
     mutate(&mut scene);
     let (ca, cb) = (scene.a.corners(0), scene.b.corners(0));
     let found =

@@ -3,7 +3,6 @@
 //! Nodes are numbered in the order of a walk from the root, lane by lane. Large parts are built side by side, each
 //! into its own list, and the lists are joined in that order: the tree has the same bits at any number of threads.
 
-use super::mesh_tree::MeshTree;
 use super::node::{Below, OrientedBox, WIDTH, WideNode};
 use super::split::Splitter;
 use super::surface::{Extent, Surface};
@@ -38,13 +37,19 @@ struct Above {
     parent: u32,
 }
 
-/// Builds the tree.
-pub(super) fn build(mesh: TriMesh, progress: Option<Progress<'_>>) -> MeshTree {
+/// The boxes of a tree, and where they lie.
+pub(super) struct Built {
+    pub(super) nodes: Vec<WideNode>,
+    pub(super) extent: Extent,
+}
+
+/// Builds the boxes.
+pub(super) fn build(mesh: &TriMesh, progress: Option<Progress<'_>>) -> Built {
     let total = mesh.triangle_count();
     assert!(total <= MOST_TRIANGLES, "more triangles than a tree can number");
-    let extent = Extent::of(&mesh);
+    let extent = Extent::of(mesh);
     let builder =
-        Builder { surface: Surface::new(&mesh, &extent), total, done: AtomicUsize::new(0), progress };
+        Builder { surface: Surface::new(mesh, &extent), total, done: AtomicUsize::new(0), progress };
     let mut order: Vec<u32> = (0..total as u32).collect();
     let axes = builder.surface.axes(&order);
     let mut root = WideNode::empty([0.0; 3], 0);
@@ -60,7 +65,7 @@ pub(super) fn build(mesh: TriMesh, progress: Option<Progress<'_>>) -> MeshTree {
         builder.report(total);
     }
     nodes.shrink_to_fit();
-    MeshTree::from_nodes(mesh, nodes, &extent)
+    Built { nodes, extent }
 }
 
 impl Builder<'_> {

@@ -1,4 +1,4 @@
-use super::build;
+use super::build::{Built, Progress, build};
 use super::node::WideNode;
 use super::surface::Extent;
 use crate::TriMesh;
@@ -65,7 +65,7 @@ impl core::fmt::Debug for Stamp {
 impl MeshTree {
     /// Builds the tree of a mesh. The same bits at any number of threads.
     pub fn new(mesh: TriMesh) -> Self {
-        build::build(mesh, None)
+        Self::build(mesh, None)
     }
 
     /// As [`Self::new`]; tells `progress` how many triangles are done, and how many there are, about once every few
@@ -84,7 +84,12 @@ impl MeshTree {
     /// # Ok::<(), d2m_bvh::MeshError>(())
     /// ```
     pub fn with_progress(mesh: TriMesh, progress: &(dyn Fn(usize, usize) + Sync)) -> Self {
-        build::build(mesh, Some(progress))
+        Self::build(mesh, Some(progress))
+    }
+
+    fn build(mesh: TriMesh, progress: Option<Progress<'_>>) -> Self {
+        let Built { nodes, extent } = build(&mesh, progress);
+        Self::from_nodes(mesh, nodes, &extent)
     }
 
     /// A tree from its boxes, and what is computed from the mesh alone.

@@ -5,8 +5,8 @@
 //! v + ω × r and an acceleration of length at most |ω|²|r|, at all times.
 
 use super::local_motion::LocalMotion;
+use super::track::Track;
 use crate::lanes::{Doubles, Matrix, Quad};
-use crate::search::scene::Scene;
 use glam::DVec3;
 
 /// The two motions over a window of the search that starts at the offset `start`.
@@ -152,11 +152,10 @@ impl Frame {
 impl RelativeMotion {
     /// Over the window of a search that begins at `start`.
     #[inline(never)]
-    pub(crate) fn new(scene: &Scene<'_>, start: f64) -> Self {
-        let (a, b) = (&scene.a.motion, &scene.b.motion);
+    pub(crate) fn new([a, b]: [&LocalMotion; 2], track: &Track, start: f64) -> Self {
         Self {
             start,
-            position: Quad::from_vec(scene.track.at(start)),
+            position: Quad::from_vec(track.at(start)),
             velocity: Quad::from_vec(a.linear_velocity() - b.linear_velocity()),
             bodies: [Swing::new(a, start), Swing::new(b, start)],
         }

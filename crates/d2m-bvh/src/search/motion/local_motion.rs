@@ -1,6 +1,7 @@
 //! A constant twist on the clock and in the unit of length of a search.
 
-use super::base_pose::{Columns, Pair, Turning, two_sum};
+use super::pair::{Pair, two_sum};
+use super::rotation::{Columns, Turning};
 use super::units::Units;
 use d2m_motion::ConstantTwist;
 use glam::DVec3;
@@ -117,9 +118,11 @@ impl LocalMotion {
         DVec3::new(one(0), one(1), one(2)) + self.shift
     }
 
-    /// The axes of the body at an offset.
+    /// The axes of the body at an offset: exp([ω](t − t_ref))·R(q/|q|) as columns, each entry within 16·2⁻⁵³ of the true
+    /// one, for an angle of less than 2⁵⁰ radians.
     pub(crate) fn rotation(&self, offset: f64) -> Columns {
-        super::base_pose::rotation_at(self, offset)
+        let turn = self.turning.after(self.elapsed(offset));
+        self.turning.start().map(|p| self.turning.wheel(p).at(&turn))
     }
 
     /// Bound on the terms of the position, up to an offset of one, by which its rounding is measured.
@@ -133,5 +136,52 @@ impl LocalMotion {
     pub(crate) fn angle(&self, end: f64) -> f64 {
         let longest = self.elapsed.0.abs().max(self.elapsed(end).0.abs());
         self.turning.speed() * longest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use d2m_motion::{ConstantTwist, RigidMotion};
+    use glam::DQuat;
+
+    #[test]
+    fn rotations_lie_in_the_enclosures_of_the_motion_crate() {
+        let mut seed = 1u64;
+        let mut next = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
+        };
+        for round in 0..2000 {
+            let q = DQuat::from_xyzw(next(), next(), next(), next());
+            let w = DVec3::new(next(), next(), next()) * 10f64.powi(round % 5 - 2);
+            let motion = ConstantTwist::try_new(DVec3::ZERO, q, DVec3::ZERO, w).unwrap();
+            let t = next() * 10.0;
+            let got = LocalMotion::unscaled(&motion).rotation(t);
+            let enclosure = motion.enclose_pose(d2m_interval::Interval::point(t)).rotation.cols();
+            for (column, enclosed) in got.iter().zip(enclosure) {
+                for (value, interval) in
+                    [(column.x, enclosed.x), (column.y, enclosed.y), (column.z, enclosed.z)]
+                {
+                    assert!(value >= interval.lo() - 2e-15 && value <= interval.hi() + 2e-15);
+                    assert!(
+                        (value - interval.mid()).abs() < 16.0 / 9_007_199_254_740_992.0 + interval.width()
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn far_times_lose_nothing() {
+        let motion =
+            ConstantTwist::try_new(DVec3::ZERO, DQuat::IDENTITY, DVec3::ZERO, DVec3::new(0.0, 0.0, 3.0))
+                .unwrap();
+        // sin and cos of exactly 300000 radians.
+        let got = LocalMotion::unscaled(&motion).rotation(100_000.0);
+        let (sin, cos) = (0.107_063_649_413_132_36, -0.994_252_168_704_872_3);
+        assert!((got[0].x - cos).abs() < 1e-14);
+        assert!((got[0].y - sin).abs() < 1e-14);
+        assert!((got[0].length() - 1.0).abs() < 1e-15);
     }
 }

@@ -1,6 +1,6 @@
 //! The clock and the unit of length of one search.
 
-use super::base_pose::two_sum;
+use super::pair::two_sum;
 use crate::Window;
 
 /// Units are powers of two between this one and its inverse: both can be multiplied with and divided by.

@@ -1,124 +1,31 @@
 //! Until when are two bodies apart that turn and slide along a common axis, as a screw in its nut does?
 //!
 //! Seen from B, a point of A with distance ρ from the axis, angle θ and height z moves by θ + wτ and z + vτ. So ρ and
-//! φ = z − hθ, h = v/w, never change: in the plane of (ρ, φ) both bodies are at rest. Where their pictures there are
-//! apart, they never meet; heights tell the rest apart for a time. φ is told up to multiples of the lead 2πh.
+//! φ = z − hθ, h = v/w, never change: in the plane of (ρ, φ) both bodies are at rest. Where their projections to that plane
+//! are apart, they never meet; heights keep the rest apart for a time. φ is known up to multiples of the lead 2πh.
 //!
 //! See docs/theory/engine.md, "Screws".
 
-use super::picture::{DIRECTIONS, Pictures};
-use super::swept::after;
-use crate::search::scene::{Scene, SceneBody};
+use super::orbits::BodyProjections;
+use super::projection::{Axes, DIRECTIONS, Range};
+use super::projection_tree::ProjectionTree;
+use super::screw::Screw;
+use super::{Skip, SkipLimits, later_offset};
+use crate::search::scene::Scene;
 use crate::tree::margin::{UNIT_F64, UP};
 use glam::DVec3;
 
-/// Larger pairs of meshes are not pictured: a picture takes about 500 bytes a triangle.
+/// Larger pairs of meshes are not projected: a projection takes about 500 bytes a triangle.
 const MOST_TRIANGLES: usize = 1 << 18;
 /// Factor of the scene's size that covers all roundings here. An angle errs by 64·2⁻⁵³ of the size over the distance from the
 /// axis and 8π·2⁻⁵³ of its own, and as much again with each division of a triangle; φ is h times as far off, and is
 /// divided by a steepness of at least h over the distance. Triangles have distances within a factor of 100
-/// ([`BESIDE`](super::picture::BESIDE)).
-const PICTURE_ERROR: f64 = 16_384.0 * UNIT_F64;
-/// Error of a unit axis as computed, as an angle.
-const AXIS_ERROR: f64 = 8.0 * UNIT_F64;
-/// Axes that are further from parallel (radians) are not taken for one: points would leave their screws by that part of
-/// their distance.
-const MOST_TILT: f64 = 1.0 / 1_048_576.0; // 2⁻²⁰
-/// See [`Screw::new`]: 2·1.0001 for both bodies, and roundings.
-const TILT_FACTOR: f64 = 2.125;
-/// Part of the speeds that the roundings of rate, climb and their quotient stand for: fewer than 16.
-const RATE_ERROR: f64 = 16.0 * UNIT_F64;
-/// Most leads that two pictures may be shifted by.
+/// ([`BESIDE`](super::orbits::BESIDE)).
+const PROJECTION_ERROR: f64 = 16_384.0 * UNIT_F64;
+/// Most leads that two projections may be shifted by.
 const MOST_LEADS: f64 = 64.0;
 
-/// The common axis, and how A moves along it as seen from B.
-pub(super) struct Screw {
-    axis: DVec3,
-    /// Directions of the angles 0 and π/2.
-    across: [DVec3; 2],
-    /// φ = z − hθ.
-    pub(super) h: f64,
-    pub(super) lead: f64,
-    /// Speed of A's points along the axis.
-    climb: f64,
-    /// Distance of the two axes at the start and what the angle between them moves points by, and how fast the rest of
-    /// the true motion leaves the screw.
-    offset: f64,
-    drift: f64,
-}
-
-impl Screw {
-    /// None unless one body is at rest or both turn about parallel axes, and not alike.
-    fn new(scene: &Scene<'_>, start: f64) -> Option<Self> {
-        let (a, b) = (&scene.a, &scene.b);
-        let [wa, wb] = [a, b].map(|body| body.motion.angular_velocity());
-        let [ka, kb] = [a, b].map(|body| body.motion.turning().axis());
-        let axis = scene.spin_axis()?;
-        let both = wa != DVec3::ZERO && wb != DVec3::ZERO;
-        // The sine of the angle between the axes, and the cosine's sign is that of `rate`.
-        let tilt = if both { ka.cross(kb).length() + AXIS_ERROR } else { AXIS_ERROR };
-        if tilt > MOST_TILT {
-            return None;
-        }
-        let rate = axis.dot(wa - wb);
-        let spins = a.spin() + b.spin();
-        let velocity = a.motion.linear_velocity() - b.motion.linear_velocity();
-        let climb = axis.dot(velocity);
-        let flat = |p: DVec3| (p - axis * axis.dot(p)).length();
-        let apart = if both { flat(scene.track.at(start)) } else { 0.0 };
-        let first = axis.any_orthonormal_vector();
-        let h = climb / rate;
-        let lead = 2.0 * std::f64::consts::PI * h.abs();
-        // A turn by θ about an axis that is tilted by ε moves a point by less than 2.01 ερ from where the turn about the
-        // other one does: exp(θ[k′]) = Q exp(θ[k]) Qᵀ with |Q − 1| ≤ 1.0001 ε.
-        let reach = a.reach() + b.reach();
-        let tilted = TILT_FACTOR * tilt * reach;
-        // The speeds as computed err by roundings of the speeds of both bodies, and by what the tilt takes from them.
-        let rate_error = (tilt * tilt + RATE_ERROR) * spins;
-        let climb_error = RATE_ERROR * velocity.length();
-        let strays = rate_error * reach + climb_error;
-        (h.is_finite() && lead.is_finite()).then_some(Self {
-            axis,
-            across: [first, axis.cross(first)],
-            h,
-            lead,
-            climb,
-            offset: (apart + tilted) * UP,
-            drift: (flat(velocity) + strays) * UP,
-        })
-    }
-
-    /// Bound on |∇φ| at distances of at least `rho`.
-    fn steepness(&self, rho: f64) -> f64 {
-        (1.0 + (self.h / rho) * (self.h / rho)).sqrt()
-    }
-
-    /// Where points of both bodies (from the trees' centres, body axes) are at the start, from the axis, which is the
-    /// third coordinate. Heights count from B's reference point if it turns, else from A's; distances from the own axis,
-    /// or the other's.
-    fn places(&self, scene: &Scene<'_>, start: f64) -> [impl Fn(DVec3) -> DVec3; 2] {
-        let apart = scene.track.at(start);
-        let [spins_a, spins_b] =
-            [&scene.a, &scene.b].map(|body| body.motion.angular_velocity() != DVec3::ZERO);
-        let (from_a, from_b) = match (spins_a, spins_b) {
-            (true, true) => (self.axis * self.axis.dot(apart), DVec3::ZERO),
-            (true, false) => (DVec3::ZERO, -apart),
-            _ => (apart, DVec3::ZERO),
-        };
-        [(&scene.a, from_a), (&scene.b, from_b)].map(|(body, from): (&SceneBody<'_>, _)| {
-            let r = body.motion.rotation(start);
-            let arm = body.motion.arm();
-            let ([u, w], axis) = (self.across, self.axis);
-            move |p: DVec3| {
-                let p = p + arm;
-                let placed = r[0] * p.x + r[1] * p.y + r[2] * p.z + from;
-                DVec3::new(u.dot(placed), w.dot(placed), axis.dot(placed))
-            }
-        })
-    }
-}
-
-/// The search through two trees of pictures.
+/// The search through two trees of projections.
 struct Walk<'s> {
     screw: &'s Screw,
     /// What is added to φ of A.
@@ -133,79 +40,68 @@ struct Walk<'s> {
     left: u64,
 }
 
-/// The offset (≥ `start`, ≤ the end) up to which the pictures stay further apart than the level,
-/// and the work in pairs that were tested; none when the motion is no common screw, when less than `gain` would
-/// be won, or when more than `most` pairs are needed. `suspects`: triangles that may be the reason for that, so are
-/// looked at first.
-pub(crate) fn screw_clear_until(
-    scene: &Scene<'_>,
-    start: f64,
-    limits: (f64, u64),
-    suspects: [u32; 2],
-) -> (Option<f64>, u64) {
-    screw_clear_mutated(scene, start, limits, suspects, &|_| ())
+/// Until when the projections of the bodies stay further apart than the level, from `start` on.
+pub(crate) fn screw_clear_until(scene: &Scene<'_>, start: f64, limits: &SkipLimits) -> Skip {
+    let nothing = Skip { clear_until: None, work: 0 };
+    if triangle_count(scene) > MOST_TRIANGLES {
+        return nothing;
+    }
+    Screw::new(scene, start).map_or(nothing, |screw| clear_along(&screw, scene, start, limits))
 }
 
-/// The same with a change to the screw, for tests.
-fn screw_clear_mutated(
-    scene: &Scene<'_>,
-    start: f64,
-    (gain, most): (f64, u64),
-    suspects: [u32; 2],
-    mutate: &dyn Fn(&mut Screw),
-) -> (Option<f64>, u64) {
+fn triangle_count(scene: &Scene<'_>) -> usize {
+    scene.a.tree.mesh.triangle_count() + scene.b.tree.mesh.triangle_count()
+}
+
+/// The same with the screw that they make.
+fn clear_along(screw: &Screw, scene: &Scene<'_>, start: f64, limits: &SkipLimits) -> Skip {
     let bodies = [&scene.a, &scene.b];
-    let triangles = bodies.map(|body| body.tree.mesh.triangle_count()).iter().sum::<usize>();
-    if triangles > MOST_TRIANGLES {
-        return (None, 0);
-    }
-    let Some(mut screw) = Screw::new(scene, start) else { return (None, 0) };
-    mutate(&mut screw);
     let length = (scene.end - start).next_up();
     let mut walk = Walk {
-        screw: &screw,
+        screw,
         shift: 0.0,
         directions: DIRECTIONS.len(),
-        level: scene.pair.level + PICTURE_ERROR * (scene.size + scene.pair.level),
+        level: scene.pair.level + PROJECTION_ERROR * (scene.size + scene.pair.level),
         length,
         clear: length,
-        gain,
-        left: most,
+        gain: limits.least_gain,
+        left: limits.most_work,
     };
     let places = screw.places(scene, start);
     let probe = [0, 1].map(|body| {
-        let corners = bodies[body].corners(suspects[body]).map(&places[body]);
-        Pictures::of_body(&screw, &corners, std::iter::once([0, 1, 2]))
+        let corners = bodies[body].corners(limits.witnesses[body]).map(&places[body]);
+        BodyProjections::new(screw, &corners, std::iter::once([0, 1, 2]))
     });
     if !walk.compare(probe) {
-        return (None, most - walk.left);
+        return Skip { clear_until: None, work: limits.most_work - walk.left };
     }
     let whole = [0, 1].map(|body| {
         let mesh = &bodies[body].tree.mesh;
         let vertices: Vec<DVec3> =
             mesh.vertices().iter().map(|&p| places[body](bodies[body].place(p))).collect();
-        Pictures::of_body(&screw, &vertices, mesh.triangles().iter().copied())
+        BodyProjections::new(screw, &vertices, mesh.triangles().iter().copied())
     });
-    // What the pictures themselves cost counts as well.
+    // What the projections themselves cost counts as well.
     let apart = walk.compare(whole);
-    let work = most - walk.left + triangles as u64 / 2;
-    let until = if apart { after(start, walk.clear, walk.length, scene.end) } else { None };
-    (until, work)
+    let work = limits.most_work - walk.left + triangle_count(scene) as u64 / 2;
+    let clear_until = if apart { later_offset(start, walk.clear, walk.length, scene.end) } else { None };
+    Skip { clear_until, work }
 }
 
 impl Walk<'_> {
-    /// Lowers `clear` to what the bodies' pictures (with angles, without) allow; false when the walk is to end.
-    fn compare(&mut self, [mut a, mut b]: [[Pictures; 2]; 2]) -> bool {
+    /// Lowers `clear` to what the bodies' projections (with angles, without) allow; false when the walk is to end.
+    fn compare(&mut self, bodies: [BodyProjections; 2]) -> bool {
+        let [mut a, mut b] = bodies.map(|body| [body.with_angles, body.without_angles]);
         for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let (a, b) = (&mut a[i], &mut b[j]);
             let (Some(first), Some(second)) = (a.cells.first(), b.cells.first()) else { continue };
-            let (first, second) = (first.picture, second.picture);
+            let (first, second) = (first.projection, second.projection);
             let angles = i + j == 0;
             self.directions = if angles { DIRECTIONS.len() } else { 1 };
             let lead = self.screw.lead;
-            let (phi_a, phi_b) = (first.slabs[4], second.slabs[4]);
+            let (phi_a, phi_b) = (first.phi(), second.phi());
             let leads = if angles && lead > 0.0 {
-                (((phi_b.0 - phi_a.1) / lead).floor(), ((phi_b.1 - phi_a.0) / lead).ceil())
+                (((phi_b.low - phi_a.high) / lead).floor(), ((phi_b.high - phi_a.low) / lead).ceil())
             } else {
                 (0.0, 0.0)
             };
@@ -214,7 +110,7 @@ impl Walk<'_> {
                 return false;
             }
             if angles && lead > 0.0 {
-                // Shifted by more, the whole pictures are a lead apart in φ.
+                // Shifted by more, the whole projections are a lead apart in φ.
                 let rho = 0.5 * first.near.max(second.near);
                 let slack = first.slack + second.slack;
                 let apart = lead / self.screw.steepness(rho);
@@ -231,7 +127,7 @@ impl Walk<'_> {
     }
 
     /// Lowers `clear` to what the pair allows; false when the walk is to end.
-    fn visit(&mut self, [a, b]: [&mut Pictures; 2], cells: [usize; 2]) -> bool {
+    fn visit(&mut self, [a, b]: [&mut ProjectionTree; 2], cells: [usize; 2]) -> bool {
         if self.left == 0 {
             return false;
         }
@@ -257,12 +153,14 @@ impl Walk<'_> {
     }
 
     /// For how long the parts stay further apart than the level; at most the length of the span.
-    fn clear_for(&self, trees: [&Pictures; 2], cells: [usize; 2]) -> f64 {
+    fn clear_for(&self, trees: [&ProjectionTree; 2], cells: [usize; 2]) -> f64 {
         let (screw, length) = (self.screw, self.length);
-        let (a, b) = (&trees[0].cells[cells[0]].picture, &trees[1].cells[cells[1]].picture);
+        let (a, b) = (&trees[0].cells[cells[0]].projection, &trees[1].cells[cells[1]].projection);
         let mut best: f64 = 0.0;
         // Heights: the gap changes by the climb.
-        for (gap, rate) in [(b.height.0 - a.height.1, -screw.climb), (a.height.0 - b.height.1, screw.climb)] {
+        for (gap, rate) in
+            [(b.height.low - a.height.high, -screw.climb), (a.height.low - b.height.high, screw.climb)]
+        {
             let room = gap - self.level;
             if room > 0.0 {
                 best = best.max(if -rate * UP * length <= room { length } else { room / (-rate * UP) });
@@ -276,9 +174,9 @@ impl Walk<'_> {
         }
         let steep = screw.steepness(rho);
         let mut apart: f64 = 0.0;
-        let mut take = |(alpha, beta): (f64, f64), fa: (f64, f64), fb: (f64, f64)| {
+        let mut take = |Axes { alpha, beta }: Axes, fa: Range, fb: Range| {
             let moved = beta * self.shift;
-            let gap = (fb.0 - (fa.1 + moved)).max((fa.0 + moved) - fb.1);
+            let gap = (fb.low - (fa.high + moved)).max((fa.low + moved) - fb.high);
             let distance = gap / ((alpha * alpha + beta * beta * steep * steep).sqrt() * UP);
             apart = if distance > apart { distance } else { apart };
         };
@@ -290,8 +188,8 @@ impl Walk<'_> {
         if let [Some(p), Some(q)] = pieces {
             for corners in [&p.corners, &q.corners] {
                 for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (&corners[i], &corners[j])) {
-                    let (alpha, beta) = (from.phi - to.phi, to.rho - from.rho);
-                    take((alpha, beta), p.reach(alpha, beta), q.reach(alpha, beta));
+                    let along = Axes { alpha: from.phi - to.phi, beta: to.rho - from.rho };
+                    take(along, p.reach(along), q.reach(along));
                 }
             }
         }
@@ -321,6 +219,8 @@ mod tests {
     use d2m_feature::triangle_distance;
     use d2m_motion::ConstantTwist;
     use glam::DQuat;
+
+    const LIMITS: SkipLimits = SkipLimits { least_gain: 0.0, most_work: 1 << 13, witnesses: [0, 0] };
 
     /// Random triangles, one a body, on random screws about z, some with a drift: the least distance at times called
     /// clear over the level, and how many were called clear for some time.
@@ -352,7 +252,10 @@ mod tests {
                 motion(spins.1, DVec3::ZERO, DVec3::ZERO),
             ];
             let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
-            let (until, _) = screw_clear_mutated(&scene, 0.0, (0.0, 1 << 13), [0, 0], &mutate);
+            let until = Screw::new(&scene, 0.0).and_then(|mut screw| {
+                mutate(&mut screw);
+                clear_along(&screw, &scene, 0.0, &LIMITS).clear_until
+            });
             let until = until.unwrap_or(0.0);
             won += u32::from(until > 0.0);
             let world = |tree: &MeshTree, motion: &ConstantTwist, t: f64| {
@@ -370,9 +273,9 @@ mod tests {
     }
 
     /// A triangle, its copy turned by one radian and lifted a little, and a plate above: the copy's own place counts,
-    /// although one picture stands for both.
+    /// although one projection stands for both.
     #[test]
-    fn triangles_of_a_class_count_where_they_are() {
+    fn triangles_of_an_orbit_count_where_they_are() {
         let corners = [DVec3::X, DVec3::new(0.9, 0.1, -0.1), DVec3::new(0.8, 0.0, 0.0)];
         let turn = DQuat::from_rotation_z(1.0);
         let plate =
@@ -385,13 +288,13 @@ mod tests {
             let pair = TriMesh::try_new([corners, lifted].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
             let pair = MeshTree::new(pair);
             let scene = Scene::new((&pair, spin), (&plate, ConstantTwist::REST), Window::UNIT, &options);
-            screw_clear_until(&scene, 0.0, (0.0, 1 << 13), [0, 0]).0
+            screw_clear_until(&scene, 0.0, &LIMITS).clear_until
         };
         assert_eq!((until(0.0), until(1e-9), until(4e-9)), (Some(1.0), Some(1.0), None));
     }
 
     #[test]
-    fn pictures_that_are_apart_mean_bodies_that_are_apart() {
+    fn projections_that_are_apart_mean_bodies_that_are_apart() {
         let (least, won) = least_ratio(2400, |_| ());
         assert!((1.0 - 1e-9..2.0).contains(&least), "{least}");
         assert!(won > 600, "{won}");

@@ -6,8 +6,10 @@
 //! is largest at an end; ‖ΔR‖ at time τ is at most its value at the start plus |Δω|τ. So is the difference of any two
 //! distances. See docs/theory/engine.md, "What one query proves for the next".
 
-use super::base_pose::{Columns, Pair, given_relative_position};
-use super::units::Units;
+use super::motion::pair::Pair;
+use super::motion::rotation::Columns;
+use super::motion::track::given_relative_position;
+use super::motion::units::Units;
 use crate::search::Scene;
 use crate::tree::Stamp;
 use crate::tree::margin::UNIT_F64;

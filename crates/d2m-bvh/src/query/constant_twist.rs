@@ -1,0 +1,172 @@
+//! The first contact of two bodies that move with constant twists.
+
+use super::report::{contact, contained, evidence_at_start};
+use crate::allowance::{Allowance, Exhausted};
+use crate::lanes::Quad;
+use crate::resting::collide::crossing_pair_within;
+use crate::resting::containment::{Held, held_vertex};
+use crate::resting::node_pair;
+use crate::search::motion::pair::Pair;
+use crate::search::motion::track::given_relative_position;
+use crate::search::{Outcome, Scene, Scratch, Search};
+use crate::{
+    MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window,
+};
+use core::cell::RefCell;
+use d2m_motion::{ConstantTwist, Pose};
+use glam::DVec3;
+
+thread_local! {
+    /// Memory of the last search of this thread.
+    static SCRATCH: RefCell<Option<Box<Scratch>>> = const { RefCell::new(None) };
+}
+
+/// The scene of a query that may be asked; `None` when a motion has no constant twist.
+pub(super) fn scene_of<'a>(
+    a: Moving<'a>,
+    b: Moving<'a>,
+    window: Window,
+    options: &QueryOptions,
+) -> Result<Option<Scene<'a>>, QueryError> {
+    check([a.body, b.body], options)?;
+    let (Some(motion_a), Some(motion_b)) = (a.motion.constant_twist(), b.motion.constant_twist()) else {
+        return Ok(None);
+    };
+    Scene::try_new((a.body, motion_a), (b.body, motion_b), window, options).map(Some)
+}
+
+/// The scene of a query of constant twists.
+pub(super) fn scene_of_twists<'a>(
+    [a, b]: [(&'a MeshTree, ConstantTwist); 2],
+    window: Window,
+    options: &QueryOptions,
+) -> Result<Scene<'a>, QueryError> {
+    check([a.0, b.0], options)?;
+    Scene::try_new(a, b, window, options)
+}
+
+/// Searches.
+pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfContact, QueryError> {
+    let mut allowance = Allowance::new(&options.budget);
+    // Decided first: what the budget leaves open at the start would leave everything open.
+    let held = match options.solid {
+        Solid::Filled => held_at_start(scene, &mut allowance),
+        Solid::Surface => Ok(None),
+    };
+    let Ok(held) = held else { return Ok(TimeOfContact::Undecided { clear_until: scene.window.start() }) };
+    let options = &options.with_budget(allowance.rest());
+    let mut scratch = SCRATCH.take().unwrap_or_else(|| Box::new(Scratch::new()));
+    let mut search = Search::new(scene, options, &mut scratch);
+    if held.is_some() {
+        // The surfaces at the start decide the rest.
+        search = search.of_start();
+    }
+    let outcome = search.run();
+    let answer = answer(scene, options, (outcome, held), (&scratch, &allowance));
+    SCRATCH.set(Some(scratch));
+    answer
+}
+
+/// From what a search with this memory found, and what holds at the start, to the answer. What is left to decide is done
+/// within the allowance.
+fn answer(
+    scene: &Scene<'_>,
+    options: &QueryOptions,
+    (outcome, held): (Outcome, Option<Held>),
+    (scratch, allowance): (&Scratch, &Allowance),
+) -> Result<TimeOfContact, QueryError> {
+    let surfaces_are_apart = match outcome {
+        Outcome::Found(found) => !found.is_at_start(),
+        Outcome::OutOfBudget(until) => until > 0.0,
+        Outcome::Separated => true,
+    };
+    if let Some(held) = held
+        && surfaces_are_apart
+    {
+        return Ok(TimeOfContact::Contact(contained(scene, &held)));
+    }
+    Ok(match outcome {
+        Outcome::Separated => TimeOfContact::Separated,
+        Outcome::OutOfBudget(until) => TimeOfContact::Undecided { clear_until: scene.units.time_down(until) },
+        Outcome::Found(found) => {
+            let known = scratch.found_in.filter(|motion| motion.start == found.start);
+            let motion = known.unwrap_or_else(|| scene.relative_motion(found.start));
+            let mut contact = contact((scene, &motion), &found, options.mode != Mode::Capoeira);
+            if contact.start == StartState::Touching
+                && let Some(triangles) = crossing_at_start(scene, allowance)?
+            {
+                (contact.start, contact.separation) = (StartState::Overlapping, 0.0);
+                let evidence = evidence_at_start(scene, triangles);
+                if evidence >= contact.evidence {
+                    (contact.evidence, contact.time_hi) = (evidence, contact.time_lo);
+                }
+            }
+            TimeOfContact::Contact(contact)
+        }
+    })
+}
+
+/// Counts of the last search of this thread.
+#[doc(hidden)]
+pub fn last_search_counts() -> crate::SearchCounts {
+    SCRATCH.with_borrow(|scratch| scratch.as_ref().map(|s| s.counts).unwrap_or_default())
+}
+
+fn check(bodies: [&MeshTree; 2], options: &QueryOptions) -> Result<(), QueryError> {
+    if let Some(value) = options.tolerance
+        && !(value.is_finite() && value > 0.0)
+    {
+        return Err(QueryError::BadTolerance { value });
+    }
+    let value = options.min_separation;
+    if !(value.is_finite() && value >= 0.0) {
+        return Err(QueryError::BadMinSeparation { value });
+    }
+    for (index, body) in bodies.into_iter().enumerate() {
+        if options.solid == Solid::Filled && !body.is_watertight() {
+            return Err(QueryError::NotWatertight { body: index });
+        }
+    }
+    Ok(())
+}
+
+/// Steps of the search for a pair of triangles that cross at the start: bodies that touch all over their surfaces without
+/// crossing would take as many as they have pairs.
+const CROSSING_STEPS: u64 = 1 << 12;
+
+/// A pair of triangles that cross at the start (up to rounding), if one is found soon. The search stops at the first
+/// pair that is near.
+fn crossing_at_start(scene: &Scene<'_>, allowance: &Allowance) -> Result<Option<[u32; 2]>, QueryError> {
+    // As seen from B's reference point, which may be far from the origin.
+    let apart = given_relative_position(&scene.a.motion, &scene.b.motion).map(Pair::rounded);
+    let apart = DVec3::from_array(apart) * scene.units.length();
+    let [a, b] = [(&scene.a, apart), (&scene.b, DVec3::ZERO)].map(|(body, translation)| {
+        let m = body.given.rebase(scene.window.start());
+        Posed::new(body.tree, Pose { rotation: m.orientation(), translation, at: m.at() })
+    });
+    let at_rest = node_pair::Scene::try_new(a, b)?;
+    Ok(crossing_pair_within(&at_rest, &mut allowance.at_most(CROSSING_STEPS)).unwrap_or(None))
+}
+
+/// A part of a body in the other solid at the start, if the surfaces do not touch then.
+fn held_at_start(scene: &Scene<'_>, allowance: &mut Allowance) -> Result<Option<Held>, Exhausted> {
+    if scene.balls_are_apart_at_start() {
+        return Ok(None);
+    }
+    let frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
+    let (a, b, unit) = (scene.a.tree, scene.b.tree, scene.units.length());
+    // Balls that are apart by more than places and this sum are rounded.
+    if frame.apart.to_vec().length() > (a.radius() + b.radius()) / unit + scene.pair.error {
+        return Ok(None);
+    }
+    let back = frame.rotation.transposed::<Quad>();
+    // The unit is a power of two.
+    let to_a =
+        |p: DVec3| back.times::<Quad>((Quad::from_vec(p / unit) - frame.apart).to_vec()).to_vec() * unit;
+    let to_b = |p: DVec3| (frame.rotation.times::<Quad>(p / unit) + frame.apart).to_vec() * unit;
+    let in_a = held_vertex(a, b, to_a, allowance)?.map(|vertex| Held { by: 0, vertex });
+    Ok(match in_a {
+        Some(held) => Some(held),
+        None => held_vertex(b, a, to_b, allowance)?.map(|vertex| Held { by: 1, vertex }),
+    })
+}

@@ -1,0 +1,28 @@
+//! The search from the start of the query's window to its end: sub-windows of limited rotation, one after the other.
+
+use super::best_first::OneWindow;
+use super::state::{Outcome, Search, Step};
+use crate::lanes::run_on;
+
+impl Search<'_> {
+    /// Searches sub-window after sub-window.
+    pub(crate) fn run(mut self) -> Outcome {
+        let mut next = self.window_from(0.0);
+        while let Some(window) = next {
+            let mut step = run_on(self.instructions, OneWindow { search: &mut self, window });
+            #[cfg(feature = "rayon")]
+            if self.parallel
+                && let Step::ClearUntil(until) = step
+                && until < self.scene.end
+            {
+                step = self.search_in_parallel(until);
+            }
+            match step {
+                Step::Answer(outcome) => return outcome,
+                Step::ClearUntil(until) if until >= self.scene.end => return Outcome::Separated,
+                Step::ClearUntil(until) => next = self.window_from(until),
+            }
+        }
+        Outcome::Separated
+    }
+}

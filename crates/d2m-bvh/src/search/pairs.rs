@@ -1,0 +1,173 @@
+//! What is done with the pairs that the queue hands out: boxes are opened, triangles are followed in time.
+
+use super::queue::Item;
+use super::scene::SceneBody;
+use super::state::{BATCH, Found, QUICK_LOOKS, Search, State};
+use super::triangle_pair::closest::closest;
+use super::triangle_pair::separating_axis::{Behind, Care, Look, apart_since, look, place_a};
+use crate::Mode;
+use crate::lanes::Lanes;
+use crate::tree::node::WIDTH;
+use glam::DVec3;
+
+/// A pair that is followed out of turn is left after so many steps; ordinary contacts take fewer than ten.
+const MOST_STEPS_ALONE: u32 = 64;
+
+/// A pair of triangles is followed alone until its time has grown by one part in this many: what it finds early spares
+/// the queue what comes later, and pairs that meet at the same features need one look back each.
+const FOLLOWED: u32 = 16;
+
+/// And by so many steps of the key: some 2e-6 of the window.
+const FOLLOWED_KEYS: u32 = 1024;
+
+/// Nodes are asked for so many items before they are opened: trees are larger than the caches near the processor.
+const AHEAD: usize = 2;
+
+impl Search<'_> {
+    /// Opens at most [`BATCH`] items. Pairs of triangles first: they may lower the limit. Then all node tests, which
+    /// do not wait for each other, then all that they leave.
+    #[inline(always)]
+    pub(super) fn open<L: Lanes>(&mut self, state: &mut State<'_>, items: &[Item]) {
+        for item in &items[..AHEAD.min(items.len())] {
+            state.prefetch::<L>(item);
+        }
+        for item in items {
+            if item.open & Item::TRIANGLES != 0 && item.key < state.limit {
+                self.advance::<L>(state, *item, false);
+            }
+        }
+        let fresh = &mut self.scratch.fresh;
+        fresh.resize(WIDTH * (BATCH + 1), [0; 4]);
+        let (mut tests, mut count) = (0, 0);
+        for (i, item) in items.iter().enumerate() {
+            if let Some(next) = items.get(i + AHEAD) {
+                state.prefetch::<L>(next);
+            }
+            if item.open & Item::TRIANGLES == 0 && item.key < state.limit {
+                let times = (state.frame_key, state.limit);
+                let opened = state.opening.expand::<L>(item, &state.node_frames, times);
+                let list = fresh[count..].first_chunk_mut().expect("room for eight more");
+                count += L::pack(&opened, list);
+                tests += 1;
+            }
+        }
+        self.scratch.counts.node_tests += tests;
+        self.scratch.counts.queued += count as u64;
+        let fresh = self.scratch.fresh[..count].iter();
+        self.scratch.queue.extend(fresh.map(|row| Item::from_row(*row)));
+    }
+
+    /// Advances a pair of triangles until it is past the limit, waits for others (not if `alone`), or is in contact.
+    #[inline(always)]
+    pub(super) fn advance<L: Lanes>(&mut self, state: &mut State<'_>, item: Item, alone: bool) {
+        let triangle = |body: usize| {
+            let index = item.boxes[body] as usize;
+            state.opening.nodes[body][index / WIDTH].triangle(index % WIDTH)
+        };
+        let triangles = [triangle(0), triangle(1)];
+        let (a, b) = (self.scene.a.corners(triangles[0]), self.scene.b.corners(triangles[1]));
+        if self.limits.mode == Mode::Capoeira && self.stop_early::<L>(state, item, &a, &b, triangles) {
+            return;
+        }
+        // Proven apart until here.
+        let mut known = f64::from(item.key) * state.step;
+        if state.found.is_some() {
+            self.scratch.counts.triangle_looks += 1;
+            let span = (state.limit_offset - known).next_up();
+            if apart_since::<L::Doubles>(&state.behind, (&a, &b), &self.scene.pair, span) {
+                return;
+            }
+        }
+        let mut frame = state.frame;
+        let mut steps = 0u32;
+        loop {
+            steps += 1;
+            if alone && steps > MOST_STEPS_ALONE {
+                return;
+            }
+            if steps.is_multiple_of(256) && self.out_of_budget() {
+                let key = ((known / state.step) as u32).max(item.key);
+                self.scratch.queue.push(&Item { key, ..item });
+                return;
+            }
+            self.scratch.counts.triangle_looks += 1;
+            self.scratch.last_looked_at = triangles;
+            let enough = state.limit_offset - frame.offset;
+            let care =
+                if self.scratch.counts.triangle_looks > QUICK_LOOKS { Care::Thorough } else { Care::Quick };
+            match look::<L::Doubles>(&frame, (&a, &b), &self.scene.pair, enough, care) {
+                Look::ClearFor(time) => {
+                    known = known.max(frame.offset + time);
+                    if known >= state.limit_offset {
+                        return;
+                    }
+                    let key = (known / state.step) as u32;
+                    if !alone && key > item.key + item.key / FOLLOWED + FOLLOWED_KEYS {
+                        if key < state.limit {
+                            self.scratch.queue.push(&Item { key, ..item });
+                        }
+                        return;
+                    }
+                }
+                Look::Near { crossing, direction } => {
+                    // Near at the time of the frame, which may be before what the boxes proved: then look again there.
+                    if known <= frame.offset {
+                        if known < state.limit_offset {
+                            state.find(known, triangles, crossing);
+                            state.behind = Behind { reversed: frame.reversed::<L::Doubles>(), direction };
+                            if self.limits.mode == Mode::Exists {
+                                state.end();
+                            }
+                        }
+                        return;
+                    }
+                }
+            }
+            if known > frame.offset {
+                frame = state.motion.frame::<L::Doubles>(known);
+            } else {
+                // The time left is below the resolution of time itself: as near as times can tell.
+                state.find(known, triangles, false);
+                state.behind = Behind { reversed: frame.reversed::<L::Doubles>(), ..state.behind };
+                return;
+            }
+        }
+    }
+
+    /// Capoeira: takes the pair as the answer when the triangles are as close as their boxes are large. What is
+    /// certified is the time of the frame: no live key is earlier.
+    fn stop_early<L: Lanes>(
+        &self,
+        state: &mut State<'_>,
+        item: Item,
+        a: &[DVec3; 3],
+        b: &[DVec3; 3],
+        triangles: [u32; 2],
+    ) -> bool {
+        let radius = |body: &SceneBody<'_>, index: u32| {
+            let (node, lane) = (&body.tree.nodes[index as usize / WIDTH], index as usize % WIDTH);
+            f64::from(node.radius[lane]) * body.box_unit()
+        };
+        let size = radius(&self.scene.a, item.boxes[0]) + radius(&self.scene.b, item.boxes[1]);
+        let near = closest::<L::Doubles>(&place_a::<L::Doubles>(&state.frame, a), b);
+        let close = near.square <= size * size && (state.frame.offset > 0.0 || near.square > 0.0);
+        // At the very start the accurate look decides whether the bodies touch.
+        if close && (state.frame_key > 0 || state.motion.start > 0.0) {
+            let offset = state.frame.offset;
+            state.found = Some(Found { start: state.motion.start, offset, triangles, crossing: false });
+            state.end();
+            return true;
+        }
+        false
+    }
+}
+
+impl State<'_> {
+    /// Asks for the node that the item opens.
+    #[inline(always)]
+    fn prefetch<L: Lanes>(&self, item: &Item) {
+        if item.open & Item::TRIANGLES == 0 {
+            L::prefetch(&self.opening.nodes[item.side()][item.node() as usize]);
+        }
+    }
+}

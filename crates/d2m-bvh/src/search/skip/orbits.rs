@@ -1,0 +1,143 @@
+//! The triangles of a body, one of each orbit class: those that the screw carries into each other have one projection.
+
+use super::axis_distance::distance_in_plane;
+use super::projection::{Piece, ProjectedVertex, Range, angle};
+use super::projection_tree::ProjectionTree;
+use super::screw::Screw;
+use crate::tree::margin::UP;
+use glam::DVec3;
+use std::collections::HashMap;
+use std::f64::consts::PI;
+
+/// Part of the greatest distance from the axis by which triangles of one orbit class may differ.
+const ORBIT_STEP: f64 = 1e-8;
+/// Triangles that come nearer to the axis than this part of their greatest distance and |h| have no angles.
+pub(super) const BESIDE: f64 = 0.01;
+/// Where the steps of φ and those of classes begin: not at zero or at whole leads, where a thread or a plane through the
+/// origin would be divided. Any numbers do.
+const FIRST_LEAD: f64 = 0.123_456;
+const FIRST_STEP: f64 = 0.387_654;
+
+/// The projections of a body: of the triangles whose angles are known, and of the others.
+pub(super) struct BodyProjections {
+    pub(super) with_angles: ProjectionTree,
+    pub(super) without_angles: ProjectionTree,
+}
+
+impl BodyProjections {
+    /// Of triangles, given by the numbers of their vertices. `places`: the vertices, seen from the axis.
+    pub(super) fn new(screw: &Screw, places: &[DVec3], triangles: impl Iterator<Item = [u32; 3]>) -> Self {
+        let farthest = places.iter().map(|p| p.truncate().length_squared()).fold(0.0, f64::max).sqrt();
+        let angles: Vec<f64> = places.iter().map(|p| angle(p.y, p.x)).collect();
+        let mut orbits = Orbits {
+            screw,
+            farthest,
+            per_step: 1.0 / (ORBIT_STEP * (farthest + screw.lead)),
+            classes: HashMap::new(),
+            pieces: Vec::new(),
+            turns: Vec::new(),
+        };
+        let mut without_angles = Vec::new();
+        for triangle in triangles {
+            let vertices = triangle.map(|v| ProjectedVertex::new(places[v as usize]));
+            let near = distance_in_plane(&vertices.map(|vertex| vertex.at.with_z(0.0)), DVec3::Z);
+            let far = vertices.iter().map(|vertex| vertex.rho).fold(0.0, f64::max);
+            let beside = near >= BESIDE * (far + screw.h.abs());
+            let piece = Piece {
+                corners: vertices,
+                bend_rho: far,
+                bend_phi: 0.0,
+                shared: None,
+                slack: 0.0,
+                divisions: 0,
+                wide: screw.h != 0.0 && !beside,
+            };
+            // Near the axis the angle means nothing.
+            if beside {
+                orbits.add(piece, triangle.map(|v| angles[v as usize]));
+            } else if piece.wide {
+                without_angles.push(piece);
+            } else {
+                orbits.push(piece, [0.0; 2]);
+            }
+        }
+        Self {
+            with_angles: ProjectionTree::new(orbits.pieces, screw.h),
+            without_angles: ProjectionTree::new(without_angles, screw.h),
+        }
+    }
+}
+
+/// One triangle of each orbit class.
+struct Orbits<'s> {
+    screw: &'s Screw,
+    /// The greatest distance of a vertex from the axis.
+    farthest: f64,
+    /// One over the step in which the numbers of a class may differ.
+    per_step: f64,
+    classes: HashMap<[i64; 8], u32>,
+    pieces: Vec<Piece>,
+    /// By how much the second and the third vertex of each piece are turned from the first.
+    turns: Vec<[f64; 2]>,
+}
+
+impl Orbits<'_> {
+    fn push(&mut self, piece: Piece, turned: [f64; 2]) {
+        self.pieces.push(piece.bent(self.screw.h));
+        self.turns.push(turned);
+    }
+
+    /// Adds a triangle beside the axis whose vertices have these angles, or counts it to a class that is known.
+    fn add(&mut self, mut piece: Piece, angles: [f64; 3]) {
+        let screw = self.screw;
+        let turned = [1, 2].map(|i| less_than_half_a_turn(angles[i] - angles[0]));
+        let corners = &mut piece.corners;
+        if screw.h != 0.0 {
+            let first = corners[0].at.z - screw.h * angles[0];
+            let first = first - ((first / screw.lead - FIRST_LEAD).floor() * screw.lead);
+            corners[0].phi = first;
+            for i in [1, 2] {
+                corners[i].phi = first + (corners[i].at.z - corners[0].at.z) - screw.h * turned[i - 1];
+            }
+        }
+        let next = self.pieces.len() as u32;
+        let class = *self.classes.entry(key(corners, turned, self.farthest, self.per_step)).or_insert(next);
+        if class == next {
+            self.push(piece, turned);
+        } else {
+            self.share(class as usize, &piece, turned);
+        }
+    }
+
+    /// Widens what stands for a class by another triangle of it.
+    fn share(&mut self, class: usize, other: &Piece, turned: [f64; 2]) {
+        let (one, by, h) = (&mut self.pieces[class], self.turns[class], self.screw.h);
+        let far = other.corners.iter().map(|vertex| vertex.rho).fold(0.0, f64::max);
+        // Moved along the screw until the first angles agree, where do the vertices end?
+        let apart = [0.0, (turned[0] - by[0]).abs(), (turned[1] - by[1]).abs()];
+        for (angle, (c, d)) in apart.iter().zip(other.corners.iter().zip(&one.corners)) {
+            let beside = (c.rho - d.rho).abs() + (c.phi - d.phi).abs() + (far + h.abs()) * angle;
+            one.slack = one.slack.max(beside * UP);
+        }
+        let heights = |piece: &Piece| Range::of(piece.corners.map(|vertex| vertex.at.z));
+        one.shared = Some(one.shared.unwrap_or(heights(one)).union(heights(other)));
+    }
+}
+
+/// What triangles of one class have in common, in whole steps.
+fn key(corners: &[ProjectedVertex; 3], turned: [f64; 2], farthest: f64, per_step: f64) -> [i64; 8] {
+    let [a, b, c] = corners;
+    [a.rho, b.rho, c.rho, a.phi, b.phi, c.phi, turned[0] * farthest, turned[1] * farthest]
+        .map(|x| (x * per_step + FIRST_STEP).floor() as i64)
+}
+
+/// An angle between two vertices of a triangle beside the axis, which turns by less than half a turn.
+fn less_than_half_a_turn(by: f64) -> f64 {
+    if by > PI {
+        by - 2.0 * PI
+    } else if by < -PI {
+        by + 2.0 * PI
+    } else {
+        by
+    }
+}

@@ -1,0 +1,201 @@
+//! The projection of a body to the plane of what a screw motion leaves unchanged: the distance ρ from the axis, and
+//! φ = z − hθ up to multiples of the lead 2πh.
+//!
+//! Triangles that the screw carries into each other, its orbit classes, have one projection, so one of each class is kept,
+//! with the bound `slack` on how far corners of the others end beside its own. Triangles are divided where that decides.
+//!
+//! See docs/theory/engine.md, "Screws".
+
+use super::axis_distance::distance_in_plane;
+use crate::tree::margin::UP;
+use d2m_interval::Interval;
+use glam::DVec3;
+
+/// A direction in the plane: F = αρ + βφ.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axes {
+    pub(super) alpha: f64,
+    pub(super) beta: f64,
+}
+
+/// Any directions would do: these are in steps of about an eighth of half a turn.
+pub(super) const DIRECTIONS: [Axes; 8] = [
+    Axes { alpha: 1.0, beta: 0.0 },
+    Axes { alpha: 0.92, beta: 0.39 },
+    Axes { alpha: 0.71, beta: 0.71 },
+    Axes { alpha: 0.39, beta: 0.92 },
+    Axes { alpha: 0.0, beta: 1.0 },
+    Axes { alpha: -0.39, beta: 0.92 },
+    Axes { alpha: -0.71, beta: 0.71 },
+    Axes { alpha: -0.92, beta: 0.39 },
+];
+/// The directions of ρ and of φ.
+const RHO: usize = 0;
+const PHI: usize = 4;
+/// How much less differences of heights count than those of ρ and φ in the shape of cells.
+const HEIGHT_WEIGHT: f64 = 0.1;
+
+/// From the lowest to the highest of some numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Range {
+    pub(super) low: f64,
+    pub(super) high: f64,
+}
+
+impl Range {
+    const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
+
+    pub(super) fn of(v: [f64; 3]) -> Self {
+        Self { low: v[0].min(v[1]).min(v[2]), high: v[0].max(v[1]).max(v[2]) }
+    }
+
+    pub(super) fn union(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    /// Zero where nothing is known: cells whose angles are not known differ by the rest only.
+    fn length(self) -> f64 {
+        if self.high < f64::INFINITY { self.high - self.low } else { 0.0 }
+    }
+}
+
+/// Bounds of what a part of a body covers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Projection {
+    /// The range of F in each direction.
+    pub(super) slabs: [Range; 8],
+    pub(super) height: Range,
+    /// Least distance from the axis.
+    pub(super) near: f64,
+    /// How far beside the projection points may be.
+    pub(super) slack: f64,
+}
+
+impl Projection {
+    /// The range of φ.
+    pub(super) const fn phi(&self) -> Range {
+        self.slabs[PHI]
+    }
+
+    pub(super) fn with(&self, other: &Self) -> Self {
+        Self {
+            slabs: std::array::from_fn(|j| self.slabs[j].union(other.slabs[j])),
+            height: self.height.union(other.height),
+            near: self.near.min(other.near),
+            slack: self.slack.max(other.slack),
+        }
+    }
+
+    pub(super) fn extents(&self) -> [f64; 3] {
+        [self.slabs[RHO].length(), self.slabs[PHI].length(), HEIGHT_WEIGHT * self.height.length()]
+    }
+
+    pub(super) fn middle(&self, dimension: usize) -> f64 {
+        let Range { low, high } = [self.slabs[RHO], self.slabs[PHI], self.height][dimension];
+        low + high
+    }
+}
+
+/// A corner of a triangle, or of a part of one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ProjectedVertex {
+    /// From the axis, which is the third coordinate.
+    pub(super) at: DVec3,
+    pub(super) rho: f64,
+    pub(super) phi: f64,
+}
+
+impl ProjectedVertex {
+    /// Corners of triangles get their φ together.
+    pub(super) fn new(at: DVec3) -> Self {
+        Self { at, rho: at.truncate().length(), phi: at.z }
+    }
+
+    /// Half way to another corner. φ is taken from this one, so the branch of θ stays that of the whole triangle.
+    fn middle(&self, other: &Self, h: f64) -> Self {
+        let at = (self.at + other.at) * 0.5;
+        let mut middle = Self::new(at);
+        if h != 0.0 {
+            let (from, to) = (self.at.truncate(), at.truncate());
+            middle.phi = self.phi + (at.z - self.at.z) - h * angle(from.perp_dot(to), from.dot(to));
+        }
+        middle
+    }
+}
+
+/// arctan(y/x) in its quadrant; wrong by less than 8·2⁻⁵³ of π.
+pub(super) fn angle(y: f64, x: f64) -> f64 {
+    Interval::point(y).atan2(Interval::point(x)).mid()
+}
+
+/// A triangle, or a part of one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    pub(super) corners: [ProjectedVertex; 3],
+    /// What ρ may be below, and φ beside, the interpolation between the corners.
+    pub(super) bend_rho: f64,
+    pub(super) bend_phi: f64,
+    /// Heights of all triangles of the class, if there are more than one.
+    pub(super) shared: Option<Range>,
+    pub(super) slack: f64,
+    pub(super) divisions: u8,
+    /// No angles are known.
+    pub(super) wide: bool,
+}
+
+impl Piece {
+    pub(super) fn projection(&self) -> Projection {
+        let c = &self.corners;
+        let heights = Range::of(c.map(|corner| corner.at.z));
+        let mut slabs = [Range::ALL; 8];
+        let near = self.near();
+        slabs[RHO] = Range { low: near, high: c[0].rho.max(c[1].rho).max(c[2].rho) };
+        if !self.wide {
+            for (slab, along) in slabs.iter_mut().zip(DIRECTIONS).skip(1) {
+                *slab = self.reach(along);
+            }
+        }
+        Projection { slabs, height: self.shared.unwrap_or(heights), near, slack: self.slack }
+    }
+
+    pub(super) fn near(&self) -> f64 {
+        distance_in_plane(&self.corners.map(|corner| corner.at.with_z(0.0)), DVec3::Z)
+    }
+
+    /// The range of F along a direction.
+    pub(super) fn reach(&self, Axes { alpha, beta }: Axes) -> Range {
+        let Range { low, high } =
+            Range::of(self.corners.map(|corner| alpha * corner.rho + beta * corner.phi));
+        let either = beta.abs() * self.bend_phi;
+        let (below, above) =
+            if alpha > 0.0 { (alpha * self.bend_rho, 0.0) } else { (0.0, -alpha * self.bend_rho) };
+        Range { low: low - (below + either) * UP, high: high + (above + either) * UP }
+    }
+
+    /// Fills in the bends: half of the bound on the second derivative, 1/ρ and 1/ρ², times the square of a radius that
+    /// holds the corners. ρ is convex: never above.
+    pub(super) fn bent(mut self, h: f64) -> Self {
+        let corners = self.corners.map(|corner| corner.at);
+        let radius = [0, 1, 2]
+            .map(|i| {
+                let middle = (corners[i] + corners[(i + 1) % 3]) * 0.5;
+                corners.iter().map(|p| (*p - middle).length_squared()).fold(0.0, f64::max)
+            })
+            .into_iter()
+            .fold(f64::INFINITY, f64::min);
+        let near = self.near();
+        let far = self.corners.iter().map(|corner| corner.rho).fold(0.0, f64::max);
+        self.bend_rho = if near > 0.0 { (0.5 * radius / near).min(far) } else { far };
+        self.bend_phi = if h == 0.0 { 0.0 } else { 0.5 * h.abs() * radius / (near * near) };
+        self
+    }
+
+    pub(super) fn divided(&self, h: f64) -> [Self; 4] {
+        let [a, b, c] = self.corners;
+        let (p, q, r) = (a.middle(&b, h), b.middle(&c, h), c.middle(&a, h));
+        [[a, p, r], [p, b, q], [r, q, c], [p, q, r]].map(|corners| {
+            let part = Self { corners, divisions: self.divisions + 1, ..*self };
+            if self.wide { part } else { part.bent(h) }
+        })
+    }
+}

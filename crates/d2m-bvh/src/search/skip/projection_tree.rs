@@ -1,0 +1,87 @@
+//! A binary tree over the projection of a body.
+
+use super::projection::{Piece, Projection};
+
+/// Times that a triangle may be divided by four.
+const MOST_DIVISIONS: u8 = 7;
+
+/// A part of a body: several triangles, one, or a part of one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell {
+    pub(super) projection: Projection,
+    /// The number of the piece that it is.
+    piece: Option<u32>,
+    /// The first of the cells that it is made of, and their number; none: not yet divided.
+    below: (u32, u32),
+}
+
+/// A tree of projections, which grows where its cells are divided.
+#[derive(Debug)]
+pub(super) struct ProjectionTree {
+    pub(super) cells: Vec<Cell>,
+    pieces: Vec<Piece>,
+    h: f64,
+}
+
+impl ProjectionTree {
+    /// Of some pieces, on a screw with φ = z − hθ.
+    pub(super) fn new(pieces: Vec<Piece>, h: f64) -> Self {
+        let mut parts: Vec<(Projection, u32)> = pieces.iter().map(Piece::projection).zip(0..).collect();
+        let mut tree = Self { cells: Vec::with_capacity(4 * parts.len()), pieces, h };
+        if let Some(&(projection, piece)) = parts.first() {
+            tree.cells.push(Cell { projection, piece: Some(piece), below: (0, 0) });
+            tree.split(0, &mut parts);
+        }
+        tree
+    }
+
+    fn split(&mut self, cell: usize, parts: &mut [(Projection, u32)]) {
+        let projection = parts[1..].iter().fold(parts[0].0, |all, part| all.with(&part.0));
+        if parts.len() == 1 {
+            self.cells[cell] = Cell { projection, piece: Some(parts[0].1), below: (0, 0) };
+            return;
+        }
+        let extents = projection.extents();
+        let dimension = (0..3).max_by(|&i, &j| extents[i].total_cmp(&extents[j])).unwrap_or(0);
+        let half = parts.len() / 2;
+        parts.select_nth_unstable_by(half, |p, q| p.0.middle(dimension).total_cmp(&q.0.middle(dimension)));
+        let first = self.cells.len();
+        self.cells[cell] = Cell { projection, piece: None, below: (first as u32, 2) };
+        self.cells.extend([self.cells[cell]; 2]);
+        let (left, right) = parts.split_at_mut(half);
+        self.split(first, left);
+        self.split(first + 1, right);
+    }
+
+    /// The piece that a cell is.
+    pub(super) fn piece(&self, cell: usize) -> Option<&Piece> {
+        self.cells[cell].piece.map(|piece| &self.pieces[piece as usize])
+    }
+
+    /// What decides which of two cells is opened: cells that are not one piece first.
+    pub(super) fn size(&self, cell: usize) -> (bool, f64) {
+        let several = self.cells[cell].piece.is_none();
+        let extents = self.cells[cell].projection.extents();
+        (several, extents[0] + extents[1] + if several { extents[2] } else { 0.0 })
+    }
+
+    /// What a cell is made of; nothing when it is as small as cells get.
+    pub(super) fn open(&mut self, cell: usize) -> std::ops::Range<usize> {
+        let (first, count) = self.cells[cell].below;
+        if count > 0 {
+            return first as usize..(first + count) as usize;
+        }
+        let Some(piece) = self.piece(cell).copied() else { return 0..0 };
+        if piece.divisions == MOST_DIVISIONS {
+            return 0..0;
+        }
+        let first = self.cells.len();
+        self.cells[cell].below = (first as u32, 4);
+        for part in piece.divided(self.h) {
+            let number = self.pieces.len() as u32;
+            self.cells.push(Cell { projection: part.projection(), piece: Some(number), below: (0, 0) });
+            self.pieces.push(part);
+        }
+        first..first + 4
+    }
+}

@@ -1,0 +1,213 @@
+//! What a search knows: its limits, what it has found, where it is in a sub-window.
+
+use super::motion::frame::{Frame, RelativeMotion};
+use super::motion::pair::two_sum;
+use super::node_pair::expansion::Opening;
+use super::node_pair::node_test::{NodeFrame, NodeScale};
+use super::scene::{Scene, Scratch, SearchCounts};
+use super::triangle_pair::separating_axis::Behind;
+use crate::lanes::InstructionSet;
+use crate::{Budget, Mode, QueryOptions};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+/// Items that a batch may have before it is divided.
+pub(super) const BATCH: usize = 32;
+
+/// Looks at pairs of triangles of one search that do little; ordinary queries need fewer.
+pub(super) const QUICK_LOOKS: u64 = 192;
+
+/// Node tests, besides one for each [`TRIANGLES_A_TEST`] triangles, before sweeps are looked at for the first time:
+/// ordinary queries end before that, or are well on their way.
+pub(super) const FIRST_SWEEP: u64 = 256;
+
+/// As many triangles are measured for a sweep in the time of one node test.
+const TRIANGLES_A_TEST: u64 = 8;
+
+/// A contact as the search knows it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found {
+    /// Start of the window of the search in which it lies (an offset of the query), and the offset from there.
+    pub(crate) start: f64,
+    pub(crate) offset: f64,
+    pub(crate) triangles: [u32; 2],
+    /// Whether no direction kept the triangles apart: they cross, or come within the level of it.
+    pub(crate) crossing: bool,
+}
+
+impl Found {
+    /// The offset in the query, not late.
+    pub(crate) fn in_query(&self) -> f64 {
+        sum_down(self.start, self.offset)
+    }
+
+    /// Is it at the very start of the query?
+    pub(crate) fn is_at_start(&self) -> bool {
+        self.start == 0.0 && self.offset == 0.0
+    }
+}
+
+/// Result of a search.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Outcome {
+    Separated,
+    Found(Found),
+    /// The budget ran out; free until this offset.
+    OutOfBudget(f64),
+}
+
+/// What a part of the search gave.
+pub(super) enum Step {
+    /// The answer of the whole search.
+    Answer(Outcome),
+    /// The bodies are apart until this offset.
+    ClearUntil(f64),
+}
+
+/// A part of the query's window in which the bodies turn by little, as offsets: it is searched at once.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SubWindow {
+    pub(super) start: f64,
+    pub(super) end: f64,
+}
+
+/// One search.
+pub(crate) struct Search<'s> {
+    pub(super) scene: &'s Scene<'s>,
+    pub(super) scratch: &'s mut Scratch,
+    pub(super) limits: Limits,
+    /// The vector instructions that it uses.
+    pub(super) instructions: InstructionSet,
+    /// Of the last sub-window, and its unit of time.
+    pub(super) scales: Option<(f64, [NodeScale; 2])>,
+    /// Set for a single sub-window that is searched before it is known what earlier ones give.
+    pub(super) ahead: Option<Ahead<'s>>,
+    /// Whether several threads may search.
+    #[cfg(feature = "rayon")]
+    pub(super) parallel: bool,
+}
+
+/// A sub-window that is searched before it is known what earlier ones give, and where those tell that they have an answer.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ahead<'r> {
+    pub(super) number: usize,
+    /// The least number of a sub-window with an answer.
+    pub(super) answered: &'r AtomicUsize,
+}
+
+impl Ahead<'_> {
+    /// Is there an answer in an earlier sub-window?
+    pub(super) fn is_useless(&self) -> bool {
+        self.answered.load(Ordering::Relaxed) < self.number
+    }
+}
+
+/// How far a search goes, and when it tries something else.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    pub(super) mode: Mode,
+    pub(super) most_tests: u64,
+    pub(super) deadline: Option<Instant>,
+    /// The number of node tests from which on it is time to look at sweeps.
+    pub(super) sweep_from: u64,
+    /// Only whether the bodies meet at the start matters.
+    pub(super) only_start: bool,
+}
+
+/// What changes while a sub-window is searched.
+pub(super) struct State<'a> {
+    pub(super) motion: RelativeMotion,
+    pub(super) opening: Opening<'a>,
+    /// One step of the key, as a difference of offsets.
+    pub(super) step: f64,
+    /// Keys from here on do not matter.
+    pub(super) limit: u32,
+    /// The same as an offset.
+    pub(super) limit_offset: f64,
+    pub(super) frame: Frame,
+    pub(super) node_frames: [NodeFrame; 2],
+    pub(super) frame_key: u32,
+    pub(super) found: Option<Found>,
+    /// The time of what is found; before something is found, of no meaning.
+    pub(super) behind: Behind,
+}
+
+impl<'s> Search<'s> {
+    pub(crate) fn new(scene: &'s Scene<'s>, options: &QueryOptions, scratch: &'s mut Scratch) -> Self {
+        let budget = &options.budget;
+        scratch.counts = SearchCounts::default();
+        scratch.last_looked_at = [0, 0];
+        // What an earlier query left belongs to other motions.
+        scratch.found_in = None;
+        let limits = Limits {
+            mode: options.mode,
+            most_tests: budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS),
+            deadline: budget.wall_clock.and_then(|time| Instant::now().checked_add(time)),
+            sweep_from: FIRST_SWEEP + triangle_count(scene) / TRIANGLES_A_TEST,
+            only_start: false,
+        };
+        Self {
+            scene,
+            scratch,
+            limits,
+            instructions: InstructionSet::in_use(),
+            scales: None,
+            ahead: None,
+            #[cfg(feature = "rayon")]
+            parallel: options.parallel,
+        }
+    }
+
+    /// A search that ends with `Separated` when the bodies are proven apart at the start.
+    pub(crate) fn of_start(mut self) -> Self {
+        self.limits.only_start = true;
+        self
+    }
+
+    /// The next sub-window to be searched; `None` when nothing is left.
+    pub(super) fn window_from(&self, start: f64) -> Option<SubWindow> {
+        let end = self.scene.end;
+        let start = self.scene.balls_clear_until(start);
+        // A query of no length has one window.
+        if start >= end && end > 0.0 {
+            return None;
+        }
+        Some(SubWindow { start, end: (start + self.scene.longest).min(end) })
+    }
+
+    /// What the search has done, in node tests.
+    pub(super) fn work(&self) -> u64 {
+        self.scratch.counts.work()
+    }
+
+    pub(super) fn out_of_budget(&self) -> bool {
+        self.work() >= self.limits.most_tests
+            || self.limits.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+    }
+}
+
+impl State<'_> {
+    /// A contact at this offset: nothing later matters, and nothing whose key is not below it can be earlier. The step
+    /// is a power of two, so the quotient is exact.
+    pub(super) fn find(&mut self, offset: f64, triangles: [u32; 2], crossing: bool) {
+        self.limit_offset = offset;
+        self.limit = ((offset / self.step).ceil() as u32).min(self.limit);
+        self.found = Some(Found { start: self.motion.start, offset, triangles, crossing });
+    }
+
+    /// Nothing matters any more.
+    pub(super) fn end(&mut self) {
+        self.limit = 0;
+        self.limit_offset = 0.0;
+    }
+}
+
+pub(super) fn triangle_count(scene: &Scene<'_>) -> u64 {
+    (scene.a.tree.mesh.triangle_count() + scene.b.tree.mesh.triangle_count()) as u64
+}
+
+/// The sum of two offsets, rounded down.
+pub(super) fn sum_down(start: f64, offset: f64) -> f64 {
+    let sum = two_sum(start, offset);
+    if sum.1 < 0.0 { sum.0.next_down() } else { sum.0 }
+}

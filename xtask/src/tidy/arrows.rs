@@ -1,0 +1,324 @@
+//! Arrows between the modules of a crate: they point one way, in the order that ARCHITECTURE.md gives, and no files form a
+//! circle.
+//!
+//! An arrow is a path (`crate::…`, `super::…`, or the name of a child module in a `use`) outside tests and comments. A
+//! name that a `mod.rs` or `lib.rs` passes on counts as an arrow to the file that it comes from.
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+/// In ARCHITECTURE.md, before the list of a crate's modules: one line, from those that need nothing to those that use all.
+const HEADING: &str = "Order of the modules of ";
+
+/// What points in the wrong direction.
+pub(super) fn check(root: &Path) -> Result<Vec<String>, Box<dyn std::error::Error>> {
+    let text =
+        fs::read_to_string(root.join("ARCHITECTURE.md")).map_err(|e| format!("ARCHITECTURE.md: {e}"))?;
+    let orders = orders(&text);
+    let mut findings = Vec::new();
+    if orders.is_empty() {
+        findings.push(format!("ARCHITECTURE.md: no line \"{HEADING}`crate`: `module`, …\""));
+    }
+    for (name, order) in orders {
+        let folder = root.join("crates").join(&name).join("src");
+        findings.extend(Modules::read(&folder)?.judge(&name, &order));
+    }
+    Ok(findings)
+}
+
+/// The crates whose modules are listed, with the list.
+fn orders(text: &str) -> Vec<(String, Vec<String>)> {
+    let in_code =
+        |line: &str| -> Vec<String> { line.split('`').skip(1).step_by(2).map(String::from).collect() };
+    text.lines()
+        .filter(|line| line.contains(HEADING))
+        .filter_map(|line| {
+            let mut words = in_code(line).into_iter();
+            Some((words.next()?, words.collect()))
+        })
+        .collect()
+}
+
+/// The modules of a crate by their paths (the root's is empty), with the code outside tests and comments.
+struct Modules(BTreeMap<Vec<String>, String>);
+
+impl Modules {
+    fn read(folder: &Path) -> Result<Self, Box<dyn std::error::Error>> {
+        let mut modules = BTreeMap::new();
+        for path in super::sources::files(folder)? {
+            let relative = path.strip_prefix(folder).unwrap_or(&path).with_extension("");
+            let mut segments: Vec<String> =
+                relative.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+            match segments.last().map(String::as_str) {
+                Some("mod" | "lib") => drop(segments.pop()),
+                Some("tests") => continue,
+                _ => {}
+            }
+            modules.insert(segments, code(&fs::read_to_string(&path)?));
+        }
+        Ok(Self(modules))
+    }
+
+    fn judge(&self, name: &str, order: &[String]) -> Vec<String> {
+        let arrows = self.arrows();
+        let mut findings = Vec::new();
+        for module in self.0.keys().filter(|module| place(order, module).is_none() && !self.passes_on(module))
+        {
+            findings
+                .push(format!("{name}: {} is missing in the order of ARCHITECTURE.md", module.join("::")));
+        }
+        for (from, to) in arrows.iter().flat_map(|(from, all)| all.iter().map(move |to| (from, to))) {
+            if place(order, from).zip(place(order, to)).is_some_and(|(own, other)| other > own) {
+                findings.push(format!(
+                    "{name}: {} uses {}, which stands after it in ARCHITECTURE.md: arrows point one way",
+                    from.join("::"),
+                    to.join("::")
+                ));
+            }
+        }
+        for circle in circles(&arrows) {
+            let circle: Vec<String> = circle.iter().map(|module| module.join("::")).collect();
+            findings.push(format!("{name}: files that use each other in a circle: {}", circle.join(", ")));
+        }
+        findings
+    }
+
+    /// A module with children: it may pass names on, and stands above them.
+    fn passes_on(&self, module: &[String]) -> bool {
+        self.0.keys().any(|other| other.len() > module.len() && other.starts_with(module))
+    }
+
+    /// For each file the files that it uses.
+    fn arrows(&self) -> Arrows {
+        let mut arrows = BTreeMap::new();
+        for (module, code) in &self.0 {
+            let mut used = BTreeSet::new();
+            // What a folder's root passes on is no arrow of its own: it would close a circle with every child.
+            if !self.passes_on(module) {
+                for path in paths(code) {
+                    used.extend(self.target(module, &path));
+                }
+            }
+            used.remove(module);
+            arrows.insert(module.clone(), used);
+        }
+        arrows
+    }
+
+    /// The file in which a path from a module ends.
+    fn target(&self, from: &[String], path: &[String]) -> Option<Vec<String>> {
+        let (mut at, mut rest) = match path.first()?.as_str() {
+            "crate" => (Vec::new(), &path[1..]),
+            _ => {
+                let up = path.iter().take_while(|segment| *segment == "super").count();
+                (from[..from.len().checked_sub(up)?].to_vec(), &path[up..])
+            }
+        };
+        for _ in 0..16 {
+            let Some((segment, later)) = rest.split_first() else { break };
+            let mut child = at.clone();
+            child.push(segment.clone());
+            if self.0.contains_key(&child) {
+                (at, rest) = (child, later);
+                continue;
+            }
+            let passed = self.0.get(&at).and_then(|code| source_of(code, segment));
+            match passed {
+                Some(module) => at.extend(module),
+                None => break,
+            }
+        }
+        (!self.passes_on(&at) || at.is_empty()).then_some(at).filter(|at| !at.is_empty())
+    }
+}
+
+/// Where a module stands: the place of the longest listed path that it begins with.
+fn place(order: &[String], module: &[String]) -> Option<usize> {
+    let starts =
+        |listed: &&str| module.starts_with(&listed.split("::").map(String::from).collect::<Vec<_>>());
+    let longest = order.iter().map(String::as_str).filter(starts).max_by_key(|listed| listed.len())?;
+    order.iter().position(|listed| listed == longest)
+}
+
+/// The code of a file: without comments, and without what is compiled for tests only.
+fn code(text: &str) -> String {
+    let (mut out, mut skip) = (String::new(), false);
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        let bare = line.trim_start();
+        if bare.starts_with("#[cfg(test)]") {
+            skip = true;
+        } else if skip && !bare.starts_with("#[") && !bare.starts_with("//") {
+            // The item that follows: a line that ends it, or its whole block.
+            let indent = line.len() - bare.len();
+            if !bare.ends_with(';') && !bare.ends_with(',') {
+                let close = |line: &str| {
+                    line.trim_start().starts_with('}') && line.len() - line.trim_start().len() == indent
+                };
+                _ = lines.find(|line| close(line));
+            }
+            skip = false;
+        } else if !skip && !bare.starts_with("//") {
+            out.push_str(line.split(" // ").next().unwrap_or_default());
+            out.push('\n');
+        }
+    }
+    out
+}
+
+/// All paths from the crate's root or from a parent, those in braces one by one.
+fn paths(code: &str) -> Vec<Vec<String>> {
+    let mut found = Vec::new();
+    let boundary = |at: usize| !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':');
+    let mut starts: Vec<usize> =
+        ["crate::", "super::"].iter().flat_map(|start| code.match_indices(start).map(|(at, _)| at)).collect();
+    starts.sort_unstable();
+    for at in starts.into_iter().filter(|at| boundary(*at)) {
+        spread(&code[at..], &mut Vec::new(), &mut found);
+    }
+    found
+}
+
+/// Reads a path, follows braces, and returns what is left of the text.
+fn spread<'t>(mut text: &'t str, prefix: &mut Vec<String>, found: &mut Vec<Vec<String>>) -> &'t str {
+    let depth = prefix.len();
+    loop {
+        text = text.trim_start();
+        if let Some(inner) = text.strip_prefix('{') {
+            text = inner;
+            loop {
+                text = spread(text, prefix, found).trim_start();
+                let Some(next) = text.strip_prefix(',') else { break };
+                text = next;
+            }
+            text = text.strip_prefix('}').unwrap_or(text);
+            break;
+        }
+        let end = text.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(text.len());
+        if end == 0 {
+            break;
+        }
+        prefix.push(text[..end].to_string());
+        text = &text[end..];
+        match text.strip_prefix("::") {
+            Some(next) => text = next,
+            None => {
+                found.push(prefix.clone());
+                break;
+            }
+        }
+    }
+    prefix.truncate(depth);
+    text
+}
+
+/// The module from which a `mod.rs` takes a name that it passes on.
+fn source_of(code: &str, name: &str) -> Option<Vec<String>> {
+    let uses = code.split("use ").skip(1).filter_map(|rest| rest.split_once(';').map(|(path, _)| path));
+    for text in uses {
+        let mut found = Vec::new();
+        spread(text, &mut Vec::new(), &mut found);
+        for mut path in found {
+            if path.pop().as_deref() == Some(name) {
+                path.retain(|segment| segment != "crate" && segment != "self");
+                return Some(path);
+            }
+        }
+    }
+    None
+}
+
+type Arrows = BTreeMap<Vec<String>, BTreeSet<Vec<String>>>;
+
+/// Groups of files that use each other in circles.
+fn circles(arrows: &Arrows) -> BTreeSet<BTreeSet<Vec<String>>> {
+    let reached: Arrows = arrows.keys().map(|from| (from.clone(), reached(arrows, from))).collect();
+    let mutual = |from: &Vec<String>| {
+        let back = |to: &&Vec<String>| reached.get(*to).is_some_and(|from_there| from_there.contains(from));
+        reached[from].iter().filter(back).cloned().collect::<BTreeSet<_>>()
+    };
+    arrows.keys().map(mutual).filter(|group| !group.is_empty()).collect()
+}
+
+/// All that can be reached by one arrow or more.
+fn reached(arrows: &Arrows, from: &Vec<String>) -> BTreeSet<Vec<String>> {
+    let (mut found, mut open) = (BTreeSet::new(), vec![from]);
+    while let Some(module) = open.pop() {
+        for next in arrows.get(module).into_iter().flatten() {
+            if found.insert(next.clone()) {
+                open.push(next);
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn modules(files: &[(&str, &str)]) -> Modules {
+        let path = |name: &str| name.split("::").filter(|s| !s.is_empty()).map(String::from).collect();
+        Modules(files.iter().map(|(name, text)| (path(name), code(text))).collect())
+    }
+
+    fn findings(files: &[(&str, &str)]) -> Vec<String> {
+        modules(files).judge("d2m-x", &["low", "high"].map(String::from))
+    }
+
+    const ROOT: (&str, &str) = ("", "mod low;\nmod high;\npub use high::Tower;\n");
+    const FOLDER: (&str, &str) = ("low", "mod ground;\npub(crate) use ground::Ground;\n");
+
+    #[test]
+    fn the_order_is_read() {
+        let text = "x\nOrder of the modules of `d2m-x`: `low`, `high`, `high::top`.\n";
+        let names = ["low", "high", "high::top"].map(String::from).to_vec();
+        assert_eq!(orders(text), [("d2m-x".to_string(), names)]);
+    }
+
+    #[test]
+    fn arrows_to_what_stands_before_are_right() {
+        let high = ("high", "use crate::low::{Ground, ground};\npub struct Tower(Ground);\n");
+        assert_eq!(findings(&[ROOT, FOLDER, ("low::ground", "pub struct Ground;\n"), high]), [""; 0]);
+    }
+
+    #[test]
+    fn each_wrong_arrow_is_found() {
+        let high = ("high", "pub struct Tower;\n");
+        for wrong in [
+            "use crate::high::Tower;",
+            "use crate::Tower;",
+            "use crate::{\n    Tower,\n};",
+            "use super::super::high;",
+            "fn f() -> crate::high::Tower {}",
+        ] {
+            let found = findings(&[ROOT, FOLDER, ("low::ground", wrong), high]);
+            assert_eq!(found.len(), 1, "{wrong}: {found:?}");
+            assert!(found[0].contains("low::ground uses high"), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn tests_and_comments_have_no_arrows() {
+        let text = "//! See crate::high.\n#[cfg(test)]\nuse crate::high::Tower;\n\
+            #[cfg(test)]\nmod tests {\n    use crate::high::Tower;\n}\n// crate::high\n";
+        assert_eq!(findings(&[ROOT, FOLDER, ("low::ground", text), ("high", "")]), [""; 0]);
+    }
+
+    #[test]
+    fn circles_are_found() {
+        let found = findings(&[
+            ROOT,
+            FOLDER,
+            ("high", ""),
+            ("low::a", "use super::b::B;"),
+            ("low::b", "use super::a::A;"),
+        ]);
+        assert_eq!(found, ["d2m-x: files that use each other in a circle: low::a, low::b"]);
+    }
+
+    #[test]
+    fn modules_that_are_not_listed_are_found() {
+        assert_eq!(findings(&[ROOT, ("low", ""), ("high", ""), ("else", "")]).len(), 1);
+    }
+}
