@@ -1,0 +1,331 @@
+//! Chains and splines chosen to be hard: planted contacts with a time that is known, and dense static distances.
+
+mod random;
+
+use d2m_bvh::{
+    MeshTree, Moving, Posed, QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window, distance,
+    time_of_contact,
+};
+use d2m_motion::{
+    Chain, ConstantTwist, Joint, JointKind, JointValue, Pose, RigidMotion, Spline, SplineDegree, Twist,
+};
+use glam::{DQuat, DVec3};
+use random::{Random, wavy_torus};
+
+const DELTA: f64 = 1e-9;
+
+fn torus(rings: u32, sides: u32, scale: f64) -> MeshTree {
+    let (corners, triangles) = wavy_torus(rings, sides, 0.3);
+    let corners = corners.into_iter().map(|p| p * scale).collect();
+    MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
+}
+
+/// A tetrahedron with its tip at the origin, the rest above it.
+fn spike() -> MeshTree {
+    let corners = vec![
+        DVec3::ZERO,
+        DVec3::new(0.3, 0.0, 1.0),
+        DVec3::new(-0.15, 0.26, 1.0),
+        DVec3::new(-0.15, -0.26, 1.0),
+    ];
+    MeshTree::new(TriMesh::try_new(corners, vec![[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]).unwrap())
+}
+
+/// A plate with its upper face at z = 0.
+fn plate() -> MeshTree {
+    let corners = (0..8u32).map(|i| {
+        let side = |bit: u32| if i & bit == 0 { -4.0 } else { 4.0 };
+        DVec3::new(side(1), side(2), if i & 4 == 0 { -1.0 } else { 0.0 })
+    });
+    let faces = [
+        [0, 2, 3],
+        [0, 3, 1],
+        [4, 5, 7],
+        [4, 7, 6],
+        [0, 1, 5],
+        [0, 5, 4],
+        [2, 6, 7],
+        [2, 7, 3],
+        [0, 4, 6],
+        [0, 6, 2],
+        [1, 3, 7],
+        [1, 7, 5],
+    ];
+    MeshTree::new(TriMesh::try_new(corners.collect(), faces.to_vec()).unwrap())
+}
+
+fn query(
+    trees: [&MeshTree; 2],
+    motions: [&dyn RigidMotion; 2],
+    window: Window,
+    options: &QueryOptions,
+) -> TimeOfContact {
+    time_of_contact(Moving::new(trees[0], motions[0]), Moving::new(trees[1], motions[1]), window, options)
+        .unwrap()
+}
+
+/// Certified distance at a time, expressed near `origin`, so that the judge's own rounding does not matter.
+fn distance_at(trees: [&MeshTree; 2], motions: [&dyn RigidMotion; 2], t: f64, origin: DVec3) -> (f64, f64) {
+    let posed = [0, 1].map(|k| {
+        let state = motions[k].enclose_state_about(t, origin);
+        let rotation = DQuat::from_mat3(&state.rotation);
+        Posed::new(trees[k], Pose { rotation, translation: state.position, at: state.at })
+    });
+    let found = distance(posed[0], posed[1], Solid::Filled).unwrap();
+    (found.lower, found.upper)
+}
+
+/// Nothing touches before the answer's time at `samples` times, and a contact is as near as its tolerance says.
+fn judge(
+    trees: [&MeshTree; 2],
+    motions: [&dyn RigidMotion; 2],
+    (window, origin, samples): (Window, DVec3, u32),
+    answer: &TimeOfContact,
+) -> Result<(), String> {
+    let end = match answer {
+        TimeOfContact::Contact(contact) => contact.time_lo,
+        TimeOfContact::Separated => window.end(),
+        TimeOfContact::Undecided { clear_until } => return Err(format!("undecided from {clear_until} on")),
+    };
+    for k in 0..=samples {
+        let t = (window.start() + (end - window.start()) * f64::from(k) / f64::from(samples)).min(end);
+        let (low, high) = distance_at(trees, motions, t, origin);
+        if low <= 0.0 {
+            return Err(format!("touching at {t}, before {end}: {high:e}"));
+        }
+    }
+    let Some(contact) = answer.contact() else { return Ok(()) };
+    let (low, high) = distance_at(trees, motions, contact.time_lo, origin);
+    if low < 0.3 * contact.tolerance || high > 3.5 * contact.tolerance {
+        return Err(format!("{low:e} to {high:e} left: {contact:?}"));
+    }
+    if contact.start != StartState::Apart {
+        return Err(format!("{contact:?}"));
+    }
+    Ok(())
+}
+
+fn joint(position: DVec3, kind: JointKind) -> Joint {
+    Joint::try_new(position, DQuat::IDENTITY, kind).unwrap()
+}
+
+/// Poses through a neighbourhood of the origin at times that are anything but even.
+fn poses(random: &mut Random, start: f64, offset: DVec3, count: usize) -> Vec<(f64, Pose)> {
+    let mut time = start;
+    let mut step = 0.0;
+    (0..count)
+        .map(|_| {
+            time += step;
+            step = 10f64.powf(random.next() * 1.2 - 0.8);
+            let translation = offset + random.vec() * 2.2;
+            (time, Pose { translation, rotation: random.turn().normalize(), at: DVec3::ZERO })
+        })
+        .collect()
+}
+
+/// Splines of both degrees, smooth by themselves and with twists that were given, some of them zero: near the origin of time and
+/// of space, and far from both.
+#[test]
+fn random_splines_are_answered_right() {
+    let (a, b) = (torus(12, 7, 0.5), torus(16, 8, 0.8));
+    let mut random = Random(71);
+    let options = QueryOptions::default().with_tolerance(DELTA);
+    let (mut hits, mut free) = (0, 0);
+    for round in 0..72 {
+        let start = [0.0, 1e5][round % 2];
+        let offset = [DVec3::ZERO, DVec3::new(-1e6, 1e6, 2e6)][round / 2 % 2];
+        let degree = [SplineDegree::Cubic, SplineDegree::Quintic][round / 4 % 2];
+        let frames = poses(&mut random, start, offset, 2 + round % 5);
+        let path = if round % 3 == 0 {
+            let twisted = frames.iter().enumerate().map(|(index, (time, pose))| {
+                // Every other pose is a rest.
+                let of = if index % 2 == 0 { 0.0 } else { 1.0 };
+                (*time, *pose, Twist { linear: random.vec() * of, angular: random.vec() * of })
+            });
+            Spline::try_with_twists(&twisted.collect::<Vec<_>>(), degree)
+        } else {
+            Spline::try_through(&frames, degree)
+        };
+        let path = path.unwrap();
+        let still = ConstantTwist::REST
+            .with_position(offset + random.vec().normalize() * 1.8)
+            .with_angular_velocity(random.vec() * [0.0, 3.0][round % 2])
+            .with_reference_time(start);
+        let (first, last) = (frames[0].0, frames[frames.len() - 1].0);
+        let window = Window::try_new(first, last).unwrap();
+        if distance_at([&a, &b], [&path, &still], first, offset).0 < 1e-3 {
+            continue;
+        }
+        let answer = query([&a, &b], [&path, &still], window, &options);
+        if answer.contact().is_some() {
+            hits += 1
+        } else {
+            free += 1
+        }
+        judge([&a, &b], [&path, &still], (window, offset, 120), &answer)
+            .unwrap_or_else(|fault| panic!("round {round}: {fault}"));
+        // The bodies exchanged: a bracket that overlaps.
+        let swapped = query([&b, &a], [&still, &path], window, &options);
+        let close = match (answer.contact(), swapped.contact()) {
+            (Some(x), Some(y)) => x.time_lo <= y.time_hi && y.time_lo <= x.time_hi,
+            (x, y) => x.is_none() && y.is_none(),
+        };
+        assert!(close, "round {round}: {answer:?} {swapped:?}");
+    }
+    assert!(hits > 20 && free > 3, "{hits} {free}");
+}
+
+/// A spike is turned about its tip, with a spin that changes its sign, while a carriage brings the tip down so that it touches
+/// the plate at a known time: inside a piece, exactly at a joint, at the start of a piece that goes on down, with a
+/// velocity that vanishes there to an order of one to four.
+#[test]
+fn planted_contacts_of_turning_spikes() {
+    let (a, b) = (spike(), plate());
+    let options = QueryOptions::default().with_tolerance(DELTA);
+    let mut random = Random(72);
+    for round in 0..144 {
+        let start = [0.0, 1e5, -3e4][round % 3];
+        let offset = [DVec3::ZERO, DVec3::new(1e6, 2e6, -1e6)][round / 3 % 2];
+        let order = 1 + round / 6 % 4;
+        // At 1, from 0 to 2: the joint is before, at, or after the contact.
+        let joint_at = [0.5, 1.0, 1.5][round / 24 % 3];
+        // Height (1 − s)^order · c, and through if the order is odd; an even one touches and leaves.
+        let scale = 0.3 + random.next().abs();
+        let height = |from: f64| power_about(order, 1.0 - from, scale);
+        let turn = [1.5 * random.next(), -2.0, 1.0 + random.next()];
+        let times = vec![start, start + joint_at, start + 2.0];
+        let fall = JointValue::try_pieces(times.clone(), vec![height(0.0), height(joint_at)]).unwrap();
+        // ω = turn₀ + 2 turn₁ s changes its sign; it goes on from the joint with another rate.
+        let at_joint = turn[0] * joint_at + turn[1] * joint_at * joint_at * 0.3;
+        let spin = JointValue::try_pieces(
+            times,
+            vec![vec![0.0, turn[0], turn[1] * 0.3], vec![at_joint, -turn[0], turn[2] * 0.3]],
+        )
+        .unwrap();
+        let link = Chain::try_new(vec![
+            joint(offset, JointKind::Fixed),
+            joint(DVec3::ZERO, JointKind::Prismatic { axis: DVec3::Z, value: fall }),
+            joint(DVec3::ZERO, JointKind::Revolute { axis: DVec3::new(0.1, -0.2, 1.0), value: spin }),
+        ])
+        .unwrap();
+        let still = ConstantTwist::REST.with_position(offset);
+        let window = Window::try_new(start, start + 2.0).unwrap();
+        let answer = query([&a, &b], [&link, &still], window, &options);
+        let what = format!("round {round}, order {order}, joint at {joint_at}");
+        let contact = answer.contact().unwrap_or_else(|| panic!("{what}: {answer:?}"));
+        let left = (contact.tolerance * 3.5 / scale).powf(1.0 / order as f64);
+        let (early, late) = (start + 1.0 - 1.5 * left - 1e-15 * start.abs(), start + 1.0);
+        assert!(early <= contact.time_lo && contact.time_lo <= late, "{what}: {contact:?}");
+        assert!(contact.tolerance <= 2e-8, "{what}: {contact:?}");
+        judge([&a, &b], [&link, &still], (window, offset, 100), &answer)
+            .unwrap_or_else(|fault| panic!("{what}: {fault}"));
+    }
+}
+
+/// Coefficients of scale · (c − s)^n in s, c = `at`, without what rounding leaves where it is zero.
+fn power_about(n: usize, at: f64, scale: f64) -> Vec<f64> {
+    let mut out = vec![scale];
+    for _ in 0..n {
+        let mut next = vec![0.0; out.len() + 1];
+        for (k, x) in out.iter().enumerate() {
+            next[k] += x * at;
+            next[k + 1] -= x;
+        }
+        out = next;
+    }
+    out
+}
+
+/// A spline whose pose at a joint touches the plate with no velocity, coming from above and going back: one contact, at the joint;
+/// raised by a little, none.
+#[test]
+fn splines_that_touch_at_a_joint_with_no_velocity() {
+    let (a, b) = (spike(), plate());
+    let options = QueryOptions::default().with_tolerance(DELTA);
+    for degree in [SplineDegree::Cubic, SplineDegree::Quintic] {
+        for start in [0.0, 1e5] {
+            for (raised, meets) in [(0.0, true), (-1e-7, true), (1e-7, false), (1e-4, false)] {
+                let pose = |height: f64, turn: f64| Pose {
+                    translation: DVec3::Z * height,
+                    rotation: DQuat::from_rotation_z(turn),
+                    at: DVec3::ZERO,
+                };
+                let rest = Twist { linear: DVec3::ZERO, angular: DVec3::ZERO };
+                let frames = [
+                    (start, pose(1.0, 0.0), rest),
+                    (start + 0.75, pose(raised, 1.0), rest),
+                    (start + 2.0, pose(0.8, -0.7), rest),
+                ];
+                let path = Spline::try_with_twists(&frames, degree).unwrap();
+                let window = Window::try_new(start, start + 2.0).unwrap();
+                let answer = query([&a, &b], [&path, &ConstantTwist::REST], window, &options);
+                assert_eq!(answer.contact().is_some(), meets, "{degree:?} {start} {raised:e}: {answer:?}");
+                if let Some(contact) = answer.contact() {
+                    assert!(contact.time_lo <= start + 0.75 && contact.time_lo > start + 0.74, "{contact:?}");
+                }
+                judge([&a, &b], [&path, &ConstantTwist::REST], (window, DVec3::ZERO, 200), &answer)
+                    .unwrap_or_else(|fault| panic!("{degree:?} {start} {raised:e}: {fault}"));
+            }
+        }
+    }
+}
+
+/// Two arms of up to six joints with piecewise quintic values, whose joints have times of their own.
+#[test]
+fn random_chains_of_piecewise_quintics() {
+    let (a, b) = (torus(12, 7, 0.4), torus(14, 8, 0.5));
+    let mut random = Random(73);
+    let options = QueryOptions::default().with_tolerance(DELTA);
+    let (mut hits, mut free) = (0, 0);
+    for round in 0..60 {
+        let start = [0.0, 1e5][round % 2];
+        let offset = [DVec3::ZERO, DVec3::new(1e6, -1e6, 1e6)][round / 2 % 2];
+        let mut arm = |base: DVec3, joints: usize| {
+            let mut chain = vec![joint(base, JointKind::Fixed)];
+            for k in 0..joints {
+                let value = quintic(&mut random, start);
+                let axis = random.vec();
+                let kind = if k % 3 == 2 {
+                    JointKind::Prismatic { axis, value }
+                } else {
+                    JointKind::Revolute { axis, value }
+                };
+                chain.push(joint(if k == 0 { DVec3::ZERO } else { DVec3::X * 0.5 }, kind));
+            }
+            Chain::try_new(chain).unwrap()
+        };
+        let (left, right) =
+            (arm(offset - DVec3::X, 1 + round % 6), arm(offset + DVec3::X, 1 + round / 6 % 3));
+        let window = Window::try_new(start, start + 1.0).unwrap();
+        if distance_at([&a, &b], [&left, &right], start, offset).0 < 1e-3 {
+            continue;
+        }
+        let answer = query([&a, &b], [&left, &right], window, &options);
+        if answer.contact().is_some() {
+            hits += 1
+        } else {
+            free += 1
+        }
+        judge([&a, &b], [&left, &right], (window, offset, 120), &answer)
+            .unwrap_or_else(|fault| panic!("round {round}: {fault}"));
+    }
+    assert!(hits > 8 && free > 8, "{hits} {free}");
+}
+
+/// A value with two continuous derivatives over three pieces of unlike lengths.
+fn quintic(random: &mut Random, start: f64) -> JointValue {
+    let inner = [0.3 + 0.25 * random.next(), 0.7 + 0.1 * random.next()];
+    let times = [0.0, inner[0], inner[1], 1.0];
+    // Value, slope and second derivative at the times.
+    let data: Vec<[f64; 3]> =
+        (0..4).map(|_| [1.2 * random.next(), 2.0 * random.next(), 6.0 * random.next()]).collect();
+    let pieces = (0..3).map(|k| {
+        let h = times[k + 1] - times[k];
+        let ([p, v, a], [q, w, b]) = (data[k], data[k + 1]);
+        let (d, e, f) = (q - p - v * h - 0.5 * a * h * h, (w - v - a * h) * h, (b - a) * h * h);
+        let (c3, c4, c5) =
+            (10.0 * d - 4.0 * e + 0.5 * f, -15.0 * d + 7.0 * e - f, 6.0 * d - 3.0 * e + 0.5 * f);
+        vec![p, v, 0.5 * a, c3 / h.powi(3), c4 / h.powi(4), c5 / h.powi(5)]
+    });
+    JointValue::try_pieces(times.map(|t| start + t).to_vec(), pieces.collect()).unwrap()
+}
