@@ -23,6 +23,11 @@ impl Allowance {
         Self { steps: None, deadline: None, until_look: STEPS_A_LOOK }
     }
 
+    /// Any number of steps until a time.
+    pub(crate) const fn until(deadline: Option<Instant>) -> Self {
+        Self { steps: None, deadline, until_look: STEPS_A_LOOK }
+    }
+
     /// Of a query that begins now. A time that the clock cannot count is no limit.
     pub(crate) fn new(budget: &Budget) -> Self {
         let deadline = budget.wall_clock.and_then(|time| Instant::now().checked_add(time));
@@ -39,8 +44,9 @@ impl Allowance {
         if self.until_look == 0 { self.look() } else { Ok(()) }
     }
 
+    /// Reads the clock.
     #[cold]
-    fn look(&mut self) -> Result<(), Exhausted> {
+    pub(crate) fn look(&mut self) -> Result<(), Exhausted> {
         self.until_look = STEPS_A_LOOK;
         match self.deadline {
             Some(deadline) if Instant::now() >= deadline => Err(Exhausted),

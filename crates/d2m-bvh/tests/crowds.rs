@@ -1,7 +1,7 @@
 //! Many pairs of triangles that come together at the same time: the work does not grow with their number.
 
 use d2m_bvh::{
-    Budget, MeshTree, Moving, QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window,
+    Budget, MeshTree, Mode, Moving, QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window,
     last_search_counts, time_of_contact,
 };
 use d2m_motion::ConstantTwist;
@@ -80,6 +80,40 @@ fn fans_meet_at_their_apexes() {
         let touching = query(&a, &b, &ConstantTwist::REST, &options);
         assert_eq!(touching.contact().unwrap().start, StartState::Touching);
         assert!(last_search_counts().node_tests < 2000);
+    }
+}
+
+/// One apex passes above the other: all pairs come near at the same time and none meets. Only the plane between the two
+/// crowds tells, over the whole span.
+#[test]
+fn fans_pass_each_other() {
+    for n in [400, 1500] {
+        let (a, b) = (cone(n, 1.0), cone(n, -1.0));
+        for gap in [1e-3, 1e-6, 1e-8] {
+            let place = DVec3::new(-0.5, 0.0, gap);
+            let passing = ConstantTwist::REST.with_position(place).with_linear_velocity(DVec3::X);
+            for mode in [Mode::Accurate, Mode::Exists, Mode::Capoeira] {
+                let answer = query(&a, &b, &passing, &QueryOptions::default().with_mode(mode));
+                let work = last_search_counts();
+                if mode != Mode::Capoeira {
+                    assert!(answer.is_separated(), "{n} {gap} {mode:?} {answer:?} {work:?}");
+                }
+                assert!(work.node_tests + work.triangle_looks + work.swept_pairs < MOST_WORK, "{work:?}");
+            }
+        }
+    }
+}
+
+/// An early stop in a crowd: the search follows one pair instead of all that may come first.
+#[test]
+fn crowds_stop_early() {
+    let options = QueryOptions::default().with_mode(Mode::Capoeira);
+    for n in [400, 1500] {
+        let (a, b) = (cone(n, 1.0), cone(n, -1.0));
+        let answer = query(&a, &b, &falling(DVec3::Z * 0.5), &options);
+        let (contact, work) = (answer.contact().unwrap(), last_search_counts());
+        assert!(contact.time_lo <= 0.5, "{contact:?}");
+        assert!(work.node_tests + work.triangle_looks < 10_000, "{work:?}");
     }
 }
 

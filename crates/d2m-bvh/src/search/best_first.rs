@@ -164,6 +164,7 @@ impl Search<'_> {
         let limits = SkipLimits {
             least_gain: self.scene.longest.min(self.scene.end - now),
             most_work: self.work() + FIRST_SWEEP,
+            deadline: self.limits.deadline,
             witnesses: self.scratch.last_looked_at,
         };
         let mut skip = swept_clear_until(self.scene, now, &limits, direction);

@@ -12,11 +12,12 @@
 //! See docs/theory/engine.md, "Crowds".
 
 use super::motion::frame::Frame;
+use super::nearest_point::Simplex;
 use super::queue::{Bucket, Item};
 use super::scene::SceneBody;
 use super::state::{BATCH, Search, State};
 use super::triangle_pair::separating_axis::place_a;
-use crate::Mode;
+use crate::allowance::Allowance;
 use crate::lanes::Lanes;
 use crate::lanes::Quad;
 use crate::tree::node::{Below, WIDTH};
@@ -32,7 +33,7 @@ const VERTICES_A_PAIR: usize = 2;
 /// Most vertices that are compared for one plane, all directions together: less than a millisecond of work.
 const MOST_COMPARED: u64 = 1 << 18;
 /// Directions that are tried for one plane, from each of the two that it begins with, at least and at most.
-const DIRECTIONS: (u64, u64) = (2, 16);
+const DIRECTIONS: (u64, u64) = (8, 32);
 /// Vertices that are compared along one direction in the time of one node test.
 const VERTICES_A_TEST: u64 = 16;
 /// Part of the tolerance above the wanted separation that a plane leaves at least.
@@ -65,7 +66,7 @@ impl Search<'_> {
     ) {
         let waiting = self.scratch.queue.len();
         let crowded = waiting >= patience.pairs || batches >= patience.batches;
-        if !crowded || self.limits.mode == Mode::Capoeira {
+        if !crowded {
             return;
         }
         *patience = Patience {
@@ -81,7 +82,8 @@ impl Search<'_> {
             }
         }
         let most = VERTICES_A_PAIR * waiting.max(BATCH * batches as usize);
-        let Some(group) = self.group(state, batch.items(), most) else { return };
+        let mut clock = Allowance::until(self.limits.deadline);
+        let Some(group) = self.group(state, batch.items(), most, &mut clock) else { return };
         let frame = match state.found {
             Some(_) => state.behind.reversed,
             None => state.motion.frame::<L::Doubles>(known),
@@ -96,15 +98,24 @@ impl Search<'_> {
         let need = needs(level, scale.acceleration, span);
         let moving = Moving::new(&group, &frame, span);
         let starts = [state.behind.direction, moving.between()].map(DVec3::normalize_or_zero);
-        if starts.into_iter().any(|first| moving.are_separated(first, need, directions)) {
-            self.scratch.queue.clear();
-            batch.retain(|_| false);
-            return;
+        let mut tried = starts.to_vec();
+        for first in starts {
+            match moving.separation(first, need, (directions, &mut clock)) {
+                Separation::Proven => {
+                    self.scratch.queue.clear();
+                    batch.retain(|_| false);
+                    return;
+                }
+                Separation::Unknown { last } => tried.push(last),
+            }
         }
-        for n in starts.into_iter().filter(|&n| n != DVec3::ZERO) {
+        for n in tried.into_iter().filter(|&n| n != DVec3::ZERO) {
             let [mut a, mut b] = [(&self.scene.a, true), (&self.scene.b, false)]
                 .map(|(body, is_a)| Reaches::new(body, &frame, (is_a, span), n));
             for item in self.scratch.queue.items().chain(batch.items()) {
+                if clock.step().is_err() {
+                    return;
+                }
                 a.measure(item.boxes[0]);
                 b.measure(item.boxes[1]);
             }
@@ -134,13 +145,20 @@ impl Search<'_> {
         self.advance::<L>(state, item, true);
     }
 
-    /// The vertices below all pairs that wait, relative to the trees' centers; none if they are too many.
-    fn group(&self, state: &State<'_>, batch: &[Item], most: usize) -> Option<[Vec<DVec3>; 2]> {
+    /// The vertices below all pairs that wait, relative to the trees' centers; none if they are too many, or the time is
+    /// over.
+    fn group(
+        &self,
+        state: &State<'_>,
+        batch: &[Item],
+        most: usize,
+        clock: &mut Allowance,
+    ) -> Option<[Vec<DVec3>; 2]> {
         let mut bodies = [&self.scene.a, &self.scene.b].map(Group::new);
         for item in self.scratch.queue.items().chain(batch) {
             if item.key < state.limit {
                 for (body, &index) in bodies.iter_mut().zip(&item.boxes) {
-                    body.add(index, most)?;
+                    body.add(index, most, clock)?;
                 }
             }
         }
@@ -156,25 +174,36 @@ fn needs(level: f64, acceleration: f64, span: f64) -> [f64; 2] {
 /// The vertices below some boxes of a body.
 struct Group<'a> {
     body: &'a SceneBody<'a>,
-    /// Which boxes were added.
+    /// Which boxes and which vertices were added.
     seen: Vec<bool>,
+    seen_vertices: Vec<bool>,
     points: Vec<DVec3>,
 }
 
 impl<'a> Group<'a> {
     fn new(body: &'a SceneBody<'a>) -> Self {
-        Self { body, seen: vec![false; WIDTH * body.tree.nodes.len()], points: Vec::new() }
+        let seen = vec![false; WIDTH * body.tree.nodes.len()];
+        let seen_vertices = vec![false; body.tree.mesh.vertices().len()];
+        Self { body, seen, seen_vertices, points: Vec::new() }
     }
 
-    /// `None`: too many.
-    fn add(&mut self, index: u32, most: usize) -> Option<()> {
+    /// `None`: too many, or the time is over.
+    fn add(&mut self, index: u32, most: usize, clock: &mut Allowance) -> Option<()> {
         let mut stack = vec![index as usize];
         while let Some(index) = stack.pop() {
             if core::mem::replace(&mut self.seen[index], true) {
                 continue;
             }
+            clock.step().ok()?;
             match self.body.tree.nodes[index / WIDTH].below(index % WIDTH) {
-                Below::Triangle(triangle) => self.points.extend(self.body.corners(triangle)),
+                Below::Triangle(triangle) => {
+                    for vertex in self.body.tree.mesh.triangles()[triangle as usize] {
+                        if !core::mem::replace(&mut self.seen_vertices[vertex as usize], true) {
+                            self.points
+                                .push(self.body.place(self.body.tree.mesh.vertices()[vertex as usize]));
+                        }
+                    }
+                }
                 Below::Node(node) => {
                     let used = self.body.tree.nodes[node as usize].used as usize;
                     stack.extend((0..used.min(WIDTH)).map(|lane| node as usize * WIDTH + lane));
@@ -261,9 +290,20 @@ struct Gap {
     line: DVec3,
 }
 
+/// Whether a plane parts two sets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Separation {
+    Proven,
+    /// None was found; the normal that was tried last, zero if there is none.
+    Unknown {
+        last: DVec3,
+    },
+}
+
 impl Moving {
     fn new([a, b]: &[Vec<DVec3>; 2], frame: &Frame, span: f64) -> Self {
-        let a: Vec<DVec3> = a.chunks(3).flat_map(|t| place_a::<Quad>(frame, &[t[0], t[1], t[2]])).collect();
+        let place = |p: &DVec3| place_a::<Quad>(frame, &[*p; 3])[0];
+        let a: Vec<DVec3> = a.iter().map(place).collect();
         let later_a = a.iter().map(|&p| p + rate(frame, true, p) * span).collect();
         let later_b = b.iter().map(|&p| p + rate(frame, false, p) * span).collect();
         Self { ends: [[a, b.clone()], [later_a, later_b]] }
@@ -275,21 +315,39 @@ impl Moving {
         self.ends.iter().map(|[a, b]| mean(b) - mean(a)).sum()
     }
 
-    /// Is there a direction along which the points of A are below those of B by more than `need` at both ends? Tries
-    /// the direction `n`, which is turned towards what it does not separate (Rosenblatt's perceptron).
-    fn are_separated(&self, mut n: DVec3, need: [f64; 2], directions: u64) -> bool {
+    /// Is there a direction along which the points of A are below those of B by more than `need` at both ends? Begins with
+    /// the direction `n` and goes on to the nearest point of the hull of all differences of B's points and A's, those at
+    /// the second end less what is needed there in addition: that is the direction of the widest gap.
+    fn separation(
+        &self,
+        mut n: DVec3,
+        need: [f64; 2],
+        (directions, clock): (u64, &mut Allowance),
+    ) -> Separation {
+        let mut simplex: Option<Simplex> = None;
         for _ in 0..directions {
+            if clock.look().is_err() {
+                break;
+            }
             let length = n.length();
             // Also when something is not a number.
             let enough = |gap: Gap, need: f64| length > 0.0 && gap.along > need * length;
             let [now, later] = [0, 1].map(|end| self.gap(end, n));
             if enough(now, need[0]) && enough(later, need[1]) {
-                return true;
+                return Separation::Proven;
             }
-            let worse = if enough(now, need[0]) { later } else { now };
-            n = (n + worse.line.normalize_or_zero()).normalize_or_zero();
+            let later = later.line - n * (need[1] - need[0]);
+            let worse = if n.dot(later) < n.dot(now.line) { later } else { now.line };
+            let Some(next) = simplex.map_or(Some(Simplex::new(worse)), |simplex| simplex.with(worse)) else {
+                break;
+            };
+            simplex = Some(next);
+            n = next.nearest().normalize_or_zero();
+            if n == DVec3::ZERO {
+                break;
+            }
         }
-        false
+        Separation::Unknown { last: n }
     }
 
     fn gap(&self, end: usize, n: DVec3) -> Gap {
@@ -343,7 +401,7 @@ mod tests {
             let span = scene.longest * (0.6 + 0.4 * random.next());
             let group = [&scene.a, &scene.b].map(|body| {
                 let mut group = Group::new(body);
-                group.add(0, 100).unwrap();
+                group.add(0, 100, &mut Allowance::unlimited()).unwrap();
                 group.points
             });
             let moving = Moving::new(&group, &frame, span);
@@ -360,7 +418,9 @@ mod tests {
             for level in gaps.into_iter().flat_map(|gap| [0.999, 0.9, 0.7].map(|part| part * gap)) {
                 let need = needs(level, scene.pair.acceleration, span);
                 for (k, need) in [need, [need[0], f64::NEG_INFINITY], [level; 2]].into_iter().enumerate() {
-                    if level > 0.0 && moving.are_separated(n, need, 1) {
+                    if level > 0.0
+                        && moving.separation(n, need, (1, &mut Allowance::unlimited())) == Separation::Proven
+                    {
                         parted[k] += 1;
                         wrong[k] += u32::from(least < level - 2.0 * scene.pair.error);
                     }
@@ -382,7 +442,7 @@ mod tests {
         for n in [DVec3::X, random.vec().normalize(), random.vec().normalize()] {
             let points = [&scene.a, &scene.b].map(|body| {
                 let mut group = Group::new(body);
-                group.add(0, 100).unwrap();
+                group.add(0, 100, &mut Allowance::unlimited()).unwrap();
                 group.points
             });
             let moving = Moving::new(&points, &frame, 0.25);

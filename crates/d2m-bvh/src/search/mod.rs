@@ -3,6 +3,7 @@
 mod best_first;
 mod crowd;
 pub(crate) mod motion;
+mod nearest_point;
 mod node_pair;
 mod over_time;
 mod pairs;

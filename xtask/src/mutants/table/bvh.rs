@@ -274,6 +274,13 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/tests/engine.rs::separation_at_lo_is_what_is_promised_and_nothing_touches_before",
     ),
     patch(
+        "attempts to skip time have no deadline",
+        "crates/d2m-bvh/src/allowance.rs",
+        "Self { steps: None, deadline, until_look: STEPS_A_LOOK }",
+        "Self { steps: None, deadline: deadline.and(None), until_look: STEPS_A_LOOK }",
+        "crates/d2m-bvh/src/search/skip/screw_search.rs::attempts_end_with_their_time",
+    ),
+    patch(
         "balls are called apart at the start when they are not",
         "crates/d2m-bvh/src/search/scene.rs",
         "self.track.at(0.0).length() > self.reach + BALL_ERROR * self.size",

@@ -10,6 +10,7 @@ mod swept_body;
 pub(crate) mod swept_volume;
 
 use crate::tree::margin::DOWN;
+use std::time::Instant;
 
 /// What a skip must give, and what it may cost.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +19,8 @@ pub(crate) struct SkipLimits {
     pub(crate) least_gain: f64,
     /// Pairs that may be tested.
     pub(crate) most_work: u64,
+    /// The attempt fails when this time has come.
+    pub(crate) deadline: Option<Instant>,
     /// Triangles of A and of B that may be the reason for gaining too little: they are tested first.
     pub(crate) witnesses: [u32; 2],
 }

@@ -4,6 +4,7 @@ use super::axis_distance::distance_in_plane;
 use super::projection::{Piece, ProjectedVertex, Range, angle};
 use super::projection_tree::ProjectionTree;
 use super::screw::Screw;
+use crate::allowance::{Allowance, Exhausted};
 use crate::tree::margin::UP;
 use glam::DVec3;
 use std::collections::HashMap;
@@ -26,9 +27,18 @@ pub(super) struct BodyProjections {
 
 impl BodyProjections {
     /// Of triangles, given by the numbers of their vertices. `places`: the vertices, seen from the axis.
-    pub(super) fn new(screw: &Screw, places: &[DVec3], triangles: impl Iterator<Item = [u32; 3]>) -> Self {
+    pub(super) fn try_new(
+        screw: &Screw,
+        places: &[DVec3],
+        triangles: &[[u32; 3]],
+        clock: &mut Allowance,
+    ) -> Result<Self, Exhausted> {
         let farthest = places.iter().map(|p| p.truncate().length_squared()).fold(0.0, f64::max).sqrt();
-        let angles: Vec<f64> = places.iter().map(|p| angle(p.y, p.x)).collect();
+        let angle_of = |p: &DVec3| {
+            clock.step()?;
+            Ok(angle(p.y, p.x))
+        };
+        let angles = places.iter().map(angle_of).collect::<Result<Vec<f64>, _>>()?;
         let mut orbits = Orbits {
             screw,
             farthest,
@@ -39,6 +49,7 @@ impl BodyProjections {
         };
         let mut without_angles = Vec::new();
         for triangle in triangles {
+            clock.step()?;
             let vertices = triangle.map(|v| ProjectedVertex::new(places[v as usize]));
             let near = distance_in_plane(&vertices.map(|vertex| vertex.at.with_z(0.0)), DVec3::Z);
             let far = vertices.iter().map(|vertex| vertex.rho).fold(0.0, f64::max);
@@ -61,10 +72,10 @@ impl BodyProjections {
                 orbits.push(piece, [0.0; 2]);
             }
         }
-        Self {
-            with_angles: ProjectionTree::new(orbits.pieces, screw.h),
-            without_angles: ProjectionTree::new(without_angles, screw.h),
-        }
+        Ok(Self {
+            with_angles: ProjectionTree::try_new(orbits.pieces, screw.h, clock)?,
+            without_angles: ProjectionTree::try_new(without_angles, screw.h, clock)?,
+        })
     }
 }
 

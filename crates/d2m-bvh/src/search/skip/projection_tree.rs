@@ -1,9 +1,44 @@
 //! A binary tree over the projection of a body.
 
 use super::projection::{Piece, Projection};
+use crate::allowance::{Allowance, Exhausted};
 
 /// Times that a triangle may be divided by four.
 const MOST_DIVISIONS: u8 = 7;
+
+/// As many parts are divided at their median in less than a millisecond.
+const MOST_SELECTED: usize = 1 << 14;
+/// Of more parts, so many have their median taken; each half gets at least one part in [`LEAST_HALF`] of them.
+const SAMPLE: usize = 63;
+const LEAST_HALF: usize = 16;
+
+/// Divides parts by their middles along a dimension; the number of those in the first half, which are not beyond the others.
+fn divide(
+    parts: &mut [(Projection, u32)],
+    dimension: usize,
+    clock: &mut Allowance,
+) -> Result<usize, Exhausted> {
+    let middle = |part: &(Projection, u32)| part.0.middle(dimension);
+    if parts.len() > MOST_SELECTED {
+        let mut sample: [f64; SAMPLE] =
+            std::array::from_fn(|k| middle(&parts[(2 * k + 1) * parts.len() / (2 * SAMPLE)]));
+        sample.sort_unstable_by(f64::total_cmp);
+        let mut below = 0;
+        for k in 0..parts.len() {
+            clock.step()?;
+            if middle(&parts[k]) < sample[SAMPLE / 2] {
+                parts.swap(below, k);
+                below += 1;
+            }
+        }
+        if below.min(parts.len() - below) > parts.len() / LEAST_HALF {
+            return Ok(below);
+        }
+    }
+    let half = parts.len() / 2;
+    parts.select_nth_unstable_by(half, |p, q| middle(p).total_cmp(&middle(q)));
+    Ok(half)
+}
 
 /// A part of a body: several triangles, one, or a part of one.
 #[derive(Clone, Copy, Debug)]
@@ -25,32 +60,40 @@ pub(super) struct ProjectionTree {
 
 impl ProjectionTree {
     /// Of some pieces, on a screw with φ = z − hθ.
-    pub(super) fn new(pieces: Vec<Piece>, h: f64) -> Self {
+    pub(super) fn try_new(pieces: Vec<Piece>, h: f64, clock: &mut Allowance) -> Result<Self, Exhausted> {
         let mut parts: Vec<(Projection, u32)> = pieces.iter().map(Piece::projection).zip(0..).collect();
         let mut tree = Self { cells: Vec::with_capacity(4 * parts.len()), pieces, h };
         if let Some(&(projection, piece)) = parts.first() {
             tree.cells.push(Cell { projection, piece: Some(piece), below: (0, 0) });
-            tree.split(0, &mut parts);
+            tree.split(0, &mut parts, clock)?;
         }
-        tree
+        Ok(tree)
     }
 
-    fn split(&mut self, cell: usize, parts: &mut [(Projection, u32)]) {
-        let projection = parts[1..].iter().fold(parts[0].0, |all, part| all.with(&part.0));
+    fn split(
+        &mut self,
+        cell: usize,
+        parts: &mut [(Projection, u32)],
+        clock: &mut Allowance,
+    ) -> Result<(), Exhausted> {
+        let mut projection = parts[0].0;
+        for part in parts.iter() {
+            clock.step()?;
+            projection = projection.with(&part.0);
+        }
         if parts.len() == 1 {
             self.cells[cell] = Cell { projection, piece: Some(parts[0].1), below: (0, 0) };
-            return;
+            return Ok(());
         }
         let extents = projection.extents();
         let dimension = (0..3).max_by(|&i, &j| extents[i].total_cmp(&extents[j])).unwrap_or(0);
-        let half = parts.len() / 2;
-        parts.select_nth_unstable_by(half, |p, q| p.0.middle(dimension).total_cmp(&q.0.middle(dimension)));
+        let half = divide(parts, dimension, clock)?;
         let first = self.cells.len();
         self.cells[cell] = Cell { projection, piece: None, below: (first as u32, 2) };
         self.cells.extend([self.cells[cell]; 2]);
         let (left, right) = parts.split_at_mut(half);
-        self.split(first, left);
-        self.split(first + 1, right);
+        self.split(first, left, clock)?;
+        self.split(first + 1, right, clock)
     }
 
     /// The piece that a cell is.

@@ -11,6 +11,7 @@ use super::projection::{Axes, DIRECTIONS, Range};
 use super::projection_tree::ProjectionTree;
 use super::screw::Screw;
 use super::{Skip, SkipLimits, later_offset};
+use crate::allowance::Allowance;
 use crate::search::scene::Scene;
 use crate::tree::margin::{UNIT_F64, UP};
 use glam::DVec3;
@@ -38,6 +39,7 @@ struct Walk<'s> {
     clear: f64,
     gain: f64,
     left: u64,
+    clock: Allowance,
 }
 
 /// Until when the projections of the bodies stay further apart than the level, from `start` on.
@@ -66,24 +68,28 @@ fn clear_along(screw: &Screw, scene: &Scene<'_>, start: f64, limits: &SkipLimits
         clear: length,
         gain: limits.least_gain,
         left: limits.most_work,
+        clock: Allowance::until(limits.deadline),
     };
     let places = screw.places(scene, start);
     let probe = [0, 1].map(|body| {
         let corners = bodies[body].corners(limits.witnesses[body]).map(&places[body]);
-        BodyProjections::new(screw, &corners, std::iter::once([0, 1, 2]))
+        BodyProjections::try_new(screw, &corners, &[[0, 1, 2]], &mut walk.clock)
     });
-    if !walk.compare(probe) {
+    let [Ok(a), Ok(b)] = probe else { return Skip { clear_until: None, work: 0 } };
+    if !walk.compare([a, b]) {
         return Skip { clear_until: None, work: limits.most_work - walk.left };
     }
     let whole = [0, 1].map(|body| {
         let mesh = &bodies[body].tree.mesh;
         let vertices: Vec<DVec3> =
             mesh.vertices().iter().map(|&p| places[body](bodies[body].place(p))).collect();
-        BodyProjections::new(screw, &vertices, mesh.triangles().iter().copied())
+        BodyProjections::try_new(screw, &vertices, mesh.triangles(), &mut walk.clock)
     });
     // What the projections themselves cost counts as well.
-    let apart = walk.compare(whole);
-    let work = limits.most_work - walk.left + triangle_count(scene) as u64 / 2;
+    let projected = triangle_count(scene) as u64 / 2;
+    let [Ok(a), Ok(b)] = whole else { return Skip { clear_until: None, work: projected } };
+    let apart = walk.compare([a, b]);
+    let work = limits.most_work - walk.left + projected;
     let clear_until = if apart { later_offset(start, walk.clear, walk.length, scene.end) } else { None };
     Skip { clear_until, work }
 }
@@ -128,7 +134,7 @@ impl Walk<'_> {
 
     /// Lowers `clear` to what the pair allows; false when the walk is to end.
     fn visit(&mut self, [a, b]: [&mut ProjectionTree; 2], cells: [usize; 2]) -> bool {
-        if self.left == 0 {
+        if self.left == 0 || self.clock.step().is_err() {
             return false;
         }
         self.left -= 1;
@@ -215,12 +221,14 @@ impl Walk<'_> {
 mod tests {
     use super::*;
     use crate::search::motion::local_motion::LocalMotion;
+    use crate::search::skip::swept_volume::swept_clear_until;
     use crate::{MeshTree, QueryOptions, TriMesh, Window};
     use d2m_feature::triangle_distance;
     use d2m_motion::ConstantTwist;
     use glam::DQuat;
 
-    const LIMITS: SkipLimits = SkipLimits { least_gain: 0.0, most_work: 1 << 13, witnesses: [0, 0] };
+    const LIMITS: SkipLimits =
+        SkipLimits { least_gain: 0.0, most_work: 1 << 13, deadline: None, witnesses: [0, 0] };
 
     /// Random triangles, one a body, on random screws about z, some with a drift: the least distance at times called
     /// clear over the level, and how many were called clear for some time.
@@ -305,5 +313,35 @@ mod tests {
         assert!(least_ratio(2400, |screw| screw.h *= 0.9).0 < 0.99, "another pitch");
         assert!(least_ratio(2400, |screw| screw.drift = 0.0).0 < 0.99, "no drift");
         assert!(least_ratio(2400, |screw| screw.climb *= 0.5).0 < 0.99, "half of the climb");
+    }
+
+    /// An attempt ends when its time has come, wherever it is: at the first reading of the clock, after 64 steps.
+    #[test]
+    fn attempts_end_with_their_time() {
+        let ring = |n: u32| {
+            let vertices = (0..2 * n).map(|k| {
+                let angle = f64::from(k / 2) * 0.01;
+                DVec3::new(angle.cos(), angle.sin(), f64::from(k % 2))
+            });
+            let triangles = (0..2 * n - 2).map(|k| [k, k + 1, k + 2]).collect();
+            MeshTree::new(TriMesh::try_new(vertices.collect(), triangles).unwrap())
+        };
+        let (a, b) = (ring(500), ring(500));
+        let spin = |speed: f64| ConstantTwist::REST.with_angular_velocity(DVec3::Z * speed);
+        let far = spin(3.0).with_position(DVec3::Z * 1.5);
+        let scene = Scene::new((&a, far), (&b, spin(0.0)), Window::UNIT, &QueryOptions::default());
+        let now = std::time::Instant::now();
+        for (deadline, ends) in [(None, false), (Some(now), true)] {
+            let limits = SkipLimits { deadline, ..LIMITS };
+            let skip = screw_clear_until(&scene, 0.0, &limits);
+            assert_eq!(skip.clear_until.is_none(), ends, "{skip:?}");
+            let skip = swept_clear_until(&scene, 0.0, &limits, DVec3::Y);
+            assert_eq!(skip.clear_until.is_none(), ends, "{skip:?}");
+            let screw = Screw::new(&scene, 0.0).unwrap();
+            let mut clock = Allowance::until(deadline);
+            let (places, triangles) = (a.mesh().vertices(), a.mesh().triangles());
+            let projected = BodyProjections::try_new(&screw, places, triangles, &mut clock);
+            assert_eq!(projected.is_err(), ends);
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! What a part of a body sweeps out while the body turns about its axis, whatever the angle: its points stay on circles.
 
 use super::axis_distance::{distance_in_plane, distance_squared_in_plane};
+use crate::allowance::{Allowance, Exhausted};
 use crate::search::scene::SceneBody;
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::{Below, WIDTH};
@@ -94,30 +95,38 @@ impl<'a> SweptBody<'a> {
     }
 
     /// Fills in the annuli of all boxes.
-    pub(super) fn measure(&mut self) {
+    pub(super) fn measure(&mut self, clock: &mut Allowance) -> Result<(), Exhausted> {
         let (to_axis, tree) = (self.to_axis_coordinates(), self.body.tree);
-        let vertices = tree.mesh.vertices();
-        let places: Vec<DVec3> =
-            vertices.iter().map(|&p| to_axis(self.turn(self.body.place(p)) + self.arm)).collect();
+        let place = |&p: &DVec3| {
+            clock.step()?;
+            Ok(to_axis(self.turn(self.body.place(p)) + self.arm))
+        };
+        let places = tree.mesh.vertices().iter().map(place).collect::<Result<Vec<DVec3>, _>>()?;
         self.annuli = vec![AnnularBound::NONE; tree.nodes.len() * WIDTH];
-        self.measure_node(0, &places);
+        self.measure_node(0, &places, clock).map(|_| ())
     }
 
-    fn measure_node(&mut self, node: usize, places: &[DVec3]) -> AnnularBound {
+    fn measure_node(
+        &mut self,
+        node: usize,
+        places: &[DVec3],
+        clock: &mut Allowance,
+    ) -> Result<AnnularBound, Exhausted> {
         let mut all = AnnularBound::NONE;
         let tree = self.body.tree;
         for lane in 0..tree.nodes[node].used as usize {
+            clock.step()?;
             let annulus = match tree.nodes[node].below(lane) {
                 Below::Triangle(triangle) => {
                     let corners = tree.mesh.triangles()[triangle as usize];
                     AnnularBound::of(&corners.map(|vertex| places[vertex as usize]), self.spins)
                 }
-                Below::Node(below) => self.measure_node(below as usize, places),
+                Below::Node(below) => self.measure_node(below as usize, places, clock)?,
             };
             self.annuli[node * WIDTH + lane] = annulus;
             all = all.with(annulus);
         }
-        all
+        Ok(all)
     }
 
     /// A triangle whatever box holds it.

@@ -10,6 +10,7 @@
 
 use super::swept_body::{Distances, SweptBody, SweptPart};
 use super::{Skip, SkipLimits, later_offset};
+use crate::allowance::Allowance;
 use crate::search::scene::Scene;
 use crate::tree::margin::{UNIT_F64, UP};
 use crate::tree::node::{Below, WIDTH};
@@ -56,8 +57,11 @@ pub(crate) fn swept_clear_until(
     if sweep.clear_for(&a, &b).is_none_or(|until| until < limits.least_gain) {
         return Skip { clear_until: None, work: 1 };
     }
-    sweep.bodies.iter_mut().for_each(SweptBody::measure);
-    let Earliest { clear, pairs } = sweep.earliest(limits);
+    let mut clock = Allowance::until(limits.deadline);
+    if sweep.bodies.iter_mut().any(|body| body.measure(&mut clock).is_err()) {
+        return Skip { clear_until: None, work: 1 };
+    }
+    let Earliest { clear, pairs } = sweep.earliest(limits, &mut clock);
     let clear_until = clear.and_then(|clear| later_offset(start, clear, sweep.length, end));
     Skip { clear_until, work: pairs }
 }
@@ -69,7 +73,7 @@ struct Earliest {
 }
 
 impl Sweep<'_> {
-    fn earliest(&self, limits: &SkipLimits) -> Earliest {
+    fn earliest(&self, limits: &SkipLimits, clock: &mut Allowance) -> Earliest {
         let (mut clear, mut pairs) = (self.length, 0);
         let mut stack = vec![(0u32, 0u32)];
         while let Some((a, b)) = stack.pop() {
@@ -91,7 +95,7 @@ impl Sweep<'_> {
                 (Below::Triangle(_), Below::Node(_)) => false,
                 (Below::Node(_), Below::Node(_)) => part_a.size() > part_b.size(),
             };
-            if pairs >= limits.most_work {
+            if pairs >= limits.most_work || clock.step().is_err() {
                 return Earliest { clear: None, pairs };
             }
             let below = |part: &SweptPart<'_>| {
@@ -194,7 +198,7 @@ mod tests {
     fn clear(a: (&MeshTree, ConstantTwist), b: (&MeshTree, ConstantTwist), direction: DVec3) -> f64 {
         let options = QueryOptions::default().with_tolerance(1e-10);
         let scene = Scene::new(a, b, Window::UNIT, &options);
-        let limits = SkipLimits { least_gain: 0.0, most_work: 1 << 20, witnesses: [0, 0] };
+        let limits = SkipLimits { least_gain: 0.0, most_work: 1 << 20, deadline: None, witnesses: [0, 0] };
         swept_clear_until(&scene, 0.0, &limits, direction).clear_until.unwrap_or(0.0)
     }
 
