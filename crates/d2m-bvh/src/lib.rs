@@ -35,10 +35,12 @@ pub use posed::Posed;
 pub use query::last_search_counts;
 pub use query::{contact_exists, time_of_contact, time_of_contact_batch, time_of_contact_with};
 pub use resting::collide::{collide, collide_within, colliding_pairs, try_colliding_pair};
-pub use resting::distance::{Distance, DistanceOptions, distance, distance_within};
+pub use resting::distance::{
+    Distance, DistanceBounds, DistanceOptions, bound_distance, distance, distance_within,
+};
 pub use resting::parts::{MeshPart, MeshParts};
 pub use resting::proximities::{
-    Proximity, ProximityOptions, proximities, proximities_with, reduce_proximities,
+    Proximity, ProximityOptions, proximities, proximities_with, proximities_within, reduce_proximities,
 };
 #[doc(hidden)]
 pub use search::SearchCounts;

@@ -112,11 +112,6 @@ pub fn colliding_pairs(a: Posed<'_>, b: Posed<'_>) -> Result<Vec<[u32; 2]>, Quer
 
 /// The first pair of triangles, in the order of the trees, that cross as they are placed. Which one it is depends on the bodies
 /// and poses only.
-pub(crate) fn crossing_pair(scene: &Scene<'_>) -> Option<[u32; 2]> {
-    search_all(scene, Wanted { most: 1, counts: cross }).first().copied()
-}
-
-/// The same within an allowance.
 pub(crate) fn crossing_pair_within(
     scene: &Scene<'_>,
     allowance: &mut Allowance,

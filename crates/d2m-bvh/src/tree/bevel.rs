@@ -6,6 +6,7 @@
 //! 18-DOP (Klosowski et al. 1998, DOI 10.1109/2945.675649).
 
 use super::margin::UNIT_F64;
+use crate::lanes::Bytes;
 
 /// The pairs of axes whose faces meet in edges.
 pub(crate) const PAIRS: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
@@ -86,4 +87,44 @@ impl EdgeReach {
         let all = bevels.iter().flatten().zip(room.iter().flatten());
         all.into_iter().all(|(&cut, room)| cut == 0 || f64::from(cut) <= room - ROOM_ERROR)
     }
+}
+
+/// How far boxes without their cut edges reach from their centers along directions that have these cosines with their axes,
+/// or along the opposite ones where `along` is negative: Σ |cᵢ|hᵢ is what their corners reach. Of uᵢ = |cᵢ|hᵢ any w with
+/// w ≤ uᵢ, w ≤ uⱼ can be written as w(σxᵢ/hᵢ + τxⱼ/hⱼ), which is at most w(2 − s). `USED`: how many pairs of axes are evaluated;
+/// the cuts between the faces of the first one are the deepest. Own roundings: at most 20u√(Σcᵢ²) of the radius.
+#[inline(always)]
+pub(crate) fn reach<T: Bytes, const USED: usize>(
+    half: &[T; 3],
+    bevels: &[T; 3],
+    cosines: &[T; 3],
+    along: T,
+) -> T {
+    let mut left = [half[0] * cosines[0].abs(), half[1] * cosines[1].abs(), half[2] * cosines[2].abs()];
+    let corner = left[0] + left[1] + left[2];
+    let mut steps = T::splat(0.0);
+    for pair in 0..USED {
+        let (i, j) = PAIRS[pair];
+        let common = left[i].min(left[j]);
+        (left[i], left[j]) = (left[i] - common, left[j] - common);
+        steps = steps + common * bevels[pair].byte_of(cosines[i], cosines[j], along);
+    }
+    corner - steps * T::splat(1.0 / STEPS)
+}
+
+/// The same for one box in twice the digits, along a direction and along the opposite one.
+#[inline(always)]
+pub(crate) fn reach_both_ways(half: &[f32; 3], bevels: &Bevels, cosines: [f64; 3]) -> [f64; 2] {
+    let size = |k: usize| cosines[k].abs() * f64::from(half[k]);
+    let mut left = [size(0), size(1), size(2)];
+    let corner = left[0] + left[1] + left[2];
+    let mut steps = [0.0; 2];
+    for (&(i, j), cuts) in PAIRS.iter().zip(bevels) {
+        let common = if left[i] < left[j] { left[i] } else { left[j] };
+        (left[i], left[j]) = (left[i] - common, left[j] - common);
+        let edge = usize::from(cosines[i] < 0.0) + 2 * usize::from(cosines[j] < 0.0);
+        steps[0] += common * f64::from(cuts[edge]);
+        steps[1] += common * f64::from(cuts[3 - edge]);
+    }
+    steps.map(|cut| corner - cut / f64::from(STEPS))
 }

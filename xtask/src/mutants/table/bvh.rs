@@ -62,9 +62,9 @@ pub(super) const MUTANTS: &[Mutant] = &[
     // Static queries.
     patch(
         "a triangle reaches less far along a direction than its corners",
-        "crates/d2m-bvh/src/resting/node_pair/node_test.rs",
-        "round_up((high - middle).max(middle - low));",
-        "round_up(0.5 * (high - middle).min(middle - low));",
+        "crates/d2m-bvh/src/resting/node_pair/placed_box.rs",
+        "[round_up((high - middle).max(middle - low)); 2];",
+        "[round_up(0.5 * (high - middle).min(middle - low)); 2];",
         "crates/d2m-bvh/tests/static_query.rs::random_solids_and_soups",
     ),
     // Proximities.
@@ -344,9 +344,9 @@ pub(super) const MUTANTS: &[Mutant] = &[
     // Static queries.
     patch(
         "the distance's lower bound is its upper bound",
-        "crates/d2m-bvh/src/resting/distance.rs",
-        "Found::Pair(Best { lower: lower * (1.0 - 2.0 * UNIT_F64), ..best })",
-        "Found::Pair(Best { lower: lower.max(best.distance.upper * 1.0001), ..best })",
+        "crates/d2m-bvh/src/resting/distance/search.rs",
+        "Best { lower: lower * (1.0 - 2.0 * UNIT_F64), ..best }",
+        "Best { lower: lower.max(best.distance.upper * 1.0001), ..best }",
         "crates/d2m-bvh/tests/static_query.rs::random_solids_and_soups",
     ),
     patch(
@@ -357,11 +357,46 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/tests/static_query.rs::random_solids_and_soups",
     ),
     patch(
-        "the crossing pair that was met first is told",
-        "crates/d2m-bvh/src/resting/distance.rs",
-        "=> Found::Pair(crossing(&scene, best)),",
-        "=> Found::Pair(best),",
+        "the crossing pair that was met first is reported",
+        "crates/d2m-bvh/src/resting/distance/mod.rs",
+        "if met.distance.upper > 0.0 {",
+        "if met.distance.upper >= 0.0 {",
         "crates/d2m-bvh/tests/static_query.rs::random_solids_and_soups",
+    ),
+    patch(
+        "edges are cut off on the wrong side of boxes",
+        "crates/d2m-bvh/src/tree/bevel.rs",
+        "steps[1] += common * f64::from(cuts[3 - edge]);",
+        "steps[1] += common * f64::from(cuts[edge]);",
+        "crates/d2m-bvh/src/resting/node_pair/tests.rs::bounds_of_boxes_are_below_distances_of_points_and_sometimes_close",
+    ),
+    patch(
+        "the other box reaches as far back as forth",
+        "crates/d2m-bvh/src/resting/node_pair/directions.rs",
+        "- single_reach(placed, axes, &other, L::splat(-1.0))",
+        "- single_reach(placed, axes, &other, L::splat(1.0))",
+        "crates/d2m-bvh/src/resting/node_pair/tests.rs::bounds_of_boxes_are_below_distances_of_points_and_sometimes_close",
+    ),
+    patch(
+        "a triangle is where its first corner is",
+        "crates/d2m-bvh/src/resting/node_pair/directions.rs",
+        "let most = dot(&n, &p).max(dot(&n, &q)).max(dot(&n, &r));",
+        "let most = dot(&n, &p);",
+        "crates/d2m-bvh/src/resting/node_pair/tests.rs::bounds_of_boxes_are_below_distances_of_points_and_sometimes_close",
+    ),
+    patch(
+        "a budget's lower bound is that of the closest pair so far",
+        "crates/d2m-bvh/src/resting/distance/search.rs",
+        "let least = queue.least_key().map_or(key, |other| other.min(key));",
+        "let least = closest.upper_key;",
+        "crates/d2m-bvh/src/resting/distance/tests.rs::budgets_end_in_bounds_that_hold",
+    ),
+    patch(
+        "a plane drops pairs that are closer",
+        "crates/d2m-bvh/src/resting/distance/crowd.rs",
+        "gap.is_nan() || gap <= need",
+        "gap.is_nan() || gap <= 0.5 * need",
+        "crates/d2m-bvh/src/resting/distance/tests.rs::planes_drop_no_closer_pair",
     ),
     // The reference method.
     patch(

@@ -1,7 +1,9 @@
 //! What the static queries share: the relative pose with its error, the test of a box against eight boxes, the
 //! constants of one query. The bounds are derived in docs/theory/static-queries.md.
 
+mod directions;
 mod node_test;
+mod placed_box;
 mod relative_pose;
 mod scene;
 #[cfg(test)]
@@ -9,5 +11,5 @@ pub(crate) mod tests;
 mod triangles;
 
 pub(crate) use relative_pose::RelativePose;
-pub(crate) use scene::{Scene, Step, child};
+pub(crate) use scene::{Direction, Scene, Step, child};
 pub(crate) use triangles::{gap_exceeds, proven_apart};

@@ -1,10 +1,12 @@
 //! Constants of one static query, and what its searches do at a pair of boxes.
 
 use super::RelativePose;
-use super::node_test::{Placed, Side, lower_bounds, overlaps};
+use super::node_test::{lower_bounds, overlaps};
+use super::placed_box::{Placed, Side};
 use crate::lanes::Lanes;
+use crate::tree::bevel::reach_both_ways;
 use crate::tree::margin::{UNIT_F32, UNIT_F64};
-use crate::tree::node::{Below, WIDTH};
+use crate::tree::node::{Below, OrientedBox, WIDTH};
 use crate::{MeshTree, Posed, QueryError};
 use glam::DVec3;
 
@@ -44,6 +46,27 @@ pub(crate) enum Step {
     Open(usize, u32),
     /// Compare two triangles.
     Compare([u32; 2]),
+}
+
+/// A direction of length at most one, in the axes of A and of B.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Direction {
+    axes: [DVec3; 2],
+    narrow: [[f32; 3]; 2],
+}
+
+/// Lower bounds on the distances of the boxes of one node.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NodeBounds {
+    lanes: [f32; WIDTH],
+    used: usize,
+}
+
+impl NodeBounds {
+    /// Of each lane that holds a box. What is not a number bounds nothing.
+    pub(crate) fn used(&self) -> &[f32] {
+        &self.lanes[..self.used]
+    }
 }
 
 impl<'a> Scene<'a> {
@@ -140,43 +163,85 @@ impl<'a> Scene<'a> {
     }
 
     #[inline(always)]
-    fn placed(&self, wide: usize, node: u32, single: u32) -> Placed {
-        let tree = self.trees[1 - wide];
-        let from = &tree.nodes[single as usize / WIDTH];
-        let boxed = from.oriented_box(single as usize % WIDTH);
-        Placed::new(&self.sides[wide], &boxed, from.origin, &self.trees[wide].nodes[node as usize])
+    fn placed(&self, wide: usize, node: u32, boxed: &OrientedBox, origin: [f32; 3]) -> Placed {
+        Placed::new(&self.sides[wide], boxed, origin, &self.trees[wide].nodes[node as usize])
     }
 
-    /// A direction (B's axes) in the axes of A and of B, shortened to a length of at most one.
-    pub(crate) fn directions(&self, n: DVec3) -> [[f32; 3]; 2] {
+    /// A box of one body, and the reference point of its center.
+    #[inline(always)]
+    fn single(&self, body: usize, index: u32) -> (OrientedBox, [f32; 3]) {
+        let from = &self.trees[body].nodes[index as usize / WIDTH];
+        (from.oriented_box(index as usize % WIDTH), from.origin)
+    }
+
+    /// A direction, given in B's axes.
+    pub(crate) fn direction(&self, n: DVec3) -> Direction {
         // Rounding to f32 adds at most √3·2⁻²⁴ to the length.
         let n = n.normalize_or_zero() * (1.0 - 4.0 * UNIT_F32);
         let r = &self.pose.rotation;
-        let narrow = |v: DVec3| [v.x as f32, v.y as f32, v.z as f32];
-        [narrow(DVec3::new(r[0].dot(n), r[1].dot(n), r[2].dot(n))), narrow(n)]
+        let axes = [DVec3::new(r[0].dot(n), r[1].dot(n), r[2].dot(n)), n];
+        Direction { axes, narrow: axes.map(|v| [v.x as f32, v.y as f32, v.z as f32]) }
     }
 
     /// Lower bounds on the distances of the boxes of a node of body `wide` from a box of the other body, working
-    /// units. Looks along the axes of both and along `along` (from [`Self::directions`]).
+    /// units. Evaluates the axes of both, `along`, and, where a bound is not above `enough`, the shortest ways between the boxes.
     #[inline(always)]
     pub(crate) fn bounds<L: Lanes>(
         &self,
-        wide: usize,
-        node: u32,
+        (wide, node): (usize, u32),
         single: u32,
-        along: &[[f32; 3]; 2],
-    ) -> ([f32; 8], usize) {
-        let placed = self.placed(wide, node, single);
+        along: &Direction,
+        enough: f32,
+    ) -> NodeBounds {
+        let (boxed, origin) = self.single(1 - wide, single);
+        let placed = self.placed(wide, node, &boxed, origin);
         let tree = self.trees[1 - wide];
         let placed = match tree.nodes[single as usize / WIDTH].below(single as usize % WIDTH) {
             Below::Triangle(triangle) => {
                 let corners = self.corners_in(wide, triangle, self.trees[wide].nodes[node as usize].origin);
-                placed.looking_at_triangle_along(along[wide], &corners)
+                placed.looking_at_triangle_along(along.narrow[wide], &corners)
             }
-            Below::Node(_) => placed.looking_along(along[wide]),
+            Below::Node(_) => placed.looking_along(along.narrow[wide], &boxed),
         };
         let node = &self.trees[wide].nodes[node as usize];
-        (lower_bounds::<L>(node, &placed, self.sides[wide].to_work), (node.used as usize).min(WIDTH))
+        let lanes = lower_bounds::<L>(node, &placed, self.sides[wide].to_work, enough);
+        NodeBounds { lanes, used: (node.used as usize).min(WIDTH) }
+    }
+
+    /// A lower bound on the distance of two boxes along one direction from A to B, working units; zero if they are not apart
+    /// along it.
+    #[inline(always)]
+    pub(crate) fn bound_along(&self, pair: [u32; 2], along: &Direction) -> f32 {
+        // The highest point of A along the direction, and the lowest one of B, each from its tree's center.
+        let high = self.span_along(0, pair[0], along.axes[0])[1];
+        let low = self.span_along(1, pair[1], along.axes[1])[0];
+        // Fewer than thirty operations with numbers of at most 2: 64v covers them.
+        let gap = low - high - along.axes[1].dot(self.offset) - 2.0 * self.error - 64.0 * UNIT_F64;
+        // Rounded down.
+        if gap > 0.0 { (gap * (1.0 - 2.0 * UNIT_F32)) as f32 } else { 0.0 }
+    }
+
+    /// What a box covers along a direction of its body's axes, from its tree's center, working units.
+    #[inline(always)]
+    fn span_along(&self, body: usize, index: u32, n: DVec3) -> [f64; 2] {
+        let tree = self.trees[body];
+        let node = &tree.nodes[index as usize / WIDTH];
+        if let Below::Triangle(triangle) = node.below(index as usize % WIDTH) {
+            let corners = tree.mesh().corners(triangle as usize);
+            let along = |corner: DVec3| n.dot((corner - tree.center()) * self.inverse_unit);
+            let [p, q, r] = [along(corners[0]), along(corners[1]), along(corners[2])];
+            return [p.min(q).min(r), p.max(q).max(r)];
+        }
+        let (boxed, origin) = self.single(body, index);
+        let dot = |v: [f32; 3]| n.x * f64::from(v[0]) + n.y * f64::from(v[1]) + n.z * f64::from(v[2]);
+        let [x, y, z] = boxed.axes;
+        let radius = f64::from(boxed.radius);
+        let [forth, back] = reach_both_ways(&boxed.half_extent, &boxed.bevels, [dot(x), dot(y), dot(z)]);
+        // The axes are orthonormal up to 5.2u.
+        let more = 6.0 * UNIT_F32 * radius;
+        let (forth, back) = (forth.min(radius) + more, back.min(radius) + more);
+        let (middle, unit) = (dot(origin) + dot(boxed.center), tree.unit() * self.inverse_unit);
+        [(middle - back) * unit, (middle + forth) * unit]
     }
 
     /// Corners of a triangle of the other body from the origin of a node of body `wide`, in its axes and unit.
@@ -195,7 +260,8 @@ impl<'a> Scene<'a> {
     /// Which boxes of a node of body `wide` are not proven apart from a box of the other body.
     #[inline(always)]
     pub(crate) fn overlaps<L: Lanes>(&self, wide: usize, node: u32, single: u32) -> u32 {
-        let placed = self.placed(wide, node, single);
+        let (boxed, origin) = self.single(1 - wide, single);
+        let placed = self.placed(wide, node, &boxed, origin);
         overlaps::<L>(&self.trees[wide].nodes[node as usize], &placed)
     }
 }

@@ -1,8 +1,10 @@
 //! The error bounds of the node test, and the same bits from every kind of lanes.
 
-use super::node_test::{Placed, Side, lower_bounds, margin_free_gaps};
+use super::node_test::{lower_bounds, margin_free_gaps};
+use super::placed_box::{Placed, Side};
 use crate::lanes::{InstructionSet, Lanes, Portable, Task, run, run_on};
 use crate::random::Random;
+use crate::tree::bevel::{MOST, PAIRS, STEPS};
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::{OrientedBox, WideNode};
 use glam::{DMat3, DQuat, DVec3};
@@ -91,16 +93,40 @@ fn gaps_err_by_less_than_the_margin_and_not_by_much_less() {
     assert!(worst < 29.0 && worst > 1.0, "{worst}");
 }
 
+/// A point of the body that a box stands for: in the box, in its ball, and not in what is cut off its edges.
+fn point_within(b: &OrientedBox, random: &mut Random) -> DVec3 {
+    let m = DMat3::from_cols(wide(b.axes[0]), wide(b.axes[1]), wide(b.axes[2])).transpose().inverse();
+    // In half extents: on a face or an edge, mostly.
+    let mut q: [f64; 3] = core::array::from_fn(|_| (random.next() * 2.0).clamp(-1.0, 1.0));
+    for (&(i, j), cuts) in PAIRS.iter().zip(&b.bevels) {
+        for (edge, &cut) in cuts.iter().enumerate() {
+            let sign = |bit: usize| if edge & bit == 0 { 1.0 } else { -1.0 };
+            let towards = sign(1) * q[i] + sign(2) * q[j];
+            let most = 2.0 - f64::from(cut) / f64::from(STEPS);
+            if towards > most {
+                q = q.map(|x| x * most / towards);
+            }
+        }
+    }
+    let from_center = m * (DVec3::from_array(q) * wide(b.half_extent));
+    let within = f64::from(b.radius) / from_center.length();
+    wide(b.center) + if within < 1.0 { from_center * within } else { from_center }
+}
+
 #[test]
 fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
     let mut random = Random(9);
-    let mut best = 0.0f64;
-    for round in 0..3000 {
+    let (mut best, mut best_of_triangles) = (0.0f64, 0.0f64);
+    for round in 0..6000 {
         let mut node = WideNode::empty([0.0; 3], 0);
-        let boxed = random.oriented_box(1.0, 1.0);
+        let cuts = |random: &mut Random| {
+            let most = if round % 4 == 0 { 0.0 } else { f64::from(MOST) };
+            core::array::from_fn(|_| core::array::from_fn(|_| (random.next().abs() * most) as u8))
+        };
+        let boxed = OrientedBox { bevels: cuts(&mut random), ..random.oriented_box(1.0, 1.0) };
         node.set_box(0, &boxed, 1.0);
         node.used = 1;
-        let single = random.oriented_box(1.0, 1.0);
+        let single = OrientedBox { bevels: cuts(&mut random), ..random.oriented_box(1.0, 1.0) };
         let rotation = random.rotation();
         let offset = random.vec() * 6.0;
         let side = Side {
@@ -110,38 +136,38 @@ fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
             floor: 0.0,
             to_work: 1.0,
         };
-        // Without and with one more direction: any, or the one from centre to centre.
+        // Without and with one more direction: any, or the one from center to center.
         let n = match round % 3 {
             0 => DVec3::ZERO,
             1 => random.vec().normalize(),
             _ => offset.normalize(),
         };
         let n = n * (1.0 - 4.0 * UNIT_F32);
+        let n = [n.x as f32, n.y as f32, n.z as f32];
+        let place = |p: DVec3| rotation * p + offset;
         let placed = Placed::new(&side, &single, [0.0; 3], &node);
-        let placed = placed.looking_along([n.x as f32, n.y as f32, n.z as f32]);
-        let bound = f64::from(lower_bounds::<Portable>(&node, &placed, 1.0)[0]);
-        // The ball that belongs to a box holds the mesh, not the corners; leave boxes out whose ball is smaller.
-        let (a, b) = (corners(&boxed), corners(&single));
-        let b: Vec<DVec3> = b.into_iter().map(|p| rotation * p + offset).collect();
-        let mid = |p: &[DVec3]| p.iter().fold(DVec3::ZERO, |s, &x| s + x) / 8.0;
-        let (ca, cb) = (mid(&a), mid(&b));
-        // Points of both the box and the ball.
+        let bound =
+            |placed: &Placed, enough: f32| f64::from(lower_bounds::<Portable>(&node, placed, 1.0, enough)[0]);
+        // With all directions, and with only those that any pair of boxes gets.
+        let of_boxes = placed.looking_along(n, &single);
+        let (most, least) = (bound(&of_boxes, f32::INFINITY), bound(&of_boxes, 0.0));
+        assert!(least <= most);
+        // A triangle of the single box.
+        let corners = [(); 3].map(|()| point_within(&single, &mut random));
+        let of_triangle = bound(&placed.looking_at_triangle_along(n, &corners.map(place)), f32::INFINITY);
         for _ in 0..50 {
-            let pick = |points: &[DVec3], c: DVec3, r: f32, random: &mut Random| {
-                let i = (random.next().abs() * 8.0) as usize % 8;
-                let j = (random.next().abs() * 8.0) as usize % 8;
-                let p = points[i].lerp(points[j], random.next().abs());
-                let d = p - c;
-                c + d * (f64::from(r) / d.length()).min(1.0)
-            };
-            let p = pick(&a, ca, boxed.radius, &mut random);
-            let q = pick(&b, cb, single.radius, &mut random);
-            let apart = p.distance(q);
-            assert!(bound <= apart * (1.0 + 1e-12), "{bound} {apart}");
-            best = best.max(bound / apart);
+            let p = point_within(&boxed, &mut random);
+            let apart = p.distance(place(point_within(&single, &mut random)));
+            assert!(most <= apart * (1.0 + 1e-12), "{most} {apart}");
+            best = best.max(most / apart);
+            let (x, y) = (random.next().abs(), random.next().abs());
+            let q = corners[0].lerp(corners[1], x).lerp(corners[2], y);
+            let apart = p.distance(place(q));
+            assert!(of_triangle <= apart * (1.0 + 1e-12), "{of_triangle} {apart}");
+            best_of_triangles = best_of_triangles.max(of_triangle / apart);
         }
     }
-    assert!(best > 0.9, "{best}");
+    assert!(best > 0.95 && best_of_triangles > 0.95, "{best} {best_of_triangles}");
 }
 
 struct Kernel<'a>(&'a WideNode, &'a Placed);
@@ -150,14 +176,17 @@ impl Task for Kernel<'_> {
     type Output = ([f32; 8], u32);
     #[inline(always)]
     fn run<L: Lanes>(self) -> Self::Output {
-        (lower_bounds::<L>(self.0, self.1, 0.25), super::node_test::overlaps::<L>(self.0, self.1))
+        (
+            lower_bounds::<L>(self.0, self.1, 0.25, f32::INFINITY),
+            super::node_test::overlaps::<L>(self.0, self.1),
+        )
     }
 }
 
 #[test]
 fn every_kind_of_lanes_gives_the_same_bits() {
     let mut random = Random(2);
-    for _ in 0..500 {
+    for round in 0..500 {
         let mut node = WideNode::empty([0.1, 0.2, 0.3], 0);
         node.used = 8;
         for lane in 0..8 {
@@ -172,7 +201,13 @@ fn every_kind_of_lanes_gives_the_same_bits() {
             floor: 1e-9,
             to_work: 0.5,
         };
-        let placed = Placed::new(&side, &single, [0.0; 3], &node).looking_along([0.3, -0.6, 0.7]);
+        let placed = Placed::new(&side, &single, [0.0; 3], &node);
+        let placed = if round % 2 == 0 {
+            placed.looking_along([0.3, -0.6, 0.7], &single)
+        } else {
+            let corners = [(); 3].map(|()| random.vec() * 3.0);
+            placed.looking_at_triangle_along([0.3, -0.6, 0.7], &corners)
+        };
         let (bounds, bits) = run_on(InstructionSet::Portable, Kernel(&node, &placed));
         let (best_bounds, best_bits) = run(Kernel(&node, &placed));
         assert_eq!(bounds.map(f32::to_bits), best_bounds.map(f32::to_bits));

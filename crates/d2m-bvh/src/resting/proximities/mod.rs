@@ -28,9 +28,10 @@ mod tests;
 pub use manifold::reduce_proximities;
 
 use super::node_pair::{Scene, Step, child, proven_apart};
+use crate::allowance::Allowance;
 use crate::lanes::{Lanes, Task, run};
 use crate::tree::margin::{UNIT_F64, round_up};
-use crate::{Posed, QueryError};
+use crate::{Budget, Posed, QueryError};
 use candidate::{Candidate, without_twins};
 use d2m_feature::FeaturePair;
 use feature_test::FeatureTest;
@@ -146,6 +147,37 @@ pub fn proximities_with(
     b: Posed<'_>,
     options: &ProximityOptions,
 ) -> Result<Vec<Proximity>, QueryError> {
+    // Without a limit there always is an answer.
+    Ok(proximities_within(a, b, options, &Budget::UNLIMITED)?.unwrap_or_default())
+}
+
+/// As [`proximities_with`] within a budget; `None`: it ran out, and nothing is known.
+///
+/// ```
+/// use d2m_bvh::{Budget, MeshTree, Posed, ProximityOptions, TriMesh, proximities_within};
+/// use glam::DVec3;
+/// let card = |height: f64| {
+///     let corners = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p + DVec3::Z * height).to_vec();
+///     TriMesh::try_new(corners, vec![[0, 1, 2]]).map(MeshTree::new)
+/// };
+/// let (low, high) = (card(0.0)?, card(0.1)?);
+/// let near = |tests: u64| {
+///     let budget = Budget::UNLIMITED.with_node_tests(tests);
+///     proximities_within(Posed::at_rest(&low), Posed::at_rest(&high), &ProximityOptions::new(0.2), &budget)
+/// };
+/// assert_eq!(near(0)?, None);
+/// assert!(near(100)?.is_some_and(|near| near.len() >= 3));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`proximities_with`].
+pub fn proximities_within(
+    a: Posed<'_>,
+    b: Posed<'_>,
+    options: &ProximityOptions,
+    budget: &Budget,
+) -> Result<Option<Vec<Proximity>>, QueryError> {
     for value in [options.margin, options.cone_slack] {
         if !(value.is_finite() && value >= 0.0) {
             return Err(QueryError::BadMinSeparation { value });
@@ -155,11 +187,13 @@ pub fn proximities_with(
     // Placed points of features within the margin are no further apart than this; 1 + 4u for its own roundings.
     let limit = (options.margin / scene.unit + scene.error) * (1.0 + 4.0 * UNIT_F64);
     let test = FeatureTest::new(&scene, limit, options.cone_slack);
-    match run(Search { scene: &scene, test, limit }) {
+    let allowance = &mut Allowance::new(budget);
+    match run(Search { scene: &scene, test, limit, allowance }) {
+        Found::Exhausted => Ok(None),
         Found::NotApart([triangle_a, triangle_b]) => Err(QueryError::NotApart { triangle_a, triangle_b }),
         Found::Candidates(found) => {
             let found = without_twins(found, TWIN_ERRORS * scene.error);
-            Ok(found.iter().map(|candidate| describe(&scene, [a, b], candidate)).collect())
+            Ok(Some(found.iter().map(|candidate| describe(&scene, [a, b], candidate)).collect()))
         }
     }
 }
@@ -196,6 +230,8 @@ enum Found {
     Candidates(Vec<Candidate>),
     /// Two triangles that are not proven apart.
     NotApart([u32; 2]),
+    /// The allowance ran out.
+    Exhausted,
 }
 
 /// Depth first over the pairs of boxes that are not proven further apart than the limit.
@@ -203,6 +239,7 @@ struct Search<'a> {
     scene: &'a Scene<'a>,
     test: FeatureTest<'a>,
     limit: f64,
+    allowance: &'a mut Allowance,
 }
 
 impl Task for Search<'_> {
@@ -210,16 +247,19 @@ impl Task for Search<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Found {
-        let Self { scene, mut test, limit } = self;
+        let Self { scene, mut test, limit, allowance } = self;
         let key = round_up(limit);
-        let along = scene.directions(scene.pose.offset);
+        let along = scene.direction(-scene.pose.offset);
         let mut stack = Vec::with_capacity(256);
         stack.push([0u32; 2]);
         while let Some(pair) = stack.pop() {
+            if allowance.step().is_err() {
+                return Found::Exhausted;
+            }
             match scene.step(pair) {
                 Step::Open(wide, node) => {
-                    let (bounds, used) = scene.bounds::<L>(wide, node, pair[1 - wide], &along);
-                    for (lane, &bound) in bounds[..used].iter().enumerate() {
+                    let bounds = scene.bounds::<L>((wide, node), pair[1 - wide], &along, key);
+                    for (lane, &bound) in bounds.used().iter().enumerate() {
                         // A bound that is not a number drops nothing.
                         if bound.is_nan() || bound <= key {
                             stack.push(child(pair, wide, node, lane));

@@ -2,8 +2,8 @@
 
 use super::node_test::{NodeScale, Placed};
 use crate::lanes::Lanes;
-use crate::lanes::{Bytes, Elementwise, Two};
-use crate::tree::bevel::{PAIRS, STEPS};
+use crate::lanes::{Elementwise, Two};
+use crate::tree::bevel::reach;
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
 
@@ -62,24 +62,6 @@ impl<T: Elementwise> Course<T> {
             closing: T::if_greater(left, right, self.closing, other.closing),
         }
     }
-}
-
-/// How far bevelled boxes reach from their centres along directions that have these cosines with their axes, or along
-/// the opposite ones where `along` is negative: Σ |cᵢ|hᵢ is what their corners reach. Of uᵢ = |cᵢ|hᵢ any w with w ≤ uᵢ,
-/// w ≤ uⱼ can be told as w(σxᵢ/hᵢ + τxⱼ/hⱼ), which is at most w(2 − s). `USED`: how many pairs of axes are looked at; the
-/// cuts between the faces of the first one are the deepest.
-#[inline(always)]
-fn reach<T: Bytes, const USED: usize>(half: &[T; 3], bevels: &[T; 3], cosines: &[T; 3], along: T) -> T {
-    let mut left = [half[0] * cosines[0].abs(), half[1] * cosines[1].abs(), half[2] * cosines[2].abs()];
-    let corner = left[0] + left[1] + left[2];
-    let mut steps = T::splat(0.0);
-    for pair in 0..USED {
-        let (i, j) = PAIRS[pair];
-        let common = left[i].min(left[j]);
-        (left[i], left[j]) = (left[i] - common, left[j] - common);
-        steps = steps + common * bevels[pair].byte_of(cosines[i], cosines[j], along);
-    }
-    corner - steps * T::splat(1.0 / STEPS)
 }
 
 /// Lower bounds on the times, counted from the frame, until which each lane's box stays apart from the single one;
@@ -161,6 +143,7 @@ mod tests {
     use crate::lanes::Portable;
     use crate::lanes::{Task, run_on};
     use crate::random::Random;
+    use crate::tree::bevel::{PAIRS, STEPS};
 
     /// Bytes chosen by signs, by lanes and by twice as many.
     struct Choice([[f32; 8]; 4]);

@@ -1,0 +1,276 @@
+//! How far apart are two bodies at rest?
+
+mod crowd;
+mod search;
+#[cfg(test)]
+mod tests;
+
+use super::collide::{check_solid, crossing_pair_within};
+use super::containment::one_holds_the_other;
+use super::node_pair::Scene;
+use crate::allowance::{Allowance, Exhausted};
+use crate::lanes::run;
+use crate::tree::margin::UNIT_F64;
+use crate::{Budget, PairCache, Posed, QueryError, Solid, StartState};
+use d2m_feature::triangle_distance;
+use glam::DVec3;
+use search::{Best, EXPECTED_WIDTH, Found, Search};
+
+/// The distance of two bodies at rest, enclosed, with witnesses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Distance {
+    /// The distance to rounding, in [`lower`, `upper`](Self::upper); 0 if the bodies are not proven apart.
+    pub value: f64,
+    /// Proven: the distance is at least this.
+    pub lower: f64,
+    /// Proven: the distance of the surfaces is at most this, and so is that of the bodies.
+    pub upper: f64,
+    /// Closest point on the surface of A, world frame, rounded.
+    pub point_a: DVec3,
+    /// Closest point on the surface of B, world frame, rounded.
+    pub point_b: DVec3,
+    /// Unit direction from A to B, world frame, along which they are that far apart; zero when `lower` is zero.
+    pub normal: DVec3,
+    /// Triangle of A that holds `point_a`.
+    pub triangle_a: u32,
+    /// Triangle of B that holds `point_b`.
+    pub triangle_b: u32,
+    /// `point_a` in the corners of `triangle_a`; each in [0, 1], sum one.
+    pub barycentric_a: [f64; 3],
+    /// `point_b` in the corners of `triangle_b`.
+    pub barycentric_b: [f64; 3],
+    /// `Apart`: proven (`lower` > 0). `Touching`: apart by less than can be proven, or just touching. `Overlapping`:
+    /// the surfaces cross, up to rounding; points and triangles are those of one pair of many that cross, which depends on
+    /// bodies and poses only. `Contained`: the surfaces are apart and one body is inside the other; then
+    /// `value` and `lower` are zero, and points and triangles are those where the surfaces are closest.
+    pub state: StartState,
+}
+
+/// Options of [`distance_within`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct DistanceOptions {
+    /// What the bodies are.
+    pub solid: Solid,
+    /// Distances above this are of no interest, and the search ends when that is proven.
+    pub cutoff: f64,
+}
+
+impl Default for DistanceOptions {
+    fn default() -> Self {
+        Self { solid: Solid::Filled, cutoff: f64::INFINITY }
+    }
+}
+
+impl DistanceOptions {
+    /// With this meaning of the bodies.
+    pub const fn with_solid(mut self, solid: Solid) -> Self {
+        self.solid = solid;
+        self
+    }
+
+    /// With this largest distance of interest.
+    pub const fn with_cutoff(mut self, cutoff: f64) -> Self {
+        self.cutoff = cutoff;
+        self
+    }
+}
+
+/// The distance of two bodies at rest, with witnesses. No tolerance: the enclosure is as tight as double precision
+/// allows, usually within 300·2⁻⁵³ of the largest length.
+///
+/// ```
+/// use d2m_bvh::{MeshTree, Posed, Solid, StartState, TriMesh, distance};
+/// use d2m_motion::Pose;
+/// use glam::{DQuat, DVec3};
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let tree = MeshTree::new(mesh);
+/// let above = Pose { translation: DVec3::Z * 1.25, ..Pose::IDENTITY };
+/// let apart = distance(Posed::at_rest(&tree), Posed::new(&tree, above), Solid::Filled)?;
+/// assert!(apart.lower <= 0.25 && 0.25 <= apart.upper && apart.upper - apart.lower < 2e-13);
+/// assert_eq!(apart.state, StartState::Apart);
+/// assert!((apart.point_a - DVec3::Z).length() < 1e-15 && (apart.normal - DVec3::Z).length() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`QueryError::BadPose`], and [`QueryError::NotWatertight`] with [`Solid::Filled`].
+pub fn distance(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<Distance, QueryError> {
+    let options = DistanceOptions::default().with_solid(solid);
+    let found = distance_within(a, b, &options, &mut PairCache::new())?;
+    // Without a cutoff there is always a closest pair of triangles.
+    found.ok_or(QueryError::BadPose { body: 0 })
+}
+
+/// As [`distance`], with a largest distance of interest and a warm start. `None` is a proof that the distance is more
+/// than the cutoff.
+///
+/// # Errors
+/// As [`distance`]; also [`QueryError::BadMinSeparation`] when the cutoff is negative or not a number.
+pub fn distance_within(
+    a: Posed<'_>,
+    b: Posed<'_>,
+    options: &DistanceOptions,
+    cache: &mut PairCache,
+) -> Result<Option<Distance>, QueryError> {
+    check_solid(a, b, options.solid)?;
+    if options.cutoff.is_nan() || options.cutoff < 0.0 {
+        return Err(QueryError::BadMinSeparation { value: options.cutoff });
+    }
+    let scene = Scene::try_new(a, b)?;
+    let counts = [a.body, b.body].map(|tree| tree.mesh().triangle_count());
+    // Placed triangles with an upper bound above this are further apart than the cutoff, unless their enclosure is
+    // wider than expected.
+    let limit = (options.cutoff / scene.unit + scene.error + EXPECTED_WIDTH) * (1.0 + 4.0 * UNIT_F64);
+    let first = cache.within(counts);
+    let unlimited = &mut Allowance::unlimited();
+    let mut search = |limit: f64| run(Search { scene: &scene, first, limit, allowance: unlimited });
+    let found = match search(limit) {
+        Found::Unclear => search(f64::INFINITY),
+        found => found,
+    };
+    let found = crossing(&scene, found, unlimited);
+    let state = match &found {
+        Found::Pair(best) if best.distance.upper == 0.0 => StartState::Overlapping,
+        Found::Pair(best) if best.lower <= scene.error => StartState::Touching,
+        _ if options.solid == Solid::Filled && holds(&scene, unlimited) != Ok(false) => StartState::Contained,
+        _ => StartState::Apart,
+    };
+    let found = match (found, state) {
+        // The bodies meet although their surfaces are far from each other: search again without a limit.
+        (Found::Beyond, StartState::Contained) => {
+            run(Search { scene: &scene, first, limit: f64::INFINITY, allowance: unlimited })
+        }
+        (found, _) => found,
+    };
+    let Found::Pair(best) = found else { return Ok(None) };
+    cache.remember(best.triangles);
+    let answer = describe(&scene, [a, b], &best, state);
+    Ok((answer.lower <= options.cutoff).then_some(answer))
+}
+
+/// What is proven of a distance: all of it, or what a budget allowed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct DistanceBounds {
+    /// Proven: the distance is at least this.
+    pub lower: f64,
+    /// Proven: the distance is at most this; finite.
+    pub upper: f64,
+    /// The distance with witnesses, when the budget sufficed; `lower` and `upper` are its own then.
+    pub distance: Option<Distance>,
+}
+
+/// As [`distance`] within a budget. When it runs out, what is proven so far is the answer: an interval that holds the
+/// distance, with a `lower` of zero where it is not even proven that the bodies are apart.
+///
+/// ```
+/// use d2m_bvh::{Budget, MeshTree, Posed, Solid, TriMesh, bound_distance};
+/// use d2m_motion::Pose;
+/// use glam::DVec3;
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let tree = MeshTree::new(mesh);
+/// let above = Posed::new(&tree, Pose { translation: DVec3::Z * 1.25, ..Pose::IDENTITY });
+/// let within = |tests: u64| {
+///     let budget = Budget::UNLIMITED.with_node_tests(tests);
+///     bound_distance(Posed::at_rest(&tree), above, Solid::Filled, &budget)
+/// };
+/// let enough = within(1000)?;
+/// assert!(enough.distance.is_some() && enough.upper - enough.lower < 2e-13);
+/// let nothing = within(0)?;
+/// assert!(nothing.distance.is_none() && nothing.lower <= 0.25 && 0.25 <= nothing.upper);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`distance`].
+pub fn bound_distance(
+    a: Posed<'_>,
+    b: Posed<'_>,
+    solid: Solid,
+    budget: &Budget,
+) -> Result<DistanceBounds, QueryError> {
+    check_solid(a, b, solid)?;
+    let scene = Scene::try_new(a, b)?;
+    let allowance = &mut Allowance::new(budget);
+    // Some pair is compared before the budget counts, so there always is an upper bound.
+    let first = Some([0, 0]);
+    let found = run(Search { scene: &scene, first, limit: f64::INFINITY, allowance });
+    let found = crossing(&scene, found, allowance);
+    let apart = |best: &Best| best.lower > scene.error;
+    let is_apart = match &found {
+        Found::Pair(best) | Found::Exhausted(best) if apart(best) && solid == Solid::Filled => {
+            holds(&scene, allowance)
+        }
+        _ => Ok(false),
+    };
+    let (best, is_complete) = match found {
+        Found::Pair(best) => (best, is_apart.is_ok()),
+        Found::Exhausted(best) => (best, false),
+        // Without a limit there is always a closest pair of triangles.
+        Found::Beyond | Found::Unclear => return Err(QueryError::BadPose { body: 0 }),
+    };
+    let state = match is_apart {
+        _ if best.distance.upper == 0.0 => StartState::Overlapping,
+        _ if !apart(&best) => StartState::Touching,
+        Ok(true) => StartState::Contained,
+        // Not known to be apart: nothing is said of it but the bounds.
+        Err(Exhausted) => StartState::Touching,
+        Ok(false) => StartState::Apart,
+    };
+    let answer = describe(&scene, [a, b], &best, state);
+    Ok(DistanceBounds { lower: answer.lower, upper: answer.upper, distance: is_complete.then_some(answer) })
+}
+
+/// Does one body hold a part of the other?
+fn holds(scene: &Scene<'_>, allowance: &mut Allowance) -> Result<bool, Exhausted> {
+    Ok(one_holds_the_other(scene, allowance)?.is_some())
+}
+
+/// Where triangles cross, the pair that stands for all that do, whichever of them was met first.
+fn crossing(scene: &Scene<'_>, found: Found, allowance: &mut Allowance) -> Found {
+    let Found::Pair(met) = found else { return found };
+    if met.distance.upper > 0.0 {
+        return found;
+    }
+    let [a, b] = match crossing_pair_within(scene, allowance) {
+        Ok(pair) => pair.unwrap_or(met.triangles),
+        Err(Exhausted) => return Found::Exhausted(met),
+    };
+    let distance = triangle_distance(&scene.place(0, a), &scene.place(1, b));
+    Found::Pair(Best { distance, triangles: [a, b], lower: 0.0 })
+}
+
+fn describe(scene: &Scene<'_>, bodies: [Posed<'_>; 2], best: &Best, state: StartState) -> Distance {
+    let near = &best.distance;
+    let apart = state == StartState::Apart;
+    let lower = if apart { (best.lower - scene.error) * (1.0 - 2.0 * UNIT_F64) * scene.unit } else { 0.0 };
+    let upper = (near.upper + scene.error) * (1.0 + 2.0 * UNIT_F64) * scene.unit;
+    let point = |body: usize, weights: [f64; 3]| {
+        let corners = bodies[body].body.mesh().corners(best.triangles[body] as usize);
+        let mut pose = bodies[body].pose;
+        pose.rotation = pose.rotation.normalize();
+        pose.transform_point(corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2])
+    };
+    let normal = if apart {
+        (bodies[1].pose.rotation.normalize() * near.direction).normalize_or_zero()
+    } else {
+        DVec3::ZERO
+    };
+    Distance {
+        value: if apart { (0.5 * (near.lower + near.upper) * scene.unit).clamp(lower, upper) } else { 0.0 },
+        lower,
+        upper,
+        point_a: point(0, near.barycentric_a),
+        point_b: point(1, near.barycentric_b),
+        normal,
+        triangle_a: best.triangles[0],
+        triangle_b: best.triangles[1],
+        barycentric_a: near.barycentric_a,
+        barycentric_b: near.barycentric_b,
+        state,
+    }
+}

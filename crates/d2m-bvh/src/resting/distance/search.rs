@@ -1,0 +1,251 @@
+//! Best first over pairs of boxes, for the closest pair of triangles.
+
+use super::crowd::drop_beyond_plane;
+use crate::allowance::Allowance;
+use crate::lanes::{Lanes, Task};
+use crate::resting::node_pair::{Direction, Scene, Step, child, gap_exceeds};
+use crate::tree::margin::{UNIT_F64, round_up};
+use d2m_feature::{TriangleDistance, triangle_distance};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Width of the enclosures of triangle distances that is expected, relative to the size of the scene; wider ones are
+/// met and cost only the width of the answer.
+pub(super) const EXPECTED_WIDTH: f64 = 128.0 * UNIT_F64;
+
+/// Node tests and comparisons after which the pairs that wait are a crowd: several times as many as in ordinary queries of
+/// a million triangles. The next time after twice as many.
+const CROWD: u64 = 1 << 13;
+
+/// The closest pair of triangles, working units.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Best {
+    pub(super) distance: TriangleDistance,
+    pub(super) triangles: [u32; 2],
+    /// Lower bound over all pairs of placed triangles.
+    pub(super) lower: f64,
+}
+
+/// What a search finds.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Found {
+    Pair(Best),
+    /// Every pair is proven to be further apart than the limit less the expected width.
+    Beyond,
+    /// The enclosure of a pair straddles the limit: without a limit there is an answer.
+    Unclear,
+    /// The allowance ran out: the closest pair so far, with a lower bound over all.
+    Exhausted(Best),
+}
+
+/// Best first over pairs of boxes.
+///
+/// The answer is the pair of triangles with the least (computed upper bound, numbers). A pair is left out only when it
+/// is proven that its computed bound is more than the best one so far; so neither the order of the search nor the pair
+/// that is compared first has any influence on the answer. Two exceptions: where triangles cross, their bound is zero, the search
+/// ends with the first such pair, and another, in a fixed order, chooses the one that is reported; and when very many pairs
+/// wait, those that one plane proves no closer up to rounding are dropped, so which of many equally close pairs is reported may
+/// depend on the search ([`super::crowd`]).
+pub(super) struct Search<'a> {
+    pub(super) scene: &'a Scene<'a>,
+    /// A pair of triangles to compare first.
+    pub(super) first: Option<[u32; 2]>,
+    /// Pairs beyond this are of no interest, working units.
+    pub(super) limit: f64,
+    pub(super) allowance: &'a mut Allowance,
+}
+
+/// State of a search: the best pair so far.
+struct Closest<'a> {
+    scene: &'a Scene<'a>,
+    best: Option<Best>,
+    /// Upper bound of the best pair, or the limit.
+    upper: f64,
+    /// Rounded up: pairs of boxes at more than this are left out.
+    upper_key: f32,
+    /// Least lower bound of a pair whose enclosure was wider than expected.
+    loose: f64,
+    /// The best pair's own direction; before there is one, from center to center.
+    along: Direction,
+    /// How often that direction has changed.
+    version: u32,
+}
+
+impl<'a> Closest<'a> {
+    fn new(scene: &'a Scene<'a>, limit: f64) -> Self {
+        Self {
+            scene,
+            best: None,
+            upper: limit,
+            upper_key: round_up(limit),
+            loose: f64::INFINITY,
+            along: scene.direction(-scene.pose.offset),
+            version: 0,
+        }
+    }
+
+    /// True if the pair is closer than all so far.
+    #[inline(always)]
+    fn compare(&mut self, triangles: [u32; 2]) -> bool {
+        let (a, b) = (self.scene.place(0, triangles[0]), self.scene.place(1, triangles[1]));
+        if let Some(best) = &self.best {
+            // Along the best pair's own direction: most of its neighbours are left out by this.
+            if gap_exceeds(best.distance.direction, &a, &b, self.upper + self.scene.projection) {
+                return false;
+            }
+        }
+        let distance = triangle_distance(&a, &b);
+        if distance.upper - distance.lower > EXPECTED_WIDTH {
+            self.loose = self.loose.min(distance.lower);
+        }
+        let better = match &self.best {
+            _ if distance.upper > self.upper => false,
+            None => true,
+            Some(best) => (distance.upper, triangles) < (best.distance.upper, best.triangles),
+        };
+        if better {
+            self.best = Some(Best { distance, triangles, lower: 0.0 });
+            self.upper = distance.upper;
+            self.upper_key = round_up(distance.upper);
+            if distance.lower > 0.0 {
+                self.along = self.scene.direction(distance.direction);
+                self.version = self.version.wrapping_add(1);
+            }
+        }
+        better
+    }
+
+    /// The best pair with a lower bound over all, when every other pair is at least `waiting` apart.
+    fn finished(&self, best: Best, waiting: f64) -> Best {
+        let lower = (best.distance.upper - EXPECTED_WIDTH).min(self.loose).min(waiting).max(0.0);
+        Best { lower: lower * (1.0 - 2.0 * UNIT_F64), ..best }
+    }
+}
+
+/// A pair of boxes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Item {
+    /// Lower bound of their distance.
+    pub(super) key: f32,
+    pub(super) pair: [u32; 2],
+    /// Of the direction that the bound was computed with.
+    pub(super) version: u32,
+}
+
+/// Pairs of boxes that wait, by their keys. Keys are not negative, so their bits are in the order of the numbers.
+#[derive(Default)]
+pub(super) struct Queue(BinaryHeap<Reverse<u128>>);
+
+impl Queue {
+    #[inline(always)]
+    pub(super) fn push(&mut self, item: Item) {
+        let Item { key, pair, version } = item;
+        let number = |word: u32, place: u32| u128::from(word) << (32 * place);
+        self.0.push(Reverse(
+            number(key.to_bits(), 3) | number(pair[0], 2) | number(pair[1], 1) | number(version, 0),
+        ));
+    }
+
+    #[inline(always)]
+    fn pop(&mut self) -> Option<Item> {
+        let Reverse(packed) = self.0.pop()?;
+        let word = |place: u32| (packed >> (32 * place)) as u32;
+        Some(Item { key: f32::from_bits(word(3)), pair: [word(2), word(1)], version: word(0) })
+    }
+
+    fn least_key(&self) -> Option<f32> {
+        self.0.peek().map(|Reverse(packed)| f32::from_bits((packed >> 96) as u32))
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Keeps the pairs of which this is true.
+    pub(super) fn retain(&mut self, mut keep: impl FnMut([u32; 2]) -> bool) {
+        self.0.retain(|Reverse(packed)| keep([(packed >> 64) as u32, (packed >> 32) as u32]));
+    }
+}
+
+impl Task for Search<'_> {
+    type Output = Found;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Found {
+        let Self { scene, first, limit, allowance } = self;
+        let mut closest = Closest::new(scene, limit);
+        if let Some(triangles) = first {
+            closest.compare(triangles);
+        }
+        let mut queue = Queue(BinaryHeap::with_capacity(512));
+        let mut next = Some(Item { key: 0.0, pair: [0; 2], version: 0 });
+        // Descend greedily to a pair of triangles, as long as that is closer than the one before; then best first.
+        let mut descending = closest.best.is_none();
+        let (mut steps, mut patience) = (0, CROWD);
+        loop {
+            if next.is_none() && steps >= patience {
+                patience = 2 * steps;
+                if let Some(best) = &closest.best {
+                    drop_beyond_plane(scene, &best.distance, &mut queue);
+                }
+            }
+            let Some(Item { key, pair, version }) = next.take().or_else(|| queue.pop()) else { break };
+            if key > closest.upper_key || closest.upper == 0.0 {
+                break;
+            }
+            if allowance.step().is_err() {
+                // A pair of triangles is compared before the search, so that there is a best one.
+                let Some(best) = closest.best else { return Found::Unclear };
+                let least = queue.least_key().map_or(key, |other| other.min(key));
+                return Found::Exhausted(closest.finished(best, f64::from(least)));
+            }
+            steps += 1;
+            // The bound along the newest direction is cheap, and often much better than the one that was known.
+            let newer =
+                if version == closest.version { 0.0 } else { scene.bound_along(pair, &closest.along) };
+            if newer > closest.upper_key {
+                continue;
+            }
+            if newer > key {
+                queue.push(Item { key: newer, pair, version: closest.version });
+                continue;
+            }
+            match scene.step(pair) {
+                Step::Open(wide, node) => {
+                    let enough = closest.upper_key;
+                    let bounds = scene.bounds::<L>((wide, node), pair[1 - wide], &closest.along, enough);
+                    let mut least: Option<Item> = None;
+                    for (lane, &bound) in bounds.used().iter().enumerate() {
+                        // Also when the bound is not a number.
+                        let bound = if bound > key { bound } else { key };
+                        if bound > closest.upper_key {
+                            continue;
+                        }
+                        let pair = child(pair, wide, node, lane);
+                        let found = Item { key: bound, pair, version: closest.version };
+                        match &mut least {
+                            Some(so_far) if descending => {
+                                let (keep, push) =
+                                    if found.key < so_far.key { (found, *so_far) } else { (*so_far, found) };
+                                *so_far = keep;
+                                queue.push(push);
+                            }
+                            _ if descending => least = Some(found),
+                            _ => queue.push(found),
+                        }
+                    }
+                    next = least;
+                }
+                Step::Compare(triangles) => {
+                    // On as long as it pays: each closer pair has a better direction for all that follow.
+                    descending = closest.compare(triangles);
+                }
+            }
+        }
+        match closest.best {
+            Some(best) => Found::Pair(closest.finished(best, f64::INFINITY)),
+            None if closest.loose <= limit => Found::Unclear,
+            None => Found::Beyond,
+        }
+    }
+}

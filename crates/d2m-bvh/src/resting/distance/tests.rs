@@ -1,0 +1,169 @@
+//! Crowds of equally close pairs, and budgets.
+
+use super::crowd::drop_beyond_plane;
+use super::search::{Item, Queue};
+use super::*;
+use crate::random::Random;
+use crate::tree::node::{Below, WIDTH};
+use crate::{MeshTree, TriMesh};
+use d2m_motion::Pose;
+
+fn tree(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> MeshTree {
+    MeshTree::new(TriMesh::try_new(vertices, triangles).unwrap())
+}
+
+/// A cone with its apex at the origin, and the disc that closes it.
+fn cone(n: u32, up: f64) -> MeshTree {
+    let mut vertices = vec![DVec3::ZERO, DVec3::Z * up];
+    vertices.extend((0..n).map(|k| {
+        let angle = f64::from(k) / f64::from(n) * core::f64::consts::TAU;
+        DVec3::new(angle.cos(), angle.sin(), up)
+    }));
+    let fan = |k: u32| (2 + k, 2 + (k + 1) % n);
+    tree(vertices, (0..n).flat_map(|k| [[0, fan(k).1, fan(k).0], [1, fan(k).0, fan(k).1]]).collect())
+}
+
+/// One triangle many times.
+fn copies(n: u32) -> MeshTree {
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    tree(corners.repeat(n as usize), (0..n).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect())
+}
+
+/// Flat slivers from the origin to all sides.
+fn star(random: &mut Random, n: u32) -> MeshTree {
+    let (mut vertices, mut triangles) = (vec![DVec3::ZERO], Vec::new());
+    for _ in 0..n {
+        let first = vertices.len() as u32;
+        vertices.push(DVec3::new(random.next(), random.next(), 0.0).normalize());
+        vertices.push(vertices[first as usize] + DVec3::new(random.next(), random.next(), 0.0) * 1e-3);
+        triangles.push([0, first, first + 1]);
+    }
+    tree(vertices, triangles)
+}
+
+/// The distance, and how many node tests and comparisons are enough.
+fn counted(a: &MeshTree, b: &MeshTree, offset: DVec3) -> (Distance, u64) {
+    let posed = Posed::new(b, Pose { translation: offset, ..Pose::IDENTITY });
+    let within = |tests: u64| {
+        let budget = Budget::UNLIMITED.with_node_tests(tests);
+        bound_distance(Posed::at_rest(a), posed, Solid::Surface, &budget).unwrap()
+    };
+    let tests = (0..).map(|k| 1 << k).find(|&tests| within(tests).distance.is_some()).unwrap();
+    (distance(Posed::at_rest(a), posed, Solid::Surface).unwrap(), tests)
+}
+
+#[test]
+fn many_equally_close_pairs_cost_no_more_than_their_triangles() {
+    let mut random = Random(3);
+    let fans = (cone(2000, -1.0), cone(2000, 1.0));
+    let sheets = (copies(2000), copies(2000));
+    let stars = (star(&mut random, 2000), star(&mut random, 2000));
+    for (name, (a, b), offset) in [
+        ("fans", &fans, DVec3::Z),
+        ("fans", &fans, DVec3::new(0.25, -0.125, 0.5)),
+        ("fans", &fans, DVec3::Z * 1e-13),
+        ("fans", &fans, DVec3::Z * 100.0),
+        ("copies", &sheets, DVec3::Z * 0.25),
+        ("copies", &sheets, DVec3::new(-2.0, -2.0, 0.0)),
+        ("stars", &stars, DVec3::Z * 0.5),
+    ] {
+        let (found, tests) = counted(a, b, offset);
+        let expected = if name == "copies" && offset.z == 0.0 { 1.5 * 2f64.sqrt() } else { offset.length() };
+        assert!(found.lower <= expected && expected <= found.upper, "{name} {offset}: {found:?}");
+        assert!(found.upper - found.lower < 1e-12 * (1.0 + expected), "{name} {offset}: {found:?}");
+        assert!(tests <= 1 << 17, "{name} {offset}: {tests}");
+    }
+}
+
+/// Whatever the budget, the bounds hold the distance; they never are worse for more of it than with none.
+#[test]
+fn budgets_end_in_bounds_that_hold() {
+    let mut random = Random(17);
+    let bodies = (copies(3), cone(60, 1.0), cone(60, -1.0), star(&mut random, 200));
+    let pairs =
+        [(&bodies.1, &bodies.2), (&bodies.0, &bodies.3), (&bodies.1, &bodies.3), (&bodies.1, &bodies.1)];
+    let (mut ended, mut complete) = (0, 0);
+    for (round, (a, b)) in pairs.into_iter().cycle().take(60).enumerate() {
+        let pose = Pose {
+            rotation: glam::DQuat::from_scaled_axis(random.vec() * 3.0),
+            translation: random.vec() * [0.3, 2.0, 9.0][round % 3],
+            at: DVec3::ZERO,
+        };
+        let (a, b) = (Posed::at_rest(a), Posed::new(b, pose));
+        let closed = [a, b].iter().all(|posed| posed.body.is_watertight());
+        let solid = if closed { Solid::Filled } else { Solid::Surface };
+        let exact = distance(a, b, solid).unwrap();
+        for tests in [0, 1, 2, 5, 10, 20, 50, 100, 300, 1000, 100_000] {
+            let bounds = bound_distance(a, b, solid, &Budget::UNLIMITED.with_node_tests(tests)).unwrap();
+            assert!(bounds.upper.is_finite() && bounds.lower >= 0.0);
+            assert!(
+                bounds.lower <= exact.value && exact.lower <= bounds.upper,
+                "{tests}: {bounds:?} {exact:?}"
+            );
+            match bounds.distance {
+                Some(found) => {
+                    assert_eq!(found, exact);
+                    complete += 1;
+                }
+                None => ended += 1,
+            }
+        }
+    }
+    assert!(ended > 100 && complete > 100, "{ended} {complete}");
+}
+
+/// The triangles below a box.
+fn below(tree: &MeshTree, index: u32) -> Vec<u32> {
+    match tree.nodes[index as usize / WIDTH].below(index as usize % WIDTH) {
+        Below::Triangle(triangle) => vec![triangle],
+        Below::Node(node) => {
+            let lanes = tree.nodes[node as usize].used;
+            (0..lanes).flat_map(|lane| below(tree, node * WIDTH as u32 + lane)).collect()
+        }
+    }
+}
+
+#[test]
+fn planes_drop_no_closer_pair() {
+    let mut random = Random(29);
+    let (mut dropped, mut kept) = (0, 0);
+    for _ in 0..60 {
+        let soup = |random: &mut Random| {
+            let vertices = (0..40).flat_map(|_| {
+                let corner = random.vec();
+                [corner, corner + random.vec() * 0.2, corner + random.vec() * 0.2]
+            });
+            tree(vertices.collect(), (0..40).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect())
+        };
+        let (a, b) = (soup(&mut random), soup(&mut random));
+        let pose = Pose { translation: random.vec() * 2.5, ..Pose::IDENTITY };
+        let scene = Scene::try_new(Posed::at_rest(&a), Posed::new(&b, pose)).unwrap();
+        let apart = |[a, b]: [u32; 2]| triangle_distance(&scene.place(0, a), &scene.place(1, b));
+        let boxes = |tree: &MeshTree| -> Vec<u32> {
+            let lanes = |(k, node): (usize, &crate::tree::node::WideNode)| {
+                (0..node.used).map(move |lane| (k * WIDTH) as u32 + lane)
+            };
+            tree.nodes.iter().enumerate().flat_map(lanes).collect()
+        };
+        let best = apart([7, 11]);
+        let mut queue = Queue::default();
+        let pairs: Vec<_> =
+            boxes(&a).iter().flat_map(|&i| boxes(&b).into_iter().map(move |j| [i, j])).collect();
+        for &pair in &pairs {
+            queue.push(Item { key: 0.0, pair, version: 0 });
+        }
+        drop_beyond_plane(&scene, &best, &mut queue);
+        let mut left = std::collections::BTreeSet::new();
+        queue.retain(|pair| left.insert(pair));
+        kept += left.len();
+        for pair in pairs.into_iter().filter(|pair| !left.contains(pair)) {
+            dropped += 1;
+            for i in below(&a, pair[0]) {
+                for j in below(&b, pair[1]) {
+                    assert!(apart([i, j]).upper >= best.upper - EXPECTED_WIDTH);
+                }
+            }
+        }
+    }
+    assert!(dropped > 1000 && kept > 1000, "{dropped} {kept}");
+}
