@@ -139,8 +139,8 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::InstructionSet;
     use crate::lanes::Portable;
+    use crate::lanes::{Bytes, InstructionSet};
     use crate::lanes::{Task, run_on};
     use crate::random::Random;
     use crate::tree::bevel::{PAIRS, STEPS};
