@@ -85,7 +85,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     // The default engine.
     patch(
         "the cut of another edge",
-        "crates/d2m-bvh/src/search/node_pair/entry_time.rs",
+        "crates/d2m-bvh/src/tree/bevel.rs",
         ".byte_of(cosines[i], cosines[j], along)",
         ".byte_of(cosines[j], cosines[i], along)",
         "crates/d2m-bvh/src/search/node_pair/entry_time.rs::bevelled_boxes_reach_as_far_as_their_points",

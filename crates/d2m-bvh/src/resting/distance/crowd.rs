@@ -7,7 +7,8 @@
 //! l − h apart. A pair for which that is no less than the best distance, up to the width of its enclosure, needs no
 //! more search: the lower bound of the answer holds for it, too.
 
-use super::search::{EXPECTED_WIDTH, Queue};
+use super::best::EXPECTED_WIDTH;
+use super::queue::Queue;
 use crate::resting::node_pair::Scene;
 use crate::tree::margin::UNIT_F64;
 use crate::tree::node::{Below, WIDTH};

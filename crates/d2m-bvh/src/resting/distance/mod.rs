@@ -1,6 +1,8 @@
 //! How far apart are two bodies at rest?
 
+mod best;
 mod crowd;
+mod queue;
 mod search;
 #[cfg(test)]
 mod tests;
@@ -12,9 +14,10 @@ use crate::allowance::{Allowance, Exhausted};
 use crate::lanes::run;
 use crate::tree::margin::UNIT_F64;
 use crate::{Budget, PairCache, Posed, QueryError, Solid, StartState};
+use best::{Best, EXPECTED_WIDTH};
 use d2m_feature::triangle_distance;
 use glam::DVec3;
-use search::{Best, EXPECTED_WIDTH, Found, Search};
+use search::{Found, Search};
 
 /// The distance of two bodies at rest, enclosed, with witnesses.
 #[derive(Clone, Copy, Debug, PartialEq)]

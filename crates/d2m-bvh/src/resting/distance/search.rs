@@ -1,30 +1,17 @@
 //! Best first over pairs of boxes, for the closest pair of triangles.
 
+use super::best::{Best, EXPECTED_WIDTH};
 use super::crowd::drop_beyond_plane;
+use super::queue::{Item, Queue};
 use crate::allowance::Allowance;
 use crate::lanes::{Lanes, Task};
 use crate::resting::node_pair::{Direction, Scene, Step, child, gap_exceeds};
 use crate::tree::margin::{UNIT_F64, round_up};
-use d2m_feature::{TriangleDistance, triangle_distance};
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
-/// Width of the enclosures of triangle distances that is expected, relative to the size of the scene; wider ones are
-/// met and cost only the width of the answer.
-pub(super) const EXPECTED_WIDTH: f64 = 128.0 * UNIT_F64;
+use d2m_feature::triangle_distance;
 
 /// Node tests and comparisons after which the pairs that wait are a crowd: several times as many as in ordinary queries of
 /// a million triangles. The next time after twice as many.
 const CROWD: u64 = 1 << 13;
-
-/// The closest pair of triangles, working units.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Best {
-    pub(super) distance: TriangleDistance,
-    pub(super) triangles: [u32; 2],
-    /// Lower bound over all pairs of placed triangles.
-    pub(super) lower: f64,
-}
 
 /// What a search finds.
 #[derive(Clone, Copy, Debug)]
@@ -122,51 +109,6 @@ impl<'a> Closest<'a> {
     }
 }
 
-/// A pair of boxes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Item {
-    /// Lower bound of their distance.
-    pub(super) key: f32,
-    pub(super) pair: [u32; 2],
-    /// Of the direction that the bound was computed with.
-    pub(super) version: u32,
-}
-
-/// Pairs of boxes that wait, by their keys. Keys are not negative, so their bits are in the order of the numbers.
-#[derive(Default)]
-pub(super) struct Queue(BinaryHeap<Reverse<u128>>);
-
-impl Queue {
-    #[inline(always)]
-    pub(super) fn push(&mut self, item: Item) {
-        let Item { key, pair, version } = item;
-        let number = |word: u32, place: u32| u128::from(word) << (32 * place);
-        self.0.push(Reverse(
-            number(key.to_bits(), 3) | number(pair[0], 2) | number(pair[1], 1) | number(version, 0),
-        ));
-    }
-
-    #[inline(always)]
-    fn pop(&mut self) -> Option<Item> {
-        let Reverse(packed) = self.0.pop()?;
-        let word = |place: u32| (packed >> (32 * place)) as u32;
-        Some(Item { key: f32::from_bits(word(3)), pair: [word(2), word(1)], version: word(0) })
-    }
-
-    fn least_key(&self) -> Option<f32> {
-        self.0.peek().map(|Reverse(packed)| f32::from_bits((packed >> 96) as u32))
-    }
-
-    pub(super) fn clear(&mut self) {
-        self.0.clear();
-    }
-
-    /// Keeps the pairs of which this is true.
-    pub(super) fn retain(&mut self, mut keep: impl FnMut([u32; 2]) -> bool) {
-        self.0.retain(|Reverse(packed)| keep([(packed >> 64) as u32, (packed >> 32) as u32]));
-    }
-}
-
 impl Task for Search<'_> {
     type Output = Found;
 
@@ -177,7 +119,7 @@ impl Task for Search<'_> {
         if let Some(triangles) = first {
             closest.compare(triangles);
         }
-        let mut queue = Queue(BinaryHeap::with_capacity(512));
+        let mut queue = Queue::default();
         let mut next = Some(Item { key: 0.0, pair: [0; 2], version: 0 });
         // Descend greedily to a pair of triangles, as long as that is closer than the one before; then best first.
         let mut descending = closest.best.is_none();

@@ -1,7 +1,7 @@
 //! Crowds of equally close pairs, and budgets.
 
 use super::crowd::drop_beyond_plane;
-use super::search::{Item, Queue};
+use super::queue::{Item, Queue};
 use super::*;
 use crate::random::Random;
 use crate::tree::node::{Below, WIDTH};

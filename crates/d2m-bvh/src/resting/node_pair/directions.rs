@@ -4,7 +4,7 @@
 //! n that counts: the line of the closest points proves almost the whole distance, a box's axes often much less. Errors of
 //! these gaps are below twice the margin of those along the axes; docs/theory/static-queries.md counts them.
 
-use super::node_test::{Axes, dot, load, splat};
+use super::axes::{Axes, dot, load, splat};
 use super::placed_box::Placed;
 use crate::lanes::Lanes;
 use crate::tree::bevel::reach;

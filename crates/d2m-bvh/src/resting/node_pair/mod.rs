@@ -1,6 +1,7 @@
 //! What the static queries share: the relative pose with its error, the test of a box against eight boxes, the
 //! constants of one query. The bounds are derived in docs/theory/static-queries.md.
 
+mod axes;
 mod directions;
 mod node_test;
 mod placed_box;

@@ -1,11 +1,12 @@
 //! One box of one body in the frame of a wide node of the other.
 
-use super::node_test::GAP_ERROR;
 use crate::tree::bevel::reach_both_ways;
-use crate::tree::margin::round_up;
+use crate::tree::margin::{UNIT_F32, round_up};
 use crate::tree::node::{OrientedBox, WideNode};
 use glam::DVec3;
 
+/// Factor of the error bound of a gap along a box axis; docs/theory/static-queries.md counts at most 29.
+pub(super) const GAP_ERROR: f64 = 32.0 * UNIT_F32;
 /// The single body seen from the wide body, whose node is opened. Lengths are in units of the wide body's tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side {
