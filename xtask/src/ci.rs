@@ -25,7 +25,7 @@ const fn step(name: &'static str, arguments: &'static [&'static str]) -> Step {
 
 /// In order of cost: what fails fast comes first. Without its default features each library must still compile, each
 /// in a call of its own: in one call cargo would join the features that any of them needs.
-const STEPS: [Step; 13] = [
+const STEPS: [Step; 14] = [
     step("format", &["fmt", "--all", "--", "--check"]),
     step(
         "lints",
@@ -41,6 +41,7 @@ const STEPS: [Step; 13] = [
             "warnings",
         ],
     ),
+    step("features", &["check", "--locked", "--no-default-features", "-p=d2m-lanes"]),
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m-interval"]),
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m-motion"]),
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m-root"]),

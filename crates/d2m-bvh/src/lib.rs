@@ -1,11 +1,11 @@
 #![doc = include_str!("../README.md")]
+#![forbid(unsafe_code)]
 
 mod allowance;
 mod contact;
 mod enclosing_sphere;
 mod error;
 mod evidence;
-mod lanes;
 mod mesh;
 mod moving;
 mod options;
@@ -22,10 +22,10 @@ mod tree;
 mod window;
 
 pub use contact::{Contact, StartState, TimeOfContact};
+pub use d2m_lanes::InstructionSet;
 pub use enclosing_sphere::EnclosingSphere;
 pub use error::QueryError;
 pub use evidence::Evidence;
-pub use lanes::InstructionSet;
 pub use mesh::{Edge, MAX_COORDINATE, MeshError, Topology, TriMesh, Validation};
 pub use moving::Moving;
 pub use options::{Budget, Mode, QueryOptions, Solid};

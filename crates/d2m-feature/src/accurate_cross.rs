@@ -1,5 +1,5 @@
 //! Cross products whose direction is right also for nearly parallel factors.
-use d2m_interval::{two_product, two_sum};
+use d2m_lanes::{two_product, two_sum};
 use glam::DVec3;
 
 /// A difference of two vectors without error: `high + low`, component by component.

@@ -3,12 +3,9 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 
 use crate::{
     Interval,
-    round::{
-        HALF_ULP, TINY, down, finite, finite_with, increment, mantissa_and_exponent, power_of_two,
-        two_product, two_sum, up,
-    },
-    simd::F64x2,
+    round::{HALF_ULP, TINY, down, finite, finite_with, increment, mantissa_and_exponent, power_of_two, up},
 };
+use d2m_lanes::{F64x2, two_product, two_sum};
 
 /// All products of an element of `a` and one of `b`, each end correctly rounded, for finite ends (callers check
 /// by [`finite_with`]).

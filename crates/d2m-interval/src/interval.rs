@@ -1,4 +1,5 @@
-use crate::{IntervalError, simd::F64x2};
+use crate::IntervalError;
+use d2m_lanes::F64x2;
 
 /// A closed, connected set of real numbers `[lo, hi]`; possibly unbounded, possibly empty.
 ///

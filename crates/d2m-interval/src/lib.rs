@@ -1,4 +1,5 @@
 #![doc = include_str!("../README.md")]
+#![forbid(unsafe_code)]
 #![no_std]
 extern crate alloc;
 #[cfg(any(test, feature = "std"))]
@@ -13,8 +14,6 @@ mod interval;
 mod mat3;
 mod round;
 mod set_ops;
-#[allow(missing_docs, clippy::should_implement_trait)] // named after the operation; for the workspace only
-mod simd;
 mod text;
 #[cfg(feature = "glam")]
 mod vec3;
@@ -27,12 +26,6 @@ pub use error::{IntervalError, ParseIntervalError};
 pub use interval::Interval;
 #[cfg(feature = "glam")]
 pub use mat3::IntervalMat3;
-/// For the crates of this workspace: two doubles in one vector register, the same bits on every platform.
-/// For the crates of this workspace: sums and products without error.
-#[doc(hidden)]
-pub use round::{two_product, two_sum};
-#[doc(hidden)]
-pub use simd::F64x2;
 #[cfg(feature = "glam")]
 pub use vec3::IntervalVec3;
 #[cfg(feature = "glam")]

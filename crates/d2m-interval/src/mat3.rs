@@ -2,7 +2,8 @@ use core::ops::Mul;
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::{Interval, IntervalVec3, simd::F64x2};
+use crate::{Interval, IntervalVec3};
+use d2m_lanes::F64x2;
 
 /// A 3×3 matrix of intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]

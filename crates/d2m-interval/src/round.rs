@@ -5,7 +5,7 @@
 //! A lower end point is kept negated, so that both ends round upwards, by the same instructions.
 //! Vector paths drop the `max` and check instead that increment and operands are finite; if they are not, they
 //! fall back to [`up`] on scalars, which also knows that 0·∞ is 0.
-use crate::simd::F64x2;
+use d2m_lanes::{F64x2, fast_two_sum, two_sum};
 
 /// `2⁻⁵³(1 + 2⁻⁵²)`: half an ulp, and a little.
 pub(crate) const HALF_ULP: f64 = f64::from_bits(0x3CA0_0000_0000_0001);
@@ -51,38 +51,6 @@ pub(crate) fn finite(increment: F64x2) -> bool {
 pub(crate) fn finite_with(largest: F64x2, increment: F64x2) -> bool {
     // `max` returns its second operand when one is NaN.
     finite(largest.max(increment))
-}
-
-/// `a + b = s + e` exactly (Knuth's two-sum), barring overflow.
-#[inline(always)]
-pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let s = a + b;
-    let c = s - a;
-    (s, (a - (s - c)) + (b - c))
-}
-
-/// `a + b = s + e` exactly when `|a| ≥ |b|` or `a = 0` (Dekker's fast two-sum).
-#[inline(always)]
-pub(crate) fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
-    let s = a + b;
-    (s, b - (s - a))
-}
-
-/// `a·b = p + e` exactly (Veltkamp, Dekker) for `|a|, |b| ≤ 2⁹⁹⁵`, `|a·b| ≤ 2¹⁰²¹`, and, `e` being a
-/// multiple of the product of the last places, when no part of it underflows (`|a·b| ≥ 2⁻⁹⁶⁰` suffices).
-#[inline(always)]
-pub fn two_product(a: f64, b: f64) -> (f64, f64) {
-    let (a1, a0) = halves(a);
-    let (b1, b0) = halves(b);
-    let p = a * b;
-    (p, ((a1 * b1 - p) + a1 * b0 + a0 * b1) + a0 * b0)
-}
-
-#[inline(always)]
-fn halves(a: f64) -> (f64, f64) {
-    let c = 134_217_729.0 * a; // 2²⁷ + 1
-    let high = c - (c - a);
-    (high, a - high)
 }
 
 /// `2ⁿ` for −1022 ≤ n ≤ 1023.

@@ -2,8 +2,8 @@
 use crate::{
     Interval,
     round::{difference_is_less, difference_up},
-    simd::F64x2,
 };
+use d2m_lanes::F64x2;
 
 impl Interval {
     /// Whether this is the empty set.

@@ -7,8 +7,8 @@ use crate::{
     Interval,
     arith::{magnitudes, products, products_with},
     round::{THREE_PRODUCTS, TINY, TWO_PRODUCTS, finite, finite_with, increment},
-    simd::F64x2,
 };
+use d2m_lanes::F64x2;
 
 /// A box of vectors: one interval per coordinate.
 ///

@@ -4,9 +4,9 @@ use core::ops::{Add, Sub};
 use crate::{
     Interval, IntervalVec3, IntervalX4,
     round::{THREE_PRODUCTS, TWO_PRODUCTS},
-    simd::F64x4,
     x4::{finite, pad},
 };
+use d2m_lanes::F64x4;
 
 /// Four boxes of vectors.
 #[derive(Clone, Copy, Debug)]

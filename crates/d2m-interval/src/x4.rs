@@ -4,8 +4,8 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use crate::{
     Interval,
     round::{HALF_ULP, TINY},
-    simd::F64x4,
 };
+use d2m_lanes::F64x4;
 
 /// Four independent intervals, in two 256-bit vectors (with AVX; pairs of 128-bit vectors elsewhere).
 ///

@@ -1,12 +1,13 @@
 //! A link of an articulated arm: fixed transforms and joints whose values are functions of time.
 use crate::ball::Ball;
-use crate::double_double::DoubleDouble;
 use crate::error::{fault, require_finite};
 use crate::joint_value::{Enclosed, JointValue, ValueOverTime};
 use crate::rotation::{Spin, rotate_dd};
 use crate::sin_cos::{LARGEST_ANGLE, sin_cos};
 use crate::{CertifiedState, IntervalPose, IntervalTwist, Kinematics, MotionError, Pose, RigidMotion, Twist};
+use core::ops::{Mul, Sub};
 use d2m_interval::Interval;
+use d2m_lanes::DoubleDouble;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Unit roundoff of f64, 2⁻⁵³.
@@ -138,7 +139,7 @@ fn sin_cos_of(angle: DoubleDouble) -> (f64, f64) {
         return (f64::NAN, f64::NAN);
     }
     let turns = if angle.hi.abs() > 4.0 { (angle.hi / TURN.hi).round() } else { 0.0 };
-    let r = if turns == 0.0 { angle } else { angle.sub(TURN.mul_f64(turns)) };
+    let r = if turns == 0.0 { angle } else { angle.sub(TURN.mul(turns)) };
     let (sin, cos) = sin_cos(r.hi);
     (sin + r.lo * cos, cos - r.lo * sin)
 }

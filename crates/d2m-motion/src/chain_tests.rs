@@ -1,5 +1,4 @@
 //! Chains, keyframes and compositions held against poses in pairs of doubles (some 30 digits).
-use crate::double_double::DoubleDouble as Dd;
 use crate::rotation::{RotationDd, exponential_dd, rotate_dd};
 use crate::tests::Random;
 use crate::{
@@ -7,6 +6,7 @@ use crate::{
     Retimed, RigidMotion, Span,
 };
 use d2m_interval::{Interval, IntervalVec3};
+use d2m_lanes::DoubleDouble as Dd;
 use glam::{DQuat, DVec3};
 
 type Vector = [Dd; 3];
@@ -50,7 +50,7 @@ fn truth(chain: &Chain, t: f64, offset: f64) -> Truth {
             }
             JointKind::Prismatic { axis, value } => {
                 let by = value_at(value, t, s).div(length(*axis));
-                let shift = axis.to_array().map(|k| by.mul_f64(k));
+                let shift = axis.to_array().map(|k| by.mul(k));
                 frame.position = add(frame.position, frame.rotation.apply(shift));
             }
         }
@@ -59,7 +59,7 @@ fn truth(chain: &Chain, t: f64, offset: f64) -> Truth {
 }
 
 fn length(v: DVec3) -> Dd {
-    v.to_array().iter().fold(Dd::ZERO, |sum, &x| sum.add(Dd::from_f64(x).mul_f64(x))).sqrt()
+    v.to_array().iter().fold(Dd::ZERO, |sum, &x| sum.add(Dd::from_f64(x).mul(x))).sqrt()
 }
 
 fn rounded(v: Vector) -> DVec3 {

@@ -1,13 +1,14 @@
 //! The paper's motion: constant linear and angular velocity.
 use crate::ball::{length_up, times_up, up};
-use crate::double_double::DoubleDouble;
 use crate::error::require_finite;
 use crate::rotation::{RotationDd, Spin, from_quat_rounded, rotate_dd};
 use crate::sin_cos::LARGEST_ANGLE;
 use crate::{
     Ball, CertifiedState, IntervalPose, IntervalTwist, Kinematics, MotionError, Pose, RigidMotion, Twist,
 };
+use core::ops::Mul;
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
+use d2m_lanes::DoubleDouble;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Norms of quaternions that are taken: their squares neither over- nor underflow.
@@ -188,8 +189,8 @@ impl ConstantTwist {
 
     /// The true position of `at` at time `t`, to about 2⁻¹⁰⁰ of its terms.
     pub(crate) fn position_dd(&self, t: f64) -> [DoubleDouble; 3] {
-        let s = DoubleDouble::difference(t, self.reference_time);
-        let one = |x0: f64, v: f64| s.mul_f64(v).add_f64(x0);
+        let s = DoubleDouble::from_difference(t, self.reference_time);
+        let one = |x0: f64, v: f64| s.mul(v).add_f64(x0);
         [
             one(self.position.x, self.linear_velocity.x),
             one(self.position.y, self.linear_velocity.y),
@@ -199,7 +200,11 @@ impl ConstantTwist {
 
     /// The true rotation at time `t`, to about 2⁻⁹⁰ (relative to 1 + |ω||t − t_ref|).
     pub(crate) fn rotation_dd(&self, t: f64) -> RotationDd {
-        rotate_dd(self.angular_velocity, DoubleDouble::difference(t, self.reference_time), self.orientation)
+        rotate_dd(
+            self.angular_velocity,
+            DoubleDouble::from_difference(t, self.reference_time),
+            self.orientation,
+        )
     }
 
     /// The same motion told from time `t0`: the pose is evaluated in extended precision and rounded once, so the

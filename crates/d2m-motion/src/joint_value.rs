@@ -1,9 +1,10 @@
 //! The value of a joint over time: a polynomial, or one polynomial after another.
 use crate::MotionError;
 use crate::ball::up;
-use crate::double_double::{DoubleDouble, two_sum};
 use crate::error::{describe_times, fault};
+use core::ops::{Add, Mul, Sub};
 use d2m_interval::Interval;
+use d2m_lanes::{DoubleDouble, two_sum};
 
 /// Largest jump between two pieces that counts as rounding (radians, or units of length).
 pub(crate) const LARGEST_JUMP: f64 = 1e-9;
@@ -213,7 +214,7 @@ impl JointValue {
         };
         let part = |derivative: usize, factor: f64| {
             let (b, error) = term(derivative);
-            let center = b.mul_f64(factor);
+            let center = b.mul(factor);
             let radius = up(error * factor + beyond(derivative));
             let known = center.hi.is_finite() && center.lo.is_finite() && radius < f64::INFINITY;
             if known {
@@ -250,7 +251,7 @@ fn taylor(coefficients: &[f64], s: f64, terms: &mut [(DoubleDouble, f64)]) {
         for row in 0..n {
             for j in (row..n - 1).rev() {
                 let (next, size) = terms[j + 1];
-                terms[j].0 = terms[j].0.add(next.mul_f64(s));
+                terms[j].0 = terms[j].0.add(next.mul(s));
                 terms[j].1 = up(terms[j].1 + size * s.abs());
             }
         }

@@ -1,8 +1,8 @@
 //! Pose, twist and twist rate over a span of time, each a middle value with a proven radius.
 use crate::ball::{Ball, length_up, up};
-use crate::double_double::two_sum;
 use crate::{CertifiedState, IntervalPose, IntervalTwist};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
+use d2m_lanes::two_sum;
 use glam::{DMat3, DVec3};
 
 /// Unit roundoff of f64, 2⁻⁵³.

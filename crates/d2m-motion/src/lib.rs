@@ -1,4 +1,5 @@
 #![doc = include_str!("../README.md")]
+#![forbid(unsafe_code)]
 
 mod any_motion;
 mod ball;
@@ -6,7 +7,7 @@ mod chain;
 mod check_motion;
 mod composed;
 mod constant_twist;
-mod double_double;
+mod double_double_trig;
 mod error;
 mod joint_value;
 mod keyframes;

@@ -1,6 +1,8 @@
 //! Rotations about a fixed axis: a quaternion or a matrix in doubles, a matrix in double-double.
-use crate::double_double::{DoubleDouble, two_product};
+use crate::double_double_trig::sin_cos_double;
 use crate::sin_cos::{LARGEST_ANGLE, sin_cos};
+use core::ops::{Add, Mul, Sub};
+use d2m_lanes::{DoubleDouble, two_product};
 use glam::{DMat3, DQuat, DVec3};
 
 /// Squared norms of quaternions between these lose nothing to under- or overflow in products of four.
@@ -133,7 +135,7 @@ fn from_quat(q: DQuat) -> RotationDd {
     };
     let (xx, yy, zz, ww) = (product(0, 0), product(1, 1), product(2, 2), product(3, 3));
     let norm = xx.add(yy).add(zz).add(ww);
-    let half = |d: DoubleDouble| d.mul_f64(2.0).div(norm);
+    let half = |d: DoubleDouble| d.mul(2.0).div_accurately(norm);
     let (xy, xz, yz) = (product(0, 1), product(0, 2), product(1, 2));
     let (wx, wy, wz) = (product(3, 0), product(3, 1), product(3, 2));
     let diagonal = |a: DoubleDouble, b: DoubleDouble| DoubleDouble::ONE.sub(half(a.add(b)));
@@ -165,8 +167,8 @@ pub(crate) fn exponential_dd(omega: DVec3, s: DoubleDouble) -> RotationDd {
         let one = DoubleDouble::ONE;
         return RotationDd([[one, zero, zero], [zero, one, zero], [zero, zero, one]]);
     }
-    let (sin, cos) = speed.mul(s).sin_cos();
-    let axis = [omega.x, omega.y, omega.z].map(|w| DoubleDouble::from_f64(w).div(speed));
+    let (sin, cos) = sin_cos_double(speed.mul(s));
+    let axis = [omega.x, omega.y, omega.z].map(|w| DoubleDouble::from_f64(w).div_accurately(speed));
     let versine = DoubleDouble::ONE.sub(cos);
     let entry = |i: usize, j: usize| versine.mul(axis[i]).mul(axis[j]);
     let [x, y, z] = axis.map(|k| k.mul(sin));

@@ -2,8 +2,8 @@
 //!
 //! Three-part Cody–Waite reduction by π/2 and polynomials of its own (Chebyshev interpolants; the remainder carried as a
 //! pair). |computed − true| ≤ 2·2⁻⁵³ for each of both, |x| ≤ 8e5, and in double-double up to 1e9; docs/theory/features.md has the count.
-use crate::double_double::DoubleDouble;
-use d2m_interval::F64x2;
+use crate::double_double_trig::sin_cos_double;
+use d2m_lanes::{DoubleDouble, F64x2};
 
 const PIO2_1: f64 = 1.570_796_326_734_125_614_17; // first 33 bits of π/2
 const PIO2_2: f64 = 6.077_100_506_303_965_98e-11; // second 33 bits
@@ -26,7 +26,7 @@ pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
         return (f64::NAN, f64::NAN);
     }
     if x.abs() > FEW_TURNS {
-        let (sin, cos) = DoubleDouble::from_f64(x).sin_cos();
+        let (sin, cos) = sin_cos_double(DoubleDouble::from_f64(x));
         return (sin.hi, cos.hi);
     }
     let shifted = x * core::f64::consts::FRAC_2_PI + ROUND;

@@ -1,6 +1,6 @@
 //! Two vectors side by side, in the two halves of vector registers: the same bits as one after the other.
 use core::ops::{Add, Mul, Sub};
-use d2m_interval::F64x2;
+use d2m_lanes::F64x2;
 use glam::DVec3;
 
 /// Two vectors, component by component.

@@ -2,17 +2,16 @@
 
 use super::report::{contact, contained, evidence_at_start};
 use crate::allowance::{Allowance, Exhausted};
-use crate::lanes::Quad;
 use crate::resting::collide::crossing_pair_within;
 use crate::resting::containment::{Held, held_vertex};
 use crate::resting::node_pair;
-use crate::search::motion::pair::Pair;
 use crate::search::motion::track::given_relative_position;
 use crate::search::{Outcome, Scene, Scratch, Search};
 use crate::{
     MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window,
 };
 use core::cell::RefCell;
+use d2m_lanes::Quad;
 use d2m_motion::{ConstantTwist, Pose};
 use glam::DVec3;
 
@@ -138,7 +137,7 @@ const CROSSING_STEPS: u64 = 1 << 12;
 /// pair that is near.
 fn crossing_at_start(scene: &Scene<'_>, allowance: &Allowance) -> Result<Option<[u32; 2]>, QueryError> {
     // As seen from B's reference point, which may be far from the origin.
-    let apart = given_relative_position(&scene.a.motion, &scene.b.motion).map(Pair::rounded);
+    let apart = given_relative_position(&scene.a.motion, &scene.b.motion).map(|x| x.hi);
     let apart = DVec3::from_array(apart) * scene.units.length();
     let [a, b] = [(&scene.a, apart), (&scene.b, DVec3::ZERO)].map(|(body, translation)| {
         let m = body.given.rebase(scene.window.start());

@@ -1,7 +1,6 @@
 //! From what the search found to the answer: witness points, normal, features in the meshes' numbers.
 
 use super::proven_crossing::proven_crossing;
-use crate::lanes::{Doubles, Lanes, Quad, Task, run};
 use crate::resting::containment::Held;
 use crate::search::motion::frame::{FRAME_REACH, Frame, RelativeMotion};
 use crate::search::triangle_pair::closest::{Closest, Place, closest};
@@ -9,6 +8,7 @@ use crate::search::triangle_pair::separating_axis::{PairScale, place_a};
 use crate::search::{Found, Scene};
 use crate::{Contact, Evidence, MeshTree, StartState};
 use d2m_feature::{FeaturePair, triangles_intersect};
+use d2m_lanes::{Doubles, Lanes, Quad, Task, run};
 use glam::DVec3;
 
 /// The contact with all its data, of a scene and its motion over the window of the search; `bracket`: look for a time by which the tolerance was reached, if that cannot be

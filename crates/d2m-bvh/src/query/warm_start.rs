@@ -2,13 +2,13 @@
 
 use super::constant_twist::{ask, scene_of};
 use super::general_motion::general_motion;
-use crate::lanes::Quad;
 use crate::search::Scene;
 use crate::search::relative_trajectory::Course;
 use crate::search::triangle_pair::closest::closest;
 use crate::search::triangle_pair::separating_axis::place_a;
 use crate::{Budget, Mode, Moving, PairCache, QueryError, QueryOptions, TimeOfContact, Window};
 use d2m_feature::triangles_intersect;
+use d2m_lanes::Quad;
 
 /// As [`time_of_contact`](crate::time_of_contact), with a cache that one pair of bodies keeps from query to query, for
 /// instance from one step of a simulation to the next.

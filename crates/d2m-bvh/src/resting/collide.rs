@@ -3,9 +3,9 @@
 use super::containment::one_holds_the_other;
 use super::node_pair::{Scene, Step, child, proven_apart};
 use crate::allowance::{Allowance, Exhausted};
-use crate::lanes::{Lanes, Task, run};
 use crate::{Budget, Posed, QueryError, Solid};
 use d2m_feature::triangle_distance;
+use d2m_lanes::{Lanes, Task, run};
 use glam::DVec3;
 
 /// Do two bodies at rest share a point?

@@ -2,19 +2,19 @@
 
 use super::crowd::Patience;
 use super::motion::frame::Frame;
-use super::motion::units::power_of_two_from;
+use super::motion::units::{power_of_two_from, sum_down};
 use super::node_pair::expansion::{KEY_SCALE, Opening};
 use super::node_pair::node_test::NodeFrame;
 use super::queue::{Bucket, Item};
 use super::skip::SkipLimits;
 use super::skip::screw_search::screw_clear_until;
 use super::skip::swept_volume::swept_clear_until;
-use super::state::{BATCH, FIRST_SWEEP, Outcome, Search, State, Step, SubWindow, sum_down, triangle_count};
+use super::state::{BATCH, FIRST_SWEEP, Outcome, Search, State, Step, SubWindow, triangle_count};
 use super::triangle_pair::separating_axis::{Behind, place_a, widest_normal};
 use crate::Budget;
-use crate::lanes::{Lanes, Quad, Task};
 use crate::tree::margin::NARROW_UP;
 use crate::tree::node::{Below, LEAST_SIZE, WIDTH, WideNode};
+use d2m_lanes::{Lanes, Quad, Task};
 use glam::DVec3;
 
 /// Batches between two counts of the pairs that wait, for a plane between them.

@@ -18,9 +18,8 @@ use super::scene::SceneBody;
 use super::state::{BATCH, Search, State};
 use super::triangle_pair::separating_axis::place_a;
 use crate::allowance::Allowance;
-use crate::lanes::Lanes;
-use crate::lanes::Quad;
 use crate::tree::node::{Below, WIDTH};
+use d2m_lanes::{Lanes, Quad};
 use glam::DVec3;
 
 /// As many pairs that wait are a crowd, and as many batches in one window make one: several times as many as in

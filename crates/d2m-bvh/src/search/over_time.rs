@@ -2,7 +2,7 @@
 
 use super::best_first::OneWindow;
 use super::state::{Outcome, Search, Step};
-use crate::lanes::run_on;
+use d2m_lanes::run_on;
 
 impl Search<'_> {
     /// Searches sub-window after sub-window.

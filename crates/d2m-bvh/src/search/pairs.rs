@@ -6,8 +6,8 @@ use super::state::{BATCH, Found, QUICK_LOOKS, Search, State};
 use super::triangle_pair::closest::closest;
 use super::triangle_pair::separating_axis::{Behind, Care, Look, apart_since, look, place_a};
 use crate::Mode;
-use crate::lanes::Lanes;
 use crate::tree::node::WIDTH;
+use d2m_lanes::Lanes;
 use glam::DVec3;
 
 /// A pair that is followed out of turn is left after so many steps; ordinary contacts take fewer than ten.

@@ -10,7 +10,7 @@
 use super::best_first::OneWindow;
 use super::scene::{Scratch, SearchCounts};
 use super::state::{Ahead, Outcome, QUICK_LOOKS, Search, Step, SubWindow};
-use crate::lanes::run_on;
+use d2m_lanes::run_on;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -6,7 +6,6 @@
 //! is largest at an end; ‖ΔR‖ at time τ is at most its value at the start plus |Δω|τ. So is the difference of any two
 //! distances. See docs/theory/engine.md, "What one query proves for the next".
 
-use super::motion::pair::Pair;
 use super::motion::rotation::Columns;
 use super::motion::track::given_relative_position;
 use super::motion::units::Units;
@@ -50,7 +49,7 @@ impl Course {
             stamps: [a, b].map(|body| body.tree.stamp),
             units: scene.units,
             length: scene.end,
-            apart: DVec3::from_array(given_relative_position(&a.motion, &b.motion).map(Pair::rounded)),
+            apart: DVec3::from_array(given_relative_position(&a.motion, &b.motion).map(|x| x.hi)),
             velocity,
             rotations: [a, b].map(|body| body.motion.rotation(0.0)),
             omegas: [a, b].map(|body| body.motion.angular_velocity()),

@@ -1,13 +1,13 @@
 //! What a search knows: its limits, what it has found, where it is in a sub-window.
 
 use super::motion::frame::{Frame, RelativeMotion};
-use super::motion::pair::two_sum;
+use super::motion::units::sum_down;
 use super::node_pair::expansion::Opening;
 use super::node_pair::node_test::{NodeFrame, NodeScale};
 use super::scene::{Scene, Scratch, SearchCounts};
 use super::triangle_pair::separating_axis::Behind;
-use crate::lanes::InstructionSet;
 use crate::{Budget, Mode, QueryOptions};
+use d2m_lanes::InstructionSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
@@ -204,10 +204,4 @@ impl State<'_> {
 
 pub(super) fn triangle_count(scene: &Scene<'_>) -> u64 {
     (scene.a.tree.mesh.triangle_count() + scene.b.tree.mesh.triangle_count()) as u64
-}
-
-/// The sum of two offsets, rounded down.
-pub(super) fn sum_down(start: f64, offset: f64) -> f64 {
-    let sum = two_sum(start, offset);
-    if sum.1 < 0.0 { sum.0.next_down() } else { sum.0 }
 }

@@ -5,14 +5,11 @@ use super::node_pair::node_test::{NodeFrame, NodeScale, Placed};
 use super::scene::{Scene, Scratch};
 use super::state::{Outcome, Search};
 use super::triangle_pair::separating_axis::{Behind, Care, Look, PairScale, apart_since, look, place_a};
-use crate::lanes::InstructionSet;
-use crate::lanes::Lanes;
-use crate::lanes::Portable;
-use crate::lanes::Quad;
 use crate::random::Random;
 use crate::tree::node::WIDTH;
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
 use d2m_feature::triangle_distance;
+use d2m_lanes::{InstructionSet, Lanes, Portable, Quad};
 use d2m_motion::ConstantTwist;
 use glam::{DQuat, DVec3};
 

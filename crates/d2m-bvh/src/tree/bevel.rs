@@ -6,7 +6,7 @@
 //! 18-DOP (Klosowski et al. 1998, DOI 10.1109/2945.675649).
 
 use super::margin::UNIT_F64;
-use crate::lanes::Bytes;
+use d2m_lanes::Bytes;
 
 /// The pairs of axes whose faces meet in edges.
 pub(crate) const PAIRS: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];

@@ -7,6 +7,7 @@ use super::surface::Surface;
 use super::*;
 use crate::TriMesh;
 use crate::random::Random;
+use d2m_lanes::two_sum;
 use glam::DVec3;
 
 /// A closed torus-like surface of 2·across·around triangles with some noise.
@@ -72,11 +73,6 @@ fn built_and_refitted_trees_are_valid() {
 /// Boxes against corners in twice the precision: sums of two doubles, errors below 2⁻⁹⁸ of the terms.
 #[test]
 fn boxes_enclose_in_more_than_double_precision() {
-    fn two_sum(a: f64, b: f64) -> (f64, f64) {
-        let s = a + b;
-        let t = s - a;
-        (s, (a - (s - t)) + (b - t))
-    }
     fn add(a: (f64, f64), b: f64) -> (f64, f64) {
         let s = two_sum(a.0, b);
         two_sum(s.0, s.1 + a.1)

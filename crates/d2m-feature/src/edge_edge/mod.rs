@@ -8,7 +8,7 @@ use crate::path::{
 };
 use crate::point_triangle::cleared;
 use crate::rounding::{CLOSE, PART_OF_WAY, UNDERFLOW, UNIT, UP, length_up};
-use d2m_interval::F64x2;
+use d2m_lanes::F64x2;
 use d2m_motion::{TwoJets, TwoVec3};
 use d2m_root::{Band, Cubic, Measurement, Piece, PieceTest, Quadratic, Verdict};
 use glam::DVec3;

@@ -1,7 +1,7 @@
 //! Products of two jets that lie side by side: two at a time.
 use crate::path::reach;
 use crate::rounding::PRODUCT_UNDERFLOW;
-use d2m_interval::F64x2;
+use d2m_lanes::F64x2;
 use d2m_motion::{TwoJets, TwoVec3};
 use d2m_root::{Cubic, Piece, Quadratic};
 use glam::DVec3;

@@ -2,10 +2,11 @@
 use super::{
     Ends,
     constants::{INVERSE_FACTORIAL, INVERSE_ODD, LN_2, LN_2_PARTS, LN_10, LOG2_10, LOG2_E, LOG10_E},
-    double_double::Dd,
     enclose, increasing,
 };
 use crate::Interval;
+use core::ops::{Add, Div, Mul};
+use d2m_lanes::DoubleDouble;
 
 /// 1.5·2⁵².
 const MAGIC: f64 = 6_755_399_441_055_744.0;
@@ -17,7 +18,7 @@ fn nearest_integer(x: f64) -> f64 {
 /// `value · 2^exponent` with 0.5 < value < 2 (or any moderate value).
 #[derive(Clone, Copy)]
 pub(super) struct Scaled {
-    pub(super) value: Dd,
+    pub(super) value: DoubleDouble,
     pub(super) exponent: i32,
 }
 
@@ -61,17 +62,19 @@ fn scale(x: f64, k: i32, upwards: bool) -> f64 {
 }
 
 /// `e^x` for a double-double |x| < 800: relative error below 2⁻⁶⁸, plus that of `x`, absolute.
-pub(super) fn exp_scaled(x: Dd) -> Scaled {
-    let k = nearest_integer(x.0 * LOG2_E.0);
+pub(super) fn exp_scaled(x: DoubleDouble) -> Scaled {
+    let k = nearest_integer(x.hi * LOG2_E.hi);
     let [a, b, c] = LN_2_PARTS;
     // k·a and k·b are exact.
-    let r = Dd::sum(x.0, -k * a).plus(Dd(x.1, 0.0)).plus(Dd::sum(-k * b, -k * c));
+    let r = DoubleDouble::from_sum(x.hi, -k * a)
+        .add(DoubleDouble::new(x.lo, 0.0))
+        .add(DoubleDouble::from_sum(-k * b, -k * c));
     exp_reduced(r, k as i32)
 }
 
 /// `2^k e^r` for |r| ≤ 0.35.
-fn exp_reduced(r: Dd, k: i32) -> Scaled {
-    Scaled { value: Dd::polynomial(r, &INVERSE_FACTORIAL[..18], 9), exponent: k }
+fn exp_reduced(r: DoubleDouble, k: i32) -> Scaled {
+    Scaled { value: DoubleDouble::polynomial(r, &INVERSE_FACTORIAL[..18], 9), exponent: k }
 }
 
 /// ln MAX = 709.782…: eˣ is greater than every double above.
@@ -93,7 +96,7 @@ fn exp_at(x: f64) -> Ends {
     if x < EXP_UNDERFLOWS {
         return (0.0, f64::from_bits(1));
     }
-    let y = exp_scaled(Dd(x, 0.0));
+    let y = exp_scaled(DoubleDouble::new(x, 0.0));
     y.ends(enclose(y.value))
 }
 
@@ -108,7 +111,7 @@ fn exp2_at(x: f64) -> Ends {
     if x == k {
         return (scale_down(1.0, k as i32), scale_up(1.0, k as i32));
     }
-    let y = exp_reduced(Dd::product(x - k, 1.0).times(LN_2), k as i32);
+    let y = exp_reduced(DoubleDouble::from_product(x - k, 1.0).mul(LN_2), k as i32);
     y.ends(enclose(y.value))
 }
 
@@ -122,17 +125,20 @@ fn exp10_at(x: f64) -> Ends {
     if x < EXP10_UNDERFLOWS {
         return (0.0, f64::from_bits(1));
     }
-    let k = nearest_integer(x * LOG2_10.0);
+    let k = nearest_integer(x * LOG2_10.hi);
     let [a, b, c] = LN_2_PARTS;
-    let r = Dd(x, 0.0).times(LN_10).plus(Dd(-k * a, 0.0)).plus(Dd::sum(-k * b, -k * c));
+    let r = DoubleDouble::new(x, 0.0)
+        .mul(LN_10)
+        .add(DoubleDouble::new(-k * a, 0.0))
+        .add(DoubleDouble::from_sum(-k * b, -k * c));
     let y = exp_reduced(r, k as i32);
     y.ends(enclose(y.value))
 }
 
 /// `ln(n/d) = 2 atanh((n − d)/(n + d))` for `0.7 < n/d < 1.42`, given difference and sum.
-pub(super) fn ln_ratio(difference: Dd, sum: Dd) -> Dd {
-    let s = difference.over(sum);
-    s.scaled(2.0).times(Dd::polynomial(s.sqr(), &INVERSE_ODD[..15], 6))
+pub(super) fn ln_ratio(difference: DoubleDouble, sum: DoubleDouble) -> DoubleDouble {
+    let s = difference.div(sum);
+    s.scaled(2.0).mul(DoubleDouble::polynomial(s.sqr(), &INVERSE_ODD[..15], 6))
 }
 
 /// Positive `x` as `m·2^e` with 1 ≤ m < 2; integer arithmetic on the representation, subnormals included.
@@ -151,22 +157,25 @@ fn split(x: f64) -> (f64, i32) {
 }
 
 /// `ln x` for a positive double-double away from overflow: relative error below 2⁻⁶⁸.
-pub(super) fn ln_dd(x: Dd) -> Dd {
-    let (m, e) = split(x.0);
+pub(super) fn ln_dd(x: DoubleDouble) -> DoubleDouble {
+    let (m, e) = split(x.hi);
     // The power of two that made m out of x, applied to the low part.
-    let low = x.1 / x.0 * m;
-    ln_parts(Dd(m, low), e)
+    let low = x.lo / x.hi * m;
+    ln_parts(DoubleDouble::new(m, low), e)
 }
 
-fn ln_parts(m: Dd, e: i32) -> Dd {
-    let ln_m = ln_ratio(Dd::sum(m.0, -1.0).plus(Dd(m.1, 0.0)), Dd::sum(m.0, 1.0).plus(Dd(m.1, 0.0)));
-    if e == 0 { ln_m } else { LN_2.times(Dd(f64::from(e), 0.0)).plus(ln_m) }
+fn ln_parts(m: DoubleDouble, e: i32) -> DoubleDouble {
+    let ln_m = ln_ratio(
+        DoubleDouble::from_sum(m.hi, -1.0).add(DoubleDouble::new(m.lo, 0.0)),
+        DoubleDouble::from_sum(m.hi, 1.0).add(DoubleDouble::new(m.lo, 0.0)),
+    );
+    if e == 0 { ln_m } else { LN_2.mul(DoubleDouble::new(f64::from(e), 0.0)).add(ln_m) }
 }
 
 /// `ln x` for a positive double, subnormals included.
-pub(super) fn ln_value(x: f64) -> Dd {
+pub(super) fn ln_value(x: f64) -> DoubleDouble {
     let (m, e) = split(x);
-    ln_parts(Dd(m, 0.0), e)
+    ln_parts(DoubleDouble::new(m, 0.0), e)
 }
 
 fn ln_at(x: f64) -> Ends {
@@ -178,11 +187,11 @@ fn log2_at(x: f64) -> Ends {
     if m == 1.0 {
         return (f64::from(e), f64::from(e));
     }
-    enclose(ln_parts(Dd(m, 0.0), 0).times(LOG2_E).plus(Dd(f64::from(e), 0.0)))
+    enclose(ln_parts(DoubleDouble::new(m, 0.0), 0).mul(LOG2_E).add(DoubleDouble::new(f64::from(e), 0.0)))
 }
 
 fn log10_at(x: f64) -> Ends {
-    if x == 1.0 { (0.0, 0.0) } else { enclose(ln_value(x).times(LOG10_E)) }
+    if x == 1.0 { (0.0, 0.0) } else { enclose(ln_value(x).mul(LOG10_E)) }
 }
 
 /// A logarithm over the positive part of an interval.

@@ -2,20 +2,21 @@
 use super::{
     Ends,
     constants::INVERSE_FACTORIAL,
-    double_double::Dd,
     enclose,
     exp_log::{Scaled, exp_scaled, ln_dd, ln_ratio},
     increasing,
 };
 use crate::Interval;
+use core::ops::{Add, Div, Mul, Sub};
+use d2m_lanes::DoubleDouble;
 
 /// Below, `sinh x` and its relatives are `x` within a relative 2⁻⁶²: x² < 2⁻⁶⁶.
 const LINEAR: f64 = 1e-10;
 /// Above, asinh x and acosh x are ln 2x within 1/(4x²) < 10⁻³⁶/4.
 const LARGE: f64 = 1e18;
 
-const fn odd_factorials() -> [Dd; 11] {
-    let mut out = [Dd(0.0, 0.0); 11];
+const fn odd_factorials() -> [DoubleDouble; 11] {
+    let mut out = [DoubleDouble::new(0.0, 0.0); 11];
     let mut i = 0;
     while i < 11 {
         out[i] = INVERSE_FACTORIAL[2 * i + 1];
@@ -25,21 +26,21 @@ const fn odd_factorials() -> [Dd; 11] {
 }
 
 /// `sinh x` for |x| ≤ 0.5, by its series.
-fn sinh_series(x: Dd) -> Dd {
-    const COEFFICIENTS: [Dd; 11] = odd_factorials();
-    x.times(Dd::polynomial(x.sqr(), &COEFFICIENTS, 5))
+fn sinh_series(x: DoubleDouble) -> DoubleDouble {
+    const COEFFICIENTS: [DoubleDouble; 11] = odd_factorials();
+    x.mul(DoubleDouble::polynomial(x.sqr(), &COEFFICIENTS, 5))
 }
 
 /// `(e^x ± e^−x)/2` for 0.3 < x < 711.
 fn half_sum(x: f64, sign: f64) -> Scaled {
-    let Scaled { value, exponent } = exp_scaled(Dd(x, 0.0));
+    let Scaled { value, exponent } = exp_scaled(DoubleDouble::new(x, 0.0));
     if exponent > 45 {
         // The other term is below a relative 2⁻⁸⁸.
         return Scaled { value, exponent: exponent - 1 };
     }
     let back = f64::from_bits(((1023 - 2 * exponent) as u64) << 52);
-    let other = Dd(sign, 0.0).over(value).scaled(back);
-    Scaled { value: value.plus(other), exponent: exponent - 1 }
+    let other = DoubleDouble::new(sign, 0.0).div(value).scaled(back);
+    Scaled { value: value.add(other), exponent: exponent - 1 }
 }
 
 /// An odd function from its values at positive numbers.
@@ -59,7 +60,7 @@ fn sinh_at(x: f64) -> Ends {
         if x < LINEAR {
             (x, x.next_up())
         } else if x < 0.5 {
-            enclose(sinh_series(Dd(x, 0.0)))
+            enclose(sinh_series(DoubleDouble::new(x, 0.0)))
         } else if x > 710.5 {
             (f64::MAX, f64::INFINITY)
         } else {
@@ -93,14 +94,14 @@ fn tanh_at(x: f64) -> Ends {
             return (1.0_f64.next_down(), 1.0);
         }
         let y = if x < 0.25 {
-            let s = sinh_series(Dd(x, 0.0));
+            let s = sinh_series(DoubleDouble::new(x, 0.0));
             // cosh² = 1 + sinh²
-            s.over(Dd::ONE.plus(s.sqr()).sqrt())
+            s.div(DoubleDouble::ONE.add(s.sqr()).sqrt())
         } else {
             // 1 − 2/(e^2x + 1)
-            let Scaled { value, exponent } = exp_scaled(Dd(2.0 * x, 0.0));
+            let Scaled { value, exponent } = exp_scaled(DoubleDouble::new(2.0 * x, 0.0));
             let square = value.scaled(f64::from_bits(((1023 + exponent) as u64) << 52));
-            Dd::ONE.minus(Dd(2.0, 0.0).over(square.plus(Dd::ONE)))
+            DoubleDouble::ONE.sub(DoubleDouble::new(2.0, 0.0).div(square.add(DoubleDouble::ONE)))
         };
         let (lo, hi) = enclose(y);
         (lo, if hi > 1.0 { 1.0 } else { hi })
@@ -108,8 +109,8 @@ fn tanh_at(x: f64) -> Ends {
 }
 
 /// `ln(1 + w)` for a double-double w > −0.3.
-fn ln_one_plus(w: Dd) -> Dd {
-    if w.0 < 0.4 { ln_ratio(w, w.plus(Dd(2.0, 0.0))) } else { ln_dd(w.plus(Dd::ONE)) }
+fn ln_one_plus(w: DoubleDouble) -> DoubleDouble {
+    if w.hi < 0.4 { ln_ratio(w, w.add(DoubleDouble::new(2.0, 0.0))) } else { ln_dd(w.add(DoubleDouble::ONE)) }
 }
 
 fn asinh_at(x: f64) -> Ends {
@@ -119,12 +120,12 @@ fn asinh_at(x: f64) -> Ends {
         }
         if x > LARGE {
             // ln(2x) + 1/(4x²) − …
-            return enclose(ln_dd(Dd(x, 0.0)).plus(super::constants::LN_2));
+            return enclose(ln_dd(DoubleDouble::new(x, 0.0)).add(super::constants::LN_2));
         }
         // x + √(x² + 1) − 1 = x + x²/(1 + √(x² + 1))
-        let square = Dd::product(x, x);
-        let root = square.plus(Dd::ONE).sqrt();
-        enclose(ln_one_plus(Dd(x, 0.0).plus(square.over(root.plus(Dd::ONE)))))
+        let square = DoubleDouble::from_product(x, x);
+        let root = square.add(DoubleDouble::ONE).sqrt();
+        enclose(ln_one_plus(DoubleDouble::new(x, 0.0).add(square.div(root.add(DoubleDouble::ONE)))))
     })
 }
 
@@ -133,12 +134,12 @@ fn acosh_at(x: f64) -> Ends {
         return (0.0, 0.0);
     }
     if x > LARGE {
-        return enclose(ln_dd(Dd(x, 0.0)).plus(super::constants::LN_2));
+        return enclose(ln_dd(DoubleDouble::new(x, 0.0)).add(super::constants::LN_2));
     }
     // w = (x − 1) + √((x − 1)(x + 1)), acosh x = ln(1 + w)
-    let less = Dd::sum(x, -1.0);
-    let root = less.times(Dd::sum(x, 1.0)).sqrt();
-    enclose(ln_one_plus(less.plus(root)))
+    let less = DoubleDouble::from_sum(x, -1.0);
+    let root = less.mul(DoubleDouble::from_sum(x, 1.0)).sqrt();
+    enclose(ln_one_plus(less.add(root)))
 }
 
 fn atanh_at(x: f64) -> Ends {
@@ -146,8 +147,12 @@ fn atanh_at(x: f64) -> Ends {
         if x < LINEAR {
             return (x, x.next_up());
         }
-        let (less, more) = (Dd::sum(1.0, -x), Dd::sum(1.0, x));
-        let y = if x < 0.17 { ln_ratio(Dd(2.0 * x, 0.0), Dd(2.0, 0.0)) } else { ln_dd(more.over(less)) };
+        let (less, more) = (DoubleDouble::from_sum(1.0, -x), DoubleDouble::from_sum(1.0, x));
+        let y = if x < 0.17 {
+            ln_ratio(DoubleDouble::new(2.0 * x, 0.0), DoubleDouble::new(2.0, 0.0))
+        } else {
+            ln_dd(more.div(less))
+        };
         enclose(y.scaled(0.5))
     })
 }

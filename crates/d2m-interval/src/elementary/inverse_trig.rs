@@ -2,12 +2,13 @@
 use super::{
     Ends,
     constants::{ATAN_EIGHTHS, FRAC_PI_2, INVERSE_ODD, PI},
-    double_double::Dd,
     enclose,
     exp_log::Scaled,
     increasing,
 };
 use crate::Interval;
+use core::ops::{Add, Div, Mul, Sub};
+use d2m_lanes::DoubleDouble;
 
 /// The ends of an enclosure of π/2, π.
 const HALF_PI: Ends = (core::f64::consts::FRAC_PI_2, Interval::FRAC_PI_2.hi());
@@ -19,32 +20,36 @@ const NEARLY_RIGHT: f64 = 1e20;
 /// Below, |π/2 − acos x| < 2·10⁻³⁰: between the same two doubles.
 const FLAT: f64 = 1e-30;
 
-const fn alternating() -> [Dd; 12] {
-    let mut out = [Dd(0.0, 0.0); 12];
+const fn alternating() -> [DoubleDouble; 12] {
+    let mut out = [DoubleDouble::new(0.0, 0.0); 12];
     let mut i = 0;
     while i < 12 {
-        let Dd(a, b) = INVERSE_ODD[i];
-        out[i] = if i % 2 == 0 { Dd(a, b) } else { Dd(-a, -b) };
+        let DoubleDouble { hi: a, lo: b } = INVERSE_ODD[i];
+        out[i] = if i % 2 == 0 { DoubleDouble::new(a, b) } else { DoubleDouble::new(-a, -b) };
         i += 1;
     }
     out
 }
 
 /// `atan(n/d)` for 0 < n ≤ d, neither very large nor very small: relative error below 2⁻⁶⁸.
-fn atan_unit(n: Dd, d: Dd) -> Dd {
-    const COEFFICIENTS: [Dd; 12] = alternating();
-    let near = 8.0 * (n.0 / d.0) + 0.5;
+fn atan_unit(n: DoubleDouble, d: DoubleDouble) -> DoubleDouble {
+    const COEFFICIENTS: [DoubleDouble; 12] = alternating();
+    let near = 8.0 * (n.hi / d.hi) + 0.5;
     let i = near as usize; // truncation of a number in 0.5 … 8.5
     let c = i as f64 / 8.0;
     // atan(n/d) = atan c + atan((n − c d)/(d + c n)), and the last argument is at most 1/16.
-    let t = if i == 0 { n.over(d) } else { n.minus(d.times(Dd(c, 0.0))).over(d.plus(n.times(Dd(c, 0.0)))) };
-    let small = t.times(Dd::polynomial(t.sqr(), &COEFFICIENTS, 5));
-    ATAN_EIGHTHS[i].plus(small)
+    let t = if i == 0 {
+        n.div(d)
+    } else {
+        n.sub(d.mul(DoubleDouble::new(c, 0.0))).div(d.add(n.mul(DoubleDouble::new(c, 0.0))))
+    };
+    let small = t.mul(DoubleDouble::polynomial(t.sqr(), &COEFFICIENTS, 5));
+    ATAN_EIGHTHS[i].add(small)
 }
 
 /// The angle of the point (x, y), both positive.
-fn first_quadrant(y: Dd, x: Dd) -> Dd {
-    if y.0 <= x.0 { atan_unit(y, x) } else { FRAC_PI_2.minus(atan_unit(x, y)) }
+fn first_quadrant(y: DoubleDouble, x: DoubleDouble) -> DoubleDouble {
+    if y.hi <= x.hi { atan_unit(y, x) } else { FRAC_PI_2.sub(atan_unit(x, y)) }
 }
 
 fn odd(x: f64, at: impl Fn(f64) -> Ends) -> Ends {
@@ -65,14 +70,14 @@ fn atan_at(x: f64) -> Ends {
         } else if x > NEARLY_RIGHT {
             HALF_PI
         } else {
-            enclose(first_quadrant(Dd(x, 0.0), Dd::ONE))
+            enclose(first_quadrant(DoubleDouble::new(x, 0.0), DoubleDouble::ONE))
         }
     })
 }
 
 /// √(1 − x²), relative.
-fn co_sine(x: f64) -> Dd {
-    Dd::sum(1.0, -x).times(Dd::sum(1.0, x)).sqrt()
+fn co_sine(x: f64) -> DoubleDouble {
+    DoubleDouble::from_sum(1.0, -x).mul(DoubleDouble::from_sum(1.0, x)).sqrt()
 }
 
 fn asin_at(x: f64) -> Ends {
@@ -82,7 +87,7 @@ fn asin_at(x: f64) -> Ends {
         } else if x >= 1.0 {
             HALF_PI
         } else {
-            enclose(first_quadrant(Dd(x, 0.0), co_sine(x)))
+            enclose(first_quadrant(DoubleDouble::new(x, 0.0), co_sine(x)))
         }
     })
 }
@@ -95,9 +100,9 @@ fn acos_at(x: f64) -> Ends {
     } else if x.abs() < FLAT {
         HALF_PI
     } else if x > 0.0 {
-        enclose(first_quadrant(co_sine(x), Dd(x, 0.0)))
+        enclose(first_quadrant(co_sine(x), DoubleDouble::new(x, 0.0)))
     } else {
-        enclose(PI.minus(first_quadrant(co_sine(x), Dd(-x, 0.0))))
+        enclose(PI.sub(first_quadrant(co_sine(x), DoubleDouble::new(-x, 0.0))))
     }
 }
 
@@ -117,15 +122,15 @@ fn angle_at(y: f64, x: f64) -> Ends {
             if x < 0.0 {
                 return (Interval::PI.lo(), Interval::PI.hi());
             }
-            let value = Dd(moderate(b, eb), 0.0).over(Dd(moderate(a, ea), 0.0));
+            let value = DoubleDouble::new(moderate(b, eb), 0.0).div(DoubleDouble::new(moderate(a, ea), 0.0));
             return Scaled { value, exponent: eb - ea }.ends(enclose(value));
         }
         if eb - ea > 70 {
             return HALF_PI;
         }
         let (a, b) = (moderate(a, ea), moderate(b, ea));
-        let angle = first_quadrant(Dd(b, 0.0), Dd(a, 0.0));
-        enclose(if x > 0.0 { angle } else { PI.minus(angle) })
+        let angle = first_quadrant(DoubleDouble::new(b, 0.0), DoubleDouble::new(a, 0.0));
+        enclose(if x > 0.0 { angle } else { PI.sub(angle) })
     })
 }
 

@@ -4,7 +4,6 @@
 //! evaluates in double-double arithmetic, to about 2⁻⁷⁰, and is then rounded outwards, mostly to the
 //! tightest enclosure. Bounds are derived in `docs/theory/interval.md`.
 mod constants;
-mod double_double;
 mod exp_log;
 mod hyperbolic;
 mod inverse_trig;
@@ -16,14 +15,14 @@ mod trig;
 mod trig_x4;
 
 use crate::Interval;
-use double_double::Dd;
+use d2m_lanes::DoubleDouble;
 
 /// Enclosure of one number, as (lower, upper) end.
 type Ends = (f64, f64);
 
 /// Doubles around a number that lies within a relative `2⁻⁶²` of `x`.
 #[inline]
-fn enclose(x: Dd) -> Ends {
+fn enclose(x: DoubleDouble) -> Ends {
     enclose_within(x, 1.0 / 4_611_686_018_427_387_904.0)
 }
 
@@ -31,8 +30,8 @@ fn enclose(x: Dd) -> Ends {
 const WITH_LOW_PART: f64 = 1e-250;
 
 /// Doubles around a number that lies within a relative `error` (at most 2⁻⁵⁸) of `x`.
-fn enclose_within(x: Dd, error: f64) -> Ends {
-    let Dd(high, low) = x;
+fn enclose_within(x: DoubleDouble, error: f64) -> Ends {
+    let DoubleDouble { hi: high, lo: low } = x;
     if high.is_nan() {
         return (f64::NEG_INFINITY, f64::INFINITY);
     }

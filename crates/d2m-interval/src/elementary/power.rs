@@ -1,12 +1,12 @@
 //! Powers and the cube root.
 use super::{
-    Ends,
-    double_double::Dd,
-    enclose, enclose_within,
+    Ends, enclose, enclose_within,
     exp_log::{Scaled, exp_scaled, ln_value},
     increasing,
 };
 use crate::Interval;
+use core::ops::{Div, Mul, Sub};
+use d2m_lanes::DoubleDouble;
 
 /// e^±800 is out of the range of doubles, also if the exponent is off by a few 2⁻⁵³ of itself.
 const OUT_OF_RANGE: f64 = 800.0;
@@ -17,15 +17,15 @@ const NEXT_TO_ONE: f64 = 1e-18;
 fn power(x: f64, n: u32) -> Scaled {
     // x = m·2^e with 1 ≤ m < 2, and the same for every partial product.
     let (m, e) = super::exp_log::mantissa_exponent(x);
-    let (mut value, mut exponent) = (Dd(m, 0.0), i64::from(e));
+    let (mut value, mut exponent) = (DoubleDouble::new(m, 0.0), i64::from(e));
     for bit in (0..n.ilog2()).rev() {
         value = value.sqr();
         exponent *= 2;
         if n >> bit & 1 == 1 {
-            value = value.times(Dd(m, 0.0));
+            value = value.mul(DoubleDouble::new(m, 0.0));
             exponent += i64::from(e);
         }
-        while value.0 >= 2.0 {
+        while value.hi >= 2.0 {
             value = value.scaled(0.5);
             exponent += 1;
         }
@@ -42,7 +42,11 @@ fn power_ends(x: f64, n: u32) -> Ends {
         return (x, x);
     }
     let y = power(x, n);
-    y.ends(if y.value.1 == 0.0 && n <= 64 && exact(x, n) { (y.value.0, y.value.0) } else { enclose(y.value) })
+    y.ends(if y.value.lo == 0.0 && n <= 64 && exact(x, n) {
+        (y.value.hi, y.value.hi)
+    } else {
+        enclose(y.value)
+    })
 }
 
 /// `x^−n` for `x ≥ 0`, infinity included; the limit at 0 from the right.
@@ -54,7 +58,7 @@ fn inverse_power_ends(x: f64, n: u32) -> Ends {
         return (0.0, 0.0);
     }
     let y = power(x, n);
-    let y = Scaled { value: Dd::ONE.over(y.value), exponent: -y.exponent };
+    let y = Scaled { value: DoubleDouble::ONE.div(y.value), exponent: -y.exponent };
     y.ends(enclose(y.value))
 }
 
@@ -80,7 +84,7 @@ fn real_power(x: f64, y: f64) -> Ends {
     }
     let ln = ln_value(x);
     // Products stay in range so.
-    let size = ln.0 * y;
+    let size = ln.hi * y;
     if size > OUT_OF_RANGE {
         return (f64::MAX, f64::INFINITY);
     }
@@ -91,7 +95,7 @@ fn real_power(x: f64, y: f64) -> Ends {
         return if grows { (1.0, 1.0_f64.next_up()) } else { (1.0_f64.next_down(), 1.0) };
     }
     // |ln x| ≥ 2⁻⁵⁴ here or x = 1, so |y| < 2⁶⁴ and all products stay in range.
-    let result = exp_scaled(Dd(y, 0.0).times(ln));
+    let result = exp_scaled(DoubleDouble::new(y, 0.0).mul(ln));
     let (lo, hi) = result.ends(enclose_within(result.value, 1.0 / 288_230_376_151_711_744.0)); // 2⁻⁵⁸
     // 1 is not crossed.
     if grows { (if lo < 1.0 { 1.0 } else { lo }, hi) } else { (lo, if hi > 1.0 { 1.0 } else { hi }) }
@@ -114,13 +118,13 @@ fn cbrt_at(x: f64) -> Ends {
         y = (2.0 * y + m / (y * y)) / 3.0;
     }
     // One step of Newton's method in double-double: the error of y is squared.
-    let square = Dd::product(y, y);
-    let rest = Dd(m, 0.0).minus(square.times(Dd(y, 0.0)));
+    let square = DoubleDouble::from_product(y, y);
+    let rest = DoubleDouble::new(m, 0.0).sub(square.mul(DoubleDouble::new(y, 0.0)));
     // With at most 17 bits, y³ is a double, and so the rest is exact: y is the root.
-    if rest.0 == 0.0 && y.to_bits().trailing_zeros() >= 36 {
-        return Scaled { value: Dd(y, 0.0), exponent: k }.ends((y, y));
+    if rest.hi == 0.0 && y.to_bits().trailing_zeros() >= 36 {
+        return Scaled { value: DoubleDouble::new(y, 0.0), exponent: k }.ends((y, y));
     }
-    let value = Dd::sum(y, rest.0 / (3.0 * square.0));
+    let value = DoubleDouble::from_sum(y, rest.hi / (3.0 * square.hi));
     let y = Scaled { value, exponent: k };
     y.ends(enclose(y.value))
 }

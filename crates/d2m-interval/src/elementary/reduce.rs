@@ -3,15 +3,16 @@
 use super::{
     Ends,
     constants::{FRAC_PI_2, INVERSE_FACTORIAL, TWO_OVER_PI},
-    double_double::Dd,
     enclose,
 };
 use crate::Interval;
+use core::ops::{Div, Mul, Neg};
+use d2m_lanes::DoubleDouble;
 
 /// `x = (4k + quadrant) π/2 + r` with |r| ≤ π/4 (and a little).
 pub(super) struct Reduced {
     quadrant: i32,
-    r: Dd,
+    r: DoubleDouble,
 }
 
 /// Binary digits `start .. start + 64` of 2/π, counted from 1 = first digit after the point.
@@ -29,7 +30,7 @@ impl Reduced {
     /// `x` finite.
     pub(super) fn new(x: f64) -> Self {
         if x.abs() < 0.78 {
-            return Self { quadrant: 0, r: Dd(x, 0.0) };
+            return Self { quadrant: 0, r: DoubleDouble::new(x, 0.0) };
         }
         // |x| = mantissa · 2^exponent. Digits of 2/π with index below exponent − 1 give multiples of 4.
         let bits = x.abs().to_bits();
@@ -65,8 +66,8 @@ impl Reduced {
         let low = (top >> 22) as u64 & ((1 << 53) - 1);
         let place = |p: i32| f64::from_bits(((1023 + p) as u64) << 52);
         let lead = -(64 * zeros as i32) - shift as i32;
-        let value = Dd::sum(high as f64 * place(lead - 53), low as f64 * place(lead - 106));
-        let r = value.times(FRAC_PI_2);
+        let value = DoubleDouble::from_sum(high as f64 * place(lead - 53), low as f64 * place(lead - 106));
+        let r = value.mul(FRAC_PI_2);
         let (quadrant, r) = if negative { (quadrant, r.neg()) } else { (quadrant, r) };
         if x < 0.0 {
             Self { quadrant: -quadrant & 3, r: r.neg() }
@@ -78,13 +79,13 @@ impl Reduced {
     /// Bit j is set when a multiple of π/2 that is ≡ j (mod 4) lies between; `x` goes from here to `end`, is
     /// not empty and narrower than 2π.
     pub(super) fn multiples_to(&self, end: &Self, x: Interval) -> u32 {
-        let floor = |p: &Self| p.quadrant - i32::from(p.r.0 < 0.0);
+        let floor = |p: &Self| p.quadrant - i32::from(p.r.hi < 0.0);
         let mut count = (floor(end) - floor(self)) & 3;
         if count == 0 && x.hi() - x.lo() > 3.0 {
             count = 4;
         }
         let mut first = (floor(self) + 1) & 3;
-        if self.r.0 == 0.0 {
+        if self.r.hi == 0.0 {
             first = self.quadrant & 3;
             count = (count + 1).min(4);
         }
@@ -93,14 +94,14 @@ impl Reduced {
     }
 
     /// Sine and cosine of `r`.
-    fn kernel(&self) -> (Dd, Dd) {
-        const SIN: [Dd; 12] = signed_factorials(1);
-        const COS: [Dd; 12] = signed_factorials(0);
+    fn kernel(&self) -> (DoubleDouble, DoubleDouble) {
+        const SIN: [DoubleDouble; 12] = signed_factorials(1);
+        const COS: [DoubleDouble; 12] = signed_factorials(0);
         let z = self.r.sqr();
-        (self.r.times(Dd::polynomial(z, &SIN, 5)), Dd::polynomial(z, &COS, 5))
+        (self.r.mul(DoubleDouble::polynomial(z, &SIN, 5)), DoubleDouble::polynomial(z, &COS, 5))
     }
 
-    fn sin_cos(&self) -> (Dd, Dd) {
+    fn sin_cos(&self) -> (DoubleDouble, DoubleDouble) {
         let (s, c) = self.kernel();
         match self.quadrant & 3 {
             0 => (s, c),
@@ -110,38 +111,38 @@ impl Reduced {
         }
     }
 
-    pub(super) fn sin_value(&self) -> Dd {
-        if self.r.0.abs() < LINEAR && self.quadrant & 1 == 0 {
+    pub(super) fn sin_value(&self) -> DoubleDouble {
+        if self.r.hi.abs() < LINEAR && self.quadrant & 1 == 0 {
             return if self.quadrant == 0 { self.r } else { self.r.neg() };
         }
         self.sin_cos().0
     }
 
     pub(super) fn sin(&self) -> Ends {
-        if self.r.0 == 0.0 { (0.0, 0.0) } else { enclose(self.sin_value()) }
+        if self.r.hi == 0.0 { (0.0, 0.0) } else { enclose(self.sin_value()) }
     }
 
     pub(super) fn cos(&self) -> Ends {
-        if self.r.0 == 0.0 { (1.0, 1.0) } else { enclose(self.sin_cos().1) }
+        if self.r.hi == 0.0 { (1.0, 1.0) } else { enclose(self.sin_cos().1) }
     }
 
     /// Not for x = 0.
-    pub(super) fn tan(&self) -> Dd {
-        if self.r.0.abs() < LINEAR && self.quadrant & 1 == 0 {
+    pub(super) fn tan(&self) -> DoubleDouble {
+        if self.r.hi.abs() < LINEAR && self.quadrant & 1 == 0 {
             return self.r;
         }
         let (s, c) = self.sin_cos();
-        s.over(c)
+        s.div(c)
     }
 }
 
 /// ±1/n! for n = start, start + 2, …
-const fn signed_factorials(start: usize) -> [Dd; 12] {
-    let mut out = [Dd(0.0, 0.0); 12];
+const fn signed_factorials(start: usize) -> [DoubleDouble; 12] {
+    let mut out = [DoubleDouble::new(0.0, 0.0); 12];
     let mut i = 0;
     while i < 12 {
-        let Dd(a, b) = INVERSE_FACTORIAL[start + 2 * i];
-        out[i] = if i % 2 == 0 { Dd(a, b) } else { Dd(-a, -b) };
+        let DoubleDouble { hi: a, lo: b } = INVERSE_FACTORIAL[start + 2 * i];
+        out[i] = if i % 2 == 0 { DoubleDouble::new(a, b) } else { DoubleDouble::new(-a, -b) };
         i += 1;
     }
     out

@@ -1,6 +1,8 @@
 //! `sin x / x` and `(1 − cos x)/x²`, continued at 0: Rodrigues' formula without a division by the angle.
-use super::{Ends, double_double::Dd, enclose, reduce::Reduced};
+use super::{Ends, enclose, reduce::Reduced};
 use crate::Interval;
+use core::ops::Div;
+use d2m_lanes::DoubleDouble;
 
 /// Below, `sinc` falls: its derivative vanishes first at 4.493….
 const SINC_FALLS: f64 = 4.49;
@@ -25,7 +27,7 @@ fn sinc_at(x: f64) -> Ends {
     if x < FLAT {
         return (1.0_f64.next_down(), 1.0);
     }
-    let (lo, hi) = enclose(Reduced::new(x).sin_value().over(Dd(x, 0.0)));
+    let (lo, hi) = enclose(Reduced::new(x).sin_value().div(DoubleDouble::new(x, 0.0)));
     (lo, if hi > 1.0 { 1.0 } else { hi })
 }
 
@@ -37,7 +39,7 @@ fn versine_ratio_at(x: f64) -> Ends {
     if x < FLAT {
         return (0.5_f64.next_down(), 0.5);
     }
-    let ratio = Reduced::new(0.5 * x).sin_value().over(Dd(x, 0.0));
+    let ratio = Reduced::new(0.5 * x).sin_value().div(DoubleDouble::new(x, 0.0));
     let (lo, hi) = enclose(ratio.sqr().scaled(2.0));
     (if lo < 0.0 { 0.0 } else { lo }, if hi > 0.5 { 0.5 } else { hi })
 }

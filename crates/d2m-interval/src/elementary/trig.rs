@@ -3,10 +3,8 @@
 //! Both ends of an interval travel through one vector: reduction by n·π/2 (three-part Cody–Waite), two Taylor
 //! polynomials, quadrant by bit masks. Extrema inside come from the quadrant numbers of the two ends.
 use super::{enclose, reduce::Reduced};
-use crate::{
-    Interval,
-    simd::{F64x2, Vector},
-};
+use crate::Interval;
+use d2m_lanes::{F64x2, Vector};
 
 // π/2 in three parts: 33 bits, 33 bits, the rest. n·P1 and n·P2 are exact for |n| < 2²⁰.
 const P1: f64 = f64::from_bits(0x3FF9_21FB_5440_0000);

@@ -1,6 +1,7 @@
 //! Sine and cosine of four intervals: the kernel of `trig`, on all lower ends and all upper ends.
 use super::trig::{CANCELLED, FAST_LIMIT, NEAR, PAD, PAD_TINY, kernel, reduce, residues};
-use crate::{IntervalX4, simd::F64x4};
+use crate::IntervalX4;
+use d2m_lanes::F64x4;
 
 /// Sine and cosine of four numbers, each as high + low, with the quadrants.
 struct Point {

@@ -4,8 +4,9 @@
 //! feature as anchor on either side, the frame's position is made in double-double from the exact inputs, relative
 //! to B's anchor, and only short vectors are rounded in double precision.
 use super::{Frame, RelativeMotion, UNIT, UP};
-use crate::double_double::DoubleDouble;
 use crate::rotation::exponential_dd;
+use core::ops::{Add, Mul, Sub};
+use d2m_lanes::DoubleDouble;
 use glam::DVec3;
 
 #[derive(Debug, Clone, Copy)]
@@ -30,7 +31,7 @@ impl RelativeMotion {
     /// The same motion with points measured from `point_a` and `point_b` (body frames) and frames whose position is
     /// made in extended precision: about ten times slower, for features far from their centre of rotation.
     pub fn anchored(&self, point_a: DVec3, point_b: DVec3) -> Self {
-        let arm = |point: DVec3, at: DVec3| [0, 1, 2].map(|i| DoubleDouble::difference(point[i], at[i]));
+        let arm = |point: DVec3, at: DVec3| [0, 1, 2].map(|i| DoubleDouble::from_difference(point[i], at[i]));
         let arm_a = self.exact.rotation_a.apply(arm(point_a, self.at_a));
         let arm_b = self.exact.rotation_b.apply(arm(point_b, self.at_b));
         let length = |v: &[DoubleDouble; 3]| DVec3::new(v[0].hi, v[1].hi, v[2].hi).length() * UP;
@@ -51,7 +52,7 @@ impl Anchor {
         let rotation_b = exponential_dd(motion.spin_b.omega, s);
         let turned = rotation_a.apply(self.arm_a);
         let exact = &motion.exact;
-        let x = [0, 1, 2].map(|i| exact.offset[i].add(exact.velocity[i].mul_f64(tau)).add(turned[i]));
+        let x = [0, 1, 2].map(|i| exact.offset[i].add(exact.velocity[i].mul(tau)).add(turned[i]));
         let seen = rotation_b.apply_transposed(x);
         let p = [0, 1, 2].map(|i| seen[i].sub(self.arm_b[i]).hi);
         let arm = DVec3::new(self.arm_a[0].hi, self.arm_a[1].hi, self.arm_a[2].hi);

@@ -1,9 +1,9 @@
 //! Jets of any motion against closed forms and double-double: never beyond the remainder, somewhere near it; mutants
 //! of the bounds that the same samples refute.
 use super::any::RelativeState;
-use crate::double_double::DoubleDouble;
 use crate::{CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
+use d2m_lanes::DoubleDouble;
 use glam::{DMat3, DQuat, DVec3};
 
 struct Random(u64);
@@ -110,11 +110,11 @@ fn exact(a: &ConstantTwist, b: &ConstantTwist, p: DVec3, t: DoubleDouble) -> [Do
     // Motions with reference time 0, so that t needs no rounding.
     let place = |m: &ConstantTwist| {
         let turn = crate::rotation::rotate_dd(m.angular_velocity(), t, m.orientation());
-        let x = [0, 1, 2].map(|i| t.mul_f64(m.linear_velocity()[i]).add_f64(m.position()[i]));
+        let x = [0, 1, 2].map(|i| t.mul(m.linear_velocity()[i]).add_f64(m.position()[i]));
         (turn, x)
     };
     let ((ra, xa), (rb, xb)) = (place(a), place(b));
-    let arm = ra.apply([0, 1, 2].map(|i| DoubleDouble::difference(p[i], a.at()[i])));
+    let arm = ra.apply([0, 1, 2].map(|i| DoubleDouble::from_difference(p[i], a.at()[i])));
     let x = [0, 1, 2].map(|i| xa[i].sub(xb[i]).add(arm[i]));
     let back = rb.apply_transposed(x);
     [0, 1, 2].map(|i| back[i].add_f64(b.at()[i]))
@@ -145,8 +145,8 @@ fn jets_of_constant_twists_keep_their_remainders() {
         for s in [-half, 0.0, half] {
             let x = exact(&a, &b, p, DoubleDouble::from_f64(at).add_f64(s));
             let d = [0, 1, 2].map(|i| {
-                let polynomial = DoubleDouble::from_f64(jet.a[i]).mul_f64(0.5 * s).add_f64(jet.v[i]);
-                x[i].sub(polynomial.mul_f64(s).add_f64(jet.p[i])).hi
+                let polynomial = DoubleDouble::from_f64(jet.a[i]).mul(0.5 * s).add_f64(jet.v[i]);
+                x[i].sub(polynomial.mul(s).add_f64(jet.p[i])).hi
             });
             let (error, bound) = (DVec3::from_array(d).length(), jet.remainder.bound(s.abs()));
             assert!(error <= bound, "{error:e} > {bound:e} at {s} {a:?} {b:?}");

@@ -3,7 +3,7 @@ use super::RelativeMotion;
 use crate::sin_cos::sin_cos_two;
 use crate::two::TwoVec3;
 use crate::{PathJet, Remainder, TwoJets};
-use d2m_interval::F64x2;
+use d2m_lanes::F64x2;
 use glam::{DMat3, DVec3};
 
 /// Three matrices and three vectors: `q⁽ᵏ⁾ = c_k + M_k r` for a point of A, `e⁽ᵏ⁾ = M_k d` for a direction.

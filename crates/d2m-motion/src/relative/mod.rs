@@ -15,10 +15,11 @@ pub use any::RelativeState;
 pub use frame::{Arm, ArmPair, Frame};
 
 use crate::ConstantTwist;
-use crate::double_double::DoubleDouble;
 use crate::rotation::{RotationDd, Spin};
 use anchor::Anchor;
 use bounds::Bounds;
+use core::ops::{Neg, Sub};
+use d2m_lanes::DoubleDouble;
 use glam::{DMat3, DVec3};
 
 /// Unit roundoff of f64, 2⁻⁵³.
@@ -84,13 +85,13 @@ impl RelativeMotion {
         let exact = Exact {
             offset: [0, 1, 2].map(|i| position_a[i].sub(position_b[i])),
             velocity: [0, 1, 2]
-                .map(|i| DoubleDouble::difference(a.linear_velocity()[i], b.linear_velocity()[i])),
+                .map(|i| DoubleDouble::from_difference(a.linear_velocity()[i], b.linear_velocity()[i])),
             rotation_a: a.rotation_dd(start),
             rotation_b: b.rotation_dd(start),
         };
         let rounded = |v: [DoubleDouble; 3]| DVec3::new(v[0].hi, v[1].hi, v[2].hi);
         let (offset, velocity) = (rounded(exact.offset), rounded(exact.velocity));
-        let length = DoubleDouble::difference(end, start);
+        let length = DoubleDouble::from_difference(end, start);
         let duration = if length.lo > 0.0 { length.hi.next_up() } else { length.hi };
         let (spin_a, spin_b) = (Spin::new(a.angular_velocity()), Spin::new(b.angular_velocity()));
         let spin_difference = spin_a.omega - spin_b.omega;
@@ -207,14 +208,14 @@ impl RelativeMotion {
     /// Real time of `τ`, rounded down, not before the window.
     #[inline]
     pub fn time_down(&self, tau: f64) -> f64 {
-        let (sum, error) = crate::double_double::two_sum(self.start, tau);
+        let (sum, error) = d2m_lanes::two_sum(self.start, tau);
         (if error < 0.0 { sum.next_down() } else { sum }).max(self.start)
     }
 
     /// Real time of `τ`, rounded up, not after the window.
     #[inline]
     pub fn time_up(&self, tau: f64) -> f64 {
-        let (sum, error) = crate::double_double::two_sum(self.start, tau);
+        let (sum, error) = d2m_lanes::two_sum(self.start, tau);
         (if error > 0.0 { sum.next_up() } else { sum }).min(self.end)
     }
 }

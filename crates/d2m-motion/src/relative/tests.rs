@@ -1,9 +1,9 @@
 //! Every bound of the relative motion, sampled: never above 1 of the bound, somewhere above 0.9 of it; and mutants of
 //! the bounds that the same samples refute.
 use super::RelativeMotion;
-use crate::double_double::DoubleDouble;
 use crate::rotation::exponential_dd;
 use crate::{ConstantTwist, PathJet, Remainder};
+use d2m_lanes::DoubleDouble;
 use glam::{DQuat, DVec3};
 
 struct Random(u64);
@@ -146,7 +146,7 @@ fn off(x: [DoubleDouble; 3], jet: &PathJet, s: f64) -> f64 {
 
 fn difference(x: [DoubleDouble; 3], p: DVec3, v: DVec3, a: DVec3, s: f64) -> f64 {
     let d = [0, 1, 2].map(|i| {
-        let jet = DoubleDouble::from_f64(a[i]).mul_f64(0.5 * s).add_f64(v[i]).mul_f64(s).add_f64(p[i]);
+        let jet = DoubleDouble::from_f64(a[i]).mul(0.5 * s).add_f64(v[i]).mul(s).add_f64(p[i]);
         x[i].sub(jet).hi
     });
     DVec3::from_array(d).length()

@@ -177,8 +177,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "times rounded to nearest",
         "crates/d2m-bvh/src/search/motion/units.rs",
-        "if sum.1 < 0.0 { sum.0.next_down() } else { sum.0 }",
-        "sum.0",
+        "if rest < 0.0 { sum.next_down() } else { sum }",
+        "sum",
         "crates/d2m-bvh/tests/clock_and_units.rs::a_start_at_large_times_is_not_a_contact",
     ),
     patch(
@@ -254,7 +254,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     ),
     patch(
         "registers pack the pairs of other lanes",
-        "crates/d2m-bvh/src/lanes/avx.rs",
+        "crates/d2m-lanes/src/selected/avx.rs",
         "order[bits] |= lane << (8 * place);",
         "order[bits] |= (7 - lane) << (8 * place);",
         "crates/d2m-bvh/tests/instruction_sets.rs::a_limit_changes_no_bit_of_any_answer",

@@ -11,11 +11,11 @@ use super::collide::{check_solid, crossing_pair_within};
 use super::containment::one_holds_the_other;
 use super::node_pair::Scene;
 use crate::allowance::{Allowance, Exhausted};
-use crate::lanes::run;
 use crate::tree::margin::UNIT_F64;
 use crate::{Budget, PairCache, Posed, QueryError, Solid, StartState};
 use best::{Best, EXPECTED_WIDTH};
 use d2m_feature::triangle_distance;
+use d2m_lanes::run;
 use glam::DVec3;
 use search::{Found, Search};
 

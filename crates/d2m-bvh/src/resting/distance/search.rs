@@ -4,10 +4,10 @@ use super::best::{Best, EXPECTED_WIDTH};
 use super::crowd::drop_beyond_plane;
 use super::queue::{Item, Queue};
 use crate::allowance::Allowance;
-use crate::lanes::{Lanes, Task};
 use crate::resting::node_pair::{Direction, Scene, Step, child, gap_exceeds};
 use crate::tree::margin::{UNIT_F64, round_up};
 use d2m_feature::triangle_distance;
+use d2m_lanes::{Lanes, Task};
 
 /// Node tests and comparisons after which the pairs that wait are a crowd: several times as many as in ordinary queries of
 /// a million triangles. The next time after twice as many.

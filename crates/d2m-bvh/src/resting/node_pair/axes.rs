@@ -1,8 +1,8 @@
 //! The boxes of a wide node and a single box along the axes of both.
 
 use super::placed_box::Placed;
-use crate::lanes::Lanes;
 use crate::tree::node::WideNode;
+use d2m_lanes::Lanes;
 
 /// Scalar product of lanes. (No closures and no `array::map` here: they are compiled without the vector instructions
 /// unless they happen to be inlined.)

@@ -6,10 +6,10 @@
 
 use super::axes::{Axes, dot, load, splat};
 use super::placed_box::Placed;
-use crate::lanes::Lanes;
 use crate::tree::bevel::reach;
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
+use d2m_lanes::Lanes;
 
 /// Makes computed unit vectors no longer than one: their lengths err by at most five roundings.
 const SHORTENED: f32 = 1.0 - 8.0 * UNIT_F32 as f32;

@@ -3,9 +3,9 @@
 use super::axes::{Axes, dot};
 use super::directions::{gap_along, gap_along_other, gap_along_own, gap_from_triangle};
 use super::placed_box::Placed;
-use crate::lanes::Lanes;
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
+use d2m_lanes::Lanes;
 
 /// Covers the axes' deviation from orthonormal and the roundings of squares, sums and root: at most 9u.
 const NORM_FACTOR: f32 = 1.0 - 16.0 * UNIT_F32 as f32;

@@ -3,11 +3,11 @@
 use super::RelativePose;
 use super::node_test::{lower_bounds, overlaps};
 use super::placed_box::{Placed, Side};
-use crate::lanes::Lanes;
 use crate::tree::bevel::reach_both_ways;
 use crate::tree::margin::{UNIT_F32, UNIT_F64};
 use crate::tree::node::{Below, OrientedBox, WIDTH};
 use crate::{MeshTree, Posed, QueryError};
+use d2m_lanes::Lanes;
 use glam::DVec3;
 
 /// Sums and products of up to ten non-negative terms round by 2⁻⁵³ each; 2⁻⁴⁰ covers them all.

@@ -2,11 +2,11 @@
 
 use super::node_test::{lower_bounds, margin_free_gaps};
 use super::placed_box::{Placed, Side};
-use crate::lanes::{InstructionSet, Lanes, Portable, Task, run, run_on};
 use crate::random::Random;
 use crate::tree::bevel::{MOST, PAIRS, STEPS};
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::{OrientedBox, WideNode};
+use d2m_lanes::{InstructionSet, Lanes, Portable, Task, run, run_on};
 use glam::{DMat3, DQuat, DVec3};
 
 impl Random {

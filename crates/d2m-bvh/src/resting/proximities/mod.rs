@@ -29,11 +29,11 @@ pub use manifold::reduce_proximities;
 
 use super::node_pair::{Scene, Step, child, proven_apart};
 use crate::allowance::Allowance;
-use crate::lanes::{Lanes, Task, run};
 use crate::tree::margin::{UNIT_F64, round_up};
 use crate::{Budget, Posed, QueryError};
 use candidate::{Candidate, without_twins};
 use d2m_feature::FeaturePair;
+use d2m_lanes::{Lanes, Task, run};
 use feature_test::FeatureTest;
 use glam::DVec3;
 

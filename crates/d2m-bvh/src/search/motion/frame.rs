@@ -6,7 +6,7 @@
 
 use super::local_motion::LocalMotion;
 use super::track::Track;
-use crate::lanes::{Doubles, Matrix, Quad};
+use d2m_lanes::{Doubles, Matrix, Quad};
 use glam::DVec3;
 
 /// The two motions over a window of the search that starts at the offset `start`.

@@ -1,8 +1,9 @@
 //! A constant twist on the clock and in the unit of length of a search.
 
-use super::pair::{Pair, two_sum};
 use super::rotation::{Columns, Turning};
 use super::units::Units;
+use core::ops::Mul;
+use d2m_lanes::DoubleDouble;
 use d2m_motion::ConstantTwist;
 use glam::DVec3;
 
@@ -23,7 +24,7 @@ pub(crate) struct LocalMotion {
     given_arm: DVec3,
     turning: Turning,
     /// From the reference time to the start of the window.
-    elapsed: Pair,
+    elapsed: DoubleDouble,
 }
 
 impl LocalMotion {
@@ -52,8 +53,12 @@ impl LocalMotion {
         };
         // The time means nothing for a body at rest.
         let rests = angular_velocity == DVec3::ZERO && linear_velocity == DVec3::ZERO;
-        let since = two_sum(start, -motion.reference_time());
-        let elapsed = if rests { Pair(0.0, 0.0) } else { Pair(since.0 * per_time, since.1 * per_time) };
+        let since = DoubleDouble::from_sum(start, -motion.reference_time());
+        let elapsed = if rests {
+            DoubleDouble::new(0.0, 0.0)
+        } else {
+            DoubleDouble::new(since.hi * per_time, since.lo * per_time)
+        };
         let position = motion.position() * per_length;
         Self { position, linear_velocity, angular_velocity, shift, arm, given_arm, turning, elapsed }
     }
@@ -101,20 +106,22 @@ impl LocalMotion {
     }
 
     /// From the reference time to the start of the window.
-    pub(crate) const fn elapsed_at_start(&self) -> Pair {
+    pub(crate) const fn elapsed_at_start(&self) -> DoubleDouble {
         self.elapsed
     }
 
     /// From the reference time to an offset.
-    pub(crate) fn elapsed(&self, offset: f64) -> Pair {
-        let sum = two_sum(self.elapsed.0, offset);
-        two_sum(sum.0, sum.1 + self.elapsed.1)
+    pub(crate) fn elapsed(&self, offset: f64) -> DoubleDouble {
+        let sum = DoubleDouble::from_sum(self.elapsed.hi, offset);
+        DoubleDouble::from_sum(sum.hi, sum.lo + self.elapsed.lo)
     }
 
     /// World position of the reference point in use at an offset: for witness points, no bound rests on it.
     pub(crate) fn estimate_position(&self, offset: f64) -> DVec3 {
         let elapsed = self.elapsed(offset);
-        let one = |k: usize| elapsed.times(self.linear_velocity[k]).add(Pair(self.position[k], 0.0)).0;
+        let one = |k: usize| {
+            elapsed.mul(self.linear_velocity[k]).add_sloppily(DoubleDouble::new(self.position[k], 0.0)).hi
+        };
         DVec3::new(one(0), one(1), one(2)) + self.shift
     }
 
@@ -128,13 +135,13 @@ impl LocalMotion {
     /// Bound on the terms of the position, up to an offset of one, by which its rounding is measured.
     pub(crate) fn terms(&self) -> f64 {
         let largest = |v: DVec3| v.abs().max_element();
-        let longest = (self.elapsed.0.abs() + 1.0).max(self.elapsed(1.0).0.abs());
+        let longest = (self.elapsed.hi.abs() + 1.0).max(self.elapsed(1.0).hi.abs());
         largest(self.position) + largest(self.shift) + largest(self.linear_velocity) * longest
     }
 
     /// Bound on the angle between the reference time and any offset up to `end`.
     pub(crate) fn angle(&self, end: f64) -> f64 {
-        let longest = self.elapsed.0.abs().max(self.elapsed(end).0.abs());
+        let longest = self.elapsed.hi.abs().max(self.elapsed(end).hi.abs());
         self.turning.speed() * longest
     }
 }

@@ -2,7 +2,6 @@
 
 pub(crate) mod frame;
 pub(crate) mod local_motion;
-pub(crate) mod pair;
 pub(crate) mod rotation;
 pub(crate) mod track;
 pub(crate) mod units;

@@ -1,6 +1,7 @@
 //! The rotation of a constant-twist motion at one time, accurate however far that time is from the reference time.
 
-use super::pair::{Pair, two_product, two_sum};
+use core::ops::Mul;
+use d2m_lanes::DoubleDouble;
 use glam::DVec3;
 
 /// Columns of a 3×3 matrix.
@@ -14,7 +15,7 @@ pub(crate) struct Turning {
     /// Unit vector; zero for a motion without rotation.
     axis: DVec3,
     /// |ω|.
-    speed: Pair,
+    speed: DoubleDouble,
 }
 
 /// Sine and 1 − cosine of the angle that a motion has turned by.
@@ -41,21 +42,23 @@ impl Wheel {
 impl Turning {
     /// From the orientation [x, y, z, w] at the reference time and the angular velocity.
     pub(crate) fn new(orientation: [f64; 4], omega: DVec3) -> Self {
-        let (mut axis, mut speed) = (DVec3::ZERO, Pair(0.0, 0.0));
+        let (mut axis, mut speed) = (DVec3::ZERO, DoubleDouble::new(0.0, 0.0));
         let largest = omega.abs().max_element();
         if largest > 0.0 {
             // Divided by a power of two, so that no square over- or underflows.
             let unit = power_of_two_below(largest);
             let w = omega / unit;
-            let square = two_product(w.x, w.x).add(two_product(w.y, w.y)).add(two_product(w.z, w.z));
-            let root = square.0.sqrt();
-            let rest = square.add({
-                let p = two_product(root, root);
-                Pair(-p.0, -p.1)
+            let square = DoubleDouble::from_product(w.x, w.x)
+                .add_sloppily(DoubleDouble::from_product(w.y, w.y))
+                .add_sloppily(DoubleDouble::from_product(w.z, w.z));
+            let root = square.hi.sqrt();
+            let rest = square.add_sloppily({
+                let p = DoubleDouble::from_product(root, root);
+                DoubleDouble::new(-p.hi, -p.lo)
             });
-            let length = two_sum(root, rest.0 / (2.0 * root));
-            axis = w / length.0;
-            speed = Pair(length.0 * unit, length.1 * unit);
+            let length = DoubleDouble::from_sum(root, rest.hi / (2.0 * root));
+            axis = w / length.hi;
+            speed = DoubleDouble::new(length.hi * unit, length.lo * unit);
         }
         Self { start: from_quaternion(orientation), axis, speed }
     }
@@ -67,7 +70,7 @@ impl Turning {
 
     /// |ω|.
     pub(crate) const fn speed(&self) -> f64 {
-        self.speed.0
+        self.speed.hi
     }
 
     /// ω/|ω|; zero for a motion without rotation.
@@ -82,8 +85,8 @@ impl Turning {
     }
 
     /// After a time, counted from the reference time.
-    pub(crate) fn after(&self, elapsed: Pair) -> Turn {
-        if elapsed.0 == 0.0 || self.speed.0 == 0.0 {
+    pub(crate) fn after(&self, elapsed: DoubleDouble) -> Turn {
+        if elapsed.hi == 0.0 || self.speed.hi == 0.0 {
             return Turn { sin: 0.0, versine: 0.0 };
         }
         let (sin, versine) = sin_versine(self.speed.mul(elapsed));
@@ -113,19 +116,19 @@ fn from_quaternion(q: [f64; 4]) -> Columns {
 
 /// Sine and 1 − cosine of an angle given as a pair: reduced by multiples of π/2 with 2⁻¹⁶⁰ left out, then
 /// Taylor polynomials whose remainders on |r| ≤ π/4 are below 2⁻⁵⁷.
-fn sin_versine(angle: Pair) -> (f64, f64) {
+fn sin_versine(angle: DoubleDouble) -> (f64, f64) {
     use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
     const ROUND: f64 = 6_755_399_441_055_744.0; // 1.5·2⁵²: adding it rounds to an integer
     // π/2 less its double, and less that: the second and the third double of π/2.
     const HALF_PI_MIDDLE: f64 = 6.123_233_995_736_766e-17;
     const HALF_PI_LOW: f64 = -1.497_384_904_859_17e-33;
-    let shifted = angle.0 * FRAC_2_PI + ROUND;
+    let shifted = angle.hi * FRAC_2_PI + ROUND;
     let turns = shifted - ROUND;
     let reduced = angle
-        .add(two_product(-turns, FRAC_PI_2))
-        .add(two_product(-turns, HALF_PI_MIDDLE))
-        .add(two_product(-turns, HALF_PI_LOW));
-    let (x, y) = (reduced.0, reduced.1);
+        .add_sloppily(DoubleDouble::from_product(-turns, FRAC_PI_2))
+        .add_sloppily(DoubleDouble::from_product(-turns, HALF_PI_MIDDLE))
+        .add_sloppily(DoubleDouble::from_product(-turns, HALF_PI_LOW));
+    let (x, y) = (reduced.hi, reduced.lo);
     let z = x * x;
     let mut odd = 1.0;
     for k in [17.0, 15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0] {

@@ -1,14 +1,15 @@
 //! How the reference points of two bodies move past each other.
 
 use super::local_motion::LocalMotion;
-use super::pair::{Pair, two_sum};
+use core::ops::Mul;
+use d2m_lanes::DoubleDouble;
 use glam::DVec3;
 
 /// How the reference point of one body moves against that of another: on a straight line, in pairs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Track {
-    start: [Pair; 3],
-    velocity: [Pair; 3],
+    start: [DoubleDouble; 3],
+    velocity: [DoubleDouble; 3],
 }
 
 impl Track {
@@ -18,8 +19,16 @@ impl Track {
         let [x, y, z] = given_relative_position(a, b);
         let (v, w) = (a.linear_velocity(), b.linear_velocity());
         Self {
-            start: [x.add(Pair(shift.x, 0.0)), y.add(Pair(shift.y, 0.0)), z.add(Pair(shift.z, 0.0))],
-            velocity: [two_sum(v.x, -w.x), two_sum(v.y, -w.y), two_sum(v.z, -w.z)],
+            start: [
+                x.add_sloppily(DoubleDouble::new(shift.x, 0.0)),
+                y.add_sloppily(DoubleDouble::new(shift.y, 0.0)),
+                z.add_sloppily(DoubleDouble::new(shift.z, 0.0)),
+            ],
+            velocity: [
+                DoubleDouble::from_sum(v.x, -w.x),
+                DoubleDouble::from_sum(v.y, -w.y),
+                DoubleDouble::from_sum(v.z, -w.z),
+            ],
         }
     }
 
@@ -27,26 +36,33 @@ impl Track {
     pub(crate) fn at(&self, offset: f64) -> DVec3 {
         let [x, y, z] = self.start;
         if offset == 0.0 {
-            return DVec3::new(x.0, y.0, z.0);
+            return DVec3::new(x.hi, y.hi, z.hi);
         }
-        let one = |k: usize| self.start[k].add(self.velocity[k].times(offset)).0;
+        let one = |k: usize| self.start[k].add_sloppily(self.velocity[k].mul(offset)).hi;
         DVec3::new(one(0), one(1), one(2))
     }
 }
 
 /// x_A − x_B of the given reference points at the start.
-pub(crate) fn given_relative_position(a: &LocalMotion, b: &LocalMotion) -> [Pair; 3] {
+pub(crate) fn given_relative_position(a: &LocalMotion, b: &LocalMotion) -> [DoubleDouble; 3] {
     let (p, q) = (a.position(), b.position());
-    let apart = [two_sum(p.x, -q.x), two_sum(p.y, -q.y), two_sum(p.z, -q.z)];
+    let apart = [
+        DoubleDouble::from_sum(p.x, -q.x),
+        DoubleDouble::from_sum(p.y, -q.y),
+        DoubleDouble::from_sum(p.z, -q.z),
+    ];
     let (since_a, since_b) = (a.elapsed_at_start(), b.elapsed_at_start());
     // Most motions state their pose at the start.
-    if since_a.0 == 0.0 && since_b.0 == 0.0 {
+    if since_a.hi == 0.0 && since_b.hi == 0.0 {
         return apart;
     }
-    let moved = |since: Pair, speed: f64| if since.0 == 0.0 { Pair(0.0, 0.0) } else { since.times(speed) };
+    let moved = |since: DoubleDouble, speed: f64| {
+        if since.hi == 0.0 { DoubleDouble::new(0.0, 0.0) } else { since.mul(speed) }
+    };
     let one = |k: usize| {
-        let both = moved(since_a, a.linear_velocity()[k]).add(moved(since_b, -b.linear_velocity()[k]));
-        apart[k].add(both)
+        let both =
+            moved(since_a, a.linear_velocity()[k]).add_sloppily(moved(since_b, -b.linear_velocity()[k]));
+        apart[k].add_sloppily(both)
     };
     [one(0), one(1), one(2)]
 }

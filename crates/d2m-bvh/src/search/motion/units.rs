@@ -1,7 +1,7 @@
 //! The clock and the unit of length of one search.
 
-use super::pair::two_sum;
 use crate::Window;
+use d2m_lanes::two_sum;
 
 /// Units are powers of two between this one and its inverse: both can be multiplied with and divided by.
 const LEAST_UNIT: f64 = f64::from_bits((1023 - 1000) << 52); // 2⁻¹⁰⁰⁰
@@ -36,14 +36,12 @@ impl Units {
 
     /// The offset of the end of the window, not early.
     pub(crate) fn end_up(&self) -> f64 {
-        let length = two_sum(self.window.end(), -self.window.start());
-        (if length.1 > 0.0 { length.0.next_up() } else { length.0 }) / self.time
+        sum_up(self.window.end(), -self.window.start()) / self.time
     }
 
     /// The offset of the end of the window, not late.
     pub(crate) fn end_down(&self) -> f64 {
-        let length = two_sum(self.window.end(), -self.window.start());
-        (if length.1 < 0.0 { length.0.next_down() } else { length.0 }) / self.time
+        sum_down(self.window.end(), -self.window.start()) / self.time
     }
 
     /// The time at an offset, not late.
@@ -51,22 +49,32 @@ impl Units {
         // Exact, if not below the normal numbers.
         let seconds = offset * self.time;
         let seconds = if seconds < f64::MIN_POSITIVE { 0.0 } else { seconds };
-        let sum = two_sum(self.window.start(), seconds);
-        if sum.1 < 0.0 { sum.0.next_down() } else { sum.0 }
+        sum_down(self.window.start(), seconds)
     }
 
     /// The time at an offset, not early.
     pub(crate) fn time_up(&self, offset: f64) -> f64 {
         let seconds = offset * self.time;
         let seconds = if offset > 0.0 { seconds.max(f64::MIN_POSITIVE) } else { 0.0 };
-        let sum = two_sum(self.window.start(), seconds);
-        if sum.1 > 0.0 { sum.0.next_up() } else { sum.0 }
+        sum_up(self.window.start(), seconds)
     }
 
     /// The offset of a time, to half a unit in the last place.
     pub(crate) fn offset(&self, time: f64) -> f64 {
         (time - self.window.start()) / self.time
     }
+}
+
+/// The sum of two numbers, rounded down.
+pub(crate) fn sum_down(a: f64, b: f64) -> f64 {
+    let (sum, rest) = two_sum(a, b);
+    if rest < 0.0 { sum.next_down() } else { sum }
+}
+
+/// The sum of two numbers, rounded up.
+fn sum_up(a: f64, b: f64) -> f64 {
+    let (sum, rest) = two_sum(a, b);
+    if rest > 0.0 { sum.next_up() } else { sum }
 }
 
 /// The least power of two that is not below a number, within the range of units; one for zero.

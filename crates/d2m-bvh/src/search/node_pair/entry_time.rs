@@ -1,11 +1,10 @@
 //! Until when are a placed box and the eight boxes of a wide node apart?
 
 use super::node_test::{NodeScale, Placed};
-use crate::lanes::Lanes;
-use crate::lanes::{Elementwise, Two};
 use crate::tree::bevel::reach;
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
+use d2m_lanes::{Elementwise, Lanes, Two};
 
 /// What covers the roundings of the entry time and of unit axes.
 pub(crate) const ENTRY_FACTOR: f32 = 1.0 - 32.0 * UNIT_F32 as f32;
@@ -139,11 +138,9 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::Portable;
-    use crate::lanes::{Bytes, InstructionSet};
-    use crate::lanes::{Task, run_on};
     use crate::random::Random;
     use crate::tree::bevel::{PAIRS, STEPS};
+    use d2m_lanes::{Bytes, InstructionSet, Portable, Task, run_on};
 
     /// Bytes chosen by signs, by lanes and by twice as many.
     struct Choice([[f32; 8]; 4]);

@@ -2,9 +2,9 @@
 
 use super::entry_time::entry_times;
 use super::node_test::{NodeFrame, NodeScale, Placed};
-use crate::lanes::{Lanes, Rows};
 use crate::search::queue::Item;
 use crate::tree::node::{WIDTH, WideNode};
+use d2m_lanes::{Lanes, Rows};
 
 /// Keys of a window run from 0 to this for its whole unit of time.
 pub(crate) const KEY_SCALE: f64 = 536_870_912.0; // 2²⁹

@@ -1,10 +1,9 @@
 //! One box of one body, placed in the frame of a wide node of the other.
 
-use crate::lanes::Lanes;
-use crate::lanes::{Doubles, Matrix, Quad};
 use crate::search::motion::frame::Frame;
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
+use d2m_lanes::{Doubles, Lanes, Matrix, Quad};
 use glam::DVec3;
 
 /// Constants of one search for one choice of the wide body. Lengths are in units of that body's tree, times in

@@ -1,6 +1,6 @@
 //! Closest points of two triangles: an upper bound on their distance with the features that attain it.
 
-use crate::lanes::{Doubles, Quad, QuadVec};
+use d2m_lanes::{Doubles, Quad, QuadVec};
 use glam::DVec3;
 
 /// Where on a triangle a closest point lies.

@@ -2,10 +2,9 @@
 
 use super::closest::closest;
 use super::refined_directions::refined_directions;
-use crate::lanes::{Doubles, Quad, QuadVec};
-use crate::lanes::{Elementwise, Two};
 use crate::search::motion::frame::Frame;
 use crate::tree::margin::{DOWN, UNIT_F64, UP};
+use d2m_lanes::{Doubles, Elementwise, Quad, QuadVec, Two};
 use glam::DVec3;
 
 /// Distances and bounds of one search, in the units of the scene.

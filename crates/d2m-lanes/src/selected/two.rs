@@ -4,9 +4,7 @@
 use core::ops::{Add, Mul, Sub};
 
 /// What is done in each lane by itself.
-pub(crate) trait Elementwise:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
-{
+pub trait Elementwise: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// What one lane holds.
     type Scalar: Copy;
 
@@ -25,7 +23,7 @@ pub(crate) trait Elementwise:
 }
 
 /// Lanes of `f32` that may also hold four bytes each, as the bits of a number that is no NaN.
-pub(crate) trait Bytes: Elementwise<Scalar = f32> {
+pub trait Bytes: Elementwise<Scalar = f32> {
     /// As a number, byte (x < 0) + 2·(y < 0) of the four bytes in each lane, counted from the lowest one. Signs are those
     /// of zeros, too, and count as flipped where that of `flip` is negative.
     fn byte_of(self, x: Self, y: Self, flip: Self) -> Self;
@@ -39,7 +37,7 @@ impl<L: Bytes> Bytes for Both<L> {
 }
 
 /// Two times the lanes of `L`.
-pub(crate) trait Two<L: Elementwise>: Elementwise<Scalar = L::Scalar> {
+pub trait Two<L: Elementwise>: Elementwise<Scalar = L::Scalar> {
     /// From both halves.
     fn of(first: L, second: L) -> Self;
     /// The same lanes twice.
@@ -52,7 +50,7 @@ pub(crate) trait Two<L: Elementwise>: Elementwise<Scalar = L::Scalar> {
 
 /// Two registers side by side.
 #[derive(Clone, Copy)]
-pub(crate) struct Both<L>(L, L);
+pub struct Both<L>(L, L);
 
 macro_rules! both_operator {
     ($($operator:ident $method:ident $symbol:tt),*) => {$(

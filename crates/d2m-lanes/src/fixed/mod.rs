@@ -1,4 +1,4 @@
-//! Two doubles in one 128-bit vector: the only module with target-specific (and `unsafe`) code.
+//! Two and four doubles in the vector registers of the target that the program is compiled for.
 //!
 //! Every back end has the same methods and the same bits as [`scalar`], which tests compare them with.
 //! The feature `scalar` forces the scalar twin.
@@ -43,14 +43,14 @@ pub use wasm::F64x2;
 pub use scalar::F64x2;
 
 mod quad;
-pub(crate) use quad::F64x4;
+pub use quad::F64x4;
 
 #[cfg(any(test, not(feature = "std")))]
 #[allow(dead_code)] // where a vector unit has square roots
 mod soft_sqrt;
 
 /// What kernels need that work on two or four doubles alike.
-pub(crate) trait Vector: Copy {
+pub trait Vector: Copy {
     fn splat(x: f64) -> Self;
     fn plus(self, o: Self) -> Self;
     fn minus(self, o: Self) -> Self;
@@ -83,7 +83,7 @@ vector!(F64x2 F64x4);
 
 /// Correctly rounded square root of one number.
 #[inline(always)]
-pub(crate) fn sqrt(x: f64) -> f64 {
+pub fn sqrt(x: f64) -> f64 {
     F64x2::splat(x).sqrt().first()
 }
 

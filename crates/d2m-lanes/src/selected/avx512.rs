@@ -9,7 +9,7 @@ use core::ops::{Add, Mul, Sub};
 
 /// Registers of 512 bits: AVX-512 F and DQ.
 #[derive(Clone, Copy)]
-pub(crate) struct Of512;
+pub(super) struct Of512;
 
 impl Registers for Of512 {
     type Sixteen = Sixteen;
@@ -19,11 +19,11 @@ impl Registers for Of512 {
 /// Sixteen `f32` in one register. Values exist only inside functions that were entered through a check for AVX-512 F
 /// and DQ.
 #[derive(Clone, Copy)]
-pub(crate) struct Sixteen(__m512);
+pub(super) struct Sixteen(__m512);
 
 /// Eight `f64` in one register. Values exist only where those of [`Sixteen`] do.
 #[derive(Clone, Copy)]
-pub(crate) struct Eight(__m512d);
+pub(super) struct Eight(__m512d);
 
 /// The operations of one kind of register: both kinds have the same ones, under other names.
 macro_rules! register {

@@ -9,7 +9,7 @@ use wide::{f32x8, i32x8, u32x8};
 
 /// Portable lanes.
 #[derive(Clone, Copy)]
-pub(crate) struct Portable(f32x8);
+pub struct Portable(f32x8);
 
 macro_rules! portable_operator {
     ($($operator:ident $method:ident $symbol:tt),*) => {$(

@@ -8,11 +8,11 @@ use wide::f64x4;
 /// Four doubles in memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(crate) struct Quad(pub(crate) [f64; 4]);
+pub struct Quad(pub [f64; 4]);
 
 /// Four doubles in registers: each operation correctly rounded, no fused multiply-add, so every implementation returns
 /// the same bits. [`Quad`] is the portable one.
-pub(crate) trait Doubles: Elementwise<Scalar = f64> + Div<Output = Self> {
+pub trait Doubles: Elementwise<Scalar = f64> + Div<Output = Self> {
     /// Two times four doubles.
     type Two: Two<Self>;
 
@@ -44,13 +44,15 @@ macro_rules! elementwise {
 elementwise!(Add add +, Sub sub -, Mul mul *, Div div /);
 
 impl Quad {
+    /// A vector, and zero.
     #[inline(always)]
-    pub(crate) const fn from_vec(v: DVec3) -> Self {
+    pub const fn from_vec(v: DVec3) -> Self {
         Self([v.x, v.y, v.z, 0.0])
     }
 
+    /// The first three.
     #[inline(always)]
-    pub(crate) const fn to_vec(self) -> DVec3 {
+    pub const fn to_vec(self) -> DVec3 {
         DVec3::new(self.0[0], self.0[1], self.0[2])
     }
 
@@ -134,11 +136,12 @@ impl Doubles for Quad {
 
 /// Vectors side by side: four, or eight where `D` is two times four doubles.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct QuadVec<D>(pub(crate) [D; 3]);
+pub struct QuadVec<D>(pub [D; 3]);
 
 impl<D: Doubles> QuadVec<D> {
+    /// Four vectors.
     #[inline(always)]
-    pub(crate) fn new(v: [DVec3; 4]) -> Self {
+    pub fn new(v: [DVec3; 4]) -> Self {
         Self([
             D::load(&Quad([v[0].x, v[1].x, v[2].x, v[3].x])),
             D::load(&Quad([v[0].y, v[1].y, v[2].y, v[3].y])),
@@ -148,7 +151,7 @@ impl<D: Doubles> QuadVec<D> {
 
     /// These four, then four others.
     #[inline(always)]
-    pub(crate) fn beside(&self, other: &Self) -> QuadVec<D::Two> {
+    pub fn beside(&self, other: &Self) -> QuadVec<D::Two> {
         let ([x, y, z], [u, v, w]) = (self.0, other.0);
         QuadVec([D::Two::of(x, u), D::Two::of(y, v), D::Two::of(z, w)])
     }
@@ -157,95 +160,101 @@ impl<D: Doubles> QuadVec<D> {
 impl<D: Elementwise<Scalar = f64>> QuadVec<D> {
     /// The same vector in each place.
     #[inline(always)]
-    pub(crate) fn splat(v: DVec3) -> Self {
+    pub fn splat(v: DVec3) -> Self {
         Self([D::splat(v.x), D::splat(v.y), D::splat(v.z)])
     }
 
     /// Scalar product of each with the same vector.
     #[inline(always)]
-    pub(crate) fn dot(&self, p: DVec3) -> D {
+    pub fn dot(&self, p: DVec3) -> D {
         self.dots(&Self::splat(p))
     }
 
     /// `e` × each.
     #[inline(always)]
-    pub(crate) fn crossed_by(&self, e: DVec3) -> Self {
+    pub fn crossed_by(&self, e: DVec3) -> Self {
         Self::splat(e).crossed(self)
     }
 
     /// Lane by lane: the scalar product.
     #[inline(always)]
-    pub(crate) fn dots(&self, other: &Self) -> D {
+    pub fn dots(&self, other: &Self) -> D {
         let ([x, y, z], [u, v, w]) = (self.0, other.0);
         x * u + y * v + z * w
     }
 
     /// Lane by lane: self × other.
     #[inline(always)]
-    pub(crate) fn crossed(&self, other: &Self) -> Self {
+    pub fn crossed(&self, other: &Self) -> Self {
         let ([x, y, z], [u, v, w]) = (self.0, other.0);
         Self([y * w - z * v, z * u - x * w, x * v - y * u])
     }
 
+    /// Lane by lane: the sum.
     #[inline(always)]
-    pub(crate) fn plus(&self, other: &Self) -> Self {
+    pub fn plus(&self, other: &Self) -> Self {
         let ([x, y, z], [u, v, w]) = (self.0, other.0);
         Self([x + u, y + v, z + w])
     }
 
+    /// Lane by lane: the difference.
     #[inline(always)]
-    pub(crate) fn minus(&self, other: &Self) -> Self {
+    pub fn minus(&self, other: &Self) -> Self {
         let ([x, y, z], [u, v, w]) = (self.0, other.0);
         Self([x - u, y - v, z - w])
     }
 
     /// Each times its own factor.
     #[inline(always)]
-    pub(crate) fn times(&self, factors: D) -> Self {
+    pub fn times(&self, factors: D) -> Self {
         let [x, y, z] = self.0;
         Self([x * factors, y * factors, z * factors])
     }
 
+    /// Lane by lane: the squared length.
     #[inline(always)]
-    pub(crate) fn length_squared(&self) -> D {
+    pub fn length_squared(&self) -> D {
         self.dots(self)
     }
 }
 
 /// Columns of a 3×3 matrix, each with a zero below.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Matrix(pub(crate) [Quad; 3]);
+pub struct Matrix(pub [Quad; 3]);
 
 impl Matrix {
     /// The matrix of v ↦ ω × v.
     #[inline(always)]
-    pub(crate) const fn cross(omega: &Quad) -> Self {
+    pub const fn cross(omega: &Quad) -> Self {
         let [x, y, z, _] = omega.0;
         Self([Quad([0.0, z, -y, 0.0]), Quad([-z, 0.0, x, 0.0]), Quad([y, -x, 0.0, 0.0])])
     }
 
+    /// Rows as columns.
     #[inline(always)]
-    pub(crate) fn transposed<D: Doubles>(&self) -> Self {
+    pub fn transposed<D: Doubles>(&self) -> Self {
         let [a, b, c] = &self.0;
         let [x, y, z] = D::transposed([D::load(a), D::load(b), D::load(c)]);
         Self([x.store(), y.store(), z.store()])
     }
 
+    /// The product with a vector.
     #[inline(always)]
-    pub(crate) fn times<D: Doubles>(&self, v: DVec3) -> D {
+    pub fn times<D: Doubles>(&self, v: DVec3) -> D {
         D::load(&self.0[0]) * D::splat(v.x)
             + D::load(&self.0[1]) * D::splat(v.y)
             + D::load(&self.0[2]) * D::splat(v.z)
     }
 
+    /// The product with a vector in memory, whose fourth number does not matter.
     #[inline(always)]
-    pub(crate) fn times_quad<D: Doubles>(&self, v: &Quad) -> D {
+    pub fn times_quad<D: Doubles>(&self, v: &Quad) -> D {
         self.times(v.to_vec())
     }
 
     /// The product with each column of the other.
     #[inline(always)]
-    pub(crate) fn times_matrix<D: Doubles>(&self, other: &Self) -> Self {
+    pub fn times_matrix<D: Doubles>(&self, other: &Self) -> Self {
         Self([
             self.times_quad::<D>(&other.0[0]).store(),
             self.times_quad::<D>(&other.0[1]).store(),

@@ -10,23 +10,23 @@ use core::ops::Div;
 /// Eight rows of four words, one a lane: a key, two numbers, a tag. One of the numbers counts up from lane to lane, the
 /// other is the same in all of them.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Rows {
+pub struct Rows {
     /// First word.
-    pub(crate) keys: [i32; 8],
+    pub keys: [i32; 8],
     /// The number that counts up, in lane 0.
-    pub(crate) counting: u32,
+    pub counting: u32,
     /// The number that stays.
-    pub(crate) constant: u32,
+    pub constant: u32,
     /// The number that counts up is the third word and the other one the second; else the other way round.
-    pub(crate) counting_is_third: bool,
+    pub counting_is_third: bool,
     /// Fourth word.
-    pub(crate) tags: [u32; 8],
+    pub tags: [u32; 8],
     /// Bit i is set when row i is wanted.
-    pub(crate) wanted: u32,
+    pub wanted: u32,
 }
 
 /// Eight lanes of `f32`.
-pub(crate) trait Lanes: Bytes + Div<Output = Self> {
+pub trait Lanes: Bytes + Div<Output = Self> {
     /// Four `f64` of the same instruction set.
     type Doubles: Doubles;
     /// Two times eight lanes.

@@ -1,6 +1,7 @@
 //! Which vector instructions queries use. Every choice gives the same bits.
 
 use core::sync::atomic::{AtomicU8, Ordering};
+use std::vec::Vec;
 
 /// Vector instructions that the queries of this crate are compiled for, the plainest first.
 ///
@@ -10,7 +11,7 @@ use core::sync::atomic::{AtomicU8, Ordering};
 /// which it does not have.
 ///
 /// ```
-/// use d2m_bvh::InstructionSet;
+/// use d2m_lanes::InstructionSet;
 /// InstructionSet::Portable.limit();
 /// assert_eq!(InstructionSet::in_use(), InstructionSet::Portable);
 /// InstructionSet::Avx512.limit(); // again the best that there is
@@ -53,7 +54,7 @@ impl InstructionSet {
 
     /// The best one of this processor.
     #[inline]
-    fn best() -> Self {
+    pub(super) fn best() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
             use std::arch::is_x86_feature_detected as has;

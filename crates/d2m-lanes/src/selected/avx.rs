@@ -1,5 +1,4 @@
-//! The lanes in AVX registers. This module and `avx512` hold the only `unsafe` operations of the crate; the
-//! functions that may use them are entered through a check of the processor (`dispatch`).
+//! The lanes in AVX registers; the functions that may use them are entered through a check of the processor (`dispatch`).
 #![allow(unsafe_code)]
 
 use super::eight::{Lanes, Rows};
@@ -11,7 +10,7 @@ use core::marker::PhantomData;
 use core::ops::{Add, Div, Mul, Sub};
 
 /// Which registers there are besides those of 256 bits.
-pub(crate) trait Registers: Copy {
+pub(super) trait Registers: Copy {
     /// Two times eight lanes.
     type Sixteen: Two<Avx<Self>> + Bytes;
     /// Two times four doubles.
@@ -20,7 +19,7 @@ pub(crate) trait Registers: Copy {
 
 /// Registers of 256 bits only.
 #[derive(Clone, Copy)]
-pub(crate) struct Of256;
+pub(super) struct Of256;
 
 impl Registers for Of256 {
     type Sixteen = Both<Avx<Self>>;
@@ -30,7 +29,7 @@ impl Registers for Of256 {
 /// One 256-bit register. Values exist only inside functions that were entered through a check for AVX2, and for what
 /// `R` needs.
 #[derive(Clone, Copy)]
-pub(crate) struct Avx<R>(pub(super) __m256, PhantomData<R>);
+pub(super) struct Avx<R>(pub(super) __m256, PhantomData<R>);
 
 impl<R> Avx<R> {
     #[inline(always)]
@@ -227,7 +226,7 @@ impl<R: Registers> Lanes for Avx<R> {
 
 /// Four doubles in one register. Values exist only where those of [`Avx`] do.
 #[derive(Clone, Copy)]
-pub(crate) struct AvxDoubles<R>(pub(super) __m256d, PhantomData<R>);
+pub(super) struct AvxDoubles<R>(pub(super) __m256d, PhantomData<R>);
 
 impl<R> AvxDoubles<R> {
     #[inline(always)]

@@ -12,7 +12,7 @@ use super::{
 /// A piece of work that is compiled once for each kind of lanes.
 ///
 /// What is not `#[inline(always)]` all the way down, closures among it, is compiled for the plainest processor.
-pub(crate) trait Task {
+pub trait Task {
     /// What it returns.
     type Output;
     /// Does it.
@@ -20,15 +20,15 @@ pub(crate) trait Task {
 }
 
 /// Does the task with the instruction set in use.
-pub(crate) fn run<T: Task>(task: T) -> T::Output {
+pub fn run<T: Task>(task: T) -> T::Output {
     run_on(InstructionSet::in_use(), task)
 }
 
-/// The same with a given instruction set, which the processor must have.
+/// The same with a given instruction set, or the best of the processor if it does not have that one.
 #[allow(unsafe_code)]
-pub(crate) fn run_on<T: Task>(set: InstructionSet, task: T) -> T::Output {
-    match set {
-        // SAFETY: `InstructionSet::in_use` found the features on this processor (tests ask only for available sets).
+pub fn run_on<T: Task>(set: InstructionSet, task: T) -> T::Output {
+    match set.min(InstructionSet::best()) {
+        // SAFETY: `InstructionSet::best` found the features on this processor.
         #[cfg(target_arch = "x86_64")]
         InstructionSet::Avx2 => unsafe { avx2(task) },
         // SAFETY: the same.

@@ -1,12 +1,12 @@
 //! Four doubles: one 256-bit vector with AVX, else two 128-bit ones.
 #[cfg(all(target_arch = "x86_64", target_feature = "avx", not(miri), not(feature = "scalar")))]
-pub(crate) use avx::F64x4;
+pub use avx::F64x4;
 #[cfg(not(all(target_arch = "x86_64", target_feature = "avx", not(miri), not(feature = "scalar"))))]
-pub(crate) use halves::F64x4;
+pub use halves::F64x4;
 
 #[cfg(all(target_arch = "x86_64", target_feature = "avx", not(miri), not(feature = "scalar")))]
 mod avx {
-    use crate::simd::F64x2;
+    use crate::fixed::F64x2;
     use core::arch::x86_64::{
         __m256d, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_blendv_pd,
         _mm256_cmp_pd, _mm256_max_pd, _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_set1_pd,
@@ -26,47 +26,47 @@ mod avx {
 
     #[derive(Clone, Copy)]
     #[repr(transparent)]
-    pub(crate) struct F64x4(__m256d);
+    pub struct F64x4(__m256d);
 
     impl F64x4 {
         #[inline(always)]
-        pub(crate) const fn new(lanes: [f64; 4]) -> Self {
+        pub const fn new(lanes: [f64; 4]) -> Self {
             // SAFETY: `[f64; 4]` and `__m256d` have the same size and every bit pattern is valid in both.
             Self(unsafe { core::mem::transmute::<[f64; 4], __m256d>(lanes) })
         }
         #[inline(always)]
-        pub(crate) fn splat(x: f64) -> Self {
+        pub fn splat(x: f64) -> Self {
             Self(avx!(_mm256_set1_pd(x)))
         }
         #[inline(always)]
-        pub(crate) const fn to_array(self) -> [f64; 4] {
+        pub const fn to_array(self) -> [f64; 4] {
             // SAFETY: as in `new`.
             unsafe { core::mem::transmute::<__m256d, [f64; 4]>(self.0) }
         }
         #[inline(always)]
-        pub(crate) fn plus(self, o: Self) -> Self {
+        pub fn plus(self, o: Self) -> Self {
             Self(avx!(_mm256_add_pd(self.0, o.0)))
         }
         #[inline(always)]
-        pub(crate) fn minus(self, o: Self) -> Self {
+        pub fn minus(self, o: Self) -> Self {
             Self(avx!(_mm256_sub_pd(self.0, o.0)))
         }
         #[inline(always)]
-        pub(crate) fn and(self, o: Self) -> Self {
+        pub fn and(self, o: Self) -> Self {
             Self(avx!(_mm256_and_pd(self.0, o.0)))
         }
         #[inline(always)]
-        pub(crate) fn xor(self, o: Self) -> Self {
+        pub fn xor(self, o: Self) -> Self {
             Self(avx!(_mm256_xor_pd(self.0, o.0)))
         }
         /// Mask: all bits where `self < o`.
         #[inline(always)]
-        pub(crate) fn lt(self, o: Self) -> Self {
+        pub fn lt(self, o: Self) -> Self {
             Self(avx!(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, o.0)))
         }
         /// `yes` where the mask `self` is set, else `no`.
         #[inline(always)]
-        pub(crate) fn select(self, yes: Self, no: Self) -> Self {
+        pub fn select(self, yes: Self, no: Self) -> Self {
             Self(avx!(_mm256_blendv_pd(no.0, yes.0, self.0)))
         }
         /// As the method of two doubles: integer shifts of 256 bits need AVX2.
@@ -78,46 +78,46 @@ mod avx {
         }
         /// Mask: all bits where bit 0 of the number's representation is set.
         #[inline(always)]
-        pub(crate) fn lowest_bit(self) -> Self {
+        pub fn lowest_bit(self) -> Self {
             self.by_halves(F64x2::lowest_bit)
         }
         /// The sign bit where bit 1 of the number's representation is set, else 0.
         #[inline(always)]
-        pub(crate) fn second_bit_as_sign(self) -> Self {
+        pub fn second_bit_as_sign(self) -> Self {
             self.by_halves(F64x2::second_bit_as_sign)
         }
         #[inline(always)]
-        pub(crate) fn times(self, o: Self) -> Self {
+        pub fn times(self, o: Self) -> Self {
             Self(avx!(_mm256_mul_pd(self.0, o.0)))
         }
         #[inline(always)]
-        pub(crate) fn sqrt(self) -> Self {
+        pub fn sqrt(self) -> Self {
             Self(avx!(_mm256_sqrt_pd(self.0)))
         }
         #[inline(always)]
-        pub(crate) fn max(self, o: Self) -> Self {
+        pub fn max(self, o: Self) -> Self {
             Self(avx!(_mm256_max_pd(self.0, o.0)))
         }
         #[inline(always)]
-        pub(crate) fn min(self, o: Self) -> Self {
+        pub fn min(self, o: Self) -> Self {
             Self(avx!(_mm256_min_pd(self.0, o.0)))
         }
         #[inline(always)]
-        pub(crate) fn abs(self) -> Self {
+        pub fn abs(self) -> Self {
             Self(avx!(_mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0)))
         }
         #[inline(always)]
-        pub(crate) fn neg(self) -> Self {
+        pub fn neg(self) -> Self {
             Self(avx!(_mm256_xor_pd(_mm256_set1_pd(-0.0), self.0)))
         }
         /// Bit i is set where `self < o`.
         #[inline(always)]
-        pub(crate) fn lt_bits(self, o: Self) -> u32 {
+        pub fn lt_bits(self, o: Self) -> u32 {
             avx!(_mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, o.0))) as u32
         }
         /// Bit i is set where `self <= o`.
         #[inline(always)]
-        pub(crate) fn le_bits(self, o: Self) -> u32 {
+        pub fn le_bits(self, o: Self) -> u32 {
             avx!(_mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(self.0, o.0))) as u32
         }
     }
@@ -125,93 +125,93 @@ mod avx {
 
 #[cfg(not(all(target_arch = "x86_64", target_feature = "avx", not(miri), not(feature = "scalar"))))]
 mod halves {
-    use crate::simd::F64x2;
+    use crate::fixed::F64x2;
 
     #[derive(Clone, Copy)]
-    pub(crate) struct F64x4(F64x2, F64x2);
+    pub struct F64x4(F64x2, F64x2);
 
     impl F64x4 {
         #[inline(always)]
-        pub(crate) const fn new(lanes: [f64; 4]) -> Self {
+        pub const fn new(lanes: [f64; 4]) -> Self {
             Self(F64x2::new(lanes[0], lanes[1]), F64x2::new(lanes[2], lanes[3]))
         }
         #[inline(always)]
-        pub(crate) fn splat(x: f64) -> Self {
+        pub fn splat(x: f64) -> Self {
             Self(F64x2::splat(x), F64x2::splat(x))
         }
         #[inline(always)]
-        pub(crate) const fn to_array(self) -> [f64; 4] {
+        pub const fn to_array(self) -> [f64; 4] {
             let ([a, b], [c, d]) = (self.0.to_array(), self.1.to_array());
             [a, b, c, d]
         }
         #[inline(always)]
-        pub(crate) fn plus(self, o: Self) -> Self {
+        pub fn plus(self, o: Self) -> Self {
             Self(self.0.plus(o.0), self.1.plus(o.1))
         }
         #[inline(always)]
-        pub(crate) fn minus(self, o: Self) -> Self {
+        pub fn minus(self, o: Self) -> Self {
             Self(self.0.minus(o.0), self.1.minus(o.1))
         }
         #[inline(always)]
-        pub(crate) fn and(self, o: Self) -> Self {
+        pub fn and(self, o: Self) -> Self {
             Self(self.0.and(o.0), self.1.and(o.1))
         }
         #[inline(always)]
-        pub(crate) fn xor(self, o: Self) -> Self {
+        pub fn xor(self, o: Self) -> Self {
             Self(self.0.xor(o.0), self.1.xor(o.1))
         }
         /// Mask: all bits where `self < o`.
         #[inline(always)]
-        pub(crate) fn lt(self, o: Self) -> Self {
+        pub fn lt(self, o: Self) -> Self {
             Self(self.0.lt(o.0), self.1.lt(o.1))
         }
         /// `yes` where the mask `self` is set, else `no`.
         #[inline(always)]
-        pub(crate) fn select(self, yes: Self, no: Self) -> Self {
+        pub fn select(self, yes: Self, no: Self) -> Self {
             Self(self.0.select(yes.0, no.0), self.1.select(yes.1, no.1))
         }
         /// Mask: all bits where bit 0 of the number's representation is set.
         #[inline(always)]
-        pub(crate) fn lowest_bit(self) -> Self {
+        pub fn lowest_bit(self) -> Self {
             Self(self.0.lowest_bit(), self.1.lowest_bit())
         }
         /// The sign bit where bit 1 of the number's representation is set, else 0.
         #[inline(always)]
-        pub(crate) fn second_bit_as_sign(self) -> Self {
+        pub fn second_bit_as_sign(self) -> Self {
             Self(self.0.second_bit_as_sign(), self.1.second_bit_as_sign())
         }
         #[inline(always)]
-        pub(crate) fn times(self, o: Self) -> Self {
+        pub fn times(self, o: Self) -> Self {
             Self(self.0.times(o.0), self.1.times(o.1))
         }
         #[inline(always)]
-        pub(crate) fn sqrt(self) -> Self {
+        pub fn sqrt(self) -> Self {
             Self(self.0.sqrt(), self.1.sqrt())
         }
         #[inline(always)]
-        pub(crate) fn max(self, o: Self) -> Self {
+        pub fn max(self, o: Self) -> Self {
             Self(self.0.max(o.0), self.1.max(o.1))
         }
         #[inline(always)]
-        pub(crate) fn min(self, o: Self) -> Self {
+        pub fn min(self, o: Self) -> Self {
             Self(self.0.min(o.0), self.1.min(o.1))
         }
         #[inline(always)]
-        pub(crate) fn abs(self) -> Self {
+        pub fn abs(self) -> Self {
             Self(self.0.abs(), self.1.abs())
         }
         #[inline(always)]
-        pub(crate) fn neg(self) -> Self {
+        pub fn neg(self) -> Self {
             Self(self.0.neg(), self.1.neg())
         }
         /// Bit i is set where `self < o`.
         #[inline(always)]
-        pub(crate) fn lt_bits(self, o: Self) -> u32 {
+        pub fn lt_bits(self, o: Self) -> u32 {
             self.0.lt(o.0).sign_bits() | self.1.lt(o.1).sign_bits() << 2
         }
         /// Bit i is set where `self <= o`.
         #[inline(always)]
-        pub(crate) fn le_bits(self, o: Self) -> u32 {
+        pub fn le_bits(self, o: Self) -> u32 {
             self.0.le(o.0).sign_bits() | self.1.le(o.1).sign_bits() << 2
         }
     }

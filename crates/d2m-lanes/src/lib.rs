@@ -1,0 +1,20 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+#[cfg(any(test, feature = "std"))]
+extern crate std;
+
+mod double_double;
+mod exact;
+#[allow(missing_docs, clippy::should_implement_trait)] // named after the operation
+mod fixed;
+#[cfg(feature = "selected")]
+mod selected;
+
+pub use double_double::DoubleDouble;
+pub use exact::{fast_two_sum, two_product, two_sum};
+pub use fixed::{F64x2, F64x4, Vector, sqrt};
+#[cfg(feature = "selected")]
+pub use selected::{
+    Bytes, Doubles, Elementwise, InstructionSet, Lanes, Matrix, Portable, Quad, QuadVec, Rows, Task, Two,
+    run, run_on,
+};

@@ -1,0 +1,19 @@
+//! Lanes that are chosen when the program runs, and the choice of the processor's instructions. Every choice gives the same bits.
+
+#[cfg(target_arch = "x86_64")]
+mod avx;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod dispatch;
+mod eight;
+mod instruction_set;
+mod portable;
+mod quad;
+mod two;
+
+pub use dispatch::{Task, run, run_on};
+pub use eight::{Lanes, Rows};
+pub use instruction_set::InstructionSet;
+pub use portable::Portable;
+pub use quad::{Doubles, Matrix, Quad, QuadVec};
+pub use two::{Bytes, Elementwise, Two};
