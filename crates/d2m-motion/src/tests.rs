@@ -1,6 +1,7 @@
 use crate::double_double_trig::sin_cos_double;
 use crate::sin_cos::{LARGEST_ANGLE, sin_cos, sin_cos_two};
 use crate::{ConstantTwist, Keyframes, MotionError, Pose, RigidMotion, ScrewMotion, Span, Twist};
+use core::ops::{Add, Mul, Sub};
 use d2m_interval::Interval;
 use d2m_lanes::{DoubleDouble, F64x2};
 use glam::{DQuat, DVec3};

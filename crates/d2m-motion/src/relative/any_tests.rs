@@ -2,6 +2,8 @@
 //! of the bounds that the same samples refute.
 use super::any::RelativeState;
 use crate::{CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
+use core::ops::Add;
+use core::ops::{Mul, Sub};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
 use d2m_lanes::DoubleDouble;
 use glam::{DMat3, DQuat, DVec3};

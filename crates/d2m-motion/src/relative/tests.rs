@@ -3,6 +3,7 @@
 use super::RelativeMotion;
 use crate::rotation::exponential_dd;
 use crate::{ConstantTwist, PathJet, Remainder};
+use core::ops::{Add, Mul, Sub};
 use d2m_lanes::DoubleDouble;
 use glam::{DQuat, DVec3};
 
