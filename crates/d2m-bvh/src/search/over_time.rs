@@ -9,14 +9,14 @@ impl Search<'_> {
     pub(crate) fn run(mut self) -> Outcome {
         let mut next = self.window_from(0.0);
         while let Some(window) = next {
-            let mut step = run_on(self.instructions, OneWindow { search: &mut self, window });
+            let step = run_on(self.instructions, OneWindow { search: &mut self, window });
             #[cfg(feature = "rayon")]
-            if self.parallel
-                && let Step::ClearUntil(until) = step
-                && until < self.scene.end
-            {
-                step = self.search_in_parallel(until);
-            }
+            let step = match step {
+                Step::ClearUntil(until) if self.parallel && until < self.scene.end => {
+                    self.search_in_parallel(until)
+                }
+                other => other,
+            };
             match step {
                 Step::Answer(outcome) => return outcome,
                 Step::ClearUntil(until) if until >= self.scene.end => return Outcome::Separated,
