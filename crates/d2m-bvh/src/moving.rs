@@ -1,4 +1,4 @@
-use crate::MeshTree;
+use crate::{MeshTree, QueryOptions, Solid};
 use d2m_motion::RigidMotion;
 
 /// A body with its motion.
@@ -7,12 +7,44 @@ pub struct Moving<'a, B = MeshTree> {
     pub body: &'a B,
     /// How the body frame moves through the world.
     pub motion: &'a dyn RigidMotion,
+    /// What counts as contact with this body; none: what the options of the query say.
+    pub solid: Option<Solid>,
 }
 
 impl<'a, B> Moving<'a, B> {
     /// A body that moves so.
     pub const fn new(body: &'a B, motion: &'a dyn RigidMotion) -> Self {
-        Self { body, motion }
+        Self { body, motion, solid: None }
+    }
+
+    /// The same with this meaning of the body's mesh, whatever that of the other body is: what is inside a solid body is in
+    /// contact, be it a solid or an open sheet; nothing is inside of a surface.
+    ///
+    /// ```
+    /// use d2m_bvh::{MeshTree, Moving, QueryOptions, Solid, TriMesh, Window, time_of_contact};
+    /// use d2m_motion::ConstantTwist;
+    /// use glam::DVec3;
+    /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    /// let solid = MeshTree::new(TriMesh::try_new(corners.clone(), faces)?);
+    /// // One small triangle inside of it.
+    /// let inside = corners[1..].iter().map(|p| *p * 0.1 + 0.1).collect();
+    /// let sheet = MeshTree::new(TriMesh::try_new(inside, vec![[0, 1, 2]])?);
+    /// let rest = ConstantTwist::REST;
+    /// let [a, b] = [Moving::new(&solid, &rest), Moving::new(&sheet, &rest).with_solid(Solid::Surface)];
+    /// let options = QueryOptions::default();
+    /// assert!(time_of_contact(a, b, Window::UNIT, &options)?.contact().is_some());
+    /// let hollow = a.with_solid(Solid::Surface);
+    /// assert!(time_of_contact(hollow, b, Window::UNIT, &options)?.is_separated());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub const fn with_solid(self, solid: Solid) -> Self {
+        Self { solid: Some(solid), ..self }
+    }
+
+    /// What counts as contact with this body in a query with these options.
+    pub(crate) fn solid_in(&self, options: &QueryOptions) -> Solid {
+        self.solid.unwrap_or(options.solid)
     }
 }
 

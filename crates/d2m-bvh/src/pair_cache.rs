@@ -42,7 +42,7 @@ struct Apart {
     course: Course,
     /// Proven: further apart than this all the time.
     room: f64,
-    solid: Solid,
+    solids: [Solid; 2],
     /// Queries since then.
     age: f64,
 }
@@ -84,8 +84,8 @@ impl PairCache {
     }
 
     /// A distance that the bodies are proven to keep all along the course; none, or negative, when nothing is known.
-    pub(crate) fn room_along(&mut self, course: &Course, solid: Solid) -> Option<f64> {
-        let apart = self.apart.as_mut().filter(|apart| apart.solid == solid)?;
+    pub(crate) fn room_along(&mut self, course: &Course, solids: [Solid; 2]) -> Option<f64> {
+        let apart = self.apart.as_mut().filter(|apart| apart.solids == solids)?;
         apart.age += 1.0;
         Some(apart.room - course.deviation(&apart.course)?)
     }
@@ -105,8 +105,8 @@ impl PairCache {
     }
 
     /// Proven: along this course the bodies are further apart than `room` all the time.
-    pub(crate) fn found_apart(&mut self, course: &Course, solid: Solid, room: f64) {
-        self.apart = Some(Apart { course: *course, room, solid, age: 0.0 });
+    pub(crate) fn found_apart(&mut self, course: &Course, solids: [Solid; 2], room: f64) {
+        self.apart = Some(Apart { course: *course, room, solids, age: 0.0 });
     }
 
     /// An attempt for more room has ended.

@@ -1,6 +1,9 @@
 //! Bodies that are inside others when the query begins.
 
-use d2m_bvh::{MeshTree, Moving, QueryOptions, StartState, TriMesh, Window, time_of_contact};
+use d2m_bvh::{
+    MeshTree, Moving, PairCache, QueryError, QueryOptions, Solid, StartState, TriMesh, Window,
+    time_of_contact, time_of_contact_with,
+};
 use d2m_motion::ConstantTwist;
 use glam::{DQuat, DVec3};
 
@@ -33,5 +36,42 @@ fn a_body_in_a_corner_of_the_other_is_held() {
                 }
             }
         }
+    }
+}
+
+/// An open sheet and a solid: what is inside the solid is in contact, whichever of the bodies it is, with any motion; nothing is
+/// inside of the sheet; both as surfaces are apart.
+#[test]
+fn a_sheet_inside_a_solid_is_held() {
+    let solid = cube(1.0);
+    let corners = vec![DVec3::ZERO, DVec3::X * 0.1, DVec3::Y * 0.1];
+    let sheet = MeshTree::new(TriMesh::try_new(corners, vec![[0, 1, 2]]).unwrap());
+    let options = QueryOptions::default();
+    let spinning = ConstantTwist::REST.with_angular_velocity(DVec3::Z);
+    let curved =
+        d2m_motion::Composed::new(ConstantTwist::REST, spinning.with_linear_velocity(DVec3::X * 0.01));
+    let motions: [&dyn d2m_motion::RigidMotion; 2] = [&spinning, &curved];
+    for motion in motions {
+        let outer = Moving::new(&solid, motion);
+        let inner = Moving::new(&sheet, &ConstantTwist::REST).with_solid(Solid::Surface);
+        for [a, b] in [[outer, inner], [inner, outer]] {
+            let mut cache = PairCache::new();
+            for _ in 0..2 {
+                let answer = time_of_contact_with(a, b, Window::UNIT, &options, &mut cache).unwrap();
+                assert_eq!(answer, time_of_contact(a, b, Window::UNIT, &options).unwrap());
+                let contact = answer.contact().unwrap_or_else(|| panic!("{answer:?}"));
+                assert_eq!((contact.start, contact.time_lo), (StartState::Contained, 0.0));
+                // The options are for bodies that have no meaning of their own.
+                let surfaces = options.with_solid(Solid::Surface);
+                assert!(
+                    time_of_contact_with(a, b, Window::UNIT, &surfaces, &mut cache).unwrap().is_separated()
+                );
+            }
+        }
+        let shell = outer.with_solid(Solid::Surface);
+        assert!(time_of_contact(shell, inner, Window::UNIT, &options).unwrap().is_separated());
+        let claimed = inner.with_solid(Solid::Filled);
+        let refused = time_of_contact(outer, claimed, Window::UNIT, &options);
+        assert_eq!(refused, Err(QueryError::NotWatertight { body: 1 }));
     }
 }

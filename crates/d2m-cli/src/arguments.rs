@@ -146,10 +146,10 @@ pub(crate) struct QueryArguments {
 /// What counts as a body.
 #[derive(Debug, Clone, Copy, Args)]
 pub(crate) struct SolidArguments {
-    /// Bodies are full: one inside the other is in contact [default if both meshes are watertight]
+    /// Bodies are full: one inside the other is in contact [default of each mesh that is watertight]
     #[arg(long, conflicts_with = "surface")]
     pub(crate) solid: bool,
-    /// Only surfaces count [default if a mesh is open]
+    /// Only surfaces count [default of each mesh that is open]
     #[arg(long)]
     pub(crate) surface: bool,
 }
@@ -298,7 +298,7 @@ pub(crate) struct SimulateArguments {
 A scene: {\"window\": [0, 1], \"bodies\": [{\"name\", \"mesh\", \"scale\", \"motion\", \"group\", \"solid\"}, ...],
 \"ignore\": [[\"arm\", \"base\"], ...], \"min_separation\": 0, \"tolerance\": 1e-10}. A mesh is a file, relative to the scene's folder, or shape:...;
 scale is one number or three; a motion has any JSON form of d2m toc, at rest if left out; solid is whether the mesh is watertight if
-left out, and a pair counts as solids if both bodies do; ignore lists pairs of names of bodies or groups.
+left out, and what is inside a solid body is in contact with it; ignore lists pairs of names of bodies or groups.
 
 The answer lists the first contact of each pair, sorted by time; pairs that are proven apart all the time are left out. With --first the
 search stops at the first contact of all; contacts whose time brackets overlap its bracket are listed too. Before a bracket nothing of

@@ -56,7 +56,8 @@ impl Body {
 pub(crate) struct Pair {
     pub(crate) a: Body,
     pub(crate) b: Body,
-    pub(crate) solid: Solid,
+    /// What counts as contact with each body.
+    pub(crate) solids: [Solid; 2],
     /// Distance at which the bodies count as touching.
     pub(crate) min_separation: f64,
     /// The tolerance that the user gave.
@@ -78,10 +79,12 @@ impl Pair {
         let start = Instant::now();
         let [a, b] = [a, b].map(|body| Body::new(body, arguments.mode));
         let preparation = start.elapsed();
-        let solid =
-            choose_solid([(&a.name, a.is_watertight()), (&b.name, b.is_watertight())], arguments.solid)?;
+        let solids = [
+            choose_solid([(&a.name, a.is_watertight())], arguments.solid)?,
+            choose_solid([(&b.name, b.is_watertight())], arguments.solid)?,
+        ];
         let (tolerance, min_separation) = (options.tolerance, options.min_separation);
-        Ok(Self { a, b, solid, min_separation, tolerance, preparation, options: options.with_solid(solid) })
+        Ok(Self { a, b, solids, min_separation, tolerance, preparation, options })
     }
 
     /// Each query on all threads of the machine: for single ones.
@@ -125,12 +128,16 @@ impl Pair {
 
     fn ask_smooth(&self, [a, b]: [&dyn RigidMotion; 2], window: Window) -> Result<Answer, Failure> {
         let start = Instant::now();
+        let [solid_a, solid_b] = self.solids;
         let verdict = match (&self.a.tree, &self.b.tree) {
             (Tree::Engine(tree_a), Tree::Engine(tree_b)) => {
-                time_of_contact(Moving::new(tree_a, a), Moving::new(tree_b, b), window, &self.options)
+                let a = Moving::new(tree_a, a).with_solid(solid_a);
+                let b = Moving::new(tree_b, b).with_solid(solid_b);
+                time_of_contact(a, b, window, &self.options)
             }
             (Tree::Paper(tree_a), Tree::Paper(tree_b)) => {
-                let (a, b) = (paper::Moving::new(tree_a, a), paper::Moving::new(tree_b, b));
+                let a = paper::Moving::new(tree_a, a).with_solid(solid_a);
+                let b = paper::Moving::new(tree_b, b).with_solid(solid_b);
                 paper::time_of_contact(a, b, window, &self.options)
             }
             _ => unreachable!("both bodies of a pair are prepared for one method"),
@@ -214,8 +221,11 @@ pub(crate) fn number(
     }
 }
 
-/// Filled if both bodies (name, and whether it is watertight) close, unless the user says otherwise.
-pub(crate) fn choose_solid(bodies: [(&str, bool); 2], arguments: SolidArguments) -> Result<Solid, Failure> {
+/// Filled if the bodies (name, and whether it is watertight) all close, unless the user says otherwise.
+pub(crate) fn choose_solid<const N: usize>(
+    bodies: [(&str, bool); N],
+    arguments: SolidArguments,
+) -> Result<Solid, Failure> {
     if arguments.surface {
         return Ok(Solid::Surface);
     }
@@ -225,7 +235,8 @@ pub(crate) fn choose_solid(bodies: [(&str, bool); 2], arguments: SolidArguments)
             Err(Failure::at(name, "the mesh is not watertight, so it bounds no solid: use --surface"))
         }
         Some((name, _)) => {
-            note(&format!("d2m: note: {name} is not watertight: only surfaces count"));
+            let counts = if N > 1 { "only surfaces count" } else { "only its surface counts" };
+            note(&format!("d2m: note: {name} is not watertight: {counts}"));
             Ok(Solid::Surface)
         }
     }

@@ -115,9 +115,11 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
     for (label, body) in [("A", &pair.a), ("B", &pair.b)] {
         line(label, format!("{} · {} triangles", body.name, count(body.mesh().triangle_count())));
     }
-    let solid = match pair.solid {
-        Solid::Filled => "filled solids",
-        Solid::Surface => "surfaces only",
+    let solid = match pair.solids {
+        [Solid::Filled, Solid::Filled] => "filled solids",
+        [Solid::Surface, Solid::Surface] => "surfaces only",
+        [Solid::Filled, Solid::Surface] => "filled solid A, surface of B",
+        [Solid::Surface, Solid::Filled] => "surface of A, filled solid B",
     };
     let nearer = match pair.min_separation {
         0.0 => String::new(),
@@ -203,7 +205,8 @@ pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer) -> String {
         "status": status(&answer.verdict),
         "microseconds": microseconds(answer.took),
         "window": [window.start(), window.end()],
-        "solid": matches!(pair.solid, Solid::Filled),
+        "solid": pair.solids == [Solid::Filled; 2],
+        "solids": pair.solids.map(|solid| solid == Solid::Filled),
         "min_separation": pair.min_separation,
         "triangles": [pair.a.mesh().triangle_count(), pair.b.mesh().triangle_count()],
     });

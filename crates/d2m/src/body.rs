@@ -47,8 +47,8 @@ impl Body {
 
     /// The same body with this meaning of its mesh, instead of that of the world's options.
     ///
-    /// A pair counts as solids if both bodies do; of any other pair only the surfaces count, so an open sheet that is wholly
-    /// inside of a solid from the start is not reported.
+    /// What is inside a solid body from the start is in contact with it, be it solid or an open sheet; nothing is inside of a
+    /// surface.
     pub fn with_solid(mut self, solid: Solid) -> Self {
         self.solid = Some(solid);
         self
@@ -87,7 +87,7 @@ impl Body {
 
     /// The form that the pair queries take.
     pub fn moving(&self) -> Moving<'_> {
-        Moving::new(&self.tree, &*self.motion)
+        Moving { solid: self.solid, ..Moving::new(&self.tree, &*self.motion) }
     }
 
     pub(crate) fn set_motion(&mut self, motion: SharedMotion) {

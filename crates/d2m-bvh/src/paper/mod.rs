@@ -84,7 +84,7 @@ pub fn time_of_contact(
     let span = Interval::new(t0, t1);
     let tolerance = tolerance.max(4.0 * stretch::bound_rounding(&bodies, &relative, span));
     let places = [relative.placement(t0), relative.swapped().placement(t0)];
-    match classify_start(a.body, b.body, &places, tolerance, options.solid) {
+    match classify_start(a.body, b.body, &places, tolerance, bodies.map(|body| body.solid_in(options))) {
         Start::Apart => {}
         Start::Meeting(state, pair) => {
             return Ok(TimeOfContact::Contact(answer::contact_at_start(
@@ -124,7 +124,7 @@ fn validate(bodies: &[Moving<'_>; 2], window: Window, options: &QueryOptions) ->
         return Err(QueryError::BadTolerance { value: tolerance });
     }
     for (body, moving) in bodies.iter().enumerate() {
-        if options.solid == Solid::Filled && !moving.body.is_watertight() {
+        if moving.solid_in(options) == Solid::Filled && !moving.body.is_watertight() {
             return Err(QueryError::NotWatertight { body });
         }
         if !stretch::is_bounded(moving, Interval::new(window.start(), window.end())) {

@@ -28,7 +28,7 @@ pub(crate) fn classify_start(
     b: &SphereTree,
     places: &[Placement; 2],
     tolerance: f64,
-    solid: Solid,
+    solids: [Solid; 2],
 ) -> Start {
     let found = enclose_distance(a, b, &places[0], 4.0 * tolerance);
     if found.lower <= tolerance {
@@ -37,7 +37,8 @@ pub(crate) fn classify_start(
         let state = if crossing.is_some() { StartState::Overlapping } else { StartState::Touching };
         return Start::Meeting(state, Box::new(crossing.unwrap_or(closest)));
     }
-    if solid == Solid::Surface {
+    let filled = solids.map(|solid| solid == Solid::Filled);
+    if filled == [false; 2] {
         return Start::Apart;
     }
     let inside = |bodies: (&SphereTree, &SphereTree), place: &Placement| {
@@ -47,7 +48,9 @@ pub(crate) fn classify_start(
             Some(known || is_inside(bodies.1, point)?)
         })
     };
-    match (inside((a, b), &places[0]), inside((b, a), &places[1])) {
+    let in_b = if filled[1] { inside((a, b), &places[0]) } else { Some(false) };
+    let in_a = if filled[0] { inside((b, a), &places[1]) } else { Some(false) };
+    match (in_b, in_a) {
         (Some(false), Some(false)) => Start::Apart,
         (Some(true), _) | (_, Some(true)) => {
             let MeshDistance { closest, .. } = enclose_distance(a, b, &places[0], f64::INFINITY);

@@ -27,32 +27,36 @@ pub(super) fn scene_of<'a>(
     window: Window,
     options: &QueryOptions,
 ) -> Result<Option<Scene<'a>>, QueryError> {
-    check([a.body, b.body], options)?;
+    let solids = [a.solid_in(options), b.solid_in(options)];
+    check([a.body, b.body], solids, options)?;
     let (Some(motion_a), Some(motion_b)) = (a.motion.constant_twist(), b.motion.constant_twist()) else {
         return Ok(None);
     };
-    Scene::try_new((a.body, motion_a), (b.body, motion_b), window, options).map(Some)
+    let mut scene = Scene::try_new((a.body, motion_a), (b.body, motion_b), window, options)?;
+    scene.solids = solids;
+    Ok(Some(scene))
 }
 
-/// The scene of a query of constant twists.
+/// The scene of a query of constant twists of bodies with these meanings.
 pub(super) fn scene_of_twists<'a>(
     [a, b]: [(&'a MeshTree, ConstantTwist); 2],
+    solids: [Solid; 2],
     window: Window,
     options: &QueryOptions,
 ) -> Result<Scene<'a>, QueryError> {
-    check([a.0, b.0], options)?;
-    Scene::try_new(a, b, window, options)
+    check([a.0, b.0], solids, options)?;
+    let mut scene = Scene::try_new(a, b, window, options)?;
+    scene.solids = solids;
+    Ok(scene)
 }
 
 /// Searches.
 pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfContact, QueryError> {
     let mut allowance = Allowance::new(&options.budget);
     // Decided first: what the budget leaves open at the start would leave everything open.
-    let held = match options.solid {
-        Solid::Filled => held_at_start(scene, &mut allowance),
-        Solid::Surface => Ok(None),
+    let Ok(held) = held_at_start(scene, &mut allowance) else {
+        return Ok(TimeOfContact::Undecided { clear_until: scene.window.start() });
     };
-    let Ok(held) = held else { return Ok(TimeOfContact::Undecided { clear_until: scene.window.start() }) };
     let options = &options.with_budget(allowance.rest());
     let mut scratch = SCRATCH.take().unwrap_or_else(|| Box::new(Scratch::new()));
     let mut search = Search::new(scene, options, &mut scratch);
@@ -111,7 +115,7 @@ pub fn last_search_counts() -> crate::SearchCounts {
     SCRATCH.with_borrow(|scratch| scratch.as_ref().map(|s| s.counts).unwrap_or_default())
 }
 
-fn check(bodies: [&MeshTree; 2], options: &QueryOptions) -> Result<(), QueryError> {
+fn check(bodies: [&MeshTree; 2], solids: [Solid; 2], options: &QueryOptions) -> Result<(), QueryError> {
     if let Some(value) = options.tolerance
         && !(value.is_finite() && value > 0.0)
     {
@@ -122,7 +126,7 @@ fn check(bodies: [&MeshTree; 2], options: &QueryOptions) -> Result<(), QueryErro
         return Err(QueryError::BadMinSeparation { value });
     }
     for (index, body) in bodies.into_iter().enumerate() {
-        if options.solid == Solid::Filled && !body.is_watertight() {
+        if solids[index] == Solid::Filled && !body.is_watertight() {
             return Err(QueryError::NotWatertight { body: index });
         }
     }
@@ -147,9 +151,10 @@ fn crossing_at_start(scene: &Scene<'_>, allowance: &Allowance) -> Result<Option<
     Ok(crossing_pair_within(&at_rest, &mut allowance.at_most(CROSSING_STEPS)).unwrap_or(None))
 }
 
-/// A part of a body in the other solid at the start, if the surfaces do not touch then.
+/// A part of a body in the other one, if that is solid, at the start; if the surfaces do not touch then.
 fn held_at_start(scene: &Scene<'_>, allowance: &mut Allowance) -> Result<Option<Held>, Exhausted> {
-    if scene.balls_are_apart_at_start() {
+    let filled = scene.solids.map(|solid| solid == Solid::Filled);
+    if filled == [false; 2] || scene.balls_are_apart_at_start() {
         return Ok(None);
     }
     let frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
@@ -163,9 +168,10 @@ fn held_at_start(scene: &Scene<'_>, allowance: &mut Allowance) -> Result<Option<
     let to_a =
         |p: DVec3| back.times::<Quad>((Quad::from_vec(p / unit) - frame.apart).to_vec()).to_vec() * unit;
     let to_b = |p: DVec3| (frame.rotation.times::<Quad>(p / unit) + frame.apart).to_vec() * unit;
-    let in_a = held_vertex(a, b, to_a, allowance)?.map(|vertex| Held { by: 0, vertex });
-    Ok(match in_a {
-        Some(held) => Some(held),
-        None => held_vertex(b, a, to_b, allowance)?.map(|vertex| Held { by: 1, vertex }),
-    })
+    let in_a = if filled[0] { held_vertex(a, b, to_a, allowance)? } else { None };
+    if let Some(vertex) = in_a {
+        return Ok(Some(Held { by: 0, vertex }));
+    }
+    let in_b = if filled[1] { held_vertex(b, a, to_b, allowance)? } else { None };
+    Ok(in_b.map(|vertex| Held { by: 1, vertex }))
 }

@@ -68,7 +68,7 @@ fn from_common_joint(
     options: &QueryOptions,
 ) -> Result<TimeOfContact, QueryError> {
     let (rest_a, rest_b) = (a.without_first(common), b.without_first(common));
-    let seen = [Moving::new(bodies[0].body, &rest_a), Moving::new(bodies[1].body, &rest_b)];
+    let seen = [Moving { motion: &rest_a, ..bodies[0] }, Moving { motion: &rest_b, ..bodies[1] }];
     let mut answer = Advance::new(seen, window, *options).run()?;
     if let TimeOfContact::Contact(contact) = &mut answer {
         let (frame, _) = a.only_first(common).pose_and_twist(contact.time_lo);
@@ -154,13 +154,16 @@ impl<'a> Advance<'a> {
         Some(rest)
     }
 
-    /// Options for a span: bodies that are free of each other stay so until they touch, so that the inside of the one is
-    /// tested for the other only at the start, and where pieces of a motion may miss each other by rounding.
-    fn options_of_span(&self) -> QueryOptions {
+    /// What counts as contact in a span: bodies that are free of each other stay so until they touch, so that the inside of
+    /// the one is tested for the other only at the start, and where pieces of a motion may miss each other by rounding.
+    fn solids_of_span(&self) -> [Solid; 2] {
         let starts = self.now == self.window.start() || self.begins_a_piece();
-        let solid = if starts { self.options.solid } else { Solid::Surface };
+        self.bodies.map(|body| if starts { body.solid_in(&self.options) } else { Solid::Surface })
+    }
+
+    fn options_of_span(&self) -> QueryOptions {
         let budget = self.rest_of_budget().unwrap_or(Budget::UNLIMITED.with_node_tests(0));
-        QueryOptions { solid, budget, tolerance: Some(self.tolerance), ..self.options }
+        QueryOptions { budget, tolerance: Some(self.tolerance), ..self.options }
     }
 
     fn begins_a_piece(&self) -> bool {
@@ -208,7 +211,8 @@ impl<'a> Advance<'a> {
         options: &QueryOptions,
     ) -> Result<TimeOfContact, QueryError> {
         let bodies = self.bodies.map(|moving| moving.body);
-        let answer = ask(&scene_of_twists([(bodies[0], *a), (bodies[1], *b)], span, options)?, options)?;
+        let twists = [(bodies[0], *a), (bodies[1], *b)];
+        let answer = ask(&scene_of_twists(twists, self.solids_of_span(), span, options)?, options)?;
         self.work += last_search_counts().work() + 1;
         Ok(answer)
     }

@@ -61,14 +61,14 @@ pub fn time_of_contact_with(
         return ask(&scene, options);
     }
     let course = Course::of(&scene);
-    let room = cache.room_along(&course, options.solid);
+    let room = cache.room_along(&course, scene.solids);
     if room.is_some_and(|room| excludes_contact(&scene, room)) || more_room(&scene, &course, options, cache)?
     {
         return Ok(TimeOfContact::Separated);
     }
     let answer = ask(&scene, options)?;
     match &answer {
-        TimeOfContact::Separated => cache.found_apart(&course, options.solid, options.min_separation),
+        TimeOfContact::Separated => cache.found_apart(&course, scene.solids, options.min_separation),
         TimeOfContact::Contact(contact) => {
             let after = contact.time_lo - window.start();
             cache.found_contact([contact.triangle_a, contact.triangle_b], after);
@@ -155,7 +155,7 @@ fn more_room(
     let proven = ask(&scene.with_options(&wider), &wider)? == TimeOfContact::Separated;
     cache.attempted(proven);
     if proven {
-        cache.found_apart(course, options.solid, room);
+        cache.found_apart(course, scene.solids, room);
     }
     Ok(proven)
 }

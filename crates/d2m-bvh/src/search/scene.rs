@@ -8,7 +8,7 @@ use super::node_pair::node_test::NodeScale;
 use super::queue::{Bucket, Queue};
 use super::triangle_pair::separating_axis::PairScale;
 use crate::tree::margin::{DOWN, NARROW_UP, UNIT_F64, UP, round_up};
-use crate::{MeshTree, QueryError, QueryOptions, Window};
+use crate::{MeshTree, QueryError, QueryOptions, Solid, Window};
 use d2m_motion::ConstantTwist;
 use glam::DVec3;
 
@@ -107,6 +107,8 @@ pub(crate) struct Scene<'a> {
     /// Reference point of A from that of B.
     pub(crate) track: Track,
     pub(crate) window: Window,
+    /// What counts as contact with each body.
+    pub(crate) solids: [Solid; 2],
     pub(crate) units: Units,
     /// The offset of the end of the window, not early.
     pub(crate) end: f64,
@@ -176,6 +178,7 @@ impl<'a> Scene<'a> {
             b,
             track,
             window,
+            solids: [options.solid; 2],
             units,
             end,
             pair: PairScale::NONE,

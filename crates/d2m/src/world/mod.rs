@@ -16,7 +16,7 @@ pub use plan::PlannedMotion;
 
 use crate::broad_phase::IndexPair;
 use crate::{Body, Group, SharedMotion};
-use d2m_bvh::{Mode, QueryOptions, Solid, Window};
+use d2m_bvh::{Mode, QueryOptions, Window};
 use d2m_motion::RigidMotion;
 use filter::PairFilter;
 use pair_state::PairState;
@@ -205,14 +205,5 @@ impl World {
 
     fn rules(&self) -> Rules<'_> {
         Rules { slots: &self.slots, filter: &self.filter, separation: self.options.min_separation }
-    }
-
-    /// Is a pair of solids, or does only its surface count? Both have to be solid.
-    fn solid(&self, pair: IndexPair) -> Solid {
-        let filled = |place: u32| {
-            let own = self.slots.at(place).and_then(Body::solid);
-            own.unwrap_or(self.options.solid) == Solid::Filled
-        };
-        if pair.into_iter().all(filled) { Solid::Filled } else { Solid::Surface }
     }
 }

@@ -304,7 +304,7 @@ impl World {
             let (end, clear_until) = if end <= limit { (end, clear_after) } else { (limit, limit) };
             // No window at all: the boxes part before the pair is asked.
             let Ok(window) = Window::try_new(start, end) else { continue };
-            let options = self.options.with_min_separation(separation).with_solid(self.solid(pair));
+            let options = self.options.with_min_separation(separation);
             let cache = state.map_or_else(PairCache::new, |state| *state.cache);
             questions.push(Question { pair, entry, window, clear_until, clear_after, options, cache });
         }

@@ -274,6 +274,13 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/tests/engine.rs::separation_at_lo_is_what_is_promised_and_nothing_touches_before",
     ),
     patch(
+        "nothing is inside a solid A",
+        "crates/d2m-bvh/src/query/constant_twist.rs",
+        "let in_a = if filled[0] {",
+        "let in_a = if filled[0] && filled[1] {",
+        "crates/d2m-bvh/tests/held_at_start.rs::a_sheet_inside_a_solid_is_held",
+    ),
+    patch(
         "attempts to skip time have no deadline",
         "crates/d2m-bvh/src/allowance.rs",
         "Self { steps: None, deadline, until_look: STEPS_A_LOOK }",
@@ -297,8 +304,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "a body inside the other is not looked for",
         "crates/d2m-bvh/src/query/constant_twist.rs",
-        "Solid::Filled => held_at_start(scene, &mut allowance),",
-        "Solid::Filled => Ok(None),",
+        "let Ok(held) = held_at_start(scene, &mut allowance) else {",
+        "let Ok(held) = Ok::<Option<Held>, Exhausted>(None) else {",
         "crates/d2m-bvh/tests/engine.rs::starts_that_touch_cross_or_hold",
     ),
     patch(
