@@ -3,6 +3,7 @@
 
 use super::eight::{Lanes, Rows};
 use super::quad::{Doubles, Quad};
+use super::register::register;
 use super::two::{Both, Bytes, Elementwise, Two};
 #[allow(clippy::wildcard_imports)]
 use core::arch::x86_64::*;
@@ -33,7 +34,7 @@ pub(super) struct Avx<R>(pub(super) __m256, PhantomData<R>);
 
 impl<R> Avx<R> {
     #[inline(always)]
-    pub(super) const fn of(register: __m256) -> Self {
+    pub(super) const fn wrap(register: __m256) -> Self {
         Self(register, PhantomData)
     }
 }
@@ -56,54 +57,11 @@ const ORDER: [u64; 256] = {
     order
 };
 
-macro_rules! avx_operator {
-    ($($operator:ident $method:ident $intrinsic:ident),*) => {$(
-        impl<R: Registers> $operator for Avx<R> {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                // SAFETY: the processor has AVX (see the type).
-                Self::of(unsafe { $intrinsic(self.0, other.0) })
-            }
-        }
-    )*};
-}
-avx_operator!(Add add _mm256_add_ps, Sub sub _mm256_sub_ps, Mul mul _mm256_mul_ps, Div div _mm256_div_ps);
-
-impl<R: Registers> Elementwise for Avx<R> {
-    type Scalar = f32;
-
-    #[inline(always)]
-    fn splat(value: f32) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self::of(unsafe { _mm256_set1_ps(value) })
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self::of(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self::of(unsafe { _mm256_max_ps(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self::of(unsafe { _mm256_min_ps(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn flip_sign(magnitude: Self, sign: Self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self::of(unsafe { _mm256_xor_ps(magnitude.0, _mm256_and_ps(sign.0, _mm256_set1_ps(-0.0))) })
-    }
-    #[inline(always)]
-    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self::of(unsafe { _mm256_blendv_ps(no.0, yes.0, _mm256_cmp_ps::<_CMP_GT_OQ>(left.0, right.0)) })
-    }
-}
+register!([<R: Registers>] Avx<R>, f32:
+    _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_set1_ps _mm256_max_ps _mm256_min_ps _mm256_xor_ps _mm256_and_ps,
+    |x| _mm256_andnot_ps(_mm256_set1_ps(-0.0), x),
+    |left, right, yes, no| _mm256_blendv_ps(no, yes, _mm256_cmp_ps::<_CMP_GT_OQ>(left, right)));
+register!([<R: Registers>] Avx<R>: Div div _mm256_div_ps);
 
 impl<R: Registers> Bytes for Avx<R> {
     #[inline(always)]
@@ -115,7 +73,7 @@ impl<R: Registers> Bytes for Avx<R> {
             let upper = _mm256_srli_epi32::<16>(_mm256_castps_si256(two));
             let one = _mm256_blendv_ps(two, _mm256_castsi256_ps(upper), _mm256_xor_ps(y.0, flip.0));
             let byte = _mm256_and_si256(_mm256_castps_si256(one), _mm256_set1_epi32(255));
-            Self::of(_mm256_cvtepi32_ps(byte))
+            Self::wrap(_mm256_cvtepi32_ps(byte))
         }
     }
 }
@@ -127,7 +85,7 @@ impl<R: Registers> Lanes for Avx<R> {
     #[inline(always)]
     fn load(values: &[f32; 8]) -> Self {
         // SAFETY: eight floats are readable; no alignment is needed; AVX as above.
-        Self::of(unsafe { _mm256_loadu_ps(values.as_ptr()) })
+        Self::wrap(unsafe { _mm256_loadu_ps(values.as_ptr()) })
     }
     #[inline(always)]
     fn store(self) -> [f32; 8] {
@@ -139,7 +97,7 @@ impl<R: Registers> Lanes for Avx<R> {
     #[inline(always)]
     fn sqrt(self) -> Self {
         // SAFETY: the processor has AVX (see the type).
-        Self::of(unsafe { _mm256_sqrt_ps(self.0) })
+        Self::wrap(unsafe { _mm256_sqrt_ps(self.0) })
     }
     #[inline(always)]
     fn less_bits(self, other: Self) -> u32 {
@@ -230,59 +188,16 @@ pub(super) struct AvxDoubles<R>(pub(super) __m256d, PhantomData<R>);
 
 impl<R> AvxDoubles<R> {
     #[inline(always)]
-    pub(super) const fn of(register: __m256d) -> Self {
+    pub(super) const fn wrap(register: __m256d) -> Self {
         Self(register, PhantomData)
     }
 }
 
-macro_rules! doubles_operator {
-    ($($operator:ident $method:ident $intrinsic:ident),*) => {$(
-        impl<R: Registers> $operator for AvxDoubles<R> {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                // SAFETY: the processor has AVX (see the type).
-                Self::of(unsafe { $intrinsic(self.0, other.0) })
-            }
-        }
-    )*};
-}
-doubles_operator!(Add add _mm256_add_pd, Sub sub _mm256_sub_pd, Mul mul _mm256_mul_pd, Div div _mm256_div_pd);
-
-impl<R: Registers> Elementwise for AvxDoubles<R> {
-    type Scalar = f64;
-
-    #[inline(always)]
-    fn splat(x: f64) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self::of(unsafe { _mm256_set1_pd(x) })
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self::of(unsafe { _mm256_min_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self::of(unsafe { _mm256_max_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self::of(unsafe { _mm256_blendv_pd(no.0, yes.0, _mm256_cmp_pd::<_CMP_GT_OQ>(left.0, right.0)) })
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self::of(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
-    }
-    #[inline(always)]
-    fn flip_sign(magnitude: Self, sign: Self) -> Self {
-        // SAFETY: the processor has AVX (see the type).
-        Self::of(unsafe { _mm256_xor_pd(magnitude.0, _mm256_and_pd(sign.0, _mm256_set1_pd(-0.0))) })
-    }
-}
+register!([<R: Registers>] AvxDoubles<R>, f64:
+    _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_set1_pd _mm256_max_pd _mm256_min_pd _mm256_xor_pd _mm256_and_pd,
+    |x| _mm256_andnot_pd(_mm256_set1_pd(-0.0), x),
+    |left, right, yes, no| _mm256_blendv_pd(no, yes, _mm256_cmp_pd::<_CMP_GT_OQ>(left, right)));
+register!([<R: Registers>] AvxDoubles<R>: Div div _mm256_div_pd);
 
 impl<R: Registers> Doubles for AvxDoubles<R> {
     type Two = R::Eight;
@@ -290,7 +205,7 @@ impl<R: Registers> Doubles for AvxDoubles<R> {
     #[inline(always)]
     fn load(values: &Quad) -> Self {
         // SAFETY: four doubles are readable, aligned to 32 bytes by the type; AVX as above.
-        Self::of(unsafe { _mm256_load_pd(values.0.as_ptr()) })
+        Self::wrap(unsafe { _mm256_load_pd(values.0.as_ptr()) })
     }
     #[inline(always)]
     fn store(self) -> Quad {
@@ -331,9 +246,9 @@ impl<R: Registers> Doubles for AvxDoubles<R> {
             let (even_ab, even_c) = (_mm256_unpacklo_pd(a.0, b.0), _mm256_unpacklo_pd(c.0, zero));
             let (odd_ab, odd_c) = (_mm256_unpackhi_pd(a.0, b.0), _mm256_unpackhi_pd(c.0, zero));
             [
-                Self::of(_mm256_permute2f128_pd::<0x20>(even_ab, even_c)),
-                Self::of(_mm256_permute2f128_pd::<0x20>(odd_ab, odd_c)),
-                Self::of(_mm256_permute2f128_pd::<0x31>(even_ab, even_c)),
+                Self::wrap(_mm256_permute2f128_pd::<0x20>(even_ab, even_c)),
+                Self::wrap(_mm256_permute2f128_pd::<0x20>(odd_ab, odd_c)),
+                Self::wrap(_mm256_permute2f128_pd::<0x31>(even_ab, even_c)),
             ]
         }
     }

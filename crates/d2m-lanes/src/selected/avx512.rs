@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::avx::{Avx, AvxDoubles, Registers};
+use super::register::register;
 use super::two::{Bytes, Elementwise, Two};
 #[allow(clippy::wildcard_imports)]
 use core::arch::x86_64::*;
@@ -25,48 +26,13 @@ pub(super) struct Sixteen(__m512);
 #[derive(Clone, Copy)]
 pub(super) struct Eight(__m512d);
 
-/// The operations of one kind of register: both kinds have the same ones, under other names.
-macro_rules! register {
-    (
-        $type:ident of $scalar:ty, two times $half:ident:
-        $add:ident $sub:ident $mul:ident $splat:ident $abs:ident $max:ident $min:ident
-        $xor:ident $and:ident $greater:ident $blend:ident
-        $whole:ident $insert:ident $twice:ident $low:ident $high:ident
-    ) => {
-        register!($type: Add add $add, Sub sub $sub, Mul mul $mul);
-
-        impl Elementwise for $type {
-            type Scalar = $scalar;
-
+/// Two halves of 256 bits.
+macro_rules! halves {
+    ($type:ident, $register:ty, $half:ident: $whole:ident $insert:ident $twice:ident $low:ident $high:ident) => {
+        impl $type {
             #[inline(always)]
-            fn splat(value: $scalar) -> Self {
-                // SAFETY: the processor has AVX-512 (see the type).
-                Self(unsafe { $splat(value) })
-            }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                // SAFETY: the processor has AVX-512 (see the type).
-                Self(unsafe { $abs(self.0) })
-            }
-            #[inline(always)]
-            fn max(self, other: Self) -> Self {
-                // SAFETY: the processor has AVX-512 (see the type).
-                Self(unsafe { $max(self.0, other.0) })
-            }
-            #[inline(always)]
-            fn min(self, other: Self) -> Self {
-                // SAFETY: the processor has AVX-512 (see the type).
-                Self(unsafe { $min(self.0, other.0) })
-            }
-            #[inline(always)]
-            fn flip_sign(magnitude: Self, sign: Self) -> Self {
-                // SAFETY: the processor has AVX-512 (see the type).
-                Self(unsafe { $xor(magnitude.0, $and(sign.0, $splat(-0.0))) })
-            }
-            #[inline(always)]
-            fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
-                // SAFETY: the processor has AVX-512 (see the type).
-                Self(unsafe { $blend($greater::<_CMP_GT_OQ>(left.0, right.0), no.0, yes.0) })
+            const fn wrap(register: $register) -> Self {
+                Self(register)
             }
         }
 
@@ -84,35 +50,29 @@ macro_rules! register {
             #[inline(always)]
             fn first(self) -> $half<Of512> {
                 // SAFETY: the processor has AVX-512 (see the type).
-                $half::of(unsafe { $low(self.0) })
+                $half::wrap(unsafe { $low(self.0) })
             }
             #[inline(always)]
             fn second(self) -> $half<Of512> {
                 // SAFETY: the processor has AVX-512 (see the type).
-                $half::of(unsafe { $high::<1>(self.0) })
+                $half::wrap(unsafe { $high::<1>(self.0) })
             }
         }
     };
-    ($type:ident: $($operator:ident $method:ident $intrinsic:ident),*) => {$(
-        impl $operator for $type {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                // SAFETY: the processor has AVX-512 (see the type).
-                Self(unsafe { $intrinsic(self.0, other.0) })
-            }
-        }
-    )*};
 }
 
-register!(Sixteen of f32, two times Avx:
-    _mm512_add_ps _mm512_sub_ps _mm512_mul_ps _mm512_set1_ps _mm512_abs_ps _mm512_max_ps _mm512_min_ps
-    _mm512_xor_ps _mm512_and_ps _mm512_cmp_ps_mask _mm512_mask_blend_ps
-    _mm512_castps256_ps512 _mm512_insertf32x8 _mm512_broadcast_f32x8 _mm512_castps512_ps256 _mm512_extractf32x8_ps);
-register!(Eight of f64, two times AvxDoubles:
-    _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_set1_pd _mm512_abs_pd _mm512_max_pd _mm512_min_pd
-    _mm512_xor_pd _mm512_and_pd _mm512_cmp_pd_mask _mm512_mask_blend_pd
-    _mm512_castpd256_pd512 _mm512_insertf64x4 _mm512_broadcast_f64x4 _mm512_castpd512_pd256 _mm512_extractf64x4_pd);
+register!([] Sixteen, f32:
+    _mm512_add_ps _mm512_sub_ps _mm512_mul_ps _mm512_set1_ps _mm512_max_ps _mm512_min_ps _mm512_xor_ps _mm512_and_ps,
+    |x| _mm512_abs_ps(x),
+    |left, right, yes, no| _mm512_mask_blend_ps(_mm512_cmp_ps_mask::<_CMP_GT_OQ>(left, right), no, yes));
+halves!(Sixteen, __m512, Avx: _mm512_castps256_ps512 _mm512_insertf32x8 _mm512_broadcast_f32x8 _mm512_castps512_ps256
+    _mm512_extractf32x8_ps);
+register!([] Eight, f64:
+    _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_set1_pd _mm512_max_pd _mm512_min_pd _mm512_xor_pd _mm512_and_pd,
+    |x| _mm512_abs_pd(x),
+    |left, right, yes, no| _mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(left, right), no, yes));
+halves!(Eight, __m512d, AvxDoubles: _mm512_castpd256_pd512 _mm512_insertf64x4 _mm512_broadcast_f64x4
+    _mm512_castpd512_pd256 _mm512_extractf64x4_pd);
 
 impl Bytes for Sixteen {
     #[inline(always)]

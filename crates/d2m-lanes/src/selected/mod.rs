@@ -9,6 +9,8 @@ mod eight;
 mod instruction_set;
 mod portable;
 mod quad;
+#[cfg(target_arch = "x86_64")]
+mod register;
 mod two;
 
 pub use dispatch::{Task, run, run_on};
