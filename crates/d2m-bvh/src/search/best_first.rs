@@ -10,7 +10,8 @@ use super::skip::SkipLimits;
 use super::skip::screw_search::screw_clear_until;
 use super::skip::swept_volume::swept_clear_until;
 use super::state::{BATCH, FIRST_SWEEP, Outcome, Search, State, Step, SubWindow, triangle_count};
-use super::triangle_pair::separating_axis::{Behind, place_a, widest_normal};
+use super::triangle_pair::separating_axis::{BackwardCertificate, place_a};
+use super::triangle_pair::widest_gap::widest_normal;
 use crate::Budget;
 use crate::tree::margin::NARROW_UP;
 use crate::tree::node::{Below, LEAST_SIZE, WIDTH, WideNode};
@@ -80,7 +81,7 @@ impl Search<'_> {
             frame: Frame::NONE,
             frame_key: 0,
             found: None,
-            behind: Behind { reversed: Frame::NONE, direction: DVec3::ZERO },
+            behind: BackwardCertificate { reversed: Frame::NONE, direction: DVec3::ZERO },
         };
         self.scratch.counts.windows += 1;
         self.scratch.queue.clear();

@@ -1,10 +1,12 @@
-//! What is done with the pairs that the queue hands out: boxes are opened, triangles are followed in time.
+//! What is done with the pairs that the queue hands out: boxes are opened, triangles are advanced in time.
 
 use super::queue::Item;
 use super::scene::SceneBody;
 use super::state::{BATCH, Found, QUICK_LOOKS, Search, State};
 use super::triangle_pair::closest::closest;
-use super::triangle_pair::separating_axis::{Behind, Care, Look, apart_since, look, place_a};
+use super::triangle_pair::separating_axis::{
+    BackwardCertificate, BoundOrder, Evaluation, apart_since, place_a, separating_axis_test,
+};
 use crate::Mode;
 use crate::tree::node::WIDTH;
 use d2m_lanes::Lanes;
@@ -74,7 +76,7 @@ impl Search<'_> {
         if state.found.is_some() {
             self.scratch.counts.triangle_looks += 1;
             let span = (state.limit_offset - known).next_up();
-            if apart_since::<L::Doubles>(&state.behind, (&a, &b), &self.scene.pair, span) {
+            if apart_since::<L::Doubles>(&state.behind, [&a, &b], &self.scene.pair, span) {
                 return;
             }
         }
@@ -93,10 +95,10 @@ impl Search<'_> {
             self.scratch.counts.triangle_looks += 1;
             self.scratch.last_looked_at = triangles;
             let enough = state.limit_offset - frame.offset;
-            let care =
-                if self.scratch.counts.triangle_looks > QUICK_LOOKS { Care::Thorough } else { Care::Quick };
-            match look::<L::Doubles>(&frame, (&a, &b), &self.scene.pair, enough, care) {
-                Look::ClearFor(time) => {
+            let third = self.scratch.counts.triangle_looks > QUICK_LOOKS;
+            let order = if third { BoundOrder::Third } else { BoundOrder::Second };
+            match separating_axis_test::<L::Doubles>(&frame, [&a, &b], &self.scene.pair, enough, order) {
+                Evaluation::ClearFor(time) => {
                     known = known.max(frame.offset + time);
                     if known >= state.limit_offset {
                         return;
@@ -109,12 +111,13 @@ impl Search<'_> {
                         return;
                     }
                 }
-                Look::Near { crossing, direction } => {
-                    // Near at the time of the frame, which may be before what the boxes proved: then look again there.
+                Evaluation::Near { crossing, direction } => {
+                    // Near at the time of the frame, which may be before what the boxes proved: then it is evaluated again there.
                     if known <= frame.offset {
                         if known < state.limit_offset {
                             state.find(known, triangles, crossing);
-                            state.behind = Behind { reversed: frame.reversed::<L::Doubles>(), direction };
+                            state.behind =
+                                BackwardCertificate { reversed: frame.reversed::<L::Doubles>(), direction };
                             if self.limits.mode == Mode::Exists {
                                 state.end();
                             }
@@ -128,7 +131,8 @@ impl Search<'_> {
             } else {
                 // The time left is below the resolution of time itself: as near as times can tell.
                 state.find(known, triangles, false);
-                state.behind = Behind { reversed: frame.reversed::<L::Doubles>(), ..state.behind };
+                state.behind =
+                    BackwardCertificate { reversed: frame.reversed::<L::Doubles>(), ..state.behind };
                 return;
             }
         }

@@ -6,7 +6,7 @@ use super::motion::track::Track;
 use super::motion::units::Units;
 use super::node_pair::node_test::NodeScale;
 use super::queue::{Bucket, Queue};
-use super::triangle_pair::separating_axis::PairScale;
+use super::triangle_pair::pair_scale::PairScale;
 use crate::tree::margin::{DOWN, NARROW_UP, UNIT_F64, UP, round_up};
 use crate::{MeshTree, QueryError, QueryOptions, Solid, Window};
 use d2m_motion::ConstantTwist;
@@ -26,8 +26,8 @@ const PAIR_ERROR: f64 = 1.0 / 281_474_976_710_656.0; // 2⁻⁴⁸
 const LEAST_SIZE: f64 = 1.0 / 18_446_744_073_709_551_616.0; // 2⁻⁶⁴
 /// δ as a part of the larger body's radius, if none is given.
 const DEFAULT_TOLERANCE: f64 = 1e-10;
-/// Part of δ that pairs are followed to above the level. Large against roundings, small against δ.
-const SPARE: f64 = 1.0 / 64.0;
+/// Part of δ that pairs are advanced to above the level. Large against roundings, small against δ.
+const SLACK: f64 = 1.0 / 64.0;
 /// Most rotation, both bodies together, inside one window: frames hold for 0.35 radians.
 const WINDOW_ANGLE: f64 = 0.3;
 /// Most radians between a reference time and the window: poses are proven for less than 2⁵⁰, and a window of
@@ -208,15 +208,15 @@ impl<'a> Scene<'a> {
             .map_or_else(|| DEFAULT_TOLERANCE * to_length(a.tree.radius().max(b.tree.radius())), to_length);
         self.tolerance = wanted.max(2.0 * error);
         let level = to_length(options.min_separation) + self.tolerance;
-        let swings = [a, b].map(|body| body.spin() * body.spin() * body.reach() * UP);
+        let centripetal = [a, b].map(|body| body.spin() * body.spin() * body.reach() * UP);
         self.pair = PairScale {
             level,
             error,
             stop: level + self.tolerance + error,
-            spare: SPARE * self.tolerance,
-            acceleration: (swings[0] + swings[1]) * UP,
+            slack: SLACK * self.tolerance,
+            acceleration: (centripetal[0] + centripetal[1]) * UP,
             arms: [a.motion.arm(), b.motion.arm()],
-            swings,
+            centripetal,
         };
     }
 
@@ -317,17 +317,17 @@ fn units_of(bodies: [&(&MeshTree, ConstantTwist); 2], window: Window) -> Option<
 pub struct SearchCounts {
     /// Windows that were searched.
     pub windows: u64,
-    /// Batches handed out by the queue, each with its own frame.
+    /// Batches handed out by the queue.
     pub frames: u64,
     /// Wide nodes that were opened against a box.
     pub node_tests: u64,
     /// Pairs of boxes that were queued.
     pub queued: u64,
-    /// Looks at pairs of triangles.
+    /// Separating-axis tests of pairs of triangles.
     pub triangle_looks: u64,
-    /// Attempts to skip time by the sweeps of the bodies.
+    /// Attempts to skip time by swept volumes or a common screw.
     pub sweeps: u64,
-    /// Pairs of boxes or triangles whose sweeps were compared.
+    /// Pairs of parts that were compared for that.
     pub swept_pairs: u64,
 }
 

@@ -5,7 +5,7 @@ use super::motion::units::sum_down;
 use super::node_pair::expansion::Opening;
 use super::node_pair::node_test::{NodeFrame, NodeScale};
 use super::scene::{Scene, Scratch, SearchCounts};
-use super::triangle_pair::separating_axis::Behind;
+use super::triangle_pair::separating_axis::BackwardCertificate;
 use crate::{Budget, Mode, QueryOptions};
 use d2m_lanes::InstructionSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -129,7 +129,7 @@ pub(super) struct State<'a> {
     pub(super) frame_key: u32,
     pub(super) found: Option<Found>,
     /// The time of what is found; before something is found, of no meaning.
-    pub(super) behind: Behind,
+    pub(super) behind: BackwardCertificate,
 }
 
 impl<'s> Search<'s> {

@@ -4,7 +4,10 @@ use super::node_pair::entry_time::entry_times;
 use super::node_pair::node_test::{NodeFrame, NodeScale, Placed};
 use super::scene::{Scene, Scratch};
 use super::state::{Outcome, Search};
-use super::triangle_pair::separating_axis::{Behind, Care, Look, PairScale, apart_since, look, place_a};
+use super::triangle_pair::pair_scale::PairScale;
+use super::triangle_pair::separating_axis::{
+    BackwardCertificate, BoundOrder, Evaluation, apart_since, place_a, separating_axis_test,
+};
 use crate::random::Random;
 use crate::tree::node::WIDTH;
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
@@ -135,10 +138,10 @@ fn half_the_acceleration_is_noticed() {
     }
 }
 
-/// The same arm and wall, looked at as triangles, while the arm also comes nearer by itself: what is left at the end of
+/// The same arm and wall as triangles, while the arm also comes nearer by itself: what is left at the end of
 /// the time that they are proven clear after the arm points at the wall, or before that (the motion is then the one
 /// that runs backwards from there, from a contact of the direction given).
-fn room_after_a_look(closing: f64, backwards: Option<DVec3>, mutate: impl Fn(&mut PairScale)) -> f64 {
+fn room_after_a_test(closing: f64, backwards: Option<DVec3>, mutate: impl Fn(&mut PairScale)) -> f64 {
     let tree =
         |corners: [DVec3; 3]| MeshTree::new(TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2]]).unwrap());
     let arm = [DVec3::new(1.0001, 0.0, 0.0), DVec3::new(1.0, 1e-4, 0.0), DVec3::new(1.0, 0.0, 1e-4)];
@@ -158,18 +161,18 @@ fn room_after_a_look(closing: f64, backwards: Option<DVec3>, mutate: impl Fn(&mu
     let frame = motion.frame::<Quad>(0.0);
     let time = if let Some(direction) = backwards {
         // The longest span that is found clear.
-        let behind = Behind { reversed: frame.reversed::<Quad>(), direction };
+        let behind = BackwardCertificate { reversed: frame.reversed::<Quad>(), direction };
         let (mut clear, mut unknown) = (0.0, 1.0);
         for _ in 0..60 {
             let span = 0.5 * (clear + unknown);
-            let apart = apart_since::<Quad>(&behind, (&ca, &cb), &pair, span);
+            let apart = apart_since::<Quad>(&behind, [&ca, &cb], &pair, span);
             *(if apart { &mut clear } else { &mut unknown }) = span;
         }
         clear
     } else {
-        match look::<Quad>(&frame, (&ca, &cb), &pair, 1e300, Care::Quick) {
-            Look::ClearFor(time) => time,
-            Look::Near { .. } => panic!("they begin apart"),
+        match separating_axis_test::<Quad>(&frame, [&ca, &cb], &pair, 1e300, BoundOrder::Second) {
+            Evaluation::ClearFor(time) => time,
+            Evaluation::Near { .. } => panic!("they begin apart"),
         }
     };
     assert!(time > 0.05);
@@ -182,8 +185,8 @@ fn room_after_a_look(closing: f64, backwards: Option<DVec3>, mutate: impl Fn(&mu
 fn half_the_acceleration_of_triangles_is_noticed() {
     for backwards in [None, Some(DVec3::ZERO), Some(DVec3::X), Some(-3.0 * DVec3::X), Some(DVec3::Y)] {
         for closing in [0.0, 0.05] {
-            assert!(room_after_a_look(closing, backwards, |_| ()) >= 1e-7);
-            assert!(room_after_a_look(closing, backwards, |pair| pair.acceleration *= 0.5) < 1e-7);
+            assert!(room_after_a_test(closing, backwards, |_| ()) >= 1e-7);
+            assert!(room_after_a_test(closing, backwards, |pair| pair.acceleration *= 0.5) < 1e-7);
         }
     }
 }
@@ -212,9 +215,15 @@ fn clear_times_of_triangle_pairs_hold_and_are_sharp() {
         let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
         let motion = scene.relative_motion(0.0);
         let (ca, cb) = (scene.a.corners(0), scene.b.corners(0));
-        let care = [Care::Quick, Care::Thorough][round / 9 % 2];
-        let found = look::<Quad>(&motion.frame::<Quad>(0.0), (&ca, &cb), &scene.pair, scene.longest, care);
-        let Look::ClearFor(time) = found else { continue };
+        let order = [BoundOrder::Second, BoundOrder::Third][round / 9 % 2];
+        let found = separating_axis_test::<Quad>(
+            &motion.frame::<Quad>(0.0),
+            [&ca, &cb],
+            &scene.pair,
+            scene.longest,
+            order,
+        );
+        let Evaluation::ClearFor(time) = found else { continue };
         for part in [0.25, 0.5, 0.75, 1.0] {
             let frame = motion.frame::<Quad>(part * time.min(scene.longest));
             least = least.min(triangle_distance(&place_a::<Quad>(&frame, &ca), &cb).lower / level);
@@ -314,9 +323,9 @@ fn every_instruction_set_gives_the_same_bits() {
     assert!(found > 50);
 }
 
-/// Thorough looks at pairs that spin close to each other.
+/// Third-order bounds of pairs that spin close to each other.
 #[test]
-fn thorough_looks_hold() {
+fn third_order_bounds_hold() {
     let mut random = Random(15);
     let level = 1e-6;
     let options = QueryOptions::default().with_tolerance(level);
@@ -328,14 +337,14 @@ fn thorough_looks_hold() {
         let motion = scene.relative_motion(0.0);
         for (s, t) in [(0, 0), (1, 5), (3, 2), (7, 7)] {
             let (ca, cb) = (scene.a.corners(s), scene.b.corners(t));
-            let found = look::<Quad>(
+            let found = separating_axis_test::<Quad>(
                 &motion.frame::<Quad>(0.0),
-                (&ca, &cb),
+                [&ca, &cb],
                 &scene.pair,
                 scene.longest,
-                Care::Thorough,
+                BoundOrder::Third,
             );
-            let Look::ClearFor(time) = found else { continue };
+            let Evaluation::ClearFor(time) = found else { continue };
             for part in [0.3, 0.6, 0.9, 1.0] {
                 let frame = motion.frame::<Quad>(part * time.min(scene.longest));
                 least = least.min(triangle_distance(&place_a::<Quad>(&frame, &ca), &cb).lower / level);
@@ -348,7 +357,7 @@ fn thorough_looks_hold() {
 /// A small triangle turns about z, seen from the axis at angle −90°, and the axis moves so that its speed along x is
 /// zero at the start: its position is x = sin s − s, closing only by the third derivative. How far it is from the wall
 /// x = −0.004 at the end of the proven time; at s = 0.3 it is beyond.
-fn room_after_a_thorough_look(mutate: impl Fn(&mut Scene<'_>)) -> f64 {
+fn room_after_a_third_order_test(mutate: impl Fn(&mut Scene<'_>)) -> f64 {
     let tree =
         |corners: [DVec3; 3]| MeshTree::new(TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2]]).unwrap());
     let wall = |y: f64, z: f64| DVec3::new(-0.004, y, z);
@@ -361,9 +370,14 @@ fn room_after_a_thorough_look(mutate: impl Fn(&mut Scene<'_>)) -> f64 {
     let motion = scene.relative_motion(0.0);
     mutate(&mut scene);
     let (ca, cb) = (scene.a.corners(0), scene.b.corners(0));
-    let found =
-        look::<Quad>(&motion.frame::<Quad>(0.0), (&ca, &cb), &scene.pair, scene.longest, Care::Thorough);
-    let Look::ClearFor(time) = found else { panic!("0.004 apart") };
+    let found = separating_axis_test::<Quad>(
+        &motion.frame::<Quad>(0.0),
+        [&ca, &cb],
+        &scene.pair,
+        scene.longest,
+        BoundOrder::Third,
+    );
+    let Evaluation::ClearFor(time) = found else { panic!("0.004 apart") };
     assert!(time > 0.1, "{time}");
     place_a::<Quad>(&motion.frame::<Quad>(time.min(0.3)), &ca)
         .map(|p| p.x - cb[0].x)
@@ -373,11 +387,11 @@ fn room_after_a_thorough_look(mutate: impl Fn(&mut Scene<'_>)) -> f64 {
 
 #[test]
 fn mutants_of_the_third_derivative_die() {
-    assert!(room_after_a_thorough_look(|_| ()) >= 1e-7);
-    let smaller = |scene: &mut Scene<'_>| scene.pair.swings = scene.pair.swings.map(|s| 0.5 * s);
-    assert!(room_after_a_thorough_look(smaller) < 1e-7, "half of it");
+    assert!(room_after_a_third_order_test(|_| ()) >= 1e-7);
+    let smaller = |scene: &mut Scene<'_>| scene.pair.centripetal = scene.pair.centripetal.map(|s| 0.5 * s);
+    assert!(room_after_a_third_order_test(smaller) < 1e-7, "half of it");
     let elsewhere = |scene: &mut Scene<'_>| {
         scene.pair.arms = [DVec3::new(-0.5, 0.0, 0.0); 2];
     };
-    assert!(room_after_a_thorough_look(elsewhere) < 1e-7, "accelerations about another point");
+    assert!(room_after_a_third_order_test(elsewhere) < 1e-7, "accelerations about another point");
 }

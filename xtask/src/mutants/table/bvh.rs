@@ -141,7 +141,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     ),
     patch(
         "½ twice in the time of triangles",
-        "crates/d2m-bvh/src/search/triangle_pair/separating_axis.rs",
+        "crates/d2m-bvh/src/search/triangle_pair/first_time.rs",
         "let root = (v * v + 2.0 * m * g).sqrt();",
         "let root = (v * v + m * g).sqrt();",
         "crates/d2m-bvh/src/search/tests.rs::half_the_acceleration_of_triangles_is_noticed",
