@@ -3,6 +3,7 @@
 //!
 //! Without the feature `full` only the checks are compiled, which takes seconds. A task of the evaluation starts this
 //! program again, with the feature and optimised.
+#![forbid(unsafe_code)]
 #[cfg(feature = "full")]
 mod accuracy;
 #[cfg(feature = "full")]
@@ -15,11 +16,6 @@ mod judge;
 #[cfg(feature = "full")]
 mod machine;
 mod mutants;
-#[cfg(feature = "full")]
-#[path = "../../crates/d2m-feature/tests/planted/mod.rs"]
-mod planted;
-#[cfg(feature = "full")]
-mod random;
 #[cfg(feature = "full")]
 mod report;
 #[cfg(feature = "full")]

@@ -1,13 +1,11 @@
 //! First contact of single feature pairs: the table of times by family, then criterion's statistics of the same.
 //!
 //! `cargo bench -p d2m-benches --bench feature` prints the table first; every answer is judged before it is timed.
-#[path = "../../../crates/d2m-feature/tests/planted/families.rs"]
-mod families;
 mod table;
 
 use criterion::Criterion;
 use d2m_feature::ContactOptions;
-use families::Kind;
+use d2m_testing::planted::families::Kind;
 use std::hint::black_box;
 use table::{COLUMNS, Method};
 

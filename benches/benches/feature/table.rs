@@ -1,8 +1,8 @@
 //! The table of docs/theory/features.md: mean, p99 and largest time of a query by family, answers judged first.
-use crate::families::{Family, Kind, Opaque, Planted, Random, plant};
 use d2m_feature::{
     ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, PlacedTriangle, StraightPaths,
 };
+use d2m_testing::planted::families::{Family, Kind, Opaque, Planted, Random, plant};
 use std::hint::black_box;
 use std::time::Instant;
 

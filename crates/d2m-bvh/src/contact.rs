@@ -83,6 +83,7 @@ pub struct Contact {
     derive(serde::Serialize, serde::Deserialize),
     serde(tag = "status", rename_all = "lowercase")
 )]
+#[must_use = "it is a certificate: what is not read is not known to be safe"]
 pub enum TimeOfContact {
     /// Certified: no contact anywhere in the window.
     Separated,

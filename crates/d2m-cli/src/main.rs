@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 answered, 2 bad usage, 3 bad input (with file, line, index and value on stderr); where `--exit-status` asks
 //! for it 10 contact, 11 separated, 12 undecided.
+#![forbid(unsafe_code)]
 
 mod arguments;
 mod commands;

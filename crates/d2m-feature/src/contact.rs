@@ -4,6 +4,7 @@ use glam::DVec3;
 
 /// First contact of two moving features over a window of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[must_use = "it is a certificate: what is not read is not known to be safe"]
 pub enum FirstContact {
     /// No contact anywhere in the window.
     Clear,

@@ -3,25 +3,8 @@ use d2m_feature::{ContactOptions, EnclosedPairMotion, FirstContact};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
 use d2m_motion::{IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
 use d2m_root::Evidence;
+use d2m_testing::{Draw, Random};
 use glam::{DQuat, DVec3};
-
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 * (0.5_f64).powi(53)
-    }
-    fn signed(&mut self) -> f64 {
-        2.0 * self.unit() - 1.0
-    }
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.signed(), self.signed(), self.signed())
-    }
-}
 
 /// A cubic with a turn about a fixed axis by the angle w·t + α·t²/2: C∞, but nothing that the tests know about.
 #[derive(Debug, Clone, Copy)]

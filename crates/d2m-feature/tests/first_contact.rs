@@ -1,17 +1,17 @@
 //! First contact of feature pairs against an independent oracle of 192 bits, on planted contacts of every kind.
 //!
 //! The same families with a million queries each: `cargo xtask accuracy`.
-mod planted;
 
 use d2m_feature::{ContactBracket, ContactOptions, FirstContact, PairMotion};
-use planted::families::{FAMILIES, Kind, Random, plant};
-use planted::judge::Tally;
-use planted::{oracle, quick};
+use d2m_testing::Random;
+use d2m_testing::planted::families::{FAMILIES, Kind, plant};
+use d2m_testing::planted::judge::Tally;
+use d2m_testing::planted::{oracle, quick};
 
 #[test]
 fn planted_contacts_are_never_missed_and_never_late() {
     let mut rows = 0;
-    let total = planted::judge::all(24, 1, |name, tally| {
+    let total = d2m_testing::planted::judge::all(24, 1, |name, tally| {
         rows += 1;
         let (negatives, positives) = (tally.false_negatives.first(), tally.false_positives.first());
         assert!(negatives.is_none(), "{name}: {negatives:?}");

@@ -1,15 +1,15 @@
 //! The closed-form feature tests against the reference method's, on features that meet or miss by a hair; disputes are
 //! settled with 70 digits.
 
-mod oracle;
-
 use d2m_feature::paper::{PaperOptions, RelativeMotion, edge_edge, point_triangle};
 use d2m_feature::{ContactOptions, FirstContact, PairMotion};
 use d2m_interval::Interval;
 use d2m_motion::ConstantTwist;
 use d2m_root::RootSearch;
+use d2m_testing::Draw;
+use d2m_testing::Random;
+use d2m_testing::fixed::{self, Fix, V, cross, dot, sub};
 use glam::{DVec3, dvec3};
-use oracle::{Fix, Random, V, cross, dot, sub};
 
 /// Two features and their motions.
 struct Case {
@@ -28,7 +28,7 @@ impl Case {
         let (v, w) = [(1.0, 1.0), (512.0, 3.0), (0.25, 12.0), (4.0, 0.0), (0.0, 3.0), (1e5, 1.0)][round % 6];
         let grid = round.is_multiple_of(11);
         let motions: [ConstantTwist; 2] = core::array::from_fn(|_| {
-            let m = random.motion(v, w);
+            let m = fixed::random_motion(random, v, w);
             if grid {
                 let fall = (random.vector() * 8.0).round() / 4.0;
                 ConstantTwist::REST.with_position(m.position().round()).with_linear_velocity(fall)
@@ -38,11 +38,11 @@ impl Case {
         });
         let miss = random.vector() * [0.0, 1e-3, 1e-6, 1e-9, 1e-11, 1.0][(round / 6) % 6];
         let point = if grid { random.vector().round() } else { random.vector() };
-        let q = oracle::relative(&motions[0], &motions[1], point, &Fix::new(0.5))[0].clone();
+        let q = fixed::relative(&motions[0], &motions[1], point, &Fix::new(0.5))[0].clone();
         let at = dvec3(q[0].to_f64(), q[1].to_f64(), q[2].to_f64()) + miss;
         let size = [1.0, 0.1, 1e-3][round % 3];
         let (e, d) = (random.vector() * size, random.vector() * size);
-        let feature = if random.number() < 0.0 {
+        let feature = if random.signed() < 0.0 {
             // The planted place is inside, on a side, or at a corner; slivers and collapsed triangles now and then.
             let thin = [1.0, 1.0, 1e-6, 0.0][round % 4];
             let weights = [(0.4, 0.3), (0.5, 0.0), (0.0, 0.0)][round % 3];
@@ -62,12 +62,12 @@ impl Case {
 
     /// f and, at a root of f, whether the place is strictly inside both features.
     fn function(&self, t: &Fix) -> (Fix, bool) {
-        let path = |p: DVec3| oracle::relative(&self.motions[0], &self.motions[1], p, t)[0].clone();
+        let path = |p: DVec3| fixed::relative(&self.motions[0], &self.motions[1], p, t)[0].clone();
         let (zero, one) = (Fix::new(0.0), Fix::new(1.0));
         let strictly = |x: &Fix| *x > zero && *x < one;
         match &self.feature {
             Feature::PointTriangle(point, triangle) => {
-                let c: [V; 3] = triangle.map(oracle::vec);
+                let c: [V; 3] = triangle.map(fixed::vec);
                 let (e, d) = (sub(&c[1], &c[0]), sub(&c[2], &c[0]));
                 let n = cross(&e, &d);
                 let q = sub(&path(*point), &c[0]);
@@ -82,7 +82,7 @@ impl Case {
             }
             Feature::EdgeEdge(mover, observer) => {
                 let a = mover.map(path);
-                let b = observer.map(oracle::vec);
+                let b = observer.map(fixed::vec);
                 let (e, d, w) = (sub(&a[1], &a[0]), sub(&b[1], &b[0]), sub(&b[0], &a[0]));
                 let n = cross(&e, &d);
                 let nn = dot(&n, &n);

@@ -1,16 +1,16 @@
 //! The reference method's enclosures against 70 digits: ends sampled, one-instant spans included, so that rounding that
 //! is not outward does not survive.
 
-mod oracle;
-
 use d2m_feature::paper::{BodyOverDomain, PointJet, RelativeMotion, test_sphere_pair};
 use d2m_interval::Interval;
 use d2m_motion::ConstantTwist;
+use d2m_testing::Draw;
+use d2m_testing::Random;
+use d2m_testing::fixed::{self, Fix, V};
 use glam::DVec3;
-use oracle::{Fix, Random, V};
 
 fn spans(random: &mut Random) -> Vec<Interval> {
-    let a = random.number();
+    let a = random.signed();
     vec![
         Interval::point(a),
         Interval::new(a, a + 2f64.powi(-40)),
@@ -32,7 +32,7 @@ fn check(jet: &PointJet, direction: DVec3, truth: impl Fn(&Fix) -> [V; 3], what:
     let holds = |v: &V, i: &d2m_interval::IntervalVec3| v.iter().zip(coordinates(i)).all(|(x, c)| x.is_in(c));
     assert!(holds(&start[0], value), "{what}: value at the start of {span:?}");
     assert!(holds(&start[1], rate), "{what}: rate at the start of {span:?}");
-    let d = oracle::vec(direction);
+    let d = fixed::vec(direction);
     let mut fullest = 0.0f64;
     for t in times(span) {
         let now = truth(&Fix::new(t));
@@ -46,7 +46,7 @@ fn check(jet: &PointJet, direction: DVec3, truth: impl Fn(&Fix) -> [V; 3], what:
         for (a, c) in now[2].iter().zip(coordinates(second)) {
             fullest = fullest.max((a.to_f64() - c.mid()).abs() / (0.5 * c.width()).max(1e-300));
         }
-        let value = oracle::dot(&now[0], &d);
+        let value = fixed::dot(&now[0], &d);
         assert!(value.is_in(along) && value.is_in(all), "{what}: along {direction} at {t}");
     }
     fullest
@@ -59,9 +59,10 @@ fn relative_paths_contain_the_truth() {
     for round in 0..24 {
         let (v, w) = [(1.0, 1.0), (512.0, 3.0), (0.0, 20.0), (4.0, 0.0)][round % 4];
         let far = if round % 5 == 0 { DVec3::new(1048576.0, -77.0, 5.5) } else { DVec3::ZERO };
-        let mut motions: [ConstantTwist; 2] = core::array::from_fn(|_| random.motion(v, w));
+        let mut motions: [ConstantTwist; 2] =
+            core::array::from_fn(|_| fixed::random_motion(&mut random, v, w));
         if round % 3 == 0 {
-            motions[0] = motions[0].with_at(random.vector()).with_reference_time(random.number());
+            motions[0] = motions[0].with_at(random.vector()).with_reference_time(random.signed());
         }
         let motions = motions.map(|m| m.with_position(m.position() + far));
         let relative = RelativeMotion::new(&motions[0], &motions[1]);
@@ -70,7 +71,7 @@ fn relative_paths_contain_the_truth() {
             let [own, other] = relative.frames(span);
             let truth = |i: usize| {
                 let (m, o) = (motions[i], motions[1 - i]);
-                move |t: &Fix| oracle::relative(&m, &o, point, t)
+                move |t: &Fix| fixed::relative(&m, &o, point, t)
             };
             fullest = fullest.max(check(&own.jet(point), direction, truth(0), "own frame"));
             check(&other.jet(point), direction, truth(1), "other frame");
@@ -92,13 +93,13 @@ fn world_paths_contain_the_truth() {
     let mut random = Random(2);
     for round in 0..12 {
         let far = if round % 3 == 0 { DVec3::new(1e6, -3e5, 7.0) } else { DVec3::ZERO };
-        let m = random.motion(if round % 2 == 0 { 1.0 } else { 512.0 }, 3.0);
+        let m = fixed::random_motion(&mut random, if round % 2 == 0 { 1.0 } else { 512.0 }, 3.0);
         let m = m.with_position(m.position() + far);
         let (point, direction) = (random.vector(), random.vector());
         for span in spans(&mut random) {
             let jet = BodyOverDomain::new(&m, span, far).jet(point);
             let rest = ConstantTwist::REST.with_position(far);
-            check(&jet, direction, |t| oracle::relative(&m, &rest, point, t), "world");
+            check(&jet, direction, |t| fixed::relative(&m, &rest, point, t), "world");
         }
     }
 }
@@ -108,27 +109,27 @@ fn world_paths_contain_the_truth() {
 fn sphere_pairs_never_lose_an_overlap() {
     let mut random = Random(3);
     let (mut overlaps, mut empty, mut cut) = (0, 0, 0);
-    for round in 0..240 {
+    for round in 0..480 {
         let w = [0.5, 3.0, 20.0][round % 3];
-        let motions: [ConstantTwist; 2] = core::array::from_fn(|_| random.motion(3.0, w));
+        let motions: [ConstantTwist; 2] = core::array::from_fn(|_| fixed::random_motion(&mut random, 3.0, w));
         let span = Interval::new(0.0, 0.5);
         let centers: [DVec3; 2] = core::array::from_fn(|_| random.vector());
-        let radii = [0.5 + 0.25 * random.number(), 0.5 + 0.25 * random.number()];
+        let radii = [0.5 + 0.25 * random.signed(), 0.5 + 0.25 * random.signed()];
         let spheres: [_; 2] = core::array::from_fn(|i| {
             BodyOverDomain::new(&motions[i], span, DVec3::ZERO).sphere(centers[i], radii[i])
         });
-        let from = 0.25 + 0.25 * random.number();
+        let from = 0.25 + 0.25 * random.signed();
         let searched = Interval::new(from, (from + 0.3).min(0.5));
         let hull = test_sphere_pair(&spheres[0], &spheres[1], span.lo(), searched);
         for k in 0..=16 {
             let t = searched.lo() + (searched.hi() - searched.lo()) * (k as f64 / 16.0);
             let time = Fix::new(t);
-            let gap = oracle::sub(
-                &oracle::world(&motions[0], centers[0], &time),
-                &oracle::world(&motions[1], centers[1], &time),
+            let gap = fixed::sub(
+                &fixed::world(&motions[0], centers[0], &time),
+                &fixed::world(&motions[1], centers[1], &time),
             );
             let reach = &Fix::new(radii[0]) + &Fix::new(radii[1]);
-            if oracle::dot(&gap, &gap) <= &reach * &reach {
+            if fixed::dot(&gap, &gap) <= &reach * &reach {
                 overlaps += 1;
                 assert!(hull.is_some_and(|h| h.contains(t)), "overlap at {t} lost: {hull:?}, {searched:?}");
             }

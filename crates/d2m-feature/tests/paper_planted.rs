@@ -1,7 +1,5 @@
 //! First contacts of features planted with 70 digits, analytic cases of every erratum, and the shared cases if present.
 
-mod oracle;
-
 use d2m_feature::paper::{
     PaperOptions, PolygonFace, RelativeMotion, Sphere, edge_edge, point_polygon, point_triangle,
     sphere_sphere,
@@ -9,8 +7,10 @@ use d2m_feature::paper::{
 use d2m_interval::Interval;
 use d2m_motion::ConstantTwist;
 use d2m_root::RootSearch;
+use d2m_testing::Draw;
+use d2m_testing::Random;
+use d2m_testing::fixed::{self, Fix, V, cross, dot, sub};
 use glam::{DVec3, dvec3};
-use oracle::{Fix, Random, V, cross, dot, sub};
 
 const OPTIONS: PaperOptions = PaperOptions::DEFAULT;
 
@@ -50,9 +50,9 @@ fn planted_vertex_face() {
     let mut random = Random(11);
     for round in 0..120 {
         let (v, w) = [(1.0, 1.0), (512.0, 3.0), (0.25, 12.0), (4.0, 0.0)][round % 4];
-        let motions: [ConstantTwist; 2] = core::array::from_fn(|_| random.motion(v, w));
-        let (point, time) = (random.vector(), 0.5 + 0.25 * random.number());
-        let [q, rate, _] = oracle::relative(&motions[0], &motions[1], point, &Fix::new(time));
+        let motions: [ConstantTwist; 2] = core::array::from_fn(|_| fixed::random_motion(&mut random, v, w));
+        let (point, time) = (random.vector(), 0.5 + 0.25 * random.signed());
+        let [q, rate, _] = fixed::relative(&motions[0], &motions[1], point, &Fix::new(time));
         let at = dvec3(q[0].to_f64(), q[1].to_f64(), q[2].to_f64());
         // A triangle around `at`, met steeply, small enough that the point is not over it long before.
         let heading = dvec3(rate[0].to_f64(), rate[1].to_f64(), rate[2].to_f64());
@@ -62,9 +62,9 @@ fn planted_vertex_face() {
         let corner = |turn: f64| at + side * (u * turn.cos() + normal.cross(u) * turn.sin());
         let triangle = [corner(0.3), corner(2.4), corner(4.5)];
         let plane = |t: &Fix| -> Fix {
-            let corners: [V; 3] = triangle.map(oracle::vec);
+            let corners: [V; 3] = triangle.map(fixed::vec);
             let n = cross(&sub(&corners[1], &corners[0]), &sub(&corners[2], &corners[0]));
-            dot(&n, &sub(&oracle::relative(&motions[0], &motions[1], point, t)[0], &corners[0]))
+            dot(&n, &sub(&fixed::relative(&motions[0], &motions[1], point, t)[0], &corners[0]))
         };
         let truth = root(plane, time);
         let motion = RelativeMotion::new(&motions[0], &motions[1]);
@@ -102,16 +102,16 @@ fn planted_edge_edge() {
     let mut judged = 0;
     for round in 0..120 {
         let (v, w) = [(1.0, 1.0), (512.0, 3.0), (0.25, 12.0), (4.0, 0.0)][round % 4];
-        let motions: [ConstantTwist; 2] = core::array::from_fn(|_| random.motion(v, w));
-        let (point, time) = (random.vector(), 0.5 + 0.25 * random.number());
-        let [q, rate, _] = oracle::relative(&motions[0], &motions[1], point, &Fix::new(time));
+        let motions: [ConstantTwist; 2] = core::array::from_fn(|_| fixed::random_motion(&mut random, v, w));
+        let (point, time) = (random.vector(), 0.5 + 0.25 * random.signed());
+        let [q, rate, _] = fixed::relative(&motions[0], &motions[1], point, &Fix::new(time));
         let at = dvec3(q[0].to_f64(), q[1].to_f64(), q[2].to_f64());
         let heading = dvec3(rate[0].to_f64(), rate[1].to_f64(), rate[2].to_f64());
         let half = 0.0625 / (1.0 + w);
         let along = random.vector().normalize() * half;
         let mover = [point - along, point + 0.75 * along];
         // The mover's edge in the observer's frame at that time, and a direction across it and across the heading.
-        let end = oracle::relative(&motions[0], &motions[1], mover[1], &Fix::new(time))[0].clone();
+        let end = fixed::relative(&motions[0], &motions[1], mover[1], &Fix::new(time))[0].clone();
         let edge = dvec3(end[0].to_f64(), end[1].to_f64(), end[2].to_f64()) - at;
         let across = edge.cross(heading).normalize_or(DVec3::X);
         let across = (across + 0.25 * random.vector()).normalize() * half;
@@ -122,8 +122,8 @@ fn planted_edge_edge() {
             continue;
         }
         let triple = |t: &Fix| -> Fix {
-            let ends = mover.map(|p| oracle::relative(&motions[0], &motions[1], p, t)[0].clone());
-            let fixed = observer.map(oracle::vec);
+            let ends = mover.map(|p| fixed::relative(&motions[0], &motions[1], p, t)[0].clone());
+            let fixed = observer.map(fixed::vec);
             let n = cross(&sub(&ends[1], &ends[0]), &sub(&fixed[1], &fixed[0]));
             dot(&n, &sub(&ends[0], &fixed[0]))
         };
@@ -225,14 +225,14 @@ fn fast_spheres_are_not_late() {
     for round in 0..200 {
         let speed = 10f64.powi(round % 10);
         let g = random.vector() * speed;
-        let r = 1.0 + 0.5 * random.number();
-        let v = -g * (1.0 + 0.25 * random.number()) + random.vector() * 0.5;
+        let r = 1.0 + 0.5 * random.signed();
+        let v = -g * (1.0 + 0.25 * random.signed()) + random.vector() * 0.5;
         let moving = falling(g, v);
         let motion = RelativeMotion::new(&moving, &ConstantTwist::REST);
         let ball = |radius| Sphere { center: DVec3::ZERO, radius };
         let found = sphere_sphere(&motion, &ball(r), &ball(0.25), Interval::new(0.0, 4.0), &OPTIONS);
         let exact = |t: f64| -> Fix {
-            let at = oracle::world(&moving, DVec3::ZERO, &Fix::new(t));
+            let at = fixed::world(&moving, DVec3::ZERO, &Fix::new(t));
             let reach = &Fix::new(r) + &Fix::new(0.25);
             &dot(&at, &at) - &(&reach * &reach)
         };
@@ -286,7 +286,7 @@ fn arbitrary_numbers_neither_panic_nor_hang() {
     let special = [0.0, -0.0, 1.0, -1.0, 1e-300, 1e30, -1e59, 0.1, f64::MIN_POSITIVE, 3.0, 5e-324, 1e150];
     for round in 0..1500 {
         let mut number = |tame: f64| {
-            let x = random.number();
+            let x = random.signed();
             let pick = (x.abs() * 4096.0) as usize;
             if pick % 5 < round % 3 { special[pick % special.len()] } else { tame * x }
         };

@@ -1,14 +1,12 @@
 //! The hard feature cases with high-precision truth (`testdata/cases.jsonl`) through the reference method.
 
-mod oracle;
-
 use d2m_feature::paper::{PaperOptions, RelativeMotion, Sphere, edge_edge, point_triangle, sphere_sphere};
 use d2m_interval::Interval;
 use d2m_motion::ConstantTwist;
 use d2m_root::RootSearch;
+use d2m_testing::fixed::Fix;
 use dashu_int::IBig;
 use glam::{DQuat, DVec3};
-use oracle::Fix;
 use serde_json::Value;
 
 fn vector(v: &Value) -> DVec3 {

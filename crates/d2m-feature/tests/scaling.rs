@@ -1,5 +1,4 @@
 //! Metamorphic twins: lengths and times multiplied by powers of two change no verdict and no relative time.
-mod planted;
 
 use d2m_feature::paper::{self, PaperOptions, RelativeMotion};
 use d2m_feature::{
@@ -8,8 +7,9 @@ use d2m_feature::{
 use d2m_interval::Interval;
 use d2m_motion::ConstantTwist;
 use d2m_root::{Evidence, RootSearch};
+use d2m_testing::Random;
+use d2m_testing::planted::families::{FAMILIES, Family, Kind, Opaque, Planted, plant};
 use glam::DVec3;
-use planted::families::{FAMILIES, Family, Kind, Opaque, Planted, Random, plant};
 
 /// `2ᵏ` for −1022 ≤ k ≤ 1023.
 fn power(k: i32) -> f64 {

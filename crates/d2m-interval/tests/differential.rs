@@ -1,8 +1,8 @@
 //! Every operation against the exact reference; mutants must be caught by the same families.
 use d2m_interval::Interval;
 
-mod oracle;
-use oracle::families::{Binary, Unary, binary, jobs, run_binary, run_unary, unary};
+use d2m_testing::elementary as oracle;
+use d2m_testing::elementary::families::{Binary, Unary, binary, jobs, run_binary, run_unary, unary};
 
 #[test]
 fn no_loss_and_tight() {

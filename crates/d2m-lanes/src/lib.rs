@@ -5,6 +5,7 @@ extern crate std;
 
 mod double_double;
 mod exact;
+#[allow(unsafe_code)] // the vector instructions of each target
 #[allow(missing_docs, clippy::should_implement_trait)] // named after the operation
 mod fixed;
 #[cfg(feature = "selected")]

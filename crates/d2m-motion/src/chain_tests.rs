@@ -1,12 +1,13 @@
 //! Chains, keyframes and compositions held against poses in pairs of doubles (some 30 digits).
 use crate::rotation::{RotationDd, exponential_dd, rotate_dd};
-use crate::tests::Random;
+use crate::tests::random_motion;
 use crate::{
     AnyMotion, Chain, Composed, ConstantTwist, IntervalTwist, Joint, JointKind, JointValue, Keyframes, Pose,
     Retimed, RigidMotion, Span,
 };
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_lanes::DoubleDouble as Dd;
+use d2m_testing::{Draw, Random};
 use glam::{DQuat, DVec3};
 
 type Vector = [Dd; 3];
@@ -344,7 +345,9 @@ fn spans_of_a_screw_are_told_by_one_point() {
     let mut random = Random(16);
     for _ in 0..100 {
         let frames: Vec<(f64, Pose)> = (0..5)
-            .map(|i| (f64::from(i), random.motion(1.0).with_at(DVec3::ZERO).pose_and_twist(0.0).0))
+            .map(|i| {
+                (f64::from(i), random_motion(&mut random, 1.0).with_at(DVec3::ZERO).pose_and_twist(0.0).0)
+            })
             .collect();
         let path = Keyframes::try_new(&frames, Span::Screw).unwrap();
         for (i, (time, pose)) in frames.iter().enumerate() {
@@ -400,7 +403,7 @@ fn many_spans_are_searched_by_halves() {
 fn compositions_and_retimed_motions_enclose_themselves() {
     let mut random = Random(17);
     for _ in 0..200 {
-        let (outer, inner) = (random.motion(2.0), random.motion(2.0));
+        let (outer, inner) = (random_motion(&mut random, 2.0), random_motion(&mut random, 2.0));
         let motion = Composed::new(outer, inner);
         let backwards = Retimed::try_reversed(motion, 0.25, 1.0).unwrap();
         let twice = Retimed::try_new(motion, 2.0, -0.5).unwrap();

@@ -43,18 +43,20 @@ pub use kinematics::Kinematics;
 /// The name that `ConstantTwist` had before: it turns, so it was never linear.
 #[doc(hidden)]
 pub type LinearMotion = ConstantTwist;
-pub use path_jet::{PathJet, Remainder};
 pub use pose::{IntervalPose, Pose};
-pub use relative::{Arm, ArmPair, Frame, RelativeMotion, RelativeState};
 pub use rigid_motion::{RigidMotion, TwistPiece};
 pub use screw::ScrewMotion;
 pub use spline::{Spline, SplineDegree};
 pub use state::CertifiedState;
 pub use twist::{IntervalTwist, Twist};
-/// For the crates of this workspace: vectors and jets of an edge's midpoint and half edge in the two halves of vector
-/// registers.
+/// For the crates of this workspace: two motions seen from one body, jets of points and what they leave out.
 #[doc(hidden)]
-pub use {two::TwoVec3, two_jets::TwoJets};
+pub use {
+    path_jet::{PathJet, Remainder},
+    relative::{Arm, ArmPair, Frame, RelativeMotion, RelativeState},
+    two::TwoVec3,
+    two_jets::TwoJets,
+};
 
 #[cfg(all(test, feature = "serde"))]
 mod chain_tests;

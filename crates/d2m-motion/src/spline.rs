@@ -303,7 +303,8 @@ fn hull(a: IntervalTwist, b: IntervalTwist) -> IntervalTwist {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tests::Random;
+    use crate::tests::random_motion;
+    use d2m_testing::{Draw, Random};
 
     #[test]
     fn splines_pass_through_poses_with_their_twists() {
@@ -312,7 +313,7 @@ mod tests {
             for _ in 0..60 {
                 let frames: Vec<(f64, Pose, Twist)> = (0..5)
                     .map(|i| {
-                        let (pose, _) = random.motion(1.0).pose_and_twist(0.0);
+                        let (pose, _) = random_motion(&mut random, 1.0).pose_and_twist(0.0);
                         let twist = Twist { linear: random.vector(), angular: random.vector() };
                         (f64::from(i) + 0.3 * random.unit(), pose, twist)
                     })

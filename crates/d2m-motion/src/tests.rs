@@ -5,31 +5,17 @@ use core::ops::{Add, Mul, Sub};
 use d2m_interval::Interval;
 use d2m_lanes::{DoubleDouble, F64x2};
 use glam::{DQuat, DVec3};
+use d2m_interval::{F64x2, Interval};
+use d2m_testing::{Draw, Random};
+use glam::DVec3;
 
-/// A small generator (SplitMix64), so that every run sees the same numbers.
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    pub(crate) fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 * (0.5_f64).powi(53)
-    }
-    pub(crate) fn signed(&mut self) -> f64 {
-        2.0 * self.unit() - 1.0
-    }
-    pub(crate) fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.signed(), self.signed(), self.signed())
-    }
-    pub(crate) fn motion(&mut self, speed: f64) -> ConstantTwist {
-        let q = DQuat::from_xyzw(self.signed(), self.signed(), self.signed(), self.signed());
-        ConstantTwist::try_new(self.vector(), q, self.vector() * speed, self.vector() * speed)
-            .unwrap()
-            .with_at(self.vector())
-            .with_reference_time(self.signed())
-    }
+/// A motion with speeds up to about this.
+pub(crate) fn random_motion(random: &mut Random, speed: f64) -> ConstantTwist {
+    let q = random.quaternion();
+    ConstantTwist::try_new(random.vector(), q, random.vector() * speed, random.vector() * speed)
+        .unwrap()
+        .with_at(random.vector())
+        .with_reference_time(random.signed())
 }
 
 #[test]
@@ -83,7 +69,7 @@ fn double_double_sine_satisfies_its_identities() {
 fn enclosures_of_a_linear_motion_contain_it() {
     let mut random = Random(3);
     for i in 0..3000 {
-        let motion = random.motion([0.1, 3.0, 300.0][i % 3]);
+        let motion = random_motion(&mut random, [0.1, 3.0, 300.0][i % 3]);
         let start = random.signed() * [1.0, 100.0][i % 2];
         let width = random.unit() * [0.0, 1e-9, 1e-2, 1.0][i % 4];
         let window = Interval::new(start, start + width);
@@ -126,7 +112,7 @@ fn contains_dd(e: Interval, x: DoubleDouble) -> bool {
 fn rebasing_keeps_the_motion_at_far_times() {
     let mut random = Random(4);
     for _ in 0..300 {
-        let motion = random.motion(2.0);
+        let motion = random_motion(&mut random, 2.0);
         let t0 = 1e5 * random.signed();
         let near = motion.rebase(t0);
         let t = t0 + random.unit();
@@ -141,7 +127,7 @@ fn rebasing_keeps_the_motion_at_far_times() {
 fn accelerations_are_bounded() {
     let mut random = Random(5);
     for _ in 0..200 {
-        let motion = random.motion(3.0);
+        let motion = random_motion(&mut random, 3.0);
         let window = Interval::new(0.0, 1.0);
         let bound = motion.bound_acceleration(window, 1.0);
         let w = motion.angular_velocity();
@@ -154,8 +140,8 @@ fn accelerations_are_bounded() {
 fn screws_join_poses_and_keep_twists() {
     let mut random = Random(6);
     for _ in 0..500 {
-        let a = random.motion(1.0).pose_and_twist(0.0).0;
-        let b = random.motion(1.0).pose_and_twist(0.0).0;
+        let a = random_motion(&mut random, 1.0).pose_and_twist(0.0).0;
+        let b = random_motion(&mut random, 1.0).pose_and_twist(0.0).0;
         let screw = ScrewMotion::try_from_poses(a, b, -1.0, 2.0).unwrap();
         let end = screw.pose_and_twist(2.0).0;
         for point in [DVec3::ZERO, DVec3::X, DVec3::Y] {
@@ -181,8 +167,9 @@ fn screws_join_poses_and_keep_twists() {
 fn keyframes_pass_through_their_poses() {
     let mut random = Random(7);
     for span in [Span::Linear, Span::Screw] {
-        let frames: Vec<(f64, Pose)> =
-            (0..6).map(|i| (f64::from(i) * 0.5, random.motion(1.0).pose_and_twist(0.0).0)).collect();
+        let frames: Vec<(f64, Pose)> = (0..6)
+            .map(|i| (f64::from(i) * 0.5, random_motion(&mut random, 1.0).pose_and_twist(0.0).0))
+            .collect();
         let path = Keyframes::try_new(&frames, span).unwrap();
         for ((start, end, motion), pair) in path.spans().zip(frames.windows(2)) {
             for (t, pose) in [(start, pair[0].1), (end, pair[1].1)] {
@@ -204,7 +191,7 @@ fn keyframes_pass_through_their_poses() {
 fn text_round_trips_and_errors_name_the_key() {
     let mut random = Random(8);
     for _ in 0..100 {
-        let motion = random.motion(1.0);
+        let motion = random_motion(&mut random, 1.0);
         assert_eq!(motion.to_string().parse::<ConstantTwist>(), Ok(motion));
     }
     for (text, expected) in [

@@ -29,6 +29,7 @@ pub enum ZeroEvidence {
 
 /// Answer of [`first_zero`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use = "it is a certificate: what is not read is not known to be safe"]
 pub enum FirstZero {
     /// f ≠ 0 in all of the domain.
     None,

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod bboi;
+mod binary;
 mod first_zero;
 mod gamma;
 mod hrfoi;

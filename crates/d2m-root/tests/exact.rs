@@ -225,6 +225,9 @@ fn products_beyond_the_range_of_doubles_are_not_late() {
         (1e-160, 0.0, -1e-160, std::f64::consts::SQRT_2),
         (1e-161, 0.0, -1.3e-162, 3.9223227027636813),
         (3e-162, 0.0, -1e-162, 2.449489742783178),
+        // The product is rounded up by a third, or to zero.
+        (0.75, 0.0, -5e-324, 1.224744871391589 * 2.0_f64.powi(537)),
+        (0.25, -2.0_f64.powi(-600), -5e-324, std::f64::consts::SQRT_2 * 2.0_f64.powi(536)),
         (5e-324, -5e-324, 0.0, 1.0),
         (f64::MAX, -f64::MAX, 0.0, 1.0),
         (f64::MAX, 0.0, -f64::MAX, std::f64::consts::SQRT_2),
@@ -304,8 +307,8 @@ fn the_reference_knows_signs() {
 /// Half the smallest number is zero: the piece's end would be evaluated at its start.
 #[test]
 fn half_of_the_shortest_piece_is_not_exact() {
-    let (value, end) = (2.0_f64.powi(-53), f64::from_bits(1));
-    let cubic = Cubic { value, slope: -2.0_f64.powi(1021), curvature: 0.0, jerk: 0.0 };
+    let (value, end) = (2.0_f64.powi(-60), f64::from_bits(1));
+    let cubic = Cubic { value, slope: -2.0_f64.powi(1014), curvature: 0.0, jerk: 0.0 };
     let (zero, piece) = (Band { lo: 0.0, hi: 0.0 }, Piece { lo: 0.0, hi: end });
     assert_eq!(cubic.at(end), 0.0);
     let kept = cubic.clip(zero, |_| 0.0, piece).expect("the end is a zero");

@@ -76,6 +76,7 @@ pub(crate) fn pairs_of(boxes: &[SweptBox], i: u32, separation: f64, mut found: i
 #[cfg(test)]
 mod tests {
     use super::*;
+    use d2m_testing::{Draw, KnuthRandom};
 
     fn cube(center: DVec3, half: f64) -> SweptBox {
         SweptBox { low: center - half, high: center + half }
@@ -88,11 +89,8 @@ mod tests {
 
     #[test]
     fn finds_exactly_the_pairs_that_brute_force_finds() {
-        let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
-        let mut next = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut random = KnuthRandom(0x9e37_79b9_7f4a_7c15);
+        let mut next = || random.unit();
         let mut order = SweepOrder::default();
         for round in 0..200 {
             let mut boxes: Vec<_> = (0..24)

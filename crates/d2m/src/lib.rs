@@ -23,9 +23,10 @@ pub use d2m_bvh::{
     QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window, contact_exists, proximities,
     proximities_with, reduce_proximities, time_of_contact, time_of_contact_with,
 };
+pub use d2m_bvh::{Distance, collide, distance};
 #[doc(hidden)]
 pub use d2m_motion::LinearMotion;
-pub use d2m_motion::{ConstantTwist, RigidMotion, ScrewMotion};
+pub use d2m_motion::{ConstantTwist, Keyframes, Pose, RigidMotion, ScrewMotion, Twist};
 
 /// The example of the repository's README, compiled and run.
 #[cfg(doctest)]

@@ -9,26 +9,9 @@ use d2m::{
     QueryOptions, RigidMotion, ScrewMotion, SharedMotion, Solid, TimeOfContact, TriMesh, Window, World,
     time_of_contact,
 };
+use d2m_testing::{Draw, KnuthRandom};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-struct Random(u64);
-
-impl Random {
-    /// Uniform in [0, 1).
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / 9_007_199_254_740_992.0
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.next() * count as f64) as usize
-    }
-
-    fn vec(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next()) * 2.0 - 1.0
-    }
-}
 
 /// A motion that does not say that its twist is constant: the way of every other motion.
 struct Opaque(SharedMotion);
@@ -50,19 +33,20 @@ impl RigidMotion for Opaque {
 
 const SIZE: f64 = 9.0;
 
-fn motion(random: &mut Random) -> SharedMotion {
-    let spin = if random.next() < 0.2 { 20.0 } else { 2.0 };
-    let turned = DQuat::from_scaled_axis(random.vec() * 3.0);
-    let twist = ConstantTwist::try_new(random.vec() * SIZE, turned, random.vec() * 3.0, random.vec() * spin);
-    let twist = twist.unwrap().with_at(random.vec() * 0.5);
-    match random.below(20) {
-        0 => Arc::new(Opaque(Arc::new(twist.with_angular_velocity(random.vec())))),
-        1..3 => Arc::new(ConstantTwist::REST.with_position(random.vec() * SIZE)),
+fn motion(random: &mut KnuthRandom) -> SharedMotion {
+    let spin = if random.unit() < 0.2 { 20.0 } else { 2.0 };
+    let turned = DQuat::from_scaled_axis(random.vector() * 3.0);
+    let twist =
+        ConstantTwist::try_new(random.vector() * SIZE, turned, random.vector() * 3.0, random.vector() * spin);
+    let twist = twist.unwrap().with_at(random.vector() * 0.5);
+    match random.index(20) {
+        0 => Arc::new(Opaque(Arc::new(twist.with_angular_velocity(random.vector())))),
+        1..3 => Arc::new(ConstantTwist::REST.with_position(random.vector() * SIZE)),
         3..5 => {
-            let end = twist.with_position(random.vec() * SIZE).pose_and_twist(1.0).0;
+            let end = twist.with_position(random.vector() * SIZE).pose_and_twist(1.0).0;
             Arc::new(ScrewMotion::try_from_poses(twist.pose_and_twist(0.0).0, end, 0.0, 1.0).unwrap())
         }
-        5..8 => Arc::new(twist.with_linear_velocity(random.vec() * 30.0)),
+        5..8 => Arc::new(twist.with_linear_velocity(random.vector() * 30.0)),
         _ => Arc::new(twist),
     }
 }
@@ -77,11 +61,11 @@ fn trees() -> Vec<Arc<MeshTree>> {
     trees.into_iter().map(Arc::new).collect()
 }
 
-fn body(random: &mut Random, trees: &[Arc<MeshTree>]) -> Body {
-    let tree = &trees[random.below(trees.len())];
-    let solid = if tree.is_watertight() && random.next() < 0.8 { Solid::Filled } else { Solid::Surface };
+fn body(random: &mut KnuthRandom, trees: &[Arc<MeshTree>]) -> Body {
+    let tree = &trees[random.index(trees.len())];
+    let solid = if tree.is_watertight() && random.unit() < 0.8 { Solid::Filled } else { Solid::Surface };
     let body = Body::with_shared(Arc::clone(tree), motion(random)).with_solid(solid);
-    if random.next() < 0.4 { body.with_group(Group(random.below(3) as u32)) } else { body }
+    if random.unit() < 0.4 { body.with_group(Group(random.index(3) as u32)) } else { body }
 }
 
 /// What the world should know, by other means.
@@ -144,7 +128,7 @@ fn earliest<'a>(all: impl Iterator<Item = &'a Found>) -> Option<&'a Found> {
 
 /// A world, what is known about it by other means, and what it answered.
 struct Run {
-    random: Random,
+    random: KnuthRandom,
     trees: Vec<Arc<MeshTree>>,
     world: World,
     model: Model,
@@ -156,7 +140,7 @@ impl Run {
     fn new(seed: u64, count: usize) -> Self {
         let options = QueryOptions::default().with_tolerance(1e-7).with_min_separation(0.01);
         let mut run = Self {
-            random: Random(seed),
+            random: KnuthRandom(seed),
             trees: trees(),
             world: World::new(options),
             model: Model::default(),
@@ -178,9 +162,9 @@ impl Run {
     fn change(&mut self) {
         let (random, world, model) = (&mut self.random, &mut self.world, &mut self.model);
         let ids: Vec<_> = model.bodies.keys().copied().collect();
-        let (a, b) = (ids[random.below(ids.len())], ids[random.below(ids.len())]);
+        let (a, b) = (ids[random.index(ids.len())], ids[random.index(ids.len())]);
         let (a, b) = (a.min(b), a.max(b));
-        match random.below(8) {
+        match random.index(8) {
             0 => {
                 world.remove(a);
                 model.bodies.remove(&a);
@@ -198,7 +182,7 @@ impl Run {
                 world.ignore_pair(b, a, false);
             }
             4 => {
-                let pair = [Group(random.below(3) as u32), Group(random.below(3) as u32)];
+                let pair = [Group(random.index(3) as u32), Group(random.index(3) as u32)];
                 let turned = [pair[1], pair[0]];
                 let count = model.groups.len();
                 model.groups.retain(|other| *other != pair && *other != turned);
@@ -209,7 +193,7 @@ impl Run {
                 world.ignore_groups(pair[0], pair[1], ignored);
             }
             5 if a != b => {
-                let separation = [0.0, 0.005, 0.2][random.below(3)];
+                let separation = [0.0, 0.005, 0.2][random.index(3)];
                 model.separations.insert([a, b], separation);
                 world.set_min_separation(a, b, Some(separation));
             }
@@ -222,18 +206,18 @@ impl Run {
 
     /// Some changes and a query.
     fn step(&mut self, compare: bool) {
-        for _ in 0..self.random.below(6) {
+        for _ in 0..self.random.index(6) {
             self.change();
         }
-        let window = match self.random.below(4) {
+        let window = match self.random.index(4) {
             0 => Window::UNIT,
             1 => Window::try_new(0.1, 0.6).unwrap(),
             _ => {
-                self.start = if self.start > 0.8 { 0.0 } else { self.start + 0.2 * self.random.next() };
+                self.start = if self.start > 0.8 { 0.0 } else { self.start + 0.2 * self.random.unit() };
                 Window::try_new(self.start, 1.0).unwrap()
             }
         };
-        let list = (self.random.next() < 0.5).then(|| self.world.contacts(window).unwrap());
+        let list = (self.random.unit() < 0.5).then(|| self.world.contacts(window).unwrap());
         let first = self.world.first_contact(window).unwrap();
         if compare {
             let all = self.model.contacts(window);
@@ -242,7 +226,7 @@ impl Run {
             }
             compare_first(&first, &all, window);
             // A body that takes its own motion once more: the first contact of its own pairs.
-            let place = self.random.below(self.model.bodies.len());
+            let place = self.random.index(self.model.bodies.len());
             let (&id, body) = self.model.bodies.iter().nth(place).unwrap();
             let plan = [PlannedMotion { body: id, motion: body.shared_motion() }];
             let planned = self.world.first_contact_of(&plan, window).unwrap();

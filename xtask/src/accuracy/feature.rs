@@ -1,8 +1,8 @@
 //! Single feature pairs on planted contacts, the families of d2m-feature's tests. What is clearly right
 //! in double-double is passed at once; everything else goes to an oracle of 192 bits.
 use super::{Outcome, Task};
-use crate::planted::families::{FAMILIES, Family, Kind};
-use crate::planted::judge::{Tally, enclosed_family, rigid_family, straight_family};
+use d2m_testing::planted::families::{FAMILIES, Family, Kind};
+use d2m_testing::planted::judge::{Tally, enclosed_family, rigid_family, straight_family};
 use rayon::prelude::*;
 
 /// Queries of one piece of work.

@@ -1,16 +1,14 @@
 //! Interval arithmetic: every operation of `d2m-interval` on random intervals against exact big-integer arithmetic,
 //! the family that the crate's own tests run with a smaller count.
 use super::Task;
+use d2m_testing::elementary::families;
 use rayon::prelude::*;
-
-#[path = "../../../crates/d2m-interval/tests/oracle/mod.rs"]
-mod oracle;
 
 /// Runs all operations, prints a line for each: a result that loses the exact value is a false negative, one that
 /// is wider than promised a false alarm.
 pub(crate) fn run(task: &Task) -> super::Outcome {
     let found: Vec<_> =
-        oracle::families::jobs(task.count as u64, task.seed).into_par_iter().map(|job| job()).collect();
+        families::jobs(task.count as u64, task.seed).into_par_iter().map(|job| job()).collect();
     let mut outcome = super::Outcome::default();
     for operation in found {
         println!(

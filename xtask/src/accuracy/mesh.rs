@@ -5,10 +5,10 @@
 //! one in eight stands still relative to the other, one in eight begins in overlap or inside.
 use super::{Outcome, Task};
 use crate::judge::{BoxTree, Claim, Fault, Judge, cross, place};
-use crate::random::Random;
 use crate::trials::{Movement, Trial};
 use d2m::bvh::{MeshTree, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact};
 use d2m::motion::ConstantTwist;
+use d2m_testing::Xoshiro256 as Random;
 use glam::DVec3;
 use rayon::prelude::*;
 

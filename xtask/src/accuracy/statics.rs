@@ -2,9 +2,9 @@
 use super::mesh::{Shape, shape};
 use super::{Outcome, Task};
 use crate::judge::{BoxTree, Hint, Placement, separation};
-use crate::random::Random;
 use d2m::bvh::{MeshTree, Posed, Solid, TriMesh, collide, distance};
 use d2m::motion::Pose;
+use d2m_testing::Xoshiro256 as Random;
 use glam::DVec3;
 
 /// Of the scene's size: what the judge's own rounding explains.

@@ -2,12 +2,13 @@
 use super::body::{Body, Pair};
 use super::method::{Method, Question};
 use crate::TaskResult;
-use crate::planted::families::{Family, Kind, Random, plant};
 use crate::trials::{self, Law};
 use d2m::bvh::{InstructionSet, MeshTree};
 use d2m::feature::{ContactOptions, PairMotion, StraightPaths};
 use d2m::interval::{Interval, IntervalVec3, IntervalVec3X4, IntervalX4};
 use d2m::motion::{ConstantTwist, RelativeMotion};
+use d2m_testing::Random;
+use d2m_testing::planted::families::{Family, Kind, plant};
 use glam::DVec3;
 use std::hint::black_box;
 
@@ -143,7 +144,7 @@ fn counted_work(work: &mut dyn FnMut()) {
 type KernelInput = (IntervalVec3, Interval, IntervalVec3, [IntervalVec3; 2]);
 
 fn kernel_inputs() -> Vec<KernelInput> {
-    let mut random = crate::random::Random::new(3);
+    let mut random = d2m_testing::Xoshiro256::new(3);
     let mut one = || {
         let (axis, p, edges) = (random.direction(), random.direction(), [(); 2].map(|()| random.direction()));
         let angle = random.range(0.0, 3.0);
@@ -184,8 +185,8 @@ fn interval_four() {
 }
 
 fn jets() {
-    let mut random = crate::random::Random::new(4);
-    let motion = |random: &mut crate::random::Random| {
+    let mut random = d2m_testing::Xoshiro256::new(4);
+    let motion = |random: &mut d2m_testing::Xoshiro256| {
         ConstantTwist::REST
             .with_position(random.direction() * 2.0)
             .with_linear_velocity(random.direction() * 4.0)

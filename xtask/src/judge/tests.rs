@@ -1,7 +1,7 @@
 use super::triangle::distance;
 use super::*;
-use crate::random::Random;
 use crate::trials::{Movement, Trial};
+use d2m_testing::Xoshiro256 as Random;
 use glam::{DQuat, DVec3};
 
 fn cube() -> BoxTree {

@@ -1,5 +1,5 @@
 use super::{Movement, Trial};
-use crate::random::Random;
+use d2m_testing::Xoshiro256 as Random;
 
 /// The law of the trials, in units of the models' radius (farthest vertex from the origin at distance 1).
 ///

@@ -73,6 +73,22 @@ impl TriMesh {
         Ok(Self { vertices, triangles })
     }
 
+    /// Copies a mesh from plain arrays, checked as by [`TriMesh::try_new`].
+    ///
+    /// ```
+    /// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let mesh = d2m_bvh::TriMesh::from_arrays(&corners, &[[0, 1, 2]])?;
+    /// assert_eq!((mesh.vertex_count(), mesh.triangle_count()), (3, 1));
+    /// assert!(d2m_bvh::TriMesh::from_arrays(&corners, &[[0, 1, 3]]).is_err());
+    /// # Ok::<(), d2m_bvh::MeshError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`TriMesh::try_new`].
+    pub fn from_arrays(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
+        Self::try_new(vertices.iter().copied().map(DVec3::from_array).collect(), triangles.to_vec())
+    }
+
     /// The vertices in the body frame, in input order.
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices

@@ -6,40 +6,14 @@ use core::ops::Add;
 use core::ops::{Mul, Sub};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
 use d2m_lanes::DoubleDouble;
+use d2m_testing::{Draw, Random};
 use glam::{DMat3, DQuat, DVec3};
 
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 * (0.5_f64).powi(53)
-    }
-    fn signed(&mut self) -> f64 {
-        2.0 * self.unit() - 1.0
-    }
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.signed(), self.signed(), self.signed())
-    }
-    fn log(&mut self, lo: f64, hi: f64) -> f64 {
-        (lo.ln() + (hi / lo).ln() * self.unit()).exp()
-    }
-    /// One of few directions, so that many are parallel or orthogonal.
-    fn direction(&mut self) -> DVec3 {
-        let axis = [DVec3::X, DVec3::Y, DVec3::Z][(self.unit() * 3.0) as usize];
-        if self.unit() < 0.5 { axis } else { -axis }
-    }
-    fn quaternion(&mut self) -> DQuat {
-        DQuat::from_xyzw(self.signed(), self.signed(), self.signed(), self.signed())
-    }
-    fn linear(&mut self, speed: f64) -> ConstantTwist {
-        ConstantTwist::try_new(self.vector(), self.quaternion(), self.vector() * speed, self.vector() * speed)
-            .unwrap()
-            .with_at(self.vector())
-    }
+fn linear(random: &mut Random, speed: f64) -> ConstantTwist {
+    let place = random.vector();
+    ConstantTwist::try_new(place, random.quaternion(), random.vector() * speed, random.vector() * speed)
+        .unwrap()
+        .with_at(random.vector())
 }
 
 /// Only what a motion must say; everything else by default.
@@ -79,7 +53,7 @@ fn states_are_within_their_radii() {
     let mut largest = [[0.0_f64; 2]; 2];
     for i in 0..20_000 {
         let speed = [0.0, 3.0, 100.0][i % 3];
-        let motion = random.linear(speed).with_reference_time([0.0, random.signed() * 10.0][i % 2]);
+        let motion = linear(&mut random, speed).with_reference_time([0.0, random.signed() * 10.0][i % 2]);
         let t = random.signed() * 10.0;
         for (which, state) in [motion.enclose_state(t), Opaque(motion).enclose_state(t)].iter().enumerate() {
             let (turn, moved) = errors(&motion, t, state);
@@ -127,16 +101,18 @@ fn jets_of_constant_twists_keep_their_remainders() {
     let mut random = Random(22);
     let (mut taylor, mut rounding) = (0.0_f64, 0.0_f64);
     for i in 0..6000 {
-        let speed = random.log(0.01, 30.0);
-        let (mut a, mut b) = (random.linear(speed), random.linear(speed));
+        let speed = random.log_between(0.01, 30.0);
+        let (mut a, mut b) = (linear(&mut random, speed), linear(&mut random, speed));
         if i % 2 == 0 {
             // The spinning axes and arms that reach the bounds.
-            let axis = random.direction();
-            a = a.with_angular_velocity(axis * random.log(0.1, 30.0)).with_linear_velocity(DVec3::ZERO);
+            let axis = random.axis();
+            a = a
+                .with_angular_velocity(axis * random.log_between(0.1, 30.0))
+                .with_linear_velocity(DVec3::ZERO);
             b = b.with_angular_velocity(DVec3::ZERO);
         }
         let p = random.vector() * 2.0;
-        let (at, half) = (random.signed(), random.log(1e-6, 0.1) / (1.0 + speed));
+        let (at, half) = (random.signed(), random.log_between(1e-6, 0.1) / (1.0 + speed));
         let state = if i % 4 < 2 {
             RelativeState::new(&a, &b, (at - half, at + half), at)
         } else {
@@ -172,10 +148,10 @@ struct SpinUp {
 
 impl SpinUp {
     fn random(random: &mut Random) -> Self {
-        let size = random.log(0.01, 30.0);
+        let size = random.log_between(0.01, 30.0);
         Self {
             start: random.quaternion().normalize(),
-            axis: random.direction(),
+            axis: random.axis(),
             rates: [
                 random.signed() * size,
                 random.signed() * size * size,
@@ -229,7 +205,7 @@ fn jets_of_accelerating_motions_keep_their_remainders() {
     for _ in 0..40_000 {
         let (a, b) = (SpinUp::random(&mut random), SpinUp::random(&mut random));
         let size = a.rates[0].abs().max(b.rates[0].abs()).max(1.0);
-        let (at, half) = (random.signed() / size, random.log(1e-3, 0.3) / size);
+        let (at, half) = (random.signed() / size, random.log_between(1e-3, 0.3) / size);
         let state = RelativeState::new(&a, &b, (at - half, at + half), at);
         let (p, d) = (random.vector(), random.vector());
         let (point, direction) = (state.point_jet(p, p.length(), 0.0), state.direction_jet(d, d.length()));
@@ -261,7 +237,7 @@ fn the_third_derivative_is_bounded_with_every_term() {
     let mut largest = [0.0_f64; TERMS.len()];
     let still = |v: DVec3| (v, 0.0);
     for _ in 0..300_000 {
-        let mut v = || random.direction() * if random.unit() < 0.3 { 0.0 } else { random.log(1e-3, 1e3) };
+        let mut v = || random.axis() * if random.unit() < 0.3 { 0.0 } else { random.log_between(1e-3, 1e3) };
         let [g, u, a, z, omega_a, omega_b, alpha_a, alpha_b] = [v(), v(), v(), v(), v(), v(), v(), v()];
         let state = |position, linear, angular| CertifiedState {
             rotation: DMat3::IDENTITY,

@@ -5,33 +5,16 @@ use crate::rotation::exponential_dd;
 use crate::{ConstantTwist, PathJet, Remainder};
 use core::ops::{Add, Mul, Sub};
 use d2m_lanes::DoubleDouble;
+use d2m_testing::{Draw, Random};
 use glam::{DQuat, DVec3};
-
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 * (0.5_f64).powi(53)
-    }
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(2.0 * self.unit() - 1.0, 2.0 * self.unit() - 1.0, 2.0 * self.unit() - 1.0)
-    }
-    fn log(&mut self, lo: f64, hi: f64) -> f64 {
-        lo * (hi / lo).powf(self.unit())
-    }
-}
 
 /// A relative motion with magnitudes that make each term of the bounds matter in turn.
 fn sample(random: &mut Random, i: usize) -> (RelativeMotion, DVec3) {
     let (mut w_a, mut w_b) =
-        (random.vector() * random.log(0.01, 30.0), random.vector() * random.log(0.01, 30.0));
-    let mut g = random.vector() * random.log(1e-3, 10.0);
-    let mut u = random.vector() * random.log(1e-3, 30.0);
-    let mut arm = random.vector() * random.log(1e-3, 3.0);
+        (random.vector() * random.log_between(0.01, 30.0), random.vector() * random.log_between(0.01, 30.0));
+    let mut g = random.vector() * random.log_between(1e-3, 10.0);
+    let mut u = random.vector() * random.log_between(1e-3, 30.0);
+    let mut arm = random.vector() * random.log_between(1e-3, 3.0);
     match i % 8 {
         // One term alone, and orthogonal vectors: where the bounds are sharp.
         0 => w_b = DVec3::ZERO,
@@ -56,7 +39,7 @@ fn sample(random: &mut Random, i: usize) -> (RelativeMotion, DVec3) {
     }
     let a = ConstantTwist::try_new(g, DQuat::IDENTITY, u, w_a).unwrap();
     let b = ConstantTwist::REST.with_angular_velocity(w_b);
-    (RelativeMotion::new(&a, &b, 0.0, random.log(1e-3, 1.0)), arm)
+    (RelativeMotion::new(&a, &b, 0.0, random.log_between(1e-3, 1.0)), arm)
 }
 
 /// First to fourth derivative of a point at τ, by the same recursion again and again.

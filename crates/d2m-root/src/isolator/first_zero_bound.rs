@@ -7,6 +7,7 @@
 //! else                                   q > 0 for good
 //! ```
 //! The proof of the constants is in `docs/theory/isolator.md`, section 1.
+use crate::binary::{Binary, power_of_two, scaled};
 
 /// Half a unit in the last place of 1: a rounded result is (1 + δ) times the exact one, |δ| ≤ `UNIT`, unless it
 /// underflows or overflows.
@@ -27,11 +28,6 @@ const LEAST_DISCRIMINANT: f64 = power_of_two(-900);
 const LEAST_ZERO: f64 = power_of_two(-1000);
 /// Coefficients below 2⁻⁹⁰⁰ times the largest are lowered to −2⁻⁹⁰⁰ times it: a smaller coefficient is an earlier zero.
 const NEGLIGIBLE: i32 = -900;
-
-/// 2ⁿ for −1022 ≤ n ≤ 1023.
-pub(super) const fn power_of_two(n: i32) -> f64 {
-    f64::from_bits(((1023 + n) as u64) << 52)
-}
 
 /// A gap between them, with a discriminant beyond `LEAST_DISCRIMINANT`, has no zero above 2⁸⁵¹.
 pub(super) const USUAL_GAPS: (f64, f64) = (power_of_two(-400), power_of_two(400));
@@ -84,9 +80,9 @@ pub(super) fn bound_scaled(gap: f64, slope: f64, curvature: f64) -> f64 {
     if !(gap > 0.0 && gap < f64::INFINITY && slope.is_finite() && curvature.is_finite()) {
         return 0.0;
     }
-    let (gap, value_exponent) = mantissa_and_exponent(gap);
-    let (b, slope_exponent) = mantissa_and_exponent(slope);
-    let (k, curvature_exponent) = mantissa_and_exponent(curvature);
+    let Binary { mantissa: gap, exponent: value_exponent } = Binary::of(gap);
+    let Binary { mantissa: b, exponent: slope_exponent } = Binary::of(slope);
+    let Binary { mantissa: k, exponent: curvature_exponent } = Binary::of(curvature);
     // x = 2ᵗ·y: slope and curvature become b·2^(its exponent + t − e), k·2^(its exponent + 2t − e).
     let by_slope = value_exponent - slope_exponent;
     let by_curvature = (value_exponent - curvature_exponent).div_euclid(2);
@@ -99,7 +95,7 @@ pub(super) fn bound_scaled(gap: f64, slope: f64, curvature: f64) -> f64 {
         (false, true) => by_slope,
         (false, false) => by_slope.min(by_curvature),
     };
-    let scaled = |mantissa: f64, exponent: i32| {
+    let coefficient = |mantissa: f64, exponent: i32| {
         if mantissa == 0.0 {
             0.0
         } else if exponent < NEGLIGIBLE {
@@ -113,8 +109,8 @@ pub(super) fn bound_scaled(gap: f64, slope: f64, curvature: f64) -> f64 {
         // Rising for long: the gap no longer matters, and leaving it out is early.
         return scaled_down(2.0 * b / -k * EARLY, slope_exponent - curvature_exponent);
     }
-    let slope = scaled(b, slope_exponent + time_exponent - value_exponent);
-    let curvature = scaled(k, bent_by);
+    let slope = coefficient(b, slope_exponent + time_exponent - value_exponent);
+    let curvature = coefficient(k, bent_by);
     if slope >= 0.0 && curvature >= 0.0 {
         return f64::INFINITY;
     }
@@ -127,28 +123,9 @@ pub(super) fn bound_scaled(gap: f64, slope: f64, curvature: f64) -> f64 {
     scaled_down(zero_of(gap, slope, curvature, discriminant) * EARLY, time_exponent)
 }
 
-/// `x = mantissa · 2^exponent` with 1 ≤ |mantissa| < 2; (0, 0) for 0. `x` is finite.
-fn mantissa_and_exponent(x: f64) -> (f64, i32) {
-    if x == 0.0 {
-        return (0.0, 0);
-    }
-    let (x, shift) = if x.abs() < f64::MIN_POSITIVE { (x * power_of_two(64), 64) } else { (x, 0) };
-    let bits = x.to_bits();
-    let exponent = ((bits >> 52) & 0x7ff) as i32 - 1023 - shift;
-    (f64::from_bits(bits & !(0x7ff << 52) | 1.0_f64.to_bits()), exponent)
-}
-
 /// A double below `x·2ⁿ` when that is subnormal, else that; at most the largest double, at least 0.
-fn scaled_down(mut x: f64, mut n: i32) -> f64 {
-    while n > 1000 {
-        x *= power_of_two(1000);
-        n -= 1000;
-    }
-    while n < -1000 {
-        x *= power_of_two(-1000);
-        n += 1000;
-    }
-    let x = x * power_of_two(n);
+fn scaled_down(x: f64, n: i32) -> f64 {
+    let x = scaled(x, n);
     if x > f64::MAX {
         f64::MAX
     } else if x >= 2.0 * f64::MIN_POSITIVE {

@@ -21,6 +21,7 @@ pub use search::{Evidence, FirstRoot, Isolation, isolate};
 
 /// What a test found out about a piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[must_use = "it is a certificate: what is not read is not known to be safe"]
 pub enum Verdict {
     /// No contact at any time of the piece.
     Clear,

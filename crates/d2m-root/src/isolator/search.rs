@@ -16,6 +16,7 @@ pub enum Evidence {
 
 /// Answer of [`isolate`].
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[must_use = "it is a certificate: what is not read is not known to be safe"]
 pub enum FirstRoot {
     /// No contact in the window.
     Clear,

@@ -43,6 +43,7 @@ impl PairContact {
 /// The first contact in a world.
 #[expect(clippy::large_enum_variant, reason = "one answer at a time, taken apart at once")]
 #[derive(Clone, Debug, PartialEq)]
+#[must_use = "it is a certificate: what is not read is not known to be safe"]
 pub enum FirstContact {
     /// Certified: no two bodies meet anywhere in the window.
     Separated,

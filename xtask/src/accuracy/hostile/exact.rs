@@ -1,16 +1,12 @@
 //! The oracle of the hostile families: do two bodies certainly share a point at a time? In 320-bit arithmetic, by the
 //! definition, without any tolerance: what it cannot decide beyond doubt it does not call a contact.
 //!
-//! It shares no code with the engine: its own rotation (Taylor series and squaring of a quaternion), its own crossing of
+//! It shares no code with the engine: its own rotation (`d2m_testing::big`), its own crossing of
 //! triangles (signs of volumes), its own winding number (signed crossings of a segment).
 use super::scene::{Body, Scene};
 use d2m::Solid;
-use d2m::motion::ConstantTwist;
-use dashu_float::{FBig, round::mode::HalfEven};
+use d2m_testing::big::{self, Big, Big3, abs, cross, dot, sub};
 use glam::DVec3;
-
-type Big = FBig<HalfEven, 2>;
-type Big3 = [Big; 3];
 
 /// Enough for times of 1e18 and lengths of 2^±60 beside each other.
 const BITS: usize = 320;
@@ -18,90 +14,9 @@ const BITS: usize = 320;
 /// after a few dozen operations lies below 2⁻³⁰⁰, far times take 60 bits, and the rest is room.
 const DOUBT: isize = -200;
 
-fn big(x: f64) -> Big {
-    Big::try_from(x).expect("finite").with_precision(BITS).value()
-}
-
-fn big3(v: DVec3) -> Big3 {
-    [big(v.x), big(v.y), big(v.z)]
-}
-
-fn add(a: &Big3, b: &Big3) -> Big3 {
-    [&a[0] + &b[0], &a[1] + &b[1], &a[2] + &b[2]]
-}
-
-fn sub(a: &Big3, b: &Big3) -> Big3 {
-    [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]
-}
-
-fn scale(a: &Big3, s: &Big) -> Big3 {
-    [&a[0] * s, &a[1] * s, &a[2] * s]
-}
-
-fn dot(a: &Big3, b: &Big3) -> Big {
-    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
-}
-
-fn cross(a: &Big3, b: &Big3) -> Big3 {
-    [&a[1] * &b[2] - &a[2] * &b[1], &a[2] * &b[0] - &a[0] * &b[2], &a[0] * &b[1] - &a[1] * &b[0]]
-}
-
-fn abs(x: &Big) -> Big {
-    if *x < Big::ZERO { -x } else { x.clone() }
-}
-
-/// Unit quaternion up to its length: scalar part and vector part.
-type Quaternion = (Big, Big3);
-
-/// exp(\[w\]s) as a quaternion: Taylor of a small turn, then repeated squaring.
-fn exponential(w: &Big3, s: &Big) -> Quaternion {
-    let mut half = scale(w, &(s * big(0.5)));
-    let mut doublings = 0;
-    while dot(&half, &half) > big(0.0009765625) {
-        half = scale(&half, &big(0.5));
-        doublings += 1;
-    }
-    let square = dot(&half, &half);
-    // Half angle at most 2⁻⁵: 26 terms leave less than 2⁻²⁶⁰/52!, below 2⁻⁴⁸⁰.
-    let (mut cos, mut sinc, mut term) = (big(1.0), big(1.0), big(1.0));
-    for k in 1..26_u32 {
-        term = -term * &square / big(f64::from((2 * k - 1) * (2 * k)));
-        cos += &term;
-        sinc += &term / big(f64::from(2 * k + 1));
-    }
-    let mut q = (cos, scale(&half, &sinc));
-    for _ in 0..doublings {
-        let (c, u) = &q;
-        q = (c * c - dot(u, u), scale(u, &(big(2.0) * c)));
-    }
-    q
-}
-
-/// `p` turned: ((c² − u·u)p + 2(u·p)u + 2c u × p)/(c² + u·u).
-fn turned((c, u): &Quaternion, p: &Big3) -> Big3 {
-    let (cc, uu, two) = (c * c, dot(u, u), big(2.0));
-    let sum =
-        add(&add(&scale(p, &(&cc - &uu)), &scale(u, &(&two * dot(u, p)))), &scale(&cross(u, p), &(&two * c)));
-    let norm = cc + uu;
-    sum.map(|x| x / &norm)
-}
-
 /// The vertices of a body in the world at a time.
 fn place(body: &Body, t: f64) -> Vec<Big3> {
-    let motion: &ConstantTwist = &body.motion;
-    let s = big(t) - big(motion.reference_time());
-    let q = motion.orientation();
-    let start = (big(q.w), [big(q.x), big(q.y), big(q.z)]);
-    let turn = exponential(&big3(motion.angular_velocity()), &s);
-    let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| turned(&turn, &turned(&start, &big3(axis))));
-    let origin = add(&big3(motion.position()), &scale(&big3(motion.linear_velocity()), &s));
-    let at = big3(motion.at());
-    let world = |p: &DVec3| {
-        let e = sub(&big3(*p), &at);
-        let arm = add(&add(&scale(&axes[0], &e[0]), &scale(&axes[1], &e[1])), &scale(&axes[2], &e[2]));
-        add(&origin, &arm)
-    };
-    body.vertices.iter().map(world).collect()
+    big::place::<BITS>(&body.motion, body.vertices.iter().copied(), &big::number::<BITS>(t))
 }
 
 /// A vertex: exactly, and rounded relative to a point near by.
@@ -202,7 +117,10 @@ impl<'s> Placed<'s> {
         let directions = [DVec3::new(0.363_821, 0.581_297, 0.727_941), DVec3::new(-0.613, 0.331, 0.718)];
         directions.into_iter().find_map(|direction| {
             let by = direction * (4.0 * size);
-            let far = Point { exact: add(&point.exact, &big3(by)), rounded: point.rounded + by };
+            let far = Point {
+                exact: big::add(&point.exact, &big::vector::<BITS>(by)),
+                rounded: point.rounded + by,
+            };
             self.scene.bodies[body].triangles.iter().try_fold(0, |sum, t| {
                 let corners = t.map(|i| &self.points[body][i as usize]);
                 self.pierce(point, &far, corners).map(|side| sum + side)

@@ -2,9 +2,9 @@
 //! puts its contact.
 use super::scene::{Body, Scene};
 use super::shapes::Shape;
-use crate::random::Random;
 use d2m::Solid;
 use d2m::motion::ConstantTwist;
+use d2m_testing::Xoshiro256 as Random;
 use glam::{DQuat, DVec3};
 
 /// A maker of scenes, and the name that a report shows.

@@ -10,8 +10,8 @@ mod twins;
 
 use super::{Outcome, Task};
 use crate::bench::Sabotage;
-use crate::random::Random;
 use d2m::bvh::Evidence;
+use d2m_testing::Xoshiro256 as Random;
 use exact::Placed;
 use rayon::prelude::*;
 use scene::{Answer, Scene};

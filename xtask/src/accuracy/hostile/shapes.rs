@@ -1,5 +1,5 @@
 //! Small closed meshes of the hostile families.
-use crate::random::Random;
+use d2m_testing::Xoshiro256 as Random;
 use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
 

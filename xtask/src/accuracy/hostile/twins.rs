@@ -1,7 +1,7 @@
 //! Metamorphic twins: the same physical query in other words. What both say must agree.
 use super::scene::{Body, Scene};
-use crate::random::Random;
 use d2m::motion::ConstantTwist;
+use d2m_testing::Xoshiro256 as Random;
 use glam::{DQuat, DVec3};
 
 /// How times and lengths of a twin follow from those of the scene: t′ = scale·t + shift, lengths times `length`.

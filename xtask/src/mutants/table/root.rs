@@ -74,6 +74,13 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-root/tests/exact.rs::products_beyond_the_range_of_doubles_are_not_late",
     ),
     patch(
+        "a discriminant of a falling start that underflows",
+        "crates/d2m-root/src/isolator/first_zero_bound.rs",
+        "if discriminant > LEAST_DISCRIMINANT {",
+        "if discriminant >= 0.0 {",
+        "crates/d2m-root/tests/exact.rs::products_beyond_the_range_of_doubles_are_not_late",
+    ),
+    patch(
         "a zero that overflows",
         "crates/d2m-root/src/isolator/first_zero_bound.rs",
         " && zero < f64::INFINITY {",

@@ -2,10 +2,10 @@
 //!
 //! Unit features, relative speed about 4, |ω| ≤ 3, t in [0, 1]. The contact is planted at a known time by placing A
 //! so that the features meet there; rounding moves the true time by some 1e-16, which the oracle finds.
-#![allow(unreachable_pub, dead_code)] // shared by tests, accuracy task and bench, each of which uses a part
+use crate::{Draw, Random};
 use d2m_interval::Interval;
 use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
 /// Which features.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,62 +78,6 @@ pub struct Planted {
     pub gap: f64,
 }
 
-/// SplitMix64.
-#[derive(Debug, Clone)]
-pub struct Random(u64);
-
-impl Random {
-    /// Seeded.
-    pub fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x9e37_79b9_7f4a_7c15)
-    }
-
-    /// Uniform in [0, 1).
-    pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 * 0.5_f64.powi(53)
-    }
-
-    /// Uniform in [lo, hi).
-    pub fn between(&mut self, lo: f64, hi: f64) -> f64 {
-        lo + (hi - lo) * self.unit()
-    }
-
-    /// Log-uniform.
-    pub fn log_between(&mut self, lo: f64, hi: f64) -> f64 {
-        self.between(lo.ln(), hi.ln()).exp()
-    }
-
-    /// Uniform in the unit ball.
-    pub fn ball(&mut self) -> DVec3 {
-        loop {
-            let v = DVec3::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0), self.between(-1.0, 1.0));
-            if v.length_squared() <= 1.0 {
-                return v;
-            }
-        }
-    }
-
-    /// Uniform on the unit sphere.
-    pub fn sphere(&mut self) -> DVec3 {
-        loop {
-            let v = self.ball();
-            if v.length_squared() > 1e-4 {
-                return v.normalize();
-            }
-        }
-    }
-
-    /// A random orientation.
-    pub fn turn(&mut self) -> DQuat {
-        let axis = self.sphere();
-        DQuat::from_axis_angle(axis, self.between(-3.1, 3.1))
-    }
-}
-
 /// A motion known only by what every [`RigidMotion`] must say of itself.
 #[derive(Debug, Clone, Copy)]
 pub struct Opaque(pub ConstantTwist);
@@ -157,7 +101,7 @@ impl RigidMotion for Opaque {
 pub fn plant(kind: Kind, family: Family, random: &mut Random) -> Planted {
     let fast = if family == Family::Fast { random.between(60.0, 300.0) } else { 3.0 };
     let (w_a, w_b) = match family {
-        Family::Fast => (random.sphere() * fast, random.ball() * 3.0),
+        Family::Fast => (random.direction() * fast, random.ball() * 3.0),
         Family::Coplanar => (DVec3::ZERO, DVec3::ZERO),
         _ => (random.ball() * fast, random.ball() * fast),
     };
@@ -242,7 +186,7 @@ pub fn plant(kind: Kind, family: Family, random: &mut Random) -> Planted {
             }
         }
     };
-    let mut velocity = random.sphere() * 4.0;
+    let mut velocity = random.direction() * 4.0;
     let offset = match family {
         Family::Near | Family::Graze => outward * gap,
         Family::Far => normal * gap + outward * gap,

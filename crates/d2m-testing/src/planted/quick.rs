@@ -3,7 +3,6 @@
 //! It only ever says "this answer is right, clearly": every sign that it uses is told from zero by 10⁴ times the error of
 //! its arithmetic or more, and whatever is closer goes to the 192 bits. So it never accuses and never excuses. It shares
 //! nothing with the library, whose own double-double is another one.
-#![allow(unreachable_pub, dead_code)] // shared by tests, accuracy task and bench, each of which uses a part
 use super::families::{Kind, Planted};
 use d2m_feature::FirstContact;
 use d2m_motion::ConstantTwist;

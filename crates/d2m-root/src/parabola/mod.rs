@@ -1,6 +1,9 @@
 //! Quadratics bounding a function from one side, and their first and last roots, rounded safely.
 
+mod in_units;
+
 use d2m_interval::Interval;
+use in_units::InUnits;
 
 /// The quadratic p(x) = `value` + `slope`·x + ½·`curvature`·x² on x ≥ 0, with exact `f64` coefficients.
 ///
@@ -47,13 +50,6 @@ impl Parabola {
         Interval::point(self.slope) + x * self.curvature
     }
 
-    /// Enclosure of the discriminant p′(0)² − 2·p″·p(0).
-    ///
-    /// Formed in interval arithmetic, so cancellation widens it and never falsifies it.
-    fn discriminant(self) -> Interval {
-        Interval::point(self.slope).sqr() - Interval::point(self.curvature) * self.value * 2.0
-    }
-
     /// Encloses the smallest x ≥ 0 with p(x) ≤ 0; `None` promises p > 0 on all of x ≥ 0.
     ///
     /// If no such x exists but rounding cannot tell, an interval is returned all the same. In either case p > 0 on
@@ -77,17 +73,18 @@ impl Parabola {
         if self.slope >= 0.0 && self.curvature >= 0.0 {
             return None;
         }
-        let d = self.discriminant();
+        let p = InUnits::of(self);
+        let d = p.discriminant();
         if d.certainly_negative() {
             return None;
         }
         let root = nonnegative(d).sqrt();
         let x = if self.slope <= 0.0 {
-            quotient(Interval::point(self.value) * 2.0, nonnegative(root - self.slope))
+            quotient(p.value * 2.0, nonnegative(root - p.slope))
         } else {
-            quotient(nonnegative(root + self.slope), nonnegative(Interval::point(-self.curvature)))
+            quotient(nonnegative(root + p.slope), nonnegative(-p.curvature))
         };
-        Some(x)
+        Some(p.offset(x))
     }
 
     /// An upper bound of the largest x ≥ 0 with p(x) ≤ 0, `∞` where p stays nonpositive or rounding cannot tell.
@@ -97,20 +94,22 @@ impl Parabola {
         if self.curvature.is_nan() || self.curvature <= 0.0 {
             return f64::INFINITY;
         }
-        let d = nonnegative(self.discriminant());
+        let p = InUnits::of(self);
+        let d = nonnegative(p.discriminant());
         let x = if self.slope <= 0.0 {
-            quotient(nonnegative(d.sqrt() - self.slope), Interval::point(self.curvature))
+            quotient(nonnegative(d.sqrt() - p.slope), nonnegative(p.curvature))
         } else {
             // −2c/(b + √D): c ≤ 0 wherever a nonnegative root exists.
-            quotient(nonnegative(Interval::point(-self.value) * 2.0), nonnegative(d.sqrt() + self.slope))
+            quotient(nonnegative(-p.value * 2.0), nonnegative(d.sqrt() + p.slope))
         };
-        x.hi()
+        p.offset(x).hi()
     }
 
     /// Given p(0) ≤ 0, p″ ≤ 0 and p(w) > 0 for some w: an upper bound of the offset at which p turns positive.
     pub fn bound_first_rise(self) -> f64 {
-        let d = nonnegative(self.discriminant());
-        quotient(nonnegative(Interval::point(-self.value) * 2.0), nonnegative(d.sqrt() + self.slope)).hi()
+        let p = InUnits::of(self);
+        let d = nonnegative(p.discriminant());
+        p.offset(quotient(nonnegative(-p.value * 2.0), nonnegative(d.sqrt() + p.slope))).hi()
     }
 }
 
@@ -196,6 +195,50 @@ mod tests {
         // 1e300 (1 − x + x²/2) has no root
         let none = Parabola::new(1e300, -1e300, 1e300).first_nonpositive();
         assert!(none.is_none_or(|x| x.lo() == 0.0));
+    }
+
+    /// The same roots in units of value and offset from one end of the range of doubles to the other.
+    #[test]
+    fn roots_follow_every_exact_scaling() {
+        use crate::binary::scaled;
+        for (c, b, k, first) in
+            [(3.0, -4.0, 2.0, 1.0), (1.0, 0.0, -2.0, 1.0), (1.0, -4.0, 0.0, 0.25), (2.0, 1.0, -2.0, 2.0)]
+        {
+            for time in [-900, -600, -160, 0, 160, 450, 900] {
+                for unit in [-900, -500, -160, 0, 160, 500, 900] {
+                    let numbers = [(c, unit), (b, unit - time), (k, unit - 2 * time)];
+                    let [value, slope, curvature] = numbers.map(|(x, n)| scaled(x, n));
+                    let exact = numbers.iter().all(|&(x, n)| scaled(scaled(x, n), -n) == x);
+                    if exact {
+                        let x = Parabola::new(value, slope, curvature).first_nonpositive().expect("a root");
+                        let root = scaled(first, time);
+                        assert!(x.lo() <= root && root <= x.hi(), "{time} {unit} {x:?}");
+                        assert!(x.width() <= root * 1e-14, "{time} {unit} {x:?}");
+                    }
+                }
+            }
+        }
+        assert_eq!(Parabola::new(1e300, -1e300, 1e300).first_nonpositive(), None);
+        // A slope or a curvature that is nothing beside the rest.
+        let x = Parabola::new(1e200, 5e-324, -1e200).first_nonpositive().expect("a root");
+        assert!(x.contains(2.0_f64.sqrt()) && x.width() < 1e-14);
+        let x = Parabola::new(1e300, 1e-5, -1e-320).first_nonpositive().expect("a root");
+        assert!(x.lo() > 1e308 && x.lo() < f64::INFINITY);
+    }
+
+    /// What rises last, and what has turned positive, in far units.
+    #[test]
+    fn last_roots_follow_every_exact_scaling() {
+        use crate::binary::scaled;
+        for n in [-900, -450, 0, 450, 900] {
+            let p = Parabola::new(scaled(3.0, n), scaled(-4.0, n), scaled(2.0, n));
+            let last = p.bound_last_nonpositive();
+            assert!((3.0..3.0 + 1e-13).contains(&last), "{n} {last}");
+            // −2 + 3x − x² is positive between 1 and 2.
+            let rising = Parabola::new(scaled(-2.0, n), scaled(3.0, n), scaled(-2.0, n));
+            let rise = rising.bound_first_rise();
+            assert!((1.0..1.0 + 1e-13).contains(&rise), "{n} {rise}");
+        }
     }
 
     /// p(x) is evaluated exactly in integers: the certified lower end is never past the first sign change.

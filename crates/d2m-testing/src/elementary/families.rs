@@ -1,34 +1,21 @@
 //! Random differential families: each operation against the exact reference, end points always among the
 //! samples. Callable from the crate's tests and from `cargo xtask accuracy interval`.
+use crate::Random;
 use d2m_interval::{Interval, IntervalVec3};
 use dashu_int::{IBig, ops::Abs};
 use glam::DVec3;
 
 use super::{Fixed, atan, atan2, div, exp, fixed, ln, ln_2, mul, one, quadrant, sin_cos, sqrt, to_double};
 
-/// A small generator of random numbers (SplitMix64).
-pub(crate) struct Random(pub(crate) u64);
-
+/// What the families draw besides numbers of the unit interval.
 impl Random {
-    pub(crate) fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ z >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ z >> 31
-    }
-
-    pub(crate) fn below(&mut self, n: u64) -> u64 {
-        self.next() % n
-    }
-
     /// A double whose magnitude has an exponent in `exponents`, either sign.
     pub(crate) fn double(&mut self, exponents: (i32, i32)) -> f64 {
         let span = (exponents.1 - exponents.0 + 1) as u64;
         let field = 1023 + exponents.0 + self.below(span) as i32;
         // Few mantissa bits now and then: ties and exact results.
         let mask = if self.below(4) == 0 { !0 << 44 } else { !0 };
-        let bits = (self.next() >> 12 & mask) | (field as u64) << 52;
+        let bits = (self.bits() >> 12 & mask) | (field as u64) << 52;
         let x = f64::from_bits(bits);
         if self.below(2) == 0 { x } else { -x }
     }
@@ -60,10 +47,13 @@ impl Random {
 
 /// Where arguments are drawn from.
 #[derive(Clone, Copy)]
-pub(crate) struct Domain {
-    pub(crate) lo: f64,
-    pub(crate) hi: f64,
-    pub(crate) exponents: (i32, i32),
+pub struct Domain {
+    /// Least argument.
+    pub lo: f64,
+    /// Greatest argument.
+    pub hi: f64,
+    /// Least and greatest exponent of their magnitudes.
+    pub exponents: (i32, i32),
 }
 
 const fn domain(lo: f64, hi: f64, from: i32, to: i32) -> Domain {
@@ -72,22 +62,24 @@ const fn domain(lo: f64, hi: f64, from: i32, to: i32) -> Domain {
 
 /// What a family found.
 #[derive(Debug)]
-pub(crate) struct Outcome {
-    pub(crate) name: &'static str,
+pub struct Outcome {
+    /// Of the operation.
+    pub name: &'static str,
     /// Tuples tried.
-    pub(crate) checked: u64,
+    pub checked: u64,
     /// Tuples whose exact result is not inside: must be 0.
-    pub(crate) lost: u64,
+    pub lost: u64,
     /// The most last places (of the tightest end) that an end was too far out, where it was more than `2⁻⁵⁰⁰`.
-    pub(crate) worst: u64,
+    pub worst: u64,
     /// Promised bound of `worst`.
-    pub(crate) allowed: u64,
+    pub allowed: u64,
     /// The first loss, or the worst case.
-    pub(crate) example: String,
+    pub example: String,
 }
 
 impl Outcome {
-    pub(crate) fn passed(&self) -> bool {
+    /// Nothing lost, and nowhere wider than promised.
+    pub fn passed(&self) -> bool {
         self.lost == 0 && self.worst <= self.allowed
     }
 }
@@ -141,25 +133,39 @@ fn judge(
     }
 }
 
-pub(crate) type UnaryOperation = fn(Interval) -> Interval;
-pub(crate) type BinaryOperation = fn(Interval, Interval) -> Interval;
+/// An operation of one argument.
+pub type UnaryOperation = fn(Interval) -> Interval;
+/// An operation of two arguments.
+pub type BinaryOperation = fn(Interval, Interval) -> Interval;
 
-pub(crate) struct Unary {
-    pub(crate) name: &'static str,
-    pub(crate) operation: UnaryOperation,
-    pub(crate) exact: fn(f64) -> Fixed,
+/// An operation of one argument, and what it is held against.
+pub struct Unary {
+    /// Its name.
+    pub name: &'static str,
+    /// The operation that is judged.
+    pub operation: UnaryOperation,
+    /// Its exact value at a number.
+    pub exact: fn(f64) -> Fixed,
     /// Values at interior extrema.
-    pub(crate) extrema: fn(Interval) -> Values,
-    pub(crate) domain: Domain,
-    pub(crate) allowed: u64,
+    pub extrema: fn(Interval) -> Values,
+    /// Where arguments are drawn from.
+    pub domain: Domain,
+    /// Last places that an end may be too far out.
+    pub allowed: u64,
 }
 
-pub(crate) struct Binary {
-    pub(crate) name: &'static str,
-    pub(crate) operation: BinaryOperation,
-    pub(crate) exact: fn(f64, f64) -> Fixed,
-    pub(crate) domains: [Domain; 2],
-    pub(crate) allowed: u64,
+/// An operation of two arguments, and what it is held against.
+pub struct Binary {
+    /// Its name.
+    pub name: &'static str,
+    /// The operation that is judged.
+    pub operation: BinaryOperation,
+    /// Its exact value at two numbers.
+    pub exact: fn(f64, f64) -> Fixed,
+    /// Where arguments are drawn from.
+    pub domains: [Domain; 2],
+    /// Last places that an end may be too far out.
+    pub allowed: u64,
 }
 
 fn none(_: Interval) -> Values {
@@ -196,7 +202,7 @@ const WIDE: Domain = domain(f64::NEG_INFINITY, f64::INFINITY, -300, 300);
 const SMALL: Domain = domain(f64::NEG_INFINITY, f64::INFINITY, -60, 60);
 
 /// All functions of one argument.
-pub(crate) fn unary() -> Vec<Unary> {
+pub fn unary() -> Vec<Unary> {
     macro_rules! unary {
         ($name:literal, $op:expr, $exact:expr, $extrema:expr, $domain:expr, $allowed:expr) => {
             Unary {
@@ -416,7 +422,7 @@ pub(crate) fn unary() -> Vec<Unary> {
 }
 
 /// All functions of two arguments.
-pub(crate) fn binary() -> Vec<Binary> {
+pub fn binary() -> Vec<Binary> {
     let positive = domain(0.0, f64::MAX, -300, 300);
     vec![
         Binary {
@@ -493,7 +499,7 @@ pub(crate) fn binary() -> Vec<Binary> {
 }
 
 /// Runs one function of one argument.
-pub(crate) fn run_unary(family: &Unary, count: u64, seed: u64) -> Outcome {
+pub fn run_unary(family: &Unary, count: u64, seed: u64) -> Outcome {
     let mut random = Random(seed);
     let mut outcome = start(family.name, family.allowed);
     let slack = IBig::from(1) << 50usize;
@@ -510,7 +516,7 @@ pub(crate) fn run_unary(family: &Unary, count: u64, seed: u64) -> Outcome {
 }
 
 /// Runs one function of two arguments.
-pub(crate) fn run_binary(family: &Binary, count: u64, seed: u64) -> Outcome {
+pub fn run_binary(family: &Binary, count: u64, seed: u64) -> Outcome {
     let mut random = Random(seed);
     let mut outcome = start(family.name, family.allowed);
     let slack = IBig::from(1) << 50usize;
@@ -529,7 +535,7 @@ pub(crate) fn run_binary(family: &Binary, count: u64, seed: u64) -> Outcome {
 }
 
 /// Fused vector operations: containment only (their promise is relative to the sum of the terms).
-pub(crate) fn run_vectors(count: u64, seed: u64) -> Outcome {
+pub fn run_vectors(count: u64, seed: u64) -> Outcome {
     let mut random = Random(seed);
     let mut outcome = start("dot, cross, norm²", 0);
     for _ in 0..count {
@@ -541,7 +547,7 @@ pub(crate) fn run_vectors(count: u64, seed: u64) -> Outcome {
             let end = |x: Interval, bit: u64| if bits >> bit & 1 == 1 { x.hi() } else { x.lo() };
             DVec3::new(end(v.x, 0), end(v.y, 1), end(v.z, 2))
         };
-        let (p, q) = (corner(a, random.next()), corner(b, random.next()));
+        let (p, q) = (corner(a, random.bits()), corner(b, random.bits()));
         let product = |x: f64, y: f64| mul(&fixed(x), &fixed(y));
         let dot = product(p.x, q.x) + product(p.y, q.y) + product(p.z, q.z);
         let norm = product(p.x, p.x) + product(p.y, p.y) + product(p.z, p.z);
@@ -572,10 +578,10 @@ fn start(name: &'static str, allowed: u64) -> Outcome {
 }
 
 /// One family, ready to run.
-pub(crate) type Job = Box<dyn Fn() -> Outcome + Send + Sync>;
+pub type Job = Box<dyn Fn() -> Outcome + Send + Sync>;
 
 /// Every family with `count` tuples (a fiftieth of it where the reference is slow), independent of each other.
-pub(crate) fn jobs(count: u64, seed: u64) -> Vec<Job> {
+pub fn jobs(count: u64, seed: u64) -> Vec<Job> {
     let mut jobs: Vec<Job> = Vec::new();
     for family in binary() {
         let count = share_of(count, !["atan2", "pow"].contains(&family.name));

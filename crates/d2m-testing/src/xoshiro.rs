@@ -4,12 +4,12 @@ use glam::{DQuat, DVec3};
 /// xoshiro256++ (Blackman and Vigna 2021, doi:10.1145/3460772), its state filled by splitmix64.
 ///
 /// No function of the platform's mathematics library is used, so a seed means the same trials everywhere.
-#[derive(Clone)]
-pub(crate) struct Random([u64; 4]);
+#[derive(Debug, Clone)]
+pub struct Xoshiro256([u64; 4]);
 
-impl Random {
+impl Xoshiro256 {
     /// The generator of this seed.
-    pub(crate) fn new(seed: u64) -> Self {
+    pub fn new(seed: u64) -> Self {
         let mut state = seed;
         Self(core::array::from_fn(|_| {
             state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -20,7 +20,7 @@ impl Random {
     }
 
     /// The next 64 bits.
-    pub(crate) fn bits(&mut self) -> u64 {
+    pub fn bits(&mut self) -> u64 {
         let s = &mut self.0;
         let result = s[0].wrapping_add(s[3]).rotate_left(23).wrapping_add(s[0]);
         let shifted = s[1] << 17;
@@ -34,17 +34,17 @@ impl Random {
     }
 
     /// Uniform in [0, 1), a multiple of 2⁻⁵³.
-    pub(crate) fn unit(&mut self) -> f64 {
+    pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 * (0.5f64).powi(53)
     }
 
     /// Uniform in [lo, hi).
-    pub(crate) fn range(&mut self, lo: f64, hi: f64) -> f64 {
+    pub fn range(&mut self, lo: f64, hi: f64) -> f64 {
         lo + (hi - lo) * self.unit()
     }
 
     /// Uniform on the unit sphere.
-    pub(crate) fn direction(&mut self) -> DVec3 {
+    pub fn direction(&mut self) -> DVec3 {
         loop {
             let v = DVec3::new(self.range(-1.0, 1.0), self.range(-1.0, 1.0), self.range(-1.0, 1.0));
             let n = v.length_squared();
@@ -55,7 +55,7 @@ impl Random {
     }
 
     /// A rotation uniform over all rotations, unit to rounding.
-    pub(crate) fn rotation(&mut self) -> DQuat {
+    pub fn rotation(&mut self) -> DQuat {
         loop {
             let q = [(); 4].map(|()| self.range(-1.0, 1.0));
             let n: f64 = q.iter().map(|c| c * c).sum();
@@ -73,16 +73,16 @@ mod tests {
 
     #[test]
     fn published_numbers() {
-        let mut random = Random([1, 2, 3, 4]);
+        let mut random = Xoshiro256([1, 2, 3, 4]);
         let first = [(); 4].map(|()| random.bits());
         assert_eq!(first, [41_943_041, 58_720_359, 3_588_806_011_781_223, 3_591_011_842_654_386]);
         let state = [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
-        assert_eq!(Random::new(1_234_567).0[..3], state);
+        assert_eq!(Xoshiro256::new(1_234_567).0[..3], state);
     }
 
     #[test]
     fn moments_of_the_unit_interval_and_of_directions() {
-        let mut random = Random::new(7);
+        let mut random = Xoshiro256::new(7);
         let n = 100_000;
         let (mut sum, mut squares, mut direction) = (0.0, 0.0, DVec3::ZERO);
         for _ in 0..n {

@@ -5,16 +5,16 @@ use std::sync::OnceLock;
 
 use dashu_int::{IBig, UBig, ops::Abs, ops::BitTest};
 
-pub(crate) mod families;
+pub mod families;
 
 /// Binary places.
 const P: usize = 1400;
 
 /// Value · 2¹⁴⁰⁰.
-pub(crate) type Fixed = IBig;
+pub type Fixed = IBig;
 
 /// The exact value of a finite double.
-pub(crate) fn fixed(x: f64) -> Fixed {
+pub fn fixed(x: f64) -> Fixed {
     assert!(x.is_finite());
     let bits = x.to_bits();
     let field = (bits >> 52 & 2047) as usize;
@@ -31,7 +31,8 @@ pub(crate) fn mul(a: &Fixed, b: &Fixed) -> Fixed {
     (a * b) >> P
 }
 
-pub(crate) fn div(a: &Fixed, b: &Fixed) -> Fixed {
+/// The quotient, rounded to a multiple of 2⁻¹⁴⁰⁰.
+pub fn div(a: &Fixed, b: &Fixed) -> Fixed {
     (a << P) / b
 }
 
@@ -41,7 +42,7 @@ pub(crate) fn sqrt(a: &Fixed) -> Fixed {
 }
 
 /// Largest double not above (`upwards == false`) or least double not below the value.
-pub(crate) fn to_double(value: &Fixed, upwards: bool) -> f64 {
+pub fn to_double(value: &Fixed, upwards: bool) -> f64 {
     let negative = *value < IBig::from(0);
     let size: UBig = value.clone().abs().try_into().expect("absolute value");
     let away = upwards != negative;
@@ -170,7 +171,8 @@ pub(crate) fn quadrant(x: &Fixed) -> (IBig, Fixed) {
     (k, rest >> P)
 }
 
-pub(crate) fn sin_cos(x: &Fixed) -> (Fixed, Fixed) {
+/// Sine and cosine.
+pub fn sin_cos(x: &Fixed) -> (Fixed, Fixed) {
     let (k, r) = quadrant(x);
     let square = -mul(&r, &r);
     let s = series(r, &square, |n| 2 * n * (2 * n + 1));

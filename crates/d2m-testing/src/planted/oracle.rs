@@ -1,91 +1,19 @@
 //! The independent oracle: 192-bit arithmetic, its own rotation by Taylor series, bisection. Slow and simple.
 //!
 //! It shares nothing with the library but the definition of the motion.
-#![allow(unreachable_pub, dead_code)] // shared by tests, accuracy task and bench, each of which uses a part
 use super::families::{Kind, Planted};
-use d2m_motion::ConstantTwist;
-use dashu_float::{FBig, round::mode::HalfEven};
+use crate::big::{self, Big, Big3, add, cross, dot, scale, sub};
 use glam::DVec3;
-
-/// A number of 192 bits.
-pub type Big = FBig<HalfEven, 2>;
-/// A vector of them.
-pub type Big3 = [Big; 3];
 
 const BITS: usize = 192;
 
-/// An f64, exactly.
+/// A double, exactly.
 pub fn big(x: f64) -> Big {
-    Big::try_from(x).expect("finite").with_precision(BITS).value()
+    big::number::<BITS>(x)
 }
 
 fn big3(v: DVec3) -> Big3 {
-    [big(v.x), big(v.y), big(v.z)]
-}
-
-fn add(a: &Big3, b: &Big3) -> Big3 {
-    [&a[0] + &b[0], &a[1] + &b[1], &a[2] + &b[2]]
-}
-
-fn sub(a: &Big3, b: &Big3) -> Big3 {
-    [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]
-}
-
-fn scale(a: &Big3, s: &Big) -> Big3 {
-    [&a[0] * s, &a[1] * s, &a[2] * s]
-}
-
-fn dot(a: &Big3, b: &Big3) -> Big {
-    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
-}
-
-fn cross(a: &Big3, b: &Big3) -> Big3 {
-    [&a[1] * &b[2] - &a[2] * &b[1], &a[2] * &b[0] - &a[0] * &b[2], &a[0] * &b[1] - &a[1] * &b[0]]
-}
-
-/// `p` turned by the quaternion (s, u), divided by its norm: ((s² − u·u)p + 2(u·p)u + 2s u × p)/(s² + u·u).
-fn turned(quaternion: &(Big, Big3), p: &Big3) -> Big3 {
-    let (s, u) = quaternion;
-    let (ss, uu) = (s * s, dot(u, u));
-    let two = big(2.0);
-    let sum =
-        add(&add(&scale(p, &(&ss - &uu)), &scale(u, &(&two * dot(u, p)))), &scale(&cross(u, p), &(&two * s)));
-    let norm = ss + uu;
-    sum.map(|x| x / &norm)
-}
-
-/// The quaternion of exp(\[w\]t), up to its length: Taylor of a small turn, then repeated squaring.
-fn exponential(w: &Big3, t: &Big) -> (Big, Big3) {
-    let mut half = scale(w, &(t * big(0.5)));
-    let mut doublings = 0;
-    while dot(&half, &half) > big(0.01) {
-        half = scale(&half, &big(0.5));
-        doublings += 1;
-    }
-    let square = dot(&half, &half);
-    // cos φ and sin φ/φ by their series in φ², φ ≤ 0.1: 16 terms leave less than 10⁻⁶⁰.
-    let (mut cos, mut sinc, mut term) = (big(1.0), big(1.0), big(1.0));
-    for k in 1..16_u32 {
-        term = -term * &square / big(f64::from((2 * k - 1) * (2 * k)));
-        cos += &term;
-        sinc += &term / big(f64::from(2 * k + 1));
-    }
-    let mut q = (cos, scale(&half, &sinc));
-    for _ in 0..doublings {
-        let (s, u) = &q;
-        q = (s * s - dot(u, u), scale(u, &(big(2.0) * s)));
-    }
-    q
-}
-
-/// World positions of body points at a time.
-fn place<const N: usize>(motion: &ConstantTwist, points: [DVec3; N], t: &Big) -> [Big3; N] {
-    let s = t - big(motion.reference_time());
-    let q = motion.orientation();
-    let start = (big(q.w), [big(q.x), big(q.y), big(q.z)]);
-    let turn = exponential(&big3(motion.angular_velocity()), &s);
-    let centre = add(&big3(motion.position()), &scale(&big3(motion.linear_velocity()), &s));
-    points.map(|p| add(&centre, &turned(&turn, &turned(&start, &sub(&big3(p), &big3(motion.at()))))))
+    big::vector::<BITS>(v)
 }
 
 /// Where the four vertices are at a time: point and triangle, or edge and edge.
@@ -94,11 +22,12 @@ pub type Vertices<'a> = dyn Fn(&Big) -> [Big3; 4] + 'a;
 /// The vertices of a rigid query.
 pub fn rigid(query: &Planted) -> impl Fn(&Big) -> [Big3; 4] + '_ {
     move |t| {
-        let [a0, a1] = place(&query.motion_a, query.a, t);
-        let [b0, b1, b2] = place(&query.motion_b, query.b, t);
+        let a = big::place::<BITS>(&query.motion_a, query.a, t);
+        let b = big::place::<BITS>(&query.motion_b, query.b, t);
+        let (a, b) = (|i: usize| a[i].clone(), |i: usize| b[i].clone());
         match query.kind {
-            Kind::PointTriangle => [a0, b0, b1, b2],
-            Kind::EdgeEdge => [a0, a1, b0, b1],
+            Kind::PointTriangle => [a(0), b(0), b(1), b(2)],
+            Kind::EdgeEdge => [a(0), a(1), b(0), b(1)],
         }
     }
 }

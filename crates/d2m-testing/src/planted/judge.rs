@@ -1,8 +1,8 @@
 //! Asks the library and the oracle, and says what is wrong.
-#![allow(unreachable_pub, dead_code)] // shared by tests, accuracy task and bench, each of which uses a part
-use super::families::{FAMILIES, Family, Kind, Opaque, Planted, Random, plant};
+use super::families::{FAMILIES, Family, Kind, Opaque, Planted, plant};
 use super::oracle::{Vertices, big, distance, rigid, straight, true_contact};
 use super::quick::{self, QuickVertices};
+use crate::Random;
 use d2m_feature::{ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, StraightPaths};
 
 /// What a run saw.

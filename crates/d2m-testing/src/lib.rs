@@ -1,0 +1,20 @@
+#![forbid(unsafe_code)]
+//! What the tests, the benches and the tasks of this workspace share. Not published.
+//!
+//! **Invariant:** nothing here shares code with what it judges, but the definition of a motion and the types of questions
+//! and answers. Draws from a seed are the same on every machine and in every release.
+
+mod random;
+mod xoshiro;
+
+#[cfg(feature = "planted")]
+pub mod big;
+#[cfg(feature = "elementary")]
+pub mod elementary;
+#[cfg(feature = "planted")]
+pub mod fixed;
+#[cfg(feature = "planted")]
+pub mod planted;
+
+pub use random::{Draw, KnuthRandom, Random};
+pub use xoshiro::Xoshiro256;

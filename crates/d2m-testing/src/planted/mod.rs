@@ -1,0 +1,5 @@
+//! Planted contacts of single feature pairs, an independent oracle and a judge.
+pub mod families;
+pub mod judge;
+pub mod oracle;
+pub mod quick;
