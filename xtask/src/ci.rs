@@ -49,6 +49,7 @@ const STEPS: [Step; 14] = [
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m-bvh"]),
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m-shapes"]),
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m"]),
+    step("features", &["check", "--locked", "--no-default-features", "-p=d2m-dynamics"]),
     step("features", &["check", "--locked", "--all-features", "-p=d2m"]),
     step(
         "tests",
