@@ -26,7 +26,7 @@ fn row(scene: &HardScene, rounds: usize) -> bool {
     // Long enough for the clock's ticks of a few milliseconds.
     let (clock, mut asked) = (processor_time(), 0);
     while asked < rounds || processor_time() - clock < 60.0 && asked < 1000 {
-        std::hint::black_box(scene.ask());
+        let _ = std::hint::black_box(scene.ask());
         asked += 1;
     }
     let mean = (processor_time() - clock) / asked as f64;

@@ -2,7 +2,8 @@
 use d2m_feature::{
     ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, PlacedTriangle, StraightPaths,
 };
-use d2m_testing::planted::families::{Family, Kind, Opaque, Planted, Random, plant};
+use d2m_testing::Random;
+use d2m_testing::planted::families::{Family, Kind, Opaque, Planted, plant};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -141,7 +142,7 @@ fn measure(queries: &[Prepared], method: Method, options: &ContactOptions) -> (f
         .iter()
         .map(|query| {
             best(&|| {
-                black_box(query.ask(method, options));
+                let _ = black_box(query.ask(method, options));
             }) - clock
         })
         .collect();

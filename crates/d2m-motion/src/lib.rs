@@ -53,7 +53,7 @@ pub use twist::{IntervalTwist, Twist};
 #[doc(hidden)]
 pub use {
     path_jet::{PathJet, Remainder},
-    relative::{Arm, ArmPair, Frame, RelativeMotion, RelativeState},
+    relative::{Arm, ArmPair, Frame, RelativeMotion, RelativeState, StraightLine},
     two::TwoVec3,
     two_jets::TwoJets,
 };

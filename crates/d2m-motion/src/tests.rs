@@ -4,8 +4,6 @@ use crate::{ConstantTwist, Keyframes, MotionError, Pose, RigidMotion, ScrewMotio
 use core::ops::{Add, Mul, Sub};
 use d2m_interval::Interval;
 use d2m_lanes::{DoubleDouble, F64x2};
-use glam::{DQuat, DVec3};
-use d2m_interval::{F64x2, Interval};
 use d2m_testing::{Draw, Random};
 use glam::DVec3;
 

@@ -18,7 +18,7 @@ pub use hrfoi::hrfoi;
 pub use inclusion_function::InclusionFunction;
 pub use ird::intersect_root_domain;
 pub use isolator::{
-    Band, Cubic, Evidence, FirstRoot, Isolation, IsolatorOptions, Measurement, Piece, PieceTest, Quadratic,
-    Verdict, isolate,
+    Band, Cubic, Evidence, FirstRoot, Isolation, IsolatorOptions, Measurement, NearbyQuadratic, Piece,
+    PieceTest, Quadratic, Verdict, isolate,
 };
 pub use parabola::Parabola;

@@ -229,7 +229,7 @@ fn features(kind: Kind, how: How) {
     twice(&mut || {
         for (pair, triangle, straight, planted) in black_box(&cases) {
             let edge = [planted.b[0], planted.b[1]];
-            black_box(match (how, kind) {
+            let _ = black_box(match (how, kind) {
                 (How::Rigid, Kind::PointTriangle) => pair.point_placed(planted.a[0], triangle, &options),
                 (How::Rigid, Kind::EdgeEdge) => pair.edge_edge(planted.a, edge, &options),
                 (How::Straight, Kind::PointTriangle) => straight.point_triangle(&options),

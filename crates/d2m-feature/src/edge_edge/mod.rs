@@ -10,7 +10,7 @@ use crate::point_triangle::cleared;
 use crate::rounding::{CLOSE, PART_OF_WAY, UNDERFLOW, UNIT, UP, length_up};
 use d2m_lanes::F64x2;
 use d2m_motion::{TwoJets, TwoVec3};
-use d2m_root::{Band, Cubic, Measurement, Piece, PieceTest, Quadratic, Verdict};
+use d2m_root::{Band, Cubic, Measurement, NearbyQuadratic, Piece, PieceTest, Quadratic, Verdict};
 use glam::DVec3;
 use products::{TripleProduct, TwoQuadratics};
 
@@ -82,7 +82,7 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
             curvature: jets.a.first().dot(v),
             jerk: jets.j.first().dot(v),
         };
-        let (forth, left_out) = along_v.quadratic_about_centre(h);
+        let NearbyQuadratic { quadratic: forth, left_out } = along_v.quadratic_about_center(h);
         let reach = length_up(v) * (self.half_lengths.0 + of_w) + v.dot(d).abs() + left_out;
         forth.clip_beyond(Band { lo: 0.0, hi: 0.0 }, reach * UP, whole)
     }

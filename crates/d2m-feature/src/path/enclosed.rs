@@ -2,7 +2,7 @@
 use super::FeaturePath;
 use crate::motion_in_units::MotionInUnits;
 use crate::rounding::{PRODUCT_UNDERFLOW, UNIT, UP, length_up};
-use d2m_motion::{PathJet, RelativeState, TwoJets};
+use d2m_motion::{PathJet, RelativeState, StraightLine, TwoJets};
 use d2m_root::{Band, Piece, Quadratic};
 use glam::DVec3;
 
@@ -37,8 +37,8 @@ impl<'a> EnclosedMotions<'a> {
     /// Bound of the distance of the reference points over the window.
     pub(crate) fn bound_distance(&self) -> f64 {
         let h = super::reach(super::local(self.window, self.middle)) * UP;
-        let (g, u, stray) = self.state.straight_line(h);
-        (length_up(g) + length_up(u) * h + stray) * UP
+        let StraightLine { offset: g, velocity: u, deviation } = self.state.straight_line(h);
+        (length_up(g) + length_up(u) * h + deviation) * UP
     }
 
     /// The reference points of A and B, body frames.
@@ -63,9 +63,9 @@ impl<'a> EnclosedMotions<'a> {
     pub(crate) fn times_within(&self, distance: f64) -> Option<Piece> {
         let whole = super::local(self.window, self.middle);
         let h = super::reach(whole) * UP;
-        let (g, u, stray) = self.state.straight_line(h);
+        let StraightLine { offset: g, velocity: u, deviation } = self.state.straight_line(h);
         let size = length_up(g) + length_up(u) * h;
-        let band = (distance + stray) * UP;
+        let band = (distance + deviation) * UP;
         let square = band * band * UP + SQUARES * (size * size) + PRODUCT_UNDERFLOW;
         let squared = Quadratic {
             value: g.length_squared(),

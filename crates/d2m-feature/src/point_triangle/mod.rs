@@ -9,7 +9,7 @@ use crate::path::{
 };
 use crate::rounding::{CLOSE, PART_OF_WAY, UNIT, UP, length_up};
 use d2m_motion::{PathJet, Remainder};
-use d2m_root::{Band, Cubic, Measurement, Piece, PieceTest, Quadratic, Verdict};
+use d2m_root::{Band, Cubic, Measurement, NearbyQuadratic, Piece, PieceTest, Quadratic, Verdict};
 use glam::DVec3;
 
 /// The piece test of a point path and a triangle.
@@ -189,12 +189,14 @@ impl<P: FeaturePath> PointTriangleTest<'_, P> {
         let limit = (planes.radius + remainder.bound(h)) * UP;
         let distance = length_up(from_center.p);
         if distance > planes.radius {
-            let (away, left_out) = cubic_along(&from_center, from_center.p).quadratic_about_centre(h);
+            let near = cubic_along(&from_center, from_center.p).quadratic_about_center(h);
+            let NearbyQuadratic { quadratic: away, left_out } = near;
             if away.exceeds((limit * distance + left_out) * UP, whole) {
                 return None;
             }
         }
-        let (forth, left_out) = cubic_along(&from_center, jet.v).quadratic_about_centre(h);
+        let NearbyQuadratic { quadratic: forth, left_out } =
+            cubic_along(&from_center, jet.v).quadratic_about_center(h);
         let reach = (limit * length_up(jet.v) + left_out) * UP;
         forth.clip_beyond(Band { lo: 0.0, hi: 0.0 }, reach, whole)
     }

@@ -53,6 +53,17 @@ pub struct RelativeState {
     w: f64,
 }
 
+/// A straight line near which one reference point moves, seen from the other.
+#[derive(Debug, Clone, Copy)]
+pub struct StraightLine {
+    /// Where it is at the time of the state.
+    pub offset: DVec3,
+    /// Its velocity.
+    pub velocity: DVec3,
+    /// How far the point is from it at most.
+    pub deviation: f64,
+}
+
 impl RelativeState {
     /// The two motions about the time `at` of the piece `(lo, hi)`: jets made of it hold on the whole piece.
     pub fn new<A, B>(a: &A, b: &B, (lo, hi): (f64, f64), at: f64) -> Self
@@ -270,13 +281,14 @@ impl RelativeState {
         self.w * length * UP
     }
 
-    /// The followed points seen from each other: `|(x_A − x_B)(at + s) − g − u·s|` is at most the last number for
+    /// The reference points seen from each other: `|(x_A − x_B)(at + s) − offset − velocity·s|` is at most `deviation` for
     /// all |s| ≤ h, h not beyond the piece.
     ///
     /// World axes: no rotation takes part. The bound is `½(|A| + rad A)h²` and the radii and roundings of g and u.
-    pub fn straight_line(&self, h: f64) -> (DVec3, DVec3, f64) {
+    pub fn straight_line(&self, h: f64) -> StraightLine {
         let [g, u, a] = self.line;
         let [rx, rv, ra] = self.line_radii;
-        (g, u, (rx + rv * h + 0.5 * (a.length() + ra) * (h * h)) * UP)
+        let deviation = (rx + rv * h + 0.5 * (a.length() + ra) * (h * h)) * UP;
+        StraightLine { offset: g, velocity: u, deviation }
     }
 }

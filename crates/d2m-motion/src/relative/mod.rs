@@ -11,7 +11,7 @@ mod any_tests;
 #[cfg(test)]
 mod tests;
 
-pub use any::RelativeState;
+pub use any::{RelativeState, StraightLine};
 pub use frame::{Arm, ArmPair, Frame};
 
 use crate::ConstantTwist;

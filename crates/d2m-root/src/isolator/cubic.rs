@@ -22,6 +22,15 @@ pub struct Cubic {
     pub jerk: f64,
 }
 
+/// A quadratic in the place of a cubic, over a piece of time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NearbyQuadratic {
+    /// About the middle of the piece.
+    pub quadratic: Quadratic,
+    /// By how much it differs from the cubic at most.
+    pub left_out: f64,
+}
+
 /// Contractions by one cubic at most.
 const ROUNDS: u32 = 4;
 /// Part of what the last round allowed that the next may allow for it to pay.
@@ -50,29 +59,29 @@ impl Cubic {
         self.value + (self.slope + (0.5 * self.curvature + (1.0 / 6.0) * self.jerk * s) * s) * s
     }
 
-    /// About the time `m`, a quadratic that differs from this cubic by at most `|jerk|·r³/24` within `r` of it, and
-    /// that difference: s³ is replaced by ¾r²s (Chebyshev: x³ − ¾x = T₃(x)/4).
+    /// About the time `m`, a quadratic that differs from this cubic by at most `left_out` = `|jerk|·r³/24` within `r` of it:
+    /// s³ is replaced by ¾r²s (Chebyshev: x³ − ¾x = T₃(x)/4).
     #[inline(always)]
-    pub fn quadratic_near(&self, m: f64, r: f64) -> (Quadratic, f64) {
+    pub fn quadratic_near(&self, m: f64, r: f64) -> NearbyQuadratic {
         let quadratic = Quadratic {
             value: self.at(m),
             slope: self.slope + (self.curvature + 0.5 * self.jerk * m) * m + 0.125 * self.jerk * r * r,
             curvature: self.curvature + self.jerk * m,
         };
-        (quadratic, (1.0 / 24.0) * self.jerk.abs() * r * r * r)
+        NearbyQuadratic { quadratic, left_out: (1.0 / 24.0) * self.jerk.abs() * r * r * r }
     }
 
     /// [`Cubic::quadratic_near`] the time 0.
     ///
     /// ```
     /// let cubic = d2m_root::Cubic { value: -0.25, slope: 1.0, curvature: 0.5, jerk: 6.0 };
-    /// assert_eq!(cubic.quadratic_about_centre(0.3), cubic.quadratic_near(0.0, 0.3));
+    /// assert_eq!(cubic.quadratic_about_center(0.3), cubic.quadratic_near(0.0, 0.3));
     /// ```
     #[inline(always)]
-    pub fn quadratic_about_centre(&self, r: f64) -> (Quadratic, f64) {
+    pub fn quadratic_about_center(&self, r: f64) -> NearbyQuadratic {
         let slope = self.slope + 0.125 * self.jerk * r * r;
         let quadratic = Quadratic { value: self.value, slope, curvature: self.curvature };
-        (quadratic, (1.0 / 24.0) * self.jerk.abs() * r * r * r)
+        NearbyQuadratic { quadratic, left_out: (1.0 / 24.0) * self.jerk.abs() * r * r * r }
     }
 
     /// Bounds the rounding of everything that is computed on a piece up to the time `h` ≤ 2²⁰: 2⁻⁵³ of
@@ -165,7 +174,7 @@ impl Cubic {
             let width = part.hi - part.lo;
             let r = 0.5 * width;
             let m = part.lo + r;
-            let (quadratic, left_out) = self.quadratic_near(m, r);
+            let NearbyQuadratic { quadratic, left_out } = self.quadratic_near(m, r);
             let allowed = (allowed(reach) + left_out) * SUM;
             // Another round pays if less is allowed. Also NaN ends here.
             let pays = allowed < PAYS * last;

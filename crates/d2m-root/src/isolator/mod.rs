@@ -13,7 +13,7 @@ mod time_unit;
 #[cfg(test)]
 mod tests;
 
-pub use cubic::Cubic;
+pub use cubic::{Cubic, NearbyQuadratic};
 pub use options::IsolatorOptions;
 pub use piece::Piece;
 pub use quadratic::{Band, Quadratic};

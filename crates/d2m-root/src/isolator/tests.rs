@@ -96,7 +96,7 @@ fn cubics_are_clipped_to_their_root_and_keep_every_time_in_the_band() {
             jerk: 20.0 * random.signed(),
         };
         let (m, r) = (random.signed(), random.unit());
-        let (quadratic, left_out) = cubic.quadratic_near(m, r);
+        let NearbyQuadratic { quadratic, left_out } = cubic.quadratic_near(m, r);
         let part = Piece { lo: -random.unit(), hi: random.unit() };
         let constant = 1e-14 + 0.1 * (random.unit() - 0.5).max(0.0);
         let margin = |h: f64| constant + 1e-3 * h * h * h * h;

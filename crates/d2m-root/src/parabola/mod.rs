@@ -226,6 +226,17 @@ mod tests {
         assert!(x.lo() > 1e308 && x.lo() < f64::INFINITY);
     }
 
+    /// A coefficient too small for these units is enclosed together with zero, on its own side of it.
+    #[test]
+    fn negligible_coefficients_are_enclosed() {
+        let p = InUnits::of(Parabola::new(1e200, 5e-324, -1e200));
+        assert!(p.slope.contains(0.0) && p.slope.lo() == 0.0 && p.slope.hi() > 0.0 && p.slope.hi() < 1e-200);
+        let p = InUnits::of(Parabola::new(1e200, -5e-324, -1e200));
+        assert!(p.slope.contains(0.0) && p.slope.hi() == 0.0 && p.slope.lo() < 0.0 && p.slope.lo() > -1e-200);
+        // A function that is not finite stays as it is.
+        assert_eq!(InUnits::of(Parabola::new(f64::INFINITY, 1.0, 1.0)).slope, Interval::point(1.0));
+    }
+
     /// What rises last, and what has turned positive, in far units.
     #[test]
     fn last_roots_follow_every_exact_scaling() {

@@ -62,8 +62,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "a cube of a short time meets the jerk after it vanished",
         "crates/d2m-root/src/isolator/cubic.rs",
-        "curvature: self.curvature + self.jerk * m,\n        };\n        (quadratic, (1.0 / 24.0) * self.jerk.abs() * r * r * r)",
-        "curvature: self.curvature + self.jerk * m,\n        };\n        (quadratic, (1.0 / 24.0) * self.jerk.abs() * (r * r * r))",
+        "curvature: self.curvature + self.jerk * m,\n        };\n        NearbyQuadratic { quadratic, left_out: (1.0 / 24.0) * self.jerk.abs() * r * r * r }",
+        "curvature: self.curvature + self.jerk * m,\n        };\n        NearbyQuadratic { quadratic, left_out: (1.0 / 24.0) * self.jerk.abs() * (r * r * r) }",
         "crates/d2m-root/tests/exact.rs::products_beyond_the_range_of_doubles_are_not_late",
     ),
     patch(
@@ -86,6 +86,20 @@ pub(super) const MUTANTS: &[Mutant] = &[
         " && zero < f64::INFINITY {",
         " {",
         "crates/d2m-root/tests/exact.rs::products_beyond_the_range_of_doubles_are_not_late",
+    ),
+    patch(
+        "a parabola's discriminant in whatever units it comes",
+        "crates/d2m-root/src/parabola/in_units.rs",
+        "const ORDINARY: i32 = 150;",
+        "const ORDINARY: i32 = 2150;",
+        "crates/d2m-root/src/parabola/mod.rs::roots_follow_every_exact_scaling",
+    ),
+    patch(
+        "a negligible slope counts as none",
+        "crates/d2m-root/src/parabola/in_units.rs",
+        "Interval::new(0.0, power_of_two(NEGLIGIBLE))",
+        "Interval::point(power_of_two(NEGLIGIBLE))",
+        "crates/d2m-root/src/parabola/mod.rs::negligible_coefficients_are_enclosed",
     ),
     patch(
         "half of the shortest piece counts as exact",
