@@ -1,5 +1,5 @@
 use crate::Solid;
-use crate::search::relative_trajectory::Course;
+use crate::search::relative_trajectory::RelativeTrajectory;
 
 /// What a query of a pair of bodies leaves for the next one: the triangles that were closest, or met, and for bodies
 /// that did not meet how far apart they stayed.
@@ -39,7 +39,7 @@ impl Default for PairCache {
 /// Bodies that did not meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Apart {
-    course: Course,
+    trajectory: RelativeTrajectory,
     /// Proven: further apart than this all the time.
     room: f64,
     solids: [Solid; 2],
@@ -83,30 +83,30 @@ impl PairCache {
         self.triangles.filter(|t| (t[0] as usize) < counts[0] && (t[1] as usize) < counts[1])
     }
 
-    /// A distance that the bodies are proven to keep all along the course; none, or negative, when nothing is known.
-    pub(crate) fn room_along(&mut self, course: &Course, solids: [Solid; 2]) -> Option<f64> {
+    /// A distance that the bodies are proven to keep all along the trajectory; none, or negative, when nothing is known.
+    pub(crate) fn room_along(&mut self, trajectory: &RelativeTrajectory, solids: [Solid; 2]) -> Option<f64> {
         let apart = self.apart.as_mut().filter(|apart| apart.solids == solids)?;
         apart.age += 1.0;
-        Some(apart.room - course.deviation(&apart.course)?)
+        Some(apart.room - trajectory.deviation(&apart.trajectory)?)
     }
 
     /// How much room to prove beyond what is asked: enough for the next queries if they go on to differ as those since
     /// the last proof did. None when that did not work lately, or when there is nothing to go by.
-    pub(crate) fn room_to_prove(&mut self, course: &Course, tolerance: f64) -> Option<f64> {
+    pub(crate) fn room_to_prove(&mut self, trajectory: &RelativeTrajectory, tolerance: f64) -> Option<f64> {
         if self.rest > 0 {
             self.rest -= 1;
             return None;
         }
         let apart = self.apart?;
-        let step = course.deviation(&apart.course)? / apart.age.max(1.0);
+        let step = trajectory.deviation(&apart.trajectory)? / apart.age.max(1.0);
         let room = (self.ahead * step).max(LEAST_TOLERANCES * tolerance);
-        let most = MOST_OF_EXTENT * course.extent();
+        let most = MOST_OF_EXTENT * trajectory.extent();
         (2.0 * step <= most).then_some(room.min(most))
     }
 
-    /// Proven: along this course the bodies are further apart than `room` all the time.
-    pub(crate) fn found_apart(&mut self, course: &Course, solids: [Solid; 2], room: f64) {
-        self.apart = Some(Apart { course: *course, room, solids, age: 0.0 });
+    /// Proven: along this trajectory the bodies are further apart than `room` all the time.
+    pub(crate) fn found_apart(&mut self, trajectory: &RelativeTrajectory, solids: [Solid; 2], room: f64) {
+        self.apart = Some(Apart { trajectory: *trajectory, room, solids, age: 0.0 });
     }
 
     /// An attempt for more room has ended.

@@ -3,7 +3,7 @@
 use super::constant_twist::{ask, scene_of};
 use super::general_motion::general_motion;
 use crate::search::Scene;
-use crate::search::relative_trajectory::Course;
+use crate::search::relative_trajectory::RelativeTrajectory;
 use crate::search::triangle_pair::closest::closest;
 use crate::search::triangle_pair::separating_axis::place_a;
 use crate::{Budget, Mode, Moving, PairCache, QueryError, QueryOptions, TimeOfContact, Window};
@@ -60,15 +60,16 @@ pub fn time_of_contact_with(
     if options.budget != Budget::UNLIMITED || options.mode == Mode::Capoeira {
         return ask(&scene, options);
     }
-    let course = Course::of(&scene);
-    let room = cache.room_along(&course, scene.solids);
-    if room.is_some_and(|room| excludes_contact(&scene, room)) || more_room(&scene, &course, options, cache)?
+    let trajectory = RelativeTrajectory::of(&scene);
+    let room = cache.room_along(&trajectory, scene.solids);
+    if room.is_some_and(|room| excludes_contact(&scene, room))
+        || more_room(&scene, &trajectory, options, cache)?
     {
         return Ok(TimeOfContact::Separated);
     }
     let answer = ask(&scene, options)?;
     match &answer {
-        TimeOfContact::Separated => cache.found_apart(&course, scene.solids, options.min_separation),
+        TimeOfContact::Separated => cache.found_apart(&trajectory, scene.solids, options.min_separation),
         TimeOfContact::Contact(contact) => {
             let after = contact.time_lo - window.start();
             cache.found_contact([contact.triangle_a, contact.triangle_b], after);
@@ -140,11 +141,11 @@ fn excludes_contact(scene: &Scene<'_>, room: f64) -> bool {
 /// Searches for a larger separation than was asked for, so that the next queries need not. True: no contact now.
 fn more_room(
     scene: &Scene<'_>,
-    course: &Course,
+    trajectory: &RelativeTrajectory,
     options: &QueryOptions,
     cache: &mut PairCache,
 ) -> Result<bool, QueryError> {
-    let Some(more) = cache.room_to_prove(course, scene.tolerance * scene.units.length()) else {
+    let Some(more) = cache.room_to_prove(trajectory, scene.tolerance * scene.units.length()) else {
         return Ok(false);
     };
     let room = options.min_separation + more;
@@ -155,7 +156,7 @@ fn more_room(
     let proven = ask(&scene.with_options(&wider), &wider)? == TimeOfContact::Separated;
     cache.attempted(proven);
     if proven {
-        cache.found_apart(course, scene.solids, room);
+        cache.found_apart(trajectory, scene.solids, room);
     }
     Ok(proven)
 }

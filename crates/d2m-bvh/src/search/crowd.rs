@@ -325,7 +325,7 @@ impl Moving {
     ) -> Separation {
         let mut simplex: Option<Simplex> = None;
         for _ in 0..directions {
-            if clock.look().is_err() {
+            if clock.read_clock().is_err() {
                 break;
             }
             let length = n.length();

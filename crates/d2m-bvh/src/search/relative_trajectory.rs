@@ -1,6 +1,6 @@
-//! How two bodies move past each other, told so that two such stories can be compared.
+//! How two bodies move past each other, and by how much two such relative trajectories deviate.
 //!
-//! Points a of A and b of B, from the followed points, are (x_A − x_B) + R_A a − R_B b apart. Along another course with
+//! Points a of A and b of B, from the reference points, are (x_A − x_B) + R_A a − R_B b apart. Along another trajectory with
 //! the same bodies this vector differs, at the same time after the start, by at most
 //! |Δ(x_A − x_B)| + ‖ΔR_A‖ρ_A + ‖ΔR_B‖ρ_B + |Δat_A| + |Δat_B|. The first term is a norm of something linear in time, so it
 //! is largest at an end; ‖ΔR‖ at time τ is at most its value at the start plus |Δω|τ. So is the difference of any two
@@ -16,23 +16,23 @@ use glam::DVec3;
 
 /// Part of the sizes of both scenes, and of the deviation, that covers all roundings here: positions err by 64·2⁻⁵³ of the size, entries
 /// of rotations by 16·2⁻⁵³, and some thirty operations follow.
-const COURSE_ERROR: f64 = 4096.0 * UNIT_F64;
+const TRAJECTORY_ERROR: f64 = 4096.0 * UNIT_F64;
 
 /// Two bodies over a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Course {
+pub(crate) struct RelativeTrajectory {
     /// Which trees.
     stamps: [Stamp; 2],
     /// The units of times and lengths.
     units: Units,
     /// Length of the window.
     length: f64,
-    /// Followed point of A from that of B at the start, and its velocity.
+    /// Reference point of A from that of B at the start, and its velocity.
     apart: DVec3,
     velocity: DVec3,
     rotations: [Columns; 2],
     omegas: [DVec3; 2],
-    /// From the followed points to the centres of the trees, body frames.
+    /// From the followed points to the centers of the trees, body frames.
     arms: [DVec3; 2],
     /// Bounds on the distances of the bodies' points from them.
     reach: [f64; 2],
@@ -41,7 +41,7 @@ pub(crate) struct Course {
     size: f64,
 }
 
-impl Course {
+impl RelativeTrajectory {
     pub(crate) fn of(scene: &Scene<'_>) -> Self {
         let (a, b) = (&scene.a, &scene.b);
         let velocity = a.motion.linear_velocity() - b.motion.linear_velocity();
@@ -82,7 +82,7 @@ impl Course {
         }
         // A longer window: what is left after the common part.
         sum += self.speed * (self.length - common);
-        let sum = sum * (1.0 + COURSE_ERROR) + COURSE_ERROR * (self.size + earlier.size * length);
+        let sum = sum * (1.0 + TRAJECTORY_ERROR) + TRAJECTORY_ERROR * (self.size + earlier.size * length);
         Some(sum * self.units.length())
     }
 
@@ -100,10 +100,10 @@ mod tests {
     use d2m_motion::ConstantTwist;
     use glam::DQuat;
 
-    fn course(trees: &[MeshTree; 2], motions: &[ConstantTwist; 2], window: Window) -> Course {
+    fn trajectory(trees: &[MeshTree; 2], motions: &[ConstantTwist; 2], window: Window) -> RelativeTrajectory {
         let scene =
             Scene::new((&trees[0], motions[0]), (&trees[1], motions[1]), window, &QueryOptions::default());
-        Course::of(&scene)
+        RelativeTrajectory::of(&scene)
     }
 
     /// Changes of one kind each, of either body: no two points come together by more than the deviation, and for some
@@ -139,8 +139,8 @@ mod tests {
                 // Windows start at the motions' reference times.
                 let [old_at, new_at] =
                     [(old, 2.0), (new, -1.0)].map(|(m, t)| m.map(|m| m.with_reference_time(t)));
-                let deviation = course(&trees, &new_at, windows[1])
-                    .deviation(&course(&trees, &old_at, windows[0]))
+                let deviation = trajectory(&trees, &new_at, windows[1])
+                    .deviation(&trajectory(&trees, &old_at, windows[0]))
                     .unwrap();
                 for after in [0.0, 0.3, 1.0, longer] {
                     let before = after.min(1.0);
@@ -167,10 +167,10 @@ mod tests {
         let tree = || MeshTree::new(mesh.clone());
         let mut trees = [tree(), tree()];
         let still = [ConstantTwist::REST; 2];
-        let first = course(&trees, &still, Window::UNIT);
-        assert!(first.deviation(&course(&trees.clone(), &still, Window::UNIT)).unwrap() < 1e-11);
-        assert_eq!(first.deviation(&course(&[tree(), tree()], &still, Window::UNIT)), None);
+        let first = trajectory(&trees, &still, Window::UNIT);
+        assert!(first.deviation(&trajectory(&trees.clone(), &still, Window::UNIT)).unwrap() < 1e-11);
+        assert_eq!(first.deviation(&trajectory(&[tree(), tree()], &still, Window::UNIT)), None);
         trees[1].refit(vec![DVec3::X, DVec3::Y, DVec3::Z * 2.0]).unwrap();
-        assert_eq!(course(&trees, &still, Window::UNIT).deviation(&first), None);
+        assert_eq!(trajectory(&trees, &still, Window::UNIT).deviation(&first), None);
     }
 }

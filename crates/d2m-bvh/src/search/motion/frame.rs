@@ -1,7 +1,7 @@
 //! Relative motion of two constant-twist bodies, and its state at one time.
 //!
-//! Everything is told in an inertial frame that coincides with the frame of one body at the time in question (not in
-//! a rotating frame: no Coriolis terms). A point r of a body, seen from the followed point `at`, has velocity
+//! Everything is expressed in an inertial frame that coincides with the frame of one body at the time in question (not in
+//! a rotating frame: no Coriolis terms). A point r of a body, seen from the reference point, has velocity
 //! v + ω × r and an acceleration of length at most |ω|²|r|, at all times.
 
 use super::local_motion::LocalMotion;
@@ -14,10 +14,10 @@ use glam::DVec3;
 pub(crate) struct RelativeMotion {
     /// First instant of the window; offsets of frames count from it.
     pub(crate) start: f64,
-    /// x_A − x_B at the start (followed points), world axes.
+    /// x_A − x_B at the start (reference points), world axes.
     position: Quad,
     velocity: Quad,
-    bodies: [Swing; 2],
+    bodies: [BodyRotation; 2],
 }
 
 /// Frames hold for so many of the longest windows: for 0.33 radians, and they are proven for 0.35.
@@ -28,7 +28,7 @@ const COLUMNS: usize = 5;
 
 /// The rotation of one body over a window.
 #[derive(Clone, Copy, Debug)]
-struct Swing {
+struct BodyRotation {
     omega: Quad,
     /// ω in the body's own axes, where it stays.
     omega_own: Quad,
@@ -43,12 +43,12 @@ struct Swing {
 struct Turned {
     /// Axes of the body.
     rotation: Matrix,
-    /// From the followed point to the centre of the tree, and its rate.
+    /// From the reference point to the centre of the tree, and its rate.
     arm: Quad,
     swing: Quad,
 }
 
-impl Swing {
+impl BodyRotation {
     /// For p = p₀ + s·u + (1 − c)·w, u = k × p₀, w = k × u: [ω]p = |ω|(c·u + s·w), [ω]²p = |ω|²(c·w − s·u), and
     /// [ω]³ = −|ω|²[ω].
     fn new(motion: &LocalMotion, start: f64) -> Self {
@@ -66,10 +66,10 @@ impl Swing {
             second: [Quad([0.0; 4]); COLUMNS],
         };
         for (k, p) in vectors.into_iter().enumerate() {
-            let wheel = turning.wheel(p);
-            out.now[k] = Quad::from_vec(wheel.at(&turn));
-            out.first[k] = Quad::from_vec((wheel.across * cos + wheel.inward * turn.sin) * speed);
-            out.second[k] = Quad::from_vec((wheel.inward * cos - wheel.across * turn.sin) * square);
+            let terms = turning.terms_of(p);
+            out.now[k] = Quad::from_vec(terms.at(&turn));
+            out.first[k] = Quad::from_vec((terms.across * cos + terms.inward * turn.sin) * speed);
+            out.second[k] = Quad::from_vec((terms.inward * cos - terms.across * turn.sin) * square);
         }
         let (arm, swing) = (3, 4);
         (out.now[swing], out.first[swing]) = (out.first[arm], out.second[arm]);
@@ -120,7 +120,7 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// What is there before the first one.
+    /// What stands there before the first one.
     pub(crate) const NONE: Self = Self {
         offset: 0.0,
         rotation: Matrix([Quad([0.0; 4]); 3]),
@@ -157,7 +157,7 @@ impl RelativeMotion {
             start,
             position: Quad::from_vec(track.at(start)),
             velocity: Quad::from_vec(a.linear_velocity() - b.linear_velocity()),
-            bodies: [Swing::new(a, start), Swing::new(b, start)],
+            bodies: [BodyRotation::new(a, start), BodyRotation::new(b, start)],
         }
     }
 

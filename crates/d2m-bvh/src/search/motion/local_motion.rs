@@ -1,6 +1,6 @@
 //! A constant twist on the clock and in the unit of length of a search.
 
-use super::rotation::{Columns, Turning};
+use super::rotation::{Columns, FixedAxisRotation};
 use super::units::Units;
 use core::ops::Mul;
 use d2m_lanes::DoubleDouble;
@@ -22,7 +22,7 @@ pub(crate) struct LocalMotion {
     /// From the reference point in use, and from the given one, to the centre of the tree, body axes.
     arm: DVec3,
     given_arm: DVec3,
-    turning: Turning,
+    turning: FixedAxisRotation,
     /// From the reference time to the start of the window.
     elapsed: DoubleDouble,
 }
@@ -38,7 +38,7 @@ impl LocalMotion {
         } else {
             motion.linear_velocity() * time * per_length
         };
-        let turning = Turning::new(motion.orientation().to_array(), angular_velocity);
+        let turning = FixedAxisRotation::new(motion.orientation().to_array(), angular_velocity);
         let given_arm = (center - motion.at()) * per_length;
         let [x, y, z] = turning.start();
         let turn = |p: DVec3| x * p.x + y * p.y + z * p.z;
@@ -101,7 +101,7 @@ impl LocalMotion {
     }
 
     /// How the body turns.
-    pub(crate) const fn turning(&self) -> &Turning {
+    pub(crate) const fn turning(&self) -> &FixedAxisRotation {
         &self.turning
     }
 
@@ -129,7 +129,7 @@ impl LocalMotion {
     /// one, for an angle of less than 2⁵⁰ radians.
     pub(crate) fn rotation(&self, offset: f64) -> Columns {
         let turn = self.turning.after(self.elapsed(offset));
-        self.turning.start().map(|p| self.turning.wheel(p).at(&turn))
+        self.turning.start().map(|p| self.turning.terms_of(p).at(&turn))
     }
 
     /// Bound on the terms of the position, up to an offset of one, by which its rounding is measured.

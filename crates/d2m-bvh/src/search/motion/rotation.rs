@@ -9,7 +9,7 @@ pub(crate) type Columns = [DVec3; 3];
 
 /// What the rotation of a motion is at all times: a turn about a fixed axis.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Turning {
+pub(crate) struct FixedAxisRotation {
     /// The orientation at the reference time.
     start: Columns,
     /// Unit vector; zero for a motion without rotation.
@@ -20,26 +20,26 @@ pub(crate) struct Turning {
 
 /// Sine and 1 − cosine of the angle that a motion has turned by.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Turn {
+pub(crate) struct SinVersine {
     pub(crate) sin: f64,
     pub(crate) versine: f64,
 }
 
 /// A vector p that turns about a unit axis k: p, k × p and k × (k × p) at the reference time.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Wheel {
+pub(crate) struct RodriguesTerms {
     pub(crate) p: DVec3,
     pub(crate) across: DVec3,
     pub(crate) inward: DVec3,
 }
 
-impl Wheel {
-    pub(crate) fn at(&self, turn: &Turn) -> DVec3 {
+impl RodriguesTerms {
+    pub(crate) fn at(&self, turn: &SinVersine) -> DVec3 {
         self.p + self.across * turn.sin + self.inward * turn.versine
     }
 }
 
-impl Turning {
+impl FixedAxisRotation {
     /// From the orientation [x, y, z, w] at the reference time and the angular velocity.
     pub(crate) fn new(orientation: [f64; 4], omega: DVec3) -> Self {
         let (mut axis, mut speed) = (DVec3::ZERO, DoubleDouble::new(0.0, 0.0));
@@ -79,18 +79,18 @@ impl Turning {
     }
 
     /// How a vector that is `p` at the reference time turns.
-    pub(crate) fn wheel(&self, p: DVec3) -> Wheel {
+    pub(crate) fn terms_of(&self, p: DVec3) -> RodriguesTerms {
         let across = self.axis.cross(p);
-        Wheel { p, across, inward: self.axis.cross(across) }
+        RodriguesTerms { p, across, inward: self.axis.cross(across) }
     }
 
     /// After a time, counted from the reference time.
-    pub(crate) fn after(&self, elapsed: DoubleDouble) -> Turn {
+    pub(crate) fn after(&self, elapsed: DoubleDouble) -> SinVersine {
         if elapsed.hi == 0.0 || self.speed.hi == 0.0 {
-            return Turn { sin: 0.0, versine: 0.0 };
+            return SinVersine { sin: 0.0, versine: 0.0 };
         }
         let (sin, versine) = sin_versine(self.speed.mul(elapsed));
-        Turn { sin, versine }
+        SinVersine { sin, versine }
     }
 }
 
