@@ -17,6 +17,7 @@ mod report;
 mod scene;
 mod simulation;
 mod trials;
+mod unique_keys;
 mod view;
 
 use arguments::{Arguments, Command};

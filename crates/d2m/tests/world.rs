@@ -3,7 +3,10 @@
 
 use d2m::glam::{DQuat, DVec3};
 use d2m::interval::Interval;
-use d2m::motion::{IntervalPose, IntervalTwist, Pose, Twist};
+use d2m::motion::{
+    Chain, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Keyframes, Pose, Span, Spline,
+    SplineDegree, Twist,
+};
 use d2m::{
     Body, BodyId, ConstantTwist, Contact, FirstContact, Group, MeshTree, PairContact, PlannedMotion,
     QueryOptions, RigidMotion, ScrewMotion, SharedMotion, Solid, TimeOfContact, TriMesh, Window, World,
@@ -33,13 +36,53 @@ impl RigidMotion for Opaque {
 
 const SIZE: f64 = 9.0;
 
+fn pose(random: &mut KnuthRandom) -> Pose {
+    Pose {
+        translation: random.vector() * SIZE,
+        rotation: DQuat::from_scaled_axis(random.vector() * 3.0),
+        at: random.vector() * 0.3,
+    }
+}
+
+/// Poses at 0, at some times between, and at 1, each not far from the one before.
+fn poses(random: &mut KnuthRandom) -> Vec<(f64, Pose)> {
+    let mut last = Pose { at: DVec3::ZERO, ..pose(random) };
+    let between = 1 + random.index(3);
+    (0..=between + 1)
+        .map(|k| {
+            last.translation += random.vector() * 2.0;
+            last.rotation = DQuat::from_scaled_axis(random.vector() * 0.8) * last.rotation;
+            (k as f64 / (between + 1) as f64, last)
+        })
+        .collect()
+}
+
+/// A link of an arm: a turning joint, a sliding one in two pieces, and a turning one.
+fn link(random: &mut KnuthRandom) -> Chain {
+    let turn = |random: &mut KnuthRandom| {
+        let value =
+            JointValue::try_polynomial(vec![random.unit(), random.vector().x * 2.0, random.vector().x])
+                .unwrap();
+        JointKind::Revolute { axis: random.vector(), value }
+    };
+    let (start, rate) = (random.unit(), random.vector().x);
+    let pieces = vec![vec![start, rate], vec![start + 0.5 * rate, -rate, random.vector().x]];
+    let value = JointValue::try_pieces(vec![0.0, 0.5, 1.0], pieces).unwrap();
+    let kinds = [turn(random), JointKind::Prismatic { axis: random.vector(), value }, turn(random)];
+    let joints = kinds.into_iter().enumerate().map(|(k, kind)| {
+        let place = if k == 0 { random.vector() * SIZE } else { random.vector() };
+        Joint::try_new(place, DQuat::from_scaled_axis(random.vector()), kind).unwrap()
+    });
+    Chain::try_new(joints.collect()).unwrap()
+}
+
 fn motion(random: &mut KnuthRandom) -> SharedMotion {
     let spin = if random.unit() < 0.2 { 20.0 } else { 2.0 };
     let turned = DQuat::from_scaled_axis(random.vector() * 3.0);
     let twist =
         ConstantTwist::try_new(random.vector() * SIZE, turned, random.vector() * 3.0, random.vector() * spin);
     let twist = twist.unwrap().with_at(random.vector() * 0.5);
-    match random.index(20) {
+    match random.index(24) {
         0 => Arc::new(Opaque(Arc::new(twist.with_angular_velocity(random.vector())))),
         1..3 => Arc::new(ConstantTwist::REST.with_position(random.vector() * SIZE)),
         3..5 => {
@@ -47,6 +90,10 @@ fn motion(random: &mut KnuthRandom) -> SharedMotion {
             Arc::new(ScrewMotion::try_from_poses(twist.pose_and_twist(0.0).0, end, 0.0, 1.0).unwrap())
         }
         5..8 => Arc::new(twist.with_linear_velocity(random.vector() * 30.0)),
+        8 => Arc::new(Keyframes::try_new(&poses(random), Span::Linear).unwrap()),
+        9 => Arc::new(Keyframes::try_new(&poses(random), Span::Screw).unwrap()),
+        10 => Arc::new(Spline::try_through(&poses(random), SplineDegree::Cubic).unwrap()),
+        11 => Arc::new(link(random)),
         _ => Arc::new(twist),
     }
 }

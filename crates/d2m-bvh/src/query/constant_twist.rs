@@ -115,6 +115,13 @@ pub fn last_search_counts() -> crate::SearchCounts {
     SCRATCH.with_borrow(|scratch| scratch.as_ref().map(|s| s.counts).unwrap_or_default())
 }
 
+/// What a query of several searches has done, in node tests: as if it had been one search.
+pub(super) fn count_as_one_search(node_tests: u64) {
+    let counts = crate::SearchCounts { node_tests, ..Default::default() };
+    SCRATCH
+        .with_borrow_mut(|scratch| scratch.get_or_insert_with(|| Box::new(Scratch::new())).counts = counts);
+}
+
 fn check(bodies: [&MeshTree; 2], solids: [Solid; 2], options: &QueryOptions) -> Result<(), QueryError> {
     if let Some(value) = options.tolerance
         && !(value.is_finite() && value > 0.0)

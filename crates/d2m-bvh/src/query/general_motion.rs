@@ -5,7 +5,7 @@
 //! distance that is larger by D: what it proves free is free. Where it finds a contact the span is shortened, with D
 //! like the square of the span, until D is a small part of the tolerance. docs/theory/motions.md, section 3.
 
-use super::constant_twist::{ask, last_search_counts, scene_of_twists};
+use super::constant_twist::{ask, count_as_one_search, last_search_counts, scene_of_twists};
 use super::fitted_twist::FittedTwists;
 use super::report::MOST_LEFT;
 use crate::{
@@ -120,6 +120,12 @@ impl<'a> Advance<'a> {
     }
 
     fn run(mut self) -> Result<TimeOfContact, QueryError> {
+        let answer = self.advance();
+        count_as_one_search(self.work);
+        answer
+    }
+
+    fn advance(&mut self) -> Result<TimeOfContact, QueryError> {
         loop {
             if self.rest_of_budget().is_none() {
                 return Ok(TimeOfContact::Undecided { clear_until: self.now });

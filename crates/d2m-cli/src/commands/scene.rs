@@ -13,15 +13,15 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::time::Duration;
 
-/// A contact of two bodies by number; none of them where only the time is known.
+/// A contact of two bodies by number.
 struct Row {
-    bodies: Option<[usize; 2]>,
+    bodies: [usize; 2],
     answer: TimeOfContact,
 }
 
 impl From<PairContact> for Row {
     fn from(pair: PairContact) -> Self {
-        Self { bodies: Some([pair.a.index(), pair.b.index()]), answer: pair.answer }
+        Self { bodies: [pair.a.index(), pair.b.index()], answer: pair.answer }
     }
 }
 
@@ -54,12 +54,11 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
         }
         Ok(match world.first_contact(scene.window).map_err(named)? {
             FirstContact::Separated => Vec::new(),
-            FirstContact::Undecided { clear_until } => {
-                vec![Row { bodies: None, answer: TimeOfContact::Undecided { clear_until } }]
+            FirstContact::Undecided { clear_until, a, b, .. } => {
+                vec![Row { bodies: [a.index(), b.index()], answer: TimeOfContact::Undecided { clear_until } }]
             }
             FirstContact::Contact { a, b, contact, overlapping, .. } => {
-                let first =
-                    Row { bodies: Some([a.index(), b.index()]), answer: TimeOfContact::Contact(contact) };
+                let first = Row { bodies: [a.index(), b.index()], answer: TimeOfContact::Contact(contact) };
                 std::iter::once(first).chain(overlapping.into_iter().map(Row::from)).collect()
             }
         })
@@ -86,7 +85,7 @@ fn json(window: Window, names: &[&str], rows: &[Row]) -> String {
     let contacts: Vec<Value> = rows
         .iter()
         .map(|row| {
-            let [a, b] = [0, 1].map(|k| row.bodies.map(|bodies| names[bodies[k]]));
+            let [a, b] = row.bodies.map(|body| names[body]);
             match &row.answer {
                 TimeOfContact::Contact(contact) => json!({
                     "a": a, "b": b, "status": "contact",
@@ -116,10 +115,8 @@ fn text(window: Window, names: &[&str], rows: &[Row]) -> String {
         count => format!("{count} answers about {} bodies from {start} to {end}\n", names.len()),
     };
     for row in rows {
-        let pair = match row.bodies {
-            Some([a, b]) => format!("{} \u{2013} {}", names[a], names[b]),
-            None => "all pairs".to_owned(),
-        };
+        let [a, b] = row.bodies.map(|body| names[body]);
+        let pair = format!("{a} \u{2013} {b}");
         // Writing to a string cannot fail.
         let _ = match &row.answer {
             TimeOfContact::Contact(contact) => writeln!(

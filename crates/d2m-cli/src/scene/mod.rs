@@ -11,10 +11,10 @@ pub(crate) use ignored::Ignored;
 use crate::failure::Failure;
 use crate::load::read;
 use crate::motion::require_window;
+use crate::unique_keys::UniqueKeys;
 use d2m::bvh::{QueryOptions, Window};
 use d2m::{Body, BodyId, Group, World};
 use serde::Deserialize;
-use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -24,9 +24,9 @@ use std::path::Path;
 struct SceneForm {
     #[serde(default)]
     window: Option<[f64; 2]>,
-    bodies: Vec<Value>,
+    bodies: Vec<UniqueKeys>,
     #[serde(default)]
-    ignore: Vec<Value>,
+    ignore: Vec<UniqueKeys>,
     #[serde(default)]
     min_separation: f64,
     #[serde(default)]
@@ -66,7 +66,7 @@ impl Scene {
         }
         let mut library = MeshLibrary::new(path);
         let mut bodies = Vec::with_capacity(form.bodies.len());
-        for (index, value) in form.bodies.into_iter().enumerate() {
+        for (index, UniqueKeys(value)) in form.bodies.into_iter().enumerate() {
             let body_place = format!("{place}, {}", body::place_of(index, &value));
             let form: BodyForm =
                 serde_json::from_value(value).map_err(|error| Failure::at(&body_place, error))?;
@@ -77,7 +77,7 @@ impl Scene {
         check_names(&place.to_string(), &bodies)?;
         let names = ignored::Names::new(&bodies);
         let mut ignored = Vec::with_capacity(form.ignore.len());
-        for (index, value) in form.ignore.into_iter().enumerate() {
+        for (index, UniqueKeys(value)) in form.ignore.into_iter().enumerate() {
             ignored.push(names.ignored(&format!("{place}, ignore {index}"), &value)?);
         }
         Ok(Self { window, bodies, ignored, min_separation: separation, tolerance: form.tolerance })

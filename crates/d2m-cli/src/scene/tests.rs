@@ -39,6 +39,10 @@ fn faults_name_file_place_and_value() {
     let cases = [
         (format!(r#"{{"bodies": [{body}], "colour": 1}}"#), "unknown field `colour`"),
         (r#"{"bodies": [{"name": "a", "mesh": "shape:box", "colour": 1}]}"#.to_owned(), "body 0 (\"a\"): unknown field `colour`"),
+        (r#"{"bodies": [{"name": "a", "mesh": "shape:box",
+ "mesh": "shape:torus"}]}"#.to_owned(), "duplicate field `mesh` at line 2"),
+        (r#"{"bodies": [{"name": "a", "mesh": "shape:box", "motion": {"v": [1, 0, 0], "v": [0, 1, 0]}}]}"#.to_owned(), "duplicate field `v` at line 1"),
+        (format!(r#"{{"bodies": [{body}], "bodies": []}}"#), "duplicate field `bodies`"),
         (format!(r#"{{"bodies": [{body}, {body}]}}"#), "body 1: the name \"a\" is that of body 0 too"),
         (r#"{"bodies": [{"mesh": "shape:box"}]}"#.to_owned(), "body 0: missing field `name`"),
         (r#"{"bodies": [{"name": "a", "mesh": "none.obj"}]}"#.to_owned(), "none.obj"),

@@ -4,6 +4,7 @@ use super::fields::{Fields, short};
 use crate::failure::Failure;
 use crate::load::{load, read};
 use crate::motion::require_window;
+use crate::unique_keys::UniqueKeys;
 use d2m::bvh::{MeshTree, Solid, TriMesh, Window};
 use d2m::motion::AnyMotion;
 use d2m_dynamics::{Body, BodyId, Kind, Mass, MassProperties, Motion, Simulation, SimulationOptions};
@@ -45,7 +46,8 @@ const BODY_KEYS: &[&str] = &[
 /// Reads a scene and the meshes it names, relative to its folder.
 pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
     let bytes = read(path)?;
-    let value: Value = serde_json::from_slice(&bytes).map_err(|error| Failure::at(path.display(), error))?;
+    let UniqueKeys(value) =
+        serde_json::from_slice(&bytes).map_err(|error| Failure::at(path.display(), error))?;
     let scene = Fields::new(path.display().to_string(), &value, SCENE_KEYS)?;
     let (options, end) = simulation_options(&scene)?;
     let mut simulation = Simulation::new(options).map_err(|error| Failure::at(path.display(), error))?;

@@ -62,9 +62,14 @@ pub enum FirstContact {
         overlapping: Vec<PairContact>,
     },
     /// The budget ran out. Certified: no contact of any pair in [start of the window, `clear_until`).
+    #[non_exhaustive]
     Undecided {
         /// End of the part of the window that is proven free.
         clear_until: f64,
+        /// The first body of the pair that is undecided first; of several the one with the smallest places.
+        a: BodyId,
+        /// The second body of that pair.
+        b: BodyId,
     },
 }
 

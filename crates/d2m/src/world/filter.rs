@@ -56,9 +56,11 @@ impl PairFilter {
         self.separations.get(&pair).copied().unwrap_or(usual)
     }
 
-    /// The largest separation of any pair.
-    pub(super) fn largest_separation(&self, usual: f64) -> f64 {
-        self.separations.values().copied().fold(usual, f64::max)
+    /// The pairs whose own separation is more than `usual`, or no number: boxes that are only `usual` apart do not
+    /// prove them apart.
+    pub(super) fn wider_than(&self, usual: f64) -> impl Iterator<Item = (IndexPair, f64)> + '_ {
+        let pairs = self.separations.iter().map(|(&pair, &separation)| (pair, separation));
+        pairs.filter(move |&(_, separation)| separation.is_nan() || separation > usual)
     }
 
     /// Forgets what was said about a body.

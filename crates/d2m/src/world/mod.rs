@@ -59,7 +59,7 @@ use std::sync::Arc;
 ///             world.set_motion(ball, flying(here.x, 8.0).with_reference_time(time));
 ///             bounces += 1;
 ///         }
-///         FirstContact::Undecided { clear_until } => time = clear_until,
+///         FirstContact::Undecided { clear_until, .. } => time = clear_until,
 ///     }
 /// }
 /// assert_eq!(bounces, 1);
@@ -160,12 +160,16 @@ impl World {
     }
 
     fn change(&mut self, id: BodyId) -> &mut Body {
+        let body = self.slots.get_mut(id).unwrap_or_else(|| panic!("{id:?} is not in this world"));
         self.changed.push(id.index);
-        self.slots.get_mut(id).unwrap_or_else(|| panic!("{id:?} is not in this world"))
+        body
     }
 
-    /// Whether contacts of these two bodies are ignored (they are not, at first).
+    /// Whether contacts of these two bodies are ignored (they are not, at first). Nothing happens if one of them was removed.
     pub fn ignore_pair(&mut self, a: BodyId, b: BodyId, ignored: bool) {
+        if !(self.slots.holds(a) && self.slots.holds(b)) {
+            return;
+        }
         if self.filter.set_ignored(a.index, b.index, ignored) && !ignored {
             self.changed_pairs.push([a.index.min(b.index), a.index.max(b.index)]);
         }
@@ -179,8 +183,12 @@ impl World {
     }
 
     /// The separation at which these two bodies count as in contact, instead of that of the options; `None`: that of the
-    /// options again. What is not finite or negative is refused by the next query.
+    /// options again. What is not finite or negative is refused by the next query. Nothing happens if one of the two was
+    /// removed.
     pub fn set_min_separation(&mut self, a: BodyId, b: BodyId, separation: Option<f64>) {
+        if !(self.slots.holds(a) && self.slots.holds(b)) {
+            return;
+        }
         self.filter.set_separation(a.index, b.index, separation);
         self.changed_pairs.push([a.index.min(b.index), a.index.max(b.index)]);
     }

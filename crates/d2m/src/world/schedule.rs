@@ -47,7 +47,6 @@ pub(super) struct Schedule {
     span: Option<Window>,
     /// The start of the last window: boxes of changed bodies begin there.
     from: f64,
-    largest_separation: f64,
     hulls: Vec<SweptBox>,
     slices: Vec<Slices>,
     order: SweepOrder,
@@ -82,15 +81,10 @@ impl Schedule {
 
     /// Makes boxes and queue hold for `window`; `changed` are the places of bodies that changed since the last time.
     pub(super) fn prepare(&mut self, rules: Rules<'_>, window: Window, changed: &[u32]) -> Prepared {
-        let largest = rules.filter.largest_separation(rules.separation);
         let kept = self.span.filter(|span| {
-            span.start() <= window.start()
-                && window.end() <= span.end()
-                && self.from <= window.start()
-                && self.largest_separation == largest
+            span.start() <= window.start() && window.end() <= span.end() && self.from <= window.start()
         });
         self.from = window.start();
-        self.largest_separation = largest;
         match kept {
             Some(_) if changed.is_empty() => Prepared::Kept,
             Some(span) => {
@@ -133,19 +127,34 @@ impl Schedule {
 
     /// The queue from scratch.
     fn sweep(&mut self, rules: Rules<'_>) {
-        let pairs = self.order.pairs(&self.hulls, self.largest_separation);
+        let mut pairs = self.order.pairs(&self.hulls, rules.separation);
+        let own = rules.filter.wider_than(rules.separation);
+        let more = own.filter(|&(pair, separation)| self.meets_beyond(pair, rules.separation, separation));
+        pairs.extend(more.map(|(pair, _)| pair));
         self.cut(rules.slots, &pairs);
         let entries: Vec<Entry> = pairs.into_iter().filter_map(|pair| self.entry(rules, pair)).collect();
         self.fresh = entries.len();
         self.queue = BinaryHeap::from(entries);
     }
 
+    /// May these two come within their own separation, but not within the usual one?
+    fn meets_beyond(&self, pair: IndexPair, usual: f64, own: f64) -> bool {
+        let [Some(a), Some(b)] = pair.map(|place| self.hulls.get(place as usize)) else { return false };
+        !a.is_empty() && !b.is_empty() && !a.may_meet(b, usual) && a.may_meet(b, own)
+    }
+
     /// Entries of changed bodies; their old ones are recognised by their versions.
     fn insert(&mut self, rules: Rules<'_>, changed: &[u32]) {
         let mut pairs = Vec::new();
         for &place in changed {
-            pairs_of(&self.hulls, place, self.largest_separation, |pair| pairs.push(pair));
+            pairs_of(&self.hulls, place, rules.separation, |pair| pairs.push(pair));
         }
+        let own = rules.filter.wider_than(rules.separation);
+        let more = own.filter(|&(pair, separation)| {
+            pair.iter().any(|place| changed.contains(place))
+                && self.meets_beyond(pair, rules.separation, separation)
+        });
+        pairs.extend(more.map(|(pair, _)| pair));
         pairs.sort_unstable();
         pairs.dedup();
         self.cut(rules.slots, &pairs);
@@ -267,7 +276,6 @@ impl Schedule {
         let mut schedule = Self {
             span: Some(window),
             from: window.start(),
-            largest_separation: rules.filter.largest_separation(rules.separation),
             hulls: vec![SweptBox::EMPTY; places],
             slices: vec![Slices::NotWorthIt; places],
             ..Self::default()

@@ -20,8 +20,6 @@ use std::time::Instant;
 const FIRST_ROUND: usize = 2;
 /// Pairs of a round at most: enough for many threads.
 const LONGEST_ROUND: usize = 256;
-/// Part of the rest of a budget that a pair gets whose work is not counted: one of another motion than constant twists.
-const UNCOUNTED_PART: u64 = 8;
 
 /// What one pair is asked.
 struct Question {
@@ -71,10 +69,9 @@ impl Purse {
     }
 
     /// What one pair may use.
-    fn budget(&self, counted: bool) -> Budget {
+    fn budget(&self) -> Budget {
         let mut budget = Budget::UNLIMITED;
-        budget.node_tests =
-            self.node_tests.map(|left| if counted { left } else { left.div_ceil(UNCOUNTED_PART) });
+        budget.node_tests = self.node_tests;
         budget.wall_clock = self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
         budget
     }
@@ -115,8 +112,11 @@ impl Finding {
         }
     }
 
-    fn undecided_from(&self) -> Option<f64> {
-        self.undecided.iter().map(|&(_, until)| until).reduce(f64::min)
+    /// The pair that is undecided first, and of several the one of the smallest places.
+    fn first_undecided(&self) -> Option<(IndexPair, f64)> {
+        let earlier =
+            |x: &&(IndexPair, f64), y: &&(IndexPair, f64)| x.1.total_cmp(&y.1).then_with(|| x.0.cmp(&y.0));
+        self.undecided.iter().min_by(earlier).copied()
     }
 }
 
@@ -164,15 +164,15 @@ impl World {
     /// Bad input of a pair, with its names.
     pub fn first_contact(&mut self, window: Window) -> Result<FirstContact, WorldError> {
         let finding = self.search(window, Goal::First, &|_, _| ())?;
-        let undecided = finding.undecided_from();
+        let undecided = finding.first_undecided().map(|(pair, clear_until)| {
+            let [a, b] = pair.map(|place| self.slots.id(place));
+            (clear_until, FirstContact::Undecided { clear_until, a, b })
+        });
         let Some(&(pair, contact)) = finding.best() else {
-            return Ok(match undecided {
-                Some(clear_until) => FirstContact::Undecided { clear_until },
-                None => FirstContact::Separated,
-            });
+            return Ok(undecided.map_or(FirstContact::Separated, |(_, answer)| answer));
         };
-        if let Some(clear_until) = undecided.filter(|&until| until < contact.time_lo) {
-            return Ok(FirstContact::Undecided { clear_until });
+        if let Some((_, answer)) = undecided.filter(|(until, _)| *until < contact.time_lo) {
+            return Ok(answer);
         }
         let others = finding
             .contacts
@@ -321,25 +321,16 @@ impl World {
         // The boxes prove what lies between the start of the query and that of a pair's own window.
         let span_start = self.schedule.from();
         let slots = &self.slots;
-        let counted = |pair: IndexPair| {
-            pair.iter()
-                .all(|&place| slots.at(place).is_some_and(|body| body.motion().constant_twist().is_some()))
-        };
         let replies = map_in_order(&questions, |question| {
             let mut cache = question.cache;
-            let counted = counted(question.pair);
-            let budget = if purse.is_limited() { purse.budget(counted) } else { Budget::UNLIMITED };
+            let budget = if purse.is_limited() { purse.budget() } else { Budget::UNLIMITED };
             let [Some(a), Some(b)] = question.pair.map(|place| slots.at(place)) else {
                 return Reply { answer: Ok(TimeOfContact::Separated), cache, node_tests: 0 };
             };
             let options = question.options.with_budget(budget);
             let answer = time_of_contact_with(a.moving(), b.moving(), question.window, &options, &mut cache);
-            let node_tests = if counted {
-                let counts = last_search_counts();
-                counts.node_tests + counts.triangle_looks + counts.swept_pairs
-            } else {
-                budget.node_tests.unwrap_or(0)
-            };
+            let counts = last_search_counts();
+            let node_tests = counts.node_tests + counts.triangle_looks + counts.swept_pairs;
             Reply { answer, cache, node_tests }
         });
         let mut failure = None;

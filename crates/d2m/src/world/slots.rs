@@ -48,6 +48,11 @@ impl Slots {
         self.places.get(id.index as usize).filter(|slot| slot.generation == id.generation)?.body.as_ref()
     }
 
+    /// Is this body there?
+    pub(super) fn holds(&self, id: BodyId) -> bool {
+        self.get(id).is_some()
+    }
+
     /// To be changed: gets a new version.
     pub(super) fn get_mut(&mut self, id: BodyId) -> Option<&mut Body> {
         let slot = self.places.get_mut(id.index as usize).filter(|slot| slot.generation == id.generation)?;

@@ -1,6 +1,6 @@
 use super::*;
 use d2m_bvh::{Budget, MeshTree, TimeOfContact};
-use d2m_motion::ConstantTwist;
+use d2m_motion::{ConstantTwist, Pose};
 use glam::DVec3;
 
 fn cube() -> Arc<MeshTree> {
@@ -170,8 +170,9 @@ fn a_budget_over_all_pairs_ends_in_a_proven_time() {
     for tests in [1, 10, 100, 1_000, 10_000, 100_000, 10_000_000] {
         let budget = Budget::UNLIMITED.with_node_tests(tests);
         match filled(budget).first_contact(Window::UNIT).unwrap() {
-            FirstContact::Undecided { clear_until } => {
+            FirstContact::Undecided { clear_until, a, b } => {
                 assert!(clear_until <= contact.time_hi, "{tests}");
+                assert!(a < b && b.index() < 12, "{tests}");
                 undecided += 1;
             }
             FirstContact::Contact { contact: found, .. } => {
@@ -189,4 +190,43 @@ fn a_budget_over_all_pairs_ends_in_a_proven_time() {
         }
     }
     assert!(undecided >= 2 && decided >= 2, "{undecided} {decided}");
+}
+
+/// Motions other than constant twists are charged with what they take: a budget of a few times the sum is enough.
+#[test]
+fn budgets_are_charged_with_the_work_of_any_motion() {
+    let ring = Arc::new(MeshTree::new(d2m_shapes::mesh("torus?triangles=600").unwrap()));
+    let mut world = World::new(QueryOptions::default());
+    for k in 0..14 {
+        // A stack of rings that wobble, none far from the next.
+        let pose = |time: f64| Pose {
+            translation: DVec3::Z * (0.85 * f64::from(k) + 0.02 * time),
+            rotation: glam::DQuat::from_rotation_x(time * 0.1 * f64::from(k % 3)),
+            at: DVec3::ZERO,
+        };
+        let keyframes: Vec<_> = [0.0, 0.25, 0.6, 1.0].map(|time| (time, pose(time * time))).to_vec();
+        let motion = d2m_motion::Spline::try_through(&keyframes, d2m_motion::SplineDegree::Cubic).unwrap();
+        world.add(Body::new(Arc::clone(&ring), motion));
+    }
+    let pairs = world.candidates(Window::UNIT);
+    assert!(pairs.len() >= 12, "{}", pairs.len());
+    let mut work = 0;
+    for (a, b) in &pairs {
+        let [a, b] = [a, b].map(|&id| world.body(id).moving());
+        let _ = d2m_bvh::time_of_contact(a, b, Window::UNIT, &QueryOptions::default()).unwrap();
+        let counts = d2m_bvh::last_search_counts();
+        work += counts.node_tests + counts.triangle_looks + counts.swept_pairs;
+    }
+    let within = |tests: u64| {
+        let mut limited =
+            World::new(QueryOptions::default().with_budget(Budget::UNLIMITED.with_node_tests(tests)));
+        for id in world.ids() {
+            limited.add(world.body(id).clone());
+        }
+        limited.contacts(Window::UNIT).unwrap()
+    };
+    let exact = within(u64::MAX);
+    let is_undecided = |pair: &PairContact| pair.answer.contact().is_none();
+    assert_eq!(within(2 * work), exact);
+    assert!(!exact.iter().any(is_undecided) && within(work / 4).iter().any(is_undecided));
 }

@@ -37,4 +37,11 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "",
         "crates/d2m/tests/world.rs::changes_in_any_order_give_what_brute_force_gives",
     ),
+    patch(
+        "pairs with a larger separation of their own are found by the usual one only",
+        "crates/d2m/src/world/filter.rs",
+        "separation.is_nan() || separation > usual",
+        "separation.is_nan()",
+        "crates/d2m/tests/hostile_world.rs::a_huge_separation_is_that_of_its_pair",
+    ),
 ];

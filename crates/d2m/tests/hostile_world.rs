@@ -1,0 +1,183 @@
+//! Uses of a world that nobody means, and what must be answered.
+
+use d2m::glam::{DQuat, DVec3};
+use d2m::{
+    Body, BodyId, ConstantTwist, FirstContact, MeshTree, PlannedMotion, ProximityOptions, QueryOptions,
+    StartState, TriMesh, Window, World,
+};
+use std::sync::Arc;
+
+fn cube() -> Arc<MeshTree> {
+    Arc::new(MeshTree::new(d2m::shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()))
+}
+
+fn at(place: DVec3) -> ConstantTwist {
+    ConstantTwist::REST.with_position(place)
+}
+
+fn world_of(motions: impl IntoIterator<Item = ConstantTwist>) -> World {
+    let cube = cube();
+    let mut world = World::new(QueryOptions::default());
+    for motion in motions {
+        world.add(Body::new(Arc::clone(&cube), motion));
+    }
+    world
+}
+
+/// The numbers of the pairs that meet, by every query that lists them.
+fn meeting(world: &mut World, window: Window) -> Vec<[usize; 2]> {
+    let listed = world.contacts(window).unwrap();
+    let mut pairs: Vec<_> = listed.iter().map(|pair| [pair.a.index(), pair.b.index()]).collect();
+    pairs.sort_unstable();
+    let candidates: Vec<_> = world.candidates(window).iter().map(|(a, b)| [a.index(), b.index()]).collect();
+    assert!(pairs.iter().all(|pair| candidates.contains(pair)));
+    assert_eq!(world.first_contact(window).unwrap() == FirstContact::Separated, pairs.is_empty());
+    assert_eq!(world.clone().contacts(window).unwrap(), listed);
+    pairs
+}
+
+fn still() -> Window {
+    Window::try_new(0.25, 0.25).unwrap()
+}
+
+#[test]
+fn no_body_and_one_body_meet_nothing() {
+    for count in 0..2 {
+        let mut world = world_of((0..count).map(|_| at(DVec3::ZERO).with_linear_velocity(DVec3::X)));
+        for window in [Window::UNIT, still(), Window::try_new(-1e9, 1e9).unwrap()] {
+            assert!(meeting(&mut world, window).is_empty());
+            assert_eq!(world.first_contact_of(&[], window).unwrap(), FirstContact::Separated);
+        }
+        assert!(world.proximities(0.0, &ProximityOptions::new(1e9)).unwrap().is_empty());
+        assert_eq!((world.len(), world.ids().count()), (count, count));
+        for id in world.ids().collect::<Vec<_>>() {
+            let plan = [PlannedMotion { body: id, motion: Arc::new(ConstantTwist::REST) }];
+            assert_eq!(world.first_contact_of(&plan, Window::UNIT).unwrap(), FirstContact::Separated);
+        }
+    }
+}
+
+#[test]
+fn windows_without_length_hold_their_one_time() {
+    // They touch at 0.5, overlap until 2.5, are apart again after that.
+    let mut world = world_of([at(DVec3::ZERO), at(DVec3::X * 2.0).with_linear_velocity(DVec3::X * -2.0)]);
+    for (time, meets) in [(0.0, false), (0.49, false), (0.51, true), (1.0, true), (2.0, false)] {
+        let window = Window::try_new(time, time).unwrap();
+        assert_eq!(!meeting(&mut world, window).is_empty(), meets, "{time}");
+    }
+    for (start, end) in
+        [(1.0, 0.0), (f64::NAN, 1.0), (0.0, f64::NAN), (f64::NEG_INFINITY, 0.0), (0.0, f64::INFINITY)]
+    {
+        assert!(Window::try_new(start, end).is_err(), "{start} {end}");
+    }
+}
+
+#[test]
+fn windows_in_any_order_hold_what_they_hold_alone() {
+    let motions =
+        || (0..6).map(|k| at(DVec3::X * 2.0 * f64::from(k)).with_linear_velocity(DVec3::X * -f64::from(k)));
+    let mut world = world_of(motions());
+    for (start, end) in
+        [(0.0, 1.0), (0.9, 1.0), (0.0, 0.1), (-5.0, -4.0), (0.5, 30.0), (2.0, 2.0), (0.0, 1.0), (0.3, 0.9)]
+    {
+        let window = Window::try_new(start, end).unwrap();
+        let alone = meeting(&mut world_of(motions()), window);
+        assert_eq!(meeting(&mut world, window), alone, "{start} {end}");
+    }
+}
+
+/// A name that outlived its body changes nothing for the body that took its place.
+#[test]
+fn stale_names_do_nothing() {
+    let mut world = world_of([at(DVec3::ZERO), at(DVec3::X * 0.5)]);
+    let [a, old]: [BodyId; 2] = world.ids().collect::<Vec<_>>().try_into().unwrap();
+    assert_eq!(meeting(&mut world, Window::UNIT), [[0, 1]]);
+    world.remove(old);
+    let new = world.add(Body::new(cube(), at(DVec3::X * 0.5)));
+    assert!(new != old && new.index() == old.index() && world.get(old).is_none());
+    world.ignore_pair(a, old, true);
+    world.ignore_pair(old, a, true);
+    assert_eq!(meeting(&mut world, Window::UNIT), [[0, 1]]);
+    world.set_min_separation(a, old, Some(f64::NAN));
+    assert_eq!(meeting(&mut world, Window::UNIT), [[0, 1]]);
+    // A change by a stale name is refused loudly, and leaves the world as it was.
+    let refused =
+        std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| world.set_motion(old, at(DVec3::Y * 9.0))));
+    assert!(refused.is_err() && world.remove(old).is_none());
+    let foreign = world_of((0..40).map(|_| ConstantTwist::REST)).ids().last().unwrap();
+    let refused =
+        std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| world.set_motion(foreign, at(DVec3::Y))));
+    assert!(refused.is_err());
+    assert_eq!(meeting(&mut world, Window::UNIT), [[0, 1]]);
+}
+
+#[test]
+fn bodies_added_between_queries_keep_all_names() {
+    let mut world = world_of([]);
+    let mut names = Vec::new();
+    for k in 0..30 {
+        names.push(world.add(Body::new(cube(), at(DVec3::X * 0.9 * f64::from(k)))));
+        // Each meets its neighbors, some of them never queried before.
+        assert_eq!(meeting(&mut world, Window::UNIT).len(), k as usize);
+        for (j, &name) in names.iter().enumerate() {
+            assert_eq!(world.body(name).motion().pose_and_twist(0.0).0.translation.x, 0.9 * j as f64);
+        }
+    }
+    for (k, name) in names.into_iter().enumerate().step_by(2) {
+        world.remove(name).unwrap();
+        assert!(world.get(name).is_none() && world.len() == 29 - k / 2);
+    }
+    assert!(meeting(&mut world, Window::UNIT).is_empty());
+}
+
+/// One pair with a huge separation of its own makes no other pair a candidate.
+#[test]
+fn a_huge_separation_is_that_of_its_pair() {
+    let mut world = world_of((0..200).map(|k| at(DVec3::new(f64::from(k) * 3.0, f64::from(k % 7), 0.0))));
+    let ids: Vec<_> = world.ids().collect();
+    world.set_min_separation(ids[3], ids[150], Some(1e6));
+    world.set_min_separation(ids[5], ids[9], Some(1e300));
+    assert_eq!(world.candidates(Window::UNIT), [(ids[3], ids[150]), (ids[5], ids[9])]);
+    assert_eq!(meeting(&mut world, Window::UNIT), [[3, 150], [5, 9]]);
+    world.set_motion(ids[150], at(DVec3::Y * 90.0));
+    assert_eq!(meeting(&mut world, Window::UNIT), [[3, 150], [5, 9]]);
+    world.set_min_separation(ids[3], ids[150], Some(1.0));
+    world.set_min_separation(ids[5], ids[9], None);
+    assert!(meeting(&mut world, Window::UNIT).is_empty());
+    world.set_min_separation(ids[9], ids[5], Some(f64::INFINITY));
+    assert!(world.contacts(Window::UNIT).is_err());
+    world.set_min_separation(ids[5], ids[9], None);
+    assert!(meeting(&mut world, Window::UNIT).is_empty());
+}
+
+/// The same body many times: every pair meets at the start, and the first one is reported at once.
+#[test]
+fn identical_bodies_meet_at_once() {
+    let mut world = world_of((0..40).map(|_| at(DVec3::ONE).with_angular_velocity(DVec3::Z)));
+    let FirstContact::Contact { a, b, contact, .. } = world.first_contact(Window::UNIT).unwrap() else {
+        panic!("they are at one place")
+    };
+    assert_eq!((a.index(), b.index(), contact.time_lo), (0, 1, 0.0));
+    assert_ne!(contact.start, StartState::Apart);
+    assert_eq!(meeting(&mut world, Window::UNIT).len(), 40 * 39 / 2);
+}
+
+/// Motions and places that overflow what boxes can hold are queried, not lost.
+#[test]
+fn enormous_places_and_speeds_lose_no_pair() {
+    for scale in [1e-60, 1e-6, 1.0, 1e6, 1e40] {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| p * scale).to_vec();
+        let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
+        let tree = Arc::new(MeshTree::new(mesh));
+        let mut world = World::new(QueryOptions::default());
+        for k in 0..8 {
+            let motion = at(DVec3::X * 4.0 * scale * f64::from(k))
+                .with_orientation(DQuat::from_rotation_y(0.1 * f64::from(k)))
+                .with_linear_velocity(DVec3::X * -8.0 * scale * f64::from(k % 2));
+            world.add(Body::new(Arc::clone(&tree), motion));
+        }
+        // Each odd one runs through its left neighbor.
+        let pairs = meeting(&mut world, Window::UNIT);
+        assert!((0..4).all(|k| pairs.contains(&[2 * k, 2 * k + 1])), "{scale:e}: {pairs:?}");
+    }
+}
