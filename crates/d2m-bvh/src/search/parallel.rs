@@ -149,7 +149,7 @@ mod tests {
     use super::super::scene::Scene;
     use super::*;
     use crate::random::{Random, wavy_torus};
-    use crate::{Budget, MeshTree, Mode, QueryOptions, TriMesh, Window};
+    use crate::{Budget, MeshTree, Mode, Moving, QueryOptions, TriMesh, Window, time_of_contact};
     use d2m_motion::ConstantTwist;
     use glam::{DQuat, DVec3};
 
@@ -206,5 +206,38 @@ mod tests {
             }
         }
         assert!(found > 15 && apart > 15 && ended > 15 && helped > 60, "{found} {apart} {ended} {helped}");
+    }
+
+    /// What a query leaves in the memory of its thread is of no use to the next one, whose contact another thread finds: its
+    /// bodies are elsewhere by a millionth, and meet in the same sub-window.
+    #[test]
+    fn nothing_of_an_earlier_query_is_reported() {
+        let mut random = Random(4);
+        let trees = [ring(16, 6, 0.3), ring(24, 8, 0.35)];
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+        let alone = QueryOptions::default();
+        let mut met = 0;
+        for _ in 0..24 {
+            let upright = DQuat::from_rotation_x(1.57 + 0.1 * random.next());
+            let drift = random.vec() * 0.6;
+            let spin = (DVec3::Z + random.vec() * 0.05) * 100.0;
+            let a = ConstantTwist::try_new(DVec3::ZERO, DQuat::IDENTITY, drift, spin).unwrap();
+            let place = DVec3::X * (0.95 + 0.1 * random.next());
+            let at =
+                |place: DVec3| ConstantTwist::try_new(place, upright, DVec3::ZERO, DVec3::Y * 40.0).unwrap();
+            let (b, beside) = (at(place), at(place + DVec3::Y * 1e-6));
+            let ask = |b: &ConstantTwist, options: &QueryOptions| {
+                let bodies = [Moving::new(&trees[0], &a), Moving::new(&trees[1], b)];
+                time_of_contact(bodies[0], bodies[1], Window::UNIT, options).unwrap()
+            };
+            let wanted = pool.install(|| ask(&b, &alone));
+            let got = pool.install(|| {
+                ask(&beside, &alone);
+                ask(&b, &alone.with_parallel(true))
+            });
+            assert_eq!(got, wanted);
+            met += u32::from(got.contact().is_some_and(|contact| contact.time_lo > 0.01));
+        }
+        assert!(met > 8, "{met}");
     }
 }

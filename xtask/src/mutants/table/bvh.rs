@@ -21,6 +21,13 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "(room + 2.0).min(f64::from(MOST))",
         "crates/d2m-bvh/src/tree/tests.rs::boxes_enclose_in_more_than_double_precision",
     ),
+    patch(
+        "what an earlier query left in memory is reported",
+        "crates/d2m-bvh/src/search/state.rs",
+        "scratch.found_in = None;",
+        "",
+        "crates/d2m-bvh/src/search/parallel.rs::nothing_of_an_earlier_query_is_reported",
+    ),
     // Crowds.
     patch(
         "planes are checked at one end of the span only",
