@@ -32,7 +32,9 @@ pub enum QueryError {
     },
     /// The motion is not finite over the window, or leaves the range in which errors can be bounded: lengths and the
     /// reach of the query stay below 2¹⁰⁰⁰, the angle since the reference time below 2⁴⁰ rad. A turn by less than 2⁻⁹⁰⁰ rad
-    /// over the window must not have begun so long ago that it adds up to 2⁻⁶⁴ rad.
+    /// over the window must not have begun so long ago that it adds up to 2⁻⁶⁴ rad. A motion may not go so far or so
+    /// fast that its rounding alone exceeds the bodies, what is between them at the start, and the tolerance asked for: from
+    /// some 10¹³ times all of these in one window.
     #[error(
         "motion of body {body} is not finite over the window, or turns or goes too far for bounds on its rounding"
     )]

@@ -1,6 +1,8 @@
 //! A motion whose enclosures bound no speed: sound, useless, and never a reason to say "contact" or "clear".
 
-use d2m_bvh::{MeshTree, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact};
+use d2m_bvh::{
+    MeshTree, Moving, QueryError, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact,
+};
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
 use glam::DVec3;
@@ -70,4 +72,37 @@ fn slow_drifts_over_long_windows() {
         let time = answer.contact().map(|contact| contact.time_lo * speed);
         assert!(time.is_some_and(|time| (time - 4.0).abs() < 1e-6), "{speed}: {answer:?}");
     }
+}
+
+/// Where rounding alone is larger than the bodies and what is between them, there is no answer to give; the motion is refused. What can
+/// be resolved is answered, also at rest and far away, and for bodies that are points.
+#[test]
+fn motions_that_hide_the_bodies_are_refused() {
+    let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
+    let tree = MeshTree::new(mesh);
+    let dot = MeshTree::new(TriMesh::try_new(vec![DVec3::ONE; 3], vec![[0, 1, 2]]).unwrap());
+    let options = QueryOptions::default();
+    let still = ConstantTwist::REST;
+    let ask = |tree: &MeshTree, motion: &ConstantTwist, options: &QueryOptions| {
+        time_of_contact(Moving::new(tree, motion), Moving::new(tree, &still), Window::UNIT, options)
+    };
+    let start = ConstantTwist::REST.with_position(DVec3::X * 5.0);
+    for speed in [1e15, 1e100, 1e300] {
+        let fast = start.with_linear_velocity(DVec3::X * speed);
+        assert_eq!(ask(&tree, &fast, &options), Err(QueryError::BadMotion { body: 0 }), "{speed:e}");
+        let back =
+            time_of_contact(Moving::new(&tree, &still), Moving::new(&tree, &fast), Window::UNIT, &options);
+        assert_eq!(back, Err(QueryError::BadMotion { body: 1 }), "{speed:e}");
+        assert!(ask(&tree, &fast, &options.with_tolerance(speed)).is_ok());
+    }
+    for speed in [1e3, 1e9, 1e12] {
+        let fast = start.with_linear_velocity(DVec3::X * speed);
+        assert_eq!(ask(&tree, &fast, &options), Ok(TimeOfContact::Separated), "{speed:e}");
+        let surfaces = options.with_solid(Solid::Surface);
+        let away = ConstantTwist::REST.with_linear_velocity(DVec3::X * speed);
+        assert!(ask(&dot, &away, &surfaces).unwrap().contact().is_some(), "{speed:e}");
+    }
+    let far = start.with_position(DVec3::X * 1e100);
+    assert_eq!(ask(&tree, &far, &options), Ok(TimeOfContact::Separated));
 }

@@ -151,7 +151,7 @@ impl Pair {
                 let [x, v, w] = [pose.translation, twist.linear, twist.angular].map(triple);
                 let time = window.start();
                 let reason = format!(
-                    "x = {x}, v = {v}, w = {w} at the time {time:?}: over the window it is not finite, turns by 2^40 radians, goes too far, or spins so slowly that the speed is lost to underflow"
+                    "x = {x}, v = {v}, w = {w} at the time {time:?}: over the window it is not finite, turns by 2^40 radians, goes too far, or spins so slowly that the speed is lost to underflow; or its rounding exceeds the bodies"
                 );
                 Failure::at(place, reason)
             }

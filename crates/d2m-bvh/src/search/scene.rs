@@ -24,6 +24,8 @@ const BALL_ERROR: f64 = 128.0 * UNIT_F64;
 const PAIR_ERROR: f64 = 1.0 / 281_474_976_710_656.0; // 2⁻⁴⁸
 /// Least size: of bodies that are points at one place.
 const LEAST_SIZE: f64 = 1.0 / 18_446_744_073_709_551_616.0; // 2⁻⁶⁴
+/// δ is at least so many errors of a gap: one on either side of it.
+const LEAST_TOLERANCE_ERRORS: f64 = 2.0;
 /// δ as a part of the larger body's radius, if none is given.
 const DEFAULT_TOLERANCE: f64 = 1e-10;
 /// Part of δ that pairs are advanced to above the level. Large against roundings, small against δ.
@@ -189,7 +191,21 @@ impl<'a> Scene<'a> {
             spin_speed,
         };
         scene.set_options(options);
+        if scene.rounding_hides_the_bodies(options) {
+            let body = usize::from(scene.b.motion.terms() > scene.a.motion.terms());
+            return Err(QueryError::BadMotion { body });
+        }
         Ok(scene)
+    }
+
+    /// Is the least tolerance that rounding allows larger than the bodies, than what is between them at the start, and than
+    /// the tolerance that was asked for? Then the bodies are within it from the start, whatever they do.
+    fn rounding_hides_the_bodies(&self, options: &QueryOptions) -> bool {
+        let per_length = 1.0 / self.units.length();
+        let bodies = self.a.tree.radius().max(self.b.tree.radius()) * per_length;
+        let asked = options.tolerance.unwrap_or(0.0) * per_length;
+        let known = bodies.max(asked).max(self.track.at(0.0).length());
+        known > 0.0 && LEAST_TOLERANCE_ERRORS * self.pair.error > known
     }
 
     /// The same scene with other options.
@@ -206,7 +222,7 @@ impl<'a> Scene<'a> {
         let wanted = options
             .tolerance
             .map_or_else(|| DEFAULT_TOLERANCE * to_length(a.tree.radius().max(b.tree.radius())), to_length);
-        self.tolerance = wanted.max(2.0 * error);
+        self.tolerance = wanted.max(LEAST_TOLERANCE_ERRORS * error);
         let level = to_length(options.min_separation) + self.tolerance;
         let centripetal = [a, b].map(|body| body.spin() * body.spin() * body.reach() * UP);
         self.pair = PairScale {

@@ -281,6 +281,13 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/tests/engine.rs::separation_at_lo_is_what_is_promised_and_nothing_touches_before",
     ),
     patch(
+        "motions that hide the bodies are answered",
+        "crates/d2m-bvh/src/search/scene.rs",
+        "known > 0.0 && LEAST_TOLERANCE_ERRORS * self.pair.error > known",
+        "known < 0.0 && LEAST_TOLERANCE_ERRORS * self.pair.error > known",
+        "crates/d2m-bvh/tests/unbounded_motion.rs::motions_that_hide_the_bodies_are_refused",
+    ),
+    patch(
         "nothing is inside a solid A",
         "crates/d2m-bvh/src/query/constant_twist.rs",
         "let in_a = if filled[0] {",
