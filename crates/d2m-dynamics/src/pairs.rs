@@ -28,6 +28,19 @@ const TILT: f64 = 0.1;
 /// friction equal boxes on each other would slide apart.
 const FLAT: f64 = 0.02;
 
+/// Features of a pair from which on fewer are sought, and up to which more are.
+const MANY: usize = 128;
+const FEW: usize = 32;
+/// The least part of the way.
+const LEAST_REACH: f64 = 1.0 / 64.0;
+
+/// The contacts of a pair, and the number of features that they were chosen from.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Measured {
+    pub(crate) contacts: Vec<ContactPoint>,
+    pub(crate) features: usize,
+}
+
 /// A pair of bodies that may come close.
 #[derive(Clone, Debug)]
 pub(crate) struct Pair {
@@ -40,11 +53,30 @@ pub(crate) struct Pair {
     pub(crate) nearest: Option<f64>,
     /// When they were measured last.
     pub(crate) measured: Option<f64>,
+    /// Features are measured within this part of the way that the bodies may come closer in a flight.
+    pub(crate) reach: f64,
 }
 
 impl Pair {
     pub(crate) const fn new(gap: f64) -> Self {
-        Self { cache: PairCache::new(), gap, contacts: Vec::new(), nearest: None, measured: None }
+        Self { cache: PairCache::new(), gap, contacts: Vec::new(), nearest: None, measured: None, reach: 1.0 }
+    }
+
+    /// Takes over what was measured: none, if nothing is within the margin. Of bodies that many features of are close, as of a
+    /// screw in its nut, those further away are left to later: should one of them be met, that is an event.
+    pub(crate) fn keep(&mut self, measured: Measured, time: f64, gap: f64) {
+        let Measured { mut contacts, features } = measured;
+        remember(&mut contacts, &self.contacts);
+        self.nearest = contacts.iter().map(|contact| contact.distance).reduce(f64::min);
+        if self.nearest.is_none() {
+            self.gap = gap;
+        }
+        if features > MANY {
+            self.reach = (0.5 * self.reach).max(LEAST_REACH);
+        } else if features < FEW {
+            self.reach = (2.0 * self.reach).min(1.0);
+        }
+        (self.contacts, self.measured) = (contacts, Some(time));
     }
 
     /// The separation at which a flight of the pair ends.
@@ -115,26 +147,20 @@ pub(crate) fn measure(
     margin: f64,
     gap: f64,
     material: Material,
-) -> Result<Vec<ContactPoint>, QueryError> {
+) -> Result<Measured, QueryError> {
     let (a, b) = (&bodies[pair.0], &bodies[pair.1]);
     let (posed_a, posed_b) = (a.posed_at(time), b.posed_at(time));
     let options = ProximityOptions::new(margin).with_cone_slack(TILT);
     let wide = proximities_with(posed_a, posed_b, &options)?;
     let flatten = |p: &Proximity| flattened(p, [a, b], [&posed_a.pose, &posed_b.pose]);
-    let exact: Vec<Proximity> = if wide.iter().any(is_edges) {
-        proximities_with(posed_a, posed_b, &options.with_cone_slack(0.0))?
-    } else {
-        Vec::new()
-    };
-    let normals: Vec<DVec3> = exact.iter().map(|p| flatten(p).unwrap_or(*p).normal).collect();
+    let exact = wide.iter().filter(|p| p.tilt == 0.0);
+    let mut normals: Vec<DVec3> = exact.map(|p| flatten(p).unwrap_or(*p).normal).collect();
+    normals.sort_by(|a, b| order(*a, *b));
+    normals.dedup();
     let straight = |p: &Proximity| {
         // Two edges whose common normal is outside of their cones would push askew: where faces are almost parallel they
         // get the normal of a locally closest pair. Without one they are no contact.
-        if is_edges(p) && !exact.iter().any(|q| q.feature == p.feature) {
-            along(p, &normals, TILT)
-        } else {
-            Some(flatten(p).unwrap_or(*p))
-        }
+        if is_edges(p) && p.tilt > 0.0 { along(p, &normals, TILT) } else { Some(flatten(p).unwrap_or(*p)) }
     };
     let found: Vec<Proximity> = wide.iter().filter_map(straight).collect();
     let found = reduce_proximities(&found, TILT);
@@ -153,7 +179,13 @@ pub(crate) fn measure(
         impulse: 0.0,
         sliding: [0.0; 2],
     };
-    Ok(found.iter().filter(|p| p.normal.is_normalized()).map(contact).collect())
+    let contacts = found.iter().filter(|p| p.normal.is_normalized()).map(contact).collect();
+    Ok(Measured { contacts, features: wide.len() })
+}
+
+/// Some total order.
+fn order(a: DVec3, b: DVec3) -> core::cmp::Ordering {
+    a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
 }
 
 fn is_edges(p: &Proximity) -> bool {
@@ -182,7 +214,7 @@ fn along(p: &Proximity, normals: &[DVec3], most: f64) -> Option<Proximity> {
 }
 
 /// Takes over the impulses of contacts of the same features.
-pub(crate) fn remember(contacts: &mut [ContactPoint], old: &[ContactPoint]) {
+fn remember(contacts: &mut [ContactPoint], old: &[ContactPoint]) {
     for contact in contacts {
         if let Some(before) = old.iter().find(|before| before.feature == contact.feature) {
             let impulse = before.total();

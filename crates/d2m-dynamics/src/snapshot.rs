@@ -74,6 +74,7 @@ struct PairState {
     bodies: [usize; 2],
     gap: f64,
     nearest: Option<f64>,
+    reach: f64,
     contacts: Vec<ContactState>,
 }
 
@@ -119,6 +120,7 @@ impl Simulation {
             bodies: [a, b],
             gap: pair.gap,
             nearest: pair.nearest,
+            reach: pair.reach,
             contacts: pair.contacts.iter().map(ContactState::of).collect(),
         });
         Snapshot {
@@ -178,7 +180,7 @@ impl Simulation {
             .map(|state| {
                 let [a, b] = state.bodies;
                 let mut pair = Pair::new(state.gap);
-                pair.nearest = state.nearest;
+                (pair.nearest, pair.reach) = (state.nearest, state.reach);
                 pair.contacts = state.contacts.iter().map(|c| c.restored(a, b, state.gap)).collect();
                 ((a, b), pair)
             })

@@ -2,7 +2,7 @@
 
 use super::{Key, Occasion, Step};
 use crate::contact::ContactPoint;
-use crate::pairs::{Pair, measure, remember};
+use crate::pairs::{Measured, Pair, measure};
 use crate::simulation::query_error;
 use crate::{StepError, parallel};
 use d2m_bvh::QueryError;
@@ -53,10 +53,11 @@ impl Step<'_> {
                 .into_iter()
                 .partition(|key| sim.pairs.get(key).is_some_and(|pair| pair.measured == Some(time)));
             let mut found = parallel::map(new, |key| {
-                let gap = sim.pairs.get(&key).map_or(sim.options.gap, |pair| pair.gap);
+                let (gap, reach) =
+                    sim.pairs.get(&key).map_or((sim.options.gap, 1.0), |pair| (pair.gap, pair.reach));
                 // What is further apart than the present motion leads needs no row; if forces lead there all the same, the
                 // flight ends at an event.
-                let way = APPROACH * sim.bodies[key.0].bound_approach(&sim.bodies[key.1]) * step;
+                let way = reach * APPROACH * sim.bodies[key.0].bound_approach(&sim.bodies[key.1]) * step;
                 let margin = (AROUND * sim.options.gap + way).min(most);
                 (key, Some(measure(&sim.bodies, key, time, margin, gap, sim.material(key.0, key.1))))
             });
@@ -69,7 +70,7 @@ impl Step<'_> {
                     Some(Ok(points)) => Some(points),
                     None => None,
                     // Closer than rounding: the query of the flight says so, too.
-                    Some(Err(QueryError::NotApart { .. })) => Some(Vec::new()),
+                    Some(Err(QueryError::NotApart { .. })) => Some(Measured::default()),
                     Some(Err(error)) => {
                         let (a, b) = (&self.sim.bodies[key.0], &self.sim.bodies[key.1]);
                         return Err(query_error(a, b, error).into());
@@ -77,13 +78,8 @@ impl Step<'_> {
                 };
                 let gap = self.sim.options.gap;
                 let pair = self.sim.pairs.entry(key).or_insert_with(|| Pair::new(gap));
-                if let Some(mut points) = answer {
-                    remember(&mut points, &pair.contacts);
-                    let nearest = points.iter().map(|p| p.distance).reduce(f64::min);
-                    if nearest.is_none() {
-                        pair.gap = gap;
-                    }
-                    (pair.nearest, pair.contacts, pair.measured) = (nearest, points, Some(time));
+                if let Some(measured) = answer {
+                    pair.keep(measured, time, gap);
                 }
                 if pair.contacts.is_empty() {
                     continue;

@@ -23,6 +23,8 @@ pub(super) struct Candidate {
     /// Bound on the error of the direction, as the sine of an angle.
     pub(super) normal_error: f64,
     pub(super) distance: f64,
+    /// How far the direction is outside of the cones, beyond its error.
+    pub(super) tilt: f64,
     /// Dimensions of the two features together, 0 to 2: of twins the one of the least is kept, because its normal cone
     /// holds those of the others.
     pub(super) dimension: u8,
@@ -59,6 +61,7 @@ pub(super) fn without_twins(mut found: Vec<Candidate>, tolerance: f64) -> Vec<Ca
             if near && !dropped[i] && !dropped[j] {
                 let (kept, twin) = if found[i].rank() <= found[j].rank() { (i, j) } else { (j, i) };
                 dropped[twin] = true;
+                found[kept].tilt = found[kept].tilt.min(found[twin].tilt);
                 // The direction of a face is known better than that between two points close to each other.
                 if found[twin].normal_error < found[kept].normal_error {
                     found[kept].normal = found[twin].normal;

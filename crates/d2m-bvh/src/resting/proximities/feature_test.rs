@@ -273,8 +273,10 @@ impl<'a> FeatureTest<'a> {
         let from_points =
             Direction { unit: offset / distance, error: DIRECTION_ERRORS * self.scene.error / distance };
         let direction = exact.filter(|exact| exact.error < from_points.error).unwrap_or(from_points);
-        let slack = direction.error + DIRECTION_ROUNDING + self.cone_slack;
-        let slack_squared = slack * slack;
+        let rounding = direction.error + DIRECTION_ROUNDING;
+        let square_of = |sine: f64| sine * sine;
+        let (slack_squared, rounding_squared) = (square_of(rounding + self.cone_slack), square_of(rounding));
+        let mut tilt = 0.0f64;
         for (body, end) in ends.iter().enumerate() {
             let (adjacency, outward) =
                 (self.adjacency[body], if body == 0 { direction.unit } else { -direction.unit });
@@ -286,8 +288,12 @@ impl<'a> FeatureTest<'a> {
             for &vertex in next {
                 let to = self.scene.place_vertex(body, vertex) - end.point;
                 let rise = outward.dot(to) - 2.0 * self.scene.error;
-                if rise > 0.0 && rise * rise > slack_squared * to.length_squared() {
-                    return;
+                let length_squared = to.length_squared();
+                if rise > 0.0 && rise * rise > rounding_squared * length_squared {
+                    if rise * rise > slack_squared * length_squared {
+                        return;
+                    }
+                    tilt = tilt.max(rise / length_squared.sqrt() - rounding);
                 }
             }
         }
@@ -299,6 +305,7 @@ impl<'a> FeatureTest<'a> {
             normal: direction.unit,
             normal_error: direction.error,
             distance,
+            tilt,
             dimension,
         });
     }

@@ -50,6 +50,9 @@ pub struct Proximity {
     pub triangle_b: u32,
     /// Distance of the two points, to rounding.
     pub distance: f64,
+    /// How far the direction is outside of the normal cones, the sine of an angle: zero for what is locally closest to
+    /// rounding, at most [`ProximityOptions::cone_slack`] for what that lets in besides.
+    pub tilt: f64,
     /// Unit direction from A to B, world frame.
     pub normal: DVec3,
     /// Point on A, world frame, rounded.
@@ -137,6 +140,7 @@ pub fn proximities(a: Posed<'_>, b: Posed<'_>, margin: f64) -> Result<Vec<Proxim
 /// };
 /// assert_eq!(near(0.0)?.len(), 1);
 /// assert_eq!(near(0.05)?.len(), 3);
+/// assert_eq!(near(0.05)?.iter().filter(|p| p.tilt == 0.0).count(), 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
@@ -220,6 +224,7 @@ fn describe(scene: &Scene<'_>, bodies: [Posed<'_>; 2], candidate: &Candidate) ->
         triangle_a: candidate.places[0].triangle,
         triangle_b: candidate.places[1].triangle,
         distance: candidate.distance * scene.unit,
+        tilt: candidate.tilt,
         normal: (poses[1].rotation * candidate.normal).normalize_or_zero(),
         point_a,
         point_b,

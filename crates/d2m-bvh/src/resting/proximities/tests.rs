@@ -260,3 +260,26 @@ fn bad_margins_and_bodies_that_meet_are_refused() {
     assert_eq!(proximities(here, Posed::at_rest(&inside), 0.4), Ok(vec![]));
     assert_eq!(proximities(here, Posed::at_rest(&inside), 0.6).unwrap().len(), 8 * 3);
 }
+
+/// One query with wide cones holds what one with exact cones finds, marked by a tilt of zero.
+#[test]
+fn tilts_tell_exact_cones_from_wide_ones() {
+    let (corners, triangles) = wavy_torus(24, 12, 0.35);
+    let mesh = MeshTree::new(TriMesh::try_new(corners, triangles).unwrap());
+    let mut random = Random(91);
+    let mut tilted = 0;
+    for _ in 0..40 {
+        let pose =
+            Pose { rotation: random.turn(), translation: random.vec().normalize() * 2.2, ..Pose::IDENTITY };
+        let near = |slack: f64| {
+            let options = ProximityOptions::new(1.5).with_cone_slack(slack);
+            proximities_with(crate::Posed::at_rest(&mesh), crate::Posed::new(&mesh, pose), &options)
+        };
+        let (Ok(exact), Ok(wide)) = (near(0.0), near(0.1)) else { continue };
+        assert!(exact.iter().all(|p| p.tilt == 0.0) && wide.iter().all(|p| p.tilt <= 0.1));
+        let straight: Vec<_> = wide.iter().filter(|p| p.tilt == 0.0).map(|p| p.feature).collect();
+        assert_eq!(straight, exact.iter().map(|p| p.feature).collect::<Vec<_>>());
+        tilted += wide.len() - straight.len();
+    }
+    assert!(tilted > 100, "{tilted}");
+}
