@@ -23,7 +23,7 @@ impl Aabb {
         let start = body.flight.position();
         let elapsed = end - body.flight.reference_time();
         let travel = body.flight.linear_velocity() * elapsed;
-        if is_at_rest(body) {
+        if body.stands_still() {
             return Self::posed(body, &body.pose_at(end), margin);
         }
         let finish = start + travel;
@@ -56,10 +56,6 @@ impl Aabb {
     }
 }
 
-fn is_at_rest(body: &RigidBody) -> bool {
-    body.flight.linear_velocity() == DVec3::ZERO && body.flight.angular_velocity() == DVec3::ZERO
-}
-
 /// What each body sweeps on its present flight, computed when it begins another one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SweptBoxes {
@@ -81,7 +77,7 @@ impl SweptBoxes {
     /// The boxes of the flights to `end`, grown by `margin`.
     pub(crate) fn update(&mut self, bodies: &[RigidBody], end: f64, margin: f64) -> &[Aabb] {
         for (i, body) in bodies.iter().enumerate() {
-            let known = Known { version: body.version, end: (!is_at_rest(body)).then_some(end), margin };
+            let known = Known { version: body.version, end: (!body.stands_still()).then_some(end), margin };
             if self.known.get(i) == Some(&known) {
                 continue;
             }

@@ -6,15 +6,19 @@ use crate::rigid_body::{Momenta, RigidBody, Velocity};
 use glam::{DMat3, DVec3};
 
 /// Changes of rates in a sweep below this part of a gap a step end the iteration.
-const PRECISION: f64 = 1e-5;
+const PRECISION: f64 = 1e-4;
+/// And so do those below this part of the fastest speed of the island: 2⁻²⁰.
+const RELATIVE_PRECISION: f64 = 1.0 / 1_048_576.0;
 /// Sweeps times contacts of one solution.
-const WORK: usize = 200_000;
+const WORK: usize = 60_000;
 /// Sweeps at least, and at most.
 const SWEEPS: (usize, usize) = (30, 4000);
 /// Sweeps for what need not be exact.
 const RESTORING: u32 = 200;
 /// The part of the greatest kinetic energy by which that of a flight may differ from that of the momenta, to make room.
-const UNBALANCED: f64 = 1.0 / 1024.0;
+const UNBALANCED: f64 = 1.0 / 2048.0;
+/// The part of the gap below which room is made at any price: a contact that never gets any is hit over and over again.
+const TIGHT: f64 = 0.3;
 /// Solutions with the spin of the flight's middle put right.
 const CORRECTIONS: u32 = 3;
 
@@ -38,6 +42,7 @@ pub(crate) struct Push {
     pub(crate) body: usize,
     pub(crate) velocity: Velocity,
     pub(crate) horizon: f64,
+    pub(crate) lead: f64,
     /// By impacts, and by contacts at rest.
     pub(crate) impact: Momenta,
     pub(crate) rest: Momenta,
@@ -134,16 +139,24 @@ pub(crate) fn solve(
         let middle = s.turned(v.angular, 0.5 * span.remaining);
         body_at(s, v, s.inverse_inertia_at(middle))
     };
-    let free: Vec<SolverBody> = states
-        .iter()
-        .map(|s| if moves(s) { prepare(s, s.flight_velocity(end, options.gravity)) } else { still(s) })
-        .collect();
+    let free: Vec<SolverBody> =
+        states
+            .iter()
+            .map(|s| {
+                if moves(s) {
+                    prepare(s, s.flight_velocity(span.remaining, options.gravity))
+                } else {
+                    still(s)
+                }
+            })
+            .collect();
     let solver = Solver::new(free.clone(), &island.contacts, place);
     let rows = select(&island.contacts, &solver, span, |body| free[place(body)].velocity.angular);
     let mut contacts: Vec<ContactPoint> = rows.iter().map(|row| island.contacts[row.contact]).collect();
     let targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
     let sweeps = (WORK / contacts.len().max(1)).clamp(SWEEPS.0, SWEEPS.1) as u32;
-    let precision = PRECISION * options.gap / options.step;
+    let fastest = free.iter().map(|body| body.velocity.linear.length()).fold(0.0, f64::max);
+    let precision = (PRECISION * options.gap / options.step).max(RELATIVE_PRECISION * fastest);
 
     let mut solver = Solver::new(free, &contacts, place);
     solver.warm_start(&contacts);
@@ -171,8 +184,9 @@ pub(crate) fn solve(
             * options.gravity.length()
             * options.gap;
         let most = UNBALANCED * energy + lifted;
+        let is_tight = contacts.iter().any(|c| c.distance < TIGHT * c.gap);
         // Rates are linear in the velocities: a part of the way makes room for a part.
-        part = if change > most { most / change } else { 1.0 };
+        part = if change > most && !is_tight { most / change } else { 1.0 };
     }
     let blend = |from: DVec3, to: DVec3| if part < 1.0 { from + (to - from) * part } else { to };
     let flights: Vec<Velocity> = physical
@@ -188,6 +202,7 @@ pub(crate) fn solve(
             body: members[k],
             velocity: flights[k],
             horizon: end,
+            lead: states[k].lead.unwrap_or(0.5 * span.remaining),
             impact: impacts[k],
             rest: rests[k],
         });
@@ -238,7 +253,9 @@ fn put_right(
         if body.inverse_mass == 0.0 {
             continue;
         }
-        let middle = state.angular_momentum + state.torque * (0.5 * span.remaining) + added.angular;
+        let middle = state.angular_momentum
+            + state.torque * state.lead.unwrap_or(0.5 * span.remaining)
+            + added.angular;
         let spin = state.midpoint_spin(middle, span.remaining);
         worst = worst.max((spin - body.velocity.angular).length() * state.radius);
         body.velocity.angular = spin;

@@ -22,7 +22,7 @@ const MOST_HALVINGS: u32 = 8;
 /// A body of a simulation. `position` is that of the center of mass.
 #[derive(Clone)]
 pub(crate) struct RigidBody {
-    pub(crate) name: String,
+    pub(crate) name: Arc<str>,
     pub(crate) tree: Arc<MeshTree>,
     pub(crate) faces: Arc<Faces>,
     pub(crate) solid: Solid,
@@ -55,6 +55,9 @@ pub(crate) struct RigidBody {
     pub(crate) version: u64,
     /// Stands still until the end of the step.
     pub(crate) held: bool,
+    /// The velocity of the present flight is that of the momenta after the forces of so much time; negative where the
+    /// middle of the flight that was planned has passed. None: a flight is to be planned.
+    pub(crate) lead: Option<f64>,
     /// Nothing touches it in this flight.
     pub(crate) free: bool,
     /// The momenta at the start of this flight without the impulses of contacts at rest.
@@ -145,7 +148,7 @@ impl RigidBody {
             .and_then(|flight| flight.try_with_reference_time(time))
             .map_err(|_| bad("position", position.to_string()))?;
         Ok(Self {
-            name: body.name.clone(),
+            name: body.name.as_str().into(),
             tree: Arc::clone(&body.tree),
             faces,
             solid,
@@ -169,6 +172,7 @@ impl RigidBody {
             horizon: f64::INFINITY,
             version: 0,
             held: false,
+            lead: None,
             free: false,
             unpushed: None,
             asleep: false,
@@ -207,12 +211,13 @@ impl RigidBody {
         if time > self.time {
             let pose = self.pose_at(time);
             (self.position, self.orientation) = (pose.translation, pose.rotation);
+            let elapsed = time - self.time;
             if self.is_dynamic() && !self.held && !self.asleep {
-                let elapsed = time - self.time;
                 self.momentum += self.force(gravity) * elapsed;
                 self.angular_momentum += self.torque * elapsed;
             }
             self.time = time;
+            self.lead = self.lead.map(|lead| lead - elapsed);
             self.unpushed = None;
         }
     }
@@ -251,11 +256,12 @@ impl RigidBody {
         Velocity { linear: self.momentum * self.inverse_mass, angular }
     }
 
-    /// Velocity of a flight until `horizon`, in which forces and gyroscopic terms are those of its middle.
-    pub(crate) fn flight_velocity(&self, horizon: f64, gravity: DVec3) -> Velocity {
-        let half = 0.5 * (horizon - self.time);
-        let linear = (self.momentum + self.force(gravity) * half) * self.inverse_mass;
-        let angular = self.midpoint_spin(self.angular_momentum + self.torque * half, 2.0 * half);
+    /// Velocity of a flight of some length: forces are those of its middle, or of the middle of the planned flight that it is
+    /// the rest of; gyroscopic terms those of its own middle.
+    pub(crate) fn flight_velocity(&self, length: f64, gravity: DVec3) -> Velocity {
+        let lead = self.lead.unwrap_or(0.5 * length);
+        let linear = (self.momentum + self.force(gravity) * lead) * self.inverse_mass;
+        let angular = self.midpoint_spin(self.angular_momentum + self.torque * lead, length);
         Velocity { linear, angular }
     }
 
@@ -330,6 +336,16 @@ impl RigidBody {
             return self.velocity();
         }
         Velocity { linear: self.flight.linear_velocity(), angular: self.flight.angular_velocity() }
+    }
+
+    /// The velocity of the present flight.
+    pub(crate) fn present_velocity(&self) -> Velocity {
+        Velocity { linear: self.flight.linear_velocity(), angular: self.flight.angular_velocity() }
+    }
+
+    /// Does the present flight lead nowhere?
+    pub(crate) fn stands_still(&self) -> bool {
+        self.present_velocity() == Velocity::default()
     }
 
     /// Speed that no point of the surface exceeds in this flight.

@@ -312,7 +312,7 @@ impl Simulation {
     fn check_pair(&mut self, a: usize, b: usize) -> Result<(), SimulationError> {
         let gap = self.options.gap;
         let (one, two) = (&self.bodies[a], &self.bodies[b]);
-        let names = || (one.name.clone(), two.name.clone());
+        let names = || (one.name.to_string(), two.name.to_string());
         let options = DistanceOptions::default().with_solid(solid_of(one, two)).with_cutoff(gap);
         let posed = (one.posed_at(self.time), two.posed_at(self.time));
         let found = distance_within(posed.0, posed.1, &options, &mut PairCache::new());
@@ -356,5 +356,5 @@ fn wake(body: &mut RigidBody, time: f64) {
 }
 
 pub(crate) fn query_error(a: &RigidBody, b: &RigidBody, error: QueryError) -> SimulationError {
-    SimulationError::Query { a: a.name.clone(), b: b.name.clone(), error }
+    SimulationError::Query { a: a.name.to_string(), b: b.name.to_string(), error }
 }

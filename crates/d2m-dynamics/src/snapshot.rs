@@ -148,7 +148,7 @@ impl Simulation {
         for (body, state) in bodies.iter_mut().zip(&snapshot.bodies) {
             let flight = &state.flight;
             let bad = |_| SimulationError::BadBody {
-                body: body.name.clone(),
+                body: body.name.to_string(),
                 name: "flight of the snapshot",
                 value: format!("{flight:?}"),
             };

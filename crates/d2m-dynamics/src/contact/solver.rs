@@ -108,21 +108,11 @@ impl Solver {
     /// Adds impulses to the velocities: those the contacts hold already.
     pub(crate) fn warm_start(&mut self, contacts: &[ContactPoint]) {
         for (k, contact) in contacts.iter().enumerate() {
-            let p = self.prepared[k];
-            self.push(&p, &p.normal, contact.impulse);
-            self.push(&p, &p.tangents[0], contact.sliding[0]);
-            self.push(&p, &p.tangents[1], contact.sliding[1]);
+            let p = &self.prepared[k];
+            push(&mut self.bodies, p, &p.normal, contact.impulse);
+            push(&mut self.bodies, p, &p.tangents[0], contact.sliding[0]);
+            push(&mut self.bodies, p, &p.tangents[1], contact.sliding[1]);
         }
-    }
-
-    #[inline]
-    fn push(&mut self, p: &Prepared, line: &Line, impulse: f64) {
-        let a = &mut self.bodies[p.a];
-        a.velocity.linear -= line.direction * (a.inverse_mass * impulse);
-        a.velocity.angular -= line.turn_a * impulse;
-        let b = &mut self.bodies[p.b];
-        b.velocity.linear += line.direction * (b.inverse_mass * impulse);
-        b.velocity.angular += line.turn_b * impulse;
     }
 
     /// Iterates until no rate changes by more than `precision` in a sweep, `most` sweeps at most. The rates along the normals
@@ -171,11 +161,11 @@ impl Solver {
                 contact.impulse += added[0];
                 contact.sliding[0] += added[1];
                 contact.sliding[1] += added[2];
-                let p = self.prepared[k];
-                self.push(&p, &p.normal, added[0]);
+                let p = &self.prepared[k];
+                push(&mut self.bodies, p, &p.normal, added[0]);
                 if contact.material.friction > 0.0 {
-                    self.push(&p, &p.tangents[0], added[1]);
-                    self.push(&p, &p.tangents[1], added[2]);
+                    push(&mut self.bodies, p, &p.tangents[0], added[1]);
+                    push(&mut self.bodies, p, &p.tangents[1], added[2]);
                 }
             }
         }
@@ -186,44 +176,17 @@ impl Solver {
     fn sweep(&mut self, contacts: &mut [ContactPoint], targets: &[f64]) -> f64 {
         let mut change = 0.0f64;
         for (k, contact) in contacts.iter_mut().enumerate() {
-            let p = self.prepared[k];
+            let p = &self.prepared[k];
             let rate = p.normal.rate(&self.bodies[p.a].velocity, &self.bodies[p.b].velocity);
             let impulse = (contact.impulse - (rate - targets[k]) * p.normal.mass).max(0.0);
             let added = impulse - contact.impulse;
             if added != 0.0 {
                 contact.impulse = impulse;
-                self.push(&p, &p.normal, added);
+                push(&mut self.bodies, p, &p.normal, added);
                 change = change.max(added.abs() / p.normal.mass);
             }
             if contact.material.friction > 0.0 {
-                change = change.max(self.slide(&p, contact));
-            }
-        }
-        change
-    }
-
-    /// The impulse along the tangents that stops sliding, or the one of Coulomb's length nearest to it.
-    #[inline]
-    fn slide(&mut self, p: &Prepared, contact: &mut ContactPoint) -> f64 {
-        let (a, b) = (&self.bodies[p.a].velocity, &self.bodies[p.b].velocity);
-        let rates = [p.tangents[0].rate(a, b), p.tangents[1].rate(a, b)];
-        let limit = contact.material.friction * contact.impulse;
-        let length = |x: [f64; 2]| (x[0] * x[0] + x[1] * x[1]).sqrt();
-        let stopped = p.stopping(rates).map(|less| [0, 1].map(|k| contact.sliding[k] - less[k]));
-        let wanted = if let Some(stopped) = stopped.filter(|x| length(*x) <= limit) {
-            stopped
-        } else {
-            let wanted = [0, 1].map(|k| contact.sliding[k] - rates[k] * p.step);
-            let shorten = (limit / length(wanted)).min(1.0);
-            if limit > 0.0 { wanted.map(|x| x * shorten) } else { [0.0; 2] }
-        };
-        let mut change = 0.0f64;
-        for (k, wanted) in wanted.into_iter().enumerate() {
-            let added = wanted - contact.sliding[k];
-            if added != 0.0 {
-                contact.sliding[k] = wanted;
-                self.push(p, &p.tangents[k], added);
-                change = change.max(added.abs() / p.tangents[k].mass);
+                change = change.max(slide(&mut self.bodies, p, contact));
             }
         }
         change
@@ -240,6 +203,44 @@ impl Solver {
             })
             .sum()
     }
+}
+
+/// Adds an impulse along a line of a contact to the velocities.
+#[inline]
+fn push(bodies: &mut [SolverBody], p: &Prepared, line: &Line, impulse: f64) {
+    let a = &mut bodies[p.a];
+    a.velocity.linear -= line.direction * (a.inverse_mass * impulse);
+    a.velocity.angular -= line.turn_a * impulse;
+    let b = &mut bodies[p.b];
+    b.velocity.linear += line.direction * (b.inverse_mass * impulse);
+    b.velocity.angular += line.turn_b * impulse;
+}
+
+/// The impulse along the tangents that stops sliding, or the one of Coulomb's length nearest to it.
+#[inline]
+fn slide(bodies: &mut [SolverBody], p: &Prepared, contact: &mut ContactPoint) -> f64 {
+    let (a, b) = (&bodies[p.a].velocity, &bodies[p.b].velocity);
+    let rates = [p.tangents[0].rate(a, b), p.tangents[1].rate(a, b)];
+    let limit = contact.material.friction * contact.impulse;
+    let length = |x: [f64; 2]| (x[0] * x[0] + x[1] * x[1]).sqrt();
+    let stopped = p.stopping(rates).map(|less| [0, 1].map(|k| contact.sliding[k] - less[k]));
+    let wanted = if let Some(stopped) = stopped.filter(|x| length(*x) <= limit) {
+        stopped
+    } else {
+        let wanted = [0, 1].map(|k| contact.sliding[k] - rates[k] * p.step);
+        let shorten = (limit / length(wanted)).min(1.0);
+        if limit > 0.0 { wanted.map(|x| x * shorten) } else { [0.0; 2] }
+    };
+    let mut change = 0.0f64;
+    for (k, wanted) in wanted.into_iter().enumerate() {
+        let added = wanted - contact.sliding[k];
+        if added != 0.0 {
+            contact.sliding[k] = wanted;
+            push(bodies, p, &p.tangents[k], added);
+            change = change.max(added.abs() / p.tangents[k].mass);
+        }
+    }
+    change
 }
 
 fn impulses(contact: &ContactPoint) -> [f64; 3] {

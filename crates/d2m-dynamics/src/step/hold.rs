@@ -50,7 +50,7 @@ impl Step<'_> {
     }
 
     fn crushed(&self, pushing: usize, crushed: usize, time: f64) -> StepError {
-        let name = |i: usize| self.sim.bodies[i].name.clone();
+        let name = |i: usize| self.sim.bodies[i].name.to_string();
         // Whoever follows its motion against the body that is crushed is the one to name.
         let drives =
             |i: &usize| self.sim.bodies[*i].is_kinematic() && self.sim.bodies[*i].surface_speed() > 0.0;

@@ -8,10 +8,11 @@ use glam::DVec3;
 
 /// Times that flights from one and the same instant are planned anew.
 const MOST_AT_ONCE: u32 = 3;
-/// And in a whole step.
-const MOST_IN_A_STEP: u32 = 64;
+/// And flights of bodies that are planned anew in a whole step: so many, and so many for each body there is.
+const MOST_IN_A_STEP: usize = 256;
+const MOST_OF_A_BODY: usize = 4;
 /// The part of the greatest kinetic energy that a flight's early end may leave unbalanced.
-const UNBALANCED: f64 = 1.0 / 1024.0;
+const UNBALANCED: f64 = 1.0 / 4096.0;
 /// How much later than expected a flight that is planned anew ends, as a part of what it was cut by: the body should meet
 /// what it meets before that.
 const SPARE_TIME: f64 = 0.02;
@@ -22,7 +23,8 @@ pub(super) struct Replans {
     /// At which instant.
     at: f64,
     at_once: u32,
-    all: u32,
+    /// Flights of bodies, in the whole step.
+    all: usize,
 }
 
 impl Step<'_> {
@@ -37,7 +39,7 @@ impl Step<'_> {
         }
         if event.cause == Cause::Stuck
             || self.replans.at_once >= MOST_AT_ONCE
-            || self.replans.all >= MOST_IN_A_STEP
+            || self.replans.all >= MOST_IN_A_STEP + MOST_OF_A_BODY * self.sim.bodies.len()
             || event.time <= now
         {
             return Ok(false);
@@ -47,10 +49,7 @@ impl Step<'_> {
             if !body.is_dynamic() || body.held || body.asleep || body.horizon <= event.time {
                 return 0.0;
             }
-            let velocity = body.flight.linear_velocity();
-            let power = (gravity * body.mass + body.force).dot(velocity)
-                + body.torque.dot(body.flight.angular_velocity());
-            0.5 * power.abs() * (body.horizon.min(self.end) - event.time)
+            0.5 * power(body, gravity).abs() * (body.horizon.min(self.end) - event.time)
         };
         let cuts: Vec<f64> = self.sim.bodies.iter().map(cut).collect();
         let sum: f64 = cuts.iter().sum();
@@ -70,12 +69,20 @@ impl Step<'_> {
             return Ok(false);
         }
         self.replans.at_once += 1;
-        self.replans.all += 1;
+        self.replans.all += concerned.len();
         self.planned = Some(until);
         // Its bodies may fly on as they do.
         self.heap.push(core::cmp::Reverse(*event));
         self.resolve(now, concerned, Occasion::Plan { until })?;
         Ok(true)
+    }
+
+    /// May the rest of the step keep the plan of a flight that is cut at `time`? Its energy is then off by the power of the
+    /// forces times what its velocity leads or lags.
+    pub(super) fn is_balanced(&self, body: &RigidBody, time: f64) -> bool {
+        let lead = body.lead.unwrap_or_default();
+        let off = power(body, self.sim.options.gravity).abs() * (lead - 0.5 * (self.end - time)).abs();
+        off * self.sim.bodies.len() as f64 <= UNBALANCED * self.sim.greatest_energy
     }
 
     /// When the bodies of an event meet if some of them get flights that end then.
@@ -109,4 +116,10 @@ impl Step<'_> {
         };
         now + length + SPARE_TIME * (h - length)
     }
+}
+
+/// Of the forces on a body in its present flight.
+fn power(body: &RigidBody, gravity: DVec3) -> f64 {
+    let velocity = body.present_velocity();
+    (gravity * body.mass + body.force).dot(velocity.linear) + body.torque.dot(velocity.angular)
 }

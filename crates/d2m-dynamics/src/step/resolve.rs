@@ -1,9 +1,16 @@
 //! Velocities of the flights that begin at an event.
 
+use super::connected::Group;
 use super::{Occasion, Step};
 use crate::group::{Clock, Solved, islands, solve};
 use crate::{BodyId, ContactImpulse, StepError, parallel};
 use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// Rounds of bodies that others press on, after which all that contacts connect with them are solved together.
+const MOST_ROUNDS: u32 = 4;
+/// The part of the gap by which a contact may close in what is left of the step before its body is solved with the others.
+const LEEWAY: f64 = 1.0 / 16.0;
 
 impl Step<'_> {
     /// Solves the velocities of the seeds and of all that are in contact with them, and starts their flights.
@@ -13,28 +20,28 @@ impl Step<'_> {
         seeds: Vec<usize>,
         occasion: Occasion,
     ) -> Result<(), StepError> {
-        let (group, contacts) = self.group(time, seeds, occasion)?;
-        let gravity = self.sim.options.gravity;
-        let end = self.end;
-        for &i in &group {
-            let body = &mut self.sim.bodies[i];
-            if body.is_kinematic() && (occasion == Occasion::Start || body.horizon <= time) {
-                body.time = time;
-                body.follow(end, self.sim.options.gap);
-                self.sim.recorder.change(BodyId(i as u32), body.flight);
-            }
-        }
+        let mut group = Group::new(self.sim.bodies.len());
+        let until = if let Occasion::Plan { until } = occasion { until } else { self.end };
+        let clock = Clock { now: time, end: until };
+        let solved = if occasion == Occasion::Event {
+            self.solve_nearby(&mut group, seeds, clock)?
+        } else {
+            self.admit_connected(&mut group, time, seeds, occasion)?;
+            group.sort();
+            self.follow_motions(&group, clock, occasion);
+            self.solve_islands(&group, clock)
+        };
         if let Occasion::Plan { .. } = occasion {
-            let is_one = |i: usize| group.binary_search(&i).is_ok();
-            self.undoable.retain(|contact| !(is_one(contact.a) || is_one(contact.b)));
+            self.undoable.retain(|contact| !(group.is_member[contact.a] || group.is_member[contact.b]));
         } else {
             self.impulses.append(&mut self.undoable);
         }
-        let until = if let Occasion::Plan { until } = occasion { until } else { end };
-        let clock = Clock { now: time, end: until };
-        let found = islands(&self.sim.bodies, contacts);
-        let (bodies, options, energy) = (&self.sim.bodies, &self.sim.options, self.sim.greatest_energy);
-        let solved = parallel::map(found, |island| solve(bodies, &island, clock, options, energy));
+        if occasion == Occasion::Start {
+            let bodies = &self.sim.bodies;
+            self.sim.pairs.retain(|&key, _| {
+                group.has_measured(key) || !(bodies[key.0].is_awake() || bodies[key.1].is_awake())
+            });
+        }
         let mut flying = vec![false; self.sim.bodies.len()];
         for part in solved {
             for push in &part.bodies {
@@ -42,17 +49,21 @@ impl Step<'_> {
                 body.push(push.impact);
                 body.unpushed = Some(body.momenta());
                 body.push(push.rest);
+                body.lead = Some(push.lead);
                 body.fly(push.velocity, push.horizon);
                 body.free = false;
                 flying[push.body] = true;
             }
             self.keep(part, occasion);
         }
-        for &i in &group {
+        let (gravity, step) = (self.sim.options.gravity, self.sim.options.step);
+        for &i in &group.members {
             let body = &mut self.sim.bodies[i];
             if body.is_dynamic() && !body.held && !flying[i] {
-                let horizon = body.horizon_within(until, self.sim.options.step);
-                let velocity = body.flight_velocity(horizon, gravity);
+                let horizon = body.horizon_within(until, step);
+                let length = horizon - time;
+                let velocity = body.flight_velocity(length, gravity);
+                body.lead = Some(body.lead.unwrap_or(0.5 * length));
                 body.fly(velocity, horizon);
                 (body.free, body.unpushed) = (true, None);
             }
@@ -60,7 +71,96 @@ impl Step<'_> {
                 self.sim.recorder.change(BodyId(i as u32), body.flight);
             }
         }
-        self.query(time, &group)
+        self.query(time, &group.members)
+    }
+
+    /// Kinematic members begin their next flight if the last one ends here.
+    fn follow_motions(&mut self, group: &Group, clock: Clock, occasion: Occasion) {
+        for &i in &group.members {
+            let body = &mut self.sim.bodies[i];
+            if body.is_kinematic() && (occasion == Occasion::Start || body.horizon <= clock.now) {
+                body.time = clock.now;
+                body.follow(self.end, self.sim.options.gap);
+                self.sim.recorder.change(BodyId(i as u32), body.flight);
+            }
+        }
+    }
+
+    /// Velocities of the members from the contacts between them, and with what nothing moves.
+    fn solve_islands(&self, group: &Group, clock: Clock) -> Vec<Solved> {
+        let (bodies, options, energy) = (&self.sim.bodies, &self.sim.options, self.sim.greatest_energy);
+        let settled = |i: usize| group.is_member[i] || !bodies[i].is_dynamic() || bodies[i].held;
+        let within = group.contacts.iter().filter(|c| settled(c.a) && settled(c.b)).copied().collect();
+        parallel::map(islands(bodies, within), |island| solve(bodies, &island, clock, options, energy))
+    }
+
+    /// An event changes the velocities of its bodies, and of those that they then press on: a heap of bodies at rest is not
+    /// solved again for what happens on top of it.
+    fn solve_nearby(
+        &mut self,
+        group: &mut Group,
+        seeds: Vec<usize>,
+        clock: Clock,
+    ) -> Result<Vec<Solved>, StepError> {
+        let mut wave = seeds;
+        for _ in 0..MOST_ROUNDS {
+            self.admit(group, clock.now, &wave, Occasion::Event)?;
+            group.sort();
+            self.follow_motions(group, clock, Occasion::Event);
+            let solved = self.solve_islands(group, clock);
+            wave = self.pressed(group, &solved, clock);
+            if wave.is_empty() {
+                return Ok(solved);
+            }
+        }
+        self.admit_connected(group, clock.now, wave, Occasion::Event)?;
+        let rest: Vec<usize> = group.contacts.iter().flat_map(|c| [c.a, c.b]).collect();
+        let outside = |i: &usize| {
+            let body = &self.sim.bodies[*i];
+            !group.is_member[*i] && body.is_dynamic() && !body.held
+        };
+        let rest: Vec<usize> = rest.into_iter().filter(outside).collect();
+        self.admit_connected(group, clock.now, rest, Occasion::Event)?;
+        group.sort();
+        self.follow_motions(group, clock, Occasion::Event);
+        Ok(self.solve_islands(group, clock))
+    }
+
+    /// The bodies outside of the group that members with these velocities come closer to than contacts allow, ascending.
+    fn pressed(&self, group: &Group, solved: &[Solved], clock: Clock) -> Vec<usize> {
+        let gravity = self.sim.options.gravity;
+        let mut velocities = BTreeMap::new();
+        for push in solved.iter().flat_map(|part| &part.bodies) {
+            velocities.insert(push.body, push.velocity);
+        }
+        let velocity = |i: usize| {
+            let body = &self.sim.bodies[i];
+            match velocities.get(&i) {
+                Some(velocity) => *velocity,
+                None if group.is_member[i] && body.is_dynamic() && !body.held => {
+                    body.flight_velocity(clock.end - clock.now, gravity)
+                }
+                None => body.present_velocity(),
+            }
+        };
+        let outside = |i: usize| {
+            let body = &self.sim.bodies[i];
+            !group.is_member[i] && body.is_dynamic() && !body.held
+        };
+        let mut pressed = Vec::new();
+        for contact in group.contacts.iter().filter(|c| outside(c.a) || outside(c.b)) {
+            let (a, b) = (velocity(contact.a), velocity(contact.b));
+            let rate = contact
+                .normal
+                .dot(b.linear + b.angular.cross(contact.arm_b) - a.linear - a.angular.cross(contact.arm_a));
+            let (distance, gap) = (contact.distance, contact.gap);
+            if distance + rate * (clock.end - clock.now) < distance.min(gap) - LEEWAY * gap {
+                pressed.extend([contact.a, contact.b].into_iter().filter(|&i| outside(i)));
+            }
+        }
+        pressed.sort_unstable();
+        pressed.dedup();
+        pressed
     }
 
     /// Keeps the impulses until the flights are flown, and those of the step's own solve for the next one to begin with.

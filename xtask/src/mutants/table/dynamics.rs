@@ -5,7 +5,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "flights that events cut keep the velocity of longer ones",
         "crates/d2m-dynamics/src/step/plan.rs",
-        "const UNBALANCED: f64 = 1.0 / 1024.0;",
+        "const UNBALANCED: f64 = 1.0 / 4096.0;",
         "const UNBALANCED: f64 = 1e9;",
         "crates/d2m-dynamics/tests/energy.rs::a_falling_chain_gains_none",
     ),
