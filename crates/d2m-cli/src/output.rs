@@ -82,6 +82,20 @@ impl Output {
         self.write_bytes(contents.as_bytes())
     }
 
+    /// Opens the place for results that come bit by bit: what is there already is replaced at once.
+    pub(crate) fn stream(&self) -> Result<Stream, Failure> {
+        let (file, name) = match self {
+            Self::Stdout => (None, "standard output".to_owned()),
+            Self::File(path) => {
+                let created = fs::File::create(path);
+                let file = created
+                    .map_err(|error| Failure::at(path.display(), format!("cannot be written: {error}")))?;
+                (Some(file), path.display().to_string())
+            }
+        };
+        Ok(Stream { file, name })
+    }
+
     /// As [`Self::write`], for what is no text.
     pub(crate) fn write_bytes(&self, contents: &[u8]) -> Result<(), Failure> {
         let Self::File(path) = self else { return print_bytes(contents) };
@@ -89,6 +103,27 @@ impl Output {
         let special = path.exists() && !path.is_file();
         let written = if special { fs::write(path, contents) } else { replace(path, contents) };
         written.map_err(|error| Failure::at(path.display(), format!("cannot be written: {error}")))
+    }
+}
+
+/// Results as they come: a run that is ended from outside leaves the whole lines written until then.
+#[derive(Debug)]
+pub(crate) struct Stream {
+    /// None: standard output.
+    file: Option<fs::File>,
+    name: String,
+}
+
+impl Stream {
+    /// Appends whole lines in one piece.
+    pub(crate) fn lines(&mut self, lines: &str) -> Result<(), Failure> {
+        match &mut self.file {
+            None => print(lines),
+            Some(file) => {
+                let written = file.write_all(lines.as_bytes());
+                written.map_err(|error| Failure::at(&self.name, format!("cannot be written: {error}")))
+            }
+        }
     }
 }
 

@@ -18,7 +18,7 @@ const HALF: f64 = 0.5;
 /// The tolerance of a query: this part of the separation. A flight then ends between it and 1.21 times it.
 const SLACK: f64 = 0.0625;
 /// A separation below this part of the gap is not halved further: the pair is held.
-const LEAST: f64 = 1e-6;
+const LEAST: f64 = 1e-9;
 
 /// Sine of the angle by which features may be tilted and still be one contact: the far corners of a box that lies almost flat.
 const TILT: f64 = 0.1;
@@ -27,6 +27,9 @@ const TILT: f64 = 0.1;
 /// lies over an edge, the direction between them turns by the offset over the gap, however small that is: without
 /// friction equal boxes on each other would slide apart.
 const FLAT: f64 = 0.02;
+
+/// The part of the gap below which contacts keep their true normals besides those of faces.
+const TIGHT: f64 = 0.3;
 
 /// Features of a pair from which on fewer are sought, and up to which more are.
 const MANY: usize = 128;
@@ -179,7 +182,11 @@ pub(crate) fn measure(
         impulse: 0.0,
         sliding: [0.0; 2],
     };
-    let contacts = found.iter().filter(|p| p.normal.is_normalized()).map(contact).collect();
+    // Where hardly any of the gap is left, what slides across must not close along the true direction either.
+    let is_tight = |p: &&Proximity| p.tilt == 0.0 && p.distance < TIGHT * gap && !found.contains(*p);
+    let mut all = found.clone();
+    all.extend(wide.iter().filter(is_tight));
+    let contacts = all.iter().filter(|p| p.normal.is_normalized()).map(contact).collect();
     Ok(Measured { contacts, features: wide.len() })
 }
 

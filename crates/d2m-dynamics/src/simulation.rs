@@ -229,6 +229,11 @@ impl Simulation {
         self.bodies.len()
     }
 
+    /// All bodies, in the order in which they were added.
+    pub fn ids(&self) -> impl Iterator<Item = BodyId> + use<> {
+        (0..self.bodies.len() as u32).map(BodyId)
+    }
+
     /// Are there none?
     pub fn is_empty(&self) -> bool {
         self.bodies.is_empty()

@@ -2,7 +2,7 @@
 
 use crate::arguments::SimulateArguments;
 use crate::failure::Failure;
-use crate::output::{Output, note, progress_bar};
+use crate::output::{Output, Stream, note, progress_bar};
 use crate::report::duration;
 use crate::simulation::{Scene, header, read_scene, segment};
 use d2m_dynamics::{Segment, StepError};
@@ -18,62 +18,91 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<(), Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.into()).build();
     let pool = pool.map_err(|error| Failure::at("--threads", error))?;
     let name = arguments.scene.display().to_string();
-    let (text, took, stopped) = pool.install(|| simulate(scene, &name));
-    out.write(&text)?;
-    if let Some(error) = stopped {
+    let ended = pool.install(|| simulate(scene, &name, &out))?;
+    if let Some(error) = ended.early {
         Err(Failure::at(name, error))
     } else {
-        note(&format!("simulated in {}", duration(took)));
+        note(&format!("simulated in {}", duration(ended.took)));
         Ok(())
     }
 }
 
-/// The run file, the time that the steps took, and why it ended early.
-fn simulate(mut scene: Scene, name: &str) -> (String, Duration, Option<StepError>) {
+/// How a run ended.
+struct Ended {
+    /// The time that the steps took.
+    took: Duration,
+    /// Why it could not go on.
+    early: Option<StepError>,
+}
+
+/// The run file, written step by step.
+struct RunFile<'s> {
+    out: &'s Output,
+    /// None before the first step is done: a scene that is refused leaves no file.
+    stream: Option<Stream>,
+    header: String,
+    names: &'s [String],
+}
+
+impl RunFile<'_> {
+    fn write(&mut self, segments: &[Segment], took: Duration) -> Result<(), Failure> {
+        let wall = took.as_secs_f64() / segments.len().max(1) as f64;
+        let mut text = String::new();
+        let mut first = !self.header.is_empty() && !segments.is_empty();
+        if first {
+            text = core::mem::take(&mut self.header);
+        }
+        for part in segments {
+            segment(&mut text, part, self.names, first, wall);
+            first = false;
+        }
+        if self.stream.is_none() {
+            self.stream = Some(self.out.stream()?);
+        }
+        self.stream.as_mut().map_or(Ok(()), |stream| stream.lines(&text))
+    }
+}
+
+fn simulate(mut scene: Scene, name: &str, out: &Output) -> Result<Ended, Failure> {
     let step = scene.simulation.options().step;
     let steps = (scene.end / step - ROUNDING).ceil().max(1.0);
     let bar = progress_bar(steps as usize, "steps");
-    let mut text = header(name, &scene.names, &scene.simulation, &scene.ids);
-    let mut first = true;
-    let mut write = |segments: &[Segment], took: Duration| {
-        let wall = took.as_secs_f64() / segments.len().max(1) as f64;
-        for part in segments {
-            segment(&mut text, part, &scene.names, first, wall);
-            first = false;
-        }
-    };
-    let mut total = Duration::ZERO;
-    let mut stopped = None;
-    let (mut events, mut skipped) = (0, 0.0);
+    let header = header(name, &scene.names, &scene.simulation, &scene.ids);
+    let mut file = RunFile { out, stream: None, header, names: &scene.names };
+    let mut ended = Ended { took: Duration::ZERO, early: None };
+    let (mut events, mut skipped) = (0u64, 0.0);
     for k in 1..=steps as u64 {
         let end = if k == steps as u64 { scene.end } else { k as f64 * step };
         let start = Instant::now();
         let answer = scene.simulation.step_to(end);
         let took = start.elapsed();
-        total += took;
+        ended.took += took;
         match answer {
             Ok(report) => {
-                events += report.events;
+                events += u64::from(report.events);
                 skipped += report.segments.iter().map(|s| s.skipped).sum::<f64>();
-                write(&report.segments, took);
+                file.write(&report.segments, took)?;
+            }
+            Err(error @ StepError::Setup(_)) if file.stream.is_none() => {
+                return Ok(Ended { early: Some(error), ..ended });
             }
             Err(error) => {
-                stopped = Some(error);
+                ended.early = Some(error);
                 break;
             }
         }
         bar.inc(1);
-        let each = total.as_secs_f64() / scene.simulation.time().max(f64::MIN_POSITIVE);
+        let each = ended.took.as_secs_f64() / scene.simulation.time().max(f64::MIN_POSITIVE);
         bar.set_message(format!("{each:.3} s a simulated second, {events} events"));
     }
     bar.finish_and_clear();
     let last = scene.simulation.finish();
     skipped += last.iter().map(|s| s.skipped).sum::<f64>();
-    write(&last, Duration::ZERO);
+    file.write(&last, Duration::ZERO)?;
     let time = scene.simulation.time();
-    let each = total.as_secs_f64() / time.max(f64::MIN_POSITIVE);
+    let each = ended.took.as_secs_f64() / time.max(f64::MIN_POSITIVE);
     note(&format!(
         "{time} simulated, {each:.4} s a simulated second, {events} contact events, {skipped} skipped"
     ));
-    (text, total, stopped)
+    Ok(ended)
 }

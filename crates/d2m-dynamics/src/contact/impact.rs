@@ -1,6 +1,6 @@
 //! Impacts: restitution and friction where bodies meet faster than they rest.
 
-use super::{ContactPoint, Solver};
+use super::{ContactPoint, Solver, Sweeps};
 use crate::rigid_body::Velocity;
 use glam::DMat3;
 
@@ -54,7 +54,7 @@ pub(crate) fn impact(
                     }
                 })
                 .collect();
-            solver.iterate(&mut round, &targets, PRECISION * fastest, MOST_SWEEPS);
+            solver.iterate(&mut round, &targets, PRECISION * fastest, Sweeps::Accelerated(MOST_SWEEPS));
             // A body that follows its motion may work: then the others may gain.
             if driven || solver.doubled_energy(inertia) <= energy * (1.0 + ENERGY_ROUNDING) || scale == 0.0 {
                 break round;

@@ -8,4 +8,4 @@ mod solver;
 pub(crate) use impact::impact;
 pub(crate) use point::{ContactPoint, Material, tangents};
 pub(crate) use rows::{HIT, Span, select};
-pub(crate) use solver::{Solver, SolverBody};
+pub(crate) use solver::{Solver, SolverBody, Sweeps};

@@ -79,6 +79,16 @@ impl Prepared {
     }
 }
 
+/// How many sweeps at most, and how they go on from each other.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Sweeps {
+    /// Along conjugate directions: fast, but before its end it may be further off than it began.
+    Accelerated(u32),
+    /// One after the other. From impulses of zero and for targets of zero or less no sweep adds energy: each lowers
+    /// ½ λᵀAλ + λᵀ(J v − target), which begins at zero, and the energy that λ adds is that and λᵀ target.
+    Plain(u32),
+}
+
 /// Contacts between bodies, prepared for iteration.
 pub(crate) struct Solver {
     pub(crate) bodies: Vec<SolverBody>,
@@ -115,7 +125,7 @@ impl Solver {
         }
     }
 
-    /// Iterates until no rate changes by more than `precision` in a sweep, `most` sweeps at most. The rates along the normals
+    /// Iterates until no rate changes by more than `precision` in a sweep, so many sweeps at most. The rates along the normals
     /// end at `targets` at least; impulses along the normals push only, those along the tangents stay in the cone.
     ///
     /// Sweeps of projected Gauss–Seidel, continued along conjugate directions of their steps (the nonsmooth nonlinear
@@ -126,8 +136,12 @@ impl Solver {
         contacts: &mut [ContactPoint],
         targets: &[f64],
         precision: f64,
-        most: u32,
+        sweeps: Sweeps,
     ) -> u32 {
+        let (most, is_plain) = match sweeps {
+            Sweeps::Accelerated(most) => (most, false),
+            Sweeps::Plain(most) => (most, true),
+        };
         let mut direction = vec![[0.0f64; 3]; contacts.len()];
         let mut before = vec![[0.0f64; 3]; contacts.len()];
         let mut last = f64::INFINITY;
@@ -138,6 +152,9 @@ impl Solver {
             let change = self.sweep(contacts, targets);
             if change <= precision || sweep == most {
                 return sweep;
+            }
+            if is_plain {
+                continue;
             }
             let mut square = 0.0;
             for (old, contact) in before.iter_mut().zip(contacts.iter()) {

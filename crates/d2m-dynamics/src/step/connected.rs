@@ -66,7 +66,7 @@ impl Step<'_> {
         occasion: Occasion,
     ) -> Result<Vec<usize>, StepError> {
         let gravity = self.sim.options.gravity;
-        for &i in wave.iter() {
+        for &i in wave {
             if core::mem::replace(&mut group.is_member[i], true) {
                 continue;
             }

@@ -58,7 +58,8 @@ impl Step<'_> {
         // Two bodies that stand still stay as far apart as they are.
         keys.retain(|&(a, b)| {
             let (a, b) = (&bodies[a], &bodies[b]);
-            !(a.stands_still() && b.stands_still()) && !are_spheres_apart(a, b, time, end, gap)
+            let stay_apart = a.stands_still() && b.stands_still();
+            !(stay_apart || are_spheres_apart(a, b, time, end, gap))
         });
         let jobs: Vec<(Key, Pair)> = keys
             .into_iter()

@@ -1,0 +1,109 @@
+//! `d2m simulate` as scripts see it.
+
+mod shell;
+
+use serde_json::Value;
+use shell::{Folder, d2m, refused, stderr};
+
+const PILE: &str = r#"{"bodies": [
+    {"name": "floor", "mesh": "shape:box?x=5&y=0.5&z=5", "kind": "static", "pose": {"x": [0, -0.5, 0]}, "friction": 0.5},
+    {"name": "low", "mesh": "shape:box?x=0.5&y=0.5&z=0.5", "pose": {"x": [0, 0.6, 0]}, "friction": 0.5},
+    {"name": "high", "mesh": "shape:box?x=0.5&y=0.5&z=0.5", "pose": {"x": [0.3, 2.1, 0.2], "q": [1, 0.2, 0.1, 0]}, "restitution": 0.3},
+    {"name": "ring", "mesh": "shape:torus?triangles=200", "pose": {"x": [0, 4, 0]}, "velocity": {"w": [1, 2, 3]}}],
+    "simulation": {"end": 1.5, "step": 0.02}}"#;
+
+fn lines(path: &str) -> Vec<Value> {
+    let text = std::fs::read_to_string(path).unwrap();
+    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+/// A line without the time that it took.
+fn timeless(mut line: Value) -> Value {
+    if let Some(fields) = line.as_object_mut() {
+        fields.remove("wall");
+    }
+    line
+}
+
+#[test]
+fn runs_join_from_start_to_end_and_are_the_same_at_any_number_of_threads() {
+    let folder = Folder::new("simulate-runs");
+    let scene = folder.file("pile.json", PILE);
+    let runs: Vec<Vec<Value>> = ["1", "2"]
+        .iter()
+        .map(|threads| {
+            let run = folder.path(&format!("run-{threads}.jsonl"));
+            let output = d2m(&["simulate", &scene, "--out", &run, "--threads", threads]);
+            assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+            assert!(stderr(&output).contains("s a simulated second"), "{}", stderr(&output));
+            lines(&run).into_iter().map(timeless).collect()
+        })
+        .collect();
+    assert_eq!(runs[0], runs[1]);
+    let run = &runs[0];
+    let names: Vec<&str> =
+        run[0]["bodies"].as_array().unwrap().iter().map(|b| b["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["floor", "low", "high", "ring"]);
+    assert_eq!(run[1]["bodies"].as_array().unwrap().len(), 4);
+    let mut time = 0.0;
+    for segment in &run[1..] {
+        assert_eq!(segment["t0"].as_f64(), Some(time));
+        time = segment["t1"].as_f64().unwrap();
+        assert_eq!(segment["skipped"].as_f64(), Some(0.0));
+    }
+    assert_eq!(time, 1.5);
+    assert!(run.iter().any(|line| line["contacts"].as_array().is_some_and(|c| !c.is_empty())));
+}
+
+#[test]
+fn bodies_that_overlap_at_the_start_are_named_and_nothing_is_written() {
+    let folder = Folder::new("simulate-overlap");
+    let scene = folder.file("overlap.json", &PILE.replace("[0, 0.6, 0]", "[0, 0.4, 0]"));
+    let run = folder.path("run.jsonl");
+    refused(&["simulate", &scene, "--out", &run], &["overlap.json", "floor", "low", "intersect"]);
+    assert!(!std::path::Path::new(&run).exists());
+}
+
+#[test]
+fn a_run_that_cannot_go_on_keeps_its_segments() {
+    let folder = Folder::new("simulate-crushed");
+    let text = r#"{"bodies": [
+        {"name": "wall", "mesh": "shape:box?x=0.5&y=0.5&z=0.5", "kind": "static", "pose": {"x": [1.5, 0, 0]}},
+        {"name": "nut", "mesh": "shape:box?x=0.5&y=0.5&z=0.5"},
+        {"name": "press", "mesh": "shape:box?x=0.5&y=0.5&z=0.5", "kind": "kinematic", "motion": {"x": [-1.5, 0, 0], "v": [2, 0, 0]}}],
+        "simulation": {"gravity": [0, 0, 0], "end": 2}}"#;
+    let scene = folder.file("crushed.json", text);
+    let run = folder.path("run.jsonl");
+    let output = d2m(&["simulate", &scene, "--out", &run]);
+    assert_eq!(output.status.code(), Some(3));
+    let message = stderr(&output);
+    assert!(["crushed.json", "press", "nut"].iter().all(|word| message.contains(word)), "{message}");
+    let run = lines(&run);
+    let last = run.last().unwrap()["t1"].as_f64().unwrap();
+    assert!(run.len() > 10 && last > 0.2 && last < 1.0, "{last}");
+}
+
+#[test]
+fn bad_scenes_are_refused_with_their_place() {
+    let folder = Folder::new("simulate-bad");
+    let cases = [
+        (PILE.replace("\"end\": 1.5", "\"end\": 0"), "end"),
+        (PILE.replace("\"step\": 0.02", "\"step\": -1"), "step"),
+        (PILE.replace("\"restitution\": 0.3", "\"restitution\": 1.5"), "restitution"),
+        (PILE.replace("\"restitution\": 0.3", "\"mass\": 0"), "mass"),
+        (PILE.replace("\"restitution\": 0.3", "\"density\": -7800"), "density"),
+        (PILE.replace("\"restitution\": 0.3", "\"bounce\": 1"), "bounce"),
+        (PILE.replace("[1, 0.2, 0.1, 0]", "[0, 0, 0, 0]"), "q"),
+        (PILE.replace("[1, 2, 3]", "[1, 2]"), "w"),
+        (PILE.replace("\"high\"", "\"low\""), "low"),
+        (PILE.replace("\"static\"", "\"fixed\""), "fixed"),
+        (PILE.replace("\"friction\": 0.5}", "\"friction\": 1e999}"), "number"),
+    ];
+    for (index, (text, word)) in cases.iter().enumerate() {
+        let scene = folder.file(&format!("bad-{index}.json"), text);
+        refused(
+            &["simulate", &scene, "--out", &folder.path("run.jsonl")],
+            &[&format!("bad-{index}.json"), word],
+        );
+    }
+}

@@ -1,0 +1,149 @@
+//! Scenes that ask for too much: each step ends, says what it skipped, and nothing panics.
+
+use d2m_bvh::MeshTree;
+use d2m_dynamics::{Body, Kind, Mass, MassProperties, Simulation, SimulationOptions};
+use glam::{DMat3, DQuat, DVec3};
+use std::sync::Arc;
+
+fn tree(shape: &str) -> Arc<MeshTree> {
+    Arc::new(MeshTree::new(d2m_shapes::mesh(shape).unwrap()))
+}
+
+fn floor(scale: f64) -> Body {
+    let shape = tree(&format!("box?x={}&y={}&z={}", 10.0 * scale, scale, 10.0 * scale));
+    Body::new("floor", shape).with_kind(Kind::Static).with_position(DVec3::NEG_Y * scale)
+}
+
+/// Steps until `end`; the skipped time.
+fn run(simulation: &mut Simulation, end: f64) -> f64 {
+    let mut skipped = 0.0;
+    while simulation.time() < end {
+        let report = simulation.step().unwrap();
+        assert!(report.events <= simulation.options().max_events + simulation.len() as u32);
+        skipped += report.segments.iter().map(|s| s.skipped).sum::<f64>();
+    }
+    skipped + simulation.finish().iter().map(|s| s.skipped).sum::<f64>()
+}
+
+#[test]
+fn restitution_one_at_rest_on_the_floor() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    simulation.add(&floor(1.0).with_restitution(1.0)).unwrap();
+    let cube = tree("box?x=0.5&y=0.5&z=0.5");
+    for k in 0..3 {
+        let body = Body::new(format!("{k}"), Arc::clone(&cube)).with_restitution(1.0).with_friction(2.0);
+        simulation.add(&body.with_position(DVec3::Y * (0.501 + 1.001 * f64::from(k)))).unwrap();
+    }
+    assert_eq!(run(&mut simulation, 1.0), 0.0);
+    assert!(simulation.linear_velocity(simulation.ids().last().unwrap()).length() < 0.1);
+}
+
+/// A thousand turns a step.
+#[test]
+fn a_spin_of_a_hundred_thousand_turns_a_second() {
+    let mut simulation = Simulation::new(SimulationOptions::default().with_max_events(16)).unwrap();
+    simulation.add(&floor(1.0).with_friction(0.5)).unwrap();
+    let brick = Body::new("brick", tree("box?x=0.5&y=0.2&z=0.1")).with_position(DVec3::Y * 0.7);
+    let id = simulation.add(&brick.with_angular_velocity(DVec3::new(1e3, 6e5, 2e5))).unwrap();
+    run(&mut simulation, 0.05);
+    assert!(simulation.position(id).is_finite() && simulation.position(id).y > 0.0);
+}
+
+#[test]
+fn tiny_and_huge_units() {
+    for scale in [1e-4, 1e4] {
+        let options =
+            SimulationOptions::default().with_gap(1e-3 * scale).with_gravity(DVec3::Y * (-10.0 * scale));
+        let mut simulation = Simulation::new(options).unwrap();
+        simulation.add(&floor(scale).with_friction(0.5)).unwrap();
+        let half = 0.5 * scale;
+        let cube = tree(&format!("box?x={half}&y={half}&z={half}"));
+        let body = Body::new("cube", cube).with_position(DVec3::Y * scale).with_friction(0.5);
+        let id = simulation.add(&body.with_orientation(DQuat::from_rotation_z(0.3))).unwrap();
+        assert_eq!(run(&mut simulation, 2.0), 0.0, "{scale}");
+        let height = simulation.position(id).y / scale;
+        assert!((height - 0.5).abs() < 0.01, "{scale}: {height}");
+    }
+}
+
+/// Masses a billion times apart press on each other.
+#[test]
+fn a_feather_under_a_mountain() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    simulation.add(&floor(1.0).with_friction(0.5)).unwrap();
+    let cube = tree("box?x=0.5&y=0.5&z=0.5");
+    for (k, mass) in [1e-3, 1e6].into_iter().enumerate() {
+        let body = Body::new(format!("{mass}"), Arc::clone(&cube)).with_mass(Mass::Total(mass));
+        let height = 0.501 + 1.01 * k as f64;
+        simulation.add(&body.with_position(DVec3::Y * height).with_friction(0.5)).unwrap();
+    }
+    run(&mut simulation, 0.5);
+    for id in simulation.ids() {
+        assert!(simulation.position(id).is_finite());
+    }
+}
+
+/// More meetings in a step than it may have: what is left of it is given up, and said to be.
+#[test]
+fn events_run_out_and_the_report_says_so() {
+    let options = SimulationOptions::default().with_gravity(DVec3::ZERO).with_step(1.0).with_max_events(8);
+    let mut simulation = Simulation::new(options).unwrap();
+    let wall = tree("box?x=0.5&y=2&z=2");
+    for (name, x) in [("left", -1.0), ("right", 1.0)] {
+        let body = Body::new(name, Arc::clone(&wall)).with_kind(Kind::Static);
+        simulation.add(&body.with_position(DVec3::X * x).with_restitution(1.0)).unwrap();
+    }
+    let ball = Body::new("ball", tree("box?x=0.1&y=0.1&z=0.1")).with_restitution(1.0);
+    let id = simulation.add(&ball.with_linear_velocity(DVec3::X * 100.0)).unwrap();
+    let skipped = run(&mut simulation, 1.0);
+    assert!(skipped > 0.5 && skipped < 1.0, "{skipped}");
+    assert!(simulation.position(id).x.abs() < 0.4);
+}
+
+/// Where vertices slide over edges, the direction between them is none of a face: its contact must hold, or the pair is
+/// hit again and again until it can move no more.
+#[test]
+fn cubes_that_fall_on_each_others_edges_keep_moving() {
+    let cube = tree("box?x=0.5&y=0.5&z=0.5");
+    let options = SimulationOptions::default().with_gravity(DVec3::Y * -9.8);
+    let mut simulation = Simulation::new(options).unwrap();
+    simulation.add(&floor(1.0)).unwrap();
+    simulation.add(&Body::new("first", Arc::clone(&cube)).with_position(DVec3::Y * 2.0)).unwrap();
+    for k in 0..4 {
+        let x = f64::from(k);
+        let body = Body::new(format!("{k}"), Arc::clone(&cube)).with_position(DVec3::Y * (4.0 + 2.0 * x));
+        let body = body.with_linear_velocity(DVec3::X * 0.1 * x);
+        simulation.add(&body.with_angular_velocity(DVec3::new(0.5 * x, 1.0, 0.3))).unwrap();
+    }
+    assert_eq!(run(&mut simulation, 3.0), 0.0);
+}
+
+#[test]
+fn numbers_that_cannot_be_used_are_refused() {
+    let cube = tree("box?x=0.5&y=0.5&z=0.5");
+    let body = || Body::new("cube", Arc::clone(&cube));
+    let given = |mass: f64| MassProperties::try_new(mass, DVec3::ZERO, DMat3::IDENTITY);
+    assert!(given(0.0).is_err() && given(f64::NAN).is_err() && given(-1.0).is_err());
+    for bad in [
+        body().with_mass(Mass::Total(0.0)),
+        body().with_mass(Mass::Density(f64::INFINITY)),
+        body().with_position(DVec3::NAN),
+        body().with_linear_velocity(DVec3::X * f64::INFINITY),
+        body().with_angular_velocity(DVec3::NAN),
+        body().with_orientation(DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0)),
+        body().with_restitution(1.5),
+        body().with_friction(-0.1),
+        body().with_friction(f64::NAN),
+    ] {
+        let message =
+            Simulation::new(SimulationOptions::default()).unwrap().add(&bad).unwrap_err().to_string();
+        assert!(message.contains("cube"), "{message}");
+    }
+    for options in [
+        SimulationOptions::default().with_step(0.0),
+        SimulationOptions::default().with_gap(f64::NAN),
+        SimulationOptions::default().with_gravity(DVec3::NAN),
+    ] {
+        assert!(Simulation::new(options).is_err());
+    }
+}
