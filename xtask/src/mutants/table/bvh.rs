@@ -78,8 +78,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "normal cones without slack for rounding",
         "crates/d2m-bvh/src/resting/proximities/feature_test.rs",
-        "let slack = direction.error + DIRECTION_ROUNDING + self.cone_slack;",
-        "let slack = self.cone_slack - DIRECTION_ROUNDING - direction.error;",
+        "let rounding = direction.error + DIRECTION_ROUNDING;",
+        "let rounding = 0.0 * direction.error;",
         "crates/d2m-bvh/src/resting/proximities/tests.rs::the_corners_of_a_patch_of_contact_are_all_there_and_once",
     ),
     patch(
