@@ -59,7 +59,7 @@ impl Task for Report<'_> {
             evidence => Meeting { offset: from, evidence },
         };
         let witness = |near: Closest, frame: &Frame| Witness {
-            separation: if start == StartState::Overlapping { 0.0 } else { near.square.sqrt() },
+            separation: if start == StartState::Overlapping { 0.0 } else { near.distance_squared.sqrt() },
             a: place_a::<L::Doubles>(frame, &a),
             b,
             near,
@@ -142,7 +142,7 @@ impl TrianglePair<'_> {
         if proven_crossing(&a, &self.b, error) {
             return Evidence::Crossing;
         }
-        let is_near = near.square.sqrt() <= level - error;
+        let is_near = near.distance_squared.sqrt() <= level - error;
         if is_near || triangles_intersect(&a, &self.b) { Evidence::Near } else { Evidence::Early }
     }
 
@@ -201,7 +201,7 @@ impl TrianglePair<'_> {
 #[inline(always)]
 fn course(frame: &Frame, near: &Closest) -> (f64, f64, DVec3) {
     let normal = near.direction.normalize_or_zero();
-    (near.square.sqrt(), frame.closing_speed(near.points, normal), normal)
+    (near.distance_squared.sqrt(), frame.closing_speed(near.points, normal), normal)
 }
 
 struct Witness {

@@ -133,7 +133,7 @@ pub fn contact_exists(
 }
 
 /// Does a search of this scene find no contact when the bodies are further apart than `room` all the time? A contact
-/// ends at the stopping distance, up to the error of one look.
+/// ends at the stopping distance, up to the error of one test.
 fn excludes_contact(scene: &Scene<'_>, room: f64) -> bool {
     room / scene.units.length() > scene.pair.stop + 2.0 * scene.pair.error
 }
@@ -178,7 +178,7 @@ fn meet_again(scene: &Scene<'_>, triangles: [u32; 2], after: f64) -> Option<f64>
         let frame = motion.frame::<Quad>(0.0);
         let placed = place_a::<Quad>(&frame, &a);
         let near = closest::<Quad>(&placed, &b);
-        let distance = near.square.sqrt();
+        let distance = near.distance_squared.sqrt();
         if distance <= level || triangles_intersect(&placed, &b) {
             return Some(time * scene.units.time());
         }

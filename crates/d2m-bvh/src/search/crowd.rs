@@ -1,8 +1,8 @@
 //! Many pairs of boxes that may meet at the same time: one plane that separates all of them.
 //!
 //! Where n triangles of one body and m of the other come together at a point – two fans, stars, copies of one face –
-//! all n·m pairs have the same time of impact, and best first has to look at each. So when many pairs wait, one of them is
-//! followed to its contact, out of turn; then all vertices below the pairs that wait are taken, and a direction is sought
+//! all n·m pairs have the same time of impact, and best first has to test each. So when many pairs wait, one of them is
+//! advanced to its contact, out of turn; then all vertices below the pairs that wait are taken, and a direction is sought
 //! along which all of A's are below all of B's from the time proven so far until that contact. Along a fixed direction the
 //! gap of the two sets of points that move at constant rates is concave in time, and the rest of the motion takes at
 //! most M s²/2 from it, which is concave as well: positive at both ends, it is positive between. One such plane proves

@@ -12,11 +12,11 @@ use crate::tree::node::WIDTH;
 use d2m_lanes::Lanes;
 use glam::DVec3;
 
-/// A pair that is followed out of turn is left after so many steps; ordinary contacts take fewer than ten.
+/// A pair that is advanced out of turn is left after so many steps; ordinary contacts take fewer than ten.
 const MOST_STEPS_ALONE: u32 = 64;
 
-/// A pair of triangles is followed alone until its time has grown by one part in this many: what it finds early spares
-/// the queue what comes later, and pairs that meet at the same features need one look back each.
+/// A pair of triangles is advanced alone until its time has grown by one part in this many: what it finds early spares
+/// the queue what comes later, and pairs that meet at the same features need one backward certificate each.
 const FOLLOWED: u32 = 16;
 
 /// And by so many steps of the key: some 2e-6 of the window.
@@ -154,8 +154,9 @@ impl Search<'_> {
         };
         let size = radius(&self.scene.a, item.boxes[0]) + radius(&self.scene.b, item.boxes[1]);
         let near = closest::<L::Doubles>(&place_a::<L::Doubles>(&state.frame, a), b);
-        let close = near.square <= size * size && (state.frame.offset > 0.0 || near.square > 0.0);
-        // At the very start the accurate look decides whether the bodies touch.
+        let close =
+            near.distance_squared <= size * size && (state.frame.offset > 0.0 || near.distance_squared > 0.0);
+        // At the very start the accurate test decides whether the bodies touch.
         if close && (state.frame_key > 0 || state.motion.start > 0.0) {
             let offset = state.frame.offset;
             state.found = Some(Found { start: state.motion.start, offset, triangles, crossing: false });

@@ -1,9 +1,9 @@
-//! Windows searched side by side by several threads, with the bits of a search by one.
+//! Sub-windows searched in parallel by several threads: the answer is bitwise identical to that of one thread.
 //!
-//! How a window is searched depends on its span, and on what was done before it only in this: looks at triangles are
-//! thorough from a number of looks on, sweeps are tried from an amount of work on, and the budget ends. A window that is
-//! searched ahead starts from the counts of an earlier moment, which are never above the true ones, and gives up where
-//! it would try sweeps or the budget ends. When its turn comes, what it found is taken only if nothing of the three
+//! How a sub-window is searched depends on its span, and on what was done before it only in this: pairs of triangles are
+//! tested to third order from a number of tests on, swept volumes are tried from an amount of work on, and the budget ends. A
+//! sub-window that is searched before its turn starts from the counts of an earlier moment, which are never above the true ones, and gives up where
+//! it would try swept volumes or the budget ends. When its turn comes, what it found is taken only if nothing of the three
 //! falls into it with the true counts either: then the search by one thread would have done the same, operation by
 //! operation. Otherwise it is searched again. See docs/theory/engine.md, "Several threads".
 
@@ -232,7 +232,7 @@ mod tests {
             };
             let wanted = pool.install(|| ask(&b, &alone));
             let got = pool.install(|| {
-                ask(&beside, &alone);
+                let _ = ask(&beside, &alone);
                 ask(&b, &alone.with_parallel(true))
             });
             assert_eq!(got, wanted);

@@ -222,7 +222,7 @@ impl<R: Registers> Doubles for AvxDoubles<R> {
         out
     }
     #[inline(always)]
-    fn least(self) -> f64 {
+    fn min_element(self) -> f64 {
         // SAFETY: the processor has AVX (see the type).
         unsafe {
             let half = _mm_min_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0));
@@ -230,7 +230,7 @@ impl<R: Registers> Doubles for AvxDoubles<R> {
         }
     }
     #[inline(always)]
-    fn greatest(self) -> f64 {
+    fn max_element(self) -> f64 {
         // SAFETY: the processor has AVX (see the type).
         unsafe {
             let half = _mm_max_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0));

@@ -23,9 +23,9 @@ pub trait Doubles: Elementwise<Scalar = f64> + Div<Output = Self> {
     /// Each rounded to `f32`.
     fn narrow(self) -> [f32; 4];
     /// The smallest of the four.
-    fn least(self) -> f64;
+    fn min_element(self) -> f64;
     /// The largest of the four.
-    fn greatest(self) -> f64;
+    fn max_element(self) -> f64;
     /// The transposed matrix of three columns with zeros below.
     fn transposed(columns: [Self; 3]) -> [Self; 3];
 }
@@ -113,13 +113,13 @@ impl Doubles for Quad {
         [a[0] as f32, a[1] as f32, a[2] as f32, a[3] as f32]
     }
     #[inline(always)]
-    fn least(self) -> f64 {
+    fn min_element(self) -> f64 {
         let [a, b, c, d] = self.0;
         let (low, high) = (if a < c { a } else { c }, if b < d { b } else { d });
         if low < high { low } else { high }
     }
     #[inline(always)]
-    fn greatest(self) -> f64 {
+    fn max_element(self) -> f64 {
         let [a, b, c, d] = self.0;
         let (low, high) = (if a > c { a } else { c }, if b > d { b } else { d });
         if low > high { low } else { high }

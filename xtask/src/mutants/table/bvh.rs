@@ -55,8 +55,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "what is a tolerance too far counts as near",
         "crates/d2m-bvh/src/query/report.rs",
-        "near.square.sqrt() <= level - error;",
-        "near.square.sqrt() <= level + scene.tolerance;",
+        "near.distance_squared.sqrt() <= level - error;",
+        "near.distance_squared.sqrt() <= level + scene.tolerance;",
         "crates/d2m-bvh/tests/evidence.rs::a_start_a_little_above_the_tolerance",
     ),
     patch(

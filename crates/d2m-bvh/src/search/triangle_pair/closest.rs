@@ -17,7 +17,7 @@ pub(crate) enum Place {
 /// Two points, one on each triangle, as close as the features allow (up to rounding).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Closest {
-    pub(crate) square: f64,
+    pub(crate) distance_squared: f64,
     pub(crate) points: [DVec3; 2],
     pub(crate) places: [Place; 2],
     /// Along the shortest line from A to B, re-orthogonalised against the edges it ends on; not normalised.
@@ -152,7 +152,7 @@ fn edge_edge((a, i): (&[DVec3; 3], usize), (b, j): (&[DVec3; 3], usize)) -> Clos
     };
     let (p, q) = (point(a0, a1, e, s), point(b0, b1, d, t));
     let line = q - p;
-    let square = line.length_squared();
+    let distance_squared = line.length_squared();
     let place = |index: usize, x: f64| {
         if x == 0.0 {
             Place::Corner(index)
@@ -172,7 +172,7 @@ fn edge_edge((a, i): (&[DVec3; 3], usize), (b, j): (&[DVec3; 3], usize)) -> Clos
         (_, Place::Edge(_)) => across(line, d),
         _ => line,
     };
-    Closest { square, points: [p, q], places, direction }
+    Closest { distance_squared, points: [p, q], places, direction }
 }
 
 #[inline(always)]
@@ -185,7 +185,7 @@ fn corner_face(
     let p = corners[i];
     let nn = normal.length_squared();
     let height = (p - face[0]).dot(normal);
-    if nn.is_nan() || nn <= 0.0 || height * height >= best.square * nn {
+    if nn.is_nan() || nn <= 0.0 || height * height >= best.distance_squared * nn {
         return;
     }
     for k in 0..3 {
@@ -195,12 +195,22 @@ fn corner_face(
         }
     }
     let foot = p - normal * (height / nn);
-    let square = height * height / nn;
+    let distance_squared = height * height / nn;
     // Towards the corner from the face.
     let out = if height < 0.0 { -normal } else { normal };
     *best = if flipped {
-        Closest { square, points: [foot, p], places: [Place::Face, Place::Corner(i)], direction: out }
+        Closest {
+            distance_squared,
+            points: [foot, p],
+            places: [Place::Face, Place::Corner(i)],
+            direction: out,
+        }
     } else {
-        Closest { square, points: [p, foot], places: [Place::Corner(i), Place::Face], direction: -out }
+        Closest {
+            distance_squared,
+            points: [p, foot],
+            places: [Place::Corner(i), Place::Face],
+            direction: -out,
+        }
     };
 }

@@ -29,12 +29,12 @@ pub(super) struct Jets {
 #[inline(always)]
 pub(super) fn first_time<D: Doubles>(low: Lines<D>, high: Lines<D>, need: f64, m: f64) -> f64 {
     // Lowest vertex now with the fastest closing rate: never late; exact when one vertex is both.
-    let gap = high.at.least() - low.at.greatest() - need;
-    let s = root(gap, high.rate.least() - low.rate.greatest(), m);
+    let gap = high.at.min_element() - low.at.max_element() - need;
+    let s = root(gap, high.rate.min_element() - low.rate.max_element(), m);
     // Concave in s: the chord from a proven time to a later one with a positive value is proven too.
     let later = 2.0 * s;
     let (l, h) = (low.at + low.rate * D::splat(later), high.at + high.rate * D::splat(later));
-    let value = h.least() - l.greatest() - need;
+    let value = h.min_element() - l.max_element() - need;
     let s = if value - 0.5 * m * later * later > 0.0 { later } else { s };
     s * DOWN
 }

@@ -99,7 +99,7 @@ pub(crate) fn separating_axis_test<D: Doubles>(
         } else if attempt == 2 {
             let near = closest::<D>(&placed.a, &placed.b);
             direction = near.direction;
-            touching = near.square <= scale.stop * scale.stop;
+            touching = near.distance_squared <= scale.stop * scale.stop;
         }
         best = placed.clear_for::<D>(direction, scale, scale.target(), best);
         let enough_of_it = best >= enough || far && (attempt == 1 || order == BoundOrder::Second);
@@ -180,7 +180,7 @@ impl Placed {
         let a = QuadVec::<D>::new([self.a[0], self.a[1], self.a[2], self.a[2]]);
         let b = QuadVec::<D>::new([self.b[0], self.b[1], self.b[2], self.b[2]]);
         let (pa, pb) = (a.dot(n), b.dot(n));
-        let (forward, backward) = (pb.least() - pa.greatest(), pa.least() - pb.greatest());
+        let (forward, backward) = (pb.min_element() - pa.max_element(), pa.min_element() - pb.max_element());
         let a_is_low = forward > backward;
         let gap = if a_is_low { forward } else { backward };
         let length = n.length();
