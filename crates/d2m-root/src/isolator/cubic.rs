@@ -151,7 +151,8 @@ impl Cubic {
     /// number cuts nothing.
     fn covers(&self, allowed: f64, part: Piece) -> bool {
         let error = self.bound_evaluation(part.reach());
-        !error.is_finite() || (part.is_within(LONGEST_REACH) && !(allowed + UNDERFLOW < error))
+        let covered = allowed + UNDERFLOW >= error || allowed.is_nan();
+        !error.is_finite() || (part.is_within(LONGEST_REACH) && covered)
     }
 
     #[cold]

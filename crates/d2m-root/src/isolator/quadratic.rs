@@ -120,7 +120,8 @@ impl Quadratic {
     /// a number cuts nothing.
     fn covers(&self, allowed: f64, part: Piece) -> bool {
         let error = self.bound_evaluation(part.reach());
-        !error.is_finite() || (part.is_within(LONGEST_REACH) && !(allowed + UNDERFLOW < error))
+        let covered = allowed + UNDERFLOW >= error || allowed.is_nan();
+        !error.is_finite() || (part.is_within(LONGEST_REACH) && covered)
     }
 
     /// Cuts off both ends of `part` (times relative to s = 0) where the quadratic is certainly outside the band;

@@ -14,6 +14,9 @@ const P: usize = 1400;
 pub type Fixed = IBig;
 
 /// The exact value of a finite double.
+///
+/// # Panics
+/// If `x` is not finite.
 pub fn fixed(x: f64) -> Fixed {
     assert!(x.is_finite());
     let bits = x.to_bits();
@@ -42,6 +45,9 @@ pub(crate) fn sqrt(a: &Fixed) -> Fixed {
 }
 
 /// Largest double not above (`upwards == false`) or least double not below the value.
+///
+/// # Panics
+/// Never: what is rounded has at most 53 bits.
 pub fn to_double(value: &Fixed, upwards: bool) -> f64 {
     let negative = *value < IBig::from(0);
     let size: UBig = value.clone().abs().try_into().expect("absolute value");
@@ -172,6 +178,9 @@ pub(crate) fn quadrant(x: &Fixed) -> (IBig, Fixed) {
 }
 
 /// Sine and cosine.
+///
+/// # Panics
+/// Never: a quadrant is 0, 1, 2 or 3.
 pub fn sin_cos(x: &Fixed) -> (Fixed, Fixed) {
     let (k, r) = quadrant(x);
     let square = -mul(&r, &r);

@@ -98,6 +98,9 @@ impl RigidMotion for Opaque {
 }
 
 /// One query of a family.
+///
+/// # Panics
+/// Never: all numbers drawn are finite.
 pub fn plant(kind: Kind, family: Family, random: &mut Random) -> Planted {
     let fast = if family == Family::Fast { random.between(60.0, 300.0) } else { 3.0 };
     let (w_a, w_b) = match family {

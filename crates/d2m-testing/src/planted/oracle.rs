@@ -117,6 +117,9 @@ pub fn true_contact(kind: Kind, vertices: &Vertices, time: f64, window: (f64, f6
 }
 
 /// Distance of the features at a time, to about 1e-30 (as f64).
+///
+/// # Panics
+/// If `time` is not finite.
 pub fn distance(kind: Kind, vertices: &Vertices, time: f64) -> f64 {
     let v = vertices(&big(time));
     let zero = big(0.0);

@@ -111,8 +111,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "what an error bound must cover is not checked",
         "crates/d2m-root/src/isolator/quadratic.rs",
-        "&& !(allowed + UNDERFLOW < error))",
-        "&& !(allowed + UNDERFLOW < 0.0 * error))",
+        "let covered = allowed + UNDERFLOW >= error || allowed.is_nan();",
+        "let covered = allowed + UNDERFLOW >= 0.0 * error || allowed.is_nan();",
         "crates/d2m-root/tests/exact.rs::an_error_bound_that_leaves_out_rounding_is_noticed",
     ),
     patch(
