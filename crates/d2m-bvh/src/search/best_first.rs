@@ -4,8 +4,9 @@ use super::crowd::Patience;
 use super::motion::frame::Frame;
 use super::motion::units::{power_of_two_from, sum_down};
 use super::node_pair::expansion::{KEY_SCALE, Opening};
-use super::node_pair::node_test::NodeFrame;
+use super::node_pair::node_test::{NodeFrame, NodeScale};
 use super::queue::{Bucket, Item};
+use super::scene::Scene;
 use super::skip::SkipLimits;
 use super::skip::screw_search::screw_clear_until;
 use super::skip::swept_volume::swept_clear_until;
@@ -15,7 +16,7 @@ use super::triangle_pair::widest_gap::widest_normal;
 use crate::Budget;
 use crate::tree::margin::NARROW_UP;
 use crate::tree::node::{Below, LEAST_SIZE, WIDTH, WideNode};
-use d2m_lanes::{Lanes, Quad, Task};
+use d2m_lanes::{Lanes, Quad};
 use glam::DVec3;
 
 /// Batches between two counts of the pairs that wait, for a plane between them.
@@ -34,24 +35,14 @@ const ON_ITS_WAY: f64 = 0.0625;
 /// bounds only begin earlier.
 const FRESH: u32 = 128;
 
-/// The search of one sub-window.
-pub(super) struct OneWindow<'a, 's> {
-    pub(super) search: &'a mut Search<'s>,
-    pub(super) window: SubWindow,
-}
-
-impl Task for OneWindow<'_, '_> {
-    type Output = Step;
-
-    #[inline(always)]
-    fn run<L: Lanes>(self) -> Step {
-        self.search.search_window::<L>(self.window)
-    }
-}
-
 impl Search<'_> {
+    /// Searches a sub-window from these pairs of boxes on, whose keys are zero: all that may meet in it are below them.
     #[inline(always)]
-    fn search_window<L: Lanes>(&mut self, SubWindow { start, end }: SubWindow) -> Step {
+    pub(super) fn search_window<L: Lanes>(
+        &mut self,
+        SubWindow { start, end }: SubWindow,
+        pairs: &[Item],
+    ) -> Step {
         let scene = self.scene;
         let motion = scene.relative_motion(start);
         // At least end − start, whatever its rounding.
@@ -66,14 +57,7 @@ impl Search<'_> {
         let mut state = State {
             motion,
             node_frames: [NodeFrame::NONE; 2],
-            opening: Opening {
-                nodes: [&scene.a.tree.nodes, &scene.b.tree.nodes],
-                scales,
-                size_ratios: [
-                    cube(scales[1].ratio).clamp(LEAST_SIZE.into(), 1.0 / f64::from(LEAST_SIZE)) as f32,
-                    1.0,
-                ],
-            },
+            opening: opening(scene, scales),
             step,
             limit: (length / step).ceil() as u32 + 1,
             // A tick more, so that the end itself is inside; what is found after the end does not count.
@@ -85,8 +69,7 @@ impl Search<'_> {
         };
         self.scratch.counts.windows += 1;
         self.scratch.queue.clear();
-        let open = state.opening.of_pair(0, 0);
-        self.scratch.queue.push(&Item { key: 0, boxes: [0; 2], open });
+        self.scratch.queue.extend(pairs.iter().copied());
         let mut batch = core::mem::replace(&mut self.scratch.batch, Bucket::EMPTY);
         let (mut outcome, mut begun, mut batches) = (None, false, 0u32);
         let mut patience = Patience::new();
@@ -194,6 +177,12 @@ fn first_triangle(nodes: &[WideNode], index: u32) -> u32 {
 /// Units of the window from key `now` to key `limit`, rounded up.
 fn time_left(limit: u32, now: u32) -> f32 {
     (limit - now) as f32 * (1.0 / KEY_SCALE as f32) * NARROW_UP as f32
+}
+
+/// How pairs of boxes of two trees are opened.
+pub(super) fn opening<'a>(scene: &Scene<'a>, scales: [NodeScale; 2]) -> Opening<'a> {
+    let ratio = cube(scales[1].ratio).clamp(LEAST_SIZE.into(), 1.0 / f64::from(LEAST_SIZE)) as f32;
+    Opening { nodes: [&scene.a.tree.nodes, &scene.b.tree.nodes], scales, size_ratios: [ratio, 1.0] }
 }
 
 fn cube(x: f64) -> f64 {

@@ -13,9 +13,12 @@ mod queue;
 pub(crate) mod relative_trajectory;
 mod scene;
 mod skip;
+#[cfg(test)]
+mod span_tests;
 mod state;
 #[cfg(test)]
 mod tests;
+mod time_split;
 pub(crate) mod triangle_pair;
 
 pub use scene::SearchCounts;

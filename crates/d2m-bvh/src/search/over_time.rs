@@ -1,7 +1,7 @@
 //! The search from the start of the query's window to its end: sub-windows of limited rotation, one after the other.
 
-use super::best_first::OneWindow;
 use super::state::{Outcome, Search, Step};
+use super::time_split::OneSpan;
 use d2m_lanes::run_on;
 
 impl Search<'_> {
@@ -9,7 +9,7 @@ impl Search<'_> {
     pub(crate) fn run(mut self) -> Outcome {
         let mut next = self.window_from(0.0);
         while let Some(window) = next {
-            let step = run_on(self.instructions, OneWindow { search: &mut self, window });
+            let step = run_on(self.instructions, OneSpan { search: &mut self, span: window });
             #[cfg(feature = "rayon")]
             let step = match step {
                 Step::ClearUntil(until) if self.parallel && until < self.scene.end => {

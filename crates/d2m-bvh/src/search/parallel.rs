@@ -7,9 +7,9 @@
 //! falls into it with the true counts either: then the search by one thread would have done the same, operation by
 //! operation. Otherwise it is searched again. See docs/theory/engine.md, "Several threads".
 
-use super::best_first::OneWindow;
 use super::scene::{Scratch, SearchCounts};
 use super::state::{Ahead, Outcome, QUICK_LOOKS, Search, Step, SubWindow};
+use super::time_split::OneSpan;
 use d2m_lanes::run_on;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -110,7 +110,7 @@ impl Search<'_> {
                     ahead: Some(ahead),
                     parallel: false,
                 };
-                let step = run_on(instructions, OneWindow { search: &mut search, window: windows[number] });
+                let step = run_on(instructions, OneSpan { search: &mut search, span: windows[number] });
                 let answer = match step {
                     Step::Answer(Outcome::OutOfBudget(_)) => continue,
                     Step::Answer(answer) => Some(answer),

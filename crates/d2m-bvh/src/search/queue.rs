@@ -52,6 +52,23 @@ pub(crate) struct Queue {
     last: u32,
 }
 
+/// A span of time that waits, by places of a grid, and where its pairs are in the list.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WaitingSpan {
+    pub(crate) from: usize,
+    pub(crate) to: usize,
+    pub(crate) pairs: (usize, usize),
+}
+
+/// Spans of time that wait, the earliest last, and their pairs of boxes.
+#[derive(Debug, Default)]
+pub(crate) struct WaitingSpans {
+    pub(crate) spans: Vec<WaitingSpan>,
+    pub(crate) pairs: Vec<Item>,
+    /// Pairs of the span in hand that may be opened.
+    pub(crate) to_open: Vec<Item>,
+}
+
 /// Room for more items than this is given back after use: 1 MB.
 const LARGE: usize = 1 << 16;
 

@@ -5,7 +5,7 @@ use super::motion::local_motion::LocalMotion;
 use super::motion::track::Track;
 use super::motion::units::Units;
 use super::node_pair::node_test::NodeScale;
-use super::queue::{Bucket, Queue};
+use super::queue::{Bucket, Queue, WaitingSpans};
 use super::triangle_pair::pair_scale::PairScale;
 use crate::tree::margin::{DOWN, NARROW_UP, UNIT_F64, UP, round_up};
 use crate::{MeshTree, QueryError, QueryOptions, Solid, Window};
@@ -246,6 +246,11 @@ impl<'a> Scene<'a> {
         RelativeMotion::new([&self.a.motion, &self.b.motion], &self.track, start)
     }
 
+    /// The speed of the reference points against each other.
+    pub(crate) fn closing_speed(&self) -> f64 {
+        (self.a.motion.linear_velocity() - self.b.motion.linear_velocity()).length()
+    }
+
     /// In the units of the caller, for tests.
     #[cfg(test)]
     pub(crate) fn new(
@@ -389,6 +394,8 @@ pub(crate) struct Scratch {
     pub(crate) counts: SearchCounts,
     /// The triangles that were tested last.
     pub(crate) last_looked_at: [u32; 2],
+    /// The spans of time that wait, and their pairs.
+    pub(crate) split: WaitingSpans,
     /// The motion over the window of the last contact that a search with this memory found.
     pub(crate) found_in: Option<RelativeMotion>,
     /// For windows that are searched ahead by other threads.
@@ -404,6 +411,7 @@ impl Scratch {
             fresh: Vec::new(),
             counts: SearchCounts::default(),
             last_looked_at: [0, 0],
+            split: WaitingSpans::default(),
             found_in: None,
             #[cfg(feature = "rayon")]
             helpers: Vec::new(),

@@ -172,7 +172,7 @@ impl<'s> Search<'s> {
         if start >= end && end > 0.0 {
             return None;
         }
-        Some(SubWindow { start, end: (start + self.scene.longest).min(end) })
+        Some(SubWindow { start, end: (start + self.longest_span()).min(end) })
     }
 
     /// What the search has done, in node tests.

@@ -28,6 +28,28 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "",
         "crates/d2m-bvh/src/search/parallel.rs::nothing_of_an_earlier_query_is_reported",
     ),
+    // Whole spans of time.
+    patch(
+        "over a span gaps do not bend",
+        "crates/d2m-bvh/src/search/node_pair/whole_span.rs",
+        "bend * scale.inverse_unit * UP",
+        "0.0 * bend * scale.inverse_unit * UP",
+        "crates/d2m-bvh/src/search/span_tests.rs::the_bend_of_the_gap_is_needed",
+    ),
+    patch(
+        "over a span gaps are tested at its start only",
+        "crates/d2m-bvh/src/search/node_pair/whole_span.rs",
+        "self.margin.less_bits(gap.first()) & self.margin.less_bits(gap.second())",
+        "self.margin.less_bits(gap.first())",
+        "crates/d2m-bvh/src/search/span_tests.rs::pairs_that_are_proven_apart_are_apart_all_the_time",
+    ),
+    patch(
+        "boxes that change sides within a span count as apart",
+        "crates/d2m-bvh/src/search/node_pair/whole_span.rs",
+        "let sense = L::Two::both(along.first() + along.second());",
+        "let sense = along;",
+        "crates/d2m-bvh/src/search/span_tests.rs::pairs_that_are_proven_apart_are_apart_all_the_time",
+    ),
     // Crowds.
     patch(
         "planes are checked at one end of the span only",

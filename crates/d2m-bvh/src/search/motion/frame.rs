@@ -169,6 +169,12 @@ impl RelativeMotion {
     /// State at an offset with |ω|·|offset| ≤ 0.35 for both bodies.
     #[inline(always)]
     pub(crate) fn frame<D: Doubles>(&self, offset: f64) -> Frame {
+        self.frame_and_axes::<D>(offset).0
+    }
+
+    /// The same, and the axes of B in the world.
+    #[inline(always)]
+    pub(crate) fn frame_and_axes<D: Doubles>(&self, offset: f64) -> (Frame, Matrix) {
         let [body_a, body_b] = &self.bodies;
         let (a, b) = (body_a.at::<D>(offset), body_b.at::<D>(offset));
         // Centre of A minus centre of B, and its rate, world axes.
@@ -177,13 +183,14 @@ impl RelativeMotion {
         let apart = moved + (D::load(&a.arm) - D::load(&b.arm));
         let rate = velocity + (D::load(&a.swing) - D::load(&b.swing));
         let to_b = b.rotation.transposed::<D>();
-        Frame {
+        let frame = Frame {
             offset,
             rotation: to_b.times_matrix::<D>(&a.rotation),
             apart: to_b.times_quad::<D>(&apart.store()).store(),
             velocity: to_b.times_quad::<D>(&rate.store()).store(),
             omega_a: to_b.times_quad::<D>(&body_a.omega).store(),
             omega_b: body_b.omega_own,
-        }
+        };
+        (frame, b.rotation)
     }
 }

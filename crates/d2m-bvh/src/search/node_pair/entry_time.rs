@@ -11,13 +11,13 @@ pub(crate) const ENTRY_FACTOR: f32 = 1.0 - 32.0 * UNIT_F32 as f32;
 
 /// Scalar product of lanes.
 #[inline(always)]
-fn dot<T: Elementwise>(a: &[T; 3], b: &[T; 3]) -> T {
+pub(super) fn dot<T: Elementwise>(a: &[T; 3], b: &[T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The same three values in each lane.
 #[inline(always)]
-fn splat<T: Elementwise<Scalar = f32>>(values: &[f32; 4]) -> [T; 3] {
+pub(super) fn splat<T: Elementwise<Scalar = f32>>(values: &[f32; 4]) -> [T; 3] {
     [T::splat(values[0]), T::splat(values[1]), T::splat(values[2])]
 }
 

@@ -2,6 +2,7 @@
 
 use super::entry_time::entry_times;
 use super::node_test::{NodeFrame, NodeScale, Placed};
+use super::whole_span::{SpanFrame, apart_over_span};
 use crate::search::queue::Item;
 use crate::tree::node::{WIDTH, WideNode};
 use d2m_lanes::{Lanes, Rows};
@@ -53,6 +54,29 @@ impl Opening<'_> {
         // What is not a number becomes the key of the item itself.
         let steps = L::splat(LATEST_KEY).min(times * L::splat(KEY_SCALE as f32));
         let (keys, below) = steps.keys(now as i32, item.key as i32, limit as i32);
+        self.rows::<L>(item, keys, below)
+    }
+
+    /// Opens an item that is not a pair of triangles: wanted are the pairs that are not proven apart over the span. Keys are
+    /// zero.
+    #[inline(always)]
+    pub(crate) fn expand_over_span<L: Lanes>(&self, item: &Item, frames: &[SpanFrame<'_>; 2]) -> Rows {
+        let side = item.side();
+        let single = item.boxes[1 - side] as usize;
+        let wide = &self.nodes[side][item.node() as usize];
+        let node = (&self.nodes[1 - side][single / WIDTH], single % WIDTH);
+        let apart = apart_over_span::<L>(&frames[side], &self.scales[side], node, wide);
+        self.rows::<L>(item, [0; WIDTH], !apart)
+    }
+
+    /// The pairs below an item, with these keys; `wanted` among the lanes that are used.
+    #[inline(always)]
+    fn rows<L: Lanes>(&self, item: &Item, keys: [i32; WIDTH], wanted: u32) -> Rows {
+        let (wide_index, side) = (item.node(), item.side());
+        let other = 1 - side;
+        let single = item.boxes[other];
+        let wide = &self.nodes[side][wide_index as usize];
+        let (node, lane) = (&self.nodes[other][single as usize / WIDTH], single as usize % WIDTH);
         let flags = [0, Item::OF_B];
         let size = node.size[lane] * self.size_ratios[other];
         let tags = L::larger(
@@ -66,7 +90,7 @@ impl Opening<'_> {
             constant: single,
             counting_is_third: side == 1,
             tags,
-            wanted: below & ((1 << wide.used) - 1),
+            wanted: wanted & ((1 << wide.used) - 1),
         }
     }
 }

@@ -3,3 +3,4 @@
 pub(crate) mod entry_time;
 pub(crate) mod expansion;
 pub(crate) mod node_test;
+pub(crate) mod whole_span;

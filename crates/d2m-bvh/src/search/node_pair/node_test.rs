@@ -174,7 +174,7 @@ impl Placed {
 
 /// The four bytes for the opposites of directions.
 #[inline(always)]
-fn opposite(bevels: f32) -> f32 {
+pub(super) fn opposite(bevels: f32) -> f32 {
     f32::from_bits(bevels.to_bits().swap_bytes())
 }
 

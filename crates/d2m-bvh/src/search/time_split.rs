@@ -1,0 +1,192 @@
+//! Spans of time that are divided where pairs of boxes need it.
+//!
+//! A sub-window of some tenths of a radian is short against what most pairs of boxes allow that are not near each other: at
+//! high spins a search would begin at the root hundreds of times. So a longer span comes first. Its pairs of boxes are
+//! tested over all of it; those that stay apart are done with. The others are opened while boxes are large against
+//! the way that their points go, and handed on to the two halves of the span. Spans that are short enough are searched
+//! best first, from the pairs that are left. Most have none.
+//!
+//! See docs/theory/engine.md, "Time, divided".
+
+use super::best_first::opening;
+use super::motion::frame::RelativeMotion;
+use super::node_pair::node_test::NodeScale;
+use super::node_pair::whole_span::{PlacedPose, SpanFrame};
+use super::queue::{Item, WaitingSpan, WaitingSpans};
+use super::scene::{Scene, SceneBody};
+use super::state::{Outcome, Search, Step, SubWindow};
+use crate::tree::node::WIDTH;
+use d2m_lanes::{Lanes, Task};
+
+/// A span is halved so often before it is searched.
+const HALVINGS: usize = 2;
+/// Steps of the grid of times on which the spans and their middles lie.
+const GRID: usize = 2 << HALVINGS;
+/// A span is so many of the longest sub-windows: all its times are within 0.35 rad of its middle, where frames hold.
+const SPAN: f64 = 2.0;
+/// Queries of fewer sub-windows are searched one sub-window after the other: most meet within the first few, and a span costs
+/// about as much as it saves then.
+const FEW_SUB_WINDOWS: f64 = 64.0;
+/// More pairs than this are handed on as they are: the search of the parts has a queue for them.
+const MOST_PAIRS: usize = 256;
+
+/// Whether the larger box of a pair has at least this radius.
+fn is_large(scene: &Scene<'_>, item: &Item, least: f64) -> bool {
+    let radius = |body: &SceneBody<'_>, index: u32| {
+        f64::from(body.tree.nodes[index as usize / WIDTH].radius[index as usize % WIDTH]) * body.box_unit()
+    };
+    radius(&scene.a, item.boxes[0]).max(radius(&scene.b, item.boxes[1])) >= least
+}
+
+/// The search of one span.
+pub(super) struct OneSpan<'a, 's> {
+    pub(super) search: &'a mut Search<'s>,
+    pub(super) span: SubWindow,
+}
+
+impl Task for OneSpan<'_, '_> {
+    type Output = Step;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Step {
+        let Self { search, span } = self;
+        let scene = search.scene;
+        let root = Item { key: 0, boxes: [0; 2], open: opening(scene, scene.node_scales(1.0)).of_pair(0, 0) };
+        if !search.divides_time() {
+            return search.search_window::<L>(span, &[root]);
+        }
+        let mut waiting = core::mem::take(&mut search.scratch.split);
+        let step = search.search_divided::<L>(span, root, &mut waiting);
+        search.scratch.split = waiting;
+        step
+    }
+}
+
+/// Times of a span on a grid, and the poses there that were needed so far.
+struct Grid {
+    span: SubWindow,
+    motion: RelativeMotion,
+    scales: [NodeScale; 2],
+    poses: [Option<[PlacedPose; 2]>; GRID + 1],
+}
+
+impl Grid {
+    fn new(scene: &Scene<'_>, span: SubWindow) -> Self {
+        let motion = scene.relative_motion(span.start + 0.5 * (span.end - span.start));
+        Self { span, motion, scales: scene.node_scales(1.0), poses: [None; GRID + 1] }
+    }
+
+    /// The time at a place of the grid.
+    fn time(&self, index: usize) -> f64 {
+        if index == GRID {
+            return self.span.end;
+        }
+        self.span.start + (self.span.end - self.span.start) * (index as f64 / GRID as f64)
+    }
+
+    /// Makes sure that the poses at a place are there.
+    #[inline(always)]
+    fn fill<L: Lanes>(&mut self, index: usize) {
+        if self.poses[index].is_none() {
+            let offset = self.time(index) - self.motion.start;
+            self.poses[index] = Some(PlacedPose::both::<L::Doubles>(&self.motion, offset, &self.scales));
+        }
+    }
+}
+
+impl Search<'_> {
+    /// Whether spans longer than a sub-window come first.
+    fn divides_time(&self) -> bool {
+        !self.limits.only_start && FEW_SUB_WINDOWS * self.scene.longest < self.scene.end
+    }
+
+    /// The longest span that is begun at the root.
+    pub(super) fn longest_span(&self) -> f64 {
+        if self.divides_time() { SPAN * self.scene.longest } else { self.scene.longest }
+    }
+
+    #[inline(always)]
+    fn search_divided<L: Lanes>(&mut self, span: SubWindow, root: Item, waiting: &mut WaitingSpans) -> Step {
+        let mut grid = Grid::new(self.scene, span);
+        let mut clear_until = span.start;
+        waiting.spans.clear();
+        waiting.pairs.clear();
+        waiting.pairs.push(root);
+        waiting.spans.push(WaitingSpan { from: 0, to: GRID, pairs: (0, 1) });
+        while let Some(now) = waiting.spans.pop() {
+            waiting.pairs.truncate(now.pairs.1);
+            let (start, end) = (grid.time(now.from), grid.time(now.to));
+            if end <= clear_until {
+                continue;
+            }
+            if self.out_of_budget() {
+                return Step::Answer(Outcome::OutOfBudget(start));
+            }
+            self.keep_near_pairs::<L>(&now, &mut grid, waiting);
+            let pairs = (now.pairs.1, waiting.pairs.len());
+            if pairs.0 == pairs.1 {
+                clear_until = end;
+            } else if now.to - now.from == 2 {
+                match self.search_window::<L>(SubWindow { start, end }, &waiting.pairs[pairs.0..]) {
+                    Step::ClearUntil(until) => clear_until = until,
+                    answer => return answer,
+                }
+            } else {
+                let middle = (now.from + now.to) / 2;
+                waiting.spans.push(WaitingSpan { from: middle, pairs, ..now });
+                waiting.spans.push(WaitingSpan { to: middle, pairs, ..now });
+            }
+        }
+        Step::ClearUntil(clear_until)
+    }
+
+    /// Appends the pairs of boxes of a span that are not proven apart over it.
+    #[inline(always)]
+    fn keep_near_pairs<L: Lanes>(&mut self, span: &WaitingSpan, grid: &mut Grid, waiting: &mut WaitingSpans) {
+        let scene = self.scene;
+        let length = (grid.time(span.to) - grid.time(span.from)).next_up();
+        let WaitingSpans { pairs, to_open, .. } = waiting;
+        let opening = opening(scene, grid.scales);
+        let large = length * (scene.spin_speed + scene.closing_speed());
+        to_open.clear();
+        for index in span.pairs.0..span.pairs.1 {
+            let item = pairs[index];
+            if is_large(scene, &item, large) { to_open.push(item) } else { pairs.push(item) }
+        }
+        if to_open.is_empty() {
+            return;
+        }
+        let middle = (span.from + span.to) / 2;
+        for index in [span.from, middle, span.to] {
+            grid.fill::<L>(index);
+        }
+        let [Some(start), Some(middle), Some(end)] = [span.from, middle, span.to].map(|k| &grid.poses[k])
+        else {
+            pairs.append(to_open);
+            return;
+        };
+        let bend = scene.pair.acceleration * (0.125 * length * length);
+        let frames = [
+            SpanFrame::new::<L::Doubles>([&start[0], &middle[0], &end[0]], &grid.scales[0], bend),
+            SpanFrame::new::<L::Doubles>([&start[1], &middle[1], &end[1]], &grid.scales[1], bend),
+        ];
+        let most = pairs.len() + MOST_PAIRS;
+        let mut rows = [[0; 4]; WIDTH];
+        let (mut tests, mut queued) = (0, 0);
+        while let Some(item) = to_open.pop() {
+            let few = pairs.len() + to_open.len() < most;
+            if item.open & Item::TRIANGLES != 0 || !few || !is_large(scene, &item, large) {
+                pairs.push(item);
+                continue;
+            }
+            let opened = opening.expand_over_span::<L>(&item, &frames);
+            let count = L::pack(&opened, &mut rows);
+            to_open.extend(rows[..count].iter().map(|row| Item::from_row(*row)));
+            tests += 1;
+            queued += count as u64;
+        }
+        let counts = &mut self.scratch.counts;
+        (counts.node_tests, counts.queued) = (counts.node_tests + tests, counts.queued + queued);
+        counts.frames += 1;
+    }
+}
