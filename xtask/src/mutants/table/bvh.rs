@@ -100,8 +100,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "normal cones without slack for rounding",
         "crates/d2m-bvh/src/resting/proximities/feature_test.rs",
-        "let rounding = direction.error + DIRECTION_ROUNDING;",
-        "let rounding = 0.0 * direction.error;",
+        "let rise = outward.dot(to) - 2.0 * self.scene.error;",
+        "let rise = outward.dot(to) + 1e-6;",
         "crates/d2m-bvh/src/resting/proximities/tests.rs::the_corners_of_a_patch_of_contact_are_all_there_and_once",
     ),
     patch(
