@@ -10,6 +10,7 @@ mod peers;
 mod progress;
 mod row;
 mod run;
+mod scenes;
 mod setting;
 mod stopped;
 mod store;
@@ -36,6 +37,8 @@ const DURATION: &str = "A whole run (ten pairs, two speeds, 256 trials, all meth
 enum Only {
     Pairs,
     Series,
+    /// Many bodies, and bodies at rest; a minute.
+    Scenes,
 }
 
 #[derive(clap::Args, Clone, Debug)]
@@ -44,7 +47,7 @@ pub(crate) struct Options {
     /// Fewer trials, pairs and sweeps: under two minutes.
     #[arg(long)]
     quick: bool,
-    /// Only the pairs, or only the series.
+    /// Only the pairs, only the series, or, in place of both, scenes.
     #[arg(long)]
     only: Option<Only>,
     /// Only pairs whose name contains one of these.
@@ -153,7 +156,11 @@ impl Options {
 
 /// `cargo xtask bench`.
 pub(crate) fn run(options: &Options) -> TaskResult {
-    if options.check { check::run(options.accept) } else { run::run(options) }
+    match options.only {
+        _ if options.check => check::run(options.accept),
+        Some(Only::Scenes) => scenes::run(options.rounds),
+        _ => run::run(options),
+    }
 }
 
 pub(crate) use counted::{Options as CountedOptions, run as run_counted};

@@ -1,0 +1,79 @@
+//! Many bodies, and bodies at rest: a row for each figure that scenes are to reach, each answer checked before its time counts.
+mod distances;
+mod worlds;
+
+use crate::TaskResult;
+use std::time::{Duration, Instant};
+
+/// What a figure should be.
+#[derive(Clone, Copy)]
+enum Target {
+    AtMost(f64),
+    AtLeast(f64),
+    /// Nothing is asked.
+    None,
+}
+
+/// One line of the table.
+struct Figure {
+    what: String,
+    value: f64,
+    unit: &'static str,
+    target: Target,
+}
+
+impl Figure {
+    fn print(&self) {
+        let Self { what, value, unit, target } = self;
+        let (wanted, reached) = match *target {
+            Target::AtMost(most) => (format!("at most {most} {unit}"), *value <= most),
+            Target::AtLeast(least) => (format!("at least {least} {unit}"), *value >= least),
+            Target::None => (String::new(), true),
+        };
+        let word = match target {
+            Target::None => "",
+            _ if reached => "reached",
+            _ => "MISSED",
+        };
+        println!("{what:<86} {value:>9.3} {unit:<6} {wanted:<20} {word}");
+    }
+}
+
+fn figure(what: impl Into<String>, value: f64, unit: &'static str, target: Target) {
+    Figure { what: what.into(), value, unit, target }.print();
+}
+
+/// The least time of some rounds, with the last answer; `prepare` is not counted.
+fn least_time<S, T>(
+    rounds: usize,
+    mut prepare: impl FnMut() -> S,
+    mut work: impl FnMut(&mut S) -> T,
+) -> (Duration, T) {
+    let mut round = || {
+        let mut state = prepare();
+        let start = Instant::now();
+        let answer = work(&mut state);
+        (start.elapsed(), answer)
+    };
+    let (mut least, mut answer) = round();
+    for _ in 1..rounds {
+        let (time, again) = round();
+        (least, answer) = (least.min(time), again);
+    }
+    (least, answer)
+}
+
+fn milliseconds(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
+}
+
+/// `cargo xtask bench --only scenes`.
+pub(super) fn run(rounds: usize) -> TaskResult {
+    worlds::run(rounds)?;
+    distances::run(rounds)
+}
+
+/// An answer that is not right: its time does not count.
+fn wrong(what: &str) -> Box<dyn std::error::Error> {
+    format!("wrong answer: {what}").into()
+}
