@@ -1,6 +1,7 @@
 //! The search for the first contact of two trees: best first on proven times.
 
 mod best_first;
+mod counts;
 mod crowd;
 pub(crate) mod motion;
 mod nearest_point;
@@ -12,6 +13,7 @@ mod parallel;
 mod queue;
 pub(crate) mod relative_trajectory;
 mod scene;
+mod scratch;
 mod skip;
 #[cfg(test)]
 mod span_tests;
@@ -21,6 +23,7 @@ mod tests;
 mod time_split;
 pub(crate) mod triangle_pair;
 
-pub use scene::SearchCounts;
-pub(crate) use scene::{Scene, Scratch};
+pub use counts::SearchCounts;
+pub(crate) use scene::Scene;
+pub(crate) use scratch::Scratch;
 pub(crate) use state::{Found, Outcome, Search};

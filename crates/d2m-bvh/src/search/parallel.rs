@@ -7,7 +7,8 @@
 //! falls into it with the true counts either: then the search by one thread would have done the same, operation by
 //! operation. Otherwise it is searched again. See docs/theory/engine.md, "Several threads".
 
-use super::scene::{Scratch, SearchCounts};
+use super::counts::SearchCounts;
+use super::scratch::Scratch;
 use super::state::{Ahead, Outcome, QUICK_LOOKS, Search, Step, SubWindow};
 use super::time_split::OneSpan;
 use d2m_lanes::run_on;

@@ -4,8 +4,7 @@ use super::motion::frame::RelativeMotion;
 use super::motion::local_motion::LocalMotion;
 use super::motion::track::Track;
 use super::motion::units::Units;
-use super::node_pair::node_test::NodeScale;
-use super::queue::{Bucket, Queue, WaitingSpans};
+use super::node_pair::node_scale::NodeScale;
 use super::triangle_pair::pair_scale::PairScale;
 use crate::tree::margin::{DOWN, NARROW_UP, UNIT_F64, UP, round_up};
 use crate::{MeshTree, QueryError, QueryOptions, Solid, Window};
@@ -330,91 +329,4 @@ fn units_of(bodies: [&(&MeshTree, ConstantTwist); 2], window: Window) -> Option<
     let length = resting.max(speed * window.length());
     let all = [resting, length, apart, arm_a, arm_b];
     all.iter().all(|x| *x <= MOST_LENGTH).then(|| Units::new(window, time, length))
-}
-
-/// Counts of the work of one search, for profiles: the same on every machine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct SearchCounts {
-    /// Windows that were searched.
-    pub windows: u64,
-    /// Batches handed out by the queue.
-    pub frames: u64,
-    /// Wide nodes that were opened against a box.
-    pub node_tests: u64,
-    /// Pairs of boxes that were queued.
-    pub queued: u64,
-    /// Separating-axis tests of pairs of triangles.
-    pub triangle_looks: u64,
-    /// Attempts to skip time by swept volumes or a common screw.
-    pub sweeps: u64,
-    /// Pairs of parts that were compared for that.
-    pub swept_pairs: u64,
-}
-
-impl SearchCounts {
-    /// All in node tests.
-    pub(crate) const fn work(&self) -> u64 {
-        self.node_tests + self.triangle_looks + self.swept_pairs
-    }
-
-    /// With what `other` adds.
-    #[cfg(feature = "rayon")]
-    pub(crate) fn with(&self, other: &Self) -> Self {
-        self.combined(other, u64::wrapping_add)
-    }
-
-    /// Without what was counted by `earlier`.
-    #[cfg(feature = "rayon")]
-    pub(crate) fn without(&self, earlier: &Self) -> Self {
-        self.combined(earlier, u64::wrapping_sub)
-    }
-
-    #[cfg(feature = "rayon")]
-    fn combined(&self, other: &Self, op: impl Fn(u64, u64) -> u64) -> Self {
-        Self {
-            windows: op(self.windows, other.windows),
-            frames: op(self.frames, other.frames),
-            node_tests: op(self.node_tests, other.node_tests),
-            queued: op(self.queued, other.queued),
-            triangle_looks: op(self.triangle_looks, other.triangle_looks),
-            sweeps: op(self.sweeps, other.sweeps),
-            swept_pairs: op(self.swept_pairs, other.swept_pairs),
-        }
-    }
-}
-
-/// Memory that one search uses and the next one finds warm.
-#[derive(Debug)]
-pub(crate) struct Scratch {
-    pub(crate) queue: Queue,
-    pub(crate) batch: Bucket,
-    /// The pairs that a batch leaves.
-    pub(crate) fresh: Vec<[u32; 4]>,
-    pub(crate) counts: SearchCounts,
-    /// The triangles that were tested last.
-    pub(crate) last_looked_at: [u32; 2],
-    /// The spans of time that wait, and their pairs.
-    pub(crate) split: WaitingSpans,
-    /// The motion over the window of the last contact that a search with this memory found.
-    pub(crate) found_in: Option<RelativeMotion>,
-    /// For windows that are searched ahead by other threads.
-    #[cfg(feature = "rayon")]
-    pub(crate) helpers: Vec<Scratch>,
-}
-
-impl Scratch {
-    pub(crate) fn new() -> Self {
-        Self {
-            queue: Queue::new(),
-            batch: Bucket::EMPTY,
-            fresh: Vec::new(),
-            counts: SearchCounts::default(),
-            last_looked_at: [0, 0],
-            split: WaitingSpans::default(),
-            found_in: None,
-            #[cfg(feature = "rayon")]
-            helpers: Vec::new(),
-        }
-    }
 }

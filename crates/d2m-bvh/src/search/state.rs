@@ -1,10 +1,13 @@
 //! What a search knows: its limits, what it has found, where it is in a sub-window.
 
+use super::counts::SearchCounts;
 use super::motion::frame::{Frame, RelativeMotion};
 use super::motion::units::sum_down;
 use super::node_pair::expansion::Opening;
-use super::node_pair::node_test::{NodeFrame, NodeScale};
-use super::scene::{Scene, Scratch, SearchCounts};
+use super::node_pair::node_scale::NodeScale;
+use super::node_pair::node_test::NodeFrame;
+use super::scene::Scene;
+use super::scratch::Scratch;
 use super::triangle_pair::separating_axis::BackwardCertificate;
 use crate::{Budget, Mode, QueryOptions};
 use d2m_lanes::InstructionSet;

@@ -1,8 +1,10 @@
 //! Each bound against certified distances of triangles, with mutants that must be noticed.
 
 use super::node_pair::entry_time::entry_times;
-use super::node_pair::node_test::{NodeFrame, NodeScale, Placed};
-use super::scene::{Scene, Scratch};
+use super::node_pair::node_scale::NodeScale;
+use super::node_pair::node_test::{NodeFrame, Placed};
+use super::scene::Scene;
+use super::scratch::Scratch;
 use super::state::{Outcome, Search};
 use super::triangle_pair::pair_scale::PairScale;
 use super::triangle_pair::separating_axis::{

@@ -10,7 +10,7 @@
 
 use super::best_first::opening;
 use super::motion::frame::RelativeMotion;
-use super::node_pair::node_test::NodeScale;
+use super::node_pair::node_scale::NodeScale;
 use super::node_pair::whole_span::{PlacedPose, SpanFrame};
 use super::queue::{Item, WaitingSpan, WaitingSpans};
 use super::scene::{Scene, SceneBody};

@@ -1,6 +1,7 @@
 //! Until when are a placed box and the eight boxes of a wide node apart?
 
-use super::node_test::{NodeScale, Placed};
+use super::node_scale::NodeScale;
+use super::node_test::Placed;
 use crate::tree::bevel::reach;
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;

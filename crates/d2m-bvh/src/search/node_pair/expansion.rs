@@ -1,7 +1,8 @@
 //! Opening a pair of boxes: a box of one body against the eight boxes of a node of the other.
 
 use super::entry_time::entry_times;
-use super::node_test::{NodeFrame, NodeScale, Placed};
+use super::node_scale::NodeScale;
+use super::node_test::{NodeFrame, Placed};
 use super::whole_span::{SpanFrame, apart_over_span};
 use crate::search::queue::Item;
 use crate::tree::node::{WIDTH, WideNode};

@@ -2,5 +2,6 @@
 
 pub(crate) mod entry_time;
 pub(crate) mod expansion;
+pub(crate) mod node_scale;
 pub(crate) mod node_test;
 pub(crate) mod whole_span;

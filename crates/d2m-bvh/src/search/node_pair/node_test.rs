@@ -1,32 +1,11 @@
 //! One box of one body, placed in the frame of a wide node of the other.
 
+use super::node_scale::NodeScale;
 use crate::search::motion::frame::Frame;
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
 use d2m_lanes::{Doubles, Lanes, Matrix, Quad};
 use glam::DVec3;
-
-/// Constants of one search for one choice of the wide body. Lengths are in units of that body's tree, times in
-/// units of the window.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct NodeScale {
-    /// Unit of the single body over that of the wide one, a power of two.
-    pub(crate) ratio: f64,
-    /// One over the unit of the wide body.
-    pub(crate) inverse_unit: f64,
-    /// Unit of time over the unit of length of the wide body.
-    pub(crate) speed_scale: f64,
-    /// Unit of time.
-    pub(crate) time_unit: f64,
-    /// |ω|·(unit of time) of the wide and of the single body, rounded up.
-    pub(crate) spin: [f32; 2],
-    /// What is added to every margin: the level that counts as contact and the errors of the frame.
-    pub(crate) floor: f32,
-    /// The same for speeds.
-    pub(crate) speed_floor: f32,
-    /// Bound on the acceleration between the bodies.
-    pub(crate) acceleration: f32,
-}
 
 /// Factor of the gap's error bound; see docs/theory/engine.md.
 pub(crate) const GAP_ERROR: f32 = 48.0 * UNIT_F32 as f32;

@@ -8,7 +8,8 @@
 //! docs/theory/engine.md, "Time, divided", has the margins.
 
 use super::entry_time::{dot, splat};
-use super::node_test::{NodeScale, opposite};
+use super::node_scale::NodeScale;
+use super::node_test::opposite;
 use crate::search::motion::frame::RelativeMotion;
 use crate::tree::bevel::reach;
 use crate::tree::margin::{NARROW_UP, UNIT_F32, UP, round_up};

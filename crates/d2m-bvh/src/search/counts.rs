@@ -1,0 +1,53 @@
+//! How much one search has done.
+
+/// Counts of the work of one search, for profiles: the same on every machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct SearchCounts {
+    /// Windows that were searched.
+    pub windows: u64,
+    /// Batches handed out by the queue.
+    pub frames: u64,
+    /// Wide nodes that were opened against a box.
+    pub node_tests: u64,
+    /// Pairs of boxes that were queued.
+    pub queued: u64,
+    /// Separating-axis tests of pairs of triangles.
+    pub triangle_looks: u64,
+    /// Attempts to skip time by swept volumes or a common screw.
+    pub sweeps: u64,
+    /// Pairs of parts that were compared for that.
+    pub swept_pairs: u64,
+}
+
+impl SearchCounts {
+    /// All in node tests.
+    pub(crate) const fn work(&self) -> u64 {
+        self.node_tests + self.triangle_looks + self.swept_pairs
+    }
+
+    /// With what `other` adds.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn with(&self, other: &Self) -> Self {
+        self.combined(other, u64::wrapping_add)
+    }
+
+    /// Without what was counted by `earlier`.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn without(&self, earlier: &Self) -> Self {
+        self.combined(earlier, u64::wrapping_sub)
+    }
+
+    #[cfg(feature = "rayon")]
+    fn combined(&self, other: &Self, op: impl Fn(u64, u64) -> u64) -> Self {
+        Self {
+            windows: op(self.windows, other.windows),
+            frames: op(self.frames, other.frames),
+            node_tests: op(self.node_tests, other.node_tests),
+            queued: op(self.queued, other.queued),
+            triangle_looks: op(self.triangle_looks, other.triangle_looks),
+            sweeps: op(self.sweeps, other.sweeps),
+            swept_pairs: op(self.swept_pairs, other.swept_pairs),
+        }
+    }
+}
