@@ -1,9 +1,9 @@
 //! Best first inside one sub-window.
 
-use super::crowd::Patience;
+use super::crowd::{Patience, Progress};
 use super::motion::frame::Frame;
 use super::motion::units::{power_of_two_from, sum_down};
-use super::node_pair::expansion::{KEY_SCALE, Opening};
+use super::node_pair::expansion::{KEY_SCALE, NodePairExpander};
 use super::node_pair::node_scale::NodeScale;
 use super::node_pair::node_test::NodeFrame;
 use super::queue::{Bucket, Item};
@@ -58,7 +58,7 @@ impl Search<'_> {
         let mut state = State {
             motion,
             node_frames: [NodeFrame::NONE; 2],
-            opening: opening(scene, scales),
+            expander: expander(scene, scales),
             step,
             limit: (length / step).ceil() as u32 + 1,
             // A tick more, so that the end itself is inside; what is found after the end does not count.
@@ -106,16 +106,16 @@ impl Search<'_> {
                 state.frame = state.motion.frame::<L::Doubles>(f64::from(least) * step);
                 let left = time_left(state.limit, least);
                 state.node_frames = [
-                    NodeFrame::new::<L::Doubles>(&state.frame, &state.opening.scales[0], false, left),
-                    NodeFrame::new::<L::Doubles>(&state.frame, &state.opening.scales[1], true, left),
+                    NodeFrame::new::<L::Doubles>(&state.frame, &state.expander.scales[0], false, left),
+                    NodeFrame::new::<L::Doubles>(&state.frame, &state.expander.scales[1], true, left),
                 ];
                 state.frame_key = least;
                 begun = true;
             }
             if batches % CROWD_CHECK == 0 {
-                self.thin_out::<L>(&mut state, (least, batches), &mut batch, &mut patience);
+                self.thin_out::<L>(&mut state, Progress { least, batches }, &mut batch, &mut patience);
             }
-            self.open::<L>(&mut state, batch.items());
+            self.expand_batch::<L>(&mut state, batch.items());
         }
         self.scratch.batch = batch;
         outcome.unwrap_or(match state.found {
@@ -138,10 +138,10 @@ impl Search<'_> {
             return None;
         }
         if self.scratch.counts.triangle_looks == 0 {
-            self.scratch.last_looked_at =
-                [0, 1].map(|body| first_triangle(state.opening.nodes[body], boxes[body]));
+            self.scratch.last_tested =
+                [0, 1].map(|body| first_triangle(state.expander.nodes[body], boxes[body]));
         }
-        let [a, b] = self.scratch.last_looked_at;
+        let [a, b] = self.scratch.last_tested;
         let b = self.scene.b.corners(b);
         let near = widest_normal(&place_a::<Quad>(&state.frame, &self.scene.a.corners(a)), &b);
         let turn = state.motion.rotation_b(state.frame.offset);
@@ -150,7 +150,7 @@ impl Search<'_> {
             least_gain: self.scene.longest.min(self.scene.end - now),
             most_work: self.work() + FIRST_SWEEP,
             deadline: self.limits.deadline,
-            witnesses: self.scratch.last_looked_at,
+            witnesses: self.scratch.last_tested,
         };
         let mut skip = swept_clear_until(self.scene, now, &limits, direction);
         if skip.clear_until.is_none() {
@@ -180,10 +180,10 @@ fn time_left(limit: u32, now: u32) -> f32 {
     (limit - now) as f32 * (1.0 / KEY_SCALE as f32) * NARROW_UP as f32
 }
 
-/// How pairs of boxes of two trees are opened.
-pub(super) fn opening<'a>(scene: &Scene<'a>, scales: [NodeScale; 2]) -> Opening<'a> {
+/// The expander of pairs of boxes of two trees.
+pub(super) fn expander<'a>(scene: &Scene<'a>, scales: [NodeScale; 2]) -> NodePairExpander<'a> {
     let ratio = cube(scales[1].ratio).clamp(LEAST_SIZE.into(), 1.0 / f64::from(LEAST_SIZE)) as f32;
-    Opening { nodes: [&scene.a.tree.nodes, &scene.b.tree.nodes], scales, size_ratios: [ratio, 1.0] }
+    NodePairExpander { nodes: [&scene.a.tree.nodes, &scene.b.tree.nodes], scales, size_ratios: [ratio, 1.0] }
 }
 
 fn cube(x: f64) -> f64 {

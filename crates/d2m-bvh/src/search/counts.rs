@@ -8,7 +8,7 @@ pub struct SearchCounts {
     pub windows: u64,
     /// Batches handed out by the queue.
     pub frames: u64,
-    /// Wide nodes that were opened against a box.
+    /// Wide nodes that were expanded against a box.
     pub node_tests: u64,
     /// Pairs of boxes that were queued.
     pub queued: u64,

@@ -26,17 +26,27 @@ use glam::DVec3;
 /// ordinary queries of a million triangles.
 const CROWD: usize = 1 << 12;
 const CROWD_OF_BATCHES: u32 = 1 << 10;
-/// Most vertices of each body that are compared, for each pair of boxes that waits or was opened: so it takes no more than
+/// Most vertices of each body that are compared, for each pair of boxes that waits or was expanded: so it takes no more than
 /// the search itself.
 const VERTICES_A_PAIR: usize = 2;
 /// Most vertices that are compared for one plane, all directions together: less than a millisecond of work.
 const MOST_COMPARED: u64 = 1 << 18;
-/// Directions that are tried for one plane, from each of the two that it begins with, at least and at most.
-const DIRECTIONS: (u64, u64) = (8, 32);
+/// Directions that are tried for one plane, from each of the two that it begins with: at least, and at most.
+const LEAST_DIRECTIONS: u64 = 8;
+const MOST_DIRECTIONS: u64 = 32;
 /// Vertices that are compared along one direction in the time of one node test.
 const VERTICES_A_TEST: u64 = 16;
 /// Part of the tolerance above the wanted separation that a plane leaves at least.
 const PLANE_ROOM: f64 = 0.25;
+
+/// How far the search of a sub-window has come.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Progress {
+    /// No live key is below this one.
+    pub(super) least: u32,
+    /// Batches that were handed out.
+    pub(super) batches: u32,
+}
 
 /// When a search examines its crowd next.
 #[derive(Clone, Copy, Debug)]
@@ -53,13 +63,13 @@ impl Patience {
 
 impl Search<'_> {
     /// Drops the pairs that are proven apart, of those that wait and of the batch, until the contact that is known, or
-    /// until the end of the window. Looks for a contact first. `least`: no live key is below it.
+    /// until the end of the window. Searches for a contact first.
     #[cold]
     #[inline(never)]
     pub(super) fn thin_out<L: Lanes>(
         &mut self,
         state: &mut State<'_>,
-        (least, batches): (u32, u32),
+        Progress { least, batches }: Progress,
         batch: &mut Bucket,
         patience: &mut Patience,
     ) {
@@ -88,7 +98,7 @@ impl Search<'_> {
             None => state.motion.frame::<L::Doubles>(known),
         };
         let vertices = group.iter().map(Vec::len).sum::<usize>() as u64;
-        let directions = (MOST_COMPARED / (2 * vertices).max(1)).clamp(DIRECTIONS.0, DIRECTIONS.1);
+        let directions = (MOST_COMPARED / (2 * vertices).max(1)).clamp(LEAST_DIRECTIONS, MOST_DIRECTIONS);
         self.scratch.counts.swept_pairs += vertices * directions / VERTICES_A_TEST;
         let span = (state.limit_offset - known).next_up();
         let (scale, room) = (&self.scene.pair, PLANE_ROOM * self.scene.tolerance);
@@ -99,7 +109,7 @@ impl Search<'_> {
         let starts = [state.behind.direction, moving.between()].map(DVec3::normalize_or_zero);
         let mut tried = starts.to_vec();
         for first in starts {
-            match moving.separation(first, need, (directions, &mut clock)) {
+            match moving.separation(first, need, directions, &mut clock) {
                 Separation::Proven => {
                     self.scratch.queue.clear();
                     batch.retain(|_| false);
@@ -109,8 +119,8 @@ impl Search<'_> {
             }
         }
         for n in tried.into_iter().filter(|&n| n != DVec3::ZERO) {
-            let [mut a, mut b] = [(&self.scene.a, true), (&self.scene.b, false)]
-                .map(|(body, is_a)| Reaches::new(body, &frame, (is_a, span), n));
+            let [mut a, mut b] = [(&self.scene.a, Side::A), (&self.scene.b, Side::B)]
+                .map(|(body, side)| Reaches::new(body, side, &frame, span, n));
             for item in self.scratch.queue.items().chain(batch.items()) {
                 if clock.step().is_err() {
                     return;
@@ -131,11 +141,11 @@ impl Search<'_> {
 
     /// Follows a pair of triangles below an item to its contact, if it has one.
     fn dive<L: Lanes>(&mut self, state: &mut State<'_>, mut item: Item) {
-        while item.open & Item::TRIANGLES == 0 {
+        while item.next & Item::TRIANGLES == 0 {
             self.scratch.counts.node_tests += 1;
-            let opened = state.opening.expand::<L>(&item, &state.node_frames, (state.frame_key, state.limit));
+            let expanded = state.expander.expand::<L>(&item, &state.node_frames, state.keys());
             let mut list = [[0; 4]; WIDTH];
-            let count = L::pack(&opened, &mut list);
+            let count = L::pack(&expanded, &mut list);
             match list[..count].iter().map(|row| Item::from_row(*row)).min_by_key(|next| next.key) {
                 Some(next) => item = next,
                 None => return,
@@ -216,11 +226,18 @@ impl<'a> Group<'a> {
     }
 }
 
+/// One of the two bodies.
+#[derive(Clone, Copy, Debug)]
+enum Side {
+    A,
+    B,
+}
+
 /// How far boxes reach along a direction at both ends of a span: A's along `n`, B's against it.
 struct Reaches<'a> {
     body: &'a SceneBody<'a>,
     frame: &'a Frame,
-    is_a: bool,
+    side: Side,
     span: f64,
     along: DVec3,
     /// Of each box; not a number where it is not known.
@@ -228,9 +245,13 @@ struct Reaches<'a> {
 }
 
 impl<'a> Reaches<'a> {
-    fn new(body: &'a SceneBody<'a>, frame: &'a Frame, (is_a, span): (bool, f64), n: DVec3) -> Self {
+    fn new(body: &'a SceneBody<'a>, side: Side, frame: &'a Frame, span: f64, n: DVec3) -> Self {
         let known = vec![[f64::NAN; 2]; WIDTH * body.tree.nodes.len()];
-        Self { body, frame, is_a, span, along: if is_a { n } else { -n }, known }
+        let along = match side {
+            Side::A => n,
+            Side::B => -n,
+        };
+        Self { body, frame, side, span, along, known }
     }
 
     fn of(&self, index: u32) -> [f64; 2] {
@@ -245,8 +266,11 @@ impl<'a> Reaches<'a> {
         let reach = match self.body.tree.nodes[index as usize / WIDTH].below(index as usize % WIDTH) {
             Below::Triangle(triangle) => {
                 let t = self.body.corners(triangle);
-                let t = if self.is_a { place_a::<Quad>(self.frame, &t) } else { t };
-                let later = t.map(|p| p + rate(self.frame, self.is_a, p) * self.span);
+                let t = match self.side {
+                    Side::A => place_a::<Quad>(self.frame, &t),
+                    Side::B => t,
+                };
+                let later = t.map(|p| p + rate(self.frame, self.side, p) * self.span);
                 [t, later].map(|t| t.map(|p| self.along.dot(p)).into_iter().fold(f64::NEG_INFINITY, larger))
             }
             Below::Node(node) => {
@@ -268,11 +292,10 @@ fn larger(x: f64, y: f64) -> f64 {
 }
 
 /// Velocity of a point of A or of B at the time of the frame.
-fn rate(frame: &Frame, is_a: bool, p: DVec3) -> DVec3 {
-    if is_a {
-        frame.velocity.to_vec() + frame.omega_a.to_vec().cross(p - frame.apart.to_vec())
-    } else {
-        frame.omega_b.to_vec().cross(p)
+fn rate(frame: &Frame, side: Side, p: DVec3) -> DVec3 {
+    match side {
+        Side::A => frame.velocity.to_vec() + frame.omega_a.to_vec().cross(p - frame.apart.to_vec()),
+        Side::B => frame.omega_b.to_vec().cross(p),
     }
 }
 
@@ -303,8 +326,8 @@ impl Moving {
     fn new([a, b]: &[Vec<DVec3>; 2], frame: &Frame, span: f64) -> Self {
         let place = |p: &DVec3| place_a::<Quad>(frame, &[*p; 3])[0];
         let a: Vec<DVec3> = a.iter().map(place).collect();
-        let later_a = a.iter().map(|&p| p + rate(frame, true, p) * span).collect();
-        let later_b = b.iter().map(|&p| p + rate(frame, false, p) * span).collect();
+        let later_a = a.iter().map(|&p| p + rate(frame, Side::A, p) * span).collect();
+        let later_b = b.iter().map(|&p| p + rate(frame, Side::B, p) * span).collect();
         Self { ends: [[a, b.clone()], [later_a, later_b]] }
     }
 
@@ -317,12 +340,7 @@ impl Moving {
     /// Is there a direction along which the points of A are below those of B by more than `need` at both ends? Begins with
     /// the direction `n` and goes on to the nearest point of the hull of all differences of B's points and A's, those at
     /// the second end less what is needed there in addition: that is the direction of the widest gap.
-    fn separation(
-        &self,
-        mut n: DVec3,
-        need: [f64; 2],
-        (directions, clock): (u64, &mut Allowance),
-    ) -> Separation {
+    fn separation(&self, mut n: DVec3, need: [f64; 2], directions: u64, clock: &mut Allowance) -> Separation {
         let mut simplex: Option<Simplex> = None;
         for _ in 0..directions {
             if clock.read_clock().is_err() {
@@ -418,7 +436,7 @@ mod tests {
                 let need = needs(level, scene.pair.acceleration, span);
                 for (k, need) in [need, [need[0], f64::NEG_INFINITY], [level; 2]].into_iter().enumerate() {
                     if level > 0.0
-                        && moving.separation(n, need, (1, &mut Allowance::unlimited())) == Separation::Proven
+                        && moving.separation(n, need, 1, &mut Allowance::unlimited()) == Separation::Proven
                     {
                         parted[k] += 1;
                         wrong[k] += u32::from(least < level - 2.0 * scene.pair.error);
@@ -445,8 +463,8 @@ mod tests {
                 group.points
             });
             let moving = Moving::new(&points, &frame, 0.25);
-            let mut reach_a = Reaches::new(&scene.a, &frame, (true, 0.25), n);
-            let mut reach_b = Reaches::new(&scene.b, &frame, (false, 0.25), n);
+            let mut reach_a = Reaches::new(&scene.a, Side::A, &frame, 0.25, n);
+            let mut reach_b = Reaches::new(&scene.b, Side::B, &frame, 0.25, n);
             let (high, low) = (reach_a.measure(0), reach_b.measure(0));
             for end in 0..2 {
                 assert_eq!(moving.gap(end, n).along, -low[end] - high[end]);

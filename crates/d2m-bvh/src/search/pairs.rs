@@ -1,8 +1,8 @@
-//! What is done with the pairs that the queue hands out: boxes are opened, triangles are advanced in time.
+//! What is done with the pairs that the queue hands out: boxes are expanded, triangles are advanced in time.
 
 use super::queue::Item;
 use super::scene::SceneBody;
-use super::state::{BATCH, Found, QUICK_LOOKS, Search, State};
+use super::state::{BATCH, Found, SECOND_ORDER_TESTS, Search, State};
 use super::triangle_pair::closest::closest;
 use super::triangle_pair::separating_axis::{
     BackwardCertificate, BoundOrder, Evaluation, apart_since, place_a, separating_axis_test,
@@ -22,19 +22,19 @@ const FOLLOWED: u32 = 16;
 /// And by so many steps of the key: some 2e-6 of the window.
 const FOLLOWED_KEYS: u32 = 1024;
 
-/// Nodes are asked for so many items before they are opened: trees are larger than the caches near the processor.
+/// Nodes are prefetched so many items before they are expanded: trees are larger than the caches near the processor.
 const AHEAD: usize = 2;
 
 impl Search<'_> {
-    /// Opens at most [`BATCH`] items. Pairs of triangles first: they may lower the limit. Then all node tests, which
+    /// Expands at most [`BATCH`] items. Pairs of triangles first: they may lower the limit. Then all node tests, which
     /// do not wait for each other, then all that they leave.
     #[inline(always)]
-    pub(super) fn open<L: Lanes>(&mut self, state: &mut State<'_>, items: &[Item]) {
+    pub(super) fn expand_batch<L: Lanes>(&mut self, state: &mut State<'_>, items: &[Item]) {
         for item in &items[..AHEAD.min(items.len())] {
             state.prefetch::<L>(item);
         }
         for item in items {
-            if item.open & Item::TRIANGLES != 0 && item.key < state.limit {
+            if item.next & Item::TRIANGLES != 0 && item.key < state.limit {
                 self.advance::<L>(state, *item, false);
             }
         }
@@ -45,11 +45,10 @@ impl Search<'_> {
             if let Some(next) = items.get(i + AHEAD) {
                 state.prefetch::<L>(next);
             }
-            if item.open & Item::TRIANGLES == 0 && item.key < state.limit {
-                let times = (state.frame_key, state.limit);
-                let opened = state.opening.expand::<L>(item, &state.node_frames, times);
+            if item.next & Item::TRIANGLES == 0 && item.key < state.limit {
+                let expanded = state.expander.expand::<L>(item, &state.node_frames, state.keys());
                 let list = fresh[count..].first_chunk_mut().expect("room for eight more");
-                count += L::pack(&opened, list);
+                count += L::pack(&expanded, list);
                 tests += 1;
             }
         }
@@ -64,7 +63,7 @@ impl Search<'_> {
     pub(super) fn advance<L: Lanes>(&mut self, state: &mut State<'_>, item: Item, alone: bool) {
         let triangle = |body: usize| {
             let index = item.boxes[body] as usize;
-            state.opening.nodes[body][index / WIDTH].triangle(index % WIDTH)
+            state.expander.nodes[body][index / WIDTH].triangle(index % WIDTH)
         };
         let triangles = [triangle(0), triangle(1)];
         let (a, b) = (self.scene.a.corners(triangles[0]), self.scene.b.corners(triangles[1]));
@@ -93,9 +92,9 @@ impl Search<'_> {
                 return;
             }
             self.scratch.counts.triangle_looks += 1;
-            self.scratch.last_looked_at = triangles;
+            self.scratch.last_tested = triangles;
             let enough = state.limit_offset - frame.offset;
-            let third = self.scratch.counts.triangle_looks > QUICK_LOOKS;
+            let third = self.scratch.counts.triangle_looks > SECOND_ORDER_TESTS;
             let order = if third { BoundOrder::Third } else { BoundOrder::Second };
             match separating_axis_test::<L::Doubles>(&frame, [&a, &b], &self.scene.pair, enough, order) {
                 Evaluation::ClearFor(time) => {
@@ -168,11 +167,11 @@ impl Search<'_> {
 }
 
 impl State<'_> {
-    /// Asks for the node that the item opens.
+    /// Prefetches the node that the item expands.
     #[inline(always)]
     fn prefetch<L: Lanes>(&self, item: &Item) {
-        if item.open & Item::TRIANGLES == 0 {
-            L::prefetch(&self.opening.nodes[item.side()][item.node() as usize]);
+        if item.next & Item::TRIANGLES == 0 {
+            L::prefetch(&self.expander.nodes[item.side()][item.node() as usize]);
         }
     }
 }

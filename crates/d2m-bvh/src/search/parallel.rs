@@ -9,7 +9,7 @@
 
 use super::counts::SearchCounts;
 use super::scratch::Scratch;
-use super::state::{Ahead, Outcome, QUICK_LOOKS, Search, Step, SubWindow};
+use super::state::{Ahead, Outcome, SECOND_ORDER_TESTS, Search, Step, SubWindow};
 use super::time_split::OneSpan;
 use d2m_lanes::run_on;
 use std::sync::OnceLock;
@@ -19,8 +19,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 const FIRST_WORK: u64 = 1024;
 /// Work of each thread before the results are taken, for windows like those so far: more than it costs to wake it.
 const ROUND_WORK: u64 = 4096;
-/// Windows of each thread before the results are taken, at least and at most.
-const WINDOWS_A_THREAD: (u64, u64) = (4, 512);
+/// Windows of each thread before the results are taken: at least, and at most.
+const LEAST_WINDOWS_A_THREAD: u64 = 4;
+const MOST_WINDOWS_A_THREAD: u64 = 512;
 
 /// What the search of one window gave.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +30,7 @@ struct Searched {
     answer: Option<Outcome>,
     /// Of this sub-window alone.
     counts: SearchCounts,
-    last_looked_at: [u32; 2],
+    last_tested: [u32; 2],
 }
 
 impl Search<'_> {
@@ -48,7 +49,7 @@ impl Search<'_> {
                     return Step::ClearUntil(start);
                 };
                 if searched.counts.triangle_looks > 0 {
-                    self.scratch.last_looked_at = searched.last_looked_at;
+                    self.scratch.last_tested = searched.last_tested;
                 }
                 self.scratch.counts = self.scratch.counts.with(&searched.counts);
                 match searched.answer {
@@ -71,7 +72,7 @@ impl Search<'_> {
         }
         let mean = ((counts.node_tests + counts.triangle_looks) / counts.windows.max(1)).max(1);
         let until_sweep = self.limits.sweep_from.saturating_sub(self.work()) / mean;
-        let each = (ROUND_WORK / mean).clamp(WINDOWS_A_THREAD.0, WINDOWS_A_THREAD.1);
+        let each = (ROUND_WORK / mean).clamp(LEAST_WINDOWS_A_THREAD, MOST_WINDOWS_A_THREAD);
         let most = (each * threads as u64).min(until_sweep) as usize;
         while windows.len() < most
             && start < self.scene.end
@@ -120,9 +121,9 @@ impl Search<'_> {
                 if let Some(Outcome::Found(_)) = answer {
                     answered.fetch_min(number, Ordering::Relaxed);
                 }
-                let (counts, last_looked_at) = (scratch.counts.without(&known), scratch.last_looked_at);
+                let (counts, last_tested) = (scratch.counts.without(&known), scratch.last_tested);
                 // Each number is handed out once.
-                _ = results[number].set(Searched { answer, counts, last_looked_at });
+                _ = results[number].set(Searched { answer, counts, last_tested });
             }
         };
         let helpers = &mut self.scratch.helpers;
@@ -138,10 +139,10 @@ impl Search<'_> {
     /// Would the window have been searched in the same way from the true counts as from those `known` before?
     fn would_do_the_same(&self, known: &SearchCounts, searched: &Searched) -> bool {
         let after = self.scratch.counts.with(&searched.counts);
-        let same_care = after.triangle_looks <= QUICK_LOOKS
-            || known.triangle_looks >= QUICK_LOOKS
+        let same_order = after.triangle_looks <= SECOND_ORDER_TESTS
+            || known.triangle_looks >= SECOND_ORDER_TESTS
             || searched.counts.triangle_looks == 0;
-        same_care && after.work() < self.limits.sweep_from && after.work() < self.limits.most_tests
+        same_order && after.work() < self.limits.sweep_from && after.work() < self.limits.most_tests
     }
 }
 

@@ -13,33 +13,33 @@ pub(crate) struct Item {
     pub(crate) key: u32,
     /// Boxes of A and of B.
     pub(crate) boxes: [u32; 2],
-    /// What is to be done: the number of the wide node to open, and [`Item::OF_B`] if it is one of B's; or
+    /// What is to be done: the number of the wide node to expand, and [`Item::OF_B`] if it is one of B's; or
     /// [`Item::TRIANGLES`] when both boxes are triangles.
-    pub(crate) open: u32,
+    pub(crate) next: u32,
 }
 
 impl Item {
-    /// The node to open is one of B's.
+    /// The node to expand is one of B's.
     pub(crate) const OF_B: u32 = 1 << 30;
-    /// Nothing is left to open.
+    /// Nothing is left to expand: both boxes are triangles.
     pub(crate) const TRIANGLES: u32 = LEAF;
 
     /// From four words in the order of the fields.
     #[inline(always)]
-    pub(crate) const fn from_row([key, a, b, open]: [u32; 4]) -> Self {
-        Self { key, boxes: [a, b], open }
+    pub(crate) const fn from_row([key, a, b, next]: [u32; 4]) -> Self {
+        Self { key, boxes: [a, b], next }
     }
 
-    /// Whose node is to be opened: 0 is A, 1 is B.
+    /// Whose node is to be expanded: 0 is A, 1 is B.
     #[inline(always)]
     pub(crate) const fn side(&self) -> usize {
-        (self.open >> Self::OF_B.trailing_zeros()) as usize & 1
+        (self.next >> Self::OF_B.trailing_zeros()) as usize & 1
     }
 
-    /// The node to be opened, by number.
+    /// The node to be expanded, by number.
     #[inline(always)]
     pub(crate) const fn node(&self) -> u32 {
-        self.open & !Self::OF_B
+        self.next & !Self::OF_B
     }
 }
 
@@ -65,8 +65,8 @@ pub(crate) struct WaitingSpan {
 pub(crate) struct WaitingSpans {
     pub(crate) spans: Vec<WaitingSpan>,
     pub(crate) pairs: Vec<Item>,
-    /// Pairs of the span in hand that may be opened.
-    pub(crate) to_open: Vec<Item>,
+    /// Pairs of the span in hand that may be expanded.
+    pub(crate) to_expand: Vec<Item>,
 }
 
 /// Room for more items than this is given back after use: 1 MB.
@@ -225,13 +225,13 @@ mod tests {
     #[test]
     fn equal_keys_are_searched_depth_first() {
         let (mut queue, mut batch) = (Queue::new(), Bucket::EMPTY);
-        queue.push(&Item { key: 7, boxes: [10, 0], open: 0 });
+        queue.push(&Item { key: 7, boxes: [10, 0], next: 0 });
         let (mut most, mut taken) = (0, 0);
         while taken < 10_000 && queue.take(&mut batch, 4).is_some() {
             for item in batch.items() {
                 taken += 1;
                 for _ in 0..if item.boxes[0] > 0 { 8 } else { 0 } {
-                    queue.push(&Item { key: 7, boxes: [item.boxes[0] - 1, 0], open: 0 });
+                    queue.push(&Item { key: 7, boxes: [item.boxes[0] - 1, 0], next: 0 });
                 }
             }
             most = queue.len().max(most);
@@ -252,7 +252,7 @@ mod tests {
             let mut batch = Bucket::EMPTY;
             for _ in 0..50 {
                 let key = next() >> 3;
-                queue.push(&Item { key, boxes: [0; 2], open: 0 });
+                queue.push(&Item { key, boxes: [0; 2], next: 0 });
                 *live.entry(key).or_insert(0) += 1;
             }
             let mut taken = 0;
@@ -270,7 +270,7 @@ mod tests {
                     if taken < 3000 {
                         for shift in [4, 12, 20] {
                             let key = item.key + (next() >> shift);
-                            queue.push(&Item { key, boxes: [0; 2], open: 0 });
+                            queue.push(&Item { key, boxes: [0; 2], next: 0 });
                             *live.entry(key).or_insert(0) += 1;
                         }
                     }

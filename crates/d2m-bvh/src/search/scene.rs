@@ -284,7 +284,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Constants of the node tests of a window, with the first body's nodes opened, then the second's.
+    /// Constants of the node tests of a window, with the first body's nodes expanded, then the second's.
     pub(crate) fn node_scales(&self, time_unit: f64) -> [NodeScale; 2] {
         let spins = [&self.a, &self.b].map(|body| round_up(body.spin() * time_unit * NARROW_UP));
         let one = |wide: &SceneBody<'_>, single: &SceneBody<'_>, spin: [f32; 2]| {

@@ -13,7 +13,7 @@ pub(crate) struct Scratch {
     pub(crate) fresh: Vec<[u32; 4]>,
     pub(crate) counts: SearchCounts,
     /// The triangles that were tested last.
-    pub(crate) last_looked_at: [u32; 2],
+    pub(crate) last_tested: [u32; 2],
     /// The spans of time that wait, and their pairs.
     pub(crate) split: WaitingSpans,
     /// The motion over the window of the last contact that a search with this memory found.
@@ -30,7 +30,7 @@ impl Scratch {
             batch: Bucket::EMPTY,
             fresh: Vec::new(),
             counts: SearchCounts::default(),
-            last_looked_at: [0, 0],
+            last_tested: [0, 0],
             split: WaitingSpans::default(),
             found_in: None,
             #[cfg(feature = "rayon")]

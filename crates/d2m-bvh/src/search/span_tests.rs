@@ -4,7 +4,7 @@ use super::node_pair::whole_span::{PlacedPose, SpanFrame, apart_over_span};
 use super::scene::Scene;
 use super::triangle_pair::separating_axis::place_a;
 use crate::random::Random;
-use crate::tree::node::WIDTH;
+use crate::tree::node::{NodeBox, WIDTH};
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
 use d2m_feature::triangle_distance;
 use d2m_lanes::{Portable, Quad};
@@ -39,7 +39,7 @@ impl Span<'_> {
         let frame =
             SpanFrame::new::<Quad>([&poses[0][side], &poses[1][side], &poses[2][side]], &scales[side], bend);
         let (wide, other) = (&self.trees[side].nodes, &self.trees[1 - side].nodes);
-        let single = (&other[single / WIDTH], single % WIDTH);
+        let single = NodeBox::new(other, single as u32);
         apart_over_span::<Portable>(&frame, &scales[side], single, &wide[node])
     }
 
@@ -103,17 +103,17 @@ fn pairs_that_are_proven_apart_are_apart_all_the_time() {
     assert!(proven > possible / 3 && least < 2.0 * LEVEL, "{proven} of {possible}, {least}");
 }
 
-/// A triangle on an arm of length one swings by a wall and is nearest to it in the middle of the span. How far it stays from the
+/// A triangle on an arm of length one rotates past a wall and is nearest to it in the middle of the span. How far it stays from the
 /// nearest wall that it is proven apart from, with the bend of the gap multiplied by `bent`.
-fn room_of_a_swing(side: usize, bent: f64) -> f64 {
+fn room_of_a_rotation(side: usize, bent: f64) -> f64 {
     let tree =
         |corners: [DVec3; 3]| MeshTree::new(TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2]]).unwrap());
     let tip = tree([DVec3::X, DVec3::new(0.99, 1e-3, 0.0), DVec3::new(0.99, 0.0, 1e-3)]);
-    let swing = ConstantTwist::REST.with_angular_velocity(DVec3::Z * 0.6).with_reference_time(0.5);
+    let spin = ConstantTwist::REST.with_angular_velocity(DVec3::Z * 0.6).with_reference_time(0.5);
     let room = |distance: f64| {
         let corner = |y: f64, z: f64| DVec3::new(1.0 + distance, y, z);
         let wall = tree([corner(-3.0, -1.0), corner(3.0, -1.0), corner(0.0, 3.0)]);
-        let span = Span { trees: [&tip, &wall], motions: [swing, ConstantTwist::REST], length: 1.0 };
+        let span = Span { trees: [&tip, &wall], motions: [spin, ConstantTwist::REST], length: 1.0 };
         (span.proven(side, (0, 0), bent) & 1 == 1).then(|| span.distance([0, 0]))
     };
     let (mut near, mut far) = (0.0, 1.0);
@@ -128,8 +128,8 @@ fn room_of_a_swing(side: usize, bent: f64) -> f64 {
 #[test]
 fn the_bend_of_the_gap_is_needed() {
     for side in [0, 1] {
-        let room = room_of_a_swing(side, 1.0);
+        let room = room_of_a_rotation(side, 1.0);
         assert!((LEVEL..1.1 * LEVEL).contains(&room), "{room}");
-        assert!(room_of_a_swing(side, 0.9) < LEVEL, "nine tenths of the bend");
+        assert!(room_of_a_rotation(side, 0.9) < LEVEL, "nine tenths of the bend");
     }
 }

@@ -3,7 +3,7 @@
 use super::counts::SearchCounts;
 use super::motion::frame::{Frame, RelativeMotion};
 use super::motion::units::sum_down;
-use super::node_pair::expansion::Opening;
+use super::node_pair::expansion::{KeyRange, NodePairExpander};
 use super::node_pair::node_scale::NodeScale;
 use super::node_pair::node_test::NodeFrame;
 use super::scene::Scene;
@@ -17,10 +17,11 @@ use std::time::Instant;
 /// Items that a batch may have before it is divided.
 pub(super) const BATCH: usize = 32;
 
-/// Looks at pairs of triangles of one search that do little; ordinary queries need fewer.
-pub(super) const QUICK_LOOKS: u64 = 192;
+/// Tests of pairs of triangles of one search that use bounds of second order; later ones use those of third order. Ordinary
+/// queries need fewer.
+pub(super) const SECOND_ORDER_TESTS: u64 = 192;
 
-/// Node tests, besides one for each [`TRIANGLES_A_TEST`] triangles, before sweeps are looked at for the first time:
+/// Node tests, besides one for each [`TRIANGLES_A_TEST`] triangles, before swept volumes are compared for the first time:
 /// ordinary queries end before that, or are well on their way.
 pub(super) const FIRST_SWEEP: u64 = 256;
 
@@ -90,7 +91,7 @@ pub(crate) struct Search<'s> {
     pub(super) parallel: bool,
 }
 
-/// A sub-window that is searched before it is known what earlier ones give, and where those tell that they have an answer.
+/// A sub-window that is searched before it is known what earlier ones give, and where those state that they have an answer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ahead<'r> {
     pub(super) number: usize,
@@ -111,7 +112,7 @@ pub(super) struct Limits {
     pub(super) mode: Mode,
     pub(super) most_tests: u64,
     pub(super) deadline: Option<Instant>,
-    /// The number of node tests from which on it is time to look at sweeps.
+    /// The number of node tests from which on swept volumes are compared.
     pub(super) sweep_from: u64,
     /// Only whether the bodies meet at the start matters.
     pub(super) only_start: bool,
@@ -120,7 +121,7 @@ pub(super) struct Limits {
 /// What changes while a sub-window is searched.
 pub(super) struct State<'a> {
     pub(super) motion: RelativeMotion,
-    pub(super) opening: Opening<'a>,
+    pub(super) expander: NodePairExpander<'a>,
     /// One step of the key, as a difference of offsets.
     pub(super) step: f64,
     /// Keys from here on do not matter.
@@ -139,7 +140,7 @@ impl<'s> Search<'s> {
     pub(crate) fn new(scene: &'s Scene<'s>, options: &QueryOptions, scratch: &'s mut Scratch) -> Self {
         let budget = &options.budget;
         scratch.counts = SearchCounts::default();
-        scratch.last_looked_at = [0, 0];
+        scratch.last_tested = [0, 0];
         // What an earlier query left belongs to other motions.
         scratch.found_in = None;
         let limits = Limits {
@@ -190,6 +191,12 @@ impl<'s> Search<'s> {
 }
 
 impl State<'_> {
+    /// The keys that new pairs may have.
+    #[inline(always)]
+    pub(super) const fn keys(&self) -> KeyRange {
+        KeyRange { now: self.frame_key, limit: self.limit }
+    }
+
     /// A contact at this offset: nothing later matters, and nothing whose key is not below it can be earlier. The step
     /// is a power of two, so the quotient is exact.
     pub(super) fn find(&mut self, offset: f64, triangles: [u32; 2], crossing: bool) {

@@ -11,7 +11,7 @@ use super::triangle_pair::separating_axis::{
     BackwardCertificate, BoundOrder, Evaluation, apart_since, place_a, separating_axis_test,
 };
 use crate::random::Random;
-use crate::tree::node::WIDTH;
+use crate::tree::node::{NodeBox, WIDTH};
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
 use d2m_feature::triangle_distance;
 use d2m_lanes::{InstructionSet, Lanes, Portable, Quad};
@@ -60,7 +60,7 @@ fn least_ratio(rounds: u32, mutate: impl Fn(&mut NodeScale)) -> f64 {
             let node_frame = NodeFrame::new::<Quad>(&frame, scale, side == 1, left);
             // Each triangle's box, and the one around all.
             for index in (0..8).map(|lane| WIDTH + lane).chain([0]) {
-                let single_box = (&single.nodes[index / WIDTH], index % WIDTH);
+                let single_box = NodeBox::new(&single.nodes, index as u32);
                 let placed = Placed::new::<Portable>(&node_frame, scale, single_box, &wide.nodes[1]);
                 let times = entry_times::<Portable>(&wide.nodes[1], &placed, scale).store();
                 for (other, &time) in times.iter().enumerate() {
@@ -104,8 +104,8 @@ fn mutants_of_the_entry_times_die() {
 }
 
 /// How far a triangle that spins about the z axis through the origin stays from the wall x = `wall`, at the end of the
-/// time that its box is proven clear of the wall's. `opened`: 0 for the triangle's node, 1 for the wall's.
-fn room_at_the_end(triangle: [DVec3; 3], wall: f64, opened: usize, mutate: impl Fn(&mut NodeScale)) -> f64 {
+/// time that its box is proven clear of the wall's. `expanded`: 0 for the triangle's node, 1 for the wall's.
+fn room_at_the_end(triangle: [DVec3; 3], wall: f64, expanded: usize, mutate: impl Fn(&mut NodeScale)) -> f64 {
     let tree =
         |corners: [DVec3; 3]| MeshTree::new(TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2]]).unwrap());
     let corner = |y: f64, z: f64| DVec3::new(wall, y, z);
@@ -115,11 +115,11 @@ fn room_at_the_end(triangle: [DVec3; 3], wall: f64, opened: usize, mutate: impl 
     let window = Window::try_new(0.0, 0.3).unwrap();
     let scene = Scene::new((&a, spin), (&b, ConstantTwist::REST), window, &options);
     let motion = scene.relative_motion(0.0);
-    let mut scale = scene.node_scales(0.5)[opened];
+    let mut scale = scene.node_scales(0.5)[expanded];
     mutate(&mut scale);
-    let frame = NodeFrame::new::<Quad>(&motion.frame::<Quad>(0.0), &scale, opened == 1, 0.6);
-    let (wide, single) = if opened == 1 { (&b, &a) } else { (&a, &b) };
-    let placed = Placed::new::<Portable>(&frame, &scale, (&single.nodes[0], 0), &wide.nodes[0]);
+    let frame = NodeFrame::new::<Quad>(&motion.frame::<Quad>(0.0), &scale, expanded == 1, 0.6);
+    let (wide, single) = if expanded == 1 { (&b, &a) } else { (&a, &b) };
+    let placed = Placed::new::<Portable>(&frame, &scale, NodeBox::new(&single.nodes, 0), &wide.nodes[0]);
     let time = entry_times::<Portable>(&wide.nodes[0], &placed, &scale).store()[0];
     let frame = motion.frame::<Quad>(0.5 * f64::from(time.min(0.6)));
     let plane = scene.b.corners(0)[0].x;
@@ -129,14 +129,14 @@ fn room_at_the_end(triangle: [DVec3; 3], wall: f64, opened: usize, mutate: impl 
         .fold(f64::INFINITY, f64::min)
 }
 
-/// A small triangle on a long arm swings across the wall: along the arm its speed is zero, only its acceleration
+/// A small triangle on a long arm rotates across the wall: along the arm its speed is zero, only its acceleration
 /// closes the gap of 0.044, and at the end of the window it has closed by 1 − cos 0.3 = 0.0447.
 #[test]
 fn half_the_acceleration_is_noticed() {
     let arm = [DVec3::new(1.0001, 0.0, 0.0), DVec3::new(1.0, 1e-4, 0.0), DVec3::new(1.0, 0.0, 1e-4)];
-    for opened in [0, 1] {
-        assert!(room_at_the_end(arm, 0.956, opened, |_| ()) >= 1e-7);
-        assert!(room_at_the_end(arm, 0.956, opened, |scale| scale.acceleration *= 0.5) < 1e-7);
+    for expanded in [0, 1] {
+        assert!(room_at_the_end(arm, 0.956, expanded, |_| ()) >= 1e-7);
+        assert!(room_at_the_end(arm, 0.956, expanded, |scale| scale.acceleration *= 0.5) < 1e-7);
     }
 }
 
@@ -150,12 +150,12 @@ fn room_after_a_test(closing: f64, backwards: Option<DVec3>, mutate: impl Fn(&mu
     let wall = [(-3.0, -1.0), (3.0, -1.0), (0.0, 3.0)].map(|(y, z)| DVec3::new(0.956, y, z));
     let (a, b) = (tree(arm), tree(wall));
     let sense = if backwards.is_some() { -1.0 } else { 1.0 };
-    let swing = ConstantTwist::REST
+    let spin = ConstantTwist::REST
         .with_angular_velocity(DVec3::Z)
         .with_linear_velocity(DVec3::X * (-closing * sense));
     let options = QueryOptions::default().with_tolerance(1e-7);
     let window = Window::try_new(0.0, 0.3).unwrap();
-    let scene = Scene::new((&a, swing), (&b, ConstantTwist::REST), window, &options);
+    let scene = Scene::new((&a, spin), (&b, ConstantTwist::REST), window, &options);
     let motion = scene.relative_motion(0.0);
     let mut pair = scene.pair;
     mutate(&mut pair);
@@ -197,10 +197,10 @@ fn half_the_acceleration_of_triangles_is_noticed() {
 #[test]
 fn half_the_spin_is_noticed() {
     let needle = [DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.0, -1.0, 0.0), DVec3::new(1e-3, 0.0, 0.0)];
-    for opened in [0, 1] {
-        assert!(room_at_the_end(needle, -0.1, opened, |_| ()) >= 1e-7);
+    for expanded in [0, 1] {
+        assert!(room_at_the_end(needle, -0.1, expanded, |_| ()) >= 1e-7);
         let halved = |scale: &mut NodeScale| scale.spin = scale.spin.map(|s| 0.5 * s);
-        assert!(room_at_the_end(needle, -0.1, opened, halved) < 1e-7);
+        assert!(room_at_the_end(needle, -0.1, expanded, halved) < 1e-7);
     }
 }
 
@@ -255,10 +255,10 @@ fn boxes_called_apart_at_rest_are_apart() {
             let mut scale = scene.node_scales(1.0)[1];
             let motion = scene.relative_motion(0.0);
             let frame = NodeFrame::new::<Quad>(&motion.frame::<Quad>(0.0), &scale, true, 1.0);
-            let full = Placed::new::<Portable>(&frame, &scale, (&a.nodes[0], 0), &b.nodes[0]);
+            let full = Placed::new::<Portable>(&frame, &scale, NodeBox::new(&a.nodes, 0), &b.nodes[0]);
             // What is left of the margin.
             scale.floor -= (1.0 - margin) * full.gap_margin;
-            let placed = Placed::new::<Portable>(&frame, &scale, (&a.nodes[0], 0), &b.nodes[0]);
+            let placed = Placed::new::<Portable>(&frame, &scale, NodeBox::new(&a.nodes, 0), &b.nodes[0]);
             let time = entry_times::<Portable>(&b.nodes[0], &placed, &scale).store()[0];
             wrong += u32::from(time > 0.0);
         }
@@ -288,10 +288,14 @@ fn lines_of_no_length_or_beyond_all_numbers_part_nothing() {
             for (side, scale) in scene.node_scales(1.0).iter().enumerate() {
                 let (wide, single) = if side == 0 { (&a, &b) } else { (&b, &a) };
                 let node_frame = NodeFrame::new::<Quad>(&frame, scale, side == 1, 1.0);
-                let placed =
-                    Placed::new::<Portable>(&node_frame, scale, (&single.nodes[0], 0), &wide.nodes[0]);
+                let placed = Placed::new::<Portable>(
+                    &node_frame,
+                    scale,
+                    NodeBox::new(&single.nodes, 0),
+                    &wide.nodes[0],
+                );
                 let time = entry_times::<Portable>(&wide.nodes[0], &placed, scale).store()[0];
-                assert!(time.is_nan() || time <= 0.0, "size {size:e}, {off} off, opened {side}: {time:e}");
+                assert!(time.is_nan() || time <= 0.0, "size {size:e}, {off} off, expanded {side}: {time:e}");
             }
         }
     }

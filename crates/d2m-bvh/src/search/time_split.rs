@@ -2,13 +2,13 @@
 //!
 //! A sub-window of some tenths of a radian is short against what most pairs of boxes allow that are not near each other: at
 //! high spins a search would begin at the root hundreds of times. So a longer span comes first. Its pairs of boxes are
-//! tested over all of it; those that stay apart are done with. The others are opened while boxes are large against
+//! tested over all of it; those that stay apart are done with. The others are expanded while boxes are large against
 //! the way that their points go, and handed on to the two halves of the span. Spans that are short enough are searched
 //! best first, from the pairs that are left. Most have none.
 //!
 //! See docs/theory/engine.md, "Time, divided".
 
-use super::best_first::opening;
+use super::best_first::expander;
 use super::motion::frame::RelativeMotion;
 use super::node_pair::node_scale::NodeScale;
 use super::node_pair::whole_span::{PlacedPose, SpanFrame};
@@ -51,7 +51,8 @@ impl Task for OneSpan<'_, '_> {
     fn run<L: Lanes>(self) -> Step {
         let Self { search, span } = self;
         let scene = search.scene;
-        let root = Item { key: 0, boxes: [0; 2], open: opening(scene, scene.node_scales(1.0)).of_pair(0, 0) };
+        let root =
+            Item { key: 0, boxes: [0; 2], next: expander(scene, scene.node_scales(1.0)).next_of(0, 0) };
         if !search.divides_time() {
             return search.search_window::<L>(span, &[root]);
         }
@@ -145,15 +146,15 @@ impl Search<'_> {
     fn keep_near_pairs<L: Lanes>(&mut self, span: &WaitingSpan, grid: &mut Grid, waiting: &mut WaitingSpans) {
         let scene = self.scene;
         let length = (grid.time(span.to) - grid.time(span.from)).next_up();
-        let WaitingSpans { pairs, to_open, .. } = waiting;
-        let opening = opening(scene, grid.scales);
+        let WaitingSpans { pairs, to_expand, .. } = waiting;
+        let expander = expander(scene, grid.scales);
         let large = length * (scene.spin_speed + scene.closing_speed());
-        to_open.clear();
+        to_expand.clear();
         for index in span.pairs.0..span.pairs.1 {
             let item = pairs[index];
-            if is_large(scene, &item, large) { to_open.push(item) } else { pairs.push(item) }
+            if is_large(scene, &item, large) { to_expand.push(item) } else { pairs.push(item) }
         }
-        if to_open.is_empty() {
+        if to_expand.is_empty() {
             return;
         }
         let middle = (span.from + span.to) / 2;
@@ -162,7 +163,7 @@ impl Search<'_> {
         }
         let [Some(start), Some(middle), Some(end)] = [span.from, middle, span.to].map(|k| &grid.poses[k])
         else {
-            pairs.append(to_open);
+            pairs.append(to_expand);
             return;
         };
         let bend = scene.pair.acceleration * (0.125 * length * length);
@@ -173,15 +174,15 @@ impl Search<'_> {
         let most = pairs.len() + MOST_PAIRS;
         let mut rows = [[0; 4]; WIDTH];
         let (mut tests, mut queued) = (0, 0);
-        while let Some(item) = to_open.pop() {
-            let few = pairs.len() + to_open.len() < most;
-            if item.open & Item::TRIANGLES != 0 || !few || !is_large(scene, &item, large) {
+        while let Some(item) = to_expand.pop() {
+            let few = pairs.len() + to_expand.len() < most;
+            if item.next & Item::TRIANGLES != 0 || !few || !is_large(scene, &item, large) {
                 pairs.push(item);
                 continue;
             }
-            let opened = opening.expand_over_span::<L>(&item, &frames);
-            let count = L::pack(&opened, &mut rows);
-            to_open.extend(rows[..count].iter().map(|row| Item::from_row(*row)));
+            let expanded = expander.expand_over_span::<L>(&item, &frames);
+            let count = L::pack(&expanded, &mut rows);
+            to_expand.extend(rows[..count].iter().map(|row| Item::from_row(*row)));
             tests += 1;
             queued += count as u64;
         }

@@ -56,7 +56,7 @@ pub(crate) struct WideNode {
     pub(crate) bevels: [[f32; WIDTH]; 3],
     /// Radius about the box centre.
     pub(crate) radius: [f32; WIDTH],
-    /// What decides which of two boxes is opened: the larger one. Zero for a leaf, at least [`LEAST_SIZE`] for a node,
+    /// What decides which of two boxes is expanded: the larger one. Zero for a leaf, at least [`LEAST_SIZE`] for a node,
     /// negative for an unused lane.
     pub(crate) size: [f32; WIDTH],
     /// Leaf flag and triangle number, or node number.
@@ -69,6 +69,21 @@ pub(crate) struct WideNode {
     pub(crate) used: u32,
     /// The box that this node is below (`8·node + lane`).
     pub(crate) parent: u32,
+}
+
+/// One box of a node.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NodeBox<'n> {
+    pub(crate) node: &'n WideNode,
+    pub(crate) lane: usize,
+}
+
+impl<'n> NodeBox<'n> {
+    /// By its number among all boxes of these nodes (`8·node + lane`).
+    #[inline(always)]
+    pub(crate) fn new(nodes: &'n [WideNode], index: u32) -> Self {
+        Self { node: &nodes[index as usize / WIDTH], lane: index as usize % WIDTH }
+    }
 }
 
 impl WideNode {

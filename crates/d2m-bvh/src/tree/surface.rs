@@ -144,7 +144,7 @@ impl<'a> Surface<'a> {
 /// Part of the radius that a box counts as thick at least, in its size.
 const LEAST_THICKNESS: f32 = 1e-3;
 
-/// What decides which box is opened: its volume, flat boxes taken a little thicker. Not zero.
+/// What decides which box is expanded: its volume, flat boxes taken a little thicker. Not zero.
 pub(super) fn size_of_box(boxed: &OrientedBox) -> f32 {
     let least = LEAST_THICKNESS * boxed.radius;
     boxed.half_extent.iter().map(|h| h.max(least)).product::<f32>().max(LEAST_SIZE)

@@ -134,7 +134,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/src/search/tests.rs::entry_times_of_boxes_hold_and_are_sharp",
     ),
     patch(
-        "half of the spin of the opened box",
+        "half of the spin of the expanded node",
         "crates/d2m-bvh/src/search/node_pair/entry_time.rs",
         "L::splat(scale.spin[0]) * L::load(&wide.radius)",
         "L::splat(0.5 * scale.spin[0]) * L::load(&wide.radius)",
@@ -143,8 +143,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "half of the spin of the other box",
         "crates/d2m-bvh/src/search/node_pair/node_test.rs",
-        "let swing = scale.spin[1] * radius;",
-        "let swing = 0.5 * scale.spin[1] * radius;",
+        "let spin_speed = scale.spin[1] * radius;",
+        "let spin_speed = 0.5 * scale.spin[1] * radius;",
         "crates/d2m-bvh/src/search/tests.rs::half_the_spin_is_noticed",
     ),
     patch(

@@ -45,7 +45,7 @@ struct Turned {
     rotation: Matrix,
     /// From the reference point to the centre of the tree, and its rate.
     arm: Quad,
-    swing: Quad,
+    arm_velocity: Quad,
 }
 
 impl BodyRotation {
@@ -71,9 +71,9 @@ impl BodyRotation {
             out.first[k] = Quad::from_vec((terms.across * cos + terms.inward * turn.sin) * speed);
             out.second[k] = Quad::from_vec((terms.inward * cos - terms.across * turn.sin) * square);
         }
-        let (arm, swing) = (3, 4);
-        (out.now[swing], out.first[swing]) = (out.first[arm], out.second[arm]);
-        out.second[swing] = Quad::from_vec(out.first[arm].to_vec() * -square);
+        let (arm, arm_velocity) = (3, 4);
+        (out.now[arm_velocity], out.first[arm_velocity]) = (out.first[arm], out.second[arm]);
+        out.second[arm_velocity] = Quad::from_vec(out.first[arm].to_vec() * -square);
         out
     }
 
@@ -99,8 +99,8 @@ impl BodyRotation {
             let turned = D::load(&self.first[k]) * f1 + D::load(&self.second[k]) * f2;
             *column = (D::load(&self.now[k]) + turned).store();
         }
-        let [x, y, z, arm, swing] = out;
-        Turned { rotation: Matrix([x, y, z]), arm, swing }
+        let [x, y, z, arm, arm_velocity] = out;
+        Turned { rotation: Matrix([x, y, z]), arm, arm_velocity }
     }
 }
 
@@ -117,6 +117,13 @@ pub(crate) struct Frame {
     pub(crate) velocity: Quad,
     pub(crate) omega_a: Quad,
     pub(crate) omega_b: Quad,
+}
+
+/// The relative state at one time, and the axes of B in the world.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedFrame {
+    pub(crate) frame: Frame,
+    pub(crate) axes_b: Matrix,
 }
 
 impl Frame {
@@ -169,19 +176,19 @@ impl RelativeMotion {
     /// State at an offset with |ω|·|offset| ≤ 0.35 for both bodies.
     #[inline(always)]
     pub(crate) fn frame<D: Doubles>(&self, offset: f64) -> Frame {
-        self.frame_and_axes::<D>(offset).0
+        self.placed_frame::<D>(offset).frame
     }
 
-    /// The same, and the axes of B in the world.
+    /// The same, placed in the world.
     #[inline(always)]
-    pub(crate) fn frame_and_axes<D: Doubles>(&self, offset: f64) -> (Frame, Matrix) {
+    pub(crate) fn placed_frame<D: Doubles>(&self, offset: f64) -> PlacedFrame {
         let [body_a, body_b] = &self.bodies;
         let (a, b) = (body_a.at::<D>(offset), body_b.at::<D>(offset));
         // Centre of A minus centre of B, and its rate, world axes.
         let velocity = D::load(&self.velocity);
         let moved = D::load(&self.position) + velocity * D::splat(offset);
         let apart = moved + (D::load(&a.arm) - D::load(&b.arm));
-        let rate = velocity + (D::load(&a.swing) - D::load(&b.swing));
+        let rate = velocity + (D::load(&a.arm_velocity) - D::load(&b.arm_velocity));
         let to_b = b.rotation.transposed::<D>();
         let frame = Frame {
             offset,
@@ -191,6 +198,6 @@ impl RelativeMotion {
             omega_a: to_b.times_quad::<D>(&body_a.omega).store(),
             omega_b: body_b.omega_own,
         };
-        (frame, b.rotation)
+        PlacedFrame { frame, axes_b: b.rotation }
     }
 }

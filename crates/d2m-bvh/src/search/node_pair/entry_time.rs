@@ -40,17 +40,29 @@ fn both<L: Lanes>(half: &[L; 3]) -> [L::Two; 3] {
 
 /// Along one axis: the gap, and the speed at which it closes at most, never less than a positive least one.
 #[derive(Clone, Copy)]
-struct Course<T> {
+struct GapAndRate<T> {
     gap: T,
     closing: T,
 }
 
-impl<T: Elementwise> Course<T> {
+/// What holds for the speeds along every axis.
+#[derive(Clone, Copy)]
+struct RateBounds<T> {
+    /// Speeds of the boxes' points differ by at most this from those of the centres.
+    spread: T,
+    /// Least closing speed that is reckoned with.
+    least: T,
+}
+
+impl<T: Elementwise> GapAndRate<T> {
     /// The centres are `along` apart on the axis and part at `parting` (in the sense of the axis), the boxes and the
-    /// margin reach `reach`; speeds differ by at most `spread` from those of the centres.
+    /// margin reach `reach`.
     #[inline(always)]
-    fn new(along: T, reach: T, parting: T, (spread, least): (T, T)) -> Self {
-        Self { gap: along.abs() - reach, closing: (spread - T::flip_sign(parting, along)).max(least) }
+    fn new(along: T, reach: T, parting: T, rate: RateBounds<T>) -> Self {
+        Self {
+            gap: along.abs() - reach,
+            closing: (rate.spread - T::flip_sign(parting, along)).max(rate.least),
+        }
     }
 
     /// The one whose gap lasts longer without acceleration; `other` where a gap is not a number.
@@ -67,7 +79,7 @@ impl<T: Elementwise> Course<T> {
 /// Lower bounds on the times, counted from the frame, until which each lane's box stays apart from the single one;
 /// not positive, or not a number, where nothing is known. In units of the window, not yet clipped.
 ///
-/// Five directions are looked at: the middle axes of both boxes side by side, the last axes, and the line of the centres.
+/// Five directions are evaluated: the middle axes of both boxes side by side, the last axes, and the line of the centres.
 #[inline(always)]
 pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &NodeScale) -> L {
     // Twice, for the two axes: from the lane's centre to the single one's, and the velocity there.
@@ -88,8 +100,8 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
     let margin = L::Two::splat(placed.gap_margin);
     // |ω|·radius of both boxes, whatever the direction, and the error of speeds.
     let spread =
-        L::splat(scale.spin[0]) * L::load(&wide.radius) + L::splat(placed.swing + placed.speed_margin);
-    let speeds = (L::Two::both(spread), L::Two::splat(placed.least));
+        L::splat(scale.spin[0]) * L::load(&wide.radius) + L::splat(placed.spin_speed + placed.speed_margin);
+    let rates = RateBounds { spread: L::Two::both(spread), least: L::Two::splat(placed.least) };
 
     // Axes of the lane's box beside those of the single one, each against the axes of the other box.
     let [middle, last] = [beside(&a[1], &b[1]), beside(&a[2], &b[2])];
@@ -106,14 +118,14 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
     let reach_last = reach::<_, 3>(&other_half, &other_bevels, &with_last, along_last);
     let sum_middle = L::Two::of(half[1], k[1]) + margin + reach_middle;
     let sum_last = L::Two::of(half[2], k[2]) + margin + reach_last;
-    let best = Course::new(along_middle, sum_middle, dot(&v, &middle), speeds).or(Course::new(
+    let best = GapAndRate::new(along_middle, sum_middle, dot(&v, &middle), rates).or(GapAndRate::new(
         along_last,
         sum_last,
         dot(&v, &last),
-        speeds,
+        rates,
     ));
-    let best = Course { gap: best.gap.first(), closing: best.closing.first() }
-        .or(Course { gap: best.gap.second(), closing: best.closing.second() });
+    let best = GapAndRate { gap: best.gap.first(), closing: best.closing.first() }
+        .or(GapAndRate { gap: best.gap.second(), closing: best.closing.second() });
 
     // The line of the centres: where it has no length, nothing is known along it.
     let with_line = [
@@ -128,7 +140,7 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
     let inverse = L::splat(1.0) / square.sqrt();
     let gap = (square - (reach_line.first() + reach_line.second())) * inverse - L::splat(placed.gap_margin);
     let closing = (spread - dot(&rate, &line) * inverse).max(L::splat(placed.least));
-    let best = Course { gap, closing }.or(best);
+    let best = GapAndRate { gap, closing }.or(best);
 
     // Root of gap − closing·s − acceleration·s²/2: no cancellation.
     let twice = best.gap + best.gap;
@@ -219,7 +231,7 @@ mod tests {
             let along = random.next() as f32;
             for _ in 0..20 {
                 let cosines: [f32; 3] = core::array::from_fn(|_| random.next() as f32);
-                let told = reach::<_, 3>(
+                let bound = reach::<_, 3>(
                     &half.map(Portable::splat),
                     &bevels,
                     &cosines.map(Portable::splat),
@@ -232,8 +244,8 @@ mod tests {
                     .map(|p| direction[0] * p[0] + direction[1] * p[1] + direction[2] * p[2])
                     .fold(f32::NEG_INFINITY, f32::max);
                 let corner: f32 = (0..3).map(|k| half[k] * cosines[k].abs()).sum();
-                assert!(farthest <= told + 1e-6 * corner, "{farthest} {told}");
-                sharpest = sharpest.max(farthest / told);
+                assert!(farthest <= bound + 1e-6 * corner, "{farthest} {bound}");
+                sharpest = sharpest.max(farthest / bound);
             }
         }
         assert!(sharpest > 0.999, "{sharpest}");

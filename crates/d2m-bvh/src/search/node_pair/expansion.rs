@@ -1,11 +1,11 @@
-//! Opening a pair of boxes: a box of one body against the eight boxes of a node of the other.
+//! Expanding a pair of boxes: a box of one body against the eight boxes of a node of the other.
 
 use super::entry_time::entry_times;
 use super::node_scale::NodeScale;
 use super::node_test::{NodeFrame, Placed};
 use super::whole_span::{SpanFrame, apart_over_span};
 use crate::search::queue::Item;
-use crate::tree::node::{WIDTH, WideNode};
+use crate::tree::node::{NodeBox, WIDTH, WideNode};
 use d2m_lanes::{Lanes, Rows};
 
 /// Keys of a window run from 0 to this for its whole unit of time.
@@ -13,44 +13,52 @@ pub(crate) const KEY_SCALE: f64 = 536_870_912.0; // 2²⁹
 /// Later times get this key: beyond every window, and with a key of now still a number of 31 bits.
 const LATEST_KEY: f32 = 1.25 * KEY_SCALE as f32;
 
+/// The keys that pairs below an item may have.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct KeyRange {
+    /// The key of the frame: keys count from it.
+    pub(crate) now: u32,
+    /// Pairs whose key is not below this are not worth queueing.
+    pub(crate) limit: u32,
+}
+
 /// What the expansions of one frame share.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Opening<'a> {
+pub(crate) struct NodePairExpander<'a> {
     /// Wide nodes of A and of B.
     pub(crate) nodes: [&'a [WideNode]; 2],
-    /// Constants when nodes of A, of B, are opened.
+    /// Constants when nodes of A, of B, are expanded.
     pub(crate) scales: [NodeScale; 2],
     /// Sizes of A's boxes are multiplied by the first, those of B's by the second, before they are compared: between
     /// [`LEAST_SIZE`](crate::tree::node::LEAST_SIZE) and its inverse.
     pub(crate) size_ratios: [f32; 2],
 }
 
-impl Opening<'_> {
-    /// What is to be done with a pair of boxes: the larger one is opened. A triangle has no size, so it is never the larger.
-    pub(crate) fn of_pair(&self, a: u32, b: u32) -> u32 {
+impl NodePairExpander<'_> {
+    /// What is to be done with a pair of boxes: the larger one is expanded. A triangle has no size, so it is never the larger.
+    pub(crate) fn next_of(&self, a: u32, b: u32) -> u32 {
         let (na, nb) = (&self.nodes[0][a as usize / WIDTH], &self.nodes[1][b as usize / WIDTH]);
         let (la, lb) = (a as usize % WIDTH, b as usize % WIDTH);
         let larger = na.size[la] * self.size_ratios[0] > nb.size[lb] * self.size_ratios[1];
         if larger { na.child[la] } else { nb.child[lb] | Item::OF_B }
     }
 
-    /// Opens an item that is not a pair of triangles: the pairs of each box of its node with the other body's box, as rows
-    /// of an [`Item`]; wanted are those worth queueing, their keys are times until which they are proven apart. Keys count from `now`, the key of the frame; pairs whose key is not below
-    /// `limit` are not worth queueing.
+    /// Expands an item that is not a pair of triangles: the pairs of each box of its node with the other body's box, as rows
+    /// of an [`Item`]; wanted are those worth queueing,
+    /// their keys are times until which they are proven apart.
     #[inline(always)]
     pub(crate) fn expand<L: Lanes>(
         &self,
         item: &Item,
         frames: &[NodeFrame; 2],
-        (now, limit): (u32, u32),
+        KeyRange { now, limit }: KeyRange,
     ) -> Rows {
         let (wide_index, side) = (item.node(), item.side());
         let other = 1 - side;
-        let single = item.boxes[other];
         let wide = &self.nodes[side][wide_index as usize];
-        let (node, lane) = (&self.nodes[other][single as usize / WIDTH], single as usize % WIDTH);
+        let single = NodeBox::new(&self.nodes[other], item.boxes[other]);
         let scale = &self.scales[side];
-        let placed = Placed::new::<L>(&frames[side], scale, (node, lane), wide);
+        let placed = Placed::new::<L>(&frames[side], scale, single, wide);
         let times = entry_times::<L>(wide, &placed, scale);
         // What is not a number becomes the key of the item itself.
         let steps = L::splat(LATEST_KEY).min(times * L::splat(KEY_SCALE as f32));
@@ -58,15 +66,14 @@ impl Opening<'_> {
         self.rows::<L>(item, keys, below)
     }
 
-    /// Opens an item that is not a pair of triangles: wanted are the pairs that are not proven apart over the span. Keys are
+    /// Expands an item that is not a pair of triangles: wanted are the pairs that are not proven apart over the span. Keys are
     /// zero.
     #[inline(always)]
     pub(crate) fn expand_over_span<L: Lanes>(&self, item: &Item, frames: &[SpanFrame<'_>; 2]) -> Rows {
         let side = item.side();
-        let single = item.boxes[1 - side] as usize;
         let wide = &self.nodes[side][item.node() as usize];
-        let node = (&self.nodes[1 - side][single / WIDTH], single % WIDTH);
-        let apart = apart_over_span::<L>(&frames[side], &self.scales[side], node, wide);
+        let single = NodeBox::new(&self.nodes[1 - side], item.boxes[1 - side]);
+        let apart = apart_over_span::<L>(&frames[side], &self.scales[side], single, wide);
         self.rows::<L>(item, [0; WIDTH], !apart)
     }
 
@@ -77,7 +84,7 @@ impl Opening<'_> {
         let other = 1 - side;
         let single = item.boxes[other];
         let wide = &self.nodes[side][wide_index as usize];
-        let (node, lane) = (&self.nodes[other][single as usize / WIDTH], single as usize % WIDTH);
+        let NodeBox { node, lane } = NodeBox::new(&self.nodes[other], single);
         let flags = [0, Item::OF_B];
         let size = node.size[lane] * self.size_ratios[other];
         let tags = L::larger(

@@ -3,7 +3,7 @@
 use super::node_scale::NodeScale;
 use crate::search::motion::frame::Frame;
 use crate::tree::margin::UNIT_F32;
-use crate::tree::node::WideNode;
+use crate::tree::node::{NodeBox, WideNode};
 use d2m_lanes::{Doubles, Lanes, Matrix, Quad};
 use glam::DVec3;
 
@@ -24,9 +24,9 @@ pub(crate) struct NodeFrame {
     apart: Quad,
     velocity: Quad,
     /// ω_single × each column of the rotation.
-    swing: Matrix,
+    spin_single: Matrix,
     /// ω_wide × each axis.
-    turn: Matrix,
+    spin_wide: Matrix,
     omega_wide: [f32; 4],
     /// Least closing speed that is reckoned with.
     least: f32,
@@ -41,14 +41,14 @@ impl NodeFrame {
         narrow: [[0.0; 4]; 3],
         apart: Quad([0.0; 4]),
         velocity: Quad([0.0; 4]),
-        swing: Matrix([Quad([0.0; 4]); 3]),
-        turn: Matrix([Quad([0.0; 4]); 3]),
+        spin_single: Matrix([Quad([0.0; 4]); 3]),
+        spin_wide: Matrix([Quad([0.0; 4]); 3]),
         omega_wide: [0.0; 4],
         least: 0.0,
         speed_floor: 0.0,
     };
 
-    /// `left`: no later time matters, counted from the frame (a hint). `wide_is_b`: nodes of B are opened against boxes of A; else the other way round.
+    /// `left`: no later time matters, counted from the frame (a hint). `wide_is_b`: nodes of B are expanded against boxes of A; else the other way round.
     #[inline(always)]
     pub(crate) fn new<D: Doubles>(frame: &Frame, scale: &NodeScale, wide_is_b: bool, left: f32) -> Self {
         let (length, speed, time) =
@@ -79,8 +79,8 @@ impl NodeFrame {
             narrow: [D::load(&r[0]).narrow(), D::load(&r[1]).narrow(), D::load(&r[2]).narrow()],
             apart: (apart * length).store(),
             velocity: (velocity * speed).store(),
-            swing: Matrix::cross(&omega_single.store()).times_matrix::<D>(&rotation),
-            turn: Matrix::cross(&omega_wide.store()),
+            spin_single: Matrix::cross(&omega_single.store()).times_matrix::<D>(&rotation),
+            spin_wide: Matrix::cross(&omega_wide.store()),
             omega_wide: omega_wide.narrow(),
             least: scale.acceleration * left * HINT + scale.speed_floor,
             speed_floor: scale.speed_floor,
@@ -100,7 +100,7 @@ pub(crate) struct Placed {
     pub(super) velocity: [f32; 4],
     pub(super) omega_wide: [f32; 4],
     /// Bound on |ω × e| over the single box.
-    pub(super) swing: f32,
+    pub(super) spin_speed: f32,
     pub(crate) gap_margin: f32,
     /// Error of speeds.
     pub(super) speed_margin: f32,
@@ -114,9 +114,10 @@ impl Placed {
     pub(crate) fn new<L: Lanes>(
         frame: &NodeFrame,
         scale: &NodeScale,
-        (single, lane): (&WideNode, usize),
+        single: NodeBox<'_>,
         wide: &WideNode,
     ) -> Self {
+        let NodeBox { node: single, lane } = single;
         let at = |k: usize| (f64::from(single.origin[k]) + f64::from(single.center[k][lane])) * scale.ratio;
         let from = DVec3::new(at(0), at(1), at(2));
         let origin =
@@ -125,12 +126,12 @@ impl Placed {
         let velocity = <L::Doubles as Doubles>::load(&frame.velocity);
         let here = <L::Doubles as Doubles>::load(&Quad::from_vec(origin));
         let center = (apart + frame.rotation.times(from) - here).narrow();
-        let velocity = (velocity + frame.swing.times(from) - frame.turn.times(origin)).narrow();
+        let velocity = (velocity + frame.spin_single.times(from) - frame.spin_wide.times(origin)).narrow();
         let ratio = scale.ratio as f32;
         let radius = single.radius[lane] * ratio;
         let (half, bevels) = (&single.half_extent, &single.bevels);
         let norm = |v: &[f32; 4]| v[0].abs() + v[1].abs() + v[2].abs();
-        let swing = scale.spin[1] * radius;
+        let spin_speed = scale.spin[1] * radius;
         Self {
             axes: [
                 turned::<L>(frame, &single.axes[0], lane),
@@ -140,9 +141,9 @@ impl Placed {
             half: [half[0][lane] * ratio, half[1][lane] * ratio, half[2][lane] * ratio],
             bevels: [opposite(bevels[0][lane]), opposite(bevels[1][lane]), opposite(bevels[2][lane])],
             omega_wide: frame.omega_wide,
-            swing,
+            spin_speed,
             gap_margin: GAP_ERROR * (norm(&center) + wide.extent + radius) + scale.floor,
-            speed_margin: SPEED_ERROR * (norm(&velocity) + scale.spin[0] * wide.extent + swing)
+            speed_margin: SPEED_ERROR * (norm(&velocity) + scale.spin[0] * wide.extent + spin_speed)
                 + frame.speed_floor,
             least: frame.least,
             center,

@@ -10,10 +10,10 @@
 use super::entry_time::{dot, splat};
 use super::node_scale::NodeScale;
 use super::node_test::opposite;
-use crate::search::motion::frame::RelativeMotion;
+use crate::search::motion::frame::{PlacedFrame, RelativeMotion};
 use crate::tree::bevel::reach;
 use crate::tree::margin::{NARROW_UP, UNIT_F32, UP, round_up};
-use crate::tree::node::WideNode;
+use crate::tree::node::{NodeBox, WideNode};
 use d2m_lanes::{Bytes, Doubles, Elementwise, Lanes, Matrix, Quad, Two};
 use glam::DVec3;
 
@@ -34,14 +34,14 @@ pub(crate) struct PlacedPose {
 }
 
 impl PlacedPose {
-    /// For nodes of A and of B that are opened, at an offset of the motion.
+    /// For nodes of A and of B that are expanded, at an offset of the motion.
     #[inline(always)]
     pub(crate) fn both<D: Doubles>(
         motion: &RelativeMotion,
         offset: f64,
         scales: &[NodeScale; 2],
     ) -> [Self; 2] {
-        let (frame, axes_b) = motion.frame_and_axes::<D>(offset);
+        let PlacedFrame { frame, axes_b } = motion.placed_frame::<D>(offset);
         let back = frame.rotation.transposed::<D>();
         let apart_in_a = (D::splat(0.0) - back.times_quad::<D>(&frame.apart)).store();
         let axes_a = axes_b.times_matrix::<D>(&frame.rotation);
@@ -178,7 +178,7 @@ fn norm(v: &[f32; 4]) -> f32 {
     v[0].abs() + v[1].abs() + v[2].abs()
 }
 
-/// Bit i is set when box i of a node stays apart from box `lane` of `single` over the span.
+/// Bit i is set when box i of a node stays apart from a single box over the span.
 ///
 /// Three directions are tried, fixed in the world as they are in the middle of the span: the line of the centres and the last
 /// axes of both boxes.
@@ -186,9 +186,10 @@ fn norm(v: &[f32; 4]) -> f32 {
 pub(crate) fn apart_over_span<L: Lanes>(
     frame: &SpanFrame<'_>,
     scale: &NodeScale,
-    (single, lane): (&WideNode, usize),
+    single: NodeBox<'_>,
     wide: &WideNode,
 ) -> u32 {
+    let NodeBox { node: single, lane } = single;
     let (o, c, ratio) = (&single.origin, &single.center, scale.ratio);
     let from = DVec3::new(
         (f64::from(o[0]) + f64::from(c[0][lane])) * ratio,

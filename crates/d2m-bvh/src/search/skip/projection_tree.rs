@@ -101,7 +101,7 @@ impl ProjectionTree {
         self.cells[cell].piece.map(|piece| &self.pieces[piece as usize])
     }
 
-    /// What decides which of two cells is opened: cells that are not one piece first.
+    /// What decides which of two cells is expanded: cells that are not one piece first.
     pub(super) fn size(&self, cell: usize) -> (bool, f64) {
         let several = self.cells[cell].piece.is_none();
         let extents = self.cells[cell].projection.extents();

@@ -234,7 +234,7 @@ impl SweptPart<'_> {
         Distances { near: (middle - self.radius).max(0.0), far: middle + self.radius }
     }
 
-    /// What decides which part is opened.
+    /// What decides which part is expanded.
     pub(super) fn size(&self) -> f64 {
         if self.body.spins {
             SPINNING_SIZE * ((self.annulus.high - self.annulus.low) + (self.annulus.far - self.annulus.near))

@@ -3,7 +3,7 @@
 //! A body that spins stays in its swept volume: each point e (from the reference point, axis k) stays on a circle. Along a
 //! unit direction n that circle reaches n·k k·e + |n × k| ρ at most, ρ the distance of e from the axis. The reference points
 //! move on straight lines, so the time until which a direction keeps two swept volumes apart is a quotient, for all the
-//! rest of the query at once. Parts that no direction keeps apart are opened, down to triangles; the earliest time at
+//! rest of the query at once. Parts that no direction keeps apart are expanded, down to triangles; the earliest time at
 //! which the swept volumes of two triangles may come within the level is the answer.
 //!
 //! See docs/theory/engine.md, "Sweeps".
