@@ -320,7 +320,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "attempts to skip time have no deadline",
         "crates/d2m-bvh/src/allowance.rs",
         "Self { steps: None, deadline, until_reading: STEPS_A_READING }",
-        "Self { steps: None, deadline: deadline.and(None), until_reading: STEPS_A_READING }",
+        "Self { steps: None, deadline: if deadline.is_some() { None } else { deadline }, until_reading: STEPS_A_READING }",
         "crates/d2m-bvh/src/search/skip/screw_search.rs::attempts_end_with_their_time",
     ),
     patch(
