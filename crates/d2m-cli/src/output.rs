@@ -106,6 +106,15 @@ impl Output {
     }
 }
 
+impl core::fmt::Display for Output {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Stdout => f.write_str("standard output"),
+            Self::File(path) => write!(f, "{}", path.display()),
+        }
+    }
+}
+
 /// Results as they come: a run that is ended from outside leaves the whole lines written until then.
 #[derive(Debug)]
 pub(crate) struct Stream {

@@ -56,12 +56,15 @@ fn runs_join_from_start_to_end_and_are_the_same_at_any_number_of_threads() {
 }
 
 #[test]
-fn bodies_that_overlap_at_the_start_are_named_and_nothing_is_written() {
+fn bodies_that_overlap_at_the_start_are_named_and_an_old_run_stays() {
     let folder = Folder::new("simulate-overlap");
     let scene = folder.file("overlap.json", &PILE.replace("[0, 0.6, 0]", "[0, 0.4, 0]"));
     let run = folder.path("run.jsonl");
     refused(&["simulate", &scene, "--out", &run], &["overlap.json", "floor", "low", "intersect"]);
     assert!(!std::path::Path::new(&run).exists());
+    let run = folder.file("old.jsonl", "an old run\n");
+    refused(&["simulate", &scene, "--out", &run], &["intersect", "nothing was written to", "old.jsonl"]);
+    assert_eq!(std::fs::read_to_string(&run).unwrap(), "an old run\n");
 }
 
 #[test]
@@ -81,6 +84,20 @@ fn a_run_that_cannot_go_on_keeps_its_segments() {
     let run = lines(&run);
     let last = run.last().unwrap()["t1"].as_f64().unwrap();
     assert!(run.len() > 10 && last > 0.2 && last < 1.0, "{last}");
+    assert!(message.contains(&format!("run.jsonl holds the run until t = {last:?}")), "{message}");
+}
+
+/// The file of an earlier, longer run is cut off before the first segment is written, and grows step by step.
+#[test]
+fn a_run_replaces_the_whole_of_an_older_one() {
+    let folder = Folder::new("simulate-again");
+    let scene = folder.file("pile.json", &PILE.replace("\"end\": 1.5", "\"end\": 0.1"));
+    let run = folder.file("run.jsonl", &"an old run that was much longer\n".repeat(10_000));
+    let output = d2m(&["simulate", &scene, "--out", &run]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let run = lines(&run);
+    assert_eq!(run.last().unwrap()["t1"].as_f64(), Some(0.1));
+    assert_eq!(run[1]["t0"].as_f64(), Some(0.0));
 }
 
 #[test]

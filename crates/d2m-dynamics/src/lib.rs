@@ -7,6 +7,7 @@ mod contact;
 mod error;
 mod faces;
 mod group;
+mod listener;
 mod mass;
 mod options;
 mod pairs;
@@ -20,6 +21,7 @@ mod step;
 
 pub use body::{Body, BodyId, Kind, Mass, Motion};
 pub use error::{MassError, SimulationError, StepError};
+pub use listener::ContactListener;
 pub use mass::MassProperties;
 pub use options::SimulationOptions;
 pub use record::{ContactImpulse, Segment};

@@ -3,6 +3,7 @@
 use crate::broad_phase::SweptBoxes;
 use crate::contact::Material;
 use crate::faces::Faces;
+use crate::listener::{ContactListener, Nobody};
 use crate::pairs::{Pair, solid_of};
 use crate::record::Recorder;
 use crate::rigid_body::RigidBody;
@@ -187,11 +188,41 @@ impl Simulation {
     /// # Errors
     /// [`StepError`]; the segments until then are those of [`Self::finish`].
     pub fn step(&mut self) -> Result<StepReport, StepError> {
+        self.step_with(&mut Nobody)
+    }
+
+    /// As [`Self::step`], and tells the listener of each contact's impulse as it acts.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use d2m_dynamics::{Body, ContactImpulse, Kind, Simulation, SimulationOptions};
+    /// # use glam::DVec3;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let mut simulation = Simulation::new(SimulationOptions::default())?;
+    /// # let floor = Body::new("floor", Arc::clone(&cube)).with_kind(Kind::Static);
+    /// # let floor = simulation.add(&floor)?;
+    /// let falling = simulation.add(&Body::new("falling", cube).with_position(DVec3::Y * 1.2))?;
+    /// let mut first = None;
+    /// while simulation.time() < 0.5 {
+    ///     simulation.step_with(&mut |contact: &ContactImpulse| {
+    ///         assert_eq!((contact.a, contact.b), (floor, falling));
+    ///         first.get_or_insert(contact.time);
+    ///     })?;
+    /// }
+    /// // Steps of 10 ms: the velocity of each is that of its middle.
+    /// assert!(first.is_some_and(|time| (time - (2.0 * 0.199 / 9.81f64).sqrt()).abs() < 0.01));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn step_with(&mut self, listener: &mut dyn ContactListener) -> Result<StepReport, StepError> {
         let mut steps = self.steps + 1;
         while steps as f64 * self.options.step <= self.time {
             steps += 1;
         }
-        let report = self.step_to(steps as f64 * self.options.step);
+        let report = self.step_to_with(steps as f64 * self.options.step, listener);
         self.steps = steps;
         report
     }
@@ -201,12 +232,24 @@ impl Simulation {
     /// # Errors
     /// As [`Self::step`]; also an end that is not after the present time.
     pub fn step_to(&mut self, end: f64) -> Result<StepReport, StepError> {
+        self.step_to_with(end, &mut Nobody)
+    }
+
+    /// As [`Self::step_to`], and tells the listener of each contact's impulse as it acts.
+    ///
+    /// # Errors
+    /// As [`Self::step_to`].
+    pub fn step_to_with(
+        &mut self,
+        end: f64,
+        listener: &mut dyn ContactListener,
+    ) -> Result<StepReport, StepError> {
         if !(end.is_finite() && end > self.time) {
             let wanted = "after the present time";
             return Err(SimulationError::BadOption { name: "end of the step", value: end, wanted }.into());
         }
         self.check_start()?;
-        Step::new(self, end).run()
+        Step::new(self, end, listener).run()
     }
 
     /// The segments that are not reported yet, at the end of a run.
@@ -230,6 +273,21 @@ impl Simulation {
     }
 
     /// All bodies, in the order in which they were added.
+    ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use d2m_dynamics::{Body, Simulation, SimulationOptions};
+    /// # use glam::DVec3;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// let mut simulation = Simulation::new(SimulationOptions::default())?;
+    /// let one = simulation.add(&Body::new("one", Arc::clone(&cube)))?;
+    /// let two = simulation.add(&Body::new("two", cube).with_position(DVec3::X * 3.0))?;
+    /// assert_eq!(simulation.ids().collect::<Vec<_>>(), [one, two]);
+    /// let highest = simulation.ids().map(|id| simulation.position(id).y).fold(f64::MIN, f64::max);
+    /// assert_eq!(highest, 0.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn ids(&self) -> impl Iterator<Item = BodyId> + use<> {
         (0..self.bodies.len() as u32).map(BodyId)
     }

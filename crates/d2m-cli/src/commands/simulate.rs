@@ -20,7 +20,7 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<(), Failure> {
     let name = arguments.scene.display().to_string();
     let ended = pool.install(|| simulate(scene, &name, &out))?;
     if let Some(error) = ended.early {
-        Err(Failure::at(name, error))
+        Err(Failure::at(name, format!("{error}; {}", ended.written)))
     } else {
         note(&format!("simulated in {}", duration(ended.took)));
         Ok(())
@@ -33,6 +33,8 @@ struct Ended {
     took: Duration,
     /// Why it could not go on.
     early: Option<StepError>,
+    /// What the run file holds, in words.
+    written: String,
 }
 
 /// The run file, written step by step.
@@ -42,6 +44,8 @@ struct RunFile<'s> {
     stream: Option<Stream>,
     header: String,
     names: &'s [String],
+    /// The end of the last segment that was written.
+    until: Option<f64>,
 }
 
 impl RunFile<'_> {
@@ -56,10 +60,30 @@ impl RunFile<'_> {
             segment(&mut text, part, self.names, first, wall);
             first = false;
         }
-        if self.stream.is_none() {
-            self.stream = Some(self.out.stream()?);
+        if text.is_empty() {
+            return Ok(());
         }
-        self.stream.as_mut().map_or(Ok(()), |stream| stream.lines(&text))
+        let stream = match &mut self.stream {
+            Some(stream) => stream,
+            none => none.insert(self.out.stream()?),
+        };
+        let result = stream.lines(&text);
+        // The reader of a closed pipe has what it wanted.
+        result.map_err(|failure| match failure {
+            Failure::Input(reason) => Failure::Input(format!("{reason}; {}", self.words())),
+            Failure::ClosedPipe => Failure::ClosedPipe,
+        })?;
+        self.until = segments.last().map(|segment| segment.end);
+        Ok(())
+    }
+
+    /// What is written.
+    fn words(&self) -> String {
+        match self.until {
+            Some(time) => format!("{} holds the run until t = {time:?}", self.out),
+            None if self.stream.is_some() => format!("{} holds no segment", self.out),
+            None => format!("nothing was written to {}", self.out),
+        }
     }
 }
 
@@ -68,8 +92,8 @@ fn simulate(mut scene: Scene, name: &str, out: &Output) -> Result<Ended, Failure
     let steps = (scene.end / step - ROUNDING).ceil().max(1.0);
     let bar = progress_bar(steps as usize, "steps");
     let header = header(name, &scene.names, &scene.simulation, &scene.ids);
-    let mut file = RunFile { out, stream: None, header, names: &scene.names };
-    let mut ended = Ended { took: Duration::ZERO, early: None };
+    let mut file = RunFile { out, stream: None, header, names: &scene.names, until: None };
+    let mut ended = Ended { took: Duration::ZERO, early: None, written: String::new() };
     let (mut events, mut skipped) = (0u64, 0.0);
     for k in 1..=steps as u64 {
         let end = if k == steps as u64 { scene.end } else { k as f64 * step };
@@ -84,7 +108,8 @@ fn simulate(mut scene: Scene, name: &str, out: &Output) -> Result<Ended, Failure
                 file.write(&report.segments, took)?;
             }
             Err(error @ StepError::Setup(_)) if file.stream.is_none() => {
-                return Ok(Ended { early: Some(error), ..ended });
+                bar.finish_and_clear();
+                return Ok(Ended { early: Some(error), written: file.words(), ..ended });
             }
             Err(error) => {
                 ended.early = Some(error);
@@ -104,5 +129,6 @@ fn simulate(mut scene: Scene, name: &str, out: &Output) -> Result<Ended, Failure
     note(&format!(
         "{time} simulated, {each:.4} s a simulated second, {events} contact events, {skipped} skipped"
     ));
+    ended.written = file.words();
     Ok(ended)
 }

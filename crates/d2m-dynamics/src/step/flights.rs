@@ -134,3 +134,31 @@ impl Step<'_> {
         pairs
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::faces::Faces;
+    use crate::{Body, Kind};
+    use d2m_bvh::MeshTree;
+    use d2m_motion::ConstantTwist;
+    use std::sync::Arc;
+
+    fn sphere(x: f64, radius: f64) -> RigidBody {
+        let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box").unwrap()));
+        let faces = Arc::new(Faces::new(tree.mesh()));
+        let body = RigidBody::try_new(&Body::new("", tree).with_kind(Kind::Static), faces, 0.0).unwrap();
+        RigidBody { radius, flight: ConstantTwist::REST.with_position(DVec3::X * x), ..body }
+    }
+
+    /// The centers are 2⁵³ + 3 apart, which rounds to 2⁵³ + 4; the radii are half a unit more than what is true.
+    #[test]
+    fn spheres_that_overlap_by_less_than_rounding_are_not_apart() {
+        let size = (1u64 << 53) as f64;
+        let (a, b) = (sphere(-1.0, size), sphere(size + 2.0, 3.0));
+        assert!(!are_spheres_apart(&a, &b, 0.0, 1.0, 0.5));
+        assert!(are_spheres_apart(&sphere(-1.0, 0.9), &sphere(1.0, 0.9), 0.0, 1.0, 0.1));
+        assert!(!are_spheres_apart(&sphere(-1.0, 0.9), &sphere(1.0, 0.9), 0.0, 1.0, 0.21));
+        assert!(!are_spheres_apart(&sphere(-1.0, f64::NAN), &sphere(1.0, 0.9), 0.0, 1.0, 0.1));
+    }
+}

@@ -9,7 +9,7 @@ mod resolve;
 
 use crate::contact::ContactPoint;
 use crate::rigid_body::RigidBody;
-use crate::{Simulation, StepError, StepReport};
+use crate::{ContactListener, Simulation, StepError, StepReport};
 use event::{Cause, Event};
 use glam::DVec3;
 use plan::Replans;
@@ -33,6 +33,7 @@ enum Occasion {
 /// A step in progress.
 pub(crate) struct Step<'s> {
     sim: &'s mut Simulation,
+    listener: &'s mut dyn ContactListener,
     start: f64,
     end: f64,
     /// Features up to this distance are contacts that a flight may have to heed.
@@ -51,13 +52,14 @@ pub(crate) struct Step<'s> {
 type Key = (usize, usize);
 
 impl<'s> Step<'s> {
-    pub(crate) fn new(sim: &'s mut Simulation, end: f64) -> Self {
+    pub(crate) fn new(sim: &'s mut Simulation, end: f64, listener: &'s mut dyn ContactListener) -> Self {
         let options = &sim.options;
         let slow = options.resting_speed().max(options.gap / options.step);
         let margin = options.gap + slow * options.step;
         let start = sim.time;
         Self {
             sim,
+            listener,
             start,
             end,
             margin,

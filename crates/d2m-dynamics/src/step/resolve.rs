@@ -184,14 +184,16 @@ impl Step<'_> {
         for contact in self.impulses.drain(..) {
             let impulse = contact.total();
             if impulse != DVec3::ZERO {
-                self.sim.recorder.contact(ContactImpulse {
+                let impulse = ContactImpulse {
                     a: BodyId(contact.a as u32),
                     b: BodyId(contact.b as u32),
                     point: contact.point,
                     normal: contact.normal,
                     impulse: -impulse,
                     time: self.sim.time,
-                });
+                };
+                self.listener.contact(&impulse);
+                self.sim.recorder.contact(impulse);
             }
         }
     }

@@ -24,6 +24,13 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-dynamics/tests/scenes.rs::head_on",
     ),
     patch(
+        "spheres are compared without the rounding of their distance",
+        "crates/d2m-dynamics/src/step/flights.rs",
+        "const SPHERES: f64 = 32.0 * f64::EPSILON;",
+        "const SPHERES: f64 = 0.0;",
+        "crates/d2m-dynamics/src/step/flights.rs::spheres_that_overlap_by_less_than_rounding_are_not_apart",
+    ),
+    patch(
         "bodies that bounce keep no speed",
         "crates/d2m-dynamics/src/contact/impact.rs",
         "-scale * contacts[k].material.restitution * rates[k]",
