@@ -8,7 +8,7 @@ fn main() {
     let wanted = arguments.first().cloned().unwrap_or_default();
     let rounds: usize = arguments.get(1).and_then(|a| a.parse().ok()).unwrap_or(5);
     println!(
-        "{:<64} {:>10} windows  tests     looks     sweeps/pairs   fault",
+        "{:<64} {:>10} windows  tests     triangles sweeps/pairs   fault",
         "mean processor time of a query", "ms"
     );
     let mut faults = 0;

@@ -90,8 +90,8 @@ fn main() {
     let mut counts: Vec<_> = motions
         .iter()
         .map(|(ma, mb)| {
-            time_of_contact(Moving::new(&a, ma), Moving::new(&b, mb), Window::UNIT, &options)
-                .expect("good query");
+            let (a, b) = (Moving::new(&a, ma), Moving::new(&b, mb));
+            _ = time_of_contact(a, b, Window::UNIT, &options).expect("good query");
             d2m_bvh::last_search_counts()
         })
         .collect();

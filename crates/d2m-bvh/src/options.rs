@@ -48,7 +48,7 @@ pub enum Mode {
 pub struct Budget {
     /// Most node tests (one node against the children of another, or one step of a triangle pair).
     pub node_tests: Option<u64>,
-    /// Most time on the clock. Looked at every few hundred node tests, so a query may exceed it by about 50 µs.
+    /// Most time on the clock. Read every few hundred node tests, so a query may exceed it by about 50 µs.
     pub wall_clock: Option<Duration>,
 }
 

@@ -5,7 +5,7 @@ use crate::search::relative_trajectory::RelativeTrajectory;
 /// that did not meet how far apart they stayed.
 ///
 /// Bodies that move little between two queries are closest, or meet, near the same place again: `distance_within` and
-/// [`contact_exists`](crate::contact_exists) look there first. And bodies that stayed 0.1 apart (lengths in the unit of
+/// [`contact_exists`](crate::contact_exists) begin there. And bodies that stayed 0.1 apart (lengths in the unit of
 /// the meshes) stay apart when they move almost the same way again, where "almost" is a bound on the difference of all their
 /// points' positions below 0.1: so [`time_of_contact_with`](crate::time_of_contact_with) need not search. Promise: a cache
 /// never changes an answer, not in one bit; a cache from other bodies is useless but harmless. Source: Section VI of the d2m

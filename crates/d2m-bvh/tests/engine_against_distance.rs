@@ -1,5 +1,5 @@
 //! The engine on random small scenes, judged by static queries: before the contact the bodies are apart at every time
-//! that is looked at, and at the certified time they are apart by (0, 3.3 δ].
+//! that is sampled, and at the certified time they are apart by (0, 3.3 δ].
 
 mod random;
 

@@ -492,19 +492,19 @@ fn modes_separations_and_windows_hold_for_every_motion() {
 #[test]
 fn a_body_inside_another_is_in_contact() {
     let (big, small) = (cube(4.0), cube(0.5));
-    let swing =
+    let spinning =
         Chain::try_new(vec![revolute(DVec3::ZERO, DVec3::Z, polynomial(&[0.0, 1.0, 1.0])), fixed(DVec3::X)])
             .unwrap();
     let options = QueryOptions::default();
     let rest = ConstantTwist::REST;
-    let filled = query([&small, &big], [&swing, &rest], Window::UNIT, &options);
+    let filled = query([&small, &big], [&spinning, &rest], Window::UNIT, &options);
     let contact = filled.contact().unwrap();
     assert_eq!(
         (contact.start, contact.evidence, contact.time_lo),
         (StartState::Contained, Evidence::Crossing, 0.0)
     );
     assert!(
-        query([&small, &big], [&swing, &rest], Window::UNIT, &options.with_solid(Solid::Surface))
+        query([&small, &big], [&spinning, &rest], Window::UNIT, &options.with_solid(Solid::Surface))
             .is_separated()
     );
 }

@@ -158,9 +158,9 @@ fn random_splines_are_answered_right() {
         }
         let answer = query([&a, &b], [&path, &still], window, &options);
         if answer.contact().is_some() {
-            hits += 1
+            hits += 1;
         } else {
-            free += 1
+            free += 1;
         }
         judge([&a, &b], [&path, &still], (window, offset, 120), &answer)
             .unwrap_or_else(|fault| panic!("round {round}: {fault}"));
@@ -302,9 +302,9 @@ fn random_chains_of_piecewise_quintics() {
         }
         let answer = query([&a, &b], [&left, &right], window, &options);
         if answer.contact().is_some() {
-            hits += 1
+            hits += 1;
         } else {
-            free += 1
+            free += 1;
         }
         judge([&a, &b], [&left, &right], (window, offset, 120), &answer)
             .unwrap_or_else(|fault| panic!("round {round}: {fault}"));

@@ -112,7 +112,7 @@ fn bad_input_is_an_error_and_nothing_else() {
     assert_eq!(refused, Err(QueryError::BadMotion { body: 1 }));
 }
 
-/// The same motions told only through the open trait give the same answers.
+/// The same motions given only through the open trait give the same answers.
 #[test]
 fn any_rigid_motion_through_its_enclosures() {
     use d2m_interval::Interval;
@@ -167,7 +167,7 @@ fn the_step_back_is_measured() {
         .unwrap();
         let contact = answer.contact().expect("the tip dips in");
         assert!((tolerance..=3.3 * tolerance).contains(&contact.separation), "{depth:e}: {contact:?}");
-        // The tip is at height reach·sin(2t + atan h); its true distance at time_lo is the separation told.
+        // The tip is at height reach·sin(2t + atan h); its true distance at time_lo is the separation reported.
         let gap = |t: f64| (reach - depth) - reach * (2.0 * t + h.atan()).sin();
         assert!(
             (gap(contact.time_lo) - contact.separation).abs() < 1e-13,

@@ -23,12 +23,12 @@ fn torus(rings: u32, sides: u32, tube: f64) -> MeshTree {
 
 /// The motion of a step of a sequence.
 #[derive(Clone, Copy)]
-enum Course {
+enum StepMotion {
     Linear(ConstantTwist),
     Screw(ScrewMotion),
 }
 
-impl Course {
+impl StepMotion {
     fn motion(&self) -> &dyn RigidMotion {
         match self {
             Self::Linear(motion) => motion,
@@ -71,10 +71,12 @@ fn no_cache_changes_a_bit() {
             let course = if screws {
                 let pose = Pose { rotation: q.normalize(), translation: x, at: DVec3::ZERO };
                 let twist = Twist { linear: towards, angular: turn + random.vec() * change };
-                Course::Screw(ScrewMotion::try_from_twist(pose, twist, 0.0).unwrap())
+                StepMotion::Screw(ScrewMotion::try_from_twist(pose, twist, 0.0).unwrap())
             } else {
                 let v = towards + random.vec() * change;
-                Course::Linear(ConstantTwist::try_new(x, q, v, turn + random.vec() * change * spin).unwrap())
+                StepMotion::Linear(
+                    ConstantTwist::try_new(x, q, v, turn + random.vec() * change * spin).unwrap(),
+                )
             };
             let other = ConstantTwist::REST.with_angular_velocity(random.vec() * change);
             let window = Window::try_new(0.0, 1.0 + f64::from(step % 2) * 1e-3).unwrap();

@@ -391,7 +391,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// May these two meet, so that the simulation looks after them?
+    /// May these two meet, so that the simulation considers them?
     pub(crate) fn meets(&self, a: usize, b: usize) -> bool {
         (self.bodies[a].is_dynamic() || self.bodies[b].is_dynamic())
             && !self.ignored.contains(&(a.min(b), a.max(b)))

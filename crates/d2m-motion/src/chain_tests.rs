@@ -341,7 +341,7 @@ fn keyframes_as_a_motion_are_one_sided_at_their_joints() {
 }
 
 #[test]
-fn spans_of_a_screw_are_told_by_one_point() {
+fn spans_of_a_screw_have_one_reference_point() {
     let mut random = Random(16);
     for _ in 0..100 {
         let frames: Vec<(f64, Pose)> = (0..5)

@@ -207,7 +207,7 @@ impl ConstantTwist {
         )
     }
 
-    /// The same motion told from time `t0`: the pose is evaluated in extended precision and rounded once, so the
+    /// The same motion with the reference time `t0`: the pose is evaluated in extended precision and rounded once, so the
     /// new motion differs from the old one by at most a few units in the last place of the pose at `t0`, also when
     /// `t0` is far from the old reference time. (The certified feature tests do not use it: they carry the rounding.)
     pub fn rebase(&self, t0: f64) -> Self {

@@ -86,7 +86,7 @@ impl Kinematics {
         Self { rotation, rotation_radius, ..self }
     }
 
-    /// The state with the position told from `origin`: `(position − origin)` is rounded once.
+    /// The state with the position relative to `origin`: `(position − origin)` is rounded once.
     pub fn state_about(&self, origin: DVec3) -> CertifiedState {
         let position = (self.position.center - origin) + self.position_tail;
         // The first difference is exact up to u of itself, and so is the sum.
@@ -170,7 +170,7 @@ impl Kinematics {
         .with_rotation(self.rotation * inner.rotation, radius)
     }
 
-    /// The same motion told by another body point: with e = R(at − at₀) the point is at x + e, moves with v + ω × e and
+    /// The same motion expressed by another body point: with e = R(at − at₀) the point is at x + e, moves with v + ω × e and
     /// accelerates with a + α × e + ω × (ω × e).
     #[must_use]
     pub fn following(&self, at: DVec3) -> Self {

@@ -22,7 +22,7 @@ pub struct TwistPiece {
 /// * the body point `at` is the same at all times;
 /// * [`RigidMotion::pose_and_twist`] is the same motion up to rounding. It proves nothing.
 ///
-/// **Joints.** Where two C² pieces meet, twist and twist rate may jump. Such times are told by
+/// **Joints.** Where two C² pieces meet, twist and twist rate may jump. Such times are reported by
 /// [`RigidMotion::smooth_until`]. Over an interval with an interior the enclosures hold what is inside and the
 /// one-sided limits at its ends, seen from inside; at a single time, the piece that begins there (at the end of the domain: that
 /// ends there). [`check_motion`](crate::check_motion) holds a motion against all this by samples.
@@ -54,7 +54,7 @@ pub trait RigidMotion: Sync {
         None
     }
 
-    /// Pose and twist at one time with proven radii: what a search looks at, once for each time.
+    /// Pose and twist at one time with proven radii: what a search evaluates, once for each time.
     ///
     /// The default takes the middles of the enclosures at `t`, which is right for every motion. A motion that knows
     /// its own rounding can do it in plain floating point ([`ConstantTwist`] does, three times as fast).
@@ -63,7 +63,7 @@ pub trait RigidMotion: Sync {
         CertifiedState::from_enclosures(&self.enclose_pose(now), &self.enclose_twist(now))
     }
 
-    /// [`RigidMotion::enclose_state`] with the position told from the world point `origin`.
+    /// [`RigidMotion::enclose_state`] with the position relative to the world point `origin`.
     ///
     /// A motion far from the world's origin that keeps more than one double of its position loses nothing here; the
     /// default subtracts.

@@ -74,7 +74,7 @@ impl CertifiedState {
 }
 
 impl CertifiedState {
-    /// The same state told by another body point.
+    /// The same state expressed by another body point.
     #[must_use]
     pub fn following(&self, at: DVec3) -> Self {
         Kinematics::from_state(self).following(at).state_about(DVec3::ZERO)

@@ -65,8 +65,8 @@ const FAR: f64 = 0.01;
 const SAMPLES: i32 = 26;
 /// Steps of the walk through what advancement left open.
 const WALK: usize = 1000;
-/// Pairs of boxes that advancement and walk may look at, about a second each: bodies of millions of triangles may
-/// fly along each other closely for long. Samples, more of them, look at what is left.
+/// Pairs of boxes that advancement and walk may visit, about a second each: bodies of millions of triangles may
+/// fly along each other closely for long. Samples, more of them, check what is left.
 const EFFORT: u64 = 1 << 23;
 /// Samples where the effort did not suffice.
 const EVEN: i32 = 64;

@@ -69,7 +69,7 @@ struct Search<'a> {
     absolute: DMat3,
     absolute_back: DMat3,
     best: f64,
-    /// What may be this part of the best closer is not looked at.
+    /// What may be this part of the best closer is not visited.
     slack: f64,
     closest: (u32, u32),
     effort: u64,
@@ -90,16 +90,16 @@ impl<'a> Search<'a> {
 pub(crate) struct Hint {
     /// The closest pair of triangles, where the search begins.
     closest: (u32, u32),
-    /// Pairs of boxes looked at so far.
+    /// Pairs of boxes visited so far.
     pub(crate) effort: u64,
 }
 
-/// Distances below which the surfaces are looked for one after the other, in units of the larger radius.
+/// Distances below which the surfaces are searched one after the other, in units of the larger radius.
 const CAPS: [f64; 3] = [1e-9, 1e-6, 1e-3];
 
 /// The distance of the surfaces: 0 when they cross, exact to rounding otherwise. The hint only saves time.
 ///
-/// A search that begins with a small cap looks at few pairs. One that begins with none may wander through all pairs of
+/// A search that begins with a small cap visits few pairs. One that begins with none may wander through all pairs of
 /// millions of triangles that are merely near before it comes upon the nearest.
 pub(crate) fn separation(
     a: &BoxTree,
@@ -134,7 +134,7 @@ pub(crate) fn bound_separation(
     search.best * search.slack
 }
 
-/// Do the surfaces cross? Much cheaper than the distance: boxes that are apart need no look.
+/// Do the surfaces cross? Much cheaper than the distance: boxes that are apart need no test.
 pub(crate) fn cross(a: &BoxTree, b: &BoxTree, at_a: &Placement, at_b: &Placement) -> bool {
     let mut search = Search::new(a, b, at_a, at_b, f64::MIN_POSITIVE);
     search.visit(0, 0, search.gap(0, 0));

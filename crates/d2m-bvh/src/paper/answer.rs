@@ -11,7 +11,7 @@ use d2m_feature::{FeaturePair, TriangleFeature};
 use d2m_motion::Pose;
 use glam::DVec3;
 
-/// The contact of `best`, whose bracket nothing precedes, told at a time at which the bodies are certainly disjoint.
+/// The contact of `best`, whose bracket nothing precedes, reported at a time at which the bodies are certainly disjoint.
 pub(crate) fn certified_contact(
     bodies: &[Moving<'_>; 2],
     relative: &RelativeMotion<'_>,

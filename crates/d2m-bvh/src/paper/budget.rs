@@ -19,7 +19,7 @@ pub(crate) struct Exhausted;
 /// [`Budget::HARD_NODE_TESTS`].
 const MOST_TESTS: u64 = Budget::HARD_NODE_TESTS >> 4;
 
-/// Tests between two looks at the clock.
+/// Tests between two readings of the clock.
 const CLOCK_STRIDE: u32 = 128;
 
 impl Meter {
@@ -43,9 +43,9 @@ impl Meter {
         Ok(())
     }
 
-    /// Takes the pieces of time that a feature search has looked at off the budget.
-    pub(crate) fn charge(&mut self, looks: u32) {
-        self.left = self.left.saturating_sub(u64::from(looks));
+    /// Takes the pieces of time that a feature search has evaluated off the budget.
+    pub(crate) fn charge(&mut self, evaluations: u32) {
+        self.left = self.left.saturating_sub(u64::from(evaluations));
         if self.deadline.is_some() {
             self.until_clock = 1;
         }

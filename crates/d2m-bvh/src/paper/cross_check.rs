@@ -18,7 +18,7 @@ pub struct CrossCheck {
     /// Undecided answers of the default engine and of the reference method.
     pub undecided: [usize; 2],
     /// Contacts of the default engine and of the reference method whose bracket \[`time_lo`, `time_hi`\] holds no time
-    /// (of 65 looked at) at which the distance could be within the tolerance.
+    /// (of 65 evaluated) at which the distance could be within the tolerance.
     pub open_brackets: [usize; 2],
     /// Contacts whose surfaces clearly meet well before `time_hi`, by more than half the tolerance: the bracket is loose,
     /// as happens when a feature pair was lost and the step back had to make up for it.
@@ -177,7 +177,7 @@ impl Oracle<'_> {
         if !window.contains(free) {
             return Some(format!("time {free} outside the window"));
         }
-        // What the other found is looked at most closely.
+        // What the other found is sampled most densely.
         let hint = other.contact().map_or(free, |c| c.time_hi);
         if let Some(t) = self.meeting_before(window.start(), free, end, hint) {
             return Some(format!("the surfaces meet at {t:?}"));
@@ -222,10 +222,10 @@ impl Oracle<'_> {
         let span = Interval::new(start, free);
         let speed = self.bound_speed(span);
         let mut t = start;
-        // The larger the meshes, the fewer looks.
+        // The larger the meshes, the fewer samples.
         let leaves = self.a.body.leaf_count() + self.b.body.leaf_count();
-        let looks = (8000 / leaves).clamp(24, 400) as u32;
-        for _ in 0..looks {
+        let samples = (8000 / leaves).clamp(24, 400) as u32;
+        for _ in 0..samples {
             let (lower, _) = self.distance(t, f64::INFINITY);
             let step = lower / speed * (1.0 - 1e-9);
             if t + step >= free {
@@ -237,8 +237,9 @@ impl Oracle<'_> {
             t += step;
         }
         let left = free - t;
-        let mut times: Vec<f64> = (0..=looks).map(|k| t + left * f64::from(k) / f64::from(looks)).collect();
-        let halvings = looks.min(48) as i32;
+        let mut times: Vec<f64> =
+            (0..=samples).map(|k| t + left * f64::from(k) / f64::from(samples)).collect();
+        let halvings = samples.min(48) as i32;
         for k in 1..halvings {
             let close = left * 0.5f64.powi(k * 48 / halvings);
             times.extend([free - close, hint - close, hint + close]);

@@ -32,7 +32,7 @@ pub(crate) struct ClosestPair {
     pub(crate) rounding: f64,
 }
 
-/// Encloses the distance of A, placed in B's frame, and B; nothing beyond `cutoff` is looked at.
+/// Encloses the distance of A, placed in B's frame, and B; nothing beyond `cutoff` is searched.
 pub(crate) fn enclose_distance(
     a: &SphereTree,
     b: &SphereTree,

@@ -60,19 +60,19 @@ pub(crate) fn classify_start(
     }
 }
 
-/// Pairs looked at for a crossing: bodies that coincide have no end of touching pairs and no crossing one.
-const MOST_LOOKS: u32 = 4096;
+/// Pairs tested for a crossing: bodies that coincide have no end of touching pairs and no crossing one.
+const MOST_TESTS: u32 = 4096;
 
 /// A pair of triangles one of which an edge of the other clearly passes through, by more than the tolerance.
 fn first_crossing(a: &SphereTree, b: &SphereTree, place: &Placement, tolerance: f64) -> Option<ClosestPair> {
     let mut crossing = None;
-    let mut looks = 0;
+    let mut tests = 0;
     visit_close_pairs(a, b, place, tolerance, |pair| {
-        looks += 1;
+        tests += 1;
         if crossing.is_none() && pair.detail.upper == 0.0 && is_crossing(b, pair, tolerance) {
             crossing = Some(*pair);
         }
-        if crossing.is_some() || looks == MOST_LOOKS { f64::NEG_INFINITY } else { f64::INFINITY }
+        if crossing.is_some() || tests == MOST_TESTS { f64::NEG_INFINITY } else { f64::INFINITY }
     });
     crossing
 }

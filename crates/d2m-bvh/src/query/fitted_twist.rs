@@ -32,7 +32,7 @@ struct Fit {
 
 /// Covers the rounding of fewer than 32 operations on non-negative numbers.
 const UP: f64 = 1.0 + 1e-14;
-/// The pole of acceleration is looked for within so many radii of the body.
+/// The pole of acceleration is sought within so many radii of the body.
 const POLE_WITHIN: f64 = 16.0;
 
 impl FittedTwists {
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn clocks_are_told_to_the_safe_side() {
+    fn clocks_are_rounded_to_the_safe_side() {
         for (middle, bend) in [(0.5, 0.3), (0.5, -0.9), (1e5 + 0.5, 0.7), (-3.0, 1e-9), (2.0, 0.0)] {
             let clock = FittedClock { middle, bend };
             let (from, to) = clock.span(middle - 0.5, middle + 0.5);

@@ -33,7 +33,7 @@ const PART_OF_ROOM: f64 = 0.25;
 const ROUNDINGS: f64 = 512.0 * f64::EPSILON;
 /// Longer by so much are spans after one that was free.
 const GROWTH: f64 = 4.0;
-/// A contact is expected after the gap has closed at the speed it closes with, and looked for this much longer.
+/// A contact is expected after the gap has closed at the speed it closes with, and searched for this much longer.
 const OVERSHOOT: f64 = 1.25;
 /// Node tests that a fit counts for in a budget.
 const TESTS_A_FIT: u64 = 256;

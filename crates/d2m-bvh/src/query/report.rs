@@ -12,7 +12,7 @@ use d2m_feature::{FeaturePair, triangles_intersect};
 use d2m_lanes::{Doubles, Lanes, Quad, Task, run};
 use glam::DVec3;
 
-/// The contact with all its data, of a scene and its motion over the window of the search; `bracket`: look for a time by which the tolerance was reached, if that cannot be
+/// The contact with all its data, of a scene and its motion over the window of the search; `bracket`: search for a time by which the tolerance was reached, if that cannot be
 /// shown for `time_lo`.
 pub(super) fn contact(
     (scene, motion): (&Scene<'_>, &RelativeMotion),
@@ -96,8 +96,8 @@ fn cover_what_is_left(contact: &mut Contact, scene: &Scene<'_>) {
     }
 }
 
-/// Looks at most for the end of a bracket.
-const BRACKET_LOOKS: u32 = 24;
+/// Most evaluations for the end of a bracket.
+const BRACKET_EVALUATIONS: u32 = 24;
 
 /// What is proven of the meeting of two bodies, and for a time not after which offset.
 #[derive(Clone, Copy, Debug)]
@@ -162,8 +162,9 @@ impl TrianglePair<'_> {
         // Frames hold for a little more than the longest window.
         let end = scene.units.end_down().min(self.motion.start + FRAME_REACH * scene.longest);
         let (mut early, mut late) = (from, None);
-        let (mut distance, mut closing, first_normal) = course(frame, near);
-        for _ in 0..BRACKET_LOOKS {
+        let first = Approach::new(frame, near);
+        let (mut distance, mut closing) = (first.distance, first.closing);
+        for _ in 0..BRACKET_EVALUATIONS {
             let offset = match late {
                 None if closing > 0.0 => {
                     (early + (distance - target) / closing).max(early.next_up()).min(end)
@@ -175,14 +176,14 @@ impl TrianglePair<'_> {
                 break;
             }
             let (frame, near) = self.at::<D>(offset);
-            let (here, speed, normal) = course(&frame, &near);
-            if here <= level {
+            let here = Approach::new(&frame, &near);
+            if here.distance <= level {
                 return Meeting { offset, evidence: Evidence::Near };
             }
-            if normal.dot(first_normal) < 0.0 {
+            if here.normal.dot(first.normal) < 0.0 {
                 late = Some(offset);
             } else {
-                (early, distance, closing) = (offset, here, speed);
+                (early, distance, closing) = (offset, here.distance, here.closing);
             }
         }
         // Passed each other between two times that no time is between, or too fast for the steps.
@@ -197,11 +198,22 @@ impl TrianglePair<'_> {
     }
 }
 
-/// Distance of the closest points, the speed at which they come together, the unit direction from A to B.
-#[inline(always)]
-fn course(frame: &Frame, near: &Closest) -> (f64, f64, DVec3) {
-    let normal = near.direction.normalize_or_zero();
-    (near.distance_squared.sqrt(), frame.closing_speed(near.points, normal), normal)
+/// How the closest points of two triangles approach each other.
+struct Approach {
+    distance: f64,
+    /// The speed at which they come together.
+    closing: f64,
+    /// The unit direction from A to B.
+    normal: DVec3,
+}
+
+impl Approach {
+    #[inline(always)]
+    fn new(frame: &Frame, near: &Closest) -> Self {
+        let normal = near.direction.normalize_or_zero();
+        let closing = frame.closing_speed(near.points, normal);
+        Self { distance: near.distance_squared.sqrt(), closing, normal }
+    }
 }
 
 struct Witness {

@@ -182,7 +182,7 @@ impl Task for Search<'_> {
         while let Some(pair) = stack.pop() {
             allowance.step()?;
             match scene.step(pair) {
-                Step::Open(wide, node) => {
+                Step::Expand { wide, node } => {
                     let mut lanes = scene.overlaps::<L>(wide, node, pair[1 - wide]);
                     while lanes != 0 {
                         stack.push(child(pair, wide, node, lanes.trailing_zeros() as usize));

@@ -130,10 +130,10 @@ impl Search<'_> {
             } else if now.to - now.from == 2 {
                 match self.search_window::<L>(SubWindow { start, end }, &waiting.pairs[pairs.0..]) {
                     Step::ClearUntil(until) => clear_until = until,
-                    answer => return answer,
+                    answer @ Step::Answer(_) => return answer,
                 }
             } else {
-                let middle = (now.from + now.to) / 2;
+                let middle = usize::midpoint(now.from, now.to);
                 waiting.spans.push(WaitingSpan { from: middle, pairs, ..now });
                 waiting.spans.push(WaitingSpan { to: middle, pairs, ..now });
             }
@@ -157,7 +157,7 @@ impl Search<'_> {
         if to_expand.is_empty() {
             return;
         }
-        let middle = (span.from + span.to) / 2;
+        let middle = usize::midpoint(span.from, span.to);
         for index in [span.from, middle, span.to] {
             grid.fill::<L>(index);
         }

@@ -14,7 +14,7 @@ const MOST_TRIANGLES: usize = 1 << 29;
 /// Parts of at most this many triangles are built by one thread, and reported when done.
 const GRAIN: usize = 4096;
 
-/// Who is told how far the construction is: triangles done, and all.
+/// Receives the progress of the construction: triangles done, and all.
 pub(super) type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 struct Builder<'a> {

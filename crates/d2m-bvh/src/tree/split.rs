@@ -15,7 +15,7 @@ const SAMPLE: usize = 256;
 /// Directions that are tried with real boxes: those with the least second moments.
 const FINALISTS: usize = 4;
 
-/// A triangle that the choice looks at.
+/// A triangle that the choice of the split evaluates.
 struct Sampled {
     /// Corners from some point of the part.
     corners: [[f32; 3]; 3],

@@ -53,7 +53,7 @@ pub(super) fn unit_of(radius: f64) -> f64 {
 }
 
 /// Triangles that are enough to find the axes of a box.
-const MOST_LOOKED_AT: usize = 256;
+const MOST_SAMPLED: usize = 256;
 
 /// A mesh in local coordinates.
 pub(super) struct Surface<'a> {
@@ -93,13 +93,13 @@ impl<'a> Surface<'a> {
         (dot(a, axis) + dot(b, axis) + dot(c, axis)) as f32
     }
 
-    /// Axes turned for a smaller box. Of large parts only every few triangles are looked at.
+    /// Axes turned for a smaller box. Of large parts only every few triangles are sampled.
     fn refined(&self, part: &[u32], axes: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
         if part.len() == 1 {
             return *axes;
         }
         let mut extremes = Extremes::new(axes);
-        let stride = (part.len() / MOST_LOOKED_AT).max(1);
+        let stride = (part.len() / MOST_SAMPLED).max(1);
         for &triangle in part.iter().step_by(stride) {
             for p in &self.corners(triangle) {
                 extremes.add(p);

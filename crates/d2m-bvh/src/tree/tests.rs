@@ -194,12 +194,12 @@ fn the_same_bits_at_any_number_of_threads() {
         assert!(bits(&tree) == bits(&pool.install(|| MeshTree::new(mesh.clone()))), "{threads} threads");
     }
     let most = std::sync::atomic::AtomicUsize::new(0);
-    let told = MeshTree::with_progress(mesh, &|done, all| {
+    let reported = MeshTree::with_progress(mesh, &|done, all| {
         assert_eq!(all, 18_000);
         most.fetch_max(done, std::sync::atomic::Ordering::Relaxed);
     });
     assert_eq!(most.into_inner(), 18_000);
-    assert!(bits(&tree) == bits(&told));
+    assert!(bits(&tree) == bits(&reported));
     assert!(tree.memory_bytes() <= 130 * 18_000, "{}", tree.memory_bytes() / 18_000);
 }
 

@@ -5,7 +5,7 @@ use d2m_bvh::{MeshTree, Posed, Solid, TriMesh, collide};
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
 
-/// A position, told apart by its bits; both zeros are one.
+/// A position, distinguished by its bits; both zeros are one.
 type Key = [u64; 3];
 
 fn key(p: DVec3) -> Key {

@@ -138,13 +138,13 @@ impl RelativeMotion {
         let (a, omega) = (self.spin_a.speed, self.spin_b.omega);
         let turning = r.across * cos + r.turned * sin;
         let x = (self.offset + self.velocity * tau) + (r.along + turning);
-        let swing = (r.turned * cos - r.across * sin) * a;
-        let moved = self.velocity + swing;
+        let spin_velocity = (r.turned * cos - r.across * sin) * a;
+        let moved = self.velocity + spin_velocity;
         let x1 = moved - omega.cross(x);
         let bent = turning * (-a * a);
         let dragged = omega.cross(moved);
         let x2 = bent - dragged - omega.cross(x1);
-        let x3 = swing * (-a * a) - omega.cross(bent * 2.0 - dragged + x2);
+        let x3 = spin_velocity * (-a * a) - omega.cross(bent * 2.0 - dragged + x2);
         PathJet {
             p: transpose_mul(&back, x),
             v: transpose_mul(&back, x1),
@@ -167,8 +167,9 @@ impl RelativeMotion {
         let across = TwoVec3::new(r.across, other.across);
         let turned = TwoVec3::new(r.turned, other.turned);
         let turning = across.scaled(cos) + turned.scaled(sin);
-        let swing = (turned.scaled(cos) - across.scaled(sin)).scaled(F64x2::pack(a, b));
-        let (z_t, n_t, z1, n1) = (turning.first(), turning.second(), swing.first(), swing.second());
+        let spin_velocity = (turned.scaled(cos) - across.scaled(sin)).scaled(F64x2::pack(a, b));
+        let (z_t, n_t, z1, n1) =
+            (turning.first(), turning.second(), spin_velocity.first(), spin_velocity.second());
         let x = (self.offset + self.velocity * tau) + (r.along + z_t);
         let n = other.along + n_t;
         let x1 = self.velocity + z1;
@@ -183,7 +184,7 @@ impl RelativeMotion {
     }
 
     /// Jets to third order of a point of A relative to one of B and of a direction of A, side by side, and the direction
-    /// of B: all in the axes that have turned with B, told in world axes at the time. Not for anchored motions.
+    /// of B: all in the axes that have turned with B, expressed in world axes at the time. Not for anchored motions.
     ///
     /// Lengths and products of these do not depend on the axes, so nothing of A is turned back by `R_Bᵀ`.
     #[inline(always)]
@@ -201,14 +202,14 @@ impl RelativeMotion {
         let turning = of_a.across.scaled(cos) + of_a.turned.scaled(sin);
         let only = |v: DVec3| TwoVec3::new(v, DVec3::ZERO);
         let x = only(self.offset + self.velocity * tau) + (of_a.along + turning);
-        let swing = (of_a.turned.scaled(cos) - of_a.across.scaled(sin)) * a;
-        let moved = only(self.velocity) + swing;
+        let spin_velocity = (of_a.turned.scaled(cos) - of_a.across.scaled(sin)) * a;
+        let moved = only(self.velocity) + spin_velocity;
         let omega = TwoVec3::splat(self.spin_b.omega);
         let x1 = moved - omega.cross(x);
         let bent = turning * (-a * a);
         let dragged = omega.cross(moved);
         let x2 = bent - dragged - omega.cross(x1);
-        let x3 = swing * (-a * a) - omega.cross(bent + bent - dragged + x2);
+        let x3 = spin_velocity * (-a * a) - omega.cross(bent + bent - dragged + x2);
         (TwoJets { p: x - only(other.first()), v: x1, a: x2, j: x3, remainders }, other.second())
     }
 

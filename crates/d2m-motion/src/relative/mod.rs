@@ -29,7 +29,7 @@ pub(crate) const UP: f64 = 1.0 + 1e-14;
 
 /// Motion of body A relative to body B over a window of time, both of constant twist.
 ///
-/// Everything is told in the *epoch frame of B*: it moves with B, and at the start `t0` of the window its axes are
+/// Everything is expressed in the *epoch frame of B*: it moves with B, and at the start `t0` of the window its axes are
 /// the world's and its origin is B's followed point. `τ = t − t0` runs from 0 to [`RelativeMotion::duration`].
 /// A point of B is constant in it ([`RelativeMotion::place_b`]); a point of A, given by
 /// [`RelativeMotion::place_a`] as the vector `r` from A's followed point in world axes at `t0`, moves on

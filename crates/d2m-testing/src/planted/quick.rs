@@ -1,6 +1,6 @@
 //! The first tier of the judge: the oracle's questions in double-double (106 bits), a hundred times as fast.
 //!
-//! It only ever says "this answer is right, clearly": every sign that it uses is told from zero by 10⁴ times the error of
+//! It only ever says "this answer is right, clearly": every sign that it uses differs from zero by 10⁴ times the error of
 //! its arithmetic or more, and whatever is closer goes to the 192 bits. So it never accuses and never excuses. It shares
 //! nothing with the library, whose own double-double is another one.
 use super::families::{Kind, Planted};
@@ -241,7 +241,7 @@ fn distance(kind: Kind, v: &[V; 4]) -> f64 {
     least.max(0.0).sqrt()
 }
 
-/// A change of sign of the volume near the planted time, as the oracle looks for it: `Err` where a sign is in doubt,
+/// A change of sign of the volume near the planted time, as the oracle searches for it: `Err` where a sign is in doubt,
 /// `Ok(None)` where there is none.
 fn crossing(
     kind: Kind,

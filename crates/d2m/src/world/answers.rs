@@ -56,7 +56,7 @@ pub enum FirstContact {
         b: BodyId,
         /// Their contact. Of pairs with the same `time_lo` the one with the smallest places.
         contact: Contact,
-        /// The other contacts whose brackets begin before this one's ends: which of them is first cannot be told. Complete,
+        /// The other contacts whose brackets begin before this one's ends: which of them is first cannot be decided. Complete,
         /// except when bodies meet at the very start of the window: then the search stops, and pairs that it had not
         /// come to are not here ([`World::contacts`](super::World::contacts) finds them).
         overlapping: Vec<PairContact>,

@@ -1,4 +1,4 @@
-//! What is known of a pair, and when it has to be looked at next.
+//! What is known of a pair, and when it has to be judged next.
 
 use crate::broad_phase::IndexPair;
 use d2m_bvh::{Contact, PairCache};

@@ -31,7 +31,7 @@ enum Slices {
     Known(SweptSlices),
 }
 
-/// What is looked at when a pair is judged.
+/// What is considered when a pair is judged.
 #[derive(Clone, Copy)]
 pub(super) struct Rules<'a> {
     pub(super) slots: &'a Slots,

@@ -88,7 +88,7 @@ struct Finding {
     contacts: Vec<(IndexPair, Contact)>,
     /// Pairs that could not be decided, and until when each is free.
     undecided: Vec<(IndexPair, f64)>,
-    /// Pairs that were looked at: each once a search.
+    /// Pairs that were judged: each once a search.
     seen: BTreeSet<IndexPair>,
     /// Entries that later queries need again.
     kept: Vec<Entry>,

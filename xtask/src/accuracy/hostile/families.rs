@@ -48,7 +48,7 @@ fn decade(random: &mut Random, lo: f64, hi: f64) -> f64 {
     10f64.powf(random.range(lo, hi))
 }
 
-/// The same motion told about another reference point of the body.
+/// The same motion expressed about another reference point of the body.
 fn about(body: Body, by: DVec3) -> Body {
     let m = body.motion;
     let motion = m.with_at(m.at() + by).with_position(m.position() + m.orientation().normalize() * by);

@@ -260,7 +260,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/src/search/skip/screw_search.rs::triangles_of_an_orbit_count_where_they_are",
     ),
     patch(
-        "looking back with the velocities of looking forward",
+        "the backward certificate with forward velocities",
         "crates/d2m-bvh/src/search/motion/frame.rs",
         "let back = |v: &Quad| (D::splat(0.0) - D::load(v)).store();",
         "let back = |v: &Quad| D::load(v).store();",
@@ -338,7 +338,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/tests/engine.rs::modes_and_budgets_are_consistent",
     ),
     patch(
-        "a body inside the other is not looked for",
+        "a body inside the other is not searched for",
         "crates/d2m-bvh/src/query/constant_twist.rs",
         "let Ok(held) = held_at_start(scene, &mut allowance) else {",
         "let Ok(held) = Ok::<Option<Held>, Exhausted>(None) else {",
@@ -393,7 +393,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/tests/static_query.rs::random_solids_and_soups",
     ),
     patch(
-        "collide looks at the first child only",
+        "collide visits the first child only",
         "crates/d2m-bvh/src/resting/collide.rs",
         "lanes &= lanes - 1;",
         "lanes = 0;",

@@ -153,7 +153,7 @@ impl Task for Search<'_> {
                 continue;
             }
             match scene.step(pair) {
-                Step::Open(wide, node) => {
+                Step::Expand { wide, node } => {
                     let enough = closest.upper_key;
                     let bounds = scene.bounds::<L>((wide, node), pair[1 - wide], &closest.along, enough);
                     let mut least: Option<Item> = None;

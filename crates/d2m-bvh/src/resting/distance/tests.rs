@@ -48,7 +48,7 @@ fn counted(a: &MeshTree, b: &MeshTree, offset: DVec3) -> (Distance, u64) {
         let budget = Budget::UNLIMITED.with_node_tests(tests);
         bound_distance(Posed::at_rest(a), posed, Solid::Surface, &budget).unwrap()
     };
-    let tests = (0..).map(|k| 1 << k).find(|&tests| within(tests).distance.is_some()).unwrap();
+    let tests = (0..u64::BITS).map(|k| 1 << k).find(|&tests| within(tests).distance.is_some()).unwrap();
     (distance(Posed::at_rest(a), posed, Solid::Surface).unwrap(), tests)
 }
 

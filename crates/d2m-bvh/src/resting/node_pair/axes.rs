@@ -36,7 +36,7 @@ pub(super) struct Axes<L> {
     /// Half extents of each lane's box and of the single box, and the axes of the former.
     pub(super) half: [L; 3],
     pub(super) other_half: [L; 3],
-    pub(super) axes: [[L; 3]; 3],
+    pub(super) own: [[L; 3]; 3],
     /// Cosines between axis i of the lane's box and axis j of the single one.
     pub(super) cosines: [[L; 3]; 3],
     /// The vector between the centers along the axes of either.
@@ -75,6 +75,6 @@ impl<L: Lanes> Axes<L> {
             gap(other_between[1], k[1], &h, [s[0][1], s[1][1], s[2][1]], m),
             gap(other_between[2], k[2], &h, [s[0][2], s[1][2], s[2][2]], m),
         ];
-        Self { to, half: h, other_half: k, axes: a, cosines: s, between, other_between, gaps, other_gaps }
+        Self { to, half: h, other_half: k, own: a, cosines: s, between, other_between, gaps, other_gaps }
     }
 }

@@ -13,7 +13,7 @@ use d2m_lanes::Lanes;
 
 /// Makes computed unit vectors no longer than one: their lengths err by at most five roundings.
 const SHORTENED: f32 = 1.0 - 8.0 * UNIT_F32 as f32;
-/// Squares of lengths below this are not told from zero; what is divided by its root then is shorter than one.
+/// Squares of lengths below this are not distinguished from zero; what is divided by its root then is shorter than one.
 const LEAST_SQUARE: f32 = f32::MIN_POSITIVE;
 
 /// How far the lanes' boxes reach along directions that have these cosines with their axes, or along the opposite ones
@@ -52,7 +52,7 @@ fn scaled<L: Lanes>(v: &[L; 3], factor: L) -> [L; 3] {
 pub(super) fn gap_along<L: Lanes>(wide: &WideNode, placed: &Placed, axes: &Axes<L>) -> L {
     let n = splat::<L>(&placed.along);
     let between = L::splat(placed.at_along) - dot(&load::<L>(&wide.center), &n);
-    let cosines = [dot(&n, &axes.axes[0]), dot(&n, &axes.axes[1]), dot(&n, &axes.axes[2])];
+    let cosines = [dot(&n, &axes.own[0]), dot(&n, &axes.own[1]), dot(&n, &axes.own[2])];
     let [forth, back] = placed.reach_along;
     // The single box lies where `between` points, and reaches back from there.
     let other = L::if_greater(between, L::splat(0.0), L::splat(back), L::splat(forth));
@@ -105,7 +105,7 @@ pub(super) fn gap_from_triangle<L: Lanes>(
     let towards = from_triangle(&p, &q, &r, &center);
     let n = scaled(&towards, inverse_length(dot(&towards, &towards)));
     let most = dot(&n, &p).max(dot(&n, &q)).max(dot(&n, &r));
-    let cosines = [dot(&n, &axes.axes[0]), dot(&n, &axes.axes[1]), dot(&n, &axes.axes[2])];
+    let cosines = [dot(&n, &axes.own[0]), dot(&n, &axes.own[1]), dot(&n, &axes.own[2])];
     dot(&n, &center) - most - wide_reach(wide, axes, &cosines, L::splat(-1.0)) - twice_margin(placed)
 }
 

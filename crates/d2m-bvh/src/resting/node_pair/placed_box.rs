@@ -65,7 +65,7 @@ impl Placed {
 
     /// With a direction of length at most one, wide body's axes.
     #[inline(always)]
-    pub(super) fn looking_along(mut self, n: [f32; 3], boxed: &OrientedBox) -> Self {
+    pub(super) fn with_box_along(mut self, n: [f32; 3], boxed: &OrientedBox) -> Self {
         let direction = vector(n);
         let cosine = |axis: [f32; 3]| direction.dot(vector(axis));
         let cosines = [cosine(self.axes[0]), cosine(self.axes[1]), cosine(self.axes[2])];
@@ -83,7 +83,7 @@ impl Placed {
     /// With a direction, for a box around one triangle: what the triangle itself covers, which may be much less than its
     /// box does. Corners from the node's origin, wide body's axes and unit.
     #[inline(always)]
-    pub(super) fn looking_at_triangle_along(mut self, n: [f32; 3], corners: &[DVec3; 3]) -> Self {
+    pub(super) fn with_triangle_along(mut self, n: [f32; 3], corners: &[DVec3; 3]) -> Self {
         let direction = vector(n);
         let [p, q, r] = [direction.dot(corners[0]), direction.dot(corners[1]), direction.dot(corners[2])];
         let (low, high) = (p.min(q).min(r), p.max(q).max(r));

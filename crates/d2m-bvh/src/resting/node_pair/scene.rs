@@ -39,11 +39,17 @@ pub(crate) struct Scene<'a> {
     point_like: [bool; 2],
 }
 
+/// A box that may be expanded.
+struct Candidate {
+    size: f64,
+    below: Below,
+}
+
 /// What there is to do at a pair of boxes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Step {
-    /// Open the node below the box of this body.
-    Open(usize, u32),
+    /// Expand the node below the box of the body `wide`.
+    Expand { wide: usize, node: u32 },
     /// Compare two triangles.
     Compare([u32; 2]),
 }
@@ -133,19 +139,19 @@ impl<'a> Scene<'a> {
         if body == 1 { p } else { (r[0] * p.x + r[1] * p.y + r[2] * p.z) + self.offset }
     }
 
-    /// What to do at a pair of boxes: open the larger one, the second at a tie.
+    /// What to do at a pair of boxes: expand the larger one, the second at a tie.
     #[inline(always)]
     pub(crate) fn step(&self, pair: [u32; 2]) -> Step {
-        let ((size_a, below_a), (size_b, below_b)) = (self.look(0, pair[0]), self.look(1, pair[1]));
-        match (below_a, below_b) {
+        let (a, b) = (self.candidate(0, pair[0]), self.candidate(1, pair[1]));
+        match (a.below, b.below) {
             (Below::Triangle(a), Below::Triangle(b)) => Step::Compare([a, b]),
-            (Below::Node(a), Below::Triangle(_)) => Step::Open(0, a),
-            (Below::Triangle(_), Below::Node(b)) => Step::Open(1, b),
-            (Below::Node(a), Below::Node(b)) => {
-                if size_a > size_b {
-                    Step::Open(0, a)
+            (Below::Node(node), Below::Triangle(_)) => Step::Expand { wide: 0, node },
+            (Below::Triangle(_), Below::Node(node)) => Step::Expand { wide: 1, node },
+            (Below::Node(node_a), Below::Node(node_b)) => {
+                if a.size > b.size {
+                    Step::Expand { wide: 0, node: node_a }
                 } else {
-                    Step::Open(1, b)
+                    Step::Expand { wide: 1, node: node_b }
                 }
             }
         }
@@ -153,13 +159,13 @@ impl<'a> Scene<'a> {
 
     /// Size of a box, and what is below it.
     #[inline(always)]
-    fn look(&self, body: usize, index: u32) -> (f64, Below) {
+    fn candidate(&self, body: usize, index: u32) -> Candidate {
         let node = &self.trees[body].nodes[index as usize / WIDTH];
         let lane = index as usize % WIDTH;
         if self.point_like[body] {
-            return (0.0, Below::Triangle(0));
+            return Candidate { size: 0.0, below: Below::Triangle(0) };
         }
-        (f64::from(node.size[lane]) * self.volume[body], node.below(lane))
+        Candidate { size: f64::from(node.size[lane]) * self.volume[body], below: node.below(lane) }
     }
 
     #[inline(always)]
@@ -199,9 +205,9 @@ impl<'a> Scene<'a> {
         let placed = match tree.nodes[single as usize / WIDTH].below(single as usize % WIDTH) {
             Below::Triangle(triangle) => {
                 let corners = self.corners_in(wide, triangle, self.trees[wide].nodes[node as usize].origin);
-                placed.looking_at_triangle_along(along.narrow[wide], &corners)
+                placed.with_triangle_along(along.narrow[wide], &corners)
             }
-            Below::Node(_) => placed.looking_along(along.narrow[wide], &boxed),
+            Below::Node(_) => placed.with_box_along(along.narrow[wide], &boxed),
         };
         let node = &self.trees[wide].nodes[node as usize];
         let lanes = lower_bounds::<L>(node, &placed, self.sides[wide].to_work, enough);
@@ -266,7 +272,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// The pair of boxes after opening one of the two.
+/// The pair of boxes after one of the two was expanded.
 #[inline(always)]
 pub(crate) fn child(pair: [u32; 2], wide: usize, node: u32, lane: usize) -> [u32; 2] {
     let mut pair = pair;

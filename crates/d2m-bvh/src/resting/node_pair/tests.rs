@@ -149,12 +149,12 @@ fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
         let bound =
             |placed: &Placed, enough: f32| f64::from(lower_bounds::<Portable>(&node, placed, 1.0, enough)[0]);
         // With all directions, and with only those that any pair of boxes gets.
-        let of_boxes = placed.looking_along(n, &single);
+        let of_boxes = placed.with_box_along(n, &single);
         let (most, least) = (bound(&of_boxes, f32::INFINITY), bound(&of_boxes, 0.0));
         assert!(least <= most);
         // A triangle of the single box.
         let corners = [(); 3].map(|()| point_within(&single, &mut random));
-        let of_triangle = bound(&placed.looking_at_triangle_along(n, &corners.map(place)), f32::INFINITY);
+        let of_triangle = bound(&placed.with_triangle_along(n, &corners.map(place)), f32::INFINITY);
         for _ in 0..50 {
             let p = point_within(&boxed, &mut random);
             let apart = p.distance(place(point_within(&single, &mut random)));
@@ -203,10 +203,10 @@ fn every_kind_of_lanes_gives_the_same_bits() {
         };
         let placed = Placed::new(&side, &single, [0.0; 3], &node);
         let placed = if round % 2 == 0 {
-            placed.looking_along([0.3, -0.6, 0.7], &single)
+            placed.with_box_along([0.3, -0.6, 0.7], &single)
         } else {
             let corners = [(); 3].map(|()| random.vec() * 3.0);
-            placed.looking_at_triangle_along([0.3, -0.6, 0.7], &corners)
+            placed.with_triangle_along([0.3, -0.6, 0.7], &corners)
         };
         let (bounds, bits) = run_on(InstructionSet::Portable, Kernel(&node, &placed));
         let (best_bounds, best_bits) = run(Kernel(&node, &placed));

@@ -262,7 +262,7 @@ impl Task for Search<'_> {
                 return Found::Exhausted;
             }
             match scene.step(pair) {
-                Step::Open(wide, node) => {
+                Step::Expand { wide, node } => {
                     let bounds = scene.bounds::<L>((wide, node), pair[1 - wide], &along, key);
                     for (lane, &bound) in bounds.used().iter().enumerate() {
                         // A bound that is not a number drops nothing.

@@ -56,7 +56,7 @@ impl NodePairExpander<'_> {
         let (wide_index, side) = (item.node(), item.side());
         let other = 1 - side;
         let wide = &self.nodes[side][wide_index as usize];
-        let single = NodeBox::new(&self.nodes[other], item.boxes[other]);
+        let single = NodeBox::new(self.nodes[other], item.boxes[other]);
         let scale = &self.scales[side];
         let placed = Placed::new::<L>(&frames[side], scale, single, wide);
         let times = entry_times::<L>(wide, &placed, scale);
@@ -72,7 +72,7 @@ impl NodePairExpander<'_> {
     pub(crate) fn expand_over_span<L: Lanes>(&self, item: &Item, frames: &[SpanFrame<'_>; 2]) -> Rows {
         let side = item.side();
         let wide = &self.nodes[side][item.node() as usize];
-        let single = NodeBox::new(&self.nodes[1 - side], item.boxes[1 - side]);
+        let single = NodeBox::new(self.nodes[1 - side], item.boxes[1 - side]);
         let apart = apart_over_span::<L>(&frames[side], &self.scales[side], single, wide);
         self.rows::<L>(item, [0; WIDTH], !apart)
     }
@@ -84,7 +84,7 @@ impl NodePairExpander<'_> {
         let other = 1 - side;
         let single = item.boxes[other];
         let wide = &self.nodes[side][wide_index as usize];
-        let NodeBox { node, lane } = NodeBox::new(&self.nodes[other], single);
+        let NodeBox { node, lane } = NodeBox::new(self.nodes[other], single);
         let flags = [0, Item::OF_B];
         let size = node.size[lane] * self.size_ratios[other];
         let tags = L::larger(
