@@ -49,6 +49,16 @@ fn piece() -> impl Strategy<Value = Piece> {
     .prop_filter("overflow", |p| p.lo.is_finite() && p.hi.is_finite())
 }
 
+/// Within the reach of the functions that take the caller's whole error bound, 2²⁰.
+fn bounded_piece() -> impl Strategy<Value = Piece> {
+    piece().prop_filter("far", |p| h_of(*p) <= 1_048_576.0)
+}
+
+/// The largest |s| of a piece.
+fn h_of(piece: Piece) -> f64 {
+    piece.lo.abs().max(piece.hi.abs())
+}
+
 fn quadratic() -> impl Strategy<Value = Quadratic> {
     (number(), number(), number()).prop_map(|(value, slope, curvature)| Quadratic { value, slope, curvature })
 }
@@ -178,6 +188,56 @@ proptest! {
         let kept = cubic.clip(band, |_| 0.0, piece);
         let p = Polynomial::of_cubic(&cubic);
         assert_outside(&p, band, &cut_off(piece, kept), &(cubic, band, piece));
+    }
+
+    /// The least error bound that callers may give: that of the evaluation alone, which shrinks with what is left.
+    #[test]
+    fn the_least_bound_that_covers_is_enough(
+        piece in bounded_piece(), part in 0.0..=1.0f64, slope in number(), curvature in number(), jerk in number(),
+        value in prop_oneof![3 => Just(None), 1 => number().prop_map(Some)], band in band()
+    ) {
+        let near = planted(piece, part, slope, curvature, jerk);
+        let cubic = Cubic { value: value.unwrap_or(near.value), ..near };
+        prop_assume!(cubic.value.is_finite());
+        let kept = cubic.clip_beyond(band, |h| cubic.bound_evaluation(h), piece);
+        assert_outside(&Polynomial::of_cubic(&cubic), band, &cut_off(piece, kept), &(cubic, band, piece));
+        let Cubic { value, slope, curvature, .. } = planted(piece, part, slope, curvature, 0.0);
+        let q = Quadratic { value, slope, curvature };
+        let least = q.bound_evaluation(h_of(piece));
+        prop_assume!(value.is_finite() && least.is_finite());
+        let p = Polynomial::new(&[value, slope, 0.5, curvature]);
+        assert_outside(&p, band, &cut_off(piece, q.clip_beyond(band, least, piece)), &(q, band, piece));
+        prop_assert!(!q.exceeds(least, piece), "{q:?} has a zero in {piece:?} up to rounding");
+    }
+
+    /// Quadratics whose zero is in the piece share no sign with themselves there; whose minimum is below the margin do not
+    /// exceed it.
+    #[test]
+    fn quadratics_that_exceed_are_positive(
+        q in quadratic(), other in quadratic(), raised in 0.0..1.0f64, piece in bounded_piece()
+    ) {
+        // Raised to where it is decided by rounding.
+        let bound = q.bound_evaluation(h_of(piece));
+        let least = q.bound_below(piece);
+        prop_assume!(least.is_finite() && bound.is_finite());
+        let q = Quadratic { value: q.value - least + (6.0 * raised - 3.0) * bound, ..q };
+        prop_assume!(q.value.is_finite());
+        let bound = q.bound_evaluation(h_of(piece));
+        prop_assume!(bound.is_finite());
+        let p = Polynomial::new(&[q.value, q.slope, 0.5, q.curvature]);
+        if q.exceeds(bound, piece) {
+            prop_assert!(p.is_positive(piece), "{q:?} on {piece:?}");
+        }
+        let others = other.bound_evaluation(h_of(piece));
+        prop_assume!(others.is_finite());
+        let least = if others > bound { others } else { bound };
+        let polynomials = [p, Polynomial::new(&[other.value, other.slope, 0.5, other.curvature])];
+        for part in cut_off(piece, q.clip_shared_sign_beyond(&other, least, piece)) {
+            let all = |negative: bool| polynomials.iter().all(|p| {
+                if negative { p.negated().is_positive(part) } else { p.is_positive(part) }
+            });
+            prop_assert!(all(false) || all(true), "{q:?} {other:?} {piece:?}: {part:?}");
+        }
     }
 
     /// Ordinary magnitudes, and zeros at the very ends of pieces that are long on one side.

@@ -107,6 +107,8 @@ impl TwoQuadratics {
 mod tests {
     use super::*;
     use d2m_motion::{PathJet, Remainder};
+    use d2m_testing::{Draw, Random};
+    use dashu_ratio::RBig;
 
     /// Small integers: every product below is exact, so any order of adding up gives the same bits.
     fn jet(seed: i32) -> PathJet {
@@ -141,6 +143,51 @@ mod tests {
                 assert!((have - want.abs()).abs() <= 1e-15 * (1.0 + want.abs()), "{have} {want}");
             }
         }
+    }
+
+    /// The least of an exact quadratic over a piece, times 4·curvature where that is a vertex: its sign is what counts.
+    fn is_positive(q: Quadratic, part: Piece) -> bool {
+        let exact = |x: f64| RBig::try_from(x).expect("finite");
+        let [c, b, k, lo, hi] = [q.value, q.slope, q.curvature, part.lo, part.hi].map(exact);
+        let at = |s: &RBig| &c + (&b + &k * s / RBig::from(2)) * s;
+        let vertex = if k > RBig::ZERO { -&b / &k } else { lo.clone() };
+        let inside = lo < vertex && vertex < hi;
+        at(&lo) > RBig::ZERO && at(&hi) > RBig::ZERO && (!inside || at(&vertex) > RBig::ZERO)
+    }
+
+    /// Quadratics that touch zero up to rounding, on pieces of every width: the bound of the evaluation alone is enough.
+    #[test]
+    fn two_quadratics_that_exceed_are_positive() {
+        let mut random = Random::new(3);
+        let mut exceeding = 0;
+        for _ in 0..20_000 {
+            let width = random.log_between(1e-16, 2.0);
+            let lo = random.signed() * random.log_between(1e-3, 1.0);
+            let part = Piece { lo, hi: lo + width };
+            let curvature = F64x2::pack(random.signed(), random.unit())
+                .times(F64x2::splat(random.log_between(1e-6, 1e6)));
+            let middle = lo + 0.5 * width;
+            // Arches with their vertex in the middle, where the sagitta is sharp, and others.
+            let bent = curvature.times(F64x2::splat(-middle));
+            let steep = F64x2::pack(random.signed(), random.signed())
+                .times(F64x2::splat(random.log_between(1e-6, 1e6)));
+            let slope = if random.unit() < 0.5 { bent } else { steep };
+            let level = TwoQuadratics { value: F64x2::splat(0.0), slope, curvature };
+            let least = [level.first(), level.second()].map(|q| q.bound_below(part));
+            let larger = Quadratic { value: least[0], ..level.first() }.bound_evaluation(reach(part));
+            let larger =
+                larger + Quadratic { value: least[1], ..level.second() }.bound_evaluation(reach(part));
+            let raised = random.signed() * random.log_between(1.0, 1e3) * larger;
+            let value = F64x2::pack(raised - least[0], raised - least[1]);
+            let both = TwoQuadratics { value, ..level };
+            let quadratics = [both.first(), both.second()];
+            let errors = quadratics.map(|q| q.bound_evaluation(reach(part)));
+            if both.exceed(errors[0].max(errors[1]), part) {
+                exceeding += 1;
+                assert!(quadratics.iter().all(|&q| is_positive(q, part)), "{quadratics:?} {part:?}");
+            }
+        }
+        assert!(exceeding > 500, "{exceeding}");
     }
 
     #[test]

@@ -9,6 +9,10 @@ use core::ops::{Add, Mul, Sub};
 use d2m_lanes::DoubleDouble;
 use glam::DVec3;
 
+/// Rounding of the position of an anchored frame and of all that is made of it, in units of 2⁻⁵³ of its length: 24 are
+/// counted in docs/theory/features.md, "Anchors".
+const ROUNDING: f64 = 32.0;
+
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Anchor {
     /// Anchor on A, body frame, exact.
@@ -59,7 +63,7 @@ impl Anchor {
         frame.shift[0] = DVec3::from_array(p);
         frame.shift[1] += frame.turn[1] * arm;
         frame.shift[2] += frame.turn[2] * arm;
-        // One rounding of p and a few of what is made of it; double-double leaves out less than 2⁻⁸⁵.
-        frame.extra = 16.0 * UNIT * frame.shift[0].length() + self.magnitude * (0.5_f64).powi(80);
+        // Double-double leaves out less than 2⁻⁸⁵.
+        frame.extra = ROUNDING * UNIT * frame.shift[0].length() + self.magnitude * (0.5_f64).powi(80);
     }
 }

@@ -25,6 +25,13 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-feature/tests/scaling.rs::features_and_motions_of_different_sizes",
     ),
     patch(
+        "two quadratics without their sagitta",
+        "crates/d2m-feature/src/edge_edge/products.rs",
+        "width * width * (0.125 * (1.0 + 4.0 * f64::EPSILON))",
+        "width * width * (0.125 * (1.0 - 4096.0 * f64::EPSILON))",
+        "crates/d2m-feature/src/edge_edge/products.rs::two_quadratics_that_exceed_are_positive",
+    ),
+    patch(
         "half of the radius about a triangle",
         "crates/d2m-feature/src/point_triangle/planes.rs",
         "length_up(v - center)",

@@ -25,6 +25,13 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-motion/src/relative/tests.rs::remainders_hold_and_are_nearly_reached",
     ),
     patch(
+        "rounding of an anchored position not counted",
+        "crates/d2m-motion/src/relative/anchor.rs",
+        "const ROUNDING: f64 = 32.0;",
+        "const ROUNDING: f64 = 0.0;",
+        "crates/d2m-motion/src/relative/tests.rs::directions_and_anchors_keep_their_remainders",
+    ),
+    patch(
         "Coriolis acceleration once in a composition",
         "crates/d2m-motion/src/kinematics.rs",
         ".plus(coriolis)\n                .plus(coriolis)",
