@@ -1,15 +1,13 @@
 //! The search from the start of the query's window to its end: sub-windows of limited rotation, one after the other.
 
 use super::state::{Outcome, Search, Step};
-use super::time_split::OneSpan;
-use d2m_lanes::run_on;
 
 impl Search<'_> {
     /// Searches sub-window after sub-window.
     pub(crate) fn run(mut self) -> Outcome {
         let mut next = self.window_from(0.0);
         while let Some(window) = next {
-            let step = run_on(self.instructions, OneSpan { search: &mut self, span: window });
+            let step = self.search_span(window);
             #[cfg(feature = "rayon")]
             let step = match step {
                 Step::ClearUntil(until) if self.parallel && until < self.scene.end => {

@@ -88,7 +88,7 @@ impl Search<'_> {
             }
             if steps.is_multiple_of(256) && self.out_of_budget() {
                 let key = ((known / state.step) as u32).max(item.key);
-                self.scratch.queue.push(&Item { key, ..item });
+                self.scratch.queue.push(Item { key, ..item });
                 return;
             }
             self.scratch.counts.triangle_looks += 1;
@@ -105,7 +105,7 @@ impl Search<'_> {
                     let key = (known / state.step) as u32;
                     if !alone && key > item.key + item.key / FOLLOWED + FOLLOWED_KEYS {
                         if key < state.limit {
-                            self.scratch.queue.push(&Item { key, ..item });
+                            self.scratch.queue.push(Item { key, ..item });
                         }
                         return;
                     }

@@ -10,8 +10,6 @@
 use super::counts::SearchCounts;
 use super::scratch::Scratch;
 use super::state::{Ahead, Outcome, SECOND_ORDER_TESTS, Search, Step, SubWindow};
-use super::time_split::OneSpan;
-use d2m_lanes::run_on;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -112,7 +110,7 @@ impl Search<'_> {
                     ahead: Some(ahead),
                     parallel: false,
                 };
-                let step = run_on(instructions, OneSpan { search: &mut search, span: windows[number] });
+                let step = search.search_span(windows[number]);
                 let answer = match step {
                     Step::Answer(Outcome::OutOfBudget(_)) => continue,
                     Step::Answer(answer) => Some(answer),

@@ -7,7 +7,10 @@
 use crate::tree::node::LEAF;
 
 /// A pair of boxes and the time until which it is proven apart.
+///
+/// In the order of a row of words, so that a row becomes an item as it is: queries queue a thousand of them.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub(crate) struct Item {
     /// Time key.
     pub(crate) key: u32,
@@ -92,19 +95,20 @@ impl Bucket {
     }
 
     #[inline(always)]
-    fn push(&mut self, item: &Item) {
+    fn push(&mut self, item: Item) {
         match self.items.get_mut(self.count) {
-            Some(place) => *place = *item,
+            Some(place) => *place = item,
             None => self.grow(item),
         }
         self.count += 1;
         self.least = self.least.min(item.key);
     }
 
+    /// By value, as everywhere here: an item whose address is taken is written to the stack and read again.
     #[cold]
     #[inline(never)]
-    fn grow(&mut self, item: &Item) {
-        self.items.resize((2 * self.count).max(16), *item);
+    fn grow(&mut self, item: Item) {
+        self.items.resize((2 * self.count).max(16), item);
     }
 
     /// Drops the items for which `keep` is false.
@@ -125,7 +129,7 @@ impl Bucket {
     fn move_last(&mut self, count: usize, to: &mut Self) {
         let rest = self.count - count;
         for item in &self.items[rest..self.count] {
-            to.push(item);
+            to.push(*item);
         }
         self.count = rest;
     }
@@ -153,7 +157,7 @@ impl Queue {
 
     /// Adds an item whose key is not below the last key handed out.
     #[inline(always)]
-    pub(crate) fn push(&mut self, item: &Item) {
+    pub(crate) fn push(&mut self, item: Item) {
         debug_assert!(item.key >= self.last);
         let bucket = 32 - (item.key ^ self.last).leading_zeros();
         self.buckets[bucket as usize].push(item);
@@ -192,7 +196,7 @@ impl Queue {
     #[inline(always)]
     pub(crate) fn extend(&mut self, items: impl Iterator<Item = Item>) {
         for item in items {
-            self.push(&item);
+            self.push(item);
         }
     }
 
@@ -225,13 +229,13 @@ mod tests {
     #[test]
     fn equal_keys_are_searched_depth_first() {
         let (mut queue, mut batch) = (Queue::new(), Bucket::EMPTY);
-        queue.push(&Item { key: 7, boxes: [10, 0], next: 0 });
+        queue.push(Item { key: 7, boxes: [10, 0], next: 0 });
         let (mut most, mut taken) = (0, 0);
         while taken < 10_000 && queue.take(&mut batch, 4).is_some() {
             for item in batch.items() {
                 taken += 1;
                 for _ in 0..if item.boxes[0] > 0 { 8 } else { 0 } {
-                    queue.push(&Item { key: 7, boxes: [item.boxes[0] - 1, 0], next: 0 });
+                    queue.push(Item { key: 7, boxes: [item.boxes[0] - 1, 0], next: 0 });
                 }
             }
             most = queue.len().max(most);
@@ -252,7 +256,7 @@ mod tests {
             let mut batch = Bucket::EMPTY;
             for _ in 0..50 {
                 let key = next() >> 3;
-                queue.push(&Item { key, boxes: [0; 2], next: 0 });
+                queue.push(Item { key, boxes: [0; 2], next: 0 });
                 *live.entry(key).or_insert(0) += 1;
             }
             let mut taken = 0;
@@ -270,7 +274,7 @@ mod tests {
                     if taken < 3000 {
                         for shift in [4, 12, 20] {
                             let key = item.key + (next() >> shift);
-                            queue.push(&Item { key, boxes: [0; 2], next: 0 });
+                            queue.push(Item { key, boxes: [0; 2], next: 0 });
                             *live.entry(key).or_insert(0) += 1;
                         }
                     }

@@ -8,7 +8,7 @@
 //!
 //! See docs/theory/engine.md, "Time, divided".
 
-use super::best_first::expander;
+use super::best_first::{OneWindow, expander};
 use super::motion::frame::RelativeMotion;
 use super::node_pair::node_scale::NodeScale;
 use super::node_pair::whole_span::{PlacedPose, SpanFrame};
@@ -16,7 +16,7 @@ use super::queue::{Item, WaitingSpan, WaitingSpans};
 use super::scene::{Scene, SceneBody};
 use super::state::{Outcome, Search, Step, SubWindow};
 use crate::tree::node::WIDTH;
-use d2m_lanes::{Lanes, Task};
+use d2m_lanes::{Lanes, Task, run_on};
 
 /// A span is halved so often before it is searched.
 const HALVINGS: usize = 2;
@@ -38,26 +38,20 @@ fn is_large(scene: &Scene<'_>, item: &Item, least: f64) -> bool {
     radius(&scene.a, item.boxes[0]).max(radius(&scene.b, item.boxes[1])) >= least
 }
 
-/// The search of one span.
-pub(super) struct OneSpan<'a, 's> {
-    pub(super) search: &'a mut Search<'s>,
-    pub(super) span: SubWindow,
+/// The search of one span by dividing it.
+struct DividedSpan<'a, 's> {
+    search: &'a mut Search<'s>,
+    span: SubWindow,
 }
 
-impl Task for OneSpan<'_, '_> {
+impl Task for DividedSpan<'_, '_> {
     type Output = Step;
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Step {
         let Self { search, span } = self;
-        let scene = search.scene;
-        let root =
-            Item { key: 0, boxes: [0; 2], next: expander(scene, scene.node_scales(1.0)).next_of(0, 0) };
-        if !search.divides_time() {
-            return search.search_window::<L>(span, &[root]);
-        }
         let mut waiting = core::mem::take(&mut search.scratch.split);
-        let step = search.search_divided::<L>(span, root, &mut waiting);
+        let step = search.search_divided::<L>(span, &mut waiting);
         search.scratch.split = waiting;
         step
     }
@@ -106,9 +100,20 @@ impl Search<'_> {
         if self.divides_time() { SPAN * self.scene.longest } else { self.scene.longest }
     }
 
+    /// Searches a span that [`Search::window_from`] gave.
+    pub(super) fn search_span(&mut self, span: SubWindow) -> Step {
+        let instructions = self.instructions;
+        if self.divides_time() {
+            run_on(instructions, DividedSpan { search: self, span })
+        } else {
+            run_on(instructions, OneWindow { search: self, window: span, pairs: None })
+        }
+    }
+
     #[inline(always)]
-    fn search_divided<L: Lanes>(&mut self, span: SubWindow, root: Item, waiting: &mut WaitingSpans) -> Step {
+    fn search_divided<L: Lanes>(&mut self, span: SubWindow, waiting: &mut WaitingSpans) -> Step {
         let mut grid = Grid::new(self.scene, span);
+        let root = expander(self.scene, grid.scales).root();
         let mut clear_until = span.start;
         waiting.spans.clear();
         waiting.pairs.clear();
@@ -128,7 +133,9 @@ impl Search<'_> {
             if pairs.0 == pairs.1 {
                 clear_until = end;
             } else if now.to - now.from == 2 {
-                match self.search_window::<L>(SubWindow { start, end }, &waiting.pairs[pairs.0..]) {
+                let left = Some(&waiting.pairs[pairs.0..]);
+                let window = SubWindow { start, end };
+                match run_on(self.instructions, OneWindow { search: self, window, pairs: left }) {
                     Step::ClearUntil(until) => clear_until = until,
                     answer @ Step::Answer(_) => return answer,
                 }

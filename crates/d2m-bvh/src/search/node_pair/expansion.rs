@@ -43,6 +43,11 @@ impl NodePairExpander<'_> {
         if larger { na.child[la] } else { nb.child[lb] | Item::OF_B }
     }
 
+    /// The pair of the two roots, with the key zero.
+    pub(crate) fn root(&self) -> Item {
+        Item { key: 0, boxes: [0; 2], next: self.next_of(0, 0) }
+    }
+
     /// Expands an item that is not a pair of triangles: the pairs of each box of its node with the other body's box, as rows
     /// of an [`Item`]; wanted are those worth queueing,
     /// their keys are times until which they are proven apart.
