@@ -245,11 +245,11 @@ fn flight(random: &mut Random, spin: f64) -> [ConstantTwist; 2] {
     })
 }
 
-fn question<'a>(
-    bodies: [&'a MeshTree; 2],
+fn question(
+    bodies: [&MeshTree; 2],
     a: impl RigidMotion + Send + 'static,
     b: impl RigidMotion + Send + 'static,
-) -> Question<'a> {
+) -> Question<'_> {
     let options = QueryOptions::default();
     Question { bodies, motions: [Box::new(a), Box::new(b)], window: Window::UNIT, options }
 }
@@ -312,7 +312,7 @@ fn hidden<'a>(name: &str, bodies: [&'a MeshTree; 2], flights: usize) -> Vec<Row<
 }
 
 /// The last link of an arm of six joints sweeps towards a body of 70 000 triangles.
-fn arm<'a>(bodies: [&'a MeshTree; 2], flights: usize) -> Vec<Row<'a>> {
+fn arm(bodies: [&MeshTree; 2], flights: usize) -> Vec<Row<'_>> {
     let mut random = Random(6);
     let twists = (0..flights)
         .map(|_| {
@@ -375,7 +375,7 @@ fn keyframes(bodies: [&MeshTree; 2]) -> Vec<Row<'_>> {
 }
 
 /// Bodies that accelerate together, and the same against each other without.
-fn together<'a>(bodies: [&'a MeshTree; 2], flights: usize) -> Vec<Row<'a>> {
+fn together(bodies: [&MeshTree; 2], flights: usize) -> Vec<Row<'_>> {
     let mut random = Random(7);
     let (mut rest, mut falling) = (Vec::new(), Vec::new());
     for _ in 0..flights {
@@ -395,7 +395,7 @@ fn together<'a>(bodies: [&'a MeshTree; 2], flights: usize) -> Vec<Row<'a>> {
 }
 
 /// Both bodies spin at exactly this angular speed.
-fn spins<'a>(bodies: [&'a MeshTree; 2], flights: usize) -> Vec<Row<'a>> {
+fn spins(bodies: [&MeshTree; 2], flights: usize) -> Vec<Row<'_>> {
     [(0.0, 0.0), (3.0, 0.0), (10.0, 0.0), (30.0, 3.0), (100.0, 0.0), (300.0, 8.0)]
         .into_iter()
         .map(|(spin, most)| {

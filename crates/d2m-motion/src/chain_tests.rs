@@ -5,6 +5,7 @@ use crate::{
     AnyMotion, Chain, Composed, ConstantTwist, IntervalTwist, Joint, JointKind, JointValue, Keyframes, Pose,
     Retimed, RigidMotion, Span,
 };
+use core::ops::{Add, Div, Mul, Sub};
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_lanes::DoubleDouble as Dd;
 use d2m_testing::{Draw, Random};

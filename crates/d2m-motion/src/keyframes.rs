@@ -18,6 +18,18 @@ pub enum Span {
     Screw,
 }
 
+/// The motion between two neighbouring keyframes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct KeyframeSpan<'a> {
+    /// The time of the first keyframe.
+    pub start: f64,
+    /// The time of the second keyframe.
+    pub end: f64,
+    /// The motion from the first to the second.
+    pub motion: &'a ConstantTwist,
+}
+
 /// Part of the body's size plus the distance moved up to which two spans that do not meet count as rounded; and the angle
 /// (radians) up to which their rotations do.
 pub const LARGEST_GAP: f64 = 1e-9;
@@ -164,18 +176,33 @@ impl Keyframes {
         &self.motions
     }
 
-    /// Every span as (start time, end time, motion).
-    pub fn spans(&self) -> impl Iterator<Item = (f64, f64, &ConstantTwist)> {
-        self.times.windows(2).zip(&self.motions).map(|(times, motion)| (times[0], times[1], motion))
+    /// Every span, in the order of time.
+    pub fn spans(&self) -> impl Iterator<Item = KeyframeSpan<'_>> {
+        (0..self.motions.len()).map(|index| self.span(index))
     }
 
     /// The span that holds time `t` (the later one at a keyframe), or `None` outside.
-    pub fn span_at(&self, t: f64) -> Option<(f64, f64, &ConstantTwist)> {
+    ///
+    /// ```
+    /// use d2m_motion::{Keyframes, Pose, Span};
+    /// use glam::DVec3;
+    /// let at = |x: f64| Pose { translation: DVec3::X * x, ..Pose::IDENTITY };
+    /// let path = Keyframes::try_new(&[(0.0, at(0.0)), (1.0, at(2.0)), (3.0, at(0.0))], Span::Linear)?;
+    /// let span = path.span_at(1.5).unwrap();
+    /// assert_eq!((span.start, span.end), (1.0, 3.0));
+    /// assert_eq!(span.motion.linear_velocity(), -DVec3::X);
+    /// assert!(path.span_at(3.5).is_none());
+    /// # Ok::<(), d2m_motion::MotionError>(())
+    /// ```
+    pub fn span_at(&self, t: f64) -> Option<KeyframeSpan<'_>> {
         if !(self.times[0] <= t && t <= self.times[self.motions.len()]) {
             return None;
         }
-        let index = self.index_from(t);
-        Some((self.times[index], self.times[index + 1], &self.motions[index]))
+        Some(self.span(self.index_from(t)))
+    }
+
+    fn span(&self, index: usize) -> KeyframeSpan<'_> {
+        KeyframeSpan { start: self.times[index], end: self.times[index + 1], motion: &self.motions[index] }
     }
 
     /// The span that begins at or before `t`; the first or last one outside.

@@ -38,7 +38,7 @@ pub use composed::{Composed, Retimed};
 pub use constant_twist::ConstantTwist;
 pub use error::MotionError;
 pub use joint_value::JointValue;
-pub use keyframes::{Keyframes, LARGEST_GAP, Span};
+pub use keyframes::{KeyframeSpan, Keyframes, LARGEST_GAP, Span};
 pub use kinematics::Kinematics;
 /// The name that `ConstantTwist` had before: it turns, so it was never linear.
 #[doc(hidden)]
@@ -47,13 +47,13 @@ pub use pose::{IntervalPose, Pose};
 pub use rigid_motion::{RigidMotion, TwistPiece};
 pub use screw::ScrewMotion;
 pub use spline::{Spline, SplineDegree};
-pub use state::CertifiedState;
+pub use state::{CertifiedState, StateTwist};
 pub use twist::{IntervalTwist, Twist};
 /// For the crates of this workspace: two motions seen from one body, jets of points and what they leave out.
 #[doc(hidden)]
 pub use {
     path_jet::{PathJet, Remainder},
-    relative::{Arm, ArmPair, Frame, RelativeMotion, RelativeState, StraightLine},
+    relative::{Arm, ArmPair, Frame, OffsetRange, RelativeMotion, RelativeState, StraightLine},
     two::TwoVec3,
     two_jets::TwoJets,
 };

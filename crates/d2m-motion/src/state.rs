@@ -46,6 +46,16 @@ pub struct CertifiedState {
     pub angular_radius: f64,
 }
 
+/// A motion of constant twist through the middle of a [`CertifiedState`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct StateTwist {
+    /// The motion.
+    pub motion: ConstantTwist,
+    /// Bound on the operator norm of the difference between its rotation at the time of the state and the true one.
+    pub rotation_radius: f64,
+}
+
 impl CertifiedState {
     /// The middles of enclosures at one time, with radii that reach their corners.
     ///
@@ -80,8 +90,7 @@ impl CertifiedState {
         Kinematics::from_state(self).following(at).state_about(DVec3::ZERO)
     }
 
-    /// The motion that has this state (its middle) at time `t` and keeps its twist, and a bound of the operator norm of
-    /// the difference between its rotation at that time and the true one. `None` where the middle is not finite.
+    /// The motion that has this state (its middle) at time `t` and keeps its twist. `None` where the middle is not finite.
     ///
     /// The rotation of the quaternion is known within 36u (Frobenius norm), and so is how far it is from the middle.
     ///
@@ -89,10 +98,10 @@ impl CertifiedState {
     /// use d2m_motion::{ConstantTwist, RigidMotion};
     /// use glam::DVec3;
     /// let spin = ConstantTwist::REST.with_angular_velocity(DVec3::Z);
-    /// let (again, radius) = spin.enclose_state(0.5).to_constant_twist(0.5).unwrap();
-    /// assert!(radius < 1e-13 && again.angular_velocity() == DVec3::Z);
+    /// let again = spin.enclose_state(0.5).to_constant_twist(0.5).unwrap();
+    /// assert!(again.rotation_radius < 1e-13 && again.motion.angular_velocity() == DVec3::Z);
     /// ```
-    pub fn to_constant_twist(&self, t: f64) -> Option<(ConstantTwist, f64)> {
+    pub fn to_constant_twist(&self, t: f64) -> Option<StateTwist> {
         let motion = ConstantTwist::try_new(
             self.position,
             DQuat::from_mat3(&self.rotation).normalize(),
@@ -105,7 +114,7 @@ impl CertifiedState {
         let [x, y, z] =
             [0, 1, 2].map(|column| (known.col(column) - self.rotation.col(column)).length_squared());
         let radius = (x + y + z).sqrt() + 40.0 * 0.5 * f64::EPSILON + self.rotation_radius;
-        (radius < f64::INFINITY).then_some((motion, radius * UP))
+        (radius < f64::INFINITY).then_some(StateTwist { motion, rotation_radius: radius * UP })
     }
 }
 

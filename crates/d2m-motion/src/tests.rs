@@ -169,9 +169,9 @@ fn keyframes_pass_through_their_poses() {
             .map(|i| (f64::from(i) * 0.5, random_motion(&mut random, 1.0).pose_and_twist(0.0).0))
             .collect();
         let path = Keyframes::try_new(&frames, span).unwrap();
-        for ((start, end, motion), pair) in path.spans().zip(frames.windows(2)) {
-            for (t, pose) in [(start, pair[0].1), (end, pair[1].1)] {
-                let got = motion.pose_and_twist(t).0;
+        for (span, pair) in path.spans().zip(frames.windows(2)) {
+            for (t, pose) in [(span.start, pair[0].1), (span.end, pair[1].1)] {
+                let got = span.motion.pose_and_twist(t).0;
                 assert!((got.transform_point(DVec3::Y) - pose.transform_point(DVec3::Y)).length() < 1e-11);
             }
         }

@@ -4,7 +4,7 @@
 
 use crate::Moving;
 use d2m_interval::Interval;
-use d2m_motion::{Ball, CertifiedState, ConstantTwist, Kinematics};
+use d2m_motion::{Ball, CertifiedState, ConstantTwist, Kinematics, StateTwist};
 use glam::DVec3;
 
 /// The constant twists that have the states of two motions at one time of a span.
@@ -70,9 +70,9 @@ fn candidates(body: &Moving<'_>, span: Interval, middle: f64, origin: DVec3) -> 
     let kinematics = body.motion.enclose_kinematics(span);
     let state = body.motion.enclose_state_about(middle, origin);
     let one = |state: CertifiedState, kinematics: &Kinematics| {
-        let (twist, rotation_radius) = state.to_constant_twist(middle)?;
+        let StateTwist { motion, rotation_radius, .. } = state.to_constant_twist(middle)?;
         Some(Fit {
-            twist,
+            twist: motion,
             rotation_radius,
             acceleration: kinematics.linear_rate,
             angular_rate: kinematics.angular_rate,

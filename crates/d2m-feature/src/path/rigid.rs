@@ -82,9 +82,9 @@ impl<'a> RigidPath<'a> {
         match motion.times_within(distance) {
             None => window = None,
             // Not worth another frame than the shared one in the middle.
-            Some((lo, hi)) if hi - lo > SHARED * whole.hi => {}
-            Some((lo, hi)) => {
-                window = Some(Piece { lo, hi });
+            Some(times) if times.to - times.from > SHARED * whole.hi => {}
+            Some(times) => {
+                window = Some(Piece { lo: times.from, hi: times.to });
                 // The pad of `times_within` is below this.
                 reach = (distance + PAD * motion.bound_reach(0.0)) * UP;
             }

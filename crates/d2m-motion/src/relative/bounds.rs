@@ -170,13 +170,22 @@ fn norm(m: &DMat3) -> f64 {
     largest * sum.sqrt().sqrt().sqrt().sqrt() * UP
 }
 
+/// A part of a window, as offsets τ from its start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OffsetRange {
+    /// Its first offset.
+    pub from: f64,
+    /// Its last offset.
+    pub to: f64,
+}
+
 impl RelativeMotion {
     /// Bound of the distance from B's followed point of a point of A within `radius`: `Y + ρ`.
     pub fn bound_reach(&self, radius: f64) -> f64 {
         (self.bounds.reach + radius + self.anchor_arm()) * UP
     }
 
-    /// The part of the window (τ) in which the followed points come within `distance` of each other, rounded
+    /// The part of the window (τ) in which the reference points come within `distance` of each other, rounded
     /// outward; `None` if they never do. Straight relative motion of two points: no rotation matters.
     ///
     /// `|g + uτ| ≤ R` for `(τ − τ*)² ≤ (R² − d²)/|u|²`, `τ* = −g·u/|u|²`, `d = |g × u|/|u|`. R is padded by
@@ -187,12 +196,12 @@ impl RelativeMotion {
     /// use glam::DVec3;
     /// let passing = ConstantTwist::REST.with_position(-4.0 * DVec3::X).with_linear_velocity(8.0 * DVec3::X);
     /// let relative = RelativeMotion::new(&passing, &ConstantTwist::REST, 0.0, 1.0);
-    /// let (from, to) = relative.times_within(2.0).unwrap();
-    /// assert!(from <= 0.25 && from > 0.2499 && to >= 0.75 && to < 0.7501);
+    /// let times = relative.times_within(2.0).unwrap();
+    /// assert!(times.from <= 0.25 && times.from > 0.2499 && times.to >= 0.75 && times.to < 0.7501);
     /// let beside = RelativeMotion::new(&passing.with_position(DVec3::splat(-4.0)), &ConstantTwist::REST, 0.0, 1.0);
     /// assert_eq!(beside.times_within(2.0), None);
     /// ```
-    pub fn times_within(&self, distance: f64) -> Option<(f64, f64)> {
+    pub fn times_within(&self, distance: f64) -> Option<OffsetRange> {
         let (g, u) = (self.offset, self.velocity);
         let square = u.length_squared();
         let size = g.length();
@@ -201,7 +210,7 @@ impl RelativeMotion {
         if !square.is_normal() {
             // At rest, or out of the range of squares.
             let apart = u == DVec3::ZERO && size > radius;
-            return (!apart).then_some((0.0, self.duration));
+            return (!apart).then_some(OffsetRange { from: 0.0, to: self.duration });
         }
         let speed = square.sqrt();
         let nearest = g.cross(u).length() / speed;
@@ -216,7 +225,7 @@ impl RelativeMotion {
             return None;
         }
         // f64::max and min drop a NaN: then it is the whole window.
-        Some((from.max(0.0), to.min(self.duration)))
+        Some(OffsetRange { from: from.max(0.0), to: to.min(self.duration) })
     }
 
     /// Bound V of the speed of a point of A within `radius` of A's followed point: `U + bY⊥ + wρ`.

@@ -12,6 +12,7 @@ mod any_tests;
 mod tests;
 
 pub use any::{RelativeState, StraightLine};
+pub use bounds::OffsetRange;
 pub use frame::{Arm, ArmPair, Frame};
 
 use crate::ConstantTwist;

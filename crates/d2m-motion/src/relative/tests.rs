@@ -1,6 +1,6 @@
 //! Every bound of the relative motion, sampled: never above 1 of the bound, somewhere above 0.9 of it; and mutants of
 //! the bounds that the same samples refute.
-use super::RelativeMotion;
+use super::{OffsetRange, RelativeMotion};
 use crate::rotation::exponential_dd;
 use crate::{ConstantTwist, PathJet, Remainder};
 use core::ops::{Add, Mul, Sub};
@@ -271,7 +271,7 @@ fn the_part_of_the_window_within_reach_is_whole_and_its_remainders_hold() {
         let times = motion.times_within(distance);
         match times {
             None => never += 1,
-            Some((from, to)) => part += usize::from(to - from < 0.8 * motion.duration()),
+            Some(times) => part += usize::from(times.to - times.from < 0.8 * motion.duration()),
         }
         let remainder = motion.point_remainder_within(arm.length(), 0.0, distance * (1.0 + 1e-12));
         for j in 0..=8 {
@@ -282,7 +282,7 @@ fn the_part_of_the_window_within_reach_is_whole_and_its_remainders_hold() {
                 continue;
             }
             inside += 1;
-            let (from, to) = times.expect("a time within the distance");
+            let OffsetRange { from, to } = times.expect("a time within the distance");
             assert!(from <= tau && tau <= to, "{motion:?} {distance} {tau}");
             let fourth = motion.bound_fourth_derivative_within(arm.length(), distance * (1.0 + 1e-12));
             let remainder = motion.point_remainder_third_order(remainder, fourth);
