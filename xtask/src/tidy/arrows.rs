@@ -107,12 +107,11 @@ impl Modules {
 
     /// The file in which a path from a module ends.
     fn target(&self, from: &[String], path: &[String]) -> Option<Vec<String>> {
-        let (mut at, mut rest) = match path.first()?.as_str() {
-            "crate" => (Vec::new(), &path[1..]),
-            _ => {
-                let up = path.iter().take_while(|segment| *segment == "super").count();
-                (from[..from.len().checked_sub(up)?].to_vec(), &path[up..])
-            }
+        let (mut at, mut rest) = if path.first()? == "crate" {
+            (Vec::new(), &path[1..])
+        } else {
+            let up = path.iter().take_while(|segment| *segment == "super").count();
+            (from[..from.len().checked_sub(up)?].to_vec(), &path[up..])
         };
         for _ in 0..16 {
             let Some((segment, later)) = rest.split_first() else { break };
@@ -200,13 +199,11 @@ fn spread<'t>(mut text: &'t str, prefix: &mut Vec<String>, found: &mut Vec<Vec<S
         }
         prefix.push(text[..end].to_string());
         text = &text[end..];
-        match text.strip_prefix("::") {
-            Some(next) => text = next,
-            None => {
-                found.push(prefix.clone());
-                break;
-            }
-        }
+        let Some(next) = text.strip_prefix("::") else {
+            found.push(prefix.clone());
+            break;
+        };
+        text = next;
     }
     prefix.truncate(depth);
     text
