@@ -149,10 +149,12 @@ fn compare(answer: &Answer, twin: &Answer, change: &twins::Change) -> Option<Fau
             Answer::Contact { lo, hi, evidence, .. },
             Answer::Contact { lo: low, hi: high, evidence: shown, .. },
         ) => {
-            // A bracket that proves a meeting must not end before the other's begins.
+            // A bracket that proves a crossing must not end before the other's begins. One that proves nearness may: the
+            // tolerances of the two differ where one is given and the other is the default, and what is within a tolerance at
+            // one time may still be disjoint later.
             let before = |lo: f64, hi: f64| hi < lo - (lo.abs() + hi.abs()) * 2f64.powi(-48);
-            let apart = *evidence != Evidence::Early && hi > lo && before(*low, change.time(*hi))
-                || *shown != Evidence::Early && high > low && before(change.time(*lo), *high);
+            let apart = *evidence == Evidence::Crossing && hi > lo && before(*low, change.time(*hi))
+                || *shown == Evidence::Crossing && high > low && before(change.time(*lo), *high);
             apart.then(|| {
                 Fault::Alarm(format!(
                     "brackets [{:?}, {:?}] and [{low:?}, {high:?}] exclude each other",
