@@ -115,7 +115,9 @@ impl TriMesh {
     /// # Panics
     /// If `triangle` is not below [`triangle_count`](Self::triangle_count).
     pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
-        self.triangles[triangle].map(|index| self.vertices[index as usize])
+        // Written out: a closure mapped over an array is not inlined into code for other instruction sets.
+        let [a, b, c] = self.triangles[triangle];
+        [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]]
     }
 
     /// Gives the two lists back.

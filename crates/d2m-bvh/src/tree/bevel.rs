@@ -126,5 +126,5 @@ pub(crate) fn reach_both_ways(half: &[f32; 3], bevels: &Bevels, cosines: [f64; 3
         steps[0] += common * f64::from(cuts[edge]);
         steps[1] += common * f64::from(cuts[3 - edge]);
     }
-    steps.map(|cut| corner - cut / f64::from(STEPS))
+    [corner - steps[0] / f64::from(STEPS), corner - steps[1] / f64::from(STEPS)]
 }

@@ -168,7 +168,11 @@ impl WideNode {
                 [a[2][0][lane], a[2][1][lane], a[2][2][lane]],
             ],
             half_extent: [h[0][lane], h[1][lane], h[2][lane]],
-            bevels: [0, 1, 2].map(|pair| b[pair][lane].to_bits().to_le_bytes()),
+            bevels: [
+                b[0][lane].to_bits().to_le_bytes(),
+                b[1][lane].to_bits().to_le_bytes(),
+                b[2][lane].to_bits().to_le_bytes(),
+            ],
             radius: self.radius[lane],
         }
     }

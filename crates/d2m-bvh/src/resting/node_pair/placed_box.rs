@@ -55,7 +55,7 @@ impl Placed {
             half: [half[0] * ratio, half[1] * ratio, half[2] * ratio],
             radius: round_up(radius),
             margin: round_up(GAP_ERROR * (norm + f64::from(wide.extent) + radius) + side.floor),
-            bevels: boxed.bevels.map(|cuts| f32::from_bits(u32::from_le_bytes(cuts))),
+            bevels: [lane_of(boxed.bevels[0]), lane_of(boxed.bevels[1]), lane_of(boxed.bevels[2])],
             along: [0.0; 3],
             at_along: 0.0,
             reach_along: [0.0; 2],
@@ -95,6 +95,12 @@ impl Placed {
         self.corners = Some([narrow(corners[0]), narrow(corners[1]), narrow(corners[2])]);
         self
     }
+}
+
+/// Four bytes as the bits of a lane.
+#[inline(always)]
+fn lane_of(cuts: [u8; 4]) -> f32 {
+    f32::from_bits(u32::from_le_bytes(cuts))
 }
 
 #[inline(always)]

@@ -257,10 +257,12 @@ impl<'a> Scene<'a> {
         let scale = 1.0 / self.trees[wide].unit();
         let shift =
             side.offset - DVec3::new(f64::from(origin[0]), f64::from(origin[1]), f64::from(origin[2]));
-        tree.mesh().corners(triangle as usize).map(|corner| {
+        let place = |corner: DVec3| {
             let p = (corner - tree.center()) * scale;
             side.rotation[0] * p.x + side.rotation[1] * p.y + side.rotation[2] * p.z + shift
-        })
+        };
+        let [p, q, r] = tree.mesh().corners(triangle as usize);
+        [place(p), place(q), place(r)]
     }
 
     /// Which boxes of a node of body `wide` are not proven apart from a box of the other body.

@@ -1,6 +1,6 @@
 //! Two placed triangles: cheap proofs that they are apart.
 
-use d2m_feature::triangle_distance;
+use d2m_feature::{triangle_distance, triangles_intersect};
 use glam::DVec3;
 
 /// 1 + 2⁻⁴⁶: sixteen times the eight roundings of the compared squares.
@@ -51,6 +51,7 @@ pub(crate) fn proven_apart(a: &[DVec3; 3], b: &[DVec3; 3], error: f64, need: f64
             }
         }
     }
-    // Flat and nearly degenerate cases: the certified distance tries every direction.
-    triangle_distance(a, b).lower > error
+    // Those that share a point are decided by a few signs. Flat and nearly degenerate cases: the certified distance tries every
+    // direction.
+    !triangles_intersect(a, b) && triangle_distance(a, b).lower > error
 }
