@@ -4,6 +4,7 @@ mod catalogue;
 mod check;
 mod clock;
 mod counted;
+mod dynamics;
 mod engine;
 mod method;
 mod peers;
@@ -41,9 +42,21 @@ enum Only {
     Scenes,
 }
 
+/// What else than queries can be measured.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+enum Subject {
+    /// Steps of simulations: boxes that fall into a pile, a bolt, gears, a sleeping pile, pebbles and knots.
+    Dynamics,
+}
+
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = DURATION)]
 pub(crate) struct Options {
+    /// Measure this instead of queries.
+    subject: Option<Subject>,
+    /// With `dynamics`: 300 and 1000 boxes too.
+    #[arg(long, requires = "subject")]
+    full: bool,
     /// Fewer trials, pairs and sweeps: under two minutes.
     #[arg(long)]
     quick: bool,
@@ -156,10 +169,16 @@ impl Options {
 
 /// `cargo xtask bench`.
 pub(crate) fn run(options: &Options) -> TaskResult {
-    match options.only {
+    let extent = match (options.quick, options.full) {
+        (true, _) => dynamics::Extent::Quick,
+        (false, true) => dynamics::Extent::Full,
+        (false, false) => dynamics::Extent::Usual,
+    };
+    match (options.subject, options.only) {
         _ if options.check => check::run(options.accept),
-        Some(Only::Scenes) => scenes::run(options.rounds),
-        _ => run::run(options),
+        (Some(Subject::Dynamics), _) => dynamics::run(extent),
+        (None, Some(Only::Scenes)) => scenes::run(options.rounds),
+        (None, _) => run::run(options),
     }
 }
 
