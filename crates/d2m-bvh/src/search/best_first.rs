@@ -1,7 +1,7 @@
 //! Best first inside one sub-window.
 
 use super::crowd::{Patience, Progress};
-use super::motion::frame::Frame;
+use super::motion::frame::{Frame, RelativeMotion};
 use super::motion::units::{power_of_two_from, sum_down};
 use super::node_pair::expansion::{KEY_SCALE, NodePairExpander};
 use super::node_pair::node_scale::NodeScale;
@@ -116,7 +116,7 @@ impl Search<'_> {
             }
             if self.work() >= self.limits.sweep_from {
                 let now = sum_down(start, f64::from(least) * step);
-                if let Some(until) = self.sweep(&state, now, batch.items()[0].boxes)
+                if let Some(until) = self.sweep((&state.motion, &state.frame), now, batch.items()[0].boxes)
                     && until >= end
                 {
                     outcome = Some(Step::ClearUntil(until));
@@ -153,20 +153,27 @@ impl Search<'_> {
     /// a pair that may be near.
     #[cold]
     #[inline(never)]
-    fn sweep(&mut self, state: &State<'_>, now: f64, boxes: [u32; 2]) -> Option<f64> {
+    pub(super) fn sweep(
+        &mut self,
+        (motion, frame): (&RelativeMotion, &Frame),
+        now: f64,
+        boxes: [u32; 2],
+    ) -> Option<f64> {
         let patient = FIRST_SWEEP + triangle_count(self.scene);
         if self.work() < patient && now > ON_ITS_WAY * self.scene.end {
             self.limits.sweep_from = patient;
             return None;
         }
         if self.scratch.counts.triangle_looks == 0 {
-            self.scratch.last_tested =
-                [0, 1].map(|body| first_triangle(state.expander.nodes[body], boxes[body]));
+            self.scratch.last_tested = [
+                first_triangle(&self.scene.a.tree.nodes, boxes[0]),
+                first_triangle(&self.scene.b.tree.nodes, boxes[1]),
+            ];
         }
         let [a, b] = self.scratch.last_tested;
         let b = self.scene.b.corners(b);
-        let near = widest_normal(&place_a::<Quad>(&state.frame, &self.scene.a.corners(a)), &b);
-        let turn = state.motion.rotation_b(state.frame.offset);
+        let near = widest_normal(&place_a::<Quad>(frame, &self.scene.a.corners(a)), &b);
+        let turn = motion.rotation_b(frame.offset);
         let direction = turn.times::<Quad>(near).to_vec().normalize_or(DVec3::X);
         let limits = SkipLimits {
             least_gain: self.scene.longest.min(self.scene.end - now),

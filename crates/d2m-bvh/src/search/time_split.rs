@@ -128,6 +128,15 @@ impl Search<'_> {
             if self.out_of_budget() {
                 return Step::Answer(Outcome::OutOfBudget(start));
             }
+            if self.work() >= self.limits.sweep_from {
+                let frame = grid.motion.frame::<L::Doubles>(start - grid.motion.start);
+                let boxes = waiting.pairs[now.pairs.0].boxes;
+                let until = self.sweep((&grid.motion, &frame), start, boxes);
+                if let Some(until) = until.filter(|until| *until >= end) {
+                    clear_until = until;
+                    continue;
+                }
+            }
             self.keep_near_pairs::<L>(&now, &mut grid, waiting);
             let pairs = (now.pairs.1, waiting.pairs.len());
             if pairs.0 == pairs.1 {
