@@ -200,7 +200,7 @@ pub fn long_screw_in_nut(triangles: usize, clearance: f64) -> HardScene {
 /// If a number is not finite.
 pub fn interlocked_rings(triangles: usize, drift: f64) -> HardScene {
     let ring = tree(&format!("torus?triangles={triangles}&tube=0.2"));
-    // Radius of the middle line 0.8: the second's passes through the centre of the first.
+    // Radius of the middle line 0.8: the second's passes through the center of the first.
     let second = ConstantTwist::try_new(
         DVec3::X * 0.8,
         DQuat::from_rotation_x(0.5 * PI),

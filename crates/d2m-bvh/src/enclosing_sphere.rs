@@ -5,7 +5,7 @@
 //! grows at each step, so no support comes twice (an LP-type basis exchange: E. Welzl, *Smallest enclosing disks (balls
 //! and ellipsoids)*, 1991, doi:10.1007/BFb0038202, with the farthest-point pivoting of B. Gärtner, *Fast and robust
 //! smallest enclosing balls*, 1999, doi:10.1007/3-540-48481-7_29). Enclosure does not depend on any of that: the radius
-//! is measured from the final centre to every point and rounded up.
+//! is measured from the final center to every point and rounded up.
 
 use crate::TriMesh;
 use glam::DVec3;
@@ -30,7 +30,7 @@ const MAX_EXCHANGES: usize = 200;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnclosingSphere {
-    /// Centre, in the frame of the points.
+    /// Center, in the frame of the points.
     pub center: DVec3,
     /// Radius: at least the exact distance from `center` to every point.
     pub radius: f64,
@@ -130,7 +130,7 @@ impl Support {
     }
 
     /// The subset of at most four points whose circumball, blown up to hold all points, is smallest. Judging each
-    /// centre by the farthest of all points needs no tolerance.
+    /// center by the farthest of all points needs no tolerance.
     fn reduced(self) -> Self {
         let mut best = Self { squared_radius: f64::INFINITY, ..self };
         for subset in 1_u32..1 << self.count {

@@ -91,7 +91,7 @@ impl Budget {
 #[non_exhaustive]
 pub struct QueryOptions {
     /// δ, a distance in the scene's units. `None`: 1e-10 times the scene's length scale, the larger of the radii of
-    /// the two bodies about their own centres.
+    /// the two bodies about their own centers.
     pub tolerance: Option<f64>,
     /// What counts as contact.
     pub solid: Solid,

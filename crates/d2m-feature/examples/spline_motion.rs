@@ -70,10 +70,10 @@ fn main() {
     let wall = ConstantTwist::REST.with_angular_velocity(DVec3::new(0.0, 0.1, 0.0));
     let triangle = [DVec3::new(0.2, -4.0, -4.0), DVec3::new(0.2, 4.0, -4.0), DVec3::new(0.2, 0.0, 6.0)];
     let pair = EnclosedPairMotion::new(&spline, &wall, 0.0, 1.0);
-    let corner = DVec3::new(0.5, 0.0, 0.0);
-    match pair.point_triangle(corner, &triangle, &ContactOptions::new()) {
+    let vertex = DVec3::new(0.5, 0.0, 0.0);
+    match pair.point_triangle(vertex, &triangle, &ContactOptions::new()) {
         FirstContact::Contact(contact) => {
-            let details = pair.point_triangle_details(corner, &triangle, contact.lo);
+            let details = pair.point_triangle_details(vertex, &triangle, contact.lo);
             println!("contact in [{}, {}] ({:?})", contact.lo, contact.hi, contact.evidence);
             println!(
                 "at {} with normal {}, closing at {}",
@@ -81,11 +81,11 @@ fn main() {
             );
             assert!(contact.hi - contact.lo < 1e-9);
             assert!(details.point_a.distance(details.point_b) < 1e-8);
-            // Just before, the corner is still in front of the wall.
-            let before = spline.pose_and_twist(contact.lo - 1e-6).0.transform_point(corner);
+            // Just before, the vertex is still in front of the wall.
+            let before = spline.pose_and_twist(contact.lo - 1e-6).0.transform_point(vertex);
             let behind = wall.pose_and_twist(contact.lo - 1e-6).0.inverse_transform_point(before);
             assert!(behind.x < 0.2);
         }
-        other => panic!("the corner meets the wall: {other:?}"),
+        other => panic!("the vertex meets the wall: {other:?}"),
     }
 }

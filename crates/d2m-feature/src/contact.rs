@@ -32,7 +32,7 @@ pub struct ContactBracket {
     /// How the contact is known.
     pub evidence: Evidence,
     /// Proven upper bound of the distance (beyond the minimum separation) at some time of the bracket; 0 for a crossing,
-    /// negative where balls overlap.
+    /// negative where spheres overlap.
     pub distance: f64,
     /// The tolerance δ that was used: the one of the options, unless rounding or the clock cannot tell such a distance
     /// from zero. Then it is as large as they need.

@@ -18,11 +18,11 @@ pub(crate) fn point_triangle(
 ) -> ContactDetails {
     let (on_a, on_b) = (a.pose_and_twist(time), b.pose_and_twist(time));
     let p = on_a.0.transform_point(point);
-    let corners = triangle.map(|v| on_b.0.transform_point(v));
-    let normal = direction((corners[1] - corners[0]).cross(corners[2] - corners[0]));
-    let pair = closest::point_triangle(p, &corners, normal);
-    let size = (corners[1] - corners[0]).length().max((corners[2] - corners[0]).length());
-    let point_b = corners[0] * pair.b[0] + corners[1] * pair.b[1] + corners[2] * pair.b[2];
+    let vertices = triangle.map(|v| on_b.0.transform_point(v));
+    let normal = direction((vertices[1] - vertices[0]).cross(vertices[2] - vertices[0]));
+    let pair = closest::point_triangle(p, &vertices, normal);
+    let size = (vertices[1] - vertices[0]).length().max((vertices[2] - vertices[0]).length());
+    let point_b = vertices[0] * pair.b[0] + vertices[1] * pair.b[1] + vertices[2] * pair.b[2];
     finish((on_a, p), (on_b, point_b), &pair, normal, size, time)
 }
 

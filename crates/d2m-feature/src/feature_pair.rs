@@ -1,6 +1,6 @@
 /// Which features of two triangle meshes meet, by ids in the meshes.
 ///
-/// Edges are named by their two vertices, the smaller id first. A contact at a corner or along an edge is reported
+/// Edges are named by their two vertices, the smaller id first. A contact at a vertex or along an edge is reported
 /// as one of the pairs that hold it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

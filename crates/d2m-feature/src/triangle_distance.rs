@@ -3,14 +3,14 @@
 //! **Why the enclosure is proven whatever the search does.** The search for the closest points is ordinary floating
 //! point; its answer is only used through two statements that hold for *any* answer:
 //!
-//! - *Upper bound.* The witness points are convex combinations of the corners, so they are points of the triangles, and
+//! - *Upper bound.* The witness points are convex combinations of the vertices, so they are points of the triangles, and
 //!   their distance is at least the distance of the triangles.
 //! - *Lower bound.* For any direction n, every point of A has n·x ≤ max n·aᵢ and every point of B has n·y ≥ min n·bⱼ (a
-//!   linear function on a triangle takes its extrema at corners), so the distance is at least (min n·bⱼ − max n·aᵢ)/|n|.
+//!   linear function on a triangle takes its extrema at vertices), so the distance is at least (min n·bⱼ − max n·aᵢ)/|n|.
 //!   For the best n the two bounds are equal (duality of convex sets).
 //!
-//! **Rounding.** Let u = 2⁻⁵³. Coordinates are taken relative to a corner o and scaled by a power of two so that the
-//! largest is in [1, 2); r is an upper bound of the length of any scaled corner. A relative coordinate is fl(p − o),
+//! **Rounding.** Let u = 2⁻⁵³. Coordinates are taken relative to a vertex o and scaled by a power of two so that the
+//! largest is in [1, 2); r is an upper bound of the length of any scaled vertex. A relative coordinate is fl(p − o),
 //! with relative error u.
 //!
 //! - A projection n·x of three products errs by at most 3u Σ|nₖ||xₖ| from its own operations and u Σ|nₖ||xₖ| from xₖ:
@@ -21,7 +21,7 @@
 //!   triangle's point Σλᵢaᵢ/Σλ by at most |e|r, from its own operations by 3u·r(1 + e), from the coordinates by u·r. The
 //!   code measures e (with error at most 2u); so witnesses err by (|e| + 7u)r each, their distance by twice that, plus
 //!   4u of itself. [`LOSS`] = 32u and the measured e are used.
-//! - Directions are cross products of differences of corners. They are made with twice the digits where the plain ones do
+//! - Directions are cross products of differences of vertices. They are made with twice the digits where the plain ones do
 //!   not settle it: rounding turns the plain cross product of nearly parallel edges by u over the sine of their angle.
 //! - Underflow loses at most 2⁻¹⁰⁷⁰ after scaling, covered by the floor 2⁻⁵⁰⁰.
 
@@ -44,10 +44,10 @@ const FLOOR: f64 = f64::from_bits((1023 - 500) << 52);
 /// The part of a triangle that holds a closest point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum TriangleFeature {
-    /// Corner 0, 1 or 2.
-    Corner(u8),
-    /// The side from corner k to corner k + 1 (mod 3), without its ends.
-    Side(u8),
+    /// Vertex 0, 1 or 2.
+    Vertex(u8),
+    /// The side from vertex k to vertex k + 1 (mod 3), without its ends.
+    Edge(u8),
     /// The interior.
     Face,
 }
@@ -64,9 +64,9 @@ pub struct TriangleDistance {
     pub point_a: DVec3,
     /// A point of B, rounded.
     pub point_b: DVec3,
-    /// Weights of A's corners at `point_a`; each in [0, 1], sum 1 to rounding.
+    /// Weights of A's vertices at `point_a`; each in [0, 1], sum 1 to rounding.
     pub barycentric_a: [f64; 3],
-    /// Weights of B's corners at `point_b`.
+    /// Weights of B's vertices at `point_b`.
     pub barycentric_b: [f64; 3],
     /// Direction from A to B that proves `lower`, unit to rounding; zero if `lower` is zero.
     pub direction: DVec3,
@@ -76,12 +76,12 @@ pub struct TriangleDistance {
     pub feature_b: TriangleFeature,
 }
 
-/// Encloses the distance of two closed triangles (finite corners of any magnitude; degenerate ones are the segments or
-/// points that their corners span).
+/// Encloses the distance of two closed triangles (finite vertices of any magnitude; degenerate ones are the segments or
+/// points that their vertices span).
 ///
 /// **Promise.** `lower` ≤ exact distance ≤ `upper`; `upper` is 0 exactly if the triangles meet. The width
 /// `upper − lower` is not promised but measured: below 3e-14 of the extent (largest coordinate difference to the first
-/// corner) on random, coincident, nearly touching and sliver families, below 1e-13 where edges cross or planes meet at angles
+/// vertex) on random, coincident, nearly touching and sliver families, below 1e-13 where edges cross or planes meet at angles
 /// down to 1e-15, against exact rational arithmetic. An exact scaling by a power of two scales the result.
 ///
 /// ```
@@ -93,7 +93,7 @@ pub struct TriangleDistance {
 /// let distance = triangle_distance(&floor, &hanging);
 /// assert!(distance.lower <= 0.5 && 0.5 <= distance.upper && distance.upper - distance.lower < 3e-14);
 /// assert_eq!(distance.feature_a, TriangleFeature::Face);
-/// assert_eq!(distance.feature_b, TriangleFeature::Corner(0));
+/// assert_eq!(distance.feature_b, TriangleFeature::Vertex(0));
 /// ```
 pub fn triangle_distance(a: &[DVec3; 3], b: &[DVec3; 3]) -> TriangleDistance {
     // Powers of two: first so that no difference overflows, then so that the largest difference is near one.
@@ -114,7 +114,8 @@ pub fn triangle_distance(a: &[DVec3; 3], b: &[DVec3; 3]) -> TriangleDistance {
         upper = 0.0;
         closest = try_common_point(&local_a, &local_b).unwrap_or(closest);
     }
-    let place = |weights, corners: &[DVec3; 3]| units.point_back(combine(weights, corners) * scale + origin);
+    let place =
+        |weights, vertices: &[DVec3; 3]| units.point_back(combine(weights, vertices) * scale + origin);
     let back = |distance: f64| units.length_back(distance * scale);
     TriangleDistance {
         // Scaling back is exact, except that it may round once in the subnormal range.
@@ -135,18 +136,18 @@ fn power_of_two_below(extent: f64) -> f64 {
     if extent == 0.0 { 1.0 } else { f64::from_bits(extent.to_bits() & 0x7ff << 52).max(f64::MIN_POSITIVE) }
 }
 
-fn combine(weights: [f64; 3], corners: &[DVec3; 3]) -> DVec3 {
-    corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
+fn combine(weights: [f64; 3], vertices: &[DVec3; 3]) -> DVec3 {
+    vertices[0] * weights[0] + vertices[1] * weights[1] + vertices[2] * weights[2]
 }
 
 fn feature_of(weights: [f64; 3]) -> TriangleFeature {
     match weights.map(|weight| weight != 0.0) {
-        [true, false, false] => TriangleFeature::Corner(0),
-        [false, true, false] => TriangleFeature::Corner(1),
-        [false, false, true] => TriangleFeature::Corner(2),
-        [true, true, false] => TriangleFeature::Side(0),
-        [false, true, true] => TriangleFeature::Side(1),
-        [true, false, true] => TriangleFeature::Side(2),
+        [true, false, false] => TriangleFeature::Vertex(0),
+        [false, true, false] => TriangleFeature::Vertex(1),
+        [false, false, true] => TriangleFeature::Vertex(2),
+        [true, true, false] => TriangleFeature::Edge(0),
+        [false, true, true] => TriangleFeature::Edge(1),
+        [true, false, true] => TriangleFeature::Edge(2),
         _ => TriangleFeature::Face,
     }
 }
@@ -169,7 +170,7 @@ impl Separation {
         let direction = if safe { direction } else { direction / power_of_two_below(size) };
         let length = direction.length();
         let range = |triangle: &[DVec3; 3]| {
-            let [p, q, r] = triangle.map(|corner| corner.dot(direction));
+            let [p, q, r] = triangle.map(|vertex| vertex.dot(direction));
             (p.min(q).min(r), p.max(q).max(r))
         };
         let ((low_a, high_a), (low_b, high_b)) = (range(a), range(b));
@@ -213,19 +214,19 @@ struct Search<'a> {
 impl<'a> Search<'a> {
     fn new(a: &'a [DVec3; 3], b: &'a [DVec3; 3]) -> Self {
         let reach = a.iter().chain(b).map(|p| p.length_squared()).fold(0.0, f64::max).sqrt() * (1.0 + LOSS);
-        let corner = [1.0, 0.0, 0.0];
+        let vertex = [1.0, 0.0, 0.0];
         Self {
             a,
             b,
             reach,
             squared: f64::INFINITY,
-            closest: Closest { weights_a: corner, weights_b: corner },
+            closest: Closest { weights_a: vertex, weights_b: vertex },
             upper: f64::INFINITY,
             lower: Separation { gap: 0.0, direction: DVec3::ZERO },
         }
     }
 
-    /// Nine side/side and six corner/face pairs; ends as soon as the bounds agree, which they do at the closest pair.
+    /// Nine side/side and six vertex/face pairs; ends as soon as the bounds agree, which they do at the closest pair.
     fn run(&mut self) {
         let (a, b) = (self.a, self.b);
         for pair in 0..9 {
@@ -244,11 +245,11 @@ impl<'a> Search<'a> {
                 }
             }
         }
-        for corner in 0..3 {
+        for vertex in 0..3 {
             let mut weights = [0.0; 3];
-            weights[corner] = 1.0;
-            let on_a = try_foot(a, b[corner]).map(|foot| Closest { weights_a: foot, weights_b: weights });
-            let on_b = try_foot(b, a[corner]).map(|foot| Closest { weights_a: weights, weights_b: foot });
+            weights[vertex] = 1.0;
+            let on_a = try_foot(a, b[vertex]).map(|foot| Closest { weights_a: foot, weights_b: weights });
+            let on_b = try_foot(b, a[vertex]).map(|foot| Closest { weights_a: weights, weights_b: foot });
             for candidate in [on_a, on_b].into_iter().flatten() {
                 let offset = combine(candidate.weights_b, b) - combine(candidate.weights_a, a);
                 if offset.length_squared() < self.squared {
@@ -319,7 +320,7 @@ fn across(side: Difference, offset: Difference) -> DVec3 {
 
 /// The direction that belongs to the kind of the closest points.
 fn likely_direction(a: &[DVec3; 3], b: &[DVec3; 3], closest: &Closest) -> DVec3 {
-    use TriangleFeature::{Corner, Face, Side};
+    use TriangleFeature::{Edge, Face, Vertex};
     let side =
         |triangle: &[DVec3; 3], k: u8| Difference::new(triangle[(k as usize + 1) % 3], triangle[k as usize]);
     let normal = |&[p, q, r]: &[DVec3; 3]| accurate_cross(Difference::new(q, p), Difference::new(r, p));
@@ -327,15 +328,15 @@ fn likely_direction(a: &[DVec3; 3], b: &[DVec3; 3], closest: &Closest) -> DVec3 
     match (feature_of(closest.weights_a), feature_of(closest.weights_b)) {
         (Face, _) => normal(a),
         (_, Face) => normal(b),
-        (Side(k), Side(l)) => accurate_cross(side(a, k), side(b, l)),
-        (Side(k), Corner(l)) => across(side(a, k), between(k, l)),
-        (Corner(k), Side(l)) => across(side(b, l), between(k, l)),
-        (Corner(k), Corner(l)) => b[l as usize] - a[k as usize],
+        (Edge(k), Edge(l)) => accurate_cross(side(a, k), side(b, l)),
+        (Edge(k), Vertex(l)) => across(side(a, k), between(k, l)),
+        (Vertex(k), Edge(l)) => across(side(b, l), between(k, l)),
+        (Vertex(k), Vertex(l)) => b[l as usize] - a[k as usize],
     }
 }
 
-/// All directions in which the closest points of two triangles can lie: faces' normals, sides' cross products, corners'
-/// differences, corners' perpendiculars to sides, and perpendiculars to sides within the faces.
+/// All directions in which the closest points of two triangles can lie: faces' normals, sides' cross products, vertices'
+/// differences, vertices' perpendiculars to sides, and perpendiculars to sides within the faces.
 fn all_directions(a: &[DVec3; 3], b: &[DVec3; 3]) -> impl Iterator<Item = DVec3> {
     let sides =
         |&[p, q, r]: &[DVec3; 3]| [Difference::new(q, p), Difference::new(r, q), Difference::new(p, r)];

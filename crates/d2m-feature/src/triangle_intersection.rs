@@ -4,8 +4,8 @@ use crate::exact_sign::{orient2d, orient3d};
 use glam::{DVec2, DVec3};
 use std::cmp::Ordering::{self, Equal};
 
-/// Whether two closed triangles have a point in common, decided exactly for all finite corners: touching counts, and
-/// degenerate triangles are the segments or points that their corners span.
+/// Whether two closed triangles have a point in common, decided exactly for all finite vertices: touching counts, and
+/// degenerate triangles are the segments or points that their vertices span.
 ///
 /// Two convex polygons meet if and only if an edge of one meets the other one (if the planes cross, the common part is a
 /// segment whose ends lie on edges; if they coincide, either edges cross or one polygon holds an edge of the other), so
@@ -18,7 +18,7 @@ use std::cmp::Ordering::{self, Equal};
 /// let floor = [DVec3::ZERO, DVec3::X, DVec3::Y];
 /// let touching = [dvec3(0.25, 0.25, 0.0), dvec3(0.0, 0.0, 1.0), dvec3(1.0, 1.0, 1.0)];
 /// assert!(triangles_intersect(&floor, &touching));
-/// let above = touching.map(|corner| corner + dvec3(0.0, 0.0, 1e-300));
+/// let above = touching.map(|vertex| vertex + dvec3(0.0, 0.0, 1e-300));
 /// assert!(!triangles_intersect(&floor, &above));
 /// ```
 pub fn triangles_intersect(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {

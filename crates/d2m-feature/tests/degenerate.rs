@@ -159,7 +159,7 @@ fn a_million_radians_a_window_are_decided_where_the_bodies_are_near_for_few() {
     assert_lands(answer, "spinning");
     let (a, b) = ([v(0.5, 0.0, 0.0), v(-0.5, 0.0, 0.0)], [v(0.0, 0.0, 0.0), v(0.0, 5.0, 0.0)]);
     assert_lands(pair.edge_edge(a, b, &options), "edges");
-    // What never comes near needs no look at all; what nobody can follow is never called clear.
+    // What never comes near needs no evaluation; what cannot be evaluated is never called clear.
     let aside = floor.map(|p| p + 100.0 * DVec3::X);
     assert_eq!(pair.point_triangle(v(0.5, 0.0, 0.0), &aside, &options), FirstContact::Clear);
     let mad =

@@ -1,4 +1,4 @@
-//! Contacts whose time is exact by construction, in integers: no oracle is needed, so hundreds of thousands were asked. Never clear,
+//! Contacts whose time is exact by construction, in integers: no oracle is needed. Never clear,
 //! never late, never undecided after the contact; features down to a few units in the last place of their coordinates,
 //! grazing and coplanar ones, needles, far reference points and spins of any rate.
 

@@ -29,7 +29,7 @@ fn planted_contacts_are_never_missed_and_never_late() {
 fn the_quick_tier_says_nothing_that_the_oracle_does_not() {
     let options = ContactOptions::new();
     let mut random = Random::new(77);
-    let (mut passed, mut asked, mut faults) = (0, 0, 0);
+    let (mut passed, mut queries, mut faults) = (0, 0, 0);
     for kind in [Kind::PointTriangle, Kind::EdgeEdge] {
         for family in FAMILIES {
             for i in 0..12 {
@@ -59,10 +59,13 @@ fn the_quick_tier_says_nothing_that_the_oracle_does_not() {
                     assert!(!contact || tally.true_contacts == 1, "{answer:?} {query:?}");
                     passed += 1;
                 }
-                asked += 1;
+                queries += 1;
                 faults += usize::from(fault);
             }
         }
     }
-    assert!(faults > 60 && passed + faults > asked * 8 / 10, "{passed} passed, {faults} faults of {asked}");
+    assert!(
+        faults > 60 && passed + faults > queries * 8 / 10,
+        "{passed} passed, {faults} faults of {queries}"
+    );
 }

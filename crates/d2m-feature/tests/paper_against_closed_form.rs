@@ -43,12 +43,12 @@ impl Case {
         let size = [1.0, 0.1, 1e-3][round % 3];
         let (e, d) = (random.vector() * size, random.vector() * size);
         let feature = if random.signed() < 0.0 {
-            // The planted place is inside, on a side, or at a corner; slivers and collapsed triangles now and then.
+            // The planted place is inside, on a side, or at a vertex; slivers and collapsed triangles now and then.
             let thin = [1.0, 1.0, 1e-6, 0.0][round % 4];
             let weights = [(0.4, 0.3), (0.5, 0.0), (0.0, 0.0)][round % 3];
             let d = e * 0.5 + d * thin;
-            let corner = at - e * weights.0 - d * weights.1;
-            Feature::PointTriangle(point, [corner, corner + e, corner + d])
+            let vertex = at - e * weights.0 - d * weights.1;
+            Feature::PointTriangle(point, [vertex, vertex + e, vertex + d])
         } else {
             let share = [0.5, 0.25, 0.0, 1.0][round % 4];
             let own = if grid { random.vector().round() } else { random.vector() * size };

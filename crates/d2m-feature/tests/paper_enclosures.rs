@@ -146,7 +146,7 @@ fn sphere_pairs_never_lose_an_overlap() {
 /// Erratum 1 at Algorithm 5, line 10: s̈/2 given to a θ that halves again loses the overlap.
 #[test]
 fn half_twice_loses_an_overlap() {
-    // The mover's sphere swings on a circle, starting opposite to the observer's, where ṡ = 0: s = 2 + 2 cos t − r²,
+    // The mover's sphere moves on a circle, starting opposite to the observer's, where ṡ = 0: s = 2 + 2 cos t − r²,
     // s̈ ≥ −2. They meet at t = 1/5.
     let mover = ConstantTwist::REST.with_angular_velocity(DVec3::Z);
     let span = Interval::new(0.0, 0.25);

@@ -59,12 +59,12 @@ fn planted_vertex_face() {
         let normal = (heading.normalize() + 0.5 * random.vector()).normalize();
         let u = normal.any_orthonormal_vector();
         let side = 0.0625 / (1.0 + w);
-        let corner = |turn: f64| at + side * (u * turn.cos() + normal.cross(u) * turn.sin());
-        let triangle = [corner(0.3), corner(2.4), corner(4.5)];
+        let vertex = |turn: f64| at + side * (u * turn.cos() + normal.cross(u) * turn.sin());
+        let triangle = [vertex(0.3), vertex(2.4), vertex(4.5)];
         let plane = |t: &Fix| -> Fix {
-            let corners: [V; 3] = triangle.map(fixed::vec);
-            let n = cross(&sub(&corners[1], &corners[0]), &sub(&corners[2], &corners[0]));
-            dot(&n, &sub(&fixed::relative(&motions[0], &motions[1], point, t)[0], &corners[0]))
+            let vertices: [V; 3] = triangle.map(fixed::vec);
+            let n = cross(&sub(&vertices[1], &vertices[0]), &sub(&vertices[2], &vertices[0]));
+            dot(&n, &sub(&fixed::relative(&motions[0], &motions[1], point, t)[0], &vertices[0]))
         };
         let truth = root(plane, time);
         let motion = RelativeMotion::new(&motions[0], &motions[1]);
@@ -150,7 +150,7 @@ fn falling(from: DVec3, velocity: DVec3) -> ConstantTwist {
 
 const SHEET: [DVec3; 3] = [dvec3(-1.0, -1.0, 0.0), dvec3(3.0, -1.0, 0.0), dvec3(-1.0, 3.0, 0.0)];
 
-/// Contacts on the triangle's corners and sides, and on the edges' ends: closed features.
+/// Contacts on the triangle's vertices and sides, and on the edges' ends: closed features.
 #[test]
 fn planted_boundaries() {
     let down = falling(dvec3(0.0, 0.0, 1.0), dvec3(0.0, 0.0, -2.0));

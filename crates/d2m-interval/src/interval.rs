@@ -116,15 +116,15 @@ impl Interval {
         Self(F64x2::splat(x).neg_first())
     }
 
-    /// `[centre − radius, centre + radius]`, rounded outwards; a negative radius counts as its absolute value.
+    /// `[center − radius, center + radius]`, rounded outwards; a negative radius counts as its absolute value.
     ///
     /// ```
     /// # use d2m_interval::Interval;
     /// assert!(Interval::around(1.0, 0.1).contains(1.1));
     /// ```
     #[inline]
-    pub fn around(centre: f64, radius: f64) -> Self {
-        Self::point(centre) + Self::raw(-1.0, 1.0) * radius
+    pub fn around(center: f64, radius: f64) -> Self {
+        Self::point(center) + Self::raw(-1.0, 1.0) * radius
     }
 
     /// Lower end point (`+∞` when empty).

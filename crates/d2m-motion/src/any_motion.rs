@@ -61,7 +61,7 @@ impl From<ConstantTwist> for AnyMotion {
 
 impl From<ScrewMotion> for AnyMotion {
     fn from(motion: ScrewMotion) -> Self {
-        Self::ConstantTwist(*motion.as_linear())
+        Self::ConstantTwist(*motion.as_constant_twist())
     }
 }
 

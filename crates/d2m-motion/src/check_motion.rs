@@ -34,7 +34,7 @@ impl fmt::Display for MotionFault {
 ///
 /// At `samples` times and over spans of several lengths from each: the pose as computed lies in its enclosure, differences
 /// of poses and of twists over a span lie in what the enclosures of twist and twist rate allow, enclosures over a part lie
-/// inside those over the whole, the certified state agrees, the followed point stays the same, and `smooth_until` lies
+/// inside those over the whole, the certified state agrees, the reference point stays the same, and `smooth_until` lies
 /// ahead. An empty answer proves nothing; a fault that is reported is one (up to a rounding of 1e-9 of the values).
 ///
 /// ```

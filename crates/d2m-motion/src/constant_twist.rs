@@ -101,7 +101,7 @@ impl ConstantTwist {
         Self { reference_time, ..self }.validated()
     }
 
-    /// The same with another followed body point: the *position* then is the position of that point.
+    /// The same with another reference point: the *position* then is the position of that point.
     ///
     /// # Errors
     /// A component that is not finite.
@@ -149,7 +149,7 @@ impl ConstantTwist {
         self.try_with_reference_time(reference_time).expect("finite reference time")
     }
 
-    /// The same with another followed body point.
+    /// The same with another reference point.
     ///
     /// # Panics
     /// If a component is not finite.
@@ -182,7 +182,7 @@ impl ConstantTwist {
         self.reference_time
     }
 
-    /// The followed body point, body frame.
+    /// The reference point, body frame.
     pub const fn at(&self) -> DVec3 {
         self.at
     }

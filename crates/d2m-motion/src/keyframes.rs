@@ -11,7 +11,7 @@ use glam::DVec3;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Span {
-    /// The followed point moves on a straight line while the body turns about it at a constant rate.
+    /// The reference point moves on a straight line while the body turns about it at a constant rate.
     #[default]
     Linear,
     /// The screw that joins the poses; spans that turn too little to have an axis are [`Span::Linear`].
@@ -339,7 +339,7 @@ fn join_linear(start: Pose, end: Pose, t0: f64, t1: f64) -> Result<ConstantTwist
     // The turn comes from the screw of the pure rotations, so there is one formula for it.
     let turning = |pose: Pose| Pose { translation: DVec3::ZERO, at: DVec3::ZERO, ..pose };
     if let Ok(screw) = ScrewMotion::try_from_poses(turning(start), turning(end), t0, t1) {
-        return place(screw.as_linear().angular_velocity());
+        return place(screw.as_constant_twist().angular_velocity());
     }
     // Below 1e-12 rad the vector part is half the turn to full precision.
     let mut turn = end.rotation.normalize() * start.rotation.normalize().conjugate();
@@ -354,7 +354,7 @@ fn join_linear(start: Pose, end: Pose, t0: f64, t1: f64) -> Result<ConstantTwist
 /// An axis at the distance d moves the body by some units in the last place of d, and the arc of a small turn θ over the
 /// chord c is c·θ/8 away from it.
 fn join_screw(start: Pose, end: Pose, [t0, t1]: [f64; 2]) -> Option<ConstantTwist> {
-    let screw = *ScrewMotion::try_from_poses(start, end, t0, t1).ok()?.as_linear();
+    let screw = *ScrewMotion::try_from_poses(start, end, t0, t1).ok()?.as_constant_twist();
     let angle = screw.angular_velocity().length() * (t1 - t0);
     let chord = (end.transform_point(start.at) - start.translation).length();
     let arm = (screw.at() - start.at).length();

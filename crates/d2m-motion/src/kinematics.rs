@@ -26,13 +26,13 @@ pub struct Kinematics {
     pub position: Ball,
     /// What the middle of `position` leaves out: a second double for each coordinate, for bodies far from the origin.
     pub position_tail: DVec3,
-    /// The followed body point (body frame, exact).
+    /// The reference point (body frame, exact).
     pub at: DVec3,
-    /// Velocity of the followed point, world axes.
+    /// Velocity of the reference point, world axes.
     pub linear: Ball,
     /// Angular velocity, world axes.
     pub angular: Ball,
-    /// Acceleration of the followed point, world axes.
+    /// Acceleration of the reference point, world axes.
     pub linear_rate: Ball,
     /// Angular acceleration, world axes.
     pub angular_rate: Ball,
@@ -181,7 +181,7 @@ impl Kinematics {
         Self { rotation: self.rotation, rotation_radius: self.rotation_radius, ..self.then(&shift) }
     }
 
-    /// A set that contains this one and another (of the same followed point).
+    /// A set that contains this one and another (of the same reference point).
     #[must_use]
     pub fn hull(&self, other: &Self) -> Self {
         let place = |k: &Self| k.position.plus(Ball::point(k.position_tail));

@@ -5,7 +5,7 @@ use glam::DVec3;
 /// 1 + 2⁻⁴⁶, more than ten times what the roundings of a remainder's bound add up to.
 const SUM_ROUNDING: f64 = 1.0 + 64.0 * f64::EPSILON;
 
-/// Remainder of a jet as a function of the distance in time from its centre:
+/// Remainder of a jet as a function of the distance in time from its center:
 /// `e0 + e1·h + e2·h² + m3·h³/6 + m4·h⁴/24`, every coefficient ≥ 0, rounded up.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Remainder {
@@ -77,13 +77,13 @@ impl Remainder {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathJet {
-    /// Position at the centre.
+    /// Position at the center.
     pub p: DVec3,
-    /// Velocity at the centre.
+    /// Velocity at the center.
     pub v: DVec3,
-    /// Acceleration at the centre.
+    /// Acceleration at the center.
     pub a: DVec3,
-    /// Third derivative at the centre; zero where the remainder covers it.
+    /// Third derivative at the center; zero where the remainder covers it.
     pub j: DVec3,
     /// What these leave out.
     pub remainder: Remainder,
@@ -108,7 +108,7 @@ impl PathJet {
         position([self.p, self.v, self.a, self.j], s)
     }
 
-    /// The same path about the time `m` from the centre, without the third derivative: its remainder is that of the
+    /// The same path about the time `m` from the center, without the third derivative: its remainder is that of the
     /// piece plus `|j|·r³/6` within `r` of `m`.
     #[inline(always)]
     pub fn moved(&self, m: f64) -> Self {

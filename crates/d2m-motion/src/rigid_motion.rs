@@ -17,7 +17,7 @@ pub struct TwistPiece {
 ///
 /// Promise of an implementation, for every interval `t` inside [`RigidMotion::domain`]:
 /// * `enclose_pose(t)` contains the true pose, `enclose_twist(t)` the true twist and `enclose_twist_rate(t)` the
-///   true derivative of the twist (acceleration of the followed point, angular acceleration) at every time of `t`;
+///   true derivative of the twist (acceleration of the reference point, angular acceleration) at every time of `t`;
 /// * the enclosures shrink towards the values as `t` shrinks (otherwise queries get slow, never wrong);
 /// * the body point `at` is the same at all times;
 /// * [`RigidMotion::pose_and_twist`] is the same motion up to rounding. It proves nothing.

@@ -34,7 +34,7 @@ const PARALLEL: f64 = 1e-14;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScrewMotion {
-    linear: ConstantTwist,
+    motion: ConstantTwist,
 }
 
 impl ScrewMotion {
@@ -52,16 +52,16 @@ impl ScrewMotion {
         let square = twist.angular.length_squared();
         if square == 0.0 || !square.is_normal() {
             // No rotation to speak of: the axis is at infinity, and the translation is the screw.
-            return Ok(Self { linear: given.with_angular_velocity(DVec3::ZERO) });
+            return Ok(Self { motion: given.with_angular_velocity(DVec3::ZERO) });
         }
         let arm = twist.angular.cross(twist.linear) / square;
         let pitch = twist.angular.dot(twist.linear) / square;
         let at = pose.at + pose.rotation.normalize().conjugate() * arm;
-        let linear = given
+        let motion = given
             .try_with_at(at)?
             .with_position(pose.translation + arm)
             .with_linear_velocity(twist.angular * pitch);
-        Ok(Self { linear })
+        Ok(Self { motion })
     }
 
     /// The screw that takes the start pose at `t0` to the end pose at `t1` by the shorter turn.
@@ -89,8 +89,8 @@ impl ScrewMotion {
                 .try_with_reference_time(t0)
         };
         if sine == 0.0 {
-            let linear = place(start.at, start.translation, displacement / span, DVec3::ZERO)?;
-            return Ok(Self { linear });
+            let motion = place(start.at, start.translation, displacement / span, DVec3::ZERO)?;
+            return Ok(Self { motion });
         }
         if sine < LEAST_SINE {
             return Err(MotionError::Screw { reason: "the turn is too small to have an axis" });
@@ -102,41 +102,41 @@ impl ScrewMotion {
         let across = displacement - along;
         let arm = 0.5 * (across + axis.cross(across) * (turn.w / sine));
         let at = start.at + q0.conjugate() * arm;
-        let linear = place(at, start.translation + arm, along / span, axis * (angle / span))?;
-        Ok(Self { linear })
+        let motion = place(at, start.translation + arm, along / span, axis * (angle / span))?;
+        Ok(Self { motion })
     }
 
-    /// Takes a linear motion that is a screw already: its followed point is on the axis.
+    /// Takes a constant twist that is a screw already: its reference point is on the axis.
     ///
     /// # Errors
     /// If `|v × ω| > 1e-14·|v||ω|`: some fifty units of rounding. The motion that is queried is the given one all the same.
-    pub fn try_from_linear(linear: ConstantTwist) -> Result<Self, MotionError> {
-        let (v, w) = (linear.linear_velocity(), linear.angular_velocity());
+    pub fn try_from_constant_twist(motion: ConstantTwist) -> Result<Self, MotionError> {
+        let (v, w) = (motion.linear_velocity(), motion.angular_velocity());
         if v.cross(w).length() > PARALLEL * v.length() * w.length() {
             return Err(MotionError::Screw { reason: "linear and angular velocity are not parallel" });
         }
-        Ok(Self { linear })
+        Ok(Self { motion })
     }
 
     /// The motion that is queried.
-    pub const fn as_linear(&self) -> &ConstantTwist {
-        &self.linear
+    pub const fn as_constant_twist(&self) -> &ConstantTwist {
+        &self.motion
     }
 
     /// A world point on the axis (where it crosses at the reference time; the axis is fixed).
     pub const fn axis_point(&self) -> DVec3 {
-        self.linear.position()
+        self.motion.position()
     }
 
     /// Unit direction of the axis, along ω; without rotation along v; zero at rest.
     pub fn axis_direction(&self) -> DVec3 {
-        let (v, w) = (self.linear.linear_velocity(), self.linear.angular_velocity());
+        let (v, w) = (self.motion.linear_velocity(), self.motion.angular_velocity());
         if w == DVec3::ZERO { v.normalize_or_zero() } else { w.normalize_or_zero() }
     }
 
     /// Translation per radian of turn, positive for a right-handed screw; `None` without rotation.
     pub fn pitch(&self) -> Option<f64> {
-        let (v, w) = (self.linear.linear_velocity(), self.linear.angular_velocity());
+        let (v, w) = (self.motion.linear_velocity(), self.motion.angular_velocity());
         (w != DVec3::ZERO).then(|| v.dot(w) / w.length_squared())
     }
 }
@@ -156,27 +156,27 @@ pub(crate) fn atan2_positive(y: f64, x: f64) -> f64 {
 
 impl RigidMotion for ScrewMotion {
     fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.linear.pose_and_twist(t)
+        self.motion.pose_and_twist(t)
     }
     fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        self.linear.enclose_pose(t)
+        self.motion.enclose_pose(t)
     }
     fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.linear.enclose_twist(t)
+        self.motion.enclose_twist(t)
     }
     fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.linear.enclose_twist_rate(t)
+        self.motion.enclose_twist_rate(t)
     }
     fn enclose_state(&self, t: f64) -> CertifiedState {
-        self.linear.enclose_state(t)
+        self.motion.enclose_state(t)
     }
     fn enclose_state_about(&self, t: f64, origin: DVec3) -> CertifiedState {
-        self.linear.enclose_state_about(t, origin)
+        self.motion.enclose_state_about(t, origin)
     }
     fn enclose_kinematics(&self, t: Interval) -> Kinematics {
-        self.linear.enclose_kinematics(t)
+        self.motion.enclose_kinematics(t)
     }
     fn constant_twist(&self) -> Option<ConstantTwist> {
-        Some(self.linear)
+        Some(self.motion)
     }
 }

@@ -1,6 +1,6 @@
 //! The serde forms of keyframes, chains and of any of the motions: checked on the way in, faults with their place.
 use crate::error::fault;
-use crate::serde_form::{LinearForm, identity};
+use crate::serde_form::{ConstantTwistForm, identity};
 use crate::{
     AnyMotion, Chain, ConstantTwist, Joint, JointKind, JointValue, Keyframes, MotionError, Pose, Span,
 };
@@ -30,7 +30,7 @@ struct AnyForm {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     join: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    spans: Option<Vec<LinearForm>>,
+    spans: Option<Vec<ConstantTwistForm>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     chain: Option<Vec<JointForm>>,
 }
@@ -189,7 +189,7 @@ fn keyframes(form: AnyForm) -> Result<Keyframes, MotionError> {
             if join.is_some() {
                 return Err(fault("join".into(), "it belongs to poses, not to spans".into()));
             }
-            let span = |(index, form): (usize, LinearForm)| {
+            let span = |(index, form): (usize, ConstantTwistForm)| {
                 ConstantTwist::try_from(form).map_err(|error| error.within(&format!("spans[{index}]")))
             };
             let motions = spans.into_iter().enumerate().map(span).collect::<Result<_, _>>()?;
@@ -252,7 +252,7 @@ impl TryFrom<AnyForm> for AnyMotion {
                 None => keyframes(form).map(Self::Keyframes),
             };
         }
-        let form = LinearForm {
+        let form = ConstantTwistForm {
             x: form.x.unwrap_or_default(),
             q: form.q.unwrap_or(identity()),
             v: form.v.unwrap_or_default(),
@@ -283,7 +283,7 @@ impl Serialize for AnyMotion {
 /// The spans, also of keyframes that were made of poses: the motion to the last bit.
 impl Serialize for Keyframes {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let spans = self.motions().iter().map(LinearForm::from).collect();
+        let spans = self.motions().iter().map(ConstantTwistForm::from).collect();
         AnyForm { times: Some(self.times().to_vec()), spans: Some(spans), ..AnyForm::default() }
             .serialize(serializer)
     }

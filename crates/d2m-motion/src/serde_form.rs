@@ -5,7 +5,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct LinearForm {
+pub(crate) struct ConstantTwistForm {
     #[serde(default)]
     pub(crate) x: [f64; 3],
     #[serde(default = "identity")]
@@ -33,7 +33,7 @@ fn is_zero_time(t: &f64) -> bool {
     *t == 0.0
 }
 
-impl From<&ConstantTwist> for LinearForm {
+impl From<&ConstantTwist> for ConstantTwistForm {
     fn from(m: &ConstantTwist) -> Self {
         let q = m.orientation();
         Self {
@@ -47,9 +47,9 @@ impl From<&ConstantTwist> for LinearForm {
     }
 }
 
-impl TryFrom<LinearForm> for ConstantTwist {
+impl TryFrom<ConstantTwistForm> for ConstantTwist {
     type Error = MotionError;
-    fn try_from(form: LinearForm) -> Result<Self, MotionError> {
+    fn try_from(form: ConstantTwistForm) -> Result<Self, MotionError> {
         let [w, x, y, z] = form.q;
         let (position, orientation) = (DVec3::from_array(form.x), DQuat::from_xyzw(x, y, z, w));
         ConstantTwist::try_new(position, orientation, DVec3::from_array(form.v), DVec3::from_array(form.w))?
@@ -60,25 +60,26 @@ impl TryFrom<LinearForm> for ConstantTwist {
 
 impl Serialize for ConstantTwist {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        LinearForm::from(self).serialize(serializer)
+        ConstantTwistForm::from(self).serialize(serializer)
     }
 }
 
 impl<'de> Deserialize<'de> for ConstantTwist {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        LinearForm::deserialize(deserializer)?.try_into().map_err(D::Error::custom)
+        ConstantTwistForm::deserialize(deserializer)?.try_into().map_err(D::Error::custom)
     }
 }
 
-/// A screw is stored as its linear motion and checked to be one again.
+/// A screw is stored as its constant twist and checked to be one again.
 impl Serialize for ScrewMotion {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.as_linear().serialize(serializer)
+        self.as_constant_twist().serialize(serializer)
     }
 }
 
 impl<'de> Deserialize<'de> for ScrewMotion {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        ScrewMotion::try_from_linear(ConstantTwist::deserialize(deserializer)?).map_err(D::Error::custom)
+        ScrewMotion::try_from_constant_twist(ConstantTwist::deserialize(deserializer)?)
+            .map_err(D::Error::custom)
     }
 }

@@ -30,9 +30,9 @@ pub struct CertifiedState {
     pub rotation: DMat3,
     /// World position of the body point [`CertifiedState::at`].
     pub position: DVec3,
-    /// The followed body point (body frame, exact).
+    /// The reference point (body frame, exact).
     pub at: DVec3,
-    /// Velocity of the followed point, world axes.
+    /// Velocity of the reference point, world axes.
     pub linear: DVec3,
     /// Angular velocity, world axes.
     pub angular: DVec3,

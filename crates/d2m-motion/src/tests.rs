@@ -145,7 +145,8 @@ fn screws_join_poses_and_keep_twists() {
         for point in [DVec3::ZERO, DVec3::X, DVec3::Y] {
             assert!((end.transform_point(point) - b.transform_point(point)).length() < 1e-11, "{a:?} {b:?}");
         }
-        let (v, w) = (screw.as_linear().linear_velocity(), screw.as_linear().angular_velocity());
+        let (v, w) =
+            (screw.as_constant_twist().linear_velocity(), screw.as_constant_twist().angular_velocity());
         assert!(v.cross(w).length() < 1e-13);
         let twist = Twist { linear: random.vector(), angular: random.vector() };
         let moved = ScrewMotion::try_from_twist(a, twist, 0.5).unwrap();
@@ -153,7 +154,7 @@ fn screws_join_poses_and_keep_twists() {
         assert!((pose.transform_point(a.at) - a.translation).length() < 1e-11);
         let arm = a.translation - pose.translation;
         assert!((now.velocity_of(arm) - twist.linear).length() < 1e-12);
-        assert!(ScrewMotion::try_from_linear(*moved.as_linear()).is_ok());
+        assert!(ScrewMotion::try_from_constant_twist(*moved.as_constant_twist()).is_ok());
     }
     let slide = ScrewMotion::try_from_twist(Pose::IDENTITY, Twist { linear: DVec3::X, ..Twist::ZERO }, 0.0);
     assert_eq!(slide.as_ref().unwrap().pitch(), None);

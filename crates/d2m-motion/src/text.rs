@@ -28,7 +28,7 @@ fn numbers<const N: usize>(key: &str, value: &str) -> Result<[f64; N], MotionErr
 }
 
 /// Reads `x=1,2,3;q=w,x,y,z;v=1,2,3;w=1,2,3;at=1,2,3;t=0`: position, orientation, linear velocity, angular velocity,
-/// followed body point, reference time. Every part may be left out (at rest, at the origin); none may come twice.
+/// reference point, reference time. Every part may be left out (at rest, at the origin); none may come twice.
 ///
 /// # Errors
 /// [`MotionError::Text`] naming the key.

@@ -44,7 +44,7 @@ impl Twist {
         (back * self.linear, back * self.angular)
     }
 
-    /// Velocity of the point at `arm` (world axes) from the followed point: `linear + angular × arm`.
+    /// Velocity of the point at `arm` (world axes) from the reference point: `linear + angular × arm`.
     pub fn velocity_of(&self, arm: DVec3) -> DVec3 {
         self.linear + self.angular.cross(arm)
     }
@@ -60,7 +60,7 @@ pub struct IntervalTwist {
 }
 
 impl IntervalTwist {
-    /// Encloses the velocity of the point at `arm` (world axes) from the followed point.
+    /// Encloses the velocity of the point at `arm` (world axes) from the reference point.
     pub fn enclose_velocity_of(&self, arm: IntervalVec3) -> IntervalVec3 {
         self.linear + self.angular.cross(arm)
     }

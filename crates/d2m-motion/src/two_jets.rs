@@ -6,7 +6,7 @@ use crate::{PathJet, Remainder};
 /// Two [`PathJet`]s about the same time.
 #[derive(Clone, Copy)]
 pub struct TwoJets {
-    /// Positions at the centre.
+    /// Positions at the center.
     pub p: TwoVec3,
     /// Velocities.
     pub v: TwoVec3,

@@ -49,7 +49,7 @@ fn fit_columns(wanted: usize, unit: usize, triangles_of: impl Fn(usize) -> usize
     if triangles_of(next) - wanted < wanted.saturating_sub(triangles_of(columns)) { next } else { columns }
 }
 
-/// A screw along z, its thread of so many turns centred at the origin, with a round head below.
+/// A screw along z, its thread of so many turns centered at the origin, with a round head below.
 pub(crate) fn screw(triangles: usize, turns: usize) -> Surface {
     let columns = fit_columns(triangles, 4, |columns| 2 * columns * (turns * columns + 3));
     let rows = turns * columns;

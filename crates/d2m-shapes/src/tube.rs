@@ -6,7 +6,7 @@ use crate::trigonometry::{cos_sin, on_circle};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// A point of the centre line with two unit vectors across it.
+/// A point of the center line with two unit vectors across it.
 struct Station {
     center: DVec3,
     normal: DVec3,

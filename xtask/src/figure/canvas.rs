@@ -54,7 +54,7 @@ impl<'a> Canvas<'a> {
         Ok(self.0.draw(&Circle::new(pixels(at), radius, colour(shade).filled()))?)
     }
 
-    /// A word centred in height on its point.
+    /// A word centered in height on its point.
     pub(super) fn text(
         &self,
         at: (f64, f64),

@@ -86,8 +86,8 @@ pub(crate) fn advance(
     let speed = trial.bound_speed(radii[0], radii[1]);
     let mut t = begin;
     for _ in 0..STEPS {
-        let centres = (trial.b.position - trial.a.position) + (trial.b.velocity - trial.a.velocity) * t;
-        let spheres = centres.length() - radii[0] - radii[1];
+        let centers = (trial.b.position - trial.a.position) + (trial.b.velocity - trial.a.velocity) * t;
+        let spheres = centers.length() - radii[0] - radii[1];
         let gap = if spheres > FAR { spheres } else { separation(t) };
         if gap <= near {
             break;

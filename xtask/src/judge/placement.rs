@@ -47,7 +47,7 @@ impl Trial {
 
     /// A bound on how fast the distance of two bodies of these radii about their origins can change.
     pub(crate) fn bound_speed(&self, radius_a: f64, radius_b: f64) -> f64 {
-        let centres = (self.b.velocity - self.a.velocity).length();
-        centres + self.a.angular_velocity.length() * radius_a + self.b.angular_velocity.length() * radius_b
+        let centers = (self.b.velocity - self.a.velocity).length();
+        centers + self.a.angular_velocity.length() * radius_a + self.b.angular_velocity.length() * radius_b
     }
 }

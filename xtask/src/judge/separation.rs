@@ -17,7 +17,7 @@ pub(crate) struct BoxTree {
 }
 
 struct Node {
-    centre: DVec3,
+    center: DVec3,
     half: DVec3,
     /// First triangle and count of a leaf; left child (the right one follows it) and 0 of an inner node.
     first: u32,
@@ -29,7 +29,7 @@ impl BoxTree {
         let corners: Vec<Corners> = triangles.iter().map(|t| t.map(|i| vertices[i as usize])).collect();
         let radius = corners.iter().flatten().map(|p| p.length()).fold(0.0, f64::max);
         let mut tree = Self { corners, nodes: Vec::new(), radius };
-        tree.nodes.push(Node { centre: DVec3::ZERO, half: DVec3::ZERO, first: 0, count: 0 });
+        tree.nodes.push(Node { center: DVec3::ZERO, half: DVec3::ZERO, first: 0, count: 0 });
         let count = tree.corners.len();
         tree.split(0, 0, count);
         tree
@@ -50,13 +50,13 @@ impl BoxTree {
             first = self.nodes.len();
             count = 0;
             for _ in 0..2 {
-                self.nodes.push(Node { centre: DVec3::ZERO, half: DVec3::ZERO, first: 0, count: 0 });
+                self.nodes.push(Node { center: DVec3::ZERO, half: DVec3::ZERO, first: 0, count: 0 });
             }
             self.split(first, begin, middle);
             self.split(first + 1, middle, end);
         }
         let half = (hi - lo) * 0.5 + DVec3::splat(PAD * self.radius);
-        self.nodes[node] = Node { centre: (lo + hi) * 0.5, half, first: first as u32, count: count as u32 };
+        self.nodes[node] = Node { center: (lo + hi) * 0.5, half, first: first as u32, count: count as u32 };
     }
 }
 
@@ -152,7 +152,7 @@ impl Search<'_> {
     /// A lower bound of the distance of two boxes: the largest gap along the six face normals.
     fn gap(&self, i: u32, j: u32) -> f64 {
         let (a, b) = (&self.a.nodes[i as usize], &self.b.nodes[j as usize]);
-        let between = self.place.apply(b.centre) - a.centre;
+        let between = self.place.apply(b.center) - a.center;
         let on_a = (between.abs() - a.half - self.absolute * b.half).max_element();
         if on_a >= self.best {
             return on_a;

@@ -27,7 +27,7 @@ samples crowded towards the reported time check the rest. parry3d-f64 gives a se
 some answers of each table (to 1e-7: it does not resolve less). An answer found wrong is listed, its time is not.
 
 **Trials.** Two bodies, farthest vertex at distance 1 from the origin, fly at each other: relative speed 4 or 512 radii
-per unit of time, directions and orientations uniform, |ω| uniform up to 3, centres passing within 1 radius (uniform in
+per unit of time, directions and orientations uniform, |ω| uniform up to 3, centers passing within 1 radius (uniform in
 the disk), time in [0, 1]. Nine of ten trials end in contact. Tolerance 1e-10.
 
 **Times.** One thread, one query, trees built; the least of the rounds for the engine, one round for slow methods, whose

@@ -4,24 +4,24 @@ use d2m_testing::Xoshiro256 as Random;
 /// The law of the trials, in units of the models' radius (farthest vertex from the origin at distance 1).
 ///
 /// Two bodies of bounding radius 1 fly at each other, each at half the relative `speed`, along a direction u
-/// uniform on the sphere. Their centres pass at a distance whose vector is uniform in the disk of radius `miss`
+/// uniform on the sphere. Their centers pass at a distance whose vector is uniform in the disk of radius `miss`
 /// across u, so most trials hit (nine of ten for solid shapes), some graze and some miss. The bounding spheres
-/// are disjoint at the start: on the path, the centres are 2.05 + speed·U(0.05, 0.8) from their closest
+/// are disjoint at the start: on the path, the centers are 2.05 + speed·U(0.05, 0.8) from their closest
 /// approach. Orientations are uniform; |angular velocity| is uniform in [0, `spin`] with a uniform direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Law {
-    /// Relative speed of the centres.
+    /// Relative speed of the centers.
     pub(crate) speed: f64,
     /// Largest angular speed.
     pub(crate) spin: f64,
     /// Exactly `spin` for every body, rather than uniform below it.
     pub(crate) fixed_spin: bool,
-    /// Largest distance of closest approach of the centres.
+    /// Largest distance of closest approach of the centers.
     pub(crate) miss: f64,
 }
 
 impl Law {
-    /// |ω| up to 3, centres passing at up to 1 radius, speed 4 (the other one is 512).
+    /// |ω| up to 3, centers passing at up to 1 radius, speed 4 (the other one is 512).
     pub(crate) const PAPER: Self = Self { speed: 4.0, spin: 3.0, fixed_spin: false, miss: 1.0 };
 }
 

@@ -32,7 +32,7 @@ pub(crate) struct Trial {
 
 #[derive(clap::Args)]
 pub(crate) struct Options {
-    /// Relative speed of the centres, units per unit of time.
+    /// Relative speed of the centers, units per unit of time.
     #[arg(long, default_value_t = 4.0, value_parser = crate::positive)]
     speed: f64,
     /// How many trials.

@@ -51,7 +51,7 @@ pub struct Validation {
     pub watertight: bool,
     /// Every edge is run through equally often in both directions.
     pub consistently_oriented: bool,
-    /// Enclosed volume by the divergence theorem, Σ a·(b × c)/6 about the centre of the bounding box, rounded; positive
+    /// Enclosed volume by the divergence theorem, Σ a·(b × c)/6 about the center of the bounding box, rounded; positive
     /// if the faces are oriented outwards. Meaningful if consistently oriented.
     pub signed_volume: f64,
     /// Sum of the triangles' areas, rounded.

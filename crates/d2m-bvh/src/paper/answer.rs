@@ -114,13 +114,13 @@ fn feature_of(bodies: &[Moving<'_>; 2], pair: &ClosestPair) -> Option<FeaturePai
         [v.min(w), v.max(w)]
     };
     match (pair.detail.feature_a, pair.detail.feature_b) {
-        (TriangleFeature::Corner(k), TriangleFeature::Face) => {
+        (TriangleFeature::Vertex(k), TriangleFeature::Face) => {
             Some(FeaturePair::VertexFace { vertex: a[k as usize % 3], face: pair.triangle_b })
         }
-        (TriangleFeature::Face, TriangleFeature::Corner(k)) => {
+        (TriangleFeature::Face, TriangleFeature::Vertex(k)) => {
             Some(FeaturePair::FaceVertex { face: pair.triangle_a, vertex: b[k as usize % 3] })
         }
-        (TriangleFeature::Side(k), TriangleFeature::Side(l)) => {
+        (TriangleFeature::Edge(k), TriangleFeature::Edge(l)) => {
             Some(FeaturePair::EdgeEdge { edge_a: side(a, k), edge_b: side(b, l) })
         }
         _ => None,

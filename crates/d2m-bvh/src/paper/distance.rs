@@ -67,14 +67,14 @@ pub(crate) fn visit_close_pairs(
     mut visit: impl FnMut(&ClosestPair) -> f64,
 ) {
     let mut limit = cutoff;
-    let centre = |node: &Node| place.enclose_point(node.sphere.center);
+    let center = |node: &Node| place.enclose_point(node.sphere.center);
     let gap = |(center, radius): &(IntervalVec3, f64), node: &Node| {
         let radii = Interval::point(*radius) + node.sphere.radius;
         ((*center - node.sphere.center).norm() - radii).lo()
     };
     let root = a.node(0);
     let mut placed = PlacedLeaf::default();
-    let mut open = vec![(f64::NEG_INFINITY, 0u32, 0u32, (centre(root), root.sphere.radius))];
+    let mut open = vec![(f64::NEG_INFINITY, 0u32, 0u32, (center(root), root.sphere.radius))];
     while let Some((least, index_a, index_b, sphere)) = open.pop() {
         if least > limit {
             continue;
@@ -90,7 +90,7 @@ pub(crate) fn visit_close_pairs(
         let mut next = if descend_a {
             node_a.children.map(|child| {
                 let child_node = a.node(child);
-                let sphere = (centre(child_node), child_node.sphere.radius);
+                let sphere = (center(child_node), child_node.sphere.radius);
                 (gap(&sphere, node_b), child, index_b, sphere)
             })
         } else {

@@ -77,7 +77,7 @@ impl LeafPair<'_> {
                     continue;
                 }
                 let plane = faces[i].get_or_insert_with(|| TriangleFace::new(face_tree.corners(face))).face();
-                let Some(part) = PointFace::first_look(&plane, &jet) else { continue };
+                let Some(part) = PointFace::try_first_part(&plane, &jet) else { continue };
                 let Some(searched) = still_open(Interval::new(part.lo(), jet.span().hi()), best.as_ref())
                 else {
                     continue;
@@ -92,7 +92,7 @@ impl LeafPair<'_> {
                 };
                 let triangle_b = if swapped { own } else { face };
                 let found = pair.first_contact(searched);
-                meter.charge(pair.looks());
+                meter.charge(pair.evaluated());
                 lower(best, found, feature, triangle_b);
             }
         }
@@ -123,16 +123,16 @@ impl LeafPair<'_> {
                 }
                 let mut pair =
                     EdgePair::new(&self.motion[0], own, ends(tree_b, edge_b), frame, &self.options);
-                let Some(part) = pair.first_look() else { continue };
+                let Some(part) = pair.try_first_part() else { continue };
                 let Some(searched) = still_open(Interval::new(part.lo(), frame.span().hi()), best.as_ref())
                 else {
                     continue;
                 };
                 meter.spend()?;
-                pair.set_evaluations(meter.evaluations());
+                pair.set_max_evaluations(meter.evaluations());
                 let feature = FeaturePair::EdgeEdge { edge_a, edge_b };
                 let found = pair.first_contact(searched);
-                meter.charge(pair.looks());
+                meter.charge(pair.evaluated());
                 lower(best, found, feature, triangle_b);
             }
         }

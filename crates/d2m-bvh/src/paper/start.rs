@@ -148,7 +148,7 @@ fn count_crossings(tree: &SphereTree, p: DVec3, q: DVec3) -> Option<i64> {
     while let Some(index) = open.pop() {
         let node = tree.node(index);
         let w = node.sphere.center - p;
-        // Distance of the centre from the line, with a margin far above its rounding error.
+        // Distance of the center from the line, with a margin far above its rounding error.
         let squared = (w - along * (w.dot(along) / along.length_squared())).length_squared();
         let reach =
             node.sphere.radius * (1.0 + LINE_ROUNDING) + LINE_ROUNDING * (along.length() + w.length());

@@ -120,7 +120,7 @@ impl<'a> Search<'a> {
 
     /// Searches `stretch`, halving it while it is longer than `longest` and the bodies' spheres may meet in it.
     ///
-    /// Epoch rebase and recentring happen at every stretch: the enclosures start at its first instant and positions are
+    /// Epoch rebase and recentering happen at every stretch: the enclosures start at its first instant and positions are
     /// taken from the middle between the bodies.
     pub(crate) fn search_stretch(&mut self, stretch: Interval, longest: f64) -> Result<(), Stopped> {
         let mut open = vec![stretch];
@@ -141,7 +141,7 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    /// Starts a new stretch of time with its own epoch and scene centre.
+    /// Starts a new stretch of time with its own epoch and scene center.
     fn begin(&mut self, stretch: Interval) {
         self.epoch = stretch.lo();
         let place = |m: &Moving<'_>| m.motion.pose_and_twist(stretch.lo()).0.translation;

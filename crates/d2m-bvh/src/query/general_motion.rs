@@ -190,7 +190,7 @@ impl<'a> Advance<'a> {
         })
     }
 
-    /// Are the balls about the followed points apart over the span, whatever the bodies' turns? They move straight.
+    /// Are the balls about the reference points apart over the span, whatever the bodies' turns? They move straight.
     ///
     /// Positions with their proven radii; the few operations after that round by less than 32 units in the last place of the
     /// lengths that they add.

@@ -115,7 +115,7 @@ pub(super) fn evidence_at_start(scene: &Scene<'_>, triangles: [u32; 2]) -> Evide
     pair.evidence::<Quad>(scene, (&frame, &near))
 }
 
-/// Two triangles, corners relative to the trees' centres in body axes, and how they move.
+/// Two triangles, corners relative to the trees' centers in body axes, and how they move.
 struct TrianglePair<'r> {
     motion: &'r RelativeMotion,
     a: [DVec3; 3],
@@ -295,8 +295,8 @@ fn feature(scene: &Scene<'_>, near: &Closest, triangles: [u32; 2]) -> FeaturePai
     };
     match near.places {
         [Place::Edge(i), Place::Edge(j)] => FeaturePair::EdgeEdge { edge_a: edge(a, i), edge_b: edge(b, j) },
-        [Place::Corner(i), _] => FeaturePair::VertexFace { vertex: a[i], face: triangles[1] },
-        [_, Place::Corner(j)] => FeaturePair::FaceVertex { face: triangles[0], vertex: b[j] },
+        [Place::Vertex(i), _] => FeaturePair::VertexFace { vertex: a[i], face: triangles[1] },
+        [_, Place::Vertex(j)] => FeaturePair::FaceVertex { face: triangles[0], vertex: b[j] },
         // Faces only meet at the corners or edges of one of them: never produced.
         [Place::Face, _] => FeaturePair::FaceVertex { face: triangles[0], vertex: b[0] },
         [_, Place::Face] => FeaturePair::VertexFace { vertex: a[0], face: triangles[1] },
@@ -307,7 +307,7 @@ fn feature(scene: &Scene<'_>, near: &Closest, triangles: [u32; 2]) -> FeaturePai
 fn barycentric(corners: &[DVec3; 3], point: DVec3, place: Place) -> [f64; 3] {
     let mut weights = [0.0; 3];
     match place {
-        Place::Corner(i) => weights[i] = 1.0,
+        Place::Vertex(i) => weights[i] = 1.0,
         Place::Edge(i) => {
             let j = (i + 1) % 3;
             let edge = corners[j] - corners[i];

@@ -12,7 +12,7 @@ use glam::DVec3;
 ///
 /// Promise: `false` is proven, in real arithmetic, for the poses as given. `true` is said whenever that cannot be
 /// proven: when the bodies touch, and when they are apart by less than the roundings of placing them, at most about
-/// 64·2⁻⁵³ times the largest length (radii, distance of the centres, offsets from the followed points).
+/// 64·2⁻⁵³ times the largest length (radii, distance of the centers, offsets from the reference points).
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, Posed, Solid, TriMesh, collide};

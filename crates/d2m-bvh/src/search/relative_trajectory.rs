@@ -32,7 +32,7 @@ pub(crate) struct RelativeTrajectory {
     velocity: DVec3,
     rotations: [Columns; 2],
     omegas: [DVec3; 2],
-    /// From the followed points to the centers of the trees, body frames.
+    /// From the reference points to the centers of the trees, body frames.
     arms: [DVec3; 2],
     /// Bounds on the distances of the bodies' points from them.
     reach: [f64; 2],

@@ -60,7 +60,7 @@ impl<'a> SceneBody<'a> {
         Self { tree, motion, given: *given, per_length: 1.0 / units.length() }
     }
 
-    /// Corners relative to the tree's centre, body axes.
+    /// Corners relative to the tree's center, body axes.
     #[inline(always)]
     pub(crate) fn corners(&self, triangle: u32) -> [DVec3; 3] {
         let [i, j, k] = self.tree.mesh.triangles()[triangle as usize];
@@ -69,7 +69,7 @@ impl<'a> SceneBody<'a> {
         [self.place(vertices[i as usize]), self.place(vertices[j as usize]), self.place(vertices[k as usize])]
     }
 
-    /// A point of the body, relative to the tree's centre.
+    /// A point of the body, relative to the tree's center.
     #[inline(always)]
     pub(crate) fn place(&self, point: DVec3) -> DVec3 {
         (point - self.tree.center) * self.per_length

@@ -193,7 +193,7 @@ fn half_the_acceleration_of_triangles_is_noticed() {
     }
 }
 
-/// A needle spins about its middle: its centre is at rest, its end closes the gap of 0.1.
+/// A needle spins about its middle: its center is at rest, its end closes the gap of 0.1.
 #[test]
 fn half_the_spin_is_noticed() {
     let needle = [DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.0, -1.0, 0.0), DVec3::new(1e-3, 0.0, 0.0)];
@@ -269,7 +269,7 @@ fn boxes_called_apart_at_rest_are_apart() {
     assert!(called_apart(-0.02) > 0, "less than no margin");
 }
 
-/// A plate through the middle of another one, up to 1e30 times as large, or far off its middle: the line of the centres
+/// A plate through the middle of another one, up to 1e30 times as large, or far off its middle: the line of the centers
 /// has no length, or one whose square is beyond `f32`. Nothing is called apart.
 #[test]
 fn lines_of_no_length_or_beyond_all_numbers_part_nothing() {

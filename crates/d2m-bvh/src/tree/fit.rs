@@ -46,7 +46,7 @@ impl Moments {
         Self { weight, first: [f0, f1, f2], second: [s0, s1, s2, s3, s4, s5] }
     }
 
-    /// Second moments about the centre.
+    /// Second moments about the center.
     fn covariance(&self) -> [[f64; 3]; 3] {
         let mean = self.first.map(|s| s / self.weight);
         let s = self.second.map(|s| s / self.weight);

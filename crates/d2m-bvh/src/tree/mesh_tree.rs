@@ -123,7 +123,7 @@ impl MeshTree {
         self.mesh
     }
 
-    /// The centre about which the body's coordinates are kept, body frame: the middle of its bounding box.
+    /// The center about which the body's coordinates are kept, body frame: the middle of its bounding box.
     pub const fn center(&self) -> DVec3 {
         self.center
     }

@@ -46,7 +46,7 @@ impl Below {
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct WideNode {
-    /// Box centres relative to `origin`, by axis then lane.
+    /// Box centers relative to `origin`, by axis then lane.
     pub(crate) center: [[f32; WIDTH]; 3],
     /// Box axes: `axes[i][k]` is coordinate k of axis i of each lane.
     pub(crate) axes: [[[f32; WIDTH]; 3]; 3],
@@ -54,14 +54,14 @@ pub(crate) struct WideNode {
     pub(crate) half_extent: [[f32; WIDTH]; 3],
     /// For each pair of axes the bits of four bytes, see [`Bevels`]; never those of a NaN.
     pub(crate) bevels: [[f32; WIDTH]; 3],
-    /// Radius about the box centre.
+    /// Radius about the box center.
     pub(crate) radius: [f32; WIDTH],
     /// What decides which of two boxes is expanded: the larger one. Zero for a leaf, at least [`LEAST_SIZE`] for a node,
     /// negative for an unused lane.
     pub(crate) size: [f32; WIDTH],
     /// Leaf flag and triangle number, or node number.
     pub(crate) child: [u32; WIDTH],
-    /// Reference point of the centres, local coordinates.
+    /// Reference point of the centers, local coordinates.
     pub(crate) origin: [f32; 3],
     /// At least |center|₁ + radius of every lane.
     pub(crate) extent: f32,
@@ -178,7 +178,7 @@ impl WideNode {
     }
 }
 
-/// One box, with its centre relative to the origin of its wide node.
+/// One box, with its center relative to the origin of its wide node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct OrientedBox {
     pub(crate) center: [f32; 3],

@@ -13,7 +13,7 @@ impl MeshTree {
     /// moved, or its ball where that is smaller.
     ///
     /// ```text
-    /// |R(p − c)|ⱼ ≤ min(r, Σᵢ |R aᵢ|ⱼ hᵢ)   for a box with centre c, axes aᵢ, half extents hᵢ and radius r
+    /// |R(p − c)|ⱼ ≤ min(r, Σᵢ |R aᵢ|ⱼ hᵢ)   for a box with center c, axes aᵢ, half extents hᵢ and radius r
     /// ```
     ///
     /// ```

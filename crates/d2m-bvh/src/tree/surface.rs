@@ -27,7 +27,7 @@ impl Extent {
         Self::about(mesh, low * 0.5 + high * 0.5)
     }
 
-    /// The least bound on the distance from a given centre.
+    /// The least bound on the distance from a given center.
     pub(super) fn about(mesh: &TriMesh, center: DVec3) -> Self {
         let used = || mesh.triangles().iter().flatten().map(|&i| mesh.vertices()[i as usize] - center);
         // In a unit in which no square over- or underflows.
@@ -108,7 +108,7 @@ impl<'a> Surface<'a> {
         extremes.refined()
     }
 
-    /// The box of a part with about the given axes: centre relative to `origin`, outward in real arithmetic. Also its size.
+    /// The box of a part with about the given axes: center relative to `origin`, outward in real arithmetic. Also its size.
     pub(super) fn enclose(&self, part: &[u32], axes: &[[f64; 3]; 3], origin: [f32; 3]) -> (OrientedBox, f32) {
         let axes = self.refined(part, axes).map(|axis| axis.map(|c| c as f32));
         let wide = axes.map(|axis| axis.map(f64::from));
@@ -124,7 +124,7 @@ impl<'a> Surface<'a> {
                 }
             }
         }
-        // The centre may be anything: the extents are measured from what it was rounded to.
+        // The center may be anything: the extents are measured from what it was rounded to.
         let middle = [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]));
         let center: [f32; 3] = [0, 1, 2].map(|k| (0..3).map(|i| wide[i][k] * middle[i]).sum::<f64>() as f32);
         let about = [0, 1, 2].map(|i| 0.5 * (high[i] - low[i]));
@@ -150,10 +150,10 @@ pub(super) fn size_of_box(boxed: &OrientedBox) -> f32 {
     boxed.half_extent.iter().map(|h| h.max(least)).product::<f32>().max(LEAST_SIZE)
 }
 
-/// How far points reach from the centre of a box, along its axes and in all.
+/// How far points reach from the center of a box, along its axes and in all.
 ///
 /// Rounding, v = 2⁻⁵³, for a point p (local, itself within v of the real one in each coordinate; its unit is a power
-/// of two): p − origin − centre errs by v(|p| + |p − o| + |q|) and the projection by 3v|q|₁ more, in all less than
+/// of two): p − origin − center errs by v(|p| + |p − o| + |q|) and the projection by 3v|q|₁ more, in all less than
 /// 7v(|p|₁ + |o|₁ + |c|₁); [`SLACK`](Self::SLACK) is 8v of that.
 pub(super) struct Reach {
     axes: [[f64; 3]; 3],

@@ -157,7 +157,7 @@ fn any_shrunk_or_broken_tree_is_refused() {
             cut_more(t, leaf);
         }),
         ("radius", |t| t.nodes[2].radius[0] *= 0.999),
-        ("centre", |t| t.nodes[5].center[0][1] += 1e-3),
+        ("center", |t| t.nodes[5].center[0][1] += 1e-3),
         ("axis", |t| t.nodes[5].axes[0][0][1] *= 1.000_001),
         ("not a number", |t| t.nodes[5].axes[1][0][1] = f32::NAN),
         ("origin", |t| t.nodes[4].origin[1] += 1e-3),

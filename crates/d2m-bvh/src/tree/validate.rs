@@ -14,8 +14,8 @@ const DEEPEST: usize = 64;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum TreeError {
-    /// Centre, radius or unit do not fit the mesh.
-    #[error("centre, radius or unit of the tree do not fit its mesh")]
+    /// Center, radius or unit do not fit the mesh.
+    #[error("center, radius or unit of the tree do not fit its mesh")]
     Extent,
     /// A node does not exist, hangs in two places or nowhere, or its number of boxes is wrong.
     #[error("node {node}: not linked into one tree")]

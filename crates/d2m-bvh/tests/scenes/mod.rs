@@ -249,16 +249,16 @@ fn resting_and_cubes(scenes: &mut Vec<Scene>) {
         Expected::Start(StartState::Overlapping),
     ));
 
-    // The corner (1,1,1) of A points down: half the diagonal below its centre.
+    // The corner (1,1,1) of A points down: half the diagonal below its center.
     let corner_down = DQuat::from_rotation_arc(DVec3::ONE.normalize(), -DVec3::Z);
     let half = 3f64.sqrt() / 2.0;
-    let centred = || cube(DVec3::splat(-0.5), 1.0);
+    let centered = || cube(DVec3::splat(-0.5), 1.0);
     let tip =
         from(dvec3(0.125, 0.0625, 0.5 + half + 1.0), dvec3(0.0, 0.0, -2.0)).with_orientation(corner_down);
     scenes.push(Scene::new(
         "corner of a cube on a face",
-        centred(),
-        centred(),
+        centered(),
+        centered(),
         tip,
         about(0.5, -DVec3::Z, Kind::VertexFace),
     ));
@@ -267,8 +267,8 @@ fn resting_and_cubes(scenes: &mut Vec<Scene>) {
     let side = 2f64.sqrt() / 2.0;
     let mut edges = Scene::new(
         "edge of a cube on an edge",
-        centred(),
-        centred(),
+        centered(),
+        centered(),
         from(dvec3(0.0625, 0.125, 2.0 * side + 1.0), dvec3(0.0, 0.0, -2.0))
             .with_orientation(turned(DVec3::X)),
         about(0.5, -DVec3::Z, Kind::EdgeEdge),
@@ -279,8 +279,8 @@ fn resting_and_cubes(scenes: &mut Vec<Scene>) {
     // Parallel edges meet along their length.
     let mut parallel = Scene::new(
         "edge of a cube on a parallel edge",
-        centred(),
-        centred(),
+        centered(),
+        centered(),
         from(dvec3(0.25, 0.0, 2.0 * side + 1.0), dvec3(0.0, 0.0, -2.0)).with_orientation(turned(DVec3::X)),
         Expected::At { time: 0.5, slack: 1e-13, normal: None, kind: None },
     );

@@ -80,7 +80,7 @@ fn mesh_text(body: &Loaded, validation: &Validation, parts: &MeshParts) -> Strin
         line("precision", format!("single: a {kind} holds no more than 24 bits of each coordinate"));
     }
     line("box", format!("{low:?} to {high:?}"));
-    line("sphere", format!("centre {:?}, radius {}", sphere.center.to_array(), short(sphere.radius)));
+    line("sphere", format!("center {:?}, radius {}", sphere.center.to_array(), short(sphere.radius)));
     let PolygonCounts { cut, bent, crossing, without_area } = body.polygons;
     for (what, count) in [
         ("polygons cut into triangles", cut),

@@ -29,7 +29,7 @@ pub(crate) struct EdgeEdgeTest<P> {
     pub(crate) inside: Piece,
 }
 
-/// Part of the edges' size that they must move in half a piece for the line of the midpoints to be worth a look.
+/// Part of the edges' size that they must move in half a piece for the line of the midpoints for that test to be worth its time.
 const NEARBY: f64 = 1.0;
 
 /// Part of the feature's size that a remainder may reach before a piece is worth an evaluation (tuned like the one
@@ -53,7 +53,7 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
         Self { path, middle, half, half_lengths, tolerance: 0.0, separation, inside: Piece::NONE }
     }
 
-    /// The part of a piece in which the edges may be near: as a whole all four corners w ± e ± d on one side along
+    /// The part of a piece in which the edges may be near: as a whole all four vertices w ± e ± d on one side along
     /// the line of the midpoints, from either end |w| ≤ |e| + |d| along the velocity.
     #[inline(always)]
     fn near(&self, jets: &TwoJets, d: DVec3, whole: Piece, h: f64) -> Option<Piece> {

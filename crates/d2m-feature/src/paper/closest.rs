@@ -9,11 +9,11 @@ pub(crate) fn estimate_on_segment(p: DVec3, a: DVec3, e: DVec3) -> f64 {
 }
 
 /// About the closest point to `p` on a convex polygon, and what it lies on.
-pub(crate) fn estimate_on_polygon(p: DVec3, corners: &[DVec3], normal: DVec3) -> DVec3 {
-    let n = corners.len();
-    let mut best = (f64::INFINITY, corners[0]);
+pub(crate) fn estimate_on_polygon(p: DVec3, vertices: &[DVec3], normal: DVec3) -> DVec3 {
+    let n = vertices.len();
+    let mut best = (f64::INFINITY, vertices[0]);
     for i in 0..n {
-        let (a, e) = (corners[i], corners[(i + 1) % n] - corners[i]);
+        let (a, e) = (vertices[i], vertices[(i + 1) % n] - vertices[i]);
         let c = a + e * estimate_on_segment(p, a, e);
         let d = (p - c).length_squared();
         if d < best.0 {
@@ -21,9 +21,9 @@ pub(crate) fn estimate_on_polygon(p: DVec3, corners: &[DVec3], normal: DVec3) ->
         }
     }
     // Inside all sides: the foot on the plane is closer than any side.
-    let turn = |i: usize| normal.cross(corners[(i + 1) % n] - corners[i]).dot(p - corners[i]);
+    let turn = |i: usize| normal.cross(vertices[(i + 1) % n] - vertices[i]).dot(p - vertices[i]);
     if (0..n).all(|i| turn(i) > 0.0) || (0..n).all(|i| turn(i) < 0.0) {
-        return p - normal * (p - corners[0]).dot(normal);
+        return p - normal * (p - vertices[0]).dot(normal);
     }
     best.1
 }

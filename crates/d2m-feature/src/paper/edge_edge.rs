@@ -51,11 +51,11 @@ pub struct EdgePair<'a> {
     observer: [DVec3; 2],
     jet: EdgeJet,
     options: PaperOptions,
-    looks: u32,
+    evaluated: u32,
 }
 
 impl<'a> EdgePair<'a> {
-    /// `frame` must be the relative motion over the first span that will be asked for; many features may share it.
+    /// `frame` must be the relative motion over the first span that will be queried; many features may share it.
     pub fn new(
         motion: &'a RelativeMotion<'a>,
         mover: [DVec3; 2],
@@ -63,17 +63,17 @@ impl<'a> EdgePair<'a> {
         frame: &RelativeFrame,
         options: &PaperOptions,
     ) -> Self {
-        Self { motion, mover, observer, jet: EdgeJet::new(frame, mover), options: *options, looks: 0 }
+        Self { motion, mover, observer, jet: EdgeJet::new(frame, mover), options: *options, evaluated: 0 }
     }
 
     /// Replaces the most pieces of time that the search may evaluate.
-    pub const fn set_evaluations(&mut self, evaluations: u32) {
+    pub const fn set_max_evaluations(&mut self, evaluations: u32) {
         self.options.evaluations = evaluations;
     }
 
-    /// How many pieces of time have been looked at so far: what a budget is charged with.
-    pub const fn looks(&self) -> u32 {
-        self.looks
+    /// How many pieces of time have been evaluated so far: what a budget is charged with.
+    pub const fn evaluated(&self) -> u32 {
+        self.evaluated
     }
 
     /// The first contact in `window`.
@@ -84,15 +84,15 @@ impl<'a> EdgePair<'a> {
         hrfoi(self, window, limits)
     }
 
-    /// One look, without a new enclosure of the motion: the part of the frame's span in which a contact may begin.
+    /// From the enclosure at hand, without a new one of the motion: the part of the frame's span in which a contact may begin.
     /// `None` promises that there is none in the span.
-    pub fn first_look(&self) -> Option<Interval> {
+    pub fn try_first_part(&self) -> Option<Interval> {
         let part = intersect_root_domain(&self.triple_product())?;
         gamma_edge_edge(&self.jet, &self.observer, self.jet.start.offsets(self.jet.start.span()))
             .then_some(part)
     }
 
-    fn look_at(&mut self, t: Interval) -> Interval {
+    fn offsets_of(&mut self, t: Interval) -> Interval {
         if !fits(&self.jet.start, t) {
             self.jet = EdgeJet::new(&self.motion.frame(t), self.mover);
         }
@@ -119,7 +119,7 @@ impl<'a> EdgePair<'a> {
 
 impl IntervalFunction for EdgePair<'_> {
     fn enclose(&mut self, t: Interval) -> Interval {
-        let x = self.look_at(t);
+        let x = self.offsets_of(t);
         self.triple_product().enclose_at_offset(x)
     }
 }
@@ -135,13 +135,13 @@ impl SecondOrder for EdgePair<'_> {
 
 impl Gamma for EdgePair<'_> {
     fn may_touch(&mut self, t: Interval) -> bool {
-        self.looks = self.looks.saturating_add(1);
-        let x = self.look_at(t);
+        self.evaluated = self.evaluated.saturating_add(1);
+        let x = self.offsets_of(t);
         gamma_edge_edge(&self.jet, &self.observer, x)
     }
 
     fn settle(&mut self, t: Interval) -> Settled {
-        let x = self.look_at(t);
+        let x = self.offsets_of(t);
         let offset = x.mid();
         let time = self.jet.start.span().lo() + offset;
         let middle = Interval::point(offset);

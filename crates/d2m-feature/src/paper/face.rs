@@ -9,58 +9,58 @@ use glam::DVec3;
 /// triangles (a segment, a point) get directions across and along what is left of them; every direction is sound.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleFace {
-    corners: [DVec3; 3],
+    vertices: [DVec3; 3],
     normal: Direction,
     sides: [Direction; 3],
 }
 
 impl TriangleFace {
-    /// Prepares the triangle with these corners.
-    pub fn new(corners: [DVec3; 3]) -> Self {
-        let (normal, sides) = directions(&corners);
-        let side = |i: usize| Direction::new(sides(i), &corners);
-        Self { corners, normal: Direction::new(normal, &corners), sides: [side(0), side(1), side(2)] }
+    /// Prepares the triangle with these vertices.
+    pub fn new(vertices: [DVec3; 3]) -> Self {
+        let (normal, sides) = directions(&vertices);
+        let side = |i: usize| Direction::new(sides(i), &vertices);
+        Self { vertices, normal: Direction::new(normal, &vertices), sides: [side(0), side(1), side(2)] }
     }
 
     /// The view that the tests take.
     pub fn face(&self) -> Face<'_> {
-        Face { corners: &self.corners, normal: self.normal, sides: &self.sides }
+        Face { vertices: &self.vertices, normal: self.normal, sides: &self.sides }
     }
 }
 
 /// A convex polygon, prepared for [`point_polygon`](super::point_polygon).
 ///
-/// What is tested is the convex hull of the corners: a polygon that is not quite flat or not quite convex is replaced
+/// What is tested is the convex hull of the vertices: a polygon that is not quite flat or not quite convex is replaced
 /// by its hull, never by something smaller.
 #[derive(Clone, Debug)]
 pub struct PolygonFace {
-    corners: Vec<DVec3>,
+    vertices: Vec<DVec3>,
     normal: Direction,
     sides: Vec<Direction>,
 }
 
 impl PolygonFace {
-    /// Prepares the polygon with these corners, in order around it; `None` for fewer than three.
-    pub fn try_new(corners: &[DVec3]) -> Option<Self> {
-        if corners.len() < 3 {
+    /// Prepares the polygon with these vertices, in order around it; `None` for fewer than three.
+    pub fn try_new(vertices: &[DVec3]) -> Option<Self> {
+        if vertices.len() < 3 {
             return None;
         }
-        let (normal, sides) = directions(corners);
-        let sides = (0..corners.len()).map(|i| Direction::new(sides(i), corners)).collect();
-        Some(Self { corners: corners.to_vec(), normal: Direction::new(normal, corners), sides })
+        let (normal, sides) = directions(vertices);
+        let sides = (0..vertices.len()).map(|i| Direction::new(sides(i), vertices)).collect();
+        Some(Self { vertices: vertices.to_vec(), normal: Direction::new(normal, vertices), sides })
     }
 
     /// The view that the tests take.
     pub fn face(&self) -> Face<'_> {
-        Face { corners: &self.corners, normal: self.normal, sides: &self.sides }
+        Face { vertices: &self.vertices, normal: self.normal, sides: &self.sides }
     }
 }
 
 /// A convex, nearly flat feature of the observer, at rest in its frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Face<'a> {
-    /// The corners, in order.
-    pub corners: &'a [DVec3],
+    /// The vertices, in order.
+    pub vertices: &'a [DVec3],
     /// About the unit normal.
     pub normal: Direction,
     /// About the unit in-plane normals of the sides.
@@ -72,18 +72,18 @@ pub struct Face<'a> {
 const FLAT: f64 = 1e-30;
 
 /// The normal of a polygon and, by index, the in-plane normals of its sides; substitutes where it has collapsed.
-fn directions(corners: &[DVec3]) -> (DVec3, impl Fn(usize) -> DVec3 + '_) {
-    let n = corners.len();
-    let edge = move |i: usize| corners[(i + 1) % n] - corners[i];
+fn directions(vertices: &[DVec3]) -> (DVec3, impl Fn(usize) -> DVec3 + '_) {
+    let n = vertices.len();
+    let edge = move |i: usize| vertices[(i + 1) % n] - vertices[i];
     let area = (1..n - 1)
-        .map(|i| (corners[i] - corners[0]).cross(corners[i + 1] - corners[0]))
+        .map(|i| (vertices[i] - vertices[0]).cross(vertices[i + 1] - vertices[0]))
         .fold(DVec3::ZERO, |sum, a| sum + a);
     let longest = (0..n).map(edge).max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
     let longest = longest.and_then(unit);
     // A sliver's area vector is poor along its longest edge: take that component out.
     let straight = |v: DVec3| longest.map_or(v, |l| v - l * v.dot(l));
     let normal = unit(area).map(straight).and_then(unit).filter(|u| {
-        let size = corners.iter().fold(0.0f64, |m, c| m.max((*c - corners[0]).abs().max_element()));
+        let size = vertices.iter().fold(0.0f64, |m, c| m.max((*c - vertices[0]).abs().max_element()));
         u.is_finite() && area.abs().max_element() > FLAT * size * size
     });
     let (n_hat, flat) = match (normal, longest) {
@@ -111,17 +111,17 @@ mod tests {
     #[test]
     fn collapsed_triangles_have_finite_directions() {
         let p = DVec3::new(1.0, 2.0, 3.0);
-        for corners in [
+        for vertices in [
             [p, p, p],
             [p, p, p + DVec3::X],
             [p, p + DVec3::X, p + 2.0 * DVec3::X],
             [DVec3::ZERO, DVec3::X * 1e-300, DVec3::Y * 1e-300],
             [DVec3::ZERO, DVec3::X * 1e50, DVec3::Y * 1e50],
         ] {
-            let t = TriangleFace::new(corners);
+            let t = TriangleFace::new(vertices);
             for d in t.sides.iter().chain([&t.normal]) {
-                assert!(d.vector.is_finite() && (d.vector.length() - 1.0).abs() < 1e-9, "{corners:?}");
-                for c in corners {
+                assert!(d.vector.is_finite() && (d.vector.length() - 1.0).abs() < 1e-9, "{vertices:?}");
+                for c in vertices {
                     assert!(!d.certainly_apart(d2m_interval::IntervalVec3::point(c).dot_point(d.vector)));
                 }
             }

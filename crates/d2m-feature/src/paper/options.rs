@@ -1,4 +1,4 @@
-//! What a feature test of the reference method is asked.
+//! Options of a feature test of the reference method.
 
 use d2m_interval::Interval;
 use d2m_root::SearchLimits;

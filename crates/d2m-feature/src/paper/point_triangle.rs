@@ -87,11 +87,11 @@ pub struct PointFace<'a> {
     face: Face<'a>,
     jet: PointJet,
     options: PaperOptions,
-    looks: u32,
+    evaluated: u32,
 }
 
 impl<'a> PointFace<'a> {
-    /// `jet` is the path of `point` over the first span that will be asked for; it may be shared with other features.
+    /// `jet` is the path of `point` over the first span that will be queried; it may be shared with other features.
     pub const fn new(
         motion: &'a RelativeMotion<'a>,
         point: DVec3,
@@ -99,12 +99,12 @@ impl<'a> PointFace<'a> {
         jet: PointJet,
         options: &PaperOptions,
     ) -> Self {
-        Self { motion, point, face, jet, options: *options, looks: 0 }
+        Self { motion, point, face, jet, options: *options, evaluated: 0 }
     }
 
-    /// How many pieces of time have been looked at so far: what a budget is charged with.
-    pub const fn looks(&self) -> u32 {
-        self.looks
+    /// How many pieces of time have been evaluated so far: what a budget is charged with.
+    pub const fn evaluated(&self) -> u32 {
+        self.evaluated
     }
 
     /// The first contact in `window`.
@@ -113,16 +113,16 @@ impl<'a> PointFace<'a> {
         hrfoi(self, window, limits)
     }
 
-    /// One look, without a new enclosure of the motion: the part of the jet's span in which a contact may begin.
+    /// From the enclosure at hand, without a new one of the motion: the part of the jet's span in which a contact may begin.
     /// `None` promises that there is none in the span.
-    pub fn first_look(face: &Face<'_>, jet: &PointJet) -> Option<Interval> {
+    pub fn try_first_part(face: &Face<'_>, jet: &PointJet) -> Option<Interval> {
         let theta = plane_function(face, jet);
         let part = intersect_root_domain(&theta)?;
         gamma_point_face(face, jet, jet.offsets(jet.span())).then_some(part)
     }
 
     /// Makes the jet fit the piece `t` and returns the offsets of `t` in it.
-    fn look_at(&mut self, t: Interval) -> Interval {
+    fn offsets_of(&mut self, t: Interval) -> Interval {
         if !fits(&self.jet, t) {
             self.jet = self.motion.frame(t).jet(self.point);
         }
@@ -144,7 +144,7 @@ fn plane_function(face: &Face<'_>, jet: &PointJet) -> InclusionFunction {
 
 impl IntervalFunction for PointFace<'_> {
     fn enclose(&mut self, t: Interval) -> Interval {
-        let x = self.look_at(t);
+        let x = self.offsets_of(t);
         self.jet.range_along(self.face.normal.vector, x) - self.face.normal.extent
     }
 }
@@ -160,22 +160,22 @@ impl SecondOrder for PointFace<'_> {
 
 impl Gamma for PointFace<'_> {
     fn may_touch(&mut self, t: Interval) -> bool {
-        self.looks = self.looks.saturating_add(1);
-        let x = self.look_at(t);
+        self.evaluated = self.evaluated.saturating_add(1);
+        let x = self.offsets_of(t);
         let normal = &self.face.normal;
         !normal.certainly_apart(self.jet.range_along(normal.vector, x))
             && gamma_point_face(&self.face, &self.jet, x)
     }
 
     fn settle(&mut self, t: Interval) -> Settled {
-        let x = self.look_at(t);
+        let x = self.offsets_of(t);
         let offset = x.mid();
         let time = self.jet.span().lo() + offset;
         let q = self.jet.enclose(Interval::point(offset));
         let p = q.mid();
-        let c = estimate_on_polygon(p, self.face.corners, self.face.normal.vector);
+        let c = estimate_on_polygon(p, self.face.vertices, self.face.normal.vector);
         // `c` is on the polygon up to rounding of its own computation.
-        let size = self.face.corners.iter().fold(0.0f64, |m, k| m.max(k.abs().max_element()));
+        let size = self.face.vertices.iter().fold(0.0f64, |m, k| m.max(k.abs().max_element()));
         let off = Interval::point(size.max(c.abs().max_element())) * ON_FACE;
         let inside = estimate_is_on(&self.face, c);
         if inside
@@ -186,16 +186,16 @@ impl Gamma for PointFace<'_> {
         }
         let apart = |v: DVec3| {
             unit(v).is_some_and(|v| {
-                Direction::new(v, self.face.corners).certainly_apart(self.jet.range_along(v, x))
+                Direction::new(v, self.face.vertices).certainly_apart(self.jet.range_along(v, x))
             })
         };
         let gap = p - c;
         if apart(gap) || apart(self.face.normal.vector) {
             return Settled::Excluded;
         }
-        let n = self.face.corners.len();
+        let n = self.face.vertices.len();
         for i in 0..n {
-            let Some(e) = unit(self.face.corners[(i + 1) % n] - self.face.corners[i]) else { continue };
+            let Some(e) = unit(self.face.vertices[(i + 1) % n] - self.face.vertices[i]) else { continue };
             if apart(gap - e * gap.dot(e)) {
                 return Settled::Excluded;
             }
@@ -205,14 +205,14 @@ impl Gamma for PointFace<'_> {
 }
 
 /// What a point that is computed to lie on a face is taken to be off it, as a part of the largest coordinate: the foot is a
-/// sum of three products of weights and corners, some 8·2⁻⁵³.
+/// sum of three products of weights and vertices, some 8·2⁻⁵³.
 const ON_FACE: f64 = 1e-15;
 
-/// Is `c` on the face within [`ON_FACE`] of its size for each corner? Judged along all its directions.
+/// Is `c` on the face within [`ON_FACE`] of its size for each vertex? Judged along all its directions.
 fn estimate_is_on(face: &Face<'_>, c: DVec3) -> bool {
     face.sides.iter().chain([&face.normal]).all(|d| {
         let v = d.vector.dot(c);
-        let slack = ON_FACE * (1.0 + face.corners.len() as f64) * c.abs().max_element().max(d.extent.mag());
+        let slack = ON_FACE * (1.0 + face.vertices.len() as f64) * c.abs().max_element().max(d.extent.mag());
         v >= d.extent.lo() - slack && v <= d.extent.hi() + slack
     })
 }

@@ -19,31 +19,33 @@ use glam::DVec3;
 /// (Appendix A of the paper gives the same derivatives in the world; the functions f of the paper are scalars and do
 /// not depend on the frame. In the observer's frame its own features stand still.)
 ///
-/// Scene recentring: for two motions with constant twist the world positions enter only as x_m(t_ref) − x_o(t_ref),
+/// Scene recentering: for two motions with constant twist the world positions enter only as x_m(t_ref) − x_o(t_ref),
 /// so a common offset of the scene costs nothing.
 #[derive(Clone, Copy)]
 pub struct RelativeMotion<'a> {
     mover: &'a dyn RigidMotion,
     observer: &'a dyn RigidMotion,
-    linear: Option<(LinearBody, LinearBody)>,
+    constant_twists: Option<[ConstantTwistBody; 2]>,
 }
 
 impl core::fmt::Debug for RelativeMotion<'_> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.debug_struct("RelativeMotion").field("linear", &self.linear).finish_non_exhaustive()
+        f.debug_struct("RelativeMotion")
+            .field("constant_twists", &self.constant_twists)
+            .finish_non_exhaustive()
     }
 }
 
 /// A motion with constant twist, its rotation prepared: R(t) = R₀ + sin θ·K R₀ + (1 − cos θ)·K² R₀ with θ = |ω|(t −
 /// t_ref) and K = \[ω/|ω|\] (Rodrigues).
 #[derive(Clone, Copy, Debug)]
-struct LinearBody {
+struct ConstantTwistBody {
     motion: ConstantTwist,
     spin: Interval,
     terms: [IntervalMat3; 3],
 }
 
-impl LinearBody {
+impl ConstantTwistBody {
     fn new(motion: ConstantTwist) -> Self {
         let spin = IntervalVec3::point(motion.angular_velocity()).norm();
         let start = IntervalMat3::from_quat_normalized(motion.orientation());
@@ -92,13 +94,14 @@ struct State {
 impl<'a> RelativeMotion<'a> {
     /// The motion of `mover` seen from `observer`.
     pub fn new(mover: &'a dyn RigidMotion, observer: &'a dyn RigidMotion) -> Self {
-        let linear = mover.constant_twist().zip(observer.constant_twist());
-        Self { mover, observer, linear: linear.map(|(m, o)| (LinearBody::new(m), LinearBody::new(o))) }
+        let twists = mover.constant_twist().zip(observer.constant_twist());
+        Self { mover, observer, constant_twists: twists.map(|(m, o)| [m, o].map(ConstantTwistBody::new)) }
     }
 
     /// The roles exchanged.
     pub fn swapped(&self) -> Self {
-        Self { mover: self.observer, observer: self.mover, linear: self.linear.map(|(m, o)| (o, m)) }
+        let constant_twists = self.constant_twists.map(|[m, o]| [o, m]);
+        Self { mover: self.observer, observer: self.mover, constant_twists }
     }
 
     /// The mover as it stands in the observer's frame at one time.
@@ -112,7 +115,7 @@ impl<'a> RelativeMotion<'a> {
     }
 
     fn state(&self, t: Interval) -> State {
-        if let Some((m, o)) = &self.linear {
+        if let Some([m, o]) = &self.constant_twists {
             let mover = m.rotation(t);
             return State {
                 mover,

@@ -6,9 +6,9 @@ use d2m_motion::RigidMotion;
 use d2m_root::InclusionFunction;
 use glam::DVec3;
 
-/// All that a body does over one stretch of time, world axes, positions relative to a scene centre.
+/// All that a body does over one span of time, world axes, positions relative to a scene center.
 ///
-/// Epoch: the start of the stretch. The enclosures are computed once and shared by all spheres of the body.
+/// Epoch: the start of the span. The enclosures are computed once and shared by all spheres of the body.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyOverDomain {
     span: Interval,
@@ -22,7 +22,7 @@ pub struct BodyOverDomain {
 impl BodyOverDomain {
     /// Encloses `motion` over `span`, with `center` subtracted from all positions.
     ///
-    /// The centre only keeps numbers small; both bodies of a pair must use the same.
+    /// The center only keeps numbers small; both bodies of a pair must use the same.
     pub fn new(motion: &dyn RigidMotion, span: Interval, center: DVec3) -> Self {
         let start = Interval::point(span.lo());
         let position = |t: Interval, world: IntervalVec3| match motion.constant_twist() {
@@ -45,18 +45,18 @@ impl BodyOverDomain {
         }
     }
 
-    /// The stretch of time.
+    /// The span of time.
     pub const fn span(&self) -> Interval {
         self.span
     }
 
-    /// The path of a body point over the stretch, world axes, relative to the scene centre.
+    /// The path of a body point over the span, world axes, relative to the scene center.
     pub fn jet(&self, point: DVec3) -> PointJet {
         let s = self.sphere(point, 0.0);
         PointJet::new(self.span, [s.position[0], s.velocity[0], s.acceleration])
     }
 
-    /// The sphere with this centre (body frame) and radius over the stretch.
+    /// The sphere with this center (body frame) and radius over the span.
     pub fn sphere(&self, center: DVec3, radius: f64) -> SphereOverDomain {
         let r = IntervalVec3::point(center) - self.at;
         let arm = [self.rotation[0].mul_vec(r), self.rotation[1].mul_vec(r)];
@@ -76,9 +76,9 @@ impl BodyOverDomain {
     }
 }
 
-/// Sphere-Over-Domain: one moving sphere over one stretch of time.
+/// Sphere-Over-Domain: one moving sphere over one span of time.
 ///
-/// `position[0]` = x_{t,0} and `velocity[0]` = ẋ_{t,0} at the start of the stretch; `position[1]`, `velocity[1]` and
+/// `position[0]` = x_{t,0} and `velocity[0]` = ẋ_{t,0} at the start of the span; `position[1]`, `velocity[1]` and
 /// `acceleration` enclose them over all of it.
 #[derive(Clone, Copy, Debug)]
 pub struct SphereOverDomain {
@@ -92,8 +92,8 @@ pub struct SphereOverDomain {
 /// Test-Sphere-Pair: the hull of the times in `searched` at which the two spheres may overlap; `None` promises that
 /// they are disjoint throughout. Times of `searched` outside the hull are certainly free.
 ///
-/// `epoch` is the start of the stretch of both spheres and `searched` lies in that stretch. The lower parabola of
-/// s(t) = |γ|² − (r_A + r_B)² is valid on the whole stretch; where it is positive the spheres are apart. Two repairs
+/// `epoch` is the start of the span of both spheres and `searched` lies in that span. The lower parabola of
+/// s(t) = |γ|² − (r_A + r_B)² is valid on the whole span; where it is positive the spheres are apart. Two repairs
 /// of Algorithm 5: ½ enters θ once (line 10 halves s̈, and θ halves it again), and "s > 0" (line 13) is judged at the
 /// start of `searched`: judged at the epoch, a pair that has begun to overlap between the epoch and the start of
 /// `searched` has its exit taken for its entry.

@@ -63,7 +63,7 @@ struct SpherePair<'a> {
 }
 
 impl SpherePair<'_> {
-    fn look_at(&mut self, t: Interval) -> Interval {
+    fn offsets_of(&mut self, t: Interval) -> Interval {
         if !fits(&self.jet, t) {
             self.jet = self.motion.frame(t).jet(self.mover);
         }
@@ -78,7 +78,7 @@ impl SpherePair<'_> {
 
 impl IntervalFunction for SpherePair<'_> {
     fn enclose(&mut self, t: Interval) -> Interval {
-        let x = self.look_at(t);
+        let x = self.offsets_of(t);
         (self.jet.enclose(x) - self.observer).norm_squared() - self.radii.sqr()
     }
 }
@@ -104,12 +104,12 @@ impl SecondOrder for SpherePair<'_> {
 impl Gamma for SpherePair<'_> {
     /// Every root of f is a contact; and a start inside is one as well.
     fn may_touch(&mut self, t: Interval) -> bool {
-        let x = self.look_at(t);
+        let x = self.offsets_of(t);
         !self.gap(x).certainly_positive()
     }
 
     fn settle(&mut self, t: Interval) -> Settled {
-        let x = self.look_at(t);
+        let x = self.offsets_of(t);
         let time = self.jet.span().lo() + x.mid();
         let middle = Interval::point(x.mid());
         if t.contains(time) && self.gap(middle).hi() <= self.tolerance {

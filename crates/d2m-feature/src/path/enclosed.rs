@@ -55,7 +55,7 @@ impl<'a> EnclosedMotions<'a> {
         self.state.turn_b()
     }
 
-    /// The part of the window in which the followed points are within `distance` of each other; `None`: never.
+    /// The part of the window in which the reference points are within `distance` of each other; `None`: never.
     ///
     /// `|x_A − x_B| ≥ |g + us| − r` with the r of [`RelativeState::straight_line`], so contact needs
     /// `|g + us|² ≤ (distance + r)²`. The squares' rounding is below 16·2⁻⁵³ of `(|g| + |u|h)²`, and so is their
@@ -83,7 +83,7 @@ const SQUARES: f64 = 128.0 * UNIT;
 /// A point and a direction of A seen from the body frame of B, in real time.
 pub(crate) struct EnclosedPath<'a> {
     motions: &'a EnclosedMotions<'a>,
-    /// From A's followed point to the middle of the ends, body frame.
+    /// From A's reference point to the middle of the ends, body frame.
     arm: DVec3,
     /// Half the difference of the ends.
     half: DVec3,
@@ -93,20 +93,20 @@ pub(crate) struct EnclosedPath<'a> {
     window: Option<Piece>,
 }
 
-/// How far features of B reach: from the origin of its frame, and from its followed point.
+/// How far features of B reach: from the origin of its frame, and from its reference point.
 #[derive(Clone, Copy)]
 pub(crate) struct Extent {
     pub(crate) from_origin: f64,
-    pub(crate) from_followed: f64,
+    pub(crate) from_reference: f64,
 }
 
 impl Extent {
-    /// Of a ball.
+    /// Of a sphere.
     pub(crate) fn of(center: DVec3, radius: f64, motions: &EnclosedMotions<'_>) -> Self {
         let at = motions.state.at_b();
         Self {
             from_origin: (length_up(center) + radius) * UP,
-            from_followed: (length_up(center - at) + radius + 2.0 * UNIT * length_up(at)) * UP,
+            from_reference: (length_up(center - at) + radius + 2.0 * UNIT * length_up(at)) * UP,
         }
     }
 }
@@ -128,7 +128,7 @@ impl<'a> EnclosedPath<'a> {
         // Bounds both ends, so that the rounding of the middle is relative to it.
         let radius = length_up(first).max(length_up(last));
         let length = length_up(half);
-        let distance = (radius + extent.from_followed + separation) * UP;
+        let distance = (radius + extent.from_reference + separation) * UP;
         let window = motions
             .times_within(distance)
             .map(|part| if part.width() > SHARED * motions.window.width() { motions.window } else { part });

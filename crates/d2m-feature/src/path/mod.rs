@@ -41,14 +41,14 @@ pub(crate) trait FeaturePath {
     fn rounding(&self) -> f64;
 }
 
-/// A jet along a direction, as a quadratic in the time from the jet's centre.
+/// A jet along a direction, as a quadratic in the time from the jet's center.
 /// (The third derivative is left to the remainder.)
 #[inline(always)]
 pub(crate) fn along(jet: &PathJet, d: DVec3) -> Quadratic {
     Quadratic { value: d.dot(jet.p), slope: d.dot(jet.v), curvature: d.dot(jet.a) }
 }
 
-/// A jet along a direction, as a cubic in the time from the jet's centre.
+/// A jet along a direction, as a cubic in the time from the jet's center.
 #[inline(always)]
 pub(crate) fn cubic_along(jet: &PathJet, d: DVec3) -> Cubic {
     Cubic { value: d.dot(jet.p), slope: d.dot(jet.v), curvature: d.dot(jet.a), jerk: d.dot(jet.j) }

@@ -41,7 +41,7 @@ pub(crate) struct RigidPath<'a> {
     motion: &'a FramedMotion,
     point: DVec3,
     direction: DVec3,
-    /// What jets to third order need, once one is asked for.
+    /// What jets to third order need, once one is needed.
     third_order: Option<ThirdOrder>,
     window: Option<Piece>,
     point_remainder: Remainder,

@@ -22,7 +22,7 @@ pub(crate) struct PointTriangleTest<'a, P> {
     inside: Piece,
 }
 
-/// Part of the triangle's radius that the path must move in half a piece for the sphere to be worth a look.
+/// Part of the triangle's radius that the path must move in half a piece for the sphere for that test to be worth its time.
 const NEARBY: f64 = 1.0;
 
 /// Part of the feature's size that a remainder may reach before a piece is worth an evaluation; tuned on the random
@@ -160,7 +160,7 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
     }
 }
 
-/// Turns clear radii around `at` into a measurement on the piece.
+/// Turns how far to the left and right of `at` no contact is possible into a measurement on the piece.
 pub(crate) fn cleared(clear: Piece, whole: Piece, at: f64, piece: Piece, distance: f64) -> Measurement {
     if clear.lo >= clear.hi {
         return Measurement { distance, clear_lo: at, clear_hi: at };
@@ -180,7 +180,7 @@ impl<P: FeaturePath> PointTriangleTest<'_, P> {
     }
 
     /// The part of a piece in which the point may be in the sphere about the triangle: as a whole along the line of
-    /// centres, from either end along the velocity.
+    /// centers, from either end along the velocity.
     #[inline(always)]
     fn near(&self, jet: &PathJet, whole: Piece, h: f64) -> Option<Piece> {
         let planes = self.planes;

@@ -1,7 +1,7 @@
 //! Two edges, all four vertices on straight paths.
 use super::Lines;
 use super::linear::{Line, clear_above};
-use super::point_triangle::corners;
+use super::point_triangle::vertices;
 use super::triple_product::{Seen, TripleProduct};
 use crate::accurate_cross::{Difference, accurate_cross};
 use crate::closest;
@@ -50,7 +50,7 @@ impl StraightEdgeEdge {
         [w.from(at), e.from(at), d.from(at)]
     }
 
-    /// All four corners `w ± e ± d` on one side throughout, seen along the line of the midpoints.
+    /// All four vertices `w ± e ± d` on one side throughout, seen along the line of the midpoints.
     #[inline(always)]
     fn apart(&self, [w, e, d]: &[Line; 3], h: f64) -> bool {
         let n = w.p;
@@ -133,7 +133,7 @@ impl PieceTest for StraightEdgeEdge {
         let mut clear = Piece { lo: 0.0, hi: 0.0 };
         let mut best = 0.0;
         let mut consider = |n: DVec3| {
-            let (gap, radii) = clear_above(&corners(&w, &e, &d, n), margin);
+            let (gap, radii) = clear_above(&vertices(&w, &e, &d, n), margin);
             if gap > best {
                 best = gap;
                 clear = radii;

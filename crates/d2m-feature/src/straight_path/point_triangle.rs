@@ -10,10 +10,10 @@ use crate::rounding::{CLOSE, UNDERFLOW, UP, length_up};
 use d2m_root::{Band, Measurement, Piece, PieceTest, Verdict};
 use glam::DVec3;
 
-/// The piece test. With `a` from a corner to the point and `e₁`, `e₂` from it to the others: `f = a·(e₁ × e₂)`, a cubic,
+/// The piece test. With `a` from a vertex to the point and `e₁`, `e₂` from it to the others: `f = a·(e₁ × e₂)`, a cubic,
 /// known exactly up to rounding.
 pub(super) struct StraightPointTriangle {
-    /// From t = 0: `a`, `e₁`, `e₂`. The corner is the one across from the side that is longest at the start.
+    /// From t = 0: `a`, `e₁`, `e₂`. The vertex is the one across from the side that is longest at the start.
     lines: [Line; 3],
     error: f64,
     size: f64,
@@ -29,7 +29,7 @@ impl StraightPointTriangle {
         let Lines { start, velocity, .. } = lines;
         let square = |a: usize, b: usize| (start[a] - start[b]).length_squared();
         let squares = [square(2, 3), square(3, 1), square(1, 2)];
-        let (corner, first, second, square) = if squares[0] >= squares[1] && squares[0] >= squares[2] {
+        let (vertex, first, second, square) = if squares[0] >= squares[1] && squares[0] >= squares[2] {
             (1, 2, 3, squares[0])
         } else if squares[1] >= squares[2] {
             (2, 3, 1, squares[1])
@@ -37,7 +37,7 @@ impl StraightPointTriangle {
             (3, 1, 2, squares[2])
         };
         let between = |a: usize, b: usize| Line { p: start[a] - start[b], v: velocity[a] - velocity[b] };
-        let (a, e1, e2) = (between(0, corner), between(first, corner), between(second, corner));
+        let (a, e1, e2) = (between(0, vertex), between(first, vertex), between(second, vertex));
         let speeds = [a.v.length_squared(), (a.v - e1.v).length_squared(), (a.v - e2.v).length_squared()];
         let speed = largest(&speeds).sqrt() * UP + UNDERFLOW;
         let error = lines.error(48.0);
@@ -53,13 +53,13 @@ impl StraightPointTriangle {
         }
     }
 
-    /// The vectors from the three corners to the point.
+    /// The vectors from the three vertices to the point.
     #[inline(always)]
     fn differences([a, e1, e2]: &[Line; 3]) -> [Line; 3] {
         [*a, a.minus(e1), a.minus(e2)]
     }
 
-    /// Outside throughout, seen along the line from the mean of the corners to the point.
+    /// Outside throughout, seen along the line from the mean of the vertices to the point.
     #[inline(always)]
     fn apart(&self, [a, e1, e2]: &[Line; 3], h: f64) -> bool {
         let away = a.p * 3.0 - (e1.p + e2.p);
@@ -145,9 +145,9 @@ impl PieceTest for StraightPointTriangle {
 
     fn measure(&mut self, piece: Piece, at: f64) -> Measurement {
         let lines = Self::differences(&self.lines.map(|line| line.from(at)));
-        let corners = lines.map(|line| -line.p);
-        let normal = direction((corners[1] - corners[0]).cross(corners[2] - corners[0]));
-        let pair = closest::point_triangle(DVec3::ZERO, &corners, normal);
+        let vertices = lines.map(|line| -line.p);
+        let normal = direction((vertices[1] - vertices[0]).cross(vertices[2] - vertices[0]));
+        let pair = closest::point_triangle(DVec3::ZERO, &vertices, normal);
         let distance = length_up(pair.difference) + self.error - self.separation;
         let whole = local(piece, at);
         let margin = self.error + self.separation;
@@ -165,7 +165,7 @@ impl PieceTest for StraightPointTriangle {
             consider(normal);
             consider(-normal);
             for i in 0..3 {
-                consider(direction((corners[(i + 1) % 3] - corners[i]).cross(normal)));
+                consider(direction((vertices[(i + 1) % 3] - vertices[i]).cross(normal)));
             }
         }
         cleared(clear, whole, at, piece, distance)
@@ -173,11 +173,11 @@ impl PieceTest for StraightPointTriangle {
 }
 
 /// Used by the edge test: the functions `w ± e ± d` along a direction.
-pub(super) fn corners(w: &Line, e: &Line, d: &Line, n: DVec3) -> [Linear; 4] {
+pub(super) fn vertices(w: &Line, e: &Line, d: &Line, n: DVec3) -> [Linear; 4] {
     let (w, e, d) = (w.along(n), e.along(n), d.along(n));
-    let corner = |s: f64, t: f64| Linear {
+    let vertex = |s: f64, t: f64| Linear {
         value: w.value + s * e.value + t * d.value,
         slope: w.slope + s * e.slope + t * d.slope,
     };
-    [corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, 1.0), corner(-1.0, -1.0)]
+    [vertex(1.0, 1.0), vertex(1.0, -1.0), vertex(-1.0, 1.0), vertex(-1.0, -1.0)]
 }

@@ -46,7 +46,7 @@ fn inside(p: &Exact, t: &[Exact; 3], normal: &Exact) -> bool {
     (0..3).all(|k| dot(&cross(&sub(&t[(k + 1) % 3], &t[k]), &sub(p, &t[k])), normal) >= RBig::ZERO)
 }
 
-/// Exact squared distance: sides against sides (interior critical point and ends), corners against faces, sides through
+/// Exact squared distance: sides against sides (interior critical point and ends), vertices against faces, sides through
 /// faces. The minimum over a pair of convex polygons is one of these.
 fn squared_distance(a: &[DVec3; 3], b: &[DVec3; 3]) -> RBig {
     let (a, b) = (a.map(exact), b.map(exact));
@@ -139,7 +139,7 @@ proptest! {
         prop_assert!(width < 3e-14, "{}", width);
     }
 
-    /// Small integers: every coincidence happens (shared corners and edges, coplanar, collinear, points).
+    /// Small integers: every coincidence happens (shared vertices and edges, coplanar, collinear, points).
     #[test]
     fn coincidences(a in prop::array::uniform3(grid()), b in prop::array::uniform3(grid()), scale in prop::sample::select(vec![1.0, 0.1, 1e-200, 1e50])) {
         let width = check(a.map(|p| p * scale), b.map(|p| p * scale));
@@ -148,21 +148,21 @@ proptest! {
 
     /// A planted feature pair at a tiny distance: B starts as a point, a segment or a face on A, moved along a normal.
     #[test]
-    fn nearly_touching(a in prop::array::uniform3(point()), b in prop::array::uniform3(point()), weights in prop::array::uniform3(0.0..1.0_f64), gap in -14_i32..-3, corner in 0..3_usize) {
+    fn nearly_touching(a in prop::array::uniform3(point()), b in prop::array::uniform3(point()), weights in prop::array::uniform3(0.0..1.0_f64), gap in -14_i32..-3, vertex in 0..3_usize) {
         let total: f64 = weights.iter().sum();
         prop_assume!(total > 0.1);
         let foot = (a[0] * weights[0] + a[1] * weights[1] + a[2] * weights[2]) / total;
-        let shift = foot - b[corner] + DVec3::new(0.3, -0.5, 0.8) * 10_f64.powi(gap);
+        let shift = foot - b[vertex] + DVec3::new(0.3, -0.5, 0.8) * 10_f64.powi(gap);
         let width = check(a, b.map(|p| p + shift));
         prop_assert!(width < 3e-14, "{}", width);
     }
 
-    /// Slivers: corners squeezed along random axes.
+    /// Slivers: vertices squeezed along random axes.
     #[test]
     fn slivers(a in prop::array::uniform3(point()), b in prop::array::uniform3(point()), thin in -15_i32..1, thinner in -15_i32..1, gap in -14_i32..1) {
-        let squeeze = |corners: [DVec3; 3], axis: DVec3, factor: f64| {
+        let squeeze = |vertices: [DVec3; 3], axis: DVec3, factor: f64| {
             let axis = axis.normalize();
-            corners.map(|p| p - axis * (axis.dot(p - corners[0]) * (1.0 - factor)))
+            vertices.map(|p| p - axis * (axis.dot(p - vertices[0]) * (1.0 - factor)))
         };
         let a = squeeze(a, a[1].cross(a[2]) + a[0], 10_f64.powi(thin));
         let b = squeeze(b, b[0] + DVec3::Z, 10_f64.powi(thinner));

@@ -25,7 +25,7 @@ fn end(text: &str) -> Result<End, ParseIntervalError> {
 
 /// `m ? r [u|d] [e exponent]`: the decimal m, give or take r units of its last digit (half a unit without r, any
 /// amount with a second question mark), upwards or downwards only with `u` or `d`.
-fn uncertain(centre: &str, rest: &str) -> Result<Interval, ParseIntervalError> {
+fn uncertain(center: &str, rest: &str) -> Result<Interval, ParseIntervalError> {
     let (rest, power) = match rest.split_once('e') {
         Some((rest, power)) => (rest, exponent(power)?),
         None => (rest, 0),
@@ -35,18 +35,18 @@ fn uncertain(centre: &str, rest: &str) -> Result<Interval, ParseIntervalError> {
         Some(b'd') => (&rest[..rest.len() - 1], Some(true)),
         _ => (rest, None),
     };
-    if centre.contains(['e', 'x', 'p', '/']) {
+    if center.contains(['e', 'x', 'p', '/']) {
         return syntax();
     }
-    let mut centre = Number::read(centre)?;
-    centre.decimal += power;
-    let (mut lo, mut hi) = centre.enclose();
+    let mut center = Number::read(center)?;
+    center.decimal += power;
+    let (mut lo, mut hi) = center.enclose();
     if rest == "?" {
         lo = f64::NEG_INFINITY;
         hi = f64::INFINITY;
         match direction {
-            Some(false) => lo = centre.enclose().0,
-            Some(true) => hi = centre.enclose().1,
+            Some(false) => lo = center.enclose().0,
+            Some(true) => hi = center.enclose().1,
             None => {}
         }
         return Ok(Interval::raw(lo, hi));
@@ -60,10 +60,10 @@ fn uncertain(centre: &str, rest: &str) -> Result<Interval, ParseIntervalError> {
         Big::from_decimal(rest.as_bytes()).plus(&Big::from_decimal(rest.as_bytes()))
     };
     if direction != Some(false) {
-        lo = centre.moved(&steps, true).enclose().0;
+        lo = center.moved(&steps, true).enclose().0;
     }
     if direction != Some(true) {
-        hi = centre.moved(&steps, false).enclose().1;
+        hi = center.moved(&steps, false).enclose().1;
     }
     Ok(Interval::raw(lo, hi))
 }
@@ -91,8 +91,8 @@ impl FromStr for Interval {
     fn from_str(text: &str) -> Result<Self, ParseIntervalError> {
         let text = text.trim().to_ascii_lowercase();
         let Some(inner) = text.strip_prefix('[') else {
-            if let Some((centre, rest)) = text.split_once('?') {
-                return uncertain(centre, rest);
+            if let Some((center, rest)) = text.split_once('?') {
+                return uncertain(center, rest);
             }
             let (lo, hi) = Number::read(&text)?.enclose();
             return Ok(Self::raw(lo, hi));

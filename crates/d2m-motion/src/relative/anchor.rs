@@ -1,6 +1,6 @@
-//! Anchors: reference points far from the centres of rotation, evaluated in double-double.
+//! Anchors: reference points far from the centers of rotation, evaluated in double-double.
 //!
-//! A vertex 1e6 away from its body's centre of rotation loses 1e-10 to rounding alone. With a body point near the
+//! A vertex 1e6 away from its body's center of rotation loses 1e-10 to rounding alone. With a body point near the
 //! feature as anchor on either side, the frame's position is made in double-double from the exact inputs, relative
 //! to B's anchor, and only short vectors are rounded in double precision.
 use super::{Frame, RelativeMotion, UNIT, UP};
@@ -19,7 +19,7 @@ pub(super) struct Anchor {
     pub(super) point_a: DVec3,
     /// Anchor on B, body frame, exact.
     pub(super) point_b: DVec3,
-    /// Vector from A's followed point to the anchor, world axes at the epoch.
+    /// Vector from A's reference point to the anchor, world axes at the epoch.
     arm_a: [DoubleDouble; 3],
     /// The same for B.
     arm_b: [DoubleDouble; 3],
@@ -33,7 +33,7 @@ pub(super) struct Anchor {
 
 impl RelativeMotion {
     /// The same motion with points measured from `point_a` and `point_b` (body frames) and frames whose position is
-    /// made in extended precision: about ten times slower, for features far from their centre of rotation.
+    /// made in extended precision: about ten times slower, for features far from their center of rotation.
     pub fn anchored(&self, point_a: DVec3, point_b: DVec3) -> Self {
         let arm = |point: DVec3, at: DVec3| [0, 1, 2].map(|i| DoubleDouble::from_difference(point[i], at[i]));
         let arm_a = self.exact.rotation_a.apply(arm(point_a, self.at_a));

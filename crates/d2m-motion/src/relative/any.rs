@@ -33,7 +33,7 @@ pub struct RelativeState {
     rotation_b: DMat3,
     at_a: DVec3,
     at_b: DVec3,
-    /// G0, G1, G2: derivatives of the followed point of A, world axes.
+    /// G0, G1, G2: derivatives of the reference point of A, world axes.
     shift: [DVec3; 3],
     /// Ω = ω_A − ω_B.
     spin: DVec3,
@@ -221,7 +221,7 @@ impl RelativeState {
         [z, first, self.spin_rate.cross(z) + self.spin.cross(first)]
     }
 
-    /// Jet, in B's body frame, of the point of A at `arm` (body frame) from the followed point.
+    /// Jet, in B's body frame, of the point of A at `arm` (body frame) from the reference point.
     ///
     /// `radius` bounds `|arm|`, and `arm` may be off by 2·2⁻⁵³ of it. The remainder counts a dot product with a
     /// direction of length at most 1 and the comparison with points of B within `extent` of the origin of its frame.
@@ -258,7 +258,7 @@ impl RelativeState {
         }
     }
 
-    /// The remainder of every point within `radius` of the followed point.
+    /// The remainder of every point within `radius` of the reference point.
     #[inline(always)]
     pub fn remainder(&self, radius: f64, extent: f64) -> Remainder {
         let (s, t) = (&self.shift_remainder, &self.turn_remainder);

@@ -180,7 +180,7 @@ pub struct OffsetRange {
 }
 
 impl RelativeMotion {
-    /// Bound of the distance from B's followed point of a point of A within `radius`: `Y + ρ`.
+    /// Bound of the distance from B's reference point of a point of A within `radius`: `Y + ρ`.
     pub fn bound_reach(&self, radius: f64) -> f64 {
         (self.bounds.reach + radius + self.anchor_arm()) * UP
     }
@@ -228,7 +228,7 @@ impl RelativeMotion {
         Some(OffsetRange { from: from.max(0.0), to: to.min(self.duration) })
     }
 
-    /// Bound V of the speed of a point of A within `radius` of A's followed point: `U + bY⊥ + wρ`.
+    /// Bound V of the speed of a point of A within `radius` of A's reference point: `U + bY⊥ + wρ`.
     ///
     /// Y⊥ is the greatest distance of A's reference point from the axis of B's spin through B's: what lies along that axis
     /// does not turn. With an anchor, `radius` is from the anchor and the arm of the anchor is added.
@@ -253,7 +253,7 @@ impl RelativeMotion {
         self.bound_jerk_within(radius, self.bounds.reach)
     }
 
-    /// The same while the followed points are within `reach` of each other.
+    /// The same while the reference points are within `reach` of each other.
     fn bound_jerk_within(&self, radius: f64, reach: f64) -> f64 {
         let k = &self.bounds;
         (k.b * (3.0 * k.across + k.b * k.swept_within(reach)) + k.k3 * (radius + self.anchor_arm())) * UP
@@ -280,7 +280,7 @@ impl RelativeMotion {
         self.point_remainder_within(radius, extent, self.bounds.reach)
     }
 
-    /// The same for times at which the followed points are within `reach` of each other: `Y = reach`, plus 8·2⁻⁵³ of
+    /// The same for times at which the reference points are within `reach` of each other: `Y = reach`, plus 8·2⁻⁵³ of
     /// the window's Y for the rounding of g + uτ itself.
     pub fn point_remainder_within(&self, radius: f64, extent: f64, reach: f64) -> Remainder {
         let k = &self.bounds;
@@ -298,7 +298,7 @@ impl RelativeMotion {
         }
     }
 
-    /// Bound M4 of the fourth derivative while the followed points are within `reach` of each other:
+    /// Bound M4 of the fourth derivative while the reference points are within `reach` of each other:
     /// `b²(4|ω_B × u| + b²Y⊥) + K4·ρ`.
     pub fn bound_fourth_derivative_within(&self, radius: f64, reach: f64) -> f64 {
         let k = &self.bounds;

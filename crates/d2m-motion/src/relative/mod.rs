@@ -31,9 +31,9 @@ pub(crate) const UP: f64 = 1.0 + 1e-14;
 /// Motion of body A relative to body B over a window of time, both of constant twist.
 ///
 /// Everything is expressed in the *epoch frame of B*: it moves with B, and at the start `t0` of the window its axes are
-/// the world's and its origin is B's followed point. `τ = t − t0` runs from 0 to [`RelativeMotion::duration`].
+/// the world's and its origin is B's reference point. `τ = t − t0` runs from 0 to [`RelativeMotion::duration`].
 /// A point of B is constant in it ([`RelativeMotion::place_b`]); a point of A, given by
-/// [`RelativeMotion::place_a`] as the vector `r` from A's followed point in world axes at `t0`, moves on
+/// [`RelativeMotion::place_a`] as the vector `r` from A's reference point in world axes at `t0`, moves on
 /// `q(τ) = exp(−[ω_B]τ)·(g + uτ + exp([ω_A]τ)·r)`, `g = x_A − x_B` at `t0`, `u = v_A − v_B`.
 ///
 /// ```
@@ -179,7 +179,7 @@ impl RelativeMotion {
         self.spin_b.speed
     }
 
-    /// A point of A (body frame) as the vector from A's followed point (from the anchor, if there is one), world
+    /// A point of A (body frame) as the vector from A's reference point (from the anchor, if there is one), world
     /// axes at the epoch. Error ≤ 8·2⁻⁵³ of its length, which [`RelativeMotion::point_remainder`] counts.
     #[inline]
     pub fn place_a(&self, point: DVec3) -> DVec3 {

@@ -216,7 +216,7 @@ fn directions_and_anchors_keep_their_remainders() {
             assert!(error <= jet.remainder.bound(h), "{error:e}");
         }
 
-        // The same point through an anchor a million units out, on a motion about a far centre.
+        // The same point through an anchor a million units out, on a motion about a far center.
         let far = random.vector() * 1e6;
         let a = ConstantTwist::REST
             .with_position(random.vector() - far)

@@ -59,8 +59,8 @@ fn clipping_keeps_every_time_in_the_band() {
             curvature: 9.0 * random.signed(),
         };
         let other = Quadratic { value: random.signed(), slope: random.signed(), curvature: random.signed() };
-        let (centre, margin) = (random.signed(), 0.3 * random.unit());
-        let band = Band { lo: centre - margin, hi: centre + margin };
+        let (center, margin) = (random.signed(), 0.3 * random.unit());
+        let band = Band { lo: center - margin, hi: center + margin };
         let part = Piece { lo: -random.unit(), hi: random.unit() };
         let clipped = q.clip(band, part);
         let shared = q.clip_shared_sign(&other, margin, part);

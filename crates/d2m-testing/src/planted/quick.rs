@@ -128,8 +128,8 @@ fn place<const N: usize>(motion: &ConstantTwist, points: [DVec3; N], t: Double2)
     let q = motion.orientation();
     let start = (q.w.into(), [q.x.into(), q.y.into(), q.z.into()]);
     let turn = exponential(motion.angular_velocity(), s);
-    let centre = add(vector(motion.position()), scale(vector(motion.linear_velocity()), s));
-    points.map(|p| add(centre, turned(turn, turned(start, sub(vector(p), vector(motion.at()))))))
+    let center = add(vector(motion.position()), scale(vector(motion.linear_velocity()), s));
+    points.map(|p| add(center, turned(turn, turned(start, sub(vector(p), vector(motion.at()))))))
 }
 
 /// Where the four vertices are at a time.

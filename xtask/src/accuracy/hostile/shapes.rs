@@ -11,10 +11,10 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    /// A box with these half extents about a centre.
-    pub(super) fn cuboid(half: DVec3, centre: DVec3) -> Self {
+    /// A box with these half extents about a center.
+    pub(super) fn cuboid(half: DVec3, center: DVec3) -> Self {
         let corner = |i: u32| {
-            centre
+            center
                 + half * (DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 2.0 - 1.0)
         };
         let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];

@@ -120,7 +120,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/src/search/node_pair/entry_time.rs::bevelled_boxes_reach_as_far_as_their_points",
     ),
     patch(
-        "along the line of the centres one of the boxes has no size",
+        "along the line of the centers one of the boxes has no size",
         "crates/d2m-bvh/src/search/node_pair/entry_time.rs",
         "(reach_line.first() + reach_line.second())",
         "reach_line.first()",

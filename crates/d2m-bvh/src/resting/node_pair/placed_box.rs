@@ -12,7 +12,7 @@ pub(super) const GAP_ERROR: f64 = 32.0 * UNIT_F32;
 pub(super) struct Side {
     /// Columns of the rotation into the wide body's frame.
     pub(super) rotation: [DVec3; 3],
-    /// Centre of the single body's tree from that of the wide one.
+    /// Center of the single body's tree from that of the wide one.
     pub(super) offset: DVec3,
     /// Unit of the single body over that of the wide one.
     pub(super) ratio: f64,
@@ -113,7 +113,7 @@ fn narrow(v: DVec3) -> [f32; 3] {
     [v.x as f32, v.y as f32, v.z as f32]
 }
 
-/// The centre of a box from the centre of its tree, wide body's axes and unit.
+/// The center of a box from the center of its tree, wide body's axes and unit.
 #[inline(always)]
 fn arm(side: &Side, origin: [f32; 3], center: [f32; 3]) -> DVec3 {
     let p = (vector(origin) + vector(center)) * side.ratio;

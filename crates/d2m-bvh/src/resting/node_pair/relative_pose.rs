@@ -8,8 +8,8 @@ use glam::{DQuat, DVec3};
 /// Lengths beyond this are refused: squares and cubes of them could overflow.
 const LARGEST: f64 = 1e100;
 
-/// Body A in the frame of B's tree: a point p of A (from the centre of A's tree, body axes) is at R·p + T from the
-/// centre of B's tree, in B's axes.
+/// Body A in the frame of B's tree: a point p of A (from the center of A's tree, body axes) is at R·p + T from the
+/// center of B's tree, in B's axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RelativePose {
     /// Columns of R as computed.
@@ -75,7 +75,7 @@ impl RelativePose {
         Ok(Self { rotation: columns.map(IntervalVec3::mid), offset: middle, error, size })
     }
 
-    /// Columns of Rᵀ and the centre of B's tree from A's, in A's axes.
+    /// Columns of Rᵀ and the center of B's tree from A's, in A's axes.
     pub(crate) fn inverse(&self) -> ([DVec3; 3], DVec3) {
         let [x, y, z] = self.rotation;
         let offset = DVec3::new(x.dot(self.offset), y.dot(self.offset), z.dot(self.offset));

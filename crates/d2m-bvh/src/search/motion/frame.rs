@@ -43,7 +43,7 @@ struct BodyRotation {
 struct Turned {
     /// Axes of the body.
     rotation: Matrix,
-    /// From the reference point to the centre of the tree, and its rate.
+    /// From the reference point to the center of the tree, and its rate.
     arm: Quad,
     arm_velocity: Quad,
 }
@@ -111,9 +111,9 @@ pub(crate) struct Frame {
     pub(crate) offset: f64,
     /// Axes of A.
     pub(crate) rotation: Matrix,
-    /// Centre of A's tree minus that of B's.
+    /// Center of A's tree minus that of B's.
     pub(crate) apart: Quad,
-    /// Velocity of the first centre minus that of the second.
+    /// Velocity of the first center minus that of the second.
     pub(crate) velocity: Quad,
     pub(crate) omega_a: Quad,
     pub(crate) omega_b: Quad,
@@ -184,7 +184,7 @@ impl RelativeMotion {
     pub(crate) fn placed_frame<D: Doubles>(&self, offset: f64) -> PlacedFrame {
         let [body_a, body_b] = &self.bodies;
         let (a, b) = (body_a.at::<D>(offset), body_b.at::<D>(offset));
-        // Centre of A minus centre of B, and its rate, world axes.
+        // Center of A minus center of B, and its rate, world axes.
         let velocity = D::load(&self.velocity);
         let moved = D::load(&self.position) + velocity * D::splat(offset);
         let apart = moved + (D::load(&a.arm) - D::load(&b.arm));

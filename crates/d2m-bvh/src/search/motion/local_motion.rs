@@ -9,9 +9,9 @@ use glam::DVec3;
 
 /// A constant twist, times and lengths in [`Units`].
 ///
-/// The reference point is moved where it is nearest to the centre of the body: along the axis of the spin, or anywhere
+/// The reference point is moved where it is nearest to the center of the body: along the axis of the spin, or anywhere
 /// if there is no spin. That changes its position by a vector that is the same at all times, and nothing else of the
-/// motion; so distances from it are distances from the axis as far as the body's centre is concerned.
+/// motion; so distances from it are distances from the axis as far as the body's center is concerned.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LocalMotion {
     position: DVec3,
@@ -19,7 +19,7 @@ pub(crate) struct LocalMotion {
     angular_velocity: DVec3,
     /// From the given reference point to the one in use, world axes.
     shift: DVec3,
-    /// From the reference point in use, and from the given one, to the centre of the tree, body axes.
+    /// From the reference point in use, and from the given one, to the center of the tree, body axes.
     arm: DVec3,
     given_arm: DVec3,
     turning: FixedAxisRotation,
@@ -28,7 +28,7 @@ pub(crate) struct LocalMotion {
 }
 
 impl LocalMotion {
-    /// Of a body with this centre.
+    /// Of a body with this center.
     pub(crate) fn new(motion: &ConstantTwist, center: DVec3, start: f64, units: &Units) -> Self {
         let (per_length, time, per_time) = (1.0 / units.length(), units.time(), 1.0 / units.time());
         let angular_velocity = motion.angular_velocity() * time;
@@ -90,12 +90,12 @@ impl LocalMotion {
         self.shift
     }
 
-    /// From the reference point in use to the centre of the tree, body axes.
+    /// From the reference point in use to the center of the tree, body axes.
     pub(crate) const fn arm(&self) -> DVec3 {
         self.arm
     }
 
-    /// From the given reference point to the centre of the tree, body axes.
+    /// From the given reference point to the center of the tree, body axes.
     pub(crate) const fn given_arm(&self) -> DVec3 {
         self.given_arm
     }

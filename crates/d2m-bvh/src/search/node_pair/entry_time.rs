@@ -48,14 +48,14 @@ struct GapAndRate<T> {
 /// What holds for the speeds along every axis.
 #[derive(Clone, Copy)]
 struct RateBounds<T> {
-    /// Speeds of the boxes' points differ by at most this from those of the centres.
+    /// Speeds of the boxes' points differ by at most this from those of the centers.
     spread: T,
     /// Least closing speed that is reckoned with.
     least: T,
 }
 
 impl<T: Elementwise> GapAndRate<T> {
-    /// The centres are `along` apart on the axis and part at `parting` (in the sense of the axis), the boxes and the
+    /// The centers are `along` apart on the axis and part at `parting` (in the sense of the axis), the boxes and the
     /// margin reach `reach`.
     #[inline(always)]
     fn new(along: T, reach: T, parting: T, rate: RateBounds<T>) -> Self {
@@ -79,10 +79,10 @@ impl<T: Elementwise> GapAndRate<T> {
 /// Lower bounds on the times, counted from the frame, until which each lane's box stays apart from the single one;
 /// not positive, or not a number, where nothing is known. In units of the window, not yet clipped.
 ///
-/// Five directions are evaluated: the middle axes of both boxes side by side, the last axes, and the line of the centres.
+/// Five directions are evaluated: the middle axes of both boxes side by side, the last axes, and the line of the centers.
 #[inline(always)]
 pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &NodeScale) -> L {
-    // Twice, for the two axes: from the lane's centre to the single one's, and the velocity there.
+    // Twice, for the two axes: from the lane's center to the single one's, and the velocity there.
     let center = both::<L>(&load(&wide.center));
     let at = splat::<L::Two>(&placed.center);
     let to = [at[0] - center[0], at[1] - center[1], at[2] - center[2]];
@@ -127,7 +127,7 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
     let best = GapAndRate { gap: best.gap.first(), closing: best.closing.first() }
         .or(GapAndRate { gap: best.gap.second(), closing: best.closing.second() });
 
-    // The line of the centres: where it has no length, nothing is known along it.
+    // The line of the centers: where it has no length, nothing is known along it.
     let with_line = [
         dot(&to, &first_of_other),
         L::Two::of(along_middle.second(), along_middle.first()),

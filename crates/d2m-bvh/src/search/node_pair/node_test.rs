@@ -96,7 +96,7 @@ pub(crate) struct Placed {
     pub(super) half: [f32; 3],
     /// Of the opposite edges: for the opposite of a direction.
     pub(super) bevels: [f32; 3],
-    /// Velocity of the centre against the origin of the wide node as a point of the wide body.
+    /// Velocity of the center against the origin of the wide node as a point of the wide body.
     pub(super) velocity: [f32; 4],
     pub(super) omega_wide: [f32; 4],
     /// Bound on |ω × e| over the single box.

@@ -27,7 +27,7 @@ pub(crate) struct PlacedPose {
     /// Axes of the single body in those of the wide one, and rounded to `f32`.
     rotation: Matrix,
     narrow: [[f32; 4]; 3],
-    /// Centre of the single body's tree from that of the wide one's, in the unit of the wide body.
+    /// Center of the single body's tree from that of the wide one's, in the unit of the wide body.
     apart: Quad,
     /// Axes of the wide body in the world.
     axes: Matrix,
@@ -124,7 +124,7 @@ impl<T: Bytes> Boxes<T> {
 
 /// The boxes of a node and a single one.
 struct Boxed<L: Lanes> {
-    /// From the lanes' centres to the single one's.
+    /// From the lanes' centers to the single one's.
     to: [L::Two; 3],
     wide: Boxes<L::Two>,
     single: Boxes<L::Two>,
@@ -180,7 +180,7 @@ fn norm(v: &[f32; 4]) -> f32 {
 
 /// Bit i is set when box i of a node stays apart from a single box over the span.
 ///
-/// Three directions are tried, fixed in the world as they are in the middle of the span: the line of the centres and the last
+/// Three directions are tried, fixed in the world as they are in the middle of the span: the line of the centers and the last
 /// axes of both boxes.
 #[inline(always)]
 pub(crate) fn apart_over_span<L: Lanes>(

@@ -7,7 +7,7 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Place {
     /// Corner, by number.
-    Corner(usize),
+    Vertex(usize),
     /// The edge from this corner to the next.
     Edge(usize),
     /// Inside the triangle.
@@ -155,9 +155,9 @@ fn edge_edge((a, i): (&[DVec3; 3], usize), (b, j): (&[DVec3; 3], usize)) -> Clos
     let distance_squared = line.length_squared();
     let place = |index: usize, x: f64| {
         if x == 0.0 {
-            Place::Corner(index)
+            Place::Vertex(index)
         } else if x == 1.0 {
-            Place::Corner((index + 1) % 3)
+            Place::Vertex((index + 1) % 3)
         } else {
             Place::Edge(index)
         }
@@ -202,14 +202,14 @@ fn corner_face(
         Closest {
             distance_squared,
             points: [foot, p],
-            places: [Place::Face, Place::Corner(i)],
+            places: [Place::Face, Place::Vertex(i)],
             direction: out,
         }
     } else {
         Closest {
             distance_squared,
             points: [p, foot],
-            places: [Place::Corner(i), Place::Face],
+            places: [Place::Vertex(i), Place::Face],
             direction: -out,
         }
     };
