@@ -34,7 +34,7 @@ impl Allowance {
         Self { steps: budget.node_tests, deadline, until_reading: STEPS_A_READING }
     }
 
-    /// Takes one step, as dear as a node test.
+    /// Takes one step, which costs as much as a node test.
     #[inline(always)]
     pub(crate) fn step(&mut self) -> Result<(), Exhausted> {
         if let Some(steps) = &mut self.steps {

@@ -48,7 +48,7 @@ pub struct Contact {
     /// Separation left at `time_lo`: a distance above `min_separation` by at most 3.3 `tolerance`, 0 when the surfaces
     /// cross at the start. With [`Mode::Capoeira`](crate::Mode::Capoeira) as large as the boxes of the two triangles.
     pub separation: f64,
-    /// The tolerance δ that was used: the one asked for, unless rounding errors of the scene forbid it (then larger: 256
+    /// The tolerance δ that was used: that of the options, unless rounding errors of the scene forbid it (then larger: 256
     /// units of 2⁻⁵³ of its largest length), or numbers for time are so far apart that the bodies move by more than that
     /// from one to the next (then what is left at `time_lo`). Every promise holds for this δ.
     pub tolerance: f64,

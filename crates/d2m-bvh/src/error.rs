@@ -18,13 +18,13 @@ pub enum QueryError {
         /// The refused value.
         value: f64,
     },
-    /// The wanted separation is negative or not finite.
+    /// The minimum separation is negative or not finite.
     #[error("min_separation {value:?} must be finite and not negative")]
     BadMinSeparation {
         /// The refused value.
         value: f64,
     },
-    /// A filled solid was asked for, but the mesh does not close.
+    /// The options say that the body is a filled solid, but its mesh does not close.
     #[error("body {body} is not watertight: use Solid::Surface")]
     NotWatertight {
         /// 0 for the first body, 1 for the second.
@@ -33,7 +33,7 @@ pub enum QueryError {
     /// The motion is not finite over the window, or leaves the range in which errors can be bounded: lengths and the
     /// reach of the query stay below 2¹⁰⁰⁰, the angle since the reference time below 2⁴⁰ rad. A turn by less than 2⁻⁹⁰⁰ rad
     /// over the window must not have begun so long ago that it adds up to 2⁻⁶⁴ rad. A motion may not go so far or so
-    /// fast that its rounding alone exceeds the bodies, what is between them at the start, and the tolerance asked for: from
+    /// fast that its rounding alone exceeds the bodies, what is between them at the start, and the tolerance of the options: from
     /// some 10¹³ times all of these in one window.
     #[error(
         "motion of body {body} is not finite over the window, or turns or goes too far for bounds on its rounding"
@@ -58,7 +58,7 @@ pub enum QueryError {
         /// 0 for the first body, 1 for the second.
         body: usize,
     },
-    /// The surfaces meet, or are apart by less than rounding can tell: they have no closest features.
+    /// The surfaces meet, or their distance is below rounding: they have no closest features.
     #[error(
         "triangle {triangle_a} of body 0 and triangle {triangle_b} of body 1 are not apart: no proximities"
     )]

@@ -15,8 +15,8 @@ use core::fmt;
 pub enum Evidence {
     /// Only "nothing before `time_lo`" is proven; there may be no contact at all. The usual case of
     /// [`Mode::Capoeira`](crate::Mode::Capoeira). In the other modes it is rare: bodies that pass each other, or part
-    /// from the start, at a distance a little above `min_separation` + `tolerance`, and times at which the clock
-    /// cannot tell near from crossed.
+    /// from the start, at a distance a little above `min_separation` + `tolerance`, and times so large that no number
+    /// lies between near and crossed.
     Early,
     /// At a time of [`time_lo`, `time_hi`] the distance is proven to be at most `min_separation` + `tolerance`.
     Near,

@@ -25,7 +25,7 @@ pub struct PairCache {
     apart: Option<Apart>,
     /// The next search proves room for about so many more queries.
     ahead: f64,
-    /// Queries until the next attempt to prove more room than was asked for, and how many it will be after a failure.
+    /// Queries until the next attempt to prove more separation than a query needs, and how many it will be after a failure.
     rest: u32,
     next_rest: u32,
 }
@@ -90,7 +90,7 @@ impl PairCache {
         Some(apart.room - trajectory.deviation(&apart.trajectory)?)
     }
 
-    /// How much room to prove beyond what is asked: enough for the next queries if they go on to differ as those since
+    /// How much separation to prove beyond what the query needs: enough for the next ones if they go on to differ as those since
     /// the last proof did. None when that did not work lately, or when there is nothing to go by.
     pub(crate) fn room_to_prove(&mut self, trajectory: &RelativeTrajectory, tolerance: f64) -> Option<f64> {
         if self.rest > 0 {

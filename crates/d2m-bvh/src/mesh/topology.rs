@@ -1,4 +1,4 @@
-//! Edges, neighbours, closedness and orientation.
+//! Edges, neighbours, closedness and orientation. A *side* is one of the three directed edges of a triangle (a half-edge).
 
 use crate::TriMesh;
 use std::collections::HashSet;

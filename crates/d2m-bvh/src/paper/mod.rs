@@ -113,7 +113,7 @@ pub fn time_of_contact(
     }
 }
 
-/// Checks the input and returns the tolerance asked for.
+/// Checks the input and returns the tolerance of the options, or the default one.
 fn validate(bodies: &[Moving<'_>; 2], window: Window, options: &QueryOptions) -> Result<f64, QueryError> {
     if !(options.min_separation >= 0.0 && options.min_separation.is_finite()) {
         return Err(QueryError::BadMinSeparation { value: options.min_separation });

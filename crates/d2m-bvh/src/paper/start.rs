@@ -110,7 +110,7 @@ fn passes_through(p: DVec3, q: DVec3, face: &[DVec3; 3], margin: f64) -> bool {
 const RAYS: u32 = 64;
 
 /// Is the winding number of the closed surface about `point` not zero (odd, where the surface does not agree about its
-/// outside)? `None` where every ray met something whose side rounding could not tell.
+/// outside)? `None` where every ray met something whose side rounding left open.
 ///
 /// Every sign is certain or the ray is dropped for another, so an answer is right if `point` is off the surface.
 pub(crate) fn is_inside(tree: &SphereTree, point: DVec3) -> Option<bool> {

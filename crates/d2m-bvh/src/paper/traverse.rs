@@ -27,7 +27,7 @@ struct Stretch {
     triangle_boxes: Vec<Box3>,
 }
 
-/// A table that is filled on demand and forgotten at once.
+/// A table that is filled on demand and cleared in constant time.
 struct Lazy<T> {
     slot: Vec<u32>,
     filled: Vec<(u32, T)>,

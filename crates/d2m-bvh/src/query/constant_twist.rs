@@ -20,7 +20,7 @@ thread_local! {
     static SCRATCH: RefCell<Option<Box<Scratch>>> = const { RefCell::new(None) };
 }
 
-/// The scene of a query that may be asked; `None` when a motion has no constant twist.
+/// The scene of a query whose input is valid; `None` when a motion has no constant twist.
 pub(super) fn scene_of<'a>(
     a: Moving<'a>,
     b: Moving<'a>,

@@ -1,4 +1,4 @@
-//! What a user asks of moving bodies, and how it is answered.
+//! The queries of moving bodies: time of contact, existence of a contact, batches, and the data of a contact.
 
 mod batch;
 mod constant_twist;

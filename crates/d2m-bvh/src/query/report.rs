@@ -12,8 +12,8 @@ use d2m_feature::{FeaturePair, triangles_intersect};
 use d2m_lanes::{Doubles, Lanes, Quad, Task, run};
 use glam::DVec3;
 
-/// The contact with all its data, of a scene and its motion over the window of the search; `bracket`: search for a time by which the tolerance was reached, if that cannot be
-/// shown for `time_lo`.
+/// The contact with all its data, of a scene and its motion over the window of the search; `bracket`: search for a time by
+/// which the tolerance was reached, if that cannot be shown for `time_lo`.
 pub(super) fn contact(
     (scene, motion): (&Scene<'_>, &RelativeMotion),
     found: &Found,
@@ -84,7 +84,7 @@ impl Task for Report<'_> {
 /// What a search leaves at most, in tolerances.
 pub(super) const MOST_LEFT: f64 = 3.3;
 
-/// Where time cannot tell the tolerance apart, more of it is left: then the tolerance is what is left.
+/// Where the resolution of time is coarser than the tolerance, more separation is left: then the tolerance is what is left.
 fn cover_what_is_left(contact: &mut Contact, scene: &Scene<'_>) {
     let length = scene.units.length();
     let separation = (scene.pair.level - scene.tolerance) * length;

@@ -6,12 +6,12 @@ use crate::{Moving, QueryError, QueryOptions, TimeOfContact, Window};
 
 /// First time in `window` at which the two bodies touch.
 ///
-/// Constant twists (linear and screw motions) are searched as they are, keyframes span by span. Any other motion is
-/// followed by constant twists on spans of time, with a proven deviation that is taken from the gap: usually three to
+/// Constant twists (screw motions too) are searched as they are, keyframes span by span. Any other motion is
+/// approximated by constant twists on spans of time, with a proven deviation that is taken from the gap: usually three to
 /// five searches, most of them over short spans.
 ///
 /// Promise: never a missed contact, never a late one. See [`TimeOfContact`] and [`Contact`](crate::Contact) for what
-/// each answer certifies, and [`QueryOptions`] for what can be asked.
+/// each answer certifies, and [`QueryOptions`] for what can be chosen.
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, Moving, QueryOptions, TriMesh, Window, time_of_contact};

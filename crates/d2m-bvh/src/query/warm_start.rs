@@ -14,9 +14,9 @@ use d2m_lanes::Quad;
 /// instance from one step of a simulation to the next.
 ///
 /// Promise: the answer has the same bits whatever the cache holds. What it saves: as long as bodies do not meet, a
-/// search proves now and then that they stay further apart than was asked, and the queries in between are answered by the
+/// search proves now and then that they stay further apart than the query needs, and the queries in between are answered by the
 /// bound on how differently they move, in less than a microsecond each. A contact is always searched for, at the same cost as without
-/// a cache; whether there is one, [`contact_exists`] tells faster. Nothing is saved with a budget, in
+/// a cache; [`contact_exists`] decides faster whether there is one. Nothing is saved with a budget, in
 /// [`Mode::Capoeira`], and for motions without a constant twist. Only a search that would end at the hard cap of
 /// [`Budget::HARD_NODE_TESTS`], after a minute, may be answered by the cache although it could not decide.
 ///
@@ -31,7 +31,7 @@ use d2m_lanes::Quad;
 /// let options = QueryOptions::default();
 /// let mut cache = PairCache::new();
 /// for step in 0..100 {
-///     // Passes above, each time a little lower, then does not pass any more.
+///     // Passes above, each time a little lower, until it meets the other body.
 ///     let height = 1.5 - 0.007 * f64::from(step);
 ///     let passing = ConstantTwist::REST
 ///         .with_position(DVec3::new(-2.0, 0.0, height))
@@ -138,7 +138,7 @@ fn excludes_contact(scene: &Scene<'_>, room: f64) -> bool {
     room / scene.units.length() > scene.pair.stop + 2.0 * scene.pair.error
 }
 
-/// Searches for a larger separation than was asked for, so that the next queries need not. True: no contact now.
+/// Searches with a larger separation than the query's, so that the next queries need no search. True: no contact now.
 fn more_room(
     scene: &Scene<'_>,
     trajectory: &RelativeTrajectory,

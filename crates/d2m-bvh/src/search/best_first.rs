@@ -29,7 +29,8 @@ const MEMORY_CHECK: u32 = 128;
 /// Least unit of time of a window, for those of no length: nothing moves by more than a rounding in it.
 const LEAST_SPAN: f64 = 1.0 / 1_152_921_504_606_846_976.0; // 2⁻⁶⁰
 
-/// A search that has come this part of its way is on its way: it gets a node test for each triangle before sweeps.
+/// A search that has covered this part of its window is making progress: it gets a node test for each triangle before swept
+/// volumes are compared.
 const ON_ITS_WAY: f64 = 0.0625;
 
 /// The frame is renewed when the time has grown by more than one part in this many: an older one is as right, its
@@ -149,7 +150,7 @@ impl Search<'_> {
         })
     }
 
-    /// An offset up to which the sweeps of the bodies are apart from `now` on; none if they are not for long. `boxes`:
+    /// An offset up to which the swept volumes of the bodies are apart from `now` on; none if they are not for long. `boxes`:
     /// a pair that may be near.
     #[cold]
     #[inline(never)]

@@ -1,4 +1,4 @@
-//! Many pairs of boxes that may meet at the same time: one plane that separates all of them.
+//! A crowd, very many node pairs that may meet at the same time: one plane that separates all of them.
 //!
 //! Where n triangles of one body and m of the other come together at a point – two fans, stars, copies of one face –
 //! all n·m pairs have the same time of impact, and best first has to test each. So when many pairs wait, one of them is

@@ -128,7 +128,7 @@ impl Search<'_> {
             if known > frame.offset {
                 frame = state.motion.frame::<L::Doubles>(known);
             } else {
-                // The time left is below the resolution of time itself: as near as times can tell.
+                // The time left is below the resolution of time itself: no time between would show more.
                 state.find(known, triangles, false);
                 state.behind =
                     BackwardCertificate { reversed: frame.reversed::<L::Doubles>(), ..state.behind };

@@ -61,7 +61,7 @@ impl Search<'_> {
         }
     }
 
-    /// The next windows: so many that the threads are busy, and the search goes on without sweeps for so long.
+    /// The next windows: so many that the threads are busy, and the search goes on without swept volumes for so long.
     fn windows_worth_searching(&self, mut start: f64) -> Vec<SubWindow> {
         let (counts, threads) = (&self.scratch.counts, rayon::current_num_threads());
         let mut windows = Vec::new();

@@ -10,7 +10,7 @@ use super::motion::rotation::Columns;
 use super::motion::track::given_relative_position;
 use super::motion::units::Units;
 use crate::search::Scene;
-use crate::tree::Stamp;
+use crate::tree::TreeId;
 use crate::tree::margin::UNIT_F64;
 use glam::DVec3;
 
@@ -22,7 +22,7 @@ const TRAJECTORY_ERROR: f64 = 4096.0 * UNIT_F64;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RelativeTrajectory {
     /// Which trees.
-    stamps: [Stamp; 2],
+    trees: [TreeId; 2],
     /// The units of times and lengths.
     units: Units,
     /// Length of the window.
@@ -46,7 +46,7 @@ impl RelativeTrajectory {
         let (a, b) = (&scene.a, &scene.b);
         let velocity = a.motion.linear_velocity() - b.motion.linear_velocity();
         Self {
-            stamps: [a, b].map(|body| body.tree.stamp),
+            trees: [a, b].map(|body| body.tree.id),
             units: scene.units,
             length: scene.end,
             apart: DVec3::from_array(given_relative_position(&a.motion, &b.motion).map(|x| x.hi)),
@@ -63,7 +63,7 @@ impl RelativeTrajectory {
     /// If the bodies are further apart than d at all times of `earlier`, they are further apart than d minus this at
     /// all times of `self`, in the unit of the meshes. `None` for other bodies.
     pub(crate) fn deviation(&self, earlier: &Self) -> Option<f64> {
-        if self.stamps != earlier.stamps {
+        if self.trees != earlier.trees {
             return None;
         }
         // Units are powers of two.

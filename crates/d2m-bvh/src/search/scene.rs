@@ -198,7 +198,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Is the least tolerance that rounding allows larger than the bodies, than what is between them at the start, and than
-    /// the tolerance that was asked for? Then the bodies are within it from the start, whatever they do.
+    /// the tolerance of the options? Then the bodies are within it from the start, whatever they do.
     fn rounding_hides_the_bodies(&self, options: &QueryOptions) -> bool {
         let per_length = 1.0 / self.units.length();
         let bodies = self.a.tree.radius().max(self.b.tree.radius()) * per_length;

@@ -4,7 +4,7 @@ use super::counts::SearchCounts;
 use super::motion::frame::RelativeMotion;
 use super::queue::{Bucket, Queue, WaitingSpans};
 
-/// Memory that one search uses and the next one finds warm.
+/// Memory that one search uses and the next one uses again, without new allocations.
 #[derive(Debug)]
 pub(crate) struct Scratch {
     pub(crate) queue: Queue,

@@ -30,7 +30,7 @@ struct Part<'o> {
     axes: [[f64; 3]; 3],
 }
 
-/// Where the boxes of a node hang: the origin of the box above, and that box.
+/// What is above a node: the origin of the box above, and that box.
 struct Above {
     boxed: OrientedBox,
     origin: [f32; 3],

@@ -100,11 +100,11 @@ impl MeshTree {
             }
             bytes.extend(node.used.to_le_bytes());
             for lane in 0..node.used as usize {
-                let OrientedBox { center, axes, half_extent, bevels, radius } = node.oriented_box(lane);
+                let OrientedBox { center, axes, half_extent, slabs, radius } = node.oriented_box(lane);
                 for number in center.into_iter().chain(axes.into_iter().flatten()).chain(half_extent) {
                     bytes.extend(number.to_le_bytes());
                 }
-                bytes.extend(bevels.as_flattened());
+                bytes.extend(slabs.as_flattened());
                 bytes.extend(radius.to_le_bytes());
                 let below = match node.below(lane) {
                     Below::Triangle(triangle) => triangle | LEAF,
@@ -241,11 +241,11 @@ impl Reader<'_> {
         let center = self.f32s()?;
         let axes = [self.f32s()?, self.f32s()?, self.f32s()?];
         let half_extent = self.f32s()?;
-        let bevels = [self.bytes()?, self.bytes()?, self.bytes()?];
+        let slabs = [self.bytes()?, self.bytes()?, self.bytes()?];
         let [radius] = self.f32s()?;
         let below = self.u32()?;
         let below = if below & LEAF != 0 { Below::Triangle(below & !LEAF) } else { Below::Node(below) };
-        Some((OrientedBox { center, axes, half_extent, bevels, radius }, below))
+        Some((OrientedBox { center, axes, half_extent, slabs, radius }, below))
     }
 }
 

@@ -10,7 +10,7 @@ pub(super) struct Moments {
 }
 
 impl Moments {
-    /// Adds a triangle, weighted by its area plus a trifle so that degenerate ones still count.
+    /// Adds a triangle, weighted by its area plus a small number so that degenerate ones still count.
     #[inline]
     pub(super) fn add(&mut self, corners: &[[f64; 3]; 3]) {
         let [a, b, c] = corners;

@@ -38,27 +38,27 @@ pub struct MeshTree {
     pub(crate) repeated: Vec<u32>,
     /// One vertex of each connected component.
     pub(crate) components: Vec<u32>,
-    /// Tells this tree from every other one of the process; clones are the same tree.
-    pub(crate) stamp: Stamp,
-    /// Computed when a query first asks for it; clones share it.
+    /// A number that no other tree of the process has; clones share it.
+    pub(crate) id: TreeId,
+    /// Computed by the first query that needs it; clones share it.
     adjacency: OnceLock<Arc<Adjacency>>,
 }
 
 /// The number of a tree; two trees with the same number have the same bits.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Stamp(u64);
+pub(crate) struct TreeId(u64);
 
-impl Stamp {
+impl TreeId {
     fn next() -> Self {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         Self(COUNT.fetch_add(1, Ordering::Relaxed))
     }
 }
 
-impl core::fmt::Debug for Stamp {
+impl core::fmt::Debug for TreeId {
     /// Without the number, which says nothing about the tree.
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("Stamp")
+        f.write_str("TreeId")
     }
 }
 
@@ -68,7 +68,7 @@ impl MeshTree {
         Self::build(mesh, None)
     }
 
-    /// As [`Self::new`]; tells `progress` how many triangles are done, and how many there are, about once every few
+    /// As [`Self::new`]; reports to `progress` how many triangles are done, and how many there are, about once every few
     /// thousand triangles, from any thread.
     ///
     /// ```
@@ -96,21 +96,9 @@ impl MeshTree {
     pub(super) fn from_nodes(mesh: TriMesh, nodes: Vec<WideNode>, extent: &Extent) -> Self {
         let Closedness { watertight, oriented, repeated, components } = Closedness::of(&mesh);
         let Extent { center, radius, unit } = *extent;
-        let stamp = Stamp::next();
+        let id = TreeId::next();
         let adjacency = OnceLock::new();
-        Self {
-            mesh,
-            nodes,
-            center,
-            unit,
-            radius,
-            watertight,
-            oriented,
-            repeated,
-            components,
-            stamp,
-            adjacency,
-        }
+        Self { mesh, nodes, center, unit, radius, watertight, oriented, repeated, components, id, adjacency }
     }
 
     /// The mesh.

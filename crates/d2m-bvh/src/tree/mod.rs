@@ -1,6 +1,5 @@
 //! Trees of oriented boxes over a mesh.
 
-pub(crate) mod bevel;
 mod build;
 mod file;
 mod fit;
@@ -13,6 +12,7 @@ mod refine;
 mod refit;
 #[cfg(feature = "serde")]
 mod serde_form;
+pub(crate) mod slabs;
 mod split;
 mod surface;
 #[cfg(test)]
@@ -21,5 +21,5 @@ mod validate;
 
 pub use file::TreeFileError;
 pub use mesh_tree::MeshTree;
-pub(crate) use mesh_tree::Stamp;
+pub(crate) use mesh_tree::TreeId;
 pub use validate::TreeError;

@@ -8,11 +8,11 @@
 //! power of two [`MeshTree::unit`](crate::MeshTree::unit), so the body has a radius in (½, 1].
 //!
 //! Promise, in real arithmetic on the stored numbers: every point p (local) of every triangle of a box has
-//! |axisᵢ·(p − origin − center)| ≤ half_extentᵢ for i = 0, 1, 2 and |p − origin − center| ≤ radius, and is not in what
-//! [`bevel`](super::bevel) cuts off the edges.
+//! |axisᵢ·(p − origin − center)| ≤ half_extentᵢ for i = 0, 1, 2 and |p − origin − center| ≤ radius, and is within the
+//! [`slabs`](super::slabs) of the box.
 //! The axes are orthonormal up to their rounding to `f32`: |A·Aᵀ − I| ≤ 5.2·2⁻²⁴ in each entry.
 
-use super::bevel::Bevels;
+use super::slabs::Slabs;
 
 /// Lanes of a wide node.
 pub(crate) const WIDTH: usize = 8;
@@ -52,8 +52,8 @@ pub(crate) struct WideNode {
     pub(crate) axes: [[[f32; WIDTH]; 3]; 3],
     /// Half extents along the three axes.
     pub(crate) half_extent: [[f32; WIDTH]; 3],
-    /// For each pair of axes the bits of four bytes, see [`Bevels`]; never those of a NaN.
-    pub(crate) bevels: [[f32; WIDTH]; 3],
+    /// For each pair of axes the bits of four bytes, see [`Slabs`]; never those of a NaN.
+    pub(crate) slabs: [[f32; WIDTH]; 3],
     /// Radius about the box center.
     pub(crate) radius: [f32; WIDTH],
     /// What decides which of two boxes is expanded: the larger one. Zero for a leaf, at least [`LEAST_SIZE`] for a node,
@@ -93,7 +93,7 @@ impl WideNode {
             center: [[1e15; WIDTH]; 3],
             axes: [[[0.0; WIDTH]; 3]; 3],
             half_extent: [[0.0; WIDTH]; 3],
-            bevels: [[0.0; WIDTH]; 3],
+            slabs: [[0.0; WIDTH]; 3],
             radius: [0.0; WIDTH],
             size: [-1.0; WIDTH],
             child: [u32::MAX; WIDTH],
@@ -144,7 +144,7 @@ impl WideNode {
         for i in 0..3 {
             self.center[i][lane] = oriented.center[i];
             self.half_extent[i][lane] = oriented.half_extent[i];
-            self.bevels[i][lane] = f32::from_bits(u32::from_le_bytes(oriented.bevels[i]));
+            self.slabs[i][lane] = f32::from_bits(u32::from_le_bytes(oriented.slabs[i]));
             for k in 0..3 {
                 self.axes[i][k][lane] = oriented.axes[i][k];
             }
@@ -159,7 +159,7 @@ impl WideNode {
     /// The box of lane `lane`, read out.
     #[inline(always)]
     pub(crate) fn oriented_box(&self, lane: usize) -> OrientedBox {
-        let (c, h, a, b) = (&self.center, &self.half_extent, &self.axes, &self.bevels);
+        let (c, h, a, b) = (&self.center, &self.half_extent, &self.axes, &self.slabs);
         OrientedBox {
             center: [c[0][lane], c[1][lane], c[2][lane]],
             axes: [
@@ -168,7 +168,7 @@ impl WideNode {
                 [a[2][0][lane], a[2][1][lane], a[2][2][lane]],
             ],
             half_extent: [h[0][lane], h[1][lane], h[2][lane]],
-            bevels: [
+            slabs: [
                 b[0][lane].to_bits().to_le_bytes(),
                 b[1][lane].to_bits().to_le_bytes(),
                 b[2][lane].to_bits().to_le_bytes(),
@@ -184,7 +184,7 @@ pub(crate) struct OrientedBox {
     pub(crate) center: [f32; 3],
     pub(crate) axes: [[f32; 3]; 3],
     pub(crate) half_extent: [f32; 3],
-    /// What is cut off the edges.
-    pub(crate) bevels: Bevels,
+    /// The diagonal slabs.
+    pub(crate) slabs: Slabs,
     pub(crate) radius: f32,
 }

@@ -1,8 +1,8 @@
 //! A tree from parts that came from elsewhere.
 
-use super::bevel::MOST;
 use super::mesh_tree::MeshTree;
 use super::node::{Below, LEAF, OrientedBox, WIDTH, WideNode};
+use super::slabs::MOST;
 use super::surface::{Extent, size_of_box, unit_of};
 use super::validate::TreeError;
 use crate::TriMesh;
@@ -32,7 +32,7 @@ impl NodeParts {
         if lane >= WIDTH {
             return Err(link);
         }
-        if boxed.bevels.iter().flatten().any(|&steps| steps > MOST) {
+        if boxed.slabs.iter().flatten().any(|&steps| steps > MOST) {
             return Err(TreeError::Shape { node: index, lane });
         }
         let size = match below {

@@ -5,10 +5,10 @@
 //! [`ExactNumber`](crate::mesh::ExactNumber). The form that was written before, with plain numbers in `center`, `axes`,
 //! `half_extent`, `radius` and `origin`, is read from self-describing formats where its numbers arrive unchanged.
 
-use super::bevel::Bevels;
 use super::mesh_tree::MeshTree;
 use super::node::{Below, LEAF, OrientedBox, WIDTH, WideNode};
 use super::parts::NodeParts;
+use super::slabs::Slabs;
 use super::validate::TreeError;
 use crate::TriMesh;
 use crate::mesh::ExactNumber;
@@ -35,7 +35,7 @@ struct NodeForm {
 struct BoxForm {
     /// Of the center, the three axes, the half extents and the radius.
     bits: [u32; 16],
-    bevels: Bevels,
+    slabs: Slabs,
     below: BelowForm,
 }
 
@@ -61,9 +61,9 @@ struct EitherBox {
     axes: Option<[[f32; 3]; 3]>,
     half_extent: Option<[f32; 3]>,
     radius: Option<f32>,
-    /// Nothing is cut off where they are left out.
-    #[serde(default)]
-    bevels: Bevels,
+    /// Nothing is cut off where they are left out. They had another name before.
+    #[serde(default, alias = "bevels")]
+    slabs: Slabs,
     below: BelowForm,
 }
 
@@ -107,7 +107,7 @@ impl From<&WideNode> for NodeForm {
 
 impl BoxForm {
     fn new(boxed: &OrientedBox, below: Below) -> Self {
-        let OrientedBox { center: c, axes: [a, b, d], half_extent: h, bevels, radius } = *boxed;
+        let OrientedBox { center: c, axes: [a, b, d], half_extent: h, slabs, radius } = *boxed;
         let numbers = [
             c[0], c[1], c[2], a[0], a[1], a[2], b[0], b[1], b[2], d[0], d[1], d[2], h[0], h[1], h[2], radius,
         ];
@@ -115,7 +115,7 @@ impl BoxForm {
             Below::Triangle(triangle) => BelowForm::Triangle(triangle),
             Below::Node(node) => BelowForm::Node(node),
         };
-        Self { bits: numbers.map(f32::to_bits), bevels, below }
+        Self { bits: numbers.map(f32::to_bits), slabs, below }
     }
 
     fn boxed(&self) -> OrientedBox {
@@ -125,7 +125,7 @@ impl BoxForm {
             center: three(0),
             axes: [three(3), three(6), three(9)],
             half_extent: three(12),
-            bevels: self.bevels,
+            slabs: self.slabs,
             radius: n[15],
         }
     }
@@ -146,15 +146,15 @@ impl TryFrom<EitherBox> for BoxForm {
     type Error = &'static str;
 
     fn try_from(form: EitherBox) -> Result<Self, &'static str> {
-        let EitherBox { bits, center, axes, half_extent, radius, bevels, below } = form;
+        let EitherBox { bits, center, axes, half_extent, radius, slabs, below } = form;
         if let Some(bits) = bits {
-            return Ok(Self { bits, bevels, below });
+            return Ok(Self { bits, slabs, below });
         }
         let center = center.ok_or("bits")?;
         let axes = axes.ok_or("axes")?;
         let half_extent = half_extent.ok_or("half_extent")?;
         let radius = radius.ok_or("radius")?;
-        let boxed = OrientedBox { center, axes, half_extent, bevels, radius };
+        let boxed = OrientedBox { center, axes, half_extent, slabs, radius };
         let form = Self::new(&boxed, Below::Node(0));
         Ok(Self { below, ..form })
     }

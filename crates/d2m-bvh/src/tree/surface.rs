@@ -1,10 +1,10 @@
 //! The triangles of a mesh in local coordinates, and boxes around some of them.
 
-use super::bevel::{Bevels, EdgeReach};
 use super::fit::{Moments, dot, sub, triangle_axes};
 use super::margin::{UNIT_F64, round_up};
 use super::node::{LEAST_SIZE, OrientedBox};
 use super::refine::Extremes;
+use super::slabs::{EdgeReach, Slabs};
 use crate::TriMesh;
 use glam::DVec3;
 
@@ -135,8 +135,8 @@ impl<'a> Surface<'a> {
             }
         }
         let (half_extent, radius) = reach.outward();
-        let bevels = reach.bevels(&half_extent);
-        let boxed = OrientedBox { center, axes, half_extent, bevels, radius };
+        let slabs = reach.slabs(&half_extent);
+        let boxed = OrientedBox { center, axes, half_extent, slabs, radius };
         (boxed, size_of_box(&boxed))
     }
 }
@@ -202,8 +202,8 @@ impl Reach {
     }
 
     /// What can be cut off the edges of the box with half extents that enclose the points.
-    fn bevels(&self, half_extent: &[f32; 3]) -> Bevels {
-        self.edges.bevels(half_extent, self.slack())
+    fn slabs(&self, half_extent: &[f32; 3]) -> Slabs {
+        self.edges.slabs(half_extent, self.slack())
     }
 
     /// Is all of it proven to be in the box and its ball?
@@ -211,7 +211,7 @@ impl Reach {
         let (half, radius) = self.outward();
         (0..3).all(|i| half[i] <= boxed.half_extent[i])
             && radius <= boxed.radius
-            && self.edges.are_left_by(&boxed.bevels, &boxed.half_extent, self.slack())
+            && self.edges.are_left_by(&boxed.slabs, &boxed.half_extent, self.slack())
     }
 
     /// Half extents and radius that enclose the points in real arithmetic. Monotone: a box made from more points is

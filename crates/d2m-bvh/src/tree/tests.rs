@@ -1,8 +1,8 @@
 //! Trees that were built, refitted, written and broken.
 
-use super::bevel::{PAIRS, STEPS};
 use super::margin::UNIT_F64;
 use super::node::{Below, WIDTH};
+use super::slabs::{PAIRS, STEPS};
 use super::surface::Surface;
 use super::*;
 use crate::TriMesh;
@@ -112,7 +112,7 @@ fn boxes_enclose_in_more_than_double_precision() {
                             assert!(left > 0.0, "{left:e}");
                             tightest = tightest.min(left);
                         }
-                        for (&(i, j), cuts) in PAIRS.iter().zip(&boxed.bevels) {
+                        for (&(i, j), cuts) in PAIRS.iter().zip(&boxed.slabs) {
                             let half = [i, j].map(|k| f64::from(boxed.half_extent[k]));
                             for (place, &cut) in cuts.iter().enumerate().filter(|(_, cut)| **cut > 0) {
                                 let sign = |bit: usize| if place & bit == 0 { 1.0 } else { -1.0 };
@@ -140,8 +140,8 @@ fn boxes_enclose_in_more_than_double_precision() {
 
 /// Cuts one step more off an edge of the first box of a node.
 fn cut_more(tree: &mut MeshTree, node: usize) {
-    let bits = tree.nodes[node].bevels[0][0].to_bits();
-    tree.nodes[node].bevels[0][0] = f32::from_bits(bits + 1);
+    let bits = tree.nodes[node].slabs[0][0].to_bits();
+    tree.nodes[node].slabs[0][0] = f32::from_bits(bits + 1);
 }
 
 #[test]
@@ -236,11 +236,11 @@ fn a_written_tree_is_read_back_bit_for_bit_and_a_forged_one_refused() {
         assert!(refused.contains("does not enclose"), "{refused}");
         for forged in [127, 255] {
             let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();
-            value["nodes"][1]["boxes"][0]["bevels"][0][0] = forged.into();
+            value["nodes"][1]["boxes"][0]["slabs"][0][0] = forged.into();
             let refused = serde_json::from_value::<MeshTree>(value).unwrap_err().to_string();
             assert!(refused.contains("box 0 of node 1"), "{refused}");
         }
-        // The old form: plain numbers, and boxes without cuts.
+        // The old form: plain numbers, the old name of the slabs, and boxes without them.
         let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();
         for node in value["nodes"].as_array_mut().unwrap() {
             let float = |bits: &serde_json::Value| f32::from_bits(bits.as_u64().unwrap() as u32);
@@ -258,6 +258,8 @@ fn a_written_tree_is_read_back_bit_for_bit_and_a_forged_one_refused() {
                 boxed.insert("axes".to_owned(), serde_json::json!(axes));
                 boxed.insert("half_extent".to_owned(), three(&bits, 12).into());
                 boxed.insert("radius".to_owned(), float(&bits[15]).into());
+                let slabs = boxed.remove("slabs").unwrap();
+                boxed.insert("bevels".to_owned(), slabs);
             }
         }
         let number = |text: &serde_json::Value| text.as_str().unwrap().parse::<f64>().unwrap();
@@ -270,7 +272,7 @@ fn a_written_tree_is_read_back_bit_for_bit_and_a_forged_one_refused() {
         let plain = value["nodes"][1]["boxes"][0].as_object_mut().unwrap();
         assert!(plain.remove("bevels").is_some());
         let back: MeshTree = serde_json::from_value(value).unwrap();
-        assert_eq!(back.nodes[1].oriented_box(0).bevels, [[0; 4]; 3]);
+        assert_eq!(back.nodes[1].oriented_box(0).slabs, [[0; 4]; 3]);
     }
 }
 

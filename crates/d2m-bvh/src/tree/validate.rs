@@ -17,7 +17,7 @@ pub enum TreeError {
     /// Center, radius or unit do not fit the mesh.
     #[error("center, radius or unit of the tree do not fit its mesh")]
     Extent,
-    /// A node does not exist, hangs in two places or nowhere, or its number of boxes is wrong.
+    /// A node does not exist, is below two boxes or none, or its number of boxes is wrong.
     #[error("node {node}: not linked into one tree")]
     Link {
         /// Number of the node.
@@ -102,7 +102,7 @@ impl MeshTree {
                 }
             }
         }
-        // Every node hangs below exactly one box; that there is no ring is seen when walking down from the root.
+        // Every node is below exactly one box; the walk down from the root shows that there is no cycle.
         match (is_linked.iter().position(|&is| !is), is_held.iter().position(|&is| !is)) {
             (Some(node), _) => Err(TreeError::Link { node }),
             (_, Some(triangle)) => Err(TreeError::Triangle { triangle }),
@@ -131,7 +131,7 @@ impl MeshTree {
         self.nodes.iter().enumerate().try_for_each(check)
     }
 
-    /// Walks down from the root. Nodes in a ring hang below no root: they are not met.
+    /// Walks down from the root. Nodes in a cycle are below no root: they are not met.
     fn triangles_below(&self) -> Result<TrianglesBelow, TreeError> {
         let mut triangles = Vec::with_capacity(self.mesh.triangle_count());
         let mut first = vec![0; self.nodes.len()];

@@ -16,7 +16,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     ),
     patch(
         "edges of boxes cut off two steps too far",
-        "crates/d2m-bvh/src/tree/bevel.rs",
+        "crates/d2m-bvh/src/tree/slabs.rs",
         "(room - CUT_SLACK).min(f64::from(MOST))",
         "(room + 2.0).min(f64::from(MOST))",
         "crates/d2m-bvh/src/tree/tests.rs::boxes_enclose_in_more_than_double_precision",
@@ -114,10 +114,10 @@ pub(super) const MUTANTS: &[Mutant] = &[
     // The default engine.
     patch(
         "the cut of another edge",
-        "crates/d2m-bvh/src/tree/bevel.rs",
+        "crates/d2m-bvh/src/tree/slabs.rs",
         ".byte_of(cosines[i], cosines[j], along)",
         ".byte_of(cosines[j], cosines[i], along)",
-        "crates/d2m-bvh/src/search/node_pair/entry_time.rs::bevelled_boxes_reach_as_far_as_their_points",
+        "crates/d2m-bvh/src/search/node_pair/entry_time.rs::slabs_reach_as_far_as_their_points",
     ),
     patch(
         "along the line of the centers one of the boxes has no size",
@@ -129,8 +129,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "the cut of the opposite edge",
         "crates/d2m-bvh/src/search/node_pair/node_test.rs",
-        "bevels.to_bits().swap_bytes()",
-        "bevels.to_bits()",
+        "slabs.to_bits().swap_bytes()",
+        "slabs.to_bits()",
         "crates/d2m-bvh/src/search/tests.rs::entry_times_of_boxes_hold_and_are_sharp",
     ),
     patch(
@@ -355,7 +355,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "a refit body passes for the same",
         "crates/d2m-bvh/src/tree/refit.rs",
         "*self = Self::from_nodes(mesh, nodes, &extent);",
-        "*self = Self { stamp: self.stamp, ..Self::from_nodes(mesh, nodes, &extent) };",
+        "*self = Self { id: self.id, ..Self::from_nodes(mesh, nodes, &extent) };",
         "crates/d2m-bvh/tests/warm_start.rs::a_refit_is_noticed",
     ),
     patch(
@@ -408,7 +408,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     ),
     patch(
         "edges are cut off on the wrong side of boxes",
-        "crates/d2m-bvh/src/tree/bevel.rs",
+        "crates/d2m-bvh/src/tree/slabs.rs",
         "steps[1] += common * f64::from(cuts[3 - edge]);",
         "steps[1] += common * f64::from(cuts[edge]);",
         "crates/d2m-bvh/src/resting/node_pair/tests.rs::bounds_of_boxes_are_below_distances_of_points_and_sometimes_close",

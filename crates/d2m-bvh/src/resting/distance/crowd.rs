@@ -1,4 +1,4 @@
-//! Very many pairs of boxes that may be as close as the closest pair: one plane that separates all of them.
+//! A crowd, very many node pairs that may be as close as the closest pair: one plane that separates all of them.
 //!
 //! Where n triangles of one body and m of the other have a vertex each, and these two vertices are the closest points, all n·m
 //! pairs are equally far apart; so are copies of a face, and faces that lie parallel. Boxes never prove it: they

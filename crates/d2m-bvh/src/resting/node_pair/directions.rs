@@ -6,9 +6,9 @@
 
 use super::axes::{Axes, dot, load, splat};
 use super::placed_box::Placed;
-use crate::tree::bevel::reach;
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
+use crate::tree::slabs::reach;
 use d2m_lanes::Lanes;
 
 /// Makes computed unit vectors no longer than one: their lengths err by at most five roundings.
@@ -20,15 +20,15 @@ const LEAST_SQUARE: f32 = f32::MIN_POSITIVE;
 /// where `along` is negative.
 #[inline(always)]
 fn wide_reach<L: Lanes>(wide: &WideNode, axes: &Axes<L>, cosines: &[L; 3], along: L) -> L {
-    let bevels = load::<L>(&wide.bevels);
-    reach::<L, 3>(&axes.half, &bevels, cosines, along).min(L::load(&wide.radius))
+    let slabs = load::<L>(&wide.slabs);
+    reach::<L, 3>(&axes.half, &slabs, cosines, along).min(L::load(&wide.radius))
 }
 
 /// The same for the single box.
 #[inline(always)]
 fn single_reach<L: Lanes>(placed: &Placed, axes: &Axes<L>, cosines: &[L; 3], along: L) -> L {
-    let bevels = splat::<L>(&placed.bevels);
-    reach::<L, 3>(&axes.other_half, &bevels, cosines, along).min(L::splat(placed.radius))
+    let slabs = splat::<L>(&placed.slabs);
+    reach::<L, 3>(&axes.other_half, &slabs, cosines, along).min(L::splat(placed.radius))
 }
 
 #[inline(always)]

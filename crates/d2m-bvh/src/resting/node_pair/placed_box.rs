@@ -1,8 +1,8 @@
 //! One box of one body in the frame of a wide node of the other.
 
-use crate::tree::bevel::reach_both_ways;
 use crate::tree::margin::{UNIT_F32, round_up};
 use crate::tree::node::{OrientedBox, WideNode};
+use crate::tree::slabs::reach_both_ways;
 use glam::DVec3;
 
 /// Factor of the error bound of a gap along a box axis; docs/theory/static-queries.md counts at most 29.
@@ -31,7 +31,7 @@ pub(super) struct Placed {
     pub(super) radius: f32,
     pub(super) margin: f32,
     /// What is cut off its edges, four bytes a number.
-    pub(super) bevels: [f32; 3],
+    pub(super) slabs: [f32; 3],
     /// One more direction, wide body's axes, of length at most one.
     pub(super) along: [f32; 3],
     /// A point of what it covers, from the node's origin, projected onto that direction.
@@ -55,7 +55,7 @@ impl Placed {
             half: [half[0] * ratio, half[1] * ratio, half[2] * ratio],
             radius: round_up(radius),
             margin: round_up(GAP_ERROR * (norm + f64::from(wide.extent) + radius) + side.floor),
-            bevels: [lane_of(boxed.bevels[0]), lane_of(boxed.bevels[1]), lane_of(boxed.bevels[2])],
+            slabs: [lane_of(boxed.slabs[0]), lane_of(boxed.slabs[1]), lane_of(boxed.slabs[2])],
             along: [0.0; 3],
             at_along: 0.0,
             reach_along: [0.0; 2],
@@ -69,7 +69,7 @@ impl Placed {
         let direction = vector(n);
         let cosine = |axis: [f32; 3]| direction.dot(vector(axis));
         let cosines = [cosine(self.axes[0]), cosine(self.axes[1]), cosine(self.axes[2])];
-        let [forth, back] = reach_both_ways(&self.half, &boxed.bevels, cosines);
+        let [forth, back] = reach_both_ways(&self.half, &boxed.slabs, cosines);
         let least = |reach: f64| {
             let reach = round_up(reach);
             if reach < self.radius { reach } else { self.radius }

@@ -3,9 +3,9 @@
 use super::RelativePose;
 use super::node_test::{lower_bounds, overlaps};
 use super::placed_box::{Placed, Side};
-use crate::tree::bevel::reach_both_ways;
 use crate::tree::margin::{UNIT_F32, UNIT_F64};
 use crate::tree::node::{Below, OrientedBox, WIDTH};
+use crate::tree::slabs::reach_both_ways;
 use crate::{MeshTree, Posed, QueryError};
 use d2m_lanes::Lanes;
 use glam::DVec3;
@@ -242,7 +242,7 @@ impl<'a> Scene<'a> {
         let dot = |v: [f32; 3]| n.x * f64::from(v[0]) + n.y * f64::from(v[1]) + n.z * f64::from(v[2]);
         let [x, y, z] = boxed.axes;
         let radius = f64::from(boxed.radius);
-        let [forth, back] = reach_both_ways(&boxed.half_extent, &boxed.bevels, [dot(x), dot(y), dot(z)]);
+        let [forth, back] = reach_both_ways(&boxed.half_extent, &boxed.slabs, [dot(x), dot(y), dot(z)]);
         // The axes are orthonormal up to 5.2u.
         let more = 6.0 * UNIT_F32 * radius;
         let (forth, back) = (forth.min(radius) + more, back.min(radius) + more);

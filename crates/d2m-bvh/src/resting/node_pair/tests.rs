@@ -3,9 +3,9 @@
 use super::node_test::{lower_bounds, margin_free_gaps};
 use super::placed_box::{Placed, Side};
 use crate::random::Random;
-use crate::tree::bevel::{MOST, PAIRS, STEPS};
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::{OrientedBox, WideNode};
+use crate::tree::slabs::{MOST, PAIRS, STEPS};
 use d2m_lanes::{InstructionSet, Lanes, Portable, Task, run, run_on};
 use glam::{DMat3, DQuat, DVec3};
 
@@ -21,7 +21,7 @@ impl Random {
             center: narrow(self.vec() * spread),
             axes: [narrow(axes.x_axis), narrow(axes.y_axis), narrow(axes.z_axis)],
             half_extent: narrow(half),
-            bevels: [[0; 4]; 3],
+            slabs: [[0; 4]; 3],
             // As a built box: the radius is at least each half extent.
             radius: narrow(half)[0].max(narrow(half)[1]).max(narrow(half)[2]),
         }
@@ -98,7 +98,7 @@ fn point_within(b: &OrientedBox, random: &mut Random) -> DVec3 {
     let m = DMat3::from_cols(wide(b.axes[0]), wide(b.axes[1]), wide(b.axes[2])).transpose().inverse();
     // In half extents: on a face or an edge, mostly.
     let mut q: [f64; 3] = core::array::from_fn(|_| (random.next() * 2.0).clamp(-1.0, 1.0));
-    for (&(i, j), cuts) in PAIRS.iter().zip(&b.bevels) {
+    for (&(i, j), cuts) in PAIRS.iter().zip(&b.slabs) {
         for (edge, &cut) in cuts.iter().enumerate() {
             let sign = |bit: usize| if edge & bit == 0 { 1.0 } else { -1.0 };
             let towards = sign(1) * q[i] + sign(2) * q[j];
@@ -123,10 +123,10 @@ fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
             let most = if round % 4 == 0 { 0.0 } else { f64::from(MOST) };
             core::array::from_fn(|_| core::array::from_fn(|_| (random.next().abs() * most) as u8))
         };
-        let boxed = OrientedBox { bevels: cuts(&mut random), ..random.oriented_box(1.0, 1.0) };
+        let boxed = OrientedBox { slabs: cuts(&mut random), ..random.oriented_box(1.0, 1.0) };
         node.set_box(0, &boxed, 1.0);
         node.used = 1;
-        let single = OrientedBox { bevels: cuts(&mut random), ..random.oriented_box(1.0, 1.0) };
+        let single = OrientedBox { slabs: cuts(&mut random), ..random.oriented_box(1.0, 1.0) };
         let rotation = random.rotation();
         let offset = random.vec() * 6.0;
         let side = Side {

@@ -223,8 +223,8 @@ impl<'a> FeatureTest<'a> {
         let square = cross.length_squared();
         let delta = self.scene.error;
         let sine = square.sqrt() / (lengths[0] * lengths[1]);
-        // The edges leave each other by less than 4δ over the whole of the longer one: parallel as far as anyone can
-        // tell, and the closest points next to an end of one of them stand for all.
+        // The edges leave each other by less than 4δ over the whole of the longer one: parallel up to
+        // rounding, and the closest points next to an end of one of them stand for all.
         let spread = sine * lengths[0].max(lengths[1]);
         if spread.is_nan() || spread <= 4.0 * delta {
             return;

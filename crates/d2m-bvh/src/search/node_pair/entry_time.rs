@@ -2,9 +2,9 @@
 
 use super::node_scale::NodeScale;
 use super::node_test::Placed;
-use crate::tree::bevel::reach;
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
+use crate::tree::slabs::reach;
 use d2m_lanes::{Elementwise, Lanes, Two};
 
 /// What covers the roundings of the entry time and of unit axes.
@@ -111,11 +111,11 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
     let with_middle = [dot(&middle, &first_of_other), L::Two::both(same.first()), middle_last];
     let last_middle = L::Two::of(middle_last.second(), middle_last.first());
     let with_last = [dot(&last, &first_of_other), last_middle, L::Two::both(same.second())];
-    let bevels = [L::splat(placed.bevels[0]), L::splat(placed.bevels[1]), L::splat(placed.bevels[2])];
-    let (other_half, other_bevels) = (beside(&k, &half), beside(&bevels, &load(&wide.bevels)));
+    let slabs = [L::splat(placed.slabs[0]), L::splat(placed.slabs[1]), L::splat(placed.slabs[2])];
+    let (other_half, other_slabs) = (beside(&k, &half), beside(&slabs, &load(&wide.slabs)));
     let [along_middle, along_last] = [dot(&to, &middle), dot(&to, &last)];
-    let reach_middle = reach::<_, 1>(&other_half, &other_bevels, &with_middle, along_middle);
-    let reach_last = reach::<_, 3>(&other_half, &other_bevels, &with_last, along_last);
+    let reach_middle = reach::<_, 1>(&other_half, &other_slabs, &with_middle, along_middle);
+    let reach_last = reach::<_, 3>(&other_half, &other_slabs, &with_last, along_last);
     let sum_middle = L::Two::of(half[1], k[1]) + margin + reach_middle;
     let sum_last = L::Two::of(half[2], k[2]) + margin + reach_last;
     let best = GapAndRate::new(along_middle, sum_middle, dot(&v, &middle), rates).or(GapAndRate::new(
@@ -133,7 +133,7 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
         L::Two::of(along_middle.second(), along_middle.first()),
         L::Two::of(along_last.second(), along_last.first()),
     ];
-    let reach_line = reach::<_, 3>(&other_half, &other_bevels, &with_line, L::Two::splat(0.0));
+    let reach_line = reach::<_, 3>(&other_half, &other_slabs, &with_line, L::Two::splat(0.0));
     let line = [to[0].first(), to[1].first(), to[2].first()];
     let rate = [v[0].first(), v[1].first(), v[2].first()];
     let square = dot(&line, &line);
@@ -152,7 +152,7 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
 mod tests {
     use super::*;
     use crate::random::Random;
-    use crate::tree::bevel::{PAIRS, STEPS};
+    use crate::tree::slabs::{PAIRS, STEPS};
     use d2m_lanes::{Bytes, InstructionSet, Portable, Task, run_on};
 
     /// Bytes chosen by signs, by lanes and by twice as many.
@@ -199,7 +199,7 @@ mod tests {
     /// Points in a box from which all edges are cut off, pushed out until they are on its surface: none is beyond its
     /// reach, and together they come near it.
     #[test]
-    fn bevelled_boxes_reach_as_far_as_their_points() {
+    fn slabs_reach_as_far_as_their_points() {
         let mut random = Random(22);
         let mut sharpest = 0.0f32;
         for _ in 0..300 {
@@ -227,13 +227,13 @@ mod tests {
                     core::array::from_fn(|k| q[k] * most * half[k])
                 })
                 .collect();
-            let bevels = cuts.map(|cuts| Portable::splat(f32::from_bits(u32::from_le_bytes(cuts))));
+            let slabs = cuts.map(|cuts| Portable::splat(f32::from_bits(u32::from_le_bytes(cuts))));
             let along = random.next() as f32;
             for _ in 0..20 {
                 let cosines: [f32; 3] = core::array::from_fn(|_| random.next() as f32);
                 let bound = reach::<_, 3>(
                     &half.map(Portable::splat),
-                    &bevels,
+                    &slabs,
                     &cosines.map(Portable::splat),
                     Portable::splat(along),
                 )

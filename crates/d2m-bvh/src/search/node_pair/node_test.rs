@@ -95,7 +95,7 @@ pub(crate) struct Placed {
     pub(super) axes: [[f32; 4]; 3],
     pub(super) half: [f32; 3],
     /// Of the opposite edges: for the opposite of a direction.
-    pub(super) bevels: [f32; 3],
+    pub(super) slabs: [f32; 3],
     /// Velocity of the center against the origin of the wide node as a point of the wide body.
     pub(super) velocity: [f32; 4],
     pub(super) omega_wide: [f32; 4],
@@ -129,7 +129,7 @@ impl Placed {
         let velocity = (velocity + frame.spin_single.times(from) - frame.spin_wide.times(origin)).narrow();
         let ratio = scale.ratio as f32;
         let radius = single.radius[lane] * ratio;
-        let (half, bevels) = (&single.half_extent, &single.bevels);
+        let (half, slabs) = (&single.half_extent, &single.slabs);
         let norm = |v: &[f32; 4]| v[0].abs() + v[1].abs() + v[2].abs();
         let spin_speed = scale.spin[1] * radius;
         Self {
@@ -139,7 +139,7 @@ impl Placed {
                 turned::<L>(frame, &single.axes[2], lane),
             ],
             half: [half[0][lane] * ratio, half[1][lane] * ratio, half[2][lane] * ratio],
-            bevels: [opposite(bevels[0][lane]), opposite(bevels[1][lane]), opposite(bevels[2][lane])],
+            slabs: [opposite(slabs[0][lane]), opposite(slabs[1][lane]), opposite(slabs[2][lane])],
             omega_wide: frame.omega_wide,
             spin_speed,
             gap_margin: GAP_ERROR * (norm(&center) + wide.extent + radius) + scale.floor,
@@ -154,8 +154,8 @@ impl Placed {
 
 /// The four bytes for the opposites of directions.
 #[inline(always)]
-pub(super) fn opposite(bevels: f32) -> f32 {
-    f32::from_bits(bevels.to_bits().swap_bytes())
+pub(super) fn opposite(slabs: f32) -> f32 {
+    f32::from_bits(slabs.to_bits().swap_bytes())
 }
 
 /// A stored axis in the wide body's frame.

@@ -11,9 +11,9 @@ use super::entry_time::{dot, splat};
 use super::node_scale::NodeScale;
 use super::node_test::opposite;
 use crate::search::motion::frame::{PlacedFrame, RelativeMotion};
-use crate::tree::bevel::reach;
 use crate::tree::margin::{NARROW_UP, UNIT_F32, UP, round_up};
 use crate::tree::node::{NodeBox, WideNode};
+use crate::tree::slabs::reach;
 use d2m_lanes::{Bytes, Doubles, Elementwise, Lanes, Matrix, Quad, Two};
 use glam::DVec3;
 
@@ -109,7 +109,7 @@ impl<'p> SpanFrame<'p> {
 /// The box of a body, or its boxes, at the start (first half) and at the end of a span.
 struct Boxes<T> {
     half: [T; 3],
-    bevels: [T; 3],
+    slabs: [T; 3],
     axes: [[T; 3]; 3],
 }
 
@@ -118,7 +118,7 @@ impl<T: Bytes> Boxes<T> {
     #[inline(always)]
     fn reach(&self, n: &[T; 3], sense: T) -> T {
         let cosines = [dot(&self.axes[0], n), dot(&self.axes[1], n), dot(&self.axes[2], n)];
-        reach::<_, 3>(&self.half, &self.bevels, &cosines, sense)
+        reach::<_, 3>(&self.half, &self.slabs, &cosines, sense)
     }
 }
 
@@ -209,13 +209,13 @@ pub(crate) fn apart_over_span<L: Lanes>(
     let lanes = load::<L>(&wide.center);
     let (centers, at) = (both::<L>(&lanes), ends::<L>(&first, &last));
     let wide_last = both::<L>(&load::<L>(&wide.axes[2]));
-    let (half, bevels, axes) = (&single.half_extent, &single.bevels, &single.axes);
+    let (half, slabs, axes) = (&single.half_extent, &single.slabs, &single.axes);
     let [c, d] = &frame.carried;
     let boxed = Boxed::<L> {
         to: [at[0] - centers[0], at[1] - centers[1], at[2] - centers[2]],
         wide: Boxes {
             half: both::<L>(&load::<L>(&wide.half_extent)),
-            bevels: both::<L>(&load::<L>(&wide.bevels)),
+            slabs: both::<L>(&load::<L>(&wide.slabs)),
             axes: [both::<L>(&load::<L>(&wide.axes[0])), both::<L>(&load::<L>(&wide.axes[1])), wide_last],
         },
         single: Boxes {
@@ -224,10 +224,10 @@ pub(crate) fn apart_over_span<L: Lanes>(
                 L::Two::splat(half[1][lane] * ratio),
                 L::Two::splat(half[2][lane] * ratio),
             ],
-            bevels: [
-                L::Two::splat(opposite(bevels[0][lane])),
-                L::Two::splat(opposite(bevels[1][lane])),
-                L::Two::splat(opposite(bevels[2][lane])),
+            slabs: [
+                L::Two::splat(opposite(slabs[0][lane])),
+                L::Two::splat(opposite(slabs[1][lane])),
+                L::Two::splat(opposite(slabs[2][lane])),
             ],
             axes: [
                 ends::<L>(&start.turned::<L>(&axes[0], lane), &end.turned::<L>(&axes[0], lane)),

@@ -1,9 +1,9 @@
-//! What is cut off the twelve edges of an oriented box: most parts of a surface leave its edges and corners empty.
+//! The diagonal slabs of an 18-DOP in the frame of an oriented box (Klosowski et al. 1998, DOI 10.1109/2945.675649).
 //!
-//! A point of the part has coordinates xᵢ along the axes, |xᵢ| ≤ hᵢ. The edge between the faces σxᵢ = hᵢ and τxⱼ = hⱼ
-//! (σ, τ = ±1) is cut off by the plane σxᵢ/hᵢ + τxⱼ/hⱼ = 2 − s. The box alone has s = 0; s = 1 cuts from the middle of one
-//! face to that of the other; a part that touches the edge has s = 0 again. In the box' own frame and half extents that is an
-//! 18-DOP (Klosowski et al. 1998, DOI 10.1109/2945.675649).
+//! Most parts of a surface leave the edges and corners of their box empty, so planes cut the twelve edges off. A point of the
+//! part has coordinates xᵢ along the axes, |xᵢ| ≤ hᵢ. The edge between the faces σxᵢ = hᵢ and τxⱼ = hⱼ (σ, τ = ±1) is cut off
+//! by the plane σxᵢ/hᵢ + τxⱼ/hⱼ = 2 − s. The box alone has s = 0; s = 1 cuts from the middle of one face to that of the other;
+//! s = 0 where the part touches the edge. The planes of opposite edges bound a slab.
 
 use super::margin::UNIT_F64;
 use d2m_lanes::Bytes;
@@ -23,8 +23,8 @@ const ROOM_ERROR: f64 = STEPS as f64 * 64.0 * UNIT_F64;
 /// What is taken off a room before it is rounded down: so much more than its error that boxes of more points pass, too.
 const CUT_SLACK: f64 = 1024.0 * ROOM_ERROR;
 
-/// For each pair of axes the cuts s in steps, of the edge (σ, τ) at place (σ < 0) + 2·(τ < 0).
-pub(crate) type Bevels = [[u8; 4]; 3];
+/// The two slabs of each pair of axes as cuts s in steps: that of the edge (σ, τ) at place (σ < 0) + 2·(τ < 0).
+pub(crate) type Slabs = [[u8; 4]; 3];
 
 /// How far points reach towards the edges of a box whose half extents are about known. One pair of axes to a lane (the
 /// last lane is idle), so that all are done at once.
@@ -55,7 +55,7 @@ impl EdgeReach {
         }
     }
 
-    /// Largest σ·xᵢ·aboutⱼ + τ·xⱼ·aboutᵢ, in the order of [`Bevels`].
+    /// Largest σ·xᵢ·aboutⱼ + τ·xⱼ·aboutᵢ, in the order of [`Slabs`].
     fn most(&self, pair: usize) -> [f64; 4] {
         [self.sum[1][pair], -self.difference[0][pair], self.difference[1][pair], -self.sum[0][pair]]
     }
@@ -76,15 +76,15 @@ impl EdgeReach {
     }
 
     /// Cuts that leave all points.
-    pub(super) fn bevels(&self, half: &[f32; 3], slack: f64) -> Bevels {
+    pub(super) fn slabs(&self, half: &[f32; 3], slack: f64) -> Slabs {
         let whole = |room: f64| if room >= 1.0 { (room - CUT_SLACK).min(f64::from(MOST)) as u8 } else { 0 };
         self.room(half, slack).map(|rooms| rooms.map(whole))
     }
 
     /// Do the cuts leave all points? Those of a box made from these and other points do.
-    pub(super) fn are_left_by(&self, bevels: &Bevels, half: &[f32; 3], slack: f64) -> bool {
+    pub(super) fn are_left_by(&self, slabs: &Slabs, half: &[f32; 3], slack: f64) -> bool {
         let room = self.room(half, slack);
-        let all = bevels.iter().flatten().zip(room.iter().flatten());
+        let all = slabs.iter().flatten().zip(room.iter().flatten());
         all.into_iter().all(|(&cut, room)| cut == 0 || f64::from(cut) <= room - ROOM_ERROR)
     }
 }
@@ -96,7 +96,7 @@ impl EdgeReach {
 #[inline(always)]
 pub(crate) fn reach<T: Bytes, const USED: usize>(
     half: &[T; 3],
-    bevels: &[T; 3],
+    slabs: &[T; 3],
     cosines: &[T; 3],
     along: T,
 ) -> T {
@@ -107,19 +107,19 @@ pub(crate) fn reach<T: Bytes, const USED: usize>(
         let (i, j) = PAIRS[pair];
         let common = left[i].min(left[j]);
         (left[i], left[j]) = (left[i] - common, left[j] - common);
-        steps = steps + common * bevels[pair].byte_of(cosines[i], cosines[j], along);
+        steps = steps + common * slabs[pair].byte_of(cosines[i], cosines[j], along);
     }
     corner - steps * T::splat(1.0 / STEPS)
 }
 
 /// The same for one box in twice the digits, along a direction and along the opposite one.
 #[inline(always)]
-pub(crate) fn reach_both_ways(half: &[f32; 3], bevels: &Bevels, cosines: [f64; 3]) -> [f64; 2] {
+pub(crate) fn reach_both_ways(half: &[f32; 3], slabs: &Slabs, cosines: [f64; 3]) -> [f64; 2] {
     let size = |k: usize| cosines[k].abs() * f64::from(half[k]);
     let mut left = [size(0), size(1), size(2)];
     let corner = left[0] + left[1] + left[2];
     let mut steps = [0.0; 2];
-    for (&(i, j), cuts) in PAIRS.iter().zip(bevels) {
+    for (&(i, j), cuts) in PAIRS.iter().zip(slabs) {
         let common = if left[i] < left[j] { left[i] } else { left[j] };
         (left[i], left[j]) = (left[i] - common, left[j] - common);
         let edge = usize::from(cosines[i] < 0.0) + 2 * usize::from(cosines[j] < 0.0);
