@@ -64,9 +64,9 @@ pub struct Contact {
     pub triangle_a: u32,
     /// Triangle of B.
     pub triangle_b: u32,
-    /// `point_a` in the corners of `triangle_a`; not negative, sum one.
+    /// Barycentric coordinates of `point_a` in `triangle_a`; not negative, sum one.
     pub barycentric_a: [f64; 3],
-    /// `point_b` in the corners of `triangle_b`.
+    /// Barycentric coordinates of `point_b` in `triangle_b`.
     pub barycentric_b: [f64; 3],
     /// Relative speed of the witness points along the normal at `time_lo`; positive when they close.
     pub closing_speed: f64,

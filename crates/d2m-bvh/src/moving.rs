@@ -24,11 +24,11 @@ impl<'a, B> Moving<'a, B> {
     /// use d2m_bvh::{MeshTree, Moving, QueryOptions, Solid, TriMesh, Window, time_of_contact};
     /// use d2m_motion::ConstantTwist;
     /// use glam::DVec3;
-    /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
     /// let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-    /// let solid = MeshTree::new(TriMesh::try_new(corners.clone(), faces)?);
+    /// let solid = MeshTree::new(TriMesh::try_new(vertices.clone(), faces)?);
     /// // One small triangle inside of it.
-    /// let inside = corners[1..].iter().map(|p| *p * 0.1 + 0.1).collect();
+    /// let inside = vertices[1..].iter().map(|p| *p * 0.1 + 0.1).collect();
     /// let sheet = MeshTree::new(TriMesh::try_new(inside, vec![[0, 1, 2]])?);
     /// let rest = ConstantTwist::REST;
     /// let [a, b] = [Moving::new(&solid, &rest), Moving::new(&sheet, &rest).with_solid(Solid::Surface)];

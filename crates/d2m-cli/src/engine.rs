@@ -52,7 +52,7 @@ impl Body {
     }
 }
 
-/// Two bodies and how they are asked.
+/// Two bodies with their motions, and the options of the query.
 pub(crate) struct Pair {
     pub(crate) a: Body,
     pub(crate) b: Body,

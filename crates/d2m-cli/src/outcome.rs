@@ -1,11 +1,11 @@
-//! What a command answered, for scripts that ask for it with `--exit-status`.
+//! What a command answered: scripts get it as the exit code with `--exit-status`.
 
 use d2m::bvh::TimeOfContact;
 
 /// Ends a command that did its work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// Answered; what the answer is was not asked of the exit code.
+    /// Answered; the exit code does not say what the answer is.
     Answered,
     Contact,
     Separated,

@@ -1,11 +1,11 @@
-//! Who is told of contacts while a step goes on.
+//! A listener that gets the impulses of contacts while a step is computed.
 
 use crate::ContactImpulse;
 
-/// Is told of the impulse at each contact, in the order of time: of events when they happen, of resting contacts when their
+/// Receives the impulse at each contact, in the order of time: of events when they happen, of resting contacts when their
 /// flights begin. Closures that take a [`ContactImpulse`] are listeners.
 ///
-/// The report of the same step tells the bodies' next flights; the impulses in its segments are the same ones, of which those
+/// The report of the same step holds the bodies' next flights; the impulses in its segments are the same ones, of which those
 /// of the last instant follow one step later.
 ///
 /// ```

@@ -191,7 +191,7 @@ impl Simulation {
         self.step_with(&mut Nobody)
     }
 
-    /// As [`Self::step`], and tells the listener of each contact's impulse as it acts.
+    /// As [`Self::step`], and passes each contact's impulse to the listener as it acts.
     ///
     /// # Errors
     /// As [`Self::step`].
@@ -235,7 +235,7 @@ impl Simulation {
         self.step_to_with(end, &mut Nobody)
     }
 
-    /// As [`Self::step_to`], and tells the listener of each contact's impulse as it acts.
+    /// As [`Self::step_to`], and passes each contact's impulse to the listener as it acts.
     ///
     /// # Errors
     /// As [`Self::step_to`].

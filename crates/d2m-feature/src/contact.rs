@@ -34,8 +34,8 @@ pub struct ContactBracket {
     /// Proven upper bound of the distance (beyond the minimum separation) at some time of the bracket; 0 for a crossing,
     /// negative where spheres overlap.
     pub distance: f64,
-    /// The tolerance δ that was used: the one of the options, unless rounding or the clock cannot tell such a distance
-    /// from zero. Then it is as large as they need.
+    /// The tolerance δ that was used: the one of the options, unless rounding or the resolution of time hides such a
+    /// distance. Then it is as large as they need.
     pub tolerance: f64,
 }
 

@@ -9,6 +9,32 @@ use glam::DVec3;
 /// Difference of two closest points relative to the features' size below which its direction is rounding.
 const TOUCHING: f64 = 1e-7;
 
+/// A body at one time.
+struct BodyAt {
+    pose: Pose,
+    twist: Twist,
+}
+
+impl BodyAt {
+    fn new(motion: &dyn RigidMotion, time: f64) -> Self {
+        let (pose, twist) = motion.pose_and_twist(time);
+        Self { pose, twist }
+    }
+
+    /// Velocity of the body point that is at `world`.
+    fn velocity(&self, world: DVec3) -> DVec3 {
+        self.twist.velocity_of(world - self.pose.translation)
+    }
+}
+
+/// What counts where the closest points are so near that their difference has no direction.
+struct Shape {
+    /// Normal of the face, or common normal of the edges; zero if there is none.
+    normal: DVec3,
+    /// Size of the features.
+    size: f64,
+}
+
 pub(crate) fn point_triangle(
     a: &dyn RigidMotion,
     b: &dyn RigidMotion,
@@ -16,14 +42,14 @@ pub(crate) fn point_triangle(
     triangle: &[DVec3; 3],
     time: f64,
 ) -> ContactDetails {
-    let (on_a, on_b) = (a.pose_and_twist(time), b.pose_and_twist(time));
-    let p = on_a.0.transform_point(point);
-    let vertices = triangle.map(|v| on_b.0.transform_point(v));
+    let [on_a, on_b] = [a, b].map(|motion| BodyAt::new(motion, time));
+    let p = on_a.pose.transform_point(point);
+    let vertices = triangle.map(|v| on_b.pose.transform_point(v));
     let normal = direction((vertices[1] - vertices[0]).cross(vertices[2] - vertices[0]));
     let pair = closest::point_triangle(p, &vertices, normal);
     let size = (vertices[1] - vertices[0]).length().max((vertices[2] - vertices[0]).length());
     let point_b = vertices[0] * pair.b[0] + vertices[1] * pair.b[1] + vertices[2] * pair.b[2];
-    finish((on_a, p), (on_b, point_b), &pair, normal, size, time)
+    finish([on_a, on_b], [p, point_b], &pair, Shape { normal, size }, time)
 }
 
 pub(crate) fn edge_edge(
@@ -33,13 +59,14 @@ pub(crate) fn edge_edge(
     edge_b: [DVec3; 2],
     time: f64,
 ) -> ContactDetails {
-    let (on_a, on_b) = (a.pose_and_twist(time), b.pose_and_twist(time));
-    let [a0, a1] = edge_a.map(|v| on_a.0.transform_point(v));
-    let [b0, b1] = edge_b.map(|v| on_b.0.transform_point(v));
+    let [on_a, on_b] = [a, b].map(|motion| BodyAt::new(motion, time));
+    let [a0, a1] = edge_a.map(|v| on_a.pose.transform_point(v));
+    let [b0, b1] = edge_b.map(|v| on_b.pose.transform_point(v));
     let (e, d) = ((a1 - a0) * 0.5, (b1 - b0) * 0.5);
     let pair = closest::segment_segment((a0 + a1) * 0.5 - (b0 + b1) * 0.5, e, d);
     let (point_a, point_b) = (a0 * pair.a[0] + a1 * pair.a[1], b0 * pair.b[0] + b1 * pair.b[1]);
-    finish((on_a, point_a), (on_b, point_b), &pair, direction(e.cross(d)), e.length().max(d.length()), time)
+    let shape = Shape { normal: direction(e.cross(d)), size: e.length().max(d.length()) };
+    finish([on_a, on_b], [point_a, point_b], &pair, shape, time)
 }
 
 pub(crate) fn sphere_sphere(
@@ -49,13 +76,13 @@ pub(crate) fn sphere_sphere(
     sphere_b: Sphere,
     time: f64,
 ) -> ContactDetails {
-    let (on_a, on_b) = (a.pose_and_twist(time), b.pose_and_twist(time));
+    let [on_a, on_b] = [a, b].map(|motion| BodyAt::new(motion, time));
     let (center_a, center_b) =
-        (on_a.0.transform_point(sphere_a.center), on_b.0.transform_point(sphere_b.center));
+        (on_a.pose.transform_point(sphere_a.center), on_b.pose.transform_point(sphere_b.center));
     let normal = (center_b - center_a).normalize_or_zero();
     let (point_a, point_b) = (center_a + normal * sphere_a.radius, center_b - normal * sphere_b.radius);
     let weights = [1.0, 0.0, 0.0];
-    let closing_speed = normal.dot(velocity(&on_a, point_a) - velocity(&on_b, point_b));
+    let closing_speed = normal.dot(on_a.velocity(point_a) - on_b.velocity(point_b));
     ContactDetails {
         time,
         point_a,
@@ -67,33 +94,27 @@ pub(crate) fn sphere_sphere(
     }
 }
 
-/// Velocity of the body point that is at `world`.
-fn velocity(body: &(Pose, Twist), world: DVec3) -> DVec3 {
-    body.1.velocity_of(world - body.0.translation)
-}
-
 fn finish(
-    a: ((Pose, Twist), DVec3),
-    b: ((Pose, Twist), DVec3),
+    [a, b]: [BodyAt; 2],
+    [point_a, point_b]: [DVec3; 2],
     pair: &ClosestPair,
-    contact_normal: DVec3,
-    size: f64,
+    shape: Shape,
     time: f64,
 ) -> ContactDetails {
-    let relative = velocity(&a.0, a.1) - velocity(&b.0, b.1);
+    let relative = a.velocity(point_a) - b.velocity(point_b);
     let difference = -pair.difference;
-    let normal = if difference.length() > TOUCHING * size {
+    let normal = if difference.length() > TOUCHING * shape.size {
         difference.normalize_or_zero()
     } else {
-        let candidate = if contact_normal == DVec3::ZERO { -pair.separating } else { contact_normal };
+        let candidate = if shape.normal == DVec3::ZERO { -pair.separating } else { shape.normal };
         let normal = candidate.normalize_or_zero();
         // They approach along the normal from A to B.
         if normal.dot(relative) < 0.0 { -normal } else { normal }
     };
     ContactDetails {
         time,
-        point_a: a.1,
-        point_b: b.1,
+        point_a,
+        point_b,
         normal,
         barycentric_a: pair.a,
         barycentric_b: pair.b,

@@ -1,7 +1,7 @@
 /// Which features of two triangle meshes meet, by ids in the meshes.
 ///
 /// Edges are named by their two vertices, the smaller id first. A contact at a vertex or along an edge is reported
-/// as one of the pairs that hold it.
+/// as one of the feature pairs that contain it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FeaturePair {

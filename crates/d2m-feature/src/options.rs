@@ -24,7 +24,7 @@ const EVALUATIONS: u32 = 1 << 19;
 pub struct ContactOptions {
     /// δ: features within this distance (beyond the separation) may be reported as in contact. `None`: 1e-10 times
     /// the length of the features, and at least 1e-13 times the reach of the motion (unless that is more than 1e5
-    /// times the length). It is raised to four times the rounding error where doubles cannot tell.
+    /// times the length). It is raised to four times the rounding error where that is larger.
     pub tolerance: Option<f64>,
     /// Distance at which features count as touching (≥ 0; 0: the features themselves).
     pub min_separation: f64,

@@ -173,7 +173,7 @@ fn first_contact_anchored(
     answer(test, anchored, &options.at_cost(COST_OF_ANCHORS))
 }
 
-/// Isolates and tells the answer in real time.
+/// Isolates the first contact and expresses the answer in real time.
 fn answer(test: &mut impl RigidTest, framed: &FramedMotion, options: &ContactOptions) -> FirstContact {
     let (motion, window) = (&framed.motion, test.path().window());
     match answer_in(test, window, 0.0, options) {

@@ -32,5 +32,5 @@ pub(crate) const CLOSE: f64 = 1e-6;
 pub(crate) const PRODUCT_UNDERFLOW: f64 = f64::from_bits((1023 - 1000) << 52);
 
 /// Part of the way over half a piece that counts as size where the features are small or far: a remainder of a quarter of
-/// it still tells them apart. (Tuned; any value is sound.)
+/// it still separates them. (Tuned; any value is sound.)
 pub(crate) const PART_OF_WAY: f64 = 0.25;

@@ -46,7 +46,7 @@ const FLOOR: f64 = f64::from_bits((1023 - 500) << 52);
 pub enum TriangleFeature {
     /// Vertex 0, 1 or 2.
     Vertex(u8),
-    /// The side from vertex k to vertex k + 1 (mod 3), without its ends.
+    /// The edge from vertex k to vertex k + 1 (mod 3), without its ends.
     Edge(u8),
     /// The interior.
     Face,

@@ -1,4 +1,4 @@
-//! Any of the motions that files can tell.
+//! Any of the motions that have a JSON form.
 use crate::{
     CertifiedState, Chain, ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Kinematics, MotionError,
     Pose, RigidMotion, ScrewMotion, Twist, TwistPiece,

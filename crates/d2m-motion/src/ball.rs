@@ -1,4 +1,4 @@
-//! A vector that is known up to a radius: the arithmetic of states with proven radii.
+//! A vector that is known up to a radius: ball arithmetic (midpoints with proven radii).
 use crate::state::ball;
 use d2m_interval::{Interval, IntervalVec3};
 use glam::{DMat3, DVec3};

@@ -409,9 +409,9 @@ fn compositions_and_retimed_motions_enclose_themselves() {
         let backwards = Retimed::try_reversed(motion, 0.25, 1.0).unwrap();
         let twice = Retimed::try_new(motion, 2.0, -0.5).unwrap();
         for (faults, name) in [
-            (crate::check_motion(&motion, (0.0, 1.0), 20), "composed"),
-            (crate::check_motion(&backwards, (0.0, 1.0), 20), "reversed"),
-            (crate::check_motion(&twice, (0.0, 1.0), 20), "retimed"),
+            (crate::check_motion(&motion, Interval::UNIT, 20), "composed"),
+            (crate::check_motion(&backwards, Interval::UNIT, 20), "reversed"),
+            (crate::check_motion(&twice, Interval::UNIT, 20), "retimed"),
         ] {
             assert!(faults.is_empty(), "{name}: {}", faults[0]);
         }

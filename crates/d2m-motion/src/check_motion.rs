@@ -9,24 +9,22 @@ use glam::DVec3;
 #[non_exhaustive]
 pub struct MotionFault {
     /// The span of time that was checked.
-    pub span: (f64, f64),
+    pub span: Interval,
     /// The method that does not keep its promise, and what of it.
     pub what: &'static str,
     /// What should have been enclosed.
     pub value: DVec3,
-    /// The enclosure, as its lower and upper corner.
-    pub enclosure: (DVec3, DVec3),
+    /// Least coordinates of the enclosure.
+    pub lower: DVec3,
+    /// Greatest coordinates of the enclosure.
+    pub upper: DVec3,
 }
 
 impl fmt::Display for MotionFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (value, lo, hi) =
-            (self.value.to_array(), self.enclosure.0.to_array(), self.enclosure.1.to_array());
-        write!(
-            f,
-            "{} from {:?} to {:?}: {value:?} is not between {lo:?} and {hi:?}",
-            self.what, self.span.0, self.span.1
-        )
+        let [value, lower, upper] = [self.value, self.lower, self.upper].map(|v| v.to_array());
+        let (start, end) = (self.span.lo(), self.span.hi());
+        write!(f, "{} from {start:?} to {end:?}: {value:?} is not between {lower:?} and {upper:?}", self.what)
     }
 }
 
@@ -38,17 +36,17 @@ impl fmt::Display for MotionFault {
 /// ahead. An empty answer proves nothing; a fault that is reported is one (up to a rounding of 1e-9 of the values).
 ///
 /// ```
+/// use d2m_interval::Interval;
 /// use d2m_motion::{ConstantTwist, check_motion};
 /// let spin = ConstantTwist::REST.with_angular_velocity(glam::DVec3::Z);
-/// assert!(check_motion(&spin, (0.0, 1.0), 100).is_empty());
+/// assert!(check_motion(&spin, Interval::UNIT, 100).is_empty());
 /// ```
-pub fn check_motion(motion: &dyn RigidMotion, (start, end): (f64, f64), samples: usize) -> Vec<MotionFault> {
+pub fn check_motion(motion: &dyn RigidMotion, span: Interval, samples: usize) -> Vec<MotionFault> {
     let mut faults = Vec::new();
-    let domain = Interval::try_new(start, end).unwrap_or(Interval::EMPTY).intersection(motion.domain());
+    let domain = span.intersection(motion.domain());
     if domain.is_empty() || !domain.is_bounded() {
-        let span = (start, end);
-        let enclosure = (DVec3::splat(motion.domain().lo()), DVec3::splat(motion.domain().hi()));
-        faults.push(MotionFault { span, what: "domain", value: DVec3::splat(start), enclosure });
+        let [value, lower, upper] = [span.lo(), motion.domain().lo(), motion.domain().hi()].map(DVec3::splat);
+        faults.push(MotionFault { span, what: "domain", value, lower, upper });
         return faults;
     }
     for i in 0..=samples {
@@ -70,9 +68,8 @@ const SLACK: f64 = 1e-9;
 fn check_span(motion: &dyn RigidMotion, t: f64, until: f64, faults: &mut Vec<MotionFault>) {
     let span = Interval::new(t, until);
     if let Some(joint) = motion.smooth_until(t).filter(|&joint| joint.is_nan() || joint <= t) {
-        let ahead = (DVec3::splat(t.next_up()), DVec3::splat(motion.domain().hi()));
-        let what = "smooth_until";
-        faults.push(MotionFault { span: (t, until), what, value: DVec3::splat(joint), enclosure: ahead });
+        let [value, lower, upper] = [joint, t.next_up(), motion.domain().hi()].map(DVec3::splat);
+        faults.push(MotionFault { span, what: "smooth_until", value, lower, upper });
     }
     let (pose, twist, rate) =
         (motion.enclose_pose(span), motion.enclose_twist(span), motion.enclose_twist_rate(span));
@@ -81,8 +78,7 @@ fn check_span(motion: &dyn RigidMotion, t: f64, until: f64, faults: &mut Vec<Mot
         let outside = (enclosure.lo() - wide).cmpgt(value) | (enclosure.hi() + wide).cmplt(value);
         // Also what is no number is a fault.
         if outside.any() || !value.is_finite() {
-            let enclosure = (enclosure.lo(), enclosure.hi());
-            faults.push(MotionFault { span: (t, until), what, value, enclosure });
+            faults.push(MotionFault { span, what, value, lower: enclosure.lo(), upper: enclosure.hi() });
         }
     };
     let (now, speed) = motion.pose_and_twist(t);
@@ -156,10 +152,10 @@ mod tests {
     fn broken_promises_are_named() {
         let turn = ConstantTwist::REST.with_angular_velocity(DVec3::Z).with_linear_velocity(DVec3::X);
         for what in ["enclose_pose", "enclose_twist", "enclose_twist_rate", "smooth_until"] {
-            let faults = check_motion(&Broken(turn, what), (0.0, 2.0), 10);
+            let faults = check_motion(&Broken(turn, what), Interval::new(0.0, 2.0), 10);
             assert!(faults.iter().any(|fault| fault.what.starts_with(what)), "{what}: {faults:?}");
         }
-        assert!(check_motion(&Broken(turn, ""), (0.0, 2.0), 10).is_empty());
-        assert_eq!(check_motion(&turn, (1.0, 0.0), 10)[0].what, "domain");
+        assert!(check_motion(&Broken(turn, ""), Interval::new(0.0, 2.0), 10).is_empty());
+        assert_eq!(check_motion(&turn, Interval::EMPTY, 10)[0].what, "domain");
     }
 }

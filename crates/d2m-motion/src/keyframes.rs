@@ -60,7 +60,7 @@ pub struct Keyframes {
     widest: Option<WidestGap>,
 }
 
-/// The joint that asks for the largest body.
+/// The joint whose gap counts as rounding only for the largest body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct WidestGap {
     index: usize,
@@ -116,7 +116,7 @@ impl Keyframes {
         Ok(path)
     }
 
-    /// Measures the gaps at all joints, refuses those that no body explains and keeps the one that asks for the largest body.
+    /// Measures the gaps at all joints, refuses those that are rounding for no body and keeps the one that is for the largest only.
     fn find_gaps(&mut self) -> Result<(), MotionError> {
         let mut moved = 0.0;
         let mut widest: Option<(f64, WidestGap)> = None;

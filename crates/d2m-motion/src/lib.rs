@@ -40,7 +40,7 @@ pub use error::MotionError;
 pub use joint_value::JointValue;
 pub use keyframes::{KeyframeSpan, Keyframes, LARGEST_GAP, Span};
 pub use kinematics::Kinematics;
-/// The name that `ConstantTwist` had before: it turns, so it was never linear.
+/// The former name of [`ConstantTwist`], which was misleading: the motion rotates.
 #[doc(hidden)]
 pub type LinearMotion = ConstantTwist;
 pub use pose::{IntervalPose, Pose};
@@ -48,14 +48,14 @@ pub use rigid_motion::{RigidMotion, TwistPiece};
 pub use screw::ScrewMotion;
 pub use spline::{Spline, SplineDegree};
 pub use state::{CertifiedState, StateTwist};
-pub use twist::{IntervalTwist, Twist};
+pub use twist::{BodyTwist, IntervalTwist, Twist};
 /// For the crates of this workspace: two motions seen from one body, jets of points and what they leave out.
 #[doc(hidden)]
 pub use {
     path_jet::{PathJet, Remainder},
     relative::{Arm, ArmPair, Frame, OffsetRange, RelativeMotion, RelativeState, StraightLine},
     two::TwoVec3,
-    two_jets::TwoJets,
+    two_jets::{EdgeJets, TwoJets},
 };
 
 #[cfg(all(test, feature = "serde"))]

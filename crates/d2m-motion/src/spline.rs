@@ -341,7 +341,7 @@ mod tests {
                     }
                 }
                 let (start, end) = (frames[0].0, frames[4].0);
-                let faults = crate::check_motion(&path, (start, end), 30);
+                let faults = crate::check_motion(&path, Interval::new(start, end), 30);
                 assert!(faults.is_empty(), "{}", faults[0]);
             }
         }

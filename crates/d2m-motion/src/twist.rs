@@ -31,23 +31,31 @@ impl Twist {
     /// let pose = Pose::from_axis_angle(DVec3::ZERO, DVec3::Z, std::f64::consts::FRAC_PI_2);
     /// let ahead = Twist::from_body_axes(&pose, DVec3::X, DVec3::Z);
     /// assert!((ahead.linear - DVec3::Y).length() < 1e-15 && (ahead.angular - DVec3::Z).length() < 1e-15);
-    /// let (linear, _) = ahead.to_body_axes(&pose);
-    /// assert!((linear - DVec3::X).length() < 1e-15);
+    /// assert!((ahead.to_body_axes(&pose).linear - DVec3::X).length() < 1e-15);
     /// ```
     pub fn from_body_axes(pose: &Pose, linear: DVec3, angular: DVec3) -> Self {
         Self { linear: pose.transform_vector(linear), angular: pose.transform_vector(angular) }
     }
 
-    /// Linear and angular part in body axes.
-    pub fn to_body_axes(&self, pose: &Pose) -> (DVec3, DVec3) {
+    /// The same velocities expressed in body axes.
+    pub fn to_body_axes(&self, pose: &Pose) -> BodyTwist {
         let back = pose.rotation.conjugate();
-        (back * self.linear, back * self.angular)
+        BodyTwist { linear: back * self.linear, angular: back * self.angular }
     }
 
     /// Velocity of the point at `arm` (world axes) from the reference point: `linear + angular × arm`.
     pub fn velocity_of(&self, arm: DVec3) -> DVec3 {
         self.linear + self.angular.cross(arm)
     }
+}
+
+/// The velocities of a [`Twist`] expressed in body axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BodyTwist {
+    /// Velocity of the reference point, body axes, length per unit of time.
+    pub linear: DVec3,
+    /// Angular velocity, body axes, radians per unit of time.
+    pub angular: DVec3,
 }
 
 /// A set of twists (or of twist rates) that contains the true one at every time of some interval.

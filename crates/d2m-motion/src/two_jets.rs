@@ -2,6 +2,7 @@
 use crate::path_jet::{position, velocity};
 use crate::two::TwoVec3;
 use crate::{PathJet, Remainder};
+use glam::DVec3;
 
 /// Two [`PathJet`]s about the same time.
 #[derive(Clone, Copy)]
@@ -16,6 +17,15 @@ pub struct TwoJets {
     pub j: TwoVec3,
     /// What these leave out.
     pub remainders: [Remainder; 2],
+}
+
+/// The jets of two edges, one of A and one of B, in axes that turn with B.
+#[derive(Clone, Copy)]
+pub struct EdgeJets {
+    /// Of the difference of the midpoints, and of A's half edge.
+    pub jets: TwoJets,
+    /// B's half edge, which is at rest in these axes.
+    pub half_b: DVec3,
 }
 
 impl TwoJets {

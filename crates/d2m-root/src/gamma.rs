@@ -1,4 +1,4 @@
-//! What the paper's root searches ask of a function: values, derivatives and Γ.
+//! What the paper's root searches need of a function: values, derivatives and Γ.
 
 use crate::InclusionFunction;
 use d2m_interval::Interval;

@@ -9,7 +9,7 @@ pub enum ShapeError {
     /// No shape has this name.
     #[error("there is no shape {name:?}; shapes are {known}")]
     UnknownShape {
-        /// The name asked for.
+        /// The name that was given.
         name: String,
         /// All names, comma-separated.
         known: String,
@@ -19,7 +19,7 @@ pub enum ShapeError {
     UnknownParameter {
         /// The shape.
         shape: &'static str,
-        /// The parameter asked for.
+        /// The parameter that was given.
         name: String,
         /// All parameters, comma-separated.
         known: String,

@@ -10,7 +10,7 @@
 //! - a chord between radii r and r + Δ has the harmonic mean in its middle, Δ²/(4r) below the arithmetic one, at a phase
 //!   that is off by as much again.
 //!
-//! Each counts for both threads. So the play is nowhere below the asked one (measured radially; across the flanks it is
+//! Each counts for both threads. So the play is nowhere below the requested one (measured radially; across the flanks it is
 //! 0.64 of it). Where vertices face vertices, a coarse pair has up to 1/cos(π/n) − 1 of the radius more.
 
 use crate::grid::{sphere_grid, torus_grid};

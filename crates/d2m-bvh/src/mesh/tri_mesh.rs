@@ -13,7 +13,7 @@ pub const MAX_COORDINATE: f64 = 1e60;
 ///
 /// **Promise.** Every coordinate is finite with magnitude at most [`MAX_COORDINATE`], every index is in range and
 /// there is at least one triangle. Nothing else is assumed: the mesh may be open, non-manifold or a soup, triangles may
-/// be degenerate (they are the segment or the point that their corners span) or duplicated, vertices may be unused
+/// be degenerate (they are the segment or the point that their vertices span) or duplicated, vertices may be unused
 /// (an unused vertex is not part of the body). Vertex and triangle numbers are those of the input, so answers can name
 /// them.
 ///
@@ -21,12 +21,12 @@ pub const MAX_COORDINATE: f64 = 1e60;
 /// use d2m_bvh::{MeshError, TriMesh};
 /// use glam::DVec3;
 ///
-/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-/// let tetrahedron = TriMesh::try_new(corners.clone(), vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let tetrahedron = TriMesh::try_new(vertices.clone(), vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
 /// assert_eq!(tetrahedron.triangle_count(), 4);
 /// assert_eq!(tetrahedron.corners(3), [DVec3::X, DVec3::Y, DVec3::Z]);
 ///
-/// let refused = TriMesh::try_new(corners, vec![[0, 1, 4]]);
+/// let refused = TriMesh::try_new(vertices, vec![[0, 1, 4]]);
 /// assert_eq!(refused, Err(MeshError::IndexOutOfRange { triangle: 0, index: 4, vertex_count: 4 }));
 /// # Ok::<(), MeshError>(())
 /// ```
@@ -76,10 +76,10 @@ impl TriMesh {
     /// Copies a mesh from plain arrays, checked as by [`TriMesh::try_new`].
     ///
     /// ```
-    /// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    /// let mesh = d2m_bvh::TriMesh::from_arrays(&corners, &[[0, 1, 2]])?;
+    /// let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let mesh = d2m_bvh::TriMesh::from_arrays(&vertices, &[[0, 1, 2]])?;
     /// assert_eq!((mesh.vertex_count(), mesh.triangle_count()), (3, 1));
-    /// assert!(d2m_bvh::TriMesh::from_arrays(&corners, &[[0, 1, 3]]).is_err());
+    /// assert!(d2m_bvh::TriMesh::from_arrays(&vertices, &[[0, 1, 3]]).is_err());
     /// # Ok::<(), d2m_bvh::MeshError>(())
     /// ```
     ///
@@ -110,7 +110,7 @@ impl TriMesh {
         self.triangles.len()
     }
 
-    /// The three corner points of triangle number `triangle`.
+    /// The three vertices of triangle number `triangle`.
     ///
     /// # Panics
     /// If `triangle` is not below [`triangle_count`](Self::triangle_count).

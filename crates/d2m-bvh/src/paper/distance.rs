@@ -26,9 +26,9 @@ pub(crate) struct ClosestPair {
     pub(crate) triangle_a: u32,
     pub(crate) triangle_b: u32,
     pub(crate) detail: TriangleDistance,
-    /// A's corners in B's frame, rounded.
+    /// A's vertices in B's frame, rounded.
     pub(crate) corners_a: [DVec3; 3],
-    /// The corners are within this of their true places.
+    /// The vertices are within this of their true places.
     pub(crate) rounding: f64,
 }
 

@@ -1,7 +1,7 @@
 //! Brute force over the collision geometry of two leaves (line 3 of Algorithm 6).
 
 use super::budget::{Exhausted, Meter};
-use super::sphere_tree::{Leaf, SphereTree};
+use super::sphere_tree::{Leaf, OwnedEdge, OwnedVertex, SphereTree};
 use d2m_feature::FeaturePair;
 use d2m_feature::paper::{
     EdgePair, PaperOptions, PointFace, PointJet, RelativeFrame, RelativeMotion, TriangleFace,
@@ -24,10 +24,17 @@ pub(crate) struct Candidate {
 /// An axis-aligned box.
 pub(super) type Box3 = IntervalVec3;
 
+/// A leaf and its tree.
+#[derive(Clone, Copy)]
+pub(crate) struct TreeLeaf<'a> {
+    pub(crate) tree: &'a SphereTree,
+    pub(crate) leaf: &'a Leaf,
+}
+
 /// The leaves of both bodies and how they move in each other's frames.
 pub(crate) struct LeafPair<'a> {
-    pub(crate) a: (&'a SphereTree, &'a Leaf),
-    pub(crate) b: (&'a SphereTree, &'a Leaf),
+    pub(crate) a: TreeLeaf<'a>,
+    pub(crate) b: TreeLeaf<'a>,
     /// A seen from B, B seen from A.
     pub(crate) motion: &'a [RelativeMotion<'a>; 2],
     pub(crate) options: PaperOptions,
@@ -58,13 +65,13 @@ impl LeafPair<'_> {
         meter: &mut Meter,
         swapped: bool,
     ) -> Result<(), Exhausted> {
-        let ((tree, leaf), (face_tree, face_leaf)) =
-            if swapped { (self.b, self.a) } else { (self.a, self.b) };
+        let [points, faces_of] = if swapped { [self.b, self.a] } else { [self.a, self.b] };
+        let (TreeLeaf { tree, leaf }, TreeLeaf { tree: face_tree, leaf: face_leaf }) = (points, faces_of);
         let motion = &self.motion[usize::from(swapped)];
         let boxes: Vec<Box3> = face_leaf.triangles.iter().map(|&f| hull(&face_tree.corners(f))).collect();
         let Some(all) = boxes.iter().copied().reduce(Box3::hull) else { return Ok(()) };
         let mut faces: Vec<Option<TriangleFace>> = vec![None; boxes.len()];
-        for &(vertex, own) in &leaf.vertices {
+        for &OwnedVertex { vertex, triangle } in &leaf.owned_vertices {
             meter.spend()?;
             let point = tree.vertex(vertex);
             let jet = frame.jet(point);
@@ -90,7 +97,7 @@ impl LeafPair<'_> {
                 } else {
                     FeaturePair::VertexFace { vertex, face }
                 };
-                let triangle_b = if swapped { own } else { face };
+                let triangle_b = if swapped { triangle } else { face };
                 let found = pair.first_contact(searched);
                 meter.charge(pair.evaluated());
                 lower(best, found, feature, triangle_b);
@@ -106,18 +113,21 @@ impl LeafPair<'_> {
         best: &mut Option<Candidate>,
         meter: &mut Meter,
     ) -> Result<(), Exhausted> {
-        let ((tree_a, leaf_a), (tree_b, leaf_b)) = (self.a, self.b);
+        let TreeLeaf { tree: tree_a, leaf: leaf_a } = self.a;
+        let TreeLeaf { tree: tree_b, leaf: leaf_b } = self.b;
         let ends = |tree: &SphereTree, e: [u32; 2]| [tree.vertex(e[0]), tree.vertex(e[1])];
-        let boxes: Vec<Box3> = leaf_b.edges.iter().map(|(e, _)| hull(&ends(tree_b, *e))).collect();
+        let boxes: Vec<Box3> = leaf_b.owned_edges.iter().map(|e| hull(&ends(tree_b, e.ends))).collect();
         let Some(all) = boxes.iter().copied().reduce(Box3::hull) else { return Ok(()) };
-        for &(edge_a, _) in &leaf_a.edges {
+        for &OwnedEdge { ends: edge_a, .. } in &leaf_a.owned_edges {
             meter.spend()?;
             let own = ends(tree_a, edge_a);
             let swept = swept_box(&frame.jet(own[0])).hull(swept_box(&frame.jet(own[1])));
             if !meet(&swept, &all) {
                 continue;
             }
-            for (i, &(edge_b, triangle_b)) in leaf_b.edges.iter().enumerate() {
+            for (i, &OwnedEdge { ends: edge_b, triangle: triangle_b }) in
+                leaf_b.owned_edges.iter().enumerate()
+            {
                 if !meet(&swept, &boxes[i]) {
                     continue;
                 }

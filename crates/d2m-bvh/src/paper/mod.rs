@@ -48,8 +48,8 @@ pub type Moving<'a> = crate::Moving<'a, SphereTree>;
 /// use d2m_bvh::{QueryOptions, TimeOfContact, TriMesh, Window, paper};
 /// use d2m_motion::ConstantTwist;
 /// use glam::DVec3;
-/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
 /// let tree = paper::SphereTree::new(mesh);
 /// let coming = ConstantTwist::REST.with_position(DVec3::Z * 3.0).with_linear_velocity(DVec3::Z * -4.0);
 /// let answer = paper::time_of_contact(

@@ -21,7 +21,7 @@ impl Node {
     }
 }
 
-/// The collision geometry of a leaf: its triangles, and of their corners and sides those that no other leaf owns.
+/// The collision geometry of a leaf: its triangles, and of their vertices and sides those that no other leaf owns.
 ///
 /// Every vertex and every edge of the mesh belongs to exactly one leaf, which holds a triangle at it. So each pair of
 /// features of two bodies is tested by exactly one pair of leaves.
@@ -29,13 +29,28 @@ impl Node {
 pub(crate) struct Leaf {
     pub(crate) triangles: Vec<u32>,
     /// The vertices at its triangles, each once.
-    pub(crate) corners: Vec<u32>,
-    /// The corners of its triangles, as indices of `corners`.
+    pub(crate) vertices: Vec<u32>,
+    /// The vertices of its triangles, as indices of `vertices`.
     pub(crate) local: Vec<[u32; 3]>,
-    /// A vertex and a triangle of this leaf at it.
-    pub(crate) vertices: Vec<(u32, u32)>,
-    /// The ends of an edge and a triangle of this leaf at it.
-    pub(crate) edges: Vec<([u32; 2], u32)>,
+    pub(crate) owned_vertices: Vec<OwnedVertex>,
+    pub(crate) owned_edges: Vec<OwnedEdge>,
+}
+
+/// A vertex that belongs to a leaf.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OwnedVertex {
+    pub(crate) vertex: u32,
+    /// A triangle of the leaf at the vertex.
+    pub(crate) triangle: u32,
+}
+
+/// An edge that belongs to a leaf.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OwnedEdge {
+    /// The vertices at its ends, the smaller number first.
+    pub(crate) ends: [u32; 2],
+    /// A triangle of the leaf at the edge.
+    pub(crate) triangle: u32,
 }
 
 /// The paper's bounding-volume hierarchy of one body: binary, leaf beams no longer than ε = 1/32 of the body's radius
@@ -51,8 +66,8 @@ pub(crate) struct Leaf {
 /// ```
 /// use d2m_bvh::{TriMesh, paper::SphereTree};
 /// use glam::DVec3;
-/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
 /// let tree = SphereTree::new(mesh);
 /// assert_eq!(tree.leaf_count(), 4);
 /// assert!(tree.is_watertight());
@@ -175,7 +190,7 @@ struct Build<'a> {
 }
 
 impl Build<'_> {
-    /// The smallest sphere around the corners of the triangles.
+    /// The smallest sphere around the vertices of the triangles.
     fn sphere(&self, triangles: &[u32]) -> EnclosingSphere {
         let mut ids: Vec<u32> = triangles.iter().flat_map(|&t| self.mesh.triangles()[t as usize]).collect();
         ids.sort_unstable();
@@ -184,7 +199,7 @@ impl Build<'_> {
         EnclosingSphere::of_points(&points).expect("a node holds a triangle")
     }
 
-    /// The tight beam around the corners of the triangles: its lowest and highest corner.
+    /// The tight beam around the vertices of the triangles: its least and greatest coordinates.
     fn beam(&self, triangles: &[u32]) -> (DVec3, DVec3) {
         let corners = triangles.iter().flat_map(|&t| self.mesh.corners(t as usize));
         corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)))
@@ -192,12 +207,12 @@ impl Build<'_> {
 
     fn leaf(&self, triangles: &[u32]) -> Leaf {
         let ids = |t: u32| self.mesh.triangles()[t as usize];
-        let mut corners: Vec<u32> = triangles.iter().flat_map(|&t| ids(t)).collect();
-        corners.sort_unstable();
-        corners.dedup();
-        let place = |v: u32| corners.partition_point(|&c| c < v) as u32;
+        let mut vertices: Vec<u32> = triangles.iter().flat_map(|&t| ids(t)).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let place = |v: u32| vertices.partition_point(|&c| c < v) as u32;
         let local = triangles.iter().map(|&t| ids(t).map(place)).collect();
-        Leaf { triangles: triangles.to_vec(), corners, local, ..Leaf::default() }
+        Leaf { triangles: triangles.to_vec(), vertices, local, ..Leaf::default() }
     }
 
     fn node(&mut self, triangles: &mut [u32]) -> u32 {
@@ -248,11 +263,12 @@ fn assign_features(mesh: &TriMesh, topology: &Topology, leaves: &mut [Leaf]) {
             let corners = mesh.triangles()[t as usize].map(|v| topology.representative(v));
             for (i, &v) in corners.iter().enumerate() {
                 if !core::mem::replace(&mut vertices[v as usize], true) {
-                    leaf.vertices.push((v, t));
+                    leaf.owned_vertices.push(OwnedVertex { vertex: v, triangle: t });
                 }
                 let w = corners[(i + 1) % 3];
-                if v != w && edges.insert([v.min(w), v.max(w)]) {
-                    leaf.edges.push(([v.min(w), v.max(w)], t));
+                let ends = [v.min(w), v.max(w)];
+                if v != w && edges.insert(ends) {
+                    leaf.owned_edges.push(OwnedEdge { ends, triangle: t });
                 }
             }
         }
@@ -286,7 +302,7 @@ fn component_vertices(mesh: &TriMesh, topology: &Topology) -> Vec<u32> {
     vertices
 }
 
-/// All triangles but those with two equal corners and repetitions of an earlier one, as in [`Topology`].
+/// All triangles but those with two equal vertices and repetitions of an earlier one, as in [`Topology`].
 fn counted_triangles(mesh: &TriMesh, topology: &Topology) -> Vec<bool> {
     let mut seen = HashSet::new();
     mesh.triangles()

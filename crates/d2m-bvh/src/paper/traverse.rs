@@ -2,7 +2,7 @@
 
 use super::Moving;
 use super::budget::Meter;
-use super::leaf_pair::{Box3, Candidate, LeafPair, meet, still_open};
+use super::leaf_pair::{Box3, Candidate, LeafPair, TreeLeaf, meet, still_open};
 use super::sphere_tree::{Leaf, SphereTree};
 use crate::Mode;
 use d2m_feature::FeaturePair;
@@ -22,8 +22,8 @@ struct Stretch {
     body: BodyOverDomain,
     spheres: Lazy<SphereOverDomain>,
     vertices: Lazy<PointJet>,
-    /// Scratch: swept boxes of the corners and of the triangles of a leaf.
-    corner_boxes: Vec<Box3>,
+    /// Scratch: swept boxes of the vertices and of the triangles of a leaf.
+    vertex_boxes: Vec<Box3>,
     triangle_boxes: Vec<Box3>,
 }
 
@@ -58,7 +58,7 @@ impl Stretch {
             body: BodyOverDomain::new(moving.motion, Interval::ZERO, glam::DVec3::ZERO),
             spheres: Lazy::new(moving.body.node_count()),
             vertices: Lazy::new(moving.body.mesh().vertex_count()),
-            corner_boxes: vec![],
+            vertex_boxes: vec![],
             triangle_boxes: vec![],
         }
     }
@@ -77,16 +77,16 @@ impl Stretch {
 
     /// Fills `triangle_boxes` with the places of the leaf's triangles over `span`, and returns their hull.
     fn sweep(&mut self, tree: &SphereTree, leaf: &Leaf, span: Interval) -> Box3 {
-        self.corner_boxes.clear();
-        for &v in &leaf.corners {
+        self.vertex_boxes.clear();
+        for &v in &leaf.vertices {
             let body = &self.body;
             let jet = self.vertices.get(v, || body.jet(tree.vertex(v)));
-            self.corner_boxes.push(jet.enclose(jet.offsets(span)));
+            self.vertex_boxes.push(jet.enclose(jet.offsets(span)));
         }
-        let corner = |i: u32| self.corner_boxes[i as usize];
+        let place = |i: u32| self.vertex_boxes[i as usize];
         self.triangle_boxes.clear();
         self.triangle_boxes
-            .extend(leaf.local.iter().map(|t| corner(t[0]).hull(corner(t[1])).hull(corner(t[2]))));
+            .extend(leaf.local.iter().map(|t| place(t[0]).hull(place(t[1])).hull(place(t[2]))));
         self.triangle_boxes.iter().copied().reduce(Box3::hull).expect("a leaf holds a triangle")
     }
 }
@@ -173,8 +173,8 @@ impl<'a> Search<'a> {
                 return Ok(());
             }
             let pair = LeafPair {
-                a: (tree_a, tree_a.leaf(node_a)),
-                b: (tree_b, tree_b.leaf(node_b)),
+                a: TreeLeaf { tree: tree_a, leaf: tree_a.leaf(node_a) },
+                b: TreeLeaf { tree: tree_b, leaf: tree_b.leaf(node_b) },
                 motion: &self.relative,
                 options: self.options,
             };
@@ -226,7 +226,7 @@ impl<'a> Search<'a> {
         let (tree_a, tree_b) = (self.bodies[0].body, self.bodies[1].body);
         let leaf_a = tree_a.leaf(tree_a.node(a));
         let triangle_b = tree_b.leaf(tree_b.node(b)).triangles[0];
-        let vertex = leaf_a.corners[0];
+        let vertex = leaf_a.vertices[0];
         let feature = FeaturePair::VertexFace { vertex, face: triangle_b };
         if still_open(span, self.best.as_ref()).is_some() {
             self.best = Some(Candidate { bracket: span, feature, triangle_b, undecided: false });

@@ -11,8 +11,8 @@ use crate::{Moving, QueryError, QueryOptions, TimeOfContact, Window};
 /// use d2m_bvh::{MeshTree, Moving, QueryOptions, TriMesh, Window, time_of_contact_batch};
 /// use d2m_motion::ConstantTwist;
 /// use glam::{DQuat, DVec3};
-/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
+/// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
 /// let tree = MeshTree::new(mesh);
 /// let falling = [2.0, 20.0].map(|height| {
 ///     ConstantTwist::try_new(DVec3::Z * height, DQuat::IDENTITY, -DVec3::Z * 4.0, DVec3::ZERO).unwrap()

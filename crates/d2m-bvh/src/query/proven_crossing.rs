@@ -1,14 +1,14 @@
-//! Do two triangles share a point although their corners are known only up to an error?
+//! Do two triangles share a point although their vertices are known only up to an error?
 
 use d2m_interval::{Interval, IntervalVec3};
 use glam::DVec3;
 
-/// Proof that triangles share a point whose corners are within `error` of the given ones in each coordinate. False
+/// Proof that triangles share a point whose vertices are within `error` of the given ones in each coordinate. False
 /// proves nothing: not for triangles that only touch, nor for flat or coplanar ones.
 ///
 /// An edge crosses a triangle if its ends are on different sides of the triangle's plane and the line through the edge
 /// passes the three sides of the triangle on the same side: five signs of 3 × 3 determinants, enclosed in intervals
-/// over all positions of the corners.
+/// over all positions of the vertices.
 ///
 /// Plain arithmetic chooses the edges that are worth the proof: those whose ends seem to be on different sides.
 pub(super) fn proven_crossing(a: &[DVec3; 3], b: &[DVec3; 3], error: f64) -> bool {
@@ -50,7 +50,7 @@ mod tests {
     use crate::random::Random;
     use d2m_feature::triangles_intersect;
 
-    /// Pairs that are claimed to cross still share a point, by exact signs, when each corner is moved by the error;
+    /// Pairs that are claimed to cross still share a point, by exact signs, when each vertex is moved by the error;
     /// and most pairs that go on crossing are claimed.
     #[test]
     fn claims_hold_for_every_position_of_the_corners() {

@@ -115,7 +115,7 @@ pub(super) fn evidence_at_start(scene: &Scene<'_>, triangles: [u32; 2]) -> Evide
     pair.evidence::<Quad>(scene, (&frame, &near))
 }
 
-/// Two triangles, corners relative to the trees' centers in body axes, and how they move.
+/// Two triangles, vertices relative to the trees' centers in body axes, and how they move.
 struct TrianglePair<'r> {
     motion: &'r RelativeMotion,
     a: [DVec3; 3],
@@ -131,7 +131,7 @@ impl TrianglePair<'_> {
 
     /// What is proven of the meeting at the time of the frame.
     ///
-    /// Placed corners of both bodies together are off by γ/2 at most (γ = `scene.pair.error`); the closest points are
+    /// Placed vertices of both bodies together are off by γ/2 at most (γ = `scene.pair.error`); the closest points are
     /// points of the placed triangles, and their distance and the time of the frame round by less than the other half. So
     /// a distance of at most L − γ is one of at most L in real arithmetic, and so is that of placed triangles that
     /// share a point.
@@ -297,13 +297,13 @@ fn feature(scene: &Scene<'_>, near: &Closest, triangles: [u32; 2]) -> FeaturePai
         [Place::Edge(i), Place::Edge(j)] => FeaturePair::EdgeEdge { edge_a: edge(a, i), edge_b: edge(b, j) },
         [Place::Vertex(i), _] => FeaturePair::VertexFace { vertex: a[i], face: triangles[1] },
         [_, Place::Vertex(j)] => FeaturePair::FaceVertex { face: triangles[0], vertex: b[j] },
-        // Faces only meet at the corners or edges of one of them: never produced.
+        // Faces only meet at the vertices or edges of one of them: never produced.
         [Place::Face, _] => FeaturePair::FaceVertex { face: triangles[0], vertex: b[0] },
         [_, Place::Face] => FeaturePair::VertexFace { vertex: a[0], face: triangles[1] },
     }
 }
 
-/// Weights of the corners: not negative, sum one up to rounding.
+/// Weights of the vertices: not negative, sum one up to rounding.
 fn barycentric(corners: &[DVec3; 3], point: DVec3, place: Place) -> [f64; 3] {
     let mut weights = [0.0; 3];
     match place {

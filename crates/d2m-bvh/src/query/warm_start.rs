@@ -24,8 +24,8 @@ use d2m_lanes::Quad;
 /// use d2m_bvh::{MeshTree, Moving, PairCache, QueryOptions, TriMesh, Window, time_of_contact, time_of_contact_with};
 /// use d2m_motion::ConstantTwist;
 /// use glam::DVec3;
-/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
 /// let tree = MeshTree::new(mesh);
 /// let still = Moving::new(&tree, &ConstantTwist::REST);
 /// let options = QueryOptions::default();
@@ -90,8 +90,8 @@ pub fn time_of_contact_with(
 /// use d2m_bvh::{MeshTree, Moving, PairCache, QueryOptions, TriMesh, Window, contact_exists};
 /// use d2m_motion::ConstantTwist;
 /// use glam::DVec3;
-/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
 /// let tree = MeshTree::new(mesh);
 /// let still = Moving::new(&tree, &ConstantTwist::REST);
 /// let mut cache = PairCache::new();
@@ -167,7 +167,7 @@ const STEPS: u32 = 8;
 /// A time after the start of the window at which two triangles are certainly within the level of each other; `None` when
 /// a few steps of Newton's method from `after` find none.
 fn meet_again(scene: &Scene<'_>, triangles: [u32; 2], after: f64) -> Option<f64> {
-    // The closest points are on the triangles up to the error, and so are the corners that are shown to cross.
+    // The closest points are on the triangles up to the error, and so are the vertices that are shown to cross.
     let level = scene.pair.level - scene.pair.error;
     let target = scene.pair.level - 0.5 * (scene.tolerance + scene.pair.error);
     let last = scene.units.end_down();

@@ -28,9 +28,9 @@ pub struct MeshPart {
 /// ```
 /// use d2m_bvh::{MeshParts, TriMesh};
 /// use glam::DVec3;
-/// let corner = |at: DVec3, size: f64| [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| at + p * size);
+/// let tetrahedron = |at: DVec3, size: f64| [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| at + p * size);
 /// let faces = |k: u32| [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map(|t| t.map(|i: u32| i + 4 * k));
-/// let far = [corner(DVec3::ZERO, 1.0), corner(DVec3::X * 5.0, 1.0), corner(DVec3::X * 5.5, 1.0)].concat();
+/// let far = [tetrahedron(DVec3::ZERO, 1.0), tetrahedron(DVec3::X * 5.0, 1.0), tetrahedron(DVec3::X * 5.5, 1.0)].concat();
 /// let mesh = TriMesh::try_new(far, [faces(0), faces(1), faces(2)].concat())?;
 /// let parts = MeshParts::new(&mesh);
 /// assert_eq!((parts.parts.len(), parts.crossing.as_slice()), (3, &[[1, 2]][..]));

@@ -20,7 +20,7 @@ impl Moments {
         let area = 0.5 * dot(n, n).sqrt() + LEAST_AREA;
         let sum = [a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]];
         self.weight += area;
-        // ∫ x xᵀ over a triangle = area/12 (Σ p pᵀ + s sᵀ) with s the sum of the corners.
+        // ∫ x xᵀ over a triangle = area/12 (Σ p pᵀ + s sᵀ) with s the sum of the vertices.
         let w = area / 12.0;
         for k in 0..3 {
             self.first[k] += area / 3.0 * sum[k];

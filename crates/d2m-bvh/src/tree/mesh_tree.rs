@@ -14,8 +14,8 @@ use std::sync::{Arc, OnceLock};
 /// ```
 /// use d2m_bvh::{MeshTree, TriMesh};
 /// use glam::DVec3;
-/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
 /// let tree = MeshTree::new(mesh);
 /// assert_eq!(tree.mesh().triangle_count(), 4);
 /// assert!(tree.radius() >= 0.5 * 2f64.sqrt());

@@ -14,10 +14,10 @@ impl MeshTree {
     /// ```
     /// use d2m_bvh::{MeshTree, TriMesh};
     /// use glam::DVec3;
-    /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-    /// let mesh = TriMesh::try_new(corners.clone(), vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+    /// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let mesh = TriMesh::try_new(vertices.clone(), vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
     /// let mut tree = MeshTree::new(mesh);
-    /// tree.refit(corners.iter().map(|&p| p * DVec3::new(1.0, 1.0, 3.0)).collect())?;
+    /// tree.refit(vertices.iter().map(|&p| p * DVec3::new(1.0, 1.0, 3.0)).collect())?;
     /// assert_eq!(tree.mesh().corners(3)[2], DVec3::Z * 3.0);
     /// assert_eq!(tree.validate(), Ok(()));
     /// # Ok::<(), d2m_bvh::MeshError>(())

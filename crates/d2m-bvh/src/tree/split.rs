@@ -17,10 +17,10 @@ const FINALISTS: usize = 4;
 
 /// A triangle that the choice of the split evaluates.
 struct Sampled {
-    /// Corners from some point of the part.
+    /// Vertices from some point of the part.
     corners: [[f32; 3]; 3],
     moments: [f32; Moments::LENGTH],
-    /// Sum of the corners along the directions.
+    /// Sum of the vertices along the directions.
     along: [f32; CUTS],
 }
 

@@ -70,7 +70,7 @@ fn built_and_refitted_trees_are_valid() {
     }
 }
 
-/// Boxes against corners in twice the precision: sums of two doubles, errors below 2⁻⁹⁸ of the terms.
+/// Boxes against vertices in twice the precision: sums of two doubles, errors below 2⁻⁹⁸ of the terms.
 #[test]
 fn boxes_enclose_in_more_than_double_precision() {
     fn add(a: (f64, f64), b: f64) -> (f64, f64) {

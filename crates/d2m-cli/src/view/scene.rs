@@ -14,7 +14,7 @@ const MOST_FACTS: usize = 8;
 /// Part of the window for which a contact is marked: bodies fly on through each other.
 const MARKED: f64 = 0.05;
 
-/// Reads a scene and asks for its contacts.
+/// Reads a scene and finds its contacts.
 pub(crate) fn picture_of_scene(path: &Path, options: QueryOptions) -> Result<Picture, Failure> {
     let scene = Scene::read(path)?;
     let mut world = scene.world(options);

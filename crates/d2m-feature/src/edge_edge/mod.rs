@@ -4,12 +4,12 @@ mod products;
 use crate::accurate_cross::{Difference, accurate_cross};
 use crate::closest;
 use crate::path::{
-    FeaturePath, along, around, direction, global, local, padded, reach, widened, without_third,
+    FeaturePath, HalfEdge, along, around, direction, global, local, padded, reach, widened, without_third,
 };
 use crate::point_triangle::cleared;
 use crate::rounding::{CLOSE, PART_OF_WAY, UNDERFLOW, UNIT, UP, length_up};
 use d2m_lanes::F64x2;
-use d2m_motion::{TwoJets, TwoVec3};
+use d2m_motion::{EdgeJets, TwoJets, TwoVec3};
 use d2m_root::{Band, Cubic, Measurement, NearbyQuadratic, Piece, PieceTest, Quadratic, Verdict};
 use glam::DVec3;
 use products::{TripleProduct, TwoQuadratics};
@@ -53,7 +53,7 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
         Self { path, middle, half, half_lengths, tolerance: 0.0, separation, inside: Piece::NONE }
     }
 
-    /// The part of a piece in which the edges may be near: as a whole all four vertices w ± e ± d on one side along
+    /// The part of a piece in which the edges may be near: as a whole all four points w ± e ± d on one side along
     /// the line of the midpoints, from either end |w| ≤ |e| + |d| along the velocity.
     #[inline(always)]
     fn near(&self, jets: &TwoJets, d: DVec3, whole: Piece, h: f64) -> Option<Piece> {
@@ -102,10 +102,10 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
         self.path.speed() + self.path.direction_speed()
     }
 
-    /// Jets of the difference of the midpoints and of A's half edge, side by side, and B's half edge.
+    /// Jets of the difference of the midpoints and of A's half edge, and B's half edge.
     #[inline(always)]
-    fn jets(&mut self, piece: Piece, at: f64) -> (TwoJets, DVec3) {
-        self.path.edges(piece, at, (self.middle, self.half))
+    fn jets(&mut self, piece: Piece, at: f64) -> EdgeJets {
+        self.path.edges(piece, at, HalfEdge { middle: self.middle, half: self.half })
     }
 }
 
@@ -127,7 +127,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
     #[inline]
     fn evaluate(&mut self, piece: Piece) -> Verdict {
         let at = piece.mid();
-        let (jets, d) = self.jets(piece, at);
+        let EdgeJets { jets, half_b: d } = self.jets(piece, at);
         let (half_a, half_b) = self.half_lengths;
         let whole = local(piece, at);
         let h = reach(whole);
@@ -258,7 +258,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
     }
 
     fn measure(&mut self, piece: Piece, at: f64) -> Measurement {
-        let (jets, d) = self.jets(piece, at);
+        let EdgeJets { jets, half_b: d } = self.jets(piece, at);
         let [w, e] = jets.split();
         let pair = closest::segment_segment(w.p, e.p, d);
         let distance =

@@ -1,8 +1,9 @@
 //! Jets of any C² motion from what it encloses of itself.
-use super::FeaturePath;
+use super::{FeaturePath, HalfEdge};
 use crate::motion_in_units::MotionInUnits;
 use crate::rounding::{PRODUCT_UNDERFLOW, UNIT, UP, length_up};
-use d2m_motion::{PathJet, RelativeState, StraightLine, TwoJets};
+use d2m_interval::Interval;
+use d2m_motion::{EdgeJets, PathJet, RelativeState, StraightLine};
 use d2m_root::{Band, Piece, Quadratic};
 use glam::DVec3;
 
@@ -25,8 +26,8 @@ pub(crate) struct EnclosedMotions<'a> {
 impl<'a> EnclosedMotions<'a> {
     pub(crate) fn new(a: MotionInUnits<'a>, b: MotionInUnits<'a>, window: Piece) -> Self {
         let middle = window.mid();
-        let state = RelativeState::new(&a, &b, (window.lo, window.hi), middle);
-        let instant = RelativeState::new(&a, &b, (middle, middle), middle);
+        let state = RelativeState::new(&a, &b, Interval::new(window.lo, window.hi), middle);
+        let instant = RelativeState::new(&a, &b, Interval::point(middle), middle);
         Self { a, b, window, middle, state, instant }
     }
 
@@ -147,7 +148,7 @@ impl<'a> EnclosedPath<'a> {
         if at == shared.middle && piece.width() > 0.5 * shared.window.width() {
             f(&shared.state)
         } else {
-            f(&RelativeState::new(&shared.a, &shared.b, (piece.lo, piece.hi), at))
+            f(&RelativeState::new(&shared.a, &shared.b, Interval::new(piece.lo, piece.hi), at))
         }
     }
 }
@@ -159,7 +160,7 @@ impl FeaturePath for EnclosedPath<'_> {
     }
 
     #[inline(always)]
-    fn edges(&mut self, piece: Piece, at: f64, of_b: (DVec3, DVec3)) -> (TwoJets, DVec3) {
+    fn edges(&mut self, piece: Piece, at: f64, of_b: HalfEdge) -> EdgeJets {
         let of_a = self.with_state(piece, at, |state| {
             let point = state.point_jet(self.arm, self.radius, self.extent);
             [point, state.direction_jet(self.half, self.length)]

@@ -6,7 +6,7 @@ pub(crate) use enclosed::{EnclosedMotions, EnclosedPath, Extent};
 pub(crate) use rigid::{FramedMotion, RigidPath};
 
 use crate::rounding::{UNIT, UP, length_up};
-use d2m_motion::{PathJet, Remainder, TwoJets};
+use d2m_motion::{EdgeJets, PathJet, Remainder, TwoJets};
 use d2m_root::{Cubic, Piece, Quadratic};
 use glam::DVec3;
 
@@ -18,14 +18,13 @@ pub(crate) trait FeaturePath {
 
     /// [`FeaturePath::point`] along a direction of length at most 1 that is fixed in B's frame, with the remainder.
     #[inline(always)]
-    fn point_along(&mut self, piece: Piece, at: f64, d: DVec3) -> (Cubic, Remainder) {
-        let jet = self.point(piece, at);
-        (cubic_along(&jet, d), jet.remainder)
+    fn point_along(&mut self, piece: Piece, at: f64, d: DVec3) -> CubicAlong {
+        CubicAlong::new(&self.point(piece, at), d)
     }
 
-    /// Jets of the point of A relative to a point of B and of the direction of A, side by side, and the direction of B:
-    /// in axes that turn with B, whichever they are at that time.
-    fn edges(&mut self, piece: Piece, at: f64, of_b: (DVec3, DVec3)) -> (TwoJets, DVec3);
+    /// Jets of the point of A relative to the midpoint of B's edge and of the direction of A, and B's half edge: in axes
+    /// that turn with B, whichever they are at that time.
+    fn edges(&mut self, piece: Piece, at: f64, of_b: HalfEdge) -> EdgeJets;
 
     /// Bound of the point's speed.
     fn speed(&self) -> f64;
@@ -41,11 +40,24 @@ pub(crate) trait FeaturePath {
     fn rounding(&self) -> f64;
 }
 
-/// A jet along a direction, as a quadratic in the time from the jet's center.
-/// (The third derivative is left to the remainder.)
-#[inline(always)]
-pub(crate) fn along(jet: &PathJet, d: DVec3) -> Quadratic {
-    Quadratic { value: d.dot(jet.p), slope: d.dot(jet.v), curvature: d.dot(jet.a) }
+/// An edge of B as its midpoint and half of the vector between its ends.
+#[derive(Clone, Copy)]
+pub(crate) struct HalfEdge {
+    pub(crate) middle: DVec3,
+    pub(crate) half: DVec3,
+}
+
+/// A jet along a direction, as a cubic in the time from the jet's center, with the jet's remainder.
+pub(crate) struct CubicAlong {
+    pub(crate) cubic: Cubic,
+    pub(crate) remainder: Remainder,
+}
+
+impl CubicAlong {
+    #[inline(always)]
+    fn new(jet: &PathJet, d: DVec3) -> Self {
+        Self { cubic: cubic_along(jet, d), remainder: jet.remainder }
+    }
 }
 
 /// A jet along a direction, as a cubic in the time from the jet's center.
@@ -54,10 +66,18 @@ pub(crate) fn cubic_along(jet: &PathJet, d: DVec3) -> Cubic {
     Cubic { value: d.dot(jet.p), slope: d.dot(jet.v), curvature: d.dot(jet.a), jerk: d.dot(jet.j) }
 }
 
+/// A jet along a direction, as a quadratic in the time from the jet's center.
+/// (The third derivative is left to the remainder.)
+#[inline(always)]
+pub(crate) fn along(jet: &PathJet, d: DVec3) -> Quadratic {
+    Quadratic { value: d.dot(jet.p), slope: d.dot(jet.v), curvature: d.dot(jet.a) }
+}
+
 /// The jets of an edge of A in axes in which the midpoint and the half edge of B are at rest.
 #[inline(always)]
-fn against([point, direction]: [PathJet; 2], (middle, half): (DVec3, DVec3)) -> (TwoJets, DVec3) {
-    (TwoJets::new(&PathJet { p: point.p - middle, ..point }, &direction), half)
+fn against([point, direction]: [PathJet; 2], HalfEdge { middle, half }: HalfEdge) -> EdgeJets {
+    let jets = TwoJets::new(&PathJet { p: point.p - middle, ..point }, &direction);
+    EdgeJets { jets, half_b: half }
 }
 
 /// The largest |s| of a part.

@@ -1,7 +1,7 @@
 //! Jets in closed form, from frames that all features of a pair of bodies share.
-use super::FeaturePath;
+use super::{CubicAlong, FeaturePath, HalfEdge};
 use crate::rounding::{UNIT, UP, length_up};
-use d2m_motion::{Arm, ArmPair, Frame, PathJet, RelativeMotion, Remainder, TwoJets};
+use d2m_motion::{Arm, ArmPair, EdgeJets, Frame, PathJet, RelativeMotion, Remainder};
 use d2m_root::{Cubic, Piece};
 use glam::DVec3;
 
@@ -149,20 +149,21 @@ impl FeaturePath for RigidPath<'_> {
     }
 
     #[inline(always)]
-    fn point_along(&mut self, piece: Piece, at: f64, d: DVec3) -> (Cubic, Remainder) {
+    fn point_along(&mut self, piece: Piece, at: f64, d: DVec3) -> CubicAlong {
         let motion = &self.motion.motion;
         if let Some(ThirdOrder::Point(arm, remainder)) = &self.third_order
             && !self.frame_serves(piece, at)
         {
             let [value, slope, curvature, jerk] = motion.point_along(at, arm, d);
-            return (Cubic { value, slope, curvature, jerk }, *remainder);
+            let cubic = Cubic { value, slope, curvature, jerk };
+            return CubicAlong { cubic, remainder: *remainder };
         }
         let jet = self.point(piece, at);
-        (super::cubic_along(&jet, d), jet.remainder)
+        CubicAlong::new(&jet, d)
     }
 
     #[inline(always)]
-    fn edges(&mut self, piece: Piece, at: f64, of_b: (DVec3, DVec3)) -> (TwoJets, DVec3) {
+    fn edges(&mut self, piece: Piece, at: f64, of_b: HalfEdge) -> EdgeJets {
         let framed = self.motion;
         let from = |frame: &Frame| {
             let point = frame.point_jet(self.point, self.point_remainder);
@@ -179,13 +180,13 @@ impl FeaturePath for RigidPath<'_> {
             let point = motion.point_remainder_third_order(self.point_remainder, self.fourth_derivative);
             let length = length_up(self.direction);
             let remainders = [point, motion.direction_remainder_third_order(length)];
-            let arms = [motion.arms_a(self.point, self.direction), motion.arms_b(of_b.0, of_b.1)];
+            let arms = [motion.arms_a(self.point, self.direction), motion.arms_b(of_b.middle, of_b.half)];
             self.third_order = Some(ThirdOrder::Edges(arms, remainders));
         }
         let Some(ThirdOrder::Edges([of_a, of_b], remainders)) = &self.third_order else {
             unreachable!("a path of edges");
         };
-        motion.edge_jets(at, (of_a, of_b), *remainders)
+        motion.edge_jets(at, of_a, of_b, *remainders)
     }
 
     fn speed(&self) -> f64 {

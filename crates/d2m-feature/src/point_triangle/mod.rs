@@ -5,7 +5,8 @@ pub(crate) use planes::TrianglePlanes;
 
 use crate::closest;
 use crate::path::{
-    FeaturePath, along, around, cubic_along, direction, global, local, padded, reach, widened, without_third,
+    CubicAlong, FeaturePath, along, around, cubic_along, direction, global, local, padded, reach, widened,
+    without_third,
 };
 use crate::rounding::{CLOSE, PART_OF_WAY, UNIT, UP, length_up};
 use d2m_motion::{PathJet, Remainder};
@@ -63,9 +64,9 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
         let whole = local(piece, at);
         if self.inside.holds(piece) {
             // All that is left to know is when the plane is crossed.
-            let (plane, remainder) = self.path.point_along(piece, at, planes.normal);
+            let CubicAlong { cubic: plane, remainder } = self.path.point_along(piece, at, planes.normal);
             let remainder = widened(remainder, self.separation);
-            let Some(part) = plane.clip_beyond(planes.slab(), |h| remainder.bound(h), whole) else {
+            let Some(part) = plane.clip_beyond(planes.slab, |h| remainder.bound(h), whole) else {
                 return Verdict::Clear;
             };
             return self.crossing(&plane, &remainder, part, (whole, at, piece));
@@ -81,7 +82,7 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
             searched = near;
         }
         let plane = cubic_along(&jet, planes.normal);
-        let Some(mut part) = plane.clip_beyond(planes.slab(), |h| remainder.bound(h), searched) else {
+        let Some(mut part) = plane.clip_beyond(planes.slab, |h| remainder.bound(h), searched) else {
             return Verdict::Clear;
         };
         // About the middle of what is left: first with what the speed admits.
@@ -95,7 +96,7 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
         let [s0, s1, s2] = planes.sides;
         let values = [s0.dot(there), s1.dot(there), s2.dot(there)];
         if (0..3).any(|i| {
-            let (lo, hi) = planes.side_support[i];
+            let Band { lo, hi } = planes.side_support[i];
             values[i] < lo - stray || values[i] > hi + stray
         }) {
             return Verdict::Clear;
@@ -108,7 +109,7 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
             let sides = [along(&here, s0), along(&here, s1), along(&here, s2)];
             let mut beside = Piece { lo: part.lo - m, hi: part.hi - m };
             let before = beside;
-            for (side, (lo, hi)) in sides.iter().zip(planes.side_support) {
+            for (side, Band { lo, hi }) in sides.iter().zip(planes.side_support) {
                 let Some(left) = side.clip_beyond(Band { lo, hi }, margin, beside) else {
                     return Verdict::Clear;
                 };
@@ -221,7 +222,7 @@ impl<P: FeaturePath> PointTriangleTest<'_, P> {
     fn crosses(&self, plane: &Cubic, between: Piece, remainder: &Remainder) -> bool {
         let margin = remainder.bound(reach(between));
         let (first, last) = (plane.at(between.lo), plane.at(between.hi));
-        let (low, high) = (self.planes.slab.0 - margin, self.planes.slab.1 + margin);
+        let (low, high) = (self.planes.slab.lo - margin, self.planes.slab.hi + margin);
         (first > high && last < low) || (first < low && last > high)
     }
 

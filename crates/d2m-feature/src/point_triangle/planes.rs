@@ -20,9 +20,9 @@ pub(crate) struct TrianglePlanes {
     pub(crate) normal: DVec3,
     pub(crate) sides: [DVec3; 3],
     /// Support of the normal.
-    pub(crate) slab: (f64, f64),
+    pub(crate) slab: Band,
     /// Support of the side normals.
-    pub(crate) side_support: [(f64, f64); 3],
+    pub(crate) side_support: [Band; 3],
     /// A point inside all three sides below these values, and inside the slab, is on the triangle up to rounding;
     /// `None` if the triangle is too thin to say so.
     pub(crate) prism: Option<[f64; 3]>,
@@ -35,12 +35,6 @@ pub(crate) struct TrianglePlanes {
 }
 
 impl TrianglePlanes {
-    /// The values of the triangle along its normal.
-    #[inline(always)]
-    pub(crate) const fn slab(&self) -> Band {
-        Band { lo: self.slab.0, hi: self.slab.1 }
-    }
-
     pub(crate) fn new(vertices: [DVec3; 3]) -> Self {
         let [a, b, c] = vertices;
         let edges = [b - a, c - b, a - c];
@@ -58,7 +52,7 @@ impl TrianglePlanes {
         let sides = edges.map(|edge| direction(direction(edge).cross(normal)));
         let support = |d: DVec3| {
             let values = vertices.map(|v| d.dot(v));
-            (values[0].min(values[1]).min(values[2]), values[0].max(values[1]).max(values[2]))
+            Band { lo: values[0].min(values[1]).min(values[2]), hi: values[0].max(values[1]).max(values[2]) }
         };
         let size = squares[longest].sqrt();
         // Height over the longest side: the prism argument needs it far above rounding.

@@ -1,4 +1,4 @@
-//! Eight `f32` lanes: what the searches ask of an instruction set.
+//! Eight `f32` lanes: the operations that the searches need of an instruction set.
 //!
 //! Only + − × ÷ √, extrema, comparison and sign removal, each correctly rounded by IEEE 754, and no fused
 //! multiply-add: every implementation returns the same bits.
@@ -48,7 +48,7 @@ pub trait Lanes: Bytes + Div<Output = Self> {
     /// Writes the wanted rows to the start of the list, in the order of their lanes, and returns how many there are. What
     /// is behind them has no meaning.
     fn pack(rows: &Rows, list: &mut [[u32; 4]; 8]) -> usize;
-    /// Asks for the memory of a value: a hint.
+    /// Prefetches the memory of a value: a hint.
     fn prefetch<T>(value: &T);
     /// x·c₀ + y·c₁ + z·c₂ for the columns c of a matrix.
     fn combine(columns: &[[f32; 4]; 3], x: f32, y: f32, z: f32) -> [f32; 4];

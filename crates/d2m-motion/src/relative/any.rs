@@ -14,15 +14,16 @@ const ROUNDING: f64 = 64.0;
 /// Pose, twist and twist rate of A relative to B about one time, shared by all features of the two bodies.
 ///
 /// Made of the two states at the time `at` and of enclosures of the twist *rates* over a piece of time: how far poses
-/// and twists stray over the piece follows from those, so that nothing else is enclosed over time. For motions of
+/// and twists change over the piece follows from those, so that nothing else is enclosed over time. For motions of
 /// constant twist the remainder is that of [`RelativeMotion`](super::RelativeMotion); otherwise the half-width of the
 /// rates comes on top. A point of A is seen in the body frame of B.
 ///
 /// ```
+/// use d2m_interval::Interval;
 /// use d2m_motion::{ConstantTwist, RelativeState};
 /// use glam::DVec3;
 /// let falling = ConstantTwist::REST.with_position(DVec3::Z).with_linear_velocity(-DVec3::Z);
-/// let state = RelativeState::new(&falling, &ConstantTwist::REST, (0.0, 1.0), 0.5);
+/// let state = RelativeState::new(&falling, &ConstantTwist::REST, Interval::UNIT, 0.5);
 /// let jet = state.point_jet(DVec3::X, 1.0, 1.0);
 /// assert_eq!((jet.p, jet.v), (DVec3::new(1.0, 0.0, 0.5), -DVec3::Z));
 /// assert!(jet.remainder.bound(0.5) < 1e-13);
@@ -65,16 +66,15 @@ pub struct StraightLine {
 }
 
 impl RelativeState {
-    /// The two motions about the time `at` of the piece `(lo, hi)`: jets made of it hold on the whole piece.
-    pub fn new<A, B>(a: &A, b: &B, (lo, hi): (f64, f64), at: f64) -> Self
+    /// The two motions about the time `at` of a piece of time: jets made of it hold on the whole piece.
+    pub fn new<A, B>(a: &A, b: &B, piece: Interval, at: f64) -> Self
     where
         A: RigidMotion + ?Sized,
         B: RigidMotion + ?Sized,
     {
         let (sa, sb) = (a.enclose_state(at), b.enclose_state(at));
-        let piece = Interval::new(lo, hi);
         let (rate_a, rate_b) = (a.enclose_twist_rate(piece), b.enclose_twist_rate(piece));
-        let h = (hi - at).max(at - lo) * UP;
+        let h = (piece.hi() - at).max(at - piece.lo()) * UP;
         let (acceleration_a, acceleration_b) = (ball(rate_a.linear), ball(rate_b.linear));
         let (alpha_a, alpha_b) = (ball(rate_a.angular), ball(rate_b.angular));
         Self::from_balls(&sa, &sb, [acceleration_a, acceleration_b], [alpha_a, alpha_b], h)

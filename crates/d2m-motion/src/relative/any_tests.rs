@@ -114,9 +114,9 @@ fn jets_of_constant_twists_keep_their_remainders() {
         let p = random.vector() * 2.0;
         let (at, half) = (random.signed(), random.log_between(1e-6, 0.1) / (1.0 + speed));
         let state = if i % 4 < 2 {
-            RelativeState::new(&a, &b, (at - half, at + half), at)
+            RelativeState::new(&a, &b, Interval::new(at - half, at + half), at)
         } else {
-            RelativeState::new(&Opaque(a), &Opaque(b), (at - half, at + half), at)
+            RelativeState::new(&Opaque(a), &Opaque(b), Interval::new(at - half, at + half), at)
         };
         let arm = p - a.at();
         let jet = state.point_jet(arm, arm.length() * (1.0 + 1e-15), 0.0);
@@ -206,7 +206,7 @@ fn jets_of_accelerating_motions_keep_their_remainders() {
         let (a, b) = (SpinUp::random(&mut random), SpinUp::random(&mut random));
         let size = a.rates[0].abs().max(b.rates[0].abs()).max(1.0);
         let (at, half) = (random.signed() / size, random.log_between(1e-3, 0.3) / size);
-        let state = RelativeState::new(&a, &b, (at - half, at + half), at);
+        let state = RelativeState::new(&a, &b, Interval::new(at - half, at + half), at);
         let (p, d) = (random.vector(), random.vector());
         let (point, direction) = (state.point_jet(p, p.length(), 0.0), state.direction_jet(d, d.length()));
         for j in -4..=4 {

@@ -2,7 +2,7 @@
 use super::RelativeMotion;
 use crate::sin_cos::sin_cos_two;
 use crate::two::TwoVec3;
-use crate::{PathJet, Remainder, TwoJets};
+use crate::{EdgeJets, PathJet, Remainder, TwoJets};
 use d2m_lanes::F64x2;
 use glam::{DMat3, DVec3};
 
@@ -183,17 +183,18 @@ impl RelativeMotion {
         ]
     }
 
-    /// Jets to third order of a point of A relative to one of B and of a direction of A, side by side, and the direction
-    /// of B: all in the axes that have turned with B, expressed in world axes at the time. Not for anchored motions.
+    /// Jets to third order of a point of A relative to one of B and of a direction of A, and the direction of B: all in
+    /// the axes that have turned with B, expressed in world axes at the time. Not for anchored motions.
     ///
     /// Lengths and products of these do not depend on the axes, so nothing of A is turned back by `R_Bᵀ`.
     #[inline(always)]
     pub fn edge_jets(
         &self,
         tau: f64,
-        (of_a, of_b): (&ArmPair, &ArmPair),
+        of_a: &ArmPair,
+        of_b: &ArmPair,
         remainders: [Remainder; 2],
-    ) -> (TwoJets, DVec3) {
+    ) -> EdgeJets {
         debug_assert!(self.anchor.is_none());
         let (sin, cos) = self.angles(tau);
         let a = self.spin_a.speed;
@@ -210,7 +211,8 @@ impl RelativeMotion {
         let dragged = omega.cross(moved);
         let x2 = bent - dragged - omega.cross(x1);
         let x3 = spin_velocity * (-a * a) - omega.cross(bent + bent - dragged + x2);
-        (TwoJets { p: x - only(other.first()), v: x1, a: x2, j: x3, remainders }, other.second())
+        let jets = TwoJets { p: x - only(other.first()), v: x1, a: x2, j: x3, remainders };
+        EdgeJets { jets, half_b: other.second() }
     }
 
     /// True if frames are made in extended precision.

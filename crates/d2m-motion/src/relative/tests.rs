@@ -2,7 +2,7 @@
 //! the bounds that the same samples refute.
 use super::{OffsetRange, RelativeMotion};
 use crate::rotation::exponential_dd;
-use crate::{ConstantTwist, PathJet, Remainder};
+use crate::{ConstantTwist, EdgeJets, PathJet, Remainder};
 use core::ops::{Add, Mul, Sub};
 use d2m_lanes::DoubleDouble;
 use d2m_testing::{Draw, Random};
@@ -187,7 +187,8 @@ fn directions_and_anchors_keep_their_remainders() {
         let third = motion.direction_remainder_third_order(arm.length());
         // In world axes: turned back for the comparison.
         let (mine, theirs) = (motion.arms_a(arm, arm), motion.arms_b(DVec3::ZERO, arm));
-        let (jets, half) = motion.edge_jets(tau, (&mine, &theirs), [Remainder::default(), third]);
+        let EdgeJets { jets, half_b: half } =
+            motion.edge_jets(tau, &mine, &theirs, [Remainder::default(), third]);
         let [point, mut jet] = jets.split();
         let back = motion.spin_b.rotation(tau).transpose();
         assert!((back * half - arm).length() <= 1e-14 * arm.length());
@@ -305,7 +306,7 @@ fn the_part_of_the_window_within_reach_is_whole_and_its_remainders_hold() {
 
 #[test]
 fn what_lies_along_the_axis_of_both_spins_does_not_turn() {
-    // Bodies that spin together and approach along their axis: seen from B nothing but a translation.
+    // Bodies that spin together and approach along their axis: in B's frame nothing but a translation.
     let spin = 58_747.322_521_259_95 * DVec3::Z;
     let a = ConstantTwist::try_new(64.0 * DVec3::Z, DQuat::IDENTITY, -8.0 * DVec3::Z, spin).unwrap();
     let b = ConstantTwist::REST.with_angular_velocity(spin);

@@ -52,7 +52,7 @@ impl Parabola {
 
     /// Encloses the smallest x ≥ 0 with p(x) ≤ 0; `None` promises p > 0 on all of x ≥ 0.
     ///
-    /// If no such x exists but rounding cannot tell, an interval is returned all the same. In either case p > 0 on
+    /// If no such x exists but rounding leaves that open, an interval is returned all the same. In either case p > 0 on
     /// `[0, lo)`. NaN coefficients give `[0, ∞]`.
     ///
     /// The root is 2c/(√D − b) for b ≤ 0 and (b + √D)/(−p″) for b > 0: sums of terms of one sign, no cancellation.
@@ -87,7 +87,7 @@ impl Parabola {
         Some(p.offset(x))
     }
 
-    /// An upper bound of the largest x ≥ 0 with p(x) ≤ 0, `∞` where p stays nonpositive or rounding cannot tell.
+    /// An upper bound of the largest x ≥ 0 with p(x) ≤ 0, `∞` where p stays nonpositive or rounding leaves that open.
     ///
     /// Meaningful only if such an x exists; otherwise any value may come back.
     pub fn bound_last_nonpositive(self) -> f64 {

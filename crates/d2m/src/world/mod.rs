@@ -85,7 +85,7 @@ pub struct World {
 }
 
 impl World {
-    /// An empty world; `options` hold for every pair, but for [`Mode::Exists`], which is asked as accurate: a world
+    /// An empty world; `options` hold for every pair, but [`Mode::Exists`] counts as accurate: a world
     /// promises first contacts. The budget of the options is one for each query of the world, over all pairs.
     pub fn new(options: QueryOptions) -> Self {
         let options = match options.mode {

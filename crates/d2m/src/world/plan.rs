@@ -25,7 +25,7 @@ impl World {
     /// as it is.
     ///
     /// [`FirstContact::Separated`] is a proof that the motion is free; of a [`FirstContact::Contact`] everything before
-    /// `contact.time_lo` is. Pairs of bodies that are not planned are not asked for. Ignored pairs and groups hold, so an
+    /// `contact.time_lo` is. Pairs of bodies that are not planned are not queried. Ignored pairs and groups hold, so an
     /// arm of several links, each a body, ignores the pairs of links that a joint connects. Fastest after another query of the world
     /// whose window holds this one: then the boxes of the other bodies are known.
     ///

@@ -97,8 +97,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "the plane without the path's remainder",
         "crates/d2m-feature/src/point_triangle/mod.rs",
-        "plane.clip_beyond(planes.slab(), |h| remainder.bound(h), searched)",
-        "plane.clip(planes.slab(), |h| 0.0 * remainder.bound(h), searched)",
+        "plane.clip_beyond(planes.slab, |h| remainder.bound(h), searched)",
+        "plane.clip(planes.slab, |h| 0.0 * remainder.bound(h), searched)",
         "crates/d2m-feature/tests/first_contact.rs::planted_contacts_are_never_missed_and_never_late",
     ),
     in_test(

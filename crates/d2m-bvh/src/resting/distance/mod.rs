@@ -39,9 +39,9 @@ pub struct Distance {
     pub triangle_a: u32,
     /// Triangle of B that holds `point_b`.
     pub triangle_b: u32,
-    /// `point_a` in the corners of `triangle_a`; each in [0, 1], sum one.
+    /// Barycentric coordinates of `point_a` in `triangle_a`; each in [0, 1], sum one.
     pub barycentric_a: [f64; 3],
-    /// `point_b` in the corners of `triangle_b`.
+    /// Barycentric coordinates of `point_b` in `triangle_b`.
     pub barycentric_b: [f64; 3],
     /// `Apart`: proven (`lower` > 0). `Touching`: apart by less than can be proven, or just touching. `Overlapping`:
     /// the surfaces cross, up to rounding; points and triangles are those of one pair of many that cross, which depends on
@@ -87,8 +87,8 @@ impl DistanceOptions {
 /// use d2m_bvh::{MeshTree, Posed, Solid, StartState, TriMesh, distance};
 /// use d2m_motion::Pose;
 /// use glam::{DQuat, DVec3};
-/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
 /// let tree = MeshTree::new(mesh);
 /// let above = Pose { translation: DVec3::Z * 1.25, ..Pose::IDENTITY };
 /// let apart = distance(Posed::at_rest(&tree), Posed::new(&tree, above), Solid::Filled)?;
@@ -173,8 +173,8 @@ pub struct DistanceBounds {
 /// use d2m_bvh::{Budget, MeshTree, Posed, Solid, TriMesh, bound_distance};
 /// use d2m_motion::Pose;
 /// use glam::DVec3;
-/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
 /// let tree = MeshTree::new(mesh);
 /// let above = Posed::new(&tree, Pose { translation: DVec3::Z * 1.25, ..Pose::IDENTITY });
 /// let within = |tests: u64| {

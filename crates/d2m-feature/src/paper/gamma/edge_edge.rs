@@ -43,7 +43,7 @@ const SIN_SQUARED: f64 = 1e-20;
 
 /// `false` promises that the edges do not meet at any time of the offsets `x`.
 ///
-/// The paper projects both thickened edges along k = e × d (for parallel edges along (c − a) × (d − a)) and asks
+/// The paper projects both thickened edges along k = e × d (for parallel edges along (c − a) × (d − a)) and tests
 /// whether two rectangles meet. Two rectangles meet unless one of their four sides' normals separates them: across and
 /// along each edge within the plane of projection. Here these four are separating axes of the edges themselves,
 /// judged second order in time; a separating axis is sound whatever its direction, so k at the middle of the piece
