@@ -20,9 +20,6 @@ use crate::tree::node::{Below, LEAST_SIZE, WIDTH, WideNode};
 use d2m_lanes::{Lanes, Quad, Task};
 use glam::DVec3;
 
-/// Batches between two counts of the pairs that wait, for a plane between them.
-const CROWD_CHECK: u32 = 32;
-
 /// Batches between two checks of the queue's length: it grows by less than 2¹⁵ items between them.
 const MEMORY_CHECK: u32 = 128;
 
@@ -96,7 +93,7 @@ impl Search<'_> {
         }
         let mut batch = core::mem::replace(&mut self.scratch.batch, Bucket::EMPTY);
         let (mut outcome, mut begun, mut batches) = (None, false, 0u32);
-        let mut patience = Patience::new();
+        let mut patience = Patience::new(self.scratch.counts.triangle_looks);
         while let Some(least) = self.scratch.queue.take(&mut batch, BATCH) {
             if least >= state.limit {
                 break;
@@ -135,7 +132,7 @@ impl Search<'_> {
                 state.frame_key = least;
                 begun = true;
             }
-            if batches % CROWD_CHECK == 0 {
+            if patience.is_due(batches, self.scratch.counts.triangle_looks) {
                 self.thin_out::<L>(&mut state, Progress { least, batches }, &mut batch, &mut patience);
             }
             self.expand_batch::<L>(&mut state, batch.items());

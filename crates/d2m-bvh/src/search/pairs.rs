@@ -15,6 +15,9 @@ use glam::DVec3;
 /// A pair that is advanced out of turn is left after so many steps; ordinary contacts take fewer than ten.
 const MOST_STEPS_ALONE: u32 = 64;
 
+/// A pair that is not done after so many steps is bounded to third order.
+const FEW_STEPS: u32 = 16;
+
 /// A pair of triangles is advanced alone until its time has grown by one part in this many: what it finds early spares
 /// the queue what comes later, and pairs that meet at the same features need one backward certificate each.
 const FOLLOWED: u32 = 16;
@@ -94,7 +97,7 @@ impl Search<'_> {
             self.scratch.counts.triangle_looks += 1;
             self.scratch.last_tested = triangles;
             let enough = state.limit_offset - frame.offset;
-            let third = self.scratch.counts.triangle_looks > SECOND_ORDER_TESTS;
+            let third = self.scratch.counts.triangle_looks > SECOND_ORDER_TESTS || steps > FEW_STEPS;
             let order = if third { BoundOrder::Third } else { BoundOrder::Second };
             match separating_axis_test::<L::Doubles>(&frame, [&a, &b], &self.scene.pair, enough, order) {
                 Evaluation::ClearFor(time) => {

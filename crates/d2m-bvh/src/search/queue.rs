@@ -194,7 +194,7 @@ impl Queue {
 
     /// Adds items whose keys are not below the last key handed out.
     #[inline(always)]
-    pub(crate) fn extend(&mut self, items: impl Iterator<Item = Item>) {
+    pub(crate) fn extend(&mut self, items: impl IntoIterator<Item = Item>) {
         for item in items {
             self.push(item);
         }

@@ -53,17 +53,31 @@ pub(super) const MUTANTS: &[Mutant] = &[
     // Crowds.
     patch(
         "planes are checked at one end of the span only",
-        "crates/d2m-bvh/src/search/crowd.rs",
-        "if enough(now, need[0]) && enough(later, need[1]) {",
-        "if enough(now, need[0]) {",
-        "crates/d2m-bvh/src/search/crowd.rs::what_a_plane_parts_stays_apart",
+        "crates/d2m-bvh/src/search/crowd/moving.rs",
+        "if enough(now) && enough(later) {",
+        "if enough(now) {",
+        "crates/d2m-bvh/src/search/crowd/tests.rs::what_a_plane_parts_stays_apart",
     ),
     patch(
         "what is bent is left out",
-        "crates/d2m-bvh/src/search/crowd.rs",
-        "level + 0.5 * acceleration * span * span",
-        "level",
-        "crates/d2m-bvh/src/search/crowd.rs::what_a_plane_parts_stays_apart",
+        "crates/d2m-bvh/src/search/crowd/paths.rs",
+        "n.dot(self.later) + turn * self.bend",
+        "n.dot(self.later)",
+        "crates/d2m-bvh/src/search/crowd/tests.rs::what_a_plane_parts_stays_apart",
+    ),
+    patch(
+        "points bend by their distance from the center, not from the axis",
+        "crates/d2m-bvh/src/search/crowd/paths.rs",
+        "self.omega.cross(from_center + self.arm)",
+        "self.omega.cross(from_center)",
+        "crates/d2m-bvh/src/search/crowd/tests.rs::points_bend_by_their_distance_from_the_axis",
+    ),
+    patch(
+        "pairs that turn about a tip take the rate of their rims",
+        "crates/d2m-bvh/src/search/triangle_pair/separating_axis.rs",
+        "m * s <= PATIENCE * speed.abs() && nearest - speed <= PATIENCE * speed.abs()",
+        "m * s <= PATIENCE * speed.abs()",
+        "crates/d2m-bvh/tests/crowds_that_turn.rs::crowds_that_turn_are_advanced_together",
     ),
     // Solids.
     patch(

@@ -1,0 +1,118 @@
+//! Planes hold as long as they are said to, and boxes reach as far as what they hold.
+
+use super::super::motion::frame::Frame;
+use super::super::scene::Scene;
+use super::*;
+use crate::random::Random;
+use crate::{MeshTree, QueryOptions, TriMesh, Window};
+use d2m_lanes::Quad;
+use d2m_motion::ConstantTwist;
+use glam::DQuat;
+
+fn soup(random: &mut Random, shift: DVec3) -> MeshTree {
+    let vertices = (0..9).map(|_| random.vec() + shift).collect();
+    MeshTree::new(TriMesh::try_new(vertices, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).unwrap())
+}
+
+/// All vertices of both bodies.
+fn points(scene: &Scene<'_>) -> [Vec<DVec3>; 2] {
+    [&scene.a, &scene.b].map(|body| {
+        let mut group = Group::new(body);
+        group.add(0, 100, &mut Allowance::unlimited()).unwrap();
+        group.points
+    })
+}
+
+/// Bodies that a plane parts are further apart than the level at all times of the span; not if the gap is measured
+/// at one end only, nor without what accelerations take.
+#[test]
+fn what_a_plane_parts_stays_apart() {
+    let mut random = Random(23);
+    let (mut parted, mut wrong) = ([0; 3], [0; 3]);
+    for round in 0..4000 {
+        // Also bodies that turn about an axis far from them.
+        let shift = [0.0, 4.0][round / 3 % 2];
+        let (a, b) = (soup(&mut random, DVec3::X * shift), soup(&mut random, DVec3::Y * shift));
+        let spin = [0.5, 4.0, 12.0][round % 3];
+        let [motion_a, motion_b] = [2.5 + shift, 0.0].map(|apart| {
+            let q = DQuat::from_xyzw(random.next(), random.next(), random.next(), 1.5);
+            ConstantTwist::try_new(random.vec() * apart, q, random.vec(), random.vec() * spin).unwrap()
+        });
+        let options = QueryOptions::default().with_tolerance(1e-3);
+        let scene = Scene::try_new((&a, motion_a), (&b, motion_b), Window::UNIT, &options).unwrap();
+        let motion = scene.relative_motion(0.0);
+        let frame = motion.frame::<Quad>(0.0);
+        let span = scene.longest * (0.6 + 0.4 * random.next());
+        let points = points(&scene);
+        let moving = Moving::new(&scene, &points, &frame, span);
+        let n = moving.between().normalize();
+        let mut straight = Moving::new(&scene, &points, &frame, span);
+        straight.paths.iter_mut().flatten().for_each(|path| path.bend = 0.0);
+        let [gaps, straight_gaps] = [&moving, &straight].map(|moving| moving.gaps(n).map(|gap| gap.along));
+        let world = motion.rotation_b(0.0).times::<Quad>(n).to_vec();
+        let gap_at = |time: f64| {
+            let frame = motion.frame::<Quad>(time);
+            let n = motion.rotation_b(time).transposed::<Quad>().times::<Quad>(world).to_vec();
+            Moving::new(&scene, &points, &frame, 0.0).gaps(n)[0].along
+        };
+        let least = (0..=8).map(|k| gap_at(span * f64::from(k) / 8.0)).fold(f64::INFINITY, f64::min);
+        // The largest levels that the plane may prove: parts of the gaps at both ends.
+        let ends = [gaps[0], gaps[1], straight_gaps[1]];
+        for level in ends.into_iter().flat_map(|gap| [0.999, 0.9, 0.7].map(|part| part * gap)) {
+            let search = PlaneSearch { first: n, level, most: 1 };
+            let proven = moving.separation(&search, &mut Allowance::unlimited()).separation;
+            let at_one_end = gaps[0] > level;
+            let without_bend = straight_gaps.iter().all(|&gap| gap > level);
+            let claims = [matches!(proven, Separation::Proven { .. }), at_one_end, without_bend];
+            for (k, claim) in claims.into_iter().enumerate() {
+                if level > 0.0 && claim {
+                    parted[k] += 1;
+                    wrong[k] += u32::from(least < level - 2.0 * scene.pair.error);
+                }
+            }
+        }
+    }
+    assert!(wrong[0] == 0 && parted[0] > 200, "{wrong:?} of {parted:?}");
+    assert!(wrong[1] > 0 && wrong[2] > 0, "{wrong:?} of {parted:?}");
+}
+
+/// A body that turns about one of its vertices: that one does not bend, the others as much as they are away from the axis.
+#[test]
+fn points_bend_by_their_distance_from_the_axis() {
+    let corners = vec![DVec3::ZERO, DVec3::new(0.5, 0.0, 1.0), DVec3::new(0.0, 2.0, 1.0)];
+    let body = MeshTree::new(TriMesh::try_new(corners.clone(), vec![[0, 1, 2]]).unwrap());
+    let spin = DVec3::Z * 0.25;
+    let turning = ConstantTwist::REST.with_angular_velocity(spin);
+    let options = QueryOptions::default();
+    for (a, b, side) in [(turning, ConstantTwist::REST, Side::A), (ConstantTwist::REST, turning, Side::B)] {
+        let scene = Scene::new((&body, a), (&body, b), Window::UNIT, &options);
+        let frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
+        let paths = super::paths::BodyPaths::new(&scene, &frame, side, 1.0);
+        for (corner, expected) in corners.iter().zip([0.0, 0.5, 2.0]) {
+            let path = paths.of(corner - body.center());
+            let bend = paths.turn(DVec3::X) * path.bend;
+            assert!((bend - 0.5 * 0.0625 * expected).abs() < 1e-9, "{bend} {expected}");
+            assert!(paths.turn(DVec3::Z) < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn boxes_reach_as_far_as_their_vertices() {
+    let mut random = Random(29);
+    let (a, b) = (soup(&mut random, DVec3::ZERO), soup(&mut random, DVec3::ZERO));
+    let twist = ConstantTwist::try_new(random.vec(), random.turn(), random.vec(), random.vec()).unwrap();
+    let options = QueryOptions::default();
+    let scene = Scene::try_new((&a, twist), (&b, ConstantTwist::REST), Window::UNIT, &options).unwrap();
+    let frame: Frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
+    for n in [DVec3::X, random.vec().normalize(), random.vec().normalize()] {
+        let points = points(&scene);
+        let moving = Moving::new(&scene, &points, &frame, 0.25);
+        let [mut reach_a, mut reach_b] =
+            [Side::A, Side::B].map(|side| Reaches::new(&scene, side, &frame, 0.25, n));
+        let (high, low) = (reach_a.measure(0), reach_b.measure(0));
+        for end in 0..2 {
+            assert_eq!(moving.gaps(n)[end].along, -low[end] - high[end]);
+        }
+    }
+}
