@@ -2,6 +2,7 @@
 
 mod answers;
 mod filter;
+mod pair_queue;
 mod pair_state;
 mod plan;
 mod rest;
@@ -22,7 +23,7 @@ use filter::PairFilter;
 use pair_state::PairState;
 use schedule::{Rules, Schedule};
 use slots::Slots;
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Many moving bodies: a broad phase over the boxes that they sweep, and a certified pair query for what is left.
@@ -76,8 +77,8 @@ pub struct World {
     options: QueryOptions,
     slots: Slots,
     filter: PairFilter,
-    /// Of pairs that were searched.
-    states: BTreeMap<IndexPair, PairState>,
+    /// Of pairs that were searched. Never walked through in an order that matters.
+    states: HashMap<IndexPair, PairState>,
     schedule: Schedule,
     /// Places of bodies that changed since the schedule was made, and pairs whose rules did.
     changed: Vec<u32>,

@@ -2,7 +2,7 @@
 
 use super::{PairProximities, World, WorldError};
 use crate::broad_phase::SweepOrder;
-use crate::parallel::map_in_order;
+use crate::parallel::{BOXES, PAIRS, map_in_order};
 use crate::swept_bounds::SweptBox;
 use d2m_bvh::{Posed, ProximityOptions, proximities_with};
 
@@ -34,13 +34,13 @@ impl World {
         options: &ProximityOptions,
     ) -> Result<Vec<PairProximities>, WorldError> {
         let places: Vec<u32> = (0..self.slots.places() as u32).collect();
-        let boxes = map_in_order(&places, |&place| {
+        let boxes = map_in_order(&places, BOXES, |&place| {
             self.slots.at(place).map_or(SweptBox::EMPTY, |body| SweptBox::enclose(body, time, time))
         });
         let mut pairs = SweepOrder::default().pairs(&boxes, options.margin);
         pairs.retain(|&pair| !self.filter.ignores(pair, self.slots.groups(pair)));
         pairs.sort_unstable();
-        let found = map_in_order(&pairs, |&pair| {
+        let found = map_in_order(&pairs, PAIRS, |&pair| {
             let posed = |place: u32| {
                 let body = self.slots.at(place)?;
                 Some(Posed::new(body.tree(), body.motion().pose_and_twist(time).0))

@@ -4,13 +4,13 @@
 //! window within the same span, after a few bodies have changed, costs what the pairs of those bodies cost.
 
 use super::filter::PairFilter;
+use super::pair_queue::PairQueue;
 use super::pair_state::Entry;
 use super::slots::Slots;
 use crate::broad_phase::{IndexPair, SweepOrder, pairs_of};
-use crate::parallel::map_in_order;
+use crate::parallel::{BOXES, map_in_order};
 use crate::swept_bounds::{SliceRange, Slicing, Sweep, SweptBox, SweptSlices};
 use d2m_bvh::Window;
-use std::collections::BinaryHeap;
 
 /// Bodies that change one by one are compared with all others; from this part of all on the boxes are swept anew.
 const CHANGED_PART: usize = 4;
@@ -50,7 +50,7 @@ pub(super) struct Schedule {
     hulls: Vec<SweptBox>,
     slices: Vec<Slices>,
     order: SweepOrder,
-    queue: BinaryHeap<Entry>,
+    queue: PairQueue,
     /// Entries when stale ones were last dropped.
     fresh: usize,
 }
@@ -113,7 +113,7 @@ impl Schedule {
     /// Boxes of some bodies over the rest of the span.
     fn enclose(&mut self, slots: &Slots, span: Window, places: &[u32]) {
         let from = self.from;
-        let boxes = map_in_order(places, |&place| {
+        let boxes = map_in_order(places, BOXES, |&place| {
             let Some(body) = slots.at(place) else { return (SweptBox::EMPTY, Slices::NotWorthIt) };
             let hull = SweptBox::enclose(body, from, span.end());
             let wide = (hull.high - hull.low).max_element() > FAR * body.tree().radius();
@@ -134,7 +134,7 @@ impl Schedule {
         self.cut(rules.slots, &pairs);
         let entries: Vec<Entry> = pairs.into_iter().filter_map(|pair| self.entry(rules, pair)).collect();
         self.fresh = entries.len();
-        self.queue = BinaryHeap::from(entries);
+        self.queue = PairQueue::new(entries);
     }
 
     /// May these two come within their own separation, but not within the usual one?
@@ -172,16 +172,17 @@ impl Schedule {
     /// Computes the slices of all bodies of the pairs that have none yet.
     fn cut(&mut self, slots: &Slots, pairs: &[IndexPair]) {
         let Some(span) = self.span else { return };
-        let mut wanted: Vec<u32> = pairs
-            .iter()
-            .flatten()
-            .copied()
-            .filter(|&place| matches!(self.slices[place as usize], Slices::Unknown))
-            .collect();
-        wanted.sort_unstable();
-        wanted.dedup();
+        let mut is_wanted = vec![false; self.slices.len()];
+        let mut wanted = Vec::new();
+        for &place in pairs.iter().flatten() {
+            let at = place as usize;
+            if !is_wanted[at] && matches!(self.slices[at], Slices::Unknown) {
+                is_wanted[at] = true;
+                wanted.push(place);
+            }
+        }
         let (slicing, from) = (Slicing::new(span), self.from);
-        let boxes = map_in_order(&wanted, |&place| {
+        let boxes = map_in_order(&wanted, BOXES, |&place| {
             slots.at(place).map(|body| SweptSlices::enclose(body, &slicing, from))
         });
         for (&place, slices) in wanted.iter().zip(boxes) {

@@ -7,12 +7,12 @@ use super::pair_state::{Entry, Known, PairState};
 use super::schedule::{MeetingSpan, Prepared, Rules};
 use super::{FirstContact, PairContact, World, WorldError};
 use crate::broad_phase::IndexPair;
-use crate::parallel::map_in_order;
+use crate::parallel::{PAIRS, map_in_order};
 use d2m_bvh::{
     Budget, Contact, PairCache, QueryError, QueryOptions, StartState, TimeOfContact, Window,
     last_search_counts, time_of_contact_with,
 };
-use std::collections::BTreeSet;
+use std::collections::HashSet;
 use std::time::Instant;
 
 /// Pairs of the first round; each round is twice as long as the one before, so what is searched beyond the first contact
@@ -89,7 +89,7 @@ struct Finding {
     /// Pairs that could not be decided, and until when each is free.
     undecided: Vec<(IndexPair, f64)>,
     /// Pairs that were judged: each once a search.
-    seen: BTreeSet<IndexPair>,
+    seen: HashSet<IndexPair>,
     /// Entries that later queries need again.
     kept: Vec<Entry>,
 }
@@ -201,7 +201,12 @@ impl World {
         self.prepare(window);
         let mut finding = Finding::default();
         let mut purse = Purse::new(self.options.budget);
-        let mut round = if purse.is_limited() { 1 } else { FIRST_ROUND };
+        let mut round = match goal {
+            _ if purse.is_limited() => 1,
+            Goal::First => FIRST_ROUND,
+            // Every pair is searched over the whole window, whatever the others give.
+            Goal::All => LONGEST_ROUND,
+        };
         let outcome = loop {
             let best = finding.best().filter(|_| goal == Goal::First);
             let at_start =
@@ -242,7 +247,7 @@ impl World {
         changed.dedup();
         let rules =
             Rules { slots: &self.slots, filter: &self.filter, separation: self.options.min_separation };
-        if self.schedule.prepare(rules, window, &changed) == Prepared::Anew {
+        if self.schedule.prepare(rules, window, &changed) == Prepared::Anew && !self.states.is_empty() {
             let pairs = self.schedule.pairs();
             self.states.retain(|pair, _| pairs.binary_search(pair).is_ok());
         }
@@ -321,7 +326,7 @@ impl World {
         // The boxes prove what lies between the start of the query and that of a pair's own window.
         let span_start = self.schedule.from();
         let slots = &self.slots;
-        let replies = map_in_order(&questions, |question| {
+        let replies = map_in_order(&questions, PAIRS, |question| {
             let mut cache = question.cache;
             let budget = if purse.is_limited() { purse.budget() } else { Budget::UNLIMITED };
             let [Some(a), Some(b)] = question.pair.map(|place| slots.at(place)) else {
