@@ -1,9 +1,26 @@
 //! Default engine, reference method and slow oracle on random small scenes.
 
+use d2m_bvh::paper::{CrossCheck, cross_check};
+use d2m_bvh::{QueryOptions, Solid, Topology, TriMesh, Window};
+use d2m_testing::{SmallScene, Surface};
+
+fn mesh(surface: &Surface) -> TriMesh {
+    TriMesh::try_new(surface.vertices.clone(), surface.triangles.clone()).expect("finite vertices")
+}
+
 #[test]
 fn engine_and_reference_agree() {
     for seed in [101, 102] {
-        let report = d2m_bvh::paper::cross_check(120, seed);
+        let mut report = CrossCheck::default();
+        for index in 0..120 {
+            let scene =
+                SmallScene::draw(seed, index, |surface| Topology::new(&mesh(surface)).is_watertight());
+            let solid = if scene.filled { Solid::Filled } else { Solid::Surface };
+            let window = Window::try_new(scene.window[0], scene.window[1]).expect("in order");
+            let meshes = scene.surfaces.each_ref().map(mesh);
+            let options = QueryOptions::DEFAULT.with_solid(solid);
+            report.add(cross_check(&scene.name, meshes, scene.motions, window, &options));
+        }
         assert!(report.complaints.is_empty(), "{:#?}", report.complaints);
         assert!(report.contacts > 50, "{report:?}");
         assert_eq!(

@@ -1,15 +1,15 @@
 //! Default engine, reference method and slow judge on procedural shapes: a screw in its nut, a link in a link.
 
-use d2m_bvh::paper::{CrossCheck, cross_check_scene};
+use d2m_bvh::paper::{CrossCheck, cross_check};
 use d2m_bvh::{QueryOptions, Solid, Window};
 use d2m_motion::ConstantTwist;
 use d2m_shapes::mesh;
 use glam::{DVec3, dvec3};
 
 fn judge(a: &str, b: &str, motions: &[ConstantTwist; 2], window: Window) -> CrossCheck {
-    let [x, y] = [a, b].map(|text| mesh(text).expect("a shape"));
+    let meshes = [a, b].map(|text| mesh(text).expect("a shape"));
     let options = QueryOptions::DEFAULT.with_solid(Solid::Filled);
-    let report = cross_check_scene([(x, motions[0]), (y, motions[1])], window, &options);
+    let report = cross_check(&format!("{a} and {b}"), meshes, *motions, window, &options);
     assert!(report.complaints.is_empty(), "{:#?}", report.complaints);
     assert_eq!(report.undecided, [0, 0]);
     report

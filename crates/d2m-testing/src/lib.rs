@@ -5,6 +5,8 @@
 //! and answers. Draws from a seed are the same on every machine and in every release.
 
 mod random;
+#[cfg(feature = "scenes")]
+mod small_scene;
 mod xoshiro;
 
 #[cfg(feature = "planted")]
@@ -17,4 +19,6 @@ pub mod fixed;
 pub mod planted;
 
 pub use random::{Draw, KnuthRandom, Random};
+#[cfg(feature = "scenes")]
+pub use small_scene::{SmallScene, Surface};
 pub use xoshiro::Xoshiro256;

@@ -1,9 +1,21 @@
-//! The reference method and the engine on the scenes of `d2m_bvh::paper::cross_check`.
+//! The reference method and the engine on random small scenes, both judged by certified static distances.
 use super::{Outcome, Task};
-use d2m::bvh::paper;
+use d2m::bvh::Topology;
+use d2m::bvh::paper::{CrossCheck, cross_check};
+use d2m::{QueryOptions, Solid, TriMesh, Window};
+use d2m_testing::{SmallScene, Surface};
 
 pub(super) fn run(task: &Task) -> Outcome {
-    let found = paper::cross_check(task.count, task.seed);
+    let mut found = CrossCheck::default();
+    for index in 0..task.count as u64 {
+        let scene =
+            SmallScene::draw(task.seed, index, |surface| Topology::new(&mesh(surface)).is_watertight());
+        let solid = if scene.filled { Solid::Filled } else { Solid::Surface };
+        let window = Window::try_new(scene.window[0], scene.window[1]).expect("in order");
+        let options = QueryOptions::DEFAULT.with_solid(solid);
+        let meshes = scene.surfaces.each_ref().map(mesh);
+        found.add(cross_check(&scene.name, meshes, scene.motions, window, &options));
+    }
     Outcome {
         cases: found.scenes,
         contacts: found.contacts,
@@ -12,4 +24,8 @@ pub(super) fn run(task: &Task) -> Outcome {
         false_alarms: Vec::new(),
         by_oracle: 0,
     }
+}
+
+fn mesh(surface: &Surface) -> TriMesh {
+    TriMesh::try_new(surface.vertices.clone(), surface.triangles.clone()).expect("finite vertices")
 }

@@ -16,7 +16,7 @@ mod step_back;
 mod stretch;
 mod traverse;
 
-pub use cross_check::{CrossCheck, cross_check, cross_check_scene};
+pub use cross_check::{CrossCheck, cross_check};
 pub use sphere_tree::SphereTree;
 
 use crate::{QueryError, QueryOptions, Solid, TimeOfContact, Window};
