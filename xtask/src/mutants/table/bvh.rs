@@ -50,6 +50,20 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "let sense = along;",
         "crates/d2m-bvh/src/search/span_tests.rs::pairs_that_are_proven_apart_are_apart_all_the_time",
     ),
+    patch(
+        "unit vectors whose squares underflow are kept, however long they became",
+        "crates/d2m-bvh/src/search/node_pair/discriminant.rs",
+        "const LONGEST_SQUARE: f32 = 1.0 + 16.0 * UNIT_F32 as f32;",
+        "const LONGEST_SQUARE: f32 = f32::MAX * UNIT_F32 as f32;",
+        "crates/d2m-bvh/src/search/node_pair/discriminant.rs::unit_vectors_are_no_longer_than_one",
+    ),
+    patch(
+        "the discriminant forgets the spread of one box",
+        "crates/d2m-bvh/src/search/node_pair/discriminant.rs",
+        "[a[3] + b[3], a[4] + b[4], a[5] + b[5]]",
+        "[a[3], a[4], a[5]]",
+        "crates/d2m-bvh/src/search/node_pair/discriminant.rs::the_discriminant_solves_its_equation",
+    ),
     // Crowds.
     patch(
         "planes are checked at one end of the span only",

@@ -1,5 +1,6 @@
 //! A box of one body against the eight boxes of a node of the other: until when are they apart?
 
+mod discriminant;
 pub(crate) mod entry_time;
 pub(crate) mod expansion;
 pub(crate) mod node_scale;

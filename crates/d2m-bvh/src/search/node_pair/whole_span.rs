@@ -7,6 +7,7 @@
 //!
 //! docs/theory/engine.md, "Time, divided", has the margins.
 
+use super::discriminant::{Spread, discriminant, unit};
 use super::entry_time::{dot, splat};
 use super::node_scale::NodeScale;
 use super::node_test::opposite;
@@ -180,8 +181,8 @@ fn norm(v: &[f32; 4]) -> f32 {
 
 /// Bit i is set when box i of a node stays apart from a single box over the span.
 ///
-/// Three directions are tried, fixed in the world as they are in the middle of the span: the line of the centers and the last
-/// axes of both boxes.
+/// Three directions are tried, fixed in the world as they are in the middle of the span: the one along which the centers are
+/// furthest apart against the boxes' spreads, and the last axes of both boxes.
 #[inline(always)]
 pub(crate) fn apart_over_span<L: Lanes>(
     frame: &SpanFrame<'_>,
@@ -207,16 +208,18 @@ pub(crate) fn apart_over_span<L: Lanes>(
     let margin = SPAN_ERROR * (norm(&first).max(norm(&last)) + wide.extent + radius) + frame.need;
 
     let lanes = load::<L>(&wide.center);
-    let (centers, at) = (both::<L>(&lanes), ends::<L>(&first, &last));
+    let (long, middle_long) = (load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]));
     let wide_last = both::<L>(&load::<L>(&wide.axes[2]));
+    let wide_half = load::<L>(&wide.half_extent);
+    let (centers, at) = (both::<L>(&lanes), ends::<L>(&first, &last));
     let (half, slabs, axes) = (&single.half_extent, &single.slabs, &single.axes);
     let [c, d] = &frame.carried;
     let boxed = Boxed::<L> {
         to: [at[0] - centers[0], at[1] - centers[1], at[2] - centers[2]],
         wide: Boxes {
-            half: both::<L>(&load::<L>(&wide.half_extent)),
+            half: both::<L>(&wide_half),
             slabs: both::<L>(&load::<L>(&wide.slabs)),
-            axes: [both::<L>(&load::<L>(&wide.axes[0])), both::<L>(&load::<L>(&wide.axes[1])), wide_last],
+            axes: [both::<L>(&long), both::<L>(&middle_long), wide_last],
         },
         single: Boxes {
             half: [
@@ -241,17 +244,20 @@ pub(crate) fn apart_over_span<L: Lanes>(
 
     let used = (1 << wide.used) - 1;
     let at = splat::<L>(&middle);
-    let line = [at[0] - lanes[0], at[1] - lanes[1], at[2] - lanes[2]];
-    // Where it has no length it is not a number, and proves nothing.
-    let inverse = L::splat(1.0) / dot(&line, &line).sqrt();
-    let line = [line[0] * inverse, line[1] * inverse, line[2] * inverse];
-    let mut apart = boxed.apart_along(&both::<L>(&line));
+    let line = unit(&[at[0] - lanes[0], at[1] - lanes[1], at[2] - lanes[2]]);
+    let own = [0, 1, 2].map(|k| {
+        let [x, y, z, _] = frame.middle.turned::<L>(&axes[k], lane);
+        [x, y, z]
+    });
+    let own_half = [half[0][lane] * ratio, half[1][lane] * ratio, half[2][lane] * ratio];
+    let single = Spread::new([&own[0], &own[1]], &own_half).splat();
+    let best = discriminant(&Spread::new([&long, &middle_long], &wide_half), &single, &line);
+    let mut apart = boxed.apart_along(&both::<L>(&best));
     if apart & used != used {
         apart |= boxed.apart_along(&wide_last);
     }
     if apart & used != used {
-        let own = frame.middle.turned::<L>(&axes[2], lane);
-        apart |= boxed.apart_along(&ends::<L>(&own, &own));
+        apart |= boxed.apart_along(&own[2].map(L::Two::splat));
     }
     apart
 }
