@@ -121,7 +121,7 @@ impl<'a> EnclosedPairMotion<'a> {
     ) -> FirstContact {
         let size = largest(&[point]).max(largest(triangle));
         self.answer(size, options, &|piece, units, options| {
-            let triangle = triangle.map(|v| units.point(v));
+            let triangle = units.points(*triangle);
             point_triangle(&piece.forward, units.point(point), &triangle, options)
         })
     }
@@ -135,7 +135,7 @@ impl<'a> EnclosedPairMotion<'a> {
     ) -> FirstContact {
         let size = largest(&[point]).max(largest(triangle));
         self.answer(size, options, &|piece, units, options| {
-            let triangle = triangle.map(|v| units.point(v));
+            let triangle = units.points(*triangle);
             point_triangle(&piece.backward, units.point(point), &triangle, options)
         })
     }
@@ -149,7 +149,7 @@ impl<'a> EnclosedPairMotion<'a> {
     ) -> FirstContact {
         let size = largest(&edge_a).max(largest(&edge_b));
         self.answer(size, options, &|piece, units, options| {
-            let (edge_a, edge_b) = (edge_a.map(|v| units.point(v)), edge_b.map(|v| units.point(v)));
+            let (edge_a, edge_b) = (units.points(edge_a), units.points(edge_b));
             // Seen from the slower body the bounds are smaller.
             if piece.forward.turn_b() <= piece.backward.turn_b() {
                 edge_edge(&piece.forward, edge_a, edge_b, options)

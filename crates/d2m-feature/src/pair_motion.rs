@@ -109,7 +109,7 @@ impl PairMotion {
         let size = largest(triangle);
         let placed = match &self.sides {
             Some(sides) if self.units.serve(size) => {
-                let vertices = triangle.map(|v| self.units.point(v));
+                let vertices = self.units.points(*triangle);
                 Some(InUnits { vertices, planes: rigid_query::place(&sides.forward, &vertices) })
             }
             _ => None,
@@ -126,7 +126,7 @@ impl PairMotion {
     ) -> FirstContact {
         let size = largest(&[point]).max(largest(triangle));
         self.answer(size, options, |sides, units, options| {
-            let (point, triangle) = (units.point(point), triangle.map(|v| units.point(v)));
+            let (point, triangle) = (units.point(point), units.points(*triangle));
             rigid_query::point_triangle(&sides.forward, point, &triangle, options)
         })
     }
@@ -140,7 +140,7 @@ impl PairMotion {
     ) -> FirstContact {
         let size = largest(&[point]).max(largest(triangle));
         self.answer(size, options, |sides, units, options| {
-            let (point, triangle) = (units.point(point), triangle.map(|v| units.point(v)));
+            let (point, triangle) = (units.point(point), units.points(*triangle));
             rigid_query::point_triangle(&sides.backward, point, &triangle, options)
         })
     }
@@ -172,7 +172,7 @@ impl PairMotion {
     ) -> FirstContact {
         let size = largest(&edge_a).max(largest(&edge_b));
         self.answer(size, options, |sides, units, options| {
-            let (edge_a, edge_b) = (edge_a.map(|v| units.point(v)), edge_b.map(|v| units.point(v)));
+            let (edge_a, edge_b) = (units.points(edge_a), units.points(edge_b));
             // Seen from the slower body the bounds are smaller (8–16 % fewer evaluations).
             if sides.forward.motion.speed_b() <= sides.forward.motion.speed_a() {
                 rigid_query::edge_edge(&sides.forward, edge_a, edge_b, options)
@@ -202,7 +202,7 @@ impl PairMotion {
     pub fn point_triangle_details(&self, point: DVec3, triangle: &[DVec3; 3], time: f64) -> ContactDetails {
         let size = largest(&[point]).max(largest(triangle));
         self.details(size, time, |[a, b], units, time| {
-            details::point_triangle(a, b, units.point(point), &triangle.map(|v| units.point(v)), time)
+            details::point_triangle(a, b, units.point(point), &units.points(*triangle), time)
         })
     }
 
@@ -210,7 +210,7 @@ impl PairMotion {
     pub fn triangle_point_details(&self, triangle: &[DVec3; 3], point: DVec3, time: f64) -> ContactDetails {
         let size = largest(&[point]).max(largest(triangle));
         self.details(size, time, |[a, b], units, time| {
-            let triangle = triangle.map(|v| units.point(v));
+            let triangle = units.points(*triangle);
             details::point_triangle(b, a, units.point(point), &triangle, time).reversed()
         })
     }
@@ -219,7 +219,7 @@ impl PairMotion {
     pub fn edge_edge_details(&self, edge_a: [DVec3; 2], edge_b: [DVec3; 2], time: f64) -> ContactDetails {
         let size = largest(&edge_a).max(largest(&edge_b));
         self.details(size, time, |[a, b], units, time| {
-            let (edge_a, edge_b) = (edge_a.map(|v| units.point(v)), edge_b.map(|v| units.point(v)));
+            let (edge_a, edge_b) = (units.points(edge_a), units.points(edge_b));
             details::edge_edge(a, b, edge_a, edge_b, time)
         })
     }

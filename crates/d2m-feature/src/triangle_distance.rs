@@ -99,7 +99,7 @@ pub fn triangle_distance(a: &[DVec3; 3], b: &[DVec3; 3]) -> TriangleDistance {
     // Powers of two: first so that no difference overflows, then so that the largest difference is near one.
     let largest = a.iter().chain(b).fold(DVec3::ZERO, |most, p| most.max(p.abs())).max_element();
     let units = Units::of_size(largest);
-    let [in_units_a, in_units_b] = [a, b].map(|triangle| triangle.map(|p| units.point(p)));
+    let (in_units_a, in_units_b) = (units.points(*a), units.points(*b));
     let origin = in_units_a[0];
     let extent =
         in_units_a.iter().chain(&in_units_b).map(|&p| (p - origin).abs().max_element()).fold(0.0, f64::max);
@@ -107,13 +107,15 @@ pub fn triangle_distance(a: &[DVec3; 3], b: &[DVec3; 3]) -> TriangleDistance {
     let shrink = 1.0 / scale;
     let [local_a, local_b] = [in_units_a, in_units_b].map(|triangle| triangle.map(|p| (p - origin) * shrink));
     let mut search = Search::new(&local_a, &local_b);
-    search.run();
-    let Search { mut closest, mut upper, lower, .. } = search;
-    let meet = lower.gap <= 0.0 && triangles_intersect(a, b);
+    let is_tight = search.run();
+    // What is proven apart does not meet. For what meets no direction is of use.
+    let meet = search.lower.gap <= 0.0 && triangles_intersect(a, b);
     if meet {
-        upper = 0.0;
-        closest = try_common_point(&local_a, &local_b).unwrap_or(closest);
+        search.closest = try_common_point(&local_a, &local_b).unwrap_or(search.closest);
+    } else if !is_tight {
+        search.try_directions();
     }
+    let Search { closest, upper, lower, .. } = search;
     let place =
         |weights, vertices: &[DVec3; 3]| units.point_back(combine(weights, vertices) * scale + origin);
     let back = |distance: f64| units.length_back(distance * scale);
@@ -226,8 +228,9 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Nine side/side and six vertex/face pairs; ends as soon as the bounds agree, which they do at the closest pair.
-    fn run(&mut self) {
+    /// Nine side/side and six vertex/face pairs; ends as soon as the bounds agree, which they do at the closest pair. Says
+    /// whether they do.
+    fn run(&mut self) -> bool {
         let (a, b) = (self.a, self.b);
         for pair in 0..9 {
             let (i, j) = (pair / 3, pair % 3);
@@ -241,7 +244,7 @@ impl<'a> Search<'a> {
                 (weights_b[j], weights_b[next_j]) = (1.0 - t, t);
                 self.take(Closest { weights_a, weights_b }, offset);
                 if self.is_tight() {
-                    return;
+                    return true;
                 }
             }
         }
@@ -257,11 +260,13 @@ impl<'a> Search<'a> {
                 }
             }
         }
-        if self.is_tight() {
-            return;
-        }
-        let kind = likely_direction(a, b, &self.closest);
-        self.lower.consider(a, b, kind, self.reach);
+        self.is_tight()
+    }
+
+    /// The direction that belongs to the closest points, with twice the digits, then every one that could be the best.
+    fn try_directions(&mut self) {
+        let (a, b) = (self.a, self.b);
+        self.lower.consider(a, b, likely_direction(a, b, &self.closest), self.reach);
         if self.is_tight() {
             return;
         }

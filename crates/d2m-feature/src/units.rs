@@ -170,6 +170,15 @@ impl Units {
         if self.range[0] <= self.range[1] { p * self.factor } else { self.point_slowly(p) }
     }
 
+    /// Points in these units. (Written out: a closure over an array is a call.)
+    #[inline(always)]
+    pub(crate) fn points<const N: usize>(&self, mut points: [DVec3; N]) -> [DVec3; N] {
+        for p in &mut points {
+            *p = self.point(*p);
+        }
+        points
+    }
+
     #[cold]
     fn point_slowly(&self, p: DVec3) -> DVec3 {
         DVec3::new(scaled(p.x, -self.length), scaled(p.y, -self.length), scaled(p.z, -self.length))

@@ -80,15 +80,17 @@ impl IntervalVec3X4 {
     /// `self × o`.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
-        let largest = self.largest().max(o.largest());
-        let minor = |a: IntervalX4, d: IntervalX4, b: IntervalX4, c: IntervalX4| {
+        /// `a·d − b·c`. (A function: a closure is a call.)
+        #[inline(always)]
+        fn minor([a, d]: [IntervalX4; 2], [b, c]: [IntervalX4; 2], largest: F64x4) -> IntervalX4 {
             let (p, q) = (a.products(d), -b.products(c));
             p.sum(q).rounded(p.size().sum(q.size()), TWO_PRODUCTS, largest, || a * d - b * c)
-        };
+        }
+        let largest = self.largest().max(o.largest());
         Self::new(
-            minor(self.y, o.z, self.z, o.y),
-            minor(self.z, o.x, self.x, o.z),
-            minor(self.x, o.y, self.y, o.x),
+            minor([self.y, o.z], [self.z, o.y], largest),
+            minor([self.z, o.x], [self.x, o.z], largest),
+            minor([self.x, o.y], [self.y, o.x], largest),
         )
     }
 

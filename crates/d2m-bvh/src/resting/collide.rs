@@ -4,7 +4,7 @@ use super::containment::one_holds_the_other;
 use super::node_pair::{Scene, Step, child, proven_apart};
 use crate::allowance::{Allowance, Exhausted};
 use crate::{Budget, Posed, QueryError, Solid};
-use d2m_feature::triangle_distance;
+use d2m_feature::triangles_intersect;
 use d2m_lanes::{Lanes, Task, run};
 use glam::DVec3;
 
@@ -133,8 +133,8 @@ fn may_touch(scene: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     !proven_apart(a, b, scene.error, scene.need)
 }
 
-fn cross(scene: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
-    may_touch(scene, a, b) && triangle_distance(a, b).upper == 0.0
+fn cross(_: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
+    triangles_intersect(a, b)
 }
 
 /// Refuses filled bodies that do not close.

@@ -1,5 +1,6 @@
 //! What is done with the pairs that the queue hands out: boxes are expanded, triangles are advanced in time.
 
+use super::motion::frame::Frame;
 use super::queue::Item;
 use super::scene::SceneBody;
 use super::state::{BATCH, Found, SECOND_ORDER_TESTS, Search, State};
@@ -9,7 +10,7 @@ use super::triangle_pair::separating_axis::{
 };
 use crate::Mode;
 use crate::tree::node::WIDTH;
-use d2m_lanes::Lanes;
+use d2m_lanes::{Lanes, Task, run};
 use glam::DVec3;
 
 /// A pair that is advanced out of turn is left after so many steps; ordinary contacts take fewer than ten.
@@ -70,7 +71,7 @@ impl Search<'_> {
         };
         let triangles = [triangle(0), triangle(1)];
         let (a, b) = (self.scene.a.corners(triangles[0]), self.scene.b.corners(triangles[1]));
-        if self.limits.mode == Mode::Capoeira && self.stop_early::<L>(state, item, &a, &b, triangles) {
+        if self.limits.mode == Mode::Capoeira && self.stop_early(state, item, &a, &b, triangles) {
             return;
         }
         // Proven apart until here.
@@ -142,7 +143,7 @@ impl Search<'_> {
 
     /// Capoeira: takes the pair as the answer when the triangles are as close as their boxes are large. What is
     /// certified is the time of the frame: no live key is earlier.
-    fn stop_early<L: Lanes>(
+    fn stop_early(
         &self,
         state: &mut State<'_>,
         item: Item,
@@ -155,9 +156,8 @@ impl Search<'_> {
             f64::from(node.radius[lane]) * body.box_unit()
         };
         let size = radius(&self.scene.a, item.boxes[0]) + radius(&self.scene.b, item.boxes[1]);
-        let near = closest::<L::Doubles>(&place_a::<L::Doubles>(&state.frame, a), b);
-        let close =
-            near.distance_squared <= size * size && (state.frame.offset > 0.0 || near.distance_squared > 0.0);
+        let distance_squared = run(DistanceSquared { frame: &state.frame, a, b });
+        let close = distance_squared <= size * size && (state.frame.offset > 0.0 || distance_squared > 0.0);
         // At the very start the accurate test decides whether the bodies touch.
         if close && (state.frame_key > 0 || state.motion.start > 0.0) {
             let offset = state.frame.offset;
@@ -166,6 +166,23 @@ impl Search<'_> {
             return true;
         }
         false
+    }
+}
+
+/// The squared distance of two triangles that do not cross, the first one of A at the time of the frame. A task of its own:
+/// the search proper is the leaner without it.
+struct DistanceSquared<'a> {
+    frame: &'a Frame,
+    a: &'a [DVec3; 3],
+    b: &'a [DVec3; 3],
+}
+
+impl Task for DistanceSquared<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> f64 {
+        closest::<L::Doubles>(&place_a::<L::Doubles>(self.frame, self.a), self.b).distance_squared
     }
 }
 

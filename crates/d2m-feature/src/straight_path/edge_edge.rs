@@ -26,6 +26,7 @@ pub(super) struct StraightEdgeEdge {
 }
 
 impl StraightEdgeEdge {
+    #[inline(always)]
     pub(super) fn new(lines: &Lines, options: &ContactOptions) -> Self {
         let combine = |points: &[DVec3; 4]| {
             let w = (points[0] - points[2] + (points[1] - points[3])) * 0.5;
@@ -115,7 +116,7 @@ impl PieceTest for StraightEdgeEdge {
                 part = beside;
                 inside = inside && above.exceeds(margin, padded) && (-below).exceeds(margin, padded);
             }
-            if inside && part == meeting && total.quadratic.exceeds(total.margin, padded) {
+            if inside && part == meeting && total.is_positive(padded) {
                 certain = true;
                 self.inside = global(part, at, piece);
             }

@@ -52,31 +52,21 @@ impl StraightPaths {
 
     /// First contact of the first point with the triangle of the other three, t in [0, 1].
     pub fn point_triangle(&self, options: &ContactOptions) -> FirstContact {
-        self.answer(options, |lines, options| {
-            answer_in(&mut StraightPointTriangle::new(lines, options), WINDOW, 0.0, options)
-        })
+        let lines = Lines::new(self);
+        if lines.are_ordinary() {
+            point_triangle(&lines, options)
+        } else {
+            self.answer_in_other_units(options, point_triangle)
+        }
     }
 
     /// First contact of the edge of the first two points with the edge of the last two, t in [0, 1].
     pub fn edge_edge(&self, options: &ContactOptions) -> FirstContact {
-        self.answer(options, |lines, options| {
-            answer_in(&mut StraightEdgeEdge::new(lines, options), WINDOW, 0.0, options)
-        })
-    }
-
-    /// The answer in units in which no product of coordinates over- or underflows: those of the input, if the largest
-    /// difference is in [2⁻¹⁰⁰, 2¹⁰⁰].
-    #[inline(always)]
-    fn answer(
-        &self,
-        options: &ContactOptions,
-        query: impl Fn(&Lines, &ContactOptions) -> FirstContact,
-    ) -> FirstContact {
         let lines = Lines::new(self);
-        if (SMALLEST..=LARGEST).contains(&lines.magnitude) {
-            query(&lines, options)
+        if lines.are_ordinary() {
+            edge_edge(&lines, options)
         } else {
-            self.answer_in_other_units(options, &query)
+            self.answer_in_other_units(options, edge_edge)
         }
     }
 
@@ -85,14 +75,23 @@ impl StraightPaths {
     fn answer_in_other_units(
         &self,
         options: &ContactOptions,
-        query: &dyn Fn(&Lines, &ContactOptions) -> FirstContact,
+        query: fn(&Lines, &ContactOptions) -> FirstContact,
     ) -> FirstContact {
         let most = self.start.iter().chain(&self.end).fold(DVec3::ZERO, |most, p| most.max(p.abs()));
         let units = Units::of_size(most.max_element());
-        let scaled = |points: [DVec3; 4]| points.map(|p| units.point(p));
-        let paths = Self { start: scaled(self.start), end: scaled(self.end) };
+        let paths = Self { start: units.points(self.start), end: units.points(self.end) };
         back(query(&Lines::new(&paths), &options.in_units(&units)), &units)
     }
+}
+
+#[inline(always)]
+fn point_triangle(lines: &Lines, options: &ContactOptions) -> FirstContact {
+    answer_in(&mut StraightPointTriangle::new(lines, options), WINDOW, 0.0, options)
+}
+
+#[inline(always)]
+fn edge_edge(lines: &Lines, options: &ContactOptions) -> FirstContact {
+    answer_in(&mut StraightEdgeEdge::new(lines, options), WINDOW, 0.0, options)
 }
 
 /// A contact's distances in the units of the input.
@@ -116,6 +115,7 @@ pub(crate) struct Lines {
 }
 
 impl Lines {
+    #[inline(always)]
     fn new(paths: &StraightPaths) -> Self {
         // One common origin near the features: what is far from the world's origin keeps its digits.
         let origin = paths.start[1];
@@ -128,6 +128,12 @@ impl Lines {
         let ends = [square(e0), square(e1), square(e2), square(e3)];
         let magnitude = larger(largest(&starts), largest(&ends)).sqrt() * UP;
         Self { start, velocity, magnitude }
+    }
+
+    /// No product of coordinates over- or underflows: the largest difference is in [2⁻¹⁰⁰, 2¹⁰⁰].
+    #[inline(always)]
+    fn are_ordinary(&self) -> bool {
+        (SMALLEST..=LARGEST).contains(&self.magnitude)
     }
 
     /// Bound of the error of a sum of differences of the points at a time of the window, dotted with a vector of

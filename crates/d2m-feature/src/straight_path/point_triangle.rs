@@ -25,6 +25,7 @@ pub(super) struct StraightPointTriangle {
 }
 
 impl StraightPointTriangle {
+    #[inline(always)]
     pub(super) fn new(lines: &Lines, options: &ContactOptions) -> Self {
         let Lines { start, velocity, .. } = lines;
         let square = |a: usize, b: usize| (start[a] - start[b]).length_squared();
@@ -119,7 +120,7 @@ impl PieceTest for StraightPointTriangle {
             };
             let areas = [first, second, third];
             let in_plane = part;
-            let facing = total.quadratic.exceeds(total.margin, padded(part, at, whole));
+            let facing = total.is_positive(padded(part, at, whole));
             if facing {
                 // A contact needs all three parts at least 0.
                 for area in &areas {
@@ -131,10 +132,7 @@ impl PieceTest for StraightPointTriangle {
                 }
             }
             let padded = padded(part, at, whole);
-            if facing
-                && part == in_plane
-                && areas.iter().all(|area| area.quadratic.exceeds(area.margin, padded))
-            {
+            if facing && part == in_plane && areas.iter().all(|area| area.is_positive(padded)) {
                 certain = true;
                 self.inside = global(part, at, piece);
             }

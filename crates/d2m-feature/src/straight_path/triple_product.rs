@@ -83,6 +83,12 @@ impl Seen {
         let off = ROUNDING_OF_TWO * UNIT * lx * ly + error * (lx + ly + error) + separation * ly;
         Self { quadratic, margin: length * off * UP + PRODUCT_UNDERFLOW }
     }
+
+    /// Certainly positive throughout a piece.
+    #[inline(always)]
+    pub(super) fn is_positive(&self, piece: Piece) -> bool {
+        self.quadratic.exceeds(self.margin, piece)
+    }
 }
 
 #[cfg(test)]

@@ -65,12 +65,3 @@ impl Piece {
         self.reach() <= reach && self.lo <= self.hi
     }
 }
-
-/// A double not below the real number that was rounded to `x`; NaN for infinities.
-///
-/// The neighbour above `x` is at most 2⁻⁵²|x| away and the real number less than that, so that rounding
-/// x + 2⁻⁵²|x| gives the neighbour or more. Sums and differences below 2⁻¹⁰²¹ are exact; there 2⁻⁵²|x| may vanish.
-#[inline(always)]
-pub(super) fn up(x: f64) -> f64 {
-    x + x.abs() * f64::EPSILON
-}

@@ -3,7 +3,7 @@
 //! **Invariant:** the coefficients are taken as they are, exactly; every rounding made here is counted here. The proofs
 //! of the constants are in `docs/theory/isolator.md`.
 use super::first_zero_bound::{UNIT, USUAL_GAPS, bound_first_zero, bound_scaled};
-use super::piece::{Piece, up};
+use super::piece::Piece;
 use super::time_unit::TimeUnit;
 use crate::binary::power_of_two;
 
@@ -20,7 +20,7 @@ pub(super) const LONGEST_REACH: f64 = power_of_two(20);
 /// of [`LONGEST_REACH`]: below 2⁻¹⁰¹⁰.
 pub(super) const UNDERFLOW: f64 = power_of_two(-1000);
 
-/// Keeps the sagitta above its exact value: more than its four roundings.
+/// Keeps the sagitta above its exact value: more than its four roundings and twice that of the width.
 const SAGITTA: f64 = 1.0 + 8.0 * UNIT;
 
 /// `value + slope·s + curvature·s²/2`.
@@ -75,6 +75,18 @@ impl Quadratic {
     #[inline(always)]
     pub fn slope_at(&self, s: f64) -> f64 {
         self.slope + self.curvature * s
+    }
+
+    /// With the time counted from `s`, up to the rounding of value and slope.
+    #[inline(always)]
+    fn from(&self, s: f64) -> Self {
+        Self { value: self.at(s), slope: self.slope_at(s), curvature: self.curvature }
+    }
+
+    /// The same with the time counted backwards.
+    #[inline(always)]
+    fn back_from(&self, s: f64) -> Self {
+        Self { value: self.at(s), slope: -self.slope_at(s), curvature: self.curvature }
     }
 
     /// A time σ ≥ 0 such that `gap + slope·x + curvature·x²/2 > 0` for all 0 ≤ x ≤ σ, given `gap > 0`: the first
@@ -223,26 +235,27 @@ impl Quadratic {
         debug_assert!(self.covers(allowed, part) && other.covers(allowed, part));
         let Piece { lo, hi } = part;
         let width = hi - lo;
-        // How far both keep a sign that they share, from values and slopes at an end.
-        let shared = |f: [f64; 2], g: [f64; 2]| {
-            let first = |sign: f64, [value, slope]: [f64; 2], curvature: f64| {
-                bound_first_zero(sign * value - allowed, sign * slope, sign * curvature)
-            };
-            let sign = if f[0] > allowed && g[0] > allowed {
+        /// How far both keep a sign that they share at zero. (A function: a closure is a call.)
+        #[inline(always)]
+        fn shared([f, g]: [&Quadratic; 2], allowed: f64) -> f64 {
+            let sign = if f.value > allowed && g.value > allowed {
                 1.0
-            } else if f[0] < -allowed && g[0] < -allowed {
+            } else if f.value < -allowed && g.value < -allowed {
                 -1.0
             } else {
                 return 0.0;
             };
-            let (a, b) = (first(sign, f, self.curvature), first(sign, g, other.curvature));
+            let first = |q: &Quadratic| {
+                bound_first_zero(sign * q.value - allowed, sign * q.slope, sign * q.curvature)
+            };
+            let (a, b) = (first(f), first(g));
             if a < b { a } else { b }
-        };
-        let advance = shared([self.at(lo), self.slope_at(lo)], [other.at(lo), other.slope_at(lo)]);
+        }
+        let advance = shared([&self.from(lo), &other.from(lo)], allowed);
         if advance > width {
             return None;
         }
-        let retreat = shared([self.at(hi), -self.slope_at(hi)], [other.at(hi), -other.slope_at(hi)]);
+        let retreat = shared([&self.back_from(hi), &other.back_from(hi)], allowed);
         if retreat > width {
             return None;
         }
@@ -301,7 +314,7 @@ impl Quadratic {
         let ends = if left <= right || left.is_nan() { left } else { right };
         if self.curvature > 0.0 {
             // Exact at the ends, below in between.
-            let width = up(part.hi - part.lo);
+            let width = part.hi - part.lo;
             ends - self.curvature * width * width * 0.125 * SAGITTA
         } else {
             ends

@@ -3,9 +3,9 @@ use super::Parabola;
 use crate::binary::{Binary, power_of_two, scaled};
 use d2m_interval::Interval;
 
-/// Exponents of coefficients up to which no other units are needed: the discriminant lies within 2^±301, far above the
-/// 2⁻⁵⁰⁰ that interval arithmetic may add to it.
-const ORDINARY: i32 = 150;
+/// Sizes of coefficients that need no other units, 2^±150: the discriminant lies within 2^±303, far above the 2⁻⁵⁰⁰ that
+/// interval arithmetic may add to it.
+const ORDINARY: core::ops::Range<f64> = power_of_two(-150)..power_of_two(151);
 /// Coefficients below 2⁻⁹⁰⁰ in these units are enclosed from zero on: their mantissa would leave the normal numbers.
 const NEGLIGIBLE: i32 = -900;
 
@@ -22,14 +22,28 @@ pub(super) struct InUnits {
 impl InUnits {
     /// With the value in [1, 2) and the larger of slope and √curvature about 1; those of the caller if the numbers are
     /// ordinary (or not finite: then nothing is known).
+    #[inline(always)]
     pub(super) fn of(p: Parabola) -> Self {
-        let (value, slope, curvature) = (Binary::of(p.value), Binary::of(p.slope), Binary::of(p.curvature));
-        let all = [value, slope, curvature];
-        let finite = p.value.is_finite() && p.slope.is_finite() && p.curvature.is_finite();
-        if !finite || all.iter().all(|x| x.exponent.abs() <= ORDINARY) {
-            let [value, slope, curvature] = [p.value, p.slope, p.curvature].map(Interval::point);
-            return Self { value, slope, curvature, time: 0 };
+        let is_ordinary = |x: f64| x == 0.0 || ORDINARY.contains(&x.abs());
+        if is_ordinary(p.value) && is_ordinary(p.slope) && is_ordinary(p.curvature) {
+            Self::of_caller(p)
+        } else {
+            Self::of_extremes(p)
         }
+    }
+
+    #[inline(always)]
+    fn of_caller(p: Parabola) -> Self {
+        let (value, slope) = (Interval::point(p.value), Interval::point(p.slope));
+        Self { value, slope, curvature: Interval::point(p.curvature), time: 0 }
+    }
+
+    #[cold]
+    fn of_extremes(p: Parabola) -> Self {
+        if !(p.value.is_finite() && p.slope.is_finite() && p.curvature.is_finite()) {
+            return Self::of_caller(p);
+        }
+        let (value, slope, curvature) = (Binary::of(p.value), Binary::of(p.slope), Binary::of(p.curvature));
         let by_slope = value.exponent - slope.exponent;
         let by_curvature = (value.exponent - curvature.exponent).div_euclid(2);
         let (time, unit) = match (value.is_zero(), slope.is_zero(), curvature.is_zero()) {
@@ -56,6 +70,7 @@ impl InUnits {
     /// Enclosure of the discriminant p′(0)² − 2·p″·p(0).
     ///
     /// Formed in interval arithmetic, so cancellation widens it and never falsifies it.
+    #[inline(always)]
     pub(super) fn discriminant(&self) -> Interval {
         self.slope.sqr() - self.curvature * self.value * 2.0
     }

@@ -90,8 +90,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "a parabola's discriminant in whatever units it comes",
         "crates/d2m-root/src/parabola/in_units.rs",
-        "const ORDINARY: i32 = 150;",
-        "const ORDINARY: i32 = 2150;",
+        "x == 0.0 || ORDINARY.contains(&x.abs())",
+        "x.is_finite()",
         "crates/d2m-root/src/parabola/mod.rs::roots_follow_every_exact_scaling",
     ),
     patch(
