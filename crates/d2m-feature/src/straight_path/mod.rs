@@ -124,9 +124,8 @@ impl Lines {
         let start = [s0 - origin, DVec3::ZERO, s2 - origin, s3 - origin];
         let velocity = [e0 - s0, e1 - s1, e2 - s2, e3 - s3];
         let square = |p: DVec3| (p - origin).length_squared();
-        let starts = [start[0].length_squared(), start[2].length_squared(), start[3].length_squared()];
-        let ends = [square(e0), square(e1), square(e2), square(e3)];
-        let magnitude = larger(largest(&starts), largest(&ends)).sqrt() * UP;
+        let squares = [square(s0), square(s2), square(s3), square(e0), square(e1), square(e2), square(e3)];
+        let magnitude = largest(&squares).sqrt() * UP;
         Self { start, velocity, magnitude }
     }
 

@@ -1,7 +1,7 @@
 //! A point and a triangle, all four vertices on straight paths.
 use super::linear::{Line, Linear, clear_above};
 use super::triple_product::{Seen, TripleProduct};
-use super::{Lines, largest};
+use super::{Lines, larger, largest};
 use crate::closest;
 use crate::options::ContactOptions;
 use crate::path::{around, direction, global, local, padded, reach};
@@ -42,7 +42,7 @@ impl StraightPointTriangle {
         let speeds = [a.v.length_squared(), (a.v - e1.v).length_squared(), (a.v - e2.v).length_squared()];
         let speed = largest(&speeds).sqrt() * UP + UNDERFLOW;
         let error = lines.error(48.0);
-        let tolerance = options.wanted_tolerance(square.sqrt(), lines.magnitude).max(4.0 * error);
+        let tolerance = larger(options.wanted_tolerance(square.sqrt(), lines.magnitude), 4.0 * error);
         Self {
             lines: [a, e1, e2],
             error,

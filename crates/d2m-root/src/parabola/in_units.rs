@@ -76,10 +76,13 @@ impl InUnits {
     }
 
     /// Offsets y ≥ 0 of these units in the caller's, rounded outward.
+    #[inline(always)]
     pub(super) fn offset(&self, y: Interval) -> Interval {
-        if self.time == 0 {
-            return y;
-        }
+        if self.time == 0 { y } else { self.offset_in_other_units(y) }
+    }
+
+    #[cold]
+    fn offset_in_other_units(&self, y: Interval) -> Interval {
         let (lo, hi) = (scaled(y.lo(), self.time), scaled(y.hi(), self.time));
         let lo = if lo < 2.0 * f64::MIN_POSITIVE && lo > 0.0 { lo.next_down() } else { lo.min(f64::MAX) };
         let hi = if hi < 2.0 * f64::MIN_POSITIVE && y.hi() > 0.0 { hi.next_up() } else { hi };
