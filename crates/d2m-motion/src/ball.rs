@@ -1,4 +1,5 @@
 //! A vector that is known up to a radius: ball arithmetic (midpoints with proven radii).
+use crate::rounding::{UNIT, UP};
 use crate::state::ball;
 use d2m_interval::{Interval, IntervalVec3};
 use glam::{DMat3, DVec3};
@@ -8,11 +9,6 @@ const LEAST_SQUARED: f64 = f64::from_bits((1023 - 450) << 52);
 const MOST_SQUARED: f64 = f64::from_bits((1023 + 500) << 52);
 /// Above √3 = 1.73205…, by more than the rounding of a product.
 const ABOVE_ROOT_OF_THREE: f64 = 1.733;
-
-/// Unit roundoff of f64, 2⁻⁵³.
-const UNIT: f64 = 0.5 * f64::EPSILON;
-/// Covers the rounding of a bound made by fewer than 64 operations on non-negative numbers.
-const UP: f64 = 1.0 + 1e-14;
 
 /// Every vector within `radius` of `center`. An infinite radius (about zero) says that nothing is known.
 ///

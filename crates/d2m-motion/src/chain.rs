@@ -3,15 +3,13 @@ use crate::ball::Ball;
 use crate::error::{fault, require_finite};
 use crate::joint_value::{Enclosed, JointValue, ValueOverTime};
 use crate::rotation::{Spin, rotate_dd};
+use crate::rounding::UNIT;
 use crate::sin_cos::{LARGEST_ANGLE, sin_cos};
 use crate::{CertifiedState, IntervalPose, IntervalTwist, Kinematics, MotionError, Pose, RigidMotion, Twist};
 use core::ops::{Mul, Sub};
 use d2m_interval::Interval;
 use d2m_lanes::DoubleDouble;
 use glam::{DMat3, DQuat, DVec3};
-
-/// Unit roundoff of f64, 2⁻⁵³.
-const UNIT: f64 = 0.5 * f64::EPSILON;
 
 /// How a joint moves the frame that follows it.
 #[derive(Debug, Clone, PartialEq)]

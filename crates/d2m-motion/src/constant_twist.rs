@@ -2,6 +2,7 @@
 use crate::ball::{length_up, times_up, up};
 use crate::error::require_finite;
 use crate::rotation::{RotationDd, Spin, from_quat_rounded, rotate_dd};
+use crate::rounding::{SUM_ROUNDING, UNDERFLOW};
 use crate::sin_cos::LARGEST_ANGLE;
 use crate::{
     Ball, CertifiedState, IntervalPose, IntervalTwist, Kinematics, MotionError, Pose, RigidMotion, Twist,
@@ -14,10 +15,6 @@ use glam::{DMat3, DQuat, DVec3};
 /// Norms of quaternions that are taken: their squares neither over- nor underflow.
 const LEAST_NORM: f64 = 1e-150;
 const MOST_NORM: f64 = 1e150;
-/// More than what squares that underflow take from a length: below 2⁻⁵³⁷, the root of the least double.
-const UNDERFLOW: f64 = 1e-150;
-/// 1 + 2⁻⁴⁶: a sum and a product, of non-negative numbers, round by 2⁻⁵³ each.
-const SUM_ROUNDING: f64 = 1.0 + 64.0 * f64::EPSILON;
 
 /// Constant twist: `x(t) = x0 + v·(t − t_ref)`, `R(t) = exp([ω]·(t − t_ref))·R0`.
 ///

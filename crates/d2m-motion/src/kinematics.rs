@@ -1,12 +1,11 @@
 //! Pose, twist and twist rate over a span of time, each a middle value with a proven radius.
 use crate::ball::{Ball, length_up, up};
+use crate::rounding::UNIT;
 use crate::{CertifiedState, IntervalPose, IntervalTwist};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
 use d2m_lanes::two_sum;
 use glam::{DMat3, DVec3};
 
-/// Unit roundoff of f64, 2⁻⁵³.
-const UNIT: f64 = 0.5 * f64::EPSILON;
 /// No two rotations are farther apart than this in the operator norm (and the middle is one up to rounding).
 const ANY_ROTATION: f64 = 2.0 + 1e-9;
 

@@ -17,6 +17,7 @@ mod pose;
 mod relative;
 mod rigid_motion;
 mod rotation;
+mod rounding;
 mod screw;
 #[cfg(feature = "serde")]
 mod serde_any;

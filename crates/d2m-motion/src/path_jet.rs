@@ -1,9 +1,7 @@
 //! The one type between motions and feature tests: a path to second or third order with a proven remainder.
+use crate::rounding::SUM_ROUNDING;
 use core::ops::{Add, Mul};
 use glam::DVec3;
-
-/// 1 + 2⁻⁴⁶, more than ten times what the roundings of a remainder's bound add up to.
-const SUM_ROUNDING: f64 = 1.0 + 64.0 * f64::EPSILON;
 
 /// Remainder of a jet as a function of the distance in time from its center:
 /// `e0 + e1·h + e2·h² + m3·h³/6 + m4·h⁴/24`, every coefficient ≥ 0, rounded up.

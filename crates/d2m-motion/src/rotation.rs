@@ -2,7 +2,7 @@
 use crate::double_double_trig::sin_cos_double;
 use crate::sin_cos::{LARGEST_ANGLE, sin_cos};
 use core::ops::{Add, Mul, Sub};
-use d2m_lanes::{DoubleDouble, two_product};
+use d2m_lanes::{DoubleDouble, power_of_two_below, two_product};
 use glam::{DMat3, DQuat, DVec3};
 
 /// Squared norms of quaternions between these lose nothing to under- or overflow in products of four.
@@ -144,11 +144,6 @@ fn from_quat(q: DQuat) -> RotationDd {
         [half(xy.add(wz)), diagonal(xx, zz), half(yz.sub(wx))],
         [half(xz.sub(wy)), half(yz.add(wx)), diagonal(xx, yy)],
     ])
-}
-
-/// The power of two 2ᵏ with the magnitude of `x` in [2ᵏ, 2ᵏ⁺¹), for x not zero; the least normal number for smaller ones.
-fn power_of_two_below(x: f64) -> f64 {
-    f64::from_bits(x.to_bits() & (0x7ff << 52)).max(f64::MIN_POSITIVE)
 }
 
 /// exp([ω]s) in double-double (Rodrigues).

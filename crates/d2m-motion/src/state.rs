@@ -1,13 +1,9 @@
 //! Where a body is and how it moves at one time: plain numbers, each with a proven distance from the truth.
 use crate::rotation::from_quat_rounded;
+use crate::rounding::{UNDERFLOW, UP};
 use crate::{ConstantTwist, IntervalPose, IntervalTwist, Kinematics};
 use d2m_interval::{Interval, IntervalVec3};
 use glam::{DMat3, DQuat, DVec3};
-
-/// Covers the rounding of fewer than 32 operations on non-negative numbers.
-const UP: f64 = 1.0 + 1e-14;
-/// More than the squares lose that underflow in a length.
-const UNDERFLOW: f64 = 1e-150;
 
 /// Pose and twist at one time as middle values with radii: what jets of any motion are made of.
 ///

@@ -2,7 +2,7 @@
 
 use super::crowd::{Patience, Progress};
 use super::motion::frame::{Frame, RelativeMotion};
-use super::motion::units::{power_of_two_from, sum_down};
+use super::motion::units::sum_down;
 use super::node_pair::expansion::{KEY_SCALE, NodePairExpander};
 use super::node_pair::node_scale::NodeScale;
 use super::node_pair::node_test::NodeFrame;
@@ -17,7 +17,7 @@ use super::triangle_pair::widest_gap::widest_normal;
 use crate::Budget;
 use crate::tree::margin::NARROW_UP;
 use crate::tree::node::{Below, LEAST_SIZE, WIDTH, WideNode};
-use d2m_lanes::{Lanes, Quad, Task};
+use d2m_lanes::{Lanes, Quad, Task, power_of_two_above};
 use glam::DVec3;
 
 /// Batches between two checks of the queue's length: it grows by less than 2¹⁵ items between them.
@@ -65,7 +65,7 @@ impl Search<'_> {
         let motion = scene.relative_motion(start);
         // At least end − start, whatever its rounding.
         let length = (end - start).next_up();
-        let time_unit = power_of_two_from(length.max(LEAST_SPAN));
+        let time_unit = power_of_two_above(length.max(LEAST_SPAN));
         let step = time_unit / KEY_SCALE;
         let scales = match self.scales {
             Some((unit, scales)) if unit == time_unit => scales,

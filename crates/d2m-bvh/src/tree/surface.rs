@@ -6,6 +6,7 @@ use super::node::{LEAST_SIZE, OrientedBox};
 use super::refine::Extremes;
 use super::slabs::{EdgeReach, Slabs};
 use crate::TriMesh;
+use d2m_lanes::power_of_two_above;
 use glam::DVec3;
 
 /// Where local coordinates begin, how far the body reaches from there, and the unit they are divided by.
@@ -48,8 +49,7 @@ pub(super) fn unit_of(radius: f64) -> f64 {
     if radius < LEAST_UNIT {
         return if radius == 0.0 { 1.0 } else { LEAST_UNIT };
     }
-    let power = f64::from_bits(radius.to_bits() & (0x7ff << 52));
-    if power < radius { 2.0 * power } else { power }
+    power_of_two_above(radius)
 }
 
 /// Triangles that are enough to find the axes of a box.

@@ -4,7 +4,7 @@ use super::{
     constants::INVERSE_FACTORIAL,
     enclose,
     exp_log::{Scaled, exp_scaled, ln_dd, ln_ratio},
-    increasing,
+    increasing, odd,
 };
 use crate::Interval;
 use core::ops::{Add, Div, Mul, Sub};
@@ -41,18 +41,6 @@ fn half_sum(x: f64, sign: f64) -> Scaled {
     let back = f64::from_bits(((1023 - 2 * exponent) as u64) << 52);
     let other = DoubleDouble::new(sign, 0.0).div(value).scaled(back);
     Scaled { value: value.add(other), exponent: exponent - 1 }
-}
-
-/// An odd function from its values at positive numbers.
-fn odd(x: f64, at: impl Fn(f64) -> Ends) -> Ends {
-    if x == 0.0 {
-        (0.0, 0.0)
-    } else if x < 0.0 {
-        let (lo, hi) = at(-x);
-        (-hi, -lo)
-    } else {
-        at(x)
-    }
 }
 
 fn sinh_at(x: f64) -> Ends {

@@ -4,7 +4,7 @@ use super::{
     constants::{ATAN_EIGHTHS, FRAC_PI_2, INVERSE_ODD, PI},
     enclose,
     exp_log::Scaled,
-    increasing,
+    increasing, odd,
 };
 use crate::Interval;
 use core::ops::{Add, Div, Mul, Sub};
@@ -50,17 +50,6 @@ fn atan_unit(n: DoubleDouble, d: DoubleDouble) -> DoubleDouble {
 /// The angle of the point (x, y), both positive.
 fn first_quadrant(y: DoubleDouble, x: DoubleDouble) -> DoubleDouble {
     if y.hi <= x.hi { atan_unit(y, x) } else { FRAC_PI_2.sub(atan_unit(x, y)) }
-}
-
-fn odd(x: f64, at: impl Fn(f64) -> Ends) -> Ends {
-    if x == 0.0 {
-        (0.0, 0.0)
-    } else if x < 0.0 {
-        let (lo, hi) = at(-x);
-        (-hi, -lo)
-    } else {
-        at(x)
-    }
 }
 
 fn atan_at(x: f64) -> Ends {

@@ -44,6 +44,18 @@ fn enclose_within(x: DoubleDouble, error: f64) -> Ends {
     )
 }
 
+/// An odd function from its values at positive numbers.
+fn odd(x: f64, at: impl Fn(f64) -> Ends) -> Ends {
+    if x == 0.0 {
+        (0.0, 0.0)
+    } else if x < 0.0 {
+        let (lo, hi) = at(-x);
+        (-hi, -lo)
+    } else {
+        at(x)
+    }
+}
+
 /// A function that grows, evaluated at both ends; `at` encloses its value at a finite number.
 #[inline]
 fn increasing(x: Interval, at: impl Fn(f64) -> Ends, at_minus_infinity: f64, at_infinity: f64) -> Interval {

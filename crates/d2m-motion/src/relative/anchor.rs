@@ -3,8 +3,9 @@
 //! A vertex 1e6 away from its body's center of rotation loses 1e-10 to rounding alone. With a body point near the
 //! feature as anchor on either side, the frame's position is made in double-double from the exact inputs, relative
 //! to B's anchor, and only short vectors are rounded in double precision.
-use super::{Frame, RelativeMotion, UNIT, UP};
+use super::{Frame, RelativeMotion};
 use crate::rotation::exponential_dd;
+use crate::rounding::{UNIT, UP};
 use core::ops::{Add, Mul, Sub};
 use d2m_lanes::DoubleDouble;
 use glam::DVec3;

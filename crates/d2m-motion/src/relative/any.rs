@@ -2,7 +2,7 @@
 //!
 //! docs/theory/features.md, "Any C² motion", derives the formulas, bounds and roundings of this file.
 use super::bounds::length;
-use super::{UNIT, UP};
+use crate::rounding::{UNIT, UP};
 use crate::state::ball;
 use crate::{CertifiedState, PathJet, Remainder, RigidMotion};
 use d2m_interval::Interval;

@@ -1,8 +1,9 @@
 //! Closed-form bounds of the relative motion and of the rounding of its frames.
+use super::RelativeMotion;
 use super::frame::cross_columns;
-use super::{RelativeMotion, UNIT, UP};
 use crate::Remainder;
 use crate::rotation::Spin;
+use crate::rounding::{UNIT, UP};
 use glam::{DMat3, DVec3};
 
 /// Rounding of a frame and of all dot products made with it, in units of 2⁻⁵³·S0 (docs/theory/features.md).

@@ -17,16 +17,12 @@ pub use frame::{Arm, ArmPair, Frame};
 
 use crate::ConstantTwist;
 use crate::rotation::{RotationDd, Spin};
+use crate::rounding::UP;
 use anchor::Anchor;
 use bounds::Bounds;
 use core::ops::{Neg, Sub};
 use d2m_lanes::DoubleDouble;
 use glam::{DMat3, DVec3};
-
-/// Unit roundoff of f64, 2⁻⁵³.
-pub(crate) const UNIT: f64 = 0.5 * f64::EPSILON;
-/// Factor that covers the rounding of a bound built from fewer than 64 operations on non-negative numbers.
-pub(crate) const UP: f64 = 1.0 + 1e-14;
 
 /// Motion of body A relative to body B over a window of time, both of constant twist.
 ///

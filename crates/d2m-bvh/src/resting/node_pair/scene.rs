@@ -7,7 +7,7 @@ use crate::tree::margin::{UNIT_F32, UNIT_F64};
 use crate::tree::node::{Below, OrientedBox, WIDTH};
 use crate::tree::slabs::reach_both_ways;
 use crate::{MeshTree, Posed, QueryError};
-use d2m_lanes::Lanes;
+use d2m_lanes::{Lanes, power_of_two_above};
 use glam::DVec3;
 
 /// Sums and products of up to ten non-negative terms round by 2⁻⁵³ each; 2⁻⁴⁰ covers them all.
@@ -79,7 +79,7 @@ impl<'a> Scene<'a> {
     pub(crate) fn try_new(a: Posed<'a>, b: Posed<'a>) -> Result<Self, QueryError> {
         let pose = RelativePose::try_new(a, b)?;
         let trees = [a.body, b.body];
-        let unit = power_of_two_above(pose.size);
+        let unit = power_of_two_above(pose.size.max(LEAST_UNIT));
         let inverse_unit = 1.0 / unit;
         let size = pose.size * inverse_unit;
         let point_like = trees.map(|tree| tree.radius() <= POINT_LIKE * pose.size);
@@ -282,9 +282,5 @@ pub(crate) fn child(pair: [u32; 2], wide: usize, node: u32, lane: usize) -> [u32
     pair
 }
 
-/// The least power of two that is not below `x`, at least 2⁻⁶⁰⁰.
-fn power_of_two_above(x: f64) -> f64 {
-    let x = x.max(f64::from_bits((1023 - 600) << 52));
-    let power = f64::from_bits(x.to_bits() & (0x7ff << 52));
-    if power < x { 2.0 * power } else { power }
-}
+/// The least working unit, 2⁻⁶⁰⁰.
+const LEAST_UNIT: f64 = f64::from_bits((1023 - 600) << 52);

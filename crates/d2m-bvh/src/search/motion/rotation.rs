@@ -1,7 +1,7 @@
 //! The rotation of a constant-twist motion at one time, accurate however far that time is from the reference time.
 
 use core::ops::Mul;
-use d2m_lanes::DoubleDouble;
+use d2m_lanes::{DoubleDouble, power_of_two_below};
 use glam::DVec3;
 
 /// Columns of a 3×3 matrix.
@@ -92,11 +92,6 @@ impl FixedAxisRotation {
         let (sin, versine) = sin_versine(self.speed.mul(elapsed));
         SinVersine { sin, versine }
     }
-}
-
-/// The largest power of two that is not above a positive number; at least the least normal number.
-fn power_of_two_below(value: f64) -> f64 {
-    f64::from_bits(value.to_bits() & (0x7ff << 52)).max(f64::MIN_POSITIVE)
 }
 
 /// The rotation of q/|q|, q = [x, y, z, w], scaled first so that no square overflows.

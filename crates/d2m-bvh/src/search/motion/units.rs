@@ -1,7 +1,7 @@
 //! The clock and the unit of length of one search.
 
 use crate::Window;
-use d2m_lanes::two_sum;
+use d2m_lanes::{power_of_two_above, two_sum};
 
 /// Units are powers of two between this one and its inverse: both can be multiplied with and divided by.
 const LEAST_UNIT: f64 = f64::from_bits((1023 - 1000) << 52); // 2⁻¹⁰⁰⁰
@@ -82,11 +82,5 @@ fn unit_from(value: f64) -> f64 {
     if value == 0.0 {
         return 1.0;
     }
-    power_of_two_from(value.clamp(LEAST_UNIT, 1.0 / LEAST_UNIT))
-}
-
-/// The least power of two that is not below a normal positive number.
-pub(crate) fn power_of_two_from(value: f64) -> f64 {
-    let power = f64::from_bits(value.to_bits() & (0x7ff << 52));
-    if power < value { 2.0 * power } else { power }
+    power_of_two_above(value.clamp(LEAST_UNIT, 1.0 / LEAST_UNIT))
 }
