@@ -9,6 +9,7 @@ use d2m::motion::{
 use d2m::{
     ConstantTwist, MeshTree, Moving, QueryOptions, RigidMotion, Solid, TimeOfContact, Window, time_of_contact,
 };
+use d2m_testing::Opaque;
 use std::f64::consts::TAU;
 use std::time::Instant;
 
@@ -258,24 +259,6 @@ fn row<'a>(name: &str, questions: Vec<Question<'a>>, against: Option<(usize, f64
     Row { name: name.into(), questions, against, most: None }
 }
 
-/// A twist behind a user's type, which gives its enclosures only.
-struct Enclosures(ConstantTwist);
-
-impl RigidMotion for Enclosures {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.0.pose_and_twist(t)
-    }
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        self.0.enclose_pose(t)
-    }
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist(t)
-    }
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist_rate(t)
-    }
-}
-
 /// The same with its state at a time.
 struct States(ConstantTwist);
 
@@ -303,7 +286,7 @@ fn hidden<'a>(name: &str, bodies: [&'a MeshTree; 2], flights: usize) -> Vec<Row<
     let motions: Vec<_> = (0..flights).map(|_| flight(&mut random, 2.0)).collect();
     let exact = motions.iter().map(|&[a, b]| question(bodies, a, b)).collect();
     let states = motions.iter().map(|&[a, b]| question(bodies, States(a), States(b))).collect();
-    let enclosures = motions.iter().map(|&[a, b]| question(bodies, Enclosures(a), Enclosures(b))).collect();
+    let enclosures = motions.iter().map(|&[a, b]| question(bodies, Opaque(a), Opaque(b))).collect();
     vec![
         row(&format!("{name}: constant twists"), exact, None),
         row(&format!("{name}: the same behind `enclose_state`"), states, Some((0, 1.5))),

@@ -2,8 +2,9 @@
 use d2m_feature::{
     ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, PlacedTriangle, StraightPaths,
 };
+use d2m_testing::Opaque;
 use d2m_testing::Random;
-use d2m_testing::planted::families::{Family, Kind, Opaque, Planted, plant};
+use d2m_testing::planted::families::{Family, Kind, Planted, plant};
 use std::hint::black_box;
 use std::time::Instant;
 

@@ -6,8 +6,8 @@ use d2m_bvh::{
     Budget, MeshTree, Mode, Moving, Posed, QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window,
     distance, time_of_contact,
 };
-use d2m_interval::Interval;
-use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
+use d2m_motion::{ConstantTwist, Pose, RigidMotion};
+use d2m_testing::Opaque;
 use glam::{DQuat, DVec3};
 use random::{Random, wavy_torus};
 
@@ -156,24 +156,6 @@ fn any_unit_of_length() {
                 (right, wrong) => panic!("round {round}, 1e{power}: {right:?}, not {wrong:?}"),
             }
         }
-    }
-}
-
-/// Hides that the twist is constant.
-struct Opaque(ConstantTwist);
-
-impl RigidMotion for Opaque {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.0.pose_and_twist(t)
-    }
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        self.0.enclose_pose(t)
-    }
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist(t)
-    }
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist_rate(t)
     }
 }
 

@@ -11,6 +11,7 @@ use d2m_motion::{
     Chain, Composed, ConstantTwist, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Keyframes,
     Pose, RigidMotion, Span, Twist,
 };
+use d2m_testing::Opaque;
 use glam::{DQuat, DVec3};
 use random::{Random, wavy_torus};
 
@@ -102,24 +103,6 @@ fn judge(
         return Err(format!("{contact:?}"));
     }
     Ok(())
-}
-
-/// Hides that the twist is constant; with its state, or without.
-struct Opaque(ConstantTwist);
-
-impl RigidMotion for Opaque {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.0.pose_and_twist(t)
-    }
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        self.0.enclose_pose(t)
-    }
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist(t)
-    }
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist_rate(t)
-    }
 }
 
 fn polynomial(coefficients: &[f64]) -> JointValue {

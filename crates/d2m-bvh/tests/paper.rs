@@ -115,23 +115,7 @@ fn bad_input_is_an_error_and_nothing_else() {
 /// The same motions given only through the open trait give the same answers.
 #[test]
 fn any_rigid_motion_through_its_enclosures() {
-    use d2m_interval::Interval;
-    use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
-    struct Opaque(ConstantTwist);
-    impl RigidMotion for Opaque {
-        fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-            self.0.pose_and_twist(t)
-        }
-        fn enclose_pose(&self, t: Interval) -> IntervalPose {
-            self.0.enclose_pose(t)
-        }
-        fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-            self.0.enclose_twist(t)
-        }
-        fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-            self.0.enclose_twist_rate(t)
-        }
-    }
+    use d2m_testing::Opaque;
     for scene in scenes::all() {
         let trees = scene.meshes.clone().map(SphereTree::new);
         let motions = scene.motions.map(Opaque);

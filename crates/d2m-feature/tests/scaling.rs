@@ -7,8 +7,9 @@ use d2m_feature::{
 use d2m_interval::Interval;
 use d2m_motion::ConstantTwist;
 use d2m_root::{Evidence, RootSearch};
+use d2m_testing::Opaque;
 use d2m_testing::Random;
-use d2m_testing::planted::families::{FAMILIES, Family, Kind, Opaque, Planted, plant};
+use d2m_testing::planted::families::{FAMILIES, Family, Kind, Planted, plant};
 use glam::DVec3;
 
 /// `2ᵏ` for −1022 ≤ k ≤ 1023.

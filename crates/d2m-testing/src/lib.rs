@@ -4,6 +4,8 @@
 //! **Invariant:** nothing here shares code with what it judges, but the definition of a motion and the types of questions
 //! and answers. Draws from a seed are the same on every machine and in every release.
 
+#[cfg(any(feature = "planted", feature = "scenes"))]
+mod opaque;
 mod random;
 #[cfg(feature = "scenes")]
 mod small_scene;
@@ -18,6 +20,8 @@ pub mod fixed;
 #[cfg(feature = "planted")]
 pub mod planted;
 
+#[cfg(any(feature = "planted", feature = "scenes"))]
+pub use opaque::Opaque;
 pub use random::{Draw, KnuthRandom, Random};
 #[cfg(feature = "scenes")]
 pub use small_scene::{SmallScene, Surface};

@@ -2,37 +2,15 @@
 //! pairs: the same verdicts, brackets that overlap, and the same bits at any number of threads.
 
 use d2m::glam::{DQuat, DVec3};
-use d2m::interval::Interval;
-use d2m::motion::{
-    Chain, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Keyframes, Pose, Span, Spline,
-    SplineDegree, Twist,
-};
+use d2m::motion::{Chain, Joint, JointKind, JointValue, Keyframes, Pose, Span, Spline, SplineDegree};
 use d2m::{
     Body, BodyId, ConstantTwist, Contact, FirstContact, Group, MeshTree, PairContact, PlannedMotion,
     QueryOptions, RigidMotion, ScrewMotion, SharedMotion, Solid, TimeOfContact, TriMesh, Window, World,
     time_of_contact,
 };
-use d2m_testing::{Draw, KnuthRandom};
+use d2m_testing::{Draw, KnuthRandom, Opaque};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// A motion that does not say that its twist is constant: the way of every other motion.
-struct Opaque(SharedMotion);
-
-impl RigidMotion for Opaque {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.0.pose_and_twist(t)
-    }
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        self.0.enclose_pose(t)
-    }
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist(t)
-    }
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist_rate(t)
-    }
-}
 
 const SIZE: f64 = 9.0;
 
@@ -83,7 +61,7 @@ fn motion(random: &mut KnuthRandom) -> SharedMotion {
         ConstantTwist::try_new(random.vector() * SIZE, turned, random.vector() * 3.0, random.vector() * spin);
     let twist = twist.unwrap().with_at(random.vector() * 0.5);
     match random.index(24) {
-        0 => Arc::new(Opaque(Arc::new(twist.with_angular_velocity(random.vector())))),
+        0 => Arc::new(Opaque(twist.with_angular_velocity(random.vector()))),
         1..3 => Arc::new(ConstantTwist::REST.with_position(random.vector() * SIZE)),
         3..5 => {
             let end = twist.with_position(random.vector() * SIZE).pose_and_twist(1.0).0;

@@ -3,8 +3,7 @@
 //! Unit features, relative speed about 4, |ω| ≤ 3, t in [0, 1]. The contact is planted at a known time by placing A
 //! so that the features meet there; rounding moves the true time by some 1e-16, which the oracle finds.
 use crate::{Draw, Random};
-use d2m_interval::Interval;
-use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
+use d2m_motion::{ConstantTwist, Pose, RigidMotion};
 use glam::DVec3;
 
 /// Which features.
@@ -76,25 +75,6 @@ pub struct Planted {
     pub time: f64,
     /// Planted gap (0: contact).
     pub gap: f64,
-}
-
-/// A motion known only by what every [`RigidMotion`] must say of itself.
-#[derive(Debug, Clone, Copy)]
-pub struct Opaque(pub ConstantTwist);
-
-impl RigidMotion for Opaque {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.0.pose_and_twist(t)
-    }
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        self.0.enclose_pose(t)
-    }
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist(t)
-    }
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist_rate(t)
-    }
 }
 
 /// One query of a family.

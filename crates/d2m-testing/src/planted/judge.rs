@@ -1,7 +1,8 @@
 //! Asks the library and the oracle, and says what is wrong.
-use super::families::{FAMILIES, Family, Kind, Opaque, Planted, plant};
+use super::families::{FAMILIES, Family, Kind, Planted, plant};
 use super::oracle::{Vertices, big, distance, rigid, straight, true_contact};
 use super::quick::{self, QuickVertices};
+use crate::Opaque;
 use crate::Random;
 use d2m_feature::{ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, StraightPaths};
 
