@@ -146,7 +146,7 @@ pub(crate) struct QueryArguments {
 /// What counts as a body.
 #[derive(Debug, Clone, Copy, Args)]
 pub(crate) struct SolidArguments {
-    /// Bodies are full: one inside the other is in contact [default of each mesh that is watertight]
+    /// Bodies are solid: one inside the other is in contact [default of each mesh that is watertight]
     #[arg(long, conflicts_with = "surface")]
     pub(crate) solid: bool,
     /// Only surfaces count [default of each mesh that is open]

@@ -32,7 +32,7 @@ pub(crate) fn parse_json<T: DeserializeOwned>(place: &str, bytes: &[u8]) -> Resu
     })
 }
 
-/// What is wrong with one line of JSON: for the parser every line is the first, and where it lost the thread is the end of what
+/// What is wrong with one line of JSON: for the parser every line is the first, and the column at which it stops is the end of what
 /// is wrong.
 pub(crate) fn json_fault(error: &serde_json::Error, line: &str) -> String {
     let (text, column) = (error.to_string(), error.column());

@@ -90,9 +90,9 @@ pub struct Body {
     pub angular_velocity: DVec3,
     /// Of a dynamic body; the others need none.
     pub mass: Mass,
-    /// Of a contact counts the greater restitution of the two bodies; from 0 to 1.
+    /// Coefficient of restitution, from 0 to 1. A contact has the greater one of its two bodies.
     pub restitution: f64,
-    /// Coulomb's coefficient; of a contact counts the mean of the two bodies'.
+    /// Coulomb's coefficient of friction. A contact has the mean of those of its two bodies.
     pub friction: f64,
     /// Solid, or only a surface. `None`: solid if the mesh is watertight.
     pub solid: Option<Solid>,

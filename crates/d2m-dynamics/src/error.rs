@@ -123,7 +123,7 @@ pub enum SimulationError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StepError {
-    /// Bodies that follow their motion leave a dynamic body no place.
+    /// Kinematic bodies crush a dynamic body: there is no free place for it.
     #[error("at time {time}: body {pushing} crushes body {crushed}, which cannot give way")]
     Crushed {
         /// The kinematic body, or the body that is held against it.
@@ -133,7 +133,7 @@ pub enum StepError {
         /// When.
         time: f64,
     },
-    /// Set-up that was found wanting at the first step.
+    /// A fault of the set-up that is found at the first step.
     #[error(transparent)]
     Setup(#[from] SimulationError),
 }

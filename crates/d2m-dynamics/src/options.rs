@@ -24,7 +24,7 @@ pub struct SimulationOptions {
     /// Contact events a step at most; after that the bodies concerned stand still until the end of the step, and
     /// [`Segment::skipped`](crate::Segment::skipped) says so. Default 128.
     pub max_events: u32,
-    /// Node tests of one pair query at most. A query that meets the limit ends its flight early, certified. Default 2²².
+    /// Node tests of one pair query at most. A query that meets the limit ends the flight early, at a certified time. Default 2²².
     pub node_tests: u64,
     /// Islands that rest for half a second sleep. Default true.
     pub sleeping: bool,

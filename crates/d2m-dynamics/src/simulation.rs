@@ -40,7 +40,7 @@ impl StepReport {
 /// Rigid bodies that never pass through each other.
 ///
 /// Promise: no two bodies (not ignored, at least one of them dynamic) share a point at any time of any [`Segment`]. Every
-/// segment ends at a time until which its very numbers are certified. The same bits at any number of threads.
+/// segment ends at a time until which exactly its numbers are certified. The same bits at any number of threads.
 ///
 /// ```
 /// use d2m_bvh::MeshTree;
@@ -292,7 +292,7 @@ impl Simulation {
         (0..self.bodies.len() as u32).map(BodyId)
     }
 
-    /// Are there none?
+    /// True if the simulation has no body.
     pub fn is_empty(&self) -> bool {
         self.bodies.is_empty()
     }
@@ -309,7 +309,7 @@ impl Simulation {
         body.is_dynamic().then_some(MassProperties { mass, center, inertia })
     }
 
-    /// The point of the mesh frame that positions are those of: the center of mass.
+    /// The point of the mesh frame whose position is reported: the center of mass.
     pub fn center(&self, body: BodyId) -> DVec3 {
         self.bodies[body.index()].center
     }
@@ -319,12 +319,12 @@ impl Simulation {
         self.pose(body).translation
     }
 
-    /// Turn of the mesh frame.
+    /// Orientation of the mesh frame.
     pub fn orientation(&self, body: BodyId) -> DQuat {
         self.pose(body).rotation
     }
 
-    /// Pose of the mesh frame, followed at the center of mass.
+    /// Pose of the mesh frame; its reference point is the center of mass.
     pub fn pose(&self, body: BodyId) -> Pose {
         self.bodies[body.index()].pose_at(self.time)
     }

@@ -1,4 +1,4 @@
-//! Sort and sweep over boxes along the axis on which they are spread most.
+//! Sweep and prune: boxes sorted along the axis on which they are spread most.
 
 use crate::swept_bounds::{SweptBox, round_up_sum};
 use glam::DVec3;

@@ -16,7 +16,7 @@ pub(crate) struct SweptBox {
 }
 
 impl SweptBox {
-    /// No point at all: a body that is not there.
+    /// The empty box, of a body that was removed.
     pub(crate) const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
 
     /// Encloses every point of `body` at every time of a span.

@@ -32,7 +32,7 @@ pub(crate) struct Options {
     /// Threads of the feature families; all processors by default. Answers do not depend on it.
     #[arg(long)]
     threads: Option<usize>,
-    /// Asks one scene again that a run has kept, and judges it.
+    /// Answers and judges one scene again that a run has kept.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["minutes", "family", "only"])]
     case: Option<std::path::PathBuf>,
     /// A deliberate fault, to see it found: `late=1e-6` or `miss`.

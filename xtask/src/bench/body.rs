@@ -1,4 +1,4 @@
-//! Bodies and pairs of bodies that the bench asks about.
+//! Bodies and pairs of bodies of the bench.
 
 use super::peers;
 use crate::judge::BoxTree;

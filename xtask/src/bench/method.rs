@@ -1,4 +1,4 @@
-//! The methods side by side, and how each is asked one question.
+//! The methods that are compared, and how each answers one query.
 use super::body::Pair;
 use super::engine::{self, Motions};
 use super::peers;

@@ -94,7 +94,7 @@ impl Progress {
         self.0.set_message(format!("({}) {what}, about {seconds:.0} s", part.title()));
     }
 
-    /// So much of the expected time is behind us.
+    /// Adds to the part of the expected time that has passed.
     pub(super) fn done(&self, seconds: f64) {
         self.0.inc(milliseconds(seconds));
     }

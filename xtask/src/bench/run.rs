@@ -1,4 +1,4 @@
-//! Asks, judges, stores.
+//! Runs the queries, judges the answers and stores them.
 use super::body::Pair;
 use super::catalogue::Entry;
 use super::clock::{Phases, processor_seconds};

@@ -101,8 +101,8 @@ struct Answer<'a> {
     /// the minimum separation at a time of the bracket).
     #[serde(skip_serializing_if = "Option::is_none")]
     evidence: Option<&'static str>,
-    /// Of a hit: the distance that was used as tolerance. It is larger than the one given where rounding or the clock
-    /// leave no choice.
+    /// Of a hit: the distance that was used as tolerance. It is larger than the one given where rounding or the
+    /// resolution of time requires it.
     #[serde(skip_serializing_if = "Option::is_none")]
     tolerance: Option<f64>,
     microseconds: f64,

@@ -105,7 +105,7 @@ fn mesh_text(body: &Loaded, validation: &Validation, parts: &MeshParts) -> Strin
     text
 }
 
-/// An area or a volume: six digits after the point where that tells something.
+/// An area or a volume: six digits after the point where they are significant.
 fn size(number: f64) -> String {
     match number.abs() {
         0.0 => "0".to_owned(),

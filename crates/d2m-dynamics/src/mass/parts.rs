@@ -119,7 +119,7 @@ fn orientation(mesh: &TriMesh) -> f64 {
     if (0..mesh.triangle_count()).map(volume).sum::<f64>() < 0.0 { -1.0 } else { 1.0 }
 }
 
-/// The solid angle of the surface seen from a point off it, in whole turns (van Oosterom and Strackee 1983), rounded.
+/// The solid angle of the surface about a point off it, in whole turns (van Oosterom and Strackee 1983), rounded.
 fn winding_number(mesh: &TriMesh, point: DVec3) -> f64 {
     let mut turns = 0.0;
     for triangle in 0..mesh.triangle_count() {

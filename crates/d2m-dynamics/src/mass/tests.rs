@@ -54,7 +54,7 @@ fn a_shell_is_the_difference_and_inward_is_outward() {
     let inside_out = joined(&[flipped(outer.clone()), inner.clone()]);
     let same = MassProperties::try_from_density(&inside_out, 1.0).unwrap();
     assert!((same.mass - 7.0).abs() < 1e-13 && same.inertia.x_axis.x > 0.0);
-    // A box inside a box, both full.
+    // A box inside a box, both solid.
     let twice = joined(&[outer, inner]);
     assert_eq!(
         MassProperties::try_from_density(&twice, 1.0),
