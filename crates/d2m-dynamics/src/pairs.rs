@@ -23,9 +23,9 @@ const LEAST: f64 = 1e-9;
 /// Sine of the angle by which features may be tilted and still be one contact: the far corners of a box that lies almost flat.
 const TILT: f64 = 0.1;
 
-/// Length of the difference of two unit vectors up to which the normal of a contact is that of a face beside it. Where a vertex
-/// lies over an edge, the direction between them turns by the offset over the gap, however small that is: without
-/// friction equal boxes on each other would slide apart.
+/// The normal of a contact is that of a face beside it, if the closest point lies no further from the face than this part of the
+/// gap (of the distance, if that is more) sideways. Where a vertex lies over an edge, the direction between them turns by that
+/// offset over the distance, however small both are: without friction equal boxes on each other would slide apart.
 const FLAT: f64 = 0.02;
 
 /// The part of the gap below which contacts keep their true normals besides those of faces.
@@ -155,7 +155,7 @@ pub(crate) fn measure(
     let (posed_a, posed_b) = (a.posed_at(time), b.posed_at(time));
     let options = ProximityOptions::new(margin).with_cone_slack(TILT);
     let wide = proximities_with(posed_a, posed_b, &options)?;
-    let flatten = |p: &Proximity| flattened(p, [a, b], [&posed_a.pose, &posed_b.pose]);
+    let flatten = |p: &Proximity| flattened(p, [a, b], [&posed_a.pose, &posed_b.pose], gap);
     let exact = wide.iter().filter(|p| p.tilt == 0.0);
     let mut normals: Vec<DVec3> = exact.map(|p| flatten(p).unwrap_or(*p).normal).collect();
     normals.sort_by(|a, b| order(*a, *b));
@@ -167,6 +167,7 @@ pub(crate) fn measure(
     };
     let found: Vec<Proximity> = wide.iter().filter_map(straight).collect();
     let found = reduce_proximities(&found, TILT);
+    let middle = |p: &Proximity| 0.5 * (p.point_a + p.point_b);
     let contact = |p: &Proximity| ContactPoint {
         a: pair.0,
         b: pair.1,
@@ -174,10 +175,11 @@ pub(crate) fn measure(
         normal: p.normal,
         tangents: tangents(p.normal),
         distance: p.distance,
+        is_expected: false,
         gap,
-        arm_a: p.point_a - posed_a.pose.translation,
-        arm_b: p.point_b - posed_b.pose.translation,
-        point: 0.5 * (p.point_a + p.point_b),
+        arm_a: middle(p) - posed_a.pose.translation,
+        arm_b: middle(p) - posed_b.pose.translation,
+        point: middle(p),
         material,
         impulse: 0.0,
         sliding: [0.0; 2],
@@ -200,14 +202,14 @@ fn is_edges(p: &Proximity) -> bool {
 }
 
 /// The proximity with the normal of a face at its features, if that is almost its own.
-fn flattened(p: &Proximity, bodies: [&RigidBody; 2], poses: [&Pose; 2]) -> Option<Proximity> {
+fn flattened(p: &Proximity, bodies: [&RigidBody; 2], poses: [&Pose; 2], gap: f64) -> Option<Proximity> {
     let vertices = vertices_of(p.feature, bodies.map(|body| body.tree.mesh()));
     let normal = |k: usize| {
         let direction = poses[k].rotation.conjugate() * p.normal;
         bodies[k].faces.nearest(&vertices[k], direction).map(|normal| poses[k].transform_vector(normal))
     };
     let normals: Vec<DVec3> = (0..2).filter_map(normal).collect();
-    along(p, &normals, FLAT)
+    along(p, &normals, (FLAT * gap / p.distance).clamp(FLAT, TILT))
 }
 
 /// The proximity with the nearest of these normals and the distance along it, if there is one within `most`.

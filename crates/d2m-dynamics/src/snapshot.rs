@@ -220,6 +220,7 @@ impl ContactState {
             normal: self.normal,
             tangents: tangents(self.normal),
             distance: self.distance,
+            is_expected: false,
             gap,
             arm_a: self.arm_a,
             arm_b: self.arm_b,

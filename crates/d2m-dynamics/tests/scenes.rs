@@ -206,3 +206,23 @@ fn intersecting_starts_and_crushing_are_named() {
     assert!(error.to_string().contains("press") && error.to_string().contains("nut"), "{error}");
     assert!(simulation.time() < 1.0 && !simulation.finish().is_empty());
 }
+
+/// Without friction the least push sideways, or about the vertical, would let cubes slide off that fall flat on each other.
+#[test]
+fn cubes_without_friction_fall_flat_and_stack() {
+    let gravity = DVec3::Y * -9.8;
+    let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(gravity)).unwrap();
+    let mut cubes = Vec::new();
+    for k in 0..5 {
+        let body =
+            Body::new(format!("cube {k}"), cube()).with_position(DVec3::Y * (1.5 + 2.0 * f64::from(k)));
+        cubes.push(simulation.add(&body).unwrap());
+    }
+    simulation.add(&floor()).unwrap();
+    run(&mut simulation, 4.0);
+    for (k, &id) in cubes.iter().enumerate() {
+        let place = simulation.position(id);
+        assert!(place.x.abs().max(place.z.abs()) < 1e-3, "{k}: {place}");
+        assert!((place.y - 0.5 - k as f64).abs() < 0.03, "{k}: {place}");
+    }
+}

@@ -22,9 +22,12 @@ pub(crate) struct ContactPoint {
     /// Two unit vectors that complete the normal.
     pub(crate) tangents: [DVec3; 2],
     pub(crate) distance: f64,
+    /// Not met yet: the normal is that of where flights will meet, the distance is what it is now along it.
+    pub(crate) is_expected: bool,
     /// The distance that the pair keeps.
     pub(crate) gap: f64,
-    /// From the centers of mass to the closest points.
+    /// From the centers of mass to one point, so that impulses there make no angular momentum: the middle of the closest
+    /// points.
     pub(crate) arm_a: DVec3,
     pub(crate) arm_b: DVec3,
     /// Middle of the closest points.

@@ -16,6 +16,9 @@ pub(crate) struct Span {
 
 /// Contacts that have been hit: what a flight ends at, plus the slack of its query.
 pub(crate) const HIT: f64 = 0.625;
+/// Contacts that nothing bounces off and that are this near, in gaps, count however fast they close: flights that are braked by an
+/// expected contact end at the gap, and of the corners of a face that lands flat all or none must be met.
+const NEAR: f64 = 1.5;
 /// The part of the gap to which curvature may bring a contact within a flight.
 const KEPT: f64 = 0.45;
 /// The part of the gap that a step restores at most where it is missing.
@@ -51,8 +54,8 @@ pub(crate) fn select(
         let (d, gap, tau) = (contact.distance, contact.gap, span.remaining);
         let bounces = contact.material.restitution > 0.0;
         let slow = if bounces { span.resting_speed } else { span.resting_speed.max(gap / span.step) };
-        let hit = d <= HIT * gap || (!bounces && d <= gap);
-        if closing > slow && !hit {
+        let hit = d <= HIT * gap || (!bounces && d <= NEAR * gap);
+        if closing > slow && !hit && !contact.is_expected {
             continue;
         }
         let bend = |body: usize, arm: DVec3| {
@@ -62,7 +65,9 @@ pub(crate) fn select(
         let curved = 0.5 * tau * (bend(contact.a, contact.arm_a) + bend(contact.b, contact.arm_b));
         // A gap in a step: in a short rest of one, making room at once would be a jerk.
         let most = gap / span.step;
-        let target = if d > gap {
+        let target = if contact.is_expected {
+            (curved - (d - gap) / tau).min(0.0)
+        } else if d > gap {
             (curved - (d - gap) / tau).min(most)
         } else {
             let restore = (gap - d).min(RESTORED * gap) / span.step;

@@ -9,7 +9,7 @@ use d2m_bvh::QueryError;
 use std::collections::BTreeSet;
 
 /// Features within this many gaps are measured in any case.
-const AROUND: f64 = 1.5;
+pub(super) const AROUND: f64 = 1.5;
 /// And those within this many times the way that two bodies come closer in what is left of the step.
 const APPROACH: f64 = 2.0;
 
@@ -77,15 +77,21 @@ impl Step<'_> {
                     body.time = time;
                     body.lead = None;
                 }
-                if let Occasion::Plan { .. } = occasion {
+                let begins = body.time == time;
+                if matches!(occasion, Occasion::Plan { .. } | Occasion::Expected) {
                     body.undo(time);
                 }
                 body.advance(time, gravity);
                 // What is left of a flight to the end of the step goes on as it was planned, if that is near enough to what
                 // its own middle asks for.
                 let body = &self.sim.bodies[i];
-                let goes_on =
-                    occasion == Occasion::Event && body.horizon >= self.end && self.is_balanced(body, time);
+                let goes_on = match occasion {
+                    Occasion::Start | Occasion::Plan { .. } => false,
+                    Occasion::Expected if begins => true,
+                    Occasion::Expected | Occasion::Event => {
+                        body.horizon >= self.end && self.is_balanced(body, time)
+                    }
+                };
                 if !goes_on {
                     self.sim.bodies[i].lead = None;
                 }
@@ -129,15 +135,18 @@ impl Step<'_> {
             if let Some(measured) = answer {
                 pair.keep(measured, time, gap);
             }
-            if pair.contacts.is_empty() {
+            let expected = self.expected.get(&key);
+            if pair.contacts.is_empty() && expected.is_none() {
                 continue;
             }
             // The impulses of the step's start are those of a whole one; an event adds to them.
             let part = match occasion {
                 Occasion::Start => 1.0,
                 Occasion::Plan { until } if time == self.start => (until - time) / (self.end - time),
-                Occasion::Plan { .. } | Occasion::Event => 0.0,
+                Occasion::Expected if time == self.start => 1.0,
+                Occasion::Plan { .. } | Occasion::Event | Occasion::Expected => 0.0,
             };
+            group.contacts.extend(expected.into_iter().flatten());
             group.contacts.extend(pair.contacts.iter().map(|point| {
                 let mut point = *point;
                 point.impulse *= part;

@@ -2,6 +2,7 @@
 
 mod connected;
 mod event;
+mod expect;
 mod flights;
 mod hold;
 mod plan;
@@ -11,6 +12,7 @@ use crate::contact::ContactPoint;
 use crate::rigid_body::RigidBody;
 use crate::{ContactListener, Simulation, StepError, StepReport};
 use event::{Cause, Event};
+use expect::Expected;
 use glam::DVec3;
 use plan::Replans;
 use std::cmp::Reverse;
@@ -26,6 +28,8 @@ enum Occasion {
     Start,
     /// Bodies meet, or flights end.
     Event,
+    /// Flights that have just begun lead to contacts that are solved with them.
+    Expected,
     /// Flights that have just begun are to end at `until` at the latest.
     Plan { until: f64 },
 }
@@ -44,6 +48,7 @@ pub(crate) struct Step<'s> {
     replans: Replans,
     /// The end of flights that were planned anew.
     planned: Option<f64>,
+    expected: Expected,
     /// Impulses of the present instant, and those of contacts that flights could still be planned without.
     impulses: Vec<ContactPoint>,
     undoable: Vec<ContactPoint>,
@@ -68,6 +73,7 @@ impl<'s> Step<'s> {
             holding: false,
             replans: Replans::default(),
             planned: None,
+            expected: Expected::default(),
             impulses: Vec::new(),
             undoable: Vec::new(),
         }
@@ -93,6 +99,7 @@ impl<'s> Step<'s> {
             self.sim.bodies[i].time = self.start;
         }
         self.resolve(self.start, awake, Occasion::Start)?;
+        self.solve_expected(self.start)?;
         let mut last = (f64::NEG_INFINITY, BTreeMap::<[usize; 2], u32>::new());
         while let Some(event) = self.next_event() {
             if self.plan_anew(&event)? {
@@ -118,6 +125,7 @@ impl<'s> Step<'s> {
                 self.report.events +=
                     go_on.iter().filter(|event| event.cause != Cause::Horizon).count() as u32;
                 self.resolve(event.time, seeds, Occasion::Event)?;
+                self.solve_expected(event.time)?;
             } else {
                 self.hold(event.time, &hold)?;
                 // Those whose bodies fly on as before are next.

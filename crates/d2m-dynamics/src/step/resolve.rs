@@ -23,15 +23,15 @@ impl Step<'_> {
         let mut group = Group::new(self.sim.bodies.len());
         let until = if let Occasion::Plan { until } = occasion { until } else { self.end };
         let clock = Clock { now: time, end: until };
-        let solved = if occasion == Occasion::Event {
-            self.solve_nearby(&mut group, seeds, clock)?
+        let solved = if matches!(occasion, Occasion::Event | Occasion::Expected) {
+            self.solve_nearby(&mut group, seeds, clock, occasion)?
         } else {
             self.admit_connected(&mut group, time, seeds, occasion)?;
             group.sort();
             self.follow_motions(&group, clock, occasion);
             self.solve_islands(&group, clock)
         };
-        if let Occasion::Plan { .. } = occasion {
+        if matches!(occasion, Occasion::Plan { .. } | Occasion::Expected) {
             self.undoable.retain(|contact| !(group.is_member[contact.a] || group.is_member[contact.b]));
         } else {
             self.impulses.append(&mut self.undoable);
@@ -101,28 +101,32 @@ impl Step<'_> {
         group: &mut Group,
         seeds: Vec<usize>,
         clock: Clock,
+        occasion: Occasion,
     ) -> Result<Vec<Solved>, StepError> {
         let mut wave = seeds;
         for _ in 0..MOST_ROUNDS {
-            self.admit(group, clock.now, &wave, Occasion::Event)?;
+            if occasion == Occasion::Expected {
+                wave = self.pushed_together(wave);
+            }
+            self.admit(group, clock.now, &wave, occasion)?;
             group.sort();
-            self.follow_motions(group, clock, Occasion::Event);
+            self.follow_motions(group, clock, occasion);
             let solved = self.solve_islands(group, clock);
             wave = self.pressed(group, &solved, clock);
             if wave.is_empty() {
                 return Ok(solved);
             }
         }
-        self.admit_connected(group, clock.now, wave, Occasion::Event)?;
+        self.admit_connected(group, clock.now, wave, occasion)?;
         let rest: Vec<usize> = group.contacts.iter().flat_map(|c| [c.a, c.b]).collect();
         let outside = |i: &usize| {
             let body = &self.sim.bodies[*i];
             !group.is_member[*i] && body.is_dynamic() && !body.held
         };
         let rest: Vec<usize> = rest.into_iter().filter(outside).collect();
-        self.admit_connected(group, clock.now, rest, Occasion::Event)?;
+        self.admit_connected(group, clock.now, rest, occasion)?;
         group.sort();
-        self.follow_motions(group, clock, Occasion::Event);
+        self.follow_motions(group, clock, occasion);
         Ok(self.solve_islands(group, clock))
     }
 
@@ -165,8 +169,10 @@ impl Step<'_> {
 
     /// Keeps the impulses until the flights are flown, and those of the step's own solve for the next one to begin with.
     fn keep(&mut self, solved: Solved, occasion: Occasion) {
-        if occasion == Occasion::Start {
-            for contact in &solved.rests {
+        let is_start =
+            occasion == Occasion::Start || (occasion == Occasion::Expected && self.sim.time == self.start);
+        if is_start {
+            for contact in solved.rests.iter().filter(|contact| !contact.is_expected) {
                 if let Some(pair) = self.sim.pairs.get_mut(&(contact.a, contact.b))
                     && let Some(kept) = pair.contacts.iter_mut().find(|c| c.feature == contact.feature)
                 {

@@ -1,0 +1,143 @@
+//! Contacts that flights are certain to lead to are solved before they are met.
+
+use super::connected::AROUND;
+use super::event::{Cause, Event};
+use super::{Key, Occasion, Step};
+use crate::contact::ContactPoint;
+use crate::pairs::measure;
+use crate::rigid_body::{RigidBody, Velocity};
+use crate::{StepError, parallel};
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// Solutions from one instant, each with the contacts that the flights of the one before led to.
+const MOST_ROUNDS: u32 = 4;
+
+/// Contacts to come, by pair, as they are seen from one instant.
+pub(super) type Expected = BTreeMap<Key, Vec<ContactPoint>>;
+
+/// A contact that two flights lead to, and when.
+struct View<'s> {
+    bodies: [&'s RigidBody; 2],
+    /// When the flights begin, meet, and would end.
+    time: f64,
+    met: f64,
+    end: f64,
+}
+
+impl View<'_> {
+    /// A contact of where the flights meet, as a row for the velocities that they begin with.
+    ///
+    /// The points that will meet are d − rate (met − time) apart now, along the normal. Impulses that act at two points make
+    /// angular momentum: both arms reach to one point, the middle of the two, or of two bodies only one of which moves that of the one
+    /// that does. By this the rate along the normal is another one, by ω times what the bodies slide along each other before
+    /// they meet; the distance makes up for it.
+    fn from_now(&self, point: ContactPoint) -> ContactPoint {
+        let [a, b] = self.bodies;
+        let [va, vb] = self.bodies.map(RigidBody::present_velocity);
+        let point_velocity = |v: Velocity, arm: DVec3| v.linear + v.angular.cross(arm);
+        let rate = |arm_a, arm_b| point.normal.dot(point_velocity(vb, arm_b) - point_velocity(va, arm_a));
+        let centers = self.bodies.map(|body| body.pose_at(self.time).translation);
+        let apart = (centers[1] + point.arm_b) - (centers[0] + point.arm_a);
+        let share = match (a.is_dynamic(), b.is_dynamic()) {
+            (true, true) => 0.5,
+            (true, false) => 0.0,
+            (false, _) => 1.0,
+        };
+        let (arm_a, arm_b) = (point.arm_a + apart * share, point.arm_b - apart * (1.0 - share));
+        let met = rate(point.arm_a, point.arm_b);
+        let differs = rate(arm_a, arm_b) - met;
+        let distance = point.distance - met * (self.met - self.time) - differs * (self.end - self.time);
+        ContactPoint { arm_a, arm_b, distance, is_expected: true, ..point }
+    }
+}
+
+impl Step<'_> {
+    /// Solves the flights that begin at `time` again with the contacts that they are certain to lead to, as long as these
+    /// have no restitution: a body that another one stops anyway is braked so as to come to it at the end of the step. This is
+    /// the non-penetration constraint of time stepping (Anitescu and Potra 1997), linearised where the query has found the
+    /// contact; it asks for no impulse where bodies would miss each other, and its targets allow approach only, so it takes
+    /// energy and adds none. What the linearisation leaves over is an event like others.
+    pub(super) fn solve_expected(&mut self, time: f64) -> Result<(), StepError> {
+        self.expected = Expected::default();
+        for _ in 0..MOST_ROUNDS {
+            let events: Vec<Event> = self.heap.iter().map(|event| event.0).collect();
+            let mut events: Vec<Event> = events.into_iter().filter(|e| self.is_expected(e, time)).collect();
+            if events.is_empty() {
+                break;
+            }
+            events.sort_unstable();
+            let bodies = self.measure_expected(events, time);
+            if bodies.is_empty() {
+                break;
+            }
+            self.resolve(time, bodies, Occasion::Expected)?;
+        }
+        Ok(())
+    }
+
+    /// Does this event end flights that begin at `time`, by a contact that nothing bounces off?
+    fn is_expected(&self, event: &Event, time: f64) -> bool {
+        let [a, b] = event.bodies;
+        let begins = |i: usize| {
+            let body = &self.sim.bodies[i];
+            !body.held && (!body.is_dynamic() || body.asleep || body.time == time)
+        };
+        event.cause == Cause::Contact
+            && event.time > time
+            && event.time < self.end
+            && self.is_current(event)
+            && begins(a)
+            && begins(b)
+            && self.sim.material(a, b).restitution == 0.0
+    }
+
+    /// Measures the contacts of these events where they happen, and returns the bodies of those that are found.
+    fn measure_expected(&mut self, events: Vec<Event>, time: f64) -> Vec<usize> {
+        let sim = &*self.sim;
+        let (most, end) = (self.margin, self.end);
+        let found = parallel::map(events, |event| {
+            let key = (event.bodies[0], event.bodies[1]);
+            let [a, b] = event.bodies.map(|i| &sim.bodies[i]);
+            let gap = sim.pairs.get(&key).map_or(sim.options.gap, |pair| pair.gap);
+            let way = a.bound_approach(b) * (end - event.time);
+            let margin = (AROUND * sim.options.gap + way).min(most);
+            // Too close to measure is for the event itself to deal with.
+            let measured = measure(&sim.bodies, key, event.time, margin, gap, sim.material(key.0, key.1))
+                .unwrap_or_default();
+            let view = View { bodies: [a, b], time, met: event.time, end };
+            let seen_from_now = |point| view.from_now(point);
+            (key, measured.contacts.into_iter().map(seen_from_now).collect::<Vec<_>>())
+        });
+        let mut bodies = Vec::new();
+        for (key, contacts) in found.into_iter().filter(|(_, contacts)| !contacts.is_empty()) {
+            self.expected.entry(key).or_default().extend(contacts);
+            bodies.extend([key.0, key.1].into_iter().filter(|&i| self.sim.bodies[i].is_dynamic()));
+        }
+        bodies
+    }
+
+    /// These bodies, and all that impulses of this instant join with them: what one of them is taken back for, it is taken
+    /// back for the other. Ascending.
+    pub(super) fn pushed_together(&self, bodies: Vec<usize>) -> Vec<usize> {
+        let mut is_one = vec![false; self.sim.bodies.len()];
+        for &i in &bodies {
+            is_one[i] = true;
+        }
+        let moves = |i: usize| self.sim.bodies[i].is_dynamic();
+        let mut joined: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for contact in self.undoable.iter().filter(|c| moves(c.a) && moves(c.b)) {
+            joined.entry(contact.a).or_default().push(contact.b);
+            joined.entry(contact.b).or_default().push(contact.a);
+        }
+        let mut wave = bodies;
+        while let Some(i) = wave.pop() {
+            for &j in joined.get(&i).into_iter().flatten() {
+                if !core::mem::replace(&mut is_one[j], true) {
+                    wave.push(j);
+                }
+            }
+        }
+        (0..is_one.len()).filter(|&i| is_one[i]).collect()
+    }
+}
