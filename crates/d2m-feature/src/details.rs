@@ -49,7 +49,7 @@ pub(crate) fn point_triangle(
     let pair = closest::point_triangle(p, &vertices, normal);
     let size = (vertices[1] - vertices[0]).length().max((vertices[2] - vertices[0]).length());
     let point_b = vertices[0] * pair.b[0] + vertices[1] * pair.b[1] + vertices[2] * pair.b[2];
-    finish([on_a, on_b], [p, point_b], &pair, Shape { normal, size }, time)
+    finish([on_a, on_b], [p, point_b], &pair, &Shape { normal, size }, time)
 }
 
 pub(crate) fn edge_edge(
@@ -66,7 +66,7 @@ pub(crate) fn edge_edge(
     let pair = closest::segment_segment((a0 + a1) * 0.5 - (b0 + b1) * 0.5, e, d);
     let (point_a, point_b) = (a0 * pair.a[0] + a1 * pair.a[1], b0 * pair.b[0] + b1 * pair.b[1]);
     let shape = Shape { normal: direction(e.cross(d)), size: e.length().max(d.length()) };
-    finish([on_a, on_b], [point_a, point_b], &pair, shape, time)
+    finish([on_a, on_b], [point_a, point_b], &pair, &shape, time)
 }
 
 pub(crate) fn sphere_sphere(
@@ -98,7 +98,7 @@ fn finish(
     [a, b]: [BodyAt; 2],
     [point_a, point_b]: [DVec3; 2],
     pair: &ClosestPair,
-    shape: Shape,
+    shape: &Shape,
     time: f64,
 ) -> ContactDetails {
     let relative = a.velocity(point_a) - b.velocity(point_b);

@@ -265,8 +265,8 @@ mod tests {
             let answer = time_of_contact(a, b, scene.window, &scene.options).unwrap();
             let oracle = Oracle { a, b, relative: RelativeMotion::new(a.motion, b.motion) };
             let fault = |x: &TimeOfContact| oracle.fault(x, &answer, scene.window);
-            assert_eq!(fault(&answer), None, "{}", name);
-            assert!(!oracle.is_open(&answer), "{}: {answer:?}", name);
+            assert_eq!(fault(&answer), None, "{name}");
+            assert!(!oracle.is_open(&answer), "{name}: {answer:?}");
             let Some(contact) = answer.contact().filter(|c| c.closing_speed > 0.1) else { continue };
             if contact.start != crate::StartState::Apart || contact.time_lo + 1e-3 > scene.window.end() {
                 continue;
@@ -277,8 +277,8 @@ mod tests {
                 other.time_hi = other.time_lo;
                 TimeOfContact::Contact(other)
             };
-            assert!(fault(&shifted(1e-8)).is_some(), "{}: late by 1e-8", name);
-            assert!(fault(&shifted(-1e-8)).is_some(), "{}: early by 1e-8", name);
+            assert!(fault(&shifted(1e-8)).is_some(), "{name}: late by 1e-8");
+            assert!(fault(&shifted(-1e-8)).is_some(), "{name}: early by 1e-8");
             assert!(oracle.is_open(&shifted(-1e-8)));
             judged += 1;
         }

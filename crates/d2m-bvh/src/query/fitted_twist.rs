@@ -2,7 +2,7 @@
 //!
 //! docs/theory/motions.md, section 3, derives the bound.
 
-use crate::Moving;
+use crate::{Moving, QueryError, Window};
 use d2m_interval::Interval;
 use d2m_motion::{Ball, CertifiedState, ConstantTwist, Kinematics, StateTwist};
 use glam::DVec3;
@@ -40,10 +40,10 @@ impl FittedTwists {
     ///
     /// Each motion is expressed by its reference point and by the one that accelerates least; what gives the smaller
     /// deviation is taken.
-    pub(super) fn new(bodies: &[Moving<'_>; 2], span: (f64, f64), origin: DVec3) -> Option<Self> {
-        let (from, to) = span;
+    pub(super) fn new(bodies: &[Moving<'_>; 2], span: Interval, origin: DVec3) -> Option<Self> {
+        let (from, to) = (span.lo(), span.hi());
         let middle = (from + 0.5 * (to - from)).clamp(from, to);
-        let fits = bodies.map(|body| candidates(&body, Interval::new(from, to), middle, origin));
+        let fits = bodies.map(|body| candidates(&body, span, middle, origin));
         // Either difference is rounded once.
         let half = (to - middle).max(middle - from) * UP;
         let mut best: Option<Self> = None;
@@ -150,8 +150,11 @@ impl FittedClock {
     }
 
     /// The span by this clock, and what rounding adds to it.
-    pub(super) fn span(&self, from: f64, to: f64) -> (f64, f64) {
-        (self.at(from).lo(), self.at(to).hi())
+    ///
+    /// # Errors
+    /// A span whose ends or length are not finite on this clock.
+    pub(super) fn window(&self, from: f64, to: f64) -> Result<Window, QueryError> {
+        Window::try_new(self.at(from).lo(), self.at(to).hi())
     }
 
     fn estimate(&self, clock: f64) -> f64 {
@@ -199,9 +202,9 @@ mod tests {
     fn clocks_are_rounded_to_the_safe_side() {
         for (middle, bend) in [(0.5, 0.3), (0.5, -0.9), (1e5 + 0.5, 0.7), (-3.0, 1e-9), (2.0, 0.0)] {
             let clock = FittedClock { middle, bend };
-            let (from, to) = clock.span(middle - 0.5, middle + 0.5);
+            let window = clock.window(middle - 0.5, middle + 0.5).unwrap();
             for i in 0..=200 {
-                let s = from + (to - from) * f64::from(i) / 200.0;
+                let s = window.start() + window.length() * f64::from(i) / 200.0;
                 let (down, up) = (clock.time_down(s, middle - 1.0), clock.time_up(s, middle + 1.0));
                 assert!(clock.at(down).hi() <= s && s <= clock.at(up).lo(), "{middle} {bend} {s}");
                 assert!(up - down <= 32.0 * f64::EPSILON * (1.0 + middle.abs()), "{middle} {bend} {s}");
@@ -242,7 +245,7 @@ mod tests {
             let motion = Chain::try_new(joints).unwrap();
             for (from, to) in [(0.0, 0.1), (0.4, 0.5), (-0.3, 0.3), (-0.05, 0.05), (1.0, 1.000_01)] {
                 let bodies = [Moving::new(&body, &motion as &dyn RigidMotion), Moving::new(&point, &still)];
-                let fitted = FittedTwists::new(&bodies, (from, to), DVec3::ZERO).unwrap();
+                let fitted = FittedTwists::new(&bodies, Interval::new(from, to), DVec3::ZERO).unwrap();
                 assert!(fitted.floor <= fitted.deviation && fitted.floor < 1e-13);
                 let mut most = 0.0_f64;
                 for i in 0..=20 {
@@ -261,7 +264,7 @@ mod tests {
             }
             if kind == 3 {
                 let bodies = [Moving::new(&body, &motion as &dyn RigidMotion), Moving::new(&point, &still)];
-                let fitted = FittedTwists::new(&bodies, (0.0, 1e-4), DVec3::ZERO).unwrap();
+                let fitted = FittedTwists::new(&bodies, Interval::new(0.0, 1e-4), DVec3::ZERO).unwrap();
                 assert!(fitted.deviation < 1e-2 * 0.5 * 0.5e-4 * 0.5e-4 * 4.0, "{fitted:?}");
             }
         }

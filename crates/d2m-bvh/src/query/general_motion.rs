@@ -13,6 +13,7 @@ use crate::{
     Window,
 };
 use d2m_feature::triangle_distance;
+use d2m_interval::Interval;
 use d2m_motion::{Chain, ConstantTwist, Pose, RigidMotion};
 use glam::DVec3;
 use std::time::Instant;
@@ -93,6 +94,23 @@ struct Advance<'a> {
     /// The next span is at most so long and deviates by at most so much.
     longest: f64,
     largest: f64,
+}
+
+/// Fitted twists from now until a time.
+struct FittedSpan {
+    fitted: FittedTwists,
+    until: f64,
+}
+
+/// A span in which fitted twists came near although they deviate by more than the tolerance allows.
+struct Shortfall {
+    /// Of the fitted twists.
+    deviation: f64,
+    /// The part of it that no shorter span takes away.
+    floor: f64,
+    tolerance: f64,
+    /// The end of the span.
+    until: f64,
 }
 
 /// How a span ended.
@@ -226,7 +244,7 @@ impl<'a> Advance<'a> {
     /// A span with fitted twists: free up to its end or up to where they come near.
     fn fitted_span(&mut self) -> Result<Step, QueryError> {
         let undecided = Step::Answer(TimeOfContact::Undecided { clear_until: self.now });
-        let Some((fitted, until)) = self.fit()? else { return Ok(undecided) };
+        let Some(FittedSpan { fitted, until }) = self.fit()? else { return Ok(undecided) };
         let FittedTwists { twists, clock, deviation, floor } = fitted;
         let tolerance = self.tolerance.max(self.rounding_tolerance(floor));
         let small = deviation <= SMALL_PART * tolerance;
@@ -237,8 +255,8 @@ impl<'a> Advance<'a> {
         if options.mode == Mode::Exists {
             options.mode = Mode::Accurate;
         }
-        let (first, last) = clock.span(self.now, until);
-        let contact = match self.ask([&twists[0], &twists[1]], Window::try_new(first, last)?, &options)? {
+        let window = clock.window(self.now, until)?;
+        let contact = match self.ask([&twists[0], &twists[1]], window, &options)? {
             TimeOfContact::Separated => {
                 self.longest = GROWTH * (until - self.now);
                 self.largest *= GROWTH;
@@ -263,7 +281,7 @@ impl<'a> Advance<'a> {
             let contact = Contact { tolerance: contact.tolerance.max(tolerance), ..contact };
             return Ok(Step::Answer(TimeOfContact::Contact(self.true_contact(contact))));
         }
-        self.shorten(&contact, (deviation, floor), (tolerance, until));
+        self.shorten(&contact, &Shortfall { deviation, floor, tolerance, until });
         if contact.time_lo <= self.now && self.longest <= 0.0 {
             return Ok(undecided);
         }
@@ -271,7 +289,8 @@ impl<'a> Advance<'a> {
     }
 
     /// How long the next span may be, and how far it may deviate, after the fitted twists came near.
-    fn shorten(&mut self, contact: &Contact, (deviation, floor): (f64, f64), (tolerance, until): (f64, f64)) {
+    fn shorten(&mut self, contact: &Contact, shortfall: &Shortfall) {
+        let Shortfall { deviation, floor, tolerance, until } = *shortfall;
         let room = self.room_at(contact);
         let wanted = if room > GROWTH * tolerance { room * PART_OF_ROOM } else { 0.0 };
         let least = SMALL_PART * tolerance;
@@ -298,7 +317,7 @@ impl<'a> Advance<'a> {
     }
 
     /// Fits over a span that begins now and deviates by little enough; `None` when no span does.
-    fn fit(&mut self) -> Result<Option<(FittedTwists, f64)>, QueryError> {
+    fn fit(&mut self) -> Result<Option<FittedSpan>, QueryError> {
         let joints = self.bodies.map(|body| body.motion.smooth_until(self.now));
         // A joint that is not ahead is a fault of the motion: then nothing is known.
         let behind = |joint: f64| joint.is_nan() || joint <= self.now;
@@ -316,13 +335,14 @@ impl<'a> Advance<'a> {
         let mut until = (self.now + self.longest).min(end).max(self.now.next_up().min(end));
         loop {
             self.work += TESTS_A_FIT;
-            let fitted = FittedTwists::new(&self.bodies, (self.now, until), poses[1].translation);
+            let fitted =
+                FittedTwists::new(&self.bodies, Interval::new(self.now, until), poses[1].translation);
             let shortest = until <= self.now.next_up();
             if let Some(fitted) = fitted {
                 let tolerance = self.tolerance.max(self.rounding_tolerance(fitted.floor));
                 let enough = largest.max(SMALL_PART * tolerance).max(2.0 * fitted.floor);
                 if fitted.deviation <= enough {
-                    return Ok(Some((fitted, until)));
+                    return Ok(Some(FittedSpan { fitted, until }));
                 }
                 if shortest {
                     return Ok(None);

@@ -5,7 +5,7 @@
 
 use super::node::{Below, OrientedBox, WIDTH, WideNode};
 use super::split::Splitter;
-use super::surface::{Extent, Surface};
+use super::surface::{Extent, SizedBox, Surface};
 use crate::TriMesh;
 use core::sync::atomic::{AtomicUsize, Ordering};
 
@@ -53,7 +53,7 @@ pub(super) fn build(mesh: &TriMesh, progress: Option<Progress<'_>>) -> Built {
     let mut order: Vec<u32> = (0..total as u32).collect();
     let axes = builder.surface.axes(&order);
     let mut root = WideNode::empty([0.0; 3], 0);
-    let (boxed, size) = builder.surface.enclose(&order, &axes, [0.0; 3]);
+    let SizedBox { boxed, size } = builder.surface.enclose(&order, &axes, [0.0; 3]);
     root.set_box(0, &boxed, if total == 1 { 0.0 } else { size });
     root.used = 1;
     let mut nodes = Vec::with_capacity(total / 6 + 2);
@@ -131,7 +131,7 @@ impl Builder<'_> {
         node.used = parts.len() as u32;
         let mut hanging = Vec::with_capacity(WIDTH);
         for (lane, part) in parts.into_iter().enumerate() {
-            let (boxed, size) = self.surface.enclose(part.order, &part.axes, origin);
+            let SizedBox { boxed, size } = self.surface.enclose(part.order, &part.axes, origin);
             node.set_box(lane, &boxed, if part.order.len() == 1 { 0.0 } else { size });
             let parent = (index * WIDTH + lane) as u32;
             hanging.push((part, Above { boxed, origin, parent }));

@@ -2,7 +2,7 @@
 
 use super::mesh_tree::MeshTree;
 use super::node::{Below, OrientedBox, WideNode};
-use super::surface::{Extent, Surface};
+use super::surface::{Extent, SizedBox, Surface};
 use crate::{MeshError, TriMesh};
 use glam::DVec3;
 
@@ -34,7 +34,8 @@ impl MeshTree {
         let mut refit = Refit { surface: &surface, nodes: &mut nodes, order: &mut order };
         let counts = refit.count(0);
         let root = refit.nodes[0].below(0);
-        let (boxed, size) = refit.surface.enclose(refit.order, &refit.surface.axes(refit.order), [0.0; 3]);
+        let SizedBox { boxed, size } =
+            refit.surface.enclose(refit.order, &refit.surface.axes(refit.order), [0.0; 3]);
         let mut node = WideNode::empty([0.0; 3], 0);
         node.used = 1;
         node.set_box(0, &boxed, if matches!(root, Below::Triangle(_)) { 0.0 } else { size });
@@ -88,7 +89,7 @@ impl Refit<'_> {
                 Below::Node(child) => (counts[child as usize] as usize, false),
             };
             let part = &self.order[at..at + count];
-            let (boxed, size) = self.surface.enclose(part, &self.surface.axes(part), origin);
+            let SizedBox { boxed, size } = self.surface.enclose(part, &self.surface.axes(part), origin);
             node.set_box(lane, &boxed, if leaf { 0.0 } else { size });
             node.set_below(lane, below);
             if let Below::Node(child) = below {

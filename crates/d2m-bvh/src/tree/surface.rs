@@ -108,8 +108,8 @@ impl<'a> Surface<'a> {
         extremes.refined()
     }
 
-    /// The box of a part with about the given axes: center relative to `origin`, outward in real arithmetic. Also its size.
-    pub(super) fn enclose(&self, part: &[u32], axes: &[[f64; 3]; 3], origin: [f32; 3]) -> (OrientedBox, f32) {
+    /// The box of a part with about the given axes: center relative to `origin`, outward in real arithmetic.
+    pub(super) fn enclose(&self, part: &[u32], axes: &[[f64; 3]; 3], origin: [f32; 3]) -> SizedBox {
         let axes = self.refined(part, axes).map(|axis| axis.map(|c| c as f32));
         let wide = axes.map(|axis| axis.map(f64::from));
         let from = origin.map(f64::from);
@@ -134,11 +134,23 @@ impl<'a> Surface<'a> {
                 reach.add(p);
             }
         }
-        let (half_extent, radius) = reach.outward();
+        let Extents { half_extent, radius } = reach.outward();
         let slabs = reach.slabs(&half_extent);
         let boxed = OrientedBox { center, axes, half_extent, slabs, radius };
-        (boxed, size_of_box(&boxed))
+        SizedBox { boxed, size: size_of_box(&boxed) }
     }
+}
+
+/// A box and its size, which decides what is expanded first.
+pub(super) struct SizedBox {
+    pub(super) boxed: OrientedBox,
+    pub(super) size: f32,
+}
+
+/// How far a box reaches from its center, rounded up.
+struct Extents {
+    half_extent: [f32; 3],
+    radius: f32,
 }
 
 /// Part of the radius that a box counts as thick at least, in its size.
@@ -208,7 +220,7 @@ impl Reach {
 
     /// Is all of it proven to be in the box and its ball?
     pub(super) fn is_within(&self, boxed: &OrientedBox) -> bool {
-        let (half, radius) = self.outward();
+        let Extents { half_extent: half, radius } = self.outward();
         (0..3).all(|i| half[i] <= boxed.half_extent[i])
             && radius <= boxed.radius
             && self.edges.are_left_by(&boxed.slabs, &boxed.half_extent, self.slack())
@@ -216,9 +228,10 @@ impl Reach {
 
     /// Half extents and radius that enclose the points in real arithmetic. Monotone: a box made from more points is
     /// at least as large, in every bit.
-    fn outward(&self) -> ([f32; 3], f32) {
+    fn outward(&self) -> Extents {
         let slack = self.slack();
         let half = self.half.map(|h| round_up(h + slack));
-        (half, round_up(self.square.sqrt() * (1.0 + 8.0 * UNIT_F64) + slack))
+        let radius = round_up(self.square.sqrt() * (1.0 + 8.0 * UNIT_F64) + slack);
+        Extents { half_extent: half, radius }
     }
 }

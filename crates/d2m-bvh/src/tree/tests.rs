@@ -3,7 +3,7 @@
 use super::margin::UNIT_F64;
 use super::node::{Below, WIDTH};
 use super::slabs::{PAIRS, STEPS};
-use super::surface::Surface;
+use super::surface::{SizedBox, Surface};
 use super::*;
 use crate::TriMesh;
 use crate::random::Random;
@@ -210,7 +210,7 @@ fn moved_surfaces_keep_their_order() {
     let tree = MeshTree::new(mesh.clone());
     let extent = super::surface::Extent::of(&mesh);
     let surface = Surface::new(&mesh, &extent);
-    let (boxed, _) = surface.enclose(&[7], &surface.axes(&[7]), [0.0; 3]);
+    let SizedBox { boxed, .. } = surface.enclose(&[7], &surface.axes(&[7]), [0.0; 3]);
     assert!(boxed.half_extent[2] < 1e-6 && boxed.half_extent[0] > 0.05);
     let mut same = tree.clone();
     same.refit(mesh.vertices().to_vec()).unwrap();

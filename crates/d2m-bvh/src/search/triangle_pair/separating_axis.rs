@@ -292,14 +292,14 @@ fn three<D: Doubles>(values: D) -> [f64; 3] {
 /// The rate of the vertex that is first along the direction.
 #[inline(always)]
 fn rate_of_least(at: &[f64; 3], rate: &[f64; 3]) -> f64 {
-    let first = if at[1] < at[0] { 1 } else { 0 };
+    let first = usize::from(at[1] < at[0]);
     if at[2] < at[first] { rate[2] } else { rate[first] }
 }
 
 /// The rate of the vertex that is last along the direction.
 #[inline(always)]
 fn rate_of_greatest(at: &[f64; 3], rate: &[f64; 3]) -> f64 {
-    let last = if at[1] > at[0] { 1 } else { 0 };
+    let last = usize::from(at[1] > at[0]);
     if at[2] > at[last] { rate[2] } else { rate[last] }
 }
 
