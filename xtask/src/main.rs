@@ -13,6 +13,7 @@ mod ci;
 mod figure;
 #[cfg(feature = "full")]
 mod judge;
+mod lines;
 #[cfg(feature = "full")]
 mod machine;
 mod mutants;
@@ -60,6 +61,8 @@ enum Task {
     Ci(ci::Options),
     /// Fails when the map in ARCHITECTURE.md, the folders and the order of the crates disagree.
     Tidy,
+    /// Lines of product code of each crate, without tests, comments and blank lines.
+    Lines(lines::Options),
     /// Deliberate faults in a copy of the sources, each of which a named test must notice; fails if one survives.
     Mutants(mutants::Options),
     /// Random families against slow oracles; fails on any contact missed or late.
@@ -87,6 +90,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().task {
         Task::Ci(options) => ci::run(&options),
         Task::Tidy => tidy::run(),
+        Task::Lines(options) => lines::run(&options),
         Task::Mutants(options) => mutants::run(&options),
         Task::Accuracy(_)
         | Task::Bench(_)
@@ -99,6 +103,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().task {
         Task::Ci(options) => ci::run(&options),
         Task::Tidy => tidy::run(),
+        Task::Lines(options) => lines::run(&options),
         Task::Mutants(options) => mutants::run(&options),
         Task::Accuracy(options) => accuracy::run(&options),
         Task::Bench(options) => bench::run(&options),

@@ -129,7 +129,7 @@ impl Support {
         self
     }
 
-    /// The subset of at most four points whose circumball, blown up to hold all points, is smallest. Judging each
+    /// The subset of at most four points whose circumball, enlarged to hold all points, is smallest. Judging each
     /// center by the farthest of all points needs no tolerance.
     fn reduced(self) -> Self {
         let mut best = Self { squared_radius: f64::INFINITY, ..self };

@@ -194,7 +194,7 @@ pub(crate) fn options_of(arguments: &QueryArguments) -> Result<QueryOptions, Fai
         options = options.with_min_separation(distance);
     }
     let seconds = number("--time-limit", &arguments.time_limit, "a positive number of seconds", |s| s > 0.0)?;
-    // Beyond a century there is no limit to speak of, and the type could not hold it.
+    // More than a century is no limit, and the type could not hold it.
     let mut budget = Budget::UNLIMITED.with_wall_clock(Duration::from_secs_f64(seconds.min(3e9)));
     if let Some(node_tests) = arguments.budget {
         budget = budget.with_node_tests(node_tests);

@@ -51,7 +51,7 @@ impl ScrewMotion {
             .try_with_reference_time(t0)?;
         let square = twist.angular.length_squared();
         if square == 0.0 || !square.is_normal() {
-            // No rotation to speak of: the axis is at infinity, and the translation is the screw.
+            // A negligible rotation: the axis is at infinity, and the translation is the screw.
             return Ok(Self { motion: given.with_angular_velocity(DVec3::ZERO) });
         }
         let arm = twist.angular.cross(twist.linear) / square;

@@ -12,7 +12,7 @@ pub(crate) struct Closedness {
     pub(crate) oriented: bool,
     /// Triangles that repeat an earlier one with the same orientation, ascending.
     pub(crate) repeated: Vec<u32>,
-    /// The lowest vertex of each part that hangs together through equal positions, ascending.
+    /// The lowest vertex of each connected part (equal positions connect), ascending.
     pub(crate) components: Vec<u32>,
 }
 

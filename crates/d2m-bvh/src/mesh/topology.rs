@@ -192,7 +192,7 @@ impl Topology {
         self.position_count as i64 - self.edges.len() as i64 + self.face_count as i64
     }
 
-    /// How many parts hang together through shared positions (of triangles that are not left out).
+    /// How many connected parts there are: shared positions connect (of triangles that are not left out).
     pub fn component_count(&self) -> usize {
         self.component_count
     }

@@ -41,9 +41,9 @@ pub struct Validation {
     pub non_manifold_edges: usize,
     /// Edges with two triangles that disagree about the outside.
     pub inconsistent_edges: usize,
-    /// Positions at which the surface hangs together by the vertex alone: the triangles there form several fans.
+    /// Positions at which the surface is connected by the vertex alone: the triangles there form several fans.
     pub pinched_vertices: usize,
-    /// Parts that hang together through shared positions.
+    /// Connected parts; shared positions connect.
     pub components: usize,
     /// Positions − edges + faces.
     pub euler_characteristic: i64,

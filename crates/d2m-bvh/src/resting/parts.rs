@@ -6,7 +6,7 @@ use crate::allowance::Allowance;
 use crate::{MeshTree, Posed, TriMesh};
 use glam::DVec3;
 
-/// One connected part of a surface: triangles that hang together through equal positions of their vertices.
+/// One connected part of a surface: triangles that are connected through equal positions of their vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

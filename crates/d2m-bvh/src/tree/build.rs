@@ -129,16 +129,16 @@ impl Builder<'_> {
         let index = nodes.len();
         let mut node = WideNode::empty(origin, above.parent);
         node.used = parts.len() as u32;
-        let mut hanging = Vec::with_capacity(WIDTH);
+        let mut children = Vec::with_capacity(WIDTH);
         for (lane, part) in parts.into_iter().enumerate() {
             let SizedBox { boxed, size } = self.surface.enclose(part.order, &part.axes, origin);
             node.set_box(lane, &boxed, if part.order.len() == 1 { 0.0 } else { size });
             let parent = (index * WIDTH + lane) as u32;
-            hanging.push((part, Above { boxed, origin, parent }));
+            children.push((part, Above { boxed, origin, parent }));
         }
         nodes.push(node);
         if is_large {
-            for (lane, (below, mut subtree)) in self.build_side_by_side(hanging).into_iter().enumerate() {
+            for (lane, (below, mut subtree)) in self.build_in_parallel(children).into_iter().enumerate() {
                 let base = nodes.len();
                 for (i, node) in subtree.iter_mut().enumerate() {
                     node.shift(base as u32, i == 0);
@@ -147,7 +147,7 @@ impl Builder<'_> {
                 nodes.append(&mut subtree);
             }
         } else {
-            for (lane, (part, above)) in hanging.into_iter().enumerate() {
+            for (lane, (part, above)) in children.into_iter().enumerate() {
                 let below = self.below(part, &above, nodes, splitter);
                 nodes[index].set_below(lane, below);
             }
@@ -156,7 +156,7 @@ impl Builder<'_> {
     }
 
     /// Builds what is below each box into a list of its own, whose numbers count from zero.
-    fn build_side_by_side(&self, hanging: Vec<(Part<'_>, Above)>) -> Vec<(Below, Vec<WideNode>)> {
+    fn build_in_parallel(&self, children: Vec<(Part<'_>, Above)>) -> Vec<(Below, Vec<WideNode>)> {
         let one = |(part, above): (Part<'_>, Above)| {
             let count = part.order.len();
             let mut nodes = Vec::with_capacity(count / 6 + 2);
@@ -169,9 +169,9 @@ impl Builder<'_> {
         #[cfg(feature = "rayon")]
         {
             use rayon::iter::{IntoParallelIterator, ParallelIterator};
-            hanging.into_par_iter().map(one).collect()
+            children.into_par_iter().map(one).collect()
         }
         #[cfg(not(feature = "rayon"))]
-        hanging.into_iter().map(one).collect()
+        children.into_iter().map(one).collect()
     }
 }

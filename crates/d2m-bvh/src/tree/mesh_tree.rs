@@ -131,7 +131,7 @@ impl MeshTree {
         self.watertight
     }
 
-    /// One vertex of each part of the surface that hangs together through equal positions.
+    /// One vertex of each connected part of the surface; equal positions connect.
     pub(crate) fn component_vertices(&self) -> &[u32] {
         &self.components
     }

@@ -133,7 +133,7 @@ fn boxes_enclose_in_more_than_double_precision() {
             }
         }
     }
-    // Boxes are not blown up: somewhere only the slack is left.
+    // Boxes are not too wide: somewhere only the slack is left.
     assert!(tightest < 64.0 * UNIT_F64, "{tightest:e}");
     assert!(cut_off > 1000 && nearest < 1e-4, "{cut_off} {nearest:e}");
 }
