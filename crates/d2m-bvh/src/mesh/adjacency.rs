@@ -37,18 +37,37 @@ struct Lists {
 }
 
 impl Lists {
-    /// From pairs (number of the list, item), which are sorted and freed of repetitions.
-    fn new(count: usize, mut pairs: Vec<(u32, u32)>) -> Self {
-        pairs.sort_unstable();
-        pairs.dedup();
+    /// Ascending items without repetitions. `visit` calls its argument with (number of the list, item) for each item, twice
+    /// in all, the same both times: items are counted, then put where they belong, so that only short lists are sorted.
+    fn new(count: usize, visit: impl Fn(&mut dyn FnMut(u32, u32))) -> Self {
         let mut start = vec![0u32; count + 1];
-        for &(list, _) in &pairs {
-            start[list as usize + 1] += 1;
-        }
+        visit(&mut |list, _| start[list as usize + 1] += 1);
         for list in 0..count {
             start[list + 1] += start[list];
         }
-        Self { start, items: pairs.into_iter().map(|(_, item)| item).collect() }
+        let mut items = vec![0; start[count] as usize];
+        let mut next = start.clone();
+        visit(&mut |list, item| {
+            let place = &mut next[list as usize];
+            items[*place as usize] = item;
+            *place += 1;
+        });
+        let mut kept = 0;
+        for list in 0..count {
+            let (from, to) = (start[list] as usize, start[list + 1] as usize);
+            items[from..to].sort_unstable();
+            start[list] = kept as u32;
+            for at in from..to {
+                if kept == start[list] as usize || items[kept - 1] != items[at] {
+                    items[kept] = items[at];
+                    kept += 1;
+                }
+            }
+        }
+        start[count] = kept as u32;
+        items.truncate(kept);
+        items.shrink_to_fit();
+        Self { start, items }
     }
 
     fn of(&self, list: u32) -> &[u32] {
@@ -56,44 +75,99 @@ impl Lists {
     }
 }
 
+/// A side of a triangle with a length, by the higher of its two ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+struct Side {
+    high: u32,
+    triangle: u32,
+    /// From corner `slot` to corner `slot + 1`.
+    slot: u32,
+}
+
+/// All sides with a length, by the lower of their two ends.
+struct Sides {
+    start: Vec<u32>,
+    all: Vec<Side>,
+}
+
+impl Sides {
+    /// Counted, then put where they belong: only the few sides of one vertex are sorted.
+    fn new(mesh: &TriMesh, first: &[u32]) -> Self {
+        let each = |put: &mut dyn FnMut(u32, Side)| {
+            for (triangle, corners) in mesh.triangles().iter().enumerate() {
+                let [i, j, k] = corners.map(|vertex| first[vertex as usize]);
+                for (slot, (from, to)) in [(i, j), (j, k), (k, i)].into_iter().enumerate() {
+                    if from != to {
+                        let (triangle, slot) = (triangle as u32, slot as u32);
+                        put(from.min(to), Side { high: from.max(to), triangle, slot });
+                    }
+                }
+            }
+        };
+        let mut start = vec![0u32; first.len() + 1];
+        each(&mut |low, _| start[low as usize + 1] += 1);
+        for vertex in 0..first.len() {
+            start[vertex + 1] += start[vertex];
+        }
+        let mut all = vec![Side::default(); start[first.len()] as usize];
+        let mut next = start.clone();
+        each(&mut |low, side| {
+            let place = &mut next[low as usize];
+            all[*place as usize] = side;
+            *place += 1;
+        });
+        for range in start.windows(2) {
+            all[range[0] as usize..range[1] as usize].sort_unstable();
+        }
+        Self { start, all }
+    }
+
+    fn from(&self, low: u32) -> &[Side] {
+        &self.all[self.start[low as usize] as usize..self.start[low as usize + 1] as usize]
+    }
+}
+
 impl Adjacency {
-    /// In O(n log n) time.
+    /// In time O(n log k), k the most sides at one vertex.
     pub(crate) fn new(mesh: &TriMesh) -> Self {
         let first = first_at_position(mesh.vertices());
         let welded = |triangle: usize| mesh.triangles()[triangle].map(|vertex| first[vertex as usize]);
         let mut owned = vec![OwnedFeatures { vertices: [NONE; 3], edges: [NONE; 3] }; mesh.triangle_count()];
         let mut seen = vec![false; mesh.vertex_count()];
-        // Ends, triangle and side of each side with a length.
-        let mut sides: Vec<([u32; 2], u32, u32)> = Vec::with_capacity(3 * mesh.triangle_count());
         for (triangle, own) in owned.iter_mut().enumerate() {
-            let corners = welded(triangle);
-            for side in 0..3 {
-                let (from, to) = (corners[side], corners[(side + 1) % 3]);
-                if !core::mem::replace(&mut seen[from as usize], true) {
-                    own.vertices[side] = from;
-                }
-                if from != to {
-                    sides.push(([from.min(to), from.max(to)], triangle as u32, side as u32));
+            for (side, vertex) in welded(triangle).into_iter().enumerate() {
+                if !core::mem::replace(&mut seen[vertex as usize], true) {
+                    own.vertices[side] = vertex;
                 }
             }
         }
-        sides.sort_unstable();
-        let mut edges: Vec<[u32; 2]> = Vec::with_capacity(sides.len() / 2);
-        let mut neighbours = Vec::with_capacity(sides.len());
-        let mut opposites = Vec::with_capacity(sides.len());
-        for &(ends, triangle, side) in &sides {
-            if edges.last() != Some(&ends) {
-                owned[triangle as usize].edges[side as usize] = edges.len() as u32;
-                neighbours.extend([(ends[0], ends[1]), (ends[1], ends[0])]);
-                edges.push(ends);
-            }
-            let opposite = welded(triangle as usize)[(side as usize + 2) % 3];
-            if !ends.contains(&opposite) {
-                opposites.push((edges.len() as u32 - 1, opposite));
+        let sides = Sides::new(mesh, &first);
+        let mut edges: Vec<[u32; 2]> = Vec::with_capacity(sides.all.len() / 2);
+        // Edge and third corner of each side.
+        let mut thirds: Vec<(u32, u32)> = Vec::with_capacity(sides.all.len());
+        for low in 0..mesh.vertex_count() as u32 {
+            for &Side { high, triangle, slot } in sides.from(low) {
+                if edges.last() != Some(&[low, high]) {
+                    owned[triangle as usize].edges[slot as usize] = edges.len() as u32;
+                    edges.push([low, high]);
+                }
+                let opposite = welded(triangle as usize)[(slot as usize + 2) % 3];
+                if ![low, high].contains(&opposite) {
+                    thirds.push((edges.len() as u32 - 1, opposite));
+                }
             }
         }
-        let neighbours = Lists::new(mesh.vertex_count(), neighbours);
-        let opposites = Lists::new(edges.len(), opposites);
+        let neighbours = Lists::new(mesh.vertex_count(), |put| {
+            for &[low, high] in &edges {
+                put(low, high);
+                put(high, low);
+            }
+        });
+        let opposites = Lists::new(edges.len(), |put| {
+            for &(edge, third) in &thirds {
+                put(edge, third);
+            }
+        });
         Self { owned, edges, neighbours, opposites }
     }
 
@@ -129,6 +203,55 @@ impl Adjacency {
 mod tests {
     use super::*;
     use glam::DVec3;
+
+    /// Against maps and sets, on soups in which vertices, edges and triangles are repeated.
+    #[test]
+    fn equals_what_maps_and_sets_say() {
+        use crate::random::Random;
+        use std::collections::{BTreeMap, BTreeSet};
+        let index = |random: &mut Random, count: usize| ((0.5 + 0.5 * random.next()) * count as f64) as usize;
+        let mut random = Random(5);
+        for _ in 0..200 {
+            let count = 4 + index(&mut random, 12);
+            let vertices: Vec<_> = (0..count)
+                .map(|_| DVec3::new(index(&mut random, 2) as f64, index(&mut random, 4) as f64, 0.0))
+                .collect();
+            let triangles: Vec<_> = (0..1 + index(&mut random, 20))
+                .map(|_| [0; 3].map(|_: u32| index(&mut random, count) as u32))
+                .collect();
+            let first = |v: u32| vertices.iter().position(|p| *p == vertices[v as usize]).unwrap() as u32;
+            let mut around: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
+            let mut thirds: BTreeMap<[u32; 2], BTreeSet<u32>> = BTreeMap::new();
+            let mut owner: BTreeMap<[u32; 2], (u32, usize)> = BTreeMap::new();
+            for (triangle, corners) in triangles.iter().enumerate() {
+                let corners = corners.map(first);
+                for side in 0..3 {
+                    let [from, to, third] = [0, 1, 2].map(|k| corners[(side + k) % 3]);
+                    if from == to {
+                        continue;
+                    }
+                    let ends = [from.min(to), from.max(to)];
+                    owner.entry(ends).or_insert((triangle as u32, side));
+                    around.entry(from).or_default().insert(to);
+                    around.entry(to).or_default().insert(from);
+                    let opposite = thirds.entry(ends).or_default();
+                    if !ends.contains(&third) {
+                        opposite.insert(third);
+                    }
+                }
+            }
+            let adjacency = Adjacency::new(&TriMesh::try_new(vertices.clone(), triangles).unwrap());
+            assert_eq!(adjacency.edges, thirds.keys().copied().collect::<Vec<_>>());
+            for (edge, (ends, opposite)) in thirds.iter().enumerate() {
+                assert!(adjacency.opposites(edge as u32).iter().eq(opposite));
+                let (triangle, side) = owner[ends];
+                assert_eq!(adjacency.owned(triangle).edges[side], edge as u32);
+            }
+            for vertex in 0..count as u32 {
+                assert!(adjacency.neighbours(vertex).iter().eq(around.get(&vertex).into_iter().flatten()));
+            }
+        }
+    }
 
     #[test]
     fn each_vertex_and_edge_belongs_to_one_triangle_and_degenerate_sides_are_edges() {

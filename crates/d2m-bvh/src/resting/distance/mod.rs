@@ -162,12 +162,20 @@ pub struct DistanceBounds {
     pub lower: f64,
     /// Proven: the distance is at most this; finite.
     pub upper: f64,
-    /// The distance with witnesses, when the budget sufficed; `lower` and `upper` are its own then.
+    /// Point on the surface of A, world frame, rounded. Of the closest pair met so far: `upper` is their distance to rounding.
+    pub point_a: DVec3,
+    /// Point on the surface of B, world frame, rounded.
+    pub point_b: DVec3,
+    /// Triangle of A that holds `point_a`.
+    pub triangle_a: u32,
+    /// Triangle of B that holds `point_b`.
+    pub triangle_b: u32,
+    /// The distance with witnesses, when the budget sufficed; `lower`, `upper`, points and triangles are its own then.
     pub distance: Option<Distance>,
 }
 
 /// As [`distance`] within a budget. When it runs out, what is proven so far is the answer: an interval that holds the
-/// distance, with a `lower` of zero where it is not even proven that the bodies are apart.
+/// distance, with a `lower` of zero where it is not even proven that the bodies are apart, and the two points that prove `upper`.
 ///
 /// ```
 /// use d2m_bvh::{Budget, MeshTree, Posed, Solid, TriMesh, bound_distance};
@@ -185,6 +193,7 @@ pub struct DistanceBounds {
 /// assert!(enough.distance.is_some() && enough.upper - enough.lower < 2e-13);
 /// let nothing = within(0)?;
 /// assert!(nothing.distance.is_none() && nothing.lower <= 0.25 && 0.25 <= nothing.upper);
+/// assert!((nothing.point_a.distance(nothing.point_b) - nothing.upper).abs() < 1e-13);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
@@ -225,7 +234,9 @@ pub fn bound_distance(
         Ok(false) => StartState::Apart,
     };
     let answer = describe(&scene, [a, b], &best, state);
-    Ok(DistanceBounds { lower: answer.lower, upper: answer.upper, distance: is_complete.then_some(answer) })
+    let Distance { lower, upper, point_a, point_b, triangle_a, triangle_b, .. } = answer;
+    let distance = is_complete.then_some(answer);
+    Ok(DistanceBounds { lower, upper, point_a, point_b, triangle_a, triangle_b, distance })
 }
 
 /// Does one body hold a part of the other?

@@ -100,6 +100,9 @@ fn budgets_end_in_bounds_that_hold() {
                 bounds.lower <= exact.value && exact.lower <= bounds.upper,
                 "{tests}: {bounds:?} {exact:?}"
             );
+            // The witness is that of the upper bound.
+            let apart = bounds.point_a.distance(bounds.point_b);
+            assert!((apart - bounds.upper).abs() < 1e-11, "{tests}: {bounds:?}");
             match bounds.distance {
                 Some(found) => {
                     assert_eq!(found, exact);
