@@ -7,12 +7,12 @@ use glam::{DMat3, DVec3};
 
 /// Changes of rates in a sweep below this part of a gap a step end the iteration.
 const PRECISION: f64 = 1e-5;
-/// Sweeps times contacts of one solution.
+/// Sweeps times contacts of one solution: a budget. What a large island is solved less exactly for is met as an event.
 const WORK: usize = 60_000;
 /// Sweeps at least, and at most.
 const SWEEPS: (usize, usize) = (30, 4000);
 /// Sweeps for what need not be exact.
-const RESTORING: u32 = 200;
+const RESTORING: u32 = 50;
 /// The part of the greatest kinetic energy by which that of a flight may differ from that of the momenta, to make room.
 const UNBALANCED: f64 = 1.0 / 2048.0;
 /// The part of the gap below which room is made at any price: a contact that never gets any is hit over and over again.

@@ -21,6 +21,9 @@ const QUICK: &[usize] = &[10, 30];
 const USUAL: &[usize] = &[10, 30, 100];
 const FULL: &[usize] = &[10, 30, 100, 300, 1000];
 
+/// Triangles of the bolt at least. With 2000 its facets and those of the nut interlock, and the screw rests in the nut.
+const BOLT: usize = 5000;
+
 /// Which runs are wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Extent {
@@ -48,7 +51,7 @@ pub(super) fn run(extent: Extent) -> TaskResult {
         }
     }
     for &threads in threads {
-        rows.push(note(measure::run(Scene::bolt(triangles)?, threads)?));
+        rows.push(note(measure::run(Scene::bolt(triangles.max(BOLT))?, threads)?));
         rows.push(note(measure::run(Scene::gears(triangles)?, threads)?));
         rows.push(note(measure::run(Scene::sleeping(counts[counts.len() - 1].min(100))?, threads)?));
         rows.push(note(measure::run(Scene::crowd(counts[counts.len() - 1].min(50), triangles)?, threads)?));
