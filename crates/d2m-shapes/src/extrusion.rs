@@ -5,7 +5,7 @@ use crate::surface::Surface;
 use crate::trigonometry::on_circle;
 use glam::{DVec2, DVec3};
 
-/// A flat outline, counter-clockwise, whose corners turn strictly about the origin.
+/// A flat outline, counter-clockwise, whose vertices turn strictly about the origin.
 pub(crate) struct Outline(pub(crate) Vec<DVec2>);
 
 /// The extent of a prism along z and its hole.

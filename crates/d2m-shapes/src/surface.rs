@@ -17,7 +17,7 @@ impl Surface {
         self.vertices.len() as u32 - 1
     }
 
-    /// Two triangles; the diagonal runs from the first corner to the third.
+    /// Two triangles; the diagonal runs from the first vertex to the third.
     pub(crate) fn quad(&mut self, [a, b, c, d]: [u32; 4]) {
         self.triangles.push([a, b, c]);
         self.triangles.push([a, c, d]);

@@ -2,7 +2,7 @@
 //!
 //! Both threads are one helical surface r = ρ(z/pitch − θ/2π), the nut's a little wider. The mesh has n columns around
 //! and n rows per pitch, so that moving one column on and one row up keeps the phase z/pitch − θ/2π: the diagonals of all
-//! quads run along the helix, the profile's corners (at multiples of 1/4) fall on vertices, and the mesh is carried into
+//! quads run along the helix, the profile's bends (at multiples of 1/4) fall on vertices, and the mesh is carried into
 //! itself by one n-th of a turn of the screw motion. What remains is that chords of a helix lie inside it by the factor
 //! cos(π/n), and two effects of higher order on the flanks, for which the nut is widened too (with h = π/n and Δ the step
 //! in radius from row to row):

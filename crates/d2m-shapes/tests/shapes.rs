@@ -146,7 +146,7 @@ fn the_nut_really_screws() {
     let pitch = 0.2 / (0.85_f64 * 0.85 + 0.36).sqrt();
     for clearance in [0.01, 1e-3, 1e-4] {
         let nut = mesh(&format!("nut?triangles=1000&clearance={clearance}")).unwrap();
-        let asked = clearance / (0.85_f64 * 0.85 + 0.36).sqrt();
+        let requested = clearance / (0.85_f64 * 0.85 + 0.36).sqrt();
         for angle in [0.0, 0.05, 0.13, 0.2, 0.37, -1.0, std::f64::consts::PI / 12.0] {
             let turn = DQuat::from_rotation_z(angle);
             let climb = DVec3::Z * (pitch * angle / std::f64::consts::TAU);
@@ -154,9 +154,12 @@ fn the_nut_really_screws() {
             let turned = TriMesh::try_new(vertices, nut.triangles().to_vec()).unwrap();
             let gap = distance(&screw, &turned, 0.02);
             // Twelve columns: where vertices face vertices the play is larger by the height of a chord; where they
-            // face the middles of chords it is what was asked, less the slope of the flanks.
+            // face the middles of chords it is what was requested, less the slope of the flanks.
             let chord = if angle > 0.2 && angle < 0.3 { 0.001 } else { 0.01 };
-            assert!(gap > 0.5 * asked && gap < asked + chord, "clearance {asked}, angle {angle}: gap {gap}");
+            assert!(
+                gap > 0.5 * requested && gap < requested + chord,
+                "clearance {requested}, angle {angle}: gap {gap}"
+            );
         }
         // Turning without climbing runs the flanks into each other.
         let turn = DQuat::from_rotation_z(std::f64::consts::PI);
