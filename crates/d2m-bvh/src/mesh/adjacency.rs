@@ -216,7 +216,7 @@ mod tests {
             let vertices: Vec<_> = (0..count)
                 .map(|_| DVec3::new(index(&mut random, 2) as f64, index(&mut random, 4) as f64, 0.0))
                 .collect();
-            let triangles: Vec<_> = (0..1 + index(&mut random, 20))
+            let triangles: Vec<_> = (0..=index(&mut random, 20))
                 .map(|_| [0; 3].map(|_: u32| index(&mut random, count) as u32))
                 .collect();
             let first = |v: u32| vertices.iter().position(|p| *p == vertices[v as usize]).unwrap() as u32;
