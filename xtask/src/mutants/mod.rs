@@ -6,6 +6,9 @@ mod table;
 pub(crate) use run::{Options, run};
 pub(crate) use table::{Change, Mutant, all};
 
+/// Packages with a feature of this name.
+const WITH_SERDE: [&str; 6] = ["d2m", "d2m-bvh", "d2m-dynamics", "d2m-feature", "d2m-interval", "d2m-motion"];
+
 impl Mutant {
     /// A line of `cargo xtask mutants --list`: `| fault | where | killed by |`.
     pub(crate) fn row(&self) -> String {
@@ -40,6 +43,10 @@ impl Mutant {
             }
             None => arguments.push("--lib".into()),
         }
+        // Some tests are about written forms; without the feature they would not be among those of their target.
+        if WITH_SERDE.contains(&package) {
+            arguments.extend(["--features", "serde"].map(String::from));
+        }
         arguments
     }
 }
@@ -73,8 +80,8 @@ mod tests {
     #[test]
     fn targets_of_tests() {
         let of = |test| Mutant { name: "", change: Change::InTest, test }.target().join(" ");
-        assert_eq!(of("crates/d2m-bvh/tests/engine.rs::f"), "-p d2m-bvh --test engine");
-        assert_eq!(of("crates/d2m-bvh/src/search/tests.rs::f"), "-p d2m-bvh --lib");
+        assert_eq!(of("crates/d2m-bvh/tests/engine.rs::f"), "-p d2m-bvh --test engine --features serde");
+        assert_eq!(of("crates/d2m-bvh/src/search/tests.rs::f"), "-p d2m-bvh --lib --features serde");
         assert_eq!(of("xtask/src/judge/tests.rs::f"), "-p xtask --features full --bin xtask");
         let folder = |test| Mutant { name: "", change: Change::InTest, test }.package_folder();
         assert_eq!(folder("crates/d2m-bvh/tests/engine.rs::f"), "crates/d2m-bvh");
