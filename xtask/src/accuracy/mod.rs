@@ -50,6 +50,8 @@ pub(crate) struct Outcome {
     pub(crate) undecided: usize,
     /// Cases that a quick first tier left to the slow oracle (features only).
     pub(crate) by_oracle: usize,
+    /// The largest memory of the process in bytes, where a family counts it.
+    pub(crate) peak_memory: Option<u64>,
     /// Contacts missed or late: one line each. None is allowed.
     pub(crate) false_negatives: Vec<String>,
     /// Contacts reported where the distance stays above the tolerance's bound: one line each. None is allowed.
@@ -101,7 +103,8 @@ pub(crate) fn run(options: &Options) -> TaskResult {
     let (mut negatives, mut alarms, mut rounds) = (0, 0, 0);
     loop {
         for (name, share, family) in FAMILIES {
-            if !wanted(name) {
+            // The first round is always whole; later ones end with the family in which the time is over.
+            if !wanted(name) || rounds > 0 && soak.is_some_and(|time| begin.elapsed() >= time) {
                 continue;
             }
             let start = Instant::now();
@@ -112,8 +115,9 @@ pub(crate) fn run(options: &Options) -> TaskResult {
             } else {
                 String::new()
             };
+            let memory = found.peak_memory.map_or_else(String::new, |b| format!(", at most {} MB", b >> 20));
             println!(
-                "{name:<40} seed {seed}: {} cases{slow}, {} contacts, {} undecided, {} false negatives, {} false alarms, {:.1} s",
+                "{name:<40} seed {seed}: {} cases{slow}, {} contacts, {} undecided, {} false negatives, {} false alarms, {:.1} s{memory}",
                 found.cases,
                 found.contacts,
                 found.undecided,

@@ -41,6 +41,7 @@ impl Mutant {
             None if package == "xtask" => {
                 arguments.extend(["--features", "full", "--bin", "xtask"].map(String::from));
             }
+            None if package == "d2m-cli" => arguments.extend(["--bin", "d2m"].map(String::from)),
             None => arguments.push("--lib".into()),
         }
         // Some tests are about written forms; without the feature they would not be among those of their target.

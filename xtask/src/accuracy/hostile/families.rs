@@ -1,6 +1,7 @@
 //! The hostile families: scenes at the edges of what the search assumes, each with the times at which the construction
 //! puts its contact.
-use super::scene::{Body, Scene};
+use super::guise::Guise;
+use super::scene::{Body, PATIENT, Scene};
 use super::shapes::Shape;
 use d2m::Solid;
 use d2m::motion::ConstantTwist;
@@ -10,7 +11,7 @@ use glam::{DQuat, DVec3};
 /// A maker of scenes, and the name that a report shows.
 pub(super) type Family = (&'static str, fn(&mut Random) -> Scene);
 
-pub(super) const FAMILIES: [Family; 14] = [
+pub(super) const FAMILIES: [Family; 16] = [
     ("steps", steps),
     ("fine steps", fine_steps),
     ("sheets", sheets),
@@ -25,11 +26,13 @@ pub(super) const FAMILIES: [Family; 14] = [
     ("tiny and huge windows", windows),
     ("spinning together", spinning_together),
     ("nearly still", nearly_still),
+    ("crowds", crowds),
+    ("one triangle and many", one_and_many),
 ];
 
 fn body(shape: Shape, x: DVec3, v: DVec3, w: DVec3) -> Body {
     let motion = ConstantTwist::try_new(x, DQuat::IDENTITY, v, w).expect("finite");
-    Body { vertices: shape.vertices, triangles: shape.triangles, motion }
+    Body { vertices: shape.vertices, triangles: shape.triangles, motion, guise: Guise::ConstantTwist }
 }
 
 fn scene(a: Body, b: Body, planted: Vec<f64>) -> Scene {
@@ -39,6 +42,9 @@ fn scene(a: Body, b: Body, planted: Vec<f64>) -> Scene {
         solid: Solid::Filled,
         tolerance: None,
         min_separation: 0.0,
+        is_early: false,
+        is_parallel: false,
+        budget: PATIENT,
         planted,
     }
 }
@@ -352,4 +358,49 @@ fn nearly_still(random: &mut Random) -> Scene {
         body(b, DVec3::X * (1.0 + gap), v, spin),
         vec![0.5, 0.9, 1.0],
     )
+}
+
+/// Two plates full of spikes: tips against tips, at gaps of 1e-9 … 1e-1, that slide, turn, part or come together.
+fn crowds(random: &mut Random) -> Scene {
+    let side = 2 + random.bits() as u32 % 14;
+    let height = decade(random, -2.0, 0.5);
+    let crowd = Shape::spikes(random, side, height);
+    let other = if random.unit() < 0.5 { crowd.clone() } else { Shape::spikes(random, side, height) };
+    let gap = decade(random, -9.0, -1.0);
+    // Half of them come together at the middle of the window.
+    let down = if random.unit() < 0.5 { 2.0 * gap } else { 0.0 };
+    let slide = random.direction() * if random.unit() < 0.4 { 0.0 } else { decade(random, -3.0, 0.5) };
+    let spin = DVec3::Z * if random.unit() < 0.4 { 0.0 } else { decade(random, -3.0, 1.0) };
+    let common = if random.unit() < 0.7 { DVec3::ZERO } else { DVec3::Z * decade(random, -1.0, 2.0) };
+    let x = DVec3::Z * (2.0 * height + gap);
+    let mut b = body(other, x, DVec3::new(slide.x, slide.y, -down), common + spin);
+    b.motion = b.motion.with_orientation(DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0));
+    scene(body(crowd, DVec3::ZERO, DVec3::ZERO, common), b, vec![0.5, 0.5 + 1e-6, 0.51, 0.75, 1.0])
+}
+
+/// Sizes from one triangle to 1e5: a single triangle, or a small solid, and a fine one.
+fn one_and_many(random: &mut Random) -> Scene {
+    let mut scene = generic(random);
+    // A round of the suite meets the finest meshes a few times: the oracle takes seconds for them.
+    let times = match random.unit() {
+        u if u < 0.02 => 6,
+        u if u < 0.1 => 5,
+        u if u < 0.4 => 4,
+        _ => 2,
+    };
+    let fine = &mut scene.bodies[0];
+    let shape = Shape {
+        vertices: std::mem::take(&mut fine.vertices),
+        triangles: std::mem::take(&mut fine.triangles),
+    };
+    let shape = shape.refined(times);
+    (fine.vertices, fine.triangles) = (shape.vertices, shape.triangles);
+    if random.unit() < 0.5 {
+        scene.bodies[1].triangles.truncate(1);
+        scene.solid = Solid::Surface;
+    }
+    if random.unit() < 0.5 {
+        scene.bodies.swap(0, 1);
+    }
+    scene
 }

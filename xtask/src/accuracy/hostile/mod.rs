@@ -4,6 +4,8 @@
 //! times where the construction, the answer, or the answer of a twin puts a contact.
 mod exact;
 mod families;
+mod guise;
+mod memory;
 mod scene;
 mod shapes;
 mod twins;
@@ -24,6 +26,11 @@ const LEFT: f64 = 3.3;
 /// Distances err by this part of the scene's size: doubles, and some operations on them.
 const DISTANCE_ERROR: f64 = 1e-14;
 
+/// Bytes that a search may use, by the documented promise ([`d2m::Budget::HARD_QUEUED_PAIRS`]).
+const A_QUERY: u64 = 100 << 20;
+/// Bytes for the vertices of a scene of 1e5 triangles in 320 bits, and its candidate pairs.
+const AN_ORACLE: u64 = 100 << 20;
+
 /// What is wrong with an answer.
 enum Fault {
     /// Contacts missed or late: the promise that must never break.
@@ -36,17 +43,32 @@ enum Fault {
 struct Case {
     answer: Answer,
     faults: Vec<(Fault, Scene)>,
+    /// Scenes whose query ended too late after its budget, while other work had the processor too.
+    late: Vec<Scene>,
 }
 
 pub(super) fn run(task: &Task) -> Outcome {
+    let before = memory::restart_peak();
     let cases: Vec<(usize, Case)> =
         (0..task.count).into_par_iter().map(|index| (index, case(task, index))).collect();
-    let mut outcome = Outcome { cases: cases.len(), ..Outcome::default() };
+    // Every thread has one query and its oracle at a time.
+    let allowed = before.unwrap_or(0) + rayon::current_num_threads() as u64 * (A_QUERY + AN_ORACLE);
+    let peak = memory::peak();
+    let mut outcome = Outcome { cases: cases.len(), peak_memory: Some(peak), ..Outcome::default() };
+    if peak > allowed {
+        outcome.false_alarms.push(format!("{peak} bytes were in use at once, of {allowed} allowed"));
+    }
     for (index, case) in cases {
         outcome.contacts += usize::from(matches!(case.answer, Answer::Contact { .. }));
         outcome.undecided += usize::from(matches!(case.answer, Answer::Undecided { .. }));
         let family = families::FAMILIES[index % families::FAMILIES.len()].0;
-        for (fault, scene) in case.faults {
+        let late = case.late.into_iter().filter_map(|scene| {
+            // Alone now, and more than once: what is late every time is late by its own work.
+            let (_, late) = scene.ask_often(5);
+            let words = || format!("{late:?} later than a millisecond after its budget {:?}", scene.budget);
+            (!late.is_zero()).then(|| (Fault::Alarm(words()), scene.clone()))
+        });
+        for (fault, scene) in case.faults.into_iter().chain(late.collect::<Vec<_>>()) {
             let kept = keep(&scene, task.seed, index);
             let line = |words: &str| format!("seed {} case {index} ({family}): {words}{kept}", task.seed);
             match fault {
@@ -76,8 +98,11 @@ pub(super) fn replay(path: &Path) -> crate::TaskResult {
     let value = serde_json::from_str(&text).map_err(|e| format!("{}: {e}", path.display()))?;
     let scene =
         Scene::from_json(&value).ok_or_else(|| format!("{}: not a scene of this task", path.display()))?;
-    let answer = scene.ask();
+    let (answer, late) = scene.ask_often(5);
     println!("{answer:?}");
+    if !late.is_zero() {
+        return Err(format!("{late:?} later than a millisecond after its budget").into());
+    }
     match judge(&scene, &answer, &[]) {
         None => Ok(()),
         Some(Fault::Negative(words) | Fault::Alarm(words)) => Err(words.into()),
@@ -88,12 +113,20 @@ fn case(task: &Task, index: usize) -> Case {
     let mut random = Random::new(task.seed.wrapping_mul(0x9e37_79b9).wrapping_add(index as u64));
     let family = families::FAMILIES[index % families::FAMILIES.len()].1;
     let scene = family(&mut random);
-    let answer = spoil(task.sabotage, scene.ask(), scene.window);
+    let (answer, beyond) = scene.ask_often(1);
+    let answer = spoil(task.sabotage, answer, scene.window);
     let mut faults = Vec::new();
+    let mut late = Vec::new();
+    if !beyond.is_zero() {
+        late.push(scene.clone());
+    }
     let mut times = Vec::new();
     for _ in 0..TWINS {
         let (twin, change) = twins::twin(&scene, &mut random);
-        let said = twin.ask();
+        let (said, beyond) = twin.ask_often(1);
+        if !beyond.is_zero() {
+            late.push(twin.clone());
+        }
         let back = |t: f64| (t - change.time_shift) / change.time_scale;
         let mut asked_there: Vec<f64> = Vec::new();
         if let Answer::Contact { lo, hi, .. } = said {
@@ -111,7 +144,7 @@ fn case(task: &Task, index: usize) -> Case {
     if let Some(fault) = judge(&scene, &answer, &times) {
         faults.push((fault, scene));
     }
-    Case { answer, faults }
+    Case { answer, faults, late }
 }
 
 fn named(fault: Fault, twin: &str) -> Fault {

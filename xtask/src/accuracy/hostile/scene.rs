@@ -1,13 +1,16 @@
 //! A scene of the hostile families: two bodies, a window, options; asked, written down and read back.
+use super::guise::Guise;
 use d2m::bvh::Evidence;
 use d2m::motion::ConstantTwist;
 use d2m::{Budget, MeshTree, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact};
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// A query that takes longer counts as undecided.
 const PATIENCE: Duration = Duration::from_secs(1);
+/// A query may end so much later than its budget of time, by the documented promise.
+const LATE: Duration = Duration::from_millis(1);
 
 /// A mesh and how it moves.
 #[derive(Clone, Debug)]
@@ -15,6 +18,8 @@ pub(crate) struct Body {
     pub(crate) vertices: Vec<DVec3>,
     pub(crate) triangles: Vec<[u32; 3]>,
     pub(crate) motion: ConstantTwist,
+    /// How the motion is given to the library.
+    pub(crate) guise: Guise,
 }
 
 /// One query.
@@ -25,6 +30,11 @@ pub(crate) struct Scene {
     pub(crate) solid: Solid,
     pub(crate) tolerance: Option<f64>,
     pub(crate) min_separation: f64,
+    /// Asked in the mode that stops early.
+    pub(crate) is_early: bool,
+    /// Asked on all threads.
+    pub(crate) is_parallel: bool,
+    pub(crate) budget: Budget,
     /// Times at which the construction puts a contact, or nearly: where the oracle tests first.
     pub(crate) planted: Vec<f64>,
 }
@@ -60,26 +70,52 @@ impl Answer {
     }
 }
 
+/// The budget of a scene that is about something else.
+pub(crate) const PATIENT: Budget = Budget::UNLIMITED.with_wall_clock(PATIENCE);
+
 impl Scene {
-    pub(crate) fn ask(&self) -> Answer {
+    /// The answer, and how much longer than allowed the query took after the end of its budget, the least of some tries: the
+    /// machine may be busy.
+    pub(crate) fn ask_often(&self, tries: u32) -> (Answer, Duration) {
+        let refused = (Answer::Refused, Duration::ZERO);
         let mesh =
             |body: &Body| TriMesh::try_new(body.vertices.clone(), body.triangles.clone()).map(MeshTree::new);
-        let (Ok(a), Ok(b)) = (mesh(&self.bodies[0]), mesh(&self.bodies[1])) else { return Answer::Refused };
-        let Ok(window) = Window::try_new(self.window[0], self.window[1]) else { return Answer::Refused };
+        let (Ok(a), Ok(b)) = (mesh(&self.bodies[0]), mesh(&self.bodies[1])) else { return refused };
+        let Ok(window) = Window::try_new(self.window[0], self.window[1]) else { return refused };
         let mut options = QueryOptions::default()
             .with_solid(self.solid)
             .with_min_separation(self.min_separation)
-            .with_budget(Budget::UNLIMITED.with_wall_clock(PATIENCE));
+            .with_parallel(self.is_parallel)
+            .with_budget(self.budget);
+        if self.is_early {
+            options = options.with_mode(d2m::Mode::Capoeira);
+        }
         if let Some(tolerance) = self.tolerance {
             options = options.with_tolerance(tolerance);
         }
-        let [a, b] = [(&a, &self.bodies[0].motion), (&b, &self.bodies[1].motion)]
-            .map(|(tree, motion)| Moving::new(tree, motion));
-        match time_of_contact(a, b, window, &options) {
-            Err(_) => Answer::Refused,
-            Ok(TimeOfContact::Separated) => Answer::Separated,
-            Ok(TimeOfContact::Undecided { clear_until }) => Answer::Undecided { clear_until },
-            Ok(TimeOfContact::Contact(c)) => Answer::Contact {
+        let [Some(first), Some(second)] = [0, 1].map(|i| {
+            let body = &self.bodies[i];
+            body.guise.of(body.motion, self.window)
+        }) else {
+            return refused;
+        };
+        let limit = self.budget.wall_clock.unwrap_or(Duration::MAX).saturating_add(LATE);
+        let mut late = Duration::MAX;
+        let mut said = None;
+        for _ in 0..tries {
+            let begin = Instant::now();
+            said =
+                Some(time_of_contact(Moving::new(&a, &*first), Moving::new(&b, &*second), window, &options));
+            late = late.min(begin.elapsed().saturating_sub(limit));
+            if late.is_zero() {
+                break;
+            }
+        }
+        let answer = match said {
+            None | Some(Err(_)) => Answer::Refused,
+            Some(Ok(TimeOfContact::Separated)) => Answer::Separated,
+            Some(Ok(TimeOfContact::Undecided { clear_until })) => Answer::Undecided { clear_until },
+            Some(Ok(TimeOfContact::Contact(c))) => Answer::Contact {
                 lo: c.time_lo,
                 hi: c.time_hi,
                 separation: c.separation,
@@ -87,7 +123,8 @@ impl Scene {
                 evidence: c.evidence,
                 starts_apart: c.start == d2m::bvh::StartState::Apart,
             },
-        }
+        };
+        (answer, late)
     }
 
     /// The larger extent of the two meshes.
@@ -115,6 +152,7 @@ impl Scene {
                 "w": m.angular_velocity().to_array(),
                 "at": m.at().to_array(),
                 "t": m.reference_time(),
+                "guise": b.guise.name(),
             })
         };
         json!({
@@ -123,6 +161,12 @@ impl Scene {
             "solid": self.solid == Solid::Filled,
             "tolerance": self.tolerance,
             "min_separation": self.min_separation,
+            "early": self.is_early,
+            "parallel": self.is_parallel,
+            "budget": {
+                "node_tests": self.budget.node_tests,
+                "seconds": self.budget.wall_clock.map(|time| time.as_secs_f64()),
+            },
             "planted": self.planted,
         })
     }
@@ -145,7 +189,9 @@ impl Scene {
                 ConstantTwist::try_new(vec3(&v["x"])?, rotation, vec3(&v["v"])?, vec3(&v["w"])?).ok()?;
             let motion = motion.try_with_at(vec3(&v["at"])?).ok()?;
             let motion = motion.try_with_reference_time(v["t"].as_f64()?).ok()?;
-            Some(Body { vertices, triangles, motion })
+            // Cases that were kept before there were guises have none.
+            let guise = v["guise"].as_str().map_or(Some(Guise::ConstantTwist), Guise::from_name)?;
+            Some(Body { vertices, triangles, motion, guise })
         };
         let window = numbers(&value["window"]).filter(|w| w.len() == 2)?;
         Some(Self {
@@ -154,6 +200,14 @@ impl Scene {
             solid: if value["solid"].as_bool()? { Solid::Filled } else { Solid::Surface },
             tolerance: value["tolerance"].as_f64(),
             min_separation: value["min_separation"].as_f64()?,
+            is_early: value["early"].as_bool().unwrap_or(false),
+            is_parallel: value["parallel"].as_bool().unwrap_or(false),
+            budget: value["budget"].as_object().map_or(PATIENT, |budget| {
+                let mut read = Budget::UNLIMITED;
+                read.node_tests = budget["node_tests"].as_u64();
+                read.wall_clock = budget["seconds"].as_f64().map(Duration::from_secs_f64);
+                read
+            }),
             planted: numbers(&value["planted"])?,
         })
     }

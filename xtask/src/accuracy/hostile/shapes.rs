@@ -63,6 +63,21 @@ impl Shape {
         Self { vertices, triangles }
     }
 
+    /// A square crowd of separate spikes of about this height on a base of 2 × 2, tips at z = height, slightly uneven.
+    pub(super) fn spikes(random: &mut Random, side: u32, height: f64) -> Self {
+        let mut crowd = Self::default();
+        let pitch = 2.0 / f64::from(side);
+        let uneven = if random.unit() < 0.5 { 0.0 } else { 10f64.powf(random.range(-6.0, -1.0)) };
+        for k in 0..side * side {
+            let place = DVec3::new(f64::from(k % side) + 0.5, f64::from(k / side) + 0.5, 0.0) * pitch;
+            let tall = height * (1.0 - uneven * random.unit());
+            let mut spike = Self::cone(3, 0.4 * pitch, tall);
+            spike = spike.moved(place + DVec3::new(-1.0, -1.0, tall));
+            crowd = crowd.with(&spike);
+        }
+        crowd
+    }
+
     /// A closed tetrahedron of random corners.
     pub(super) fn tetrahedron(random: &mut Random, size: f64) -> Self {
         let vertices = (0..4).map(|_| random.direction() * (size * random.range(0.3, 1.0))).collect();

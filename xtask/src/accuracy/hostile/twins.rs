@@ -1,8 +1,11 @@
 //! Metamorphic twins: the same physical query in other words. What both say must agree.
+use super::guise::Guise;
 use super::scene::{Body, Scene};
+use d2m::Budget;
 use d2m::motion::ConstantTwist;
 use d2m_testing::Xoshiro256 as Random;
 use glam::{DQuat, DVec3};
+use std::time::Duration;
 
 /// How times and lengths of a twin follow from those of the scene: t′ = scale·t + shift, lengths times `length`.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +37,7 @@ impl Change {
 /// One of the twins, drawn at random.
 pub(crate) fn twin(scene: &Scene, random: &mut Random) -> (Scene, Change) {
     let mut out = scene.clone();
-    let change = match random.bits() % 13 {
+    let change = match random.bits() % 19 {
         0 => {
             out.bodies.swap(0, 1);
             Change::of("bodies exchanged")
@@ -91,6 +94,27 @@ pub(crate) fn twin(scene: &Scene, random: &mut Random) -> (Scene, Change) {
             Change { keeps_first: false, ..Change::of("window cut") }
         }
         10 => reference_point(&mut out, random),
+        12 | 13 => other_type(&mut out, random),
+        14 => shifted(&mut out, random),
+        15 => {
+            let count = 10f64.powf(random.range(0.0, 5.0)) as u64;
+            out.budget = out.budget.with_node_tests(count);
+            Change::of("a budget of node tests")
+        }
+        16 => {
+            let time = Duration::from_secs_f64(10f64.powf(random.range(-6.0, -2.0)));
+            out.budget = Budget::UNLIMITED.with_wall_clock(time);
+            Change::of("a budget of time")
+        }
+        17 => {
+            out.is_parallel = true;
+            Change::of("on all threads")
+        }
+        18 => {
+            out.is_early = true;
+            // A contact that is only near is no contact of the scene's.
+            Change { keeps_first: false, ..Change::of("stops early") }
+        }
         11 => {
             let [t0, t1] = scene.window;
             each(&mut out, |m| {
@@ -168,6 +192,32 @@ fn time(scene: &mut Scene, k: i32) -> Change {
     });
     scene.window = scene.window.map(|t| t * factor);
     Change { time_scale: factor, ..Change::of("times scaled") }
+}
+
+/// The motions in other types.
+fn other_type(scene: &mut Scene, random: &mut Random) -> Change {
+    let mut guise = || Guise::OTHERS[random.bits() as usize % Guise::OTHERS.len()];
+    let (first, second) = (guise(), guise());
+    scene.bodies[0].guise = first;
+    if random.unit() < 0.7 {
+        scene.bodies[1].guise = second;
+    }
+    let change = Change::of("another type of motion");
+    // Times that are reversed twice are rounded twice.
+    if scene.bodies.iter().any(|body| body.guise == Guise::Reversed) { change.rounded() } else { change }
+}
+
+/// All times later by the same amount.
+fn shifted(scene: &mut Scene, random: &mut Random) -> Change {
+    let [start, end] = scene.window;
+    let by = (end - start).max(f64::MIN_POSITIVE) * 2f64.powi(random.range(-3.0, 20.0) as i32);
+    let is_exact = |t: f64| t + by - by == t && t + by - t == by;
+    let change = Change { time_shift: by, ..Change::of("times shifted") };
+    let exact = scene.window.iter().all(|&t| is_exact(t))
+        && scene.bodies.iter().all(|body| is_exact(body.motion.reference_time()));
+    each(scene, |m| m.with_reference_time(m.reference_time() + by));
+    scene.window = scene.window.map(|t| t + by);
+    if exact { change } else { change.rounded() }
 }
 
 /// Turned by a right angle: coordinates are exchanged exactly; orientations are quaternions that are not unit.
