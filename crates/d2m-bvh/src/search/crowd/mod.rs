@@ -6,9 +6,9 @@
 //! along which all of A's are below all of B's from the time proven so far until that contact. Along a fixed direction n a
 //! point moves at a constant rate, and accelerations take at most |n × ω||ω × e| s²/2 from that, e from the axis of its
 //! spin: tips near the axis hardly bend. So the gap of the two sets is at least a concave function of time: positive at both
-//! ends, it is positive between. One such plane proves all pairs apart. If there is none, planes for a part of the time, one after
-//! the other, advance all pairs together, since s²/2 is little for small s. Without any, the directions that were tried
-//! first still part many pairs one by one. Without a contact the same is tried until the end of the window.
+//! ends, it is positive between. One such plane proves all pairs apart. If there is none, the directions that were tried first
+//! still part many pairs one by one. Where most stay, planes for a part of the time, one after the other, advance all pairs
+//! together, since s²/2 is little for small s. Without a contact the same is tried until the end of the window.
 //!
 //! See docs/theory/engine.md, "Crowds".
 
@@ -52,6 +52,8 @@ const CROWD_CHECK: u32 = 32;
 const CROWD_CHECK_TESTS: u64 = 1 << 12;
 /// How often the time that is left is halved at most for one plane: after that pairs are as fast one by one.
 const MOST_HALVINGS: u32 = 16;
+/// Node tests that planes for parts of the time may cost, for each pair that waits: less than a few steps of each pair.
+const WORK_A_PAIR: u64 = 16;
 /// Most planes that are tried one after the other before the search goes on.
 const MOST_PLANES: u32 = 64;
 
@@ -160,7 +162,6 @@ impl Search<'_> {
         };
         let span = (state.limit_offset - known).next_up();
         let moving = Moving::new(self.scene, &crowd.points, &frame, span);
-        let before_planes = self.work();
         let starts = [state.behind.direction, moving.between()].map(DVec3::normalize_or_zero);
         let mut tried = starts.to_vec();
         for first in starts {
@@ -175,22 +176,6 @@ impl Search<'_> {
                 }
                 Separation::Unknown { last } => tried.push(last),
             }
-        }
-        let key = self.advance_together::<L>(state, least, &crowd, &mut clock);
-        let work = self.work();
-        patience.rest_until = work + (work - before_planes);
-        patience.examined_to = Some(state.limit);
-        if key > least {
-            // The next step of the crowd comes as soon as this one did.
-            patience.pairs = before.pairs;
-            patience.batches = before.batches.max(batches.saturating_add(CROWD_CHECK));
-            let raised = |item: &Item| Item { key: item.key.max(key), ..*item };
-            let queue = &mut self.scratch.queue;
-            let later: Vec<Item> = queue.items().chain(batch.items()).map(raised).collect();
-            queue.clear();
-            queue.extend(later);
-            batch.retain(|_| false);
-            return;
         }
         for n in tried.into_iter().filter(|&n| n != DVec3::ZERO) {
             let [mut a, mut b] =
@@ -211,22 +196,44 @@ impl Search<'_> {
             self.scratch.queue.retain(meet);
             batch.retain(meet);
         }
+        // Where most pairs are done with that way, the rest is no crowd.
+        if self.scratch.queue.len() + batch.items().len() < waiting / 2 {
+            return;
+        }
+        let before_planes = self.work();
+        let most_work = WORK_A_PAIR * waiting.max(CROWD) as u64;
+        let key = self.advance_together::<L>(state, least, (&crowd, most_work), &mut clock);
+        let work = self.work();
+        patience.rest_until = work + (work - before_planes);
+        patience.examined_to = Some(state.limit);
+        if key > least {
+            // The next step of the crowd comes as soon as this one did.
+            patience.pairs = before.pairs;
+            patience.batches = before.batches.max(batches.saturating_add(CROWD_CHECK));
+            let raised = |item: &Item| Item { key: item.key.max(key), ..*item };
+            let queue = &mut self.scratch.queue;
+            let later: Vec<Item> = queue.items().chain(batch.items()).map(raised).collect();
+            queue.clear();
+            queue.extend(later);
+            batch.retain(|_| false);
+        }
     }
 
     /// The key until which planes part the crowd from `least` on, one after the other, each for a part of the time that is
-    /// left.
+    /// left, for at most so much work.
     fn advance_together<L: Lanes>(
         &mut self,
         state: &State<'_>,
         least: u32,
-        crowd: &Crowd,
+        (crowd, most_work): (&Crowd, u64),
         clock: &mut Allowance,
     ) -> u32 {
+        let enough = self.work() + most_work;
         let (mut key, mut halvings) = (least, 1);
         let mut newest = state.behind.direction.normalize_or_zero();
         for _ in 0..MOST_PLANES {
             let ticks = state.limit.saturating_sub(key) >> halvings;
-            if ticks == 0 || halvings > MOST_HALVINGS || self.out_of_budget() {
+            if ticks == 0 || halvings > MOST_HALVINGS || self.work() >= enough || self.out_of_budget() {
                 break;
             }
             let frame = state.motion.frame::<L::Doubles>(f64::from(key) * state.step);
