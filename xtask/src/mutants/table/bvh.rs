@@ -15,6 +15,13 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/src/tree/tests.rs::any_shrunk_or_broken_tree_is_refused",
     ),
     patch(
+        "a crowd of pairs that touch hides those that cross",
+        "crates/d2m-bvh/src/resting/distance/mod.rs",
+        "if !met.is_cut_short {",
+        "if met.distance.upper > 0.0 {",
+        "crates/d2m-bvh/src/resting/distance/tests.rs::crowds_that_touch_hide_no_crossing",
+    ),
+    patch(
         "edges of boxes cut off two steps too far",
         "crates/d2m-bvh/src/tree/slabs.rs",
         "(room - CUT_SLACK).min(f64::from(MOST))",

@@ -16,14 +16,15 @@ use d2m_feature::TriangleDistance;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Drops the pairs that are proven no closer than the best distance less the width that is expected of its enclosure.
+/// Drops the pairs that are proven no closer than the best distance less the width that is expected of its enclosure. True:
+/// that distance is no more than the width, and all pairs are dropped, also those that may cross.
 #[cold]
 #[inline(never)]
-pub(super) fn drop_beyond_plane(scene: &Scene<'_>, best: &TriangleDistance, queue: &mut Queue) {
+pub(super) fn drop_beyond_plane(scene: &Scene<'_>, best: &TriangleDistance, queue: &mut Queue) -> bool {
     // The lower bound is zero then, whatever the other pairs are.
     if best.upper <= EXPECTED_WIDTH {
         queue.clear();
-        return;
+        return true;
     }
     // No longer than one.
     let n = best.direction.normalize_or_zero() * (1.0 - 4.0 * UNIT_F64);
@@ -35,6 +36,7 @@ pub(super) fn drop_beyond_plane(scene: &Scene<'_>, best: &TriangleDistance, queu
         // Also when it is not a number.
         gap.is_nan() || gap <= need
     });
+    false
 }
 
 /// How far the vertices below the boxes of one body reach along a direction, computed once for each box.

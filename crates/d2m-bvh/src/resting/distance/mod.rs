@@ -43,7 +43,8 @@ pub struct Distance {
     pub barycentric_a: [f64; 3],
     /// Barycentric coordinates of `point_b` in `triangle_b`.
     pub barycentric_b: [f64; 3],
-    /// `Apart`: proven (`lower` > 0). `Touching`: apart by less than can be proven, or just touching. `Overlapping`:
+    /// `Apart`: proven (`lower` > 0). `Touching`: apart by less than can be proven, or just touching; where many thousand
+    /// pairs of triangles touch, a pair that crosses beside them may stay unseen. `Overlapping`:
     /// the surfaces cross, up to rounding; points and triangles are those of one pair of many that cross, which depends on
     /// bodies and poses only. `Contained`: the surfaces are apart and one body is inside the other; then
     /// `value` and `lower` are zero, and points and triangles are those where the surfaces are closest.
@@ -244,18 +245,27 @@ fn holds(scene: &Scene<'_>, allowance: &mut Allowance) -> Result<bool, Exhausted
     Ok(one_holds_the_other(scene, allowance)?.is_some())
 }
 
+/// Tests for a crossing beside a crowd of pairs that touch: some milliseconds. More of them, and the bodies count as touching.
+const MOST_TESTS_BESIDE_A_CROWD: u64 = 1 << 16;
+
 /// Where triangles cross, the pair that stands for all that do, whichever of them was met first.
 fn crossing(scene: &Scene<'_>, found: Found, allowance: &mut Allowance) -> Found {
     let Found::Pair(met) = found else { return found };
     if met.distance.upper > 0.0 {
-        return found;
+        if !met.is_cut_short {
+            return found;
+        }
+        let mut some = allowance.at_most(MOST_TESTS_BESIDE_A_CROWD);
+        let Ok(Some([a, b])) = crossing_pair_within(scene, &mut some) else { return found };
+        let distance = triangle_distance(&scene.place(0, a), &scene.place(1, b));
+        return Found::Pair(Best { distance, triangles: [a, b], lower: 0.0, is_cut_short: false });
     }
     let [a, b] = match crossing_pair_within(scene, allowance) {
         Ok(pair) => pair.unwrap_or(met.triangles),
         Err(Exhausted) => return Found::Exhausted(met),
     };
     let distance = triangle_distance(&scene.place(0, a), &scene.place(1, b));
-    Found::Pair(Best { distance, triangles: [a, b], lower: 0.0 })
+    Found::Pair(Best { distance, triangles: [a, b], lower: 0.0, is_cut_short: false })
 }
 
 fn describe(scene: &Scene<'_>, bodies: [Posed<'_>; 2], best: &Best, state: StartState) -> Distance {

@@ -91,7 +91,7 @@ impl<'a> Closest<'a> {
             Some(best) => (distance.upper, triangles) < (best.distance.upper, best.triangles),
         };
         if better {
-            self.best = Some(Best { distance, triangles, lower: 0.0 });
+            self.best = Some(Best { distance, triangles, lower: 0.0, is_cut_short: false });
             self.upper = distance.upper;
             self.upper_key = round_up(distance.upper);
             if distance.lower > 0.0 {
@@ -127,8 +127,8 @@ impl Task for Search<'_> {
         loop {
             if next.is_none() && steps >= patience {
                 patience = 2 * steps;
-                if let Some(best) = &closest.best {
-                    drop_beyond_plane(scene, &best.distance, &mut queue);
+                if let Some(best) = &mut closest.best {
+                    best.is_cut_short |= drop_beyond_plane(scene, &best.distance, &mut queue);
                 }
             }
             let Some(Item { key, pair, version }) = next.take().or_else(|| queue.pop()) else { break };

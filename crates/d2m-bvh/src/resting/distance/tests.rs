@@ -115,6 +115,25 @@ fn budgets_end_in_bounds_that_hold() {
     assert!(ended > 100 && complete > 100, "{ended} {complete}");
 }
 
+/// Sheets that are closer than rounding can tell, and two triangles that cross beside them: the crowd of pairs that touch does
+/// not hide those that cross.
+#[test]
+fn crowds_that_touch_hide_no_crossing() {
+    let sheet = |n: u32, extra: [DVec3; 3]| {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y].repeat(n as usize);
+        let faces = (0..=n).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        tree(corners.into_iter().chain(extra).collect(), faces)
+    };
+    let upright = [DVec3::new(3.2, 0.2, -1.0), DVec3::new(3.2, 0.3, 1.0), DVec3::new(3.3, 0.2, 1.0)];
+    let flat = [DVec3::X * 3.0, DVec3::X * 4.0, DVec3::new(3.0, 1.0, 0.0)];
+    for n in [1, 40, 200] {
+        let (a, b) = (sheet(n, upright), sheet(n, flat));
+        let pose = Pose { translation: DVec3::Z * 1e-15, ..Pose::IDENTITY };
+        let found = distance(Posed::at_rest(&a), Posed::new(&b, pose), Solid::Surface).unwrap();
+        assert_eq!((found.state, found.triangle_a, found.triangle_b), (StartState::Overlapping, n, n));
+    }
+}
+
 /// The triangles below a box.
 fn below(tree: &MeshTree, index: u32) -> Vec<u32> {
     match tree.nodes[index as usize / WIDTH].below(index as usize % WIDTH) {
