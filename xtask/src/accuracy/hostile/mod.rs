@@ -63,8 +63,8 @@ pub(super) fn run(task: &Task) -> Outcome {
         outcome.undecided += usize::from(matches!(case.answer, Answer::Undecided { .. }));
         let family = families::FAMILIES[index % families::FAMILIES.len()].0;
         let late = case.late.into_iter().filter_map(|scene| {
-            // Alone now, and often: what is late every time is late by its own work.
-            let (_, late) = scene.ask_often(50);
+            // Alone now, and more than once: what is late every time is late by its own work.
+            let (_, late) = scene.ask_often(5);
             let words = || format!("{late:?} later than a millisecond after its budget {:?}", scene.budget);
             (!late.is_zero()).then(|| (Fault::Alarm(words()), scene.clone()))
         });
@@ -98,7 +98,7 @@ pub(super) fn replay(path: &Path) -> crate::TaskResult {
     let value = serde_json::from_str(&text).map_err(|e| format!("{}: {e}", path.display()))?;
     let scene =
         Scene::from_json(&value).ok_or_else(|| format!("{}: not a scene of this task", path.display()))?;
-    let (answer, late) = scene.ask_often(50);
+    let (answer, late) = scene.ask_often(5);
     println!("{answer:?}");
     if !late.is_zero() {
         return Err(format!("{late:?} later than a millisecond after its budget").into());
