@@ -22,6 +22,13 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/src/resting/distance/tests.rs::crowds_that_touch_hide_no_crossing",
     ),
     patch(
+        "a crowd's vertices are placed after the end of the time",
+        "crates/d2m-bvh/src/search/crowd/moving.rs",
+        "clock.step().ok()?;",
+        "let _ = clock.step();",
+        "crates/d2m-bvh/src/search/crowd/tests.rs::preparations_end_with_the_time",
+    ),
+    patch(
         "edges of boxes cut off two steps too far",
         "crates/d2m-bvh/src/tree/slabs.rs",
         "(room - CUT_SLACK).min(f64::from(MOST))",

@@ -161,7 +161,7 @@ impl Search<'_> {
             None => state.motion.frame::<L::Doubles>(known),
         };
         let span = (state.limit_offset - known).next_up();
-        let moving = Moving::new(self.scene, &crowd.points, &frame, span);
+        let Some(moving) = Moving::new(self.scene, &crowd.points, &frame, span, &mut clock) else { return };
         let starts = [state.behind.direction, moving.between()].map(DVec3::normalize_or_zero);
         let mut tried = starts.to_vec();
         for first in starts {
@@ -184,8 +184,10 @@ impl Search<'_> {
                 if clock.step().is_err() {
                     return;
                 }
-                a.measure(item.boxes[0]);
-                b.measure(item.boxes[1]);
+                let measured = a.measure(item.boxes[0], &mut clock).zip(b.measure(item.boxes[1], &mut clock));
+                if measured.is_none() {
+                    return;
+                }
             }
             let need = crowd.level * n.length();
             let meet = |item: &Item| {
@@ -238,7 +240,8 @@ impl Search<'_> {
             }
             let frame = state.motion.frame::<L::Doubles>(f64::from(key) * state.step);
             // Exact: a number of 30 bits times a power of two.
-            let moving = Moving::new(self.scene, &crowd.points, &frame, f64::from(ticks) * state.step);
+            let span = f64::from(ticks) * state.step;
+            let Some(moving) = Moving::new(self.scene, &crowd.points, &frame, span, clock) else { break };
             let mut parted = false;
             for first in [newest, moving.between().normalize_or_zero()] {
                 let search = PlaneSearch { first, level: crowd.clear_level, most: crowd.directions };

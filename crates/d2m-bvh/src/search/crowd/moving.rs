@@ -50,10 +50,23 @@ pub(super) struct Attempt {
 }
 
 impl<'f> Moving<'f> {
-    pub(super) fn new(scene: &Scene<'_>, points: &[Vec<DVec3>; 2], frame: &'f Frame, span: f64) -> Self {
+    /// None: the time is over.
+    pub(super) fn new(
+        scene: &Scene<'_>,
+        points: &[Vec<DVec3>; 2],
+        frame: &'f Frame,
+        span: f64,
+        clock: &mut Allowance,
+    ) -> Option<Self> {
         let bodies = [Side::A, Side::B].map(|side| BodyPaths::new(scene, frame, side, span));
-        let paths = [0, 1].map(|body| points[body].iter().map(|&p| bodies[body].of(p)).collect());
-        Self { bodies, paths }
+        let mut paths = [0, 1].map(|body| Vec::with_capacity(points[body].len()));
+        for body in 0..2 {
+            for &point in &points[body] {
+                clock.step().ok()?;
+                paths[body].push(bodies[body].of(point));
+            }
+        }
+        Some(Self { bodies, paths })
     }
 
     /// From the mean of A's points to that of B's, both ends together.

@@ -3,6 +3,7 @@
 use super::super::motion::frame::Frame;
 use super::super::scene::{Scene, SceneBody};
 use super::paths::{BodyPaths, Side};
+use crate::allowance::Allowance;
 use crate::tree::node::{Below, WIDTH};
 use glam::DVec3;
 
@@ -31,11 +32,13 @@ impl<'a> Reaches<'a> {
         self.known[index as usize]
     }
 
-    pub(super) fn measure(&mut self, index: u32) -> [f64; 2] {
+    /// Measures what is below a box, and below all of its boxes; none: the time is over.
+    pub(super) fn measure(&mut self, index: u32, clock: &mut Allowance) -> Option<[f64; 2]> {
         let known = self.known[index as usize];
         if !known[0].is_nan() {
-            return known;
+            return Some(known);
         }
+        clock.step().ok()?;
         let most = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [larger(a, c), larger(b, d)];
         let reach = match self.body.tree.nodes[index as usize / WIDTH].below(index as usize % WIDTH) {
             Below::Triangle(triangle) => {
@@ -45,13 +48,13 @@ impl<'a> Reaches<'a> {
             }
             Below::Node(node) => {
                 let used = self.body.tree.nodes[node as usize].used.min(WIDTH as u32);
-                (0..used).fold([f64::NEG_INFINITY; 2], |so_far, lane| {
-                    most(so_far, self.measure(node * WIDTH as u32 + lane))
-                })
+                (0..used).try_fold([f64::NEG_INFINITY; 2], |so_far, lane| {
+                    Some(most(so_far, self.measure(node * WIDTH as u32 + lane, clock)?))
+                })?
             }
         };
         self.known[index as usize] = reach;
-        reach
+        Some(reach)
     }
 }
 

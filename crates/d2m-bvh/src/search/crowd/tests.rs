@@ -44,16 +44,16 @@ fn what_a_plane_parts_stays_apart() {
         let frame = motion.frame::<Quad>(0.0);
         let span = scene.longest * (0.6 + 0.4 * random.next());
         let points = points(&scene);
-        let moving = Moving::new(&scene, &points, &frame, span);
+        let moving = Moving::new(&scene, &points, &frame, span, &mut Allowance::unlimited()).unwrap();
         let n = moving.between().normalize();
-        let mut straight = Moving::new(&scene, &points, &frame, span);
+        let mut straight = Moving::new(&scene, &points, &frame, span, &mut Allowance::unlimited()).unwrap();
         straight.paths.iter_mut().flatten().for_each(|path| path.bend = 0.0);
         let [gaps, straight_gaps] = [&moving, &straight].map(|moving| moving.gaps(n).map(|gap| gap.along));
         let world = motion.rotation_b(0.0).times::<Quad>(n).to_vec();
         let gap_at = |time: f64| {
             let frame = motion.frame::<Quad>(time);
             let n = motion.rotation_b(time).transposed::<Quad>().times::<Quad>(world).to_vec();
-            Moving::new(&scene, &points, &frame, 0.0).gaps(n)[0].along
+            Moving::new(&scene, &points, &frame, 0.0, &mut Allowance::unlimited()).unwrap().gaps(n)[0].along
         };
         let least = (0..=8).map(|k| gap_at(span * f64::from(k) / 8.0)).fold(f64::INFINITY, f64::min);
         // The largest levels that the plane may prove: parts of the gaps at both ends.
@@ -107,12 +107,33 @@ fn boxes_reach_as_far_as_their_vertices() {
     let frame: Frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
     for n in [DVec3::X, random.vec().normalize(), random.vec().normalize()] {
         let points = points(&scene);
-        let moving = Moving::new(&scene, &points, &frame, 0.25);
+        let moving = Moving::new(&scene, &points, &frame, 0.25, &mut Allowance::unlimited()).unwrap();
         let [mut reach_a, mut reach_b] =
             [Side::A, Side::B].map(|side| Reaches::new(&scene, side, &frame, 0.25, n));
-        let (high, low) = (reach_a.measure(0), reach_b.measure(0));
+        let (high, low) = (
+            reach_a.measure(0, &mut Allowance::unlimited()).unwrap(),
+            reach_b.measure(0, &mut Allowance::unlimited()).unwrap(),
+        );
         for end in 0..2 {
             assert_eq!(moving.gaps(n)[end].along, -low[end] - high[end]);
         }
     }
+}
+
+/// What a crowd costs besides directions ends with the time too: places of its vertices, and how far boxes reach.
+#[test]
+fn preparations_end_with_the_time() {
+    let mut random = Random(3);
+    let vertices: Vec<_> = (0..3000).map(|_| random.vec()).collect();
+    let mesh = TriMesh::try_new(vertices.clone(), (0..1000).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect());
+    let tree = MeshTree::new(mesh.unwrap());
+    let rest = ConstantTwist::REST;
+    let scene = Scene::try_new((&tree, rest), (&tree, rest), Window::UNIT, &QueryOptions::default()).unwrap();
+    let points = [vertices.clone(), vertices];
+    let frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
+    let over = || Allowance::until(Some(std::time::Instant::now()));
+    assert!(Moving::new(&scene, &points, &frame, 0.25, &mut over()).is_none());
+    let mut reaches = Reaches::new(&scene, Side::A, &frame, 0.25, DVec3::X);
+    assert_eq!(reaches.measure(0, &mut over()), None);
+    assert!(reaches.measure(0, &mut Allowance::unlimited()).is_some());
 }
