@@ -106,7 +106,7 @@ impl BigQuaternion {
     }
 }
 
-/// World positions of body points at a time: x(t) + exp([ω](t − t_ref)) R(q/|q|)(p − at).
+/// World positions of body points at a time: `x(t) + exp([ω](t − t_ref)) R(q/|q|)(p − at)`.
 ///
 /// # Panics
 /// If a point is not finite.
