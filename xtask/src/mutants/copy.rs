@@ -1,10 +1,9 @@
-//! A copy of the workspace in target/mutants, in which sources may be spoilt.
+//! Copies of the workspace in target/mutants, in which sources may be spoilt.
+use super::Error;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-
-type Error = Box<dyn std::error::Error>;
 
 /// The copy; what is built of it lies beside it.
 pub(super) struct Copy {
@@ -14,9 +13,10 @@ pub(super) struct Copy {
 }
 
 impl Copy {
-    /// Brings the copy up to date. A file that is the same already keeps its time, so that cargo need not build again.
-    pub(super) fn new(source: &Path) -> Result<Self, Error> {
-        let base = source.join("target/mutants");
+    /// Brings the copy of a worker up to date. A file that is the same already keeps its time, so that cargo need not build
+    /// again.
+    pub(super) fn new(source: &Path, worker: usize) -> Result<Self, Error> {
+        let base = source.join(format!("target/mutants/{worker}"));
         let copy = Self { source: source.into(), root: base.join("workspace"), build: base.join("build") };
         let files = listed(source)?;
         for file in &files {

@@ -6,6 +6,9 @@ mod table;
 pub(crate) use run::{Options, run};
 pub(crate) use table::{Change, Mutant, all};
 
+/// Workers hand theirs to the thread that started them.
+type Error = Box<dyn std::error::Error + Send + Sync>;
+
 /// Packages with a feature of this name.
 const WITH_SERDE: [&str; 6] = ["d2m", "d2m-bvh", "d2m-dynamics", "d2m-feature", "d2m-interval", "d2m-motion"];
 

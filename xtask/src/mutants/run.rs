@@ -6,11 +6,14 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::File;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-type Error = Box<dyn std::error::Error>;
+type Error = super::Error;
 
 #[derive(clap::Args)]
 #[group(skip)]
@@ -21,6 +24,9 @@ pub(crate) struct Options {
     /// Print the table and do nothing.
     #[arg(long)]
     list: bool,
+    /// Mutants that are built and asked at the same time, each in its own copy of the sources.
+    #[arg(long, default_value = "1")]
+    jobs: NonZeroUsize,
 }
 
 /// What became of a test.
@@ -55,50 +61,97 @@ pub(crate) fn run(options: &Options) -> TaskResult {
     if !findings.is_empty() {
         return Err(findings.join("\n").into());
     }
-    let copy = Copy::new(&root)?;
-    let progress = bar(mutants.len());
-    let say = |text: &str| if progress.is_hidden() { println!("{text}") } else { progress.println(text) };
+    let round = Round {
+        mutants,
+        next: AtomicUsize::new(0),
+        times: Mutex::new(BTreeMap::new()),
+        survivors: Mutex::new(Vec::new()),
+        progress: bar(0),
+    };
+    round.progress.set_length(round.mutants.len() as u64);
+    let copies: Result<Vec<Copy>, Error> =
+        (0..options.jobs.get()).map(|worker| Copy::new(&root, worker)).collect();
+    let copies = copies.map_err(|error| error.to_string())?;
+    let results: Vec<Result<(), Error>> = std::thread::scope(|scope| {
+        let workers: Vec<_> = copies.iter().map(|copy| scope.spawn(|| round.work(copy))).collect();
+        let lost = |_| Err("a worker panicked".into());
+        workers.into_iter().map(|worker| worker.join().unwrap_or_else(lost)).collect()
+    });
+    round.progress.finish_and_clear();
+    results.into_iter().collect::<Result<(), Error>>().map_err(|error| error.to_string())?;
+    let survivors = round.survivors.into_inner().unwrap_or_default();
+    println!("{} mutants, {} survive", round.mutants.len(), survivors.len());
+    if survivors.is_empty() { Ok(()) } else { Err(format!("survivors: {}", survivors.join("; ")).into()) }
+}
 
-    // With the right code every test passes; a mutant that lives in its test is dead then.
-    let mut times: BTreeMap<&str, Duration> = BTreeMap::new();
-    for mutant in &mutants {
-        if times.contains_key(mutant.test) {
-            continue;
+/// The mutants of one run and what became of them, shared by the workers.
+struct Round<'a> {
+    mutants: Vec<&'a Mutant>,
+    /// The first mutant that no worker has taken.
+    next: AtomicUsize,
+    /// How long each test takes with the right code.
+    times: Mutex<BTreeMap<&'a str, Duration>>,
+    survivors: Mutex<Vec<&'a str>>,
+    progress: ProgressBar,
+}
+
+impl Round<'_> {
+    /// Takes mutants until there are none left.
+    fn work(&self, copy: &Copy) -> Result<(), Error> {
+        while let Some(mutant) = self.mutants.get(self.next.fetch_add(1, Ordering::Relaxed)) {
+            let word = self.judge(copy, mutant).inspect_err(|_| {
+                // The other workers end with the mutants that they have.
+                self.next.store(self.mutants.len(), Ordering::Relaxed);
+            })?;
+            let line = format!("{word:<18} {:<56} {}", mutant.name, mutant.test);
+            if self.progress.is_hidden() {
+                println!("{line}")
+            } else {
+                self.progress.println(line)
+            }
+            self.progress.inc(1);
         }
-        progress.set_message(format!("right code: {}", mutant.test().1));
-        let program = build(&copy, mutant)?;
-        let begin = Instant::now();
-        if ask(&copy, &program, mutant, Duration::from_secs(3600))? != End::Passed {
-            return Err(format!("{} fails without any mutant", mutant.test).into());
-        }
-        times.insert(mutant.test, begin.elapsed());
+        Ok(())
     }
-    let mut survivors = Vec::new();
-    for mutant in &mutants {
-        progress.set_message(mutant.name);
-        let word = match mutant.change {
-            Change::InTest => "killed in the test",
-            Change::Patch { file, from, to } => {
-                copy.patch(file, from, to)?;
-                let limit = LEAST.max(times[mutant.test] * PATIENCE);
-                let end = build(&copy, mutant).and_then(|program| ask(&copy, &program, mutant, limit));
-                copy.restore(file)?;
-                match end.map_err(|e| format!("mutant \"{}\": {e}", mutant.name))? {
-                    End::Failed => "killed",
-                    End::Hung => "killed (it hangs)",
-                    End::Passed => {
-                        survivors.push(mutant.name);
-                        "SURVIVES"
-                    }
+
+    /// What becomes of one mutant. Its test must pass with the right code first.
+    fn judge(&self, copy: &Copy, mutant: &Mutant) -> Result<&'static str, Error> {
+        let known = locked(&self.times).get(mutant.test).copied();
+        let time = match known {
+            Some(time) => time,
+            None => {
+                self.progress.set_message(format!("right code: {}", mutant.test().1));
+                let program = build(copy, mutant)?;
+                let begin = Instant::now();
+                if ask(copy, &program, mutant, Duration::from_secs(3600))? != End::Passed {
+                    return Err(format!("{} fails without any mutant", mutant.test).into());
                 }
+                let time = begin.elapsed();
+                locked(&self.times).insert(mutant.test, time);
+                time
             }
         };
-        say(&format!("{word:<18} {:<56} {}", mutant.name, mutant.test));
-        progress.inc(1);
+        // A mutant that lives in its test is dead now.
+        let Change::Patch { file, from, to } = mutant.change else { return Ok("killed in the test") };
+        self.progress.set_message(mutant.name);
+        copy.patch(file, from, to)?;
+        let limit = LEAST.max(time * PATIENCE);
+        let end = build(copy, mutant).and_then(|program| ask(copy, &program, mutant, limit));
+        copy.restore(file)?;
+        Ok(match end.map_err(|e| format!("mutant \"{}\": {e}", mutant.name))? {
+            End::Failed => "killed",
+            End::Hung => "killed (it hangs)",
+            End::Passed => {
+                locked(&self.survivors).push(mutant.name);
+                "SURVIVES"
+            }
+        })
     }
-    progress.finish_and_clear();
-    println!("{} mutants, {} survive", mutants.len(), survivors.len());
-    if survivors.is_empty() { Ok(()) } else { Err(format!("survivors: {}", survivors.join("; ")).into()) }
+}
+
+/// A worker that panics ends the run with an error; what it had locked is whole.
+fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn bar(length: usize) -> ProgressBar {
