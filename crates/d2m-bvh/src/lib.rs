@@ -8,6 +8,7 @@ mod error;
 mod evidence;
 mod mesh;
 mod moving;
+mod nearest_point;
 mod options;
 mod pair_cache;
 pub mod paper;

@@ -4,7 +4,6 @@ mod best_first;
 mod counts;
 mod crowd;
 pub(crate) mod motion;
-mod nearest_point;
 mod node_pair;
 mod over_time;
 mod pairs;

@@ -478,10 +478,24 @@ pub(super) const MUTANTS: &[Mutant] = &[
     ),
     patch(
         "a plane drops pairs that are closer",
-        "crates/d2m-bvh/src/resting/distance/crowd.rs",
-        "gap.is_nan() || gap <= need",
-        "gap.is_nan() || gap <= 0.5 * need",
+        "crates/d2m-bvh/src/resting/distance/hulls.rs",
+        "if gap > need {",
+        "if gap > 0.5 * need {",
         "crates/d2m-bvh/src/resting/distance/tests.rs::planes_drop_no_closer_pair",
+    ),
+    patch(
+        "what a plane proves of two nodes is their hulls' greatest reach",
+        "crates/d2m-bvh/src/resting/distance/hulls.rs",
+        "let gap = -low - high;",
+        "let gap = n.dot(q - p).max(high.abs() + low.abs());",
+        "crates/d2m-bvh/src/resting/distance/tests.rs::planes_drop_no_closer_pair",
+    ),
+    patch(
+        "across a triangle's edge boxes reach as far as their centers only",
+        "crates/d2m-bvh/src/resting/node_pair/directions.rs",
+        "dot(&n, &center) - most - wide_reach(wide, axes, &cosines, L::splat(-1.0)) - twice_margin(placed)",
+        "dot(&n, &center) - most - twice_margin(placed)",
+        "crates/d2m-bvh/src/resting/node_pair/tests.rs::bounds_of_boxes_are_below_distances_of_points_and_sometimes_close",
     ),
     // The reference method.
     patch(

@@ -1,7 +1,7 @@
 //! How far apart are two bodies at rest?
 
 mod best;
-mod crowd;
+mod hulls;
 mod queue;
 mod search;
 #[cfg(test)]

@@ -47,9 +47,4 @@ impl Queue {
     pub(super) fn clear(&mut self) {
         self.0.clear();
     }
-
-    /// Keeps the pairs of which this is true.
-    pub(super) fn retain(&mut self, mut keep: impl FnMut([u32; 2]) -> bool) {
-        self.0.retain(|Reverse(packed)| keep([(packed >> 64) as u32, (packed >> 32) as u32]));
-    }
 }

@@ -1,17 +1,19 @@
 //! Best first over pairs of boxes, for the closest pair of triangles.
 
 use super::best::{Best, EXPECTED_WIDTH};
-use super::crowd::drop_beyond_plane;
+use super::hulls::{Hulls, Measure, Parting};
 use super::queue::{Item, Queue};
-use crate::allowance::Allowance;
-use crate::resting::node_pair::{Direction, Scene, Step, child, gap_exceeds};
+use crate::allowance::{Allowance, Exhausted};
+use crate::resting::node_pair::{Direction, Directions, Scene, Step, Wanted, child, gap_exceeds};
 use crate::tree::margin::{UNIT_F64, round_up};
 use d2m_feature::triangle_distance;
 use d2m_lanes::{Lanes, Task};
 
 /// Node tests and comparisons after which the pairs that wait are a crowd: several times as many as in ordinary queries of
-/// a million triangles. The next time after twice as many.
+/// a million triangles. They are examined again after twice as many.
 const CROWD: u64 = 1 << 13;
+/// In place of the version of a pair's direction: a plane of its own was tried.
+const PARTED: u32 = u32::MAX;
 
 /// What a search finds.
 #[derive(Clone, Copy, Debug)]
@@ -30,9 +32,9 @@ pub(super) enum Found {
 /// The answer is the pair of triangles with the least (computed upper bound, numbers). A pair is left out only when it
 /// is proven that its computed bound is more than the best one so far; so neither the order of the search nor the pair
 /// that is compared first has any influence on the answer. Two exceptions: where triangles cross, their bound is zero, the search
-/// ends with the first such pair, and another, in a fixed order, chooses the one that is reported; and when very many pairs
-/// wait, those that one plane proves no closer up to rounding are dropped, so which of many equally close pairs is reported may
-/// depend on the search ([`super::crowd`]).
+/// ends with the first such pair, and another, in a fixed order, chooses the one that is reported; and when a search becomes very
+/// long, pairs that a plane proves no closer up to rounding are dropped, so which of many equally close pairs is reported may
+/// depend on the search ([`super::hulls`]).
 pub(super) struct Search<'a> {
     pub(super) scene: &'a Scene<'a>,
     /// A pair of triangles to compare first.
@@ -124,11 +126,25 @@ impl Task for Search<'_> {
         // Descend greedily to a pair of triangles, as long as that is closer than the one before; then best first.
         let mut descending = closest.best.is_none();
         let (mut steps, mut patience) = (0, CROWD);
+        let mut hulls: Option<Hulls> = None;
         loop {
             if next.is_none() && steps >= patience {
                 patience = 2 * steps;
-                if let Some(best) = &mut closest.best {
-                    best.is_cut_short |= drop_beyond_plane(scene, &best.distance, &mut queue);
+                match (&mut closest.best, queue.least_key()) {
+                    // No lower bound above zero is proven, whatever the other pairs are.
+                    (Some(best), _) if best.distance.upper <= EXPECTED_WIDTH => {
+                        queue.clear();
+                        best.is_cut_short = true;
+                    }
+                    // Once more from the beginning: nodes high up may be parted by one plane.
+                    (Some(_), Some(least)) if hulls.is_none() && Hulls::pay_off(scene, steps) => {
+                        hulls = Hulls::new(scene, allowance).ok();
+                        if hulls.is_some() {
+                            queue.clear();
+                            queue.push(Item { key: least, pair: [0; 2], version: closest.version });
+                        }
+                    }
+                    _ => {}
                 }
             }
             let Some(Item { key, pair, version }) = next.take().or_else(|| queue.pop()) else { break };
@@ -143,8 +159,8 @@ impl Task for Search<'_> {
             }
             steps += 1;
             // The bound along the newest direction is cheap, and often much better than the one that was known.
-            let newer =
-                if version == closest.version { 0.0 } else { scene.bound_along(pair, &closest.along) };
+            let is_newest = version == closest.version || version == PARTED;
+            let newer = if is_newest { 0.0 } else { scene.bound_along(pair, &closest.along) };
             if newer > closest.upper_key {
                 continue;
             }
@@ -152,10 +168,29 @@ impl Task for Search<'_> {
                 queue.push(Item { key: newer, pair, version: closest.version });
                 continue;
             }
-            match scene.step(pair) {
+            let step = scene.step(pair);
+            if let (Some(hulls), Some(best), Step::Expand { .. }) = (&mut hulls, &closest.best, &step)
+                && version != PARTED
+            {
+                let best = Measure { upper: closest.upper, direction: best.distance.direction };
+                match hulls.part(pair, best, steps, allowance) {
+                    Ok(Parting::Beyond) => continue,
+                    Ok(Parting::AtLeast(bound)) if bound > key => {
+                        queue.push(Item { key: bound, pair, version: PARTED });
+                        continue;
+                    }
+                    // The next step ends the search where the allowance ran out.
+                    Ok(Parting::AtLeast(_)) | Err(Exhausted) => {}
+                }
+            }
+            match step {
                 Step::Expand { wide, node } => {
-                    let enough = closest.upper_key;
-                    let bounds = scene.bounds::<L>((wide, node), pair[1 - wide], &closest.along, enough);
+                    let wanted = Wanted {
+                        along: &closest.along,
+                        enough: closest.upper_key,
+                        directions: if hulls.is_some() { Directions::OfEdges } else { Directions::Usual },
+                    };
+                    let bounds = scene.bounds::<L>((wide, node), pair[1 - wide], &wanted);
                     let mut least: Option<Item> = None;
                     for (lane, &bound) in bounds.used().iter().enumerate() {
                         // Also when the bound is not a number.

@@ -103,8 +103,38 @@ pub(super) fn gap_from_triangle<L: Lanes>(
     let center = load::<L>(&wide.center);
     let [p, q, r] = [splat::<L>(&corners[0]), splat::<L>(&corners[1]), splat::<L>(&corners[2])];
     let towards = from_triangle(&p, &q, &r, &center);
-    let n = scaled(&towards, inverse_length(dot(&towards, &towards)));
-    let most = dot(&n, &p).max(dot(&n, &q)).max(dot(&n, &r));
+    gap_towards(wide, placed, axes, [&p, &q, &r], &towards)
+}
+
+/// Along the direction across an edge of the triangle and the longest axis of each lane's box.
+#[inline(always)]
+pub(super) fn gap_across_edge<L: Lanes>(
+    wide: &WideNode,
+    placed: &Placed,
+    axes: &Axes<L>,
+    (corners, edge): (&[[f32; 3]; 3], &[f32; 3]),
+) -> L {
+    let center = load::<L>(&wide.center);
+    let [p, q, r] = [splat::<L>(&corners[0]), splat::<L>(&corners[1]), splat::<L>(&corners[2])];
+    let across = cross(&splat::<L>(edge), &axes.own[0]);
+    let side = dot(&across, &minus(&center, &p));
+    let towards =
+        [L::flip_sign(across[0], side), L::flip_sign(across[1], side), L::flip_sign(across[2], side)];
+    gap_towards(wide, placed, axes, [&p, &q, &r], &towards)
+}
+
+/// Along a direction of any length from the triangle to the boxes.
+#[inline(always)]
+fn gap_towards<L: Lanes>(
+    wide: &WideNode,
+    placed: &Placed,
+    axes: &Axes<L>,
+    [p, q, r]: [&[L; 3]; 3],
+    towards: &[L; 3],
+) -> L {
+    let center = load::<L>(&wide.center);
+    let n = scaled(towards, inverse_length(dot(towards, towards)));
+    let most = dot(&n, p).max(dot(&n, q)).max(dot(&n, r));
     let cosines = [dot(&n, &axes.own[0]), dot(&n, &axes.own[1]), dot(&n, &axes.own[2])];
     dot(&n, &center) - most - wide_reach(wide, axes, &cosines, L::splat(-1.0)) - twice_margin(placed)
 }

@@ -1,7 +1,7 @@
 //! One box of one body against the eight boxes of a wide node of the other: how far apart are they at least?
 
 use super::axes::{Axes, dot};
-use super::directions::{gap_along, gap_along_other, gap_along_own, gap_from_triangle};
+use super::directions::{gap_across_edge, gap_along, gap_along_other, gap_along_own, gap_from_triangle};
 use super::placed_box::Placed;
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
@@ -37,7 +37,13 @@ pub(super) fn lower_bounds<L: Lanes>(
         return (bound * factor).store();
     }
     let closer = match &placed.corners {
-        Some(corners) => gap_from_triangle(wide, placed, &axes, corners),
+        Some(corners) => {
+            let closer = gap_from_triangle(wide, placed, &axes, corners);
+            match &placed.edge {
+                Some(edge) => closer.max(gap_across_edge(wide, placed, &axes, (corners, edge))),
+                None => closer,
+            }
+        }
         None if enough < WORTH_DIRECTIONS * placed.radius * to_work => return (bound * factor).store(),
         None => gap_along_own(wide, placed, &axes, own).max(gap_along_other(wide, placed, &axes, other)),
     };

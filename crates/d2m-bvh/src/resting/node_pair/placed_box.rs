@@ -40,6 +40,8 @@ pub(super) struct Placed {
     pub(super) reach_along: [f32; 2],
     /// The triangle itself, from the node's origin, for a box around one.
     pub(super) corners: Option<[[f32; 3]; 3]>,
+    /// The longest edge of that triangle, where directions across it are wanted.
+    pub(super) edge: Option<[f32; 3]>,
 }
 
 impl Placed {
@@ -60,6 +62,7 @@ impl Placed {
             at_along: 0.0,
             reach_along: [0.0; 2],
             corners: None,
+            edge: None,
         }
     }
 
@@ -93,6 +96,13 @@ impl Placed {
         self.reach_along = [round_up((high - middle).max(middle - low)); 2];
         self.along = n;
         self.corners = Some([narrow(corners[0]), narrow(corners[1]), narrow(corners[2])]);
+        self
+    }
+
+    /// With the longest edge of the triangle, corners as above.
+    pub(super) fn with_longest_edge(mut self, [p, q, r]: &[DVec3; 3]) -> Self {
+        let longer = |a: DVec3, b: DVec3| if b.length_squared() > a.length_squared() { b } else { a };
+        self.edge = Some(narrow(longer(longer(*q - *p, *r - *q), *p - *r)));
         self
     }
 }

@@ -61,6 +61,25 @@ pub(crate) struct Direction {
     narrow: [[f32; 3]; 2],
 }
 
+/// Directions besides the axes of boxes along which a triangle's distance from boxes is bounded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Directions {
+    Usual,
+    /// Also those across the triangle's longest edge and the longest axis of a box: where slivers lie crosswise, no other
+    /// tells them apart.
+    OfEdges,
+}
+
+/// What is wanted of the distances of boxes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wanted<'a> {
+    /// A direction that is tried besides those of the boxes.
+    pub(crate) along: &'a Direction,
+    /// Bounds above this, in working units, need not be close.
+    pub(crate) enough: f32,
+    pub(crate) directions: Directions,
+}
+
 /// Lower bounds on the distances of the boxes of one node.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NodeBounds {
@@ -190,14 +209,14 @@ impl<'a> Scene<'a> {
     }
 
     /// Lower bounds on the distances of the boxes of a node of body `wide` from a box of the other body, working
-    /// units. Evaluates the axes of both, `along`, and, where a bound is not above `enough`, the shortest ways between the boxes.
+    /// units. Evaluates the axes of both, the direction that is given, and, where a bound is not enough, the shortest ways
+    /// between the boxes.
     #[inline(always)]
     pub(crate) fn bounds<L: Lanes>(
         &self,
         (wide, node): (usize, u32),
         single: u32,
-        along: &Direction,
-        enough: f32,
+        &Wanted { along, enough, directions }: &Wanted<'_>,
     ) -> NodeBounds {
         let (boxed, origin) = self.single(1 - wide, single);
         let placed = self.placed(wide, node, &boxed, origin);
@@ -205,7 +224,8 @@ impl<'a> Scene<'a> {
         let placed = match tree.nodes[single as usize / WIDTH].below(single as usize % WIDTH) {
             Below::Triangle(triangle) => {
                 let corners = self.corners_in(wide, triangle, self.trees[wide].nodes[node as usize].origin);
-                placed.with_triangle_along(along.narrow[wide], &corners)
+                let placed = placed.with_triangle_along(along.narrow[wide], &corners);
+                if directions == Directions::OfEdges { placed.with_longest_edge(&corners) } else { placed }
             }
             Below::Node(_) => placed.with_box_along(along.narrow[wide], &boxed),
         };

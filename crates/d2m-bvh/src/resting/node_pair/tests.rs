@@ -1,5 +1,7 @@
 //! The error bounds of the node test, and the same bits from every kind of lanes.
 
+use super::axes::Axes;
+use super::directions::gap_across_edge;
 use super::node_test::{lower_bounds, margin_free_gaps};
 use super::placed_box::{Placed, Side};
 use crate::random::Random;
@@ -116,7 +118,7 @@ fn point_within(b: &OrientedBox, random: &mut Random) -> DVec3 {
 #[test]
 fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
     let mut random = Random(9);
-    let (mut best, mut best_of_triangles) = (0.0f64, 0.0f64);
+    let (mut best, mut best_of_triangles, mut best_across) = (0.0f64, 0.0f64, 0.0f64);
     for round in 0..6000 {
         let mut node = WideNode::empty([0.0; 3], 0);
         let cuts = |random: &mut Random| {
@@ -154,7 +156,10 @@ fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
         assert!(least <= most);
         // A triangle of the single box.
         let corners = [(); 3].map(|()| point_within(&single, &mut random));
-        let of_triangle = bound(&placed.with_triangle_along(n, &corners.map(place)), f32::INFINITY);
+        let corners_here = corners.map(place);
+        let with_triangle = placed.with_triangle_along(n, &corners_here);
+        let across = f64::from(gap_across_edge_alone(&node, &with_triangle.with_longest_edge(&corners_here)));
+        let of_triangle = bound(&with_triangle.with_longest_edge(&corners_here), f32::INFINITY);
         for _ in 0..50 {
             let p = point_within(&boxed, &mut random);
             let apart = p.distance(place(point_within(&single, &mut random)));
@@ -165,9 +170,18 @@ fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
             let apart = p.distance(place(q));
             assert!(of_triangle <= apart * (1.0 + 1e-12), "{of_triangle} {apart}");
             best_of_triangles = best_of_triangles.max(of_triangle / apart);
+            best_across = best_across.max(across / apart);
         }
     }
     assert!(best > 0.95 && best_of_triangles > 0.95, "{best} {best_of_triangles}");
+    assert!(best_across > 0.8, "{best_across}");
+}
+
+/// The gap of lane 0 across the triangle's longest edge.
+fn gap_across_edge_alone(node: &WideNode, placed: &Placed) -> f32 {
+    let axes = Axes::<Portable>::new(node, placed);
+    let (corners, edge) = (placed.corners.unwrap(), placed.edge.unwrap());
+    gap_across_edge(node, placed, &axes, (&corners, &edge)).store()[0]
 }
 
 struct Kernel<'a>(&'a WideNode, &'a Placed);
@@ -206,7 +220,7 @@ fn every_kind_of_lanes_gives_the_same_bits() {
             placed.with_box_along([0.3, -0.6, 0.7], &single)
         } else {
             let corners = [(); 3].map(|()| random.vec() * 3.0);
-            placed.with_triangle_along([0.3, -0.6, 0.7], &corners)
+            placed.with_triangle_along([0.3, -0.6, 0.7], &corners).with_longest_edge(&corners)
         };
         let (bounds, bits) = run_on(InstructionSet::Portable, Kernel(&node, &placed));
         let (best_bounds, best_bits) = run(Kernel(&node, &placed));

@@ -27,7 +27,7 @@ mod tests;
 
 pub use manifold::reduce_proximities;
 
-use super::node_pair::{Scene, Step, child, proven_apart};
+use super::node_pair::{Directions, Scene, Step, Wanted, child, proven_apart};
 use crate::allowance::Allowance;
 use crate::tree::margin::{UNIT_F64, round_up};
 use crate::{Budget, Posed, QueryError};
@@ -263,7 +263,8 @@ impl Task for Search<'_> {
             }
             match scene.step(pair) {
                 Step::Expand { wide, node } => {
-                    let bounds = scene.bounds::<L>((wide, node), pair[1 - wide], &along, key);
+                    let wanted = Wanted { along: &along, enough: key, directions: Directions::Usual };
+                    let bounds = scene.bounds::<L>((wide, node), pair[1 - wide], &wanted);
                     for (lane, &bound) in bounds.used().iter().enumerate() {
                         // A bound that is not a number drops nothing.
                         if bound.is_nan() || bound <= key {

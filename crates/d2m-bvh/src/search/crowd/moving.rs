@@ -1,10 +1,10 @@
 //! Two sets of points in motion, and planes between them.
 
 use super::super::motion::frame::Frame;
-use super::super::nearest_point::Simplex;
 use super::super::scene::Scene;
 use super::paths::{BodyPaths, Path, Side};
 use crate::allowance::Allowance;
+use crate::nearest_point::Simplex;
 use glam::DVec3;
 
 /// Points of both bodies over a span, in the frame of B at its first end.

@@ -8,25 +8,25 @@ use glam::DVec3;
 
 /// Points of a convex set, at most four, and the point of their hull that is nearest to the origin.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Simplex {
+pub(crate) struct Simplex {
     points: [DVec3; 4],
     count: usize,
     nearest: DVec3,
 }
 
 impl Simplex {
-    pub(super) const fn new(point: DVec3) -> Self {
+    pub(crate) const fn new(point: DVec3) -> Self {
         Self { points: [point; 4], count: 1, nearest: point }
     }
 
     /// The point of the hull that is nearest to the origin: zero if the hull holds the origin.
-    pub(super) const fn nearest(&self) -> DVec3 {
+    pub(crate) const fn nearest(&self) -> DVec3 {
         self.nearest
     }
 
     /// With another point of the set, and without those points that the nearest one does not need. `None`: the hull does
     /// not come nearer to the origin.
-    pub(super) fn with(&self, point: DVec3) -> Option<Self> {
+    pub(crate) fn with(&self, point: DVec3) -> Option<Self> {
         if self.count == self.points.len() {
             return None;
         }
