@@ -465,8 +465,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "a triangle is where its first corner is",
         "crates/d2m-bvh/src/resting/node_pair/directions.rs",
-        "let most = dot(&n, &p).max(dot(&n, &q)).max(dot(&n, &r));",
-        "let most = dot(&n, &p);",
+        "let most = dot(&n, p).max(dot(&n, q)).max(dot(&n, r));",
+        "let most = dot(&n, p);",
         "crates/d2m-bvh/src/resting/node_pair/tests.rs::bounds_of_boxes_are_below_distances_of_points_and_sometimes_close",
     ),
     patch(
