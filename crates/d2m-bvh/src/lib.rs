@@ -12,6 +12,7 @@ mod nearest_point;
 mod options;
 mod pair_cache;
 pub mod paper;
+mod parallel;
 mod posed;
 mod query;
 #[cfg(test)]

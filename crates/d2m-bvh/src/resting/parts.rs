@@ -3,7 +3,9 @@
 use super::collide::try_colliding_pair;
 use super::winding::contains;
 use crate::allowance::Allowance;
+use crate::mesh::Closedness;
 use crate::{MeshTree, Posed, TriMesh};
+use core::cell::OnceCell;
 use glam::DVec3;
 
 /// One connected part of a surface: triangles that are connected through equal positions of their vertices.
@@ -52,9 +54,12 @@ pub struct MeshParts {
 
 /// A part by itself.
 struct Piece {
-    tree: MeshTree,
+    mesh: TriMesh,
+    closedness: Closedness,
     low: DVec3,
     high: DVec3,
+    /// Only a part whose bounding box meets that of another needs one.
+    tree: OnceCell<MeshTree>,
 }
 
 impl MeshParts {
@@ -66,12 +71,14 @@ impl MeshParts {
         for (triangle, &label) in labels.iter().enumerate() {
             members[label].push(triangle as u32);
         }
-        let pieces: Vec<Piece> = members.iter().map(|triangles| Piece::new(mesh, triangles)).collect();
+        let mut numbers = vec![None; mesh.vertex_count()];
+        let pieces: Vec<Piece> =
+            members.iter().map(|triangles| Piece::new(mesh, triangles, &mut numbers)).collect();
         let mut parts: Vec<MeshPart> =
             members.iter().zip(&pieces).map(|(triangles, piece)| piece.describe(triangles)).collect();
         let mut crossing = Vec::new();
         for [i, j] in near(&pieces) {
-            let posed = [i, j].map(|k| Posed::at_rest(&pieces[k].tree));
+            let posed = [i, j].map(|k| Posed::at_rest(pieces[k].tree()));
             // Parts in a mesh are in no pose that could be refused; what is not known counts as crossing.
             if !matches!(try_colliding_pair(posed[0], posed[1]), Ok(None)) {
                 crossing.push([i, j]);
@@ -121,14 +128,15 @@ impl MeshPart {
 /// The number of the part of each triangle.
 fn labels(mesh: &TriMesh) -> Vec<usize> {
     let roots = crate::mesh::part_roots(mesh);
-    let mut numbers = std::collections::HashMap::new();
-    mesh.triangles()
-        .iter()
-        .map(|triangle| {
-            let next = numbers.len();
-            *numbers.entry(roots[triangle[0] as usize]).or_insert(next)
+    let mut numbers = vec![None; mesh.vertex_count()];
+    let mut count = 0;
+    let number = |triangle: &[u32; 3]| {
+        *numbers[roots[triangle[0] as usize] as usize].get_or_insert_with(|| {
+            count += 1;
+            count - 1
         })
-        .collect()
+    };
+    mesh.triangles().iter().map(number).collect()
 }
 
 /// Pairs of parts whose bounding boxes overlap: sorted along x and swept.
@@ -150,11 +158,11 @@ fn near(pieces: &[Piece]) -> Vec<[usize; 2]> {
 }
 
 impl Piece {
-    fn new(mesh: &TriMesh, triangles: &[u32]) -> Self {
-        let mut numbers = std::collections::HashMap::new();
+    /// `numbers` is for the vertices of the mesh, none of which another part has.
+    fn new(mesh: &TriMesh, triangles: &[u32], numbers: &mut [Option<u32>]) -> Self {
         let mut vertices = Vec::new();
         let mut corner = |vertex: u32| {
-            *numbers.entry(vertex).or_insert_with(|| {
+            *numbers[vertex as usize].get_or_insert_with(|| {
                 vertices.push(mesh.vertices()[vertex as usize]);
                 vertices.len() as u32 - 1
             })
@@ -164,30 +172,37 @@ impl Piece {
         let (low, high) = vertices
             .iter()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
-        let part = TriMesh::try_new(vertices, own).expect("a part of a checked mesh");
-        Self { tree: MeshTree::new(part), low, high }
+        let mesh = TriMesh::try_new(vertices, own).expect("a part of a checked mesh");
+        let closedness = Closedness::of(&mesh);
+        Self { mesh, closedness, low, high, tree: OnceCell::new() }
+    }
+
+    fn tree(&self) -> &MeshTree {
+        self.tree.get_or_init(|| MeshTree::new(self.mesh.clone()))
     }
 
     fn describe(&self, triangles: &[u32]) -> MeshPart {
-        let mesh = self.tree.mesh();
-        let counts = |k: &usize| self.tree.repeated.binary_search(&(*k as u32)).is_err();
+        let Closedness { watertight, oriented, repeated, .. } = &self.closedness;
+        let center = self.low * 0.5 + self.high * 0.5;
+        let counts = |k: &usize| repeated.binary_search(&(*k as u32)).is_err();
         let volume = |k: usize| {
-            let [a, b, c] = mesh.corners(k).map(|p| p - self.tree.center());
+            let [a, b, c] = self.mesh.corners(k).map(|p| p - center);
             a.dot(b.cross(c)) / 6.0
         };
         MeshPart {
             first_triangle: triangles[0],
             triangles: triangles.len(),
-            closed: self.tree.is_watertight() && self.tree.oriented,
-            signed_volume: (0..mesh.triangle_count()).filter(counts).map(volume).sum(),
+            closed: *watertight && *oriented,
+            signed_volume: (0..self.mesh.triangle_count()).filter(counts).map(volume).sum(),
             winding_outside: Some(0),
         }
     }
 
     /// Is the other part, whose surface does not touch this one, inside?
     fn holds(&self, other: &Self) -> bool {
-        let vertex = other.tree.mesh().corners(0)[0] - self.tree.center();
-        contains(&self.tree, vertex, &mut Allowance::unlimited()) != Ok(false)
+        let tree = self.tree();
+        let vertex = other.mesh.corners(0)[0] - tree.center();
+        contains(tree, vertex, &mut Allowance::unlimited()) != Ok(false)
     }
 }
 

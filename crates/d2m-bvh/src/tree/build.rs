@@ -10,7 +10,7 @@ use crate::TriMesh;
 use core::sync::atomic::{AtomicUsize, Ordering};
 
 /// Triangles that a tree can number.
-const MOST_TRIANGLES: usize = 1 << 29;
+pub(super) const MOST_TRIANGLES: usize = 1 << 29;
 /// Parts of at most this many triangles are built by one thread, and reported when done.
 const GRAIN: usize = 4096;
 

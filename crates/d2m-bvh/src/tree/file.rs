@@ -14,12 +14,17 @@
 //! | 8 | [`checksum`] of all bytes before |
 
 use super::mesh_tree::MeshTree;
-use super::node::{Below, LEAF, OrientedBox, WIDTH};
-use super::parts::NodeParts;
+use super::node::{Below, LEAF, OrientedBox};
+use super::parts::tree_of_parts;
 use super::validate::TreeError;
-use crate::{MeshError, TriMesh};
-use glam::DVec3;
+use crate::MeshError;
+use crate::parallel::both;
+use read::{Reader, TreeParts};
 use thiserror::Error;
+
+mod read;
+#[cfg(test)]
+mod tests;
 
 const MAGIC: [u8; 8] = *b"d2mtree\0";
 const VERSION: u32 = 1;
@@ -145,107 +150,19 @@ impl MeshTree {
         if bytes.len() < HEADER + CHECKSUM {
             return Err(length(HEADER + CHECKSUM));
         }
-        let mut reader = Reader { rest: &bytes[MAGIC.len()..bytes.len() - CHECKSUM] };
-        let version = reader.u32().ok_or(length(HEADER))?;
-        if version != VERSION {
-            return Err(TreeFileError::Version { found: version });
+        let found = Reader { rest: &bytes[MAGIC.len()..] }.u32().ok_or(length(HEADER))?;
+        if found != VERSION {
+            return Err(TreeFileError::Version { found });
         }
-        let (found, stated) = (checksum(&bytes[..bytes.len() - CHECKSUM]), u64_at_end(bytes));
+        let (summed, end) = bytes.split_at(bytes.len() - CHECKSUM);
+        let (found, parts) = both(|| checksum(summed), || TreeParts::try_read(bytes));
+        let stated = u64_at_end(end);
         if found != stated {
             return Err(TreeFileError::Damaged { found, stated });
         }
-        // What is read below is what was written, unless someone forged the checksum too.
-        let mut parse = || {
-            let _zero = reader.u32()?;
-            let counts = [reader.count()?, reader.count()?, reader.count()?];
-            let about = reader.f64s::<4>()?;
-            Some((counts, about))
-        };
-        let ([vertices, triangles, nodes], [x, y, z, radius]) = parse().ok_or(length(HEADER))?;
-        let least = [(vertices, VERTEX), (triangles, TRIANGLE), (nodes, NODE)]
-            .into_iter()
-            .try_fold(HEADER + CHECKSUM, |sum, (count, size)| sum.checked_add(count.checked_mul(size)?));
-        let needed = least.filter(|&least| least <= bytes.len());
-        let needed = needed.ok_or(length(least.unwrap_or(usize::MAX)))?;
-        let short = length(needed);
-        let mesh = reader.mesh(vertices, triangles).ok_or(short.clone())??;
-        let mut parts = NodeParts::with_capacity(nodes);
-        for index in 0..nodes {
-            let (origin, used) = reader.f32s::<3>().zip(reader.u32()).ok_or(short.clone())?;
-            if used as usize > WIDTH {
-                return Err(TreeError::Link { node: index }.into());
-            }
-            parts.begin(origin);
-            for _ in 0..used {
-                let (boxed, below) = reader.boxed().ok_or(short.clone())?;
-                parts.add(&boxed, below)?;
-            }
-        }
-        if !reader.rest.is_empty() {
-            return Err(length(bytes.len() - reader.rest.len()));
-        }
-        Ok(parts.finish(mesh, DVec3::new(x, y, z), radius)?)
-    }
-}
-
-/// Reads numbers; `None` where bytes are missing.
-struct Reader<'a> {
-    rest: &'a [u8],
-}
-
-impl Reader<'_> {
-    fn bytes<const N: usize>(&mut self) -> Option<[u8; N]> {
-        let (first, rest) = self.rest.split_first_chunk()?;
-        self.rest = rest;
-        Some(*first)
-    }
-
-    fn u32(&mut self) -> Option<u32> {
-        self.bytes().map(u32::from_le_bytes)
-    }
-
-    /// A number of parts; what no memory could hold is no number of parts.
-    fn count(&mut self) -> Option<usize> {
-        self.bytes().and_then(|bytes| usize::try_from(u64::from_le_bytes(bytes)).ok())
-    }
-
-    fn f32s<const N: usize>(&mut self) -> Option<[f32; N]> {
-        let mut numbers = [0.0; N];
-        for number in &mut numbers {
-            *number = self.bytes().map(f32::from_le_bytes)?;
-        }
-        Some(numbers)
-    }
-
-    fn f64s<const N: usize>(&mut self) -> Option<[f64; N]> {
-        let mut numbers = [0.0; N];
-        for number in &mut numbers {
-            *number = self.bytes().map(f64::from_le_bytes)?;
-        }
-        Some(numbers)
-    }
-
-    fn mesh(&mut self, vertices: usize, triangles: usize) -> Option<Result<TriMesh, MeshError>> {
-        let mut positions = Vec::with_capacity(vertices);
-        for _ in 0..vertices {
-            positions.push(DVec3::from_array(self.f64s()?));
-        }
-        let mut corners = Vec::with_capacity(triangles);
-        for _ in 0..triangles {
-            corners.push([self.u32()?, self.u32()?, self.u32()?]);
-        }
-        Some(TriMesh::try_new(positions, corners))
-    }
-
-    fn boxed(&mut self) -> Option<(OrientedBox, Below)> {
-        let center = self.f32s()?;
-        let axes = [self.f32s()?, self.f32s()?, self.f32s()?];
-        let half_extent = self.f32s()?;
-        let slabs = [self.bytes()?, self.bytes()?, self.bytes()?];
-        let [radius] = self.f32s()?;
-        let below = self.u32()?;
-        let below = if below & LEAF != 0 { Below::Triangle(below & !LEAF) } else { Below::Node(below) };
-        Some((OrientedBox { center, axes, half_extent, slabs, radius }, below))
+        // Whatever the bytes are: someone may have forged the checksum, too.
+        let TreeParts { mesh, nodes, center, radius } = parts?;
+        Ok(tree_of_parts(mesh, nodes, center, radius)?)
     }
 }
 
@@ -269,6 +186,3 @@ fn checksum(bytes: &[u8]) -> u64 {
     last[..rest.len()].copy_from_slice(rest);
     step(state, u64::from_le_bytes(last))
 }
-
-#[cfg(test)]
-mod tests;

@@ -94,7 +94,18 @@ impl MeshTree {
 
     /// A tree from its boxes, and what is computed from the mesh alone.
     pub(super) fn from_nodes(mesh: TriMesh, nodes: Vec<WideNode>, extent: &Extent) -> Self {
-        let Closedness { watertight, oriented, repeated, components } = Closedness::of(&mesh);
+        let closedness = Closedness::of(&mesh);
+        Self::from_parts(mesh, nodes, extent, closedness)
+    }
+
+    /// As [`Self::from_nodes`] when that is at hand.
+    pub(super) fn from_parts(
+        mesh: TriMesh,
+        nodes: Vec<WideNode>,
+        extent: &Extent,
+        closedness: Closedness,
+    ) -> Self {
+        let Closedness { watertight, oriented, repeated, components } = closedness;
         let Extent { center, radius, unit } = *extent;
         let id = TreeId::next();
         let adjacency = OnceLock::new();

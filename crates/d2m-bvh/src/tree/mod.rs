@@ -1,6 +1,7 @@
 //! Trees of oriented boxes over a mesh.
 
 mod build;
+mod enclosures;
 mod file;
 mod fit;
 pub(crate) mod margin;

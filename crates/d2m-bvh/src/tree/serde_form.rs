@@ -7,7 +7,7 @@
 
 use super::mesh_tree::MeshTree;
 use super::node::{Below, LEAF, OrientedBox, WIDTH, WideNode};
-use super::parts::NodeParts;
+use super::parts::{node_of_parts, tree_of_parts};
 use super::slabs::Slabs;
 use super::validate::TreeError;
 use crate::TriMesh;
@@ -44,6 +44,15 @@ struct BoxForm {
 enum BelowForm {
     Triangle(u32),
     Node(u32),
+}
+
+impl From<BelowForm> for Below {
+    fn from(form: BelowForm) -> Self {
+        match form {
+            BelowForm::Triangle(triangle) => Self::Triangle(triangle),
+            BelowForm::Node(node) => Self::Node(node),
+        }
+    }
 }
 
 /// A node of either form.
@@ -164,24 +173,18 @@ impl TryFrom<TreeForm<NodeForm>> for MeshTree {
     type Error = TreeError;
 
     fn try_from(form: TreeForm<NodeForm>) -> Result<Self, TreeError> {
-        let mut parts = NodeParts::with_capacity(form.nodes.len());
+        let mut nodes = Vec::with_capacity(form.nodes.len());
         for (index, node) in form.nodes.iter().enumerate() {
-            if node.boxes.len() > WIDTH {
+            let is_numbered = |boxed: &BoxForm| match boxed.below {
+                BelowForm::Triangle(number) | BelowForm::Node(number) => number < LEAF,
+            };
+            if node.boxes.len() > WIDTH || !node.boxes.iter().all(is_numbered) {
                 return Err(TreeError::Link { node: index });
             }
-            parts.begin(node.origin_bits.map(f32::from_bits));
-            for form in &node.boxes {
-                let below = match form.below {
-                    BelowForm::Triangle(number) | BelowForm::Node(number) if number >= LEAF => {
-                        return Err(TreeError::Link { node: index });
-                    }
-                    BelowForm::Triangle(triangle) => Below::Triangle(triangle),
-                    BelowForm::Node(node) => Below::Node(node),
-                };
-                parts.add(&form.boxed(), below)?;
-            }
+            let boxes = node.boxes.iter().map(|form| (form.boxed(), form.below.into()));
+            nodes.push(node_of_parts(node.origin_bits.map(f32::from_bits), boxes));
         }
         let center = DVec3::from_array(form.center.map(|ExactNumber(number)| number));
-        parts.finish(form.mesh, center, form.radius.0)
+        tree_of_parts(form.mesh, nodes, center, form.radius.0)
     }
 }

@@ -39,6 +39,13 @@ impl Extent {
         let radius = if radius < f64::MIN_POSITIVE && square > 0.0 { f64::MIN_POSITIVE } else { radius };
         Self { center, radius, unit: unit_of(radius) }
     }
+
+    /// A point of the body in local coordinates.
+    #[inline(always)]
+    pub(super) fn local(&self, p: DVec3) -> [f64; 3] {
+        // One over a power of two is exact.
+        ((p - self.center) * (1.0 / self.unit)).to_array()
+    }
 }
 
 /// The least unit of a tree: one over it is a number.
@@ -63,8 +70,7 @@ pub(super) struct Surface<'a> {
 
 impl<'a> Surface<'a> {
     pub(super) fn new(mesh: &'a TriMesh, extent: &Extent) -> Self {
-        let inverse = 1.0 / extent.unit;
-        let points = mesh.vertices().iter().map(|&p| ((p - extent.center) * inverse).to_array()).collect();
+        let points = mesh.vertices().iter().map(|&p| extent.local(p)).collect();
         Self { points, triangles: mesh.triangles() }
     }
 

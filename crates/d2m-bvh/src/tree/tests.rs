@@ -182,6 +182,27 @@ fn any_shrunk_or_broken_tree_is_refused() {
     }
 }
 
+/// A hundred-thousandth less than what was rounded up by one part in ten million is too little, in every direction.
+#[test]
+fn each_box_is_checked_against_each_vertex_below_it() {
+    let mut tree = MeshTree::new(torus(14, 9, 0.02, |p| p));
+    for node in 0..tree.nodes.len() {
+        for lane in 0..tree.nodes[node].used as usize {
+            for axis in 0..3 {
+                let half = tree.nodes[node].half_extent[axis][lane];
+                tree.nodes[node].half_extent[axis][lane] = half * (1.0 - 1e-5);
+                let found = tree.validate();
+                assert!(
+                    matches!(found, Err(TreeError::Enclosure { node: n, lane: l, .. }) if (n, l) == (node, lane)),
+                    "axis {axis} of box {lane} of node {node}: {found:?}"
+                );
+                tree.nodes[node].half_extent[axis][lane] = half;
+            }
+        }
+    }
+    assert_eq!(tree.validate(), Ok(()));
+}
+
 #[test]
 fn the_same_bits_at_any_number_of_threads() {
     let mesh = torus(150, 60, 0.01, |p| p);

@@ -1,14 +1,19 @@
 //! Checks every promise of `node.rs` on a tree that came from elsewhere.
 
+use super::build::MOST_TRIANGLES;
+use super::enclosures::{Enclosures, TreeCorners};
 use super::margin::{UNIT_F32, UNIT_F64};
 use super::mesh_tree::MeshTree;
 use super::node::{Below, LEAST_SIZE, WIDTH, WideNode};
-use super::surface::{Extent, Reach, Surface, unit_of};
+use super::slabs::MOST;
+use super::surface::{Extent, unit_of};
+use crate::TriMesh;
+use crate::parallel::{both, map_in_order};
 use glam::DVec3;
 use thiserror::Error;
 
-/// Boxes above a triangle; a built tree of 2²⁹ triangles has at most 30.
-const DEEPEST: usize = 64;
+/// Nodes that are checked at a time: one takes a tenth of a microsecond, waking a thread several.
+const NODES: usize = 4096;
 
 /// Why a tree is not one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -58,24 +63,55 @@ impl MeshTree {
     /// plus its proven error must be within what the box says.
     ///
     /// # Errors
-    /// The first broken promise.
+    /// The first broken promise; the same one at any number of threads.
     pub fn validate(&self) -> Result<(), TreeError> {
-        let least = Extent::about(&self.mesh, self.center);
-        let fits = self.center.is_finite() && self.radius.is_finite() && self.radius >= least.radius;
-        if !fits || self.unit != unit_of(self.radius) {
-            return Err(TreeError::Extent);
-        }
-        self.check_links()?;
-        for (index, node) in self.nodes.iter().enumerate() {
-            check_shapes(index, node)?;
-        }
-        self.check_enclosures(&Extent { center: self.center, radius: self.radius, unit: self.unit })
+        let extent = Extent { center: self.center, radius: self.radius, unit: self.unit };
+        ClaimedTree { mesh: &self.mesh, nodes: &self.nodes, extent }.check()
+    }
+}
+
+/// What is said to be a tree.
+pub(super) struct ClaimedTree<'a> {
+    pub(super) mesh: &'a TriMesh,
+    pub(super) nodes: &'a [WideNode],
+    pub(super) extent: Extent,
+}
+
+impl ClaimedTree<'_> {
+    /// As [`MeshTree::validate`].
+    pub(super) fn check(&self) -> Result<(), TreeError> {
+        let (sizes, corners) = both(
+            || (self.check_extent(), self.check_shapes()),
+            || self.check_links().and_then(|()| TreeCorners::of(self.nodes, self.mesh, &self.extent)),
+        );
+        sizes.0?;
+        let corners = corners?;
+        sizes.1?;
+        Enclosures { nodes: self.nodes, tree: corners }.check(0, &mut Vec::new())
+    }
+
+    fn check_shapes(&self) -> Result<(), TreeError> {
+        let chunks: Vec<_> = self.nodes.chunks(NODES).enumerate().collect();
+        let checked = map_in_order(&chunks, |(chunk, nodes)| {
+            nodes.iter().enumerate().try_for_each(|(k, node)| check_node(chunk * NODES + k, node))
+        });
+        checked.into_iter().collect()
+    }
+
+    fn check_extent(&self) -> Result<(), TreeError> {
+        let Extent { center, radius, unit } = self.extent;
+        let least = Extent::about(self.mesh, center);
+        let fits = center.is_finite() && radius.is_finite() && radius >= least.radius;
+        if fits && unit == unit_of(radius) { Ok(()) } else { Err(TreeError::Extent) }
     }
 
     fn check_links(&self) -> Result<(), TreeError> {
         let root = self.nodes.first().ok_or(TreeError::Link { node: 0 })?;
         if root.used != 1 || root.parent != 0 || self.nodes.len() > u32::MAX as usize / WIDTH {
             return Err(TreeError::Link { node: 0 });
+        }
+        if self.mesh.triangle_count() > MOST_TRIANGLES {
+            return Err(TreeError::Triangle { triangle: MOST_TRIANGLES });
         }
         let mut is_linked = vec![false; self.nodes.len()];
         let mut is_held = vec![false; self.mesh.triangle_count()];
@@ -109,118 +145,9 @@ impl MeshTree {
             _ => Ok(()),
         }
     }
-
-    /// Each box against the triangles below it.
-    fn check_enclosures(&self, extent: &Extent) -> Result<(), TreeError> {
-        let surface = Surface::new(&self.mesh, extent);
-        let below = self.triangles_below()?;
-        let check = |(index, node): (usize, &WideNode)| {
-            for lane in 0..node.used as usize {
-                check_box(index, node, lane, below.of(index, lane), &surface)?;
-            }
-            Ok(())
-        };
-        #[cfg(feature = "rayon")]
-        {
-            use rayon::prelude::*;
-            // The first of all faults, whatever the number of threads.
-            let fault = self.nodes.par_iter().enumerate().find_map_first(|item| check(item).err());
-            fault.map_or(Ok(()), Err)
-        }
-        #[cfg(not(feature = "rayon"))]
-        self.nodes.iter().enumerate().try_for_each(check)
-    }
-
-    /// Walks down from the root. Nodes in a cycle are below no root: they are not met.
-    fn triangles_below(&self) -> Result<TrianglesBelow, TreeError> {
-        let mut triangles = Vec::with_capacity(self.mesh.triangle_count());
-        let mut first = vec![0; self.nodes.len()];
-        let mut ends = vec![[0; WIDTH]; self.nodes.len()];
-        let mut is_met = vec![false; self.nodes.len()];
-        is_met[0] = true;
-        // The nodes from the root to here, each with the next lane.
-        let mut path = vec![(0, 0)];
-        while let Some((index, lane)) = path.last_mut() {
-            let (node, index, current) = (&self.nodes[*index], *index, *lane);
-            if current > 0 {
-                ends[index][current - 1] = triangles.len() as u32;
-            }
-            if current >= node.used as usize {
-                path.pop();
-                continue;
-            }
-            *lane += 1;
-            match node.below(current) {
-                Below::Triangle(triangle) => triangles.push(triangle),
-                Below::Node(child) => {
-                    let child = child as usize;
-                    if path.len() > DEEPEST {
-                        return Err(TreeError::Link { node: child });
-                    }
-                    first[child] = triangles.len() as u32;
-                    is_met[child] = true;
-                    path.push((child, 0));
-                }
-            }
-        }
-        match is_met.iter().position(|&is| !is) {
-            Some(node) => Err(TreeError::Link { node }),
-            None => Ok(TrianglesBelow { triangles, first, ends }),
-        }
-    }
 }
 
-/// The triangles below each box: a part of one list, in the order of the tree.
-struct TrianglesBelow {
-    triangles: Vec<u32>,
-    /// Where the part of the first box of each node begins.
-    first: Vec<u32>,
-    /// Where the part of each box ends, and that of the next one begins.
-    ends: Vec<[u32; WIDTH]>,
-}
-
-impl TrianglesBelow {
-    fn of(&self, node: usize, lane: usize) -> &[u32] {
-        let start = if lane == 0 { self.first[node] } else { self.ends[node][lane - 1] };
-        &self.triangles[start as usize..self.ends[node][lane] as usize]
-    }
-}
-
-/// All triangles at once, and only where that is no proof one by one: what is proven of all points is proven of each.
-fn check_box(
-    index: usize,
-    node: &WideNode,
-    lane: usize,
-    triangles: &[u32],
-    surface: &Surface<'_>,
-) -> Result<(), TreeError> {
-    let boxed = node.oriented_box(lane);
-    let mut reach = Reach::new(node.origin, boxed.center, &boxed.axes, boxed.half_extent.map(f64::from));
-    for &triangle in triangles {
-        for corner in &surface.corners(triangle) {
-            reach.add(corner);
-        }
-    }
-    if reach.is_within(&boxed) {
-        return Ok(());
-    }
-    match triangles.iter().find(|&&triangle| !encloses(node, lane, &surface.corners(triangle))) {
-        None => Ok(()),
-        Some(&triangle) => Err(TreeError::Enclosure { node: index, lane, triangle: triangle as usize }),
-    }
-}
-
-/// Is the triangle proven to be inside the box and its ball? The same arithmetic as at construction.
-fn encloses(node: &WideNode, lane: usize, corners: &[[f64; 3]; 3]) -> bool {
-    let boxed = node.oriented_box(lane);
-    let mut reach = Reach::new(node.origin, boxed.center, &boxed.axes, boxed.half_extent.map(f64::from));
-    for p in corners {
-        reach.add(p);
-    }
-    reach.is_within(&boxed)
-}
-
-fn check_shapes(index: usize, node: &WideNode) -> Result<(), TreeError> {
+fn check_node(index: usize, node: &WideNode) -> Result<(), TreeError> {
     let unused = WideNode::empty([0.0; 3], 0);
     if !node.origin.iter().all(|x| x.is_finite()) || !node.extent.is_finite() {
         return Err(TreeError::Shape { node: index, lane: 0 });
@@ -243,6 +170,7 @@ fn check_shapes(index: usize, node: &WideNode) -> Result<(), TreeError> {
                 && f64::from(node.extent) >= center + f64::from(boxed.radius)
                 && size.is_finite()
                 && (if is_leaf { size == 0.0 } else { size >= LEAST_SIZE })
+                && boxed.slabs.iter().flatten().all(|&steps| steps <= MOST)
                 && is_orthonormal(&boxed.axes)
         };
         if !fine {

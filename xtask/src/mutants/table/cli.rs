@@ -26,8 +26,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "a tree as bytes that is not validated",
         "crates/d2m-bvh/src/tree/parts.rs",
-        "        tree.validate()?;\n",
-        "",
+        "    checked?;\n",
+        "    let _ = checked;\n",
         "crates/d2m-bvh/src/tree/file/tests.rs::forged_bytes_are_refused_or_valid",
     ),
     patch(
@@ -39,9 +39,16 @@ pub(super) const MUTANTS: &[Mutant] = &[
     ),
     patch(
         "boxes are checked against the first triangle below them only",
-        "crates/d2m-bvh/src/tree/validate.rs",
-        "    for &triangle in triangles {\n",
-        "    for &triangle in triangles.iter().take(1) {\n",
+        "crates/d2m-bvh/src/tree/enclosures.rs",
+        "taken.truncate(kept);",
+        "taken.truncate(kept.min(before + 3));",
         "crates/d2m-bvh/src/tree/tests.rs::any_shrunk_or_broken_tree_is_refused",
+    ),
+    patch(
+        "vertices that another box has are not checked again",
+        "crates/d2m-bvh/src/tree/enclosures.rs",
+        "corner.earlier <= start",
+        "corner.earlier == 0",
+        "crates/d2m-bvh/src/tree/tests.rs::each_box_is_checked_against_each_vertex_below_it",
     ),
 ];

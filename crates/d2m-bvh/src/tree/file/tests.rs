@@ -1,5 +1,7 @@
 use super::*;
+use crate::TriMesh;
 use crate::tree::tests::torus;
+use glam::DVec3;
 
 fn bits(tree: &MeshTree) -> String {
     format!("{tree:?}")

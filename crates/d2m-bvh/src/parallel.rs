@@ -1,0 +1,23 @@
+//! Work on several threads with answers in the order of the work: the same bits at any number of threads.
+
+/// Both answers: on two threads of the current rayon pool with the feature `rayon`.
+pub(crate) fn both<A: Send, B: Send>(
+    first: impl FnOnce() -> A + Send,
+    second: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    #[cfg(feature = "rayon")]
+    return rayon::join(first, second);
+    #[cfg(not(feature = "rayon"))]
+    (first(), second())
+}
+
+/// `work` of each item, in order: on all threads of the current rayon pool with the feature `rayon`.
+pub(crate) fn map_in_order<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
+    #[cfg(feature = "rayon")]
+    {
+        use rayon::prelude::*;
+        items.par_iter().map(work).collect()
+    }
+    #[cfg(not(feature = "rayon"))]
+    items.iter().map(work).collect()
+}
