@@ -7,7 +7,7 @@
 
 use super::node::{Below, OrientedBox, WIDTH, WideNode};
 use super::surface::{Extent, Reach};
-use super::validate::TreeError;
+use super::tree_error::TreeError;
 use crate::TriMesh;
 use crate::parallel::map_in_order;
 use d2m_lanes::{Lanes, Task, run};

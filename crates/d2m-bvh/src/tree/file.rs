@@ -16,7 +16,7 @@
 use super::mesh_tree::MeshTree;
 use super::node::{Below, LEAF, OrientedBox};
 use super::parts::tree_of_parts;
-use super::validate::TreeError;
+use super::tree_error::TreeError;
 use crate::MeshError;
 use crate::parallel::both;
 use read::{Reader, TreeParts};

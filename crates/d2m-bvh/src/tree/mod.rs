@@ -18,9 +18,10 @@ mod split;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod tree_error;
 mod validate;
 
 pub use file::TreeFileError;
 pub use mesh_tree::MeshTree;
 pub(crate) use mesh_tree::TreeId;
-pub use validate::TreeError;
+pub use tree_error::TreeError;

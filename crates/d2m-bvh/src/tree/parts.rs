@@ -3,7 +3,8 @@
 use super::mesh_tree::MeshTree;
 use super::node::{Below, OrientedBox, WIDTH, WideNode};
 use super::surface::{Extent, size_of_box, unit_of};
-use super::validate::{ClaimedTree, TreeError};
+use super::tree_error::TreeError;
+use super::validate::ClaimedTree;
 use crate::TriMesh;
 use crate::mesh::Closedness;
 use crate::parallel::both;

@@ -9,7 +9,7 @@ use super::mesh_tree::MeshTree;
 use super::node::{Below, LEAF, OrientedBox, WIDTH, WideNode};
 use super::parts::{node_of_parts, tree_of_parts};
 use super::slabs::Slabs;
-use super::validate::TreeError;
+use super::tree_error::TreeError;
 use crate::TriMesh;
 use crate::mesh::ExactNumber;
 use glam::DVec3;

@@ -7,52 +7,13 @@ use super::mesh_tree::MeshTree;
 use super::node::{Below, LEAST_SIZE, WIDTH, WideNode};
 use super::slabs::MOST;
 use super::surface::{Extent, unit_of};
+use super::tree_error::TreeError;
 use crate::TriMesh;
 use crate::parallel::{both, map_in_order};
 use glam::DVec3;
-use thiserror::Error;
 
 /// Nodes that are checked at a time: one takes a tenth of a microsecond, waking a thread several.
 const NODES: usize = 4096;
-
-/// Why a tree is not one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum TreeError {
-    /// Center, radius or unit do not fit the mesh.
-    #[error("center, radius or unit of the tree do not fit its mesh")]
-    Extent,
-    /// A node does not exist, is below two boxes or none, or its number of boxes is wrong.
-    #[error("node {node}: not linked into one tree")]
-    Link {
-        /// Number of the node.
-        node: usize,
-    },
-    /// A triangle does not exist, or is not in exactly one leaf.
-    #[error("triangle {triangle}: not in exactly one leaf")]
-    Triangle {
-        /// Number of the triangle.
-        triangle: usize,
-    },
-    /// The axes of a box are not orthonormal to the rounding of `f32`, or its numbers are not consistent.
-    #[error("box {lane} of node {node}: axes or extents are inconsistent")]
-    Shape {
-        /// Number of the node.
-        node: usize,
-        /// Number of the box in the node.
-        lane: usize,
-    },
-    /// A box is not proven to enclose a triangle that is below it.
-    #[error("box {lane} of node {node} does not enclose triangle {triangle}")]
-    Enclosure {
-        /// Number of the node.
-        node: usize,
-        /// Number of the box in the node.
-        lane: usize,
-        /// Number of the triangle.
-        triangle: usize,
-    },
-}
 
 impl MeshTree {
     /// Checks that every query may rely on this tree: each box encloses its triangles in real arithmetic, axes are

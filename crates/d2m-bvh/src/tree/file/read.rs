@@ -4,7 +4,7 @@ use super::{BOX, CHECKSUM, HEADER, MAGIC, NODE, TRIANGLE, TreeFileError, VERTEX}
 use crate::parallel::{both, map_in_order};
 use crate::tree::node::{Below, LEAF, OrientedBox, WIDTH, WideNode};
 use crate::tree::parts::node_of_parts;
-use crate::tree::validate::TreeError;
+use crate::tree::tree_error::TreeError;
 use crate::{MeshError, TriMesh};
 use glam::DVec3;
 
