@@ -226,7 +226,7 @@ Example:
 pub(crate) struct TreeArguments {
     #[arg(value_name = "A", help = MESH_HELP)]
     pub(crate) mesh: String,
-    /// File to write, with the extension .d2mtree
+    /// File to write, with the extension .d2mtree; - for standard output
     #[arg(long, value_name = "A.d2mtree")]
     pub(crate) out: String,
 }
@@ -250,7 +250,8 @@ A case: {\"id\", \"kind\", \"A\", \"B\", \"motionA\", \"motionB\", \"t0\", \"t1\
   sphere_sphere    A {\"c\": [x,y,z], \"r\": radius}  B {\"c\", \"r\"}
 and motions {\"q\": [w,x,y,z], \"x\": [3], \"v\": [3], \"w\": [3]}; or, for four points that each move straight from t = 0 to 1,
   {\"id\", \"kind\": \"point_triangle_linear\" or \"edge_edge_linear\", \"t0_points\": [4 points], \"t1_points\": [4 points]}.
-A result: {\"id\", \"status\": \"hit\", \"miss\" or \"undecided\", \"t_lo\", \"t_hi\", \"microseconds\"}.
+A result: {\"id\", \"status\": \"hit\", \"miss\" or \"undecided\", \"t_lo\", \"t_hi\", \"evidence\": \"crossing\" or \"near\",
+\"tolerance\", \"microseconds\"}: nothing touches before t_lo; evidence and tolerance (of hits) are as d2m toc --help explains.
 
 Exit codes: 0 answered, 2 bad usage, 3 bad input.")]
 pub(crate) struct FeaturesArguments {

@@ -93,18 +93,17 @@ impl Pair {
     }
 
     /// The answer of a trial.
-    pub(crate) fn ask_trial(&self, trial: &Trial) -> Result<Answer, Failure> {
+    pub(crate) fn answer_trial(&self, trial: &Trial) -> Result<Answer, Failure> {
         check_size("motion of A", &trial.motion_a, &self.a)?;
         check_size("motion of B", &trial.motion_b, &self.b)?;
-        self.ask(&trial.motion_a, &trial.motion_b, trial.window)
+        self.answer(&trial.motion_a, &trial.motion_b, trial.window)
     }
 
-    /// The time of contact in a window, piece by piece where both motions have constant twists; the first contact is the
-    /// answer.
-    pub(crate) fn ask(&self, a: &AnyMotion, b: &AnyMotion, window: Window) -> Result<Answer, Failure> {
-        // The engine does that itself.
+    /// The time of contact in a window. The reference method is called piece by piece where both motions have constant
+    /// twists, and the first contact is the answer; the default engine needs no such help.
+    pub(crate) fn answer(&self, a: &AnyMotion, b: &AnyMotion, window: Window) -> Result<Answer, Failure> {
         if matches!(self.a.tree, Tree::Engine(_)) {
-            return self.ask_smooth([a, b], window);
+            return self.answer_smooth([a, b], window);
         }
         let mut took = Duration::ZERO;
         let mut start = window.start();
@@ -112,12 +111,12 @@ impl Pair {
             let pieces = a.constant_twist_from(start).zip(b.constant_twist_from(start));
             let Some((piece_a, piece_b)) = pieces else {
                 let rest = part(start, window.end())?;
-                let Answer { verdict, took: last } = self.ask_smooth([a, b], rest)?;
+                let Answer { verdict, took: last } = self.answer_smooth([a, b], rest)?;
                 return Ok(Answer { verdict, took: took + last });
             };
             let ends = [piece_a.until, piece_b.until].into_iter().flatten();
             let end = ends.fold(window.end(), f64::min);
-            let answer = self.ask_smooth([&piece_a.motion, &piece_b.motion], part(start, end)?)?;
+            let answer = self.answer_smooth([&piece_a.motion, &piece_b.motion], part(start, end)?)?;
             took += answer.took;
             if !answer.verdict.is_separated() || end >= window.end() {
                 return Ok(Answer { took, ..answer });
@@ -126,7 +125,7 @@ impl Pair {
         }
     }
 
-    fn ask_smooth(&self, [a, b]: [&dyn RigidMotion; 2], window: Window) -> Result<Answer, Failure> {
+    fn answer_smooth(&self, [a, b]: [&dyn RigidMotion; 2], window: Window) -> Result<Answer, Failure> {
         let start = Instant::now();
         let [solid_a, solid_b] = self.solids;
         let verdict = match (&self.a.tree, &self.b.tree) {

@@ -9,6 +9,7 @@ mod commands;
 mod engine;
 mod failure;
 mod load;
+mod mesh_library;
 mod motion;
 mod outcome;
 mod output;

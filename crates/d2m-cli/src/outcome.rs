@@ -14,7 +14,7 @@ pub(crate) enum Outcome {
 
 impl Outcome {
     /// The answer itself if the user wants it.
-    pub(crate) fn asked(self, exit_status: bool) -> Self {
+    pub(crate) fn reported(self, exit_status: bool) -> Self {
         if exit_status { self } else { Self::Answered }
     }
 

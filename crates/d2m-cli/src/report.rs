@@ -125,7 +125,7 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
         0.0 => String::new(),
         distance => format!(" · a distance of {} is contact", short(distance)),
     };
-    line("asked", format!("window [{start}, {end}] · {solid}{nearer}"));
+    line("query", format!("window [{start}, {end}] · {solid}{nearer}"));
     line(
         "took",
         format!("{} (after {} to build the trees)", duration(answer.took), duration(pair.preparation)),
@@ -171,8 +171,8 @@ fn contact_lines(line: &mut dyn FnMut(&str, String), contact: &Contact, pair: &P
     let apart = matches!(contact.start, StartState::Apart | StartState::Touching);
     if apart {
         let raised = match pair.tolerance {
-            Some(asked) if contact.tolerance > asked => {
-                format!(" (raised from {asked:.2e}: the rounding of these lengths and times allows no less)")
+            Some(given) if contact.tolerance > given => {
+                format!(" (raised from {given:.2e}: the rounding of these lengths and times allows no less)")
             }
             _ => String::new(),
         };

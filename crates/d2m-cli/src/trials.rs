@@ -46,20 +46,20 @@ const FIELDS: [&str; 13] = ["qw", "qx", "qy", "qz", "x1", "x2", "x3", "v1", "v2"
 pub(crate) fn load(path: &Path) -> Result<Vec<Trial>, Failure> {
     let bytes = read(path)?;
     let text = String::from_utf8_lossy(&bytes);
-    parse(text.trim_start_matches('\u{feff}')).map_err(|(line, reason)| match line {
-        Some(line) => Failure::Input(format!("{}, line {line}: {reason}", path.display())),
-        None => Failure::at(path.display(), reason),
-    })
+    parse(&path.display().to_string(), text.trim_start_matches('\u{feff}'))
 }
 
-fn parse(text: &str) -> Result<Vec<Trial>, (Option<usize>, String)> {
+fn parse(place: &str, text: &str) -> Result<Vec<Trial>, Failure> {
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let mut lines = lines.peekable();
     lines.next_if(|(_, line)| is_header(line));
     let trials: Vec<Trial> = lines
-        .map(|(index, line)| parse_line(line, index + 1).map_err(|reason| (Some(index + 1), reason)))
+        .map(|(index, line)| {
+            let number = index + 1;
+            parse_line(line, number).map_err(|reason| Failure::at(format!("{place}, line {number}"), reason))
+        })
         .collect::<Result<_, _>>()?;
-    if trials.is_empty() { Err((None, "there are no trials".to_owned())) } else { Ok(trials) }
+    if trials.is_empty() { Err(Failure::at(place, "there are no trials")) } else { Ok(trials) }
 }
 
 /// Names of columns: several fields of printed characters, and none of them a number.
@@ -121,9 +121,13 @@ mod tests {
 
     const LINE: &str = "1,0,0,0,1,2,3,4,5,6,7,8,9,0,1,0,0,-1,-2,-3,-4,-5,-6,-7,-8,-9";
 
+    fn fault(text: &str) -> String {
+        parse("t", text).unwrap_err().to_string()
+    }
+
     #[test]
     fn order_of_the_fields() {
-        let trials = parse(&format!("{LINE}\r\n\n {LINE}\n")).unwrap();
+        let trials = parse("t", &format!("{LINE}\r\n\n {LINE}\n")).unwrap();
         assert_eq!((trials.len(), trials[0].line, trials[1].line), (2, 1, 3));
         let [a, b] = [&trials[0].motion_a, &trials[1].motion_b].map(|m| m.constant_twist().unwrap());
         assert_eq!(a.position(), DVec3::new(1.0, 2.0, 3.0));
@@ -136,45 +140,44 @@ mod tests {
     fn lines_of_json_hold_any_motion() {
         let arm = r#"{"chain": [{"joint": "revolute", "axis": [0, 0, 1], "value": {"times": [0, 2], "pieces": [[0, 1]]}}]}"#;
         let line = format!("{LINE}\n{{\"a\": {arm}, \"window\": [0.5, 1.5]}}\n");
-        let trials = parse(&line).unwrap();
+        let trials = parse("t", &line).unwrap();
         assert_eq!(trials[0].window, Window::UNIT);
         assert_eq!((trials[1].window.start(), trials[1].window.end()), (0.5, 1.5));
         assert!(matches!(&trials[1].motion_a, AnyMotion::Chain(chain) if chain.joints().len() == 1));
         assert_eq!(trials[1].motion_b, at_rest());
-        let fault = |text: &str| parse(text).unwrap_err();
         let outside = fault(&format!("{{\"b\": {arm}, \"window\": [1, 3]}}"));
-        assert_eq!(outside.0, Some(1));
-        assert!(outside.1.contains("b: the motion covers the times from 0.0 to 2.0"), "{}", outside.1);
-        assert!(fault("{\"c\": {}}").1.contains("unknown field `c`"));
-        assert!(fault("{\"window\": [1, 0]}").1.contains("window"));
+        assert!(
+            outside.starts_with("t, line 1: b: the motion covers the times from 0.0 to 2.0"),
+            "{outside}"
+        );
+        assert!(fault("{\"c\": {}}").contains("unknown field `c`"));
+        assert!(fault("{\"window\": [1, 0]}").contains("window"));
     }
 
     #[test]
     fn a_header_line_is_skipped() {
         let names: Vec<String> =
             (0..26).map(|k| format!("{}{}", FIELDS[k % 13], ["A", "B"][k / 13])).collect();
-        let trials = parse(&format!("\n{}\r\n{LINE}\n", names.join(","))).unwrap();
+        let trials = parse("t", &format!("\n{}\r\n{LINE}\n", names.join(","))).unwrap();
         assert_eq!((trials.len(), trials[0].line), (1, 3));
-        assert_eq!(parse("a,b,c\n").unwrap_err(), (None, "there are no trials".to_owned()));
+        assert_eq!(fault("a,b,c\n"), "t: there are no trials");
         // Only the first line is one, and not where a number stands in it.
-        assert_eq!(parse(&format!("{LINE}\na,b\n")).unwrap_err().0, Some(2));
-        assert_eq!(parse(&names.join(",").replace("qwA", "1")).unwrap_err().0, Some(1));
+        assert!(fault(&format!("{LINE}\na,b\n")).starts_with("t, line 2: "));
+        assert!(fault(&names.join(",").replace("qwA", "1")).starts_with("t, line 1: "));
     }
 
     #[test]
     fn faults_name_line_and_field() {
-        let fault = |text: &str| parse(text).unwrap_err();
-        assert_eq!(fault("\n\n"), (None, "there are no trials".to_owned()));
+        assert_eq!(fault("\n\n"), "t: there are no trials");
         let short = fault(&format!("{LINE}\n1,2,3\n"));
-        assert_eq!(short, (Some(2), "expected 26 numbers separated by commas, found 3".to_owned()));
+        assert_eq!(short, "t, line 2: expected 26 numbers separated by commas, found 3");
         let word = fault(&format!("\n{}", LINE.replace("-4", "four")));
-        assert_eq!(word, (Some(2), "field 21 (v1 of B): \"four\" is not a number".to_owned()));
+        assert_eq!(word, "t, line 2: field 21 (v1 of B): \"four\" is not a number");
         let infinite = fault(&LINE.replace("-9", "1e999"));
-        assert_eq!(infinite, (Some(1), "field 26 (w3 of B): 1e999 is not finite".to_owned()));
+        assert_eq!(infinite, "t, line 1: field 26 (w3 of B): 1e999 is not finite");
         let far = fault(&LINE.replace("-9", "1e300"));
-        assert_eq!(far, (Some(1), "field 26 (w3 of B): 1e300 is larger than the limit of 1e60".to_owned()));
+        assert_eq!(far, "t, line 1: field 26 (w3 of B): 1e300 is larger than the limit of 1e60");
         let zero = fault(&LINE.replacen('1', "0", 1));
-        assert_eq!(zero.0, Some(1));
-        assert!(zero.1.starts_with("motion of A: orientation (0.0, 0.0, 0.0, 0.0)"), "{}", zero.1);
+        assert!(zero.starts_with("t, line 1: motion of A: orientation (0.0, 0.0, 0.0, 0.0)"), "{zero}");
     }
 }

@@ -92,7 +92,9 @@ fn the_exit_code_says_the_answer_where_it_is_asked_for() {
     // Bad usage and bad input stay what they are.
     assert_eq!(asked(&["toc", UNIT_BOX]), Some(2));
     assert_eq!(asked(&["toc", UNIT_BOX, "absent.obj"]), Some(3));
-    for command in ["toc", "batch", "features", "distance", "collide", "info", "tree", "view"] {
+    for command in
+        ["toc", "batch", "features", "distance", "collide", "scene", "simulate", "info", "tree", "view"]
+    {
         let help = stdout(&d2m(&[command, "--help"]));
         assert!(help.contains("Exit codes: 0 "), "{command}: {help}");
     }

@@ -20,7 +20,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     let bar = progress_bar(trials.len(), "trials");
     let start = Instant::now();
     let answer = |(index, trial): (usize, &Trial)| {
-        let answer = pair.ask_trial(trial);
+        let answer = pair.answer_trial(trial);
         bar.inc(1);
         let place = || format!("{}, line {} (trial {index})", arguments.trials.display(), trial.line);
         answer.map_err(|failure| Failure::at(place(), failure))

@@ -52,10 +52,10 @@ pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
         for (label, body) in ["A", "B"].into_iter().zip(&pair.bodies) {
             line(label, format!("{} · {} triangles", body.name, body.tree.mesh().triangle_count()));
         }
-        line("asked", solid_word(pair.solid).to_owned());
+        line("query", solid_word(pair.solid).to_owned());
         line("took", duration(took));
         text
     })?;
     let outcome = if is_contact { Outcome::Contact } else { Outcome::Separated };
-    Ok(outcome.asked(arguments.posed.exit_status))
+    Ok(outcome.reported(arguments.posed.exit_status))
 }

@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &DistanceArguments) -> Result<Outcome, Failure> {
     let found = found.map_err(|error| pair.failure(error))?;
     print(&if arguments.posed.json { to_json(&pair, &found, took) } else { to_text(&pair, &found, took) })?;
     let outcome = if found.state == StartState::Apart { Outcome::Separated } else { Outcome::Contact };
-    Ok(outcome.asked(arguments.posed.exit_status))
+    Ok(outcome.reported(arguments.posed.exit_status))
 }
 
 fn to_text(pair: &PosedPair, found: &Distance, took: Duration) -> String {
@@ -42,7 +42,7 @@ fn to_text(pair: &PosedPair, found: &Distance, took: Duration) -> String {
     for (label, body) in ["A", "B"].into_iter().zip(&pair.bodies) {
         line(label, format!("{} · {} triangles", body.name, body.tree.mesh().triangle_count()));
     }
-    line("asked", solid_word(pair.solid).to_owned());
+    line("query", solid_word(pair.solid).to_owned());
     line("took", duration(took));
     text
 }

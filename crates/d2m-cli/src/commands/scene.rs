@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
     } else {
         Outcome::Undecided
     };
-    Ok(outcome.asked(arguments.exit_status))
+    Ok(outcome.reported(arguments.exit_status))
 }
 
 /// The answer for a program.
@@ -109,10 +109,13 @@ fn json(window: Window, names: &[&str], rows: &[Row]) -> String {
 /// The answer for a person.
 fn text(window: Window, names: &[&str], rows: &[Row]) -> String {
     let [start, end] = [window.start(), window.end()].map(short);
-    let mut text = match rows.len() {
-        0 => format!("SEPARATED: certified, no contact of {} bodies from {start} to {end}\n", names.len()),
-        1 => format!("1 answer about {} bodies from {start} to {end}\n", names.len()),
-        count => format!("{count} answers about {} bodies from {start} to {end}\n", names.len()),
+    let contacts = rows.iter().filter(|row| row.answer.contact().is_some()).count();
+    let bodies = format!("{} bodies from {start} to {end}\n", names.len());
+    let mut text = match (contacts, rows.len() - contacts) {
+        (0, 0) => format!("SEPARATED: certified, no contact of {bodies}"),
+        (_, 0) => format!("CONTACT of {contacts} pairs of {bodies}"),
+        (0, undecided) => format!("UNDECIDED: {undecided} pairs of {bodies}"),
+        (_, undecided) => format!("CONTACT of {contacts} pairs, and {undecided} undecided, of {bodies}"),
     };
     for row in rows {
         let [a, b] = row.bodies.map(|body| names[body]);

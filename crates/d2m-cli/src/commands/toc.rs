@@ -30,7 +30,7 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
     let pair = Pair::new(load(&arguments.a)?, load(&arguments.b)?, &arguments.query)?.on_all_threads();
     check_size("--motion-a", &motion_a, &pair.a)?;
     check_size("--motion-b", &motion_b, &pair.b)?;
-    let answer = pair.ask(&motion_a, &motion_b, window)?;
+    let answer = pair.answer(&motion_a, &motion_b, window)?;
     if let Some(scene) = scene {
         let time = match &answer.verdict {
             TimeOfContact::Contact(contact) => contact.time_lo,
@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
     } else {
         report::text(&pair, window, &answer)
     })?;
-    Ok(Outcome::from(&answer.verdict).asked(arguments.exit_status))
+    Ok(Outcome::from(&answer.verdict).reported(arguments.exit_status))
 }
 
 /// Appends the posed mesh and returns its number of vertices.

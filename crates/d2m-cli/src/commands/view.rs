@@ -39,7 +39,7 @@ fn pair(arguments: &ViewArguments, b: &str) -> Result<Picture, Failure> {
     let pair = Pair::new(load(&arguments.a)?, load(b)?, &arguments.query)?.on_all_threads();
     check_size("--motion-a", &motions[0], &pair.a)?;
     check_size("--motion-b", &motions[1], &pair.b)?;
-    let answer = pair.ask(&motions[0], &motions[1], window)?;
+    let answer = pair.answer(&motions[0], &motions[1], window)?;
     let text = report::text(&pair, window, &answer);
     let mut lines = text.lines().map(|line| line.trim().to_owned());
     let headline = lines.next().unwrap_or_default();

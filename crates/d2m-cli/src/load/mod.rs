@@ -13,6 +13,7 @@ use crate::failure::Failure;
 use crate::output::progress_bar;
 use d2m::bvh::{MAX_COORDINATE, MeshError, MeshTree, TriMesh};
 use d2m::shapes;
+use glam::DVec3;
 use std::path::Path;
 
 /// A mesh with the name that the user gave it, and how it was read.
@@ -31,6 +32,15 @@ enum Geometry {
     Tree(Box<MeshTree>),
 }
 
+impl Geometry {
+    fn into_mesh(self) -> TriMesh {
+        match self {
+            Self::Mesh(mesh) => mesh,
+            Self::Tree(tree) => tree.into_mesh(),
+        }
+    }
+}
+
 impl Loaded {
     fn exact(name: String, geometry: Geometry) -> Self {
         Self { name, polygons: PolygonCounts::default(), precision: Precision::Double, geometry }
@@ -46,10 +56,21 @@ impl Loaded {
 
     /// The mesh alone.
     pub(crate) fn into_mesh(self) -> TriMesh {
-        match self.geometry {
-            Geometry::Mesh(mesh) => mesh,
-            Geometry::Tree(tree) => tree.into_mesh(),
+        self.geometry.into_mesh()
+    }
+
+    /// The mesh with each axis scaled. Mirrored triangles are turned round, so that the outside stays outside.
+    pub(crate) fn scaled(self, scale: DVec3) -> Result<Self, MeshError> {
+        if scale == DVec3::ONE {
+            return Ok(self);
         }
+        let Self { name, polygons, precision, geometry } = self;
+        let (vertices, triangles) = geometry.into_mesh().into_parts();
+        let is_mirrored = scale.is_negative_bitmask().count_ones() % 2 == 1;
+        let turn = |[a, b, c]: [u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
+        let vertices = vertices.into_iter().map(|vertex| vertex * scale).collect();
+        let mesh = TriMesh::try_new(vertices, triangles.into_iter().map(turn).collect())?;
+        Ok(Self { name, polygons, precision, geometry: Geometry::Mesh(mesh) })
     }
 
     /// The mesh with its tree, built if the file holds none. What takes a second or more shows how far it is.

@@ -5,11 +5,12 @@ mod ignored;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use body::{BodyForm, MeshLibrary, SceneBody};
+pub(crate) use body::{BodyForm, SceneBody};
 pub(crate) use ignored::Ignored;
 
 use crate::failure::Failure;
 use crate::load::read;
+use crate::mesh_library::MeshLibrary;
 use crate::motion::require_window;
 use crate::unique_keys::UniqueKeys;
 use d2m::bvh::{QueryOptions, Window};

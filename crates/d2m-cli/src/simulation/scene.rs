@@ -2,15 +2,15 @@
 
 use super::fields::{Fields, short};
 use crate::failure::Failure;
-use crate::load::{load, read};
+use crate::load::read;
+use crate::mesh_library::{MeshLibrary, read_scale};
 use crate::motion::require_window;
 use crate::unique_keys::UniqueKeys;
-use d2m::bvh::{MeshTree, Solid, TriMesh, Window};
+use d2m::bvh::{MeshTree, Solid, Window};
 use d2m::motion::AnyMotion;
 use d2m_dynamics::{Body, BodyId, Kind, Mass, MassProperties, Motion, Simulation, SimulationOptions};
 use glam::{DMat3, DVec3};
 use serde_json::Value;
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -58,7 +58,7 @@ pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
     if list.is_empty() {
         return Err(scene.fault("bodies", "the list is empty"));
     }
-    let mut reader = Reader { folder: path.parent().unwrap_or(Path::new("")), trees: BTreeMap::new(), end };
+    let mut reader = Reader { meshes: MeshLibrary::new(path), end };
     let (mut names, mut ids, mut groups) = (Vec::new(), Vec::new(), Vec::new());
     for (index, value) in list.iter().enumerate() {
         let place = match value.get("name").and_then(Value::as_str) {
@@ -155,14 +155,12 @@ fn pairs(
     Ok(())
 }
 
-struct Reader<'p> {
-    folder: &'p Path,
-    /// By mesh and scale, as written.
-    trees: BTreeMap<(String, String), Arc<MeshTree>>,
+struct Reader {
+    meshes: MeshLibrary,
     end: f64,
 }
 
-impl Reader<'_> {
+impl Reader {
     fn body(&mut self, fields: &Fields<'_>) -> Result<Body, Failure> {
         fields.required("name")?;
         let name = fields.text("name")?.unwrap_or_default();
@@ -241,37 +239,8 @@ impl Reader<'_> {
     fn tree(&mut self, fields: &Fields<'_>) -> Result<Arc<MeshTree>, Failure> {
         fields.required("mesh")?;
         let name = fields.text("mesh")?.unwrap_or_default();
-        let scale = match fields.get("scale") {
-            None => DVec3::ONE,
-            Some(Value::Number(_)) => DVec3::splat(fields.number("scale")?.unwrap_or(1.0)),
-            Some(_) => fields.vector("scale")?.unwrap_or(DVec3::ONE),
-        };
-        if scale.to_array().contains(&0.0) {
-            return Err(fields.fault("scale", format!("{scale} has a zero")));
-        }
-        let key = (name.to_owned(), format!("{scale:?}"));
-        if let Some(tree) = self.trees.get(&key) {
-            return Ok(Arc::clone(tree));
-        }
-        let source = if name.starts_with("shape:") {
-            name.to_owned()
-        } else {
-            self.folder.join(name).to_string_lossy().into_owned()
-        };
-        let mesh = load(&source).map_err(|error| Failure::at(fields.place(), error))?.into_mesh();
-        let mesh = if scale == DVec3::ONE {
-            mesh
-        } else {
-            let (vertices, triangles) = mesh.into_parts();
-            let mirrored = scale.x * scale.y * scale.z < 0.0;
-            let turn = |[a, b, c]: [u32; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
-            let vertices = vertices.into_iter().map(|p| p * scale).collect();
-            let scaled = TriMesh::try_new(vertices, triangles.into_iter().map(turn).collect());
-            scaled.map_err(|error| fields.fault("scale", error))?
-        };
-        let tree = Arc::new(MeshTree::new(mesh));
-        self.trees.insert(key, Arc::clone(&tree));
-        Ok(tree)
+        let scale = read_scale(fields.get("scale")).map_err(|reason| fields.fault("scale", reason))?;
+        self.meshes.tree(name, scale).map_err(|error| Failure::at(fields.place(), error))
     }
 
     fn motion(&self, fields: &Fields<'_>, value: &Value) -> Result<Motion, Failure> {

@@ -2,8 +2,8 @@
 
 use super::{Flight, Mark, Picture};
 use crate::failure::{Failure, json_fault, parse_json};
-use crate::load::{load, read};
-use d2m::bvh::TriMesh;
+use crate::load::read;
+use crate::mesh_library::{MeshLibrary, read_scale};
 use d2m::motion::ConstantTwist;
 use glam::{DQuat, DVec3};
 use serde::Deserialize;
@@ -55,17 +55,17 @@ struct Impulse {
     normal: [f64; 3],
 }
 
-/// What the scene says of how a body looks.
+/// The mesh of a body, as its scene states it.
 #[derive(Deserialize)]
-struct Look {
+struct BodyMesh {
     name: String,
     mesh: String,
     scale: Option<Value>,
 }
 
 #[derive(Deserialize)]
-struct Looks {
-    bodies: Vec<Look>,
+struct SceneMeshes {
+    bodies: Vec<BodyMesh>,
 }
 
 /// Reads a run, and the meshes of its scene.
@@ -115,17 +115,22 @@ pub(crate) fn picture_of_run(path: &Path) -> Result<Picture, Failure> {
     let mut picture = Picture::new(headline, facts, window, true);
     let scene = scene_path(path, &header.scene);
     let bytes = read(&scene)?;
-    let looks: Looks = parse_json(&scene.display().to_string(), &bytes)?;
+    let stated: SceneMeshes = parse_json(&scene.display().to_string(), &bytes)?;
+    let scene_place = |name: &str| format!("{}, body {name:?}", scene.display());
+    let library = MeshLibrary::new(&scene);
     let mut meshes = HashMap::new();
     for (body, flights) in header.bodies.iter().zip(&flights) {
-        let look = looks.bodies.iter().find(|look| look.name == body.name).ok_or_else(|| {
-            Failure::at(scene.display(), format!("body {:?} of the run is not in it", body.name))
-        })?;
-        let key = format!("{} {:?}", look.mesh, look.scale);
+        let BodyMesh { name, mesh, scale } =
+            stated.bodies.iter().find(|stated| stated.name == body.name).ok_or_else(|| {
+                Failure::at(scene.display(), format!("body {:?} of the run is not in it", body.name))
+            })?;
+        let key = format!("{mesh} {scale:?}");
         let number = if let Some(&number) = meshes.get(&key) {
             number
         } else {
-            let number = picture.add_mesh(&look.load(&scene)?);
+            let scale = read_scale(scale.as_ref())
+                .map_err(|reason| Failure::at(scene_place(name), format!("scale: {reason}")))?;
+            let number = picture.add_mesh(library.mesh(mesh, scale)?.mesh());
             meshes.insert(key, number);
             number
         };
@@ -151,29 +156,5 @@ impl State {
         ConstantTwist::try_new(position, DQuat::from_xyzw(x, y, z, w), v, turn)?
             .try_with_at(center)?
             .try_with_reference_time(time)
-    }
-}
-
-impl Look {
-    fn load(&self, scene: &Path) -> Result<TriMesh, Failure> {
-        let source = if self.mesh.starts_with("shape:") {
-            self.mesh.clone()
-        } else {
-            scene.with_file_name(&self.mesh).display().to_string()
-        };
-        let mesh = load(&source)?.into_mesh();
-        let scale = match &self.scale {
-            None => return Ok(mesh),
-            Some(scale) => scale
-                .as_f64()
-                .map(DVec3::splat)
-                .or_else(|| serde_json::from_value::<[f64; 3]>(scale.clone()).ok().map(DVec3::from_array)),
-        };
-        let fault =
-            |reason: String| Failure::at(scene.display(), format!("body {:?}, scale: {reason}", self.name));
-        let scale = scale.ok_or_else(|| fault("one number or three are needed".to_owned()))?;
-        let (vertices, triangles) = mesh.into_parts();
-        let vertices = vertices.into_iter().map(|vertex| vertex * scale).collect();
-        TriMesh::try_new(vertices, triangles).map_err(|error| fault(error.to_string()))
     }
 }

@@ -1,0 +1,65 @@
+//! The meshes that a scene file names, each read once.
+
+use crate::failure::Failure;
+use crate::load::{Loaded, load};
+use d2m::bvh::MeshTree;
+use glam::DVec3;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Trees by mesh and scale: bodies with the same share one.
+#[derive(Debug)]
+pub(crate) struct MeshLibrary {
+    folder: PathBuf,
+    trees: BTreeMap<(String, [u64; 3]), Arc<MeshTree>>,
+}
+
+impl MeshLibrary {
+    /// Meshes are named relative to the folder of the scene file.
+    pub(crate) fn new(scene: &Path) -> Self {
+        Self { folder: scene.parent().unwrap_or(Path::new("")).to_owned(), trees: BTreeMap::new() }
+    }
+
+    /// The mesh of a file or `shape:…`, scaled.
+    pub(crate) fn mesh(&self, mesh: &str, scale: DVec3) -> Result<Loaded, Failure> {
+        let source = if mesh.starts_with("shape:") {
+            mesh.to_owned()
+        } else {
+            self.folder.join(mesh).to_string_lossy().into_owned()
+        };
+        let loaded = load(&source)?;
+        loaded.scaled(scale).map_err(|error| Failure::at(source, format!("scaled by {scale}: {error}")))
+    }
+
+    /// The tree of such a mesh.
+    pub(crate) fn tree(&mut self, mesh: &str, scale: DVec3) -> Result<Arc<MeshTree>, Failure> {
+        let key = (mesh.to_owned(), scale.to_array().map(f64::to_bits));
+        if let Some(tree) = self.trees.get(&key) {
+            return Ok(Arc::clone(tree));
+        }
+        let tree = Arc::new(self.mesh(mesh, scale)?.into_tree());
+        self.trees.insert(key, Arc::clone(&tree));
+        Ok(tree)
+    }
+}
+
+/// The value of the key `scale`: one number, or one for each axis; negative ones mirror.
+pub(crate) fn read_scale(value: Option<&Value>) -> Result<DVec3, String> {
+    let Some(value) = value else { return Ok(DVec3::ONE) };
+    let numbers = match value {
+        Value::Number(number) => vec![number.as_f64(); 3],
+        Value::Array(list) => list.iter().map(Value::as_f64).collect(),
+        _ => Vec::new(),
+    };
+    let [Some(x), Some(y), Some(z)] = numbers[..] else {
+        return Err(format!("{value} is neither a number nor a list of three"));
+    };
+    let scale = DVec3::new(x, y, z);
+    if scale.is_finite() && scale.abs().min_element() > 0.0 {
+        Ok(scale)
+    } else {
+        Err(format!("{value} has to be finite and not zero"))
+    }
+}
