@@ -8,6 +8,7 @@
 //! is measured from the final center to every point and rounded up.
 
 use crate::TriMesh;
+use d2m_lanes::power_of_two;
 use glam::DVec3;
 
 /// 2⁻⁵³: a squared radius that shrinks by less does not shrink. It ends the exchanges and proves nothing; the sphere
@@ -86,7 +87,7 @@ impl EnclosingSphere {
 /// d²(1 + 6u), its root at most √d²·(1 + 3u), and the rounded root and product lose 2u. Below 2⁻⁵¹¹ squares may
 /// underflow by 2⁻¹⁰⁷⁴ each, less than (2⁻⁵³⁰)² in sum.
 fn bound_distance(squared: f64) -> f64 {
-    squared.sqrt() * (1.0 + 8.0 * f64::EPSILON) + f64::from_bits((1023 - 530) << 52)
+    squared.sqrt() * (1.0 + 8.0 * f64::EPSILON) + power_of_two(-530)
 }
 
 /// The farthest point and the square of its distance.

@@ -13,6 +13,7 @@ use crate::rounding::{DOWN, UP, length_up};
 use crate::sphere::Sphere;
 use crate::sphere_sphere::SphereSphereTest;
 use crate::units::Units;
+use d2m_lanes::power_of_two;
 use d2m_motion::RigidMotion;
 use d2m_root::Piece;
 use glam::DVec3;
@@ -64,7 +65,7 @@ const WIDE: f64 = 1.0 / 1024.0;
 /// Part of the distance of the bodies that counts as length there: for points, and for features far from their bodies.
 const FAR_AWAY: f64 = 1e-6;
 /// The size of features that are too small for the units of the motion, in these.
-const SMALL: f64 = f64::from_bits((1023 - 200) << 52);
+const SMALL: f64 = power_of_two(-200);
 
 impl<'a> EnclosedPairMotion<'a> {
     /// Motion of body A and of body B over `[t0, t1]`.

@@ -5,13 +5,14 @@
 //! one fixed-point accumulator that spans all exponents holds such a sum without any rounding, underflow or overflow
 //! (U. Kulisch's long accumulator). So there is no hypothesis on the range of the input.
 
+use d2m_lanes::power_of_two;
 use glam::{DVec2, DVec3};
 use std::cmp::Ordering;
 
 /// Below this magnitude a determinant is not trusted to the filter, because products may have underflowed.
-const FILTER_MINIMUM: f64 = f64::from_bits((1023 - 700) << 52);
+const FILTER_MINIMUM: f64 = power_of_two(-700);
 /// Above this magnitude of the differences the filter is not used, because products may overflow.
-const FILTER_MAXIMUM: f64 = f64::from_bits((1023 + 200) << 52);
+const FILTER_MAXIMUM: f64 = power_of_two(200);
 
 /// The exact sign of (b − a) × (c − a): `Greater` if a, b, c turn counter-clockwise, `Equal` if they lie on a line.
 ///

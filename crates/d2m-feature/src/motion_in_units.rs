@@ -1,6 +1,7 @@
 //! A smooth piece of any motion, expressed in other units of length and time.
-use crate::units::{Units, scaled};
+use crate::units::Units;
 use d2m_interval::{Interval, IntervalVec3};
+use d2m_lanes::scaled;
 use d2m_motion::{CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
 use glam::DVec3;
 

@@ -39,7 +39,7 @@ impl ContactOptions {
         Self { tolerance: None, min_separation: 0.0, max_evaluations: EVALUATIONS }
     }
 
-    /// With an absolute tolerance (a distance, > 0).
+    /// With an absolute tolerance (a distance, > 0; what is smaller than rounding needs, and NaN, is raised to that).
     pub const fn with_tolerance(self, tolerance: f64) -> Self {
         Self { tolerance: Some(tolerance), ..self }
     }

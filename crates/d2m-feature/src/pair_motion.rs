@@ -7,6 +7,7 @@ use crate::point_triangle::TrianglePlanes;
 use crate::rigid_query;
 use crate::sphere::Sphere;
 use crate::units::Units;
+use d2m_lanes::power_of_two;
 use d2m_motion::{ConstantTwist, RelativeMotion};
 use glam::DVec3;
 
@@ -70,9 +71,9 @@ struct InUnits {
 
 /// How many times the size of the features the relative motion may reach in their units: beyond it doubles say nothing
 /// about a contact, and products of four lengths would overflow.
-const LARGEST_REACH: f64 = f64::from_bits((1023 + 200) << 52);
+const LARGEST_REACH: f64 = power_of_two(200);
 /// The size of features that are too small for the units of the motion, in these.
-const SMALL: f64 = f64::from_bits((1023 - 200) << 52);
+const SMALL: f64 = power_of_two(-200);
 
 impl PairMotion {
     /// Motion of body A and of body B over `[t0, t1]`.

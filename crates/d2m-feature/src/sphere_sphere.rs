@@ -1,5 +1,5 @@
 //! A moving sphere against a sphere that is fixed in B's frame (solid spheres).
-use crate::path::{FeaturePath, along, direction, global, local, reach, widened, without_third};
+use crate::path::{FeaturePath, along, direction, global, local, widened, without_third};
 use crate::point_triangle::cleared;
 use crate::rounding::{DOWN, PART_OF_WAY, UNIT, length_up};
 use d2m_root::{Measurement, Piece, PieceTest, Quadratic, Verdict};
@@ -52,7 +52,7 @@ impl<P: FeaturePath> PieceTest for SphereSphereTest<P> {
             for s in [part.lo, 0.5 * (part.lo + part.hi), part.hi] {
                 let n = direction(jet.at(s) - self.center);
                 let q = along(&jet, n);
-                let limit = n.dot(self.center) + (self.radii.1 + remainder.bound(reach(part)));
+                let limit = n.dot(self.center) + (self.radii.1 + remainder.bound(part.reach()));
                 if s >= part.hi {
                     let gap = q.at(part.hi) - limit;
                     if gap > 0.0 {
@@ -76,7 +76,7 @@ impl<P: FeaturePath> PieceTest for SphereSphereTest<P> {
         }
         // Just after the entry along the last direction the spheres overlap, if the approach is clean: nothing to the
         // right of such a time matters, and with a start apart a contact is certain.
-        let margin = remainder.bound(reach(whole));
+        let margin = remainder.bound(whole.reach());
         let overlap =
             |s: f64| length_up(jet.at(s) - self.center) + margin < self.radii.0 + 2.0 * self.separation;
         let n = direction(jet.at(part.lo) - self.center);
@@ -98,7 +98,7 @@ impl<P: FeaturePath> PieceTest for SphereSphereTest<P> {
         let difference = jet.p - self.center;
         let distance = length_up(difference) + jet.remainder.bound(0.0) - self.radii.0 - self.separation;
         let whole = local(piece, at);
-        let margin = widened(without_third(&jet), self.separation).bound(reach(whole));
+        let margin = widened(without_third(&jet), self.separation).bound(whole.reach());
         let n = direction(difference);
         let q = along(&jet, n);
         let gap = q.value - n.dot(self.center) - self.radii.1 - margin;

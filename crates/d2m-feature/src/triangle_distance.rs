@@ -28,18 +28,18 @@
 use crate::accurate_cross::{Difference, accurate_cross};
 use crate::triangle_intersection::triangles_intersect;
 use crate::units::Units;
+use d2m_lanes::{power_of_two, power_of_two_below};
 use glam::DVec3;
 
 /// Relative loss of both bounds: 32u.
 const LOSS: f64 = 16.0 * f64::EPSILON;
 /// Lengths of directions that are normalised as they are: their squares are far from under- and overflow.
-const SAFE_LENGTHS: core::ops::Range<f64> =
-    f64::from_bits((1023 - 300) << 52)..f64::from_bits((1023 + 300) << 52);
+const SAFE_LENGTHS: core::ops::Range<f64> = power_of_two(-300)..power_of_two(300);
 /// Bounds that differ by this part of the reach differ by what rounding explains: both lose [`LOSS`], twice over with the
 /// excess of the weights. (Any value is sound: it says when to stop.)
 const TIGHT: f64 = 5.0 * LOSS;
 /// Absolute floor after scaling: 2⁻⁵⁰⁰.
-const FLOOR: f64 = f64::from_bits((1023 - 500) << 52);
+const FLOOR: f64 = power_of_two(-500);
 
 /// The part of a triangle that holds a closest point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -103,7 +103,7 @@ pub fn triangle_distance(a: &[DVec3; 3], b: &[DVec3; 3]) -> TriangleDistance {
     let origin = in_units_a[0];
     let extent =
         in_units_a.iter().chain(&in_units_b).map(|&p| (p - origin).abs().max_element()).fold(0.0, f64::max);
-    let scale = power_of_two_below(extent);
+    let scale = if extent == 0.0 { 1.0 } else { power_of_two_below(extent) };
     let shrink = 1.0 / scale;
     let [local_a, local_b] = [in_units_a, in_units_b].map(|triangle| triangle.map(|p| (p - origin) * shrink));
     let mut search = Search::new(&local_a, &local_b);
@@ -131,11 +131,6 @@ pub fn triangle_distance(a: &[DVec3; 3], b: &[DVec3; 3]) -> TriangleDistance {
         feature_a: feature_of(closest.weights_a),
         feature_b: feature_of(closest.weights_b),
     }
-}
-
-/// The power of two 2^k with `extent` in [2^k, 2^(k+1)); at least the smallest normal number; 1 for 0.
-fn power_of_two_below(extent: f64) -> f64 {
-    if extent == 0.0 { 1.0 } else { f64::from_bits(extent.to_bits() & 0x7ff << 52).max(f64::MIN_POSITIVE) }
 }
 
 fn combine(weights: [f64; 3], vertices: &[DVec3; 3]) -> DVec3 {

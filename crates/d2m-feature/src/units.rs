@@ -3,6 +3,7 @@
 //! Every test works with products of up to six lengths and speeds; in the units of the input these may under- or overflow
 //! although each number is finite. So all numbers of a query are multiplied by powers of two first, which rounds nothing:
 //! verdicts, brackets relative to the window and feature pairs are the same for every exact scaling of lengths or times.
+use d2m_lanes::{power_of_two, scaled};
 use d2m_motion::{CertifiedState, ConstantTwist};
 use glam::DVec3;
 
@@ -13,21 +14,6 @@ const LARGEST_NORMAL: i32 = 1022;
 /// Exponent of the powers of two between which features may lie, in units of the motion, without new units: 2±²⁰⁰. Products
 /// of four such lengths stay within 2±⁸⁰⁰.
 const EXPONENT_OF_RANGE: i32 = 200;
-
-/// `2ᵏ`, −1022 ≤ k ≤ 1023.
-const fn normal_power(k: i32) -> f64 {
-    f64::from_bits(((1023 + k) as u64) << 52)
-}
-
-/// `x·2ᵏ` for every k: exact unless the result over- or underflows.
-pub(crate) fn scaled(x: f64, k: i32) -> f64 {
-    if (-LARGEST_NORMAL..=LARGEST_NORMAL).contains(&k) {
-        x * normal_power(k)
-    } else {
-        let step = LARGEST_NORMAL * k.signum();
-        scaled(x * normal_power(step), k - step)
-    }
-}
 
 /// k with |x| in [2ᵏ, 2ᵏ⁺¹); −1023 for subnormal numbers, 1024 for what is not finite, far below all for zero.
 pub(crate) fn exponent(x: f64) -> i32 {
@@ -100,9 +86,9 @@ impl Units {
     #[inline(always)]
     fn new(length: i32, time: i32) -> Self {
         let (factor, inverse, range) = if length.abs() <= LARGEST_NORMAL - EXPONENT_OF_RANGE {
-            let size = |k: i32| normal_power(length + k);
+            let size = |k: i32| power_of_two(length + k);
             let range = [size(-EXPONENT_OF_RANGE), size(EXPONENT_OF_RANGE)];
-            (normal_power(-length), normal_power(length), range)
+            (power_of_two(-length), power_of_two(length), range)
         } else {
             (1.0, 1.0, [f64::INFINITY, f64::NEG_INFINITY])
         };

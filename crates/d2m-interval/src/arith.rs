@@ -3,9 +3,9 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 
 use crate::{
     Interval,
-    round::{HALF_ULP, TINY, down, finite, finite_with, increment, mantissa_and_exponent, power_of_two, up},
+    round::{HALF_ULP, TINY, down, finite, finite_with, increment, up},
 };
-use d2m_lanes::{F64x2, two_product, two_sum};
+use d2m_lanes::{Binary, F64x2, power_of_two, scaled, two_product, two_sum};
 
 /// All products of an element of `a` and one of `b`, each end correctly rounded, for finite ends (callers check
 /// by [`finite_with`]).
@@ -13,23 +13,23 @@ use d2m_lanes::{F64x2, two_product, two_sum};
 pub(crate) fn products(a: F64x2, b: F64x2) -> F64x2 {
     let (low, high) = (a.both_first(), a.both_second());
     let crossed = b.swap();
-    let p = low.times(crossed);
-    let q = low.times(b.neg());
-    let r = high.times(b);
-    let s = high.times(crossed.neg());
+    let p = low * crossed;
+    let q = low * -b;
+    let r = high * b;
+    let s = high * -crossed;
     p.max(q).max(s.max(r))
 }
 
 /// The same for one number on the right.
 #[inline(always)]
 pub(crate) fn products_with(a: F64x2, b: f64) -> F64x2 {
-    a.times(F64x2::splat(b)).max(a.swap().times(F64x2::splat(-b)))
+    (a * F64x2::splat(b)).max(a.swap() * F64x2::splat(-b))
 }
 
 #[inline(always)]
 fn rounded(x: F64x2, slow: impl FnOnce() -> Interval) -> Interval {
     let e = increment(x);
-    if finite(e) { Interval(x.plus(e)) } else { slow() }
+    if finite(e) { Interval(x + e) } else { slow() }
 }
 
 /// Product of end points: 0·∞ is 0.
@@ -103,7 +103,7 @@ impl Add for Interval {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        rounded(self.0.plus(o.0), || add_slow(self, o))
+        rounded(self.0 + o.0, || add_slow(self, o))
     }
 }
 
@@ -121,7 +121,7 @@ impl Mul for Interval {
     fn mul(self, o: Self) -> Self {
         let x = products(self.0, o.0);
         let e = increment(x);
-        if finite_with(self.0.max(o.0), e) { Self(x.plus(e)) } else { mul_slow(self, o) }
+        if finite_with(self.0.max(o.0), e) { Self(x + e) } else { mul_slow(self, o) }
     }
 }
 
@@ -134,10 +134,10 @@ impl Div for Interval {
         let zero = F64x2::splat(0.0);
         let flip = o.0.second() < 0.0;
         let (n, d) = if flip { (self.0.swap(), o.0.swap()) } else { (self.0, o.0) };
-        let (smallest, largest) = (d.both_first().neg(), d.both_second());
-        let x = n.over(n.lt(zero).select(largest, smallest));
+        let (smallest, largest) = (-d.both_first(), d.both_second());
+        let x = n / n.lt(zero).select(largest, smallest);
         let e = increment(x);
-        if finite(e) && d.first() < 0.0 && d.second() > 0.0 { Self(x.plus(e)) } else { div_slow(self, o) }
+        if finite(e) && d.first() < 0.0 && d.second() > 0.0 { Self(x + e) } else { div_slow(self, o) }
     }
 }
 
@@ -147,7 +147,7 @@ impl Mul<f64> for Interval {
     fn mul(self, o: f64) -> Self {
         let x = products_with(self.0, o);
         let e = increment(x);
-        if finite_with(self.0, e) { Self(x.plus(e)) } else { mul_slow(self, Self::point(o)) }
+        if finite_with(self.0, e) { Self(x + e) } else { mul_slow(self, Self::point(o)) }
     }
 }
 
@@ -163,7 +163,7 @@ impl Add<f64> for Interval {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: f64) -> Self {
-        rounded(self.0.plus(Self::point_unchecked(o).0), || add_slow(self, Self::point(o)))
+        rounded(self.0 + Self::point_unchecked(o).0, || add_slow(self, Self::point(o)))
     }
 }
 
@@ -236,7 +236,7 @@ impl core::iter::Product for Interval {
 /// (mig, mag): the least and the greatest absolute value.
 #[inline(always)]
 pub(crate) fn magnitudes(a: F64x2) -> F64x2 {
-    let minus = a.neg();
+    let minus = -a;
     let least = minus.max(minus.swap()).max(F64x2::splat(0.0));
     least.first_and_second(a.max(a.swap()))
 }
@@ -258,10 +258,10 @@ impl Interval {
     #[inline(always)]
     pub fn sqr(self) -> Self {
         let m = magnitudes(self.0);
-        let x = m.times(m);
+        let x = m * m;
         let e = increment(x);
         if finite(e) {
-            Self(x.neg_first().plus(e).min(F64x2::new(0.0, f64::INFINITY)))
+            Self((x.neg_first() + e).min(F64x2::new(0.0, f64::INFINITY)))
         } else {
             self.sqr_slow()
         }
@@ -294,9 +294,9 @@ impl Interval {
             return Self::EMPTY;
         }
         let s = zero.max(x).sqrt();
-        let e = s.times(F64x2::splat(HALF_ULP)).plus(F64x2::splat(TINY));
+        let e = s * F64x2::splat(HALF_ULP) + F64x2::splat(TINY);
         // The root of +∞ is +∞, and nothing is to be added.
-        let grown = s.neg_first().plus(e).min(F64x2::new(0.0, f64::INFINITY));
+        let grown = (s.neg_first() + e).min(F64x2::new(0.0, f64::INFINITY));
         if s.first() < f64::INFINITY { Self(grown) } else { Self::EMPTY }
     }
 
@@ -380,21 +380,20 @@ const NEGLIGIBLE: i32 = -600;
 /// [`fused_up`] for finite operands, with the larger one of product and summand scaled to about 1 by a power of two.
 #[cold]
 fn fused_up_large(a: f64, b: f64, c: f64, negated: bool) -> f64 {
-    let ((a, of_a), (b, of_b), (c, of_c)) =
-        (mantissa_and_exponent(a), mantissa_and_exponent(b), mantissa_and_exponent(c));
-    let (p, q) = two_product(a, b);
-    let of_product = of_a + of_b;
-    let exponent = match (p == 0.0, c == 0.0) {
-        (true, _) => of_c,
+    let [a, b, c] = [a, b, c].map(Binary::from_f64);
+    let (p, q) = two_product(a.mantissa, b.mantissa);
+    let of_product = a.exponent + b.exponent;
+    let exponent = match (p == 0.0, c.is_zero()) {
+        (true, _) => c.exponent,
         (_, true) => of_product,
-        _ => of_product.max(of_c),
+        _ => of_product.max(c.exponent),
     };
     let scale = |of_term: i32| {
         let shift = of_term - exponent;
         if shift < NEGLIGIBLE { 0.0 } else { power_of_two(shift.min(0)) }
     };
-    let (of_product, of_c) = (scale(of_product), scale(of_c));
-    let (s, e) = two_sum(p * of_product, c * of_c);
+    let (of_product, of_c) = (scale(of_product), scale(c.exponent));
+    let (s, e) = two_sum(p * of_product, c.mantissa * of_c);
     let sum = s + (e + q * of_product);
     if sum == 0.0 {
         // Exactly: what cancels in the first sum leaves no error there.
@@ -405,7 +404,6 @@ fn fused_up_large(a: f64, b: f64, c: f64, negated: bool) -> f64 {
 
 /// `x·2ⁿ` for |x| ≥ 2⁻⁶⁰⁰ and −300 ≤ n ≤ 2046, so that nothing underflows; ∞ above the doubles and −MAX below.
 fn scaled_up(x: f64, n: i32) -> f64 {
-    let half = n / 2;
-    let scaled = x * power_of_two(half) * power_of_two(n - half);
+    let scaled = scaled(x, n);
     if scaled < -f64::MAX { -f64::MAX } else { scaled }
 }

@@ -3,7 +3,7 @@ use core::ops::Mul;
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::{Interval, IntervalVec3};
-use d2m_lanes::F64x2;
+use d2m_lanes::{F64x2, power_of_two};
 
 /// A 3×3 matrix of intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -188,9 +188,8 @@ fn scaled(x: Interval, k: i32) -> Interval {
     }
     // A smaller end may have lost bits; this is above it, and below 2⁻⁵⁰⁰.
     const FAR_FROM_UNDERFLOW: f64 = 1e-290;
-    let power = |p: i32| f64::from_bits(((1023 + p) as u64) << 52);
     let upper = |end: f64| {
-        let y = end * power(k / 2) * power(k - k / 2);
+        let y = end * power_of_two(k / 2) * power_of_two(k - k / 2);
         if end != 0.0 && y.abs() < FAR_FROM_UNDERFLOW {
             FAR_FROM_UNDERFLOW
         } else if y == f64::NEG_INFINITY {

@@ -5,13 +5,13 @@
 //! A lower end point is kept negated, so that both ends round upwards, by the same instructions.
 //! Vector paths drop the `max` and check instead that increment and operands are finite; if they are not, they
 //! fall back to [`up`] on scalars, which also knows that 0·∞ is 0.
-use d2m_lanes::{F64x2, fast_two_sum, two_sum};
+use d2m_lanes::{F64x2, fast_two_sum, power_of_two, two_sum};
 
 /// `2⁻⁵³(1 + 2⁻⁵²)`: half an ulp, and a little.
 pub(crate) const HALF_ULP: f64 = f64::from_bits(0x3CA0_0000_0000_0001);
 /// `2⁻⁵⁰¹`: absorbs every underflow, and keeps products of such ends out of the subnormal range.
 /// (Half of the 2⁻⁵⁰⁰ that results may be too wide by: the other half is for the last place.)
-pub(crate) const TINY: f64 = f64::from_bits((1023 - 501) << 52);
+pub(crate) const TINY: f64 = power_of_two(-501);
 /// `3·2⁻⁵³(1 + 2⁻⁴⁰)`: a difference of two products (`cross`).
 #[cfg(feature = "glam")]
 pub(crate) const TWO_PRODUCTS: f64 = f64::from_bits(0x3CB8_0000_0000_1800);
@@ -35,7 +35,7 @@ pub(crate) fn down(x: f64) -> f64 {
 /// What [`up`] adds to both numbers.
 #[inline(always)]
 pub(crate) fn increment(x: F64x2) -> F64x2 {
-    x.abs().times(F64x2::splat(HALF_ULP)).plus(F64x2::splat(TINY))
+    x.abs() * F64x2::splat(HALF_ULP) + F64x2::splat(TINY)
 }
 
 /// Whether no number is NaN or +∞ (increments are never negative).
@@ -51,21 +51,6 @@ pub(crate) fn finite(increment: F64x2) -> bool {
 pub(crate) fn finite_with(largest: F64x2, increment: F64x2) -> bool {
     // `max` returns its second operand when one is NaN.
     finite(largest.max(increment))
-}
-
-/// `2ⁿ` for −1022 ≤ n ≤ 1023.
-pub(crate) const fn power_of_two(n: i32) -> f64 {
-    f64::from_bits(((1023 + n) as u64) << 52)
-}
-
-/// `x = mantissa · 2^exponent` with 1 ≤ |mantissa| < 2, for finite x; (0, 0) for 0.
-pub(crate) fn mantissa_and_exponent(x: f64) -> (f64, i32) {
-    if x == 0.0 {
-        return (0.0, 0);
-    }
-    let (x, shift) = if x.abs() < f64::MIN_POSITIVE { (x * power_of_two(64), 64) } else { (x, 0) };
-    let bits = x.to_bits();
-    (f64::from_bits(bits & !(0x7ff << 52) | 1.0_f64.to_bits()), (bits >> 52 & 0x7ff) as i32 - 1023 - shift)
 }
 
 /// Whether `a − b < c − d`, exactly, for finite numbers with a ≥ b and c ≥ d.

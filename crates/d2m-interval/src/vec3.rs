@@ -36,16 +36,16 @@ pub(crate) type Pending = (F64x2, F64x2);
 /// Σ pᵢ, each the correctly rounded value of a product.
 #[inline(always)]
 fn sum3(p: F64x2, q: F64x2, r: F64x2) -> Pending {
-    let size = p.abs().plus(q.abs()).plus(r.abs());
-    (p.plus(q).plus(r), size.times(F64x2::splat(THREE_PRODUCTS)).plus(F64x2::splat(TINY)))
+    let size = p.abs() + q.abs() + r.abs();
+    (p + q + r, size * F64x2::splat(THREE_PRODUCTS) + F64x2::splat(TINY))
 }
 
 /// p − q, intervals, each end the correctly rounded value of a product.
 #[inline(always)]
 fn difference(p: F64x2, q: F64x2) -> Pending {
     let q = q.swap();
-    let size = p.abs().plus(q.abs());
-    (p.plus(q), size.times(F64x2::splat(TWO_PRODUCTS)).plus(F64x2::splat(TINY)))
+    let size = p.abs() + q.abs();
+    (p + q, size * F64x2::splat(TWO_PRODUCTS) + F64x2::splat(TINY))
 }
 
 #[inline(always)]
@@ -61,8 +61,8 @@ fn dot_point(a: IntervalVec3, b: DVec3) -> Pending {
 /// Three results at once, with one check; `largest` is the maximum of the operands of products.
 #[inline(always)]
 fn rounded3(largest: F64x2, [x, y, z]: [Pending; 3], slow: impl FnOnce() -> IntervalVec3) -> IntervalVec3 {
-    if finite_with(largest, x.1.plus(y.1).plus(z.1)) {
-        IntervalVec3::new(Interval(x.0.plus(x.1)), Interval(y.0.plus(y.1)), Interval(z.0.plus(z.1)))
+    if finite_with(largest, x.1 + y.1 + z.1) {
+        IntervalVec3::new(Interval(x.0 + x.1), Interval(y.0 + y.1), Interval(z.0 + z.1))
     } else {
         slow()
     }
@@ -121,14 +121,14 @@ impl IntervalVec3 {
     #[inline(always)]
     pub fn dot(self, o: Self) -> Interval {
         let (x, e) = dot(self, o);
-        if finite_with(self.largest().max(o.largest()), e) { Interval(x.plus(e)) } else { dot_slow(self, o) }
+        if finite_with(self.largest().max(o.largest()), e) { Interval(x + e) } else { dot_slow(self, o) }
     }
 
     /// `self · p`.
     #[inline(always)]
     pub fn dot_point(self, p: DVec3) -> Interval {
         let (x, e) = dot_point(self, p);
-        if finite_with(self.largest(), e) { Interval(x.plus(e)) } else { dot_slow(self, Self::point(p)) }
+        if finite_with(self.largest(), e) { Interval(x + e) } else { dot_slow(self, Self::point(p)) }
     }
 
     /// `self × o`.
@@ -179,12 +179,12 @@ impl IntervalVec3 {
     pub fn norm_squared(self) -> Interval {
         let square = |x: Interval| {
             let m = magnitudes(x.0);
-            m.times(m)
+            m * m
         };
-        let s = square(self.x).plus(square(self.y)).plus(square(self.z));
-        let e = s.times(F64x2::splat(THREE_PRODUCTS)).plus(F64x2::splat(TINY));
+        let s = square(self.x) + square(self.y) + square(self.z);
+        let e = s * F64x2::splat(THREE_PRODUCTS) + F64x2::splat(TINY);
         if finite(e) {
-            Interval(s.neg_first().plus(e).min(F64x2::new(0.0, f64::INFINITY)))
+            Interval((s.neg_first() + e).min(F64x2::new(0.0, f64::INFINITY)))
         } else {
             self.norm_squared_slow()
         }
@@ -325,7 +325,7 @@ impl Add for IntervalVec3 {
     fn add(self, o: Self) -> Self {
         rounded3(
             F64x2::splat(0.0),
-            [single(self.x.0.plus(o.x.0)), single(self.y.0.plus(o.y.0)), single(self.z.0.plus(o.z.0))],
+            [single(self.x.0 + o.x.0), single(self.y.0 + o.y.0), single(self.z.0 + o.z.0)],
             || Self::new(self.x + o.x, self.y + o.y, self.z + o.z),
         )
     }
@@ -346,7 +346,7 @@ impl Add<DVec3> for IntervalVec3 {
         let p = |x: f64| Interval::point_unchecked(x).0;
         rounded3(
             F64x2::splat(0.0),
-            [single(self.x.0.plus(p(o.x))), single(self.y.0.plus(p(o.y))), single(self.z.0.plus(p(o.z)))],
+            [single(self.x.0 + p(o.x)), single(self.y.0 + p(o.y)), single(self.z.0 + p(o.z))],
             || Self::new(self.x + o.x, self.y + o.y, self.z + o.z),
         )
     }

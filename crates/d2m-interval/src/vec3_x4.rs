@@ -110,15 +110,15 @@ impl IntervalVec3X4 {
     pub fn norm_squared(self) -> IntervalX4 {
         let zero = F64x4::splat(0.0);
         let squares = |a: IntervalX4| {
-            let least = a.neg_lo.neg().max(a.hi.neg()).max(zero);
+            let least = (-a.neg_lo).max(-a.hi).max(zero);
             let greatest = a.neg_lo.max(a.hi);
-            (least.times(least), greatest.times(greatest))
+            (least * least, greatest * greatest)
         };
         let ((a, b), (c, d), (e, f)) = (squares(self.x), squares(self.y), squares(self.z));
-        let (l, g) = (a.plus(c).plus(e), b.plus(d).plus(f));
+        let (l, g) = (a + c + e, b + d + f);
         let (e, f) = (pad(l, THREE_PRODUCTS), pad(g, THREE_PRODUCTS));
         if finite(e, f) {
-            IntervalX4 { neg_lo: l.neg().plus(e).min(zero), hi: g.plus(f) }
+            IntervalX4 { neg_lo: (-l + e).min(zero), hi: g + f }
         } else {
             IntervalX4::new(self.lanes().map(IntervalVec3::norm_squared))
         }

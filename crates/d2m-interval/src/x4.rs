@@ -26,7 +26,7 @@ pub struct IntervalX4 {
 /// Increment for one rounding, or for the stated share of the sizes.
 #[inline(always)]
 pub(crate) fn pad(size: F64x4, share: f64) -> F64x4 {
-    size.times(F64x4::splat(share)).plus(F64x4::splat(TINY))
+    size * F64x4::splat(share) + F64x4::splat(TINY)
 }
 
 #[inline(always)]
@@ -99,11 +99,7 @@ impl IntervalX4 {
         slow: impl FnOnce() -> Self,
     ) -> Self {
         let (e, f) = (pad(sizes.neg_lo, share), pad(sizes.hi, share));
-        if finite(largest.max(e), f) {
-            Self { neg_lo: self.neg_lo.plus(e), hi: self.hi.plus(f) }
-        } else {
-            slow()
-        }
+        if finite(largest.max(e), f) { Self { neg_lo: self.neg_lo + e, hi: self.hi + f } } else { slow() }
     }
 
     #[inline(always)]
@@ -118,17 +114,17 @@ impl IntervalX4 {
 
     #[inline(always)]
     pub(crate) fn sum(self, o: Self) -> Self {
-        Self { neg_lo: self.neg_lo.plus(o.neg_lo), hi: self.hi.plus(o.hi) }
+        Self { neg_lo: self.neg_lo + o.neg_lo, hi: self.hi + o.hi }
     }
 
     /// Products of the ends, not yet rounded up.
     #[inline(always)]
     pub(crate) fn products(self, o: Self) -> Self {
         let (a, b, c, d) = (self.neg_lo, self.hi, o.neg_lo, o.hi);
-        let (minus_c, minus_d) = (c.neg(), d.neg());
+        let (minus_c, minus_d) = (-c, -d);
         Self {
-            neg_lo: a.times(d).max(a.times(minus_c)).max(b.times(minus_d).max(b.times(c))),
-            hi: a.times(c).max(a.times(minus_d)).max(b.times(minus_c).max(b.times(d))),
+            neg_lo: (a * d).max(a * minus_c).max((b * minus_d).max(b * c)),
+            hi: (a * c).max(a * minus_d).max((b * minus_c).max(b * d)),
         }
     }
 
@@ -153,12 +149,12 @@ impl IntervalX4 {
     #[inline(always)]
     pub fn sqr(self) -> Self {
         let zero = F64x4::splat(0.0);
-        let least = self.neg_lo.neg().max(self.hi.neg()).max(zero);
+        let least = (-self.neg_lo).max(-self.hi).max(zero);
         let greatest = self.neg_lo.max(self.hi);
-        let (l, g) = (least.times(least), greatest.times(greatest));
+        let (l, g) = (least * least, greatest * greatest);
         let (e, f) = (pad(l, HALF_ULP), pad(g, HALF_ULP));
         if finite(e, f) {
-            Self { neg_lo: l.neg().plus(e).min(zero), hi: g.plus(f) }
+            Self { neg_lo: (-l + e).min(zero), hi: g + f }
         } else {
             Self::new(self.lanes().map(Interval::sqr))
         }
@@ -171,8 +167,8 @@ impl IntervalX4 {
         if zero.le_bits(self.hi) != 15 || self.hi.lt_bits(F64x4::splat(f64::INFINITY)) != 15 {
             return Self::new(self.lanes().map(Interval::sqrt));
         }
-        let (l, g) = (zero.max(self.neg_lo.neg()).sqrt(), zero.max(self.hi).sqrt());
-        Self { neg_lo: l.neg().plus(pad(l, HALF_ULP)).min(zero), hi: g.plus(pad(g, HALF_ULP)) }
+        let (l, g) = (zero.max(-self.neg_lo).sqrt(), zero.max(self.hi).sqrt());
+        Self { neg_lo: (-l + pad(l, HALF_ULP)).min(zero), hi: g + pad(g, HALF_ULP) }
     }
 }
 

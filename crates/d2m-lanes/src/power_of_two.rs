@@ -1,4 +1,14 @@
-//! Powers of two near a number: scaling by them rounds nothing.
+//! Powers of two: scaling by them rounds nothing.
+
+/// 2ⁿ for −1022 ≤ n ≤ 1023.
+///
+/// ```
+/// assert_eq!((d2m_lanes::power_of_two(-2), d2m_lanes::power_of_two(3)), (0.25, 8.0));
+/// ```
+#[inline(always)]
+pub const fn power_of_two(n: i32) -> f64 {
+    f64::from_bits(((1023 + n) as u64) << 52)
+}
 
 /// The bits of the exponent.
 const EXPONENT: u64 = 0x7ff << 52;

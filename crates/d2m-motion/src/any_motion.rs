@@ -1,10 +1,6 @@
 //! Any of the motions that have a JSON form.
-use crate::{
-    CertifiedState, Chain, ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Kinematics, MotionError,
-    Pose, RigidMotion, ScrewMotion, Twist, TwistPiece,
-};
-use d2m_interval::Interval;
-use glam::DVec3;
+use crate::rigid_motion::forward;
+use crate::{Chain, ConstantTwist, Keyframes, MotionError, RigidMotion, ScrewMotion};
 
 /// A constant twist, keyframes or a chain: what the JSON forms of motions hold (feature `serde`).
 ///
@@ -78,40 +74,5 @@ impl From<Chain> for AnyMotion {
 }
 
 impl RigidMotion for AnyMotion {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.motion().pose_and_twist(t)
-    }
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        self.motion().enclose_pose(t)
-    }
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.motion().enclose_twist(t)
-    }
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.motion().enclose_twist_rate(t)
-    }
-    fn domain(&self) -> Interval {
-        self.motion().domain()
-    }
-    fn smooth_until(&self, t: f64) -> Option<f64> {
-        self.motion().smooth_until(t)
-    }
-    fn enclose_state(&self, t: f64) -> CertifiedState {
-        self.motion().enclose_state(t)
-    }
-    fn enclose_state_about(&self, t: f64, origin: DVec3) -> CertifiedState {
-        self.motion().enclose_state_about(t, origin)
-    }
-    fn enclose_kinematics(&self, t: Interval) -> Kinematics {
-        self.motion().enclose_kinematics(t)
-    }
-    fn constant_twist(&self) -> Option<ConstantTwist> {
-        self.motion().constant_twist()
-    }
-    fn constant_twist_from(&self, t: f64) -> Option<TwistPiece> {
-        self.motion().constant_twist_from(t)
-    }
-    fn chain(&self) -> Option<&Chain> {
-        self.motion().chain()
-    }
+    forward!(|any| any.motion());
 }

@@ -1,12 +1,12 @@
 //! A vector that is known up to a radius: ball arithmetic (midpoints with proven radii).
-use crate::rounding::{UNIT, UP};
-use crate::state::ball;
+use crate::rounding::{UNDERFLOW, UNIT, UP};
 use d2m_interval::{Interval, IntervalVec3};
+use d2m_lanes::power_of_two;
 use glam::{DMat3, DVec3};
 
 /// Squares of components between these keep all digits and three of them stay finite: 2⁻⁴⁵⁰ and 2⁵⁰⁰.
-const LEAST_SQUARED: f64 = f64::from_bits((1023 - 450) << 52);
-const MOST_SQUARED: f64 = f64::from_bits((1023 + 500) << 52);
+const LEAST_SQUARED: f64 = power_of_two(-450);
+const MOST_SQUARED: f64 = power_of_two(500);
 /// Above √3 = 1.73205…, by more than the rounding of a product.
 const ABOVE_ROOT_OF_THREE: f64 = 1.733;
 
@@ -44,10 +44,17 @@ impl Ball {
         Self::new(center, 0.0)
     }
 
-    /// A ball about a box.
+    /// A ball about a box: `½(lo + hi)` with the length of the half-widths, plus one rounding of either.
+    ///
+    /// With `|m − ½(lo + hi)| ≤ u|m|` and `½(hi − lo)` rounded within u of itself, a point of the box is within
+    /// `½(hi − lo)(1 + u) + u|m|` of `m` in each coordinate. Of what is not finite nothing is known.
+    #[inline]
     pub fn around_box(v: IntervalVec3) -> Self {
-        let (center, radius) = ball(v);
-        Self::new(center, radius)
+        let middle = |i: Interval| 0.5 * (i.lo() + i.hi());
+        let half = |i: Interval| 0.5 * (i.hi() - i.lo());
+        let m = DVec3::new(middle(v.x), middle(v.y), middle(v.z));
+        let r = DVec3::new(half(v.x), half(v.y), half(v.z));
+        Self::new(m, (r.length() + f64::EPSILON * m.length()) * UP + UNDERFLOW)
     }
 
     /// A box about the ball.

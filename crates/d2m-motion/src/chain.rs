@@ -6,7 +6,6 @@ use crate::rotation::{Spin, rotate_dd};
 use crate::rounding::UNIT;
 use crate::sin_cos::{LARGEST_ANGLE, sin_cos};
 use crate::{CertifiedState, IntervalPose, IntervalTwist, Kinematics, MotionError, Pose, RigidMotion, Twist};
-use core::ops::{Mul, Sub};
 use d2m_interval::Interval;
 use d2m_lanes::DoubleDouble;
 use glam::{DMat3, DQuat, DVec3};
@@ -137,7 +136,7 @@ fn sin_cos_of(angle: DoubleDouble) -> (f64, f64) {
         return (f64::NAN, f64::NAN);
     }
     let turns = if angle.hi.abs() > 4.0 { (angle.hi / TURN.hi).round() } else { 0.0 };
-    let r = if turns == 0.0 { angle } else { angle.sub(TURN.mul(turns)) };
+    let r = if turns == 0.0 { angle } else { angle - TURN * turns };
     let (sin, cos) = sin_cos(r.hi);
     (sin + r.lo * cos, cos - r.lo * sin)
 }
@@ -260,20 +259,15 @@ impl RigidMotion for Chain {
 
     /// Over long spans part by part.
     fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        let hull = |a: IntervalPose, b: IntervalPose| IntervalPose {
-            rotation: a.rotation.hull(b.rotation),
-            translation: a.translation.hull(b.translation),
-            at: a.at,
-        };
-        self.parts(t).map(|part| part.to_pose()).reduce(hull).expect("at least one part")
+        self.parts(t).map(|part| part.to_pose()).reduce(IntervalPose::hull).expect("at least one part")
     }
 
     fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.parts(t).map(|part| part.to_twist()).reduce(hull).expect("at least one part")
+        self.parts(t).map(|part| part.to_twist()).reduce(IntervalTwist::hull).expect("at least one part")
     }
 
     fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.parts(t).map(|part| part.to_twist_rate()).reduce(hull).expect("at least one part")
+        self.parts(t).map(|part| part.to_twist_rate()).reduce(IntervalTwist::hull).expect("at least one part")
     }
 
     fn domain(&self) -> Interval {
@@ -299,8 +293,4 @@ impl RigidMotion for Chain {
     fn chain(&self) -> Option<&Chain> {
         Some(self)
     }
-}
-
-fn hull(a: IntervalTwist, b: IntervalTwist) -> IntervalTwist {
-    IntervalTwist { linear: a.linear.hull(b.linear), angular: a.angular.hull(b.angular) }
 }

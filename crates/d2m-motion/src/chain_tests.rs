@@ -5,7 +5,6 @@ use crate::{
     AnyMotion, Chain, Composed, ConstantTwist, IntervalTwist, Joint, JointKind, JointValue, Keyframes, Pose,
     Retimed, RigidMotion, Span,
 };
-use core::ops::{Add, Div, Mul, Sub};
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_lanes::DoubleDouble as Dd;
 use d2m_testing::{Draw, Random};
@@ -20,7 +19,7 @@ struct Truth {
 }
 
 fn add(a: Vector, b: Vector) -> Vector {
-    [0, 1, 2].map(|i| a[i].add(b[i]))
+    [0, 1, 2].map(|i| a[i] + b[i])
 }
 
 fn exact(v: DVec3) -> Vector {
@@ -31,8 +30,8 @@ fn exact(v: DVec3) -> Vector {
 fn value_at(value: &JointValue, t: f64, s: Dd) -> Dd {
     let index = value.times().partition_point(|&x| x <= t).saturating_sub(1).min(value.pieces().count() - 1);
     let origin = value.times().get(index).copied().unwrap_or(0.0);
-    let local = s.sub(Dd::from_f64(origin));
-    value.pieces().nth(index).unwrap().iter().rev().fold(Dd::ZERO, |sum, &c| sum.mul(local).add_f64(c))
+    let local = s - Dd::from_f64(origin);
+    value.pieces().nth(index).unwrap().iter().rev().fold(Dd::ZERO, |sum, &c| (sum * local).add_f64(c))
 }
 
 /// The pose at `t + offset`, on the piece that holds `t`.
@@ -42,17 +41,17 @@ fn truth(chain: &Chain, t: f64, offset: f64) -> Truth {
         Truth { rotation: rotate_dd(DVec3::ZERO, Dd::ZERO, DQuat::IDENTITY), position: [Dd::ZERO; 3] };
     for joint in chain.joints() {
         frame.position = add(frame.position, frame.rotation.apply(exact(joint.position())));
-        frame.rotation = frame.rotation.mul(&rotate_dd(DVec3::ZERO, Dd::ZERO, joint.orientation()));
+        frame.rotation = frame.rotation * rotate_dd(DVec3::ZERO, Dd::ZERO, joint.orientation());
         match joint.kind() {
             JointKind::Fixed => {}
             JointKind::Revolute { axis, value } => {
                 // exp([k]θ) by an axis of any length.
-                let angle = value_at(value, t, s).div(length(*axis));
-                frame.rotation = frame.rotation.mul(&exponential_dd(*axis, angle));
+                let angle = value_at(value, t, s) / length(*axis);
+                frame.rotation = frame.rotation * exponential_dd(*axis, angle);
             }
             JointKind::Prismatic { axis, value } => {
-                let by = value_at(value, t, s).div(length(*axis));
-                let shift = axis.to_array().map(|k| by.mul(k));
+                let by = value_at(value, t, s) / length(*axis);
+                let shift = axis.to_array().map(|k| by * k);
                 frame.position = add(frame.position, frame.rotation.apply(shift));
             }
         }
@@ -61,7 +60,7 @@ fn truth(chain: &Chain, t: f64, offset: f64) -> Truth {
 }
 
 fn length(v: DVec3) -> Dd {
-    v.to_array().iter().fold(Dd::ZERO, |sum, &x| sum.add(Dd::from_f64(x).mul(x))).sqrt()
+    v.to_array().iter().fold(Dd::ZERO, |sum, &x| sum + Dd::from_f64(x) * x).sqrt()
 }
 
 fn rounded(v: Vector) -> DVec3 {
@@ -106,14 +105,13 @@ fn axial(m: [[f64; 3]; 3]) -> DVec3 {
 fn twist_at(chain: &Chain, t: f64) -> [DVec3; 2] {
     let h = 1e-9;
     let [before, now, after] = [-h, 0.0, h].map(|s| truth(chain, t, s));
-    let difference = |a: Dd, b: Dd| a.sub(b).div(Dd::from_f64(2.0 * h));
+    let difference = |a: Dd, b: Dd| (a - b) / Dd::from_f64(2.0 * h);
     let v = [0, 1, 2].map(|i| difference(after.position[i], before.position[i]));
     let rate: [[Dd; 3]; 3] =
         [0, 1, 2].map(|i| [0, 1, 2].map(|j| difference(after.rotation.0[i][j], before.rotation.0[i][j])));
     // R′Rᵀ = [ω].
-    let spin = [0, 1, 2].map(|i| {
-        [0, 1, 2].map(|j| (0..3).fold(Dd::ZERO, |s, k| s.add(rate[i][k].mul(now.rotation.0[j][k]))).hi)
-    });
+    let spin = [0, 1, 2]
+        .map(|i| [0, 1, 2].map(|j| (0..3).fold(Dd::ZERO, |s, k| s + rate[i][k] * now.rotation.0[j][k]).hi));
     [rounded(v), axial(spin)]
 }
 

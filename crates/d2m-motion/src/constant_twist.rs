@@ -2,14 +2,13 @@
 use crate::ball::{length_up, times_up, up};
 use crate::error::require_finite;
 use crate::rotation::{RotationDd, Spin, from_quat_rounded, rotate_dd};
-use crate::rounding::{SUM_ROUNDING, UNDERFLOW};
+use crate::rounding::{SUM_ROUNDING, UNDERFLOW, UNIT};
 use crate::sin_cos::LARGEST_ANGLE;
 use crate::{
     Ball, CertifiedState, IntervalPose, IntervalTwist, Kinematics, MotionError, Pose, RigidMotion, Twist,
 };
-use core::ops::Mul;
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
-use d2m_lanes::DoubleDouble;
+use d2m_lanes::{DoubleDouble, power_of_two};
 use glam::{DMat3, DQuat, DVec3};
 
 /// Norms of quaternions that are taken: their squares neither over- nor underflow.
@@ -187,7 +186,7 @@ impl ConstantTwist {
     /// The true position of `at` at time `t`, to about 2⁻¹⁰⁰ of its terms.
     pub(crate) fn position_dd(&self, t: f64) -> [DoubleDouble; 3] {
         let s = DoubleDouble::from_difference(t, self.reference_time);
-        let one = |x0: f64, v: f64| s.mul(v).add_f64(x0);
+        let one = |x0: f64, v: f64| (s * v).add_f64(x0);
         [
             one(self.position.x, self.linear_velocity.x),
             one(self.position.y, self.linear_velocity.y),
@@ -239,7 +238,6 @@ impl ConstantTwist {
     /// In plain floating point: `u(96 + 8|ω||t − t_ref|)` for the rotation, `4u(|x0| + |v(t − t_ref)|)` for the
     /// position, u = 2⁻⁵³ (docs/theory/features.md, "Any C² motion"). `None` where that is not proven.
     fn plain_state(&self, t: f64) -> Option<CertifiedState> {
-        let unit = 0.5 * f64::EPSILON;
         let s = t - self.reference_time;
         let angle = self.angular_velocity.length() * s.abs();
         // Also NaN is not proven.
@@ -251,8 +249,8 @@ impl ConstantTwist {
             at: self.at,
             linear: self.linear_velocity,
             angular: self.angular_velocity,
-            rotation_radius: unit * (96.0 + 8.0 * angle),
-            position_radius: 4.0 * unit * (self.position.length() + travelled.length()) + UNDERFLOW,
+            rotation_radius: UNIT * (96.0 + 8.0 * angle),
+            position_radius: 4.0 * UNIT * (self.position.length() + travelled.length()) + UNDERFLOW,
             linear_radius: 0.0,
             angular_radius: 0.0,
         })
@@ -336,7 +334,7 @@ impl RigidMotion for ConstantTwist {
     /// The position is kept as a pair of doubles, proven to 2⁻⁹⁸ of |x0| + |v s| (five operations of less than 2⁻¹⁰¹).
     fn enclose_kinematics(&self, t: Interval) -> Kinematics {
         /// 2⁻⁹⁸.
-        const PAIR: f64 = f64::from_bits((1023 - 98) << 52);
+        const PAIR: f64 = power_of_two(-98);
         let Some(state) = self.plain_state(t.mid()) else {
             return Kinematics::from_enclosures(
                 &self.enclose_pose(t),

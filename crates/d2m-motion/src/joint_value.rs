@@ -2,9 +2,8 @@
 use crate::MotionError;
 use crate::ball::up;
 use crate::error::{describe_times, fault};
-use core::ops::{Add, Mul, Sub};
 use d2m_interval::Interval;
-use d2m_lanes::{DoubleDouble, two_sum};
+use d2m_lanes::{DoubleDouble, power_of_two, two_sum};
 
 /// Largest jump between two pieces that counts as rounding (radians, or units of length).
 pub(crate) const LARGEST_JUMP: f64 = 1e-9;
@@ -50,7 +49,7 @@ impl Enclosed {
     fn hull(self, other: Self) -> Self {
         let center = DoubleDouble::from_f64(0.5 * self.center.hi + 0.5 * other.center.hi);
         let reach = |e: Self| {
-            let apart = e.center.sub(center);
+            let apart = e.center - center;
             up(apart.hi.abs() + e.radius) + 4.0 * f64::EPSILON * apart.hi.abs()
         };
         Self { center, radius: up(reach(self).max(reach(other))) }
@@ -106,7 +105,7 @@ impl JointValue {
             let time = value.times[index];
             let (before, after) =
                 (value.over_piece(index - 1, time, time), value.over_piece(index, time, time));
-            let jump = before.value.center.sub(after.value.center).hi.abs();
+            let jump = (before.value.center - after.value.center).hi.abs();
             // Also what is no number is a jump.
             let rounding = before.value.radius + after.value.radius;
             if jump.is_nan() || jump > LARGEST_JUMP + rounding {
@@ -214,7 +213,7 @@ impl JointValue {
         };
         let part = |derivative: usize, factor: f64| {
             let (b, error) = term(derivative);
-            let center = b.mul(factor);
+            let center = b * factor;
             let radius = up(error * factor + beyond(derivative));
             let known = center.hi.is_finite() && center.lo.is_finite() && radius < f64::INFINITY;
             if known {
@@ -236,7 +235,7 @@ impl ValueOverTime {
 /// One step of Horner's scheme in pairs of doubles is off by less than this of the magnitudes that it adds.
 ///
 /// A product with a double loses at most 2·2⁻¹⁰⁴ and a sum 4·2⁻¹⁰⁶ of the operands; 2⁻¹⁰⁰ leaves a factor of four.
-const STEP: f64 = f64::from_bits((1023 - 100) << 52);
+const STEP: f64 = power_of_two(-100);
 
 /// The coefficients about `s`, each with a bound of its error: repeated division by t − s.
 ///
@@ -251,7 +250,7 @@ fn taylor(coefficients: &[f64], s: f64, terms: &mut [(DoubleDouble, f64)]) {
         for row in 0..n {
             for j in (row..n - 1).rev() {
                 let (next, size) = terms[j + 1];
-                terms[j].0 = terms[j].0.add(next.mul(s));
+                terms[j].0 = terms[j].0 + next * s;
                 terms[j].1 = up(terms[j].1 + size * s.abs());
             }
         }

@@ -1,5 +1,6 @@
 //! Poses at times, joined by motions of constant twist.
 use crate::error::{fault, require_finite};
+use crate::sequence::Sequence;
 use crate::{
     CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Kinematics, MotionError, Pose, RigidMotion,
     ScrewMotion, Twist, TwistPiece,
@@ -60,8 +61,7 @@ const PRODUCT_ROUNDING: f64 = 16.0 * 0.5 * f64::EPSILON;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Keyframes {
-    times: Vec<f64>,
-    motions: Vec<ConstantTwist>,
+    spans: Sequence<ConstantTwist>,
     widest: Option<WidestGap>,
 }
 
@@ -85,7 +85,7 @@ impl Keyframes {
         for (index, (_, pose)) in keyframes.iter().enumerate() {
             check_pose(pose).map_err(|error| error.within(&format!("poses[{index}]")))?;
         }
-        let motions = keyframes
+        let pieces = keyframes
             .windows(2)
             .enumerate()
             .map(|(index, pair)| {
@@ -100,7 +100,7 @@ impl Keyframes {
                 })
             })
             .collect::<Result<_, _>>()?;
-        Ok(Self { times, motions, widest: None })
+        Ok(Self { spans: Sequence { times, pieces }, widest: None })
     }
 
     /// Puts spans together; `motions[i]` runs from `times[i]` to `times[i + 1]`.
@@ -116,20 +116,21 @@ impl Keyframes {
             let reason = format!("{} times for {} spans: one more is needed", times.len(), motions.len());
             return Err(fault("times".into(), reason));
         }
-        let mut path = Self { times, motions, widest: None };
+        let mut path = Self { spans: Sequence { times, pieces: motions }, widest: None };
         path.find_gaps()?;
         Ok(path)
     }
 
     /// Measures the gaps at all joints, refuses those that are rounding for no body and keeps the one that is for the largest only.
     fn find_gaps(&mut self) -> Result<(), MotionError> {
+        let Sequence { times, pieces } = &self.spans;
         let mut moved = 0.0;
         let mut widest: Option<(f64, WidestGap)> = None;
-        for index in 1..self.motions.len() {
-            let (time, before, after) = (self.times[index], &self.motions[index - 1], &self.motions[index]);
+        for index in 1..pieces.len() {
+            let (time, before, after) = (times[index], &pieces[index - 1], &pieces[index]);
             let v = before.linear_velocity().length();
-            moved += (v + before.angular_velocity().length() * before.at().length())
-                * (time - self.times[index - 1]);
+            moved +=
+                (v + before.angular_velocity().length() * before.at().length()) * (time - times[index - 1]);
             let [p, q] = [before, after].map(|motion| {
                 Kinematics::following(&motion.enclose_kinematics(Interval::point(time)), DVec3::ZERO)
             });
@@ -168,22 +169,22 @@ impl Keyframes {
         if gap <= allowed {
             return Ok(());
         }
-        Err(MotionError::Gap { index, time: self.times[index], quantity: "position", gap, allowed })
+        Err(MotionError::Gap { index, time: self.spans.times[index], quantity: "position", gap, allowed })
     }
 
     /// The keyframe times, increasing.
     pub fn times(&self) -> &[f64] {
-        &self.times
+        &self.spans.times
     }
 
     /// The motions of the spans, one fewer than times.
     pub fn motions(&self) -> &[ConstantTwist] {
-        &self.motions
+        &self.spans.pieces
     }
 
     /// Every span, in the order of time.
     pub fn spans(&self) -> impl Iterator<Item = KeyframeSpan<'_>> {
-        (0..self.motions.len()).map(|index| self.span(index))
+        (0..self.spans.pieces.len()).map(|index| self.span(index))
     }
 
     /// The span that holds time `t` (the later one at a keyframe), or `None` outside.
@@ -200,52 +201,23 @@ impl Keyframes {
     /// # Ok::<(), d2m_motion::MotionError>(())
     /// ```
     pub fn span_at(&self, t: f64) -> Option<KeyframeSpan<'_>> {
-        if !(self.times[0] <= t && t <= self.times[self.motions.len()]) {
-            return None;
-        }
-        Some(self.span(self.index_from(t)))
+        self.domain().contains(t).then(|| self.span(self.spans.index_from(t)))
     }
 
     fn span(&self, index: usize) -> KeyframeSpan<'_> {
-        KeyframeSpan { start: self.times[index], end: self.times[index + 1], motion: &self.motions[index] }
-    }
-
-    /// The span that begins at or before `t`; the first or last one outside.
-    fn index_from(&self, t: f64) -> usize {
-        self.times.partition_point(|&time| time <= t).saturating_sub(1).min(self.motions.len() - 1)
-    }
-
-    /// The span that ends at or after `t`.
-    fn index_until(&self, t: f64) -> usize {
-        self.times.partition_point(|&time| time < t).saturating_sub(1).min(self.motions.len() - 1)
+        let Sequence { times, pieces } = &self.spans;
+        KeyframeSpan { start: times[index], end: times[index + 1], motion: &pieces[index] }
     }
 
     /// The reference point of all spans.
     fn at(&self) -> DVec3 {
-        self.motions[0].at()
-    }
-
-    /// A hull over the spans that have a part of the interval.
-    fn over<T>(
-        &self,
-        t: Interval,
-        enclose: impl Fn(&ConstantTwist, Interval) -> T,
-        hull: impl Fn(T, T) -> T,
-    ) -> T {
-        let first = self.index_from(t.lo());
-        let last = if t.lo() < t.hi() { self.index_until(t.hi()).max(first) } else { first };
-        let part = |index: usize| {
-            let lo = if index == first { t.lo() } else { self.times[index] };
-            let hi = if index == last { t.hi() } else { self.times[index + 1] };
-            enclose(&self.motions[index], Interval::try_new(lo, hi).unwrap_or(Interval::ENTIRE))
-        };
-        (first + 1..=last).fold(part(first), |whole, index| hull(whole, part(index)))
+        self.spans.pieces[0].at()
     }
 }
 
 impl RigidMotion for Keyframes {
     fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        let (pose, twist) = self.motions[self.index_from(t)].pose_and_twist(t);
+        let (pose, twist) = self.spans.piece_from(t).pose_and_twist(t);
         let at = self.at();
         let arm = pose.rotation * (at - pose.at);
         let translation = pose.translation + arm;
@@ -258,28 +230,26 @@ impl RigidMotion for Keyframes {
             let pose = motion.enclose_pose(t);
             IntervalPose { translation: pose.enclose_point(at), at, ..pose }
         };
-        self.over(t, one, |a, b| IntervalPose {
-            rotation: a.rotation.hull(b.rotation),
-            translation: a.translation.hull(b.translation),
-            at,
-        })
+        self.spans.over(t, one, IntervalPose::hull)
     }
 
     fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.over(t, |motion, t| motion.enclose_kinematics(t).following(self.at()).to_twist(), hull)
+        let twist = |motion: &ConstantTwist, t| motion.enclose_kinematics(t).following(self.at()).to_twist();
+        self.spans.over(t, twist, IntervalTwist::hull)
     }
 
     fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.over(t, |motion, t| motion.enclose_kinematics(t).following(self.at()).to_twist_rate(), hull)
+        let rate =
+            |motion: &ConstantTwist, t| motion.enclose_kinematics(t).following(self.at()).to_twist_rate();
+        self.spans.over(t, rate, IntervalTwist::hull)
     }
 
     fn domain(&self) -> Interval {
-        Interval::new(self.times[0], self.times[self.motions.len()])
+        self.spans.domain()
     }
 
     fn smooth_until(&self, t: f64) -> Option<f64> {
-        let index = self.index_from(t);
-        (index + 1 < self.motions.len()).then(|| self.times[index + 1])
+        self.spans.next_joint(t)
     }
 
     fn enclose_state(&self, t: f64) -> CertifiedState {
@@ -291,17 +261,14 @@ impl RigidMotion for Keyframes {
     }
 
     fn enclose_kinematics(&self, t: Interval) -> Kinematics {
-        self.over(t, |motion, t| motion.enclose_kinematics(t).following(self.at()), |a, b| a.hull(&b))
+        let place = |motion: &ConstantTwist, t| motion.enclose_kinematics(t).following(self.at());
+        self.spans.over(t, place, |a, b| a.hull(&b))
     }
 
     fn constant_twist_from(&self, t: f64) -> Option<TwistPiece> {
-        let motion = self.motions[self.index_from(t)];
+        let motion = *self.spans.piece_from(t);
         Some(TwistPiece { motion, until: self.smooth_until(t) })
     }
-}
-
-fn hull(a: IntervalTwist, b: IntervalTwist) -> IntervalTwist {
-    IntervalTwist { linear: a.linear.hull(b.linear), angular: a.angular.hull(b.angular) }
 }
 
 fn check_times(times: &[f64]) -> Result<(), MotionError> {

@@ -19,6 +19,7 @@ mod rigid_motion;
 mod rotation;
 mod rounding;
 mod screw;
+mod sequence;
 #[cfg(feature = "serde")]
 mod serde_any;
 #[cfg(feature = "serde")]

@@ -134,4 +134,14 @@ impl IntervalPose {
     pub fn enclose_vector(&self, vector: DVec3) -> IntervalVec3 {
         self.rotation.mul_vec(IntervalVec3::point(vector))
     }
+
+    /// A set that contains this one and another (of the same reference point).
+    #[must_use]
+    pub fn hull(self, other: Self) -> Self {
+        Self {
+            rotation: self.rotation.hull(other.rotation),
+            translation: self.translation.hull(other.translation),
+            at: self.at,
+        }
+    }
 }

@@ -109,57 +109,73 @@ pub trait RigidMotion: Sync {
     }
 }
 
+/// The methods of a type that moves as another motion does, which is what the expression finds in `self`.
 macro_rules! forward {
-    (methods) => {
-        fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-            (**self).pose_and_twist(t)
+    (|$this:ident| $motion:expr) => {
+        fn pose_and_twist(&self, t: f64) -> ($crate::Pose, $crate::Twist) {
+            let $this = self;
+            $motion.pose_and_twist(t)
         }
-        fn enclose_pose(&self, t: Interval) -> IntervalPose {
-            (**self).enclose_pose(t)
+        fn enclose_pose(&self, t: d2m_interval::Interval) -> $crate::IntervalPose {
+            let $this = self;
+            $motion.enclose_pose(t)
         }
-        fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-            (**self).enclose_twist(t)
+        fn enclose_twist(&self, t: d2m_interval::Interval) -> $crate::IntervalTwist {
+            let $this = self;
+            $motion.enclose_twist(t)
         }
-        fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-            (**self).enclose_twist_rate(t)
+        fn enclose_twist_rate(&self, t: d2m_interval::Interval) -> $crate::IntervalTwist {
+            let $this = self;
+            $motion.enclose_twist_rate(t)
         }
-        fn domain(&self) -> Interval {
-            (**self).domain()
+        fn domain(&self) -> d2m_interval::Interval {
+            let $this = self;
+            $motion.domain()
         }
         fn smooth_until(&self, t: f64) -> Option<f64> {
-            (**self).smooth_until(t)
+            let $this = self;
+            $motion.smooth_until(t)
         }
-        fn enclose_state(&self, t: f64) -> CertifiedState {
-            (**self).enclose_state(t)
+        fn enclose_state(&self, t: f64) -> $crate::CertifiedState {
+            let $this = self;
+            $motion.enclose_state(t)
         }
-        fn enclose_state_about(&self, t: f64, origin: DVec3) -> CertifiedState {
-            (**self).enclose_state_about(t, origin)
+        fn enclose_state_about(&self, t: f64, origin: glam::DVec3) -> $crate::CertifiedState {
+            let $this = self;
+            $motion.enclose_state_about(t, origin)
         }
-        fn enclose_kinematics(&self, t: Interval) -> Kinematics {
-            (**self).enclose_kinematics(t)
+        fn enclose_kinematics(&self, t: d2m_interval::Interval) -> $crate::Kinematics {
+            let $this = self;
+            $motion.enclose_kinematics(t)
         }
-        fn bound_acceleration(&self, t: Interval, radius: f64) -> f64 {
-            (**self).bound_acceleration(t, radius)
+        fn bound_acceleration(&self, t: d2m_interval::Interval, radius: f64) -> f64 {
+            let $this = self;
+            $motion.bound_acceleration(t, radius)
         }
-        fn constant_twist(&self) -> Option<ConstantTwist> {
-            (**self).constant_twist()
+        fn constant_twist(&self) -> Option<$crate::ConstantTwist> {
+            let $this = self;
+            $motion.constant_twist()
         }
-        fn constant_twist_from(&self, t: f64) -> Option<TwistPiece> {
-            (**self).constant_twist_from(t)
+        fn constant_twist_from(&self, t: f64) -> Option<$crate::TwistPiece> {
+            let $this = self;
+            $motion.constant_twist_from(t)
         }
-        fn chain(&self) -> Option<&Chain> {
-            (**self).chain()
-        }
-    };
-    ($pointer:ty) => {
-        impl<M: RigidMotion + Send + ?Sized> RigidMotion for $pointer {
-            forward!(methods);
+        fn chain(&self) -> Option<&$crate::Chain> {
+            let $this = self;
+            $motion.chain()
         }
     };
 }
+pub(crate) use forward;
 
 impl<M: RigidMotion + ?Sized> RigidMotion for &M {
-    forward!(methods);
+    forward!(|motion| (**motion));
 }
-forward!(Box<M>);
-forward!(std::sync::Arc<M>);
+
+impl<M: RigidMotion + Send + ?Sized> RigidMotion for Box<M> {
+    forward!(|motion| (**motion));
+}
+
+impl<M: RigidMotion + Send + ?Sized> RigidMotion for std::sync::Arc<M> {
+    forward!(|motion| (**motion));
+}

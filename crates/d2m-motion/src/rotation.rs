@@ -1,8 +1,8 @@
 //! Rotations about a fixed axis: a quaternion or a matrix in doubles, a matrix in double-double.
 use crate::double_double_trig::sin_cos_double;
 use crate::sin_cos::{LARGEST_ANGLE, sin_cos};
-use core::ops::{Add, Mul, Sub};
-use d2m_lanes::{DoubleDouble, power_of_two_below, two_product};
+use core::ops::Mul;
+use d2m_lanes::{DoubleDouble, power_of_two_below};
 use glam::{DMat3, DQuat, DVec3};
 
 /// Squared norms of quaternions between these lose nothing to under- or overflow in products of four.
@@ -100,26 +100,30 @@ impl RotationDd {
         DQuat::from_mat3(&self.to_mat3()).normalize()
     }
 
-    pub(crate) fn mul(&self, other: &Self) -> Self {
-        let mut out = [[DoubleDouble::ZERO; 3]; 3];
-        for (i, row) in out.iter_mut().enumerate() {
-            for (j, entry) in row.iter_mut().enumerate() {
-                for k in 0..3 {
-                    *entry = entry.add(self.0[i][k].mul(other.0[k][j]));
-                }
-            }
-        }
-        Self(out)
-    }
-
     pub(crate) fn apply(&self, v: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
-        self.0.map(|row| row[0].mul(v[0]).add(row[1].mul(v[1])).add(row[2].mul(v[2])))
+        self.0.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
     }
 
     /// Transpose times vector.
     pub(crate) fn apply_transposed(&self, v: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
         let m = &self.0;
-        [0, 1, 2].map(|j| m[0][j].mul(v[0]).add(m[1][j].mul(v[1])).add(m[2][j].mul(v[2])))
+        [0, 1, 2].map(|j| m[0][j] * v[0] + m[1][j] * v[1] + m[2][j] * v[2])
+    }
+}
+
+impl Mul for RotationDd {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let mut out = [[DoubleDouble::ZERO; 3]; 3];
+        for (i, row) in out.iter_mut().enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                for k in 0..3 {
+                    *entry = *entry + self.0[i][k] * other.0[k][j];
+                }
+            }
+        }
+        Self(out)
     }
 }
 
@@ -129,20 +133,17 @@ fn from_quat(q: DQuat) -> RotationDd {
     let largest = q.x.abs().max(q.y.abs()).max(q.z.abs()).max(q.w.abs());
     let scale = f64::from_bits((2046 - (largest.to_bits() >> 52)) << 52);
     let q = [q.x * scale, q.y * scale, q.z * scale, q.w * scale];
-    let product = |i: usize, j: usize| {
-        let (hi, lo) = two_product(q[i], q[j]);
-        DoubleDouble { hi, lo }
-    };
+    let product = |i: usize, j: usize| DoubleDouble::from_product(q[i], q[j]);
     let (xx, yy, zz, ww) = (product(0, 0), product(1, 1), product(2, 2), product(3, 3));
-    let norm = xx.add(yy).add(zz).add(ww);
-    let half = |d: DoubleDouble| d.mul(2.0).div_accurately(norm);
+    let norm = xx + yy + zz + ww;
+    let half = |d: DoubleDouble| (d * 2.0).div_accurately(norm);
     let (xy, xz, yz) = (product(0, 1), product(0, 2), product(1, 2));
     let (wx, wy, wz) = (product(3, 0), product(3, 1), product(3, 2));
-    let diagonal = |a: DoubleDouble, b: DoubleDouble| DoubleDouble::ONE.sub(half(a.add(b)));
+    let diagonal = |a: DoubleDouble, b: DoubleDouble| DoubleDouble::ONE - half(a + b);
     RotationDd([
-        [diagonal(yy, zz), half(xy.sub(wz)), half(xz.add(wy))],
-        [half(xy.add(wz)), diagonal(xx, zz), half(yz.sub(wx))],
-        [half(xz.sub(wy)), half(yz.add(wx)), diagonal(xx, yy)],
+        [diagonal(yy, zz), half(xy - wz), half(xz + wy)],
+        [half(xy + wz), diagonal(xx, zz), half(yz - wx)],
+        [half(xz - wy), half(yz + wx), diagonal(xx, yy)],
     ])
 }
 
@@ -153,29 +154,26 @@ pub(crate) fn exponential_dd(omega: DVec3, s: DoubleDouble) -> RotationDd {
     // two has no normal reciprocal: half of it will do.)
     let rate = power_of_two_below(omega.abs().max_element()).min(0.5 * power_of_two_below(f64::MAX));
     let (omega, s) = (omega * (1.0 / rate), DoubleDouble { hi: s.hi * rate, lo: s.lo * rate });
-    let square = |x: f64| {
-        let (hi, lo) = two_product(x, x);
-        DoubleDouble { hi, lo }
-    };
-    let speed = square(omega.x).add(square(omega.y)).add(square(omega.z)).sqrt();
+    let square = |x: f64| DoubleDouble::from_product(x, x);
+    let speed = (square(omega.x) + square(omega.y) + square(omega.z)).sqrt();
     if speed.hi == 0.0 {
         let one = DoubleDouble::ONE;
         return RotationDd([[one, zero, zero], [zero, one, zero], [zero, zero, one]]);
     }
-    let (sin, cos) = sin_cos_double(speed.mul(s));
+    let (sin, cos) = sin_cos_double(speed * s);
     let axis = [omega.x, omega.y, omega.z].map(|w| DoubleDouble::from_f64(w).div_accurately(speed));
-    let versine = DoubleDouble::ONE.sub(cos);
-    let entry = |i: usize, j: usize| versine.mul(axis[i]).mul(axis[j]);
-    let [x, y, z] = axis.map(|k| k.mul(sin));
+    let versine = DoubleDouble::ONE - cos;
+    let entry = |i: usize, j: usize| versine * axis[i] * axis[j];
+    let [x, y, z] = axis.map(|k| k * sin);
     RotationDd([
-        [entry(0, 0).add(cos), entry(0, 1).sub(z), entry(0, 2).add(y)],
-        [entry(1, 0).add(z), entry(1, 1).add(cos), entry(1, 2).sub(x)],
-        [entry(2, 0).sub(y), entry(2, 1).add(x), entry(2, 2).add(cos)],
+        [entry(0, 0) + cos, entry(0, 1) - z, entry(0, 2) + y],
+        [entry(1, 0) + z, entry(1, 1) + cos, entry(1, 2) - x],
+        [entry(2, 0) - y, entry(2, 1) + x, entry(2, 2) + cos],
     ])
 }
 
 /// exp([ω]s)·R(q/|q|) in double-double.
 pub(crate) fn rotate_dd(omega: DVec3, s: DoubleDouble, q: DQuat) -> RotationDd {
     let start = from_quat(q);
-    if omega == DVec3::ZERO || s.hi == 0.0 { start } else { exponential_dd(omega, s).mul(&start) }
+    if omega == DVec3::ZERO || s.hi == 0.0 { start } else { exponential_dd(omega, s) * start }
 }

@@ -1,9 +1,6 @@
 //! Screw motion: a turn about an axis fixed in space plus a slide along it (Mozzi–Chasles).
-use crate::{
-    CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Kinematics, MotionError, Pose, RigidMotion,
-    Twist,
-};
-use d2m_interval::Interval;
+use crate::rigid_motion::forward;
+use crate::{ConstantTwist, MotionError, Pose, RigidMotion, Twist};
 use glam::DVec3;
 
 /// Sine of half the smallest turn that is given an axis: it lies up to 1e12 displacements away, documented. It refuses and
@@ -155,28 +152,5 @@ pub(crate) fn atan2_positive(y: f64, x: f64) -> f64 {
 }
 
 impl RigidMotion for ScrewMotion {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.motion.pose_and_twist(t)
-    }
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        self.motion.enclose_pose(t)
-    }
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.motion.enclose_twist(t)
-    }
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.motion.enclose_twist_rate(t)
-    }
-    fn enclose_state(&self, t: f64) -> CertifiedState {
-        self.motion.enclose_state(t)
-    }
-    fn enclose_state_about(&self, t: f64, origin: DVec3) -> CertifiedState {
-        self.motion.enclose_state_about(t, origin)
-    }
-    fn enclose_kinematics(&self, t: Interval) -> Kinematics {
-        self.motion.enclose_kinematics(t)
-    }
-    fn constant_twist(&self) -> Option<ConstantTwist> {
-        Some(self.motion)
-    }
+    forward!(|screw| screw.motion);
 }

@@ -61,28 +61,28 @@ pub(crate) fn sin_cos_two(x: F64x2) -> (F64x2, F64x2) {
         return (F64x2::pack(s0, s1), F64x2::pack(c0, c1));
     }
     let (round, one, half) = (F64x2::splat(ROUND), F64x2::splat(1.0), F64x2::splat(0.5));
-    let turns = x.times(F64x2::splat(core::f64::consts::FRAC_2_PI));
-    let shifted = turns.plus(round);
-    let n = shifted.minus(round);
-    let r = x.minus(n.times(F64x2::splat(PIO2_1)));
-    let t = n.times(F64x2::splat(PIO2_2));
-    let first = r.minus(t);
-    let lost = n.times(F64x2::splat(PIO2_2T)).minus(r.minus(first).minus(t));
-    let high = first.minus(lost);
-    let low = first.minus(high).minus(lost);
+    let turns = x * F64x2::splat(core::f64::consts::FRAC_2_PI);
+    let shifted = turns + round;
+    let n = shifted - round;
+    let r = x - n * F64x2::splat(PIO2_1);
+    let t = n * F64x2::splat(PIO2_2);
+    let first = r - t;
+    let lost = n * F64x2::splat(PIO2_2T) - (r - first - t);
+    let high = first - lost;
+    let low = first - high - lost;
     // The kernels below, term by term.
-    let z = high.times(high);
-    let half_z = half.times(z);
-    let w = one.minus(half_z);
+    let z = high * high;
+    let half_z = half * z;
+    let w = one - half_z;
     let r = polynomial(&SIN, z);
-    let cubic = high.times(z).times(z.times(r).minus(F64x2::splat(1.0 / 6.0)));
-    let sin = high.plus(low.times(w).plus(cubic));
+    let cubic = high * z * (z * r - F64x2::splat(1.0 / 6.0));
+    let sin = high + (low * w + cubic);
     let r = polynomial(&COS, z);
-    let tail = z.times(z).times(r).minus(high.times(low));
-    let cos = w.plus(one.minus(w).minus(half_z).plus(tail));
+    let tail = z * z * r - high * low;
+    let cos = w + (one - w - half_z + tail);
     // n mod 4: (s, c), (c, −s), (−s, −c), (−c, s). The second bit of n is the first of ⌊n/2⌋.
     let odd = shifted.lowest_bit();
-    let upper = n.times(half).minus(F64x2::splat(0.25)).plus(round).lowest_bit();
+    let upper = (n * half - F64x2::splat(0.25) + round).lowest_bit();
     let minus = F64x2::splat(-0.0);
     (odd.select(cos, sin).xor(upper.and(minus)), odd.select(sin, cos).xor(upper.xor(odd).and(minus)))
 }
@@ -91,7 +91,7 @@ pub(crate) fn sin_cos_two(x: F64x2) -> (F64x2, F64x2) {
 fn polynomial<const N: usize>(coefficients: &[f64; N], z: F64x2) -> F64x2 {
     let mut sum = F64x2::splat(coefficients[N - 1]);
     for &coefficient in coefficients[..N - 1].iter().rev() {
-        sum = F64x2::splat(coefficient).plus(z.times(sum));
+        sum = F64x2::splat(coefficient) + z * sum;
     }
     sum
 }

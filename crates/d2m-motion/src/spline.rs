@@ -1,6 +1,7 @@
 //! Smooth motions through poses: cubic and quintic Hermite splines, each span a chain of joints.
 use crate::error::fault;
 use crate::screw::atan2_positive;
+use crate::sequence::Sequence;
 use crate::{
     CertifiedState, Chain, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Kinematics,
     MotionError, Pose, RigidMotion, Twist,
@@ -48,8 +49,7 @@ pub enum SplineDegree {
 /// derivatives", SIGGRAPH 1995, DOI 10.1145/218380.218486.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spline {
-    times: Vec<f64>,
-    spans: Vec<Chain>,
+    spans: Sequence<Chain>,
 }
 
 impl Spline {
@@ -104,38 +104,20 @@ impl Spline {
         degree: SplineDegree,
     ) -> Result<Self, MotionError> {
         check(keyframes.iter().map(|(time, pose, _)| (*time, *pose)))?;
-        let spans = keyframes
+        let pieces = keyframes
             .windows(2)
             .enumerate()
             .map(|(i, pair)| {
                 span([pair[0], pair[1]], degree).map_err(|error| error.within(&format!("poses[{}]", i + 1)))
             })
             .collect::<Result<_, _>>()?;
-        Ok(Self { times: keyframes.iter().map(|(time, ..)| *time).collect(), spans })
+        let times = keyframes.iter().map(|(time, ..)| *time).collect();
+        Ok(Self { spans: Sequence { times, pieces } })
     }
 
     /// The times of the poses.
     pub fn times(&self) -> &[f64] {
-        &self.times
-    }
-
-    fn index_from(&self, t: f64) -> usize {
-        self.times.partition_point(|&time| time <= t).saturating_sub(1).min(self.spans.len() - 1)
-    }
-
-    fn index_until(&self, t: f64) -> usize {
-        self.times.partition_point(|&time| time < t).saturating_sub(1).min(self.spans.len() - 1)
-    }
-
-    fn over<T>(&self, t: Interval, one: impl Fn(&Chain, Interval) -> T, hull: impl Fn(T, T) -> T) -> T {
-        let first = self.index_from(t.lo());
-        let last = if t.lo() < t.hi() { self.index_until(t.hi()).max(first) } else { first };
-        let part = |index: usize| {
-            let lo = if index == first { t.lo() } else { self.times[index] };
-            let hi = if index == last { t.hi() } else { self.times[index + 1] };
-            one(&self.spans[index], Interval::try_new(lo, hi).unwrap_or(Interval::ENTIRE))
-        };
-        (first + 1..=last).fold(part(first), |whole, index| hull(whole, part(index)))
+        &self.spans.times
     }
 }
 
@@ -255,49 +237,40 @@ fn span(
 
 impl RigidMotion for Spline {
     fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.spans[self.index_from(t)].pose_and_twist(t)
+        self.spans.piece_from(t).pose_and_twist(t)
     }
 
     fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        self.over(t, RigidMotion::enclose_pose, |a, b| IntervalPose {
-            rotation: a.rotation.hull(b.rotation),
-            translation: a.translation.hull(b.translation),
-            at: a.at,
-        })
+        self.spans.over(t, RigidMotion::enclose_pose, IntervalPose::hull)
     }
 
     fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.over(t, RigidMotion::enclose_twist, hull)
+        self.spans.over(t, RigidMotion::enclose_twist, IntervalTwist::hull)
     }
 
     fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.over(t, RigidMotion::enclose_twist_rate, hull)
+        self.spans.over(t, RigidMotion::enclose_twist_rate, IntervalTwist::hull)
     }
 
     fn domain(&self) -> Interval {
-        Interval::new(self.times[0], self.times[self.spans.len()])
+        self.spans.domain()
     }
 
     fn smooth_until(&self, t: f64) -> Option<f64> {
-        let index = self.index_from(t);
-        (index + 1 < self.spans.len()).then(|| self.times[index + 1])
+        self.spans.next_joint(t)
     }
 
     fn enclose_state(&self, t: f64) -> CertifiedState {
-        self.spans[self.index_from(t)].enclose_state(t)
+        self.spans.piece_from(t).enclose_state(t)
     }
 
     fn enclose_state_about(&self, t: f64, origin: DVec3) -> CertifiedState {
-        self.spans[self.index_from(t)].enclose_state_about(t, origin)
+        self.spans.piece_from(t).enclose_state_about(t, origin)
     }
 
     fn enclose_kinematics(&self, t: Interval) -> Kinematics {
-        self.over(t, RigidMotion::enclose_kinematics, |a, b| a.hull(&b))
+        self.spans.over(t, RigidMotion::enclose_kinematics, |a, b| a.hull(&b))
     }
-}
-
-fn hull(a: IntervalTwist, b: IntervalTwist) -> IntervalTwist {
-    IntervalTwist { linear: a.linear.hull(b.linear), angular: a.angular.hull(b.angular) }
 }
 
 #[cfg(test)]

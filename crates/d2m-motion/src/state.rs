@@ -1,8 +1,7 @@
 //! Where a body is and how it moves at one time: plain numbers, each with a proven distance from the truth.
 use crate::rotation::from_quat_rounded;
-use crate::rounding::{UNDERFLOW, UP};
-use crate::{ConstantTwist, IntervalPose, IntervalTwist, Kinematics};
-use d2m_interval::{Interval, IntervalVec3};
+use crate::rounding::{UNDERFLOW, UNIT, UP};
+use crate::{Ball, ConstantTwist, IntervalPose, IntervalTwist, Kinematics};
 use glam::{DMat3, DQuat, DVec3};
 
 /// Pose and twist at one time as middle values with radii: what jets of any motion are made of.
@@ -58,28 +57,23 @@ impl CertifiedState {
     /// The rotation's radius is the Frobenius norm of the half-widths. Unbounded enclosures give infinite radii.
     pub fn from_enclosures(pose: &IntervalPose, twist: &IntervalTwist) -> Self {
         let [row0, row1, row2] = pose.rotation.rows();
-        let rows = [ball(row0), ball(row1), ball(row2)];
-        let square = |r: f64| r * r;
-        let rotation_radius =
-            (square(rows[0].1) + square(rows[1].1) + square(rows[2].1)).sqrt() * UP + UNDERFLOW;
-        let (position, position_radius) = ball(pose.translation);
-        let (linear, linear_radius) = ball(twist.linear);
-        let (angular, angular_radius) = ball(twist.angular);
+        let rows = [row0, row1, row2].map(Ball::around_box);
+        let [r0, r1, r2] = rows.map(|row| row.radius * row.radius);
+        let position = Ball::around_box(pose.translation);
+        let (linear, angular) = (Ball::around_box(twist.linear), Ball::around_box(twist.angular));
         Self {
-            rotation: DMat3::from_cols(rows[0].0, rows[1].0, rows[2].0).transpose(),
-            position,
+            rotation: DMat3::from_cols(rows[0].center, rows[1].center, rows[2].center).transpose(),
+            position: position.center,
             at: pose.at,
-            linear,
-            angular,
-            rotation_radius,
-            position_radius,
-            linear_radius,
-            angular_radius,
+            linear: linear.center,
+            angular: angular.center,
+            rotation_radius: (r0 + r1 + r2).sqrt() * UP + UNDERFLOW,
+            position_radius: position.radius,
+            linear_radius: linear.radius,
+            angular_radius: angular.radius,
         }
     }
-}
 
-impl CertifiedState {
     /// The same state expressed by another body point.
     #[must_use]
     pub fn following(&self, at: DVec3) -> Self {
@@ -109,22 +103,7 @@ impl CertifiedState {
         let known = from_quat_rounded(motion.orientation())?;
         let [x, y, z] =
             [0, 1, 2].map(|column| (known.col(column) - self.rotation.col(column)).length_squared());
-        let radius = (x + y + z).sqrt() + 40.0 * 0.5 * f64::EPSILON + self.rotation_radius;
+        let radius = (x + y + z).sqrt() + 40.0 * UNIT + self.rotation_radius;
         (radius < f64::INFINITY).then_some(StateTwist { motion, rotation_radius: radius * UP })
     }
-}
-
-/// A ball about a box: `½(lo + hi)` with the length of the half-widths, plus one rounding of either.
-///
-/// With `|m − ½(lo + hi)| ≤ u|m|` and `½(hi − lo)` rounded within u of itself, a point of the box is within
-/// `½(hi − lo)(1 + u) + u|m|` of `m` in each coordinate. What is not finite becomes the ball of infinite radius
-/// about 0.
-#[inline]
-pub(crate) fn ball(v: IntervalVec3) -> (DVec3, f64) {
-    let middle = |i: Interval| 0.5 * (i.lo() + i.hi());
-    let half = |i: Interval| 0.5 * (i.hi() - i.lo());
-    let m = DVec3::new(middle(v.x), middle(v.y), middle(v.z));
-    let r = DVec3::new(half(v.x), half(v.y), half(v.z));
-    let radius = (r.length() + f64::EPSILON * m.length()) * UP + UNDERFLOW;
-    if radius < f64::INFINITY { (m, radius) } else { (DVec3::ZERO, f64::INFINITY) }
 }

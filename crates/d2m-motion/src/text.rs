@@ -36,7 +36,8 @@ impl FromStr for ConstantTwist {
     type Err = MotionError;
 
     fn from_str(text: &str) -> Result<Self, MotionError> {
-        let mut motion = (DVec3::ZERO, DQuat::IDENTITY, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, 0.0);
+        let [mut x, mut v, mut w, mut at] = [DVec3::ZERO; 4];
+        let (mut q, mut t) = (DQuat::IDENTITY, 0.0);
         let mut seen: Vec<&str> = Vec::new();
         for part in text.split(';').map(str::trim).filter(|part| !part.is_empty()) {
             let Some((key, value)) = part.split_once('=') else {
@@ -48,19 +49,18 @@ impl FromStr for ConstantTwist {
             }
             seen.push(key);
             match key {
-                "x" => motion.0 = DVec3::from_array(numbers(key, value)?),
+                "x" => x = DVec3::from_array(numbers(key, value)?),
                 "q" => {
-                    let [w, x, y, z] = numbers(key, value)?;
-                    motion.1 = DQuat::from_xyzw(x, y, z, w);
+                    let [scalar, i, j, k] = numbers(key, value)?;
+                    q = DQuat::from_xyzw(i, j, k, scalar);
                 }
-                "v" => motion.2 = DVec3::from_array(numbers(key, value)?),
-                "w" => motion.3 = DVec3::from_array(numbers(key, value)?),
-                "at" => motion.4 = DVec3::from_array(numbers(key, value)?),
-                "t" => [motion.5] = numbers(key, value)?,
+                "v" => v = DVec3::from_array(numbers(key, value)?),
+                "w" => w = DVec3::from_array(numbers(key, value)?),
+                "at" => at = DVec3::from_array(numbers(key, value)?),
+                "t" => [t] = numbers(key, value)?,
                 _ => return Err(text_error(key, "unknown key: expected x, q, v, w, at or t")),
             }
         }
-        let (x, q, v, w, at, t) = motion;
         ConstantTwist::try_new(x, q, v, w)?.try_with_at(at)?.try_with_reference_time(t)
     }
 }

@@ -72,4 +72,10 @@ impl IntervalTwist {
     pub fn enclose_velocity_of(&self, arm: IntervalVec3) -> IntervalVec3 {
         self.linear + self.angular.cross(arm)
     }
+
+    /// A set that contains this one and another.
+    #[must_use]
+    pub fn hull(self, other: Self) -> Self {
+        Self { linear: self.linear.hull(other.linear), angular: self.angular.hull(other.angular) }
+    }
 }

@@ -64,23 +64,23 @@ impl TwoVec3 {
     /// Dot products, vector by vector.
     #[inline(always)]
     pub fn dot(self, o: Self) -> F64x2 {
-        self.x.times(o.x).plus(self.y.times(o.y)).plus(self.z.times(o.z))
+        self.x * o.x + self.y * o.y + self.z * o.z
     }
 
     /// Cross products, vector by vector.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
         Self {
-            x: self.y.times(o.z).minus(self.z.times(o.y)),
-            y: self.z.times(o.x).minus(self.x.times(o.z)),
-            z: self.x.times(o.y).minus(self.y.times(o.x)),
+            x: self.y * o.z - self.z * o.y,
+            y: self.z * o.x - self.x * o.z,
+            z: self.x * o.y - self.y * o.x,
         }
     }
 
     /// Each times its own factor.
     #[inline(always)]
     pub fn scaled(self, s: F64x2) -> Self {
-        Self { x: self.x.times(s), y: self.y.times(s), z: self.z.times(s) }
+        Self { x: self.x * s, y: self.y * s, z: self.z * s }
     }
 }
 
@@ -88,7 +88,7 @@ impl Add for TwoVec3 {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        Self { x: self.x.plus(o.x), y: self.y.plus(o.y), z: self.z.plus(o.z) }
+        Self { x: self.x + o.x, y: self.y + o.y, z: self.z + o.z }
     }
 }
 
@@ -96,7 +96,7 @@ impl Sub for TwoVec3 {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
-        Self { x: self.x.minus(o.x), y: self.y.minus(o.y), z: self.z.minus(o.z) }
+        Self { x: self.x - o.x, y: self.y - o.y, z: self.z - o.z }
     }
 }
 

@@ -90,8 +90,7 @@ impl InclusionFunction {
 
     /// Encloses f over the whole domain.
     pub fn range(&self) -> Interval {
-        let x = self.offsets();
-        self.value + x * (self.slope + x * (self.second_derivative * 0.5))
+        self.enclose_at_offset(self.offsets())
     }
 
     /// Encloses f at one offset x, or over a set of them.

@@ -2,7 +2,6 @@
 #![forbid(unsafe_code)]
 
 mod bboi;
-mod binary;
 mod first_zero;
 mod gamma;
 mod hrfoi;

@@ -2,11 +2,12 @@
 
 use super::mesh_tree::MeshTree;
 use d2m_interval::{Interval, IntervalVec3};
+use d2m_lanes::power_of_two;
 use d2m_motion::IntervalPose;
 use glam::DVec3;
 
 /// Covers the deviation of the stored axes from orthonormal, at most 5.2·2⁻²⁴ (see the node's layout).
-const AXES_ERROR: f64 = f64::from_bits((1023 - 21) << 52);
+const AXES_ERROR: f64 = power_of_two(-21);
 
 impl MeshTree {
     /// Encloses every point of the body in every pose of a set, in world axes: the outermost oriented box, turned and

@@ -6,7 +6,7 @@ use super::node::{LEAST_SIZE, OrientedBox};
 use super::refine::Extremes;
 use super::slabs::{EdgeReach, Slabs};
 use crate::TriMesh;
-use d2m_lanes::power_of_two_above;
+use d2m_lanes::{power_of_two, power_of_two_above};
 use glam::DVec3;
 
 /// Where local coordinates begin, how far the body reaches from there, and the unit they are divided by.
@@ -49,7 +49,7 @@ impl Extent {
 }
 
 /// The least unit of a tree: one over it is a number.
-const LEAST_UNIT: f64 = f64::from_bits((1023 - 1000) << 52); // 2⁻¹⁰⁰⁰
+const LEAST_UNIT: f64 = power_of_two(-1000); // 2⁻¹⁰⁰⁰
 
 /// The least power of two that is not below `radius`, and not below the least unit; one for a point.
 pub(super) fn unit_of(radius: f64) -> f64 {

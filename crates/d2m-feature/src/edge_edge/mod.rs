@@ -4,11 +4,11 @@ mod products;
 use crate::accurate_cross::{Difference, accurate_cross};
 use crate::closest;
 use crate::path::{
-    FeaturePath, HalfEdge, along, around, direction, global, local, padded, reach, widened, without_third,
+    FeaturePath, HalfEdge, along, around, direction, global, local, padded, widened, without_third,
 };
 use crate::point_triangle::cleared;
 use crate::rounding::{CLOSE, PART_OF_WAY, UNDERFLOW, UNIT, UP, length_up};
-use d2m_lanes::F64x2;
+use d2m_lanes::{F64x2, power_of_two};
 use d2m_motion::{EdgeJets, TwoJets, TwoVec3};
 use d2m_root::{Band, Cubic, Measurement, NearbyQuadratic, Piece, PieceTest, Quadratic, Verdict};
 use glam::DVec3;
@@ -38,7 +38,7 @@ const PATIENCE: f64 = 0.045;
 /// Shortest half length that bounds are made for, as a part of the rounding of positions: shorter edges have the bounds of
 /// this one, 2⁻⁶⁰ of what is noticed. Products of a rounding (at least 2⁻²⁵⁰ in the units of a query) with two lengths then
 /// stay far above what underflows.
-const SHORTEST: f64 = f64::from_bits((1023 - 60) << 52);
+const SHORTEST: f64 = power_of_two(-60);
 /// Part of the latest time of a piece to which a crossing's bracket may shrink when no shorter one can be proven: some four
 /// units in the last place.
 const FEW_UNITS: f64 = 8.0 * UNIT;
@@ -67,7 +67,7 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
             let jerk = jets.j.dot(axis);
             let away = TwoQuadratics {
                 value: jets.p.dot(axis),
-                slope: jets.v.dot(axis).plus(jerk.times(F64x2::splat(0.125 * (h * h)))),
+                slope: jets.v.dot(axis) + jerk * F64x2::splat(0.125 * (h * h)),
                 curvature: jets.a.dot(axis),
             };
             let left_out = (jerk.first().abs() + jerk.second().abs()) * ((1.0 / 24.0) * (h * h * h));
@@ -91,7 +91,7 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
     #[inline(always)]
     fn fine(&self, part: Piece, piece: Piece) -> bool {
         let width = part.width();
-        width * (2.0 * self.speed()) <= self.tolerance || width <= FEW_UNITS * reach(piece)
+        width * (2.0 * self.speed()) <= self.tolerance || width <= FEW_UNITS * piece.reach()
     }
 
     fn size(&self) -> f64 {
@@ -130,7 +130,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
         let EdgeJets { jets, half_b: d } = self.jets(piece, at);
         let (half_a, half_b) = self.half_lengths;
         let whole = local(piece, at);
-        let h = reach(whole);
+        let h = whole.reach();
         let (remainder, remainder_e) = (widened(jets.remainders[0], self.separation), jets.remainders[1]);
 
         let known_inside = self.inside.holds(piece);
@@ -166,9 +166,9 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
             // About the middle of what is left.
             let meeting = padded(part, at, whole);
             let m = part.mid();
-            let s = reach(meeting);
+            let s = meeting.reach();
             let meeting = Piece { lo: meeting.lo - m, hi: meeting.hi - m };
-            let r = reach(meeting) * UP;
+            let r = meeting.reach() * UP;
             // Γ with directions frozen there: k = e × d, u = d × k.
             let there = jets.at(m);
             let (w_m, e_m) = (there.first(), there.second());
@@ -244,7 +244,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
         }
         // A true crossing: f changes sign.
         let changes = |between: Piece| {
-            let s = reach(between);
+            let s = between.reach();
             let (of_w, of_e) = (remainder.bound(s), remainder_e.bound(s));
             let product = half_b * (of_w * half_a + (there + of_w) * of_e);
             let higher = s * s * s * s * (fourth + s * (fifth + s * sixth));
@@ -264,7 +264,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
         let distance =
             length_up(pair.difference) + w.remainder.bound(0.0) + e.remainder.bound(0.0) - self.separation;
         let whole = local(piece, at);
-        let s = reach(whole);
+        let s = whole.reach();
         let margin = (widened(without_third(&w), self.separation).bound(s) + without_third(&e).bound(s)) * UP;
         let mut clear = Piece { lo: 0.0, hi: 0.0 };
         let mut best = 0.0;

@@ -1,5 +1,4 @@
 //! Products of two jets that lie side by side: two at a time.
-use crate::path::reach;
 use crate::rounding::PRODUCT_UNDERFLOW;
 use d2m_lanes::F64x2;
 use d2m_motion::{TwoJets, TwoVec3};
@@ -28,8 +27,8 @@ impl TripleProduct {
         let (p02_13, p03_12) = (w_01.dot(k_23), w_01.dot(k_32));
         let (p20_31, p21_30) = (w_23.dot(k_01), w_23.dot(k_10));
         let (p22_33, p23_32) = (w_23.dot(k_23), w_23.dot(k_32));
-        let second = p02_13.plus(p20_31);
-        let third = p03_12.plus(p21_30.swap());
+        let second = p02_13 + p20_31;
+        let third = p03_12 + p21_30.swap();
         Self {
             cubic: Cubic {
                 value: p00_11.first(),
@@ -74,7 +73,7 @@ impl TwoQuadratics {
     /// Their sum and the first minus the second (in the other order).
     #[inline(always)]
     pub(super) fn sum_and_difference(&self) -> Self {
-        let both = |x: F64x2| x.both_first().plus(x.both_second().neg_first());
+        let both = |x: F64x2| x.both_first() + x.both_second().neg_first();
         Self { value: both(self.value), slope: both(self.slope), curvature: both(self.curvature) }
     }
 
@@ -83,21 +82,19 @@ impl TwoQuadratics {
     #[inline(always)]
     pub(super) fn exceed(&self, margin: f64, part: Piece) -> bool {
         debug_assert!([self.first(), self.second()].iter().all(|q| {
-            let error = q.bound_evaluation(reach(part));
+            let error = q.bound_evaluation(part.reach());
             !error.is_finite() || margin + PRODUCT_UNDERFLOW >= error || margin.is_nan()
         }));
         let at = |s: f64| {
-            let bend = F64x2::splat(0.5).times(self.curvature);
+            let bend = F64x2::splat(0.5) * self.curvature;
             let s = F64x2::splat(s);
-            self.value.plus(self.slope.plus(bend.times(s)).times(s))
+            self.value + (self.slope + bend * s) * s
         };
         // The chord minus the sagitta, which errs by 5 roundings; NaN is above nothing.
         let width = part.hi - part.lo;
-        let sagitta = self
-            .curvature
-            .max(F64x2::splat(0.0))
-            .times(F64x2::splat(width * width * (0.125 * (1.0 + 4.0 * f64::EPSILON))));
-        let margin = F64x2::splat(margin).plus(sagitta);
+        let sagitta = self.curvature.max(F64x2::splat(0.0))
+            * F64x2::splat(width * width * (0.125 * (1.0 + 4.0 * f64::EPSILON)));
+        let margin = F64x2::splat(margin) + sagitta;
         let above = margin.lt(at(part.lo)).and(margin.lt(at(part.hi)));
         above.sign_bits() == 0b11
     }
@@ -164,24 +161,24 @@ mod tests {
             let width = random.log_between(1e-16, 2.0);
             let lo = random.signed() * random.log_between(1e-3, 1.0);
             let part = Piece { lo, hi: lo + width };
-            let curvature = F64x2::pack(random.signed(), random.unit())
-                .times(F64x2::splat(random.log_between(1e-6, 1e6)));
+            let curvature =
+                F64x2::pack(random.signed(), random.unit()) * F64x2::splat(random.log_between(1e-6, 1e6));
             let middle = lo + 0.5 * width;
             // Arches with their vertex in the middle, where the sagitta is sharp, and others.
-            let bent = curvature.times(F64x2::splat(-middle));
-            let steep = F64x2::pack(random.signed(), random.signed())
-                .times(F64x2::splat(random.log_between(1e-6, 1e6)));
+            let bent = curvature * F64x2::splat(-middle);
+            let steep =
+                F64x2::pack(random.signed(), random.signed()) * F64x2::splat(random.log_between(1e-6, 1e6));
             let slope = if random.unit() < 0.5 { bent } else { steep };
             let level = TwoQuadratics { value: F64x2::splat(0.0), slope, curvature };
             let least = [level.first(), level.second()].map(|q| q.bound_below(part));
-            let larger = Quadratic { value: least[0], ..level.first() }.bound_evaluation(reach(part));
+            let larger = Quadratic { value: least[0], ..level.first() }.bound_evaluation(part.reach());
             let larger =
-                larger + Quadratic { value: least[1], ..level.second() }.bound_evaluation(reach(part));
+                larger + Quadratic { value: least[1], ..level.second() }.bound_evaluation(part.reach());
             let raised = random.signed() * random.log_between(1.0, 1e3) * larger;
             let value = F64x2::pack(raised - least[0], raised - least[1]);
             let both = TwoQuadratics { value, ..level };
             let quadratics = [both.first(), both.second()];
-            let errors = quadratics.map(|q| q.bound_evaluation(reach(part)));
+            let errors = quadratics.map(|q| q.bound_evaluation(part.reach()));
             if both.exceed(errors[0].max(errors[1]), part) {
                 exceeding += 1;
                 assert!(quadratics.iter().all(|&q| is_positive(q, part)), "{quadratics:?} {part:?}");
@@ -202,7 +199,7 @@ mod tests {
             let least = least[0].min(least[1]);
             // Raised until the least value is above all that is rounded.
             let raised = F64x2::splat(1.0 - least);
-            let both = TwoQuadratics { value: both.value.plus(raised), ..both };
+            let both = TwoQuadratics { value: both.value + raised, ..both };
             assert!(both.exceed(1.0 - 1e-12 * (1.0 + least.abs()), part));
             assert!(!both.exceed(1.0 + 1e-12 * (1.0 + least.abs()), part));
             // Nothing is above what is not a number, and what is not a number is above nothing.

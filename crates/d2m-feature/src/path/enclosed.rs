@@ -37,7 +37,7 @@ impl<'a> EnclosedMotions<'a> {
 
     /// Bound of the distance of the reference points over the window.
     pub(crate) fn bound_distance(&self) -> f64 {
-        let h = super::reach(super::local(self.window, self.middle)) * UP;
+        let h = super::local(self.window, self.middle).reach() * UP;
         let StraightLine { offset: g, velocity: u, deviation } = self.state.straight_line(h);
         (length_up(g) + length_up(u) * h + deviation) * UP
     }
@@ -63,7 +63,7 @@ impl<'a> EnclosedMotions<'a> {
     /// change over the rounding of s.
     pub(crate) fn times_within(&self, distance: f64) -> Option<Piece> {
         let whole = super::local(self.window, self.middle);
-        let h = super::reach(whole) * UP;
+        let h = whole.reach() * UP;
         let StraightLine { offset: g, velocity: u, deviation } = self.state.straight_line(h);
         let size = length_up(g) + length_up(u) * h;
         let band = (distance + deviation) * UP;

@@ -6,6 +6,7 @@ pub(crate) use enclosed::{EnclosedMotions, EnclosedPath, Extent};
 pub(crate) use rigid::{FramedMotion, RigidPath};
 
 use crate::rounding::{UNIT, UP, length_up};
+use d2m_lanes::{power_of_two, two_sum};
 use d2m_motion::{EdgeJets, PathJet, Remainder, TwoJets};
 use d2m_root::{Cubic, Piece, Quadratic};
 use glam::DVec3;
@@ -80,13 +81,6 @@ fn against([point, direction]: [PathJet; 2], HalfEdge { middle, half }: HalfEdge
     EdgeJets { jets, half_b: half }
 }
 
-/// The largest |s| of a part.
-#[inline(always)]
-pub(crate) fn reach(part: Piece) -> f64 {
-    let (left, right) = (part.lo.abs(), part.hi.abs());
-    if left > right { left } else { right }
-}
-
 /// The piece relative to `at`, and back with the ends rounded outward and kept inside the piece.
 #[inline(always)]
 pub(crate) fn local(piece: Piece, at: f64) -> Piece {
@@ -96,13 +90,7 @@ pub(crate) fn local(piece: Piece, at: f64) -> Piece {
 /// The inverse of [`local`] for a part of the piece.
 #[inline(always)]
 pub(crate) fn global(part: Piece, at: f64, piece: Piece) -> Piece {
-    // The error of a sum, exactly: two-sum.
-    let sum = |s: f64| {
-        let sum = at + s;
-        let t = sum - at;
-        (sum, (at - (sum - t)) + (s - t))
-    };
-    let ((lo, lo_error), (hi, hi_error)) = (sum(part.lo), sum(part.hi));
+    let ((lo, lo_error), (hi, hi_error)) = (two_sum(at, part.lo), two_sum(at, part.hi));
     let lo = if lo_error < 0.0 { lo.next_down() } else { lo };
     let hi = if hi_error > 0.0 { hi.next_up() } else { hi };
     let lo = if lo > piece.lo { lo } else { piece.lo };
@@ -117,7 +105,7 @@ const OUTWARD: f64 = 2.1 * UNIT;
 /// The part with what [`global`] may add to it: up to 2⁻⁵²·|at + s| at either end, less than `OUTWARD`·(|at| + |s|).
 #[inline(always)]
 pub(crate) fn padded(part: Piece, at: f64, whole: Piece) -> Piece {
-    let pad = OUTWARD * (at.abs() + reach(whole));
+    let pad = OUTWARD * (at.abs() + whole.reach());
     let (lo, hi) = (part.lo - pad, part.hi + pad);
     Piece { lo: if lo > whole.lo { lo } else { whole.lo }, hi: if hi < whole.hi { hi } else { whole.hi } }
 }
@@ -136,7 +124,7 @@ pub(crate) fn without_third(jet: &PathJet) -> Remainder {
 }
 
 /// 2⁻⁴⁸⁰ and 2⁴⁸⁰: the squares of what lies between are normal, and so are their sums.
-const SQUARE_ROOTS: (f64, f64) = (f64::from_bits((1023 - 480) << 52), f64::from_bits((1023 + 480) << 52));
+const SQUARE_ROOTS: (f64, f64) = (power_of_two(-480), power_of_two(480));
 /// Keeps a computed direction from being longer than 1: the length errs by 3.5·2⁻⁵³, the quotient and the product by 1 each.
 const SHORTER: f64 = 1.0 - 8.0 * UNIT;
 

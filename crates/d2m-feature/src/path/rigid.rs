@@ -99,7 +99,7 @@ impl<'a> RigidPath<'a> {
             direction_remainder: motion.direction_remainder(length),
             fourth_derivative: motion.bound_fourth_derivative_within(radius, reach),
             speed: motion.bound_speed_within(radius, reach),
-            direction_speed: motion.bound_direction_derivative(1) * length * UP,
+            direction_speed: motion.bound_direction_speed() * length * UP,
         }
     }
 

@@ -5,7 +5,7 @@ pub(crate) use planes::TrianglePlanes;
 
 use crate::closest;
 use crate::path::{
-    CubicAlong, FeaturePath, along, around, cubic_along, direction, global, local, padded, reach, widened,
+    CubicAlong, FeaturePath, along, around, cubic_along, direction, global, local, padded, widened,
     without_third,
 };
 use crate::rounding::{CLOSE, PART_OF_WAY, UNIT, UP, length_up};
@@ -72,7 +72,7 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
             return self.crossing(&plane, &remainder, part, (whole, at, piece));
         }
         let jet = self.path.point(piece, at);
-        let h = reach(whole);
+        let h = whole.reach();
         let remainder = widened(jet.remainder, self.separation);
         let mut searched = whole;
         if self.path.speed() * h > NEARBY * planes.radius {
@@ -89,8 +89,8 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
         let in_slab = padded(part, at, whole);
         let m = part.mid();
         let in_prism = Piece { lo: in_slab.lo - m, hi: in_slab.hi - m };
-        let r = reach(in_prism) * UP;
-        let rounding = remainder.bound(reach(in_slab));
+        let r = in_prism.reach() * UP;
+        let rounding = remainder.bound(in_slab.reach());
         let there = jet.at(m);
         let stray = (self.path.speed() * r + rounding) * UP;
         let [s0, s1, s2] = planes.sides;
@@ -135,7 +135,7 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
         let pair = closest::point_triangle(jet.p, &planes.vertices, planes.normal);
         let distance = length_up(pair.difference) + jet.remainder.bound(0.0) - self.separation;
         let whole = local(piece, at);
-        let margin = widened(without_third(&jet), self.separation).bound(reach(whole));
+        let margin = widened(without_third(&jet), self.separation).bound(whole.reach());
         let mut clear = Piece { lo: 0.0, hi: 0.0 };
         let mut best = 0.0;
         let mut consider = |d: DVec3| {
@@ -177,7 +177,7 @@ impl<P: FeaturePath> PointTriangleTest<'_, P> {
     #[inline(always)]
     fn fine(&self, part: Piece, piece: Piece) -> bool {
         let width = part.width();
-        width * (2.0 * self.path.speed()) <= self.tolerance || width <= FEW_UNITS * reach(piece)
+        width * (2.0 * self.path.speed()) <= self.tolerance || width <= FEW_UNITS * piece.reach()
     }
 
     /// The part of a piece in which the point may be in the sphere about the triangle: as a whole along the line of
@@ -220,7 +220,7 @@ impl<P: FeaturePath> PointTriangleTest<'_, P> {
     /// The path is certainly on opposite sides of the slab at the ends of a piece.
     #[inline(always)]
     fn crosses(&self, plane: &Cubic, between: Piece, remainder: &Remainder) -> bool {
-        let margin = remainder.bound(reach(between));
+        let margin = remainder.bound(between.reach());
         let (first, last) = (plane.at(between.lo), plane.at(between.hi));
         let (low, high) = (self.planes.slab.lo - margin, self.planes.slab.hi + margin);
         (first > high && last < low) || (first < low && last > high)

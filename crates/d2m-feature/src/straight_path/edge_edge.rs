@@ -6,7 +6,7 @@ use super::triple_product::{Seen, TripleProduct};
 use crate::accurate_cross::{Difference, accurate_cross};
 use crate::closest;
 use crate::options::ContactOptions;
-use crate::path::{around, direction, global, local, padded, reach};
+use crate::path::{around, direction, global, local, padded};
 use crate::point_triangle::cleared;
 use crate::rounding::{CLOSE, UP, length_up};
 use d2m_root::{Measurement, Piece, PieceTest, Verdict};
@@ -80,7 +80,7 @@ impl PieceTest for StraightEdgeEdge {
         let at = piece.mid();
         let lines = self.lines(at);
         let whole = local(piece, at);
-        let h = reach(whole);
+        let h = whole.reach();
         let known_inside = self.inside.holds(piece);
         if !known_inside && self.apart(&lines, h) {
             return Verdict::Clear;
@@ -98,7 +98,7 @@ impl PieceTest for StraightEdgeEdge {
             let n = volume.normal;
             let length = length_up(n);
             let padded = padded(part, at, whole);
-            let s = reach(padded);
+            let s = padded.reach();
             let (lw, le, ld) = (lengths[0].within(s), lengths[1].within(s), lengths[2].within(s));
             let (across_d, across_e) = (d.across(n), e.across(n));
             let total = Seen::new(e, across_d, length, (le, ld), (self.error, 0.0));

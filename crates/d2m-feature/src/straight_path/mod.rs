@@ -9,6 +9,7 @@ use crate::options::ContactOptions;
 use crate::rigid_query::answer_in;
 use crate::rounding::{UNIT, UP};
 use crate::units::Units;
+use d2m_lanes::power_of_two;
 use d2m_root::Piece;
 use edge_edge::StraightEdgeEdge;
 use glam::DVec3;
@@ -39,8 +40,8 @@ pub struct StraightPaths {
 
 /// 2⁻¹⁰⁰ and 2¹⁰⁰: products of three lengths between them, and of what rounding leaves of them, stay within 2±⁵⁰⁰, far from
 /// what under- or overflows.
-const SMALLEST: f64 = f64::from_bits((1023 - 100) << 52);
-const LARGEST: f64 = f64::from_bits((1023 + 100) << 52);
+const SMALLEST: f64 = power_of_two(-100);
+const LARGEST: f64 = power_of_two(100);
 
 const WINDOW: Option<Piece> = Some(Piece { lo: 0.0, hi: 1.0 });
 

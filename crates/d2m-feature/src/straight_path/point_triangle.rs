@@ -4,7 +4,7 @@ use super::triple_product::{Seen, TripleProduct};
 use super::{Lines, larger, largest};
 use crate::closest;
 use crate::options::ContactOptions;
-use crate::path::{around, direction, global, local, padded, reach};
+use crate::path::{around, direction, global, local, padded};
 use crate::point_triangle::cleared;
 use crate::rounding::{CLOSE, UNDERFLOW, UP, length_up};
 use d2m_root::{Band, Measurement, Piece, PieceTest, Verdict};
@@ -90,7 +90,7 @@ impl PieceTest for StraightPointTriangle {
         let [a, e1, e2] = &self.lines;
         let lines = [a.from(at), e1.from(at), e2.from(at)];
         let whole = local(piece, at);
-        let h = reach(whole);
+        let h = whole.reach();
         let known_inside = self.inside.holds(piece);
         if !known_inside && self.apart(&lines, h) {
             return Verdict::Clear;
@@ -108,7 +108,7 @@ impl PieceTest for StraightPointTriangle {
             // n·(a × e₂) = λ₁·whole and n·(e₁ × a) = λ₂·whole; the third is what these leave of it.
             let n = volume.normal;
             let length = length_up(n);
-            let s = reach(padded(part, at, whole));
+            let s = padded(part, at, whole).reach();
             let (la, l1, l2) = (lengths[0].within(s), lengths[1].within(s), lengths[2].within(s));
             let (across1, across2) = (e1.across(-n), e2.across(n));
             let total = Seen::new(e1, across2, length, (l1, l2), (self.error, 0.0));

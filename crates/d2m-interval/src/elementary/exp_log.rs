@@ -3,13 +3,10 @@ use super::{
     Ends,
     constants::{INVERSE_FACTORIAL, INVERSE_ODD, LN_2, LN_2_PARTS, LN_10, LOG2_10, LOG2_E, LOG10_E},
     enclose, increasing,
+    trig::MAGIC,
 };
 use crate::Interval;
-use core::ops::{Add, Div, Mul};
-use d2m_lanes::DoubleDouble;
-
-/// 1.5·2⁵².
-const MAGIC: f64 = 6_755_399_441_055_744.0;
+use d2m_lanes::{Binary, DoubleDouble};
 
 fn nearest_integer(x: f64) -> f64 {
     (x + MAGIC) - MAGIC
@@ -67,8 +64,8 @@ pub(super) fn exp_scaled(x: DoubleDouble) -> Scaled {
     let [a, b, c] = LN_2_PARTS;
     // k·a and k·b are exact.
     let r = DoubleDouble::from_sum(x.hi, -k * a)
-        .add(DoubleDouble::new(x.lo, 0.0))
-        .add(DoubleDouble::from_sum(-k * b, -k * c));
+        + DoubleDouble::from_f64(x.lo)
+        + DoubleDouble::from_sum(-k * b, -k * c);
     exp_reduced(r, k as i32)
 }
 
@@ -96,7 +93,7 @@ fn exp_at(x: f64) -> Ends {
     if x < EXP_UNDERFLOWS {
         return (0.0, f64::from_bits(1));
     }
-    let y = exp_scaled(DoubleDouble::new(x, 0.0));
+    let y = exp_scaled(DoubleDouble::from_f64(x));
     y.ends(enclose(y.value))
 }
 
@@ -111,7 +108,7 @@ fn exp2_at(x: f64) -> Ends {
     if x == k {
         return (scale_down(1.0, k as i32), scale_up(1.0, k as i32));
     }
-    let y = exp_reduced(DoubleDouble::from_product(x - k, 1.0).mul(LN_2), k as i32);
+    let y = exp_reduced(DoubleDouble::from_product(x - k, 1.0) * LN_2, k as i32);
     y.ends(enclose(y.value))
 }
 
@@ -127,32 +124,22 @@ fn exp10_at(x: f64) -> Ends {
     }
     let k = nearest_integer(x * LOG2_10.hi);
     let [a, b, c] = LN_2_PARTS;
-    let r = DoubleDouble::new(x, 0.0)
-        .mul(LN_10)
-        .add(DoubleDouble::new(-k * a, 0.0))
-        .add(DoubleDouble::from_sum(-k * b, -k * c));
+    let r = DoubleDouble::from_f64(x) * LN_10
+        + DoubleDouble::from_f64(-k * a)
+        + DoubleDouble::from_sum(-k * b, -k * c);
     let y = exp_reduced(r, k as i32);
     y.ends(enclose(y.value))
 }
 
 /// `ln(n/d) = 2 atanh((n − d)/(n + d))` for `0.7 < n/d < 1.42`, given difference and sum.
 pub(super) fn ln_ratio(difference: DoubleDouble, sum: DoubleDouble) -> DoubleDouble {
-    let s = difference.div(sum);
-    s.scaled(2.0).mul(DoubleDouble::polynomial(s.sqr(), &INVERSE_ODD[..15], 6))
-}
-
-/// Positive `x` as `m·2^e` with 1 ≤ m < 2; integer arithmetic on the representation, subnormals included.
-pub(super) fn mantissa_exponent(x: f64) -> (f64, i32) {
-    let bits = x.to_bits();
-    // A subnormal is bits·2⁻¹⁰⁷⁴, and `bits as f64` is exact.
-    let (bits, bias) = if bits >> 52 == 0 { ((bits as f64).to_bits(), 2097) } else { (bits, 1023) };
-    let m = f64::from_bits((bits & ((1 << 52) - 1)) | 1023 << 52);
-    (m, (bits >> 52) as i32 - bias)
+    let s = difference / sum;
+    s.scaled(2.0) * DoubleDouble::polynomial(s.sqr(), &INVERSE_ODD[..15], 6)
 }
 
 /// Positive `x` as `m·2^e` with √½ ≤ m < √2 (nearly).
 fn split(x: f64) -> (f64, i32) {
-    let (m, e) = mantissa_exponent(x);
+    let Binary { mantissa: m, exponent: e } = Binary::from_f64(x);
     if m > core::f64::consts::SQRT_2 { (0.5 * m, e + 1) } else { (m, e) }
 }
 
@@ -166,16 +153,16 @@ pub(super) fn ln_dd(x: DoubleDouble) -> DoubleDouble {
 
 fn ln_parts(m: DoubleDouble, e: i32) -> DoubleDouble {
     let ln_m = ln_ratio(
-        DoubleDouble::from_sum(m.hi, -1.0).add(DoubleDouble::new(m.lo, 0.0)),
-        DoubleDouble::from_sum(m.hi, 1.0).add(DoubleDouble::new(m.lo, 0.0)),
+        DoubleDouble::from_sum(m.hi, -1.0) + DoubleDouble::from_f64(m.lo),
+        DoubleDouble::from_sum(m.hi, 1.0) + DoubleDouble::from_f64(m.lo),
     );
-    if e == 0 { ln_m } else { LN_2.mul(DoubleDouble::new(f64::from(e), 0.0)).add(ln_m) }
+    if e == 0 { ln_m } else { LN_2 * DoubleDouble::from_f64(f64::from(e)) + ln_m }
 }
 
 /// `ln x` for a positive double, subnormals included.
 pub(super) fn ln_value(x: f64) -> DoubleDouble {
     let (m, e) = split(x);
-    ln_parts(DoubleDouble::new(m, 0.0), e)
+    ln_parts(DoubleDouble::from_f64(m), e)
 }
 
 fn ln_at(x: f64) -> Ends {
@@ -187,11 +174,11 @@ fn log2_at(x: f64) -> Ends {
     if m == 1.0 {
         return (f64::from(e), f64::from(e));
     }
-    enclose(ln_parts(DoubleDouble::new(m, 0.0), 0).mul(LOG2_E).add(DoubleDouble::new(f64::from(e), 0.0)))
+    enclose(ln_parts(DoubleDouble::from_f64(m), 0) * LOG2_E + DoubleDouble::from_f64(f64::from(e)))
 }
 
 fn log10_at(x: f64) -> Ends {
-    if x == 1.0 { (0.0, 0.0) } else { enclose(ln_value(x).mul(LOG10_E)) }
+    if x == 1.0 { (0.0, 0.0) } else { enclose(ln_value(x) * LOG10_E) }
 }
 
 /// A logarithm over the positive part of an interval.

@@ -7,8 +7,7 @@ use super::{
     increasing, odd,
 };
 use crate::Interval;
-use core::ops::{Add, Div, Mul, Sub};
-use d2m_lanes::DoubleDouble;
+use d2m_lanes::{DoubleDouble, power_of_two};
 
 /// Below, `sinh x` and its relatives are `x` within a relative 2⁻⁶²: x² < 2⁻⁶⁶.
 const LINEAR: f64 = 1e-10;
@@ -16,7 +15,7 @@ const LINEAR: f64 = 1e-10;
 const LARGE: f64 = 1e18;
 
 const fn odd_factorials() -> [DoubleDouble; 11] {
-    let mut out = [DoubleDouble::new(0.0, 0.0); 11];
+    let mut out = [DoubleDouble::ZERO; 11];
     let mut i = 0;
     while i < 11 {
         out[i] = INVERSE_FACTORIAL[2 * i + 1];
@@ -28,19 +27,19 @@ const fn odd_factorials() -> [DoubleDouble; 11] {
 /// `sinh x` for |x| ≤ 0.5, by its series.
 fn sinh_series(x: DoubleDouble) -> DoubleDouble {
     const COEFFICIENTS: [DoubleDouble; 11] = odd_factorials();
-    x.mul(DoubleDouble::polynomial(x.sqr(), &COEFFICIENTS, 5))
+    x * DoubleDouble::polynomial(x.sqr(), &COEFFICIENTS, 5)
 }
 
 /// `(e^x ± e^−x)/2` for 0.3 < x < 711.
 fn half_sum(x: f64, sign: f64) -> Scaled {
-    let Scaled { value, exponent } = exp_scaled(DoubleDouble::new(x, 0.0));
+    let Scaled { value, exponent } = exp_scaled(DoubleDouble::from_f64(x));
     if exponent > 45 {
         // The other term is below a relative 2⁻⁸⁸.
         return Scaled { value, exponent: exponent - 1 };
     }
-    let back = f64::from_bits(((1023 - 2 * exponent) as u64) << 52);
-    let other = DoubleDouble::new(sign, 0.0).div(value).scaled(back);
-    Scaled { value: value.add(other), exponent: exponent - 1 }
+    let back = power_of_two(-2 * exponent);
+    let other = (DoubleDouble::from_f64(sign) / value).scaled(back);
+    Scaled { value: value + other, exponent: exponent - 1 }
 }
 
 fn sinh_at(x: f64) -> Ends {
@@ -48,7 +47,7 @@ fn sinh_at(x: f64) -> Ends {
         if x < LINEAR {
             (x, x.next_up())
         } else if x < 0.5 {
-            enclose(sinh_series(DoubleDouble::new(x, 0.0)))
+            enclose(sinh_series(DoubleDouble::from_f64(x)))
         } else if x > 710.5 {
             (f64::MAX, f64::INFINITY)
         } else {
@@ -82,14 +81,14 @@ fn tanh_at(x: f64) -> Ends {
             return (1.0_f64.next_down(), 1.0);
         }
         let y = if x < 0.25 {
-            let s = sinh_series(DoubleDouble::new(x, 0.0));
+            let s = sinh_series(DoubleDouble::from_f64(x));
             // cosh² = 1 + sinh²
-            s.div(DoubleDouble::ONE.add(s.sqr()).sqrt())
+            s / (DoubleDouble::ONE + s.sqr()).sqrt()
         } else {
             // 1 − 2/(e^2x + 1)
-            let Scaled { value, exponent } = exp_scaled(DoubleDouble::new(2.0 * x, 0.0));
-            let square = value.scaled(f64::from_bits(((1023 + exponent) as u64) << 52));
-            DoubleDouble::ONE.sub(DoubleDouble::new(2.0, 0.0).div(square.add(DoubleDouble::ONE)))
+            let Scaled { value, exponent } = exp_scaled(DoubleDouble::from_f64(2.0 * x));
+            let square = value.scaled(power_of_two(exponent));
+            DoubleDouble::ONE - DoubleDouble::from_f64(2.0) / (square + DoubleDouble::ONE)
         };
         let (lo, hi) = enclose(y);
         (lo, if hi > 1.0 { 1.0 } else { hi })
@@ -98,7 +97,7 @@ fn tanh_at(x: f64) -> Ends {
 
 /// `ln(1 + w)` for a double-double w > −0.3.
 fn ln_one_plus(w: DoubleDouble) -> DoubleDouble {
-    if w.hi < 0.4 { ln_ratio(w, w.add(DoubleDouble::new(2.0, 0.0))) } else { ln_dd(w.add(DoubleDouble::ONE)) }
+    if w.hi < 0.4 { ln_ratio(w, w + DoubleDouble::from_f64(2.0)) } else { ln_dd(w + DoubleDouble::ONE) }
 }
 
 fn asinh_at(x: f64) -> Ends {
@@ -108,12 +107,12 @@ fn asinh_at(x: f64) -> Ends {
         }
         if x > LARGE {
             // ln(2x) + 1/(4x²) − …
-            return enclose(ln_dd(DoubleDouble::new(x, 0.0)).add(super::constants::LN_2));
+            return enclose(ln_dd(DoubleDouble::from_f64(x)) + super::constants::LN_2);
         }
         // x + √(x² + 1) − 1 = x + x²/(1 + √(x² + 1))
         let square = DoubleDouble::from_product(x, x);
-        let root = square.add(DoubleDouble::ONE).sqrt();
-        enclose(ln_one_plus(DoubleDouble::new(x, 0.0).add(square.div(root.add(DoubleDouble::ONE)))))
+        let root = (square + DoubleDouble::ONE).sqrt();
+        enclose(ln_one_plus(DoubleDouble::from_f64(x) + square / (root + DoubleDouble::ONE)))
     })
 }
 
@@ -122,12 +121,12 @@ fn acosh_at(x: f64) -> Ends {
         return (0.0, 0.0);
     }
     if x > LARGE {
-        return enclose(ln_dd(DoubleDouble::new(x, 0.0)).add(super::constants::LN_2));
+        return enclose(ln_dd(DoubleDouble::from_f64(x)) + super::constants::LN_2);
     }
     // w = (x − 1) + √((x − 1)(x + 1)), acosh x = ln(1 + w)
     let less = DoubleDouble::from_sum(x, -1.0);
-    let root = less.mul(DoubleDouble::from_sum(x, 1.0)).sqrt();
-    enclose(ln_one_plus(less.add(root)))
+    let root = (less * DoubleDouble::from_sum(x, 1.0)).sqrt();
+    enclose(ln_one_plus(less + root))
 }
 
 fn atanh_at(x: f64) -> Ends {
@@ -137,9 +136,9 @@ fn atanh_at(x: f64) -> Ends {
         }
         let (less, more) = (DoubleDouble::from_sum(1.0, -x), DoubleDouble::from_sum(1.0, x));
         let y = if x < 0.17 {
-            ln_ratio(DoubleDouble::new(2.0 * x, 0.0), DoubleDouble::new(2.0, 0.0))
+            ln_ratio(DoubleDouble::from_f64(2.0 * x), DoubleDouble::from_f64(2.0))
         } else {
-            ln_dd(more.div(less))
+            ln_dd(more / less)
         };
         enclose(y.scaled(0.5))
     })

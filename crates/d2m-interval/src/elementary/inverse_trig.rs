@@ -7,8 +7,7 @@ use super::{
     increasing, odd,
 };
 use crate::Interval;
-use core::ops::{Add, Div, Mul, Sub};
-use d2m_lanes::DoubleDouble;
+use d2m_lanes::{DoubleDouble, power_of_two};
 
 /// The ends of an enclosure of π/2, π.
 const HALF_PI: Ends = (core::f64::consts::FRAC_PI_2, Interval::FRAC_PI_2.hi());
@@ -21,7 +20,7 @@ const NEARLY_RIGHT: f64 = 1e20;
 const FLAT: f64 = 1e-30;
 
 const fn alternating() -> [DoubleDouble; 12] {
-    let mut out = [DoubleDouble::new(0.0, 0.0); 12];
+    let mut out = [DoubleDouble::ZERO; 12];
     let mut i = 0;
     while i < 12 {
         let DoubleDouble { hi: a, lo: b } = INVERSE_ODD[i];
@@ -39,17 +38,17 @@ fn atan_unit(n: DoubleDouble, d: DoubleDouble) -> DoubleDouble {
     let c = i as f64 / 8.0;
     // atan(n/d) = atan c + atan((n − c d)/(d + c n)), and the last argument is at most 1/16.
     let t = if i == 0 {
-        n.div(d)
+        n / d
     } else {
-        n.sub(d.mul(DoubleDouble::new(c, 0.0))).div(d.add(n.mul(DoubleDouble::new(c, 0.0))))
+        (n - d * DoubleDouble::from_f64(c)) / (d + n * DoubleDouble::from_f64(c))
     };
-    let small = t.mul(DoubleDouble::polynomial(t.sqr(), &COEFFICIENTS, 5));
-    ATAN_EIGHTHS[i].add(small)
+    let small = t * DoubleDouble::polynomial(t.sqr(), &COEFFICIENTS, 5);
+    ATAN_EIGHTHS[i] + small
 }
 
 /// The angle of the point (x, y), both positive.
 fn first_quadrant(y: DoubleDouble, x: DoubleDouble) -> DoubleDouble {
-    if y.hi <= x.hi { atan_unit(y, x) } else { FRAC_PI_2.sub(atan_unit(x, y)) }
+    if y.hi <= x.hi { atan_unit(y, x) } else { FRAC_PI_2 - atan_unit(x, y) }
 }
 
 fn atan_at(x: f64) -> Ends {
@@ -59,14 +58,14 @@ fn atan_at(x: f64) -> Ends {
         } else if x > NEARLY_RIGHT {
             HALF_PI
         } else {
-            enclose(first_quadrant(DoubleDouble::new(x, 0.0), DoubleDouble::ONE))
+            enclose(first_quadrant(DoubleDouble::from_f64(x), DoubleDouble::ONE))
         }
     })
 }
 
 /// √(1 − x²), relative.
 fn co_sine(x: f64) -> DoubleDouble {
-    DoubleDouble::from_sum(1.0, -x).mul(DoubleDouble::from_sum(1.0, x)).sqrt()
+    (DoubleDouble::from_sum(1.0, -x) * DoubleDouble::from_sum(1.0, x)).sqrt()
 }
 
 fn asin_at(x: f64) -> Ends {
@@ -76,7 +75,7 @@ fn asin_at(x: f64) -> Ends {
         } else if x >= 1.0 {
             HALF_PI
         } else {
-            enclose(first_quadrant(DoubleDouble::new(x, 0.0), co_sine(x)))
+            enclose(first_quadrant(DoubleDouble::from_f64(x), co_sine(x)))
         }
     })
 }
@@ -89,9 +88,9 @@ fn acos_at(x: f64) -> Ends {
     } else if x.abs() < FLAT {
         HALF_PI
     } else if x > 0.0 {
-        enclose(first_quadrant(co_sine(x), DoubleDouble::new(x, 0.0)))
+        enclose(first_quadrant(co_sine(x), DoubleDouble::from_f64(x)))
     } else {
-        enclose(PI.sub(first_quadrant(co_sine(x), DoubleDouble::new(-x, 0.0))))
+        enclose(PI - first_quadrant(co_sine(x), DoubleDouble::from_f64(-x)))
     }
 }
 
@@ -111,15 +110,15 @@ fn angle_at(y: f64, x: f64) -> Ends {
             if x < 0.0 {
                 return (Interval::PI.lo(), Interval::PI.hi());
             }
-            let value = DoubleDouble::new(moderate(b, eb), 0.0).div(DoubleDouble::new(moderate(a, ea), 0.0));
+            let value = DoubleDouble::from_f64(moderate(b, eb)) / DoubleDouble::from_f64(moderate(a, ea));
             return Scaled { value, exponent: eb - ea }.ends(enclose(value));
         }
         if eb - ea > 70 {
             return HALF_PI;
         }
         let (a, b) = (moderate(a, ea), moderate(b, ea));
-        let angle = first_quadrant(DoubleDouble::new(b, 0.0), DoubleDouble::new(a, 0.0));
-        enclose(if x > 0.0 { angle } else { PI.sub(angle) })
+        let angle = first_quadrant(DoubleDouble::from_f64(b), DoubleDouble::from_f64(a));
+        enclose(if x > 0.0 { angle } else { PI - angle })
     })
 }
 
@@ -127,8 +126,7 @@ fn angle_at(y: f64, x: f64) -> Ends {
 fn moderate(v: f64, exponent: i32) -> f64 {
     let shift = 1023 - exponent;
     let half = shift / 2;
-    let power = |p: i32| f64::from_bits(((1023 + p) as u64) << 52);
-    v * power(half) * power(shift - half)
+    v * power_of_two(half) * power_of_two(shift - half)
 }
 
 impl Interval {

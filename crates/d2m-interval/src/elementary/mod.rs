@@ -15,7 +15,7 @@ mod trig;
 mod trig_x4;
 
 use crate::Interval;
-use d2m_lanes::DoubleDouble;
+use d2m_lanes::{DoubleDouble, power_of_two};
 
 /// Enclosure of one number, as (lower, upper) end.
 type Ends = (f64, f64);
@@ -23,7 +23,7 @@ type Ends = (f64, f64);
 /// Doubles around a number that lies within a relative `2⁻⁶²` of `x`.
 #[inline]
 fn enclose(x: DoubleDouble) -> Ends {
-    enclose_within(x, 1.0 / 4_611_686_018_427_387_904.0)
+    enclose_within(x, power_of_two(-62))
 }
 
 /// Above, the low part of a double-double has not underflowed: it is a multiple of 2⁻¹⁰⁶ of the high part at least.

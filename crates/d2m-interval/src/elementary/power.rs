@@ -5,8 +5,7 @@ use super::{
     increasing,
 };
 use crate::Interval;
-use core::ops::{Div, Mul, Sub};
-use d2m_lanes::DoubleDouble;
+use d2m_lanes::{Binary, DoubleDouble, power_of_two};
 
 /// e^±800 is out of the range of doubles, also if the exponent is off by a few 2⁻⁵³ of itself.
 const OUT_OF_RANGE: f64 = 800.0;
@@ -16,13 +15,13 @@ const NEXT_TO_ONE: f64 = 1e-18;
 /// `x^n` for finite `x > 0`, `n ≥ 1`: relative error below `n·2⁻⁹⁸`.
 fn power(x: f64, n: u32) -> Scaled {
     // x = m·2^e with 1 ≤ m < 2, and the same for every partial product.
-    let (m, e) = super::exp_log::mantissa_exponent(x);
-    let (mut value, mut exponent) = (DoubleDouble::new(m, 0.0), i64::from(e));
+    let Binary { mantissa: m, exponent: e } = Binary::from_f64(x);
+    let (mut value, mut exponent) = (DoubleDouble::from_f64(m), i64::from(e));
     for bit in (0..n.ilog2()).rev() {
         value = value.sqr();
         exponent *= 2;
         if n >> bit & 1 == 1 {
-            value = value.mul(DoubleDouble::new(m, 0.0));
+            value = value * DoubleDouble::from_f64(m);
             exponent += i64::from(e);
         }
         while value.hi >= 2.0 {
@@ -58,7 +57,7 @@ fn inverse_power_ends(x: f64, n: u32) -> Ends {
         return (0.0, 0.0);
     }
     let y = power(x, n);
-    let y = Scaled { value: DoubleDouble::ONE.div(y.value), exponent: -y.exponent };
+    let y = Scaled { value: DoubleDouble::ONE / y.value, exponent: -y.exponent };
     y.ends(enclose(y.value))
 }
 
@@ -95,8 +94,8 @@ fn real_power(x: f64, y: f64) -> Ends {
         return if grows { (1.0, 1.0_f64.next_up()) } else { (1.0_f64.next_down(), 1.0) };
     }
     // |ln x| ≥ 2⁻⁵⁴ here or x = 1, so |y| < 2⁶⁴ and all products stay in range.
-    let result = exp_scaled(DoubleDouble::new(y, 0.0).mul(ln));
-    let (lo, hi) = result.ends(enclose_within(result.value, 1.0 / 288_230_376_151_711_744.0)); // 2⁻⁵⁸
+    let result = exp_scaled(DoubleDouble::from_f64(y) * ln);
+    let (lo, hi) = result.ends(enclose_within(result.value, power_of_two(-58)));
     // 1 is not crossed.
     if grows { (if lo < 1.0 { 1.0 } else { lo }, hi) } else { (lo, if hi > 1.0 { 1.0 } else { hi }) }
 }
@@ -109,7 +108,7 @@ fn cbrt_at(x: f64) -> Ends {
         let (lo, hi) = cbrt_at(-x);
         return (-hi, -lo);
     }
-    let (m, e) = super::exp_log::mantissa_exponent(x);
+    let Binary { mantissa: m, exponent: e } = Binary::from_f64(x);
     // x = m·2^(3k), 1 ≤ m < 8.
     let k = e.div_euclid(3);
     let m = m * f64::from(1 << e.rem_euclid(3));
@@ -119,10 +118,10 @@ fn cbrt_at(x: f64) -> Ends {
     }
     // One step of Newton's method in double-double: the error of y is squared.
     let square = DoubleDouble::from_product(y, y);
-    let rest = DoubleDouble::new(m, 0.0).sub(square.mul(DoubleDouble::new(y, 0.0)));
+    let rest = DoubleDouble::from_f64(m) - square * DoubleDouble::from_f64(y);
     // With at most 17 bits, y³ is a double, and so the rest is exact: y is the root.
     if rest.hi == 0.0 && y.to_bits().trailing_zeros() >= 36 {
-        return Scaled { value: DoubleDouble::new(y, 0.0), exponent: k }.ends((y, y));
+        return Scaled { value: DoubleDouble::from_f64(y), exponent: k }.ends((y, y));
     }
     let value = DoubleDouble::from_sum(y, rest.hi / (3.0 * square.hi));
     let y = Scaled { value, exponent: k };

@@ -6,8 +6,7 @@ use super::{
     enclose,
 };
 use crate::Interval;
-use core::ops::{Div, Mul, Neg};
-use d2m_lanes::DoubleDouble;
+use d2m_lanes::{DoubleDouble, power_of_two};
 
 /// `x = (4k + quadrant) π/2 + r` with |r| ≤ π/4 (and a little).
 pub(super) struct Reduced {
@@ -30,7 +29,7 @@ impl Reduced {
     /// `x` finite.
     pub(super) fn new(x: f64) -> Self {
         if x.abs() < 0.78 {
-            return Self { quadrant: 0, r: DoubleDouble::new(x, 0.0) };
+            return Self { quadrant: 0, r: DoubleDouble::from_f64(x) };
         }
         // |x| = mantissa · 2^exponent. Digits of 2/π with index below exponent − 1 give multiples of 4.
         let bits = x.abs().to_bits();
@@ -64,16 +63,14 @@ impl Reduced {
         // Into two doubles: 53 bits each (the rest is below 2⁻¹⁰⁵ of the value).
         let high = (top >> 75) as u64;
         let low = (top >> 22) as u64 & ((1 << 53) - 1);
-        let place = |p: i32| f64::from_bits(((1023 + p) as u64) << 52);
         let lead = -(64 * zeros as i32) - shift as i32;
-        let value = DoubleDouble::from_sum(high as f64 * place(lead - 53), low as f64 * place(lead - 106));
-        let r = value.mul(FRAC_PI_2);
-        let (quadrant, r) = if negative { (quadrant, r.neg()) } else { (quadrant, r) };
-        if x < 0.0 {
-            Self { quadrant: -quadrant & 3, r: r.neg() }
-        } else {
-            Self { quadrant: quadrant & 3, r }
-        }
+        let value = DoubleDouble::from_sum(
+            high as f64 * power_of_two(lead - 53),
+            low as f64 * power_of_two(lead - 106),
+        );
+        let r = value * FRAC_PI_2;
+        let (quadrant, r) = if negative { (quadrant, -r) } else { (quadrant, r) };
+        if x < 0.0 { Self { quadrant: -quadrant & 3, r: -r } } else { Self { quadrant: quadrant & 3, r } }
     }
 
     /// Bit j is set when a multiple of π/2 that is ≡ j (mod 4) lies between; `x` goes from here to `end`, is
@@ -98,22 +95,22 @@ impl Reduced {
         const SIN: [DoubleDouble; 12] = signed_factorials(1);
         const COS: [DoubleDouble; 12] = signed_factorials(0);
         let z = self.r.sqr();
-        (self.r.mul(DoubleDouble::polynomial(z, &SIN, 5)), DoubleDouble::polynomial(z, &COS, 5))
+        (self.r * DoubleDouble::polynomial(z, &SIN, 5), DoubleDouble::polynomial(z, &COS, 5))
     }
 
     fn sin_cos(&self) -> (DoubleDouble, DoubleDouble) {
         let (s, c) = self.kernel();
         match self.quadrant & 3 {
             0 => (s, c),
-            1 => (c, s.neg()),
-            2 => (s.neg(), c.neg()),
-            _ => (c.neg(), s),
+            1 => (c, -s),
+            2 => (-s, -c),
+            _ => (-c, s),
         }
     }
 
     pub(super) fn sin_value(&self) -> DoubleDouble {
         if self.r.hi.abs() < LINEAR && self.quadrant & 1 == 0 {
-            return if self.quadrant == 0 { self.r } else { self.r.neg() };
+            return if self.quadrant == 0 { self.r } else { -self.r };
         }
         self.sin_cos().0
     }
@@ -132,13 +129,13 @@ impl Reduced {
             return self.r;
         }
         let (s, c) = self.sin_cos();
-        s.div(c)
+        s / c
     }
 }
 
 /// ±1/n! for n = start, start + 2, …
 const fn signed_factorials(start: usize) -> [DoubleDouble; 12] {
-    let mut out = [DoubleDouble::new(0.0, 0.0); 12];
+    let mut out = [DoubleDouble::ZERO; 12];
     let mut i = 0;
     while i < 12 {
         let DoubleDouble { hi: a, lo: b } = INVERSE_FACTORIAL[start + 2 * i];

@@ -1,7 +1,6 @@
 //! `sin x / x` and `(1 − cos x)/x²`, continued at 0: Rodrigues' formula without a division by the angle.
 use super::{Ends, enclose, reduce::Reduced};
 use crate::Interval;
-use core::ops::Div;
 use d2m_lanes::DoubleDouble;
 
 /// Below, `sinc` falls: its derivative vanishes first at 4.493….
@@ -27,7 +26,7 @@ fn sinc_at(x: f64) -> Ends {
     if x < FLAT {
         return (1.0_f64.next_down(), 1.0);
     }
-    let (lo, hi) = enclose(Reduced::new(x).sin_value().div(DoubleDouble::new(x, 0.0)));
+    let (lo, hi) = enclose(Reduced::new(x).sin_value() / DoubleDouble::from_f64(x));
     (lo, if hi > 1.0 { 1.0 } else { hi })
 }
 
@@ -39,7 +38,7 @@ fn versine_ratio_at(x: f64) -> Ends {
     if x < FLAT {
         return (0.5_f64.next_down(), 0.5);
     }
-    let ratio = Reduced::new(0.5 * x).sin_value().div(DoubleDouble::new(x, 0.0));
+    let ratio = Reduced::new(0.5 * x).sin_value() / DoubleDouble::from_f64(x);
     let (lo, hi) = enclose(ratio.sqr().scaled(2.0));
     (if lo < 0.0 { 0.0 } else { lo }, if hi > 0.5 { 0.5 } else { hi })
 }

@@ -4,24 +4,24 @@
 //! polynomials, quadrant by bit masks. Extrema inside come from the quadrant numbers of the two ends.
 use super::{enclose, reduce::Reduced};
 use crate::Interval;
-use d2m_lanes::{F64x2, Vector};
+use d2m_lanes::{F64x2, Vector, power_of_two};
 
 // π/2 in three parts: 33 bits, 33 bits, the rest. n·P1 and n·P2 are exact for |n| < 2²⁰.
 const P1: f64 = f64::from_bits(0x3FF9_21FB_5440_0000);
 const P2: f64 = f64::from_bits(0x3DD0_B461_1A60_0000);
 const P3: f64 = f64::from_bits(0x3BA3_198A_2E03_7073);
 /// 1.5·2⁵²: adding it rounds to the nearest integer, whose low bits are then the low bits of the double.
-const MAGIC: f64 = 6_755_399_441_055_744.0;
+pub(super) const MAGIC: f64 = 6_755_399_441_055_744.0;
 /// Beyond, the slow path reduces with as many digits of π as it takes.
 pub(super) const FAST_LIMIT: f64 = 524_288.0;
 /// 2⁻⁴⁵: a reduced argument below this share of the argument has lost too many digits.
-pub(super) const CANCELLED: f64 = f64::from_bits((1023 - 45) << 52);
+pub(super) const CANCELLED: f64 = power_of_two(-45);
 /// (15/8)·2⁻⁵³: kernel error (0.73 units of 2⁻⁵³), final rounding (1 unit), and a margin.
 pub(super) const PAD: f64 = f64::from_bits(0x3CAE_0000_0000_0000);
 /// 2⁻¹⁰⁰⁰, for underflow.
-pub(super) const PAD_TINY: f64 = f64::from_bits((1023 - 1000) << 52);
+pub(super) const PAD_TINY: f64 = power_of_two(-1000);
 /// 2⁻³⁰: an end this near to an extremum counts as having it inside (the value there is 1 − 2⁻⁶¹).
-pub(super) const NEAR: f64 = f64::from_bits((1023 - 30) << 52);
+pub(super) const NEAR: f64 = power_of_two(-30);
 
 const fn inverse_factorial(n: u64) -> f64 {
     let (mut product, mut i) = (1u64, 2);
@@ -40,43 +40,43 @@ fn constant<V: Vector>(n: u64) -> V {
 /// (x·2/π + 1.5·2⁵², r, r_low): the nearest multiple of π/2 in the low bits of the first, `r + r_low` the rest.
 #[inline(always)]
 pub(super) fn reduce<V: Vector>(x: V) -> (V, V, V) {
-    let turns = x.times(V::splat(core::f64::consts::FRAC_2_PI)).plus(V::splat(MAGIC));
-    let n = turns.minus(V::splat(MAGIC));
-    let w = x.minus(n.times(V::splat(P1)));
-    let t = n.times(V::splat(P2));
-    let r1 = w.minus(t);
-    let b = r1.minus(w);
-    let e = w.minus(r1.minus(b)).minus(t.plus(b));
-    let low = e.minus(n.times(V::splat(P3)));
-    let r = r1.plus(low);
-    (turns, r, low.minus(r.minus(r1)))
+    let turns = x * V::splat(core::f64::consts::FRAC_2_PI) + V::splat(MAGIC);
+    let n = turns - V::splat(MAGIC);
+    let w = x - n * V::splat(P1);
+    let t = n * V::splat(P2);
+    let r1 = w - t;
+    let b = r1 - w;
+    let e = w - (r1 - b) - (t + b);
+    let low = e - n * V::splat(P3);
+    let r = r1 + low;
+    (turns, r, low - (r - r1))
 }
 
 /// (sine, cosine) of `r + r_low`, each as an unevaluated sum, for |r| ≤ π/4 + 2⁻³⁰.
 #[inline(always)]
 pub(super) fn kernel<V: Vector>(r: V, r_low: V) -> ([V; 2], [V; 2]) {
-    let z = r.times(r);
-    let z2 = z.times(z);
-    let z4 = z2.times(z2);
+    let z = r * r;
+    let z2 = z * z;
+    let z4 = z2 * z2;
     // sin r = r − r z (1/3! − z (1/5! − z/7! + z² (…)))
-    let a = constant::<V>(5).minus(z.times(constant::<V>(7)));
-    let b = constant::<V>(9).minus(z.times(constant::<V>(11)));
-    let c = constant::<V>(13).minus(z.times(constant::<V>(15))).plus(z2.times(constant::<V>(17)));
-    let p = constant::<V>(3).minus(z.times(a.plus(z2.times(b)).plus(z4.times(c))));
-    let half_z = z.times(V::splat(0.5));
+    let a = constant::<V>(5) - z * constant::<V>(7);
+    let b = constant::<V>(9) - z * constant::<V>(11);
+    let c = constant::<V>(13) - z * constant::<V>(15) + z2 * constant::<V>(17);
+    let p = constant::<V>(3) - z * (a + z2 * b + z4 * c);
+    let half_z = z * V::splat(0.5);
     let one = V::splat(1.0);
-    let c0 = one.minus(half_z);
-    let sin_tail = r_low.times(c0).minus(r.times(z.times(p)));
-    let sin = r.plus(sin_tail);
-    let sin_low = sin_tail.minus(sin.minus(r));
+    let c0 = one - half_z;
+    let sin_tail = r_low * c0 - r * (z * p);
+    let sin = r + sin_tail;
+    let sin_low = sin_tail - (sin - r);
     // cos r = 1 − z/2 + z² (1/4! − z (1/6! − z/8! + z² (…)))
-    let a = constant::<V>(6).minus(z.times(constant::<V>(8)));
-    let b = constant::<V>(10).minus(z.times(constant::<V>(12)));
-    let c = constant::<V>(14).minus(z.times(constant::<V>(16)));
-    let q = constant::<V>(4).minus(z.times(a.plus(z2.times(b)).plus(z4.times(c))));
-    let cos_tail = one.minus(c0).minus(half_z).plus(z2.times(q).minus(r.times(r_low)));
-    let cos = c0.plus(cos_tail);
-    let cos_low = cos_tail.minus(cos.minus(c0));
+    let a = constant::<V>(6) - z * constant::<V>(8);
+    let b = constant::<V>(10) - z * constant::<V>(12);
+    let c = constant::<V>(14) - z * constant::<V>(16);
+    let q = constant::<V>(4) - z * (a + z2 * b + z4 * c);
+    let cos_tail = one - c0 - half_z + (z2 * q - r * r_low);
+    let cos = c0 + cos_tail;
+    let cos_low = cos_tail - (cos - c0);
     ([sin, sin_low], [cos, cos_low])
 }
 
@@ -84,13 +84,13 @@ pub(super) fn kernel<V: Vector>(r: V, r_low: V) -> ([V; 2], [V; 2]) {
 #[inline(always)]
 fn outer(high: F64x2, low: F64x2) -> F64x2 {
     let size = high.abs();
-    let pad = size.times(F64x2::splat(PAD));
-    let pad = pad.plus(F64x2::splat(0.0).lt(size).and(F64x2::splat(PAD_TINY)));
+    let pad = size * F64x2::splat(PAD);
+    let pad = pad + F64x2::splat(0.0).lt(size).and(F64x2::splat(PAD_TINY));
     // Upper bounds of (−first, second) and (−second, first).
     let (h, l) = (high.neg_first(), low.neg_first());
-    let straight = h.plus(l.plus(pad));
+    let straight = h + (l + pad);
     let (h, l) = (high.swap().neg_first(), low.swap().neg_first());
-    let crossed = h.plus(l.plus(pad.swap()));
+    let crossed = h + (l + pad.swap());
     straight.max(crossed).min(F64x2::splat(1.0))
 }
 
@@ -127,7 +127,7 @@ impl Interval {
         let (turns, r, r_low) = reduce(x);
         let size = x.abs();
         let in_range = size.lt(F64x2::splat(FAST_LIMIT));
-        let kept = size.times(F64x2::splat(CANCELLED)).le(r.abs());
+        let kept = (size * F64x2::splat(CANCELLED)).le(r.abs());
         // The empty set is (+∞, −∞) here, and not in range.
         if in_range.and(kept).sign_bits() != 3 {
             return self.sin_cos_slow();

@@ -17,7 +17,7 @@ fn point(x: F64x4) -> Option<Point> {
     let (turns, r, r_low) = reduce(x);
     let size = x.abs();
     let in_range = size.lt_bits(F64x4::splat(FAST_LIMIT));
-    let kept = size.times(F64x4::splat(CANCELLED)).le_bits(r.abs());
+    let kept = (size * F64x4::splat(CANCELLED)).le_bits(r.abs());
     if in_range & kept != 15 {
         return None;
     }
@@ -34,9 +34,9 @@ fn point(x: F64x4) -> Option<Point> {
 #[inline(always)]
 fn bounds((high, low): (F64x4, F64x4)) -> (F64x4, F64x4) {
     let size = high.abs();
-    let pad = size.times(F64x4::splat(PAD));
-    let pad = pad.plus(F64x4::splat(0.0).lt(size).and(F64x4::splat(PAD_TINY)));
-    (high.plus(low.plus(pad)), high.neg().plus(low.neg().plus(pad)))
+    let pad = size * F64x4::splat(PAD);
+    let pad = pad + F64x4::splat(0.0).lt(size).and(F64x4::splat(PAD_TINY));
+    (high + (low + pad), -high + (-low + pad))
 }
 
 /// The hull of both, with the extrema (1 where inside, else −2), as (−lo, hi).
@@ -57,7 +57,7 @@ impl IntervalX4 {
     /// ```
     #[inline]
     pub fn sin_cos(self) -> (Self, Self) {
-        let (Some(a), Some(b)) = (point(self.neg_lo.neg()), point(self.hi)) else {
+        let (Some(a), Some(b)) = (point(-self.neg_lo), point(self.hi)) else {
             return self.sin_cos_slow();
         };
         let mut ends = [[-2.0; 4]; 4];

@@ -185,7 +185,7 @@ impl Number {
         let mut binary = self.binary;
         while binary != 0 {
             let step = binary.clamp(-1000, 1000);
-            y *= crate::round::power_of_two(step as i32);
+            y *= d2m_lanes::power_of_two(step as i32);
             binary -= step;
         }
         if y > f64::MAX { f64::MAX } else { y }

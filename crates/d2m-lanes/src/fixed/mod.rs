@@ -3,6 +3,30 @@
 //! Every back end has the same methods and the same bits as [`scalar`], which tests compare them with.
 //! The feature `scalar` forces the scalar twin.
 
+use core::ops::{Add, Mul, Sub};
+
+/// Implements the operators of two numbers, then the negative of one, by what they do in a back end.
+macro_rules! operators {
+    ($type:ident: $($operator:ident $method:ident |$a:ident, $b:ident| $result:expr),*; |$c:ident| $negative:expr) => {
+        $(impl core::ops::$operator for $type {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                let ($a, $b) = (self, other);
+                $result
+            }
+        })*
+        impl core::ops::Neg for $type {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                let $c = self;
+                $negative
+            }
+        }
+    };
+}
+
 #[cfg(any(
     test,
     miri,
@@ -50,36 +74,23 @@ pub use quad::F64x4;
 mod soft_sqrt;
 
 /// What kernels need that work on two or four doubles alike.
-pub trait Vector: Copy {
+pub trait Vector: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     fn splat(x: f64) -> Self;
-    fn plus(self, o: Self) -> Self;
-    fn minus(self, o: Self) -> Self;
-    fn times(self, o: Self) -> Self;
 }
 
-macro_rules! vector {
-    ($($name:ident)*) => {$(
-        impl Vector for $name {
-            #[inline(always)]
-            fn splat(x: f64) -> Self {
-                Self::splat(x)
-            }
-            #[inline(always)]
-            fn plus(self, o: Self) -> Self {
-                self.plus(o)
-            }
-            #[inline(always)]
-            fn minus(self, o: Self) -> Self {
-                self.minus(o)
-            }
-            #[inline(always)]
-            fn times(self, o: Self) -> Self {
-                self.times(o)
-            }
-        }
-    )*};
+impl Vector for F64x2 {
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        Self::splat(x)
+    }
 }
-vector!(F64x2 F64x4);
+
+impl Vector for F64x4 {
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        Self::splat(x)
+    }
+}
 
 /// Correctly rounded square root of one number.
 #[inline(always)]

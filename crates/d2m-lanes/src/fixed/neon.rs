@@ -23,6 +23,13 @@ macro_rules! neon {
 #[repr(transparent)]
 pub struct F64x2(float64x2_t);
 
+operators!(F64x2:
+    Add add |a, b| Self(neon!(vaddq_f64(a.0, b.0))),
+    Sub sub |a, b| Self(neon!(vsubq_f64(a.0, b.0))),
+    Mul mul |a, b| Self(neon!(vmulq_f64(a.0, b.0))),
+    Div div |a, b| Self(neon!(vdivq_f64(a.0, b.0)));
+    |a| Self(neon!(vnegq_f64(a.0))));
+
 impl F64x2 {
     #[inline(always)]
     pub const fn new(first: f64, second: f64) -> Self {
@@ -60,22 +67,6 @@ impl F64x2 {
         neon!(vgetq_lane_f64::<1>(self.0))
     }
     #[inline(always)]
-    pub fn plus(self, o: Self) -> Self {
-        Self(neon!(vaddq_f64(self.0, o.0)))
-    }
-    #[inline(always)]
-    pub fn minus(self, o: Self) -> Self {
-        Self(neon!(vsubq_f64(self.0, o.0)))
-    }
-    #[inline(always)]
-    pub fn times(self, o: Self) -> Self {
-        Self(neon!(vmulq_f64(self.0, o.0)))
-    }
-    #[inline(always)]
-    pub fn over(self, o: Self) -> Self {
-        Self(neon!(vdivq_f64(self.0, o.0)))
-    }
-    #[inline(always)]
     pub fn sqrt(self) -> Self {
         Self(neon!(vsqrtq_f64(self.0)))
     }
@@ -92,10 +83,6 @@ impl F64x2 {
     #[inline(always)]
     pub fn abs(self) -> Self {
         Self(neon!(vabsq_f64(self.0)))
-    }
-    #[inline(always)]
-    pub fn neg(self) -> Self {
-        Self(neon!(vnegq_f64(self.0)))
     }
     /// Negates the first number.
     #[inline(always)]

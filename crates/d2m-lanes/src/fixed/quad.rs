@@ -28,6 +28,12 @@ mod avx {
     #[repr(transparent)]
     pub struct F64x4(__m256d);
 
+    operators!(F64x4:
+        Add add |a, b| Self(avx!(_mm256_add_pd(a.0, b.0))),
+        Sub sub |a, b| Self(avx!(_mm256_sub_pd(a.0, b.0))),
+        Mul mul |a, b| Self(avx!(_mm256_mul_pd(a.0, b.0)));
+        |a| Self(avx!(_mm256_xor_pd(_mm256_set1_pd(-0.0), a.0))));
+
     impl F64x4 {
         #[inline(always)]
         pub const fn new(lanes: [f64; 4]) -> Self {
@@ -42,14 +48,6 @@ mod avx {
         pub const fn to_array(self) -> [f64; 4] {
             // SAFETY: as in `new`.
             unsafe { core::mem::transmute::<__m256d, [f64; 4]>(self.0) }
-        }
-        #[inline(always)]
-        pub fn plus(self, o: Self) -> Self {
-            Self(avx!(_mm256_add_pd(self.0, o.0)))
-        }
-        #[inline(always)]
-        pub fn minus(self, o: Self) -> Self {
-            Self(avx!(_mm256_sub_pd(self.0, o.0)))
         }
         #[inline(always)]
         pub fn and(self, o: Self) -> Self {
@@ -87,10 +85,6 @@ mod avx {
             self.by_halves(F64x2::second_bit_as_sign)
         }
         #[inline(always)]
-        pub fn times(self, o: Self) -> Self {
-            Self(avx!(_mm256_mul_pd(self.0, o.0)))
-        }
-        #[inline(always)]
         pub fn sqrt(self) -> Self {
             Self(avx!(_mm256_sqrt_pd(self.0)))
         }
@@ -105,10 +99,6 @@ mod avx {
         #[inline(always)]
         pub fn abs(self) -> Self {
             Self(avx!(_mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0)))
-        }
-        #[inline(always)]
-        pub fn neg(self) -> Self {
-            Self(avx!(_mm256_xor_pd(_mm256_set1_pd(-0.0), self.0)))
         }
         /// Bit i is set where `self < o`.
         #[inline(always)]
@@ -130,6 +120,12 @@ mod halves {
     #[derive(Clone, Copy)]
     pub struct F64x4(F64x2, F64x2);
 
+    operators!(F64x4:
+        Add add |a, b| Self(a.0 + b.0, a.1 + b.1),
+        Sub sub |a, b| Self(a.0 - b.0, a.1 - b.1),
+        Mul mul |a, b| Self(a.0 * b.0, a.1 * b.1);
+        |a| Self(-a.0, -a.1));
+
     impl F64x4 {
         #[inline(always)]
         pub const fn new(lanes: [f64; 4]) -> Self {
@@ -143,14 +139,6 @@ mod halves {
         pub const fn to_array(self) -> [f64; 4] {
             let ([a, b], [c, d]) = (self.0.to_array(), self.1.to_array());
             [a, b, c, d]
-        }
-        #[inline(always)]
-        pub fn plus(self, o: Self) -> Self {
-            Self(self.0.plus(o.0), self.1.plus(o.1))
-        }
-        #[inline(always)]
-        pub fn minus(self, o: Self) -> Self {
-            Self(self.0.minus(o.0), self.1.minus(o.1))
         }
         #[inline(always)]
         pub fn and(self, o: Self) -> Self {
@@ -181,10 +169,6 @@ mod halves {
             Self(self.0.second_bit_as_sign(), self.1.second_bit_as_sign())
         }
         #[inline(always)]
-        pub fn times(self, o: Self) -> Self {
-            Self(self.0.times(o.0), self.1.times(o.1))
-        }
-        #[inline(always)]
         pub fn sqrt(self) -> Self {
             Self(self.0.sqrt(), self.1.sqrt())
         }
@@ -199,10 +183,6 @@ mod halves {
         #[inline(always)]
         pub fn abs(self) -> Self {
             Self(self.0.abs(), self.1.abs())
-        }
-        #[inline(always)]
-        pub fn neg(self) -> Self {
-            Self(self.0.neg(), self.1.neg())
         }
         /// Bit i is set where `self < o`.
         #[inline(always)]

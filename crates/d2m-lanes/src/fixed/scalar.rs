@@ -5,6 +5,13 @@
 #[repr(C, align(16))]
 pub struct F64x2([f64; 2]);
 
+operators!(F64x2:
+    Add add |a, b| a.zip(b, |a, b| a + b),
+    Sub sub |a, b| a.zip(b, |a, b| a - b),
+    Mul mul |a, b| a.zip(b, |a, b| a * b),
+    Div div |a, b| a.zip(b, |a, b| a / b);
+    |a| Self(a.0.map(|a| -a)));
+
 const SIGN: u64 = 1 << 63;
 
 #[inline(always)]
@@ -48,22 +55,6 @@ impl F64x2 {
         self.zip(o, |a, b| f64::from_bits(f(a.to_bits(), b.to_bits())))
     }
     #[inline(always)]
-    pub fn plus(self, o: Self) -> Self {
-        self.zip(o, |a, b| a + b)
-    }
-    #[inline(always)]
-    pub fn minus(self, o: Self) -> Self {
-        self.zip(o, |a, b| a - b)
-    }
-    #[inline(always)]
-    pub fn times(self, o: Self) -> Self {
-        self.zip(o, |a, b| a * b)
-    }
-    #[inline(always)]
-    pub fn over(self, o: Self) -> Self {
-        self.zip(o, |a, b| a / b)
-    }
-    #[inline(always)]
     pub fn sqrt(self) -> Self {
         #[cfg(feature = "std")]
         return Self(self.0.map(f64::sqrt));
@@ -82,10 +73,6 @@ impl F64x2 {
     #[inline(always)]
     pub fn abs(self) -> Self {
         Self(self.0.map(f64::abs))
-    }
-    #[inline(always)]
-    pub fn neg(self) -> Self {
-        Self(self.0.map(|x| -x))
     }
     /// Negates the first number.
     #[inline(always)]

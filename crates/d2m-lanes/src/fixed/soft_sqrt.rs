@@ -1,4 +1,5 @@
 //! Correctly rounded square root in integer arithmetic, for targets without a vector unit and without std.
+use crate::power_of_two;
 
 /// `√x`, rounded to nearest.
 pub(crate) fn sqrt(x: f64) -> f64 {
@@ -30,5 +31,5 @@ pub(crate) fn sqrt(x: f64) -> f64 {
     let middle = 1u128 << (drop - 1);
     let round_up = rest > middle || (rest == middle && (!exact || kept & 1 == 1));
     let rounded = kept + u64::from(round_up);
-    rounded as f64 * f64::from_bits(((1023 + half + drop) as u64) << 52)
+    rounded as f64 * power_of_two(half + drop)
 }

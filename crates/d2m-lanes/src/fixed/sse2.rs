@@ -22,6 +22,13 @@ macro_rules! sse2 {
 #[repr(transparent)]
 pub struct F64x2(__m128d);
 
+operators!(F64x2:
+    Add add |a, b| Self(sse2!(_mm_add_pd(a.0, b.0))),
+    Sub sub |a, b| Self(sse2!(_mm_sub_pd(a.0, b.0))),
+    Mul mul |a, b| Self(sse2!(_mm_mul_pd(a.0, b.0))),
+    Div div |a, b| Self(sse2!(_mm_div_pd(a.0, b.0)));
+    |a| Self(sse2!(_mm_xor_pd(_mm_set1_pd(-0.0), a.0))));
+
 impl F64x2 {
     #[inline(always)]
     pub const fn new(first: f64, second: f64) -> Self {
@@ -51,22 +58,6 @@ impl F64x2 {
         sse2!(_mm_cvtsd_f64(_mm_unpackhi_pd(self.0, self.0)))
     }
     #[inline(always)]
-    pub fn plus(self, o: Self) -> Self {
-        Self(sse2!(_mm_add_pd(self.0, o.0)))
-    }
-    #[inline(always)]
-    pub fn minus(self, o: Self) -> Self {
-        Self(sse2!(_mm_sub_pd(self.0, o.0)))
-    }
-    #[inline(always)]
-    pub fn times(self, o: Self) -> Self {
-        Self(sse2!(_mm_mul_pd(self.0, o.0)))
-    }
-    #[inline(always)]
-    pub fn over(self, o: Self) -> Self {
-        Self(sse2!(_mm_div_pd(self.0, o.0)))
-    }
-    #[inline(always)]
     pub fn sqrt(self) -> Self {
         Self(sse2!(_mm_sqrt_pd(self.0)))
     }
@@ -82,10 +73,6 @@ impl F64x2 {
     #[inline(always)]
     pub fn abs(self) -> Self {
         Self(sse2!(_mm_andnot_pd(_mm_set1_pd(-0.0), self.0)))
-    }
-    #[inline(always)]
-    pub fn neg(self) -> Self {
-        Self(sse2!(_mm_xor_pd(_mm_set1_pd(-0.0), self.0)))
     }
     /// Negates the first number.
     #[inline(always)]

@@ -1,5 +1,6 @@
 //! Every back end against the scalar twin, bit for bit.
 use super::{F64x2, scalar};
+use core::ops::{Add, Div, Mul, Neg, Sub};
 
 const VALUES: [f64; 22] = [
     0.0,
@@ -45,7 +46,7 @@ fn equals_the_scalar_twin() {
                 macro_rules! binary { ($($f:ident)*) => { $(
                     assert!(same(x.$f(y).to_array(), p.$f(q).to_array()), "{} {a:e} {b:e} {c:e} {d:e}", stringify!($f));
                 )* } }
-                binary!(plus minus times over max min first_and_second);
+                binary!(add sub mul div max min first_and_second);
                 macro_rules! masks { ($($f:ident)*) => { $(
                     assert!(same_bits(x.$f(y).to_array(), p.$f(q).to_array()), "{} {a:e} {b:e} {c:e} {d:e}", stringify!($f));
                 )* } }

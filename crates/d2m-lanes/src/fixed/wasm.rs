@@ -10,6 +10,13 @@ use core::arch::wasm32::{
 #[repr(transparent)]
 pub struct F64x2(v128);
 
+operators!(F64x2:
+    Add add |a, b| Self(f64x2_add(a.0, b.0)),
+    Sub sub |a, b| Self(f64x2_sub(a.0, b.0)),
+    Mul mul |a, b| Self(f64x2_mul(a.0, b.0)),
+    Div div |a, b| Self(f64x2_div(a.0, b.0));
+    |a| Self(f64x2_neg(a.0)));
+
 impl F64x2 {
     #[inline(always)]
     pub const fn new(first: f64, second: f64) -> Self {
@@ -38,22 +45,6 @@ impl F64x2 {
         f64x2_extract_lane::<1>(self.0)
     }
     #[inline(always)]
-    pub fn plus(self, o: Self) -> Self {
-        Self(f64x2_add(self.0, o.0))
-    }
-    #[inline(always)]
-    pub fn minus(self, o: Self) -> Self {
-        Self(f64x2_sub(self.0, o.0))
-    }
-    #[inline(always)]
-    pub fn times(self, o: Self) -> Self {
-        Self(f64x2_mul(self.0, o.0))
-    }
-    #[inline(always)]
-    pub fn over(self, o: Self) -> Self {
-        Self(f64x2_div(self.0, o.0))
-    }
-    #[inline(always)]
     pub fn sqrt(self) -> Self {
         Self(f64x2_sqrt(self.0))
     }
@@ -71,10 +62,6 @@ impl F64x2 {
     #[inline(always)]
     pub fn abs(self) -> Self {
         Self(f64x2_abs(self.0))
-    }
-    #[inline(always)]
-    pub fn neg(self) -> Self {
-        Self(f64x2_neg(self.0))
     }
     /// Negates the first number.
     #[inline(always)]

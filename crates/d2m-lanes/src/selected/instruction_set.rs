@@ -3,7 +3,7 @@
 use core::sync::atomic::{AtomicU8, Ordering};
 use std::vec::Vec;
 
-/// Vector instructions that the queries of this crate are compiled for, the plainest first.
+/// Vector instructions that queries are compiled for, the plainest first.
 ///
 /// A query uses the best set of the processor. The choice changes its time and nothing else: every answer has the same
 /// bits. So the limit below is one of the process and not an option of each query. It serves to measure what the

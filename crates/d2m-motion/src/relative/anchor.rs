@@ -6,7 +6,6 @@
 use super::{Frame, RelativeMotion};
 use crate::rotation::exponential_dd;
 use crate::rounding::{UNIT, UP};
-use core::ops::{Add, Mul, Sub};
 use d2m_lanes::DoubleDouble;
 use glam::DVec3;
 
@@ -57,9 +56,9 @@ impl Anchor {
         let rotation_b = exponential_dd(motion.spin_b.omega, s);
         let turned = rotation_a.apply(self.arm_a);
         let exact = &motion.exact;
-        let x = [0, 1, 2].map(|i| exact.offset[i].add(exact.velocity[i].mul(tau)).add(turned[i]));
+        let x = [0, 1, 2].map(|i| exact.offset[i] + exact.velocity[i] * tau + turned[i]);
         let seen = rotation_b.apply_transposed(x);
-        let p = [0, 1, 2].map(|i| seen[i].sub(self.arm_b[i]).hi);
+        let p = [0, 1, 2].map(|i| (seen[i] - self.arm_b[i]).hi);
         let arm = DVec3::new(self.arm_a[0].hi, self.arm_a[1].hi, self.arm_a[2].hi);
         frame.shift[0] = DVec3::from_array(p);
         frame.shift[1] += frame.turn[1] * arm;

@@ -3,8 +3,7 @@
 //! docs/theory/features.md, "Any C² motion", derives the formulas, bounds and roundings of this file.
 use super::bounds::length;
 use crate::rounding::{UNIT, UP};
-use crate::state::ball;
-use crate::{CertifiedState, PathJet, Remainder, RigidMotion};
+use crate::{Ball, CertifiedState, PathJet, Remainder, RigidMotion};
 use d2m_interval::Interval;
 use glam::{DMat3, DVec3};
 
@@ -75,16 +74,16 @@ impl RelativeState {
         let (sa, sb) = (a.enclose_state(at), b.enclose_state(at));
         let (rate_a, rate_b) = (a.enclose_twist_rate(piece), b.enclose_twist_rate(piece));
         let h = (piece.hi() - at).max(at - piece.lo()) * UP;
-        let (acceleration_a, acceleration_b) = (ball(rate_a.linear), ball(rate_b.linear));
-        let (alpha_a, alpha_b) = (ball(rate_a.angular), ball(rate_b.angular));
-        Self::from_balls(&sa, &sb, [acceleration_a, acceleration_b], [alpha_a, alpha_b], h)
+        let linear_rates = [rate_a.linear, rate_b.linear].map(Ball::around_box);
+        let angular_rates = [rate_a.angular, rate_b.angular].map(Ball::around_box);
+        Self::from_balls(&sa, &sb, linear_rates, angular_rates, h)
     }
 
     pub(super) fn from_balls(
         sa: &CertifiedState,
         sb: &CertifiedState,
-        linear_rates: [(DVec3, f64); 2],
-        angular_rates: [(DVec3, f64); 2],
+        linear_rates: [Ball; 2],
+        angular_rates: [Ball; 2],
         h: f64,
     ) -> Self {
         // One rounding of each difference goes with its radius.
@@ -95,9 +94,10 @@ impl RelativeState {
         let (g, rx) = difference(sa.position, sb.position, sa.position_radius + sb.position_radius);
         let (u, rv) = difference(sa.linear, sb.linear, sa.linear_radius + sb.linear_radius);
         let (spin, r_spin) = difference(sa.angular, sb.angular, sa.angular_radius + sb.angular_radius);
-        let [(aa, raa), (ab, rab)] = linear_rates;
+        let [Ball { center: aa, radius: raa }, Ball { center: ab, radius: rab }] = linear_rates;
         let (acceleration, r_acceleration) = difference(aa, ab, raa + rab);
-        let [(alpha_a, r_alpha_a), (alpha_b, r_alpha_b)] = angular_rates;
+        let [Ball { center: alpha_a, radius: r_alpha_a }, Ball { center: alpha_b, radius: r_alpha_b }] =
+            angular_rates;
         let (lambda_vector, r_lambda) = difference(alpha_a, alpha_b, r_alpha_a + r_alpha_b);
         let omega = sb.angular;
         let r_omega = sb.angular_radius;

@@ -4,6 +4,7 @@ use super::frame::cross_columns;
 use crate::Remainder;
 use crate::rotation::Spin;
 use crate::rounding::{UNIT, UP};
+use d2m_lanes::power_of_two;
 use glam::{DMat3, DVec3};
 
 /// Rounding of a frame and of all dot products made with it, in units of 2⁻⁵³·S0 (docs/theory/features.md).
@@ -18,10 +19,10 @@ const ROUNDING_OF_THIRD: f64 = 3.0;
 /// Rounding of the orientations at the epoch, in units of 2⁻⁵³ per radian from the reference time to the epoch: the
 /// rotation is made in double-double, whose product |ω|(t − t_ref) and reduction by π/2 err by less than 2⁻⁹⁸ of the
 /// angle, 2⁻⁴⁵ units.
-const EPOCH_ROUNDING_PER_RADIAN: f64 = f64::from_bits((1023 - 45) << 52);
+const EPOCH_ROUNDING_PER_RADIAN: f64 = power_of_two(-45);
 /// Radians from the reference time to the epoch from which on nothing is known of the orientation: 2⁵³ quarter turns can
 /// no longer be counted in a double; 2⁵² radians are fewer.
-const LARGEST_EPOCH_ANGLE: f64 = f64::from_bits((1023 + 52) << 52);
+const LARGEST_EPOCH_ANGLE: f64 = power_of_two(52);
 /// Rounding of a component `ω_i v_j − ω_j v_i` in units of 2⁻⁵³·(|ω_i|·m_j + |ω_j|·m_i), with v made of terms that add up
 /// to m in size: each product errs by 1, their difference by 2 at most, v by 4. Nothing is lost where ω is along v.
 const PRODUCT_ROUNDING: f64 = 16.0 * UNIT;
@@ -55,8 +56,8 @@ pub(super) fn length(v: DVec3) -> f64 {
 
 /// 2⁻⁴⁸⁰ and 2⁴⁸⁰: the squares of what lies between lose no bit that matters to a relative error of 2⁻⁵⁰, even with
 /// components 2⁻³⁰ of the largest.
-const SMALL_SQUARE_ROOT: f64 = f64::from_bits((1023 - 480) << 52);
-const LARGE_SQUARE_ROOT: f64 = f64::from_bits((1023 + 480) << 52);
+const SMALL_SQUARE_ROOT: f64 = power_of_two(-480);
+const LARGE_SQUARE_ROOT: f64 = power_of_two(480);
 
 /// Scalars that every bound is made of; each is an upper bound.
 #[derive(Debug, Clone, Copy)]
@@ -77,7 +78,6 @@ pub(super) struct Bounds {
     /// |ω_B × u|: of the velocity, only what is across B's axis turns.
     pub(super) across: f64,
     /// Kₖ = ‖Tₖ‖: see [`direction_bounds`].
-    pub(super) k2: f64,
     pub(super) k3: f64,
     pub(super) k4: f64,
     /// k = 2⁻⁵³·(128 + 6(a + b)T).
@@ -104,14 +104,14 @@ impl Bounds {
         let at_start = bound_product(spin_b.omega, offset, terms);
         let swept = at_start.max(bound_product(spin_b.omega, end, terms)).min(b * reach * UP);
         let across = bound_product(spin_b.omega, velocity, velocity.abs()).min(b * speed * UP);
-        let [k2, k3, k4] = direction_bounds(spin_a.omega, spin_b.omega, difference, a + b);
+        let [k3, k4] = direction_bounds(spin_a.omega, spin_b.omega, difference, a + b);
         let turn = (a + b) * duration;
         let rounding = if turn <= crate::sin_cos::LARGEST_ANGLE && epoch_angle <= LARGEST_EPOCH_ANGLE {
             UNIT * (ROUNDING + ROUNDING_PER_RADIAN * turn + EPOCH_ROUNDING_PER_RADIAN * epoch_angle) * UP
         } else {
             f64::INFINITY
         };
-        Self { speed, reach, a, b, w, swept, across, k2, k3, k4, rounding }
+        Self { speed, reach, a, b, w, swept, across, k3, k4, rounding }
     }
 
     /// bY⊥ while the reference points are within `reach` of each other.
@@ -120,38 +120,37 @@ impl Bounds {
     }
 }
 
-/// Bounds of the second to fourth derivative of a direction of A of length 1 in the axes of B: the norms of the
+/// Bounds of the third and fourth derivative of a direction of A of length 1 in the axes of B: the norms of the
 /// constant matrices `T₁ = [ω_A − ω_B]`, `Tₖ₊₁ = Tₖ[ω_A] − [ω_B]Tₖ`, as `z⁽ᵏ⁾ = R_Bᵀ Tₖ R_A d`.
 ///
 /// Rates are divided by `sum` ≥ |ω_A| + |ω_B| first: then ‖Tₖ₊₁‖ ≤ ‖Tₖ‖ ≤ 1, and rounding adds at most 64·2⁻⁵³
 /// of ‖T₁‖ (docs/theory/features.md). Exchanging A and B gives the same norms.
-fn direction_bounds(spin_a: DVec3, spin_b: DVec3, difference: DVec3, sum: f64) -> [f64; 3] {
+fn direction_bounds(spin_a: DVec3, spin_b: DVec3, difference: DVec3, sum: f64) -> [f64; 2] {
     if sum == 0.0 || difference == DVec3::ZERO {
         // Bodies that turn alike: nothing of A turns in the axes of B.
-        return [0.0; 3];
+        return [0.0; 2];
     }
     if sum < SLOWEST {
         // ‖Tₖ‖ ≤ sumᵏ ≤ sum² < 2⁻¹⁸⁰⁰, far below the smallest number.
-        return [f64::MIN_POSITIVE; 3];
+        return [f64::MIN_POSITIVE; 2];
     }
     let scale = 1.0 / sum;
     let (a, b) = (spin_a * scale, spin_b * scale);
-    let mut turn = cross_columns(difference * scale, &DMat3::IDENTITY);
+    // T[ω] is the transpose of −[ω]Tᵀ.
+    let derivative = |turn: DMat3| -cross_columns(a, &turn.transpose()).transpose() - cross_columns(b, &turn);
+    let second = derivative(cross_columns(difference * scale, &DMat3::IDENTITY));
+    let third = derivative(second);
     let rounding = TURN_ROUNDING * length(difference * scale) + f64::MIN_POSITIVE;
-    let mut power = sum;
-    [(); 3].map(|()| {
-        // T[ω] is the transpose of −[ω]Tᵀ.
-        turn = -cross_columns(a, &turn.transpose()).transpose() - cross_columns(b, &turn);
-        power *= sum;
-        (norm(&turn) + rounding) * power * UP
-    })
+    let cube = sum * sum * sum;
+    [(third, cube), (derivative(third), cube * sum)]
+        .map(|(turn, power)| (norm(&turn) + rounding) * power * UP)
 }
 
 /// Rounding of Tₖ, k ≤ 4, as a part of ‖T₁‖ where rates are divided by their sum (docs/theory/features.md counts it).
 const TURN_ROUNDING: f64 = 64.0 * UNIT;
 
 /// 2⁻⁹⁰⁰: rates below it have no quotient 1/rate that is certainly finite, and nothing turns that slowly.
-const SLOWEST: f64 = f64::from_bits((1023 - 900) << 52);
+const SLOWEST: f64 = power_of_two(-900);
 
 /// Upper bound of the operator norm, less than 1.08 of it: with the singular values σ, `(Σσ¹⁶)^(1/16)`, as
 /// `‖(MᵀM)⁴‖^(1/8)` (Frobenius norm).
@@ -243,35 +242,16 @@ impl RelativeMotion {
         (k.speed + k.swept_within(reach) + k.w * (radius + self.anchor_arm())) * UP
     }
 
-    /// Bound of the acceleration: `2|ω_B × u| + b²Y⊥ + K2·ρ`.
-    pub fn bound_acceleration(&self, radius: f64) -> f64 {
-        let k = &self.bounds;
-        (2.0 * k.across + k.b * k.swept + k.k2 * (radius + self.anchor_arm())) * UP
-    }
-
-    /// Bound M3 of the third derivative: `b(3|ω_B × u| + b²Y⊥) + K3·ρ`.
-    pub fn bound_jerk(&self, radius: f64) -> f64 {
-        self.bound_jerk_within(radius, self.bounds.reach)
-    }
-
-    /// The same while the reference points are within `reach` of each other.
-    fn bound_jerk_within(&self, radius: f64, reach: f64) -> f64 {
+    /// Bound M3 of the third derivative while the reference points are within `reach` of each other:
+    /// `b(3|ω_B × u| + b²Y⊥) + K3·ρ`.
+    pub(super) fn bound_jerk_within(&self, radius: f64, reach: f64) -> f64 {
         let k = &self.bounds;
         (k.b * (3.0 * k.across + k.b * k.swept_within(reach)) + k.k3 * (radius + self.anchor_arm())) * UP
     }
 
-    /// Bound of the k-th derivative of a direction of A of length 1, k = 1, 2, 3, 4: `w`, `K2`, `K3`, `K4`.
-    ///
-    /// # Panics
-    /// If `order` is not 1, 2, 3 or 4.
-    pub fn bound_direction_derivative(&self, order: u32) -> f64 {
-        match order {
-            1 => self.bounds.w,
-            2 => self.bounds.k2,
-            3 => self.bounds.k3,
-            4 => self.bounds.k4,
-            _ => panic!("derivative of order {order}: 1 to 4 expected"),
-        }
+    /// Bound of the speed of the tip of a direction of A of length 1: `w`.
+    pub fn bound_direction_speed(&self) -> f64 {
+        self.bounds.w
     }
 
     /// Remainder of every point jet with `|r| ≤ radius`, dotted with a vector of length at most 1 and compared with

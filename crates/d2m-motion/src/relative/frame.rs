@@ -18,15 +18,6 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// c_k and M_k for k = 0, 1, 2: `q⁽ᵏ⁾ = c_k + M_k r`.
-    ///
-    /// # Panics
-    /// If `order` is above 2.
-    #[inline(always)]
-    pub fn affine(&self, order: usize) -> (DVec3, &DMat3) {
-        (self.shift[order], &self.turn[order])
-    }
-
     /// Jet of the point of A at `r` ([`RelativeMotion::place_a`]) with the remainder of its class of points.
     #[inline(always)]
     pub fn point_jet(&self, r: DVec3, remainder: Remainder) -> PathJet {
@@ -121,7 +112,7 @@ impl RelativeMotion {
     /// Sine and cosine of the angles of A and B at a time.
     #[inline(always)]
     fn angles(&self, tau: f64) -> (F64x2, F64x2) {
-        sin_cos_two(F64x2::pack(self.spin_a.speed, self.spin_b.speed).times(F64x2::splat(tau)))
+        sin_cos_two(F64x2::pack(self.spin_a.speed, self.spin_b.speed) * F64x2::splat(tau))
     }
 
     /// The jet of one point to third order, in fewer operations than a frame takes; `remainder` is

@@ -20,7 +20,6 @@ use crate::rotation::{RotationDd, Spin};
 use crate::rounding::UP;
 use anchor::Anchor;
 use bounds::Bounds;
-use core::ops::{Neg, Sub};
 use d2m_lanes::DoubleDouble;
 use glam::{DMat3, DVec3};
 
@@ -80,7 +79,7 @@ impl RelativeMotion {
     pub fn new(a: &ConstantTwist, b: &ConstantTwist, start: f64, end: f64) -> Self {
         let (position_a, position_b) = (a.position_dd(start), b.position_dd(start));
         let exact = Exact {
-            offset: [0, 1, 2].map(|i| position_a[i].sub(position_b[i])),
+            offset: [0, 1, 2].map(|i| position_a[i] - position_b[i]),
             velocity: [0, 1, 2]
                 .map(|i| DoubleDouble::from_difference(a.linear_velocity()[i], b.linear_velocity()[i])),
             rotation_a: a.rotation_dd(start),
@@ -119,8 +118,8 @@ impl RelativeMotion {
     /// The same two motions with the roles exchanged: B seen from A.
     pub fn reversed(&self) -> Self {
         let exact = Exact {
-            offset: self.exact.offset.map(DoubleDouble::neg),
-            velocity: self.exact.velocity.map(DoubleDouble::neg),
+            offset: self.exact.offset.map(|part| -part),
+            velocity: self.exact.velocity.map(|part| -part),
             rotation_a: self.exact.rotation_b,
             rotation_b: self.exact.rotation_a,
         };

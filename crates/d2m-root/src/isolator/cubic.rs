@@ -7,7 +7,7 @@ use super::piece::Piece;
 use super::quadratic::{LONGEST_REACH, UNDERFLOW};
 use super::time_unit::TimeUnit;
 use super::{Band, Quadratic};
-use crate::binary::power_of_two;
+use d2m_lanes::power_of_two;
 
 /// `value + slope·s + curvature·s²/2 + jerk·s³/6`.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,7 +7,7 @@
 //! else                                   q > 0 for good
 //! ```
 //! The proof of the constants is in `docs/theory/isolator.md`, section 1.
-use crate::binary::{Binary, power_of_two, scaled};
+use d2m_lanes::{Binary, power_of_two, scaled};
 
 /// Half a unit in the last place of 1: a rounded result is (1 + δ) times the exact one, |δ| ≤ `UNIT`, unless it
 /// underflows or overflows.
@@ -80,9 +80,9 @@ pub(super) fn bound_scaled(gap: f64, slope: f64, curvature: f64) -> f64 {
     if !(gap > 0.0 && gap < f64::INFINITY && slope.is_finite() && curvature.is_finite()) {
         return 0.0;
     }
-    let Binary { mantissa: gap, exponent: value_exponent } = Binary::of(gap);
-    let Binary { mantissa: b, exponent: slope_exponent } = Binary::of(slope);
-    let Binary { mantissa: k, exponent: curvature_exponent } = Binary::of(curvature);
+    let Binary { mantissa: gap, exponent: value_exponent } = Binary::from_f64(gap);
+    let Binary { mantissa: b, exponent: slope_exponent } = Binary::from_f64(slope);
+    let Binary { mantissa: k, exponent: curvature_exponent } = Binary::from_f64(curvature);
     // x = 2ᵗ·y: slope and curvature become b·2^(its exponent + t − e), k·2^(its exponent + 2t − e).
     let by_slope = value_exponent - slope_exponent;
     let by_curvature = (value_exponent - curvature_exponent).div_euclid(2);

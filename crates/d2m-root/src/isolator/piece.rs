@@ -53,8 +53,12 @@ impl Piece {
     }
 
     /// The largest |s| of its times s, if neither end is NaN.
+    ///
+    /// ```
+    /// assert_eq!(d2m_root::Piece { lo: -3.0, hi: 1.0 }.reach(), 3.0);
+    /// ```
     #[inline(always)]
-    pub(super) fn reach(&self) -> f64 {
+    pub fn reach(&self) -> f64 {
         let (left, right) = (self.lo.abs(), self.hi.abs());
         if left > right { left } else { right }
     }

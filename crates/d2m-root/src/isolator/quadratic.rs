@@ -5,7 +5,7 @@
 use super::first_zero_bound::{UNIT, USUAL_GAPS, bound_first_zero, bound_scaled};
 use super::piece::Piece;
 use super::time_unit::TimeUnit;
-use crate::binary::power_of_two;
+use d2m_lanes::power_of_two;
 
 /// Error of what [`Quadratic::clip`] and [`Quadratic::bound_below`] compute, in parts of
 /// |value| + |slope|·h + |curvature|·h² for times up to h: the value at an end (1, 3, 2 in these terms), the slope there

@@ -1,5 +1,6 @@
 //! Another unit of time, for pieces that reach far from zero.
 use super::{Cubic, Piece, Quadratic};
+use d2m_lanes::power_of_two_below;
 
 /// A power of two: times are divided by it, exactly, so that a piece reaches between 1 and 2.
 ///
@@ -12,10 +13,7 @@ impl TimeUnit {
     /// For a piece; `None` if it is not bounded, not beyond 1, or no piece.
     pub(super) fn of(part: Piece) -> Option<Self> {
         let reach = part.reach();
-        (part.is_within(f64::MAX) && reach >= 1.0).then(|| {
-            // The exponent's bits alone: the largest power of two that is not above.
-            Self(f64::from_bits(reach.to_bits() & (0x7ff << 52)))
-        })
+        (part.is_within(f64::MAX) && reach >= 1.0).then(|| Self(power_of_two_below(reach)))
     }
 
     /// The unit in units of the caller.

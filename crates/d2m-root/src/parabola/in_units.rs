@@ -1,7 +1,7 @@
 //! A parabola in units in which its discriminant neither over- nor underflows.
 use super::Parabola;
-use crate::binary::{Binary, power_of_two, scaled};
 use d2m_interval::Interval;
+use d2m_lanes::{Binary, power_of_two, scaled};
 
 /// Sizes of coefficients that need no other units, 2^±150: the discriminant lies within 2^±303, far above the 2⁻⁵⁰⁰ that
 /// interval arithmetic may add to it.
@@ -43,7 +43,8 @@ impl InUnits {
         if !(p.value.is_finite() && p.slope.is_finite() && p.curvature.is_finite()) {
             return Self::of_caller(p);
         }
-        let (value, slope, curvature) = (Binary::of(p.value), Binary::of(p.slope), Binary::of(p.curvature));
+        let (value, slope, curvature) =
+            (Binary::from_f64(p.value), Binary::from_f64(p.slope), Binary::from_f64(p.curvature));
         let by_slope = value.exponent - slope.exponent;
         let by_curvature = (value.exponent - curvature.exponent).div_euclid(2);
         let (time, unit) = match (value.is_zero(), slope.is_zero(), curvature.is_zero()) {

@@ -200,7 +200,7 @@ mod tests {
     /// The same roots in units of value and offset from one end of the range of doubles to the other.
     #[test]
     fn roots_follow_every_exact_scaling() {
-        use crate::binary::scaled;
+        use d2m_lanes::scaled;
         for (c, b, k, first) in
             [(3.0, -4.0, 2.0, 1.0), (1.0, 0.0, -2.0, 1.0), (1.0, -4.0, 0.0, 0.25), (2.0, 1.0, -2.0, 2.0)]
         {
@@ -240,7 +240,7 @@ mod tests {
     /// What rises last, and what has turned positive, in far units.
     #[test]
     fn last_roots_follow_every_exact_scaling() {
-        use crate::binary::scaled;
+        use d2m_lanes::scaled;
         for n in [-900, -450, 0, 450, 900] {
             let p = Parabola::new(scaled(3.0, n), scaled(-4.0, n), scaled(2.0, n));
             let last = p.bound_last_nonpositive();

@@ -6,14 +6,14 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "no outward rounding",
         "crates/d2m-interval/src/round.rs",
-        "x.abs().times(F64x2::splat(HALF_ULP)).plus(F64x2::splat(TINY))",
-        "x.abs().times(F64x2::splat(0.0))",
+        "x.abs() * F64x2::splat(HALF_ULP) + F64x2::splat(TINY)",
+        "x.abs() * F64x2::splat(0.0)",
         "crates/d2m-interval/tests/differential.rs::no_loss_and_tight",
     ),
     patch(
         "underflow is not covered",
         "crates/d2m-interval/src/round.rs",
-        "pub(crate) const TINY: f64 = f64::from_bits((1023 - 501) << 52);",
+        "pub(crate) const TINY: f64 = power_of_two(-501);",
         "pub(crate) const TINY: f64 = 0.0;",
         "crates/d2m-interval/tests/special_cases.rs::overflow_and_underflow",
     ),

@@ -11,10 +11,10 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-motion/src/relative/tests.rs::bounds_of_the_derivatives_hold_and_are_nearly_reached",
     ),
     patch(
-        "half of K2 in the acceleration of a path",
+        "half of K3 in the third derivative of a path",
         "crates/d2m-motion/src/relative/bounds.rs",
-        "across, k2, k3, k4, rounding }",
-        "across, k2: 0.5 * k2, k3, k4, rounding }",
+        "across, k3, k4, rounding }",
+        "across, k3: 0.5 * k3, k4, rounding }",
         "crates/d2m-motion/src/relative/tests.rs::bounds_of_the_derivatives_hold_and_are_nearly_reached",
     ),
     patch(
