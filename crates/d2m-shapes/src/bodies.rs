@@ -59,9 +59,9 @@ pub(crate) fn needle(triangles: usize, aspect: f64) -> Surface {
 
 /// The regular tetrahedron in the unit sphere.
 pub(crate) fn tetrahedron() -> Surface {
-    let corners = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+    let signs = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
     Surface {
-        vertices: corners.map(|corner| DVec3::from_array(corner) / f64::sqrt(3.0)).to_vec(),
+        vertices: signs.map(|vertex| DVec3::from_array(vertex) / f64::sqrt(3.0)).to_vec(),
         triangles: vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]],
     }
     .outward()

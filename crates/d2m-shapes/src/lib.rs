@@ -6,11 +6,13 @@ mod catalog;
 mod error;
 mod extrusion;
 mod grid;
+mod shape;
 mod sphere;
 mod surface;
 mod thread;
 mod trigonometry;
 mod tube;
 
-pub use catalog::{COMMON, Parameter, SHAPES, Shape, ShapeInfo, mesh};
+pub use catalog::{COMMON, Parameter, SHAPES, ShapeInfo};
 pub use error::ShapeError;
+pub use shape::{Shape, mesh};

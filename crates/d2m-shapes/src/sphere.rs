@@ -30,25 +30,25 @@ const FACES: [[usize; 3]; 20] = [
 
 fn icosahedron() -> [DVec3; 12] {
     let golden = 0.5 + 0.5 * f64::sqrt(5.0);
-    let mut corners = [DVec3::ZERO; 12];
-    for (slot, corner) in corners.iter_mut().enumerate() {
+    let mut vertices = [DVec3::ZERO; 12];
+    for (slot, vertex) in vertices.iter_mut().enumerate() {
         let first = if slot % 2 == 0 { -1.0 } else { 1.0 };
         let second = if slot % 4 < 2 { golden } else { -golden };
-        *corner = match slot / 4 {
+        *vertex = match slot / 4 {
             0 => DVec3::new(first, second, 0.0),
             1 => DVec3::new(0.0, first, second),
             _ => DVec3::new(second, 0.0, first),
         };
     }
-    corners
+    vertices
 }
 
 /// Each face of the icosahedron cut into n² triangles, pushed onto the unit sphere: 20 n² triangles.
 pub(crate) fn icosphere(triangles: usize) -> Surface {
     let n = ((triangles as f64 / 20.0).sqrt().round() as usize).max(1);
-    let corners = icosahedron();
+    let coarse = icosahedron();
     let mut surface = Surface::default();
-    // A lattice point is named by its non-zero corner weights in corner order, so faces share what lies on edges.
+    // A lattice point is named by its weights that are not zero, in the order of the vertices, so faces share what lies on edges.
     let mut known: HashMap<[(usize, usize); 3], u32> = HashMap::with_capacity(10 * n * n + 2);
     for face in FACES {
         let mut vertex = |i: usize, j: usize| {
@@ -63,7 +63,7 @@ pub(crate) fn icosphere(triangles: usize) -> Surface {
             *known.entry(weights).or_insert_with(|| {
                 let used = weights.iter().filter(|weight| weight.1 > 0);
                 let sum =
-                    used.fold(DVec3::ZERO, |sum, &(corner, weight)| sum + corners[corner] * weight as f64);
+                    used.fold(DVec3::ZERO, |sum, &(vertex, weight)| sum + coarse[vertex] * weight as f64);
                 surface.vertices.push(sum / sum.length());
                 surface.vertices.len() as u32 - 1
             })

@@ -24,8 +24,8 @@ impl Surface {
     }
 
     fn signed_volume(&self) -> f64 {
-        let corner = |vertex: u32| self.vertices[vertex as usize];
-        self.triangles.iter().map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c)))).sum()
+        let position = |vertex: u32| self.vertices[vertex as usize];
+        self.triangles.iter().map(|&[a, b, c]| position(a).dot(position(b).cross(position(c)))).sum()
     }
 
     /// Turns the surface so that its volume is positive.

@@ -39,7 +39,7 @@ fn profile(step: i64, steps: usize) -> f64 {
     ROOT + (CREST - ROOT) * height
 }
 
-/// The multiple of `unit` (at least `least`) for which `triangles_of` comes closest to `wanted`.
+/// The multiple of `unit` (at least one) for which `triangles_of` comes closest to `wanted`.
 fn fit_columns(wanted: usize, unit: usize, triangles_of: impl Fn(usize) -> usize) -> usize {
     let mut columns = unit;
     while triangles_of(columns + unit) <= wanted {
