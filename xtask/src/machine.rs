@@ -16,7 +16,7 @@ pub(crate) struct Machine {
     pub(crate) commit_date: String,
     /// Were there changes of code that are in no commit?
     pub(crate) is_dirty: bool,
-    /// Load average of the last minute when the run began, where the system tells it.
+    /// Load average of the last minute when the run began, where the system reports it.
     #[serde(default)]
     pub(crate) load: Option<f64>,
 }

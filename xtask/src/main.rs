@@ -59,7 +59,7 @@ struct Arguments {
 enum Task {
     /// Every check that must never be red: format, lints, tests, documentation, structure.
     Ci(ci::Options),
-    /// Fails when the map in ARCHITECTURE.md, the folders and the order of the crates disagree.
+    /// Fails when documents and sources disagree (the map, the guarantees, the table of mutants) or a file breaks a rule.
     Tidy,
     /// Lines of product code of each crate, without tests, comments and blank lines.
     Lines(lines::Options),
@@ -132,7 +132,7 @@ fn positive(text: &str) -> Result<f64, String> {
 #[cfg(feature = "full")]
 fn at_least_one(text: &str) -> Result<usize, String> {
     let count: usize = text.parse().map_err(|_| "not a whole number".to_owned())?;
-    if count > 0 { Ok(count) } else { Err("nothing would be asked".to_owned()) }
+    if count > 0 { Ok(count) } else { Err("nothing would be done".to_owned()) }
 }
 
 /// The root of the workspace.

@@ -66,7 +66,7 @@ impl Slicing {
         match k {
             0 => self.start,
             k if k >= SLICES => self.end,
-            // Halves first: the length of a window is finite, but 16 times it need not be.
+            // The part of the span first: its length is finite, but 16 times it need not be.
             k => (self.start + (self.end - self.start) * (k as f64 / SLICES as f64))
                 .clamp(self.start, self.end),
         }
