@@ -2,6 +2,9 @@
 //! Every answer is judged by the construction of its scene before it is timed.
 use d2m::bvh::last_search_counts;
 use d2m_benches::hard_scenes::{HardScene, table};
+use d2m_benches::processor_time;
+use std::sync::LazyLock;
+use std::time::Instant;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
@@ -24,12 +27,12 @@ fn row(scene: &HardScene, rounds: usize) -> bool {
     let counts = last_search_counts();
     let fault = scene.fault(&answer);
     // Long enough for the clock's ticks of a few milliseconds.
-    let (clock, mut asked) = (processor_time(), 0);
-    while asked < rounds || processor_time() - clock < 60.0 && asked < 1000 {
+    let (clock, mut asked) = (milliseconds(), 0);
+    while asked < rounds || milliseconds() - clock < 60.0 && asked < 1000 {
         let _ = std::hint::black_box(scene.ask());
         asked += 1;
     }
-    let mean = (processor_time() - clock) / asked as f64;
+    let mean = (milliseconds() - clock) / asked as f64;
     println!(
         "{:<64} {mean:>10.3} {:<8} {:<9} {:<9} {:<14} {}",
         scene.name,
@@ -42,14 +45,8 @@ fn row(scene: &HardScene, rounds: usize) -> bool {
     fault.is_some()
 }
 
-/// Milliseconds that this thread has run, so that other work on the machine counts less; the clock's time where the
-/// system does not say.
-fn processor_time() -> f64 {
-    let running = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = running.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
-    static CLOCK: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();
-    nanoseconds.map_or_else(
-        || CLOCK.get_or_init(std::time::Instant::now).elapsed().as_secs_f64() * 1e3,
-        |n| n * 1e-6,
-    )
+/// Milliseconds that this thread has run; the clock's time where the system does not say.
+fn milliseconds() -> f64 {
+    static CLOCK: LazyLock<Instant> = LazyLock::new(Instant::now);
+    processor_time().unwrap_or_else(|| CLOCK.elapsed()).as_secs_f64() * 1e3
 }

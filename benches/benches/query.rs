@@ -6,6 +6,7 @@ use d2m::bvh::{
 use d2m::glam::DVec3;
 use d2m::{ConstantTwist, MeshTree, Mode, Moving, QueryOptions, RigidMotion, Solid, Window, time_of_contact};
 use d2m_benches::hard_scenes::{HardScene, grazing_cube, intermeshing_bars};
+use d2m_benches::processor_time;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -133,7 +134,7 @@ fn threads(c: &mut Criterion) {
                 if asked > 0 {
                     (0..20).for_each(|_| _ = black_box(ask(&pools[asked - 1], &scene)));
                 }
-                pools.each_ref().map(|pool| pool.broadcast(|_| processor_time()))
+                pools.each_ref().map(|pool| pool.broadcast(|_| seconds()))
             });
             let most = |k: usize, from: &[Vec<f64>; 2], to: &[Vec<f64>; 2]| {
                 to[k].iter().zip(&from[k]).map(|(to, from)| to - from).fold(0.0, f64::max)
@@ -155,10 +156,9 @@ fn threads(c: &mut Criterion) {
     }
 }
 
-/// Seconds that this thread has run, where the system tells.
-fn processor_time() -> f64 {
-    let running = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    running.and_then(|text| text.split(' ').next()?.parse::<f64>().ok()).map_or(f64::NAN, |n| n * 1e-9)
+/// Seconds that this thread has run, not a number where the system does not say.
+fn seconds() -> f64 {
+    processor_time().map_or(f64::NAN, |time| time.as_secs_f64())
 }
 
 /// Median of the ratios of the times of two tasks that take turns.

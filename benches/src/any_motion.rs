@@ -9,7 +9,7 @@ use d2m::motion::{
 use d2m::{
     ConstantTwist, MeshTree, Moving, QueryOptions, RigidMotion, Solid, TimeOfContact, Window, time_of_contact,
 };
-use d2m_testing::Opaque;
+use d2m_testing::{Draw, KnuthRandom, Opaque};
 use std::f64::consts::TAU;
 use std::time::Instant;
 
@@ -212,36 +212,22 @@ fn prismatic(axis: DVec3, coefficients: &[f64]) -> Joint {
     joint(DVec3::ZERO, JointKind::Prismatic { axis, value: polynomial(coefficients) })
 }
 
-/// A linear congruential generator, Knuth's multiplier.
-struct Random(u64);
+fn direction(random: &mut KnuthRandom) -> DVec3 {
+    random.vector().normalize_or(DVec3::X)
+}
 
-impl Random {
-    /// Uniform in [−1, 1).
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
-    }
-
-    fn vec(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-
-    fn direction(&mut self) -> DVec3 {
-        self.vec().normalize_or(DVec3::X)
-    }
-
-    fn turn(&mut self) -> DQuat {
-        DQuat::from_xyzw(self.next(), self.next(), self.next(), self.next() + 1.5).normalize()
-    }
+fn orientation(random: &mut KnuthRandom) -> DQuat {
+    let q = random.quaternion();
+    DQuat::from_xyzw(q.x, q.y, q.z, q.w + 1.5).normalize()
 }
 
 /// Two bodies of radius 1 that fly at each other at a relative speed of 4, with this spin each.
-fn flight(random: &mut Random, spin: f64) -> [ConstantTwist; 2] {
-    let along = random.direction();
-    let across = along.any_orthonormal_vector() * random.next();
-    let half = (along * (2.05 + 4.0 * (0.425 + 0.375 * random.next())) + across) * 0.5;
+fn flight(random: &mut KnuthRandom, spin: f64) -> [ConstantTwist; 2] {
+    let along = direction(random);
+    let across = along.any_orthonormal_vector() * random.signed();
+    let half = (along * (2.05 + 4.0 * (0.425 + 0.375 * random.signed())) + across) * 0.5;
     [1.0, -1.0].map(|sign| {
-        let (turn, spin) = (random.turn(), random.direction() * spin);
+        let (turn, spin) = (orientation(random), direction(random) * spin);
         ConstantTwist::try_new(half * -sign, turn, along * (2.0 * sign), spin).expect("finite numbers")
     })
 }
@@ -282,7 +268,7 @@ impl RigidMotion for States {
 
 /// Constant twists, as they are and hidden.
 fn hidden<'a>(name: &str, bodies: [&'a MeshTree; 2], flights: usize) -> Vec<Row<'a>> {
-    let mut random = Random(5);
+    let mut random = KnuthRandom(5);
     let motions: Vec<_> = (0..flights).map(|_| flight(&mut random, 2.0)).collect();
     let exact = motions.iter().map(|&[a, b]| question(bodies, a, b)).collect();
     let states = motions.iter().map(|&[a, b]| question(bodies, States(a), States(b))).collect();
@@ -296,7 +282,7 @@ fn hidden<'a>(name: &str, bodies: [&'a MeshTree; 2], flights: usize) -> Vec<Row<
 
 /// The last link of an arm of six joints sweeps towards a body of 70 000 triangles.
 fn arm(bodies: [&MeshTree; 2], flights: usize) -> Vec<Row<'_>> {
-    let mut random = Random(6);
+    let mut random = KnuthRandom(6);
     let twists = (0..flights)
         .map(|_| {
             let [a, b] = flight(&mut random, 2.0);
@@ -307,21 +293,21 @@ fn arm(bodies: [&MeshTree; 2], flights: usize) -> Vec<Row<'_>> {
         .map(|_| {
             let mut joints = Vec::new();
             for k in 0..6 {
-                let value: Vec<f64> = [1.5, 1.0, 0.7, 0.3].iter().map(|c| c * random.next()).collect();
+                let value: Vec<f64> = [1.5, 1.0, 0.7, 0.3].iter().map(|c| c * random.signed()).collect();
                 joints.push(revolute(
                     if k == 0 { DVec3::ZERO } else { DVec3::X * 0.8 },
-                    random.direction(),
+                    direction(&mut random),
                     &value,
                 ));
             }
             joints.push(joint(DVec3::X * 0.8, JointKind::Fixed));
             let link = Chain::try_new(joints).expect("an arm");
             // Where the link is at a time of the window, seen from further away.
-            let (there, _) = link.pose_and_twist(0.5 + 0.4 * random.next());
+            let (there, _) = link.pose_and_twist(0.5 + 0.4 * random.signed());
             let (start, _) = link.pose_and_twist(0.0);
             let away = (there.translation - start.translation).normalize_or(DVec3::X) * 2.2;
             let place = start.translation + away;
-            let still = ConstantTwist::REST.with_position(place).with_angular_velocity(random.vec());
+            let still = ConstantTwist::REST.with_position(place).with_angular_velocity(random.vector());
             question(bodies, link, still)
         })
         .collect();
@@ -359,11 +345,11 @@ fn keyframes(bodies: [&MeshTree; 2]) -> Vec<Row<'_>> {
 
 /// Bodies that accelerate together, and the same against each other without.
 fn together(bodies: [&MeshTree; 2], flights: usize) -> Vec<Row<'_>> {
-    let mut random = Random(7);
+    let mut random = KnuthRandom(7);
     let (mut rest, mut falling) = (Vec::new(), Vec::new());
     for _ in 0..flights {
-        let along = random.direction();
-        let place = along * (2.05 + 4.0 * (0.425 + 0.375 * random.next()));
+        let along = direction(&mut random);
+        let place = along * (2.05 + 4.0 * (0.425 + 0.375 * random.signed()));
         let far = ConstantTwist::REST.with_position(place).with_linear_velocity(along * -4.0);
         rest.push(question(bodies, far, ConstantTwist::REST));
         let fall = || prismatic(DVec3::Z, &[0.0, 1.0, -50.0, 7.0]);
@@ -382,7 +368,7 @@ fn spins(bodies: [&MeshTree; 2], flights: usize) -> Vec<Row<'_>> {
     [(0.0, 0.0), (3.0, 0.0), (10.0, 0.0), (30.0, 3.0), (100.0, 0.0), (300.0, 8.0)]
         .into_iter()
         .map(|(spin, most)| {
-            let mut random = Random(8);
+            let mut random = KnuthRandom(8);
             let questions = (0..flights)
                 .map(|_| {
                     let [a, b] = flight(&mut random, spin);

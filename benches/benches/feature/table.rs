@@ -122,15 +122,22 @@ pub(crate) fn print(count: usize) {
                     panic!("{wrong}");
                 }
             }
-            let row = measure(&queries, method, &options);
-            print!(" {:>22}", format!("{:.0} / {:.0} / {:.0}", row.0, row.1, row.2));
+            let Nanoseconds { mean, p99, largest } = measure(&queries, method, &options);
+            print!(" {:>22}", format!("{mean:.0} / {p99:.0} / {largest:.0}"));
         }
         println!();
     }
 }
 
-/// Mean, p99 and largest of the best of seven single times, the clock's own time taken off: robust on a busy machine.
-fn measure(queries: &[Prepared], method: Method, options: &ContactOptions) -> (f64, f64, f64) {
+/// Times of queries.
+struct Nanoseconds {
+    mean: f64,
+    p99: f64,
+    largest: f64,
+}
+
+/// The best of seven times of each query, the clock's own time taken off: robust on a busy machine.
+fn measure(queries: &[Prepared], method: Method, options: &ContactOptions) -> Nanoseconds {
     let best = |question: &dyn Fn()| {
         (0..7).fold(f64::INFINITY, |best, _| {
             let start = Instant::now();
@@ -149,5 +156,5 @@ fn measure(queries: &[Prepared], method: Method, options: &ContactOptions) -> (f
         .collect();
     singles.sort_by(f64::total_cmp);
     let mean = singles.iter().sum::<f64>() / singles.len() as f64;
-    (mean, singles[singles.len() * 99 / 100], singles[singles.len() - 1])
+    Nanoseconds { mean, p99: singles[singles.len() * 99 / 100], largest: singles[singles.len() - 1] }
 }
