@@ -47,6 +47,10 @@ pub struct Contact {
     pub evidence: Evidence,
     /// Separation left at `time_lo`: a distance above `min_separation` by at most 3.3 `tolerance`, 0 when the surfaces
     /// cross at the start. With [`Mode::Capoeira`](crate::Mode::Capoeira) as large as the boxes of the two triangles.
+    ///
+    /// It is the distance of the reported triangles, to rounding, so the bodies are at most that far apart. Others may be nearer
+    /// to each other at that time – above `min_separation`, too – and come within the tolerance later: where several pairs meet at
+    /// about the same time, the reported pair is the one with the least certified time, not the one with the least distance.
     pub separation: f64,
     /// The tolerance δ that was used: that of the options, unless rounding errors of the scene forbid it (then larger: 256
     /// units of 2⁻⁵³ of its largest length), or numbers for time are so far apart that the bodies move by more than that

@@ -30,7 +30,7 @@ pub enum Mode {
     /// the `separation` of the answer, at most the sum of the radii of the two triangles' boxes.
     Capoeira,
     /// Only whether there is a contact: the answer may be any time of contact, and nothing is promised about the time
-    /// before it.
+    /// before it. What is proven of the meeting is said by the contact's `evidence`, as in every mode.
     Exists,
 }
 

@@ -3,15 +3,17 @@
 #[path = "scenes/bodies.rs"]
 #[allow(dead_code, reason = "a part of the bodies")]
 mod bodies;
+mod random;
 
 use bodies::cube;
 use d2m_bvh::{
-    Contact, Evidence, MeshTree, Mode, Moving, Posed, QueryOptions, Solid, StartState, TimeOfContact, Window,
-    distance, time_of_contact,
+    Contact, Evidence, MeshTree, Mode, Moving, PairCache, Posed, QueryOptions, Solid, StartState,
+    TimeOfContact, TriMesh, Window, contact_exists, distance, time_of_contact,
 };
 use d2m_interval::Interval;
 use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
 use glam::{DQuat, DVec3};
+use random::Random;
 
 const DELTA: f64 = 1e-6;
 
@@ -101,6 +103,76 @@ fn a_grazing_pass_above_the_tolerance_is_early() {
     let found = contact(&passing, &options());
     assert_eq!((found.evidence, found.time_hi), (Evidence::Early, found.time_lo));
     assert!(found.time_lo > 0.2 && found.separation < 3.3 * DELTA);
+}
+
+/// Two needles above two faces, one of them steep, which meet at about the same time: the reported separation is that of the
+/// reported pair, and the other pair may be nearer.
+#[test]
+fn the_separation_is_that_of_the_reported_pair() {
+    let mut random = Random(71);
+    let (mut nearer, mut other) = (0, 0);
+    for round in 0..600 {
+        let steep: f64 = [0.5, 3.0, 30.0][round % 3];
+        let slope = (1.0 + steep * steep).sqrt();
+        let face = |x: f64, rise: f64| {
+            [DVec3::new(x - 1.0, -1.0, -rise), DVec3::new(x + 1.0, -1.0, rise), DVec3::new(x, 1.0, 0.0)]
+        };
+        let needle = |x: f64, z: f64| {
+            let top = z + 1.0 + x;
+            [DVec3::new(x, 0.0, z), DVec3::new(x, 0.01, top), DVec3::new(x + 0.01, 0.0, top)]
+        };
+        let pair = |one: [DVec3; 3], two: [DVec3; 3]| {
+            MeshTree::new(TriMesh::try_new([one, two].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap())
+        };
+        // Both pairs come within the distance at which a search stops at about the same time.
+        let height = 1.0 + DELTA * (1.0156 * (slope - 1.0) + 0.02 * random.next() * slope);
+        let (a, b) = (pair(needle(0.0, 1.0), needle(10.0, height)), pair(face(0.0, 0.0), face(10.0, steep)));
+        let falling = moving(DVec3::ZERO, DVec3::Z * -2.0);
+        let options = options().with_solid(Solid::Surface);
+        let rest = ConstantTwist::REST;
+        let answer =
+            time_of_contact(Moving::new(&a, &falling), Moving::new(&b, &rest), Window::UNIT, &options);
+        let found = *answer.unwrap().contact().unwrap();
+        let at = Posed::new(&a, falling.pose_and_twist(found.time_lo).0);
+        let least = distance(at, Posed::at_rest(&b), Solid::Surface).unwrap();
+        let reported = found.point_a.distance(found.point_b);
+        assert!((reported - found.separation).abs() < 1e-3 * DELTA, "{found:?}");
+        assert!(least.lower > 0.0 && least.lower <= found.separation * (1.0 + 1e-3), "{found:?} {least:?}");
+        nearer += u32::from(least.upper < found.separation - 5e-3 * DELTA);
+        other += u32::from(least.triangle_a != found.triangle_a);
+    }
+    assert!(nearer > 0 && other > 0, "{nearer} {other}");
+}
+
+/// A yes means at most 3.3 tolerances more than the separation, and as much as the evidence of the same query says; a no is
+/// proven. Whatever the cache holds.
+#[test]
+fn a_yes_is_as_good_as_the_evidence_of_the_mode() {
+    let tree = box_tree();
+    let rest = ConstantTwist::REST;
+    let mut seen = [0; 3];
+    let mut cache = PairCache::new();
+    for step in 0..400 {
+        let (separation, tolerances) = ([0.0, 0.25][step % 2], 0.015 * step as f64);
+        let height = 2.0 + separation + tolerances * DELTA;
+        let passing = moving(DVec3::new(-4.0, 0.2, height), DVec3::X * 8.0);
+        let options = options().with_min_separation(separation).with_mode(Mode::Exists);
+        let [a, b] = [&passing, &rest].map(|motion| Moving::new(&tree, motion));
+        let answer = contact_exists(a, b, Window::UNIT, &options, &mut cache).unwrap();
+        assert_eq!(answer, contact_exists(a, b, Window::UNIT, &options, &mut PairCache::new()).unwrap());
+        let contact = match time_of_contact(a, b, Window::UNIT, &options).unwrap() {
+            TimeOfContact::Contact(contact) => Some(contact.evidence),
+            _ => None,
+        };
+        assert_eq!(answer, Some(contact.is_some()), "{tolerances}");
+        match contact {
+            Some(Evidence::Early) => assert!(tolerances <= 3.3, "{tolerances}"),
+            Some(_) => assert!(tolerances <= 1.0 + 1e-9, "{tolerances}"),
+            None => assert!(tolerances > 1.0 - 1e-9, "{tolerances}"),
+        }
+        seen[contact.map_or(0, |evidence| 1 + usize::from(evidence == Evidence::Early))] += 1;
+    }
+    assert!(seen[0] > 10 && seen[1] > 10, "{seen:?}");
 }
 
 /// The motion as any motion, its poses known to `blur` only.

@@ -79,7 +79,20 @@ pub fn time_of_contact_with(
     Ok(answer)
 }
 
-/// Do the bodies meet anywhere in the window? `None`: the budget ran out first. The mode of the options does not matter.
+/// Do the bodies meet anywhere in the window? The mode of the options does not matter.
+///
+/// | answer | proven |
+/// |---|---|
+/// | `Some(false)` | the distance is above `min_separation` at every time of the window |
+/// | `Some(true)` | at some time of the window the distance is at most `min_separation` + 3.3 tolerances |
+/// | `None` | nothing: the budget or a hard cap ended the search, or a motion's enclosures are too wide |
+///
+/// A yes is mostly one of at most `min_separation` + tolerance, or of bodies that share a point: that is
+/// [`Evidence::Near`](crate::Evidence::Near) or [`Crossing`](crate::Evidence::Crossing). It is
+/// [`Early`](crate::Evidence::Early) where bodies pass each other a little above that distance. A yes or no carries no evidence;
+/// who needs it asks [`time_of_contact_with`] with [`Mode::Exists`], which gives the same answers with a
+/// [`Contact`](crate::Contact) whose `evidence` and `tolerance` say which of these holds, at the cost of what a cache saves here.
+/// (Where numbers for time are too far apart to resolve the tolerance, the distance is at most that of the contact's `tolerance`.)
 ///
 /// As [`time_of_contact`](crate::time_of_contact) with [`Mode::Exists`], but only yes or no, so that a cache can do more:
 /// when the two triangles that met last time are shown to meet again, the answer is yes without any search (Section
