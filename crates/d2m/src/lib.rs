@@ -2,7 +2,8 @@
 #![forbid(unsafe_code)]
 
 mod body;
-mod broad_phase;
+mod box_tree;
+mod moving_ball;
 mod parallel;
 mod swept_bounds;
 mod world;

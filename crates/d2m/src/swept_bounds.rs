@@ -26,6 +26,15 @@ impl SweptBox {
         Self { low: bounds.lo(), high: bounds.hi() }
     }
 
+    /// Holds both: everything if an end of one is not a number.
+    pub(crate) fn joined(&self, other: &Self) -> Self {
+        let is_unordered = |swept: &Self| swept.low.is_nan() || swept.high.is_nan();
+        if is_unordered(self) || is_unordered(other) {
+            return Self { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY };
+        }
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
     /// Is this [`Self::EMPTY`]?
     pub(crate) fn is_empty(&self) -> bool {
         self.low.x > self.high.x

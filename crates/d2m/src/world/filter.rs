@@ -1,7 +1,7 @@
 //! Which pairs are of interest, and how far apart they are to stay.
 
 use crate::Group;
-use crate::broad_phase::IndexPair;
+use crate::box_tree::IndexPair;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Ignored pairs and groups, and separations of single pairs.

@@ -15,7 +15,7 @@ mod tests;
 pub use answers::{BodyId, FirstContact, PairContact, PairProximities, WorldError};
 pub use plan::PlannedMotion;
 
-use crate::broad_phase::IndexPair;
+use crate::box_tree::IndexPair;
 use crate::{Body, Group, SharedMotion};
 use d2m_bvh::{Mode, QueryOptions, Window};
 use d2m_motion::RigidMotion;

@@ -1,6 +1,6 @@
 //! What is known of a pair, and when it has to be judged next.
 
-use crate::broad_phase::IndexPair;
+use crate::box_tree::IndexPair;
 use d2m_bvh::{Contact, PairCache};
 use std::cmp::Ordering;
 

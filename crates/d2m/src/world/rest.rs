@@ -1,7 +1,7 @@
 //! All bodies at one time.
 
 use super::{PairProximities, World, WorldError};
-use crate::broad_phase::SweepOrder;
+use crate::box_tree::BoxTree;
 use crate::parallel::{BOXES, PAIRS, map_in_order};
 use crate::swept_bounds::SweptBox;
 use d2m_bvh::{Posed, ProximityOptions, proximities_with};
@@ -37,7 +37,9 @@ impl World {
         let boxes = map_in_order(&places, BOXES, |&place| {
             self.slots.at(place).map_or(SweptBox::EMPTY, |body| SweptBox::enclose(body, time, time))
         });
-        let mut pairs = SweepOrder::default().pairs(&boxes, options.margin);
+        let mut tree = BoxTree::default();
+        tree.fit(&boxes);
+        let mut pairs = tree.pairs(&boxes, options.margin);
         pairs.retain(|&pair| !self.filter.ignores(pair, self.slots.groups(pair)));
         pairs.sort_unstable();
         let found = map_in_order(&pairs, PAIRS, |&pair| {

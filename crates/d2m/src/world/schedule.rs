@@ -7,12 +7,13 @@ use super::filter::PairFilter;
 use super::pair_queue::PairQueue;
 use super::pair_state::Entry;
 use super::slots::Slots;
-use crate::broad_phase::{IndexPair, SweepOrder, pairs_of};
+use crate::box_tree::{BoxTree, IndexPair};
+use crate::moving_ball::{FirstMeeting, MovingBall};
 use crate::parallel::{BOXES, map_in_order};
 use crate::swept_bounds::{SliceRange, Slicing, Sweep, SweptBox, SweptSlices};
 use d2m_bvh::Window;
 
-/// Bodies that change one by one are compared with all others; from this part of all on the boxes are swept anew.
+/// Bodies that change one by one look for their pairs; from this part of all on all pairs are found anew.
 const CHANGED_PART: usize = 4;
 /// A box over the span that is wider than this many radii of its body is worth cutting into slices: the box of a body that
 /// rests is two radii wide at most.
@@ -49,7 +50,9 @@ pub(super) struct Schedule {
     from: f64,
     hulls: Vec<SweptBox>,
     slices: Vec<Slices>,
-    order: SweepOrder,
+    /// From the start of the span, for bodies with a constant twist.
+    balls: Vec<Option<MovingBall>>,
+    tree: BoxTree,
     queue: PairQueue,
     /// Entries when stale ones were last dropped.
     fresh: usize,
@@ -90,10 +93,13 @@ impl Schedule {
             Some(span) => {
                 self.hulls.resize(rules.slots.places(), SweptBox::EMPTY);
                 self.slices.resize(rules.slots.places(), Slices::NotWorthIt);
+                self.balls.resize(rules.slots.places(), None);
                 self.enclose(rules.slots, span, changed);
                 if changed.len() * CHANGED_PART > rules.slots.places() {
+                    self.tree.fit(&self.hulls);
                     self.sweep(rules);
                 } else {
+                    self.tree.refit(&self.hulls, changed);
                     self.insert(rules, changed);
                 }
                 Prepared::Kept
@@ -103,7 +109,9 @@ impl Schedule {
                 let all: Vec<u32> = (0..rules.slots.places() as u32).collect();
                 self.hulls = vec![SweptBox::EMPTY; all.len()];
                 self.slices = vec![Slices::NotWorthIt; all.len()];
+                self.balls = vec![None; all.len()];
                 self.enclose(rules.slots, window, &all);
+                self.tree.fit(&self.hulls);
                 self.sweep(rules);
                 Prepared::Anew
             }
@@ -113,24 +121,28 @@ impl Schedule {
     /// Boxes of some bodies over the rest of the span.
     fn enclose(&mut self, slots: &Slots, span: Window, places: &[u32]) {
         let from = self.from;
-        let boxes = map_in_order(places, BOXES, |&place| {
-            let Some(body) = slots.at(place) else { return (SweptBox::EMPTY, Slices::NotWorthIt) };
-            let hull = SweptBox::enclose(body, from, span.end());
-            let wide = (hull.high - hull.low).max_element() > FAR * body.tree().radius();
-            (hull, if wide { Slices::Unknown } else { Slices::NotWorthIt })
+        let enclosed = map_in_order(places, BOXES, |&place| {
+            slots.at(place).map(|body| {
+                let hull = SweptBox::enclose(body, from, span.end());
+                let is_wide = (hull.high - hull.low).max_element() > FAR * body.tree().radius();
+                let slices = if is_wide { Slices::Unknown } else { Slices::NotWorthIt };
+                (hull, slices, MovingBall::enclose(body, span.start()))
+            })
         });
-        for (&place, (hull, slices)) in places.iter().zip(boxes) {
-            self.hulls[place as usize] = hull;
-            self.slices[place as usize] = slices;
+        for (&place, enclosed) in places.iter().zip(enclosed) {
+            let at = place as usize;
+            (self.hulls[at], self.slices[at], self.balls[at]) =
+                enclosed.unwrap_or((SweptBox::EMPTY, Slices::NotWorthIt, None));
         }
     }
 
     /// The queue from scratch.
     fn sweep(&mut self, rules: Rules<'_>) {
-        let mut pairs = self.order.pairs(&self.hulls, rules.separation);
+        let mut pairs = self.tree.pairs(&self.hulls, rules.separation);
         let own = rules.filter.wider_than(rules.separation);
         let more = own.filter(|&(pair, separation)| self.meets_beyond(pair, rules.separation, separation));
         pairs.extend(more.map(|(pair, _)| pair));
+        pairs.retain(|&pair| self.is_near(rules, pair));
         self.cut(rules.slots, &pairs);
         let entries: Vec<Entry> = pairs.into_iter().filter_map(|pair| self.entry(rules, pair)).collect();
         self.fresh = entries.len();
@@ -143,20 +155,21 @@ impl Schedule {
         !a.is_empty() && !b.is_empty() && !a.may_meet(b, usual) && a.may_meet(b, own)
     }
 
-    /// Entries of changed bodies; their old ones are recognised by their versions.
+    /// Entries of changed bodies (ascending); their old ones are recognised by their versions.
     fn insert(&mut self, rules: Rules<'_>, changed: &[u32]) {
         let mut pairs = Vec::new();
         for &place in changed {
-            pairs_of(&self.hulls, place, rules.separation, |pair| pairs.push(pair));
+            self.tree.pairs_of(&self.hulls, place, rules.separation, |pair| pairs.push(pair));
         }
         let own = rules.filter.wider_than(rules.separation);
         let more = own.filter(|&(pair, separation)| {
-            pair.iter().any(|place| changed.contains(place))
+            pair.iter().any(|place| changed.binary_search(place).is_ok())
                 && self.meets_beyond(pair, rules.separation, separation)
         });
         pairs.extend(more.map(|(pair, _)| pair));
         pairs.sort_unstable();
         pairs.dedup();
+        pairs.retain(|&pair| self.is_near(rules, pair));
         self.cut(rules.slots, &pairs);
         for pair in pairs {
             if let Some(entry) = self.entry(rules, pair) {
@@ -202,9 +215,32 @@ impl Schedule {
         (meeting.end >= self.from).then(|| Entry { time: meeting.start.max(self.from), pair, versions })
     }
 
+    /// Is it not ignored, and not proven apart by balls for the rest of the span?
+    fn is_near(&self, rules: Rules<'_>, pair: IndexPair) -> bool {
+        !rules.filter.ignores(pair, rules.slots.groups(pair)) && self.first_meeting(rules, pair).is_some()
+    }
+
+    /// The time before which balls prove a pair apart; none: for the rest of the span.
+    fn first_meeting(&self, rules: Rules<'_>, pair: IndexPair) -> Option<f64> {
+        let span = self.span?;
+        let [Some(a), Some(b)] = pair.map(|place| self.balls[place as usize].as_ref()) else {
+            return Some(self.from);
+        };
+        let separation = rules.filter.separation(pair, rules.separation);
+        // Times since the start of the span, the first one rounded down and the last one up.
+        let begin = (self.from - span.start()).next_down().max(0.0);
+        let end = (span.end() - span.start()).next_up();
+        match a.first_meeting(b, separation, begin, end) {
+            FirstMeeting::Never => None,
+            FirstMeeting::After(time) => Some((span.start() + time).next_down().clamp(self.from, span.end())),
+            FirstMeeting::Unknown => Some(self.from),
+        }
+    }
+
     /// When a pair may meet; none is a proof that it does not for the rest of the span.
     pub(super) fn meeting_span(&self, rules: Rules<'_>, pair: IndexPair) -> Option<MeetingSpan> {
         let span = self.span?;
+        let meeting = self.first_meeting(rules, pair)?;
         let sweep = |place: u32| Sweep {
             hull: &self.hulls[place as usize],
             slices: match &self.slices[place as usize] {
@@ -215,7 +251,8 @@ impl Schedule {
         let separation = rules.filter.separation(pair, rules.separation);
         let SliceRange { first, last } = SliceRange::of_pair(sweep(pair[0]), sweep(pair[1]), separation)?;
         let slicing = Slicing::new(span);
-        Some(MeetingSpan { start: slicing.time(first), end: slicing.time(last + 1), clear_after: span.end() })
+        let (start, end) = (slicing.time(first).max(meeting), slicing.time(last + 1));
+        (start <= end).then_some(MeetingSpan { start, end, clear_after: span.end() })
     }
 
     /// Adds the pair again, after its separation has changed for instance.
@@ -279,6 +316,7 @@ impl Schedule {
             from: window.start(),
             hulls: vec![SweptBox::EMPTY; places],
             slices: vec![Slices::NotWorthIt; places],
+            balls: vec![None; places],
             ..Self::default()
         };
         let lends = earlier.span.is_some_and(|span| {
@@ -288,6 +326,9 @@ impl Schedule {
         if lends {
             let lent = earlier.hulls.len();
             schedule.hulls[..lent].copy_from_slice(&earlier.hulls);
+            if earlier.span.is_some_and(|span| span.start() == window.start()) {
+                schedule.balls[..lent].copy_from_slice(&earlier.balls);
+            }
             wanted = (lent as u32..places as u32).chain(some.iter().chain(stale).copied()).collect();
             wanted.sort_unstable();
             wanted.dedup();

@@ -6,7 +6,7 @@
 use super::pair_state::{Entry, Known, PairState};
 use super::schedule::{MeetingSpan, Prepared, Rules};
 use super::{FirstContact, PairContact, World, WorldError};
-use crate::broad_phase::IndexPair;
+use crate::box_tree::IndexPair;
 use crate::parallel::{PAIRS, map_in_order};
 use d2m_bvh::{
     Budget, Contact, PairCache, QueryError, QueryOptions, StartState, TimeOfContact, Window,
@@ -20,6 +20,8 @@ use std::time::Instant;
 const FIRST_ROUND: usize = 2;
 /// Pairs of a round at most: enough for many threads.
 const LONGEST_ROUND: usize = 256;
+/// The same where every pair is searched anyway: all threads wait for the last pair of a round, and progress is reported then.
+const ROUND_OF_ALL: usize = 1024;
 
 /// What one pair is asked.
 struct Question {
@@ -205,7 +207,7 @@ impl World {
             _ if purse.is_limited() => 1,
             Goal::First => FIRST_ROUND,
             // Every pair is searched over the whole window, whatever the others give.
-            Goal::All => LONGEST_ROUND,
+            Goal::All => ROUND_OF_ALL,
         };
         let outcome = loop {
             let best = finding.best().filter(|_| goal == Goal::First);
@@ -232,7 +234,7 @@ impl World {
             }
             progress(finding.seen.len(), finding.seen.len() + self.schedule.waiting());
             if !purse.is_limited() {
-                round = (2 * round).min(LONGEST_ROUND);
+                round = (2 * round).min(LONGEST_ROUND).max(round);
             }
         };
         for entry in core::mem::take(&mut finding.kept) {

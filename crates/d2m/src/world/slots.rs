@@ -2,7 +2,7 @@
 
 use super::BodyId;
 use super::pair_state::Versions;
-use crate::broad_phase::IndexPair;
+use crate::box_tree::IndexPair;
 use crate::{Body, Group};
 
 /// A place for a body.

@@ -1,5 +1,7 @@
 //! Many bodies, and bodies at rest: a row for each figure that scenes are to reach, each answer checked before its time counts.
 mod distances;
+mod saved;
+mod threads;
 mod worlds;
 
 use crate::TaskResult;
@@ -43,6 +45,19 @@ fn figure(what: impl Into<String>, value: f64, unit: &'static str, target: Targe
     Figure { what: what.into(), value, unit, target }.print();
 }
 
+/// Threads that wait for a processor for more than this part of the time say nothing about a program.
+const BUSY: f64 = 0.02;
+
+/// A figure that depends on a machine without other work; `waited`: for which part of the time threads of this process waited
+/// for a processor.
+fn busy_figure(what: String, value: f64, unit: &'static str, target: Target, waited: f64) {
+    figure(what, value, unit, target);
+    if waited > BUSY {
+        let percent = 100.0 * waited;
+        println!("  the machine is busy: threads waited for a processor for {percent:.0} % of the time");
+    }
+}
+
 /// The least time of some rounds, with the last answer; `prepare` is not counted.
 fn least_time<S, T>(
     rounds: usize,
@@ -70,7 +85,8 @@ fn milliseconds(time: Duration) -> f64 {
 /// `cargo xtask bench --only scenes`.
 pub(super) fn run(rounds: usize) -> TaskResult {
     worlds::run(rounds)?;
-    distances::run(rounds)
+    distances::run(rounds)?;
+    saved::run(rounds)
 }
 
 /// An answer that is not right: its time does not count.
