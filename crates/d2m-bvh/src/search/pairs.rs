@@ -3,7 +3,7 @@
 use super::motion::frame::Frame;
 use super::queue::Item;
 use super::scene::SceneBody;
-use super::state::{BATCH, Found, SECOND_ORDER_TESTS, Search, State};
+use super::state::{BATCH, Found, SECOND_ORDER_TESTS, Search, State, THIRD_ORDER_TESTS};
 use super::triangle_pair::closest::closest;
 use super::triangle_pair::separating_axis::{
     BackwardCertificate, BoundOrder, Evaluation, apart_since, place_a, separating_axis_test,
@@ -16,8 +16,10 @@ use glam::DVec3;
 /// A pair that is advanced out of turn is left after so many steps; ordinary contacts take fewer than ten.
 const MOST_STEPS_ALONE: u32 = 64;
 
-/// A pair that is not done after so many steps is bounded to third order.
+/// A pair that is not done after so many steps is bounded to third order, and after so many also along directions that turn with
+/// the bodies.
 const FEW_STEPS: u32 = 16;
+const MANY_STEPS: u32 = 24;
 
 /// A pair of triangles is advanced alone until its time has grown by one part in this many: what it finds early spares
 /// the queue what comes later, and pairs that meet at the same features need one backward certificate each.
@@ -98,8 +100,14 @@ impl Search<'_> {
             self.scratch.counts.triangle_looks += 1;
             self.scratch.last_tested = triangles;
             let enough = state.limit_offset - frame.offset;
-            let third = self.scratch.counts.triangle_looks > SECOND_ORDER_TESTS || steps > FEW_STEPS;
-            let order = if third { BoundOrder::Third } else { BoundOrder::Second };
+            let looks = self.scratch.counts.triangle_looks;
+            let order = if looks > THIRD_ORDER_TESTS || steps > MANY_STEPS {
+                BoundOrder::Turning
+            } else if looks > SECOND_ORDER_TESTS || steps > FEW_STEPS {
+                BoundOrder::Third
+            } else {
+                BoundOrder::Second
+            };
             match separating_axis_test::<L::Doubles>(&frame, [&a, &b], &self.scene.pair, enough, order) {
                 Evaluation::ClearFor(time) => {
                     known = known.max(frame.offset + time);

@@ -9,7 +9,7 @@
 
 use super::counts::SearchCounts;
 use super::scratch::Scratch;
-use super::state::{Ahead, Outcome, SECOND_ORDER_TESTS, Search, Step, SubWindow};
+use super::state::{Ahead, Outcome, SECOND_ORDER_TESTS, Search, Step, SubWindow, THIRD_ORDER_TESTS};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -137,9 +137,11 @@ impl Search<'_> {
     /// Would the window have been searched in the same way from the true counts as from those `known` before?
     fn would_do_the_same(&self, known: &SearchCounts, searched: &Searched) -> bool {
         let after = self.scratch.counts.with(&searched.counts);
-        let same_order = after.triangle_looks <= SECOND_ORDER_TESTS
-            || known.triangle_looks >= SECOND_ORDER_TESTS
-            || searched.counts.triangle_looks == 0;
+        let same_order = [SECOND_ORDER_TESTS, THIRD_ORDER_TESTS].iter().all(|&limit| {
+            after.triangle_looks <= limit
+                || known.triangle_looks >= limit
+                || searched.counts.triangle_looks == 0
+        });
         same_order && after.work() < self.limits.sweep_from && after.work() < self.limits.most_tests
     }
 }

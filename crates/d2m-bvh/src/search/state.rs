@@ -21,6 +21,10 @@ pub(super) const BATCH: usize = 32;
 /// queries need fewer.
 pub(super) const SECOND_ORDER_TESTS: u64 = 192;
 
+/// Tests from which on directions that turn with the bodies are tried where others last for a short time only: they cost as much as
+/// a few tests.
+pub(super) const THIRD_ORDER_TESTS: u64 = 1024;
+
 /// Node tests, besides one for each [`TRIANGLES_A_TEST`] triangles, before swept volumes are compared for the first time:
 /// ordinary queries end before that, or are well on their way.
 pub(super) const FIRST_SWEEP: u64 = 256;

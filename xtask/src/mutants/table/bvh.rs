@@ -317,6 +317,27 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/src/search/tests.rs::mutants_of_the_third_derivative_die",
     ),
     patch(
+        "half of the third derivative that a body sees",
+        "crates/d2m-bvh/src/search/triangle_pair/turning.rs",
+        "jerk: jerk * UP,",
+        "jerk: 0.5 * jerk,",
+        "crates/d2m-bvh/src/search/triangle_pair/turning.rs::the_third_derivative_seen_from_a_body_is_needed",
+    ),
+    patch(
+        "accelerations that a body sees without its own turn",
+        "crates/d2m-bvh/src/search/triangle_pair/turning.rs",
+        "let bend = out.dot(change - w_h.cross(rate));",
+        "let bend = out.dot(change);",
+        "crates/d2m-bvh/src/search/triangle_pair/turning.rs::directions_that_turn_keep_bodies_apart",
+    ),
+    patch(
+        "no direction turns with a body",
+        "crates/d2m-bvh/src/search/pairs.rs",
+        "looks > THIRD_ORDER_TESTS || steps > MANY_STEPS",
+        "looks > THIRD_ORDER_TESTS && steps > u32::MAX - 1",
+        "crates/d2m-bvh/tests/features_that_turn.rs::a_tip_over_a_plate_that_wobbles",
+    ),
+    patch(
         "the frame passes an item that waits",
         "crates/d2m-bvh/src/search/queue.rs",
         "self.least = self.least.min(item.key);",

@@ -54,27 +54,41 @@ fn root(g: f64, v: f64, m: f64) -> f64 {
 }
 
 /// A time until which every pair of vertices stays further apart than `need`, of which none beyond `enough` matters.
-///
-/// For each pair f(s) ≥ g + v s + a s²/2 − J s³/6, and for s ≤ S the last two terms are at least (a − J S/3) s²/2: a
-/// parabola, whose first root holds up to S. S starts where J would not matter, and moves towards the root.
 #[inline(never)]
 pub(super) fn first_time_of_jets(low: &Jets, high: &Jets, need: f64, jerk: f64, enough: f64) -> f64 {
     let pair = |k: usize| {
         let (i, j) = (k / 3, k % 3);
         let gap = high.at[j] - (low.at[i] + need);
-        Parabola { gap, rate: high.rate[j] - low.rate[i], bend: high.bend[j] - low.bend[i] }
+        PathAlong { gap, rate: high.rate[j] - low.rate[i], bend: high.bend[j] - low.bend[i], jerk }
     };
-    let pairs: [Parabola; 9] = core::array::from_fn(pair);
-    let finite =
-        low.rate.iter().chain(&high.rate).chain(&low.bend).chain(&high.bend).map(|x| x.abs()).sum::<f64>()
-            + jerk;
-    if !finite.is_finite() {
+    let pairs: [PathAlong; 9] = core::array::from_fn(pair);
+    first_time_of_paths(&pairs, enough)
+}
+
+/// A gap f ≥ 0 along a direction: its value, rate and second derivative now, and a bound on its third derivative always.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PathAlong {
+    pub(super) gap: f64,
+    pub(super) rate: f64,
+    pub(super) bend: f64,
+    pub(super) jerk: f64,
+}
+
+/// A time until which all gaps stay positive, of which none beyond `enough` matters.
+///
+/// Each f(s) ≥ g + v s + a s²/2 − J s³/6, and for s ≤ S the last two terms are at least (a − J S/3) s²/2: a
+/// parabola, whose first root holds up to S. S starts where J would not matter, and moves towards the root.
+#[inline(always)]
+pub(super) fn first_time_of_paths<const N: usize>(paths: &[PathAlong; N], enough: f64) -> f64 {
+    let size = |path: &PathAlong| path.rate.abs() + path.bend.abs() + path.jerk;
+    if !paths.iter().map(size).sum::<f64>().is_finite() {
         return 0.0;
     }
-    let first_root = |loss: f64| {
+    let first_root = |span: f64| {
         let mut first = f64::INFINITY;
-        for pair in &pairs {
-            let s = Parabola { bend: pair.bend - loss, ..*pair }.first_root();
+        for path in paths {
+            let loss = path.jerk * span * (1.0 / 3.0 * UP);
+            let s = Parabola { gap: path.gap, rate: path.rate, bend: path.bend - loss }.first_root();
             first = if s < first { s } else { first };
         }
         first
@@ -82,7 +96,7 @@ pub(super) fn first_time_of_jets(low: &Jets, high: &Jets, need: f64, jerk: f64, 
     let mut span = first_root(0.0).min(enough * (UP * UP));
     let mut proven = 0.0;
     for _ in 0..3 {
-        let s = first_root(jerk * span * (1.0 / 3.0 * UP));
+        let s = first_root(span);
         proven = s.min(span).max(proven);
         if s >= 0.8 * span {
             break;

@@ -5,4 +5,5 @@ mod first_time;
 pub(crate) mod pair_scale;
 mod refined_directions;
 pub(crate) mod separating_axis;
+mod turning;
 pub(crate) mod widest_gap;

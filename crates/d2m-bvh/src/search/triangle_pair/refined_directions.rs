@@ -1,6 +1,7 @@
 //! Directions that may separate two triangles, accurate also for slivers and for edges that are nearly parallel.
 
 use super::closest::{across_all, face_normal};
+use super::widest_gap::{greatest, least};
 use glam::DVec3;
 
 /// The normals of two triangles, the normals of their edges in their planes, the products of their edges: each
@@ -24,4 +25,21 @@ pub(super) fn refined_directions(a: &[DVec3; 3], b: &[DVec3; 3]) -> impl Iterato
 
 fn edges(t: &[DVec3; 3]) -> [DVec3; 3] {
     [t[1] - t[0], t[2] - t[1], t[0] - t[2]]
+}
+
+/// The sum of all directions that part the triangles with the same sense, each of length one: it parts them too, and lasts longer
+/// than one at the border of those that do, as most of them are. Zero where none does.
+pub(super) fn middle_direction(a: &[DVec3; 3], b: &[DVec3; 3]) -> DVec3 {
+    let mut sum = DVec3::ZERO;
+    for direction in refined_directions(a, b) {
+        let n = direction.normalize_or_zero();
+        let (pa, pb) = (a.map(|p| n.dot(p)), b.map(|p| n.dot(p)));
+        let (forward, backward) = (least(&pb) - greatest(&pa), least(&pa) - greatest(&pb));
+        if forward > 0.0 {
+            sum += n;
+        } else if backward > 0.0 {
+            sum -= n;
+        }
+    }
+    sum
 }

@@ -3,7 +3,8 @@
 use super::closest::closest;
 use super::first_time::{Jets, Lines, first_time, first_time_of_jets};
 use super::pair_scale::PairScale;
-use super::refined_directions::refined_directions;
+use super::refined_directions::{middle_direction, refined_directions};
+use super::turning::{TurningTriangle, clear_along_turning};
 use super::widest_gap::{greatest, least, widest_gap, widest_normal};
 use crate::search::motion::frame::Frame;
 use crate::tree::margin::UP;
@@ -16,6 +17,15 @@ const SHORTEST: f64 = 1e-30;
 /// Features closer than so many stopping distances are tested themselves.
 const FAR_STOPS: f64 = 16.0;
 
+/// What directions that turn leave above the level, in errors of a gap: one for places, three for what rates and accelerations
+/// relative to a body that turns err by in addition.
+const TURNING_ERRORS: f64 = 4.0;
+
+/// Parts of the time that matters: a direction that lasts for less than the first is tried also as it turns with the bodies, and
+/// if the longest is less than the second, so is one in the middle of all.
+const SHORT: f64 = 1.0 / 16.0;
+const VERY_SHORT: f64 = 1.0 / 256.0;
+
 /// Which derivative an evaluation bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BoundOrder {
@@ -24,6 +34,8 @@ pub(crate) enum BoundOrder {
     /// Also the normals, and the vertices' own accelerations with a bound on the third derivative: for pairs that stay
     /// close for long.
     Third,
+    /// Also directions that turn with a body: for pairs that stay close for longer than that helps.
+    Turning,
 }
 
 /// What one evaluation of a pair gives.
@@ -102,10 +114,20 @@ pub(crate) fn separating_axis_test<D: Doubles>(
             touching = near.distance_squared <= scale.stop * scale.stop;
         }
         best = placed.clear_for::<D>(direction, scale, scale.target(), best);
-        let enough_of_it = best >= enough || far && (attempt == 1 || order == BoundOrder::Second);
+        if order == BoundOrder::Turning && best < SHORT * enough {
+            best = placed.clear_while_turning(direction, scale, best);
+        }
+        let enough_of_it = match order {
+            BoundOrder::Second => best >= enough || far,
+            BoundOrder::Third => best >= enough || far && attempt == 1,
+            BoundOrder::Turning => best >= enough || far && attempt == 1 && best >= SHORT * enough,
+        };
         if attempt < 2 && enough_of_it {
             return Evaluation::ClearFor(best);
         }
+    }
+    if order == BoundOrder::Turning && !touching && best < VERY_SHORT * enough {
+        best = placed.clear_while_turning(middle_direction(&placed.a, &placed.b), scale, best);
     }
     if !touching && best == 0.0 {
         best = placed.clear_along_refined::<D>(scale);
@@ -215,6 +237,36 @@ impl Placed {
             best = self.clear_for::<D>(direction, scale, scale.target(), best);
         }
         best
+    }
+
+    /// The larger of `known` and the time for which the direction, turned with one of the bodies, keeps the pair further apart than
+    /// the level that pairs are advanced to.
+    #[cold]
+    #[inline(never)]
+    fn clear_while_turning(&self, n: DVec3, scale: &PairScale, known: f64) -> f64 {
+        let n = lengthened(n);
+        let length = n.length();
+        if !(length > SHORTEST) {
+            return known;
+        }
+        let need = (scale.target() + TURNING_ERRORS * scale.error) * length;
+        let a = TurningTriangle {
+            corners: self.a.map(|corner| corner - self.offset),
+            center: self.offset,
+            velocity: self.velocity,
+            omega: self.omega_a,
+            arm: self.arm_a,
+        };
+        let b = TurningTriangle {
+            corners: self.b,
+            center: DVec3::ZERO,
+            velocity: DVec3::ZERO,
+            omega: self.omega_b,
+            arm: self.arm_b,
+        };
+        let with_b = clear_along_turning(n, &b, &a, need, self.enough);
+        let with_a = clear_along_turning(n, &a, &b, need, self.enough);
+        with_a.max(with_b).max(known)
     }
 
     /// The same with the vertices' own accelerations; positions and rates along `n`, of A and of B, are given, and which
