@@ -16,6 +16,8 @@ mod judge;
 mod lines;
 #[cfg(feature = "full")]
 mod machine;
+#[cfg(feature = "full")]
+mod memory;
 mod mutants;
 #[cfg(feature = "full")]
 mod report;

@@ -1,11 +1,12 @@
 //! The methods that are compared, and how each answers one query.
+use super::Options;
 use super::body::Pair;
 use super::engine::{self, Motions};
 use super::peers;
 use crate::judge::{Claim, Placement, advance, place};
 use crate::trials::Trial;
 use d2m::bvh::{Budget, Mode, QueryOptions};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// A row of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -177,6 +178,35 @@ impl<'a> Question<'a> {
         let t = advance(self.trial, radii, [0.0, 1.0], ADVANCE_STOP, separation);
         if t < 1.0 { contact(t, ADVANCE_STOP) } else { Claim::Separated }
     }
+}
+
+/// An answer, and the least time in which it was given.
+pub(crate) struct Answer {
+    pub(crate) claim: Claim,
+    pub(crate) microseconds: f64,
+}
+
+/// Asks the questions in turn, round by round; a slow method has one round, until its cap.
+pub(crate) fn answers(questions: &[Question<'_>], method: Method, options: &Options) -> Vec<Answer> {
+    let rounds = if method.is_slow() { 1 } else { options.rounds.max(1) };
+    let begin = Instant::now();
+    let mut answers: Vec<Answer> = Vec::with_capacity(questions.len());
+    for round in 0..rounds {
+        for (place, question) in questions.iter().enumerate() {
+            if method.is_slow() && begin.elapsed().as_secs_f64() > options.cap() {
+                break;
+            }
+            let start = Instant::now();
+            let claim = std::hint::black_box(question.ask(method));
+            let microseconds = start.elapsed().as_secs_f64() * 1e6;
+            if round == 0 {
+                answers.push(Answer { claim, microseconds });
+            } else {
+                answers[place].microseconds = answers[place].microseconds.min(microseconds);
+            }
+        }
+    }
+    answers
 }
 
 fn contact(t: f64, tolerance: f64) -> Claim {

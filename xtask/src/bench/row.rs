@@ -19,6 +19,20 @@ pub(crate) struct Row {
 pub(crate) const HEADER: &str = "trial,status,lo,hi,tolerance,separation,parry_separation,microseconds,fault";
 
 impl Row {
+    /// The row of a claim with what the judge says of it: the separation left, or what is wrong.
+    pub(crate) fn judged(
+        trial: usize,
+        claim: Claim,
+        microseconds: f64,
+        verdict: Result<f64, impl std::fmt::Display>,
+    ) -> Self {
+        let (separation, fault) = match verdict {
+            Ok(separation) => (separation, String::new()),
+            Err(fault) => (f64::INFINITY, fault.to_string()),
+        };
+        Self { trial, claim, separation, parry_separation: f64::NAN, microseconds, fault }
+    }
+
     pub(crate) fn line(&self) -> String {
         let (status, lo, hi, tolerance) = match self.claim {
             Claim::Separated => ("separated", f64::INFINITY, f64::INFINITY, 0.0),

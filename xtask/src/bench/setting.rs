@@ -1,13 +1,12 @@
 //! The questions of one pair, speed and method: asked on one thread, then judged on all.
 use super::body::Pair;
 use super::clock::Phases;
-use super::method::{Method, Question};
+use super::method::{Answer, Method, Question, answers};
 use super::row::Row;
 use super::{Options, peers, stopped};
 use crate::judge::{Claim, Judge, place};
 use crate::trials::Trial;
 use rayon::prelude::*;
-use std::time::Instant;
 
 type Error = Box<dyn std::error::Error>;
 
@@ -41,21 +40,19 @@ impl Setting<'_> {
             Method::Paper if self.triangle_count() > PAPER_TRIANGLES => return Ok(Vec::new()),
             _ => {}
         }
-        let times_of_contact = self.places(accurate);
-        let questions: Vec<(usize, Question<'_>)> = times_of_contact
+        let places = self.places(accurate);
+        let questions: Vec<Question<'_>> = places
             .iter()
-            .map(|&(i, at)| {
-                Ok((
-                    i,
-                    Question::new(self.pair, &self.trials[i], self.options.tolerance, at)?
-                        .with_cap(self.options.cap()),
-                ))
+            .map(|&(trial, at)| {
+                Question::new(self.pair, &self.trials[trial], self.options.tolerance, at)
+                    .map(|question| question.with_cap(self.options.cap()))
             })
             .collect::<Result<_, Error>>()?;
         phases.time("lazy trees", || self.prepare());
         // One thread asks and nothing else runs; only then all threads judge.
-        let asked = phases.time("asked", || self.ask(&questions));
-        Ok(phases.time("judged", || self.judged(&questions, asked)))
+        let answers = phases.time("asked", || answers(&questions, self.method, self.options));
+        let trials: Vec<usize> = places.iter().map(|&(trial, _)| trial).collect();
+        Ok(phases.time("judged", || self.judged(&trials, answers)))
     }
 
     /// Builds what the method needs of the bodies and others do not.
@@ -90,48 +87,21 @@ impl Setting<'_> {
         rows.iter().filter_map(contact).collect()
     }
 
-    /// Answers with the least time of the rounds, until the cap of a slow method.
-    fn ask(&self, questions: &[(usize, Question<'_>)]) -> Vec<(Claim, f64)> {
-        let slow = self.method.is_slow();
-        let rounds = if slow { 1 } else { self.options.rounds.max(1) };
-        let begin = Instant::now();
-        let mut asked: Vec<(Claim, f64)> = Vec::new();
-        for round in 0..rounds {
-            for (place, (_, question)) in questions.iter().enumerate() {
-                if slow && begin.elapsed().as_secs_f64() > self.options.cap() {
-                    break;
-                }
-                let start = Instant::now();
-                let claim = std::hint::black_box(question.ask(self.method));
-                let microseconds = start.elapsed().as_secs_f64() * 1e6;
-                if round == 0 {
-                    asked.push((claim, microseconds));
-                } else {
-                    asked[place].1 = asked[place].1.min(microseconds);
-                }
-            }
-        }
-        asked
-    }
-
-    fn judged(&self, questions: &[(usize, Question<'_>)], asked: Vec<(Claim, f64)>) -> Vec<Row> {
+    /// The rows of the answers on these trials; a slow method may have answered the first ones only.
+    fn judged(&self, trials: &[usize], answers: Vec<Answer>) -> Vec<Row> {
         let sabotage = self.options.sabotage.filter(|_| self.method == Method::Accurate);
-        let mut rows: Vec<Row> = questions
+        let mut rows: Vec<Row> = trials
             .par_iter()
-            .zip(asked)
-            .map(|((trial, question), (claim, microseconds))| {
+            .zip(answers)
+            .map(|(&trial, Answer { claim, microseconds })| {
                 let claim = sabotage.map_or(claim, |fault| fault.spoil(claim));
                 let verdict = if self.method.is_static() {
                     Ok(f64::INFINITY)
                 } else {
-                    let known = self.known.get(*trial).copied().unwrap_or_default();
-                    self.judge(question.trial).check_after(known, &claim, self.method.is_exact())
+                    let known = self.known.get(trial).copied().unwrap_or_default();
+                    self.judge(&self.trials[trial]).check_after(known, &claim, self.method.is_exact())
                 };
-                let (separation, fault) = match verdict {
-                    Ok(separation) => (separation, String::new()),
-                    Err(fault) => (f64::INFINITY, fault.to_string()),
-                };
-                Row { trial: *trial, claim, separation, parry_separation: f64::NAN, microseconds, fault }
+                Row::judged(trial, claim, microseconds, verdict)
             })
             .collect();
         if self.method.is_ours()

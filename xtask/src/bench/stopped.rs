@@ -77,14 +77,10 @@ pub(super) fn rows(setting: &Setting<'_>) -> Result<Vec<Row>, Error> {
             }
             Err(mpsc::RecvTimeoutError::Disconnected) => break,
             Err(mpsc::RecvTimeoutError::Timeout) => {
-                stopped = Some(Row {
-                    trial: answers.len(),
-                    claim: Claim::Undecided { clear_until: 0.0 },
-                    separation: f64::INFINITY,
-                    parry_separation: f64::NAN,
-                    microseconds: last.elapsed().as_secs_f64() * 1e6,
-                    fault: String::new(),
-                });
+                let claim = Claim::Undecided { clear_until: 0.0 };
+                let microseconds = last.elapsed().as_secs_f64() * 1e6;
+                stopped =
+                    Some(Row::judged(answers.len(), claim, microseconds, Ok::<_, Error>(f64::INFINITY)));
                 break;
             }
         }
@@ -111,9 +107,5 @@ fn answer(setting: &Setting<'_>, trial: usize, line: &str) -> Option<Row> {
     };
     let judge = Judge { a: &setting.pair.a.boxes, b: &setting.pair.b.boxes, trial: &setting.trials[trial] };
     let known = setting.known.get(trial).copied().unwrap_or_default();
-    let (separation, fault) = match judge.check_after(known, &claim, false) {
-        Ok(separation) => (separation, String::new()),
-        Err(fault) => (f64::INFINITY, fault.to_string()),
-    };
-    Some(Row { trial, claim, separation, parry_separation: f64::NAN, microseconds, fault })
+    Some(Row::judged(trial, claim, microseconds, judge.check_after(known, &claim, false)))
 }

@@ -5,13 +5,13 @@
 mod exact;
 mod families;
 mod guise;
-mod memory;
 mod scene;
 mod shapes;
 mod twins;
 
 use super::{Outcome, Task};
 use crate::bench::Sabotage;
+use crate::memory;
 use d2m::bvh::Evidence;
 use d2m_testing::Xoshiro256 as Random;
 use exact::Placed;

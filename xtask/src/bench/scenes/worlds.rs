@@ -1,6 +1,6 @@
 //! Many moving bodies.
 use super::{Target, figure, least_time, milliseconds, threads, wrong};
-use crate::TaskResult;
+use crate::{TaskResult, memory};
 use d2m::glam::{DQuat, DVec3};
 use d2m::{
     Body, BodyId, ConstantTwist, FirstContact, MeshTree, Posed, QueryOptions, RigidMotion, Solid, StartState,
@@ -39,7 +39,7 @@ pub(super) fn run(rounds: usize) -> TaskResult {
     broad_phase(rounds)?;
     events()?;
     at_one_place(rounds)?;
-    memory()?;
+    bytes_of_candidates()?;
     let dense = among_each_other()?;
     unavoidable(rounds, "300 knots among each other", &dense, Target::AtMost(2.0))?;
     // Next to nothing to search: most of what is left is the cost of the boxes, which is a figure of its own above.
@@ -215,31 +215,25 @@ fn at_one_place(rounds: usize) -> TaskResult {
 }
 
 /// What stays in memory for each pair that the broad phase leaves and nothing has searched.
-fn memory() -> TaskResult {
-    let Some(before) = resident_bytes() else {
+fn bytes_of_candidates() -> TaskResult {
+    let Some(before) = memory::resident() else {
         println!("memory per candidate: only where /proc tells it");
         return Ok(());
     };
     let mesh = tree("box")?;
     // 17³ = 4913 bodies; boxes of many more than neighbors overlap.
     let mut world = grid(&mesh, 17, 1.0, 9.0);
-    let filled = resident_bytes().unwrap_or(before);
+    let filled = memory::resident().unwrap_or(before);
     let count = world.candidates(Window::UNIT).len();
     let first = world.first_contact(Window::UNIT)?;
     let FirstContact::Contact { contact, .. } = first else { return Err(wrong("overlapping bodies")) };
     if contact.start == StartState::Apart {
         return Err(wrong("overlapping bodies"));
     }
-    let spent = resident_bytes().unwrap_or(filled).saturating_sub(filled);
+    let spent = memory::resident().unwrap_or(filled).saturating_sub(filled);
     let what = format!("memory a candidate never searched, {count} candidates");
     figure(what, spent as f64 / count as f64, "bytes", Target::AtMost(64.0));
     Ok(())
-}
-
-fn resident_bytes() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
-    Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
 }
 
 /// Rings far from each other for their size: few boxes meet.

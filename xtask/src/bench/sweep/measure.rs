@@ -1,7 +1,7 @@
 //! The steps of the series, each of which is stored when it is done.
 use super::super::Options;
 use super::super::body::{Body, Pair};
-use super::super::method::{Method, Question};
+use super::super::method::{Method, Question, answers};
 use super::super::store::Store;
 use super::flights::{Flights, moved, pebbles, slowed};
 use super::{FITTED, NAMES, Point, STEPS, WRONG, file, load, write, wrong};
@@ -155,35 +155,24 @@ impl Sweep<'_> {
             .iter()
             .map(|trial| Question::new(pair, trial, tolerance, 0.0))
             .collect::<Result<_, _>>()?;
-        let mut asked = Vec::new();
-        for round in 0..self.options.rounds.max(1) {
-            for (i, question) in questions.iter().enumerate() {
-                let start = Instant::now();
-                let claim = std::hint::black_box(question.ask(method));
-                let microseconds = start.elapsed().as_secs_f64() * 1e6;
-                match round {
-                    0 => asked.push((claim, microseconds)),
-                    _ => asked[i].1 = f64::min(asked[i].1, microseconds),
-                }
-            }
-        }
-        let verdicts: Vec<_> = asked
+        let answers = answers(&questions, method, self.options);
+        let verdicts: Vec<_> = answers
             .par_iter()
             .zip(&flights.trials)
             .zip(&flights.known)
-            .map(|(((claim, _), trial), &known)| {
+            .map(|((answer, trial), &known)| {
                 let judge = Judge { a: &pair.a.boxes, b: &pair.b.boxes, trial };
-                judge.check_after(known, claim, method.is_exact())
+                judge.check_after(known, &answer.claim, method.is_exact())
             })
             .collect();
         drop(questions);
         let (mut times, mut left) = (Vec::new(), Vec::new());
-        for (i, ((claim, time), verdict)) in asked.iter().zip(verdicts).enumerate() {
+        for (i, (answer, verdict)) in answers.iter().zip(verdicts).enumerate() {
             match verdict {
                 Ok(separation) => {
-                    times.push(*time);
+                    times.push(answer.microseconds);
                     left.push(separation);
-                    flights.learn(i, claim);
+                    flights.learn(i, &answer.claim);
                 }
                 Err(fault) => self.wrong.push(format!("{what} {} trial {i}: {fault}", method.name())),
             }
