@@ -277,11 +277,19 @@ pub(crate) struct FeaturesArguments {
 A scene: {\"bodies\": [{\"name\", \"mesh\", \"scale\", \"kind\": \"dynamic\" | \"kinematic\" | \"static\", \"pose\": {\"x\", \"q\"},
 \"velocity\": {\"v\", \"w\"}, \"motion\", \"density\" or \"mass\", \"center\", \"inertia\", \"restitution\", \"friction\", \"group\",
 \"solid\"}], \"ignore\": [[name or group, name or group]], \"pairs\": [{\"a\", \"b\", \"restitution\", \"friction\"}],
-\"simulation\": {\"gravity\", \"step\", \"end\", \"gap\", \"max_events\"}}.
+\"simulation\": {\"gravity\", \"step\", \"end\", \"gap\", \"max_events\"}}. What is left out: dynamic, at rest at the origin, density 1000, no
+restitution, no friction; gravity [0, -9.81, 0], step 0.01, end 5, gap (between bodies that rest on each other) 0.001, max_events
+(contact events a step) 128. A kinematic body follows its motion, which has any JSON form of d2m toc.
 A run: a line with the bodies' masses, then a line for each segment, in which every body flies a constant twist about its
-center of mass: {\"t0\", \"t1\", \"bodies\" or \"changed\", \"contacts\", \"skipped\", \"wall\"}.
+center of mass: {\"t0\", \"t1\", \"bodies\" or \"changed\", \"contacts\", \"skipped\", \"wall\"}; skipped is the time for which bodies stood
+still because max_events were used up, wall the seconds that it took.
 No two bodies ever share a point in a segment. A run that cannot go on ends with exit code 3 and the segments so far.
-Exit codes: 0 done, 2 bad usage, 3 bad input or a run that cannot go on.")]
+
+Exit codes: 0 done, 2 bad usage, 3 bad input or a run that cannot go on.
+
+Example:
+  d2m simulate docs/scenes/pile.json --out run.jsonl
+  d2m view run.jsonl --out run.html")]
 pub(crate) struct SimulateArguments {
     /// Scene, JSON
     #[arg(value_name = "SCENE.json")]

@@ -5,12 +5,8 @@ mod shell;
 use serde_json::Value;
 use shell::{Folder, d2m, refused, stderr};
 
-const PILE: &str = r#"{"bodies": [
-    {"name": "floor", "mesh": "shape:box?x=5&y=0.5&z=5", "kind": "static", "pose": {"x": [0, -0.5, 0]}, "friction": 0.5},
-    {"name": "low", "mesh": "shape:box?x=0.5&y=0.5&z=0.5", "pose": {"x": [0, 0.6, 0]}, "friction": 0.5},
-    {"name": "high", "mesh": "shape:box?x=0.5&y=0.5&z=0.5", "pose": {"x": [0.3, 2.1, 0.2], "q": [1, 0.2, 0.1, 0]}, "restitution": 0.3},
-    {"name": "ring", "mesh": "shape:torus?triangles=200", "pose": {"x": [0, 4, 0]}, "velocity": {"w": [1, 2, 3]}}],
-    "simulation": {"end": 1.5, "step": 0.02}}"#;
+/// The example of the documentation.
+const PILE: &str = include_str!("../../../docs/scenes/pile.json");
 
 fn lines(path: &str) -> Vec<Value> {
     let text = std::fs::read_to_string(path).unwrap();

@@ -106,6 +106,10 @@ fn json(window: Window, names: &[&str], rows: &[Row]) -> String {
     format!("{}\n", json!({ "window": [window.start(), window.end()], "contacts": contacts }))
 }
 
+fn pairs(count: usize) -> String {
+    format!("{count} pair{}", if count == 1 { "" } else { "s" })
+}
+
 /// The answer for a person.
 fn text(window: Window, names: &[&str], rows: &[Row]) -> String {
     let [start, end] = [window.start(), window.end()].map(short);
@@ -113,9 +117,9 @@ fn text(window: Window, names: &[&str], rows: &[Row]) -> String {
     let bodies = format!("{} bodies from {start} to {end}\n", names.len());
     let mut text = match (contacts, rows.len() - contacts) {
         (0, 0) => format!("SEPARATED: certified, no contact of {bodies}"),
-        (_, 0) => format!("CONTACT of {contacts} pairs of {bodies}"),
-        (0, undecided) => format!("UNDECIDED: {undecided} pairs of {bodies}"),
-        (_, undecided) => format!("CONTACT of {contacts} pairs, and {undecided} undecided, of {bodies}"),
+        (_, 0) => format!("CONTACT of {} of {bodies}", pairs(contacts)),
+        (0, undecided) => format!("UNDECIDED: {} of {bodies}", pairs(undecided)),
+        (_, undecided) => format!("CONTACT of {}, and {undecided} undecided, of {bodies}", pairs(contacts)),
     };
     for row in rows {
         let [a, b] = row.bodies.map(|body| names[body]);
