@@ -84,6 +84,8 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
         };
         let NearbyQuadratic { quadratic: forth, left_out } = along_v.quadratic_about_center(h);
         let reach = length_up(v) * (self.half_lengths.0 + of_w) + v.dot(d).abs() + left_out;
+        // of_w covers the evaluation along v, times |v|: 12u of |w|, |v|h and |a|h² are the last row of features.md, section 3, and
+        // the jerk's share of the slope adds 1.5u of |j|h³, of which 45u of 64u are counted.
         forth.clip_beyond(Band { lo: 0.0, hi: 0.0 }, reach * UP, whole)
     }
 
@@ -212,6 +214,8 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
                 let first_a = along_u.first() + e_u;
                 let second_a = along_u.first() - e_u;
                 let margin_a = u_length * (margin_w + margin_e) * UP;
+                // The evaluation is covered: of values 122u of the 128u in margin_e and 121u in margin_w, of slopes 182u of 256u
+                // (features.md, section 5, "Γ"), each with all 12u of `Quadratic::bound_evaluation` that concern it.
                 let Some(beside) = first_a.clip_shared_sign_beyond(&second_a, margin_a, before) else {
                     return Verdict::Clear;
                 };
@@ -225,6 +229,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
                 let product = margin_w * half_a + length * margin_e;
                 let margin_b =
                     ((cubic_j + quartic_j * r) * (r * r * r) + k_length * product + u_length * margin_e) * UP;
+                // Covered: w_j rounds by 117u of the 128u in margin_w (there), e_u as above.
                 let Some(inside) = first_b.clip_shared_sign_beyond(&second_b, margin_b, beside) else {
                     return Verdict::Clear;
                 };

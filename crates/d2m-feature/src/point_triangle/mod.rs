@@ -66,6 +66,8 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
             // All that is left to know is when the plane is crossed.
             let CubicAlong { cubic: plane, remainder } = self.path.point_along(piece, at, planes.normal);
             let remainder = widened(remainder, self.separation);
+            // The remainder covers the evaluation of the cubic: 109u of its 128u of the value, 131u of 256u of the slope, 95u of
+            // 256u of half the curvature and 45u of 64u of a sixth of the jerk (features.md, section 3, "Single jets").
             let Some(part) = plane.clip_beyond(planes.slab, |h| remainder.bound(h), whole) else {
                 return Verdict::Clear;
             };
@@ -82,6 +84,7 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
             searched = near;
         }
         let plane = cubic_along(&jet, planes.normal);
+        // Covered as above.
         let Some(mut part) = plane.clip_beyond(planes.slab, |h| remainder.bound(h), searched) else {
             return Verdict::Clear;
         };
@@ -109,6 +112,8 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
             let sides = [along(&here, s0), along(&here, s1), along(&here, s2)];
             let mut beside = Piece { lo: part.lo - m, hi: part.hi - m };
             let before = beside;
+            // The margin covers the evaluation of a quadratic: 12u of |value|, |slope|h and |curvature|h², in the last row of
+            // features.md, section 3 (119u of 128u and 169u of 256u with it); the 9u that are left cover moving the jet.
             for (side, Band { lo, hi }) in sides.iter().zip(planes.side_support) {
                 let Some(left) = side.clip_beyond(Band { lo, hi }, margin, beside) else {
                     return Verdict::Clear;
@@ -199,6 +204,7 @@ impl<P: FeaturePath> PointTriangleTest<'_, P> {
         let NearbyQuadratic { quadratic: forth, left_out } =
             cubic_along(&from_center, jet.v).quadratic_about_center(h);
         let reach = (limit * length_up(jet.v) + left_out) * UP;
+        // The remainder in `limit` covers the evaluation, 12u of the jet's terms times |v|, as for the sides.
         forth.clip_beyond(Band { lo: 0.0, hi: 0.0 }, reach, whole)
     }
 

@@ -125,6 +125,8 @@ impl PieceTest for StraightPointTriangle {
                 // A contact needs all three parts at least 0.
                 for area in &areas {
                     let positive = Band { lo: 0.0, hi: f64::INFINITY };
+                    // Its margin covers the evaluation: 46u of the 56u of each product, 12u of them of values and slopes and 24u
+                    // of half the curvature (features.md, "Straight paths"); the third has all three margins.
                     let Some(beside) = area.quadratic.clip_beyond(positive, area.margin, part) else {
                         return Verdict::Clear;
                     };

@@ -95,6 +95,27 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-feature/tests/first_contact.rs::planted_contacts_are_never_missed_and_never_late",
     ),
     patch(
+        "Γ inverted, closed-form edge/edge",
+        "crates/d2m-feature/src/edge_edge/mod.rs",
+        "if shared(a, margin_a) || shared(b, margin_b) {",
+        "if shared(a, margin_a) || !shared(b, margin_b) {",
+        "crates/d2m-feature/tests/first_contact.rs::planted_contacts_are_never_missed_and_never_late",
+    ),
+    patch(
+        "Γ of edges without what the speeds admit",
+        "crates/d2m-feature/src/edge_edge/mod.rs",
+        "let margin_b = (k_length * product + u_length * stray_e) * UP;",
+        "let margin_b = 0.0 * (k_length * product + u_length * stray_e) * UP;",
+        "crates/d2m-feature/tests/first_contact.rs::planted_contacts_are_never_missed_and_never_late",
+    ),
+    patch(
+        "Γ of edges without the jets' remainders",
+        "crates/d2m-feature/src/edge_edge/mod.rs",
+        "let margin_a = u_length * (margin_w + margin_e) * UP;",
+        "let margin_a = 0.0 * u_length * (margin_w + margin_e) * UP;",
+        "crates/d2m-feature/tests/first_contact.rs::planted_contacts_are_never_missed_and_never_late",
+    ),
+    patch(
         "the plane without the path's remainder",
         "crates/d2m-feature/src/point_triangle/mod.rs",
         "plane.clip_beyond(planes.slab, |h| remainder.bound(h), searched)",

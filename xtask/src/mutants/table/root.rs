@@ -2,6 +2,27 @@
 use super::{Mutant, in_test, patch};
 
 pub(super) const MUTANTS: &[Mutant] = &[
+    patch(
+        "a caller's bound of all errors is taken unchecked, quadratics",
+        "crates/d2m-root/src/isolator/quadratic.rs",
+        "debug_assert!(self.covers(allowed, part));",
+        "",
+        "crates/d2m-root/tests/exact.rs::an_error_bound_that_leaves_out_rounding_is_noticed",
+    ),
+    patch(
+        "a caller's bound of all errors is taken unchecked, cubics",
+        "crates/d2m-root/src/isolator/cubic.rs",
+        "debug_assert!(self.covers(allowed(part.reach()), part));",
+        "",
+        "crates/d2m-root/tests/exact.rs::an_error_bound_that_leaves_out_rounding_is_noticed",
+    ),
+    patch(
+        "half of what is allowed beyond a band",
+        "crates/d2m-root/src/isolator/quadratic.rs",
+        "let band = band.padded(allowed);",
+        "let band = band.padded(0.0 * allowed);",
+        "crates/d2m-root/tests/exact.rs::the_least_bound_that_covers_is_enough",
+    ),
     // Roots.
     patch(
         "½ twice in the inclusion function",
