@@ -30,6 +30,9 @@ impl Ball {
     /// Exactly zero.
     pub const ZERO: Self = Self { center: DVec3::ZERO, radius: 0.0 };
 
+    /// Nothing is known.
+    pub(crate) const ANY: Self = Self { center: DVec3::ZERO, radius: f64::INFINITY };
+
     /// All vectors within `radius` of `center`; everything when either is not finite.
     pub fn new(center: DVec3, radius: f64) -> Self {
         if center.is_finite() && radius < f64::INFINITY {

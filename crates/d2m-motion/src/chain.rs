@@ -102,14 +102,14 @@ impl Joint {
     ///
     /// exp([k]θ) with sine and cosine within 4u and an axis within 4u of its direction: 64u (docs/theory/motions.md). A
     /// rotation by θ differs from one by θ̃ by at most |θ − θ̃|.
-    fn movement(&self, lo: f64, hi: f64) -> Option<Kinematics> {
+    fn movement<const RATES: bool>(&self, lo: f64, hi: f64) -> Option<Kinematics> {
         let over: ValueOverTime = self.value()?.over(lo, hi);
         let along = |e: Enclosed| {
             // The axis is off by 4u of its length, and the second double of the value counts as error.
             let radius = e.radius + e.center.lo.abs() + 8.0 * UNIT * e.center.hi.abs();
             Ball::new(self.axis, 0.0).times(e.center.hi, crate::ball::up(radius))
         };
-        let (rate, second) = (along(over.rate), along(over.second));
+        let (rate, second) = (along(over.rate), if RATES { along(over.second) } else { Ball::ANY });
         if matches!(self.kind, JointKind::Prismatic { .. }) {
             let position = along(over.value);
             return Some(Kinematics { position, linear: rate, linear_rate: second, ..Kinematics::REST });
@@ -216,9 +216,19 @@ impl Chain {
     }
 
     fn over(&self, lo: f64, hi: f64) -> Kinematics {
+        self.over_with::<true>(lo, hi)
+    }
+
+    /// At one time, without accelerations.
+    fn state_at(&self, t: f64) -> Kinematics {
+        self.over_with::<false>(t, t)
+    }
+
+    fn over_with<const RATES: bool>(&self, lo: f64, hi: f64) -> Kinematics {
         self.joints.iter().fold(Kinematics::REST, |frame, joint| {
-            let placed = frame.then(&joint.transform());
-            joint.movement(lo, hi).map_or(placed, |movement| placed.then(&movement))
+            let placed = frame.then_with::<RATES>(&joint.transform());
+            let movement = joint.movement::<RATES>(lo, hi);
+            movement.map_or(placed, |movement| placed.then_with::<RATES>(&movement))
         })
     }
 
@@ -248,7 +258,7 @@ impl Chain {
 
 impl RigidMotion for Chain {
     fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        let now = self.over(t, t);
+        let now = self.state_at(t);
         let pose = Pose {
             rotation: DQuat::from_mat3(&now.rotation).normalize(),
             translation: now.position.center + now.position_tail,
@@ -279,11 +289,11 @@ impl RigidMotion for Chain {
     }
 
     fn enclose_state(&self, t: f64) -> CertifiedState {
-        self.over(t, t).state_about(DVec3::ZERO)
+        self.state_at(t).state_about(DVec3::ZERO)
     }
 
     fn enclose_state_about(&self, t: f64, origin: DVec3) -> CertifiedState {
-        self.over(t, t).state_about(origin)
+        self.state_at(t).state_about(origin)
     }
 
     fn enclose_kinematics(&self, t: Interval) -> Kinematics {

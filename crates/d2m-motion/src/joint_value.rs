@@ -204,12 +204,15 @@ impl JointValue {
         let term = |k: usize| terms.get(k).copied().unwrap_or((DoubleDouble::ZERO, 0.0));
         // Horner on the magnitudes of what lies beyond the k-th derivative's own term: factors k!/(k − d)!.
         let beyond = |derivative: usize| {
+            if r == 0.0 {
+                return 0.0;
+            }
             let mut sum = 0.0;
             for k in (derivative + 1..terms.len()).rev() {
                 let factor = ((k + 1 - derivative)..=k).map(|i| i as f64).product::<f64>();
                 sum = up(sum * r + up(terms[k].0.hi.abs() + terms[k].1) * factor);
             }
-            if r == 0.0 { 0.0 } else { up(sum * r) }
+            up(sum * r)
         };
         let part = |derivative: usize, factor: f64| {
             let (b, error) = term(derivative);

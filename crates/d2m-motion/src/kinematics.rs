@@ -134,39 +134,53 @@ impl Kinematics {
     /// in the Frobenius norm.
     #[must_use]
     pub fn then(&self, inner: &Self) -> Self {
+        self.then_with::<true>(inner)
+    }
+
+    /// The same; without `RATES` nothing is known of the accelerations, which take half of the work.
+    #[inline]
+    pub(crate) fn then_with<const RATES: bool>(&self, inner: &Self) -> Self {
         let turn = |b: Ball| b.turned(&self.rotation, self.rotation_radius);
         let arm = inner.position.minus(Ball::point(self.at)).plus(Ball::point(inner.position_tail));
         let e = turn(arm);
         let (relative, spin) = (turn(inner.linear), turn(inner.angular));
         let across = self.angular.cross(e);
-        let coriolis = self.angular.cross(relative);
         let (sum, lost) = two_sums(self.position.center, e.center);
         let tail = self.position_tail + lost;
-        let still = inner.linear_rate == Ball::ZERO && inner.angular_rate == Ball::ZERO;
-        let turned_rate = |b: Ball| if still { Ball::ZERO } else { turn(b) };
-        let radius = up(self.rotation_radius * (1.0 + inner.rotation_radius)
-            + inner.rotation_radius
-            + 10.0 * UNIT * (1.0 + self.rotation_radius) * (1.0 + inner.rotation_radius));
-        Self {
+        let (linear_rate, angular_rate) = if RATES {
+            let coriolis = self.angular.cross(relative);
+            let still = inner.linear_rate == Ball::ZERO && inner.angular_rate == Ball::ZERO;
+            let turned_rate = |b: Ball| if still { Ball::ZERO } else { turn(b) };
+            (
+                self.linear_rate
+                    .plus(self.angular_rate.cross(e))
+                    .plus(self.angular.cross(across))
+                    .plus(coriolis)
+                    .plus(coriolis)
+                    .plus(turned_rate(inner.linear_rate)),
+                self.angular_rate.plus(self.angular.cross(spin)).plus(turned_rate(inner.angular_rate)),
+            )
+        } else {
+            (Ball::ANY, Ball::ANY)
+        };
+        let out = Self {
             position: Ball::new(sum, up(self.position.radius + e.radius + UNIT * length_up(tail))),
             position_tail: if tail.is_finite() { tail } else { DVec3::ZERO },
             at: inner.at,
             linear: self.linear.plus(across).plus(relative),
             angular: self.angular.plus(spin),
-            linear_rate: self
-                .linear_rate
-                .plus(self.angular_rate.cross(e))
-                .plus(self.angular.cross(across))
-                .plus(coriolis)
-                .plus(coriolis)
-                .plus(turned_rate(inner.linear_rate)),
-            angular_rate: self
-                .angular_rate
-                .plus(self.angular.cross(spin))
-                .plus(turned_rate(inner.angular_rate)),
+            linear_rate,
+            angular_rate,
             ..*self
+        };
+        // A product with the identity is exact.
+        if inner.rotation_radius == 0.0 && inner.rotation == DMat3::IDENTITY {
+            return out;
         }
-        .with_rotation(self.rotation * inner.rotation, radius)
+        let radius = up(self.rotation_radius * (1.0 + inner.rotation_radius)
+            + inner.rotation_radius
+            + 10.0 * UNIT * (1.0 + self.rotation_radius) * (1.0 + inner.rotation_radius));
+        out.with_rotation(self.rotation * inner.rotation, radius)
     }
 
     /// The same motion expressed by another body point: with e = R(at − at₀) the point is at x + e, moves with v + ω × e and

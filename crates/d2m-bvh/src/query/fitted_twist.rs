@@ -18,6 +18,8 @@ pub(super) struct FittedTwists {
     pub(super) deviation: f64,
     /// The part of it that no shorter span takes away.
     pub(super) floor: f64,
+    /// The lengths that its rounding is about: how far the bodies' points are from the world's origin at most, together.
+    pub(super) size: f64,
 }
 
 /// One motion, expressed by one body point.
@@ -62,7 +64,9 @@ impl FittedTwists {
                 }
             }
         }
-        best
+        let fits = fits.map(|[given, _]| given);
+        let size = fits.iter().flatten().map(|fit| (fit.state.position + origin).length() + fit.reach).sum();
+        best.map(|best| Self { size, ..best })
     }
 }
 
@@ -127,6 +131,7 @@ fn between(a: &Fit, b: &Fit, half: f64, clock: FittedClock) -> FittedTwists {
         // What underflow may take is less than the smallest normal number.
         deviation: deviation * UP + f64::MIN_POSITIVE,
         floor: still(a) + still(b),
+        size: 0.0,
     }
 }
 

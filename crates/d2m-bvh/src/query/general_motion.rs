@@ -8,13 +8,14 @@
 use super::constant_twist::{ask, count_as_one_search, last_search_counts, scene_of_twists};
 use super::fitted_twist::FittedTwists;
 use super::report::MOST_LEFT;
+use super::true_poses::{Meeting, PlacedTriangles};
 use crate::{
     Budget, Contact, Evidence, Mode, Moving, QueryError, QueryOptions, Solid, StartState, TimeOfContact,
     Window,
 };
 use d2m_feature::triangle_distance;
 use d2m_interval::Interval;
-use d2m_motion::{Chain, ConstantTwist, Pose, RigidMotion};
+use d2m_motion::{Chain, ConstantTwist, Pose, RigidMotion, Twist};
 use glam::DVec3;
 use std::time::Instant;
 
@@ -36,8 +37,32 @@ const ROUNDINGS: f64 = 512.0 * f64::EPSILON;
 const GROWTH: f64 = 4.0;
 /// A contact is expected after the gap has closed at the speed it closes with, and searched for this much longer.
 const OVERSHOOT: f64 = 1.25;
+/// A span is expected to deviate by this part of what it may.
+const EXPECTED: f64 = 0.9;
+/// A span says nothing of one that is longer by more than this.
+const MOST_EXPECTED: f64 = 16.0;
 /// Node tests that a fit counts for in a budget.
 const TESTS_A_FIT: u64 = 256;
+
+/// The tolerance of a query.
+pub(super) fn tolerance_of(bodies: &[Moving<'_>; 2], options: &QueryOptions) -> f64 {
+    let radius = bodies[0].body.radius().max(bodies[1].body.radius());
+    options.tolerance.unwrap_or(DEFAULT_TOLERANCE * radius)
+}
+
+/// The window lies within the times of both motions.
+///
+/// # Errors
+/// [`QueryError::OutsideMotion`].
+pub(super) fn check_times(bodies: &[Moving<'_>; 2], window: Window) -> Result<(), QueryError> {
+    for (body, moving) in bodies.iter().enumerate() {
+        let times = moving.motion.domain();
+        if !(times.contains(window.start()) && times.contains(window.end())) {
+            return Err(QueryError::OutsideMotion { body, start: times.lo(), end: times.hi() });
+        }
+    }
+    Ok(())
+}
 
 /// The query; options were checked before.
 pub(super) fn general_motion(
@@ -45,12 +70,7 @@ pub(super) fn general_motion(
     window: Window,
     options: &QueryOptions,
 ) -> Result<TimeOfContact, QueryError> {
-    for (body, moving) in bodies.iter().enumerate() {
-        let times = moving.motion.domain();
-        if !(times.contains(window.start()) && times.contains(window.end())) {
-            return Err(QueryError::OutsideMotion { body, start: times.lo(), end: times.hi() });
-        }
-    }
+    check_times(&bodies, window)?;
     if let (Some(a), Some(b)) = (bodies[0].motion.chain(), bodies[1].motion.chain()) {
         let common = a.common_joints(b);
         if common > 0 {
@@ -94,6 +114,17 @@ struct Advance<'a> {
     /// The next span is at most so long and deviates by at most so much.
     longest: f64,
     largest: f64,
+    /// The last span that was fitted.
+    last: Option<LastFit>,
+    /// Poses and twists at the time that was asked for last.
+    poses: Option<(f64, [(Pose, Twist); 2])>,
+}
+
+/// What the next fit goes by: the length of a span, and its deviation less the floor over the square of that.
+#[derive(Clone, Copy)]
+struct LastFit {
+    length: f64,
+    curvature: f64,
 }
 
 /// Fitted twists from now until a time.
@@ -123,17 +154,18 @@ enum Step {
 
 impl<'a> Advance<'a> {
     fn new(bodies: [Moving<'a>; 2], window: Window, options: QueryOptions) -> Self {
-        let radius = bodies[0].body.radius().max(bodies[1].body.radius());
         Self {
             bodies,
             window,
             options,
-            tolerance: options.tolerance.unwrap_or(DEFAULT_TOLERANCE * radius),
+            tolerance: tolerance_of(&bodies, &options),
             deadline: options.budget.wall_clock.and_then(|time| Instant::now().checked_add(time)),
             work: 0,
             now: window.start(),
             longest: window.length(),
             largest: f64::INFINITY,
+            last: None,
+            poses: None,
         }
     }
 
@@ -245,8 +277,8 @@ impl<'a> Advance<'a> {
     fn fitted_span(&mut self) -> Result<Step, QueryError> {
         let undecided = Step::Answer(TimeOfContact::Undecided { clear_until: self.now });
         let Some(FittedSpan { fitted, until }) = self.fit()? else { return Ok(undecided) };
-        let FittedTwists { twists, clock, deviation, floor } = fitted;
-        let tolerance = self.tolerance.max(self.rounding_tolerance(floor));
+        let FittedTwists { twists, clock, deviation, floor, .. } = fitted;
+        let tolerance = self.tolerance.max(rounding_tolerance(&fitted));
         let small = deviation <= SMALL_PART * tolerance;
         let inner = if small { tolerance - 2.0 * deviation } else { deviation.max(tolerance) };
         let mut options = self.options_of_span();
@@ -281,6 +313,15 @@ impl<'a> Advance<'a> {
             let contact = Contact { tolerance: contact.tolerance.max(tolerance), ..contact };
             return Ok(Step::Answer(TimeOfContact::Contact(self.true_contact(contact))));
         }
+        if self.options.mode == Mode::Exists
+            && let Some(time) =
+                self.meeting().found_near([contact.triangle_a, contact.triangle_b], contact.time_lo)
+        {
+            let tolerance = contact.tolerance.max(self.tolerance);
+            let contact =
+                Contact { time_lo: time, time_hi: time, evidence: Evidence::Near, tolerance, ..contact };
+            return Ok(Step::Answer(TimeOfContact::Contact(self.true_contact(contact))));
+        }
         self.shorten(&contact, &Shortfall { deviation, floor, tolerance, until });
         if contact.time_lo <= self.now && self.longest <= 0.0 {
             return Ok(undecided);
@@ -307,9 +348,10 @@ impl<'a> Advance<'a> {
     }
 
     /// About how far apart the two triangles of a contact are in truth, less the wanted separation.
-    fn room_at(&self, contact: &Contact) -> f64 {
+    fn room_at(&mut self, contact: &Contact) -> f64 {
+        let poses = self.poses_at(contact.time_lo);
         let corners = |k: usize, triangle: u32| {
-            let (pose, _) = self.bodies[k].motion.pose_and_twist(contact.time_lo);
+            let pose = poses[k].0;
             self.bodies[k].body.mesh().corners(triangle as usize).map(|p| pose.transform_point(p))
         };
         let apart = triangle_distance(&corners(0, contact.triangle_a), &corners(1, contact.triangle_b));
@@ -325,22 +367,26 @@ impl<'a> Advance<'a> {
             return Ok(None);
         }
         let end = joints.into_iter().flatten().fold(self.window.end(), f64::min);
-        let poses = self.bodies.map(|body| body.motion.pose_and_twist(self.now).0);
+        let poses = self.poses_at(self.now).map(|(pose, _)| pose);
         for (body, Pose { rotation, translation, .. }) in poses.iter().enumerate() {
             if !(rotation.is_finite() && translation.is_finite()) {
                 return Err(QueryError::BadMotion { body });
             }
         }
         let largest = self.largest.min(self.usual_deviation(&poses));
-        let mut until = (self.now + self.longest).min(end).max(self.now.next_up().min(end));
+        let longest = self.longest.min(self.expected_span(largest.max(SMALL_PART * self.tolerance)));
+        let mut until = (self.now + longest).min(end).max(self.now.next_up().min(end));
         loop {
             self.work += TESTS_A_FIT;
             let fitted =
                 FittedTwists::new(&self.bodies, Interval::new(self.now, until), poses[1].translation);
             let shortest = until <= self.now.next_up();
             if let Some(fitted) = fitted {
-                let tolerance = self.tolerance.max(self.rounding_tolerance(fitted.floor));
+                let tolerance = self.tolerance.max(rounding_tolerance(&fitted));
                 let enough = largest.max(SMALL_PART * tolerance).max(2.0 * fitted.floor);
+                let length = until - self.now;
+                let curvature = (fitted.deviation - fitted.floor) / (length * length);
+                self.last = Some(LastFit { length, curvature });
                 if fitted.deviation <= enough {
                     return Ok(Some(FittedSpan { fitted, until }));
                 }
@@ -369,20 +415,33 @@ impl<'a> Advance<'a> {
         PART_OF_ROOM * room.max(a.1.min(b.1)).max(SMALL_PART * a.1.max(b.1))
     }
 
-    /// The tolerance that enclosures of a certain width at single times need; zero if they are wider than rounding explains.
-    fn rounding_tolerance(&self, floor: f64) -> f64 {
-        let size = self.bodies.iter().map(|body| {
-            let (pose, _) = body.motion.pose_and_twist(self.now);
-            pose.translation.length() + body.body.radius() + (body.body.center() - pose.at).length()
-        });
-        if floor <= ROUNDINGS * size.sum::<f64>() { 2.0 * floor / SMALL_PART } else { 0.0 }
+    /// Poses and twists at a time; the last ones are kept, since a span begins where the one before came near.
+    fn poses_at(&mut self, time: f64) -> [(Pose, Twist); 2] {
+        match self.poses {
+            Some((known, poses)) if known == time => poses,
+            _ => {
+                let poses = self.bodies.map(|body| body.motion.pose_and_twist(time));
+                self.poses = Some((time, poses));
+                poses
+            }
+        }
+    }
+
+    /// About how long a span may be to deviate by so much, if the motions go on as in the last span; longer than any if
+    /// nothing is known. It saves fits of spans that are too long, and proves nothing.
+    fn expected_span(&self, deviation: f64) -> f64 {
+        let Some(LastFit { length, curvature }) = self.last else { return f64::INFINITY };
+        let expected = (EXPECTED * deviation / curvature).sqrt();
+        // What rounding leaves of a short span says nothing of a long one.
+        if expected.is_nan() || self.longest > MOST_EXPECTED * length { f64::INFINITY } else { expected }
     }
 
     /// Data of the fitted motions expressed by the true ones: points by their weights, speeds by the true twists. That the
-    /// fitted motions' features cross says of the true ones only that they are near.
-    fn true_contact(&self, contact: Contact) -> Contact {
+    /// fitted motions' features cross says of the true ones only that they are near, unless those cross as well.
+    fn true_contact(&mut self, contact: Contact) -> Contact {
+        let poses = self.poses_at(contact.time_lo);
         let at = |k: usize, triangle: u32, weights: [f64; 3]| {
-            let (pose, twist) = self.bodies[k].motion.pose_and_twist(contact.time_lo);
+            let (pose, twist) = poses[k];
             let corners = self.bodies[k].body.mesh().corners(triangle as usize);
             let point = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
             let place = pose.transform_point(point);
@@ -392,7 +451,7 @@ impl<'a> Advance<'a> {
         let (point_b, speed_b) = at(1, contact.triangle_b, contact.barycentric_b);
         let inside = contact.start == StartState::Contained;
         let evidence = match contact.evidence {
-            Evidence::Crossing if !inside => Evidence::Near,
+            Evidence::Crossing if !inside && !self.crosses(&contact) => Evidence::Near,
             evidence => evidence,
         };
         let closing_speed = (speed_a - speed_b).dot(contact.normal);
@@ -400,9 +459,20 @@ impl<'a> Advance<'a> {
         self.with_what_time_leaves(contact)
     }
 
+    /// Proof that the two triangles of a contact share a point at the end of its bracket.
+    fn crosses(&self, contact: &Contact) -> bool {
+        let triangles = [contact.triangle_a, contact.triangle_b];
+        PlacedTriangles::new(&self.bodies, triangles, contact.time_hi).certainly_cross()
+    }
+
+    fn meeting(&self) -> Meeting<'_> {
+        let Self { bodies, window, tolerance, options, .. } = self;
+        Meeting { bodies, window: *window, separation: options.min_separation, tolerance: *tolerance }
+    }
+
     /// Where numbers for time are too far apart for the tolerance, more is left at `time_lo` than the search left on its
     /// own clock: then the tolerance is what is left there, as for constant twists. A larger one takes no promise back.
-    fn with_what_time_leaves(&self, contact: Contact) -> Contact {
+    fn with_what_time_leaves(&mut self, contact: Contact) -> Contact {
         let left = self.room_at(&contact);
         let covered = left.is_nan() || left <= MOST_LEFT * contact.tolerance;
         if covered || contact.start != StartState::Apart || self.options.mode == Mode::Capoeira {
@@ -416,4 +486,9 @@ impl<'a> Advance<'a> {
         let start = if self.now == self.window.start() { contact.start } else { StartState::Apart };
         Contact { start, ..contact }
     }
+}
+
+/// The tolerance that enclosures of a certain width at single times need; zero if they are wider than rounding explains.
+pub(super) fn rounding_tolerance(fitted: &FittedTwists) -> f64 {
+    if fitted.floor <= ROUNDINGS * fitted.size { 2.0 * fitted.floor / SMALL_PART } else { 0.0 }
 }

@@ -7,6 +7,7 @@ mod general_motion;
 mod proven_crossing;
 mod report;
 mod time_of_contact;
+mod true_poses;
 mod warm_start;
 
 pub use batch::time_of_contact_batch;

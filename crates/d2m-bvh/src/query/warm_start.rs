@@ -1,13 +1,16 @@
 //! Queries that use what earlier ones left in a cache, and give the same bits as without.
 
-use super::constant_twist::{ask, scene_of};
-use super::general_motion::general_motion;
+use super::constant_twist::{ask, scene_of, scene_of_twists};
+use super::fitted_twist::FittedTwists;
+use super::general_motion::{check_times, general_motion, rounding_tolerance, tolerance_of};
+use super::true_poses::Meeting;
 use crate::search::Scene;
 use crate::search::relative_trajectory::RelativeTrajectory;
 use crate::search::triangle_pair::closest::closest;
 use crate::search::triangle_pair::separating_axis::place_a;
 use crate::{Budget, Mode, Moving, PairCache, QueryError, QueryOptions, TimeOfContact, Window};
 use d2m_feature::triangles_intersect;
+use d2m_interval::Interval;
 use d2m_lanes::Quad;
 
 /// As [`time_of_contact`](crate::time_of_contact), with a cache that one pair of bodies keeps from query to query, for
@@ -16,9 +19,10 @@ use d2m_lanes::Quad;
 /// Promise: the answer has the same bits whatever the cache holds. What it saves: as long as bodies do not meet, a
 /// search proves now and then that they stay further apart than the query needs, and the queries in between are answered by the
 /// bound on how differently they move, in less than a microsecond each. A contact is always searched for, at the same cost as without
-/// a cache; [`contact_exists`] decides faster whether there is one. Nothing is saved with a budget, in
-/// [`Mode::Capoeira`], and for motions without a constant twist. Only a search that would end at the hard cap of
-/// [`Budget::HARD_NODE_TESTS`], after a minute, may be answered by the cache although it could not decide.
+/// a cache; [`contact_exists`] decides faster whether there is one. For motions whose twists are not constant that holds where
+/// one twist is near them for the whole window. Nothing is saved with a budget and in [`Mode::Capoeira`]. Only a search that would end
+/// at the hard cap of [`Budget::HARD_NODE_TESTS`], after a minute, or because the enclosures of a user's motion become too
+/// wide in the window, may be answered by the cache although it could not decide.
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, Moving, PairCache, QueryOptions, TriMesh, Window, time_of_contact, time_of_contact_with};
@@ -55,28 +59,106 @@ pub fn time_of_contact_with(
     cache: &mut PairCache,
 ) -> Result<TimeOfContact, QueryError> {
     let Some(scene) = scene_of(a, b, window, options)? else {
-        return general_motion([a, b], window, options);
+        return general_motion_with([a, b], window, options, cache);
     };
     if options.budget != Budget::UNLIMITED || options.mode == Mode::Capoeira {
         return ask(&scene, options);
     }
     let trajectory = RelativeTrajectory::of(&scene);
-    let room = cache.room_along(&trajectory, scene.solids);
-    if room.is_some_and(|room| excludes_contact(&scene, room))
-        || more_room(&scene, &trajectory, options, cache)?
-    {
+    if stay_apart(&scene, &trajectory, options, cache)? {
         return Ok(TimeOfContact::Separated);
     }
     let answer = ask(&scene, options)?;
-    match &answer {
-        TimeOfContact::Separated => cache.found_apart(&trajectory, scene.solids, options.min_separation),
-        TimeOfContact::Contact(contact) => {
-            let after = contact.time_lo - window.start();
-            cache.found_contact([contact.triangle_a, contact.triangle_b], after);
-        }
-        TimeOfContact::Undecided { .. } => {}
+    remember(&answer, window, cache);
+    if answer == TimeOfContact::Separated {
+        cache.found_apart(&trajectory, scene.solids, options.min_separation);
     }
     Ok(answer)
+}
+
+/// Does the cache know that the bodies stay apart, or does a search for more separation than the query's prove it now?
+fn stay_apart(
+    scene: &Scene<'_>,
+    trajectory: &RelativeTrajectory,
+    options: &QueryOptions,
+    cache: &mut PairCache,
+) -> Result<bool, QueryError> {
+    let room = cache.room_along(trajectory, scene.solids);
+    Ok(room.is_some_and(|room| excludes_contact(scene, room))
+        || more_room(scene, trajectory, options, cache)?)
+}
+
+/// Remembers a contact.
+fn remember(answer: &TimeOfContact, window: Window, cache: &mut PairCache) {
+    if let TimeOfContact::Contact(contact) = answer {
+        cache.found_contact([contact.triangle_a, contact.triangle_b], contact.time_lo - window.start());
+    }
+}
+
+/// The query of motions whose twists are not constant. What the cache knows is about the twists that are fitted to them over the
+/// whole window: those differ from the motions by their deviation, which is taken from the separation.
+fn general_motion_with(
+    bodies: [Moving<'_>; 2],
+    window: Window,
+    options: &QueryOptions,
+    cache: &mut PairCache,
+) -> Result<TimeOfContact, QueryError> {
+    if options.budget != Budget::UNLIMITED || options.mode == Mode::Capoeira {
+        return general_motion(bodies, window, options);
+    }
+    check_times(&bodies, window)?;
+    let fitted = WindowFit::try_new(&bodies, window, options);
+    if let Some(WindowFit { scene, trajectory, options, .. }) = &fitted
+        && stay_apart(scene, trajectory, options, cache)?
+    {
+        return Ok(TimeOfContact::Separated);
+    }
+    let answer = general_motion(bodies, window, options)?;
+    remember(&answer, window, cache);
+    if let Some(WindowFit { scene, trajectory, off, .. }) = &fitted
+        && answer == TimeOfContact::Separated
+    {
+        cache.found_apart(trajectory, scene.solids, options.min_separation - off);
+    }
+    Ok(answer)
+}
+
+/// Twists that follow two motions over a whole window, and what a query of them has to be.
+struct WindowFit<'a> {
+    scene: Scene<'a>,
+    trajectory: RelativeTrajectory,
+    /// With the separation that the fitted motions need.
+    options: QueryOptions,
+    /// By how much distances differ, at most.
+    off: f64,
+}
+
+impl<'a> WindowFit<'a> {
+    /// `None` where no twists follow the motions closely enough.
+    fn try_new(bodies: &[Moving<'a>; 2], window: Window, options: &QueryOptions) -> Option<Self> {
+        let fitted = fit_to_window(bodies, window)?;
+        let tolerance = tolerance_of(bodies, options).max(rounding_tolerance(&fitted));
+        let off = (fitted.deviation + ROOM_FOR_WIDTH * fitted.floor) * UP;
+        let separation = (options.min_separation + off) * UP;
+        let options_of_fit = options.with_tolerance(tolerance).with_min_separation(separation);
+        let twists = [0, 1].map(|k| (bodies[k].body, fitted.twists[k]));
+        let span = fitted.clock.window(window.start(), window.end()).ok()?;
+        let solids = bodies.map(|body| body.solid_in(options));
+        let scene = scene_of_twists(twists, solids, span, &options_of_fit).ok()?;
+        let trajectory = RelativeTrajectory::of(&scene);
+        let close = fitted.deviation <= MOST_DEVIATION * trajectory.extent();
+        close.then_some(Self { scene, trajectory, options: options_of_fit, off })
+    }
+}
+
+/// Twists that follow the motions over all of a window in which both are smooth.
+fn fit_to_window(bodies: &[Moving<'_>; 2], window: Window) -> Option<FittedTwists> {
+    let joint = |body: &Moving<'_>| body.motion.smooth_until(window.start());
+    if bodies.iter().filter_map(joint).any(|joint| joint.is_nan() || joint < window.end()) {
+        return None;
+    }
+    let origin = bodies[1].motion.pose_and_twist(window.start()).0.translation;
+    FittedTwists::new(bodies, Interval::new(window.start(), window.end()), origin)
 }
 
 /// Do the bodies meet anywhere in the window? The mode of the options does not matter.
@@ -130,19 +212,37 @@ pub fn contact_exists(
     cache: &mut PairCache,
 ) -> Result<Option<bool>, QueryError> {
     let options = options.with_mode(Mode::Exists);
+    let scene = scene_of(a, b, window, &options)?;
     if options.budget == Budget::UNLIMITED
-        && let Some(scene) = scene_of(a, b, window, &options)?
         && let Some(triangles) = cache.within([&a, &b].map(|moving| moving.body.mesh().triangle_count()))
-        && let Some(after) = meet_again(&scene, triangles, cache.meeting)
     {
-        cache.found_contact(triangles, after);
-        return Ok(Some(true));
+        let after = match &scene {
+            Some(scene) => meet_again(scene, triangles, cache.meeting),
+            None => move_to_meet_again([a, b], window, &options, (triangles, cache.meeting))?,
+        };
+        if let Some(after) = after {
+            cache.found_contact(triangles, after);
+            return Ok(Some(true));
+        }
     }
     Ok(match time_of_contact_with(a, b, window, &options, cache)? {
         TimeOfContact::Separated => Some(false),
         TimeOfContact::Contact(_) => Some(true),
         TimeOfContact::Undecided { .. } => None,
     })
+}
+
+/// As [`meet_again`], for any motions.
+fn move_to_meet_again(
+    bodies: [Moving<'_>; 2],
+    window: Window,
+    options: &QueryOptions,
+    (triangles, after): ([u32; 2], f64),
+) -> Result<Option<f64>, QueryError> {
+    check_times(&bodies, window)?;
+    let tolerance = tolerance_of(&bodies, options);
+    let meeting = Meeting { bodies: &bodies, window, separation: options.min_separation, tolerance };
+    Ok(meeting.found_near(triangles, window.start() + after).map(|time| time - window.start()))
 }
 
 /// Does a search of this scene find no contact when the bodies are further apart than `room` all the time? A contact
@@ -174,6 +274,12 @@ fn more_room(
     Ok(proven)
 }
 
+/// A deviation of more than this part of the bodies' reach leaves no room that is worth a proof.
+const MOST_DEVIATION: f64 = 1.0 / 16.0;
+/// Room for the width of enclosures at single times: motions that are known so badly are for the search to judge.
+const ROOM_FOR_WIDTH: f64 = 16.0;
+/// Covers the rounding of the few sums of bounds.
+const UP: f64 = 1.0 + 1e-14;
 /// Steps towards the time at which two triangles meet.
 const STEPS: u32 = 8;
 

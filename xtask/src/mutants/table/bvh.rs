@@ -429,6 +429,20 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/src/search/parallel.rs::any_number_of_threads_does_the_same",
     ),
     patch(
+        "triangles meet where motions that are known badly may be",
+        "crates/d2m-bvh/src/query/true_poses.rs",
+        "(state.position_radius + state.rotation_radius * far + rounding)",
+        "(state.rotation_radius * 0.0 + rounding)",
+        "crates/d2m-bvh/tests/warm_start_any_motion.rs::wide_enclosures_prove_no_meeting",
+    ),
+    patch(
+        "a cache takes fitted twists for the motions",
+        "crates/d2m-bvh/src/query/warm_start.rs",
+        "let off = (fitted.deviation + ROOM_FOR_WIDTH * fitted.floor) * UP;",
+        "let off = (0.0 * fitted.deviation + ROOM_FOR_WIDTH * fitted.floor) * UP;",
+        "crates/d2m-bvh/tests/warm_start_any_motion.rs::what_the_fitted_twist_leaves_out_counts",
+    ),
+    patch(
         "half of the acceleration in the deviation of fitted twists",
         "crates/d2m-bvh/src/query/fitted_twist.rs",
         "let square = 0.5 * half * half;",

@@ -34,7 +34,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "Coriolis acceleration once in a composition",
         "crates/d2m-motion/src/kinematics.rs",
-        ".plus(coriolis)\n                .plus(coriolis)",
+        ".plus(coriolis)\n                    .plus(coriolis)",
         ".plus(coriolis)",
         "crates/d2m-motion/src/chain_tests.rs::enclosures_of_chains_hold_and_are_tight",
     ),
