@@ -20,6 +20,7 @@ mod snapshot;
 mod step;
 
 pub use body::{Body, BodyId, Kind, Mass, Motion};
+pub use contact::Material;
 pub use error::{MassError, SimulationError, StepError};
 pub use listener::ContactListener;
 pub use mass::MassProperties;

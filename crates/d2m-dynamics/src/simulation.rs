@@ -152,10 +152,13 @@ impl Simulation {
         Ok(())
     }
 
-    /// Restitution and friction of a pair.
-    pub fn pair(&self, a: BodyId, b: BodyId) -> (f64, f64) {
-        let material = self.material(a.index(), b.index());
-        (material.restitution, material.friction)
+    /// Restitution and friction of a pair: those of [`Self::set_pair`], else the greater restitution and the mean friction of the
+    /// two bodies.
+    ///
+    /// # Panics
+    /// If a body belongs to another simulation, with more bodies.
+    pub fn pair(&self, a: BodyId, b: BodyId) -> Material {
+        self.material(a.index(), b.index())
     }
 
     /// A force through the center of mass and a torque, world axes, over the next step; gravity comes on top. Wakes the body.

@@ -146,9 +146,9 @@ fn pairs(
             found.map(|k| ids[k]).ok_or_else(|| fields.fault(key, format!("no body {name:?}")))
         };
         let (a, b) = (body("a")?, body("b")?);
-        let (restitution, friction) = simulation.pair(a, b);
-        let restitution = fields.number("restitution")?.unwrap_or(restitution);
-        let friction = fields.number("friction")?.unwrap_or(friction);
+        let usual = simulation.pair(a, b);
+        let restitution = fields.number("restitution")?.unwrap_or(usual.restitution);
+        let friction = fields.number("friction")?.unwrap_or(usual.friction);
         let set = simulation.set_pair(a, b, restitution, friction);
         set.map_err(|error| Failure::at(fields.place(), error))?;
     }

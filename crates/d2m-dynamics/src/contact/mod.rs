@@ -6,6 +6,7 @@ mod rows;
 mod solver;
 
 pub(crate) use impact::impact;
-pub(crate) use point::{ContactPoint, Material, tangents};
+pub use point::Material;
+pub(crate) use point::{ContactPoint, tangents};
 pub(crate) use rows::{HIT, Span, select};
 pub(crate) use solver::{Solver, SolverBody, Sweeps};

@@ -5,9 +5,12 @@ use glam::DVec3;
 
 /// How two bodies touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Material {
-    pub(crate) restitution: f64,
-    pub(crate) friction: f64,
+#[non_exhaustive]
+pub struct Material {
+    /// Coefficient of restitution, from 0 to 1.
+    pub restitution: f64,
+    /// Coulomb's coefficient of friction, not negative.
+    pub friction: f64,
 }
 
 /// A pair of closest features of two bodies, and the impulse between them.
