@@ -1,4 +1,5 @@
 //! A small random generator with the same numbers on every machine and in every release.
+use crate::Random;
 use glam::{DQuat, DVec3};
 
 /// xoshiro256++ (Blackman and Vigna 2021, doi:10.1145/3460772), its state filled by splitmix64.
@@ -10,13 +11,8 @@ pub struct Xoshiro256([u64; 4]);
 impl Xoshiro256 {
     /// The generator of this seed.
     pub fn new(seed: u64) -> Self {
-        let mut state = seed;
-        Self(core::array::from_fn(|_| {
-            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let z = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            z ^ (z >> 31)
-        }))
+        let mut random = Random(seed);
+        Self(core::array::from_fn(|_| random.bits()))
     }
 
     /// The next 64 bits.

@@ -1,5 +1,5 @@
 //! Random differential families: each operation against the exact reference, end points always among the
-//! samples. Callable from the crate's tests and from `cargo xtask accuracy interval`.
+//! samples. Called by the tests of `d2m-interval` and by `cargo xtask accuracy interval`.
 use crate::Random;
 use d2m_interval::{Interval, IntervalVec3};
 use dashu_int::{IBig, ops::Abs};

@@ -82,49 +82,34 @@ fn series(first: Fixed, factor: &Fixed, divisor: impl Fn(u32) -> u32) -> Fixed {
     sum
 }
 
-pub(crate) fn pi() -> &'static Fixed {
-    static PI: OnceLock<Fixed> = OnceLock::new();
-    PI.get_or_init(|| {
-        // Machin: π = 16 atan(1/5) − 4 atan(1/239)
-        let inverse = |k: u32| {
-            let (mut power, mut sum, mut n) = (one() / IBig::from(k), IBig::from(0), 1u32);
-            while power != IBig::from(0) {
-                let term = &power / IBig::from(n);
-                if n % 4 == 1 {
-                    sum += term;
-                } else {
-                    sum -= term;
-                }
-                power /= IBig::from(k * k);
-                n += 2;
+/// π by Machin's formula, 16 atan(1/5) − 4 atan(1/239), in units of 1/`one`.
+fn machin(one: &IBig) -> IBig {
+    let inverse = |k: u32| {
+        let (mut power, mut sum, mut n) = (one / IBig::from(k), IBig::from(0), 1u32);
+        while power != IBig::from(0) {
+            let term = &power / IBig::from(n);
+            if n % 4 == 1 {
+                sum += term;
+            } else {
+                sum -= term;
             }
-            sum
-        };
-        inverse(5) * IBig::from(16) - inverse(239) * IBig::from(4)
-    })
+            power /= IBig::from(k * k);
+            n += 2;
+        }
+        sum
+    };
+    inverse(5) * IBig::from(16) - inverse(239) * IBig::from(4)
 }
 
-/// π with 1200 places more, for arguments up to the largest double.
-fn long_half_pi() -> &'static Fixed {
+pub(crate) fn pi() -> &'static Fixed {
     static PI: OnceLock<Fixed> = OnceLock::new();
-    PI.get_or_init(|| {
-        let one = IBig::from(1) << (2 * P);
-        let inverse = |k: u32| {
-            let (mut power, mut sum, mut n) = (&one / IBig::from(k), IBig::from(0), 1u32);
-            while power != IBig::from(0) {
-                let term = &power / IBig::from(n);
-                if n % 4 == 1 {
-                    sum += term;
-                } else {
-                    sum -= term;
-                }
-                power /= IBig::from(k * k);
-                n += 2;
-            }
-            sum
-        };
-        (inverse(5) * IBig::from(16) - inverse(239) * IBig::from(4)) >> 1usize
-    })
+    PI.get_or_init(|| machin(&one()))
+}
+
+/// π/2 with 1400 places more, for arguments up to the largest double.
+fn long_half_pi() -> &'static Fixed {
+    static HALF_PI: OnceLock<Fixed> = OnceLock::new();
+    HALF_PI.get_or_init(|| machin(&(IBig::from(1) << (2 * P))) >> 1usize)
 }
 
 pub(crate) fn ln_2() -> &'static Fixed {
@@ -132,15 +117,19 @@ pub(crate) fn ln_2() -> &'static Fixed {
     LN_2.get_or_init(|| atanh_series(&(one() / IBig::from(3))) * IBig::from(2))
 }
 
-fn atanh_series(s: &Fixed) -> Fixed {
-    let square = mul(s, s);
-    let (mut power, mut sum, mut n) = (s.clone(), IBig::from(0), 1u32);
+/// Σ x·squareⁿ/(2n + 1), n from 0 on: atanh x for the square of x, atan x for its negative.
+fn odd_series(x: &Fixed, square: &Fixed) -> Fixed {
+    let (mut power, mut sum, mut n) = (x.clone(), IBig::from(0), 1u32);
     while power != IBig::from(0) && power != IBig::from(-1) {
         sum += &power / IBig::from(n);
-        power = mul(&power, &square);
+        power = mul(&power, square);
         n += 2;
     }
     sum
+}
+
+fn atanh_series(s: &Fixed) -> Fixed {
+    odd_series(s, &mul(s, s))
 }
 
 pub(crate) fn exp(x: &Fixed) -> Fixed {
@@ -202,14 +191,7 @@ pub(crate) fn atan(x: &Fixed) -> Fixed {
         let root = sqrt(&(one() + mul(&t, &t)));
         t = div(&t, &(root + one()));
     }
-    let square = -mul(&t, &t);
-    let (mut power, mut sum, mut n) = (t, IBig::from(0), 1u32);
-    while power != IBig::from(0) && power != IBig::from(-1) {
-        sum += &power / IBig::from(n);
-        power = mul(&power, &square);
-        n += 2;
-    }
-    sum * IBig::from(1024)
+    odd_series(&t, &-mul(&t, &t)) * IBig::from(1024)
 }
 
 /// Angle of (x, y) ≠ (0, 0).

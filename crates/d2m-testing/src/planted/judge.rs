@@ -1,4 +1,4 @@
-//! Asks the library and the oracle, and says what is wrong.
+//! Compares the library's answers with the oracle's and states what is wrong.
 use super::families::{FAMILIES, Family, Kind, Planted, plant};
 use super::oracle::{Vertices, big, distance, rigid, straight, true_contact};
 use super::quick::{self, QuickVertices};
@@ -9,7 +9,7 @@ use d2m_feature::{ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, 
 /// What a run saw.
 #[derive(Debug, Clone, Default)]
 pub struct Tally {
-    /// Queries asked.
+    /// Queries that were judged.
     pub queries: u64,
     /// True contacts that the oracle proved.
     pub true_contacts: u64,
