@@ -1,11 +1,11 @@
 //! `cargo xtask accuracy`: random families against slow oracles. Any false negative fails the run.
+mod broken_answers;
 mod feature;
 mod hostile;
 mod interval;
 mod mesh;
 mod reference;
 mod statics;
-mod teeth;
 
 use crate::TaskResult;
 use crate::bench::Sabotage;
@@ -80,7 +80,7 @@ const FAMILIES: [Family; 12] = [
     ("mesh: hostile scenes and their twins", 10, hostile::run),
     ("mesh: reference method and engine", 20, reference::run),
     ("mesh: collide and distance at rest", 2, statics::run),
-    ("mutants: broken answers are noticed", 100, teeth::run),
+    ("mutants: broken answers are noticed", 100, broken_answers::run),
 ];
 
 /// `cargo xtask accuracy`.

@@ -256,7 +256,7 @@ mod tests {
 
     /// The judge sees an answer that is late, one that is missing, one that is far too early, and nothing in a good one.
     #[test]
-    fn the_judge_has_teeth() {
+    fn faults_of_answers_are_noticed() {
         let mut judged = 0;
         for index in 0..40 {
             let (name, scene) = draw(index);

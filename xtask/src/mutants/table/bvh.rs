@@ -556,6 +556,6 @@ pub(super) const MUTANTS: &[Mutant] = &[
     ),
     in_test(
         "answers of both methods early or late by 1e-8",
-        "crates/d2m-bvh/src/paper/cross_check.rs::the_judge_has_teeth",
+        "crates/d2m-bvh/src/paper/cross_check.rs::faults_of_answers_are_noticed",
     ),
 ];

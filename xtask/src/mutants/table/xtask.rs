@@ -6,6 +6,6 @@ pub(super) const MUTANTS: &[Mutant] = &[
     in_test("an engine that is late by 1e-6, or misses", "xtask/src/judge/tests.rs::faults_are_found"),
     in_test(
         "accuracy and bench asked of a broken engine",
-        "xtask/src/accuracy/teeth.rs::a_broken_engine_is_noticed",
+        "xtask/src/accuracy/broken_answers.rs::a_broken_engine_is_noticed",
     ),
 ];
