@@ -23,7 +23,7 @@ pub(crate) fn is_bounded(moving: &Moving<'_>, window: Interval) -> bool {
 /// About the part of a body's radius by which one evaluation of the spheres' parabolas may be off.
 ///
 /// Tuned on trials of spot/cow at relative speeds 4 and 512. Ten times more costs 1.4–2 times at speed 512 (leaf spheres
-/// open too early), ten times less 3 times at speed 4 (too many stretches).
+/// are expanded too early), ten times less 3 times at speed 4 (too many stretches).
 const SLACK: f64 = 1.0 / 2048.0;
 
 /// The longest stretch of time that is searched with one set of enclosures.

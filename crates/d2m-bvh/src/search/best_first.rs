@@ -26,7 +26,7 @@ const MEMORY_CHECK: u32 = 128;
 /// Least unit of time of a window, for those of no length: nothing moves by more than a rounding in it.
 const LEAST_SPAN: f64 = 1.0 / 1_152_921_504_606_846_976.0; // 2⁻⁶⁰
 
-/// A search that has covered this part of its window is making progress: it gets a node test for each triangle before swept
+/// A search that has covered this part of its sub-window is making progress: it gets a node test for each triangle before swept
 /// volumes are compared.
 const ON_ITS_WAY: f64 = 0.0625;
 
@@ -202,7 +202,7 @@ fn first_triangle(nodes: &[WideNode], index: u32) -> u32 {
     }
 }
 
-/// Units of the window from key `now` to key `limit`, rounded up.
+/// Units of the sub-window from key `now` to key `limit`, rounded up.
 fn time_left(limit: u32, now: u32) -> f32 {
     (limit - now) as f32 * (1.0 / KEY_SCALE as f32) * NARROW_UP as f32
 }

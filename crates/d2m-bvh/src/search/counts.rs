@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SearchCounts {
-    /// Windows that were searched.
+    /// Sub-windows that were searched.
     pub windows: u64,
     /// Batches handed out by the queue.
     pub frames: u64,

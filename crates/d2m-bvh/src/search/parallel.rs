@@ -15,13 +15,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Work of a search, in node tests, before it is worth while to wake other threads.
 const FIRST_WORK: u64 = 1024;
-/// Work of each thread before the results are taken, for windows like those so far: more than it costs to wake it.
+/// Work of each thread before the results are taken, for sub-windows like those so far: more than it costs to wake it.
 const ROUND_WORK: u64 = 4096;
-/// Windows of each thread before the results are taken: at least, and at most.
+/// Sub-windows of each thread before the results are taken: at least, and at most.
 const LEAST_WINDOWS_A_THREAD: u64 = 4;
 const MOST_WINDOWS_A_THREAD: u64 = 512;
 
-/// What the search of one window gave.
+/// What the search of one sub-window gave.
 #[derive(Clone, Copy, Debug)]
 struct Searched {
     /// The answer; none: apart all along.
@@ -61,7 +61,7 @@ impl Search<'_> {
         }
     }
 
-    /// The next windows: so many that the threads are busy, and the search goes on without swept volumes for so long.
+    /// The next sub-windows: so many that the threads are busy, and the search goes on without swept volumes for so long.
     fn windows_worth_searching(&self, mut start: f64) -> Vec<SubWindow> {
         let (counts, threads) = (&self.scratch.counts, rayon::current_num_threads());
         let mut windows = Vec::new();
@@ -82,7 +82,7 @@ impl Search<'_> {
         windows
     }
 
-    /// What each window gives from the counts of now on; none where it was given up.
+    /// What each sub-window gives from the counts of now on; none where it was given up.
     fn search_at_once(&mut self, windows: &[SubWindow]) -> Vec<Option<Searched>> {
         let threads = rayon::current_num_threads().min(windows.len());
         let (next, answered) = (AtomicUsize::new(0), AtomicUsize::new(usize::MAX));
@@ -134,7 +134,7 @@ impl Search<'_> {
         results.into_iter().map(OnceLock::into_inner).collect()
     }
 
-    /// Would the window have been searched in the same way from the true counts as from those `known` before?
+    /// Would the sub-window have been searched in the same way from the true counts as from those `known` before?
     fn would_do_the_same(&self, known: &SearchCounts, searched: &Searched) -> bool {
         let after = self.scratch.counts.with(&searched.counts);
         let same_order = [SECOND_ORDER_TESTS, THIRD_ORDER_TESTS].iter().all(|&limit| {

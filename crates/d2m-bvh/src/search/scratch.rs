@@ -16,9 +16,9 @@ pub(crate) struct Scratch {
     pub(crate) last_tested: [u32; 2],
     /// The spans of time that wait, and their pairs.
     pub(crate) split: WaitingSpans,
-    /// The motion over the window of the last contact that a search with this memory found.
+    /// The motion over the sub-window of the last contact that a search with this memory found.
     pub(crate) found_in: Option<RelativeMotion>,
-    /// For windows that are searched ahead by other threads.
+    /// For sub-windows that other threads search before their turn.
     #[cfg(feature = "rayon")]
     pub(crate) helpers: Vec<Scratch>,
 }

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 /// Factor of the error bound of a gap along a box axis; docs/theory/static-queries.md counts at most 29.
 pub(super) const GAP_ERROR: f64 = 32.0 * UNIT_F32;
-/// The single body seen from the wide body, whose node is opened. Lengths are in units of the wide body's tree.
+/// The single body seen from the wide body, whose node is expanded. Lengths are in units of the wide body's tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side {
     /// Columns of the rotation into the wide body's frame.

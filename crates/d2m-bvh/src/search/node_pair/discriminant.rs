@@ -1,4 +1,4 @@
-//! Along which direction are two boxes best told apart?
+//! The direction along which two boxes are the furthest apart against their spreads.
 //!
 //! With the spreads S = Σ hᵢ² aᵢaᵢᵀ of two boxes (aᵢ unit axes, hᵢ half extents) and c from the center of the one to that of the
 //! other, n·c is largest against √(n·S_A n + n·S_B n) for n = (S_A + S_B)⁻¹ c: Fisher's linear discriminant (Fisher 1936, DOI

@@ -77,7 +77,7 @@ impl<T: Elementwise> GapAndRate<T> {
 }
 
 /// Lower bounds on the times, counted from the frame, until which each lane's box stays apart from the single one;
-/// not positive, or not a number, where nothing is known. In units of the window, not yet clipped.
+/// not positive, or not a number, where nothing is known. In units of the sub-window, not yet clipped.
 ///
 /// Five directions are evaluated: the middle axes of both boxes side by side, the last axes, and the line of the centers.
 #[inline(always)]

@@ -8,9 +8,9 @@ use crate::search::queue::Item;
 use crate::tree::node::{NodeBox, WIDTH, WideNode};
 use d2m_lanes::{Lanes, Rows};
 
-/// Keys of a window run from 0 to this for its whole unit of time.
+/// Keys of a sub-window run from 0 to this for its whole unit of time.
 pub(crate) const KEY_SCALE: f64 = 536_870_912.0; // 2²⁹
-/// Later times get this key: beyond every window, and with a key of now still a number of 31 bits.
+/// Later times get this key: beyond every sub-window, and the sum with a key of the frame is still a number of 31 bits.
 const LATEST_KEY: f32 = 1.25 * KEY_SCALE as f32;
 
 /// The keys that pairs below an item may have.

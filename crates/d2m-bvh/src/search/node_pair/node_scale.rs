@@ -1,7 +1,7 @@
 //! Units and margins of the node tests of one search.
 
 /// Constants of one search for one choice of the wide body. Lengths are in units of that body's tree, times in
-/// units of the window.
+/// units of the sub-window.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NodeScale {
     /// Unit of the single body over that of the wide one, a power of two.
