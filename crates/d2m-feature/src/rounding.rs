@@ -1,15 +1,9 @@
 //! Constants of the error counts, each with where it comes from.
 use d2m_lanes::power_of_two;
+pub(crate) use d2m_lanes::{UNIT, UP};
 use glam::DVec3;
 
-/// Unit roundoff, 2⁻⁵³.
-pub(crate) const UNIT: f64 = 0.5 * f64::EPSILON;
-
-/// Covers the rounding of a bound that is made of fewer than 64 operations on non-negative numbers: (1 + 2⁻⁵³)⁶⁴ is below
-/// 1 + 7.2e-15, and the product with this factor adds one more rounding.
-pub(crate) const UP: f64 = 1.0 + 1e-14;
-
-/// The same from below: at most 1 − 9.9e-15, so a product with it stays below the true value after 64 roundings.
+/// [`UP`] from below: at most 1 − 9.9e-15, so a product with it stays below the true value after 64 roundings.
 pub(crate) const DOWN: f64 = 2.0 - UP;
 
 /// 2⁻⁵⁰⁰: more than what a length loses to squares that underflow. Each of three squares loses at most 2⁻¹⁰⁷⁴, so the root

@@ -3,7 +3,7 @@ use core::ops::Mul;
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::{Interval, IntervalVec3};
-use d2m_lanes::{F64x2, power_of_two};
+use d2m_lanes::{F64x2, UNIT, power_of_two};
 
 /// A 3×3 matrix of intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,7 +92,6 @@ impl IntervalMat3 {
     /// s(ab ± cd) has s(|ab| + |cd|) ≤ 1 and so an error of (5 + 2 + 1)u; 1 − s(aa + bb) has s(aa + bb) ≤ 2 and so
     /// 2·8u + u. Padded by 10u and 20u, which leaves more than the rounding of the ends.
     pub fn from_quat_normalized(q: DQuat) -> Self {
-        const UNIT: f64 = 0.5 * f64::EPSILON;
         // Between them no square overflows, and one that underflows is far below u of the sum.
         const SMALLEST_SQUARE: f64 = 1e-200;
         const LARGEST_SQUARE: f64 = 1e200;

@@ -10,6 +10,7 @@ mod exact;
 #[allow(missing_docs)] // named after the operation
 mod fixed;
 mod power_of_two;
+mod rounding;
 #[cfg(feature = "selected")]
 mod selected;
 
@@ -18,6 +19,7 @@ pub use double_double::DoubleDouble;
 pub use exact::{fast_two_sum, two_product, two_sum};
 pub use fixed::{F64x2, F64x4, Vector, sqrt};
 pub use power_of_two::{power_of_two, power_of_two_above, power_of_two_below};
+pub use rounding::{UNIT, UP};
 #[cfg(feature = "selected")]
 pub use selected::{
     Bytes, Doubles, Elementwise, InstructionSet, Lanes, Matrix, Portable, Quad, QuadVec, Rows, Task, Two,

@@ -1,11 +1,5 @@
 //! Constants of the error counts, each with where it comes from.
-
-/// Unit roundoff of f64, 2⁻⁵³.
-pub(crate) const UNIT: f64 = 0.5 * f64::EPSILON;
-
-/// Covers the rounding of a bound that is made of fewer than 64 operations on non-negative numbers: (1 + 2⁻⁵³)⁶⁴ is below
-/// 1 + 7.2e-15, and the product with this factor adds one more rounding.
-pub(crate) const UP: f64 = 1.0 + 1e-14;
+pub(crate) use d2m_lanes::{UNIT, UP};
 
 /// 1 + 2⁻⁴⁶: more than ten times what the roundings of a remainder's bound, or of a sum and a product of non-negative
 /// numbers, add up to.

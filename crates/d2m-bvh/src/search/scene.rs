@@ -8,6 +8,7 @@ use super::node_pair::node_scale::NodeScale;
 use super::triangle_pair::pair_scale::PairScale;
 use crate::tree::margin::{DOWN, NARROW_UP, UNIT_F64, UP, round_up};
 use crate::{MeshTree, QueryError, QueryOptions, Solid, Window};
+use d2m_lanes::power_of_two;
 use d2m_motion::ConstantTwist;
 use glam::DVec3;
 
@@ -29,18 +30,18 @@ const LEAST_TOLERANCE_ERRORS: f64 = 2.0;
 const DEFAULT_TOLERANCE: f64 = 1e-10;
 /// Part of δ that pairs are advanced to above the level. Large against roundings, small against δ.
 const SLACK: f64 = 1.0 / 64.0;
-/// Most rotation, both bodies together, inside one window: frames hold for 0.35 radians.
+/// Most rotation, both bodies together, inside one sub-window: frames hold for 0.35 radians.
 const WINDOW_ANGLE: f64 = 0.3;
 /// Most radians between a reference time and the window: poses are proven for less than 2⁵⁰, and a window of
 /// [`WINDOW_ANGLE`] is then long against the resolution of offsets.
 const MOST_ANGLE: f64 = 1_099_511_627_776.0; // 2⁴⁰
 /// A spin below this (radians in a unit of time) loses part of its speed to underflow if it acts for long: it is refused
 /// unless the angle is below all roundings.
-const LEAST_SPIN: f64 = f64::from_bits((1023 - 900) << 52); // 2⁻⁹⁰⁰
+const LEAST_SPIN: f64 = power_of_two(-900);
 /// See [`LEAST_SPIN`]: below 2⁻⁶⁴ radians.
 const UNSEEN_ANGLE: f64 = 1.0 / 18_446_744_073_709_551_616.0;
 /// Longest length of a scene, in the unit of the meshes: what is computed from it stays below the largest number.
-const MOST_LENGTH: f64 = f64::from_bits((1023 + 1000) << 52); // 2¹⁰⁰⁰
+const MOST_LENGTH: f64 = power_of_two(1000);
 
 /// A body and its motion, in the units of the search.
 #[derive(Clone, Copy, Debug)]
@@ -118,7 +119,7 @@ pub(crate) struct Scene<'a> {
     pub(crate) size: f64,
     /// δ that is used.
     pub(crate) tolerance: f64,
-    /// Longest window of the search.
+    /// Longest sub-window of the search.
     pub(crate) longest: f64,
     /// Reach of both bodies from their reference points, together.
     reach: f64,
@@ -240,7 +241,7 @@ impl<'a> Scene<'a> {
         self.track.at(0.0).length() > self.reach + BALL_ERROR * self.size
     }
 
-    /// The motion over the window of a search that begins at `start`.
+    /// The motion over the sub-window of a search that begins at `start`.
     pub(crate) fn relative_motion(&self, start: f64) -> RelativeMotion {
         RelativeMotion::new([&self.a.motion, &self.b.motion], &self.track, start)
     }
@@ -284,7 +285,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Constants of the node tests of a window, with the first body's nodes expanded, then the second's.
+    /// Constants of the node tests of a sub-window, with the first body's nodes expanded, then the second's.
     pub(crate) fn node_scales(&self, time_unit: f64) -> [NodeScale; 2] {
         let spins = [&self.a, &self.b].map(|body| round_up(body.spin() * time_unit * NARROW_UP));
         let one = |wide: &SceneBody<'_>, single: &SceneBody<'_>, spin: [f32; 2]| {

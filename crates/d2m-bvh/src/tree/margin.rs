@@ -2,10 +2,11 @@
 //!
 //! u = 2⁻²⁴ and v = 2⁻⁵³ are the unit roundoffs of `f32` and `f64`. The derivations are in docs/theory/engine.md.
 
+/// v = 2⁻⁵³.
+pub(crate) use d2m_lanes::UNIT as UNIT_F64;
+
 /// u = 2⁻²⁴.
 pub(crate) const UNIT_F32: f64 = 1.0 / 16_777_216.0;
-/// v = 2⁻⁵³.
-pub(crate) const UNIT_F64: f64 = 1.0 / 9_007_199_254_740_992.0;
 
 /// Factor that raises a positive number by more than some 2000 roundings of terms of one sign could have lowered it:
 /// 2000·2⁻⁵³ < 2⁻⁴². Bounds that are used once a step, not once an operation, can afford it.

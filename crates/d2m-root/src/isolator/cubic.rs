@@ -2,11 +2,11 @@
 //!
 //! **Invariant:** the coefficients are taken as they are, exactly; every rounding made here is counted here. The proofs
 //! of the constants are in `docs/theory/isolator.md`.
-use super::first_zero_bound::UNIT;
 use super::piece::Piece;
 use super::quadratic::{LONGEST_REACH, UNDERFLOW};
 use super::time_unit::TimeUnit;
 use super::{Band, Quadratic};
+use d2m_lanes::UNIT;
 use d2m_lanes::power_of_two;
 
 /// `value + slope·s + curvature·s²/2 + jerk·s³/6`.

@@ -7,11 +7,7 @@
 //! else                                   q > 0 for good
 //! ```
 //! The proof of the constants is in `docs/theory/isolator.md`, section 1.
-use d2m_lanes::{Binary, power_of_two, scaled};
-
-/// Half a unit in the last place of 1: a rounded result is (1 + δ) times the exact one, |δ| ≤ `UNIT`, unless it
-/// underflows or overflows.
-pub(super) const UNIT: f64 = 0.5 * f64::EPSILON;
+use d2m_lanes::{Binary, UNIT, power_of_two, scaled};
 
 /// Added to the discriminant, in parts of slope² + |2 gap·curvature|. Needed are 7: two products and their difference
 /// (2), the gap's own relative error (4), and this addition (1).

@@ -2,9 +2,10 @@
 //!
 //! **Invariant:** the coefficients are taken as they are, exactly; every rounding made here is counted here. The proofs
 //! of the constants are in `docs/theory/isolator.md`.
-use super::first_zero_bound::{UNIT, USUAL_GAPS, bound_first_zero, bound_scaled};
+use super::first_zero_bound::{USUAL_GAPS, bound_first_zero, bound_scaled};
 use super::piece::Piece;
 use super::time_unit::TimeUnit;
+use d2m_lanes::UNIT;
 use d2m_lanes::power_of_two;
 
 /// Error of what [`Quadratic::clip`] and [`Quadratic::bound_below`] compute, in parts of

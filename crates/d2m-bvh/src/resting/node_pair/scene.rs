@@ -7,7 +7,7 @@ use crate::tree::margin::{UNIT_F32, UNIT_F64};
 use crate::tree::node::{Below, OrientedBox, WIDTH};
 use crate::tree::slabs::reach_both_ways;
 use crate::{MeshTree, Posed, QueryError};
-use d2m_lanes::{Lanes, power_of_two_above};
+use d2m_lanes::{Lanes, power_of_two, power_of_two_above};
 use glam::DVec3;
 
 /// Sums and products of up to ten non-negative terms round by 2⁻⁵³ each; 2⁻⁴⁰ covers them all.
@@ -113,7 +113,7 @@ impl<'a> Scene<'a> {
             rotation,
             offset: offset / wide.unit(),
             ratio: single.unit() / wide.unit(),
-            floor: 2.0 * error * (unit / wide.unit()) + f64::from_bits((1023 - 60) << 52),
+            floor: 2.0 * error * (unit / wide.unit()) + power_of_two(-60),
             to_work: (wide.unit() * inverse_unit) as f32,
         };
         let cube = |x: f64| x * x * x;
@@ -303,4 +303,4 @@ pub(crate) fn child(pair: [u32; 2], wide: usize, node: u32, lane: usize) -> [u32
 }
 
 /// The least working unit, 2⁻⁶⁰⁰.
-const LEAST_UNIT: f64 = f64::from_bits((1023 - 600) << 52);
+const LEAST_UNIT: f64 = power_of_two(-600);

@@ -1,6 +1,7 @@
 //! At most four of the points that push in the same direction.
 
 use super::Proximity;
+use d2m_lanes::power_of_two;
 use glam::DVec3;
 
 /// A contact manifold: of all proximities whose normals differ by at most `normal_tolerance` (the length of the
@@ -40,7 +41,7 @@ pub fn reduce_proximities(proximities: &[Proximity], normal_tolerance: f64) -> V
 
 /// Distances that differ by less than this part of the width of a patch are those of parallel faces: a choice, which
 /// nothing certified rests on.
-const NO_DIFFERENCE: f64 = f64::from_bits((1023 - 30) << 52);
+const NO_DIFFERENCE: f64 = power_of_two(-30);
 
 /// Four of a cluster that starts with its closest member.
 fn largest_area(cluster: &[Proximity]) -> Vec<Proximity> {

@@ -1,10 +1,10 @@
 //! The clock and the unit of length of one search.
 
 use crate::Window;
-use d2m_lanes::{power_of_two_above, two_sum};
+use d2m_lanes::{power_of_two, power_of_two_above, two_sum};
 
 /// Units are powers of two between this one and its inverse: both can be multiplied with and divided by.
-const LEAST_UNIT: f64 = f64::from_bits((1023 - 1000) << 52); // 2⁻¹⁰⁰⁰
+const LEAST_UNIT: f64 = power_of_two(-1000);
 
 /// Times of a search are *offsets*: they count from the first instant of the query's window, in units of a power of two
 /// that is about as long as the window. Lengths are in units of a power of two that is about as large as the scene.
