@@ -278,6 +278,11 @@ impl Schedule {
         }
     }
 
+    /// Is there an entry that is not known to be free up to `time`?
+    pub(super) fn may_begin_before(&self, time: f64) -> bool {
+        self.queue.peek().is_some_and(|entry| entry.time.max(self.from) < time)
+    }
+
     /// Puts an entry into the queue.
     pub(super) fn push(&mut self, entry: Entry) {
         self.queue.push(entry);

@@ -223,8 +223,9 @@ impl World {
             }
             if purse.is_limited() && purse.is_empty() {
                 finding.give_up(questions);
-                if goal == Goal::First {
-                    // What is left in the queue is free for longer.
+                // What was known of a pair may free it for longer than its place in the queue says: others may be earlier.
+                let earliest = finding.first_undecided().map_or(limit, |(_, until)| until);
+                if goal == Goal::First && !self.schedule.may_begin_before(earliest) {
                     break Ok(());
                 }
                 continue;

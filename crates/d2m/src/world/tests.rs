@@ -144,6 +144,39 @@ fn separations_of_pairs_are_kept_and_may_change() {
     assert!(world.first_contact(Window::UNIT).is_err());
 }
 
+/// Pairs wait in the order of the times at which their boxes meet. One that is known to be free for longer does not speak for
+/// those behind it when the budget ends: the last two bodies overlap at the start.
+#[test]
+fn a_budget_that_ends_says_nothing_of_pairs_behind_one_that_is_known() {
+    let ring = Arc::new(MeshTree::new(d2m_shapes::mesh("torus?triangles=600").unwrap()));
+    let near = |y: f64, spin: DVec3| {
+        let still = ConstantTwist::REST.with_position(DVec3::Y * y);
+        [still, flying(DVec3::new(0.3, y, 1.4), DVec3::Z * -1.0).with_angular_velocity(spin)]
+    };
+    let mut ended = 0;
+    for tests in (0..400).step_by(3) {
+        let budget = Budget::UNLIMITED.with_node_tests(tests);
+        let mut world = World::new(QueryOptions::default().with_budget(budget));
+        for motion in [near(0.0, DVec3::X), near(9.0, DVec3::Y), near(18.0, DVec3::Z)].into_iter().flatten() {
+            world.add(Body::new(Arc::clone(&ring), motion));
+        }
+        let _ = world.first_contact(Window::try_new(0.0, 0.25).unwrap()).unwrap();
+        for x in [0.0, 0.5] {
+            let place = DVec3::new(x, -9.0, 0.0);
+            world.add(Body::new(Arc::clone(&ring), ConstantTwist::REST.with_position(place)));
+        }
+        match world.first_contact(Window::UNIT).unwrap() {
+            FirstContact::Undecided { clear_until, .. } => {
+                assert_eq!(clear_until, 0.0, "{tests} tests");
+                ended += 1;
+            }
+            FirstContact::Contact { contact, .. } => assert_eq!(contact.time_lo, 0.0, "{tests} tests"),
+            FirstContact::Separated => panic!("{tests} tests: two bodies overlap"),
+        }
+    }
+    assert!(ended > 5, "{ended}");
+}
+
 /// A budget is one over all pairs, ends in a proven time, and stops the search.
 #[test]
 fn a_budget_over_all_pairs_ends_in_a_proven_time() {

@@ -79,4 +79,11 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "",
         "crates/d2m/src/box_tree.rs::finds_exactly_the_pairs_that_brute_force_finds",
     ),
+    patch(
+        "where the budget ends, all other pairs are taken to be free for as long",
+        "crates/d2m/src/world/search.rs",
+        "goal == Goal::First && !self.schedule.may_begin_before(earliest)",
+        "goal == Goal::First",
+        "crates/d2m/src/world/tests.rs::a_budget_that_ends_says_nothing_of_pairs_behind_one_that_is_known",
+    ),
 ];
