@@ -1,5 +1,6 @@
 //! A vector that is known up to a radius: ball arithmetic (midpoints with proven radii).
 use crate::rounding::{UNDERFLOW, UNIT, UP};
+use core::ops::{Add, Sub};
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_lanes::power_of_two;
 use glam::{DMat3, DVec3};
@@ -15,7 +16,7 @@ const ABOVE_ROOT_OF_THREE: f64 = 1.733;
 /// ```
 /// use d2m_motion::Ball;
 /// use glam::DVec3;
-/// let sum = Ball::new(DVec3::X, 0.5).plus(Ball::point(DVec3::Y));
+/// let sum = Ball::new(DVec3::X, 0.5) + Ball::point(DVec3::Y);
 /// assert!(sum.center == DVec3::new(1.0, 1.0, 0.0) && sum.radius >= 0.5 && sum.radius < 0.500_001);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,27 +72,6 @@ impl Ball {
         up(length_up(self.center) + self.radius)
     }
 
-    /// Encloses the sums with the vectors of another one.
-    ///
-    /// A component of the sum is off by at most u of itself.
-    #[must_use]
-    pub fn plus(self, other: Self) -> Self {
-        if other == Self::ZERO {
-            return self;
-        }
-        if self == Self::ZERO {
-            return other;
-        }
-        let center = self.center + other.center;
-        Self::new(center, up(self.radius + other.radius + UNIT * length_up(center)))
-    }
-
-    /// Encloses the differences.
-    #[must_use]
-    pub fn minus(self, other: Self) -> Self {
-        self.plus(Self { center: -other.center, ..other })
-    }
-
     /// Encloses the products with the numbers within `radius` of `factor`.
     #[must_use]
     pub fn times(self, factor: f64, radius: f64) -> Self {
@@ -135,6 +115,31 @@ impl Ball {
         let center = 0.5 * self.center + 0.5 * other.center;
         let reach = |b: Self| up(length_up(b.center - center) + b.radius + 4.0 * UNIT * length_up(b.center));
         Self::new(center, up(reach(self).max(reach(other))))
+    }
+}
+
+/// Encloses the sums of vectors of the one and the other: a component of a sum is off by at most u of itself.
+impl Add for Ball {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        if other == Self::ZERO {
+            return self;
+        }
+        if self == Self::ZERO {
+            return other;
+        }
+        let center = self.center + other.center;
+        Self::new(center, up(self.radius + other.radius + UNIT * length_up(center)))
+    }
+}
+
+/// Encloses the differences.
+impl Sub for Ball {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + Self { center: -other.center, ..other }
     }
 }
 

@@ -141,7 +141,7 @@ impl Kinematics {
     #[inline]
     pub(crate) fn then_with<const RATES: bool>(&self, inner: &Self) -> Self {
         let turn = |b: Ball| b.turned(&self.rotation, self.rotation_radius);
-        let arm = inner.position.minus(Ball::point(self.at)).plus(Ball::point(inner.position_tail));
+        let arm = inner.position - Ball::point(self.at) + Ball::point(inner.position_tail);
         let e = turn(arm);
         let (relative, spin) = (turn(inner.linear), turn(inner.angular));
         let across = self.angular.cross(e);
@@ -153,12 +153,12 @@ impl Kinematics {
             let turned_rate = |b: Ball| if still { Ball::ZERO } else { turn(b) };
             (
                 self.linear_rate
-                    .plus(self.angular_rate.cross(e))
-                    .plus(self.angular.cross(across))
-                    .plus(coriolis)
-                    .plus(coriolis)
-                    .plus(turned_rate(inner.linear_rate)),
-                self.angular_rate.plus(self.angular.cross(spin)).plus(turned_rate(inner.angular_rate)),
+                    + self.angular_rate.cross(e)
+                    + self.angular.cross(across)
+                    + coriolis
+                    + coriolis
+                    + turned_rate(inner.linear_rate),
+                self.angular_rate + self.angular.cross(spin) + turned_rate(inner.angular_rate),
             )
         } else {
             (Ball::ANY, Ball::ANY)
@@ -167,8 +167,8 @@ impl Kinematics {
             position: Ball::new(sum, up(self.position.radius + e.radius + UNIT * length_up(tail))),
             position_tail: if tail.is_finite() { tail } else { DVec3::ZERO },
             at: inner.at,
-            linear: self.linear.plus(across).plus(relative),
-            angular: self.angular.plus(spin),
+            linear: self.linear + across + relative,
+            angular: self.angular + spin,
             linear_rate,
             angular_rate,
             ..*self
@@ -197,7 +197,7 @@ impl Kinematics {
     /// A set that contains this one and another (of the same reference point).
     #[must_use]
     pub fn hull(&self, other: &Self) -> Self {
-        let place = |k: &Self| k.position.plus(Ball::point(k.position_tail));
+        let place = |k: &Self| k.position + Ball::point(k.position_tail);
         // Middle of the two; a matrix between two rotations is within half their distance of both.
         let middle = (self.rotation + other.rotation) * 0.5;
         let half = 0.5 * frobenius_up(&(self.rotation + other.rotation * -1.0)) + 4.0 * UNIT;

@@ -113,11 +113,11 @@ fn bends(a: &Fit, b: &Fit) -> [f64; 4] {
 fn between(a: &Fit, b: &Fit, half: f64, clock: FittedClock) -> FittedTwists {
     let FittedClock { bend, .. } = clock;
     let kept = |speed: DVec3| Ball::point(speed).times(bend, 0.0);
-    let relative = Ball::point(a.state.linear).minus(Ball::point(b.state.linear)).times(bend, 0.0);
-    let along = a.acceleration.minus(b.acceleration).minus(relative).bound_length();
+    let relative = (Ball::point(a.state.linear) - Ball::point(b.state.linear)).times(bend, 0.0);
+    let along = (a.acceleration - b.acceleration - relative).bound_length();
     let square = 0.5 * half * half;
     let turned = |fit: &Fit| {
-        let rate = fit.angular_rate.minus(kept(fit.state.angular)).bound_length();
+        let rate = (fit.angular_rate - kept(fit.state.angular)).bound_length();
         fit.reach * (fit.rotation_radius + half * fit.state.angular_radius + square * rate)
     };
     let still = |fit: &Fit| fit.state.position_radius + fit.reach * fit.rotation_radius;

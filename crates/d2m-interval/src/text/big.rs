@@ -4,6 +4,7 @@
 //! two takes one pass for every 32 bits.
 use alloc::vec::Vec;
 use core::cmp::Ordering;
+use core::ops::{Add, Mul, Sub};
 
 /// One word holds nine decimal digits.
 const BASE: u64 = 1_000_000_000;
@@ -80,43 +81,6 @@ impl Big {
         self
     }
 
-    pub(super) fn times(&self, o: &Self) -> Self {
-        let mut words = alloc::vec![0u32; self.0.len() + o.0.len()];
-        for (i, &a) in self.0.iter().enumerate() {
-            let mut carry = 0u64;
-            for (j, &b) in o.0.iter().enumerate() {
-                carry += u64::from(words[i + j]) + u64::from(a) * u64::from(b);
-                words[i + j] = (carry % BASE) as u32;
-                carry /= BASE;
-            }
-            words[i + o.0.len()] = carry as u32;
-        }
-        Self(words).trimmed()
-    }
-
-    pub(super) fn plus(&self, o: &Self) -> Self {
-        let (long, short) = if self.0.len() >= o.0.len() { (self, o) } else { (o, self) };
-        let (mut words, mut carry) = (Vec::with_capacity(long.0.len() + 1), 0u64);
-        for (i, &a) in long.0.iter().enumerate() {
-            carry += u64::from(a) + u64::from(short.0.get(i).copied().unwrap_or(0));
-            words.push((carry % BASE) as u32);
-            carry /= BASE;
-        }
-        words.push(carry as u32);
-        Self(words).trimmed()
-    }
-
-    /// `self − o` for `self ≥ o`.
-    pub(super) fn minus(&self, o: &Self) -> Self {
-        let (mut words, mut borrow) = (Vec::with_capacity(self.0.len()), 0i64);
-        for (i, &a) in self.0.iter().enumerate() {
-            let d = i64::from(a) - i64::from(o.0.get(i).copied().unwrap_or(0)) - borrow;
-            borrow = i64::from(d < 0);
-            words.push((d + borrow * BASE as i64) as u32);
-        }
-        Self(words).trimmed()
-    }
-
     /// Number of decimal digits; 0 for zero.
     pub(super) fn digits(&self) -> usize {
         let top = self.0.last().map_or(0, |top| top.ilog10() as usize + 1);
@@ -129,6 +93,55 @@ impl Big {
         let top = self.0.iter().rev().take(3).fold(0u128, |n, w| n * u128::from(BASE) + u128::from(*w));
         let digits = top.checked_ilog10().map_or(0, |log| log + 1);
         (if digits > 18 { top / 10_u128.pow(digits - 18) } else { top * 10_u128.pow(18 - digits) }) as u64
+    }
+}
+
+impl Mul for &Big {
+    type Output = Big;
+
+    fn mul(self, o: Self) -> Big {
+        let mut words = alloc::vec![0u32; self.0.len() + o.0.len()];
+        for (i, &a) in self.0.iter().enumerate() {
+            let mut carry = 0u64;
+            for (j, &b) in o.0.iter().enumerate() {
+                carry += u64::from(words[i + j]) + u64::from(a) * u64::from(b);
+                words[i + j] = (carry % BASE) as u32;
+                carry /= BASE;
+            }
+            words[i + o.0.len()] = carry as u32;
+        }
+        Big(words).trimmed()
+    }
+}
+
+impl Add for &Big {
+    type Output = Big;
+
+    fn add(self, o: Self) -> Big {
+        let (long, short) = if self.0.len() >= o.0.len() { (self, o) } else { (o, self) };
+        let (mut words, mut carry) = (Vec::with_capacity(long.0.len() + 1), 0u64);
+        for (i, &a) in long.0.iter().enumerate() {
+            carry += u64::from(a) + u64::from(short.0.get(i).copied().unwrap_or(0));
+            words.push((carry % BASE) as u32);
+            carry /= BASE;
+        }
+        words.push(carry as u32);
+        Big(words).trimmed()
+    }
+}
+
+/// For a first number that is not less than the second.
+impl Sub for &Big {
+    type Output = Big;
+
+    fn sub(self, o: Self) -> Big {
+        let (mut words, mut borrow) = (Vec::with_capacity(self.0.len()), 0i64);
+        for (i, &a) in self.0.iter().enumerate() {
+            let d = i64::from(a) - i64::from(o.0.get(i).copied().unwrap_or(0)) - borrow;
+            borrow = i64::from(d < 0);
+            words.push((d + borrow * BASE as i64) as u32);
+        }
+        Big(words).trimmed()
     }
 }
 

@@ -198,7 +198,7 @@ impl Number {
         let (mantissa, exponent) = if field == 0 { (bits, -1074) } else { (bits | 1 << 52, field - 1075) };
         let twos = exponent - self.binary;
         let power = |x: i64| usize::try_from(x).unwrap_or(0);
-        let left = self.denominator.times(&Big::from_u64(mantissa));
+        let left = &self.denominator * &Big::from_u64(mantissa);
         let left = left.times_power_of_two(power(twos)).times_power_of_ten(power(-self.decimal));
         let right = self.numerator.clone().times_power_of_two(power(-twos));
         let right = right.times_power_of_ten(power(self.decimal));
@@ -208,13 +208,13 @@ impl Number {
 
     /// Sum with `steps/2` units of the last digit.
     pub(super) fn moved(&self, steps: &Big, negative: bool) -> Self {
-        let twice = self.numerator.plus(&self.numerator);
+        let twice = &self.numerator + &self.numerator;
         let (numerator, sign) = if self.negative == negative {
-            (twice.plus(steps), negative)
+            (&twice + steps, negative)
         } else if twice >= *steps {
-            (twice.minus(steps), self.negative)
+            (&twice - steps, self.negative)
         } else {
-            (steps.minus(&twice), negative)
+            (steps - &twice, negative)
         };
         Self { negative: sign, numerator, denominator: Big::from_u64(2), ..self.clone() }
     }
@@ -252,8 +252,7 @@ impl Number {
         // a.n·10^i·2^j·b.d against b.n·10^k·2^l·a.d, with all exponents made non-negative.
         let (ten, two) = (self.decimal.min(o.decimal), self.binary.min(o.binary));
         let side = |x: &Self, other: &Self| {
-            x.numerator
-                .times(&other.denominator)
+            (&x.numerator * &other.denominator)
                 .times_power_of_ten((x.decimal - ten) as usize)
                 .times_power_of_two((x.binary - two) as usize)
         };

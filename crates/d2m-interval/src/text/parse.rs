@@ -57,7 +57,7 @@ fn uncertain(center: &str, rest: &str) -> Result<Interval, ParseIntervalError> {
         if !rest.bytes().all(|b| b.is_ascii_digit()) {
             return syntax();
         }
-        Big::from_decimal(rest.as_bytes()).plus(&Big::from_decimal(rest.as_bytes()))
+        Big::from_decimal(rest.as_bytes()).times_power_of_two(1)
     };
     if direction != Some(false) {
         lo = center.moved(&steps, true).enclose().0;

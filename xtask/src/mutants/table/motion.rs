@@ -34,8 +34,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "Coriolis acceleration once in a composition",
         "crates/d2m-motion/src/kinematics.rs",
-        ".plus(coriolis)\n                    .plus(coriolis)",
-        ".plus(coriolis)",
+        "+ coriolis\n                    + coriolis",
+        "+ coriolis",
         "crates/d2m-motion/src/chain_tests.rs::enclosures_of_chains_hold_and_are_tight",
     ),
     patch(
