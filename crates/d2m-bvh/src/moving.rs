@@ -2,6 +2,7 @@ use crate::{MeshTree, QueryOptions, Solid};
 use d2m_motion::RigidMotion;
 
 /// A body with its motion.
+#[must_use]
 pub struct Moving<'a, B = MeshTree> {
     /// The body in its own frame.
     pub body: &'a B,

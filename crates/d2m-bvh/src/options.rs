@@ -45,6 +45,7 @@ pub enum Mode {
     serde(default, deny_unknown_fields)
 )]
 #[non_exhaustive]
+#[must_use]
 pub struct Budget {
     /// Most node tests (one node against the children of another, or one step of a triangle pair).
     pub node_tests: Option<u64>,
@@ -89,6 +90,7 @@ impl Budget {
     serde(default, deny_unknown_fields)
 )]
 #[non_exhaustive]
+#[must_use]
 pub struct QueryOptions {
     /// δ, a distance in the scene's units. `None`: 1e-10 times the scene's length scale, the larger of the radii of
     /// the two bodies about their own centers.

@@ -73,6 +73,7 @@ pub enum Mass {
 /// ```
 #[derive(Clone, Debug)]
 #[non_exhaustive]
+#[must_use]
 pub struct Body {
     /// Name in messages.
     pub name: String,

@@ -14,6 +14,7 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[must_use]
 pub struct SimulationOptions {
     /// Acceleration of every dynamic body, world axes. Default (0, −9.81, 0).
     pub gravity: DVec3,

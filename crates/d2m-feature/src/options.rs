@@ -21,6 +21,7 @@ const EVALUATIONS: u32 = 1 << 19;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
+#[must_use]
 pub struct ContactOptions {
     /// δ: features within this distance (beyond the separation) may be reported as in contact. `None`: 1e-10 times
     /// the length of the features, and at least 1e-13 times the reach of the motion (unless that is more than 1e5

@@ -18,6 +18,7 @@ use d2m_lanes::F64x2;
 /// ```
 #[derive(Clone, Copy)]
 #[repr(transparent)]
+#[must_use]
 pub struct Interval(pub(crate) F64x2);
 
 impl Interval {

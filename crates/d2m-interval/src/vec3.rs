@@ -21,6 +21,7 @@ use d2m_lanes::F64x2;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[must_use]
 pub struct IntervalVec3 {
     /// First coordinate.
     pub x: Interval,

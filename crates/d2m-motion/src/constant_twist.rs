@@ -34,6 +34,7 @@ const MOST_NORM: f64 = 1e150;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[doc(alias = "LinearMotion")]
 #[doc(alias = "NonlinearRigidMotion")]
+#[must_use]
 pub struct ConstantTwist {
     position: DVec3,
     orientation: DQuat,

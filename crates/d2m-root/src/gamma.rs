@@ -42,6 +42,7 @@ pub enum Settled {
 /// Where a search stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[must_use]
 pub struct SearchLimits {
     /// ε_t: a bracket at most this wide is reported as it is (one that reaches to infinity never is).
     pub time_tolerance: f64,

@@ -18,6 +18,7 @@ pub type SharedMotion = Arc<dyn RigidMotion + Send + Sync>;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone)]
+#[must_use]
 pub struct Body {
     tree: Arc<MeshTree>,
     motion: SharedMotion,

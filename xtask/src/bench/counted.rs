@@ -160,7 +160,7 @@ fn interval() {
     twice(&mut || {
         for (axis, angle, p, edges) in black_box(&inputs) {
             let q = p.rotated(*axis, *angle);
-            black_box((q.triple_product(edges[0], edges[1]), q.norm_squared()));
+            let _ = black_box((q.triple_product(edges[0], edges[1]), q.norm_squared()));
         }
     });
 }

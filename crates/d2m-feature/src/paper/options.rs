@@ -6,6 +6,7 @@ use d2m_root::SearchLimits;
 /// Options of the paper's feature tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[must_use]
 pub struct PaperOptions {
     /// δ, a distance: the bracket of a contact is so short that the features move less than about δ/4 in it. Features
     /// that come closer than δ without meeting may be reported as a contact.

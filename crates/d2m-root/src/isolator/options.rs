@@ -8,6 +8,7 @@
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
+#[must_use]
 pub struct IsolatorOptions {
     /// Evaluations and measurements after which the search gives up with a certified time until which all is clear.
     /// The hardest known family (coplanar sliding just above the tolerance) takes about 1200; the default is 2²⁰.

@@ -59,6 +59,7 @@ pub struct Distance {
 /// Options of [`distance_within`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[must_use]
 pub struct DistanceOptions {
     /// What the bodies are.
     pub solid: Solid,

@@ -64,6 +64,7 @@ pub struct Proximity {
 /// Options of [`proximities_with`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[must_use]
 pub struct ProximityOptions {
     /// Features up to this distance are found.
     pub margin: f64,

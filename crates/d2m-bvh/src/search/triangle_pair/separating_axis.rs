@@ -246,7 +246,9 @@ impl Placed {
     fn clear_while_turning(&self, n: DVec3, scale: &PairScale, known: f64) -> f64 {
         let n = lengthened(n);
         let length = n.length();
-        if !(length > SHORTEST) {
+        // Not when it is no number either.
+        let is_direction = length > SHORTEST;
+        if !is_direction {
             return known;
         }
         let need = (scale.target() + TURNING_ERRORS * scale.error) * length;

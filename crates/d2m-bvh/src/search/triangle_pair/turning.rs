@@ -36,7 +36,9 @@ pub(super) fn clear_along_turning(
     let held = holder.corners.map(|corner| n.dot(holder.center + corner));
     let at = mover.corners.map(|corner| n.dot(mover.center + corner));
     let (above, below) = (least(&at) - greatest(&held), least(&held) - greatest(&at));
-    if !(above.max(below) > need) {
+    // Not when a number is none either.
+    let is_apart = above.max(below) > need;
+    if !is_apart {
         return 0.0;
     }
     // From the holder to the mover.
