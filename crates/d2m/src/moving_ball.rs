@@ -72,6 +72,9 @@ impl MovingBall {
         let first = d + w * begin;
         let (speed_squared, rate) = (w.length_squared(), first.dot(w));
         let room = first.length_squared() - radius * radius;
+        if room <= 0.0 {
+            return FirstMeeting::Unknown;
+        }
         let closest = if speed_squared > 0.0 { (-rate / speed_squared).clamp(0.0, end - begin) } else { 0.0 };
         if stays_apart(first + w * closest, end) {
             return FirstMeeting::Never;

@@ -142,8 +142,7 @@ impl Schedule {
         let own = rules.filter.wider_than(rules.separation);
         let more = own.filter(|&(pair, separation)| self.meets_beyond(pair, rules.separation, separation));
         pairs.extend(more.map(|(pair, _)| pair));
-        pairs.retain(|&pair| self.is_near(rules, pair));
-        self.cut(rules.slots, &pairs);
+        self.cut(rules, &pairs);
         let entries: Vec<Entry> = pairs.into_iter().filter_map(|pair| self.entry(rules, pair)).collect();
         self.fresh = entries.len();
         self.queue = PairQueue::new(entries);
@@ -169,8 +168,7 @@ impl Schedule {
         pairs.extend(more.map(|(pair, _)| pair));
         pairs.sort_unstable();
         pairs.dedup();
-        pairs.retain(|&pair| self.is_near(rules, pair));
-        self.cut(rules.slots, &pairs);
+        self.cut(rules, &pairs);
         for pair in pairs {
             if let Some(entry) = self.entry(rules, pair) {
                 self.queue.push(entry);
@@ -182,21 +180,29 @@ impl Schedule {
         }
     }
 
-    /// Computes the slices of all bodies of the pairs that have none yet.
-    fn cut(&mut self, slots: &Slots, pairs: &[IndexPair]) {
+    /// Computes the slices of all bodies that have none yet, of pairs that balls do not prove apart.
+    fn cut(&mut self, rules: Rules<'_>, pairs: &[IndexPair]) {
         let Some(span) = self.span else { return };
         let mut is_wanted = vec![false; self.slices.len()];
         let mut wanted = Vec::new();
-        for &place in pairs.iter().flatten() {
-            let at = place as usize;
-            if !is_wanted[at] && matches!(self.slices[at], Slices::Unknown) {
-                is_wanted[at] = true;
-                wanted.push(place);
+        for &pair in pairs {
+            let lacks = |place: u32| {
+                matches!(self.slices[place as usize], Slices::Unknown) && !is_wanted[place as usize]
+            };
+            let lacking = pair.map(lacks);
+            if lacking == [false; 2] || !self.is_near(rules, pair) {
+                continue;
+            }
+            for (place, lacks) in pair.into_iter().zip(lacking) {
+                if lacks {
+                    is_wanted[place as usize] = true;
+                    wanted.push(place);
+                }
             }
         }
         let (slicing, from) = (Slicing::new(span), self.from);
         let boxes = map_in_order(&wanted, BOXES, |&place| {
-            slots.at(place).map(|body| SweptSlices::enclose(body, &slicing, from))
+            rules.slots.at(place).map(|body| SweptSlices::enclose(body, &slicing, from))
         });
         for (&place, slices) in wanted.iter().zip(boxes) {
             if let Some(slices) = slices {

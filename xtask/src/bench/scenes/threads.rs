@@ -37,14 +37,14 @@ impl Threads {
 
 /// What one piece of work has cost, in seconds.
 #[derive(Clone, Copy)]
-struct Cost {
-    wall: f64,
+pub(super) struct Cost {
+    pub(super) wall: f64,
     /// Processor time of the thread that worked most.
-    busiest: f64,
-    waiting: f64,
+    pub(super) busiest: f64,
+    pub(super) waiting: f64,
 }
 
-fn measure<T>(work: impl FnOnce() -> T) -> (Cost, T) {
+pub(super) fn measure<T>(work: impl FnOnce() -> T) -> (Cost, T) {
     let before = Threads::now();
     let start = Instant::now();
     let answer = work();
