@@ -216,18 +216,13 @@ fn direction(random: &mut KnuthRandom) -> DVec3 {
     random.vector().normalize_or(DVec3::X)
 }
 
-fn orientation(random: &mut KnuthRandom) -> DQuat {
-    let q = random.quaternion();
-    DQuat::from_xyzw(q.x, q.y, q.z, q.w + 1.5).normalize()
-}
-
 /// Two bodies of radius 1 that fly at each other at a relative speed of 4, with this spin each.
 fn flight(random: &mut KnuthRandom, spin: f64) -> [ConstantTwist; 2] {
     let along = direction(random);
     let across = along.any_orthonormal_vector() * random.signed();
     let half = (along * (2.05 + 4.0 * (0.425 + 0.375 * random.signed())) + across) * 0.5;
     [1.0, -1.0].map(|sign| {
-        let (turn, spin) = (orientation(random), direction(random) * spin);
+        let (turn, spin) = (random.moderate_turn().normalize(), direction(random) * spin);
         ConstantTwist::try_new(half * -sign, turn, along * (2.0 * sign), spin).expect("finite numbers")
     })
 }

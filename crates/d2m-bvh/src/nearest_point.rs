@@ -80,15 +80,15 @@ fn foot(points: &[DVec3]) -> Option<DVec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
+    use d2m_testing::{Draw, KnuthRandom};
 
     /// Hulls of clouds at any distance from the origin: along the direction found all points are as far as the nearest point.
     #[test]
     fn nearest_points_are_found_in_few_steps() {
-        let mut random = Random(31);
+        let mut random = KnuthRandom(31);
         for round in 0..500 {
-            let away = random.vec() * [1.5, 3.0, 50.0][round % 3];
-            let cloud: Vec<DVec3> = (0..200).map(|_| random.vec() + away).collect();
+            let away = random.vector() * [1.5, 3.0, 50.0][round % 3];
+            let cloud: Vec<DVec3> = (0..200).map(|_| random.vector() + away).collect();
             let least =
                 |n: DVec3| cloud.iter().copied().min_by(|p, q| n.dot(*p).total_cmp(&n.dot(*q))).unwrap();
             let mut simplex = Simplex::new(cloud[0]);

@@ -1,14 +1,12 @@
 //! Far times, windows of no length, exact scalings of length and time, steps that a sweep must not overlook.
 
-mod random;
-
 use d2m_bvh::{
     MeshTree, Moving, PairCache, Posed, QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window,
     distance, time_of_contact, time_of_contact_with,
 };
 use d2m_motion::{ConstantTwist, RigidMotion};
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
-use random::{Random, wavy_torus};
 
 fn cuboid(half: DVec3, center: DVec3) -> MeshTree {
     let corner = |i: u32| {
@@ -21,7 +19,7 @@ fn cuboid(half: DVec3, center: DVec3) -> MeshTree {
 }
 
 fn torus(rings: u32, sides: u32, tube: f64) -> MeshTree {
-    let (corners, triangles) = wavy_torus(rings, sides, tube);
+    let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(rings, sides, tube);
     MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
 }
 
@@ -46,16 +44,16 @@ fn plate(half: f64, low: f64, top: impl Fn(f64) -> f64, turn: DQuat) -> MeshTree
 /// plate is far to the side, so that the smallest angle between directions counts.
 #[test]
 fn a_step_is_never_overlooked_by_sweeps() {
-    let mut random = Random(4242);
+    let mut random = KnuthRandom(4242);
     let options = QueryOptions::default().with_solid(Solid::Surface);
     for (far, step) in [(0.0, 3e-9), (0.5, 3e-9), (10.0, 3e-8), (100.0, 1e-6), (1000.0, 1e-6)] {
         for _ in 0..6 {
-            let turn =
-                DQuat::from_xyzw(random.next(), random.next(), random.next(), random.next()).normalize();
+            let turn = DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), random.signed())
+                .normalize();
             let lower = plate(1.0, -0.2, |x| if x > 0.7 { step } else { 0.0 }, turn);
             let upper = plate(0.3, 0.0, |_| 0.2, turn);
             let (x, y, z) = (turn * DVec3::X, turn * DVec3::Y, turn * DVec3::Z);
-            let at = y * far * random.next().signum();
+            let at = y * far * random.signed().signum();
             let rest = ConstantTwist::REST.with_at(at).with_position(at);
             let slide =
                 ConstantTwist::REST.with_position(z * (0.5 * step) - x * 0.5).with_linear_velocity(x * 1.2);
@@ -133,14 +131,15 @@ fn a_start_at_large_times_is_not_a_contact() {
 /// Bodies that cross are in contact in a window of no length, and in one of an instant; a cache changes nothing.
 #[test]
 fn windows_of_no_length_have_contacts() {
-    let mut random = Random(3);
+    let mut random = KnuthRandom(3);
     let bodies = [torus(60, 24, 0.5), torus(40, 16, 0.4), cuboid(DVec3::splat(0.7), DVec3::ZERO)];
     let mut crossing = 0;
     for round in 0..120 {
         let (a, b) = (&bodies[round % 3], &bodies[round / 3 % 2]);
-        let turn = DQuat::from_xyzw(random.next(), random.next(), random.next(), random.next());
-        let (v, w) = (random.vec() * [0.0, 1e3][round % 2], random.vec() * [0.0, 40.0][round / 2 % 2]);
-        let motion = ConstantTwist::try_new(random.vec() * 0.8, turn, v, w).unwrap().with_reference_time(0.5);
+        let turn = DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), random.signed());
+        let (v, w) = (random.vector() * [0.0, 1e3][round % 2], random.vector() * [0.0, 40.0][round / 2 % 2]);
+        let motion =
+            ConstantTwist::try_new(random.vector() * 0.8, turn, v, w).unwrap().with_reference_time(0.5);
         let rest = ConstantTwist::REST;
         let (pose, _) = motion.pose_and_twist(0.5);
         let state = distance(Posed::new(a, pose), Posed::at_rest(b), Solid::Surface).unwrap().state;
@@ -167,17 +166,17 @@ fn windows_of_no_length_have_contacts() {
 /// All lengths, and all times, multiplied by powers of two: the same answer, bit by bit.
 #[test]
 fn exact_scalings_change_nothing() {
-    let mut random = Random(8);
+    let mut random = KnuthRandom(8);
     for round in 0..12 {
         let tori = [(8, 5, 0.4), (7, 4, 0.5)];
-        let x = random.vec() * 2.0 + DVec3::X;
-        let (v, w) = (-x * 1.5 + random.vec() * 0.3, random.vec() * [0.0, 3.0, 40.0][round % 3]);
-        let (wb, at) = (random.vec() * [0.0, 2.0][round % 2], random.vec());
+        let x = random.vector() * 2.0 + DVec3::X;
+        let (v, w) = (-x * 1.5 + random.vector() * 0.3, random.vector() * [0.0, 3.0, 40.0][round % 3]);
+        let (wb, at) = (random.vector() * [0.0, 2.0][round % 2], random.vector());
         let start = [0.0, 3.0, -1e6][round / 3 % 3];
         let ask = |length: i32, time: i32| {
             let (length, time) = (2f64.powi(length), 2f64.powi(time));
             let trees = tori.map(|(rings, sides, tube)| {
-                let (corners, triangles) = wavy_torus(rings, sides, tube);
+                let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(rings, sides, tube);
                 let corners = corners.iter().map(|p| *p * length).collect();
                 MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
             });

@@ -5,11 +5,8 @@ use d2m_bvh::{
     last_search_counts, time_of_contact,
 };
 use d2m_motion::ConstantTwist;
+use d2m_testing::{Draw, KnuthRandom};
 use glam::DVec3;
-
-#[path = "random/mod.rs"]
-mod random;
-use random::Random;
 
 /// Node tests and tests of triangle pairs of one query, at most.
 const MOST_WORK: u64 = 200_000;
@@ -31,13 +28,13 @@ fn cone(n: u32, up: f64) -> MeshTree {
 }
 
 /// Slivers from the origin in all directions of a half-space; their ends deviate from it by up to a thousandth.
-fn spikes(random: &mut Random, n: u32, up: f64) -> MeshTree {
+fn spikes(random: &mut KnuthRandom, n: u32, up: f64) -> MeshTree {
     let (mut vertices, mut triangles) = (vec![DVec3::ZERO], Vec::new());
     for _ in 0..n {
-        let d = random.vec().normalize();
+        let d = random.vector().normalize();
         let first = vertices.len() as u32;
         vertices.push(DVec3::new(d.x, d.y, d.z.abs() * up));
-        vertices.push(vertices[first as usize] + random.vec() * 1e-3);
+        vertices.push(vertices[first as usize] + random.vector() * 1e-3);
         triangles.push([0, first, first + 1]);
     }
     tree(vertices, triangles)
@@ -119,7 +116,7 @@ fn crowds_stop_early() {
 
 #[test]
 fn stars_meet_at_their_centers() {
-    let mut random = Random(5);
+    let mut random = KnuthRandom(5);
     // No plane parts all of the larger ones: their ends deviate.
     for n in [1500, 3000, 7000, 10_000] {
         let (a, b) = (spikes(&mut random, n, 1.0), spikes(&mut random, n, -1.0));

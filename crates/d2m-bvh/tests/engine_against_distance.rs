@@ -1,28 +1,20 @@
 //! The engine on random small scenes, judged by static queries: before the contact the bodies are apart at every time
 //! that is sampled, and at the certified time they are apart by (0, 3.3 δ].
 
-mod random;
-
 use d2m_bvh::{
     MeshTree, Moving, Posed, QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window, collide,
     distance, time_of_contact,
 };
 use d2m_motion::{ConstantTwist, Pose, RigidMotion};
+use d2m_testing::{Draw, KnuthRandom};
 use glam::{DQuat, DVec3};
-use random::Random;
-
-impl Random {
-    fn below(&mut self, count: usize) -> usize {
-        ((self.next() * 0.5 + 0.5) * count as f64) as usize % count
-    }
-}
 
 /// Closed: tetrahedron, octahedron, box or ring with stretched axes. Open: some triangles.
-fn mesh(random: &mut Random, closed: bool) -> TriMesh {
-    let stretch = DVec3::new(0.2, 0.6, 1.0) + random.vec().abs();
-    let (corners, triangles): (Vec<DVec3>, Vec<[u32; 3]>) = match (closed, random.below(4)) {
+fn mesh(random: &mut KnuthRandom, closed: bool) -> TriMesh {
+    let stretch = DVec3::new(0.2, 0.6, 1.0) + random.vector().abs();
+    let (corners, triangles): (Vec<DVec3>, Vec<[u32; 3]>) = match (closed, random.index(4)) {
         (true, 0) => {
-            ((0..4).map(|_| random.vec()).collect(), vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+            ((0..4).map(|_| random.vector()).collect(), vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
         }
         (true, 1) => {
             let axes = [DVec3::X, DVec3::Y, DVec3::Z];
@@ -46,10 +38,10 @@ fn mesh(random: &mut Random, closed: bool) -> TriMesh {
             (cells.map(|(i, j)| place(i, j)).collect(), faces.collect())
         }
         (false, _) => {
-            let count = 1 + random.below(6) as u32;
+            let count = 1 + random.index(6) as u32;
             let corners = (0..count).flat_map(|_| {
-                let base = random.vec();
-                [base, base + random.vec() * 0.5, base + random.vec() * 0.5]
+                let base = random.vector();
+                [base, base + random.vector() * 0.5, base + random.vector() * 0.5]
             });
             (corners.collect(), (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
         }
@@ -57,23 +49,23 @@ fn mesh(random: &mut Random, closed: bool) -> TriMesh {
     TriMesh::try_new(corners.into_iter().map(|p| p * stretch).collect(), triangles).unwrap()
 }
 
-fn motion(random: &mut Random) -> ConstantTwist {
-    let spin = [0.0, 1.0, 4.0, 12.0][random.below(4)];
-    let speed = [0.0, 2.0, 6.0, 40.0][random.below(4)];
-    let turned = DQuat::from_xyzw(random.next(), random.next(), random.next(), random.next());
-    let at = if random.below(3) == 0 { random.vec() } else { DVec3::ZERO };
-    let place = random.vec() * 3.0;
+fn motion(random: &mut KnuthRandom) -> ConstantTwist {
+    let spin = [0.0, 1.0, 4.0, 12.0][random.index(4)];
+    let speed = [0.0, 2.0, 6.0, 40.0][random.index(4)];
+    let turned = DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), random.signed());
+    let at = if random.index(3) == 0 { random.vector() } else { DVec3::ZERO };
+    let place = random.vector() * 3.0;
     // Usually towards the middle, where the other one is.
-    let towards = (random.vec() - place) * (0.3 * speed);
-    ConstantTwist::try_new(place, turned, towards, random.vec() * spin).unwrap().with_at(at)
+    let towards = (random.vector() - place) * (0.3 * speed);
+    ConstantTwist::try_new(place, turned, towards, random.vector() * spin).unwrap().with_at(at)
 }
 
 /// Counts of what was seen: contacts, separations, meetings at the start.
 fn judge(count: usize, seed: u64) -> [usize; 3] {
-    let mut random = Random(seed);
+    let mut random = KnuthRandom(seed);
     let mut seen = [0; 3];
     for scene in 0..count {
-        let solid = if random.below(3) == 0 { Solid::Surface } else { Solid::Filled };
+        let solid = if random.index(3) == 0 { Solid::Surface } else { Solid::Filled };
         let closed = solid == Solid::Filled;
         let trees = [(); 2].map(|()| MeshTree::new(mesh(&mut random, closed)));
         let motions = [(); 2].map(|()| motion(&mut random));
@@ -149,7 +141,7 @@ fn nothing_before_the_contact_and_little_at_it() {
 /// With a wanted separation d: further apart than d before, and within 3.3 δ of it at the certified time.
 #[test]
 fn a_wanted_separation_is_kept_until_the_time() {
-    let mut random = Random(77);
+    let mut random = KnuthRandom(77);
     let mut met = 0;
     for scene in 0..1000 {
         let trees = [(); 2].map(|()| MeshTree::new(mesh(&mut random, true)));

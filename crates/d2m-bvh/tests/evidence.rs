@@ -3,7 +3,6 @@
 #[path = "scenes/bodies.rs"]
 #[allow(dead_code, reason = "a part of the bodies")]
 mod bodies;
-mod random;
 
 use bodies::cube;
 use d2m_bvh::{
@@ -12,8 +11,8 @@ use d2m_bvh::{
 };
 use d2m_interval::Interval;
 use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
+use d2m_testing::{Draw, KnuthRandom};
 use glam::{DQuat, DVec3};
-use random::Random;
 
 const DELTA: f64 = 1e-6;
 
@@ -109,7 +108,7 @@ fn a_grazing_pass_above_the_tolerance_is_early() {
 /// reported pair, and the other pair may be nearer.
 #[test]
 fn the_separation_is_that_of_the_reported_pair() {
-    let mut random = Random(71);
+    let mut random = KnuthRandom(71);
     let (mut nearer, mut other) = (0, 0);
     for round in 0..600 {
         let steep: f64 = [0.5, 3.0, 30.0][round % 3];
@@ -125,7 +124,7 @@ fn the_separation_is_that_of_the_reported_pair() {
             MeshTree::new(TriMesh::try_new([one, two].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap())
         };
         // Both pairs come within the distance at which a search stops at about the same time.
-        let height = 1.0 + DELTA * (1.0156 * (slope - 1.0) + 0.02 * random.next() * slope);
+        let height = 1.0 + DELTA * (1.0156 * (slope - 1.0) + 0.02 * random.signed() * slope);
         let (a, b) = (pair(needle(0.0, 1.0), needle(10.0, height)), pair(face(0.0, 0.0), face(10.0, steep)));
         let falling = moving(DVec3::ZERO, DVec3::Z * -2.0);
         let options = options().with_solid(Solid::Surface);

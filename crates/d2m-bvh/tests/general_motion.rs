@@ -1,7 +1,5 @@
 //! Motions whose twist is not constant: never late, never missed, as near as was asked, judged by static distances.
 
-mod random;
-
 use d2m_bvh::{
     Evidence, MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact,
     TriMesh, Window, distance, last_search_counts, time_of_contact,
@@ -12,13 +10,13 @@ use d2m_motion::{
     Pose, RigidMotion, Span, Twist,
 };
 use d2m_testing::Opaque;
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
-use random::{Random, wavy_torus};
 
 const DELTA: f64 = 1e-9;
 
 fn torus(rings: u32, sides: u32, scale: f64) -> MeshTree {
-    let (corners, triangles) = wavy_torus(rings, sides, 0.3);
+    let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(rings, sides, 0.3);
     let corners = corners.into_iter().map(|p| p * scale).collect();
     MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
 }
@@ -122,13 +120,13 @@ fn fixed(position: DVec3) -> Joint {
 }
 
 /// An arm of several joints that sweeps through a neighbourhood of its base.
-fn arm(random: &mut Random, joints: usize, base: DVec3, start: f64) -> Chain {
+fn arm(random: &mut KnuthRandom, joints: usize, base: DVec3, start: f64) -> Chain {
     let mut chain = vec![fixed(base)];
     for k in 0..joints {
-        let coefficients: Vec<f64> = (0..4).map(|i| random.next() * [3.0, 1.5, 1.0, 0.5][i]).collect();
+        let coefficients: Vec<f64> = (0..4).map(|i| random.signed() * [3.0, 1.5, 1.0, 0.5][i]).collect();
         let value = JointValue::try_pieces(vec![start - 1.0, start + 2.0], vec![coefficients]).unwrap();
         let position = if k == 0 { DVec3::ZERO } else { DVec3::X * 0.8 };
-        chain.push(revolute(position, random.vec(), value));
+        chain.push(revolute(position, random.vector(), value));
     }
     chain.push(fixed(DVec3::X * 0.8));
     Chain::try_new(chain).unwrap()
@@ -137,7 +135,7 @@ fn arm(random: &mut Random, joints: usize, base: DVec3, start: f64) -> Chain {
 #[test]
 fn random_arms_are_answered_right() {
     let (a, b) = (torus(12, 7, 0.5), torus(16, 8, 0.8));
-    let mut random = Random(31);
+    let mut random = KnuthRandom(31);
     let options = QueryOptions::default().with_tolerance(DELTA);
     let mut hits = 0;
     for round in 0..120 {
@@ -145,8 +143,8 @@ fn random_arms_are_answered_right() {
         let offset = [DVec3::ZERO, DVec3::new(1e6, -2e6, 1e6)][round / 2 % 2];
         let link = arm(&mut random, 1 + round % 6, offset, start);
         let still = ConstantTwist::REST
-            .with_position(offset + random.vec().normalize() * 2.5)
-            .with_angular_velocity(random.vec() * 2.0)
+            .with_position(offset + random.vector().normalize() * 2.5)
+            .with_angular_velocity(random.vector() * 2.0)
             .with_reference_time(start);
         let window = Window::try_new(start, start + 1.0).unwrap();
         if distance_at([&a, &b], [&link, &still], start, offset).0 < 1e-3 {
@@ -178,13 +176,14 @@ fn all_work() -> u64 {
 #[test]
 fn hidden_twists_take_one_search() {
     let (a, b) = (torus(30, 14, 1.0), torus(25, 13, 0.8));
-    let mut random = Random(32);
+    let mut random = KnuthRandom(32);
     let options = QueryOptions::default().with_tolerance(DELTA);
     for round in 0..60 {
-        let from = random.vec().normalize() * 3.5;
-        let v = (random.vec() * 0.7 - from).normalize() * 4.0;
+        let from = random.vector().normalize() * 3.5;
+        let v = (random.vector() * 0.7 - from).normalize() * 4.0;
         let motion = |x: DVec3, v: DVec3, w: DVec3| ConstantTwist::try_new(x, DQuat::IDENTITY, v, w).unwrap();
-        let m = [motion(from, v, random.vec() * 2.0), motion(DVec3::ZERO, DVec3::ZERO, random.vec() * 2.0)];
+        let m =
+            [motion(from, v, random.vector() * 2.0), motion(DVec3::ZERO, DVec3::ZERO, random.vector() * 2.0)];
         let exact = query([&a, &b], [&m[0], &m[1]], Window::UNIT, &options);
         let work = all_work();
         let hidden = m.map(Opaque);
@@ -341,7 +340,7 @@ fn bodies_that_accelerate_together_are_as_at_rest() {
 fn links_of_one_arm_are_seen_from_their_common_joint() {
     let (a, b) = (cube(0.3), cube(0.3));
     // The base shakes; the second link turns towards the first.
-    let mut random = Random(33);
+    let mut random = KnuthRandom(33);
     let base = arm(&mut random, 4, DVec3::ZERO, 0.0).joints().to_vec();
     let first = Chain::try_new([base.clone(), vec![fixed(DVec3::X)]].concat()).unwrap();
     let bend = revolute(DVec3::ZERO, DVec3::Z, polynomial(&[1.5, -1.0]));
@@ -415,11 +414,11 @@ fn sloppy_enclosures_are_never_wrong() {
 #[test]
 fn modes_separations_and_windows_hold_for_every_motion() {
     let (a, b) = (torus(20, 10, 0.5), torus(16, 8, 0.8));
-    let mut random = Random(35);
+    let mut random = KnuthRandom(35);
     let mut hits = 0;
     for round in 0..40 {
         let link = arm(&mut random, 3, DVec3::ZERO, 0.0);
-        let still = ConstantTwist::REST.with_position(random.vec().normalize() * 2.3);
+        let still = ConstantTwist::REST.with_position(random.vector().normalize() * 2.3);
         let motions: [&dyn RigidMotion; 2] = [&link, &still];
         if distance_at([&a, &b], motions, 0.0, DVec3::ZERO).0 < 0.2 {
             continue;
@@ -495,15 +494,20 @@ fn a_body_inside_another_is_in_contact() {
 #[test]
 fn moving_frames_and_their_contents_meet() {
     let (a, b) = (torus(12, 7, 0.5), torus(16, 8, 0.8));
-    let mut random = Random(36);
+    let mut random = KnuthRandom(36);
     let options = QueryOptions::default().with_tolerance(DELTA);
     for round in 0..40 {
-        let turn = |random: &mut Random| {
-            ConstantTwist::try_new(random.vec(), random.turn(), random.vec() * 2.0, random.vec() * 3.0)
-                .unwrap()
+        let turn = |random: &mut KnuthRandom| {
+            ConstantTwist::try_new(
+                random.vector(),
+                random.moderate_turn(),
+                random.vector() * 2.0,
+                random.vector() * 3.0,
+            )
+            .unwrap()
         };
         let motion = Composed::new(turn(&mut random), turn(&mut random));
-        let still = ConstantTwist::REST.with_position(random.vec().normalize() * 3.0);
+        let still = ConstantTwist::REST.with_position(random.vector().normalize() * 3.0);
         if distance_at([&a, &b], [&motion, &still], 0.0, DVec3::ZERO).0 < 1e-3 {
             continue;
         }

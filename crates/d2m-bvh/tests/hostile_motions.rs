@@ -1,7 +1,5 @@
 //! Chains and splines chosen to be hard: planted contacts with a time that is known, and dense static distances.
 
-mod random;
-
 use d2m_bvh::{
     MeshTree, Moving, Posed, QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window, distance,
     time_of_contact,
@@ -9,13 +7,13 @@ use d2m_bvh::{
 use d2m_motion::{
     Chain, ConstantTwist, Joint, JointKind, JointValue, Pose, RigidMotion, Spline, SplineDegree, Twist,
 };
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
-use random::{Random, wavy_torus};
 
 const DELTA: f64 = 1e-9;
 
 fn torus(rings: u32, sides: u32, scale: f64) -> MeshTree {
-    let (corners, triangles) = wavy_torus(rings, sides, 0.3);
+    let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(rings, sides, 0.3);
     let corners = corners.into_iter().map(|p| p * scale).collect();
     MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
 }
@@ -110,15 +108,15 @@ fn joint(position: DVec3, kind: JointKind) -> Joint {
 }
 
 /// Poses through a neighbourhood of the origin at times that are anything but even.
-fn poses(random: &mut Random, start: f64, offset: DVec3, count: usize) -> Vec<(f64, Pose)> {
+fn poses(random: &mut KnuthRandom, start: f64, offset: DVec3, count: usize) -> Vec<(f64, Pose)> {
     let mut time = start;
     let mut step = 0.0;
     (0..count)
         .map(|_| {
             time += step;
-            step = 10f64.powf(random.next() * 1.2 - 0.8);
-            let translation = offset + random.vec() * 2.2;
-            (time, Pose { translation, rotation: random.turn().normalize(), at: DVec3::ZERO })
+            step = 10f64.powf(random.signed() * 1.2 - 0.8);
+            let translation = offset + random.vector() * 2.2;
+            (time, Pose { translation, rotation: random.moderate_turn().normalize(), at: DVec3::ZERO })
         })
         .collect()
 }
@@ -128,7 +126,7 @@ fn poses(random: &mut Random, start: f64, offset: DVec3, count: usize) -> Vec<(f
 #[test]
 fn random_splines_are_answered_right() {
     let (a, b) = (torus(12, 7, 0.5), torus(16, 8, 0.8));
-    let mut random = Random(71);
+    let mut random = KnuthRandom(71);
     let options = QueryOptions::default().with_tolerance(DELTA);
     let (mut hits, mut free) = (0, 0);
     for round in 0..72 {
@@ -140,7 +138,7 @@ fn random_splines_are_answered_right() {
             let twisted = frames.iter().enumerate().map(|(index, (time, pose))| {
                 // Every other pose is a rest.
                 let of = if index % 2 == 0 { 0.0 } else { 1.0 };
-                (*time, *pose, Twist { linear: random.vec() * of, angular: random.vec() * of })
+                (*time, *pose, Twist { linear: random.vector() * of, angular: random.vector() * of })
             });
             Spline::try_with_twists(&twisted.collect::<Vec<_>>(), degree)
         } else {
@@ -148,8 +146,8 @@ fn random_splines_are_answered_right() {
         };
         let path = path.unwrap();
         let still = ConstantTwist::REST
-            .with_position(offset + random.vec().normalize() * 1.8)
-            .with_angular_velocity(random.vec() * [0.0, 3.0][round % 2])
+            .with_position(offset + random.vector().normalize() * 1.8)
+            .with_angular_velocity(random.vector() * [0.0, 3.0][round % 2])
             .with_reference_time(start);
         let (first, last) = (frames[0].0, frames[frames.len() - 1].0);
         let window = Window::try_new(first, last).unwrap();
@@ -182,7 +180,7 @@ fn random_splines_are_answered_right() {
 fn planted_contacts_of_turning_spikes() {
     let (a, b) = (spike(), plate());
     let options = QueryOptions::default().with_tolerance(DELTA);
-    let mut random = Random(72);
+    let mut random = KnuthRandom(72);
     for round in 0..144 {
         let start = [0.0, 1e5, -3e4][round % 3];
         let offset = [DVec3::ZERO, DVec3::new(1e6, 2e6, -1e6)][round / 3 % 2];
@@ -190,9 +188,9 @@ fn planted_contacts_of_turning_spikes() {
         // At 1, from 0 to 2: the joint is before, at, or after the contact.
         let joint_at = [0.5, 1.0, 1.5][round / 24 % 3];
         // Height (1 − s)^order · c, and through if the order is odd; an even one touches and leaves.
-        let scale = 0.3 + random.next().abs();
+        let scale = 0.3 + random.signed().abs();
         let height = |from: f64| power_about(order, 1.0 - from, scale);
-        let turn = [1.5 * random.next(), -2.0, 1.0 + random.next()];
+        let turn = [1.5 * random.signed(), -2.0, 1.0 + random.signed()];
         let times = vec![start, start + joint_at, start + 2.0];
         let fall = JointValue::try_pieces(times.clone(), vec![height(0.0), height(joint_at)]).unwrap();
         // ω = turn₀ + 2 turn₁ s changes its sign; it goes on from the joint with another rate.
@@ -274,7 +272,7 @@ fn splines_that_touch_at_a_joint_with_no_velocity() {
 #[test]
 fn random_chains_of_piecewise_quintics() {
     let (a, b) = (torus(12, 7, 0.4), torus(14, 8, 0.5));
-    let mut random = Random(73);
+    let mut random = KnuthRandom(73);
     let options = QueryOptions::default().with_tolerance(DELTA);
     let (mut hits, mut free) = (0, 0);
     for round in 0..60 {
@@ -284,7 +282,7 @@ fn random_chains_of_piecewise_quintics() {
             let mut chain = vec![joint(base, JointKind::Fixed)];
             for k in 0..joints {
                 let value = quintic(&mut random, start);
-                let axis = random.vec();
+                let axis = random.vector();
                 let kind = if k % 3 == 2 {
                     JointKind::Prismatic { axis, value }
                 } else {
@@ -313,12 +311,12 @@ fn random_chains_of_piecewise_quintics() {
 }
 
 /// A value with two continuous derivatives over three pieces of unlike lengths.
-fn quintic(random: &mut Random, start: f64) -> JointValue {
-    let inner = [0.3 + 0.25 * random.next(), 0.7 + 0.1 * random.next()];
+fn quintic(random: &mut KnuthRandom, start: f64) -> JointValue {
+    let inner = [0.3 + 0.25 * random.signed(), 0.7 + 0.1 * random.signed()];
     let times = [0.0, inner[0], inner[1], 1.0];
     // Value, slope and second derivative at the times.
     let data: Vec<[f64; 3]> =
-        (0..4).map(|_| [1.2 * random.next(), 2.0 * random.next(), 6.0 * random.next()]).collect();
+        (0..4).map(|_| [1.2 * random.signed(), 2.0 * random.signed(), 6.0 * random.signed()]).collect();
     let pieces = (0..3).map(|k| {
         let h = times[k + 1] - times[k];
         let ([p, v, a], [q, w, b]) = (data[k], data[k + 1]);

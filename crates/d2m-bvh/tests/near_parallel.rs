@@ -1,12 +1,10 @@
 //! Edges that cross at small angles and faces that are slivers: what is left at `time_lo` is a few tolerances, and no
 //! tolerance has to be raised for it.
 
-mod random;
-
 use d2m_bvh::{MeshTree, Moving, QueryOptions, Solid, TriMesh, Window, time_of_contact};
 use d2m_motion::ConstantTwist;
+use d2m_testing::{Draw, KnuthRandom};
 use glam::DVec3;
-use random::Random;
 
 /// Which features meet at the height 0.
 #[derive(Clone, Copy, Debug)]
@@ -21,12 +19,12 @@ enum Meeting {
 
 #[test]
 fn small_angles_leave_few_tolerances() {
-    let mut random = Random(31);
+    let mut random = KnuthRandom(31);
     for meeting in [Meeting::Edges, Meeting::FlatEdges, Meeting::Sliver] {
         for (power, round) in (-16..0).flat_map(|power| (0..60).map(move |round| (power, round))) {
-            let angle = 10f64.powf(f64::from(power) + 0.5 * random.next().abs());
+            let angle = 10f64.powf(f64::from(power) + 0.5 * random.signed().abs());
             let tolerance = [1e-10, 1e-12, 1e-14][round % 3];
-            let mut next = || random.next();
+            let mut next = || random.signed();
             let (along, off) = (DVec3::new(angle.cos(), angle.sin(), 0.0), 0.3 * next());
             let (a, b) = match meeting {
                 Meeting::Edges => {
@@ -44,7 +42,7 @@ fn small_angles_leave_few_tolerances() {
                     (a, [DVec3::new(0.5 * off, 0.3 * angle, 0.0), top(), top()])
                 }
             };
-            let turn = random.turn().normalize();
+            let turn = random.moderate_turn().normalize();
             let tree = |corners: [DVec3; 3]| {
                 let corners = corners.map(|p| turn * p).to_vec();
                 MeshTree::new(TriMesh::try_new(corners, vec![[0, 1, 2]]).unwrap())

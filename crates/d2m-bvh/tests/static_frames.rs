@@ -2,11 +2,8 @@
 
 use d2m_bvh::{MeshTree, Posed, Solid, StartState, TriMesh, distance};
 use d2m_motion::Pose;
+use d2m_testing::{Draw, KnuthRandom};
 use glam::{DQuat, DVec3};
-
-#[path = "random/mod.rs"]
-mod random;
-use random::Random;
 
 /// 2⁻⁵³.
 const UNIT: f64 = 0.5 * f64::EPSILON;
@@ -15,8 +12,8 @@ fn tree(vertices: Vec<DVec3>, triangles: &[[u32; 3]]) -> MeshTree {
     MeshTree::new(TriMesh::try_new(vertices, triangles.to_vec()).unwrap())
 }
 
-fn rotation(random: &mut Random) -> DQuat {
-    DQuat::from_xyzw(random.next(), random.next(), random.next(), random.next()).normalize()
+fn rotation(random: &mut KnuthRandom) -> DQuat {
+    DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), random.signed()).normalize()
 }
 
 /// The sum of the lengths that enter a distance.
@@ -30,23 +27,23 @@ fn lengths([a, b]: [Posed<'_>; 2]) -> f64 {
 /// the bodies, and both bodies from the origin of the world.
 #[test]
 fn enclosures_are_as_wide_as_the_lengths_that_enter() {
-    let mut random = Random(77);
+    let mut random = KnuthRandom(77);
     let (mut widest, mut widest_alike) = (0.0_f64, 0.0_f64);
     for round in 0..6000 {
         let far = [10.0, 1500.0, 1e6][round % 3];
         let size = [1.0, 0.01, 100.0][round / 3 % 3];
-        let place = |random: &mut Random, bit: usize| {
-            if round / 9 & bit == 0 { DVec3::ZERO } else { random.vec() * far }
+        let place = |random: &mut KnuthRandom, bit: usize| {
+            if round / 9 & bit == 0 { DVec3::ZERO } else { random.vector() * far }
         };
         let [origin, world, at] = [1, 2, 4].map(|bit| place(&mut random, bit));
         let [a, b] = [(); 2].map(|()| {
-            let corners = (0..6).map(|_| random.vec() * size + origin).collect();
+            let corners = (0..6).map(|_| random.vector() * size + origin).collect();
             tree(corners, &[[0, 1, 2], [3, 4, 5]])
         });
         let alike = round / 72 % 2 == 0;
         let first = rotation(&mut random);
         let second = if alike { first } else { rotation(&mut random) };
-        let shift = random.vec() * 3.0 * size;
+        let shift = random.vector() * 3.0 * size;
         // The point `origin` of A comes to `world`, that of B beside it.
         let pose = |rotation: DQuat, place: DVec3| Pose {
             rotation,
@@ -69,16 +66,16 @@ fn enclosures_are_as_wide_as_the_lengths_that_enter() {
 /// distance holds for the other. `Touching` and `Overlapping` may be exchanged, as documented.
 #[test]
 fn exchanged_bodies_differ_by_roundings_only() {
-    let mut random = Random(78);
+    let mut random = KnuthRandom(78);
     let (mut same, mut exchanged) = (0, 0);
     for round in 0..6000 {
         let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-        let [a, b] = [(); 2].map(|()| tree((0..4).map(|_| random.vec()).collect(), &faces));
+        let [a, b] = [(); 2].map(|()| tree((0..4).map(|_| random.vector()).collect(), &faces));
         let [first, second] = [(); 2].map(|()| rotation(&mut random));
         let [p, q, r] = b.mesh().corners(round / 4 % 4);
         let point = [p, p.lerp(q, 0.5), p * 0.5 + (q + r) * 0.25][round % 3];
         // Or apart by a few roundings.
-        let gap = random.vec() * [0.0, 0.0, 1e-15, 1e-14, 1e-13, 1e-12][round % 6];
+        let gap = random.vector() * [0.0, 0.0, 1e-15, 1e-14, 1e-13, 1e-12][round % 6];
         let translation = second * point - first * a.mesh().vertices()[round % 4] + gap;
         let posed_a = Posed::new(&a, Pose { rotation: first, translation, at: DVec3::ZERO });
         let posed_b = Posed::new(&b, Pose { rotation: second, translation: DVec3::ZERO, at: DVec3::ZERO });

@@ -2,23 +2,15 @@
 
 mod exact;
 
-mod random;
-
 use d2m_bvh::{
     DistanceOptions, MeshTree, PairCache, Posed, QueryError, Solid, StartState, TriMesh, collide,
     colliding_pairs, distance, distance_within, try_colliding_pair,
 };
 use d2m_feature::triangle_distance;
 use d2m_motion::Pose;
+use d2m_testing::{Draw, KnuthRandom};
 use dashu_ratio::RBig;
 use glam::{DQuat, DVec3};
-use random::Random;
-
-impl Random {
-    fn quaternion(&mut self) -> DQuat {
-        DQuat::from_xyzw(self.next(), self.next(), self.next(), self.next())
-    }
-}
 
 /// Corners (±1, ±1, ±1), or as moved by the map.
 fn cube(map: impl Fn(DVec3) -> DVec3) -> TriMesh {
@@ -29,17 +21,17 @@ fn cube(map: impl Fn(DVec3) -> DVec3) -> TriMesh {
     TriMesh::try_new(corners, triangles).unwrap()
 }
 
-fn tetrahedron(random: &mut Random, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
-    let corners = (0..4).map(|_| map(random.vec())).collect();
+fn tetrahedron(random: &mut KnuthRandom, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
+    let corners = (0..4).map(|_| map(random.vector())).collect();
     TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap()
 }
 
 /// Triangles with no connection; some flat, some mere points or repeated.
-fn soup(random: &mut Random, count: usize, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
+fn soup(random: &mut KnuthRandom, count: usize, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
     let mut corners = Vec::new();
     for i in 0..count {
-        let base = random.vec();
-        let (e, f) = (random.vec() * 0.3, random.vec() * 0.3);
+        let base = random.vector();
+        let (e, f) = (random.vector() * 0.3, random.vector() * 0.3);
         let f = match i % 7 {
             0 => e * 0.5,
             1 => DVec3::ZERO,
@@ -138,17 +130,17 @@ fn check(a: Posed<'_>, b: Posed<'_>, what: &str) {
     }
 }
 
-fn pose(random: &mut Random, spread: f64) -> Pose {
+fn pose(random: &mut KnuthRandom, spread: f64) -> Pose {
     Pose {
         rotation: random.quaternion(),
-        translation: random.vec() * spread,
-        at: random.vec() * 0.1 * spread,
+        translation: random.vector() * spread,
+        at: random.vector() * 0.1 * spread,
     }
 }
 
 #[test]
 fn random_solids_and_soups() {
-    let mut random = Random(7);
+    let mut random = KnuthRandom(7);
     for round in 0..60 {
         let scale = [1.0, 1e-6, 1e6, 1e-3][round % 4];
         let ratio = [1.0, 1.0, 1e-3, 1e3, 1e-30][round % 5];
@@ -167,9 +159,9 @@ fn random_solids_and_soups() {
 
 #[test]
 fn far_from_the_origin() {
-    let mut random = Random(21);
+    let mut random = KnuthRandom(21);
     for round in 0..12 {
-        let far = random.vec() * 1e6;
+        let far = random.vector() * 1e6;
         // Far in the body, in the world, or both.
         let (in_body, in_world) = (round % 3 != 1, round % 3 != 0);
         let shift = if in_body { far } else { DVec3::ZERO };
@@ -218,7 +210,7 @@ fn touching_and_coplanar() {
 
 #[test]
 fn one_inside_the_other() {
-    let mut random = Random(3);
+    let mut random = KnuthRandom(3);
     let (big, small) = (MeshTree::new(cube(|p| p)), MeshTree::new(cube(|p| p * 0.1)));
     // A shell: a cube with a cubic hole, whose surface has its outside towards the middle. What is in the hole is not in
     // the body.
@@ -230,7 +222,7 @@ fn one_inside_the_other() {
     for round in 0..200 {
         // Also exactly at the middle and on planes of symmetry, where rays meet edges and corners.
         let grid = |x: f64| (x * 4.0).round() * 0.2;
-        let place = random.vec();
+        let place = random.vector();
         let place =
             if round % 2 == 0 { place } else { DVec3::new(grid(place.x), grid(place.y), grid(place.z)) };
         let rotation = if round % 3 == 0 { DQuat::IDENTITY } else { random.quaternion() };
@@ -259,7 +251,7 @@ fn one_inside_the_other() {
 
 #[test]
 fn bad_input() {
-    let mut random = Random(1);
+    let mut random = KnuthRandom(1);
     let (closed, open) = (MeshTree::new(cube(|p| p)), MeshTree::new(soup(&mut random, 3, |p| p)));
     let good = Posed::at_rest(&closed);
     assert_eq!(

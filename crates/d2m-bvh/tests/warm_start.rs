@@ -1,23 +1,19 @@
 //! A cache changes no bit of any answer, whatever it holds; and it does save searches.
 
-mod random;
-
 use d2m_bvh::{
     Budget, MeshTree, Mode, Moving, PairCache, QueryOptions, Solid, TimeOfContact, TriMesh, Window,
     contact_exists, last_search_counts, time_of_contact, time_of_contact_with,
 };
 use d2m_motion::{ConstantTwist, Pose, RigidMotion, ScrewMotion, Twist};
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
-use random::{Random, wavy_torus};
 
-impl Random {
-    fn pick(&mut self, count: usize) -> usize {
-        (self.next().abs() * count as f64) as usize % count
-    }
+fn pick(random: &mut KnuthRandom, count: usize) -> usize {
+    (random.signed().abs() * count as f64) as usize % count
 }
 
 fn torus(rings: u32, sides: u32, tube: f64) -> MeshTree {
-    let (corners, triangles) = wavy_torus(rings, sides, tube);
+    let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(rings, sides, tube);
     MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
 }
 
@@ -40,24 +36,25 @@ impl StepMotion {
 /// The same answer from caches that are empty, from the sequence itself, from another one, and full of nonsense.
 #[test]
 fn no_cache_changes_a_bit() {
-    let mut random = Random(1);
+    let mut random = KnuthRandom(1);
     let trees = [torus(12, 6, 0.3), torus(20, 8, 0.2), torus(5, 3, 0.45)];
     let mut stale = PairCache::new();
     let (mut contacts, mut separated, mut undecided) = (0, 0, 0);
     for sequence in 0..160 {
-        let (a, b) = (&trees[random.pick(3)], &trees[random.pick(3)]);
+        let (a, b) = (&trees[pick(&mut random, 3)], &trees[pick(&mut random, 3)]);
         let spin = [0.0, 0.5, 8.0][sequence % 3];
-        let place = random.vec().normalize() * (1.5 + 2.5 * random.next().abs());
-        let speed = [0.01, 1.0, 4.0][random.pick(3)];
-        let (towards, turn) = (-place.normalize() * speed + random.vec() * 0.5 * speed, random.vec() * spin);
-        let q = DQuat::from_xyzw(random.next(), random.next(), random.next(), 1.2);
-        let change = 10f64.powi(-1 - random.pick(5) as i32);
+        let place = random.vector().normalize() * (1.5 + 2.5 * random.signed().abs());
+        let speed = [0.01, 1.0, 4.0][pick(&mut random, 3)];
+        let (towards, turn) =
+            (-place.normalize() * speed + random.vector() * 0.5 * speed, random.vector() * spin);
+        let q = DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), 1.2);
+        let change = 10f64.powi(-1 - pick(&mut random, 5) as i32);
         let options = QueryOptions::default()
-            .with_solid([Solid::Filled, Solid::Surface][random.pick(2)])
-            .with_mode([Mode::Accurate, Mode::Accurate, Mode::Exists, Mode::Capoeira][random.pick(4)])
-            .with_min_separation([0.0, 0.0, 0.05][random.pick(3)])
-            .with_tolerance([1e-10, 1e-6, 1e-3][random.pick(3)]);
-        let budget = [None, None, Some(40), Some(400)][random.pick(4)];
+            .with_solid([Solid::Filled, Solid::Surface][pick(&mut random, 2)])
+            .with_mode([Mode::Accurate, Mode::Accurate, Mode::Exists, Mode::Capoeira][pick(&mut random, 4)])
+            .with_min_separation([0.0, 0.0, 0.05][pick(&mut random, 3)])
+            .with_tolerance([1e-10, 1e-6, 1e-3][pick(&mut random, 3)]);
+        let budget = [None, None, Some(40), Some(400)][pick(&mut random, 4)];
         let options = match budget {
             Some(tests) => options.with_budget(Budget::UNLIMITED.with_node_tests(tests)),
             None => options,
@@ -67,23 +64,23 @@ fn no_cache_changes_a_bit() {
         for step in 0..24 {
             // Mostly small changes, now and then a jump.
             let drift = if step == 15 { 1.0 } else { change };
-            let x = place + (random.vec() + towards * f64::from(step)) * drift;
+            let x = place + (random.vector() + towards * f64::from(step)) * drift;
             let course = if screws {
                 let pose = Pose { rotation: q.normalize(), translation: x, at: DVec3::ZERO };
-                let twist = Twist { linear: towards, angular: turn + random.vec() * change };
+                let twist = Twist { linear: towards, angular: turn + random.vector() * change };
                 StepMotion::Screw(ScrewMotion::try_from_twist(pose, twist, 0.0).unwrap())
             } else {
-                let v = towards + random.vec() * change;
+                let v = towards + random.vector() * change;
                 StepMotion::Linear(
-                    ConstantTwist::try_new(x, q, v, turn + random.vec() * change * spin).unwrap(),
+                    ConstantTwist::try_new(x, q, v, turn + random.vector() * change * spin).unwrap(),
                 )
             };
-            let other = ConstantTwist::REST.with_angular_velocity(random.vec() * change);
+            let other = ConstantTwist::REST.with_angular_velocity(random.vector() * change);
             let window = Window::try_new(0.0, 1.0 + f64::from(step % 2) * 1e-3).unwrap();
             let (a, b) = (Moving::new(a, course.motion()), Moving::new(b, &other));
             let cold = time_of_contact(a, b, window, &options).unwrap();
             let mut nonsense = PairCache::new();
-            nonsense.remember([random.pick(400) as u32, u32::MAX >> random.pick(32)]);
+            nonsense.remember([pick(&mut random, 400) as u32, u32::MAX >> pick(&mut random, 32)]);
             let mut empty = PairCache::new();
             for cache in [&mut warm, &mut stale, &mut nonsense, &mut empty] {
                 let answer = time_of_contact_with(a, b, window, &options, cache).unwrap();

@@ -1,8 +1,6 @@
 //! Caches and `contact_exists` for motions whose twists are not constant: the answers are those without a cache, bit by bit, and most of
 //! those that find nothing need no search.
 
-mod random;
-
 use d2m_bvh::{
     Evidence, MeshTree, Moving, PairCache, QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window,
     contact_exists, last_search_counts, time_of_contact, time_of_contact_with,
@@ -12,11 +10,11 @@ use d2m_motion::{
     Chain, ConstantTwist, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Pose, RigidMotion, Twist,
 };
 use d2m_testing::Opaque;
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
-use random::{Random, wavy_torus};
 
 fn torus(rings: u32, sides: u32) -> MeshTree {
-    let (corners, triangles) = wavy_torus(rings, sides, 0.3);
+    let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(rings, sides, 0.3);
     MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
 }
 
@@ -35,8 +33,8 @@ fn prismatic(axis: DVec3, coefficients: &[f64]) -> Joint {
 }
 
 /// The body at the end of an arm passes another one, faster and faster, `away` from its middle.
-fn passing(random: &mut Random, away: f64, bend: f64) -> Chain {
-    let jitter = 1e-3 * random.next();
+fn passing(random: &mut KnuthRandom, away: f64, bend: f64) -> Chain {
+    let jitter = 1e-3 * random.signed();
     Chain::try_new(vec![
         prismatic(DVec3::X, &[-2.0, 4.0, bend]),
         prismatic(DVec3::Z, &[away, jitter, 0.3 * bend]),
@@ -58,7 +56,7 @@ fn searched<T>(far: &MeshTree, ask: impl FnOnce() -> T) -> (T, bool) {
 
 #[test]
 fn no_cache_changes_an_answer_of_any_motion() {
-    let mut random = Random(44);
+    let mut random = KnuthRandom(44);
     let trees = [torus(24, 10), torus(20, 8)];
     let rest = ConstantTwist::REST;
     let (mut free, mut saved, mut met) = (0, 0, 0);
@@ -98,7 +96,7 @@ fn no_cache_changes_an_answer_of_any_motion() {
 /// Whether there is a contact takes less than its time: one search, and steps to where the two triangles are near in truth.
 #[test]
 fn existence_takes_less_than_the_time() {
-    let mut random = Random(45);
+    let mut random = KnuthRandom(45);
     let trees = [torus(24, 10), torus(20, 8)];
     let rest = ConstantTwist::REST;
     let options = QueryOptions::default();

@@ -9,6 +9,8 @@ mod opaque;
 mod random;
 #[cfg(feature = "scenes")]
 mod small_scene;
+#[cfg(feature = "scenes")]
+mod wavy_torus;
 mod xoshiro;
 
 #[cfg(feature = "planted")]

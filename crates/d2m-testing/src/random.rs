@@ -62,6 +62,12 @@ pub trait Draw {
         DQuat::from_xyzw(self.signed(), self.signed(), self.signed(), self.signed())
     }
 
+    /// A turn by less than 150°, not normalised: the scalar part is in [0.5, 2.5).
+    fn moderate_turn(&mut self) -> DQuat {
+        let q = self.quaternion();
+        DQuat::from_xyzw(q.x, q.y, q.z, q.w + 1.5)
+    }
+
     /// A turn about a random axis by an angle in [−3.1, 3.1).
     fn turn(&mut self) -> DQuat {
         let axis = self.direction();

@@ -207,10 +207,11 @@ mod tests {
     /// Against maps and sets, on soups in which vertices, edges and triangles are repeated.
     #[test]
     fn equals_what_maps_and_sets_say() {
-        use crate::random::Random;
+        use d2m_testing::{Draw, KnuthRandom};
         use std::collections::{BTreeMap, BTreeSet};
-        let index = |random: &mut Random, count: usize| ((0.5 + 0.5 * random.next()) * count as f64) as usize;
-        let mut random = Random(5);
+        let index =
+            |random: &mut KnuthRandom, count: usize| ((0.5 + 0.5 * random.signed()) * count as f64) as usize;
+        let mut random = KnuthRandom(5);
         for _ in 0..200 {
             let count = 4 + index(&mut random, 12);
             let vertices: Vec<_> = (0..count)

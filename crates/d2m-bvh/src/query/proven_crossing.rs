@@ -47,17 +47,17 @@ fn crosses([p, q]: [IntervalVec3; 2], [a, b, c]: &[IntervalVec3; 3]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
     use d2m_feature::triangles_intersect;
+    use d2m_testing::{Draw, KnuthRandom};
 
     /// Pairs that are claimed to cross still share a point, by exact signs, when each vertex is moved by the error;
     /// and most pairs that go on crossing are claimed.
     #[test]
     fn claims_hold_for_every_position_of_the_corners() {
-        let mut random = Random(17);
+        let mut random = KnuthRandom(17);
         let (mut claimed, mut crossing) = (0, 0);
         for round in 0..4000 {
-            let mut triangle = || [0; 3].map(|_| random.vec());
+            let mut triangle = || [0; 3].map(|_| random.vector());
             let (a, b) = (triangle(), triangle());
             let error = [1e-1, 1e-2, 1e-3, 1e-9][round % 4];
             crossing += u32::from(triangles_intersect(&a, &b));
@@ -67,7 +67,7 @@ mod tests {
             claimed += 1;
             for _ in 0..100 {
                 // Corners of the cubes of positions: the worst ones.
-                let mut moved = |t: &[DVec3; 3]| t.map(|p| p + random.vec().signum() * error);
+                let mut moved = |t: &[DVec3; 3]| t.map(|p| p + random.vector().signum() * error);
                 let (a, b) = (moved(&a), moved(&b));
                 assert!(triangles_intersect(&a, &b), "round {round}: {a:?} {b:?}");
             }

@@ -166,7 +166,7 @@ impl Ray<'_> {
 mod tests {
     use super::*;
     use crate::TriMesh;
-    use crate::random::Random;
+    use d2m_testing::{Draw, KnuthRandom};
 
     /// Boxes from `low` to `high`; inside out where `inverted`.
     fn boxes(parts: &[(DVec3, DVec3, bool)]) -> TriMesh {
@@ -193,8 +193,8 @@ mod tests {
     /// ray through a vertex, along an edge and within a face.
     #[test]
     fn winding_numbers_of_boxes_are_counted_exactly() {
-        let mut random = Random(11);
-        let mut number = |most: u32| ((random.next() + 1.0) * 0.5 * f64::from(most)) as u32 % most;
+        let mut random = KnuthRandom(11);
+        let mut number = |most: u32| ((random.signed() + 1.0) * 0.5 * f64::from(most)) as u32 % most;
         let (mut inside, mut outside) = (0, 0);
         for _ in 0..200 {
             let parts: Vec<(DVec3, DVec3, bool)> = (0..=number(5))

@@ -150,13 +150,13 @@ impl Search<'_> {
 mod tests {
     use super::super::scene::Scene;
     use super::*;
-    use crate::random::{Random, wavy_torus};
     use crate::{Budget, MeshTree, Mode, Moving, QueryOptions, TriMesh, Window, time_of_contact};
     use d2m_motion::ConstantTwist;
+    use d2m_testing::{Draw, KnuthRandom, Surface};
     use glam::{DQuat, DVec3};
 
     fn ring(rings: u32, sides: u32, tube: f64) -> MeshTree {
-        let (corners, triangles) = wavy_torus(rings, sides, tube);
+        let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(rings, sides, tube);
         MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
     }
 
@@ -164,24 +164,24 @@ mod tests {
     /// and the counts of one thread, whatever the mode and wherever a budget ends.
     #[test]
     fn any_number_of_threads_does_the_same() {
-        let mut random = Random(9);
+        let mut random = KnuthRandom(9);
         let trees = [ring(16, 6, 0.3), ring(24, 8, 0.35), ring(8, 4, 0.25)];
         let pools = [1, 2, 3, 8].map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap());
         let (mut found, mut apart, mut ended, mut helped) = (0, 0, 0, 0);
         for round in 0..40 {
             let (a, b) = (&trees[round % 3], &trees[round / 3 % 3]);
             let spin = [10.0, 60.0, 300.0][round % 3];
-            let upright = DQuat::from_rotation_x(1.57 + 0.2 * random.next());
-            let drift = random.vec() * [0.0, 0.02, 0.2, 0.6][round / 2 % 4];
-            let place = DVec3::X * (0.9 + 0.15 * random.next());
+            let upright = DQuat::from_rotation_x(1.57 + 0.2 * random.signed());
+            let drift = random.vector() * [0.0, 0.02, 0.2, 0.6][round / 2 % 4];
+            let place = DVec3::X * (0.9 + 0.15 * random.signed());
             let motions = [
                 ConstantTwist::try_new(
                     DVec3::ZERO,
                     DQuat::IDENTITY,
                     drift,
-                    (DVec3::Z + random.vec() * 0.05) * spin,
+                    (DVec3::Z + random.vector() * 0.05) * spin,
                 ),
-                ConstantTwist::try_new(place, upright, DVec3::ZERO, DVec3::Y * spin * random.next()),
+                ConstantTwist::try_new(place, upright, DVec3::ZERO, DVec3::Y * spin * random.signed()),
             ]
             .map(Result::unwrap);
             let options = QueryOptions::default()
@@ -214,17 +214,17 @@ mod tests {
     /// bodies are elsewhere by a millionth, and meet in the same sub-window.
     #[test]
     fn nothing_of_an_earlier_query_is_reported() {
-        let mut random = Random(4);
+        let mut random = KnuthRandom(4);
         let trees = [ring(16, 6, 0.3), ring(24, 8, 0.35)];
         let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
         let alone = QueryOptions::default();
         let mut met = 0;
         for _ in 0..24 {
-            let upright = DQuat::from_rotation_x(1.57 + 0.1 * random.next());
-            let drift = random.vec() * 0.6;
-            let spin = (DVec3::Z + random.vec() * 0.05) * 100.0;
+            let upright = DQuat::from_rotation_x(1.57 + 0.1 * random.signed());
+            let drift = random.vector() * 0.6;
+            let spin = (DVec3::Z + random.vector() * 0.05) * 100.0;
             let a = ConstantTwist::try_new(DVec3::ZERO, DQuat::IDENTITY, drift, spin).unwrap();
-            let place = DVec3::X * (0.95 + 0.1 * random.next());
+            let place = DVec3::X * (0.95 + 0.1 * random.signed());
             let at =
                 |place: DVec3| ConstantTwist::try_new(place, upright, DVec3::ZERO, DVec3::Y * 40.0).unwrap();
             let (b, beside) = (at(place), at(place + DVec3::Y * 1e-6));

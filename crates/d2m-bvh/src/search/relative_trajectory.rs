@@ -95,9 +95,9 @@ impl RelativeTrajectory {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
     use crate::{MeshTree, QueryOptions, TriMesh, Window};
     use d2m_motion::ConstantTwist;
+    use d2m_testing::{Draw, KnuthRandom};
     use glam::DQuat;
 
     fn trajectory(trees: &[MeshTree; 2], motions: &[ConstantTwist; 2], window: Window) -> RelativeTrajectory {
@@ -110,7 +110,7 @@ mod tests {
     /// they nearly do, so that no term can be left out or made smaller.
     #[test]
     fn deviations_hold_and_each_term_is_needed() {
-        let mut random = Random(3);
+        let mut random = KnuthRandom(3);
         let corners = [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z].to_vec();
         let mesh = TriMesh::try_new(corners.clone(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
         let trees = [0, 1].map(|_| MeshTree::new(mesh.clone()));
@@ -118,19 +118,19 @@ mod tests {
             let mut sharpest: f64 = 0.0;
             for round in 0..400 {
                 let old = [0, 1].map(|_| {
-                    let q = DQuat::from_xyzw(random.next(), random.next(), random.next(), 1.5);
-                    let spin = random.vec() * [0.0, 0.2, 3.0][round % 3];
-                    ConstantTwist::try_new(random.vec() * 3.0, q, random.vec(), spin).unwrap()
+                    let q = DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), 1.5);
+                    let spin = random.vector() * [0.0, 0.2, 3.0][round % 3];
+                    ConstantTwist::try_new(random.vector() * 3.0, q, random.vector(), spin).unwrap()
                 });
                 let mut new = old;
                 let (m, small) = (&mut new[round / 3 % 2], 10f64.powi(-((round % 5) as i32)));
-                let axis = random.vec().normalize();
+                let axis = random.vector().normalize();
                 *m = match kind {
-                    0 => m.with_position(m.position() + random.vec() * small),
-                    1 => m.with_linear_velocity(m.linear_velocity() + random.vec() * small),
+                    0 => m.with_position(m.position() + random.vector() * small),
+                    1 => m.with_linear_velocity(m.linear_velocity() + random.vector() * small),
                     2 => m.with_orientation(DQuat::from_axis_angle(axis, small) * m.orientation()),
                     3 => m.with_angular_velocity(m.angular_velocity() + axis * small),
-                    4 => m.with_at(random.vec() * small),
+                    4 => m.with_at(random.vector() * small),
                     _ => *m,
                 };
                 let longer = if kind == 5 { 1.0 + small } else { 1.0 };

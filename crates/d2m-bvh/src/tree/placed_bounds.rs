@@ -57,26 +57,26 @@ impl MeshTree {
 
 #[cfg(test)]
 mod tests {
-    use crate::random::{Random, wavy_torus};
     use crate::{MeshTree, TriMesh};
     use d2m_interval::Interval;
     use d2m_motion::{ConstantTwist, RigidMotion};
+    use d2m_testing::{Draw, KnuthRandom, Surface};
     use glam::DVec3;
 
     #[test]
     fn every_vertex_stays_inside_and_little_room_is_left() {
-        let (corners, triangles) = wavy_torus(12, 7, 0.2);
+        let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(12, 7, 0.2);
         let stretched = corners.iter().map(|&p| p * DVec3::new(4.0, 0.5, 0.25) + DVec3::X).collect();
         let tree = MeshTree::new(TriMesh::try_new(stretched, triangles).unwrap());
-        let mut random = Random(7);
+        let mut random = KnuthRandom(7);
         for round in 0..300 {
             let motion = ConstantTwist::try_new(
-                random.vec() * 9.0,
-                random.turn().normalize(),
-                random.vec(),
-                random.vec(),
+                random.vector() * 9.0,
+                random.moderate_turn().normalize(),
+                random.vector(),
+                random.vector(),
             );
-            let motion = motion.unwrap().with_at(random.vec());
+            let motion = motion.unwrap().with_at(random.vector());
             let length = [0.0, 1e-3, 0.1, 40.0][round % 4];
             let swept = tree.enclose_placed(&motion.enclose_pose(Interval::new(0.5, 0.5 + length)));
             let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);

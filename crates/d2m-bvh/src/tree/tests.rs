@@ -6,20 +6,20 @@ use super::slabs::{PAIRS, STEPS};
 use super::surface::{SizedBox, Surface};
 use super::*;
 use crate::TriMesh;
-use crate::random::Random;
 use d2m_lanes::two_sum;
+use d2m_testing::{Draw, KnuthRandom};
 use glam::DVec3;
 
 /// A closed torus-like surface of 2·across·around triangles with some noise.
 pub(crate) fn torus(across: u32, around: u32, noise: f64, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
-    let mut random = Random(u64::from(across));
+    let mut random = KnuthRandom(u64::from(across));
     let mut corners = Vec::new();
     for i in 0..across {
         for j in 0..around {
             let turn = |k: u32, n: u32| f64::from(k) / f64::from(n) * core::f64::consts::TAU;
             let ((s, c), (t, d)) = (turn(i, across).sin_cos(), turn(j, around).sin_cos());
             let ring = 1.0 + 0.4 * d;
-            corners.push(map(DVec3::new(ring * c, ring * s, 0.4 * t) + random.vec() * noise));
+            corners.push(map(DVec3::new(ring * c, ring * s, 0.4 * t) + random.vector() * noise));
         }
     }
     let at = |i: u32, j: u32| (i % across) * around + j % around;
@@ -34,7 +34,7 @@ pub(crate) fn torus(across: u32, around: u32, noise: f64, map: impl Fn(DVec3) ->
 }
 
 fn hard_meshes() -> Vec<TriMesh> {
-    let mut random = Random(11);
+    let mut random = KnuthRandom(11);
     let one = |corners: Vec<DVec3>| {
         let count = corners.len() as u32 / 3;
         TriMesh::try_new(corners, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect()).unwrap()
@@ -49,18 +49,18 @@ fn hard_meshes() -> Vec<TriMesh> {
         one(vec![DVec3::ZERO; 3]),
         one(vec![DVec3::splat(0.1); 30]),
         one((0..300).map(|i| DVec3::X * f64::from(i)).collect()),
-        one((0..300).map(|_| random.vec() * 1e50).collect()),
-        one((0..27).map(|i| random.vec() * 10f64.powi(-i)).collect()),
+        one((0..300).map(|_| random.vector() * 1e50).collect()),
+        one((0..27).map(|i| random.vector() * 10f64.powi(-i)).collect()),
     ]
 }
 
 #[test]
 fn built_and_refitted_trees_are_valid() {
-    let mut random = Random(4);
+    let mut random = KnuthRandom(4);
     for (index, mesh) in hard_meshes().into_iter().enumerate() {
         let mut tree = MeshTree::new(mesh);
         assert_eq!(tree.validate(), Ok(()), "mesh {index}");
-        let moved = tree.mesh().vertices().iter().map(|&p| p + random.vec() * 0.3 * p.length()).collect();
+        let moved = tree.mesh().vertices().iter().map(|&p| p + random.vector() * 0.3 * p.length()).collect();
         tree.refit(moved).unwrap();
         assert_eq!(tree.validate(), Ok(()), "mesh {index} refitted");
         let before = tree.clone();

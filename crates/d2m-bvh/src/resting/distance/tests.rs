@@ -2,10 +2,10 @@
 
 use super::hulls::{Hulls, Measure, Parting};
 use super::*;
-use crate::random::Random;
 use crate::tree::node::{Below, WIDTH};
 use crate::{MeshTree, TriMesh};
 use d2m_motion::Pose;
+use d2m_testing::{Draw, KnuthRandom};
 
 fn tree(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> MeshTree {
     MeshTree::new(TriMesh::try_new(vertices, triangles).unwrap())
@@ -29,12 +29,12 @@ fn copies(n: u32) -> MeshTree {
 }
 
 /// Flat slivers from the origin to all sides.
-fn star(random: &mut Random, n: u32) -> MeshTree {
+fn star(random: &mut KnuthRandom, n: u32) -> MeshTree {
     let (mut vertices, mut triangles) = (vec![DVec3::ZERO], Vec::new());
     for _ in 0..n {
         let first = vertices.len() as u32;
-        vertices.push(DVec3::new(random.next(), random.next(), 0.0).normalize());
-        vertices.push(vertices[first as usize] + DVec3::new(random.next(), random.next(), 0.0) * 1e-3);
+        vertices.push(DVec3::new(random.signed(), random.signed(), 0.0).normalize());
+        vertices.push(vertices[first as usize] + DVec3::new(random.signed(), random.signed(), 0.0) * 1e-3);
         triangles.push([0, first, first + 1]);
     }
     tree(vertices, triangles)
@@ -53,7 +53,7 @@ fn counted(a: &MeshTree, b: &MeshTree, offset: DVec3) -> (Distance, u64) {
 
 #[test]
 fn many_equally_close_pairs_cost_no_more_than_their_triangles() {
-    let mut random = Random(3);
+    let mut random = KnuthRandom(3);
     let fans = (cone(2000, -1.0), cone(2000, 1.0));
     let sheets = (copies(2000), copies(2000));
     let stars = (star(&mut random, 2000), star(&mut random, 2000));
@@ -77,15 +77,15 @@ fn many_equally_close_pairs_cost_no_more_than_their_triangles() {
 /// Whatever the budget, the bounds hold the distance; they never are worse for more of it than with none.
 #[test]
 fn budgets_end_in_bounds_that_hold() {
-    let mut random = Random(17);
+    let mut random = KnuthRandom(17);
     let bodies = (copies(3), cone(60, 1.0), cone(60, -1.0), star(&mut random, 200));
     let pairs =
         [(&bodies.1, &bodies.2), (&bodies.0, &bodies.3), (&bodies.1, &bodies.3), (&bodies.1, &bodies.1)];
     let (mut ended, mut complete) = (0, 0);
     for (round, (a, b)) in pairs.into_iter().cycle().take(60).enumerate() {
         let pose = Pose {
-            rotation: glam::DQuat::from_scaled_axis(random.vec() * 3.0),
-            translation: random.vec() * [0.3, 2.0, 9.0][round % 3],
+            rotation: glam::DQuat::from_scaled_axis(random.vector() * 3.0),
+            translation: random.vector() * [0.3, 2.0, 9.0][round % 3],
             at: DVec3::ZERO,
         };
         let (a, b) = (Posed::at_rest(a), Posed::new(b, pose));
@@ -147,18 +147,18 @@ fn below(tree: &MeshTree, index: u32) -> Vec<u32> {
 /// What a plane drops is no closer than the best pair, and what it proves of others is true.
 #[test]
 fn planes_drop_no_closer_pair() {
-    let mut random = Random(29);
+    let mut random = KnuthRandom(29);
     let (mut dropped, mut kept, mut close) = (0, 0, 0);
     for _ in 0..60 {
-        let soup = |random: &mut Random| {
+        let soup = |random: &mut KnuthRandom| {
             let vertices = (0..40).flat_map(|_| {
-                let corner = random.vec();
-                [corner, corner + random.vec() * 0.2, corner + random.vec() * 0.2]
+                let corner = random.vector();
+                [corner, corner + random.vector() * 0.2, corner + random.vector() * 0.2]
             });
             tree(vertices.collect(), (0..40).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect())
         };
         let (a, b) = (soup(&mut random), soup(&mut random));
-        let pose = Pose { translation: random.vec() * 2.5, ..Pose::IDENTITY };
+        let pose = Pose { translation: random.vector() * 2.5, ..Pose::IDENTITY };
         let scene = Scene::try_new(Posed::at_rest(&a), Posed::new(&b, pose)).unwrap();
         let apart = |[a, b]: [u32; 2]| triangle_distance(&scene.place(0, a), &scene.place(1, b));
         let boxes = |tree: &MeshTree| -> Vec<u32> {
@@ -212,12 +212,12 @@ fn cones(n: u32, radius: f64, depth: f64) -> MeshTree {
 }
 
 /// Large triangles whose corners deviate from a plane.
-fn sheets(random: &mut Random, n: u32, height: f64, bumps: f64) -> MeshTree {
+fn sheets(random: &mut KnuthRandom, n: u32, height: f64, bumps: f64) -> MeshTree {
     let corners = (0..n).flat_map(|_| {
-        let turn = 3.0 * random.next();
+        let turn = 3.0 * random.signed();
         [0.0, 2.1, 4.2].map(|angle: f64| {
             let (sin, cos) = (turn + angle).sin_cos();
-            DVec3::new(cos, sin, height + bumps * random.next())
+            DVec3::new(cos, sin, height + bumps * random.signed())
         })
     });
     let corners = corners.collect();
@@ -240,7 +240,7 @@ fn rulings(n: u32, radius: f64, sense: f64) -> MeshTree {
 /// Crowds that no common plane parts: the work is that of few pairs, or of one test for eight where each pair is different.
 #[test]
 fn crowds_without_a_common_plane_fall_apart() {
-    let mut random = Random(41);
+    let mut random = KnuthRandom(41);
     let n = 700;
     let gap = 1e-7;
     let at_rest = DVec3::ZERO;

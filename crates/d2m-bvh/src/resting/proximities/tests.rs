@@ -1,9 +1,9 @@
 //! Against brute force over all pairs of features, written to be read and not to be fast.
 
 use super::*;
-use crate::random::{Random, wavy_torus};
 use crate::{MeshTree, TriMesh};
 use d2m_motion::Pose;
+use d2m_testing::{Draw, KnuthRandom, Surface};
 
 /// The features of a placed mesh: vertices with their neighbours, edges with the third corners, triangles.
 struct Brute {
@@ -119,7 +119,7 @@ fn cuboid(half: DVec3) -> TriMesh {
 }
 
 fn bodies() -> Vec<TriMesh> {
-    let (corners, triangles) = wavy_torus(9, 6, 0.35);
+    let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(9, 6, 0.35);
     let torus = TriMesh::try_new(corners, triangles).unwrap();
     let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
     let tetrahedron = TriMesh::try_new(corners.clone(), vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]);
@@ -130,12 +130,15 @@ fn bodies() -> Vec<TriMesh> {
 #[test]
 fn holds_every_locally_closest_pair_that_brute_force_finds_once_and_no_other() {
     let trees: Vec<_> = bodies().into_iter().map(MeshTree::new).collect();
-    let mut random = Random(11);
+    let mut random = KnuthRandom(11);
     let (mut met, mut found_in_all) = (0, 0);
     for round in 0..1200 {
         let (a, b) = (&trees[round % 4], &trees[round / 4 % 4]);
-        let mut pose =
-            || Pose { rotation: random.turn().normalize(), translation: random.vec() * 1.6, at: DVec3::ZERO };
+        let mut pose = || Pose {
+            rotation: random.moderate_turn().normalize(),
+            translation: random.vector() * 1.6,
+            at: DVec3::ZERO,
+        };
         let poses = [pose(), pose()];
         let margin = [0.05, 0.3, 2.0][round % 3];
         let near = match proximities(Posed::new(a, poses[0]), Posed::new(b, poses[1]), margin) {
@@ -175,18 +178,21 @@ fn holds_every_locally_closest_pair_that_brute_force_finds_once_and_no_other() {
 fn the_corners_of_a_patch_of_contact_are_all_there_and_once() {
     let (floor, brick) =
         (MeshTree::new(cuboid(DVec3::new(5.0, 5.0, 1.0))), MeshTree::new(cuboid(DVec3::ONE)));
-    let mut random = Random(3);
+    let mut random = KnuthRandom(3);
     for round in 0..200 {
         let gap = [1e-3, 1e-6, 1e-9, 0.1][round % 4];
-        let world =
-            Pose { rotation: random.turn().normalize(), translation: random.vec() * 9.0, at: DVec3::ZERO };
+        let world = Pose {
+            rotation: random.moderate_turn().normalize(),
+            translation: random.vector() * 9.0,
+            at: DVec3::ZERO,
+        };
         // Every other one stands over the border, with its sides along the floor's or turned.
         let over = if round % 2 == 0 {
-            random.vec() * DVec3::new(3.0, 3.0, 0.0)
+            random.vector() * DVec3::new(3.0, 3.0, 0.0)
         } else {
             DVec3::new(4.5, 1.25, 0.0)
         };
-        let turn = glam::DQuat::from_xyzw(0.0, 0.0, if round % 3 == 0 { 0.0 } else { random.next() }, 1.0)
+        let turn = glam::DQuat::from_xyzw(0.0, 0.0, if round % 3 == 0 { 0.0 } else { random.signed() }, 1.0)
             .normalize();
         let at = Pose {
             rotation: world.rotation * turn,
@@ -264,13 +270,16 @@ fn bad_margins_and_bodies_that_meet_are_refused() {
 /// One query with wide cones holds what one with exact cones finds, marked by a tilt of zero.
 #[test]
 fn tilts_tell_exact_cones_from_wide_ones() {
-    let (corners, triangles) = wavy_torus(24, 12, 0.35);
+    let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(24, 12, 0.35);
     let mesh = MeshTree::new(TriMesh::try_new(corners, triangles).unwrap());
-    let mut random = Random(91);
+    let mut random = KnuthRandom(91);
     let mut tilted = 0;
     for _ in 0..40 {
-        let pose =
-            Pose { rotation: random.turn(), translation: random.vec().normalize() * 2.2, ..Pose::IDENTITY };
+        let pose = Pose {
+            rotation: random.moderate_turn(),
+            translation: random.vector().normalize() * 2.2,
+            ..Pose::IDENTITY
+        };
         let near = |slack: f64| {
             let options = ProximityOptions::new(1.5).with_cone_slack(slack);
             proximities_with(crate::Posed::at_rest(&mesh), crate::Posed::new(&mesh, pose), &options)

@@ -3,14 +3,14 @@
 use super::super::motion::frame::Frame;
 use super::super::scene::Scene;
 use super::*;
-use crate::random::Random;
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
 use d2m_lanes::Quad;
 use d2m_motion::ConstantTwist;
+use d2m_testing::{Draw, KnuthRandom};
 use glam::DQuat;
 
-fn soup(random: &mut Random, shift: DVec3) -> MeshTree {
-    let vertices = (0..9).map(|_| random.vec() + shift).collect();
+fn soup(random: &mut KnuthRandom, shift: DVec3) -> MeshTree {
+    let vertices = (0..9).map(|_| random.vector() + shift).collect();
     MeshTree::new(TriMesh::try_new(vertices, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).unwrap())
 }
 
@@ -27,7 +27,7 @@ fn points(scene: &Scene<'_>) -> [Vec<DVec3>; 2] {
 /// at one end only, nor without what accelerations take.
 #[test]
 fn what_a_plane_parts_stays_apart() {
-    let mut random = Random(23);
+    let mut random = KnuthRandom(23);
     let (mut parted, mut wrong) = ([0; 3], [0; 3]);
     for round in 0..4000 {
         // Also bodies that turn about an axis far from them.
@@ -35,14 +35,15 @@ fn what_a_plane_parts_stays_apart() {
         let (a, b) = (soup(&mut random, DVec3::X * shift), soup(&mut random, DVec3::Y * shift));
         let spin = [0.5, 4.0, 12.0][round % 3];
         let [motion_a, motion_b] = [2.5 + shift, 0.0].map(|apart| {
-            let q = DQuat::from_xyzw(random.next(), random.next(), random.next(), 1.5);
-            ConstantTwist::try_new(random.vec() * apart, q, random.vec(), random.vec() * spin).unwrap()
+            let q = DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), 1.5);
+            ConstantTwist::try_new(random.vector() * apart, q, random.vector(), random.vector() * spin)
+                .unwrap()
         });
         let options = QueryOptions::default().with_tolerance(1e-3);
         let scene = Scene::try_new((&a, motion_a), (&b, motion_b), Window::UNIT, &options).unwrap();
         let motion = scene.relative_motion(0.0);
         let frame = motion.frame::<Quad>(0.0);
-        let span = scene.longest * (0.6 + 0.4 * random.next());
+        let span = scene.longest * (0.6 + 0.4 * random.signed());
         let points = points(&scene);
         let moving = Moving::new(&scene, &points, &frame, span, &mut Allowance::unlimited()).unwrap();
         let n = moving.between().normalize();
@@ -99,13 +100,15 @@ fn points_bend_by_their_distance_from_the_axis() {
 
 #[test]
 fn boxes_reach_as_far_as_their_vertices() {
-    let mut random = Random(29);
+    let mut random = KnuthRandom(29);
     let (a, b) = (soup(&mut random, DVec3::ZERO), soup(&mut random, DVec3::ZERO));
-    let twist = ConstantTwist::try_new(random.vec(), random.turn(), random.vec(), random.vec()).unwrap();
+    let twist =
+        ConstantTwist::try_new(random.vector(), random.moderate_turn(), random.vector(), random.vector())
+            .unwrap();
     let options = QueryOptions::default();
     let scene = Scene::try_new((&a, twist), (&b, ConstantTwist::REST), Window::UNIT, &options).unwrap();
     let frame: Frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
-    for n in [DVec3::X, random.vec().normalize(), random.vec().normalize()] {
+    for n in [DVec3::X, random.vector().normalize(), random.vector().normalize()] {
         let points = points(&scene);
         let moving = Moving::new(&scene, &points, &frame, 0.25, &mut Allowance::unlimited()).unwrap();
         let [mut reach_a, mut reach_b] =
@@ -123,8 +126,8 @@ fn boxes_reach_as_far_as_their_vertices() {
 /// What a crowd costs besides directions ends with the time too: places of its vertices, and how far boxes reach.
 #[test]
 fn preparations_end_with_the_time() {
-    let mut random = Random(3);
-    let vertices: Vec<_> = (0..3000).map(|_| random.vec()).collect();
+    let mut random = KnuthRandom(3);
+    let vertices: Vec<_> = (0..3000).map(|_| random.vector()).collect();
     let mesh = TriMesh::try_new(vertices.clone(), (0..1000).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect());
     let tree = MeshTree::new(mesh.unwrap());
     let rest = ConstantTwist::REST;

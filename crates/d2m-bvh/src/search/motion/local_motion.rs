@@ -150,20 +150,17 @@ impl LocalMotion {
 mod tests {
     use super::*;
     use d2m_motion::{ConstantTwist, RigidMotion};
+    use d2m_testing::{Draw, KnuthRandom};
     use glam::DQuat;
 
     #[test]
     fn rotations_lie_in_the_enclosures_of_the_motion_crate() {
-        let mut seed = 1u64;
-        let mut next = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
-        };
+        let mut random = KnuthRandom(1);
         for round in 0..2000 {
-            let q = DQuat::from_xyzw(next(), next(), next(), next());
-            let w = DVec3::new(next(), next(), next()) * 10f64.powi(round % 5 - 2);
+            let q = random.quaternion();
+            let w = random.vector() * 10f64.powi(round % 5 - 2);
             let motion = ConstantTwist::try_new(DVec3::ZERO, q, DVec3::ZERO, w).unwrap();
-            let t = next() * 10.0;
+            let t = random.signed() * 10.0;
             let got = LocalMotion::unscaled(&motion).rotation(t);
             let enclosure = motion.enclose_pose(d2m_interval::Interval::point(t)).rotation.cols();
             for (column, enclosed) in got.iter().zip(enclosure) {

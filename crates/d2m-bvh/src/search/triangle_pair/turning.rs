@@ -74,7 +74,7 @@ pub(super) fn clear_along_turning(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
+    use d2m_testing::{Draw, KnuthRandom};
     use glam::DQuat;
 
     /// Where a corner is at a time, from the holder's reference point, in the holder's axes.
@@ -103,18 +103,18 @@ mod tests {
     /// Bodies of any kind, with arms, parallel and equal spins, nearly at rest or fast.
     #[test]
     fn directions_that_turn_keep_bodies_apart() {
-        let mut random = Random(21);
+        let mut random = KnuthRandom(21);
         let (mut least, mut proven, mut sharp) = (f64::INFINITY, 0, 0);
         for round in 0..40_000 {
             let mut body = |spin: f64, speed: f64| {
-                let middle = random.vec();
-                let size = 10f64.powf(2.0 * random.next() - 1.5);
+                let middle = random.vector();
+                let size = 10f64.powf(2.0 * random.signed() - 1.5);
                 TurningTriangle {
-                    corners: [0; 3].map(|_| middle + random.vec() * size),
-                    center: random.vec() * 0.5,
-                    velocity: random.vec() * speed,
-                    omega: random.vec() * spin,
-                    arm: random.vec() * [0.0, 1.0][round % 2],
+                    corners: [0; 3].map(|_| middle + random.vector() * size),
+                    center: random.vector() * 0.5,
+                    velocity: random.vector() * speed,
+                    omega: random.vector() * spin,
+                    arm: random.vector() * [0.0, 1.0][round % 2],
                 }
             };
             let mut bodies =
@@ -122,7 +122,7 @@ mod tests {
             if round / 9 % 3 == 1 {
                 bodies[1].omega = bodies[0].omega * [1.0, -0.5][round / 27 % 2];
             }
-            let (need, n) = (1e-3, random.vec().normalize());
+            let (need, n) = (1e-3, random.vector().normalize());
             let fastest = bodies[0].omega.length().max(bodies[1].omega.length());
             let (ratio, time) = least_ratio(n, &bodies, need, 0.35 / fastest);
             proven += u32::from(time > 0.0);
