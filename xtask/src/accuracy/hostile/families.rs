@@ -1,5 +1,8 @@
 //! The hostile families: scenes at the edges of what the search assumes, each with the times at which the construction
 //! puts its contact.
+use super::generic_families::{
+    far_reference_points, large_times, one_and_many, spinning_together, windows, windows_without_length,
+};
 use super::guise::Guise;
 use super::scene::{Body, PATIENT, Scene};
 use super::shapes::Shape;
@@ -30,12 +33,12 @@ pub(super) const FAMILIES: [Family; 16] = [
     ("one triangle and many", one_and_many),
 ];
 
-fn body(shape: Shape, x: DVec3, v: DVec3, w: DVec3) -> Body {
+pub(super) fn body(shape: Shape, x: DVec3, v: DVec3, w: DVec3) -> Body {
     let motion = ConstantTwist::try_new(x, DQuat::IDENTITY, v, w).expect("finite");
     Body { vertices: shape.vertices, triangles: shape.triangles, motion, guise: Guise::ConstantTwist }
 }
 
-fn scene(a: Body, b: Body, planted: Vec<f64>) -> Scene {
+pub(super) fn scene(a: Body, b: Body, planted: Vec<f64>) -> Scene {
     Scene {
         bodies: [a, b],
         window: [0.0, 1.0],
@@ -50,12 +53,12 @@ fn scene(a: Body, b: Body, planted: Vec<f64>) -> Scene {
 }
 
 /// A length between 10^lo and 10^hi.
-fn decade(random: &mut Random, lo: f64, hi: f64) -> f64 {
+pub(super) fn decade(random: &mut Random, lo: f64, hi: f64) -> f64 {
     10f64.powf(random.range(lo, hi))
 }
 
 /// The same motion expressed about another reference point of the body.
-fn about(body: Body, by: DVec3) -> Body {
+pub(super) fn about(body: Body, by: DVec3) -> Body {
     let m = body.motion;
     let motion = m.with_at(m.at() + by).with_position(m.position() + m.orientation().normalize() * by);
     // A body that turns about another point needs that point's velocity: v + ω × by, which changes with time; so only
@@ -241,111 +244,6 @@ fn slivers(random: &mut Random) -> Scene {
     scene(a, b, vec![0.3, 0.4, 0.5, 0.6, 0.7])
 }
 
-/// The reference point 1e1 … 1e6 away, along the spin, or across it for bodies that only fly.
-fn far_reference_points(random: &mut Random) -> Scene {
-    let mut scene = generic(random);
-    for body in &mut scene.bodies {
-        let far = decade(random, 1.0, 6.0);
-        let w = body.motion.angular_velocity();
-        let along = if w == DVec3::ZERO { random.direction() } else { w.normalize() };
-        *body = about(body.clone(), body.motion.orientation().normalize().conjugate() * (along * far));
-    }
-    scene
-}
-
-/// Two random solids that are aimed at each other.
-fn generic(random: &mut Random) -> Scene {
-    let shape = |random: &mut Random| match random.bits() % 3 {
-        0 => Shape::tetrahedron(random, 1.0),
-        1 => Shape::cuboid(
-            DVec3::new(random.range(0.1, 1.0), random.range(0.1, 1.0), random.range(0.1, 1.0)),
-            DVec3::ZERO,
-        ),
-        _ => Shape::cone(3 + random.bits() as u32 % 9, 0.7, 1.0),
-    };
-    let (a, b) = (shape(random), shape(random));
-    let along = random.direction();
-    let aside = random.direction() * random.range(0.0, 1.5);
-    let spin = |random: &mut Random| {
-        if random.unit() < 0.3 { DVec3::ZERO } else { random.direction() * decade(random, -2.0, 2.0) }
-    };
-    let (spin_a, spin_b) = (spin(random), spin(random));
-    let speed = decade(random, 0.0, 3.0);
-    let a = body(a, DVec3::ZERO, DVec3::ZERO, spin_a);
-    let b = body(b, along * (-0.5 * speed) + aside, along * speed, spin_b);
-    scene(a, b, vec![0.4, 0.45, 0.5, 0.55, 0.6])
-}
-
-/// A window at 1e3 … 1e17, poses given there or at time 0.
-fn large_times(random: &mut Random) -> Scene {
-    let mut scene = generic(random);
-    let start = decade(random, 3.0, 17.0) * if random.unit() < 0.5 { 1.0 } else { -1.0 };
-    // As long as the clock allows: at least some units in the last place.
-    let least = (start.next_up() - start).abs();
-    let length = (least * decade(random, 0.0, 6.0)).max(decade(random, -2.0, 2.0));
-    let end = start + length;
-    let length = end - start;
-    for body in &mut scene.bodies {
-        let m = body.motion;
-        body.motion = m
-            .with_linear_velocity(m.linear_velocity() / length)
-            .with_angular_velocity(m.angular_velocity() / length)
-            .with_reference_time(start);
-        if random.unit() < 0.2 && start.abs() * m.angular_velocity().length() < 1e9 * length {
-            // The same velocities, and a pose at the origin of time: another motion, as good as this one.
-            let back = body.motion.linear_velocity() * start;
-            body.motion = body.motion.with_reference_time(0.0).with_position(body.motion.position() - back);
-        }
-    }
-    scene.window = [start, end];
-    scene.planted = scene.planted.iter().map(|t| start + t * length).collect();
-    scene
-}
-
-/// One instant, at a time at which the bodies may cross.
-fn windows_without_length(random: &mut Random) -> Scene {
-    let mut scene = generic(random);
-    let at = random.range(0.3, 0.7);
-    scene.window = [at, at];
-    scene.planted = vec![at];
-    scene
-}
-
-/// Windows of a few units in the last place, and of 1e3 … 1e9 with little speed or much spin.
-fn windows(random: &mut Random) -> Scene {
-    let mut scene = generic(random);
-    if random.unit() < 0.5 {
-        let at = random.range(0.3, 0.7);
-        let end = (0..random.bits() % 4).fold(at, |t, _| t.next_up())
-            + if random.unit() < 0.5 { 0.0 } else { decade(random, -15.0, -6.0) };
-        scene.window = [at, end];
-        scene.planted = vec![at, 0.5 * (at + end), end];
-    } else {
-        let long = decade(random, 3.0, 9.0);
-        for body in &mut scene.bodies {
-            let m = body.motion;
-            body.motion = m.with_linear_velocity(m.linear_velocity() / long);
-            if random.unit() < 0.8 {
-                body.motion = body.motion.with_angular_velocity(m.angular_velocity() / long);
-            }
-        }
-        scene.window = [0.0, long];
-        scene.planted = scene.planted.iter().map(|t| t * long).collect();
-    }
-    scene
-}
-
-/// Bodies that turn alike, fast, and drift towards each other.
-fn spinning_together(random: &mut Random) -> Scene {
-    let mut scene = generic(random);
-    let spin = random.direction() * decade(random, 0.0, 3.0);
-    let other = if random.unit() < 0.5 { spin } else { spin * (1.0 + decade(random, -12.0, -3.0)) };
-    let [a, b] = &mut scene.bodies;
-    a.motion = a.motion.with_angular_velocity(spin);
-    b.motion = b.motion.with_angular_velocity(other);
-    scene
-}
-
 /// Bodies at a small distance that hardly move.
 fn nearly_still(random: &mut Random) -> Scene {
     let gap = decade(random, -9.0, -1.0);
@@ -376,31 +274,4 @@ fn crowds(random: &mut Random) -> Scene {
     let mut b = body(other, x, DVec3::new(slide.x, slide.y, -down), common + spin);
     b.motion = b.motion.with_orientation(DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0));
     scene(body(crowd, DVec3::ZERO, DVec3::ZERO, common), b, vec![0.5, 0.5 + 1e-6, 0.51, 0.75, 1.0])
-}
-
-/// Sizes from one triangle to 1e5: a single triangle, or a small solid, and a fine one.
-fn one_and_many(random: &mut Random) -> Scene {
-    let mut scene = generic(random);
-    // A round of the suite meets the finest meshes a few times: the oracle takes seconds for them.
-    let times = match random.unit() {
-        u if u < 0.02 => 6,
-        u if u < 0.1 => 5,
-        u if u < 0.4 => 4,
-        _ => 2,
-    };
-    let fine = &mut scene.bodies[0];
-    let shape = Shape {
-        vertices: std::mem::take(&mut fine.vertices),
-        triangles: std::mem::take(&mut fine.triangles),
-    };
-    let shape = shape.refined(times);
-    (fine.vertices, fine.triangles) = (shape.vertices, shape.triangles);
-    if random.unit() < 0.5 {
-        scene.bodies[1].triangles.truncate(1);
-        scene.solid = Solid::Surface;
-    }
-    if random.unit() < 0.5 {
-        scene.bodies.swap(0, 1);
-    }
-    scene
 }

@@ -4,6 +4,7 @@
 //! times where the construction, the answer, or the answer of a twin puts a contact.
 mod exact;
 mod families;
+mod generic_families;
 mod guise;
 mod scene;
 mod shapes;
