@@ -109,9 +109,14 @@ fn check_span(motion: &dyn RigidMotion, t: f64, until: f64, faults: &mut Vec<Mot
         let inside = t + 0.37 * h;
         let (later, faster) = motion.pose_and_twist(inside);
         let size = |a: DVec3, b: DVec3| (a.length() + b.length()) / (inside - t) * 1e-3;
+        // What rounding leaves open of both states, for instance by an axis that is far away.
+        let other = motion.enclose_state(inside);
+        let open = |a: f64, b: f64| (a + b) / (inside - t) / SLACK;
         let by = |a: DVec3, b: DVec3| (b - a) / (inside - t);
         let moved = by(now.translation, later.translation);
-        hold("enclose_twist, linear (moved)", moved, twist.linear, size(now.translation, later.translation));
+        let places =
+            size(now.translation, later.translation) + open(state.position_radius, other.position_radius);
+        hold("enclose_twist, linear (moved)", moved, twist.linear, places);
         let (dv, dw) = (by(speed.linear, faster.linear), by(speed.angular, faster.angular));
         hold("enclose_twist_rate, linear", dv, rate.linear, size(speed.linear, faster.linear));
         hold("enclose_twist_rate, angular", dw, rate.angular, size(speed.angular, faster.angular));

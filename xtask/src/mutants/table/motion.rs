@@ -32,6 +32,13 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-motion/src/relative/tests.rs::directions_and_anchors_keep_their_remainders",
     ),
     patch(
+        "what a number leaves of the time of a retimed motion is dropped",
+        "crates/d2m-motion/src/retimed.rs",
+        "let moved = here.linear.center * rest;",
+        "let moved = here.linear.center * (0.0 * rest);",
+        "crates/d2m-motion/src/retimed.rs::states_are_sharp_far_from_the_origin_of_time",
+    ),
+    patch(
         "Coriolis acceleration once in a composition",
         "crates/d2m-motion/src/kinematics.rs",
         "+ coriolis\n                    + coriolis",
