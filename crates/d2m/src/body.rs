@@ -18,7 +18,6 @@ pub type SharedMotion = Arc<dyn RigidMotion + Send + Sync>;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone)]
-#[must_use]
 pub struct Body {
     tree: Arc<MeshTree>,
     motion: SharedMotion,
@@ -50,12 +49,14 @@ impl Body {
     ///
     /// What is inside a solid body from the start is in contact with it, be it solid or an open sheet; nothing is inside of a
     /// surface.
+    #[must_use]
     pub fn with_solid(mut self, solid: Solid) -> Self {
         self.solid = Some(solid);
         self
     }
 
     /// The same body in this group, instead of in none.
+    #[must_use]
     pub const fn with_group(mut self, group: Group) -> Self {
         self.group = Some(group);
         self

@@ -23,7 +23,7 @@ const LONGEST_ROUND: usize = 256;
 /// The same where every pair is searched anyway: all threads wait for the last pair of a round, and progress is reported then.
 const ROUND_OF_ALL: usize = 1024;
 
-/// What one pair is asked.
+/// A query of one pair.
 struct Question {
     pair: IndexPair,
     entry: Entry,
@@ -51,12 +51,12 @@ enum Goal {
 }
 
 /// What is left of a budget over all pairs.
-struct Purse {
+struct RemainingBudget {
     node_tests: Option<u64>,
     deadline: Option<Instant>,
 }
 
-impl Purse {
+impl RemainingBudget {
     fn new(budget: Budget) -> Self {
         let deadline = budget.wall_clock.and_then(|time| Instant::now().checked_add(time));
         Self { node_tests: budget.node_tests, deadline }
@@ -66,7 +66,7 @@ impl Purse {
         self.node_tests.is_some() || self.deadline.is_some()
     }
 
-    fn is_empty(&self) -> bool {
+    fn is_used_up(&self) -> bool {
         self.node_tests == Some(0) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
 
@@ -78,7 +78,7 @@ impl Purse {
         budget
     }
 
-    fn pay(&mut self, node_tests: u64) {
+    fn spend(&mut self, node_tests: u64) {
         // Also a pair that is answered at once costs something.
         self.node_tests = self.node_tests.map(|left| left.saturating_sub(node_tests.max(1)));
     }
@@ -202,9 +202,9 @@ impl World {
     ) -> Result<Finding, WorldError> {
         self.prepare(window);
         let mut finding = Finding::default();
-        let mut purse = Purse::new(self.options.budget);
+        let mut remaining = RemainingBudget::new(self.options.budget);
         let mut round = match goal {
-            _ if purse.is_limited() => 1,
+            _ if remaining.is_limited() => 1,
             Goal::First => FIRST_ROUND,
             // Every pair is searched over the whole window, whatever the others give.
             Goal::All => ROUND_OF_ALL,
@@ -221,7 +221,7 @@ impl World {
             if questions.is_empty() {
                 break Ok(());
             }
-            if purse.is_limited() && purse.is_empty() {
+            if remaining.is_limited() && remaining.is_used_up() {
                 finding.give_up(questions);
                 // What was known of a pair may free it for longer than its place in the queue says: others may be earlier.
                 let earliest = finding.first_undecided().map_or(limit, |(_, until)| until);
@@ -230,11 +230,11 @@ impl World {
                 }
                 continue;
             }
-            if let Err(error) = self.ask(questions, &mut purse, &mut finding) {
+            if let Err(error) = self.answer(questions, &mut remaining, &mut finding) {
                 break Err(error);
             }
             progress(finding.seen.len(), finding.seen.len() + self.schedule.waiting());
-            if !purse.is_limited() {
+            if !remaining.is_limited() {
                 round = (2 * round).min(LONGEST_ROUND).max(round);
             }
         };
@@ -310,7 +310,7 @@ impl World {
             }
             let MeetingSpan { end, clear_after, .. } = meeting;
             let (end, clear_until) = if end <= limit { (end, clear_after) } else { (limit, limit) };
-            // No window at all: the boxes part before the pair is asked.
+            // No window at all: the boxes part before the pair need be queried.
             let Ok(window) = Window::try_new(start, end) else { continue };
             let options = self.options.with_min_separation(separation);
             let cache = state.map_or_else(PairCache::new, |state| *state.cache);
@@ -319,11 +319,11 @@ impl World {
         questions
     }
 
-    /// Asks the questions of a round and keeps what is proven.
-    fn ask(
+    /// Answers the questions of a round and keeps what is proven.
+    fn answer(
         &mut self,
         questions: Vec<Question>,
-        purse: &mut Purse,
+        remaining: &mut RemainingBudget,
         finding: &mut Finding,
     ) -> Result<(), WorldError> {
         // The boxes prove what lies between the start of the query and that of a pair's own window.
@@ -331,7 +331,7 @@ impl World {
         let slots = &self.slots;
         let replies = map_in_order(&questions, PAIRS, |question| {
             let mut cache = question.cache;
-            let budget = if purse.is_limited() { purse.budget() } else { Budget::UNLIMITED };
+            let budget = if remaining.is_limited() { remaining.budget() } else { Budget::UNLIMITED };
             let [Some(a), Some(b)] = question.pair.map(|place| slots.at(place)) else {
                 return Reply { answer: Ok(TimeOfContact::Separated), cache, node_tests: 0 };
             };
@@ -343,7 +343,7 @@ impl World {
         });
         let mut failure = None;
         for (question, reply) in questions.into_iter().zip(replies) {
-            purse.pay(reply.node_tests);
+            remaining.spend(reply.node_tests);
             let Question { pair, entry, window, clear_until, clear_after, options, .. } = question;
             let known = match reply.answer {
                 Err(error) => {
