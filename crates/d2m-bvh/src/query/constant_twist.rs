@@ -55,6 +55,8 @@ pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfCon
     let mut allowance = Allowance::new(&options.budget);
     // Decided first: what the budget leaves open at the start would leave everything open.
     let Ok(held) = held_at_start(scene, &mut allowance) else {
+        // No search began: the counts of an earlier one are not this query's.
+        count_as_one_search(0);
         return Ok(TimeOfContact::Undecided { clear_until: scene.window.start() });
     };
     let options = &options.with_budget(allowance.rest());

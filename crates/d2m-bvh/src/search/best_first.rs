@@ -176,12 +176,14 @@ impl Search<'_> {
         let limits = SkipLimits {
             least_gain: self.scene.longest.min(self.scene.end - now),
             most_work: self.work() + FIRST_SWEEP,
+            budget: self.limits.most_tests.saturating_sub(self.work()),
             deadline: self.limits.deadline,
             witnesses: self.scratch.last_tested,
         };
         let mut skip = swept_clear_until(self.scene, now, &limits, direction);
         if skip.clear_until.is_none() {
             let swept = skip.work;
+            let limits = SkipLimits { budget: limits.budget.saturating_sub(swept), ..limits };
             skip = screw_clear_until(self.scene, now, &limits);
             skip.work += swept;
         }

@@ -112,7 +112,7 @@ impl Bucket {
     }
 
     /// Drops the items for which `keep` is false.
-    pub(crate) fn retain(&mut self, keep: impl Fn(&Item) -> bool) {
+    pub(crate) fn retain(&mut self, mut keep: impl FnMut(&Item) -> bool) {
         let (mut kept, mut least) = (0, u32::MAX);
         for index in 0..self.count {
             let item = self.items[index];
@@ -201,9 +201,9 @@ impl Queue {
     }
 
     /// Drops the items for which `keep` is false.
-    pub(crate) fn retain(&mut self, keep: impl Fn(&Item) -> bool) {
+    pub(crate) fn retain(&mut self, mut keep: impl FnMut(&Item) -> bool) {
         for (index, bucket) in self.buckets.iter_mut().enumerate() {
-            bucket.retain(&keep);
+            bucket.retain(&mut keep);
             if bucket.count == 0 {
                 self.occupied &= !(1 << index);
             }

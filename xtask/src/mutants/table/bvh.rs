@@ -308,6 +308,20 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "let back = |v: &Quad| D::load(v).store();",
         "crates/d2m-bvh/src/search/tests.rs::half_the_acceleration_of_triangles_is_noticed",
     ),
+    patch(
+        "triangles near the axis are not divided",
+        "crates/d2m-bvh/src/search/skip/orbits.rs",
+        "const MOST_CUTS: usize = 8;",
+        "const MOST_CUTS: usize = 0;",
+        "crates/d2m-bvh/src/search/skip/screw_search.rs::faces_that_meet_in_the_axis_have_angles_beside_it",
+    ),
+    patch(
+        "a turn in place that does not climb",
+        "crates/d2m-bvh/src/search/skip/screw_search.rs",
+        "let rate = (beta * screw.slide).abs() * UP / length;",
+        "let rate = 0.0 * (beta * screw.slide).abs() * UP / length;",
+        "crates/d2m-bvh/src/search/skip/screw_search.rs::turns_in_place_that_climb_keep_bodies_apart",
+    ),
     in_test(
         "another pitch, half of the climb, no drift of a screw",
         "crates/d2m-bvh/src/search/skip/screw_search.rs::mutants_of_the_screw_die",

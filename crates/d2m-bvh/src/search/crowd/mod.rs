@@ -165,10 +165,7 @@ impl Search<'_> {
         let starts = [state.behind.direction, moving.between()].map(DVec3::normalize_or_zero);
         let mut tried = starts.to_vec();
         for first in starts {
-            let search = PlaneSearch { first, level: crowd.level, most: crowd.directions };
-            let attempt = moving.separation(&search, &mut clock);
-            self.scratch.counts.swept_pairs += crowd.cost(attempt.directions);
-            match attempt.separation {
+            match self.separation(&moving, (first, crowd.level), &crowd, &mut clock) {
                 Separation::Proven { .. } => {
                     self.scratch.queue.clear();
                     batch.retain(|_| false);
@@ -190,13 +187,22 @@ impl Search<'_> {
                 }
             }
             let need = crowd.level * n.length();
-            let meet = |item: &Item| {
+            // When the time is over, what is left stays.
+            let mut over = false;
+            let mut meet = |item: &Item| {
+                over = over || clock.step().is_err();
+                if over {
+                    return true;
+                }
                 let (high, low) = (a.of(item.boxes[0]), b.of(item.boxes[1]));
                 // Also when something is not a number.
                 !((0..2).all(|end| -low[end] - high[end] > need))
             };
-            self.scratch.queue.retain(meet);
+            self.scratch.queue.retain(&mut meet);
             batch.retain(meet);
+            if over {
+                return;
+            }
         }
         // Where most pairs are done with that way, the rest is no crowd.
         if self.scratch.queue.len() + batch.items().len() < waiting / 2 {
@@ -212,9 +218,15 @@ impl Search<'_> {
             // The next step of the crowd comes as soon as this one did.
             patience.pairs = before.pairs;
             patience.batches = before.batches.max(batches.saturating_add(CROWD_CHECK));
-            let raised = |item: &Item| Item { key: item.key.max(key), ..*item };
             let queue = &mut self.scratch.queue;
-            let later: Vec<Item> = queue.items().chain(batch.items()).map(raised).collect();
+            let mut later = Vec::with_capacity(queue.len() + batch.items().len());
+            for item in queue.items().chain(batch.items()) {
+                // When the time is over, all keep their keys, which are right.
+                if clock.step().is_err() {
+                    return;
+                }
+                later.push(Item { key: item.key.max(key), ..*item });
+            }
             queue.clear();
             queue.extend(later);
             batch.retain(|_| false);
@@ -244,10 +256,8 @@ impl Search<'_> {
             let Some(moving) = Moving::new(self.scene, &crowd.points, &frame, span, clock) else { break };
             let mut parted = false;
             for first in [newest, moving.between().normalize_or_zero()] {
-                let search = PlaneSearch { first, level: crowd.clear_level, most: crowd.directions };
-                let attempt = moving.separation(&search, clock);
-                self.scratch.counts.swept_pairs += crowd.cost(attempt.directions);
-                if let Separation::Proven { along } = attempt.separation {
+                let separation = self.separation(&moving, (first, crowd.clear_level), crowd, clock);
+                if let Separation::Proven { along } = separation {
                     (parted, newest) = (true, along);
                     break;
                 }
@@ -260,6 +270,21 @@ impl Search<'_> {
             }
         }
         key
+    }
+
+    /// Searches for a plane that leaves a level, from a direction on, along as many directions as the budget still allows.
+    fn separation(
+        &mut self,
+        moving: &Moving<'_>,
+        (first, level): (DVec3, f64),
+        crowd: &Crowd,
+        clock: &mut Allowance,
+    ) -> Separation {
+        let left = self.limits.most_tests.saturating_sub(self.work());
+        let most = crowd.directions.min(left / crowd.cost(1).max(1));
+        let attempt = moving.separation(&PlaneSearch { first, level, most }, clock);
+        self.scratch.counts.swept_pairs += crowd.cost(attempt.directions);
+        attempt.separation
     }
 
     /// Follows a pair of triangles below an item to its contact, if it has one.

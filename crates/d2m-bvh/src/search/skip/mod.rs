@@ -19,6 +19,8 @@ pub(crate) struct SkipLimits {
     pub(crate) least_gain: f64,
     /// Pairs that may be tested.
     pub(crate) most_work: u64,
+    /// What is left of the query's budget, in pairs, for all that the attempt does.
+    pub(crate) budget: u64,
     /// The attempt fails when this time has come.
     pub(crate) deadline: Option<Instant>,
     /// Triangles of A and of B that may be the reason for gaining too little: they are tested first.

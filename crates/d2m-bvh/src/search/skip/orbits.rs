@@ -1,6 +1,5 @@
 //! The triangles of a body, one of each orbit class: those that the screw carries into each other have one projection.
 
-use super::axis_distance::distance_in_plane;
 use super::projection::{Piece, ProjectedVertex, Range, angle};
 use super::projection_tree::ProjectionTree;
 use super::screw::Screw;
@@ -14,6 +13,11 @@ use std::f64::consts::PI;
 const ORBIT_STEP: f64 = 1e-8;
 /// Triangles that come nearer to the axis than this part of their greatest distance and |h| have no angles.
 pub(super) const BESIDE: f64 = 0.01;
+/// Triangles near the axis are cut so often, as the end of a shaft is, whose faces meet in the axis: the parts that are not near it have
+/// angles. What is left is 256 times smaller.
+const MOST_CUTS: usize = 8;
+/// Pieces that this may give, besides two for each triangle.
+const MORE_PIECES: usize = 1 << 12;
 /// Where the steps of φ and those of classes begin: not at zero or at whole leads, where a thread or a plane through the
 /// origin would be divided. Any numbers do.
 const FIRST_LEAD: f64 = 0.123_456;
@@ -47,36 +51,47 @@ impl BodyProjections {
             pieces: Vec::new(),
             turns: Vec::new(),
         };
-        let mut without_angles = Vec::new();
+        let mut near_axis = Vec::new();
         for triangle in triangles {
             clock.step()?;
-            let vertices = triangle.map(|v| ProjectedVertex::new(places[v as usize]));
-            let near = distance_in_plane(&vertices.map(|vertex| vertex.at.with_z(0.0)), DVec3::Z);
-            let far = vertices.iter().map(|vertex| vertex.rho).fold(0.0, f64::max);
-            let beside = near >= BESIDE * (far + screw.h.abs());
-            let piece = Piece {
-                corners: vertices,
-                bend_rho: far,
-                bend_phi: 0.0,
-                shared: None,
-                slack: 0.0,
-                divisions: 0,
-                wide: screw.h != 0.0 && !beside,
-            };
+            let piece = Piece::of(triangle.map(|v| ProjectedVertex::new(places[v as usize])), screw.h);
             // Near the axis the angle means nothing.
-            if beside {
+            if is_beside(&piece, screw.h) {
                 orbits.add(piece, triangle.map(|v| angles[v as usize]));
             } else if piece.wide {
-                without_angles.push(piece);
+                near_axis.push(piece);
             } else {
                 orbits.push(piece, [0.0; 2]);
             }
         }
+        let most = MORE_PIECES + 2 * triangles.len();
+        for _ in 0..MOST_CUTS {
+            if near_axis.is_empty() || orbits.pieces.len() + 4 * near_axis.len() > most {
+                break;
+            }
+            let mut still_near = Vec::new();
+            for part in near_axis.iter().flat_map(|piece| piece.divided(screw.h)) {
+                clock.step()?;
+                let part = Piece::of(part.corners.map(|corner| ProjectedVertex::new(corner.at)), screw.h);
+                if is_beside(&part, screw.h) {
+                    orbits.add(part, part.corners.map(|corner| angle(corner.at.y, corner.at.x)));
+                } else {
+                    still_near.push(part);
+                }
+            }
+            near_axis = still_near;
+        }
         Ok(Self {
             with_angles: ProjectionTree::try_new(orbits.pieces, screw.h, clock)?,
-            without_angles: ProjectionTree::try_new(without_angles, screw.h, clock)?,
+            without_angles: ProjectionTree::try_new(near_axis, screw.h, clock)?,
         })
     }
+}
+
+/// Is a piece so far from the axis that it has angles?
+fn is_beside(piece: &Piece, h: f64) -> bool {
+    let far = piece.corners.iter().map(|vertex| vertex.rho).fold(0.0, f64::max);
+    piece.near() >= BESIDE * (far + h.abs())
 }
 
 /// One triangle of each orbit class.
@@ -101,6 +116,7 @@ impl Orbits<'_> {
     /// Adds a triangle beside the axis whose vertices have these angles, or counts it to a class that is known.
     fn add(&mut self, mut piece: Piece, angles: [f64; 3]) {
         let screw = self.screw;
+        piece.wide = false;
         let turned = [1, 2].map(|i| less_than_half_a_turn(angles[i] - angles[0]));
         let corners = &mut piece.corners;
         if screw.h != 0.0 {

@@ -144,6 +144,12 @@ pub(super) struct Piece {
 }
 
 impl Piece {
+    /// A triangle of which no angles are known yet, on a screw with φ = z − hθ.
+    pub(super) fn of(corners: [ProjectedVertex; 3], h: f64) -> Self {
+        let far = corners.iter().map(|vertex| vertex.rho).fold(0.0, f64::max);
+        Self { corners, bend_rho: far, bend_phi: 0.0, shared: None, slack: 0.0, divisions: 0, wide: h != 0.0 }
+    }
+
     pub(super) fn projection(&self) -> Projection {
         let c = &self.corners;
         let heights = Range::of(c.map(|corner| corner.at.z));

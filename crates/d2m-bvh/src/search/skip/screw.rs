@@ -24,6 +24,8 @@ pub(super) struct Screw {
     pub(super) lead: f64,
     /// Speed of A's points along the axis.
     pub(super) climb: f64,
+    /// Speed at which φ changes: the climb when it is left out of h.
+    pub(super) slide: f64,
     /// Distance of the two axes at the start and what the angle between them moves points by, and how fast the rest of
     /// the true motion leaves the screw.
     pub(super) offset: f64,
@@ -66,9 +68,15 @@ impl Screw {
             h,
             lead,
             climb,
+            slide: 0.0,
             offset: (apart + tilted) * UP,
             drift: (flat(velocity) + speed_error) * UP,
         })
+    }
+
+    /// The same as a turn in place whose φ, the height, changes by the climb. For leads that are short against the triangles.
+    pub(super) fn turn_in_place(&self) -> Self {
+        Self { h: 0.0, lead: 0.0, slide: self.climb.abs(), ..*self }
     }
 
     /// Bound on |∇φ| at distances of at least `rho`.

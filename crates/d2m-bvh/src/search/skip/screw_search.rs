@@ -48,7 +48,14 @@ pub(crate) fn screw_clear_until(scene: &Scene<'_>, start: f64, limits: &SkipLimi
     if triangle_count(scene) > MOST_TRIANGLES {
         return nothing;
     }
-    Screw::new(scene, start).map_or(nothing, |screw| clear_along(&screw, scene, start, limits))
+    let Some(screw) = Screw::new(scene, start) else { return nothing };
+    let skip = clear_along(&screw, scene, start, limits);
+    if skip.clear_until.is_some() || screw.h == 0.0 {
+        return skip;
+    }
+    let limits = SkipLimits { budget: limits.budget.saturating_sub(skip.work), ..*limits };
+    let in_place = clear_along(&screw.turn_in_place(), scene, start, &limits);
+    Skip { work: skip.work + in_place.work, ..in_place }
 }
 
 fn triangle_count(scene: &Scene<'_>) -> usize {
@@ -59,6 +66,12 @@ fn triangle_count(scene: &Scene<'_>) -> usize {
 fn clear_along(screw: &Screw, scene: &Scene<'_>, start: f64, limits: &SkipLimits) -> Skip {
     let bodies = [&scene.a, &scene.b];
     let length = (scene.end - start).next_up();
+    // What the projections cost, in pairs: as many pairs may be tested besides, once they are there.
+    let projected = triangle_count(scene) as u64 / 2;
+    if projected >= limits.budget {
+        return Skip { clear_until: None, work: 0 };
+    }
+    let most = (limits.most_work + projected).min(limits.budget - projected);
     let mut walk = Walk {
         screw,
         shift: 0.0,
@@ -67,7 +80,7 @@ fn clear_along(screw: &Screw, scene: &Scene<'_>, start: f64, limits: &SkipLimits
         length,
         clear: length,
         gain: limits.least_gain,
-        left: limits.most_work,
+        left: most,
         clock: Allowance::until(limits.deadline),
     };
     let places = screw.places(scene, start);
@@ -77,7 +90,7 @@ fn clear_along(screw: &Screw, scene: &Scene<'_>, start: f64, limits: &SkipLimits
     });
     let [Ok(a), Ok(b)] = probe else { return Skip { clear_until: None, work: 0 } };
     if !walk.compare([a, b]) {
-        return Skip { clear_until: None, work: limits.most_work - walk.left };
+        return Skip { clear_until: None, work: most - walk.left };
     }
     let whole = [0, 1].map(|body| {
         let mesh = &bodies[body].tree.mesh;
@@ -85,11 +98,9 @@ fn clear_along(screw: &Screw, scene: &Scene<'_>, start: f64, limits: &SkipLimits
             mesh.vertices().iter().map(|&p| places[body](bodies[body].place(p))).collect();
         BodyProjections::try_new(screw, &vertices, mesh.triangles(), &mut walk.clock)
     });
-    // What the projections themselves cost counts as well.
-    let projected = triangle_count(scene) as u64 / 2;
     let [Ok(a), Ok(b)] = whole else { return Skip { clear_until: None, work: projected } };
     let apart = walk.compare([a, b]);
-    let work = limits.most_work - walk.left + projected;
+    let work = most - walk.left + projected;
     let clear_until = if apart { later_offset(start, walk.clear, walk.length, scene.end) } else { None };
     Skip { clear_until, work }
 }
@@ -120,7 +131,7 @@ impl Walk<'_> {
                 let rho = 0.5 * first.near.max(second.near);
                 let slack = first.slack + second.slack;
                 let apart = lead / self.screw.steepness(rho);
-                self.clear = self.clear.min(self.clear_while(apart.min(rho) - slack));
+                self.clear = self.clear.min(self.clear_while(apart.min(rho) - slack, 0.0));
             }
             for k in leads.0 as i64..=leads.1 as i64 {
                 self.shift = k as f64 * lead;
@@ -180,11 +191,18 @@ impl Walk<'_> {
         }
         let steep = screw.steepness(rho);
         let mut apart: f64 = 0.0;
+        let slack = a.slack + b.slack;
         let mut take = |Axes { alpha, beta }: Axes, fa: Range, fb: Range| {
             let moved = beta * self.shift;
             let gap = (fb.low - (fa.high + moved)).max((fa.low + moved) - fb.high);
-            let distance = gap / ((alpha * alpha + beta * beta * steep * steep).sqrt() * UP);
-            apart = if distance > apart { distance } else { apart };
+            let length = (alpha * alpha + beta * beta * steep * steep).sqrt() * UP;
+            let distance = gap / length;
+            if screw.slide == 0.0 {
+                apart = if distance > apart { distance } else { apart };
+            } else {
+                let rate = (beta * screw.slide).abs() * UP / length;
+                best = best.max(self.clear_while(distance.min(rho) - slack, rate));
+            }
         };
         for (direction, (fa, fb)) in DIRECTIONS.iter().zip(a.slabs.iter().zip(&b.slabs)).take(self.directions)
         {
@@ -199,13 +217,14 @@ impl Walk<'_> {
                 }
             }
         }
-        best.max(self.clear_while(apart.min(rho) - (a.slack + b.slack)))
+        best.max(self.clear_while(apart.min(rho) - slack, 0.0))
     }
 
-    /// For how long points that the common screw alone would keep `apart` do not come within the level.
-    fn clear_while(&self, apart: f64) -> f64 {
+    /// For how long points that the common screw alone would keep `apart`, less what they approach at a rate, do not come within the
+    /// level.
+    fn clear_while(&self, apart: f64, rate: f64) -> f64 {
         let room = apart - self.level - self.screw.offset;
-        let drift = self.screw.drift;
+        let drift = (self.screw.drift + rate) * UP;
         if room.is_nan() || room <= 0.0 {
             // As long as nothing at all.
             0.0
@@ -227,8 +246,13 @@ mod tests {
     use d2m_motion::ConstantTwist;
     use glam::DQuat;
 
-    const LIMITS: SkipLimits =
-        SkipLimits { least_gain: 0.0, most_work: 1 << 13, deadline: None, witnesses: [0, 0] };
+    const LIMITS: SkipLimits = SkipLimits {
+        least_gain: 0.0,
+        most_work: 1 << 13,
+        budget: u64::MAX,
+        deadline: None,
+        witnesses: [0, 0],
+    };
 
     /// Random triangles, one a body, on random screws about z, some with a drift: the least distance at times called
     /// clear over the level, and how many were called clear for some time.
@@ -313,6 +337,55 @@ mod tests {
         assert!(least_ratio(2400, |screw| screw.h *= 0.9).0 < 0.99, "another pitch");
         assert!(least_ratio(2400, |screw| screw.drift = 0.0).0 < 0.99, "no drift");
         assert!(least_ratio(2400, |screw| screw.climb *= 0.5).0 < 0.99, "half of the climb");
+        let still = |screw: &mut Screw| {
+            *screw = screw.turn_in_place();
+            screw.slide = 0.0;
+        };
+        assert!(least_ratio(2400, still).0 < 0.99, "a turn in place that does not climb");
+    }
+
+    #[test]
+    fn turns_in_place_that_climb_keep_bodies_apart() {
+        let (least, won) = least_ratio(2400, |screw| *screw = screw.turn_in_place());
+        assert!((1.0 - 1e-9..2.0).contains(&least), "{least}");
+        assert!(won > 400, "{won}");
+    }
+
+    /// The offset until which the screw alone proves two triangles apart, A spinning at 6 while it climbs.
+    fn clear_until(a: [DVec3; 3], b: [DVec3; 3], climb: f64) -> Option<f64> {
+        let [a, b] = [a, b].map(|t| MeshTree::new(TriMesh::try_new(t.to_vec(), vec![[0, 1, 2]]).unwrap()));
+        let screw =
+            ConstantTwist::REST.with_angular_velocity(DVec3::Z * 6.0).with_linear_velocity(DVec3::Z * climb);
+        let options = QueryOptions::default().with_tolerance(1e-7);
+        let scene = Scene::new((&a, screw), (&b, ConstantTwist::REST), Window::UNIT, &options);
+        screw_clear_until(&scene, 0.0, &LIMITS).clear_until
+    }
+
+    /// The end of a shaft has faces that meet in the axis. What turns past its rim, as a thread in a nut does, passes its
+    /// height beside it, or through it.
+    #[test]
+    fn faces_that_meet_in_the_axis_have_angles_beside_it() {
+        let rim = |angle: f64| DVec3::new(angle.cos(), angle.sin(), 0.0);
+        let end = [DVec3::ZERO, rim(0.0), rim(0.5)];
+        let thread = |angle: f64| {
+            [0.9, 0.92, 0.94].map(|rho| rim(angle + rho - 0.9) * rho - DVec3::Z * (1.5 + (rho - 0.92).abs()))
+        };
+        // At the height of the end after half of the time, 3 rad further.
+        assert_eq!(clear_until(thread(0.0), end, 3.0), Some(1.0));
+        assert_eq!(clear_until(thread(1.5), end, 3.0), Some(1.0));
+        let through = clear_until(thread(-2.8), end, 3.0);
+        assert!(through.is_none_or(|until| until < 0.5), "{through:?}");
+    }
+
+    /// A face a thousand leads long, along the wall that it slides on and through one that it meets in the end.
+    #[test]
+    fn faces_longer_than_many_leads_are_turned_in_place() {
+        let face = |rho: f64, z: [f64; 3]| [0, 1, 2].map(|k| DVec3::new(rho, [-0.1, 0.1, 0.0][k], z[k]));
+        let shaft = face(1.0, [-5.0, -5.0, 5.0]);
+        assert_eq!(clear_until(shaft, face(1.2, [-8.0, -8.0, 8.0]), 1e-3), Some(1.0));
+        let above = face(1.0, [5.0005, 5.0005, 6.0]);
+        let until = clear_until(shaft, above, 1e-3);
+        assert!(until.is_some_and(|until| (0.4..=0.5).contains(&until)), "{until:?}");
     }
 
     /// An attempt ends when its time has come, wherever it is: at the first reading of the clock, after 64 steps.

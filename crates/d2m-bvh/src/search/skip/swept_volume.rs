@@ -95,7 +95,7 @@ impl Sweep<'_> {
                 (Below::Triangle(_), Below::Node(_)) => false,
                 (Below::Node(_), Below::Node(_)) => part_a.size() > part_b.size(),
             };
-            if pairs >= limits.most_work || clock.step().is_err() {
+            if pairs >= limits.most_work.min(limits.budget) || clock.step().is_err() {
                 return Earliest { clear: None, pairs };
             }
             let below = |part: &SweptPart<'_>| {
@@ -198,7 +198,13 @@ mod tests {
     fn clear(a: (&MeshTree, ConstantTwist), b: (&MeshTree, ConstantTwist), direction: DVec3) -> f64 {
         let options = QueryOptions::default().with_tolerance(1e-10);
         let scene = Scene::new(a, b, Window::UNIT, &options);
-        let limits = SkipLimits { least_gain: 0.0, most_work: 1 << 20, deadline: None, witnesses: [0, 0] };
+        let limits = SkipLimits {
+            least_gain: 0.0,
+            most_work: 1 << 20,
+            budget: u64::MAX,
+            deadline: None,
+            witnesses: [0, 0],
+        };
         swept_clear_until(&scene, 0.0, &limits, direction).clear_until.unwrap_or(0.0)
     }
 
