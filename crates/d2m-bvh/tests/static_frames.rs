@@ -33,7 +33,7 @@ fn enclosures_are_as_wide_as_the_lengths_that_enter() {
         let far = [10.0, 1500.0, 1e6][round % 3];
         let size = [1.0, 0.01, 100.0][round / 3 % 3];
         let place = |random: &mut KnuthRandom, bit: usize| {
-            if round / 9 & bit == 0 { DVec3::ZERO } else { random.vector() * far }
+            if (round / 9) & bit == 0 { DVec3::ZERO } else { random.vector() * far }
         };
         let [origin, world, at] = [1, 2, 4].map(|bit| place(&mut random, bit));
         let [a, b] = [(); 2].map(|()| {

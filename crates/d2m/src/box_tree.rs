@@ -266,7 +266,9 @@ mod tests {
             }
             match round % 5 {
                 0 => {
-                    boxes.iter_mut().for_each(|b| *b = one(&mut random));
+                    for b in &mut boxes {
+                        *b = one(&mut random);
+                    }
                     tree.fit(&boxes);
                 }
                 1 => tree.fit(&boxes),

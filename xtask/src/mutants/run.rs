@@ -105,9 +105,9 @@ impl Round<'_> {
             })?;
             let line = format!("{word:<18} {:<56} {}", mutant.name, mutant.test);
             if self.progress.is_hidden() {
-                println!("{line}")
+                println!("{line}");
             } else {
-                self.progress.println(line)
+                self.progress.println(line);
             }
             self.progress.inc(1);
         }
@@ -117,26 +117,25 @@ impl Round<'_> {
     /// What becomes of one mutant. Its test must pass with the right code first.
     fn judge(&self, copy: &Copy, mutant: &Mutant) -> Result<&'static str, Error> {
         let known = locked(&self.times).get(mutant.test).copied();
-        let time = match known {
-            Some(time) => time,
-            None => {
-                self.progress.set_message(format!("right code: {}", mutant.test().1));
-                let program = build(copy, mutant)?;
-                let begin = Instant::now();
-                if ask(copy, &program, mutant, Duration::from_secs(3600))? != End::Passed {
-                    return Err(format!("{} fails without any mutant", mutant.test).into());
-                }
-                let time = begin.elapsed();
-                locked(&self.times).insert(mutant.test, time);
-                time
+        let time = if let Some(time) = known {
+            time
+        } else {
+            self.progress.set_message(format!("right code: {}", mutant.test().1));
+            let program = build(copy, mutant)?;
+            let begin = Instant::now();
+            if run_test(copy, &program, mutant, Duration::from_secs(3600))? != End::Passed {
+                return Err(format!("{} fails without any mutant", mutant.test).into());
             }
+            let time = begin.elapsed();
+            locked(&self.times).insert(mutant.test, time);
+            time
         };
         // A mutant that lives in its test is dead now.
         let Change::Patch { file, from, to } = mutant.change else { return Ok("killed in the test") };
         self.progress.set_message(mutant.name);
         copy.patch(file, from, to)?;
         let limit = LEAST.max(time * PATIENCE);
-        let end = build(copy, mutant).and_then(|program| ask(copy, &program, mutant, limit));
+        let end = build(copy, mutant).and_then(|program| run_test(copy, &program, mutant, limit));
         copy.restore(file)?;
         Ok(match end.map_err(|e| format!("mutant \"{}\": {e}", mutant.name))? {
             End::Failed => "killed",
@@ -190,7 +189,7 @@ fn build(copy: &Copy, mutant: &Mutant) -> Result<PathBuf, Error> {
 }
 
 /// Runs the one test.
-fn ask(copy: &Copy, program: &Path, mutant: &Mutant, limit: Duration) -> Result<End, Error> {
+fn run_test(copy: &Copy, program: &Path, mutant: &Mutant, limit: Duration) -> Result<End, Error> {
     let test = mutant.test().1;
     let folder = copy.root.join(mutant.package_folder());
     let path = copy.build.join("output.txt");
