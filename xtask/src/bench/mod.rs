@@ -1,4 +1,5 @@
 //! `cargo xtask bench`: the paper's evaluation again, with peers, every answer judged before its time counts.
+mod batch;
 mod body;
 mod catalogue;
 mod check;
@@ -38,8 +39,10 @@ const DURATION: &str = "A whole run (ten pairs, two speeds, 256 trials, all meth
 enum Only {
     Pairs,
     Series,
-    /// Many bodies, and bodies at rest; a minute.
+    /// Many bodies, bodies at rest, saved trees; some minutes.
     Scenes,
+    /// `d2m batch` with each form of motion, from file to file; a minute.
+    Batch,
 }
 
 /// What else than queries can be measured.
@@ -60,7 +63,7 @@ pub(crate) struct Options {
     /// Fewer trials, pairs and sweeps: under two minutes.
     #[arg(long)]
     quick: bool,
-    /// Only the pairs, only the series, or, in place of both, scenes.
+    /// Only the pairs, only the series, or, in place of both, scenes or batches.
     #[arg(long)]
     only: Option<Only>,
     /// Only pairs whose name contains one of these.
@@ -178,6 +181,7 @@ pub(crate) fn run(options: &Options) -> TaskResult {
         _ if options.check => check::run(options.accept),
         (Some(Subject::Dynamics), _) => dynamics::run(extent),
         (None, Some(Only::Scenes)) => scenes::run(options.rounds),
+        (None, Some(Only::Batch)) => batch::run(options.rounds),
         (None, _) => run::run(options),
     }
 }
