@@ -257,7 +257,7 @@ fn boxes_called_apart_at_rest_are_apart() {
             let frame = NodeFrame::new::<Quad>(&motion.frame::<Quad>(0.0), &scale, true, 1.0);
             let full = Placed::new::<Portable>(&frame, &scale, NodeBox::new(&a.nodes, 0), &b.nodes[0]);
             // What is left of the margin.
-            scale.floor -= (1.0 - margin) * full.gap_margin;
+            scale.floor -= (1.0 - margin) * full.boxed.margin;
             let placed = Placed::new::<Portable>(&frame, &scale, NodeBox::new(&a.nodes, 0), &b.nodes[0]);
             let time = entry_times::<Portable>(&b.nodes[0], &placed, &scale).store()[0];
             wrong += u32::from(time > 0.0);

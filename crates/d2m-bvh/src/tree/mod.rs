@@ -1,5 +1,6 @@
 //! Trees of oriented boxes over a mesh.
 
+pub(crate) mod box_pair;
 mod build;
 mod enclosures;
 mod file;

@@ -138,6 +138,20 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "[round_up(0.5 * (high - middle).min(middle - low)); 2];",
         "crates/d2m-bvh/tests/static_query.rs::random_solids_and_soups",
     ),
+    patch(
+        "at rest a box reaches no further along the last axis of the other than its own axis does",
+        "crates/d2m-bvh/src/tree/box_pair.rs",
+        "reach: L::Two::of(half[2], k[2]) + margin + reach_last,",
+        "reach: L::Two::of(half[2], k[2]) + margin,",
+        "crates/d2m-bvh/src/resting/node_pair/tests.rs::gaps_of_pairs_are_below_distances_of_points_and_sometimes_close",
+    ),
+    patch(
+        "at rest gaps of boxes without their error",
+        "crates/d2m-bvh/src/resting/node_pair/placed_box.rs",
+        "margin: round_up(f64::from(GAP_ERROR)",
+        "margin: round_up(0.0 * f64::from(GAP_ERROR)",
+        "crates/d2m-bvh/src/resting/node_pair/tests.rs::gaps_err_by_less_than_the_margin_and_not_by_much_less",
+    ),
     // Proximities.
     patch(
         "normal cones without slack for rounding",
@@ -163,14 +177,14 @@ pub(super) const MUTANTS: &[Mutant] = &[
     ),
     patch(
         "along the line of the centers one of the boxes has no size",
-        "crates/d2m-bvh/src/search/node_pair/entry_time.rs",
-        "(reach_line.first() + reach_line.second())",
-        "reach_line.first()",
+        "crates/d2m-bvh/src/tree/box_pair.rs",
+        "line_reach: reach_line.first() + reach_line.second(),",
+        "line_reach: reach_line.first(),",
         "crates/d2m-bvh/src/search/tests.rs::entry_times_of_boxes_hold_and_are_sharp",
     ),
     patch(
         "the cut of the opposite edge",
-        "crates/d2m-bvh/src/search/node_pair/node_test.rs",
+        "crates/d2m-bvh/src/tree/box_pair.rs",
         "slabs.to_bits().swap_bytes()",
         "slabs.to_bits()",
         "crates/d2m-bvh/src/search/tests.rs::entry_times_of_boxes_hold_and_are_sharp",
@@ -192,8 +206,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "gaps of boxes without their error: −0.02 of the margin",
         "crates/d2m-bvh/src/search/node_pair/node_test.rs",
-        "gap_margin: GAP_ERROR * (norm(&center)",
-        "gap_margin: -0.02 * GAP_ERROR * (norm(&center)",
+        "margin: GAP_ERROR * (norm(&center)",
+        "margin: -0.02 * GAP_ERROR * (norm(&center)",
         "crates/d2m-bvh/src/search/tests.rs::boxes_called_apart_at_rest_are_apart",
     ),
     patch(

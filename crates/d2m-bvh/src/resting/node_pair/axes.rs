@@ -1,25 +1,9 @@
 //! The boxes of a wide node and a single box along the axes of both.
 
 use super::placed_box::Placed;
+use crate::tree::box_pair::{dot, load, splat};
 use crate::tree::node::WideNode;
 use d2m_lanes::Lanes;
-
-/// Scalar product of lanes. (No closures and no `array::map` here: they are compiled without the vector instructions
-/// unless they happen to be inlined.)
-#[inline(always)]
-pub(super) fn dot<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-pub(super) fn splat<L: Lanes>(values: &[f32; 3]) -> [L; 3] {
-    [L::splat(values[0]), L::splat(values[1]), L::splat(values[2])]
-}
-
-#[inline(always)]
-pub(super) fn load<L: Lanes>(values: &[[f32; 8]; 3]) -> [L; 3] {
-    [L::load(&values[0]), L::load(&values[1]), L::load(&values[2])]
-}
 
 /// How far a box is beyond another along one axis of either: distance of the centers, as projected, less what both reach
 /// and the margin; not below zero.
@@ -51,13 +35,14 @@ impl<L: Lanes> Axes<L> {
     #[inline(always)]
     pub(super) fn new(wide: &WideNode, placed: &Placed) -> Self {
         let center = load::<L>(&wide.center);
-        let at = splat::<L>(&placed.center);
+        let single = &placed.boxed;
+        let at = splat::<L, 4>(&single.center);
         let to = [at[0] - center[0], at[1] - center[1], at[2] - center[2]];
         let h = load::<L>(&wide.half_extent);
         let a = [load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]), load::<L>(&wide.axes[2])];
-        let b = [splat::<L>(&placed.axes[0]), splat::<L>(&placed.axes[1]), splat::<L>(&placed.axes[2])];
-        let k = splat::<L>(&placed.half);
-        let m = L::splat(placed.margin);
+        let b = [splat::<L, 4>(&single.axes[0]), splat(&single.axes[1]), splat(&single.axes[2])];
+        let k = splat::<L, 3>(&single.half);
+        let m = L::splat(single.margin);
         let s = [
             [dot(&a[0], &b[0]), dot(&a[0], &b[1]), dot(&a[0], &b[2])],
             [dot(&a[1], &b[0]), dot(&a[1], &b[1]), dot(&a[1], &b[2])],

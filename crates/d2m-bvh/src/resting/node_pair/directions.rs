@@ -4,8 +4,9 @@
 //! n that counts: the line of the closest points proves almost the whole distance, a box's axes often much less. Errors of
 //! these gaps are below twice the margin of those along the axes; docs/theory/static-queries.md counts them.
 
-use super::axes::{Axes, dot, load, splat};
+use super::axes::Axes;
 use super::placed_box::Placed;
+use crate::tree::box_pair::{dot, load, splat};
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
 use crate::tree::slabs::reach;
@@ -24,16 +25,16 @@ fn wide_reach<L: Lanes>(wide: &WideNode, axes: &Axes<L>, cosines: &[L; 3], along
     reach::<L, 3>(&axes.half, &slabs, cosines, along).min(L::load(&wide.radius))
 }
 
-/// The same for the single box.
+/// The same for the single box, against the directions.
 #[inline(always)]
-fn single_reach<L: Lanes>(placed: &Placed, axes: &Axes<L>, cosines: &[L; 3], along: L) -> L {
-    let slabs = splat::<L>(&placed.slabs);
-    reach::<L, 3>(&axes.other_half, &slabs, cosines, along).min(L::splat(placed.radius))
+fn single_reach_back<L: Lanes>(placed: &Placed, axes: &Axes<L>, cosines: &[L; 3]) -> L {
+    let slabs = splat::<L, 3>(&placed.boxed.slabs);
+    reach::<L, 3>(&axes.other_half, &slabs, cosines, L::splat(1.0)).min(L::splat(placed.radius))
 }
 
 #[inline(always)]
 fn twice_margin<L: Lanes>(placed: &Placed) -> L {
-    L::splat(placed.margin + placed.margin)
+    L::splat(placed.boxed.margin + placed.boxed.margin)
 }
 
 /// 1/|v| for a vector of this squared length, shortened.
@@ -50,7 +51,7 @@ fn scaled<L: Lanes>(v: &[L; 3], factor: L) -> [L; 3] {
 /// Along the direction that the single box was prepared for.
 #[inline(always)]
 pub(super) fn gap_along<L: Lanes>(wide: &WideNode, placed: &Placed, axes: &Axes<L>) -> L {
-    let n = splat::<L>(&placed.along);
+    let n = splat::<L, 3>(&placed.along);
     let between = L::splat(placed.at_along) - dot(&load::<L>(&wide.center), &n);
     let cosines = [dot(&n, &axes.own[0]), dot(&n, &axes.own[1]), dot(&n, &axes.own[2])];
     let [forth, back] = placed.reach_along;
@@ -74,7 +75,7 @@ pub(super) fn gap_along_own<L: Lanes>(wide: &WideNode, placed: &Placed, axes: &A
     ];
     dot(&n, p)
         - wide_reach(wide, axes, &n, L::splat(1.0))
-        - single_reach(placed, axes, &other, L::splat(-1.0))
+        - single_reach_back(placed, axes, &other)
         - twice_margin(placed)
 }
 
@@ -88,7 +89,7 @@ pub(super) fn gap_along_other<L: Lanes>(wide: &WideNode, placed: &Placed, axes: 
     let own = [dot(&n, &s[0]), dot(&n, &s[1]), dot(&n, &s[2])];
     dot(&n, p)
         - wide_reach(wide, axes, &own, L::splat(1.0))
-        - single_reach(placed, axes, &n, L::splat(-1.0))
+        - single_reach_back(placed, axes, &n)
         - twice_margin(placed)
 }
 
@@ -101,7 +102,7 @@ pub(super) fn gap_from_triangle<L: Lanes>(
     corners: &[[f32; 3]; 3],
 ) -> L {
     let center = load::<L>(&wide.center);
-    let [p, q, r] = [splat::<L>(&corners[0]), splat::<L>(&corners[1]), splat::<L>(&corners[2])];
+    let [p, q, r] = [splat::<L, 3>(&corners[0]), splat::<L, 3>(&corners[1]), splat::<L, 3>(&corners[2])];
     let towards = from_triangle(&p, &q, &r, &center);
     gap_towards(wide, placed, axes, [&p, &q, &r], &towards)
 }
@@ -115,8 +116,8 @@ pub(super) fn gap_across_edge<L: Lanes>(
     (corners, edge): (&[[f32; 3]; 3], &[f32; 3]),
 ) -> L {
     let center = load::<L>(&wide.center);
-    let [p, q, r] = [splat::<L>(&corners[0]), splat::<L>(&corners[1]), splat::<L>(&corners[2])];
-    let across = cross(&splat::<L>(edge), &axes.own[0]);
+    let [p, q, r] = [splat::<L, 3>(&corners[0]), splat::<L, 3>(&corners[1]), splat::<L, 3>(&corners[2])];
+    let across = cross(&splat::<L, 3>(edge), &axes.own[0]);
     let side = dot(&across, &minus(&center, &p));
     let towards =
         [L::flip_sign(across[0], side), L::flip_sign(across[1], side), L::flip_sign(across[2], side)];

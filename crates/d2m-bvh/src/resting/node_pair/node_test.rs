@@ -1,8 +1,11 @@
 //! One box of one body against the eight boxes of a wide node of the other: how far apart are they at least?
 
-use super::axes::{Axes, dot};
+use super::axes::Axes;
 use super::directions::{gap_across_edge, gap_along, gap_along_other, gap_along_own, gap_from_triangle};
 use super::placed_box::Placed;
+#[cfg(test)]
+use crate::tree::box_pair::PlacedBox;
+use crate::tree::box_pair::{BoxPair, dot};
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
 use d2m_lanes::Lanes;
@@ -29,7 +32,7 @@ pub(super) fn lower_bounds<L: Lanes>(
     let balls = dot(&axes.to, &axes.to).sqrt()
         - L::load(&wide.radius)
         - L::splat(placed.radius)
-        - L::splat(placed.margin);
+        - L::splat(placed.boxed.margin);
     let bound = boxes.max(balls).max(gap_along(wide, placed, &axes));
     let factor = L::splat(NORM_FACTOR) * L::splat(to_work);
     let used = (1u32 << wide.used.min(8)) - 1;
@@ -53,15 +56,15 @@ pub(super) fn lower_bounds<L: Lanes>(
 /// Bit i is set when lane i is not proven apart from the single box.
 #[inline(always)]
 pub(super) fn overlaps<L: Lanes>(wide: &WideNode, placed: &Placed) -> u32 {
-    let Axes { gaps: own, other_gaps: other, .. } = Axes::<L>::new(wide, placed);
-    let most = own[0].max(own[1]).max(own[2].max(other[0])).max(other[1].max(other[2]));
+    let gap = BoxPair::<L>::new(wide, &placed.boxed).gap(placed.boxed.margin);
     let used = (1u32 << wide.used.min(8)) - 1;
-    !L::splat(0.0).less_bits(most) & used
+    !L::splat(0.0).less_bits(gap) & used
 }
 
 /// The six gaps as computed before anything is taken off; zero where negative.
 #[cfg(test)]
 pub(super) fn margin_free_gaps<L: Lanes>(wide: &WideNode, placed: &Placed) -> Vec<[f32; 8]> {
-    let Axes { gaps, other_gaps, .. } = Axes::<L>::new(wide, &Placed { margin: 0.0, ..*placed });
+    let boxed = PlacedBox { margin: 0.0, ..placed.boxed };
+    let Axes { gaps, other_gaps, .. } = Axes::<L>::new(wide, &Placed { boxed, ..*placed });
     gaps.into_iter().chain(other_gaps).map(L::store).collect()
 }

@@ -1,12 +1,11 @@
 //! One box of one body in the frame of a wide node of the other.
 
-use crate::tree::margin::{UNIT_F32, round_up};
+use crate::tree::box_pair::{GAP_ERROR, PlacedBox, opposite};
+use crate::tree::margin::round_up;
 use crate::tree::node::{OrientedBox, WideNode};
 use crate::tree::slabs::reach_both_ways;
 use glam::DVec3;
 
-/// Factor of the error bound of a gap along a box axis; docs/theory/static-queries.md counts at most 29.
-pub(super) const GAP_ERROR: f64 = 32.0 * UNIT_F32;
 /// The single body seen from the wide body, whose node is expanded. Lengths are in units of the wide body's tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side {
@@ -25,13 +24,8 @@ pub(super) struct Side {
 /// A single box in the frame of a wide node, rounded once.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
-    pub(super) center: [f32; 3],
-    pub(super) axes: [[f32; 3]; 3],
-    pub(super) half: [f32; 3],
+    pub(super) boxed: PlacedBox,
     pub(super) radius: f32,
-    pub(super) margin: f32,
-    /// What is cut off its edges, four bytes a number.
-    pub(super) slabs: [f32; 3],
     /// One more direction, wide body's axes, of length at most one.
     pub(super) along: [f32; 3],
     /// A point of what it covers, from the node's origin, projected onto that direction.
@@ -51,13 +45,18 @@ impl Placed {
         let radius = f64::from(boxed.radius) * side.ratio;
         let (ratio, half) = (side.ratio as f32, &boxed.half_extent);
         let norm = center.x.abs() + center.y.abs() + center.z.abs();
+        let slabs = |pair: usize| opposite(lane_of(boxed.slabs[pair]));
         Self {
-            center: narrow(center),
-            axes: [turned(side, boxed.axes[0]), turned(side, boxed.axes[1]), turned(side, boxed.axes[2])],
-            half: [half[0] * ratio, half[1] * ratio, half[2] * ratio],
+            boxed: PlacedBox {
+                center: padded(center),
+                axes: [turned(side, boxed.axes[0]), turned(side, boxed.axes[1]), turned(side, boxed.axes[2])],
+                half: [half[0] * ratio, half[1] * ratio, half[2] * ratio],
+                slabs: [slabs(0), slabs(1), slabs(2)],
+                margin: round_up(
+                    f64::from(GAP_ERROR) * (norm + f64::from(wide.extent) + radius) + side.floor,
+                ),
+            },
             radius: round_up(radius),
-            margin: round_up(GAP_ERROR * (norm + f64::from(wide.extent) + radius) + side.floor),
-            slabs: [lane_of(boxed.slabs[0]), lane_of(boxed.slabs[1]), lane_of(boxed.slabs[2])],
             along: [0.0; 3],
             at_along: 0.0,
             reach_along: [0.0; 2],
@@ -70,15 +69,16 @@ impl Placed {
     #[inline(always)]
     pub(super) fn with_box_along(mut self, n: [f32; 3], boxed: &OrientedBox) -> Self {
         let direction = vector(n);
-        let cosine = |axis: [f32; 3]| direction.dot(vector(axis));
-        let cosines = [cosine(self.axes[0]), cosine(self.axes[1]), cosine(self.axes[2])];
-        let [forth, back] = reach_both_ways(&self.half, &boxed.slabs, cosines);
+        let vector_of = |[x, y, z, _]: [f32; 4]| vector([x, y, z]);
+        let [x, y, z] = &self.boxed.axes;
+        let cosines = [x, y, z].map(|axis| direction.dot(vector_of(*axis)));
+        let [forth, back] = reach_both_ways(&self.boxed.half, &boxed.slabs, cosines);
         let least = |reach: f64| {
             let reach = round_up(reach);
             if reach < self.radius { reach } else { self.radius }
         };
         self.reach_along = [least(forth), least(back)];
-        self.at_along = direction.dot(vector(self.center)) as f32;
+        self.at_along = direction.dot(vector_of(self.boxed.center)) as f32;
         self.along = n;
         self
     }
@@ -123,6 +123,13 @@ fn narrow(v: DVec3) -> [f32; 3] {
     [v.x as f32, v.y as f32, v.z as f32]
 }
 
+/// The same with a zero behind.
+#[inline(always)]
+fn padded(v: DVec3) -> [f32; 4] {
+    let [x, y, z] = narrow(v);
+    [x, y, z, 0.0]
+}
+
 /// The center of a box from the center of its tree, wide body's axes and unit.
 #[inline(always)]
 fn arm(side: &Side, origin: [f32; 3], center: [f32; 3]) -> DVec3 {
@@ -132,19 +139,20 @@ fn arm(side: &Side, origin: [f32; 3], center: [f32; 3]) -> DVec3 {
 
 /// A stored axis in the wide body's frame.
 #[inline(always)]
-fn turned(side: &Side, axis: [f32; 3]) -> [f32; 3] {
+fn turned(side: &Side, axis: [f32; 3]) -> [f32; 4] {
     let a = vector(axis);
-    narrow(side.rotation[0] * a.x + side.rotation[1] * a.y + side.rotation[2] * a.z)
+    padded(side.rotation[0] * a.x + side.rotation[1] * a.y + side.rotation[2] * a.z)
 }
 
 #[cfg(test)]
 impl Placed {
     /// What the margin is `GAP_ERROR` times of, when the floor is zero.
     pub(super) fn margin_scale(&self) -> f64 {
-        f64::from(self.margin) / GAP_ERROR
+        f64::from(self.boxed.margin) / f64::from(GAP_ERROR)
     }
 
     pub(super) fn axis(&self, index: usize) -> [f32; 3] {
-        self.axes[index]
+        let [x, y, z, _] = self.boxed.axes[index];
+        [x, y, z]
     }
 }

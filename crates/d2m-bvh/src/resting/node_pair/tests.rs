@@ -5,6 +5,7 @@ use super::directions::gap_across_edge;
 use super::node_test::{lower_bounds, margin_free_gaps};
 use super::placed_box::{Placed, Side};
 use crate::random::Random;
+use crate::tree::box_pair::{BoxPair, PlacedBox};
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::{OrientedBox, WideNode};
 use crate::tree::slabs::{MOST, PAIRS, STEPS};
@@ -49,7 +50,7 @@ fn corners(b: &OrientedBox) -> Vec<DVec3> {
 #[test]
 fn gaps_err_by_less_than_the_margin_and_not_by_much_less() {
     let mut random = Random(5);
-    let mut worst = 0.0f64;
+    let (mut worst, mut worst_of_pairs) = (0.0f64, 0.0f64);
     for round in 0..20_000 {
         let mut node = WideNode::empty([random.next() as f32, random.next() as f32, 0.0], 0);
         let spread = [1.0, 1e-3, 1e-1][round % 3];
@@ -73,19 +74,22 @@ fn gaps_err_by_less_than_the_margin_and_not_by_much_less() {
         let b: Vec<DVec3> =
             corners(&single).into_iter().map(|p| rotation * p + offset - wide(node.origin)).collect();
         let scale = UNIT_F32 * placed.margin_scale();
+        let pairs =
+            BoxPair::<Portable>::new(&node, &PlacedBox { margin: 0.0, ..placed.boxed }).gap(0.0).store();
         for lane in 0..8 {
             let a = corners(&boxes[lane]);
+            let line =
+                (wide([0, 1, 2].map(|k| placed.boxed.center[k])) - wide(boxes[lane].center)).normalize();
+            let [_, second, third] = boxes[lane].axes.map(wide);
+            let directions = [second, third, wide(placed.axis(1)), wide(placed.axis(2)), line];
+            let greatest = directions.into_iter().map(|n| gap_along(n, &a, &b)).fold(f64::MIN, f64::max);
+            if pairs[lane] > 0.0 {
+                worst_of_pairs = worst_of_pairs.max((f64::from(pairs[lane]) - greatest) / scale);
+            }
             for (index, gap) in gaps.iter().enumerate() {
                 let axis =
                     if index < 3 { wide(boxes[lane].axes[index]) } else { wide(placed.axis(index - 3)) };
-                let range = |points: &[DVec3]| {
-                    points
-                        .iter()
-                        .map(|p| axis.dot(*p))
-                        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)))
-                };
-                let ((la, ha), (lb, hb)) = (range(&a), range(&b));
-                let truth = (lb - ha).max(la - hb);
+                let truth = gap_along(axis, &a, &b);
                 if gap[lane] > 0.0 {
                     worst = worst.max((f64::from(gap[lane]) - truth) / scale);
                 }
@@ -93,6 +97,49 @@ fn gaps_err_by_less_than_the_margin_and_not_by_much_less() {
         }
     }
     assert!(worst < 29.0 && worst > 1.0, "{worst}");
+    assert!(worst_of_pairs < 48.0 && worst_of_pairs > 1.0, "{worst_of_pairs}");
+}
+
+/// The gap of two sets of points along a direction.
+fn gap_along(n: DVec3, a: &[DVec3], b: &[DVec3]) -> f64 {
+    let range = |points: &[DVec3]| {
+        let along = points.iter().map(|p| n.dot(*p));
+        along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+    };
+    let ((low_a, high_a), (low_b, high_b)) = (range(a), range(b));
+    (low_b - high_a).max(low_a - high_b)
+}
+
+/// Along the five directions of a pair, with all cuts of both boxes.
+#[test]
+fn gaps_of_pairs_are_below_distances_of_points_and_sometimes_close() {
+    let mut random = Random(10);
+    let mut best = 0.0f64;
+    for round in 0..6000 {
+        let mut node = WideNode::empty([0.0; 3], 0);
+        let cuts = |random: &mut Random| {
+            let most = if round % 4 == 0 { 0.0 } else { f64::from(MOST) };
+            core::array::from_fn(|_| core::array::from_fn(|_| (random.next().abs() * most) as u8))
+        };
+        let boxed = OrientedBox { slabs: cuts(&mut random), ..random.oriented_box(1.0, 1.0) };
+        node.set_box(0, &boxed, 1.0);
+        node.used = 1;
+        let single = OrientedBox { slabs: cuts(&mut random), ..random.oriented_box(1.0, 1.0) };
+        let rotation = random.rotation();
+        let offset = random.vec() * 4.0;
+        let columns = [rotation.x_axis, rotation.y_axis, rotation.z_axis];
+        let side = Side { rotation: columns, offset, ratio: 1.0, floor: 0.0, to_work: 1.0 };
+        let placed = Placed::new(&side, &single, [0.0; 3], &node);
+        let gap =
+            f64::from(BoxPair::<Portable>::new(&node, &placed.boxed).gap(placed.boxed.margin).store()[0]);
+        for _ in 0..50 {
+            let p = point_within(&boxed, &mut random);
+            let apart = p.distance(rotation * point_within(&single, &mut random) + offset);
+            assert!(gap <= apart * (1.0 + 1e-12), "{gap} {apart}");
+            best = best.max(gap / apart);
+        }
+    }
+    assert!(best > 0.9, "{best}");
 }
 
 /// A point of the body that a box stands for: in the box, in its ball, and not in what is cut off its edges.

@@ -5,7 +5,7 @@
 //! 10.1111/j.1469-1809.1936.tb02137.x), with boxes for classes. Any direction may be tried, so nothing rests on its accuracy but
 //! that it is no longer than a unit vector.
 
-use super::entry_time::dot;
+use crate::tree::box_pair::dot;
 use crate::tree::margin::UNIT_F32;
 use core::ops::{Add, Mul, Sub};
 use d2m_lanes::Lanes;

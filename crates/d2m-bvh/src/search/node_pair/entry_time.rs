@@ -2,41 +2,13 @@
 
 use super::node_scale::NodeScale;
 use super::node_test::Placed;
+use crate::tree::box_pair::{Axis, BoxPair, dot, splat};
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
-use crate::tree::slabs::reach;
 use d2m_lanes::{Elementwise, Lanes, Two};
 
 /// What covers the roundings of the entry time and of unit axes.
 pub(crate) const ENTRY_FACTOR: f32 = 1.0 - 32.0 * UNIT_F32 as f32;
-
-/// Scalar product of lanes.
-#[inline(always)]
-pub(super) fn dot<T: Elementwise>(a: &[T; 3], b: &[T; 3]) -> T {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// The same three values in each lane.
-#[inline(always)]
-pub(super) fn splat<T: Elementwise<Scalar = f32>>(values: &[f32; 4]) -> [T; 3] {
-    [T::splat(values[0]), T::splat(values[1]), T::splat(values[2])]
-}
-
-#[inline(always)]
-fn load<L: Lanes>(values: &[[f32; 8]; 3]) -> [L; 3] {
-    [L::load(&values[0]), L::load(&values[1]), L::load(&values[2])]
-}
-
-/// One vector in the first eight lanes, another in the second.
-#[inline(always)]
-fn beside<L: Lanes>(first: &[L; 3], second: &[L; 3]) -> [L::Two; 3] {
-    [L::Two::of(first[0], second[0]), L::Two::of(first[1], second[1]), L::Two::of(first[2], second[2])]
-}
-
-#[inline(always)]
-fn both<L: Lanes>(half: &[L; 3]) -> [L::Two; 3] {
-    [L::Two::both(half[0]), L::Two::both(half[1]), L::Two::both(half[2])]
-}
 
 /// Along one axis: the gap, and the speed at which it closes at most, never less than a positive least one.
 #[derive(Clone, Copy)]
@@ -55,13 +27,13 @@ struct RateBounds<T> {
 }
 
 impl<T: Elementwise> GapAndRate<T> {
-    /// The centers are `along` apart on the axis and part at `parting` (in the sense of the axis), the boxes and the
-    /// margin reach `reach`.
+    /// Along an axis; `velocity` is that of the centers.
     #[inline(always)]
-    fn new(along: T, reach: T, parting: T, rate: RateBounds<T>) -> Self {
+    fn new(axis: &Axis<T>, velocity: &[T; 3], rate: RateBounds<T>) -> Self {
+        let parting = dot(velocity, &axis.axis);
         Self {
-            gap: along.abs() - reach,
-            closing: (rate.spread - T::flip_sign(parting, along)).max(rate.least),
+            gap: axis.between.abs() - axis.reach,
+            closing: (rate.spread - T::flip_sign(parting, axis.between)).max(rate.least),
         }
     }
 
@@ -82,64 +54,27 @@ impl<T: Elementwise> GapAndRate<T> {
 /// Five directions are evaluated: the middle axes of both boxes side by side, the last axes, and the line of the centers.
 #[inline(always)]
 pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &NodeScale) -> L {
-    // Twice, for the two axes: from the lane's center to the single one's, and the velocity there.
-    let center = both::<L>(&load(&wide.center));
-    let at = splat::<L::Two>(&placed.center);
-    let to = [at[0] - center[0], at[1] - center[1], at[2] - center[2]];
-    let w = splat::<L::Two>(&placed.omega_wide);
-    let base = splat::<L::Two>(&placed.velocity);
+    let pair = BoxPair::<L>::new(wide, &placed.boxed);
+    let center = &pair.center;
+    let w = splat::<L::Two, 4>(&placed.omega_wide);
+    let base = splat::<L::Two, 4>(&placed.velocity);
     let v = [
         base[0] - (w[1] * center[2] - w[2] * center[1]),
         base[1] - (w[2] * center[0] - w[0] * center[2]),
         base[2] - (w[0] * center[1] - w[1] * center[0]),
     ];
-    let half = load::<L>(&wide.half_extent);
-    let a = [load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]), load::<L>(&wide.axes[2])];
-    let b = [splat::<L>(&placed.axes[0]), splat::<L>(&placed.axes[1]), splat::<L>(&placed.axes[2])];
-    let k = [L::splat(placed.half[0]), L::splat(placed.half[1]), L::splat(placed.half[2])];
-    let margin = L::Two::splat(placed.gap_margin);
     // |ω|·radius of both boxes, whatever the direction, and the error of speeds.
     let spread =
         L::splat(scale.spin[0]) * L::load(&wide.radius) + L::splat(placed.spin_speed + placed.speed_margin);
     let rates = RateBounds { spread: L::Two::both(spread), least: L::Two::splat(placed.least) };
-
-    // Axes of the lane's box beside those of the single one, each against the axes of the other box.
-    let [middle, last] = [beside(&a[1], &b[1]), beside(&a[2], &b[2])];
-    let first_of_other = beside(&b[0], &a[0]);
-    let same = dot(&beside(&a[1], &a[2]), &beside(&b[1], &b[2]));
-    let middle_last = dot(&middle, &beside(&b[2], &a[2]));
-    let with_middle = [dot(&middle, &first_of_other), L::Two::both(same.first()), middle_last];
-    let last_middle = L::Two::of(middle_last.second(), middle_last.first());
-    let with_last = [dot(&last, &first_of_other), last_middle, L::Two::both(same.second())];
-    let slabs = [L::splat(placed.slabs[0]), L::splat(placed.slabs[1]), L::splat(placed.slabs[2])];
-    let (other_half, other_slabs) = (beside(&k, &half), beside(&slabs, &load(&wide.slabs)));
-    let [along_middle, along_last] = [dot(&to, &middle), dot(&to, &last)];
-    let reach_middle = reach::<_, 1>(&other_half, &other_slabs, &with_middle, along_middle);
-    let reach_last = reach::<_, 3>(&other_half, &other_slabs, &with_last, along_last);
-    let sum_middle = L::Two::of(half[1], k[1]) + margin + reach_middle;
-    let sum_last = L::Two::of(half[2], k[2]) + margin + reach_last;
-    let best = GapAndRate::new(along_middle, sum_middle, dot(&v, &middle), rates).or(GapAndRate::new(
-        along_last,
-        sum_last,
-        dot(&v, &last),
-        rates,
-    ));
+    let best = GapAndRate::new(&pair.middle, &v, rates).or(GapAndRate::new(&pair.last, &v, rates));
     let best = GapAndRate { gap: best.gap.first(), closing: best.closing.first() }
         .or(GapAndRate { gap: best.gap.second(), closing: best.closing.second() });
 
-    // The line of the centers: where it has no length, nothing is known along it.
-    let with_line = [
-        dot(&to, &first_of_other),
-        L::Two::of(along_middle.second(), along_middle.first()),
-        L::Two::of(along_last.second(), along_last.first()),
-    ];
-    let reach_line = reach::<_, 3>(&other_half, &other_slabs, &with_line, L::Two::splat(0.0));
-    let line = [to[0].first(), to[1].first(), to[2].first()];
     let rate = [v[0].first(), v[1].first(), v[2].first()];
-    let square = dot(&line, &line);
-    let inverse = L::splat(1.0) / square.sqrt();
-    let gap = (square - (reach_line.first() + reach_line.second())) * inverse - L::splat(placed.gap_margin);
-    let closing = (spread - dot(&rate, &line) * inverse).max(L::splat(placed.least));
+    let inverse = L::splat(1.0) / pair.square.sqrt();
+    let gap = (pair.square - pair.line_reach) * inverse - L::splat(placed.boxed.margin);
+    let closing = (spread - dot(&rate, &pair.line) * inverse).max(L::splat(placed.least));
     let best = GapAndRate { gap, closing }.or(best);
 
     // Root of gap − closing·s − acceleration·s²/2: no cancellation.
@@ -152,7 +87,7 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
 mod tests {
     use super::*;
     use crate::random::Random;
-    use crate::tree::slabs::{PAIRS, STEPS};
+    use crate::tree::slabs::{PAIRS, STEPS, reach};
     use d2m_lanes::{Bytes, InstructionSet, Portable, Task, run_on};
 
     /// Bytes chosen by signs, by lanes and by twice as many.

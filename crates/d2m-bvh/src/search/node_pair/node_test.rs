@@ -2,13 +2,12 @@
 
 use super::node_scale::NodeScale;
 use crate::search::motion::frame::Frame;
+use crate::tree::box_pair::{GAP_ERROR, PlacedBox, opposite};
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::{NodeBox, WideNode};
 use d2m_lanes::{Doubles, Lanes, Matrix, Quad};
 use glam::DVec3;
 
-/// Factor of the gap's error bound; see docs/theory/engine.md.
-pub(crate) const GAP_ERROR: f32 = 48.0 * UNIT_F32 as f32;
 /// Factor of the speed's error bound.
 pub(crate) const SPEED_ERROR: f32 = 48.0 * UNIT_F32 as f32;
 /// Part of the acceleration times the time left that closing speeds are raised to: keeps axes along which the boxes
@@ -91,17 +90,12 @@ impl NodeFrame {
 /// A single box in the frame of the wide body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed {
-    pub(super) center: [f32; 4],
-    pub(super) axes: [[f32; 4]; 3],
-    pub(super) half: [f32; 3],
-    /// Of the opposite edges: for the opposite of a direction.
-    pub(super) slabs: [f32; 3],
+    pub(crate) boxed: PlacedBox,
     /// Velocity of the center against the origin of the wide node as a point of the wide body.
     pub(super) velocity: [f32; 4],
     pub(super) omega_wide: [f32; 4],
     /// Bound on |ω × e| over the single box.
     pub(super) spin_speed: f32,
-    pub(crate) gap_margin: f32,
     /// Error of speeds.
     pub(super) speed_margin: f32,
     /// Least closing speed that is reckoned with.
@@ -132,7 +126,7 @@ impl Placed {
         let (half, slabs) = (&single.half_extent, &single.slabs);
         let norm = |v: &[f32; 4]| v[0].abs() + v[1].abs() + v[2].abs();
         let spin_speed = scale.spin[1] * radius;
-        Self {
+        let boxed = PlacedBox {
             axes: [
                 turned::<L>(frame, &single.axes[0], lane),
                 turned::<L>(frame, &single.axes[1], lane),
@@ -140,22 +134,19 @@ impl Placed {
             ],
             half: [half[0][lane] * ratio, half[1][lane] * ratio, half[2][lane] * ratio],
             slabs: [opposite(slabs[0][lane]), opposite(slabs[1][lane]), opposite(slabs[2][lane])],
+            margin: GAP_ERROR * (norm(&center) + wide.extent + radius) + scale.floor,
+            center,
+        };
+        Self {
+            boxed,
             omega_wide: frame.omega_wide,
             spin_speed,
-            gap_margin: GAP_ERROR * (norm(&center) + wide.extent + radius) + scale.floor,
             speed_margin: SPEED_ERROR * (norm(&velocity) + scale.spin[0] * wide.extent + spin_speed)
                 + frame.speed_floor,
             least: frame.least,
-            center,
             velocity,
         }
     }
-}
-
-/// The four bytes for the opposites of directions.
-#[inline(always)]
-pub(super) fn opposite(slabs: f32) -> f32 {
-    f32::from_bits(slabs.to_bits().swap_bytes())
 }
 
 /// A stored axis in the wide body's frame.

@@ -8,10 +8,9 @@
 //! docs/theory/engine.md, "Time, divided", has the margins.
 
 use super::discriminant::{Spread, discriminant, unit};
-use super::entry_time::{dot, splat};
 use super::node_scale::NodeScale;
-use super::node_test::opposite;
 use crate::search::motion::frame::{PlacedFrame, RelativeMotion};
+use crate::tree::box_pair::{both, dot, load, opposite, splat};
 use crate::tree::margin::{NARROW_UP, UNIT_F32, UP, round_up};
 use crate::tree::node::{NodeBox, WideNode};
 use crate::tree::slabs::reach;
@@ -154,17 +153,6 @@ impl<L: Lanes> Boxed<L> {
     }
 }
 
-#[inline(always)]
-fn load<L: Lanes>(values: &[[f32; 8]; 3]) -> [L; 3] {
-    [L::load(&values[0]), L::load(&values[1]), L::load(&values[2])]
-}
-
-/// The same at the start and at the end.
-#[inline(always)]
-fn both<L: Lanes>(v: &[L; 3]) -> [L::Two; 3] {
-    [L::Two::both(v[0]), L::Two::both(v[1]), L::Two::both(v[2])]
-}
-
 /// The same vector in all lanes of the start, another one in those of the end.
 #[inline(always)]
 fn ends<L: Lanes>(start: &[f32; 4], end: &[f32; 4]) -> [L::Two; 3] {
@@ -243,7 +231,7 @@ pub(crate) fn apart_over_span<L: Lanes>(
     };
 
     let used = (1 << wide.used) - 1;
-    let at = splat::<L>(&middle);
+    let at = splat::<L, 4>(&middle);
     let line = unit(&[at[0] - lanes[0], at[1] - lanes[1], at[2] - lanes[2]]);
     let own = [0, 1, 2].map(|k| {
         let [x, y, z, _] = frame.middle.turned::<L>(&axes[k], lane);
