@@ -148,8 +148,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "at rest gaps of boxes without their error",
         "crates/d2m-bvh/src/resting/node_pair/placed_box.rs",
-        "margin: round_up(f64::from(GAP_ERROR)",
-        "margin: round_up(0.0 * f64::from(GAP_ERROR)",
+        "f64::from(GAP_ERROR) * (norm",
+        "0.0 * f64::from(GAP_ERROR) * (norm",
         "crates/d2m-bvh/src/resting/node_pair/tests.rs::gaps_err_by_less_than_the_margin_and_not_by_much_less",
     ),
     // Proximities.
@@ -521,8 +521,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "the other box reaches as far back as forth",
         "crates/d2m-bvh/src/resting/node_pair/directions.rs",
-        "- single_reach(placed, axes, &other, L::splat(-1.0))",
-        "- single_reach(placed, axes, &other, L::splat(1.0))",
+        "reach::<L, 3>(&axes.other_half, &slabs, cosines, L::splat(1.0))",
+        "reach::<L, 3>(&axes.other_half, &slabs, cosines, L::splat(-1.0))",
         "crates/d2m-bvh/src/resting/node_pair/tests.rs::bounds_of_boxes_are_below_distances_of_points_and_sometimes_close",
     ),
     patch(
