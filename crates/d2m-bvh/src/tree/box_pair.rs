@@ -60,7 +60,7 @@ pub(crate) struct PlacedBox {
 /// Axes of the lanes' boxes beside one of the single box.
 #[derive(Clone, Copy)]
 pub(crate) struct Axis<T> {
-    pub(crate) axis: [T; 3],
+    pub(crate) direction: [T; 3],
     /// From the lane's center to the single one's along it.
     pub(crate) between: T,
     /// How far both boxes reach, and the margin.
@@ -116,12 +116,12 @@ impl<L: Lanes> BoxPair<L> {
         Self {
             center,
             middle: Axis {
-                axis: middle,
+                direction: middle,
                 between: along_middle,
                 reach: L::Two::of(half[1], k[1]) + margin + reach_middle,
             },
             last: Axis {
-                axis: last,
+                direction: last,
                 between: along_last,
                 reach: L::Two::of(half[2], k[2]) + margin + reach_last,
             },

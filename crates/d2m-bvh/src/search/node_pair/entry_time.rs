@@ -30,7 +30,7 @@ impl<T: Elementwise> GapAndRate<T> {
     /// Along an axis; `velocity` is that of the centers.
     #[inline(always)]
     fn new(axis: &Axis<T>, velocity: &[T; 3], rate: RateBounds<T>) -> Self {
-        let parting = dot(velocity, &axis.axis);
+        let parting = dot(velocity, &axis.direction);
         Self {
             gap: axis.between.abs() - axis.reach,
             closing: (rate.spread - T::flip_sign(parting, axis.between)).max(rate.least),
