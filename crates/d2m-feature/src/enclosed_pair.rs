@@ -8,7 +8,7 @@ use crate::options::ContactOptions;
 use crate::pair_motion::largest;
 use crate::path::{EnclosedMotions, EnclosedPath, Extent, FeaturePath};
 use crate::point_triangle::{PointTriangleTest, TrianglePlanes};
-use crate::rigid_query::answer_in;
+use crate::rigid_query::{Answered, answer_in};
 use crate::rounding::{DOWN, UP, length_up};
 use crate::sphere::Sphere;
 use crate::sphere_sphere::SphereSphereTest;
@@ -22,8 +22,8 @@ use glam::DVec3;
 ///
 /// Every time that a search evaluates costs the states of both motions there ([`RigidMotion::enclose_state`]) and their
 /// twist rates around it. The promises are those of [`PairMotion`](crate::PairMotion), as long as the enclosures keep
-/// theirs. A window over joints ([`RigidMotion::smooth_until`]) is searched piece by piece, each with the budget of the
-/// options; outside of the domain of a motion the answer is [`FirstContact::Undecided`]. Two motions of constant twist
+/// theirs. A window over joints ([`RigidMotion::smooth_until`]) is searched piece by piece, all of them with one
+/// budget; outside of the domain of a motion the answer is [`FirstContact::Undecided`]. Two motions of constant twist
 /// are better queried as a `PairMotion`: 1.2 to 2 times as fast, and with extended precision far from the reference point.
 ///
 /// ```
@@ -181,13 +181,13 @@ impl<'a> EnclosedPairMotion<'a> {
         &self,
         size: f64,
         options: &ContactOptions,
-        query: &dyn Fn(&SmoothPiece<'_>, &Units, &ContactOptions) -> FirstContact,
+        query: &dyn Fn(&SmoothPiece<'_>, &Units, &ContactOptions) -> Answered,
     ) -> FirstContact {
         let size = size.max(options.separation());
         let small = !self.units.serve(size) && self.units.dwarf(size);
         let units =
             if self.units.serve(size) || small { self.units } else { self.units.with_length_of(size) };
-        let in_units = options.in_units(&units).at_cost(COST_OF_ENCLOSURES);
+        let mut in_units = options.in_units(&units).at_cost(COST_OF_ENCLOSURES);
         let mut from = self.start;
         loop {
             let built;
@@ -202,7 +202,9 @@ impl<'a> EnclosedPairMotion<'a> {
                 },
             };
             let answer = if !small {
-                query(piece, &units, &in_units)
+                let Answered { contact, evaluations } = query(piece, &units, &in_units);
+                in_units.max_evaluations = in_units.max_evaluations.saturating_sub(evaluations);
+                contact
             } else if piece.never_near() {
                 FirstContact::Clear
             } else {
@@ -279,14 +281,14 @@ fn sphere_sphere(
     centers: [DVec3; 2],
     size: f64,
     options: &ContactOptions,
-) -> FirstContact {
+) -> Answered {
     let radii = (size * DOWN, size * UP);
     let separation = options.separation();
     let extent = Extent::of(centers[1], radii.1, motions);
     let path = EnclosedPath::new(motions, [centers[0]; 2], extent, separation);
     let wanted = options.wanted_tolerance(size, extent.from_origin);
     let Some(tolerance) = try_tolerance(wanted, size, &path, motions) else {
-        return FirstContact::Undecided { clear_until: motions.window().lo };
+        return Answered::at_once(FirstContact::Undecided { clear_until: motions.window().lo });
     };
     let part = path.window();
     let mut test = SphereSphereTest { path, center: centers[1], radii, tolerance, separation, size };
@@ -298,7 +300,7 @@ fn point_triangle(
     point: DVec3,
     triangle: &[DVec3; 3],
     options: &ContactOptions,
-) -> FirstContact {
+) -> Answered {
     let separation = options.separation();
     let planes = TrianglePlanes::new(*triangle);
     let extent = Extent::of(planes.center, planes.radius, motions);
@@ -306,7 +308,7 @@ fn point_triangle(
     let path = EnclosedPath::new(motions, [point; 2], extent, separation);
     let wanted = options.wanted_tolerance(planes.size, planes.extent);
     let Some(tolerance) = try_tolerance(wanted, planes.size, &path, motions) else {
-        return FirstContact::Undecided { clear_until: motions.window().lo };
+        return Answered::at_once(FirstContact::Undecided { clear_until: motions.window().lo });
     };
     let part = path.window();
     let mut test = PointTriangleTest::new(path, &planes, tolerance, separation);
@@ -318,7 +320,7 @@ fn edge_edge(
     edge_a: [DVec3; 2],
     edge_b: [DVec3; 2],
     options: &ContactOptions,
-) -> FirstContact {
+) -> Answered {
     let separation = options.separation();
     let (middle, half) = ((edge_b[0] + edge_b[1]) * 0.5, (edge_b[1] - edge_b[0]) * 0.5);
     let half_a = (edge_a[1] - edge_a[0]) * 0.5;
@@ -331,7 +333,7 @@ fn edge_edge(
     let wanted = options.wanted_tolerance(length, reach);
     match try_tolerance(wanted, length, &test.path, motions) {
         Some(tolerance) => test.tolerance = tolerance,
-        None => return FirstContact::Undecided { clear_until: motions.window().lo },
+        None => return Answered::at_once(FirstContact::Undecided { clear_until: motions.window().lo }),
     }
     answer_in(&mut test, part, motions.window().lo, options)
 }

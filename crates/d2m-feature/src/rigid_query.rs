@@ -6,7 +6,7 @@ use crate::path::{FeaturePath, FramedMotion, RigidPath};
 use crate::point_triangle::{PointTriangleTest, TrianglePlanes};
 use crate::rounding::{DOWN, UP, length_up};
 use crate::sphere_sphere::SphereSphereTest;
-use d2m_root::{Evidence, FirstRoot, IsolatorOptions, Piece, PieceTest, isolate};
+use d2m_root::{Evidence, FirstRoot, Isolation, IsolatorOptions, Piece, PieceTest, isolate};
 use glam::DVec3;
 
 /// Part of the tolerance that rounding may take before positions are made in extended precision.
@@ -176,7 +176,7 @@ fn first_contact_anchored(
 /// Isolates the first contact and expresses the answer in real time.
 fn answer(test: &mut impl RigidTest, framed: &FramedMotion, options: &ContactOptions) -> FirstContact {
     let (motion, window) = (&framed.motion, test.path().window());
-    match answer_in(test, window, 0.0, options) {
+    match answer_in(test, window, 0.0, options).contact {
         FirstContact::Clear => FirstContact::Clear,
         FirstContact::Undecided { clear_until } => {
             FirstContact::Undecided { clear_until: motion.time_down(clear_until) }
@@ -189,6 +189,19 @@ fn answer(test: &mut impl RigidTest, framed: &FramedMotion, options: &ContactOpt
     }
 }
 
+/// An answer, and the evaluations that it took.
+pub(crate) struct Answered {
+    pub(crate) contact: FirstContact,
+    pub(crate) evaluations: u32,
+}
+
+impl Answered {
+    /// Without any evaluation.
+    pub(crate) const fn at_once(contact: FirstContact) -> Self {
+        Self { contact, evaluations: 0 }
+    }
+}
+
 /// Isolates in the part of the window in which the features come within reach of each other, in the test's own time.
 #[inline]
 pub(crate) fn answer_in(
@@ -196,21 +209,22 @@ pub(crate) fn answer_in(
     part: Option<Piece>,
     start: f64,
     options: &ContactOptions,
-) -> FirstContact {
+) -> Answered {
     let Some(part) = part else {
-        return FirstContact::Clear;
+        return Answered::at_once(FirstContact::Clear);
     };
     let tolerance = test.tolerance();
     if tolerance.is_nan() || tolerance == f64::INFINITY {
         // Nothing is known of where the features are.
-        return FirstContact::Undecided { clear_until: part.lo };
+        return Answered::at_once(FirstContact::Undecided { clear_until: part.lo });
     }
     let mut limits = IsolatorOptions::new().with_max_evaluations(options.max_evaluations);
     if part.lo > start {
         // It starts where the spheres about both features meet.
         limits = limits.with_start_apart();
     }
-    match isolate(test, part, &limits).root {
+    let Isolation { root, evaluations } = isolate(test, part, &limits);
+    let contact = match root {
         FirstRoot::Clear => FirstContact::Clear,
         FirstRoot::Undecided { clear_until } => FirstContact::Undecided { clear_until },
         FirstRoot::Found { bracket: Piece { lo, hi }, evidence, distance } => match evidence {
@@ -220,5 +234,6 @@ pub(crate) fn answer_in(
             // As narrow as the clock allows, neither apart nor within the tolerance.
             _ => FirstContact::Undecided { clear_until: lo },
         },
-    }
+    };
+    Answered { contact, evaluations }
 }

@@ -1,10 +1,13 @@
 //! Contacts planted on motions that accelerate: never missed, never late, brackets narrow, gaps seen as gaps.
 use d2m_feature::{ContactOptions, EnclosedPairMotion, FirstContact};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
-use d2m_motion::{IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
+use d2m_motion::{
+    CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Pose, RigidMotion, Span, Twist,
+};
 use d2m_root::Evidence;
 use d2m_testing::{Draw, Random};
 use glam::{DQuat, DVec3};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A cubic with a turn about a fixed axis by the angle w·t + α·t²/2: C∞, but nothing that the tests know about.
 #[derive(Debug, Clone, Copy)]
@@ -248,4 +251,60 @@ fn twists_that_jump_are_searched_piece_by_piece() {
         let answer = outside.point_triangle(DVec3::ZERO, &floor, &options);
         assert_eq!(answer, FirstContact::Undecided { clear_until: 0.0 });
     }
+}
+
+/// Keyframes that count how often their state is asked for.
+struct Counted(Keyframes, AtomicU32);
+
+impl RigidMotion for Counted {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        self.0.pose_and_twist(t)
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        self.0.enclose_pose(t)
+    }
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist(t)
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist_rate(t)
+    }
+    fn enclose_state(&self, t: f64) -> CertifiedState {
+        self.1.fetch_add(1, Ordering::Relaxed);
+        self.0.enclose_state(t)
+    }
+    fn smooth_until(&self, t: f64) -> Option<f64> {
+        self.0.smooth_until(t)
+    }
+    fn domain(&self) -> Interval {
+        self.0.domain()
+    }
+}
+
+/// A point turns close above a face through hundreds of spans. However many pieces there are, the budget is one.
+#[test]
+fn all_pieces_share_one_budget() {
+    let poses: Vec<(f64, Pose)> = (0..=400)
+        .map(|k| {
+            let rotation = DQuat::from_rotation_z(2.0 * f64::from(k));
+            (f64::from(k), Pose { translation: DVec3::Z * 1e-3, rotation, at: DVec3::ZERO })
+        })
+        .collect();
+    let floor = [DVec3::new(-4.0, -3.0, 0.0), DVec3::new(4.0, -3.0, 0.0), DVec3::new(0.0, 5.0, 0.0)];
+    let tilted = floor.map(|p| DQuat::from_rotation_x(5e-4) * p);
+    let ask = |evaluations: u32| {
+        let path = Keyframes::try_new(&poses, Span::Linear).unwrap();
+        let motion = Counted(path, AtomicU32::new(0));
+        let options = ContactOptions::new().with_max_evaluations(evaluations);
+        let pair = EnclosedPairMotion::new(&motion, &ConstantTwist::REST, 0.0, 400.0);
+        let answer = pair.point_triangle(DVec3::X, &tilted, &options);
+        (answer, motion.1.load(Ordering::Relaxed))
+    };
+    let (whole, all) = ask(1 << 19);
+    assert_eq!(whole, FirstContact::Clear);
+    // An evaluation counts as eight, and takes a state or two.
+    let (part, some) = ask(8 * 400);
+    let FirstContact::Undecided { clear_until } = part else { panic!("{part:?}") };
+    assert!(clear_until < 400.0 && 2 * some < all, "{clear_until}: {some} of {all}");
+    assert!(clear_until > 1.0 || some > 200, "{clear_until}: {some}");
 }

@@ -87,12 +87,12 @@ impl StraightPaths {
 
 #[inline(always)]
 fn point_triangle(lines: &Lines, options: &ContactOptions) -> FirstContact {
-    answer_in(&mut StraightPointTriangle::new(lines, options), WINDOW, 0.0, options)
+    answer_in(&mut StraightPointTriangle::new(lines, options), WINDOW, 0.0, options).contact
 }
 
 #[inline(always)]
 fn edge_edge(lines: &Lines, options: &ContactOptions) -> FirstContact {
-    answer_in(&mut StraightEdgeEdge::new(lines, options), WINDOW, 0.0, options)
+    answer_in(&mut StraightEdgeEdge::new(lines, options), WINDOW, 0.0, options).contact
 }
 
 /// A contact's distances in the units of the input.

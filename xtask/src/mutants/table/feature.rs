@@ -4,6 +4,13 @@ use super::{Mutant, in_test, patch};
 pub(super) const MUTANTS: &[Mutant] = &[
     // Features.
     patch(
+        "each piece of a window has a budget of its own",
+        "crates/d2m-feature/src/enclosed_pair.rs",
+        "in_units.max_evaluations.saturating_sub(evaluations)",
+        "in_units.max_evaluations.saturating_sub(0 * evaluations)",
+        "crates/d2m-feature/tests/any_motion.rs::all_pieces_share_one_budget",
+    ),
+    patch(
         "straight paths in the units of the input",
         "crates/d2m-feature/src/straight_path/mod.rs",
         "Units::of_size(most.max_element())",
