@@ -224,6 +224,7 @@ impl Queue {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use d2m_testing::Random;
 
     /// Each item leaves eight with the same key, ten levels deep: the queue holds the siblings along one path.
     #[test]
@@ -245,11 +246,8 @@ mod tests {
 
     #[test]
     fn no_live_key_is_below_the_one_handed_out() {
-        let mut seed = 7u64;
-        let mut next = move || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 33) as u32
-        };
+        let mut random = Random(7);
+        let mut next = move || (random.bits() >> 33) as u32;
         for target in [1, 4, 16, 64] {
             let mut queue = Queue::new();
             let mut live = std::collections::BTreeMap::new();

@@ -244,6 +244,7 @@ mod tests {
     use crate::{MeshTree, QueryOptions, TriMesh, Window};
     use d2m_feature::triangle_distance;
     use d2m_motion::ConstantTwist;
+    use d2m_testing::{Draw, KnuthRandom};
     use glam::DQuat;
 
     const LIMITS: SkipLimits = SkipLimits {
@@ -257,15 +258,11 @@ mod tests {
     /// Random triangles, one a body, on random screws about z, some with a drift: the least distance at times called
     /// clear over the level, and how many were called clear for some time.
     fn least_ratio(rounds: u32, mutate: impl Fn(&mut Screw)) -> (f64, u32) {
-        let mut seed = 9u64;
-        let mut next = move || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
-        };
+        let mut random = KnuthRandom(9);
         let (level, mut least, mut won) = (0.02, f64::INFINITY, 0);
         let options = QueryOptions::default().with_tolerance(level);
         for round in 0..rounds {
-            let mut vec = || DVec3::new(next(), next(), next());
+            let mut vec = || random.vector();
             let mut body = |size: f64| {
                 let middle = vec();
                 let corners = vec![middle + vec() * size, middle + vec() * size, middle + vec() * size];

@@ -182,6 +182,7 @@ mod tests {
     use crate::{MeshTree, QueryOptions, TriMesh, Window};
     use d2m_feature::triangle_distance;
     use d2m_motion::ConstantTwist;
+    use d2m_testing::{Draw, KnuthRandom};
     use glam::DQuat;
 
     /// A closed box.
@@ -268,14 +269,10 @@ mod tests {
 
     #[test]
     fn nothing_meets_while_sweeps_are_apart() {
-        let mut seed = 5u64;
-        let mut next = move || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
-        };
+        let mut random = KnuthRandom(5);
         let (mut won, mut least) = (0, f64::INFINITY);
         for round in 0..600 {
-            let mut vec = || DVec3::new(next(), next(), next());
+            let mut vec = || random.vector();
             let (a, b) = (cuboid(vec().abs() * 0.5 + 0.05), cuboid(vec().abs() * 0.5 + 0.05));
             let spin = [0.2, 3.0, 30.0];
             let mut motion = |place: f64, spin: f64| {
