@@ -15,9 +15,6 @@ pub mod paper;
 mod parallel;
 mod posed;
 mod query;
-#[cfg(test)]
-#[path = "../tests/random/mod.rs"]
-mod random;
 mod resting;
 mod search;
 mod tree;

@@ -10,37 +10,38 @@ use super::triangle_pair::pair_scale::PairScale;
 use super::triangle_pair::separating_axis::{
     BackwardCertificate, BoundOrder, Evaluation, apart_since, place_a, separating_axis_test,
 };
-use crate::random::Random;
 use crate::tree::node::{NodeBox, WIDTH};
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
 use d2m_feature::triangle_distance;
 use d2m_lanes::{InstructionSet, Lanes, Portable, Quad};
 use d2m_motion::ConstantTwist;
+use d2m_testing::{Draw, KnuthRandom};
 use glam::{DQuat, DVec3};
 
 /// Eight triangles of very different size and shape around the origin.
-fn soup(random: &mut Random) -> MeshTree {
+fn soup(random: &mut KnuthRandom) -> MeshTree {
     let mut vertices = Vec::new();
     for _ in 0..8 {
-        let middle = random.vec();
-        let size = 10f64.powf(1.5 * random.next() - 1.0);
+        let middle = random.vector();
+        let size = 10f64.powf(1.5 * random.signed() - 1.0);
         for _ in 0..3 {
-            vertices.push(middle + random.vec() * size);
+            vertices.push(middle + random.vector() * size);
         }
     }
     let triangles = (0..8).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
     MeshTree::new(TriMesh::try_new(vertices, triangles).unwrap())
 }
 
-fn moving(random: &mut Random, apart: f64, speed: f64, spin: f64) -> ConstantTwist {
-    let q = DQuat::from_xyzw(random.next(), random.next(), random.next(), random.next() + 1.2);
-    ConstantTwist::try_new(random.vec() * apart, q, random.vec() * speed, random.vec() * spin).unwrap()
+fn moving(random: &mut KnuthRandom, apart: f64, speed: f64, spin: f64) -> ConstantTwist {
+    let q = DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), random.signed() + 1.2);
+    ConstantTwist::try_new(random.vector() * apart, q, random.vector() * speed, random.vector() * spin)
+        .unwrap()
 }
 
 /// The least certified distance over the level at the end of all proven times, over `rounds` random pairs of nodes.
 /// At least one if the bound holds; close to one if it is sharp.
 fn least_ratio(rounds: u32, mutate: impl Fn(&mut NodeScale)) -> f64 {
-    let mut random = Random(11);
+    let mut random = KnuthRandom(11);
     let mut least = f64::INFINITY;
     let level = 0.01;
     let options = QueryOptions::default().with_tolerance(level);
@@ -206,7 +207,7 @@ fn half_the_spin_is_noticed() {
 
 #[test]
 fn clear_times_of_triangle_pairs_hold_and_are_sharp() {
-    let mut random = Random(12);
+    let mut random = KnuthRandom(12);
     let level = 1e-3;
     let options = QueryOptions::default().with_tolerance(level);
     let mut least = f64::INFINITY;
@@ -239,15 +240,15 @@ fn clear_times_of_triangle_pairs_hold_and_are_sharp() {
 fn boxes_called_apart_at_rest_are_apart() {
     // With the margin, nothing that touches is called apart; with none at all, something is.
     let called_apart = |margin: f32| {
-        let mut random = Random(13);
+        let mut random = KnuthRandom(13);
         let mut wrong = 0;
         for _ in 0..20_000 {
-            let mut vertices: Vec<DVec3> = (0..3).map(|_| random.vec()).collect();
+            let mut vertices: Vec<DVec3> = (0..3).map(|_| random.vector()).collect();
             // B hangs on a corner of A and leads away from it: the true gap is zero or a rounding of the corner.
             let shared = vertices[0];
             let a = MeshTree::new(TriMesh::try_new(vertices.clone(), vec![[0, 1, 2]]).unwrap());
             vertices[1] = shared * 2.0 - vertices[1];
-            vertices[2] = shared * 2.0 - vertices[2] + random.vec() * 0.2;
+            vertices[2] = shared * 2.0 - vertices[2] + random.vector() * 0.2;
             let b = MeshTree::new(TriMesh::try_new(vertices, vec![[0, 1, 2]]).unwrap());
             let rest = ConstantTwist::REST;
             let options = QueryOptions::default().with_tolerance(1e-30);
@@ -303,7 +304,7 @@ fn lines_of_no_length_or_beyond_all_numbers_part_nothing() {
 
 #[test]
 fn every_instruction_set_gives_the_same_bits() {
-    let mut random = Random(14);
+    let mut random = KnuthRandom(14);
     let (mut scratch, mut found) = (Scratch::new(), 0);
     for round in 0..300 {
         let (a, b) = (soup(&mut random), soup(&mut random));
@@ -332,7 +333,7 @@ fn every_instruction_set_gives_the_same_bits() {
 /// Third-order bounds of pairs that spin close to each other.
 #[test]
 fn third_order_bounds_hold() {
-    let mut random = Random(15);
+    let mut random = KnuthRandom(15);
     let level = 1e-6;
     let options = QueryOptions::default().with_tolerance(level);
     let mut least = f64::INFINITY;

@@ -4,30 +4,29 @@ use super::axes::Axes;
 use super::directions::gap_across_edge;
 use super::node_test::{lower_bounds, margin_free_gaps};
 use super::placed_box::{Placed, Side};
-use crate::random::Random;
 use crate::tree::box_pair::{BoxPair, PlacedBox};
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::{OrientedBox, WideNode};
 use crate::tree::slabs::{MOST, PAIRS, STEPS};
 use d2m_lanes::{InstructionSet, Lanes, Portable, Task, run, run_on};
-use glam::{DMat3, DQuat, DVec3};
+use d2m_testing::{Draw, KnuthRandom};
+use glam::{DMat3, DVec3};
 
-impl Random {
-    fn rotation(&mut self) -> DMat3 {
-        DMat3::from_quat(DQuat::from_xyzw(self.next(), self.next(), self.next(), self.next()).normalize())
-    }
-    fn oriented_box(&mut self, size: f64, spread: f64) -> OrientedBox {
-        let axes = self.rotation();
-        let narrow = |v: DVec3| [v.x as f32, v.y as f32, v.z as f32];
-        let half = self.vec().abs() * size;
-        OrientedBox {
-            center: narrow(self.vec() * spread),
-            axes: [narrow(axes.x_axis), narrow(axes.y_axis), narrow(axes.z_axis)],
-            half_extent: narrow(half),
-            slabs: [[0; 4]; 3],
-            // As a built box: the radius is at least each half extent.
-            radius: narrow(half)[0].max(narrow(half)[1]).max(narrow(half)[2]),
-        }
+fn rotation(random: &mut KnuthRandom) -> DMat3 {
+    DMat3::from_quat(random.quaternion().normalize())
+}
+
+fn oriented_box(random: &mut KnuthRandom, size: f64, spread: f64) -> OrientedBox {
+    let axes = rotation(random);
+    let narrow = |v: DVec3| [v.x as f32, v.y as f32, v.z as f32];
+    let half = random.vector().abs() * size;
+    OrientedBox {
+        center: narrow(random.vector() * spread),
+        axes: [narrow(axes.x_axis), narrow(axes.y_axis), narrow(axes.z_axis)],
+        half_extent: narrow(half),
+        slabs: [[0; 4]; 3],
+        // As a built box: the radius is at least each half extent.
+        radius: narrow(half)[0].max(narrow(half)[1]).max(narrow(half)[2]),
     }
 }
 
@@ -49,19 +48,19 @@ fn corners(b: &OrientedBox) -> Vec<DVec3> {
 
 #[test]
 fn gaps_err_by_less_than_the_margin_and_not_by_much_less() {
-    let mut random = Random(5);
+    let mut random = KnuthRandom(5);
     let (mut worst, mut worst_of_pairs) = (0.0f64, 0.0f64);
     for round in 0..20_000 {
-        let mut node = WideNode::empty([random.next() as f32, random.next() as f32, 0.0], 0);
+        let mut node = WideNode::empty([random.signed() as f32, random.signed() as f32, 0.0], 0);
         let spread = [1.0, 1e-3, 1e-1][round % 3];
-        let boxes: Vec<_> = (0..8).map(|_| random.oriented_box(spread, spread)).collect();
+        let boxes: Vec<_> = (0..8).map(|_| oriented_box(&mut random, spread, spread)).collect();
         for (lane, b) in boxes.iter().enumerate() {
             node.set_box(lane, b, 1.0);
         }
         node.used = 8;
-        let single = random.oriented_box(spread * [1.0, 30.0][round % 2], spread);
-        let rotation = random.rotation();
-        let offset = wide(node.origin) + random.vec() * 3.0 * spread;
+        let single = oriented_box(&mut random, spread * [1.0, 30.0][round % 2], spread);
+        let rotation = rotation(&mut random);
+        let offset = wide(node.origin) + random.vector() * 3.0 * spread;
         let side = Side {
             rotation: [rotation.x_axis, rotation.y_axis, rotation.z_axis],
             offset,
@@ -113,20 +112,20 @@ fn gap_along(n: DVec3, a: &[DVec3], b: &[DVec3]) -> f64 {
 /// Along the five directions of a pair, with all cuts of both boxes.
 #[test]
 fn gaps_of_pairs_are_below_distances_of_points_and_sometimes_close() {
-    let mut random = Random(10);
+    let mut random = KnuthRandom(10);
     let mut best = 0.0f64;
     for round in 0..6000 {
         let mut node = WideNode::empty([0.0; 3], 0);
-        let cuts = |random: &mut Random| {
+        let cuts = |random: &mut KnuthRandom| {
             let most = if round % 4 == 0 { 0.0 } else { f64::from(MOST) };
-            core::array::from_fn(|_| core::array::from_fn(|_| (random.next().abs() * most) as u8))
+            core::array::from_fn(|_| core::array::from_fn(|_| (random.signed().abs() * most) as u8))
         };
-        let boxed = OrientedBox { slabs: cuts(&mut random), ..random.oriented_box(1.0, 1.0) };
+        let boxed = OrientedBox { slabs: cuts(&mut random), ..oriented_box(&mut random, 1.0, 1.0) };
         node.set_box(0, &boxed, 1.0);
         node.used = 1;
-        let single = OrientedBox { slabs: cuts(&mut random), ..random.oriented_box(1.0, 1.0) };
-        let rotation = random.rotation();
-        let offset = random.vec() * 4.0;
+        let single = OrientedBox { slabs: cuts(&mut random), ..oriented_box(&mut random, 1.0, 1.0) };
+        let rotation = rotation(&mut random);
+        let offset = random.vector() * 4.0;
         let columns = [rotation.x_axis, rotation.y_axis, rotation.z_axis];
         let side = Side { rotation: columns, offset, ratio: 1.0, floor: 0.0, to_work: 1.0 };
         let placed = Placed::new(&side, &single, [0.0; 3], &node);
@@ -143,10 +142,10 @@ fn gaps_of_pairs_are_below_distances_of_points_and_sometimes_close() {
 }
 
 /// A point of the body that a box stands for: in the box, in its ball, and not in what is cut off its edges.
-fn point_within(b: &OrientedBox, random: &mut Random) -> DVec3 {
+fn point_within(b: &OrientedBox, random: &mut KnuthRandom) -> DVec3 {
     let m = DMat3::from_cols(wide(b.axes[0]), wide(b.axes[1]), wide(b.axes[2])).transpose().inverse();
     // In half extents: on a face or an edge, mostly.
-    let mut q: [f64; 3] = core::array::from_fn(|_| (random.next() * 2.0).clamp(-1.0, 1.0));
+    let mut q: [f64; 3] = core::array::from_fn(|_| (random.signed() * 2.0).clamp(-1.0, 1.0));
     for (&(i, j), cuts) in PAIRS.iter().zip(&b.slabs) {
         for (edge, &cut) in cuts.iter().enumerate() {
             let sign = |bit: usize| if edge & bit == 0 { 1.0 } else { -1.0 };
@@ -164,20 +163,20 @@ fn point_within(b: &OrientedBox, random: &mut Random) -> DVec3 {
 
 #[test]
 fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
-    let mut random = Random(9);
+    let mut random = KnuthRandom(9);
     let (mut best, mut best_of_triangles, mut best_across) = (0.0f64, 0.0f64, 0.0f64);
     for round in 0..6000 {
         let mut node = WideNode::empty([0.0; 3], 0);
-        let cuts = |random: &mut Random| {
+        let cuts = |random: &mut KnuthRandom| {
             let most = if round % 4 == 0 { 0.0 } else { f64::from(MOST) };
-            core::array::from_fn(|_| core::array::from_fn(|_| (random.next().abs() * most) as u8))
+            core::array::from_fn(|_| core::array::from_fn(|_| (random.signed().abs() * most) as u8))
         };
-        let boxed = OrientedBox { slabs: cuts(&mut random), ..random.oriented_box(1.0, 1.0) };
+        let boxed = OrientedBox { slabs: cuts(&mut random), ..oriented_box(&mut random, 1.0, 1.0) };
         node.set_box(0, &boxed, 1.0);
         node.used = 1;
-        let single = OrientedBox { slabs: cuts(&mut random), ..random.oriented_box(1.0, 1.0) };
-        let rotation = random.rotation();
-        let offset = random.vec() * 6.0;
+        let single = OrientedBox { slabs: cuts(&mut random), ..oriented_box(&mut random, 1.0, 1.0) };
+        let rotation = rotation(&mut random);
+        let offset = random.vector() * 6.0;
         let side = Side {
             rotation: [rotation.x_axis, rotation.y_axis, rotation.z_axis],
             offset,
@@ -188,7 +187,7 @@ fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
         // Without and with one more direction: any, or the one from center to center.
         let n = match round % 3 {
             0 => DVec3::ZERO,
-            1 => random.vec().normalize(),
+            1 => random.vector().normalize(),
             _ => offset.normalize(),
         };
         let n = n * (1.0 - 4.0 * UNIT_F32);
@@ -212,7 +211,7 @@ fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
             let apart = p.distance(place(point_within(&single, &mut random)));
             assert!(most <= apart * (1.0 + 1e-12), "{most} {apart}");
             best = best.max(most / apart);
-            let (x, y) = (random.next().abs(), random.next().abs());
+            let (x, y) = (random.signed().abs(), random.signed().abs());
             let q = corners[0].lerp(corners[1], x).lerp(corners[2], y);
             let apart = p.distance(place(q));
             assert!(of_triangle <= apart * (1.0 + 1e-12), "{of_triangle} {apart}");
@@ -246,18 +245,18 @@ impl Task for Kernel<'_> {
 
 #[test]
 fn every_kind_of_lanes_gives_the_same_bits() {
-    let mut random = Random(2);
+    let mut random = KnuthRandom(2);
     for round in 0..500 {
         let mut node = WideNode::empty([0.1, 0.2, 0.3], 0);
         node.used = 8;
         for lane in 0..8 {
-            node.set_box(lane, &random.oriented_box(0.4, 1.0), 1.0);
+            node.set_box(lane, &oriented_box(&mut random, 0.4, 1.0), 1.0);
         }
-        let single = random.oriented_box(0.5, 1.0);
-        let r = random.rotation();
+        let single = oriented_box(&mut random, 0.5, 1.0);
+        let r = rotation(&mut random);
         let side = Side {
             rotation: [r.x_axis, r.y_axis, r.z_axis],
-            offset: random.vec(),
+            offset: random.vector(),
             ratio: 2.0,
             floor: 1e-9,
             to_work: 0.5,
@@ -266,7 +265,7 @@ fn every_kind_of_lanes_gives_the_same_bits() {
         let placed = if round % 2 == 0 {
             placed.with_box_along([0.3, -0.6, 0.7], &single)
         } else {
-            let corners = [(); 3].map(|()| random.vec() * 3.0);
+            let corners = [(); 3].map(|()| random.vector() * 3.0);
             placed.with_triangle_along([0.3, -0.6, 0.7], &corners).with_longest_edge(&corners)
         };
         let (bounds, bits) = run_on(InstructionSet::Portable, Kernel(&node, &placed));

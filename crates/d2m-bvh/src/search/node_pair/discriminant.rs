@@ -87,8 +87,8 @@ pub(super) fn discriminant<L: Lanes>(Spread(a): &Spread<L>, Spread(b): &Spread<L
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
     use d2m_lanes::{Elementwise, Portable};
+    use d2m_testing::{Draw, KnuthRandom};
     use glam::{DMat3, DQuat, DVec3};
 
     fn lanes(v: DVec3) -> [Portable; 3] {
@@ -102,10 +102,10 @@ mod tests {
     /// From lengths whose squares underflow to those whose squares overflow: never longer than one.
     #[test]
     fn unit_vectors_are_no_longer_than_one() {
-        let mut random = Random(31);
+        let mut random = KnuthRandom(31);
         for power in -450_i32..380 {
             for _ in 0..40 {
-                let v = random.vec() * 10f64.powf(0.1 * f64::from(power));
+                let v = random.vector() * 10f64.powf(0.1 * f64::from(power));
                 let length = vector(&unit(&lanes(v))).length();
                 let long = length > 1.0 + 10.0 * UNIT_F32;
                 assert!(!long, "{v} becomes longer than one by {:e}", length - 1.0);
@@ -118,19 +118,20 @@ mod tests {
     /// What the direction solves, in twice the digits; boxes without thickness and of every size.
     #[test]
     fn the_discriminant_solves_its_equation() {
-        let mut random = Random(32);
+        let mut random = KnuthRandom(32);
         for round in 0..2000 {
             let size = 10f64.powi(round % 13 - 6);
             let mut sum = DMat3::ZERO;
             let spreads = [0, 1].map(|_| {
-                let turn = DQuat::from_xyzw(random.next(), random.next(), random.next(), 1.2).normalize();
+                let turn =
+                    DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), 1.2).normalize();
                 let axes = DMat3::from_quat(turn);
-                let flat = if round % 3 == 0 { 0.0 } else { random.next().abs() };
-                let half = DVec3::new(1.0, random.next().abs(), flat) * size;
+                let flat = if round % 3 == 0 { 0.0 } else { random.signed().abs() };
+                let half = DVec3::new(1.0, random.signed().abs(), flat) * size;
                 sum += axes * DMat3::from_diagonal(half * half) * axes.transpose();
                 Spread::new([&lanes(axes.x_axis), &lanes(axes.y_axis)], &lanes(half))
             });
-            let line = random.vec().normalize();
+            let line = random.vector().normalize();
             let n = vector(&discriminant(&spreads[0], &spreads[1], &lanes(line)));
             let trace = sum.x_axis.x + sum.y_axis.y + sum.z_axis.z;
             let solved = (sum + DMat3::from_diagonal(DVec3::splat(trace * f64::from(BLUNT)))) * n;

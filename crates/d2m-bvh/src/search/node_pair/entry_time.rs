@@ -86,9 +86,9 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
     use crate::tree::slabs::{PAIRS, STEPS, reach};
     use d2m_lanes::{Bytes, InstructionSet, Portable, Task, run_on};
+    use d2m_testing::{Draw, KnuthRandom};
 
     /// Bytes chosen by signs, by lanes and by twice as many.
     struct Choice([[f32; 8]; 4]);
@@ -110,9 +110,9 @@ mod tests {
 
     #[test]
     fn bytes_are_chosen_by_signs_with_every_instruction_set() {
-        let mut random = Random(21);
+        let mut random = KnuthRandom(21);
         for _ in 0..2000 {
-            let mut number = || random.next() as f32;
+            let mut number = || random.signed() as f32;
             let signs: [[f32; 8]; 3] = core::array::from_fn(|_| {
                 core::array::from_fn(|k| if k == 3 { -0.0 * number().signum() } else { number() })
             });
@@ -135,12 +135,12 @@ mod tests {
     /// reach, and together they come near it.
     #[test]
     fn slabs_reach_as_far_as_their_points() {
-        let mut random = Random(22);
+        let mut random = KnuthRandom(22);
         let mut sharpest = 0.0f32;
         for _ in 0..300 {
-            let half: [f32; 3] = core::array::from_fn(|_| 10f64.powf(1.5 * random.next() - 1.5) as f32);
+            let half: [f32; 3] = core::array::from_fn(|_| 10f64.powf(1.5 * random.signed() - 1.5) as f32);
             let cuts: [[u8; 4]; 3] =
-                core::array::from_fn(|_| core::array::from_fn(|_| ((random.next() + 1.0) * 63.4) as u8));
+                core::array::from_fn(|_| core::array::from_fn(|_| ((random.signed() + 1.0) * 63.4) as u8));
             let room = |q: [f32; 3]| {
                 // The largest number that the point, in half extents, may be multiplied with.
                 let mut most = q.iter().map(|x| 1.0 / x.abs()).fold(f32::INFINITY, f32::min);
@@ -157,15 +157,15 @@ mod tests {
             };
             let points: Vec<[f32; 3]> = (0..400)
                 .map(|_| {
-                    let q: [f32; 3] = core::array::from_fn(|_| random.next() as f32);
+                    let q: [f32; 3] = core::array::from_fn(|_| random.signed() as f32);
                     let most = room(q);
                     core::array::from_fn(|k| q[k] * most * half[k])
                 })
                 .collect();
             let slabs = cuts.map(|cuts| Portable::splat(f32::from_bits(u32::from_le_bytes(cuts))));
-            let along = random.next() as f32;
+            let along = random.signed() as f32;
             for _ in 0..20 {
-                let cosines: [f32; 3] = core::array::from_fn(|_| random.next() as f32);
+                let cosines: [f32; 3] = core::array::from_fn(|_| random.signed() as f32);
                 let bound = reach::<_, 3>(
                     &half.map(Portable::splat),
                     &slabs,
