@@ -1,5 +1,6 @@
-//! The deliberate faults, one file a crate. `cargo xtask tidy` checks that each text still occurs exactly once.
+//! The deliberate faults, one file a crate, two for the largest. `cargo xtask tidy` checks that each text still occurs exactly once.
 mod bvh;
+mod bvh_search;
 mod cli;
 mod dynamics;
 mod facade;
@@ -48,6 +49,7 @@ pub(crate) fn all() -> impl Iterator<Item = &'static Mutant> {
         root::MUTANTS,
         feature::MUTANTS,
         bvh::MUTANTS,
+        bvh_search::MUTANTS,
         facade::MUTANTS,
         cli::MUTANTS,
         dynamics::MUTANTS,
