@@ -1,9 +1,10 @@
 //! Bodies that are in contact with each other, and the velocities of their next flights.
 
 use crate::SimulationOptions;
+use crate::account::{Entry, balance};
 use crate::contact::{ContactPoint, HIT, Solver, SolverBody, Span, Sweeps, impact, select};
 use crate::rigid_body::{Momenta, RigidBody, Velocity};
-use glam::{DMat3, DVec3};
+use glam::DMat3;
 
 /// Changes of rates in a sweep below this part of a gap a step end the iteration.
 const PRECISION: f64 = 1e-5;
@@ -13,10 +14,6 @@ const WORK: usize = 60_000;
 const SWEEPS: (usize, usize) = (30, 4000);
 /// Sweeps for what need not be exact.
 const RESTORING: u32 = 50;
-/// The part of the greatest kinetic energy by which that of a flight may differ from that of the momenta, to make room.
-const UNBALANCED: f64 = 1.0 / 2048.0;
-/// The part of the gap below which room is made at any price: a contact that never gets any is hit over and over again.
-const TIGHT: f64 = 0.3;
 /// Relative gain of energy that counts as rounding, and as the turn of inertia in a flight: 2⁻¹³.
 const ENERGY_ROUNDING: f64 = 1.0 / 8192.0;
 /// Solutions with the spin of the flight's middle put right.
@@ -46,6 +43,8 @@ pub(crate) struct Push {
     /// By impacts, and by contacts at rest.
     pub(crate) impact: Momenta,
     pub(crate) rest: Momenta,
+    /// What the account of energy holds after that.
+    pub(crate) gained: f64,
 }
 
 /// The islands of some contacts: bodies that impulses move connect, the others do not. In the order of their first contact.
@@ -86,13 +85,11 @@ pub(crate) struct Clock {
 }
 
 /// Impacts, then the velocities of the flights that begin now. The contacts' impulses are where the iteration begins.
-/// `energy`: the greatest kinetic energy that all bodies together have had.
 pub(crate) fn solve(
     bodies: &[RigidBody],
     island: &Island,
     clock: Clock,
     options: &SimulationOptions,
-    energy: f64,
 ) -> Solved {
     let mut members: Vec<usize> = island.contacts.iter().flat_map(|c| [c.a, c.b]).collect();
     members.sort_unstable();
@@ -150,8 +147,7 @@ pub(crate) fn solve(
                 }
             })
             .collect();
-    let solver = Solver::new(free.clone(), &island.contacts, place);
-    let rows = select(&island.contacts, &solver, span, |body| free[place(body)].velocity.angular);
+    let rows = select(&island.contacts, span, |body| free[place(body)].velocity);
     let mut contacts: Vec<ContactPoint> = rows.iter().map(|row| island.contacts[row.contact]).collect();
     let targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
     let sweeps = (WORK / contacts.len().max(1)).clamp(SWEEPS.0, SWEEPS.1) as u32;
@@ -183,45 +179,68 @@ pub(crate) fn solve(
     add(&contacts, &mut rests, place);
     solved.rests.clone_from(&contacts);
     // What restores the gap, or makes room for rotation, moves the bodies in this flight and leaves no momentum.
-    let physical: Vec<Velocity> = solver.bodies.iter().map(|body| body.velocity).collect();
-    let mut part = 1.0;
+    let mut physical: Vec<Velocity> = solver.bodies.iter().map(|body| body.velocity).collect();
     if targets.iter().any(|&target| target > 0.0) {
         let before = solver.doubled_energy(&inertia);
         solver.iterate(&mut contacts, &targets, precision, Sweeps::Accelerated(sweeps.min(RESTORING)));
         let gained = 0.5 * (solver.doubled_energy(&inertia) - before);
-        let lifted: f64 = states.iter().filter(|s| moves(s)).map(|s| s.mass).sum::<f64>()
-            * options.gravity.length()
-            * options.gap;
-        let most = UNBALANCED * energy + lifted;
-        let is_tight = contacts.iter().any(|c| c.distance < TIGHT * c.gap);
-        if gained.abs() > most && !is_tight {
-            // Rates are linear in the velocities: a part of the way makes room for a part.
-            part = most / gained.abs();
-        } else if gained < -most {
-            // The speed that this takes does not come back with the next flight.
+        // What an account may hold, and the energy of the speed that makes a gap in a step.
+        let speed = options.gap / options.step;
+        let held = |s: &RigidBody| {
+            s.energy_limit(options.gravity, options.step, options.gap) + 0.5 * s.mass * speed * speed
+        };
+        let most: f64 = states.iter().filter(|s| moves(s)).map(held).sum();
+        if gained.abs() > most {
+            // Then it is made by impulses like others, and the account sees to their energy.
             rests.fill(Momenta::default());
             add(&contacts, &mut rests, place);
             solved.rests.clone_from(&contacts);
+            physical = solver.bodies.iter().map(|body| body.velocity).collect();
         }
     }
-    let blend = |from: DVec3, to: DVec3| if part < 1.0 { from + (to - from) * part } else { to };
-    let flights: Vec<Velocity> = physical
-        .iter()
-        .zip(&solver.bodies)
-        .map(|(from, to)| Velocity {
-            linear: blend(from.linear, to.velocity.linear),
-            angular: blend(from.angular, to.velocity.angular),
-        })
-        .collect();
-    for (k, _) in states.iter().enumerate().filter(|(_, s)| moves(s)) {
-        solved.bodies.push(Push {
+    let moving: Vec<usize> = (0..states.len()).filter(|&k| moves(&states[k])).collect();
+    let lead = |k: usize| states[k].lead.unwrap_or(0.5 * span.remaining);
+    let entry = |&k: &usize| {
+        let (state, before) = (&states[k], bodies[members[k]].momenta());
+        Entry {
+            mass: state.mass,
+            inertia: inertia[k].1,
+            inverse_inertia: state.inverse_inertia_at(state.orientation),
+            position: state.position,
+            force: state.force_with(options.gravity),
+            torque: state.torque,
+            gained: state.gained,
+            limit: state.energy_limit(options.gravity, options.step, options.gap),
+            before,
+            after: before.plus(impacts[k]).plus(rests[k]),
+            lead: lead(k),
+            room: solver.bodies[k].velocity.plus(physical[k].scaled(-1.0)),
+        }
+    };
+    let entries: Vec<Entry> = moving.iter().map(entry).collect();
+    let mass: f64 = entries.iter().map(|e| e.mass).sum();
+    // Bodies that follow their motions may work.
+    let sheet = (!driven).then(|| balance(&entries, moving.len() < states.len(), span.remaining));
+    for (place, (&k, e)) in moving.iter().zip(&entries).enumerate() {
+        let mut push = Push {
             body: members[k],
-            velocity: flights[k],
+            velocity: solver.bodies[k].velocity,
             horizon: end,
-            lead: states[k].lead.unwrap_or(0.5 * span.remaining),
+            lead: lead(k),
             impact: impacts[k],
             rest: rests[k],
-        });
+            gained: e.gained,
+        };
+        if let Some(sheet) = &sheet {
+            push.gained = sheet.gained * e.mass / mass;
+            if let Some(braking) = &sheet.braking {
+                let braked = braking[place];
+                push.velocity = physical[k].plus(braked).plus(e.room.scaled(sheet.part));
+                push.rest.linear += braked.linear * e.mass;
+                push.rest.angular += e.inertia * braked.angular;
+            }
+        }
+        solved.bodies.push(push);
     }
     solved
 }

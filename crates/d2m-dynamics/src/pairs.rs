@@ -47,7 +47,7 @@ pub(crate) struct Measured {
 /// A pair of bodies that may come close.
 #[derive(Clone, Debug)]
 pub(crate) struct Pair {
-    pub(crate) cache: PairCache,
+    pub(crate) cache: Box<PairCache>,
     /// The distance that these two keep.
     pub(crate) gap: f64,
     /// The closest features when last measured, with the impulses of the last step.
@@ -61,8 +61,8 @@ pub(crate) struct Pair {
 }
 
 impl Pair {
-    pub(crate) const fn new(gap: f64) -> Self {
-        Self { cache: PairCache::new(), gap, contacts: Vec::new(), nearest: None, measured: None, reach: 1.0 }
+    pub(crate) fn new(gap: f64) -> Self {
+        Self { cache: Box::default(), gap, contacts: Vec::new(), nearest: None, measured: None, reach: 1.0 }
     }
 
     /// Takes over what was measured: none, if nothing is within the margin. Of bodies that many features of are close, as of a
@@ -106,25 +106,23 @@ pub(crate) fn solid_of(a: &RigidBody, b: &RigidBody) -> Solid {
     if a.solid == Solid::Filled && b.solid == Solid::Filled { Solid::Filled } else { Solid::Surface }
 }
 
-/// When do two bodies come within `separation` on their flights?
+/// When do two bodies come as close as their pair may on their flights?
 pub(crate) fn fly(
     a: &RigidBody,
     b: &RigidBody,
     window: Window,
-    separation: f64,
-    gap: f64,
     node_tests: u64,
-    cache: &mut PairCache,
+    pair: &mut Pair,
 ) -> Result<Outcome, QueryError> {
-    let mut separation = separation;
-    while separation >= LEAST * gap {
+    let mut separation = pair.separation();
+    while separation >= LEAST * pair.gap {
         let options = QueryOptions::default()
             .with_solid(solid_of(a, b))
             .with_min_separation(separation)
             .with_tolerance(SLACK * separation)
             .with_budget(Budget::UNLIMITED.with_node_tests(node_tests));
         let moving = (Moving::new(&*a.tree, &a.flight), Moving::new(&*b.tree, &b.flight));
-        match time_of_contact_with(moving.0, moving.1, window, &options, cache)? {
+        match time_of_contact_with(moving.0, moving.1, window, &options, &mut pair.cache)? {
             TimeOfContact::Separated => return Ok(Outcome::Clear),
             TimeOfContact::Undecided { clear_until } => return Ok(Outcome::ClearUntil(clear_until)),
             TimeOfContact::Contact(contact) => match contact.start {

@@ -60,8 +60,8 @@ pub(crate) struct RigidBody {
     pub(crate) lead: Option<f64>,
     /// Nothing touches it in this flight.
     pub(crate) free: bool,
-    /// The momenta at the start of this flight without the impulses of contacts at rest.
-    pub(crate) unpushed: Option<Momenta>,
+    /// The account of energy: what contacts have added to the least energy before.
+    pub(crate) gained: f64,
     pub(crate) asleep: bool,
     /// For how long its surface has been slow.
     pub(crate) quiet: f64,
@@ -79,6 +79,22 @@ pub(crate) struct Velocity {
 pub(crate) struct Momenta {
     pub(crate) linear: DVec3,
     pub(crate) angular: DVec3,
+}
+
+impl Velocity {
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self { linear: self.linear + other.linear, angular: self.angular + other.angular }
+    }
+
+    pub(crate) fn scaled(self, factor: f64) -> Self {
+        Self { linear: self.linear * factor, angular: self.angular * factor }
+    }
+}
+
+impl Momenta {
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self { linear: self.linear + other.linear, angular: self.angular + other.angular }
+    }
 }
 
 impl RigidBody {
@@ -174,7 +190,7 @@ impl RigidBody {
             held: false,
             lead: None,
             free: false,
-            unpushed: None,
+            gained: 0.0,
             asleep: false,
             quiet: 0.0,
         })
@@ -202,7 +218,8 @@ impl RigidBody {
         Posed::new(&self.tree, self.pose_at(time))
     }
 
-    fn force(&self, gravity: DVec3) -> DVec3 {
+    /// Of gravity and the user.
+    pub(crate) fn force_with(&self, gravity: DVec3) -> DVec3 {
         self.force + gravity * self.mass
     }
 
@@ -213,12 +230,15 @@ impl RigidBody {
             (self.position, self.orientation) = (pose.translation, pose.rotation);
             let elapsed = time - self.time;
             if self.is_dynamic() && !self.held && !self.asleep {
-                self.momentum += self.force(gravity) * elapsed;
+                let force = self.force_with(gravity);
+                let middle = (self.momentum + force * (0.5 * elapsed)) * self.inverse_mass;
+                let off = force.dot(middle - self.flight.linear_velocity()) * elapsed;
+                self.gained = self.gained.max(0.0) + off;
+                self.momentum += force * elapsed;
                 self.angular_momentum += self.torque * elapsed;
             }
             self.time = time;
             self.lead = self.lead.map(|lead| lead - elapsed);
-            self.unpushed = None;
         }
     }
 
@@ -231,13 +251,11 @@ impl RigidBody {
         self.angular_momentum += added.angular;
     }
 
-    /// Takes back what contacts at rest did for a flight that begins at `time`.
-    pub(crate) fn undo(&mut self, time: f64) {
-        if self.time == time
-            && let Some(before) = self.unpushed.take()
-        {
-            (self.momentum, self.angular_momentum) = (before.linear, before.angular);
-        }
+    /// Takes back an impulse of this instant.
+    pub(crate) fn retract(&mut self, pushed: Momenta) {
+        let before = self.kinetic_energy();
+        self.push(Momenta { linear: -pushed.linear, angular: -pushed.angular });
+        self.gained += self.kinetic_energy() - before;
     }
 
     /// The kinetic energy of the present flight, at its start.
@@ -247,6 +265,20 @@ impl RigidBody {
         }
         let spin = self.flight.orientation().conjugate() * self.flight.angular_velocity();
         0.5 * (self.mass * self.flight.linear_velocity().length_squared() + spin.dot(self.inertia * spin))
+    }
+
+    /// Of the momenta.
+    pub(crate) fn kinetic_energy(&self) -> f64 {
+        let turn = self.inverse_inertia_at(self.orientation) * self.angular_momentum;
+        0.5 * (self.momentum.length_squared() * self.inverse_mass + self.angular_momentum.dot(turn))
+    }
+
+    /// What the account of energy may hold: the energy of the forces' impulse over half a step, and that of a lift by a gap.
+    pub(crate) fn energy_limit(&self, gravity: DVec3, step: f64, gap: f64) -> f64 {
+        let force = self.force_with(gravity);
+        let (linear, angular) = (force * (0.5 * step), self.torque * (0.5 * step));
+        let turn = self.inverse_inertia_at(self.orientation) * angular;
+        0.5 * (linear.length_squared() * self.inverse_mass + angular.dot(turn)) + force.length() * gap
     }
 
     /// Velocity at `time`, as the momenta have it.
@@ -260,7 +292,7 @@ impl RigidBody {
     /// the rest of; gyroscopic terms those of its own middle.
     pub(crate) fn flight_velocity(&self, length: f64, gravity: DVec3) -> Velocity {
         let lead = self.lead.unwrap_or(0.5 * length);
-        let linear = (self.momentum + self.force(gravity) * lead) * self.inverse_mass;
+        let linear = (self.momentum + self.force_with(gravity) * lead) * self.inverse_mass;
         let angular = self.midpoint_spin(self.angular_momentum + self.torque * lead, length);
         Velocity { linear, angular }
     }

@@ -77,6 +77,8 @@ fn root(parent: &mut [usize], mut i: usize) -> usize {
 fn sleep(body: &mut RigidBody) {
     body.asleep = true;
     body.quiet = 0.0;
+    // The energy of the momenta is lost, and so is as much of what contacts have added.
+    body.gained = (body.gained - body.kinetic_energy()).max(0.0);
     (body.momentum, body.angular_momentum) = Default::default();
     body.fly(Velocity::default(), f64::INFINITY);
 }

@@ -56,6 +56,7 @@ struct BodyState {
     version: u64,
     asleep: bool,
     quiet: f64,
+    gained: f64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -115,6 +116,7 @@ impl Simulation {
             version: body.version,
             asleep: body.asleep,
             quiet: body.quiet,
+            gained: body.gained,
         });
         let pairs = self.pairs.iter().map(|(&(a, b), pair)| PairState {
             bodies: [a, b],
@@ -168,8 +170,8 @@ impl Simulation {
             body.version = state.version;
             body.asleep = state.asleep;
             body.quiet = state.quiet;
+            body.gained = state.gained;
             body.held = false;
-            body.unpushed = None;
         }
         let whole =
             |pair: &&PairState| pair.bodies.iter().all(|&i| i < expected) && pair.bodies[0] < pair.bodies[1];

@@ -1,7 +1,7 @@
 //! No energy is gained, measured at the middles of the reported flights by nothing but their numbers and the masses.
 
 use d2m_bvh::MeshTree;
-use d2m_dynamics::{Body, BodyId, Kind, Segment, Simulation, SimulationOptions};
+use d2m_dynamics::{Body, BodyId, Kind, Mass, Segment, Simulation, SimulationOptions};
 use d2m_motion::{ConstantTwist, RigidMotion};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
@@ -108,4 +108,51 @@ fn a_pile_without_restitution_meets_no_events_and_gains_none() {
     let energy = run(&mut simulation, &ids, 1.5);
     assert!(energy.events <= 4, "{} events", energy.events);
     assert!(energy.rise <= energy.kinetic / 1024.0, "{} of {}", energy.rise, energy.kinetic);
+}
+
+/// Bodies of all shapes, masses, restitutions and frictions, thrown at each other, with gravity and a floor or without both.
+#[test]
+fn whatever_meets_gains_none() {
+    let shapes = [
+        "box?x=0.3&y=0.5&z=0.2",
+        "torus?triangles=200&scale=0.4",
+        "icosphere?triangles=80&scale=0.4",
+        "box?x=0.1&y=0.9&z=0.1",
+    ];
+    let trees = shapes.map(tree);
+    let mut state = 7u64;
+    let mut random = move || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    for trial in 0..8 {
+        let falls = trial % 4 != 3;
+        let gravity = if falls { DVec3::Y * -9.81 } else { DVec3::ZERO };
+        let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(gravity)).unwrap();
+        let mut ids = Vec::new();
+        if falls {
+            let floor = Body::new("floor", tree("box?x=10&y=0.5&z=10")).with_kind(Kind::Static);
+            let floor = floor.with_position(DVec3::Y * -0.5).with_friction(0.3 * f64::from(trial));
+            ids.push(simulation.add(&floor).unwrap());
+        }
+        for k in 0..8 {
+            let mut turn = || 2.0 * random() - 1.0;
+            let place =
+                DVec3::new(2.2 * f64::from(k % 2), 1.5 + 2.2 * f64::from(k / 4), 2.2 * f64::from(k / 2 % 2));
+            let spin = DVec3::new(turn(), turn(), turn()) * 4.0;
+            let velocity = DVec3::new(1.1, 2.2, 1.1) - place + DVec3::new(turn(), turn(), turn());
+            let orientation = DQuat::from_xyzw(turn(), turn(), turn(), 1.1).normalize();
+            let body = Body::new(format!("{trial}, {k}"), Arc::clone(&trees[k as usize % 4]))
+                .with_position(place)
+                .with_orientation(orientation)
+                .with_linear_velocity(velocity)
+                .with_angular_velocity(spin)
+                .with_mass(Mass::Density(1000.0 * 8f64.powf(turn())))
+                .with_restitution([0.0, 0.5, 1.0][trial as usize % 3])
+                .with_friction(random());
+            ids.push(simulation.add(&body).unwrap());
+        }
+        let energy = run(&mut simulation, &ids, 1.5);
+        assert!(energy.rise <= energy.kinetic / 128.0, "{trial}: {} of {}", energy.rise, energy.kinetic);
+    }
 }

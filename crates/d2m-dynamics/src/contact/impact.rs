@@ -54,7 +54,9 @@ pub(crate) fn impact(
                     }
                 })
                 .collect();
-            solver.iterate(&mut round, &targets, PRECISION * fastest, Sweeps::Accelerated(MOST_SWEEPS));
+            let sweeps =
+                if scale > 0.0 { Sweeps::Accelerated(MOST_SWEEPS) } else { Sweeps::Plain(MOST_SWEEPS) };
+            solver.iterate(&mut round, &targets, PRECISION * fastest, sweeps);
             // A body that follows its motion may work: then the others may gain.
             if driven || solver.doubled_energy(inertia) <= energy * (1.0 + ENERGY_ROUNDING) || scale == 0.0 {
                 break round;

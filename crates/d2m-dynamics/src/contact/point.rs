@@ -1,5 +1,6 @@
 //! A contact point with its impulse.
 
+use crate::rigid_body::Velocity;
 use d2m_feature::FeaturePair;
 use glam::DVec3;
 
@@ -42,6 +43,12 @@ pub(crate) struct ContactPoint {
 }
 
 impl ContactPoint {
+    /// The rate at which the distance grows with these velocities of the two bodies.
+    pub(crate) fn rate(&self, a: Velocity, b: Velocity) -> f64 {
+        let point = |v: Velocity, arm: DVec3| v.linear + v.angular.cross(arm);
+        self.normal.dot(point(b, self.arm_b) - point(a, self.arm_a))
+    }
+
     /// The impulse on b.
     pub(crate) fn total(&self) -> DVec3 {
         self.normal * self.impulse + self.tangents[0] * self.sliding[0] + self.tangents[1] * self.sliding[1]

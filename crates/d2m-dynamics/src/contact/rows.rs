@@ -1,6 +1,7 @@
 //! Which contacts the velocities of a flight have to heed, and how.
 
-use super::{ContactPoint, Solver};
+use super::ContactPoint;
+use crate::rigid_body::Velocity;
 use glam::DVec3;
 
 /// Times and speeds of a flight that is to be solved.
@@ -42,15 +43,10 @@ pub(crate) struct Row {
 /// rate ≥ (g − d)/τ + m τ/2                        beyond the gap
 /// rate ≥ max(0, (0.45 g − d)/τ + m τ/2)        within it; and what is missing to the gap, a quarter of it a step
 /// ```
-pub(crate) fn select(
-    found: &[ContactPoint],
-    solver: &Solver,
-    span: Span,
-    spin: impl Fn(usize) -> DVec3,
-) -> Vec<Row> {
+pub(crate) fn select(found: &[ContactPoint], span: Span, velocity: impl Fn(usize) -> Velocity) -> Vec<Row> {
     let mut rows = Vec::new();
     for (k, contact) in found.iter().enumerate() {
-        let closing = -solver.rate(k);
+        let closing = -contact.rate(velocity(contact.a), velocity(contact.b));
         let (d, gap, tau) = (contact.distance, contact.gap, span.remaining);
         let bounces = contact.material.restitution > 0.0;
         let slow = if bounces { span.resting_speed } else { span.resting_speed.max(gap / span.step) };
@@ -59,7 +55,7 @@ pub(crate) fn select(
             continue;
         }
         let bend = |body: usize, arm: DVec3| {
-            let omega = spin(body);
+            let omega = velocity(body).angular;
             omega.cross(contact.normal).length() * omega.length() * arm.length()
         };
         let curved = 0.5 * tau * (bend(contact.a, contact.arm_a) + bend(contact.b, contact.arm_b));

@@ -3,6 +3,7 @@
 use super::{Key, Occasion, Step};
 use crate::contact::ContactPoint;
 use crate::pairs::{Measured, Pair, measure};
+use crate::rigid_body::{Momenta, RigidBody};
 use crate::simulation::query_error;
 use crate::{StepError, parallel};
 use d2m_bvh::QueryError;
@@ -35,12 +36,51 @@ impl Group {
         self.contacts.sort_by_key(|c| (c.a, c.b));
     }
 
+    /// Where the solution begins: the impulses that the members had at this instant, for a part of the time.
+    fn warm(&mut self, retracted: &[ContactPoint], part: f64) {
+        for known in retracted {
+            let key = (known.a, known.b);
+            let first = self.contacts.partition_point(|c| (c.a, c.b) < key);
+            let of_pair = self.contacts[first..].iter_mut().take_while(|c| (c.a, c.b) == key);
+            let is_same = |c: &&mut ContactPoint| {
+                c.feature == known.feature && c.is_expected == known.is_expected && c.normal == known.normal
+            };
+            if let Some(contact) = of_pair.into_iter().find(is_same) {
+                contact.impulse = part * known.impulse;
+                contact.sliding = known.sliding.map(|x| part * x);
+            }
+        }
+    }
+
     pub(super) fn has_measured(&self, key: Key) -> bool {
         self.measured.contains(&key)
     }
 }
 
 impl Step<'_> {
+    /// Takes back the impulses that contacts at rest between the members, or with what impulses do not move, have had at this
+    /// instant, and has the solution begin with a part of them.
+    pub(super) fn retract(&mut self, group: &mut Group, part: f64) {
+        let bodies = &mut self.sim.bodies;
+        let moves = |body: &RigidBody| body.is_dynamic() && !body.held;
+        let is_inner = |c: &ContactPoint| {
+            [c.a, c.b].into_iter().all(|i| group.is_member[i] || !moves(&bodies[i]))
+                && (group.is_member[c.a] || group.is_member[c.b])
+        };
+        let (inner, outer): (Vec<_>, Vec<_>) = self.undoable.drain(..).partition(is_inner);
+        self.undoable = outer;
+        for contact in &inner {
+            let impulse = contact.total();
+            for (i, sign, arm) in [(contact.a, -1.0, contact.arm_a), (contact.b, 1.0, contact.arm_b)] {
+                if moves(&bodies[i]) {
+                    let linear = impulse * sign;
+                    bodies[i].retract(Momenta { linear, angular: arm.cross(linear) });
+                }
+            }
+        }
+        group.warm(&inner, part);
+    }
+
     /// Adds bodies and all that contacts connect with them.
     pub(super) fn admit_connected(
         &mut self,
@@ -78,9 +118,6 @@ impl Step<'_> {
                     body.lead = None;
                 }
                 let begins = body.time == time;
-                if matches!(occasion, Occasion::Plan { .. } | Occasion::Expected) {
-                    body.undo(time);
-                }
                 body.advance(time, gravity);
                 // What is left of a flight to the end of the step goes on as it was planned, if that is near enough to what
                 // its own middle asks for.
@@ -98,8 +135,15 @@ impl Step<'_> {
             }
             group.members.push(i);
         }
+        // What stands still, or follows its motion as before, leads to no contact of its own.
+        let begins = |&i: &usize| {
+            let body = &self.sim.bodies[i];
+            let follows = body.is_kinematic() && (occasion == Occasion::Start || body.horizon <= time);
+            body.is_dynamic() || follows
+        };
+        let wave: Vec<usize> = wave.iter().copied().filter(begins).collect();
         let new: Vec<Key> =
-            self.partners(wave).into_iter().filter(|key| !group.measured.contains(key)).collect();
+            self.partners(&wave).into_iter().filter(|key| !group.measured.contains(key)).collect();
         let sim = &*self.sim;
         let (most, step) = (self.margin, self.end - time);
         // Poses at one instant are the same however often flights from there are planned.
@@ -139,13 +183,8 @@ impl Step<'_> {
             if pair.contacts.is_empty() && expected.is_none() {
                 continue;
             }
-            // The impulses of the step's start are those of a whole one; an event adds to them.
-            let part = match occasion {
-                Occasion::Start => 1.0,
-                Occasion::Plan { until } if time == self.start => (until - time) / (self.end - time),
-                Occasion::Expected if time == self.start => 1.0,
-                Occasion::Plan { .. } | Occasion::Event | Occasion::Expected => 0.0,
-            };
+            // The step begins with the impulses of the last one; what is solved again begins with those taken back.
+            let part = if occasion == Occasion::Start { 1.0 } else { 0.0 };
             group.contacts.extend(expected.into_iter().flatten());
             group.contacts.extend(pair.contacts.iter().map(|point| {
                 let mut point = *point;

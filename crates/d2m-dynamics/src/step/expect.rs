@@ -116,28 +116,4 @@ impl Step<'_> {
         }
         bodies
     }
-
-    /// These bodies, and all that impulses of this instant join with them: what one of them is taken back for, it is taken
-    /// back for the other. Ascending.
-    pub(super) fn pushed_together(&self, bodies: Vec<usize>) -> Vec<usize> {
-        let mut is_one = vec![false; self.sim.bodies.len()];
-        for &i in &bodies {
-            is_one[i] = true;
-        }
-        let moves = |i: usize| self.sim.bodies[i].is_dynamic();
-        let mut joined: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for contact in self.undoable.iter().filter(|c| moves(c.a) && moves(c.b)) {
-            joined.entry(contact.a).or_default().push(contact.b);
-            joined.entry(contact.b).or_default().push(contact.a);
-        }
-        let mut wave = bodies;
-        while let Some(i) = wave.pop() {
-            for &j in joined.get(&i).into_iter().flatten() {
-                if !core::mem::replace(&mut is_one[j], true) {
-                    wave.push(j);
-                }
-            }
-        }
-        (0..is_one.len()).filter(|&i| is_one[i]).collect()
-    }
 }

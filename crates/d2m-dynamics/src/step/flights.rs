@@ -70,9 +70,8 @@ impl Step<'_> {
         let answers = parallel::map(jobs, |(key, mut pair)| {
             let (a, b) = (&bodies[key.0], &bodies[key.1]);
             let until = end.min(a.horizon).min(b.horizon);
-            let answer = Window::try_new(time, until).and_then(|window| {
-                fly(a, b, window, pair.separation(), pair.gap, node_tests, &mut pair.cache)
-            });
+            let answer =
+                Window::try_new(time, until).and_then(|window| fly(a, b, window, node_tests, &mut pair));
             (key, pair, answer)
         });
         let mut failed = None;

@@ -3,6 +3,27 @@ use super::{Mutant, patch};
 
 pub(super) const MUTANTS: &[Mutant] = &[
     patch(
+        "impulses may add what energy they like",
+        "crates/d2m-dynamics/src/account.rs",
+        "if excess.is_nan() || excess <= 0.0 {",
+        "if excess.is_nan() || excess <= f64::MAX {",
+        "crates/d2m-dynamics/src/account.rs::impulses_between_two_bodies_add_none",
+    ),
+    patch(
+        "accounts forget what bodies have gained before",
+        "crates/d2m-dynamics/src/account.rs",
+        "let gained = held + (after - before);",
+        "let gained = (after - before).max(held - held);",
+        "crates/d2m-dynamics/src/account.rs::accounts_are_paid_from_velocities_against_each_other",
+    ),
+    patch(
+        "room is made whatever it lifts",
+        "crates/d2m-dynamics/src/account.rs",
+        "(1.0 - left / lift).max(0.0)",
+        "1.0",
+        "crates/d2m-dynamics/src/account.rs::room_is_made_as_far_as_the_account_goes",
+    ),
+    patch(
         "flights that events cut keep the velocity of longer ones",
         "crates/d2m-dynamics/src/step/plan.rs",
         "const UNBALANCED: f64 = 1.0 / 4096.0;",
