@@ -63,7 +63,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m/src/moving_ball.rs",
         "is_apart(direction, begin) && is_apart(direction, until)",
         "is_apart(direction, begin)",
-        "crates/d2m/src/moving_ball.rs::head_on_passing_by_and_at_rest",
+        "crates/d2m/src/moving_ball.rs::nothing_is_late_in_any_unit",
     ),
     patch(
         "a changed box keeps the bounds above it",
