@@ -7,6 +7,8 @@ use glam::DVec3;
 /// Covers the roundings of a gap along a direction: two differences of coordinates, two products of three terms, their sum
 /// and the length of the direction, fewer than 32 units 2⁻⁵³ of Σ|dₖ| + τ·Σ|wₖ|.
 const GAP_ERROR: f64 = 32.0 * f64::EPSILON / 2.0;
+/// What six products may lose by underflow, 2⁻¹⁰⁷⁵ each, and more.
+const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 /// Covers the roundings of the sum of two radii and a separation, and of what the gap is compared with.
 const RADIUS_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 /// The part of the time until the spheres would touch, in exact arithmetic, for which a plane is to prove them apart: what is
@@ -62,7 +64,7 @@ impl MovingBall {
         let is_apart = |direction: DVec3, time: f64| {
             let gap = direction.dot(d) + time * direction.dot(w);
             let size = d.abs().element_sum() + time * w.abs().element_sum();
-            gap - GAP_ERROR * size > radius
+            gap - GAP_ERROR * size > radius + UNDERFLOW
         };
         // What is not a number proves nothing.
         let stays_apart = |between: DVec3, until: f64| {
