@@ -155,7 +155,8 @@ pub(super) fn run(rounds: usize) -> TaskResult {
             let line = serde_json::json!({
                 "a": motion(&flight.a, form, k), "b": motion(&flight.b, form, k + 1), "window": [0.0, 1.0],
             });
-            text.push_str(&format!("{line}\n"));
+            text.push_str(&line.to_string());
+            text.push('\n');
         }
         std::fs::write(&path, text)?;
         let (whole, found) = run_command(&program, &path, rounds)?;
