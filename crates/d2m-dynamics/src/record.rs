@@ -19,7 +19,8 @@ pub struct ContactImpulse {
     pub normal: DVec3,
     /// Impulse on a (its opposite acts on b): mass times speed, world axes.
     pub impulse: DVec3,
-    /// When.
+    /// When it acts: when the momenta change. Flights that lead to a contact which nothing bounces off are solved with it, so
+    /// such an impulse acts up to a step before its bodies are as close as they get.
     pub time: f64,
 }
 

@@ -1,6 +1,6 @@
 //! Scenes that ask for too much: each step ends, says what it skipped, and nothing panics.
 
-use d2m_bvh::MeshTree;
+use d2m_bvh::{MeshTree, Posed, Solid, StartState, distance};
 use d2m_dynamics::{Body, Kind, Mass, MassProperties, Simulation, SimulationOptions};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
@@ -98,6 +98,30 @@ fn events_run_out_and_the_report_says_so() {
     let skipped = run(&mut simulation, 1.0);
     assert!(skipped > 0.5 && skipped < 1.0, "{skipped}");
     assert!(simulation.position(id).x.abs() < 0.4);
+}
+
+/// Queries that may test little certify short flights: these end at events without an impulse, after which the bodies begin
+/// others and are queried again, although their velocities are the same.
+#[test]
+fn queries_that_may_test_little_let_nothing_through() {
+    for node_tests in [10, 30, 60] {
+        let options = SimulationOptions::default().with_gravity(DVec3::ZERO).with_node_tests(node_tests);
+        let mut simulation = Simulation::new(options).unwrap();
+        let knot = tree("torus-knot?triangles=5000&scale=0.5");
+        let still = Body::new("still", Arc::clone(&knot)).with_kind(Kind::Static).with_restitution(0.5);
+        let thrown = Body::new("thrown", Arc::clone(&knot))
+            .with_position(DVec3::X * -2.5)
+            .with_linear_velocity(DVec3::new(30.0, 0.3, 0.1))
+            .with_angular_velocity(DVec3::Y * 20.0);
+        let still = simulation.add(&still).unwrap();
+        let thrown = simulation.add(&thrown).unwrap();
+        while simulation.time() < 0.3 {
+            simulation.step().unwrap();
+            let posed = [still, thrown].map(|id| Posed::new(&knot, simulation.pose(id)));
+            let found = distance(posed[0], posed[1], Solid::Filled).unwrap();
+            assert_eq!(found.state, StartState::Apart, "{node_tests}: at {}", simulation.time());
+        }
+    }
 }
 
 /// Where vertices slide over edges, the direction between them is none of a face: its contact must hold, or the pair is

@@ -8,10 +8,14 @@ use glam::DVec3;
 
 /// Times that flights from one and the same instant are planned anew.
 const MOST_AT_ONCE: u32 = 3;
-/// And flights of bodies that are planned anew in a whole step: so many, and so many for each body there is.
+/// And flights of bodies that are planned anew in a whole step: so many, and so many for each body there is. A budget, like the
+/// number of events, which is 128 by default: two bodies each; and for crowds in which all meet, the pair that each of two
+/// neighbours meets, twice. What goes beyond it is left unbalanced in the segments, and in them only.
 const MOST_IN_A_STEP: usize = 256;
 const MOST_OF_A_BODY: usize = 4;
-/// The part of the greatest kinetic energy that a flight's early end may leave unbalanced.
+/// The part of the greatest kinetic energy that a flight's early end may leave unbalanced in the segments (the momenta are right in
+/// any case): a thirty-second of the 1/128 that `docs/guarantees.md` promises, for the flights of one step that are cut one after the
+/// other.
 const UNBALANCED: f64 = 1.0 / 4096.0;
 /// How much later than expected a flight that is planned anew ends, as a part of what it was cut by: the body should meet
 /// what it meets before that.
