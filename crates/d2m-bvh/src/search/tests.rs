@@ -302,6 +302,35 @@ fn lines_of_no_length_or_beyond_all_numbers_part_nothing() {
     }
 }
 
+/// A large body parts from a small one, or meets it, at speeds beyond all numbers of `f32` in the small one's unit, along an
+/// axis of the boxes or aslant: nothing is known.
+#[test]
+fn speeds_beyond_all_numbers_prove_nothing() {
+    let plate = |size: f64| {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let corners = corners.map(|(x, y)| DVec3::new(x, y, 0.0) * size);
+        MeshTree::new(TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap())
+    };
+    let (small, rest) = (plate(1.0), ConstantTwist::REST);
+    for speed in [1e37, 1e38, 3e38, 1e39, 1e45] {
+        let large = plate(speed * 1e-3);
+        for direction in [DVec3::X, DVec3::Z, DVec3::ONE, DVec3::new(1.0, -1.0, 0.3)] {
+            for velocity in [direction * speed, direction * -speed] {
+                let motion = rest.with_position(direction * 1e-2 * speed).with_linear_velocity(velocity);
+                let options = QueryOptions::default();
+                let scene = Scene::new((&small, rest), (&large, motion), Window::UNIT, &options);
+                let frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
+                let scale = &scene.node_scales(1.0)[0];
+                let node_frame = NodeFrame::new::<Quad>(&frame, scale, false, 1.0);
+                let single = NodeBox::new(&large.nodes, 0);
+                let placed = Placed::new::<Portable>(&node_frame, scale, single, &small.nodes[0]);
+                let time = entry_times::<Portable>(&small.nodes[0], &placed, scale).store()[0];
+                assert!(time.is_nan() || time <= 0.0, "{velocity}: {time:e}");
+            }
+        }
+    }
+}
+
 #[test]
 fn every_instruction_set_gives_the_same_bits() {
     let mut random = KnuthRandom(14);

@@ -21,3 +21,34 @@ pub(crate) fn round_up(value: f64) -> f32 {
     let rounded = value as f32;
     if f64::from(rounded) < value { rounded.next_up() } else { rounded }
 }
+
+/// Sums of a few products of cosines, bytes and sizes that are not above 2¹²⁸ over this are finite: at most three of 126 times
+/// a size, and as much again.
+const ROOM_BELOW_OVERFLOW: f32 = 1024.0;
+
+/// The product of an error's factor and the size that it is a part of: infinite where sums of such sizes may overflow, so that
+/// nothing is proven from them. The bits of `factor * size` otherwise.
+#[inline(always)]
+pub(crate) fn error_of(factor: f32, size: f32) -> f32 {
+    (factor * (1.0 / ROOM_BELOW_OVERFLOW)) * (size * ROOM_BELOW_OVERFLOW)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ROOM_BELOW_OVERFLOW, UNIT_F32, error_of};
+
+    #[test]
+    fn errors_are_infinite_where_sums_of_sizes_may_overflow() {
+        let factor = 48.0 * UNIT_F32 as f32;
+        for power in -80..118 {
+            let size = 1.7 * f64::from(power).exp2() as f32;
+            assert_eq!(error_of(factor, size).to_bits(), (factor * size).to_bits());
+        }
+        for size in [f32::MAX / ROOM_BELOW_OVERFLOW * 1.001, 1e36, f32::MAX, f32::INFINITY] {
+            assert!((size * 126.0 * 3.0).is_finite() || error_of(factor, size) == f32::INFINITY);
+            assert_eq!(error_of(factor, size), f32::INFINITY);
+        }
+        assert!((f32::MAX / ROOM_BELOW_OVERFLOW * (3.0 * 126.0)).is_finite());
+        assert!(error_of(factor, f32::NAN).is_nan());
+    }
+}

@@ -148,7 +148,7 @@ fn cut_more(tree: &mut MeshTree, node: usize) {
 fn any_shrunk_or_broken_tree_is_refused() {
     let tree = MeshTree::new(torus(20, 10, 0.01, |p| p));
     type Damage = fn(&mut MeshTree);
-    let damages: [(&str, Damage); 16] = [
+    let damages: [(&str, Damage); 20] = [
         ("half extent", |t| t.nodes[3].half_extent[1][2] *= 0.999),
         ("half extent of the root", |t| t.nodes[0].half_extent[0][0] *= 1.0 - 1e-6),
         ("edge of a part", |t| cut_more(t, 2)),
@@ -170,6 +170,19 @@ fn any_shrunk_or_broken_tree_is_refused() {
             t.nodes[leaf].child[0] = t.nodes[leaf].child[1];
         }),
         ("tree radius", |t| t.radius *= 0.9),
+        ("huge tree radius", |t| t.radius = t.unit * 8.0),
+        ("huge tree radius and unit", |t| (t.radius, t.unit) = (t.unit * 8.0, t.unit * 8.0)),
+        ("huge box", |t| {
+            for k in 0..3 {
+                t.nodes[0].half_extent[k][0] = 1e20;
+            }
+            (t.nodes[0].radius[0], t.nodes[0].extent) = (2e20, 4e20);
+        }),
+        ("distant origin", |t| {
+            let node = &mut t.nodes[0];
+            (node.origin[0], node.center[0][0]) = (node.origin[0] + 64.0, node.center[0][0] - 64.0);
+            (node.half_extent[0][0], node.radius[0], node.extent) = (2.0, 3.0, 70.0);
+        }),
         ("lane that is not used", |t| {
             t.nodes[0].center[0][3] = 0.0;
         }),

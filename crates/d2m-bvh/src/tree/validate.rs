@@ -12,6 +12,10 @@ use crate::TriMesh;
 use crate::parallel::{both, map_in_order};
 use glam::DVec3;
 
+/// No length of a node is more, in units of the tree: the body lies in a ball of radius one, so boxes made around its points have half
+/// extents up to 1 and radii up to √3, origins are within √3 in each sum of coordinates, centers within twice that of them, and what
+/// is rounded away is less than that again. Tests in `f32` may multiply such lengths without overflow.
+const MOST_LENGTH: f32 = 16.0;
 /// Nodes that are checked at a time: one takes a tenth of a microsecond, waking a thread several.
 const NODES: usize = 4096;
 
@@ -61,8 +65,10 @@ impl ClaimedTree<'_> {
 
     fn check_extent(&self) -> Result<(), TreeError> {
         let Extent { center, radius, unit } = self.extent;
-        let least = Extent::about(self.mesh, center);
-        let fits = center.is_finite() && radius.is_finite() && radius >= least.radius;
+        let least = Extent::about(self.mesh, center).radius;
+        // Errors grow with the radius: a center or radius of choice may cost one bit of them, not all.
+        let most = 2.0 * Extent::of(self.mesh).radius;
+        let fits = center.is_finite() && radius.is_finite() && least <= radius && radius <= most;
         if fits && unit == unit_of(radius) { Ok(()) } else { Err(TreeError::Extent) }
     }
 
@@ -110,7 +116,8 @@ impl ClaimedTree<'_> {
 
 fn check_node(index: usize, node: &WideNode) -> Result<(), TreeError> {
     let unused = WideNode::empty([0.0; 3], 0);
-    if !node.origin.iter().all(|x| x.is_finite()) || !node.extent.is_finite() {
+    let sizes = node.origin.iter().chain([&node.extent]);
+    if !sizes.into_iter().all(|x| x.abs() <= MOST_LENGTH) {
         return Err(TreeError::Shape { node: index, lane: 0 });
     }
     for lane in 0..WIDTH {
@@ -123,7 +130,7 @@ fn check_node(index: usize, node: &WideNode) -> Result<(), TreeError> {
             let is_leaf = matches!(node.below(lane), Below::Triangle(_));
             let size = node.size[lane];
             let center: f64 = boxed.center.iter().map(|c| f64::from(c.abs())).sum();
-            numbers.clone().all(|x| x.is_finite())
+            numbers.into_iter().all(|x| x.abs() <= MOST_LENGTH)
                 && boxed
                     .half_extent
                     .iter()

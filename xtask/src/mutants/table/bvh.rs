@@ -53,6 +53,41 @@ pub(super) const MUTANTS: &[Mutant] = &[
     ),
     // Static queries.
     patch(
+        "an infinite gap counts as one",
+        "crates/d2m-bvh/src/resting/node_pair/node_test.rs",
+        " & gap.less_bits(L::splat(f32::INFINITY))",
+        "",
+        "crates/d2m-bvh/tests/unlike_sizes.rs::bodies_that_cross_are_never_apart_however_unlike_their_sizes",
+    ),
+    patch(
+        "an infinite distance counts as one",
+        "crates/d2m-bvh/src/resting/node_pair/node_test.rs",
+        "L::if_greater(L::splat(f32::INFINITY), bound, bound, L::splat(0.0))",
+        "bound",
+        "crates/d2m-bvh/src/resting/node_pair/tests.rs::bounds_of_boxes_of_unlike_sizes_are_finite_and_hold",
+    ),
+    patch(
+        "lengths of a tree that was read may be anything",
+        "crates/d2m-bvh/src/tree/validate.rs",
+        "const MOST_LENGTH: f32 = 16.0;",
+        "const MOST_LENGTH: f32 = f32::MAX;",
+        "crates/d2m-bvh/src/tree/tests.rs::any_shrunk_or_broken_tree_is_refused",
+    ),
+    patch(
+        "the radius of a tree that was read may be anything",
+        "crates/d2m-bvh/src/tree/validate.rs",
+        "radius <= most;",
+        "(radius <= most || most >= 0.0);",
+        "crates/d2m-bvh/src/tree/tests.rs::any_shrunk_or_broken_tree_is_refused",
+    ),
+    patch(
+        "errors stay finite where sums overflow",
+        "crates/d2m-bvh/src/tree/margin.rs",
+        "const ROOM_BELOW_OVERFLOW: f32 = 1024.0;",
+        "const ROOM_BELOW_OVERFLOW: f32 = 1.0;",
+        "crates/d2m-bvh/src/tree/margin.rs::errors_are_infinite_where_sums_of_sizes_may_overflow",
+    ),
+    patch(
         "a triangle reaches less far along a direction than its corners",
         "crates/d2m-bvh/src/resting/node_pair/placed_box.rs",
         "[round_up((high - middle).max(middle - low)); 2];",

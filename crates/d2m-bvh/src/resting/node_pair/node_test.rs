@@ -16,8 +16,18 @@ const NORM_FACTOR: f32 = 1.0 - 16.0 * UNIT_F32 as f32;
 /// measured where boxes of bodies in near contact cost no more than without further directions.)
 const WORTH_DIRECTIONS: f32 = 0.125;
 
-/// Lower bounds on the distances from the single box to each lane's box, in the working unit. A lane that holds no
-/// box may get any value. Bounds above `enough` (working unit) need not be close.
+/// The bound, or zero where it is no number that was computed.
+///
+/// Bodies of very unlike sizes make sums and squares of `f32` overflow. A gap is what is between the centers less what the
+/// boxes reach, and every term of the two is added or multiplied only: one that overflows makes the gap infinite or not a number,
+/// never a wrong number. Directions that overflow are shortened to zero or are not numbers.
+#[inline(always)]
+fn known<L: Lanes>(bound: L) -> L {
+    L::if_greater(L::splat(f32::INFINITY), bound, bound, L::splat(0.0))
+}
+
+/// Lower bounds on the distances from the single box to each lane's box, in the working unit; zero where nothing is known.
+/// A lane that holds no box may get any value. Bounds above `enough` (working unit) need not be close.
 #[inline(always)]
 pub(super) fn lower_bounds<L: Lanes>(
     wide: &WideNode,
@@ -37,7 +47,7 @@ pub(super) fn lower_bounds<L: Lanes>(
     let factor = L::splat(NORM_FACTOR) * L::splat(to_work);
     let used = (1u32 << wide.used.min(8)) - 1;
     if L::splat(enough).less_bits(bound * factor) & used == used {
-        return (bound * factor).store();
+        return known(bound * factor).store();
     }
     let closer = match &placed.corners {
         Some(corners) => {
@@ -47,18 +57,18 @@ pub(super) fn lower_bounds<L: Lanes>(
                 None => closer,
             }
         }
-        None if enough < WORTH_DIRECTIONS * placed.radius * to_work => return (bound * factor).store(),
+        None if enough < WORTH_DIRECTIONS * placed.radius * to_work => return known(bound * factor).store(),
         None => gap_along_own(wide, placed, &axes, own).max(gap_along_other(wide, placed, &axes, other)),
     };
-    (closer.max(bound) * factor).store()
+    known(closer.max(bound) * factor).store()
 }
 
-/// Bit i is set when lane i is not proven apart from the single box.
+/// Bit i is set when lane i is not proven apart from the single box. An infinite gap proves nothing: see [`known`].
 #[inline(always)]
 pub(super) fn overlaps<L: Lanes>(wide: &WideNode, placed: &Placed) -> u32 {
     let gap = BoxPair::<L>::new(wide, &placed.boxed).gap(placed.boxed.margin);
     let used = (1u32 << wide.used.min(8)) - 1;
-    !L::splat(0.0).less_bits(gap) & used
+    !(L::splat(0.0).less_bits(gap) & gap.less_bits(L::splat(f32::INFINITY))) & used
 }
 
 /// The six gaps as computed before anything is taken off; zero where negative.

@@ -223,6 +223,51 @@ fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
     assert!(best_across > 0.8, "{best_across}");
 }
 
+/// The single box, its offset or both are up to 2¹²⁷ times as large as the boxes of the node: bounds are numbers that hold.
+#[test]
+fn bounds_of_boxes_of_unlike_sizes_are_finite_and_hold() {
+    let mut random = KnuthRandom(19);
+    let mut known = 0;
+    for round in 0..12_700 {
+        let mut node = WideNode::empty([0.0; 3], 0);
+        let mut any_box = || OrientedBox {
+            slabs: core::array::from_fn(|_| core::array::from_fn(|k| MOST - k as u8)),
+            ..oriented_box(&mut random, 1.0, 1.0)
+        };
+        let (boxed, single) = (any_box(), any_box());
+        node.set_box(0, &boxed, 1.0);
+        node.used = 1;
+        let (power, far) = (f64::from(round % 127).exp2(), f64::from(round / 3 % 127).exp2());
+        let rotation = rotation(&mut random);
+        let offset = random.vector() * power.max(far) * 3.0;
+        let side = Side {
+            rotation: [rotation.x_axis, rotation.y_axis, rotation.z_axis],
+            offset,
+            ratio: power,
+            floor: 0.0,
+            to_work: 1.0,
+        };
+        let n = offset.normalize() * (1.0 - 4.0 * UNIT_F32);
+        let n = [n.x as f32, n.y as f32, n.z as f32];
+        let place = |p: DVec3| rotation * p * power + offset;
+        let corners = [(); 3].map(|()| place(point_within(&single, &mut random)));
+        let placed = Placed::new(&side, &single, [0.0; 3], &node);
+        let triangle = placed.with_triangle_along(n, &corners).with_longest_edge(&corners);
+        let apart = point_within(&boxed, &mut random).distance(corners[0]);
+        for (placed, enough) in [
+            (placed.with_box_along(n, &single), f32::INFINITY),
+            (placed.with_box_along(n, &single), 0.0),
+            (triangle, f32::INFINITY),
+        ] {
+            let bound = f64::from(lower_bounds::<Portable>(&node, &placed, 1.0, enough)[0]);
+            let holds = bound.is_nan() || (bound < f64::INFINITY && bound <= apart * (1.0 + 1e-6));
+            assert!(holds, "{round}: {bound:e} {apart:e}");
+            known += u32::from(bound > 0.0);
+        }
+    }
+    assert!(known > 10_000, "{known}");
+}
+
 /// The gap of lane 0 across the triangle's longest edge.
 fn gap_across_edge_alone(node: &WideNode, placed: &Placed) -> f32 {
     let axes = Axes::<Portable>::new(node, placed);

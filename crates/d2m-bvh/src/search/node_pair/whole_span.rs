@@ -11,7 +11,7 @@ use super::discriminant::{Spread, discriminant, unit};
 use super::node_scale::NodeScale;
 use crate::search::motion::frame::{PlacedFrame, RelativeMotion};
 use crate::tree::box_pair::{both, dot, load, opposite, splat};
-use crate::tree::margin::{NARROW_UP, UNIT_F32, UP, round_up};
+use crate::tree::margin::{NARROW_UP, UNIT_F32, UP, error_of, round_up};
 use crate::tree::node::{NodeBox, WideNode};
 use crate::tree::slabs::reach;
 use d2m_lanes::{Bytes, Doubles, Elementwise, Lanes, Matrix, Quad, Two};
@@ -193,7 +193,8 @@ pub(crate) fn apart_over_span<L: Lanes>(
     let middle = frame.middle.place::<L::Doubles>(from, origin);
     let ratio = ratio as f32;
     let radius = single.radius[lane] * ratio;
-    let margin = SPAN_ERROR * (norm(&first).max(norm(&last)) + wide.extent + radius) + frame.need;
+    let size = norm(&first).max(norm(&last)) + wide.extent + radius;
+    let margin = error_of(SPAN_ERROR, size) + frame.need;
 
     let lanes = load::<L>(&wide.center);
     let (long, middle_long) = (load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]));

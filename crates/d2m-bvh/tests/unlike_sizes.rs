@@ -1,0 +1,127 @@
+//! Bodies whose sizes, or speeds, differ by so much that numbers of the node tests overflow.
+
+use d2m_bvh::{
+    MeshTree, Moving, Posed, QueryOptions, Solid, TimeOfContact, TriMesh, Window, collide, distance,
+    time_of_contact,
+};
+use d2m_motion::{ConstantTwist, Pose};
+use d2m_testing::{Draw, KnuthRandom};
+use glam::{DQuat, DVec3};
+
+/// A closed cube.
+fn cube(half: f64) -> MeshTree {
+    let vertex =
+        |i: u32| (DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 2.0 - 1.0) * half;
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let halves = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
+    MeshTree::new(TriMesh::try_new((0..8).map(vertex).collect(), halves.collect()).unwrap())
+}
+
+/// A ball of 128 triangles: an octahedron divided twice.
+fn ball(radius: f64) -> MeshTree {
+    let mut triangles = Vec::new();
+    for octant in 0..8u32 {
+        let sign = |bit: u32| if octant >> bit & 1 == 0 { 1.0 } else { -1.0 };
+        let [x, y, z] = [DVec3::X * sign(0), DVec3::Y * sign(1), DVec3::Z * sign(2)];
+        triangles.push(if octant.count_ones() % 2 == 0 { [x, y, z] } else { [x, z, y] });
+    }
+    for _ in 0..2 {
+        let halves = triangles.iter().flat_map(|&[p, q, r]| {
+            let [pq, qr, rp] = [p + q, q + r, r + p].map(DVec3::normalize);
+            [[p, pq, rp], [pq, q, qr], [rp, qr, r], [pq, qr, rp]]
+        });
+        triangles = halves.collect();
+    }
+    let vertices: Vec<DVec3> = triangles.iter().flatten().map(|&p| p * radius).collect();
+    let faces = (0..triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let mesh = TriMesh::try_new(vertices, faces).unwrap();
+    MeshTree::new(mesh)
+}
+
+/// A cube that a face of the large ball cuts: both orders say so, and no distance is proven.
+#[test]
+fn bodies_that_cross_are_never_apart_however_unlike_their_sizes() {
+    let mut random = KnuthRandom(171);
+    let small = cube(0.5);
+    for step in 300..800 {
+        let large = ball(10f64.powf(f64::from(step) / 20.0));
+        for _ in 0..4 {
+            let corners = large.mesh().corners((random.signed().abs() * 127.9) as usize);
+            let rotation =
+                DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), 1.0).normalize();
+            let translation = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let placed = Pose { rotation, translation, at: DVec3::ZERO };
+            let [a, b] = [Posed::new(&small, placed), Posed::at_rest(&large)];
+            for (a, b) in [(a, b), (b, a)] {
+                assert_eq!(collide(a, b, Solid::Surface), Ok(true), "10^{step}/20");
+                let found = distance(a, b, Solid::Surface).unwrap();
+                assert!(found.lower == 0.0, "10^{step}/20: {found:?}");
+            }
+        }
+    }
+}
+
+/// No lower bound of a distance is above the distance of two vertices, from near to further away than squares of `f32` reach.
+#[test]
+fn bounds_of_distances_hold_however_unlike_sizes_and_distances() {
+    let mut random = KnuthRandom(173);
+    let small = cube(0.5);
+    for step in 0..800 {
+        let size = 10f64.powf(f64::from(step) / 20.0);
+        let large = ball(size);
+        for _ in 0..4 {
+            let rotation =
+                DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), 1.0).normalize();
+            let away = (1.0 + size) * (1.0 + 10f64.powf(40.0 * random.signed().max(-0.1)));
+            let translation = random.vector().normalize() * away;
+            let placed = Pose { rotation, translation, at: DVec3::ZERO };
+            let near = small.mesh().vertices().iter().flat_map(|&v| {
+                let v = translation + rotation * v;
+                large.mesh().vertices().iter().map(move |w| v.distance(*w))
+            });
+            let near = near.fold(f64::INFINITY, f64::min) + 1e-12 * away;
+            let [a, b] = [Posed::new(&small, placed), Posed::at_rest(&large)];
+            for (a, b) in [(a, b), (b, a)] {
+                let found = distance(a, b, Solid::Filled).unwrap();
+                assert!(found.lower <= near && found.upper < f64::INFINITY, "{size:e} {away:e}: {found:?}");
+            }
+        }
+    }
+}
+
+/// Straight through the other body, from near or from far away, at any speed, past large bodies and small ones: no answer says
+/// that they do not meet.
+#[test]
+fn nothing_is_too_fast_to_be_noticed() {
+    let mut random = KnuthRandom(172);
+    let target = cube(0.5);
+    let mut found = 0;
+    for step in 0..1200 {
+        let size = 10f64.powf(39.0 * random.signed().max(0.0));
+        let other = if step % 2 == 0 { cube(size) } else { ball(size) };
+        let speed = 10f64.powf(f64::from(step) / 8.0 - 60.0);
+        let towards = random.vector().normalize();
+        let turn = DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), 1.0).normalize();
+        let from = (2.0 + 2.0 * size) * if step % 3 == 0 { 1.0 } else { 1.0 + random.signed().abs() };
+        // Its center is at the target's at from / speed, however it spins. (Motions whose rounding hides the bodies are refused.)
+        let until = (2.0 * from / speed).min(1.0);
+        if until < from / speed {
+            continue;
+        }
+        let window = Window::try_new(0.0, until).unwrap();
+        let spin = random.vector() * ([0.0, 1.0, 300.0, 20_000.0][step as usize / 2 % 4] / until);
+        let motion = ConstantTwist::try_new(-towards * from, turn, towards * speed, spin).unwrap();
+        let [a, b] = [Moving::new(&target, &ConstantTwist::REST), Moving::new(&other, &motion)];
+        for (a, b) in [(a, b), (b, a)] {
+            match time_of_contact(a, b, window, &QueryOptions::default()) {
+                Ok(TimeOfContact::Separated { .. }) => panic!("{step}: size {size:e}, speed {speed:e}"),
+                Ok(TimeOfContact::Contact(contact)) => {
+                    assert!(contact.time_lo <= from / speed, "{step}: {contact:?}");
+                    found += 1;
+                }
+                Ok(_) | Err(_) => {}
+            }
+        }
+    }
+    assert!(found > 600, "{found}");
+}
