@@ -171,7 +171,18 @@ fn any_shrunk_or_broken_tree_is_refused() {
         }),
         ("tree radius", |t| t.radius *= 0.9),
         ("huge tree radius", |t| t.radius = t.unit * 8.0),
-        ("huge tree radius and unit", |t| (t.radius, t.unit) = (t.unit * 8.0, t.unit * 8.0)),
+        ("all in units of eight times the body", |t| {
+            (t.radius, t.unit) = (t.unit * 8.0, t.unit * 8.0);
+            for node in &mut t.nodes {
+                let used = node.used as usize;
+                node.origin = node.origin.map(|x| x / 8.0);
+                node.extent /= 8.0;
+                node.radius[..used].iter_mut().for_each(|x| *x /= 8.0);
+                for row in node.center.iter_mut().chain(&mut node.half_extent) {
+                    row[..used].iter_mut().for_each(|x| *x /= 8.0);
+                }
+            }
+        }),
         ("huge box", |t| {
             for k in 0..3 {
                 t.nodes[0].half_extent[k][0] = 1e20;
