@@ -4,6 +4,7 @@
 mod account;
 mod body;
 mod broad_phase;
+mod clearance;
 mod contact;
 mod error;
 mod faces;

@@ -1,11 +1,13 @@
 //! What is known of pairs of bodies, and the queries about them.
 
+use crate::clearance::{Clearance, approach, bound_along};
 use crate::contact::{ContactPoint, Material, tangents};
 use crate::faces::vertices_of;
 use crate::rigid_body::RigidBody;
 use d2m_bvh::{
-    Budget, Contact, Moving, PairCache, Proximity, ProximityOptions, QueryError, QueryOptions, Solid,
-    StartState, TimeOfContact, Window, proximities_with, reduce_proximities, time_of_contact_with,
+    Budget, Contact, DistanceOptions, Moving, PairCache, Posed, Proximity, ProximityOptions, QueryError,
+    QueryOptions, Solid, StartState, TimeOfContact, Window, distance_within, proximities_with,
+    reduce_proximities, time_of_contact_with,
 };
 use d2m_feature::FeaturePair;
 use d2m_motion::Pose;
@@ -47,6 +49,10 @@ const LEAST_REACH: f64 = 1.0 / 64.0;
 pub(crate) struct Measured {
     pub(crate) contacts: Vec<ContactPoint>,
     pub(crate) features: usize,
+    /// The distance of the bodies to rounding; the margin, if they are further apart.
+    pub(crate) apart: f64,
+    /// Along the closest features.
+    pub(crate) normal: Option<DVec3>,
 }
 
 /// A pair of bodies that may come close.
@@ -63,17 +69,35 @@ pub(crate) struct Pair {
     pub(crate) measured: Option<f64>,
     /// Features are measured within this part of the way that the bodies may come closer in a flight.
     pub(crate) reach: f64,
+    /// How far apart they are proven to be.
+    pub(crate) clearance: Option<Clearance>,
+    /// A direction that may separate them, from a to b.
+    pub(crate) normal: Option<DVec3>,
+    /// About how far apart the bodies were when measured last: at least so far, to rounding.
+    pub(crate) apart: f64,
 }
 
 impl Pair {
     pub(crate) fn new(gap: f64) -> Self {
-        Self { cache: Box::default(), gap, contacts: Vec::new(), nearest: None, measured: None, reach: 1.0 }
+        Self {
+            cache: Box::default(),
+            gap,
+            contacts: Vec::new(),
+            nearest: None,
+            measured: None,
+            reach: 1.0,
+            clearance: None,
+            normal: None,
+            apart: 0.0,
+        }
     }
 
     /// Takes over what was measured: none, if nothing is within the margin. Of bodies that many features of are close, as of a
     /// screw in its nut, those further away are left to later: should one of them be met, that is an event.
     pub(crate) fn keep(&mut self, measured: Measured, time: f64, gap: f64) {
-        let Measured { mut contacts, features } = measured;
+        let Measured { mut contacts, features, apart, normal } = measured;
+        self.apart = apart;
+        self.normal = normal.or(self.normal);
         remember(&mut contacts, &self.contacts);
         self.nearest = contacts.iter().map(|contact| contact.distance).reduce(f64::min);
         if self.nearest.is_none() {
@@ -119,6 +143,9 @@ pub(crate) fn fly(
     node_tests: u64,
     pair: &mut Pair,
 ) -> Result<Outcome, QueryError> {
+    if is_proven_clear(a, b, window, pair)? {
+        return Ok(Outcome::Clear);
+    }
     let mut separation = pair.separation();
     while separation >= LEAST * pair.gap {
         let options = QueryOptions::default()
@@ -140,6 +167,42 @@ pub(crate) fn fly(
     Ok(Outcome::Stuck)
 }
 
+/// Do the bodies stay apart by more than a query would call met, as follows from their distance or along a direction? Then the query
+/// would answer so, too.
+fn is_proven_clear(
+    a: &RigidBody,
+    b: &RigidBody,
+    window: Window,
+    pair: &mut Pair,
+) -> Result<bool, QueryError> {
+    let (now, length) = (window.start(), window.length());
+    let needed = pair.separation() * (1.0 + SLACK);
+    if pair.clearance.is_some_and(|known| known.bound([a, b], now, length) > needed) {
+        return Ok(true);
+    }
+    let along = |normal: DVec3, spin: DVec3| {
+        bound_along(normal, spin, [a, b], now, length).is_some_and(|bound| bound > needed)
+    };
+    let spins = [a, b].map(|body| body.flight.angular_velocity());
+    if pair.normal.is_some_and(|normal| spins.into_iter().any(|spin| along(normal, spin))) {
+        return Ok(true);
+    }
+    // Worth the distance where it will do, or where no direction is known.
+    let will_do = pair.measured == Some(now) && pair.apart - approach([a, b]) * length > needed;
+    if !(will_do || pair.normal.is_none()) {
+        return Ok(false);
+    }
+    let options = DistanceOptions::default().with_solid(solid_of(a, b));
+    let poses = [a, b].map(|body| body.pose_at(now));
+    let posed = [Posed::new(&a.tree, poses[0]), Posed::new(&b.tree, poses[1])];
+    let Some(found) = distance_within(posed[0], posed[1], &options, &mut pair.cache)? else {
+        return Ok(false);
+    };
+    let known = Clearance { poses, distance: found.lower };
+    (pair.clearance, pair.normal) = (Some(known), Some(found.normal));
+    Ok(known.bound([a, b], now, length) > needed || spins.into_iter().any(|spin| along(found.normal, spin)))
+}
+
 fn met(contact: &Contact) -> Outcome {
     let (lo, hi) = (contact.time_lo, contact.time_hi);
     Outcome::Meets { lo, hi, normal: contact.normal, closing: contact.closing_speed }
@@ -158,6 +221,8 @@ pub(crate) fn measure(
     let (posed_a, posed_b) = (a.posed_at(time), b.posed_at(time));
     let options = ProximityOptions::new(margin).with_cone_slack(TILT);
     let wide = proximities_with(posed_a, posed_b, &options)?;
+    // In the order of their distances.
+    let (apart, normal) = (wide.first().map_or(margin, |p| p.distance), wide.first().map(|p| p.normal));
     let flatten = |p: &Proximity| flattened(p, [a, b], [&posed_a.pose, &posed_b.pose], gap);
     let exact = wide.iter().filter(|p| p.tilt == 0.0);
     let mut normals: Vec<DVec3> = exact.map(|p| flatten(p).unwrap_or(*p).normal).collect();
@@ -192,7 +257,7 @@ pub(crate) fn measure(
     let mut all = found.clone();
     all.extend(wide.iter().filter(is_tight));
     let contacts = all.iter().filter(|p| p.normal.is_normalized()).map(contact).collect();
-    Ok(Measured { contacts, features: wide.len() })
+    Ok(Measured { contacts, features: wide.len(), apart, normal })
 }
 
 /// Some total order.

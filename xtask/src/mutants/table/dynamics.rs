@@ -100,4 +100,32 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "event(hi + 1e-4, hi + 1e-4, Cause::Contact)",
         "crates/d2m-dynamics/tests/scenes.rs::a_bullet_stops_at_a_plate",
     ),
+    patch(
+        "the gap along a direction leaves out that points turn",
+        "crates/d2m-dynamics/src/clearance.rs",
+        "- 0.5 * acceleration * tau * tau",
+        "- 0.0 * acceleration * tau * tau",
+        "crates/d2m-dynamics/src/clearance.rs::bounds_are_no_more_than_the_distance",
+    ),
+    patch(
+        "seen from axes that turn what moves is not bent",
+        "crates/d2m-dynamics/src/clearance.rs",
+        "+ 2.0 * w * speed;",
+        "+ 0.0 * w * speed;",
+        "crates/d2m-dynamics/src/clearance.rs::bounds_along_directions_are_no_more_than_the_gap",
+    ),
+    patch(
+        "a distance is kept whatever bodies have turned since",
+        "crates/d2m-dynamics/src/clearance.rs",
+        "offset.length() - turned - approach",
+        "offset.length() - 0.0 * turned - approach",
+        "crates/d2m-dynamics/src/clearance.rs::bounds_are_no_more_than_the_distance",
+    ),
+    patch(
+        "bodies that turn come closer by half of what their ends do",
+        "crates/d2m-dynamics/src/clearance.rs",
+        "+ spin(a) + spin(b)",
+        "+ 0.5 * (spin(a) + spin(b))",
+        "crates/d2m-dynamics/src/clearance.rs::a_bar_that_swings_comes_as_close_as_its_end",
+    ),
 ];
