@@ -25,7 +25,7 @@ pub use d2m_lanes::InstructionSet;
 pub use enclosing_sphere::EnclosingSphere;
 pub use error::QueryError;
 pub use evidence::Evidence;
-pub use mesh::{Edge, MAX_COORDINATE, MeshError, Topology, TriMesh, Validation};
+pub use mesh::{Edge, MAX_COORDINATE, MeshArrays, MeshError, Topology, TriMesh, Validation};
 pub use moving::Moving;
 pub use options::{Budget, Mode, QueryOptions, Solid};
 pub use pair_cache::PairCache;

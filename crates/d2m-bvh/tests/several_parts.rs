@@ -6,8 +6,8 @@ mod bodies;
 
 use bodies::cube;
 use d2m_bvh::{
-    Budget, Evidence, MeshTree, Moving, Posed, QueryOptions, Solid, StartState, TimeOfContact, TriMesh,
-    Window, collide, collide_within, colliding_pairs, distance, time_of_contact,
+    Budget, Evidence, MeshArrays, MeshTree, Moving, Posed, QueryOptions, Solid, StartState, TimeOfContact,
+    TriMesh, Window, collide, collide_within, colliding_pairs, distance, time_of_contact,
 };
 use d2m_motion::ConstantTwist;
 use glam::DVec3;
@@ -25,7 +25,7 @@ fn joined(parts: &[TriMesh]) -> MeshTree {
 }
 
 fn inverted(mesh: TriMesh) -> TriMesh {
-    let (vertices, mut triangles) = mesh.into_parts();
+    let MeshArrays { vertices, mut triangles } = mesh.into_arrays();
     for t in &mut triangles {
         t.swap(0, 1);
     }

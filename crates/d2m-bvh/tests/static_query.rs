@@ -214,11 +214,12 @@ fn one_inside_the_other() {
     let (big, small) = (MeshTree::new(cube(|p| p)), MeshTree::new(cube(|p| p * 0.1)));
     // A shell: a cube with a cubic hole, whose surface has its outside towards the middle. What is in the hole is not in
     // the body.
-    let (outer, inner) = (cube(|p| p).into_parts(), cube(|p| p * 0.5).into_parts());
-    let corners = [outer.0, inner.0].concat();
-    let shifted = inner.1.iter().map(|&[i, j, k]| [i + 8, k + 8, j + 8]);
-    let shell =
-        MeshTree::new(TriMesh::try_new(corners, outer.1.iter().copied().chain(shifted).collect()).unwrap());
+    let (outer, inner) = (cube(|p| p).into_arrays(), cube(|p| p * 0.5).into_arrays());
+    let corners = [outer.vertices, inner.vertices].concat();
+    let shifted = inner.triangles.iter().map(|&[i, j, k]| [i + 8, k + 8, j + 8]);
+    let shell = MeshTree::new(
+        TriMesh::try_new(corners, outer.triangles.iter().copied().chain(shifted).collect()).unwrap(),
+    );
     for round in 0..200 {
         // Also exactly at the middle and on planes of symmetry, where rays meet edges and corners.
         let grid = |x: f64| (x * 4.0).round() * 0.2;

@@ -22,6 +22,6 @@ pub use power_of_two::{power_of_two, power_of_two_above, power_of_two_below};
 pub use rounding::{UNIT, UP};
 #[cfg(feature = "selected")]
 pub use selected::{
-    Bytes, Doubles, Elementwise, InstructionSet, Lanes, Matrix, Portable, Quad, QuadVec, Rows, Task, Two,
-    run, run_on,
+    Bytes, Doubles, Elementwise, InstructionSet, Keys, Lanes, Matrix, Portable, Quad, QuadVec, Rows,
+    SingleSide, Task, Two, WideSide, run, run_on,
 };

@@ -103,18 +103,24 @@ pub(crate) fn fault(place: String, reason: String) -> MotionError {
     MotionError::Part { place, reason }
 }
 
-/// Index and description of the first fault of a list of times: fewer than two, one not finite, or not increasing.
-pub(crate) fn describe_times(times: &[f64]) -> Option<(usize, String)> {
+/// What is wrong with a list of times.
+pub(crate) struct TimesFault {
+    pub(crate) index: usize,
+    pub(crate) reason: String,
+}
+
+/// The first fault of a list of times: fewer than two, one not finite, or not increasing.
+pub(crate) fn find_times_fault(times: &[f64]) -> Option<TimesFault> {
     if times.len() < 2 {
-        return Some((times.len(), "at least two times are needed".to_owned()));
+        return Some(TimesFault { index: times.len(), reason: "at least two times are needed".to_owned() });
     }
     times.iter().enumerate().find_map(|(index, &time)| {
         if !time.is_finite() {
-            return Some((index, format!("{time} is not finite")));
+            return Some(TimesFault { index, reason: format!("{time} is not finite") });
         }
         let before = index.checked_sub(1).map(|i| times[i])?;
-        (before >= time)
-            .then(|| (index, format!("{time:?} does not come after {before:?}: times must increase")))
+        let reason = || format!("{time:?} does not come after {before:?}: times must increase");
+        (before >= time).then(|| TimesFault { index, reason: reason() })
     })
 }
 

@@ -1,7 +1,7 @@
 //! The value of a joint over time: a polynomial, or one polynomial after another.
 use crate::MotionError;
 use crate::ball::up;
-use crate::error::{describe_times, fault};
+use crate::error::{TimesFault, fault, find_times_fault};
 use d2m_interval::Interval;
 use d2m_lanes::{DoubleDouble, power_of_two, two_sum};
 
@@ -86,7 +86,7 @@ impl JointValue {
     /// one that is not finite, or a jump of more than 1e-9 where two pieces meet.
     #[expect(clippy::needless_pass_by_value, reason = "as its sister, and as every caller has it")]
     pub fn try_pieces(times: Vec<f64>, pieces: Vec<Vec<f64>>) -> Result<Self, MotionError> {
-        if let Some((index, reason)) = describe_times(&times) {
+        if let Some(TimesFault { index, reason }) = find_times_fault(&times) {
             return Err(fault(format!("value, times[{index}]"), reason));
         }
         if times.len() != pieces.len() + 1 {

@@ -18,5 +18,5 @@ pub use error::MeshError;
 #[cfg(feature = "serde")]
 pub(crate) use exact_number::ExactNumber;
 pub use topology::{Edge, Topology};
-pub use tri_mesh::{MAX_COORDINATE, TriMesh};
+pub use tri_mesh::{MAX_COORDINATE, MeshArrays, TriMesh};
 pub use validation::Validation;

@@ -9,6 +9,15 @@ use glam::DVec3;
 /// below (2e60)⁵ < 1e302, so nothing overflows.
 pub const MAX_COORDINATE: f64 = 1e60;
 
+/// The lists that a [`TriMesh`] is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshArrays {
+    /// Positions in the body frame.
+    pub vertices: Vec<DVec3>,
+    /// Three numbers of vertices each.
+    pub triangles: Vec<[u32; 3]>,
+}
+
 /// An indexed triangle mesh in its body frame: `f64` vertices, `u32` triangles, checked once and immutable.
 ///
 /// **Promise.** Every coordinate is finite with magnitude at most [`MAX_COORDINATE`], every index is in range and
@@ -121,8 +130,17 @@ impl TriMesh {
     }
 
     /// Gives the two lists back.
-    pub fn into_parts(self) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-        (self.vertices, self.triangles)
+    ///
+    /// ```
+    /// use d2m_bvh::{MeshArrays, TriMesh};
+    /// let mesh = TriMesh::from_arrays(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]])?;
+    /// let MeshArrays { vertices, triangles } = mesh.into_arrays();
+    /// assert_eq!((vertices.len(), triangles), (3, vec![[0, 1, 2]]));
+    /// # Ok::<(), d2m_bvh::MeshError>(())
+    /// ```
+    pub fn into_arrays(self) -> MeshArrays {
+        let Self { vertices, triangles } = self;
+        MeshArrays { vertices, triangles }
     }
 }
 
@@ -147,7 +165,7 @@ impl TryFrom<Parts> for TriMesh {
 #[cfg(feature = "serde")]
 impl From<TriMesh> for Parts {
     fn from(mesh: TriMesh) -> Self {
-        let (vertices, triangles) = mesh.into_parts();
+        let TriMesh { vertices, triangles } = mesh;
         let exact = |vertex: DVec3| vertex.to_array().map(super::ExactNumber);
         Self { vertices: vertices.into_iter().map(exact).collect(), triangles }
     }

@@ -8,14 +8,16 @@ use super::step_back::{Disjoint, estimate_relative_velocity, step_back};
 use crate::{Contact, Evidence, StartState};
 use d2m_feature::paper::RelativeMotion;
 use d2m_feature::{FeaturePair, TriangleFeature};
+use d2m_interval::Interval;
 use d2m_motion::Pose;
 use glam::DVec3;
 
-/// The contact of `best`, whose bracket nothing precedes, reported at a time at which the bodies are certainly disjoint.
+/// The contact of `best`, whose bracket nothing precedes from `start` on, reported at a time at which the bodies are certainly disjoint.
 pub(crate) fn certified_contact(
     bodies: &[Moving<'_>; 2],
     relative: &RelativeMotion<'_>,
-    (start, best): (f64, &Candidate),
+    start: f64,
+    best: &Candidate,
     tolerance: f64,
 ) -> Option<Contact> {
     let root = best.bracket.lo();
@@ -24,7 +26,7 @@ pub(crate) fn certified_contact(
         let middle = bodies[1].body.corners(best.triangle_b).iter().sum::<DVec3>() / 3.0;
         estimate_relative_velocity(bodies, root, pose.transform_point(middle)).length()
     };
-    let disjoint = step_back(bodies, relative, (start, root), guess, tolerance)?;
+    let disjoint = step_back(bodies, relative, Interval::new(start, root), guess, tolerance)?;
     Some(describe(bodies, &disjoint, best, tolerance))
 }
 

@@ -106,7 +106,7 @@ pub fn time_of_contact(
             let found = if Search::stops_at_leaves(options.mode) {
                 answer::early_contact(&bodies, &relative, &best, tolerance)
             } else {
-                answer::certified_contact(&bodies, &relative, (t0, &best), tolerance)
+                answer::certified_contact(&bodies, &relative, t0, &best, tolerance)
             };
             found.map_or_else(|| undecided(best.bracket.lo()), |contact| Ok(TimeOfContact::Contact(contact)))
         }

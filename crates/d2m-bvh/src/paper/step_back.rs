@@ -3,6 +3,7 @@
 use super::Moving;
 use super::distance::{ClosestPair, MeshDistance, enclose_distance};
 use d2m_feature::paper::RelativeMotion;
+use d2m_interval::Interval;
 use glam::DVec3;
 
 /// A time at which the bodies are certainly disjoint, with what separates them there.
@@ -22,10 +23,10 @@ const CUTOFF: f64 = 64.0;
 /// A halving of the double range takes fewer steps than this.
 const MOST_STEPS: u32 = 400;
 
-/// Finds a time in \[`start`, `root`\] at which the distance of the meshes is certainly in \[δ, 3δ\].
+/// Finds a time of the span at which the distance of the meshes is certainly in \[δ, 3δ\].
 ///
-/// `root` is the certified lower end of the contact's bracket, so every time before it is free; `start` is a time at
-/// which the distance exceeds δ. The distance is a continuous function of time, so a time with 2δ lies between, and
+/// The span ends at the certified lower end of the contact's bracket, called the root, so every time before it is free; it
+/// starts at a time at which the distance exceeds δ. The distance is a continuous function of time, so a time with 2δ lies between, and
 /// a secant step, or halving where that leaves the bracket, finds it. The paper steps back by δ/v_n instead, which is
 /// unbounded for a grazing contact and measures nothing.
 ///
@@ -42,10 +43,11 @@ const MOST_STEPS: u32 = 400;
 pub(crate) fn step_back(
     bodies: &[Moving<'_>; 2],
     relative: &RelativeMotion<'_>,
-    (start, root): (f64, f64),
+    span: Interval,
     closing_speed: f64,
     tolerance: f64,
 ) -> Option<Disjoint> {
+    let (start, root) = (span.lo(), span.hi());
     let measure = |t: f64| {
         let place = relative.placement(t);
         enclose_distance(bodies[0].body, bodies[1].body, &place, CUTOFF * tolerance)

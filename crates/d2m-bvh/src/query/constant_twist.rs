@@ -6,13 +6,13 @@ use crate::resting::collide::crossing_pair_within;
 use crate::resting::containment::{Held, held_vertex};
 use crate::resting::node_pair;
 use crate::search::motion::track::given_relative_position;
-use crate::search::{Outcome, Scene, Scratch, Search};
+use crate::search::{MovingTree, Outcome, Scene, Scratch, Search};
 use crate::{
     MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window,
 };
 use core::cell::RefCell;
-use d2m_lanes::Quad;
-use d2m_motion::{ConstantTwist, Pose};
+use d2m_lanes::F64x4;
+use d2m_motion::Pose;
 use glam::DVec3;
 
 thread_local! {
@@ -32,19 +32,20 @@ pub(super) fn scene_of<'a>(
     let (Some(motion_a), Some(motion_b)) = (a.motion.constant_twist(), b.motion.constant_twist()) else {
         return Ok(None);
     };
-    let mut scene = Scene::try_new((a.body, motion_a), (b.body, motion_b), window, options)?;
+    let (a, b) = (MovingTree { tree: a.body, twist: motion_a }, MovingTree { tree: b.body, twist: motion_b });
+    let mut scene = Scene::try_new(a, b, window, options)?;
     scene.solids = solids;
     Ok(Some(scene))
 }
 
 /// The scene of a query of constant twists of bodies with these meanings.
 pub(super) fn scene_of_twists<'a>(
-    [a, b]: [(&'a MeshTree, ConstantTwist); 2],
+    [a, b]: [MovingTree<'a>; 2],
     solids: [Solid; 2],
     window: Window,
     options: &QueryOptions,
 ) -> Result<Scene<'a>, QueryError> {
-    check([a.0, b.0], solids, options)?;
+    check([a.tree, b.tree], solids, options)?;
     let mut scene = Scene::try_new(a, b, window, options)?;
     scene.solids = solids;
     Ok(scene)
@@ -67,19 +68,27 @@ pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfCon
         search = search.of_start();
     }
     let outcome = search.run();
-    let answer = answer(scene, options, (outcome, held), (&scratch, &allowance));
+    let answer = answer(scene, options, &Searched { outcome, held, scratch: &scratch }, &allowance);
     SCRATCH.set(Some(scratch));
     answer
 }
 
-/// From what a search with this memory found, and what holds at the start, to the answer. What is left to decide is done
+/// What a search found with this memory, and what holds at the start.
+struct Searched<'a> {
+    outcome: Outcome,
+    held: Option<Held>,
+    scratch: &'a Scratch,
+}
+
+/// From what a search found to the answer. What is left to decide is done
 /// within the allowance.
 fn answer(
     scene: &Scene<'_>,
     options: &QueryOptions,
-    (outcome, held): (Outcome, Option<Held>),
-    (scratch, allowance): (&Scratch, &Allowance),
+    searched: &Searched<'_>,
+    allowance: &Allowance,
 ) -> Result<TimeOfContact, QueryError> {
+    let Searched { outcome, held, scratch } = *searched;
     let surfaces_are_apart = match outcome {
         Outcome::Found(found) => !found.is_at_start(),
         Outcome::OutOfBudget(until) => until > 0.0,
@@ -96,7 +105,7 @@ fn answer(
         Outcome::Found(found) => {
             let known = scratch.found_in.filter(|motion| motion.start == found.start);
             let motion = known.unwrap_or_else(|| scene.relative_motion(found.start));
-            let mut contact = contact((scene, &motion), &found, options.mode != Mode::Capoeira);
+            let mut contact = contact(scene, &motion, &found, options.mode != Mode::Capoeira);
             if contact.start == StartState::Touching
                 && let Some(triangles) = crossing_at_start(scene, allowance)?
             {
@@ -166,17 +175,16 @@ fn held_at_start(scene: &Scene<'_>, allowance: &mut Allowance) -> Result<Option<
     if filled == [false; 2] || scene.balls_are_apart_at_start() {
         return Ok(None);
     }
-    let frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
+    let frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
     let (a, b, unit) = (scene.a.tree, scene.b.tree, scene.units.length());
     // Balls that are apart by more than places and this sum are rounded.
     if frame.apart.to_vec().length() > (a.radius() + b.radius()) / unit + scene.pair.error {
         return Ok(None);
     }
-    let back = frame.rotation.transposed::<Quad>();
+    let back = frame.rotation.transposed::<F64x4>();
     // The unit is a power of two.
-    let to_a =
-        |p: DVec3| back.times::<Quad>((Quad::from_vec(p / unit) - frame.apart).to_vec()).to_vec() * unit;
-    let to_b = |p: DVec3| (frame.rotation.times::<Quad>(p / unit) + frame.apart).to_vec() * unit;
+    let to_a = |p: DVec3| back.transform(p / unit - frame.apart.to_vec()) * unit;
+    let to_b = |p: DVec3| (frame.rotation.transform(p / unit) + frame.apart.to_vec()) * unit;
     let in_a = if filled[0] { held_vertex(a, b, to_a, allowance)? } else { None };
     if let Some(vertex) = in_a {
         return Ok(Some(Held { by: 0, vertex }));

@@ -4,6 +4,7 @@
 
 use crate::{Moving, QueryError, Window};
 use d2m_interval::Interval;
+use d2m_lanes::UP;
 use d2m_motion::{Ball, CertifiedState, ConstantTwist, Kinematics, StateTwist};
 use glam::DVec3;
 
@@ -32,8 +33,6 @@ struct Fit {
     reach: f64,
 }
 
-/// Covers the rounding of fewer than 32 operations on non-negative numbers.
-const UP: f64 = 1.0 + 1e-14;
 /// The pole of acceleration is sought within so many radii of the body.
 const POLE_WITHIN: f64 = 16.0;
 

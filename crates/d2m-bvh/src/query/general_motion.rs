@@ -9,6 +9,7 @@ use super::constant_twist::{ask, count_as_one_search, last_search_counts, scene_
 use super::fitted_twist::FittedTwists;
 use super::report::MOST_LEFT;
 use super::true_poses::{Meeting, PlacedTriangles};
+use crate::search::MovingTree;
 use crate::{
     Budget, Contact, Evidence, Mode, Moving, QueryError, QueryOptions, Solid, StartState, TimeOfContact,
     Window,
@@ -266,8 +267,8 @@ impl<'a> Advance<'a> {
         span: Window,
         options: &QueryOptions,
     ) -> Result<TimeOfContact, QueryError> {
-        let bodies = self.bodies.map(|moving| moving.body);
-        let twists = [(bodies[0], *a), (bodies[1], *b)];
+        let [tree_a, tree_b] = self.bodies.map(|moving| moving.body);
+        let twists = [MovingTree { tree: tree_a, twist: *a }, MovingTree { tree: tree_b, twist: *b }];
         let answer = ask(&scene_of_twists(twists, self.solids_of_span(), span, options)?, options)?;
         self.work += last_search_counts().work() + 1;
         Ok(answer)

@@ -9,16 +9,12 @@ use crate::search::triangle_pair::separating_axis::place_a;
 use crate::search::{Found, Scene};
 use crate::{Contact, Evidence, MeshTree, StartState};
 use d2m_feature::{FeaturePair, triangles_intersect};
-use d2m_lanes::{Doubles, Lanes, Quad, Task, run};
+use d2m_lanes::{Doubles, F64x4, Lanes, Task, run};
 use glam::DVec3;
 
 /// The contact with all its data, of a scene and its motion over the window of the search; `bracket`: search for a time by
 /// which the tolerance was reached, if that cannot be shown for `time_lo`.
-pub(super) fn contact(
-    (scene, motion): (&Scene<'_>, &RelativeMotion),
-    found: &Found,
-    bracket: bool,
-) -> Contact {
+pub(super) fn contact(scene: &Scene<'_>, motion: &RelativeMotion, found: &Found, bracket: bool) -> Contact {
     run(Report { scene, motion, found, bracket })
 }
 
@@ -42,7 +38,7 @@ impl Task for Report<'_> {
         let offset = scene.units.offset(time);
         // Frames hold for the window of the search only.
         let from = offset.max(found.start);
-        let (frame, near) = pair.at::<L::Doubles>(from);
+        let placed = pair.at::<L::Doubles>(from);
         let start = match (found.is_at_start(), found.crossing) {
             (false, _) => StartState::Apart,
             (true, false) => StartState::Touching,
@@ -52,27 +48,30 @@ impl Task for Report<'_> {
         let evidence = if start == StartState::Apart && !found.crossing {
             Evidence::Early
         } else {
-            pair.evidence::<L::Doubles>(scene, (&frame, &near))
+            pair.evidence::<L::Doubles>(scene, &placed)
         };
         let meeting = match evidence {
-            Evidence::Early if bracket => pair.reached_by::<L::Doubles>(scene, from, (&frame, &near)),
+            Evidence::Early if bracket => pair.reached_by::<L::Doubles>(scene, from, &placed),
             evidence => Meeting { offset: from, evidence },
         };
-        let witness = |near: Closest, frame: &Frame| Witness {
-            separation: if start == StartState::Overlapping { 0.0 } else { near.distance_squared.sqrt() },
-            a: place_a::<L::Doubles>(frame, &a),
+        let witness = |placed: PlacedPair| Witness {
+            separation: match start {
+                StartState::Overlapping => 0.0,
+                _ => placed.near.distance_squared.sqrt(),
+            },
+            a: place_a::<L::Doubles>(&placed.frame, &a),
             b,
-            near,
+            placed,
             triangles: found.triangles,
             start,
             meeting,
         };
         let mut contact = if from == offset {
-            describe(scene, (motion, &frame), time, &witness(near, &frame))
+            describe(scene, motion, time, &witness(placed))
         } else {
             let motion = scene.relative_motion(offset);
-            let (frame, near) = TrianglePair { motion: &motion, a, b }.at::<L::Doubles>(offset);
-            describe(scene, (&motion, &frame), time, &witness(near, &frame))
+            let placed = TrianglePair { motion: &motion, a, b }.at::<L::Doubles>(offset);
+            describe(scene, &motion, time, &witness(placed))
         };
         if bracket {
             cover_what_is_left(&mut contact, scene);
@@ -111,8 +110,7 @@ pub(super) fn evidence_at_start(scene: &Scene<'_>, triangles: [u32; 2]) -> Evide
     let motion = scene.relative_motion(0.0);
     let [a, b] = [scene.a.corners(triangles[0]), scene.b.corners(triangles[1])];
     let pair = TrianglePair { motion: &motion, a, b };
-    let (frame, near) = pair.at::<Quad>(motion.start);
-    pair.evidence::<Quad>(scene, (&frame, &near))
+    pair.evidence::<F64x4>(scene, &pair.at::<F64x4>(motion.start))
 }
 
 /// Two triangles, vertices relative to the trees' centers in body axes, and how they move.
@@ -122,11 +120,17 @@ struct TrianglePair<'r> {
     b: [DVec3; 3],
 }
 
+/// The two triangles at one time.
+struct PlacedPair {
+    frame: Frame,
+    near: Closest,
+}
+
 impl TrianglePair<'_> {
     #[inline(always)]
-    fn at<D: Doubles>(&self, offset: f64) -> (Frame, Closest) {
+    fn at<D: Doubles>(&self, offset: f64) -> PlacedPair {
         let frame = self.motion.frame::<D>(offset - self.motion.start);
-        (frame, closest::<D>(&place_a::<D>(&frame, &self.a), &self.b))
+        PlacedPair { near: closest::<D>(&place_a::<D>(&frame, &self.a), &self.b), frame }
     }
 
     /// What is proven of the meeting at the time of the frame.
@@ -136,25 +140,20 @@ impl TrianglePair<'_> {
     /// a distance of at most L − γ is one of at most L in real arithmetic, and so is that of placed triangles that
     /// share a point.
     #[inline(always)]
-    fn evidence<D: Doubles>(&self, scene: &Scene<'_>, (frame, near): (&Frame, &Closest)) -> Evidence {
+    fn evidence<D: Doubles>(&self, scene: &Scene<'_>, placed: &PlacedPair) -> Evidence {
         let PairScale { level, error, .. } = scene.pair;
-        let a = place_a::<D>(frame, &self.a);
+        let a = place_a::<D>(&placed.frame, &self.a);
         if proven_crossing(&a, &self.b, error) {
             return Evidence::Crossing;
         }
-        let is_near = near.distance_squared.sqrt() <= level - error;
+        let is_near = placed.near.distance_squared.sqrt() <= level - error;
         if is_near || triangles_intersect(&a, &self.b) { Evidence::Near } else { Evidence::Early }
     }
 
     /// An offset by which the triangles were certainly within the level, or had met; `from` when none is found: Newton's
     /// method along the normal, and bisection once the triangles have passed each other.
     #[inline(always)]
-    fn reached_by<D: Doubles>(
-        &self,
-        scene: &Scene<'_>,
-        from: f64,
-        (frame, near): (&Frame, &Closest),
-    ) -> Meeting {
+    fn reached_by<D: Doubles>(&self, scene: &Scene<'_>, from: f64, placed: &PlacedPair) -> Meeting {
         // The closest points are on the triangles up to the error: a true upper bound of the distance. In the middle
         // between that and no distance at all there is as much room on either side as there can be.
         let level = scene.pair.level - scene.pair.error;
@@ -162,7 +161,7 @@ impl TrianglePair<'_> {
         // Frames hold for a little more than the longest window.
         let end = scene.units.end_down().min(self.motion.start + FRAME_REACH * scene.longest);
         let (mut early, mut late) = (from, None);
-        let first = Approach::new(frame, near);
+        let first = Approach::new(placed);
         let (mut distance, mut closing) = (first.distance, first.closing);
         for _ in 0..BRACKET_EVALUATIONS {
             let offset = match late {
@@ -175,8 +174,7 @@ impl TrianglePair<'_> {
             if offset.is_nan() || offset <= early {
                 break;
             }
-            let (frame, near) = self.at::<D>(offset);
-            let here = Approach::new(&frame, &near);
+            let here = Approach::new(&self.at::<D>(offset));
             if here.distance <= level {
                 return Meeting { offset, evidence: Evidence::Near };
             }
@@ -188,8 +186,7 @@ impl TrianglePair<'_> {
         }
         // Passed each other between two times that no time is between, or too fast for the steps.
         if let Some(late) = late {
-            let (frame, near) = self.at::<D>(late);
-            let evidence = self.evidence::<D>(scene, (&frame, &near));
+            let evidence = self.evidence::<D>(scene, &self.at::<D>(late));
             if evidence > Evidence::Early {
                 return Meeting { offset: late, evidence };
             }
@@ -209,7 +206,7 @@ struct Approach {
 
 impl Approach {
     #[inline(always)]
-    fn new(frame: &Frame, near: &Closest) -> Self {
+    fn new(PlacedPair { frame, near }: &PlacedPair) -> Self {
         let normal = near.direction.normalize_or_zero();
         let closing = frame.closing_speed(near.points, normal);
         Self { distance: near.distance_squared.sqrt(), closing, normal }
@@ -217,7 +214,7 @@ impl Approach {
 }
 
 struct Witness {
-    near: Closest,
+    placed: PlacedPair,
     a: [DVec3; 3],
     b: [DVec3; 3],
     triangles: [u32; 2],
@@ -226,15 +223,10 @@ struct Witness {
     meeting: Meeting,
 }
 
-fn describe(
-    scene: &Scene<'_>,
-    (motion, frame): (&RelativeMotion, &Frame),
-    time: f64,
-    witness: &Witness,
-) -> Contact {
-    let Witness { near, a, b, triangles, separation, start, meeting } = witness;
+fn describe(scene: &Scene<'_>, motion: &RelativeMotion, time: f64, witness: &Witness) -> Contact {
+    let Witness { placed: PlacedPair { frame, near }, a, b, triangles, separation, start, meeting } = witness;
     let rb = motion.rotation_b(frame.offset);
-    let turn = |p: DVec3| rb.times::<Quad>(p).to_vec();
+    let turn = |p: DVec3| rb.transform(p);
     let (length, seconds) = (scene.units.length(), scene.units.time());
     let base = scene.b.motion.estimate_position(motion.start + frame.offset);
     let world = |p: DVec3| (base + turn(p + scene.b.motion.arm())) * length;
@@ -266,24 +258,20 @@ fn describe(
 pub(super) fn contained(scene: &Scene<'_>, held: &Held) -> Contact {
     let (motion, vertex) = (&scene.relative_motion(0.0), held.vertex);
     let start = StartState::Contained;
-    let frame = motion.frame::<Quad>(0.0);
+    let frame = motion.frame::<F64x4>(0.0);
     let (tree_a, tree_b) = (scene.a.tree, scene.b.tree);
     let holder = |tree: &MeshTree| {
         tree.mesh().triangles().iter().position(|t| t.contains(&vertex)).unwrap_or(0) as u32
     };
     let triangles = if held.by == 1 { [holder(tree_a), 0] } else { [0, holder(tree_b)] };
     let b = scene.b.corners(triangles[1]);
-    let a = place_a::<Quad>(&frame, &scene.a.corners(triangles[0]));
-    let near = closest::<Quad>(&a, &b);
+    let a = place_a::<F64x4>(&frame, &scene.a.corners(triangles[0]));
+    let near = closest::<F64x4>(&a, &b);
     let time = scene.window.start();
     // The surfaces are further apart than the level, so rounding moves no vertex to the other side of one.
     let meeting = Meeting { offset: 0.0, evidence: Evidence::Crossing };
-    describe(
-        scene,
-        (motion, &frame),
-        time,
-        &Witness { near, a, b, triangles, separation: 0.0, start, meeting },
-    )
+    let placed = PlacedPair { frame, near };
+    describe(scene, motion, time, &Witness { placed, a, b, triangles, separation: 0.0, start, meeting })
 }
 
 fn feature(scene: &Scene<'_>, near: &Closest, triangles: [u32; 2]) -> FeaturePair {

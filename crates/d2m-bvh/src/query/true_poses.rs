@@ -3,6 +3,7 @@
 use super::proven_crossing::proven_crossing;
 use crate::{Moving, Window};
 use d2m_feature::{TriangleDistance, triangle_distance};
+use d2m_lanes::UP;
 use d2m_motion::{CertifiedState, Twist};
 use glam::DVec3;
 
@@ -18,8 +19,6 @@ pub(super) struct PlacedTriangles {
 /// Factor of the rounding of a placed corner: a difference, a product with a matrix (3u in each coordinate of the sum of magnitudes, so
 /// 3√3·√3 u of the length) and a sum are below 16u of the lengths.
 const PLACED: f64 = 8.0 * f64::EPSILON;
-/// Covers the rounding of the few sums of bounds.
-const UP: f64 = 1.0 + 1e-14;
 
 impl PlacedTriangles {
     /// At a time, relative to a point near the bodies.

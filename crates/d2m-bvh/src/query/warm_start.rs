@@ -4,14 +4,14 @@ use super::constant_twist::{ask, scene_of, scene_of_twists};
 use super::fitted_twist::FittedTwists;
 use super::general_motion::{check_times, general_motion, rounding_tolerance, tolerance_of};
 use super::true_poses::Meeting;
-use crate::search::Scene;
 use crate::search::relative_trajectory::RelativeTrajectory;
 use crate::search::triangle_pair::closest::closest;
 use crate::search::triangle_pair::separating_axis::place_a;
+use crate::search::{MovingTree, Scene};
 use crate::{Budget, Mode, Moving, PairCache, QueryError, QueryOptions, TimeOfContact, Window};
 use d2m_feature::triangles_intersect;
 use d2m_interval::Interval;
-use d2m_lanes::Quad;
+use d2m_lanes::{F64x4, UP};
 
 /// As [`time_of_contact`](crate::time_of_contact), with a cache that one pair of bodies keeps from query to query, for
 /// instance from one step of a simulation to the next.
@@ -141,7 +141,7 @@ impl<'a> WindowFit<'a> {
         let off = (fitted.deviation + ROOM_FOR_WIDTH * fitted.floor) * UP;
         let separation = (options.min_separation + off) * UP;
         let options_of_fit = options.with_tolerance(tolerance).with_min_separation(separation);
-        let twists = [0, 1].map(|k| (bodies[k].body, fitted.twists[k]));
+        let twists = [0, 1].map(|k| MovingTree { tree: bodies[k].body, twist: fitted.twists[k] });
         let span = fitted.clock.window(window.start(), window.end()).ok()?;
         let solids = bodies.map(|body| body.solid_in(options));
         let scene = scene_of_twists(twists, solids, span, &options_of_fit).ok()?;
@@ -278,8 +278,6 @@ fn more_room(
 const MOST_DEVIATION: f64 = 1.0 / 16.0;
 /// Room for the width of enclosures at single times: motions that are known so badly are for the search to judge.
 const ROOM_FOR_WIDTH: f64 = 16.0;
-/// Covers the rounding of the few sums of bounds.
-const UP: f64 = 1.0 + 1e-14;
 /// Steps towards the time at which two triangles meet.
 const STEPS: u32 = 8;
 
@@ -294,9 +292,9 @@ fn meet_again(scene: &Scene<'_>, triangles: [u32; 2], after: f64) -> Option<f64>
     let mut time = (after / scene.units.time()).clamp(0.0, last);
     for _ in 0..STEPS {
         let motion = scene.relative_motion(time);
-        let frame = motion.frame::<Quad>(0.0);
-        let placed = place_a::<Quad>(&frame, &a);
-        let near = closest::<Quad>(&placed, &b);
+        let frame = motion.frame::<F64x4>(0.0);
+        let placed = place_a::<F64x4>(&frame, &a);
+        let near = closest::<F64x4>(&placed, &b);
         let distance = near.distance_squared.sqrt();
         if distance <= level || triangles_intersect(&placed, &b) {
             return Some(time * scene.units.time());

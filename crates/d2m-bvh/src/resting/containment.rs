@@ -4,7 +4,7 @@
 //! one vertex of each part decides. If no part of either surface is in the other solid, the solids share no point: a
 //! common point would be in a region of one solid whose boundary is in no region of the other, and the other way round.
 
-use super::node_pair::Scene;
+use super::node_pair::{InversePose, Scene};
 use super::winding::contains;
 use crate::MeshTree;
 use crate::allowance::{Allowance, Exhausted};
@@ -43,9 +43,9 @@ pub(crate) fn one_holds_the_other(
     scene: &Scene<'_>,
     allowance: &mut Allowance,
 ) -> Result<Option<Held>, Exhausted> {
-    let (rows, back) = scene.pose.inverse();
-    let sides = [(rows, back), (scene.pose.rotation, scene.pose.offset)];
-    for (by, (r, offset)) in sides.into_iter().enumerate() {
+    let to_b = InversePose { rotation: scene.pose.rotation, offset: scene.pose.offset };
+    let sides = [scene.pose.inverse(), to_b];
+    for (by, InversePose { rotation: r, offset }) in sides.into_iter().enumerate() {
         let place = |p: DVec3| r[0] * p.x + r[1] * p.y + r[2] * p.z + offset;
         if let Some(vertex) = held_vertex(scene.trees[by], scene.trees[1 - by], place, allowance)? {
             return Ok(Some(Held { by, vertex }));

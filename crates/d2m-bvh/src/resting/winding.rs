@@ -165,7 +165,7 @@ impl Ray<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::TriMesh;
+    use crate::{MeshArrays, TriMesh};
     use d2m_testing::{Draw, KnuthRandom};
 
     /// Boxes from `low` to `high`; inside out where `inverted`.
@@ -243,9 +243,8 @@ mod tests {
     /// A surface whose faces disagree about the outside has a parity.
     #[test]
     fn without_an_orientation_parity_decides() {
-        let (mut vertices, mut triangles) =
-            boxes(&[(DVec3::ZERO, DVec3::ONE * 3.0, false), (DVec3::ONE, DVec3::ONE * 2.0, false)])
-                .into_parts();
+        let joined = boxes(&[(DVec3::ZERO, DVec3::ONE * 3.0, false), (DVec3::ONE, DVec3::ONE * 2.0, false)]);
+        let MeshArrays { mut vertices, mut triangles } = joined.into_arrays();
         triangles[5].swap(0, 1);
         vertices.push(DVec3::ZERO);
         let tree = MeshTree::new(TriMesh::try_new(vertices, triangles).unwrap());

@@ -17,7 +17,7 @@ use super::triangle_pair::widest_gap::widest_normal;
 use crate::Budget;
 use crate::tree::margin::NARROW_UP;
 use crate::tree::node::{Below, LEAST_SIZE, WIDTH, WideNode};
-use d2m_lanes::{Lanes, Quad, Task, power_of_two_above};
+use d2m_lanes::{F64x4, Lanes, Task, power_of_two_above};
 use glam::DVec3;
 
 /// Batches between two checks of the queue's length: it grows by less than 2¹⁵ items between them.
@@ -114,7 +114,7 @@ impl Search<'_> {
             }
             if self.work() >= self.limits.sweep_from {
                 let now = sum_down(start, f64::from(least) * step);
-                if let Some(until) = self.sweep((&state.motion, &state.frame), now, batch.items()[0].boxes)
+                if let Some(until) = self.sweep(&state.motion, &state.frame, now, batch.items()[0].boxes)
                     && until >= end
                 {
                     outcome = Some(Step::ClearUntil(until));
@@ -153,7 +153,8 @@ impl Search<'_> {
     #[inline(never)]
     pub(super) fn sweep(
         &mut self,
-        (motion, frame): (&RelativeMotion, &Frame),
+        motion: &RelativeMotion,
+        frame: &Frame,
         now: f64,
         boxes: [u32; 2],
     ) -> Option<f64> {
@@ -170,9 +171,9 @@ impl Search<'_> {
         }
         let [a, b] = self.scratch.last_tested;
         let b = self.scene.b.corners(b);
-        let near = widest_normal(&place_a::<Quad>(frame, &self.scene.a.corners(a)), &b);
+        let near = widest_normal(&place_a::<F64x4>(frame, &self.scene.a.corners(a)), &b);
         let turn = motion.rotation_b(frame.offset);
-        let direction = turn.times::<Quad>(near).to_vec().normalize_or(DVec3::X);
+        let direction = turn.transform(near).normalize_or(DVec3::X);
         let limits = SkipLimits {
             least_gain: self.scene.longest.min(self.scene.end - now),
             most_work: self.work() + FIRST_SWEEP,

@@ -23,6 +23,6 @@ mod time_split;
 pub(crate) mod triangle_pair;
 
 pub use counts::SearchCounts;
-pub(crate) use scene::Scene;
+pub(crate) use scene::{MovingTree, Scene};
 pub(crate) use scratch::Scratch;
 pub(crate) use state::{Found, Outcome, Search};

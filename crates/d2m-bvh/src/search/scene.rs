@@ -43,6 +43,13 @@ const UNSEEN_ANGLE: f64 = 1.0 / 18_446_744_073_709_551_616.0;
 /// Longest length of a scene, in the unit of the meshes: what is computed from it stays below the largest number.
 const MOST_LENGTH: f64 = power_of_two(1000);
 
+/// A tree and how it moves, as the caller gives them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MovingTree<'a> {
+    pub(crate) tree: &'a MeshTree,
+    pub(crate) twist: ConstantTwist,
+}
+
 /// A body and its motion, in the units of the search.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SceneBody<'a> {
@@ -134,14 +141,14 @@ impl<'a> Scene<'a> {
     /// [`QueryError::BadMotion`] where rounding cannot be bounded.
     #[inline]
     pub(crate) fn try_new(
-        a: (&'a MeshTree, ConstantTwist),
-        b: (&'a MeshTree, ConstantTwist),
+        a: MovingTree<'a>,
+        b: MovingTree<'a>,
         window: Window,
         options: &QueryOptions,
     ) -> Result<Self, QueryError> {
         let units = units_of([&a, &b], window).ok_or_else(|| {
             let far = |m: &ConstantTwist| m.linear_velocity().length() + m.position().length();
-            QueryError::BadMotion { body: usize::from(far(&b.1) > far(&a.1)) }
+            QueryError::BadMotion { body: usize::from(far(&b.twist) > far(&a.twist)) }
         })?;
         Self::in_units([a, b], window, options, units)
     }
@@ -149,13 +156,16 @@ impl<'a> Scene<'a> {
     // Bodies and scenes are large: written out and inlined, they are built in place.
     #[inline(always)]
     fn in_units(
-        [a, b]: [(&'a MeshTree, ConstantTwist); 2],
+        [a, b]: [MovingTree<'a>; 2],
         window: Window,
         options: &QueryOptions,
         units: Units,
     ) -> Result<Self, QueryError> {
         let start = window.start();
-        let (a, b) = (SceneBody::new(a.0, &a.1, &units, start), SceneBody::new(b.0, &b.1, &units, start));
+        let (a, b) = (
+            SceneBody::new(a.tree, &a.twist, &units, start),
+            SceneBody::new(b.tree, &b.twist, &units, start),
+        );
         let end = units.end_up();
         for (body, it) in [&a, &b].into_iter().enumerate() {
             // Also what is not a number is refused.
@@ -260,6 +270,7 @@ impl<'a> Scene<'a> {
         options: &QueryOptions,
     ) -> Self {
         let units = Units::new(window, 1.0, 1.0);
+        let [a, b] = [a, b].map(|(tree, twist)| MovingTree { tree, twist });
         Self::in_units([a, b], window, options, units).expect("a motion with bounded rounding")
     }
 
@@ -310,10 +321,10 @@ impl<'a> Scene<'a> {
 /// Units in which the lengths of a scene are about one: lengths are measured by their largest coordinates, so nothing
 /// over- or underflows on the way. `None` when the scene has lengths that are not numbers, or larger than the largest
 /// unit.
-fn units_of(bodies: [&(&MeshTree, ConstantTwist); 2], window: Window) -> Option<Units> {
+fn units_of(bodies: [&MovingTree<'_>; 2], window: Window) -> Option<Units> {
     let largest = |v: DVec3| v.abs().max_element();
-    let [(tree_a, a), (tree_b, b)] = bodies;
-    let [arm_a, arm_b] = bodies.map(|(tree, motion)| largest(tree.center() - motion.at()));
+    let [MovingTree { tree: tree_a, twist: a }, MovingTree { tree: tree_b, twist: b }] = bodies;
+    let [arm_a, arm_b] = bodies.map(|body| largest(body.tree.center() - body.twist.at()));
     let since = |motion: &ConstantTwist| window.start() - motion.reference_time();
     // At rest the time means nothing.
     let travelled = |motion: &ConstantTwist| {

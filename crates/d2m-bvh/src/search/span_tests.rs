@@ -6,7 +6,7 @@ use super::triangle_pair::separating_axis::place_a;
 use crate::tree::node::{NodeBox, WIDTH};
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
 use d2m_feature::triangle_distance;
-use d2m_lanes::{Portable, Quad};
+use d2m_lanes::{F64x4, Portable};
 use d2m_motion::ConstantTwist;
 use d2m_testing::{Draw, KnuthRandom};
 use glam::{DQuat, DVec3};
@@ -34,10 +34,10 @@ impl Span<'_> {
         let motion = scene.relative_motion(0.5);
         let scales = scene.node_scales(1.0);
         let poses =
-            [-0.5, 0.0, 0.5].map(|part| PlacedPose::both::<Quad>(&motion, part * self.length, &scales));
+            [-0.5, 0.0, 0.5].map(|part| PlacedPose::both::<F64x4>(&motion, part * self.length, &scales));
         let bend = scene.pair.acceleration * self.length * self.length / 8.0 * bent;
         let frame =
-            SpanFrame::new::<Quad>([&poses[0][side], &poses[1][side], &poses[2][side]], &scales[side], bend);
+            SpanFrame::new::<F64x4>([&poses[0][side], &poses[1][side], &poses[2][side]], &scales[side], bend);
         let (wide, other) = (&self.trees[side].nodes, &self.trees[1 - side].nodes);
         let single = NodeBox::new(other, single as u32);
         apart_over_span::<Portable>(&frame, &scales[side], single, &wide[node])
@@ -48,8 +48,8 @@ impl Span<'_> {
         let scene = self.scene();
         let motion = scene.relative_motion(0.5);
         let at = |k: i32| {
-            let frame = motion.frame::<Quad>(f64::from(k) / 32.0 * self.length);
-            triangle_distance(&place_a::<Quad>(&frame, &scene.a.corners(a)), &scene.b.corners(b)).lower
+            let frame = motion.frame::<F64x4>(f64::from(k) / 32.0 * self.length);
+            triangle_distance(&place_a::<F64x4>(&frame, &scene.a.corners(a)), &scene.b.corners(b)).lower
         };
         (-16..=16).map(at).fold(f64::INFINITY, f64::min)
     }

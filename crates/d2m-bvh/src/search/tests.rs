@@ -13,7 +13,7 @@ use super::triangle_pair::separating_axis::{
 use crate::tree::node::{NodeBox, WIDTH};
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
 use d2m_feature::triangle_distance;
-use d2m_lanes::{InstructionSet, Lanes, Portable, Quad};
+use d2m_lanes::{F64x4, InstructionSet, Lanes, Portable};
 use d2m_motion::ConstantTwist;
 use d2m_testing::{Draw, KnuthRandom};
 use glam::{DQuat, DVec3};
@@ -53,12 +53,12 @@ fn least_ratio(rounds: u32, mutate: impl Fn(&mut NodeScale)) -> f64 {
         let unit = 2f64.powf(scene.longest.log2().ceil());
         let mut scales = scene.node_scales(unit);
         let motion = scene.relative_motion(0.0);
-        let frame = motion.frame::<Quad>(0.0);
+        let frame = motion.frame::<F64x4>(0.0);
         let left = (scene.longest / unit) as f32;
         for (side, scale) in scales.iter_mut().enumerate() {
             mutate(scale);
             let (wide, single) = if side == 0 { (&a, &b) } else { (&b, &a) };
-            let node_frame = NodeFrame::new::<Quad>(&frame, scale, side == 1, left);
+            let node_frame = NodeFrame::new::<F64x4>(&frame, scale, side == 1, left);
             // Each triangle's box, and the one around all.
             for index in (0..8).map(|lane| WIDTH + lane).chain([0]) {
                 let single_box = NodeBox::new(&single.nodes, index as u32);
@@ -76,9 +76,9 @@ fn least_ratio(rounds: u32, mutate: impl Fn(&mut NodeScale)) -> f64 {
                     let (of_a, of_b) = if side == 0 { (wides, singles) } else { (singles, wides) };
                     for part in [0.0, 0.5, 1.0] {
                         let offset = part * f64::from(time.min(left)) * unit;
-                        let frame = motion.frame::<Quad>(offset);
+                        let frame = motion.frame::<F64x4>(offset);
                         for &ta in &of_a {
-                            let placed = place_a::<Quad>(&frame, &scene.a.corners(ta));
+                            let placed = place_a::<F64x4>(&frame, &scene.a.corners(ta));
                             for &tb in &of_b {
                                 let lower = triangle_distance(&placed, &scene.b.corners(tb)).lower;
                                 least = least.min(lower / level);
@@ -118,13 +118,13 @@ fn room_at_the_end(triangle: [DVec3; 3], wall: f64, expanded: usize, mutate: imp
     let motion = scene.relative_motion(0.0);
     let mut scale = scene.node_scales(0.5)[expanded];
     mutate(&mut scale);
-    let frame = NodeFrame::new::<Quad>(&motion.frame::<Quad>(0.0), &scale, expanded == 1, 0.6);
+    let frame = NodeFrame::new::<F64x4>(&motion.frame::<F64x4>(0.0), &scale, expanded == 1, 0.6);
     let (wide, single) = if expanded == 1 { (&b, &a) } else { (&a, &b) };
     let placed = Placed::new::<Portable>(&frame, &scale, NodeBox::new(&single.nodes, 0), &wide.nodes[0]);
     let time = entry_times::<Portable>(&wide.nodes[0], &placed, &scale).store()[0];
-    let frame = motion.frame::<Quad>(0.5 * f64::from(time.min(0.6)));
+    let frame = motion.frame::<F64x4>(0.5 * f64::from(time.min(0.6)));
     let plane = scene.b.corners(0)[0].x;
-    place_a::<Quad>(&frame, &scene.a.corners(0))
+    place_a::<F64x4>(&frame, &scene.a.corners(0))
         .map(|p| p.x - plane)
         .into_iter()
         .fold(f64::INFINITY, f64::min)
@@ -161,26 +161,26 @@ fn room_after_a_test(closing: f64, backwards: Option<DVec3>, mutate: impl Fn(&mu
     let mut pair = scene.pair;
     mutate(&mut pair);
     let (ca, cb) = (scene.a.corners(0), scene.b.corners(0));
-    let frame = motion.frame::<Quad>(0.0);
+    let frame = motion.frame::<F64x4>(0.0);
     let time = if let Some(direction) = backwards {
         // The longest span that is found clear.
-        let behind = BackwardCertificate { reversed: frame.reversed::<Quad>(), direction };
+        let behind = BackwardCertificate { reversed: frame.reversed::<F64x4>(), direction };
         let (mut clear, mut unknown) = (0.0, 1.0);
         for _ in 0..60 {
             let span = 0.5 * (clear + unknown);
-            let apart = apart_since::<Quad>(&behind, [&ca, &cb], &pair, span);
+            let apart = apart_since::<F64x4>(&behind, [&ca, &cb], &pair, span);
             *(if apart { &mut clear } else { &mut unknown }) = span;
         }
         clear
     } else {
-        match separating_axis_test::<Quad>(&frame, [&ca, &cb], &pair, 1e300, BoundOrder::Second) {
+        match separating_axis_test::<F64x4>(&frame, [&ca, &cb], &pair, 1e300, BoundOrder::Second) {
             Evaluation::ClearFor(time) => time,
             Evaluation::Near { .. } => panic!("they begin apart"),
         }
     };
     assert!(time > 0.05);
     // Frames hold for 0.35 rad.
-    let placed = place_a::<Quad>(&motion.frame::<Quad>(sense * time.min(0.34)), &ca);
+    let placed = place_a::<F64x4>(&motion.frame::<F64x4>(sense * time.min(0.34)), &ca);
     placed.map(|p| p.x - cb[0].x).into_iter().fold(f64::INFINITY, f64::min)
 }
 
@@ -219,8 +219,8 @@ fn clear_times_of_triangle_pairs_hold_and_are_sharp() {
         let motion = scene.relative_motion(0.0);
         let (ca, cb) = (scene.a.corners(0), scene.b.corners(0));
         let order = [BoundOrder::Second, BoundOrder::Third][round / 9 % 2];
-        let found = separating_axis_test::<Quad>(
-            &motion.frame::<Quad>(0.0),
+        let found = separating_axis_test::<F64x4>(
+            &motion.frame::<F64x4>(0.0),
             [&ca, &cb],
             &scene.pair,
             scene.longest,
@@ -228,8 +228,8 @@ fn clear_times_of_triangle_pairs_hold_and_are_sharp() {
         );
         let Evaluation::ClearFor(time) = found else { continue };
         for part in [0.25, 0.5, 0.75, 1.0] {
-            let frame = motion.frame::<Quad>(part * time.min(scene.longest));
-            least = least.min(triangle_distance(&place_a::<Quad>(&frame, &ca), &cb).lower / level);
+            let frame = motion.frame::<F64x4>(part * time.min(scene.longest));
+            least = least.min(triangle_distance(&place_a::<F64x4>(&frame, &ca), &cb).lower / level);
         }
     }
     assert!((1.0 - 1e-9..1.2).contains(&least), "{least}");
@@ -255,7 +255,7 @@ fn boxes_called_apart_at_rest_are_apart() {
             let scene = Scene::new((&a, rest), (&b, rest), Window::UNIT, &options);
             let mut scale = scene.node_scales(1.0)[1];
             let motion = scene.relative_motion(0.0);
-            let frame = NodeFrame::new::<Quad>(&motion.frame::<Quad>(0.0), &scale, true, 1.0);
+            let frame = NodeFrame::new::<F64x4>(&motion.frame::<F64x4>(0.0), &scale, true, 1.0);
             let full = Placed::new::<Portable>(&frame, &scale, NodeBox::new(&a.nodes, 0), &b.nodes[0]);
             // What is left of the margin.
             scale.floor -= (1.0 - margin) * full.boxed.margin;
@@ -285,10 +285,10 @@ fn lines_of_no_length_or_beyond_all_numbers_part_nothing() {
             let at_b = ConstantTwist::REST.with_position(DVec3::Y * off * size.max(1.0));
             let options = QueryOptions::default();
             let scene = Scene::new((&a, ConstantTwist::REST), (&b, at_b), Window::UNIT, &options);
-            let frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
+            let frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
             for (side, scale) in scene.node_scales(1.0).iter().enumerate() {
                 let (wide, single) = if side == 0 { (&a, &b) } else { (&b, &a) };
-                let node_frame = NodeFrame::new::<Quad>(&frame, scale, side == 1, 1.0);
+                let node_frame = NodeFrame::new::<F64x4>(&frame, scale, side == 1, 1.0);
                 let placed = Placed::new::<Portable>(
                     &node_frame,
                     scale,
@@ -319,9 +319,9 @@ fn speeds_beyond_all_numbers_prove_nothing() {
                 let motion = rest.with_position(direction * 1e-2 * speed).with_linear_velocity(velocity);
                 let options = QueryOptions::default();
                 let scene = Scene::new((&small, rest), (&large, motion), Window::UNIT, &options);
-                let frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
+                let frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
                 let scale = &scene.node_scales(1.0)[0];
-                let node_frame = NodeFrame::new::<Quad>(&frame, scale, false, 1.0);
+                let node_frame = NodeFrame::new::<F64x4>(&frame, scale, false, 1.0);
                 let single = NodeBox::new(&large.nodes, 0);
                 let placed = Placed::new::<Portable>(&node_frame, scale, single, &small.nodes[0]);
                 let time = entry_times::<Portable>(&small.nodes[0], &placed, scale).store()[0];
@@ -373,8 +373,8 @@ fn third_order_bounds_hold() {
         let motion = scene.relative_motion(0.0);
         for (s, t) in [(0, 0), (1, 5), (3, 2), (7, 7)] {
             let (ca, cb) = (scene.a.corners(s), scene.b.corners(t));
-            let found = separating_axis_test::<Quad>(
-                &motion.frame::<Quad>(0.0),
+            let found = separating_axis_test::<F64x4>(
+                &motion.frame::<F64x4>(0.0),
                 [&ca, &cb],
                 &scene.pair,
                 scene.longest,
@@ -382,8 +382,8 @@ fn third_order_bounds_hold() {
             );
             let Evaluation::ClearFor(time) = found else { continue };
             for part in [0.3, 0.6, 0.9, 1.0] {
-                let frame = motion.frame::<Quad>(part * time.min(scene.longest));
-                least = least.min(triangle_distance(&place_a::<Quad>(&frame, &ca), &cb).lower / level);
+                let frame = motion.frame::<F64x4>(part * time.min(scene.longest));
+                least = least.min(triangle_distance(&place_a::<F64x4>(&frame, &ca), &cb).lower / level);
             }
         }
     }
@@ -406,8 +406,8 @@ fn room_after_a_third_order_test(mutate: impl Fn(&mut Scene<'_>)) -> f64 {
     let motion = scene.relative_motion(0.0);
     mutate(&mut scene);
     let (ca, cb) = (scene.a.corners(0), scene.b.corners(0));
-    let found = separating_axis_test::<Quad>(
-        &motion.frame::<Quad>(0.0),
+    let found = separating_axis_test::<F64x4>(
+        &motion.frame::<F64x4>(0.0),
         [&ca, &cb],
         &scene.pair,
         scene.longest,
@@ -415,7 +415,7 @@ fn room_after_a_third_order_test(mutate: impl Fn(&mut Scene<'_>)) -> f64 {
     );
     let Evaluation::ClearFor(time) = found else { panic!("0.004 apart") };
     assert!(time > 0.1, "{time}");
-    place_a::<Quad>(&motion.frame::<Quad>(time.min(0.3)), &ca)
+    place_a::<F64x4>(&motion.frame::<F64x4>(time.min(0.3)), &ca)
         .map(|p| p.x - cb[0].x)
         .into_iter()
         .fold(f64::INFINITY, f64::min)

@@ -131,7 +131,7 @@ impl Search<'_> {
             if self.work() >= self.limits.sweep_from {
                 let frame = grid.motion.frame::<L::Doubles>(start - grid.motion.start);
                 let boxes = waiting.pairs[now.pairs.0].boxes;
-                let until = self.sweep((&grid.motion, &frame), start, boxes);
+                let until = self.sweep(&grid.motion, &frame, start, boxes);
                 if let Some(until) = until.filter(|until| *until >= end) {
                     clear_until = until;
                     continue;

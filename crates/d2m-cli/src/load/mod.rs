@@ -11,7 +11,7 @@ pub(crate) use polygon::PolygonCounts;
 
 use crate::failure::Failure;
 use crate::output::progress_bar;
-use d2m::bvh::{MAX_COORDINATE, MeshError, MeshTree, TriMesh};
+use d2m::bvh::{MAX_COORDINATE, MeshArrays, MeshError, MeshTree, TriMesh};
 use d2m::shapes;
 use glam::DVec3;
 use std::path::Path;
@@ -65,7 +65,7 @@ impl Loaded {
             return Ok(self);
         }
         let Self { name, polygons, precision, geometry } = self;
-        let (vertices, triangles) = geometry.into_mesh().into_parts();
+        let MeshArrays { vertices, triangles } = geometry.into_mesh().into_arrays();
         let is_mirrored = scale.is_negative_bitmask().count_ones() % 2 == 1;
         let turn = |[a, b, c]: [u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
         let vertices = vertices.into_iter().map(|vertex| vertex * scale).collect();

@@ -1,8 +1,8 @@
 //! Two edges, all four vertices on straight paths.
 use super::Lines;
-use super::linear::{Line, clear_above};
+use super::linear::{Clearance, Line, clear_above};
 use super::point_triangle::vertices;
-use super::triple_product::{Seen, TripleProduct};
+use super::triple_product::{Allowed, Seen, TripleProduct};
 use crate::accurate_cross::{Difference, accurate_cross};
 use crate::closest;
 use crate::options::ContactOptions;
@@ -87,8 +87,8 @@ impl PieceTest for StraightEdgeEdge {
         }
         let [w, e, d] = &lines;
         let lengths = [w.lengths(), e.lengths(), d.lengths()];
-        let errors = (self.error, self.separation);
-        let volume = TripleProduct::new(&lines, &lengths, h, errors);
+        let allowed = Allowed { error: self.error, separation: self.separation };
+        let volume = TripleProduct::new(&lines, &lengths, h, allowed);
         let Some(mut part) = volume.clip(whole) else {
             return Verdict::Clear;
         };
@@ -100,13 +100,13 @@ impl PieceTest for StraightEdgeEdge {
             let padded = padded(part, at, whole);
             let s = padded.reach();
             let (lw, le, ld) = (lengths[0].within(s), lengths[1].within(s), lengths[2].within(s));
-            let (across_d, across_e) = (d.across(n), e.across(n));
-            let total = Seen::new(e, across_d, length, (le, ld), (self.error, 0.0));
+            let (across_d, across_e) = (d.cross(n), e.cross(n));
+            let total = Seen::new(e, &across_d, length, [le, ld], Allowed { separation: 0.0, ..allowed });
             let meeting = part;
             let mut inside = true;
             for seen in [
-                Seen::new(w, across_d, length, (lw, ld), errors),
-                Seen::new(w, across_e, length, (lw, le), errors),
+                Seen::new(w, &across_d, length, [lw, ld], allowed),
+                Seen::new(w, &across_e, length, [lw, le], allowed),
             ] {
                 let margin = (total.margin + seen.margin) * UP;
                 let (above, below) = (total.quadratic + seen.quadratic, seen.quadratic - total.quadratic);
@@ -131,13 +131,11 @@ impl PieceTest for StraightEdgeEdge {
         let distance = length_up(pair.difference) + self.error - self.separation;
         let whole = local(piece, at);
         let margin = self.error + self.separation;
-        let mut clear = Piece { lo: 0.0, hi: 0.0 };
-        let mut best = 0.0;
+        let mut best = Clearance::NONE;
         let mut consider = |n: DVec3| {
-            let (gap, radii) = clear_above(&vertices(&w, &e, &d, n), margin);
-            if gap > best {
-                best = gap;
-                clear = radii;
+            let found = clear_above(&vertices(&w, &e, &d, n), margin);
+            if found.gap > best.gap {
+                best = found;
             }
         };
         consider(direction(pair.separating));
@@ -151,6 +149,6 @@ impl PieceTest for StraightEdgeEdge {
                 consider(-n);
             }
         }
-        cleared(clear, whole, at, piece, distance)
+        cleared(best.around, whole, at, piece, distance)
     }
 }

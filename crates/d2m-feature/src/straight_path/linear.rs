@@ -27,10 +27,10 @@ impl Line {
         Linear { value: d.dot(self.p), slope: d.dot(self.v) }
     }
 
-    /// `(p × n, v × n)`.
+    /// The line of the products with `n`: `p × n` and `v × n`.
     #[inline(always)]
-    pub(super) fn across(&self, n: DVec3) -> (DVec3, DVec3) {
-        (self.p.cross(n), self.v.cross(n))
+    pub(super) fn cross(&self, n: DVec3) -> Self {
+        Self { p: self.p.cross(n), v: self.v.cross(n) }
     }
 
     /// The lengths of `p` and `v`.
@@ -102,13 +102,25 @@ fn shared<const N: usize>(functions: &[Linear; N], margin: f64, s: f64, forward:
     reach * EARLY
 }
 
+/// By how much functions are above a margin at s = 0, and where around it they stay above.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Clearance {
+    pub(super) gap: f64,
+    pub(super) around: Piece,
+}
+
+impl Clearance {
+    /// Not above at s = 0, as far as is known.
+    pub(super) const NONE: Self = Self { gap: 0.0, around: Piece { lo: 0.0, hi: 0.0 } };
+}
+
 /// Around s = 0: how far to the left and right all functions certainly stay above `margin`.
-pub(super) fn clear_above<const N: usize>(functions: &[Linear; N], margin: f64) -> (f64, Piece) {
+pub(super) fn clear_above<const N: usize>(functions: &[Linear; N], margin: f64) -> Clearance {
     let gap = functions.iter().fold(f64::INFINITY, |m, f| m.min(f.value)) - margin;
     if gap > 0.0 && functions.iter().all(|f| f.slope.is_finite() && f.value.is_finite()) {
         let (hi, lo) = (shared(functions, margin, 0.0, 1.0), shared(functions, margin, 0.0, -1.0));
-        (gap, Piece { lo: -lo, hi })
+        Clearance { gap, around: Piece { lo: -lo, hi } }
     } else {
-        (0.0, Piece { lo: 0.0, hi: 0.0 })
+        Clearance::NONE
     }
 }

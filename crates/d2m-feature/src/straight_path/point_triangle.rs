@@ -1,6 +1,6 @@
 //! A point and a triangle, all four vertices on straight paths.
-use super::linear::{Line, Linear, clear_above};
-use super::triple_product::{Seen, TripleProduct};
+use super::linear::{Clearance, Line, Linear, clear_above};
+use super::triple_product::{Allowed, Seen, TripleProduct};
 use super::{Lines, larger, largest};
 use crate::closest;
 use crate::options::ContactOptions;
@@ -97,8 +97,8 @@ impl PieceTest for StraightPointTriangle {
         }
         let [a, e1, e2] = &lines;
         let lengths = [a.lengths(), e1.lengths(), e2.lengths()];
-        let errors = (self.error, self.separation);
-        let volume = TripleProduct::new(&lines, &lengths, h, errors);
+        let allowed = Allowed { error: self.error, separation: self.separation };
+        let volume = TripleProduct::new(&lines, &lengths, h, allowed);
         let Some(mut part) = volume.clip(whole) else {
             return Verdict::Clear;
         };
@@ -110,10 +110,10 @@ impl PieceTest for StraightPointTriangle {
             let length = length_up(n);
             let s = padded(part, at, whole).reach();
             let (la, l1, l2) = (lengths[0].within(s), lengths[1].within(s), lengths[2].within(s));
-            let (across1, across2) = (e1.across(-n), e2.across(n));
-            let total = Seen::new(e1, across2, length, (l1, l2), (self.error, 0.0));
-            let first = Seen::new(a, across2, length, (la, l2), errors);
-            let second = Seen::new(a, across1, length, (la, l1), errors);
+            let (across1, across2) = (e1.cross(-n), e2.cross(n));
+            let total = Seen::new(e1, &across2, length, [l1, l2], Allowed { separation: 0.0, ..allowed });
+            let first = Seen::new(a, &across2, length, [la, l2], allowed);
+            let second = Seen::new(a, &across1, length, [la, l1], allowed);
             let third = Seen {
                 quadratic: total.quadratic - (first.quadratic + second.quadratic),
                 margin: (total.margin + first.margin + second.margin) * UP,
@@ -151,13 +151,11 @@ impl PieceTest for StraightPointTriangle {
         let distance = length_up(pair.difference) + self.error - self.separation;
         let whole = local(piece, at);
         let margin = self.error + self.separation;
-        let mut clear = Piece { lo: 0.0, hi: 0.0 };
-        let mut best = 0.0;
+        let mut best = Clearance::NONE;
         let mut consider = |d: DVec3| {
-            let (gap, radii) = clear_above(&lines.map(|line| line.along(d)), margin);
-            if gap > best {
-                best = gap;
-                clear = radii;
+            let found = clear_above(&lines.map(|line| line.along(d)), margin);
+            if found.gap > best.gap {
+                best = found;
             }
         };
         consider(direction(pair.separating));
@@ -168,7 +166,7 @@ impl PieceTest for StraightPointTriangle {
                 consider(direction((vertices[(i + 1) % 3] - vertices[i]).cross(normal)));
             }
         }
-        cleared(clear, whole, at, piece, distance)
+        cleared(best.around, whole, at, piece, distance)
     }
 }
 

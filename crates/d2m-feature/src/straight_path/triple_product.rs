@@ -9,6 +9,15 @@ const ROUNDING: f64 = 176.0;
 /// Rounding of x·(y × n) in units of 2⁻⁵³·|x||y||n|: 46 are counted there.
 const ROUNDING_OF_TWO: f64 = 56.0;
 
+/// What bounds of three lines' products allow for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Allowed {
+    /// Bound on the error of each line's points.
+    pub(super) error: f64,
+    /// The distance at which contact begins.
+    pub(super) separation: f64,
+}
+
 /// `a·(b × c)` of three lines over |s| ≤ h, all four coefficients, and what a contact may have there.
 pub(super) struct TripleProduct {
     cubic: Cubic,
@@ -19,15 +28,10 @@ pub(super) struct TripleProduct {
 }
 
 impl TripleProduct {
-    /// `lengths` are those of the lines, `error` bounds the error of each line's points; contact begins at a distance of
-    /// `separation`.
+    /// `lengths` are those of the lines.
     #[inline(always)]
-    pub(super) fn new(
-        [a, b, c]: &[Line; 3],
-        lengths: &[Lengths; 3],
-        h: f64,
-        (error, separation): (f64, f64),
-    ) -> Self {
+    pub(super) fn new([a, b, c]: &[Line; 3], lengths: &[Lengths; 3], h: f64, allowed: Allowed) -> Self {
+        let Allowed { error, separation } = allowed;
         let n0 = b.p.cross(c.p);
         let n1 = b.p.cross(c.v) + b.v.cross(c.p);
         let n2 = b.v.cross(c.v);
@@ -67,20 +71,14 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// `x·(y × n)` with `across = (y × n)` at s = 0 and its rate, `length` ≥ |n|, `lx` ≥ |x|, `ly` ≥ |y|; a separation moves x
-    /// by its length.
+    /// `x·(y × n)` with `across` = y × n, `length` ≥ |n|, and lengths of at least |x| and |y|; a separation moves x by its length.
     #[inline(always)]
-    pub(super) fn new(
-        x: &Line,
-        across: (DVec3, DVec3),
-        length: f64,
-        (lx, ly): (f64, f64),
-        (error, separation): (f64, f64),
-    ) -> Self {
+    pub(super) fn new(x: &Line, across: &Line, length: f64, [lx, ly]: [f64; 2], allowed: Allowed) -> Self {
+        let Allowed { error, separation } = allowed;
         let quadratic = Quadratic {
-            value: x.p.dot(across.0),
-            slope: x.p.dot(across.1) + x.v.dot(across.0),
-            curvature: 2.0 * x.v.dot(across.1),
+            value: x.p.dot(across.p),
+            slope: x.p.dot(across.v) + x.v.dot(across.p),
+            curvature: 2.0 * x.v.dot(across.v),
         };
         let off = ROUNDING_OF_TWO * UNIT * lx * ly + error * (lx + ly + error) + separation * ly;
         Self { quadratic, margin: length * off * UP + PRODUCT_UNDERFLOW }
@@ -118,7 +116,7 @@ mod tests {
                 &lines,
                 &[lines[0].lengths(), lines[1].lengths(), lines[2].lengths()],
                 0.5,
-                (0.0, 0.0),
+                Allowed { error: 0.0, separation: 0.0 },
             );
             for j in [-32_i128, -17, 0, 5, 32] {
                 let at = |q: &[i128; 6]| [0, 1, 2].map(|i| 64 * q[i] + j * q[i + 3]);

@@ -37,9 +37,25 @@ fn constant<V: Vector>(n: u64) -> V {
     V::splat(inverse_factorial(n))
 }
 
-/// (x·2/π + 1.5·2⁵², r, r_low): the nearest multiple of π/2 in the low bits of the first, `r + r_low` the rest.
+/// A number without its multiples of π/2.
+#[derive(Clone, Copy)]
+pub(super) struct Turned<V> {
+    /// x·2/π + 1.5·2⁵²: the nearest multiple of π/2 in the low bits.
+    pub(super) turns: V,
+    /// The rest is the sum of this and `r_low`.
+    pub(super) r: V,
+    pub(super) r_low: V,
+}
+
+/// Sine and cosine, each as an unevaluated sum of a high and a low part.
+pub(super) struct SineCosine<V> {
+    pub(super) sin: [V; 2],
+    pub(super) cos: [V; 2],
+}
+
+/// Takes the nearest multiple of π/2 off.
 #[inline(always)]
-pub(super) fn reduce<V: Vector>(x: V) -> (V, V, V) {
+pub(super) fn reduce<V: Vector>(x: V) -> Turned<V> {
     let turns = x * V::splat(core::f64::consts::FRAC_2_PI) + V::splat(MAGIC);
     let n = turns - V::splat(MAGIC);
     let w = x - n * V::splat(P1);
@@ -49,12 +65,12 @@ pub(super) fn reduce<V: Vector>(x: V) -> (V, V, V) {
     let e = w - (r1 - b) - (t + b);
     let low = e - n * V::splat(P3);
     let r = r1 + low;
-    (turns, r, low - (r - r1))
+    Turned { turns, r, r_low: low - (r - r1) }
 }
 
-/// (sine, cosine) of `r + r_low`, each as an unevaluated sum, for |r| ≤ π/4 + 2⁻³⁰.
+/// Sine and cosine of `r + r_low` for |r| ≤ π/4 + 2⁻³⁰.
 #[inline(always)]
-pub(super) fn kernel<V: Vector>(r: V, r_low: V) -> ([V; 2], [V; 2]) {
+pub(super) fn kernel<V: Vector>(r: V, r_low: V) -> SineCosine<V> {
     let z = r * r;
     let z2 = z * z;
     let z4 = z2 * z2;
@@ -77,7 +93,7 @@ pub(super) fn kernel<V: Vector>(r: V, r_low: V) -> ([V; 2], [V; 2]) {
     let cos_tail = one - c0 - half_z + (z2 * q - r * r_low);
     let cos = c0 + cos_tail;
     let cos_low = cos_tail - (cos - c0);
-    ([sin, sin_low], [cos, cos_low])
+    SineCosine { sin: [sin, sin_low], cos: [cos, cos_low] }
 }
 
 /// (−min, max) over two numbers, each known as high + low within the kernel's error.
@@ -124,7 +140,7 @@ impl Interval {
     #[inline]
     pub fn sin_cos(self) -> (Self, Self) {
         let x = self.0.neg_first();
-        let (turns, r, r_low) = reduce(x);
+        let Turned { turns, r, r_low } = reduce(x);
         let size = x.abs();
         let in_range = size.lt(F64x2::splat(FAST_LIMIT));
         let kept = (size * F64x2::splat(CANCELLED)).le(r.abs());
@@ -132,7 +148,7 @@ impl Interval {
         if in_range.and(kept).sign_bits() != 3 {
             return self.sin_cos_slow();
         }
-        let ([s, s_low], [c, c_low]) = kernel(r, r_low);
+        let SineCosine { sin: [s, s_low], cos: [c, c_low] } = kernel(r, r_low);
         let odd = turns.lowest_bit();
         let sign = turns.second_bit_as_sign();
         let sin = odd.select(c, s).xor(sign);

@@ -1,48 +1,55 @@
 //! Sine and cosine of four intervals: the kernel of `trig`, on all lower ends and all upper ends.
-use super::trig::{CANCELLED, FAST_LIMIT, NEAR, PAD, PAD_TINY, kernel, reduce, residues};
+use super::trig::{CANCELLED, FAST_LIMIT, NEAR, PAD, PAD_TINY, SineCosine, Turned, kernel, reduce, residues};
 use crate::IntervalX4;
 use d2m_lanes::F64x4;
 
-/// Sine and cosine of four numbers, each as high + low, with the quadrants.
+/// Four numbers, each as an unevaluated sum.
+#[derive(Clone, Copy)]
+struct Sums {
+    high: F64x4,
+    low: F64x4,
+}
+
+/// Sine and cosine of four numbers, with the quadrants.
 struct Point {
     turns: [f64; 4],
     r: [f64; 4],
-    sin: (F64x4, F64x4),
-    cos: (F64x4, F64x4),
+    sin: Sums,
+    cos: Sums,
 }
 
 /// None when a number needs the slow path.
 #[inline(always)]
 fn point(x: F64x4) -> Option<Point> {
-    let (turns, r, r_low) = reduce(x);
+    let Turned { turns, r, r_low } = reduce(x);
     let size = x.abs();
     let in_range = size.lt_bits(F64x4::splat(FAST_LIMIT));
     let kept = (size * F64x4::splat(CANCELLED)).le_bits(r.abs());
     if in_range & kept != 15 {
         return None;
     }
-    let ([s, s_low], [c, c_low]) = kernel(r, r_low);
+    let SineCosine { sin: [s, s_low], cos: [c, c_low] } = kernel(r, r_low);
     let odd = turns.lowest_bit();
     let sign = turns.second_bit_as_sign();
-    let sin = (odd.select(c, s).xor(sign), odd.select(c_low, s_low).xor(sign));
+    let sin = Sums { high: odd.select(c, s).xor(sign), low: odd.select(c_low, s_low).xor(sign) };
     let sign = sign.xor(odd.and(F64x4::splat(-0.0)));
-    let cos = (odd.select(s, c).xor(sign), odd.select(s_low, c_low).xor(sign));
+    let cos = Sums { high: odd.select(s, c).xor(sign), low: odd.select(s_low, c_low).xor(sign) };
     Some(Point { turns: turns.to_array(), r: r.to_array(), sin, cos })
 }
 
 /// Upper bounds of a number and of its negative.
 #[inline(always)]
-fn bounds((high, low): (F64x4, F64x4)) -> (F64x4, F64x4) {
+fn bounds(Sums { high, low }: Sums) -> [F64x4; 2] {
     let size = high.abs();
     let pad = size * F64x4::splat(PAD);
     let pad = pad + F64x4::splat(0.0).lt(size).and(F64x4::splat(PAD_TINY));
-    (high + (low + pad), -high + (-low + pad))
+    [high + (low + pad), -high + (-low + pad)]
 }
 
 /// The hull of both, with the extrema (1 where inside, else −2), as (−lo, hi).
 #[inline(always)]
-fn hull(a: (F64x4, F64x4), b: (F64x4, F64x4), least: F64x4, greatest: F64x4) -> IntervalX4 {
-    let ((a, minus_a), (b, minus_b)) = (bounds(a), bounds(b));
+fn hull(a: Sums, b: Sums, least: F64x4, greatest: F64x4) -> IntervalX4 {
+    let ([a, minus_a], [b, minus_b]) = (bounds(a), bounds(b));
     let one = F64x4::splat(1.0);
     IntervalX4 { neg_lo: minus_a.max(minus_b).min(one).max(least), hi: a.max(b).min(one).max(greatest) }
 }

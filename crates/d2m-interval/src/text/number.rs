@@ -6,7 +6,7 @@ use alloc::{format, vec::Vec};
 use core::cmp::Ordering;
 
 use super::big::Big;
-use crate::ParseIntervalError;
+use crate::{Interval, ParseIntervalError};
 
 /// `±numerator·10^decimal·2^binary/denominator`, exactly; or, if digits were cut off, above that in size, by less than
 /// one unit of the numerator.
@@ -46,7 +46,7 @@ fn syntax<T>() -> Result<T, ParseIntervalError> {
 
 /// The exponent behind an `e` or `p`.
 pub(super) fn exponent(text: &str) -> Result<i64, ParseIntervalError> {
-    let (negative, digits) = sign(text);
+    let Signed { negative, size: digits } = sign(text);
     if digits.is_empty() || !digits.bytes().all(|b| b.is_ascii_digit()) {
         return syntax();
     }
@@ -54,12 +54,19 @@ pub(super) fn exponent(text: &str) -> Result<i64, ParseIntervalError> {
     Ok(if negative { -size } else { size })
 }
 
-/// Whether the text begins with a minus, and what follows the sign.
-pub(super) fn sign(text: &str) -> (bool, &str) {
+/// A text without its sign.
+pub(super) struct Signed<'t> {
+    pub(super) negative: bool,
+    /// What follows the sign.
+    pub(super) size: &'t str,
+}
+
+/// Takes the sign off.
+pub(super) fn sign(text: &str) -> Signed<'_> {
     match text.as_bytes().first() {
-        Some(b'-') => (true, &text[1..]),
-        Some(b'+') => (false, &text[1..]),
-        _ => (false, text),
+        Some(b'-') => Signed { negative: true, size: &text[1..] },
+        Some(b'+') => Signed { negative: false, size: &text[1..] },
+        _ => Signed { negative: false, size: text },
     }
 }
 
@@ -109,7 +116,7 @@ fn hexadecimal_mantissa(text: &str) -> Result<Mantissa, ParseIntervalError> {
 impl Number {
     /// Reads a decimal, hexadecimal or rational literal (in lower case).
     pub(super) fn read(text: &str) -> Result<Self, ParseIntervalError> {
-        let (negative, size) = sign(text);
+        let Signed { negative, size } = sign(text);
         let (mut decimal, mut binary, mut denominator) = (0, 0, Big::from_u64(1));
         let mantissa = if let Some((p, q)) = size.split_once('/') {
             let (p, q) = (decimal_mantissa(p)?, decimal_mantissa(q)?);
@@ -133,10 +140,10 @@ impl Number {
         Ok(Self { negative, numerator, denominator, decimal, binary, cut_off })
     }
 
-    /// The doubles around the number, equal when it is one.
-    pub(super) fn enclose(&self) -> (f64, f64) {
-        let (lo, hi) = self.enclose_size();
-        if self.negative { (-hi, -lo) } else { (lo, hi) }
+    /// The interval between the doubles around the number; a point when it is one.
+    pub(super) fn enclose(&self) -> Interval {
+        let size = self.enclose_size();
+        if self.negative { -size } else { size }
     }
 
     /// log₁₀ of the size, to within 1 and the rounding of this sum; the number is not zero.
@@ -145,16 +152,16 @@ impl Number {
         (digits + self.decimal) as f64 + self.binary as f64 * core::f64::consts::LOG10_2
     }
 
-    fn enclose_size(&self) -> (f64, f64) {
+    fn enclose_size(&self) -> Interval {
         if self.numerator.is_zero() {
-            return (0.0, 0.0);
+            return Interval::ZERO;
         }
         let magnitude = self.magnitude();
         if magnitude > LARGEST_MAGNITUDE {
-            return (f64::MAX, f64::INFINITY);
+            return Interval::raw(f64::MAX, f64::INFINITY);
         }
         if magnitude < SMALLEST_MAGNITUDE {
-            return (0.0, f64::from_bits(1));
+            return Interval::raw(0.0, f64::from_bits(1));
         }
         // A guess that is next to the number or next but one, then single steps, judged exactly.
         let mut y = self.guess();
@@ -163,13 +170,13 @@ impl Number {
         }
         loop {
             match self.compare(y) {
-                Ordering::Equal => return (y, y),
-                _ if y == f64::MAX => return (y, f64::INFINITY),
+                Ordering::Equal => return Interval::point(y),
+                _ if y == f64::MAX => return Interval::raw(y, f64::INFINITY),
                 _ => {}
             }
             let next = y.next_up();
             if self.compare(next) == Ordering::Greater {
-                return (y, next);
+                return Interval::raw(y, next);
             }
             y = next;
         }
@@ -234,9 +241,10 @@ impl Number {
 
     fn compare_sizes(&self, o: &Self) -> Option<Ordering> {
         let (mine, other) = (self.enclose_size(), o.enclose_size());
-        if mine != other || mine.0 == mine.1 {
+        if mine != other || mine.lo() == mine.hi() {
             // A number that is no double lies strictly between its two: other doubles, other order.
-            return mine.partial_cmp(&other);
+            let lower = mine.lo().partial_cmp(&other.lo())?;
+            return Some(lower.then(mine.hi().partial_cmp(&other.hi())?));
         }
         // Neither is zero.
         let apart = self.magnitude() - o.magnitude();

@@ -2,7 +2,7 @@
 use core::str::FromStr;
 
 use super::big::Big;
-use super::number::{Number, exponent, sign};
+use super::number::{Number, Signed, exponent, sign};
 use crate::{Interval, ParseIntervalError};
 
 /// An end point as written.
@@ -16,7 +16,7 @@ fn syntax<T>() -> Result<T, ParseIntervalError> {
 }
 
 fn end(text: &str) -> Result<End, ParseIntervalError> {
-    let (negative, size) = sign(text);
+    let Signed { negative, size } = sign(text);
     if size == "inf" || size == "infinity" {
         return Ok(End::Infinite { negative });
     }
@@ -40,16 +40,13 @@ fn uncertain(center: &str, rest: &str) -> Result<Interval, ParseIntervalError> {
     }
     let mut center = Number::read(center)?;
     center.decimal += power;
-    let (mut lo, mut hi) = center.enclose();
     if rest == "?" {
-        lo = f64::NEG_INFINITY;
-        hi = f64::INFINITY;
-        match direction {
-            Some(false) => lo = center.enclose().0,
-            Some(true) => hi = center.enclose().1,
-            None => {}
-        }
-        return Ok(Interval::raw(lo, hi));
+        let known = center.enclose();
+        return Ok(match direction {
+            Some(false) => Interval::raw(known.lo(), f64::INFINITY),
+            Some(true) => Interval::raw(f64::NEG_INFINITY, known.hi()),
+            None => Interval::ENTIRE,
+        });
     }
     let steps = if rest.is_empty() {
         Big::from_u64(1)
@@ -59,13 +56,11 @@ fn uncertain(center: &str, rest: &str) -> Result<Interval, ParseIntervalError> {
         }
         Big::from_decimal(rest.as_bytes()).times_power_of_two(1)
     };
-    if direction != Some(false) {
-        lo = center.moved(&steps, true).enclose().0;
-    }
-    if direction != Some(true) {
-        hi = center.moved(&steps, false).enclose().1;
-    }
-    Ok(Interval::raw(lo, hi))
+    let lowest =
+        if direction == Some(false) { center.enclose() } else { center.moved(&steps, true).enclose() };
+    let highest =
+        if direction == Some(true) { center.enclose() } else { center.moved(&steps, false).enclose() };
+    Ok(Interval::raw(lowest.lo(), highest.hi()))
 }
 
 impl FromStr for Interval {
@@ -94,8 +89,7 @@ impl FromStr for Interval {
             if let Some((center, rest)) = text.split_once('?') {
                 return uncertain(center, rest);
             }
-            let (lo, hi) = Number::read(&text)?.enclose();
-            return Ok(Self::raw(lo, hi));
+            return Ok(Number::read(&text)?.enclose());
         };
         let Some(inner) = inner.strip_suffix(']') else { return syntax() };
         match inner.trim() {
@@ -105,10 +99,7 @@ impl FromStr for Interval {
         }
         let Some((first, second)) = inner.split_once(',') else {
             return match end(inner.trim())? {
-                End::Number(x) => {
-                    let (lo, hi) = x.enclose();
-                    Ok(Self::raw(lo, hi))
-                }
+                End::Number(x) => Ok(x.enclose()),
                 End::Infinite { .. } => Err(ParseIntervalError::Order),
             };
         };
@@ -121,13 +112,13 @@ impl FromStr for Interval {
                 Err(ParseIntervalError::Order)
             }
             (End::Infinite { .. }, End::Infinite { .. }) => Ok(Self::ENTIRE),
-            (End::Infinite { .. }, End::Number(hi)) => Ok(Self::raw(f64::NEG_INFINITY, hi.enclose().1)),
-            (End::Number(lo), End::Infinite { .. }) => Ok(Self::raw(lo.enclose().0, f64::INFINITY)),
+            (End::Infinite { .. }, End::Number(hi)) => Ok(Self::raw(f64::NEG_INFINITY, hi.enclose().hi())),
+            (End::Number(lo), End::Infinite { .. }) => Ok(Self::raw(lo.enclose().lo(), f64::INFINITY)),
             (End::Number(lo), End::Number(hi)) => {
                 if lo.is_greater(&hi) {
                     return Err(ParseIntervalError::Order);
                 }
-                Ok(Self::raw(lo.enclose().0, hi.enclose().1))
+                Ok(Self::raw(lo.enclose().lo(), hi.enclose().hi()))
             }
         }
     }

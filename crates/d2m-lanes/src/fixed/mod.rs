@@ -66,8 +66,8 @@ pub use wasm::F64x2;
 ))]
 pub use scalar::F64x2;
 
-mod quad;
-pub use quad::F64x4;
+mod four;
+pub use four::F64x4;
 
 #[cfg(any(test, not(feature = "std")))]
 #[allow(dead_code)] // where a vector unit has square roots

@@ -1,7 +1,7 @@
 //! The lanes in AVX registers; the functions that may use them are entered through a check of the processor (`dispatch`).
 #![allow(unsafe_code)]
 
-use super::eight::{Lanes, Rows};
+use super::eight::{Keys, Lanes, Rows, SingleSide, WideSide};
 use super::quad::{Doubles, Quad};
 use super::register::register;
 use super::two::{Both, Bytes, Elementwise, Two};
@@ -105,7 +105,7 @@ impl<R: Registers> Lanes for Avx<R> {
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)) as u32 }
     }
     #[inline(always)]
-    fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32) {
+    fn keys(self, base: i32, least: i32, limit: i32) -> Keys {
         let mut out = [0; 8];
         // SAFETY: the processor has AVX2 (see the type); 32 bytes are writable and need no alignment.
         unsafe {
@@ -113,24 +113,20 @@ impl<R: Registers> Lanes for Avx<R> {
             let keys = _mm256_max_epi32(sum, _mm256_set1_epi32(least));
             _mm256_storeu_si256(out.as_mut_ptr().cast(), keys);
             let below = _mm256_cmpgt_epi32(_mm256_set1_epi32(limit), keys);
-            (out, _mm256_movemask_ps(_mm256_castsi256_ps(below)) as u32)
+            Keys { keys: out, below: _mm256_movemask_ps(_mm256_castsi256_ps(below)) as u32 }
         }
     }
     #[inline(always)]
-    fn larger(
-        (sizes, ratio, size): (&[f32; 8], f32, f32),
-        (children, flag): (&[u32; 8], u32),
-        other: u32,
-    ) -> [u32; 8] {
+    fn larger(wide: &WideSide<'_>, single: SingleSide) -> [u32; 8] {
         let mut out = [0; 8];
         // SAFETY: the processor has AVX2 (see the type); 32 bytes are readable and writable, without alignment.
         unsafe {
-            let sizes = _mm256_mul_ps(_mm256_loadu_ps(sizes.as_ptr()), _mm256_set1_ps(ratio));
-            let larger = _mm256_cmp_ps::<_CMP_GT_OQ>(sizes, _mm256_set1_ps(size));
-            let children = _mm256_loadu_si256(children.as_ptr().cast());
-            let flagged = _mm256_or_si256(children, _mm256_set1_epi32(flag as i32));
-            let open =
-                _mm256_blendv_epi8(_mm256_set1_epi32(other as i32), flagged, _mm256_castps_si256(larger));
+            let sizes = _mm256_mul_ps(_mm256_loadu_ps(wide.sizes.as_ptr()), _mm256_set1_ps(wide.ratio));
+            let larger = _mm256_cmp_ps::<_CMP_GT_OQ>(sizes, _mm256_set1_ps(single.size));
+            let children = _mm256_loadu_si256(wide.children.as_ptr().cast());
+            let flagged = _mm256_or_si256(children, _mm256_set1_epi32(wide.flag as i32));
+            let other = _mm256_set1_epi32(single.tag as i32);
+            let open = _mm256_blendv_epi8(other, flagged, _mm256_castps_si256(larger));
             _mm256_storeu_si256(out.as_mut_ptr().cast(), open);
         }
         out

@@ -25,6 +25,37 @@ pub struct Rows {
     pub wanted: u32,
 }
 
+/// Eight keys.
+#[derive(Clone, Copy, Debug)]
+pub struct Keys {
+    /// Lane by lane.
+    pub keys: [i32; 8],
+    /// The bits of the lanes whose key is below the limit.
+    pub below: u32,
+}
+
+/// Eight boxes that are compared with one by their sizes.
+#[derive(Clone, Copy, Debug)]
+pub struct WideSide<'a> {
+    /// Lane by lane.
+    pub sizes: &'a [f32; 8],
+    /// Multiplies the sizes.
+    pub ratio: f32,
+    /// What is below each box.
+    pub children: &'a [u32; 8],
+    /// Added to a child.
+    pub flag: u32,
+}
+
+/// The one box that eight are compared with.
+#[derive(Clone, Copy, Debug)]
+pub struct SingleSide {
+    /// Its size.
+    pub size: f32,
+    /// What stands for it.
+    pub tag: u32,
+}
+
 /// Eight lanes of `f32`.
 pub trait Lanes: Bytes + Div<Output = Self> {
     /// Four `f64` of the same instruction set.
@@ -42,9 +73,9 @@ pub trait Lanes: Bytes + Div<Output = Self> {
     fn less_bits(self, other: Self) -> u32;
     /// max(`least`, `base` + the integer part) in each lane, with `least` for what is not a number; and the bits of
     /// the lanes where that is below `limit`. Lanes stay below 2³¹ − `base`.
-    fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32);
-    /// `children | flag` in the lanes where `sizes · ratio > size`, else `other`.
-    fn larger(sizes: (&[f32; 8], f32, f32), children: (&[u32; 8], u32), other: u32) -> [u32; 8];
+    fn keys(self, base: i32, least: i32, limit: i32) -> Keys;
+    /// `wide.children | wide.flag` in the lanes where `wide.sizes · wide.ratio > single.size`, else `single.tag`.
+    fn larger(wide: &WideSide<'_>, single: SingleSide) -> [u32; 8];
     /// Writes the wanted rows to the start of the list, in the order of their lanes, and returns how many there are. What
     /// is behind them has no meaning.
     fn pack(rows: &Rows, list: &mut [[u32; 4]; 8]) -> usize;

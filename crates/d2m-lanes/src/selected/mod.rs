@@ -8,13 +8,14 @@ mod dispatch;
 mod eight;
 mod instruction_set;
 mod portable;
+mod portable_doubles;
 mod quad;
 #[cfg(target_arch = "x86_64")]
 mod register;
 mod two;
 
 pub use dispatch::{Task, run, run_on};
-pub use eight::{Lanes, Rows};
+pub use eight::{Keys, Lanes, Rows, SingleSide, WideSide};
 pub use instruction_set::InstructionSet;
 pub use portable::Portable;
 pub use quad::{Doubles, Matrix, Quad, QuadVec};

@@ -1,8 +1,8 @@
 //! The lanes that every target has: in vector registers where its plainest processor has some.
 
-use super::eight::{Lanes, Rows};
-use super::quad::Quad;
+use super::eight::{Keys, Lanes, Rows, SingleSide, WideSide};
 use super::two::{Both, Bytes, Elementwise};
+use crate::F64x4;
 use core::ops::{Add, Div, Mul, Sub};
 use wide::bytemuck::cast;
 use wide::{f32x8, i32x8, u32x8};
@@ -66,7 +66,7 @@ impl Bytes for Portable {
 }
 
 impl Lanes for Portable {
-    type Doubles = Quad;
+    type Doubles = F64x4;
     type Two = Both<Self>;
 
     #[inline(always)]
@@ -86,24 +86,22 @@ impl Lanes for Portable {
         self.0.simd_lt(other.0).to_bitmask()
     }
     #[inline(always)]
-    fn keys(self, base: i32, least: i32, limit: i32) -> ([i32; 8], u32) {
-        let (mut out, mut bits) = ([0; 8], 0);
-        for (lane, (key, x)) in out.iter_mut().zip(self.store()).enumerate() {
+    fn keys(self, base: i32, least: i32, limit: i32) -> Keys {
+        let (mut keys, mut below) = ([0; 8], 0);
+        for (lane, (key, x)) in keys.iter_mut().zip(self.store()).enumerate() {
             let whole = if x.is_nan() { i32::MIN } else { x as i32 };
             *key = base.wrapping_add(whole).max(least);
-            bits |= u32::from(*key < limit) << lane;
+            below |= u32::from(*key < limit) << lane;
         }
-        (out, bits)
+        Keys { keys, below }
     }
     #[inline(always)]
-    fn larger(
-        (sizes, ratio, size): (&[f32; 8], f32, f32),
-        (children, flag): (&[u32; 8], u32),
-        other: u32,
-    ) -> [u32; 8] {
-        let mut out = [other; 8];
+    fn larger(wide: &WideSide<'_>, single: SingleSide) -> [u32; 8] {
+        let mut out = [single.tag; 8];
         for lane in 0..8 {
-            out[lane] = if sizes[lane] * ratio > size { children[lane] | flag } else { other };
+            if wide.sizes[lane] * wide.ratio > single.size {
+                out[lane] = wide.children[lane] | wide.flag;
+            }
         }
         out
     }

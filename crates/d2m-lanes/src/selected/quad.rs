@@ -1,17 +1,17 @@
-//! Four `f64` side by side: the storage, and the operations for one instruction set.
+//! Four `f64` side by side: how they lie in memory, and what registers of any instruction set do with them.
 
-use super::two::{Both, Elementwise, Two};
-use core::ops::{Add, Div, Mul, Sub};
+use super::two::{Elementwise, Two};
+use crate::F64x4;
+use core::ops::Div;
 use glam::DVec3;
-use wide::f64x4;
 
-/// Four doubles in memory.
+/// Four doubles in memory; registers that hold them are [`Doubles`].
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub struct Quad(pub [f64; 4]);
 
 /// Four doubles in registers: each operation correctly rounded, no fused multiply-add, so every implementation returns
-/// the same bits. [`Quad`] is the portable one.
+/// the same bits. [`F64x4`] is the portable one.
 pub trait Doubles: Elementwise<Scalar = f64> + Div<Output = Self> {
     /// Two times four doubles.
     type Two: Two<Self>;
@@ -30,19 +30,6 @@ pub trait Doubles: Elementwise<Scalar = f64> + Div<Output = Self> {
     fn transposed(columns: [Self; 3]) -> [Self; 3];
 }
 
-macro_rules! elementwise {
-    ($($operator:ident $method:ident $symbol:tt),*) => {$(
-        impl $operator for Quad {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self::of(self.register() $symbol other.register())
-            }
-        }
-    )*};
-}
-elementwise!(Add add +, Sub sub -, Mul mul *, Div div /);
-
 impl Quad {
     /// A vector, and zero.
     #[inline(always)]
@@ -54,83 +41,6 @@ impl Quad {
     #[inline(always)]
     pub const fn to_vec(self) -> DVec3 {
         DVec3::new(self.0[0], self.0[1], self.0[2])
-    }
-
-    #[inline(always)]
-    const fn register(self) -> f64x4 {
-        f64x4::new(self.0)
-    }
-
-    #[inline(always)]
-    fn of(register: f64x4) -> Self {
-        Self(register.to_array())
-    }
-}
-
-impl Elementwise for Quad {
-    type Scalar = f64;
-
-    #[inline(always)]
-    fn splat(x: f64) -> Self {
-        Self([x; 4])
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        Self::if_greater(other, self, self, other)
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        Self::if_greater(self, other, self, other)
-    }
-    #[inline(always)]
-    fn if_greater(left: Self, right: Self, yes: Self, no: Self) -> Self {
-        Self::of(left.register().simd_gt(right.register()).bitselect(yes.register(), no.register()))
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self::of(self.register().abs())
-    }
-    #[inline(always)]
-    fn flip_sign(magnitude: Self, sign: Self) -> Self {
-        Self::of(magnitude.register() ^ (sign.register() & f64x4::splat(-0.0)))
-    }
-}
-
-impl Doubles for Quad {
-    type Two = Both<Self>;
-
-    #[inline(always)]
-    fn load(values: &Quad) -> Self {
-        *values
-    }
-    #[inline(always)]
-    fn store(self) -> Quad {
-        self
-    }
-    #[inline(always)]
-    fn narrow(self) -> [f32; 4] {
-        let a = &self.0;
-        [a[0] as f32, a[1] as f32, a[2] as f32, a[3] as f32]
-    }
-    #[inline(always)]
-    fn min_element(self) -> f64 {
-        let [a, b, c, d] = self.0;
-        let (low, high) = (if a < c { a } else { c }, if b < d { b } else { d });
-        if low < high { low } else { high }
-    }
-    #[inline(always)]
-    fn max_element(self) -> f64 {
-        let [a, b, c, d] = self.0;
-        let (low, high) = (if a > c { a } else { c }, if b > d { b } else { d });
-        if low > high { low } else { high }
-    }
-    #[inline(always)]
-    fn transposed([a, b, c]: [Self; 3]) -> [Self; 3] {
-        [
-            Self([a.0[0], b.0[0], c.0[0], 0.0]),
-            Self([a.0[1], b.0[1], c.0[1], 0.0]),
-            Self([a.0[2], b.0[2], c.0[2], 0.0]),
-        ]
     }
 }
 
@@ -244,6 +154,12 @@ impl Matrix {
         D::load(&self.0[0]) * D::splat(v.x)
             + D::load(&self.0[1]) * D::splat(v.y)
             + D::load(&self.0[2]) * D::splat(v.z)
+    }
+
+    /// The product with a vector, by the registers of the target that the program is compiled for.
+    #[inline(always)]
+    pub fn transform(&self, v: DVec3) -> DVec3 {
+        self.times::<F64x4>(v).store().to_vec()
     }
 
     /// The product with a vector in memory, whose fourth number does not matter.

@@ -113,7 +113,8 @@ pub(super) fn gap_across_edge<L: Lanes>(
     wide: &WideNode,
     placed: &Placed,
     axes: &Axes<L>,
-    (corners, edge): (&[[f32; 3]; 3], &[f32; 3]),
+    corners: &[[f32; 3]; 3],
+    edge: &[f32; 3],
 ) -> L {
     let center = load::<L>(&wide.center);
     let [p, q, r] = [splat::<L, 3>(&corners[0]), splat::<L, 3>(&corners[1]), splat::<L, 3>(&corners[2])];

@@ -11,6 +11,6 @@ mod scene;
 pub(crate) mod tests;
 mod triangles;
 
-pub(crate) use relative_pose::RelativePose;
+pub(crate) use relative_pose::{InversePose, RelativePose};
 pub(crate) use scene::{Direction, Directions, Scene, Step, Wanted, child};
 pub(crate) use triangles::{gap_exceeds, proven_apart};

@@ -53,7 +53,7 @@ pub(super) fn lower_bounds<L: Lanes>(
         Some(corners) => {
             let closer = gap_from_triangle(wide, placed, &axes, corners);
             match &placed.edge {
-                Some(edge) => closer.max(gap_across_edge(wide, placed, &axes, (corners, edge))),
+                Some(edge) => closer.max(gap_across_edge(wide, placed, &axes, corners, edge)),
                 None => closer,
             }
         }

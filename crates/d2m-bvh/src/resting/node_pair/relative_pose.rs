@@ -32,6 +32,15 @@ fn enclose_rotation(q: DQuat) -> IntervalMat3 {
     }
 }
 
+/// How B stands in A's axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct InversePose {
+    /// Columns of Rᵀ.
+    pub(crate) rotation: [DVec3; 3],
+    /// The center of B's tree from A's.
+    pub(crate) offset: DVec3,
+}
+
 impl RelativePose {
     /// From the poses in the world.
     ///
@@ -75,11 +84,11 @@ impl RelativePose {
         Ok(Self { rotation: columns.map(IntervalVec3::mid), offset: middle, error, size })
     }
 
-    /// Columns of Rᵀ and the center of B's tree from A's, in A's axes.
-    pub(crate) fn inverse(&self) -> ([DVec3; 3], DVec3) {
+    /// How B stands as A sees it.
+    pub(crate) fn inverse(&self) -> InversePose {
         let [x, y, z] = self.rotation;
         let offset = DVec3::new(x.dot(self.offset), y.dot(self.offset), z.dot(self.offset));
-        let rows = [DVec3::new(x.x, y.x, z.x), DVec3::new(x.y, y.y, z.y), DVec3::new(x.z, y.z, z.z)];
-        (rows, -offset)
+        let rotation = [DVec3::new(x.x, y.x, z.x), DVec3::new(x.y, y.y, z.y), DVec3::new(x.z, y.z, z.z)];
+        InversePose { rotation, offset: -offset }
     }
 }

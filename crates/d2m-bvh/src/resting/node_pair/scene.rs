@@ -1,8 +1,8 @@
 //! Constants of one static query, and what its searches do at a pair of boxes.
 
-use super::RelativePose;
 use super::node_test::{lower_bounds, overlaps};
 use super::placed_box::{Placed, Side};
+use super::{InversePose, RelativePose};
 use crate::tree::margin::{UNIT_F32, UNIT_F64};
 use crate::tree::node::{Below, OrientedBox, WIDTH};
 use crate::tree::slabs::reach_both_ways;
@@ -108,7 +108,7 @@ impl<'a> Scene<'a> {
         // Placing rounds by at most 9v(ρA + |T|) on A's side and 2v ρB on B's.
         let error = 2.0 * ((pose.error + blur) * inverse_unit + 10.0 * UNIT_F64 * size) * SUM_ROUNDING;
         let projection = 8.0 * UNIT_F64 * size * SUM_ROUNDING;
-        let (inverse, back) = pose.inverse();
+        let InversePose { rotation: inverse, offset: back } = pose.inverse();
         let side = |wide: &MeshTree, single: &MeshTree, rotation, offset: DVec3| Side {
             rotation,
             offset: offset / wide.unit(),

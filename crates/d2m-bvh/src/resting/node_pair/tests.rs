@@ -272,7 +272,7 @@ fn bounds_of_boxes_of_unlike_sizes_are_finite_and_hold() {
 fn gap_across_edge_alone(node: &WideNode, placed: &Placed) -> f32 {
     let axes = Axes::<Portable>::new(node, placed);
     let (corners, edge) = (placed.corners.unwrap(), placed.edge.unwrap());
-    gap_across_edge(node, placed, &axes, (&corners, &edge)).store()[0]
+    gap_across_edge(node, placed, &axes, &corners, &edge).store()[0]
 }
 
 struct Kernel<'a>(&'a WideNode, &'a Placed);

@@ -4,7 +4,7 @@ use super::super::motion::frame::Frame;
 use super::super::scene::Scene;
 use super::super::triangle_pair::separating_axis::place_a;
 use crate::tree::margin::UP;
-use d2m_lanes::Quad;
+use d2m_lanes::F64x4;
 use glam::DVec3;
 
 /// One of the two bodies.
@@ -39,7 +39,7 @@ impl<'f> BodyPaths<'f> {
     pub(super) fn new(scene: &Scene<'_>, frame: &'f Frame, side: Side, span: f64) -> Self {
         let [arm_a, arm_b] = scene.pair.arms;
         let (arm, omega) = match side {
-            Side::A => (frame.rotation.times::<Quad>(arm_a).to_vec(), frame.omega_a.to_vec()),
+            Side::A => (frame.rotation.transform(arm_a), frame.omega_a.to_vec()),
             Side::B => (arm_b, frame.omega_b.to_vec()),
         };
         Self { frame, side, arm, omega, span }
@@ -49,7 +49,7 @@ impl<'f> BodyPaths<'f> {
     pub(super) fn of(&self, point: DVec3) -> Path {
         let (now, from_center, drift) = match self.side {
             Side::A => {
-                let now = place_a::<Quad>(self.frame, &[point; 3])[0];
+                let now = place_a::<F64x4>(self.frame, &[point; 3])[0];
                 (now, now - self.frame.apart.to_vec(), self.frame.velocity.to_vec())
             }
             Side::B => (point, point, DVec3::ZERO),

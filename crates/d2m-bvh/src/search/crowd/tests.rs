@@ -1,10 +1,10 @@
 //! Planes hold as long as they are said to, and boxes reach as far as what they hold.
 
 use super::super::motion::frame::Frame;
-use super::super::scene::Scene;
+use super::super::scene::{MovingTree, Scene};
 use super::*;
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
-use d2m_lanes::Quad;
+use d2m_lanes::F64x4;
 use d2m_motion::ConstantTwist;
 use d2m_testing::{Draw, KnuthRandom};
 use glam::DQuat;
@@ -12,6 +12,10 @@ use glam::DQuat;
 fn soup(random: &mut KnuthRandom, shift: DVec3) -> MeshTree {
     let vertices = (0..9).map(|_| random.vector() + shift).collect();
     MeshTree::new(TriMesh::try_new(vertices, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).unwrap())
+}
+
+const fn moving(tree: &MeshTree, twist: ConstantTwist) -> MovingTree<'_> {
+    MovingTree { tree, twist }
 }
 
 /// All vertices of both bodies.
@@ -40,9 +44,10 @@ fn what_a_plane_parts_stays_apart() {
                 .unwrap()
         });
         let options = QueryOptions::default().with_tolerance(1e-3);
-        let scene = Scene::try_new((&a, motion_a), (&b, motion_b), Window::UNIT, &options).unwrap();
+        let scene =
+            Scene::try_new(moving(&a, motion_a), moving(&b, motion_b), Window::UNIT, &options).unwrap();
         let motion = scene.relative_motion(0.0);
-        let frame = motion.frame::<Quad>(0.0);
+        let frame = motion.frame::<F64x4>(0.0);
         let span = scene.longest * (0.6 + 0.4 * random.signed());
         let points = points(&scene);
         let moving = Moving::new(&scene, &points, &frame, span, &mut Allowance::unlimited()).unwrap();
@@ -50,10 +55,10 @@ fn what_a_plane_parts_stays_apart() {
         let mut straight = Moving::new(&scene, &points, &frame, span, &mut Allowance::unlimited()).unwrap();
         straight.paths.iter_mut().flatten().for_each(|path| path.bend = 0.0);
         let [gaps, straight_gaps] = [&moving, &straight].map(|moving| moving.gaps(n).map(|gap| gap.along));
-        let world = motion.rotation_b(0.0).times::<Quad>(n).to_vec();
+        let world = motion.rotation_b(0.0).transform(n);
         let gap_at = |time: f64| {
-            let frame = motion.frame::<Quad>(time);
-            let n = motion.rotation_b(time).transposed::<Quad>().times::<Quad>(world).to_vec();
+            let frame = motion.frame::<F64x4>(time);
+            let n = motion.rotation_b(time).transposed::<F64x4>().transform(world);
             Moving::new(&scene, &points, &frame, 0.0, &mut Allowance::unlimited()).unwrap().gaps(n)[0].along
         };
         let least = (0..=8).map(|k| gap_at(span * f64::from(k) / 8.0)).fold(f64::INFINITY, f64::min);
@@ -87,7 +92,7 @@ fn points_bend_by_their_distance_from_the_axis() {
     let options = QueryOptions::default();
     for (a, b, side) in [(turning, ConstantTwist::REST, Side::A), (ConstantTwist::REST, turning, Side::B)] {
         let scene = Scene::new((&body, a), (&body, b), Window::UNIT, &options);
-        let frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
+        let frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
         let paths = super::paths::BodyPaths::new(&scene, &frame, side, 1.0);
         for (corner, expected) in corners.iter().zip([0.0, 0.5, 2.0]) {
             let path = paths.of(corner - body.center());
@@ -106,8 +111,9 @@ fn boxes_reach_as_far_as_their_vertices() {
         ConstantTwist::try_new(random.vector(), random.moderate_turn(), random.vector(), random.vector())
             .unwrap();
     let options = QueryOptions::default();
-    let scene = Scene::try_new((&a, twist), (&b, ConstantTwist::REST), Window::UNIT, &options).unwrap();
-    let frame: Frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
+    let scene =
+        Scene::try_new(moving(&a, twist), moving(&b, ConstantTwist::REST), Window::UNIT, &options).unwrap();
+    let frame: Frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
     for n in [DVec3::X, random.vector().normalize(), random.vector().normalize()] {
         let points = points(&scene);
         let moving = Moving::new(&scene, &points, &frame, 0.25, &mut Allowance::unlimited()).unwrap();
@@ -131,9 +137,11 @@ fn preparations_end_with_the_time() {
     let mesh = TriMesh::try_new(vertices.clone(), (0..1000).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect());
     let tree = MeshTree::new(mesh.unwrap());
     let rest = ConstantTwist::REST;
-    let scene = Scene::try_new((&tree, rest), (&tree, rest), Window::UNIT, &QueryOptions::default()).unwrap();
+    let scene =
+        Scene::try_new(moving(&tree, rest), moving(&tree, rest), Window::UNIT, &QueryOptions::default())
+            .unwrap();
     let points = [vertices.clone(), vertices];
-    let frame = scene.relative_motion(0.0).frame::<Quad>(0.0);
+    let frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
     let over = || Allowance::until(Some(std::time::Instant::now()));
     assert!(Moving::new(&scene, &points, &frame, 0.25, &mut over()).is_none());
     let mut reaches = Reaches::new(&scene, Side::A, &frame, 0.25, DVec3::X);

@@ -6,7 +6,7 @@
 
 use super::local_motion::LocalMotion;
 use super::track::Track;
-use d2m_lanes::{Doubles, Matrix, Quad};
+use d2m_lanes::{Doubles, F64x4, Matrix, Quad};
 use glam::DVec3;
 
 /// The two motions over a window of the search that starts at the offset `start`.
@@ -170,7 +170,7 @@ impl RelativeMotion {
 
     /// Axes of B in the world at an offset.
     pub(crate) fn rotation_b(&self, offset: f64) -> Matrix {
-        self.bodies[1].at::<Quad>(offset).rotation
+        self.bodies[1].at::<F64x4>(offset).rotation
     }
 
     /// State at an offset with |ω|·|offset| ≤ 0.35 for both bodies.

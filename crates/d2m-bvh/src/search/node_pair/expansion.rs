@@ -6,7 +6,7 @@ use super::node_test::{NodeFrame, Placed};
 use super::whole_span::{SpanFrame, apart_over_span};
 use crate::search::queue::Item;
 use crate::tree::node::{NodeBox, WIDTH, WideNode};
-use d2m_lanes::{Lanes, Rows};
+use d2m_lanes::{Keys, Lanes, Rows, SingleSide, WideSide};
 
 /// Keys of a sub-window run from 0 to this for its whole unit of time.
 pub(crate) const KEY_SCALE: f64 = 536_870_912.0; // 2²⁹
@@ -67,7 +67,7 @@ impl NodePairExpander<'_> {
         let times = entry_times::<L>(wide, &placed, scale);
         // What is not a number becomes the key of the item itself.
         let steps = L::splat(LATEST_KEY).min(times * L::splat(KEY_SCALE as f32));
-        let (keys, below) = steps.keys(now as i32, item.key as i32, limit as i32);
+        let Keys { keys, below } = steps.keys(now as i32, item.key as i32, limit as i32);
         self.rows::<L>(item, keys, below)
     }
 
@@ -93,9 +93,13 @@ impl NodePairExpander<'_> {
         let flags = [0, Item::OF_B];
         let size = node.size[lane] * self.size_ratios[other];
         let tags = L::larger(
-            (&wide.size, self.size_ratios[side], size),
-            (&wide.child, flags[side]),
-            node.child[lane] | flags[other],
+            &WideSide {
+                sizes: &wide.size,
+                ratio: self.size_ratios[side],
+                children: &wide.child,
+                flag: flags[side],
+            },
+            SingleSide { size, tag: node.child[lane] | flags[other] },
         );
         Rows {
             keys,

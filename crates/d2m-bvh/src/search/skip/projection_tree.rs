@@ -46,8 +46,17 @@ pub(super) struct Cell {
     pub(super) projection: Projection,
     /// The number of the piece that it is.
     piece: Option<u32>,
-    /// The first of the cells that it is made of, and their number; none: not yet divided.
-    below: (u32, u32),
+    /// The first of the cells that it is made of.
+    first_below: u32,
+    /// How many they are; none: not yet divided.
+    below: u32,
+}
+
+/// Of two cells the larger one is expanded: one of several pieces before one that is a piece.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub(super) struct CellSize {
+    several: bool,
+    extent: f64,
 }
 
 /// A tree of projections, which grows where its cells are divided.
@@ -64,7 +73,7 @@ impl ProjectionTree {
         let mut parts: Vec<(Projection, u32)> = pieces.iter().map(Piece::projection).zip(0..).collect();
         let mut tree = Self { cells: Vec::with_capacity(4 * parts.len()), pieces, h };
         if let Some(&(projection, piece)) = parts.first() {
-            tree.cells.push(Cell { projection, piece: Some(piece), below: (0, 0) });
+            tree.cells.push(Cell { projection, piece: Some(piece), first_below: 0, below: 0 });
             tree.split(0, &mut parts, clock)?;
         }
         Ok(tree)
@@ -82,14 +91,14 @@ impl ProjectionTree {
             projection = projection.with(&part.0);
         }
         if parts.len() == 1 {
-            self.cells[cell] = Cell { projection, piece: Some(parts[0].1), below: (0, 0) };
+            self.cells[cell] = Cell { projection, piece: Some(parts[0].1), first_below: 0, below: 0 };
             return Ok(());
         }
         let extents = projection.extents();
         let dimension = (0..3).max_by(|&i, &j| extents[i].total_cmp(&extents[j])).unwrap_or(0);
         let half = divide(parts, dimension, clock)?;
         let first = self.cells.len();
-        self.cells[cell] = Cell { projection, piece: None, below: (first as u32, 2) };
+        self.cells[cell] = Cell { projection, piece: None, first_below: first as u32, below: 2 };
         self.cells.extend([self.cells[cell]; 2]);
         let (left, right) = parts.split_at_mut(half);
         self.split(first, left, clock)?;
@@ -101,16 +110,16 @@ impl ProjectionTree {
         self.cells[cell].piece.map(|piece| &self.pieces[piece as usize])
     }
 
-    /// What decides which of two cells is expanded: cells that are not one piece first.
-    pub(super) fn size(&self, cell: usize) -> (bool, f64) {
+    /// What decides which of two cells is expanded.
+    pub(super) fn size(&self, cell: usize) -> CellSize {
         let several = self.cells[cell].piece.is_none();
         let extents = self.cells[cell].projection.extents();
-        (several, extents[0] + extents[1] + if several { extents[2] } else { 0.0 })
+        CellSize { several, extent: extents[0] + extents[1] + if several { extents[2] } else { 0.0 } }
     }
 
     /// What a cell is made of; nothing when it is as small as cells get.
     pub(super) fn open(&mut self, cell: usize) -> std::ops::Range<usize> {
-        let (first, count) = self.cells[cell].below;
+        let Cell { first_below: first, below: count, .. } = self.cells[cell];
         if count > 0 {
             return first as usize..(first + count) as usize;
         }
@@ -119,10 +128,15 @@ impl ProjectionTree {
             return 0..0;
         }
         let first = self.cells.len();
-        self.cells[cell].below = (first as u32, 4);
+        (self.cells[cell].first_below, self.cells[cell].below) = (first as u32, 4);
         for part in piece.divided(self.h) {
             let number = self.pieces.len() as u32;
-            self.cells.push(Cell { projection: part.projection(), piece: Some(number), below: (0, 0) });
+            self.cells.push(Cell {
+                projection: part.projection(),
+                piece: Some(number),
+                first_below: 0,
+                below: 0,
+            });
             self.pieces.push(part);
         }
         first..first + 4

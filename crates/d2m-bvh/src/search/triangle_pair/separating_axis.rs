@@ -8,7 +8,7 @@ use super::turning::{TurningTriangle, clear_along_turning};
 use super::widest_gap::{greatest, least, widest_gap, widest_normal};
 use crate::search::motion::frame::Frame;
 use crate::tree::margin::UP;
-use d2m_lanes::{Doubles, Quad, QuadVec};
+use d2m_lanes::{Doubles, F64x4, QuadVec};
 use glam::DVec3;
 
 /// Directions that are used are longer than this: lengths and times are about one, and the products of up to four of them and of
@@ -289,7 +289,7 @@ impl Placed {
         // |n·(ω × (ω × e))| = |(n × ω)·(ω × e)| ≤ |n × ω||ω||e|, and the same times |ω| for the next derivative.
         let [bound_a, bound_b] = self.centripetal_along(scale, turn_a, turn_b);
         let m = (bound_a + bound_b).min(scale.acceleration * length) * UP;
-        let quad = |v: &[f64; 3]| Quad([v[0], v[1], v[2], v[2]]);
+        let quad = |v: &[f64; 3]| F64x4::new([v[0], v[1], v[2], v[2]]);
         let (line_a, line_b) =
             (Lines { at: quad(&pa), rate: quad(&ra) }, Lines { at: quad(&pb), rate: quad(&rb) });
         let s =

@@ -9,8 +9,8 @@ mod avx {
     use crate::fixed::F64x2;
     use core::arch::x86_64::{
         __m256d, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_blendv_pd,
-        _mm256_cmp_pd, _mm256_max_pd, _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_set1_pd,
-        _mm256_sqrt_pd, _mm256_sub_pd, _mm256_xor_pd,
+        _mm256_cmp_pd, _mm256_div_pd, _mm256_max_pd, _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd,
+        _mm256_set1_pd, _mm256_sqrt_pd, _mm256_sub_pd, _mm256_xor_pd,
     };
 
     /// An intrinsic of the vector unit that this module is compiled for.
@@ -31,7 +31,8 @@ mod avx {
     operators!(F64x4:
         Add add |a, b| Self(avx!(_mm256_add_pd(a.0, b.0))),
         Sub sub |a, b| Self(avx!(_mm256_sub_pd(a.0, b.0))),
-        Mul mul |a, b| Self(avx!(_mm256_mul_pd(a.0, b.0)));
+        Mul mul |a, b| Self(avx!(_mm256_mul_pd(a.0, b.0))),
+        Div div |a, b| Self(avx!(_mm256_div_pd(a.0, b.0)));
         |a| Self(avx!(_mm256_xor_pd(_mm256_set1_pd(-0.0), a.0))));
 
     impl F64x4 {
@@ -123,7 +124,8 @@ mod halves {
     operators!(F64x4:
         Add add |a, b| Self(a.0 + b.0, a.1 + b.1),
         Sub sub |a, b| Self(a.0 - b.0, a.1 - b.1),
-        Mul mul |a, b| Self(a.0 * b.0, a.1 * b.1);
+        Mul mul |a, b| Self(a.0 * b.0, a.1 * b.1),
+        Div div |a, b| Self(a.0 / b.0, a.1 / b.1);
         |a| Self(-a.0, -a.1));
 
     impl F64x4 {
