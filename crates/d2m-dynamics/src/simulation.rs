@@ -1,6 +1,6 @@
 //! The simulation: bodies, settings, time.
 
-use crate::broad_phase::SweptBoxes;
+use crate::broad_phase::{Aabb, Neighbors, meeting};
 use crate::contact::Material;
 use crate::faces::Faces;
 use crate::listener::{ContactListener, Nobody};
@@ -71,8 +71,8 @@ pub struct Simulation {
     /// Steps since the start, which began at time 0.
     pub(crate) steps: u64,
     pub(crate) recorder: Recorder,
-    /// Boxes about the flights of the bodies.
-    pub(crate) swept: SweptBoxes,
+    /// Boxes about the flights of the bodies, and which are near each other.
+    pub(crate) neighbors: Neighbors,
     /// The greatest kinetic energy of all bodies together so far.
     pub(crate) greatest_energy: f64,
     /// Bodies below this number have been checked for intersections.
@@ -104,7 +104,7 @@ impl Simulation {
             time: 0.0,
             steps: 0,
             recorder: Recorder::default(),
-            swept: SweptBoxes::default(),
+            neighbors: Neighbors::default(),
             greatest_energy: 0.0,
             checked: 0,
         })
@@ -355,11 +355,19 @@ impl Simulation {
     /// Bodies added since the last step must not intersect any other.
     fn check_start(&mut self) -> Result<(), StepError> {
         let first = self.checked;
-        for b in first..self.bodies.len() {
-            for a in 0..b {
-                if self.meets(a, b) {
-                    self.check_pair(a, b)?;
+        if first < self.bodies.len() {
+            let gap = self.options.gap;
+            let boxes: Vec<Aabb> =
+                self.bodies.iter().map(|body| Aabb::posed(body, &body.pose_at(self.time), gap)).collect();
+            let mut near = Vec::new();
+            meeting(&boxes, |a, b| {
+                if b >= first && self.meets(a, b) {
+                    near.push((b, a));
                 }
+            });
+            near.sort_unstable();
+            for (b, a) in near {
+                self.check_pair(a, b)?;
             }
         }
         self.checked = self.bodies.len();

@@ -192,7 +192,7 @@ impl Simulation {
         (self.time, self.steps) = (snapshot.time, snapshot.steps);
         self.checked = snapshot.checked.min(expected);
         self.greatest_energy = snapshot.greatest_energy;
-        self.swept = crate::broad_phase::SweptBoxes::default();
+        self.neighbors = crate::broad_phase::Neighbors::default();
         self.recorder = crate::record::Recorder::default();
         Ok(())
     }

@@ -2,7 +2,6 @@
 
 use super::event::{Cause, Event};
 use super::{Key, Step};
-use crate::broad_phase::candidates;
 use crate::pairs::{Outcome, Pair, fly};
 use crate::rigid_body::RigidBody;
 use crate::simulation::query_error;
@@ -10,9 +9,6 @@ use crate::{StepError, parallel};
 use d2m_bvh::Window;
 use glam::DVec3;
 use std::cmp::Reverse;
-
-/// From so many bodies on, all boxes are swept at once instead of compared with each of them.
-const MANY: usize = 16;
 
 /// Roundings of the distance of two centers that a sphere test allows for, relative to the sizes of what it is computed
 /// from: places after a flight (a product and a sum), a difference, a length of three squares, and the products and sums
@@ -108,29 +104,10 @@ impl Step<'_> {
     /// boxes are grown by the gap and by half of the margin at least.
     pub(super) fn partners(&mut self, of: &[usize]) -> Vec<Key> {
         let margin = self.sim.options.gap.max(0.5 * self.margin);
-        let mut swept = core::mem::take(&mut self.sim.swept);
-        let boxes = swept.update(&self.sim.bodies, self.end, margin);
-        let sim = &*self.sim;
-        let mut pairs = Vec::new();
-        if of.len() >= MANY {
-            let mut is_one = vec![false; boxes.len()];
-            for &i in of {
-                is_one[i] = true;
-            }
-            pairs = candidates(boxes, |a, b| (is_one[a] || is_one[b]) && sim.meets(a, b));
-        } else {
-            for &i in of {
-                for j in (0..boxes.len()).filter(|&j| j != i) {
-                    if boxes[i].may_meet(&boxes[j]) && sim.meets(i, j) {
-                        pairs.push((i.min(j), i.max(j)));
-                    }
-                }
-            }
-            pairs.sort_unstable();
-            pairs.dedup();
-        }
-        self.sim.swept = swept;
-        pairs
+        let sim = &mut *self.sim;
+        sim.neighbors.update(&sim.bodies, self.end, margin);
+        let sim = &*sim;
+        sim.neighbors.pairs(of, |a, b| sim.meets(a, b))
     }
 }
 

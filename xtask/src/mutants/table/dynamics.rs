@@ -128,4 +128,11 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "+ 0.5 * (spin(a) + spin(b))",
         "crates/d2m-dynamics/src/clearance.rs::a_bar_that_swings_comes_as_close_as_its_end",
     ),
+    patch(
+        "neighbors are kept though bodies leave their boxes",
+        "crates/d2m-dynamics/src/broad_phase/neighbors.rs",
+        "is_old |= !self",
+        "is_old &= !self",
+        "crates/d2m-dynamics/tests/scenes.rs::a_tumbling_pile_never_intersects_and_comes_to_rest",
+    ),
 ];

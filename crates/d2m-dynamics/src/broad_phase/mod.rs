@@ -1,5 +1,11 @@
 //! Boxes about what bodies sweep, and which of them meet.
 
+mod meeting;
+mod neighbors;
+
+pub(crate) use meeting::meeting;
+pub(crate) use neighbors::Neighbors;
+
 use crate::rigid_body::RigidBody;
 use d2m_motion::Pose;
 use glam::DVec3;
@@ -54,69 +60,14 @@ impl Aabb {
     pub(crate) fn may_meet(&self, other: &Self) -> bool {
         !(self.low.cmpgt(other.high).any() || other.low.cmpgt(self.high).any())
     }
-}
 
-/// What each body sweeps on its present flight, computed when it begins another one.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct SweptBoxes {
-    boxes: Vec<Aabb>,
-    /// Of which flight, until when, and by how much the box is grown.
-    known: Vec<Known>,
-}
-
-/// What a box is for: it holds as long as these are the same.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Known {
-    version: u64,
-    /// None: the body stands still.
-    end: Option<f64>,
-    margin: f64,
-}
-
-impl SweptBoxes {
-    /// The boxes of the flights to `end`, grown by `margin`.
-    pub(crate) fn update(&mut self, bodies: &[RigidBody], end: f64, margin: f64) -> &[Aabb] {
-        for (i, body) in bodies.iter().enumerate() {
-            let known = Known { version: body.version, end: (!body.stands_still()).then_some(end), margin };
-            if self.known.get(i) == Some(&known) {
-                continue;
-            }
-            let swept = Aabb::swept(body, end, margin);
-            if i < self.boxes.len() {
-                (self.boxes[i], self.known[i]) = (swept, known);
-            } else {
-                self.boxes.push(swept);
-                self.known.push(known);
-            }
-        }
-        &self.boxes
+    /// Grown by this much on all sides.
+    fn grown(&self, by: f64) -> Self {
+        Self { low: self.low - by, high: self.high + by }
     }
-}
 
-/// The pairs of boxes that may meet and that `wanted` wants, smaller number first, ascending.
-pub(crate) fn candidates(boxes: &[Aabb], wanted: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
-    let spread = |axis: usize| {
-        let middles = boxes.iter().map(|b| 0.5 * (b.low[axis] + b.high[axis]));
-        let (low, high) = middles.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), m| (l.min(m), h.max(m)));
-        high - low
-    };
-    let axis = (1..3).fold(0, |best, axis| if spread(axis) > spread(best) { axis } else { best });
-    let mut order: Vec<usize> = (0..boxes.len()).collect();
-    order.sort_by(|&i, &j| boxes[i].low[axis].total_cmp(&boxes[j].low[axis]).then(i.cmp(&j)));
-    let mut open: Vec<usize> = Vec::new();
-    let mut pairs = Vec::new();
-    for i in order {
-        let start = boxes[i].low[axis];
-        // A box that is not finite stays: it excludes nothing.
-        open.retain(|&j| boxes[j].high[axis] >= start || boxes[j].high[axis].is_nan());
-        for &j in &open {
-            let (a, b) = (i.min(j), i.max(j));
-            if boxes[i].may_meet(&boxes[j]) && wanted(a, b) {
-                pairs.push((a, b));
-            }
-        }
-        open.push(i);
+    /// No when a bound is not a number.
+    fn holds(&self, other: &Self) -> bool {
+        self.low.cmple(other.low).all() && self.high.cmpge(other.high).all()
     }
-    pairs.sort_unstable();
-    pairs
 }

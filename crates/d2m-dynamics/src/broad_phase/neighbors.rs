@@ -1,0 +1,101 @@
+//! The bodies near each body, kept from flight to flight.
+
+use super::{Aabb, meeting};
+use crate::rigid_body::RigidBody;
+
+/// Boxes are grown by this part of their bodies' radius for the lists of neighbors, which hold as long as no body leaves its grown box.
+const GROWN: f64 = 0.125;
+
+/// What each body sweeps on its present flight, computed when it begins another one, and the bodies near it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Neighbors {
+    boxes: Vec<Aabb>,
+    /// Of which flight, until when, and by how much the box is grown.
+    known: Vec<Known>,
+    /// Boxes that hold those; bodies are neighbors if these meet.
+    grown: Vec<Aabb>,
+    /// Where the neighbors of each body begin in `others`, and where the last ones end.
+    starts: Vec<usize>,
+    others: Vec<u32>,
+}
+
+/// What a box is for: it holds as long as these are the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Known {
+    version: u64,
+    /// None: the body stands still.
+    end: Option<f64>,
+    margin: f64,
+}
+
+impl Neighbors {
+    /// Brings boxes and neighbors to the flights to `end`, boxes grown by `margin`.
+    pub(crate) fn update(&mut self, bodies: &[RigidBody], end: f64, margin: f64) {
+        let mut is_old = self.boxes.len() != bodies.len();
+        for (i, body) in bodies.iter().enumerate() {
+            let known = Known { version: body.version, end: (!body.stands_still()).then_some(end), margin };
+            if self.known.get(i) == Some(&known) {
+                continue;
+            }
+            let swept = Aabb::swept(body, end, margin);
+            if i < self.boxes.len() {
+                (self.boxes[i], self.known[i]) = (swept, known);
+            } else {
+                self.boxes.push(swept);
+                self.known.push(known);
+            }
+            is_old |= !self.grown.get(i).is_some_and(|grown| grown.holds(&swept));
+        }
+        if is_old {
+            self.find(bodies);
+        }
+    }
+
+    /// The neighbors of all bodies.
+    fn find(&mut self, bodies: &[RigidBody]) {
+        let grown = self
+            .boxes
+            .iter()
+            .zip(bodies)
+            .map(|(b, body)| if body.is_dynamic() { b.grown(GROWN * body.radius) } else { *b });
+        self.grown = grown.collect();
+        let mut pairs = Vec::new();
+        // What no force moves meets nothing of its kind.
+        meeting(&self.grown, |a, b| {
+            if bodies[a].is_dynamic() || bodies[b].is_dynamic() {
+                pairs.push([a as u32, b as u32]);
+            }
+        });
+        self.starts = vec![0; bodies.len() + 1];
+        for &i in pairs.iter().flatten() {
+            self.starts[i as usize + 1] += 1;
+        }
+        for k in 1..self.starts.len() {
+            self.starts[k] += self.starts[k - 1];
+        }
+        let mut next = self.starts.clone();
+        self.others = vec![0; 2 * pairs.len()];
+        for [a, b] in pairs {
+            for (i, j) in [(a, b), (b, a)] {
+                self.others[next[i as usize]] = j;
+                next[i as usize] += 1;
+            }
+        }
+    }
+
+    /// The pairs of one of these bodies and any other whose boxes may meet and that `wanted` wants, smaller number first, ascending.
+    pub(crate) fn pairs(&self, of: &[usize], wanted: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
+        let mut pairs = Vec::new();
+        for &i in of {
+            for &j in &self.others[self.starts[i]..self.starts[i + 1]] {
+                let (a, b) = (i.min(j as usize), i.max(j as usize));
+                if self.boxes[a].may_meet(&self.boxes[b]) && wanted(a, b) {
+                    pairs.push((a, b));
+                }
+            }
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+}
