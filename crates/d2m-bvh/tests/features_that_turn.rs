@@ -107,3 +107,39 @@ fn tips_that_turn_about_each_other() {
         assert!(work < 1 << 16, "{work}");
     }
 }
+
+/// Two edges cross at a gap down to 1e-9 while both triangles spin about lines through the crossing: until the edges are parallel, or
+/// for whole turns. The number of tests once grew as one over the gap: 12 million for 1e-8.
+#[test]
+fn edges_that_cross_while_both_turn() {
+    for gap in [1e-5, 1e-7, 1e-9] {
+        for (k, axes) in [
+            [DVec3::Z, DVec3::new(0.1, 0.05, 1.0)],
+            [DVec3::new(0.02, 0.01, -1.0), DVec3::new(0.01, -0.02, 1.0)],
+            [DVec3::new(0.02, 0.01, 0.7), DVec3::new(0.01, -0.02, 1.0)],
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let triangle = |corners: [DVec3; 3]| {
+                MeshTree::new(TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2]]).unwrap())
+            };
+            let lifted = DVec3::Z * gap;
+            let along = DVec3::new(0.54, 0.84, 0.0);
+            let upper = triangle([-DVec3::X + lifted, DVec3::X + lifted, DVec3::Z]);
+            let lower = triangle([-along, along, -DVec3::Z]);
+            let first = turned(0.0, axes[0].normalize() * 6.283).with_at(lifted).with_position(lifted);
+            let second = turned(0.0, axes[1].normalize() * -4.4);
+            for (a, b) in [((&upper, first), (&lower, second)), ((&lower, second), (&upper, first))] {
+                let (answer, work) = ask(a, b, (0.0, 1.0));
+                assert!(work < 2048, "{gap:e} {k}: {work}");
+                match answer {
+                    TimeOfContact::Contact(contact) => {
+                        assert!(k != 1 && (0.09..0.1).contains(&contact.time_lo), "{gap:e} {k}: {contact:?}");
+                    }
+                    other => assert!(k == 1 && other == TimeOfContact::Separated, "{gap:e} {k}: {other:?}"),
+                }
+            }
+        }
+    }
+}

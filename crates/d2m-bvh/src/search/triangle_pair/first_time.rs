@@ -74,6 +74,18 @@ pub(super) struct PathAlong {
     pub(super) jerk: f64,
 }
 
+impl PathAlong {
+    /// The sum of both.
+    pub(super) fn plus(&self, other: &Self) -> Self {
+        Self {
+            gap: self.gap + other.gap,
+            rate: self.rate + other.rate,
+            bend: self.bend + other.bend,
+            jerk: self.jerk + other.jerk,
+        }
+    }
+}
+
 /// A time until which all gaps stay positive, of which none beyond `enough` matters.
 ///
 /// Each f(s) ≥ g + v s + a s²/2 − J s³/6, and for s ≤ S the last two terms are at least (a − J S/3) s²/2: a

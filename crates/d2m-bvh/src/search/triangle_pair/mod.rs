@@ -6,4 +6,5 @@ pub(crate) mod pair_scale;
 mod refined_directions;
 pub(crate) mod separating_axis;
 mod turning;
+mod turning_edges;
 pub(crate) mod widest_gap;

@@ -1,10 +1,11 @@
 //! Two triangles in motion: until when does a fixed direction keep them apart by more than the level?
 
-use super::closest::closest;
+use super::closest::{Closest, Place, closest};
 use super::first_time::{Jets, Lines, first_time, first_time_of_jets};
 use super::pair_scale::PairScale;
 use super::refined_directions::{middle_direction, refined_directions};
 use super::turning::{TurningTriangle, clear_along_turning};
+use super::turning_edges::{CrossingEdges, clear_across_edges};
 use super::widest_gap::{greatest, least, widest_gap, widest_normal};
 use crate::search::motion::frame::Frame;
 use crate::tree::margin::UP;
@@ -112,6 +113,9 @@ pub(crate) fn separating_axis_test<D: Doubles>(
             let near = closest::<D>(&placed.a, &placed.b);
             direction = near.direction;
             touching = near.distance_squared <= scale.stop * scale.stop;
+            if order == BoundOrder::Turning {
+                best = placed.clear_while_edges_turn(&near, scale, best);
+            }
         }
         best = placed.clear_for::<D>(direction, scale, scale.target(), best);
         if order == BoundOrder::Turning && best < SHORT * enough {
@@ -252,6 +256,26 @@ impl Placed {
             return known;
         }
         let need = (scale.target() + TURNING_ERRORS * scale.error) * length;
+        let [a, b] = self.turning_triangles();
+        let with_b = clear_along_turning(n, &b, &a, need, self.enough);
+        let with_a = clear_along_turning(n, &a, &b, need, self.enough);
+        with_a.max(with_b).max(known)
+    }
+
+    /// The larger of `known` and the time for which the direction across both edges, where the closest points lie on two, keeps the
+    /// pair further apart than the level that pairs are advanced to.
+    #[cold]
+    #[inline(never)]
+    fn clear_while_edges_turn(&self, near: &Closest, scale: &PairScale, known: f64) -> f64 {
+        let [Place::Edge(i), Place::Edge(j)] = near.places else { return known };
+        let crossing = CrossingEdges { edges: [i, j], points: near.points };
+        let need = scale.target() + TURNING_ERRORS * scale.error;
+        let [a, b] = self.turning_triangles();
+        clear_across_edges(&crossing, &a, &b, need, self.enough).max(known)
+    }
+
+    /// The triangles as they turn with their bodies.
+    fn turning_triangles(&self) -> [TurningTriangle; 2] {
         let a = TurningTriangle {
             corners: self.a.map(|corner| corner - self.offset),
             center: self.offset,
@@ -266,9 +290,7 @@ impl Placed {
             omega: self.omega_b,
             arm: self.arm_b,
         };
-        let with_b = clear_along_turning(n, &b, &a, need, self.enough);
-        let with_a = clear_along_turning(n, &a, &b, need, self.enough);
-        with_a.max(with_b).max(known)
+        [a, b]
     }
 
     /// The same with the vertices' own accelerations; positions and rates along `n`, of A and of B, are given, and which
