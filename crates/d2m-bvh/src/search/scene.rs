@@ -16,6 +16,8 @@ use glam::DVec3;
 const TRIANGLE_ERROR: f64 = 128.0 * UNIT_F64;
 /// Factor of the error of frames, for node tests.
 const FRAME_ERROR: f64 = 256.0 * UNIT_F64;
+/// Far frames err by at most so many times as much.
+const FAR_FRAMES: f64 = 4.0;
 /// Factor of the error of the distance of two balls: positions err by less than 64·2⁻⁵³ of the size, and the few
 /// operations after that by less.
 const BALL_ERROR: f64 = 128.0 * UNIT_F64;
@@ -31,7 +33,7 @@ const DEFAULT_TOLERANCE: f64 = 1e-10;
 /// Part of δ that pairs are advanced to above the level. Large against roundings, small against δ.
 const SLACK: f64 = 1.0 / 64.0;
 /// Most rotation, both bodies together, inside one sub-window: frames hold for 0.35 radians.
-const WINDOW_ANGLE: f64 = 0.3;
+pub(super) const WINDOW_ANGLE: f64 = 0.3;
 /// Most radians between a reference time and the window: poses are proven for less than 2⁵⁰, and a window of
 /// [`WINDOW_ANGLE`] is then long against the resolution of offsets.
 const MOST_ANGLE: f64 = 1_099_511_627_776.0; // 2⁴⁰
@@ -254,6 +256,11 @@ impl<'a> Scene<'a> {
     /// The motion over the sub-window of a search that begins at `start`.
     pub(crate) fn relative_motion(&self, start: f64) -> RelativeMotion {
         RelativeMotion::new([&self.a.motion, &self.b.motion], &self.track, start)
+    }
+
+    /// What far frames err by more than others, which the floor of [`NodeScale`] covers.
+    pub(crate) fn far_frame_error(&self) -> f64 {
+        (FAR_FRAMES - 1.0) * FRAME_ERROR * self.size
     }
 
     /// The speed of the reference points against each other.

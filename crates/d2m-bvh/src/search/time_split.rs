@@ -9,26 +9,31 @@
 //! See docs/theory/engine.md, "Time, divided".
 
 use super::best_first::{OneWindow, expander};
-use super::motion::frame::RelativeMotion;
+use super::motion::frame::{FAR_ANGLE, PlacedFrame, RelativeMotion};
 use super::node_pair::node_scale::NodeScale;
 use super::node_pair::whole_span::{PlacedPose, SpanFrame};
 use super::queue::{Item, WaitingSpan, WaitingSpans};
-use super::scene::{Scene, SceneBody};
+use super::scene::{Scene, SceneBody, WINDOW_ANGLE};
 use super::state::{Outcome, Search, Step, SubWindow};
 use crate::tree::node::WIDTH;
 use d2m_lanes::{Lanes, Task, run_on};
 
 /// A span is halved so often before it is searched.
-const HALVINGS: usize = 2;
+const HALVINGS: usize = 4;
 /// Steps of the grid of times on which the spans and their middles lie.
 const GRID: usize = 2 << HALVINGS;
-/// A span is so many of the longest sub-windows: all its times are within 0.35 rad of its middle, where frames hold.
-const SPAN: f64 = 2.0;
+/// A span is so many of the longest sub-windows. At all its times the bodies are within 1.2 rad of how they lie in its middle,
+/// so that far frames hold, with room for roundings.
+const SPAN: f64 = 8.0;
+const _: () = assert!(0.5 * SPAN * WINDOW_ANGLE < 0.99 * FAR_ANGLE);
 /// Queries of fewer sub-windows are searched one sub-window after the other: most meet within the first few, and a span costs
 /// about as much as it saves then.
 const FEW_SUB_WINDOWS: f64 = 64.0;
 /// More pairs than this are handed on as they are: the search of the parts has a queue for them.
 const MOST_PAIRS: usize = 256;
+/// Tests of a part that is not halved any more, besides half a test for each of its pairs: if they are not enough, the bodies are
+/// near each other in it, and it is searched in any case.
+const LAST_TESTS: usize = 8;
 
 /// Whether the larger box of a pair has at least this radius.
 fn is_large(scene: &Scene<'_>, item: &Item, least: f64) -> bool {
@@ -129,7 +134,8 @@ impl Search<'_> {
                 return Step::Answer(Outcome::OutOfBudget(start));
             }
             if self.work() >= self.limits.sweep_from {
-                let frame = grid.motion.frame::<L::Doubles>(start - grid.motion.start);
+                let PlacedFrame { frame, .. } =
+                    grid.motion.far_frame::<L::Doubles>(start - grid.motion.start);
                 let boxes = waiting.pairs[now.pairs.0].boxes;
                 let until = self.sweep(&grid.motion, &frame, start, boxes);
                 if let Some(until) = until.filter(|until| *until >= end) {
@@ -182,26 +188,34 @@ impl Search<'_> {
             pairs.append(to_expand);
             return;
         };
-        let bend = scene.pair.acceleration * (0.125 * length * length);
+        let bend = scene.pair.acceleration * (0.125 * length * length) + scene.far_frame_error();
         let frames = [
-            SpanFrame::new::<L::Doubles>([&start[0], &middle[0], &end[0]], &grid.scales[0], bend),
-            SpanFrame::new::<L::Doubles>([&start[1], &middle[1], &end[1]], &grid.scales[1], bend),
+            SpanFrame::<L>::new([&start[0], &middle[0], &end[0]], &grid.scales[0], bend),
+            SpanFrame::<L>::new([&start[1], &middle[1], &end[1]], &grid.scales[1], bend),
         ];
-        let most = pairs.len() + MOST_PAIRS;
-        let mut rows = [[0; 4]; WIDTH];
-        let (mut tests, mut queued) = (0, 0);
-        while let Some(item) = to_expand.pop() {
-            let few = pairs.len() + to_expand.len() < most;
+        let (most, given) = (pairs.len() + MOST_PAIRS, to_expand.len());
+        let halved = span.to - span.from > 2;
+        let most_tests = if halved { usize::MAX } else { given / 2 + LAST_TESTS };
+        // First in, first out: what is next is known while a test is under way, and no length of a list is guessed.
+        let (mut tests, mut next) = (0, 0);
+        while let Some(&item) = to_expand.get(next) {
+            next += 1;
+            if let Some(ahead) = to_expand.get(next).filter(|item| item.next & Item::TRIANGLES == 0) {
+                L::prefetch(&expander.nodes[ahead.side()][ahead.node() as usize]);
+            }
+            let few = tests < most_tests && pairs.len() + to_expand.len() - next < most;
             if item.next & Item::TRIANGLES != 0 || !few || !is_large(scene, &item, large) {
                 pairs.push(item);
                 continue;
             }
-            let expanded = expander.expand_over_span::<L>(&item, &frames);
-            let count = L::pack(&expanded, &mut rows);
-            to_expand.extend(rows[..count].iter().map(|row| Item::from_row(*row)));
+            let mut rows = [[0; 4]; WIDTH];
+            let count = L::pack(&expander.expand_over_span::<L>(&item, &frames), &mut rows);
+            let end = to_expand.len() + count;
+            to_expand.extend_from_slice(&rows.map(Item::from_row));
+            to_expand.truncate(end);
             tests += 1;
-            queued += count as u64;
         }
+        let (tests, queued) = (tests as u64, (to_expand.len() - given) as u64);
         let counts = &mut self.scratch.counts;
         (counts.node_tests, counts.queued) = (counts.node_tests + tests, counts.queued + queued);
         counts.frames += 1;

@@ -39,6 +39,20 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/src/search/span_tests.rs::pairs_that_are_proven_apart_are_apart_all_the_time",
     ),
     patch(
+        "over a span the single box stays as it lies at its start",
+        "crates/d2m-bvh/src/search/node_pair/whole_span.rs",
+        "single: carried::<L>(&single_start, &single_end),",
+        "single: carried::<L>(&single_start, &single_start),",
+        "crates/d2m-bvh/src/search/span_tests.rs::pairs_that_are_proven_apart_are_apart_all_the_time",
+    ),
+    patch(
+        "far frames have no more terms than near ones",
+        "crates/d2m-bvh/src/search/motion/frame.rs",
+        "z * (1.0 / 6_227_020_800.0 - rest1)",
+        "z * (1.0 / 6_227_020_800.0 - 0.0 * rest1)",
+        "crates/d2m-bvh/src/search/span_tests.rs::far_frames_err_by_four_times_as_much_at_most",
+    ),
+    patch(
         "unit vectors whose squares underflow are kept, however long they became",
         "crates/d2m-bvh/src/search/node_pair/discriminant.rs",
         "const LONGEST_SQUARE: f32 = 1.0 + 16.0 * UNIT_F32 as f32;",

@@ -23,6 +23,9 @@ pub(crate) struct RelativeMotion {
 /// Frames hold for so many of the longest windows: for 0.33 radians, and they are proven for 0.35.
 pub(crate) const FRAME_REACH: f64 = 1.1;
 
+/// Far frames are proven for so many radians from the start of a motion.
+pub(crate) const FAR_ANGLE: f64 = 1.25;
+
 /// Vectors that turn with a body.
 const COLUMNS: usize = 5;
 
@@ -78,21 +81,33 @@ impl BodyRotation {
     }
 
     /// R(s) = R + s·f₁(θ²)·[ω]R + s²·f₂(θ²)·[ω]²R, θ = |ω|s, f₁ = sin θ/θ, f₂ = (1 − cos θ)/θ², and so every vector
-    /// that turns with the body. The Taylor sums leave out less than 2⁻⁶⁰ for |θ| ≤ 0.35.
+    /// that turns with the body. The Taylor sums leave out less than 2⁻⁶⁰ for |θ| ≤ 0.35; those of a far frame, with three
+    /// terms more, less than 2⁻⁵⁸ for |θ| ≤ [`FAR_ANGLE`].
     #[inline(always)]
-    fn at<D: Doubles>(&self, s: f64) -> Turned {
+    fn at<D: Doubles, const FAR: bool>(&self, s: f64) -> Turned {
         let z = self.omega_squared * (s * s);
+        let (rest1, rest2) = if FAR {
+            (
+                z * (1.0 / 1_307_674_368_000.0
+                    - z * (1.0 / 355_687_428_096_000.0 - z * (1.0 / 121_645_100_408_832_000.0))),
+                z * (1.0 / 20_922_789_888_000.0
+                    - z * (1.0 / 6_402_373_705_728_000.0 - z * (1.0 / 2_432_902_008_176_640_000.0))),
+            )
+        } else {
+            (0.0, 0.0)
+        };
         let f1 = 1.0
             - z * (1.0 / 6.0
                 - z * (1.0 / 120.0
                     - z * (1.0 / 5040.0
-                        - z * (1.0 / 362_880.0 - z * (1.0 / 39_916_800.0 - z * (1.0 / 6_227_020_800.0))))));
+                        - z * (1.0 / 362_880.0
+                            - z * (1.0 / 39_916_800.0 - z * (1.0 / 6_227_020_800.0 - rest1))))));
         let f2 = 0.5
             - z * (1.0 / 24.0
                 - z * (1.0 / 720.0
                     - z * (1.0 / 40_320.0
                         - z * (1.0 / 3_628_800.0
-                            - z * (1.0 / 479_001_600.0 - z * (1.0 / 87_178_291_200.0))))));
+                            - z * (1.0 / 479_001_600.0 - z * (1.0 / 87_178_291_200.0 - rest2))))));
         let (f1, f2) = (D::splat(f1 * s), D::splat(f2 * (s * s)));
         let mut out = [Quad([0.0; 4]); COLUMNS];
         for (k, column) in out.iter_mut().enumerate() {
@@ -170,20 +185,25 @@ impl RelativeMotion {
 
     /// Axes of B in the world at an offset.
     pub(crate) fn rotation_b(&self, offset: f64) -> Matrix {
-        self.bodies[1].at::<F64x4>(offset).rotation
+        self.bodies[1].at::<F64x4, true>(offset).rotation
     }
 
     /// State at an offset with |ω|·|offset| ≤ 0.35 for both bodies.
     #[inline(always)]
     pub(crate) fn frame<D: Doubles>(&self, offset: f64) -> Frame {
-        self.placed_frame::<D>(offset).frame
+        self.placed_frame::<D, false>(offset).frame
     }
 
-    /// The same, placed in the world.
+    /// The same, placed in the world, for |ω|·|offset| ≤ [`FAR_ANGLE`]; it errs by at most four times as much.
     #[inline(always)]
-    pub(crate) fn placed_frame<D: Doubles>(&self, offset: f64) -> PlacedFrame {
+    pub(crate) fn far_frame<D: Doubles>(&self, offset: f64) -> PlacedFrame {
+        self.placed_frame::<D, true>(offset)
+    }
+
+    #[inline(always)]
+    fn placed_frame<D: Doubles, const FAR: bool>(&self, offset: f64) -> PlacedFrame {
         let [body_a, body_b] = &self.bodies;
-        let (a, b) = (body_a.at::<D>(offset), body_b.at::<D>(offset));
+        let (a, b) = (body_a.at::<D, FAR>(offset), body_b.at::<D, FAR>(offset));
         // Center of A minus center of B, and its rate, world axes.
         let velocity = D::load(&self.velocity);
         let moved = D::load(&self.position) + velocity * D::splat(offset);

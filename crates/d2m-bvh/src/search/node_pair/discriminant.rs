@@ -65,7 +65,7 @@ pub(super) fn unit<L: Lanes>(v: &[L; 3]) -> [L; 3] {
     [keep(n[0]), keep(n[1]), keep(n[2])]
 }
 
-/// The direction (S_A + S_B + λ·1)⁻¹ c as [`unit`] gives it, for the unit vector `line` along c.
+/// The direction (S_A + S_B + λ·1)⁻¹ c as [`unit`] gives it; `line`: c, or any multiple.
 #[inline(always)]
 pub(super) fn discriminant<L: Lanes>(Spread(a): &Spread<L>, Spread(b): &Spread<L>, line: &[L; 3]) -> [L; 3] {
     let [mut xx, mut yy, mut zz] = [a[0] + b[0], a[1] + b[1], a[2] + b[2]];

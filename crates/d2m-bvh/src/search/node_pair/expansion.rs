@@ -74,7 +74,7 @@ impl NodePairExpander<'_> {
     /// Expands an item that is not a pair of triangles: wanted are the pairs that are not proven apart over the span. Keys are
     /// zero.
     #[inline(always)]
-    pub(crate) fn expand_over_span<L: Lanes>(&self, item: &Item, frames: &[SpanFrame<'_>; 2]) -> Rows {
+    pub(crate) fn expand_over_span<L: Lanes>(&self, item: &Item, frames: &[SpanFrame<'_, L>; 2]) -> Rows {
         let side = item.side();
         let wide = &self.nodes[side][item.node() as usize];
         let single = NodeBox::new(self.nodes[1 - side], item.boxes[1 - side]);
