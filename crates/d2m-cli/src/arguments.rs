@@ -27,6 +27,8 @@ pub(crate) enum Command {
     Distance(DistanceArguments),
     /// Whether two bodies at rest share a point
     Collide(CollideArguments),
+    /// All places where two bodies at rest are locally closest, within a margin: their contact manifold
+    Proximities(ProximitiesArguments),
     /// Rigid bodies under gravity, contacts and friction, from a scene file to a run file
     Simulate(SimulateArguments),
     /// Contacts of many moving bodies, from a scene file
@@ -167,8 +169,6 @@ pub(crate) struct PosedArguments {
     /// Pose of B; the mesh as it is if not given
     #[arg(long, value_name = "P", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
     pub(crate) pose_b: String,
-    #[command(flatten)]
-    pub(crate) solid: SolidArguments,
     /// Answer as one JSON object
     #[arg(long)]
     pub(crate) json: bool,
@@ -193,6 +193,8 @@ Example:
 pub(crate) struct DistanceArguments {
     #[command(flatten)]
     pub(crate) posed: PosedArguments,
+    #[command(flatten)]
+    pub(crate) solid: SolidArguments,
 }
 
 #[derive(Debug, Args)]
@@ -211,6 +213,39 @@ Example:
 pub(crate) struct CollideArguments {
     #[command(flatten)]
     pub(crate) posed: PosedArguments,
+    #[command(flatten)]
+    pub(crate) solid: SolidArguments,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A pose is x=1,2,3;q=w,x,y,z[;at=1,2,3]: where the body point at (the origin if left out) is, and how the body is turned.
+@FILE reads the same keys from JSON.
+
+A pair of points is locally closest when no point of A next to the one is nearer to the other, and none of B next to the other is
+nearer to the one. The answer lists all such pairs within the margin, the closest first, each with its points, the unit normal from A to B,
+the distance, the features (vertex and face, or two edges) and the triangles that hold the points: what a contact manifold is made of.
+Only surfaces count. Where faces lie parallel, the corners of the patch stand for it. --reduce keeps at most four of the pairs
+whose normals differ by less than the angle: the closest and those that span the largest area. tilt (in JSON) is above zero only
+for pairs that --cone-slack lets in: the sine of the angle by which the direction leaves the cone of normals.
+Surfaces that meet have no closest features: status (in JSON) is contact then, and separated otherwise.
+
+Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 separated.
+
+Example:
+  d2m proximities shape:box shape:gear --pose-b 'x=0,0,1' --margin 0.5 --reduce")]
+pub(crate) struct ProximitiesArguments {
+    #[command(flatten)]
+    pub(crate) posed: PosedArguments,
+    /// Distance up to which features are listed
+    #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true)]
+    pub(crate) margin: String,
+    /// List also features whose direction leaves the cone of normals by less than this sine of an angle
+    #[arg(long, value_name = "SINE", allow_hyphen_values = true)]
+    pub(crate) cone_slack: Option<String>,
+    /// At most four pairs of those with the same normal, up to this angle in radians
+    #[arg(long, value_name = "ANGLE", num_args = 0..=1, default_missing_value = "0.1")]
+    pub(crate) reduce: Option<String>,
 }
 
 #[derive(Debug, Args)]

@@ -40,6 +40,7 @@ fn main() -> ExitCode {
         Command::Features(arguments) => commands::features::run(arguments).map(Outcome::from),
         Command::Distance(arguments) => commands::distance::run(arguments),
         Command::Collide(arguments) => commands::collide::run(arguments),
+        Command::Proximities(arguments) => commands::proximities::run(arguments),
         Command::Simulate(arguments) => commands::simulate::run(arguments).map(Outcome::from),
         Command::Scene(arguments) => commands::scene::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments).map(Outcome::from),

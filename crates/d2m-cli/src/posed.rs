@@ -1,6 +1,6 @@
-//! Two bodies at rest, as `d2m distance` and `d2m collide` take them.
+//! Two bodies at rest, as `d2m distance`, `d2m collide` and `d2m proximities` take them.
 
-use crate::arguments::PosedArguments;
+use crate::arguments::{PosedArguments, SolidArguments};
 use crate::engine::choose_solid;
 use crate::failure::{Failure, parse_json};
 use crate::load::{load, read};
@@ -22,29 +22,29 @@ impl Body {
     }
 }
 
-/// Two bodies and what counts as one.
-pub(crate) struct PosedPair {
-    pub(crate) bodies: [Body; 2],
-    pub(crate) solid: Solid,
+/// Two bodies, A and B.
+pub(crate) struct PosedBodies {
+    pub(crate) both: [Body; 2],
 }
 
-impl PosedPair {
+impl PosedBodies {
     /// Reads poses, then meshes.
     pub(crate) fn new(arguments: &PosedArguments) -> Result<Self, Failure> {
         let poses = [parse_pose("--pose-a", &arguments.pose_a)?, parse_pose("--pose-b", &arguments.pose_b)?];
         let [a, b] = [load(&arguments.a)?, load(&arguments.b)?];
         let [pose_a, pose_b] = poses;
-        let bodies = [(a, pose_a), (b, pose_b)].map(|(loaded, pose)| Body {
+        let both = [(a, pose_a), (b, pose_b)].map(|(loaded, pose)| Body {
             name: loaded.name.clone(),
             tree: loaded.into_tree(),
             pose,
         });
-        let [a, b] = &bodies;
-        let solid = choose_solid(
-            [(&a.name, a.tree.is_watertight()), (&b.name, b.tree.is_watertight())],
-            arguments.solid,
-        )?;
-        Ok(Self { bodies, solid })
+        Ok(Self { both })
+    }
+
+    /// What counts as a body.
+    pub(crate) fn solid(&self, arguments: SolidArguments) -> Result<Solid, Failure> {
+        let bodies = self.both.each_ref().map(|body| (body.name.as_str(), body.tree.is_watertight()));
+        choose_solid(bodies, arguments)
     }
 
     /// An error of a query, with the option that it comes from.
@@ -52,7 +52,7 @@ impl PosedPair {
         match error {
             QueryError::BadPose { body } => {
                 let (option, pose) =
-                    [("--pose-a", 0), ("--pose-b", 1)].map(|(o, i)| (o, self.bodies[i].pose))[body.min(1)];
+                    [("--pose-a", 0), ("--pose-b", 1)].map(|(o, i)| (o, self.both[i].pose))[body.min(1)];
                 let [x, at] = [pose.translation, pose.at].map(|v| format!("{:?}", v.to_array()));
                 Failure::at(option, format!("x = {x}, at = {at}: lengths above 1e100 cannot be used"))
             }

@@ -26,7 +26,7 @@ pub(crate) fn feature_field(feature: FeaturePair) -> String {
     }
 }
 
-fn feature_sentence(feature: FeaturePair) -> String {
+pub(crate) fn feature_sentence(feature: FeaturePair) -> String {
     match feature {
         FeaturePair::VertexFace { vertex, face } => format!("vertex {vertex} of A against face {face} of B"),
         FeaturePair::FaceVertex { face, vertex } => format!("face {face} of A against vertex {vertex} of B"),

@@ -1,4 +1,4 @@
-//! `d2m distance`, `d2m collide` and `d2m tree`, and what the exit code says.
+//! `d2m distance`, `d2m collide`, `d2m proximities` and `d2m tree`, and what the exit code says.
 
 mod shell;
 
@@ -69,6 +69,78 @@ fn collide_names_triangles_or_containment() {
     assert!(stdout(&d2m(&inside)).contains("one body is inside the other"));
 }
 
+/// A box of half size 1 that stands 0.25 above another one, turned by a little about the vertical axis.
+const ABOVE: &str = "x=0,0,2.25;q=0.9,0,0,0.2";
+
+#[test]
+fn proximities_are_the_corners_of_the_patch() {
+    let near = ["proximities", UNIT_BOX, UNIT_BOX, "--pose-b", ABOVE, "--margin", "0.5"];
+    let value = json(&[&near[..], &["--json"]].concat());
+    let all = value["proximities"].as_array().unwrap();
+    assert_eq!((&value["status"], number(&value["margin"])), (&"separated".into(), 0.5));
+    assert_eq!(number(&value["found"]), all.len() as f64);
+    // Eight crossings of sides, and those of diagonals.
+    assert!(all.len() >= 8, "{value}");
+    for proximity in all {
+        assert!((number(&proximity["distance"]) - 0.25).abs() < 1e-12, "{proximity}");
+        assert!((number(&proximity["normal"][2]) - 1.0).abs() < 1e-12, "{proximity}");
+        assert!((number(&proximity["point_a"][2]) - 1.0).abs() < 1e-12, "{proximity}");
+        assert!((number(&proximity["point_b"][2]) - 1.25).abs() < 1e-12, "{proximity}");
+        assert!(number(&proximity["triangle_a"]) < 12.0 && number(&proximity["triangle_b"]) < 12.0);
+        assert!(proximity["feature"].as_str().unwrap().contains(':') && number(&proximity["tilt"]) == 0.0);
+    }
+    let reduced = json(&[&near[..], &["--reduce", "--json"]].concat());
+    let kept = reduced["proximities"].as_array().unwrap();
+    assert_eq!((kept.len(), &reduced["found"]), (4, &value["found"]));
+    assert!(kept.iter().all(|proximity| all.contains(proximity)));
+    assert_eq!(
+        json(&[&near[..], &["--reduce", "0.2", "--json"]].concat())["proximities"],
+        reduced["proximities"]
+    );
+    let text = stdout(&d2m(&[&near[..], &["--reduce"]].concat()));
+    assert!(text.starts_with(&format!("4 of {} within 0.5", all.len())), "{text}");
+    assert!(
+        text.contains("normal (0.000000000, 0.000000000, 1.000000000)") && text.contains("12 triangles"),
+        "{text}"
+    );
+    // A margin below the distance leaves nothing; bodies that meet have no closest features.
+    let none = json(&["proximities", UNIT_BOX, UNIT_BOX, "--pose-b", ABOVE, "--margin", "0.2", "--json"]);
+    assert_eq!((&none["status"], &none["found"]), (&"separated".into(), &0.into()));
+    let met = ["proximities", UNIT_BOX, UNIT_BOX, "--pose-b", "x=0.5,0.25,0.1", "--margin", "1"];
+    let value = json(&[&met[..], &["--json"]].concat());
+    assert_eq!((&value["status"], &value["found"]), (&"contact".into(), &Value::Null));
+    assert!(stdout(&d2m(&met)).starts_with("CONTACT"));
+    // A tilted card: one corner is closest, the slack of the cones lets its neighbors in.
+    let tilted = [
+        "proximities",
+        UNIT_BOX,
+        UNIT_BOX,
+        "--pose-b",
+        "x=0,0,2.5;q=1,0.01,0.02,0",
+        "--margin",
+        "1",
+        "--json",
+    ];
+    let (few, more) = (json(&tilted), json(&[&tilted[..], &["--cone-slack", "0.1"]].concat()));
+    assert!(number(&few["found"]) < number(&more["found"]), "{few} {more}");
+}
+
+#[test]
+fn margins_that_are_none_are_refused() {
+    let base = ["proximities", UNIT_BOX, UNIT_BOX, "--pose-b", ABOVE];
+    for (options, words) in [
+        (&["--margin", "-1"][..], "--margin: -1 is not a distance"),
+        (&["--margin", "nan"], "--margin"),
+        (&["--margin", "wide"], "\"wide\" is not a number"),
+        (&["--margin", "1", "--cone-slack", "-0.5"], "--cone-slack"),
+        (&["--margin", "1", "--reduce=inf"], "--reduce"),
+        (&["--margin", "1", "--pose-a", "v=1,0,0"], "a pose has x, q and at"),
+    ] {
+        refused(&[&base[..], options].concat(), &[words]);
+    }
+    assert_eq!(d2m(&base).status.code(), Some(2), "there is no margin to guess");
+}
+
 #[test]
 fn the_exit_code_says_the_answer_where_it_is_asked_for() {
     let code = |arguments: &[&str]| d2m(arguments).status.code();
@@ -92,9 +164,19 @@ fn the_exit_code_says_the_answer_where_it_is_asked_for() {
     // Bad usage and bad input stay what they are.
     assert_eq!(asked(&["toc", UNIT_BOX]), Some(2));
     assert_eq!(asked(&["toc", UNIT_BOX, "absent.obj"]), Some(3));
-    for command in
-        ["toc", "batch", "features", "distance", "collide", "scene", "simulate", "info", "tree", "view"]
-    {
+    for command in [
+        "toc",
+        "batch",
+        "features",
+        "distance",
+        "collide",
+        "proximities",
+        "scene",
+        "simulate",
+        "info",
+        "tree",
+        "view",
+    ] {
         let help = stdout(&d2m(&[command, "--help"]));
         assert!(help.contains("Exit codes: 0 "), "{command}: {help}");
     }

@@ -1,5 +1,6 @@
 //! Does a surface close, and into how many parts does it fall? The two questions a solid needs answered, quickly.
 
+use super::disjoint_sets::DisjointSets;
 use crate::{Topology, TriMesh};
 use glam::DVec3;
 
@@ -32,18 +33,24 @@ impl Closedness {
 
 /// For each vertex the lowest vertex with equal coordinates (−0 = 0).
 pub(super) fn first_at_position(vertices: &[DVec3]) -> Vec<u32> {
+    let bits = |p: &DVec3| p.to_array().map(|x| (x + 0.0).to_bits());
+    first_equal(vertices, bits)
+}
+
+/// For each item the lowest one with the same key: a table of twice the items, searched slot by slot.
+pub(super) fn first_equal<T>(items: &[T], key: impl Fn(&T) -> [u64; 3]) -> Vec<u32> {
     const EMPTY: u32 = u32::MAX;
-    let mask = (2 * vertices.len()).next_power_of_two() - 1;
+    let mask = (2 * items.len()).next_power_of_two() - 1;
     let mut table = vec![EMPTY; mask + 1];
-    let slot_of = |p: DVec3| {
-        let mix =
-            |h: u64, x: f64| (h ^ (x + 0.0).to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
-        (mix(mix(mix(0, p.x), p.y), p.z) >> 7) as usize & mask
+    let slot_of = |[x, y, z]: [u64; 3]| {
+        let mix = |h: u64, word: u64| (h ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+        (mix(mix(mix(0, x), y), z) >> 7) as usize & mask
     };
-    let mut first = Vec::with_capacity(vertices.len());
-    for (i, &p) in vertices.iter().enumerate() {
-        let mut slot = slot_of(p);
-        while table[slot] != EMPTY && vertices[table[slot] as usize] != p {
+    let mut first = Vec::with_capacity(items.len());
+    for (i, item) in items.iter().enumerate() {
+        let own = key(item);
+        let mut slot = slot_of(own);
+        while table[slot] != EMPTY && key(&items[table[slot] as usize]) != own {
             slot = (slot + 1) & mask;
         }
         if table[slot] == EMPTY {
@@ -110,19 +117,11 @@ fn components(mesh: &TriMesh, first: Vec<u32>) -> Vec<u32> {
 }
 
 /// For each vertex the lowest one of its set.
-fn joined(mesh: &TriMesh, mut parent: Vec<u32>) -> Vec<u32> {
-    fn root(parent: &mut [u32], mut i: u32) -> u32 {
-        while parent[i as usize] != i {
-            parent[i as usize] = parent[parent[i as usize] as usize];
-            i = parent[i as usize];
-        }
-        i
-    }
+fn joined(mesh: &TriMesh, first: Vec<u32>) -> Vec<u32> {
+    let mut sets = DisjointSets::from_parents(first);
     for &[i, j, k] in mesh.triangles() {
-        for other in [j, k] {
-            let (x, y) = (root(&mut parent, i), root(&mut parent, other));
-            parent[x.max(y) as usize] = x.min(y);
-        }
+        sets.join(i, j);
+        sets.join(i, k);
     }
-    (0..parent.len() as u32).map(|i| root(&mut parent, i)).collect()
+    (0..mesh.vertex_count() as u32).map(|i| sets.root(i)).collect()
 }

@@ -2,6 +2,7 @@
 
 mod adjacency;
 mod closedness;
+mod disjoint_sets;
 mod error;
 #[cfg(feature = "serde")]
 mod exact_number;

@@ -1,7 +1,8 @@
 //! Edges, neighbours, closedness and orientation. A *side* is one of the three directed edges of a triangle (a half-edge).
 
+use super::closedness::{first_at_position, first_equal};
+use super::disjoint_sets::DisjointSets;
 use crate::TriMesh;
-use std::collections::HashSet;
 
 /// "No triangle" in the neighbour lists.
 const NONE: u32 = u32::MAX;
@@ -72,16 +73,17 @@ pub struct Topology {
 impl Topology {
     /// Computes the combinatorics in O(n log n) time.
     pub fn new(mesh: &TriMesh) -> Self {
-        let representative = weld(mesh);
-        let mut seen = HashSet::with_capacity(mesh.triangle_count());
+        let representative = first_at_position(mesh.vertices());
+        let ends = |corners: &[u32; 3]| corners.map(|vertex| representative[vertex as usize]);
+        let first = first_equal(mesh.triangles(), |corners| smallest_first(ends(corners)).map(u64::from));
         let mut sides: Vec<Side> = Vec::with_capacity(3 * mesh.triangle_count());
         let mut used = vec![false; mesh.vertex_count()];
         let mut components = DisjointSets::new(mesh.vertex_count());
         let mut repeated = Vec::new();
         let mut face_count = 0;
         for (triangle, corners) in mesh.triangles().iter().enumerate() {
-            let corners = corners.map(|vertex| representative[vertex as usize]);
-            if !seen.insert(smallest_first(corners)) {
+            let corners = ends(corners);
+            if first[triangle] as usize != triangle {
                 repeated.push(triangle as u32);
                 continue;
             }
@@ -229,47 +231,5 @@ fn smallest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
         [b, c, a]
     } else {
         [c, a, b]
-    }
-}
-
-/// For each vertex the lowest index among the vertices with the same coordinates.
-fn weld(mesh: &TriMesh) -> Vec<u32> {
-    // Adding 0 turns −0 into +0, so equal positions have equal bits and sort next to each other.
-    let key =
-        |vertex: u32| (mesh.vertices()[vertex as usize] + glam::DVec3::ZERO).to_array().map(f64::to_bits);
-    let mut order: Vec<u32> = (0..mesh.vertex_count() as u32).collect();
-    order.sort_unstable_by_key(|&vertex| (key(vertex), vertex));
-    let mut representative = vec![0; mesh.vertex_count()];
-    let mut current: Option<u32> = None;
-    for vertex in order {
-        let first = current.filter(|&first| key(first) == key(vertex)).unwrap_or(vertex);
-        representative[vertex as usize] = first;
-        current = Some(first);
-    }
-    representative
-}
-
-/// Union–find with path halving; the root is the smallest member.
-struct DisjointSets {
-    parent: Vec<u32>,
-}
-
-impl DisjointSets {
-    fn new(count: usize) -> Self {
-        Self { parent: (0..count as u32).collect() }
-    }
-
-    fn root(&mut self, mut member: u32) -> u32 {
-        while self.parent[member as usize] != member {
-            let above = self.parent[self.parent[member as usize] as usize];
-            self.parent[member as usize] = above;
-            member = above;
-        }
-        member
-    }
-
-    fn join(&mut self, first: u32, second: u32) {
-        let (first, second) = (self.root(first), self.root(second));
-        self.parent[first.max(second) as usize] = first.min(second);
     }
 }

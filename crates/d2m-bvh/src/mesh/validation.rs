@@ -1,5 +1,6 @@
 //! What is unusual about a mesh: counts for a report, never a refusal.
 
+use super::disjoint_sets::DisjointSets;
 use crate::{Topology, TriMesh};
 use d2m_feature::orient2d;
 use glam::{DVec2, DVec3, Vec3Swizzles};
@@ -127,20 +128,14 @@ fn is_collinear(a: DVec3, b: DVec3, c: DVec3) -> bool {
 
 /// Positions whose triangles are not all joined through edges at that position.
 fn pinched_vertices(mesh: &TriMesh, topology: &Topology) -> usize {
-    // Union–find over the corners of triangles, numbered 3·triangle + slot.
-    let mut parent: Vec<u32> = (0..3 * mesh.triangle_count() as u32).collect();
-    fn root(parent: &mut [u32], mut i: u32) -> u32 {
-        while parent[i as usize] != i {
-            parent[i as usize] = parent[parent[i as usize] as usize];
-            i = parent[i as usize];
-        }
-        i
-    }
+    // Sets of corners of triangles, numbered 3·triangle + slot.
+    let corner_count = 3 * mesh.triangle_count();
+    let mut joined = DisjointSets::new(corner_count);
     let mut first_side = vec![None; topology.edges().len()];
     let at =
         |corner: u32| topology.representative(mesh.triangles()[corner as usize / 3][corner as usize % 3]);
     let sides = (0..mesh.triangle_count() as u32).flat_map(|t| (0..3).map(move |slot| (t, slot)));
-    let mut counted = vec![false; parent.len()];
+    let mut counted = vec![false; corner_count];
     for (triangle, slot) in sides {
         let Some(edge) = topology.edge_of(triangle, slot) else { continue };
         let ends = [3 * triangle + slot as u32, 3 * triangle + (slot as u32 + 1) % 3];
@@ -152,13 +147,12 @@ fn pinched_vertices(mesh: &TriMesh, topology: &Topology) -> usize {
         for end in ends {
             let other: [u32; 2] = first;
             let same = if at(other[0]) == at(end) { other[0] } else { other[1] };
-            let (x, y) = (root(&mut parent, end), root(&mut parent, same));
-            parent[x.max(y) as usize] = x.min(y);
+            joined.join(end, same);
         }
     }
     let mut fans = vec![0u8; mesh.vertex_count()];
-    for corner in 0..parent.len() as u32 {
-        if counted[corner as usize] && root(&mut parent, corner) == corner {
+    for corner in 0..corner_count as u32 {
+        if counted[corner as usize] && joined.root(corner) == corner {
             let fans = &mut fans[at(corner) as usize];
             *fans = fans.saturating_add(1);
         }

@@ -5,7 +5,7 @@ use crate::arguments::CollideArguments;
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::print;
-use crate::posed::PosedPair;
+use crate::posed::PosedBodies;
 use crate::report::{duration, microseconds};
 use d2m::bvh::{Solid, collide, try_colliding_pair};
 use serde_json::json;
@@ -14,13 +14,14 @@ use std::time::Instant;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
-    let pair = PosedPair::new(&arguments.posed)?;
-    let [a, b] = &pair.bodies;
+    let bodies = PosedBodies::new(&arguments.posed)?;
+    let solid = bodies.solid(arguments.solid)?;
+    let [a, b] = &bodies.both;
     let start = Instant::now();
-    let is_contact = collide(a.posed(), b.posed(), pair.solid).map_err(|error| pair.failure(error))?;
+    let is_contact = collide(a.posed(), b.posed(), solid).map_err(|error| bodies.failure(error))?;
     let took = start.elapsed();
     let triangles = if is_contact {
-        try_colliding_pair(a.posed(), b.posed()).map_err(|error| pair.failure(error))?
+        try_colliding_pair(a.posed(), b.posed()).map_err(|error| bodies.failure(error))?
     } else {
         None
     };
@@ -30,8 +31,8 @@ pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
             "triangle_a": triangles.map(|[a, _]| a),
             "triangle_b": triangles.map(|[_, b]| b),
             "contained": is_contact && triangles.is_none(),
-            "solid": pair.solid == Solid::Filled,
-            "triangles": pair.bodies.each_ref().map(|body| body.tree.mesh().triangle_count()),
+            "solid": solid == Solid::Filled,
+            "triangles": bodies.both.each_ref().map(|body| body.tree.mesh().triangle_count()),
             "microseconds": microseconds(took),
         });
         format!("{object}\n")
@@ -49,10 +50,10 @@ pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
                 line("contained", "the surfaces are apart and one body is inside the other".to_owned());
             }
         }
-        for (label, body) in ["A", "B"].into_iter().zip(&pair.bodies) {
+        for (label, body) in ["A", "B"].into_iter().zip(&bodies.both) {
             line(label, format!("{} · {} triangles", body.name, body.tree.mesh().triangle_count()));
         }
-        line("query", solid_word(pair.solid).to_owned());
+        line("query", solid_word(solid).to_owned());
         line("took", duration(took));
         text
     })?;

@@ -4,7 +4,7 @@ use crate::arguments::DistanceArguments;
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::print;
-use crate::posed::PosedPair;
+use crate::posed::PosedBodies;
 use crate::report::{duration, microseconds, short, start_word, vector};
 use d2m::bvh::{Distance, Solid, StartState, distance};
 use serde_json::json;
@@ -13,18 +13,23 @@ use std::time::{Duration, Instant};
 
 /// Runs the command.
 pub(crate) fn run(arguments: &DistanceArguments) -> Result<Outcome, Failure> {
-    let pair = PosedPair::new(&arguments.posed)?;
-    let [a, b] = &pair.bodies;
+    let bodies = PosedBodies::new(&arguments.posed)?;
+    let solid = bodies.solid(arguments.solid)?;
+    let [a, b] = &bodies.both;
     let start = Instant::now();
-    let found = distance(a.posed(), b.posed(), pair.solid);
+    let found = distance(a.posed(), b.posed(), solid);
     let took = start.elapsed();
-    let found = found.map_err(|error| pair.failure(error))?;
-    print(&if arguments.posed.json { to_json(&pair, &found, took) } else { to_text(&pair, &found, took) })?;
+    let found = found.map_err(|error| bodies.failure(error))?;
+    print(&if arguments.posed.json {
+        to_json(&bodies, solid, &found, took)
+    } else {
+        to_text(&bodies, solid, &found, took)
+    })?;
     let outcome = if found.state == StartState::Apart { Outcome::Separated } else { Outcome::Contact };
     Ok(outcome.reported(arguments.posed.exit_status))
 }
 
-fn to_text(pair: &PosedPair, found: &Distance, took: Duration) -> String {
+fn to_text(bodies: &PosedBodies, solid: Solid, found: &Distance, took: Duration) -> String {
     let mut text = match found.state {
         StartState::Apart => format!("DISTANCE {}\n", short(found.value)),
         state => format!("DISTANCE 0: {}\n", start_word(state)),
@@ -39,10 +44,10 @@ fn to_text(pair: &PosedPair, found: &Distance, took: Duration) -> String {
     if found.state == StartState::Apart {
         line("normal", format!("{} from A to B", vector(found.normal)));
     }
-    for (label, body) in ["A", "B"].into_iter().zip(&pair.bodies) {
+    for (label, body) in ["A", "B"].into_iter().zip(&bodies.both) {
         line(label, format!("{} · {} triangles", body.name, body.tree.mesh().triangle_count()));
     }
-    line("query", solid_word(pair.solid).to_owned());
+    line("query", solid_word(solid).to_owned());
     line("took", duration(took));
     text
 }
@@ -55,7 +60,7 @@ pub(super) fn solid_word(solid: Solid) -> &'static str {
     }
 }
 
-fn to_json(pair: &PosedPair, found: &Distance, took: Duration) -> String {
+fn to_json(bodies: &PosedBodies, solid: Solid, found: &Distance, took: Duration) -> String {
     let status = if found.state == StartState::Apart { "separated" } else { "contact" };
     let object = json!({
         "status": status,
@@ -70,8 +75,8 @@ fn to_json(pair: &PosedPair, found: &Distance, took: Duration) -> String {
         "triangle_b": found.triangle_b,
         "barycentric_a": found.barycentric_a,
         "barycentric_b": found.barycentric_b,
-        "solid": pair.solid == Solid::Filled,
-        "triangles": pair.bodies.each_ref().map(|body| body.tree.mesh().triangle_count()),
+        "solid": solid == Solid::Filled,
+        "triangles": bodies.both.each_ref().map(|body| body.tree.mesh().triangle_count()),
         "microseconds": microseconds(took),
     });
     format!("{object}\n")

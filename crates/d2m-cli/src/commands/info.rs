@@ -21,8 +21,8 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
         None => None,
     };
     let body = load(source)?;
-    let validation = Validation::new(body.mesh());
-    let parts = MeshParts::new(body.mesh());
+    // A large mesh takes a second for each.
+    let (validation, parts) = rayon::join(|| Validation::new(body.mesh()), || MeshParts::new(body.mesh()));
     if let Some(export) = export {
         let mut text = format!("# {source}\n");
         for vertex in body.mesh().vertices() {

@@ -52,7 +52,7 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
             let contacts = world.contacts_with_progress(scene.window, &progress).map_err(named)?;
             return Ok(contacts.into_iter().map(Row::from).collect());
         }
-        Ok(match world.first_contact(scene.window).map_err(named)? {
+        Ok(match world.first_contact_with_progress(scene.window, &progress).map_err(named)? {
             FirstContact::Separated => Vec::new(),
             FirstContact::Undecided { clear_until, a, b, .. } => {
                 vec![Row { bodies: [a.index(), b.index()], answer: TimeOfContact::Undecided { clear_until } }]

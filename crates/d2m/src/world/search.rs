@@ -165,7 +165,20 @@ impl World {
     /// # Errors
     /// Bad input of a pair, with its names.
     pub fn first_contact(&mut self, window: Window) -> Result<FirstContact, WorldError> {
-        let finding = self.search(window, Goal::First, &|_, _| ())?;
+        self.first_contact_with_progress(window, &|_, _| ())
+    }
+
+    /// As [`Self::first_contact`]; calls `progress` after each round with the number of pairs that are done, and of all pairs
+    /// that the broad phase leaves. Most searches end long before the two are equal.
+    ///
+    /// # Errors
+    /// Bad input of a pair, with its names.
+    pub fn first_contact_with_progress(
+        &mut self,
+        window: Window,
+        progress: &dyn Fn(usize, usize),
+    ) -> Result<FirstContact, WorldError> {
+        let finding = self.search(window, Goal::First, progress)?;
         let undecided = finding.first_undecided().map(|(pair, clear_until)| {
             let [a, b] = pair.map(|place| self.slots.id(place));
             (clear_until, FirstContact::Undecided { clear_until, a, b })

@@ -263,3 +263,29 @@ fn budgets_are_charged_with_the_work_of_any_motion() {
     assert_eq!(within(2 * work), exact);
     assert!(!exact.iter().any(is_undecided) && within(work / 4).iter().any(is_undecided));
 }
+
+/// Progress counts pairs that are done, never more than there are, and changes no answer.
+#[test]
+fn progress_counts_the_pairs_that_are_done() {
+    let cube = cube();
+    let mut fresh = World::new(QueryOptions::default());
+    for k in 0..24 {
+        let motion = flying(DVec3::X * (2.5 * f64::from(k)), DVec3::X * f64::from(k % 3 - 1));
+        fresh.add(Body::new(Arc::clone(&cube), motion.with_angular_velocity(DVec3::Z)));
+    }
+    for first in [true, false] {
+        let seen = std::cell::RefCell::new(Vec::new());
+        let progress = |done: usize, all: usize| seen.borrow_mut().push([done, all]);
+        let (mut quiet, mut told) = (fresh.clone(), fresh.clone());
+        if first {
+            let answer = told.first_contact_with_progress(Window::UNIT, &progress).unwrap();
+            assert_eq!(answer, quiet.first_contact(Window::UNIT).unwrap());
+        } else {
+            let answer = told.contacts_with_progress(Window::UNIT, &progress).unwrap();
+            assert_eq!(answer, quiet.contacts(Window::UNIT).unwrap());
+        }
+        let seen = seen.into_inner();
+        assert!(!seen.is_empty() && seen.iter().all(|[done, all]| done <= all), "{seen:?}");
+        assert!(seen.windows(2).all(|pair| pair[0][0] < pair[1][0]), "{seen:?}");
+    }
+}

@@ -1,11 +1,12 @@
 //! Distances at any distance, and proximities beside them. Meshes, poses and answers go to `.bench/scenes`, for peers.
-use super::{Target, figure, least_time, wrong};
+use super::{Target, figure, least_in_turn, wrong};
 use crate::TaskResult;
 use crate::bench::body::write_obj;
 use d2m::bvh::{Distance, MeshTree, Posed, Solid, StartState, collide, distance, proximities};
 use d2m::glam::{DQuat, DVec3};
 use d2m::motion::Pose;
 use std::fmt::Write as _;
+use std::time::Duration;
 
 /// Name, shape A, shape B.
 const PAIRS: [(&str, &str, &str); 8] = [
@@ -43,19 +44,19 @@ pub(super) fn run(rounds: usize) -> TaskResult {
         };
         let contact = at_contact(&a, &b, pose)?;
         let size = a.radius().max(b.radius());
-        let (mut near, mut worst, mut worst_gap) = (0.0, 0.0, 0.0);
-        for gap in GAPS {
-            let posed = (Posed::new(&a, pose(contact + gap * size)), Posed::at_rest(&b));
-            let found = distance(posed.0, posed.1, Solid::Surface)?;
-            check(posed.0, posed.1, &found)?;
-            let time = microseconds(rounds, || distance(posed.0, posed.1, Solid::Surface).is_ok());
-            if near == 0.0 {
-                near = time;
-            }
+        let at = |gap: f64| Posed::new(&a, pose(contact + gap * size));
+        let times =
+            times_of_all(4 * rounds, |gap| distance(at(gap), Posed::at_rest(&b), Solid::Surface).is_ok());
+        let near = times[0];
+        let (mut worst, mut worst_gap) = (0.0, 0.0);
+        for (gap, time) in GAPS.into_iter().zip(times) {
+            let posed = at(gap);
+            let found = distance(posed, Posed::at_rest(&b), Solid::Surface)?;
+            check(posed, Posed::at_rest(&b), &found)?;
             if time / near > worst {
                 (worst, worst_gap) = (time / near, gap);
             }
-            let (q, x) = (posed.0.pose.rotation, posed.0.pose.translation);
+            let (q, x) = (posed.pose.rotation, posed.pose.translation);
             let _ = writeln!(
                 table,
                 "{name},{gap},{},{},{},{},{},{},{},{},{time:.2}",
@@ -73,8 +74,10 @@ pub(super) fn run(rounds: usize) -> TaskResult {
         if (least - exact.value).abs() > SLACK * size {
             return Err(wrong("the closest proximity is not at the distance"));
         }
-        let one = microseconds(rounds, || distance(posed.0, posed.1, Solid::Surface).is_ok());
-        let all = microseconds(rounds, || proximities(posed.0, posed.1, margin).is_ok());
+        let mut one = repeated(|| distance(posed.0, posed.1, Solid::Surface).is_ok());
+        let mut all = repeated(|| proximities(posed.0, posed.1, margin).is_ok());
+        let times = least_in_turn(4 * rounds, || (), &mut [&mut one, &mut all]);
+        let (one, all) = (microseconds(times[0]), microseconds(times[1]));
         let what = format!(
             "proximities, {name}: margin {margin:.1e}, {} found, {all:.1} µs, over a distance",
             found.len()
@@ -87,9 +90,21 @@ pub(super) fn run(rounds: usize) -> TaskResult {
     Ok(())
 }
 
-fn microseconds(rounds: usize, mut query: impl FnMut() -> bool) -> f64 {
-    let (time, all) = least_time(rounds, || (), |()| (0..REPEATED).all(|_| query()));
-    assert!(all, "answered before");
+/// A query at each distance, in microseconds, all of them in turn.
+fn times_of_all(rounds: usize, query: impl Fn(f64) -> bool) -> Vec<f64> {
+    let query = &query;
+    let mut works = GAPS.map(|gap| repeated(move || query(gap)));
+    let mut works: Vec<&mut dyn FnMut(&mut ())> = works.iter_mut().map(|work| work as _).collect();
+    least_in_turn(rounds, || (), &mut works).into_iter().map(microseconds).collect()
+}
+
+/// As often as a measurement takes.
+fn repeated(query: impl Fn() -> bool) -> impl FnMut(&mut ()) {
+    move |()| assert!((0..REPEATED).all(|_| query()), "answered before")
+}
+
+/// Of one query.
+fn microseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e6 / f64::from(REPEATED)
 }
 

@@ -78,6 +78,24 @@ fn least_time<S, T>(
     (least, answer)
 }
 
+/// The least times of several pieces of work, done in turn so that they meet the same load of the machine; `prepare` is not counted.
+fn least_in_turn<S>(
+    rounds: usize,
+    mut prepare: impl FnMut() -> S,
+    works: &mut [&mut dyn FnMut(&mut S)],
+) -> Vec<Duration> {
+    let mut least = vec![Duration::MAX; works.len()];
+    for _ in 0..rounds {
+        for (least, work) in least.iter_mut().zip(works.iter_mut()) {
+            let mut state = prepare();
+            let start = Instant::now();
+            work(&mut state);
+            *least = start.elapsed().min(*least);
+        }
+    }
+    least
+}
+
 fn milliseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e3
 }
