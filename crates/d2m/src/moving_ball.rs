@@ -66,9 +66,10 @@ impl MovingBall {
             let size = d.abs().element_sum() + time * w.abs().element_sum();
             gap - GAP_ERROR * size > radius + UNDERFLOW
         };
-        // What is not a number proves nothing.
+        // What is not a number proves nothing. Squares of coordinates of about one are not lost to underflow: a direction that is
+        // longer than one proves what is not true.
         let stays_apart = |between: DVec3, until: f64| {
-            let direction = between / between.length();
+            let direction = (between / between.abs().max_element()).normalize();
             is_apart(direction, begin) && is_apart(direction, until)
         };
         let first = d + w * begin;
@@ -157,14 +158,15 @@ mod tests {
         }
     }
 
-    /// In units from 1e-60 to 1e60, near and far from the origin, from before and after the reference time: no point of a ball
-    /// is within the separation before the time that is given, and little is given away.
+    /// In units from 1e-161, where squares of lengths are lost to underflow, to 1e153, near and far from the origin, from before and
+    /// after the reference time: no point of a ball is within the separation before the time that is given, and little is given
+    /// away.
     #[test]
     fn nothing_is_late_in_any_unit() {
         let mut random = KnuthRandom(3);
         let mut useful = 0;
         for round in 0..20_000 {
-            let unit = 10f64.powi([0, 60, -60, 8, -8, 30][round % 6]);
+            let unit = 10f64.powi([0, 60, -60, 8, -8, 30, -155, -158, -161, 153][round % 10]);
             let offset = random.vector() * [0.0, 1e6, 1e12][round % 3];
             let at = random.vector() * if round % 5 == 0 { 0.3 } else { 0.0 };
             let mut one = || {
@@ -187,8 +189,8 @@ mod tests {
             };
             useful += 1;
             let gap = |time: f64| {
-                let d = (b.center - a.center) + (b.velocity - a.velocity) * time;
-                d.length() - (a.radius + b.radius + separation)
+                let d = ((b.center - a.center) + (b.velocity - a.velocity) * time) / unit;
+                d.length() * unit - (a.radius + b.radius + separation)
             };
             let step = (until - begin) / 64.0;
             let least = (0..=64).map(|k| gap(begin + step * f64::from(k))).fold(f64::INFINITY, f64::min);

@@ -59,6 +59,13 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m/src/moving_ball.rs::nothing_is_late_in_any_unit",
     ),
     patch(
+        "balls at distances whose squares are lost to underflow",
+        "crates/d2m/src/moving_ball.rs",
+        "(between / between.abs().max_element()).normalize()",
+        "between.normalize()",
+        "crates/d2m/src/moving_ball.rs::nothing_is_late_in_any_unit",
+    ),
+    patch(
         "balls that are apart at one end of a span only",
         "crates/d2m/src/moving_ball.rs",
         "is_apart(direction, begin) && is_apart(direction, until)",
