@@ -6,6 +6,7 @@ mod contact;
 mod enclosing_sphere;
 mod error;
 mod evidence;
+mod length;
 mod mesh;
 mod moving;
 mod nearest_point;

@@ -4,8 +4,8 @@ use d2m_bvh::{
     MeshTree, Moving, QueryError, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact,
 };
 use d2m_interval::{Interval, IntervalVec3};
-use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
-use glam::DVec3;
+use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Pose, RigidMotion, Span, Twist};
+use glam::{DQuat, DVec3};
 
 /// Knows where it is at single times, and nothing about how fast it moves.
 struct Unbounded(ConstantTwist);
@@ -105,4 +105,35 @@ fn motions_that_hide_the_bodies_are_refused() {
     }
     let far = start.with_position(DVec3::X * 1e100);
     assert_eq!(ask(&tree, &far, &options), Ok(TimeOfContact::Separated));
+}
+
+/// Keyframes over times so long, or in units so small, that squares of speeds or of distances are lost to underflow: the same
+/// answer as in ordinary units. Such bodies were called separated.
+#[test]
+fn keyframes_in_any_unit_and_over_any_time() {
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let time_of = |unit: f64, time: f64, turn: f64, kind: Span| {
+        let mesh = TriMesh::try_new(corners.map(|p| p * unit).to_vec(), faces.clone()).unwrap();
+        let tree = MeshTree::new(mesh);
+        let pose = |x: f64, turn: f64| Pose {
+            rotation: DQuat::from_rotation_z(turn),
+            translation: DVec3::X * (x * unit),
+            at: DVec3::ZERO,
+        };
+        let frames = [(0.0, pose(-5.0, 0.0)), (0.6 * time, pose(2.0, turn)), (time, pose(4.0, 0.0))];
+        let moving = Keyframes::try_new(&frames, kind).unwrap();
+        let (a, b) = (Moving::new(&tree, &moving), Moving::new(&tree, &ConstantTwist::REST));
+        let window = Window::try_new(0.0, time).unwrap();
+        let answer = time_of_contact(a, b, window, &QueryOptions::default()).unwrap();
+        answer.contact().unwrap_or_else(|| panic!("{unit:e} {time:e}: {answer:?}")).time_lo / time
+    };
+    for (kind, turn) in [(Span::Linear, 0.0), (Span::Screw, 0.0), (Span::Linear, 0.5), (Span::Screw, 0.5)] {
+        let usual = time_of(1.0, 1.0, turn, kind);
+        assert!((0.3..0.4).contains(&usual), "{usual}");
+        for (unit, time) in [(1.0, 1e170), (1.0, 1e280), (1e-100, 1e80), (1e-161, 1.0), (1e-158, 1e-20)] {
+            let scaled = time_of(unit, time, turn, kind);
+            assert!((scaled - usual).abs() < 1e-9, "{unit:e} {time:e} {turn} {kind:?}: {scaled} {usual}");
+        }
+    }
 }

@@ -2,6 +2,7 @@
 //!
 //! docs/theory/motions.md, section 3, derives the bound.
 
+use crate::length::length;
 use crate::{Moving, QueryError, Window};
 use d2m_interval::Interval;
 use d2m_lanes::UP;
@@ -79,7 +80,7 @@ fn candidates(body: &Moving<'_>, span: Interval, middle: f64, origin: DVec3) -> 
             rotation_radius,
             acceleration: kinematics.linear_rate,
             angular_rate: kinematics.angular_rate,
-            reach: (body.body.radius() + (body.body.center() - state.at).length()) * UP,
+            reach: (body.body.radius() + length(body.body.center() - state.at)) * UP,
             state,
         })
     };

@@ -9,6 +9,7 @@ use super::constant_twist::{ask, count_as_one_search, last_search_counts, scene_
 use super::fitted_twist::FittedTwists;
 use super::report::MOST_LEFT;
 use super::true_poses::{Meeting, PlacedTriangles};
+use crate::length::length;
 use crate::search::MovingTree;
 use crate::{
     Budget, Contact, Evidence, Mode, Moving, QueryError, QueryOptions, Solid, StartState, TimeOfContact,
@@ -244,21 +245,21 @@ impl<'a> Advance<'a> {
     /// Are the balls about the reference points apart over the span, whatever the bodies' turns? They move straight.
     ///
     /// Positions with their proven radii; the few operations after that round by less than 32 units in the last place of the
-    /// lengths that they add.
+    /// lengths that they add, and what underflow takes is less than the smallest normal number.
     fn balls_apart(&self, motions: [&dyn RigidMotion; 2], until: f64) -> bool {
         let [a, b] = motions.map(|motion| motion.enclose_state(self.now));
         let reach = |k: usize, at: DVec3| {
             let body = self.bodies[k].body;
-            body.radius() + (body.center() - at).length()
+            body.radius() + length(body.center() - at)
         };
         let reach = reach(0, a.at) + reach(1, b.at);
-        let apart = (a.position - b.position).length();
-        let closes = (a.linear - b.linear).length() * (until - self.now);
+        let apart = length(a.position - b.position);
+        let closes = length(a.linear - b.linear) * (until - self.now);
         let unknown = a.position_radius + b.position_radius;
-        let size = a.position.length() + b.position.length() + closes + reach + unknown;
+        let size = length(a.position) + length(b.position) + closes + reach + unknown;
         let level = self.options.min_separation + self.tolerance;
         // What is not a number is not apart.
-        apart - closes > reach + level + unknown + 32.0 * f64::EPSILON * (size + level)
+        apart - closes > reach + level + unknown + 32.0 * f64::EPSILON * (size + level) + f64::MIN_POSITIVE
     }
 
     fn ask(

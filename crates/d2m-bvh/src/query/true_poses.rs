@@ -1,6 +1,7 @@
 //! Two triangles where motions that enclose themselves place them, and what that proves.
 
 use super::proven_crossing::proven_crossing;
+use crate::length::length;
 use crate::{Moving, Window};
 use d2m_feature::{TriangleDistance, triangle_distance};
 use d2m_lanes::UP;
@@ -28,8 +29,8 @@ impl PlacedTriangles {
         let given = [0, 1].map(|k| bodies[k].body.mesh().corners(triangles[k] as usize));
         let place = |state: &CertifiedState, p: DVec3| state.rotation * (p - state.at) + state.position;
         let error = |state: &CertifiedState, corners: &[DVec3; 3]| {
-            let far = corners.iter().map(|&p| (p - state.at).length()).fold(0.0, f64::max) * UP;
-            let rounding = PLACED * (far + state.position.length());
+            let far = corners.iter().map(|&p| length(p - state.at)).fold(0.0, f64::max) * UP;
+            let rounding = PLACED * (far + length(state.position));
             (state.position_radius + state.rotation_radius * far + rounding) * UP + f64::MIN_POSITIVE
         };
         let twist = |state: &CertifiedState| Twist { linear: state.linear, angular: state.angular };

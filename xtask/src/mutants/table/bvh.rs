@@ -4,6 +4,13 @@ use super::{Mutant, in_test, patch};
 pub(super) const MUTANTS: &[Mutant] = &[
     // Trees.
     patch(
+        "speeds whose squares are lost to underflow count as rest",
+        "crates/d2m-bvh/src/query/general_motion.rs",
+        "let closes = length(a.linear - b.linear)",
+        "let closes = (a.linear - b.linear).length()",
+        "crates/d2m-bvh/tests/unbounded_motion.rs::keyframes_in_any_unit_and_over_any_time",
+    ),
+    patch(
         "extents of boxes not rounded outward",
         "crates/d2m-bvh/src/tree/surface.rs",
         "let half = self.half.map(|h| round_up(h + slack));",
