@@ -1,6 +1,6 @@
 //! What is next to each vertex and edge of a mesh, and which triangle answers for it: what tests of normal cones need.
 
-use super::closedness::first_at_position;
+use super::first_equal::first_at_position;
 use crate::TriMesh;
 
 /// "Not this triangle's": in the lists of owned features.

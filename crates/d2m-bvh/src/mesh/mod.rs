@@ -6,6 +6,7 @@ mod disjoint_sets;
 mod error;
 #[cfg(feature = "serde")]
 mod exact_number;
+mod first_equal;
 mod topology;
 mod tri_mesh;
 mod validation;

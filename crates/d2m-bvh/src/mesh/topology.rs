@@ -1,7 +1,7 @@
 //! Edges, neighbours, closedness and orientation. A *side* is one of the three directed edges of a triangle (a half-edge).
 
-use super::closedness::{first_at_position, first_equal};
 use super::disjoint_sets::DisjointSets;
+use super::first_equal::{first_at_position, first_equal};
 use crate::TriMesh;
 
 /// "No triangle" in the neighbour lists.
