@@ -2,16 +2,15 @@
 
 use crate::SimulationOptions;
 use crate::account::{Entry, balance};
-use crate::contact::{ContactPoint, HIT, Solver, SolverBody, Span, Sweeps, impact, select};
+use crate::contact::{ContactPoint, HIT, Scope, Solver, SolverBody, Span, Sweeps, impact, select};
 use crate::rigid_body::{Momenta, RigidBody, Velocity};
 use glam::DMat3;
+use std::borrow::Cow;
 
 /// Changes of rates in a sweep below this part of a gap a step end the iteration.
 const PRECISION: f64 = 1e-5;
-/// Sweeps times contacts of one solution: a budget. What a large island is solved less exactly for is met as an event.
-const WORK: usize = 60_000;
-/// Sweeps at least, and at most.
-const SWEEPS: (usize, usize) = (30, 4000);
+/// Of an island that is solved again, contacts whose rates differ by less than this part of a gap a step hold as they did.
+const HOLDS: f64 = 1.0 / 16.0;
 /// Sweeps for what need not be exact.
 const RESTORING: u32 = 50;
 /// Relative gain of energy that counts as rounding, and as the turn of inertia in a flight: 2⁻¹³.
@@ -95,7 +94,7 @@ pub(crate) fn solve(
     members.sort_unstable();
     members.dedup();
     let place = |body: usize| members.binary_search(&body).unwrap_or_default();
-    let mut states: Vec<RigidBody> = members.iter().map(|&i| bodies[i].clone()).collect();
+    let mut states: Vec<Cow<'_, RigidBody>> = members.iter().map(|&i| Cow::Borrowed(&bodies[i])).collect();
     let moves = |state: &RigidBody| state.is_dynamic() && !state.held;
     let mut impacts = vec![Momenta::default(); members.len()];
     let mut solved = Solved::default();
@@ -107,7 +106,7 @@ pub(crate) fn solve(
         .copied()
         .collect();
     if !hit.is_empty() {
-        let inertia: Vec<(f64, DMat3)> = states.iter().map(world_inertia).collect();
+        let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
         let start = states
             .iter()
             .map(|s| {
@@ -123,7 +122,7 @@ pub(crate) fn solve(
         add(&solved.impacts, &mut impacts, place);
         for (state, added) in states.iter_mut().zip(&impacts) {
             if moves(state) {
-                state.push(*added);
+                state.to_mut().push(*added);
             }
         }
     }
@@ -150,30 +149,47 @@ pub(crate) fn solve(
     let rows = select(&island.contacts, span, |body| free[place(body)].velocity);
     let mut contacts: Vec<ContactPoint> = rows.iter().map(|row| island.contacts[row.contact]).collect();
     let targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
-    let sweeps = (WORK / contacts.len().max(1)).clamp(SWEEPS.0, SWEEPS.1) as u32;
     let precision = PRECISION * options.gap / options.step;
 
     let pushing: Vec<f64> = targets.iter().map(|target| target.min(0.0)).collect();
-    let inertia: Vec<(f64, DMat3)> = states.iter().map(world_inertia).collect();
+    let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
     let driven = states.iter().any(|s| !moves(s) && !s.stands_still());
     let mut solver = Solver::new(free.clone(), &contacts, place);
     let most = solver.doubled_energy(&inertia) * (1.0 + ENERGY_ROUNDING);
     solver.warm_start(&contacts);
+    let mut scope = Scope::whole(contacts.len());
+    if contacts.iter().any(|contact| contact.is_solved) {
+        put_right(&mut solver, &states, &contacts, span, place, precision);
+        solver = Solver::new(solver.bodies, &contacts, place);
+        let is_new = contacts.iter().map(|contact| !contact.is_solved).collect();
+        scope = Scope::part(is_new, &solver, HOLDS * options.gap / options.step);
+    }
+    let is_whole = scope.is_whole();
+    let mut turned: Option<Scope> = None;
     for correction in 0.. {
-        solver.iterate(&mut contacts, &pushing, precision, Sweeps::Accelerated(sweeps));
+        let scope = turned.as_mut().unwrap_or(&mut scope);
+        let sweeps = Sweeps::Accelerated(u32::MAX);
+        let left = solver.iterate(&mut contacts, &pushing, precision, sweeps, scope);
+        let before: Vec<Velocity> = solver.bodies.iter().map(|body| body.velocity).collect();
         if correction == CORRECTIONS || !put_right(&mut solver, &states, &contacts, span, place, precision) {
             break;
         }
         let bodies = solver.bodies;
         solver = Solver::new(bodies, &contacts, place);
+        if is_whole {
+            // Contacts where the turn counts more than what the iteration has left over.
+            let tolerance = left.clamp(precision, HOLDS * options.gap / options.step);
+            turned = Some(Scope::changed(before, &solver, tolerance));
+        }
     }
     // Contacts at rest never add energy; what did is an iteration that was not at its end, as of wedged bodies.
     if !driven && solver.doubled_energy(&inertia) > most {
         solver = Solver::new(free, &contacts, place);
         for contact in &mut contacts {
-            (contact.impulse, contact.sliding) = (0.0, [0.0; 2]);
+            (contact.impulse, contact.sliding, contact.room) = (0.0, [0.0; 2], [0.0; 3]);
         }
-        solver.iterate(&mut contacts, &pushing, precision, Sweeps::Plain(sweeps));
+        scope = Scope::whole(contacts.len());
+        solver.iterate(&mut contacts, &pushing, precision, Sweeps::Plain(u32::MAX), &mut scope);
     }
     let mut rests = vec![Momenta::default(); members.len()];
     add(&contacts, &mut rests, place);
@@ -182,11 +198,16 @@ pub(crate) fn solve(
     let mut physical: Vec<Velocity> = solver.bodies.iter().map(|body| body.velocity).collect();
     if targets.iter().any(|&target| target > 0.0) {
         let before = solver.doubled_energy(&inertia);
-        solver.iterate(&mut contacts, &targets, precision, Sweeps::Accelerated(sweeps.min(RESTORING)));
+        if !scope.is_whole() {
+            solver.make_room(&mut contacts);
+            scope.shift(&physical, &solver);
+        }
+        let sweeps = Sweeps::Accelerated(RESTORING);
+        solver.iterate(&mut contacts, &targets, precision, sweeps, &mut scope);
         let gained = 0.5 * (solver.doubled_energy(&inertia) - before);
         // What an account may hold, and the energy of the speed that makes a gap in a step.
         let speed = options.gap / options.step;
-        let held = |s: &RigidBody| {
+        let held = |s: &Cow<'_, RigidBody>| {
             s.energy_limit(options.gravity, options.step, options.gap) + 0.5 * s.mass * speed * speed
         };
         let most: f64 = states.iter().filter(|s| moves(s)).map(held).sum();
@@ -196,6 +217,10 @@ pub(crate) fn solve(
             add(&contacts, &mut rests, place);
             solved.rests.clone_from(&contacts);
             physical = solver.bodies.iter().map(|body| body.velocity).collect();
+        }
+        for (rest, contact) in solved.rests.iter_mut().zip(&contacts) {
+            let [first, second] = [0, 1].map(|k| contact.sliding[k] - rest.sliding[k]);
+            rest.room = [contact.impulse - rest.impulse, first, second];
         }
     }
     let moving: Vec<usize> = (0..states.len()).filter(|&k| moves(&states[k])).collect();
@@ -275,7 +300,7 @@ fn add(contacts: &[ContactPoint], added: &mut [Momenta], place: impl Fn(usize) -
 /// The spins that belong to the angular momenta with the impulses, where the linear ones are off by more than rounding.
 fn put_right(
     solver: &mut Solver,
-    states: &[RigidBody],
+    states: &[Cow<'_, RigidBody>],
     contacts: &[ContactPoint],
     span: Span,
     place: impl Fn(usize) -> usize,

@@ -64,7 +64,7 @@ impl StepReport {
 pub struct Simulation {
     pub(crate) options: SimulationOptions,
     pub(crate) bodies: Vec<RigidBody>,
-    pub(crate) pairs: BTreeMap<(usize, usize), Pair>,
+    pub(crate) pairs: BTreeMap<(usize, usize), Box<Pair>>,
     pub(crate) ignored: BTreeSet<(usize, usize)>,
     pub(crate) materials: BTreeMap<(usize, usize), Material>,
     pub(crate) time: f64,
@@ -397,7 +397,7 @@ impl Simulation {
             return Err(SimulationError::Intersecting { a, b });
         }
         if found.lower < gap {
-            self.pairs.insert((a, b), Pair::new(found.lower));
+            self.pairs.insert((a, b), Box::new(Pair::new(found.lower)));
         }
         Ok(())
     }

@@ -184,7 +184,7 @@ impl Simulation {
                 let mut pair = Pair::new(state.gap);
                 (pair.nearest, pair.reach) = (state.nearest, state.reach);
                 pair.contacts = state.contacts.iter().map(|c| c.restored(a, b, state.gap)).collect();
-                ((a, b), pair)
+                ((a, b), Box::new(pair))
             })
             .collect();
         self.bodies = bodies;
@@ -230,6 +230,8 @@ impl ContactState {
             material: Material { restitution: self.restitution, friction: self.friction },
             impulse: self.impulse,
             sliding: self.sliding,
+            room: [0.0; 3],
+            is_solved: false,
         }
     }
 }

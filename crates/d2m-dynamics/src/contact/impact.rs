@@ -1,6 +1,6 @@
 //! Impacts: restitution and friction where bodies meet faster than they rest.
 
-use super::{ContactPoint, Solver, Sweeps};
+use super::{ContactPoint, Scope, Solver, Sweeps};
 use crate::rigid_body::Velocity;
 use glam::DMat3;
 
@@ -56,7 +56,8 @@ pub(crate) fn impact(
                 .collect();
             let sweeps =
                 if scale > 0.0 { Sweeps::Accelerated(MOST_SWEEPS) } else { Sweeps::Plain(MOST_SWEEPS) };
-            solver.iterate(&mut round, &targets, PRECISION * fastest, sweeps);
+            let scope = &mut Scope::whole(round.len()).unlimited();
+            solver.iterate(&mut round, &targets, PRECISION * fastest, sweeps, scope);
             // A body that follows its motion may work: then the others may gain.
             if driven || solver.doubled_energy(inertia) <= energy * (1.0 + ENERGY_ROUNDING) || scale == 0.0 {
                 break round;

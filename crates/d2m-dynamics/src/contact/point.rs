@@ -40,6 +40,10 @@ pub(crate) struct ContactPoint {
     /// Impulses on b along the normal and the tangents.
     pub(crate) impulse: f64,
     pub(crate) sliding: [f64; 2],
+    /// What is added to these to make room: along the normal and the tangents.
+    pub(crate) room: [f64; 3],
+    /// These impulses are those of a solution at this instant.
+    pub(crate) is_solved: bool,
 }
 
 impl ContactPoint {
@@ -47,6 +51,11 @@ impl ContactPoint {
     pub(crate) fn rate(&self, a: Velocity, b: Velocity) -> f64 {
         let point = |v: Velocity, arm: DVec3| v.linear + v.angular.cross(arm);
         self.normal.dot(point(b, self.arm_b) - point(a, self.arm_a))
+    }
+
+    /// Along the normal and the tangents.
+    pub(crate) fn impulses(&self) -> [f64; 3] {
+        [self.impulse, self.sliding[0], self.sliding[1]]
     }
 
     /// The impulse on b.

@@ -1,8 +1,11 @@
 //! Projected Gauss–Seidel over contact points with Coulomb friction.
 
-use super::ContactPoint;
+use super::{ContactPoint, Scope};
 use crate::rigid_body::Velocity;
 use glam::{DMat3, DVec3};
+
+/// Sweeps after which contacts beside those that are worked on may join them.
+const BETWEEN: u32 = 4;
 
 /// What the solver needs of a body. A body that impulses cannot move has no inverse masses.
 #[derive(Clone, Copy, Debug)]
@@ -43,9 +46,9 @@ impl Line {
 
 /// One contact, prepared. `a` and `b` are places in the solver's list of bodies.
 #[derive(Clone, Copy, Debug)]
-struct Prepared {
-    a: usize,
-    b: usize,
+pub(super) struct Prepared {
+    pub(super) a: usize,
+    pub(super) b: usize,
     normal: Line,
     tangents: [Line; 2],
     /// How the rates along the tangents depend on the impulses along them: a symmetric matrix.
@@ -53,6 +56,7 @@ struct Prepared {
     /// The inverse of a bound on its eigenvalues: one step for both directions, so that what slides is braked against its
     /// velocity and not askew.
     step: f64,
+    friction: f64,
 }
 
 impl Prepared {
@@ -66,7 +70,21 @@ impl Prepared {
         let (tt, tu, uu) = (masses + change(t, t), change(t, u), masses + change(u, u));
         let largest = 0.5 * (tt + uu) + (0.25 * (tt - uu) * (tt - uu) + tu * tu).sqrt();
         let step = if largest > 0.0 { 1.0 / largest } else { 0.0 };
-        Self { a, b, normal: line(contact.normal), tangents, sliding: [tt, tu, uu], step }
+        Self {
+            a,
+            b,
+            normal: line(contact.normal),
+            tangents,
+            sliding: [tt, tu, uu],
+            step,
+            friction: contact.material.friction,
+        }
+    }
+
+    /// The fastest of the rates along the normal and the tangents.
+    pub(super) fn fastest(&self, a: &Velocity, b: &Velocity) -> f64 {
+        let [t, u] = &self.tangents;
+        [&self.normal, t, u].map(|line| line.rate(a, b).abs()).into_iter().fold(0.0, f64::max)
     }
 
     /// The impulses along the tangents that stop rates at once; none where a direction cannot be moved.
@@ -92,7 +110,7 @@ pub(crate) enum Sweeps {
 /// Contacts between bodies, prepared for iteration.
 pub(crate) struct Solver {
     pub(crate) bodies: Vec<SolverBody>,
-    prepared: Vec<Prepared>,
+    pub(super) prepared: Vec<Prepared>,
 }
 
 impl Solver {
@@ -137,29 +155,42 @@ impl Solver {
         targets: &[f64],
         precision: f64,
         sweeps: Sweeps,
-    ) -> u32 {
+        scope: &mut Scope,
+    ) -> f64 {
         let (most, is_plain) = match sweeps {
             Sweeps::Accelerated(most) => (most, false),
             Sweeps::Plain(most) => (most, true),
         };
+        // Close to each other in memory, which is what a sweep's time goes to.
+        let mut impulses: Vec<[f64; 3]> = contacts.iter().map(ContactPoint::impulses).collect();
         let mut direction = vec![[0.0f64; 3]; contacts.len()];
         let mut before = vec![[0.0f64; 3]; contacts.len()];
         let mut last = f64::INFINITY;
-        for sweep in 1..=most {
-            for (old, contact) in before.iter_mut().zip(contacts.iter()) {
-                *old = impulses(contact);
+        let mut sweep = 0;
+        let left = loop {
+            sweep += 1;
+            for &k in scope.members() {
+                before[k] = impulses[k];
             }
-            let change = self.sweep(contacts, targets);
-            if change <= precision || sweep == most {
-                return sweep;
+            let change = self.sweep(&mut impulses, targets, scope.members());
+            if sweep >= most.min(scope.sweeps()) {
+                break change;
+            }
+            if change <= precision {
+                if !scope.grow(self) {
+                    break change;
+                }
+                direction.fill([0.0; 3]);
+                last = f64::INFINITY;
+                continue;
             }
             if is_plain {
                 continue;
             }
             let mut square = 0.0;
-            for (old, contact) in before.iter_mut().zip(contacts.iter()) {
-                let new = impulses(contact);
-                *old = [0, 1, 2].map(|k| new[k] - old[k]);
+            for &k in scope.members() {
+                let (old, new) = (&mut before[k], impulses[k]);
+                *old = [0, 1, 2].map(|i| new[i] - old[i]);
                 square += old.iter().map(|x| x * x).sum::<f64>();
             }
             let ratio = square / last;
@@ -168,42 +199,63 @@ impl Solver {
                 direction.fill([0.0; 3]);
                 continue;
             }
-            for (k, contact) in contacts.iter_mut().enumerate() {
-                let d = &mut direction[k];
+            for &k in scope.members() {
+                let (impulse, d) = (&mut impulses[k], &mut direction[k]);
                 let added = d.map(|x| ratio * x);
                 *d = [0, 1, 2].map(|i| added[i] + before[k][i]);
                 if added == [0.0; 3] {
                     continue;
                 }
-                contact.impulse += added[0];
-                contact.sliding[0] += added[1];
-                contact.sliding[1] += added[2];
+                *impulse = [0, 1, 2].map(|i| impulse[i] + added[i]);
                 let p = &self.prepared[k];
                 push(&mut self.bodies, p, &p.normal, added[0]);
-                if contact.material.friction > 0.0 {
+                if p.friction > 0.0 {
                     push(&mut self.bodies, p, &p.tangents[0], added[1]);
                     push(&mut self.bodies, p, &p.tangents[1], added[2]);
                 }
             }
+            if sweep % BETWEEN == 0 {
+                scope.grow(self);
+            }
+        };
+        for &k in scope.members() {
+            let [along, first, second] = impulses[k];
+            (contacts[k].impulse, contacts[k].sliding) = (along, [first, second]);
         }
-        most
+        left
     }
 
-    /// One sweep over all contacts; the largest change of a rate.
-    fn sweep(&mut self, contacts: &mut [ContactPoint], targets: &[f64]) -> f64 {
-        let mut change = 0.0f64;
+    /// Adds what makes room to the impulses of the contacts, and to the velocities.
+    pub(crate) fn make_room(&mut self, contacts: &mut [ContactPoint]) {
         for (k, contact) in contacts.iter_mut().enumerate() {
+            let [along, first, second] = contact.room;
+            // Impulses push.
+            let along = along.max(-contact.impulse);
+            contact.impulse += along;
+            contact.sliding = [contact.sliding[0] + first, contact.sliding[1] + second];
+            let p = &self.prepared[k];
+            for (line, added) in [(&p.normal, along), (&p.tangents[0], first), (&p.tangents[1], second)] {
+                push(&mut self.bodies, p, line, added);
+            }
+        }
+    }
+
+    /// One sweep over the members; the largest change of a rate.
+    fn sweep(&mut self, impulses: &mut [[f64; 3]], targets: &[f64], members: &[usize]) -> f64 {
+        let mut change = 0.0f64;
+        for &k in members {
+            let own = &mut impulses[k];
             let p = &self.prepared[k];
             let rate = p.normal.rate(&self.bodies[p.a].velocity, &self.bodies[p.b].velocity);
-            let impulse = (contact.impulse - (rate - targets[k]) * p.normal.mass).max(0.0);
-            let added = impulse - contact.impulse;
+            let impulse = (own[0] - (rate - targets[k]) * p.normal.mass).max(0.0);
+            let added = impulse - own[0];
             if added != 0.0 {
-                contact.impulse = impulse;
+                own[0] = impulse;
                 push(&mut self.bodies, p, &p.normal, added);
                 change = change.max(added.abs() / p.normal.mass);
             }
-            if contact.material.friction > 0.0 {
-                change = change.max(slide(&mut self.bodies, p, contact));
+            if p.friction > 0.0 {
+                change = change.max(slide(&mut self.bodies, p, own));
             }
         }
         change
@@ -235,31 +287,27 @@ fn push(bodies: &mut [SolverBody], p: &Prepared, line: &Line, impulse: f64) {
 
 /// The impulse along the tangents that stops sliding, or the one of Coulomb's length nearest to it.
 #[inline]
-fn slide(bodies: &mut [SolverBody], p: &Prepared, contact: &mut ContactPoint) -> f64 {
+fn slide(bodies: &mut [SolverBody], p: &Prepared, own: &mut [f64; 3]) -> f64 {
     let (a, b) = (&bodies[p.a].velocity, &bodies[p.b].velocity);
     let rates = [p.tangents[0].rate(a, b), p.tangents[1].rate(a, b)];
-    let limit = contact.material.friction * contact.impulse;
+    let limit = p.friction * own[0];
     let length = |x: [f64; 2]| (x[0] * x[0] + x[1] * x[1]).sqrt();
-    let stopped = p.stopping(rates).map(|less| [0, 1].map(|k| contact.sliding[k] - less[k]));
+    let stopped = p.stopping(rates).map(|less| [0, 1].map(|k| own[k + 1] - less[k]));
     let wanted = if let Some(stopped) = stopped.filter(|x| length(*x) <= limit) {
         stopped
     } else {
-        let wanted = [0, 1].map(|k| contact.sliding[k] - rates[k] * p.step);
+        let wanted = [0, 1].map(|k| own[k + 1] - rates[k] * p.step);
         let shorten = (limit / length(wanted)).min(1.0);
         if limit > 0.0 { wanted.map(|x| x * shorten) } else { [0.0; 2] }
     };
     let mut change = 0.0f64;
     for (k, wanted) in wanted.into_iter().enumerate() {
-        let added = wanted - contact.sliding[k];
+        let added = wanted - own[k + 1];
         if added != 0.0 {
-            contact.sliding[k] = wanted;
+            own[k + 1] = wanted;
             push(bodies, p, &p.tangents[k], added);
             change = change.max(added.abs() / p.tangents[k].mass);
         }
     }
     change
-}
-
-fn impulses(contact: &ContactPoint) -> [f64; 3] {
-    [contact.impulse, contact.sliding[0], contact.sliding[1]]
 }

@@ -10,7 +10,9 @@ use crate::{StepError, parallel};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Solutions from one instant, each with the contacts that the flights of the one before led to.
+/// Solutions from one instant, each with the contacts that the flights of the one before led to: so many in any case, and four times as many
+/// as long as these are no more than half of the first ones. What is left over is an event, after which everything that it cuts is solved
+/// anew; but where constraints contradict each other, as of a body that is crushed, no round gets closer.
 const MOST_ROUNDS: u32 = 4;
 
 /// Contacts to come, by pair, as they are seen from one instant.
@@ -60,7 +62,8 @@ impl Step<'_> {
     /// energy and adds none. What the linearisation leaves over is an event like others.
     pub(super) fn solve_expected(&mut self, time: f64) -> Result<(), StepError> {
         self.expected = Expected::default();
-        for _ in 0..MOST_ROUNDS {
+        let mut first = None;
+        for round in 0..4 * MOST_ROUNDS {
             let events: Vec<Event> = self.heap.iter().map(|event| event.0).collect();
             let mut events: Vec<Event> = events.into_iter().filter(|e| self.is_expected(e, time)).collect();
             if events.is_empty() {
@@ -68,7 +71,8 @@ impl Step<'_> {
             }
             events.sort_unstable();
             let bodies = self.measure_expected(events, time);
-            if bodies.is_empty() {
+            let first = *first.get_or_insert(bodies.len());
+            if bodies.is_empty() || (round >= MOST_ROUNDS && 2 * bodies.len() > first) {
                 break;
             }
             self.resolve(time, bodies, Occasion::Expected)?;

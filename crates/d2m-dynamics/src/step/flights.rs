@@ -57,9 +57,9 @@ impl Step<'_> {
             let stay_apart = a.stands_still() && b.stands_still();
             !(stay_apart || are_spheres_apart(a, b, time, end, gap))
         });
-        let jobs: Vec<(Key, Pair)> = keys
+        let jobs: Vec<(Key, Box<Pair>)> = keys
             .into_iter()
-            .map(|key| (key, self.sim.pairs.remove(&key).unwrap_or_else(|| Pair::new(gap))))
+            .map(|key| (key, self.sim.pairs.remove(&key).unwrap_or_else(|| Box::new(Pair::new(gap)))))
             .collect();
         self.report.queries += jobs.len() as u64;
         let (bodies, node_tests) = (&self.sim.bodies, self.sim.options.node_tests);

@@ -54,7 +54,7 @@ impl Step<'_> {
         // Whoever follows its motion against the body that is crushed is the one to name.
         let drives =
             |i: &usize| self.sim.bodies[*i].is_kinematic() && self.sim.bodies[*i].surface_speed() > 0.0;
-        let partner = |(key, pair): (&Key, &Pair)| {
+        let partner = |(key, pair): (&Key, &Box<Pair>)| {
             let other = if key.0 == crushed { key.1 } else { key.0 };
             ((key.0 == crushed || key.1 == crushed) && pair.nearest.is_some()).then_some(other)
         };

@@ -34,7 +34,7 @@ impl Step<'_> {
             self.admit_connected(&mut group, time, seeds, occasion)?;
             group.sort();
             if occasion != Occasion::Start {
-                self.retract(&mut group, (until - time) / (self.end - time));
+                self.retract(&mut group, (until - time) / (self.end - time), occasion);
             }
             self.follow_motions(&group, clock, occasion);
             self.solve_islands(&group, clock)
