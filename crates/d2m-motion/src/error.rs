@@ -42,7 +42,7 @@ pub enum MotionError {
         /// What is wrong.
         reason: &'static str,
     },
-    /// Keyframes need at least two poses at strictly increasing finite times.
+    /// Keyframes need strictly increasing finite times.
     #[error("keyframe {index}, time {time:?}: {reason}")]
     Keyframes {
         /// Index of the offending keyframe.

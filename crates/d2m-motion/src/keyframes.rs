@@ -272,11 +272,9 @@ impl RigidMotion for Keyframes {
 }
 
 fn check_times(times: &[f64]) -> Result<(), MotionError> {
-    let error = |index: usize, reason| {
-        Err(MotionError::Keyframes { index, time: times.get(index).copied().unwrap_or(f64::NAN), reason })
-    };
+    let error = |index: usize, reason| Err(MotionError::Keyframes { index, time: times[index], reason });
     if times.len() < 2 {
-        return error(times.len(), "at least two keyframes are needed");
+        return Err(fault("times".into(), format!("there are {}, and at least two are needed", times.len())));
     }
     for (index, time) in times.iter().enumerate() {
         if !time.is_finite() {

@@ -104,6 +104,16 @@ impl Spline {
         degree: SplineDegree,
     ) -> Result<Self, MotionError> {
         check(keyframes.iter().map(|(time, pose, _)| (*time, *pose)))?;
+        for (index, (.., twist)) in keyframes.iter().enumerate() {
+            for (name, vector) in [("linear", twist.linear), ("angular", twist.angular)] {
+                if let Some(value) = vector.to_array().into_iter().find(|value| !value.is_finite()) {
+                    return Err(fault(
+                        format!("twists[{index}], {name}"),
+                        format!("{value:?} is not finite"),
+                    ));
+                }
+            }
+        }
         let pieces = keyframes
             .windows(2)
             .enumerate()
