@@ -97,105 +97,192 @@ impl Rest {
 /// Promise: if the test's promises hold, there is no contact in `[window.lo, bracket.lo)`, and none at all when the
 /// answer is [`FirstRoot::Clear`]. It ends after at most `max_evaluations` evaluations and measurements.
 pub fn isolate<T: PieceTest>(test: &mut T, window: Piece, options: &IsolatorOptions) -> Isolation {
-    let mut rest = Rest::new(window);
-    let mut piece = window;
-    let mut evaluations = 0;
-    // A time at which the distance was seen within the tolerance; nothing to its right matters.
-    let mut seen: Option<(f64, f64)> = None;
-    let mut start_measured = options.start_apart;
     let tolerance = test.tolerance();
     let resolution = test.resolution().max(RESOLVABLE * window.reach());
-    let found = |bracket, evidence, distance| FirstRoot::Found { bracket, evidence, distance };
-    let root = 'search: loop {
-        let next = 'piece: {
-            let mid = piece.mid();
-            if test.too_wide(0.5 * piece.width()) && piece.lo < mid && mid < piece.hi {
-                rest.push(Piece { lo: mid, ..piece });
-                piece.hi = mid;
-                continue 'search;
-            }
-            if evaluations >= options.max_evaluations {
-                break 'search FirstRoot::Undecided { clear_until: piece.lo };
-            }
-            evaluations += 1;
-            let old_width = piece.width();
-            match test.evaluate(piece) {
-                Verdict::Clear => break 'piece rest.pop(),
-                Verdict::Within { part, certain } => {
-                    piece = part;
-                    if certain && piece.width() <= resolution {
-                        break 'search found(piece, Evidence::Crossing, 0.0);
-                    }
-                }
-            }
-            if piece.lo <= window.lo && evaluations > 1 && !start_measured {
-                start_measured = true;
-                evaluations += 1;
-                let at_start = test.measure(piece, piece.lo);
-                if at_start.distance <= tolerance {
-                    let bracket = Piece { lo: piece.lo, hi: piece.lo };
-                    break 'search found(bracket, Evidence::WithinTolerance, at_start.distance);
-                }
-                if at_start.clear_hi > piece.lo {
-                    if at_start.clear_hi >= piece.hi {
-                        break 'piece rest.pop();
-                    }
-                    piece.lo = at_start.clear_hi;
-                }
-            }
-            let (width, mid) = (piece.width(), piece.mid());
-            let narrow = width <= resolution || mid <= piece.lo || mid >= piece.hi;
-            if !narrow && width < GOOD * old_width {
-                continue 'search;
-            }
-            let mut cut = Measurement { distance: f64::INFINITY, clear_lo: mid, clear_hi: mid };
-            if narrow || width > POOR * old_width {
-                evaluations += 1;
-                cut = test.measure(piece, mid);
-                if cut.distance <= tolerance {
-                    if narrow {
-                        let bracket = Piece { lo: piece.lo, hi: mid };
-                        break 'search found(bracket, Evidence::WithinTolerance, cut.distance);
-                    }
-                    seen = Some((mid, cut.distance));
-                    rest.clear();
-                    piece.hi = mid;
-                    continue 'search;
-                }
-                let (clear_lo, clear_hi) = (cut.clear_lo.max(piece.lo), cut.clear_hi.min(piece.hi));
-                if clear_lo < clear_hi {
-                    match (piece.lo < clear_lo, clear_hi < piece.hi) {
-                        (false, false) => break 'piece rest.pop(),
-                        (true, false) => piece.hi = clear_lo,
-                        (false, true) => piece.lo = clear_hi,
-                        (true, true) => {
-                            rest.push(Piece { lo: clear_hi, ..piece });
-                            piece.hi = clear_lo;
-                        }
-                    }
-                    continue 'search;
-                }
-            }
-            // Nothing could be said: halve, down to the last representable width.
-            if mid <= piece.lo || mid >= piece.hi || (narrow && width <= GIVE_UP * resolution) {
-                if cut.distance.is_finite() {
-                    break 'search found(piece, Evidence::Unresolved, cut.distance);
-                }
-                // Not even how far apart they are.
-                break 'search FirstRoot::Undecided { clear_until: piece.lo };
-            }
-            rest.push(Piece { lo: mid, ..piece });
-            piece.hi = mid;
-            continue 'search;
-        };
-        match (next, seen) {
-            (Some(piece_to_the_right), _) => piece = piece_to_the_right,
-            // All before the time seen is clear: the contact is there, within the tolerance.
-            (None, Some((time, distance))) => {
-                break found(Piece { lo: time, hi: time }, Evidence::WithinTolerance, distance);
-            }
-            (None, None) => break FirstRoot::Clear,
-        }
+    let mut search = Search {
+        test,
+        window,
+        tolerance,
+        resolution,
+        max_evaluations: options.max_evaluations,
+        evaluations: 0,
+        start_is_known: options.start_apart,
+        rest: Rest::new(window),
+        seen: None,
     };
-    Isolation { root, evaluations }
+    let mut next = Some(window);
+    let root = loop {
+        let Some(piece) = next else { break search.nothing_left() };
+        next = match search.examine(piece) {
+            Step::Go(piece) => Some(piece),
+            Step::Clear => search.rest.pop(),
+            Step::Answer(root) => break root,
+        };
+    };
+    Isolation { root, evaluations: search.evaluations }
+}
+
+/// A search under way. All before the current piece is clear, and so is what lies between it and the pieces that wait.
+struct Search<'t, T> {
+    test: &'t mut T,
+    window: Piece,
+    tolerance: f64,
+    /// Pieces are not divided below this width.
+    resolution: f64,
+    max_evaluations: u32,
+    evaluations: u32,
+    /// The start of the window was measured, or the caller knows that the features are apart there.
+    start_is_known: bool,
+    rest: Rest,
+    /// Where the distance was within the tolerance; nothing to its right matters.
+    seen: Option<Seen>,
+}
+
+/// A time at which the distance was measured to be within the tolerance.
+#[derive(Clone, Copy)]
+struct Seen {
+    time: f64,
+    distance: f64,
+}
+
+/// What to do next.
+enum Step {
+    /// Examine this piece.
+    Go(Piece),
+    /// The piece is clear: on to those that wait.
+    Clear,
+    Answer(FirstRoot),
+}
+
+/// What the measurement of a piece's middle leads to.
+enum Measured {
+    Done(Step),
+    /// Nothing is clear about it; the distance there is at most this.
+    Within(f64),
+}
+
+impl<T: PieceTest> Search<'_, T> {
+    /// Bisects, contracts by the test, or measures.
+    #[inline(always)]
+    fn examine(&mut self, piece: Piece) -> Step {
+        let mid = piece.mid();
+        if self.test.too_wide(0.5 * piece.width()) && piece.lo < mid && mid < piece.hi {
+            return self.halve(piece);
+        }
+        if self.evaluations >= self.max_evaluations {
+            return Step::Answer(FirstRoot::Undecided { clear_until: piece.lo });
+        }
+        self.evaluations += 1;
+        let old_width = piece.width();
+        let Verdict::Within { part: mut piece, certain } = self.test.evaluate(piece) else {
+            return Step::Clear;
+        };
+        if certain && piece.width() <= self.resolution {
+            return found(piece, Evidence::Crossing, 0.0);
+        }
+        if piece.lo <= self.window.lo && self.evaluations > 1 && !self.start_is_known {
+            match self.measure_start(piece) {
+                Step::Go(rest) => piece = rest,
+                done => return done,
+            }
+        }
+        let (width, mid) = (piece.width(), piece.mid());
+        let is_last = mid <= piece.lo || mid >= piece.hi;
+        let narrow = width <= self.resolution || is_last;
+        if !narrow && width < GOOD * old_width {
+            return Step::Go(piece);
+        }
+        let mut distance = None;
+        if narrow || width > POOR * old_width {
+            match self.measure_middle(piece, narrow) {
+                Measured::Done(step) => return step,
+                Measured::Within(bound) => distance = Some(bound),
+            }
+        }
+        // Nothing could be said: halve, down to the last representable width.
+        if !is_last && !(narrow && width <= GIVE_UP * self.resolution) {
+            return self.halve(piece);
+        }
+        match distance.filter(|bound| bound.is_finite()) {
+            Some(bound) => found(piece, Evidence::Unresolved, bound),
+            // Not even how far apart they are.
+            None => Step::Answer(FirstRoot::Undecided { clear_until: piece.lo }),
+        }
+    }
+
+    /// The left half next, the right one waits.
+    #[inline(always)]
+    fn halve(&mut self, piece: Piece) -> Step {
+        let mid = piece.mid();
+        self.rest.push(Piece { lo: mid, ..piece });
+        Step::Go(Piece { hi: mid, ..piece })
+    }
+
+    /// At the start of the window: contact there, or what is left of the piece.
+    #[inline(always)]
+    fn measure_start(&mut self, piece: Piece) -> Step {
+        self.start_is_known = true;
+        self.evaluations += 1;
+        let at_start = self.test.measure(piece, piece.lo);
+        if at_start.distance <= self.tolerance {
+            let bracket = Piece { lo: piece.lo, hi: piece.lo };
+            found(bracket, Evidence::WithinTolerance, at_start.distance)
+        } else if at_start.clear_hi >= piece.hi {
+            Step::Clear
+        } else if at_start.clear_hi > piece.lo {
+            Step::Go(Piece { lo: at_start.clear_hi, ..piece })
+        } else {
+            // Also where it is no number.
+            Step::Go(piece)
+        }
+    }
+
+    /// In the middle of a piece: contact to its left or there, or a part around it that is clear.
+    #[inline(always)]
+    fn measure_middle(&mut self, piece: Piece, narrow: bool) -> Measured {
+        let mid = piece.mid();
+        self.evaluations += 1;
+        let Measurement { distance, clear_lo, clear_hi } = self.test.measure(piece, mid);
+        if distance <= self.tolerance {
+            let bracket = Piece { hi: mid, ..piece };
+            if narrow {
+                return Measured::Done(found(bracket, Evidence::WithinTolerance, distance));
+            }
+            self.seen = Some(Seen { time: mid, distance });
+            self.rest.clear();
+            return Measured::Done(Step::Go(bracket));
+        }
+        let (clear_lo, clear_hi) = (clear_lo.max(piece.lo), clear_hi.min(piece.hi));
+        // What is no number is the end of the piece by now.
+        if clear_lo >= clear_hi {
+            return Measured::Within(distance);
+        }
+        let (left, right) = (Piece { hi: clear_lo, ..piece }, Piece { lo: clear_hi, ..piece });
+        Measured::Done(match (piece.lo < clear_lo, clear_hi < piece.hi) {
+            (false, false) => Step::Clear,
+            (true, false) => Step::Go(left),
+            (false, true) => Step::Go(right),
+            (true, true) => {
+                self.rest.push(right);
+                Step::Go(left)
+            }
+        })
+    }
+
+    /// All pieces are clear.
+    fn nothing_left(&self) -> FirstRoot {
+        match self.seen {
+            // All before the time seen is clear: the contact is there, within the tolerance.
+            Some(Seen { time, distance }) => FirstRoot::Found {
+                bracket: Piece { lo: time, hi: time },
+                evidence: Evidence::WithinTolerance,
+                distance,
+            },
+            None => FirstRoot::Clear,
+        }
+    }
+}
+
+const fn found(bracket: Piece, evidence: Evidence, distance: f64) -> Step {
+    Step::Answer(FirstRoot::Found { bracket, evidence, distance })
 }

@@ -139,7 +139,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "the isolator drops what lies behind a clear part",
         "crates/d2m-root/src/isolator/search.rs",
-        "rest.push(Piece { lo: clear_hi, ..piece });",
+        "self.rest.push(right);",
         "",
         "crates/d2m-feature/tests/first_contact.rs::planted_contacts_are_never_missed_and_never_late",
     ),
