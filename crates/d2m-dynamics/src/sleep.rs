@@ -2,7 +2,7 @@
 
 use crate::contact::ContactPoint;
 use crate::rigid_body::{RigidBody, Velocity};
-use crate::{Simulation, SimulationOptions};
+use crate::{BodyId, Simulation, SimulationOptions};
 
 /// How long, in seconds of gravity's scale or plain units of time without gravity.
 const QUIET_TIME: f64 = 0.5;
@@ -60,6 +60,7 @@ impl Simulation {
             let top = root(&mut parent, i);
             if body.is_dynamic() && !body.asleep && held_up[i] && !awake[top] {
                 sleep(body);
+                self.recorder.change(BodyId(i as u32), body.flight);
             }
         }
     }
@@ -73,7 +74,7 @@ fn root(parent: &mut [usize], mut i: usize) -> usize {
     i
 }
 
-/// No momentum and no motion from now on; reported with the next segment.
+/// No momentum and no motion from now on.
 fn sleep(body: &mut RigidBody) {
     body.asleep = true;
     body.quiet = 0.0;

@@ -118,6 +118,28 @@ fn a_stack_stands() {
     }
 }
 
+/// What goes to sleep stands still in the segments, too, and is where they have it when it wakes.
+#[test]
+fn segments_join_where_bodies_sleep_and_wake() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let (block, ring) = (cube(), tree("torus?triangles=400"));
+    simulation.add(&floor().with_friction(0.5)).unwrap();
+    let rests = Body::new("rests", Arc::clone(&ring)).with_position(DVec3::Y * 1.2).with_friction(0.5);
+    let turn = DQuat::from_xyzw(0.4, 0.1, 0.05, 1.0);
+    let rests = simulation.add(&rests.with_orientation(turn)).unwrap();
+    let falls = Body::new("falls", Arc::clone(&block)).with_position(DVec3::new(0.3, 150.0, 0.1));
+    simulation.add(&falls.with_friction(0.5)).unwrap();
+    let mut slept = false;
+    let mut segments = Vec::new();
+    while simulation.time() < 6.0 {
+        segments.extend(simulation.step().unwrap().segments);
+        slept |= simulation.is_asleep(rests);
+    }
+    segments.extend(simulation.finish());
+    assert!(slept && !simulation.is_asleep(rests));
+    judge(&segments, &[tree("box?x=10&y=0.5&z=10"), ring, block]);
+}
+
 /// 100 m a step against a plate of a millimeter.
 #[test]
 fn a_bullet_stops_at_a_plate() {

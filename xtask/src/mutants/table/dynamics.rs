@@ -142,4 +142,11 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "> part.tolerance + 1e9 {",
         "crates/d2m-dynamics/tests/scenes.rs::cubes_without_friction_fall_flat_and_stack",
     ),
+    patch(
+        "bodies fall asleep and fly on in the segments",
+        "crates/d2m-dynamics/src/sleep.rs",
+        "self.recorder.change(BodyId(i as u32), body.flight);",
+        "let _ = BodyId(i as u32);",
+        "crates/d2m-dynamics/tests/scenes.rs::segments_join_where_bodies_sleep_and_wake",
+    ),
 ];
