@@ -3,8 +3,8 @@
 usage: run_all.py [--limit TRIALS] [--seconds S]     (defaults: 64 trials and 20 seconds a pair and speed)
 install: pip install numpy python-fcl ipctk
 
-Run it after `cargo xtask bench` on the same machine. A peer that is not installed is left out. Writes
-`.bench/peers/fcl.csv` and `.bench/peers/ipc.csv`.
+Run it after `cargo xtask bench` and `cargo xtask bench --only scenes` on the same machine. A peer that is not installed is left out.
+Writes `fcl.csv`, `ipc.csv` and `distance.csv` in `.bench/peers`.
 """
 import argparse
 import json
@@ -59,6 +59,17 @@ def run_ipc(out, count):
     out.write_text("\n".join(lines) + "\n")
 
 
+def run_distances(out):
+    import fcl_distance
+
+    if not (fcl_distance.FOLDER / "distance.csv").exists():
+        print("left out: distances, without cargo xtask bench --only scenes", file=sys.stderr)
+        return
+    found = subprocess.run([sys.executable, fcl_distance.__file__], stdout=subprocess.PIPE, text=True, check=True)
+    out.write_text(found.stdout)
+    print("FCL's distances", file=sys.stderr)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--limit", type=int, default=64)
@@ -67,7 +78,8 @@ def main():
     folder = ROOT / ".bench" / "peers"
     folder.mkdir(parents=True, exist_ok=True)
     for name, run in [("fcl.csv", lambda out: run_fcl(out, options.limit, options.seconds)),
-                      ("ipc.csv", lambda out: run_ipc(out, 2 * options.limit))]:
+                      ("ipc.csv", lambda out: run_ipc(out, 2 * options.limit)),
+                      ("distance.csv", run_distances)]:
         try:
             run(folder / name)
         except ImportError as error:

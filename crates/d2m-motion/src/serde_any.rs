@@ -239,16 +239,17 @@ impl TryFrom<AnyForm> for AnyMotion {
         let first =
             |keys: &[(&'static str, bool)]| keys.iter().find(|(_, given)| *given).map(|&(key, _)| key);
         let (twist, frames) = (first(&twist), first(&frames));
-        let stray = |key: &str, of: &str| fault(key.to_owned(), format!("this key does not belong to {of}"));
+        let foreign =
+            |key: &str, of: &str| fault(key.to_owned(), format!("this key does not belong to {of}"));
         if chain.is_some() {
             return match twist.or(frames) {
-                Some(key) => Err(stray(key, "a chain")),
+                Some(key) => Err(foreign(key, "a chain")),
                 None => Chain::try_from(form.chain.unwrap_or_default()).map(Self::Chain),
             };
         }
         if frames.is_some() {
             return match twist {
-                Some(key) => Err(stray(key, "keyframes")),
+                Some(key) => Err(foreign(key, "keyframes")),
                 None => keyframes(form).map(Self::Keyframes),
             };
         }

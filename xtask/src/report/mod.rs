@@ -1,5 +1,6 @@
 //! `cargo xtask report`: tables and figures in docs/results, from the rows that the bench left.
 mod collect;
+mod fcl_distances;
 mod figures;
 mod page;
 mod peers;

@@ -183,10 +183,11 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
             let (w_u, e_u, w_j) = (along_u.first(), along_u.second(), w_m.dot(e_m.cross(k)));
             let (of_w, of_e) = (remainder.bound(s), remainder_e.bound(s));
             // What the speeds admit.
-            let (stray_w, stray_e) = (self.path.speed() * r + of_w, self.path.direction_speed() * r + of_e);
-            let margin_a = u_length * (stray_w + stray_e) * UP;
-            let product = stray_w * half_a + (length_up(w_m) + stray_w) * stray_e;
-            let margin_b = (k_length * product + u_length * stray_e) * UP;
+            let (displacement_w, displacement_e) =
+                (self.path.speed() * r + of_w, self.path.direction_speed() * r + of_e);
+            let margin_a = u_length * (displacement_w + displacement_e) * UP;
+            let product = displacement_w * half_a + (length_up(w_m) + displacement_w) * displacement_e;
+            let margin_b = (k_length * product + u_length * displacement_e) * UP;
             let (a, b) = ([w_u + e_u, w_u - e_u], [w_j + e_u, w_j - e_u]);
             let shared =
                 |[f, g]: [f64; 2], margin: f64| (f > margin && g > margin) || (f < -margin && g < -margin);
@@ -194,7 +195,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
                 return Verdict::Clear;
             }
             // The lines are certainly not parallel, and meet certainly inside both edges, for good.
-            certain = e_u > u_length * stray_e * UP
+            certain = e_u > u_length * displacement_e * UP
                 && a[0] > margin_a
                 && a[1] < -margin_a
                 && b[0] > margin_b

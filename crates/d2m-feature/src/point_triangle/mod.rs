@@ -95,16 +95,16 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
         let r = in_prism.reach() * UP;
         let rounding = remainder.bound(in_slab.reach());
         let there = jet.at(m);
-        let stray = (self.path.speed() * r + rounding) * UP;
+        let displacement = (self.path.speed() * r + rounding) * UP;
         let [s0, s1, s2] = planes.sides;
         let values = [s0.dot(there), s1.dot(there), s2.dot(there)];
         if (0..3).any(|i| {
             let Band { lo, hi } = planes.side_support[i];
-            values[i] < lo - stray || values[i] > hi + stray
+            values[i] < lo - displacement || values[i] > hi + displacement
         }) {
             return Verdict::Clear;
         }
-        let mut inside = self.is_inside(values, stray);
+        let mut inside = self.is_inside(values, displacement);
         if !inside {
             // Then with the jet.
             let margin = rounding + (1.0 / 6.0) * length_up(jet.j) * (r * r * r) * UP;

@@ -276,12 +276,12 @@ fn progress_counts_the_pairs_that_are_done() {
     for first in [true, false] {
         let seen = std::cell::RefCell::new(Vec::new());
         let progress = |done: usize, all: usize| seen.borrow_mut().push([done, all]);
-        let (mut quiet, mut told) = (fresh.clone(), fresh.clone());
+        let (mut quiet, mut watched) = (fresh.clone(), fresh.clone());
         if first {
-            let answer = told.first_contact_with_progress(Window::UNIT, &progress).unwrap();
+            let answer = watched.first_contact_with_progress(Window::UNIT, &progress).unwrap();
             assert_eq!(answer, quiet.first_contact(Window::UNIT).unwrap());
         } else {
-            let answer = told.contacts_with_progress(Window::UNIT, &progress).unwrap();
+            let answer = watched.contacts_with_progress(Window::UNIT, &progress).unwrap();
             assert_eq!(answer, quiet.contacts(Window::UNIT).unwrap());
         }
         let seen = seen.into_inner();

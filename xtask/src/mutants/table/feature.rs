@@ -111,8 +111,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "Γ of edges without what the speeds admit",
         "crates/d2m-feature/src/edge_edge/mod.rs",
-        "let margin_b = (k_length * product + u_length * stray_e) * UP;",
-        "let margin_b = 0.0 * (k_length * product + u_length * stray_e) * UP;",
+        "let margin_b = (k_length * product + u_length * displacement_e) * UP;",
+        "let margin_b = 0.0 * (k_length * product + u_length * displacement_e) * UP;",
         "crates/d2m-feature/tests/first_contact.rs::planted_contacts_are_never_missed_and_never_late",
     ),
     patch(
