@@ -158,6 +158,20 @@ mod tests {
         }
     }
 
+    /// Squares of the coordinates of their distance at the end lose a third to underflow in such a unit: a direction divided by that
+    /// length was longer than one by a fifth, and so was the gap along it.
+    #[test]
+    fn balls_that_end_in_each_other_in_a_tiny_unit() {
+        let unit = 1e-162;
+        let ball = |place: f64, velocity: f64| MovingBall {
+            center: DVec3::splat(place * unit),
+            velocity: DVec3::splat(velocity * unit),
+            radius: 2.6 * unit,
+        };
+        let meeting = ball(0.0, 0.0).first_meeting(&ball(12.7, -10.0), 0.0, 0.0, 1.0);
+        assert_ne!(meeting, FirstMeeting::Never);
+    }
+
     /// In units from 1e-161, where squares of lengths are lost to underflow, to 1e153, near and far from the origin, from before and
     /// after the reference time: no point of a ball is within the separation before the time that is given, and little is given
     /// away.

@@ -62,8 +62,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "balls at distances whose squares are lost to underflow",
         "crates/d2m/src/moving_ball.rs",
         "(between / between.abs().max_element()).normalize()",
-        "between.normalize()",
-        "crates/d2m/src/moving_ball.rs::nothing_is_late_in_any_unit",
+        "between / between.length()",
+        "crates/d2m/src/moving_ball.rs::balls_that_end_in_each_other_in_a_tiny_unit",
     ),
     patch(
         "balls that are apart at one end of a span only",
