@@ -128,7 +128,9 @@ fn edges_that_cross_while_both_turn() {
             let along = DVec3::new(0.54, 0.84, 0.0);
             let upper = triangle([-DVec3::X + lifted, DVec3::X + lifted, DVec3::Z]);
             let lower = triangle([-along, along, -DVec3::Z]);
-            let first = turned(0.0, axes[0].normalize() * 6.283).with_at(lifted).with_position(lifted);
+            let first = turned(0.0, axes[0].normalize() * std::f64::consts::TAU)
+                .with_at(lifted)
+                .with_position(lifted);
             let second = turned(0.0, axes[1].normalize() * -4.4);
             for (a, b) in [((&upper, first), (&lower, second)), ((&lower, second), (&upper, first))] {
                 let (answer, work) = ask(a, b, (0.0, 1.0));
