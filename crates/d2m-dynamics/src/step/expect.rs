@@ -34,7 +34,7 @@ impl View<'_> {
     /// angular momentum: both arms reach to one point, the middle of the two, or of two bodies only one of which moves that of the one
     /// that does. By this the rate along the normal is another one, by ω times what the bodies slide along each other before
     /// they meet; the distance makes up for it.
-    fn seen_now(&self, point: ContactPoint) -> ContactPoint {
+    fn seen_now(&self, point: &ContactPoint) -> ContactPoint {
         let [a, b] = self.bodies;
         let [va, vb] = self.bodies.map(RigidBody::present_velocity);
         let point_velocity = |v: Velocity, arm: DVec3| v.linear + v.angular.cross(arm);
@@ -50,7 +50,7 @@ impl View<'_> {
         let met = rate(point.arm_a, point.arm_b);
         let differs = rate(arm_a, arm_b) - met;
         let distance = point.distance - met * (self.met - self.time) - differs * (self.end - self.time);
-        ContactPoint { arm_a, arm_b, distance, is_expected: true, ..point }
+        ContactPoint { arm_a, arm_b, distance, is_expected: true, ..*point }
     }
 }
 
@@ -111,7 +111,7 @@ impl Step<'_> {
                 .unwrap_or_default();
             let view = View { bodies: [a, b], time, met: event.time, end };
             let seen_now = |point| view.seen_now(point);
-            (key, measured.contacts.into_iter().map(seen_now).collect::<Vec<_>>())
+            (key, measured.contacts.iter().map(seen_now).collect::<Vec<_>>())
         });
         let mut bodies = Vec::new();
         for (key, contacts) in found.into_iter().filter(|(_, contacts)| !contacts.is_empty()) {

@@ -2,7 +2,6 @@
 
 use super::event::Event;
 use super::{Key, Step};
-use crate::pairs::Pair;
 use crate::rigid_body::{RigidBody, Velocity};
 use crate::{BodyId, StepError};
 
@@ -54,11 +53,13 @@ impl Step<'_> {
         // Whoever follows its motion against the body that is crushed is the one to name.
         let drives =
             |i: &usize| self.sim.bodies[*i].is_kinematic() && self.sim.bodies[*i].surface_speed() > 0.0;
-        let partner = |(key, pair): (&Key, &Box<Pair>)| {
-            let other = if key.0 == crushed { key.1 } else { key.0 };
-            ((key.0 == crushed || key.1 == crushed) && pair.nearest.is_some()).then_some(other)
-        };
-        let driver = self.sim.pairs.iter().filter_map(partner).find(drives);
+        let partner = |key: &Key| if key.0 == crushed { key.1 } else { key.0 };
+        let near = self
+            .sim
+            .pairs
+            .iter()
+            .filter(|(key, pair)| (key.0 == crushed || key.1 == crushed) && pair.nearest.is_some());
+        let driver = near.map(|(key, _)| partner(key)).find(drives);
         let pushing = driver.unwrap_or(pushing);
         StepError::Crushed { pushing: name(pushing), crushed: name(crushed), time }
     }
