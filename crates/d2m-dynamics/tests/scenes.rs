@@ -248,3 +248,47 @@ fn cubes_without_friction_fall_flat_and_stack() {
         assert!((place.y - 0.5 - k as f64).abs() < 0.03, "{k}: {place}");
     }
 }
+
+/// A hundredth of the gap between them, they keep what they have, and stand.
+#[test]
+fn boxes_that_start_closer_than_the_gap_stand() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    simulation.add(&floor().with_friction(0.5)).unwrap();
+    let (block, apart) = (cube(), 1e-5);
+    for k in 0..5 {
+        let place = DVec3::Y * (0.5 + apart + (1.0 + apart) * f64::from(k));
+        let body = Body::new(format!("{k}"), Arc::clone(&block)).with_position(place).with_friction(0.5);
+        simulation.add(&body).unwrap();
+    }
+    let starts: Vec<DVec3> = simulation.ids().map(|id| simulation.position(id)).collect();
+    let segments = run(&mut simulation, 1.0);
+    for (id, start) in simulation.ids().zip(starts) {
+        assert!((simulation.position(id) - start).length() < 1e-3);
+    }
+    let mut trees = vec![block; 6];
+    trees[0] = tree("box?x=10&y=0.5&z=10");
+    judge(&segments, &trees);
+}
+
+/// Bodies that follow their motions may pass through each other; what they carry does not.
+#[test]
+fn bodies_that_follow_their_motions_cross() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let (bar, load) = (tree("box?x=1&y=0.2&z=0.2"), tree("box?x=0.2&y=0.2&z=0.2"));
+    for (name, y, side) in [("one", 0.0, -1.0), ("other", 0.05, 1.0)] {
+        let motion = ConstantTwist::REST
+            .with_position(DVec3::new(2.0 * side, y, 0.0))
+            .with_linear_velocity(DVec3::NEG_X * side);
+        let body = Body::new(name, Arc::clone(&bar)).with_kind(Kind::Kinematic(Arc::new(motion)));
+        simulation.add(&body.with_friction(0.3)).unwrap();
+    }
+    let place = DVec3::new(-2.0, 0.41, 0.0);
+    let carried =
+        simulation.add(&Body::new("carried", Arc::clone(&load)).with_position(place).with_friction(0.6));
+    let carried = carried.unwrap();
+    let segments = run(&mut simulation, 0.9);
+    assert!((simulation.linear_velocity(carried) - DVec3::X).length() < 1e-3);
+    judge(&segments, &[Arc::clone(&bar), bar, load]);
+    let _ = run(&mut simulation, 2.5);
+    assert!(simulation.position(carried).is_finite());
+}
