@@ -48,13 +48,31 @@ fn figure(what: impl Into<String>, value: f64, unit: &'static str, target: Targe
 /// Threads that wait for a processor for more than this part of the time say nothing about a program.
 const BUSY: f64 = 0.02;
 
-/// A figure that depends on a machine without other work; `waited`: for which part of the time threads of this process waited
-/// for a processor.
-fn busy_figure(what: String, value: f64, unit: &'static str, target: Target, waited: f64) {
-    figure(what, value, unit, target);
-    if waited > BUSY {
+/// A figure that depends on a machine without other work.
+struct BusyFigure {
+    what: String,
+    /// On the clock.
+    value: f64,
+    /// The same by the processor time of the thread that works most.
+    by_processor: f64,
+    unit: &'static str,
+    target: Target,
+    /// For which part of the time threads of this process waited for a processor.
+    waited: f64,
+}
+
+impl BusyFigure {
+    /// Processor time is compared with what is wanted where other work makes threads wait.
+    fn print(self) {
+        let Self { what, value, by_processor, unit, target, waited } = self;
+        if waited <= BUSY {
+            return figure(what, value, unit, target);
+        }
+        figure(what, value, unit, Target::None);
         let percent = 100.0 * waited;
-        println!("  the machine is busy: threads waited for a processor for {percent:.0} % of the time");
+        let what =
+            format!("  threads waited for {percent:.0} % of the time: by processor time of the busiest one");
+        figure(what, by_processor, unit, target);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Saved trees: what a command waits for that is given one.
 use super::threads::{Cost, measure};
-use super::{Target, busy_figure, figure, least_time, milliseconds, wrong};
+use super::{BusyFigure, Target, figure, least_time, milliseconds, wrong};
 use crate::TaskResult;
 use d2m::bvh::{MeshTree, Posed, ProximityOptions, proximities_with};
 use d2m::glam::DVec3;
@@ -34,11 +34,16 @@ pub(super) fn run(rounds: usize) -> TaskResult {
             least.waiting += cost.waiting;
         }
         let count = tree.mesh().triangle_count();
-        let what = format!(
-            "saved tree of {count} triangles read and validated, {threads} threads (busiest one {:.0} ms)",
-            least.busiest * 1e3
-        );
-        busy_figure(what, least.wall * 1e3, "ms", Target::AtMost(most), least.waiting / wall);
+        let [value, by_processor] = [least.wall, least.busiest].map(|seconds| seconds * 1e3);
+        BusyFigure {
+            what: format!("saved tree of {count} triangles read and validated, {threads} threads"),
+            value,
+            by_processor,
+            unit: "ms",
+            target: Target::AtMost(most),
+            waited: least.waiting / wall,
+        }
+        .print();
     }
     std::fs::remove_file(&path)?;
     first_proximities(rounds)

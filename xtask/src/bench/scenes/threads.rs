@@ -1,5 +1,5 @@
 //! What a second thread wins, on a machine where others may be at work.
-use super::{Target, busy_figure, figure, wrong};
+use super::{BusyFigure, Target, wrong};
 use crate::TaskResult;
 use d2m::{PairContact, Window, World};
 use std::collections::BTreeMap;
@@ -74,14 +74,12 @@ pub(super) fn run(rounds: usize, fresh: &World) -> TaskResult {
     }
     let least = |k: usize, what: fn(&Cost) -> f64| costs[k].iter().map(what).fold(f64::INFINITY, f64::min);
     let [one, two] = [0, 1].map(|k| least(k, |cost| cost.wall));
+    let [one_busiest, two_busiest] = [0, 1].map(|k| least(k, |cost| cost.busiest));
     let sum = |what: fn(&Cost) -> f64| costs.iter().flatten().map(what).sum::<f64>();
     let waited = sum(|cost| cost.waiting) / sum(|cost| cost.wall);
     let count = answers[0].as_ref().map_or(0, Vec::len);
     let what = format!("all {count} contacts of 300 knots ({:.1} ms): one thread over two", one * 1e3);
-    busy_figure(what, one / two, "times", Target::AtLeast(1.7), waited);
-    let [one, two] = [0, 1].map(|k| least(k, |cost| cost.busiest));
-    if two > 0.0 {
-        figure("the same in processor time of the thread that works most", one / two, "times", Target::None);
-    }
+    let (value, by_processor) = (one / two, one_busiest / two_busiest);
+    BusyFigure { what, value, by_processor, unit: "times", target: Target::AtLeast(1.7), waited }.print();
     Ok(())
 }
