@@ -56,7 +56,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-dynamics/src/contact/rows.rs",
         "const NEAR: f64 = 1.5;",
         "const NEAR: f64 = 1.0;",
-        "crates/d2m-dynamics/tests/scenes.rs::cubes_without_friction_fall_flat_and_stack",
+        "crates/d2m-dynamics/tests/scenes.rs::intersecting_starts_and_crushing_are_named",
     ),
     patch(
         "contacts where hardly any room is left push along the normals of faces only",
