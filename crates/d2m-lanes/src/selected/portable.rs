@@ -97,11 +97,10 @@ impl Lanes for Portable {
     }
     #[inline(always)]
     fn larger(wide: &WideSide<'_>, single: SingleSide) -> [u32; 8] {
+        let WideSide { sizes, ratio, children, flag } = *wide;
         let mut out = [single.tag; 8];
         for lane in 0..8 {
-            if wide.sizes[lane] * wide.ratio > single.size {
-                out[lane] = wide.children[lane] | wide.flag;
-            }
+            out[lane] = if sizes[lane] * ratio > single.size { children[lane] | flag } else { single.tag };
         }
         out
     }

@@ -200,7 +200,8 @@ impl<T: PieceTest> Search<'_, T> {
             }
         }
         // Nothing could be said: halve, down to the last representable width.
-        if !is_last && !(narrow && width <= GIVE_UP * self.resolution) {
+        let is_hopeless = is_last || narrow && width <= GIVE_UP * self.resolution;
+        if !is_hopeless {
             return self.halve(piece);
         }
         match distance.filter(|bound| bound.is_finite()) {
