@@ -26,10 +26,11 @@ impl<'t> Row<'t> {
         let &[pair, gap, _, _, ours, fcl, _] = fields.as_slice() else { return None };
         Some(Self { pair, gap: gap.parse().ok()?, ours: ours.parse().ok()?, fcl: fcl.parse().ok()? })
     }
+}
 
-    fn ratio(&self) -> f64 {
-        self.ours / self.fcl
-    }
+/// Our time as a part of FCL's.
+fn ratio(row: &Row<'_>) -> f64 {
+    row.ours / row.fcl
 }
 
 /// Takes the table over as it is.
@@ -66,7 +67,7 @@ pub(super) fn write(page: &mut String, folder: &Path) -> Result<(), Error> {
     writeln!(page, "|---|---|---|---|---|---|---|")?;
     for of_pair in rows.chunk_by(|row, other| row.pair == other.pair) {
         let largest = |of: fn(&Row<'_>) -> f64| of_pair.iter().map(of).fold(0.0, f64::max);
-        let best = of_pair.iter().map(Row::ratio).fold(f64::INFINITY, f64::min);
+        let best = of_pair.iter().map(ratio).fold(f64::INFINITY, f64::min);
         let [pair, nearest] = [of_pair[0].pair.replace('_', "/"), round(of_pair[0].ours)];
         writeln!(
             page,
@@ -74,7 +75,7 @@ pub(super) fn write(page: &mut String, folder: &Path) -> Result<(), Error> {
             round(largest(|row| row.ours)),
             round(of_pair[0].fcl),
             round(largest(|row| row.fcl)),
-            largest(|row| row.ratio()),
+            largest(ratio),
         )?;
     }
     Ok(writeln!(page)?)
