@@ -11,15 +11,19 @@ const MOST_SQUARED_NORM: f64 = 1e200;
 
 /// exp([ω]s) as a unit quaternion, plain floating point with the project's own sine.
 pub(crate) fn quat_of(omega: DVec3, s: f64) -> DQuat {
-    let speed = omega.length();
-    if speed == 0.0 || s == 0.0 {
+    let largest = omega.abs().max_element();
+    if largest == 0.0 || s == 0.0 {
         return DQuat::IDENTITY;
     }
+    // In a unit in which no square is lost to underflow.
+    let unit = power_of_two_below(largest);
+    let scaled = omega / unit;
+    let speed = scaled.length();
     // Beyond the kernel's range the angle loses whole turns first: an estimate, but a finite one.
-    let half = 0.5 * speed * s;
+    let half = 0.5 * (speed * unit) * s;
     let half = if half.abs() > LARGEST_ANGLE { half % core::f64::consts::TAU } else { half };
     let (sin, cos) = sin_cos(half);
-    let axis = omega * (sin / speed);
+    let axis = scaled * (sin / speed);
     DQuat::from_xyzw(axis.x, axis.y, axis.z, cos)
 }
 

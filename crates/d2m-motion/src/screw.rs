@@ -38,26 +38,26 @@ impl ScrewMotion {
     /// The screw with the given pose and twist at time `t0`. Every pose and twist has one.
     ///
     /// The twist's linear part is the velocity of the pose's point `at`. Axis: `x + ω × v/|ω|²`; pitch:
-    /// `ω·v/|ω|²` (length per radian).
+    /// `ω·v/|ω|²` (length per radian). Points at a distance r from the axis are placed to a few r·2⁻⁵³, so a motion whose axis is far
+    /// away keeps more digits as a [`ConstantTwist`].
     ///
     /// # Errors
-    /// A component that is not finite, or an orientation that cannot be normalised.
+    /// A component that is not finite, an orientation that cannot be normalised, or an axis farther away than numbers reach.
     pub fn try_from_twist(pose: Pose, twist: Twist, t0: f64) -> Result<Self, MotionError> {
         let given = ConstantTwist::try_new(pose.translation, pose.rotation, twist.linear, twist.angular)?
             .try_with_at(pose.at)?
             .try_with_reference_time(t0)?;
-        let square = twist.angular.length_squared();
-        if square == 0.0 || !square.is_normal() {
-            // A negligible rotation: the axis is at infinity, and the translation is the screw.
-            return Ok(Self { motion: given.with_angular_velocity(DVec3::ZERO) });
+        let Some(Scaled { vector: w, size }) = Scaled::of(twist.angular) else {
+            return Ok(Self { motion: given });
+        };
+        let square = w.length_squared();
+        let arm = w.cross(twist.linear) / square / size;
+        let slide = w * (w.dot(twist.linear) / square);
+        if !(pose.translation + arm).is_finite() {
+            return Err(MotionError::Screw { reason: "its axis is farther away than numbers reach" });
         }
-        let arm = twist.angular.cross(twist.linear) / square;
-        let pitch = twist.angular.dot(twist.linear) / square;
         let at = pose.at + pose.rotation.normalize().conjugate() * arm;
-        let motion = given
-            .try_with_at(at)?
-            .with_position(pose.translation + arm)
-            .with_linear_velocity(twist.angular * pitch);
+        let motion = given.try_with_at(at)?.with_position(pose.translation + arm).with_linear_velocity(slide);
         Ok(Self { motion })
     }
 
@@ -134,7 +134,21 @@ impl ScrewMotion {
     /// Translation per radian of turn, positive for a right-handed screw; `None` without rotation.
     pub fn pitch(&self) -> Option<f64> {
         let (v, w) = (self.motion.linear_velocity(), self.motion.angular_velocity());
-        (w != DVec3::ZERO).then(|| v.dot(w) / w.length_squared())
+        Scaled::of(w).map(|Scaled { vector, size }| v.dot(vector) / vector.length_squared() / size)
+    }
+}
+
+/// A vector as one whose largest coordinate is one, times a size: squares are not lost to underflow.
+struct Scaled {
+    vector: DVec3,
+    size: f64,
+}
+
+impl Scaled {
+    /// `None` for zero.
+    fn of(v: DVec3) -> Option<Self> {
+        let size = v.abs().max_element();
+        (size > 0.0).then(|| Self { vector: v / size, size })
     }
 }
 

@@ -134,6 +134,28 @@ fn accelerations_are_bounded() {
     }
 }
 
+/// However slow a turn is, it counts over a time that is as long.
+#[test]
+fn screws_turn_at_any_rate() {
+    for rate in [1e-318, 1e-300, 1e-160, 1e-154, 1.0, 1e100, 1e150] {
+        // An axis through (-1, 0, 0), and a slide of three along it.
+        let twist = Twist { angular: DVec3::Z * rate, linear: DVec3::new(0.0, rate, 3.0 * rate) };
+        let screw = ScrewMotion::try_from_twist(Pose::IDENTITY, twist, 0.0).unwrap();
+        let pitch = screw.pitch().unwrap();
+        let exact = rate > 1e-308;
+        assert!((pitch - 3.0).abs() < if exact { 1e-14 } else { 1e-3 }, "{rate:e}: {pitch}");
+        assert!((screw.axis_point() + DVec3::X).length() < if exact { 1e-14 } else { 1e-3 }, "{rate:e}");
+        let quarter = core::f64::consts::FRAC_PI_2 / rate;
+        if quarter.is_finite() {
+            let (pose, _) = screw.pose_and_twist(quarter);
+            let expected = DVec3::new(-1.0, 1.0, 1.5 * core::f64::consts::PI);
+            assert!((pose.transform_point(DVec3::ZERO) - expected).length() < 1e-13, "{rate:e}: {pose:?}");
+        }
+    }
+    let far = Twist { angular: DVec3::Z * 1e-300, linear: DVec3::X * 1e10 };
+    assert!(ScrewMotion::try_from_twist(Pose::IDENTITY, far, 0.0).is_err());
+}
+
 #[test]
 fn screws_join_poses_and_keep_twists() {
     let mut random = Random(6);

@@ -4,6 +4,13 @@ use super::{Mutant, in_test, patch};
 pub(super) const MUTANTS: &[Mutant] = &[
     // Motions.
     patch(
+        "screws leave out rotations whose squares underflow",
+        "crates/d2m-motion/src/screw.rs",
+        "(size > 0.0).then(",
+        "(size * size > 0.0).then(",
+        "crates/d2m-motion/src/tests.rs::screws_turn_at_any_rate",
+    ),
+    patch(
         "jerk of a path without 3U",
         "crates/d2m-motion/src/relative/bounds.rs",
         "(3.0 * k.across + k.b * k.swept_within(reach))",
