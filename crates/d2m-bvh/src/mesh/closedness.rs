@@ -89,9 +89,8 @@ fn components(mesh: &TriMesh, first: Vec<u32>) -> Vec<u32> {
 /// For each vertex the lowest one of its set.
 fn joined(mesh: &TriMesh, first: Vec<u32>) -> Vec<u32> {
     let mut sets = DisjointSets::from_parents(first);
-    for &[i, j, k] in mesh.triangles() {
-        sets.join(i, j);
-        sets.join(i, k);
+    for &corners in mesh.triangles() {
+        sets.join(corners);
     }
     (0..mesh.vertex_count() as u32).map(|i| sets.root(i)).collect()
 }

@@ -17,6 +17,7 @@ impl DisjointSets {
     }
 
     /// The smallest member of the set.
+    #[inline(always)]
     pub(super) fn root(&mut self, mut member: u32) -> u32 {
         while self.parent[member as usize] != member {
             let above = self.parent[self.parent[member as usize] as usize];
@@ -26,9 +27,13 @@ impl DisjointSets {
         member
     }
 
-    /// Makes one set of two.
-    pub(super) fn join(&mut self, first: u32, second: u32) {
-        let (first, second) = (self.root(first), self.root(second));
-        self.parent[first.max(second) as usize] = first.min(second);
+    /// Makes one set of those of some numbers.
+    #[inline(always)]
+    pub(super) fn join<const N: usize>(&mut self, members: [u32; N]) {
+        let roots = members.map(|member| self.root(member));
+        let least = roots.iter().fold(u32::MAX, |least, &root| least.min(root));
+        for root in roots {
+            self.parent[root as usize] = least;
+        }
     }
 }

@@ -91,8 +91,7 @@ impl Topology {
                 continue;
             }
             face_count += 1;
-            components.join(corners[0], corners[1]);
-            components.join(corners[0], corners[2]);
+            components.join(corners);
             for vertex in corners {
                 used[vertex as usize] = true;
             }

@@ -147,7 +147,7 @@ fn pinched_vertices(mesh: &TriMesh, topology: &Topology) -> usize {
         for end in ends {
             let other: [u32; 2] = first;
             let same = if at(other[0]) == at(end) { other[0] } else { other[1] };
-            joined.join(end, same);
+            joined.join([end, same]);
         }
     }
     let mut fans = vec![0u8; mesh.vertex_count()];

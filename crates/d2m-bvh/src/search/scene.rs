@@ -18,6 +18,9 @@ const TRIANGLE_ERROR: f64 = 128.0 * UNIT_F64;
 const FRAME_ERROR: f64 = 256.0 * UNIT_F64;
 /// Far frames err by at most so many times as much.
 const FAR_FRAMES: f64 = 4.0;
+/// Where the fastest points are below this in the unit of a node test, 2¹¹⁰, no sum of products of speeds and cosines overflows in
+/// `f32`, even of boxes from files, which may be 16 times as large as what they enclose.
+const MOST_SPEED: f64 = power_of_two(110);
 /// Factor of the error of the distance of two balls: positions err by less than 64·2⁻⁵³ of the size, and the few
 /// operations after that by less.
 const BALL_ERROR: f64 = 128.0 * UNIT_F64;
@@ -310,6 +313,8 @@ impl<'a> Scene<'a> {
             let inverse_unit = 1.0 / wide.box_unit();
             let speed_scale = time_unit * inverse_unit;
             let acceleration = self.pair.acceleration * time_unit * speed_scale * NARROW_UP;
+            let fastest = (self.spin_speed + self.size / time_unit) * speed_scale;
+            let speed_floor = if fastest < MOST_SPEED { FRAME_ERROR * fastest } else { f64::INFINITY };
             NodeScale {
                 ratio: single.box_unit() * inverse_unit,
                 inverse_unit,
@@ -317,7 +322,7 @@ impl<'a> Scene<'a> {
                 time_unit,
                 spin,
                 floor: round_up((self.pair.level * NARROW_UP + FRAME_ERROR * self.size) * inverse_unit),
-                speed_floor: round_up(FRAME_ERROR * (self.spin_speed + self.size / time_unit) * speed_scale),
+                speed_floor: round_up(speed_floor),
                 acceleration: round_up(acceleration),
             }
         };

@@ -25,15 +25,24 @@ impl Extent {
         for p in used() {
             (low, high) = (low.min(p), high.max(p));
         }
-        Self::about(mesh, low * 0.5 + high * 0.5)
+        let center = low * 0.5 + high * 0.5;
+        // Differences are rounded without a change of order, so the box has the largest.
+        Self::within(mesh, center, (low - center).abs().max((high - center).abs()).max_element())
     }
 
     /// The least bound on the distance from a given center.
     pub(super) fn about(mesh: &TriMesh, center: DVec3) -> Self {
-        let used = || mesh.triangles().iter().flatten().map(|&i| mesh.vertices()[i as usize] - center);
-        // In a unit in which no square over- or underflows.
-        let unit = unit_of(used().map(|p| p.abs().max_element()).fold(0.0, f64::max));
-        let square = used().map(|p| (p / unit).length_squared()).fold(0.0, f64::max);
+        let used = mesh.triangles().iter().flatten().map(|&i| mesh.vertices()[i as usize] - center);
+        Self::within(mesh, center, used.map(|p| p.abs().max_element()).fold(0.0, f64::max))
+    }
+
+    /// The same if the largest coordinate of a used vertex from the center is known.
+    fn within(mesh: &TriMesh, center: DVec3, largest: f64) -> Self {
+        let used = mesh.triangles().iter().flatten().map(|&i| mesh.vertices()[i as usize] - center);
+        // In a unit in which no square over- or underflows; one over it is exact.
+        let unit = unit_of(largest);
+        let inverse = 1.0 / unit;
+        let square = used.map(|p| (p * inverse).length_squared()).fold(0.0, f64::max);
         // Differences, squares, sum, root: relative error below 6v. Below the normal numbers the product rounds.
         let radius = square.sqrt() * (1.0 + 16.0 * UNIT_F64) * unit;
         let radius = if radius < f64::MIN_POSITIVE && square > 0.0 { f64::MIN_POSITIVE } else { radius };

@@ -10,8 +10,9 @@ use d2m_lanes::{Elementwise, Lanes, Two};
 /// What covers the roundings of the entry time and of unit axes.
 pub(crate) const ENTRY_FACTOR: f32 = 1.0 - 32.0 * UNIT_F32 as f32;
 
-/// Along one axis: the gap, and the speed at which it closes at most, never less than a positive least one. Where sums
-/// overflow, the gap is infinite or either is not a number: then so is the entry time, and nothing is known.
+/// Along one axis: the gap, and the speed at which it closes at most, never less than a positive least one. Where sums of sizes
+/// overflow, the gap is infinite or not a number: then the entry time is not a number, and nothing is known. Where speeds may, the
+/// least one is infinite.
 #[derive(Clone, Copy)]
 struct GapAndRate<T> {
     gap: T,
@@ -34,7 +35,7 @@ impl<T: Elementwise> GapAndRate<T> {
         let parting = dot(velocity, &axis.direction);
         Self {
             gap: axis.between.abs() - axis.reach,
-            closing: rate.least.max(rate.spread - T::flip_sign(parting, axis.between)),
+            closing: (rate.spread - T::flip_sign(parting, axis.between)).max(rate.least),
         }
     }
 
@@ -75,7 +76,7 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
     let rate = [v[0].first(), v[1].first(), v[2].first()];
     let inverse = L::splat(1.0) / pair.square.sqrt();
     let gap = (pair.square - pair.line_reach) * inverse - L::splat(placed.boxed.margin);
-    let closing = L::splat(placed.least).max(spread - dot(&rate, &pair.line) * inverse);
+    let closing = (spread - dot(&rate, &pair.line) * inverse).max(L::splat(placed.least));
     let best = GapAndRate { gap, closing }.or(best);
 
     // Root of gap − closing·s − acceleration·s²/2: no cancellation.

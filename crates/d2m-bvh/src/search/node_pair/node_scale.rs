@@ -16,7 +16,7 @@ pub(crate) struct NodeScale {
     pub(crate) spin: [f32; 2],
     /// What is added to every margin: the level that counts as contact and the errors of the frame.
     pub(crate) floor: f32,
-    /// The same for speeds.
+    /// The same for speeds; infinite where they may overflow.
     pub(crate) speed_floor: f32,
     /// Bound on the acceleration between the bodies.
     pub(crate) acceleration: f32,

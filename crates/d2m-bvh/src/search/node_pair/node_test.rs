@@ -3,7 +3,7 @@
 use super::node_scale::NodeScale;
 use crate::search::motion::frame::Frame;
 use crate::tree::box_pair::{GAP_ERROR, PlacedBox, opposite};
-use crate::tree::margin::{UNIT_F32, error_of};
+use crate::tree::margin::UNIT_F32;
 use crate::tree::node::{NodeBox, WideNode};
 use d2m_lanes::{Doubles, Lanes, Matrix, Quad};
 use glam::DVec3;
@@ -96,7 +96,7 @@ pub(crate) struct Placed {
     pub(super) omega_wide: [f32; 4],
     /// Bound on |ω × e| over the single box.
     pub(super) spin_speed: f32,
-    /// Error of speeds; infinite where they may overflow.
+    /// Error of speeds.
     pub(super) speed_margin: f32,
     /// Least closing speed that is reckoned with.
     pub(super) least: f32,
@@ -141,7 +141,7 @@ impl Placed {
             boxed,
             omega_wide: frame.omega_wide,
             spin_speed,
-            speed_margin: error_of(SPEED_ERROR, norm(&velocity) + scale.spin[0] * wide.extent + spin_speed)
+            speed_margin: SPEED_ERROR * (norm(&velocity) + scale.spin[0] * wide.extent + spin_speed)
                 + frame.speed_floor,
             least: frame.least,
             velocity,
