@@ -50,7 +50,7 @@ const GOOD: f64 = 0.6;
 /// Above this part of its old width a piece is measured before it is bisected.
 const POOR: f64 = 0.95;
 /// Pieces that wait without memory of their own.
-const FEW: usize = 6;
+const FEW: usize = 3;
 /// No piece is divided below four last places of the times it is made of.
 const RESOLVABLE: f64 = 4.0 * f64::EPSILON;
 /// Below this part of the resolution, a piece that nothing can be said about is not halved again.
