@@ -36,6 +36,7 @@ pub(super) fn collect(store: &Store, folder: &Path) -> Result<(), Box<dyn std::e
     }
     super::peers::collect(store, folder)?;
     super::fcl_distances::collect(store, folder)?;
+    super::simulations::collect(store, folder)?;
     for name in ["machine.json", "settings.txt"] {
         std::fs::write(folder.join(name), store.load_text(name).unwrap_or_default())?;
     }

@@ -5,6 +5,7 @@ mod figures;
 mod page;
 mod peers;
 mod series;
+mod simulations;
 mod table;
 
 use crate::TaskResult;

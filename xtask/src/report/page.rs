@@ -1,6 +1,6 @@
 //! docs/results/README.md.
 use super::table::{self, Line};
-use super::{fcl_distances, peers, series, text};
+use super::{fcl_distances, peers, series, simulations, text};
 use crate::bench::{Method, pair_names, sweep};
 use crate::machine::Machine;
 use crate::statistics::Summary;
@@ -75,7 +75,8 @@ fn section(page: &mut String, folder: &Path) -> Result<(), Error> {
     instructions(page, folder)?;
     series::write(page, folder)?;
     peers::write(page, folder)?;
-    fcl_distances::write(page, folder)
+    fcl_distances::write(page, folder)?;
+    simulations::write(page, folder)
 }
 
 /// Box plots as in the paper's section VIII.
