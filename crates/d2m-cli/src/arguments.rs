@@ -314,7 +314,8 @@ A scene: {\"bodies\": [{\"name\", \"mesh\", \"scale\", \"kind\": \"dynamic\" | \
 \"solid\"}], \"ignore\": [[name or group, name or group]], \"pairs\": [{\"a\", \"b\", \"restitution\", \"friction\"}],
 \"simulation\": {\"gravity\", \"step\", \"end\", \"gap\", \"max_events\"}}. What is left out: dynamic, at rest at the origin, density 1000, no
 restitution, no friction; gravity [0, -9.81, 0], step 0.01, end 5, gap (between bodies that rest on each other) 0.001, max_events
-(contact events a step) 128. A kinematic body follows its motion, which has any JSON form of d2m toc.
+(contact events a step) 128. A kinematic body follows its motion, which has any JSON form of d2m toc; it has no pose and no
+velocity besides. Without a motion it rests in its pose.
 A run: a line with the bodies' masses, then a line for each segment, in which every body flies a constant twist about its
 center of mass: {\"t0\", \"t1\", \"bodies\" or \"changed\", \"contacts\", \"skipped\", \"wall\"}; skipped is the time for which bodies stood
 still because max_events were used up, wall the seconds that it took.

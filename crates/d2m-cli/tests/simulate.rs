@@ -96,6 +96,9 @@ fn a_run_replaces_the_whole_of_an_older_one() {
     assert_eq!(run[1]["t0"].as_f64(), Some(0.0));
 }
 
+/// A body that follows its motion.
+const MOVING: &str = r#"{"bodies": [{"name": "press", "mesh": "shape:box", "kind": "kinematic", "motion": {"x": [-1.5, 0, 0], "v": [2, 0, 0]}}]}"#;
+
 #[test]
 fn bad_scenes_are_refused_with_their_place() {
     let folder = Folder::new("simulate-bad");
@@ -111,6 +114,15 @@ fn bad_scenes_are_refused_with_their_place() {
         (PILE.replace("\"high\"", "\"low\""), "low"),
         (PILE.replace("\"static\"", "\"fixed\""), "fixed"),
         (PILE.replace("\"friction\": 0.5}", "\"friction\": 1e999}"), "number"),
+        (
+            MOVING.replace("\"motion\"", "\"pose\": {\"x\": [9, 0, 0]}, \"motion\""),
+            "body \"press\" (index 0): motion, pose: ",
+        ),
+        (
+            MOVING.replace("\"motion\"", "\"velocity\": {}, \"motion\""),
+            "body \"press\" (index 0): motion, velocity: ",
+        ),
+        (MOVING.replace("kinematic", "static"), "follows none"),
     ];
     for (index, (text, word)) in cases.iter().enumerate() {
         let scene = folder.file(&format!("bad-{index}.json"), text);

@@ -183,7 +183,14 @@ impl Reader {
             ("dynamic", None) => Kind::Dynamic,
             // A kinematic body without a motion rests where its pose is.
             ("static" | "kinematic", None) => Kind::Static,
-            ("kinematic", Some(motion)) => Kind::Kinematic(motion),
+            ("kinematic", Some(motion)) => {
+                // The motion says where the body is and how fast it moves: one of two answers would be ignored.
+                if let Some(key) = ["pose", "velocity"].into_iter().find(|key| fields.get(key).is_some()) {
+                    let reason = "a kinematic body with a motion has its pose and velocity from there: give one of the two";
+                    return Err(fields.fault(&format!("motion, {key}"), reason));
+                }
+                Kind::Kinematic(motion)
+            }
             ("dynamic" | "static", Some(_)) => {
                 return Err(fields.fault("motion", format!("a {kind} body follows none; is it kinematic?")));
             }
