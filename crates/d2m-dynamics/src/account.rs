@@ -19,7 +19,9 @@
 //! begin. (Not counted: the energy of the rotation of bodies that tumble, which the midpoint rule keeps but for an oscillation,
 //! and what bodies that follow their motions do.)
 
-use crate::rigid_body::{Momenta, Velocity};
+use crate::momenta::Momenta;
+use crate::velocity::Velocity;
+use core::ops::Neg;
 use glam::{DMat3, DVec3};
 
 /// Relative rounding of an energy: differences of sums of fewer than 2¹² products, of 2⁻⁵³ each.
@@ -80,7 +82,7 @@ fn towards_rigid(entries: &[Entry], anchored: bool) -> Vec<Velocity> {
     };
     let velocities: Vec<Velocity> = entries.iter().map(velocity).collect();
     if anchored {
-        return velocities.into_iter().map(|v| v.scaled(-1.0)).collect();
+        return velocities.into_iter().map(Neg::neg).collect();
     }
     let mass: f64 = entries.iter().map(|e| e.mass).sum();
     let center = entries.iter().map(|e| e.position * e.mass).sum::<DVec3>() / mass;
@@ -94,7 +96,7 @@ fn towards_rigid(entries: &[Entry], anchored: bool) -> Vec<Velocity> {
     }
     let spin = inertia.inverse() * angular;
     let rigid = |e: &Entry| Velocity { linear: linear + spin.cross(e.position - center), angular: spin };
-    entries.iter().zip(velocities).map(|(e, v)| rigid(e).plus(v.scaled(-1.0))).collect()
+    entries.iter().zip(velocities).map(|(e, v)| rigid(e) - v).collect()
 }
 
 /// Takes the least part of the velocities against each other, or against what the island is `anchored` to, that leaves no more
@@ -130,7 +132,7 @@ pub(crate) fn balance(entries: &[Entry], anchored: bool, length: f64) -> Balance
     let gained = gained + added(braked);
     let left = gained + lift - limit;
     let part = if left > 0.0 && lift > 0.0 && braked == deepest { (1.0 - left / lift).max(0.0) } else { 1.0 };
-    let braking = towards.into_iter().map(|to| to.scaled(braked)).collect();
+    let braking = towards.into_iter().map(|to| to * braked).collect();
     Balance { braking: Some(braking), part, gained, limit }
 }
 
@@ -152,7 +154,7 @@ mod tests {
             gained: 0.0,
             limit: 0.0,
             before,
-            after: before.plus(Momenta { linear: impulse, angular: arm.cross(impulse) }),
+            after: before + Momenta::of_impulse(impulse, arm),
             lead: 0.005,
             room: Velocity::default(),
         }
@@ -167,7 +169,7 @@ mod tests {
     fn braked(entries: &[Entry], balance: &Balance) -> Vec<Momenta> {
         let braking = balance.braking.as_ref().unwrap();
         let of = |(e, v): (&Entry, &Velocity)| {
-            e.after.plus(Momenta { linear: v.linear * e.mass, angular: e.inertia * v.angular })
+            e.after + Momenta { linear: v.linear * e.mass, angular: e.inertia * v.angular }
         };
         entries.iter().zip(braking).map(of).collect()
     }

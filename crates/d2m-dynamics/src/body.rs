@@ -66,8 +66,8 @@ pub enum Mass {
 /// use std::sync::Arc;
 /// let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
 /// let floor = Body::new("floor", Arc::clone(&cube)).with_kind(Kind::Static).with_position(DVec3::Y * -0.5);
-/// let ball = Body::new("cube", cube).with_position(DVec3::Y).with_restitution(0.8);
-/// assert_eq!(ball.restitution, 0.8);
+/// let falling = Body::new("cube", cube).with_position(DVec3::Y).with_restitution(0.8);
+/// assert_eq!(falling.restitution, 0.8);
 /// assert!(matches!(floor.kind, Kind::Static));
 /// # Ok::<(), d2m_shapes::ShapeError>(())
 /// ```

@@ -119,7 +119,7 @@ mod tests {
     use super::*;
     use crate::Body;
     use crate::faces::Faces;
-    use crate::rigid_body::Velocity;
+    use crate::velocity::Velocity;
     use d2m_bvh::{MeshTree, Posed, Solid, distance};
     use d2m_motion::{ConstantTwist, RigidMotion};
     use std::sync::Arc;

@@ -25,8 +25,8 @@ impl Faces {
         }
         let mut next = starts.clone();
         let mut triangles = vec![0; 3 * mesh.triangle_count()];
-        for (triangle, corners) in mesh.triangles().iter().enumerate() {
-            for &vertex in corners {
+        for (triangle, vertices) in mesh.triangles().iter().enumerate() {
+            for &vertex in vertices {
                 triangles[next[vertex as usize] as usize] = triangle as u32;
                 next[vertex as usize] += 1;
             }

@@ -3,7 +3,9 @@
 use crate::SimulationOptions;
 use crate::account::{Entry, balance};
 use crate::contact::{ContactPoint, HIT, Scope, Solver, SolverBody, Span, Sweeps, impact, select};
-use crate::rigid_body::{Momenta, RigidBody, Velocity};
+use crate::momenta::Momenta;
+use crate::rigid_body::RigidBody;
+use crate::velocity::Velocity;
 use glam::DMat3;
 use std::borrow::Cow;
 
@@ -237,9 +239,9 @@ pub(crate) fn solve(
             gained: state.gained,
             limit: state.energy_limit(options.gravity, options.step, options.gap),
             before,
-            after: before.plus(impacts[k]).plus(rests[k]),
+            after: before + impacts[k] + rests[k],
             lead: lead(k),
-            room: solver.bodies[k].velocity.plus(physical[k].scaled(-1.0)),
+            room: solver.bodies[k].velocity - physical[k],
         }
     };
     let entries: Vec<Entry> = moving.iter().map(entry).collect();
@@ -260,7 +262,7 @@ pub(crate) fn solve(
             push.gained = sheet.gained * e.mass / mass;
             if let Some(braking) = &sheet.braking {
                 let braked = braking[place];
-                push.velocity = physical[k].plus(braked).plus(e.room.scaled(sheet.part));
+                push.velocity = physical[k] + braked + e.room * sheet.part;
                 push.rest.linear += braked.linear * e.mass;
                 push.rest.angular += e.inertia * braked.angular;
             }
@@ -276,9 +278,7 @@ fn body_at(state: &RigidBody, velocity: Velocity, inverse_inertia: DMat3) -> Sol
 
 /// A body that impulses do not move.
 fn still(state: &RigidBody) -> SolverBody {
-    let velocity =
-        Velocity { linear: state.flight.linear_velocity(), angular: state.flight.angular_velocity() };
-    SolverBody { inverse_mass: 0.0, inverse_inertia: DMat3::ZERO, velocity }
+    SolverBody { inverse_mass: 0.0, inverse_inertia: DMat3::ZERO, velocity: state.present_velocity() }
 }
 
 fn world_inertia(state: &RigidBody) -> (f64, DMat3) {

@@ -11,6 +11,7 @@ mod faces;
 mod group;
 mod listener;
 mod mass;
+mod momenta;
 mod options;
 mod pairs;
 mod parallel;
@@ -20,6 +21,7 @@ mod simulation;
 mod sleep;
 mod snapshot;
 mod step;
+mod velocity;
 
 pub use body::{Body, BodyId, Kind, Mass, Motion};
 pub use contact::Material;

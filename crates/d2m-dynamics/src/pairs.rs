@@ -24,7 +24,7 @@ const SLACK: f64 = 0.0625;
 /// 40 operations of 2⁻⁵³ each) reaches with the next halvings.
 const LEAST: f64 = 1.0 / (1u64 << 30) as f64;
 
-/// Sine of the angle by which features may be tilted and still be one contact: the far corners of a box that lies almost flat.
+/// Sine of the angle by which features may be tilted and still be one contact: the far vertices of a box that lies almost flat.
 const TILT: f64 = 0.1;
 
 /// The normal of a contact is that of a face beside it, if the closest point lies no further from the face than this part of the

@@ -2,6 +2,8 @@
 
 use crate::body::{Body, Kind, Mass};
 use crate::faces::Faces;
+use crate::momenta::Momenta;
+use crate::velocity::Velocity;
 use crate::{MassProperties, SimulationError};
 use d2m_bvh::{MeshTree, Posed, Solid};
 use d2m_interval::Interval;
@@ -65,36 +67,6 @@ pub(crate) struct RigidBody {
     pub(crate) asleep: bool,
     /// For how long its surface has been slow.
     pub(crate) quiet: f64,
-}
-
-/// A velocity and an angular velocity, world axes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Velocity {
-    pub(crate) linear: DVec3,
-    pub(crate) angular: DVec3,
-}
-
-/// A momentum and an angular momentum about the center of mass, world axes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Momenta {
-    pub(crate) linear: DVec3,
-    pub(crate) angular: DVec3,
-}
-
-impl Velocity {
-    pub(crate) fn plus(self, other: Self) -> Self {
-        Self { linear: self.linear + other.linear, angular: self.angular + other.angular }
-    }
-
-    pub(crate) fn scaled(self, factor: f64) -> Self {
-        Self { linear: self.linear * factor, angular: self.angular * factor }
-    }
-}
-
-impl Momenta {
-    pub(crate) fn plus(self, other: Self) -> Self {
-        Self { linear: self.linear + other.linear, angular: self.angular + other.angular }
-    }
 }
 
 impl RigidBody {
@@ -254,7 +226,7 @@ impl RigidBody {
     /// Takes back an impulse of this instant.
     pub(crate) fn retract(&mut self, pushed: Momenta) {
         let before = self.kinetic_energy();
-        self.push(Momenta { linear: -pushed.linear, angular: -pushed.angular });
+        self.push(-pushed);
         self.gained += self.kinetic_energy() - before;
     }
 
@@ -367,7 +339,7 @@ impl RigidBody {
         if self.is_dynamic() && self.version == 0 && !self.asleep {
             return self.velocity();
         }
-        Velocity { linear: self.flight.linear_velocity(), angular: self.flight.angular_velocity() }
+        self.present_velocity()
     }
 
     /// The velocity of the present flight.
@@ -382,7 +354,7 @@ impl RigidBody {
 
     /// Speed that no point of the surface exceeds in this flight.
     pub(crate) fn surface_speed(&self) -> f64 {
-        self.flight.linear_velocity().length() + self.flight.angular_velocity().length() * self.radius
+        self.present_velocity().surface_speed(self.radius)
     }
 
     /// How fast a point of this body and one of another may come together in their present flights.

@@ -1,7 +1,8 @@
 //! Rest: islands whose surfaces have been slow for long enough do not move until something comes close.
 
 use crate::contact::ContactPoint;
-use crate::rigid_body::{RigidBody, Velocity};
+use crate::rigid_body::RigidBody;
+use crate::velocity::Velocity;
 use crate::{BodyId, Simulation, SimulationOptions};
 
 /// How long, in seconds of gravity's scale or plain units of time without gravity.

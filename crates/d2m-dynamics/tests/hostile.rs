@@ -1,4 +1,4 @@
-//! Scenes that ask for too much: each step ends, says what it skipped, and nothing panics.
+//! Scenes that need too much: each step ends, says what it skipped, and nothing panics.
 
 use d2m_bvh::{MeshTree, Posed, Solid, StartState, distance};
 use d2m_dynamics::{Body, Kind, Mass, MassProperties, Simulation, SimulationOptions};
@@ -93,8 +93,8 @@ fn events_run_out_and_the_report_says_so() {
         let body = Body::new(name, Arc::clone(&wall)).with_kind(Kind::Static);
         simulation.add(&body.with_position(DVec3::X * x).with_restitution(1.0)).unwrap();
     }
-    let ball = Body::new("ball", tree("box?x=0.1&y=0.1&z=0.1")).with_restitution(1.0);
-    let id = simulation.add(&ball.with_linear_velocity(DVec3::X * 100.0)).unwrap();
+    let cube = Body::new("cube", tree("box?x=0.1&y=0.1&z=0.1")).with_restitution(1.0);
+    let id = simulation.add(&cube.with_linear_velocity(DVec3::X * 100.0)).unwrap();
     let skipped = run(&mut simulation, 1.0);
     assert!(skipped > 0.5 && skipped < 1.0, "{skipped}");
     assert!(simulation.position(id).x.abs() < 0.4);

@@ -1,7 +1,7 @@
 //! Impacts: restitution and friction where bodies meet faster than they rest.
 
 use super::{ContactPoint, Scope, Solver, Sweeps};
-use crate::rigid_body::Velocity;
+use crate::velocity::Velocity;
 use glam::DMat3;
 
 /// Rounds of impacts that are passed on at one time.
@@ -17,7 +17,7 @@ const ENERGY_ROUNDING: f64 = 1e-12;
 /// total impulse on b of each contact.
 ///
 /// Each round takes the contacts that close, and has them separate by Newton's restitution all at once, with Coulomb friction;
-/// contacts that close only because of that wait for the next round (Guendelman et al. 2003), so a row of balls passes on what
+/// contacts that close only because of that wait for the next round (Guendelman et al. 2003), so a row of spheres passes on what
 /// it is hit by. Newton's restitution with friction can add energy (Kane): then the restitution of the round is
 /// reduced until it does not.
 pub(crate) fn impact(

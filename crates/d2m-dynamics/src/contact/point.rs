@@ -1,6 +1,6 @@
 //! A contact point with its impulse.
 
-use crate::rigid_body::Velocity;
+use crate::velocity::Velocity;
 use d2m_feature::FeaturePair;
 use glam::DVec3;
 
@@ -49,8 +49,7 @@ pub(crate) struct ContactPoint {
 impl ContactPoint {
     /// The rate at which the distance grows with these velocities of the two bodies.
     pub(crate) fn rate(&self, a: Velocity, b: Velocity) -> f64 {
-        let point = |v: Velocity, arm: DVec3| v.linear + v.angular.cross(arm);
-        self.normal.dot(point(b, self.arm_b) - point(a, self.arm_a))
+        self.normal.dot(b.of_point(self.arm_b) - a.of_point(self.arm_a))
     }
 
     /// Along the normal and the tangents.

@@ -1,7 +1,7 @@
 //! Which contacts the velocities of a flight have to heed, and how.
 
 use super::ContactPoint;
-use crate::rigid_body::Velocity;
+use crate::velocity::Velocity;
 use glam::DVec3;
 
 /// Times and speeds of a flight that is to be solved.
@@ -18,7 +18,7 @@ pub(crate) struct Span {
 /// Contacts that have been hit: what a flight ends at, plus the slack of its query.
 pub(crate) const HIT: f64 = 0.625;
 /// Contacts that nothing bounces off and that are this near, in gaps, count however fast they close: flights that are braked by an
-/// expected contact end at the gap, and of the corners of a face that lands flat all or none must be met.
+/// expected contact end at the gap, and of the vertices of a face that lands flat all or none must be met.
 const NEAR: f64 = 1.5;
 /// The part of the gap to which curvature may bring a contact within a flight.
 const KEPT: f64 = 0.45;

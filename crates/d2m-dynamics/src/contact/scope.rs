@@ -1,7 +1,7 @@
 //! The contacts that an iteration works on.
 
 use super::solver::{Prepared, Solver};
-use crate::rigid_body::Velocity;
+use crate::velocity::Velocity;
 
 /// Sweeps times contacts of one solution: a budget. What a large island is solved less exactly for is met as an event.
 const WORK: usize = 60_000;
@@ -45,7 +45,7 @@ impl Scope {
 
     /// The contacts whose rates have changed by more than `tolerance` since the bodies had these velocities, or will have.
     pub(crate) fn changed(before: Vec<Velocity>, solver: &Solver, tolerance: f64) -> Self {
-        let change = |i: usize| solver.bodies[i].velocity.plus(before[i].scaled(-1.0));
+        let change = |i: usize| solver.bodies[i].velocity - before[i];
         let has_changed = |p: &Prepared| p.fastest(&change(p.a), &change(p.b)) > tolerance;
         let is_member = solver.prepared.iter().map(has_changed).collect();
         Self::beside(is_member, before, solver, tolerance)
@@ -73,7 +73,7 @@ impl Scope {
         Self { is_member, members, work: WORK, part: Some(Part { reference, tolerance, starts, contacts }) }
     }
 
-    /// As many sweeps as are asked for.
+    /// As many sweeps as are wanted.
     pub(crate) fn unlimited(self) -> Self {
         Self { work: usize::MAX, ..self }
     }
@@ -95,7 +95,7 @@ impl Scope {
     pub(crate) fn shift(&mut self, before: &[Velocity], solver: &Solver) {
         let Some(part) = &mut self.part else { return };
         for ((reference, old), body) in part.reference.iter_mut().zip(before).zip(&solver.bodies) {
-            *reference = reference.plus(body.velocity).plus(old.scaled(-1.0));
+            *reference = *reference + body.velocity - *old;
         }
     }
 
@@ -103,7 +103,7 @@ impl Scope {
     pub(crate) fn grow(&mut self, solver: &Solver) -> bool {
         let Some(part) = &self.part else { return false };
         let (bodies, prepared) = (&solver.bodies, &solver.prepared);
-        let change = |i: usize| bodies[i].velocity.plus(part.reference[i].scaled(-1.0));
+        let change = |i: usize| bodies[i].velocity - part.reference[i];
         let mut admitted = Vec::new();
         for &k in &self.members {
             for i in [prepared[k].a, prepared[k].b] {

@@ -1,7 +1,7 @@
 //! Projected Gauss–Seidel over contact points with Coulomb friction.
 
 use super::{ContactPoint, Scope};
-use crate::rigid_body::Velocity;
+use crate::velocity::Velocity;
 use glam::{DMat3, DVec3};
 
 /// Sweeps after which contacts beside those that are worked on may join them.

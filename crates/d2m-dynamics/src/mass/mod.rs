@@ -99,8 +99,8 @@ fn largest(m: &DMat3) -> f64 {
 /// Integrals of density one; a mesh that is oriented inward counts as outward.
 pub(crate) fn integrate(mesh: &TriMesh) -> MassProperties {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for corners in mesh.triangles() {
-        for &index in corners {
+    for vertices in mesh.triangles() {
+        for &index in vertices {
             let p = mesh.vertices()[index as usize];
             (low, high) = (low.min(p), high.max(p));
         }

@@ -25,12 +25,11 @@ pub(super) fn check(mesh: &TriMesh) -> Result<(), MassError> {
         .collect();
     let mut balance: HashMap<(u32, u32), i32> = HashMap::new();
     let mut parent: Vec<u32> = (0..numbers.len() as u32).collect();
-    for (triangle, corners) in mesh.triangles().iter().enumerate() {
-        let c = corners.map(|v| number[v as usize]);
+    for vertices in mesh.triangles() {
+        let c = vertices.map(|v| number[v as usize]);
         if c[0] == c[1] || c[1] == c[2] || c[2] == c[0] {
             continue; // a triangle without area bounds nothing
         }
-        let _ = triangle;
         for k in 0..3 {
             let (from, to) = (c[k], c[(k + 1) % 3]);
             *balance.entry((from.min(to), from.max(to))).or_default() += if from < to { 1 } else { -1 };
@@ -45,8 +44,8 @@ pub(super) fn check(mesh: &TriMesh) -> Result<(), MassError> {
         return Err(MassError::Open { from: place(i).unwrap_or_default(), to: place(j).unwrap_or_default() });
     }
     let mut parts: BTreeMap<u32, Vec<[u32; 3]>> = BTreeMap::new();
-    for corners in mesh.triangles() {
-        parts.entry(root(&mut parent, number[corners[0] as usize])).or_default().push(*corners);
+    for vertices in mesh.triangles() {
+        parts.entry(root(&mut parent, number[vertices[0] as usize])).or_default().push(*vertices);
     }
     if parts.len() > 1 { overlaps(mesh, parts.into_values().collect()) } else { Ok(()) }
 }
@@ -97,8 +96,8 @@ fn overlaps(mesh: &TriMesh, parts: Vec<Vec<[u32; 3]>>) -> Result<(), MassError> 
             if i < j && meet.unwrap_or(true) {
                 return Err(names);
             }
-            let corner = second.tree.mesh().corners(0)[0];
-            winding += winding_number(first.tree.mesh(), corner);
+            let vertex = second.tree.mesh().corners(0)[0];
+            winding += winding_number(first.tree.mesh(), vertex);
         }
         let own = orientation(second.tree.mesh());
         // Inside a cavity the sum is zero, inside the solid one (or minus one, for a surface that faces inward).

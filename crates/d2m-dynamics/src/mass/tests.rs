@@ -37,11 +37,12 @@ fn far_from_the_origin_and_turned() {
 
 #[test]
 fn a_ball_of_many_triangles_is_nearly_a_ball() {
-    let ball = MassProperties::try_from_mass(&shape("icosphere?triangles=20000"), 2.0).unwrap();
+    let sphere = MassProperties::try_from_mass(&shape("icosphere?triangles=20000"), 2.0).unwrap();
     assert!(
-        (ball.inertia.x_axis.x / ball.inertia.z_axis.z - 1.0).abs() < 1e-4 && ball.center.length() < 1e-12
+        (sphere.inertia.x_axis.x / sphere.inertia.z_axis.z - 1.0).abs() < 1e-4
+            && sphere.center.length() < 1e-12
     );
-    assert_eq!(ball.mass, 2.0);
+    assert_eq!(sphere.mass, 2.0);
 }
 
 #[test]

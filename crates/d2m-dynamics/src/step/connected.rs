@@ -2,8 +2,9 @@
 
 use super::{Key, Occasion, Step};
 use crate::contact::ContactPoint;
+use crate::momenta::Momenta;
 use crate::pairs::{Measured, Pair, measure};
-use crate::rigid_body::{Momenta, RigidBody};
+use crate::rigid_body::RigidBody;
 use crate::simulation::query_error;
 use crate::{StepError, parallel};
 use d2m_bvh::QueryError;
@@ -77,7 +78,7 @@ impl Step<'_> {
             for (i, sign, arm) in [(contact.a, -1.0, contact.arm_a), (contact.b, 1.0, contact.arm_b)] {
                 if moves(&bodies[i]) {
                     let linear = impulse * sign;
-                    bodies[i].retract(Momenta { linear, angular: arm.cross(linear) });
+                    bodies[i].retract(Momenta::of_impulse(linear, arm));
                 }
             }
         }
@@ -123,7 +124,7 @@ impl Step<'_> {
                 let begins = body.time == time;
                 body.advance(time, gravity);
                 // What is left of a flight to the end of the step goes on as it was planned, if that is near enough to what
-                // its own middle asks for.
+                // its own middle needs.
                 let body = &self.sim.bodies[i];
                 let goes_on = match occasion {
                     Occasion::Start | Occasion::Plan { .. } => false,

@@ -5,9 +5,8 @@ use super::event::{Cause, Event};
 use super::{Key, Occasion, Step};
 use crate::contact::ContactPoint;
 use crate::pairs::measure;
-use crate::rigid_body::{RigidBody, Velocity};
+use crate::rigid_body::RigidBody;
 use crate::{StepError, parallel};
-use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// Solutions from one instant, each with the contacts that the flights of the one before led to: so many in any case, and four times as many
@@ -37,8 +36,7 @@ impl View<'_> {
     fn seen_now(&self, point: &ContactPoint) -> ContactPoint {
         let [a, b] = self.bodies;
         let [va, vb] = self.bodies.map(RigidBody::present_velocity);
-        let point_velocity = |v: Velocity, arm: DVec3| v.linear + v.angular.cross(arm);
-        let rate = |arm_a, arm_b| point.normal.dot(point_velocity(vb, arm_b) - point_velocity(va, arm_a));
+        let rate = |arm_a, arm_b| point.normal.dot(vb.of_point(arm_b) - va.of_point(arm_a));
         let centers = self.bodies.map(|body| body.pose_at(self.time).translation);
         let apart = (centers[1] + point.arm_b) - (centers[0] + point.arm_a);
         let share = match (a.is_dynamic(), b.is_dynamic()) {
@@ -58,7 +56,7 @@ impl Step<'_> {
     /// Solves the flights that begin at `time` again with the contacts that they are certain to lead to, as long as these
     /// have no restitution: a body that another one stops anyway is braked so as to come to it at the end of the step. This is
     /// the non-penetration constraint of time stepping (Anitescu and Potra 1997), linearised where the query has found the
-    /// contact; it asks for no impulse where bodies would miss each other, and its targets allow approach only, so it takes
+    /// contact; it needs no impulse where bodies would miss each other, and its targets allow approach only, so it takes
     /// energy and adds none. What the linearisation leaves over is an event like others.
     pub(super) fn solve_expected(&mut self, time: f64) -> Result<(), StepError> {
         self.expected = Expected::default();

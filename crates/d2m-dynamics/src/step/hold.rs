@@ -2,7 +2,8 @@
 
 use super::event::Event;
 use super::{Key, Step};
-use crate::rigid_body::{RigidBody, Velocity};
+use crate::rigid_body::RigidBody;
+use crate::velocity::Velocity;
 use crate::{BodyId, StepError};
 
 impl Step<'_> {

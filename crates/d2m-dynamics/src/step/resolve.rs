@@ -3,14 +3,15 @@
 use super::connected::Group;
 use super::{Occasion, Step};
 use crate::group::{Clock, Solved, islands, solve};
-use crate::rigid_body::{RigidBody, Velocity};
+use crate::rigid_body::RigidBody;
+use crate::velocity::Velocity;
 use crate::{BodyId, ContactImpulse, StepError, parallel};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// Rounds of bodies that others press on, after which all that contacts connect with them are solved together.
 const MOST_ROUNDS: u32 = 4;
-/// A solution that leads no point of a body's surface further astray than this part of the gap in a step leaves its flight as it is:
+/// A solution that leads no point of a body's surface further off than this part of the gap in a step leaves its flight as it is:
 /// a sixty-fourth of [`LEEWAY`], so that all contacts of a body together stay within that.
 const SAME: f64 = 1.0 / 1024.0;
 /// The part of the gap by which a contact may close in what is left of the step before its body is solved with the others.
@@ -51,11 +52,11 @@ impl Step<'_> {
         // An event's own bodies begin another flight in any case: their present ones are certified no further.
         let most = SAME * self.sim.options.gap / self.sim.options.step;
         let is_same = |body: &RigidBody, i: usize, velocity: Velocity, horizon: f64| {
-            let off = velocity.plus(body.present_velocity().scaled(-1.0));
+            let off = velocity - body.present_velocity();
             occasion != Occasion::Start
                 && renewed.binary_search(&i).is_err()
                 && body.horizon == horizon
-                && off.linear.length() + off.angular.length() * body.radius <= most
+                && off.surface_speed(body.radius) <= most
         };
         let mut changed: Vec<usize> = Vec::new();
         let mut solved_for = vec![false; self.sim.bodies.len()];

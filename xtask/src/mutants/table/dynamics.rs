@@ -52,7 +52,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-dynamics/tests/energy.rs::a_pile_without_restitution_meets_no_events_and_gains_none",
     ),
     patch(
-        "of the corners that land flat only those within the gap are met",
+        "of the vertices that land flat only those within the gap are met",
         "crates/d2m-dynamics/src/contact/rows.rs",
         "const NEAR: f64 = 1.5;",
         "const NEAR: f64 = 1.0;",
@@ -87,7 +87,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-dynamics/tests/scenes.rs::head_on",
     ),
     patch(
-        "the inertia of a mesh counts the sums of corners twice",
+        "the inertia of a mesh counts the sums of vertices twice",
         "crates/d2m-dynamics/src/mass/mod.rs",
         "s[j] * s[k]) / 20.0",
         "2.0 * s[j] * s[k]) / 20.0",

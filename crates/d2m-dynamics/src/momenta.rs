@@ -1,0 +1,34 @@
+//! The momenta of a body.
+
+use core::ops::{Add, Neg};
+use glam::DVec3;
+
+/// A momentum and an angular momentum about the center of mass, world axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Momenta {
+    pub(crate) linear: DVec3,
+    pub(crate) angular: DVec3,
+}
+
+impl Momenta {
+    /// Of an impulse that acts at `arm` from the center of mass.
+    pub(crate) fn of_impulse(impulse: DVec3, arm: DVec3) -> Self {
+        Self { linear: impulse, angular: arm.cross(impulse) }
+    }
+}
+
+impl Add for Momenta {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { linear: self.linear + other.linear, angular: self.angular + other.angular }
+    }
+}
+
+impl Neg for Momenta {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { linear: -self.linear, angular: -self.angular }
+    }
+}
