@@ -217,12 +217,12 @@ mod tests {
         }
     }
 
-    /// The end of a bar swings towards a box: all of its speed is closing.
+    /// The end of a bar turns towards a box: all of its speed is closing.
     #[test]
-    fn a_bar_that_swings_comes_as_close_as_its_end() {
+    fn a_bar_that_turns_comes_as_close_as_its_end() {
         let bar = DVec3::new(1.2, 0.05, 0.05);
-        let swing = Velocity { linear: DVec3::ZERO, angular: DVec3::Z };
-        let a = flying(bar, DVec3::ZERO, DQuat::IDENTITY, swing);
+        let turning = Velocity { linear: DVec3::ZERO, angular: DVec3::Z };
+        let a = flying(bar, DVec3::ZERO, DQuat::IDENTITY, turning);
         let b = flying(DVec3::splat(0.3), DVec3::new(1.2, 0.5, 0.0), DQuat::IDENTITY, Velocity::default());
         let bodies = [&a, &b];
         let known = Clearance { poses: bodies.map(|body| body.pose_at(1.0)), distance: 0.15 - 1e-12 };

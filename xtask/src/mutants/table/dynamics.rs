@@ -126,7 +126,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-dynamics/src/clearance.rs",
         "+ spin(a) + spin(b)",
         "+ 0.5 * (spin(a) + spin(b))",
-        "crates/d2m-dynamics/src/clearance.rs::a_bar_that_swings_comes_as_close_as_its_end",
+        "crates/d2m-dynamics/src/clearance.rs::a_bar_that_turns_comes_as_close_as_its_end",
     ),
     patch(
         "neighbors are kept though bodies leave their boxes",

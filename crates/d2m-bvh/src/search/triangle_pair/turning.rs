@@ -52,15 +52,15 @@ pub(super) fn clear_along_turning(
     let (turns, spin) = (turn.length() * UP, w_m.length() * UP);
     let apart = (out.cross(difference).length() + enough * turns * difference.length()) * UP;
     let paths = mover.corners.map(|corner| {
-        let swing = w_m.cross(corner + mover.arm);
+        let arm_velocity = w_m.cross(corner + mover.arm);
         let place = mover.center + corner - holder.center;
         // Velocity and acceleration as the holder sees them.
         let rate = drift + w_m.cross(corner) - w_h.cross(place);
-        let change = difference.cross(swing) - even_turned;
+        let change = difference.cross(arm_velocity) - even_turned;
         let bend = out.dot(change - w_h.cross(rate));
-        let most_change = difference.length() * swing.length() + even_turned.length();
+        let most_change = difference.length() * arm_velocity.length() + even_turned.length();
         let most_rate = rate.length() + enough * most_change;
-        let jerk = apart * spin * swing.length() + turns * (2.0 * most_change + w_h.length() * most_rate);
+        let jerk = apart * spin * arm_velocity.length() + turns * (2.0 * most_change + w_h.length() * most_rate);
         PathAlong {
             gap: out.dot(mover.center + corner) - level - need,
             rate: out.dot(rate),

@@ -42,23 +42,23 @@ impl SeenEdge {
     /// body and ω′ of the other one, where |ω × d| stays.
     fn new(edge: DVec3, own: DVec3, observer: DVec3, enough: f64) -> Self {
         let (difference, length) = (own - observer, edge.length() * UP);
-        let (rate, swing) = (difference.cross(edge), own.cross(edge));
+        let (rate, world_rate) = (difference.cross(edge), own.cross(edge));
         let [apart, spin, spin_observer] = [difference, own, observer].map(|w| w.length() * UP);
         let rate_terms = apart * length * UP;
         let bend_terms = rate_terms * (spin + spin_observer) * UP;
-        let most_swing = apart * (swing.length() * UP + PRODUCT_ERROR * spin * length);
+        let most_change = apart * (world_rate.length() * UP + PRODUCT_ERROR * spin * length);
         let grown = rate.length() * UP
             + PRODUCT_ERROR * rate_terms
-            + enough * (most_swing + spin_observer * rate_terms);
+            + enough * (most_change + spin_observer * rate_terms);
         let most_rate = rate_terms.min(grown);
         Self {
             now: edge,
             rate,
-            bend: difference.cross(swing) - observer.cross(rate),
+            bend: difference.cross(world_rate) - observer.cross(rate),
             length,
             most_rate,
-            most_bend: most_swing + spin_observer * most_rate,
-            most_jerk: most_swing * (spin + 2.0 * spin_observer) + spin_observer * spin_observer * most_rate,
+            most_bend: most_change + spin_observer * most_rate,
+            most_jerk: most_change * (spin + 2.0 * spin_observer) + spin_observer * spin_observer * most_rate,
             rate_terms,
             bend_terms,
         }
@@ -96,19 +96,19 @@ impl SeenPoint {
         let (w_a, w_b) = (a.omega, b.omega);
         let (spin_a, difference) = (w_a.length() * UP, (w_b - w_a).length() * UP);
         let (of_a, of_b) = (point - a.center, point - b.center);
-        let swing = w_b.cross(of_b + b.arm);
+        let arm_velocity = w_b.cross(of_b + b.arm);
         let rate = (b.velocity + w_b.cross(of_b)) - (a.velocity + w_a.cross(of_a));
         let even = (b.velocity - w_b.cross(b.arm)) - (a.velocity - w_a.cross(a.arm));
-        let change = (w_b - w_a).cross(swing) - w_a.cross(even);
+        let change = (w_b - w_a).cross(arm_velocity) - w_a.cross(even);
         // Bounds, with what the terms err by.
         let speeds = a.velocity.length() + b.velocity.length();
         let spins = [a, b].map(|body| body.omega.length());
         let rate_terms = (speeds + spins[0] * of_a.length() + spins[1] * of_b.length()) * UP;
         let even_terms = (speeds + spins[0] * a.arm.length() + spins[1] * b.arm.length()) * UP;
-        let swing_terms = spins[1] * (of_b.length() + b.arm.length()) * UP;
-        let most_swing = swing.length() * UP + PRODUCT_ERROR * swing_terms;
+        let arm_terms = spins[1] * (of_b.length() + b.arm.length()) * UP;
+        let most_arm_velocity = arm_velocity.length() * UP + PRODUCT_ERROR * arm_terms;
         let most_even = w_a.cross(even).length() * UP + PRODUCT_ERROR * spin_a * even_terms;
-        let most_change = difference * most_swing + most_even;
+        let most_change = difference * most_arm_velocity + most_even;
         let most_rate = rate.length() * UP + PRODUCT_ERROR * rate_terms + enough * most_change;
         let line = point - from;
         Self {
@@ -118,9 +118,9 @@ impl SeenPoint {
             most_line: line.length() * UP + enough * most_rate,
             most_rate,
             most_bend: most_change + spin_a * most_rate,
-            most_jerk: difference * spins[1] * most_swing + spin_a * (2.0 * most_change + spin_a * most_rate),
+            most_jerk: difference * spins[1] * most_arm_velocity + spin_a * (2.0 * most_change + spin_a * most_rate),
             rate_terms,
-            bend_terms: difference * swing_terms + spin_a * (even_terms + rate_terms),
+            bend_terms: difference * arm_terms + spin_a * (even_terms + rate_terms),
         }
     }
 }
