@@ -1,7 +1,7 @@
-//! Minimal enclosing ball of points.
+//! Minimal enclosing sphere of points.
 //!
-//! The smallest ball around n points is determined by at most four of them. Starting from one point, the point farthest
-//! from the current ball joins its support, and the smallest ball of those at most five points replaces it; its radius
+//! The smallest sphere around n points is determined by at most four of them. Starting from one point, the point farthest
+//! from the current sphere joins its support, and the smallest sphere of those at most five points replaces it; its radius
 //! grows at each step, so no support comes twice (an LP-type basis exchange: E. Welzl, *Smallest enclosing disks (balls
 //! and ellipsoids)*, 1991, doi:10.1007/BFb0038202, with the farthest-point pivoting of B. Gärtner, *Fast and robust
 //! smallest enclosing balls*, 1999, doi:10.1007/3-540-48481-7_29). Enclosure does not depend on any of that: the radius
@@ -15,10 +15,10 @@ use glam::DVec3;
 /// is measured afterwards.
 const HALF_ULP: f64 = 0.5 * f64::EPSILON;
 
-/// No input is known that takes more than 30 exchanges; after this many the best ball so far is returned.
+/// No input is known that takes more than 30 exchanges; after this many the best sphere so far is returned.
 const MAX_EXCHANGES: usize = 200;
 
-/// A ball that contains given points: enclosure is proven, minimality holds to rounding.
+/// A sphere that contains given points: enclosure is proven, minimality holds to rounding.
 ///
 /// ```
 /// use d2m_bvh::EnclosingSphere;
@@ -38,7 +38,7 @@ pub struct EnclosingSphere {
 }
 
 impl EnclosingSphere {
-    /// The smallest ball around `points` (finite, magnitudes at most [`MAX_COORDINATE`](crate::MAX_COORDINATE)); none if
+    /// The smallest sphere around `points` (finite, magnitudes at most [`MAX_COORDINATE`](crate::MAX_COORDINATE)); none if
     /// there are no points.
     ///
     /// **Promise.** In exact arithmetic |p − center| ≤ radius for every point. The radius exceeds the minimal one by a
@@ -50,7 +50,7 @@ impl EnclosingSphere {
         let mut best = (f64::INFINITY, first);
         for _ in 0..MAX_EXCHANGES {
             let (farthest, squared) = farthest_point(points, center);
-            // Exchanges stop improving only when the ball is minimal to rounding.
+            // Exchanges stop improving only when the sphere is minimal to rounding.
             if squared >= best.0 * (1.0 - HALF_ULP) && best.0.is_finite() && support.contains(farthest) {
                 best = if squared < best.0 { (squared, center) } else { best };
                 break;
@@ -73,7 +73,7 @@ impl EnclosingSphere {
         Some(Self { center: best.1, radius: bound_distance(best.0) })
     }
 
-    /// The smallest ball around the used vertices of a mesh; it contains every triangle, since balls are convex.
+    /// The smallest sphere around the used vertices of a mesh; it contains every triangle, since spheres are convex.
     pub fn of_mesh(mesh: &TriMesh) -> Self {
         let points: Vec<DVec3> =
             mesh.triangles().iter().flatten().map(|&vertex| mesh.vertices()[vertex as usize]).collect();
@@ -102,7 +102,7 @@ fn farthest_point(points: &[DVec3], center: DVec3) -> (DVec3, f64) {
     farthest
 }
 
-/// At most five points and the smallest ball of those that determine it.
+/// At most five points and the smallest sphere of those that determine it.
 #[derive(Clone, Copy)]
 struct Support {
     points: [DVec3; 5],
@@ -130,7 +130,7 @@ impl Support {
         self
     }
 
-    /// The subset of at most four points whose circumball, enlarged to hold all points, is smallest. Judging each
+    /// The subset of at most four points whose circumsphere, enlarged to hold all points, is smallest. Judging each
     /// center by the farthest of all points needs no tolerance.
     fn reduced(self) -> Self {
         let mut best = Self { squared_radius: f64::INFINITY, ..self };

@@ -285,7 +285,7 @@ fn contacts_at_joints_are_found_once() {
 }
 
 #[test]
-fn many_spans_are_skipped_by_balls() {
+fn many_spans_are_skipped_by_spheres() {
     let (a, b) = (torus(30, 14, 1.0), torus(25, 13, 0.8));
     let frames: Vec<(f64, Pose)> = (0..=200)
         .map(|i| {

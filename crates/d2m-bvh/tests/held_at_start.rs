@@ -16,7 +16,7 @@ fn cube(half: f64) -> MeshTree {
     MeshTree::new(TriMesh::try_new((0..8).map(vertex).collect(), halves.collect()).unwrap())
 }
 
-/// A small cube in the very corner of a large one, where the balls about both nearly part; whatever the reference points and
+/// A small cube in the very corner of a large one, where the spheres about both nearly part; whatever the reference points and
 /// spins are.
 #[test]
 fn a_body_in_a_corner_of_the_other_is_held() {

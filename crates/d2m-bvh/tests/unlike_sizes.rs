@@ -17,8 +17,8 @@ fn cube(half: f64) -> MeshTree {
     MeshTree::new(TriMesh::try_new((0..8).map(vertex).collect(), halves.collect()).unwrap())
 }
 
-/// A ball of 128 triangles: an octahedron divided twice.
-fn ball(radius: f64) -> MeshTree {
+/// A sphere of 128 triangles: an octahedron divided twice.
+fn sphere(radius: f64) -> MeshTree {
     let mut triangles = Vec::new();
     for octant in 0..8u32 {
         let sign = |bit: u32| if octant >> bit & 1 == 0 { 1.0 } else { -1.0 };
@@ -38,13 +38,13 @@ fn ball(radius: f64) -> MeshTree {
     MeshTree::new(mesh)
 }
 
-/// A cube that a face of the large ball cuts: both orders say so, and no distance is proven.
+/// A cube that a face of the large sphere cuts: both orders say so, and no distance is proven.
 #[test]
 fn bodies_that_cross_are_never_apart_however_unlike_their_sizes() {
     let mut random = KnuthRandom(171);
     let small = cube(0.5);
     for step in 300..800 {
-        let large = ball(10f64.powf(f64::from(step) / 20.0));
+        let large = sphere(10f64.powf(f64::from(step) / 20.0));
         for _ in 0..4 {
             let corners = large.mesh().corners((random.signed().abs() * 127.9) as usize);
             let rotation =
@@ -68,7 +68,7 @@ fn bounds_of_distances_hold_however_unlike_sizes_and_distances() {
     let small = cube(0.5);
     for step in 0..800 {
         let size = 10f64.powf(f64::from(step) / 20.0);
-        let large = ball(size);
+        let large = sphere(size);
         for _ in 0..4 {
             let rotation =
                 DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), 1.0).normalize();
@@ -98,7 +98,7 @@ fn nothing_is_too_fast_to_be_noticed() {
     let mut found = 0;
     for step in 0..1200 {
         let size = 10f64.powf(39.0 * random.signed().max(0.0));
-        let other = if step % 2 == 0 { cube(size) } else { ball(size) };
+        let other = if step % 2 == 0 { cube(size) } else { sphere(size) };
         let speed = 10f64.powf(f64::from(step) / 8.0 - 60.0);
         let towards = random.vector().normalize();
         let turn = DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), 1.0).normalize();

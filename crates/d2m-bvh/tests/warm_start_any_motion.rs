@@ -45,7 +45,7 @@ fn passing(random: &mut KnuthRandom, away: f64, bend: f64) -> Chain {
 
 /// Node tests of a query, and whether there was a search.
 fn searched<T>(far: &MeshTree, ask: impl FnOnce() -> T) -> (T, bool) {
-    // Leaves counts that no other query has: balls that are apart.
+    // Leaves counts that no other query has: spheres that are apart.
     let away = ConstantTwist::REST.with_position(DVec3::X * 1e6);
     let [a, b] = [Moving::new(far, &away), Moving::new(far, &ConstantTwist::REST)];
     assert!(time_of_contact(a, b, Window::UNIT, &QueryOptions::default()).unwrap().is_separated());

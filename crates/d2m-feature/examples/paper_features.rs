@@ -43,11 +43,11 @@ fn main() {
                     edge_edge(&relative, &edge("A"), &edge("B"), window, &options)
                 }
                 Some("sphere_sphere") => {
-                    let ball = |s: &str| Sphere {
+                    let sphere = |s: &str| Sphere {
                         center: vector(&case[s]["c"]),
                         radius: case[s]["r"].as_f64().unwrap(),
                     };
-                    sphere_sphere(&relative, &ball("A"), &ball("B"), window, &options)
+                    sphere_sphere(&relative, &sphere("A"), &sphere("B"), window, &options)
                 }
                 other => panic!("unknown kind {other:?}"),
             };

@@ -8,11 +8,11 @@ use glam::DVec3;
 /// use d2m_motion::ConstantTwist;
 /// use glam::DVec3;
 /// let rolling = ConstantTwist::REST.with_position(4.0 * DVec3::X).with_linear_velocity(-4.0 * DVec3::X);
-/// let ball = Sphere { center: DVec3::ZERO, radius: 1.0 };
+/// let sphere = Sphere { center: DVec3::ZERO, radius: 1.0 };
 /// let pair = PairMotion::new(&rolling, &ConstantTwist::REST, 0.0, 1.0);
-/// let FirstContact::Contact(contact) = pair.sphere_sphere(ball, ball, &ContactOptions::new()) else { panic!() };
+/// let FirstContact::Contact(contact) = pair.sphere_sphere(sphere, sphere, &ContactOptions::new()) else { panic!() };
 /// assert!(contact.lo <= 0.5 && 0.5 <= contact.hi && contact.hi - contact.lo < 1e-9);
-/// assert_eq!(Sphere::from((DVec3::ZERO, 1.0)), ball);
+/// assert_eq!(Sphere::from((DVec3::ZERO, 1.0)), sphere);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {

@@ -253,7 +253,7 @@ fn twists_that_jump_are_searched_piece_by_piece() {
     }
 }
 
-/// Keyframes that count how often their state is asked for.
+/// Keyframes that count how often their state is queried.
 struct Counted(Keyframes, AtomicU32);
 
 impl RigidMotion for Counted {

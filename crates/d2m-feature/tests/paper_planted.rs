@@ -229,8 +229,8 @@ fn fast_spheres_are_not_late() {
         let v = -g * (1.0 + 0.25 * random.signed()) + random.vector() * 0.5;
         let moving = falling(g, v);
         let motion = RelativeMotion::new(&moving, &ConstantTwist::REST);
-        let ball = |radius| Sphere { center: DVec3::ZERO, radius };
-        let found = sphere_sphere(&motion, &ball(r), &ball(0.25), Interval::new(0.0, 4.0), &OPTIONS);
+        let sphere = |radius| Sphere { center: DVec3::ZERO, radius };
+        let found = sphere_sphere(&motion, &sphere(r), &sphere(0.25), Interval::new(0.0, 4.0), &OPTIONS);
         let exact = |t: f64| -> Fix {
             let at = fixed::world(&moving, DVec3::ZERO, &Fix::new(t));
             let reach = &Fix::new(r) + &Fix::new(0.25);
@@ -250,12 +250,12 @@ fn fast_spheres_are_not_late() {
         literal_late += usize::from(c > 0.0 && exact(closest) < zero && exact(literal) < zero);
     }
     assert!(literal_late > 5, "the literal quadratic would have been right: {literal_late}");
-    // Balls that overlap at the start are in contact there, also when they part.
+    // Spheres that overlap at the start are in contact there, also when they part.
     let parting = falling(dvec3(0.5, 0.0, 0.0), dvec3(4.0, 0.0, 0.0));
     let motion = RelativeMotion::new(&parting, &ConstantTwist::REST);
-    let ball = Sphere { center: DVec3::ZERO, radius: 1.0 };
+    let sphere = Sphere { center: DVec3::ZERO, radius: 1.0 };
     assert_eq!(
-        sphere_sphere(&motion, &ball, &ball, Interval::UNIT, &OPTIONS),
+        sphere_sphere(&motion, &sphere, &sphere, Interval::UNIT, &OPTIONS),
         RootSearch::Bracket(Interval::ZERO)
     );
 }
@@ -303,12 +303,12 @@ fn arbitrary_numbers_neither_panic_nor_hang() {
         let window = Interval::new(ends.x.min(ends.y), ends.x.max(ends.y));
         let motion = RelativeMotion::new(a, b);
         let options = OPTIONS.with_evaluations(500);
-        let ball = |v: DVec3| Sphere { center: v, radius: v.x.abs() };
+        let sphere = |v: DVec3| Sphere { center: v, radius: v.x.abs() };
         let (p, q, r, s) = (vector(1.0), vector(1.0), vector(1.0), vector(1.0));
         for found in [
             point_triangle(&motion, p, &[q, r, s], window, &options),
             edge_edge(&motion, &[p, q], &[r, s], window, &options),
-            sphere_sphere(&motion, &ball(p), &ball(q), window, &options),
+            sphere_sphere(&motion, &sphere(p), &sphere(q), window, &options),
         ] {
             match found {
                 RootSearch::Bracket(t) => assert!(window.lo() <= t.lo() && t.hi() <= window.hi(), "{round}"),

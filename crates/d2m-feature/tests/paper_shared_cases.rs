@@ -58,9 +58,9 @@ fn judge(case: &Value) {
             edge_edge(&relative, &edge("A"), &edge("B"), window, &options)
         }
         Some("sphere_sphere") => {
-            let ball =
+            let sphere =
                 |s: &str| Sphere { center: vector(&case[s]["c"]), radius: case[s]["r"].as_f64().unwrap() };
-            sphere_sphere(&relative, &ball("A"), &ball("B"), window, &options)
+            sphere_sphere(&relative, &sphere("A"), &sphere("B"), window, &options)
         }
         other => panic!("{id}: unknown kind {other:?}"),
     };

@@ -28,31 +28,6 @@ impl Remainder {
         let third = self.m3 * (1.0 / 6.0) + h * (self.m4 * (1.0 / 24.0));
         (self.e0 + h * (self.e1 + h * (self.e2 + h * third))) * SUM_ROUNDING
     }
-
-    /// A remainder that bounds `factor` ≥ 0 times this one (not rounded: scale where a later factor rounds up).
-    #[inline(always)]
-    pub fn scaled(self, factor: f64) -> Self {
-        Self {
-            e0: self.e0 * factor,
-            e1: self.e1 * factor,
-            e2: self.e2 * factor,
-            m3: self.m3 * factor,
-            m4: self.m4 * factor,
-        }
-    }
-
-    /// A remainder that bounds the sum of both (not rounded: add it where a later factor rounds up).
-    #[inline(always)]
-    pub fn plus(self, other: Self) -> Self {
-        let up = |x: f64| x * (1.0 + 4.0 * f64::EPSILON);
-        Self {
-            e0: up(self.e0 + other.e0),
-            e1: up(self.e1 + other.e1),
-            e2: up(self.e2 + other.e2),
-            m3: up(self.m3 + other.m3),
-            m4: up(self.m4 + other.m4),
-        }
-    }
 }
 
 /// A path near one time: `|q(t + s) − p − v s − a s²/2 − j s³/6| ≤ remainder(h)` for all `|s| ≤ h`, up to the largest `h`

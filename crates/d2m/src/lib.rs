@@ -3,7 +3,7 @@
 
 mod body;
 mod box_tree;
-mod moving_ball;
+mod moving_sphere;
 mod parallel;
 mod swept_bounds;
 mod world;

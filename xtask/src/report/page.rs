@@ -31,7 +31,7 @@ per unit of time, directions and orientations uniform, |ω| uniform up to 3, cen
 the disk), time in [0, 1]. Nine of ten trials end in contact. Tolerance 1e-10.
 
 **Times.** One thread, one query, trees built; the least of the rounds for the engine, one round for slow methods, whose
-share of the trials is what they finish within a cap (the column \"asked\"). Static rows are one query at the reported
+share of the trials is what they finish within a cap (the column \"queries\"). Static rows are one query at the reported
 time of contact: a floor for any search over trees.
 
 ";
@@ -223,11 +223,11 @@ fn verdicts(page: &mut String, lines: &[Line]) -> Result<(), Error> {
     writeln!(page, "### Verdicts and separations, all pairs\n")?;
     writeln!(
         page,
-        "| method | speed | asked | contacts | undecided | judged wrong | least separation | median | most |"
+        "| method | speed | queries | contacts | undecided | judged wrong | least separation | median | most |"
     )?;
     writeln!(page, "|---|---|---|---|---|---|---|---|---|")?;
     for line in lines.iter().filter(|l| l.pair == "all" && !l.method.is_static()) {
-        let Line { speed, asked, contacts, undecided, wrong, .. } = line;
+        let Line { speed, queries, contacts, undecided, wrong, .. } = line;
         let number = |pick: fn(&Summary) -> f64| {
             line.separation.as_ref().map_or("–".into(), |s| format!("{:.2e}", pick(s)))
         };
@@ -235,7 +235,7 @@ fn verdicts(page: &mut String, lines: &[Line]) -> Result<(), Error> {
         let title = line.method.title();
         writeln!(
             page,
-            "| {title} | {speed} | {asked} | {contacts} | {undecided} | {wrong} | {least} | {median} | {most} |"
+            "| {title} | {speed} | {queries} | {contacts} | {undecided} | {wrong} | {least} | {median} | {most} |"
         )?;
     }
     writeln!(page)?;
@@ -264,7 +264,7 @@ fn both(
     let of_method = lines.iter().filter(|l| l.method == method);
     let cell = |l: &&Line| {
         // Stopped queries took longer than what was measured.
-        let more = if 2 * l.undecided > l.asked { "> " } else { "" };
+        let more = if 2 * l.undecided > l.queries { "> " } else { "" };
         summary(l).map_or("–".into(), |s| format!("{more}{}", round(pick(&s))))
     };
     let cells: Vec<String> = of_method.map(cell).collect();

@@ -11,12 +11,13 @@ use std::path::Path;
 type Error = Box<dyn std::error::Error>;
 
 const FILE: &str = "peers.csv";
-const HEADER: &str = "peer,on,asked,contacts,late,median_difference,worst_difference,time_median,time_worst";
+const HEADER: &str =
+    "peer,on,queries,contacts,late,median_difference,worst_difference,time_median,time_worst";
 
 /// What one peer did on one set of questions. A difference is that of its time of contact from ours.
 #[derive(Debug, Default)]
 struct Found {
-    asked: usize,
+    queries: usize,
     /// Of them those that are compared with ours.
     compared: usize,
     contacts: usize,
@@ -32,7 +33,7 @@ const LATE: f64 = 1e-9;
 impl Found {
     /// `ours` is infinite where there is no contact; NaN where the peer is only timed.
     fn note(&mut self, toc: f64, ours: f64, microseconds: f64) {
-        self.asked += 1;
+        self.queries += 1;
         self.microseconds.push(microseconds);
         if ours.is_nan() {
             return;
@@ -46,7 +47,7 @@ impl Found {
     }
 
     fn line(self, peer: &str, on: &str) -> String {
-        let asked = self.asked;
+        let queries = self.queries;
         let [contacts, late] = [self.contacts, self.late]
             .map(|count| if self.compared > 0 { count.to_string() } else { String::new() });
         let number = |values: Vec<f64>, pick: [fn(&Summary) -> f64; 2]| {
@@ -55,7 +56,7 @@ impl Found {
         };
         let pick: [fn(&Summary) -> f64; 2] = [|s| s.median, |s| s.worst];
         let (differences, times) = (number(self.differences, pick), number(self.microseconds, pick));
-        format!("{peer},{on},{asked},{contacts},{late},{differences},{times}")
+        format!("{peer},{on},{queries},{contacts},{late},{differences},{times}")
     }
 }
 
@@ -126,19 +127,19 @@ pub(super) fn write(page: &mut String, folder: &Path) -> Result<(), Error> {
     )?;
     writeln!(
         page,
-        "| peer | on | asked | contacts | late | median, worst difference of times | µs, median | worst |"
+        "| peer | on | queries | contacts | late | median, worst difference of times | µs, median | worst |"
     )?;
     writeln!(page, "|---|---|---|---|---|---|---|---|")?;
     for line in table.lines().skip(1) {
         let fields: Vec<&str> = line.split(',').collect();
-        let [peer, on, asked, contacts, late, middle, most, median, worst] = fields[..] else { continue };
+        let [peer, on, queries, contacts, late, middle, most, median, worst] = fields[..] else { continue };
         let number = |f: &str| f.parse::<f64>().ok();
         let times = |f: &str| number(f).map_or("–".into(), round);
         let count = |f: &str| if f.is_empty() { "–".into() } else { f.to_string() };
         let small = |f: &str| number(f).map_or("–".into(), |v| format!("{v:.1e}"));
         writeln!(
             page,
-            "| {peer} | {on} | {asked} | {} | {} | {}, {} | {} | {} |",
+            "| {peer} | {on} | {queries} | {} | {} | {}, {} | {} | {} |",
             count(contacts),
             count(late),
             small(middle),
@@ -161,7 +162,7 @@ mod tests {
         for (toc, ours) in [(0.5, 0.5), (0.4, 0.5), (0.6, 0.5), (none, 0.5), (none, none)] {
             found.note(toc, ours, 10.0);
         }
-        assert_eq!((found.asked, found.contacts, found.late), (5, 3, 2));
+        assert_eq!((found.queries, found.contacts, found.late), (5, 3, 2));
         let line = found.line("p", "pair");
         assert_eq!(line, "p,pair,5,3,2,1.0000e-1,1.0000e-1,1.0000e1,1.0000e1");
         let mut blind = Found::default();

@@ -11,7 +11,7 @@ pub(super) struct Line {
     pub(super) triangles: [usize; 2],
     pub(super) speed: f64,
     pub(super) method: Method,
-    pub(super) asked: usize,
+    pub(super) queries: usize,
     pub(super) contacts: usize,
     pub(super) undecided: usize,
     /// Answers that the judge refused; their times do not count.
@@ -22,7 +22,7 @@ pub(super) struct Line {
     pub(super) separation: Option<Summary>,
 }
 
-pub(super) const HEADER: &str = "pair,triangles_a,triangles_b,speed,method,asked,contacts,undecided,wrong,\
+pub(super) const HEADER: &str = "pair,triangles_a,triangles_b,speed,method,queries,contacts,undecided,wrong,\
     time_least,time_lower,time_median,time_upper,time_worst,time_mean,\
     separation_least,separation_lower,separation_median,separation_upper,separation_worst,separation_mean";
 
@@ -40,7 +40,7 @@ impl Line {
             triangles,
             speed,
             method,
-            asked: rows.len(),
+            queries: rows.len(),
             contacts: count(|row| matches!(row.claim, Claim::Contact { .. })),
             undecided: count(|row| matches!(row.claim, Claim::Undecided { .. })),
             wrong: count(|row| !row.fault.is_empty()),
@@ -56,10 +56,12 @@ impl Line {
             }
             None => ",,,,,".into(),
         };
-        let Self { pair, triangles: [a, b], speed, asked, contacts, undecided, wrong, .. } = self;
+        let Self { pair, triangles: [a, b], speed, queries, contacts, undecided, wrong, .. } = self;
         let method = self.method.name();
         let (time, separation) = (numbers(&self.time), numbers(&self.separation));
-        format!("{pair},{a},{b},{speed},{method},{asked},{contacts},{undecided},{wrong},{time},{separation}")
+        format!(
+            "{pair},{a},{b},{speed},{method},{queries},{contacts},{undecided},{wrong},{time},{separation}"
+        )
     }
 
     pub(super) fn parse(line: &str) -> Option<Self> {
@@ -70,17 +72,17 @@ impl Line {
             let [least, lower, median, upper, worst, mean] = n[..] else { return None };
             Some(Summary { count, least, lower, median, upper, worst, mean })
         };
-        let (asked, contacts, undecided, wrong) = (count(5)?, count(6)?, count(7)?, count(8)?);
+        let (queries, contacts, undecided, wrong) = (count(5)?, count(6)?, count(7)?, count(8)?);
         Some(Self {
             pair: (*fields.first()?).into(),
             triangles: [count(1)?, count(2)?],
             speed: fields.get(3)?.parse().ok()?,
             method: Method::ALL.into_iter().find(|method| method.name() == fields[4])?,
-            asked,
+            queries,
             contacts,
             undecided,
             wrong,
-            time: summary(9, asked - wrong),
+            time: summary(9, queries - wrong),
             separation: summary(15, contacts),
         })
     }
@@ -108,7 +110,7 @@ mod tests {
         let mut wrong = row(0.75);
         wrong.fault = "late".into();
         let line = Line::of("a/b", [12, 34], (4.0, Method::Accurate), &[row(0.25), row(0.5), wrong]);
-        assert_eq!((line.asked, line.contacts, line.wrong), (3, 3, 1));
+        assert_eq!((line.queries, line.contacts, line.wrong), (3, 3, 1));
         assert_eq!(line.time.unwrap().median, 3.75, "a wrong answer's time does not count");
         let back = Line::parse(&line.write()).unwrap();
         assert_eq!(back.write(), line.write());

@@ -225,9 +225,9 @@ impl Oracle<'_> {
         let twists = [&self.a, &self.b].map(|m| m.motion.enclose_twist(span));
         let drift = (twists[0].linear - twists[1].linear).norm().hi();
         let turn = [&self.a, &self.b].into_iter().zip(&twists).map(|(m, twist)| {
-            let ball = m.body.bounding_sphere();
+            let sphere = m.body.bounding_sphere();
             let at = m.motion.enclose_pose(Interval::point(span.lo())).at;
-            twist.angular.norm().hi() * ((ball.center - at).length() + ball.radius) * (1.0 + 1e-9)
+            twist.angular.norm().hi() * ((sphere.center - at).length() + sphere.radius) * (1.0 + 1e-9)
         });
         (drift + turn.sum::<f64>()).max(f64::MIN_POSITIVE)
     }

@@ -114,9 +114,9 @@ const RAYS: u32 = 64;
 ///
 /// Every sign is certain or the ray is dropped for another, so an answer is right if `point` is off the surface.
 pub(crate) fn is_inside(tree: &SphereTree, point: DVec3) -> Option<bool> {
-    let ball = tree.bounding_sphere();
-    let off = (IntervalVec3::point(point) - ball.center).norm();
-    if (off - ball.radius).certainly_positive() {
+    let sphere = tree.bounding_sphere();
+    let off = (IntervalVec3::point(point) - sphere.center).norm();
+    if (off - sphere.radius).certainly_positive() {
         return Some(false);
     }
     let mut seed = 0x9E37_79B9_7F4A_7C15u64;
@@ -130,7 +130,7 @@ pub(crate) fn is_inside(tree: &SphereTree, point: DVec3) -> Option<bool> {
             continue;
         }
         // Far outside the bounding sphere.
-        let far = point + direction * (4.0 * ball.radius / direction.length());
+        let far = point + direction * (4.0 * sphere.radius / direction.length());
         if let Some(crossings) = count_crossings(tree, point, far) {
             let odd_only = !tree.is_consistently_oriented();
             return Some(if odd_only { crossings % 2 != 0 } else { crossings != 0 });

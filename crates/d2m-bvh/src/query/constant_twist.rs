@@ -172,12 +172,12 @@ fn crossing_at_start(scene: &Scene<'_>, allowance: &Allowance) -> Result<Option<
 /// A part of a body in the other one, if that is solid, at the start; if the surfaces do not touch then.
 fn held_at_start(scene: &Scene<'_>, allowance: &mut Allowance) -> Result<Option<Held>, Exhausted> {
     let filled = scene.solids.map(|solid| solid == Solid::Filled);
-    if filled == [false; 2] || scene.balls_are_apart_at_start() {
+    if filled == [false; 2] || scene.spheres_are_apart_at_start() {
         return Ok(None);
     }
     let frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
     let (a, b, unit) = (scene.a.tree, scene.b.tree, scene.units.length());
-    // Balls that are apart by more than places and this sum are rounded.
+    // Spheres that are apart by more than places and this sum are rounded.
     if frame.apart.to_vec().length() > (a.radius() + b.radius()) / unit + scene.pair.error {
         return Ok(None);
     }

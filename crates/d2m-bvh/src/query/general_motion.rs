@@ -118,7 +118,7 @@ struct Advance<'a> {
     largest: f64,
     /// The last span that was fitted.
     last: Option<LastFit>,
-    /// Poses and twists at the time that was asked for last.
+    /// Poses and twists at the time that was queried last.
     poses: Option<(f64, [(Pose, Twist); 2])>,
 }
 
@@ -231,7 +231,7 @@ impl<'a> Advance<'a> {
 
     /// A span on which both twists are constant, on the closed form.
     fn exact_span(&mut self, motions: [&ConstantTwist; 2], until: f64) -> Result<Step, QueryError> {
-        if self.balls_apart([motions[0], motions[1]], until) {
+        if self.spheres_apart([motions[0], motions[1]], until) {
             return Ok(Step::FreeUntil(until));
         }
         let options = QueryOptions { tolerance: self.options.tolerance, ..self.options_of_span() };
@@ -242,11 +242,11 @@ impl<'a> Advance<'a> {
         })
     }
 
-    /// Are the balls about the reference points apart over the span, whatever the bodies' turns? They move straight.
+    /// Are the spheres about the reference points apart over the span, whatever the bodies' turns? They move straight.
     ///
     /// Positions with their proven radii; the few operations after that round by less than 32 units in the last place of the
     /// lengths that they add, and what underflow takes is less than the smallest normal number.
-    fn balls_apart(&self, motions: [&dyn RigidMotion; 2], until: f64) -> bool {
+    fn spheres_apart(&self, motions: [&dyn RigidMotion; 2], until: f64) -> bool {
         let [a, b] = motions.map(|motion| motion.enclose_state(self.now));
         let reach = |k: usize, at: DVec3| {
             let body = self.bodies[k].body;
@@ -407,7 +407,7 @@ impl<'a> Advance<'a> {
         }
     }
 
-    /// A deviation that is little against the bodies, or against the room between the balls about them.
+    /// A deviation that is little against the bodies, or against the room between the spheres about them.
     fn usual_deviation(&self, poses: &[Pose; 2]) -> f64 {
         let [a, b] = [0, 1].map(|k| {
             let body = self.bodies[k].body;

@@ -21,7 +21,7 @@ const FAR_FRAMES: f64 = 4.0;
 /// Where the fastest points are below this in the unit of a node test, 2¹¹⁰, no sum of products of speeds and cosines overflows in
 /// `f32`, even of boxes from files, which may be 16 times as large as what they enclose.
 const MOST_SPEED: f64 = power_of_two(110);
-/// Factor of the error of the distance of two balls: positions err by less than 64·2⁻⁵³ of the size, and the few
+/// Factor of the error of the distance of two spheres: positions err by less than 64·2⁻⁵³ of the size, and the few
 /// operations after that by less.
 const BALL_ERROR: f64 = 128.0 * UNIT_F64;
 /// Relative positions are sums of pairs: they err by less than 2⁻¹⁰⁰ of their terms. That is below 2⁻⁵² of a size which
@@ -218,8 +218,8 @@ impl<'a> Scene<'a> {
     fn rounding_hides_the_bodies(&self, options: &QueryOptions) -> bool {
         let per_length = 1.0 / self.units.length();
         let bodies = self.a.tree.radius().max(self.b.tree.radius()) * per_length;
-        let asked = options.tolerance.unwrap_or(0.0) * per_length;
-        let known = bodies.max(asked).max(self.track.at(0.0).length());
+        let tolerance = options.tolerance.unwrap_or(0.0) * per_length;
+        let known = bodies.max(tolerance).max(self.track.at(0.0).length());
         known > 0.0 && LEAST_TOLERANCE_ERRORS * self.pair.error > known
     }
 
@@ -251,8 +251,8 @@ impl<'a> Scene<'a> {
         };
     }
 
-    /// Are the balls about the reference points that hold the bodies apart at the start?
-    pub(crate) fn balls_are_apart_at_start(&self) -> bool {
+    /// Are the spheres about the reference points that hold the bodies apart at the start?
+    pub(crate) fn spheres_are_apart_at_start(&self) -> bool {
         self.track.at(0.0).length() > self.reach + BALL_ERROR * self.size
     }
 
@@ -291,9 +291,9 @@ impl<'a> Scene<'a> {
         (axis != DVec3::ZERO).then_some(axis)
     }
 
-    /// An offset, not before `start`, up to which the balls about the reference points (whatever the rotation) stay
+    /// An offset, not before `start`, up to which the spheres about the reference points (whatever the rotation) stay
     /// further apart than the level.
-    pub(crate) fn balls_clear_until(&self, start: f64) -> f64 {
+    pub(crate) fn spheres_clear_until(&self, start: f64) -> f64 {
         let apart = self.track.at(start).length();
         let room = apart - self.reach - self.pair.level - BALL_ERROR * self.size;
         let speed = (self.a.motion.linear_velocity() - self.b.motion.linear_velocity()).length() * UP;

@@ -1,6 +1,6 @@
 //! Does each box of a tree enclose the triangles below it?
 //!
-//! Box, ball and slabs are convex: a triangle is within if its three corners are. Neighbouring triangles share vertices, so
+//! Box, sphere and slabs are convex: a triangle is within if its three corners are. Neighbouring triangles share vertices, so
 //! a box takes each vertex below it once: from the leaves upwards, those that the boxes below have taken, without
 //! repetitions. Of two million triangles seven levels of boxes would otherwise take 44 million corners; it is 14 million
 //! points instead.
@@ -162,7 +162,7 @@ impl Enclosures<'_> {
         }
     }
 
-    /// Are these corners proven to be inside the box and its ball? The same arithmetic as at construction.
+    /// Are these corners proven to be inside the box and its sphere? The same arithmetic as at construction.
     fn encloses(&self, index: usize, lane: usize, corners: &[Corner]) -> bool {
         let node = &self.nodes[index];
         let boxed = node.oriented_box(lane);

@@ -11,7 +11,7 @@ const AXES_ERROR: f64 = power_of_two(-21);
 
 impl MeshTree {
     /// Encloses every point of the body in every pose of a set, in world axes: the outermost oriented box, turned and
-    /// moved, or its ball where that is smaller.
+    /// moved, or its sphere where that is smaller.
     ///
     /// ```text
     /// |R(p − c)|ⱼ ≤ min(r, Σᵢ |R aᵢ|ⱼ hᵢ)   for a box with center c, axes aᵢ, half extents hᵢ and radius r
@@ -92,9 +92,9 @@ mod tests {
                 (low - swept.lo()).min_element() > -rounding && (swept.hi() - high).min_element() > -rounding
             );
             if length == 0.0 {
-                // The box of a long thin body, in any direction: not its ball.
-                let (size, ball) = (swept.hi() - swept.lo(), 2.0 * tree.radius());
-                assert!(size.element_product() < 0.7 * ball * ball * ball, "{swept:?} {low} {high}");
+                // The box of a long thin body, in any direction: not its sphere.
+                let (size, sphere) = (swept.hi() - swept.lo(), 2.0 * tree.radius());
+                assert!(size.element_product() < 0.7 * sphere * sphere * sphere, "{swept:?} {low} {high}");
             }
         }
     }

@@ -233,7 +233,7 @@ impl Reach {
         self.edges.slabs(half_extent, self.slack())
     }
 
-    /// Is all of it proven to be in the box and its ball?
+    /// Is all of it proven to be in the box and its sphere?
     pub(super) fn is_within(&self, boxed: &OrientedBox) -> bool {
         let Extents { half_extent: half, radius } = self.outward();
         (0..3).all(|i| half[i] <= boxed.half_extent[i])

@@ -12,7 +12,7 @@ use crate::TriMesh;
 use crate::parallel::{both, map_in_order};
 use glam::DVec3;
 
-/// No length of a node is more, in units of the tree: the body lies in a ball of radius one, so boxes made around its points have half
+/// No length of a node is more, in units of the tree: the body lies in a sphere of radius one, so boxes made around its points have half
 /// extents up to 1 and radii up to √3, origins are within √3 in each sum of coordinates, centers within twice that of them, and what
 /// is rounded away is less than that again. Tests in `f32` may multiply such lengths without overflow.
 const MOST_LENGTH: f32 = 16.0;

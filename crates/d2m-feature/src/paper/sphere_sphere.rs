@@ -23,8 +23,8 @@ use glam::DVec3;
 /// use glam::DVec3;
 /// let falling = ConstantTwist::REST.with_position(4.0 * DVec3::Z).with_linear_velocity(-4.0 * DVec3::Z);
 /// let motion = RelativeMotion::new(&falling, &ConstantTwist::REST);
-/// let ball = Sphere { center: DVec3::ZERO, radius: 1.0 };
-/// let found = sphere_sphere(&motion, &ball, &ball, Interval::UNIT, &PaperOptions::DEFAULT);
+/// let sphere = Sphere { center: DVec3::ZERO, radius: 1.0 };
+/// let found = sphere_sphere(&motion, &sphere, &sphere, Interval::UNIT, &PaperOptions::DEFAULT);
 /// let RootSearch::Bracket(b) = found else { panic!() };
 /// assert!(b.lo() <= 0.5 && b.lo() > 0.5 - 1e-10);
 /// ```

@@ -1,5 +1,6 @@
 //! Vectors and functions that are linear in time; functions exclude a contact while they share a sign.
 use crate::rounding::{UNIT, length_up};
+use core::ops::Sub;
 use d2m_root::Piece;
 use glam::DVec3;
 
@@ -18,11 +19,6 @@ impl Line {
     }
 
     #[inline(always)]
-    pub(super) fn minus(&self, other: &Self) -> Self {
-        Self { p: self.p - other.p, v: self.v - other.v }
-    }
-
-    #[inline(always)]
     pub(super) fn along(&self, d: DVec3) -> Linear {
         Linear { value: d.dot(self.p), slope: d.dot(self.v) }
     }
@@ -37,6 +33,15 @@ impl Line {
     #[inline(always)]
     pub(super) fn lengths(&self) -> Lengths {
         Lengths { p: length_up(self.p), v: length_up(self.v) }
+    }
+}
+
+impl Sub for Line {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { p: self.p - other.p, v: self.v - other.v }
     }
 }
 

@@ -57,7 +57,7 @@ impl StraightPointTriangle {
     /// The vectors from the three vertices to the point.
     #[inline(always)]
     fn differences([a, e1, e2]: &[Line; 3]) -> [Line; 3] {
-        [*a, a.minus(e1), a.minus(e2)]
+        [*a, *a - *e1, *a - *e2]
     }
 
     /// Outside throughout, seen along the line from the mean of the vertices to the point.

@@ -2,7 +2,7 @@
 
 use super::two::{Elementwise, Two};
 use crate::F64x4;
-use core::ops::Div;
+use core::ops::{Add, Div, Mul, Sub};
 use glam::DVec3;
 
 /// Four doubles in memory; registers that hold them are [`Doubles`].
@@ -100,31 +100,43 @@ impl<D: Elementwise<Scalar = f64>> QuadVec<D> {
         Self([y * w - z * v, z * u - x * w, x * v - y * u])
     }
 
-    /// Lane by lane: the sum.
-    #[inline(always)]
-    pub fn plus(&self, other: &Self) -> Self {
-        let ([x, y, z], [u, v, w]) = (self.0, other.0);
-        Self([x + u, y + v, z + w])
-    }
-
-    /// Lane by lane: the difference.
-    #[inline(always)]
-    pub fn minus(&self, other: &Self) -> Self {
-        let ([x, y, z], [u, v, w]) = (self.0, other.0);
-        Self([x - u, y - v, z - w])
-    }
-
-    /// Each times its own factor.
-    #[inline(always)]
-    pub fn times(&self, factors: D) -> Self {
-        let [x, y, z] = self.0;
-        Self([x * factors, y * factors, z * factors])
-    }
-
     /// Lane by lane: the squared length.
     #[inline(always)]
     pub fn length_squared(&self) -> D {
         self.dots(self)
+    }
+}
+
+/// Lane by lane.
+impl<D: Elementwise<Scalar = f64>> Add for QuadVec<D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        let ([x, y, z], [u, v, w]) = (self.0, other.0);
+        Self([x + u, y + v, z + w])
+    }
+}
+
+/// Lane by lane.
+impl<D: Elementwise<Scalar = f64>> Sub for QuadVec<D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        let ([x, y, z], [u, v, w]) = (self.0, other.0);
+        Self([x - u, y - v, z - w])
+    }
+}
+
+/// Each times its own factor.
+impl<D: Elementwise<Scalar = f64>> Mul<D> for QuadVec<D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, factors: D) -> Self {
+        let [x, y, z] = self.0;
+        Self([x * factors, y * factors, z * factors])
     }
 }
 

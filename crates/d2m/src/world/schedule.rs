@@ -8,7 +8,7 @@ use super::pair_queue::PairQueue;
 use super::pair_state::Entry;
 use super::slots::Slots;
 use crate::box_tree::{BoxTree, IndexPair};
-use crate::moving_ball::{FirstMeeting, MovingBall};
+use crate::moving_sphere::{FirstMeeting, MovingSphere};
 use crate::parallel::{BOXES, map_in_order};
 use crate::swept_bounds::{SliceRange, Slicing, Sweep, SweptBox, SweptSlices};
 use d2m_bvh::Window;
@@ -51,7 +51,7 @@ pub(super) struct Schedule {
     hulls: Vec<SweptBox>,
     slices: Vec<Slices>,
     /// From the start of the span, for bodies with a constant twist.
-    balls: Vec<Option<MovingBall>>,
+    spheres: Vec<Option<MovingSphere>>,
     tree: BoxTree,
     queue: PairQueue,
     /// Entries when stale ones were last dropped.
@@ -93,7 +93,7 @@ impl Schedule {
             Some(span) => {
                 self.hulls.resize(rules.slots.places(), SweptBox::EMPTY);
                 self.slices.resize(rules.slots.places(), Slices::NotWorthIt);
-                self.balls.resize(rules.slots.places(), None);
+                self.spheres.resize(rules.slots.places(), None);
                 self.enclose(rules.slots, span, changed);
                 if changed.len() * CHANGED_PART > rules.slots.places() {
                     self.tree.fit(&self.hulls);
@@ -109,7 +109,7 @@ impl Schedule {
                 let all: Vec<u32> = (0..rules.slots.places() as u32).collect();
                 self.hulls = vec![SweptBox::EMPTY; all.len()];
                 self.slices = vec![Slices::NotWorthIt; all.len()];
-                self.balls = vec![None; all.len()];
+                self.spheres = vec![None; all.len()];
                 self.enclose(rules.slots, window, &all);
                 self.tree.fit(&self.hulls);
                 self.sweep(rules);
@@ -126,12 +126,12 @@ impl Schedule {
                 let hull = SweptBox::enclose(body, from, span.end());
                 let is_wide = (hull.high - hull.low).max_element() > FAR * body.tree().radius();
                 let slices = if is_wide { Slices::Unknown } else { Slices::NotWorthIt };
-                (hull, slices, MovingBall::enclose(body, span.start()))
+                (hull, slices, MovingSphere::enclose(body, span.start()))
             })
         });
         for (&place, enclosed) in places.iter().zip(enclosed) {
             let at = place as usize;
-            (self.hulls[at], self.slices[at], self.balls[at]) =
+            (self.hulls[at], self.slices[at], self.spheres[at]) =
                 enclosed.unwrap_or((SweptBox::EMPTY, Slices::NotWorthIt, None));
         }
     }
@@ -180,7 +180,7 @@ impl Schedule {
         }
     }
 
-    /// Computes the slices of all bodies that have none yet, of pairs that balls do not prove apart.
+    /// Computes the slices of all bodies that have none yet, of pairs that spheres do not prove apart.
     fn cut(&mut self, rules: Rules<'_>, pairs: &[IndexPair]) {
         let Some(span) = self.span else { return };
         let mut is_wanted = vec![false; self.slices.len()];
@@ -221,15 +221,15 @@ impl Schedule {
         (meeting.end >= self.from).then(|| Entry { time: meeting.start.max(self.from), pair, versions })
     }
 
-    /// Is it not ignored, and not proven apart by balls for the rest of the span?
+    /// Is it not ignored, and not proven apart by spheres for the rest of the span?
     fn is_near(&self, rules: Rules<'_>, pair: IndexPair) -> bool {
         !rules.filter.ignores(pair, rules.slots.groups(pair)) && self.first_meeting(rules, pair).is_some()
     }
 
-    /// The time before which balls prove a pair apart; none: for the rest of the span.
+    /// The time before which spheres prove a pair apart; none: for the rest of the span.
     fn first_meeting(&self, rules: Rules<'_>, pair: IndexPair) -> Option<f64> {
         let span = self.span?;
-        let [Some(a), Some(b)] = pair.map(|place| self.balls[place as usize].as_ref()) else {
+        let [Some(a), Some(b)] = pair.map(|place| self.spheres[place as usize].as_ref()) else {
             return Some(self.from);
         };
         let separation = rules.filter.separation(pair, rules.separation);
@@ -327,7 +327,7 @@ impl Schedule {
             from: window.start(),
             hulls: vec![SweptBox::EMPTY; places],
             slices: vec![Slices::NotWorthIt; places],
-            balls: vec![None; places],
+            spheres: vec![None; places],
             ..Self::default()
         };
         let lends = earlier.span.is_some_and(|span| {
@@ -338,7 +338,7 @@ impl Schedule {
             let lent = earlier.hulls.len();
             schedule.hulls[..lent].copy_from_slice(&earlier.hulls);
             if earlier.span.is_some_and(|span| span.start() == window.start()) {
-                schedule.balls[..lent].copy_from_slice(&earlier.balls);
+                schedule.spheres[..lent].copy_from_slice(&earlier.spheres);
             }
             wanted = (lent as u32..places as u32).chain(some.iter().chain(stale).copied()).collect();
             wanted.sort_unstable();

@@ -303,8 +303,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "the third corners count for nothing",
         "crates/d2m-bvh/src/search/triangle_pair/turning_edges.rs",
-        "let paths = [gap, gap.plus(&corner_a), gap.plus(&corner_b), gap.plus(&corner_a).plus(&corner_b)];",
-        "let paths = [gap, gap.plus(&corner_a), gap, gap.plus(&corner_a)];",
+        "let paths = [gap, gap + corner_a, gap + corner_b, gap + corner_a + corner_b];",
+        "let paths = [gap, gap + corner_a, gap, gap + corner_a];",
         "crates/d2m-bvh/src/search/triangle_pair/turning_edges.rs::edges_that_turn_keep_bodies_apart",
     ),
     patch(
@@ -350,7 +350,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/src/search/skip/screw_search.rs::attempts_end_with_their_time",
     ),
     patch(
-        "balls are called apart at the start when they are not",
+        "spheres are called apart at the start when they are not",
         "crates/d2m-bvh/src/search/scene.rs",
         "self.track.at(0.0).length() > self.reach + BALL_ERROR * self.size",
         "self.track.at(0.0).length() > 0.9 * self.reach + BALL_ERROR * self.size",

@@ -39,11 +39,11 @@ pub(super) fn lower_bounds<L: Lanes>(
     // |d|²(1 + 16u) ≥ Σ gap² for either frame: the distance of the box to the other's hull with parallel sides.
     let (own, other) = (dot(&axes.gaps, &axes.gaps), dot(&axes.other_gaps, &axes.other_gaps));
     let boxes = own.max(other).sqrt();
-    let balls = dot(&axes.to, &axes.to).sqrt()
+    let spheres = dot(&axes.to, &axes.to).sqrt()
         - L::load(&wide.radius)
         - L::splat(placed.radius)
         - L::splat(placed.boxed.margin);
-    let bound = boxes.max(balls).max(gap_along(wide, placed, &axes));
+    let bound = boxes.max(spheres).max(gap_along(wide, placed, &axes));
     let factor = L::splat(NORM_FACTOR) * L::splat(to_work);
     let used = (1u32 << wide.used.min(8)) - 1;
     if L::splat(enough).less_bits(bound * factor) & used == used {

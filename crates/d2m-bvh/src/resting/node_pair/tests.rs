@@ -34,7 +34,7 @@ fn wide(v: [f32; 3]) -> DVec3 {
     DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2]))
 }
 
-/// Corners of a box: the body is their hull, cut with the ball.
+/// Corners of a box: the body is their hull, cut with the sphere.
 fn corners(b: &OrientedBox) -> Vec<DVec3> {
     // Points with axis·p = ±h, by the inverse of the rounded axes.
     let m = DMat3::from_cols(wide(b.axes[0]), wide(b.axes[1]), wide(b.axes[2])).transpose().inverse();
@@ -141,7 +141,7 @@ fn gaps_of_pairs_are_below_distances_of_points_and_sometimes_close() {
     assert!(best > 0.9, "{best}");
 }
 
-/// A point of the body that a box stands for: in the box, in its ball, and not in what is cut off its edges.
+/// A point of the body that a box stands for: in the box, in its sphere, and not in what is cut off its edges.
 fn point_within(b: &OrientedBox, random: &mut KnuthRandom) -> DVec3 {
     let m = DMat3::from_cols(wide(b.axes[0]), wide(b.axes[1]), wide(b.axes[2])).transpose().inverse();
     // In half extents: on a face or an edge, mostly.

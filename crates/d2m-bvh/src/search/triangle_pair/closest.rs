@@ -91,12 +91,12 @@ pub(crate) fn closest<D: Doubles>(a: &[DVec3; 3], b: &[DVec3; 3]) -> Closest {
 fn closest_edges<D: Doubles>(a: &[DVec3; 3], b: &[DVec3; 3]) -> (usize, usize) {
     let from = QuadVec::<D>::new([b[0], b[1], b[2], b[0]]);
     let to = QuadVec::<D>::new([b[1], b[2], b[0], b[1]]);
-    let d = to.minus(&from);
+    let d = to - from;
     let dd = d.length_squared();
     let mut squares = [Quad([0.0; 4]); 3];
     for (i, square) in squares.iter_mut().enumerate() {
         let e = a[(i + 1) % 3] - a[i];
-        let w = from.minus(&QuadVec::new([a[i]; 4]));
+        let w = from - QuadVec::new([a[i]; 4]);
         let k = d.crossed_by(e);
         let (ee, we, de, wd) = (D::splat(e.length_squared()), w.dot(e), d.dot(e), w.dots(&d));
         // As in `edge_edge`.
@@ -104,7 +104,7 @@ fn closest_edges<D: Doubles>(a: &[DVec3; 3], b: &[DVec3; 3]) -> (usize, usize) {
         let t = clamp_ratios(s * de - wd, dd);
         let s = clamp_ratios(we + t * de, ee);
         let t = clamp_ratios(s * de - wd, dd);
-        let line = w.plus(&d.times(t)).minus(&QuadVec::new([e; 4]).times(s));
+        let line = w + d * t - QuadVec::new([e; 4]) * s;
         *square = line.length_squared().store();
     }
     let mut best = (0, 0);

@@ -1,6 +1,7 @@
 //! Until when do two sets of vertices stay apart along a direction? First roots of concave bounds, never late.
 
 use crate::tree::margin::{DOWN, UNIT_F64, UP};
+use core::ops::Add;
 use d2m_lanes::Doubles;
 
 /// What rates are lowered by, so that none is zero and the square of none underflows: a gap that grows less is never late, and the
@@ -74,9 +75,10 @@ pub(super) struct PathAlong {
     pub(super) jerk: f64,
 }
 
-impl PathAlong {
-    /// The sum of both.
-    pub(super) fn plus(&self, other: &Self) -> Self {
+impl Add for PathAlong {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
         Self {
             gap: self.gap + other.gap,
             rate: self.rate + other.rate,

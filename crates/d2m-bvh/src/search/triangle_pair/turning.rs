@@ -47,8 +47,8 @@ pub(super) fn clear_along_turning(
     let difference = w_m - w_h;
     let drift = mover.velocity - holder.velocity;
     // Velocity of the reference points against each other, which stays.
-    let even = drift - w_m.cross(mover.arm) + w_h.cross(holder.arm);
-    let (turn, even_turned) = (out.cross(w_h), w_h.cross(even));
+    let reference_drift = drift - w_m.cross(mover.arm) + w_h.cross(holder.arm);
+    let (turn, drift_turned) = (out.cross(w_h), w_h.cross(reference_drift));
     let (turns, spin) = (turn.length() * UP, w_m.length() * UP);
     let apart = (out.cross(difference).length() + enough * turns * difference.length()) * UP;
     let paths = mover.corners.map(|corner| {
@@ -56,11 +56,12 @@ pub(super) fn clear_along_turning(
         let place = mover.center + corner - holder.center;
         // Velocity and acceleration as the holder sees them.
         let rate = drift + w_m.cross(corner) - w_h.cross(place);
-        let change = difference.cross(arm_velocity) - even_turned;
+        let change = difference.cross(arm_velocity) - drift_turned;
         let bend = out.dot(change - w_h.cross(rate));
-        let most_change = difference.length() * arm_velocity.length() + even_turned.length();
+        let most_change = difference.length() * arm_velocity.length() + drift_turned.length();
         let most_rate = rate.length() + enough * most_change;
-        let jerk = apart * spin * arm_velocity.length() + turns * (2.0 * most_change + w_h.length() * most_rate);
+        let jerk =
+            apart * spin * arm_velocity.length() + turns * (2.0 * most_change + w_h.length() * most_rate);
         PathAlong {
             gap: out.dot(mover.center + corner) - level - need,
             rate: out.dot(rate),

@@ -98,17 +98,18 @@ impl SeenPoint {
         let (of_a, of_b) = (point - a.center, point - b.center);
         let arm_velocity = w_b.cross(of_b + b.arm);
         let rate = (b.velocity + w_b.cross(of_b)) - (a.velocity + w_a.cross(of_a));
-        let even = (b.velocity - w_b.cross(b.arm)) - (a.velocity - w_a.cross(a.arm));
-        let change = (w_b - w_a).cross(arm_velocity) - w_a.cross(even);
+        let reference_drift = (b.velocity - w_b.cross(b.arm)) - (a.velocity - w_a.cross(a.arm));
+        let change = (w_b - w_a).cross(arm_velocity) - w_a.cross(reference_drift);
         // Bounds, with what the terms err by.
         let speeds = a.velocity.length() + b.velocity.length();
         let spins = [a, b].map(|body| body.omega.length());
         let rate_terms = (speeds + spins[0] * of_a.length() + spins[1] * of_b.length()) * UP;
-        let even_terms = (speeds + spins[0] * a.arm.length() + spins[1] * b.arm.length()) * UP;
+        let drift_terms = (speeds + spins[0] * a.arm.length() + spins[1] * b.arm.length()) * UP;
         let arm_terms = spins[1] * (of_b.length() + b.arm.length()) * UP;
         let most_arm_velocity = arm_velocity.length() * UP + PRODUCT_ERROR * arm_terms;
-        let most_even = w_a.cross(even).length() * UP + PRODUCT_ERROR * spin_a * even_terms;
-        let most_change = difference * most_arm_velocity + most_even;
+        let most_drift_turned =
+            w_a.cross(reference_drift).length() * UP + PRODUCT_ERROR * spin_a * drift_terms;
+        let most_change = difference * most_arm_velocity + most_drift_turned;
         let most_rate = rate.length() * UP + PRODUCT_ERROR * rate_terms + enough * most_change;
         let line = point - from;
         Self {
@@ -118,9 +119,10 @@ impl SeenPoint {
             most_line: line.length() * UP + enough * most_rate,
             most_rate,
             most_bend: most_change + spin_a * most_rate,
-            most_jerk: difference * spins[1] * most_arm_velocity + spin_a * (2.0 * most_change + spin_a * most_rate),
+            most_jerk: difference * spins[1] * most_arm_velocity
+                + spin_a * (2.0 * most_change + spin_a * most_rate),
             rate_terms,
-            bend_terms: difference * arm_terms + spin_a * (even_terms + rate_terms),
+            bend_terms: difference * arm_terms + spin_a * (drift_terms + rate_terms),
         }
     }
 }
@@ -177,7 +179,7 @@ pub(super) fn clear_across_edges(
     let behind_b = (b.center + b.corners[(j + 2) % 3]) - q;
     let corner_a = seen_b.along(behind_a.cross(edge_a), behind_a.length() * seen_a.length);
     let corner_b = seen_a.along(edge_b.cross(behind_b), behind_b.length() * seen_b.length);
-    let paths = [gap, gap.plus(&corner_a), gap.plus(&corner_b), gap.plus(&corner_a).plus(&corner_b)];
+    let paths = [gap, gap + corner_a, gap + corner_b, gap + corner_a + corner_b];
     if paths.iter().all(|path| path.gap > 0.0) { first_time_of_paths(&paths, enough) } else { 0.0 }
 }
 

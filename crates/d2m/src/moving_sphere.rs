@@ -1,4 +1,4 @@
-//! A ball that holds a body and moves with constant velocity: when two bodies may meet first, for the price of a square root.
+//! A sphere that holds a body and moves with constant velocity: when two bodies may meet first, for the price of a square root.
 
 use crate::Body;
 use d2m_interval::{Interval, IntervalVec3};
@@ -15,9 +15,9 @@ const RADIUS_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 /// left is more than what rounding takes from it.
 const EARLY: f64 = 1.0 - 1.0 / 1_048_576.0;
 
-/// A ball, over a span of time.
+/// A sphere, over a span of time.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct MovingBall {
+pub(crate) struct MovingSphere {
     /// Where its center is when the span begins.
     center: DVec3,
     velocity: DVec3,
@@ -25,7 +25,7 @@ pub(crate) struct MovingBall {
     radius: f64,
 }
 
-/// When two bodies may meet first, as times since the balls begin.
+/// When two bodies may meet first, as times since the spheres begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum FirstMeeting {
     /// Proven apart over the whole part of the span.
@@ -36,7 +36,7 @@ pub(crate) enum FirstMeeting {
     Unknown,
 }
 
-impl MovingBall {
+impl MovingSphere {
     /// Holds the body where its motion is known, for times since `start`; none if its twist is not constant.
     ///
     /// The reference point of a constant twist moves in a straight line, and every point of the body is within
@@ -52,9 +52,9 @@ impl MovingBall {
         radius.is_finite().then_some(Self { center, velocity: twist.linear_velocity(), radius })
     }
 
-    /// When the two may come within `separation` first, from `begin` to `end`, times since both balls begin.
+    /// When the two may come within `separation` first, from `begin` to `end`, times since both spheres begin.
     ///
-    /// Two points of the balls are at least n·(d + τw) − r apart, for a unit vector n, the difference d of the centers, w of the
+    /// Two points of the spheres are at least n·(d + τw) − r apart, for a unit vector n, the difference d of the centers, w of the
     /// velocities, and the sum r of the radii. That is linear in τ: what is positive at two times is positive between them.
     /// The direction comes from where the spheres would touch first, or pass closest; if that was rounded badly, nothing is
     /// proven.
@@ -100,9 +100,9 @@ mod tests {
     use d2m_testing::{Draw, KnuthRandom};
     use std::sync::Arc;
 
-    fn ball(motion: ConstantTwist) -> MovingBall {
+    fn sphere(motion: ConstantTwist) -> MovingSphere {
         let tree = Arc::new(MeshTree::new(crate::shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()));
-        MovingBall::enclose(&Body::new(tree, motion), 2.0).unwrap()
+        MovingSphere::enclose(&Body::new(tree, motion), 2.0).unwrap()
     }
 
     fn flying(position: DVec3, velocity: DVec3) -> ConstantTwist {
@@ -112,9 +112,9 @@ mod tests {
     #[test]
     fn head_on_passing_by_and_at_rest() {
         let radius = 0.75f64.sqrt();
-        let one = ball(flying(DVec3::ZERO, DVec3::ZERO));
+        let one = sphere(flying(DVec3::ZERO, DVec3::ZERO));
         let meeting = |position: DVec3, velocity: DVec3| {
-            one.first_meeting(&ball(flying(position, velocity)), 0.1, 0.0, 1.0)
+            one.first_meeting(&sphere(flying(position, velocity)), 0.1, 0.0, 1.0)
         };
         let time = (10.0 - 2.0 * radius - 0.1) / 20.0;
         let FirstMeeting::After(found) = meeting(DVec3::X * 10.0, DVec3::X * -20.0) else { panic!() };
@@ -127,11 +127,11 @@ mod tests {
         assert_eq!(meeting(DVec3::ZERO, DVec3::X), FirstMeeting::Unknown);
         let huge = flying(DVec3::X * 1e200, DVec3::X * -1e200).with_reference_time(-1e200);
         let tree = Arc::new(MeshTree::new(crate::shapes::mesh("box").unwrap()));
-        assert!(MovingBall::enclose(&Body::new(tree, huge), 2.0).is_none());
+        assert!(MovingSphere::enclose(&Body::new(tree, huge), 2.0).is_none());
     }
 
     #[test]
-    fn a_ball_holds_its_body_at_all_times() {
+    fn a_sphere_holds_its_body_at_all_times() {
         let mut random = KnuthRandom(17);
         let tree = Arc::new(MeshTree::new(crate::shapes::mesh("gear?triangles=500").unwrap()));
         for round in 0..200 {
@@ -145,14 +145,14 @@ mod tests {
                 .with_reference_time([0.0, -1e3][round % 2]);
             let body = Body::new(Arc::clone(&tree), twist);
             let start = random.vector().x * 3.0;
-            let ball = MovingBall::enclose(&body, start).unwrap();
+            let sphere = MovingSphere::enclose(&body, start).unwrap();
             for k in 0..20 {
                 let since = f64::from(k) * 0.1;
                 let pose = twist.pose_and_twist(start + since).0;
-                let center = ball.center + ball.velocity * since;
+                let center = sphere.center + sphere.velocity * since;
                 for &vertex in tree.mesh().vertices().iter().step_by(7) {
                     let point = pose.rotation * (vertex - pose.at) + pose.translation;
-                    assert!(point.distance(center) <= ball.radius * (1.0 + 1e-9), "round {round}");
+                    assert!(point.distance(center) <= sphere.radius * (1.0 + 1e-9), "round {round}");
                 }
             }
         }
@@ -161,19 +161,19 @@ mod tests {
     /// Squares of the coordinates of their distance at the end lose a third to underflow in such a unit: a direction divided by that
     /// length was longer than one by a fifth, and so was the gap along it.
     #[test]
-    fn balls_that_end_in_each_other_in_a_tiny_unit() {
+    fn spheres_that_end_in_each_other_in_a_tiny_unit() {
         let unit = 1e-162;
-        let ball = |place: f64, velocity: f64| MovingBall {
+        let sphere = |place: f64, velocity: f64| MovingSphere {
             center: DVec3::splat(place * unit),
             velocity: DVec3::splat(velocity * unit),
             radius: 2.6 * unit,
         };
-        let meeting = ball(0.0, 0.0).first_meeting(&ball(12.7, -10.0), 0.0, 0.0, 1.0);
+        let meeting = sphere(0.0, 0.0).first_meeting(&sphere(12.7, -10.0), 0.0, 0.0, 1.0);
         assert_ne!(meeting, FirstMeeting::Never);
     }
 
     /// In units from 1e-161, where squares of lengths are lost to underflow, to 1e153, near and far from the origin, from before and
-    /// after the reference time: no point of a ball is within the separation before the time that is given, and little is given
+    /// after the reference time: no point of a sphere is within the separation before the time that is given, and little is given
     /// away.
     #[test]
     fn nothing_is_late_in_any_unit() {
@@ -186,7 +186,7 @@ mod tests {
             let mut one = || {
                 let spread = 4.0 * random.unit();
                 let (position, velocity) = (random.vector() * spread, random.vector() * 6.0 * random.unit());
-                MovingBall {
+                MovingSphere {
                     center: (offset + position + at) * unit,
                     velocity: velocity * unit,
                     radius: (0.1 + random.unit()) * unit,
