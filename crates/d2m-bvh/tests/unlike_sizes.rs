@@ -17,6 +17,12 @@ fn cube(half: f64) -> MeshTree {
     MeshTree::new(TriMesh::try_new((0..8).map(vertex).collect(), halves.collect()).unwrap())
 }
 
+/// A tetrahedron with its first vertex at the origin.
+fn tetrahedron(size: f64) -> MeshTree {
+    let vertices = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| p * size).to_vec();
+    MeshTree::new(TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap())
+}
+
 /// A sphere of 128 triangles: an octahedron divided twice.
 fn sphere(radius: f64) -> MeshTree {
     let mut triangles = Vec::new();
@@ -124,4 +130,71 @@ fn nothing_is_too_fast_to_be_noticed() {
         }
     }
     assert!(found > 600, "{found}");
+}
+
+/// A grain of dust flies straight into the inside of a triangle, obliquely, from up to 2²⁴ of its sizes away in a window; it is a
+/// 2⁵⁰th to a 2⁶³rd of it. The products of its speed with the line to the triangle overflow in the unit of its boxes.
+#[test]
+fn a_grain_of_dust_meets_what_it_hits() {
+    let mut random = KnuthRandom(174);
+    let mut found = 0;
+    for round in 0..4000 {
+        let size = 0.5f64.powi(50 + round % 14);
+        let speed = 2f64.powi(round / 14 % 25);
+        let velocity = DVec3::new(1.0, 0.5 * random.signed(), 0.5 * random.signed()) * speed;
+        let mut triangles = Vec::new();
+        for number in 0..1 + round as u32 % 4 {
+            // The first in the plane x = 0, and some behind it.
+            let shift = DVec3::new(-1.5 * f64::from(number), random.signed(), random.signed());
+            triangles.push([0; 3].map(|_| shift + DVec3::new(0.0, random.signed(), random.signed())));
+        }
+        let mut weights = [0; 3].map(|_| random.signed().abs() + 0.01);
+        let sum: f64 = weights.iter().sum();
+        weights = weights.map(|w| w / sum);
+        let hit: DVec3 = (0..3).map(|k| triangles[0][k] * weights[k]).sum();
+        let faces = (0..triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let plate = MeshTree::new(TriMesh::try_new(triangles.concat(), faces).unwrap());
+        let grain = tetrahedron(size);
+        let time = 0.5 + 0.4 * random.signed();
+        let flight = ConstantTwist::try_new(hit, DQuat::IDENTITY, velocity, DVec3::ZERO)
+            .unwrap()
+            .with_reference_time(time);
+        let window = Window::try_new(0.0, 1.0).unwrap();
+        let [a, b] = [Moving::new(&plate, &ConstantTwist::REST), Moving::new(&grain, &flight)];
+        for (a, b) in [(a, b), (b, a)] {
+            let options = QueryOptions::default().with_solid(Solid::Surface);
+            match time_of_contact(a, b, window, &options).unwrap() {
+                // Vertices of the triangle are rounded, so the vertex is hit up to a rounding of that.
+                TimeOfContact::Contact(contact) => {
+                    assert!(contact.time_lo <= time + 4.0 * f64::EPSILON, "{round}: {contact:?}");
+                    found += 1;
+                }
+                other => panic!("{round}: size {size:e}, speed {speed:e}: {other:?}"),
+            }
+        }
+    }
+    assert_eq!(found, 8000);
+}
+
+/// A grain flies towards one end of a long triangle. Along the line from the triangle's middle to it, it comes nearer by y and z
+/// and parts by x, in all nearer; in the unit of its boxes the product of x alone may overflow.
+#[test]
+fn products_of_speeds_that_overflow_prove_nothing() {
+    let across = DVec3::new(0.0, 0.5, -0.5);
+    let corners = vec![across + DVec3::X * 0.2, DVec3::X * 0.2 - across, DVec3::X * -5.2];
+    let plate = MeshTree::new(TriMesh::try_new(corners, vec![[0, 1, 2]]).unwrap());
+    for step in 0..4000 {
+        let grain = tetrahedron(0.5f64.powi(58 + step % 10));
+        // Up to 2²⁵ in steps of 2^(1/16).
+        let speed = 2f64.powf(f64::from(step / 10) / 16.0);
+        let flight = ConstantTwist::try_new(DVec3::ZERO, DQuat::IDENTITY, DVec3::splat(speed), DVec3::ZERO)
+            .unwrap()
+            .with_reference_time(1.0 / speed);
+        let window = Window::try_new(0.0, 1.0).unwrap();
+        let options = QueryOptions::default().with_solid(Solid::Surface);
+        let [a, b] = [Moving::new(&plate, &ConstantTwist::REST), Moving::new(&grain, &flight)];
+        let found = time_of_contact(a, b, window, &options).unwrap();
+        let TimeOfContact::Contact(contact) = found else { panic!("{step}: {found:?}") };
+        assert!(contact.time_lo <= (1.0 + f64::EPSILON) / speed, "{step}: {contact:?}");
+    }
 }

@@ -18,9 +18,13 @@ const TRIANGLE_ERROR: f64 = 128.0 * UNIT_F64;
 const FRAME_ERROR: f64 = 256.0 * UNIT_F64;
 /// Far frames err by at most so many times as much.
 const FAR_FRAMES: f64 = 4.0;
-/// Where the fastest points are below this in the unit of a node test, 2¹¹⁰, no sum of products of speeds and cosines overflows in
-/// `f32`, even of boxes from files, which may be 16 times as large as what they enclose.
-const MOST_SPEED: f64 = power_of_two(110);
+/// Where the fastest points are below this in the unit of a node test, no sum of products of speeds and coordinates overflows in
+/// `f32`. Centers of boxes, also of those from files, are at most 16 times as far from a point of their body as what they
+/// enclose, so the velocity between two centers is below 2⁶ times the fastest point's: 2⁶² here. The line of the centers is shorter
+/// than 2⁶⁴ (else its square is infinite, and the gap along it is not a number). So no partial sum of their scalar product is above 2¹²⁶.
+///
+/// What moves by 2⁵⁶ of a body's sizes in a sub-window is known to 2⁻⁴⁵ of that, so boxes of that body prove nothing anyway.
+const MOST_SPEED: f64 = power_of_two(56);
 /// Factor of the error of the distance of two spheres: positions err by less than 64·2⁻⁵³ of the size, and the few
 /// operations after that by less.
 const BALL_ERROR: f64 = 128.0 * UNIT_F64;

@@ -11,8 +11,8 @@ use d2m_lanes::{Elementwise, Lanes, Two};
 pub(crate) const ENTRY_FACTOR: f32 = 1.0 - 32.0 * UNIT_F32 as f32;
 
 /// Along one axis: the gap, and the speed at which it closes at most, never less than a positive least one. Where sums of sizes
-/// overflow, the gap is infinite or not a number: then the entry time is not a number, and nothing is known. Where speeds may, the
-/// least one is infinite.
+/// overflow, the gap is infinite or not a number: then the entry time is not a number, and nothing is known. Where sums of products
+/// of speeds may, the least one is infinite (`MOST_SPEED` in `search/scene.rs`).
 #[derive(Clone, Copy)]
 struct GapAndRate<T> {
     gap: T,
@@ -29,13 +29,14 @@ struct RateBounds<T> {
 }
 
 impl<T: Elementwise> GapAndRate<T> {
-    /// Along an axis; `velocity` is that of the centers.
+    /// Along an axis; `velocity` is that of the centers. A speed that is not a number stays so: the greater of two is the second one
+    /// where either is not a number.
     #[inline(always)]
     fn new(axis: &Axis<T>, velocity: &[T; 3], rate: RateBounds<T>) -> Self {
         let parting = dot(velocity, &axis.direction);
         Self {
             gap: axis.between.abs() - axis.reach,
-            closing: (rate.spread - T::flip_sign(parting, axis.between)).max(rate.least),
+            closing: rate.least.max(rate.spread - T::flip_sign(parting, axis.between)),
         }
     }
 
@@ -76,7 +77,7 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
     let rate = [v[0].first(), v[1].first(), v[2].first()];
     let inverse = L::splat(1.0) / pair.square.sqrt();
     let gap = (pair.square - pair.line_reach) * inverse - L::splat(placed.boxed.margin);
-    let closing = (spread - dot(&rate, &pair.line) * inverse).max(L::splat(placed.least));
+    let closing = L::splat(placed.least).max(spread - dot(&rate, &pair.line) * inverse);
     let best = GapAndRate { gap, closing }.or(best);
 
     // Root of gap − closing·s − acceleration·s²/2: no cancellation.
