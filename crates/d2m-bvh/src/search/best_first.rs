@@ -54,17 +54,53 @@ impl Task for OneWindow<'_, '_> {
     }
 }
 
-impl Search<'_> {
+impl<'s> Search<'s> {
     #[inline(always)]
-    fn search_window<L: Lanes>(
-        &mut self,
-        SubWindow { start, end }: SubWindow,
-        pairs: Option<&[Item]>,
-    ) -> Step {
+    fn search_window<L: Lanes>(&mut self, window: SubWindow, pairs: Option<&[Item]>) -> Step {
+        let mut state = self.begin_window(window);
+        self.scratch.counts.windows += 1;
+        self.scratch.queue.clear();
+        match pairs {
+            Some(pairs) => self.scratch.queue.extend(pairs.iter().copied()),
+            None => self.scratch.queue.push(state.expander.root()),
+        }
+        let mut batch = core::mem::replace(&mut self.scratch.batch, Bucket::EMPTY);
+        let (mut outcome, mut batches) = (None, 0u32);
+        let mut patience = Patience::new(self.scratch.counts.triangle_looks);
+        while let Some(least) = self.scratch.queue.take(&mut batch, BATCH) {
+            if least >= state.limit {
+                break;
+            }
+            batches += 1;
+            let progress = Progress { least, batches };
+            outcome = self.interruption(&state, window, progress, &batch);
+            if outcome.is_some() {
+                break;
+            }
+            self.scratch.counts.frames += 1;
+            if batches == 1 || least > state.frame_key + state.frame_key / FRESH {
+                state.renew_frames::<L>(least);
+            }
+            if patience.is_due(batches, self.scratch.counts.triangle_looks) {
+                self.thin_out::<L>(&mut state, progress, &mut batch, &mut patience);
+            }
+            self.expand_batch::<L>(&mut state, batch.items());
+        }
+        self.scratch.batch = batch;
+        outcome.unwrap_or(match state.found {
+            Some(found) if found.offset <= length_of(window) => {
+                self.scratch.found_in = Some(state.motion);
+                Step::Answer(Outcome::Found(found))
+            }
+            _ => Step::ClearUntil(window.end),
+        })
+    }
+
+    /// The state of a sub-window of which nothing is searched yet.
+    #[inline(always)]
+    fn begin_window(&mut self, window: SubWindow) -> State<'s> {
         let scene = self.scene;
-        let motion = scene.relative_motion(start);
-        // At least end − start, whatever its rounding.
-        let length = (end - start).next_up();
+        let length = length_of(window);
         let time_unit = power_of_two_above(length.max(LEAST_SPAN));
         let step = time_unit / KEY_SCALE;
         let scales = match self.scales {
@@ -72,8 +108,8 @@ impl Search<'_> {
             _ => scene.node_scales(time_unit),
         };
         self.scales = Some((time_unit, scales));
-        let mut state = State {
-            motion,
+        State {
+            motion: scene.relative_motion(window.start),
             node_frames: [NodeFrame::NONE; 2],
             expander: expander(scene, scales),
             step,
@@ -84,67 +120,35 @@ impl Search<'_> {
             frame_key: 0,
             found: None,
             behind: BackwardCertificate { reversed: Frame::NONE, direction: DVec3::ZERO },
-        };
-        self.scratch.counts.windows += 1;
-        self.scratch.queue.clear();
-        match pairs {
-            Some(pairs) => self.scratch.queue.extend(pairs.iter().copied()),
-            None => self.scratch.queue.push(state.expander.root()),
         }
-        let mut batch = core::mem::replace(&mut self.scratch.batch, Bucket::EMPTY);
-        let (mut outcome, mut begun, mut batches) = (None, false, 0u32);
-        let mut patience = Patience::new(self.scratch.counts.triangle_looks);
-        while let Some(least) = self.scratch.queue.take(&mut batch, BATCH) {
-            if least >= state.limit {
-                break;
-            }
-            if self.limits.only_start && least > 0 {
-                outcome = Some(Step::Answer(Outcome::Separated));
-                break;
-            }
-            batches += 1;
-            let full = batches % MEMORY_CHECK == 0 && self.scratch.queue.len() > Budget::HARD_QUEUED_PAIRS;
-            if full || self.out_of_budget() {
-                outcome = Some(Step::Answer(Outcome::OutOfBudget(sum_down(start, f64::from(least) * step))));
-                break;
-            }
-            if self.ahead.is_some_and(|ahead| self.work() >= self.limits.sweep_from || ahead.is_useless()) {
-                outcome = Some(Step::Answer(Outcome::OutOfBudget(start)));
-                break;
-            }
-            if self.work() >= self.limits.sweep_from {
-                let now = sum_down(start, f64::from(least) * step);
-                if let Some(until) = self.sweep(&state.motion, &state.frame, now, batch.items()[0].boxes)
-                    && until >= end
-                {
-                    outcome = Some(Step::ClearUntil(until));
-                    break;
-                }
-            }
-            self.scratch.counts.frames += 1;
-            if !begun || least > state.frame_key + state.frame_key / FRESH {
-                state.frame = state.motion.frame::<L::Doubles>(f64::from(least) * step);
-                let left = time_left(state.limit, least);
-                state.node_frames = [
-                    NodeFrame::new::<L::Doubles>(&state.frame, &state.expander.scales[0], false, left),
-                    NodeFrame::new::<L::Doubles>(&state.frame, &state.expander.scales[1], true, left),
-                ];
-                state.frame_key = least;
-                begun = true;
-            }
-            if patience.is_due(batches, self.scratch.counts.triangle_looks) {
-                self.thin_out::<L>(&mut state, Progress { least, batches }, &mut batch, &mut patience);
-            }
-            self.expand_batch::<L>(&mut state, batch.items());
+    }
+
+    /// What ends the search of a sub-window before its queue is empty, if anything does: nothing live is before `least`.
+    #[inline(always)]
+    fn interruption(
+        &mut self,
+        state: &State<'_>,
+        SubWindow { start, end }: SubWindow,
+        Progress { least, batches }: Progress,
+        batch: &Bucket,
+    ) -> Option<Step> {
+        if self.limits.only_start && least > 0 {
+            return Some(Step::Answer(Outcome::Separated));
         }
-        self.scratch.batch = batch;
-        outcome.unwrap_or(match state.found {
-            Some(found) if found.offset <= length => {
-                self.scratch.found_in = Some(state.motion);
-                Step::Answer(Outcome::Found(found))
-            }
-            _ => Step::ClearUntil(end),
-        })
+        let now = || sum_down(start, f64::from(least) * state.step);
+        let is_full = batches % MEMORY_CHECK == 0 && self.scratch.queue.len() > Budget::HARD_QUEUED_PAIRS;
+        if is_full || self.out_of_budget() {
+            return Some(Step::Answer(Outcome::OutOfBudget(now())));
+        }
+        let is_due = self.work() >= self.limits.sweep_from;
+        if self.ahead.is_some_and(|ahead| is_due || ahead.is_useless()) {
+            return Some(Step::Answer(Outcome::OutOfBudget(start)));
+        }
+        if !is_due {
+            return None;
+        }
+        let until = self.sweep(&state.motion, &state.frame, now(), batch.items()[0].boxes)?;
+        (until >= end).then_some(Step::ClearUntil(until))
     }
 
     /// An offset up to which the swept volumes of the bodies are apart from `now` on; none if they are not for long. `boxes`:
@@ -202,6 +206,25 @@ fn first_triangle(nodes: &[WideNode], index: u32) -> u32 {
     match nodes[index as usize / WIDTH].below(index as usize % WIDTH) {
         Below::Triangle(triangle) => triangle,
         Below::Node(node) => first_triangle(nodes, node * WIDTH as u32),
+    }
+}
+
+/// At least the length of the sub-window, whatever its rounding.
+fn length_of(SubWindow { start, end }: SubWindow) -> f64 {
+    (end - start).next_up()
+}
+
+impl State<'_> {
+    /// The frame at a key, and those of the node tests from there on.
+    #[inline(always)]
+    fn renew_frames<L: Lanes>(&mut self, key: u32) {
+        self.frame = self.motion.frame::<L::Doubles>(f64::from(key) * self.step);
+        let left = time_left(self.limit, key);
+        self.node_frames = [
+            NodeFrame::new::<L::Doubles>(&self.frame, &self.expander.scales[0], false, left),
+            NodeFrame::new::<L::Doubles>(&self.frame, &self.expander.scales[1], true, left),
+        ];
+        self.frame_key = key;
     }
 }
 

@@ -329,10 +329,17 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "crates/d2m-bvh/src/search/queue.rs::no_live_key_is_below_the_one_handed_out",
     ),
     patch(
+        "products of speeds and lines may overflow",
+        "crates/d2m-bvh/src/search/scene.rs",
+        "const MOST_SPEED: f64 = power_of_two(56);",
+        "const MOST_SPEED: f64 = power_of_two(110);",
+        "crates/d2m-bvh/tests/unlike_sizes.rs::products_of_speeds_that_overflow_prove_nothing",
+    ),
+    patch(
         "a contact is called clear",
         "crates/d2m-bvh/src/search/best_first.rs",
-        "Some(found) if found.offset <= length => {",
-        "Some(found) if found.offset < 0.0 * length => {",
+        "Some(found) if found.offset <= length_of(window) => {",
+        "Some(found) if found.offset < 0.0 * length_of(window) => {",
         "crates/d2m-bvh/tests/engine.rs::separation_at_lo_is_what_is_promised_and_nothing_touches_before",
     ),
     patch(

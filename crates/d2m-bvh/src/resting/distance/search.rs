@@ -44,7 +44,177 @@ pub(super) struct Search<'a> {
     pub(super) allowance: &'a mut Allowance,
 }
 
-/// State of a search: the best pair so far.
+impl Task for Search<'_> {
+    type Output = Found;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Found {
+        let Self { scene, first, limit, allowance } = self;
+        let mut state = State::new(scene, limit, first);
+        loop {
+            if state.next.is_none() && state.steps >= state.patience {
+                state.thin_out(allowance);
+            }
+            let Some(item) = state.next.take().or_else(|| state.queue.pop()) else { break };
+            if item.key > state.closest.upper_key || state.closest.upper == 0.0 {
+                break;
+            }
+            if allowance.step().is_err() {
+                // A pair of triangles is compared before the search, so that there is a best one.
+                let Some(best) = state.closest.best else { return Found::Unclear };
+                let least = state.queue.least_key().map_or(item.key, |other| other.min(item.key));
+                return Found::Exhausted(state.closest.finished(best, f64::from(least)));
+            }
+            state.steps += 1;
+            if state.waits(&item) {
+                continue;
+            }
+            match scene.step(item.pair) {
+                Step::Expand { wide, node } => {
+                    if !state.is_parted(&item, allowance) {
+                        state.expand::<L>(&item, wide, node);
+                    }
+                }
+                Step::Compare(triangles) => {
+                    // On as long as it pays: each closer pair has a better direction for all that follow.
+                    state.descending = state.closest.compare(triangles);
+                }
+            }
+        }
+        match state.closest.best {
+            Some(best) => Found::Pair(state.closest.finished(best, f64::INFINITY)),
+            None if state.closest.loose <= limit => Found::Unclear,
+            None => Found::Beyond,
+        }
+    }
+}
+
+/// A search on its way.
+struct State<'a> {
+    closest: Closest<'a>,
+    queue: Queue,
+    /// The pair that comes before all that wait: the least child of the one before, while the search descends.
+    next: Option<Item>,
+    /// Does it descend greedily? To a pair of triangles, as long as that is closer than the one before; then best first.
+    descending: bool,
+    steps: u64,
+    /// After so many steps the pairs that wait are examined.
+    patience: u64,
+    /// Hulls of nodes, once the pairs are a crowd that planes may part.
+    hulls: Option<Hulls>,
+}
+
+impl<'a> State<'a> {
+    fn new(scene: &'a Scene<'a>, limit: f64, first: Option<[u32; 2]>) -> Self {
+        let mut closest = Closest::new(scene, limit);
+        if let Some(triangles) = first {
+            closest.compare(triangles);
+        }
+        Self {
+            descending: closest.best.is_none(),
+            closest,
+            queue: Queue::default(),
+            next: Some(Item { key: 0.0, pair: [0; 2], version: 0 }),
+            steps: 0,
+            patience: CROWD,
+            hulls: None,
+        }
+    }
+
+    /// Examines a crowd of pairs that wait: drops them where they cannot change what is proven, or begins again with planes
+    /// that may part nodes high up.
+    fn thin_out(&mut self, allowance: &mut Allowance) {
+        self.patience = 2 * self.steps;
+        match (&mut self.closest.best, self.queue.least_key()) {
+            // No lower bound above zero is proven, whatever the other pairs are.
+            (Some(best), _) if best.distance.upper <= EXPECTED_WIDTH => {
+                self.queue.clear();
+                best.is_cut_short = true;
+            }
+            (Some(_), Some(least))
+                if self.hulls.is_none() && Hulls::pay_off(self.closest.scene, self.steps) =>
+            {
+                self.hulls = Hulls::new(self.closest.scene, allowance).ok();
+                if self.hulls.is_some() {
+                    self.queue.clear();
+                    self.queue.push(Item { key: least, pair: [0; 2], version: self.closest.version });
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// True if the bound along the newest direction, which is cheap and often much better than the one that was known, leaves the
+    /// pair out or sends it back to the queue.
+    #[inline(always)]
+    fn waits(&mut self, &Item { key, pair, version }: &Item) -> bool {
+        if version == self.closest.version || version == PARTED {
+            return false;
+        }
+        let bound = self.closest.scene.bound_along(pair, &self.closest.along);
+        if bound > self.closest.upper_key {
+            return true;
+        }
+        let is_better = bound > key;
+        if is_better {
+            self.queue.push(Item { key: bound, pair, version: self.closest.version });
+        }
+        is_better
+    }
+
+    /// True if a plane parts a pair of nodes further than was known: it is left out, or waits with the new bound.
+    #[inline(always)]
+    fn is_parted(&mut self, &Item { key, pair, version }: &Item, allowance: &mut Allowance) -> bool {
+        let (Some(hulls), Some(best)) = (&mut self.hulls, &self.closest.best) else { return false };
+        if version == PARTED {
+            return false;
+        }
+        let best = Measure { upper: self.closest.upper, direction: best.distance.direction };
+        match hulls.part(pair, best, self.steps, allowance) {
+            Ok(Parting::Beyond) => true,
+            Ok(Parting::AtLeast(bound)) if bound > key => {
+                self.queue.push(Item { key: bound, pair, version: PARTED });
+                true
+            }
+            // The next step ends the search where the allowance ran out.
+            Ok(Parting::AtLeast(_)) | Err(Exhausted) => false,
+        }
+    }
+
+    /// Replaces one node of a pair by its children.
+    #[inline(always)]
+    fn expand<L: Lanes>(&mut self, &Item { key, pair, .. }: &Item, wide: usize, node: u32) {
+        let wanted = Wanted {
+            along: &self.closest.along,
+            enough: self.closest.upper_key,
+            directions: if self.hulls.is_some() { Directions::OfEdges } else { Directions::Usual },
+        };
+        let bounds = self.closest.scene.bounds::<L>((wide, node), pair[1 - wide], &wanted);
+        let mut least: Option<Item> = None;
+        for (lane, &bound) in bounds.used().iter().enumerate() {
+            // Also when the bound is not a number.
+            let bound = if bound > key { bound } else { key };
+            if bound > self.closest.upper_key {
+                continue;
+            }
+            let pair = child(pair, wide, node, lane);
+            let found = Item { key: bound, pair, version: self.closest.version };
+            match &mut least {
+                Some(so_far) if self.descending => {
+                    let (keep, push) =
+                        if found.key < so_far.key { (found, *so_far) } else { (*so_far, found) };
+                    *so_far = keep;
+                    self.queue.push(push);
+                }
+                _ if self.descending => least = Some(found),
+                _ => self.queue.push(found),
+            }
+        }
+        self.next = least;
+    }
+}
+
+/// The best pair so far.
 struct Closest<'a> {
     scene: &'a Scene<'a>,
     best: Option<Best>,
@@ -108,121 +278,5 @@ impl<'a> Closest<'a> {
     fn finished(&self, best: Best, waiting: f64) -> Best {
         let lower = (best.distance.upper - EXPECTED_WIDTH).min(self.loose).min(waiting).max(0.0);
         Best { lower: lower * (1.0 - 2.0 * UNIT_F64), ..best }
-    }
-}
-
-impl Task for Search<'_> {
-    type Output = Found;
-
-    #[inline(always)]
-    fn run<L: Lanes>(self) -> Found {
-        let Self { scene, first, limit, allowance } = self;
-        let mut closest = Closest::new(scene, limit);
-        if let Some(triangles) = first {
-            closest.compare(triangles);
-        }
-        let mut queue = Queue::default();
-        let mut next = Some(Item { key: 0.0, pair: [0; 2], version: 0 });
-        // Descend greedily to a pair of triangles, as long as that is closer than the one before; then best first.
-        let mut descending = closest.best.is_none();
-        let (mut steps, mut patience) = (0, CROWD);
-        let mut hulls: Option<Hulls> = None;
-        loop {
-            if next.is_none() && steps >= patience {
-                patience = 2 * steps;
-                match (&mut closest.best, queue.least_key()) {
-                    // No lower bound above zero is proven, whatever the other pairs are.
-                    (Some(best), _) if best.distance.upper <= EXPECTED_WIDTH => {
-                        queue.clear();
-                        best.is_cut_short = true;
-                    }
-                    // Once more from the beginning: nodes high up may be parted by one plane.
-                    (Some(_), Some(least)) if hulls.is_none() && Hulls::pay_off(scene, steps) => {
-                        hulls = Hulls::new(scene, allowance).ok();
-                        if hulls.is_some() {
-                            queue.clear();
-                            queue.push(Item { key: least, pair: [0; 2], version: closest.version });
-                        }
-                    }
-                    _ => {}
-                }
-            }
-            let Some(Item { key, pair, version }) = next.take().or_else(|| queue.pop()) else { break };
-            if key > closest.upper_key || closest.upper == 0.0 {
-                break;
-            }
-            if allowance.step().is_err() {
-                // A pair of triangles is compared before the search, so that there is a best one.
-                let Some(best) = closest.best else { return Found::Unclear };
-                let least = queue.least_key().map_or(key, |other| other.min(key));
-                return Found::Exhausted(closest.finished(best, f64::from(least)));
-            }
-            steps += 1;
-            // The bound along the newest direction is cheap, and often much better than the one that was known.
-            let is_newest = version == closest.version || version == PARTED;
-            let newer = if is_newest { 0.0 } else { scene.bound_along(pair, &closest.along) };
-            if newer > closest.upper_key {
-                continue;
-            }
-            if newer > key {
-                queue.push(Item { key: newer, pair, version: closest.version });
-                continue;
-            }
-            let step = scene.step(pair);
-            if let (Some(hulls), Some(best), Step::Expand { .. }) = (&mut hulls, &closest.best, &step)
-                && version != PARTED
-            {
-                let best = Measure { upper: closest.upper, direction: best.distance.direction };
-                match hulls.part(pair, best, steps, allowance) {
-                    Ok(Parting::Beyond) => continue,
-                    Ok(Parting::AtLeast(bound)) if bound > key => {
-                        queue.push(Item { key: bound, pair, version: PARTED });
-                        continue;
-                    }
-                    // The next step ends the search where the allowance ran out.
-                    Ok(Parting::AtLeast(_)) | Err(Exhausted) => {}
-                }
-            }
-            match step {
-                Step::Expand { wide, node } => {
-                    let wanted = Wanted {
-                        along: &closest.along,
-                        enough: closest.upper_key,
-                        directions: if hulls.is_some() { Directions::OfEdges } else { Directions::Usual },
-                    };
-                    let bounds = scene.bounds::<L>((wide, node), pair[1 - wide], &wanted);
-                    let mut least: Option<Item> = None;
-                    for (lane, &bound) in bounds.used().iter().enumerate() {
-                        // Also when the bound is not a number.
-                        let bound = if bound > key { bound } else { key };
-                        if bound > closest.upper_key {
-                            continue;
-                        }
-                        let pair = child(pair, wide, node, lane);
-                        let found = Item { key: bound, pair, version: closest.version };
-                        match &mut least {
-                            Some(so_far) if descending => {
-                                let (keep, push) =
-                                    if found.key < so_far.key { (found, *so_far) } else { (*so_far, found) };
-                                *so_far = keep;
-                                queue.push(push);
-                            }
-                            _ if descending => least = Some(found),
-                            _ => queue.push(found),
-                        }
-                    }
-                    next = least;
-                }
-                Step::Compare(triangles) => {
-                    // On as long as it pays: each closer pair has a better direction for all that follow.
-                    descending = closest.compare(triangles);
-                }
-            }
-        }
-        match closest.best {
-            Some(best) => Found::Pair(closest.finished(best, f64::INFINITY)),
-            None if closest.loose <= limit => Found::Unclear,
-            None => Found::Beyond,
-        }
     }
 }
