@@ -1,4 +1,6 @@
 //! A moving edge against an edge that is fixed in B's frame.
+mod lines;
+mod meeting;
 mod products;
 
 use crate::accurate_cross::{Difference, accurate_cross};
@@ -7,12 +9,14 @@ use crate::path::{
     FeaturePath, HalfEdge, along, around, direction, global, local, padded, widened, without_third,
 };
 use crate::point_triangle::cleared;
-use crate::rounding::{CLOSE, PART_OF_WAY, UNDERFLOW, UNIT, UP, length_up};
+use crate::rounding::{CLOSE, PART_OF_WAY, UNIT, UP, length_up};
 use d2m_lanes::{F64x2, power_of_two};
 use d2m_motion::{EdgeJets, TwoJets, TwoVec3};
 use d2m_root::{Band, Cubic, Measurement, NearbyQuadratic, Piece, PieceTest, Quadratic, Verdict};
 use glam::DVec3;
-use products::{TripleProduct, TwoQuadratics};
+use lines::LinesMeet;
+use meeting::{Bounds, Meeting, Within};
+use products::TwoQuadratics;
 
 /// The piece test of two edges: the path is the midpoint of A's edge minus the midpoint of B's, and A's half edge.
 pub(crate) struct EdgeEdgeTest<P> {
@@ -104,6 +108,15 @@ impl<P: FeaturePath> EdgeEdgeTest<P> {
         self.path.speed() + self.path.direction_speed()
     }
 
+    #[inline(always)]
+    fn bounds(&self) -> Bounds {
+        Bounds {
+            half_lengths: self.half_lengths,
+            speeds: [self.path.speed(), self.path.direction_speed()],
+            touching: self.size() + self.separation,
+        }
+    }
+
     /// Jets of the difference of the midpoints and of A's half edge, and B's half edge.
     #[inline(always)]
     fn jets(&mut self, piece: Piece, at: f64) -> EdgeJets {
@@ -130,11 +143,9 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
     fn evaluate(&mut self, piece: Piece) -> Verdict {
         let at = piece.mid();
         let EdgeJets { jets, half_b: d } = self.jets(piece, at);
-        let (half_a, half_b) = self.half_lengths;
         let whole = local(piece, at);
         let h = whole.reach();
-        let (remainder, remainder_e) = (widened(jets.remainders[0], self.separation), jets.remainders[1]);
-
+        let remainders = [widened(jets.remainders[0], self.separation), jets.remainders[1]];
         let known_inside = self.inside.holds(piece);
         let mut searched = whole;
         if !known_inside && self.speed() * h > NEARBY * self.size() {
@@ -143,123 +154,27 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
             };
             searched = near;
         }
-
-        // f = w·(e × d), zero when the lines meet.
-        let TripleProduct { cubic: f, fourth, fifth, sixth } = TripleProduct::new(&jets, d);
-        // |w| is at most what its speed admits, and at a contact both half edges and the separation; its jet adds its
-        // remainder.
-        let (there, touching) =
-            (length_up(jets.p.first()) + h * self.path.speed(), self.size() + self.separation);
-        let apart = (if there < touching { there } else { touching }) + remainder.bound(h);
-        let (of_w, of_e) = (half_b * half_a * UP, half_b * apart * UP);
-        let e0 = remainder.e0 * of_w + remainder_e.e0 * of_e;
-        let e1 = remainder.e1 * of_w + remainder_e.e1 * of_e;
-        let e2 = remainder.e2 * of_w + remainder_e.e2 * of_e;
-        let third = (1.0 / 6.0) * (remainder.m3 * of_w + remainder_e.m3 * of_e);
-        let fourth_sum = (1.0 / 24.0) * (remainder.m4 * of_w + remainder_e.m4 * of_e) + fourth;
-        let margin_f = |s: f64| {
-            (e0 + s * (e1 + s * (e2 + s * (third + s * (fourth_sum + s * (fifth + s * sixth)))))) * UP
-        };
-        let Some(mut part) = f.clip(Band { lo: 0.0, hi: 0.0 }, margin_f, searched) else {
+        let bounds = self.bounds();
+        let lines = LinesMeet::new(&jets, d, remainders, h, &bounds);
+        let Some(part) = lines.f.clip(Band { lo: 0.0, hi: 0.0 }, |s| lines.margin(s), searched) else {
             return Verdict::Clear;
         };
-        let mut certain = known_inside;
+        let mut within = Within { part, certain: known_inside };
         if !known_inside {
             // About the middle of what is left.
-            let meeting = padded(part, at, whole);
-            let m = part.mid();
-            let s = meeting.reach();
-            let meeting = Piece { lo: meeting.lo - m, hi: meeting.hi - m };
-            let r = meeting.reach() * UP;
-            // Γ with directions frozen there: k = e × d, u = d × k.
-            let there = jets.at(m);
-            let (w_m, e_m) = (there.first(), there.second());
-            let k = e_m.cross(d);
-            let u = d.cross(k);
-            let k_length = length_up(k);
-            // At least |u|, and of the size of its rounding when k is all rounding.
-            let u_length = half_b * k_length * UP;
-            let along_u = there.dot(TwoVec3::splat(u));
-            let (w_u, e_u, w_j) = (along_u.first(), along_u.second(), w_m.dot(e_m.cross(k)));
-            let (of_w, of_e) = (remainder.bound(s), remainder_e.bound(s));
-            // What the speeds admit.
-            let (displacement_w, displacement_e) =
-                (self.path.speed() * r + of_w, self.path.direction_speed() * r + of_e);
-            let margin_a = u_length * (displacement_w + displacement_e) * UP;
-            let product = displacement_w * half_a + (length_up(w_m) + displacement_w) * displacement_e;
-            let margin_b = (k_length * product + u_length * displacement_e) * UP;
-            let (a, b) = ([w_u + e_u, w_u - e_u], [w_j + e_u, w_j - e_u]);
-            let shared =
-                |[f, g]: [f64; 2], margin: f64| (f > margin && g > margin) || (f < -margin && g < -margin);
-            if shared(a, margin_a) || shared(b, margin_b) {
+            let meeting = Meeting::new(&jets, d, &remainders, [part, padded(part, at, whole)], &bounds);
+            let Some(found) = meeting.within_edges(&jets) else {
                 return Verdict::Clear;
-            }
-            // The lines are certainly not parallel, and meet certainly inside both edges, for good.
-            certain = e_u > u_length * displacement_e * UP
-                && a[0] > margin_a
-                && a[1] < -margin_a
-                && b[0] > margin_b
-                && b[1] < -margin_b;
-            if certain {
-                self.inside = global(part, at, piece);
-            } else {
-                // The same with jets.
-                let cube = (1.0 / 6.0) * (r * r * r);
-                let bent = jets.j.dot(jets.j).sqrt();
-                let margin_w = (of_w + cube * bent.first() + UNDERFLOW) * UP;
-                let margin_e = (of_e + cube * bent.second() + UNDERFLOW) * UP;
-                let moved = jets.moved(m);
-                let before = Piece { lo: part.lo - m, hi: part.hi - m };
-                let along_u = TwoQuadratics::along(&moved, u);
-                let e_u = along_u.second();
-                let first_a = along_u.first() + e_u;
-                let second_a = along_u.first() - e_u;
-                let margin_a = u_length * (margin_w + margin_e) * UP;
-                // The evaluation is covered: of values 122u of the 128u in margin_e and 121u in margin_w, of slopes 182u of 256u
-                // (features.md, section 5, "Γ"), each with all 12u of `Quadratic::bound_evaluation` that concern it.
-                let Some(beside) = first_a.clip_shared_sign_beyond(&second_a, margin_a, before) else {
-                    return Verdict::Clear;
-                };
-                let TripleProduct { cubic: w_j, fourth: quartic_j, .. } = TripleProduct::new(&moved, k);
-                let cubic_j = (1.0 / 6.0) * w_j.jerk.abs();
-                let w_j = Quadratic { value: w_j.value, slope: w_j.slope, curvature: w_j.curvature };
-                let (first_b, second_b) = (w_j + e_u, w_j - e_u);
-                // |w| there, up to what its jet admits.
-                let length =
-                    length_up(w_m) + r * (length_up(moved.v.first()) + 0.5 * r * length_up(moved.a.first()));
-                let product = margin_w * half_a + length * margin_e;
-                let margin_b =
-                    ((cubic_j + quartic_j * r) * (r * r * r) + k_length * product + u_length * margin_e) * UP;
-                // Covered: w_j rounds by 117u of the 128u in margin_w (there), e_u as above.
-                let Some(inside) = first_b.clip_shared_sign_beyond(&second_b, margin_b, beside) else {
-                    return Verdict::Clear;
-                };
-                if inside != before {
-                    part = Piece { lo: m + inside.lo, hi: m + inside.hi };
-                } else if e_u.exceeds(u_length * margin_e * UP, meeting)
-                    && first_a.exceeds(margin_a, meeting)
-                    && (-second_a).exceeds(margin_a, meeting)
-                    && first_b.exceeds(margin_b, meeting)
-                    && (-second_b).exceeds(margin_b, meeting)
-                {
-                    // Only f has cut.
-                    certain = true;
-                    self.inside = global(part, at, piece);
-                }
+            };
+            within = found;
+            if within.certain {
+                self.inside = global(within.part, at, piece);
             }
         }
-        // A true crossing: f changes sign.
-        let changes = |between: Piece| {
-            let s = between.reach();
-            let (of_w, of_e) = (remainder.bound(s), remainder_e.bound(s));
-            let product = half_b * (of_w * half_a + (there + of_w) * of_e);
-            let higher = s * s * s * s * (fourth + s * (fifth + s * sixth));
-            let margin = (product + higher) * UP;
-            let (first, last) = (f.at(between.lo), f.at(between.hi));
-            (first > margin && last < -margin) || (first < -margin && last > margin)
-        };
-        let certain =
-            certain && self.fine(part, piece) && (changes(searched) || changes(around(part, searched)));
+        let Within { part, certain } = within;
+        let certain = certain
+            && self.fine(part, piece)
+            && (lines.change_sign(searched) || lines.change_sign(around(part, searched)));
         Verdict::Within { part: global(part, at, piece), certain }
     }
 

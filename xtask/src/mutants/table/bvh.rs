@@ -253,8 +253,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "a budget's lower bound is that of the closest pair so far",
         "crates/d2m-bvh/src/resting/distance/search.rs",
-        "let least = queue.least_key().map_or(key, |other| other.min(key));",
-        "let least = closest.upper_key;",
+        "let least = state.queue.least_key().map_or(item.key, |other| other.min(item.key));",
+        "let least = state.closest.upper_key;",
         "crates/d2m-bvh/src/resting/distance/tests.rs::budgets_end_in_bounds_that_hold",
     ),
     patch(
