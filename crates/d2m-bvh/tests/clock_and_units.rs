@@ -9,18 +9,11 @@ use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
 
 fn cuboid(half: DVec3, center: DVec3) -> MeshTree {
-    let corner = |i: u32| {
-        let sign = DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 2.0 - 1.0;
-        center + half * sign
-    };
-    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
-    MeshTree::new(TriMesh::try_new((0..8).map(corner).collect(), triangles).unwrap())
+    MeshTree::new(Surface::cuboid(center - half, center + half).into_mesh(TriMesh::try_new))
 }
 
 fn torus(rings: u32, sides: u32, tube: f64) -> MeshTree {
-    let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(rings, sides, tube);
-    MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
+    MeshTree::new(Surface::wavy_torus(rings, sides, tube).into_mesh(TriMesh::try_new))
 }
 
 /// A plate with a top of any profile along x, turned.
@@ -176,9 +169,9 @@ fn exact_scalings_change_nothing() {
         let ask = |length: i32, time: i32| {
             let (length, time) = (2f64.powi(length), 2f64.powi(time));
             let trees = tori.map(|(rings, sides, tube)| {
-                let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(rings, sides, tube);
-                let corners = corners.iter().map(|p| *p * length).collect();
-                MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
+                MeshTree::new(
+                    Surface::wavy_torus(rings, sides, tube).map(|p| p * length).into_mesh(TriMesh::try_new),
+                )
             });
             let motion = |x: DVec3, v: DVec3, w: DVec3, at: DVec3| {
                 let q = DQuat::from_xyzw(0.1, 0.2, -0.3, 0.8);

@@ -5,7 +5,7 @@ use d2m_bvh::{QueryOptions, Solid, Topology, TriMesh, Window};
 use d2m_testing::{SmallScene, Surface};
 
 fn mesh(surface: &Surface) -> TriMesh {
-    TriMesh::try_new(surface.vertices.clone(), surface.triangles.clone()).expect("finite vertices")
+    surface.clone().into_mesh(TriMesh::try_new)
 }
 
 #[test]

@@ -5,6 +5,7 @@ use d2m_bvh::{
     Budget, MeshTree, Moving, QueryOptions, Solid, TriMesh, Window, last_search_counts, time_of_contact,
 };
 use d2m_motion::ConstantTwist;
+use d2m_testing::Surface;
 use glam::DVec3;
 
 /// Node tests of one query, at most: pair by pair several hundred times as many were needed.
@@ -20,8 +21,7 @@ fn spikes(count: u32, height: f64) -> MeshTree {
         let rim = |angle: f64| DVec3::new(angle.cos(), angle.sin(), height);
         [tip, rim(angle), rim(angle + 0.3)]
     };
-    let faces = (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
-    MeshTree::new(TriMesh::try_new((0..count).flat_map(corners).collect(), faces).unwrap())
+    MeshTree::new(Surface::soup((0..count).flat_map(corners)).into_mesh(TriMesh::try_new))
 }
 
 /// Bodies turn about their tips, one or both, while these come together at the middle of the window.

@@ -11,9 +11,7 @@ use glam::{DQuat, DVec3};
 
 /// A wavy torus of this size.
 fn torus(rings: u32, sides: u32, scale: f64) -> MeshTree {
-    let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(rings, sides, 0.3);
-    let corners = corners.into_iter().map(|p| p * scale).collect();
-    MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
+    MeshTree::new(Surface::wavy_torus(rings, sides, 0.3).map(|p| p * scale).into_mesh(TriMesh::try_new))
 }
 
 fn motion(x: DVec3, q: DQuat, v: DVec3, w: DVec3) -> ConstantTwist {
@@ -254,12 +252,7 @@ fn starts_that_touch_cross_or_hold() {
 /// Faces meet head-on so fast that rounding raises the tolerance: the end of the bracket is still found.
 #[test]
 fn fast_faces_have_a_bracket() {
-    let cube = || {
-        let corner = |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) - 0.5;
-        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        let halves = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
-        MeshTree::new(TriMesh::try_new((0..8).map(corner).collect(), halves.collect()).unwrap())
-    };
+    let cube = || MeshTree::new(Surface::cube(0.5).into_mesh(TriMesh::try_new));
     let (a, b) = (cube(), cube());
     let mut random = KnuthRandom(21);
     let mut raised = 0;

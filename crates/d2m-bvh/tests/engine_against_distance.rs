@@ -6,47 +6,31 @@ use d2m_bvh::{
     distance, time_of_contact,
 };
 use d2m_motion::{ConstantTwist, Pose, RigidMotion};
-use d2m_testing::{Draw, KnuthRandom};
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
 
 /// Closed: tetrahedron, octahedron, box or ring with stretched axes. Open: some triangles.
 fn mesh(random: &mut KnuthRandom, closed: bool) -> TriMesh {
     let stretch = DVec3::new(0.2, 0.6, 1.0) + random.vector().abs();
-    let (corners, triangles): (Vec<DVec3>, Vec<[u32; 3]>) = match (closed, random.index(4)) {
-        (true, 0) => {
-            ((0..4).map(|_| random.vector()).collect(), vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
-        }
+    let surface = match (closed, random.index(4)) {
+        (true, 0) => Surface::tetrahedron([(); 4].map(|()| random.vector())),
         (true, 1) => {
             let axes = [DVec3::X, DVec3::Y, DVec3::Z];
             let faces = (0..8).map(|k| [k & 1, 2 + (k >> 1 & 1), 4 + (k >> 2)]);
-            (axes.iter().flat_map(|&a| [a, -a]).collect(), faces.collect())
+            let vertices = axes.iter().flat_map(|&a| [a, -a]).collect();
+            Surface { name: "octahedron", vertices, triangles: faces.collect() }
         }
-        (true, kind) => {
-            // A prism or a ring of n sections with m corners each, closed both ways.
-            let (n, m) = if kind == 2 { (3, 3) } else { (7, 5) };
-            let turn = |k: u32, n: u32| (f64::from(k) / f64::from(n) * core::f64::consts::TAU).sin_cos();
-            let at = |i: u32, j: u32| (i % n) * m + j % m;
-            let place = |i: u32, j: u32| {
-                let ((s, c), (t, d)) = (turn(i, n), turn(j, m));
-                DVec3::new((1.0 + 0.4 * d) * c, (1.0 + 0.4 * d) * s, 0.4 * t)
-            };
-            let cells = (0..n).flat_map(|i| (0..m).map(move |j| (i, j)));
-            let faces = cells.clone().flat_map(|(i, j)| {
-                let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
-                [[a, b, c], [a, c, d]]
-            });
-            (cells.map(|(i, j)| place(i, j)).collect(), faces.collect())
-        }
+        (true, 2) => Surface::torus(3, 3, 0.4),
+        (true, _) => Surface::torus(7, 5, 0.4),
         (false, _) => {
-            let count = 1 + random.index(6) as u32;
-            let corners = (0..count).flat_map(|_| {
+            let count = 1 + random.index(6);
+            Surface::soup((0..count).flat_map(|_| {
                 let base = random.vector();
                 [base, base + random.vector() * 0.5, base + random.vector() * 0.5]
-            });
-            (corners.collect(), (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
+            }))
         }
     };
-    TriMesh::try_new(corners.into_iter().map(|p| p * stretch).collect(), triangles).unwrap()
+    surface.map(|p| p * stretch).into_mesh(TriMesh::try_new)
 }
 
 fn motion(random: &mut KnuthRandom) -> ConstantTwist {

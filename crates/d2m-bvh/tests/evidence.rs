@@ -1,23 +1,18 @@
 //! What a contact claims to prove of the meeting is true, judged by the certified static distance.
 
-#[path = "scenes/bodies.rs"]
-#[allow(dead_code, reason = "a part of the bodies")]
-mod bodies;
-
-use bodies::cube;
 use d2m_bvh::{
     Contact, Evidence, MeshTree, Mode, Moving, PairCache, Posed, QueryOptions, Solid, StartState,
     TimeOfContact, TriMesh, Window, contact_exists, distance, time_of_contact,
 };
 use d2m_interval::Interval;
 use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
-use d2m_testing::{Draw, KnuthRandom};
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
 
 const DELTA: f64 = 1e-6;
 
-fn box_tree() -> MeshTree {
-    MeshTree::new(cube(DVec3::splat(-1.0), 2.0))
+fn cube(half: f64) -> MeshTree {
+    MeshTree::new(Surface::cube(half).into_mesh(TriMesh::try_new))
 }
 
 fn moving(x: DVec3, v: DVec3) -> ConstantTwist {
@@ -29,14 +24,14 @@ fn options() -> QueryOptions {
 }
 
 fn contact(a: &ConstantTwist, options: &QueryOptions) -> Contact {
-    let tree = box_tree();
+    let tree = cube(1.0);
     let bodies = (Moving::new(&tree, a), Moving::new(&tree, &ConstantTwist::REST));
     *time_of_contact(bodies.0, bodies.1, Window::UNIT, options).unwrap().contact().expect("a contact")
 }
 
 /// Upper bound on the distance at a time.
 fn upper_at(a: &ConstantTwist, time: f64) -> f64 {
-    let tree = box_tree();
+    let tree = cube(1.0);
     let m = a.rebase(time);
     let pose = Pose { rotation: m.orientation(), translation: m.position(), at: m.at() };
     distance(Posed::new(&tree, pose), Posed::at_rest(&tree), Solid::Filled).unwrap().upper
@@ -62,7 +57,7 @@ fn near_is_near_at_the_end_of_the_bracket() {
 fn bodies_that_cross_or_hold_each_other_at_the_start_are_proven_to() {
     let crossing = contact(&moving(DVec3::new(0.5, 1.25, 0.75), DVec3::ZERO), &options());
     assert_eq!((crossing.evidence, crossing.start), (Evidence::Crossing, StartState::Overlapping));
-    let (large, small) = (MeshTree::new(cube(DVec3::splat(-8.0), 16.0)), box_tree());
+    let (large, small) = (cube(8.0), cube(1.0));
     let rest = ConstantTwist::REST;
     let held =
         time_of_contact(Moving::new(&small, &rest), Moving::new(&large, &rest), Window::UNIT, &options());
@@ -147,7 +142,7 @@ fn the_separation_is_that_of_the_reported_pair() {
 /// proven. Whatever the cache holds.
 #[test]
 fn a_yes_is_as_good_as_the_evidence_of_the_mode() {
-    let tree = box_tree();
+    let tree = cube(1.0);
     let rest = ConstantTwist::REST;
     let mut seen = [0; 3];
     let mut cache = PairCache::new();
@@ -199,7 +194,7 @@ impl RigidMotion for Blurred {
 
 #[test]
 fn any_motion_claims_only_what_its_enclosures_show() {
-    let (tree, large) = (box_tree(), MeshTree::new(cube(DVec3::splat(-8.0), 16.0)));
+    let (tree, large) = (cube(1.0), cube(8.0));
     let ask = |body: &MeshTree, motion: &Blurred| {
         let rest = ConstantTwist::REST;
         time_of_contact(Moving::new(&tree, motion), Moving::new(body, &rest), Window::UNIT, &options())

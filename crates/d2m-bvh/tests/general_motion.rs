@@ -16,31 +16,11 @@ use glam::{DQuat, DVec3};
 const DELTA: f64 = 1e-9;
 
 fn torus(rings: u32, sides: u32, scale: f64) -> MeshTree {
-    let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(rings, sides, 0.3);
-    let corners = corners.into_iter().map(|p| p * scale).collect();
-    MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
+    MeshTree::new(Surface::wavy_torus(rings, sides, 0.3).map(|p| p * scale).into_mesh(TriMesh::try_new))
 }
 
 fn cube(half: f64) -> MeshTree {
-    let corners = (0..8u32).map(|i| {
-        let side = |bit: u32| if i & bit == 0 { -half } else { half };
-        DVec3::new(side(1), side(2), side(4))
-    });
-    let faces = [
-        [0, 2, 3],
-        [0, 3, 1],
-        [4, 5, 7],
-        [4, 7, 6],
-        [0, 1, 5],
-        [0, 5, 4],
-        [2, 6, 7],
-        [2, 7, 3],
-        [0, 4, 6],
-        [0, 6, 2],
-        [1, 3, 7],
-        [1, 7, 5],
-    ];
-    MeshTree::new(TriMesh::try_new(corners.collect(), faces.to_vec()).unwrap())
+    MeshTree::new(Surface::cube(half).into_mesh(TriMesh::try_new))
 }
 
 fn query(

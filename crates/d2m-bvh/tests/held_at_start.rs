@@ -5,15 +5,12 @@ use d2m_bvh::{
     time_of_contact, time_of_contact_with,
 };
 use d2m_motion::ConstantTwist;
+use d2m_testing::Surface;
 use glam::{DQuat, DVec3};
 
 /// A closed cube.
 fn cube(half: f64) -> MeshTree {
-    let vertex =
-        |i: u32| (DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 2.0 - 1.0) * half;
-    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let halves = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
-    MeshTree::new(TriMesh::try_new((0..8).map(vertex).collect(), halves.collect()).unwrap())
+    MeshTree::new(Surface::cube(half).into_mesh(TriMesh::try_new))
 }
 
 /// A small cube in the very corner of a large one, where the spheres about both nearly part; whatever the reference points and

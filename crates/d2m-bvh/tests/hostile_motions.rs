@@ -13,43 +13,21 @@ use glam::{DQuat, DVec3};
 const DELTA: f64 = 1e-9;
 
 fn torus(rings: u32, sides: u32, scale: f64) -> MeshTree {
-    let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(rings, sides, 0.3);
-    let corners = corners.into_iter().map(|p| p * scale).collect();
-    MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
+    MeshTree::new(Surface::wavy_torus(rings, sides, 0.3).map(|p| p * scale).into_mesh(TriMesh::try_new))
 }
 
 /// A tetrahedron with its tip at the origin, the rest above it.
 fn spike() -> MeshTree {
-    let corners = vec![
-        DVec3::ZERO,
-        DVec3::new(0.3, 0.0, 1.0),
-        DVec3::new(-0.15, 0.26, 1.0),
-        DVec3::new(-0.15, -0.26, 1.0),
-    ];
-    MeshTree::new(TriMesh::try_new(corners, vec![[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]).unwrap())
+    let corners =
+        [DVec3::ZERO, DVec3::new(0.3, 0.0, 1.0), DVec3::new(-0.15, 0.26, 1.0), DVec3::new(-0.15, -0.26, 1.0)];
+    MeshTree::new(Surface::tetrahedron(corners).into_mesh(TriMesh::try_new))
 }
 
 /// A plate with its upper face at z = 0.
 fn plate() -> MeshTree {
-    let corners = (0..8u32).map(|i| {
-        let side = |bit: u32| if i & bit == 0 { -4.0 } else { 4.0 };
-        DVec3::new(side(1), side(2), if i & 4 == 0 { -1.0 } else { 0.0 })
-    });
-    let faces = [
-        [0, 2, 3],
-        [0, 3, 1],
-        [4, 5, 7],
-        [4, 7, 6],
-        [0, 1, 5],
-        [0, 5, 4],
-        [2, 6, 7],
-        [2, 7, 3],
-        [0, 4, 6],
-        [0, 6, 2],
-        [1, 3, 7],
-        [1, 7, 5],
-    ];
-    MeshTree::new(TriMesh::try_new(corners.collect(), faces.to_vec()).unwrap())
+    MeshTree::new(
+        Surface::cuboid(DVec3::new(-4.0, -4.0, -1.0), DVec3::new(4.0, 4.0, 0.0)).into_mesh(TriMesh::try_new),
+    )
 }
 
 fn query(

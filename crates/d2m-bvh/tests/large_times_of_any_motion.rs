@@ -5,15 +5,15 @@ use d2m_bvh::{
     time_of_contact,
 };
 use d2m_motion::{ConstantTwist, Pose, RigidMotion, Spline, SplineDegree};
+use d2m_testing::Surface;
 use glam::{DQuat, DVec3, dvec3};
 
 /// From one double for time to the next the bodies move by many tolerances: what is left at `time_lo` is covered by the
 /// tolerance that is reported.
 #[test]
 fn what_is_left_is_covered() {
-    let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-    let tree =
-        MeshTree::new(TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap());
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let tree = MeshTree::new(Surface::tetrahedron(corners).into_mesh(TriMesh::try_new));
     let mut covered = 0;
     for round in 0..40 {
         let start = 1e6 + f64::from(round) * 0.37;

@@ -1,40 +1,23 @@
 //! Solids of several closed parts: overlapping, nested, inside out, repeated; and bodies of which one part is inside.
 
-#[path = "scenes/bodies.rs"]
-#[allow(dead_code, reason = "a part of the bodies")]
-mod bodies;
-
-use bodies::cube;
 use d2m_bvh::{
-    Budget, Evidence, MeshArrays, MeshTree, Moving, Posed, QueryOptions, Solid, StartState, TimeOfContact,
-    TriMesh, Window, collide, collide_within, colliding_pairs, distance, time_of_contact,
+    Budget, Evidence, MeshTree, Moving, Posed, QueryOptions, Solid, StartState, TimeOfContact, TriMesh,
+    Window, collide, collide_within, colliding_pairs, distance, time_of_contact,
 };
 use d2m_motion::ConstantTwist;
+use d2m_testing::Surface;
 use glam::DVec3;
 use std::time::{Duration, Instant};
 
 /// One mesh of several.
-fn joined(parts: &[TriMesh]) -> MeshTree {
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for part in parts {
-        let first = vertices.len() as u32;
-        vertices.extend_from_slice(part.vertices());
-        triangles.extend(part.triangles().iter().map(|t| t.map(|i| i + first)));
-    }
-    MeshTree::new(TriMesh::try_new(vertices, triangles).unwrap())
-}
-
-fn inverted(mesh: TriMesh) -> TriMesh {
-    let MeshArrays { vertices, mut triangles } = mesh.into_arrays();
-    for t in &mut triangles {
-        t.swap(0, 1);
-    }
-    TriMesh::try_new(vertices, triangles).unwrap()
+fn joined(parts: &[Surface]) -> MeshTree {
+    let all = parts[1..].iter().fold(parts[0].clone(), Surface::with);
+    MeshTree::new(all.into_mesh(TriMesh::try_new))
 }
 
 /// From −half to half about the point.
-fn about(point: DVec3, half: f64) -> TriMesh {
-    cube(point - half, 2.0 * half)
+fn about(point: DVec3, half: f64) -> Surface {
+    Surface::cuboid(point - half, point + half)
 }
 
 fn start_of(a: &MeshTree, b: &MeshTree) -> TimeOfContact {
@@ -63,7 +46,7 @@ fn check(a: &MeshTree, b: &MeshTree, held: bool) {
 
 #[test]
 fn a_solid_is_where_the_winding_number_is_not_zero() {
-    let probe = MeshTree::new(about(DVec3::ZERO, 0.25));
+    let probe = joined(&[about(DVec3::ZERO, 0.25)]);
     let (large, small) = (about(DVec3::ZERO, 4.0), about(DVec3::ZERO, 2.0));
     let beside = about(DVec3::X * 2.0, 3.0);
     check(&joined(std::slice::from_ref(&large)), &probe, true);
@@ -71,18 +54,18 @@ fn a_solid_is_where_the_winding_number_is_not_zero() {
     check(&joined(&[large.clone(), beside.clone()]), &probe, true);
     check(&joined(&[large.clone(), beside.clone(), small.clone()]), &probe, true);
     check(&joined(&[large.clone(), large.clone()]), &probe, true);
-    check(&joined(&[inverted(large.clone())]), &probe, true);
-    check(&joined(&[inverted(large.clone()), inverted(beside)]), &probe, true);
+    check(&joined(&[large.clone().inverted()]), &probe, true);
+    check(&joined(&[large.clone().inverted(), beside.inverted()]), &probe, true);
     // A cavity, and parts that cancel each other.
-    check(&joined(&[large.clone(), inverted(small.clone())]), &probe, false);
-    check(&joined(&[large.clone(), inverted(large.clone())]), &probe, false);
+    check(&joined(&[large.clone(), small.clone().inverted()]), &probe, false);
+    check(&joined(&[large.clone(), large.clone().inverted()]), &probe, false);
     // An island in the cavity.
-    check(&joined(&[large, inverted(small), about(DVec3::ZERO, 1.0)]), &probe, true);
+    check(&joined(&[large, small.inverted(), about(DVec3::ZERO, 1.0)]), &probe, true);
 }
 
 #[test]
 fn one_part_of_several_is_enough() {
-    let room = MeshTree::new(about(DVec3::ZERO, 2.0));
+    let room = joined(&[about(DVec3::ZERO, 2.0)]);
     let far = |k: f64| about(DVec3::new(9.0, k, 0.0), 0.25);
     check(&joined(&[far(0.0), far(1.0), about(DVec3::ONE, 0.25), far(2.0)]), &room, true);
     check(&joined(&[far(0.0), far(1.0), far(2.0)]), &room, false);
@@ -96,10 +79,8 @@ fn one_part_of_several_is_enough() {
 fn budgets_hold_for_containment() {
     let walls: Vec<_> = (0..4000)
         .map(|k| {
-            bodies::plank(
-                DVec3::new(k as f64 * 1e-4, -1.0, -1.0),
-                DVec3::new(k as f64 * 1e-4 + 2e-5, 1.0, 1.0),
-            )
+            let x = f64::from(k) * 1e-4;
+            Surface::cuboid(DVec3::new(x, -1.0, -1.0), DVec3::new(x + 2e-5, 1.0, 1.0))
         })
         .collect();
     let walls = joined(&walls);
@@ -131,10 +112,8 @@ fn budgets_hold_for_containment() {
 fn all_pairs_of_a_body_like_a_point() {
     let p = DVec3::new(-128.0, 256.0, 0.0);
     let dots = |n: u32, size: f64| {
-        let vertices = (0..3 * n).map(|k| p + DVec3::new(0.0, 0.0, size * f64::from(k))).collect();
-        MeshTree::new(
-            TriMesh::try_new(vertices, (0..n).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect()).unwrap(),
-        )
+        let vertices = (0..3 * n).map(|k| p + DVec3::new(0.0, 0.0, size * f64::from(k)));
+        MeshTree::new(Surface::soup(vertices).into_mesh(TriMesh::try_new))
     };
     let face = vec![DVec3::new(-256.0, 256.0, 0.0), DVec3::new(0.0, 256.0, 0.0), DVec3::new(256.0, 0.0, 0.0)];
     let face = MeshTree::new(TriMesh::try_new(face, vec![[0, 1, 2]]).unwrap());

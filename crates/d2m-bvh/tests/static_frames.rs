@@ -2,14 +2,14 @@
 
 use d2m_bvh::{MeshTree, Posed, Solid, StartState, TriMesh, distance};
 use d2m_motion::Pose;
-use d2m_testing::{Draw, KnuthRandom};
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
 
 /// 2⁻⁵³.
 const UNIT: f64 = 0.5 * f64::EPSILON;
 
-fn tree(vertices: Vec<DVec3>, triangles: &[[u32; 3]]) -> MeshTree {
-    MeshTree::new(TriMesh::try_new(vertices, triangles.to_vec()).unwrap())
+fn tree(surface: Surface) -> MeshTree {
+    MeshTree::new(surface.into_mesh(TriMesh::try_new))
 }
 
 fn rotation(random: &mut KnuthRandom) -> DQuat {
@@ -36,10 +36,7 @@ fn enclosures_are_as_wide_as_the_lengths_that_enter() {
             if (round / 9) & bit == 0 { DVec3::ZERO } else { random.vector() * far }
         };
         let [origin, world, at] = [1, 2, 4].map(|bit| place(&mut random, bit));
-        let [a, b] = [(); 2].map(|()| {
-            let corners = (0..6).map(|_| random.vector() * size + origin).collect();
-            tree(corners, &[[0, 1, 2], [3, 4, 5]])
-        });
+        let [a, b] = [(); 2].map(|()| tree(Surface::soup((0..6).map(|_| random.vector() * size + origin))));
         let alike = round / 72 % 2 == 0;
         let first = rotation(&mut random);
         let second = if alike { first } else { rotation(&mut random) };
@@ -69,8 +66,7 @@ fn exchanged_bodies_differ_by_roundings_only() {
     let mut random = KnuthRandom(78);
     let (mut same, mut exchanged) = (0, 0);
     for round in 0..6000 {
-        let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-        let [a, b] = [(); 2].map(|()| tree((0..4).map(|_| random.vector()).collect(), &faces));
+        let [a, b] = [(); 2].map(|()| tree(Surface::tetrahedron([(); 4].map(|()| random.vector()))));
         let [first, second] = [(); 2].map(|()| rotation(&mut random));
         let [p, q, r] = b.mesh().corners(round / 4 % 4);
         let point = [p, p.lerp(q, 0.5), p * 0.5 + (q + r) * 0.25][round % 3];

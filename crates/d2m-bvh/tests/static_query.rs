@@ -8,22 +8,17 @@ use d2m_bvh::{
 };
 use d2m_feature::triangle_distance;
 use d2m_motion::Pose;
-use d2m_testing::{Draw, KnuthRandom};
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use dashu_ratio::RBig;
 use glam::{DQuat, DVec3};
 
 /// Corners (±1, ±1, ±1), or as moved by the map.
 fn cube(map: impl Fn(DVec3) -> DVec3) -> TriMesh {
-    let sign = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
-    let corners = (0..8).map(|i| map(DVec3::new(sign(i & 1), sign(i & 2), sign(i & 4)))).collect();
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    TriMesh::try_new(corners, triangles).unwrap()
+    Surface::cube(1.0).map(map).into_mesh(TriMesh::try_new)
 }
 
 fn tetrahedron(random: &mut KnuthRandom, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
-    let corners = (0..4).map(|_| map(random.vector())).collect();
-    TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap()
+    Surface::tetrahedron([(); 4].map(|()| map(random.vector()))).into_mesh(TriMesh::try_new)
 }
 
 /// Triangles with no connection; some flat, some mere points or repeated.
@@ -39,8 +34,7 @@ fn soup(random: &mut KnuthRandom, count: usize, map: impl Fn(DVec3) -> DVec3) ->
         };
         corners.extend([base, base + e, base + f].map(&map));
     }
-    let triangles = (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    TriMesh::try_new(corners, triangles).unwrap()
+    Surface::soup(corners).into_mesh(TriMesh::try_new)
 }
 
 /// Least squared distance of the surfaces. Pairs that double precision puts far behind the best one are left out.
@@ -214,12 +208,8 @@ fn one_inside_the_other() {
     let (big, small) = (MeshTree::new(cube(|p| p)), MeshTree::new(cube(|p| p * 0.1)));
     // A shell: a cube with a cubic hole, whose surface has its outside towards the middle. What is in the hole is not in
     // the body.
-    let (outer, inner) = (cube(|p| p).into_arrays(), cube(|p| p * 0.5).into_arrays());
-    let corners = [outer.vertices, inner.vertices].concat();
-    let shifted = inner.triangles.iter().map(|&[i, j, k]| [i + 8, k + 8, j + 8]);
-    let shell = MeshTree::new(
-        TriMesh::try_new(corners, outer.triangles.iter().copied().chain(shifted).collect()).unwrap(),
-    );
+    let shell = Surface::cube(1.0).with(&Surface::cube(0.5).inverted());
+    let shell = MeshTree::new(shell.into_mesh(TriMesh::try_new));
     for round in 0..200 {
         // Also exactly at the middle and on planes of symmetry, where rays meet edges and corners.
         let grid = |x: f64| (x * 4.0).round() * 0.2;

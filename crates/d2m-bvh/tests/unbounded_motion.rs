@@ -5,7 +5,14 @@ use d2m_bvh::{
 };
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Pose, RigidMotion, Span, Twist};
+use d2m_testing::Surface;
 use glam::{DQuat, DVec3};
+
+/// The origin and a vertex at `unit` on each axis.
+fn tetrahedron(unit: f64) -> MeshTree {
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|vertex| vertex * unit);
+    MeshTree::new(Surface::tetrahedron(corners).into_mesh(TriMesh::try_new))
+}
 
 /// Knows where it is at single times, and nothing about how fast it moves.
 struct Unbounded(ConstantTwist);
@@ -28,9 +35,7 @@ impl RigidMotion for Unbounded {
 
 #[test]
 fn undecided_from_the_start() {
-    let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-    let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
-    let tree = MeshTree::new(mesh);
+    let tree = tetrahedron(1.0);
     let away = Unbounded(ConstantTwist::REST.with_position(DVec3::X * 5.0));
     let (a, b) = (Moving::new(&tree, &away), Moving::new(&tree, &ConstantTwist::REST));
     let answer = time_of_contact(a, b, Window::UNIT, &QueryOptions::default()).unwrap();
@@ -61,9 +66,7 @@ fn slow_turns_over_long_windows() {
 /// The same of velocities.
 #[test]
 fn slow_drifts_over_long_windows() {
-    let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-    let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
-    let tree = MeshTree::new(mesh);
+    let tree = tetrahedron(1.0);
     for (speed, length) in [(1.0, 9.0), (1e-130, 9e130), (1e-160, 9e160), (1e-290, 9e290)] {
         let drift = ConstantTwist::REST.with_position(DVec3::X * 5.0).with_linear_velocity(DVec3::X * -speed);
         let (a, b) = (Moving::new(&tree, &ConstantTwist::REST), Moving::new(&tree, &drift));
@@ -78,9 +81,7 @@ fn slow_drifts_over_long_windows() {
 /// be resolved is answered, also at rest and far away, and for bodies that are points.
 #[test]
 fn motions_that_hide_the_bodies_are_refused() {
-    let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-    let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
-    let tree = MeshTree::new(mesh);
+    let tree = tetrahedron(1.0);
     let dot = MeshTree::new(TriMesh::try_new(vec![DVec3::ONE; 3], vec![[0, 1, 2]]).unwrap());
     let options = QueryOptions::default();
     let still = ConstantTwist::REST;
@@ -111,11 +112,8 @@ fn motions_that_hide_the_bodies_are_refused() {
 /// answer as in ordinary units. Such bodies were called separated.
 #[test]
 fn keyframes_in_any_unit_and_over_any_time() {
-    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-    let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     let time_of = |unit: f64, time: f64, turn: f64, kind: Span| {
-        let mesh = TriMesh::try_new(corners.map(|p| p * unit).to_vec(), faces.clone()).unwrap();
-        let tree = MeshTree::new(mesh);
+        let tree = tetrahedron(unit);
         let pose = |x: f64, turn: f64| Pose {
             rotation: DQuat::from_rotation_z(turn),
             translation: DVec3::X * (x * unit),

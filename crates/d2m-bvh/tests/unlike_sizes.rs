@@ -5,16 +5,12 @@ use d2m_bvh::{
     time_of_contact,
 };
 use d2m_motion::{ConstantTwist, Pose};
-use d2m_testing::{Draw, KnuthRandom};
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
 
 /// A closed cube.
 fn cube(half: f64) -> MeshTree {
-    let vertex =
-        |i: u32| (DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 2.0 - 1.0) * half;
-    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let halves = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
-    MeshTree::new(TriMesh::try_new((0..8).map(vertex).collect(), halves.collect()).unwrap())
+    MeshTree::new(Surface::cube(half).into_mesh(TriMesh::try_new))
 }
 
 /// A tetrahedron with its first vertex at the origin.
@@ -38,10 +34,8 @@ fn sphere(radius: f64) -> MeshTree {
         });
         triangles = halves.collect();
     }
-    let vertices: Vec<DVec3> = triangles.iter().flatten().map(|&p| p * radius).collect();
-    let faces = (0..triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
-    let mesh = TriMesh::try_new(vertices, faces).unwrap();
-    MeshTree::new(mesh)
+    let vertices = triangles.into_iter().flatten().map(|p| p * radius);
+    MeshTree::new(Surface::soup(vertices).into_mesh(TriMesh::try_new))
 }
 
 /// A cube that a face of the large sphere cuts: both orders say so, and no distance is proven.

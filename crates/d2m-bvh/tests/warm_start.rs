@@ -13,8 +13,7 @@ fn pick(random: &mut KnuthRandom, count: usize) -> usize {
 }
 
 fn torus(rings: u32, sides: u32, tube: f64) -> MeshTree {
-    let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(rings, sides, tube);
-    MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
+    MeshTree::new(Surface::wavy_torus(rings, sides, tube).into_mesh(TriMesh::try_new))
 }
 
 /// The motion of a step of a sequence.

@@ -14,8 +14,7 @@ use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
 
 fn torus(rings: u32, sides: u32) -> MeshTree {
-    let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(rings, sides, 0.3);
-    MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
+    MeshTree::new(Surface::wavy_torus(rings, sides, 0.3).into_mesh(TriMesh::try_new))
 }
 
 fn value(coefficients: &[f64]) -> JointValue {

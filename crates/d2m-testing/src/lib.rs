@@ -9,8 +9,8 @@ mod opaque;
 mod random;
 #[cfg(feature = "scenes")]
 mod small_scene;
-#[cfg(feature = "scenes")]
-mod wavy_torus;
+mod surface;
+mod torus;
 mod xoshiro;
 
 #[cfg(feature = "planted")]
@@ -26,5 +26,6 @@ pub mod planted;
 pub use opaque::Opaque;
 pub use random::{Draw, KnuthRandom, Random};
 #[cfg(feature = "scenes")]
-pub use small_scene::{SmallScene, Surface};
+pub use small_scene::SmallScene;
+pub use surface::Surface;
 pub use xoshiro::Xoshiro256;

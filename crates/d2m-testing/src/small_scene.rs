@@ -1,6 +1,6 @@
 //! Random small scenes of two bodies that are hard for contact queries: parallel faces, coplanar sliding, grazing, fast spin,
 //! needles, equal motions, contacts at the ends of the window.
-use crate::{Draw, Random};
+use crate::{Draw, Random, Surface};
 use d2m_motion::ConstantTwist;
 use glam::{DQuat, DVec3};
 
@@ -17,17 +17,6 @@ pub struct SmallScene {
     pub filled: bool,
     /// First and last instant.
     pub window: [f64; 2],
-}
-
-/// A triangle mesh as plain arrays.
-#[derive(Debug, Clone)]
-pub struct Surface {
-    /// What it is.
-    pub name: &'static str,
-    /// Vertices in the body frame.
-    pub vertices: Vec<DVec3>,
-    /// Triples of vertex indices.
-    pub triangles: Vec<[u32; 3]>,
 }
 
 impl SmallScene {
@@ -77,64 +66,25 @@ impl Scenes {
     }
 
     fn surface(&mut self) -> Surface {
-        const BOX: [[u32; 3]; 12] = [
-            [0, 4, 6],
-            [0, 6, 2],
-            [1, 3, 7],
-            [1, 7, 5],
-            [0, 1, 5],
-            [0, 5, 4],
-            [2, 6, 7],
-            [2, 7, 3],
-            [0, 2, 3],
-            [0, 3, 1],
-            [4, 5, 7],
-            [4, 7, 6],
-        ];
-        const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-        let box_corners = |lo: DVec3, hi: DVec3| -> Vec<DVec3> {
-            (0..8u32)
-                .map(|i| {
-                    let pick = |bit: u32, l: f64, h: f64| if i & bit == 0 { l } else { h };
-                    DVec3::new(pick(1, lo.x, hi.x), pick(2, lo.y, hi.y), pick(4, lo.z, hi.z))
-                })
-                .collect()
-        };
-        let (name, vertices, triangles) = match self.0.below(8) {
-            0 | 1 => ("cube", box_corners(DVec3::splat(-0.5), DVec3::splat(0.5)), BOX.to_vec()),
-            2 => {
-                let size = DVec3::splat(1.125) + self.grid_vector();
-                ("box", box_corners(-0.5 * size, 0.5 * size), BOX.to_vec())
-            }
-            3 => {
-                let thin = DVec3::new(1.0, 0.75, 10f64.powi(-(self.0.below(6) as i32)));
-                ("plate", box_corners(-thin, thin), BOX.to_vec())
-            }
+        let centered = |name, half: DVec3| Surface { name, ..Surface::cuboid(-half, half) };
+        match self.0.below(8) {
+            0 | 1 => Surface::cube(0.5),
+            2 => centered("box", 0.5 * (DVec3::splat(1.125) + self.grid_vector())),
+            3 => centered("plate", DVec3::new(1.0, 0.75, 10f64.powi(-(self.0.below(6) as i32)))),
             4 => {
                 let thin = 10f64.powi(-(self.0.below(5) as i32) - 1);
-                (
-                    "needle",
-                    box_corners(DVec3::new(-1.0, -thin, -thin), DVec3::new(1.0, thin, thin)),
-                    BOX.to_vec(),
-                )
+                centered("needle", DVec3::new(1.0, thin, thin))
             }
-            5 => {
-                let v = (0..4).map(|_| self.0.vector()).collect();
-                ("tetrahedron", v, TETRAHEDRON.to_vec())
-            }
+            5 => Surface::tetrahedron([(); 4].map(|()| self.0.vector())),
             6 => {
                 let n = 1 + self.0.below(3) as u32;
-                let v =
-                    (0..3 * n).map(|_| if n == 1 { self.grid_vector() } else { self.0.vector() }).collect();
-                ("soup", v, (0..n).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
+                Surface::soup((0..3 * n).map(|_| if n == 1 { self.grid_vector() } else { self.0.vector() }))
             }
             _ => {
-                let flat = |v: DVec3| DVec3::new(v.x, v.y, 0.0);
-                let v = (0..6).map(|_| flat(self.grid_vector())).collect();
-                ("flat soup", v, vec![[0, 1, 2], [3, 4, 5]])
+                let flat = (0..6).map(|_| self.grid_vector().with_z(0.0));
+                Surface { name: "flat soup", ..Surface::soup(flat) }
             }
-        };
-        Surface { name, vertices, triangles }
+        }
     }
 
     fn orientation(&mut self) -> DQuat {

@@ -8,14 +8,13 @@ use crate::judge::{BoxTree, Claim, Fault, Judge, cross, place};
 use crate::trials::{Movement, Trial};
 use d2m::bvh::{MeshTree, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact};
 use d2m::motion::ConstantTwist;
-use d2m_testing::Xoshiro256 as Random;
+use d2m_testing::{Surface, Xoshiro256 as Random};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Vertices and triangles, and whether they close.
+/// A surface, and whether it is closed.
 pub(super) struct Shape {
-    pub(super) vertices: Vec<DVec3>,
-    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) surface: Surface,
     pub(super) is_closed: bool,
 }
 
@@ -25,25 +24,18 @@ pub(super) fn shape(random: &mut Random) -> Shape {
     let stretch =
         DVec3::from_array([(); 3].map(|()| if thin { 10f64.powf(random.range(-2.0, 2.0)) } else { 1.0 }));
     let size = 10f64.powf(random.range(-1.0, 1.0)) / stretch.max_element();
-    let (points, triangles, is_closed): (Vec<DVec3>, Vec<[u32; 3]>, bool) = match random.bits() % 4 {
+    let (surface, is_closed) = match random.bits() % 4 {
         0 => {
-            let points = (0..4).map(|_| random.direction() * random.range(0.3, 1.0)).collect();
-            (points, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], true)
+            let corners = [(); 4].map(|()| random.direction() * random.range(0.3, 1.0));
+            (Surface::tetrahedron(corners), true)
         }
-        1 => {
-            let corner =
-                |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) - 0.5;
-            let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-            let halves = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
-            ((0..8).map(corner).collect(), halves.collect(), true)
-        }
+        1 => (Surface::cube(0.5), true),
         _ => {
             let count = 1 + random.bits() as u32 % 6;
-            let points = (0..3 * count).map(|_| random.direction() * random.range(0.1, 1.0)).collect();
-            (points, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(), false)
+            (Surface::soup((0..3 * count).map(|_| random.direction() * random.range(0.1, 1.0))), false)
         }
     };
-    Shape { vertices: points.iter().map(|p| *p * stretch * size).collect(), triangles, is_closed }
+    Shape { surface: surface.map(|p| p * stretch * size), is_closed }
 }
 
 /// Two shapes and how they move.
@@ -55,7 +47,7 @@ struct Scene {
 
 fn scene(random: &mut Random) -> Scene {
     let shapes = [shape(random), shape(random)];
-    let radius = |s: &Shape| s.vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
+    let radius = |s: &Shape| s.surface.vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
     let reach = radius(&shapes[0]) + radius(&shapes[1]);
     let along = random.direction();
     let aside = random.direction() * reach * random.unit();
@@ -80,11 +72,7 @@ fn scene(random: &mut Random) -> Scene {
 
 impl Scene {
     fn ask(&self) -> Claim {
-        let tree = |s: &Shape| {
-            MeshTree::new(
-                TriMesh::try_new(s.vertices.clone(), s.triangles.clone()).expect("finite and in range"),
-            )
-        };
+        let tree = |s: &Shape| MeshTree::new(s.surface.clone().into_mesh(TriMesh::try_new));
         let motion = |m: &Movement| {
             ConstantTwist::try_new(m.position, m.rotation, m.velocity, m.angular_velocity).expect("finite")
         };
@@ -124,7 +112,7 @@ fn case(task: &Task, index: usize) -> (Claim, Option<(bool, String)>) {
     let scene = scene(&mut random);
     let claim = scene.ask();
     let claim = task.sabotage.map_or(claim, |fault| fault.spoil(claim));
-    let trees = scene.shapes.each_ref().map(|s| BoxTree::build(&s.vertices, &s.triangles));
+    let trees = scene.shapes.each_ref().map(|s| BoxTree::build(&s.surface.vertices, &s.surface.triangles));
     let judge = Judge { a: &trees[0], b: &trees[1], trial: &scene.trial };
     let line =
         |words: String| format!("seed {} case {index} ({:?}): {claim:?}: {words}", task.seed, scene.solid);
@@ -143,9 +131,9 @@ fn begins_inside(scene: &Scene, trees: &[BoxTree; 2]) -> bool {
         return false;
     }
     let inside = |outer: usize, inner: usize| {
-        let point = at[outer].relative(&at[inner]).apply(scene.shapes[inner].vertices[0]);
+        let point = at[outer].relative(&at[inner]).apply(scene.shapes[inner].surface.vertices[0]);
         let far = DVec3::new(0.363_821, 0.581_297, 0.727_941) * 1e4;
-        let shape = &scene.shapes[outer];
+        let shape = &scene.shapes[outer].surface;
         let hits = shape.triangles.iter().filter(|t| {
             let corners = t.map(|i| shape.vertices[i as usize]);
             crate::judge::pierces(point, point + far, &corners)

@@ -28,5 +28,5 @@ pub(super) fn run(task: &Task) -> Outcome {
 }
 
 fn mesh(surface: &Surface) -> TriMesh {
-    TriMesh::try_new(surface.vertices.clone(), surface.triangles.clone()).expect("finite vertices")
+    surface.clone().into_mesh(TriMesh::try_new)
 }

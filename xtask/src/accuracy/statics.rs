@@ -15,7 +15,7 @@ pub(super) fn run(task: &Task) -> Outcome {
     for index in 0..task.count {
         let mut random = Random::new(task.seed.wrapping_mul(0x51ed_2701).wrapping_add(index as u64));
         let shapes = [shape(&mut random), shape(&mut random)];
-        let trees = shapes.each_ref().map(|s| BoxTree::build(&s.vertices, &s.triangles));
+        let trees = shapes.each_ref().map(|s| BoxTree::build(&s.surface.vertices, &s.surface.triangles));
         let reach = trees[0].radius + trees[1].radius;
         let poses = [DVec3::ZERO, random.direction() * reach * random.range(0.0, 1.2)].map(|position| Pose {
             rotation: random.rotation(),
@@ -25,11 +25,7 @@ pub(super) fn run(task: &Task) -> Outcome {
         let at = poses.map(|pose| Placement::new(pose.rotation, pose.translation));
         let least = separation(&trees[0], &trees[1], &at[0], &at[1], &mut Hint::default());
 
-        let tree = |s: &Shape| {
-            MeshTree::new(
-                TriMesh::try_new(s.vertices.clone(), s.triangles.clone()).expect("finite and in range"),
-            )
-        };
+        let tree = |s: &Shape| MeshTree::new(s.surface.clone().into_mesh(TriMesh::try_new));
         let ours = shapes.each_ref().map(tree);
         let posed = || (Posed::new(&ours[0], poses[0]), Posed::new(&ours[1], poses[1]));
         let (a, b) = posed();

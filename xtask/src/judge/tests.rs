@@ -1,15 +1,11 @@
 use super::triangle::distance;
 use super::*;
 use crate::trials::{Movement, Trial};
-use d2m_testing::Xoshiro256 as Random;
+use d2m_testing::{Surface, Xoshiro256 as Random};
 use glam::{DQuat, DVec3};
 
 fn cube() -> BoxTree {
-    let vertices: Vec<DVec3> =
-        (0..8).map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) - 0.5).collect();
-    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles: Vec<[u32; 3]> =
-        quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
+    let Surface { vertices, triangles, .. } = Surface::cube(0.5);
     BoxTree::build(&vertices, &triangles)
 }
 
@@ -36,21 +32,19 @@ fn distance_of_known_triangles() {
 #[test]
 fn the_tree_finds_what_all_pairs_give() {
     let mut random = Random::new(11);
-    let soup = |random: &mut Random| -> (Vec<DVec3>, Vec<[u32; 3]>) {
-        let vertices = (0..60).map(|_| random.direction() * random.range(0.2, 1.0)).collect();
-        (vertices, (0..20).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
-    };
+    let soup =
+        |random: &mut Random| Surface::soup((0..60).map(|_| random.direction() * random.range(0.2, 1.0)));
     for _ in 0..200 {
         let (a, b) = (soup(&mut random), soup(&mut random));
         let at = Placement::new(random.rotation(), random.direction());
         let beside =
             Placement::new(random.rotation(), at.position + random.direction() * random.range(0.5, 3.0));
-        let corners = |mesh: &(Vec<DVec3>, Vec<[u32; 3]>), at: &Placement| -> Vec<[DVec3; 3]> {
-            mesh.1.iter().map(|t| t.map(|i| at.apply(mesh.0[i as usize]))).collect()
+        let corners = |mesh: &Surface, at: &Placement| -> Vec<[DVec3; 3]> {
+            mesh.triangles.iter().map(|t| t.map(|i| at.apply(mesh.vertices[i as usize]))).collect()
         };
         let (ca, cb) = (corners(&a, &at), corners(&b, &beside));
         let least = ca.iter().flat_map(|s| cb.iter().map(|t| distance(s, t))).fold(f64::INFINITY, f64::min);
-        let (ta, tb) = (BoxTree::build(&a.0, &a.1), BoxTree::build(&b.0, &b.1));
+        let (ta, tb) = (BoxTree::build(&a.vertices, &a.triangles), BoxTree::build(&b.vertices, &b.triangles));
         let found = separation(&ta, &tb, &at, &beside, &mut Hint::default());
         assert!((found - least).abs() < 1e-13, "{found} {least}");
         let bound = bound_separation(&ta, &tb, &at, &beside, &mut Hint::default());

@@ -237,12 +237,10 @@ impl Oracle<'_> {
 mod tests {
     use super::*;
     use crate::Solid;
-    use d2m_testing::SmallScene;
+    use d2m_testing::{SmallScene, Surface};
 
     fn draw(index: u64) -> (String, Scene) {
-        let mesh = |surface: &d2m_testing::Surface| {
-            TriMesh::try_new(surface.vertices.clone(), surface.triangles.clone()).unwrap()
-        };
+        let mesh = |surface: &Surface| surface.clone().into_mesh(TriMesh::try_new);
         let drawn = SmallScene::draw(0, index, |surface| SphereTree::new(mesh(surface)).is_watertight());
         let solid = if drawn.filled { Solid::Filled } else { Solid::Surface };
         let scene = Scene {

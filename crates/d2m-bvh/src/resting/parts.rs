@@ -209,21 +209,14 @@ impl Piece {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use d2m_testing::Surface;
 
     fn joined(parts: &[(f64, f64, bool)]) -> TriMesh {
-        const QUADS: [[u32; 4]; 6] =
-            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-        for &(x, half, inverted) in parts {
-            let first = vertices.len() as u32;
-            let sign = |i: u32, k: u32| if i >> k & 1 == 0 { -half } else { half };
-            vertices.extend((0..8).map(|i| DVec3::new(x + sign(i, 0), sign(i, 1), sign(i, 2))));
-            for [a, b, c, d] in QUADS.map(|quad| quad.map(|i| i + first)) {
-                let halves = [[a, b, c], [a, c, d]];
-                triangles.extend(halves.map(|[p, q, r]| if inverted { [p, r, q] } else { [p, q, r] }));
-            }
-        }
-        TriMesh::try_new(vertices, triangles).unwrap()
+        let surfaces = parts.iter().map(|&(x, half, inverted)| {
+            let cube = Surface::cube(half).map(|vertex| vertex + DVec3::X * x);
+            if inverted { cube.inverted() } else { cube }
+        });
+        surfaces.reduce(|all, next| all.with(&next)).expect("a part").into_mesh(TriMesh::try_new)
     }
 
     /// Cubes at x with half sides, some inside out: parts, crossings, inverted ones and the volume.

@@ -166,23 +166,15 @@ impl Ray<'_> {
 mod tests {
     use super::*;
     use crate::{MeshArrays, TriMesh};
-    use d2m_testing::{Draw, KnuthRandom};
+    use d2m_testing::{Draw, KnuthRandom, Surface};
 
     /// Boxes from `low` to `high`; inside out where `inverted`.
     fn boxes(parts: &[(DVec3, DVec3, bool)]) -> TriMesh {
-        const QUADS: [[u32; 4]; 6] =
-            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-        for &(low, high, inverted) in parts {
-            let first = vertices.len() as u32;
-            let pick = |i: u32, k: usize| if i >> k & 1 == 0 { low[k] } else { high[k] };
-            vertices.extend((0..8).map(|i| DVec3::new(pick(i, 0), pick(i, 1), pick(i, 2))));
-            for [a, b, c, d] in QUADS.map(|quad| quad.map(|i| i + first)) {
-                let halves = [[a, b, c], [a, c, d]];
-                triangles.extend(halves.map(|[p, q, r]| if inverted { [p, r, q] } else { [p, q, r] }));
-            }
-        }
-        TriMesh::try_new(vertices, triangles).unwrap()
+        let surfaces = parts.iter().map(|&(low, high, inverted)| {
+            let cuboid = Surface::cuboid(low, high);
+            if inverted { cuboid.inverted() } else { cuboid }
+        });
+        surfaces.reduce(|all, next| all.with(&next)).expect("a part").into_mesh(TriMesh::try_new)
     }
 
     fn is_inside(tree: &MeshTree, point: DVec3) -> bool {

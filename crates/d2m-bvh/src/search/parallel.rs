@@ -156,8 +156,7 @@ mod tests {
     use glam::{DQuat, DVec3};
 
     fn ring(rings: u32, sides: u32, tube: f64) -> MeshTree {
-        let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(rings, sides, tube);
-        MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
+        MeshTree::new(Surface::wavy_torus(rings, sides, tube).into_mesh(TriMesh::try_new))
     }
 
     /// Interlocked rings that spin and drift, close to each other for long: every number of threads gives the outcome

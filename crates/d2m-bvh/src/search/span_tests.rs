@@ -10,7 +10,7 @@ use crate::{MeshTree, QueryOptions, TriMesh, Window};
 use d2m_feature::triangle_distance;
 use d2m_lanes::{F64x4, Portable};
 use d2m_motion::ConstantTwist;
-use d2m_testing::{Draw, KnuthRandom};
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
 
 const LEVEL: f64 = 0.01;
@@ -65,9 +65,7 @@ fn soup(random: &mut KnuthRandom) -> MeshTree {
         let (middle, size) = (random.vector(), 10f64.powf(1.5 * random.signed() - 1.0));
         [0; 3].map(|_| middle + random.vector() * size)
     });
-    let corners: Vec<DVec3> = corners.collect();
-    let triangles = (0..8).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
-    MeshTree::new(TriMesh::try_new(corners, triangles).unwrap())
+    MeshTree::new(Surface::soup(corners).into_mesh(TriMesh::try_new))
 }
 
 /// Random bodies that turn by up to 1.2 rad each to either side: what is proven apart is so at all times, and much is proven.

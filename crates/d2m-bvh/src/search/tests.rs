@@ -15,7 +15,7 @@ use crate::{MeshTree, QueryOptions, TriMesh, Window};
 use d2m_feature::triangle_distance;
 use d2m_lanes::{F64x4, InstructionSet, Lanes, Portable};
 use d2m_motion::ConstantTwist;
-use d2m_testing::{Draw, KnuthRandom};
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
 
 /// Eight triangles of very different size and shape around the origin.
@@ -28,8 +28,7 @@ fn soup(random: &mut KnuthRandom) -> MeshTree {
             vertices.push(middle + random.vector() * size);
         }
     }
-    let triangles = (0..8).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
-    MeshTree::new(TriMesh::try_new(vertices, triangles).unwrap())
+    MeshTree::new(Surface::soup(vertices).into_mesh(TriMesh::try_new))
 }
 
 fn moving(random: &mut KnuthRandom, apart: f64, speed: f64, spin: f64) -> ConstantTwist {

@@ -65,9 +65,8 @@ mod tests {
 
     #[test]
     fn every_vertex_stays_inside_and_little_room_is_left() {
-        let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(12, 7, 0.2);
-        let stretched = corners.iter().map(|&p| p * DVec3::new(4.0, 0.5, 0.25) + DVec3::X).collect();
-        let tree = MeshTree::new(TriMesh::try_new(stretched, triangles).unwrap());
+        let stretched = Surface::wavy_torus(12, 7, 0.2).map(|p| p * DVec3::new(4.0, 0.5, 0.25) + DVec3::X);
+        let tree = MeshTree::new(stretched.into_mesh(TriMesh::try_new));
         let mut random = KnuthRandom(7);
         for round in 0..300 {
             let motion = ConstantTwist::try_new(

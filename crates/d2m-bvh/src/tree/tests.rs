@@ -13,32 +13,13 @@ use glam::DVec3;
 /// A closed torus-like surface of 2·across·around triangles with some noise.
 pub(crate) fn torus(across: u32, around: u32, noise: f64, map: impl Fn(DVec3) -> DVec3) -> TriMesh {
     let mut random = KnuthRandom(u64::from(across));
-    let mut corners = Vec::new();
-    for i in 0..across {
-        for j in 0..around {
-            let turn = |k: u32, n: u32| f64::from(k) / f64::from(n) * core::f64::consts::TAU;
-            let ((s, c), (t, d)) = (turn(i, across).sin_cos(), turn(j, around).sin_cos());
-            let ring = 1.0 + 0.4 * d;
-            corners.push(map(DVec3::new(ring * c, ring * s, 0.4 * t) + random.vector() * noise));
-        }
-    }
-    let at = |i: u32, j: u32| (i % across) * around + j % around;
-    let mut triangles = Vec::new();
-    for i in 0..across {
-        for j in 0..around {
-            triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
-            triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
-        }
-    }
-    TriMesh::try_new(corners, triangles).unwrap()
+    let noisy = d2m_testing::Surface::torus(across, around, 0.4).map(|p| map(p + random.vector() * noise));
+    noisy.into_mesh(TriMesh::try_new)
 }
 
 fn hard_meshes() -> Vec<TriMesh> {
     let mut random = KnuthRandom(11);
-    let one = |corners: Vec<DVec3>| {
-        let count = corners.len() as u32 / 3;
-        TriMesh::try_new(corners, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect()).unwrap()
-    };
+    let one = |corners: Vec<DVec3>| d2m_testing::Surface::soup(corners).into_mesh(TriMesh::try_new);
     let shift = DVec3::splat(1e6);
     vec![
         torus(40, 20, 0.01, |p| p),

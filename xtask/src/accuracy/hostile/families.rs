@@ -5,10 +5,10 @@ use super::generic_families::{
 };
 use super::guise::Guise;
 use super::scene::{Body, PATIENT, Scene};
-use super::shapes::Shape;
+use super::shapes::{centered_box, cone, extruded, refined, sliver, spikes, stepped_plate, tetrahedron};
 use d2m::Solid;
 use d2m::motion::ConstantTwist;
-use d2m_testing::Xoshiro256 as Random;
+use d2m_testing::{Surface, Xoshiro256 as Random};
 use glam::{DQuat, DVec3};
 
 /// A maker of scenes, and the name that a report shows.
@@ -33,7 +33,7 @@ pub(super) const FAMILIES: [Family; 16] = [
     ("one triangle and many", one_and_many),
 ];
 
-pub(super) fn body(shape: Shape, x: DVec3, v: DVec3, w: DVec3) -> Body {
+pub(super) fn body(shape: Surface, x: DVec3, v: DVec3, w: DVec3) -> Body {
     let motion = ConstantTwist::try_new(x, DQuat::IDENTITY, v, w).expect("finite");
     Body { vertices: shape.vertices, triangles: shape.triangles, motion, guise: Guise::ConstantTwist }
 }
@@ -69,9 +69,9 @@ pub(super) fn about(body: Body, by: DVec3) -> Body {
 /// A block slides over a plate towards a step that is twice as high as the gap below it.
 fn steps(random: &mut Random) -> Scene {
     let step = decade(random, -12.0, -3.0);
-    let plate = Shape::stepped_plate(step);
+    let plate = stepped_plate(step);
     let half = DVec3::new(random.range(0.1, 0.6), random.range(0.1, 0.9), 0.25);
-    let block = Shape::cuboid(half, DVec3::ZERO);
+    let block = centered_box(half);
     let from = -1.5 + half.x;
     let speed = random.range(1.0, 3.0);
     let height = 0.25 + 0.5 * step;
@@ -95,9 +95,9 @@ fn steps(random: &mut Random) -> Scene {
 fn fine_steps(random: &mut Random) -> Scene {
     let step = decade(random, -10.0, -5.0);
     let turn = random.rotation();
-    let plate = Shape::stepped_plate(step).refined(3).turned(turn);
+    let plate = refined(stepped_plate(step), 3).map(|p| turn * p);
     let half = DVec3::new(random.range(0.1, 0.6), random.range(0.1, 0.9), 0.25);
-    let block = Shape::cuboid(half, DVec3::ZERO).refined(3).turned(turn);
+    let block = refined(centered_box(half), 3).map(|p| turn * p);
     let from = -1.5 + half.x;
     let speed = random.range(1.0, 3.0);
     let contact = (-half.x - from) / speed;
@@ -121,7 +121,7 @@ fn fine_steps(random: &mut Random) -> Scene {
 fn sheets(random: &mut Random) -> Scene {
     let thickness = decade(random, -9.0, -1.0);
     let gap = decade(random, -12.0, -3.0) * if random.unit() < 0.5 { 1.0 } else { -1.0 };
-    let sheet = |w: f64, h: f64| Shape::cuboid(DVec3::new(w, h, 0.5 * thickness), DVec3::ZERO);
+    let sheet = |w: f64, h: f64| centered_box(DVec3::new(w, h, 0.5 * thickness));
     let lower = sheet(1.0, 1.0);
     let upper = sheet(random.range(0.2, 1.0), random.range(0.2, 1.0));
     let tilt = if random.unit() < 0.3 { decade(random, -12.0, -2.0) } else { 0.0 };
@@ -140,7 +140,7 @@ fn sheets(random: &mut Random) -> Scene {
 
 /// Edges of wedges that cross at an angle of 1e-15 … 1e-3 and come together.
 fn parallel_edges(random: &mut Random) -> Scene {
-    let wedge = Shape::extruded(&[(0.0, 0.0), (-1.0, -1.0), (1.0, -1.0)], 1.0);
+    let wedge = extruded(&[(0.0, 0.0), (-1.0, -1.0), (1.0, -1.0)], 1.0);
     let angle = decade(random, -15.0, -3.0);
     let aside = random.range(-0.5, 0.5) * if random.unit() < 0.5 { 1.0 } else { angle };
     let start = decade(random, -6.0, 0.0);
@@ -163,12 +163,13 @@ fn parallel_edges(random: &mut Random) -> Scene {
 /// A solid of several closed parts, some of which overlap, are turned inside out or repeated; a probe flies in or starts
 /// inside.
 fn overlapping_parts(random: &mut Random) -> Scene {
-    let mut union = Shape::default();
+    let mut union = Surface::default();
     // Repeated triangles count once, which could leave nothing of a part that is turned inside out: never both.
     let repeats = random.unit() < 0.4;
     for _ in 0..2 + random.bits() % 3 {
         let half = DVec3::new(random.range(0.2, 1.0), random.range(0.2, 1.0), random.range(0.2, 1.0));
-        let part = Shape::cuboid(half, random.direction() * random.range(0.0, 0.8));
+        let center = random.direction() * random.range(0.0, 0.8);
+        let part = Surface::cuboid(center - half, center + half);
         let part = if !repeats && random.unit() < 0.3 { part.inverted() } else { part };
         union = union.with(&part);
         if repeats && random.unit() < 0.5 {
@@ -176,9 +177,10 @@ fn overlapping_parts(random: &mut Random) -> Scene {
         }
     }
     let size = decade(random, -2.0, -0.5);
-    let mut probe = Shape::tetrahedron(random, size);
+    let mut probe = tetrahedron(random, size);
     if random.unit() < 0.3 {
-        probe = probe.with(&Shape::tetrahedron(random, 0.05).moved(random.direction() * 2.0));
+        let (part, place) = (tetrahedron(random, 0.05), random.direction() * 2.0);
+        probe = probe.with(&part.map(|p| p + place));
     }
     let inside = random.unit() < 0.6;
     let away = if inside { random.range(0.0, 0.7) } else { 3.0 };
@@ -192,9 +194,8 @@ fn overlapping_parts(random: &mut Random) -> Scene {
 /// Boxes whose faces, edges or corners coincide at the start, slide on each other or part.
 fn coincident_faces(random: &mut Random) -> Scene {
     let quarter = |random: &mut Random| f64::from((random.bits() % 9) as u32) * 0.25 - 1.0;
-    let a = Shape::cuboid(DVec3::splat(0.5), DVec3::ZERO);
-    let b =
-        if random.unit() < 0.3 { a.clone() } else { Shape::cuboid(DVec3::new(0.25, 0.5, 1.0), DVec3::ZERO) };
+    let a = Surface::cube(0.5);
+    let b = if random.unit() < 0.3 { a.clone() } else { centered_box(DVec3::new(0.25, 0.5, 1.0)) };
     let x = DVec3::new(quarter(random), quarter(random), quarter(random));
     let v = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::new(0.0, 0.0, -0.5)]
         [random.bits() as usize % 4];
@@ -214,7 +215,7 @@ fn coincident_faces(random: &mut Random) -> Scene {
 /// Cones that meet apex to apex, apex to side, or pass closely.
 fn cones(random: &mut Random) -> Scene {
     let sides = 3 + random.bits() as u32 % 60;
-    let cone = |random: &mut Random| Shape::cone(sides, decade(random, -3.0, 0.0), 1.0);
+    let cone = |random: &mut Random| cone(sides, decade(random, -3.0, 0.0), 1.0);
     let (lower, upper) = (cone(random), cone(random));
     let aside =
         if random.unit() < 0.4 { DVec3::ZERO } else { random.direction() * decade(random, -12.0, -1.0) };
@@ -230,7 +231,7 @@ fn cones(random: &mut Random) -> Scene {
 fn slivers(random: &mut Random) -> Scene {
     let sliver = |random: &mut Random| {
         let aspect = decade(random, 0.0, 12.0);
-        Shape::sliver(random, aspect)
+        sliver(random, aspect)
     };
     let (a, b) = (sliver(random), sliver(random));
     let along = random.direction();
@@ -247,8 +248,8 @@ fn slivers(random: &mut Random) -> Scene {
 /// Bodies at a small distance that hardly move.
 fn nearly_still(random: &mut Random) -> Scene {
     let gap = decade(random, -9.0, -1.0);
-    let a = Shape::cuboid(DVec3::splat(0.5), DVec3::ZERO);
-    let b = Shape::cuboid(DVec3::new(0.5, 0.3, 0.5), DVec3::ZERO);
+    let a = Surface::cube(0.5);
+    let b = centered_box(DVec3::new(0.5, 0.3, 0.5));
     let v = random.direction() * (gap * decade(random, -3.0, 0.5));
     let spin = random.direction() * (gap * decade(random, -3.0, 0.5));
     scene(
@@ -262,8 +263,8 @@ fn nearly_still(random: &mut Random) -> Scene {
 fn crowds(random: &mut Random) -> Scene {
     let side = 2 + random.bits() as u32 % 14;
     let height = decade(random, -2.0, 0.5);
-    let crowd = Shape::spikes(random, side, height);
-    let other = if random.unit() < 0.5 { crowd.clone() } else { Shape::spikes(random, side, height) };
+    let crowd = spikes(random, side, height);
+    let other = if random.unit() < 0.5 { crowd.clone() } else { spikes(random, side, height) };
     let gap = decade(random, -9.0, -1.0);
     // Half of them come together at the middle of the window.
     let down = if random.unit() < 0.5 { 2.0 * gap } else { 0.0 };

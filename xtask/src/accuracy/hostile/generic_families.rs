@@ -1,9 +1,9 @@
 //! Families of two random solids that are aimed at each other, in unusual windows, with unusual spins, reference points and sizes.
 use super::families::{about, body, decade, scene};
 use super::scene::Scene;
-use super::shapes::Shape;
+use super::shapes::{centered_box, cone, refined, tetrahedron};
 use d2m::Solid;
-use d2m_testing::Xoshiro256 as Random;
+use d2m_testing::{Surface, Xoshiro256 as Random};
 use glam::DVec3;
 
 /// The reference point 1e1 … 1e6 away, along the spin, or across it for bodies that only fly.
@@ -21,12 +21,9 @@ pub(super) fn far_reference_points(random: &mut Random) -> Scene {
 /// Two random solids that are aimed at each other.
 fn generic(random: &mut Random) -> Scene {
     let shape = |random: &mut Random| match random.bits() % 3 {
-        0 => Shape::tetrahedron(random, 1.0),
-        1 => Shape::cuboid(
-            DVec3::new(random.range(0.1, 1.0), random.range(0.1, 1.0), random.range(0.1, 1.0)),
-            DVec3::ZERO,
-        ),
-        _ => Shape::cone(3 + random.bits() as u32 % 9, 0.7, 1.0),
+        0 => tetrahedron(random, 1.0),
+        1 => centered_box(DVec3::new(random.range(0.1, 1.0), random.range(0.1, 1.0), random.range(0.1, 1.0))),
+        _ => cone(3 + random.bits() as u32 % 9, 0.7, 1.0),
     };
     let (a, b) = (shape(random), shape(random));
     let along = random.direction();
@@ -122,12 +119,9 @@ pub(super) fn one_and_many(random: &mut Random) -> Scene {
         _ => 2,
     };
     let fine = &mut scene.bodies[0];
-    let shape = Shape {
-        vertices: std::mem::take(&mut fine.vertices),
-        triangles: std::mem::take(&mut fine.triangles),
-    };
-    let shape = shape.refined(times);
-    (fine.vertices, fine.triangles) = (shape.vertices, shape.triangles);
+    let (vertices, triangles) = (std::mem::take(&mut fine.vertices), std::mem::take(&mut fine.triangles));
+    let Surface { vertices, triangles, .. } = refined(Surface { name: "fine", vertices, triangles }, times);
+    (fine.vertices, fine.triangles) = (vertices, triangles);
     if random.unit() < 0.5 {
         scene.bodies[1].triangles.truncate(1);
         scene.solid = Solid::Surface;

@@ -6,6 +6,7 @@
 //! poses (the paper's) by its square.
 use d2m::bvh::{MeshTree, Moving, Posed, QueryOptions, Solid, TriMesh, Window, collide, time_of_contact};
 use d2m::motion::{ConstantTwist, Pose};
+use d2m_testing::Surface;
 use dashu_float::DBig;
 use glam::{DQuat, DVec3};
 use std::str::FromStr;
@@ -60,13 +61,13 @@ struct Bodies {
 
 impl Bodies {
     fn new() -> Result<Self, Error> {
-        let points = vec![
+        let points = [
             DVec3::NEG_Z,
             DVec3::new(0.2, 0.0, 0.3),
             DVec3::new(-0.1, 0.2, 0.3),
             DVec3::new(-0.1, -0.2, 0.3),
         ];
-        let spike = TriMesh::try_new(points, vec![[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]])?;
+        let spike = Surface::tetrahedron(points).into_mesh(TriMesh::try_new);
         let plate = d2m::shapes::mesh("box?x=4&y=4&z=1")?;
         Ok(Self { spike: MeshTree::new(spike), plate: MeshTree::new(plate) })
     }

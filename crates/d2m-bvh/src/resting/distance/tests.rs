@@ -5,7 +5,7 @@ use super::*;
 use crate::tree::node::{Below, WIDTH};
 use crate::{MeshTree, TriMesh};
 use d2m_motion::Pose;
-use d2m_testing::{Draw, KnuthRandom};
+use d2m_testing::{Draw, KnuthRandom, Surface};
 
 fn tree(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> MeshTree {
     MeshTree::new(TriMesh::try_new(vertices, triangles).unwrap())
@@ -22,10 +22,13 @@ fn cone(n: u32, up: f64) -> MeshTree {
     tree(vertices, (0..n).flat_map(|k| [[0, fan(k).1, fan(k).0], [1, fan(k).0, fan(k).1]]).collect())
 }
 
+fn soup(vertices: impl IntoIterator<Item = DVec3>) -> MeshTree {
+    MeshTree::new(Surface::soup(vertices).into_mesh(TriMesh::try_new))
+}
+
 /// One triangle many times.
-fn copies(n: u32) -> MeshTree {
-    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
-    tree(corners.repeat(n as usize), (0..n).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect())
+fn copies(n: usize) -> MeshTree {
+    soup([DVec3::ZERO, DVec3::X, DVec3::Y].repeat(n))
 }
 
 /// Flat slivers from the origin to all sides.
@@ -120,8 +123,7 @@ fn budgets_end_in_bounds_that_hold() {
 fn crowds_that_touch_hide_no_crossing() {
     let sheet = |n: u32, extra: [DVec3; 3]| {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y].repeat(n as usize);
-        let faces = (0..=n).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
-        tree(corners.into_iter().chain(extra).collect(), faces)
+        soup(corners.into_iter().chain(extra))
     };
     let upright = [DVec3::new(3.2, 0.2, -1.0), DVec3::new(3.2, 0.3, 1.0), DVec3::new(3.3, 0.2, 1.0)];
     let flat = [DVec3::X * 3.0, DVec3::X * 4.0, DVec3::new(3.0, 1.0, 0.0)];
@@ -150,14 +152,13 @@ fn planes_drop_no_closer_pair() {
     let mut random = KnuthRandom(29);
     let (mut dropped, mut kept, mut close) = (0, 0, 0);
     for _ in 0..60 {
-        let soup = |random: &mut KnuthRandom| {
-            let vertices = (0..40).flat_map(|_| {
+        let mut body = || {
+            soup((0..40).flat_map(|_| {
                 let corner = random.vector();
                 [corner, corner + random.vector() * 0.2, corner + random.vector() * 0.2]
-            });
-            tree(vertices.collect(), (0..40).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect())
+            }))
         };
-        let (a, b) = (soup(&mut random), soup(&mut random));
+        let (a, b) = (body(), body());
         let pose = Pose { translation: random.vector() * 2.5, ..Pose::IDENTITY };
         let scene = Scene::try_new(Posed::at_rest(&a), Posed::new(&b, pose)).unwrap();
         let apart = |[a, b]: [u32; 2]| triangle_distance(&scene.place(0, a), &scene.place(1, b));
@@ -207,8 +208,7 @@ fn cones(n: u32, radius: f64, depth: f64) -> MeshTree {
         };
         corners.extend((0..n / 6).flat_map(|k| [axis * radius, rim(k), rim(k + 1)]));
     }
-    let count = corners.len() as u32 / 3;
-    tree(corners, (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect())
+    soup(corners)
 }
 
 /// Large triangles whose corners deviate from a plane.
@@ -220,8 +220,7 @@ fn sheets(random: &mut KnuthRandom, n: u32, height: f64, bumps: f64) -> MeshTree
             DVec3::new(cos, sin, height + bumps * random.signed())
         })
     });
-    let corners = corners.collect();
-    tree(corners, (0..n).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect())
+    soup(corners)
 }
 
 /// The rulings of one family of a hyperboloid, as slivers: each passes every one of the other family.
@@ -233,8 +232,7 @@ fn rulings(n: u32, radius: f64, sense: f64) -> MeshTree {
         let along = across * sense + DVec3::Z;
         [waist - along, waist + along, waist + along + across * 1e-3]
     });
-    let corners = corners.collect();
-    tree(corners, (0..n).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect())
+    soup(corners)
 }
 
 /// Crowds that no common plane parts: the work is that of few pairs, or of one test for eight where each pair is different.

@@ -109,22 +109,18 @@ fn brute_force(a: &Brute, b: &Brute, margin: f64) -> Vec<([DVec3; 2], f64)> {
 }
 
 fn cuboid(half: DVec3) -> TriMesh {
-    let corners = (0..8).map(|i| {
-        let sign = |bit: i32| if i & bit == 0 { -1.0 } else { 1.0 };
-        half * DVec3::new(sign(1), sign(2), sign(4))
-    });
-    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles = quads.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    TriMesh::try_new(corners.collect(), triangles).unwrap()
+    Surface::cuboid(-half, half).into_mesh(TriMesh::try_new)
 }
 
 fn bodies() -> Vec<TriMesh> {
-    let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(9, 6, 0.35);
-    let torus = TriMesh::try_new(corners, triangles).unwrap();
-    let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-    let tetrahedron = TriMesh::try_new(corners.clone(), vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]);
-    let sheet = TriMesh::try_new(corners, vec![[0, 1, 2], [0, 2, 3]]);
-    vec![torus, tetrahedron.unwrap(), sheet.unwrap(), cuboid(DVec3::new(1.0, 0.5, 0.25))]
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let sheet = TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]);
+    vec![
+        Surface::wavy_torus(9, 6, 0.35).into_mesh(TriMesh::try_new),
+        Surface::tetrahedron(corners).into_mesh(TriMesh::try_new),
+        sheet.unwrap(),
+        cuboid(DVec3::new(1.0, 0.5, 0.25)),
+    ]
 }
 
 #[test]
@@ -270,8 +266,7 @@ fn bad_margins_and_bodies_that_meet_are_refused() {
 /// One query with wide cones holds what one with exact cones finds, marked by a tilt of zero.
 #[test]
 fn tilts_tell_exact_cones_from_wide_ones() {
-    let Surface { vertices: corners, triangles, .. } = Surface::wavy_torus(24, 12, 0.35);
-    let mesh = MeshTree::new(TriMesh::try_new(corners, triangles).unwrap());
+    let mesh = MeshTree::new(Surface::wavy_torus(24, 12, 0.35).into_mesh(TriMesh::try_new));
     let mut random = KnuthRandom(91);
     let mut tilted = 0;
     for _ in 0..40 {

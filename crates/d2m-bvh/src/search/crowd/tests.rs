@@ -6,12 +6,12 @@ use super::*;
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
 use d2m_lanes::F64x4;
 use d2m_motion::ConstantTwist;
-use d2m_testing::{Draw, KnuthRandom};
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::DQuat;
 
 fn soup(random: &mut KnuthRandom, shift: DVec3) -> MeshTree {
-    let vertices = (0..9).map(|_| random.vector() + shift).collect();
-    MeshTree::new(TriMesh::try_new(vertices, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).unwrap())
+    let vertices = (0..9).map(|_| random.vector() + shift);
+    MeshTree::new(Surface::soup(vertices).into_mesh(TriMesh::try_new))
 }
 
 const fn moving(tree: &MeshTree, twist: ConstantTwist) -> MovingTree<'_> {
@@ -134,8 +134,7 @@ fn boxes_reach_as_far_as_their_vertices() {
 fn preparations_end_with_the_time() {
     let mut random = KnuthRandom(3);
     let vertices: Vec<_> = (0..3000).map(|_| random.vector()).collect();
-    let mesh = TriMesh::try_new(vertices.clone(), (0..1000).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect());
-    let tree = MeshTree::new(mesh.unwrap());
+    let tree = MeshTree::new(Surface::soup(vertices.clone()).into_mesh(TriMesh::try_new));
     let rest = ConstantTwist::REST;
     let scene =
         Scene::try_new(moving(&tree, rest), moving(&tree, rest), Window::UNIT, &QueryOptions::default())

@@ -182,17 +182,12 @@ mod tests {
     use crate::{MeshTree, QueryOptions, TriMesh, Window};
     use d2m_feature::triangle_distance;
     use d2m_motion::ConstantTwist;
-    use d2m_testing::{Draw, KnuthRandom};
+    use d2m_testing::{Draw, KnuthRandom, Surface};
     use glam::DQuat;
 
     /// A closed box.
     fn cuboid(half: DVec3) -> MeshTree {
-        let corner = |i: u32| {
-            half * (DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 2.0 - 1.0)
-        };
-        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        let halves = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
-        MeshTree::new(TriMesh::try_new((0..8).map(corner).collect(), halves.collect()).unwrap())
+        MeshTree::new(Surface::cuboid(-half, half).into_mesh(TriMesh::try_new))
     }
 
     /// The time up to which the sweeps are apart, from 0 in the window [0, 1].
