@@ -27,7 +27,7 @@ const FAR_FRAMES: f64 = 4.0;
 const MOST_SPEED: f64 = power_of_two(56);
 /// Factor of the error of the distance of two spheres: positions err by less than 64·2⁻⁵³ of the size, and the few
 /// operations after that by less.
-const BALL_ERROR: f64 = 128.0 * UNIT_F64;
+const SPHERE_ERROR: f64 = 128.0 * UNIT_F64;
 /// Relative positions are sums of pairs: they err by less than 2⁻¹⁰⁰ of their terms. That is below 2⁻⁵² of a size which
 /// is at least this part of the terms.
 const PAIR_ERROR: f64 = 1.0 / 281_474_976_710_656.0; // 2⁻⁴⁸
@@ -257,7 +257,7 @@ impl<'a> Scene<'a> {
 
     /// Are the spheres about the reference points that hold the bodies apart at the start?
     pub(crate) fn spheres_are_apart_at_start(&self) -> bool {
-        self.track.at(0.0).length() > self.reach + BALL_ERROR * self.size
+        self.track.at(0.0).length() > self.reach + SPHERE_ERROR * self.size
     }
 
     /// The motion over the sub-window of a search that begins at `start`.
@@ -299,7 +299,7 @@ impl<'a> Scene<'a> {
     /// further apart than the level.
     pub(crate) fn spheres_clear_until(&self, start: f64) -> f64 {
         let apart = self.track.at(start).length();
-        let room = apart - self.reach - self.pair.level - BALL_ERROR * self.size;
+        let room = apart - self.reach - self.pair.level - SPHERE_ERROR * self.size;
         let speed = (self.a.motion.linear_velocity() - self.b.motion.linear_velocity()).length() * UP;
         if room.is_nan() || room <= 0.0 {
             start

@@ -359,8 +359,8 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "spheres are called apart at the start when they are not",
         "crates/d2m-bvh/src/search/scene.rs",
-        "self.track.at(0.0).length() > self.reach + BALL_ERROR * self.size",
-        "self.track.at(0.0).length() > 0.9 * self.reach + BALL_ERROR * self.size",
+        "self.track.at(0.0).length() > self.reach + SPHERE_ERROR * self.size",
+        "self.track.at(0.0).length() > 0.9 * self.reach + SPHERE_ERROR * self.size",
         "crates/d2m-bvh/tests/held_at_start.rs::a_body_in_a_corner_of_the_other_is_held",
     ),
     patch(
