@@ -1,7 +1,7 @@
 //! The hostile families: scenes at the edges of what the search assumes, each with the times at which the construction
 //! puts its contact.
 use super::generic_families::{
-    far_reference_points, large_times, one_and_many, spinning_together, windows, windows_without_length,
+    dust, far_reference_points, large_times, one_and_many, spinning_together, windows, windows_without_length,
 };
 use super::guise::Guise;
 use super::scene::{Body, PATIENT, Scene};
@@ -14,7 +14,7 @@ use glam::{DQuat, DVec3};
 /// A maker of scenes, and the name that a report shows.
 pub(super) type Family = (&'static str, fn(&mut Random) -> Scene);
 
-pub(super) const FAMILIES: [Family; 16] = [
+pub(super) const FAMILIES: [Family; 17] = [
     ("steps", steps),
     ("fine steps", fine_steps),
     ("sheets", sheets),
@@ -31,6 +31,7 @@ pub(super) const FAMILIES: [Family; 16] = [
     ("nearly still", nearly_still),
     ("crowds", crowds),
     ("one triangle and many", one_and_many),
+    ("dust", dust),
 ];
 
 pub(super) fn body(shape: Surface, x: DVec3, v: DVec3, w: DVec3) -> Body {
