@@ -2,14 +2,11 @@
 
 use d2m::bvh::{Posed, distance};
 use d2m::glam::{DQuat, DVec3};
-use d2m::interval::Interval;
-use d2m::motion::{
-    Chain, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Keyframes, Pose, Span, Twist,
-};
+use d2m::motion::{Chain, Joint, JointKind, JointValue, Keyframes, Pose, Span};
 use d2m::{
     ConstantTwist, MeshTree, Moving, QueryOptions, RigidMotion, Solid, TimeOfContact, Window, time_of_contact,
 };
-use d2m_testing::{Draw, KnuthRandom, Opaque};
+use d2m_testing::{Draw, KnuthRandom, Opaque, OpaqueWithState};
 use std::f64::consts::TAU;
 use std::time::Instant;
 
@@ -240,33 +237,13 @@ fn row<'a>(name: &str, questions: Vec<Question<'a>>, against: Option<(usize, f64
     Row { name: name.into(), questions, against, most: None }
 }
 
-/// The same with its state at a time.
-struct States(ConstantTwist);
-
-impl RigidMotion for States {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.0.pose_and_twist(t)
-    }
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        self.0.enclose_pose(t)
-    }
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist(t)
-    }
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist_rate(t)
-    }
-    fn enclose_state(&self, t: f64) -> d2m::motion::CertifiedState {
-        self.0.enclose_state(t)
-    }
-}
-
 /// Constant twists, as they are and hidden.
 fn hidden<'a>(name: &str, bodies: [&'a MeshTree; 2], flights: usize) -> Vec<Row<'a>> {
     let mut random = KnuthRandom(5);
     let motions: Vec<_> = (0..flights).map(|_| flight(&mut random, 2.0)).collect();
     let exact = motions.iter().map(|&[a, b]| question(bodies, a, b)).collect();
-    let states = motions.iter().map(|&[a, b]| question(bodies, States(a), States(b))).collect();
+    let states =
+        motions.iter().map(|&[a, b]| question(bodies, OpaqueWithState(a), OpaqueWithState(b))).collect();
     let enclosures = motions.iter().map(|&[a, b]| question(bodies, Opaque(a), Opaque(b))).collect();
     vec![
         row(&format!("{name}: constant twists"), exact, None),

@@ -5,8 +5,7 @@ use d2m_bvh::{
     distance, time_of_contact,
 };
 use d2m_motion::{ConstantTwist, Pose, RigidMotion};
-use d2m_testing::Opaque;
-use d2m_testing::{Draw, KnuthRandom, Surface};
+use d2m_testing::{Draw, KnuthRandom, Opaque, Surface};
 use glam::{DQuat, DVec3};
 
 /// A wavy torus of this size.

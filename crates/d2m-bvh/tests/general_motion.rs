@@ -4,13 +4,10 @@ use d2m_bvh::{
     Evidence, MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact,
     TriMesh, Window, distance, last_search_counts, time_of_contact,
 };
-use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{
-    Chain, Composed, ConstantTwist, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Keyframes,
-    Pose, RigidMotion, Span, Twist,
+    Chain, Composed, ConstantTwist, Joint, JointKind, JointValue, Keyframes, Pose, RigidMotion, Span,
 };
-use d2m_testing::Opaque;
-use d2m_testing::{Draw, KnuthRandom, Surface};
+use d2m_testing::{Blurred, Draw, KnuthRandom, Opaque, Surface};
 use glam::{DQuat, DVec3};
 
 const DELTA: f64 = 1e-9;
@@ -341,34 +338,17 @@ fn links_of_one_arm_are_seen_from_their_common_joint() {
     assert!((frame.transform_point(seen.point_a) - answer.point_a).length() < 1e-12);
 }
 
-/// A motion whose pose is only known to a width, at all times.
-struct Sloppy(ConstantTwist, f64);
-
-impl RigidMotion for Sloppy {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.0.pose_and_twist(t)
-    }
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        let pose = self.0.enclose_pose(t);
-        let side = Interval::new(-self.1, self.1);
-        IntervalPose { translation: pose.translation + IntervalVec3::new(side, side, side), ..pose }
-    }
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist(t)
-    }
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist_rate(t)
-    }
-}
-
+/// Positions that are only known to a width, at all times.
 #[test]
-fn sloppy_enclosures_are_never_wrong() {
+fn blurred_enclosures_are_never_wrong() {
     let (a, b) = (cube(1.0), cube(1.0));
     for width in [0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.1] {
         for clearance in [-0.1, 1e-9, 1e-6, 1e-3, 0.1, 0.5] {
             let start = DVec3::new(-3.0, 2.0 + clearance, 0.0);
-            let motion =
-                Sloppy(ConstantTwist::REST.with_position(start).with_linear_velocity(DVec3::X * 6.0), width);
+            let motion = Blurred::by(
+                ConstantTwist::REST.with_position(start).with_linear_velocity(DVec3::X * 6.0),
+                width,
+            );
             let answer =
                 query([&a, &b], [&motion, &ConstantTwist::REST], Window::UNIT, &QueryOptions::default());
             let name = format!("width {width:e}, clearance {clearance:e}: {answer:?}");

@@ -6,11 +6,8 @@ use d2m_bvh::{
     contact_exists, last_search_counts, time_of_contact, time_of_contact_with,
 };
 use d2m_interval::{Interval, IntervalVec3};
-use d2m_motion::{
-    Chain, ConstantTwist, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Pose, RigidMotion, Twist,
-};
-use d2m_testing::Opaque;
-use d2m_testing::{Draw, KnuthRandom, Surface};
+use d2m_motion::{Chain, ConstantTwist, Joint, JointKind, JointValue, RigidMotion};
+use d2m_testing::{Blurred, Draw, KnuthRandom, Opaque, Surface};
 use glam::{DQuat, DVec3};
 
 fn torus(rings: u32, sides: u32) -> MeshTree {
@@ -133,26 +130,6 @@ fn true_crossings_are_evidence() {
     assert_eq!((contact.start, contact.evidence), (StartState::Overlapping, Evidence::Crossing));
 }
 
-/// A motion that knows its position only up to twice a distance, and truly is at one end of that.
-struct Vague(ConstantTwist, f64);
-
-impl RigidMotion for Vague {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.0.pose_and_twist(t)
-    }
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        let pose = self.0.enclose_pose(t);
-        let more = IntervalVec3::new(Interval::ZERO, Interval::ZERO, Interval::new(-2.0 * self.1, 0.0));
-        IntervalPose { translation: pose.translation + more, ..pose }
-    }
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist(t)
-    }
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist_rate(t)
-    }
-}
-
 /// Where enclosures allow a contact that truth does not have, nothing is claimed: not by two triangles that met in an earlier
 /// query, nor by the fitted motions, which do meet.
 #[test]
@@ -174,7 +151,9 @@ fn wide_enclosures_prove_no_meeting() {
             contact_exists(Moving::new(&tree, &low), b, Window::UNIT, &options, &mut cache),
             Ok(Some(true))
         );
-        let high = Vague(falling(height + 0.5 * vague), vague);
+        // Enclosed up to twice a distance downwards; the true motion is at the upper end of that.
+        let below = IntervalVec3::new(Interval::ZERO, Interval::ZERO, Interval::new(-2.0 * vague, 0.0));
+        let high = Blurred::new(falling(height + 0.5 * vague), below);
         for cache in [&mut cache, &mut PairCache::new()] {
             let answer = contact_exists(Moving::new(&tree, &high), b, Window::UNIT, &options, cache);
             assert_eq!(answer, Ok(None), "{vague}");

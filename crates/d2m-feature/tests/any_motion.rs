@@ -1,13 +1,10 @@
 //! Contacts planted on motions that accelerate: never missed, never late, brackets narrow, gaps seen as gaps.
 use d2m_feature::{ContactOptions, EnclosedPairMotion, FirstContact};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
-use d2m_motion::{
-    CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Pose, RigidMotion, Span, Twist,
-};
+use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Pose, RigidMotion, Span, Twist};
 use d2m_root::Evidence;
-use d2m_testing::{Draw, Random};
+use d2m_testing::{Blurred, CountedStates, Draw, Random};
 use glam::{DQuat, DVec3};
-use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A cubic with a turn about a fixed axis by the angle w·t + α·t²/2: C∞, but nothing that the tests know about.
 #[derive(Debug, Clone, Copy)]
@@ -139,27 +136,7 @@ fn what_is_clear_stays_apart() {
     assert!(clear > 500, "{clear}");
 }
 
-/// Motions whose enclosures are right but say nothing useful, or only up to a joint.
-#[derive(Debug, Clone, Copy)]
-struct Wide(d2m_motion::ConstantTwist, f64);
-
-impl RigidMotion for Wide {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.0.pose_and_twist(t)
-    }
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        let pose = self.0.enclose_pose(t);
-        let wide = Interval::new(-self.1, self.1);
-        IntervalPose { translation: pose.translation + IntervalVec3::new(wide, wide, wide), ..pose }
-    }
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist(t)
-    }
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist_rate(t)
-    }
-}
-
+/// Enclosures that are right but so wide that they say nothing useful.
 #[test]
 fn wide_enclosures_are_no_contact() {
     let falling = d2m_motion::ConstantTwist::REST
@@ -169,7 +146,7 @@ fn wide_enclosures_are_no_contact() {
     let still = d2m_motion::ConstantTwist::REST;
     let floor = [DVec3::new(-4.0, -4.0, 0.0), DVec3::new(6.0, -4.0, 0.0), DVec3::new(0.0, 8.0, 0.0)];
     for (width, clear) in [(0.0, true), (1e-12, true), (0.3, true), (0.7, false), (f64::MAX, false)] {
-        let wide = Wide(falling, width);
+        let wide = Blurred::by(falling, width);
         let pair = EnclosedPairMotion::new(&wide, &still, 0.0, 1.0);
         let answer = pair.point_triangle(DVec3::ZERO, &floor, &ContactOptions::new());
         // A unit above the floor all the time.
@@ -253,34 +230,6 @@ fn twists_that_jump_are_searched_piece_by_piece() {
     }
 }
 
-/// Keyframes that count how often their state is queried.
-struct Counted(Keyframes, AtomicU32);
-
-impl RigidMotion for Counted {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.0.pose_and_twist(t)
-    }
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        self.0.enclose_pose(t)
-    }
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist(t)
-    }
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist_rate(t)
-    }
-    fn enclose_state(&self, t: f64) -> CertifiedState {
-        self.1.fetch_add(1, Ordering::Relaxed);
-        self.0.enclose_state(t)
-    }
-    fn smooth_until(&self, t: f64) -> Option<f64> {
-        self.0.smooth_until(t)
-    }
-    fn domain(&self) -> Interval {
-        self.0.domain()
-    }
-}
-
 /// A point turns close above a face through hundreds of spans. However many pieces there are, the budget is one.
 #[test]
 fn all_pieces_share_one_budget() {
@@ -294,11 +243,11 @@ fn all_pieces_share_one_budget() {
     let tilted = floor.map(|p| DQuat::from_rotation_x(5e-4) * p);
     let ask = |evaluations: u32| {
         let path = Keyframes::try_new(&poses, Span::Linear).unwrap();
-        let motion = Counted(path, AtomicU32::new(0));
+        let motion = CountedStates::new(path);
         let options = ContactOptions::new().with_max_evaluations(evaluations);
         let pair = EnclosedPairMotion::new(&motion, &ConstantTwist::REST, 0.0, 400.0);
         let answer = pair.point_triangle(DVec3::X, &tilted, &options);
-        (answer, motion.1.load(Ordering::Relaxed))
+        (answer, motion.count())
     };
     let (whole, all) = ask(1 << 19);
     assert_eq!(whole, FirstContact::Clear);

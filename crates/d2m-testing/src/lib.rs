@@ -23,7 +23,7 @@ pub mod fixed;
 pub mod planted;
 
 #[cfg(any(feature = "planted", feature = "scenes"))]
-pub use opaque::Opaque;
+pub use opaque::{Blurred, CountedStates, Opaque, OpaqueWithState};
 pub use random::{Draw, KnuthRandom, Random};
 #[cfg(feature = "scenes")]
 pub use small_scene::SmallScene;

@@ -1,9 +1,6 @@
 //! One motion in several types: what the library knows of it differs, the answer must not.
-use d2m::interval::Interval;
-use d2m::motion::{
-    CertifiedState, Composed, ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Pose, Retimed,
-    RigidMotion, Twist,
-};
+use d2m::motion::{Composed, ConstantTwist, Keyframes, Retimed, RigidMotion};
+use d2m_testing::{Opaque, OpaqueWithState};
 use glam::{DQuat, DVec3};
 
 /// How a constant twist is given to the library.
@@ -47,8 +44,8 @@ impl Guise {
     pub(crate) fn of(self, twist: ConstantTwist, window: [f64; 2]) -> Option<Box<dyn RigidMotion + Send>> {
         Some(match self {
             Self::ConstantTwist => Box::new(twist),
-            Self::Enclosures => Box::new(Hidden { twist, gives_states: false }),
-            Self::States => Box::new(Hidden { twist, gives_states: true }),
+            Self::Enclosures => Box::new(Opaque(twist)),
+            Self::States => Box::new(OpaqueWithState(twist)),
             Self::Spans => {
                 let [start, end] = window;
                 let before = (start - (end - start)).min(start.next_down());
@@ -67,37 +64,5 @@ impl Guise {
                 Box::new(Retimed::try_reversed(once, start, end).ok()?)
             }
         })
-    }
-}
-
-/// A twist behind a type of which the library knows nothing.
-struct Hidden {
-    twist: ConstantTwist,
-    gives_states: bool,
-}
-
-impl RigidMotion for Hidden {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.twist.pose_and_twist(t)
-    }
-
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        self.twist.enclose_pose(t)
-    }
-
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.twist.enclose_twist(t)
-    }
-
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.twist.enclose_twist_rate(t)
-    }
-
-    fn enclose_state(&self, t: f64) -> CertifiedState {
-        if self.gives_states {
-            return self.twist.enclose_state(t);
-        }
-        let now = Interval::point(t);
-        CertifiedState::from_enclosures(&self.enclose_pose(now), &self.enclose_twist(now))
     }
 }
