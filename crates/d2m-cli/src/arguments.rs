@@ -156,6 +156,17 @@ pub(crate) struct SolidArguments {
     pub(crate) surface: bool,
 }
 
+/// Help after the options of a command that takes poses: what a pose is, and then the text.
+macro_rules! with_pose_help {
+    ($text:literal) => {
+        concat!(
+            "A pose is x=1,2,3;q=w,x,y,z[;at=1,2,3]: where the body point at (the origin if left out) is, and how the body is turned.\n\
+             @FILE reads the same keys from JSON.\n\n",
+            $text
+        )
+    };
+}
+
 /// Two bodies at rest.
 #[derive(Debug, Args)]
 pub(crate) struct PosedArguments {
@@ -178,10 +189,7 @@ pub(crate) struct PosedArguments {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = "\
-A pose is x=1,2,3;q=w,x,y,z[;at=1,2,3]: where the body point at (the origin if left out) is, and how the body is turned.
-@FILE reads the same keys from JSON.
-
+#[command(after_help = with_pose_help!("\
 The answer holds the distance, the certified interval [lower, upper] that the true distance lies in, the closest points with
 their triangles, and the unit normal from A to B. Bodies that touch, cross or contain each other are at distance zero.
 status (in JSON): separated if the distance is proven to be above zero, contact otherwise; state says which kind.
@@ -189,7 +197,7 @@ status (in JSON): separated if the distance is proven to be above zero, contact 
 Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 separated.
 
 Example:
-  d2m distance shape:gear shape:torus --pose-a 'x=-3,0,0;q=0.7,0,0,0.7'")]
+  d2m distance shape:gear shape:torus --pose-a 'x=-3,0,0;q=0.7,0,0,0.7'"))]
 pub(crate) struct DistanceArguments {
     #[command(flatten)]
     pub(crate) posed: PosedArguments,
@@ -198,10 +206,7 @@ pub(crate) struct DistanceArguments {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = "\
-A pose is x=1,2,3;q=w,x,y,z[;at=1,2,3]: where the body point at (the origin if left out) is, and how the body is turned.
-@FILE reads the same keys from JSON.
-
+#[command(after_help = with_pose_help!("\
 separated is proven. contact is said whenever that cannot be proven: bodies that share a point, and bodies that are apart by
 less than the rounding of placing them. triangles names a pair of triangles that are not proven apart; there is none if one
 body is inside the other.
@@ -209,7 +214,7 @@ body is inside the other.
 Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 separated.
 
 Example:
-  d2m collide shape:gear shape:torus --pose-a 'x=0.5,0,0' --exit-status")]
+  d2m collide shape:gear shape:torus --pose-a 'x=0.5,0,0' --exit-status"))]
 pub(crate) struct CollideArguments {
     #[command(flatten)]
     pub(crate) posed: PosedArguments,
@@ -218,10 +223,7 @@ pub(crate) struct CollideArguments {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = "\
-A pose is x=1,2,3;q=w,x,y,z[;at=1,2,3]: where the body point at (the origin if left out) is, and how the body is turned.
-@FILE reads the same keys from JSON.
-
+#[command(after_help = with_pose_help!("\
 A pair of points is locally closest when no point of A next to the one is nearer to the other, and none of B next to the other is
 nearer to the one. The answer lists all such pairs within the margin, the closest first, each with its points, the unit normal from A to B,
 the distance, the features (vertex and face, or two edges) and the triangles that hold the points: what a contact manifold is made of.
@@ -233,7 +235,7 @@ Surfaces that meet have no closest features: status (in JSON) is contact then, a
 Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 separated.
 
 Example:
-  d2m proximities shape:box shape:gear --pose-b 'x=0,0,1' --margin 0.5 --reduce")]
+  d2m proximities shape:box shape:gear --pose-b 'x=0,0,1' --margin 0.5 --reduce"))]
 pub(crate) struct ProximitiesArguments {
     #[command(flatten)]
     pub(crate) posed: PosedArguments,
