@@ -12,6 +12,10 @@ use d2m_lanes::{InstructionSet, Lanes, Portable, Task, run, run_on};
 use d2m_testing::{Draw, KnuthRandom};
 use glam::{DMat3, DVec3};
 
+/// What rounding takes off a distance that is computed in doubles: at most 1e-12 of it, 4500 units in the last place. The margins
+/// that the tests are about are of `f32`, a million times as large.
+const ROUNDED_UP: f64 = 1.0 + 1e-12;
+
 fn rotation(random: &mut KnuthRandom) -> DMat3 {
     DMat3::from_quat(random.quaternion().normalize())
 }
@@ -28,6 +32,26 @@ fn oriented_box(random: &mut KnuthRandom, size: f64, spread: f64) -> OrientedBox
         // As a built box: the radius is at least each half extent.
         radius: narrow(half)[0].max(narrow(half)[1]).max(narrow(half)[2]),
     }
+}
+
+/// A box with any slabs that cut up to `most` steps off its edges.
+fn cut_box(random: &mut KnuthRandom, most: f64) -> OrientedBox {
+    let slabs = core::array::from_fn(|_| core::array::from_fn(|_| (random.signed().abs() * most) as u8));
+    OrientedBox { slabs, ..oriented_box(random, 1.0, 1.0) }
+}
+
+/// A node at the origin that holds one box.
+fn node_of_one(boxed: &OrientedBox) -> WideNode {
+    let mut node = WideNode::empty([0.0; 3], 0);
+    node.set_box(0, boxed, 1.0);
+    node.used = 1;
+    node
+}
+
+/// Where the single body is, in units `ratio` times as large as the node's.
+fn side(rotation: &DMat3, offset: DVec3, ratio: f64) -> Side {
+    let rotation = [rotation.x_axis, rotation.y_axis, rotation.z_axis];
+    Side { rotation, offset, ratio, floor: 0.0, to_work: 1.0 }
 }
 
 fn wide(v: [f32; 3]) -> DVec3 {
@@ -61,13 +85,7 @@ fn gaps_err_by_less_than_the_margin_and_not_by_much_less() {
         let single = oriented_box(&mut random, spread * [1.0, 30.0][round % 2], spread);
         let rotation = rotation(&mut random);
         let offset = wide(node.origin) + random.vector() * 3.0 * spread;
-        let side = Side {
-            rotation: [rotation.x_axis, rotation.y_axis, rotation.z_axis],
-            offset,
-            ratio: 1.0,
-            floor: 0.0,
-            to_work: 1.0,
-        };
+        let side = side(&rotation, offset, 1.0);
         let placed = Placed::new(&side, &single, [0.0; 3], &node);
         let gaps = margin_free_gaps::<Portable>(&node, &placed);
         let b: Vec<DVec3> =
@@ -115,26 +133,19 @@ fn gaps_of_pairs_are_below_distances_of_points_and_sometimes_close() {
     let mut random = KnuthRandom(10);
     let mut best = 0.0f64;
     for round in 0..6000 {
-        let mut node = WideNode::empty([0.0; 3], 0);
-        let cuts = |random: &mut KnuthRandom| {
-            let most = if round % 4 == 0 { 0.0 } else { f64::from(MOST) };
-            core::array::from_fn(|_| core::array::from_fn(|_| (random.signed().abs() * most) as u8))
-        };
-        let boxed = OrientedBox { slabs: cuts(&mut random), ..oriented_box(&mut random, 1.0, 1.0) };
-        node.set_box(0, &boxed, 1.0);
-        node.used = 1;
-        let single = OrientedBox { slabs: cuts(&mut random), ..oriented_box(&mut random, 1.0, 1.0) };
+        let most = if round % 4 == 0 { 0.0 } else { f64::from(MOST) };
+        let [boxed, single] = [(); 2].map(|()| cut_box(&mut random, most));
+        let node = node_of_one(&boxed);
         let rotation = rotation(&mut random);
         let offset = random.vector() * 4.0;
-        let columns = [rotation.x_axis, rotation.y_axis, rotation.z_axis];
-        let side = Side { rotation: columns, offset, ratio: 1.0, floor: 0.0, to_work: 1.0 };
+        let side = side(&rotation, offset, 1.0);
         let placed = Placed::new(&side, &single, [0.0; 3], &node);
         let gap =
             f64::from(BoxPair::<Portable>::new(&node, &placed.boxed).gap(placed.boxed.margin).store()[0]);
         for _ in 0..50 {
             let p = point_within(&boxed, &mut random);
             let apart = p.distance(rotation * point_within(&single, &mut random) + offset);
-            assert!(gap <= apart * (1.0 + 1e-12), "{gap} {apart}");
+            assert!(gap <= apart * ROUNDED_UP, "{gap} {apart}");
             best = best.max(gap / apart);
         }
     }
@@ -166,24 +177,12 @@ fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
     let mut random = KnuthRandom(9);
     let (mut best, mut best_of_triangles, mut best_across) = (0.0f64, 0.0f64, 0.0f64);
     for round in 0..6000 {
-        let mut node = WideNode::empty([0.0; 3], 0);
-        let cuts = |random: &mut KnuthRandom| {
-            let most = if round % 4 == 0 { 0.0 } else { f64::from(MOST) };
-            core::array::from_fn(|_| core::array::from_fn(|_| (random.signed().abs() * most) as u8))
-        };
-        let boxed = OrientedBox { slabs: cuts(&mut random), ..oriented_box(&mut random, 1.0, 1.0) };
-        node.set_box(0, &boxed, 1.0);
-        node.used = 1;
-        let single = OrientedBox { slabs: cuts(&mut random), ..oriented_box(&mut random, 1.0, 1.0) };
+        let most = if round % 4 == 0 { 0.0 } else { f64::from(MOST) };
+        let [boxed, single] = [(); 2].map(|()| cut_box(&mut random, most));
+        let node = node_of_one(&boxed);
         let rotation = rotation(&mut random);
         let offset = random.vector() * 6.0;
-        let side = Side {
-            rotation: [rotation.x_axis, rotation.y_axis, rotation.z_axis],
-            offset,
-            ratio: 1.0,
-            floor: 0.0,
-            to_work: 1.0,
-        };
+        let side = side(&rotation, offset, 1.0);
         // Without and with one more direction: any, or the one from center to center.
         let n = match round % 3 {
             0 => DVec3::ZERO,
@@ -209,12 +208,12 @@ fn bounds_of_boxes_are_below_distances_of_points_and_sometimes_close() {
         for _ in 0..50 {
             let p = point_within(&boxed, &mut random);
             let apart = p.distance(place(point_within(&single, &mut random)));
-            assert!(most <= apart * (1.0 + 1e-12), "{most} {apart}");
+            assert!(most <= apart * ROUNDED_UP, "{most} {apart}");
             best = best.max(most / apart);
             let (x, y) = (random.signed().abs(), random.signed().abs());
             let q = corners[0].lerp(corners[1], x).lerp(corners[2], y);
             let apart = p.distance(place(q));
-            assert!(of_triangle <= apart * (1.0 + 1e-12), "{of_triangle} {apart}");
+            assert!(of_triangle <= apart * ROUNDED_UP, "{of_triangle} {apart}");
             best_of_triangles = best_of_triangles.max(of_triangle / apart);
             best_across = best_across.max(across / apart);
         }
@@ -229,24 +228,16 @@ fn bounds_of_boxes_of_unlike_sizes_are_finite_and_hold() {
     let mut random = KnuthRandom(19);
     let mut known = 0;
     for round in 0..12_700 {
-        let mut node = WideNode::empty([0.0; 3], 0);
         let mut any_box = || OrientedBox {
             slabs: core::array::from_fn(|_| core::array::from_fn(|k| MOST - k as u8)),
             ..oriented_box(&mut random, 1.0, 1.0)
         };
         let (boxed, single) = (any_box(), any_box());
-        node.set_box(0, &boxed, 1.0);
-        node.used = 1;
+        let node = node_of_one(&boxed);
         let (power, far) = (f64::from(round % 127).exp2(), f64::from(round / 3 % 127).exp2());
         let rotation = rotation(&mut random);
         let offset = random.vector() * power.max(far) * 3.0;
-        let side = Side {
-            rotation: [rotation.x_axis, rotation.y_axis, rotation.z_axis],
-            offset,
-            ratio: power,
-            floor: 0.0,
-            to_work: 1.0,
-        };
+        let side = side(&rotation, offset, power);
         let n = offset.normalize() * (1.0 - 4.0 * UNIT_F32);
         let n = [n.x as f32, n.y as f32, n.z as f32];
         let place = |p: DVec3| rotation * p * power + offset;
@@ -260,7 +251,7 @@ fn bounds_of_boxes_of_unlike_sizes_are_finite_and_hold() {
             (triangle, f32::INFINITY),
         ] {
             let bound = f64::from(lower_bounds::<Portable>(&node, &placed, 1.0, enough)[0]);
-            let holds = bound.is_nan() || (bound < f64::INFINITY && bound <= apart * (1.0 + 1e-6));
+            let holds = bound.is_nan() || (bound < f64::INFINITY && bound <= apart * ROUNDED_UP);
             assert!(holds, "{round}: {bound:e} {apart:e}");
             known += u32::from(bound > 0.0);
         }
@@ -298,14 +289,8 @@ fn every_kind_of_lanes_gives_the_same_bits() {
             node.set_box(lane, &oriented_box(&mut random, 0.4, 1.0), 1.0);
         }
         let single = oriented_box(&mut random, 0.5, 1.0);
-        let r = rotation(&mut random);
-        let side = Side {
-            rotation: [r.x_axis, r.y_axis, r.z_axis],
-            offset: random.vector(),
-            ratio: 2.0,
-            floor: 1e-9,
-            to_work: 0.5,
-        };
+        let rotation = rotation(&mut random);
+        let side = Side { floor: 1e-9, to_work: 0.5, ..side(&rotation, random.vector(), 2.0) };
         let placed = Placed::new(&side, &single, [0.0; 3], &node);
         let placed = if round % 2 == 0 {
             placed.with_box_along([0.3, -0.6, 0.7], &single)

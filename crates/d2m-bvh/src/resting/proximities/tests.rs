@@ -5,6 +5,13 @@ use crate::{MeshTree, TriMesh};
 use d2m_motion::Pose;
 use d2m_testing::{Draw, KnuthRandom, Surface};
 
+/// How far two computations of one point may be apart: coordinates below 10 are rounded to 1e-15 a few times, and where two edges
+/// cross at a small angle the point is known less well by the inverse of its sine.
+const SAME_POINT: f64 = 1e-11;
+/// How near to its limit a condition (a sine, or a part of an edge) is undecided in doubles: a sine of two points that are 1e-3 apart or
+/// more is known to 1e-12. What is nearer than this may be found or not.
+const ROOM_OF_ROUNDING: f64 = 1e-9;
+
 /// The features of a placed mesh: vertices with their neighbours, edges with the third corners, triangles.
 struct Brute {
     points: Vec<DVec3>,
@@ -148,15 +155,15 @@ fn holds_every_locally_closest_pair_that_brute_force_finds_once_and_no_other() {
         let (brute_a, brute_b) = (Brute::new(a.mesh(), &poses[0]), Brute::new(b.mesh(), &poses[1]));
         let all = brute_force(&brute_a, &brute_b, margin);
         let same = |points: &[DVec3; 2], p: &Proximity| {
-            points[0].distance(p.point_a) < 1e-11 && points[1].distance(p.point_b) < 1e-11
+            points[0].distance(p.point_a) < SAME_POINT && points[1].distance(p.point_b) < SAME_POINT
         };
-        for (points, room) in all.iter().filter(|(_, room)| *room > 1e-9) {
+        for (points, room) in all.iter().filter(|(_, room)| *room > ROOM_OF_ROUNDING) {
             let count = near.iter().filter(|p| same(points, p)).count();
             assert_eq!(count, 1, "round {round}: {points:?} {room}");
             found_in_all += 1;
         }
         for p in &near {
-            let true_one = |(points, room): &([DVec3; 2], f64)| *room > -1e-9 && same(points, p);
+            let true_one = |(points, room): &([DVec3; 2], f64)| *room > -ROOM_OF_ROUNDING && same(points, p);
             assert!(all.iter().any(true_one), "round {round}: {p:?}");
             assert!((p.point_b - p.point_a - p.normal * p.distance).length() < 1e-12);
         }
@@ -211,19 +218,19 @@ fn the_corners_of_a_patch_of_contact_are_all_there_and_once() {
         for k in 0..4 {
             let (p, q) = (square[k], square[(k + 1) % 4]);
             let t = (5.0 - p.x) / (q.x - p.x);
-            if t > 1e-9 && t < 1.0 - 1e-9 {
+            if t > ROOM_OF_ROUNDING && t < 1.0 - ROOM_OF_ROUNDING {
                 patch.push(p + (q - p) * t);
             }
         }
         assert!(patch.len() >= 4);
         for corner in &patch {
-            let count = near.iter().filter(|p| flat(p.point_a).distance(*corner) < 1e-9).count();
+            let count = near.iter().filter(|p| flat(p.point_a).distance(*corner) < SAME_POINT).count();
             assert_eq!(count, 1, "round {round}: {corner:?} of {patch:?}");
         }
         let manifold = reduce_proximities(&near, 0.1);
         assert_eq!(manifold.len(), 4);
         // The chosen four span the area of the patch, or nearly.
-        assert!(manifold.iter().all(|p| patch.iter().any(|c| flat(p.point_a).distance(*c) < 1e-9)));
+        assert!(manifold.iter().all(|p| patch.iter().any(|c| flat(p.point_a).distance(*c) < SAME_POINT)));
     }
 }
 

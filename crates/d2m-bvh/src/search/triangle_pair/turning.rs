@@ -88,6 +88,10 @@ mod tests {
         DQuat::from_scaled_axis(-holder.omega * s) * (place - reference(holder))
     }
 
+    /// What rounding may hide from the judge below: places of up to about 4, rounded a few times, are known to some 1e-15, which is
+    /// 1e-12 of the gap of 1e-3 that is needed; ten times that is granted.
+    const ROUNDED_DOWN: f64 = 1.0 - 1e-11;
+
     /// The least gap over what is needed, at times that are proven.
     fn least_ratio(n: DVec3, bodies: &[TurningTriangle; 2], need: f64, enough: f64) -> (f64, f64) {
         let [holder, mover] = bodies;
@@ -130,7 +134,7 @@ mod tests {
             sharp += u32::from(ratio < 1.1);
             least = least.min(ratio);
         }
-        assert!(least >= 1.0 - 1e-9, "{least}");
+        assert!(least >= ROUNDED_DOWN, "{:e}", least - 1.0);
         assert!(proven > 4000 && sharp > 400, "{proven} {sharp}");
     }
 
@@ -151,7 +155,7 @@ mod tests {
         let gap = 0.006;
         let mover = body(DVec3::new(gap, -1.0, 0.0), DVec3::ZERO, DVec3::new(1.0, 0.5 * gap, 0.0));
         let (ratio, time) = least_ratio(DVec3::X, &[holder, mover], 1e-3, 0.3);
-        assert!((1.0 - 1e-9..2.5).contains(&ratio) && time > 0.2, "{ratio} {time}");
+        assert!((1.0..2.5).contains(&ratio) && time > 0.2, "{ratio} {time}");
     }
 
     /// A tip on the axis of its spin above a tilted plate that turns fast: the plate's normal lasts, none that is fixed does.

@@ -202,6 +202,10 @@ mod tests {
         reference + DQuat::from_scaled_axis(body.omega * s) * (p - body.center + body.arm)
     }
 
+    /// What rounding may hide from the judge below: places of up to about 4, rounded a few times, are known to some 1e-15, which is
+    /// 1e-12 of the gap of 1e-3 that is needed; ten times that is granted.
+    const ROUNDED_DOWN: f64 = 1.0 - 1e-11;
+
     /// The least gap across the first edges over what is needed, at times that are proven, and the time.
     fn least_ratio(bodies: &[TurningTriangle; 2], points: [DVec3; 2], need: f64, enough: f64) -> (f64, f64) {
         let [a, b] = bodies;
@@ -262,7 +266,7 @@ mod tests {
             sharp += u32::from(ratio < 1.1);
             least = least.min(ratio);
         }
-        assert!(least >= 1.0 - 1e-9, "{least}");
+        assert!(least >= ROUNDED_DOWN, "{:e}", least - 1.0);
         assert!(proven > 20_000 && sharp > 4000, "{proven} {sharp}");
     }
 
@@ -277,7 +281,7 @@ mod tests {
         let arm = center - (DVec3::Z * gap + DVec3::X);
         let b = body(above, DVec3::Y, DVec3::Y.cross(arm) - DVec3::Z, arm);
         let (ratio, time) = least_ratio(&[a, b], [DVec3::ZERO, DVec3::Z * gap], 1e-3, 0.35);
-        assert!((1.0 - 1e-9..1.5).contains(&ratio) && time > 0.2, "{ratio} {time}");
+        assert!((1.0..1.5).contains(&ratio) && time > 0.2, "{ratio} {time}");
     }
 
     /// Each edge spins about a line through the point where they cross: the far ends pass the gap at once, the product parts them.
