@@ -21,9 +21,9 @@ pub(super) fn far_reference_points(random: &mut Random) -> Scene {
 /// A grain of dust, 2⁻²⁰ … 2⁻⁶⁴ of a block, that flies up to 2²⁴ times the block's size in the window and hits a face on its way.
 pub(super) fn dust(random: &mut Random) -> Scene {
     let half = DVec3::new(random.range(0.1, 1.0), random.range(0.1, 1.0), random.range(0.1, 1.0));
-    let block = Shape::cuboid(half, DVec3::ZERO).refined((random.bits() % 3) as u32);
+    let block = refined(centered_box(half), (random.bits() % 3) as u32);
     let size = random.range(-64.0, -20.0).exp2();
-    let grain = Shape::tetrahedron(random, size);
+    let grain = tetrahedron(random, size);
     let hit = DVec3::new(-half.x, half.y * random.range(-1.0, 1.0), half.z * random.range(-1.0, 1.0));
     let towards = DVec3::new(1.0, random.range(-1.0, 1.0), random.range(-1.0, 1.0));
     let spin = random.direction() * if random.unit() < 0.5 { 0.0 } else { decade(random, -2.0, 2.0) };
