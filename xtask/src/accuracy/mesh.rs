@@ -91,23 +91,33 @@ impl Scene {
 }
 
 pub(super) fn run(task: &Task) -> Outcome {
-    let judged: Vec<(Claim, Option<(bool, String)>)> =
-        (0..task.count).into_par_iter().map(|index| case(task, index)).collect();
+    let judged: Vec<Judged> = (0..task.count).into_par_iter().map(|index| case(task, index)).collect();
     let mut outcome = Outcome { cases: judged.len(), ..Outcome::default() };
-    for (claim, fault) in judged {
+    for Judged { claim, complaint } in judged {
         outcome.contacts += usize::from(matches!(claim, Claim::Contact { .. }));
         outcome.undecided += usize::from(matches!(claim, Claim::Undecided { .. }));
-        match fault {
-            Some((true, line)) => outcome.false_negatives.push(line),
-            Some((false, line)) => outcome.false_alarms.push(line),
+        match complaint {
+            Some(Complaint::FalseNegative(line)) => outcome.false_negatives.push(line),
+            Some(Complaint::FalseAlarm(line)) => outcome.false_alarms.push(line),
             None => {}
         }
     }
     outcome
 }
 
-/// The claim, and what is wrong with it: whether it is a false negative, and a line that names the case.
-fn case(task: &Task, index: usize) -> (Claim, Option<(bool, String)>) {
+/// A claim, and what is wrong with it.
+struct Judged {
+    claim: Claim,
+    complaint: Option<Complaint>,
+}
+
+/// A line that names the case.
+enum Complaint {
+    FalseNegative(String),
+    FalseAlarm(String),
+}
+
+fn case(task: &Task, index: usize) -> Judged {
     let mut random = Random::new(task.seed.wrapping_mul(0x9e37_79b9).wrapping_add(index as u64));
     let scene = scene(&mut random);
     let claim = scene.ask();
@@ -118,10 +128,14 @@ fn case(task: &Task, index: usize) -> (Claim, Option<(bool, String)>) {
         |words: String| format!("seed {} case {index} ({:?}): {claim:?}: {words}", task.seed, scene.solid);
     if scene.solid == Solid::Filled && begins_inside(&scene, &trees) {
         let right = matches!(claim, Claim::Contact { lo: 0.0, .. } | Claim::Undecided { clear_until: 0.0 });
-        return (claim, (!right).then(|| (true, line("one body is inside the other at the start".into()))));
+        let words = || line("one body is inside the other at the start".into());
+        return Judged { claim, complaint: (!right).then(|| Complaint::FalseNegative(words())) };
     }
-    let fault = judge.check(&claim, true).err();
-    (claim, fault.map(|fault| (!matches!(fault, Fault::Far { .. }), line(fault.to_string()))))
+    let complaint = judge.check(&claim, true).err().map(|fault| match fault {
+        Fault::Far { .. } => Complaint::FalseAlarm(line(fault.to_string())),
+        _ => Complaint::FalseNegative(line(fault.to_string())),
+    });
+    Judged { claim, complaint }
 }
 
 /// Surfaces apart and a vertex of one inside the other, by the parity of a ray's crossings.

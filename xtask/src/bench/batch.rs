@@ -95,8 +95,14 @@ fn answers(path: &Path) -> Result<Vec<Answer>, Error> {
         .collect()
 }
 
-/// The least time of the whole command, and its answers.
-fn run_command(program: &Path, trials: &Path, rounds: usize) -> Result<(f64, Vec<Answer>), Error> {
+/// What the command took and answered.
+struct CommandRun {
+    /// The least time of the whole command.
+    seconds: f64,
+    answers: Vec<Answer>,
+}
+
+fn run_command(program: &Path, trials: &Path, rounds: usize) -> Result<CommandRun, Error> {
     let out = trials.with_extension("answers");
     let mut least = f64::INFINITY;
     for _ in 0..rounds {
@@ -114,7 +120,7 @@ fn run_command(program: &Path, trials: &Path, rounds: usize) -> Result<(f64, Vec
             return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
         }
     }
-    Ok((least, answers(&out)?))
+    Ok(CommandRun { seconds: least, answers: answers(&out)? })
 }
 
 /// The command, built as it is released.
@@ -141,7 +147,7 @@ pub(super) fn run(rounds: usize) -> TaskResult {
     let path = folder.join("trials.csv");
     write(&path, &flights)?;
     println!("{COUNT} flights of two gears, one thread{:>21}{:>12}{:>12}", "whole, µs", "query, µs", "ratio");
-    let (plain, expected) = run_command(&program, &path, rounds)?;
+    let CommandRun { seconds: plain, answers: expected } = run_command(&program, &path, rounds)?;
     let print = |name: &str, whole: f64, found: &[Answer]| {
         let query = found.iter().map(|answer| answer.microseconds).sum::<f64>() / COUNT as f64;
         let whole_each = whole * 1e6 / COUNT as f64;
@@ -159,7 +165,7 @@ pub(super) fn run(rounds: usize) -> TaskResult {
             text.push('\n');
         }
         std::fs::write(&path, text)?;
-        let (whole, found) = run_command(&program, &path, rounds)?;
+        let CommandRun { seconds: whole, answers: found } = run_command(&program, &path, rounds)?;
         if found.len() != expected.len() {
             return Err(format!("{name}: {} answers", found.len()).into());
         }

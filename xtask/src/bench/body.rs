@@ -3,7 +3,7 @@
 use super::peers;
 use crate::judge::BoxTree;
 use d2m::bvh::paper::SphereTree;
-use d2m::bvh::{MeshTree, TriMesh};
+use d2m::bvh::{MeshArrays, MeshTree, TriMesh};
 use glam::DVec3;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -40,7 +40,8 @@ impl Body {
     /// A model in an OBJ file, scaled like that.
     pub(crate) fn unit_file(path: &Path) -> Result<TriMesh, Error> {
         let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
-        let (vertices, triangles) = parse_obj(&text).map_err(|e| format!("{}:{e}", path.display()))?;
+        let MeshArrays { vertices, triangles } =
+            parse_obj(&text).map_err(|e| format!("{}:{e}", path.display()))?;
         Self::unit_mesh(&vertices, triangles)
     }
 
@@ -86,7 +87,7 @@ pub(crate) fn write_obj(path: &Path, mesh: &TriMesh) -> std::io::Result<()> {
 }
 
 /// The vertices and faces of an OBJ file in full precision; polygons become fans. An error begins with its line.
-fn parse_obj(text: &str) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), String> {
+fn parse_obj(text: &str) -> Result<MeshArrays, String> {
     let (mut vertices, mut triangles): (Vec<DVec3>, _) = (Vec::new(), Vec::new());
     for (number, line) in text.lines().enumerate() {
         let place = |what: &str| format!("{}: {what}: {line}", number + 1);
@@ -108,7 +109,7 @@ fn parse_obj(text: &str) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), String> {
             _ => {}
         }
     }
-    Ok((vertices, triangles))
+    Ok(MeshArrays { vertices, triangles })
 }
 
 /// Two bodies and the name of their pair in tables.
@@ -125,7 +126,7 @@ mod tests {
     #[test]
     fn obj() {
         let text = "# c\nv 0 0 0\nv 1 0 0 0.5\nv 0 1e0 0\nv 0 0 1\nf 1/2/3 2 3\nf -4 -3 -2 -1\n";
-        let (vertices, triangles) = parse_obj(text).unwrap();
+        let MeshArrays { vertices, triangles } = parse_obj(text).unwrap();
         assert_eq!(vertices[1], DVec3::X);
         assert_eq!(triangles, [[0, 1, 2], [0, 1, 2], [0, 2, 3]]);
         let path = std::env::temp_dir().join(format!("d2m-body-{}.obj", std::process::id()));

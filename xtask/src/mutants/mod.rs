@@ -12,6 +12,12 @@ type Error = Box<dyn std::error::Error + Send + Sync>;
 /// Packages with a feature of this name.
 const WITH_SERDE: [&str; 6] = ["d2m", "d2m-bvh", "d2m-dynamics", "d2m-feature", "d2m-interval", "d2m-motion"];
 
+/// A test by its file and its name.
+pub(crate) struct TestName {
+    pub(crate) file: &'static str,
+    pub(crate) name: &'static str,
+}
+
 impl Mutant {
     /// A line of `cargo xtask mutants --list`: `| fault | where | killed by |`.
     pub(crate) fn row(&self) -> String {
@@ -22,20 +28,21 @@ impl Mutant {
         format!("| {} | {place} | `{}` |", self.name, self.test)
     }
 
-    /// The file and the name of the test.
-    pub(crate) fn test(&self) -> (&'static str, &'static str) {
-        self.test.split_once("::").expect("file.rs::test")
+    /// Where the test is, and its name.
+    pub(crate) fn test(&self) -> TestName {
+        let (file, name) = self.test.split_once("::").expect("file.rs::test");
+        TestName { file, name }
     }
 
     /// The folder of the package in which the test lives.
     fn package_folder(&self) -> &'static str {
-        let file = self.test().0;
+        let file = self.test().file;
         file.split_once("/tests/").or_else(|| file.split_once("/src/")).map_or("", |(folder, _)| folder)
     }
 
     /// What cargo builds: the package and the target in which the test lives.
     fn target(&self) -> Vec<String> {
-        let file = self.test().0;
+        let file = self.test().file;
         let file = file.strip_prefix("crates/").unwrap_or(file);
         let package = file.split('/').next().unwrap_or_default();
         let mut arguments = vec!["-p".to_string(), package.to_string()];
@@ -59,7 +66,7 @@ impl Mutant {
 pub(crate) fn check(root: &std::path::Path) -> Vec<String> {
     let mut findings = Vec::new();
     for mutant in all() {
-        let (file, test) = mutant.test();
+        let TestName { file, name: test } = mutant.test();
         let source = std::fs::read_to_string(root.join(file)).unwrap_or_default();
         if !source.contains(&format!("fn {test}(")) {
             findings.push(format!("mutant \"{}\": there is no test {}", mutant.name, mutant.test));

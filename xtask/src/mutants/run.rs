@@ -120,7 +120,7 @@ impl Round<'_> {
         let time = if let Some(time) = known {
             time
         } else {
-            self.progress.set_message(format!("right code: {}", mutant.test().1));
+            self.progress.set_message(format!("right code: {}", mutant.test().name));
             let program = build(copy, mutant)?;
             let begin = Instant::now();
             if run_test(copy, &program, mutant, Duration::from_secs(3600))? != End::Passed {
@@ -190,7 +190,7 @@ fn build(copy: &Copy, mutant: &Mutant) -> Result<PathBuf, Error> {
 
 /// Runs the one test.
 fn run_test(copy: &Copy, program: &Path, mutant: &Mutant, limit: Duration) -> Result<End, Error> {
-    let test = mutant.test().1;
+    let test = mutant.test().name;
     let folder = copy.root.join(mutant.package_folder());
     let path = copy.build.join("output.txt");
     let output = File::create(&path)?;

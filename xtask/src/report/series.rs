@@ -115,9 +115,9 @@ fn plot(folder: &Path, words: &Words, points: &[Point]) -> Result<(), Error> {
     let series = sweep::series(points).into_iter().map(|name| {
         let mut of_name: Vec<&Point> = points.iter().filter(|p| p.series == name).collect();
         of_name.sort_by(|p, q| p.x.total_cmp(&q.x));
-        let exponent = exponents.iter().find(|e| e.0 == name);
+        let exponent = exponents.iter().find(|growth| growth.series == name);
         Series {
-            name: exponent.map_or(name.into(), |(_, e)| format!("{name}: exponent {e:.2}")),
+            name: exponent.map_or(name.into(), |growth| format!("{name}: exponent {:.2}", growth.exponent)),
             points: of_name.iter().map(|p| (p.x, p.summary.median)).collect(),
             spread: of_name.iter().map(|p| (p.summary.lower, p.summary.upper)).collect(),
         }
@@ -147,8 +147,8 @@ pub(super) fn write(page: &mut String, folder: &Path) -> Result<(), Error> {
         figure(page, folder, &format!("series-{}", words.name), words.title)?;
         page.push_str(&table(words, &points));
         if sweep::FITTED.contains(&words.name) {
-            for (name, exponent) in sweep::exponents(&points) {
-                writeln!(page, "- fitted exponent, {name}: {exponent:.3}")?;
+            for sweep::Growth { series, exponent } in sweep::exponents(&points) {
+                writeln!(page, "- fitted exponent, {series}: {exponent:.3}")?;
             }
             writeln!(page)?;
         }

@@ -1,6 +1,6 @@
 //! Hostile families and metamorphic twins of the mesh engine, judged by an oracle in 320 bits that shares no code with it.
 //!
-//! Each scene is asked, and so are some twins of it: the same query in other words. Every answer is judged by itself, at
+//! Each scene is queried, and so are some twins of it: the same scene, expressed differently. Every answer is judged by itself, at
 //! times where the construction, the answer, or the answer of a twin puts a contact.
 mod exact;
 mod families;
@@ -17,7 +17,7 @@ use d2m::bvh::Evidence;
 use d2m_testing::Xoshiro256 as Random;
 use exact::Placed;
 use rayon::prelude::*;
-use scene::{Answer, Scene};
+use scene::{Answer, Scene, TimedAnswer};
 use std::path::Path;
 
 /// Twins of each scene.
@@ -65,7 +65,7 @@ pub(super) fn run(task: &Task) -> Outcome {
         let family = families::FAMILIES[index % families::FAMILIES.len()].0;
         let late = case.late.into_iter().filter_map(|scene| {
             // Alone now, and more than once: what is late every time is late by its own work.
-            let (_, late) = scene.ask_often(5);
+            let late = scene.query_often(5).late;
             let words = || format!("{late:?} later than a millisecond after its budget {:?}", scene.budget);
             (!late.is_zero()).then(|| (Fault::Alarm(words()), scene.clone()))
         });
@@ -99,7 +99,7 @@ pub(super) fn replay(path: &Path) -> crate::TaskResult {
     let value = serde_json::from_str(&text).map_err(|e| format!("{}: {e}", path.display()))?;
     let scene =
         Scene::from_json(&value).ok_or_else(|| format!("{}: not a scene of this task", path.display()))?;
-    let (answer, late) = scene.ask_often(5);
+    let TimedAnswer { answer, late } = scene.query_often(5);
     println!("{answer:?}");
     if !late.is_zero() {
         return Err(format!("{late:?} later than a millisecond after its budget").into());
@@ -114,7 +114,7 @@ fn case(task: &Task, index: usize) -> Case {
     let mut random = Random::new(task.seed.wrapping_mul(0x9e37_79b9).wrapping_add(index as u64));
     let family = families::FAMILIES[index % families::FAMILIES.len()].1;
     let scene = family(&mut random);
-    let (answer, beyond) = scene.ask_often(1);
+    let TimedAnswer { answer, late: beyond } = scene.query_often(1);
     let answer = spoil(task.sabotage, answer, scene.window);
     let mut faults = Vec::new();
     let mut late = Vec::new();
@@ -124,19 +124,19 @@ fn case(task: &Task, index: usize) -> Case {
     let mut times = Vec::new();
     for _ in 0..TWINS {
         let (twin, change) = twins::twin(&scene, &mut random);
-        let (said, beyond) = twin.ask_often(1);
+        let TimedAnswer { answer: said, late: beyond } = twin.query_often(1);
         if !beyond.is_zero() {
             late.push(twin.clone());
         }
         let back = |t: f64| (t - change.time_shift) / change.time_scale;
-        let mut asked_there: Vec<f64> = Vec::new();
+        let mut brackets_there: Vec<f64> = Vec::new();
         if let Answer::Contact { lo, hi, .. } = said {
             times.extend([back(lo), back(hi)]);
         }
         if let Answer::Contact { lo, hi, .. } = answer {
-            asked_there.extend([change.time(lo), change.time(hi)]);
+            brackets_there.extend([change.time(lo), change.time(hi)]);
         }
-        if let Some(fault) = judge(&twin, &said, &asked_there) {
+        if let Some(fault) = judge(&twin, &said, &brackets_there) {
             faults.push((named(fault, change.name), twin.clone()));
         } else if let Some(fault) = compare(&answer, &said, &change) {
             faults.push((named(fault, change.name), twin.clone()));

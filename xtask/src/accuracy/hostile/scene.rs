@@ -80,11 +80,18 @@ impl Answer {
 /// The budget of a scene that is about something else.
 pub(crate) const PATIENT: Budget = Budget::UNLIMITED.with_wall_clock(PATIENCE);
 
+/// An answer, and how late it came.
+pub(crate) struct TimedAnswer {
+    pub(crate) answer: Answer,
+    /// How much longer than allowed the query took after the end of its budget, without the time for which other work had the
+    /// processor (where the system reports it: Linux).
+    pub(crate) late: Duration,
+}
+
 impl Scene {
-    /// The answer, and how much longer than allowed the query took after the end of its budget, the least of some tries, without
-    /// the time for which other work had the processor (where the system tells it: Linux).
-    pub(crate) fn ask_often(&self, tries: u32) -> (Answer, Duration) {
-        let refused = (Answer::Refused, Duration::ZERO);
+    /// The answer to the query, which is made so often at most; the least delay counts.
+    pub(crate) fn query_often(&self, tries: u32) -> TimedAnswer {
+        let refused = TimedAnswer { answer: Answer::Refused, late: Duration::ZERO };
         let mesh =
             |body: &Body| TriMesh::try_new(body.vertices.clone(), body.triangles.clone()).map(MeshTree::new);
         let (Ok(a), Ok(b)) = (mesh(&self.bodies[0]), mesh(&self.bodies[1])) else { return refused };
@@ -132,7 +139,7 @@ impl Scene {
                 starts_apart: c.start == d2m::bvh::StartState::Apart,
             },
         };
-        (answer, late)
+        TimedAnswer { answer, late }
     }
 
     /// The larger extent of the two meshes.

@@ -21,6 +21,6 @@ fn a_scene_survives_its_written_form() {
         let scene = family(&mut Random::new(k as u64));
         let read = Scene::from_json(&serde_json::from_str(&scene.to_json().to_string()).unwrap()).unwrap();
         assert_eq!(format!("{scene:?}"), format!("{read:?}"), "{name}");
-        assert_eq!(scene.ask_often(1).0, read.ask_often(1).0, "{name}");
+        assert_eq!(scene.query_often(1).answer, read.query_often(1).answer, "{name}");
     }
 }

@@ -4,7 +4,7 @@ use super::super::body::{Body, Pair};
 use super::super::method::{Method, Question, answers};
 use super::super::store::Store;
 use super::flights::{Flights, moved, pebbles, slowed};
-use super::{FITTED, NAMES, Point, STEPS, WRONG, file, load, write, wrong};
+use super::{FITTED, Growth, NAMES, Point, STEPS, WRONG, file, load, write, wrong};
 use crate::judge::{Claim, Judge};
 use crate::statistics::Summary;
 use crate::trials::{self, Law, Trial};
@@ -106,7 +106,8 @@ pub(crate) fn measure(
         }
         points.splice(0..0, load(store, name));
         store.save_text(&file(name), &write(&points))?;
-        for (series, exponent) in super::exponents(&points).iter().filter(|_| FITTED.contains(&name)) {
+        for Growth { series, exponent } in super::exponents(&points).iter().filter(|_| FITTED.contains(&name))
+        {
             say(&format!("  {name:<12} {series:<26} fitted exponent {exponent:.3}"));
         }
     }

@@ -7,7 +7,7 @@ mod point;
 pub(crate) mod variants;
 
 pub(crate) use measure::{Step, measure, open};
-pub(crate) use point::{Point, exponents, parse, series, write};
+pub(crate) use point::{Growth, Point, exponents, parse, series, write};
 
 use super::store::Store;
 

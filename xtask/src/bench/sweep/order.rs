@@ -48,10 +48,10 @@ pub(super) fn exact_time(height: &str) -> DBig {
 }
 
 /// Pose of the spike in f64.
-fn pose(height: f64, t: f64) -> (DQuat, DVec3) {
+fn pose(height: f64, t: f64) -> Pose {
     let angle = 0.4 * t + 0.9 * t * t;
     let fall = height - 1.6 * t + 0.25 * t * t;
-    (DQuat::from_rotation_x(angle), DVec3::new(0.0, 0.0, fall))
+    Pose { rotation: DQuat::from_rotation_x(angle), translation: DVec3::Z * fall, at: DVec3::ZERO }
 }
 
 struct Bodies {
@@ -76,8 +76,7 @@ impl Bodies {
     fn held(&self, height: f64, pieces: usize) -> Option<f64> {
         let plate = Pose { translation: DVec3::NEG_Z, ..Pose::IDENTITY };
         let free = |k: usize| {
-            let (rotation, translation) = pose(height, k as f64 / pieces as f64);
-            let spike = Pose { rotation, translation, at: DVec3::ZERO };
+            let spike = pose(height, k as f64 / pieces as f64);
             !collide(Posed::new(&self.spike, spike), Posed::new(&self.plate, plate), Solid::Filled)
                 .unwrap_or(true)
         };
@@ -91,10 +90,12 @@ impl Bodies {
         let length = 1.0 / pieces as f64;
         for k in 0..pieces {
             let (t0, t1) = (k as f64 * length, (k + 1) as f64 * length);
-            let ((q0, x0), (q1, x1)) = (pose(height, t0), pose(height, t1));
-            let turn = (q1 * q0.conjugate()).to_scaled_axis();
-            let motion = ConstantTwist::try_new(x0, q0, (x1 - x0) / length, turn / length)?
-                .try_with_reference_time(t0)?;
+            let (first, last) = (pose(height, t0), pose(height, t1));
+            let turn = (last.rotation * first.rotation.conjugate()).to_scaled_axis();
+            let moved = last.translation - first.translation;
+            let (x, q) = (first.translation, first.rotation);
+            let motion =
+                ConstantTwist::try_new(x, q, moved / length, turn / length)?.try_with_reference_time(t0)?;
             let (a, b) = (Moving::new(&self.spike, &motion), Moving::new(&self.plate, &plate));
             let answer = time_of_contact(a, b, Window::try_new(t0, t1)?, &options)?;
             if let Some(contact) = answer.contact() {

@@ -46,12 +46,19 @@ pub(crate) fn series(points: &[Point]) -> Vec<&str> {
     names
 }
 
+/// How a series grows with x.
+#[derive(Debug)]
+pub(crate) struct Growth {
+    pub(crate) series: String,
+    pub(crate) exponent: f64,
+}
+
 /// The exponent that fits the medians of each series of two points or more best, by its name.
-pub(crate) fn exponents(points: &[Point]) -> Vec<(String, f64)> {
+pub(crate) fn exponents(points: &[Point]) -> Vec<Growth> {
     let fit = |name: &str| {
         let of_name = points.iter().filter(|p| p.series == name);
         let places: Vec<(f64, f64)> = of_name.map(|p| (p.x, p.summary.median)).collect();
-        Some((name.to_string(), exponent(&places)?))
+        Some(Growth { series: name.to_string(), exponent: exponent(&places)? })
     };
     series(points).into_iter().filter_map(fit).collect()
 }
@@ -84,6 +91,6 @@ mod tests {
         assert_eq!(series(&points), ["a", "b"]);
         let found = exponents(&points);
         assert_eq!(found.len(), 1, "one point has no exponent");
-        assert!(found[0].0 == "b" && (found[0].1 - 0.5).abs() < 1e-12, "{found:?}");
+        assert!(found[0].series == "b" && (found[0].exponent - 0.5).abs() < 1e-12, "{found:?}");
     }
 }
