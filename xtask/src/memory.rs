@@ -1,4 +1,4 @@
-//! The memory of this process, where the system tells it: proc(5), Linux.
+//! The memory of this process, where the system reports it: proc(5), Linux.
 
 /// Bytes in use now.
 pub(crate) fn resident() -> Option<u64> {
@@ -12,7 +12,7 @@ pub(crate) fn restart_peak() -> Option<u64> {
     resident()
 }
 
-/// The largest use since then, in bytes; zero where the system does not tell it.
+/// The largest use since then, in bytes; zero where the system does not report it.
 pub(crate) fn peak() -> u64 {
     bytes("VmHWM:").unwrap_or(0)
 }

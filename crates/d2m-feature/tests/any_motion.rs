@@ -82,7 +82,7 @@ fn contacts_of_accelerating_motions_are_never_missed_and_never_late() {
             pair.point_triangle(p, &triangle, &options)
         };
         let FirstContact::Contact(contact) = answer else {
-            // Poses are rounded: at the very ends the contact may be a hair outside.
+            // Poses are rounded: at the very ends the contact may be outside by a rounding.
             assert!(i % 4 >= 2, "missed at {time}: {a:?} {b:?} {p} {triangle:?}");
             continue;
         };

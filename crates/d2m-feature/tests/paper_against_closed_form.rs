@@ -1,4 +1,4 @@
-//! The closed-form feature tests against the reference method's, on features that meet or miss by a hair; disputes are
+//! The closed-form feature tests against the reference method's, on features that meet or miss by little; disputes are
 //! settled with 70 digits.
 
 use d2m_feature::paper::{PaperOptions, RelativeMotion, edge_edge, point_triangle};

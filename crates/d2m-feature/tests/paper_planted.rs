@@ -1,4 +1,4 @@
-//! First contacts of features planted with 70 digits, analytic cases of every erratum, and the shared cases if present.
+//! First contacts of features planted with 70 digits, and analytic cases of every erratum.
 
 use d2m_feature::paper::{
     PaperOptions, PolygonFace, RelativeMotion, Sphere, edge_edge, point_polygon, point_triangle,
@@ -7,9 +7,8 @@ use d2m_feature::paper::{
 use d2m_interval::Interval;
 use d2m_motion::ConstantTwist;
 use d2m_root::RootSearch;
-use d2m_testing::Draw;
-use d2m_testing::Random;
 use d2m_testing::fixed::{self, Fix, V, cross, dot, sub};
+use d2m_testing::{Draw, Random};
 use glam::{DVec3, dvec3};
 
 const OPTIONS: PaperOptions = PaperOptions::DEFAULT;

@@ -64,7 +64,7 @@ fn double_double_sine_satisfies_its_identities() {
 }
 
 #[test]
-fn enclosures_of_a_linear_motion_contain_it() {
+fn enclosures_of_a_constant_twist_contain_it() {
     let mut random = Random(3);
     for i in 0..3000 {
         let motion = random_motion(&mut random, [0.1, 3.0, 300.0][i % 3]);

@@ -51,7 +51,7 @@ pub enum FirstZero {
 /// slope where it is not.
 ///
 /// Promise, if the enclosures keep theirs: f ≠ 0 in the domain left of the bracket, or of `clear_until`, or everywhere
-/// for [`FirstZero::None`]; and what the evidence says. A simple zero that the enclosures can tell from its neighbours is
+/// for [`FirstZero::None`]; and what the evidence says. A simple zero that the enclosures can distinguish from its neighbors is
 /// [`ZeroEvidence::Unique`], in a bracket as narrow as the rounding of f allows (which may be below
 /// `limits.time_tolerance`, and is above it only where f cannot be distinguished from zero at any time that would cut it).
 ///

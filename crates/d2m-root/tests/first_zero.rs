@@ -97,11 +97,11 @@ fn ends_budgets_and_odd_functions() {
         let found = first_zero(&mut f, Interval::new(domain.0, domain.1), SearchLimits::new(1e-12));
         assert!(matches!(found, FirstZero::Found { bracket, .. } if bracket.contains(at)), "{found:?}");
     }
-    // A near miss within a budget of ten examinations: what is clear is reported.
+    // A near miss within a budget of ten evaluations: what is clear is reported.
     let mut f = Polynomial { roots: vec![0.5, 0.5], scale: 1.0, lift: 1e-13 };
     let limits = SearchLimits::new(0.0).with_evaluations(10);
     let FirstZero::Undecided { clear_until } = first_zero(&mut f, Interval::new(0.0, 1.0), limits) else {
-        panic!("ten examinations do not decide this")
+        panic!("ten evaluations do not decide this")
     };
     assert!((0.2..0.5).contains(&clear_until), "{clear_until}");
     // With enough of them the miss is proven.

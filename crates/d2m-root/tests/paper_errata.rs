@@ -242,7 +242,7 @@ fn near_is_the_bracket_if_the_rest_is_excluded() {
     assert_eq!((b.lo(), b.hi()), (0.75, 0.75));
 }
 
-/// The work is a handful of evaluations on a simple crossing: shortening converges, bisection does not.
+/// A simple crossing takes a handful of evaluations; bisection would take 43.
 #[test]
 fn simple_crossings_take_few_evaluations() {
     let mut f = Cubic::new([1.0, -1.5, 0.25, 0.125], EVERYWHERE);

@@ -107,7 +107,7 @@ pub(super) fn run(accept: bool) -> TaskResult {
         .flat_map(|o| if o.has_variants() { vec![(o, true), (o, false)] } else { vec![(o, true)] })
         .collect();
     let progress = bar(work.len());
-    // Counts, not times: they may run side by side.
+    // Counts, not times: they may run in parallel.
     let counted: Vec<Result<Option<f64>, String>> = work
         .par_iter()
         .map(|(operation, portable)| {

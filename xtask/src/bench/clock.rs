@@ -32,7 +32,7 @@ impl Phases {
     }
 }
 
-/// Processor time of this process and its ended children, where the system tells it: it does not grow while other
+/// Processor time of this process and its ended children, where the system reports it: it does not grow while other
 /// work has the processor.
 pub(super) fn processor_seconds() -> Option<f64> {
     parse(&std::fs::read_to_string("/proc/self/stat").ok()?)

@@ -30,7 +30,7 @@ fn judge(name: &str, text: &str) -> Vec<String> {
             findings.push(format!("{name}: {lines} lines, more than {LINES}: split it"));
         }
         if let Some(part) = stem.split('/').find(|part| EMPTY_NAMES.contains(part)) {
-            findings.push(format!("{name}: a module called {part} does not tell what lives there"));
+            findings.push(format!("{name}: a module called {part} does not say what it holds"));
         }
     }
     for (index, line) in text.lines().enumerate() {

@@ -72,7 +72,7 @@ impl FromStr for Interval {
     /// digits it has; the time is linear in them.
     ///
     /// Ends in the wrong order are an error. (Where both lie between the same two doubles and only hexadecimal digits
-    /// behind the 200th, or a comparison of fractions of tens of thousands of digits, could tell, the result is the
+    /// behind the 200th, or a comparison of fractions of tens of thousands of digits, could decide it, the result is the
     /// interval between these doubles.)
     ///
     /// ```

@@ -63,7 +63,7 @@ fn states_are_within_their_radii() {
             assert!(state.rotation_radius < 1e-15 * (100.0 + 20.0 * speed * 20.0), "{state:?}");
         }
     }
-    // The counted roundings are not empty: a radius of a tenth would be refuted for the position, a fortieth for the rotation.
+    // The counted roundings are not empty: a radius of a tenth would be refuted for the position, a fiftieth for the rotation.
     assert!(largest.iter().all(|[turn, moved]| *turn > 0.02 && *moved > 0.1), "{largest:?}");
 }
 

@@ -69,7 +69,7 @@ fn clipping_keeps_every_time_in_the_band() {
         for i in 0..=64 {
             let s = if i == 64 { part.hi } else { part.lo + part.width() * f64::from(i) / 64.0 };
             let keeps = |piece: Option<Piece>| piece.is_some_and(|p| p.lo <= s && s <= p.hi);
-            // A hair inside the band, for the rounding that the caller's margin covers.
+            // Inside the band by 1e-14, for the rounding that the caller's margin covers.
             if q.at(s) >= band.lo + 1e-14 && q.at(s) <= band.hi - 1e-14 {
                 assert!(keeps(clipped), "{q:?} {band:?} {part:?} {s}");
             }

@@ -193,10 +193,10 @@ pub fn plant(kind: Kind, family: Family, random: &mut Random) -> Planted {
     Planted { kind, family, a, b, motion_a, motion_b, window, time, gap }
 }
 
-/// 0, 1 or a hair from them.
+/// 0, 1 or next to them.
 fn edge_of(random: &mut Random) -> f64 {
-    let hair = if random.unit() < 0.5 { 0.0 } else { random.log_between(1e-16, 1e-6) };
-    if random.unit() < 0.5 { hair } else { 1.0 - hair }
+    let off = if random.unit() < 0.5 { 0.0 } else { random.log_between(1e-16, 1e-6) };
+    if random.unit() < 0.5 { off } else { 1.0 - off }
 }
 
 impl Planted {

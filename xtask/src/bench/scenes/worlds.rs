@@ -219,7 +219,7 @@ fn at_one_place(rounds: usize) -> TaskResult {
 /// What stays in memory for each pair that the broad phase leaves and nothing has searched.
 fn bytes_of_candidates() -> TaskResult {
     let Some(before) = memory::resident() else {
-        println!("memory per candidate: only where /proc tells it");
+        println!("memory per candidate: only where /proc reports it");
         return Ok(());
     };
     let mesh = tree("box")?;
