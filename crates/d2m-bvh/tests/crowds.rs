@@ -5,7 +5,7 @@ use d2m_bvh::{
     last_search_counts, time_of_contact,
 };
 use d2m_motion::ConstantTwist;
-use d2m_testing::{Draw, KnuthRandom};
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::DVec3;
 
 /// Node tests and tests of triangle pairs of one query, at most.
@@ -17,14 +17,7 @@ fn tree(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> MeshTree {
 
 /// Apex at the origin, base circle at z = up, closed.
 fn cone(n: u32, up: f64) -> MeshTree {
-    let mut vertices = vec![DVec3::ZERO, DVec3::Z * up];
-    vertices.extend((0..n).map(|k| {
-        let angle = f64::from(k) / f64::from(n) * core::f64::consts::TAU;
-        DVec3::new(angle.cos(), angle.sin(), up)
-    }));
-    let fan = |k: u32| (2 + k, 2 + (k + 1) % n);
-    let triangles = (0..n).flat_map(|k| [[0, fan(k).1, fan(k).0], [1, fan(k).0, fan(k).1]]);
-    tree(vertices, triangles.collect())
+    MeshTree::new(Surface::cone(n, 1.0, up).into_mesh(TriMesh::try_new))
 }
 
 /// Slivers from the origin in all directions of a half-space; their ends deviate from it by up to a thousandth.

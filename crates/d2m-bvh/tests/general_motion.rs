@@ -1,14 +1,17 @@
 //! Motions whose twist is not constant: never late, never missed, as near as was asked, judged by static distances.
 
+mod queries;
+
 use d2m_bvh::{
-    Evidence, MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact,
-    TriMesh, Window, distance, last_search_counts, time_of_contact,
+    Distance, Evidence, MeshTree, Mode, Moving, QueryError, QueryOptions, Solid, StartState, TimeOfContact,
+    TriMesh, Window, last_search_counts, time_of_contact,
 };
 use d2m_motion::{
     Chain, Composed, ConstantTwist, Joint, JointKind, JointValue, Keyframes, Pose, RigidMotion, Span,
 };
 use d2m_testing::{Blurred, Draw, KnuthRandom, Opaque, Surface};
 use glam::{DQuat, DVec3};
+use queries::{distance_at, query};
 
 const DELTA: f64 = 1e-9;
 
@@ -18,27 +21,6 @@ fn torus(rings: u32, sides: u32, scale: f64) -> MeshTree {
 
 fn cube(half: f64) -> MeshTree {
     MeshTree::new(Surface::cube(half).into_mesh(TriMesh::try_new))
-}
-
-fn query(
-    trees: [&MeshTree; 2],
-    motions: [&dyn RigidMotion; 2],
-    window: Window,
-    options: &QueryOptions,
-) -> TimeOfContact {
-    time_of_contact(Moving::new(trees[0], motions[0]), Moving::new(trees[1], motions[1]), window, options)
-        .unwrap()
-}
-
-/// Certified distance of the bodies at a time, expressed near `origin` so that the judge's own rounding does not matter.
-fn distance_at(trees: [&MeshTree; 2], motions: [&dyn RigidMotion; 2], t: f64, origin: DVec3) -> (f64, f64) {
-    let posed = [0, 1].map(|k| {
-        let state = motions[k].enclose_state_about(t, origin);
-        let rotation = DQuat::from_mat3(&state.rotation);
-        Posed::new(trees[k], Pose { rotation, translation: state.position, at: state.at })
-    });
-    let found = distance(posed[0], posed[1], Solid::Filled).unwrap();
-    (found.lower, found.upper)
 }
 
 /// Nothing touches before the answer, what is left then is as promised, and what is free is apart.
@@ -55,19 +37,19 @@ fn judge(
     };
     for k in 0..=100 {
         let t = (window.start() + (end - window.start()) * f64::from(k) / 100.0).min(end);
-        let (low, high) = distance_at(trees, motions, t, origin);
+        let Distance { lower: low, upper: high, .. } = distance_at(trees, motions, t, origin);
         if low <= 0.0 {
             return Err(format!("touching at {t}, before {end}: {high:e}"));
         }
     }
     let Some(contact) = answer.contact() else { return Ok(()) };
-    let (low, high) = distance_at(trees, motions, contact.time_lo, origin);
+    let Distance { lower: low, upper: high, .. } = distance_at(trees, motions, contact.time_lo, origin);
     let delta = contact.tolerance;
     if low < 0.3 * delta || high > 3.5 * delta {
         return Err(format!("{low:e} to {high:e} left at {end}: {contact:?}"));
     }
     if contact.evidence == Evidence::Near {
-        let (_, high) = distance_at(trees, motions, contact.time_hi, origin);
+        let high = distance_at(trees, motions, contact.time_hi, origin).upper;
         if high > 1.001 * delta {
             return Err(format!("{high:e} left at the end of the bracket: {contact:?}"));
         }
@@ -124,7 +106,7 @@ fn random_arms_are_answered_right() {
             .with_angular_velocity(random.vector() * 2.0)
             .with_reference_time(start);
         let window = Window::try_new(start, start + 1.0).unwrap();
-        if distance_at([&a, &b], [&link, &still], start, offset).0 < 1e-3 {
+        if distance_at([&a, &b], [&link, &still], start, offset).lower < 1e-3 {
             continue;
         }
         let answer = query([&a, &b], [&link, &still], window, &options);
@@ -136,7 +118,7 @@ fn random_arms_are_answered_right() {
         if answer.is_separated() {
             for k in 0..=300 {
                 let t = start + f64::from(k) / 300.0;
-                let (low, _) = distance_at([&a, &b], [&link, &still], t, offset);
+                let low = distance_at([&a, &b], [&link, &still], t, offset).lower;
                 assert!(low > 0.0, "round {round}: missed at {t}");
             }
         }
@@ -380,7 +362,7 @@ fn modes_separations_and_windows_hold_for_every_motion() {
         let link = arm(&mut random, 3, DVec3::ZERO, 0.0);
         let still = ConstantTwist::REST.with_position(random.vector().normalize() * 2.3);
         let motions: [&dyn RigidMotion; 2] = [&link, &still];
-        if distance_at([&a, &b], motions, 0.0, DVec3::ZERO).0 < 0.2 {
+        if distance_at([&a, &b], motions, 0.0, DVec3::ZERO).lower < 0.2 {
             continue;
         }
         let options = QueryOptions::default().with_tolerance(DELTA);
@@ -393,16 +375,18 @@ fn modes_separations_and_windows_hold_for_every_motion() {
             hits += 1;
             let early = early.contact().expect("a contact has a pair of near triangles");
             assert!(early.time_lo <= contact.time_hi);
-            let (low, high) = distance_at([&a, &b], motions, early.time_lo, DVec3::ZERO);
+            let Distance { lower: low, upper: high, .. } =
+                distance_at([&a, &b], motions, early.time_lo, DVec3::ZERO);
             assert!(low > 0.0 && high < 0.6, "round {round}");
             let far = far.contact().expect("nearer than a contact");
-            let (low, high) = distance_at([&a, &b], motions, far.time_lo, DVec3::ZERO);
+            let Distance { lower: low, upper: high, .. } =
+                distance_at([&a, &b], motions, far.time_lo, DVec3::ZERO);
             assert!(low > 0.1 && high < 0.1 + 4.0 * DELTA, "round {round}: {low} {high}");
         }
         if let Some(contact) = far.contact() {
             for k in 0..100 {
                 let t = contact.time_lo * f64::from(k) / 100.0;
-                assert!(distance_at([&a, &b], motions, t, DVec3::ZERO).0 > 0.1);
+                assert!(distance_at([&a, &b], motions, t, DVec3::ZERO).lower > 0.1);
             }
         }
         let mut before = 0.0;
@@ -468,7 +452,7 @@ fn moving_frames_and_their_contents_meet() {
         };
         let motion = Composed::new(turn(&mut random), turn(&mut random));
         let still = ConstantTwist::REST.with_position(random.vector().normalize() * 3.0);
-        if distance_at([&a, &b], [&motion, &still], 0.0, DVec3::ZERO).0 < 1e-3 {
+        if distance_at([&a, &b], [&motion, &still], 0.0, DVec3::ZERO).lower < 1e-3 {
             continue;
         }
         let answer = query([&a, &b], [&motion, &still], Window::UNIT, &options);

@@ -1,14 +1,14 @@
 //! Chains and splines chosen to be hard: planted contacts with a time that is known, and dense static distances.
 
-use d2m_bvh::{
-    MeshTree, Moving, Posed, QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window, distance,
-    time_of_contact,
-};
+mod queries;
+
+use d2m_bvh::{Distance, MeshTree, QueryOptions, StartState, TimeOfContact, TriMesh, Window};
 use d2m_motion::{
     Chain, ConstantTwist, Joint, JointKind, JointValue, Pose, RigidMotion, Spline, SplineDegree, Twist,
 };
 use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
+use queries::{distance_at, query};
 
 const DELTA: f64 = 1e-9;
 
@@ -30,27 +30,6 @@ fn plate() -> MeshTree {
     )
 }
 
-fn query(
-    trees: [&MeshTree; 2],
-    motions: [&dyn RigidMotion; 2],
-    window: Window,
-    options: &QueryOptions,
-) -> TimeOfContact {
-    time_of_contact(Moving::new(trees[0], motions[0]), Moving::new(trees[1], motions[1]), window, options)
-        .unwrap()
-}
-
-/// Certified distance at a time, expressed near `origin`, so that the judge's own rounding does not matter.
-fn distance_at(trees: [&MeshTree; 2], motions: [&dyn RigidMotion; 2], t: f64, origin: DVec3) -> (f64, f64) {
-    let posed = [0, 1].map(|k| {
-        let state = motions[k].enclose_state_about(t, origin);
-        let rotation = DQuat::from_mat3(&state.rotation);
-        Posed::new(trees[k], Pose { rotation, translation: state.position, at: state.at })
-    });
-    let found = distance(posed[0], posed[1], Solid::Filled).unwrap();
-    (found.lower, found.upper)
-}
-
 /// Nothing touches before the answer's time at `samples` times, and a contact is as near as its tolerance says.
 fn judge(
     trees: [&MeshTree; 2],
@@ -65,13 +44,13 @@ fn judge(
     };
     for k in 0..=samples {
         let t = (window.start() + (end - window.start()) * f64::from(k) / f64::from(samples)).min(end);
-        let (low, high) = distance_at(trees, motions, t, origin);
+        let Distance { lower: low, upper: high, .. } = distance_at(trees, motions, t, origin);
         if low <= 0.0 {
             return Err(format!("touching at {t}, before {end}: {high:e}"));
         }
     }
     let Some(contact) = answer.contact() else { return Ok(()) };
-    let (low, high) = distance_at(trees, motions, contact.time_lo, origin);
+    let Distance { lower: low, upper: high, .. } = distance_at(trees, motions, contact.time_lo, origin);
     if low < 0.3 * contact.tolerance || high > 3.5 * contact.tolerance {
         return Err(format!("{low:e} to {high:e} left: {contact:?}"));
     }
@@ -129,7 +108,7 @@ fn random_splines_are_answered_right() {
             .with_reference_time(start);
         let (first, last) = (frames[0].0, frames[frames.len() - 1].0);
         let window = Window::try_new(first, last).unwrap();
-        if distance_at([&a, &b], [&path, &still], first, offset).0 < 1e-3 {
+        if distance_at([&a, &b], [&path, &still], first, offset).lower < 1e-3 {
             continue;
         }
         let answer = query([&a, &b], [&path, &still], window, &options);
@@ -273,7 +252,7 @@ fn random_chains_of_piecewise_quintics() {
         let (left, right) =
             (arm(offset - DVec3::X, 1 + round % 6), arm(offset + DVec3::X, 1 + round / 6 % 3));
         let window = Window::try_new(start, start + 1.0).unwrap();
-        if distance_at([&a, &b], [&left, &right], start, offset).0 < 1e-3 {
+        if distance_at([&a, &b], [&left, &right], start, offset).lower < 1e-3 {
             continue;
         }
         let answer = query([&a, &b], [&left, &right], window, &options);

@@ -57,6 +57,27 @@ impl Surface {
         Self { name: "tetrahedron", vertices: vertices.to_vec(), triangles }
     }
 
+    /// A closed cone of this many sides with its apex at the origin and a base of this radius at z = `height`, which may be below
+    /// zero; oriented outward.
+    ///
+    /// ```
+    /// for height in [0.5, -0.5] {
+    ///     let cone = d2m_testing::Surface::cone(4, 3.0, height);
+    ///     assert!((cone.signed_volume() - 3.0).abs() < 1e-14);
+    /// }
+    /// ```
+    pub fn cone(sides: u32, radius: f64, height: f64) -> Self {
+        let mut vertices = vec![DVec3::ZERO, DVec3::Z * height];
+        for k in 0..sides {
+            let (sin, cos) = (core::f64::consts::TAU * f64::from(k) / f64::from(sides)).sin_cos();
+            vertices.push(DVec3::new(radius * cos, radius * sin, height));
+        }
+        let around = (0..sides).map(|k| (2 + k, 2 + (k + 1) % sides));
+        let downward = around.flat_map(|(i, j)| [[0, i, j], [1, j, i]]);
+        let cone = Self { name: "cone", vertices, triangles: downward.collect() };
+        if height > 0.0 { cone.inverted() } else { cone }
+    }
+
     /// Triangles that share no vertex, each of three successive vertices.
     ///
     /// ```

@@ -5,7 +5,7 @@ use super::generic_families::{
 };
 use super::guise::Guise;
 use super::scene::{Body, PATIENT, Scene};
-use super::shapes::{centered_box, cone, extruded, refined, sliver, spikes, stepped_plate, tetrahedron};
+use super::shapes::{centered_box, extruded, refined, sliver, spikes, stepped_plate, tetrahedron};
 use d2m::Solid;
 use d2m::motion::ConstantTwist;
 use d2m_testing::{Surface, Xoshiro256 as Random};
@@ -216,7 +216,7 @@ fn coincident_faces(random: &mut Random) -> Scene {
 /// Cones that meet apex to apex, apex to side, or pass closely.
 fn cones(random: &mut Random) -> Scene {
     let sides = 3 + random.bits() as u32 % 60;
-    let cone = |random: &mut Random| cone(sides, decade(random, -3.0, 0.0), 1.0);
+    let cone = |random: &mut Random| Surface::cone(sides, decade(random, -3.0, 0.0), -1.0);
     let (lower, upper) = (cone(random), cone(random));
     let aside =
         if random.unit() < 0.4 { DVec3::ZERO } else { random.direction() * decade(random, -12.0, -1.0) };

@@ -1,7 +1,7 @@
 //! Families of two random solids that are aimed at each other, in unusual windows, with unusual spins, reference points and sizes.
 use super::families::{about, body, decade, scene};
 use super::scene::Scene;
-use super::shapes::{centered_box, cone, refined, tetrahedron};
+use super::shapes::{centered_box, refined, tetrahedron};
 use d2m::Solid;
 use d2m_testing::{Surface, Xoshiro256 as Random};
 use glam::DVec3;
@@ -43,7 +43,7 @@ fn generic(random: &mut Random) -> Scene {
     let shape = |random: &mut Random| match random.bits() % 3 {
         0 => tetrahedron(random, 1.0),
         1 => centered_box(DVec3::new(random.range(0.1, 1.0), random.range(0.1, 1.0), random.range(0.1, 1.0))),
-        _ => cone(3 + random.bits() as u32 % 9, 0.7, 1.0),
+        _ => Surface::cone(3 + random.bits() as u32 % 9, 0.7, -1.0),
     };
     let (a, b) = (shape(random), shape(random));
     let along = random.direction();

@@ -32,21 +32,6 @@ pub(super) fn stepped_plate(step: f64) -> Surface {
     oriented(extruded(&profile, 1.0))
 }
 
-/// A cone with its apex at the origin that opens downwards.
-pub(super) fn cone(sides: u32, radius: f64, height: f64) -> Surface {
-    let mut vertices = vec![DVec3::ZERO, DVec3::Z * -height];
-    for k in 0..sides {
-        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(sides)).sin_cos();
-        vertices.push(DVec3::new(radius * cos, radius * sin, -height));
-    }
-    let mut triangles = Vec::new();
-    for k in 0..sides {
-        let (i, j) = (2 + k, 2 + (k + 1) % sides);
-        triangles.extend([[0, i, j], [1, j, i]]);
-    }
-    Surface { name: "cone", vertices, triangles }
-}
-
 /// A square crowd of separate spikes of about this height on a base of 2 × 2, tips at z = height, slightly uneven.
 pub(super) fn spikes(random: &mut Random, side: u32, height: f64) -> Surface {
     let mut crowd = Surface::default();
@@ -56,7 +41,7 @@ pub(super) fn spikes(random: &mut Random, side: u32, height: f64) -> Surface {
         let place = DVec3::new(f64::from(k % side) + 0.5, f64::from(k / side) + 0.5, 0.0) * pitch;
         let tall = height * (1.0 - uneven * random.unit());
         let tip = place + DVec3::new(-1.0, -1.0, tall);
-        crowd = crowd.with(&cone(3, 0.4 * pitch, tall).map(|p| p + tip));
+        crowd = crowd.with(&Surface::cone(3, 0.4 * pitch, -tall).map(|p| p + tip));
     }
     crowd
 }

@@ -13,13 +13,7 @@ fn tree(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> MeshTree {
 
 /// A cone with its apex at the origin, and the disc that closes it.
 fn cone(n: u32, up: f64) -> MeshTree {
-    let mut vertices = vec![DVec3::ZERO, DVec3::Z * up];
-    vertices.extend((0..n).map(|k| {
-        let angle = f64::from(k) / f64::from(n) * core::f64::consts::TAU;
-        DVec3::new(angle.cos(), angle.sin(), up)
-    }));
-    let fan = |k: u32| (2 + k, 2 + (k + 1) % n);
-    tree(vertices, (0..n).flat_map(|k| [[0, fan(k).1, fan(k).0], [1, fan(k).0, fan(k).1]]).collect())
+    MeshTree::new(Surface::cone(n, 1.0, up).into_mesh(TriMesh::try_new))
 }
 
 fn soup(vertices: impl IntoIterator<Item = DVec3>) -> MeshTree {
