@@ -137,7 +137,7 @@ fn a_grain_of_dust_meets_what_it_hits() {
         let speed = 2f64.powi(round / 14 % 25);
         let velocity = DVec3::new(1.0, 0.5 * random.signed(), 0.5 * random.signed()) * speed;
         let mut triangles = Vec::new();
-        for number in 0..1 + round as u32 % 4 {
+        for number in 0..=round as u32 % 4 {
             // The first in the plane x = 0, and some behind it.
             let shift = DVec3::new(-1.5 * f64::from(number), random.signed(), random.signed());
             triangles.push([0; 3].map(|_| shift + DVec3::new(0.0, random.signed(), random.signed())));
@@ -146,8 +146,7 @@ fn a_grain_of_dust_meets_what_it_hits() {
         let sum: f64 = weights.iter().sum();
         weights = weights.map(|w| w / sum);
         let hit: DVec3 = (0..3).map(|k| triangles[0][k] * weights[k]).sum();
-        let faces = (0..triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
-        let plate = MeshTree::new(TriMesh::try_new(triangles.concat(), faces).unwrap());
+        let plate = MeshTree::new(Surface::soup(triangles.concat()).into_mesh(TriMesh::try_new));
         let grain = tetrahedron(size);
         let time = 0.5 + 0.4 * random.signed();
         let flight = ConstantTwist::try_new(hit, DQuat::IDENTITY, velocity, DVec3::ZERO)
