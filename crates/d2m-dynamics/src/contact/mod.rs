@@ -1,5 +1,6 @@
 //! Contacts of bodies that are close: rows, their solution, impacts.
 
+mod directions;
 mod impact;
 mod point;
 mod rows;

@@ -1,5 +1,6 @@
 //! Projected Gauss–Seidel over contact points with Coulomb friction.
 
+use super::directions::{Before, Directions, Restart};
 use super::{ContactPoint, Scope};
 use crate::velocity::Velocity;
 use glam::{DMat3, DVec3};
@@ -152,8 +153,7 @@ impl Solver {
     /// Iterates until no rate changes by more than `precision` in a sweep, so many sweeps at most. The rates along the normals
     /// end at `targets` at least; impulses along the normals push only, those along the tangents stay in the cone.
     ///
-    /// Sweeps of projected Gauss–Seidel, continued along conjugate directions of their steps (the nonsmooth nonlinear
-    /// conjugate gradient method of Silcowitz, Niebe and Erleben 2010): a column of ten boxes with friction is as stiff as a
+    /// Sweeps of projected Gauss–Seidel, continued along conjugate directions of their steps: a column of ten boxes with friction is as stiff as a
     /// beam, and takes tens of sweeps instead of thousands.
     pub(crate) fn iterate(
         &mut self,
@@ -169,16 +169,15 @@ impl Solver {
         };
         // Close to each other in memory, which is what a sweep's time goes to.
         let mut impulses: Vec<[f64; 3]> = contacts.iter().map(ContactPoint::impulses).collect();
-        let mut direction = vec![[0.0f64; 3]; contacts.len()];
-        let mut before = vec![[0.0f64; 3]; contacts.len()];
-        let mut last = f64::INFINITY;
+        let mut directions = Directions::new(contacts.len(), self.bodies.len(), scope.is_whole());
+        let mut before = Before::new(contacts.len());
         let mut sweep = 0;
         let is_short = scope.sweeps() < SHORT;
+        // A large island goes on for as long as its steps have the direction that it goes in.
+        let restart = if is_short { Restart::Turn } else { Restart::Growth };
         let left = loop {
             sweep += 1;
-            for &k in scope.members() {
-                before[k] = impulses[k];
-            }
+            directions.note(&mut before, scope.members(), &impulses, self);
             let change = self.sweep(&mut impulses, targets, scope.members());
             if sweep >= most.min(scope.sweeps()) {
                 break change;
@@ -187,44 +186,14 @@ impl Solver {
                 if !scope.grow(self) {
                     break change;
                 }
-                direction.fill([0.0; 3]);
-                last = f64::INFINITY;
+                directions.begin_anew();
                 continue;
             }
             if is_plain || (is_short && sweep + SETTLING >= most.min(scope.sweeps())) {
                 continue;
             }
-            let (mut square, mut aligned) = (0.0, 0.0);
-            for &k in scope.members() {
-                let (old, new) = (&mut before[k], impulses[k]);
-                *old = [0, 1, 2].map(|i| new[i] - old[i]);
-                square += old.iter().map(|x| x * x).sum::<f64>();
-                aligned += old.iter().zip(&direction[k]).map(|(x, y)| x * y).sum::<f64>();
-            }
-            let ratio = square / last;
-            last = square;
-            // A large island goes on for as long as its steps have the direction that it goes in.
-            let turns = if is_short { aligned < 0.0 } else { ratio > 1.0 };
-            if ratio.is_nan() || turns {
-                direction.fill([0.0; 3]);
-                continue;
-            }
-            for &k in scope.members() {
-                let (impulse, d) = (&mut impulses[k], &mut direction[k]);
-                let added = d.map(|x| ratio.min(1.0) * x);
-                *d = [0, 1, 2].map(|i| added[i] + before[k][i]);
-                if added == [0.0; 3] {
-                    continue;
-                }
-                *impulse = [0, 1, 2].map(|i| impulse[i] + added[i]);
-                let p = &self.prepared[k];
-                push(&mut self.bodies, p, &p.normal, added[0]);
-                if p.friction > 0.0 {
-                    push(&mut self.bodies, p, &p.tangents[0], added[1]);
-                    push(&mut self.bodies, p, &p.tangents[1], added[2]);
-                }
-            }
-            if sweep % BETWEEN == 0 {
+            let goes_on = directions.advance(&mut before, scope.members(), &mut impulses, self, restart);
+            if goes_on && sweep % BETWEEN == 0 {
                 scope.grow(self);
             }
         };
@@ -233,6 +202,16 @@ impl Solver {
             (contacts[k].impulse, contacts[k].sliding) = (along, [first, second]);
         }
         left
+    }
+
+    /// Adds impulses of one contact to the velocities.
+    pub(super) fn apply(&mut self, contact: usize, [along, first, second]: [f64; 3]) {
+        let p = &self.prepared[contact];
+        push(&mut self.bodies, p, &p.normal, along);
+        if p.friction > 0.0 {
+            push(&mut self.bodies, p, &p.tangents[0], first);
+            push(&mut self.bodies, p, &p.tangents[1], second);
+        }
     }
 
     /// Adds what makes room to the impulses of the contacts, and to the velocities.
