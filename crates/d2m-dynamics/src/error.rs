@@ -133,6 +133,17 @@ pub enum StepError {
         /// When.
         time: f64,
     },
+    /// A kinematic body turns or speeds up so fast that flights of constant twists, 4096 in a step, stay no closer to its motion than
+    /// a hundredth of the gap; or its motion encloses itself too widely to show it.
+    #[error(
+        "at time {time}: body {body} moves too fast, or too unevenly, for the step: take a shorter step or a wider gap"
+    )]
+    TooFast {
+        /// The kinematic body.
+        body: String,
+        /// When.
+        time: f64,
+    },
     /// A fault of the set-up that is found at the first step.
     #[error(transparent)]
     Setup(#[from] SimulationError),

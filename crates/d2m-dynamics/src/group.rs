@@ -129,8 +129,9 @@ pub(crate) fn solve(
         }
     }
 
-    let horizons: Vec<f64> = states.iter().map(|s| s.horizon_within(clock.end, options.step)).collect();
-    let end = horizons.iter().copied().fold(clock.end, f64::min);
+    // Bodies that are held keep their momenta and the time at which they were held: they have no flight that ends.
+    let horizons = states.iter().filter(|s| moves(s)).map(|s| s.horizon_within(clock.end, options.step));
+    let end = horizons.fold(clock.end, f64::min);
     let span =
         Span { remaining: end - clock.now, step: options.step, resting_speed: options.resting_speed() };
     let prepare = |s: &RigidBody, v: Velocity| {

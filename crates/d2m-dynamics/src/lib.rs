@@ -9,6 +9,7 @@ mod contact;
 mod error;
 mod faces;
 mod group;
+mod kinematic;
 mod listener;
 mod mass;
 mod momenta;

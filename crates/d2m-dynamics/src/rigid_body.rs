@@ -16,11 +16,6 @@ use std::sync::Arc;
 const MOST_TURN: f64 = 0.25;
 /// Flights of one body in a step at most, as long as nothing meets it; a body that turns faster flies longer ones.
 const MOST_FLIGHTS: f64 = 64.0;
-/// How far the twist of a kinematic flight may lead off the motion between its ends, of the gap.
-const OFF_MOTION: f64 = 0.01;
-/// Halvings of a step to keep to that.
-const MOST_HALVINGS: u32 = 8;
-
 /// A body of a simulation. `position` is that of the center of mass.
 #[derive(Clone)]
 pub(crate) struct RigidBody {
@@ -362,45 +357,6 @@ impl RigidBody {
         let speed = |body: &Self| if body.version == 0 { body.velocity() } else { body.shown_velocity() };
         let (a, b) = (speed(self), speed(other));
         (a.linear - b.linear).length() + a.angular.length() * self.radius + b.angular.length() * other.radius
-    }
-
-    /// The next piece of a kinematic body's motion: the twist about its center that joins the poses at its ends, as long
-    /// as the motion stays close to it.
-    pub(crate) fn follow(&mut self, end: f64, gap: f64) {
-        let Kind::Kinematic(motion) = &self.kind else { return };
-        let place = |time: f64| {
-            let (pose, _) = motion.pose_and_twist(time);
-            (pose.transform_point(self.center), pose.rotation.normalize())
-        };
-        let start = self.time;
-        let (x0, q0) = place(start);
-        let mut horizon = motion.smooth_until(start).map_or(end, |joint| end.min(joint));
-        let mut velocity = Velocity::default();
-        for halving in 0..=MOST_HALVINGS {
-            let length = horizon - start;
-            let (x1, q1) = place(horizon);
-            velocity = Velocity {
-                linear: (x1 - x0) / length,
-                angular: rotation_vector(q1 * q0.conjugate()) / length,
-            };
-            let off = [0.25, 0.5, 0.75].map(|part| {
-                let time = start + part * length;
-                let (x, q) = place(time);
-                let flown = x0 + velocity.linear * (time - start);
-                let turn = ConstantTwist::REST.with_orientation(q0).with_angular_velocity(velocity.angular);
-                let turned = turn.pose_and_twist(time - start).0.rotation;
-                (x - flown).length() + rotation_vector(q * turned.conjugate()).length() * self.radius
-            });
-            let worst = off.into_iter().fold(0.0, f64::max);
-            let middle = start + 0.5 * length;
-            if worst <= OFF_MOTION * gap || halving == MOST_HALVINGS || !(middle > start && middle < horizon)
-            {
-                break;
-            }
-            horizon = middle;
-        }
-        (self.position, self.orientation) = (x0, q0);
-        self.fly(velocity, horizon);
     }
 }
 

@@ -171,3 +171,37 @@ fn numbers_that_cannot_be_used_are_refused() {
         assert!(Simulation::new(options).is_err());
     }
 }
+
+/// Bodies that are held have no flight that ends: those they touch are solved without, and each step ends.
+#[test]
+fn bodies_that_are_held_end_no_flights_of_others() {
+    let small = tree("box?x=0.1&y=0.08&z=0.06");
+    let thick = tree("box?x=5&y=0.5&z=5");
+    let one = |name: &str, x: f64, y: f64, v: DVec3, w: DVec3| {
+        let body = Body::new(name, Arc::clone(&small)).with_mass(Mass::Total(1.0)).with_restitution(1.0);
+        body.with_position(DVec3::new(x, y, 0.0)).with_linear_velocity(v).with_angular_velocity(w)
+    };
+    let still = |name: &str, y: f64| {
+        Body::new(name, Arc::clone(&thick)).with_kind(Kind::Static).with_position(DVec3::Y * y)
+    };
+    let options = SimulationOptions::default().with_gravity(DVec3::ZERO).with_step(0.01).with_gap(0.03);
+    let slow = [
+        still("floor", -0.5),
+        one("a", 0.0, 0.15, DVec3::NEG_Y * 9.0, DVec3::new(30.0, 20.0, 10.0)),
+        one("c", 0.23, 0.2, DVec3::NEG_X * 2.0, DVec3::new(40.0, -20.0, 30.0)),
+    ];
+    let fast = [
+        still("floor", -0.5),
+        still("ceiling", 0.9),
+        one("a", 0.0, 0.2, DVec3::NEG_Y * 60_000.0, DVec3::new(20.0, 50.0, 40.0)),
+        one("c", 0.25, 0.22, DVec3::ZERO, DVec3::new(-40.0, 40.0, -50.0)),
+    ];
+    let scenes: [(&[Body], SimulationOptions); 2] = [(&slow, options.with_max_events(1)), (&fast, options)];
+    for (bodies, options) in scenes {
+        let mut simulation = Simulation::new(options).unwrap();
+        for body in bodies {
+            simulation.add(body).unwrap();
+        }
+        assert!(run(&mut simulation, 0.05) > 0.0);
+    }
+}

@@ -117,9 +117,10 @@ impl<'s> Step<'s> {
             let (hold, go_on): (Vec<Event>, Vec<Event>) = met.into_iter().partition(|event| {
                 let count = last.1.entry(event.bodies).or_default();
                 *count += 1;
+                // Also flights that end again and again at one time: a step ends, whatever comes.
                 let again = *count > MOST_AT_ONCE;
-                event.cause != Cause::Horizon
-                    && (over || again || event.cause == Cause::Stuck || event.bodies.into_iter().any(held))
+                let stops = over || event.cause == Cause::Stuck || event.bodies.into_iter().any(held);
+                again || event.cause != Cause::Horizon && stops
             });
             if hold.is_empty() {
                 self.report.events +=

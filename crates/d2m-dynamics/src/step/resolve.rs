@@ -37,7 +37,7 @@ impl Step<'_> {
             if occasion != Occasion::Start {
                 self.retract(&mut group, (until - time) / (self.end - time), occasion);
             }
-            self.follow_motions(&group, clock, occasion);
+            self.follow_motions(&group, clock, occasion)?;
             self.solve_islands(&group, clock)
         };
         if !matches!(occasion, Occasion::Plan { .. } | Occasion::Expected) {
@@ -101,15 +101,16 @@ impl Step<'_> {
     }
 
     /// Kinematic members begin their next flight if the last one ends here.
-    fn follow_motions(&mut self, group: &Group, clock: Clock, occasion: Occasion) {
+    fn follow_motions(&mut self, group: &Group, clock: Clock, occasion: Occasion) -> Result<(), StepError> {
         for &i in &group.members {
             let body = &mut self.sim.bodies[i];
             if body.is_kinematic() && (occasion == Occasion::Start || body.horizon <= clock.now) {
                 body.time = clock.now;
-                body.follow(self.end, self.sim.options.gap);
+                body.follow(self.end, self.sim.options.gap)?;
                 self.sim.recorder.change(BodyId(i as u32), body.flight);
             }
         }
+        Ok(())
     }
 
     /// Velocities of the members from the contacts between them, and with what nothing moves.
@@ -133,7 +134,7 @@ impl Step<'_> {
         for _ in 0..MOST_ROUNDS {
             self.admit(group, clock.now, &wave, occasion)?;
             group.sort();
-            self.follow_motions(group, clock, occasion);
+            self.follow_motions(group, clock, occasion)?;
             let solved = self.solve_islands(group, clock);
             wave = self.pressed(group, &solved, clock);
             if wave.is_empty() {
@@ -149,7 +150,7 @@ impl Step<'_> {
         let rest: Vec<usize> = rest.into_iter().filter(outside).collect();
         self.admit_connected(group, clock.now, rest, occasion)?;
         group.sort();
-        self.follow_motions(group, clock, occasion);
+        self.follow_motions(group, clock, occasion)?;
         Ok(self.solve_islands(group, clock))
     }
 

@@ -149,4 +149,18 @@ pub(super) const MUTANTS: &[Mutant] = &[
         "let _ = BodyId(i as u32);",
         "crates/d2m-dynamics/tests/scenes.rs::segments_join_where_bodies_sleep_and_wake",
     ),
+    patch(
+        "kinematic bodies may turn any number of times in a flight",
+        "crates/d2m-dynamics/src/kinematic.rs",
+        "return f64::INFINITY;",
+        "return 0.0;",
+        "crates/d2m-dynamics/tests/kinematic.rs::a_blade_turns_as_far_as_its_motion_at_any_rate",
+    ),
+    patch(
+        "centers of kinematic bodies fly straight however they speed up",
+        "crates/d2m-dynamics/src/kinematic.rs",
+        "* (0.125 * length * length)",
+        "* (0.0 * length * length)",
+        "crates/d2m-dynamics/tests/kinematic.rs::a_slide_between_the_quarters_of_a_step_is_seen",
+    ),
 ];

@@ -1,0 +1,100 @@
+//! Bodies that follow a motion, as flights of constant twists that stay close to it.
+
+use crate::StepError;
+use crate::body::Kind;
+use crate::rigid_body::{RigidBody, rotation_vector};
+use crate::velocity::Velocity;
+use d2m_interval::{Interval, IntervalVec3};
+use d2m_motion::RigidMotion;
+use glam::{DQuat, DVec3};
+
+/// How far the twist of a kinematic flight may lead off the motion between its ends, of the gap.
+const OFF_MOTION: f64 = 0.01;
+/// Halvings of what is left of a step to keep to that: 4096 flights in a step, which take seconds, are the most.
+const MOST_HALVINGS: u32 = 12;
+/// A motion turns by less than this within a flight, so the shortest turn from its first orientation to its last is the one that it makes;
+/// below π, with room for rounding.
+const MOST_TURN: f64 = 3.0;
+
+/// Parts of a piece over which angular velocities are enclosed.
+const PARTS: u32 = 8;
+
+/// A motion from one pose of a body to another.
+struct Piece {
+    time: Interval,
+    length: f64,
+    /// Of the flight that joins the poses at both ends.
+    velocity: Velocity,
+}
+
+impl RigidBody {
+    /// The next piece of a kinematic body's motion: the twist about its center that joins the poses at its ends, as long
+    /// as the motion is proven to stay close to it.
+    ///
+    /// # Errors
+    /// [`StepError::TooFast`] where no flight that is long enough does.
+    pub(crate) fn follow(&mut self, end: f64, gap: f64) -> Result<(), StepError> {
+        let Kind::Kinematic(motion) = &self.kind else { return Ok(()) };
+        let start = self.time;
+        let first = self.place_by(&**motion, start);
+        let mut horizon = motion.smooth_until(start).map_or(end, |joint| end.min(joint));
+        for _ in 0..=MOST_HALVINGS {
+            let piece = self.piece(&**motion, first, start, horizon);
+            if self.bound_deviation(&**motion, &piece) <= OFF_MOTION * gap {
+                (self.position, self.orientation) = first;
+                self.fly(piece.velocity, horizon);
+                return Ok(());
+            }
+            let middle = start + 0.5 * piece.length;
+            if !(middle > start && middle < horizon) {
+                break;
+            }
+            horizon = middle;
+        }
+        Err(StepError::TooFast { body: self.name.to_string(), time: start })
+    }
+
+    /// Where a motion of the mesh frame has the center and the axes.
+    fn place_by(&self, motion: &dyn RigidMotion, time: f64) -> (DVec3, DQuat) {
+        let (pose, _) = motion.pose_and_twist(time);
+        (pose.transform_point(self.center), pose.rotation.normalize())
+    }
+
+    fn piece(&self, motion: &dyn RigidMotion, (x, q): (DVec3, DQuat), start: f64, end: f64) -> Piece {
+        let length = end - start;
+        let (last_x, last_q) = self.place_by(motion, end);
+        let velocity = Velocity {
+            linear: (last_x - x) / length,
+            angular: rotation_vector(last_q * q.conjugate()) / length,
+        };
+        Piece { time: Interval::new(start, end), length, velocity }
+    }
+
+    /// How far a point of the body may be from where the flight has it, between the ends of a piece, at which both agree.
+    ///
+    /// The center flies straight between two points of its path: it is off by at most h²/8 of its largest acceleration. With
+    /// E = R P⁻¹ of the orientations R of the motion and P of the flight, E turns with ω − E ω₀, and the component of that along E's
+    /// own axis is the one of ω − ω₀; so the angle of E, which is zero at both ends, is at most half of the integral of |ω − ω₀|.
+    fn bound_deviation(&self, motion: &dyn RigidMotion, piece: &Piece) -> f64 {
+        let &Piece { time, length, velocity } = piece;
+        let spin = motion.enclose_twist(time).angular;
+        // Not when it is no number either.
+        let turns_by_less = spin.norm().hi() * length < MOST_TURN;
+        if !turns_by_less {
+            return f64::INFINITY;
+        }
+        let rate = motion.enclose_twist_rate(time);
+        let pose = motion.enclose_pose(time);
+        // From the reference point to the center; what lies along the axis of a spin does not speed up.
+        let arm = pose.enclose_vector(self.center - pose.at);
+        let acceleration = rate.linear + rate.angular.cross(arm) + spin.cross(spin.cross(arm));
+        let bend = acceleration.norm().hi() * (0.125 * length * length);
+        let off = |part: Interval| {
+            let spin = motion.enclose_twist(part).angular - IntervalVec3::point(velocity.angular);
+            spin.norm().hi() * (part.hi() - part.lo())
+        };
+        let at = |k: u32| time.lo() + length * (f64::from(k) / f64::from(PARTS));
+        let parts = (0..PARTS).map(|k| Interval::new(at(k), at(k + 1).min(time.hi())));
+        bend + 0.5 * parts.map(off).sum::<f64>() * self.radius
+    }
+}

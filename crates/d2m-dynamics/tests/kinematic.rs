@@ -1,0 +1,100 @@
+//! Bodies that follow their motions: within a hundredth of the gap, however fast, or the step says that it cannot be.
+
+use d2m_bvh::MeshTree;
+use d2m_dynamics::{Body, Kind, Segment, Simulation, SimulationOptions, StepError};
+use d2m_motion::{Chain, ConstantTwist, Joint, JointKind, JointValue, RigidMotion};
+use glam::{DQuat, DVec3};
+use std::sync::Arc;
+
+const GAP: f64 = 1e-3;
+
+/// A blade from −1 to 1 along x, alone.
+fn simulation(motion: Arc<dyn RigidMotion + Send + Sync>) -> Simulation {
+    let options = SimulationOptions::default().with_gravity(DVec3::ZERO).with_step(0.01).with_gap(GAP);
+    let mut simulation = Simulation::new(options).unwrap();
+    let blade = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=1&y=0.05&z=0.05").unwrap()));
+    simulation.add(&Body::new("blade", blade).with_kind(Kind::Kinematic(motion))).unwrap();
+    simulation
+}
+
+/// All segments of some steps.
+fn run(simulation: &mut Simulation, steps: u32) -> Vec<Segment> {
+    let mut segments = Vec::new();
+    for _ in 0..steps {
+        segments.extend(simulation.step().unwrap().segments);
+    }
+    segments.extend(simulation.finish());
+    segments
+}
+
+/// The tips are where the motion has them, at many times of each segment; how far the body has turned in all.
+fn turned(segments: &[Segment], motion: &dyn RigidMotion) -> f64 {
+    let mut flight = ConstantTwist::REST;
+    let mut turned = 0.0;
+    for segment in segments {
+        if let [(_, changed)] = segment.changed[..] {
+            flight = changed;
+        }
+        turned += flight.angular_velocity().length() * (segment.end - segment.start);
+        for part in 0..=16 {
+            let time = segment.start + f64::from(part) / 16.0 * (segment.end - segment.start);
+            let [flown, wanted] = [&flight as &dyn RigidMotion, motion].map(|m| m.pose_and_twist(time).0);
+            for tip in [-DVec3::X, DVec3::X] {
+                let off = flown.transform_point(tip).distance(wanted.transform_point(tip));
+                assert!(off <= 0.01 * GAP + 1e-12, "{off:e} at {time}");
+            }
+        }
+    }
+    turned
+}
+
+/// Also where a quarter of a step is a number of whole turns: samples of the motion alone would show a blade that stands still.
+#[test]
+fn a_blade_turns_as_far_as_its_motion_at_any_rate() {
+    for rate in [1.0, 100.0, 2100.0, 2250.0, 800.0 * core::f64::consts::PI, 2900.0, 4900.0, 40_000.0] {
+        let motion = ConstantTwist::REST.with_angular_velocity(DVec3::Z * rate);
+        let all = turned(&run(&mut simulation(Arc::new(motion)), 2), &motion);
+        assert!((all - 0.02 * rate).abs() < 1e-9 * (1.0 + rate), "{rate}: {all}");
+    }
+}
+
+/// About a point beside the blade, so that its center goes in circles.
+#[test]
+fn a_blade_beside_its_axis_goes_round() {
+    for rate in [30.0, 300.0, 2513.0] {
+        let motion = ConstantTwist::REST
+            .with_at(DVec3::new(0.3, 0.4, 0.0))
+            .with_position(DVec3::new(0.3, 0.4, 0.0))
+            .with_angular_velocity(DVec3::Z * rate);
+        let all = turned(&run(&mut simulation(Arc::new(motion)), 1), &motion);
+        assert!((all - 0.01 * rate).abs() < 1e-6 * rate, "{rate}: {all}");
+    }
+}
+
+/// A slide that is back at zero at every quarter of the first step, with a way of half a meter in between.
+#[test]
+fn a_slide_between_the_quarters_of_a_step_is_seen() {
+    let zeros = [0.0, 0.0025, 0.005, 0.0075, 0.01];
+    let mut coefficients = vec![1.4e12];
+    for zero in zeros {
+        // Times (t − zero), lowest power first.
+        let shifted: Vec<f64> = [0.0].into_iter().chain(coefficients.iter().copied()).collect();
+        let scaled = coefficients.iter().map(|c| -zero * c).chain([0.0]);
+        coefficients = shifted.iter().zip(scaled).map(|(a, b)| a + b).collect();
+    }
+    let value = JointValue::try_pieces(vec![0.0, 0.01, 1.0], vec![coefficients, vec![0.0]]).unwrap();
+    let slide = JointKind::Prismatic { axis: DVec3::Y, value };
+    let motion = Chain::try_new(vec![Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, slide).unwrap()]).unwrap();
+    let segments = run(&mut simulation(Arc::new(motion.clone())), 1);
+    turned(&segments, &motion);
+    let highest = segments.iter().flat_map(|s| &s.changed).map(|(_, flight)| flight.position().y.abs());
+    assert!(highest.fold(0.0, f64::max) > 0.4);
+}
+
+#[test]
+fn what_cannot_be_followed_is_named() {
+    let motion = ConstantTwist::REST.with_at(DVec3::Y).with_angular_velocity(DVec3::Z * 1e6);
+    let error = simulation(Arc::new(motion)).step().unwrap_err();
+    assert_eq!(error, StepError::TooFast { body: "blade".into(), time: 0.0 });
+    assert!(error.to_string().contains("body blade moves too fast"), "{error}");
+}
