@@ -8,7 +8,6 @@ use crate::rigid_body::RigidBody;
 use crate::simulation::query_error;
 use crate::{StepError, parallel};
 use d2m_bvh::QueryError;
-use std::collections::BTreeSet;
 
 /// Features within this many gaps are measured in any case.
 pub(super) const AROUND: f64 = 1.5;
@@ -24,7 +23,8 @@ pub(super) struct Group {
     pub(super) members: Vec<usize>,
     /// All contacts of the members within the margin; in order after [`Group::sort`].
     pub(super) contacts: Vec<ContactPoint>,
-    measured: BTreeSet<Key>,
+    /// Pairs whose contacts are among those or that have none, ascending.
+    measured: Vec<Key>,
 }
 
 impl Group {
@@ -57,7 +57,7 @@ impl Group {
     }
 
     pub(super) fn has_measured(&self, key: Key) -> bool {
-        self.measured.contains(&key)
+        self.measured.binary_search(&key).is_ok()
     }
 }
 
@@ -147,14 +147,22 @@ impl Step<'_> {
         };
         let wave: Vec<usize> = wave.iter().copied().filter(begins).collect();
         let new: Vec<Key> =
-            self.partners(&wave).into_iter().filter(|key| !group.measured.contains(key)).collect();
+            self.partners(&wave).into_iter().filter(|&key| !group.has_measured(key)).collect();
+        group.measured.extend(&new);
+        group.measured.sort_unstable();
         let sim = &*self.sim;
         let (most, step) = (self.margin, self.end - time);
         // Poses at one instant are the same however often flights from there are planned.
-        let (known, new): (Vec<Key>, Vec<Key>) = new
-            .into_iter()
-            .partition(|key| sim.pairs.get(key).is_some_and(|pair| pair.measured == Some(time)));
-        let mut found = parallel::map(new, |key| {
+        let mut known = Vec::new();
+        let mut unknown = Vec::new();
+        for key in new {
+            match sim.pairs.get(&key).filter(|pair| pair.measured == Some(time)) {
+                None => unknown.push(key),
+                Some(pair) if pair.contacts.is_empty() && !self.expected.contains_key(&key) => {}
+                Some(_) => known.push(key),
+            }
+        }
+        let mut found = parallel::map(unknown, |key| {
             let (gap, reach) =
                 sim.pairs.get(&key).map_or((sim.options.gap, 1.0), |pair| (pair.gap, pair.reach));
             // What is further apart than the present motion leads needs no row; if forces lead there all the same, the
@@ -167,7 +175,6 @@ impl Step<'_> {
         found.sort_by_key(|(key, _)| *key);
         let mut next = Vec::new();
         for (key, answer) in found {
-            group.measured.insert(key);
             let answer = match answer {
                 Some(Ok(points)) => Some(points),
                 None => None,
