@@ -111,6 +111,11 @@ impl Pair {
         (self.contacts, self.measured) = (contacts, Some(time));
     }
 
+    /// Are the bodies further apart than this at a time, as follows from what is known of them?
+    pub(crate) fn is_beyond(&self, margin: f64, bodies: [&RigidBody; 2], time: f64) -> bool {
+        self.clearance.is_some_and(|known| known.bound(bodies, time, 0.0) > margin)
+    }
+
     /// The separation at which a flight of the pair ends.
     pub(crate) fn separation(&self) -> f64 {
         let stop = STOP * self.gap;

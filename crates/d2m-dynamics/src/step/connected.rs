@@ -169,7 +169,14 @@ impl Step<'_> {
             // flight ends at an event.
             let way = reach * APPROACH * sim.bodies[key.0].bound_approach(&sim.bodies[key.1]) * step;
             let margin = (AROUND * sim.options.gap + way).min(most);
-            (key, Some(measure(&sim.bodies, key, time, margin, gap, sim.material(key.0, key.1))))
+            let (a, b) = (&sim.bodies[key.0], &sim.bodies[key.1]);
+            let is_far = sim.pairs.get(&key).is_some_and(|pair| pair.is_beyond(margin, [a, b], time));
+            let measured = if is_far {
+                Ok(Measured { apart: margin, ..Measured::default() })
+            } else {
+                measure(&sim.bodies, key, time, margin, gap, sim.material(key.0, key.1))
+            };
+            (key, Some(measured))
         });
         found.extend(known.into_iter().map(|key| (key, None)));
         found.sort_by_key(|(key, _)| *key);
