@@ -116,11 +116,11 @@ fn bad_scenes_are_refused_with_their_place() {
         (PILE.replace("\"friction\": 0.5}", "\"friction\": 1e999}"), "number"),
         (
             MOVING.replace("\"motion\"", "\"pose\": {\"x\": [9, 0, 0]}, \"motion\""),
-            "body \"press\" (index 0): motion, pose: ",
+            "body 0 (\"press\"): motion, pose: ",
         ),
         (
             MOVING.replace("\"motion\"", "\"velocity\": {}, \"motion\""),
-            "body \"press\" (index 0): motion, velocity: ",
+            "body 0 (\"press\"): motion, velocity: ",
         ),
         (MOVING.replace("kinematic", "static"), "follows none"),
     ];

@@ -2,7 +2,8 @@
 
 use crate::failure::Failure;
 use crate::mesh_library::{MeshLibrary, read_scale};
-use d2m::bvh::{MeshTree, Solid};
+use crate::motion::require_window;
+use d2m::bvh::{MeshTree, Solid, Window};
 use d2m::motion::AnyMotion;
 use serde::Deserialize;
 use serde_json::Value;
@@ -11,20 +12,20 @@ use std::sync::Arc;
 /// The keys of a body.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct BodyForm {
-    pub(crate) name: String,
-    pub(crate) mesh: String,
+struct BodyForm {
+    name: String,
+    mesh: String,
     #[serde(default)]
-    pub(crate) scale: Option<Value>,
+    scale: Option<Value>,
     #[serde(default)]
-    pub(crate) motion: Option<Value>,
+    motion: Option<Value>,
     #[serde(default)]
-    pub(crate) group: Option<String>,
+    group: Option<String>,
     #[serde(default)]
-    pub(crate) solid: Option<bool>,
+    solid: Option<bool>,
 }
 
-/// A body, ready for a world.
+/// A body as every kind of scene has it.
 pub(crate) struct SceneBody {
     pub(crate) name: String,
     pub(crate) tree: Arc<MeshTree>,
@@ -34,7 +35,7 @@ pub(crate) struct SceneBody {
 }
 
 /// Where a body is in messages: by its number, and its name if it has one.
-pub(super) fn place_of(index: usize, value: &Value) -> String {
+pub(crate) fn place_of(index: usize, value: &Value) -> String {
     match value.get("name").and_then(Value::as_str) {
         Some(name) => format!("body {index} ({name:?})"),
         None => format!("body {index}"),
@@ -42,7 +43,14 @@ pub(super) fn place_of(index: usize, value: &Value) -> String {
 }
 
 impl SceneBody {
-    pub(super) fn new(form: BodyForm, place: &str, library: &mut MeshLibrary) -> Result<Self, Failure> {
+    /// Reads a body's object, which has no other keys than those above; its motion covers the window.
+    pub(crate) fn read(
+        value: Value,
+        place: &str,
+        window: Window,
+        library: &mut MeshLibrary,
+    ) -> Result<Self, Failure> {
+        let form: BodyForm = serde_json::from_value(value).map_err(|error| Failure::at(place, error))?;
         if form.name.is_empty() {
             return Err(Failure::at(place, "the name is empty"));
         }
@@ -59,6 +67,7 @@ impl SceneBody {
         motion
             .check_size(2.0 * tree.radius())
             .map_err(|error| Failure::at(format!("{place}, motion"), error))?;
+        require_window(&format!("{place}, motion"), &motion, window)?;
         let solid = match form.solid {
             Some(true) if !tree.is_watertight() => {
                 let reason =

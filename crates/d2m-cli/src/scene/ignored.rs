@@ -17,13 +17,13 @@ pub(crate) enum Ignored {
 }
 
 /// What names stand for.
-pub(super) struct Names<'a> {
+pub(crate) struct Names<'a> {
     bodies: BTreeMap<&'a str, usize>,
     groups: BTreeSet<&'a str>,
 }
 
 impl<'a> Names<'a> {
-    pub(super) fn new(bodies: &'a [SceneBody]) -> Self {
+    pub(crate) fn new(bodies: &'a [SceneBody]) -> Self {
         Self {
             bodies: bodies.iter().enumerate().map(|(index, body)| (body.name.as_str(), index)).collect(),
             groups: bodies.iter().filter_map(|body| body.group.as_deref()).collect(),
@@ -31,7 +31,7 @@ impl<'a> Names<'a> {
     }
 
     /// Reads one entry; a name that a body and a group share is the body's.
-    pub(super) fn ignored(&self, place: &str, value: &Value) -> Result<Ignored, Failure> {
+    pub(crate) fn ignored(&self, place: &str, value: &Value) -> Result<Ignored, Failure> {
         let words = value.as_array().map(|list| list.iter().map(Value::as_str).collect::<Vec<_>>());
         let Some([Some(a), Some(b)]) = words.as_deref() else {
             return Err(Failure::at(place, format!("{value} is not a pair of names")));

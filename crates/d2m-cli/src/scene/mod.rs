@@ -5,13 +5,12 @@ mod ignored;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use body::{BodyForm, SceneBody};
-pub(crate) use ignored::Ignored;
+pub(crate) use body::{SceneBody, place_of};
+pub(crate) use ignored::{Ignored, Names};
 
 use crate::failure::Failure;
 use crate::load::read;
 use crate::mesh_library::MeshLibrary;
-use crate::motion::require_window;
 use crate::unique_keys::UniqueKeys;
 use d2m::bvh::{QueryOptions, Window};
 use d2m::{Body, BodyId, Group, World};
@@ -68,15 +67,12 @@ impl Scene {
         let mut library = MeshLibrary::new(path);
         let mut bodies = Vec::with_capacity(form.bodies.len());
         for (index, UniqueKeys(value)) in form.bodies.into_iter().enumerate() {
-            let body_place = format!("{place}, {}", body::place_of(index, &value));
-            let form: BodyForm =
-                serde_json::from_value(value).map_err(|error| Failure::at(&body_place, error))?;
-            let body = SceneBody::new(form, &body_place, &mut library)?;
-            require_window(&format!("{body_place}, motion"), &body.motion, window)?;
+            let body_place = format!("{place}, {}", place_of(index, &value));
+            let body = SceneBody::read(value, &body_place, window, &mut library)?;
             bodies.push(body);
         }
         check_names(&place.to_string(), &bodies)?;
-        let names = ignored::Names::new(&bodies);
+        let names = Names::new(&bodies);
         let mut ignored = Vec::with_capacity(form.ignore.len());
         for (index, UniqueKeys(value)) in form.ignore.into_iter().enumerate() {
             ignored.push(names.ignored(&format!("{place}, ignore {index}"), &value)?);
@@ -122,7 +118,8 @@ impl Scene {
     }
 }
 
-fn check_names(place: &str, bodies: &[SceneBody]) -> Result<(), Failure> {
+/// No two bodies may have the same name.
+pub(crate) fn check_names(place: &str, bodies: &[SceneBody]) -> Result<(), Failure> {
     let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
     for (index, body) in bodies.iter().enumerate() {
         if let Some(earlier) = seen.insert(&body.name, index) {

@@ -22,6 +22,12 @@ impl<'v> Fields<'v> {
         Ok(Self { place, object })
     }
 
+    /// The object without these keys.
+    pub(crate) fn without(&self, keys: &[&str]) -> Value {
+        let others = self.object.iter().filter(|(key, _)| !keys.contains(&key.as_str()));
+        Value::Object(others.map(|(key, value)| (key.clone(), value.clone())).collect())
+    }
+
     pub(crate) fn place(&self) -> &str {
         &self.place
     }
@@ -41,14 +47,6 @@ impl<'v> Fields<'v> {
     pub(crate) fn text(&self, key: &str) -> Result<Option<&'v str>, Failure> {
         let Some(value) = self.get(key) else { return Ok(None) };
         value.as_str().map(Some).ok_or_else(|| self.fault(key, format!("{} should be a text", short(value))))
-    }
-
-    pub(crate) fn flag(&self, key: &str) -> Result<Option<bool>, Failure> {
-        let Some(value) = self.get(key) else { return Ok(None) };
-        value
-            .as_bool()
-            .map(Some)
-            .ok_or_else(|| self.fault(key, format!("{} should be true or false", short(value))))
     }
 
     pub(crate) fn number(&self, key: &str) -> Result<Option<f64>, Failure> {

@@ -3,10 +3,10 @@
 use super::fields::{Fields, short};
 use crate::failure::Failure;
 use crate::load::read;
-use crate::mesh_library::{MeshLibrary, read_scale};
-use crate::motion::require_window;
+use crate::mesh_library::MeshLibrary;
+use crate::scene::{Ignored, Names, SceneBody, check_names, place_of};
 use crate::unique_keys::UniqueKeys;
-use d2m::bvh::{MeshTree, Solid, Window};
+use d2m::bvh::Window;
 use d2m::motion::AnyMotion;
 use d2m_dynamics::{Body, BodyId, Kind, Mass, MassProperties, Motion, Simulation, SimulationOptions};
 use glam::{DMat3, DVec3};
@@ -25,6 +25,9 @@ pub(crate) struct Scene {
 
 const SCENE_KEYS: &[&str] =
     &["bodies", "ignore", "pairs", "simulation", "window", "min_separation", "tolerance"];
+/// Of a body, those that no other scene has.
+const DYNAMIC_KEYS: &[&str] =
+    &["kind", "pose", "velocity", "density", "mass", "center", "inertia", "restitution", "friction"];
 const BODY_KEYS: &[&str] = &[
     "name",
     "mesh",
@@ -58,38 +61,20 @@ pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
     if list.is_empty() {
         return Err(scene.fault("bodies", "the list is empty"));
     }
-    let mut reader = Reader { meshes: MeshLibrary::new(path), end };
-    let (mut names, mut ids, mut groups) = (Vec::new(), Vec::new(), Vec::new());
+    let window = Window::try_new(0.0, end).map_err(|error| Failure::at(path.display(), error))?;
+    let mut library = MeshLibrary::new(path);
+    let (mut bodies, mut ids) = (Vec::with_capacity(list.len()), Vec::with_capacity(list.len()));
     for (index, value) in list.iter().enumerate() {
-        let place = match value.get("name").and_then(Value::as_str) {
-            Some(name) => format!("{}, body {name:?} (index {index})", path.display()),
-            None => format!("{}, body {index}", path.display()),
-        };
+        let place = format!("{}, {}", path.display(), place_of(index, value));
         let fields = Fields::new(place, value, BODY_KEYS)?;
-        let body = reader.body(&fields)?;
-        if names.contains(&body.name) {
-            return Err(fields.fault("name", format!("{:?} is the name of an earlier body", body.name)));
-        }
-        names.push(body.name.clone());
-        groups.push(fields.text("group")?.map(str::to_owned));
-        ids.push(simulation.add(&body).map_err(|error| Failure::at(fields.place(), error))?);
+        let body = SceneBody::read(fields.without(DYNAMIC_KEYS), fields.place(), window, &mut library)?;
+        let described = describe(&fields, &body)?;
+        ids.push(simulation.add(&described).map_err(|error| Failure::at(fields.place(), error))?);
+        bodies.push(body);
     }
-    let tagged = |tag: &str| -> Vec<BodyId> {
-        let is = |k: &usize| names[*k] == tag || groups[*k].as_deref() == Some(tag);
-        (0..names.len()).filter(is).map(|k| ids[k]).collect()
-    };
-    for (index, [a, b]) in ignored(&scene)?.into_iter().enumerate() {
-        for name in [&a, &b] {
-            if tagged(name).is_empty() {
-                return Err(scene.fault("ignore", format!("entry {index}: no body or group {name:?}")));
-            }
-        }
-        for &one in &tagged(&a) {
-            for &two in tagged(&b).iter().filter(|two| **two != one) {
-                simulation.ignore(one, two);
-            }
-        }
-    }
+    check_names(&path.display().to_string(), &bodies)?;
+    ignore(&scene, &bodies, &ids, &mut simulation)?;
+    let names: Vec<String> = bodies.into_iter().map(|body| body.name).collect();
     pairs(&scene, &names, &ids, &mut simulation)?;
     Ok(Scene { simulation, names, ids, end })
 }
@@ -120,10 +105,35 @@ fn simulation_options(scene: &Fields<'_>) -> Result<(SimulationOptions, f64), Fa
     Ok((options, positive("end", 5.0)?))
 }
 
-fn ignored(scene: &Fields<'_>) -> Result<Vec<[String; 2]>, Failure> {
-    let Some(value) = scene.get("ignore") else { return Ok(Vec::new()) };
-    serde_json::from_value(value.clone())
-        .map_err(|_| scene.fault("ignore", format!("{} should be a list of pairs of names", short(value))))
+/// The pairs that may pass through each other.
+fn ignore(
+    scene: &Fields<'_>,
+    bodies: &[SceneBody],
+    ids: &[BodyId],
+    simulation: &mut Simulation,
+) -> Result<(), Failure> {
+    let Some(value) = scene.get("ignore") else { return Ok(()) };
+    let Some(list) = value.as_array() else {
+        return Err(scene.fault("ignore", format!("{} should be a list", short(value))));
+    };
+    let names = Names::new(bodies);
+    let members = |group: &str| -> Vec<BodyId> {
+        let is_member = |k: &usize| bodies[*k].group.as_deref() == Some(group);
+        (0..bodies.len()).filter(is_member).map(|k| ids[k]).collect()
+    };
+    for (index, value) in list.iter().enumerate() {
+        let (first, second) = match names.ignored(&format!("{}, ignore {index}", scene.place()), value)? {
+            Ignored::Pair(a, b) => (vec![ids[a]], vec![ids[b]]),
+            Ignored::Groups(a, b) => (members(&a), members(&b)),
+            Ignored::BodyAndGroup(a, group) => (vec![ids[a]], members(&group)),
+        };
+        for &a in &first {
+            for &b in second.iter().filter(|b| **b != a) {
+                simulation.ignore(a, b);
+            }
+        }
+    }
+    Ok(())
 }
 
 fn pairs(
@@ -155,106 +165,75 @@ fn pairs(
     Ok(())
 }
 
-struct Reader {
-    meshes: MeshLibrary,
-    end: f64,
+/// What moves the body, and how.
+fn describe(fields: &Fields<'_>, read: &SceneBody) -> Result<Body, Failure> {
+    let mut body = Body::new(&read.name, Arc::clone(&read.tree)).with_solid(read.solid);
+    body.kind = kind(fields, &read.motion)?;
+    if let Some(pose) = fields.get("pose") {
+        let pose = Fields::new(format!("{}, pose", fields.place()), pose, &["x", "q"])?;
+        body.position = pose.vector("x")?.unwrap_or_default();
+        body.orientation = pose.quaternion("q")?.unwrap_or_default();
+    }
+    if let Some(velocity) = fields.get("velocity") {
+        let velocity = Fields::new(format!("{}, velocity", fields.place()), velocity, &["v", "w"])?;
+        body.linear_velocity = velocity.vector("v")?.unwrap_or_default();
+        body.angular_velocity = velocity.vector("w")?.unwrap_or_default();
+    }
+    body.restitution = fields.number("restitution")?.unwrap_or(0.0);
+    body.friction = fields.number("friction")?.unwrap_or(0.0);
+    mass(fields, &mut body)?;
+    Ok(body)
 }
 
-impl Reader {
-    fn body(&mut self, fields: &Fields<'_>) -> Result<Body, Failure> {
-        fields.required("name")?;
-        let name = fields.text("name")?.unwrap_or_default();
-        let tree = self.tree(fields)?;
-        let mut body = Body::new(name, Arc::clone(&tree));
-        body.solid = match fields.flag("solid")? {
-            Some(true) if !tree.is_watertight() => {
-                return Err(fields.fault("solid", "true, but the mesh is not watertight"));
+fn kind(fields: &Fields<'_>, motion: &AnyMotion) -> Result<Kind, Failure> {
+    let kind = fields.text("kind")?.unwrap_or("dynamic");
+    match (kind, fields.get("motion").is_some_and(|motion| !motion.is_null())) {
+        ("dynamic", false) => Ok(Kind::Dynamic),
+        // A kinematic body without a motion rests where its pose is.
+        ("static" | "kinematic", false) => Ok(Kind::Static),
+        ("kinematic", true) => {
+            // The motion says where the body is and how fast it moves: one of two answers would be ignored.
+            if let Some(key) = ["pose", "velocity"].into_iter().find(|key| fields.get(key).is_some()) {
+                let reason = "a kinematic body with a motion has its pose and velocity from there: give one of the two";
+                return Err(fields.fault(&format!("motion, {key}"), reason));
             }
-            Some(true) => Some(Solid::Filled),
-            Some(false) => Some(Solid::Surface),
-            None => None,
-        };
-        let motion = match fields.get("motion") {
-            Some(value) => Some(self.motion(fields, value)?),
-            None => None,
-        };
-        let kind = fields.text("kind")?.unwrap_or("dynamic");
-        body.kind = match (kind, motion) {
-            ("dynamic", None) => Kind::Dynamic,
-            // A kinematic body without a motion rests where its pose is.
-            ("static" | "kinematic", None) => Kind::Static,
-            ("kinematic", Some(motion)) => {
-                // The motion says where the body is and how fast it moves: one of two answers would be ignored.
-                if let Some(key) = ["pose", "velocity"].into_iter().find(|key| fields.get(key).is_some()) {
-                    let reason = "a kinematic body with a motion has its pose and velocity from there: give one of the two";
-                    return Err(fields.fault(&format!("motion, {key}"), reason));
-                }
-                Kind::Kinematic(motion)
-            }
-            ("dynamic" | "static", Some(_)) => {
-                return Err(fields.fault("motion", format!("a {kind} body follows none; is it kinematic?")));
-            }
-            _ => return Err(fields.fault("kind", format!("{kind:?} is not dynamic, kinematic or static"))),
-        };
-        if let Some(pose) = fields.get("pose") {
-            let pose = Fields::new(format!("{}, pose", fields.place()), pose, &["x", "q"])?;
-            body.position = pose.vector("x")?.unwrap_or_default();
-            body.orientation = pose.quaternion("q")?.unwrap_or_default();
+            let motion: Motion = Arc::new(motion.clone());
+            Ok(Kind::Kinematic(motion))
         }
-        if let Some(velocity) = fields.get("velocity") {
-            let velocity = Fields::new(format!("{}, velocity", fields.place()), velocity, &["v", "w"])?;
-            body.linear_velocity = velocity.vector("v")?.unwrap_or_default();
-            body.angular_velocity = velocity.vector("w")?.unwrap_or_default();
+        ("dynamic" | "static", true) => {
+            Err(fields.fault("motion", format!("a {kind} body follows none; is it kinematic?")))
         }
-        body.restitution = fields.number("restitution")?.unwrap_or(0.0);
-        body.friction = fields.number("friction")?.unwrap_or(0.0);
-        Self::mass(fields, &mut body)?;
-        Ok(body)
+        _ => Err(fields.fault("kind", format!("{kind:?} is not dynamic, kinematic or static"))),
     }
+}
 
-    /// What is given counts; what is not follows from the closed mesh.
-    fn mass(fields: &Fields<'_>, body: &mut Body) -> Result<(), Failure> {
-        let (density, mass) = (fields.number("density")?, fields.number("mass")?);
-        let (center, inertia): (Option<DVec3>, Option<DMat3>) =
-            (fields.vector("center")?, fields.matrix("inertia")?);
-        if density.is_some() && mass.is_some() {
-            return Err(fields.fault("density", "a body has a density or a mass, not both"));
+/// What is given counts; what is not follows from the closed mesh.
+fn mass(fields: &Fields<'_>, body: &mut Body) -> Result<(), Failure> {
+    let (density, mass) = (fields.number("density")?, fields.number("mass")?);
+    let (center, inertia): (Option<DVec3>, Option<DMat3>) =
+        (fields.vector("center")?, fields.matrix("inertia")?);
+    if density.is_some() && mass.is_some() {
+        return Err(fields.fault("density", "a body has a density or a mass, not both"));
+    }
+    if !matches!(body.kind, Kind::Dynamic) {
+        return Ok(());
+    }
+    let mesh = body.tree.mesh();
+    let fault = |error| Failure::at(fields.place(), error);
+    body.mass = match (mass, center, inertia) {
+        (Some(mass), Some(center), Some(inertia)) => {
+            Mass::Given(MassProperties::try_new(mass, center, inertia).map_err(fault)?)
         }
-        if !matches!(body.kind, Kind::Dynamic) {
-            return Ok(());
+        (mass, None, None) => mass.map_or(Mass::Density(density.unwrap_or(1000.0)), Mass::Total),
+        _ => {
+            let whole = match mass {
+                Some(mass) => MassProperties::try_from_mass(mesh, mass),
+                None => MassProperties::try_from_density(mesh, density.unwrap_or(1000.0)),
+            };
+            let whole = whole.map_err(fault)?;
+            let (center, inertia) = (center.unwrap_or(whole.center), inertia.unwrap_or(whole.inertia));
+            Mass::Given(MassProperties::try_new(whole.mass, center, inertia).map_err(fault)?)
         }
-        let mesh = body.tree.mesh();
-        let fault = |error| Failure::at(fields.place(), error);
-        body.mass = match (mass, center, inertia) {
-            (Some(mass), Some(center), Some(inertia)) => {
-                Mass::Given(MassProperties::try_new(mass, center, inertia).map_err(fault)?)
-            }
-            (mass, None, None) => mass.map_or(Mass::Density(density.unwrap_or(1000.0)), Mass::Total),
-            _ => {
-                let whole = match mass {
-                    Some(mass) => MassProperties::try_from_mass(mesh, mass),
-                    None => MassProperties::try_from_density(mesh, density.unwrap_or(1000.0)),
-                };
-                let whole = whole.map_err(fault)?;
-                let (center, inertia) = (center.unwrap_or(whole.center), inertia.unwrap_or(whole.inertia));
-                Mass::Given(MassProperties::try_new(whole.mass, center, inertia).map_err(fault)?)
-            }
-        };
-        Ok(())
-    }
-
-    fn tree(&mut self, fields: &Fields<'_>) -> Result<Arc<MeshTree>, Failure> {
-        fields.required("mesh")?;
-        let name = fields.text("mesh")?.unwrap_or_default();
-        let scale = read_scale(fields.get("scale")).map_err(|reason| fields.fault("scale", reason))?;
-        self.meshes.tree(name, scale).map_err(|error| Failure::at(fields.place(), error))
-    }
-
-    fn motion(&self, fields: &Fields<'_>, value: &Value) -> Result<Motion, Failure> {
-        let motion: AnyMotion =
-            serde_json::from_value(value.clone()).map_err(|error| fields.fault("motion", error))?;
-        let window = Window::try_new(0.0, self.end).map_err(|error| fields.fault("motion", error))?;
-        require_window(&format!("{}, motion", fields.place()), &motion, window)?;
-        Ok(Arc::new(motion))
-    }
+    };
+    Ok(())
 }
