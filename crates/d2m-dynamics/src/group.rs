@@ -97,35 +97,10 @@ pub(crate) fn solve(
     members.dedup();
     let place = |body: usize| members.binary_search(&body).unwrap_or_default();
     let mut states: Vec<Cow<'_, RigidBody>> = members.iter().map(|&i| Cow::Borrowed(&bodies[i])).collect();
-    let moves = |state: &RigidBody| state.is_dynamic() && !state.held;
-    let mut impacts = vec![Momenta::default(); members.len()];
-    let mut solved = Solved::default();
-
-    let hit: Vec<ContactPoint> = island
-        .contacts
-        .iter()
-        .filter(|c| c.material.restitution > 0.0 && c.distance <= HIT * c.gap)
-        .copied()
-        .collect();
-    if !hit.is_empty() {
-        let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
-        let start = states
-            .iter()
-            .map(|s| {
-                if moves(s) {
-                    body_at(s, s.velocity(), s.inverse_inertia_at(s.orientation))
-                } else {
-                    still(s)
-                }
-            })
-            .collect();
-        let mut solver = Solver::new(start, &hit, place);
-        solved.impacts = impact(&mut solver, &hit, &inertia, options.resting_speed());
-        add(&solved.impacts, &mut impacts, place);
-        for (state, added) in states.iter_mut().zip(&impacts) {
-            if moves(state) {
-                state.to_mut().push(*added);
-            }
+    let Impacts { contacts: hits, momenta: impacts } = impacts_of(&states, island, options, place);
+    for (state, added) in states.iter_mut().zip(&impacts) {
+        if *added != Momenta::default() && moves(state) {
+            state.to_mut().push(*added);
         }
     }
 
@@ -196,7 +171,7 @@ pub(crate) fn solve(
     }
     let mut rests = vec![Momenta::default(); members.len()];
     add(&contacts, &mut rests, place);
-    solved.rests.clone_from(&contacts);
+    let mut kept = contacts.clone();
     // What restores the gap, or makes room for rotation, moves the bodies in this flight and leaves no momentum.
     let mut physical: Vec<Velocity> = solver.bodies.iter().map(|body| body.velocity).collect();
     if targets.iter().any(|&target| target > 0.0) {
@@ -218,59 +193,141 @@ pub(crate) fn solve(
             // Then it is made by impulses like others, and the account sees to their energy.
             rests.fill(Momenta::default());
             add(&contacts, &mut rests, place);
-            solved.rests.clone_from(&contacts);
+            kept.clone_from(&contacts);
             physical = solver.bodies.iter().map(|body| body.velocity).collect();
         }
-        for (rest, contact) in solved.rests.iter_mut().zip(&contacts) {
+        for (rest, contact) in kept.iter_mut().zip(&contacts) {
             let [first, second] = [0, 1].map(|k| contact.sliding[k] - rest.sliding[k]);
             rest.room = [contact.impulse - rest.impulse, first, second];
         }
     }
-    let moving: Vec<usize> = (0..states.len()).filter(|&k| moves(&states[k])).collect();
-    let lead = |k: usize| states[k].lead.unwrap_or(0.5 * span.remaining);
-    let entry = |&k: &usize| {
-        let (state, before) = (&states[k], bodies[members[k]].momenta());
-        Entry {
-            mass: state.mass,
-            inertia: inertia[k].1,
-            inverse_inertia: state.inverse_inertia_at(state.orientation),
-            position: state.position,
-            force: state.force_with(options.gravity),
-            torque: state.torque,
-            gained: state.gained,
-            limit: state.energy_limit(options.gravity, options.step, options.gap),
-            before,
-            after: before + impacts[k] + rests[k],
-            lead: lead(k),
-            room: solver.bodies[k].velocity - physical[k],
-        }
+    let outcome = |k: usize| Outcome {
+        body: members[k],
+        state: &states[k],
+        inertia: inertia[k].1,
+        before: bodies[members[k]].momenta(),
+        impact: impacts[k],
+        rest: rests[k],
+        physical: physical[k],
+        velocity: solver.bodies[k].velocity,
+        lead: states[k].lead.unwrap_or(0.5 * span.remaining),
     };
-    let entries: Vec<Entry> = moving.iter().map(entry).collect();
-    let mass: f64 = entries.iter().map(|e| e.mass).sum();
+    let outcomes: Vec<Outcome<'_>> = (0..states.len()).filter(|&k| moves(&states[k])).map(outcome).collect();
     // Bodies that follow their motions may work.
-    let sheet = (!driven).then(|| balance(&entries, moving.len() < states.len(), span.remaining));
-    for (place, (&k, e)) in moving.iter().zip(&entries).enumerate() {
+    let anchor = match (driven, outcomes.len() < states.len()) {
+        (true, _) => Anchor::Driven,
+        (false, true) => Anchor::Still,
+        (false, false) => Anchor::None,
+    };
+    Solved { bodies: settle(&outcomes, anchor, end, span, options), impacts: hits, rests: kept }
+}
+
+fn moves(state: &RigidBody) -> bool {
+    state.is_dynamic() && !state.held
+}
+
+/// Impulses of restitution, and what they add to the momenta of each body.
+struct Impacts {
+    contacts: Vec<ContactPoint>,
+    momenta: Vec<Momenta>,
+}
+
+/// The impacts at the contacts of an island that bounce and have been hit.
+fn impacts_of(
+    states: &[Cow<'_, RigidBody>],
+    island: &Island,
+    options: &SimulationOptions,
+    place: impl Fn(usize) -> usize + Copy,
+) -> Impacts {
+    let mut momenta = vec![Momenta::default(); states.len()];
+    let is_hit = |c: &&ContactPoint| c.material.restitution > 0.0 && c.distance <= HIT * c.gap;
+    let hit: Vec<ContactPoint> = island.contacts.iter().filter(is_hit).copied().collect();
+    if hit.is_empty() {
+        return Impacts { contacts: hit, momenta };
+    }
+    let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
+    let start = |s: &Cow<'_, RigidBody>| {
+        if moves(s) { body_at(s, s.velocity(), s.inverse_inertia_at(s.orientation)) } else { still(s) }
+    };
+    let mut solver = Solver::new(states.iter().map(start).collect(), &hit, place);
+    let contacts = impact(&mut solver, &hit, &inertia, options.resting_speed());
+    add(&contacts, &mut momenta, place);
+    Impacts { contacts, momenta }
+}
+
+/// What the solution of an island makes of one of its bodies.
+struct Outcome<'s> {
+    body: usize,
+    /// With the impacts.
+    state: &'s RigidBody,
+    /// World axes.
+    inertia: DMat3,
+    before: Momenta,
+    impact: Momenta,
+    rest: Momenta,
+    /// The velocity of the momenta, and that of the flight, which also makes room.
+    physical: Velocity,
+    velocity: Velocity,
+    lead: f64,
+}
+
+/// What an island is in contact with besides the bodies that impulses move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Anchor {
+    None,
+    Still,
+    /// Bodies that follow their motions.
+    Driven,
+}
+
+/// Balances the accounts of energy: the velocities of the flights until `end`.
+fn settle(
+    outcomes: &[Outcome<'_>],
+    anchor: Anchor,
+    end: f64,
+    span: Span,
+    options: &SimulationOptions,
+) -> Vec<Push> {
+    let entry = |o: &Outcome<'_>| Entry {
+        mass: o.state.mass,
+        inertia: o.inertia,
+        inverse_inertia: o.state.inverse_inertia_at(o.state.orientation),
+        position: o.state.position,
+        force: o.state.force_with(options.gravity),
+        torque: o.state.torque,
+        gained: o.state.gained,
+        limit: o.state.energy_limit(options.gravity, options.step, options.gap),
+        before: o.before,
+        after: o.before + o.impact + o.rest,
+        lead: o.lead,
+        room: o.velocity - o.physical,
+    };
+    let entries: Vec<Entry> = outcomes.iter().map(entry).collect();
+    let mass: f64 = entries.iter().map(|e| e.mass).sum();
+    let sheet =
+        (anchor != Anchor::Driven).then(|| balance(&entries, anchor == Anchor::Still, span.remaining));
+    let push = |(place, (o, e)): (usize, (&Outcome<'_>, &Entry))| {
         let mut push = Push {
-            body: members[k],
-            velocity: solver.bodies[k].velocity,
+            body: o.body,
+            velocity: o.velocity,
             horizon: end,
-            lead: lead(k),
-            impact: impacts[k],
-            rest: rests[k],
+            lead: o.lead,
+            impact: o.impact,
+            rest: o.rest,
             gained: e.gained,
         };
         if let Some(sheet) = &sheet {
             push.gained = sheet.gained * e.mass / mass;
             if let Some(braking) = &sheet.braking {
                 let braked = braking[place];
-                push.velocity = physical[k] + braked + e.room * sheet.part;
+                push.velocity = o.physical + braked + e.room * sheet.part;
                 push.rest.linear += braked.linear * e.mass;
                 push.rest.angular += e.inertia * braked.angular;
             }
         }
-        solved.bodies.push(push);
-    }
-    solved
+        push
+    };
+    outcomes.iter().zip(&entries).enumerate().map(push).collect()
 }
 
 fn body_at(state: &RigidBody, velocity: Velocity, inverse_inertia: DMat3) -> SolverBody {
