@@ -105,6 +105,7 @@ fn bad_scenes_are_refused_with_their_place() {
     let cases = [
         (PILE.replace("\"end\": 1.5", "\"end\": 0"), "end"),
         (PILE.replace("\"step\": 0.02", "\"step\": -1"), "step"),
+        (PILE.replace("\"step\": 0.02", "\"step\": 1e-300"), "too many steps"),
         (PILE.replace("\"restitution\": 0.3", "\"restitution\": 1.5"), "restitution"),
         (PILE.replace("\"restitution\": 0.3", "\"mass\": 0"), "mass"),
         (PILE.replace("\"restitution\": 0.3", "\"density\": -7800"), "density"),

@@ -12,7 +12,8 @@ use glam::DVec3;
 ///
 /// Promise: `false` is proven, in real arithmetic, for the poses as given. `true` is said whenever that cannot be
 /// proven: when the bodies touch, and when they are apart by less than the roundings of placing them, at most about
-/// 64·2⁻⁵³ times the largest length (radii, distance of the centers, offsets from the reference points).
+/// 64·2⁻⁵³ times the largest length (radii, distance of the centers, offsets from the reference points), more where lengths are below
+/// 2⁻⁴⁵⁰ and underflow takes a part of them.
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, Posed, Solid, TriMesh, collide};

@@ -79,6 +79,9 @@ pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
     Ok(Scene { simulation, names, ids, end })
 }
 
+/// Steps of a run at most: as many as doubles count.
+const MOST_STEPS: f64 = 9_007_199_254_740_992.0; // 2⁵³
+
 fn simulation_options(scene: &Fields<'_>) -> Result<(SimulationOptions, f64), Failure> {
     let mut options = SimulationOptions::default();
     let default = Value::Object(serde_json::Map::new());
@@ -102,7 +105,14 @@ fn simulation_options(scene: &Fields<'_>) -> Result<(SimulationOptions, f64), Fa
             || fields.fault("max_events", format!("{} should be a whole number below 2^32", short(value)));
         options = options.with_max_events(count.ok_or_else(fault)?);
     }
-    Ok((options, positive("end", 5.0)?))
+    let end = positive("end", 5.0)?;
+    if end / options.step > MOST_STEPS {
+        let value = options.step;
+        return Err(
+            fields.fault("step", format!("{value:?} divides the time until {end:?} in too many steps"))
+        );
+    }
+    Ok((options, end))
 }
 
 /// The pairs that may pass through each other.

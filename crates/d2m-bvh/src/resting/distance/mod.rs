@@ -92,7 +92,8 @@ impl DistanceOptions {
 /// reference points of their poses, and the distance between the two reference points in the world – its width is below
 /// 2200·2⁻⁵³ L, and below 700·2⁻⁵³ L where both rotations are the same (measured; a test holds it to that). So a mesh whose
 /// coordinates are 1500 away from the origin of its frame has an enclosure of some 1e-10 however small it is, unless the pose's
-/// reference point is near it. Where in the world both bodies are does not matter.
+/// reference point is near it. Where in the world both bodies are does not matter. Of lengths below 2⁻⁴⁵⁰ underflow takes a part: the
+/// enclosure is wider there, and still holds.
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, Posed, Solid, StartState, TriMesh, distance};
@@ -138,7 +139,10 @@ pub fn distance_within(
     // Placed triangles with an upper bound above this are further apart than the cutoff, unless their enclosure is
     // wider than expected.
     let limit = (options.cutoff / scene.unit + scene.error + EXPECTED_WIDTH) * (1.0 + 4.0 * UNIT_F64);
-    let first = cache.within(counts);
+    // Of a body that is one point up to rounding the first triangle stands for all, whichever the cache remembers.
+    let first = cache
+        .within(counts)
+        .map(|triangles| [0, 1].map(|k| if scene.is_point_like(k) { 0 } else { triangles[k] }));
     let unlimited = &mut Allowance::unlimited();
     let mut search = |limit: f64| run(Search { scene: &scene, first, limit, allowance: unlimited });
     let found = match search(limit) {

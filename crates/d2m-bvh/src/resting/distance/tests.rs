@@ -264,3 +264,29 @@ fn crowds_without_a_common_plane_fall_apart() {
         assert!(found.lower <= least && least <= found.upper, "{name}: {found:?} {least}");
     }
 }
+
+/// A body that is one point up to rounding is measured by its first triangle, also when a cache remembers another one.
+#[test]
+fn a_cache_changes_no_bit_of_bodies_that_are_points() {
+    let triangle = |at: f64, size: f64| {
+        let at = DVec3::X * at;
+        [at, at + DVec3::new(size, size, 0.0), at + DVec3::new(size, -size, 0.25 * size)]
+    };
+    let tree = |triangles: &[[DVec3; 3]]| {
+        let faces = (0..triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        MeshTree::new(TriMesh::try_new(triangles.concat(), faces).unwrap())
+    };
+    let large = tree(&[[DVec3::ZERO, DVec3::new(-1.0, 1.0, 0.0), DVec3::new(-1.0, -1.0, 0.25)]]);
+    for size in [1e-15, 4e-16, 2e-16, 1e-16, 1e-20, 1e-30] {
+        // The second triangle of both is the nearer one; of the other body by far.
+        let [point, far] = [size, 1e9].map(|at| tree(&[triangle(at, size), triangle(0.0, size)]));
+        let pose = Pose { translation: DVec3::X * 0.5, ..Pose::IDENTITY };
+        let ask = |body: &MeshTree, cache: &mut PairCache| {
+            let options = DistanceOptions::default().with_solid(Solid::Surface);
+            distance_within(Posed::at_rest(&large), Posed::new(body, pose), &options, cache).unwrap().unwrap()
+        };
+        let mut cache = PairCache::new();
+        assert_eq!(ask(&far, &mut cache).triangle_b, 1);
+        assert_eq!(ask(&point, &mut cache), ask(&point, &mut PairCache::new()), "{size:e}");
+    }
+}
