@@ -211,9 +211,9 @@ pub(super) const MUTANTS: &[Mutant] = &[
     patch(
         "windows of ten times the angle",
         "crates/d2m-bvh/src/search/scene.rs",
-        "const WINDOW_ANGLE: f64 = 0.3;",
-        "const WINDOW_ANGLE: f64 = 3.0;",
-        "crates/d2m-bvh/tests/clock_and_units.rs::windows_are_limited_in_angle_at_any_time",
+        "if angle * end > WINDOW_ANGLE { WINDOW_ANGLE / angle }",
+        "if angle * end > WINDOW_ANGLE { 10.0 * WINDOW_ANGLE / angle }",
+        "crates/d2m-bvh/tests/engine.rs::separation_at_lo_is_what_is_promised_and_nothing_touches_before",
     ),
     patch(
         "the hole of a sweep wider by 1e-5",
