@@ -60,7 +60,7 @@ pub(super) fn write(page: &mut String, folder: &Path) -> Result<(), Error> {
     writeln!(
         page,
         "From `cargo xtask bench dynamics --full`: 64 steps a second; each run is judged (no intersection, momentum, energy) before its \
-        time counts. rapier steps the same triangles or convex parts, and lets bodies penetrate a little. rigid-ipc, whose bodies never intersect either, takes seconds to minutes a step by its authors' own account (Ferguson et al. 2021, doi:10.1145/3450626.3459802); it was not run here. All columns: \
+        time counts. rapier steps the same triangles or convex parts, and lets bodies penetrate a little. rigid-ipc, whose bodies never intersect either, takes seconds to minutes a step (Ferguson et al. 2021, doi:10.1145/3450626.3459802); it was not run here. All columns: \
         [{TABLE}]({name}/{TABLE}).\n",
     )?;
     writeln!(page, "| scene | by | threads | times real time | median step, µs | worst, µs | judged |")?;
