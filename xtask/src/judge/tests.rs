@@ -1,4 +1,4 @@
-use super::triangle::distance;
+use super::triangle::{distance, segment_segment};
 use super::*;
 use crate::trials::{Movement, Trial};
 use d2m_testing::{Surface, Xoshiro256 as Random};
@@ -27,6 +27,21 @@ fn distance_of_known_triangles() {
     let through = [DVec3::new(0.2, 0.2, -1.0), DVec3::new(0.2, 0.2, 1.0), DVec3::new(5.0, 5.0, 0.0)];
     assert_eq!(distance(&flat, &through), 0.0);
     assert!((distance(&flat, &[DVec3::new(0.1, 0.1, 0.7); 3]) - 0.7).abs() < 1e-15);
+}
+
+/// Segments that cross at an angle of 1e-12 … 1e-3, a known height apart, in any position.
+#[test]
+fn distance_of_segments_that_are_nearly_parallel() {
+    let mut random = Random::new(12);
+    for round in 0..2000 {
+        let (angle, height) = (10f64.powf(random.range(-12.0, -3.0)), 10f64.powf(random.range(-10.0, -6.0)));
+        let (place, turn) = (DVec3::X * random.range(-0.7, 0.7), random.rotation());
+        let along = DVec3::new(1.0, angle, 0.0);
+        let lower = [-DVec3::X, DVec3::X].map(|p| turn * p);
+        let upper = [-along, along].map(|p| turn * (p + place + DVec3::Z * height));
+        let found = segment_segment(lower, upper);
+        assert!((found - height).abs() < 1e-14, "{round}: {found:e} for {height:e} at {angle:e}");
+    }
 }
 
 #[test]

@@ -69,7 +69,8 @@ fn point_triangle(p: DVec3, t: &Corners) -> f64 {
     if inside && plane.is_finite() { edges.min(plane) } else { edges }
 }
 
-fn segment_segment(s: [DVec3; 2], t: [DVec3; 2]) -> f64 {
+/// The distance of two segments.
+pub(super) fn segment_segment(s: [DVec3; 2], t: [DVec3; 2]) -> f64 {
     let ends = point_segment(s[0], t)
         .min(point_segment(s[1], t))
         .min(point_segment(t[0], s))
@@ -79,9 +80,10 @@ fn segment_segment(s: [DVec3; 2], t: [DVec3; 2]) -> f64 {
     let (along, across) = (r.cross(e).dot(n) / n.length_squared(), r.cross(d).dot(n) / n.length_squared());
     let inside = |x: f64| (0.0..=1.0).contains(&x);
     // The distance of two points of the segments: with nearly parallel lines their direction is noise, and a
-    // distance measured along it could come out too small.
+    // distance measured along it could come out too small. Both places on the lines err on their own then, so each is compared with what
+    // is closest to it on the other.
     if inside(along) && inside(across) {
-        ends.min((s[0] + d * along).distance(t[0] + e * across))
+        ends.min(point_segment(s[0] + d * along, t)).min(point_segment(t[0] + e * across, s))
     } else {
         ends
     }
