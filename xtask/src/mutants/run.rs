@@ -1,7 +1,6 @@
 //! Builds each mutant, runs the test that must notice it, and says whether it did.
 use super::copy::Copy;
-use super::{Change, Mutant, all};
-use crate::{TaskResult, workspace_root};
+use super::table::{self, Change, Mutant};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -44,9 +43,10 @@ const PATIENCE: u32 = 20;
 const LEAST: Duration = Duration::from_secs(120);
 
 /// `cargo xtask mutants`.
-pub(crate) fn run(options: &Options) -> TaskResult {
+pub(super) fn run(options: &Options, root: &Path) -> Result<(), Error> {
+    let all = table::read(root)?;
     let wanted = |m: &&Mutant| options.only.as_ref().is_none_or(|only| m.row().contains(only.as_str()));
-    let mutants: Vec<&Mutant> = all().filter(wanted).collect();
+    let mutants: Vec<&Mutant> = all.iter().filter(wanted).collect();
     if options.list {
         for mutant in mutants {
             println!("{}", mutant.row());
@@ -56,8 +56,7 @@ pub(crate) fn run(options: &Options) -> TaskResult {
     if mutants.is_empty() {
         return Err("no such mutant (see --list)".into());
     }
-    let root = workspace_root();
-    let findings = super::check(&root);
+    let findings = super::check(root);
     if !findings.is_empty() {
         return Err(findings.join("\n").into());
     }
@@ -70,15 +69,15 @@ pub(crate) fn run(options: &Options) -> TaskResult {
     };
     round.progress.set_length(round.mutants.len() as u64);
     let copies: Result<Vec<Copy>, Error> =
-        (0..options.jobs.get()).map(|worker| Copy::new(&root, worker)).collect();
-    let copies = copies.map_err(|error| error.to_string())?;
+        (0..options.jobs.get()).map(|worker| Copy::new(root, worker)).collect();
+    let copies = copies?;
     let results: Vec<Result<(), Error>> = std::thread::scope(|scope| {
         let workers: Vec<_> = copies.iter().map(|copy| scope.spawn(|| round.work(copy))).collect();
         let lost = |_| Err("a worker panicked".into());
         workers.into_iter().map(|worker| worker.join().unwrap_or_else(lost)).collect()
     });
     round.progress.finish_and_clear();
-    results.into_iter().collect::<Result<(), Error>>().map_err(|error| error.to_string())?;
+    results.into_iter().collect::<Result<(), Error>>()?;
     let survivors = round.survivors.into_inner().unwrap_or_default();
     println!("{} mutants, {} survive", round.mutants.len(), survivors.len());
     if survivors.is_empty() { Ok(()) } else { Err(format!("survivors: {}", survivors.join("; ")).into()) }
@@ -95,7 +94,7 @@ struct Round<'a> {
     progress: ProgressBar,
 }
 
-impl Round<'_> {
+impl<'a> Round<'a> {
     /// Takes mutants until there are none left.
     fn work(&self, copy: &Copy) -> Result<(), Error> {
         while let Some(mutant) = self.mutants.get(self.next.fetch_add(1, Ordering::Relaxed)) {
@@ -115,8 +114,8 @@ impl Round<'_> {
     }
 
     /// What becomes of one mutant. Its test must pass with the right code first.
-    fn judge(&self, copy: &Copy, mutant: &Mutant) -> Result<&'static str, Error> {
-        let known = locked(&self.times).get(mutant.test).copied();
+    fn judge(&self, copy: &Copy, mutant: &'a Mutant) -> Result<&'static str, Error> {
+        let known = locked(&self.times).get(mutant.test.as_str()).copied();
         let time = if let Some(time) = known {
             time
         } else {
@@ -127,12 +126,12 @@ impl Round<'_> {
                 return Err(format!("{} fails without any mutant", mutant.test).into());
             }
             let time = begin.elapsed();
-            locked(&self.times).insert(mutant.test, time);
+            locked(&self.times).insert(&mutant.test, time);
             time
         };
         // A mutant that lives in its test is dead now.
-        let Change::Patch { file, from, to } = mutant.change else { return Ok("killed in the test") };
-        self.progress.set_message(mutant.name);
+        let Change::Patch { file, from, to } = &mutant.change else { return Ok("killed in the test") };
+        self.progress.set_message(mutant.name.clone());
         copy.patch(file, from, to)?;
         let limit = LEAST.max(time * PATIENCE);
         let end = build(copy, mutant).and_then(|program| run_test(copy, &program, mutant, limit));
@@ -141,7 +140,7 @@ impl Round<'_> {
             End::Failed => "killed",
             End::Hung => "killed (it hangs)",
             End::Passed => {
-                locked(&self.survivors).push(mutant.name);
+                locked(&self.survivors).push(&mutant.name);
                 "SURVIVES"
             }
         })
@@ -165,7 +164,7 @@ fn bar(length: usize) -> ProgressBar {
 fn build(copy: &Copy, mutant: &Mutant) -> Result<PathBuf, Error> {
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .args(["test", "--locked", "--no-run", "--message-format=json"])
-        .args(mutant.target())
+        .args(mutant.target(&copy.root)?)
         .current_dir(&copy.root)
         .env("CARGO_TARGET_DIR", &copy.build)
         // Each mutant is built once and asked once: most of the time is the compiler's.

@@ -1,0 +1,95 @@
+//! Which package and which target of it a test is built with.
+use super::Error;
+use super::table::{Change, Mutant};
+use std::path::Path;
+
+/// A test by its file and its name.
+pub(super) struct TestName<'a> {
+    pub(super) file: &'a str,
+    pub(super) name: &'a str,
+}
+
+impl Mutant {
+    /// A line of `cargo xtask mutants --list`: `| fault | where | killed by |`.
+    pub(super) fn row(&self) -> String {
+        let place = match &self.change {
+            Change::Patch { file, .. } => format!("`{file}`"),
+            Change::InTest => "in the test".into(),
+        };
+        format!("| {} | {place} | `{}` |", self.name, self.test)
+    }
+
+    /// Where the test is, and its name.
+    pub(super) fn test(&self) -> TestName<'_> {
+        let (file, name) = self.test.split_once("::").unwrap_or((&self.test, ""));
+        TestName { file, name }
+    }
+
+    /// The crate that is spoilt.
+    pub(super) fn package(&self) -> &str {
+        match &self.change {
+            Change::Patch { file, .. } => package(file),
+            Change::InTest => package(self.test().file),
+        }
+    }
+
+    /// The folder of the package in which the test lives.
+    pub(super) fn package_folder(&self) -> &str {
+        folder(self.test().file)
+    }
+
+    /// What cargo builds: the package and the target in which the test lives.
+    pub(super) fn target(&self, root: &Path) -> Result<Vec<String>, Error> {
+        let file = self.test().file;
+        let home = root.join(folder(file));
+        let path = home.join("Cargo.toml");
+        let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+        let manifest: toml::Table = text.parse()?;
+        let mut arguments = vec!["-p".to_string(), package(file).to_string()];
+        let test = file.strip_prefix(folder(file)).and_then(|rest| rest.strip_prefix("/tests/"));
+        if let Some(test) = test {
+            arguments.extend(["--test".into(), test.trim_end_matches(".rs").into()]);
+        } else if home.join("src/lib.rs").exists() {
+            arguments.push("--lib".into());
+        } else {
+            let named = manifest.get("bin").and_then(|all| all.get(0)).and_then(|first| first.get("name"));
+            let name = named.and_then(toml::Value::as_str).unwrap_or(package(file));
+            arguments.extend(["--bin".into(), name.into()]);
+        }
+        // Some tests are about written forms; without the feature they would not be among those of their target.
+        let features = manifest.get("features").and_then(toml::Value::as_table);
+        for feature in ["serde", "full"] {
+            if features.is_some_and(|all| all.contains_key(feature)) {
+                arguments.extend(["--features".into(), feature.into()]);
+            }
+        }
+        Ok(arguments)
+    }
+}
+
+/// The folder that holds `src` and `tests`.
+fn folder(file: &str) -> &str {
+    file.split_once("/tests/").or_else(|| file.split_once("/src/")).map_or("", |(folder, _)| folder)
+}
+
+/// A package has the name of its folder.
+fn package(file: &str) -> &str {
+    folder(file).rsplit('/').next().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn targets_of_tests() {
+        let root = crate::workspace_root();
+        let mutant = |test: &str| Mutant { name: String::new(), change: Change::InTest, test: test.into() };
+        let of = |test| mutant(test).target(&root).unwrap().join(" ");
+        assert_eq!(of("crates/d2m-bvh/tests/engine.rs::f"), "-p d2m-bvh --test engine --features serde");
+        assert_eq!(of("crates/d2m-bvh/src/search/tests.rs::f"), "-p d2m-bvh --lib --features serde");
+        assert_eq!(of("crates/d2m-cli/src/scene/tests.rs::f"), "-p d2m-cli --bin d2m");
+        assert_eq!(mutant("crates/d2m-bvh/tests/engine.rs::f").package_folder(), "crates/d2m-bvh");
+        assert_eq!(mutant("xtask/src/tidy/map.rs::f").package_folder(), "xtask");
+    }
+}
