@@ -27,20 +27,7 @@ const fn step(name: &'static str, arguments: &'static [&'static str]) -> Step {
 /// in a call of its own: in one call cargo would join the features that any of them needs.
 const STEPS: [Step; 15] = [
     step("format", &["fmt", "--all", "--", "--check"]),
-    step(
-        "lints",
-        &[
-            "clippy",
-            "--workspace",
-            "--features",
-            "xtask/full",
-            "--all-targets",
-            "--locked",
-            "--",
-            "-D",
-            "warnings",
-        ],
-    ),
+    step("lints", &["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"]),
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m-lanes"]),
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m-interval"]),
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m-motion"]),
@@ -51,20 +38,7 @@ const STEPS: [Step; 15] = [
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m"]),
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m-dynamics"]),
     step("features", &["check", "--locked", "--all-features", "-p=d2m"]),
-    step(
-        "tests",
-        &[
-            "test",
-            "--workspace",
-            "--features",
-            "xtask/full",
-            "--locked",
-            "--lib",
-            "--bins",
-            "--tests",
-            "--examples",
-        ],
-    ),
+    step("tests", &["test", "--workspace", "--locked", "--lib", "--bins", "--tests", "--examples"]),
     step("doctests", &["test", "--workspace", "--locked", "--doc"]),
     Step {
         name: "documentation",

@@ -1,20 +1,20 @@
-//! Tasks of the evaluation, which need what takes minutes to compile: this program once more, with everything in it.
+//! Tasks of the evaluation, which need what takes minutes to compile: the program of `d2m-evaluation`.
 use std::ffi::OsString;
 use std::process::{Command, ExitCode};
 
 /// Whatever follows the name of the task.
 #[derive(clap::Args)]
 pub(crate) struct Forwarded {
-    /// Options of the task, read by the full program.
+    /// Options of the task, read by the evaluation.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
     _rest: Vec<OsString>,
 }
 
-/// The same call, built with the feature `full` and optimised.
+/// The same call, to the evaluation, optimised.
 pub(crate) fn run() -> ExitCode {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let status = Command::new(cargo)
-        .args(["run", "--release", "--quiet", "--package", "xtask", "--features", "full", "--"])
+        .args(["run", "--release", "--quiet", "--package", "d2m-evaluation", "--"])
         .args(std::env::args_os().skip(1))
         .status();
     match status {

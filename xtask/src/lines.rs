@@ -42,7 +42,8 @@ fn product(path: &Path) -> Option<String> {
     let package = parts[..source].join("/");
     let file = parts.last()?.strip_suffix(".rs")?;
     let is_test = file == "tests" || file.ends_with("_tests") || parts.contains(&"tests");
-    let is_tool = ["xtask", "benches", "crates/d2m-testing"].contains(&package.as_str());
+    let is_tool =
+        ["xtask", "benches", "crates/d2m-testing", "crates/d2m-evaluation"].contains(&package.as_str());
     (!is_test && !is_tool).then_some(package)
 }
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from fcl_continuous import load, model
 
-FOLDER = pathlib.Path(__file__).resolve().parents[2] / ".bench" / "scenes"
+FOLDER = pathlib.Path(__file__).resolve().parents[3] / ".bench" / "scenes"
 # FCL stops at a relative error of its own; it also works with other roundings.
 AGREE = 1e-6
 

@@ -14,7 +14,7 @@ import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 PAIRS = ["gear/gear", "torus/torus", "pebble/pebble", "knot/knot"]
 
 
@@ -29,7 +29,7 @@ def run_fcl(out, limit, seconds):
              "continuous_toc,continuous_microseconds"]
     for pair in PAIRS:
         with tempfile.TemporaryDirectory() as folder:
-            cargo("-p", "xtask", "--", "trials", "--pair", pair, "--folder", folder)
+            cargo("-p", "d2m-evaluation", "--", "trials", "--pair", pair, "--folder", folder)
             for trials in sorted(pathlib.Path(folder).glob("*.csv")):
                 a, b, speed = trials.stem.split("__")
                 models = [pathlib.Path(folder, f"{name}.obj") for name in (a, b)]

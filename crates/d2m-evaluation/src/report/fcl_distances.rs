@@ -1,4 +1,4 @@
-//! Static distances beside FCL's, if `xtask/peers/run_all.py` was run after `cargo xtask bench --only scenes`.
+//! Static distances beside FCL's, if `crates/d2m-evaluation/peers/run_all.py` was run after `cargo xtask bench --only scenes`.
 use super::page::round;
 use super::text;
 use crate::bench::Store;
@@ -54,7 +54,7 @@ pub(super) fn write(page: &mut String, folder: &Path) -> Result<(), Error> {
     writeln!(page, "### Static distance beside FCL\n")?;
     writeln!(
         page,
-        "From `xtask/peers/fcl_distance.py` after `cargo xtask bench --only scenes`: the same meshes and poses, from {:e} to {} sizes \
+        "From `crates/d2m-evaluation/peers/fcl_distance.py` after `cargo xtask bench --only scenes`: the same meshes and poses, from {:e} to {} sizes \
         of the larger body beyond contact ([{FILE}]({}/{FILE}) has all rows). µs; both distances agree to 1e-6.\n",
         rows.iter().map(|row| row.gap).fold(f64::INFINITY, f64::min),
         rows.iter().map(|row| row.gap).fold(0.0, f64::max),

@@ -1,4 +1,4 @@
-//! Peers outside of Rust, if `xtask/peers/run_all.py` was run: what their rows in `.bench/peers` come to.
+//! Peers outside of Rust, if `crates/d2m-evaluation/peers/run_all.py` was run: what their rows in `.bench/peers` come to.
 use super::page::round;
 use super::text;
 use crate::bench::{Method, Store};
@@ -122,7 +122,7 @@ pub(super) fn write(page: &mut String, folder: &Path) -> Result<(), Error> {
     writeln!(page, "### Peers outside of Rust\n")?;
     writeln!(
         page,
-        "From `xtask/peers/run_all.py`: the same meshes, trials and machine. Late: a contact missed, or later than \
+        "From `crates/d2m-evaluation/peers/run_all.py`: the same meshes, trials and machine. Late: a contact missed, or later than \
         ours by more than {LATE:e}.\n"
     )?;
     writeln!(

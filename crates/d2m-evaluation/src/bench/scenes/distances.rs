@@ -86,7 +86,7 @@ pub(super) fn run(rounds: usize) -> TaskResult {
     }
     let path = folder.join("distance.csv");
     std::fs::write(&path, table)?;
-    println!("FCL on the same pairs: python xtask/peers/fcl_distance.py");
+    println!("FCL on the same pairs: python crates/d2m-evaluation/peers/fcl_distance.py");
     Ok(())
 }
 
