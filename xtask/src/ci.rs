@@ -25,7 +25,7 @@ const fn step(name: &'static str, arguments: &'static [&'static str]) -> Step {
 
 /// In order of cost: what fails fast comes first. Without its default features each library must still compile, each
 /// in a call of its own: in one call cargo would join the features that any of them needs.
-const STEPS: [Step; 15] = [
+const STEPS: [Step; 16] = [
     step("format", &["fmt", "--all", "--", "--check"]),
     step("lints", &["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"]),
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m-lanes"]),
@@ -35,6 +35,7 @@ const STEPS: [Step; 15] = [
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m-feature"]),
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m-bvh"]),
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m-shapes"]),
+    step("features", &["check", "--locked", "--no-default-features", "-p=d2m-io"]),
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m"]),
     step("features", &["check", "--locked", "--no-default-features", "-p=d2m-dynamics"]),
     step("features", &["check", "--locked", "--all-features", "-p=d2m"]),

@@ -1,6 +1,6 @@
 //! Why a command stopped.
 
-use crate::load::excerpt;
+use d2m_io::{IoError, excerpt};
 use serde::de::DeserializeOwned;
 use std::fmt::Display;
 use thiserror::Error;
@@ -20,6 +20,12 @@ impl Failure {
     /// Bad input at a place (a file, an option) with its reason.
     pub(crate) fn at(place: impl Display, reason: impl Display) -> Self {
         Self::Input(format!("{place}: {reason}"))
+    }
+}
+
+impl From<IoError> for Failure {
+    fn from(error: IoError) -> Self {
+        Self::Input(error.to_string())
     }
 }
 

@@ -2,11 +2,12 @@
 
 use crate::arguments::InfoArguments;
 use crate::failure::Failure;
-use crate::load::{Loaded, PolygonCounts, Precision, load};
+use crate::load::{Loaded, load};
 use crate::output::{Output, print};
 use crate::report::short;
 use d2m::bvh::{EnclosingSphere, MeshParts, Validation};
 use d2m::shapes::{COMMON, SHAPES};
+use d2m_io::Precision;
 use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;
@@ -76,17 +77,17 @@ fn mesh_text(body: &Loaded, validation: &Validation, parts: &MeshParts) -> Strin
             line("solid", format!("{}, where the winding number is not zero", size(volume)));
         }
     }
-    if let Precision::Single(kind) = body.precision {
+    if let Precision::Single(kind) = body.report.precision {
         line("precision", format!("single: a {kind} holds no more than 24 bits of each coordinate"));
     }
     line("box", format!("{low:?} to {high:?}"));
     line("sphere", format!("center {:?}, radius {}", sphere.center.to_array(), short(sphere.radius)));
-    let PolygonCounts { cut, bent, crossing, without_area } = body.polygons;
+    let polygons = body.report.polygons;
     for (what, count) in [
-        ("polygons cut into triangles", cut),
-        ("of them not flat: the cut decides their shape", bent),
-        ("of them crossing themselves: their triangles overlap", crossing),
-        ("faces with fewer than three corners, left out", without_area),
+        ("polygons cut into triangles", polygons.cut),
+        ("of them not flat: the cut decides their shape", polygons.bent),
+        ("of them crossing themselves: their triangles overlap", polygons.crossing),
+        ("faces with fewer than three corners, left out", polygons.without_area),
         ("degenerate triangles", validation.degenerate_triangles),
         ("repeated triangles", validation.duplicate_triangles),
         ("vertices at the place of another", validation.duplicate_vertices),
@@ -121,15 +122,15 @@ fn mesh_json(body: &Loaded, validation: &Validation, parts: &MeshParts) -> Strin
         "vertices": body.mesh().vertex_count(),
         "triangles": body.mesh().triangle_count(),
         "enclosing_sphere": { "center": sphere.center.to_array(), "radius": sphere.radius },
-        "precision": match body.precision {
+        "precision": match body.report.precision {
             Precision::Double => "double",
             Precision::Single(_) => "single",
         },
         "polygons": {
-            "cut": body.polygons.cut,
-            "bent": body.polygons.bent,
-            "crossing": body.polygons.crossing,
-            "without_area": body.polygons.without_area,
+            "cut": body.report.polygons.cut,
+            "bent": body.report.polygons.bent,
+            "crossing": body.report.polygons.crossing,
+            "without_area": body.report.polygons.without_area,
         },
         "validation": validation,
         "parts": parts,

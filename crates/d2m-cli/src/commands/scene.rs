@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
     let rows: Vec<Row> = pool.install(|| {
         if !arguments.first {
             let contacts = world.contacts_with_progress(scene.window, &progress).map_err(named)?;
-            return Ok(contacts.into_iter().map(Row::from).collect());
+            return Ok::<_, Failure>(contacts.into_iter().map(Row::from).collect());
         }
         Ok(match world.first_contact_with_progress(scene.window, &progress).map_err(named)? {
             FirstContact::Separated => Vec::new(),

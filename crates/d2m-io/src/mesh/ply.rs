@@ -3,8 +3,8 @@
 //! In a text every coordinate is read as a double, also where the header says `float`: its digits are the body.
 
 use super::polygon::Triangulation;
-use super::{LoadError, MeshFile, Precision, check_coordinate, coordinate, excerpt};
-use d2m::bvh::TriMesh;
+use super::{Fault, MeshReport, Precision, RawMesh};
+use crate::text::{check_coordinate, coordinate, excerpt};
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{
@@ -14,7 +14,7 @@ use std::collections::HashSet;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, LoadError> {
+pub(super) fn parse(bytes: &[u8]) -> Result<RawMesh, Fault> {
     let mut reader = Reader::new(bytes);
     let parser = Parser::<Element>::new();
     let header = parser.read_header(&mut reader).map_err(|error| fault(&error))?;
@@ -23,11 +23,11 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, LoadError> {
     for (name, definition) in &header.elements {
         // Nothing would be read for each of them, however many the header states.
         if definition.properties.is_empty() && definition.count > 0 {
-            return Err(LoadError::new(format!("element {name:?} has no properties")));
+            return Err(Fault::new(format!("element {name:?} has no properties")));
         }
         // Leaving them out would lose surface.
         if name == "tristrips" && definition.count > 0 {
-            return Err(LoadError::new("element \"tristrips\" is not supported: faces are needed"));
+            return Err(Fault::new("element \"tristrips\" is not supported: faces are needed"));
         }
     }
     let is_text = header.encoding == Encoding::Ascii;
@@ -39,17 +39,17 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, LoadError> {
         for (name, definition) in &header.elements {
             let elements = parser
                 .read_payload_for_element(&mut reader, definition, &header)
-                .map_err(|error| LoadError::new(format!("{name}: {}", fault(&error).reason)))?;
+                .map_err(|error| Fault::new(format!("{name}: {}", fault(&error).reason)))?;
             for (index, element) in elements.into_iter().enumerate() {
                 let added = parts.add(name, &element);
-                added.map_err(|reason| LoadError::new(format!("{name} {index}: {reason}")))?;
+                added.map_err(|reason| Fault::new(format!("{name} {index}: {reason}")))?;
             }
         }
         let rest = reader.into_inner();
         // Writers end files with line feeds or zeros.
         if rest.iter().any(|byte| !byte.is_ascii_whitespace() && *byte != 0) {
             let reason = format!("{} bytes are left after the elements that the header states", rest.len());
-            return Err(LoadError::new(reason));
+            return Err(Fault::new(reason));
         }
     }
     let mut triangulation = Triangulation::default();
@@ -57,7 +57,6 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, LoadError> {
         triangulation.add(polygon, &parts.vertices);
     }
     let Triangulation { triangles, counts: polygons, .. } = triangulation;
-    let mesh = TriMesh::try_new(parts.vertices, triangles)?;
     let has_floats = header.elements.get("vertex").is_some_and(|vertex| {
         let types = AXES.iter().filter_map(|axis| vertex.properties.get(*axis));
         types.into_iter().any(|property| property.data_type == PropertyType::Scalar(ScalarType::Float))
@@ -67,11 +66,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, LoadError> {
     } else {
         Precision::Double
     };
-    Ok(MeshFile { mesh, polygons, precision })
+    let report = MeshReport { polygons, precision };
+    Ok(RawMesh { vertices: parts.vertices, triangles, report })
 }
 
 /// The parser would read the last of two elements or properties of one name in the place of both.
-fn check_names(header: &[u8]) -> Result<(), LoadError> {
+fn check_names(header: &[u8]) -> Result<(), Fault> {
     let (mut elements, mut properties) = (HashSet::new(), HashSet::new());
     let text = String::from_utf8_lossy(header);
     for (index, line) in text.lines().enumerate() {
@@ -87,40 +87,40 @@ fn check_names(header: &[u8]) -> Result<(), LoadError> {
         let name = name.unwrap_or_default();
         if !names.insert(name.to_owned()) {
             let reason = format!("{} is defined for the second time", excerpt(name));
-            return Err(LoadError::at_line(index + 1, reason));
+            return Err(Fault::at_line(index + 1, reason));
         }
     }
     Ok(())
 }
 
 /// One element a line; blank lines are skipped.
-fn read_text(text: &str, first_line: usize, header: &Header, parts: &mut Parts) -> Result<(), LoadError> {
+fn read_text(text: &str, first_line: usize, header: &Header, parts: &mut Parts) -> Result<(), Fault> {
     let lines = text.lines().enumerate().map(|(index, line)| (first_line + index, line));
     let mut lines = lines.filter(|(_, line)| !line.trim().is_empty());
     for (name, definition) in &header.elements {
         for index in 0..definition.count {
             let Some((line, words)) = lines.next() else {
                 let reason = format!("{name}: the file ends after {index} of {}", definition.count);
-                return Err(LoadError::new(reason));
+                return Err(Fault::new(reason));
             };
             let mut element = Element::default();
             element
                 .read_words(words, definition)
                 .and_then(|()| parts.add(name, &element))
-                .map_err(|reason| LoadError::at_line(line, format!("{name} {index}: {reason}")))?;
+                .map_err(|reason| Fault::at_line(line, format!("{name} {index}: {reason}")))?;
         }
     }
     match lines.next() {
         None => Ok(()),
         Some((line, words)) => {
             let reason = format!("{} is left after the elements that the header states", excerpt(words));
-            Err(LoadError::at_line(line, reason))
+            Err(Fault::at_line(line, reason))
         }
     }
 }
 
 /// The parser's messages span lines: what it says first, and a chain of causes that is left out.
-fn fault(error: &ParseError) -> LoadError {
+fn fault(error: &ParseError) -> Fault {
     let text = error.to_string();
     let mut lines = text.lines().map(str::trim);
     let first = lines.next().unwrap_or_default();
@@ -133,7 +133,7 @@ fn fault(error: &ParseError) -> LoadError {
         Some(quoted) => format!("{} found {quoted}", first.trim_end_matches('.')),
         None => first.to_owned(),
     };
-    LoadError { line: error.line(), reason }
+    Fault { line: error.line(), reason }
 }
 
 /// What matters of the elements.

@@ -3,18 +3,17 @@
 //! A binary file holds single precision. The numbers of a text are read as doubles: rounded to single precision they
 //! would be another body.
 
-use super::polygon::PolygonCounts;
-use super::{LoadError, MeshFile, Precision, coordinate, excerpt};
-use d2m::bvh::TriMesh;
+use super::merge::Merged;
+use super::{Fault, Merging, MeshReport, Precision, RawMesh};
+use crate::text::{coordinate, excerpt};
 use glam::DVec3;
-use std::collections::HashMap;
 use std::io::Cursor;
 
 /// Bytes before the triangles of a binary file, and of each triangle.
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, LoadError> {
+pub(super) fn parse(bytes: &[u8], merging: Merging) -> Result<RawMesh, Fault> {
     // A binary file may start with "solid" too, so its exact length decides first.
     let stated =
         bytes.get(80..84).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize);
@@ -22,11 +21,11 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, LoadError> {
     let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes).trim_ascii_start();
     let starts_as_text = text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     let (soup, precision) = if needed == Some(bytes.len()) {
-        (binary(bytes)?, Precision::Single("binary STL"))
+        (binary(bytes, Soup::new(merging))?, Precision::Single("binary STL"))
     } else if starts_as_text && !bytes.contains(&0) {
-        (Text::new(&String::from_utf8_lossy(bytes)).parse()?, Precision::Double)
+        (Text::new(&String::from_utf8_lossy(bytes)).parse(Soup::new(merging))?, Precision::Double)
     } else {
-        return Err(LoadError::new(match (stated, needed) {
+        return Err(Fault::new(match (stated, needed) {
             (Some(count), Some(needed)) => {
                 format!(
                     "the header states {count} triangles, {needed} bytes, but the file has {}",
@@ -36,25 +35,24 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, LoadError> {
             _ => format!("neither a text STL (\"solid\") nor a binary one: {} bytes only", bytes.len()),
         }));
     };
-    let mesh = TriMesh::try_new(soup.vertices, soup.triangles)?;
-    Ok(MeshFile { mesh, polygons: PolygonCounts::default(), precision })
+    let report = MeshReport { precision, ..MeshReport::default() };
+    Ok(RawMesh { vertices: soup.merged.vertices, triangles: soup.triangles, report })
 }
 
-fn binary(bytes: &[u8]) -> Result<Soup, LoadError> {
-    let mut soup = Soup::default();
+fn binary(bytes: &[u8], mut soup: Soup) -> Result<Soup, Fault> {
     // The reader takes any header that starts with "solid" for text.
     let without_title = [&[0; 80], &bytes[80..]].concat();
     let mut reader = Cursor::new(without_title);
     let triangles = stl_io::create_stl_reader(&mut reader);
-    for (number, triangle) in triangles.map_err(|error| LoadError::new(error.to_string()))?.enumerate() {
-        let triangle = triangle.map_err(|error| LoadError::new(format!("triangle {number}: {error}")))?;
+    for (number, triangle) in triangles.map_err(|error| Fault::new(error.to_string()))?.enumerate() {
+        let triangle = triangle.map_err(|error| Fault::new(format!("triangle {number}: {error}")))?;
         let mut corners = [DVec3::ZERO; 3];
         for (corner, (slot, vertex)) in corners.iter_mut().zip(triangle.vertices).enumerate() {
             let coordinates: [f32; 3] = vertex.into();
             if let Some(value) = coordinates.iter().find(|value| !value.is_finite()) {
                 let reason =
                     format!("triangle {number}, corner {corner}: coordinate {value} is not a finite number");
-                return Err(LoadError::new(reason));
+                return Err(Fault::new(reason));
             }
             *slot = DVec3::from_array(coordinates.map(f64::from));
         }
@@ -80,8 +78,7 @@ impl<'a> Text<'a> {
     }
 
     /// All parts of the file, each from `solid` to `endsolid`; what stands behind these two words is a title.
-    fn parse(mut self) -> Result<Soup, LoadError> {
-        let mut soup = Soup::default();
+    fn parse(mut self, mut soup: Soup) -> Result<Soup, Fault> {
         let mut is_open = false;
         while let Some((line, word)) = self.next() {
             let is = |expected: &str| word.eq_ignore_ascii_case(expected);
@@ -90,20 +87,17 @@ impl<'a> Text<'a> {
                 while self.words.next_if(|&(next, _)| next == line).is_some() {}
             } else if is("facet") && is_open {
                 let number = soup.triangles.len();
-                let corners = self.facet().map_err(|LoadError { line, reason }| {
+                let corners = self.facet().map_err(|Fault { line, reason }| {
                     let reason = format!("triangle {number}: {reason}");
-                    LoadError { line, reason }
+                    Fault { line, reason }
                 })?;
                 soup.add(corners);
             } else {
                 let expected = if is_open { "\"facet\" or \"endsolid\"" } else { "\"solid\"" };
-                return Err(LoadError::at_line(
-                    line,
-                    format!("{expected} is expected, not {}", excerpt(word)),
-                ));
+                return Err(Fault::at_line(line, format!("{expected} is expected, not {}", excerpt(word))));
             }
         }
-        if is_open { Err(LoadError::new("the text ends without \"endsolid\"")) } else { Ok(soup) }
+        if is_open { Err(Fault::new("the text ends without \"endsolid\"")) } else { Ok(soup) }
     }
 
     fn next(&mut self) -> Option<(usize, &'a str)> {
@@ -112,20 +106,18 @@ impl<'a> Text<'a> {
         found
     }
 
-    fn expect(&mut self, expected: &str) -> Result<(), LoadError> {
+    fn expect(&mut self, expected: &str) -> Result<(), Fault> {
         match self.next() {
             Some((_, word)) if word.eq_ignore_ascii_case(expected) => Ok(()),
             Some((line, word)) => {
-                Err(LoadError::at_line(line, format!("{expected:?} is expected, not {}", excerpt(word))))
+                Err(Fault::at_line(line, format!("{expected:?} is expected, not {}", excerpt(word))))
             }
-            None => {
-                Err(LoadError::at_line(self.line, format!("the text ends where {expected:?} is expected")))
-            }
+            None => Err(Fault::at_line(self.line, format!("the text ends where {expected:?} is expected"))),
         }
     }
 
     /// What follows the word `facet`. Normals are not read: writers put anything there.
-    fn facet(&mut self) -> Result<[DVec3; 3], LoadError> {
+    fn facet(&mut self) -> Result<[DVec3; 3], Fault> {
         self.expect("normal")?;
         for _ in 0..3 {
             self.next();
@@ -139,7 +131,7 @@ impl<'a> Text<'a> {
             for (axis, slot) in ["x", "y", "z"].into_iter().zip(&mut position) {
                 let word = self.next().map(|(_, word)| word);
                 *slot = coordinate(axis, word)
-                    .map_err(|reason| LoadError::at_line(self.line, format!("corner {number}: {reason}")))?;
+                    .map_err(|reason| Fault::at_line(self.line, format!("corner {number}: {reason}")))?;
             }
             *corner = DVec3::from_array(position);
         }
@@ -149,23 +141,25 @@ impl<'a> Text<'a> {
     }
 }
 
-/// Triangles with their corners welded where they are equal.
-#[derive(Default)]
+/// Triangles with their corners merged where they are equal, if that is wanted.
 struct Soup {
-    vertices: Vec<DVec3>,
+    merges: bool,
+    merged: Merged,
     triangles: Vec<[u32; 3]>,
-    known: HashMap<[u64; 3], u32>,
 }
 
 impl Soup {
+    fn new(merging: Merging) -> Self {
+        Self { merges: merging != Merging::Never, merged: Merged::default(), triangles: Vec::new() }
+    }
+
     fn add(&mut self, corners: [DVec3; 3]) {
         let corners = corners.map(|position| {
-            // Adding 0 turns −0 into +0.
-            let position = position + DVec3::ZERO;
-            *self.known.entry(position.to_array().map(f64::to_bits)).or_insert_with(|| {
-                self.vertices.push(position);
-                (self.vertices.len() - 1) as u32
-            })
+            if self.merges {
+                return self.merged.number(position);
+            }
+            self.merged.vertices.push(position);
+            (self.merged.vertices.len() - 1) as u32
         });
         self.triangles.push(corners);
     }

@@ -4,11 +4,11 @@
 //! are doubles, correctly rounded whatever their number of digits. Vertices keep the numbers of the file.
 
 use super::polygon::Triangulation;
-use super::{LoadError, MeshFile, Precision, coordinate, excerpt};
-use d2m::bvh::TriMesh;
+use super::{Fault, MeshReport, RawMesh};
+use crate::text::{coordinate, excerpt};
 use glam::DVec3;
 
-pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, LoadError> {
+pub(super) fn parse(bytes: &[u8]) -> Result<RawMesh, Fault> {
     let text = String::from_utf8_lossy(bytes);
     let mut scan = Scan::default();
     let mut statement = Vec::new();
@@ -51,33 +51,33 @@ struct Scan {
 }
 
 impl Scan {
-    fn statement(&mut self, words: &[Word<'_>]) -> Result<(), LoadError> {
+    fn statement(&mut self, words: &[Word<'_>]) -> Result<(), Fault> {
         let Some((keyword, words)) = words.split_first() else { return Ok(()) };
         match keyword.text {
             "v" => self.vertex(keyword.line, words),
             "f" | "fo" => self.face(words),
             // Leaving them out would lose surface.
-            "surf" => Err(LoadError::at_line(keyword.line, "free-form surfaces are not supported")),
+            "surf" => Err(Fault::at_line(keyword.line, "free-form surfaces are not supported")),
             _ => Ok(()),
         }
     }
 
-    fn vertex(&mut self, line: usize, words: &[Word<'_>]) -> Result<(), LoadError> {
+    fn vertex(&mut self, line: usize, words: &[Word<'_>]) -> Result<(), Fault> {
         let number = self.vertices.len() + 1;
         let mut position = [0.0; 3];
         for (index, (axis, slot)) in ["x", "y", "z"].into_iter().zip(&mut position).enumerate() {
             let word = words.get(index);
             let line = word.map_or(line, |word| word.line);
             *slot = coordinate(axis, word.map(|word| word.text))
-                .map_err(|reason| LoadError::at_line(line, format!("vertex {number}: {reason}")))?;
+                .map_err(|reason| Fault::at_line(line, format!("vertex {number}: {reason}")))?;
         }
         self.vertices.push(DVec3::from_array(position));
         Ok(())
     }
 
-    fn face(&mut self, words: &[Word<'_>]) -> Result<(), LoadError> {
+    fn face(&mut self, words: &[Word<'_>]) -> Result<(), Fault> {
         for &Word { line, text } in words {
-            let absolute = self.corner(text).map_err(|reason| LoadError::at_line(line, reason))?;
+            let absolute = self.corner(text).map_err(|reason| Fault::at_line(line, reason))?;
             self.highest = self.highest.max((absolute, line));
             self.corners.push((absolute - 1) as u32);
         }
@@ -108,11 +108,11 @@ impl Scan {
         Ok(absolute)
     }
 
-    fn finish(self) -> Result<MeshFile, LoadError> {
+    fn finish(self) -> Result<RawMesh, Fault> {
         let (count, (highest, line)) = (self.vertices.len(), self.highest);
         if highest > count {
             let reason = format!("vertex index {highest} is out of range, the file has {count} vertices");
-            return Err(LoadError::at_line(line, reason));
+            return Err(Fault::at_line(line, reason));
         }
         let mut triangulation = Triangulation::default();
         let mut corners = self.corners.as_slice();
@@ -122,7 +122,7 @@ impl Scan {
             corners = rest;
         }
         let Triangulation { triangles, counts: polygons, .. } = triangulation;
-        let mesh = TriMesh::try_new(self.vertices, triangles)?;
-        Ok(MeshFile { mesh, polygons, precision: Precision::Double })
+        let report = MeshReport { polygons, ..MeshReport::default() };
+        Ok(RawMesh { vertices: self.vertices, triangles, report })
     }
 }

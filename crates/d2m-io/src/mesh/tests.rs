@@ -1,29 +1,36 @@
-//! Loaders: the same mesh in every format, faults with their places, and arbitrary bytes.
+//! Readers: the same mesh in every format, faults with their places, and arbitrary bytes.
 
-use super::polygon::PolygonCounts;
-use super::{LoadError, MeshFile, Precision};
-use d2m::bvh::{Topology, TriMesh};
+use super::{Fault, MeshFormat, PolygonCounts, Precision, ReadMesh, ReadOptions, parse_mesh};
+use crate::IoError;
+use d2m_bvh::{Topology, TriMesh};
 use glam::DVec3;
 use proptest::prelude::*;
 
+fn file(bytes: &[u8], format: MeshFormat) -> Result<ReadMesh, Fault> {
+    parse_mesh(bytes, format, &ReadOptions::new()).map_err(|error| match error {
+        IoError::Content { place, reason } => Fault { line: place.line, reason },
+        other => Fault::new(other.to_string()),
+    })
+}
+
 mod obj {
-    pub(super) fn parse(bytes: &[u8]) -> Result<super::TriMesh, super::LoadError> {
-        super::super::obj::parse(bytes).map(|file| file.mesh)
+    pub(super) fn parse(bytes: &[u8]) -> Result<super::TriMesh, super::Fault> {
+        super::file(bytes, super::MeshFormat::Obj).map(|file| file.mesh)
     }
 }
 mod stl {
-    pub(super) fn parse(bytes: &[u8]) -> Result<super::TriMesh, super::LoadError> {
-        super::super::stl::parse(bytes).map(|file| file.mesh)
+    pub(super) fn parse(bytes: &[u8]) -> Result<super::TriMesh, super::Fault> {
+        super::file(bytes, super::MeshFormat::Stl).map(|file| file.mesh)
     }
 }
 mod ply {
-    pub(super) fn parse(bytes: &[u8]) -> Result<super::TriMesh, super::LoadError> {
-        super::super::ply::parse(bytes).map(|file| file.mesh)
+    pub(super) fn parse(bytes: &[u8]) -> Result<super::TriMesh, super::Fault> {
+        super::file(bytes, super::MeshFormat::Ply).map(|file| file.mesh)
     }
 }
 
 fn tetrahedron() -> TriMesh {
-    d2m::shapes::mesh("tetrahedron").unwrap()
+    d2m_shapes::mesh("tetrahedron").unwrap()
 }
 
 fn obj_text(mesh: &TriMesh) -> String {
@@ -138,21 +145,21 @@ fn texts_are_read_as_the_nearest_doubles() {
             )
         };
         for file in [
-            super::obj::parse(obj_file.as_bytes()),
-            super::stl::parse(stl_file.as_bytes()),
-            super::ply::parse(ply_file("double").as_bytes()),
-            super::ply::parse(ply_file("float").as_bytes()),
+            file(obj_file.as_bytes(), MeshFormat::Obj),
+            file(stl_file.as_bytes(), MeshFormat::Stl),
+            file(ply_file("double").as_bytes(), MeshFormat::Ply),
+            file(ply_file("float").as_bytes(), MeshFormat::Ply),
         ] {
             let file = file.unwrap();
             assert_eq!(file.mesh.vertices()[0], position, "{words}");
-            assert_eq!(file.precision, Precision::Double);
+            assert_eq!(file.report.precision, Precision::Double);
         }
     }
-    let binary = super::stl::parse(&stl_binary(&tetrahedron(), b"")).unwrap();
-    assert_eq!(binary.precision, Precision::Single("binary STL"));
+    let binary = file(&stl_binary(&tetrahedron(), b""), MeshFormat::Stl).unwrap();
+    assert_eq!(binary.report.precision, Precision::Single("binary STL"));
     for big in [false, true] {
         let double = ply_binary(&tetrahedron(), big);
-        assert_eq!(super::ply::parse(&double).unwrap().precision, Precision::Double);
+        assert_eq!(file(&double, MeshFormat::Ply).unwrap().report.precision, Precision::Double);
         let header =
             ply_header(if big { "binary_big_endian" } else { "binary_little_endian" }, &tetrahedron());
         let mut single = header.replace("double", "float").into_bytes();
@@ -162,8 +169,8 @@ fn texts_are_read_as_the_nearest_doubles() {
             single.push(7);
         }
         single.extend(&double[double.len() - 4 * 13..]);
-        let single = super::ply::parse(&single).unwrap();
-        assert_eq!(single.precision, Precision::Single("PLY with float properties"));
+        let single = file(&single, MeshFormat::Ply).unwrap();
+        assert_eq!(single.report.precision, Precision::Single("PLY with float properties"));
         let rounded: Vec<DVec3> = tetrahedron().vertices().iter().map(|v| v.as_vec3().as_dvec3()).collect();
         assert_eq!(single.mesh.vertices(), rounded);
     }
@@ -209,8 +216,8 @@ fn long_statements_take_linear_time() {
 fn concave_faces_are_cut_inside_themselves() {
     // A dart seen from z: the diagonal from its first corner would leave it.
     let text = "v 0 0 0\nv 2 1 0\nv 0 2 0\nv 0.5 1 0\nf 1 2 3 4\nf 2/1 3/2 4/3 1/4\nf -4 -3 -2 -1\n";
-    let MeshFile { mesh, polygons, .. } = super::obj::parse(text.as_bytes()).unwrap();
-    assert_eq!(polygons, PolygonCounts { cut: 3, ..Default::default() });
+    let ReadMesh { mesh, report } = file(text.as_bytes(), MeshFormat::Obj).unwrap();
+    assert_eq!(report.polygons, PolygonCounts { cut: 3, ..Default::default() });
     assert_eq!(mesh.triangle_count(), 6);
     assert!(mesh.triangles().iter().all(|triangle| triangle.contains(&3) && triangle.contains(&1)));
     let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
@@ -236,8 +243,8 @@ fn polygons_in_ply_become_fans() {
 
 #[test]
 fn faults_name_the_place_and_the_value() {
-    let fault = |result: Result<TriMesh, LoadError>| {
-        let LoadError { line, reason } = result.unwrap_err();
+    let fault = |result: Result<TriMesh, Fault>| {
+        let Fault { line, reason } = result.unwrap_err();
         (line, reason)
     };
     let text = |line: usize, reason: &str| (Some(line), reason.to_owned());

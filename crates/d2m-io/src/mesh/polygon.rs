@@ -14,7 +14,7 @@
 //! - A polygon whose corners are not in one plane has no surface of its own. It is cut in the same way, and counted as
 //!   *bent* if a corner is further than [`FLATNESS`] of its size from the plane through its middle.
 
-use d2m::feature::orient2d;
+use d2m_feature::orient2d;
 use glam::{DVec2, DVec3};
 use std::cmp::Ordering::{Equal, Greater, Less};
 use std::collections::VecDeque;
@@ -29,15 +29,16 @@ const MOST_TESTS: u64 = 1 << 30;
 
 /// What was found among the polygons of a file.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) struct PolygonCounts {
+#[non_exhaustive]
+pub struct PolygonCounts {
     /// Polygons with more than three corners.
-    pub(crate) cut: usize,
+    pub cut: usize,
     /// Of them: not flat.
-    pub(crate) bent: usize,
+    pub bent: usize,
     /// Of them: cross themselves as they are seen along their normal, so their triangles overlap.
-    pub(crate) crossing: usize,
+    pub crossing: usize,
     /// Faces with one or two corners: left out.
-    pub(crate) without_area: usize,
+    pub without_area: usize,
 }
 
 /// Triangles of the polygons that were added, and what was found.

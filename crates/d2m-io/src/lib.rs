@@ -1,0 +1,15 @@
+#![doc = include_str!("../README.md")]
+#![forbid(unsafe_code)]
+
+mod bytes;
+mod error;
+mod mesh;
+mod text;
+
+pub use bytes::{read_bytes, read_unsized};
+pub use error::{IoError, Place};
+pub use mesh::{
+    Merging, MeshFormat, MeshReport, PolygonCounts, Precision, ReadMesh, ReadOptions, Unit, parse_mesh,
+    read_mesh, read_mesh_with,
+};
+pub use text::excerpt;

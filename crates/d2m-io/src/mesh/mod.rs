@@ -1,0 +1,133 @@
+//! Meshes from files: the one entry, and what every reader gives.
+
+mod format;
+mod merge;
+mod obj;
+mod options;
+mod ply;
+mod polygon;
+mod report;
+mod stl;
+#[cfg(test)]
+mod tests;
+
+pub use format::MeshFormat;
+pub use options::{Merging, ReadOptions, Unit};
+pub use polygon::PolygonCounts;
+pub use report::{MeshReport, Precision};
+
+use crate::bytes::read_bytes;
+use crate::{IoError, Place};
+use d2m_bvh::{MeshError, TriMesh};
+use glam::DVec3;
+use std::path::Path;
+
+/// A mesh and how it was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReadMesh {
+    /// The mesh.
+    pub mesh: TriMesh,
+    /// How exactly it was stated, and what was cut or left out.
+    pub report: MeshReport,
+}
+
+/// The mesh of a file, by its extension: [`read_mesh_with`] and no options.
+///
+/// ```
+/// let folder = std::env::temp_dir().join(format!("d2m-io-read-mesh-{}", std::process::id()));
+/// std::fs::create_dir_all(&folder)?;
+/// std::fs::write(folder.join("square.obj"), "v 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0 0.1 0\nf 1 2 3 4\n")?;
+/// let square = d2m_io::read_mesh(folder.join("square.obj"))?;
+/// assert_eq!(square.mesh.triangle_count(), 2);
+/// assert_eq!(square.mesh.vertices()[2].x, 0.1, "the nearest double, not the nearest float");
+/// assert_eq!(square.report.polygons.cut, 1);
+///
+/// std::fs::write(folder.join("bad.obj"), "v 0 0 0\nv 0 NaN 0\n")?;
+/// let fault = d2m_io::read_mesh(folder.join("bad.obj")).unwrap_err().to_string();
+/// assert!(fault.ends_with("bad.obj, line 2: vertex 2: y is NaN, not a finite number"), "{fault}");
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`IoError`] with the name of the file, its line or index, and the value found.
+pub fn read_mesh(path: impl AsRef<Path>) -> Result<ReadMesh, IoError> {
+    read_mesh_with(path, &ReadOptions::new())
+}
+
+/// The mesh of a file, by its extension, in the scale and unit that the options state.
+///
+/// # Errors
+/// [`IoError`] with the name of the file, its line or index, and the value found.
+pub fn read_mesh_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<ReadMesh, IoError> {
+    let path = path.as_ref();
+    let name = || path.display().to_string();
+    let format = MeshFormat::from_path(path).ok_or_else(|| IoError::UnknownFormat { file: name() })?;
+    let bytes = read_bytes(path)?;
+    parse_mesh(&bytes, format, options).map_err(|error| error.in_file(name()))
+}
+
+/// The mesh that the bytes of a file hold.
+///
+/// ```
+/// use d2m_io::{MeshFormat, ReadOptions, Unit, parse_mesh};
+/// let text = b"v 0 0 0\nv 254 0 0\nv 0 127 0\nf 1 2 3\n";
+/// let plate = parse_mesh(text, MeshFormat::Obj, &ReadOptions::new().with_unit(Unit::Millimeter))?;
+/// assert_eq!(plate.mesh.vertices()[1].x, 0.254);
+/// # Ok::<(), d2m_io::IoError>(())
+/// ```
+///
+/// # Errors
+/// [`IoError`] with line or index and the value found.
+pub fn parse_mesh(bytes: &[u8], format: MeshFormat, options: &ReadOptions) -> Result<ReadMesh, IoError> {
+    options.check()?;
+    let raw = match format {
+        MeshFormat::Obj => obj::parse(bytes),
+        MeshFormat::Stl => stl::parse(bytes, options.merging),
+        MeshFormat::Ply => ply::parse(bytes),
+    };
+    let RawMesh { mut vertices, mut triangles, report } = raw.map_err(Fault::into_error)?;
+    if options.merging == Merging::Always {
+        merge::merge(&mut vertices, &mut triangles);
+    }
+    options.apply(&mut vertices, &mut triangles);
+    let mesh = TriMesh::try_new(vertices, triangles)
+        .map_err(|source| IoError::Mesh { place: Place::default(), source })?;
+    Ok(ReadMesh { mesh, report })
+}
+
+/// What a reader gives: lists that are not yet checked.
+#[derive(Debug, Default)]
+struct RawMesh {
+    vertices: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    report: MeshReport,
+}
+
+/// Why a file holds no usable mesh.
+#[derive(Debug, PartialEq)]
+struct Fault {
+    /// 1-based, for text.
+    line: Option<usize>,
+    reason: String,
+}
+
+impl Fault {
+    fn new(reason: impl Into<String>) -> Self {
+        Self { line: None, reason: reason.into() }
+    }
+
+    fn at_line(line: usize, reason: impl Into<String>) -> Self {
+        Self { line: Some(line), reason: reason.into() }
+    }
+
+    fn into_error(self) -> IoError {
+        IoError::Content { place: Place { file: None, line: self.line }, reason: self.reason }
+    }
+}
+
+impl From<MeshError> for Fault {
+    fn from(error: MeshError) -> Self {
+        Self::new(error.to_string())
+    }
+}

@@ -1,0 +1,144 @@
+//! What a reader may do to a mesh.
+
+use crate::IoError;
+use glam::DVec3;
+
+/// How a mesh is read.
+///
+/// ```
+/// use d2m_io::{Merging, ReadOptions, Unit};
+/// let options = ReadOptions::new().with_unit(Unit::Inch).with_merging(Merging::Always);
+/// assert_eq!(options.scale, glam::DVec3::ONE);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct ReadOptions {
+    /// Factors of the three axes, finite and not zero. An odd number of negative ones mirrors the mesh; its triangles are
+    /// turned round then, so that the outside stays outside. Each product is rounded to the nearest double.
+    pub scale: DVec3,
+    /// The unit of the numbers in the file: lengths are read as meters, correctly rounded from the doubles of the file,
+    /// and scaled after that. None: as the file states them.
+    pub unit: Option<Unit>,
+    /// Which equal vertices become one.
+    pub merging: Merging,
+}
+
+impl ReadOptions {
+    /// Numbers as they are in the file.
+    pub const fn new() -> Self {
+        Self { scale: DVec3::ONE, unit: None, merging: Merging::ByFormat }
+    }
+
+    /// With other factors of the three axes.
+    #[must_use]
+    pub const fn with_scale(self, scale: DVec3) -> Self {
+        Self { scale, ..self }
+    }
+
+    /// With a unit of the numbers in the file.
+    #[must_use]
+    pub const fn with_unit(self, unit: Unit) -> Self {
+        Self { unit: Some(unit), ..self }
+    }
+
+    /// With another choice of the vertices that become one.
+    #[must_use]
+    pub const fn with_merging(self, merging: Merging) -> Self {
+        Self { merging, ..self }
+    }
+
+    pub(super) fn check(&self) -> Result<(), IoError> {
+        let is_usable = self.scale.is_finite() && self.scale.abs().min_element() > 0.0;
+        if is_usable { Ok(()) } else { Err(IoError::BadScale { scale: self.scale }) }
+    }
+
+    pub(super) fn apply(&self, vertices: &mut [DVec3], triangles: &mut [[u32; 3]]) {
+        let unit = self.unit.unwrap_or(Unit::Meter);
+        if unit != Unit::Meter || self.scale != DVec3::ONE {
+            vertices.iter_mut().for_each(|vertex| *vertex = vertex.map(|x| unit.to_meters(x)) * self.scale);
+        }
+        if self.scale.is_negative_bitmask().count_ones() % 2 == 1 {
+            triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
+        }
+    }
+}
+
+impl Default for ReadOptions {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Which vertices at the same place become one.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Merging {
+    /// Those of formats that share no vertices (STL), so that the mesh has a topology; elsewhere vertices keep the numbers of the file.
+    #[default]
+    ByFormat,
+    /// Those of every format.
+    Always,
+    /// None.
+    Never,
+}
+
+/// A unit of length.
+///
+/// ```
+/// use d2m_io::Unit;
+/// assert_eq!("mm".parse(), Ok(Unit::Millimeter));
+/// assert_eq!(Unit::Millimeter.to_meters(3.0), 0.003);
+/// assert_eq!(Unit::Inch.to_meters(10.0), 0.254);
+/// assert_eq!("ft".parse::<Unit>().unwrap_err().to_string(), "\"ft\" is not a unit of length: mm, cm, m or in");
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Unit {
+    /// mm
+    Millimeter,
+    /// cm
+    Centimeter,
+    /// m
+    Meter,
+    /// in: 25.4 mm
+    Inch,
+}
+
+impl Unit {
+    /// A length in meters: of millimeters and centimeters the correctly rounded quotient, of inches within one unit in the last place.
+    pub fn to_meters(self, length: f64) -> f64 {
+        match self {
+            Self::Millimeter => length / 1000.0,
+            Self::Centimeter => length / 100.0,
+            Self::Meter => length,
+            // 0.0254 is no double: dividing by the whole numbers 5000 and 127 rounds twice, each by half a unit.
+            Self::Inch => length * 127.0 / 5000.0,
+        }
+    }
+
+    /// The symbol.
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::Millimeter => "mm",
+            Self::Centimeter => "cm",
+            Self::Meter => "m",
+            Self::Inch => "in",
+        }
+    }
+}
+
+/// A text that is no unit.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{} is not a unit of length: mm, cm, m or in", crate::excerpt(.0))]
+pub struct UnknownUnit(
+    /// The text.
+    pub String,
+);
+
+impl std::str::FromStr for Unit {
+    type Err = UnknownUnit;
+
+    fn from_str(text: &str) -> Result<Self, UnknownUnit> {
+        let all = [Self::Millimeter, Self::Centimeter, Self::Meter, Self::Inch];
+        all.into_iter().find(|unit| unit.symbol() == text).ok_or_else(|| UnknownUnit(text.to_owned()))
+    }
+}
