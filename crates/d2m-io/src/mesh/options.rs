@@ -55,10 +55,14 @@ impl ReadOptions {
     pub(super) fn apply(&self, vertices: &mut [DVec3], triangles: &mut [[u32; 3]]) {
         let unit = self.unit.unwrap_or(Unit::Meter);
         if unit != Unit::Meter || self.scale != DVec3::ONE {
-            vertices.iter_mut().for_each(|vertex| *vertex = vertex.map(|x| unit.to_meters(x)) * self.scale);
+            for vertex in vertices {
+                *vertex = vertex.map(|x| unit.to_meters(x)) * self.scale;
+            }
         }
         if self.scale.is_negative_bitmask().count_ones() % 2 == 1 {
-            triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
+            for [_, b, c] in triangles {
+                std::mem::swap(b, c);
+            }
         }
     }
 }

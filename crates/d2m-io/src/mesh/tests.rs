@@ -1,6 +1,6 @@
 //! Readers: the same mesh in every format, faults with their places, and arbitrary bytes.
 
-use super::{Fault, MeshFormat, PolygonCounts, Precision, ReadMesh, ReadOptions, parse_mesh};
+use super::{Fault, Merging, MeshFormat, PolygonCounts, Precision, ReadMesh, ReadOptions, Unit, parse_mesh};
 use crate::IoError;
 use d2m_bvh::{Topology, TriMesh};
 use glam::DVec3;
@@ -408,4 +408,31 @@ proptest! {
     ]), 0..60)) {
         survives(words.join(" ").as_bytes());
     }
+}
+
+#[test]
+fn scale_unit_and_merging() {
+    let stl = stl_text(&tetrahedron());
+    let read = |options: ReadOptions| parse_mesh(stl.as_bytes(), MeshFormat::Stl, &options).unwrap().mesh;
+    let plain = read(ReadOptions::new());
+    assert_eq!(read(ReadOptions::new().with_merging(Merging::Never)).vertex_count(), 12);
+    let inches = read(ReadOptions::new().with_unit(Unit::Inch));
+    for (inch, whole) in inches.vertices().iter().zip(plain.vertices()) {
+        assert_eq!(*inch, *whole * 127.0 / 5000.0);
+    }
+    let mirrored = read(ReadOptions::new().with_scale(DVec3::new(-2.0, 1.0, 1.0)));
+    let volume = |mesh: &TriMesh| d2m_bvh::Validation::new(mesh).signed_volume;
+    assert!(volume(&mirrored) > 0.0 && (volume(&mirrored) - 2.0 * volume(&plain)).abs() < 1e-12);
+    for scale in [DVec3::ZERO, DVec3::new(1.0, f64::NAN, 1.0), DVec3::new(1.0, 1.0, f64::INFINITY)] {
+        let options = ReadOptions::new().with_scale(scale);
+        let fault = parse_mesh(stl.as_bytes(), MeshFormat::Stl, &options).unwrap_err();
+        assert!(matches!(fault, IoError::BadScale { .. }), "{fault}");
+    }
+    let far = ReadOptions::new().with_scale(DVec3::splat(1e61));
+    let fault = parse_mesh(stl.as_bytes(), MeshFormat::Stl, &far).unwrap_err().to_string();
+    assert!(fault.contains("larger than the limit"), "{fault}");
+    let twice = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -0 0 0\nf 1 2 3\nf 4 3 2\n";
+    let merged = ReadOptions::new().with_merging(Merging::Always);
+    let mesh = parse_mesh(twice.as_bytes(), MeshFormat::Obj, &merged).unwrap().mesh;
+    assert_eq!((mesh.vertex_count(), mesh.triangles()), (3, [[0, 1, 2], [0, 2, 1]].as_slice()));
 }
