@@ -6,7 +6,8 @@ use crate::{Chain, ConstantTwist, Keyframes, MotionError, RigidMotion, ScrewMoti
 ///
 /// The JSON forms: `{"x", "q", "v", "w", "at", "t"}`, all optional; `{"times", "poses": [{"x", "q"}, …], "join": "linear" |
 /// "screw"}` or `{"times", "spans": [constant twist, …]}`; `{"chain": [{"x", "q", "joint", "axis", "value"}, …]}` with
-/// `joint` one of `fixed`, `revolute`, `prismatic` and `value` a polynomial `[c0, c1, …]` or `{"times", "pieces"}`. Splines,
+/// `joint` one of `fixed`, `revolute`, `prismatic` and `value` a polynomial `[c0, c1, …]`, `{"times", "pieces"}` or
+/// `{"times", "positions", "velocities", "accelerations"}` (see [`JointPoints`](crate::JointPoints)); `"rpy"` may stand for `"q"`. Splines,
 /// compositions and retimed motions have no JSON form; a smooth path of one axis at a time is a chain whose values are splines in pieces.
 #[cfg_attr(feature = "serde", doc = "```")]
 #[cfg_attr(not(feature = "serde"), doc = "```ignore")]

@@ -1,4 +1,5 @@
 //! Chains, keyframes and compositions held against poses in pairs of doubles (some 30 digits).
+use crate::double_double_trig::sin_cos_double;
 use crate::rotation::{RotationDd, exponential_dd, rotate_dd};
 use crate::tests::random_motion;
 use crate::{
@@ -41,7 +42,11 @@ fn truth(chain: &Chain, t: f64, offset: f64) -> Truth {
         Truth { rotation: rotate_dd(DVec3::ZERO, Dd::ZERO, DQuat::IDENTITY), position: [Dd::ZERO; 3] };
     for joint in chain.joints() {
         frame.position = add(frame.position, frame.rotation.apply(exact(joint.position())));
-        frame.rotation = frame.rotation * rotate_dd(DVec3::ZERO, Dd::ZERO, joint.orientation());
+        frame.rotation = frame.rotation
+            * match joint.rpy() {
+                None => rotate_dd(DVec3::ZERO, Dd::ZERO, joint.orientation()),
+                Some([roll, pitch, yaw]) => turned_by(roll, pitch, yaw),
+            };
         match joint.kind() {
             JointKind::Fixed => {}
             JointKind::Revolute { axis, value } => {
@@ -57,6 +62,16 @@ fn truth(chain: &Chain, t: f64, offset: f64) -> Truth {
         }
     }
     frame
+}
+
+/// The entries of R_z(yaw)·R_y(pitch)·R_x(roll), written out.
+fn turned_by(roll: f64, pitch: f64, yaw: f64) -> RotationDd {
+    let [(sr, cr), (sp, cp), (sy, cy)] = [roll, pitch, yaw].map(|angle| sin_cos_double(Dd::from_f64(angle)));
+    RotationDd([
+        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+        [-sp, cp * sr, cp * cr],
+    ])
 }
 
 fn length(v: DVec3) -> Dd {
@@ -92,6 +107,10 @@ fn random_chain(random: &mut Random, offset: f64, start: f64) -> Chain {
         };
         let q = DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), random.signed());
         let x = random.vector() + if index == 0 { DVec3::splat(offset) } else { DVec3::ZERO };
+        if random.unit() < 0.3 {
+            let angle = std::f64::consts::PI;
+            return Joint::try_with_rpy(x, [angle * q.x, angle * q.y, angle * q.z], kind).unwrap();
+        }
         Joint::try_new(x, q, kind).unwrap()
     });
     Chain::try_new(joints.collect()).unwrap()

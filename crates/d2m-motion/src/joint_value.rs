@@ -1,7 +1,8 @@
 //! The value of a joint over time: a polynomial, or one polynomial after another.
-use crate::MotionError;
 use crate::ball::up;
 use crate::error::{TimesFault, fault, find_times_fault};
+use crate::joint_points::Counted;
+use crate::{JointPoints, MotionError};
 use d2m_interval::Interval;
 use d2m_lanes::{DoubleDouble, power_of_two, two_sum};
 
@@ -26,8 +27,19 @@ pub struct JointValue {
     times: Vec<f64>,
     /// Coefficients of each piece in t − its first time (in t itself without times), lowest first, one after the other.
     coefficients: Vec<f64>,
+    /// What each coefficient leaves out of the true one; none when all are exact.
+    tails: Vec<Tail>,
     /// Where each piece begins among the coefficients, and their number.
     starts: Vec<usize>,
+    /// What the pieces pass through, if they were made of that.
+    points: Option<Box<JointPoints>>,
+}
+
+/// The second double of a coefficient, and a bound of what is left out then.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Tail {
+    lo: f64,
+    radius: f64,
 }
 
 /// A number within `radius` of `center`, with a second double for what the first leaves out.
@@ -76,7 +88,7 @@ impl JointValue {
     pub fn try_polynomial(coefficients: Vec<f64>) -> Result<Self, MotionError> {
         check_coefficients("value", &coefficients)?;
         let starts = vec![0, coefficients.len()];
-        Ok(Self { times: Vec::new(), coefficients, starts })
+        Ok(Self { times: Vec::new(), coefficients, tails: Vec::new(), starts, points: None })
     }
 
     /// From `times[i]` to `times[i + 1]` the polynomial `pieces[i]` in `t − times[i]`.
@@ -100,7 +112,7 @@ impl JointValue {
             coefficients.extend_from_slice(piece);
             starts.push(coefficients.len());
         }
-        let value = Self { times, coefficients, starts };
+        let value = Self { times, coefficients, tails: Vec::new(), starts, points: None };
         for index in 1..pieces.len() {
             let time = value.times[index];
             let (before, after) =
@@ -117,12 +129,60 @@ impl JointValue {
         Ok(value)
     }
 
+    /// From enclosures of the coefficients of each piece.
+    pub(crate) fn from_enclosed(
+        times: Vec<f64>,
+        pieces: &[Vec<Enclosed>],
+        points: Option<JointPoints>,
+    ) -> Self {
+        let mut starts = vec![0];
+        let (mut coefficients, mut tails) = (Vec::new(), Vec::new());
+        for piece in pieces {
+            coefficients.extend(piece.iter().map(|c| c.center.hi));
+            tails.extend(piece.iter().map(|c| Tail { lo: c.center.lo, radius: c.radius }));
+            starts.push(coefficients.len());
+        }
+        Self { times, coefficients, tails, starts, points: points.map(Box::new) }
+    }
+
+    /// `multiplier` times this value plus `offset`: what a joint follows that mimics another one. What the coefficients'
+    /// rounding leaves out counts.
+    ///
+    /// # Errors
+    /// A coefficient that is not finite, with piece and index.
+    pub fn scaled(&self, multiplier: f64, offset: f64) -> Result<Self, MotionError> {
+        let scale = |piece: usize, index: usize| {
+            let scaled = Counted::from_enclosed(self.coefficient(piece, index)) * multiplier;
+            let moved = if index == 0 { scaled + Counted::exact(offset) } else { scaled };
+            moved.enclosed().ok_or_else(|| {
+                let reason = format!("{multiplier:?} times it, plus {offset:?}, is not finite");
+                fault(format!("value, pieces[{piece}][{index}]"), reason)
+            })
+        };
+        let pieces = (0..self.starts.len() - 1).map(|piece| {
+            let count = self.starts[piece + 1] - self.starts[piece];
+            (0..count).map(|index| scale(piece, index)).collect::<Result<Vec<_>, _>>()
+        });
+        Ok(Self::from_enclosed(self.times.clone(), &pieces.collect::<Result<Vec<_>, _>>()?, None))
+    }
+
+    fn coefficient(&self, piece: usize, index: usize) -> Enclosed {
+        let at = self.starts[piece] + index;
+        let Tail { lo, radius } = self.tails.get(at).copied().unwrap_or_default();
+        Enclosed { center: DoubleDouble { hi: self.coefficients[at], lo }, radius }
+    }
+
+    /// What the pieces pass through, if the value was made of that.
+    pub fn points(&self) -> Option<&JointPoints> {
+        self.points.as_deref()
+    }
+
     /// The ends of the pieces; none for a polynomial for all times.
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// Coefficients of the pieces.
+    /// Coefficients of the pieces, each the double nearest to it.
     pub fn pieces(&self) -> impl Iterator<Item = &[f64]> {
         self.starts.windows(2).map(|ends| &self.coefficients[ends[0]..ends[1]])
     }
@@ -200,7 +260,8 @@ impl JointValue {
             many = vec![(DoubleDouble::ZERO, 0.0); coefficients.len()];
             &mut many[..]
         };
-        taylor(coefficients, s, terms);
+        let tails = self.tails.get(self.starts[piece]..self.starts[piece + 1]).unwrap_or_default();
+        taylor(coefficients, tails, s, terms);
         let term = |k: usize| terms.get(k).copied().unwrap_or((DoubleDouble::ZERO, 0.0));
         // Horner on the magnitudes of what lies beyond the k-th derivative's own term: factors k!/(k − d)!.
         let beyond = |derivative: usize| {
@@ -238,30 +299,34 @@ impl ValueOverTime {
 /// One step of Horner's scheme in pairs of doubles is off by less than this of the magnitudes that it adds.
 ///
 /// A product with a double loses at most 2·2⁻¹⁰⁴ and a sum 4·2⁻¹⁰⁶ of the operands; 2⁻¹⁰⁰ leaves a factor of four.
-const STEP: f64 = power_of_two(-100);
+pub(crate) const STEP: f64 = power_of_two(-100);
 
 /// The coefficients about `s`, each with a bound of its error: repeated division by t − s.
 ///
 /// Row after row `b_j ← b_j + s·b_{j+1}`; the same with magnitudes bounds what was added, and each of the at most n steps
-/// that a coefficient goes through in each of n rows adds [`STEP`] of that.
-fn taylor(coefficients: &[f64], s: f64, terms: &mut [(DoubleDouble, f64)]) {
+/// that a coefficient goes through in each of n rows adds [`STEP`] of that. An error of a coefficient goes the way of a
+/// magnitude: it counts as one that is larger by the inverse of the steps.
+fn taylor(coefficients: &[f64], tails: &[Tail], s: f64, terms: &mut [(DoubleDouble, f64)]) {
     let n = coefficients.len();
-    for (term, &c) in terms.iter_mut().zip(coefficients) {
-        *term = (DoubleDouble::from_f64(c), c.abs());
+    let steps = (n * n) as f64 * STEP;
+    for (k, (term, &c)) in terms.iter_mut().zip(coefficients).enumerate() {
+        let Tail { lo, radius } = tails.get(k).copied().unwrap_or_default();
+        let size = if s == 0.0 { radius } else { up(c.abs() + up(radius / steps)) };
+        *term = (DoubleDouble { hi: c, lo }, size);
     }
-    if s != 0.0 {
-        for row in 0..n {
-            for j in (row..n - 1).rev() {
-                let (next, size) = terms[j + 1];
-                terms[j].0 = terms[j].0 + next * s;
-                terms[j].1 = up(terms[j].1 + size * s.abs());
-            }
+    if s == 0.0 {
+        return;
+    }
+    for row in 0..n {
+        for j in (row..n - 1).rev() {
+            let (next, size) = terms[j + 1];
+            terms[j].0 = terms[j].0 + next * s;
+            terms[j].1 = up(terms[j].1 + size * s.abs());
         }
     }
-    let steps = (n * n) as f64 * STEP;
-    for (term, _) in terms.iter_mut().zip(0..) {
+    for term in terms.iter_mut().take(n) {
         // Products below the smallest normal number lose at most that, each step.
-        term.1 = if s == 0.0 { 0.0 } else { up(term.1 * steps) + (n * n) as f64 * f64::MIN_POSITIVE };
+        term.1 = up(term.1 * steps) + (n * n) as f64 * f64::MIN_POSITIVE;
     }
 }
 

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod any_motion;
+mod arm;
 mod ball;
 mod chain;
 mod check_motion;
@@ -9,6 +10,8 @@ mod composed;
 mod constant_twist;
 mod double_double_trig;
 mod error;
+mod joint;
+mod joint_points;
 mod joint_value;
 mod keyframes;
 mod kinematics;
@@ -34,12 +37,15 @@ mod two;
 mod two_jets;
 
 pub use any_motion::AnyMotion;
+pub use arm::Arm;
 pub use ball::Ball;
-pub use chain::{Chain, Joint, JointKind};
+pub use chain::Chain;
 pub use check_motion::{MotionFault, check_motion};
 pub use composed::Composed;
 pub use constant_twist::ConstantTwist;
 pub use error::MotionError;
+pub use joint::{Joint, JointKind};
+pub use joint_points::JointPoints;
 pub use joint_value::JointValue;
 pub use keyframes::{KeyframeSpan, Keyframes, LARGEST_GAP, Span};
 pub use kinematics::Kinematics;
@@ -57,7 +63,7 @@ pub use twist::{BodyTwist, IntervalTwist, Twist};
 #[doc(hidden)]
 pub use {
     path_jet::{PathJet, Remainder},
-    relative::{Arm, ArmPair, Frame, OffsetRange, RelativeMotion, RelativeState, StraightLine},
+    relative::{ArmPair, Frame, LeverArm, OffsetRange, RelativeMotion, RelativeState, StraightLine},
     two::TwoVec3,
     two_jets::{EdgeJets, TwoJets},
 };

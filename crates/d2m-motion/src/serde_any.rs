@@ -2,7 +2,8 @@
 use crate::error::fault;
 use crate::serde_form::{ConstantTwistForm, identity};
 use crate::{
-    AnyMotion, Chain, ConstantTwist, Joint, JointKind, JointValue, Keyframes, MotionError, Pose, Span,
+    AnyMotion, Chain, ConstantTwist, Joint, JointKind, JointPoints, JointValue, Keyframes, MotionError, Pose,
+    Span,
 };
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
@@ -49,8 +50,10 @@ struct PoseForm {
 struct JointForm {
     #[serde(default)]
     x: [f64; 3],
-    #[serde(default = "identity")]
-    q: [f64; 4],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    q: Option<[f64; 4]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    rpy: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     joint: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -63,15 +66,16 @@ fn quaternion([w, x, y, z]: [f64; 4]) -> DQuat {
     DQuat::from_xyzw(x, y, z, w)
 }
 
-/// A polynomial, or pieces.
+/// A polynomial, pieces, or points.
 #[derive(Serialize, Deserialize)]
 #[serde(
     untagged,
-    expecting = "expected a polynomial [c0, c1, …] or {\"times\", \"pieces\"} and no other key"
+    expecting = "expected a polynomial [c0, c1, …], {\"times\", \"pieces\"} or {\"times\", \"positions\", \"velocities\", \"accelerations\"} and no other key"
 )]
 enum ValueForm {
     Polynomial(Vec<f64>),
     Pieces(PiecesForm),
+    Points(JointPoints),
 }
 
 #[derive(Serialize, Deserialize)]
@@ -83,6 +87,9 @@ struct PiecesForm {
 
 impl From<&JointValue> for ValueForm {
     fn from(value: &JointValue) -> Self {
+        if let Some(points) = value.points() {
+            return Self::Points(points.clone());
+        }
         let mut pieces: Vec<Vec<f64>> = value.pieces().map(<[f64]>::to_vec).collect();
         if value.times().is_empty() {
             Self::Polynomial(pieces.swap_remove(0))
@@ -104,6 +111,7 @@ impl TryFrom<ValueForm> for JointValue {
         match form {
             ValueForm::Polynomial(coefficients) => Self::try_polynomial(coefficients),
             ValueForm::Pieces(PiecesForm { times, pieces }) => Self::try_pieces(times, pieces),
+            ValueForm::Points(points) => Self::through(points),
         }
     }
 }
@@ -117,7 +125,7 @@ impl<'de> Deserialize<'de> for JointValue {
 impl TryFrom<JointForm> for Joint {
     type Error = MotionError;
     fn try_from(form: JointForm) -> Result<Self, MotionError> {
-        let JointForm { x, q, joint, axis, value } = form;
+        let JointForm { x, q, rpy, joint, axis, value } = form;
         let name = match (joint.as_deref(), &axis, &value) {
             (Some(name), ..) => name,
             (None, None, None) => "fixed",
@@ -145,7 +153,12 @@ impl TryFrom<JointForm> for Joint {
                 return Err(fault("joint".into(), reason));
             }
         };
-        Self::try_new(DVec3::from_array(x), quaternion(q), kind)
+        let x = DVec3::from_array(x);
+        match (q, rpy) {
+            (Some(_), Some(_)) => Err(fault("rpy".into(), "q and rpy do not go together".into())),
+            (q, None) => Self::try_new(x, quaternion(q.unwrap_or(identity())), kind),
+            (None, Some(rpy)) => Self::try_with_rpy(x, rpy, kind),
+        }
     }
 }
 
@@ -159,7 +172,8 @@ impl From<&Joint> for JointForm {
         let q = joint.orientation();
         Self {
             x: joint.position().to_array(),
-            q: [q.w, q.x, q.y, q.z],
+            q: joint.rpy().is_none().then_some([q.w, q.x, q.y, q.z]),
+            rpy: joint.rpy(),
             joint: Some(name.to_owned()),
             axis: axis.map(DVec3::to_array),
             value: value.map(ValueForm::from),

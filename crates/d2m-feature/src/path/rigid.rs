@@ -1,7 +1,7 @@
 //! Jets in closed form, from frames that all features of a pair of bodies share.
 use super::{CubicAlong, FeaturePath, HalfEdge};
 use crate::rounding::{UNIT, UP, length_up};
-use d2m_motion::{Arm, ArmPair, EdgeJets, Frame, PathJet, RelativeMotion, Remainder};
+use d2m_motion::{ArmPair, EdgeJets, Frame, LeverArm, PathJet, RelativeMotion, Remainder};
 use d2m_root::{Cubic, Piece};
 use glam::DVec3;
 
@@ -55,7 +55,7 @@ pub(crate) struct RigidPath<'a> {
 // One on the stack a query: a box would cost more than the room.
 #[allow(clippy::large_enum_variant)]
 enum ThirdOrder {
-    Point(Arm, Remainder),
+    Point(LeverArm, Remainder),
     /// Of A and of B, with the remainders of point and direction.
     Edges([ArmPair; 2], [Remainder; 2]),
 }

@@ -52,13 +52,13 @@ fn transpose_mul(m: &DMat3, v: DVec3) -> DVec3 {
 /// A vector of a body, prepared for jets at many times: its parts along and across the body's axis `k`, and `k × r`.
 /// Turned by an angle θ it is `along + cos θ·across + sin θ·turned`.
 #[derive(Debug, Clone, Copy)]
-pub struct Arm {
+pub struct LeverArm {
     along: DVec3,
     across: DVec3,
     turned: DVec3,
 }
 
-impl Arm {
+impl LeverArm {
     #[inline(always)]
     fn new(k: DVec3, r: DVec3) -> Self {
         let along = k * k.dot(r);
@@ -87,14 +87,14 @@ impl ArmPair {
 impl RelativeMotion {
     /// Prepares a vector of A ([`RelativeMotion::place_a`], [`RelativeMotion::turn_a`]).
     #[inline]
-    pub fn arm(&self, r: DVec3) -> Arm {
-        Arm::new(self.spin_a.axis, r)
+    pub fn arm(&self, r: DVec3) -> LeverArm {
+        LeverArm::new(self.spin_a.axis, r)
     }
 
     /// Prepares a vector of B ([`RelativeMotion::place_b`], [`RelativeMotion::turn_b`]).
     #[inline]
-    fn arm_b(&self, r: DVec3) -> Arm {
-        Arm::new(self.spin_b.axis, r)
+    fn arm_b(&self, r: DVec3) -> LeverArm {
+        LeverArm::new(self.spin_b.axis, r)
     }
 
     /// Prepares a point and a direction of A.
@@ -121,7 +121,7 @@ impl RelativeMotion {
     /// With `z = R_A r`, `x = g + uτ + z`: `q⁽ᵏ⁾ = R_Bᵀ X_k`, `X₀ = x`, `X₁ = x′ − ω_B × x`,
     /// `X₂ = x″ − ω_B × x′ − ω_B × X₁`, `X₃ = x‴ − ω_B × (2x″ − ω_B × x′ + X₂)`.
     #[inline]
-    pub fn point_jet(&self, tau: f64, r: &Arm, remainder: Remainder) -> PathJet {
+    pub fn point_jet(&self, tau: f64, r: &LeverArm, remainder: Remainder) -> PathJet {
         debug_assert!(self.anchor.is_none());
         let (sin, cos) = self.angles(tau);
         let back = self.spin_b.rotation_of(sin.second(), cos.second());
@@ -150,7 +150,7 @@ impl RelativeMotion {
     /// In world axes: `x·N` with `N = R_B n`, differentiated as a product. With the parts `z_t`, `N_t` that turn,
     /// `z″ = −a²z_t`, `z‴ = −a²z′`, `N″ = −b²N_t`, `N‴ = −b²N′`.
     #[inline]
-    pub fn point_along(&self, tau: f64, r: &Arm, n: DVec3) -> [f64; 4] {
+    pub fn point_along(&self, tau: f64, r: &LeverArm, n: DVec3) -> [f64; 4] {
         debug_assert!(self.anchor.is_none());
         let (sin, cos) = self.angles(tau);
         let (a, b) = (self.spin_a.speed, self.spin_b.speed);

@@ -13,7 +13,7 @@ mod tests;
 
 pub use any::{RelativeState, StraightLine};
 pub use bounds::OffsetRange;
-pub use frame::{Arm, ArmPair, Frame};
+pub use frame::{ArmPair, Frame, LeverArm};
 
 use crate::ConstantTwist;
 use crate::rotation::{RotationDd, Spin};

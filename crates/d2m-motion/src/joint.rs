@@ -1,0 +1,224 @@
+//! One joint of an arm: a fixed transform and what moves after it.
+use crate::ball::{Ball, up};
+use crate::error::{fault, require_finite};
+use crate::joint_value::{Enclosed, JointValue, ValueOverTime};
+use crate::rotation::{RotationDd, Spin, exponential_dd, rotate_dd};
+use crate::rounding::UNIT;
+use crate::sin_cos::{LARGEST_ANGLE, sin_cos};
+use crate::{Kinematics, MotionError};
+use d2m_lanes::DoubleDouble;
+use glam::{DMat3, DQuat, DVec3};
+use std::sync::Arc;
+
+/// How a joint moves the frame that follows it.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum JointKind {
+    /// Not at all.
+    Fixed,
+    /// It turns by the value (radians) about the axis through the joint frame's origin.
+    Revolute {
+        /// Direction in the joint frame, any length but zero.
+        axis: DVec3,
+        /// The angle over time.
+        value: JointValue,
+    },
+    /// It shifts by the value (units of length) along the axis.
+    Prismatic {
+        /// Direction in the joint frame, any length but zero.
+        axis: DVec3,
+        /// The shift over time.
+        value: JointValue,
+    },
+}
+
+/// A fixed transform and the joint after it. Cheap to clone: the links of an arm share their joints.
+#[derive(Debug, Clone)]
+pub struct Joint(Arc<JointData>);
+
+#[derive(Debug, PartialEq)]
+struct JointData {
+    position: DVec3,
+    orientation: Orientation,
+    kind: JointKind,
+    /// The rotation, rounded once.
+    turn: DMat3,
+    /// The axis divided by its norm (zero without).
+    axis: DVec3,
+}
+
+/// How a joint stands in the frame before it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Orientation {
+    /// Divided by its norm.
+    Quaternion(DQuat),
+    /// Roll, pitch, yaw.
+    Angles([f64; 3]),
+}
+
+impl Orientation {
+    fn rotation(self) -> RotationDd {
+        match self {
+            Self::Quaternion(q) => rotate_dd(DVec3::ZERO, DoubleDouble::ZERO, q),
+            Self::Angles([roll, pitch, yaw]) => {
+                let about = |axis: DVec3, angle: f64| exponential_dd(axis, DoubleDouble::from_f64(angle));
+                about(DVec3::Z, yaw) * about(DVec3::Y, pitch) * about(DVec3::X, roll)
+            }
+        }
+    }
+
+    /// Is it no turn at all, exactly?
+    fn is_identity(self) -> bool {
+        match self {
+            Self::Quaternion(DQuat { x, y, z, .. }) => (x, y, z) == (0.0, 0.0, 0.0),
+            Self::Angles(angles) => angles == [0.0; 3],
+        }
+    }
+}
+
+impl PartialEq for Joint {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0) || self.0 == other.0
+    }
+}
+
+impl Joint {
+    /// The transform (x, q) from the frame before, then the joint. The quaternion is divided by its norm, exactly, and the
+    /// axis by its length.
+    ///
+    /// # Errors
+    /// A component that is not finite, a quaternion that cannot be normalised, an axis of length zero.
+    pub fn try_new(position: DVec3, orientation: DQuat, kind: JointKind) -> Result<Self, MotionError> {
+        // The same checks as a motion's.
+        let _checked = crate::ConstantTwist::try_new(position, orientation, DVec3::ZERO, DVec3::ZERO)
+            .map_err(|error| error.within("pose"))?;
+        Self::with_orientation(position, Orientation::Quaternion(orientation), kind)
+    }
+
+    /// As [`Joint::try_new`], with the orientation in angles: roll about x, then pitch about y, then yaw about z, all fixed
+    /// axes (the convention of URDF), R = R_z(yaw)·R_y(pitch)·R_x(roll). The angles are taken as the doubles that they are: 1.5708
+    /// is not a quarter of a turn.
+    ///
+    /// ```
+    /// use d2m_motion::{Chain, Joint, JointKind, RigidMotion};
+    /// use glam::DVec3;
+    /// let quarter = std::f64::consts::FRAC_PI_2;
+    /// let joint = Joint::try_with_rpy(DVec3::X, [quarter, 0.0, quarter], JointKind::Fixed)?;
+    /// let pose = Chain::try_new(vec![joint])?.pose_and_twist(0.0).0;
+    /// assert!((pose.transform_point(DVec3::Y) - DVec3::new(1.0, 0.0, 1.0)).length() < 1e-15);
+    /// # Ok::<(), d2m_motion::MotionError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A component that is not finite, an angle of more than 1e9, an axis of length zero.
+    pub fn try_with_rpy(position: DVec3, angles: [f64; 3], kind: JointKind) -> Result<Self, MotionError> {
+        require_finite("position", &position.to_array())?;
+        require_finite("rpy", &angles)?;
+        if let Some(index) = angles.iter().position(|angle| angle.abs() > LARGEST_ANGLE) {
+            let reason = format!("{:?} is more than {LARGEST_ANGLE:?} radians", angles[index]);
+            return Err(fault(format!("rpy[{index}]"), reason));
+        }
+        Self::with_orientation(position, Orientation::Angles(angles), kind)
+    }
+
+    fn with_orientation(
+        position: DVec3,
+        orientation: Orientation,
+        kind: JointKind,
+    ) -> Result<Self, MotionError> {
+        let axis = match kind {
+            JointKind::Fixed => DVec3::ZERO,
+            JointKind::Revolute { axis, .. } | JointKind::Prismatic { axis, .. } => {
+                require_finite("axis", &axis.to_array())?;
+                if axis == DVec3::ZERO {
+                    return Err(fault("axis".into(), "[0, 0, 0] has no direction".into()));
+                }
+                Spin::new(axis).axis
+            }
+        };
+        let turn = orientation.rotation().to_mat3();
+        Ok(Self(Arc::new(JointData { position, orientation, kind, turn, axis })))
+    }
+
+    /// Position of the joint in the frame before it.
+    pub fn position(&self) -> DVec3 {
+        self.0.position
+    }
+
+    /// Orientation of the joint in the frame before it: as given, or near the angles that were given.
+    pub fn orientation(&self) -> DQuat {
+        match self.0.orientation {
+            Orientation::Quaternion(orientation) => orientation,
+            Orientation::Angles(_) => DQuat::from_mat3(&self.0.turn).normalize(),
+        }
+    }
+
+    /// Roll, pitch and yaw in the frame before it, if the joint was given so.
+    pub fn rpy(&self) -> Option<[f64; 3]> {
+        match self.0.orientation {
+            Orientation::Quaternion(_) => None,
+            Orientation::Angles(angles) => Some(angles),
+        }
+    }
+
+    /// How it moves.
+    pub fn kind(&self) -> &JointKind {
+        &self.0.kind
+    }
+
+    pub(crate) fn value(&self) -> Option<&JointValue> {
+        match &self.0.kind {
+            JointKind::Fixed => None,
+            JointKind::Revolute { value, .. } | JointKind::Prismatic { value, .. } => Some(value),
+        }
+    }
+
+    /// The fixed transform. An entry of the matrix is off by half a unit in the last place of numbers up to 1: √9·u.
+    pub(crate) fn transform(&self) -> Kinematics {
+        let radius = if self.0.orientation.is_identity() { 0.0 } else { 4.0 * UNIT };
+        Kinematics { position: Ball::point(self.0.position), ..Kinematics::REST }
+            .with_rotation(self.0.turn, radius)
+    }
+
+    /// The joint alone over a span of time; `None` when it does not move.
+    ///
+    /// exp([k]θ) with sine and cosine within 4u and an axis within 4u of its direction: 64u (docs/theory/motions.md). A
+    /// rotation by θ differs from one by θ̃ by at most |θ − θ̃|.
+    pub(crate) fn movement<const RATES: bool>(&self, lo: f64, hi: f64) -> Option<Kinematics> {
+        let over: ValueOverTime = self.value()?.over(lo, hi);
+        let along = |e: Enclosed| {
+            // The axis is off by 4u of its length, and the second double of the value counts as error.
+            let radius = e.radius + e.center.lo.abs() + 8.0 * UNIT * e.center.hi.abs();
+            Ball::new(self.0.axis, 0.0).times(e.center.hi, up(radius))
+        };
+        let (rate, second) = (along(over.rate), if RATES { along(over.second) } else { Ball::ANY });
+        if matches!(self.0.kind, JointKind::Prismatic { .. }) {
+            let position = along(over.value);
+            return Some(Kinematics { position, linear: rate, linear_rate: second, ..Kinematics::REST });
+        }
+        let (sin, cos) = sin_cos_of(over.value.center);
+        let rotation = Spin { omega: self.0.axis, speed: 1.0, axis: self.0.axis }.rotation_of(sin, cos);
+        let radius = up(over.value.radius + 64.0 * UNIT);
+        let known = sin.is_finite();
+        Some(
+            Kinematics { angular: rate, angular_rate: second, ..Kinematics::REST }
+                .with_rotation(rotation, if known { radius } else { f64::INFINITY }),
+        )
+    }
+}
+
+/// Sine and cosine of a pair of doubles, each within 4u; NaN beyond what can be reduced.
+///
+/// Angles of more than half a turn are reduced by whole turns in pairs of doubles, so that |r| ≤ 4 and what is left
+/// out is below 2⁻⁷⁰; then sin(r + e) = sin r + e cos r, |e| ≤ 2⁻⁵¹.
+fn sin_cos_of(angle: DoubleDouble) -> (f64, f64) {
+    /// 2π to 2⁻¹⁰⁵.
+    const TURN: DoubleDouble = DoubleDouble { hi: core::f64::consts::TAU, lo: 2.449_293_598_294_706_4e-16 };
+    if angle.hi.is_nan() || angle.hi.abs() > LARGEST_ANGLE {
+        return (f64::NAN, f64::NAN);
+    }
+    let turns = if angle.hi.abs() > 4.0 { (angle.hi / TURN.hi).round() } else { 0.0 };
+    let r = if turns == 0.0 { angle } else { angle - TURN * turns };
+    let (sin, cos) = sin_cos(r.hi);
+    (sin + r.lo * cos, cos - r.lo * sin)
+}
