@@ -8,9 +8,11 @@ pub type SharedMotion = Arc<dyn RigidMotion + Send + Sync>;
 /// A mesh and how it moves: what a [`World`](crate::World) holds. Cheap to clone; bodies may share one tree.
 ///
 /// ```
-/// use d2m::{Body, ConstantTwist, Group, MeshTree, RigidMotion, Solid};
+/// use d2m_bvh::{MeshTree, Solid};
+/// use d2m_motion::{ConstantTwist, RigidMotion};
+/// use d2m_world::{Body, Group};
 /// use std::sync::Arc;
-/// let tree = Arc::new(MeshTree::new(d2m::shapes::mesh("box")?));
+/// let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box")?));
 /// let body = Body::new(tree, ConstantTwist::REST).with_solid(Solid::Surface).with_group(Group(1));
 /// assert_eq!(body.tree().mesh().triangle_count(), 12);
 /// assert!(body.motion().constant_twist().is_some());

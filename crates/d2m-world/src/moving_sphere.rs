@@ -96,12 +96,13 @@ impl MovingSphere {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ConstantTwist, MeshTree, RigidMotion};
+    use d2m_bvh::MeshTree;
+    use d2m_motion::{ConstantTwist, RigidMotion};
     use d2m_testing::{Draw, KnuthRandom};
     use std::sync::Arc;
 
     fn sphere(motion: ConstantTwist) -> MovingSphere {
-        let tree = Arc::new(MeshTree::new(crate::shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()));
+        let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()));
         MovingSphere::enclose(&Body::new(tree, motion), 2.0).unwrap()
     }
 
@@ -126,14 +127,14 @@ mod tests {
         assert_eq!(meeting(DVec3::X * 1.5, DVec3::X), FirstMeeting::Unknown);
         assert_eq!(meeting(DVec3::ZERO, DVec3::X), FirstMeeting::Unknown);
         let huge = flying(DVec3::X * 1e200, DVec3::X * -1e200).with_reference_time(-1e200);
-        let tree = Arc::new(MeshTree::new(crate::shapes::mesh("box").unwrap()));
+        let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box").unwrap()));
         assert!(MovingSphere::enclose(&Body::new(tree, huge), 2.0).is_none());
     }
 
     #[test]
     fn a_sphere_holds_its_body_at_all_times() {
         let mut random = KnuthRandom(17);
-        let tree = Arc::new(MeshTree::new(crate::shapes::mesh("gear?triangles=500").unwrap()));
+        let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("gear?triangles=500").unwrap()));
         for round in 0..200 {
             let offset = random.vector() * [0.0, 1e5][round % 2];
             let twist = ConstantTwist::REST

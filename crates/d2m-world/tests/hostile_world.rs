@@ -1,15 +1,14 @@
 //! Uses of a world that nobody means, and what must be answered.
 
-use d2m::glam::{DQuat, DVec3};
-use d2m::{
-    Body, BodyId, ConstantTwist, FirstContact, MeshTree, PlannedMotion, ProximityOptions, QueryOptions,
-    StartState, TriMesh, Window, World,
-};
+use d2m_bvh::{MeshTree, ProximityOptions, QueryOptions, StartState, TriMesh, Window};
+use d2m_motion::ConstantTwist;
 use d2m_testing::Surface;
+use d2m_world::{Body, BodyId, FirstContact, PlannedMotion, World};
+use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
 fn cube() -> Arc<MeshTree> {
-    Arc::new(MeshTree::new(d2m::shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()))
+    Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()))
 }
 
 fn at(place: DVec3) -> ConstantTwist {

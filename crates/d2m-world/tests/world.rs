@@ -1,14 +1,12 @@
 //! Worlds of bodies with all kinds of motions, filters, removals and changes in any order, against brute force over all
 //! pairs: the same verdicts, brackets that overlap, and the same bits at any number of threads.
 
-use d2m::glam::{DQuat, DVec3};
-use d2m::motion::{Chain, Joint, JointKind, JointValue, Keyframes, Pose, Span, Spline, SplineDegree};
-use d2m::{
-    Body, BodyId, ConstantTwist, Contact, FirstContact, Group, MeshTree, PairContact, PlannedMotion,
-    QueryOptions, RigidMotion, ScrewMotion, SharedMotion, Solid, TimeOfContact, TriMesh, Window, World,
-    time_of_contact,
-};
+use d2m_bvh::{Contact, MeshTree, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact};
+use d2m_motion::{Chain, Joint, JointKind, JointValue, Keyframes, Pose, Span, Spline, SplineDegree};
+use d2m_motion::{ConstantTwist, RigidMotion, ScrewMotion};
 use d2m_testing::{Draw, KnuthRandom, Opaque};
+use d2m_world::{Body, BodyId, FirstContact, Group, PairContact, PlannedMotion, SharedMotion, World};
+use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -81,7 +79,7 @@ fn trees() -> Vec<Arc<MeshTree>> {
         TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE], vec![[0, 1, 2], [1, 3, 2]]);
     let solids = ["box?x=0.5&y=0.4&z=0.3", "torus?triangles=200", "box?x=1.5&y=0.05&z=0.1"];
     let mut trees: Vec<_> =
-        solids.iter().map(|name| MeshTree::new(d2m::shapes::mesh(name).unwrap())).collect();
+        solids.iter().map(|name| MeshTree::new(d2m_shapes::mesh(name).unwrap())).collect();
     trees.push(MeshTree::new(sheet.unwrap()));
     trees.into_iter().map(Arc::new).collect()
 }
@@ -144,7 +142,7 @@ fn overlap(x: &Contact, y: &Contact) -> bool {
 
 /// A pass at a distance of about a tolerance may be answered either way.
 fn is_sure(contact: &Contact) -> bool {
-    contact.evidence != d2m::bvh::Evidence::Early
+    contact.evidence != d2m_bvh::Evidence::Early
 }
 
 fn earliest<'a>(all: impl Iterator<Item = &'a Found>) -> Option<&'a Found> {

@@ -1,22 +1,17 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
-mod body;
-mod box_tree;
-mod moving_sphere;
-mod parallel;
-mod swept_bounds;
-mod world;
-
-pub use body::{Body, Group, SharedMotion};
-pub use world::{BodyId, FirstContact, PairContact, PairProximities, PlannedMotion, World, WorldError};
-
 pub use d2m_bvh as bvh;
+#[cfg(feature = "dynamics")]
+pub use d2m_dynamics as dynamics;
 pub use d2m_feature as feature;
 pub use d2m_interval as interval;
+#[cfg(feature = "io")]
+pub use d2m_io as io;
 pub use d2m_motion as motion;
 pub use d2m_root as root;
 pub use d2m_shapes as shapes;
+pub use d2m_world as world;
 pub use glam;
 
 pub use d2m_bvh::{
@@ -28,6 +23,10 @@ pub use d2m_bvh::{Distance, collide, distance};
 #[doc(hidden)]
 pub use d2m_motion::LinearMotion;
 pub use d2m_motion::{ConstantTwist, Keyframes, Pose, RigidMotion, ScrewMotion, Twist};
+pub use d2m_world::{
+    Body, BodyId, FirstContact, Group, PairContact, PairProximities, PlannedMotion, SharedMotion, World,
+    WorldError,
+};
 
 /// The example of the repository's README, compiled and run.
 #[cfg(doctest)]

@@ -32,11 +32,13 @@ use std::sync::Arc;
 /// simulation that goes from event to event pays for the pairs of the bodies that an event changes, not for all:
 ///
 /// ```
-/// use d2m::glam::DVec3;
-/// use d2m::{Body, ConstantTwist, FirstContact, MeshTree, QueryOptions, RigidMotion, Window, World};
+/// use glam::DVec3;
+/// use d2m_bvh::{MeshTree, QueryOptions, Window};
+/// use d2m_motion::{ConstantTwist, RigidMotion};
+/// use d2m_world::{Body, FirstContact, World};
 /// use std::sync::Arc;
 ///
-/// let cube = Arc::new(MeshTree::new(d2m::shapes::mesh("box")?));
+/// let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box")?));
 /// let mut world = World::new(QueryOptions::default().with_min_separation(1e-3));
 /// let wall = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
 /// let flying = |x: f64, v: f64| {

@@ -30,10 +30,12 @@ impl World {
     /// whose window holds this one: then the boxes of the other bodies are known.
     ///
     /// ```
-    /// use d2m::glam::DVec3;
-    /// use d2m::{Body, ConstantTwist, FirstContact, MeshTree, PlannedMotion, QueryOptions, Window, World};
+    /// use glam::DVec3;
+    /// use d2m_bvh::{MeshTree, QueryOptions, Window};
+    /// use d2m_motion::ConstantTwist;
+    /// use d2m_world::{Body, FirstContact, PlannedMotion, World};
     /// use std::sync::Arc;
-    /// let cube = Arc::new(MeshTree::new(d2m::shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// let mut world = World::new(QueryOptions::default());
     /// let obstacle = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST.with_position(DVec3::X * 4.0)));
     /// let tool = world.add(Body::new(cube, ConstantTwist::REST));

@@ -11,10 +11,12 @@ impl World {
     /// within the margin that is not ignored.
     ///
     /// ```
-    /// use d2m::glam::DVec3;
-    /// use d2m::{Body, ConstantTwist, MeshTree, ProximityOptions, QueryOptions, World};
+    /// use glam::DVec3;
+    /// use d2m_bvh::{MeshTree, ProximityOptions, QueryOptions};
+    /// use d2m_motion::ConstantTwist;
+    /// use d2m_world::{Body, World};
     /// use std::sync::Arc;
-    /// let cube = Arc::new(MeshTree::new(d2m::shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// let mut world = World::new(QueryOptions::default());
     /// for k in 0..5 {
     ///     let height = DVec3::Z * (1.001 * f64::from(k));
@@ -22,7 +24,7 @@ impl World {
     /// }
     /// let near = world.proximities(0.0, &ProximityOptions::new(0.01))?;
     /// assert_eq!(near.len(), 4);
-    /// assert!(near.iter().all(|pair| d2m::reduce_proximities(&pair.proximities, 0.1).len() == 4));
+    /// assert!(near.iter().all(|pair| d2m_bvh::reduce_proximities(&pair.proximities, 0.1).len() == 4));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
