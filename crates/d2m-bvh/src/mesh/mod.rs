@@ -7,6 +7,7 @@ mod error;
 #[cfg(feature = "serde")]
 mod exact_number;
 mod first_equal;
+mod made;
 mod topology;
 mod tri_mesh;
 mod validation;

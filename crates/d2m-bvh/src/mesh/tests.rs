@@ -121,3 +121,39 @@ fn pinched_vertices_are_counted() {
     let second = second.map(|t: [u32; 3]| t.map(|i| if i == 0 { 7 } else { i }));
     assert_eq!(validation(vertices, [&FACES[..], &second[..], &second[..1]].concat()).pinched_vertices, 1);
 }
+
+/// Mirrors whose determinant rounds to zero or overflows turn their triangles round all the same.
+#[test]
+fn the_outside_stays_outside_under_any_map() {
+    let [o, x, y, z] = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let mesh = TriMesh::from_soup(&[[o, y, x], [o, x, z], [o, z, y], [x, y, z]]).unwrap();
+    for (scale, mirrored) in [
+        (DVec3::new(-1e-200, 1e-200, 1e-200), true),
+        (DVec3::new(1e-200, -1e-200, -1e-200), false),
+        (DVec3::new(1e40, 1e40, -1e-50), true),
+        (DVec3::splat(-5e-324), true),
+        (DVec3::new(0.0, -1.0, 1.0), false),
+    ] {
+        let image = mesh.clone().transformed(&glam::DAffine3::from_scale(scale)).unwrap();
+        let [a, b, c] = mesh.triangles()[3];
+        let expected = if mirrored { [a, c, b] } else { [a, b, c] };
+        assert_eq!(image.triangles()[3], expected, "{scale}");
+        assert_eq!(image.vertices()[1], mesh.vertices()[1] * scale);
+    }
+    let bad = mesh.transformed(&glam::DAffine3::from_translation(DVec3::new(0.0, f64::NAN, 0.0)));
+    assert!(matches!(bad, Err(MeshError::NonFiniteVertex { vertex: 0, axis: 'y', .. })), "{bad:?}");
+}
+
+#[test]
+fn merging_keeps_corners_and_what_is_unused() {
+    let vertices = vec![DVec3::X, DVec3::ZERO, -DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let mesh = TriMesh::try_new(vertices, vec![[0, 2, 4], [3, 1, 4]]).unwrap();
+    let merged = mesh.clone().merged();
+    assert_eq!(merged.vertices(), [DVec3::X, DVec3::ZERO, DVec3::Y, DVec3::Z]);
+    for triangle in 0..2 {
+        assert_eq!(merged.corners(triangle), mesh.corners(triangle));
+    }
+    assert_eq!(merged.clone().merged(), merged);
+    let nothing = TriMesh::from_soup(&[]);
+    assert_eq!(nothing, Err(MeshError::NoTriangles));
+}

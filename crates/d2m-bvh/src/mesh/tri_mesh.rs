@@ -98,6 +98,11 @@ impl TriMesh {
         Self::try_new(vertices.iter().copied().map(DVec3::from_array).collect(), triangles.to_vec())
     }
 
+    /// Lists that keep the promise because they come from a mesh.
+    pub(super) fn from_checked(MeshArrays { vertices, triangles }: MeshArrays) -> Self {
+        Self { vertices, triangles }
+    }
+
     /// The vertices in the body frame, in input order.
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices

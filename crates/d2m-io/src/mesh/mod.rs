@@ -1,7 +1,6 @@
 //! Meshes from files: the one entry, and what every reader gives.
 
 mod format;
-mod merge;
 mod obj;
 mod options;
 mod ply;
@@ -83,17 +82,19 @@ pub fn parse_mesh(bytes: &[u8], format: MeshFormat, options: &ReadOptions) -> Re
     options.check()?;
     let raw = match format {
         MeshFormat::Obj => obj::parse(bytes),
-        MeshFormat::Stl => stl::parse(bytes, options.merging),
+        MeshFormat::Stl => stl::parse(bytes),
         MeshFormat::Ply => ply::parse(bytes),
     };
     let RawMesh { mut vertices, mut triangles, report } = raw.map_err(Fault::into_error)?;
-    if options.merging == Merging::Always {
-        merge::merge(&mut vertices, &mut triangles);
-    }
     options.apply(&mut vertices, &mut triangles);
     let mesh = TriMesh::try_new(vertices, triangles)
         .map_err(|source| IoError::Mesh { place: Place::default(), source })?;
-    Ok(ReadMesh { mesh, report })
+    let merges = match options.merging {
+        Merging::Always => true,
+        Merging::ByFormat => format == MeshFormat::Stl,
+        Merging::Never => false,
+    };
+    Ok(ReadMesh { mesh: if merges { mesh.merged() } else { mesh }, report })
 }
 
 /// What a reader gives: lists that are not yet checked.

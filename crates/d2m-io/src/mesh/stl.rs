@@ -1,10 +1,10 @@
-//! STL, binary (read by `stl_io`) or text. Equal corners become one vertex, so that the mesh has a topology.
+//! STL, binary (read by `stl_io`) or text. Corners are vertices of their own; whoever reads merges them, so that the
+//! mesh has a topology.
 //!
 //! A binary file holds single precision. The numbers of a text are read as doubles: rounded to single precision they
 //! would be another body.
 
-use super::merge::Merged;
-use super::{Fault, Merging, MeshReport, Precision, RawMesh};
+use super::{Fault, MeshReport, Precision, RawMesh};
 use crate::text::{coordinate, excerpt};
 use glam::DVec3;
 use std::io::Cursor;
@@ -13,7 +13,7 @@ use std::io::Cursor;
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-pub(super) fn parse(bytes: &[u8], merging: Merging) -> Result<RawMesh, Fault> {
+pub(super) fn parse(bytes: &[u8]) -> Result<RawMesh, Fault> {
     // A binary file may start with "solid" too, so its exact length decides first.
     let stated =
         bytes.get(80..84).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize);
@@ -21,9 +21,9 @@ pub(super) fn parse(bytes: &[u8], merging: Merging) -> Result<RawMesh, Fault> {
     let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes).trim_ascii_start();
     let starts_as_text = text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     let (soup, precision) = if needed == Some(bytes.len()) {
-        (binary(bytes, Soup::new(merging))?, Precision::Single("binary STL"))
+        (binary(bytes)?, Precision::Single("binary STL"))
     } else if starts_as_text && !bytes.contains(&0) {
-        (Text::new(&String::from_utf8_lossy(bytes)).parse(Soup::new(merging))?, Precision::Double)
+        (Text::new(&String::from_utf8_lossy(bytes)).parse()?, Precision::Double)
     } else {
         return Err(Fault::new(match (stated, needed) {
             (Some(count), Some(needed)) => {
@@ -36,10 +36,11 @@ pub(super) fn parse(bytes: &[u8], merging: Merging) -> Result<RawMesh, Fault> {
         }));
     };
     let report = MeshReport { precision, ..MeshReport::default() };
-    Ok(RawMesh { vertices: soup.merged.vertices, triangles: soup.triangles, report })
+    Ok(RawMesh { vertices: soup.vertices, triangles: soup.triangles, report })
 }
 
-fn binary(bytes: &[u8], mut soup: Soup) -> Result<Soup, Fault> {
+fn binary(bytes: &[u8]) -> Result<Soup, Fault> {
+    let mut soup = Soup::default();
     // The reader takes any header that starts with "solid" for text.
     let without_title = [&[0; 80], &bytes[80..]].concat();
     let mut reader = Cursor::new(without_title);
@@ -78,7 +79,8 @@ impl<'a> Text<'a> {
     }
 
     /// All parts of the file, each from `solid` to `endsolid`; what stands behind these two words is a title.
-    fn parse(mut self, mut soup: Soup) -> Result<Soup, Fault> {
+    fn parse(mut self) -> Result<Soup, Fault> {
+        let mut soup = Soup::default();
         let mut is_open = false;
         while let Some((line, word)) = self.next() {
             let is = |expected: &str| word.eq_ignore_ascii_case(expected);
@@ -141,26 +143,17 @@ impl<'a> Text<'a> {
     }
 }
 
-/// Triangles with their corners merged where they are equal, if that is wanted.
+/// Triangles, each with vertices of its own.
+#[derive(Default)]
 struct Soup {
-    merges: bool,
-    merged: Merged,
+    vertices: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
 }
 
 impl Soup {
-    fn new(merging: Merging) -> Self {
-        Self { merges: merging != Merging::Never, merged: Merged::default(), triangles: Vec::new() }
-    }
-
     fn add(&mut self, corners: [DVec3; 3]) {
-        let corners = corners.map(|position| {
-            if self.merges {
-                return self.merged.number(position);
-            }
-            self.merged.vertices.push(position);
-            (self.merged.vertices.len() - 1) as u32
-        });
-        self.triangles.push(corners);
+        let first = self.vertices.len() as u32;
+        self.vertices.extend(corners);
+        self.triangles.push([first, first.wrapping_add(1), first.wrapping_add(2)]);
     }
 }
