@@ -1,3 +1,4 @@
+use d2m_motion::OutsideDomain;
 use thiserror::Error;
 
 /// Bad input to a query. No query reports a hard case as an error, and none turns an error into "no contact".
@@ -43,14 +44,12 @@ pub enum QueryError {
         body: usize,
     },
     /// The window is not within the times that a motion covers.
-    #[error("motion of body {body} covers the times from {start:?} to {end:?}, which do not hold the window")]
+    #[error("body {body}: {outside}")]
     OutsideMotion {
         /// 0 for the first body, 1 for the second.
         body: usize,
-        /// First time of the motion.
-        start: f64,
-        /// Last time of the motion.
-        end: f64,
+        /// The times of the motion and of the window.
+        outside: OutsideDomain,
     },
     /// The pose is not finite, its quaternion is zero, or lengths exceed 1e100.
     #[error("pose of body {body} is not finite, has a zero quaternion or exceeds 1e100")]

@@ -3,6 +3,7 @@
 
 mod allowance;
 mod contact;
+mod covered_pair;
 mod enclosing_sphere;
 mod error;
 mod evidence;

@@ -7,7 +7,8 @@ use d2m_bvh::{
     TriMesh, Window, last_search_counts, time_of_contact,
 };
 use d2m_motion::{
-    Chain, Composed, ConstantTwist, Joint, JointKind, JointValue, Keyframes, Pose, RigidMotion, Span,
+    Chain, Composed, ConstantTwist, Joint, JointKind, JointValue, Keyframes, OutsideDomain, Pose,
+    RigidMotion, Span,
 };
 use d2m_testing::{Blurred, Draw, KnuthRandom, Opaque, Surface};
 use glam::{DQuat, DVec3};
@@ -411,7 +412,8 @@ fn modes_separations_and_windows_hold_for_every_motion() {
         Moving::new(&b, &ConstantTwist::REST as &dyn RigidMotion),
     );
     let error = time_of_contact(a, b, outside, &QueryOptions::default()).unwrap_err();
-    assert_eq!(error, QueryError::OutsideMotion { body: 0, start: 0.0, end: 1.0 });
+    let outside = OutsideDomain { start: 0.0, end: 1.0, from: 0.0, to: 1.5 };
+    assert_eq!(error, QueryError::OutsideMotion { body: 0, outside });
 }
 
 /// Bodies inside each other, at the start and never.

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, parse_json};
 use crate::load::read;
 use d2m::bvh::Window;
-use d2m::motion::{AnyMotion, ConstantTwist, RigidMotion};
+use d2m::motion::{AnyMotion, ConstantTwist, CoveredMotion};
 use std::path::Path;
 
 /// Reads `x=…;q=…;v=…;w=…` or `@file.json`; `option` names the place in messages.
@@ -20,18 +20,8 @@ pub(crate) fn parse_motion(option: &str, text: &str) -> Result<AnyMotion, Failur
 
 /// The window must lie within the times that the motion covers.
 pub(crate) fn require_window(place: &str, motion: &AnyMotion, window: Window) -> Result<(), Failure> {
-    let times = motion.domain();
-    if times.contains(window.start()) && times.contains(window.end()) {
-        return Ok(());
-    }
-    let reason = format!(
-        "the motion covers the times from {:?} to {:?}, not the whole window from {:?} to {:?}",
-        times.lo(),
-        times.hi(),
-        window.start(),
-        window.end()
-    );
-    Err(Failure::at(place, reason))
+    let covered = CoveredMotion::try_new(motion, window.start(), window.end());
+    covered.map(|_| ()).map_err(|outside| Failure::at(place, outside))
 }
 
 /// Reads `t0,t1`; an empty or reversed window is refused.

@@ -1,6 +1,7 @@
 //! What can be wrong with a body, a scene or a step.
 
 use d2m_bvh::QueryError;
+use d2m_motion::OutsideDomain;
 use glam::{DMat3, DVec3};
 
 /// Why a body has no usable mass properties.
@@ -108,6 +109,14 @@ pub enum SimulationError {
         b: String,
         /// What is wrong with them.
         error: QueryError,
+    },
+    /// The motion of a kinematic body does not cover the present time, or all of a step.
+    #[error("body {body}: {outside}")]
+    OutsideMotion {
+        /// The body's name.
+        body: String,
+        /// The times of the motion and of the step.
+        outside: OutsideDomain,
     },
     /// A snapshot of another simulation.
     #[error("the snapshot has {found} bodies, the simulation {expected}")]

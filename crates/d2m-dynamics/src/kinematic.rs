@@ -1,11 +1,11 @@
 //! Bodies that follow a motion, as flights of constant twists that stay close to it.
 
-use crate::StepError;
 use crate::body::Kind;
 use crate::rigid_body::{RigidBody, rotation_vector};
 use crate::velocity::Velocity;
+use crate::{SimulationError, StepError};
 use d2m_interval::{Interval, IntervalVec3};
-use d2m_motion::RigidMotion;
+use d2m_motion::CoveredMotion;
 use glam::{DQuat, DVec3};
 
 /// How far the twist of a kinematic flight may lead off the motion between its ends, of the gap.
@@ -32,15 +32,15 @@ impl RigidBody {
     /// as the motion is proven to stay close to it.
     ///
     /// # Errors
-    /// [`StepError::TooFast`] where no flight that is long enough does.
+    /// [`StepError::TooFast`] where no flight that is long enough does; a motion that does not cover the step.
     pub(crate) fn follow(&mut self, end: f64, gap: f64) -> Result<(), StepError> {
-        let Kind::Kinematic(motion) = &self.kind else { return Ok(()) };
         let start = self.time;
-        let first = self.place_by(&**motion, start);
-        let mut horizon = motion.smooth_until(start).map_or(end, |joint| end.min(joint));
+        let Some(motion) = self.covered_motion(start, end)? else { return Ok(()) };
+        let first = self.place_by(motion, start);
+        let mut horizon = motion.motion().smooth_until(start).map_or(end, |joint| end.min(joint));
         for _ in 0..=MOST_HALVINGS {
-            let piece = self.piece(&**motion, first, start, horizon);
-            if self.bound_deviation(&**motion, &piece) <= OFF_MOTION * gap {
+            let piece = self.piece(motion, first, start, horizon);
+            if self.bound_deviation(motion, &piece) <= OFF_MOTION * gap {
                 (self.position, self.orientation) = first;
                 self.fly(piece.velocity, horizon);
                 return Ok(());
@@ -54,13 +54,27 @@ impl RigidBody {
         Err(StepError::TooFast { body: self.name.to_string(), time: start })
     }
 
+    /// The motion of a kinematic body over some times; none of other bodies.
+    ///
+    /// # Errors
+    /// It does not cover them.
+    pub(crate) fn covered_motion(
+        &self,
+        from: f64,
+        to: f64,
+    ) -> Result<Option<CoveredMotion<'_>>, SimulationError> {
+        let Kind::Kinematic(motion) = &self.kind else { return Ok(None) };
+        let outside = |outside| SimulationError::OutsideMotion { body: self.name.to_string(), outside };
+        CoveredMotion::try_new(&**motion, from, to).map(Some).map_err(outside)
+    }
+
     /// Where a motion of the mesh frame has the center and the axes.
-    fn place_by(&self, motion: &dyn RigidMotion, time: f64) -> (DVec3, DQuat) {
-        let (pose, _) = motion.pose_and_twist(time);
+    fn place_by(&self, motion: CoveredMotion<'_>, time: f64) -> (DVec3, DQuat) {
+        let (pose, _) = motion.motion().pose_and_twist(time);
         (pose.transform_point(self.center), pose.rotation.normalize())
     }
 
-    fn piece(&self, motion: &dyn RigidMotion, (x, q): (DVec3, DQuat), start: f64, end: f64) -> Piece {
+    fn piece(&self, motion: CoveredMotion<'_>, (x, q): (DVec3, DQuat), start: f64, end: f64) -> Piece {
         let length = end - start;
         let (last_x, last_q) = self.place_by(motion, end);
         let velocity = Velocity {
@@ -75,7 +89,8 @@ impl RigidBody {
     /// The center flies straight between two points of its path: it is off by at most h²/8 of its largest acceleration. With
     /// E = R P⁻¹ of the orientations R of the motion and P of the flight, E turns with ω − E ω₀, and the component of that along E's
     /// own axis is the one of ω − ω₀; so the angle of E, which is zero at both ends, is at most half of the integral of |ω − ω₀|.
-    fn bound_deviation(&self, motion: &dyn RigidMotion, piece: &Piece) -> f64 {
+    fn bound_deviation(&self, motion: CoveredMotion<'_>, piece: &Piece) -> f64 {
+        let motion = motion.motion();
         let &Piece { time, length, velocity } = piece;
         let spin = motion.enclose_twist(time).angular;
         // Not when it is no number either.

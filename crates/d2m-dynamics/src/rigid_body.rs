@@ -7,7 +7,7 @@ use crate::velocity::Velocity;
 use crate::{MassProperties, SimulationError};
 use d2m_bvh::{MeshTree, Posed, Solid};
 use d2m_interval::Interval;
-use d2m_motion::{ConstantTwist, Pose, RigidMotion};
+use d2m_motion::{ConstantTwist, CoveredMotion, Pose, RigidMotion};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
@@ -114,7 +114,9 @@ impl RigidBody {
         let kind = body.kind.clone();
         let (mesh_position, orientation) = match &kind {
             Kind::Kinematic(motion) => {
-                let (pose, _) = motion.pose_and_twist(time);
+                let outside = |outside| SimulationError::OutsideMotion { body: body.name.clone(), outside };
+                let covered = CoveredMotion::try_new(&**motion, time, time).map_err(outside)?;
+                let (pose, _) = covered.motion().pose_and_twist(time);
                 (pose.transform_point(DVec3::ZERO), pose.rotation.normalize())
             }
             _ => (body.position, q.normalize()),

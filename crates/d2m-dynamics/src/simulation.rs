@@ -225,15 +225,16 @@ impl Simulation {
         while steps as f64 * self.options.step <= self.time {
             steps += 1;
         }
-        let report = self.step_to_with(steps as f64 * self.options.step, listener);
+        let report = self.step_to_with(steps as f64 * self.options.step, listener)?;
         self.steps = steps;
-        report
+        Ok(report)
     }
 
     /// Advances to a time, as one step of whatever length.
     ///
     /// # Errors
-    /// As [`Self::step`]; also an end that is not after the present time.
+    /// As [`Self::step`]; also an end that is not after the present time. A motion of a kinematic body that does not cover the
+    /// whole step is refused before anything moves.
     pub fn step_to(&mut self, end: f64) -> Result<StepReport, StepError> {
         self.step_to_with(end, &mut Nobody)
     }
@@ -250,6 +251,10 @@ impl Simulation {
         if !(end.is_finite() && end > self.time) {
             let wanted = "after the present time";
             return Err(SimulationError::BadOption { name: "end of the step", value: end, wanted }.into());
+        }
+        // Before anything moves.
+        for body in &self.bodies {
+            body.covered_motion(self.time, end)?;
         }
         self.check_start()?;
         Step::new(self, end, listener).run()

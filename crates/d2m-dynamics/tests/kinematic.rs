@@ -1,8 +1,10 @@
 //! Bodies that follow their motions: within a hundredth of the gap, however fast, or the step says that it cannot be.
 
 use d2m_bvh::MeshTree;
-use d2m_dynamics::{Body, Kind, Segment, Simulation, SimulationOptions, StepError};
-use d2m_motion::{Chain, ConstantTwist, Joint, JointKind, JointValue, RigidMotion};
+use d2m_dynamics::{Body, Kind, Segment, Simulation, SimulationError, SimulationOptions, StepError};
+use d2m_motion::{
+    Chain, ConstantTwist, Joint, JointKind, JointValue, Keyframes, OutsideDomain, Pose, RigidMotion, Span,
+};
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
@@ -97,4 +99,39 @@ fn what_cannot_be_followed_is_named() {
     let error = simulation(Arc::new(motion)).step().unwrap_err();
     assert_eq!(error, StepError::TooFast { body: "blade".into(), time: 0.0 });
     assert!(error.to_string().contains("body blade moves too fast"), "{error}");
+}
+
+/// A blade that rests over the times from 0 to 0.025, in steps of 0.01: the third step would go past its motion.
+#[test]
+fn no_step_goes_past_a_motion() {
+    let poses = [(0.0, Pose::IDENTITY), (0.025, Pose::IDENTITY)];
+    let mut simulation = simulation(Arc::new(Keyframes::try_new(&poses, Span::Linear).unwrap()));
+    for _ in 0..2 {
+        simulation.step().unwrap();
+    }
+    let before = simulation.snapshot();
+    let error = simulation.step().unwrap_err();
+    let (from, to) = (simulation.time(), 0.03);
+    let outside = OutsideDomain { start: 0.0, end: 0.025, from, to };
+    let refused = SimulationError::OutsideMotion { body: "blade".into(), outside };
+    assert_eq!(error, StepError::Setup(refused));
+    assert!(
+        error.to_string().contains("body blade: the motion covers the times from 0.0 to 0.025"),
+        "{error}"
+    );
+    // Nothing has moved, and what the motion covers can still be done.
+    assert_eq!(simulation.snapshot(), before);
+    simulation.step_to(0.025).unwrap();
+}
+
+#[test]
+fn bodies_whose_motion_is_over_are_refused() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    simulation.step_to(2.0).unwrap();
+    let poses = [(0.0, Pose::IDENTITY), (1.0, Pose::IDENTITY)];
+    let motion = Arc::new(Keyframes::try_new(&poses, Span::Linear).unwrap());
+    let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box").unwrap()));
+    let late = Body::new("late", tree).with_kind(Kind::Kinematic(motion));
+    let outside = OutsideDomain { start: 0.0, end: 1.0, from: 2.0, to: 2.0 };
+    assert_eq!(simulation.add(&late), Err(SimulationError::OutsideMotion { body: "late".into(), outside }));
 }

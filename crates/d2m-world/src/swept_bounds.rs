@@ -1,12 +1,34 @@
 //! Axis-aligned boxes that a body never leaves: over a whole time span, and over slices of it.
 
 use crate::Body;
-use d2m_bvh::Window;
-use d2m_interval::{Interval, IntervalVec3};
+use d2m_bvh::{MeshTree, Window};
+use d2m_interval::IntervalVec3;
+use d2m_motion::{CoveredMotion, OutsideDomain};
 use glam::DVec3;
 
 /// Slices of a time span. A pair whose boxes over the whole span overlap is apart in most slices if the bodies move far.
 pub(crate) const SLICES: usize = 16;
+
+/// A body over a span of time that its motion covers: boxes are made of no other.
+#[derive(Clone, Copy)]
+pub(crate) struct CoveredBody<'a> {
+    tree: &'a MeshTree,
+    motion: CoveredMotion<'a>,
+}
+
+impl<'a> CoveredBody<'a> {
+    /// A body from one time to another, both included.
+    ///
+    /// # Errors
+    /// The motion does not cover both.
+    pub(crate) fn try_new(body: &'a Body, from: f64, to: f64) -> Result<Self, OutsideDomain> {
+        Ok(Self { tree: body.tree(), motion: CoveredMotion::try_new(body.motion(), from, to)? })
+    }
+
+    fn part(self, from: f64, to: f64) -> Option<Self> {
+        Some(Self { motion: self.motion.part(from, to)?, ..self })
+    }
+}
 
 /// An axis-aligned box, world frame. Every comparison errs on "may meet".
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,10 +41,9 @@ impl SweptBox {
     /// The empty box, of a body that was removed.
     pub(crate) const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
 
-    /// Encloses every point of `body` at every time of a span.
-    pub(crate) fn enclose(body: &Body, start: f64, end: f64) -> Self {
-        let bounds: IntervalVec3 =
-            body.tree().enclose_placed(&body.motion().enclose_pose(Interval::new(start, end)));
+    /// Encloses every point of a body at every time of its span.
+    pub(crate) fn enclose(body: CoveredBody<'_>) -> Self {
+        let bounds: IntervalVec3 = body.tree.enclose_placed(&body.motion.enclose_pose());
         Self { low: bounds.lo(), high: bounds.hi() }
     }
 
@@ -82,17 +103,16 @@ impl Slicing {
     }
 }
 
-/// What a body sweeps over the slices of a span, from the time on for which its motion is known.
+/// What a body sweeps over the slices of a span, at those times of it that the body is given for.
 #[derive(Clone, Debug)]
 pub(crate) struct SweptSlices(Box<[SweptBox; SLICES]>);
 
 impl SweptSlices {
-    pub(crate) fn enclose(body: &Body, slicing: &Slicing, from: f64) -> Self {
+    pub(crate) fn enclose(body: CoveredBody<'_>, slicing: &Slicing) -> Self {
         let mut boxes = Box::new([SweptBox::EMPTY; SLICES]);
         for (k, swept) in boxes.iter_mut().enumerate() {
-            let (start, end) = (slicing.time(k).max(from), slicing.time(k + 1));
-            if start <= end {
-                *swept = SweptBox::enclose(body, start, end);
+            if let Some(part) = body.part(slicing.time(k), slicing.time(k + 1)) {
+                *swept = SweptBox::enclose(part);
             }
         }
         Self(boxes)

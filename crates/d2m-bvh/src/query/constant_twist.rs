@@ -2,14 +2,13 @@
 
 use super::report::{contact, contained, evidence_at_start};
 use crate::allowance::{Allowance, Exhausted};
+use crate::covered_pair::CoveredPair;
 use crate::resting::collide::crossing_pair_within;
 use crate::resting::containment::{Held, held_vertex};
 use crate::resting::node_pair;
 use crate::search::motion::track::given_relative_position;
 use crate::search::{MovingTree, Outcome, Scene, Scratch, Search};
-use crate::{
-    MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window,
-};
+use crate::{MeshTree, Mode, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window};
 use core::cell::RefCell;
 use d2m_lanes::F64x4;
 use d2m_motion::Pose;
@@ -22,18 +21,17 @@ thread_local! {
 
 /// The scene of a query whose input is valid; `None` when a motion has no constant twist.
 pub(super) fn scene_of<'a>(
-    a: Moving<'a>,
-    b: Moving<'a>,
-    window: Window,
+    pair: &CoveredPair<'a>,
     options: &QueryOptions,
 ) -> Result<Option<Scene<'a>>, QueryError> {
+    let [a, b] = *pair.bodies();
     let solids = [a.solid_in(options), b.solid_in(options)];
     check([a.body, b.body], solids, options)?;
     let (Some(motion_a), Some(motion_b)) = (a.motion.constant_twist(), b.motion.constant_twist()) else {
         return Ok(None);
     };
     let (a, b) = (MovingTree { tree: a.body, twist: motion_a }, MovingTree { tree: b.body, twist: motion_b });
-    let mut scene = Scene::try_new(a, b, window, options)?;
+    let mut scene = Scene::try_new(a, b, pair.window(), options)?;
     scene.solids = solids;
     Ok(Some(scene))
 }

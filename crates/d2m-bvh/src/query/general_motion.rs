@@ -9,6 +9,7 @@ use super::constant_twist::{ask, count_as_one_search, last_search_counts, scene_
 use super::fitted_twist::FittedTwists;
 use super::report::MOST_LEFT;
 use super::true_poses::{Meeting, PlacedTriangles};
+use crate::covered_pair::CoveredPair;
 use crate::length::length;
 use crate::search::MovingTree;
 use crate::{
@@ -52,47 +53,32 @@ pub(super) fn tolerance_of(bodies: &[Moving<'_>; 2], options: &QueryOptions) -> 
     options.tolerance.unwrap_or(DEFAULT_TOLERANCE * radius)
 }
 
-/// The window lies within the times of both motions.
-///
-/// # Errors
-/// [`QueryError::OutsideMotion`].
-pub(super) fn check_times(bodies: &[Moving<'_>; 2], window: Window) -> Result<(), QueryError> {
-    for (body, moving) in bodies.iter().enumerate() {
-        let times = moving.motion.domain();
-        if !(times.contains(window.start()) && times.contains(window.end())) {
-            return Err(QueryError::OutsideMotion { body, start: times.lo(), end: times.hi() });
-        }
-    }
-    Ok(())
-}
-
 /// The query; options were checked before.
 pub(super) fn general_motion(
-    bodies: [Moving<'_>; 2],
-    window: Window,
+    pair: CoveredPair<'_>,
     options: &QueryOptions,
 ) -> Result<TimeOfContact, QueryError> {
-    check_times(&bodies, window)?;
+    let bodies = pair.bodies();
     if let (Some(a), Some(b)) = (bodies[0].motion.chain(), bodies[1].motion.chain()) {
         let common = a.common_joints(b);
         if common > 0 {
-            return from_common_joint(bodies, [a, b], common, window, options);
+            return from_common_joint(&pair, [a, b], common, options);
         }
     }
-    Advance::new(bodies, window, *options).run()
+    Advance::new(pair, *options).run()
 }
 
 /// Two links of one arm, seen from the last joint that they have in common.
 fn from_common_joint(
-    bodies: [Moving<'_>; 2],
+    pair: &CoveredPair<'_>,
     [a, b]: [&Chain; 2],
     common: usize,
-    window: Window,
     options: &QueryOptions,
 ) -> Result<TimeOfContact, QueryError> {
     let (rest_a, rest_b) = (a.without_first(common), b.without_first(common));
+    let bodies = pair.bodies();
     let seen = [Moving { motion: &rest_a, ..bodies[0] }, Moving { motion: &rest_b, ..bodies[1] }];
-    let mut answer = Advance::new(seen, window, *options).run()?;
+    let mut answer = Advance::new(CoveredPair::try_new(seen, pair.window())?, *options).run()?;
     if let TimeOfContact::Contact(contact) = &mut answer {
         let (frame, _) = a.only_first(common).pose_and_twist(contact.time_lo);
         contact.normal = frame.transform_vector(contact.normal);
@@ -155,7 +141,8 @@ enum Step {
 }
 
 impl<'a> Advance<'a> {
-    fn new(bodies: [Moving<'a>; 2], window: Window, options: QueryOptions) -> Self {
+    fn new(pair: CoveredPair<'a>, options: QueryOptions) -> Self {
+        let (bodies, window) = (*pair.bodies(), pair.window());
         Self {
             bodies,
             window,

@@ -2,6 +2,7 @@
 
 use super::constant_twist::{ask, scene_of};
 use super::general_motion::general_motion;
+use crate::covered_pair::CoveredPair;
 use crate::{Moving, QueryError, QueryOptions, TimeOfContact, Window};
 
 /// First time in `window` at which the two bodies touch.
@@ -33,15 +34,17 @@ use crate::{Moving, QueryError, QueryOptions, TimeOfContact, Window};
 /// ```
 ///
 /// # Errors
-/// Bad input only: a tolerance, separation or motion that is not finite, a filled solid that does not close.
+/// Bad input only: a tolerance, separation or motion that is not finite, a filled solid that does not close, a window that
+/// leaves a motion's times.
 pub fn time_of_contact(
     a: Moving<'_>,
     b: Moving<'_>,
     window: Window,
     options: &QueryOptions,
 ) -> Result<TimeOfContact, QueryError> {
-    match scene_of(a, b, window, options)? {
+    let pair = CoveredPair::try_new([a, b], window)?;
+    match scene_of(&pair, options)? {
         Some(scene) => ask(&scene, options),
-        None => general_motion([a, b], window, options),
+        None => general_motion(pair, options),
     }
 }

@@ -2,8 +2,9 @@
 
 use super::constant_twist::{ask, scene_of, scene_of_twists};
 use super::fitted_twist::FittedTwists;
-use super::general_motion::{check_times, general_motion, rounding_tolerance, tolerance_of};
+use super::general_motion::{general_motion, rounding_tolerance, tolerance_of};
 use super::true_poses::Meeting;
+use crate::covered_pair::CoveredPair;
 use crate::search::relative_trajectory::RelativeTrajectory;
 use crate::search::triangle_pair::closest::closest;
 use crate::search::triangle_pair::separating_axis::place_a;
@@ -58,8 +59,9 @@ pub fn time_of_contact_with(
     options: &QueryOptions,
     cache: &mut PairCache,
 ) -> Result<TimeOfContact, QueryError> {
-    let Some(scene) = scene_of(a, b, window, options)? else {
-        return general_motion_with([a, b], window, options, cache);
+    let pair = CoveredPair::try_new([a, b], window)?;
+    let Some(scene) = scene_of(&pair, options)? else {
+        return general_motion_with(pair, options, cache);
     };
     if options.budget != Budget::UNLIMITED || options.mode == Mode::Capoeira {
         return ask(&scene, options);
@@ -98,23 +100,21 @@ fn remember(answer: &TimeOfContact, window: Window, cache: &mut PairCache) {
 /// The query of motions whose twists are not constant. What the cache knows is about the twists that are fitted to them over the
 /// whole window: those differ from the motions by their deviation, which is taken from the separation.
 fn general_motion_with(
-    bodies: [Moving<'_>; 2],
-    window: Window,
+    pair: CoveredPair<'_>,
     options: &QueryOptions,
     cache: &mut PairCache,
 ) -> Result<TimeOfContact, QueryError> {
     if options.budget != Budget::UNLIMITED || options.mode == Mode::Capoeira {
-        return general_motion(bodies, window, options);
+        return general_motion(pair, options);
     }
-    check_times(&bodies, window)?;
-    let fitted = WindowFit::try_new(&bodies, window, options);
+    let fitted = WindowFit::try_new(&pair, options);
     if let Some(WindowFit { scene, trajectory, options, .. }) = &fitted
         && stay_apart(scene, trajectory, options, cache)?
     {
         return Ok(TimeOfContact::Separated);
     }
-    let answer = general_motion(bodies, window, options)?;
-    remember(&answer, window, cache);
+    let answer = general_motion(pair, options)?;
+    remember(&answer, pair.window(), cache);
     if let Some(WindowFit { scene, trajectory, off, .. }) = &fitted
         && answer == TimeOfContact::Separated
     {
@@ -135,8 +135,9 @@ struct WindowFit<'a> {
 
 impl<'a> WindowFit<'a> {
     /// `None` where no twists follow the motions closely enough.
-    fn try_new(bodies: &[Moving<'a>; 2], window: Window, options: &QueryOptions) -> Option<Self> {
-        let fitted = fit_to_window(bodies, window)?;
+    fn try_new(pair: &CoveredPair<'a>, options: &QueryOptions) -> Option<Self> {
+        let (bodies, window) = (pair.bodies(), pair.window());
+        let fitted = fit_to_window(pair)?;
         let tolerance = tolerance_of(bodies, options).max(rounding_tolerance(&fitted));
         let off = (fitted.deviation + ROOM_FOR_WIDTH * fitted.floor) * UP;
         let separation = (options.min_separation + off) * UP;
@@ -152,7 +153,8 @@ impl<'a> WindowFit<'a> {
 }
 
 /// Twists that follow the motions over all of a window in which both are smooth.
-fn fit_to_window(bodies: &[Moving<'_>; 2], window: Window) -> Option<FittedTwists> {
+fn fit_to_window(pair: &CoveredPair<'_>) -> Option<FittedTwists> {
+    let (bodies, window) = (pair.bodies(), pair.window());
     let joint = |body: &Moving<'_>| body.motion.smooth_until(window.start());
     if bodies.iter().filter_map(joint).any(|joint| joint.is_nan() || joint < window.end()) {
         return None;
@@ -212,13 +214,14 @@ pub fn contact_exists(
     cache: &mut PairCache,
 ) -> Result<Option<bool>, QueryError> {
     let options = options.with_mode(Mode::Exists);
-    let scene = scene_of(a, b, window, &options)?;
+    let pair = CoveredPair::try_new([a, b], window)?;
+    let scene = scene_of(&pair, &options)?;
     if options.budget == Budget::UNLIMITED
         && let Some(triangles) = cache.within([&a, &b].map(|moving| moving.body.mesh().triangle_count()))
     {
         let after = match &scene {
             Some(scene) => meet_again(scene, triangles, cache.meeting),
-            None => move_to_meet_again([a, b], window, &options, (triangles, cache.meeting))?,
+            None => move_to_meet_again(&pair, &options, (triangles, cache.meeting)),
         };
         if let Some(after) = after {
             cache.found_contact(triangles, after);
@@ -234,15 +237,14 @@ pub fn contact_exists(
 
 /// As [`meet_again`], for any motions.
 fn move_to_meet_again(
-    bodies: [Moving<'_>; 2],
-    window: Window,
+    pair: &CoveredPair<'_>,
     options: &QueryOptions,
     (triangles, after): ([u32; 2], f64),
-) -> Result<Option<f64>, QueryError> {
-    check_times(&bodies, window)?;
-    let tolerance = tolerance_of(&bodies, options);
-    let meeting = Meeting { bodies: &bodies, window, separation: options.min_separation, tolerance };
-    Ok(meeting.found_near(triangles, window.start() + after).map(|time| time - window.start()))
+) -> Option<f64> {
+    let (bodies, window) = (pair.bodies(), pair.window());
+    let tolerance = tolerance_of(bodies, options);
+    let meeting = Meeting { bodies, window, separation: options.min_separation, tolerance };
+    meeting.found_near(triangles, window.start() + after).map(|time| time - window.start())
 }
 
 /// Does a search of this scene find no contact when the bodies are further apart than `room` all the time? A contact

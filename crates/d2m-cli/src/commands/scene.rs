@@ -35,10 +35,7 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
         options = options.with_budget(Budget::UNLIMITED.with_wall_clock(Duration::from_secs_f64(seconds)));
     }
     let mut world = scene.world(options);
-    let named = |error: WorldError| {
-        let [a, b] = [error.a, error.b].map(|id| &scene.bodies[id.index()].name);
-        Failure::at(arguments.scene.display(), format!("bodies {a:?} and {b:?}: {}", error.error))
-    };
+    let named = |error: WorldError| Failure::at(arguments.scene.display(), scene.describe(error));
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| Failure::at("--threads", error))?;

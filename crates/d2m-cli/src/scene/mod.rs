@@ -13,7 +13,7 @@ use crate::load::read;
 use crate::mesh_library::MeshLibrary;
 use crate::unique_keys::UniqueKeys;
 use d2m::bvh::{QueryOptions, Window};
-use d2m::{Body, BodyId, Group, World};
+use d2m::{Body, BodyId, Group, World, WorldError};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -78,6 +78,16 @@ impl Scene {
             ignored.push(names.ignored(&format!("{place}, ignore {index}"), &value)?);
         }
         Ok(Self { window, bodies, ignored, min_separation: separation, tolerance: form.tolerance })
+    }
+
+    /// What stopped a query of the scene's world, with the bodies' names.
+    pub(crate) fn describe(&self, error: WorldError) -> String {
+        let name = |id: BodyId| &self.bodies[id.index()].name;
+        match error {
+            WorldError::Pair { a, b, error } => format!("bodies {:?} and {:?}: {error}", name(a), name(b)),
+            WorldError::OutsideMotion { body, outside } => format!("body {:?}: {outside}", name(body)),
+            other => other.to_string(),
+        }
     }
 
     /// The world of the scene; its bodies have the numbers that they have in the file.

@@ -30,7 +30,7 @@ fn every_key_is_read() {
         Ignored::BodyAndGroup(1, "g".to_owned()),
     ];
     assert_eq!(scene.ignored, expected);
-    assert!(scene.world(QueryOptions::default()).candidates(scene.window).is_empty());
+    assert!(scene.world(QueryOptions::default()).candidates(scene.window).unwrap().is_empty());
 }
 
 #[test]

@@ -18,10 +18,8 @@ const MARKED: f64 = 0.05;
 pub(crate) fn picture_of_scene(path: &Path, options: QueryOptions) -> Result<Picture, Failure> {
     let scene = Scene::read(path)?;
     let mut world = scene.world(options);
-    let contacts = world.contacts(scene.window).map_err(|error| {
-        let [a, b] = [error.a, error.b].map(|id| &scene.bodies[id.index()].name);
-        Failure::at(path.display(), format!("bodies {a:?} and {b:?}: {}", error.error))
-    })?;
+    let contacts =
+        world.contacts(scene.window).map_err(|error| Failure::at(path.display(), scene.describe(error)))?;
     let [start, end] = [scene.window.start(), scene.window.end()];
     let headline = format!("{} bodies from t = {} to {}", scene.bodies.len(), short(start), short(end));
     let undecided = contacts.iter().filter(|pair| pair.answer.contact().is_none()).count();

@@ -1,6 +1,7 @@
 //! What a world answers.
 
 use d2m_bvh::{Contact, Proximity, QueryError, TimeOfContact};
+use d2m_motion::OutsideDomain;
 
 /// Names a body of one [`World`](super::World): a place, and how often the place was reused, so the name of a removed body never
 /// means another one.
@@ -85,14 +86,26 @@ pub struct PairProximities {
     pub proximities: Vec<Proximity>,
 }
 
-/// What stopped a world query: bad input of one pair.
+/// What stopped a world query: bad input.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("bodies {} and {}: {error}", a.index(), b.index())]
-pub struct WorldError {
-    /// The first body of the pair.
-    pub a: BodyId,
-    /// The second body of the pair.
-    pub b: BodyId,
-    /// What is wrong with it.
-    pub error: QueryError,
+#[non_exhaustive]
+pub enum WorldError {
+    /// Of one pair.
+    #[error("bodies {} and {}: {error}", a.index(), b.index())]
+    Pair {
+        /// The first body of the pair.
+        a: BodyId,
+        /// The second body of the pair.
+        b: BodyId,
+        /// What is wrong with it.
+        error: QueryError,
+    },
+    /// The window of the query, or its time, is not within the times that a motion covers.
+    #[error("body {}: {outside}", body.index())]
+    OutsideMotion {
+        /// The body that moves so: of several the one with the smallest place.
+        body: BodyId,
+        /// The times of the motion and of the query.
+        outside: OutsideDomain,
+    },
 }

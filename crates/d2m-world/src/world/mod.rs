@@ -21,7 +21,7 @@ use d2m_bvh::{Mode, QueryOptions, Window};
 use d2m_motion::RigidMotion;
 use filter::PairFilter;
 use pair_state::PairState;
-use schedule::{Rules, Schedule};
+use schedule::{Rules, Schedule, Uncovered};
 use slots::Slots;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -46,7 +46,7 @@ use std::sync::Arc;
 /// };
 /// let ball = world.add(Body::new(Arc::clone(&cube), flying(9.0, -8.0)));
 /// let away = world.add(Body::new(cube, flying(9.0, 0.0).with_position(DVec3::Y * 50.0)));
-/// assert!(!world.candidates(Window::UNIT).contains(&(wall, away)));
+/// assert!(!world.candidates(Window::UNIT)?.contains(&(wall, away)));
 ///
 /// let (mut time, end, mut bounces) = (0.0, 1.0, 0);
 /// loop {
@@ -208,10 +208,17 @@ impl World {
 
     /// The pairs that the broad phase cannot exclude, smaller place first, ascending. Every pair that comes within its minimum
     /// separation during the window, and is not ignored, is among them.
-    pub fn candidates(&self, window: Window) -> Vec<(BodyId, BodyId)> {
+    ///
+    /// # Errors
+    /// A motion that does not cover the window.
+    pub fn candidates(&self, window: Window) -> Result<Vec<(BodyId, BodyId)>, WorldError> {
         let mut schedule = Schedule::default();
-        schedule.prepare(self.rules(), window, &[]);
-        schedule.pairs().into_iter().map(|[a, b]| (self.slots.id(a), self.slots.id(b))).collect()
+        schedule.prepare(self.rules(), window, &[]).map_err(|uncovered| self.uncovered(uncovered))?;
+        Ok(schedule.pairs().into_iter().map(|[a, b]| (self.slots.id(a), self.slots.id(b))).collect())
+    }
+
+    fn uncovered(&self, Uncovered { place, outside }: Uncovered) -> WorldError {
+        WorldError::OutsideMotion { body: self.slots.id(place), outside }
     }
 
     fn rules(&self) -> Rules<'_> {

@@ -53,7 +53,7 @@ impl World {
     /// ```
     ///
     /// # Errors
-    /// Bad input of a pair, with its names.
+    /// Bad input of a pair, with its names; a motion that does not cover the window.
     ///
     /// # Panics
     /// If a body was removed, or its name belongs to another world.
@@ -74,7 +74,8 @@ impl World {
         let mut planned = core::mem::take(&mut world.changed);
         planned.sort_unstable();
         planned.dedup();
-        world.schedule = Schedule::of_some(world.rules(), window, &planned, &self.schedule, &self.changed);
+        let schedule = Schedule::of_some(world.rules(), window, &planned, &self.schedule, &self.changed);
+        world.schedule = schedule.map_err(|uncovered| world.uncovered(uncovered))?;
         world.first_contact(window)
     }
 }

@@ -1,9 +1,10 @@
 //! All bodies at one time.
 
+use super::schedule::Uncovered;
 use super::{PairProximities, World, WorldError};
 use crate::box_tree::BoxTree;
 use crate::parallel::{BOXES, PAIRS, map_in_order};
-use crate::swept_bounds::SweptBox;
+use crate::swept_bounds::{CoveredBody, SweptBox};
 use d2m_bvh::{Posed, ProximityOptions, proximities_with};
 
 impl World {
@@ -29,7 +30,7 @@ impl World {
     /// ```
     ///
     /// # Errors
-    /// Bad input of a pair, with its names; bodies that are not apart are that here ([`d2m_bvh::QueryError::NotApart`]).
+    /// A motion that does not cover the time. Bad input of a pair, with its names; bodies that are not apart are that here ([`d2m_bvh::QueryError::NotApart`]).
     pub fn proximities(
         &self,
         time: f64,
@@ -37,8 +38,11 @@ impl World {
     ) -> Result<Vec<PairProximities>, WorldError> {
         let places: Vec<u32> = (0..self.slots.places() as u32).collect();
         let boxes = map_in_order(&places, BOXES, |&place| {
-            self.slots.at(place).map_or(SweptBox::EMPTY, |body| SweptBox::enclose(body, time, time))
+            let Some(body) = self.slots.at(place) else { return Ok(SweptBox::EMPTY) };
+            let covered = CoveredBody::try_new(body, time, time);
+            covered.map(SweptBox::enclose).map_err(|outside| self.uncovered(Uncovered { place, outside }))
         });
+        let boxes = boxes.into_iter().collect::<Result<Vec<_>, _>>()?;
         let mut tree = BoxTree::default();
         tree.fit(&boxes);
         let mut pairs = tree.pairs(&boxes, options.margin);
@@ -55,7 +59,7 @@ impl World {
         let mut near = Vec::new();
         for (pair, found) in pairs.into_iter().zip(found) {
             let [a, b] = pair.map(|place| self.slots.id(place));
-            let proximities = found.map_err(|error| WorldError { a, b, error })?;
+            let proximities = found.map_err(|error| WorldError::Pair { a, b, error })?;
             if !proximities.is_empty() {
                 near.push(PairProximities { a, b, proximities });
             }

@@ -10,8 +10,9 @@ use super::slots::Slots;
 use crate::box_tree::{BoxTree, IndexPair};
 use crate::moving_sphere::{FirstMeeting, MovingSphere};
 use crate::parallel::{BOXES, map_in_order};
-use crate::swept_bounds::{SliceRange, Slicing, Sweep, SweptBox, SweptSlices};
+use crate::swept_bounds::{CoveredBody, SliceRange, Slicing, Sweep, SweptBox, SweptSlices};
 use d2m_bvh::Window;
+use d2m_motion::OutsideDomain;
 
 /// Bodies that change one by one look for their pairs; from this part of all on all pairs are found anew.
 const CHANGED_PART: usize = 4;
@@ -58,6 +59,13 @@ pub(super) struct Schedule {
     fresh: usize,
 }
 
+/// The motion of the body at a place does not cover the times of a query.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Uncovered {
+    pub(super) place: u32,
+    pub(super) outside: OutsideDomain,
+}
+
 /// Were boxes and queue kept?
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Prepared {
@@ -83,18 +91,43 @@ impl Schedule {
     }
 
     /// Makes boxes and queue hold for `window`; `changed` are the places of bodies that changed since the last time.
-    pub(super) fn prepare(&mut self, rules: Rules<'_>, window: Window, changed: &[u32]) -> Prepared {
+    ///
+    /// # Errors
+    /// A motion that does not cover the window. Then nothing is known any more.
+    pub(super) fn prepare(
+        &mut self,
+        rules: Rules<'_>,
+        window: Window,
+        changed: &[u32],
+    ) -> Result<Prepared, Uncovered> {
+        let prepared = match self.span {
+            // What changed may cover the window and not the span: then that is the new span.
+            Some(_) => self.try_prepare(rules, window, changed).or_else(|_| {
+                self.clear();
+                self.try_prepare(rules, window, changed)
+            }),
+            None => self.try_prepare(rules, window, changed),
+        };
+        prepared.inspect_err(|_| self.clear())
+    }
+
+    fn try_prepare(
+        &mut self,
+        rules: Rules<'_>,
+        window: Window,
+        changed: &[u32],
+    ) -> Result<Prepared, Uncovered> {
         let kept = self.span.filter(|span| {
             span.start() <= window.start() && window.end() <= span.end() && self.from <= window.start()
         });
         self.from = window.start();
         match kept {
-            Some(_) if changed.is_empty() => Prepared::Kept,
+            Some(_) if changed.is_empty() => Ok(Prepared::Kept),
             Some(span) => {
                 self.hulls.resize(rules.slots.places(), SweptBox::EMPTY);
                 self.slices.resize(rules.slots.places(), Slices::NotWorthIt);
                 self.spheres.resize(rules.slots.places(), None);
-                self.enclose(rules.slots, span, changed);
+                self.enclose(rules.slots, span, changed)?;
                 if changed.len() * CHANGED_PART > rules.slots.places() {
                     self.tree.fit(&self.hulls);
                     self.sweep(rules);
@@ -102,7 +135,7 @@ impl Schedule {
                     self.tree.refit(&self.hulls, changed);
                     self.insert(rules, changed);
                 }
-                Prepared::Kept
+                Ok(Prepared::Kept)
             }
             None => {
                 self.span = Some(window);
@@ -110,30 +143,33 @@ impl Schedule {
                 self.hulls = vec![SweptBox::EMPTY; all.len()];
                 self.slices = vec![Slices::NotWorthIt; all.len()];
                 self.spheres = vec![None; all.len()];
-                self.enclose(rules.slots, window, &all);
+                self.enclose(rules.slots, window, &all)?;
                 self.tree.fit(&self.hulls);
                 self.sweep(rules);
-                Prepared::Anew
+                Ok(Prepared::Anew)
             }
         }
     }
 
     /// Boxes of some bodies over the rest of the span.
-    fn enclose(&mut self, slots: &Slots, span: Window, places: &[u32]) {
+    fn enclose(&mut self, slots: &Slots, span: Window, places: &[u32]) -> Result<(), Uncovered> {
         let from = self.from;
         let enclosed = map_in_order(places, BOXES, |&place| {
-            slots.at(place).map(|body| {
-                let hull = SweptBox::enclose(body, from, span.end());
+            let Some(body) = slots.at(place) else { return Ok(None) };
+            CoveredBody::try_new(body, from, span.end()).map(|covered| {
+                let hull = SweptBox::enclose(covered);
                 let is_wide = (hull.high - hull.low).max_element() > FAR * body.tree().radius();
                 let slices = if is_wide { Slices::Unknown } else { Slices::NotWorthIt };
-                (hull, slices, MovingSphere::enclose(body, span.start()))
+                Some((hull, slices, MovingSphere::enclose(body, span.start())))
             })
         });
         for (&place, enclosed) in places.iter().zip(enclosed) {
             let at = place as usize;
+            let enclosed = enclosed.map_err(|outside| Uncovered { place, outside })?;
             (self.hulls[at], self.slices[at], self.spheres[at]) =
                 enclosed.unwrap_or((SweptBox::EMPTY, Slices::NotWorthIt, None));
         }
+        Ok(())
     }
 
     /// The queue from scratch.
@@ -202,7 +238,9 @@ impl Schedule {
         }
         let (slicing, from) = (Slicing::new(span), self.from);
         let boxes = map_in_order(&wanted, BOXES, |&place| {
-            rules.slots.at(place).map(|body| SweptSlices::enclose(body, &slicing, from))
+            // Its box was made from an earlier time on, so that the motion covers this.
+            let covered = CoveredBody::try_new(rules.slots.at(place)?, from, span.end()).ok()?;
+            Some(SweptSlices::enclose(covered, &slicing))
         });
         for (&place, slices) in wanted.iter().zip(boxes) {
             if let Some(slices) = slices {
@@ -314,13 +352,16 @@ impl Schedule {
 
     /// A schedule with the pairs of some bodies only. `earlier` is that of the same bodies, but for these and the `stale`
     /// ones, and lends its boxes where they hold.
+    ///
+    /// # Errors
+    /// A motion that does not cover the window.
     pub(super) fn of_some(
         rules: Rules<'_>,
         window: Window,
         some: &[u32],
         earlier: &Self,
         stale: &[u32],
-    ) -> Self {
+    ) -> Result<Self, Uncovered> {
         let places = rules.slots.places();
         let mut schedule = Self {
             span: Some(window),
@@ -344,8 +385,8 @@ impl Schedule {
             wanted.sort_unstable();
             wanted.dedup();
         }
-        schedule.enclose(rules.slots, window, &wanted);
+        schedule.enclose(rules.slots, window, &wanted)?;
         schedule.insert(rules, some);
-        schedule
+        Ok(schedule)
     }
 }

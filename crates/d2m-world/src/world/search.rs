@@ -128,7 +128,7 @@ impl World {
     /// undecided from the time on at which they may meet.
     ///
     /// # Errors
-    /// Bad input of a pair, with its names.
+    /// Bad input of a pair, with its names; a motion that does not cover the window.
     pub fn contacts(&mut self, window: Window) -> Result<Vec<PairContact>, WorldError> {
         self.contacts_with_progress(window, &|_, _| ())
     }
@@ -137,7 +137,7 @@ impl World {
     /// that the broad phase leaves.
     ///
     /// # Errors
-    /// Bad input of a pair, with its names.
+    /// Bad input of a pair, with its names; a motion that does not cover the window.
     pub fn contacts_with_progress(
         &mut self,
         window: Window,
@@ -163,7 +163,7 @@ impl World {
     /// Pairs are searched in the order of the times at which their boxes meet, and only up to the best time so far.
     ///
     /// # Errors
-    /// Bad input of a pair, with its names.
+    /// Bad input of a pair, with its names; a motion that does not cover the window.
     pub fn first_contact(&mut self, window: Window) -> Result<FirstContact, WorldError> {
         self.first_contact_with_progress(window, &|_, _| ())
     }
@@ -172,7 +172,7 @@ impl World {
     /// that the broad phase leaves. Most searches end long before the two are equal.
     ///
     /// # Errors
-    /// Bad input of a pair, with its names.
+    /// Bad input of a pair, with its names; a motion that does not cover the window.
     pub fn first_contact_with_progress(
         &mut self,
         window: Window,
@@ -213,7 +213,7 @@ impl World {
         goal: Goal,
         progress: &dyn Fn(usize, usize),
     ) -> Result<Finding, WorldError> {
-        self.prepare(window);
+        self.prepare(window)?;
         let mut finding = Finding::default();
         let mut remaining = RemainingBudget::new(self.options.budget);
         let mut round = match goal {
@@ -257,19 +257,23 @@ impl World {
         outcome.map(|()| finding)
     }
 
-    fn prepare(&mut self, window: Window) {
+    fn prepare(&mut self, window: Window) -> Result<(), WorldError> {
         let mut changed = core::mem::take(&mut self.changed);
         changed.sort_unstable();
         changed.dedup();
         let rules =
             Rules { slots: &self.slots, filter: &self.filter, separation: self.options.min_separation };
-        if self.schedule.prepare(rules, window, &changed) == Prepared::Anew && !self.states.is_empty() {
+        // After a failure everything is made anew, also what changed.
+        let prepared = self.schedule.prepare(rules, window, &changed);
+        let prepared = prepared.map_err(|uncovered| self.uncovered(uncovered))?;
+        if prepared == Prepared::Anew && !self.states.is_empty() {
             let pairs = self.schedule.pairs();
             self.states.retain(|pair, _| pairs.binary_search(pair).is_ok());
         }
         for pair in core::mem::take(&mut self.changed_pairs) {
             self.schedule.push_pair(rules, pair);
         }
+        Ok(())
     }
 
     /// The next questions in the order of their times; contacts that are known already go to the finding.
@@ -361,7 +365,7 @@ impl World {
             let known = match reply.answer {
                 Err(error) => {
                     let [a, b] = pair.map(|place| self.slots.id(place));
-                    failure = failure.or(Some(WorldError { a, b, error }));
+                    failure = failure.or(Some(WorldError::Pair { a, b, error }));
                     finding.kept.push(entry);
                     continue;
                 }

@@ -241,7 +241,7 @@ fn budgets_are_charged_with_the_work_of_any_motion() {
         let motion = d2m_motion::Spline::try_through(&keyframes, d2m_motion::SplineDegree::Cubic).unwrap();
         world.add(Body::new(Arc::clone(&ring), motion));
     }
-    let pairs = world.candidates(Window::UNIT);
+    let pairs = world.candidates(Window::UNIT).unwrap();
     assert!(pairs.len() >= 12, "{}", pairs.len());
     let mut work = 0;
     for (a, b) in &pairs {

@@ -53,7 +53,8 @@ fn broad_phase(rounds: usize) -> TaskResult {
     let mesh = tree("icosphere?triangles=320")?;
     for (name, spacing) in [("no boxes overlap", 4.0), ("boxes overlap", 2.5)] {
         let world = grid(&mesh, 10, spacing, 0.5);
-        let (time, pairs) = least_time(4 * rounds, || (), |()| world.candidates(Window::UNIT));
+        let (time, pairs) =
+            least_time(4 * rounds, || (), |()| world.candidates(Window::UNIT).expect("all motions cover it"));
         check_candidates(&world, &pairs)?;
         let what = format!("broad phase, 1000 moving bodies from scratch, {name}, {} pairs", pairs.len());
         figure(what, milliseconds(time), "ms", Target::AtMost(1.0));
@@ -87,7 +88,8 @@ fn broad_phase(rounds: usize) -> TaskResult {
 fn many_bodies(rounds: usize, mesh: &Arc<MeshTree>) -> TaskResult {
     let mut world = grid(mesh, 22, 4.0, 0.5);
     let count = world.len();
-    let (time, pairs) = least_time(rounds, || (), |()| world.candidates(Window::UNIT));
+    let (time, pairs) =
+        least_time(rounds, || (), |()| world.candidates(Window::UNIT).expect("all motions cover it"));
     let what = format!("broad phase, {count} moving bodies from scratch, {} pairs", pairs.len());
     figure(what, milliseconds(time), "ms", Target::None);
     let mut random = Random::new(5);
@@ -226,7 +228,7 @@ fn bytes_of_candidates() -> TaskResult {
     // 17³ = 4913 bodies; boxes of many more than neighbors overlap.
     let mut world = grid(&mesh, 17, 1.0, 9.0);
     let filled = memory::resident().unwrap_or(before);
-    let count = world.candidates(Window::UNIT).len();
+    let count = world.candidates(Window::UNIT).expect("all motions cover it").len();
     let first = world.first_contact(Window::UNIT)?;
     let FirstContact::Contact { contact, .. } = first else { return Err(wrong("overlapping bodies")) };
     if contact.start == StartState::Apart {
@@ -293,7 +295,7 @@ fn unavoidable(rounds: usize, name: &str, fresh: &World, target: Target) -> Task
     let answer = pool.install(|| fresh.clone().first_contact(Window::UNIT))?;
     let FirstContact::Contact { contact, .. } = answer else { return Err(wrong("no contact at all")) };
     let window = Window::try_new(0.0, contact.time_hi)?;
-    let pairs = fresh.candidates(window);
+    let pairs = fresh.candidates(window).expect("all motions cover it");
     let options = *fresh.options();
     let search = |&(a, b): &(BodyId, BodyId)| {
         time_of_contact(fresh.body(a).moving(), fresh.body(b).moving(), window, &options)
@@ -313,7 +315,8 @@ fn unavoidable(rounds: usize, name: &str, fresh: &World, target: Target) -> Task
     let mut is_answered = true;
     let mut whole = |world: &mut World| is_answered &= world.first_contact(Window::UNIT).is_ok();
     let mut queries = |_: &mut World| _ = black_box(all_pairs());
-    let mut broad_phase = |world: &mut World| _ = black_box(world.candidates(Window::UNIT));
+    let mut broad_phase =
+        |world: &mut World| _ = black_box(world.candidates(Window::UNIT).expect("all motions cover it"));
     let times = pool.install(|| {
         least_in_turn(8 * rounds, || fresh.clone(), &mut [&mut whole, &mut queries, &mut broad_phase])
     });
