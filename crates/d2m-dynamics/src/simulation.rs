@@ -252,10 +252,6 @@ impl Simulation {
             let wanted = "after the present time";
             return Err(SimulationError::BadOption { name: "end of the step", value: end, wanted }.into());
         }
-        // Before anything moves.
-        for body in &self.bodies {
-            body.covered_motion(self.time, end)?;
-        }
         self.check_start()?;
         Step::new(self, end, listener).run()
     }
