@@ -6,8 +6,8 @@ use d2m_bvh::{
 };
 use d2m_interval::Interval;
 use d2m_motion::{
-    Chain, ConstantTwist, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Keyframes, OutsideDomain,
-    Pose, Retimed, RigidMotion, Span, Spline, SplineDegree, Twist,
+    Chain, ConstantTwist, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Keyframes,
+    OutsideDomain, Pose, Retimed, RigidMotion, Span, Spline, SplineDegree, Twist,
 };
 use d2m_world::{Body, BodyId, FirstContact, PlannedMotion, SharedMotion, World, WorldError};
 use glam::{DQuat, DVec3};
