@@ -1,19 +1,26 @@
 //! Meshes from files: the one entry, and what every reader gives.
 
+mod assembly;
+mod collada;
 mod format;
+mod gltf;
 mod obj;
+mod off;
 mod options;
 mod ply;
 mod polygon;
 mod report;
 mod stl;
+mod strips;
 #[cfg(test)]
 mod tests;
+mod three_mf;
+mod xml;
 
 pub use format::MeshFormat;
-pub use options::{Merging, ReadOptions, Unit};
+pub use options::{Merging, ReadOptions, Unit, UnknownUnit};
 pub use polygon::PolygonCounts;
-pub use report::{MeshReport, Precision};
+pub use report::{MeshReport, Precision, UpAxis};
 
 use crate::bytes::read_bytes;
 use crate::{IoError, Place};
@@ -63,7 +70,8 @@ pub fn read_mesh_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<R
     let name = || path.display().to_string();
     let format = MeshFormat::from_path(path).ok_or_else(|| IoError::UnknownFormat { file: name() })?;
     let bytes = read_bytes(path)?;
-    parse_mesh(&bytes, format, options).map_err(|error| error.in_file(name()))
+    let folder = Some(path.parent().unwrap_or(Path::new("")));
+    parse(&Source { bytes: &bytes, folder }, format, options).map_err(|error| error.in_file(name()))
 }
 
 /// The mesh that the bytes of a file hold.
@@ -79,22 +87,37 @@ pub fn read_mesh_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<R
 /// # Errors
 /// [`IoError`] with line or index and the value found.
 pub fn parse_mesh(bytes: &[u8], format: MeshFormat, options: &ReadOptions) -> Result<ReadMesh, IoError> {
+    parse(&Source { bytes, folder: None }, format, options)
+}
+
+fn parse(source: &Source<'_>, format: MeshFormat, options: &ReadOptions) -> Result<ReadMesh, IoError> {
     options.check()?;
+    let bytes = source.bytes;
     let raw = match format {
         MeshFormat::Obj => obj::parse(bytes),
         MeshFormat::Stl => stl::parse(bytes),
         MeshFormat::Ply => ply::parse(bytes),
+        MeshFormat::Off => off::parse(bytes),
+        MeshFormat::Gltf | MeshFormat::Glb => gltf::parse(source),
+        MeshFormat::Dae => collada::parse(bytes),
+        MeshFormat::ThreeMf => three_mf::parse(bytes),
     };
     let RawMesh { mut vertices, mut triangles, report } = raw.map_err(Fault::into_error)?;
-    options.apply(&mut vertices, &mut triangles);
+    options.apply(report.meters_per_unit, &mut vertices, &mut triangles);
     let mesh = TriMesh::try_new(vertices, triangles)
         .map_err(|source| IoError::Mesh { place: Place::default(), source })?;
     let merges = match options.merging {
         Merging::Always => true,
-        Merging::ByFormat => format == MeshFormat::Stl,
+        Merging::ByFormat => format.splits_vertices(),
         Merging::Never => false,
     };
     Ok(ReadMesh { mesh: if merges { mesh.merged() } else { mesh }, report })
+}
+
+/// The bytes of a file, and where the files are that it names.
+struct Source<'a> {
+    bytes: &'a [u8],
+    folder: Option<&'a Path>,
 }
 
 /// What a reader gives: lists that are not yet checked.

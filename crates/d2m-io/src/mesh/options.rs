@@ -17,7 +17,7 @@ pub struct ReadOptions {
     /// turned round then, so that the outside stays outside. Each product is rounded to the nearest double.
     pub scale: DVec3,
     /// The unit of the numbers in the file: lengths are read as meters, correctly rounded from the doubles of the file,
-    /// and scaled after that. None: as the file states them.
+    /// and scaled after that. None: the unit that the file states (COLLADA, 3MF, glTF), or else numbers as they are.
     pub unit: Option<Unit>,
     /// Which equal vertices become one.
     pub merging: Merging,
@@ -52,12 +52,18 @@ impl ReadOptions {
         if is_usable { Ok(()) } else { Err(IoError::BadScale { scale: self.scale }) }
     }
 
-    pub(super) fn apply(&self, vertices: &mut [DVec3], triangles: &mut [[u32; 3]]) {
-        let unit = self.unit.unwrap_or(Unit::Meter);
-        if unit != Unit::Meter || self.scale != DVec3::ONE {
-            for vertex in vertices {
-                *vertex = vertex.map(|x| unit.to_meters(x)) * self.scale;
-            }
+    /// `stated`: meters of a unit of the file.
+    pub(super) fn apply(&self, stated: Option<f64>, vertices: &mut [DVec3], triangles: &mut [[u32; 3]]) {
+        let meters = stated.unwrap_or(1.0);
+        // A thousandth is no double, a thousand is: the quotient is rounded once.
+        let parts = (1.0 / meters).round();
+        let in_meters = |x: f64| match self.unit {
+            Some(unit) => unit.to_meters(x),
+            None if parts * meters == 1.0 => x / parts,
+            None => x * meters,
+        };
+        for vertex in vertices {
+            *vertex = vertex.map(in_meters) * self.scale;
         }
         if self.scale.is_negative_bitmask().count_ones() % 2 == 1 {
             for [_, b, c] in triangles {
@@ -76,7 +82,7 @@ impl Default for ReadOptions {
 /// Which vertices at the same place become one.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Merging {
-    /// Those of formats that share no vertices (STL), so that the mesh has a topology; elsewhere vertices keep the numbers of the file.
+    /// Those of formats that share no vertices (STL) or split them at seams (glTF), so that the mesh has a topology; elsewhere vertices keep the numbers of the file.
     #[default]
     ByFormat,
     /// Those of every format.

@@ -66,7 +66,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<RawMesh, Fault> {
     } else {
         Precision::Double
     };
-    let report = MeshReport { polygons, precision };
+    let report = MeshReport { polygons, precision, ..MeshReport::default() };
     Ok(RawMesh { vertices: parts.vertices, triangles, report })
 }
 

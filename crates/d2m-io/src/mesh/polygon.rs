@@ -14,6 +14,7 @@
 //! - A polygon whose corners are not in one plane has no surface of its own. It is cut in the same way, and counted as
 //!   *bent* if a corner is further than [`FLATNESS`] of its size from the plane through its middle.
 
+use super::strips::fan;
 use d2m_feature::orient2d;
 use glam::{DVec2, DVec3};
 use std::cmp::Ordering::{Equal, Greater, Less};
@@ -41,6 +42,16 @@ pub struct PolygonCounts {
     pub without_area: usize,
 }
 
+impl PolygonCounts {
+    /// Those of another part of the same file, too.
+    pub(super) fn add(&mut self, other: Self) {
+        self.cut += other.cut;
+        self.bent += other.bent;
+        self.crossing += other.crossing;
+        self.without_area += other.without_area;
+    }
+}
+
 /// Triangles of the polygons that were added, and what was found.
 #[derive(Debug, Default)]
 pub(super) struct Triangulation {
@@ -61,7 +72,7 @@ impl Triangulation {
                 let corners: Option<Vec<DVec3>> =
                     polygon.iter().map(|&index| vertices.get(index as usize).copied()).collect();
                 let Some(corners) = corners else {
-                    return fan(polygon, &mut self.triangles); // an index is out of range, which the mesh will say
+                    return self.triangles.extend(fan(polygon)); // an index is out of range, which the mesh will say
                 };
                 let normal = normal(&corners);
                 self.counts.bent += usize::from(is_bent(&corners, normal));
@@ -72,10 +83,6 @@ impl Triangulation {
             }
         }
     }
-}
-
-fn fan(polygon: &[u32], triangles: &mut Vec<[u32; 3]>) {
-    triangles.extend(polygon.windows(2).skip(1).map(|pair| [polygon[0], pair[0], pair[1]]));
 }
 
 /// Newell's sum over the sides, of the corners scaled to about one so that nothing under- or overflows. Rounded: it only
@@ -151,7 +158,7 @@ impl<'a> Outline<'a> {
         let flat = self.flat;
         let is_fan = (1..n - 1).all(|i| orient2d(flat[0], flat[i], flat[i + 1]) != Less);
         if is_fan {
-            fan(self.polygon, triangles);
+            triangles.extend(fan(self.polygon));
             return true;
         }
         let blockers: Vec<usize> = (0..n).filter(|&i| self.turn(i) != Greater).collect();
@@ -194,7 +201,7 @@ impl<'a> Outline<'a> {
         }
         let is_whole = rest.len() == 3 && self.turn(first) != Less;
         let rest: Vec<u32> = rest.into_iter().map(|corner| self.polygon[corner]).collect();
-        fan(&rest, triangles);
+        triangles.extend(fan(&rest));
         is_whole
     }
 
