@@ -403,15 +403,27 @@ Examples:
   d2m view scene.json --out view.html
   d2m view run.jsonl --out view.html")]
 pub(crate) struct ViewArguments {
-    /// Mesh as for d2m toc, a scene (.json) or a simulation (.jsonl)
+    /// Mesh as for d2m toc, a scene (.json) or a simulation (.jsonl, .jsonl.gz)
     #[arg(value_name = "A")]
     pub(crate) a: String,
     /// The second mesh
     #[arg(value_name = "B", help = MESH_HELP)]
     pub(crate) b: Option<String>,
-    /// File to write; - for standard output
-    #[arg(long, value_name = "view.html")]
-    pub(crate) out: String,
+    /// Page to write; - for standard output
+    #[arg(long, value_name = "view.html", required_unless_present = "png")]
+    pub(crate) out: Option<String>,
+    /// Still picture to write, drawn without a browser
+    #[arg(long, value_name = "view.png")]
+    pub(crate) png: Option<String>,
+    /// Time of the still picture [default: the first contact, or the start; the end of a simulation]
+    #[arg(long, value_name = "T", allow_hyphen_values = true, requires = "png")]
+    pub(crate) at: Option<String>,
+    /// Pixels of the still picture
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x800")]
+    pub(crate) size: String,
+    /// The axis that points up [default: z for arms and where gravity says so, else y]
+    #[arg(long, value_enum)]
+    pub(crate) up: Option<crate::view::Up>,
     /// Motion of A; at rest if not given
     #[arg(long, value_name = "M", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
     pub(crate) motion_a: String,

@@ -7,8 +7,8 @@ use crate::output::note;
 use crate::trials::Trial;
 use d2m::bvh::paper::{self, SphereTree};
 use d2m::bvh::{
-    Budget, MeshTree, Mode, Moving, QueryError, QueryOptions, Solid, TimeOfContact, Topology, TriMesh,
-    Window, time_of_contact,
+    Budget, MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, TimeOfContact, Topology, TriMesh,
+    Window, distance, time_of_contact,
 };
 use d2m::motion::{AnyMotion, RigidMotion};
 use glam::DVec3;
@@ -123,6 +123,15 @@ impl Pair {
             }
             start = end;
         }
+    }
+
+    /// Bounds on the distance at one time; none with the reference method, or where the bodies cannot be placed.
+    pub(crate) fn distance_at(&self, motions: [&AnyMotion; 2], time: f64) -> Option<[f64; 2]> {
+        let (Tree::Engine(tree_a), Tree::Engine(tree_b)) = (&self.a.tree, &self.b.tree) else { return None };
+        let [a, b] = motions.map(|motion| motion.pose_and_twist(time).0);
+        let solid = if self.solids == [Solid::Filled; 2] { Solid::Filled } else { Solid::Surface };
+        let found = distance(Posed::new(tree_a, a), Posed::new(tree_b, b), solid).ok()?;
+        Some([found.lower, found.upper.max(found.lower)])
     }
 
     fn answer_smooth(&self, [a, b]: [&dyn RigidMotion; 2], window: Window) -> Result<Answer, Failure> {

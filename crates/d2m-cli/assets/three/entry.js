@@ -1,6 +1,6 @@
 export {
-  AmbientLight, BufferAttribute, BufferGeometry, ArrowHelper, Box3, Color, DirectionalLight, DoubleSide, Group,
-  HemisphereLight, Mesh, MeshBasicMaterial, MeshStandardMaterial, PerspectiveCamera, Quaternion, Scene, SphereGeometry,
-  Vector3, WebGLRenderer,
+  BufferAttribute, BufferGeometry, ArrowHelper, AxesHelper, Box3, Color, DirectionalLight, DoubleSide, Group,
+  HemisphereLight, InstancedMesh, Line, LineBasicMaterial, Matrix4, Mesh, MeshBasicMaterial, MeshStandardMaterial,
+  OrthographicCamera, PerspectiveCamera, Plane, Quaternion, Scene, SphereGeometry, Vector3, WebGLRenderer,
 } from "three";
 export { OrbitControls } from "three/addons/controls/OrbitControls.js";

@@ -1,4 +1,4 @@
-//! `d2m view`: a page of HTML that shows what moves.
+//! `d2m view`: a page of HTML that shows what moves, or a still picture of it.
 
 use crate::arguments::ViewArguments;
 use crate::engine::{Pair, check_size, options_of};
@@ -7,17 +7,34 @@ use crate::load::load;
 use crate::motion::{parse_motion, parse_window, require_window};
 use crate::output::Output;
 use crate::report;
-use crate::view::{Mark, Picture, flights_of, picture_of_run, picture_of_scene};
-use d2m::bvh::{StartState, TimeOfContact};
+use crate::view::{
+    DistanceSample, Holds, Mark, Picture, Span, StillSize, Up, flights_of, picture_of_run, picture_of_scene,
+    still,
+};
+use d2m::bvh::{Contact, StartState, TimeOfContact, Window};
+use d2m::motion::AnyMotion;
 use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Times at which the distance is drawn.
+const DISTANCES: u32 = 120;
+/// What they may take: a page is waited for.
+const LONGEST: Duration = Duration::from_secs(3);
 
 /// Runs the command.
 pub(crate) fn run(arguments: &ViewArguments) -> Result<(), Failure> {
-    let inputs = [Some(&arguments.a), arguments.b.as_ref()].into_iter().flatten();
-    let out = Output::new(&arguments.out)?.spare(inputs.map(Path::new))?;
-    let extension = Path::new(&arguments.a).extension().unwrap_or_default().to_ascii_lowercase();
+    let inputs: Vec<&Path> =
+        [Some(&arguments.a), arguments.b.as_ref()].into_iter().flatten().map(Path::new).collect();
+    let output = |path: &String| Output::new(path)?.spare(inputs.iter().copied());
+    let (page, png) = (arguments.out.as_ref().map(output), arguments.png.as_ref().map(output));
+    let (page, png) = (page.transpose()?, png.transpose()?);
+    let size = StillSize::parse(&arguments.size).map_err(|reason| Failure::at("--size", reason))?;
+    let packed = Path::new(&arguments.a);
+    let is_packed = packed.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
+    let name = if is_packed { Path::new(packed.file_stem().unwrap_or_default()) } else { packed };
+    let extension = name.extension().unwrap_or_default().to_ascii_lowercase();
     let (is_run, is_scene) = (extension == "jsonl", extension == "json");
-    let picture = match &arguments.b {
+    let mut picture = match &arguments.b {
         Some(b) if is_run || is_scene => {
             return Err(Failure::at(b, "a scene or a simulation is viewed alone"));
         }
@@ -26,7 +43,32 @@ pub(crate) fn run(arguments: &ViewArguments) -> Result<(), Failure> {
         None if is_scene => picture_of_scene(Path::new(&arguments.a), options_of(&arguments.query)?)?,
         None => return Err(Failure::at("B", "the second mesh is missing")),
     };
-    out.write(&picture.to_html())
+    if let Some(up) = arguments.up {
+        picture.up = up;
+    }
+    if let Some(page) = page {
+        page.write(&picture.to_html())?;
+    }
+    if let Some(png) = png {
+        let time = shown_time(arguments, &picture)?;
+        let picture = still(&picture, time, size).map_err(|error| Failure::at("--png", error))?;
+        png.write_bytes(&picture)?;
+    }
+    Ok(())
+}
+
+/// The time of a still picture: the one that was wanted, or the first mark, or the start.
+fn shown_time(arguments: &ViewArguments, picture: &Picture) -> Result<f64, Failure> {
+    let [start, end] = picture.window;
+    let Some(text) = &arguments.at else {
+        let marked = picture.marks.first().filter(|_| !picture.is_real_time).map(|mark| mark.from);
+        return Ok(marked.unwrap_or(if picture.is_real_time { end } else { start }));
+    };
+    let time: f64 = text.parse().map_err(|_| Failure::at("--at", format!("{text:?} is not a number")))?;
+    if (start..=end).contains(&time) {
+        return Ok(time);
+    }
+    Err(Failure::at("--at", format!("{text} is outside of the window [{start:?}, {end:?}]")))
 }
 
 /// Two moving meshes and their first contact.
@@ -41,19 +83,76 @@ fn pair(arguments: &ViewArguments, b: &str) -> Result<Picture, Failure> {
     check_size("--motion-b", &motions[1], &pair.b)?;
     let answer = pair.answer(&motions[0], &motions[1], window)?;
     let text = report::text(&pair, window, &answer);
-    let mut lines = text.lines().map(|line| line.trim().to_owned());
-    let headline = lines.next().unwrap_or_default();
-    let facts = lines.take_while(|line| !line.starts_with("point on A")).collect();
-    let mut picture = Picture::new(headline, facts, [window.start(), window.end()], false);
+    let mut lines = text.lines().map(str::trim);
+    let headline = lines.next().unwrap_or_default().to_owned();
+    let mut picture = Picture::new(headline, [window.start(), window.end()]);
+    for line in lines {
+        let (label, value) = line.split_once("  ").unwrap_or(("", line));
+        picture.add_fact(label, value.trim());
+    }
     for (label, body, motion) in [("A", &pair.a, &motions[0]), ("B", &pair.b, &motions[1])] {
-        let mesh = picture.add_mesh(body.mesh());
-        picture.add_body(&format!("{label}: {}", body.name), mesh, &flights_of(motion, window));
+        let mesh = picture.add_mesh(&body.name, body.mesh());
+        picture.add_body(&format!("{label}: {}", body.name), mesh, flights_of(motion, window));
+    }
+    if motions.iter().any(|motion| matches!(motion, AnyMotion::Chain(_))) {
+        picture.up = Up::Z;
     }
     if let TimeOfContact::Contact(contact) = &answer.verdict
         && contact.start != StartState::Contained
     {
-        let (point, normal) = ((contact.point_a + contact.point_b) * 0.5, contact.normal);
-        picture.add_mark(&Mark { from: contact.time_lo, until: window.end(), point, normal });
+        picture.marks.push(Mark::of_contact(contact, [0, 1], [pair.a.mesh(), pair.b.mesh()]));
     }
+    picture.spans = spans(&answer.verdict, window);
+    picture.curve = distances(&pair, [&motions[0], &motions[1]], window);
     Ok(picture)
+}
+
+/// What the answer proves of the window's times.
+fn spans(answer: &TimeOfContact, window: Window) -> Vec<Span> {
+    let (start, end) = (window.start(), window.end());
+    let clear = |until: f64| Span::new(start, until, Holds::Clear, "proven apart");
+    match answer {
+        TimeOfContact::Separated => vec![clear(end)],
+        TimeOfContact::Undecided { clear_until } => {
+            let rest = Span::new(*clear_until, end, Holds::Undecided, "not decided: the budget ran out");
+            vec![clear(*clear_until), rest]
+        }
+        TimeOfContact::Contact(contact) => {
+            let after = "after the first contact: not examined";
+            let mut spans = vec![
+                Span::new(contact.time_lo, contact.time_hi, Holds::Contact, contact_text(contact)),
+                Span::new(contact.time_hi, end, Holds::Unknown, after),
+            ];
+            if contact.time_lo > start {
+                spans.insert(0, clear(contact.time_lo));
+            }
+            spans
+        }
+    }
+}
+
+fn contact_text(contact: &Contact) -> &'static str {
+    match contact.start {
+        StartState::Apart => "the first contact is in this bracket",
+        StartState::Touching => "touching at the start",
+        StartState::Overlapping => "overlapping at the start",
+        StartState::Contained => "one inside the other at the start",
+    }
+}
+
+/// Distances at times of the window, as many as a short wait allows.
+fn distances(pair: &Pair, motions: [&AnyMotion; 2], window: Window) -> Vec<DistanceSample> {
+    let begin = Instant::now();
+    let mut samples = Vec::new();
+    for k in 0..=DISTANCES {
+        let part = f64::from(k) / f64::from(DISTANCES);
+        let time = (window.start() + part * window.length()).clamp(window.start(), window.end());
+        if let Some([lower, upper]) = pair.distance_at(motions, time) {
+            samples.push(DistanceSample { time, lower, upper });
+        }
+        if begin.elapsed() > LONGEST {
+            return Vec::new();
+        }
+    }
+    samples
 }

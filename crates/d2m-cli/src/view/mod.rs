@@ -1,11 +1,16 @@
-//! One page of HTML that shows bodies in motion, without anything that is fetched.
+//! One page of HTML that shows bodies in motion, without anything that is fetched; and still pictures.
 
+mod display_mesh;
 mod flight;
+mod mark;
 mod picture;
 mod run;
 mod scene;
+mod still;
 
-pub(crate) use flight::{Flight, flights_of};
-pub(crate) use picture::{Mark, Picture};
+pub(crate) use flight::{Flight, flights_of, push_thinned};
+pub(crate) use mark::{Holds, Mark, Span};
+pub(crate) use picture::{DistanceSample, Picture, Up};
 pub(crate) use run::picture_of_run;
 pub(crate) use scene::picture_of_scene;
+pub(crate) use still::{StillSize, still};

@@ -1,18 +1,25 @@
 //! The picture of a simulation.
 
-use super::{Flight, Mark, Picture};
+use super::{Flight, Holds, Mark, Picture, Span, Up, push_thinned};
 use crate::failure::{Failure, json_fault, parse_json};
 use crate::load::read;
 use crate::mesh_library::{MeshLibrary, read_scale};
+use crate::report::short;
+use d2m::bvh::TriMesh;
 use d2m::motion::ConstantTwist;
 use glam::{DQuat, DVec3};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::HashMap;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// How long an impulse is marked: as long as a picture of a film, in seconds.
 const MARKED: f64 = 1.0 / 24.0;
+/// Impulses that are marked: the largest ones. More would fill the page and hide each other.
+const MOST_MARKS: usize = 4000;
+/// The longest run that is read: a small compressed file cannot fill the memory.
+const MOST_BYTES: u64 = 4 << 30;
 
 /// The first line of a run.
 #[derive(Deserialize)]
@@ -39,6 +46,10 @@ struct Segment {
     changed: Vec<(usize, State)>,
     #[serde(default)]
     contacts: Vec<Impulse>,
+    #[serde(default)]
+    skipped: f64,
+    #[serde(default)]
+    thinned: bool,
 }
 
 #[derive(Deserialize)]
@@ -53,6 +64,8 @@ struct State {
 struct Impulse {
     point: [f64; 3],
     normal: [f64; 3],
+    #[serde(rename = "impulse")]
+    momentum: [f64; 3],
 }
 
 /// The mesh of a body, as its scene states it.
@@ -64,82 +77,176 @@ struct BodyMesh {
 }
 
 #[derive(Deserialize)]
-struct SceneMeshes {
+struct SceneFile {
     bodies: Vec<BodyMesh>,
+    #[serde(default)]
+    simulation: SimulationFile,
+}
+
+#[derive(Deserialize, Default)]
+struct SimulationFile {
+    gravity: Option<[f64; 3]>,
+}
+
+/// What the lines of a run say.
+struct Run {
+    header: Header,
+    window: [f64; 2],
+    flights: Vec<Vec<Flight>>,
+    /// Each with the size of its impulse.
+    marks: Vec<(f64, Mark)>,
+    skipped: f64,
+    is_thinned: bool,
 }
 
 /// Reads a run, and the meshes of its scene.
 pub(crate) fn picture_of_run(path: &Path) -> Result<Picture, Failure> {
-    let bytes = read(path)?;
-    let text = String::from_utf8_lossy(&bytes);
-    let place = |line: usize| format!("{}, line {}", path.display(), line + 1);
-    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-    let (line, first) = lines.next().unwrap_or_default();
-    let header: Header =
-        serde_json::from_str(first).map_err(|error| Failure::at(place(line), json_fault(&error, first)))?;
-    let mut flights: Vec<Vec<Flight>> = header.bodies.iter().map(|_| Vec::new()).collect();
-    let (mut marks, mut window) = (Vec::new(), None);
-    for (line, text) in lines {
-        let fault = |reason: String| Failure::at(place(line), reason);
-        let segment: Segment = serde_json::from_str(text).map_err(|error| fault(json_fault(&error, text)))?;
+    let Run { header, window, flights, mut marks, skipped, is_thinned } = Run::read(path)?;
+    let [start, end] = window.map(short);
+    let mut picture =
+        Picture::new(format!("{} bodies from t = {start} to {end}", header.bodies.len()), window);
+    picture.is_real_time = true;
+    picture.add_fact("scene", &header.scene);
+    picture.add_fact("impulses", marks.len().to_string());
+    picture.add_fact("given up", if skipped > 0.0 { format!("{skipped} s") } else { "no time".to_owned() });
+    let scene_file = scene_path(path, &header.scene);
+    let stated: SceneFile = parse_json(&scene_file.display().to_string(), &read(&scene_file)?)?;
+    picture.up = up_against(stated.simulation.gravity);
+    let library = MeshLibrary::new(&scene_file);
+    let mut meshes: HashMap<String, (usize, f64)> = HashMap::new();
+    for (body, flights) in header.bodies.iter().zip(flights) {
+        let place =
+            |reason: String| Failure::at(format!("{}, body {:?}", scene_file.display(), body.name), reason);
+        let BodyMesh { name, mesh, scale } = stated
+            .bodies
+            .iter()
+            .find(|stated| stated.name == body.name)
+            .ok_or_else(|| place("the run has this body, the scene has not".to_owned()))?;
+        let key = format!("{mesh} {scale:?} {:?}", body.center);
+        let (number, reach) = if let Some(&known) = meshes.get(&key) {
+            known
+        } else {
+            let scale = read_scale(scale.as_ref()).map_err(|reason| place(format!("scale: {reason}")))?;
+            let tree = library.mesh(mesh, scale)?;
+            let new = (picture.add_mesh(name, tree.mesh()), reach_from(tree.mesh(), body.center));
+            meshes.insert(key, new);
+            new
+        };
+        let mut shown = Vec::new();
+        for flight in flights {
+            push_thinned(&mut shown, flight, reach);
+        }
+        picture.add_body(&body.name, number, shown);
+    }
+    picture.notes.push("bodies are drawn within 1e-4 of their size of where they are".to_owned());
+    if marks.len() > MOST_MARKS {
+        marks.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+        marks.truncate(MOST_MARKS);
+        picture.notes.push(format!("marked are the {MOST_MARKS} largest impulses"));
+    }
+    picture.marks = marks.into_iter().map(|(_, mark)| mark).collect();
+    picture.marks.sort_by(|a, b| a.from.total_cmp(&b.from));
+    let (holds, text) = if is_thinned {
+        (Holds::Unknown, "this run was thinned for viewing: it proves nothing between its lines")
+    } else {
+        (Holds::Clear, "the simulation proved all bodies apart")
+    };
+    picture.spans.push(Span::new(window[0], window[1], holds, text));
+    Ok(picture)
+}
+
+impl Run {
+    fn read(path: &Path) -> Result<Self, Failure> {
+        let bytes = unpacked(path)?;
+        let text = String::from_utf8_lossy(&bytes);
+        let place = |line: usize| format!("{}, line {}", path.display(), line + 1);
+        let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+        let (line, first) = lines.next().unwrap_or_default();
+        let header: Header = serde_json::from_str(first)
+            .map_err(|error| Failure::at(place(line), json_fault(&error, first)))?;
+        let flights = header.bodies.iter().map(|_| Vec::new()).collect();
+        let window = [f64::NAN; 2];
+        let mut run = Self { header, window, flights, marks: Vec::new(), skipped: 0.0, is_thinned: false };
+        let mut is_first = true;
+        for (line, text) in lines {
+            let fault = |reason: String| Failure::at(place(line), reason);
+            let segment: Segment =
+                serde_json::from_str(text).map_err(|error| fault(json_fault(&error, text)))?;
+            if is_first {
+                run.window[0] = segment.t0;
+                is_first = false;
+            }
+            run.add(segment).map_err(fault)?;
+        }
+        if is_first {
+            return Err(Failure::at(path.display(), "the run has no segments"));
+        }
+        if let Some(index) = run.flights.iter().position(Vec::is_empty) {
+            let reason = format!("body {:?} is in no segment", run.header.bodies[index].name);
+            return Err(Failure::at(path.display(), reason));
+        }
+        Ok(run)
+    }
+
+    fn add(&mut self, segment: Segment) -> Result<(), String> {
         let (start, end) = (segment.t0, segment.t1);
         if start > end {
-            return Err(fault(format!("the segment from {start:?} to {end:?} is reversed")));
+            return Err(format!("the segment from {start:?} to {end:?} is reversed"));
         }
-        window = Some([window.map_or(start, |[first, _]: [f64; 2]| first), end]);
+        self.window[1] = end;
+        self.skipped += segment.skipped;
+        self.is_thinned |= segment.thinned;
         let all = segment.bodies.into_iter().enumerate();
         for (index, state) in all.chain(segment.changed) {
-            let (Some(body), Some(flights)) = (header.bodies.get(index), flights.get_mut(index)) else {
-                let count = header.bodies.len();
-                return Err(fault(format!("body {index} is out of range, the run has {count} bodies")));
+            let (Some(body), Some(flights)) = (self.header.bodies.get(index), self.flights.get_mut(index))
+            else {
+                let count = self.header.bodies.len();
+                return Err(format!("body {index} is out of range, the run has {count} bodies"));
             };
             let motion = state.motion(DVec3::from_array(body.center), start);
-            let motion = motion.map_err(|error| fault(format!("body {:?}: {error}", body.name)))?;
+            let motion = motion.map_err(|error| format!("body {:?}: {error}", body.name))?;
             flights.push(Flight { start, end, motion });
         }
-        for last in flights.iter_mut().filter_map(|flights| flights.last_mut()) {
+        for last in self.flights.iter_mut().filter_map(|flights| flights.last_mut()) {
             last.end = end;
         }
         for contact in segment.contacts {
-            let [point, normal] = [contact.point, contact.normal].map(DVec3::from_array);
-            marks.push(Mark { from: end, until: end + MARKED, point, normal });
+            let [point, normal, momentum] =
+                [contact.point, contact.normal, contact.momentum].map(DVec3::from_array);
+            let mark = Mark { from: end, until: end + MARKED, points: [point; 2], normal, triangles: None };
+            self.marks.push((momentum.length(), mark));
         }
+        Ok(())
     }
-    let Some(window) = window else { return Err(Failure::at(path.display(), "the run has no segments")) };
-    if let Some(index) = flights.iter().position(Vec::is_empty) {
-        let reason = format!("body {:?} is in no segment", header.bodies[index].name);
-        return Err(Failure::at(path.display(), reason));
+}
+
+/// The bytes of a run, unpacked where its name says that it is packed.
+fn unpacked(path: &Path) -> Result<Vec<u8>, Failure> {
+    let bytes = read(path)?;
+    if path.extension().is_none_or(|extension| extension != "gz") {
+        return Ok(bytes);
     }
-    let headline = format!("{} bodies from t = {} to {}", header.bodies.len(), window[0], window[1]);
-    let facts = vec![header.scene.clone(), format!("{} impulses", marks.len())];
-    let mut picture = Picture::new(headline, facts, window, true);
-    let scene = scene_path(path, &header.scene);
-    let bytes = read(&scene)?;
-    let stated: SceneMeshes = parse_json(&scene.display().to_string(), &bytes)?;
-    let scene_place = |name: &str| format!("{}, body {name:?}", scene.display());
-    let library = MeshLibrary::new(&scene);
-    let mut meshes = HashMap::new();
-    for (body, flights) in header.bodies.iter().zip(&flights) {
-        let BodyMesh { name, mesh, scale } =
-            stated.bodies.iter().find(|stated| stated.name == body.name).ok_or_else(|| {
-                Failure::at(scene.display(), format!("body {:?} of the run is not in it", body.name))
-            })?;
-        let key = format!("{mesh} {scale:?}");
-        let number = if let Some(&number) = meshes.get(&key) {
-            number
-        } else {
-            let scale = read_scale(scale.as_ref())
-                .map_err(|reason| Failure::at(scene_place(name), format!("scale: {reason}")))?;
-            let number = picture.add_mesh(library.mesh(mesh, scale)?.mesh());
-            meshes.insert(key, number);
-            number
-        };
-        picture.add_body(&body.name, number, flights);
+    let mut text = Vec::new();
+    let mut decoder = flate2::read::MultiGzDecoder::new(bytes.as_slice()).take(MOST_BYTES + 1);
+    decoder.read_to_end(&mut text).map_err(|error| Failure::at(path.display(), error))?;
+    if text.len() as u64 > MOST_BYTES {
+        return Err(Failure::at(path.display(), format!("it unpacks to more than {MOST_BYTES} bytes")));
     }
-    for mark in &marks {
-        picture.add_mark(mark);
+    Ok(text)
+}
+
+/// How far a mesh reaches from a point.
+fn reach_from(mesh: &TriMesh, center: [f64; 3]) -> f64 {
+    let center = DVec3::from_array(center);
+    mesh.vertices().iter().map(|p| (*p - center).length()).fold(0.0, f64::max)
+}
+
+/// Up is where things do not fall to; y if they do not fall.
+fn up_against(gravity: Option<[f64; 3]>) -> Up {
+    match gravity {
+        Some([x, y, z]) if z.abs() > x.abs() && z.abs() > y.abs() => Up::Z,
+        _ => Up::Y,
     }
-    Ok(picture)
 }
 
 /// The scene as it was named when it ran, or beside the run.

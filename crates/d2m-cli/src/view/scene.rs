@@ -1,18 +1,17 @@
 //! The picture of a scene.
 
-use super::{Mark, Picture, flights_of};
+use super::{Holds, Mark, Picture, Span, Up, flights_of};
 use crate::failure::Failure;
 use crate::report::short;
 use crate::scene::Scene;
-use d2m::bvh::{MeshTree, QueryOptions, StartState};
+use d2m::bvh::{MeshTree, QueryOptions, StartState, TimeOfContact};
+use d2m::motion::AnyMotion;
+use d2m::{BodyId, PairContact};
 use std::path::Path;
 use std::sync::Arc;
 
 /// Lines of text beside the picture: the first contacts.
 const MOST_FACTS: usize = 8;
-
-/// Part of the window for which a contact is marked: bodies fly on through each other.
-const MARKED: f64 = 0.05;
 
 /// Reads a scene and finds its contacts.
 pub(crate) fn picture_of_scene(path: &Path, options: QueryOptions) -> Result<Picture, Failure> {
@@ -20,41 +19,72 @@ pub(crate) fn picture_of_scene(path: &Path, options: QueryOptions) -> Result<Pic
     let mut world = scene.world(options);
     let contacts =
         world.contacts(scene.window).map_err(|error| Failure::at(path.display(), scene.describe(error)))?;
-    let [start, end] = [scene.window.start(), scene.window.end()];
-    let headline = format!("{} bodies from t = {} to {}", scene.bodies.len(), short(start), short(end));
-    let undecided = contacts.iter().filter(|pair| pair.answer.contact().is_none()).count();
-    let mut facts = vec![format!("{} pairs in contact", contacts.len() - undecided)];
-    if undecided > 0 {
-        facts.push(format!("{undecided} pairs undecided"));
+    let window = [scene.window.start(), scene.window.end()];
+    let [start, end] = window.map(short);
+    let headline = format!("{} bodies from t = {start} to {end}", scene.bodies.len());
+    let mut picture = Picture::new(headline, window);
+    let name = |id: BodyId| scene.bodies[id.index()].name.as_str();
+    add_facts(&mut picture, &contacts, &name);
+    let is_arm = |motion: &AnyMotion| matches!(motion, AnyMotion::Chain(_));
+    if scene.bodies.iter().any(|body| is_arm(&body.motion)) {
+        picture.up = Up::Z;
     }
-    for pair in &contacts {
-        if let Some(contact) = pair.answer.contact() {
-            let [a, b] = [pair.a, pair.b].map(|id| &scene.bodies[id.index()].name);
-            facts.push(format!("t = {}: {a} and {b} ({})", short(contact.time_lo), contact.evidence));
-        }
-    }
-    facts.truncate(MOST_FACTS);
-    let mut picture = Picture::new(headline, facts, [start, end], false);
     let mut meshes: Vec<(Arc<MeshTree>, usize)> = Vec::new();
     for body in &scene.bodies {
         let known = meshes.iter().find(|(tree, _)| Arc::ptr_eq(tree, &body.tree)).map(|&(_, number)| number);
         let number = known.unwrap_or_else(|| {
-            let number = picture.add_mesh(body.tree.mesh());
+            let number = picture.add_mesh(&body.name, body.tree.mesh());
             meshes.push((Arc::clone(&body.tree), number));
             number
         });
-        picture.add_body(&body.name, number, &flights_of(&body.motion, scene.window));
+        picture.add_body(&body.name, number, flights_of(&body.motion, scene.window));
     }
-    for contact in contacts.iter().filter_map(|pair| pair.answer.contact()) {
-        if contact.start != StartState::Contained {
-            let (point, normal) = ((contact.point_a + contact.point_b) * 0.5, contact.normal);
-            picture.add_mark(&Mark {
-                from: contact.time_lo,
-                until: contact.time_lo + MARKED * scene.window.length(),
-                point,
-                normal,
-            });
+    for pair in &contacts {
+        if let TimeOfContact::Contact(contact) = &pair.answer
+            && contact.start != StartState::Contained
+        {
+            let bodies = [pair.a, pair.b].map(BodyId::index);
+            let meshes = bodies.map(|index| scene.bodies[index].tree.mesh());
+            picture.marks.push(Mark::of_contact(contact, bodies, meshes));
         }
     }
+    picture.spans = spans(&contacts, window);
     Ok(picture)
+}
+
+fn add_facts<'n>(picture: &mut Picture, contacts: &[PairContact], name: &dyn Fn(BodyId) -> &'n str) {
+    let undecided = contacts.iter().filter(|pair| pair.answer.contact().is_none()).count();
+    picture.add_fact("in contact", format!("{} pairs", contacts.len() - undecided));
+    if undecided > 0 {
+        picture.add_fact("undecided", format!("{undecided} pairs"));
+    }
+    for pair in contacts.iter().take(MOST_FACTS) {
+        if let Some(contact) = pair.answer.contact() {
+            let who = format!("{} and {} ({})", name(pair.a), name(pair.b), contact.evidence);
+            picture.add_fact(&format!("t = {}", short(contact.time_lo)), who);
+        }
+    }
+}
+
+/// What the first contacts of all pairs prove: clear until the earliest, and of later times each pair's own first contact.
+fn spans(contacts: &[PairContact], [start, end]: [f64; 2]) -> Vec<Span> {
+    let mut spans = Vec::new();
+    let mut clear_until = end;
+    for pair in contacts {
+        match &pair.answer {
+            TimeOfContact::Contact(contact) => {
+                clear_until = clear_until.min(contact.time_lo);
+                let text = "two bodies are in their first contact";
+                spans.push(Span::new(contact.time_lo, contact.time_hi, Holds::Contact, text));
+            }
+            TimeOfContact::Undecided { clear_until: until } => clear_until = clear_until.min(*until),
+            TimeOfContact::Separated => {}
+        }
+    }
+    spans.push(Span::new(start, clear_until, Holds::Clear, "all pairs are proven apart"));
+    if clear_until < end {
+        let text = "after the first contact: pairs without a contact in the list are apart";
+        spans.push(Span::new(clear_until, end, Holds::Unknown, text));
+    }
+    spans
 }
