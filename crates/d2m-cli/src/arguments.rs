@@ -33,6 +33,8 @@ pub(crate) enum Command {
     Simulate(SimulateArguments),
     /// Contacts of many moving bodies, from a scene file
     Scene(SceneArguments),
+    /// Whether a planned path of a robot (URDF) is free of contact, and until when
+    Robot(RobotArguments),
     /// What is in a mesh, or which shapes are built in
     Info(InfoArguments),
     /// Saves the search tree of a mesh; the file is a mesh argument like any other
@@ -372,6 +374,56 @@ pub(crate) struct SceneArguments {
     #[arg(long)]
     pub(crate) json: bool,
     /// Exit with 10 if there is a contact, 11 if all pairs are separated, 12 if undecided
+    #[arg(long)]
+    pub(crate) exit_status: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A path is {\"joint_names\": [...], \"points\": [{\"positions\", \"velocities\", \"accelerations\", \"time_from_start\"}, ...], \"interpolation\":
+\"linear\", \"cubic\" or \"quintic\"}, as in a JointTrajectory of ROS; cubic where velocities are given and nothing is said, else linear. Joints that it does
+not name stay at zero, or in the middle of their limits where zero is outside; joints that mimic others follow. Limits are not enforced: a path that leaves
+them gets a warning.
+
+A scene is that of d2m scene: bodies at rest by \"pose\": {\"x\", \"q\"}, or with a motion in the time of the path; with \"attach\": \"link\" a body is
+carried by that link, and its pose is in the link's frame.
+
+Checked are all pairs of links but those that a joint joins directly and those that the SRDF disables, every link and attached body
+against every obstacle, and attached bodies against every link but their own.
+
+Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 free, 12 undecided.
+
+Example:
+  d2m robot arm.urdf --srdf arm.srdf --path path.json --scene cell.json --package arm_description=../arm_description")]
+pub(crate) struct RobotArguments {
+    /// Robot, URDF
+    #[arg(value_name = "ROBOT.urdf")]
+    pub(crate) robot: PathBuf,
+    /// Path of the joints, JSON
+    #[arg(long, value_name = "PATH.json")]
+    pub(crate) path: PathBuf,
+    /// Pairs of links that are not checked, SRDF
+    #[arg(long, value_name = "R.srdf")]
+    pub(crate) srdf: Option<PathBuf>,
+    /// Obstacles and attached bodies, JSON
+    #[arg(long, value_name = "SCENE.json")]
+    pub(crate) scene: Option<PathBuf>,
+    /// Folder of a package: package://NAME/rest is rest in DIR. Packages that are not given are looked for beside the robot
+    #[arg(long, value_name = "NAME=DIR")]
+    pub(crate) package: Vec<String>,
+    /// Distance at which bodies count as in contact; they are proven further apart before
+    #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true)]
+    pub(crate) min_separation: Option<String>,
+    /// Most seconds of the search; what is not decided by then is "undecided"
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub(crate) time_limit: Option<String>,
+    /// Threads [default: all of the machine]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Answer as one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Exit with 10 if there is a contact, 11 if the path is free, 12 if undecided
     #[arg(long)]
     pub(crate) exit_status: bool,
 }

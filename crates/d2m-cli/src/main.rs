@@ -15,6 +15,7 @@ mod outcome;
 mod output;
 mod posed;
 mod report;
+mod robot_scene;
 mod scene;
 mod simulation;
 mod trials;
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
         Command::Proximities(arguments) => commands::proximities::run(arguments),
         Command::Simulate(arguments) => commands::simulate::run(arguments).map(Outcome::from),
         Command::Scene(arguments) => commands::scene::run(arguments),
+        Command::Robot(arguments) => commands::robot::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments).map(Outcome::from),
         Command::Tree(arguments) => commands::tree::run(arguments).map(Outcome::from),
         Command::View(arguments) => commands::view::run(arguments).map(Outcome::from),

@@ -134,7 +134,7 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
 }
 
 /// What is proven of the meeting itself.
-fn evidence_sentence(contact: &Contact, min_separation: f64) -> String {
+pub(crate) fn evidence_sentence(contact: &Contact, min_separation: f64) -> String {
     let distance = short(min_separation);
     match contact.evidence {
         Evidence::Crossing => "crossing: the bodies share a point at one of these times".to_owned(),

@@ -140,6 +140,18 @@ impl Joint {
         Ok(Self(Arc::new(JointData { position, orientation, kind, turn, axis })))
     }
 
+    /// The same joint with another value; a fixed one stays as it is. Costs no trigonometry: a planner's edges differ in this only.
+    #[must_use]
+    pub fn with_value(&self, value: JointValue) -> Self {
+        let JointData { position, orientation, turn, axis, .. } = *self.0;
+        let kind = match self.0.kind {
+            JointKind::Fixed => return self.clone(),
+            JointKind::Revolute { axis, .. } => JointKind::Revolute { axis, value },
+            JointKind::Prismatic { axis, .. } => JointKind::Prismatic { axis, value },
+        };
+        Self(Arc::new(JointData { position, orientation, kind, turn, axis }))
+    }
+
     /// Position of the joint in the frame before it.
     pub fn position(&self) -> DVec3 {
         self.0.position

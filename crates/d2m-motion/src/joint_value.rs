@@ -67,6 +67,10 @@ impl Enclosed {
         Self { center, radius: up(reach(self).max(reach(other))) }
     }
 
+    fn to_interval(self) -> Interval {
+        Interval::around(self.center.hi, up(self.radius + self.center.lo.abs()))
+    }
+
     fn magnitude(self) -> f64 {
         up(self.center.hi.abs() * (1.0 + f64::EPSILON) + self.radius)
     }
@@ -205,6 +209,16 @@ impl JointValue {
     /// The value at one time, rounded.
     pub fn value(&self, t: f64) -> f64 {
         self.over_piece(self.piece_from(t), t, t).value.center.hi
+    }
+
+    /// Encloses the value over an interval of time.
+    pub fn enclose(&self, t: Interval) -> Interval {
+        self.over(t.lo(), t.hi()).value.to_interval()
+    }
+
+    /// Encloses the rate of the value over an interval of time; where pieces meet inside, the rates of both.
+    pub fn enclose_rate(&self, t: Interval) -> Interval {
+        self.over(t.lo(), t.hi()).rate.to_interval()
     }
 
     /// The piece that begins at or before `t` (the first one before, the last one after all).

@@ -9,6 +9,8 @@ pub use d2m_interval as interval;
 #[cfg(feature = "io")]
 pub use d2m_io as io;
 pub use d2m_motion as motion;
+#[cfg(feature = "robot")]
+pub use d2m_robot as robot;
 pub use d2m_root as root;
 pub use d2m_shapes as shapes;
 pub use d2m_world as world;

@@ -7,6 +7,7 @@ pub(crate) mod distance;
 pub(crate) mod features;
 pub(crate) mod info;
 pub(crate) mod proximities;
+pub(crate) mod robot;
 pub(crate) mod scene;
 pub(crate) mod simulate;
 pub(crate) mod toc;

@@ -4,5 +4,6 @@ mod fields;
 mod run_file;
 mod scene;
 
+pub(crate) use fields::{Fields, short};
 pub(crate) use run_file::{header, segment};
 pub(crate) use scene::{Scene, read_scene};

@@ -1,0 +1,166 @@
+//! `d2m robot`: is a planned path of a robot free of contact?
+
+use crate::arguments::RobotArguments;
+use crate::engine::number;
+use crate::failure::{Failure, parse_json};
+use crate::load::read;
+use crate::outcome::Outcome;
+use crate::output::{note, print};
+use crate::report::{evidence_sentence, short, vector};
+use crate::robot_scene::RobotSceneFile;
+use d2m::bvh::{Budget, QueryOptions, Window};
+use d2m_robot::{LimitWarning, PathAnswer, PathContact, Robot, RobotOptions, RobotScene, Srdf, Trajectory};
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::time::Duration;
+
+/// Runs the command.
+pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
+    let place = arguments.path.display().to_string();
+    let path: Trajectory = parse_json(&place, &read(&arguments.path)?)?;
+    // Before the meshes, which take longer.
+    path.joint_values().map_err(|error| Failure::at(&place, error))?;
+    let [start, end] = path.times().unwrap_or_default();
+    let window = Window::try_new(start, end).map_err(|error| Failure::at(&place, error))?;
+    let file = arguments.scene.as_deref().map(RobotSceneFile::read).transpose()?;
+    let options = options(arguments, file.as_ref())?;
+    let mut robot_options = RobotOptions::new();
+    for text in &arguments.package {
+        let Some((name, folder)) =
+            text.split_once('=').filter(|(name, folder)| !name.is_empty() && !folder.is_empty())
+        else {
+            return Err(Failure::at("--package", format!("{text:?} is not NAME=DIR")));
+        };
+        robot_options = robot_options.with_package(name, folder);
+    }
+    let robot =
+        Robot::read(&arguments.robot, &robot_options).map_err(|error| Failure::Input(error.to_string()))?;
+    let srdf = arguments.srdf.as_ref().map(Srdf::read).transpose();
+    let srdf = srdf.map_err(|error| Failure::Input(error.to_string()))?;
+    for remark in robot.remarks() {
+        note(&format!("d2m: {remark}"));
+    }
+    for unknown in
+        srdf.iter().flat_map(|srdf| srdf.find_unknown_links(|link| robot.find_link(link).is_some()))
+    {
+        note(&format!("d2m: warning: {unknown}"));
+    }
+    let fault = |error: d2m_robot::RobotError| Failure::at(&place, error);
+    let mut scene = RobotScene::new(robot.into(), srdf.as_ref(), options).map_err(fault)?;
+    if let Some(file) = &file {
+        file.add_to(&mut scene, window)?;
+    }
+    let warnings = scene.limit_warnings(&path).map_err(fault)?;
+    for warning in &warnings {
+        note(&format!("d2m: warning: {place}: {warning}"));
+    }
+    let threads = arguments.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| Failure::at("--threads", error))?;
+    let answer = pool.install(|| scene.check_path(&path)).map_err(fault)?;
+    print(&if arguments.json {
+        json(&answer, window, &warnings)
+    } else {
+        text(&answer, window, options.min_separation)
+    })?;
+    let outcome = match &answer {
+        PathAnswer::Free { .. } => Outcome::Separated,
+        PathAnswer::Contact(_) => Outcome::Contact,
+        PathAnswer::Undecided { .. } => Outcome::Undecided,
+    };
+    Ok(outcome.reported(arguments.exit_status))
+}
+
+fn options(arguments: &RobotArguments, file: Option<&RobotSceneFile<'_>>) -> Result<QueryOptions, Failure> {
+    let mut options = QueryOptions::default();
+    if let Some(distance) = file.and_then(|file| file.min_separation) {
+        options = options.with_min_separation(distance);
+    }
+    if let Some(tolerance) = file.and_then(|file| file.tolerance) {
+        options = options.with_tolerance(tolerance);
+    }
+    if let Some(text) = &arguments.min_separation {
+        let distance = number("--min-separation", text, "a distance that is not negative", |d| d >= 0.0)?;
+        options = options.with_min_separation(distance);
+    }
+    if let Some(text) = &arguments.time_limit {
+        let is_time = |seconds: f64| Duration::try_from_secs_f64(seconds).is_ok();
+        let seconds = number("--time-limit", text, "a number of seconds that is not negative", is_time)?;
+        options = options.with_budget(Budget::UNLIMITED.with_wall_clock(Duration::from_secs_f64(seconds)));
+    }
+    Ok(options)
+}
+
+/// The answer for a program.
+fn json(answer: &PathAnswer, window: Window, warnings: &[LimitWarning]) -> String {
+    let mut object = json!({
+        "status": status(answer),
+        "time": Value::Null,
+        "free_until": answer.free_until(),
+        "a": Value::Null,
+        "b": Value::Null,
+        "window": [window.start(), window.end()],
+        "warnings": warnings.iter().map(LimitWarning::to_string).collect::<Vec<_>>(),
+    });
+    let mut put = |key: &str, value: Value| object[key] = value;
+    match answer {
+        PathAnswer::Undecided { a, b, .. } => {
+            put("a", json!(a));
+            put("b", json!(b));
+        }
+        PathAnswer::Contact(found) => {
+            let PathContact { a, b, contact, .. } = &**found;
+            put("time", json!([contact.time_lo, contact.time_hi]));
+            put("a", json!(a));
+            put("b", json!(b));
+            put("separation", json!(contact.separation));
+            put("tolerance", json!(contact.tolerance));
+            put("point", json!(contact.point_a.to_array()));
+            put("normal", json!(contact.normal.to_array()));
+            put("evidence", json!(contact.evidence.to_string()));
+            put("start", json!(crate::report::start_word(contact.start)));
+        }
+        PathAnswer::Free { .. } => {}
+    }
+    format!("{object}\n")
+}
+
+const fn status(answer: &PathAnswer) -> &'static str {
+    match answer {
+        PathAnswer::Free { .. } => "free",
+        PathAnswer::Contact(_) => "contact",
+        PathAnswer::Undecided { .. } => "undecided",
+    }
+}
+
+/// The answer for a person.
+fn text(answer: &PathAnswer, window: Window, min_separation: f64) -> String {
+    let [start, end] = [window.start(), window.end()].map(short);
+    let kept = if min_separation > 0.0 {
+        format!(", all pairs further apart than {}", short(min_separation))
+    } else {
+        String::new()
+    };
+    let mut text = match answer {
+        PathAnswer::Free { .. } => format!("FREE: certified, no contact from {start} to {end}{kept}\n"),
+        PathAnswer::Undecided { free_until, a, b, .. } => format!(
+            "UNDECIDED: certified free from {start} until {}{kept}; then {a} \u{2013} {b} needs more time\n",
+            short(*free_until)
+        ),
+        PathAnswer::Contact(found) => {
+            let time = short(found.contact.time_lo);
+            format!("CONTACT of {} \u{2013} {} at t = {time}\n", found.a, found.b)
+        }
+    };
+    if let PathAnswer::Contact(found) = answer {
+        let contact = &found.contact;
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "  time        [{}, {}]", short(contact.time_lo), short(contact.time_hi));
+        let _ = writeln!(text, "  certified   free from {start} until the first of these times{kept}");
+        let _ = writeln!(text, "  evidence    {}", evidence_sentence(contact, min_separation));
+        let _ = writeln!(text, "  separation  {:.4e} left then", contact.separation);
+        let _ = writeln!(text, "  point       {} on {}", vector(contact.point_a), found.a);
+        let _ = writeln!(text, "  normal      {} from {} to {}", vector(contact.normal), found.a, found.b);
+    }
+    text
+}

@@ -1,0 +1,192 @@
+//! Checks of paths, and of a planner's edges.
+
+use crate::answer::{PathAnswer, PathContact};
+use crate::limits::LimitWarning;
+use crate::scene::{Owner, RobotScene};
+use crate::{RobotError, Trajectory};
+use d2m_bvh::{Contact, Window};
+use d2m_motion::{JointPoints, JointValue};
+use d2m_world::{BodyId, FirstContact, PlannedMotion, WorldError};
+use std::sync::Arc;
+
+impl RobotScene {
+    /// Is a path free of contact, until when, and which pair meets first?
+    ///
+    /// # Errors
+    /// A path that makes no sense ([`Trajectory::joint_values`]), joints that the robot does not have, and obstacles whose motions
+    /// do not cover the path.
+    pub fn check_path(&self, path: &Trajectory) -> Result<PathAnswer, RobotError> {
+        let values = self.robot.all_values(&path.joint_names, path.joint_values()?)?;
+        let [start, end] = path.times().unwrap_or_default();
+        self.check_values(&values, [start, end])
+    }
+
+    /// Where a path leaves the limits of its joints, which are not enforced.
+    ///
+    /// # Errors
+    /// As [`RobotScene::check_path`].
+    pub fn limit_warnings(&self, path: &Trajectory) -> Result<Vec<LimitWarning>, RobotError> {
+        let values = self.robot.all_values(&path.joint_names, path.joint_values()?)?;
+        Ok(self.robot.limit_warnings(&values, path.times().unwrap_or_default()))
+    }
+
+    /// For a planner: checks of straight edges between configurations of these joints. All that edges share is kept.
+    ///
+    /// # Errors
+    /// A name that is no joint of the robot that moves, or one named twice.
+    pub fn edges(&self, joint_names: &[&str]) -> Result<EdgeChecker<'_>, RobotError> {
+        let mut joints = Vec::with_capacity(joint_names.len());
+        for (place, name) in joint_names.iter().enumerate() {
+            let joint = self.robot.moving_joint(place, name)?;
+            if joints.contains(&joint) {
+                return Err(RobotError::path(
+                    format!("joint_names[{place}]"),
+                    format!("{name:?} is named twice"),
+                ));
+            }
+            joints.push(joint);
+        }
+        Ok(EdgeChecker { scene: self, joints })
+    }
+
+    pub(crate) fn check_values(
+        &self,
+        values: &[JointValue],
+        [start, end]: [f64; 2],
+    ) -> Result<PathAnswer, RobotError> {
+        let window = Window::try_new(start, end).map_err(|error| {
+            RobotError::path("points", format!("times from {start:?} to {end:?}: {error}"))
+        })?;
+        let chains = self.robot.chains(values)?;
+        // Links that never move are where they are; their pairs with each other and with obstacles at rest are known.
+        let all_rest = !self.has_rigid_contact
+            && !self.parts.iter().any(|part| matches!(part.owner, Owner::Obstacle { is_at_rest: false }));
+        let root = self.robot.rigid_group(self.robot.root());
+        let mut plan = Vec::with_capacity(self.parts.len());
+        for part in &self.parts {
+            if all_rest && part.carrier().is_some_and(|link| self.robot.rigid_group(link) == root) {
+                continue;
+            }
+            let (link, frame) = match &part.owner {
+                Owner::Link { link, frame } => (*link, frame.as_ref()),
+                Owner::Attached { link, frame } => (*link, Some(frame)),
+                Owner::Obstacle { .. } => continue,
+            };
+            let chain = match frame {
+                None => chains[link].clone(),
+                Some(frame) => chains[link].and(frame.clone())?,
+            };
+            plan.push(PlannedMotion { body: part.id, motion: Arc::new(chain) });
+        }
+        let first = self.world.first_contact_of(&plan, window).map_err(|error| self.named(error))?;
+        let name = |id: BodyId| self.name_of(id).to_owned();
+        Ok(match first {
+            FirstContact::Separated => PathAnswer::Free { until: end },
+            FirstContact::Contact { a, b, contact, .. } => {
+                let contact = self.on_surfaces(a, b, contact);
+                PathAnswer::Contact(Box::new(PathContact { a: name(a), b: name(b), contact }))
+            }
+            FirstContact::Undecided { clear_until, a, b, .. } => {
+                PathAnswer::Undecided { free_until: clear_until, a: name(a), b: name(b) }
+            }
+        })
+    }
+
+    /// The contact of two bodies with radii, from that of their meshes.
+    fn on_surfaces(&self, a: BodyId, b: BodyId, contact: Contact) -> Contact {
+        let [ra, rb] = [a, b].map(|id| self.parts[id.index()].radius);
+        let mut contact = contact;
+        if ra + rb > 0.0 {
+            contact.point_a += contact.normal * ra;
+            contact.point_b -= contact.normal * rb;
+            contact.separation = (contact.separation - ra - rb).max(0.0);
+        }
+        contact
+    }
+
+    fn name_of(&self, body: BodyId) -> &str {
+        &self.parts[body.index()].name
+    }
+
+    fn named(&self, error: WorldError) -> RobotError {
+        let name = |id: BodyId| self.name_of(id).to_owned();
+        match error {
+            WorldError::Pair { a, b, error } => RobotError::Query { a: name(a), b: name(b), source: error },
+            WorldError::OutsideMotion { body, outside } => {
+                RobotError::Body { name: name(body), reason: outside.to_string() }
+            }
+            other => RobotError::path("points", other.to_string()),
+        }
+    }
+}
+
+/// Checks of straight edges between two configurations, as sampling planners need them. Time runs from 0 to 1.
+///
+/// ```
+/// # use d2m_robot::{Robot, RobotOptions, RobotScene};
+/// # let text = r#"<robot name="slide">
+/// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+/// #   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+/// #   <link name="stop"><collision><origin xyz="0.5 0 0.2"/><geometry><box size="0.1 1 1"/></geometry></collision></link>
+/// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/></joint>
+/// #   <joint name="weld" type="fixed"><parent link="rail"/><child link="stop"/></joint>
+/// # </robot>"#;
+/// # let robot = Robot::parse("slide.urdf", text, &RobotOptions::new())?;
+/// # let scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+/// let edges = scene.edges(&["run"])?;
+/// assert!(edges.check(&[0.0], &[0.39])?.is_free());
+/// let last_valid = edges.check(&[0.0], &[0.8])?.free_until();
+/// assert!(last_valid < 0.5 && last_valid > 0.5 - 1e-8);
+/// # Ok::<(), d2m_robot::RobotError>(())
+/// ```
+#[derive(Clone)]
+pub struct EdgeChecker<'a> {
+    scene: &'a RobotScene,
+    joints: Vec<usize>,
+}
+
+impl EdgeChecker<'_> {
+    /// The edge from one configuration to another: positions of the named joints, in their order.
+    ///
+    /// # Errors
+    /// Configurations of another length, or with a number that is not finite.
+    pub fn check(&self, from: &[f64], to: &[f64]) -> Result<PathAnswer, RobotError> {
+        for (name, configuration) in [("from", from), ("to", to)] {
+            if configuration.len() != self.joints.len() {
+                let reason = format!("{} numbers for {} joints", configuration.len(), self.joints.len());
+                return Err(RobotError::path(name, reason));
+            }
+            if let Some(index) = configuration.iter().position(|number| !number.is_finite()) {
+                let reason = format!("{} is not finite", configuration[index]);
+                return Err(RobotError::path(format!("{name}[{index}]"), reason));
+            }
+        }
+        let robot = &self.scene.robot;
+        let mut values: Vec<Option<JointValue>> = vec![None; robot.joints.len()];
+        for (place, &joint) in self.joints.iter().enumerate() {
+            let points = JointPoints::new(vec![0.0, 1.0], vec![from[place], to[place]]);
+            values[joint] = Some(JointValue::through(points)?);
+        }
+        self.scene.check_values(&robot.complete(values)?, [0.0, 1.0])
+    }
+    /// Many edges, on all threads (feature `rayon`); the answers in their order, with the bits of [`EdgeChecker::check`].
+    ///
+    /// # Errors
+    /// As [`EdgeChecker::check`], with the index of the edge: the first one that is refused.
+    pub fn check_all<'e>(
+        &self,
+        edges: impl IntoIterator<Item = (&'e [f64], &'e [f64])>,
+    ) -> Result<Vec<PathAnswer>, RobotError> {
+        let edges: Vec<_> = edges.into_iter().collect();
+        let check = |(index, &(from, to)): (usize, &(&[f64], &[f64]))| {
+            self.check(from, to).map_err(|error| RobotError::path(format!("edge {index}"), error.to_string()))
+        };
+        #[cfg(feature = "rayon")]
+        {
+            use rayon::prelude::*;
+            edges.par_iter().enumerate().map(check).collect()
+        }
+        #[cfg(not(feature = "rayon"))]
+        edges.iter().enumerate().map(check).collect()
+    }
+}

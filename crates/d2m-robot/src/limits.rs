@@ -1,0 +1,134 @@
+//! Where a path leaves the limits of its joints.
+
+use crate::{JointLimits, Robot};
+use d2m_interval::Interval;
+use d2m_motion::JointValue;
+
+/// What is beyond its limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LimitKind {
+    /// The position.
+    Position,
+    /// The speed.
+    Velocity,
+}
+
+/// A joint that a path takes beyond a limit. Limits are not enforced: the path is checked as it is.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct LimitWarning {
+    /// The joint.
+    pub joint: String,
+    /// What is beyond.
+    pub kind: LimitKind,
+    /// The first time at which it was found beyond (to 2⁻²⁰ of the path).
+    pub time: f64,
+    /// What it is then.
+    pub value: f64,
+    /// The limit that is nearest.
+    pub limit: f64,
+}
+
+impl core::fmt::Display for LimitWarning {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self { joint, time, value, limit, .. } = self;
+        let what = match self.kind {
+            LimitKind::Position => "position",
+            LimitKind::Velocity => "velocity",
+        };
+        let side = if value < limit { "below" } else { "above" };
+        write!(f, "joint {joint:?}: the {what} {value} at the time {time} is {side} the limit {limit}")
+    }
+}
+
+impl Robot {
+    /// Joints that leave their limits between two times, by the values of all joints.
+    pub(crate) fn limit_warnings(&self, values: &[JointValue], [start, end]: [f64; 2]) -> Vec<LimitWarning> {
+        let mut warnings = Vec::new();
+        for (joint, value) in self.joints.iter().zip(values) {
+            let JointLimits { position, velocity } = joint.limits;
+            let ranges = [
+                (LimitKind::Position, position),
+                (LimitKind::Velocity, velocity.map(|speed| [-speed, speed])),
+            ];
+            for (kind, range) in ranges {
+                let Some([lower, upper]) = range else { continue };
+                let enclose = |t: Interval| match kind {
+                    LimitKind::Position => value.enclose(t),
+                    LimitKind::Velocity => value.enclose_rate(t),
+                };
+                let mut times = vec![start];
+                times.extend(value.times().iter().copied().filter(|&time| start < time && time < end));
+                times.push(end);
+                let search =
+                    Search { enclose: &enclose, lower, upper, shortest: (end - start) * SHORTEST_PART };
+                let mut left = MOST_STEPS;
+                let pieces =
+                    times.windows(2).find_map(|piece| search.first_beyond(piece[0], piece[1], &mut left));
+                if let Some(Beyond { time, value, limit }) = pieces {
+                    warnings.push(LimitWarning { joint: joint.name.clone(), kind, time, value, limit });
+                }
+            }
+        }
+        warnings
+    }
+}
+
+/// Spans of this part of the path are halved no more.
+const SHORTEST_PART: f64 = 1.0 / (1 << 20) as f64;
+/// Spans that are looked at for one joint: a joint that only grazes its limit needs a few hundred.
+const MOST_STEPS: usize = 20_000;
+
+struct Beyond {
+    time: f64,
+    value: f64,
+    limit: f64,
+}
+
+struct Search<'a> {
+    enclose: &'a dyn Fn(Interval) -> Interval,
+    lower: f64,
+    upper: f64,
+    shortest: f64,
+}
+
+impl Search<'_> {
+    /// The first time at which the value is certainly beyond its limits, halving spans in which it may be.
+    fn first_beyond(&self, start: f64, end: f64, left: &mut usize) -> Option<Beyond> {
+        let mut spans = vec![[start, end]];
+        while let Some([lo, hi]) = spans.pop() {
+            if let Some(beyond) = self.at(Interval::point(lo), lo) {
+                return Some(beyond);
+            }
+            let over = (self.enclose)(Interval::new(lo, hi));
+            *left = left.saturating_sub(1);
+            if (self.lower <= over.lo() && over.hi() <= self.upper) || *left == 0 {
+                continue;
+            }
+            let middle = Interval::new(lo, hi).mid();
+            if hi - lo <= self.shortest || !(lo < middle && middle < hi) {
+                // The end as seen from inside: the rate may jump there.
+                let last = Interval::new(middle.max(lo), hi);
+                if let Some(beyond) = self.at(last, hi) {
+                    return Some(beyond);
+                }
+                continue;
+            }
+            spans.push([middle, hi]);
+            spans.push([lo, middle]);
+        }
+        None
+    }
+
+    fn at(&self, span: Interval, time: f64) -> Option<Beyond> {
+        let value = (self.enclose)(span);
+        if value.hi() < self.lower {
+            Some(Beyond { time, value: value.hi(), limit: self.lower })
+        } else if value.lo() > self.upper {
+            Some(Beyond { time, value: value.lo(), limit: self.upper })
+        } else {
+            None
+        }
+    }
+}

@@ -1,0 +1,340 @@
+//! A robot among obstacles, with what it holds.
+
+use crate::geometry::LinkBody;
+use crate::robot::Robot;
+use crate::{RobotError, Srdf};
+use d2m_bvh::{MeshTree, QueryOptions, Solid, Window, time_of_contact};
+use d2m_motion::{ConstantTwist, Joint, JointKind, RigidMotion};
+use d2m_world::{Body, BodyId, SharedMotion, World};
+use glam::{DQuat, DVec3};
+use std::sync::Arc;
+
+/// A body that is no part of the robot: at rest, or with a motion of its own.
+#[derive(Clone)]
+pub struct Obstacle {
+    name: String,
+    tree: Arc<MeshTree>,
+    motion: SharedMotion,
+    solid: Option<Solid>,
+    is_at_rest: bool,
+}
+
+impl Obstacle {
+    /// A mesh at rest: a vertex p is at R(orientation)·p + position, the quaternion divided by its norm.
+    ///
+    /// # Errors
+    /// A number that is not finite, or a quaternion that cannot be normalised.
+    pub fn at_rest(
+        name: impl Into<String>,
+        tree: Arc<MeshTree>,
+        position: DVec3,
+        orientation: DQuat,
+    ) -> Result<Self, RobotError> {
+        let pose = ConstantTwist::try_new(position, orientation, DVec3::ZERO, DVec3::ZERO)?;
+        Ok(Self { is_at_rest: true, ..Self::moving(name, tree, pose) })
+    }
+
+    /// A mesh that moves, in the time of the path.
+    pub fn moving(
+        name: impl Into<String>,
+        tree: Arc<MeshTree>,
+        motion: impl RigidMotion + Send + 'static,
+    ) -> Self {
+        Self { name: name.into(), tree, motion: Arc::new(motion), solid: None, is_at_rest: false }
+    }
+
+    /// With this meaning of its mesh, whether it is watertight or not.
+    #[must_use]
+    pub fn with_solid(self, solid: Solid) -> Self {
+        Self { solid: Some(solid), ..self }
+    }
+}
+
+/// A body that a link carries: grasped, or a tool.
+#[derive(Clone)]
+pub struct Attached {
+    name: String,
+    link: String,
+    tree: Arc<MeshTree>,
+    frame: Joint,
+    solid: Option<Solid>,
+}
+
+impl Attached {
+    /// A mesh in the frame of a link: a vertex p is at R(orientation)·p + position there.
+    ///
+    /// # Errors
+    /// A number that is not finite, or a quaternion that cannot be normalised.
+    pub fn new(
+        name: impl Into<String>,
+        link: impl Into<String>,
+        tree: Arc<MeshTree>,
+        position: DVec3,
+        orientation: DQuat,
+    ) -> Result<Self, RobotError> {
+        let frame = Joint::try_new(position, orientation, JointKind::Fixed)?;
+        Ok(Self { name: name.into(), link: link.into(), tree, frame, solid: None })
+    }
+
+    /// With this meaning of its mesh, whether it is watertight or not.
+    #[must_use]
+    pub fn with_solid(self, solid: Solid) -> Self {
+        Self { solid: Some(solid), ..self }
+    }
+}
+
+/// A robot, obstacles and attached bodies: what paths are checked in.
+///
+/// Pairs that are checked: all pairs of links, but for those that a joint joins directly and those that the SRDF disables; every
+/// link and attached body against every obstacle; an attached body against every link and attached body but its own link. Obstacles
+/// among themselves are not.
+///
+/// ```
+/// use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+/// # let text = r#"<robot name="slide">
+/// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+/// #   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+/// #   <link name="stop"><collision><origin xyz="0.5 0 0.2"/><geometry><box size="0.1 1 1"/></geometry></collision></link>
+/// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/></joint>
+/// #   <joint name="weld" type="fixed"><parent link="rail"/><child link="stop"/></joint>
+/// # </robot>"#;
+/// let robot = Robot::parse("slide.urdf", text, &RobotOptions::new())?;
+/// let scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+/// let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+/// let path = Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(2.0, 1.0)]);
+/// let answer = scene.check_path(&path)?;
+/// let contact = answer.contact().unwrap();
+/// // The cart is stopped after 0.4 of its way of 1 in 2 seconds.
+/// assert!((answer.free_until() - 0.8).abs() < 1e-8 && answer.free_until() < 0.8);
+/// assert_eq!([contact.a.as_str(), contact.b.as_str()], ["cart", "stop"]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone)]
+pub struct RobotScene {
+    pub(crate) robot: Arc<Robot>,
+    pub(crate) world: World,
+    /// By the places of the world's bodies.
+    pub(crate) parts: Vec<Part>,
+    /// Two bodies that never move against each other are not proven apart.
+    pub(crate) has_rigid_contact: bool,
+}
+
+/// δ of a pair with a sphere or capsule, in radii: that of other pairs, whose length is their larger body's.
+const TOLERANCE: f64 = 1e-10;
+
+/// A body of the world.
+#[derive(Clone)]
+pub(crate) struct Part {
+    pub(crate) id: BodyId,
+    pub(crate) name: String,
+    pub(crate) owner: Owner,
+    /// The body is everything within this distance of its mesh.
+    pub(crate) radius: f64,
+}
+
+/// A body with the radius about its mesh.
+struct Round {
+    body: Body,
+    radius: f64,
+}
+
+/// What a body belongs to.
+#[derive(Clone)]
+pub(crate) enum Owner {
+    /// A collision body of a link, in this frame of it.
+    Link { link: usize, frame: Option<Joint> },
+    /// Carried by a link, in this frame of it.
+    Attached { link: usize, frame: Joint },
+    /// Not the robot's.
+    Obstacle { is_at_rest: bool },
+}
+
+impl Part {
+    /// The link that carries it.
+    pub(crate) fn carrier(&self) -> Option<usize> {
+        match self.owner {
+            Owner::Link { link, .. } | Owner::Attached { link, .. } => Some(link),
+            Owner::Obstacle { .. } => None,
+        }
+    }
+}
+
+impl RobotScene {
+    /// The robot alone. The options hold for every pair; a minimum separation in them is kept between all bodies.
+    ///
+    /// # Errors
+    /// None that a robot which was read can cause.
+    #[expect(clippy::needless_pass_by_value, reason = "as its sisters, and as every caller has it")]
+    pub fn new(robot: Arc<Robot>, srdf: Option<&Srdf>, options: QueryOptions) -> Result<Self, RobotError> {
+        let round =
+            robot.links.iter().flat_map(|link| &link.bodies).map(|body| body.radius).filter(|&r| r > 0.0);
+        // Of two spheres, which are points with a radius, the usual tolerance would be that of points.
+        let options = match (options.tolerance, round.min_by(f64::total_cmp)) {
+            (None, Some(radius)) => options.with_tolerance(TOLERANCE * radius),
+            _ => options,
+        };
+        let mut scene = Self {
+            world: World::new(options),
+            robot: Arc::clone(&robot),
+            parts: Vec::new(),
+            has_rigid_contact: false,
+        };
+        let rest = robot.complete(vec![None; robot.joints.len()])?;
+        let chains = robot.chains(&rest)?;
+        let is_checked = |a: usize, b: usize| {
+            let disabled = |srdf: &Srdf| srdf.disables(&robot.links[a].name, &robot.links[b].name);
+            a != b && !robot.is_joined(a, b) && !srdf.is_some_and(disabled)
+        };
+        for (link, of) in robot.links.iter().enumerate() {
+            for LinkBody { tree, radius, solid, origin } in &of.bodies {
+                let is_link_frame = *origin == crate::urdf::Origin::default();
+                let frame = if is_link_frame { None } else { Some(origin.joint(JointKind::Fixed)?) };
+                let motion = match &frame {
+                    None => chains[link].clone(),
+                    Some(frame) => chains[link].and(frame.clone())?,
+                };
+                let body = Body::new(Arc::clone(tree), motion).with_solid(*solid);
+                let owner = Owner::Link { link, frame };
+                scene.add(&of.name, owner, Round { body, radius: *radius }, |other| {
+                    other.carrier().is_none_or(|carrier| is_checked(link, carrier))
+                });
+            }
+        }
+        Ok(scene)
+    }
+
+    /// The robot.
+    pub fn robot(&self) -> &Arc<Robot> {
+        &self.robot
+    }
+
+    /// Adds an obstacle.
+    ///
+    /// # Errors
+    /// The name of a link or of another body.
+    pub fn add_obstacle(&mut self, obstacle: Obstacle) -> Result<(), RobotError> {
+        let Obstacle { name, tree, motion, solid, is_at_rest } = obstacle;
+        self.check_name(&name)?;
+        let solid = solid.unwrap_or_else(|| solid_of(&tree));
+        let body = Body::with_shared(tree, motion).with_solid(solid);
+        self.add(&name, Owner::Obstacle { is_at_rest }, Round { body, radius: 0.0 }, |other| {
+            !matches!(other.owner, Owner::Obstacle { .. })
+        });
+        Ok(())
+    }
+
+    /// Attaches a body to a link.
+    ///
+    /// # Errors
+    /// The name of a link or of another body, or a link that the robot does not have.
+    pub fn attach(&mut self, attached: Attached) -> Result<(), RobotError> {
+        let Attached { name, link: carrier, tree, frame, solid } = attached;
+        self.check_name(&name)?;
+        let link = self.robot.find_link(&carrier).ok_or_else(|| RobotError::Body {
+            name: name.clone(),
+            reason: format!("it is attached to {carrier:?}, which is no link of the robot"),
+        })?;
+        let solid = solid.unwrap_or_else(|| solid_of(&tree));
+        let rest = self.robot.complete(vec![None; self.robot.joints.len()])?;
+        let motion = self.robot.chains(&rest)?[link].and(frame.clone())?;
+        let body = Body::new(tree, motion).with_solid(solid);
+        self.add(
+            &name,
+            Owner::Attached { link, frame },
+            Round { body, radius: 0.0 },
+            |other| !matches!(other.owner, Owner::Link { link: of, .. } if of == link),
+        );
+        Ok(())
+    }
+
+    /// Leaves out a pair of links or bodies, by their names; false if one of the names is unknown.
+    pub fn ignore(&mut self, a: &str, b: &str) -> bool {
+        let parts = |name: &str| {
+            let named = self.parts.iter().enumerate().filter(|(_, part)| part.name == name);
+            named.map(|(index, _)| index).collect::<Vec<_>>()
+        };
+        let (first, second) = (parts(a), parts(b));
+        for &a in &first {
+            for &b in &second {
+                self.ignore_parts(a, b);
+            }
+        }
+        self.has_name(a) && self.has_name(b)
+    }
+
+    /// Adds a body; the pairs with some of those before it are checked.
+    fn add(&mut self, name: &str, owner: Owner, round: Round, is_checked: impl Fn(&Part) -> bool) {
+        let Round { body, radius } = round;
+        let id = self.world.add(body);
+        let part = Part { id, name: name.to_owned(), owner, radius };
+        for other in 0..self.parts.len() {
+            if !is_checked(&self.parts[other]) {
+                self.ignore_pair(&part, other);
+                continue;
+            }
+            let radii = radius + self.parts[other].radius;
+            let mut separation = self.world.options().min_separation;
+            if radii > 0.0 {
+                // Meshes that are further apart than this belong to bodies that are further apart than the separation.
+                separation = (separation + radii.next_up()).next_up();
+                self.world.set_min_separation(self.parts[other].id, id, Some(separation));
+            }
+            if self.are_rigid(&part, other) {
+                if self.are_apart([self.parts[other].id, id], separation) {
+                    self.ignore_pair(&part, other);
+                } else {
+                    self.has_rigid_contact = true;
+                }
+            }
+        }
+        self.parts.push(part);
+    }
+
+    /// Does nothing that moves lie between these two?
+    fn are_rigid(&self, part: &Part, other: usize) -> bool {
+        let group = |part: &Part| match part.owner {
+            Owner::Obstacle { is_at_rest: false } => None,
+            Owner::Obstacle { is_at_rest: true } => Some(self.robot.rigid_group(self.robot.root())),
+            Owner::Link { link, .. } | Owner::Attached { link, .. } => Some(self.robot.rigid_group(link)),
+        };
+        group(part).is_some() && group(part) == group(&self.parts[other])
+    }
+
+    /// Are these two, which never move against each other, proven apart? As the robot stands at rest; the pair query sees them from
+    /// their last common joint, after which nothing moves.
+    fn are_apart(&self, pair: [BodyId; 2], separation: f64) -> bool {
+        let [a, b] = pair.map(|id| self.world.body(id).moving());
+        let options = self.world.options().with_min_separation(separation);
+        let now = Window::try_new(0.0, 0.0);
+        now.is_ok_and(|now| time_of_contact(a, b, now, &options).is_ok_and(|answer| answer.is_separated()))
+    }
+
+    fn ignore_pair(&mut self, part: &Part, other: usize) {
+        self.world.ignore_pair(part.id, self.parts[other].id, true);
+    }
+
+    fn ignore_parts(&mut self, a: usize, b: usize) {
+        let [a, b] = [a, b].map(|part| self.parts[part].id);
+        self.world.ignore_pair(a, b, true);
+    }
+
+    /// Is this the name of a link or of a body?
+    pub fn has_name(&self, name: &str) -> bool {
+        self.robot.find_link(name).is_some() || self.parts.iter().any(|part| part.name == name)
+    }
+
+    fn check_name(&self, name: &str) -> Result<(), RobotError> {
+        if !self.has_name(name) {
+            return Ok(());
+        }
+        let is_link = self.robot.find_link(name).is_some();
+        let reason =
+            format!("{} has this name already", if is_link { "a link of the robot" } else { "another body" });
+        Err(RobotError::Body { name: name.to_owned(), reason })
+    }
+}
+
+/// A mesh that bounds a solid is one.
+fn solid_of(tree: &MeshTree) -> Solid {
+    if tree.is_watertight() { Solid::Filled } else { Solid::Surface }
+}

@@ -1,0 +1,96 @@
+//! What an SRDF file says of collisions.
+
+use crate::RobotError;
+use crate::xml::Xml;
+use std::path::Path;
+
+/// Pairs of links whose collisions are not checked, as an SRDF file states them.
+///
+/// ```
+/// let srdf = d2m_robot::Srdf::parse("arm.srdf", r#"<robot name="arm">
+///     <disable_collisions link1="base" link2="hand" reason="Never"/></robot>"#)?;
+/// assert_eq!(srdf.disabled_pairs()[0], ["base", "hand"]);
+/// # Ok::<(), d2m_robot::RobotError>(())
+/// ```
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Srdf {
+    file: String,
+    disabled: Vec<LinkPair>,
+    disabled_links: Vec<LinkName>,
+    enabled: Vec<LinkPair>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct LinkPair {
+    links: [String; 2],
+    line: u32,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct LinkName {
+    link: String,
+    line: u32,
+}
+
+impl Srdf {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or as [`Srdf::parse`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, RobotError> {
+        let file = path.as_ref().display().to_string();
+        let text = crate::packages::read_text(path.as_ref())?;
+        Self::parse(&file, &text)
+    }
+
+    /// From the text of a file; its name is for messages.
+    ///
+    /// # Errors
+    /// Text that is no XML, another outermost element than `<robot>`, or an element without its links, with the line.
+    pub fn parse(file: &str, text: &str) -> Result<Self, RobotError> {
+        let xml = Xml::parse(file, text)?;
+        let root = xml.root("robot")?;
+        let pairs = |name: &'static str| {
+            root.children(name)
+                .map(|element| {
+                    let links = [element.needed("link1")?.to_owned(), element.needed("link2")?.to_owned()];
+                    Ok(LinkPair { links, line: element.line() })
+                })
+                .collect::<Result<Vec<_>, RobotError>>()
+        };
+        let disabled_links = root
+            .children("disable_default_collisions")
+            .map(|element| Ok(LinkName { link: element.needed("link")?.to_owned(), line: element.line() }))
+            .collect::<Result<Vec<_>, RobotError>>()?;
+        let (disabled, enabled) = (pairs("disable_collisions")?, pairs("enable_collisions")?);
+        Ok(Self { file: file.to_owned(), disabled, disabled_links, enabled })
+    }
+
+    /// The pairs that `<disable_collisions>` names, in the order of the file.
+    pub fn disabled_pairs(&self) -> Vec<[&str; 2]> {
+        self.disabled.iter().map(|pair| [pair.links[0].as_str(), pair.links[1].as_str()]).collect()
+    }
+
+    /// Is this pair left out? By `<disable_collisions>`, or by `<disable_default_collisions>` of one of its links, unless
+    /// `<enable_collisions>` takes it in again.
+    pub fn disables(&self, a: &str, b: &str) -> bool {
+        let names = |pair: &&LinkPair| {
+            let [x, y] = &pair.links;
+            (x == a && y == b) || (x == b && y == a)
+        };
+        let by_link = |of: &LinkName| of.link == a || of.link == b;
+        self.disabled.iter().any(|pair| names(&pair))
+            || (self.disabled_links.iter().any(by_link) && !self.enabled.iter().any(|pair| names(&pair)))
+    }
+
+    /// The first link that is named here and is not among those of the robot, as a warning.
+    pub fn find_unknown_links(&self, is_link: impl Fn(&str) -> bool) -> Vec<String> {
+        let pairs = self.disabled.iter().chain(&self.enabled);
+        let named = pairs.flat_map(|pair| pair.links.iter().map(move |link| (link, pair.line)));
+        let named = named.chain(self.disabled_links.iter().map(|of| (&of.link, of.line)));
+        named
+            .filter(|(link, _)| !is_link(link))
+            .map(|(link, line)| format!("{}, line {line}: the robot has no link {link:?}", self.file))
+            .collect()
+    }
+}
