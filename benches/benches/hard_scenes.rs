@@ -1,6 +1,6 @@
 //! The table of hard scenes of docs/experiments.md: `cargo bench -p d2m-benches --bench hard_scenes [-- WORDS [ROUNDS]]`.
 //! Every answer is judged by the construction of its scene before it is timed.
-use d2m::bvh::last_search_counts;
+use d2m::bvh::{Answered, QueryOptions, Solid};
 use d2m_benches::hard_scenes::{HardScene, table};
 use d2m_benches::processor_time;
 use std::sync::LazyLock;
@@ -23,8 +23,8 @@ fn main() {
 
 /// Prints a line; says whether the answer was wrong.
 fn row(scene: &HardScene, rounds: usize) -> bool {
-    let answer = scene.ask();
-    let counts = last_search_counts();
+    let Answered { answer, work: counts } =
+        scene.ask_counted(&QueryOptions::default().with_solid(Solid::Surface));
     let fault = scene.fault(&answer);
     // Long enough for the clock's ticks of a few milliseconds.
     let (clock, mut asked) = (milliseconds(), 0);

@@ -1,8 +1,6 @@
 //! Queries on trees: time of contact, collide, distance; each judged before it is timed.
 use criterion::{Criterion, criterion_group, criterion_main};
-use d2m::bvh::{
-    PairCache, Posed, collide, contact_exists, distance, last_search_counts, time_of_contact_with,
-};
+use d2m::bvh::{PairCache, Posed, collide, contact_exists, distance, time_of_contact_with};
 use d2m::glam::DVec3;
 use d2m::{ConstantTwist, MeshTree, Mode, Moving, QueryOptions, RigidMotion, Solid, Window, time_of_contact};
 use d2m_benches::hard_scenes::{HardScene, grazing_cube, intermeshing_bars};
@@ -123,12 +121,12 @@ fn threads(c: &mut Criterion) {
     let surface = QueryOptions::default().with_solid(Solid::Surface);
     for scene in [grazing_cube(4800, 1e-4, 0.0), intermeshing_bars(4800, 300.0, 0.0)] {
         let ask = |pool: &rayon::ThreadPool, scene: &HardScene| {
-            pool.install(|| (scene.ask_with(&surface.with_parallel(true)), last_search_counts()))
+            pool.install(|| scene.ask_counted(&surface.with_parallel(true)))
         };
         let (one, two) = (ask(&pools[0], &scene), ask(&pools[1], &scene));
-        assert_eq!(scene.fault(&one.0), None);
+        assert_eq!(scene.fault(&one.answer), None);
         assert_eq!(one, two, "{}", scene.name);
-        assert!(one.1.windows >= 50, "{:?}", one.1);
+        assert!(one.work.windows >= 50, "{:?}", one.work);
         let busiest = || {
             let [before, alone, shared] = [0, 1, 2].map(|asked| {
                 if asked > 0 {
@@ -144,7 +142,7 @@ fn threads(c: &mut Criterion) {
         println!(
             "{}, {} windows: two threads take {:.3} of one; the busier one works {:.3} of one",
             scene.name,
-            one.1.windows,
+            one.work.windows,
             ratio(|| ask(&pools[1], &scene), || ask(&pools[0], &scene)),
             busiest()
         );

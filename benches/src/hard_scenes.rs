@@ -1,7 +1,8 @@
 //! Hard scenes: bodies that stay close for long, or turn fast, with answers known by construction.
 
+use d2m::bvh::{Answered, time_of_contact_counted};
 use d2m::glam::{DQuat, DVec3};
-use d2m::{ConstantTwist, MeshTree, Moving, QueryOptions, Solid, TimeOfContact, Window, time_of_contact};
+use d2m::{ConstantTwist, MeshTree, Moving, QueryOptions, Solid, TimeOfContact, Window};
 use std::f64::consts::PI;
 
 /// What the construction of a scene says about its answer over [0, 1].
@@ -48,8 +49,16 @@ impl HardScene {
     /// # Panics
     /// If the options are not valid.
     pub fn ask_with(&self, options: &QueryOptions) -> TimeOfContact {
+        self.ask_counted(options).answer
+    }
+
+    /// Asks the default engine what it answers and what it does for that.
+    ///
+    /// # Panics
+    /// If the options are not valid.
+    pub fn ask_counted(&self, options: &QueryOptions) -> Answered<TimeOfContact> {
         let [a, b] = [0, 1].map(|k| Moving::new(&self.bodies[k], &self.motions[k]));
-        time_of_contact(a, b, Window::UNIT, options).expect("valid input")
+        time_of_contact_counted(a, b, Window::UNIT, options).expect("valid input")
     }
 
     /// What is wrong with an answer: `None` if it agrees with the construction.

@@ -1,7 +1,9 @@
 //! Runs a file of trials: `trials A.obj B.obj TRIALS.csv [RESULTS.csv]`, prints median times.
 //! Each line of the file: qA(w,x,y,z), xA, vA, wA, qB, xB, vB, wB; time runs over [0, 1].
 
-use d2m_bvh::{MeshTree, Moving, QueryOptions, TimeOfContact, TriMesh, Window, time_of_contact};
+use d2m_bvh::{
+    MeshTree, Moving, QueryOptions, TimeOfContact, TriMesh, Window, time_of_contact, time_of_contact_counted,
+};
 use d2m_motion::ConstantTwist;
 use glam::{DQuat, DVec3};
 use std::fmt::Write;
@@ -91,8 +93,7 @@ fn main() {
         .iter()
         .map(|(ma, mb)| {
             let (a, b) = (Moving::new(&a, ma), Moving::new(&b, mb));
-            _ = time_of_contact(a, b, Window::UNIT, &options).expect("good query");
-            d2m_bvh::last_search_counts()
+            time_of_contact_counted(a, b, Window::UNIT, &options).expect("good query").work
         })
         .collect();
     counts.sort_by_key(|c| c.node_tests + c.triangle_looks);

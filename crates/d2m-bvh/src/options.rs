@@ -1,3 +1,4 @@
+use crate::CancelFlag;
 use core::time::Duration;
 
 /// What counts as contact.
@@ -51,6 +52,9 @@ pub struct Budget {
     pub node_tests: Option<u64>,
     /// Most time on the clock. Read every few hundred node tests, so a query may exceed it by about 50 µs.
     pub wall_clock: Option<Duration>,
+    /// Ends the query from another thread; read as often as the clock.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub cancel: Option<CancelFlag>,
 }
 
 impl Budget {
@@ -60,7 +64,7 @@ impl Budget {
     /// pair takes 16 bytes; with room that is kept for more, a search stays below 100 MB.
     pub const HARD_QUEUED_PAIRS: usize = 1 << 20;
     /// No limit but the hard caps.
-    pub const UNLIMITED: Self = Self { node_tests: None, wall_clock: None };
+    pub const UNLIMITED: Self = Self { node_tests: None, wall_clock: None, cancel: None };
 
     /// At most `count` node tests.
     pub const fn with_node_tests(mut self, count: u64) -> Self {
@@ -72,6 +76,17 @@ impl Budget {
     pub const fn with_wall_clock(mut self, time: Duration) -> Self {
         self.wall_clock = Some(time);
         self
+    }
+
+    /// Until somebody cancels.
+    pub const fn with_cancel(mut self, flag: CancelFlag) -> Self {
+        self.cancel = Some(flag);
+        self
+    }
+
+    /// Is there a limit of node tests or of time?
+    pub const fn is_limited(&self) -> bool {
+        self.node_tests.is_some() || self.wall_clock.is_some()
     }
 }
 

@@ -1,5 +1,5 @@
-use crate::Solid;
 use crate::search::relative_trajectory::RelativeTrajectory;
+use crate::{Answered, Solid};
 
 /// What a query of a pair of bodies leaves for the next one: the triangles that were closest, or met, and for bodies
 /// that did not meet how far apart they stayed.
@@ -28,6 +28,8 @@ pub struct PairCache {
     /// Queries until the next attempt to prove more separation than a query needs, and how many it will be after a failure.
     rest: u32,
     next_rest: u32,
+    /// Node tests of the queries that used it.
+    work: u64,
 }
 
 impl Default for PairCache {
@@ -60,7 +62,7 @@ const LONGEST_REST: u32 = 1024;
 impl PairCache {
     /// Knows nothing yet.
     pub const fn new() -> Self {
-        Self { triangles: None, meeting: 0.0, apart: None, ahead: AHEAD, rest: 0, next_rest: 16 }
+        Self { triangles: None, meeting: 0.0, apart: None, ahead: AHEAD, rest: 0, next_rest: 16, work: 0 }
     }
 
     /// The remembered triangles, of A and of B.
@@ -71,6 +73,17 @@ impl PairCache {
     /// Remembers the triangles of A and of B.
     pub const fn remember(&mut self, triangles: [u32; 2]) {
         self.triangles = Some(triangles);
+    }
+
+    /// What was done in all first-contact queries with this cache, in node tests, as a [`Budget`](crate::Budget) counts them.
+    pub const fn work(&self) -> u64 {
+        self.work
+    }
+
+    /// Adds the work of a query to the sum.
+    pub(crate) fn counted<T>(&mut self, Answered { answer, work }: Answered<T>) -> T {
+        self.work += work.work();
+        answer
     }
 
     /// Forgets everything.

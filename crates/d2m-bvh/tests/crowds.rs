@@ -1,8 +1,8 @@
 //! Many pairs of triangles that come together at the same time: the work does not grow with their number.
 
 use d2m_bvh::{
-    Budget, MeshTree, Mode, Moving, QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window,
-    last_search_counts, time_of_contact,
+    Answered, Budget, MeshTree, Mode, Moving, QueryOptions, Solid, StartState, TimeOfContact, TriMesh,
+    Window, time_of_contact_counted,
 };
 use d2m_motion::ConstantTwist;
 use d2m_testing::{Draw, KnuthRandom, Surface};
@@ -38,10 +38,20 @@ fn copies(n: u32) -> MeshTree {
     tree(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]; n as usize])
 }
 
-fn query(a: &MeshTree, b: &MeshTree, motion: &ConstantTwist, options: &QueryOptions) -> TimeOfContact {
+fn query(
+    a: &MeshTree,
+    b: &MeshTree,
+    motion: &ConstantTwist,
+    options: &QueryOptions,
+) -> Answered<TimeOfContact> {
     let options = options.with_budget(Budget::UNLIMITED.with_node_tests(20 * MOST_WORK));
-    time_of_contact(Moving::new(a, motion), Moving::new(b, &ConstantTwist::REST), Window::UNIT, &options)
-        .unwrap()
+    time_of_contact_counted(
+        Moving::new(a, motion),
+        Moving::new(b, &ConstantTwist::REST),
+        Window::UNIT,
+        &options,
+    )
+    .unwrap()
 }
 
 fn falling(place: DVec3) -> ConstantTwist {
@@ -49,8 +59,7 @@ fn falling(place: DVec3) -> ConstantTwist {
 }
 
 #[track_caller]
-fn meets_at(answer: &TimeOfContact, time: f64) {
-    let work = last_search_counts();
+fn meets_at(Answered { answer, work }: &Answered<TimeOfContact>, time: f64) {
     let contact = answer.contact().unwrap_or_else(|| panic!("{answer:?} {work:?}"));
     assert!(contact.time_lo <= time && contact.time_lo > time - 4.0 * contact.tolerance, "{contact:?}");
     assert!(contact.separation <= 3.3 * contact.tolerance, "{contact:?}");
@@ -68,8 +77,8 @@ fn fans_meet_at_their_apexes() {
         let motion = ConstantTwist::REST.with_position(oblique).with_linear_velocity(-oblique);
         meets_at(&query(&a, &b, &motion, &options), 1.0);
         let touching = query(&a, &b, &ConstantTwist::REST, &options);
-        assert_eq!(touching.contact().unwrap().start, StartState::Touching);
-        assert!(last_search_counts().node_tests < 2000);
+        assert_eq!(touching.answer.contact().unwrap().start, StartState::Touching);
+        assert!(touching.work.work() < 4000, "{touching:?}");
     }
 }
 
@@ -83,8 +92,8 @@ fn fans_pass_each_other() {
             let place = DVec3::new(-0.5, 0.0, gap);
             let passing = ConstantTwist::REST.with_position(place).with_linear_velocity(DVec3::X);
             for mode in [Mode::Accurate, Mode::Exists, Mode::Capoeira] {
-                let answer = query(&a, &b, &passing, &QueryOptions::default().with_mode(mode));
-                let work = last_search_counts();
+                let options = QueryOptions::default().with_mode(mode);
+                let Answered { answer, work } = query(&a, &b, &passing, &options);
                 if mode != Mode::Capoeira {
                     assert!(answer.is_separated(), "{n} {gap} {mode:?} {answer:?} {work:?}");
                 }
@@ -100,8 +109,8 @@ fn crowds_stop_early() {
     let options = QueryOptions::default().with_mode(Mode::Capoeira);
     for n in [400, 1500] {
         let (a, b) = (cone(n, 1.0), cone(n, -1.0));
-        let answer = query(&a, &b, &falling(DVec3::Z * 0.5), &options);
-        let (contact, work) = (answer.contact().unwrap(), last_search_counts());
+        let Answered { answer, work } = query(&a, &b, &falling(DVec3::Z * 0.5), &options);
+        let contact = answer.contact().unwrap();
         assert!(contact.time_lo <= 0.5, "{contact:?}");
         assert!(work.node_tests + work.triangle_looks < 10_000, "{work:?}");
     }
@@ -124,10 +133,10 @@ fn copies_of_a_face_meet() {
     let surfaces = QueryOptions::default().with_solid(Solid::Surface);
     meets_at(&query(&a, &b, &falling(DVec3::Z * 0.5), &surfaces), 0.5);
     let same = query(&a, &b, &ConstantTwist::REST, &surfaces);
-    assert_eq!(same.contact().unwrap().start, StartState::Overlapping);
-    assert!(last_search_counts().node_tests < 2000);
+    assert_eq!(same.answer.contact().unwrap().start, StartState::Overlapping);
+    assert!(same.work.work() < 4000, "{same:?}");
     // Past each other at a thousandth of a tolerance more than the search needs: no contact.
     let passing =
         ConstantTwist::REST.with_position(DVec3::new(-2.0, 0.0, 1e-6)).with_linear_velocity(DVec3::X * 4.0);
-    assert!(query(&a, &b, &passing, &surfaces).is_separated());
+    assert!(query(&a, &b, &passing, &surfaces).answer.is_separated());
 }

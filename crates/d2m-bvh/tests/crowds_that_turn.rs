@@ -2,7 +2,7 @@
 //! many for parts of it.
 
 use d2m_bvh::{
-    Budget, MeshTree, Moving, QueryOptions, Solid, TriMesh, Window, last_search_counts, time_of_contact,
+    Answered, Budget, MeshTree, Moving, QueryOptions, Solid, TriMesh, Window, time_of_contact_counted,
 };
 use d2m_motion::ConstantTwist;
 use d2m_testing::Surface;
@@ -45,12 +45,11 @@ fn crowds_that_turn_are_advanced_together() {
             let [moving, against] = [turning(spin, DVec3::Z * -speed), turning(spin * other, DVec3::ZERO)];
             let [a, b] = [Moving::new(&above, &moving), Moving::new(&below, &against)];
             for (a, b) in [(a, b), (b, a)] {
-                let answer = time_of_contact(a, b, window, &options).unwrap();
-                let work = last_search_counts();
+                let Answered { answer, work } = time_of_contact_counted(a, b, window, &options).unwrap();
                 let contact = answer.contact().unwrap_or_else(|| panic!("{axis} {other}: {answer:?}"));
                 // Tips are within 1e-9 of the points that meet.
                 assert!((contact.time_lo - meet).abs() < 1e-8 / speed, "{} {meet}", contact.time_lo);
-                let work = work.node_tests + work.triangle_looks + work.swept_pairs;
+                let work = work.work();
                 assert!(work < MOST_WORK, "{axis} {other}: {work}");
             }
         }

@@ -2,8 +2,7 @@
 //! direction that is fixed in space parts such a pair for longer than the gap takes at the speed of the far ends.
 
 use d2m_bvh::{
-    Budget, MeshTree, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window, last_search_counts,
-    time_of_contact,
+    Budget, MeshTree, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact_counted,
 };
 use d2m_motion::ConstantTwist;
 use glam::{DQuat, DVec3};
@@ -47,9 +46,9 @@ fn ask(
 ) -> (TimeOfContact, u64) {
     let window = Window::try_new(window.0, window.1).unwrap();
     let options = QueryOptions::default().with_solid(Solid::Surface).with_budget(BUDGET);
-    let answer = time_of_contact(Moving::new(a.0, &a.1), Moving::new(b.0, &b.1), window, &options).unwrap();
-    let counts = last_search_counts();
-    (answer, counts.node_tests + counts.triangle_looks + counts.swept_pairs)
+    let (a, b) = (Moving::new(a.0, &a.1), Moving::new(b.0, &b.1));
+    let asked = time_of_contact_counted(a, b, window, &options).unwrap();
+    (asked.answer, asked.work.work())
 }
 
 fn turned(tilt: f64, spin: DVec3) -> ConstantTwist {

@@ -3,7 +3,7 @@
 
 use d2m_bvh::{
     Evidence, MeshTree, Moving, PairCache, QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window,
-    contact_exists, last_search_counts, time_of_contact, time_of_contact_with,
+    contact_exists, time_of_contact, time_of_contact_counted, time_of_contact_with,
 };
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{Chain, ConstantTwist, Joint, JointKind, JointValue, RigidMotion};
@@ -39,15 +39,10 @@ fn passing(random: &mut KnuthRandom, away: f64, bend: f64) -> Chain {
     .unwrap()
 }
 
-/// Node tests of a query, and whether there was a search.
-fn searched<T>(far: &MeshTree, ask: impl FnOnce() -> T) -> (T, bool) {
-    // Leaves counts that no other query has: spheres that are apart.
-    let away = ConstantTwist::REST.with_position(DVec3::X * 1e6);
-    let [a, b] = [Moving::new(far, &away), Moving::new(far, &ConstantTwist::REST)];
-    assert!(time_of_contact(a, b, Window::UNIT, &QueryOptions::default()).unwrap().is_separated());
-    let before = last_search_counts();
-    let answer = ask();
-    (answer, last_search_counts() != before)
+/// The answer of a query, and whether there was a search.
+fn searched<T>(cache: &mut PairCache, ask: impl FnOnce(&mut PairCache) -> T) -> (T, bool) {
+    let before = cache.work();
+    (ask(cache), cache.work() != before)
 }
 
 #[test]
@@ -71,8 +66,8 @@ fn no_cache_changes_an_answer_of_any_motion() {
             let motion: &dyn RigidMotion = if round % 3 == 2 && step % 8 == 0 { &hidden } else { &motion };
             let [a, b] = [Moving::new(&trees[0], motion), Moving::new(&trees[1], &rest)];
             let wanted = time_of_contact(a, b, Window::UNIT, &options).unwrap();
-            let (got, by_search) = searched(&trees[0], || {
-                time_of_contact_with(a, b, Window::UNIT, &options, &mut cache).unwrap()
+            let (got, by_search) = searched(&mut cache, |cache| {
+                time_of_contact_with(a, b, Window::UNIT, &options, cache).unwrap()
             });
             assert_eq!(got, wanted, "round {round}, step {step}");
             for cache in [&mut exists, &mut stale, &mut PairCache::new()] {
@@ -100,15 +95,15 @@ fn existence_takes_less_than_the_time() {
     for _ in 0..20 {
         let motion = passing(&mut random, 0.4, 1.5);
         let [a, b] = [Moving::new(&trees[0], &motion), Moving::new(&trees[1], &rest)];
-        let answer = time_of_contact(a, b, Window::UNIT, &options).unwrap();
-        assert!(answer.contact().is_some());
-        whole += last_search_counts().node_tests;
+        let asked = time_of_contact_counted(a, b, Window::UNIT, &options).unwrap();
+        assert!(asked.answer.contact().is_some());
+        whole += asked.work.work();
         let mut cache = PairCache::new();
         assert_eq!(contact_exists(a, b, Window::UNIT, &options, &mut cache), Ok(Some(true)));
-        short += last_search_counts().node_tests;
+        short += cache.work();
         // The same triangles meet again: no search at all.
         let (again, by_search) =
-            searched(&trees[0], || contact_exists(a, b, Window::UNIT, &options, &mut cache));
+            searched(&mut cache, |cache| contact_exists(a, b, Window::UNIT, &options, cache));
         assert!(again == Ok(Some(true)) && !by_search);
     }
     assert!(4 * short < 3 * whole, "{short} of {whole}");

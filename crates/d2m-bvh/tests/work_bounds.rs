@@ -1,8 +1,7 @@
 //! Work that does not depend on what changes nothing, or next to nothing: counted in node and triangle tests, not in time.
 
 use d2m_bvh::{
-    Budget, MeshTree, Moving, QueryOptions, TimeOfContact, TriMesh, Window, last_search_counts,
-    time_of_contact,
+    Budget, MeshTree, Moving, QueryOptions, TimeOfContact, TriMesh, Window, time_of_contact_counted,
 };
 use d2m_motion::ConstantTwist;
 use glam::{DQuat, DVec3};
@@ -57,9 +56,8 @@ fn tube(around: u32, inner: f64, outer: f64) -> MeshTree {
 fn work_of(a: &MeshTree, b: &MeshTree, motions: [&ConstantTwist; 2]) -> (TimeOfContact, u64) {
     let options = QueryOptions::default().with_budget(Budget::UNLIMITED.with_node_tests(3_000_000));
     let bodies = [Moving::new(a, motions[0]), Moving::new(b, motions[1])];
-    let answer = time_of_contact(bodies[0], bodies[1], Window::UNIT, &options).unwrap();
-    let counts = last_search_counts();
-    (answer, counts.node_tests + counts.triangle_looks + counts.swept_pairs)
+    let asked = time_of_contact_counted(bodies[0], bodies[1], Window::UNIT, &options).unwrap();
+    (asked.answer, asked.work.work())
 }
 
 /// Plates that lie a millionth above each other and hardly move: swept volumes take both as at rest with a small speed.

@@ -1,61 +1,30 @@
-//! How much a query may still do.
+//! What a feature search costs of a query's budget.
 
-use crate::Budget;
-use std::time::Instant;
-
-/// Counts node and feature tests against a [`Budget`].
-#[derive(Debug)]
-pub(crate) struct Meter {
-    left: u64,
-    deadline: Option<Instant>,
-    until_clock: u32,
-}
-
-/// A limit was met.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Exhausted;
+use crate::{Budget, Exhausted, Meter};
 
 /// The cap without any budget, about a minute of work: tests cost more here than in the default engine, whose cap is
 /// [`Budget::HARD_NODE_TESTS`].
-const MOST_TESTS: u64 = Budget::HARD_NODE_TESTS >> 4;
+pub(crate) const MOST_TESTS: u64 = Budget::HARD_NODE_TESTS >> 4;
 
-/// Tests between two readings of the clock.
-const CLOCK_STRIDE: u32 = 128;
+/// Pieces of time of one feature search when nothing but their number limits a query, and when it may end at any time.
+const MOST_EVALUATIONS: u64 = 1 << 17;
+const MOST_EVALUATIONS_IN_A_HURRY: u64 = 1 << 12;
 
-impl Meter {
-    pub(crate) fn new(budget: &Budget) -> Self {
-        let left = budget.node_tests.unwrap_or(MOST_TESTS).min(MOST_TESTS);
-        let deadline = budget.wall_clock.and_then(|limit| Instant::now().checked_add(limit));
-        Self { left, deadline, until_clock: 1 }
-    }
+fn is_in_a_hurry(budget: &Budget) -> bool {
+    budget.wall_clock.is_some() || budget.cancel.is_some()
+}
 
-    /// Spends one test.
-    pub(crate) fn spend(&mut self) -> Result<(), Exhausted> {
-        self.left = self.left.checked_sub(1).ok_or(Exhausted)?;
-        self.until_clock -= 1;
-        if self.until_clock == 0 {
-            self.until_clock = CLOCK_STRIDE;
-            if self.deadline.is_some_and(|end| Instant::now() >= end) {
-                self.left = 0;
-                return Err(Exhausted);
-            }
-        }
-        Ok(())
-    }
+/// The most pieces of time that one feature search may evaluate.
+pub(crate) fn evaluations(meter: &Meter) -> u32 {
+    let rest = meter.rest();
+    let cap = if is_in_a_hurry(&rest) { MOST_EVALUATIONS_IN_A_HURRY } else { MOST_EVALUATIONS };
+    rest.node_tests.unwrap_or(cap).min(cap) as u32
+}
 
-    /// Takes the pieces of time that a feature search has evaluated off the budget.
-    pub(crate) fn charge(&mut self, evaluations: u32) {
-        self.left = self.left.saturating_sub(u64::from(evaluations));
-        if self.deadline.is_some() {
-            self.until_clock = 1;
-        }
-    }
-
-    /// The most pieces of time that one feature search may evaluate.
-    pub(crate) fn evaluations(&self) -> u32 {
-        let cap = if self.deadline.is_some() { 1 << 12 } else { 1 << 17 };
-        self.left.min(cap) as u32
-    }
+/// Takes the pieces of time that a feature search has evaluated off the budget.
+pub(crate) fn charge(meter: &mut Meter, evaluations: u32) -> Result<(), Exhausted> {
+    meter.spend(u64::from(evaluations));
+    if evaluations > 0 { meter.read_clock() } else { Ok(()) }
 }
 
 #[cfg(test)]
@@ -64,12 +33,11 @@ mod tests {
     use core::time::Duration;
 
     #[test]
-    fn counts_and_clock() {
-        let mut meter = Meter::new(&Budget::UNLIMITED.with_node_tests(2));
-        assert_eq!((meter.spend(), meter.spend(), meter.spend()), (Ok(()), Ok(()), Err(Exhausted)));
+    fn evaluations_are_tests() {
+        let mut meter = Meter::new(&Budget::UNLIMITED.with_node_tests(9));
+        assert_eq!((evaluations(&meter), charge(&mut meter, 7), evaluations(&meter)), (9, Ok(()), 2));
         let mut meter = Meter::new(&Budget::UNLIMITED.with_wall_clock(Duration::ZERO));
-        assert_eq!(meter.spend(), Err(Exhausted));
-        assert_eq!(meter.evaluations(), 0);
-        assert!((0..1000).all(|_| Meter::new(&Budget::UNLIMITED).spend().is_ok()));
+        assert_eq!(charge(&mut meter, 1), Err(Exhausted));
+        assert_eq!(u64::from(evaluations(&meter)), MOST_EVALUATIONS_IN_A_HURRY);
     }
 }

@@ -1,7 +1,8 @@
 //! Brute force over the collision geometry of two leaves (line 3 of Algorithm 6).
 
-use super::budget::{Exhausted, Meter};
+use super::budget::{charge, evaluations};
 use super::sphere_tree::{Leaf, OwnedEdge, OwnedVertex, SphereTree};
+use crate::{Exhausted, Meter};
 use d2m_feature::FeaturePair;
 use d2m_feature::paper::{
     EdgePair, PaperOptions, PointFace, PointJet, RelativeFrame, RelativeMotion, TriangleFace,
@@ -72,7 +73,7 @@ impl LeafPair<'_> {
         let Some(all) = boxes.iter().copied().reduce(Box3::hull) else { return Ok(()) };
         let mut faces: Vec<Option<TriangleFace>> = vec![None; boxes.len()];
         for &OwnedVertex { vertex, triangle } in &leaf.owned_vertices {
-            meter.spend()?;
+            meter.step()?;
             let point = tree.vertex(vertex);
             let jet = frame.jet(point);
             let swept = swept_box(&jet);
@@ -89,8 +90,8 @@ impl LeafPair<'_> {
                 else {
                     continue;
                 };
-                meter.spend()?;
-                let options = self.options.with_evaluations(meter.evaluations());
+                meter.step()?;
+                let options = self.options.with_evaluations(evaluations(meter));
                 let mut pair = PointFace::new(motion, point, plane, jet, &options);
                 let feature = if swapped {
                     FeaturePair::FaceVertex { face, vertex }
@@ -99,8 +100,8 @@ impl LeafPair<'_> {
                 };
                 let triangle_b = if swapped { triangle } else { face };
                 let found = pair.first_contact(searched);
-                meter.charge(pair.evaluated());
                 lower(best, found, feature, triangle_b);
+                charge(meter, pair.evaluated())?;
             }
         }
         Ok(())
@@ -119,7 +120,7 @@ impl LeafPair<'_> {
         let boxes: Vec<Box3> = leaf_b.owned_edges.iter().map(|e| hull(&ends(tree_b, e.ends))).collect();
         let Some(all) = boxes.iter().copied().reduce(Box3::hull) else { return Ok(()) };
         for &OwnedEdge { ends: edge_a, .. } in &leaf_a.owned_edges {
-            meter.spend()?;
+            meter.step()?;
             let own = ends(tree_a, edge_a);
             let swept = swept_box(&frame.jet(own[0])).hull(swept_box(&frame.jet(own[1])));
             if !meet(&swept, &all) {
@@ -138,12 +139,12 @@ impl LeafPair<'_> {
                 else {
                     continue;
                 };
-                meter.spend()?;
-                pair.set_max_evaluations(meter.evaluations());
+                meter.step()?;
+                pair.set_max_evaluations(evaluations(meter));
                 let feature = FeaturePair::EdgeEdge { edge_a, edge_b };
                 let found = pair.first_contact(searched);
-                meter.charge(pair.evaluated());
                 lower(best, found, feature, triangle_b);
+                charge(meter, pair.evaluated())?;
             }
         }
         Ok(())

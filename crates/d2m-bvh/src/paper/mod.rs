@@ -19,8 +19,7 @@ mod traverse;
 pub use cross_check::{CrossCheck, cross_check};
 pub use sphere_tree::SphereTree;
 
-use crate::{QueryError, QueryOptions, Solid, TimeOfContact, Window};
-use budget::Meter;
+use crate::{Meter, QueryError, QueryOptions, Solid, TimeOfContact, Window};
 use d2m_feature::paper::{PaperOptions, RelativeMotion};
 use d2m_interval::Interval;
 use start::{Start, classify_start};
@@ -77,8 +76,8 @@ pub fn time_of_contact(
     if options.min_separation > 0.0 {
         return undecided(t0);
     }
-    let mut meter = Meter::new(&options.budget);
-    if meter.spend().is_err() {
+    let mut meter = Meter::new(&options.budget).at_most(budget::MOST_TESTS);
+    if meter.step().is_err() {
         return undecided(t0);
     }
     let span = Interval::new(t0, t1);

@@ -1,10 +1,9 @@
 //! Traverse-Tree-Pair, Algorithm 6 of the paper, over a subdivided time domain.
 
 use super::Moving;
-use super::budget::Meter;
 use super::leaf_pair::{Box3, Candidate, LeafPair, TreeLeaf, meet, still_open};
 use super::sphere_tree::{Leaf, SphereTree};
-use crate::Mode;
+use crate::{Meter, Mode};
 use d2m_feature::FeaturePair;
 use d2m_feature::paper::{
     BodyOverDomain, PaperOptions, PointJet, RelativeMotion, SphereOverDomain, test_sphere_pair,
@@ -127,7 +126,7 @@ impl<'a> Search<'a> {
         while let Some(stretch) = open.pop() {
             let Some(stretch) = still_open(stretch, self.best.as_ref()) else { break };
             let stopped = Stopped { clear_until: stretch.lo() };
-            self.meter.spend().map_err(|_| stopped)?;
+            self.meter.step().map_err(|_| stopped)?;
             self.begin(stretch);
             let Some(part) = self.test(0, 0, stretch) else { continue };
             let middle = 0.5 * stretch.lo() + 0.5 * stretch.hi();
@@ -189,7 +188,7 @@ impl<'a> Search<'a> {
         let mut count = 0;
         for &part_a in &parts_a[..count_a] {
             for &part_b in &parts_b[..count_b] {
-                self.meter.spend().map_err(|_| stopped)?;
+                self.meter.step().map_err(|_| stopped)?;
                 if let Some(overlap) = self.test(part_a, part_b, span) {
                     pairs[count] = (overlap, part_a, part_b);
                     count += 1;

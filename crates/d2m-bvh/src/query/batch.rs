@@ -5,7 +5,7 @@ use crate::{Moving, QueryError, QueryOptions, TimeOfContact, Window};
 
 /// [`time_of_contact`] of many pairs of bodies, in order. On all threads of the current rayon pool with the feature
 /// `rayon`; each query runs on one thread, so the answers have the same bits at any number of threads (but for a
-/// budget of wall-clock time).
+/// budget of wall-clock time). When somebody cancels, the queries that have not begun end undecided, whatever their input.
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, Moving, QueryOptions, TriMesh, Window, time_of_contact_batch};
@@ -27,7 +27,13 @@ pub fn time_of_contact_batch(
     window: Window,
     options: &QueryOptions,
 ) -> Vec<Result<TimeOfContact, QueryError>> {
-    let one = |&(a, b): &(Moving<'_>, Moving<'_>)| time_of_contact(a, b, window, options);
+    let is_cancelled = || options.budget.cancel.is_some_and(|flag| flag.is_cancelled());
+    let one = |&(a, b): &(Moving<'_>, Moving<'_>)| {
+        if is_cancelled() {
+            return Ok(TimeOfContact::Undecided { clear_until: window.start() });
+        }
+        time_of_contact(a, b, window, options)
+    };
     #[cfg(feature = "rayon")]
     {
         use rayon::prelude::*;

@@ -1,14 +1,17 @@
 //! The first contact of two bodies that move with constant twists.
 
 use super::report::{contact, contained, evidence_at_start};
-use crate::allowance::{Allowance, Exhausted};
 use crate::covered_pair::CoveredPair;
+use crate::meter::{Exhausted, Meter};
 use crate::resting::collide::crossing_pair_within;
 use crate::resting::containment::{Held, held_vertex};
 use crate::resting::node_pair;
 use crate::search::motion::track::given_relative_position;
 use crate::search::{MovingTree, Outcome, Scene, Scratch, Search};
-use crate::{MeshTree, Mode, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window};
+use crate::{
+    Answered, MeshTree, Mode, Posed, QueryError, QueryOptions, SearchCounts, Solid, StartState,
+    TimeOfContact, Window,
+};
 use core::cell::RefCell;
 use d2m_lanes::F64x4;
 use d2m_motion::Pose;
@@ -50,15 +53,14 @@ pub(super) fn scene_of_twists<'a>(
 }
 
 /// Searches.
-pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfContact, QueryError> {
-    let mut allowance = Allowance::new(&options.budget);
+pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<Answered<TimeOfContact>, QueryError> {
+    let mut meter = Meter::new(&options.budget);
     // Decided first: what the budget leaves open at the start would leave everything open.
-    let Ok(held) = held_at_start(scene, &mut allowance) else {
-        // No search began: the counts of an earlier one are not this query's.
-        count_as_one_search(0);
-        return Ok(TimeOfContact::Undecided { clear_until: scene.window.start() });
+    let Ok(held) = held_at_start(scene, &mut meter) else {
+        let answer = TimeOfContact::Undecided { clear_until: scene.window.start() };
+        return Ok(Answered { answer, work: steps(&meter) });
     };
-    let options = &options.with_budget(allowance.rest());
+    let options = &options.with_budget(meter.rest());
     let mut scratch = SCRATCH.take().unwrap_or_else(|| Box::new(Scratch::new()));
     let mut search = Search::new(scene, options, &mut scratch);
     if held.is_some() {
@@ -66,9 +68,15 @@ pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<TimeOfCon
         search = search.of_start();
     }
     let outcome = search.run();
-    let answer = answer(scene, options, &Searched { outcome, held, scratch: &scratch }, &allowance);
+    let answer = answer(scene, options, &Searched { outcome, held, scratch: &scratch }, &mut meter);
+    let work = scratch.counts.with(&steps(&meter));
     SCRATCH.set(Some(scratch));
-    answer
+    Ok(Answered { answer: answer?, work })
+}
+
+/// Steps beside a search.
+fn steps(meter: &Meter) -> SearchCounts {
+    SearchCounts { node_tests: meter.spent(), ..SearchCounts::default() }
 }
 
 /// What a search found with this memory, and what holds at the start.
@@ -78,13 +86,12 @@ struct Searched<'a> {
     scratch: &'a Scratch,
 }
 
-/// From what a search found to the answer. What is left to decide is done
-/// within the allowance.
+/// From what a search found to the answer. What is left to decide is done within what the meter leaves.
 fn answer(
     scene: &Scene<'_>,
     options: &QueryOptions,
     searched: &Searched<'_>,
-    allowance: &Allowance,
+    meter: &mut Meter,
 ) -> Result<TimeOfContact, QueryError> {
     let Searched { outcome, held, scratch } = *searched;
     let surfaces_are_apart = match outcome {
@@ -105,7 +112,7 @@ fn answer(
             let motion = known.unwrap_or_else(|| scene.relative_motion(found.start));
             let mut contact = contact(scene, &motion, &found, options.mode != Mode::Capoeira);
             if contact.start == StartState::Touching
-                && let Some(triangles) = crossing_at_start(scene, allowance)?
+                && let Some(triangles) = crossing_at_start(scene, meter)?
             {
                 (contact.start, contact.separation) = (StartState::Overlapping, 0.0);
                 let evidence = evidence_at_start(scene, triangles);
@@ -116,19 +123,6 @@ fn answer(
             TimeOfContact::Contact(contact)
         }
     })
-}
-
-/// Counts of the last search of this thread.
-#[doc(hidden)]
-pub fn last_search_counts() -> crate::SearchCounts {
-    SCRATCH.with_borrow(|scratch| scratch.as_ref().map(|s| s.counts).unwrap_or_default())
-}
-
-/// What a query of several searches has done, in node tests: as if it had been one search.
-pub(super) fn count_as_one_search(node_tests: u64) {
-    let counts = crate::SearchCounts { node_tests, ..Default::default() };
-    SCRATCH
-        .with_borrow_mut(|scratch| scratch.get_or_insert_with(|| Box::new(Scratch::new())).counts = counts);
 }
 
 fn check(bodies: [&MeshTree; 2], solids: [Solid; 2], options: &QueryOptions) -> Result<(), QueryError> {
@@ -155,7 +149,7 @@ const CROSSING_STEPS: u64 = 1 << 12;
 
 /// A pair of triangles that cross at the start (up to rounding), if one is found soon. The search stops at the first
 /// pair that is near.
-fn crossing_at_start(scene: &Scene<'_>, allowance: &Allowance) -> Result<Option<[u32; 2]>, QueryError> {
+fn crossing_at_start(scene: &Scene<'_>, meter: &mut Meter) -> Result<Option<[u32; 2]>, QueryError> {
     // As seen from B's reference point, which may be far from the origin.
     let apart = given_relative_position(&scene.a.motion, &scene.b.motion).map(|x| x.hi);
     let apart = DVec3::from_array(apart) * scene.units.length();
@@ -164,11 +158,14 @@ fn crossing_at_start(scene: &Scene<'_>, allowance: &Allowance) -> Result<Option<
         Posed::new(body.tree, Pose { rotation: m.orientation(), translation, at: m.at() })
     });
     let at_rest = node_pair::Scene::try_new(a, b)?;
-    Ok(crossing_pair_within(&at_rest, &mut allowance.at_most(CROSSING_STEPS)).unwrap_or(None))
+    let mut some = meter.at_most(CROSSING_STEPS);
+    let pair = crossing_pair_within(&at_rest, &mut some).unwrap_or(None);
+    meter.spend(some.spent());
+    Ok(pair)
 }
 
 /// A part of a body in the other one, if that is solid, at the start; if the surfaces do not touch then.
-fn held_at_start(scene: &Scene<'_>, allowance: &mut Allowance) -> Result<Option<Held>, Exhausted> {
+fn held_at_start(scene: &Scene<'_>, meter: &mut Meter) -> Result<Option<Held>, Exhausted> {
     let filled = scene.solids.map(|solid| solid == Solid::Filled);
     if filled == [false; 2] || scene.spheres_are_apart_at_start() {
         return Ok(None);
@@ -183,10 +180,10 @@ fn held_at_start(scene: &Scene<'_>, allowance: &mut Allowance) -> Result<Option<
     // The unit is a power of two.
     let to_a = |p: DVec3| back.transform(p / unit - frame.apart.to_vec()) * unit;
     let to_b = |p: DVec3| (frame.rotation.transform(p / unit) + frame.apart.to_vec()) * unit;
-    let in_a = if filled[0] { held_vertex(a, b, to_a, allowance)? } else { None };
+    let in_a = if filled[0] { held_vertex(a, b, to_a, meter)? } else { None };
     if let Some(vertex) = in_a {
         return Ok(Some(Held { by: 0, vertex }));
     }
-    let in_b = if filled[1] { held_vertex(b, a, to_b, allowance)? } else { None };
+    let in_b = if filled[1] { held_vertex(b, a, to_b, meter)? } else { None };
     Ok(in_b.map(|vertex| Held { by: 1, vertex }))
 }

@@ -5,22 +5,22 @@
 //! distance that is larger by D: what it proves free is free. Where it finds a contact the span is shortened, with D
 //! like the square of the span, until D is a small part of the tolerance. docs/theory/motions.md, section 3.
 
-use super::constant_twist::{ask, count_as_one_search, last_search_counts, scene_of_twists};
+use super::constant_twist::{ask, scene_of_twists};
 use super::fitted_twist::FittedTwists;
 use super::report::MOST_LEFT;
 use super::true_poses::{Meeting, PlacedTriangles};
 use crate::covered_pair::CoveredPair;
 use crate::length::length;
+use crate::meter::Meter;
 use crate::search::MovingTree;
 use crate::{
-    Budget, Contact, Evidence, Mode, Moving, QueryError, QueryOptions, Solid, StartState, TimeOfContact,
-    Window,
+    Answered, Budget, Contact, Evidence, Mode, Moving, QueryError, QueryOptions, SearchCounts, Solid,
+    StartState, TimeOfContact, Window,
 };
 use d2m_feature::triangle_distance;
 use d2m_interval::Interval;
 use d2m_motion::{Chain, ConstantTwist, Pose, RigidMotion, Twist};
 use glam::DVec3;
-use std::time::Instant;
 
 /// A span is shortened at most to this part of itself before it is measured again: ten such steps go from any window to
 /// below the resolution of time. It chooses spans and proves nothing.
@@ -57,7 +57,7 @@ pub(super) fn tolerance_of(bodies: &[Moving<'_>; 2], options: &QueryOptions) -> 
 pub(super) fn general_motion(
     pair: CoveredPair<'_>,
     options: &QueryOptions,
-) -> Result<TimeOfContact, QueryError> {
+) -> Result<Answered<TimeOfContact>, QueryError> {
     let bodies = pair.bodies();
     if let (Some(a), Some(b)) = (bodies[0].motion.chain(), bodies[1].motion.chain()) {
         let common = a.common_joints(b);
@@ -74,18 +74,18 @@ fn from_common_joint(
     [a, b]: [&Chain; 2],
     common: usize,
     options: &QueryOptions,
-) -> Result<TimeOfContact, QueryError> {
+) -> Result<Answered<TimeOfContact>, QueryError> {
     let (rest_a, rest_b) = (a.without_first(common), b.without_first(common));
     let bodies = pair.bodies();
     let seen = [Moving { motion: &rest_a, ..bodies[0] }, Moving { motion: &rest_b, ..bodies[1] }];
-    let mut answer = Advance::new(CoveredPair::try_new(seen, pair.window())?, *options).run()?;
-    if let TimeOfContact::Contact(contact) = &mut answer {
+    let mut answered = Advance::new(CoveredPair::try_new(seen, pair.window())?, *options).run()?;
+    if let TimeOfContact::Contact(contact) = &mut answered.answer {
         let (frame, _) = a.only_first(common).pose_and_twist(contact.time_lo);
         contact.normal = frame.transform_vector(contact.normal);
         contact.point_a = frame.transform_point(contact.point_a);
         contact.point_b = frame.transform_point(contact.point_b);
     }
-    Ok(answer)
+    Ok(answered)
 }
 
 /// One query on its way through time.
@@ -94,9 +94,8 @@ struct Advance<'a> {
     window: Window,
     options: QueryOptions,
     tolerance: f64,
-    deadline: Option<Instant>,
-    /// Node tests so far.
-    work: u64,
+    meter: Meter,
+    work: SearchCounts,
     /// Proven free until here.
     now: f64,
     /// The next span is at most so long and deviates by at most so much.
@@ -148,8 +147,8 @@ impl<'a> Advance<'a> {
             window,
             options,
             tolerance: tolerance_of(&bodies, &options),
-            deadline: options.budget.wall_clock.and_then(|time| Instant::now().checked_add(time)),
-            work: 0,
+            meter: Meter::new(&options.budget).at_most(Budget::HARD_NODE_TESTS),
+            work: SearchCounts::default(),
             now: window.start(),
             longest: window.length(),
             largest: f64::INFINITY,
@@ -158,15 +157,16 @@ impl<'a> Advance<'a> {
         }
     }
 
-    fn run(mut self) -> Result<TimeOfContact, QueryError> {
-        let answer = self.advance();
-        count_as_one_search(self.work);
-        answer
+    fn run(mut self) -> Result<Answered<TimeOfContact>, QueryError> {
+        let answer = self.advance()?;
+        Ok(Answered { answer, work: self.work })
     }
 
     fn advance(&mut self) -> Result<TimeOfContact, QueryError> {
         loop {
-            if self.rest_of_budget().is_none() {
+            // Also a budget of nothing answers what costs nothing.
+            let begun = self.meter.spent() > 0;
+            if self.meter.read_clock().is_err() || begun && self.meter.is_exhausted() {
                 return Ok(TimeOfContact::Undecided { clear_until: self.now });
             }
             let pieces = self.bodies.map(|body| body.motion.constant_twist_from(self.now));
@@ -185,20 +185,6 @@ impl<'a> Advance<'a> {
         }
     }
 
-    /// What is left of the budget; `None` when it is used up.
-    fn rest_of_budget(&self) -> Option<Budget> {
-        let mut rest = Budget::UNLIMITED;
-        let most = self.options.budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS);
-        if self.work >= most && self.work > 0 {
-            return None;
-        }
-        rest = rest.with_node_tests(most - self.work);
-        if let Some(deadline) = self.deadline {
-            rest = rest.with_wall_clock(deadline.checked_duration_since(Instant::now())?);
-        }
-        Some(rest)
-    }
-
     /// What counts as contact in a span: bodies that are free of each other stay so until they touch, so that the inside of
     /// the one is tested for the other only at the start, and where pieces of a motion may miss each other by rounding.
     fn solids_of_span(&self) -> [Solid; 2] {
@@ -207,8 +193,7 @@ impl<'a> Advance<'a> {
     }
 
     fn options_of_span(&self) -> QueryOptions {
-        let budget = self.rest_of_budget().unwrap_or(Budget::UNLIMITED.with_node_tests(0));
-        QueryOptions { budget, tolerance: Some(self.tolerance), ..self.options }
+        QueryOptions { budget: self.meter.rest(), tolerance: Some(self.tolerance), ..self.options }
     }
 
     fn begins_a_piece(&self) -> bool {
@@ -257,9 +242,16 @@ impl<'a> Advance<'a> {
     ) -> Result<TimeOfContact, QueryError> {
         let [tree_a, tree_b] = self.bodies.map(|moving| moving.body);
         let twists = [MovingTree { tree: tree_a, twist: *a }, MovingTree { tree: tree_b, twist: *b }];
-        let answer = ask(&scene_of_twists(twists, self.solids_of_span(), span, options)?, options)?;
-        self.work += last_search_counts().work() + 1;
-        Ok(answer)
+        let asked = ask(&scene_of_twists(twists, self.solids_of_span(), span, options)?, options)?;
+        self.count(&asked.work);
+        // Also a search of nothing costs something.
+        self.count(&SearchCounts { node_tests: 1, ..SearchCounts::default() });
+        Ok(asked.answer)
+    }
+
+    fn count(&mut self, work: &SearchCounts) {
+        self.meter.spend(work.work());
+        self.work = self.work.with(work);
     }
 
     /// A span with fitted twists: free up to its end or up to where they come near.
@@ -366,7 +358,7 @@ impl<'a> Advance<'a> {
         let longest = self.longest.min(self.expected_span(largest.max(SMALL_PART * self.tolerance)));
         let mut until = (self.now + longest).min(end).max(self.now.next_up().min(end));
         loop {
-            self.work += TESTS_A_FIT;
+            self.count(&SearchCounts { node_tests: TESTS_A_FIT, ..SearchCounts::default() });
             let fitted =
                 FittedTwists::new(&self.bodies, Interval::new(self.now, until), poses[1].translation);
             let shortest = until <= self.now.next_up();

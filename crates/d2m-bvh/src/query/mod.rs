@@ -11,6 +11,5 @@ mod true_poses;
 mod warm_start;
 
 pub use batch::time_of_contact_batch;
-pub use constant_twist::last_search_counts;
-pub use time_of_contact::time_of_contact;
+pub use time_of_contact::{time_of_contact, time_of_contact_counted};
 pub use warm_start::{contact_exists, time_of_contact_with};

@@ -3,7 +3,7 @@
 use super::constant_twist::{ask, scene_of};
 use super::general_motion::general_motion;
 use crate::covered_pair::CoveredPair;
-use crate::{Moving, QueryError, QueryOptions, TimeOfContact, Window};
+use crate::{Answered, Moving, QueryError, QueryOptions, TimeOfContact, Window};
 
 /// First time in `window` at which the two bodies touch.
 ///
@@ -42,6 +42,19 @@ pub fn time_of_contact(
     window: Window,
     options: &QueryOptions,
 ) -> Result<TimeOfContact, QueryError> {
+    Ok(time_of_contact_counted(a, b, window, options)?.answer)
+}
+
+/// As [`time_of_contact`], and what was done to find the answer.
+///
+/// # Errors
+/// As [`time_of_contact`].
+pub fn time_of_contact_counted(
+    a: Moving<'_>,
+    b: Moving<'_>,
+    window: Window,
+    options: &QueryOptions,
+) -> Result<Answered<TimeOfContact>, QueryError> {
     let pair = CoveredPair::try_new([a, b], window)?;
     match scene_of(&pair, options)? {
         Some(scene) => ask(&scene, options),

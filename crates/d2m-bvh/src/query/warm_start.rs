@@ -9,7 +9,7 @@ use crate::search::relative_trajectory::RelativeTrajectory;
 use crate::search::triangle_pair::closest::closest;
 use crate::search::triangle_pair::separating_axis::place_a;
 use crate::search::{MovingTree, Scene};
-use crate::{Budget, Mode, Moving, PairCache, QueryError, QueryOptions, TimeOfContact, Window};
+use crate::{Mode, Moving, PairCache, QueryError, QueryOptions, TimeOfContact, Window};
 use d2m_feature::triangles_intersect;
 use d2m_interval::Interval;
 use d2m_lanes::{F64x4, UP};
@@ -22,7 +22,7 @@ use d2m_lanes::{F64x4, UP};
 /// bound on how differently they move, in less than a microsecond each. A contact is always searched for, at the same cost as without
 /// a cache; [`contact_exists`] decides faster whether there is one. For motions whose twists are not constant that holds where
 /// one twist is near them for the whole window. Nothing is saved with a budget and in [`Mode::Capoeira`]. Only a search that would end
-/// at the hard cap of [`Budget::HARD_NODE_TESTS`], after a minute, or because the enclosures of a user's motion become too
+/// at the hard cap of [`Budget::HARD_NODE_TESTS`](crate::Budget::HARD_NODE_TESTS), after a minute, or because the enclosures of a user's motion become too
 /// wide in the window, may be answered by the cache although it could not decide.
 ///
 /// ```
@@ -63,14 +63,14 @@ pub fn time_of_contact_with(
     let Some(scene) = scene_of(&pair, options)? else {
         return general_motion_with(pair, options, cache);
     };
-    if options.budget != Budget::UNLIMITED || options.mode == Mode::Capoeira {
-        return ask(&scene, options);
+    if options.budget.is_limited() || options.mode == Mode::Capoeira {
+        return Ok(cache.counted(ask(&scene, options)?));
     }
     let trajectory = RelativeTrajectory::of(&scene);
     if stay_apart(&scene, &trajectory, options, cache)? {
         return Ok(TimeOfContact::Separated);
     }
-    let answer = ask(&scene, options)?;
+    let answer = cache.counted(ask(&scene, options)?);
     remember(&answer, window, cache);
     if answer == TimeOfContact::Separated {
         cache.found_apart(&trajectory, scene.solids, options.min_separation);
@@ -104,8 +104,8 @@ fn general_motion_with(
     options: &QueryOptions,
     cache: &mut PairCache,
 ) -> Result<TimeOfContact, QueryError> {
-    if options.budget != Budget::UNLIMITED || options.mode == Mode::Capoeira {
-        return general_motion(pair, options);
+    if options.budget.is_limited() || options.mode == Mode::Capoeira {
+        return Ok(cache.counted(general_motion(pair, options)?));
     }
     let fitted = WindowFit::try_new(&pair, options);
     if let Some(WindowFit { scene, trajectory, options, .. }) = &fitted
@@ -113,7 +113,7 @@ fn general_motion_with(
     {
         return Ok(TimeOfContact::Separated);
     }
-    let answer = general_motion(pair, options)?;
+    let answer = cache.counted(general_motion(pair, options)?);
     remember(&answer, pair.window(), cache);
     if let Some(WindowFit { scene, trajectory, off, .. }) = &fitted
         && answer == TimeOfContact::Separated
@@ -216,7 +216,7 @@ pub fn contact_exists(
     let options = options.with_mode(Mode::Exists);
     let pair = CoveredPair::try_new([a, b], window)?;
     let scene = scene_of(&pair, &options)?;
-    if options.budget == Budget::UNLIMITED
+    if !options.budget.is_limited()
         && let Some(triangles) = cache.within([&a, &b].map(|moving| moving.body.mesh().triangle_count()))
     {
         let after = match &scene {
@@ -268,7 +268,7 @@ fn more_room(
         return Ok(false);
     }
     let wider = options.with_min_separation(room);
-    let proven = ask(&scene.with_options(&wider), &wider)? == TimeOfContact::Separated;
+    let proven = cache.counted(ask(&scene.with_options(&wider), &wider)?) == TimeOfContact::Separated;
     cache.attempted(proven);
     if proven {
         cache.found_apart(trajectory, scene.solids, room);

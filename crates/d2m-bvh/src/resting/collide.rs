@@ -2,7 +2,7 @@
 
 use super::containment::one_holds_the_other;
 use super::node_pair::{Scene, Step, child, proven_apart};
-use crate::allowance::{Allowance, Exhausted};
+use crate::meter::{Exhausted, Meter};
 use crate::{Budget, Posed, QueryError, Solid};
 use d2m_feature::triangles_intersect;
 use d2m_lanes::{Lanes, Task, run};
@@ -35,7 +35,7 @@ pub fn collide(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<bool, QueryEr
     check_solid(a, b, solid)?;
     let scene = Scene::try_new(a, b)?;
     // What a budget without limits leaves open is not proven apart.
-    Ok(may_collide(&scene, solid, &mut Allowance::unlimited()).unwrap_or(true))
+    Ok(may_collide(&scene, solid, &mut Meter::unlimited()).unwrap_or(true))
 }
 
 /// As [`collide`] within a budget; `None`: it ran out, and nothing is known.
@@ -63,13 +63,13 @@ pub fn collide_within(
 ) -> Result<Option<bool>, QueryError> {
     check_solid(a, b, solid)?;
     let scene = Scene::try_new(a, b)?;
-    Ok(may_collide(&scene, solid, &mut Allowance::new(budget)).ok())
+    Ok(may_collide(&scene, solid, &mut Meter::new(budget)).ok())
 }
 
-fn may_collide(scene: &Scene<'_>, solid: Solid, allowance: &mut Allowance) -> Result<bool, Exhausted> {
-    let found = search(scene, Wanted { most: 1, counts: may_touch }, allowance)?;
+fn may_collide(scene: &Scene<'_>, solid: Solid, meter: &mut Meter) -> Result<bool, Exhausted> {
+    let found = search(scene, Wanted { most: 1, counts: may_touch }, meter)?;
     Ok(!found.pairs.is_empty()
-        || solid == Solid::Filled && !found.boxes_apart && one_holds_the_other(scene, allowance)?.is_some())
+        || solid == Solid::Filled && !found.boxes_apart && one_holds_the_other(scene, meter)?.is_some())
 }
 
 /// A pair of triangles, one of each body, that is not proven apart; `None` is a proof that the surfaces are disjoint.
@@ -115,19 +115,18 @@ pub fn colliding_pairs(a: Posed<'_>, b: Posed<'_>) -> Result<Vec<[u32; 2]>, Quer
 /// and poses only.
 pub(crate) fn crossing_pair_within(
     scene: &Scene<'_>,
-    allowance: &mut Allowance,
+    meter: &mut Meter,
 ) -> Result<Option<[u32; 2]>, Exhausted> {
-    Ok(search(scene, Wanted { most: 1, counts: cross }, allowance)?.pairs.first().copied())
+    Ok(search(scene, Wanted { most: 1, counts: cross }, meter)?.pairs.first().copied())
 }
 
 /// All that is wanted, without a limit on the work.
 fn search_all(scene: &Scene<'_>, wanted: Wanted) -> Vec<[u32; 2]> {
-    search(scene, wanted, &mut Allowance::unlimited())
-        .map_or_else(|Exhausted| Vec::new(), |found| found.pairs)
+    search(scene, wanted, &mut Meter::unlimited()).map_or_else(|Exhausted| Vec::new(), |found| found.pairs)
 }
 
-fn search(scene: &Scene<'_>, wanted: Wanted, allowance: &mut Allowance) -> Result<Found, Exhausted> {
-    run(Search { scene, wanted, allowance })
+fn search(scene: &Scene<'_>, wanted: Wanted, meter: &mut Meter) -> Result<Found, Exhausted> {
+    run(Search { scene, wanted, meter })
 }
 
 fn may_touch(scene: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
@@ -159,7 +158,7 @@ struct Wanted {
 struct Search<'a> {
     scene: &'a Scene<'a>,
     wanted: Wanted,
-    allowance: &'a mut Allowance,
+    meter: &'a mut Meter,
 }
 
 struct Found {
@@ -173,7 +172,7 @@ impl Task for Search<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Self::Output {
-        let Self { scene, wanted: Wanted { most, counts }, allowance } = self;
+        let Self { scene, wanted: Wanted { most, counts }, meter } = self;
         let mut pairs = Vec::new();
         if scene.overlaps::<L>(0, 0, 0) == 0 {
             return Ok(Found { boxes_apart: true, pairs });
@@ -181,7 +180,7 @@ impl Task for Search<'_> {
         let mut stack = Vec::with_capacity(256);
         stack.push([0u32; 2]);
         while let Some(pair) = stack.pop() {
-            allowance.step()?;
+            meter.step()?;
             match scene.step(pair) {
                 Step::Expand { wide, node } => {
                     let mut lanes = scene.overlaps::<L>(wide, node, pair[1 - wide]);

@@ -7,7 +7,7 @@
 use super::node_pair::{InversePose, Scene};
 use super::winding::contains;
 use crate::MeshTree;
-use crate::allowance::{Allowance, Exhausted};
+use crate::meter::{Exhausted, Meter};
 use glam::DVec3;
 
 /// A part of a body inside the other one.
@@ -25,12 +25,12 @@ pub(crate) fn held_vertex(
     holder: &MeshTree,
     inner: &MeshTree,
     place: impl Fn(DVec3) -> DVec3,
-    allowance: &mut Allowance,
+    meter: &mut Meter,
 ) -> Result<Option<u32>, Exhausted> {
     for &vertex in inner.component_vertices() {
-        allowance.step()?;
+        meter.step()?;
         let p = place(inner.mesh().vertices()[vertex as usize] - inner.center());
-        if contains(holder, p, allowance)? {
+        if contains(holder, p, meter)? {
             return Ok(Some(vertex));
         }
     }
@@ -39,15 +39,12 @@ pub(crate) fn held_vertex(
 
 /// Does one body hold a part of the other? For surfaces whose placed triangles are more than `scene.error` apart: moving
 /// every vertex to its placed position is then a motion without contact, so what is inside stays inside.
-pub(crate) fn one_holds_the_other(
-    scene: &Scene<'_>,
-    allowance: &mut Allowance,
-) -> Result<Option<Held>, Exhausted> {
+pub(crate) fn one_holds_the_other(scene: &Scene<'_>, meter: &mut Meter) -> Result<Option<Held>, Exhausted> {
     let to_b = InversePose { rotation: scene.pose.rotation, offset: scene.pose.offset };
     let sides = [scene.pose.inverse(), to_b];
     for (by, InversePose { rotation: r, offset }) in sides.into_iter().enumerate() {
         let place = |p: DVec3| r[0] * p.x + r[1] * p.y + r[2] * p.z + offset;
-        if let Some(vertex) = held_vertex(scene.trees[by], scene.trees[1 - by], place, allowance)? {
+        if let Some(vertex) = held_vertex(scene.trees[by], scene.trees[1 - by], place, meter)? {
             return Ok(Some(Held { by, vertex }));
         }
     }

@@ -2,8 +2,8 @@
 
 use super::collide::try_colliding_pair;
 use super::winding::contains;
-use crate::allowance::Allowance;
 use crate::mesh::Closedness;
+use crate::meter::Meter;
 use crate::{MeshTree, Posed, TriMesh};
 use core::cell::OnceCell;
 use glam::DVec3;
@@ -202,7 +202,7 @@ impl Piece {
     fn holds(&self, other: &Self) -> bool {
         let tree = self.tree();
         let vertex = other.mesh.corners(0)[0] - tree.center();
-        contains(tree, vertex, &mut Allowance::unlimited()) != Ok(false)
+        contains(tree, vertex, &mut Meter::unlimited()) != Ok(false)
     }
 }
 

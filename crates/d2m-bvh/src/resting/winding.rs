@@ -15,7 +15,7 @@
 //! not. Surfaces that close but do not agree about the outside have a parity only, and that decides.
 
 use crate::MeshTree;
-use crate::allowance::{Allowance, Exhausted};
+use crate::meter::{Exhausted, Meter};
 use crate::tree::node::{Below, WIDTH};
 use d2m_feature::{orient2d, orient3d};
 use glam::{DVec2, DVec3};
@@ -34,7 +34,7 @@ const PLACE_ERROR: f64 = 1.0 / 1_125_899_906_842_624.0;
 
 /// Is the point (body axes, from the tree's center) in the closed solid, or on its surface? Exact for the surface whose
 /// vertices are rounded to coordinates from the tree's center. The mesh must be watertight.
-pub(super) fn contains(tree: &MeshTree, point: DVec3, allowance: &mut Allowance) -> Result<bool, Exhausted> {
+pub(super) fn contains(tree: &MeshTree, point: DVec3, meter: &mut Meter) -> Result<bool, Exhausted> {
     let far = point.abs().max_element();
     if far.is_nan() || far > tree.radius() || is_beside(tree, point) {
         return Ok(false);
@@ -44,7 +44,7 @@ pub(super) fn contains(tree: &MeshTree, point: DVec3, allowance: &mut Allowance)
         for axis in 0..3 {
             for backward in [false, true] {
                 let ray = Ray { tree, point, axis, backward };
-                if let Some(inside) = ray.is_inside(most, allowance)? {
+                if let Some(inside) = ray.is_inside(most, meter)? {
                     return Ok(inside);
                 }
             }
@@ -93,7 +93,7 @@ enum Crossing {
 
 impl Ray<'_> {
     /// `None`: more than `most` boxes.
-    fn is_inside(&self, most: u64, allowance: &mut Allowance) -> Result<Option<bool>, Exhausted> {
+    fn is_inside(&self, most: u64, meter: &mut Meter) -> Result<Option<bool>, Exhausted> {
         let start = self.point / self.tree.unit();
         let (mut winding, mut odd, mut tests) = (0i64, false, 0);
         let mut stack = vec![(0usize, 0usize)];
@@ -102,7 +102,7 @@ impl Ray<'_> {
             if tests > most {
                 return Ok(None);
             }
-            allowance.step()?;
+            meter.step()?;
             let (to, reach) = box_along_axes(self.tree, node, lane, start);
             let ahead = if self.backward { -to[self.axis] } else { to[self.axis] };
             let [u, v] = [(self.axis + 1) % 3, (self.axis + 2) % 3];
@@ -178,7 +178,7 @@ mod tests {
     }
 
     fn is_inside(tree: &MeshTree, point: DVec3) -> bool {
-        contains(tree, point - tree.center(), &mut Allowance::unlimited()).unwrap()
+        contains(tree, point - tree.center(), &mut Meter::unlimited()).unwrap()
     }
 
     /// Boxes with integer corners, points on the half-integer lattice and on lines through vertices and edges: every kind of
@@ -223,7 +223,7 @@ mod tests {
                 assert_eq!(is_inside(&tree, point), winding != 0, "{point} {parts:?}");
                 for (axis, backward) in (0..6).map(|k| (k % 3, k > 2)) {
                     let ray = Ray { tree: &tree, point: point - tree.center(), axis, backward };
-                    let found = ray.is_inside(u64::MAX, &mut Allowance::unlimited());
+                    let found = ray.is_inside(u64::MAX, &mut Meter::unlimited());
                     assert_eq!(found, Ok(Some(winding != 0)), "{point} {parts:?} {axis} {backward}");
                 }
                 *if winding != 0 { &mut inside } else { &mut outside } += 1;
@@ -254,7 +254,7 @@ mod tests {
         let tree = MeshTree::new(boxes(&walls));
         for (x, expected) in [(1.0 + 5e-5, true), (1.0 + 5e-4, false), (-0.5, false)] {
             let point = DVec3::new(x, 0.1, 0.2) - tree.center();
-            let mut few = Allowance::unlimited().at_most(4 * FIRST_TESTS);
+            let mut few = Meter::unlimited().at_most(4 * FIRST_TESTS);
             assert_eq!(contains(&tree, point, &mut few), Ok(expected), "{x}");
         }
     }

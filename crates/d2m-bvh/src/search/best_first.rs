@@ -182,7 +182,7 @@ impl<'s> Search<'s> {
             least_gain: self.scene.longest.min(self.scene.end - now),
             most_work: self.work() + FIRST_SWEEP,
             budget: self.limits.most_tests.saturating_sub(self.work()),
-            deadline: self.limits.deadline,
+            stop: self.limits.stop,
             witnesses: self.scratch.last_tested,
         };
         let mut skip = swept_clear_until(self.scene, now, &limits, direction);

@@ -1,6 +1,16 @@
-//! How much one search has done.
+//! How much a query has done.
 
-/// Counts of the work of one search, for profiles: the same on every machine.
+/// An answer and what it took to find it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub struct Answered<T> {
+    /// The answer.
+    pub answer: T,
+    /// All that was done for it.
+    pub work: SearchCounts,
+}
+
+/// Counts of the work of one query, for profiles: the same on every machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SearchCounts {
@@ -21,24 +31,21 @@ pub struct SearchCounts {
 }
 
 impl SearchCounts {
-    /// All in node tests.
-    pub(crate) const fn work(&self) -> u64 {
+    /// All in node tests, as a [`Budget`](crate::Budget) counts them.
+    pub const fn work(&self) -> u64 {
         self.node_tests + self.triangle_looks + self.swept_pairs
     }
 
     /// With what `other` adds.
-    #[cfg(feature = "rayon")]
     pub(crate) fn with(&self, other: &Self) -> Self {
         self.combined(other, u64::wrapping_add)
     }
 
     /// Without what was counted by `earlier`.
-    #[cfg(feature = "rayon")]
     pub(crate) fn without(&self, earlier: &Self) -> Self {
         self.combined(earlier, u64::wrapping_sub)
     }
 
-    #[cfg(feature = "rayon")]
     fn combined(&self, other: &Self, op: impl Fn(u64, u64) -> u64) -> Self {
         Self {
             windows: op(self.windows, other.windows),

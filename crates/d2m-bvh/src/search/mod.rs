@@ -22,7 +22,7 @@ mod tests;
 mod time_split;
 pub(crate) mod triangle_pair;
 
-pub use counts::SearchCounts;
+pub use counts::{Answered, SearchCounts};
 pub(crate) use scene::{MovingTree, Scene};
 pub(crate) use scratch::Scratch;
 pub(crate) use state::{Found, Outcome, Search};

@@ -9,10 +9,10 @@ use super::node_pair::node_test::NodeFrame;
 use super::scene::Scene;
 use super::scratch::Scratch;
 use super::triangle_pair::separating_axis::BackwardCertificate;
+use crate::meter::Stop;
 use crate::{Budget, Mode, QueryOptions};
 use d2m_lanes::InstructionSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Instant;
 
 /// Items that a batch may have before it is divided.
 pub(super) const BATCH: usize = 32;
@@ -115,7 +115,7 @@ impl Ahead<'_> {
 pub(super) struct Limits {
     pub(super) mode: Mode,
     pub(super) most_tests: u64,
-    pub(super) deadline: Option<Instant>,
+    pub(super) stop: Stop,
     /// The number of node tests from which on swept volumes are compared.
     pub(super) sweep_from: u64,
     /// Only whether the bodies meet at the start matters.
@@ -150,7 +150,7 @@ impl<'s> Search<'s> {
         let limits = Limits {
             mode: options.mode,
             most_tests: budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS),
-            deadline: budget.wall_clock.and_then(|time| Instant::now().checked_add(time)),
+            stop: Stop::new(budget),
             sweep_from: FIRST_SWEEP + triangle_count(scene) / TRIANGLES_A_TEST,
             only_start: false,
         };
@@ -189,8 +189,7 @@ impl<'s> Search<'s> {
     }
 
     pub(super) fn out_of_budget(&self) -> bool {
-        self.work() >= self.limits.most_tests
-            || self.limits.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+        self.work() >= self.limits.most_tests || self.limits.stop.is_due()
     }
 }
 

@@ -9,11 +9,10 @@ use super::{FirstContact, PairContact, World, WorldError};
 use crate::box_tree::IndexPair;
 use crate::parallel::{PAIRS, map_in_order};
 use d2m_bvh::{
-    Budget, Contact, PairCache, QueryError, QueryOptions, StartState, TimeOfContact, Window,
-    last_search_counts, time_of_contact_with,
+    Contact, Meter, PairCache, QueryError, QueryOptions, StartState, TimeOfContact, Window,
+    time_of_contact_with,
 };
 use std::collections::HashSet;
-use std::time::Instant;
 
 /// Pairs of the first round; each round is twice as long as the one before, so what is searched beyond the first contact
 /// is at most about as much as what had to be searched.
@@ -40,7 +39,8 @@ struct Question {
 struct Reply {
     answer: Result<TimeOfContact, QueryError>,
     cache: PairCache,
-    node_tests: u64,
+    /// In node tests.
+    work: u64,
 }
 
 /// When to stop.
@@ -48,40 +48,6 @@ struct Reply {
 enum Goal {
     First,
     All,
-}
-
-/// What is left of a budget over all pairs.
-struct RemainingBudget {
-    node_tests: Option<u64>,
-    deadline: Option<Instant>,
-}
-
-impl RemainingBudget {
-    fn new(budget: Budget) -> Self {
-        let deadline = budget.wall_clock.and_then(|time| Instant::now().checked_add(time));
-        Self { node_tests: budget.node_tests, deadline }
-    }
-
-    fn is_limited(&self) -> bool {
-        self.node_tests.is_some() || self.deadline.is_some()
-    }
-
-    fn is_used_up(&self) -> bool {
-        self.node_tests == Some(0) || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
-    }
-
-    /// What one pair may use.
-    fn budget(&self) -> Budget {
-        let mut budget = Budget::UNLIMITED;
-        budget.node_tests = self.node_tests;
-        budget.wall_clock = self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
-        budget
-    }
-
-    fn spend(&mut self, node_tests: u64) {
-        // Also a pair that is answered at once costs something.
-        self.node_tests = self.node_tests.map(|left| left.saturating_sub(node_tests.max(1)));
-    }
 }
 
 /// What a search has found so far.
@@ -215,9 +181,9 @@ impl World {
     ) -> Result<Finding, WorldError> {
         self.prepare(window)?;
         let mut finding = Finding::default();
-        let mut remaining = RemainingBudget::new(self.options.budget);
+        let (mut meter, is_limited) = (Meter::new(&self.options.budget), self.options.budget.is_limited());
         let mut round = match goal {
-            _ if remaining.is_limited() => 1,
+            _ if is_limited => 1,
             Goal::First => FIRST_ROUND,
             // Every pair is searched over the whole window, whatever the others give.
             Goal::All => ROUND_OF_ALL,
@@ -234,7 +200,7 @@ impl World {
             if questions.is_empty() {
                 break Ok(());
             }
-            if remaining.is_limited() && remaining.is_used_up() {
+            if meter.is_exhausted() {
                 finding.give_up(questions);
                 // What was known of a pair may free it for longer than its place in the queue says: others may be earlier.
                 let earliest = finding.first_undecided().map_or(limit, |(_, until)| until);
@@ -243,11 +209,11 @@ impl World {
                 }
                 continue;
             }
-            if let Err(error) = self.answer(questions, &mut remaining, &mut finding) {
+            if let Err(error) = self.answer(questions, &mut meter, &mut finding) {
                 break Err(error);
             }
             progress(finding.seen.len(), finding.seen.len() + self.schedule.waiting());
-            if !remaining.is_limited() {
+            if !is_limited {
                 round = (2 * round).min(LONGEST_ROUND).max(round);
             }
         };
@@ -340,27 +306,26 @@ impl World {
     fn answer(
         &mut self,
         questions: Vec<Question>,
-        remaining: &mut RemainingBudget,
+        meter: &mut Meter,
         finding: &mut Finding,
     ) -> Result<(), WorldError> {
         // The boxes prove what lies between the start of the query and that of a pair's own window.
         let span_start = self.schedule.from();
-        let slots = &self.slots;
+        let (slots, rest) = (&self.slots, meter.rest());
         let replies = map_in_order(&questions, PAIRS, |question| {
             let mut cache = question.cache;
-            let budget = if remaining.is_limited() { remaining.budget() } else { Budget::UNLIMITED };
+            let work_before = cache.work();
             let [Some(a), Some(b)] = question.pair.map(|place| slots.at(place)) else {
-                return Reply { answer: Ok(TimeOfContact::Separated), cache, node_tests: 0 };
+                return Reply { answer: Ok(TimeOfContact::Separated), cache, work: 0 };
             };
-            let options = question.options.with_budget(budget);
+            let options = question.options.with_budget(rest);
             let answer = time_of_contact_with(a.moving(), b.moving(), question.window, &options, &mut cache);
-            let counts = last_search_counts();
-            let node_tests = counts.node_tests + counts.triangle_looks + counts.swept_pairs;
-            Reply { answer, cache, node_tests }
+            Reply { answer, work: cache.work() - work_before, cache }
         });
         let mut failure = None;
         for (question, reply) in questions.into_iter().zip(replies) {
-            remaining.spend(reply.node_tests);
+            // Also a pair that is answered at once costs something.
+            meter.spend(reply.work.max(1));
             let Question { pair, entry, window, clear_until, clear_after, options, .. } = question;
             let known = match reply.answer {
                 Err(error) => {

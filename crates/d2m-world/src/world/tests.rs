@@ -246,9 +246,8 @@ fn budgets_are_charged_with_the_work_of_any_motion() {
     let mut work = 0;
     for (a, b) in &pairs {
         let [a, b] = [a, b].map(|&id| world.body(id).moving());
-        let _ = d2m_bvh::time_of_contact(a, b, Window::UNIT, &QueryOptions::default()).unwrap();
-        let counts = d2m_bvh::last_search_counts();
-        work += counts.node_tests + counts.triangle_looks + counts.swept_pairs;
+        let options = QueryOptions::default();
+        work += d2m_bvh::time_of_contact_counted(a, b, Window::UNIT, &options).unwrap().work.work();
     }
     let within = |tests: u64| {
         let mut limited =

@@ -9,7 +9,7 @@
 //! that no common plane parts fall apart into some that have one.
 
 use super::best::EXPECTED_WIDTH;
-use crate::allowance::{Allowance, Exhausted};
+use crate::meter::{Exhausted, Meter};
 use crate::nearest_point::Simplex;
 use crate::resting::node_pair::Scene;
 use crate::tree::margin::UNIT_F64;
@@ -62,8 +62,8 @@ impl Hulls {
         triangles as u64 <= TRIANGLES_A_STEP * steps
     }
 
-    pub(super) fn new(scene: &Scene<'_>, allowance: &mut Allowance) -> Result<Self, Exhausted> {
-        let bodies = [Vertices::new(scene, 0, allowance)?, Vertices::new(scene, 1, allowance)?];
+    pub(super) fn new(scene: &Scene<'_>, meter: &mut Meter) -> Result<Self, Exhausted> {
+        let bodies = [Vertices::new(scene, 0, meter)?, Vertices::new(scene, 1, meter)?];
         Ok(Self { bodies, projection: scene.projection, projected: 0 })
     }
 
@@ -76,7 +76,7 @@ impl Hulls {
         pair: [u32; 2],
         best: Measure,
         steps: u64,
-        allowance: &mut Allowance,
+        meter: &mut Meter,
     ) -> Result<Parting, Exhausted> {
         let [a, b] = [0, 1].map(|body| self.bodies[body].below(pair[body]));
         let cost = a.len() + b.len();
@@ -90,7 +90,7 @@ impl Hulls {
                 break;
             }
             for _ in 0..cost / VERTICES_A_TEST {
-                allowance.step()?;
+                meter.step()?;
             }
             let ((p, high), (q, low)) = (furthest(a, n), furthest(b, -n));
             // Not when it is not a number.
@@ -131,7 +131,7 @@ enum Visit {
 }
 
 impl Vertices {
-    fn new(scene: &Scene<'_>, body: usize, allowance: &mut Allowance) -> Result<Self, Exhausted> {
+    fn new(scene: &Scene<'_>, body: usize, meter: &mut Meter) -> Result<Self, Exhausted> {
         let nodes = &scene.trees[body].nodes;
         let count = scene.trees[body].mesh().triangle_count();
         let mut points = Vec::with_capacity(2 * count);
@@ -150,7 +150,7 @@ impl Vertices {
             of_nodes[index as usize].start = first;
             stack.push(Visit::Leave(index));
             for lane in 0..(node.used as usize).min(WIDTH) {
-                allowance.step()?;
+                meter.step()?;
                 match node.below(lane) {
                     Below::Node(below) => stack.push(Visit::Enter(below)),
                     Below::Triangle(triangle) => {

@@ -10,7 +10,7 @@ mod tests;
 use super::collide::{check_solid, crossing_pair_within};
 use super::containment::one_holds_the_other;
 use super::node_pair::Scene;
-use crate::allowance::{Allowance, Exhausted};
+use crate::meter::{Exhausted, Meter};
 use crate::tree::margin::UNIT_F64;
 use crate::{Budget, PairCache, Posed, QueryError, Solid, StartState};
 use best::{Best, EXPECTED_WIDTH};
@@ -143,8 +143,8 @@ pub fn distance_within(
     let first = cache
         .within(counts)
         .map(|triangles| [0, 1].map(|k| if scene.is_point_like(k) { 0 } else { triangles[k] }));
-    let unlimited = &mut Allowance::unlimited();
-    let mut search = |limit: f64| run(Search { scene: &scene, first, limit, allowance: unlimited });
+    let unlimited = &mut Meter::unlimited();
+    let mut search = |limit: f64| run(Search { scene: &scene, first, limit, meter: unlimited });
     let found = match search(limit) {
         Found::Unclear => search(f64::INFINITY),
         found => found,
@@ -159,7 +159,7 @@ pub fn distance_within(
     let found = match (found, state) {
         // The bodies meet although their surfaces are far from each other: search again without a limit.
         (Found::Beyond, StartState::Contained) => {
-            run(Search { scene: &scene, first, limit: f64::INFINITY, allowance: unlimited })
+            run(Search { scene: &scene, first, limit: f64::INFINITY, meter: unlimited })
         }
         (found, _) => found,
     };
@@ -222,15 +222,15 @@ pub fn bound_distance(
 ) -> Result<DistanceBounds, QueryError> {
     check_solid(a, b, solid)?;
     let scene = Scene::try_new(a, b)?;
-    let allowance = &mut Allowance::new(budget);
+    let meter = &mut Meter::new(budget);
     // Some pair is compared before the budget counts, so there always is an upper bound.
     let first = Some([0, 0]);
-    let found = run(Search { scene: &scene, first, limit: f64::INFINITY, allowance });
-    let found = crossing(&scene, found, allowance);
+    let found = run(Search { scene: &scene, first, limit: f64::INFINITY, meter });
+    let found = crossing(&scene, found, meter);
     let apart = |best: &Best| best.lower > scene.error;
     let is_apart = match &found {
         Found::Pair(best) | Found::Exhausted(best) if apart(best) && solid == Solid::Filled => {
-            holds(&scene, allowance)
+            holds(&scene, meter)
         }
         _ => Ok(false),
     };
@@ -255,26 +255,26 @@ pub fn bound_distance(
 }
 
 /// Does one body hold a part of the other?
-fn holds(scene: &Scene<'_>, allowance: &mut Allowance) -> Result<bool, Exhausted> {
-    Ok(one_holds_the_other(scene, allowance)?.is_some())
+fn holds(scene: &Scene<'_>, meter: &mut Meter) -> Result<bool, Exhausted> {
+    Ok(one_holds_the_other(scene, meter)?.is_some())
 }
 
 /// Tests for a crossing beside a crowd of pairs that touch: some milliseconds. More of them, and the bodies count as touching.
 const MOST_TESTS_BESIDE_A_CROWD: u64 = 1 << 16;
 
 /// Where triangles cross, the pair that stands for all that do, whichever of them was met first.
-fn crossing(scene: &Scene<'_>, found: Found, allowance: &mut Allowance) -> Found {
+fn crossing(scene: &Scene<'_>, found: Found, meter: &mut Meter) -> Found {
     let Found::Pair(met) = found else { return found };
     if met.distance.upper > 0.0 {
         if !met.is_cut_short {
             return found;
         }
-        let mut some = allowance.at_most(MOST_TESTS_BESIDE_A_CROWD);
+        let mut some = meter.at_most(MOST_TESTS_BESIDE_A_CROWD);
         let Ok(Some([a, b])) = crossing_pair_within(scene, &mut some) else { return found };
         let distance = triangle_distance(&scene.place(0, a), &scene.place(1, b));
         return Found::Pair(Best { distance, triangles: [a, b], lower: 0.0, is_cut_short: false });
     }
-    let [a, b] = match crossing_pair_within(scene, allowance) {
+    let [a, b] = match crossing_pair_within(scene, meter) {
         Ok(pair) => pair.unwrap_or(met.triangles),
         Err(Exhausted) => return Found::Exhausted(met),
     };

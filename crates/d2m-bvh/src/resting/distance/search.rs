@@ -3,7 +3,7 @@
 use super::best::{Best, EXPECTED_WIDTH};
 use super::hulls::{Hulls, Measure, Parting};
 use super::queue::{Item, Queue};
-use crate::allowance::{Allowance, Exhausted};
+use crate::meter::{Exhausted, Meter};
 use crate::resting::node_pair::{Direction, Directions, Scene, Step, Wanted, child, gap_exceeds};
 use crate::tree::margin::{UNIT_F64, round_up};
 use d2m_feature::triangle_distance;
@@ -23,7 +23,7 @@ pub(super) enum Found {
     Beyond,
     /// The enclosure of a pair straddles the limit: without a limit there is an answer.
     Unclear,
-    /// The allowance ran out: the closest pair so far, with a lower bound over all.
+    /// The meter ran out: the closest pair so far, with a lower bound over all.
     Exhausted(Best),
 }
 
@@ -41,7 +41,7 @@ pub(super) struct Search<'a> {
     pub(super) first: Option<[u32; 2]>,
     /// Pairs beyond this are of no interest, working units.
     pub(super) limit: f64,
-    pub(super) allowance: &'a mut Allowance,
+    pub(super) meter: &'a mut Meter,
 }
 
 impl Task for Search<'_> {
@@ -49,17 +49,17 @@ impl Task for Search<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Found {
-        let Self { scene, first, limit, allowance } = self;
+        let Self { scene, first, limit, meter } = self;
         let mut state = State::new(scene, limit, first);
         loop {
             if state.next.is_none() && state.steps >= state.patience {
-                state.thin_out(allowance);
+                state.thin_out(meter);
             }
             let Some(item) = state.next.take().or_else(|| state.queue.pop()) else { break };
             if item.key > state.closest.upper_key || state.closest.upper == 0.0 {
                 break;
             }
-            if allowance.step().is_err() {
+            if meter.step().is_err() {
                 // A pair of triangles is compared before the search, so that there is a best one.
                 let Some(best) = state.closest.best else { return Found::Unclear };
                 let least = state.queue.least_key().map_or(item.key, |other| other.min(item.key));
@@ -71,7 +71,7 @@ impl Task for Search<'_> {
             }
             match scene.step(item.pair) {
                 Step::Expand { wide, node } => {
-                    if !state.is_parted(&item, allowance) {
+                    if !state.is_parted(&item, meter) {
                         state.expand::<L>(&item, wide, node);
                     }
                 }
@@ -123,7 +123,7 @@ impl<'a> State<'a> {
 
     /// Examines a crowd of pairs that wait: drops them where they cannot change what is proven, or begins again with planes
     /// that may part nodes high up.
-    fn thin_out(&mut self, allowance: &mut Allowance) {
+    fn thin_out(&mut self, meter: &mut Meter) {
         self.patience = 2 * self.steps;
         match (&mut self.closest.best, self.queue.least_key()) {
             // No lower bound above zero is proven, whatever the other pairs are.
@@ -134,7 +134,7 @@ impl<'a> State<'a> {
             (Some(_), Some(least))
                 if self.hulls.is_none() && Hulls::pay_off(self.closest.scene, self.steps) =>
             {
-                self.hulls = Hulls::new(self.closest.scene, allowance).ok();
+                self.hulls = Hulls::new(self.closest.scene, meter).ok();
                 if self.hulls.is_some() {
                     self.queue.clear();
                     self.queue.push(Item { key: least, pair: [0; 2], version: self.closest.version });
@@ -164,19 +164,19 @@ impl<'a> State<'a> {
 
     /// True if a plane parts a pair of nodes further than was known: it is left out, or waits with the new bound.
     #[inline(always)]
-    fn is_parted(&mut self, &Item { key, pair, version }: &Item, allowance: &mut Allowance) -> bool {
+    fn is_parted(&mut self, &Item { key, pair, version }: &Item, meter: &mut Meter) -> bool {
         let (Some(hulls), Some(best)) = (&mut self.hulls, &self.closest.best) else { return false };
         if version == PARTED {
             return false;
         }
         let best = Measure { upper: self.closest.upper, direction: best.distance.direction };
-        match hulls.part(pair, best, self.steps, allowance) {
+        match hulls.part(pair, best, self.steps, meter) {
             Ok(Parting::Beyond) => true,
             Ok(Parting::AtLeast(bound)) if bound > key => {
                 self.queue.push(Item { key: bound, pair, version: PARTED });
                 true
             }
-            // The next step ends the search where the allowance ran out.
+            // The next step ends the search where the meter ran out.
             Ok(Parting::AtLeast(_)) | Err(Exhausted) => false,
         }
     }

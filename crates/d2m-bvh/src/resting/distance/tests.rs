@@ -163,7 +163,7 @@ fn planes_drop_no_closer_pair() {
             tree.nodes.iter().enumerate().flat_map(lanes).collect()
         };
         let best = apart([7, 11]);
-        let clock = &mut Allowance::unlimited();
+        let clock = &mut Meter::unlimited();
         let mut hulls = Hulls::new(&scene, clock).unwrap();
         let measure = Measure { upper: best.upper, direction: best.direction };
         for i in boxes(&a) {

@@ -28,7 +28,7 @@ mod tests;
 pub use manifold::reduce_proximities;
 
 use super::node_pair::{Directions, Scene, Step, Wanted, child, proven_apart};
-use crate::allowance::Allowance;
+use crate::meter::Meter;
 use crate::tree::margin::{UNIT_F64, round_up};
 use crate::{Budget, Posed, QueryError};
 use candidate::{Candidate, without_twins};
@@ -195,8 +195,8 @@ pub fn proximities_within(
     // Placed points of features within the margin are no further apart than this; 1 + 4u for its own roundings.
     let limit = (options.margin / scene.unit + scene.error) * (1.0 + 4.0 * UNIT_F64);
     let test = FeatureTest::new(&scene, limit, options.cone_slack);
-    let allowance = &mut Allowance::new(budget);
-    match run(Search { scene: &scene, test, limit, allowance }) {
+    let meter = &mut Meter::new(budget);
+    match run(Search { scene: &scene, test, limit, meter }) {
         Found::Exhausted => Ok(None),
         Found::NotApart([triangle_a, triangle_b]) => Err(QueryError::NotApart { triangle_a, triangle_b }),
         Found::Candidates(found) => {
@@ -239,7 +239,7 @@ enum Found {
     Candidates(Vec<Candidate>),
     /// Two triangles that are not proven apart.
     NotApart([u32; 2]),
-    /// The allowance ran out.
+    /// The meter ran out.
     Exhausted,
 }
 
@@ -248,7 +248,7 @@ struct Search<'a> {
     scene: &'a Scene<'a>,
     test: FeatureTest<'a>,
     limit: f64,
-    allowance: &'a mut Allowance,
+    meter: &'a mut Meter,
 }
 
 impl Task for Search<'_> {
@@ -256,13 +256,13 @@ impl Task for Search<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Found {
-        let Self { scene, mut test, limit, allowance } = self;
+        let Self { scene, mut test, limit, meter } = self;
         let key = round_up(limit);
         let along = scene.direction(-scene.pose.offset);
         let mut stack = Vec::with_capacity(256);
         stack.push([0u32; 2]);
         while let Some(pair) = stack.pop() {
-            if allowance.step().is_err() {
+            if meter.step().is_err() {
                 return Found::Exhausted;
             }
             match scene.step(pair) {

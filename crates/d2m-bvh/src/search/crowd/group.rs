@@ -1,7 +1,7 @@
 //! The vertices below some boxes of a body.
 
 use super::super::scene::SceneBody;
-use crate::allowance::Allowance;
+use crate::meter::Meter;
 use crate::tree::node::{Below, WIDTH};
 use glam::DVec3;
 
@@ -23,7 +23,7 @@ impl<'a> Group<'a> {
     }
 
     /// `None`: too many, or the time is over.
-    pub(super) fn add(&mut self, index: u32, most: usize, clock: &mut Allowance) -> Option<()> {
+    pub(super) fn add(&mut self, index: u32, most: usize, clock: &mut Meter) -> Option<()> {
         let mut stack = vec![index as usize];
         while let Some(index) = stack.pop() {
             if core::mem::replace(&mut self.seen[index], true) {

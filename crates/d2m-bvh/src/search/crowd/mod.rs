@@ -21,7 +21,7 @@ mod tests;
 
 use super::queue::{Bucket, Item};
 use super::state::{BATCH, Search, State};
-use crate::allowance::Allowance;
+use crate::meter::Meter;
 use crate::tree::node::WIDTH;
 use d2m_lanes::Lanes;
 use glam::DVec3;
@@ -154,7 +154,7 @@ impl Search<'_> {
             return;
         }
         let most = VERTICES_A_PAIR * waiting.max(BATCH * batches as usize);
-        let mut clock = Allowance::until(self.limits.deadline);
+        let mut clock = Meter::until(self.limits.stop);
         let Some(crowd) = self.crowd(state, batch.items(), most, &mut clock) else { return };
         let frame = match state.found {
             Some(_) => state.behind.reversed,
@@ -240,7 +240,7 @@ impl Search<'_> {
         state: &State<'_>,
         least: u32,
         (crowd, most_work): (&Crowd, u64),
-        clock: &mut Allowance,
+        clock: &mut Meter,
     ) -> u32 {
         let enough = self.work() + most_work;
         let (mut key, mut halvings) = (least, 1);
@@ -278,7 +278,7 @@ impl Search<'_> {
         moving: &Moving<'_>,
         (first, level): (DVec3, f64),
         crowd: &Crowd,
-        clock: &mut Allowance,
+        clock: &mut Meter,
     ) -> Separation {
         let left = self.limits.most_tests.saturating_sub(self.work());
         let most = crowd.directions.min(left / crowd.cost(1).max(1));
@@ -303,7 +303,7 @@ impl Search<'_> {
     }
 
     /// The vertices below all pairs that wait; none if they are too many, or the time is over.
-    fn crowd(&self, state: &State<'_>, batch: &[Item], most: usize, clock: &mut Allowance) -> Option<Crowd> {
+    fn crowd(&self, state: &State<'_>, batch: &[Item], most: usize, clock: &mut Meter) -> Option<Crowd> {
         let mut bodies = [&self.scene.a, &self.scene.b].map(Group::new);
         for item in self.scratch.queue.items().chain(batch) {
             if item.key < state.limit {

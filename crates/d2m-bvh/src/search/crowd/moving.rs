@@ -3,7 +3,7 @@
 use super::super::motion::frame::Frame;
 use super::super::scene::Scene;
 use super::paths::{BodyPaths, Path, Side};
-use crate::allowance::Allowance;
+use crate::meter::Meter;
 use crate::nearest_point::Simplex;
 use glam::DVec3;
 
@@ -56,7 +56,7 @@ impl<'f> Moving<'f> {
         points: &[Vec<DVec3>; 2],
         frame: &'f Frame,
         span: f64,
-        clock: &mut Allowance,
+        clock: &mut Meter,
     ) -> Option<Self> {
         let bodies = [Side::A, Side::B].map(|side| BodyPaths::new(scene, frame, side, span));
         let mut paths = [0, 1].map(|body| Vec::with_capacity(points[body].len()));
@@ -80,7 +80,7 @@ impl<'f> Moving<'f> {
     /// Is there a direction along which the points of A are below those of B by more than the level at both ends? Begins
     /// with a given one and goes on to the nearest point of the hull of all differences of B's points and A's at both ends, each
     /// where its acceleration may take it: that is the direction of the widest gap.
-    pub(super) fn separation(&self, search: &PlaneSearch, clock: &mut Allowance) -> Attempt {
+    pub(super) fn separation(&self, search: &PlaneSearch, clock: &mut Meter) -> Attempt {
         let mut n = search.first;
         let mut simplex: Option<Simplex> = None;
         let mut directions = 0;

@@ -3,7 +3,7 @@
 use super::super::motion::frame::Frame;
 use super::super::scene::{Scene, SceneBody};
 use super::paths::{BodyPaths, Side};
-use crate::allowance::Allowance;
+use crate::meter::Meter;
 use crate::tree::node::{Below, WIDTH};
 use glam::DVec3;
 
@@ -33,7 +33,7 @@ impl<'a> Reaches<'a> {
     }
 
     /// Measures what is below a box, and below all of its boxes; none: the time is over.
-    pub(super) fn measure(&mut self, index: u32, clock: &mut Allowance) -> Option<[f64; 2]> {
+    pub(super) fn measure(&mut self, index: u32, clock: &mut Meter) -> Option<[f64; 2]> {
         let known = self.known[index as usize];
         if !known[0].is_nan() {
             return Some(known);

@@ -3,11 +3,13 @@
 use super::super::motion::frame::Frame;
 use super::super::scene::{MovingTree, Scene};
 use super::*;
-use crate::{MeshTree, QueryOptions, TriMesh, Window};
+use crate::meter::Stop;
+use crate::{Budget, MeshTree, QueryOptions, TriMesh, Window};
 use d2m_lanes::F64x4;
 use d2m_motion::ConstantTwist;
 use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::DQuat;
+use std::time::Duration;
 
 fn soup(random: &mut KnuthRandom, shift: DVec3) -> MeshTree {
     let vertices = (0..9).map(|_| random.vector() + shift);
@@ -22,7 +24,7 @@ const fn moving(tree: &MeshTree, twist: ConstantTwist) -> MovingTree<'_> {
 fn points(scene: &Scene<'_>) -> [Vec<DVec3>; 2] {
     [&scene.a, &scene.b].map(|body| {
         let mut group = Group::new(body);
-        group.add(0, 100, &mut Allowance::unlimited()).unwrap();
+        group.add(0, 100, &mut Meter::unlimited()).unwrap();
         group.points
     })
 }
@@ -50,23 +52,23 @@ fn what_a_plane_parts_stays_apart() {
         let frame = motion.frame::<F64x4>(0.0);
         let span = scene.longest * (0.6 + 0.4 * random.signed());
         let points = points(&scene);
-        let moving = Moving::new(&scene, &points, &frame, span, &mut Allowance::unlimited()).unwrap();
+        let moving = Moving::new(&scene, &points, &frame, span, &mut Meter::unlimited()).unwrap();
         let n = moving.between().normalize();
-        let mut straight = Moving::new(&scene, &points, &frame, span, &mut Allowance::unlimited()).unwrap();
+        let mut straight = Moving::new(&scene, &points, &frame, span, &mut Meter::unlimited()).unwrap();
         straight.paths.iter_mut().flatten().for_each(|path| path.bend = 0.0);
         let [gaps, straight_gaps] = [&moving, &straight].map(|moving| moving.gaps(n).map(|gap| gap.along));
         let world = motion.rotation_b(0.0).transform(n);
         let gap_at = |time: f64| {
             let frame = motion.frame::<F64x4>(time);
             let n = motion.rotation_b(time).transposed::<F64x4>().transform(world);
-            Moving::new(&scene, &points, &frame, 0.0, &mut Allowance::unlimited()).unwrap().gaps(n)[0].along
+            Moving::new(&scene, &points, &frame, 0.0, &mut Meter::unlimited()).unwrap().gaps(n)[0].along
         };
         let least = (0..=8).map(|k| gap_at(span * f64::from(k) / 8.0)).fold(f64::INFINITY, f64::min);
         // The largest levels that the plane may prove: parts of the gaps at both ends.
         let ends = [gaps[0], gaps[1], straight_gaps[1]];
         for level in ends.into_iter().flat_map(|gap| [0.999, 0.9, 0.7].map(|part| part * gap)) {
             let search = PlaneSearch { first: n, level, most: 1 };
-            let proven = moving.separation(&search, &mut Allowance::unlimited()).separation;
+            let proven = moving.separation(&search, &mut Meter::unlimited()).separation;
             let at_one_end = gaps[0] > level;
             let without_bend = straight_gaps.iter().all(|&gap| gap > level);
             let claims = [matches!(proven, Separation::Proven { .. }), at_one_end, without_bend];
@@ -116,12 +118,12 @@ fn boxes_reach_as_far_as_their_vertices() {
     let frame: Frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
     for n in [DVec3::X, random.vector().normalize(), random.vector().normalize()] {
         let points = points(&scene);
-        let moving = Moving::new(&scene, &points, &frame, 0.25, &mut Allowance::unlimited()).unwrap();
+        let moving = Moving::new(&scene, &points, &frame, 0.25, &mut Meter::unlimited()).unwrap();
         let [mut reach_a, mut reach_b] =
             [Side::A, Side::B].map(|side| Reaches::new(&scene, side, &frame, 0.25, n));
         let (high, low) = (
-            reach_a.measure(0, &mut Allowance::unlimited()).unwrap(),
-            reach_b.measure(0, &mut Allowance::unlimited()).unwrap(),
+            reach_a.measure(0, &mut Meter::unlimited()).unwrap(),
+            reach_b.measure(0, &mut Meter::unlimited()).unwrap(),
         );
         for end in 0..2 {
             assert_eq!(moving.gaps(n)[end].along, -low[end] - high[end]);
@@ -141,9 +143,9 @@ fn preparations_end_with_the_time() {
             .unwrap();
     let points = [vertices.clone(), vertices];
     let frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
-    let over = || Allowance::until(Some(std::time::Instant::now()));
+    let over = || Meter::until(Stop::new(&Budget::UNLIMITED.with_wall_clock(Duration::ZERO)));
     assert!(Moving::new(&scene, &points, &frame, 0.25, &mut over()).is_none());
     let mut reaches = Reaches::new(&scene, Side::A, &frame, 0.25, DVec3::X);
     assert_eq!(reaches.measure(0, &mut over()), None);
-    assert!(reaches.measure(0, &mut Allowance::unlimited()).is_some());
+    assert!(reaches.measure(0, &mut Meter::unlimited()).is_some());
 }

@@ -9,8 +9,8 @@ pub(crate) mod screw_search;
 mod swept_body;
 pub(crate) mod swept_volume;
 
+use crate::meter::Stop;
 use crate::tree::margin::DOWN;
-use std::time::Instant;
 
 /// What a skip must give, and what it may cost.
 #[derive(Clone, Copy, Debug)]
@@ -21,8 +21,8 @@ pub(crate) struct SkipLimits {
     pub(crate) most_work: u64,
     /// What is left of the query's budget, in pairs, for all that the attempt does.
     pub(crate) budget: u64,
-    /// The attempt fails when this time has come.
-    pub(crate) deadline: Option<Instant>,
+    /// The attempt fails when this has come.
+    pub(crate) stop: Stop,
     /// Triangles of A and of B that may be the reason for gaining too little: they are tested first.
     pub(crate) witnesses: [u32; 2],
 }

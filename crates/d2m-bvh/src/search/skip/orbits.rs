@@ -3,7 +3,7 @@
 use super::projection::{Piece, ProjectedVertex, Range, angle};
 use super::projection_tree::ProjectionTree;
 use super::screw::Screw;
-use crate::allowance::{Allowance, Exhausted};
+use crate::meter::{Exhausted, Meter};
 use crate::tree::margin::UP;
 use glam::DVec3;
 use std::collections::HashMap;
@@ -35,7 +35,7 @@ impl BodyProjections {
         screw: &Screw,
         places: &[DVec3],
         triangles: &[[u32; 3]],
-        clock: &mut Allowance,
+        clock: &mut Meter,
     ) -> Result<Self, Exhausted> {
         let farthest = places.iter().map(|p| p.truncate().length_squared()).fold(0.0, f64::max).sqrt();
         let angle_of = |p: &DVec3| {

@@ -1,7 +1,7 @@
 //! A binary tree over the projection of a body.
 
 use super::projection::{Piece, Projection};
-use crate::allowance::{Allowance, Exhausted};
+use crate::meter::{Exhausted, Meter};
 
 /// Times that a triangle may be divided by four.
 const MOST_DIVISIONS: u8 = 7;
@@ -13,11 +13,7 @@ const SAMPLE: usize = 63;
 const LEAST_HALF: usize = 16;
 
 /// Divides parts by their middles along a dimension; the number of those in the first half, which are not beyond the others.
-fn divide(
-    parts: &mut [(Projection, u32)],
-    dimension: usize,
-    clock: &mut Allowance,
-) -> Result<usize, Exhausted> {
+fn divide(parts: &mut [(Projection, u32)], dimension: usize, clock: &mut Meter) -> Result<usize, Exhausted> {
     let middle = |part: &(Projection, u32)| part.0.middle(dimension);
     if parts.len() > MOST_SELECTED {
         let mut sample: [f64; SAMPLE] =
@@ -69,7 +65,7 @@ pub(super) struct ProjectionTree {
 
 impl ProjectionTree {
     /// Of some pieces, on a screw with φ = z − hθ.
-    pub(super) fn try_new(pieces: Vec<Piece>, h: f64, clock: &mut Allowance) -> Result<Self, Exhausted> {
+    pub(super) fn try_new(pieces: Vec<Piece>, h: f64, clock: &mut Meter) -> Result<Self, Exhausted> {
         let mut parts: Vec<(Projection, u32)> = pieces.iter().map(Piece::projection).zip(0..).collect();
         let mut tree = Self { cells: Vec::with_capacity(4 * parts.len()), pieces, h };
         if let Some(&(projection, piece)) = parts.first() {
@@ -83,7 +79,7 @@ impl ProjectionTree {
         &mut self,
         cell: usize,
         parts: &mut [(Projection, u32)],
-        clock: &mut Allowance,
+        clock: &mut Meter,
     ) -> Result<(), Exhausted> {
         let mut projection = parts[0].0;
         for part in parts.iter() {

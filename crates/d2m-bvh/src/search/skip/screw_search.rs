@@ -11,7 +11,7 @@ use super::projection::{Axes, DIRECTIONS, Range};
 use super::projection_tree::ProjectionTree;
 use super::screw::Screw;
 use super::{Skip, SkipLimits, later_offset};
-use crate::allowance::Allowance;
+use crate::meter::Meter;
 use crate::search::scene::Scene;
 use crate::tree::margin::{UNIT_F64, UP};
 use glam::DVec3;
@@ -39,7 +39,7 @@ struct Walk<'s> {
     clear: f64,
     gain: f64,
     left: u64,
-    clock: Allowance,
+    clock: Meter,
 }
 
 /// Until when the projections of the bodies stay further apart than the level, from `start` on.
@@ -81,7 +81,7 @@ fn clear_along(screw: &Screw, scene: &Scene<'_>, start: f64, limits: &SkipLimits
         clear: length,
         gain: limits.least_gain,
         left: most,
-        clock: Allowance::until(limits.deadline),
+        clock: Meter::until(limits.stop),
     };
     let places = screw.places(scene, start);
     let probe = [0, 1].map(|body| {
@@ -239,9 +239,10 @@ impl Walk<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::meter::Stop;
     use crate::search::motion::local_motion::LocalMotion;
     use crate::search::skip::swept_volume::swept_clear_until;
-    use crate::{MeshTree, QueryOptions, TriMesh, Window};
+    use crate::{Budget, MeshTree, QueryOptions, TriMesh, Window};
     use d2m_feature::triangle_distance;
     use d2m_motion::ConstantTwist;
     use d2m_testing::{Draw, KnuthRandom};
@@ -251,7 +252,7 @@ mod tests {
         least_gain: 0.0,
         most_work: 1 << 13,
         budget: u64::MAX,
-        deadline: None,
+        stop: Stop::NEVER,
         witnesses: [0, 0],
     };
 
@@ -400,15 +401,15 @@ mod tests {
         let spin = |speed: f64| ConstantTwist::REST.with_angular_velocity(DVec3::Z * speed);
         let far = spin(3.0).with_position(DVec3::Z * 1.5);
         let scene = Scene::new((&a, far), (&b, spin(0.0)), Window::UNIT, &QueryOptions::default());
-        let now = std::time::Instant::now();
-        for (deadline, ends) in [(None, false), (Some(now), true)] {
-            let limits = SkipLimits { deadline, ..LIMITS };
+        let over = Stop::new(&Budget::UNLIMITED.with_wall_clock(std::time::Duration::ZERO));
+        for (stop, ends) in [(Stop::NEVER, false), (over, true)] {
+            let limits = SkipLimits { stop, ..LIMITS };
             let skip = screw_clear_until(&scene, 0.0, &limits);
             assert_eq!(skip.clear_until.is_none(), ends, "{skip:?}");
             let skip = swept_clear_until(&scene, 0.0, &limits, DVec3::Y);
             assert_eq!(skip.clear_until.is_none(), ends, "{skip:?}");
             let screw = Screw::new(&scene, 0.0).unwrap();
-            let mut clock = Allowance::until(deadline);
+            let mut clock = Meter::until(stop);
             let (places, triangles) = (a.mesh().vertices(), a.mesh().triangles());
             let projected = BodyProjections::try_new(&screw, places, triangles, &mut clock);
             assert_eq!(projected.is_err(), ends);

@@ -1,7 +1,7 @@
 //! What a part of a body sweeps out while the body turns about its axis, whatever the angle: its points stay on circles.
 
 use super::axis_distance::{distance_in_plane, distance_squared_in_plane};
-use crate::allowance::{Allowance, Exhausted};
+use crate::meter::{Exhausted, Meter};
 use crate::search::scene::SceneBody;
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::{Below, WIDTH};
@@ -95,7 +95,7 @@ impl<'a> SweptBody<'a> {
     }
 
     /// Fills in the annuli of all boxes.
-    pub(super) fn measure(&mut self, clock: &mut Allowance) -> Result<(), Exhausted> {
+    pub(super) fn measure(&mut self, clock: &mut Meter) -> Result<(), Exhausted> {
         let (to_axis, tree) = (self.to_axis_coordinates(), self.body.tree);
         let place = |&p: &DVec3| {
             clock.step()?;
@@ -110,7 +110,7 @@ impl<'a> SweptBody<'a> {
         &mut self,
         node: usize,
         places: &[DVec3],
-        clock: &mut Allowance,
+        clock: &mut Meter,
     ) -> Result<AnnularBound, Exhausted> {
         let mut all = AnnularBound::NONE;
         let tree = self.body.tree;

@@ -10,7 +10,7 @@
 
 use super::swept_body::{Distances, SweptBody, SweptPart};
 use super::{Skip, SkipLimits, later_offset};
-use crate::allowance::Allowance;
+use crate::meter::Meter;
 use crate::search::scene::Scene;
 use crate::tree::margin::{UNIT_F64, UP};
 use crate::tree::node::{Below, WIDTH};
@@ -57,7 +57,7 @@ pub(crate) fn swept_clear_until(
     if sweep.clear_for(&a, &b).is_none_or(|until| until < limits.least_gain) {
         return Skip { clear_until: None, work: 1 };
     }
-    let mut clock = Allowance::until(limits.deadline);
+    let mut clock = Meter::until(limits.stop);
     if sweep.bodies.iter_mut().any(|body| body.measure(&mut clock).is_err()) {
         return Skip { clear_until: None, work: 1 };
     }
@@ -73,7 +73,7 @@ struct Earliest {
 }
 
 impl Sweep<'_> {
-    fn earliest(&self, limits: &SkipLimits, clock: &mut Allowance) -> Earliest {
+    fn earliest(&self, limits: &SkipLimits, clock: &mut Meter) -> Earliest {
         let (mut clear, mut pairs) = (self.length, 0);
         let mut stack = vec![(0u32, 0u32)];
         while let Some((a, b)) = stack.pop() {
@@ -178,6 +178,7 @@ impl Sweep<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::meter::Stop;
     use crate::search::motion::local_motion::LocalMotion;
     use crate::{MeshTree, QueryOptions, TriMesh, Window};
     use d2m_feature::triangle_distance;
@@ -198,7 +199,7 @@ mod tests {
             least_gain: 0.0,
             most_work: 1 << 20,
             budget: u64::MAX,
-            deadline: None,
+            stop: Stop::NEVER,
             witnesses: [0, 0],
         };
         swept_clear_until(&scene, 0.0, &limits, direction).clear_until.unwrap_or(0.0)
