@@ -52,7 +52,7 @@ impl Meter {
         if self.most.is_some_and(|most| self.spent >= most) {
             return Err(Exhausted);
         }
-        let is_to_read = self.spent % STEPS_A_READING == 0;
+        let is_to_read = self.spent.is_multiple_of(STEPS_A_READING);
         self.spent += 1;
         if is_to_read { self.read_clock() } else { Ok(()) }
     }
