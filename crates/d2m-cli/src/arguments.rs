@@ -45,14 +45,13 @@ pub(crate) enum Command {
     Demo,
 }
 
-const MESH_HELP: &str =
-    "Mesh file (.obj, .stl, .ply, a saved .d2mtree) or built-in shape such as shape:gear?triangles=5000";
+const MESH_HELP: &str = "Mesh file (.obj, .stl, .ply, .off, .gltf, .glb, .dae, .3mf, a saved .d2mtree) or built-in shape such as shape:gear?triangles=5000";
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
 A motion is x=1,2,3;q=w,x,y,z;v=1,2,3;w=1,2,3[;at=1,2,3][;t=0]: position, orientation, velocity, angular velocity
-(radians per unit of time, world axes), the body point that x and v belong to, and the time that x and q belong to.
-What is left out is zero (q: unturned). @FILE reads a JSON form: the same keys; {\"times\", \"poses\": [{\"x\", \"q\"}, ...], \"join\": \"linear\" or \"screw\"} or
+(radians, or degrees as 90deg, per unit of time, world axes), the body point that x and v belong to, and the time that x and q belong to.
+What is left out is zero (q: unturned). rpy=roll,pitch,yaw may stand for q (as in URDF). @FILE reads a JSON form: the same keys; {\"times\", \"poses\": [{\"x\", \"q\"}, ...], \"join\": \"linear\" or \"screw\"} or
 {\"times\", \"spans\"} for keyframes; {\"chain\": [{\"x\", \"q\", \"joint\", \"axis\", \"value\"}, ...]} for a link of an arm, with joint
 fixed, revolute or prismatic and value a polynomial [c0, c1, ...] or {\"times\", \"pieces\"}. The window must lie within the times.
 
@@ -145,6 +144,25 @@ pub(crate) struct QueryArguments {
     pub(crate) min_separation: Option<String>,
     #[command(flatten)]
     pub(crate) solid: SolidArguments,
+    #[command(flatten)]
+    pub(crate) sizes: SizeArguments,
+}
+
+/// The sizes of two meshes.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct SizeArguments {
+    /// Scale of A: one number, or three with commas between them
+    #[arg(long, value_name = "S", allow_hyphen_values = true)]
+    pub(crate) scale_a: Option<String>,
+    /// Scale of B
+    #[arg(long, value_name = "S", allow_hyphen_values = true)]
+    pub(crate) scale_b: Option<String>,
+    /// Unit of the numbers of A (mm, cm, m or in), which become meters [default: as the file states, or none]
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) unit_a: Option<String>,
+    /// Unit of the numbers of B
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) unit_b: Option<String>,
 }
 
 /// What counts as a body.
@@ -176,6 +194,8 @@ pub(crate) struct PosedArguments {
     pub(crate) a: String,
     #[arg(value_name = "B", help = MESH_HELP)]
     pub(crate) b: String,
+    #[command(flatten)]
+    pub(crate) sizes: SizeArguments,
     /// Pose of A; the mesh as it is if not given
     #[arg(long, value_name = "P", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
     pub(crate) pose_a: String,

@@ -4,6 +4,7 @@ use crate::arguments::{Method, QueryArguments, SolidArguments};
 use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::output::note;
+use crate::sizes::{size_of, warn_of_sizes};
 use crate::trials::Trial;
 use d2m::bvh::paper::{self, SphereTree};
 use d2m::bvh::{
@@ -83,8 +84,14 @@ impl Pair {
             choose_solid([(&a.name, a.is_watertight())], arguments.solid)?,
             choose_solid([(&b.name, b.is_watertight())], arguments.solid)?,
         ];
+        warn_of_sizes(size_of(a.mesh()), size_of(b.mesh()));
         let (tolerance, min_separation) = (options.tolerance, options.min_separation);
         Ok(Self { a, b, solids, min_separation, tolerance, preparation, options })
+    }
+
+    /// How large the bodies are.
+    pub(crate) fn sizes(&self) -> [f64; 2] {
+        [size_of(self.a.mesh()), size_of(self.b.mesh())]
     }
 
     /// Each query on all threads of the machine: for single ones.

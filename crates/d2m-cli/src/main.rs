@@ -11,6 +11,7 @@ mod failure;
 mod load;
 mod mesh_library;
 mod motion;
+mod orientation;
 mod outcome;
 mod output;
 mod posed;
@@ -18,6 +19,7 @@ mod report;
 mod robot_scene;
 mod scene;
 mod simulation;
+mod sizes;
 mod trials;
 mod unique_keys;
 mod view;
@@ -30,7 +32,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let arguments = Arguments::try_parse().unwrap_or_else(|error| {
-        if let Some(hint) = window_hint(std::env::args()) {
+        for hint in window_hint(std::env::args()).into_iter().chain(pose_hint(std::env::args())) {
             output::note(&hint);
         }
         error.exit()
@@ -70,4 +72,21 @@ fn window_hint(words: impl Iterator<Item = String>) -> Option<String> {
     })?;
     let [start, end] = [&two[1], &two[2]].map(|word| word.trim_end_matches(','));
     Some(format!("d2m: --window takes both times in one word: --window {start},{end}"))
+}
+
+/// What someone means who gives a motion to a command of bodies at rest, or a pose to one of moving bodies.
+fn pose_hint(words: impl Iterator<Item = String>) -> Option<String> {
+    const AT_REST: [&str; 3] = ["distance", "collide", "proximities"];
+    const MOVING: [&str; 5] = ["toc", "view", "clearance", "spans", "verify"];
+    let words: Vec<String> = words.collect();
+    let command = words.get(1)?.as_str();
+    let (given, taken) = match command {
+        _ if AT_REST.contains(&command) => ("--motion-", "--pose-"),
+        _ if MOVING.contains(&command) => ("--pose-", "--motion-"),
+        _ => return None,
+    };
+    let word = words.iter().find(|word| word.starts_with(given))?;
+    let option = word.split('=').next().unwrap_or_default();
+    let wanted = option.replacen(given, taken, 1);
+    Some(format!("d2m: {command} takes {wanted}, not {option}"))
 }

@@ -1,8 +1,9 @@
 //! The meshes that a scene file names, each read once.
 
 use crate::failure::Failure;
-use crate::load::{Loaded, load};
+use crate::load::{Loaded, load_with};
 use d2m::bvh::MeshTree;
+use d2m_io::ReadOptions;
 use glam::DVec3;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -29,8 +30,7 @@ impl MeshLibrary {
         } else {
             self.folder.join(mesh).to_string_lossy().into_owned()
         };
-        let loaded = load(&source)?;
-        loaded.scaled(scale).map_err(|error| Failure::at(source, format!("scaled by {scale}: {error}")))
+        load_with(&source, &ReadOptions::new().with_scale(scale))
     }
 
     /// The tree of such a mesh.

@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, parse_json};
 use crate::load::read;
+use crate::orientation::{warn_of_json, warn_of_text};
 use d2m::bvh::Window;
 use d2m::motion::{AnyMotion, ConstantTwist, CoveredMotion};
 use std::path::Path;
@@ -9,13 +10,29 @@ use std::path::Path;
 /// Reads `x=…;q=…;v=…;w=…` or `@file.json`; `option` names the place in messages.
 pub(crate) fn parse_motion(option: &str, text: &str) -> Result<AnyMotion, Failure> {
     let Some(file) = text.strip_prefix('@') else {
+        if let Some(hint) = file_hint(text) {
+            return Err(Failure::at(option, hint));
+        }
         let motion: ConstantTwist = text.parse().map_err(|error| Failure::at(option, error))?;
+        warn_of_text(option, text);
         return Ok(motion.into());
     };
     if file.is_empty() {
         return Err(Failure::at(option, "@ needs the name of a file"));
     }
-    parse_json(file, &read(Path::new(file))?)
+    let bytes = read(Path::new(file))?;
+    let motion = parse_json(file, &bytes)?;
+    if let Ok(value) = serde_json::from_slice(&bytes) {
+        warn_of_json(file, &value);
+    }
+    Ok(motion)
+}
+
+/// What someone means who gives the name of a file without an @.
+pub(crate) fn file_hint(text: &str) -> Option<String> {
+    let is_file =
+        !text.contains('=') && (text.ends_with(".json") || (!text.is_empty() && Path::new(text).is_file()));
+    is_file.then(|| format!("{text:?} is no motion; a file is given with an @ in front: @{text}"))
 }
 
 /// The window must lie within the times that the motion covers.

@@ -3,7 +3,10 @@
 use crate::arguments::{PosedArguments, SolidArguments};
 use crate::engine::choose_solid;
 use crate::failure::{Failure, parse_json};
-use crate::load::{load, read};
+use crate::load::read;
+use crate::motion::file_hint;
+use crate::orientation::{warn_of_json, warn_of_text};
+use crate::sizes::{load_both, size_of, sizes_line, warn_of_sizes};
 use d2m::bvh::{MeshTree, Posed, QueryError, Solid};
 use d2m::motion::{ConstantTwist, Pose};
 use glam::DVec3;
@@ -31,14 +34,21 @@ impl PosedBodies {
     /// Reads poses, then meshes.
     pub(crate) fn new(arguments: &PosedArguments) -> Result<Self, Failure> {
         let poses = [parse_pose("--pose-a", &arguments.pose_a)?, parse_pose("--pose-b", &arguments.pose_b)?];
-        let [a, b] = [load(&arguments.a)?, load(&arguments.b)?];
+        let [a, b] = load_both(&arguments.a, &arguments.b, &arguments.sizes)?;
         let [pose_a, pose_b] = poses;
         let both = [(a, pose_a), (b, pose_b)].map(|(loaded, pose)| Body {
             name: loaded.name.clone(),
             tree: loaded.into_tree(),
             pose,
         });
+        let [size_a, size_b] = both.each_ref().map(|body| size_of(body.tree.mesh()));
+        warn_of_sizes(size_a, size_b);
         Ok(Self { both })
+    }
+
+    /// The last line of a text: how large the bodies are.
+    pub(crate) fn sizes_line(&self) -> String {
+        sizes_line(self.both.each_ref().map(|body| size_of(body.tree.mesh())), None)
     }
 
     /// What counts as a body.
@@ -64,9 +74,23 @@ impl PosedBodies {
 /// Reads `x=…;q=…[;at=…]` or `@file.json` with these keys.
 fn parse_pose(option: &str, text: &str) -> Result<Pose, Failure> {
     let (place, motion): (&str, ConstantTwist) = match text.strip_prefix('@') {
-        None => (option, text.parse().map_err(|error| Failure::at(option, error))?),
+        None => {
+            if let Some(hint) = file_hint(text) {
+                return Err(Failure::at(option, hint));
+            }
+            let pose = text.parse().map_err(|error| Failure::at(option, error))?;
+            warn_of_text(option, text);
+            (option, pose)
+        }
         Some("") => return Err(Failure::at(option, "@ needs the name of a file")),
-        Some(file) => (file, parse_json(file, &read(Path::new(file))?)?),
+        Some(file) => {
+            let bytes = read(Path::new(file))?;
+            let pose = parse_json(file, &bytes)?;
+            if let Ok(value) = serde_json::from_slice(&bytes) {
+                warn_of_json(file, &value);
+            }
+            (file, pose)
+        }
     };
     for (key, velocity) in [("v", motion.linear_velocity()), ("w", motion.angular_velocity())] {
         if velocity != DVec3::ZERO {

@@ -139,6 +139,24 @@ impl Interval {
     pub const fn hi(self) -> f64 {
         self.0.to_array()[1]
     }
+
+    /// [`Self::lo`] by the name that interval arithmetic gives it (IEEE 1788).
+    #[inline(always)]
+    pub const fn inf(self) -> f64 {
+        self.lo()
+    }
+
+    /// [`Self::hi`] by the name that interval arithmetic gives it (IEEE 1788).
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// let third = Interval::ONE / Interval::point(3.0);
+    /// assert!(third.inf() < third.sup());
+    /// ```
+    #[inline(always)]
+    pub const fn sup(self) -> f64 {
+        self.hi()
+    }
 }
 
 impl PartialEq for Interval {

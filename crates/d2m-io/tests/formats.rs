@@ -1,11 +1,11 @@
 //! The same body in every format, in place; and what is named when something is wrong.
 
-mod common;
+mod samples;
 
-use common::{DAE_NODES, MODEL, OFF, archive, dae, gltf, tetrahedron, three_mf};
 use d2m_bvh::{Topology, TriMesh, Validation};
 use d2m_io::{Merging, MeshFormat, ReadOptions, Unit, UpAxis, parse_mesh, read_mesh};
 use glam::DVec3;
+use samples::{DAE_NODES, MODEL, OFF, archive, dae, gltf, tetrahedron, three_mf};
 
 fn read(format: MeshFormat, bytes: impl AsRef<[u8]>) -> TriMesh {
     parse_mesh(bytes.as_ref(), format, &ReadOptions::new()).unwrap().mesh
@@ -18,7 +18,7 @@ fn fault(format: MeshFormat, bytes: impl AsRef<[u8]>) -> String {
 #[test]
 fn every_format_holds_the_same_body() {
     let mesh = tetrahedron();
-    for (format, bytes) in common::all() {
+    for (format, bytes) in samples::all() {
         let found = read(format, bytes);
         assert!(Topology::new(&found).is_watertight(), "{format:?}");
         for triangle in 0..4 {

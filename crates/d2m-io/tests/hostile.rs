@@ -1,10 +1,10 @@
 //! Files that were made to harm: nothing panics, hangs or takes memory beyond measure.
 
-mod common;
+mod samples;
 
-use common::{MODEL, archive, dae, gltf, three_mf};
 use d2m_io::{MeshFormat, ReadOptions, parse_mesh};
 use proptest::prelude::*;
+use samples::{MODEL, archive, dae, gltf, three_mf};
 use std::fmt::Write;
 
 fn fault(format: MeshFormat, bytes: impl AsRef<[u8]>) -> String {
@@ -89,7 +89,7 @@ fn forged_counts_make_no_room() {
         .replace(r#""byteLength":48"#, r#""byteLength":4800000000000,"byteStride":12"#)
         .replace(r#""count":4"#, r#""count":400000000000"#);
     assert!(fault(MeshFormat::Gltf, text).contains("go beyond the 60 bytes"));
-    let mut bytes = d2m_io::glb_bytes(&common::tetrahedron()).unwrap();
+    let mut bytes = d2m_io::glb_bytes(&samples::tetrahedron()).unwrap();
     bytes[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
     assert!(fault(MeshFormat::Glb, bytes).contains("a chunk of 4294967295 bytes at byte 12"));
 }
@@ -134,7 +134,7 @@ proptest! {
     fn damaged_files_are_a_mesh_or_an_error(
         edits in prop::collection::vec((any::<usize>(), any::<u8>(), 0..7_u8), 1..5),
     ) {
-        for (format, bytes) in common::all() {
+        for (format, bytes) in samples::all() {
             let bytes = damaged(&bytes, &edits);
             if let Ok(read) = parse_mesh(&bytes, format, &ReadOptions::new()) {
                 prop_assert!(read.mesh.triangle_count() <= bytes.len());
@@ -146,9 +146,9 @@ proptest! {
         let bytes = three_mf(&String::from_utf8_lossy(&model));
         let _ = parse_mesh(&bytes, MeshFormat::ThreeMf, &ReadOptions::new());
         // Any file under any name.
-        for (_, bytes) in common::all() {
+        for (_, bytes) in samples::all() {
             let bytes = damaged(&bytes, &edits);
-            for (format, _) in common::all() {
+            for (format, _) in samples::all() {
                 let _ = parse_mesh(&bytes, format, &ReadOptions::new());
             }
         }

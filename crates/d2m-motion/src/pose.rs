@@ -27,6 +27,17 @@ impl Pose {
     /// The body frame is the world frame.
     pub const IDENTITY: Self = Self { rotation: DQuat::IDENTITY, translation: DVec3::ZERO, at: DVec3::ZERO };
 
+    /// The body origin at `position`, the body turned by a unit quaternion.
+    ///
+    /// ```
+    /// use d2m_motion::Pose;
+    /// use glam::{DQuat, DVec3};
+    /// assert_eq!(Pose::new(DVec3::X, DQuat::IDENTITY).transform_point(DVec3::Y), DVec3::new(1.0, 1.0, 0.0));
+    /// ```
+    pub const fn new(position: DVec3, rotation: DQuat) -> Self {
+        Self { rotation, translation: position, at: DVec3::ZERO }
+    }
+
     /// The body origin at `position`, the body turned by the rotation vector: about its direction, by its length in radians.
     ///
     /// ```
@@ -125,6 +136,10 @@ pub struct IntervalPose {
 }
 
 impl IntervalPose {
+    /// The body frame is the world frame, exactly.
+    pub const IDENTITY: Self =
+        Self { rotation: IntervalMat3::IDENTITY, translation: IntervalVec3::ZERO, at: DVec3::ZERO };
+
     /// Encloses the world position of a body point (body frame, exact).
     pub fn enclose_point(&self, point: DVec3) -> IntervalVec3 {
         self.rotation.mul_vec(IntervalVec3::point(point) - self.at) + self.translation

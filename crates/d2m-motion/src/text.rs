@@ -1,5 +1,7 @@
-//! The text form of a motion, as the command line takes it: `x=1,2,3;q=w,x,y,z;v=…;w=…[;at=…][;t=…]`.
-use crate::{ConstantTwist, MotionError};
+//! The text form of a motion, as the command line takes it: `x=1,2,3;q=w,x,y,z;v=…;w=…[;at=…][;t=…]`, or `rpy=…`
+//! in the place of `q`.
+use crate::sin_cos::LARGEST_ANGLE;
+use crate::{ConstantTwist, MotionError, Pose};
 use core::fmt;
 use core::str::FromStr;
 use glam::{DQuat, DVec3};
@@ -27,8 +29,37 @@ fn numbers<const N: usize>(key: &str, value: &str) -> Result<[f64; N], MotionErr
     Ok(out)
 }
 
+/// As [`numbers`]; one that ends in `deg` is in degrees and becomes radians, rounded.
+fn angles(key: &str, value: &str) -> Result<[f64; 3], MotionError> {
+    let in_degrees = value.split(',').map(|part| part.trim().ends_with("deg"));
+    let mut angles: [f64; 3] = if value.contains("deg") {
+        let plain: Vec<&str> = value
+            .split(',')
+            .map(|part| part.trim())
+            .map(|part| part.strip_suffix("deg").unwrap_or(part))
+            .collect();
+        numbers(key, &plain.join(","))?
+    } else {
+        numbers(key, value)?
+    };
+    for (angle, _) in angles.iter_mut().zip(in_degrees).filter(|(_, in_degrees)| *in_degrees) {
+        *angle = angle.to_radians();
+    }
+    Ok(angles)
+}
+
 /// Reads `x=1,2,3;q=w,x,y,z;v=1,2,3;w=1,2,3;at=1,2,3;t=0`: position, orientation, linear velocity, angular velocity,
-/// reference point, reference time. Every part may be left out (at rest, at the origin); none may come twice.
+/// reference point, reference time. Every part may be left out (at rest, at the origin); none may come twice. `rpy=roll,pitch,yaw` may stand
+/// in the place of `q`: turns about the fixed axes x, y and z, one after the other, R = R_z(yaw)·R_y(pitch)·R_x(roll) as in URDF. Angles in
+/// `w` and `rpy` are radians, or degrees with `deg` behind the number.
+///
+/// ```
+/// use d2m_motion::ConstantTwist;
+/// let turned: ConstantTwist = "rpy=0,0,90deg;w=0,0,-360deg".parse()?;
+/// assert!((turned.orientation() * glam::DVec3::X - glam::DVec3::Y).length() < 1e-15);
+/// assert_eq!(turned.angular_velocity().z, -std::f64::consts::TAU);
+/// # Ok::<(), d2m_motion::MotionError>(())
+/// ```
 ///
 /// # Errors
 /// [`MotionError::Text`] naming the key.
@@ -41,7 +72,7 @@ impl FromStr for ConstantTwist {
         let mut seen: Vec<&str> = Vec::new();
         for part in text.split(';').map(str::trim).filter(|part| !part.is_empty()) {
             let Some((key, value)) = part.split_once('=') else {
-                return Err(text_error(part, "expected key=value with key one of x, q, v, w, at, t"));
+                return Err(text_error(part, "expected key=value with key one of x, q, rpy, v, w, at, t"));
             };
             let key = key.trim();
             if seen.contains(&key) {
@@ -54,12 +85,25 @@ impl FromStr for ConstantTwist {
                     let [scalar, i, j, k] = numbers(key, value)?;
                     q = DQuat::from_xyzw(i, j, k, scalar);
                 }
+                "rpy" => {
+                    let angles = angles(key, value)?;
+                    if let Some(angle) = angles.iter().find(|angle| angle.abs() > LARGEST_ANGLE) {
+                        return Err(text_error(
+                            key,
+                            format!("{angle:?} is too large for an angle: the limit is {LARGEST_ANGLE:e}"),
+                        ));
+                    }
+                    q = Pose::from_rpy(DVec3::ZERO, angles).rotation;
+                }
                 "v" => v = DVec3::from_array(numbers(key, value)?),
-                "w" => w = DVec3::from_array(numbers(key, value)?),
+                "w" => w = DVec3::from_array(angles(key, value)?),
                 "at" => at = DVec3::from_array(numbers(key, value)?),
                 "t" => [t] = numbers(key, value)?,
-                _ => return Err(text_error(key, "unknown key: expected x, q, v, w, at or t")),
+                _ => return Err(text_error(key, "unknown key: expected x, q, rpy, v, w, at or t")),
             }
+        }
+        if seen.contains(&"q") && seen.contains(&"rpy") {
+            return Err(text_error("rpy", "the body is turned by q or by rpy, not by both"));
         }
         ConstantTwist::try_new(x, q, v, w)?.try_with_at(at)?.try_with_reference_time(t)
     }

@@ -13,6 +13,47 @@ pub trait Differentiable: IntervalFunction {
     fn enclose_derivative(&mut self, t: Interval) -> Interval;
 }
 
+/// Two closures as one function: f, and its derivative.
+struct Pair<F, D> {
+    f: F,
+    derivative: D,
+}
+
+impl<F: FnMut(Interval) -> Interval, D> IntervalFunction for Pair<F, D> {
+    fn enclose(&mut self, t: Interval) -> Interval {
+        (self.f)(t)
+    }
+}
+
+impl<F, D> Differentiable for Pair<F, D>
+where
+    F: FnMut(Interval) -> Interval,
+    D: FnMut(Interval) -> Interval,
+{
+    fn enclose_derivative(&mut self, t: Interval) -> Interval {
+        (self.derivative)(t)
+    }
+}
+
+/// [`first_zero`] of a closure and of its derivative.
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_root::{FirstZero, SearchLimits, first_zero_of};
+/// let range = Interval::new(0.0, 10.0);
+/// let found = first_zero_of(|t| t.cos() - t * 0.25, |t| -t.sin() - 0.25, range, SearchLimits::new(1e-12));
+/// let FirstZero::Found { bracket, .. } = found else { panic!("{found:?}") };
+/// assert!(bracket.contains(1.252_353_234_002_588_8));
+/// ```
+pub fn first_zero_of(
+    f: impl FnMut(Interval) -> Interval,
+    derivative: impl FnMut(Interval) -> Interval,
+    domain: Interval,
+    limits: SearchLimits,
+) -> FirstZero {
+    first_zero(&mut Pair { f, derivative }, domain, limits)
+}
+
 /// What is known of the zero in a bracket.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]

@@ -9,6 +9,13 @@ pub trait IntervalFunction {
     fn enclose(&mut self, t: Interval) -> Interval;
 }
 
+/// A closure is a function: `|t| t.cos() - t * 0.25`.
+impl<F: FnMut(Interval) -> Interval> IntervalFunction for F {
+    fn enclose(&mut self, t: Interval) -> Interval {
+        self(t)
+    }
+}
+
 /// A function of class C² whose value, slope and second derivative can be enclosed.
 pub trait SecondOrder: IntervalFunction {
     /// θ of f over the piece `t`: see [`InclusionFunction`].

@@ -11,7 +11,7 @@ mod isolator;
 mod parabola;
 
 pub use bboi::bboi;
-pub use first_zero::{Differentiable, FirstZero, ZeroEvidence, first_zero};
+pub use first_zero::{Differentiable, FirstZero, ZeroEvidence, first_zero, first_zero_of};
 pub use gamma::{Gamma, IntervalFunction, RootSearch, SearchLimits, SecondOrder, Settled};
 pub use hrfoi::hrfoi;
 pub use inclusion_function::InclusionFunction;

@@ -3,9 +3,9 @@
 use crate::arguments::BatchArguments;
 use crate::engine::{Answer, Pair};
 use crate::failure::Failure;
-use crate::load::load;
 use crate::output::{Output, note, progress_bar};
 use crate::report;
+use crate::sizes::load_both;
 use crate::trials::{self, Trial};
 use rayon::prelude::*;
 use std::path::Path;
@@ -16,7 +16,8 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     let inputs = [Path::new(&arguments.a), Path::new(&arguments.b), &arguments.trials];
     let out = Output::new(&arguments.out)?.spare(inputs)?;
     let trials = trials::load(&arguments.trials)?;
-    let pair = Pair::new(load(&arguments.a)?, load(&arguments.b)?, &arguments.query)?;
+    let [a, b] = load_both(&arguments.a, &arguments.b, &arguments.query.sizes)?;
+    let pair = Pair::new(a, b, &arguments.query)?;
     let bar = progress_bar(trials.len(), "trials");
     let start = Instant::now();
     let answer = |(index, trial): (usize, &Trial)| {

@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
         }
         line("query", solid_word(solid).to_owned());
         line("took", duration(took));
-        text
+        text + &bodies.sizes_line()
     })?;
     let outcome = if is_contact { Outcome::Contact } else { Outcome::Separated };
     Ok(outcome.reported(arguments.posed.exit_status))

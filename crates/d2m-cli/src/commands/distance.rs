@@ -49,7 +49,7 @@ fn to_text(bodies: &PosedBodies, solid: Solid, found: &Distance, took: Duration)
     }
     line("query", solid_word(solid).to_owned());
     line("took", duration(took));
-    text
+    text + &bodies.sizes_line()
 }
 
 /// What counts as a body, for a person.

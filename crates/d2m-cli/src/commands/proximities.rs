@@ -90,7 +90,7 @@ fn to_text(bodies: &PosedBodies, margin: f64, found: Option<&Found>, took: Durat
         line(label, format!("{} · {} triangles", body.name, body.tree.mesh().triangle_count()));
     }
     line("took", duration(took));
-    text
+    text + &bodies.sizes_line()
 }
 
 fn to_json(bodies: &PosedBodies, margin: f64, found: Option<&Found>, took: Duration) -> String {

@@ -3,11 +3,11 @@
 use crate::arguments::TocArguments;
 use crate::engine::{Pair, check_size};
 use crate::failure::Failure;
-use crate::load::load;
 use crate::motion::{parse_motion, parse_window, require_window};
 use crate::outcome::Outcome;
 use crate::output::{Output, print};
 use crate::report;
+use crate::sizes::{Travel, load_both, sizes_line, warn_of_turn};
 use d2m::bvh::{TimeOfContact, TriMesh};
 use d2m::motion::RigidMotion;
 use std::fmt::Write;
@@ -27,9 +27,13 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
         Some(path) => Some(Output::new(path)?.spare(inputs)?),
         None => None,
     };
-    let pair = Pair::new(load(&arguments.a)?, load(&arguments.b)?, &arguments.query)?.on_all_threads();
+    let [a, b] = load_both(&arguments.a, &arguments.b, &arguments.query.sizes)?;
+    let pair = Pair::new(a, b, &arguments.query)?.on_all_threads();
     check_size("--motion-a", &motion_a, &pair.a)?;
     check_size("--motion-b", &motion_b, &pair.b)?;
+    let travels = [&motion_a, &motion_b].map(|motion| Travel::of(motion, window));
+    warn_of_turn("--motion-a", travels[0]);
+    warn_of_turn("--motion-b", travels[1]);
     let answer = pair.answer(&motion_a, &motion_b, window)?;
     if let Some(scene) = scene {
         let time = match &answer.verdict {
@@ -48,7 +52,7 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
     print(&if arguments.json {
         report::json(&pair, window, &answer)
     } else {
-        report::text(&pair, window, &answer)
+        report::text(&pair, window, &answer) + &sizes_line(pair.sizes(), Some(travels))
     })?;
     Ok(Outcome::from(&answer.verdict).reported(arguments.exit_status))
 }

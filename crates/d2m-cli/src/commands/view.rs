@@ -3,10 +3,10 @@
 use crate::arguments::ViewArguments;
 use crate::engine::{Pair, check_size, options_of};
 use crate::failure::Failure;
-use crate::load::load;
 use crate::motion::{parse_motion, parse_window, require_window};
 use crate::output::Output;
 use crate::report;
+use crate::sizes::load_both;
 use crate::view::{
     DistanceSample, Holds, Mark, Picture, Span, StillSize, Up, flights_of, picture_of_run, picture_of_scene,
     still,
@@ -78,7 +78,8 @@ fn pair(arguments: &ViewArguments, b: &str) -> Result<Picture, Failure> {
         [parse_motion("--motion-a", &arguments.motion_a)?, parse_motion("--motion-b", &arguments.motion_b)?];
     require_window("--motion-a", &motions[0], window)?;
     require_window("--motion-b", &motions[1], window)?;
-    let pair = Pair::new(load(&arguments.a)?, load(b)?, &arguments.query)?.on_all_threads();
+    let [a, b] = load_both(&arguments.a, b, &arguments.query.sizes)?;
+    let pair = Pair::new(a, b, &arguments.query)?.on_all_threads();
     check_size("--motion-a", &motions[0], &pair.a)?;
     check_size("--motion-b", &motions[1], &pair.b)?;
     let answer = pair.answer(&motions[0], &motions[1], window)?;

@@ -6,10 +6,9 @@ pub(crate) use bytes::read;
 
 use crate::failure::Failure;
 use crate::output::progress_bar;
-use d2m::bvh::{MeshArrays, MeshError, MeshTree, TriMesh};
-use d2m::shapes;
-use d2m_io::{MeshFormat, MeshReport, ReadMesh, read_mesh};
-use glam::DVec3;
+use d2m::bvh::{MeshTree, TriMesh};
+use d2m::shapes::{self, SHAPES};
+use d2m_io::{MeshFormat, MeshReport, ReadMesh, ReadOptions, read_mesh_with};
 use std::path::Path;
 
 /// A mesh with the name that the user gave it, and how it was read.
@@ -54,20 +53,6 @@ impl Loaded {
         self.geometry.into_mesh()
     }
 
-    /// The mesh with each axis scaled. Mirrored triangles are turned round, so that the outside stays outside.
-    pub(crate) fn scaled(self, scale: DVec3) -> Result<Self, MeshError> {
-        if scale == DVec3::ONE {
-            return Ok(self);
-        }
-        let Self { name, report, geometry } = self;
-        let MeshArrays { vertices, triangles } = geometry.into_mesh().into_arrays();
-        let is_mirrored = scale.is_negative_bitmask().count_ones() % 2 == 1;
-        let turn = |[a, b, c]: [u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
-        let vertices = vertices.into_iter().map(|vertex| vertex * scale).collect();
-        let mesh = TriMesh::try_new(vertices, triangles.into_iter().map(turn).collect())?;
-        Ok(Self { name, report, geometry: Geometry::Mesh(mesh) })
-    }
-
     /// The mesh with its tree, built if the file holds none. What takes a second or more shows how far it is.
     pub(crate) fn into_tree(self) -> MeshTree {
         const LARGE: usize = 500_000;
@@ -86,20 +71,40 @@ impl Loaded {
 
 /// Loads `shape:…` or a file by its extension.
 pub(crate) fn load(source: &str) -> Result<Loaded, Failure> {
+    load_with(source, &ReadOptions::new())
+}
+
+/// As [`load`], in the scale and unit that the options state.
+pub(crate) fn load_with(source: &str, options: &ReadOptions) -> Result<Loaded, Failure> {
     let name = source.to_owned();
+    let resized = |mesh: TriMesh| options.apply(mesh).map_err(|error| Failure::at(source, error));
     if let Some(text) = source.strip_prefix("shape:") {
         let mesh = shapes::mesh(text).map_err(|error| Failure::Input(error.to_string()))?;
-        return Ok(Loaded::exact(name, Geometry::Mesh(mesh)));
+        return Ok(Loaded::exact(name, Geometry::Mesh(resized(mesh)?)));
     }
     let path = Path::new(source);
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("d2mtree")) {
         let tree = MeshTree::try_from_bytes(&read(path)?).map_err(|error| Failure::at(source, error))?;
-        return Ok(Loaded::exact(name, Geometry::Tree(Box::new(tree))));
+        let geometry = if *options == ReadOptions::new() {
+            Geometry::Tree(Box::new(tree))
+        } else {
+            Geometry::Mesh(resized(tree.into_mesh())?)
+        };
+        return Ok(Loaded::exact(name, geometry));
     }
     if MeshFormat::from_path(path).is_none() {
+        let hint = match source.split('?').next() {
+            Some(shape) if SHAPES.iter().any(|known| known.name == shape) => {
+                format!("; is the built-in shape:{source} meant?")
+            }
+            _ if path.extension().is_some_and(|extension| extension == "json") => {
+                "; scenes are for d2m scene, d2m simulate and d2m view".to_owned()
+            }
+            _ => String::new(),
+        };
         let expected = format!("expected {}, .d2mtree or shape:NAME", MeshFormat::EXTENSIONS);
-        return Err(Failure::at(source, format!("unknown kind of mesh: {expected}")));
+        return Err(Failure::at(source, format!("unknown kind of mesh: {expected}{hint}")));
     }
-    let ReadMesh { mesh, report } = read_mesh(path)?;
+    let ReadMesh { mesh, report } = read_mesh_with(path, options)?;
     Ok(Loaded { name, report, geometry: Geometry::Mesh(mesh) })
 }

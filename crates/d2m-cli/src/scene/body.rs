@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::mesh_library::{MeshLibrary, read_scale};
 use crate::motion::require_window;
+use crate::orientation::warn_of_json;
 use d2m::bvh::{MeshTree, Solid, Window};
 use d2m::motion::AnyMotion;
 use serde::Deserialize;
@@ -60,8 +61,11 @@ impl SceneBody {
             library.tree(&form.mesh, scale).map_err(|error| Failure::at(format!("{place}, mesh"), error))?;
         let motion = match form.motion {
             None => AnyMotion::ConstantTwist(d2m::ConstantTwist::REST),
-            Some(value) => serde_json::from_value(value)
-                .map_err(|error| Failure::at(format!("{place}, motion"), error))?,
+            Some(value) => {
+                let place = format!("{place}, motion");
+                warn_of_json(&place, &value);
+                serde_json::from_value(value).map_err(|error| Failure::at(place, error))?
+            }
         };
         // Twice the radius is a bound on the size that spans of keyframes have to meet by.
         motion

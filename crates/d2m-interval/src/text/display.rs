@@ -146,9 +146,18 @@ impl fmt::Display for Interval {
 }
 
 impl fmt::Debug for Interval {
-    /// The exact end points, as `f64` prints them.
+    /// The exact end points, as `f64` prints them; zero without a sign, because an interval has none.
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// assert_eq!(format!("{:?}", Interval::new(-0.0, 2.0)), "[0.0, 2.0]");
+    /// ```
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.is_empty() { f.write_str("[empty]") } else { write!(f, "[{:?}, {:?}]", self.lo(), self.hi()) }
+        if self.is_empty() {
+            return f.write_str("[empty]");
+        }
+        // Adding zero takes the sign off −0 only.
+        write!(f, "[{:?}, {:?}]", self.lo() + 0.0, self.hi() + 0.0)
     }
 }
 

@@ -102,8 +102,7 @@ fn parse(source: &Source<'_>, format: MeshFormat, options: &ReadOptions) -> Resu
         MeshFormat::Dae => collada::parse(bytes),
         MeshFormat::ThreeMf => three_mf::parse(bytes),
     };
-    let RawMesh { mut vertices, mut triangles, report } = raw.map_err(Fault::into_error)?;
-    options.apply(report.meters_per_unit, &mut vertices, &mut triangles);
+    let RawMesh { vertices, triangles, report } = raw.map_err(Fault::into_error)?;
     let mesh = TriMesh::try_new(vertices, triangles)
         .map_err(|source| IoError::Mesh { place: Place::default(), source })?;
     let merges = match options.merging {
@@ -111,7 +110,8 @@ fn parse(source: &Source<'_>, format: MeshFormat, options: &ReadOptions) -> Resu
         Merging::ByFormat => format.splits_vertices(),
         Merging::Never => false,
     };
-    Ok(ReadMesh { mesh: if merges { mesh.merged() } else { mesh }, report })
+    let mesh = if merges { mesh.merged() } else { mesh };
+    Ok(ReadMesh { mesh: options.apply_in(report.meters_per_unit, mesh)?, report })
 }
 
 /// The bytes of a file, and where the files are that it names.

@@ -1,6 +1,7 @@
 //! What a reader may do to a mesh.
 
-use crate::IoError;
+use crate::{IoError, Place};
+use d2m_bvh::{MeshArrays, TriMesh};
 use glam::DVec3;
 
 /// How a mesh is read.
@@ -47,14 +48,34 @@ impl ReadOptions {
         Self { merging, ..self }
     }
 
+    /// A mesh from elsewhere, whose numbers are in the stated unit, in meters and scaled.
+    ///
+    /// ```
+    /// use d2m_io::{ReadOptions, Unit};
+    /// let cube = d2m_shapes::mesh("box?x=10&y=10&z=10").unwrap();
+    /// let small = ReadOptions::new().with_unit(Unit::Millimeter).apply(cube)?;
+    /// assert_eq!(small.vertices()[0].abs().x, 0.005);
+    /// # Ok::<(), d2m_io::IoError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`IoError::BadScale`], and [`IoError::Mesh`] for a vertex that becomes too large.
+    pub fn apply(&self, mesh: TriMesh) -> Result<TriMesh, IoError> {
+        self.apply_in(None, mesh)
+    }
+
     pub(super) fn check(&self) -> Result<(), IoError> {
         let is_usable = self.scale.is_finite() && self.scale.abs().min_element() > 0.0;
         if is_usable { Ok(()) } else { Err(IoError::BadScale { scale: self.scale }) }
     }
 
-    /// `stated`: meters of a unit of the file.
-    pub(super) fn apply(&self, stated: Option<f64>, vertices: &mut [DVec3], triangles: &mut [[u32; 3]]) {
+    /// As [`Self::apply`]; `stated`: the meters of a unit of the file.
+    pub(super) fn apply_in(&self, stated: Option<f64>, mesh: TriMesh) -> Result<TriMesh, IoError> {
+        self.check()?;
         let meters = stated.unwrap_or(1.0);
+        if self.unit.unwrap_or(Unit::Meter) == Unit::Meter && meters == 1.0 && self.scale == DVec3::ONE {
+            return Ok(mesh);
+        }
         // A thousandth is no double, a thousand is: the quotient is rounded once.
         let parts = (1.0 / meters).round();
         let in_meters = |x: f64| match self.unit {
@@ -62,14 +83,17 @@ impl ReadOptions {
             None if parts * meters == 1.0 => x / parts,
             None => x * meters,
         };
-        for vertex in vertices {
+        let MeshArrays { mut vertices, mut triangles } = mesh.into_arrays();
+        for vertex in &mut vertices {
             *vertex = vertex.map(in_meters) * self.scale;
         }
         if self.scale.is_negative_bitmask().count_ones() % 2 == 1 {
-            for [_, b, c] in triangles {
+            for [_, b, c] in &mut triangles {
                 std::mem::swap(b, c);
             }
         }
+        TriMesh::try_new(vertices, triangles)
+            .map_err(|source| IoError::Mesh { place: Place::default(), source })
     }
 }
 

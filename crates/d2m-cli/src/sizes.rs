@@ -1,0 +1,162 @@
+//! Sizes that people mix up: the scale and unit of the meshes, what is echoed of them, and warnings.
+
+use crate::arguments::SizeArguments;
+use crate::failure::Failure;
+use crate::load::{Loaded, load_with};
+use crate::output::note;
+use crate::report::short;
+use d2m::bvh::{TriMesh, Window};
+use d2m::motion::{AnyMotion, RigidMotion};
+use d2m_io::{ReadOptions, Unit};
+use glam::DVec3;
+use std::f64::consts::TAU;
+
+/// Loads two meshes in the sizes that the options state.
+pub(crate) fn load_both(a: &str, b: &str, sizes: &SizeArguments) -> Result<[Loaded; 2], Failure> {
+    let options_a = read_options("a", sizes.scale_a.as_deref(), sizes.unit_a.as_deref())?;
+    let options_b = read_options("b", sizes.scale_b.as_deref(), sizes.unit_b.as_deref())?;
+    Ok([load_with(a, &options_a)?, load_with(b, &options_b)?])
+}
+
+fn read_options(body: &str, scale: Option<&str>, unit: Option<&str>) -> Result<ReadOptions, Failure> {
+    let mut options = ReadOptions::new();
+    if let Some(text) = unit {
+        let unit: Unit = text.parse().map_err(|error| Failure::at(format!("--unit-{body}"), error))?;
+        options = options.with_unit(unit);
+    }
+    if let Some(text) = scale {
+        let scale = parse_scale(text).map_err(|reason| Failure::at(format!("--scale-{body}"), reason))?;
+        options = options.with_scale(scale);
+    }
+    Ok(options)
+}
+
+/// One number, or three with commas between them.
+fn parse_scale(text: &str) -> Result<DVec3, String> {
+    let number = |word: &str| word.trim().parse::<f64>().map_err(|_| format!("{word:?} is not a number"));
+    let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
+    let scale = match numbers[..] {
+        [all] => DVec3::splat(all),
+        [x, y, z] => DVec3::new(x, y, z),
+        _ => return Err(format!("{text:?} has {} numbers: one is needed, or three", numbers.len())),
+    };
+    if scale.is_finite() && scale.abs().min_element() > 0.0 {
+        Ok(scale)
+    } else {
+        Err(format!("{text} has to be finite and not zero"))
+    }
+}
+
+/// Diagonals of boxes that differ by more than this are probably in two units.
+const UNLIKELY: f64 = 100.0;
+
+/// The diagonal of the box around a mesh.
+pub(crate) fn size_of(mesh: &TriMesh) -> f64 {
+    let low = mesh.vertices().iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = mesh.vertices().iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    (high - low).length()
+}
+
+/// Warns of bodies of very unlike sizes.
+pub(crate) fn warn_of_sizes(a: f64, b: f64) {
+    let (small, large) = (a.min(b), a.max(b));
+    if small > 0.0 && large > UNLIKELY * small {
+        note(&format!(
+            "d2m: warning: A is {} across and B {}: are both in the same unit? (--unit-a, --scale-a)",
+            digits(a),
+            digits(b)
+        ));
+    }
+}
+
+/// What a motion does in a window, as a person checks it. It is an estimate: nothing else depends on it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Travel {
+    /// Length of the path of the point that the motion follows.
+    pub(crate) way: f64,
+    /// Sum of all turning, radians.
+    pub(crate) turn: f64,
+}
+
+impl Travel {
+    /// Sums speeds at the middles of equal parts of the window.
+    pub(crate) fn of(motion: &AnyMotion, window: Window) -> Self {
+        const PARTS: u32 = 1024;
+        let part = window.length() / f64::from(PARTS);
+        let (mut way, mut turn) = (0.0, 0.0);
+        for index in 0..PARTS {
+            let (_, twist) = motion.pose_and_twist(window.start() + part * (f64::from(index) + 0.5));
+            way += twist.linear.length() * part;
+            turn += twist.angular.length() * part;
+        }
+        Self { way, turn }
+    }
+}
+
+/// Warns of a body that turns more than once: often degrees were meant.
+pub(crate) fn warn_of_turn(option: &str, travel: Travel) {
+    // The sum rounds; one whole turn is no surprise.
+    if travel.turn > TAU * (1.0 + 1e-9) {
+        note(&format!(
+            "d2m: warning: {option}: the body turns {} times in the window; angles are radians, or degrees with deg behind the number",
+            digits(travel.turn / TAU)
+        ));
+    }
+}
+
+/// The last line of an answer: how large each body is, and how far it goes and turns in the window.
+pub(crate) fn sizes_line(sizes: [f64; 2], travels: Option<[Travel; 2]>) -> String {
+    let one = |index: usize| {
+        let name = ["A", "B"][index];
+        let size = digits(sizes[index]);
+        match travels.map(|travels| travels[index]) {
+            None => format!("{name} is {size} across"),
+            Some(Travel { way, turn }) => {
+                format!(
+                    "{name} is {size} across, moves {} and turns {}°",
+                    digits(way),
+                    digits(turn.to_degrees())
+                )
+            }
+        }
+    };
+    format!("  {:<12}{} · {}\n", "sizes", one(0), one(1))
+}
+
+/// Four digits that count.
+fn digits(number: f64) -> String {
+    let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
+    short(rounded)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scales_are_one_number_or_three() {
+        assert_eq!(parse_scale("0.001"), Ok(DVec3::splat(0.001)));
+        assert_eq!(parse_scale("1, -2,3"), Ok(DVec3::new(1.0, -2.0, 3.0)));
+        for (text, expected) in [
+            ("0", "not zero"),
+            ("1,0,1", "not zero"),
+            ("inf", "finite"),
+            ("1,2", "2 numbers"),
+            ("x", "\"x\" is not"),
+        ] {
+            assert!(parse_scale(text).unwrap_err().contains(expected), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_line_says_size_way_and_turn() {
+        let motion: d2m::ConstantTwist = "v=3,4,0;w=0,0,90deg".parse().unwrap();
+        let travel = Travel::of(&motion.into(), Window::UNIT);
+        let rest = Travel::of(&d2m::ConstantTwist::REST.into(), Window::UNIT);
+        let line = sizes_line([0.25, 1e-9 / 3.0], Some([travel, rest]));
+        assert_eq!(
+            line,
+            "  sizes       A is 0.25 across, moves 5 and turns 90° · B is 3.333e-10 across, moves 0 and turns 0°\n"
+        );
+    }
+}
