@@ -43,6 +43,37 @@ pub(crate) enum Command {
     View(ViewArguments),
     /// The main job on built-in shapes: six scenes with their commands and answers
     Demo,
+    /// What a shell needs to complete this command's words
+    Completions(CompletionsArguments),
+    /// The manual page of this command, or of one of its subcommands
+    Man(ManArguments),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Exit codes: 0 written, 2 bad usage.
+
+Examples:
+  d2m completions bash > ~/.local/share/bash-completion/completions/d2m
+  d2m completions zsh > \"${fpath[1]}/_d2m\"
+  d2m completions fish > ~/.config/fish/completions/d2m.fish")]
+pub(crate) struct CompletionsArguments {
+    /// Shell
+    #[arg(value_enum)]
+    pub(crate) shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Exit codes: 0 written, 2 bad usage, 3 no such subcommand.
+
+Examples:
+  d2m man | man -l -
+  d2m man toc > /usr/local/share/man/man1/d2m-toc.1")]
+pub(crate) struct ManArguments {
+    /// Subcommand; the whole command if not given
+    #[arg(value_name = "COMMAND")]
+    pub(crate) command: Option<String>,
 }
 
 const MESH_HELP: &str = "Mesh file (.obj, .stl, .ply, .off, .gltf, .glb, .dae, .3mf, a saved .d2mtree) or built-in shape such as shape:gear?triangles=5000";
@@ -106,7 +137,12 @@ triangle_a,triangle_b,evidence,tolerance. toc is the certified start of the time
 proven free until then); the point lies on A; evidence is crossing, near or early and tolerance the one that was used, as
 d2m toc --help explains. What an answer does not have is empty.
 
-Exit codes: 0 answered, 2 bad usage, 3 bad input. No results are written unless all trials are answered.")]
+Exit codes: 0 answered, 2 bad usage, 3 bad input. No results are written unless all trials are answered. With --resume the answers so far stay
+in R.csv.part if the run is ended, and the next run with --resume and the same inputs goes on behind them.
+
+Examples:
+  d2m batch A.obj B.obj --trials trials.csv --out results.csv --threads 8
+  d2m batch A.obj B.obj --trials trials.jsonl --out results.csv --resume")]
 pub(crate) struct BatchArguments {
     #[arg(value_name = "A", help = MESH_HELP)]
     pub(crate) a: String,
@@ -121,11 +157,14 @@ pub(crate) struct BatchArguments {
     /// Trials that are answered at the same time
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: u16,
+    /// Keep the answers of a run that is ended, and go on behind those of an earlier one
+    #[arg(long)]
+    pub(crate) resume: bool,
     #[command(flatten)]
     pub(crate) query: QueryArguments,
 }
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct QueryArguments {
     /// Method; capoeira stops early: what it calls contact may be none
     #[arg(long, value_enum, default_value_t = Method::Accurate)]
@@ -449,7 +488,13 @@ pub(crate) struct RobotArguments {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = "Exit codes: 0 answered, 2 bad usage, 3 bad input.")]
+#[command(after_help = "\
+Exit codes: 0 answered, 2 bad usage, 3 bad input.
+
+Examples:
+  d2m info part.stl
+  d2m info 'shape:gear?teeth=24' --glb gear.glb
+  d2m info --shapes")]
 pub(crate) struct InfoArguments {
     #[arg(value_name = "A", help = MESH_HELP, required_unless_present = "shapes")]
     pub(crate) mesh: Option<String>,
@@ -462,6 +507,12 @@ pub(crate) struct InfoArguments {
     /// Also write the mesh as an OBJ file
     #[arg(long, value_name = "FILE", requires = "mesh")]
     pub(crate) obj: Option<String>,
+    /// Also write the mesh as a binary PLY file of doubles
+    #[arg(long, value_name = "FILE", requires = "mesh")]
+    pub(crate) ply: Option<String>,
+    /// Also write the mesh as a binary glTF file, in single precision: for viewers
+    #[arg(long, value_name = "FILE", requires = "mesh")]
+    pub(crate) glb: Option<String>,
 }
 
 #[derive(Debug, Args)]

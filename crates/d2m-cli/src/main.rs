@@ -14,6 +14,7 @@ mod motion;
 mod orientation;
 mod outcome;
 mod output;
+mod partial;
 mod posed;
 mod report;
 mod robot_scene;
@@ -51,6 +52,8 @@ fn main() -> ExitCode {
         Command::Tree(arguments) => commands::tree::run(arguments).map(Outcome::from),
         Command::View(arguments) => commands::view::run(arguments).map(Outcome::from),
         Command::Demo => commands::demo::run().map(Outcome::from),
+        Command::Completions(arguments) => commands::manual::completions(arguments).map(Outcome::from),
+        Command::Man(arguments) => commands::manual::page(arguments).map(Outcome::from),
     };
     match outcome {
         Ok(outcome) => ExitCode::from(outcome.code()),

@@ -4,7 +4,7 @@ use crate::output::note;
 use serde_json::Value;
 
 /// Lengths of quaternions differ from one by this much when their numbers were written with seven digits.
-const WRITTEN: f64 = 1e-6;
+pub(crate) const WRITTEN: f64 = 1e-6;
 
 /// Warns of a quaternion `[w, x, y, z]` that is probably not what was meant.
 fn warn(place: &str, q: [f64; 4]) {

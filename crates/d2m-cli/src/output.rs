@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fs;
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// Writes a line to standard error; nobody listening is no reason to stop.
@@ -23,6 +23,20 @@ pub(crate) fn progress_bar(length: usize, of: &str) -> ProgressBar {
 /// Writes to standard output.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     print_bytes(text.as_bytes())
+}
+
+/// Writes an answer to standard output; on a terminal its verdict has a color, unless `NO_COLOR` is set.
+pub(crate) fn print_answer(text: &str) -> Result<(), Failure> {
+    const COLORS: [(&str, u8); 3] = [("CONTACT", 31), ("SEPARATED", 32), ("UNDECIDED", 33)];
+    let is_dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+    let is_plain = is_dumb || std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    if is_plain || !io::stdout().is_terminal() {
+        return print(text);
+    }
+    let colored = COLORS.iter().find_map(|(word, color)| {
+        text.strip_prefix(word).map(|rest| format!("\x1b[1;{color}m{word}\x1b[0m{rest}"))
+    });
+    print(colored.as_deref().unwrap_or(text))
 }
 
 fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {

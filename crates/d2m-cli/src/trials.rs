@@ -3,6 +3,7 @@
 use crate::failure::{Failure, json_fault};
 use crate::load::read;
 use crate::motion::require_window;
+use crate::orientation::WRITTEN;
 use d2m::bvh::{MAX_COORDINATE, Window};
 use d2m::motion::{AnyMotion, ConstantTwist};
 use glam::{DQuat, DVec3};
@@ -17,6 +18,8 @@ pub(crate) struct Trial {
     pub(crate) motion_a: AnyMotion,
     pub(crate) motion_b: AnyMotion,
     pub(crate) window: Window,
+    /// Has it a quaternion that is not of length one?
+    pub(crate) has_odd_orientation: bool,
 }
 
 /// A line of JSON.
@@ -75,7 +78,7 @@ fn parse_json(text: &str, line: usize) -> Result<Trial, String> {
     let form: TrialForm = serde_json::from_str(text).map_err(|error| json_fault(&error, text))?;
     let [start, end] = form.window;
     let window = Window::try_new(start, end).map_err(|error| format!("window: {error}"))?;
-    let trial = Trial { line, motion_a: form.a, motion_b: form.b, window };
+    let trial = Trial { line, motion_a: form.a, motion_b: form.b, window, has_odd_orientation: false };
     for (place, motion) in [("a", &trial.motion_a), ("b", &trial.motion_b)] {
         require_window(place, motion, window).map_err(|failure| failure.to_string())?;
     }
@@ -111,7 +114,9 @@ fn parse_line(text: &str, line: usize) -> Result<Trial, String> {
             .map_err(|error| format!("motion of {body}: {error}"))
     };
     let (motion_a, motion_b) = (motion(&numbers[..13], "A")?.into(), motion(&numbers[13..], "B")?.into());
-    Ok(Trial { line, motion_a, motion_b, window: Window::UNIT })
+    let is_odd = |q: &[f64]| (q.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs() > WRITTEN;
+    let has_odd_orientation = is_odd(&numbers[..4]) || is_odd(&numbers[13..17]);
+    Ok(Trial { line, motion_a, motion_b, window: Window::UNIT, has_odd_orientation })
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use crate::arguments::BatchArguments;
 use crate::engine::{Answer, Pair};
 use crate::failure::Failure;
 use crate::output::{Output, note, progress_bar};
+use crate::partial::Partial;
 use crate::report;
 use crate::sizes::load_both;
 use crate::trials::{self, Trial};
@@ -15,10 +16,22 @@ use std::time::Instant;
 pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     let inputs = [Path::new(&arguments.a), Path::new(&arguments.b), &arguments.trials];
     let out = Output::new(&arguments.out)?.spare(inputs)?;
+    if arguments.resume && arguments.trials == Path::new("-") {
+        return Err(Failure::at(
+            "--resume",
+            "standard input cannot be read again: name a file with --trials",
+        ));
+    }
     let trials = trials::load(&arguments.trials)?;
     let [a, b] = load_both(&arguments.a, &arguments.b, &arguments.query.sizes)?;
     let pair = Pair::new(a, b, &arguments.query)?;
+    let mut partial = if arguments.resume { Some(Partial::open(arguments, &out)?) } else { None };
+    let known = partial.as_ref().map_or(0, Partial::count).min(trials.len());
+    if known > 0 {
+        note(&format!("{known} of {} trials were answered before", trials.len()));
+    }
     let bar = progress_bar(trials.len(), "trials");
+    bar.set_position(known as u64);
     let start = Instant::now();
     let answer = |(index, trial): (usize, &Trial)| {
         let answer = pair.answer_trial(trial);
@@ -26,28 +39,68 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
         let place = || format!("{}, line {} (trial {index})", arguments.trials.display(), trial.line);
         answer.map_err(|failure| Failure::at(place(), failure))
     };
-    let answers: Result<Vec<Answer>, Failure> = if arguments.threads == 1 {
-        trials.iter().enumerate().map(answer).collect()
-    } else {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.into()).build();
-        let pool = pool.map_err(|error| Failure::at("--threads", error))?;
-        pool.install(|| trials.par_iter().enumerate().map(answer).collect())
-    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.into()).build();
+    let pool = pool.map_err(|error| Failure::at("--threads", error))?;
+    let mut answers: Vec<Answer> = Vec::with_capacity(trials.len() - known);
+    // Without --resume all at once; with it in parts that are kept.
+    let part = if arguments.resume { PART } else { trials.len() };
+    for first in (known..trials.len()).step_by(part) {
+        let chunk = &trials[first..trials.len().min(first + part)];
+        let found: Result<Vec<Answer>, Failure> = if arguments.threads == 1 {
+            chunk.iter().enumerate().map(|(index, trial)| answer((first + index, trial))).collect()
+        } else {
+            pool.install(|| {
+                chunk.par_iter().enumerate().map(|(index, trial)| answer((first + index, trial))).collect()
+            })
+        };
+        let found = found?;
+        if let Some(partial) = &mut partial {
+            let lines =
+                found.iter().enumerate().map(|(index, answer)| report::csv_line(first + index, answer));
+            partial.append(&lines.collect::<String>())?;
+        }
+        answers.extend(found);
+    }
     let elapsed = start.elapsed();
     bar.finish_and_clear();
-    let answers = answers?;
     let mut text = report::CSV_HEADER.to_owned();
-    for (trial, answer) in answers.iter().enumerate() {
-        text.push_str(&report::csv_line(trial, answer));
+    if let Some(partial) = &partial {
+        text.push_str(partial.lines());
+    } else {
+        for (trial, answer) in answers.iter().enumerate() {
+            text.push_str(&report::csv_line(trial, answer));
+        }
     }
     out.write(&text)?;
-    note(&summary(&answers));
+    if let Some(partial) = partial {
+        partial.remove();
+    }
+    if !answers.is_empty() {
+        note(&summary(&answers));
+    }
     note(&format!(
         "trees built in {}, all trials in {}",
         report::duration(pair.preparation),
         report::duration(elapsed)
     ));
+    warn_of_orientations(arguments, &trials);
     Ok(())
+}
+
+/// Trials that are kept together by `--resume`: some milliseconds to a second of work.
+const PART: usize = 256;
+
+/// One warning for all quaternions that are not of length one.
+fn warn_of_orientations(arguments: &BatchArguments, trials: &[Trial]) {
+    let mut odd = trials.iter().filter(|trial| trial.has_odd_orientation);
+    if let Some(first) = odd.next() {
+        note(&format!(
+            "d2m: warning: {}: {} trials have a quaternion that is not of length 1, the first in line {}; they are normalized",
+            arguments.trials.display(),
+            1 + odd.count(),
+            first.line
+        ));
+    }
 }
 
 /// Counts of the verdicts, median and worst time, largest separation.

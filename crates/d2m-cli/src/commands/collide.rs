@@ -4,7 +4,7 @@ use super::distance::solid_word;
 use crate::arguments::CollideArguments;
 use crate::failure::Failure;
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::output::print_answer;
 use crate::posed::PosedBodies;
 use crate::report::{duration, microseconds};
 use d2m::bvh::{Solid, collide, try_colliding_pair};
@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
     } else {
         None
     };
-    print(&if arguments.posed.json {
+    print_answer(&if arguments.posed.json {
         let object = json!({
             "status": if is_contact { "contact" } else { "separated" },
             "triangle_a": triangles.map(|[a, _]| a),

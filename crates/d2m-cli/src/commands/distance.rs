@@ -3,7 +3,7 @@
 use crate::arguments::DistanceArguments;
 use crate::failure::Failure;
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::output::print_answer;
 use crate::posed::PosedBodies;
 use crate::report::{duration, microseconds, short, start_word, vector};
 use d2m::bvh::{Distance, Solid, StartState, distance};
@@ -20,7 +20,7 @@ pub(crate) fn run(arguments: &DistanceArguments) -> Result<Outcome, Failure> {
     let found = distance(a.posed(), b.posed(), solid);
     let took = start.elapsed();
     let found = found.map_err(|error| bodies.failure(error))?;
-    print(&if arguments.posed.json {
+    print_answer(&if arguments.posed.json {
         to_json(&bodies, solid, &found, took)
     } else {
         to_text(&bodies, solid, &found, took)

@@ -7,7 +7,7 @@ use crate::output::{Output, print};
 use crate::report::short;
 use d2m::bvh::{EnclosingSphere, MeshParts, Validation};
 use d2m::shapes::{COMMON, SHAPES};
-use d2m_io::Precision;
+use d2m_io::{Precision, UpAxis, glb_bytes, obj_text, ply_bytes};
 use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;
@@ -17,23 +17,25 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     let Some(source) = &arguments.mesh else {
         return print(&if arguments.json { shapes_json() } else { shapes_text() });
     };
-    let export = match &arguments.obj {
-        Some(path) => Some(Output::new(path)?.spare([Path::new(source)])?),
-        None => None,
+    let output = |path: &Option<String>| match path {
+        Some(path) => Output::new(path)?.spare([Path::new(source)]).map(Some),
+        None => Ok(None),
     };
+    let [obj, ply, glb] = [output(&arguments.obj)?, output(&arguments.ply)?, output(&arguments.glb)?];
     let body = load(source)?;
     // A large mesh takes a second for each.
     let (validation, parts) = rayon::join(|| Validation::new(body.mesh()), || MeshParts::new(body.mesh()));
-    if let Some(export) = export {
-        let mut text = format!("# {source}\n");
-        for vertex in body.mesh().vertices() {
-            let _ = writeln!(text, "v {} {} {}", vertex.x, vertex.y, vertex.z);
-        }
-        for corners in body.mesh().triangles() {
-            let [a, b, c] = corners.map(|vertex| u64::from(vertex) + 1);
-            let _ = writeln!(text, "f {a} {b} {c}");
-        }
-        export.write(&text)?;
+    if let Some(obj) = obj {
+        obj.write(&format!("# {source}\n{}", obj_text(body.mesh())))?;
+    }
+    if let Some(ply) = ply {
+        ply.write_bytes(&ply_bytes(body.mesh()))?;
+    }
+    if let Some(glb) = glb {
+        let bytes = glb_bytes(body.mesh());
+        glb.write_bytes(
+            &bytes.ok_or_else(|| Failure::at("--glb", "the mesh is larger than the 4 GB of a file"))?,
+        )?;
     }
     print(&if arguments.json {
         mesh_json(&body, &validation, &parts)
@@ -79,6 +81,12 @@ fn mesh_text(body: &Loaded, validation: &Validation, parts: &MeshParts) -> Strin
     }
     if let Precision::Single(kind) = body.report.precision {
         line("precision", format!("single: a {kind} holds no more than 24 bits of each coordinate"));
+    }
+    if let Some(meters) = body.report.meters_per_unit.filter(|meters| *meters != 1.0) {
+        line("unit", format!("{} m in the file: read as meters", short(meters)));
+    }
+    if let Some(axis @ (UpAxis::X | UpAxis::Y)) = body.report.up_axis {
+        line("up", format!("{axis:?} in the file: nothing is turned for it"));
     }
     line("box", format!("{low:?} to {high:?}"));
     line("sphere", format!("center {:?}, radius {}", sphere.center.to_array(), short(sphere.radius)));
@@ -126,6 +134,7 @@ fn mesh_json(body: &Loaded, validation: &Validation, parts: &MeshParts) -> Strin
             Precision::Double => "double",
             Precision::Single(_) => "single",
         },
+        "meters_per_unit": body.report.meters_per_unit,
         "polygons": {
             "cut": body.report.polygons.cut,
             "bent": body.report.polygons.bent,

@@ -6,6 +6,7 @@ pub(crate) mod demo;
 pub(crate) mod distance;
 pub(crate) mod features;
 pub(crate) mod info;
+pub(crate) mod manual;
 pub(crate) mod proximities;
 pub(crate) mod robot;
 pub(crate) mod scene;

@@ -4,7 +4,7 @@ use crate::arguments::SceneArguments;
 use crate::engine::number;
 use crate::failure::Failure;
 use crate::outcome::Outcome;
-use crate::output::{print, progress_bar};
+use crate::output::{print_answer, progress_bar};
 use crate::report::{feature_field, short, vector};
 use crate::scene::Scene;
 use d2m::bvh::{Budget, QueryOptions, TimeOfContact, Window};
@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
     })?;
     bar.finish_and_clear();
     let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
-    print(&if arguments.json {
+    print_answer(&if arguments.json {
         json(scene.window, &names, &rows)
     } else {
         text(scene.window, &names, &rows)

@@ -5,7 +5,7 @@ use crate::engine::{Pair, check_size};
 use crate::failure::Failure;
 use crate::motion::{parse_motion, parse_window, require_window};
 use crate::outcome::Outcome;
-use crate::output::{Output, print};
+use crate::output::{Output, print_answer};
 use crate::report;
 use crate::sizes::{Travel, load_both, sizes_line, warn_of_turn};
 use d2m::bvh::{TimeOfContact, TriMesh};
@@ -32,9 +32,9 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
     check_size("--motion-a", &motion_a, &pair.a)?;
     check_size("--motion-b", &motion_b, &pair.b)?;
     let travels = [&motion_a, &motion_b].map(|motion| Travel::of(motion, window));
+    let answer = pair.answer(&motion_a, &motion_b, window)?;
     warn_of_turn("--motion-a", travels[0]);
     warn_of_turn("--motion-b", travels[1]);
-    let answer = pair.answer(&motion_a, &motion_b, window)?;
     if let Some(scene) = scene {
         let time = match &answer.verdict {
             TimeOfContact::Contact(contact) => contact.time_lo,
@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
         }
         scene.write(&text)?;
     }
-    print(&if arguments.json {
+    print_answer(&if arguments.json {
         report::json(&pair, window, &answer)
     } else {
         report::text(&pair, window, &answer) + &sizes_line(pair.sizes(), Some(travels))

@@ -43,6 +43,17 @@ pub(crate) fn place_of(index: usize, value: &Value) -> String {
     }
 }
 
+/// A fault of a scene that may be a simulation.
+pub(super) fn hinted(error: &serde_json::Error) -> String {
+    const OF_SIMULATIONS: [&str; 4] = ["simulation", "kind", "density", "mass"];
+    let text = error.to_string();
+    if OF_SIMULATIONS.iter().any(|key| text.contains(&format!("unknown field `{key}`"))) {
+        format!("{text}; a simulation is run by d2m simulate SCENE.json --out RUN.jsonl")
+    } else {
+        text
+    }
+}
+
 impl SceneBody {
     /// Reads a body's object, which has no other keys than those above; its motion covers the window.
     pub(crate) fn read(
@@ -51,7 +62,8 @@ impl SceneBody {
         window: Window,
         library: &mut MeshLibrary,
     ) -> Result<Self, Failure> {
-        let form: BodyForm = serde_json::from_value(value).map_err(|error| Failure::at(place, error))?;
+        let form: BodyForm =
+            serde_json::from_value(value).map_err(|error| Failure::at(place, hinted(&error)))?;
         if form.name.is_empty() {
             return Err(Failure::at(place, "the name is empty"));
         }

@@ -48,8 +48,8 @@ impl Scene {
         let place = path.display();
         let bytes = read(path)?;
         // Twice: first for faults with line and column, which are lost in a value.
-        let form: SceneForm =
-            serde_json::from_slice(&bytes).map_err(|error| Failure::at(place.to_string(), hinted(error)))?;
+        let form: SceneForm = serde_json::from_slice(&bytes)
+            .map_err(|error| Failure::at(place.to_string(), body::hinted(&error)))?;
         let [start, end] = form.window.unwrap_or([0.0, 1.0]);
         let window =
             Window::try_new(start, end).map_err(|error| Failure::at(format!("{place}, window"), error))?;
@@ -125,16 +125,6 @@ impl Scene {
             }
         }
         world
-    }
-}
-
-/// A fault of a file that may be a simulation.
-fn hinted(error: serde_json::Error) -> String {
-    let text = error.to_string();
-    if text.contains("unknown field `simulation`") {
-        format!("{text}; a simulation is run by d2m simulate SCENE.json --out RUN.jsonl")
-    } else {
-        text
     }
 }
 

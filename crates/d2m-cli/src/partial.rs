@@ -1,0 +1,83 @@
+//! The answers of a batch that was ended, kept beside its results.
+
+use crate::arguments::BatchArguments;
+use crate::failure::Failure;
+use crate::output::Output;
+use std::fs::{self, File, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Lines of results in a file `R.csv.part`, whose first line says from which inputs they come.
+#[derive(Debug)]
+pub(crate) struct Partial {
+    path: PathBuf,
+    file: File,
+    lines: String,
+}
+
+impl Partial {
+    /// Opens what an earlier run left, or begins anew. What comes of other inputs is refused; half a line is dropped.
+    pub(crate) fn open(arguments: &BatchArguments, out: &Output) -> Result<Self, Failure> {
+        let Output::File(out) = out else {
+            return Err(Failure::at("--resume", "standard output keeps no answers: name a file with --out"));
+        };
+        let path = PathBuf::from(format!("{}.part", out.display()));
+        let fault = |error: std::io::Error| Failure::at(path.display(), error);
+        let origin = format!("# d2m {} {:016x}\n", env!("CARGO_PKG_VERSION"), fingerprint(arguments)?);
+        let known = if path.exists() { fs::read_to_string(&path).map_err(fault)? } else { String::new() };
+        let lines = match known.strip_prefix(&origin) {
+            Some(lines) => lines[..lines.rfind('\n').map_or(0, |end| end + 1)].to_owned(),
+            // Ended within the first line.
+            None if origin.starts_with(&known) => String::new(),
+            None => {
+                let reason =
+                    "holds answers of other inputs, options or another version: remove it to begin anew";
+                return Err(Failure::at(path.display(), reason));
+            }
+        };
+        fs::write(&path, format!("{origin}{lines}")).map_err(fault)?;
+        let file = OpenOptions::new().append(true).open(&path).map_err(fault)?;
+        Ok(Self { path, file, lines })
+    }
+
+    /// How many trials were answered.
+    pub(crate) fn count(&self) -> usize {
+        self.lines.lines().count()
+    }
+
+    /// The lines of all answers.
+    pub(crate) fn lines(&self) -> &str {
+        &self.lines
+    }
+
+    /// Keeps more answers.
+    pub(crate) fn append(&mut self, lines: &str) -> Result<(), Failure> {
+        let written = self.file.write_all(lines.as_bytes());
+        written.map_err(|error| Failure::at(self.path.display(), error))?;
+        self.lines.push_str(lines);
+        Ok(())
+    }
+
+    /// The results are complete; what was kept is no longer needed.
+    pub(crate) fn remove(self) {
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+/// A number that tells inputs apart: the bytes of the files and the options that change answers (FNV-1a).
+fn fingerprint(arguments: &BatchArguments) -> Result<u64, Failure> {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut add = |bytes: &[u8]| {
+        for byte in bytes.iter().chain(&[0]) {
+            hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    };
+    add(format!("{:?}", arguments.query).as_bytes());
+    for input in [Path::new(&arguments.a), Path::new(&arguments.b), &arguments.trials] {
+        add(input.as_os_str().as_encoded_bytes());
+        if input.is_file() {
+            add(&fs::read(input).map_err(|error| Failure::at(input.display(), error))?);
+        }
+    }
+    Ok(hash)
+}
