@@ -30,8 +30,9 @@ pub(crate) fn parse_motion(option: &str, text: &str) -> Result<AnyMotion, Failur
 
 /// What someone means who gives the name of a file without an @.
 pub(crate) fn file_hint(text: &str) -> Option<String> {
-    let is_file =
-        !text.contains('=') && (text.ends_with(".json") || (!text.is_empty() && Path::new(text).is_file()));
+    let path = Path::new(text);
+    let is_json = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
+    let is_file = !text.contains('=') && (is_json || path.is_file());
     is_file.then(|| format!("{text:?} is no motion; a file is given with an @ in front: @{text}"))
 }
 

@@ -33,11 +33,8 @@ fn numbers<const N: usize>(key: &str, value: &str) -> Result<[f64; N], MotionErr
 fn angles(key: &str, value: &str) -> Result<[f64; 3], MotionError> {
     let in_degrees = value.split(',').map(|part| part.trim().ends_with("deg"));
     let mut angles: [f64; 3] = if value.contains("deg") {
-        let plain: Vec<&str> = value
-            .split(',')
-            .map(|part| part.trim())
-            .map(|part| part.strip_suffix("deg").unwrap_or(part))
-            .collect();
+        let plain: Vec<&str> =
+            value.split(',').map(str::trim).map(|part| part.strip_suffix("deg").unwrap_or(part)).collect();
         numbers(key, &plain.join(","))?
     } else {
         numbers(key, value)?
