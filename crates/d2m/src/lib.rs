@@ -1,6 +1,9 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "verify")]
+pub mod verify;
+
 pub use d2m_bvh as bvh;
 #[cfg(feature = "dynamics")]
 pub use d2m_dynamics as dynamics;

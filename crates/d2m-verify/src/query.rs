@@ -1,0 +1,157 @@
+//! What is asked of two bodies, what may be claimed of them, and what becomes of a claim.
+use crate::Mesh;
+use d2m_interval::Interval;
+use d2m_motion::RigidMotion;
+
+/// What belongs to a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solid {
+    /// What the mesh encloses: points about which its winding number is not zero, or (where faces disagree about the outside) from
+    /// which a ray passes an odd number of faces. Repetitions of a triangle count once.
+    Filled,
+    /// The triangles alone.
+    Surface,
+}
+
+/// A body and its motion.
+#[derive(Clone, Copy)]
+pub struct Body<'a> {
+    /// The triangles, in body axes.
+    pub mesh: &'a Mesh,
+    /// How the body moves: its enclosures are trusted.
+    pub motion: &'a dyn RigidMotion,
+    /// What belongs to the body.
+    pub solid: Solid,
+    /// And everything within this distance of the mesh.
+    pub radius: f64,
+}
+
+/// A closed span of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeSpan {
+    /// First time.
+    pub from: f64,
+    /// Last time.
+    pub to: f64,
+}
+
+/// Two bodies in a window of time.
+#[derive(Clone, Copy)]
+pub struct Query<'a> {
+    /// A and B.
+    pub bodies: [Body<'a>; 2],
+    /// All times that a claim is about are in it.
+    pub window: TimeSpan,
+}
+
+/// What is claimed of two bodies. An answer claims several such things at once.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Claim {
+    /// The bodies are further apart than this at every time of the span.
+    Clear {
+        /// When.
+        span: TimeSpan,
+        /// A distance; zero: they share no point.
+        distance: f64,
+    },
+    /// At some time of the span the bodies are at most this far apart.
+    Within {
+        /// When.
+        span: TimeSpan,
+        /// A distance; zero: they share a point.
+        distance: f64,
+        /// Triangles of A and B that are, if it is known: they are tried first.
+        triangles: Option<[u32; 2]>,
+    },
+    /// A triangle of A and one of B (with the bodies' radii) are that far apart at a time.
+    Apart {
+        /// When.
+        time: f64,
+        /// Which.
+        triangles: [u32; 2],
+        /// By no less than this.
+        least: f64,
+        /// By no more than this.
+        most: f64,
+    },
+    /// A filled body holds a part of the other one, and the surfaces share no point.
+    Held {
+        /// When.
+        time: f64,
+    },
+    /// All of these.
+    All(Vec<Claim>),
+}
+
+/// What became of a claim.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub enum Verdict {
+    /// It is true.
+    Verified {
+        /// Steps that the proof took.
+        steps: u64,
+    },
+    /// It is false: two triangles, with the bodies' radii, are certainly so far apart at this time. A distance of zero of triangles that
+    /// are not near: one body holds the other.
+    Refuted {
+        /// When.
+        time: f64,
+        /// The triangle of A and that of B.
+        triangles: [u32; 2],
+        /// Encloses their distance.
+        distance: Interval,
+    },
+    /// Neither was proven.
+    Unproven {
+        /// What was claimed to be clear is, before this time.
+        clear_until: f64,
+        /// Why it was not proven.
+        reason: Reason,
+        /// Where: a triangle of A and one of B.
+        pair: Option<[u32; 2]>,
+    },
+}
+
+/// Why a claim was not proven.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, thiserror::Error)]
+#[non_exhaustive]
+pub enum Reason {
+    /// A budget ended it: the bodies are close for long.
+    #[error("the budget of steps ran out")]
+    Steps,
+    /// Enclosures of poses are wider than what the bodies are above the claimed distance.
+    #[error("the bodies are closer to the claimed distance than their poses are known")]
+    TooClose,
+    /// Two numbers for times have none between them.
+    #[error("no number for a time lies between two that are too far apart")]
+    TimeResolution,
+    /// Enclosures that are empty, unbounded or no numbers prove nothing.
+    #[error("a motion's enclosures are empty, unbounded or no numbers")]
+    Enclosure,
+    /// A piece of a motion ends before it begins.
+    #[error("a motion's pieces do not advance")]
+    Pieces,
+    /// The motion is not defined in all of the window.
+    #[error("the window leaves the times of a motion")]
+    OutsideMotion,
+    /// Not a claim about this window and these meshes: numbers out of order or out of range.
+    #[error("the answer is not one about these bodies and this window")]
+    Malformed,
+    /// The triangles are not proven to be as far apart as is claimed.
+    #[error("the triangles are not as far apart as the answer says")]
+    Distance,
+    /// No triangles were found to be near.
+    #[error("the claimed meeting was not found")]
+    NoMeeting,
+    /// A filled surface does not close, or no ray tells inside from outside.
+    #[error("inside and outside of a solid could not be told apart")]
+    Solid,
+    /// A tolerance larger than what was asked for and what rounding needs would make any answer right.
+    #[error("the tolerance of the answer is larger than what was asked for")]
+    Tolerance,
+    /// The answer promises nothing.
+    #[error("the answer promises nothing")]
+    NothingClaimed,
+}
