@@ -74,7 +74,8 @@ impl<'s> Attempt<'s> {
         let n = direction.guess(start);
         let length = n.length();
         let [ahead, behind] = start.guess_gaps(n, self.parts).map(|gap| gap - self.distance * length);
-        if !(ahead.max(behind) > 0.0) {
+        // What is no number separates nothing.
+        if ahead.max(behind) <= 0.0 || ahead.is_nan() {
             return false;
         }
         let n_end = direction.guess(end);
@@ -87,7 +88,7 @@ impl<'s> Attempt<'s> {
         };
         let last = last - self.distance * length_end;
         let gap = first.min(last);
-        if !(gap > 0.0) {
+        if gap <= 0.0 || gap.is_nan() {
             return false;
         }
         let level = Level { distance: self.distance, about: 0.5 * (length + length_end) };
@@ -120,21 +121,29 @@ impl<'s> Attempt<'s> {
     /// The proof: in intervals, from both ends and K L²/2.
     fn proven(&self, found: &Candidate, bend: f64) -> bool {
         let [Some(start), Some(end)] = &self.span.ends else { return false };
-        let [first, last] = [start, end].map(|now: &Instant| {
-            let n = found.direction.at(now);
-            (now.gap(n, self.parts) - found.level.needed(found.direction, n[0])).lo()
-        });
+        let [first, last] = [start, end].map(|now| self.above(now, found.direction, &found.level));
         lowest(first, last, bend) > 0.0
     }
 
-    /// An end at which no direction seems to separate two triangles (none, if an enclosure says nothing there).
-    pub(crate) fn unclear_end(&self) -> Option<Option<Instant>> {
-        let is_clear = |now: &Instant| {
-            faces_and_sides(self.parts).into_iter().chain(between(now, self.parts)).any(|direction| {
-                let n = direction.guess(now);
-                now.guess_gaps(n, self.parts).into_iter().any(|gap| gap > self.distance * n.length())
-            })
+    /// Is a direction proven to separate two triangles at the first end, and at the last?
+    pub(crate) fn clear_ends(&self) -> [bool; 2] {
+        let separates = |now: &Instant, direction: Direction| {
+            let n = direction.guess(now);
+            let level = Level { distance: self.distance, about: n.length() };
+            now.guess_gaps(n, self.parts).into_iter().any(|gap| gap > self.distance * n.length())
+                && [direction, direction.reversed()].into_iter().any(|d| self.above(now, d, &level) > 0.0)
         };
-        self.span.ends.into_iter().find(|end| !end.as_ref().is_some_and(is_clear))
+        [0, 1].map(|k| {
+            self.span.ends[k].as_ref().is_some_and(|now| {
+                let mut directions = faces_and_sides(self.parts).into_iter().chain(between(now, self.parts));
+                directions.any(|direction| separates(now, direction))
+            })
+        })
+    }
+
+    /// How much the gap along a direction is certainly above what it has to be at a time.
+    fn above(&self, now: &Instant, direction: Direction, level: &Level) -> f64 {
+        let n = direction.at(now);
+        (now.gap(n, self.parts) - level.needed(direction, n[0])).lo()
     }
 }

@@ -91,10 +91,10 @@ impl Mesh {
 
     /// Corners of a triangle, from the mesh's center.
     pub(crate) fn corners(&self, triangle: u32) -> [IntervalVec3; 3] {
-        self.triangles[triangle as usize].map(|v| self.from_center(self.vertices[v as usize]))
+        self.triangles[triangle as usize].map(|v| self.relative(self.vertices[v as usize]))
     }
 
-    pub(crate) fn from_center(&self, p: DVec3) -> IntervalVec3 {
+    pub(crate) fn relative(&self, p: DVec3) -> IntervalVec3 {
         IntervalVec3::point(p) - IntervalVec3::point(self.center)
     }
 
@@ -106,7 +106,7 @@ impl Mesh {
 
     fn push_node(&mut self, part: &[u32]) {
         let (low, high) = self.extent(part);
-        let bounds = self.from_center(low).hull(self.from_center(high));
+        let bounds = self.relative(low).hull(self.relative(high));
         let (part, size) = (Part::boxed(bounds), (high - low).length());
         self.nodes.push(Node { part, size, below: Below::Nodes(0) });
     }

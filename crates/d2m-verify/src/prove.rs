@@ -35,7 +35,7 @@ pub(crate) fn clear(
         let mut end = span.to;
         for until in bodies.map(|body| body.motion.smooth_until(now)).into_iter().flatten() {
             // A piece that does not advance, or an end that is no number.
-            if now < span.to && !(until > now) {
+            if now < span.to && (until <= now || until.is_nan()) {
                 return Err(Verdict::Unproven { clear_until: now, reason: Reason::Pieces, pair: None });
             }
             end = end.min(until.max(now));
@@ -47,6 +47,9 @@ pub(crate) fn clear(
         now = end;
     }
 }
+
+/// Steps at least that are looked for a counterexample in, after something could not be proven.
+const LATER: u64 = 4096;
 
 /// A part of the base and a part of the other body, over a span.
 #[derive(Clone, Copy)]
@@ -71,7 +74,7 @@ struct Prover<'q> {
     distance: f64,
     spans: Vec<Span>,
     tasks: Vec<Task>,
-    /// The earliest that could not be proven; tasks from then on are of no use.
+    /// The earliest that could not be proven.
     open: Option<Open>,
 }
 
@@ -97,15 +100,20 @@ impl<'q> Prover<'q> {
     }
 
     fn run(mut self, steps: &mut Steps) -> Result<(), Verdict> {
+        let mut most = u64::MAX;
         while let Some(task) = self.tasks.pop() {
             let from = self.spans[task.span].time.from;
-            if self.open.is_some_and(|open| from >= open.from) {
-                continue;
-            }
             if !steps.take() {
                 let left = self.tasks.iter().map(|task| self.spans[task.span].time.from);
                 let clear_until = left.fold(self.open.map_or(from, |open| open.from.min(from)), f64::min);
                 return Err(Verdict::Unproven { clear_until, reason: Reason::Steps, pair: None });
+            }
+            if let Some(open) = self.open {
+                // What cannot be proven may be refuted by what comes later, for as much work again.
+                most = most.min(2 * steps.taken + LATER);
+                if from >= open.from && steps.taken > most {
+                    continue;
+                }
             }
             self.step(task)?;
         }
@@ -126,12 +134,18 @@ impl<'q> Prover<'q> {
             if attempt.separates_triangles() || attempt.second_try() {
                 return Ok(());
             }
-            let reason = match attempt.unclear_end() {
-                Some(end) => Some(self.stuck(end, [&s, &t], pair)?),
-                None if self.halve(task) => None,
-                None => Some(Reason::TimeResolution),
+            let [first, last] = attempt.clear_ends();
+            let reason = if first && last {
+                if self.halve(task) {
+                    return Ok(());
+                }
+                Reason::TimeResolution
+            } else {
+                self.close_at_an_end(task.span, [&s, &t], pair)?
             };
-            self.open = reason.map(|reason| Open { from, reason, pair }).or(self.open);
+            if self.open.is_none_or(|open| from < open.from) {
+                self.open = Some(Open { from, reason, pair });
+            }
             return Ok(());
         }
         let parts = nodes.map(|node| &node.part);
@@ -143,15 +157,18 @@ impl<'q> Prover<'q> {
         Ok(())
     }
 
-    /// At a time at which nothing seems to separate two triangles they may be proven close. Where they are proven neither close nor clear,
-    /// no shorter span decides it.
-    fn stuck(&self, end: Option<Instant>, parts: [&Part; 2], pair: [u32; 2]) -> Result<Reason, Verdict> {
-        let Some(now) = end else { return Ok(Reason::Enclosure) };
-        let distance = meeting::distance(&now, parts);
-        if distance.hi() <= self.distance {
-            return Err(Verdict::Refuted { time: now.time, triangles: self.in_order(pair), distance });
+    /// At a time at which nothing separates two triangles they may be proven close: that is the error. Where they are proven neither
+    /// close nor clear, no shorter span decides it.
+    fn close_at_an_end(&self, span: usize, parts: [&Part; 2], pair: [u32; 2]) -> Result<Reason, Verdict> {
+        let ends = self.spans[span].ends;
+        for now in ends.iter().flatten() {
+            let distance = meeting::distance(now, parts);
+            if distance.hi() <= self.distance {
+                return Err(Verdict::Refuted { time: now.time, triangles: self.in_order(pair), distance });
+            }
         }
-        Ok(Reason::TooClose)
+        let is_known = ends.iter().all(Option::is_some);
+        Ok(if is_known { Reason::TooClose } else { Reason::Enclosure })
     }
 
     fn in_order(&self, [s, t]: [u32; 2]) -> [u32; 2] {

@@ -145,7 +145,7 @@ pub(crate) fn held(bodies: &[Body<'_>; 2], now: &Instant) -> Held {
             return Held::Unknown;
         }
         for &vertex in &inner.surface().parts {
-            let p = inner.from_center(inner.vertices[vertex as usize]);
+            let p = inner.relative(inner.vertices[vertex as usize]);
             let seen =
                 if holder == 0 { now.turn.mul_vec(p) + now.offset } else { now.back.mul_vec(p - now.offset) };
             match RAYS.iter().find_map(|&ray| outer.surface().contains(outer, seen, ray)) {

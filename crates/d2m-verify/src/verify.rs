@@ -16,7 +16,7 @@ use d2m_interval::Interval;
 /// let tetrahedron = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let mesh = Mesh::try_new(&tetrahedron, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
 /// // The base of a body that falls by 4 a unit of time meets the other body's tip after a quarter.
-/// let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(-4.0 * DVec3::Z);
+/// let falling = ConstantTwist::REST.with_position(DVec3::new(-0.1, -0.2, 2.0)).with_linear_velocity(-4.0 * DVec3::Z);
 /// let body = |motion| Body { mesh: &mesh, motion, solid: Solid::Filled, radius: 0.0 };
 /// let window = TimeSpan { from: 0.0, to: 1.0 };
 /// let query = Query { bodies: [body(&falling), body(&ConstantTwist::REST)], window };
@@ -69,11 +69,12 @@ impl Case<'_> {
             }
             Claim::Apart { time, triangles, least, most } => {
                 self.accept(TimeSpan { from: time, to: time }, most.max(0.0))?;
-                let distance = self.distance(time, triangles)?;
-                if distance.hi() < least || distance.lo() > most {
-                    return Err(Verdict::Refuted { time, triangles, distance });
+                let found = self.distance(time, triangles)?;
+                let [least, most] = [least, most].map(|x| self.of_meshes(x));
+                if found.hi() < least.lo() || found.lo() > most.hi() {
+                    return Err(self.refuted(time, triangles, found));
                 }
-                let is_proven = least <= distance.lo() && distance.hi() <= most;
+                let is_proven = least.hi() <= found.lo() && found.hi() <= most.lo();
                 if is_proven { Ok(()) } else { self.not_proven(Reason::Distance, Some(triangles)) }
             }
             Claim::Held { time } => {
@@ -91,7 +92,7 @@ impl Case<'_> {
         let TimeSpan { from, to } = self.window;
         let is_span = from <= span.from && span.from <= span.to && span.to <= to && (to - from).is_finite();
         let lengths = [distance, self.bodies[0].radius, self.bodies[1].radius];
-        if !is_span || !lengths.iter().all(|&x| x >= 0.0 && x < f64::INFINITY) {
+        if !is_span || !lengths.iter().all(|x| (0.0..f64::INFINITY).contains(x)) {
             return self.not_proven(Reason::Malformed, None);
         }
         let domains = self.bodies.map(|body| body.motion.domain());
@@ -115,36 +116,35 @@ impl Case<'_> {
     /// The surfaces are further apart all the time; and at the start no body holds a part of the other, so none ever does.
     fn clear(&self, span: TimeSpan, level: Interval, steps: &mut Steps) -> Proof {
         clear(&self.bodies, level.hi(), span, steps).map_err(|verdict| match verdict {
-            Verdict::Refuted { time, triangles, distance } => {
-                Verdict::Refuted { time, triangles, distance: (distance - self.radii()).max(Interval::ZERO) }
-            }
+            Verdict::Refuted { time, triangles, distance } => self.refuted(time, triangles, distance),
             open => open,
         })?;
         match held(&self.bodies, &self.instant(span.from)?) {
             Held::Neither => Ok(()),
-            Held::One => {
-                Err(Verdict::Refuted { time: span.from, triangles: [0, 0], distance: Interval::ZERO })
-            }
+            Held::One => Err(self.refuted(span.from, [0, 0], Interval::ZERO)),
             Held::Unknown => self.not_proven(Reason::Solid, None),
         }
     }
 
-    /// Distance of two triangles, less the radii.
+    /// By a distance of meshes, which is that of the bodies less their radii.
+    fn refuted(&self, time: f64, triangles: [u32; 2], distance: Interval) -> Verdict {
+        Verdict::Refuted { time, triangles, distance: (distance - self.radii()).max(Interval::ZERO) }
+    }
+
+    /// Distance of two triangles.
     fn distance(&self, time: f64, triangles: [u32; 2]) -> Proof<Interval> {
         if (0..2).any(|k| triangles[k] as usize >= self.bodies[k].mesh.triangle_count()) {
             return self.not_proven(Reason::Malformed, Some(triangles));
         }
         let [s, t] = meeting::triangles(&self.bodies, triangles);
-        let found = meeting::distance(&self.instant(time)?, [&s, &t]);
-        Ok((found - self.radii()).max(Interval::ZERO))
+        Ok(meeting::distance(&self.instant(time)?, [&s, &t]))
     }
 
     /// Somewhere the bodies are proven close; or it is refuted, because they are apart all the time.
     fn within(&self, span: TimeSpan, level: Interval, pair: Option<[u32; 2]>, steps: &mut Steps) -> Proof {
         let times = TIMES.map(|part| (span.from + part * (span.to - span.from)).clamp(span.from, span.to));
-        let most = (level - self.radii()).lo().max(0.0);
         for (time, pair) in times.into_iter().filter_map(|time| Some((time, pair?))) {
-            if self.distance(time, pair)?.hi() <= most {
+            if self.distance(time, pair)?.hi() <= level.lo() {
                 return Ok(());
             }
         }

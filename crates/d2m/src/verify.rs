@@ -12,7 +12,7 @@
 //! | … with evidence | within s (`Crossing`) or s + δ (`Near`) at some time of the bracket |
 pub use d2m_verify::*;
 
-use crate::{Contact, Mode, Moving, QueryOptions, StartState, TimeOfContact, TriMesh, Window};
+use crate::{Contact, Mode, Moving, Pose, QueryOptions, StartState, TimeOfContact, TriMesh, Twist, Window};
 use d2m_bvh::{self as bvh, Evidence};
 
 /// Steps of a proof, if nothing else is said: some seconds.
@@ -93,8 +93,8 @@ const MOST_LEFT: f64 = 3.3;
 const OFF: f64 = 1.0 / 16.0;
 /// δ if none is asked for, as a part of the larger body.
 const DEFAULT_TOLERANCE: f64 = 1e-10;
-/// What rounding may need for a tolerance at most, as a part of the lengths of the scene: 2⁻³⁸.
-const ROUNDING: f64 = 1.0 / 274_877_906_944.0;
+/// What rounding may need for a tolerance, as a part of the lengths of the scene: 2⁻⁴³, four times what the engine takes.
+const ROUNDING: f64 = 1.0 / 8_796_093_022_208.0;
 
 /// What an answer about these bodies claims.
 ///
@@ -113,7 +113,9 @@ pub fn claim(
     match answer {
         TimeOfContact::Separated => Ok(clear(window.end())),
         // At its end they may touch, and so they may from the start.
-        TimeOfContact::Undecided { clear_until } if *clear_until == window.start() => Ok(Claim::All(Vec::new())),
+        TimeOfContact::Undecided { clear_until } if *clear_until == window.start() => {
+            Ok(Claim::All(Vec::new()))
+        }
         TimeOfContact::Undecided { clear_until } => Ok(clear(*clear_until)),
         TimeOfContact::Contact(contact) => {
             let honest = honest_tolerance(bodies, window, options, contact.time_lo);
@@ -130,6 +132,9 @@ pub fn claim(
             match contact.start {
                 StartState::Apart => claims.push(clear(contact.time_lo)),
                 _ if contact.time_lo != window.start() => return Err(Reason::Malformed),
+                StartState::Overlapping | StartState::Contained if contact.separation != 0.0 => {
+                    return Err(Reason::Malformed);
+                }
                 StartState::Contained => return Ok(Claim::Held { time: contact.time_lo }),
                 // Triangles that cross as they are placed in floating point are near, to say the least.
                 StartState::Overlapping => {
@@ -175,21 +180,17 @@ fn honest_tolerance(bodies: &[Moving<'_>; 2], window: Window, options: &QueryOpt
     let states = [window.start(), time].map(|t| bodies.map(|moving| moving.motion.pose_and_twist(t)));
     let reach = |k: usize| {
         let (pose, _) = states[0][k];
-        radii[k] + (moving_center(&bodies[k]) - pose.at).length()
+        radii[k] + (bodies[k].body.center() - pose.at).length()
     };
     let reaches = [reach(0), reach(1)];
-    let apart = |[(a, _), (b, _)]: &[(crate::Pose, crate::Twist); 2]| (a.translation - b.translation).length();
-    let speed = |[(_, a), (_, b)]: &[(crate::Pose, crate::Twist); 2]| {
+    let apart = |[(a, _), (b, _)]: &[(Pose, Twist); 2]| (a.translation - b.translation).length();
+    let speed = |[(_, a), (_, b)]: &[(Pose, Twist); 2]| {
         (a.linear - b.linear).length() + a.angular.length() * reaches[0] + b.angular.length() * reaches[1]
     };
-    let lengths = reaches[0] + reaches[1] + apart(&states[0]).max(apart(&states[1])) + options.min_separation;
+    let travel = speed(&states[0]).max(speed(&states[1])) * window.length();
+    let apart = apart(&states[0]).max(apart(&states[1]));
+    let lengths = reaches[0] + reaches[1] + apart + travel + options.min_separation;
     let clock = 8.0 * speed(&states[1]) * (time.next_up() - time).max(time - time.next_down());
     let asked = options.tolerance.unwrap_or(DEFAULT_TOLERANCE * radii[0].max(radii[1]));
     (asked * (1.0 + f64::EPSILON)).max(ROUNDING * lengths).max(clock)
-}
-
-fn moving_center(moving: &Moving<'_>) -> glam::DVec3 {
-    let vertices = moving.body.mesh().vertices();
-    let fold = |f: fn(glam::DVec3, glam::DVec3) -> glam::DVec3| vertices.iter().copied().reduce(f);
-    fold(glam::DVec3::min).zip(fold(glam::DVec3::max)).map_or(glam::DVec3::ZERO, |(low, high)| (low + high) * 0.5)
 }
