@@ -1,0 +1,85 @@
+"""d2m: certified continuous collision detection of rigid bodies.
+
+Two bodies are triangle meshes, each with a rigid motion over a window of time: do they meet, and when first? Answers are
+certificates: never a missed contact, never a late one.
+
+>>> import d2m_ccd
+>>> box = d2m_ccd.Tree("shape:box?x=0.5&y=0.5&z=0.5")
+>>> d2m_ccd.time_of_contact(box, box, d2m_ccd.ConstantTwist(x=[3, 0, 0], v=[-4, 0, 0])).status
+'contact'
+"""
+
+from __future__ import annotations
+
+from ._d2m import (
+    Answer,
+    BodyId,
+    Chain,
+    ConstantTwist,
+    Contact,
+    Distance,
+    FirstContact,
+    Joint,
+    JointTrajectories,
+    Keyframes,
+    Mesh,
+    Motion,
+    PairContact,
+    Pose,
+    PoseTrajectories,
+    Screw,
+    Separated,
+    Spline,
+    Tree,
+    Undecided,
+    World,
+    batch,
+    collide,
+    contact_exists,
+    distance,
+    feature_text,
+    proximities,
+    time_of_contact,
+)
+from ._errors import InputError
+from ._records import PROXIMITY, RESULT, Evidence, FeatureKind, Start, Status
+from .manager import CollisionManager
+
+__all__ = [
+    "PROXIMITY",
+    "RESULT",
+    "Answer",
+    "BodyId",
+    "Chain",
+    "CollisionManager",
+    "ConstantTwist",
+    "Contact",
+    "Distance",
+    "Evidence",
+    "FeatureKind",
+    "FirstContact",
+    "InputError",
+    "Joint",
+    "JointTrajectories",
+    "Keyframes",
+    "Mesh",
+    "Motion",
+    "PairContact",
+    "Pose",
+    "PoseTrajectories",
+    "Screw",
+    "Separated",
+    "Spline",
+    "Start",
+    "Status",
+    "Tree",
+    "Undecided",
+    "World",
+    "batch",
+    "collide",
+    "contact_exists",
+    "distance",
+    "feature_text",
+    "proximities",
+    "time_of_contact",
+]

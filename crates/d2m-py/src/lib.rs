@@ -1,0 +1,44 @@
+//! Python bindings of d2m: the extension module `d2m_ccd._d2m`. What users see of it, `d2m_ccd`, is in `python/`.
+
+mod answer;
+mod arrays;
+mod batch;
+mod fault;
+mod files;
+mod mesh;
+mod motion;
+mod options;
+mod pose;
+mod query;
+mod record;
+mod resting;
+mod supervise;
+mod trajectory;
+mod world;
+
+use pyo3::prelude::*;
+
+/// The extension module of `d2m_ccd`.
+#[pymodule]
+mod _d2m {
+    #[pymodule_export]
+    use crate::answer::{Answer, Contact, Separated, Undecided};
+    #[pymodule_export]
+    use crate::batch::batch;
+    #[pymodule_export]
+    use crate::mesh::{Mesh, Tree};
+    #[pymodule_export]
+    use crate::motion::{Chain, ConstantTwist, Joint, Keyframes, Motion, Screw, Spline};
+    #[pymodule_export]
+    use crate::pose::Pose;
+    #[pymodule_export]
+    use crate::query::{contact_exists_py, time_of_contact_py};
+    #[pymodule_export]
+    use crate::record::feature_text_py;
+    #[pymodule_export]
+    use crate::resting::{Distance, collide, distance, proximities};
+    #[pymodule_export]
+    use crate::trajectory::{JointTrajectories, PoseTrajectories};
+    #[pymodule_export]
+    use crate::world::{BodyId, FirstContact, PairContact, World};
+}
