@@ -120,8 +120,8 @@ pub(crate) struct Separated;
 ///
 /// >>> import d2m_ccd
 /// >>> box = d2m_ccd.Tree("shape:box")
-/// >>> d2m_ccd.time_of_contact(box, box, {"x": [9, 0, 0], "v": [-9, 0, 0]}, node_tests=0)
-/// Undecided(clear_until=0.0)
+/// >>> d2m_ccd.time_of_contact(box, box, {"x": [9, 0, 0], "v": [-9, 0, 0]}, node_tests=0).status
+/// 'undecided'
 #[pyclass(frozen, extends = Answer, module = "d2m_ccd")]
 pub(crate) struct Undecided;
 

@@ -128,8 +128,7 @@ fn require_shape(array: &Bound<'_, PyAny>, name: &str, wanted: &[Option<usize>])
         return Ok(());
     }
     let value = Value::Numbers(found.iter().map(|&length| length as f64).collect());
-    let message =
-        format!("{name} has the shape {}, {} is expected", shape_text(&found), wanted_text(wanted));
+    let message = format!("{name} has the shape {}, {} is expected", shape_text(&found), wanted_text(wanted));
     Err(Fault::new(message).with_value(value).into())
 }
 
@@ -162,7 +161,8 @@ fn require_same(array: &Bound<'_, PyAny>, doubles: &Bound<'_, PyAny>, name: &str
     let first: Vec<usize> = places.get_item(0)?.extract()?;
     let value: i128 =
         array.get_item(pyo3::types::PyTuple::new(py, &first)?)?.call_method0("item")?.extract()?;
-    let message = format!("{name}{first:?} is {value} ({dtype}), beyond 2^53: not every such number is a double");
+    let message =
+        format!("{name}{first:?} is {value} ({dtype}), beyond 2^53: not every such number is a double");
     Err(Fault::new(message).at_places(first).with_value(Value::Whole(value)).into())
 }
 
@@ -184,20 +184,24 @@ pub(crate) fn triangles(any: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<[u32
     }
     require_shape(&array, name, &[None, Some(3)])?;
     let bad = |place: usize, value: i128| -> PyErr {
-        let message = format!(
-            "triangle {}: vertex index {value} is out of range, it must be in [0, 2^32)",
-            place / 3
-        );
+        let message =
+            format!("triangle {}: vertex index {value} is out of range, it must be in [0, 2^32)", place / 3);
         Fault::new(message).at_places(vec![place / 3, place % 3]).with_value(Value::Whole(value)).into()
     };
     if kind == 'u' {
-        numbers::<u64>(&array, "uint64", |value| u32::try_from(value).ok(), |place, value| {
-            bad(place, i128::from(value))
-        })
+        numbers::<u64>(
+            &array,
+            "uint64",
+            |value| u32::try_from(value).ok(),
+            |place, value| bad(place, i128::from(value)),
+        )
     } else {
-        numbers::<i64>(&array, "int64", |value| u32::try_from(value).ok(), |place, value| {
-            bad(place, i128::from(value))
-        })
+        numbers::<i64>(
+            &array,
+            "int64",
+            |value| u32::try_from(value).ok(),
+            |place, value| bad(place, i128::from(value)),
+        )
     }
 }
 

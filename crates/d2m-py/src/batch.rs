@@ -75,7 +75,8 @@ impl Batch<'_> {
         let within = |name: &'static str| move |fault: Fault| fault.within(name);
         let a = self.motions[0].of_trial(trial).map_err(within("motion of A"))?;
         let b = self.motions[1].of_trial(trial).map_err(within("motion of B"))?;
-        for ((motion, tree), name) in [&a, &b].into_iter().zip(self.trees).zip(["motion of A", "motion of B"]) {
+        for ((motion, tree), name) in [&a, &b].into_iter().zip(self.trees).zip(["motion of A", "motion of B"])
+        {
             if let TrialMotion::Form(form) = motion {
                 form.check_size(tree).map_err(within(name))?;
             }

@@ -151,9 +151,7 @@ impl From<MotionError> for Fault {
         let fault = Self::new(error.to_string());
         match error {
             MotionError::NotFinite { index, value, .. } => fault.at(index).found(value),
-            MotionError::OrientationNorm { w, x, y, z } => {
-                fault.with_value(Value::Numbers(vec![w, x, y, z]))
-            }
+            MotionError::OrientationNorm { w, x, y, z } => fault.with_value(Value::Numbers(vec![w, x, y, z])),
             MotionError::Keyframes { index, time, .. } | MotionError::HalfTurn { index, time } => {
                 fault.at(index).found(time)
             }

@@ -16,7 +16,9 @@ pub(crate) enum Loaded {
 
 /// Loads `shape:…` or a file by its extension.
 pub(crate) fn load(source: &Bound<'_, PyAny>) -> PyResult<Loaded> {
-    if let Some(shape) = source.extract::<String>().ok().as_deref().and_then(|text| text.strip_prefix("shape:")) {
+    if let Some(shape) =
+        source.extract::<String>().ok().as_deref().and_then(|text| text.strip_prefix("shape:"))
+    {
         return Ok(Loaded::Mesh(d2m::shapes::mesh(shape).or_raise()?));
     }
     let path: PathBuf = source.extract()?;
@@ -31,5 +33,6 @@ fn load_file(path: &Path) -> Result<Loaded, Fault> {
         let tree = pool(None)?.install(|| MeshTree::try_from_bytes(&bytes));
         return Ok(Loaded::Tree(Box::new(tree.map_err(|error| at(error.to_string()))?)));
     }
-    Err(at("unknown kind of mesh: .d2mtree or shape:NAME is expected".to_owned()))
+    let read = d2m_io::read_mesh(path).map_err(|error| Fault::new(error.to_string()))?;
+    Ok(Loaded::Mesh(read.mesh))
 }

@@ -220,7 +220,8 @@ pub(crate) fn pose_list(any: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<d2m:
             poses.enumerate().map(within).collect()
         }
         ref shape => {
-            let message = format!("{name} has the shape {shape:?}: (k, 7) as (q, x) or (k, 4, 4) is expected");
+            let message =
+                format!("{name} has the shape {shape:?}: (k, 7) as (q, x) or (k, 4, 4) is expected");
             Err(Fault::new(message).into())
         }
     }

@@ -57,7 +57,8 @@ pub(crate) fn run<T: Send>(
     is_decided: impl Fn(&T) -> bool,
 ) -> PyResult<T> {
     let limit = options.budget.wall_clock;
-    let brief = options.with_budget(options.budget.with_wall_clock(limit.map_or(BRIEF, |limit| limit.min(BRIEF))));
+    let brief =
+        options.with_budget(options.budget.with_wall_clock(limit.map_or(BRIEF, |limit| limit.min(BRIEF))));
     let first = py.detach(|| ask(&brief.with_parallel(false))).or_raise()?;
     if is_decided(&first) || limit.is_some_and(|limit| limit <= BRIEF) {
         return Ok(first);

@@ -228,10 +228,7 @@ pub(crate) fn proximities<'py>(
 }
 
 /// Proximities as a structured array.
-pub(crate) fn proximity_array<'py>(
-    py: Python<'py>,
-    found: &[d2m::Proximity],
-) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn proximity_array<'py>(py: Python<'py>, found: &[d2m::Proximity]) -> PyResult<Bound<'py, PyAny>> {
     let mut words = vec![0; found.len() * PROXIMITY_WORDS];
     for (proximity, words) in found.iter().zip(words.chunks_exact_mut(PROXIMITY_WORDS)) {
         write_proximity(proximity, words);

@@ -2,11 +2,12 @@
 
 use crate::arrays::Doubles;
 use crate::fault::{Fault, OrRaise};
-use crate::motion::{Joint, Form, degree_of, joint_list, motion_argument, span_named, twist_of_row};
-use crate::pose::{pose_of_row, pose_of_matrix};
-use d2m::motion::{Chain, JointValue, Keyframes, RigidMotion, Span, Spline, SplineDegree};
+use crate::motion::{Form, Joint, degree_of, joint_list, motion_argument, span_named, twist_of_row};
+use crate::pose::{pose_of_matrix, pose_of_row};
+use d2m::motion::{Chain, JointPoints, JointValue, Keyframes, RigidMotion, Span, Spline, SplineDegree};
 use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::types::{PySlice, PyTuple};
 
 /// Trajectories of many trials: poses at times, of shape (n, k, 7) as (q(w, x, y, z), x) or (n, k, 4, 4) as matrices.
 ///
@@ -69,9 +70,40 @@ impl PoseTrajectories {
         self.counts[0]
     }
 
+    /// Some of the trials, by a slice: views of the same arrays.
+    fn __getitem__(&self, py: Python<'_>, trials: &Bound<'_, PySlice>) -> PyResult<Self> {
+        let poses = self.poses.bind(py).get_item(trials)?;
+        let counts = [poses.len()?, self.counts[1]];
+        let times = times_of(self.times.bind(py), trials, self.counts)?;
+        Ok(Self { times, poses: poses.unbind(), join: self.join, counts })
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let (py, this) = (slf.py(), slf.get());
+        let join = match this.join {
+            Join::Keyframes(Span::Screw) => "screw",
+            Join::Keyframes(_) => "linear",
+            Join::Spline(SplineDegree::Quintic) => "quintic",
+            Join::Spline(_) => "cubic",
+        };
+        let rebuild = py.import("d2m_ccd._rebuild")?.getattr("pose_trajectories")?;
+        (rebuild, (&this.times, &this.poses, join)).into_pyobject(py)
+    }
+
     fn __repr__(&self) -> String {
         format!("PoseTrajectories({} trials, {} poses)", self.counts[0], self.counts[1])
     }
+}
+
+/// The times of some of the trials.
+fn times_of(
+    times: &Bound<'_, PyAny>,
+    trials: &Bound<'_, PySlice>,
+    [n, k]: [usize; 2],
+) -> PyResult<Py<PyAny>> {
+    let own = times.getattr(intern!(times.py(), "ndim"))?.extract::<usize>()? == 2;
+    debug_assert!(own || n == 0 || times.len().is_ok_and(|length| length == k));
+    Ok(if own { times.get_item(trials)?.unbind() } else { times.clone().unbind() })
 }
 
 fn check_times(times: &Bound<'_, PyAny>, [n, k]: [usize; 2]) -> PyResult<()> {
@@ -87,7 +119,7 @@ fn check_times(times: &Bound<'_, PyAny>, [n, k]: [usize; 2]) -> PyResult<()> {
 ///
 /// `joints`: the joints of the arm from the base on, as `Chain` takes them; the j of them that move and have no value of their
 /// own get `values`, angles in radians and lengths. `times` of shape (k,) or (n, k). Between times values are linear, or
-/// cubic (Hermite) with `velocities` of shape (n, k, j). The motion is that of the last frame; for a link before it give the
+/// cubic (Hermite) with `velocities` of shape (n, k, j), quintic with `accelerations` too. The motion is that of the last frame; for a link before it give the
 /// joints up to it. An argument for the motions of `batch`; the arrays are kept, not copied.
 ///
 /// Raises `InputError` for other shapes and numbers that are not finite.
@@ -102,18 +134,20 @@ pub(crate) struct JointTrajectories {
     times: Py<PyAny>,
     values: Py<PyAny>,
     velocities: Option<Py<PyAny>>,
+    accelerations: Option<Py<PyAny>>,
     counts: [usize; 3],
 }
 
 #[pymethods]
 impl JointTrajectories {
     #[new]
-    #[pyo3(signature = (joints, times, values, velocities=None))]
+    #[pyo3(signature = (joints, times, values, velocities=None, accelerations=None))]
     fn new(
         joints: &Bound<'_, PyAny>,
         times: &Bound<'_, PyAny>,
         values: &Bound<'_, PyAny>,
         velocities: Option<&Bound<'_, PyAny>>,
+        accelerations: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let py = times.py();
         let joints = joint_list(joints)?;
@@ -126,18 +160,47 @@ impl JointTrajectories {
             numbers.shape().to_vec()
         };
         let counts = [shape[0], shape[1], open];
-        let velocities = velocities.map(|any| array.call1((any,))).transpose()?;
-        if let Some(velocities) = &velocities {
-            let numbers = Doubles::new(velocities, "velocities", &counts.map(Some))?;
-            numbers.require_finite("velocities").or_raise()?;
+        let rates = |any: Option<&Bound<'_, PyAny>>, name: &str| {
+            let Some(any) = any else { return Ok(None) };
+            let any = array.call1((any,))?;
+            let numbers = Doubles::new(&any, name, &counts.map(Some))?;
+            numbers.require_finite(name).or_raise()?;
+            Ok::<_, PyErr>(Some(any.unbind()))
+        };
+        let velocities = rates(velocities, "velocities")?;
+        let accelerations = rates(accelerations, "accelerations")?;
+        if accelerations.is_some() && velocities.is_none() {
+            return Err(Fault::new("accelerations need velocities").into());
         }
         check_times(&times, [counts[0], counts[1]])?;
-        let velocities = velocities.map(Bound::unbind);
-        Ok(Self { joints, times: times.unbind(), values: values.unbind(), velocities, counts })
+        Ok(Self { joints, times: times.unbind(), values: values.unbind(), velocities, accelerations, counts })
     }
 
     fn __len__(&self) -> usize {
         self.counts[0]
+    }
+
+    /// Some of the trials, by a slice: views of the same arrays.
+    fn __getitem__(&self, py: Python<'_>, trials: &Bound<'_, PySlice>) -> PyResult<Self> {
+        let [n, k, j] = self.counts;
+        let part = |any: &Py<PyAny>| any.bind(py).get_item(trials).map(Bound::unbind);
+        let values = part(&self.values)?;
+        let counts = [values.bind(py).len()?, k, j];
+        Ok(Self {
+            joints: self.joints.clone(),
+            times: times_of(self.times.bind(py), trials, [n, k])?,
+            values,
+            velocities: self.velocities.as_ref().map(part).transpose()?,
+            accelerations: self.accelerations.as_ref().map(part).transpose()?,
+            counts,
+        })
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let (py, this) = (slf.py(), slf.get());
+        let arguments =
+            (this.joints.clone(), &this.times, &this.values, &this.velocities, &this.accelerations);
+        (slf.get_type(), arguments).into_pyobject(py)
     }
 
     fn __repr__(&self) -> String {
@@ -151,12 +214,18 @@ pub(crate) enum Motions<'py> {
     Same(Form),
     Each(Vec<Form>),
     Rows(Doubles<'py>),
-    Poses { times: Doubles<'py>, poses: Doubles<'py>, join: Join, counts: [usize; 2] },
+    Poses {
+        times: Doubles<'py>,
+        poses: Doubles<'py>,
+        join: Join,
+        counts: [usize; 2],
+    },
     Joints {
         joints: Vec<Joint>,
         times: Doubles<'py>,
         values: Doubles<'py>,
         velocities: Option<Doubles<'py>>,
+        accelerations: Option<Doubles<'py>>,
         counts: [usize; 3],
     },
 }
@@ -177,20 +246,25 @@ impl<'py> Motions<'py> {
             });
         }
         if let Ok(trajectories) = given.cast::<JointTrajectories>() {
-            let JointTrajectories { joints, times, values, velocities, counts } = trajectories.get();
-            let velocities = velocities.as_ref().map(|any| Doubles::of_any_shape(any.bind(py), "velocities"));
+            let JointTrajectories { joints, times, values, velocities, accelerations, counts } =
+                trajectories.get();
+            let rates = |any: &Option<Py<PyAny>>| {
+                any.as_ref().map(|any| Doubles::of_any_shape(any.bind(py), "rates")).transpose()
+            };
             return Ok(Self::Joints {
                 joints: joints.clone(),
                 times: Doubles::of_any_shape(times.bind(py), "times")?,
                 values: Doubles::of_any_shape(values.bind(py), "values")?,
-                velocities: velocities.transpose()?,
+                velocities: rates(velocities)?,
+                accelerations: rates(accelerations)?,
                 counts: *counts,
             });
         }
         if is_several(given)? {
-            let motions = given.try_iter()?.enumerate().map(|(index, any)| {
-                motion_argument(Some(&any?), &format!("{name}[{index}]"))
-            });
+            let motions = given
+                .try_iter()?
+                .enumerate()
+                .map(|(index, any)| motion_argument(Some(&any?), &format!("{name}[{index}]")));
             return Ok(Self::Each(motions.collect::<PyResult<_>>()?));
         }
         if given.cast::<crate::motion::Motion>().is_err() && !given.is_instance_of::<pyo3::types::PyDict>() {
@@ -199,7 +273,8 @@ impl<'py> Motions<'py> {
                 [13] => {}
                 [_, 13] => return Ok(Self::Rows(rows)),
                 ref shape => {
-                    let message = format!("{name} has the shape {shape:?}, (n, 13) as (q, x, v, w) is expected");
+                    let message =
+                        format!("{name} has the shape {shape:?}, (n, 13) as (q, x, v, w) is expected");
                     return Err(Fault::new(message).into());
                 }
             }
@@ -231,21 +306,24 @@ impl<'py> Motions<'py> {
                 points: counts[1],
                 is_matrix: poses.shape().len() == 4,
             },
-            Self::Joints { joints, times, values, velocities, counts } => MotionsView::Joints {
-                joints,
-                times: times.slice(),
-                values: values.slice(),
-                velocities: velocities.as_ref().map(Doubles::slice),
-                points: counts[1],
-                open: counts[2],
-            },
+            Self::Joints { joints, times, values, velocities, accelerations, counts } => {
+                MotionsView::Joints {
+                    joints,
+                    times: times.slice(),
+                    values: values.slice(),
+                    velocities: velocities.as_ref().map(Doubles::slice),
+                    accelerations: accelerations.as_ref().map(Doubles::slice),
+                    points: counts[1],
+                    open: counts[2],
+                }
+            }
         }
     }
 }
 
 /// A list or tuple whose first element is a motion: `Motion`, a dictionary or `None`.
 fn is_several(any: &Bound<'_, PyAny>) -> PyResult<bool> {
-    if !(any.is_instance_of::<pyo3::types::PyList>() || any.is_instance_of::<pyo3::types::PyTuple>()) {
+    if !(any.is_instance_of::<pyo3::types::PyList>() || any.is_instance_of::<PyTuple>()) {
         return Ok(false);
     }
     let Ok(first) = any.get_item(0) else { return Ok(false) };
@@ -260,12 +338,19 @@ pub(crate) enum MotionsView<'a> {
     Same(&'a Form),
     Each(&'a [Form]),
     Rows(&'a [f64]),
-    Poses { times: &'a [f64], poses: &'a [f64], join: Join, points: usize, is_matrix: bool },
+    Poses {
+        times: &'a [f64],
+        poses: &'a [f64],
+        join: Join,
+        points: usize,
+        is_matrix: bool,
+    },
     Joints {
         joints: &'a [Joint],
         times: &'a [f64],
         values: &'a [f64],
         velocities: Option<&'a [f64]>,
+        accelerations: Option<&'a [f64]>,
         points: usize,
         open: usize,
     },
@@ -318,12 +403,13 @@ impl<'a> MotionsView<'a> {
                     Join::Spline(degree) => TrialMotion::Spline(Spline::try_through(&frames, degree)?),
                 })
             }
-            Self::Joints { joints, times, values, velocities, points, open } => {
+            Self::Joints { joints, times, values, velocities, accelerations, points, open } => {
                 let block = points * open * trial..points * open * (trial + 1);
                 let path = JointPath {
                     times: of_trial(times, points, trial),
                     values: &values[block.clone()],
-                    velocities: velocities.map(|all| &all[block]),
+                    velocities: velocities.map(|all| &all[block.clone()]),
+                    accelerations: accelerations.map(|all| &all[block]),
                     open,
                 };
                 Ok(TrialMotion::Chain(path.chain(joints)?))
@@ -342,6 +428,7 @@ struct JointPath<'a> {
     times: &'a [f64],
     values: &'a [f64],
     velocities: Option<&'a [f64]>,
+    accelerations: Option<&'a [f64]>,
     open: usize,
 }
 
@@ -362,20 +449,14 @@ impl JointPath<'_> {
     }
 
     fn value(&self, joint: usize) -> Result<JointValue, Fault> {
-        let at = |numbers: &[f64], point: usize| numbers[point * self.open + joint];
-        let piece = |index: usize| {
-            let h = self.times[index + 1] - self.times[index];
-            let (from, to) = (at(self.values, index), at(self.values, index + 1));
-            let slope = (to - from) / h;
-            match self.velocities {
-                None => vec![from, slope],
-                Some(velocities) => {
-                    let (v0, v1) = (at(velocities, index), at(velocities, index + 1));
-                    vec![from, v0, (3.0 * slope - 2.0 * v0 - v1) / h, (v0 + v1 - 2.0 * slope) / (h * h)]
-                }
-            }
-        };
-        let pieces = (0..self.times.len().saturating_sub(1)).map(piece).collect();
-        JointValue::try_pieces(self.times.to_vec(), pieces).map_err(Fault::from)
+        let of = |numbers: &[f64]| numbers.iter().skip(joint).step_by(self.open).copied().collect();
+        let mut points = JointPoints::new(self.times.to_vec(), of(self.values));
+        if let Some(velocities) = self.velocities {
+            points = points.with_velocities(of(velocities));
+        }
+        if let Some(accelerations) = self.accelerations {
+            points = points.with_accelerations(of(accelerations));
+        }
+        Ok(JointValue::through(points)?)
     }
 }

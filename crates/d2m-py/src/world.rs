@@ -84,7 +84,12 @@ pub(crate) struct PairContact {
 #[pymethods]
 impl PairContact {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(format!("PairContact({}, {}, {})", self.a.__repr__(), self.b.__repr__(), self.answer.bind(py).repr()?))
+        Ok(format!(
+            "PairContact({}, {}, {})",
+            self.a.__repr__(),
+            self.b.__repr__(),
+            self.answer.bind(py).repr()?
+        ))
     }
 }
 
@@ -179,7 +184,10 @@ impl World {
         };
         let there = found.filter(|id| inner.world.get(*id).is_some());
         there.ok_or_else(|| {
-            PyKeyError::new_err(format!("{} is not in this world", any.repr().map_or_else(|_| String::new(), |text| text.to_string())))
+            PyKeyError::new_err(format!(
+                "{} is not in this world",
+                any.repr().map_or_else(|_| String::new(), |text| text.to_string())
+            ))
         })
     }
 

@@ -19,6 +19,7 @@ from ._d2m import (
     Contact,
     Distance,
     FirstContact,
+    Impulse,
     Joint,
     JointTrajectories,
     Keyframes,
@@ -28,7 +29,9 @@ from ._d2m import (
     Pose,
     PoseTrajectories,
     Screw,
+    Segment,
     Separated,
+    Simulation,
     Spline,
     Tree,
     Undecided,
@@ -43,7 +46,7 @@ from ._d2m import (
 )
 from ._errors import InputError
 from ._records import PROXIMITY, RESULT, Evidence, FeatureKind, Start, Status
-from .manager import CollisionManager
+from .manager import CollisionManager, ContactData, DistanceData
 
 __all__ = [
     "PROXIMITY",
@@ -54,10 +57,13 @@ __all__ = [
     "CollisionManager",
     "ConstantTwist",
     "Contact",
+    "ContactData",
     "Distance",
+    "DistanceData",
     "Evidence",
     "FeatureKind",
     "FirstContact",
+    "Impulse",
     "InputError",
     "Joint",
     "JointTrajectories",
@@ -68,7 +74,9 @@ __all__ = [
     "Pose",
     "PoseTrajectories",
     "Screw",
+    "Segment",
     "Separated",
+    "Simulation",
     "Spline",
     "Start",
     "Status",

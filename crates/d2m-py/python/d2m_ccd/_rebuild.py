@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 from . import _d2m
 
 
-def spline(times: Any, poses: Any, twists: Any, degree: int) -> _d2m.Spline:
+def spline(times: Any, poses: Any, twists: Any, degree: Any) -> _d2m.Spline:
     """A spline of its arguments."""
     return _d2m.Spline(times, poses, twists, degree=degree)
 
 
-def joint(kind: str, x: Any, q: Any, axis: Any, value: Any) -> _d2m.Joint:
+def joint(kind: Any, x: Any, q: Any, axis: Any, value: Any) -> _d2m.Joint:
     """A joint of its arguments."""
-    return _d2m.Joint(kind, x=x, q=q, axis=axis, value=value)
+    return _d2m.Joint(kind, x=x, q=q, axis=axis, value=None if value is None else json.loads(value))
+
+
+def pose_trajectories(times: Any, poses: Any, join: Any) -> _d2m.PoseTrajectories:
+    """Trajectories of their arguments."""
+    return _d2m.PoseTrajectories(times, poses, join=join)

@@ -52,7 +52,11 @@ impl Joint {
                 let value = given.or_else(|| value.clone());
                 let value = value.ok_or_else(|| Fault::new("value: a joint that moves needs one"))?;
                 let axis = *axis;
-                if *turns { JointKind::Revolute { axis, value } } else { JointKind::Prismatic { axis, value } }
+                if *turns {
+                    JointKind::Revolute { axis, value }
+                } else {
+                    JointKind::Prismatic { axis, value }
+                }
             }
         };
         Ok(d2m::motion::Joint::try_new(self.x, self.q, kind)?)
@@ -87,7 +91,8 @@ impl Joint {
             "revolute" => true,
             "prismatic" => false,
             other => {
-                let message = format!("kind is {other:?}: \"fixed\", \"revolute\" or \"prismatic\" is expected");
+                let message =
+                    format!("kind is {other:?}: \"fixed\", \"revolute\" or \"prismatic\" is expected");
                 return Err(Fault::new(message).with_value(Value::Text(other.to_owned())).into());
             }
         };
@@ -144,29 +149,19 @@ impl Joint {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let value = self.moving.as_ref().and_then(|moving| moving.value.as_ref());
-        let value = match value {
-            None => py.None().into_bound(py),
-            Some(value) if value.times().is_empty() => {
-                value.pieces().next().unwrap_or_default().to_vec().into_pyobject(py)?
-            }
-            Some(value) => {
-                let pieces: Vec<Vec<f64>> = value.pieces().map(<[f64]>::to_vec).collect();
-                (value.times().to_vec(), pieces).into_pyobject(py)?.into_any()
-            }
-        };
+        let value = value.map(serde_json::to_string).transpose();
+        let value = value.map_err(|error| Fault::new(error.to_string()))?;
         let rebuild = py.import("d2m_ccd._rebuild")?.getattr("joint")?;
         let arguments = (self.kind(), self.x(py), self.q(py), self.axis(py), value);
         (rebuild, arguments).into_pyobject(py)
     }
 }
 
-/// A polynomial, a tuple (times, pieces), or a dictionary with these keys.
+/// A polynomial, a tuple (times, pieces), or a dictionary of the JSON form.
 fn joint_value(any: &Bound<'_, PyAny>) -> PyResult<JointValue> {
-    let (times, pieces) = if let Ok(dict) = any.cast::<PyDict>() {
-        match (dict.get_item("times")?, dict.get_item("pieces")?) {
-            (Some(times), Some(pieces)) if dict.len() == 2 => (times, pieces),
-            _ => return Err(Fault::new("value: a dictionary with times and pieces is expected").into()),
-        }
+    let (times, pieces) = if any.is_instance_of::<PyDict>() {
+        let text = crate::motion::json_text(any, "value")?;
+        return serde_json::from_str(&text).map_err(|error| Fault::new(format!("value: {error}")).into());
     } else if let Ok(tuple) = any.cast::<PyTuple>()
         && tuple.len() == 2
         && tuple.get_item(1)?.hasattr(intern!(any.py(), "__len__"))?

@@ -1,8 +1,8 @@
 //! Motions of constant twist.
 
 use super::{Motion, instance};
-use crate::arrays::vector;
 use crate::arrays::Doubles;
+use crate::arrays::vector;
 use crate::fault::{Fault, OrRaise};
 use crate::pose::{list, quat, quaternion, vec3_or_zero, wxyz};
 use glam::{DQuat, DVec3};
@@ -44,12 +44,8 @@ impl ConstantTwist {
         t: f64,
     ) -> PyResult<PyClassInitializer<Self>> {
         let q = q.map_or(Ok(DQuat::IDENTITY), |q| quaternion(q, "q"))?;
-        let [x, v, w, at] = [
-            vec3_or_zero(x, "x")?,
-            vec3_or_zero(v, "v")?,
-            vec3_or_zero(w, "w")?,
-            vec3_or_zero(at, "at")?,
-        ];
+        let [x, v, w, at] =
+            [vec3_or_zero(x, "x")?, vec3_or_zero(v, "v")?, vec3_or_zero(w, "w")?, vec3_or_zero(at, "at")?];
         let twist = d2m::ConstantTwist::try_new(x, q, v, w).or_raise()?;
         Ok(Self::of(twist.try_with_at(at).or_raise()?.try_with_reference_time(t).or_raise()?))
     }

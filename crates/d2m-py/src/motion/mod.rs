@@ -220,12 +220,9 @@ pub(crate) fn motion_argument(any: Option<&Bound<'_, PyAny>>, name: &str) -> PyR
         return Ok(motion.get().form.clone());
     }
     if any.is_instance_of::<PyDict>() {
-        let text = any.py().import(intern!(any.py(), "d2m_ccd._json"))?.call_method1("dumps", (any,));
-        let text: String = text
-            .map_err(|error| Fault::new(format!("{name}: {}", error.value(any.py()))))?
-            .extract()?;
-        let motion: AnyMotion = serde_json::from_str(&text)
-            .map_err(|error| Fault::new(format!("{name}: {error}")))?;
+        let text = json_text(any, name)?;
+        let motion: AnyMotion =
+            serde_json::from_str(&text).map_err(|error| Fault::new(format!("{name}: {error}")))?;
         return Ok(motion.into());
     }
     if any.hasattr(intern!(any.py(), "__len__"))? {
@@ -236,4 +233,11 @@ pub(crate) fn motion_argument(any: Option<&Bound<'_, PyAny>>, name: &str) -> PyR
         "{name} is a {}: a Motion, 13 numbers (q, x, v, w), a dictionary or None is expected",
         any.get_type().name()?
     )))
+}
+
+/// A dictionary, which may hold arrays, as JSON.
+fn json_text(any: &Bound<'_, PyAny>, name: &str) -> PyResult<String> {
+    let py = any.py();
+    let text = py.import(intern!(py, "d2m_ccd._json"))?.call_method1("dumps", (any,));
+    text.map_err(|error| Fault::new(format!("{name}: {}", error.value(py))))?.extract()
 }

@@ -89,7 +89,8 @@ fn spline(
     let Some(twists) = twists else {
         return Ok(d2m::motion::Spline::try_through(keyframes, degree)?);
     };
-    let all: Vec<_> = keyframes.iter().zip(twists).map(|(&(time, pose), &twist)| (time, pose, twist)).collect();
+    let all: Vec<_> =
+        keyframes.iter().zip(twists).map(|(&(time, pose), &twist)| (time, pose, twist)).collect();
     Ok(d2m::motion::Spline::try_with_twists(&all, degree)?)
 }
 

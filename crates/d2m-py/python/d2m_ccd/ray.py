@@ -1,0 +1,382 @@
+"""Batches over a cluster, by Ray (`pip install "d2m-ccd[ray]"`).
+
+The trees go into Ray's object store once and are read once by each worker process; trials go out in chunks, a bounded number of
+which are in flight; results come back in order, with the bits of one machine. A worker or a node that dies loses nothing: its
+chunks run again elsewhere.
+
+    import d2m_ccd.ray
+    results = d2m_ccd.ray.batch(tree_a, tree_b, motions_a, motions_b)     # as d2m_ccd.batch
+
+    python -m d2m_ccd.ray A.obj B.obj --trials T.csv --out R.csv --workers 8
+    python -m d2m_ccd.ray A.obj B.obj --trials T.csv --out R.csv --address auto
+"""
+
+from __future__ import annotations
+
+import argparse
+import collections
+import hashlib
+import os
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from . import batch as _batch_here
+from ._d2m import Tree
+from ._errors import InputError
+from ._records import RESULT
+from ._trials import Trials, read_trials, write_results
+
+try:
+    import ray
+except ImportError as error:  # pragma: no cover
+    raise ImportError("d2m_ccd.ray needs Ray: pip install 'd2m-ccd[ray]'") from error
+
+#: A chunk should take about so long: long against the millisecond that a task costs, short against what a lost one costs.
+CHUNK_SECONDS = 0.5
+#: The first chunks, before it is known how long a trial takes; no chunk is smaller unless no more is left.
+LEAST_CHUNK = 64
+#: About 25 MB of trials and results.
+MOST_CHUNK = 65_536
+#: So many times as many chunks as are in flight may wait, with their results, for one before them.
+_MOST_HELD = 4
+
+
+@dataclass(frozen=True)
+class _SharedTree:
+    """A tree in the object store, by the hash of its bytes."""
+
+    key: str
+    stored: Any
+
+    @classmethod
+    def put(cls, tree: Any) -> _SharedTree:
+        data = (tree if isinstance(tree, Tree) else Tree(tree)).to_bytes()
+        return cls(hashlib.sha256(data).hexdigest(), ray.put(data))
+
+
+#: The trees that this worker process has read, latest last.
+_TREES: collections.OrderedDict[str, Tree] = collections.OrderedDict()
+_MOST_TREES = 64
+
+
+def _tree(shared: _SharedTree) -> Tree:
+    if shared.key not in _TREES:
+        _TREES[shared.key] = Tree.from_bytes(ray.get(shared.stored))
+        while len(_TREES) > _MOST_TREES:
+            _TREES.popitem(last=False)
+    _TREES.move_to_end(shared.key)
+    return _TREES[shared.key]
+
+
+@dataclass(frozen=True)
+class _Done:
+    """Results of a chunk, and the seconds that its worker took."""
+
+    results: Any
+    seconds: float
+
+
+def _run_chunk(a: _SharedTree, b: _SharedTree, trials: Trials, options: dict[str, Any]) -> _Done:
+    trees = _tree(a), _tree(b)
+    start = time.perf_counter()
+    results = _batch_here(*trees, trials.motions_a, trials.motions_b, window=trials.window, threads=1, **options)
+    return _Done(results, time.perf_counter() - start)
+
+
+@dataclass
+class _InFlight:
+    """A chunk that was sent out."""
+
+    task: Any
+    trials: Trials
+    first: int
+    tries: int
+
+
+class _Sender:
+    """Sends chunks out, at most `in_flight` at a time, and gives their results in order."""
+
+    def __init__(self, a: Any, b: Any, in_flight: int | None, retries: int, options: dict[str, Any]) -> None:
+        if not ray.is_initialized():
+            ray.init(log_to_driver=False)
+        self._trees = _SharedTree.put(a), _SharedTree.put(b)
+        self._options = options
+        self.workers = max(1, int(ray.cluster_resources().get("CPU", 1)))
+        self._in_flight = in_flight or 2 * self.workers
+        self._retries = retries
+        # Ray runs tasks of workers that died again by itself; what it gives up on, we send out again.
+        self._remote = ray.remote(num_cpus=1, max_retries=retries)(_run_chunk)
+
+    def _send(self, trials: Trials, first: int) -> _InFlight:
+        task = self._remote.remote(*self._trees, trials, self._options)
+        return _InFlight(task, trials, first, 0)
+
+    def run(self, chunks: Iterable[Trials]) -> Iterator[_Done]:
+        """Results in the order of the chunks; those are taken from the iterator as workers become free."""
+        waiting: collections.deque[_InFlight] = collections.deque()
+        running: set[Any] = set()
+        source = _numbered(chunks)
+
+        def fill() -> None:
+            # Behind a slow chunk others go on, and their results are held: so many at most.
+            while len(running) < self._in_flight and len(waiting) < _MOST_HELD * self._in_flight:
+                following = next(source, None)
+                if following is None:
+                    return
+                waiting.append(self._send(following[1], following[0]))
+                running.add(waiting[-1].task)
+
+        try:
+            while True:
+                fill()
+                if not waiting:
+                    return
+                while waiting[0].task in running:
+                    ended, _ = ray.wait(list(running), num_returns=1)
+                    running.difference_update(ended)
+                    fill()
+                done = self._receive(waiting[0])
+                if done is None:
+                    running.add(waiting[0].task)
+                    continue
+                waiting.popleft()
+                yield done
+        finally:
+            for chunk in waiting:
+                ray.cancel(chunk.task, force=True)
+
+    def _receive(self, chunk: _InFlight) -> _Done | None:
+        """The results of a chunk that has ended; none if it was lost and sent out again."""
+        try:
+            done: _Done = ray.get(chunk.task)
+        except ray.exceptions.RayTaskError as error:
+            cause = getattr(error, "cause", error)
+            if isinstance(cause, InputError):
+                raise _moved(cause, chunk.first) from None
+            raise
+        except ray.exceptions.RayError:
+            if chunk.tries >= self._retries:
+                raise
+            chunk.tries += 1
+            chunk.task = self._remote.remote(*self._trees, chunk.trials, self._options)
+            return None
+        return done
+
+
+def _numbered(chunks: Iterable[Trials]) -> Iterator[tuple[int, Trials]]:
+    """Each chunk with the number of its first trial."""
+    first = 0
+    for trials in chunks:
+        yield first, trials
+        first += len(trials)
+
+
+def _moved(error: InputError, first: int) -> InputError:
+    """The error of a chunk, with the trial's number among all."""
+    if not isinstance(error.index, int):
+        return InputError(str(error.args[0]), error.index, error.value)
+    text = str(error.args[0]).replace(f"trial {error.index}:", f"trial {first + error.index}:", 1)
+    return InputError(text, first + error.index, error.value)
+
+
+def stream(
+    a: Any, b: Any, chunks: Iterable[Trials], *, in_flight: int | None = None, retries: int = 5, **options: Any
+) -> Iterator[Any]:
+    """Results of chunks of trials, in order, while others are computed: for more than fits into memory.
+
+    `chunks`: an iterable of `Trials(motions_a, motions_b, window)`, taken as workers become free; at most `in_flight` of them (by default
+    twice the cluster's processors) and their results are kept at a time. Other arguments as of `d2m_ccd.batch`. Yields structured
+    arrays with the fields of `d2m_ccd.RESULT`.
+    """
+    for done in _Sender(a, b, in_flight, retries, options).run(chunks):
+        yield done.results
+
+
+def batch(
+    a: Any,
+    b: Any,
+    motions_a: Any = None,
+    motions_b: Any = None,
+    *,
+    window: Any = None,
+    in_flight: int | None = None,
+    retries: int = 5,
+    progress: Any = None,
+    **options: Any,
+) -> Any:
+    """As `d2m_ccd.batch`, over the cluster that Ray is connected to (the processors of this machine if it is to none).
+
+    The same bits as on one machine, in order. `retries`: how often a chunk is run again whose worker or node died. Raises `InputError`
+    with the first trial that cannot be answered as `index`.
+    """
+    trials = _all_trials(motions_a, motions_b, window)
+    return _run(_Sender(a, b, in_flight, retries, options), trials, progress)[0]
+
+
+def _all_trials(motions_a: Any, motions_b: Any, window: Any) -> _Sized:
+    parts = [part for part in (motions_a, motions_b) if _is_several(part)]
+    if window is not None and np.ndim(window) == 2:
+        parts.append(window)
+    counts = sorted({len(part) for part in parts})
+    if len(counts) > 1:
+        raise InputError(f"the motions and windows are of {counts[0]} and of {counts[1]} trials", None, tuple(counts))
+    return _Sized(Trials(motions_a, motions_b, window), counts[0] if counts else 1)
+
+
+def _is_several(motions: Any) -> bool:
+    from . import JointTrajectories, PoseTrajectories
+
+    if isinstance(motions, (PoseTrajectories, JointTrajectories)):
+        return True
+    if isinstance(motions, np.ndarray):
+        return motions.ndim > 1
+    if isinstance(motions, (list, tuple)):
+        return not (len(motions) == 13 and all(np.isscalar(value) for value in motions))
+    return False
+
+
+@dataclass(frozen=True)
+class _Sized:
+    trials: Trials
+    count: int
+
+    def part(self, start: int, end: int) -> Trials:
+        whole = self.trials
+        cut = [part[start:end] if _is_several(part) else part for part in (whole.motions_a, whole.motions_b)]
+        # One motion for all has no length: windows say how many trials there are.
+        window = np.broadcast_to(np.asarray((0.0, 1.0) if whole.window is None else whole.window, float), (self.count, 2))
+        return _Part(cut[0], cut[1], window[start:end])
+
+
+class _Part(Trials):
+    """Trials that are counted by their windows."""
+
+    def __len__(self) -> int:
+        return len(self.window)
+
+
+class _Pace:
+    """How many trials the next chunk should have: enough for half a second, fewer towards the end so that all end together."""
+
+    def __init__(self, workers: int, count: int) -> None:
+        self._workers, self._left, self._seconds = workers, count, 0.0
+
+    def next(self) -> int:
+        wanted = LEAST_CHUNK if self._seconds == 0.0 else int(CHUNK_SECONDS / self._seconds)
+        fair = self._left // (2 * self._workers)
+        size = min(max(min(wanted, fair, MOST_CHUNK), LEAST_CHUNK), self._left)
+        self._left -= size
+        return size
+
+    def learn(self, done: _Done) -> None:
+        if len(done.results):
+            seconds = max(done.seconds / len(done.results), 1e-9)
+            self._seconds = seconds if self._seconds == 0.0 else 0.7 * self._seconds + 0.3 * seconds
+
+
+def _run(sender: _Sender, trials: _Sized, progress: Any) -> tuple[Any, Any]:
+    count = trials.count
+    results, microseconds = np.zeros(count, RESULT), np.zeros(count)
+    pace = _Pace(sender.workers, count)
+
+    def chunks() -> Iterator[Trials]:
+        start = 0
+        while start < count:
+            end = start + pace.next()
+            yield trials.part(start, end)
+            start = end
+
+    start = 0
+    for done in sender.run(chunks()):
+        end = start + len(done.results)
+        results[start:end] = done.results
+        microseconds[start:end] = 1e6 * done.seconds / max(end - start, 1)
+        pace.learn(done)
+        _show(progress, end - start, end, count)
+        start = end
+    return results, microseconds
+
+
+def _show(progress: Any, more: int, done: int, count: int) -> None:
+    if progress is None:
+        return
+    if hasattr(progress, "update"):
+        progress.update(more)
+    else:
+        progress(done, count)
+
+
+def _arguments() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m d2m_ccd.ray", description="Runs a trials file over Ray.")
+    parser.add_argument("a", help="mesh of body A: a file, a saved tree, or shape:NAME")
+    parser.add_argument("b", help="mesh of body B")
+    parser.add_argument("--trials", required=True, help="trials, CSV or JSON lines, as of d2m batch")
+    parser.add_argument("--out", required=True, help="results, CSV, as of d2m batch; microseconds are the mean of a chunk")
+    cluster = parser.add_mutually_exclusive_group()
+    cluster.add_argument("--workers", type=int, help="so many worker processes on this machine")
+    cluster.add_argument("--address", help="of a cluster that runs: auto, or ray://HOST:PORT")
+    parser.add_argument("--tolerance", type=float)
+    parser.add_argument("--min-separation", type=float, default=0.0)
+    parser.add_argument("--mode", choices=["accurate", "capoeira"], default="accurate")
+    parser.add_argument("--budget", type=int, help="node tests a trial")
+    solid = parser.add_mutually_exclusive_group()
+    solid.add_argument("--solid", action="store_true")
+    solid.add_argument("--surface", action="store_true")
+    return parser
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """The command; 0: answered, 3: bad input."""
+    given = _arguments().parse_args(arguments)
+    try:
+        if given.workers is not None and given.workers < 1:
+            raise InputError(f"--workers {given.workers}: at least one is needed", None, given.workers)
+        trials = read_trials(given.trials)
+        trees = Tree(given.a), Tree(given.b)
+        if given.address:
+            ray.init(address=given.address, log_to_driver=False)
+        else:
+            ray.init(num_cpus=given.workers or os.cpu_count(), include_dashboard=False, log_to_driver=False)
+        solid = True if given.solid else False if given.surface else None
+        options = {
+            "tolerance": given.tolerance,
+            "min_separation": given.min_separation,
+            "mode": given.mode,
+            "node_tests": given.budget,
+            "solid": solid,
+        }
+        sender = _Sender(*trees, None, 5, options)
+        start = time.perf_counter()
+        everything = _all_trials(trials.motions_a, trials.motions_b, trials.window)
+        results, microseconds = _run(sender, everything, _bar(len(trials)))
+        took = time.perf_counter() - start
+        with open(given.out, "w", encoding="utf-8", newline="\n") as file:
+            write_results(file, results, microseconds)
+    except (InputError, OSError) as error:
+        print(f"d2m_ccd.ray: {error}", file=sys.stderr)
+        return 3
+    print(f"{len(results)} trials in {took:.2f} s, {len(results) / took:.0f} a second, {sender.workers} workers", file=sys.stderr)
+    return 0
+
+
+def _bar(count: int) -> Any:
+    """A bar of tqdm on a terminal, if it is installed."""
+    if not sys.stderr.isatty():
+        return None
+    try:
+        from tqdm import tqdm
+    except ImportError:
+        return None
+    return tqdm(total=count, unit="trial")
+
+
+if __name__ == "__main__":
+    # Under its own name, so that workers import it instead of being sent it.
+    from d2m_ccd.ray import main as _main
+
+    sys.exit(_main())
