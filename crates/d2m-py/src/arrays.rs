@@ -153,7 +153,7 @@ fn require_same(array: &Bound<'_, PyAny>, doubles: &Bound<'_, PyAny>, name: &str
     let module = numpy(py)?;
     let dtype = array.getattr(intern!(py, "dtype"))?;
     let magnitude = module.call_method1(intern!(py, "abs"), (doubles,))?;
-    let large = magnitude.call_method1(intern!(py, "__gt__"), (9_007_199_254_740_992.0_f64,))?;
+    let large = magnitude.call_method1(intern!(py, "__ge__"), (9_007_199_254_740_992.0_f64,))?;
     if !large.call_method0(intern!(py, "any"))?.extract::<bool>()? {
         return Ok(());
     }
@@ -162,7 +162,7 @@ fn require_same(array: &Bound<'_, PyAny>, doubles: &Bound<'_, PyAny>, name: &str
     let value: i128 =
         array.get_item(pyo3::types::PyTuple::new(py, &first)?)?.call_method0("item")?.extract()?;
     let message =
-        format!("{name}{first:?} is {value} ({dtype}), beyond 2^53: not every such number is a double");
+        format!("{name}{first:?} is {value} ({dtype}), 2^53 or beyond: not every such number is a double");
     Err(Fault::new(message).at_places(first).with_value(Value::Whole(value)).into())
 }
 

@@ -21,11 +21,11 @@ def knots() -> tuple[d2m_ccd.Tree, d2m_ccd.Tree]:
     return d2m_ccd.Tree("shape:torus-knot?triangles=1500"), d2m_ccd.Tree("shape:torus-knot?triangles=1000")
 
 
-def random_motions(count: int, seed: int, distance: float = 12.0) -> np.ndarray:
-    """Bodies that fly at the origin from all sides, about, and spin."""
+def random_motions(count: int, seed: int, distance: float) -> np.ndarray:
+    """Bodies that fly by the origin, from all sides and about this distance away, and spin."""
     random = np.random.default_rng(seed)
     q = random.normal(size=(count, 4))
     x = random.normal(size=(count, 3))
     x *= distance / np.linalg.norm(x, axis=1, keepdims=True)
-    v = random.normal(size=(count, 3)) * 4.0 - x
+    v = random.normal(size=(count, 3)) * (0.2 * distance) - x
     return np.hstack([q, x, v, random.normal(size=(count, 3))])

@@ -8,7 +8,39 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self, TypeAlias
 
-__all__: list[str]
+__all__ = [
+    "Answer",
+    "BodyId",
+    "Chain",
+    "ConstantTwist",
+    "Contact",
+    "Distance",
+    "FirstContact",
+    "Impulse",
+    "Joint",
+    "JointTrajectories",
+    "Keyframes",
+    "Mesh",
+    "Motion",
+    "PairContact",
+    "Pose",
+    "PoseTrajectories",
+    "Screw",
+    "Segment",
+    "Separated",
+    "Simulation",
+    "Spline",
+    "Tree",
+    "Undecided",
+    "World",
+    "batch",
+    "collide",
+    "contact_exists",
+    "distance",
+    "feature_text",
+    "proximities",
+    "time_of_contact",
+]
 
 @type_check_only
 class _HasFaces(Protocol):
@@ -343,12 +375,12 @@ class World:
     def ignore_groups(self, a: int, b: int, ignored: bool = True) -> None: ...
     def set_min_separation(self, a: BodyId | str, b: BodyId | str, separation: _Float | None) -> None: ...
     def bodies(self) -> list[BodyId]: ...
-    def first_contact(self, window: _Window = (0.0, 1.0), *, progress: _Progress = None) -> FirstContact: ...
-    def contacts(self, window: _Window = (0.0, 1.0), *, progress: _Progress = None) -> list[PairContact]: ...
+    def first_contact(self, window: _Window = ..., *, progress: _Progress = None) -> FirstContact: ...
+    def contacts(self, window: _Window = ..., *, progress: _Progress = None) -> list[PairContact]: ...
     def first_contact_of(
         self,
         plan: Mapping[BodyId, _MotionLike] | Mapping[str, _MotionLike] | Iterable[tuple[BodyId | str, _MotionLike]],
-        window: _Window = (0.0, 1.0),
+        window: _Window = ...,
     ) -> FirstContact: ...
     def proximities(
         self, time: _Float, margin: _Float, *, cone_slack: _Float = 0.0
@@ -431,7 +463,7 @@ def time_of_contact(
     motion_a: _MotionLike = None,
     motion_b: _MotionLike = None,
     *,
-    window: _Window = (0.0, 1.0),
+    window: _Window = ...,
     tolerance: _Float | None = None,
     min_separation: _Float = 0.0,
     solid: _Solids = None,
@@ -446,7 +478,7 @@ def contact_exists(
     motion_a: _MotionLike = None,
     motion_b: _MotionLike = None,
     *,
-    window: _Window = (0.0, 1.0),
+    window: _Window = ...,
     tolerance: _Float | None = None,
     min_separation: _Float = 0.0,
     solid: _Solids = None,

@@ -106,7 +106,8 @@ class _Sender:
             ray.init(log_to_driver=False)
         self._trees = _SharedTree.put(a), _SharedTree.put(b)
         self._options = options
-        self.workers = max(1, int(ray.cluster_resources().get("CPU", 1)))
+        resources = ray.cluster_resources()  # type: ignore[no-untyped-call]
+        self.workers = max(1, int(resources.get("CPU", 1)))
         self._in_flight = in_flight or 2 * self.workers
         self._retries = retries
         # Ray runs tasks of workers that died again by itself; what it gives up on, we send out again.
