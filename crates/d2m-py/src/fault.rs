@@ -2,7 +2,7 @@
 
 use d2m::WorldError;
 use d2m::bvh::{MeshError, QueryError, TreeFileError};
-use d2m::motion::MotionError;
+use d2m::motion::{MotionError, OutsideDomain};
 use d2m::shapes::ShapeError;
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
@@ -135,9 +135,7 @@ impl From<QueryError> for Fault {
             QueryError::NotWatertight { body }
             | QueryError::BadMotion { body }
             | QueryError::BadPose { body } => fault.at(body),
-            QueryError::OutsideMotion { body, start, end } => {
-                fault.at(body).with_value(Value::Numbers(vec![start, end]))
-            }
+            QueryError::OutsideMotion { body, outside } => fault.at(body).with_value(times_of(outside)),
             QueryError::NotApart { triangle_a, triangle_b } => {
                 fault.at_places(vec![triangle_a as usize, triangle_b as usize])
             }
@@ -185,8 +183,20 @@ impl From<ShapeError> for Fault {
 
 impl From<WorldError> for Fault {
     fn from(error: WorldError) -> Self {
-        Self::new(error.to_string()).at_places(vec![error.a.index(), error.b.index()])
+        let fault = Self::new(error.to_string());
+        match error {
+            WorldError::Pair { a, b, .. } => fault.at_places(vec![a.index(), b.index()]),
+            WorldError::OutsideMotion { body, outside } => {
+                fault.at(body.index()).with_value(times_of(outside))
+            }
+            _ => fault,
+        }
     }
+}
+
+/// The times that the motion covers.
+fn times_of(outside: OutsideDomain) -> Value {
+    Value::Numbers(vec![outside.start, outside.end])
 }
 
 /// A result whose error becomes an exception.

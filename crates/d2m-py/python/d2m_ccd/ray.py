@@ -6,6 +6,7 @@ chunks run again elsewhere.
 
     import d2m_ccd.ray
     results = d2m_ccd.ray.batch(tree_a, tree_b, motions_a, motions_b)     # as d2m_ccd.batch
+    for part in d2m_ccd.ray.stream(tree_a, tree_b, chunks, reduce=count):  # more than fits into one machine
 
     python -m d2m_ccd.ray A.obj B.obj --trials T.csv --out R.csv --workers 8
     python -m d2m_ccd.ray A.obj B.obj --trials T.csv --out R.csv --address auto
@@ -21,7 +22,7 @@ import sys
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Callable, Optional, Union
 
 import numpy as np
 
@@ -44,6 +45,12 @@ LEAST_CHUNK = 64
 MOST_CHUNK = 65_536
 #: So many times as many chunks as are in flight may wait, with their results, for one before them.
 _MOST_HELD = 4
+
+
+#: Trials, or a function that makes them where they are run.
+Chunk = Union[Trials, Callable[[], Trials]]
+#: What becomes of the results of a chunk where they are made.
+Reduce = Optional[Callable[[Trials, Any], Any]]
 
 
 @dataclass(frozen=True)
@@ -81,11 +88,12 @@ class _Done:
     seconds: float
 
 
-def _run_chunk(a: _SharedTree, b: _SharedTree, trials: Trials, options: dict[str, Any]) -> _Done:
+def _run_chunk(a: _SharedTree, b: _SharedTree, chunk: Chunk, options: dict[str, Any], reduce: Reduce) -> _Done:
     trees = _tree(a), _tree(b)
     start = time.perf_counter()
+    trials = chunk() if callable(chunk) else chunk
     results = _batch_here(*trees, trials.motions_a, trials.motions_b, window=trials.window, threads=1, **options)
-    return _Done(results, time.perf_counter() - start)
+    return _Done(results if reduce is None else reduce(trials, results), time.perf_counter() - start)
 
 
 @dataclass
@@ -93,7 +101,7 @@ class _InFlight:
     """A chunk that was sent out."""
 
     task: Any
-    trials: Trials
+    chunk: Chunk
     first: int
     tries: int
 
@@ -101,11 +109,14 @@ class _InFlight:
 class _Sender:
     """Sends chunks out, at most `in_flight` at a time, and gives their results in order."""
 
-    def __init__(self, a: Any, b: Any, in_flight: int | None, retries: int, options: dict[str, Any]) -> None:
+    def __init__(
+        self, a: Any, b: Any, in_flight: int | None, retries: int, options: dict[str, Any], reduce: Reduce = None
+    ) -> None:
         if not ray.is_initialized():
             ray.init(log_to_driver=False)
         self._trees = _SharedTree.put(a), _SharedTree.put(b)
-        self._options = options
+        # In the store once, too: `reduce` may hold as much as it likes.
+        self._options, self._reduce = options, ray.put(reduce)
         resources = ray.cluster_resources()  # type: ignore[no-untyped-call]
         self.workers = max(1, int(resources.get("CPU", 1)))
         self._in_flight = in_flight or 2 * self.workers
@@ -113,11 +124,10 @@ class _Sender:
         # Ray runs tasks of workers that died again by itself; what it gives up on, we send out again.
         self._remote = ray.remote(num_cpus=1, max_retries=retries)(_run_chunk)
 
-    def _send(self, trials: Trials, first: int) -> _InFlight:
-        task = self._remote.remote(*self._trees, trials, self._options)
-        return _InFlight(task, trials, first, 0)
+    def _task(self, chunk: Chunk) -> Any:
+        return self._remote.remote(*self._trees, chunk, self._options, self._reduce)
 
-    def run(self, chunks: Iterable[Trials]) -> Iterator[_Done]:
+    def run(self, chunks: Iterable[Chunk]) -> Iterator[_Done]:
         """Results in the order of the chunks; those are taken from the iterator as workers become free."""
         waiting: collections.deque[_InFlight] = collections.deque()
         running: set[Any] = set()
@@ -129,7 +139,8 @@ class _Sender:
                 following = next(source, None)
                 if following is None:
                     return
-                waiting.append(self._send(following[1], following[0]))
+                first, chunk = following
+                waiting.append(_InFlight(self._task(chunk), chunk, first, 0))
                 running.add(waiting[-1].task)
 
         try:
@@ -164,17 +175,20 @@ class _Sender:
             if chunk.tries >= self._retries:
                 raise
             chunk.tries += 1
-            chunk.task = self._remote.remote(*self._trees, chunk.trials, self._options)
+            chunk.task = self._task(chunk.chunk)
             return None
         return done
 
 
-def _numbered(chunks: Iterable[Trials]) -> Iterator[tuple[int, Trials]]:
-    """Each chunk with the number of its first trial."""
+def _numbered(chunks: Iterable[Chunk]) -> Iterator[tuple[int, Chunk]]:
+    """Each chunk with the number of its first trial; of chunks that are functions trials are numbered from 0 in each."""
     first = 0
-    for trials in chunks:
-        yield first, trials
-        first += len(trials)
+    for chunk in chunks:
+        if callable(chunk):
+            yield 0, chunk
+        else:
+            yield first, chunk
+            first += len(chunk)
 
 
 def _moved(error: InputError, first: int) -> InputError:
@@ -186,15 +200,23 @@ def _moved(error: InputError, first: int) -> InputError:
 
 
 def stream(
-    a: Any, b: Any, chunks: Iterable[Trials], *, in_flight: int | None = None, retries: int = 5, **options: Any
+    a: Any,
+    b: Any,
+    chunks: Iterable[Chunk],
+    *,
+    reduce: Reduce = None,
+    in_flight: int | None = None,
+    retries: int = 5,
+    **options: Any,
 ) -> Iterator[Any]:
     """Results of chunks of trials, in order, while others are computed: for more than fits into memory.
 
-    `chunks`: an iterable of `Trials(motions_a, motions_b, window)`, taken as workers become free; at most `in_flight` of them (by default
-    twice the cluster's processors) and their results are kept at a time. Other arguments as of `d2m_ccd.batch`. Yields structured
-    arrays with the fields of `d2m_ccd.RESULT`.
+    `chunks`: an iterable of `Trials(motions_a, motions_b, window)`, or of functions that make them on the worker (from a seed, from a
+    file), taken as workers become free; at most `in_flight` of them run at a time (by default twice the cluster's processors).
+    `reduce(trials, results)`, if given, is called on the worker, and what it returns is yielded: counts, or a file's name, instead
+    of 192 bytes a trial. Other arguments as of `d2m_ccd.batch`. Yields structured arrays with the fields of `d2m_ccd.RESULT` otherwise.
     """
-    for done in _Sender(a, b, in_flight, retries, options).run(chunks):
+    for done in _Sender(a, b, in_flight, retries, options, reduce).run(chunks):
         yield done.results
 
 
