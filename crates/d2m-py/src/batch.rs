@@ -63,7 +63,7 @@ struct Batch<'a> {
     motions: [MotionsView<'a>; 2],
     solids: [Solid; 2],
     windows: WindowsView<'a>,
-    options: &'a QueryOptions,
+    options: QueryOptions,
 }
 
 impl Batch<'_> {
@@ -85,7 +85,7 @@ impl Batch<'_> {
         let [solid_a, solid_b] = self.solids;
         let a = Moving::new(tree_a, a.motion()).with_solid(solid_a);
         let b = Moving::new(tree_b, b.motion()).with_solid(solid_b);
-        write_answer(&time_of_contact(a, b, window, self.options)?, words);
+        write_answer(&time_of_contact(a, b, window, &self.options)?, words);
         Ok(())
     }
 
@@ -185,9 +185,13 @@ pub(crate) fn batch<'py>(
         motions: [motions[0].view(), motions[1].view()],
         solids,
         windows: windows.view(),
-        options: &options,
+        options,
     };
     let watch = Watch { progress, total };
-    supervised(py, &watch, |supervision| pool.install(|| work.run(&mut words, supervision)))?.or_raise()?;
+    let run = |supervision: &Supervision| {
+        let work = Batch { options: supervision.cancels(&work.options), ..work };
+        pool.install(|| work.run(&mut words, supervision))
+    };
+    supervised(py, &watch, run)?.or_raise()?;
     named(py, words, "RESULT")
 }

@@ -164,7 +164,8 @@ impl From<MotionError> for Fault {
     }
 }
 
-fn first_index(place: &str) -> Option<usize> {
+/// The number in brackets, or behind a space, of a place such as "poses[3]" or "edge 3".
+pub(crate) fn first_index(place: &str) -> Option<usize> {
     let (_, after) = place.split_once('[')?;
     after.split_once(']')?.0.parse().ok()
 }

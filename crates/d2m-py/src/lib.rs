@@ -12,6 +12,7 @@ mod pose;
 mod query;
 mod record;
 mod resting;
+mod robot;
 mod simulation;
 mod supervise;
 mod trajectory;
@@ -38,6 +39,8 @@ mod _d2m {
     use crate::record::feature_text_py;
     #[pymodule_export]
     use crate::resting::{Distance, collide, distance, proximities};
+    #[pymodule_export]
+    use crate::robot::{PathAnswer, Robot};
     #[pymodule_export]
     use crate::simulation::{Impulse, Segment, Simulation};
     #[pymodule_export]

@@ -45,7 +45,7 @@ pub(crate) fn budget(node_tests: Option<u64>, time_limit: Option<f64>) -> Result
         budget = budget.with_node_tests(count);
     }
     if let Some(seconds) = time_limit {
-        if !(seconds > 0.0) {
+        if seconds.is_nan() || seconds <= 0.0 {
             let message = format!("time_limit is {seconds:?}, a positive number of seconds is expected");
             return Err(Fault::new(message).found(seconds));
         }

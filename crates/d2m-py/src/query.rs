@@ -67,7 +67,8 @@ pub(crate) fn run<T: Send>(
         Some(limit) => options.with_budget(options.budget.with_wall_clock(limit - BRIEF)),
         None => *options,
     };
-    supervised(py, &Watch::default(), |_| {
+    supervised(py, &Watch::default(), |supervision| {
+        let rest = supervision.cancels(&rest);
         if rest.parallel { pool(None)?.install(|| ask(&rest)) } else { ask(&rest) }
     })?
     .or_raise()

@@ -8,6 +8,8 @@ use glam::DVec3;
 
 /// Words of an answer about moving bodies.
 pub(crate) const ANSWER_WORDS: usize = 24;
+/// Words of an answer about an edge of a robot.
+pub(crate) const EDGE_WORDS: usize = ANSWER_WORDS + 2;
 /// Words of a proximity.
 pub(crate) const PROXIMITY_WORDS: usize = 15;
 
@@ -82,6 +84,26 @@ pub(crate) fn write_answer(answer: &TimeOfContact, words: &mut [u64]) {
             writer.pair([r, s]);
         }
     }
+}
+
+/// What is known of an edge of a robot.
+pub(crate) struct Meeting {
+    /// Of the pair that meets first.
+    pub(crate) answer: TimeOfContact,
+    /// The part of the edge that is proven free.
+    pub(crate) free_until: f64,
+    /// That pair, by the places of its names.
+    pub(crate) bodies: [Option<u32>; 2],
+}
+
+/// Writes what is known of an edge.
+pub(crate) fn write_edge(meeting: &Meeting, words: &mut [u64]) {
+    let (answer, rest) = words.split_at_mut(ANSWER_WORDS.min(words.len()));
+    write_answer(&meeting.answer, answer);
+    let mut writer = Writer { words: rest.iter_mut() };
+    writer.numbers(&[meeting.free_until]);
+    // All bits: -1 of a signed number.
+    writer.pair(meeting.bodies.map(|place| place.unwrap_or(u32::MAX)));
 }
 
 /// Writes a proximity.

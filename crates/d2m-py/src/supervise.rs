@@ -1,11 +1,12 @@
 //! Long work: on other threads, without the interpreter's lock, while the calling thread looks after signals and progress.
 
 use crate::fault::Fault;
+use d2m::bvh::{Canceller, QueryOptions};
 use pyo3::intern;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
@@ -19,14 +20,19 @@ const MOST_THREADS: usize = 1024;
 /// What the workers and the calling thread share.
 #[derive(Default)]
 pub(crate) struct Supervision {
-    cancelled: AtomicBool,
+    canceller: Canceller,
     done: AtomicUsize,
 }
 
 impl Supervision {
     /// Should the workers stop?
     pub(crate) fn is_cancelled(&self) -> bool {
-        self.cancelled.load(Ordering::Relaxed)
+        self.canceller.flag().is_cancelled()
+    }
+
+    /// The same options for queries that end when the workers should stop.
+    pub(crate) fn cancels(&self, options: &QueryOptions) -> QueryOptions {
+        options.with_budget(options.budget.with_cancel(self.canceller.flag()))
     }
 
     /// So many more are done.
@@ -110,7 +116,7 @@ pub(crate) fn supervised<T: Send>(
                     && let Err(error) = look()
                 {
                     failure = Some(error);
-                    supervision.cancelled.store(true, Ordering::Relaxed);
+                    supervision.canceller.cancel();
                 }
             }
             worker.join()

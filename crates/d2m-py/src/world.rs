@@ -207,7 +207,11 @@ impl World {
         supervised(py, &watch, |supervision| {
             let mut inner = inner.lock().unwrap_or_else(PoisonError::into_inner);
             let world = &mut inner.world;
-            pool.install(move || ask(world, supervision))
+            let usual = *world.options();
+            world.set_budget(supervision.cancels(&usual).budget);
+            let answer = pool.install(|| ask(world, supervision));
+            world.set_budget(usual.budget);
+            answer
         })?
         .or_raise()
     }

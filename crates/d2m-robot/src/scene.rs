@@ -3,7 +3,7 @@
 use crate::geometry::LinkBody;
 use crate::robot::Robot;
 use crate::{RobotError, Srdf};
-use d2m_bvh::{MeshTree, QueryOptions, Solid, Window, time_of_contact};
+use d2m_bvh::{Budget, MeshTree, QueryOptions, Solid, Window, time_of_contact};
 use d2m_motion::{ConstantTwist, Joint, JointKind, RigidMotion};
 use d2m_world::{Body, BodyId, SharedMotion, World};
 use glam::{DQuat, DVec3};
@@ -206,6 +206,16 @@ impl RobotScene {
     /// The robot.
     pub fn robot(&self) -> &Arc<Robot> {
         &self.robot
+    }
+
+    /// The options of all pairs.
+    pub const fn options(&self) -> &QueryOptions {
+        self.world.options()
+    }
+
+    /// Another budget for the queries from now on, say one that can be cancelled; it is one for each path or edge.
+    pub const fn set_budget(&mut self, budget: Budget) {
+        self.world.set_budget(budget);
     }
 
     /// Adds an obstacle.

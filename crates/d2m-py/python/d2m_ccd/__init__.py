@@ -26,8 +26,10 @@ from ._d2m import (
     Mesh,
     Motion,
     PairContact,
+    PathAnswer,
     Pose,
     PoseTrajectories,
+    Robot,
     Screw,
     Segment,
     Separated,
@@ -45,10 +47,12 @@ from ._d2m import (
     time_of_contact,
 )
 from ._errors import InputError
-from ._records import PROXIMITY, RESULT, Evidence, FeatureKind, Start, Status
+from ._records import EDGE, EXAMPLE_URDF, PROXIMITY, RESULT, Evidence, FeatureKind, Start, Status
 from .manager import CollisionManager, ContactData, DistanceData
 
 __all__ = [
+    "EDGE",
+    "EXAMPLE_URDF",
     "PROXIMITY",
     "RESULT",
     "Answer",
@@ -71,8 +75,10 @@ __all__ = [
     "Mesh",
     "Motion",
     "PairContact",
+    "PathAnswer",
     "Pose",
     "PoseTrajectories",
+    "Robot",
     "Screw",
     "Segment",
     "Separated",

@@ -23,8 +23,10 @@ __all__ = [
     "Mesh",
     "Motion",
     "PairContact",
+    "PathAnswer",
     "Pose",
     "PoseTrajectories",
+    "Robot",
     "Screw",
     "Segment",
     "Separated",
@@ -119,7 +121,7 @@ class Motion:
     def from_json(text: str) -> Motion: ...
     def to_json(self) -> str: ...
     def pose(self, time: _Float) -> Pose: ...
-    def twist(self, time: _Float) -> tuple[_Doubles, _Doubles]: ...
+    def twist(self, time: _Float) -> list[_Doubles]: ...
     @property
     def domain(self) -> tuple[float, float]: ...
     def __eq__(self, other: object, /) -> bool: ...
@@ -386,6 +388,76 @@ class World:
         self, time: _Float, margin: _Float, *, cone_slack: _Float = 0.0
     ) -> list[tuple[BodyId, BodyId, NDArray[np.void]]]: ...
     def __len__(self) -> int: ...
+
+@final
+class PathAnswer:
+    @property
+    def status(self) -> Literal["free", "contact", "undecided"]: ...
+    @property
+    def free_until(self) -> float: ...
+    @property
+    def a(self) -> str | None: ...
+    @property
+    def b(self) -> str | None: ...
+    @property
+    def contact(self) -> Contact | None: ...
+    def __bool__(self) -> bool: ...
+
+@final
+class Robot:
+    def __new__(
+        cls,
+        urdf: str | os.PathLike[str],
+        *,
+        srdf: str | os.PathLike[str] | None = None,
+        packages: Mapping[str, str | os.PathLike[str]] | None = None,
+        tolerance: _Float | None = None,
+        min_separation: _Float = 0.0,
+        node_tests: int | None = None,
+        time_limit: _Float | None = None,
+        threads: int | None = None,
+    ) -> Self: ...
+    @property
+    def link_names(self) -> list[str]: ...
+    @property
+    def joint_names(self) -> list[str]: ...
+    @property
+    def body_names(self) -> list[str]: ...
+    @property
+    def remarks(self) -> list[str]: ...
+    def limits(self, joint: str) -> tuple[float, float, float]: ...
+    def add_obstacle(
+        self, name: str, tree: _MeshLike, pose: _PoseLike = None, *, motion: _MotionLike = None, solid: _Solid = None
+    ) -> None: ...
+    def attach(self, name: str, link: str, tree: _MeshLike, pose: _PoseLike = None, *, solid: _Solid = None) -> None: ...
+    def ignore(self, a: str, b: str) -> None: ...
+    def check_path(
+        self,
+        times: ArrayLike,
+        positions: ArrayLike,
+        velocities: ArrayLike | None = None,
+        accelerations: ArrayLike | None = None,
+        *,
+        joints: Sequence[str] | None = None,
+    ) -> PathAnswer: ...
+    def limit_warnings(
+        self,
+        times: ArrayLike,
+        positions: ArrayLike,
+        velocities: ArrayLike | None = None,
+        accelerations: ArrayLike | None = None,
+        *,
+        joints: Sequence[str] | None = None,
+    ) -> list[dict[str, Any]]: ...
+    def check_edge(self, start: ArrayLike, end: ArrayLike, *, joints: Sequence[str] | None = None) -> PathAnswer: ...
+    def check_edges(
+        self,
+        start: ArrayLike,
+        end: ArrayLike,
+        *,
+        joints: Sequence[str] | None = None,
+        progress: _Progress = None,
+    ) -> NDArray[np.void]: ...
 
 @final
 class Impulse:

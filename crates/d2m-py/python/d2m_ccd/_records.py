@@ -31,6 +31,17 @@ RESULT = np.dtype(
     ]
 )
 
+#: Of `Robot.check_edges`: the first contact, the part of the edge that is proven free, and the places of the pair in `body_names`.
+EDGE = np.dtype([*((name, RESULT[name]) for name in RESULT.names or ()), ("free_until", "f8"), ("body_a", "i4"), ("body_b", "i4")])
+
+#: A robot of two links that is small enough for examples.
+EXAMPLE_URDF = """<robot name="two">
+  <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="arm"><collision><origin xyz="0.5 0 0"/><geometry><box size="0.8 0.1 0.1"/></geometry></collision></link>
+  <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/>
+    <axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="1"/></joint>
+</robot>"""
+
 #: Of `proximities`.
 PROXIMITY = np.dtype(
     [

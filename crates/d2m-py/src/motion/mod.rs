@@ -25,6 +25,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
 
+type Vector<'py> = Bound<'py, PyArray1<f64>>;
+
 /// How a body moves; the base class of all motions.
 ///
 /// Subclasses: `ConstantTwist`, `Screw`, `Keyframes`, `Spline`, `Chain`. Motions are immutable and may be shared by threads
@@ -133,7 +135,7 @@ impl Motion {
         Ok(Pose { pose: self.form.motion().pose_and_twist(time).0 })
     }
 
-    /// Velocity of the body point `at` and angular velocity at a time, world axes, rounded: two arrays of shape (3,).
+    /// Velocity of the body point `at` and angular velocity at a time, world axes, rounded: a list of two arrays of shape (3,).
     ///
     /// Raises `InputError` for a time at which the motion is not defined.
     ///
@@ -141,14 +143,10 @@ impl Motion {
     /// >>> v, w = d2m_ccd.ConstantTwist(v=[1, 2, 3]).twist(2.0)
     /// >>> v.tolist()
     /// [1.0, 2.0, 3.0]
-    fn twist<'py>(
-        &self,
-        py: Python<'py>,
-        time: f64,
-    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+    fn twist<'py>(&self, py: Python<'py>, time: f64) -> PyResult<[Vector<'py>; 2]> {
         self.check_time(time)?;
         let twist = self.form.motion().pose_and_twist(time).1;
-        Ok((vector(py, &twist.linear.to_array()), vector(py, &twist.angular.to_array())))
+        Ok([vector(py, &twist.linear.to_array()), vector(py, &twist.angular.to_array())])
     }
 
     /// First and last time at which the motion is defined; infinite where there is none.

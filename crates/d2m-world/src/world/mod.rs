@@ -17,7 +17,7 @@ pub use plan::PlannedMotion;
 
 use crate::box_tree::IndexPair;
 use crate::{Body, Group, SharedMotion};
-use d2m_bvh::{Mode, QueryOptions, Window};
+use d2m_bvh::{Budget, Mode, QueryOptions, Window};
 use d2m_motion::RigidMotion;
 use filter::PairFilter;
 use pair_state::PairState;
@@ -101,6 +101,19 @@ impl World {
     /// The options of the world.
     pub const fn options(&self) -> &QueryOptions {
         &self.options
+    }
+
+    /// Another budget for the queries from now on, say one that can be cancelled. What is proven stands.
+    ///
+    /// ```
+    /// use d2m_bvh::{Budget, Canceller, QueryOptions};
+    /// let mut world = d2m_world::World::new(QueryOptions::default());
+    /// let canceller = Canceller::new();
+    /// world.set_budget(Budget::UNLIMITED.with_cancel(canceller.flag()));
+    /// assert!(world.options().budget.cancel.is_some());
+    /// ```
+    pub const fn set_budget(&mut self, budget: Budget) {
+        self.options.budget = budget;
     }
 
     /// Adds a body.

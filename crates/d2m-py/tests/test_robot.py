@@ -1,0 +1,112 @@
+"""Robots: paths and edges."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import d2m_ccd
+import numpy as np
+import pytest
+from d2m_ccd import InputError
+
+WALL = "shape:box?x=0.05&y=0.05&z=0.5"
+
+
+@pytest.fixture
+def robot() -> d2m_ccd.Robot:
+    robot = d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF)
+    robot.add_obstacle("wall", WALL, d2m_ccd.Pose(x=[0, 0.7, 0]))
+    return robot
+
+
+def test_names(robot: d2m_ccd.Robot) -> None:
+    assert (robot.link_names, robot.joint_names) == (["base", "arm"], ["turn"])
+    assert robot.body_names == ["base", "arm", "wall"]
+
+
+def test_an_edge_is_free_until_the_arm_meets_the_wall(robot: d2m_ccd.Robot) -> None:
+    answer = robot.check_edge([0.0], [2.0])
+    assert (answer.status, answer.a, answer.b) == ("contact", "arm", "wall")
+    # The flank of the arm is 0.05 from its middle; the wall's near corner is at (0.05, 0.65).
+    angle = np.arctan2(0.65, 0.05) - np.arcsin(0.05 / np.hypot(0.65, 0.05))
+    assert answer.free_until == pytest.approx(angle / 2, abs=1e-8) and answer.free_until <= angle / 2
+    assert isinstance(answer.contact, d2m_ccd.Contact) and answer.contact.time_lo == answer.free_until
+    assert robot.check_edge([0.0], [0.99 * angle]).status == "free"
+    with pytest.raises(TypeError, match="truth"):
+        bool(answer)
+
+
+def test_batches_of_edges_are_single_edges(robot: d2m_ccd.Robot) -> None:
+    random = np.random.default_rng(31)
+    start, end = random.uniform(-3, 3, (200, 1)), random.uniform(-3, 3, (200, 1))
+    calls: list[int] = []
+    results = robot.check_edges(start, end, progress=lambda done, total: calls.append(done))
+    assert results.dtype == d2m_ccd.EDGE and calls[-1] == 200
+    for one, other, result in zip(start, end, results):
+        answer = robot.check_edge(one, other)
+        names = [robot.body_names[place] if place >= 0 else None for place in (result["body_a"], result["body_b"])]
+        assert (answer.free_until, answer.a, answer.b) == (result["free_until"], *names)
+    assert {0, 1} == set(results["status"])
+    single = d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF, threads=1)
+    single.add_obstacle("wall", WALL, d2m_ccd.Pose(x=[0, 0.7, 0]))
+    assert single.check_edges(start, end).tobytes() == results.tobytes()
+
+
+def test_paths(robot: d2m_ccd.Robot) -> None:
+    linear = robot.check_path([5.0, 9.0], [[0.0], [2.0]])
+    assert linear.status == "contact"
+    assert linear.free_until == pytest.approx(5 + 4 * robot.check_edge([0.0], [2.0]).free_until, abs=1e-7)
+    cubic = robot.check_path([0.0, 1.0], [[0.0], [1.0]], [[0.0], [0.0]])
+    assert cubic.status == "free" and cubic.free_until == 1.0
+    # The cubic overshoots: it leaves with such a speed that it comes to 4/27·9 + 1 = 2.33 on its way back to 1.
+    assert robot.check_path([0.0, 1.0], [[1.0], [1.0]], [[9.0], [0.0]]).status == "contact"
+    quintic = robot.check_path([0.0, 1.0], [[0.0], [1.0]], [[0.0], [0.0]], [[0.0], [0.0]])
+    assert quintic.status == "free"
+    assert robot.limit_warnings([0.0, 9.0], [[0.0], [4.0]])[0]["kind"] == "position"
+
+
+def test_attached_and_moving_bodies(robot: d2m_ccd.Robot) -> None:
+    angle = 2 * robot.check_edge([0.0], [2.0]).free_until
+    robot.attach("rod", "arm", "shape:box?x=0.01&y=0.3&z=0.01", d2m_ccd.Pose(x=[0.7, 0, 0]))
+    carried = robot.check_edge([0.0], [2.0])
+    assert {carried.a, carried.b} == {"rod", "wall"} and 2 * carried.free_until < angle
+    robot.ignore("rod", "wall")
+    assert 2 * robot.check_edge([0.0], [2.0]).free_until == pytest.approx(angle, abs=1e-8)
+    robot.add_obstacle("ball", "shape:box?x=0.1&y=0.1&z=0.1", motion={"x": [0.5, -3, 0], "v": [0, 3, 0]})
+    hit = robot.check_path([0.0, 1.0], [[0.0], [0.0]])
+    assert {hit.a, hit.b} == {"arm", "ball"} and hit.free_until == pytest.approx(2.85 / 3, abs=1e-8)
+
+
+def test_bad_input(robot: d2m_ccd.Robot, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"start\[0\]|from\[0\]") as caught:
+        robot.check_edge([np.nan], [1.0])
+    start = np.zeros((50, 1))
+    start[[20, 40]] = np.nan
+    with pytest.raises(InputError, match="edge 20") as caught:
+        robot.check_edges(start, np.ones((50, 1)))
+    assert caught.value.index == 20
+    with pytest.raises(InputError, match="shape"):
+        robot.check_edges(np.zeros((5, 1)), np.zeros((6, 1)))
+    with pytest.raises(InputError, match="2 numbers"):
+        robot.check_edges(np.zeros((5, 2)), np.zeros((5, 2)))
+    with pytest.raises(InputError, match="joint"):
+        robot.check_edge([0.0], [1.0], joints=["elbow"])
+    with pytest.raises(InputError, match="increase|after"):
+        robot.check_path([0.0, 0.0], [[0.0], [1.0]])
+    with pytest.raises(InputError, match="shape"):
+        robot.check_path([0.0, 1.0], [[0.0, 1.0], [1.0, 1.0]])
+    with pytest.raises(InputError, match="wall"):
+        robot.add_obstacle("wall", WALL)
+    with pytest.raises(InputError, match="no link"):
+        robot.attach("cup", "nobody", WALL)
+    assert robot.body_names == ["base", "arm", "wall"]
+    with pytest.raises(KeyError):
+        robot.ignore("nobody", "wall")
+    with pytest.raises(KeyError):
+        robot.limits("nobody")
+    with pytest.raises(InputError, match="missing.urdf"):
+        d2m_ccd.Robot(tmp_path / "missing.urdf")
+    with pytest.raises(InputError):
+        d2m_ccd.Robot("<robot name='x'><link name='a'/></robot>")
+    with pytest.raises(InputError, match="line"):
+        d2m_ccd.Robot("<robot name='x'><link name='a'>")
