@@ -28,7 +28,8 @@ pub enum Mode {
     /// Early stop at the first pair of triangles that come as close as their own size. `time_lo` is certified as
     /// always: no contact before. The contact itself is not: its evidence is [`Evidence::Early`](crate::Evidence::Early),
     /// and bodies that pass each other so closely without touching are reported too. The distance left at `time_lo` is
-    /// the `separation` of the answer, at most the sum of the radii of the two triangles' boxes.
+    /// the `separation` of the answer: above `min_separation` by at most the sum of the radii of the two triangles' boxes, for
+    /// motions whose twists are not constant a fifteenth more of that, or by 3.3 tolerances.
     Capoeira,
     /// Only whether there is a contact: the answer may be any time of contact, and nothing is promised about the time
     /// before it. What is proven of the meeting is said by the contact's `evidence`, as in every mode.

@@ -4,7 +4,11 @@ use crate::gamma::{excludes_zero, known, split_time};
 use crate::{IntervalFunction, SearchLimits};
 use d2m_interval::Interval;
 
-/// A continuously differentiable function known through enclosures of itself and of its derivative.
+/// A function known through enclosures of itself and of its derivative: continuously differentiable over every interval
+/// for which the enclosure of its value or that of its derivative is bounded.
+///
+/// Over any other interval it may have poles (`tan t`, `1/t`); there no slope is used. A jump that no enclosure shows, as of
+/// `atan(1/t)` at 0, breaks this contract.
 ///
 /// An empty enclosure (`√t` for t < 0) says that the function is not defined there. It proves nothing: [`first_zero`]
 /// takes it for "unknown".
@@ -61,7 +65,7 @@ pub enum ZeroEvidence {
     /// Exactly one: on a bounded piece around the bracket f′ has no zero, and f changes sign or interval Newton maps the
     /// piece into itself.
     Unique,
-    /// At least one: f has certainly opposite signs at the ends of the bracket, or vanishes at one.
+    /// At least one: f is bounded over the bracket and has certainly opposite signs at its ends, or vanishes at one.
     SignChange,
     /// Perhaps none: the bracket is as narrow as requested, and f is too small there to be distinguished from zero (a double
     /// root, a near miss, enclosures that do not shrink), or it is not defined there.
@@ -89,7 +93,7 @@ pub enum FirstZero {
 }
 
 /// Finds the first zero of f in a domain: from the left, by interval Newton where f is monotone, by the bound of its
-/// slope where it is not.
+/// slope where it is not, and by its values alone where it may have a pole.
 ///
 /// Promise, if the enclosures keep theirs: f ≠ 0 in the domain left of the bracket, or of `clear_until`, or everywhere
 /// for [`FirstZero::None`]; and what the evidence says. A simple zero that the enclosures can distinguish from its neighbors is
@@ -164,7 +168,9 @@ where
         let Some(middle) = split else {
             let (first, last) = (value_at(f, part.lo()), value_at(f, part.hi()));
             let zero = |value: Interval| value.lo() == 0.0 && value.hi() == 0.0;
-            let proven = opposite(first, last) || zero(first) || zero(last);
+            // Signs change at poles too.
+            let crosses = opposite(first, last) && known(f.enclose(part)).is_bounded();
+            let proven = crosses || zero(first) || zero(last);
             let evidence = if proven { ZeroEvidence::SignChange } else { ZeroEvidence::Undecided };
             return FirstZero::Found { bracket: part, evidence };
         };
@@ -197,10 +203,15 @@ fn opposite(a: Interval, b: Interval) -> bool {
 }
 
 fn examine<F: Differentiable + ?Sized>(f: &mut F, piece: Interval) -> Examined {
-    if excludes_zero(f.enclose(piece)) {
+    let value = known(f.enclose(piece));
+    if excludes_zero(value) {
         return Examined::Free;
     }
     let slope = known(f.enclose_derivative(piece));
+    // A slope says nothing across a pole.
+    if !value.is_bounded() && !slope.is_bounded() {
+        return Examined::Perhaps(piece);
+    }
     let (first, last) = (value_at(f, piece.lo()), value_at(f, piece.hi()));
     if !excludes_zero(slope) {
         return trimmed(piece, slope, first, last);

@@ -16,7 +16,8 @@ impl<F: FnMut(Interval) -> Interval> IntervalFunction for F {
     }
 }
 
-/// A function of class C² whose value, slope and second derivative can be enclosed.
+/// A function whose value, slope and second derivative can be enclosed: of class C² over every interval for which the
+/// [range](InclusionFunction::range) of its inclusion function is bounded; over others it may have poles.
 pub trait SecondOrder: IntervalFunction {
     /// θ of f over the piece `t`: see [`InclusionFunction`].
     fn inclusion_function(&mut self, t: Interval) -> InclusionFunction;

@@ -21,6 +21,7 @@ use d2m_interval::Interval;
 /// - A value at t0 that holds 0, and f ≡ 0, keep the piece (see [`intersect_root_domain`]).
 /// - A piece in which no double lies is reported as it is.
 /// - A piece that shrank below half is not bisected as well: shortening converges cubically, bisection linearly.
+/// - Where the range of θ is not bounded f may have a pole: such a piece is halved, whatever its parabolas say.
 /// - [`Gamma::settle`] may decide a piece that would not shrink (grazing, coplanar and parallel features). A time that
 ///   is certainly within the tolerance ends the search to its right; if all before it is then excluded, it is itself
 ///   the bracket.
@@ -65,11 +66,17 @@ where
             continue;
         }
         let theta = f.inclusion_function(piece);
-        // Where θ overflows, or the piece has no start, f itself may be certainly not zero.
-        if !theta.range().is_bounded() && excludes_zero(f.enclose(piece)) {
-            continue;
-        }
-        let Some(part) = intersect_root_domain(&theta) else { continue };
+        let part = if theta.range().is_bounded() {
+            let Some(part) = intersect_root_domain(&theta) else { continue };
+            part
+        } else {
+            // Where θ overflows, the piece has no start, or f may have a pole, of which parabolas know nothing, f itself may
+            // be certainly not zero.
+            if excludes_zero(f.enclose(piece)) {
+                continue;
+            }
+            piece
+        };
         if part.hi() < piece.hi() {
             stack.push(Interval::new(part.hi(), piece.hi()));
         }

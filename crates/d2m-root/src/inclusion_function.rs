@@ -5,7 +5,7 @@ use d2m_interval::Interval;
 
 /// θ(f, f′, f″, \[t0, t1\]): all that is known of a twice differentiable f over one piece of time.
 ///
-/// For t in \[t0, t1\] and x = t − t0,
+/// For t in \[t0, t1\] and x = t − t0, if f is twice differentiable on all of \[t0, t1\] (no pole in it),
 /// f(t) ∈ f(t0) + f′(t0)·x + ½·f″(\[t0, t1\])·x².
 ///
 /// `value` and `slope` are intervals here (the paper has reals): they enclose what rounding leaves of f(t0) and

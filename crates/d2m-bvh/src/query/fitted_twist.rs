@@ -38,13 +38,15 @@ struct Fit {
 const POLE_WITHIN: f64 = 16.0;
 
 impl FittedTwists {
-    /// Fits in the middle of the span; `None` where the motions' enclosures know too little, whatever the span.
+    /// Fits in the middle of the span, or at its start where no number lies between the ends: at the end the next piece of a
+    /// motion may have begun. `None` where the motions' enclosures know too little, whatever the span.
     ///
     /// Each motion is expressed by its reference point and by the one that accelerates least; what gives the smaller
     /// deviation is taken.
     pub(super) fn new(bodies: &[Moving<'_>; 2], span: Interval, origin: DVec3) -> Option<Self> {
         let (from, to) = (span.lo(), span.hi());
         let middle = (from + 0.5 * (to - from)).clamp(from, to);
+        let middle = if middle < to { middle } else { from };
         let fits = bodies.map(|body| candidates(&body, span, middle, origin));
         // Either difference is rounded once.
         let half = (to - middle).max(middle - from) * UP;

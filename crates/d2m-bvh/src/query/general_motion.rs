@@ -18,7 +18,8 @@ use crate::{
     StartState, TimeOfContact, Window,
 };
 use d2m_feature::triangle_distance;
-use d2m_interval::Interval;
+use d2m_interval::{Interval, IntervalVec3};
+use d2m_lanes::UP;
 use d2m_motion::{Chain, ConstantTwist, Pose, RigidMotion, Twist};
 use glam::DVec3;
 
@@ -33,6 +34,9 @@ const DEFAULT_TOLERANCE: f64 = 1e-10;
 const SMALL_PART: f64 = 0.125;
 /// Part of the room between the bodies that a deviation may take.
 const PART_OF_ROOM: f64 = 0.25;
+/// The same of what an early stop leaves above the minimum separation. That is at most the boxes of two triangles and the deviation,
+/// so at most 16/15 of the boxes.
+const PART_OF_EARLY_ROOM: f64 = 0.0625;
 /// Radii of a motion's enclosures at a single time, in units in the last place of the lengths that they are about, that count
 /// as rounding: then the tolerance is raised, as for constant twists. Wider enclosures end as undecided.
 const ROUNDINGS: f64 = 512.0 * f64::EPSILON;
@@ -44,6 +48,9 @@ const OVERSHOOT: f64 = 1.25;
 const EXPECTED: f64 = 0.9;
 /// A span says nothing of one that is longer by more than this.
 const MOST_EXPECTED: f64 = 16.0;
+/// Bodies that sweep boxes of at most this times their travel and radius are known well enough for a contact where time has no
+/// more numbers. It decides what is answered there, and proves nothing.
+const MOST_SWEPT: f64 = 64.0;
 /// Node tests that a fit counts for in a budget.
 const TESTS_A_FIT: u64 = 256;
 
@@ -118,6 +125,16 @@ struct LastFit {
 struct FittedSpan {
     fitted: FittedTwists,
     until: f64,
+    resolution: Resolution,
+}
+
+/// Is a span short enough for its fitted twists?
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Resolution {
+    /// They deviate by as little as they should.
+    Enough,
+    /// They deviate by more, but no number lies between the ends of the span.
+    OfTime,
 }
 
 /// A span in which fitted twists came near although they deviate by more than the tolerance allows.
@@ -257,7 +274,11 @@ impl<'a> Advance<'a> {
     /// A span with fitted twists: free up to its end or up to where they come near.
     fn fitted_span(&mut self) -> Result<Step, QueryError> {
         let undecided = Step::Answer(TimeOfContact::Undecided { clear_until: self.now });
-        let Some(FittedSpan { fitted, until }) = self.fit()? else { return Ok(undecided) };
+        let Some(span) = self.fit()? else { return Ok(undecided) };
+        if span.resolution == Resolution::OfTime {
+            return self.unresolved_span(&span);
+        }
+        let FittedSpan { fitted, until, .. } = span;
         let FittedTwists { twists, clock, deviation, floor, .. } = fitted;
         let tolerance = self.tolerance.max(rounding_tolerance(&fitted));
         let small = deviation <= SMALL_PART * tolerance;
@@ -288,7 +309,8 @@ impl<'a> Advance<'a> {
                 Contact { time_lo, time_hi, ..contact }
             }
         };
-        let early = options.mode == Mode::Capoeira && deviation <= PART_OF_ROOM * contact.separation;
+        let room = contact.separation - self.options.min_separation;
+        let early = options.mode == Mode::Capoeira && deviation <= PART_OF_EARLY_ROOM * room;
         if small || early {
             let contact = Contact { tolerance: contact.tolerance.max(inner) + 2.0 * deviation, ..contact };
             let contact = Contact { tolerance: contact.tolerance.max(tolerance), ..contact };
@@ -308,6 +330,96 @@ impl<'a> Advance<'a> {
             return Ok(undecided);
         }
         Ok(Step::FreeUntil(contact.time_lo.max(self.now)))
+    }
+
+    /// A span without a number between its ends, in which bodies move by more than the tolerance: free if the fitted
+    /// twists stay apart by more than they deviate, or the boxes that the bodies sweep are apart. Otherwise the bodies come near
+    /// for all that times can say, and the tolerance is what is left at the start of the span.
+    fn unresolved_span(&mut self, span: &FittedSpan) -> Result<Step, QueryError> {
+        let &FittedSpan { fitted: FittedTwists { twists, clock, deviation, .. }, until, .. } = span;
+        let undecided = Step::Answer(TimeOfContact::Undecided { clear_until: self.now });
+        // What is at the start itself.
+        let origin = self.poses_at(self.now)[1].0.translation;
+        let Some(still) = FittedTwists::new(&self.bodies, Interval::point(self.now), origin) else {
+            return Ok(undecided);
+        };
+        let tolerance = self.tolerance.max(rounding_tolerance(&still));
+        if still.deviation > SMALL_PART * tolerance {
+            return Ok(undecided);
+        }
+        let mut options = self.options_of_span();
+        if options.mode == Mode::Exists {
+            options.mode = Mode::Accurate;
+        }
+        options.tolerance = Some(tolerance - 2.0 * still.deviation);
+        options.min_separation = (self.options.min_separation + still.deviation).next_up();
+        let now = still.clock.window(self.now, self.now)?;
+        match self.ask([&still.twists[0], &still.twists[1]], now, &options)? {
+            TimeOfContact::Separated => {}
+            TimeOfContact::Undecided { .. } => return Ok(undecided),
+            TimeOfContact::Contact(contact) => {
+                let contact = Contact { time_lo: self.now, time_hi: self.now, tolerance, ..contact };
+                return Ok(Step::Answer(TimeOfContact::Contact(self.true_contact(contact))));
+            }
+        }
+        options.tolerance = Some(deviation.max(tolerance));
+        options.min_separation = (self.options.min_separation + deviation).next_up();
+        match self.ask([&twists[0], &twists[1]], clock.window(self.now, until)?, &options)? {
+            TimeOfContact::Separated => Ok(Step::FreeUntil(until)),
+            TimeOfContact::Undecided { .. } => Ok(undecided),
+            TimeOfContact::Contact(_) if self.sweep_apart(until) => Ok(Step::FreeUntil(until)),
+            // Bodies that hardly move are known too badly, whatever the time.
+            TimeOfContact::Contact(_) if !self.sweep_is_known(until) => Ok(undecided),
+            TimeOfContact::Contact(contact) => {
+                let triangles = [contact.triangle_a, contact.triangle_b];
+                let placed = PlacedTriangles::new(&self.bodies, triangles, self.now);
+                let left = placed.bound_distance(&placed.distance()) - self.options.min_separation;
+                if !left.is_finite() {
+                    return Ok(undecided);
+                }
+                let contact = Contact {
+                    time_lo: self.now,
+                    time_hi: until,
+                    evidence: Evidence::Near,
+                    start: StartState::Apart,
+                    tolerance: tolerance.max(left * UP),
+                    ..contact
+                };
+                Ok(Step::Answer(TimeOfContact::Contact(self.true_contact(contact))))
+            }
+        }
+    }
+
+    /// Boxes that the bodies never leave from now until a time.
+    fn sweep(&self, until: f64) -> [IntervalVec3; 2] {
+        let span = Interval::new(self.now, until);
+        self.bodies.map(|moving| moving.body.enclose_placed(&moving.motion.enclose_pose(span)))
+    }
+
+    /// Are these boxes further apart than contact is, along one axis? What is not a number, or empty, proves nothing.
+    fn sweep_apart(&self, until: f64) -> bool {
+        let [a, b] = self.sweep(until);
+        let beyond = |high: Interval, low: Interval| {
+            let gap = Interval::point(high.lo()) - Interval::point(low.hi());
+            !gap.is_empty() && gap.lo() > self.options.min_separation
+        };
+        let apart =
+            |a: Interval, b: Interval| !a.is_empty() && !b.is_empty() && (beyond(a, b) || beyond(b, a));
+        apart(a.x, b.x) || apart(a.y, b.y) || apart(a.z, b.z)
+    }
+
+    /// Are these boxes explained by the bodies and about how far they travel?
+    fn sweep_is_known(&mut self, until: f64) -> bool {
+        let (first, last) = (self.poses_at(self.now), self.poses_at(until));
+        let sweep = self.sweep(until);
+        (0..2).all(|k| {
+            let body = self.bodies[k].body;
+            let turn = first[k].0.rotation.normalize().conjugate() * last[k].0.rotation.normalize();
+            let moved = last[k].0.transform_point(body.center()) - first[k].0.transform_point(body.center());
+            let travel = moved.length() + 2.0 * turn.xyz().length() * body.radius();
+            let width = (sweep[k].hi() - sweep[k].lo()).max_element();
+            width <= MOST_SWEPT * (travel + body.radius())
+        })
     }
 
     /// How long the next span may be, and how far it may deviate, after the fitted twists came near.
@@ -369,10 +481,13 @@ impl<'a> Advance<'a> {
                 let curvature = (fitted.deviation - fitted.floor) / (length * length);
                 self.last = Some(LastFit { length, curvature });
                 if fitted.deviation <= enough {
-                    return Ok(Some(FittedSpan { fitted, until }));
+                    return Ok(Some(FittedSpan { fitted, until, resolution: Resolution::Enough }));
                 }
                 if shortest {
-                    return Ok(None);
+                    // Enclosures that are this wide at single times are not for want of numbers.
+                    let known = self.now < until && fitted.floor <= SMALL_PART * tolerance;
+                    let span = FittedSpan { fitted, until, resolution: Resolution::OfTime };
+                    return Ok(known.then_some(span));
                 }
                 // The deviation goes like the square of the span, or its root where a radius of a velocity rules.
                 let part = (enough / fitted.deviation).sqrt().clamp(LEAST_PART, 0.5);
@@ -437,7 +552,7 @@ impl<'a> Advance<'a> {
         };
         let closing_speed = (speed_a - speed_b).dot(contact.normal);
         let contact = self.with_start(Contact { evidence, point_a, point_b, closing_speed, ..contact });
-        self.with_what_time_leaves(contact)
+        self.with_what_is_left(contact)
     }
 
     /// Proof that the two triangles of a contact share a point at the end of its bracket.
@@ -451,15 +566,22 @@ impl<'a> Advance<'a> {
         Meeting { bodies, window: *window, separation: options.min_separation, tolerance: *tolerance }
     }
 
-    /// Where numbers for time are too far apart for the tolerance, more is left at `time_lo` than the search left on its
-    /// own clock: then the tolerance is what is left there, as for constant twists. A larger one takes no promise back.
-    fn with_what_time_leaves(&mut self, contact: Contact) -> Contact {
-        let left = self.room_at(&contact);
-        let covered = left.is_nan() || left <= MOST_LEFT * contact.tolerance;
-        if covered || contact.start != StartState::Apart || self.options.mode == Mode::Capoeira {
+    /// The separation of the reported triangles where the true motions have them. Where numbers for time are too far apart for the
+    /// tolerance, more is left at `time_lo` than the search left on its own clock: then the tolerance is what is left there, as
+    /// for constant twists. A larger one takes no promise back.
+    fn with_what_is_left(&self, contact: Contact) -> Contact {
+        if !matches!(contact.start, StartState::Apart | StartState::Touching) {
             return contact;
         }
-        Contact { separation: left + self.options.min_separation, tolerance: left, ..contact }
+        let triangles = [contact.triangle_a, contact.triangle_b];
+        let separation = PlacedTriangles::new(&self.bodies, triangles, contact.time_lo).distance().upper;
+        if separation.is_nan() {
+            return contact;
+        }
+        let left = separation - self.options.min_separation;
+        let covered = left <= MOST_LEFT * contact.tolerance;
+        let keeps = covered || contact.start != StartState::Apart || self.options.mode == Mode::Capoeira;
+        Contact { separation, tolerance: if keeps { contact.tolerance } else { left }, ..contact }
     }
 
     /// How the bodies stood at the start of the whole window, not of a span.

@@ -44,8 +44,6 @@ const LEAST_DIRECTIONS: u64 = 8;
 const MOST_DIRECTIONS: u64 = 32;
 /// Vertices that are compared along one direction in the time of one node test.
 const VERTICES_A_TEST: u64 = 16;
-/// Part of the tolerance above the wanted separation that a plane leaves at least.
-const PLANE_ROOM: f64 = 0.25;
 /// Batches between two counts of the pairs that wait, or tests of triangle pairs if it takes that many sooner: a pair that
 /// turns fast may need a thousand tests.
 const CROWD_CHECK: u32 = 32;
@@ -104,10 +102,9 @@ impl Patience {
 struct Crowd {
     /// Of A and of B, relative to the trees' centers.
     points: [Vec<DVec3>; 2],
-    /// For a plane that holds until the contact.
+    /// That of the search: pairs that a plane parts are as clear as those that are followed one by one, so that no answer
+    /// depends on which of the two it was, and caches may rely on it.
     level: f64,
-    /// For planes before that: keys mean that pairs are clear at the level of the search.
-    clear_level: f64,
     /// Directions that are tried for a plane.
     directions: u64,
 }
@@ -256,7 +253,7 @@ impl Search<'_> {
             let Some(moving) = Moving::new(self.scene, &crowd.points, &frame, span, clock) else { break };
             let mut parted = false;
             for first in [newest, moving.between().normalize_or_zero()] {
-                let separation = self.separation(&moving, (first, crowd.clear_level), crowd, clock);
+                let separation = self.separation(&moving, (first, crowd.level), crowd, clock);
                 if let Separation::Proven { along } = separation {
                     (parted, newest) = (true, along);
                     break;
@@ -318,9 +315,8 @@ impl Search<'_> {
         }
         let vertices = points.iter().map(Vec::len).sum::<usize>() as u64;
         let directions = (MOST_COMPARED / (2 * vertices).max(1)).clamp(LEAST_DIRECTIONS, MOST_DIRECTIONS);
-        let (scale, room) = (&self.scene.pair, PLANE_ROOM * self.scene.tolerance);
         // Places and rates err by less than half of the error, and what is bent by less than the rest.
-        let level = (scale.level - self.scene.tolerance) + room + 2.0 * scale.error;
-        Some(Crowd { points, level, clear_level: scale.level + 2.0 * scale.error, directions })
+        let level = self.scene.pair.level + 2.0 * self.scene.pair.error;
+        Some(Crowd { points, level, directions })
     }
 }

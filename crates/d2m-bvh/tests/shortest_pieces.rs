@@ -1,0 +1,111 @@
+//! Pieces of motions that last from one number for a time to the next.
+
+use d2m_bvh::{
+    Evidence, MeshTree, Mode, Moving, PairCache, QueryOptions, TimeOfContact, TriMesh, Window,
+    contact_exists, time_of_contact, time_of_contact_with,
+};
+use d2m_motion::{
+    Chain, Composed, ConstantTwist, Joint, JointKind, JointValue, Keyframes, Pose, Retimed, RigidMotion,
+    Span, Spline, SplineDegree, Twist,
+};
+use d2m_testing::Opaque;
+use glam::{DQuat, DVec3};
+
+fn cube() -> MeshTree {
+    let vertices =
+        (0..8).map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) - 0.5);
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
+    MeshTree::new(TriMesh::try_new(vertices.collect(), triangles).unwrap())
+}
+
+fn slide(value: JointValue) -> Chain {
+    let kind = JointKind::Prismatic { axis: DVec3::X, value };
+    Chain::try_new(vec![Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, kind).unwrap()]).unwrap()
+}
+
+/// From 0 to `reach` along x within the first piece, at rest in the second, as every kind of motion.
+fn motions(times: [f64; 3], reach: f64) -> Vec<(&'static str, Box<dyn RigidMotion + Send>)> {
+    let u = times[1] - times[0];
+    let value = |c: Vec<f64>| JointValue::try_pieces(times.to_vec(), vec![c, vec![reach]]).unwrap();
+    let steady = || slide(value(vec![0.0, reach / u]));
+    // Only smooth motions can be retimed: on the way for both pieces.
+    let smooth = JointValue::try_pieces(vec![times[0], times[2]], vec![vec![0.0, 0.5 * reach / u]]).unwrap();
+    let pose = |x: f64| Pose { translation: DVec3::X * x, ..Pose::IDENTITY };
+    let frames = [(times[0], pose(0.0)), (times[1], pose(reach)), (times[2], pose(reach))];
+    let resting = frames.map(|(t, pose)| (t, pose, Twist { linear: DVec3::ZERO, angular: DVec3::ZERO }));
+    let spline = |degree| Box::new(Spline::try_with_twists(&resting, degree).unwrap());
+    vec![
+        ("chain", Box::new(steady())),
+        (
+            "smooth chain",
+            Box::new(slide(value(vec![0.0, 0.0, 3.0 * reach / (u * u), -2.0 * reach / (u * u * u)]))),
+        ),
+        ("cubic spline", spline(SplineDegree::Cubic)),
+        ("quintic spline", spline(SplineDegree::Quintic)),
+        ("keyframes", Box::new(Keyframes::try_new(&frames, Span::Linear).unwrap())),
+        ("retimed", Box::new(Retimed::try_new(slide(smooth), 1.0, 0.0).unwrap())),
+        ("composed", Box::new(Composed::new(ConstantTwist::REST, steady()))),
+        ("own", Box::new(Opaque(steady()))),
+    ]
+}
+
+/// Numbers for time at odd and even places, from coarse to fine ones.
+fn times() -> impl Iterator<Item = [f64; 3]> {
+    [-3, 0, 1, 30, 52, 53, 54, 60].into_iter().flat_map(|e| {
+        let (base, u) = (2f64.powi(e), 2f64.powi(e - 52));
+        [0.0, 1.0].map(|odd| [odd, odd + 1.0, odd + 2.0].map(|k| base + k * u))
+    })
+}
+
+#[test]
+fn what_is_passed_between_two_numbers_is_met() {
+    let cube = cube();
+    let wall = ConstantTwist::REST.with_position(DVec3::X * 5.0);
+    for times in times() {
+        let window = Window::try_new(times[0], times[2]).unwrap();
+        for (name, motion) in motions(times, 10.0) {
+            let bodies = [Moving::new(&cube, &*motion), Moving::new(&cube, &wall)];
+            for bodies in [bodies, [bodies[1], bodies[0]]] {
+                let [a, b] = bodies;
+                for mode in [Mode::Accurate, Mode::Exists] {
+                    let options = QueryOptions::default().with_mode(mode);
+                    let answer = time_of_contact(a, b, window, &options).unwrap();
+                    let TimeOfContact::Contact(contact) = answer else {
+                        panic!("{name} from {:?}: {answer:?}", times[0])
+                    };
+                    assert_eq!([contact.time_lo, contact.time_hi][0], times[0], "{name}: {contact:?}");
+                    assert!(contact.time_hi <= times[1], "{name}: {contact:?}");
+                    // What is left is 4, and the tolerance says so.
+                    assert!(contact.separation <= 3.3 * contact.tolerance, "{name}: {contact:?}");
+                    assert!(contact.evidence >= Evidence::Near, "{name}: {contact:?}");
+                    let mut cache = PairCache::new();
+                    for _ in 0..2 {
+                        let same = time_of_contact_with(a, b, window, &options, &mut cache).unwrap();
+                        assert_eq!(same, answer, "{name}");
+                        let exists = contact_exists(a, b, window, &options, &mut cache).unwrap();
+                        assert_eq!(exists, Some(true), "{name}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What is not on the way is not met, and what is behind the end neither.
+#[test]
+fn what_is_beside_the_way_is_not_met() {
+    let cube = cube();
+    // Enclosures of polynomials over the whole of a piece are wide.
+    for wall in [DVec3::Y * 4000.0, DVec3::X * 4000.0, DVec3::X * -4000.0] {
+        let wall = ConstantTwist::REST.with_position(wall);
+        for times in times() {
+            let window = Window::try_new(times[0], times[2]).unwrap();
+            for (name, motion) in motions(times, 10.0) {
+                let (a, b) = (Moving::new(&cube, &*motion), Moving::new(&cube, &wall));
+                let answer = time_of_contact(a, b, window, &QueryOptions::default()).unwrap();
+                assert!(answer.is_separated(), "{name} from {:?}: {answer:?}", times[0]);
+            }
+        }
+    }
+}
