@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // A push at the top of the first stone.
     let mass = simulation.mass_properties(row[0]).ok_or("a stone has mass")?.mass;
     let push = DVec3::X * (0.6 * mass);
-    simulation.apply_impulse(row[0], push, (DVec3::Y * 0.09).cross(push));
+    simulation.apply_impulse(row[0], push, (DVec3::Y * 0.09).cross(push))?;
     while simulation.time() < 3.0 {
         let report = simulation.step()?;
         if report.events > 0 {

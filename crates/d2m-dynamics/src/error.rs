@@ -32,6 +32,17 @@ pub enum MassError {
         /// The refused value.
         value: DMat3,
     },
+    /// No body has such an inertia: it is ∫ (|x|² 1 − x xᵀ) dm of a mass that is nowhere negative only if no principal moment exceeds
+    /// the sum of the other two.
+    #[error(
+        "inertia {value}: the principal moments {moments} are those of no body, since the largest exceeds the sum of the others"
+    )]
+    NoSuchBody {
+        /// The refused value.
+        value: DMat3,
+        /// Its principal moments, ascending, to rounding.
+        moments: DVec3,
+    },
     /// The surface has an edge that not as many triangles run through one way as the other.
     #[error(
         "the mesh is open or not consistently oriented at the edge from {from} to {to}: give mass, center and inertia"
@@ -99,6 +110,29 @@ pub enum SimulationError {
         a: String,
         /// The second body's name.
         b: String,
+    },
+    /// The velocity of a body that is not dynamic: it would be ignored, since a kinematic body has it from its motion.
+    #[error(
+        "body {body}: {name} {value} would be ignored: the body is not dynamic, and a kinematic one has its velocity from its motion"
+    )]
+    VelocityWithoutMotion {
+        /// The body's name.
+        body: String,
+        /// Which velocity.
+        name: &'static str,
+        /// The refused value.
+        value: DVec3,
+    },
+    /// An impulse, force or torque that is not finite, or that gives a body momenta or velocities above
+    /// [`LARGEST`](crate::Simulation::LARGEST).
+    #[error("body {body}: {name} {value} is too large: momenta and velocities must stay below 1e100")]
+    TooLarge {
+        /// The body's name.
+        body: String,
+        /// Which quantity.
+        name: &'static str,
+        /// The refused value.
+        value: DVec3,
     },
     /// A pair of bodies that cannot be queried.
     #[error("bodies {a} and {b}: {error}")]

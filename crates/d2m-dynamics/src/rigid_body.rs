@@ -79,6 +79,10 @@ impl RigidBody {
         if let Some((name, value)) = vectors.into_iter().find(|(_, v)| !v.is_finite()) {
             return Err(bad(name, value.to_string()));
         }
+        let given = vectors[1..].iter().find(|(_, v)| *v != DVec3::ZERO);
+        if let (Kind::Static | Kind::Kinematic(_), Some(&(name, value))) = (&body.kind, given) {
+            return Err(SimulationError::VelocityWithoutMotion { body: body.name.clone(), name, value });
+        }
         let q = body.orientation;
         let norm = q.length();
         if !(norm.is_finite() && norm > 0.0) {
@@ -132,7 +136,7 @@ impl RigidBody {
             .and_then(|flight| flight.try_with_at(center))
             .and_then(|flight| flight.try_with_reference_time(time))
             .map_err(|_| bad("position", position.to_string()))?;
-        Ok(Self {
+        let made = Self {
             name: body.name.as_str().into(),
             tree: Arc::clone(&body.tree),
             faces,
@@ -162,7 +166,37 @@ impl RigidBody {
             gained: 0.0,
             asleep: false,
             quiet: 0.0,
-        })
+        };
+        made.check_momenta(["velocity", "angular velocity"], [DVec3::ZERO; 2])?;
+        Ok(made)
+    }
+
+    /// Two additions to the momenta, linear and angular, by their names: refused if they are not finite, or if the body would have
+    /// momenta or velocities above [`Simulation::LARGEST`](crate::Simulation::LARGEST).
+    pub(crate) fn check_momenta(
+        &self,
+        names: [&'static str; 2],
+        [linear, angular]: [DVec3; 2],
+    ) -> Result<(), SimulationError> {
+        let is_small = |v: DVec3| v.abs().max_element() <= crate::Simulation::LARGEST;
+        // Also what is not a number is refused.
+        let refuse = |name: &'static str, value: DVec3| {
+            Err(SimulationError::TooLarge { body: self.name.to_string(), name, value })
+        };
+        if !linear.is_finite() || !is_small(self.momentum + linear) {
+            return refuse(names[0], linear);
+        }
+        if !angular.is_finite() || !is_small(self.angular_momentum + angular) {
+            return refuse(names[1], angular);
+        }
+        if !is_small((self.momentum + linear) * self.inverse_mass) {
+            return refuse(names[0], linear);
+        }
+        let turn = self.inverse_inertia_at(self.orientation) * (self.angular_momentum + angular);
+        if !is_small(turn) {
+            return refuse(names[1], angular);
+        }
+        Ok(())
     }
 
     pub(crate) fn is_dynamic(&self) -> bool {

@@ -89,6 +89,9 @@ impl core::fmt::Debug for Simulation {
 }
 
 impl Simulation {
+    /// No momentum, angular momentum or velocity of a body may exceed this: their products are still numbers.
+    pub const LARGEST: f64 = 1e100;
+
     /// An empty simulation at time 0.
     ///
     /// # Errors
@@ -163,27 +166,36 @@ impl Simulation {
 
     /// A force through the center of mass and a torque, world axes, over the next step; gravity comes on top. Wakes the body.
     ///
-    /// # Panics
-    /// If a component is not finite.
-    pub fn set_force(&mut self, body: BodyId, force: DVec3, torque: DVec3) {
-        assert!(force.is_finite() && torque.is_finite(), "a force must be finite");
+    /// # Errors
+    /// [`SimulationError::TooLarge`]: a force or torque that is not finite, or that gives a dynamic body a momentum or velocity above
+    /// [`Self::LARGEST`] within a unit of time. Nothing changes then.
+    pub fn set_force(&mut self, body: BodyId, force: DVec3, torque: DVec3) -> Result<(), SimulationError> {
         let body = &mut self.bodies[body.index()];
+        body.check_momenta(["force", "torque"], [force, torque])?;
         (body.force, body.torque) = (force, torque);
         wake(body, self.time);
+        Ok(())
     }
 
     /// Adds an impulse at the center of mass and an angular impulse, world axes. Wakes the body.
     ///
-    /// # Panics
-    /// If a component is not finite.
-    pub fn apply_impulse(&mut self, body: BodyId, impulse: DVec3, angular: DVec3) {
-        assert!(impulse.is_finite() && angular.is_finite(), "an impulse must be finite");
+    /// # Errors
+    /// [`SimulationError::TooLarge`]: an impulse that is not finite, or after which a dynamic body has a momentum or velocity above
+    /// [`Self::LARGEST`]. Nothing changes then.
+    pub fn apply_impulse(
+        &mut self,
+        body: BodyId,
+        impulse: DVec3,
+        angular: DVec3,
+    ) -> Result<(), SimulationError> {
         let body = &mut self.bodies[body.index()];
+        body.check_momenta(["impulse", "angular impulse"], [impulse, angular])?;
         if body.is_dynamic() {
             body.momentum += impulse;
             body.angular_momentum += angular;
         }
         wake(body, self.time);
+        Ok(())
     }
 
     /// Advances by one step: to the next multiple of [`SimulationOptions::step`].

@@ -36,8 +36,8 @@ impl MassProperties {
     /// Given numbers, checked.
     ///
     /// # Errors
-    /// [`MassError`]: a mass that is not positive, an inertia that is not symmetric and positive definite, a number that
-    /// is not finite.
+    /// [`MassError`]: a mass that is not positive, an inertia that is not symmetric and positive definite or of which one principal
+    /// moment exceeds the sum of the others (by more than 1e-8 of it, what a text of nine digits loses), a number that is not finite.
     pub fn try_new(mass: f64, center: DVec3, inertia: DMat3) -> Result<Self, MassError> {
         if !(mass.is_finite() && mass > 0.0) {
             return Err(MassError::Mass { value: mass });
@@ -55,6 +55,10 @@ impl MassProperties {
         }
         if !symmetric.inverse().is_finite() {
             return Err(MassError::Inertia { value: inertia });
+        }
+        let moments = principal_moments(&symmetric);
+        if moments.z > (moments.x + moments.y) * (1.0 + ASYMMETRY) + ASYMMETRY * size {
+            return Err(MassError::NoSuchBody { value: inertia, moments });
         }
         Ok(Self { mass, center, inertia: symmetric })
     }
@@ -90,6 +94,36 @@ impl MassProperties {
         let unit = Self::try_from_density(mesh, 1.0)?;
         Self::try_new(mass, unit.center, unit.inertia * (mass / unit.mass))
     }
+}
+
+/// Rotations of Jacobi's method: each round of three takes the square of what is off the diagonal, so few are enough for doubles.
+const ROUNDS: u32 = 16;
+
+/// Eigenvalues of a symmetric matrix, ascending, to rounding, by Jacobi's rotations.
+fn principal_moments(symmetric: &DMat3) -> DVec3 {
+    // Relative to the largest entry: no product overflows.
+    let size = largest(symmetric);
+    let mut m = (*symmetric * (1.0 / size)).to_cols_array_2d();
+    for (p, q) in [(0, 1), (0, 2), (1, 2)].into_iter().cycle().take(3 * ROUNDS as usize) {
+        if m[p][q] == 0.0 {
+            continue;
+        }
+        let half = 0.5 * (m[q][q] - m[p][p]) / m[p][q];
+        let tangent = 1.0_f64.copysign(half) / (half.abs() + (1.0 + half * half).sqrt());
+        let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
+        let sine = tangent * cosine;
+        for k in 0..3 {
+            let (a, b) = (m[k][p], m[k][q]);
+            (m[k][p], m[k][q]) = (cosine * a - sine * b, sine * a + cosine * b);
+        }
+        for k in 0..3 {
+            let (a, b) = (m[p][k], m[q][k]);
+            (m[p][k], m[q][k]) = (cosine * a - sine * b, sine * a + cosine * b);
+        }
+    }
+    let mut moments = [m[0][0], m[1][1], m[2][2]].map(|moment| moment * size);
+    moments.sort_by(f64::total_cmp);
+    DVec3::from_array(moments)
 }
 
 fn largest(m: &DMat3) -> f64 {

@@ -1,0 +1,100 @@
+//! Bodies and pushes that no simulation can use are refused by name, and change nothing.
+
+use d2m_bvh::MeshTree;
+use d2m_dynamics::{
+    Body, Kind, Mass, MassError, MassProperties, Simulation, SimulationError, SimulationOptions,
+};
+use d2m_motion::ConstantTwist;
+use glam::{DMat3, DQuat, DVec3};
+use std::sync::Arc;
+
+fn cube() -> Body {
+    Body::new("cube", Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap())))
+}
+
+fn empty() -> Simulation {
+    Simulation::new(SimulationOptions::default()).unwrap()
+}
+
+#[test]
+fn an_inertia_that_no_body_has_is_refused() {
+    let turns = (0..12).map(|k| DQuat::from_scaled_axis(DVec3::new(0.3, -1.1, 0.7) * f64::from(k)));
+    for turn in turns {
+        for size in [1e-40, 1e-3, 1.0, 1e40] {
+            let turned = |moments: DVec3| {
+                let r = DMat3::from_quat(turn);
+                let m = r * DMat3::from_diagonal(moments * size) * r.transpose();
+                (m + m.transpose()) * 0.5
+            };
+            let given = |moments| MassProperties::try_new(1.0, DVec3::ZERO, turned(moments));
+            // A flat plate is the limit; text of nine digits may be a little beyond.
+            for moments in [(1.0, 1.0, 1.0), (1.0, 2.0, 3.0), (1e-6, 1.0, 1.0), (1.0, 2.0, 3.0 + 1e-9)] {
+                assert!(given(moments.into()).is_ok(), "{turn} {size:e} {moments:?}");
+            }
+            for moments in [(1.0, 1.0, 2.1), (1.0, 2.0, 3.000_001), (1e-6, 1e-6, 1.0), (5.0, 1.0, 1.0)] {
+                let refused = given(moments.into());
+                assert!(
+                    matches!(refused, Err(MassError::NoSuchBody { .. } | MassError::Inertia { .. })),
+                    "{turn} {size:e} {moments:?}: {refused:?}"
+                );
+                assert!(refused.unwrap_err().to_string().starts_with("inertia"));
+            }
+        }
+    }
+    let mass = MassProperties {
+        mass: 1.0,
+        center: DVec3::ZERO,
+        inertia: DMat3::from_diagonal((1.0, 1.0, 3.0).into()),
+    };
+    let error = empty().add(&cube().with_mass(Mass::Given(mass))).unwrap_err();
+    assert!(error.to_string().starts_with("body cube: inertia"), "{error}");
+    assert!(matches!(error, SimulationError::Mass { error: MassError::NoSuchBody { moments, .. }, .. }
+        if moments == DVec3::new(1.0, 1.0, 3.0)));
+}
+
+#[test]
+fn pushes_beyond_all_numbers_are_refused_and_change_nothing() {
+    let mut simulation = empty();
+    let id = simulation.add(&cube()).unwrap();
+    let before = simulation.snapshot();
+    for size in [1e308, 1e101, f64::INFINITY, f64::NAN] {
+        for (k, [first, second]) in
+            [[DVec3::X * size, DVec3::ZERO], [DVec3::ZERO, DVec3::Y * size]].into_iter().enumerate()
+        {
+            let named = |result: Result<(), SimulationError>, names: [&str; 2]| match result {
+                Err(SimulationError::TooLarge { body, name, .. }) => {
+                    assert_eq!((body.as_str(), name), ("cube", names[k]));
+                }
+                other => panic!("{size} {other:?}"),
+            };
+            named(simulation.apply_impulse(id, first, second), ["impulse", "angular impulse"]);
+            named(simulation.set_force(id, first, second), ["force", "torque"]);
+            assert_eq!(simulation.snapshot(), before);
+        }
+    }
+    // Many that are allowed do not add up to one that is not.
+    let most = (0..3).filter(|_| simulation.apply_impulse(id, DVec3::X * 9e99, DVec3::ZERO).is_ok()).count();
+    assert_eq!(most, 1);
+    let fast = empty().add(&cube().with_linear_velocity(DVec3::X * 1e200)).unwrap_err();
+    assert!(matches!(fast, SimulationError::TooLarge { name: "velocity", .. }), "{fast}");
+}
+
+#[test]
+fn velocities_that_would_be_ignored_are_refused() {
+    let kinds = [Kind::Static, Kind::Kinematic(Arc::new(ConstantTwist::REST))];
+    for kind in kinds {
+        let body = cube().with_kind(kind);
+        assert!(empty().add(&body).is_ok());
+        for (moving, wanted) in [
+            (body.clone().with_linear_velocity(DVec3::X), "velocity"),
+            (body.with_angular_velocity(DVec3::Z), "angular velocity"),
+        ] {
+            let error = empty().add(&moving).unwrap_err();
+            assert!(
+                matches!(&error, SimulationError::VelocityWithoutMotion { body, name, .. }
+                    if body == "cube" && *name == wanted),
+                "{error}"
+            );
+        }
+    }
+}
