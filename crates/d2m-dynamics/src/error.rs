@@ -35,12 +35,10 @@ pub enum MassError {
     /// No body has such an inertia: it is ∫ (|x|² 1 − x xᵀ) dm of a mass that is nowhere negative only if no principal moment exceeds
     /// the sum of the other two.
     #[error(
-        "inertia {value}: the principal moments {moments} are those of no body, since the largest exceeds the sum of the others"
+        "inertia: the principal moments {moments} are those of no body, since the largest exceeds the sum of the others"
     )]
     NoSuchBody {
-        /// The refused value.
-        value: DMat3,
-        /// Its principal moments, ascending, to rounding.
+        /// The principal moments, ascending, to rounding.
         moments: DVec3,
     },
     /// The surface has an edge that not as many triangles run through one way as the other.

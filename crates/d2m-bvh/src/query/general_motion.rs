@@ -363,7 +363,7 @@ impl<'a> Advance<'a> {
             }
         }
         options.tolerance = Some(deviation.max(tolerance));
-        options.min_separation = (self.options.min_separation + deviation).next_up();
+        options.min_separation = (deviation + self.options.min_separation).next_up();
         match self.ask([&twists[0], &twists[1]], clock.window(self.now, until)?, &options)? {
             TimeOfContact::Separated => Ok(Step::FreeUntil(until)),
             TimeOfContact::Undecided { .. } => Ok(undecided),

@@ -58,7 +58,7 @@ impl MassProperties {
         }
         let moments = principal_moments(&symmetric);
         if moments.z > (moments.x + moments.y) * (1.0 + ASYMMETRY) + ASYMMETRY * size {
-            return Err(MassError::NoSuchBody { value: inertia, moments });
+            return Err(MassError::NoSuchBody { moments });
         }
         Ok(Self { mass, center, inertia: symmetric })
     }
@@ -112,14 +112,13 @@ fn principal_moments(symmetric: &DMat3) -> DVec3 {
         let tangent = 1.0_f64.copysign(half) / (half.abs() + (1.0 + half * half).sqrt());
         let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
         let sine = tangent * cosine;
-        for k in 0..3 {
-            let (a, b) = (m[k][p], m[k][q]);
-            (m[k][p], m[k][q]) = (cosine * a - sine * b, sine * a + cosine * b);
+        for column in &mut m {
+            let (a, b) = (column[p], column[q]);
+            (column[p], column[q]) = (cosine * a - sine * b, sine * a + cosine * b);
         }
-        for k in 0..3 {
-            let (a, b) = (m[p][k], m[q][k]);
-            (m[p][k], m[q][k]) = (cosine * a - sine * b, sine * a + cosine * b);
-        }
+        let (a, b) = (m[p], m[q]);
+        m[p] = core::array::from_fn(|k| cosine * a[k] - sine * b[k]);
+        m[q] = core::array::from_fn(|k| sine * a[k] + cosine * b[k]);
     }
     let mut moments = [m[0][0], m[1][1], m[2][2]].map(|moment| moment * size);
     moments.sort_by(f64::total_cmp);
