@@ -78,6 +78,37 @@ pub struct Contact {
     pub start: StartState,
 }
 
+impl Contact {
+    /// A contact at a time of which only the features and the triangles of A and B are known, for methods of one's own to fill in.
+    /// Nothing is claimed: no bracket, no evidence ([`Evidence::Early`]), a separation and a tolerance of zero.
+    ///
+    /// ```
+    /// use d2m_bvh::{Contact, Evidence};
+    /// use d2m_feature::FeaturePair;
+    /// let contact = Contact::unproven(0.5, FeaturePair::VertexFace { vertex: 3, face: 7 }, [2, 7]);
+    /// assert_eq!((contact.time_lo, contact.time_hi, contact.evidence), (0.5, 0.5, Evidence::Early));
+    /// ```
+    pub const fn unproven(time: f64, feature: FeaturePair, triangles: [u32; 2]) -> Self {
+        Self {
+            time_lo: time,
+            time_hi: time,
+            evidence: Evidence::Early,
+            separation: 0.0,
+            tolerance: 0.0,
+            normal: DVec3::X,
+            point_a: DVec3::ZERO,
+            point_b: DVec3::ZERO,
+            feature,
+            triangle_a: triangles[0],
+            triangle_b: triangles[1],
+            barycentric_a: [1.0, 0.0, 0.0],
+            barycentric_b: [1.0, 0.0, 0.0],
+            closing_speed: 0.0,
+            start: StartState::Apart,
+        }
+    }
+}
+
 /// Answer of a time-of-contact query. Aliases: time of impact, TOI.
 #[doc(alias = "time_of_impact")]
 #[doc(alias = "toi")]

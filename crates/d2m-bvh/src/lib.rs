@@ -14,7 +14,6 @@ mod moving;
 mod nearest_point;
 mod options;
 mod pair_cache;
-pub mod paper;
 mod parallel;
 mod posed;
 mod query;

@@ -44,7 +44,7 @@ impl<'a, B> Moving<'a, B> {
     }
 
     /// What counts as contact with this body in a query with these options.
-    pub(crate) fn solid_in(&self, options: &QueryOptions) -> Solid {
+    pub fn solid_in(&self, options: &QueryOptions) -> Solid {
         self.solid.unwrap_or(options.solid)
     }
 }

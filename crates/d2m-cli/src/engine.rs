@@ -6,12 +6,12 @@ use crate::load::Loaded;
 use crate::output::note;
 use crate::sizes::{size_of, warn_of_sizes};
 use crate::trials::Trial;
-use d2m::bvh::paper::{self, SphereTree};
 use d2m::bvh::{
     Budget, MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, TimeOfContact, Topology, TriMesh,
     Window, distance, time_of_contact,
 };
 use d2m::motion::{AnyMotion, RigidMotion};
+use d2m::paper::{self, SphereTree};
 use glam::DVec3;
 use std::time::{Duration, Instant};
 

@@ -12,7 +12,6 @@ mod feature_pair;
 mod motion_in_units;
 mod options;
 mod pair_motion;
-pub mod paper;
 mod path;
 mod point_triangle;
 mod rigid_query;

@@ -1,59 +1,14 @@
 //! Metamorphic twins: lengths and times multiplied by powers of two change no verdict and no relative time.
 
-use d2m_feature::paper::{self, PaperOptions, RelativeMotion};
 use d2m_feature::{
     ContactBracket, ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, StraightPaths,
 };
-use d2m_interval::Interval;
 use d2m_motion::ConstantTwist;
-use d2m_root::{Evidence, RootSearch};
 use d2m_testing::Opaque;
 use d2m_testing::Random;
-use d2m_testing::planted::families::{FAMILIES, Family, Kind, Planted, plant};
+use d2m_testing::planted::families::{FAMILIES, Kind, Planted, plant};
+use d2m_testing::planted::twins::{SCALES, power, scaled, scaled_point, scaled_query};
 use glam::DVec3;
-
-/// `2ᵏ` for −1022 ≤ k ≤ 1023.
-fn power(k: i32) -> f64 {
-    f64::from_bits(((1023 + k) as u64) << 52)
-}
-
-/// `x·2ᵏ`, `None` if that is neither zero nor a normal number.
-fn scaled(x: f64, k: i32) -> Option<f64> {
-    let half = k / 2;
-    let there = (x * power(half)) * power(k - half);
-    (there == 0.0 && x == 0.0 || there.is_normal()).then_some(there)
-}
-
-fn scaled_point(p: DVec3, k: i32) -> Option<DVec3> {
-    Some(DVec3::new(scaled(p.x, k)?, scaled(p.y, k)?, scaled(p.z, k)?))
-}
-
-fn scaled_motion(motion: &ConstantTwist, length: i32, time: i32) -> Option<ConstantTwist> {
-    ConstantTwist::try_new(
-        scaled_point(motion.position(), length)?,
-        motion.orientation(),
-        scaled_point(motion.linear_velocity(), length - time)?,
-        scaled_point(motion.angular_velocity(), -time)?,
-    )
-    .ok()?
-    .try_with_reference_time(scaled(motion.reference_time(), time)?)
-    .ok()?
-    .try_with_at(scaled_point(motion.at(), length)?)
-    .ok()
-}
-
-fn scaled_query(query: &Planted, length: i32, time: i32) -> Option<Planted> {
-    let point = |p: DVec3| scaled_point(p, length);
-    Some(Planted {
-        a: [point(query.a[0])?, point(query.a[1])?],
-        b: [point(query.b[0])?, point(query.b[1])?, point(query.b[2])?],
-        motion_a: scaled_motion(&query.motion_a, length, time)?,
-        motion_b: scaled_motion(&query.motion_b, length, time)?,
-        window: (scaled(query.window.0, time)?, scaled(query.window.1, time)?),
-        time: scaled(query.time, time)?,
-        ..query.clone()
-    })
-}
 
 fn rigid(query: &Planted) -> FirstContact {
     let pair = PairMotion::new(&query.motion_a, &query.motion_b, query.window.0, query.window.1);
@@ -79,32 +34,6 @@ fn back(answer: FirstContact, length: i32, time: i32) -> FirstContact {
         }),
     }
 }
-
-/// Lengths alone, times alone, both; far beyond where products of three lengths over- or underflow.
-const SCALES: [(i32, i32); 22] = [
-    (1, 0),
-    (127, 0),
-    (130, 0),
-    (-180, 0),
-    (-250, 0),
-    (333, 0),
-    (600, 0),
-    (-600, 0),
-    (900, 0),
-    (-900, 0),
-    (0, 1),
-    (0, -1),
-    (0, 180),
-    (0, -180),
-    (0, 366),
-    (0, -366),
-    (0, 900),
-    (0, -900),
-    (-100, 100),
-    (450, -450),
-    (-450, 450),
-    (300, 300),
-];
 
 #[test]
 fn exact_scalings_change_no_verdict_and_no_relative_time() {
@@ -245,48 +174,4 @@ fn features_and_motions_of_different_sizes() {
             }
         }
     }
-}
-
-/// The reference method works in the units of the input with intervals of an absolute width of 2⁻⁵⁰⁰: it may say less there,
-/// but never that there is no contact where there is one.
-#[test]
-fn the_reference_method_misses_nothing_in_any_unit() {
-    let mut random = Random::new(8);
-    let mut hits = 0;
-    for kind in [Kind::PointTriangle, Kind::EdgeEdge] {
-        for family in [Family::Hit, Family::Boundary, Family::Window] {
-            for _ in 0..3 {
-                let query = plant(kind, family, &mut random);
-                let FirstContact::Contact(contact) = rigid(&query) else { continue };
-                if contact.evidence != Evidence::Crossing {
-                    continue;
-                }
-                for (length, time) in SCALES {
-                    let Some(twin) = scaled_query(&query, length, time) else { continue };
-                    let motion = RelativeMotion::new(&twin.motion_a, &twin.motion_b);
-                    let window = Interval::new(twin.window.0, twin.window.1);
-                    let tolerance = scaled(1e-10, length).unwrap();
-                    let options = PaperOptions::DEFAULT.with_tolerance(tolerance).with_evaluations(2000);
-                    let found = match kind {
-                        Kind::PointTriangle => {
-                            paper::point_triangle(&motion, twin.a[0], &twin.b, window, &options)
-                        }
-                        Kind::EdgeEdge => {
-                            paper::edge_edge(&motion, &twin.a, &[twin.b[0], twin.b[1]], window, &options)
-                        }
-                    };
-                    let hi = scaled(contact.hi, time).unwrap();
-                    match found {
-                        RootSearch::Bracket(bracket) => assert!(bracket.lo() <= hi, "2^{length} 2^{time}"),
-                        RootSearch::Undecided { clear_until } => {
-                            assert!(clear_until <= hi, "2^{length} 2^{time}: {clear_until}");
-                        }
-                        RootSearch::None => panic!("2^{length} 2^{time}: missed {query:?}"),
-                    }
-                    hits += 1;
-                }
-            }
-        }
-    }
-    assert!(hits > 200, "{hits}");
 }

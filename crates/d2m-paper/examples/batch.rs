@@ -4,7 +4,7 @@
 //!
 //! Trials: qA(w,x,y,z), xA, vA, wA, qB, xB, vB, wB; t in [0, 1].
 
-use d2m_bvh::{Mode, QueryOptions, TimeOfContact, TriMesh, Window, paper};
+use d2m_bvh::{Mode, QueryOptions, TimeOfContact, TriMesh, Window};
 use d2m_motion::ConstantTwist;
 use glam::{DQuat, DVec3};
 use std::time::Instant;
@@ -38,8 +38,8 @@ fn motion(c: &[f64]) -> ConstantTwist {
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let started = Instant::now();
-    let tree_a = paper::SphereTree::new(load(&args[0]));
-    let tree_b = if args[1] == args[0] { tree_a.clone() } else { paper::SphereTree::new(load(&args[1])) };
+    let tree_a = d2m_paper::SphereTree::new(load(&args[0]));
+    let tree_b = if args[1] == args[0] { tree_a.clone() } else { d2m_paper::SphereTree::new(load(&args[1])) };
     eprintln!(
         "trees built in {:.3} s: {} and {} leaves",
         started.elapsed().as_secs_f64(),
@@ -58,9 +58,9 @@ fn main() {
         let c: Vec<f64> = line.split(',').map(|w| w.trim().parse().expect("a number")).collect();
         let (a, b) = (motion(&c[..13]), motion(&c[13..]));
         let started = Instant::now();
-        let answer = paper::time_of_contact(
-            paper::Moving::new(&tree_a, &a),
-            paper::Moving::new(&tree_b, &b),
+        let answer = d2m_paper::time_of_contact(
+            d2m_paper::Moving::new(&tree_a, &a),
+            d2m_paper::Moving::new(&tree_b, &b),
             Window::UNIT,
             &options,
         )

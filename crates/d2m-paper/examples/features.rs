@@ -2,9 +2,9 @@
 //!
 //! `cargo run --release -p d2m-feature --example paper_features -- CASES.jsonl > RESULTS.jsonl`
 
-use d2m_feature::paper::{PaperOptions, RelativeMotion, Sphere, edge_edge, point_triangle, sphere_sphere};
 use d2m_interval::Interval;
 use d2m_motion::ConstantTwist;
+use d2m_paper::{PaperOptions, RelativeMotion, Sphere, edge_edge, point_triangle, sphere_sphere};
 use d2m_root::RootSearch;
 use glam::{DQuat, DVec3};
 use serde_json::Value;

@@ -1,10 +1,10 @@
 //! The closed-form feature tests against the reference method's, on features that meet or miss by little; disputes are
 //! settled with 70 digits.
 
-use d2m_feature::paper::{PaperOptions, RelativeMotion, edge_edge, point_triangle};
 use d2m_feature::{ContactOptions, FirstContact, PairMotion};
 use d2m_interval::Interval;
 use d2m_motion::ConstantTwist;
+use d2m_paper::{PaperOptions, RelativeMotion, edge_edge, point_triangle};
 use d2m_root::RootSearch;
 use d2m_testing::Draw;
 use d2m_testing::Random;

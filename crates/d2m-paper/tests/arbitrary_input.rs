@@ -3,8 +3,7 @@
 //! Nothing here judges geometry; `cross_check.rs` and `paper.rs` do.
 
 use d2m_bvh::{
-    Budget, MeshTree, Mode, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window, paper,
-    time_of_contact,
+    Budget, MeshTree, Mode, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact,
 };
 use d2m_motion::ConstantTwist;
 use glam::{DQuat, DVec3};
@@ -124,9 +123,9 @@ fn ask((meshes, motions, [start, end], options): Question) {
             time_of_contact(a, b, window, &options.with_budget(Budget::UNLIMITED.with_node_tests(300)));
         assert_eq!(format!("{again:?}"), format!("{once_more:?}"));
     }
-    let trees = [paper::SphereTree::new(mesh_a), paper::SphereTree::new(mesh_b)];
+    let trees = [d2m_paper::SphereTree::new(mesh_a), d2m_paper::SphereTree::new(mesh_b)];
     let (a, b) = (Moving::new(&trees[0], &motion_a), Moving::new(&trees[1], &motion_b));
-    if let Ok(answer) = paper::time_of_contact(a, b, window, &options) {
+    if let Ok(answer) = d2m_paper::time_of_contact(a, b, window, &options) {
         keeps_its_form(&answer, window);
     }
 }

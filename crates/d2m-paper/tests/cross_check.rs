@@ -1,7 +1,7 @@
 //! Default engine, reference method and slow oracle on random small scenes.
 
-use d2m_bvh::paper::{CrossCheck, cross_check};
 use d2m_bvh::{QueryOptions, Solid, Topology, TriMesh, Window};
+use d2m_paper::{CrossCheck, cross_check};
 use d2m_testing::{SmallScene, Surface};
 
 fn mesh(surface: &Surface) -> TriMesh {

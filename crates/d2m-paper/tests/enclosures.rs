@@ -1,9 +1,9 @@
 //! The reference method's enclosures against 70 digits: ends sampled, one-instant spans included, so that rounding that
 //! is not outward does not survive.
 
-use d2m_feature::paper::{BodyOverDomain, PointJet, RelativeMotion, test_sphere_pair};
 use d2m_interval::Interval;
 use d2m_motion::ConstantTwist;
+use d2m_paper::{BodyOverDomain, PointJet, RelativeMotion, test_sphere_pair};
 use d2m_testing::Draw;
 use d2m_testing::Random;
 use d2m_testing::fixed::{self, Fix, V};

@@ -1,11 +1,11 @@
 //! First contacts of features planted with 70 digits, and analytic cases of every erratum.
 
-use d2m_feature::paper::{
+use d2m_interval::Interval;
+use d2m_motion::ConstantTwist;
+use d2m_paper::{
     PaperOptions, PolygonFace, RelativeMotion, Sphere, edge_edge, point_polygon, point_triangle,
     sphere_sphere,
 };
-use d2m_interval::Interval;
-use d2m_motion::ConstantTwist;
 use d2m_root::RootSearch;
 use d2m_testing::fixed::{self, Fix, V, cross, dot, sub};
 use d2m_testing::{Draw, Random};

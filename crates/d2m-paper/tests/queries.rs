@@ -1,9 +1,11 @@
 //! The reference method on scenes with a known answer.
 
+// One list of scenes for both methods.
+#[path = "../../d2m-bvh/tests/scenes/mod.rs"]
 mod scenes;
 
-use d2m_bvh::paper::{Moving, SphereTree, time_of_contact};
 use d2m_bvh::{Budget, Mode, QueryError, QueryOptions, Solid, TimeOfContact, Window};
+use d2m_paper::{Moving, SphereTree, time_of_contact};
 use glam::DVec3;
 use scenes::{Expected, Scene};
 

@@ -1,8 +1,8 @@
 //! The hard feature cases with high-precision truth (`testdata/cases.jsonl`) through the reference method.
 
-use d2m_feature::paper::{PaperOptions, RelativeMotion, Sphere, edge_edge, point_triangle, sphere_sphere};
 use d2m_interval::Interval;
 use d2m_motion::ConstantTwist;
+use d2m_paper::{PaperOptions, RelativeMotion, Sphere, edge_edge, point_triangle, sphere_sphere};
 use d2m_root::RootSearch;
 use d2m_testing::fixed::Fix;
 use dashu_int::IBig;
@@ -31,7 +31,7 @@ fn decimal(text: &str) -> Fix {
 #[test]
 fn no_contact_missed_and_none_late() {
     let mut cases = 0;
-    for line in include_str!("../testdata/cases.jsonl").lines() {
+    for line in include_str!("../../d2m-feature/testdata/cases.jsonl").lines() {
         let case: Value = serde_json::from_str(line).unwrap();
         // The reference method has no straight paths.
         if !case["kind"].as_str().unwrap().ends_with("_linear") {

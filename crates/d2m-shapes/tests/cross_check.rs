@@ -1,8 +1,8 @@
 //! Default engine, reference method and slow judge on procedural shapes: a screw in its nut, a link in a link.
 
-use d2m_bvh::paper::{CrossCheck, cross_check};
 use d2m_bvh::{QueryOptions, Solid, Window};
 use d2m_motion::ConstantTwist;
+use d2m_paper::{CrossCheck, cross_check};
 use d2m_shapes::mesh;
 use glam::{DVec3, dvec3};
 

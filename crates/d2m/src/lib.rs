@@ -12,6 +12,8 @@ pub use d2m_interval as interval;
 #[cfg(feature = "io")]
 pub use d2m_io as io;
 pub use d2m_motion as motion;
+#[cfg(feature = "paper")]
+pub use d2m_paper as paper;
 #[cfg(feature = "robot")]
 pub use d2m_robot as robot;
 pub use d2m_root as root;

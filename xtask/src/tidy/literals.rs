@@ -32,7 +32,7 @@ pub(super) fn check(root: &Path) -> Result<Vec<String>, Box<dyn std::error::Erro
 
 /// Tests, what compares methods for them, and what only samples.
 fn is_test(name: &str) -> bool {
-    let proves_nothing = ["/tests/", "paper/cross_check.rs", "d2m-motion/src/check_motion.rs"];
+    let proves_nothing = ["/tests/", "mesh/cross_check.rs", "d2m-motion/src/check_motion.rs"];
     name.ends_with("tests.rs") || proves_nothing.iter().any(|part| name.contains(part))
 }
 

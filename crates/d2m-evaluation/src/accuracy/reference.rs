@@ -1,8 +1,8 @@
 //! The reference method and the engine on random small scenes, both judged by certified static distances.
 use super::{Outcome, Task};
 use d2m::bvh::Topology;
-use d2m::bvh::paper::{CrossCheck, cross_check};
 use d2m::{QueryOptions, Solid, TriMesh, Window};
+use d2m_paper::{CrossCheck, cross_check};
 use d2m_testing::{SmallScene, Surface};
 
 pub(super) fn run(task: &Task) -> Outcome {

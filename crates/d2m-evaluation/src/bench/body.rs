@@ -2,8 +2,8 @@
 
 use super::peers;
 use crate::judge::BoxTree;
-use d2m::bvh::paper::SphereTree;
 use d2m::bvh::{MeshArrays, MeshTree, TriMesh};
+use d2m_paper::SphereTree;
 use glam::DVec3;
 use std::fmt::Write as _;
 use std::path::Path;

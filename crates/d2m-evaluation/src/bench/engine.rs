@@ -2,7 +2,7 @@
 use super::body::{Body, Pair};
 use crate::judge::Claim;
 use crate::trials::{Movement, Trial};
-use d2m::bvh::{self, MeshTree, Moving, Posed, QueryOptions, Solid, TimeOfContact, TriMesh, Window, paper};
+use d2m::bvh::{self, MeshTree, Moving, Posed, QueryOptions, Solid, TimeOfContact, TriMesh, Window};
 use d2m::motion::{ConstantTwist, RigidMotion};
 
 type Error = Box<dyn std::error::Error>;
@@ -47,7 +47,7 @@ pub(crate) fn time_of_contact(pair: &Pair, motions: &Motions, options: &QueryOpt
 pub(crate) fn paper(pair: &Pair, motions: &Motions, options: &QueryOptions) -> Claim {
     let a = Moving::new(pair.a.spheres(), &motions.a);
     let b = Moving::new(pair.b.spheres(), &motions.b);
-    claim(paper::time_of_contact(a, b, Window::UNIT, options))
+    claim(d2m_paper::time_of_contact(a, b, Window::UNIT, options))
 }
 
 fn posed<'a>(pair: &'a Pair, motions: &Motions, t: f64) -> [Posed<'a>; 2] {

@@ -20,7 +20,7 @@ use glam::DVec3;
 /// derivatives vanish). Parallel edges make f ≡ 0: Γ and separating axes decide them.
 ///
 /// ```
-/// use d2m_feature::paper::{PaperOptions, RelativeMotion, edge_edge};
+/// use d2m_paper::{PaperOptions, RelativeMotion, edge_edge};
 /// use d2m_interval::Interval;
 /// use d2m_motion::ConstantTwist;
 /// use d2m_root::RootSearch;

@@ -18,7 +18,6 @@ mod relative_motion;
 mod sphere_over_domain;
 mod sphere_sphere;
 
-pub use crate::sphere::Sphere;
 pub use direction::Direction;
 pub use edge_edge::{EdgePair, edge_edge};
 pub use face::{Face, PolygonFace, TriangleFace};

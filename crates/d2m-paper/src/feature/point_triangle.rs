@@ -21,7 +21,7 @@ use glam::DVec3;
 /// is [`hrfoi`]. Works for any [`RigidMotion`](d2m_motion::RigidMotion) through its enclosures.
 ///
 /// ```
-/// use d2m_feature::paper::{PaperOptions, RelativeMotion, point_triangle};
+/// use d2m_paper::{PaperOptions, RelativeMotion, point_triangle};
 /// use d2m_interval::Interval;
 /// use d2m_motion::ConstantTwist;
 /// use d2m_root::RootSearch;
@@ -46,7 +46,7 @@ pub fn point_triangle(
 /// First contact of `point` (frame of the mover) with a convex polygon (frame of the observer): as [`point_triangle`].
 ///
 /// ```
-/// use d2m_feature::paper::{PaperOptions, PolygonFace, RelativeMotion, point_polygon};
+/// use d2m_paper::{PaperOptions, PolygonFace, RelativeMotion, point_polygon};
 /// use d2m_interval::Interval;
 /// use d2m_motion::ConstantTwist;
 /// use d2m_root::RootSearch;

@@ -106,7 +106,7 @@ pub struct SphereOverDomain {
 /// ```
 ///
 /// ```
-/// use d2m_feature::paper::{BodyOverDomain, test_sphere_pair};
+/// use d2m_paper::{BodyOverDomain, test_sphere_pair};
 /// use d2m_interval::Interval;
 /// use d2m_motion::ConstantTwist;
 /// use glam::DVec3;

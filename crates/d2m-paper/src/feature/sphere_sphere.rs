@@ -2,7 +2,7 @@
 
 use super::point_triangle::fits;
 use super::{PaperOptions, PointJet, RelativeMotion};
-use crate::sphere::Sphere;
+use d2m_feature::Sphere;
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_root::{Gamma, InclusionFunction, IntervalFunction, RootSearch, SecondOrder, Settled, hrfoi};
 use glam::DVec3;
@@ -16,7 +16,7 @@ use glam::DVec3;
 /// b² − 4ac was late there.
 ///
 /// ```
-/// use d2m_feature::paper::{PaperOptions, RelativeMotion, Sphere, sphere_sphere};
+/// use d2m_paper::{PaperOptions, RelativeMotion, Sphere, sphere_sphere};
 /// use d2m_interval::Interval;
 /// use d2m_motion::ConstantTwist;
 /// use d2m_root::RootSearch;

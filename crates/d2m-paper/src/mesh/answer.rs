@@ -5,8 +5,8 @@ use super::distance::{ClosestPair, enclose_distance};
 use super::leaf_pair::Candidate;
 use super::sphere_tree::SphereTree;
 use super::step_back::{Disjoint, estimate_relative_velocity, step_back};
-use crate::{Contact, Evidence, StartState};
-use d2m_feature::paper::RelativeMotion;
+use crate::feature::RelativeMotion;
+use d2m_bvh::{Contact, Evidence, StartState};
 use d2m_feature::{FeaturePair, TriangleFeature};
 use d2m_interval::Interval;
 use d2m_motion::Pose;
@@ -82,23 +82,17 @@ fn contact_of_pair(bodies: &[Moving<'_>; 2], time: f64, tolerance: f64, pair: &C
     };
     let normal = pose.transform_vector(direction).normalize_or(DVec3::X);
     let (point_a, point_b) = (pose.transform_point(detail.point_a), pose.transform_point(detail.point_b));
-    Contact {
-        time_lo: time,
-        time_hi: time,
-        evidence: if detail.upper + pair.rounding <= tolerance { Evidence::Near } else { Evidence::Early },
-        separation: 0.0,
-        tolerance,
-        normal,
-        point_a,
-        point_b,
-        feature: feature_of(bodies, pair).unwrap_or_else(|| any_feature(bodies, pair)),
-        triangle_a: pair.triangle_a,
-        triangle_b: pair.triangle_b,
-        barycentric_a: detail.barycentric_a,
-        barycentric_b: detail.barycentric_b,
-        closing_speed: -normal.dot(estimate_relative_velocity(bodies, time, point_b)),
-        start: StartState::Apart,
+    let feature = feature_of(bodies, pair).unwrap_or_else(|| any_feature(bodies, pair));
+    let mut contact = Contact::unproven(time, feature, [pair.triangle_a, pair.triangle_b]);
+    if detail.upper + pair.rounding <= tolerance {
+        contact.evidence = Evidence::Near;
     }
+    contact.tolerance = tolerance;
+    contact.normal = normal;
+    (contact.point_a, contact.point_b) = (point_a, point_b);
+    (contact.barycentric_a, contact.barycentric_b) = (detail.barycentric_a, detail.barycentric_b);
+    contact.closing_speed = -normal.dot(estimate_relative_velocity(bodies, time, point_b));
+    contact
 }
 
 /// A direction from A to B for triangles that meet: against B's outer normal, or any if B's triangle has collapsed.

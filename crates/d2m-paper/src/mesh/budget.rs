@@ -1,6 +1,6 @@
 //! What a feature search costs of a query's budget.
 
-use crate::{Budget, Exhausted, Meter};
+use d2m_bvh::{Budget, Exhausted, Meter};
 
 /// The cap without any budget, about a minute of work: tests cost more here than in the default engine, whose cap is
 /// [`Budget::HARD_NODE_TESTS`].

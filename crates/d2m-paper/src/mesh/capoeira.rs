@@ -1,7 +1,7 @@
 //! Capoeira mode: the broad phase alone.
 
 use super::traverse::Search;
-use crate::Mode;
+use d2m_bvh::Mode;
 
 impl Search<'_> {
     /// Does the search stop at leaf spheres?

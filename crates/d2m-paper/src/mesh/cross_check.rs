@@ -2,8 +2,8 @@
 
 use super::distance::enclose_distance;
 use super::{Moving, SphereTree, time_of_contact};
-use crate::{MeshTree, QueryOptions, TimeOfContact, TriMesh, Window};
-use d2m_feature::paper::RelativeMotion;
+use crate::feature::RelativeMotion;
+use d2m_bvh::{MeshTree, QueryOptions, TimeOfContact, TriMesh, Window};
 use d2m_interval::Interval;
 use d2m_motion::{ConstantTwist, RigidMotion};
 
@@ -46,7 +46,7 @@ impl CrossCheck {
 /// (0, 3.4 δ]; brackets that do not reach the contact are counted.
 ///
 /// ```
-/// use d2m_bvh::{QueryOptions, TriMesh, Window, paper};
+/// use d2m_bvh::{QueryOptions, TriMesh, Window};
 /// use d2m_motion::ConstantTwist;
 /// use glam::DVec3;
 /// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
@@ -54,7 +54,7 @@ impl CrossCheck {
 /// let coming = ConstantTwist::REST.with_position(DVec3::Z * 3.0).with_linear_velocity(DVec3::Z * -4.0);
 /// let motions = [coming, ConstantTwist::REST];
 /// let meshes = [mesh.clone(), mesh];
-/// let report = paper::cross_check("example", meshes, motions, Window::UNIT, &QueryOptions::DEFAULT);
+/// let report = d2m_paper::cross_check("example", meshes, motions, Window::UNIT, &QueryOptions::DEFAULT);
 /// assert_eq!((report.contacts, report.complaints.len()), (1, 0));
 /// # Ok::<(), d2m_bvh::MeshError>(())
 /// ```
@@ -83,9 +83,9 @@ impl Scene {
         let [a, b]: [Moving<'_>; 2] =
             core::array::from_fn(|i| Moving::new(&self.trees[i], &self.motions[i] as &dyn RigidMotion));
         let engines = self.trees.each_ref().map(|t| MeshTree::new(t.mesh().clone()));
-        let engine = crate::time_of_contact(
-            crate::Moving::new(&engines[0], &self.motions[0]),
-            crate::Moving::new(&engines[1], &self.motions[1]),
+        let engine = d2m_bvh::time_of_contact(
+            d2m_bvh::Moving::new(&engines[0], &self.motions[0]),
+            d2m_bvh::Moving::new(&engines[1], &self.motions[1]),
             self.window,
             &self.options,
         );
@@ -156,7 +156,7 @@ impl Oracle<'_> {
         }
         let contact = answer.contact()?;
         let scale = self.scale();
-        if contact.start == crate::StartState::Apart {
+        if contact.start == d2m_bvh::StartState::Apart {
             let (lower, upper) = self.distance(contact.time_lo, f64::INFINITY);
             if lower <= 0.0 || upper > 3.4 * contact.tolerance + 1e-14 * scale {
                 return Some(format!("distance at time_lo in [{lower:e}, {upper:e}]"));
@@ -167,7 +167,9 @@ impl Oracle<'_> {
 
     /// Is there no time in the contact's bracket at which the distance could be within the tolerance?
     fn is_open(&self, answer: &TimeOfContact) -> bool {
-        let Some(c) = answer.contact().filter(|c| c.start == crate::StartState::Apart) else { return false };
+        let Some(c) = answer.contact().filter(|c| c.start == d2m_bvh::StartState::Apart) else {
+            return false;
+        };
         let allowed = 1.01 * c.tolerance + 1e-14 * self.scale();
         let close = |t: f64| self.distance(t, 4.0 * allowed).0 <= allowed;
         let between = |k: u32| c.time_lo + (c.time_hi - c.time_lo) * f64::from(k) / 64.0;
@@ -176,7 +178,9 @@ impl Oracle<'_> {
 
     /// Do the surfaces clearly meet before the contact's `time_hi`?
     fn is_loose(&self, answer: &TimeOfContact) -> bool {
-        let Some(c) = answer.contact().filter(|c| c.start == crate::StartState::Apart) else { return false };
+        let Some(c) = answer.contact().filter(|c| c.start == d2m_bvh::StartState::Apart) else {
+            return false;
+        };
         let length = c.time_hi - c.time_lo;
         let at = |share: f64| self.meet(c.time_lo + length * share, 0.5 * c.tolerance);
         (1..32).any(|k| at(f64::from(k) / 32.0) || at(0.5f64.powi(k)))
@@ -236,7 +240,7 @@ impl Oracle<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Solid;
+    use d2m_bvh::Solid;
     use d2m_testing::{SmallScene, Surface};
 
     fn draw(index: u64) -> (String, Scene) {
@@ -266,7 +270,7 @@ mod tests {
             assert_eq!(fault(&answer), None, "{name}");
             assert!(!oracle.is_open(&answer), "{name}: {answer:?}");
             let Some(contact) = answer.contact().filter(|c| c.closing_speed > 0.1) else { continue };
-            if contact.start != crate::StartState::Apart || contact.time_lo + 1e-3 > scene.window.end() {
+            if contact.start != d2m_bvh::StartState::Apart || contact.time_lo + 1e-3 > scene.window.end() {
                 continue;
             }
             let shifted = |by: f64| {

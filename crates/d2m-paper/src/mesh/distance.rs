@@ -1,7 +1,7 @@
 //! Distance of two meshes at one time, enclosed, on the sphere trees.
 
 use super::sphere_tree::{Node, SphereTree};
-use d2m_feature::paper::Placement;
+use crate::feature::Placement;
 use d2m_feature::{TriangleDistance, triangle_distance};
 use d2m_interval::{Interval, IntervalVec3};
 use glam::DVec3;

@@ -2,11 +2,11 @@
 
 use super::budget::{charge, evaluations};
 use super::sphere_tree::{Leaf, OwnedEdge, OwnedVertex, SphereTree};
-use crate::{Exhausted, Meter};
-use d2m_feature::FeaturePair;
-use d2m_feature::paper::{
+use crate::feature::{
     EdgePair, PaperOptions, PointFace, PointJet, RelativeFrame, RelativeMotion, TriangleFace,
 };
+use d2m_bvh::{Exhausted, Meter};
+use d2m_feature::FeaturePair;
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_root::RootSearch;
 use glam::DVec3;

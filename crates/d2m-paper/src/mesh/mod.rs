@@ -19,8 +19,8 @@ mod traverse;
 pub use cross_check::{CrossCheck, cross_check};
 pub use sphere_tree::SphereTree;
 
-use crate::{Meter, QueryError, QueryOptions, Solid, TimeOfContact, Window};
-use d2m_feature::paper::{PaperOptions, RelativeMotion};
+use crate::feature::{PaperOptions, RelativeMotion};
+use d2m_bvh::{Meter, QueryError, QueryOptions, Solid, TimeOfContact, Window};
 use d2m_interval::Interval;
 use start::{Start, classify_start};
 use traverse::Search;
@@ -29,14 +29,14 @@ use traverse::Search;
 const DEFAULT_TOLERANCE: f64 = 1e-10;
 
 /// A body with its sphere tree, and how it moves.
-pub type Moving<'a> = crate::Moving<'a, SphereTree>;
+pub type Moving<'a> = d2m_bvh::Moving<'a, SphereTree>;
 
 /// The first contact of two moving meshes, by the reference method.
 ///
 /// Promise: as [`TimeOfContact`] says, for every motion whose enclosures are right. Separation left at `time_lo`: in
-/// \[δ, 3δ\] (measured there), where doubles of time are fine enough to choose it. In [`Mode::Capoeira`](crate::Mode)
+/// \[δ, 3δ\] (measured there), where doubles of time are fine enough to choose it. In [`Mode::Capoeira`](d2m_bvh::Mode)
 /// the search stops at leaf spheres: `time_lo` is certified free, `time_hi` the end of the overlap of the two spheres,
-/// `separation` what is left at `time_lo`, and a true contact may be missing. [`Mode::Exists`](crate::Mode) is answered
+/// `separation` what is left at `time_lo`, and a true contact may be missing. [`Mode::Exists`](d2m_bvh::Mode) is answered
 /// like the accurate mode. A positive `min_separation` is not supported and answered as undecided from the start.
 ///
 /// # Errors
@@ -44,16 +44,16 @@ pub type Moving<'a> = crate::Moving<'a, SphereTree>;
 /// motion that is not finite over the window.
 ///
 /// ```
-/// use d2m_bvh::{QueryOptions, TimeOfContact, TriMesh, Window, paper};
+/// use d2m_bvh::{QueryOptions, TimeOfContact, TriMesh, Window};
 /// use d2m_motion::ConstantTwist;
 /// use glam::DVec3;
 /// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let mesh = TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
-/// let tree = paper::SphereTree::new(mesh);
+/// let tree = d2m_paper::SphereTree::new(mesh);
 /// let coming = ConstantTwist::REST.with_position(DVec3::Z * 3.0).with_linear_velocity(DVec3::Z * -4.0);
-/// let answer = paper::time_of_contact(
-///     paper::Moving::new(&tree, &coming),
-///     paper::Moving::new(&tree, &ConstantTwist::REST),
+/// let answer = d2m_paper::time_of_contact(
+///     d2m_paper::Moving::new(&tree, &coming),
+///     d2m_paper::Moving::new(&tree, &ConstantTwist::REST),
 ///     Window::UNIT,
 ///     &QueryOptions::DEFAULT,
 /// )?;

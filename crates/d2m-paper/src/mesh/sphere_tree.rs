@@ -1,7 +1,7 @@
 //! The augmented R-tree of the paper (section VI-A): beams subdivided to a smallest rib, with the minimal enclosing
 //! sphere of the raw geometry at every node.
 
-use crate::{EnclosingSphere, Topology, TriMesh};
+use d2m_bvh::{EnclosingSphere, Topology, TriMesh};
 use glam::DVec3;
 use std::collections::{HashMap, HashSet};
 
@@ -64,7 +64,7 @@ pub(crate) struct OwnedEdge {
 /// ```
 ///
 /// ```
-/// use d2m_bvh::{TriMesh, paper::SphereTree};
+/// use d2m_bvh::{TriMesh, d2m_paper::SphereTree};
 /// use glam::DVec3;
 /// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let mesh = TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;

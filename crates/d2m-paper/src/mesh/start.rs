@@ -2,8 +2,8 @@
 
 use super::distance::{ClosestPair, MeshDistance, enclose_distance, visit_close_pairs};
 use super::sphere_tree::SphereTree;
-use crate::{Solid, StartState};
-use d2m_feature::paper::Placement;
+use crate::feature::Placement;
+use d2m_bvh::{Solid, StartState};
 use d2m_interval::{Interval, IntervalVec3};
 use glam::DVec3;
 

@@ -2,7 +2,7 @@
 
 use super::Moving;
 use super::distance::{ClosestPair, MeshDistance, enclose_distance};
-use d2m_feature::paper::RelativeMotion;
+use crate::feature::RelativeMotion;
 use d2m_interval::Interval;
 use glam::DVec3;
 

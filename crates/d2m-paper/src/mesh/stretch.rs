@@ -1,8 +1,7 @@
 //! How finely the time domain is divided, and what rounding costs.
 
 use super::Moving;
-use crate::length::length;
-use d2m_feature::paper::RelativeMotion;
+use crate::feature::RelativeMotion;
 use d2m_interval::{Interval, IntervalVec3};
 
 /// Largest coordinate and rate that a query accepts: its square is far from overflow.
@@ -40,7 +39,7 @@ pub(crate) fn longest(bodies: &[Moving<'_>; 2], window: Interval) -> f64 {
     for (moving, twist) in bodies.iter().zip(&twists) {
         let sphere = moving.body.bounding_sphere();
         let at = moving.motion.enclose_pose(Interval::point(window.lo())).at;
-        let reach = sphere.radius + length(sphere.center - at);
+        let reach = sphere.radius + (sphere.center - at).length();
         acceleration += moving.motion.bound_acceleration(window, reach);
         speed = speed.max(twist.angular.norm().hi() * reach);
         radius = radius.max(sphere.radius);

@@ -3,11 +3,11 @@
 use super::Moving;
 use super::leaf_pair::{Box3, Candidate, LeafPair, TreeLeaf, meet, still_open};
 use super::sphere_tree::{Leaf, SphereTree};
-use crate::{Meter, Mode};
-use d2m_feature::FeaturePair;
-use d2m_feature::paper::{
+use crate::feature::{
     BodyOverDomain, PaperOptions, PointJet, RelativeMotion, SphereOverDomain, test_sphere_pair,
 };
+use d2m_bvh::{Meter, Mode};
+use d2m_feature::FeaturePair;
 use d2m_interval::Interval;
 
 /// The budget ran out: no contact before this time.

@@ -3,3 +3,4 @@ pub mod families;
 pub mod judge;
 pub mod oracle;
 pub mod quick;
+pub mod twins;

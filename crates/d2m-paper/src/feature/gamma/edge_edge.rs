@@ -1,7 +1,7 @@
 //! Γ edge/edge, section IV-C of the paper.
 
-use crate::paper::direction::{Direction, across, unit};
-use crate::paper::{PointJet, RelativeFrame};
+use crate::feature::direction::{Direction, across, unit};
+use crate::feature::{PointJet, RelativeFrame};
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_root::InclusionFunction;
 use glam::DVec3;

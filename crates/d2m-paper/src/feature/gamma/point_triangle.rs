@@ -1,6 +1,6 @@
 //! Γ point/triangle, Algorithm 4 of the paper.
 
-use crate::paper::{Face, PointJet};
+use crate::feature::{Face, PointJet};
 use d2m_interval::Interval;
 
 /// `false` promises that the point is off the face at all times of the offsets `x`.
