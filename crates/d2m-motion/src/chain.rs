@@ -1,5 +1,6 @@
 //! A link of an articulated arm: fixed transforms and joints whose values are functions of time.
 use crate::error::fault;
+use crate::joint::Wanted;
 use crate::{
     CertifiedState, IntervalPose, IntervalTwist, Joint, JointKind, Kinematics, MotionError, Pose,
     RigidMotion, Twist,
@@ -100,24 +101,34 @@ impl Chain {
     }
 
     fn over(&self, lo: f64, hi: f64) -> Kinematics {
-        self.over_with::<true>(lo, hi)
+        let placed = |joint: &Joint| joint.placed(lo, hi, Wanted::Rates);
+        self.fold(placed, |frame, inner| frame.then_with::<true>(&inner))
     }
 
     /// At one time, without accelerations.
     fn state_at(&self, t: f64) -> Kinematics {
-        self.over_with::<false>(t, t)
+        self.fold(|joint| joint.placed(t, t, Wanted::Twist), |frame, inner| frame.then_with::<false>(&inner))
     }
 
-    fn over_with<const RATES: bool>(&self, lo: f64, hi: f64) -> Kinematics {
-        self.joints.iter().fold(Kinematics::REST, |frame, joint| {
-            let placed = frame.then_with::<RATES>(&joint.transform());
-            let movement = joint.movement::<RATES>(lo, hi);
-            movement.map_or(placed, |movement| placed.then_with::<RATES>(&movement))
-        })
+    /// The pose alone.
+    fn pose_over(&self, lo: f64, hi: f64) -> Kinematics {
+        self.fold(|joint| joint.placed(lo, hi, Wanted::Pose), |frame, inner| frame.then_pose(&inner))
+    }
+
+    /// From the base to the link; at rest without joints.
+    #[inline]
+    fn fold(
+        &self,
+        placed: impl Fn(&Joint) -> Kinematics,
+        then: impl Fn(&Kinematics, Kinematics) -> Kinematics,
+    ) -> Kinematics {
+        let mut joints = self.joints.iter();
+        let first = joints.next().map_or(Kinematics::REST, &placed);
+        joints.fold(first, |frame, joint| then(&frame, placed(joint)))
     }
 
     /// A span in parts in each of which the link turns by little.
-    fn parts(&self, t: Interval) -> impl Iterator<Item = Kinematics> + '_ {
+    fn parts(&self, t: Interval) -> impl Iterator<Item = Interval> + '_ {
         /// Radians either way from the middle of a part.
         const LITTLE: f64 = 0.25;
         /// Most parts.
@@ -136,7 +147,7 @@ impl Chain {
         // Also what is no number is many.
         let count = if turn <= 2.0 * LITTLE { 1.0 } else { (turn / (2.0 * LITTLE)).ceil().min(MANY) };
         let end = move |i: f64| if i >= count { hi } else { (lo + (hi - lo) * (i / count)).max(lo).min(hi) };
-        (0..count as usize).map(move |i| self.over(end(i as f64), end((i + 1) as f64)))
+        (0..count as usize).map(move |i| Interval::new(end(i as f64), end((i + 1) as f64)))
     }
 }
 
@@ -153,15 +164,24 @@ impl RigidMotion for Chain {
 
     /// Over long spans part by part.
     fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        self.parts(t).map(|part| part.to_pose()).reduce(IntervalPose::hull).expect("at least one part")
+        self.parts(t)
+            .map(|part| self.pose_over(part.lo(), part.hi()).to_pose())
+            .reduce(IntervalPose::hull)
+            .expect("at least one part")
     }
 
     fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.parts(t).map(|part| part.to_twist()).reduce(IntervalTwist::hull).expect("at least one part")
+        self.parts(t)
+            .map(|part| self.enclose_kinematics(part).to_twist())
+            .reduce(IntervalTwist::hull)
+            .expect("at least one part")
     }
 
     fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.parts(t).map(|part| part.to_twist_rate()).reduce(IntervalTwist::hull).expect("at least one part")
+        self.parts(t)
+            .map(|part| self.enclose_kinematics(part).to_twist_rate())
+            .reduce(IntervalTwist::hull)
+            .expect("at least one part")
     }
 
     fn domain(&self) -> Interval {

@@ -2,6 +2,7 @@
 use crate::ball::{Ball, up};
 use crate::error::{fault, require_finite};
 use crate::joint_value::{Enclosed, JointValue, ValueOverTime};
+use crate::kinematics::{product_radius, two_sums};
 use crate::rotation::{RotationDd, Spin, exponential_dd, rotate_dd};
 use crate::rounding::UNIT;
 use crate::sin_cos::{LARGEST_ANGLE, sin_cos};
@@ -43,8 +44,12 @@ struct JointData {
     kind: JointKind,
     /// The rotation, rounded once.
     turn: DMat3,
-    /// The axis divided by its norm (zero without).
+    /// Bound of its error: an entry is off by half a unit in the last place of numbers up to 1, √9·u in all.
+    turn_radius: f64,
+    /// The axis divided by its norm, within 4u of its direction (zero without).
     axis: DVec3,
+    /// The axis in the frame before.
+    axis_before: Ball,
 }
 
 /// How a joint stands in the frame before it.
@@ -137,19 +142,21 @@ impl Joint {
             }
         };
         let turn = orientation.rotation().to_mat3();
-        Ok(Self(Arc::new(JointData { position, orientation, kind, turn, axis })))
+        let turn_radius = if orientation.is_identity() { 0.0 } else { 4.0 * UNIT };
+        let axis_before = Ball::new(axis, 8.0 * UNIT).turned(&turn, turn_radius);
+        Ok(Self(Arc::new(JointData { position, orientation, kind, turn, turn_radius, axis, axis_before })))
     }
 
     /// The same joint with another value; a fixed one stays as it is. Costs no trigonometry: a planner's edges differ in this only.
     #[must_use]
     pub fn with_value(&self, value: JointValue) -> Self {
-        let JointData { position, orientation, turn, axis, .. } = *self.0;
+        let JointData { position, orientation, turn, turn_radius, axis, axis_before, .. } = *self.0;
         let kind = match self.0.kind {
             JointKind::Fixed => return self.clone(),
             JointKind::Revolute { axis, .. } => JointKind::Revolute { axis, value },
             JointKind::Prismatic { axis, .. } => JointKind::Prismatic { axis, value },
         };
-        Self(Arc::new(JointData { position, orientation, kind, turn, axis }))
+        Self(Arc::new(JointData { position, orientation, kind, turn, turn_radius, axis, axis_before }))
     }
 
     /// Position of the joint in the frame before it.
@@ -185,38 +192,53 @@ impl Joint {
         }
     }
 
-    /// The fixed transform. An entry of the matrix is off by half a unit in the last place of numbers up to 1: √9·u.
-    pub(crate) fn transform(&self) -> Kinematics {
-        let radius = if self.0.orientation.is_identity() { 0.0 } else { 4.0 * UNIT };
-        Kinematics { position: Ball::point(self.0.position), ..Kinematics::REST }
-            .with_rotation(self.0.turn, radius)
-    }
-
-    /// The joint alone over a span of time; `None` when it does not move.
+    /// Transform and joint together over a span of time: T(x, q)·J(value), with q as the matrix Q.
     ///
     /// exp([k]θ) with sine and cosine within 4u and an axis within 4u of its direction: 64u (docs/theory/motions.md). A
-    /// rotation by θ differs from one by θ̃ by at most |θ − θ̃|.
-    pub(crate) fn movement<const RATES: bool>(&self, lo: f64, hi: f64) -> Option<Kinematics> {
-        let over: ValueOverTime = self.value()?.over(lo, hi);
+    /// rotation by θ differs from one by θ̃ by at most |θ − θ̃|, and the product Q·exp([k]θ) is that of
+    /// [`Kinematics::then`]. The axis in the frame before is Qk, which is Q exp([k]θ)k: velocities and shifts are
+    /// multiples of it. Without [`Wanted::Pose`] it says how the joint moves, with [`Wanted::Rates`] how that changes too.
+    #[inline]
+    pub(crate) fn placed(&self, lo: f64, hi: f64, wanted: Wanted) -> Kinematics {
+        let data = &*self.0;
+        let place = Kinematics { position: Ball::point(data.position), ..Kinematics::REST };
+        let (turn, turn_radius) = (data.turn, data.turn_radius);
+        let Some(value) = self.value() else { return place.with_rotation(turn, turn_radius) };
+        let over: ValueOverTime = value.over(lo, hi);
         let along = |e: Enclosed| {
-            // The axis is off by 4u of its length, and the second double of the value counts as error.
-            let radius = e.radius + e.center.lo.abs() + 8.0 * UNIT * e.center.hi.abs();
-            Ball::new(self.0.axis, 0.0).times(e.center.hi, up(radius))
+            // The second double of the value counts as error.
+            data.axis_before.times(e.center.hi, up(e.radius + e.center.lo.abs()))
         };
-        let (rate, second) = (along(over.rate), if RATES { along(over.second) } else { Ball::ANY });
-        if matches!(self.0.kind, JointKind::Prismatic { .. }) {
-            let position = along(over.value);
-            return Some(Kinematics { position, linear: rate, linear_rate: second, ..Kinematics::REST });
+        let rate = if wanted == Wanted::Pose { Ball::ANY } else { along(over.rate) };
+        let second = if wanted == Wanted::Rates { along(over.second) } else { Ball::ANY };
+        if matches!(data.kind, JointKind::Prismatic { .. }) {
+            let shift = along(over.value);
+            let (sum, lost) = two_sums(data.position, shift.center);
+            let position = Ball::new(sum, shift.radius);
+            let position_tail = if lost.is_finite() { lost } else { DVec3::ZERO };
+            let moved = Kinematics { position, position_tail, linear: rate, linear_rate: second, ..place };
+            return moved.with_rotation(turn, turn_radius);
         }
         let (sin, cos) = sin_cos_of(over.value.center);
-        let rotation = Spin { omega: self.0.axis, speed: 1.0, axis: self.0.axis }.rotation_of(sin, cos);
-        let radius = up(over.value.radius + 64.0 * UNIT);
-        let known = sin.is_finite();
-        Some(
-            Kinematics { angular: rate, angular_rate: second, ..Kinematics::REST }
-                .with_rotation(rotation, if known { radius } else { f64::INFINITY }),
-        )
+        let spin = Spin { omega: data.axis, speed: 1.0, axis: data.axis }.rotation_of(sin, cos);
+        let spin_radius = if sin.is_finite() { up(over.value.radius + 64.0 * UNIT) } else { f64::INFINITY };
+        let turning = Kinematics { angular: rate, angular_rate: second, ..place };
+        if data.orientation.is_identity() {
+            return turning.with_rotation(spin, spin_radius);
+        }
+        turning.with_rotation(turn * spin, product_radius(turn_radius, spin_radius))
     }
+}
+
+/// What is wanted of a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    /// Where it is: of velocities nothing is known.
+    Pose,
+    /// Velocities too.
+    Twist,
+    /// Accelerations too.
+    Rates,
 }
 
 /// Sine and cosine of a pair of doubles, each within 4u; NaN beyond what can be reduced.

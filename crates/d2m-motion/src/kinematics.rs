@@ -173,14 +173,38 @@ impl Kinematics {
             angular_rate,
             ..*self
         };
+        out.turned_by(inner)
+    }
+
+    /// As [`Kinematics::then`] for the pose alone: of velocities and accelerations nothing is known.
+    #[inline]
+    pub(crate) fn then_pose(&self, inner: &Self) -> Self {
+        let arm = inner.position - Ball::point(self.at) + Ball::point(inner.position_tail);
+        let e = arm.turned(&self.rotation, self.rotation_radius);
+        let (sum, lost) = two_sums(self.position.center, e.center);
+        let tail = self.position_tail + lost;
+        let out = Self {
+            position: Ball::new(sum, up(self.position.radius + e.radius + UNIT * length_up(tail))),
+            position_tail: if tail.is_finite() { tail } else { DVec3::ZERO },
+            at: inner.at,
+            linear: Ball::ANY,
+            angular: Ball::ANY,
+            linear_rate: Ball::ANY,
+            angular_rate: Ball::ANY,
+            ..*self
+        };
+        out.turned_by(inner)
+    }
+
+    /// With the product of this rotation and that of `inner`.
+    #[inline]
+    fn turned_by(self, inner: &Self) -> Self {
         // A product with the identity is exact.
         if inner.rotation_radius == 0.0 && inner.rotation == DMat3::IDENTITY {
-            return out;
+            return self;
         }
-        let radius = up(self.rotation_radius * (1.0 + inner.rotation_radius)
-            + inner.rotation_radius
-            + 10.0 * UNIT * (1.0 + self.rotation_radius) * (1.0 + inner.rotation_radius));
-        out.with_rotation(self.rotation * inner.rotation, radius)
+        let radius = product_radius(self.rotation_radius, inner.rotation_radius);
+        self.with_rotation(self.rotation * inner.rotation, radius)
     }
 
     /// The same motion expressed by another body point: with e = R(at − at₀) the point is at x + e, moves with v + ω × e and
@@ -215,8 +239,14 @@ impl Kinematics {
     }
 }
 
+/// Bound of the error of a product of two rotations, computed in doubles, by those of both.
+#[inline]
+pub(crate) fn product_radius(outer: f64, inner: f64) -> f64 {
+    up(outer * (1.0 + inner) + inner + 10.0 * UNIT * (1.0 + outer) * (1.0 + inner))
+}
+
 /// Sums, coordinate by coordinate, and what they lose.
-fn two_sums(a: DVec3, b: DVec3) -> (DVec3, DVec3) {
+pub(crate) fn two_sums(a: DVec3, b: DVec3) -> (DVec3, DVec3) {
     let [x, y, z] = [0, 1, 2].map(|i| two_sum(a[i], b[i]));
     (DVec3::new(x.0, y.0, z.0), DVec3::new(x.1, y.1, z.1))
 }
