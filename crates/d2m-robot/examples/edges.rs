@@ -6,6 +6,7 @@ use d2m_bvh::{MeshTree, QueryOptions, TriMesh};
 use d2m_robot::{Obstacle, Robot, RobotOptions, RobotScene, Srdf};
 use glam::{DQuat, DVec3};
 use std::error::Error;
+use std::fmt::Write;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -14,7 +15,9 @@ fn arm() -> String {
     let mut urdf = String::from("<robot name=\"seven\"><link name=\"l0\"/>");
     for k in 1..=7 {
         let (axis, parent) = (if k % 2 == 1 { "0 0 1" } else { "0 1 0" }, k - 1);
-        urdf += &format!(
+        // Writing to a string cannot fail.
+        let _ = write!(
+            urdf,
             "<link name=\"l{k}\"><collision><origin xyz=\"0 0 0.09\"/><geometry><cylinder radius=\"0.05\" length=\"0.14\"/></geometry></collision>\
              <collision><origin xyz=\"0.02 0 0.1\"/><geometry><box size=\"0.11 0.08 0.08\"/></geometry></collision></link>\
              <joint name=\"j{k}\" type=\"revolute\"><parent link=\"l{parent}\"/><child link=\"l{k}\"/>\

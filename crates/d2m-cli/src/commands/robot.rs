@@ -37,27 +37,25 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
         Robot::read(&arguments.robot, &robot_options).map_err(|error| Failure::Input(error.to_string()))?;
     let srdf = arguments.srdf.as_ref().map(Srdf::read).transpose();
     let srdf = srdf.map_err(|error| Failure::Input(error.to_string()))?;
-    for remark in robot.remarks() {
-        note(&format!("d2m: {remark}"));
-    }
-    for unknown in
-        srdf.iter().flat_map(|srdf| srdf.find_unknown_links(|link| robot.find_link(link).is_some()))
-    {
-        note(&format!("d2m: warning: {unknown}"));
-    }
+    // Said beside the answer: a fault is one line alone.
+    let mut notes: Vec<String> = robot.remarks().to_vec();
+    let is_link = |link: &str| robot.find_link(link).is_some();
+    let unknown = srdf.iter().flat_map(|srdf| srdf.find_unknown_links(is_link));
+    notes.extend(unknown.map(|text| format!("warning: {text}")));
     let fault = |error: d2m_robot::RobotError| Failure::at(&place, error);
     let mut scene = RobotScene::new(robot.into(), srdf.as_ref(), options).map_err(fault)?;
     if let Some(file) = &file {
         file.add_to(&mut scene, window)?;
     }
     let warnings = scene.limit_warnings(&path).map_err(fault)?;
-    for warning in &warnings {
-        note(&format!("d2m: warning: {place}: {warning}"));
-    }
+    notes.extend(warnings.iter().map(|warning| format!("warning: {place}: {warning}")));
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| Failure::at("--threads", error))?;
     let answer = pool.install(|| scene.check_path(&path)).map_err(fault)?;
+    for text in &notes {
+        note(&format!("d2m: {text}"));
+    }
     print(&if arguments.json {
         json(&answer, window, &warnings)
     } else {

@@ -1,0 +1,140 @@
+//! `d2m robot` as scripts see it.
+
+mod shell;
+
+use serde_json::Value;
+use shell::{Folder, d2m, refused, stderr, stdout};
+
+/// Two links that turn about z, one after the other, on a foot.
+const ARM: &str = r#"<robot name="two">
+  <link name="foot"><collision><origin xyz="0 0 -0.3"/><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="upper"><collision><origin xyz="0.25 0 0"/><geometry><box size="0.5 0.06 0.06"/></geometry></collision></link>
+  <link name="lower"><collision><origin xyz="0.25 0 0.1"/><geometry><box size="0.5 0.05 0.05"/></geometry></collision></link>
+  <joint name="shoulder" type="revolute"><parent link="foot"/><child link="upper"/><axis xyz="0 0 1"/>
+    <limit lower="-3" upper="1.5" velocity="2"/></joint>
+  <joint name="elbow" type="continuous"><parent link="upper"/><child link="lower"/><origin xyz="0.5 0 0"/><axis xyz="0 0 1"/></joint>
+</robot>"#;
+const PATH: &str = r#"{"joint_names": ["shoulder"], "points": [
+  {"positions": [0], "time_from_start": 1}, {"positions": [1.6], "time_from_start": 3}]}"#;
+const SCENE: &str = r#"{"bodies": [
+  {"name": "post", "mesh": "shape:box?x=0.05&y=0.05&z=1", "pose": {"x": [0, 0.8, 0]}},
+  {"name": "grasped", "mesh": "shape:box?x=0.02&y=0.02&z=0.02", "attach": "lower", "pose": {"x": [0.6, 0, 0.1]}}]}"#;
+
+struct Files {
+    folder: Folder,
+    robot: String,
+    path: String,
+    scene: String,
+}
+
+fn files(name: &str) -> Files {
+    let folder = Folder::new(name);
+    let [robot, path, scene] = [("arm.urdf", ARM), ("path.json", PATH), ("scene.json", SCENE)]
+        .map(|(name, text)| folder.file(name, text));
+    Files { folder, robot, path, scene }
+}
+
+fn ask(arguments: &[&str]) -> Value {
+    let output = d2m(&[&["robot"], arguments, &["--json"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    serde_json::from_str(&stdout(&output)).unwrap()
+}
+
+#[test]
+fn a_path_is_free_or_until_when() {
+    let Files { robot, path, scene, .. } = &files("robot-path");
+    let free = ask(&[robot, "--path", path]);
+    assert_eq!((free["status"].as_str(), free["free_until"].as_f64()), (Some("free"), Some(3.0)));
+    assert!(free["time"].is_null() && free["a"].is_null());
+    let found = ask(&[robot, "--path", path, "--scene", scene]);
+    assert_eq!(found["status"], "contact");
+    let [lo, hi] = [0, 1].map(|k| found["time"][k].as_f64().unwrap());
+    // The side of the lower link, 0.025 wide, at the corner of the post: sin of the angle between is 0.025 / r.
+    let corner = (0.05_f64.powi(2) + 0.75_f64.powi(2)).sqrt();
+    let angle = (0.75_f64 / 0.05).atan() - (0.025 / corner).asin();
+    let expected = 1.0 + 2.0 * angle / 1.6;
+    assert!(
+        lo <= expected + 1e-9 && lo > expected - 1e-8 && hi - lo < 1e-8 && found["free_until"] == lo,
+        "{lo} {expected}"
+    );
+    let mut names = [found["a"].as_str().unwrap(), found["b"].as_str().unwrap()];
+    names.sort_unstable();
+    assert_eq!(names, ["lower", "post"]);
+    for key in ["separation", "point", "normal", "evidence"] {
+        assert!(!found[key].is_null(), "{key}");
+    }
+    let ignored =
+        SCENE.replacen('{', r#"{"ignore": [["post", "lower"], ["post", "upper"], ["grasped", "post"]], "#, 1);
+    let folder = Folder::new("robot-ignore");
+    let scene = folder.file("scene.json", &ignored);
+    assert_eq!(ask(&[robot, "--path", path, "--scene", &scene])["status"], "free");
+    let apart = ask(&[robot, "--path", path, "--scene", &scene, "--min-separation", "0.005"]);
+    assert_eq!(apart["status"], "free");
+    let near = ask(&[robot, "--path", path, "--min-separation", "0.5"]);
+    assert_eq!((near["status"].as_str(), near["free_until"].as_f64()), (Some("contact"), Some(1.0)));
+}
+
+#[test]
+fn limits_are_warned_of_and_text_says_what_is_certified() {
+    let Files { robot, path, .. } = &files("robot-limits");
+    let output = d2m(&["robot", robot, "--path", path, "--exit-status"]);
+    assert_eq!(output.status.code(), Some(11));
+    assert!(stderr(&output).contains("joint \"shoulder\": the position 1.5"), "{}", stderr(&output));
+    assert!(stdout(&output).starts_with("FREE: certified, no contact from 1 to 3"), "{}", stdout(&output));
+}
+
+#[test]
+fn bad_input_is_one_line_with_its_place() {
+    let Files { folder, robot, path, scene } = &files("robot-bad");
+    let file = |name: &str, text: &str| folder.file(name, text);
+    let with_path =
+        |text: &str, words: &[&str]| refused(&["robot", robot, "--path", &file("p.json", text)], words);
+    with_path(&PATH.replace("shoulder", "knee"), &["p.json", "joint_names[0]", "\"knee\" is no joint"]);
+    with_path(
+        &PATH.replace(": 3}", ": 1}"),
+        &["p.json", "points[1], time_from_start: 1.0 does not come after 1.0"],
+    );
+    with_path(&PATH.replace("[1.6]", "[NaN]"), &["p.json", "NaN"]);
+    with_path(&PATH.replace("\"points\"", "\"way\""), &["p.json", "unknown field `way`"]);
+    with_path(
+        &PATH.replace("\"points\"", "\"interpolation\": \"quintic\", \"points\""),
+        &["points[0], velocities"],
+    );
+    let with_scene = |text: &str, words: &[&str]| {
+        refused(&["robot", robot, "--path", path, "--scene", &file("s.json", text)], words);
+    };
+    with_scene(
+        &SCENE.replace("\"lower\"", "\"hand\""),
+        &["s.json, body 1 (\"grasped\")", "\"hand\", which is no link"],
+    );
+    with_scene(
+        &SCENE.replace("\"post\"", "\"upper\""),
+        &["s.json, body 0 (\"upper\")", "a link of the robot has this name"],
+    );
+    with_scene(&SCENE.replace("\"pose\"", "\"place\""), &["unknown key \"place\""]);
+    with_scene(
+        &SCENE.replace("\"bodies\"", "\"ignore\": [[\"post\", \"tail\"]], \"bodies\""),
+        &["ignore 0", "\"tail\""],
+    );
+    with_scene(
+        &SCENE.replace(
+            "\"pose\": {\"x\": [0, 0.8, 0]}",
+            "\"motion\": {\"times\": [0, 2], \"poses\": [{}, {}]}",
+        ),
+        &["body 0 (\"post\")", "2"],
+    );
+    let with_robot = |text: &str, words: &[&str]| {
+        refused(&["robot", &file("r.urdf", text), "--path", path, "--scene", scene], words);
+    };
+    with_robot(
+        "<robot name=\"x\"><link name=\"a\"/></robot>",
+        &["r.urdf", "none of the 1 links has collision geometry"],
+    );
+    let mesh = ARM.replace("<box size=\"0.2 0.2 0.2\"/>", "<mesh filename=\"package://arm/foot.stl\"/>");
+    with_robot(&mesh, &["r.urdf, line 2", "link \"foot\"", "--package arm=DIR"]);
+    with_robot(&ARM.replace("continuous", "planar"), &["r.urdf, line 7", "joint \"elbow\" is planar"]);
+    refused(&["robot", robot, "--path", path, "--package", "arm"], &["--package", "\"arm\" is not NAME=DIR"]);
+    refused(&["robot", robot, "--path", path, "--min-separation", "-1"], &["--min-separation", "-1"]);
+    refused(&["robot", "no.urdf", "--path", path], &["no.urdf"]);
+    refused(&["robot", robot, "--path", path, "--srdf", "no.srdf"], &["no.srdf"]);
+}
