@@ -1,0 +1,77 @@
+//! The commands that the guide shows run, and end as it says.
+
+mod shell;
+
+use shell::{Folder, d2m, stderr};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The pages of the guide.
+fn pages() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/guide");
+    let pages = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut pages: Vec<PathBuf> = pages.filter(|path| path.extension().is_some_and(|e| e == "md")).collect();
+    pages.sort();
+    pages
+}
+
+/// The lines of a page's `sh` blocks that call the command.
+fn commands(page: &str) -> Vec<String> {
+    let blocks = page.split("```sh\n").skip(1).map(|rest| rest.split("```").next().unwrap());
+    blocks.flat_map(str::lines).filter(|line| line.starts_with("d2m ")).map(str::to_owned).collect()
+}
+
+/// The words of a line, as a shell splits them where only double quotes are used.
+fn words(line: &str) -> Vec<String> {
+    let (mut words, mut word, mut quoted) = (Vec::new(), String::new(), false);
+    for letter in line.chars() {
+        match letter {
+            '"' => quoted = !quoted,
+            ' ' if !quoted => words.push(std::mem::take(&mut word)),
+            _ => word.push(letter),
+        }
+    }
+    words.push(word);
+    words
+}
+
+#[test]
+fn every_command_of_the_guide_runs() {
+    let folder = Folder::new("guide");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut count = 0;
+    for page in pages() {
+        for line in commands(&fs::read_to_string(&page).unwrap()) {
+            let inputs = words(&line).into_iter().skip(1).map(|word| match word.as_str() {
+                scene if scene.starts_with("docs/") => root.join(scene).display().to_string(),
+                file if file.ends_with(".html") || file.ends_with(".jsonl") => folder.path(file),
+                _ => word,
+            });
+            let inputs: Vec<String> = inputs.collect();
+            let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
+            let output = d2m(&inputs);
+            assert_eq!(output.status.code(), Some(0), "{}: {line}\n{}", page.display(), stderr(&output));
+            count += 1;
+        }
+    }
+    assert!(count >= 10, "{count} commands");
+}
+
+#[test]
+fn every_page_is_in_the_table_of_contents_and_every_link_leads_to_a_page() {
+    let pages = pages();
+    let names: Vec<String> =
+        pages.iter().map(|page| page.file_name().unwrap().to_string_lossy().into_owned()).collect();
+    let summary = fs::read_to_string(&pages[names.iter().position(|name| name == "SUMMARY.md").unwrap()]).unwrap();
+    for name in names.iter().filter(|name| *name != "SUMMARY.md") {
+        assert!(summary.contains(&format!("({name})")), "{name} is not in SUMMARY.md");
+    }
+    for page in &pages {
+        let text = fs::read_to_string(page).unwrap();
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let file = link.split('#').next().unwrap();
+            let is_page = Path::new(file).extension().is_some_and(|extension| extension == "md");
+            assert!(!is_page || names.iter().any(|name| name == file), "{}: {link}", page.display());
+        }
+    }
+}
