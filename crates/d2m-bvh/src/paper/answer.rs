@@ -98,6 +98,7 @@ fn contact_of_pair(bodies: &[Moving<'_>; 2], time: f64, tolerance: f64, pair: &C
         barycentric_b: detail.barycentric_b,
         closing_speed: -normal.dot(estimate_relative_velocity(bodies, time, point_b)),
         start: StartState::Apart,
+        left: None,
     }
 }
 
