@@ -76,6 +76,32 @@ pub struct Contact {
     pub closing_speed: f64,
     /// How the bodies stood at the start of the window.
     pub start: StartState,
+    /// Of a query with [`Start::Leave`](crate::Start::Leave): when the bodies had parted before.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub left: Option<TimeBracket>,
+}
+
+/// A span of time in which something happens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "[f64; 2]", into = "[f64; 2]"))]
+pub struct TimeBracket {
+    /// Not before this.
+    pub lo: f64,
+    /// Not after this.
+    pub hi: f64,
+}
+
+impl From<[f64; 2]> for TimeBracket {
+    fn from([lo, hi]: [f64; 2]) -> Self {
+        Self { lo, hi }
+    }
+}
+
+impl From<TimeBracket> for [f64; 2] {
+    fn from(bracket: TimeBracket) -> Self {
+        [bracket.lo, bracket.hi]
+    }
 }
 
 impl Contact {
@@ -105,6 +131,7 @@ impl Contact {
             barycentric_b: [1.0, 0.0, 0.0],
             closing_speed: 0.0,
             start: StartState::Apart,
+            left: None,
         }
     }
 }
@@ -119,6 +146,10 @@ impl Contact {
     serde(tag = "status", rename_all = "lowercase")
 )]
 #[must_use = "it is a certificate: what is not read is not known to be safe"]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one answer at a time, which is copied and taken apart at once"
+)]
 pub enum TimeOfContact {
     /// Certified: no contact anywhere in the window.
     Separated,

@@ -25,6 +25,26 @@ pub enum QueryError {
         /// The refused value.
         value: f64,
     },
+    /// The radius of a body is negative or not finite.
+    #[error("radius {value:?} of body {body} must be finite and not negative")]
+    BadRadius {
+        /// 0 for the first body, 1 for the second.
+        body: usize,
+        /// The refused value.
+        value: f64,
+    },
+    /// The accuracy of a clearance is not a finite positive number.
+    #[error("accuracy {value:?} must be finite and positive")]
+    BadAccuracy {
+        /// The refused value.
+        value: f64,
+    },
+    /// The resolution of spans of time is not a finite positive number.
+    #[error("resolution {value:?} must be finite and positive")]
+    BadResolution {
+        /// The refused value.
+        value: f64,
+    },
     /// The options say that the body is a filled solid, but its mesh does not close.
     #[error("body {body} is not watertight: use Solid::Surface")]
     NotWatertight {

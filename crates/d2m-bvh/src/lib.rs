@@ -23,7 +23,7 @@ mod tree;
 mod window;
 
 pub use cancel::{CancelFlag, Canceller};
-pub use contact::{Contact, StartState, TimeOfContact};
+pub use contact::{Contact, StartState, TimeBracket, TimeOfContact};
 pub use d2m_lanes::InstructionSet;
 pub use enclosing_sphere::EnclosingSphere;
 pub use error::QueryError;
@@ -31,11 +31,13 @@ pub use evidence::Evidence;
 pub use mesh::{Edge, MAX_COORDINATE, MeshArrays, MeshError, Topology, TriMesh, Validation};
 pub use meter::{Exhausted, Meter};
 pub use moving::Moving;
-pub use options::{Budget, Mode, QueryOptions, Solid};
+pub use options::{Budget, Mode, QueryOptions, Solid, Start};
 pub use pair_cache::PairCache;
 pub use posed::Posed;
 pub use query::{
-    contact_exists, time_of_contact, time_of_contact_batch, time_of_contact_counted, time_of_contact_with,
+    Clearance, ClearanceOptions, ClearanceStatus, ContactSpan, Departure, SpanStatus, clearance,
+    clearance_batch, contact_exists, contact_spans, departure, time_of_contact, time_of_contact_batch,
+    time_of_contact_counted, time_of_contact_with,
 };
 pub use resting::collide::{collide, collide_within, colliding_pairs, try_colliding_pair};
 pub use resting::distance::{

@@ -10,12 +10,14 @@ pub struct Moving<'a, B = MeshTree> {
     pub motion: &'a dyn RigidMotion,
     /// What counts as contact with this body; none: what the options of the query say.
     pub solid: Option<Solid>,
+    /// The body is everything within this distance of its mesh; zero for the mesh itself.
+    pub radius: f64,
 }
 
 impl<'a, B> Moving<'a, B> {
     /// A body that moves so.
     pub const fn new(body: &'a B, motion: &'a dyn RigidMotion) -> Self {
-        Self { body, motion, solid: None }
+        Self { body, motion, solid: None, radius: 0.0 }
     }
 
     /// The same with this meaning of the body's mesh, whatever that of the other body is: what is inside a solid body is in
@@ -41,6 +43,29 @@ impl<'a, B> Moving<'a, B> {
     /// ```
     pub const fn with_solid(self, solid: Solid) -> Self {
         Self { solid: Some(solid), ..self }
+    }
+
+    /// The same with a radius: the body is everything within `radius` of its mesh (and of what a solid mesh holds). A point with a radius is
+    /// a sphere, a segment a capsule, a box a rounded box: exact, without a tessellation. Witness points are on the rounded surfaces. The
+    /// reference method ([`paper`](crate::paper)) knows no radius.
+    ///
+    /// ```
+    /// use d2m_bvh::{MeshTree, Moving, QueryOptions, TriMesh, Window, time_of_contact};
+    /// use d2m_motion::ConstantTwist;
+    /// use glam::DVec3;
+    /// let point = MeshTree::new(TriMesh::point(DVec3::ZERO)?);
+    /// let capsule = MeshTree::new(TriMesh::segment(-DVec3::Y, DVec3::Y)?);
+    /// let falling = ConstantTwist::REST.with_position(DVec3::X * 2.0).with_linear_velocity(DVec3::X * -4.0);
+    /// let ball = Moving::new(&point, &falling).with_radius(0.25);
+    /// let post = Moving::new(&capsule, &ConstantTwist::REST).with_radius(0.75);
+    /// let answer = time_of_contact(ball, post, Window::UNIT, &QueryOptions::default())?;
+    /// let contact = answer.contact().expect("they meet");
+    /// assert!(contact.time_lo <= 0.25 && contact.time_lo > 0.25 - 1e-9);
+    /// assert!((contact.point_b - DVec3::X * 0.75).length() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub const fn with_radius(self, radius: f64) -> Self {
+        Self { radius, ..self }
     }
 
     /// What counts as contact with this body in a query with these options.

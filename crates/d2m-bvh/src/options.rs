@@ -36,6 +36,20 @@ pub enum Mode {
     Exists,
 }
 
+/// What counts of bodies that are in contact at the start of the window.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
+pub enum Start {
+    /// It is the answer.
+    #[default]
+    Report,
+    /// It counts no more once the bodies are proven further apart than `min_separation` + δ for the first time: the answer is the first
+    /// contact after that, with [`Contact::left`](crate::Contact::left). Bodies that never part are in contact from the start. See
+    /// [`departure`](crate::departure).
+    Leave,
+}
+
 /// Limits on the work of one query. A query that meets one answers `Undecided`.
 ///
 /// Without limits a query still ends: the hard caps [`Budget::HARD_NODE_TESTS`] on its work and
@@ -120,10 +134,16 @@ pub struct QueryOptions {
     /// Report the first time at which the distance is at most this, a length in the scene's units. Zero: contact. The
     /// search stops at a distance of up to this plus 3.3 tolerances; see [`Contact`](crate::Contact).
     pub min_separation: f64,
+    /// What counts of bodies that are in contact at the start.
+    pub start: Start,
     /// Search spans of time side by side, on all threads of the current rayon pool (feature `rayon`). The answer has the
     /// same bits at any number of threads. Of use for queries of more than about a millisecond with much
     /// rotation (a span is 0.3 radians of both bodies together); those that are shorter do not notice it.
     pub parallel: bool,
+    /// The level is a little below the least distance of the bodies: many pairs pass close to it, and neither planes between crowds of
+    /// them nor swept volumes prove them apart.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) grazing: bool,
 }
 
 impl QueryOptions {
@@ -134,7 +154,9 @@ impl QueryOptions {
         mode: Mode::Accurate,
         budget: Budget::UNLIMITED,
         min_separation: 0.0,
+        start: Start::Report,
         parallel: false,
+        grazing: false,
     };
 
     /// With this tolerance δ, a distance.
@@ -164,6 +186,12 @@ impl QueryOptions {
     /// With this separation that counts as contact.
     pub const fn with_min_separation(mut self, distance: f64) -> Self {
         self.min_separation = distance;
+        self
+    }
+
+    /// With this treatment of bodies that are in contact at the start.
+    pub const fn with_start(mut self, start: Start) -> Self {
+        self.start = start;
         self
     }
 

@@ -19,6 +19,28 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// First time of contact of two moving meshes
     Toc(TocArguments),
+    /// Least distance of two moving meshes over a window, with its time and points
+    #[command(after_help = "\
+The options and the motions are those of d2m toc. The least distance over the window is proven to lie within [lo, hi], and hi is attained by the
+points at the time that is given; hi - lo is at most max(R * hi, 4 tolerances). Bodies that meet have the clearance [0, 0] and the time of contact.
+A budget or time limit that runs out leaves a wider interval that still holds: undecided.
+
+Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 clear, 12 undecided.
+
+Example:
+  d2m clearance shape:gear shape:torus --motion-a 'x=-3,0,2.5;v=6,0,0;w=0,0,5'")]
+    Clearance(ClearanceArguments),
+    /// Which times of a window are proven clear, and which are in contact
+    #[command(after_help = "\
+The options and the motions are those of d2m toc. The spans are joined, in order, and cover the window. clear: proven further apart than
+--min-separation at every time of the closed span. contact: begins and ends at the window's ends or within the resolution of a time at which the
+bodies are proven within --min-separation plus the tolerance; clear times shorter than the resolution may be inside. undecided: neither is proven.
+
+Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 if some span is contact, 11 if all is clear, 12 otherwise.
+
+Example:
+  d2m spans shape:box shape:box --motion-a 'x=-4,0,0;v=8,0,0'")]
+    Spans(SpansArguments),
     /// Many trials of one pair of meshes, from a CSV file to a CSV file
     Batch(BatchArguments),
     /// First contacts of moving points, triangles, edges and spheres, from JSON lines to JSON lines
@@ -126,6 +148,39 @@ pub(crate) struct TocArguments {
     /// Also write both meshes, posed at the contact, as an OBJ file
     #[arg(long, value_name = "FILE")]
     pub(crate) obj: Option<String>,
+    /// Of bodies that stay apart also state how near they come: "clearance": [lo, hi]
+    #[arg(long)]
+    pub(crate) clearance: bool,
+    /// Bodies in contact at the start: report it, or let it go until they are proven apart ("left": [lo, hi]) and find what they meet then
+    #[arg(long, value_enum, default_value_t = StartChoice::Report)]
+    pub(crate) start: StartChoice,
+}
+
+/// What counts of bodies that are in contact at the start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum StartChoice {
+    /// It is the answer
+    Report,
+    /// The first contact after they have parted is the answer
+    Leave,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SpansArguments {
+    #[command(flatten)]
+    pub(crate) toc: TocArguments,
+    /// Clear times shorter than this may be inside a contact span [default: 1e-6 of the window]
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    pub(crate) resolution: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ClearanceArguments {
+    #[command(flatten)]
+    pub(crate) toc: TocArguments,
+    /// The enclosure is at most this part of the distance wide (or four tolerances)
+    #[arg(long, value_name = "R", default_value = "1e-6", allow_hyphen_values = true)]
+    pub(crate) accuracy: String,
 }
 
 #[derive(Debug, Args)]

@@ -7,8 +7,9 @@ use crate::output::note;
 use crate::sizes::{size_of, warn_of_sizes};
 use crate::trials::Trial;
 use d2m::bvh::{
-    Budget, MeshTree, Mode, Moving, Posed, QueryError, QueryOptions, Solid, TimeOfContact, Topology, TriMesh,
-    Window, distance, time_of_contact,
+    Budget, Clearance, ClearanceOptions, ContactSpan, Departure, MeshTree, Mode, Moving, Posed, QueryError,
+    QueryOptions, Solid, TimeOfContact, Topology, TriMesh, Window, clearance, contact_spans, departure,
+    distance, time_of_contact,
 };
 use d2m::motion::{AnyMotion, RigidMotion};
 use d2m::paper::{self, SphereTree};
@@ -65,6 +66,12 @@ pub(crate) struct Pair {
     pub(crate) tolerance: Option<f64>,
     pub(crate) preparation: Duration,
     options: QueryOptions,
+}
+
+/// A clearance with the time that it took.
+pub(crate) struct ClearanceAnswer {
+    pub(crate) found: Clearance,
+    pub(crate) took: Duration,
 }
 
 /// An answer with the time that the query alone took.
@@ -141,6 +148,64 @@ impl Pair {
         Some([found.lower, found.upper.max(found.lower)])
     }
 
+    /// The least distance over a window; `None`: the usual accuracy.
+    pub(crate) fn clearance(
+        &self,
+        motions: [&dyn RigidMotion; 2],
+        window: Window,
+        accuracy: Option<f64>,
+    ) -> Result<ClearanceAnswer, Failure> {
+        let [a, b] = self.moving(motions, "clearance")?;
+        let mut options = ClearanceOptions::default().with_budget(self.options.budget).with_parallel(true);
+        options.tolerance = self.options.tolerance;
+        options.accuracy = accuracy.unwrap_or(options.accuracy);
+        let start = Instant::now();
+        let found = clearance(a, b, window, &options);
+        let took = start.elapsed();
+        let found = found.map_err(|error| bad_input(error, motions, window))?;
+        Ok(ClearanceAnswer { found, took })
+    }
+
+    /// The spans of a window in which the bodies are clear or in contact.
+    pub(crate) fn spans(
+        &self,
+        motions: [&dyn RigidMotion; 2],
+        window: Window,
+        resolution: f64,
+    ) -> Result<Vec<ContactSpan>, Failure> {
+        let [a, b] = self.moving(motions, "spans")?;
+        let spans = contact_spans(a, b, window, &self.options, Some(resolution));
+        spans.map_err(|error| bad_input(error, motions, window))
+    }
+
+    /// When the bodies part, and when they meet after that.
+    pub(crate) fn departure(
+        &self,
+        motions: [&dyn RigidMotion; 2],
+        window: Window,
+    ) -> Result<(Departure, Duration), Failure> {
+        let [a, b] = self.moving(motions, "--start leave")?;
+        let start = Instant::now();
+        let found = departure(a, b, window, &self.options);
+        let took = start.elapsed();
+        Ok((found.map_err(|error| bad_input(error, motions, window))?, took))
+    }
+
+    /// Both bodies for the default engine: the only one that answers such questions.
+    fn moving<'s>(
+        &'s self,
+        [a, b]: [&'s dyn RigidMotion; 2],
+        question: &str,
+    ) -> Result<[Moving<'s>; 2], Failure> {
+        let [solid_a, solid_b] = self.solids;
+        match (&self.a.tree, &self.b.tree) {
+            (Tree::Engine(tree_a), Tree::Engine(tree_b)) if self.options.mode == Mode::Accurate => {
+                Ok([Moving::new(tree_a, a).with_solid(solid_a), Moving::new(tree_b, b).with_solid(solid_b)])
+            }
+            _ => Err(Failure::at("--mode", format!("only accurate answers the question of {question}"))),
+        }
+    }
+
     fn answer_smooth(&self, [a, b]: [&dyn RigidMotion; 2], window: Window) -> Result<Answer, Failure> {
         let start = Instant::now();
         let [solid_a, solid_b] = self.solids;
@@ -158,21 +223,26 @@ impl Pair {
             _ => unreachable!("both bodies of a pair are prepared for one method"),
         };
         let took = start.elapsed();
-        let verdict = verdict.map_err(|error| match error {
-            QueryError::BadMotion { body } => {
-                let (place, motion) = [("motion of A", a), ("motion of B", b)][body.min(1)];
-                let (pose, twist) = motion.pose_and_twist(window.start());
-                let triple = |vector: DVec3| format!("{:?}", vector.to_array());
-                let [x, v, w] = [pose.translation, twist.linear, twist.angular].map(triple);
-                let time = window.start();
-                let reason = format!(
-                    "x = {x}, v = {v}, w = {w} at the time {time:?}: over the window it is not finite, turns by 2^40 radians, goes too far, or spins so slowly that the speed is lost to underflow; or its rounding exceeds the bodies"
-                );
-                Failure::at(place, reason)
-            }
-            other => Failure::Input(other.to_string()),
-        })?;
+        let verdict = verdict.map_err(|error| bad_input(error, [a, b], window))?;
         Ok(Answer { verdict, took })
+    }
+}
+
+/// An error of a query, with the motion that it comes from.
+fn bad_input(error: QueryError, motions: [&dyn RigidMotion; 2], window: Window) -> Failure {
+    match error {
+        QueryError::BadMotion { body } => {
+            let (place, motion) = [("motion of A", motions[0]), ("motion of B", motions[1])][body.min(1)];
+            let (pose, twist) = motion.pose_and_twist(window.start());
+            let triple = |vector: DVec3| format!("{:?}", vector.to_array());
+            let [x, v, w] = [pose.translation, twist.linear, twist.angular].map(triple);
+            let time = window.start();
+            let reason = format!(
+                "x = {x}, v = {v}, w = {w} at the time {time:?}: over the window it is not finite, turns by 2^40 radians, goes too far, or spins so slowly that the speed is lost to underflow; or its rounding exceeds the bodies"
+            );
+            Failure::at(place, reason)
+        }
+        other => Failure::Input(other.to_string()),
     }
 }
 

@@ -40,6 +40,8 @@ fn main() -> ExitCode {
     });
     let outcome = match &arguments.command {
         Command::Toc(arguments) => commands::toc::run(arguments),
+        Command::Spans(arguments) => commands::spans::run(arguments),
+        Command::Clearance(arguments) => commands::clearance::run(arguments),
         Command::Batch(arguments) => commands::batch::run(arguments).map(Outcome::from),
         Command::Features(arguments) => commands::features::run(arguments).map(Outcome::from),
         Command::Distance(arguments) => commands::distance::run(arguments),

@@ -1,6 +1,6 @@
 //! What a command answered: scripts get it as the exit code with `--exit-status`.
 
-use d2m::bvh::TimeOfContact;
+use d2m::bvh::{ClearanceStatus, TimeOfContact};
 
 /// Ends a command that did its work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,6 +41,16 @@ impl From<&TimeOfContact> for Outcome {
             TimeOfContact::Contact(_) => Self::Contact,
             TimeOfContact::Separated => Self::Separated,
             TimeOfContact::Undecided { .. } => Self::Undecided,
+        }
+    }
+}
+
+impl From<ClearanceStatus> for Outcome {
+    fn from(status: ClearanceStatus) -> Self {
+        match status {
+            ClearanceStatus::Clear => Self::Separated,
+            ClearanceStatus::Contact => Self::Contact,
+            ClearanceStatus::Undecided => Self::Undecided,
         }
     }
 }

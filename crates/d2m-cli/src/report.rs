@@ -1,7 +1,7 @@
 //! Answers as text, CSV fields and JSON.
 
 use crate::engine::{Answer, Pair};
-use d2m::bvh::{Contact, Evidence, Solid, StartState, TimeOfContact, Window};
+use d2m::bvh::{Clearance, Contact, Departure, Evidence, Solid, StartState, TimeOfContact, Window};
 use d2m::feature::FeaturePair;
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -88,8 +88,26 @@ pub(crate) fn vector(v: DVec3) -> String {
     format!("({x}, {y}, {z})")
 }
 
+/// What was queried besides the first contact.
+#[derive(Debug, Default)]
+pub(crate) struct Further {
+    pub(crate) clearance: Option<Clearance>,
+    pub(crate) departure: Option<Departure>,
+}
+
+impl Further {
+    /// How the bodies stand at the start of the window. What the query does not know begins apart: it would be in contact there.
+    fn start(&self, verdict: &TimeOfContact) -> StartState {
+        match (&self.departure, verdict) {
+            (Some(departure), _) => departure.start,
+            (None, TimeOfContact::Contact(contact)) => contact.start,
+            (None, _) => StartState::Apart,
+        }
+    }
+}
+
 /// The answer for a person.
-pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
+pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer, further: &Further) -> String {
     let mut text = String::new();
     let mut line = |label: &str, value: String| {
         let _ = writeln!(text, "  {label:<12}{value}"); // writing to a string cannot fail
@@ -98,6 +116,10 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
     let headline = match &answer.verdict {
         TimeOfContact::Separated => {
             line("certified", format!("no contact anywhere from {start} to {end}"));
+            if let Some(found) = &further.clearance {
+                let [lower, upper] = [found.lower, found.upper].map(short);
+                line("clearance", format!("[{lower}, {upper}] at t = {}", short(found.time)));
+            }
             "SEPARATED".to_owned()
         }
         TimeOfContact::Undecided { clear_until } => {
@@ -112,9 +134,14 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
             format!("CONTACT at t = {}", short(contact.time_lo))
         }
     };
-    for (label, body) in [("A", &pair.a), ("B", &pair.b)] {
-        line(label, format!("{} · {} triangles", body.name, count(body.mesh().triangle_count())));
+    if let Some(departure) = &further.departure {
+        let left = match departure.left {
+            Some(left) => format!("in contact at {}, proven apart at {}", short(left.lo), short(left.hi)),
+            None => "never proven apart in the window".to_owned(),
+        };
+        line("start", format!("{}; {left}", start_word(departure.start)));
     }
+    body_lines(&mut line, pair);
     let solid = match pair.solids {
         [Solid::Filled, Solid::Filled] => "filled solids",
         [Solid::Surface, Solid::Surface] => "surfaces only",
@@ -131,6 +158,13 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
         format!("{} (after {} to build the trees)", duration(answer.took), duration(pair.preparation)),
     );
     format!("{headline}\n{text}")
+}
+
+/// The names of the bodies, with their sizes.
+pub(crate) fn body_lines(line: &mut dyn FnMut(&str, String), pair: &Pair) {
+    for (label, body) in [("A", &pair.a), ("B", &pair.b)] {
+        line(label, format!("{} · {} triangles", body.name, count(body.mesh().triangle_count())));
+    }
 }
 
 /// What is proven of the meeting itself.
@@ -200,7 +234,7 @@ fn contact_lines(line: &mut dyn FnMut(&str, String), contact: &Contact, pair: &P
 }
 
 /// The answer for a program.
-pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer) -> String {
+pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer, further: &Further) -> String {
     let mut object = json!({
         "status": status(&answer.verdict),
         "microseconds": microseconds(answer.took),
@@ -219,6 +253,13 @@ pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer) -> String {
             put(&key, value);
         }
     }
+    if let Some(clearance) = &further.clearance {
+        put("clearance", json!([clearance.lower, clearance.upper]));
+    }
+    if let Some(departure) = &further.departure {
+        put("left", json!(departure.left));
+    }
+    put("start", json!(start_word(further.start(&answer.verdict))));
     match &answer.verdict {
         TimeOfContact::Separated => {}
         TimeOfContact::Undecided { clear_until } => put("toc", json!(clear_until)),

@@ -103,6 +103,22 @@ impl TriMesh {
         Self { vertices, triangles }
     }
 
+    /// One point: with a radius ([`Moving::with_radius`](crate::Moving::with_radius)) a sphere.
+    ///
+    /// # Errors
+    /// Those of [`TriMesh::try_new`].
+    pub fn point(center: DVec3) -> Result<Self, MeshError> {
+        Self::try_new(vec![center], vec![[0, 0, 0]])
+    }
+
+    /// The segment between two points: with a radius ([`Moving::with_radius`](crate::Moving::with_radius)) a capsule.
+    ///
+    /// # Errors
+    /// Those of [`TriMesh::try_new`].
+    pub fn segment(start: DVec3, end: DVec3) -> Result<Self, MeshError> {
+        Self::try_new(vec![start, end], vec![[0, 1, 1]])
+    }
+
     /// The vertices in the body frame, in input order.
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices

@@ -149,6 +149,7 @@ struct Shortfall {
 }
 
 /// How a span ended.
+#[expect(clippy::large_enum_variant, reason = "one at a time, taken apart at once")]
 enum Step {
     /// Free from here on again.
     FreeUntil(f64),

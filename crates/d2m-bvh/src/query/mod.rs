@@ -1,15 +1,25 @@
 //! The queries of moving bodies: time of contact, existence of a contact, batches, and the data of a contact.
 
 mod batch;
+mod clearance;
 mod constant_twist;
 mod fitted_twist;
 mod general_motion;
+mod leave;
+mod meshes;
 mod proven_crossing;
 mod report;
+mod rounded;
+mod spans;
+mod staying;
+mod staying_walk;
 mod time_of_contact;
 mod true_poses;
 mod warm_start;
 
 pub use batch::time_of_contact_batch;
+pub use clearance::{Clearance, ClearanceOptions, ClearanceStatus, clearance, clearance_batch};
+pub use leave::{Departure, departure};
+pub use spans::{ContactSpan, SpanStatus, contact_spans};
 pub use time_of_contact::{time_of_contact, time_of_contact_counted};
 pub use warm_start::{contact_exists, time_of_contact_with};

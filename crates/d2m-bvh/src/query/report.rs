@@ -251,6 +251,7 @@ fn describe(scene: &Scene<'_>, motion: &RelativeMotion, time: f64, witness: &Wit
         barycentric_b: barycentric(b, pb, near.places[1]),
         closing_speed: frame.closing_speed(near.points, normal) * length / seconds,
         start: *start,
+        left: None,
     }
 }
 

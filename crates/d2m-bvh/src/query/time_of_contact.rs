@@ -1,9 +1,9 @@
 //! The query for the first contact of two bodies.
 
-use super::constant_twist::{ask, scene_of};
-use super::general_motion::general_motion;
-use crate::covered_pair::CoveredPair;
-use crate::{Answered, Moving, QueryError, QueryOptions, TimeOfContact, Window};
+use super::leave::of_departing;
+use super::meshes::of_meshes;
+use super::rounded::Rounded;
+use crate::{Answered, Moving, QueryError, QueryOptions, Start, TimeOfContact, Window};
 
 /// First time in `window` at which the two bodies touch.
 ///
@@ -55,9 +55,14 @@ pub fn time_of_contact_counted(
     window: Window,
     options: &QueryOptions,
 ) -> Result<Answered<TimeOfContact>, QueryError> {
-    let pair = CoveredPair::try_new([a, b], window)?;
-    match scene_of(&pair, options)? {
-        Some(scene) => ask(&scene, options),
-        None => general_motion(pair, options),
-    }
+    let rounded = Rounded::try_new([&a, &b])?;
+    let options = rounded.options([a.body, b.body], options)?;
+    let Answered { answer, work } = match options.start {
+        Start::Leave => {
+            let Answered { answer, work } = of_departing([a, b], window, &options)?;
+            Answered { answer: answer.answer, work }
+        }
+        Start::Report => of_meshes([a, b], window, &options)?,
+    };
+    Ok(Answered { answer: rounded.answer(answer), work })
 }

@@ -13,6 +13,8 @@ pub(super) struct PlacedTriangles {
     corners: [[DVec3; 3]; 2],
     /// How far a corner of each may be from where it truly is.
     errors: [f64; 2],
+    /// The point that all is relative to.
+    origin: DVec3,
     /// The reference points, and how they move.
     moving: [(DVec3, Twist); 2],
 }
@@ -37,8 +39,14 @@ impl PlacedTriangles {
         Self {
             corners: [0, 1].map(|k| given[k].map(|p| place(&states[k], p))),
             errors: [0, 1].map(|k| error(&states[k], &given[k])),
+            origin,
             moving: [0, 1].map(|k| (states[k].position, twist(&states[k]))),
         }
+    }
+
+    /// A point of these coordinates in the world, rounded.
+    pub(super) fn world(&self, point: DVec3) -> DVec3 {
+        self.origin + point
     }
 
     pub(super) fn distance(&self) -> TriangleDistance {

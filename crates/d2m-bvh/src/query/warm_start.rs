@@ -3,13 +3,15 @@
 use super::constant_twist::{ask, scene_of, scene_of_twists};
 use super::fitted_twist::FittedTwists;
 use super::general_motion::{general_motion, rounding_tolerance, tolerance_of};
+use super::leave::of_departing;
+use super::rounded::Rounded;
 use super::true_poses::Meeting;
 use crate::covered_pair::CoveredPair;
 use crate::search::relative_trajectory::RelativeTrajectory;
 use crate::search::triangle_pair::closest::closest;
 use crate::search::triangle_pair::separating_axis::place_a;
 use crate::search::{MovingTree, Scene};
-use crate::{Mode, Moving, PairCache, QueryError, QueryOptions, TimeOfContact, Window};
+use crate::{Mode, Moving, PairCache, QueryError, QueryOptions, Start, TimeOfContact, Window};
 use d2m_feature::triangles_intersect;
 use d2m_interval::Interval;
 use d2m_lanes::{F64x4, UP};
@@ -55,6 +57,22 @@ use d2m_lanes::{F64x4, UP};
 pub fn time_of_contact_with(
     a: Moving<'_>,
     b: Moving<'_>,
+    window: Window,
+    options: &QueryOptions,
+    cache: &mut PairCache,
+) -> Result<TimeOfContact, QueryError> {
+    let rounded = Rounded::try_new([&a, &b])?;
+    let options = rounded.options([a.body, b.body], options)?;
+    let answer = match options.start {
+        Start::Leave => cache.counted(of_departing([a, b], window, &options)?).answer,
+        Start::Report => of_meshes_with([a, b], window, &options, cache)?,
+    };
+    Ok(rounded.answer(answer))
+}
+
+/// The query of the meshes, without radii.
+fn of_meshes_with(
+    [a, b]: [Moving<'_>; 2],
     window: Window,
     options: &QueryOptions,
     cache: &mut PairCache,
@@ -213,7 +231,7 @@ pub fn contact_exists(
     options: &QueryOptions,
     cache: &mut PairCache,
 ) -> Result<Option<bool>, QueryError> {
-    let options = options.with_mode(Mode::Exists);
+    let options = Rounded::try_new([&a, &b])?.options([a.body, b.body], options)?.with_mode(Mode::Exists);
     let pair = CoveredPair::try_new([a, b], window)?;
     let scene = scene_of(&pair, &options)?;
     if !options.budget.is_limited()
@@ -228,7 +246,7 @@ pub fn contact_exists(
             return Ok(Some(true));
         }
     }
-    Ok(match time_of_contact_with(a, b, window, &options, cache)? {
+    Ok(match of_meshes_with([a, b], window, &options, cache)? {
         TimeOfContact::Separated => Some(false),
         TimeOfContact::Contact(_) => Some(true),
         TimeOfContact::Undecided { .. } => None,

@@ -120,13 +120,25 @@ pub(crate) fn crossing_pair_within(
     Ok(search(scene, Wanted { most: 1, counts: cross }, meter)?.pairs.first().copied())
 }
 
+/// Some of the pairs that are not proven apart, the first in the order of the trees.
+pub(crate) fn some_colliding_pairs(a: Posed<'_>, b: Posed<'_>, most: usize, steps: u64) -> Vec<[u32; 2]> {
+    let Ok(scene) = Scene::try_new(a, b) else { return Vec::new() };
+    let mut pairs = Vec::new();
+    let wanted = Wanted { most, counts: may_touch };
+    let meter = &mut Meter::unlimited().at_most(steps);
+    let _ = run(Search { scene: &scene, wanted, meter, pairs: &mut pairs });
+    pairs
+}
+
 /// All that is wanted, without a limit on the work.
 fn search_all(scene: &Scene<'_>, wanted: Wanted) -> Vec<[u32; 2]> {
     search(scene, wanted, &mut Meter::unlimited()).map_or_else(|Exhausted| Vec::new(), |found| found.pairs)
 }
 
 fn search(scene: &Scene<'_>, wanted: Wanted, meter: &mut Meter) -> Result<Found, Exhausted> {
-    run(Search { scene, wanted, meter })
+    let mut pairs = Vec::new();
+    let boxes_apart = run(Search { scene, wanted, meter, pairs: &mut pairs })?;
+    Ok(Found { boxes_apart, pairs })
 }
 
 fn may_touch(scene: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
@@ -159,6 +171,8 @@ struct Search<'a> {
     scene: &'a Scene<'a>,
     wanted: Wanted,
     meter: &'a mut Meter,
+    /// Takes what is found, also where the budget runs out.
+    pairs: &'a mut Vec<[u32; 2]>,
 }
 
 struct Found {
@@ -168,14 +182,14 @@ struct Found {
 }
 
 impl Task for Search<'_> {
-    type Output = Result<Found, Exhausted>;
+    /// Are the boxes around the whole bodies apart already?
+    type Output = Result<bool, Exhausted>;
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Self::Output {
-        let Self { scene, wanted: Wanted { most, counts }, meter } = self;
-        let mut pairs = Vec::new();
+        let Self { scene, wanted: Wanted { most, counts }, meter, pairs } = self;
         if scene.overlaps::<L>(0, 0, 0) == 0 {
-            return Ok(Found { boxes_apart: true, pairs });
+            return Ok(true);
         }
         let mut stack = Vec::with_capacity(256);
         stack.push([0u32; 2]);
@@ -199,6 +213,6 @@ impl Task for Search<'_> {
                 }
             }
         }
-        Ok(Found { boxes_apart: false, pairs })
+        Ok(false)
     }
 }

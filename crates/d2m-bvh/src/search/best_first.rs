@@ -66,7 +66,7 @@ impl<'s> Search<'s> {
         }
         let mut batch = core::mem::replace(&mut self.scratch.batch, Bucket::EMPTY);
         let (mut outcome, mut batches) = (None, 0u32);
-        let mut patience = Patience::new(self.scratch.counts.triangle_looks);
+        let mut patience = Patience::new(self.scratch.counts.triangle_looks, self.limits.patience);
         while let Some(least) = self.scratch.queue.take(&mut batch, BATCH) {
             if least >= state.limit {
                 break;
@@ -162,7 +162,7 @@ impl<'s> Search<'s> {
         now: f64,
         boxes: [u32; 2],
     ) -> Option<f64> {
-        let patient = FIRST_SWEEP + triangle_count(self.scene);
+        let patient = self.limits.patience * (FIRST_SWEEP + triangle_count(self.scene));
         if self.work() < patient && now > ON_ITS_WAY * self.scene.end {
             self.limits.sweep_from = patient;
             return None;

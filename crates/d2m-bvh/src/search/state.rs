@@ -29,6 +29,10 @@ pub(super) const THIRD_ORDER_TESTS: u64 = 1024;
 /// ordinary queries end before that, or are well on their way.
 pub(super) const FIRST_SWEEP: u64 = 256;
 
+/// How much longer a search whose level is close to the least distance goes on before it examines swept volumes and crowds, which
+/// hardly ever prove anything then.
+const GRAZING_PATIENCE: u64 = 64;
+
 /// As many triangles are measured for a sweep in the time of one node test.
 const TRIANGLES_A_TEST: u64 = 8;
 
@@ -118,6 +122,8 @@ pub(super) struct Limits {
     pub(super) stop: Stop,
     /// The number of node tests from which on swept volumes are compared.
     pub(super) sweep_from: u64,
+    /// So many times as much work as usual is done before swept volumes or crowds are examined.
+    pub(super) patience: u64,
     /// Only whether the bodies meet at the start matters.
     pub(super) only_start: bool,
 }
@@ -147,11 +153,13 @@ impl<'s> Search<'s> {
         scratch.last_tested = [0, 0];
         // What an earlier query left belongs to other motions.
         scratch.found_in = None;
+        let patience = if options.grazing { GRAZING_PATIENCE } else { 1 };
         let limits = Limits {
             mode: options.mode,
             most_tests: budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS),
             stop: Stop::new(budget),
-            sweep_from: FIRST_SWEEP + triangle_count(scene) / TRIANGLES_A_TEST,
+            sweep_from: patience * (FIRST_SWEEP + triangle_count(scene) / TRIANGLES_A_TEST),
+            patience,
             only_start: false,
         };
         Self {

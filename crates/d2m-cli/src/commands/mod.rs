@@ -1,6 +1,7 @@
 //! One module for each command.
 
 pub(crate) mod batch;
+pub(crate) mod clearance;
 pub(crate) mod collide;
 pub(crate) mod demo;
 pub(crate) mod distance;
@@ -11,6 +12,7 @@ pub(crate) mod proximities;
 pub(crate) mod robot;
 pub(crate) mod scene;
 pub(crate) mod simulate;
+pub(crate) mod spans;
 pub(crate) mod toc;
 pub(crate) mod tree;
 pub(crate) mod view;

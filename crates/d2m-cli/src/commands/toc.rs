@@ -1,20 +1,31 @@
 //! `d2m toc`: one query.
 
-use crate::arguments::TocArguments;
-use crate::engine::{Pair, check_size};
+use crate::arguments::{StartChoice, TocArguments};
+use crate::engine::{Answer, Pair, check_size};
 use crate::failure::Failure;
 use crate::motion::{parse_motion, parse_window, require_window};
 use crate::outcome::Outcome;
 use crate::output::{Output, print_answer};
 use crate::report;
 use crate::sizes::{Travel, load_both, sizes_line, warn_of_turn};
-use d2m::bvh::{TimeOfContact, TriMesh};
-use d2m::motion::RigidMotion;
+use d2m::bvh::{TimeOfContact, TriMesh, Window};
+use d2m::motion::{AnyMotion, RigidMotion};
 use std::fmt::Write;
 use std::path::Path;
 
-/// Runs the command.
-pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
+/// Two bodies with their motions and the window, as `d2m toc`, `d2m clearance` and `d2m spans` take them.
+pub(super) struct MovingPair {
+    pub(super) pair: Pair,
+    pub(super) motion_a: AnyMotion,
+    pub(super) motion_b: AnyMotion,
+    pub(super) window: Window,
+    /// Where `--obj` writes to.
+    obj: Option<Output>,
+    pub(super) travels: [Travel; 2],
+}
+
+/// Reads motions, then meshes.
+pub(super) fn read(arguments: &TocArguments) -> Result<MovingPair, Failure> {
     let window = parse_window(&arguments.window)?;
     let motion_a = parse_motion("--motion-a", &arguments.motion_a)?;
     let motion_b = parse_motion("--motion-b", &arguments.motion_b)?;
@@ -23,7 +34,7 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
     let motion_files = [&arguments.motion_a, &arguments.motion_b].map(|motion| motion.strip_prefix('@'));
     let meshes = [&arguments.a, &arguments.b].map(String::as_str);
     let inputs = motion_files.into_iter().flatten().chain(meshes).map(Path::new);
-    let scene = match &arguments.obj {
+    let obj = match &arguments.obj {
         Some(path) => Some(Output::new(path)?.spare(inputs)?),
         None => None,
     };
@@ -32,10 +43,30 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
     check_size("--motion-a", &motion_a, &pair.a)?;
     check_size("--motion-b", &motion_b, &pair.b)?;
     let travels = [&motion_a, &motion_b].map(|motion| Travel::of(motion, window));
-    let answer = pair.answer(&motion_a, &motion_b, window)?;
+    Ok(MovingPair { pair, motion_a, motion_b, window, obj, travels })
+}
+
+/// Runs the command.
+pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
+    let MovingPair { pair, motion_a, motion_b, window, obj, travels } = read(arguments)?;
+    let departure = match arguments.start {
+        StartChoice::Leave => Some(pair.departure([&motion_a, &motion_b], window)?),
+        StartChoice::Report => None,
+    };
+    let answer = match &departure {
+        Some((found, took)) => Answer { verdict: found.answer, took: *took },
+        None => pair.answer(&motion_a, &motion_b, window)?,
+    };
     warn_of_turn("--motion-a", travels[0]);
     warn_of_turn("--motion-b", travels[1]);
-    if let Some(scene) = scene {
+    let departure = departure.map(|(found, _)| found);
+    let clearance = match &answer.verdict {
+        TimeOfContact::Separated if arguments.clearance => {
+            Some(pair.clearance([&motion_a, &motion_b], window, None)?.found)
+        }
+        _ => None,
+    };
+    if let Some(scene) = obj {
         let time = match &answer.verdict {
             TimeOfContact::Contact(contact) => contact.time_lo,
             TimeOfContact::Undecided { clear_until } => *clear_until,
@@ -49,10 +80,11 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
         }
         scene.write(&text)?;
     }
+    let further = report::Further { clearance, departure };
     print_answer(&if arguments.json {
-        report::json(&pair, window, &answer)
+        report::json(&pair, window, &answer, &further)
     } else {
-        report::text(&pair, window, &answer) + &sizes_line(pair.sizes(), Some(travels))
+        report::text(&pair, window, &answer, &further) + &sizes_line(pair.sizes(), Some(travels))
     })?;
     Ok(Outcome::from(&answer.verdict).reported(arguments.exit_status))
 }

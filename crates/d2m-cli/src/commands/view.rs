@@ -83,7 +83,7 @@ fn pair(arguments: &ViewArguments, b: &str) -> Result<Picture, Failure> {
     check_size("--motion-a", &motions[0], &pair.a)?;
     check_size("--motion-b", &motions[1], &pair.b)?;
     let answer = pair.answer(&motions[0], &motions[1], window)?;
-    let text = report::text(&pair, window, &answer);
+    let text = report::text(&pair, window, &answer, &report::Further::default());
     let mut lines = text.lines().map(str::trim);
     let headline = lines.next().unwrap_or_default().to_owned();
     let mut picture = Picture::new(headline, [window.start(), window.end()]);

@@ -254,6 +254,26 @@ pub fn bound_distance(
     Ok(DistanceBounds { lower, upper, point_a, point_b, triangle_a, triangle_b, distance })
 }
 
+/// A pair of triangles that are close to each other: the closest pair if so many steps find it. `first`: a pair that is compared
+/// first.
+///
+/// # Errors
+/// [`QueryError::BadPose`].
+pub(crate) fn near_pair(
+    a: Posed<'_>,
+    b: Posed<'_>,
+    first: Option<[u32; 2]>,
+    steps: u64,
+) -> Result<Option<[u32; 2]>, QueryError> {
+    let scene = Scene::try_new(a, b)?;
+    let first = first.map(|pair| [0, 1].map(|k| if scene.is_point_like(k) { 0 } else { pair[k] }));
+    let meter = &mut Meter::unlimited().at_most(steps);
+    Ok(match run(Search { scene: &scene, first, limit: f64::INFINITY, meter }) {
+        Found::Pair(best) | Found::Exhausted(best) => Some(best.triangles),
+        Found::Beyond | Found::Unclear => None,
+    })
+}
+
 /// Does one body hold a part of the other?
 fn holds(scene: &Scene<'_>, meter: &mut Meter) -> Result<bool, Exhausted> {
     Ok(one_holds_the_other(scene, meter)?.is_some())

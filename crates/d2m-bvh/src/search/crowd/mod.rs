@@ -79,11 +79,11 @@ pub(super) struct Patience {
 }
 
 impl Patience {
-    /// Of a sub-window that begins after so many tests of triangle pairs.
-    pub(super) const fn new(tests: u64) -> Self {
+    /// Of a sub-window that begins after so many tests of triangle pairs, so many times as long as usual.
+    pub(super) const fn new(tests: u64, factor: u64) -> Self {
         Self {
-            pairs: CROWD,
-            batches: CROWD_OF_BATCHES,
+            pairs: CROWD * factor as usize,
+            batches: CROWD_OF_BATCHES * factor as u32,
             rest_until: 0,
             examined_to: None,
             next_count: CROWD_CHECK,

@@ -1,0 +1,315 @@
+//! The least distance of two moving bodies over a window of time.
+//!
+//! One way through time at a level that sinks. The level is a little below the least distance that is known; the search for a
+//! first contact at that level proves that the bodies stay further apart than the level until a pair of triangles comes within it. That
+//! pair is followed to its closest time, which gives a smaller distance, and the search goes on from where it was, with the new
+//! level: what was proven at a higher level holds for a lower one. Where it ends, the level is the lower bound.
+//! docs/theory/questions.md, "Clearance".
+
+mod options;
+mod sample;
+
+pub use options::{Clearance, ClearanceOptions, ClearanceStatus};
+
+use super::general_motion::tolerance_of;
+use super::meshes::of_meshes;
+use super::rounded::Rounded;
+use crate::covered_pair::CoveredPair;
+use crate::{
+    Budget, Contact, Evidence, Meter, Moving, QueryError, QueryOptions, StartState, TimeOfContact, Window,
+};
+use d2m_feature::{FeaturePair, TriangleFeature};
+use sample::{Sample, Sampler, closer};
+
+/// Part of the allowed width that the enclosure takes; the rest is for roundings.
+const PART_OF_WIDTH: f64 = 0.9;
+/// Part of the width that is the tolerance of the search: a pair that it finds is at most 3.3 of these above the level.
+const PART_OF_TOLERANCE: f64 = 0.15;
+/// The allowed width in tolerances, where that is more than the accuracy.
+const TOLERANCES: f64 = 4.0;
+/// The width of the first way through the window, as a part of the distance.
+const COARSE_WIDTH: f64 = 0.25;
+/// A pair that the search finds has to be closer than what is known by this part of the width, or rounding hides what is left.
+const LEAST_GAIN: f64 = 0.25;
+
+/// The least distance of two bodies over a window, enclosed.
+///
+/// Promise: `lower` ≤ min over the window of the distance ≤ `upper`, in real arithmetic, for any motions;
+/// `upper − lower` ≤ max(R·`upper`, 4 δ), R the accuracy of the options, δ the tolerance of the answer, unless the status is
+/// [`Undecided`](ClearanceStatus::Undecided) or a cutoff was given. Solids that hold each other have the clearance 0, and so have
+/// bodies that are proven to share a point: then the time is that of the contact. Bodies that come within δ without being proven to share
+/// a point have `lower` = 0 and a small `upper`.
+///
+/// ```
+/// use d2m_bvh::{ClearanceOptions, ClearanceStatus, MeshTree, Moving, TriMesh, Window, clearance};
+/// use d2m_motion::ConstantTwist;
+/// use glam::DVec3;
+/// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let tree = MeshTree::new(mesh);
+/// // Passes above the tip.
+/// let passing = ConstantTwist::REST.with_position(DVec3::new(-2.0, 0.0, 1.5)).with_linear_velocity(DVec3::X * 4.0);
+/// let [a, b] = [Moving::new(&tree, &ConstantTwist::REST), Moving::new(&tree, &passing)];
+/// let nearest = clearance(a, b, Window::UNIT, &ClearanceOptions::default())?;
+/// assert_eq!(nearest.status, ClearanceStatus::Clear);
+/// assert!(nearest.lower <= 0.5 && 0.5 <= nearest.upper && nearest.upper - nearest.lower <= 1e-6 * nearest.upper);
+/// assert!((nearest.normal - DVec3::Z).length() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Bad input only: those of [`time_of_contact`](crate::time_of_contact), and [`QueryError::BadAccuracy`].
+#[doc(alias = "minimum_distance")]
+pub fn clearance(
+    a: Moving<'_>,
+    b: Moving<'_>,
+    window: Window,
+    options: &ClearanceOptions,
+) -> Result<Clearance, QueryError> {
+    let value = options.accuracy;
+    if !(value.is_finite() && value > 0.0) {
+        return Err(QueryError::BadAccuracy { value });
+    }
+    if options.cutoff.is_nan() || options.cutoff < 0.0 {
+        return Err(QueryError::BadMinSeparation { value: options.cutoff });
+    }
+    CoveredPair::try_new([a, b], window)?;
+    Descent::try_new([a, b], window, options)?.run()
+}
+
+/// [`clearance`] of many pairs of bodies, in order. On all threads of the current rayon pool with the feature `rayon`; each query runs
+/// on one thread, so the answers have the same bits at any number of threads (but for a budget of wall-clock time).
+pub fn clearance_batch(
+    pairs: &[(Moving<'_>, Moving<'_>)],
+    window: Window,
+    options: &ClearanceOptions,
+) -> Vec<Result<Clearance, QueryError>> {
+    let one = |&(a, b): &(Moving<'_>, Moving<'_>)| clearance(a, b, window, options);
+    #[cfg(feature = "rayon")]
+    {
+        use rayon::prelude::*;
+        pairs.par_iter().map(one).collect()
+    }
+    #[cfg(not(feature = "rayon"))]
+    pairs.iter().map(one).collect()
+}
+
+/// The hard cap on one search holds for all of them together.
+fn limited(budget: &Budget) -> Meter {
+    let most = budget.node_tests.unwrap_or(Budget::HARD_NODE_TESTS);
+    Meter::new(&budget.with_node_tests(most))
+}
+
+/// How wide the enclosure of a way through the window is to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pass {
+    Coarse,
+    Accurate,
+}
+
+/// One query on its way.
+struct Descent<'a> {
+    sampler: Sampler<'a>,
+    options: ClearanceOptions,
+    rounded: Rounded,
+    /// δ as used.
+    tolerance: f64,
+    meter: Meter,
+    /// The clearance is proven to be at least this.
+    proven: f64,
+    /// Further apart than every level of this pass until here.
+    now: f64,
+    /// The first pass goes through the window with a wide enclosure: it finds about where the bodies are closest, at a level that boxes
+    /// prove quickly. The second one is as accurate as wanted.
+    pass: Pass,
+}
+
+impl<'a> Descent<'a> {
+    fn try_new(
+        bodies: [Moving<'a>; 2],
+        window: Window,
+        options: &ClearanceOptions,
+    ) -> Result<Self, QueryError> {
+        let rounded = Rounded::try_new([&bodies[0], &bodies[1]])?;
+        let query = QueryOptions { tolerance: options.tolerance, ..QueryOptions::DEFAULT };
+        let query = rounded.options(bodies.map(|body| body.body), &query)?;
+        Ok(Self {
+            sampler: Sampler { bodies, window },
+            options: *options,
+            rounded,
+            tolerance: tolerance_of(&bodies, &query),
+            meter: limited(&options.budget),
+            proven: 0.0,
+            now: window.start(),
+            pass: Pass::Coarse,
+        })
+    }
+
+    /// The width that the enclosure may have when the meshes come within `upper` of each other.
+    fn width(&self, upper: f64) -> f64 {
+        let distance = (upper - self.rounded.sum()).max(0.0);
+        PART_OF_WIDTH * (self.options.accuracy * distance).max(TOLERANCES * self.tolerance)
+    }
+
+    fn run(mut self) -> Result<Clearance, QueryError> {
+        // What the query refuses is refused before anything is computed of it.
+        self.refuse_bad_input()?;
+        let mut best = self.sampler.first(|upper| self.width(upper));
+        loop {
+            let width = match self.pass {
+                Pass::Coarse => self.width(best.upper).max(COARSE_WIDTH * self.distance(best.upper)),
+                Pass::Accurate => self.width(best.upper),
+            };
+            let level = (best.upper - self.rounded.sum() - width).min(self.options.cutoff).max(0.0);
+            let tolerance = if level > 0.0 { PART_OF_TOLERANCE * width } else { self.tolerance };
+            let Some(options) = self.options_at(level, tolerance) else {
+                return Ok(self.describe(&best, self.proven, ClearanceStatus::Undecided));
+            };
+            let window = Window::try_new(self.now, self.sampler.window.end())?;
+            let [a, b] = self.sampler.bodies;
+            let found = of_meshes([a, b], window, &options)?;
+            self.meter.spend(found.work.work() + 1);
+            let contact = match found.answer {
+                TimeOfContact::Separated if self.pass == Pass::Coarse && level < self.options.cutoff => {
+                    (self.pass, self.now) = (Pass::Accurate, self.sampler.window.start());
+                    self.proven = level;
+                    continue;
+                }
+                TimeOfContact::Separated => {
+                    // The search proves more than its separation: at least half a tolerance above it.
+                    let lower = (level + 0.5 * tolerance).min(self.distance(best.upper));
+                    return Ok(self.describe(&best, lower, ClearanceStatus::Clear));
+                }
+                TimeOfContact::Undecided { .. } => {
+                    return Ok(self.describe(&best, self.proven, ClearanceStatus::Undecided));
+                }
+                TimeOfContact::Contact(contact) => contact,
+            };
+            if contact.start == StartState::Contained && contact.time_lo == self.now {
+                return Ok(self.meeting(&contact, &best));
+            }
+            if level == 0.0 {
+                return Ok(self.contact(&contact, &best));
+            }
+            let near = self.sampler.pair_at([contact.triangle_a, contact.triangle_b], contact.time_lo);
+            let lowest = self.sampler.settle(near, |upper| self.width(upper));
+            if lowest.upper < best.upper - LEAST_GAIN * width {
+                self.now = contact.time_lo.max(self.now);
+            } else {
+                // Rounding hides what is left of the width.
+                self.tolerance = (2.0 * self.tolerance).max(contact.tolerance).max(width);
+            }
+            best = closer(best, lowest);
+        }
+    }
+
+    /// # Errors
+    /// Those of the query, found by one that has no budget for anything.
+    fn refuse_bad_input(&self) -> Result<(), QueryError> {
+        let nothing = Budget::UNLIMITED.with_node_tests(0);
+        let options = self.query_options(0.0, 0.0).with_budget(nothing);
+        let options = QueryOptions { tolerance: self.options.tolerance, ..options };
+        let [a, b] = self.sampler.bodies;
+        of_meshes([a, b], self.sampler.window, &options).map(|_| ())
+    }
+
+    fn query_options(&self, level: f64, tolerance: f64) -> QueryOptions {
+        let sum = self.rounded.sum();
+        let separation = if sum == 0.0 { level } else { (level + sum).next_up() };
+        // Points without a radius have no tolerance of their own: rounding gives the least one.
+        let tolerance = (tolerance > 0.0).then_some(tolerance);
+        QueryOptions { tolerance, grazing: true, ..QueryOptions::DEFAULT }
+            .with_min_separation(separation)
+            .with_solid(self.options.solid)
+            .with_parallel(self.options.parallel)
+    }
+
+    /// The options of the search at a level; `None` when the budget is used up.
+    fn options_at(&self, level: f64, tolerance: f64) -> Option<QueryOptions> {
+        let options = self.query_options(level, tolerance);
+        (!self.meter.is_exhausted()).then(|| options.with_budget(self.meter.rest()))
+    }
+
+    /// The distance of the rounded bodies, from that of their meshes; not below it.
+    fn distance(&self, upper: f64) -> f64 {
+        let [a, b] = self.rounded.radii;
+        if a + b == 0.0 { upper } else { (upper - (a + b).next_down()).next_up().max(0.0) }
+    }
+
+    /// The bodies come within the tolerance of each other.
+    fn contact(&self, contact: &Contact, best: &Sample) -> Clearance {
+        let triangles = [contact.triangle_a, contact.triangle_b];
+        let met = self.sampler.pair_at(triangles, contact.time_lo);
+        let lowest = self
+            .sampler
+            .settle(closer(met, self.sampler.pair_at(triangles, contact.time_hi)), |_| self.tolerance);
+        let shares = |sample: &Sample| sample.crosses || self.distance(sample.upper) == 0.0;
+        let crossing = contact.evidence == Evidence::Crossing && self.rounded.sum() == 0.0;
+        if crossing || shares(&lowest) || shares(best) {
+            return self.meeting(contact, &lowest);
+        }
+        self.describe(&closer(met, lowest), 0.0, ClearanceStatus::Contact)
+    }
+
+    /// The bodies are proven to share a point.
+    fn meeting(&self, contact: &Contact, best: &Sample) -> Clearance {
+        let rounded = self.rounded.answer(TimeOfContact::Contact(*contact));
+        let contact = rounded.contact().copied().unwrap_or(*contact);
+        Clearance {
+            lower: 0.0,
+            upper: 0.0,
+            time: contact.time_lo,
+            point_a: contact.point_a,
+            point_b: contact.point_b,
+            normal: contact.normal,
+            feature: contact.feature,
+            triangle_a: contact.triangle_a,
+            triangle_b: contact.triangle_b,
+            ..self.describe(best, 0.0, ClearanceStatus::Contact)
+        }
+    }
+
+    fn describe(&self, best: &Sample, lower: f64, status: ClearanceStatus) -> Clearance {
+        let [point_a, point_b] = best.points;
+        let normal = (best.near.point_b - best.near.point_a).normalize_or_zero();
+        let [radius_a, radius_b] = self.rounded.radii;
+        Clearance {
+            lower,
+            upper: self.distance(best.upper),
+            time: best.time,
+            point_a: point_a + normal * radius_a,
+            point_b: point_b - normal * radius_b,
+            normal,
+            feature: self.feature(best),
+            triangle_a: best.triangles[0],
+            triangle_b: best.triangles[1],
+            tolerance: self.tolerance,
+            status,
+        }
+    }
+
+    fn feature(&self, best: &Sample) -> FeaturePair {
+        let corners = |k: usize| self.sampler.bodies[k].body.mesh().triangles()[best.triangles[k] as usize];
+        let (a, b) = (corners(0), corners(1));
+        let edge = |t: [u32; 3], k: u8| {
+            let (p, q) = (t[usize::from(k)], t[(usize::from(k) + 1) % 3]);
+            [p.min(q), p.max(q)]
+        };
+        let [face_a, face_b] = best.triangles;
+        match (best.near.feature_a, best.near.feature_b) {
+            (TriangleFeature::Edge(i), TriangleFeature::Edge(j)) => {
+                FeaturePair::EdgeEdge { edge_a: edge(a, i), edge_b: edge(b, j) }
+            }
+            // An edge within the plane of a face: one of its ends stands for it.
+            (TriangleFeature::Vertex(i), _) | (TriangleFeature::Edge(i), TriangleFeature::Face) => {
+                FeaturePair::VertexFace { vertex: a[usize::from(i)], face: face_b }
+            }
+            (_, TriangleFeature::Vertex(j)) | (TriangleFeature::Face, TriangleFeature::Edge(j)) => {
+                FeaturePair::FaceVertex { face: face_a, vertex: b[usize::from(j)] }
+            }
+            (TriangleFeature::Face, TriangleFeature::Face) => {
+                FeaturePair::VertexFace { vertex: a[0], face: face_b }
+            }
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! What can be chosen of a clearance, and its answer.
+
+use crate::{Budget, Solid};
+use d2m_feature::FeaturePair;
+use glam::DVec3;
+
+/// Options of [`clearance`](crate::clearance).
+///
+/// ```
+/// use d2m_bvh::ClearanceOptions;
+/// let options = ClearanceOptions::default().with_accuracy(1e-3).with_cutoff(0.5);
+/// assert_eq!((options.accuracy, options.cutoff), (1e-3, 0.5));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[must_use]
+pub struct ClearanceOptions {
+    /// R: the enclosure is at most R times its upper end wide, or four tolerances. Finite and positive.
+    pub accuracy: f64,
+    /// δ, a distance: as for a time of contact. `None`: 1e-10 of the larger body's radius.
+    pub tolerance: Option<f64>,
+    /// What the bodies are; a body inside a solid one has the clearance zero.
+    pub solid: Solid,
+    /// Limits on the work.
+    pub budget: Budget,
+    /// Clearances above this are of no interest: the enclosure then begins here or above and may be wide.
+    pub cutoff: f64,
+    /// As [`QueryOptions::parallel`](crate::QueryOptions::parallel).
+    pub parallel: bool,
+}
+
+impl Default for ClearanceOptions {
+    fn default() -> Self {
+        Self {
+            accuracy: 1e-6,
+            tolerance: None,
+            solid: Solid::Filled,
+            budget: Budget::UNLIMITED,
+            cutoff: f64::INFINITY,
+            parallel: false,
+        }
+    }
+}
+
+impl ClearanceOptions {
+    /// With this relative width of the enclosure.
+    pub const fn with_accuracy(mut self, accuracy: f64) -> Self {
+        self.accuracy = accuracy;
+        self
+    }
+
+    /// With this tolerance δ, a distance.
+    pub const fn with_tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = Some(tolerance);
+        self
+    }
+
+    /// With this meaning of the bodies.
+    pub const fn with_solid(mut self, solid: Solid) -> Self {
+        self.solid = solid;
+        self
+    }
+
+    /// With this budget.
+    pub const fn with_budget(mut self, budget: Budget) -> Self {
+        self.budget = budget;
+        self
+    }
+
+    /// With this largest clearance of interest.
+    pub const fn with_cutoff(mut self, cutoff: f64) -> Self {
+        self.cutoff = cutoff;
+        self
+    }
+
+    /// On all threads of the current rayon pool, or on one.
+    pub const fn with_parallel(mut self, parallel: bool) -> Self {
+        self.parallel = parallel;
+        self
+    }
+}
+
+/// What is known of a clearance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+pub enum ClearanceStatus {
+    /// Proven: the bodies are apart at every time of the window.
+    Clear,
+    /// The bodies meet, or come within the tolerance of each other: what [`time_of_contact`](crate::time_of_contact) calls a contact.
+    Contact,
+    /// The budget ran out, or a motion's enclosures are too wide: the enclosure holds, but is wider than wanted.
+    Undecided,
+}
+
+/// The least distance of two bodies over a window of time, enclosed, with its time and points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+#[must_use = "it is a certificate: what is not read is not known to be safe"]
+pub struct Clearance {
+    /// Proven: at every time of the window the distance is at least this.
+    pub lower: f64,
+    /// Proven: at `time` the distance is at most this; `point_a` and `point_b` attain it, to rounding. Zero only where the bodies are
+    /// proven to share a point in the window.
+    pub upper: f64,
+    /// A time of the window at which the distance is at most `upper`; of bodies that meet the time of contact.
+    pub time: f64,
+    /// The point on A at `time`, world frame.
+    pub point_a: DVec3,
+    /// The point on B at `time`, world frame.
+    pub point_b: DVec3,
+    /// Unit direction from A to B, world frame; zero where nothing is known of it.
+    pub normal: DVec3,
+    /// The features that hold the points, by their ids in the meshes.
+    pub feature: FeaturePair,
+    /// Triangle of A.
+    pub triangle_a: u32,
+    /// Triangle of B.
+    pub triangle_b: u32,
+    /// The tolerance δ that was used: that of the options, unless rounding forbids it.
+    pub tolerance: f64,
+    /// What is known.
+    pub status: ClearanceStatus,
+}

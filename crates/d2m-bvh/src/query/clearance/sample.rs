@@ -1,0 +1,161 @@
+//! Pairs of triangles at single times: proven upper bounds of a clearance, and the way down to a local minimum.
+
+use crate::query::true_poses::PlacedTriangles;
+use crate::resting::distance::near_pair;
+use crate::{Moving, Posed, Window};
+use d2m_feature::TriangleDistance;
+use glam::DVec3;
+
+/// Times at which a search for a first upper bound looks, besides both ends of the window.
+const FIRST_TIMES: u32 = 7;
+/// Steps of the search for a close pair at each of them: a way down both trees and a few steps aside.
+const FIRST_STEPS: u64 = 32;
+/// Steps of the search for the closest pair near a minimum: most are shorter.
+const STEPS: u64 = 4096;
+/// Alternations between the closest time of a pair and the closest pair of a time.
+const ALTERNATIONS: u32 = 12;
+/// Evaluations on the way to a pair's closest time.
+const EVALUATIONS: u32 = 60;
+
+/// Two triangles at one time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sample {
+    pub(super) time: f64,
+    pub(super) triangles: [u32; 2],
+    /// Proven: the meshes are within this of each other at the time.
+    pub(super) upper: f64,
+    /// How fast the distance of the two grows.
+    pub(super) rate: f64,
+    pub(super) near: TriangleDistance,
+    pub(super) points: [DVec3; 2],
+    /// They are proven to share a point.
+    pub(super) crosses: bool,
+}
+
+/// The bodies and the window of a query.
+#[derive(Clone, Copy)]
+pub(super) struct Sampler<'a> {
+    pub(super) bodies: [Moving<'a>; 2],
+    pub(super) window: Window,
+}
+
+impl Sampler<'_> {
+    /// Two triangles at a time of the window.
+    pub(super) fn pair_at(&self, triangles: [u32; 2], time: f64) -> Sample {
+        let placed = PlacedTriangles::new(&self.bodies, triangles, time);
+        let near = placed.distance();
+        let along = (near.point_b - near.point_a).normalize_or_zero();
+        Sample {
+            time,
+            triangles,
+            upper: placed.bound_distance(&near),
+            rate: -placed.closing_speed(&near, along),
+            near,
+            points: [placed.world(near.point_a), placed.world(near.point_b)],
+            crosses: near.upper == 0.0 && placed.certainly_cross(),
+        }
+    }
+
+    /// A close pair at a time.
+    fn closest_at(&self, time: f64, first: Option<[u32; 2]>, steps: u64) -> Sample {
+        let [a, b] = self.bodies.map(|moving| Posed::new(moving.body, moving.motion.pose_and_twist(time).0));
+        // Poses that a static query refuses have pairs too: any bounds the distance.
+        let found = near_pair(a, b, first, steps).ok().flatten().or(first).unwrap_or([0; 2]);
+        self.pair_at(found, time)
+    }
+
+    /// A first upper bound: the closest of a few times, followed down to a minimum.
+    pub(super) fn first(&self, width: impl Fn(f64) -> f64) -> Sample {
+        let (start, length) = (self.window.start(), self.window.length());
+        let mut best = self.closest_at(start, None, FIRST_STEPS);
+        if length > 0.0 {
+            let parts = FIRST_TIMES + 1;
+            for part in 1..=parts {
+                let time = (start + length * (f64::from(part) / f64::from(parts))).min(self.window.end());
+                best = closer(best, self.closest_at(time, Some(best.triangles), FIRST_STEPS));
+            }
+        }
+        self.settle(best, width)
+    }
+
+    /// Follows a pair to its closest time, then the bodies to the closest pair of that time, until nothing comes closer by a part of the
+    /// width that is wanted of an enclosure.
+    pub(super) fn settle(&self, from: Sample, width: impl Fn(f64) -> f64) -> Sample {
+        let mut best = from;
+        for _ in 0..ALTERNATIONS {
+            let wanted = 0.1 * width(best.upper);
+            let lowest = self.closest_time(best, wanted);
+            let next = closer(lowest, self.closest_at(lowest.time, Some(lowest.triangles), STEPS));
+            let done = next.upper >= best.upper - wanted || next.near.upper == 0.0;
+            best = next;
+            if done {
+                break;
+            }
+        }
+        best
+    }
+
+    /// A time at which the pair is locally closest, to `wanted`.
+    fn closest_time(&self, from: Sample, wanted: f64) -> Sample {
+        let downhill = -from.rate.signum();
+        let end = if downhill > 0.0 { self.window.end() } else { self.window.start() };
+        if from.near.upper == 0.0 || from.rate == 0.0 || from.rate.is_nan() || from.time == end {
+            return from;
+        }
+        let at = |time: f64| self.pair_at(from.triangles, time);
+        let mut low = from;
+        let mut step = 0.5 * from.near.upper / from.rate.abs();
+        for _ in 0..EVALUATIONS {
+            let time = low.time + downhill * step;
+            let beyond = (time - end) * downhill >= 0.0 || time.is_nan();
+            let time = if beyond { end } else { time };
+            if time == low.time {
+                return low;
+            }
+            let next = at(time);
+            let turned = next.rate * downhill >= 0.0 || next.near.upper >= low.near.upper;
+            if turned {
+                return self.between(low, next, wanted);
+            }
+            low = next;
+            if beyond || low.near.upper == 0.0 {
+                return low;
+            }
+            step *= 2.0;
+        }
+        low
+    }
+
+    /// The closest time between one at which the pair approaches and a later (or earlier) one by which it has turned.
+    fn between(&self, mut low: Sample, mut high: Sample, wanted: f64) -> Sample {
+        let mut best = closer(low, high);
+        for evaluation in 0..EVALUATIONS {
+            if best.near.upper == 0.0 {
+                return best;
+            }
+            let span = high.time - low.time;
+            // By secants of the rates, where they differ in sign; every third time the middle.
+            let part = low.rate / (low.rate - high.rate);
+            let part = if part > 0.0 && part < 1.0 && evaluation % 3 != 2 { part } else { 0.5 };
+            let time = low.time + part.clamp(0.01, 0.99) * span;
+            let gain =
+                (low.rate.abs() * (time - low.time).abs()).min(high.rate.abs() * (high.time - time).abs());
+            if time == low.time || time == high.time || gain <= 0.1 * wanted {
+                return best;
+            }
+            let middle = self.pair_at(low.triangles, time);
+            best = closer(best, middle);
+            if middle.rate * span >= 0.0 {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        best
+    }
+}
+
+/// The closer one; the first of two that are equal. What is not a number is never closer.
+pub(super) fn closer(a: Sample, b: Sample) -> Sample {
+    if b.upper < a.upper || a.upper.is_nan() { b } else { a }
+}

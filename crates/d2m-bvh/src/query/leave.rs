@@ -1,0 +1,161 @@
+//! What holds at the start counts no more once the bodies have parted: the first contact after that.
+
+use super::general_motion::tolerance_of;
+use super::meshes::of_meshes;
+use super::rounded::Rounded;
+use super::staying_walk::{Next, Walk};
+use crate::covered_pair::CoveredPair;
+use crate::{
+    Answered, Contact, Moving, QueryError, QueryOptions, SearchCounts, StartState, TimeBracket,
+    TimeOfContact, Window,
+};
+use d2m_lanes::power_of_two;
+
+/// Part of a window that bodies are watched at while they stay in contact, where no longer span is proven.
+const RESOLUTION: f64 = 1e-6;
+/// The first step away from bodies that were just proven apart, as a part of that.
+const LEAST_STEP: f64 = power_of_two(-30);
+
+/// How two bodies part, and when they meet after that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[must_use = "it is a certificate: what is not read is not known to be safe"]
+pub struct Departure {
+    /// How the bodies stand at the start of the window.
+    pub start: StartState,
+    /// The bodies are within L = `min_separation` + δ at `lo` (or that is the start), and proven further apart than that at `hi`. Bodies that
+    /// begin apart: the start, twice. `None`: they are never proven apart in the window.
+    pub left: Option<TimeBracket>,
+    /// The first contact after `left.hi`, with the promises of [`time_of_contact`](crate::time_of_contact) from there on; where the bodies
+    /// never part the contact at the start.
+    pub answer: TimeOfContact,
+}
+
+/// First contact after two bodies have parted: what touches, overlaps or holds the other at the start is let go.
+///
+/// Promise: `left.hi` is a time at which the distance is proven to be more than L = `min_separation` + δ, and from there on the answer is
+/// that of [`time_of_contact`](crate::time_of_contact). As long as the bodies are proven to stay within L of each other – in spans, and
+/// where no span is proven at times that are 1e-6 of the window apart – they have not left.
+///
+/// ```
+/// use d2m_bvh::{MeshTree, Moving, QueryOptions, StartState, TriMesh, Window, departure};
+/// use d2m_motion::ConstantTwist;
+/// use glam::DVec3;
+/// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let tree = MeshTree::new(mesh);
+/// // Stands on the tip of the other one, and is lifted.
+/// let lifted = ConstantTwist::REST.with_position(DVec3::Z).with_linear_velocity(DVec3::Z);
+/// let [a, b] = [Moving::new(&tree, &ConstantTwist::REST), Moving::new(&tree, &lifted)];
+/// let parting = departure(a, b, Window::UNIT, &QueryOptions::default())?;
+/// assert!(parting.answer.is_separated() && parting.start != StartState::Apart);
+/// let left = parting.left.expect("they part");
+/// assert!(left.lo >= 0.0 && left.hi < 1e-8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Those of [`time_of_contact`](crate::time_of_contact).
+pub fn departure(
+    a: Moving<'_>,
+    b: Moving<'_>,
+    window: Window,
+    options: &QueryOptions,
+) -> Result<Departure, QueryError> {
+    CoveredPair::try_new([a, b], window)?;
+    let rounded = Rounded::try_new([&a, &b])?;
+    let options = rounded.options([a.body, b.body], options)?;
+    let Departure { start, left, answer } = of_departing([a, b], window, &options)?.answer;
+    Ok(Departure { start, left, answer: rounded.answer(answer) })
+}
+
+/// The same of the meshes, without radii.
+pub(super) fn of_departing(
+    bodies: [Moving<'_>; 2],
+    window: Window,
+    options: &QueryOptions,
+) -> Result<Answered<Departure>, QueryError> {
+    let [a, b] = bodies;
+    let at_start = Window::try_new(window.start(), window.start())?;
+    let found = of_meshes([a, b], at_start, options)?;
+    let work = found.work;
+    let first = match found.answer {
+        TimeOfContact::Separated => {
+            let left = Some(TimeBracket { lo: window.start(), hi: window.start() });
+            let found = of_meshes([a, b], window, options)?;
+            let answer = with_left(found.answer, left);
+            let answer = Departure { start: StartState::Apart, left, answer };
+            return Ok(Answered { answer, work: work.with(&found.work) });
+        }
+        undecided @ TimeOfContact::Undecided { .. } => {
+            let answer = Departure { start: StartState::Apart, left: None, answer: undecided };
+            return Ok(Answered { answer, work });
+        }
+        TimeOfContact::Contact(contact) => contact,
+    };
+    let tolerance = tolerance_of(&bodies, options).max(first.tolerance);
+    let resolution = RESOLUTION * window.length();
+    let mut walk = Walk::new([a, b], window, options, tolerance, resolution);
+    let (left, answer) = parting(&mut walk, &first)?;
+    let spent = SearchCounts { node_tests: walk.meter.spent(), ..SearchCounts::default() };
+    Ok(Answered { answer: Departure { start: first.start, left, answer }, work: work.with(&spent) })
+}
+
+/// When the bodies part that are in this contact at the start, and the answer after that.
+fn parting(walk: &mut Walk<'_>, first: &Contact) -> Result<(Option<TimeBracket>, TimeOfContact), QueryError> {
+    let (start, end) = (walk.window.start(), walk.window.end());
+    let mut last = start;
+    // The start counts whether or not it is proven to be within the level.
+    let _ = walk.is_within(last);
+    loop {
+        match walk.next(last)? {
+            Next::Unknown { .. } if walk.meter.is_exhausted() => {
+                return Ok((None, TimeOfContact::Undecided { clear_until: start }));
+            }
+            Next::End | Next::Unknown { .. } => return Ok((None, TimeOfContact::Contact(*first))),
+            Next::Within { at, .. } => last = at,
+            Next::Apart { last: lo, at } => match clear_of(walk, lo, at)? {
+                Parted::At(hi) => {
+                    let left = Some(TimeBracket { lo, hi });
+                    let answer = walk.contact_from(hi, end)?;
+                    let answer = answer.unwrap_or(TimeOfContact::Undecided { clear_until: hi });
+                    return Ok((left, with_left(answer, left)));
+                }
+                Parted::WithinAgain(time) => last = time,
+            },
+        }
+    }
+}
+
+/// What becomes of bodies that were just proven apart.
+enum Parted {
+    /// So far apart that a search from here on does not stop at once.
+    At(f64),
+    /// Within the level again before that.
+    WithinAgain(f64),
+}
+
+fn clear_of(walk: &mut Walk<'_>, last: f64, at: f64) -> Result<Parted, QueryError> {
+    let end = walk.window.end();
+    let mut step = (at - last).max(LEAST_STEP * walk.resolution);
+    let mut time = at;
+    while !walk.is_clearly_apart(time)? {
+        // Apart by little more than the level to the end: the search begins where that was proven first.
+        if time >= end || walk.meter.is_exhausted() {
+            return Ok(Parted::At(at));
+        }
+        time = (time + step).max(time.next_up()).min(end);
+        if walk.is_within(time) {
+            return Ok(Parted::WithinAgain(time));
+        }
+        step *= 2.0;
+    }
+    Ok(Parted::At(time))
+}
+
+fn with_left(answer: TimeOfContact, left: Option<TimeBracket>) -> TimeOfContact {
+    match answer {
+        TimeOfContact::Contact(contact) => TimeOfContact::Contact(Contact { left, ..contact }),
+        other => other,
+    }
+}

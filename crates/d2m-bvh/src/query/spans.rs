@@ -1,0 +1,207 @@
+//! The spans of a window in which two bodies are clear of each other, and those in which they are in contact.
+
+use super::general_motion::tolerance_of;
+use super::rounded::Rounded;
+use super::staying_walk::{Next, Walk};
+use crate::covered_pair::CoveredPair;
+use crate::{Contact, Evidence, Moving, QueryError, QueryOptions, StartState, TimeOfContact, Window};
+use d2m_lanes::power_of_two;
+
+/// The resolution as a part of the window, if none is given.
+const RESOLUTION: f64 = 1e-6;
+
+/// What is known of a span of time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+pub enum SpanStatus {
+    /// Proven further apart than `min_separation` at every time of the closed span.
+    Clear,
+    /// Proven within L = `min_separation` + δ at times of the span that are no more than the resolution apart, and no more than that from
+    /// its ends.
+    Contact,
+    /// Neither is proven.
+    Undecided,
+}
+
+/// A closed span of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct ContactSpan {
+    /// First time.
+    pub from: f64,
+    /// Last time; the next span begins here.
+    pub to: f64,
+    /// What is known.
+    pub status: SpanStatus,
+}
+
+/// The spans of a window, joined, in order, in which two bodies are clear of each other or in contact.
+///
+/// Promise: they cover the window. In a clear span the distance is above `min_separation` at every time, ends included, and it ends where
+/// a search from its start ends: within 3.3 tolerances above `min_separation`, or at the end of the window. A contact span begins and ends
+/// at an end of the window or within `resolution` of a time at which the distance is proven to be at most L = `min_separation` + δ; clear
+/// times shorter than `resolution` may be inside. `resolution`: a time; `None`: 1e-6 of the window.
+///
+/// ```
+/// use d2m_bvh::{MeshTree, Moving, QueryOptions, SpanStatus, TriMesh, Window, contact_spans};
+/// use d2m_motion::ConstantTwist;
+/// use glam::DVec3;
+/// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let tree = MeshTree::new(mesh);
+/// // Flies through the other one.
+/// let flying = ConstantTwist::REST.with_position(DVec3::X * -2.0).with_linear_velocity(DVec3::X * 4.0);
+/// let [a, b] = [Moving::new(&tree, &ConstantTwist::REST), Moving::new(&tree, &flying)];
+/// let spans = contact_spans(a, b, Window::UNIT, &QueryOptions::default(), None)?;
+/// let statuses: Vec<_> = spans.iter().map(|span| span.status).collect();
+/// assert_eq!(statuses, [SpanStatus::Clear, SpanStatus::Contact, SpanStatus::Clear]);
+/// assert!((spans[1].from - 0.25).abs() < 1e-5 && (spans[1].to - 0.75).abs() < 1e-5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Those of [`time_of_contact`](crate::time_of_contact), and [`QueryError::BadResolution`].
+pub fn contact_spans(
+    a: Moving<'_>,
+    b: Moving<'_>,
+    window: Window,
+    options: &QueryOptions,
+    resolution: Option<f64>,
+) -> Result<Vec<ContactSpan>, QueryError> {
+    if let Some(value) = resolution
+        && !(value.is_finite() && value > 0.0)
+    {
+        return Err(QueryError::BadResolution { value });
+    }
+    CoveredPair::try_new([a, b], window)?;
+    let rounded = Rounded::try_new([&a, &b])?;
+    let options = rounded.options([a.body, b.body], options)?;
+    let tolerance = tolerance_of(&[a, b], &options);
+    let resolution = resolution.unwrap_or(RESOLUTION * window.length());
+    let walk = Walk::new([a, b], window, &options, tolerance, resolution);
+    let mut search = Search { walk, tolerance, spans: Vec::new(), now: window.start(), within: None };
+    search.run()?;
+    Ok(search.spans)
+}
+
+struct Search<'a> {
+    walk: Walk<'a>,
+    tolerance: f64,
+    spans: Vec<ContactSpan>,
+    now: f64,
+    /// The last time at which the bodies were proven within the level.
+    within: Option<f64>,
+}
+
+impl Search<'_> {
+    fn run(&mut self) -> Result<(), QueryError> {
+        let end = self.walk.window.end();
+        loop {
+            let Some(answer) = self.walk.contact_from(self.now, end)? else {
+                self.push(end, SpanStatus::Undecided);
+                return Ok(());
+            };
+            let contact = match answer {
+                TimeOfContact::Separated => {
+                    self.push(end, SpanStatus::Clear);
+                    return Ok(());
+                }
+                TimeOfContact::Undecided { clear_until } => {
+                    self.push(clear_until.next_down().min(end), SpanStatus::Clear);
+                    self.push(end, SpanStatus::Undecided);
+                    return Ok(());
+                }
+                TimeOfContact::Contact(contact) => contact,
+            };
+            if contact.start == StartState::Apart || contact.time_lo > self.now {
+                self.push(contact.time_lo, SpanStatus::Clear);
+            }
+            // Where rounding raises the tolerance, so it does the level.
+            self.walk.level += (contact.tolerance - self.tolerance).max(0.0);
+            self.tolerance = self.tolerance.max(contact.tolerance);
+            let Some(mut met) = self.meeting(&contact)? else {
+                if self.now >= end {
+                    return Ok(());
+                }
+                continue;
+            };
+            loop {
+                let next = self.walk.next(met)?;
+                if let Next::Apart { last, .. } = next {
+                    self.within = Some(last);
+                }
+                match next {
+                    Next::End => {
+                        self.push(end, SpanStatus::Contact);
+                        return Ok(());
+                    }
+                    Next::Unknown { last } => {
+                        self.push(last, SpanStatus::Contact);
+                        self.push(end, SpanStatus::Undecided);
+                        return Ok(());
+                    }
+                    Next::Within { last, at } => {
+                        self.push(last, SpanStatus::Contact);
+                        self.push(at, SpanStatus::Undecided);
+                        met = at;
+                    }
+                    Next::Apart { last, at } if at - last <= self.walk.resolution => {
+                        self.push(at, SpanStatus::Contact);
+                        break;
+                    }
+                    Next::Apart { last, at } => {
+                        self.push(last, SpanStatus::Contact);
+                        self.push(at, SpanStatus::Undecided);
+                        break;
+                    }
+                }
+            }
+        }
+    }
+
+    /// A time at which the bodies are within the level, from where a search found them near; `None` where nothing shows one within the
+    /// resolution: then what is not known is a span of its own.
+    fn meeting(&mut self, contact: &Contact) -> Result<Option<f64>, QueryError> {
+        let (end, resolution) = (self.walk.window.end(), self.walk.resolution);
+        if contact.evidence > Evidence::Early {
+            let met = contact.time_hi;
+            if met - self.now > resolution {
+                self.push(met, SpanStatus::Undecided);
+            }
+            // The bracket proves it, whether or not a single time does.
+            let _ = self.walk.is_within(met);
+            return Ok(Some(met));
+        }
+        for part in [0.0, power_of_two(-30), power_of_two(-20), power_of_two(-10), 0.125, 0.5, 1.0] {
+            let later = (contact.time_lo + part * resolution).min(end);
+            if self.walk.is_within(later) {
+                return Ok(Some(later));
+            }
+            if part > 0.0 && self.walk.is_apart(later)? {
+                // Bodies that part are a little above the level for a while, still near a time of contact.
+                let near = self.within.is_some_and(|within| later - within <= resolution);
+                self.push(later, if near { SpanStatus::Contact } else { SpanStatus::Undecided });
+                return Ok(None);
+            }
+        }
+        self.push(
+            (contact.time_lo + resolution).max(contact.time_lo.next_up()).min(end),
+            SpanStatus::Undecided,
+        );
+        Ok(None)
+    }
+
+    /// The span from where the last one ended; joined with that if nothing else is known of it. None of no length, but in a window of none.
+    fn push(&mut self, to: f64, status: SpanStatus) {
+        let from = self.now;
+        if to <= from && self.walk.window.length() > 0.0 {
+            return;
+        }
+        match self.spans.last_mut() {
+            Some(last) if last.status == status => last.to = to,
+            _ => self.spans.push(ContactSpan { from, to, status }),
+        }
+        self.now = to;
+    }
+}

@@ -1,0 +1,164 @@
+//! How long do bodies certainly stay within a distance of each other?
+//!
+//! At the middle of a span of time every vertex has a place and a velocity, and leaves the straight line of both by at most ½ h² times
+//! its acceleration. Three certificates follow for two triangles over the whole span, each with that error and those of placing:
+//! an edge passes through a triangle by more than anything moves; two material points part by their relative velocity; a vertex stays
+//! within a height of a face, above its inside, while it slides along it. docs/theory/questions.md, "Staying in contact".
+
+use super::proven_crossing::proven_crossing;
+use crate::Moving;
+use crate::length::length;
+use d2m_feature::triangle_distance;
+use d2m_interval::Interval;
+use d2m_lanes::UP;
+use glam::DVec3;
+
+/// Placing a corner rounds by less than 16u of the lengths (see [`super::true_poses`]), and its velocity by as much.
+const PLACED: f64 = 8.0 * f64::EPSILON;
+/// Products of up to five factors and sums of up to twelve such products round by less than this part of the sum of magnitudes.
+const PRODUCTS: f64 = 32.0 * f64::EPSILON;
+
+/// A point that moves straight.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    place: DVec3,
+    velocity: DVec3,
+}
+
+impl core::ops::Sub for Line {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self { place: self.place - other.place, velocity: self.velocity - other.velocity }
+    }
+}
+
+impl Line {
+    /// Its largest distance from the origin within `half` of the middle.
+    fn reach(&self, half: f64) -> f64 {
+        (length(self.place) + half * length(self.velocity)) * UP
+    }
+}
+
+/// Two triangles over a span of time.
+pub(super) struct StraightPair {
+    corners: [[Line; 3]; 2],
+    half: f64,
+    /// How much further apart or nearer a point of the one and a point of the other may be than their lines.
+    error: f64,
+}
+
+impl StraightPair {
+    /// The span has no joint of the motions inside of it. Where the motions' enclosures know nothing the error is infinite.
+    pub(super) fn new(bodies: &[Moving<'_>; 2], triangles: [u32; 2], from: f64, to: f64) -> Self {
+        let middle = (from + 0.5 * (to - from)).clamp(from, to);
+        let half = (to - middle).max(middle - from) * UP;
+        let origin = bodies[1].motion.pose_and_twist(middle).0.translation;
+        let span = Interval::new(from, to);
+        let states = bodies.map(|body| body.motion.enclose_state_about(middle, origin));
+        let kinematics = bodies.map(|body| body.motion.enclose_kinematics(span));
+        let square = 0.5 * half * half;
+        let mut error = square * (kinematics[0].linear_rate - kinematics[1].linear_rate).bound_length() * UP;
+        let mut corners = [[Line { place: DVec3::ZERO, velocity: DVec3::ZERO }; 3]; 2];
+        for k in 0..2 {
+            let (state, rates) = (&states[k], &kinematics[k]);
+            let given = bodies[k].body.mesh().corners(triangles[k] as usize);
+            let far = given.iter().map(|&p| length(p - state.at)).fold(0.0, f64::max) * UP;
+            let spin =
+                length(state.angular) + state.angular_radius + half * rates.angular_rate.bound_length();
+            let bend = (rates.angular_rate.bound_length() + spin * spin) * far;
+            let speed = length(state.linear) + spin * far;
+            let placed = state.position_radius
+                + state.rotation_radius * far
+                + PLACED * (far + length(state.position))
+                + half * (state.linear_radius + state.angular_radius * far)
+                + half * (spin * (state.rotation_radius * far) + PLACED * speed);
+            error += (placed + square * bend) * UP + f64::MIN_POSITIVE;
+            corners[k] = given.map(|p| {
+                let arm = state.rotation * (p - state.at);
+                Line { place: arm + state.position, velocity: state.linear + state.angular.cross(arm) }
+            });
+        }
+        Self { corners, half, error: error * UP }
+    }
+
+    /// Proof that the triangles are within `level` of each other at every time of the span; false proves nothing.
+    pub(super) fn stay_within(&self, level: f64) -> bool {
+        // What is not a number is no proof.
+        let level = level - self.error;
+        self.error < f64::INFINITY
+            && (self.crosses_on() || level >= 0.0 && (self.points_stay(level) || self.vertices_stay(level)))
+    }
+
+    fn crosses_on(&self) -> bool {
+        let [a, b] = &self.corners;
+        // Seen from a point that moves with B.
+        let base = (b[0].velocity + b[1].velocity + b[2].velocity) / 3.0;
+        let moved = |lines: &[Line; 3]| {
+            lines.iter().map(|line| length(line.velocity - base)).fold(0.0, f64::max) * self.half
+        };
+        let blur = (moved(a).max(moved(b)) * UP + self.error) * UP;
+        let places = |lines: &[Line; 3]| lines.map(|line| line.place);
+        proven_crossing(&places(a), &places(b), blur)
+    }
+
+    /// Two material points, the closest ones of the middle.
+    fn points_stay(&self, level: f64) -> bool {
+        let [a, b] = &self.corners;
+        let near = triangle_distance(&a.map(|line| line.place), &b.map(|line| line.place));
+        if near.upper > level {
+            return false;
+        }
+        let velocity = |lines: &[Line; 3], weights: [f64; 3]| {
+            lines[0].velocity * weights[0] + lines[1].velocity * weights[1] + lines[2].velocity * weights[2]
+        };
+        let [va, vb] = [velocity(a, near.barycentric_a), velocity(b, near.barycentric_b)];
+        // The weights are rounded, and so are the points that they stand for.
+        let fastest = a.iter().chain(b).map(|line| length(line.velocity)).fold(0.0, f64::max);
+        let parts = self.half * (length(va - vb) + PRODUCTS * fastest);
+        (near.upper + parts) * UP <= level
+    }
+
+    /// Some vertex of the one stays above the inside of the other, within the level of its plane.
+    fn vertices_stay(&self, level: f64) -> bool {
+        let [a, b] = &self.corners;
+        a.iter().any(|vertex| self.slides(*vertex, b, level))
+            || b.iter().any(|vertex| self.slides(*vertex, a, level))
+    }
+
+    /// With d = p − q₀, e = q₁ − q₀, f = q₂ − q₀ and N = e × f, all linear or quadratic in time: the height is d·N/|N|, and the foot is
+    /// inside where N·(d × f), N·(e × d) and what they leave of N·N are not negative.
+    fn slides(&self, vertex: Line, face: &[Line; 3], level: f64) -> bool {
+        let (d, e, f) = (vertex - face[0], face[1] - face[0], face[2] - face[0]);
+        let h = self.half;
+        let [n0, n1, n2] = [
+            e.place.cross(f.place),
+            e.velocity.cross(f.place) + e.place.cross(f.velocity),
+            e.velocity.cross(f.velocity),
+        ];
+        let magnitude = e.reach(h) * f.reach(h);
+        let turned = (length(n1) + length(n2) * h) * h + PRODUCTS * magnitude;
+        let least = length(n0) - turned;
+        let c = [
+            d.place.dot(n0),
+            d.velocity.dot(n0) + d.place.dot(n1),
+            d.velocity.dot(n1) + d.place.dot(n2),
+            d.velocity.dot(n2),
+        ];
+        let height = c[0].abs() + (c[1].abs() + (c[2].abs() + c[3].abs() * h) * h) * h;
+        let height = height + PRODUCTS * magnitude * (d.reach(h) + self.error);
+        // Also where something is not a number.
+        if !(least > 0.0 && height * UP <= level * least) {
+            return false;
+        }
+        let most = length(n0) + turned;
+        let product = |x: Line| most * x.reach(h) * (d.reach(h) + self.error);
+        let known = |x: Line| length(n0) * length(x.place) * length(d.place);
+        let slack = |x: Line| (product(x) - known(x)) + PRODUCTS * product(x);
+        let [towards_e, towards_f] = [n0.dot(d.place.cross(f.place)), n0.dot(e.place.cross(d.place))];
+        let (loss_e, loss_f) = (slack(f), slack(e));
+        towards_e >= loss_e
+            && towards_f >= loss_f
+            && least * least - towards_e - towards_f - loss_e - loss_f - PRODUCTS * most * most >= 0.0
+    }
+}

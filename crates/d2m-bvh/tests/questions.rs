@@ -1,0 +1,273 @@
+//! Clearance, spans and departures against dense sampling by other code: plain poses and the distances of all pairs of triangles.
+
+use d2m_bvh::{
+    Budget, ClearanceOptions, ClearanceStatus, MeshTree, Moving, QueryError, QueryOptions, Solid, SpanStatus,
+    Start, StartState, TimeOfContact, TriMesh, Window, clearance, contact_spans, departure, time_of_contact,
+};
+use d2m_feature::triangle_distance;
+use d2m_motion::{ConstantTwist, Keyframes, Pose, RigidMotion, Span};
+use d2m_testing::{Draw, KnuthRandom, Surface};
+use glam::DVec3;
+
+fn tree(surface: Surface) -> MeshTree {
+    MeshTree::new(surface.into_mesh(TriMesh::try_new))
+}
+
+fn cuboid(half: DVec3) -> MeshTree {
+    tree(Surface::cuboid(-half, half))
+}
+
+/// The distance of two surfaces at a time, by all pairs of triangles.
+fn sampled(a: &Moving<'_>, b: &Moving<'_>, time: f64) -> f64 {
+    let placed = |moving: &Moving<'_>| {
+        let (pose, _) = moving.motion.pose_and_twist(time);
+        let mesh = moving.body.mesh();
+        (0..mesh.triangle_count())
+            .map(|t| mesh.corners(t).map(|p| pose.transform_point(p)))
+            .collect::<Vec<_>>()
+    };
+    let (a, b) = (placed(a), placed(b));
+    let pairs = a.iter().flat_map(|s| b.iter().map(move |t| triangle_distance(s, t).upper));
+    pairs.fold(f64::INFINITY, f64::min)
+}
+
+fn least_sampled(a: &Moving<'_>, b: &Moving<'_>, window: Window, parts: u32) -> f64 {
+    let time = |i: u32| window.start() + window.length() * f64::from(i) / f64::from(parts);
+    (0..=parts).map(|i| sampled(a, b, time(i))).fold(f64::INFINITY, f64::min)
+}
+
+fn random_twist(random: &mut KnuthRandom, far: f64, speed: f64) -> ConstantTwist {
+    let place = random.vector().normalize() * far;
+    let aim = random.vector() * 2.5;
+    let velocity = (aim - place).normalize_or_zero() * speed;
+    ConstantTwist::try_new(place, random.moderate_turn().normalize(), velocity, random.vector() * speed)
+        .unwrap()
+}
+
+fn random_keyframes(random: &mut KnuthRandom) -> Keyframes {
+    let poses = (0..4).map(|_| Pose {
+        translation: random.vector() * 4.0,
+        rotation: random.moderate_turn().normalize(),
+        at: DVec3::ZERO,
+    });
+    let keys: Vec<_> = [0.0, 0.3, 0.7, 1.0].into_iter().zip(poses).collect();
+    Keyframes::try_new(&keys, Span::Linear).unwrap()
+}
+
+/// What is promised of every clearance, against samples.
+fn check(a: Moving<'_>, b: Moving<'_>, window: Window, options: &ClearanceOptions) -> ClearanceStatus {
+    let found = clearance(a, b, window, options).unwrap();
+    let least = least_sampled(&a, &b, window, 30);
+    let rounding = 1e-13 * (1.0 + least);
+    assert!(found.lower <= least + rounding, "{found:?} sampled {least}");
+    assert!(0.0 <= found.lower && found.lower <= found.upper && window.contains(found.time), "{found:?}");
+    let width = (options.accuracy * found.upper).max(4.0 * found.tolerance);
+    assert!(found.upper - found.lower <= width, "{found:?}");
+    let toc = time_of_contact(a, b, window, &QueryOptions::default()).unwrap();
+    match found.status {
+        ClearanceStatus::Clear => {
+            assert!(found.lower > 0.0 && toc.is_separated());
+            let apart = sampled(&a, &b, found.time);
+            assert!(apart <= found.upper + rounding, "{found:?} {apart}");
+            assert!((found.point_a.distance(found.point_b) - found.upper).abs() <= 1e-9, "{found:?}");
+            assert!((found.point_b - found.point_a - found.normal * found.upper).length() <= 1e-9);
+        }
+        ClearanceStatus::Contact => {
+            let contact = toc.contact().expect("a contact");
+            assert!(
+                found.upper == 0.0 && (found.time - contact.time_lo).abs() < 1e-6,
+                "{found:?} {contact:?}"
+            );
+        }
+        ClearanceStatus::Undecided => panic!("{found:?}"),
+    }
+    found.status
+}
+
+#[test]
+fn clearances_hold_against_dense_sampling() {
+    let bodies = [
+        cuboid(DVec3::new(1.0, 0.5, 0.25)),
+        tree(Surface::wavy_torus(9, 6, 0.35)),
+        tree(Surface::tetrahedron([DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z])),
+    ];
+    let mut random = KnuthRandom(41);
+    let mut clear = 0;
+    for round in 0..60 {
+        let (a, b) = (&bodies[round % 3], &bodies[round / 3 % 3]);
+        let twists = [3.0, 1.0].map(|far| random_twist(&mut random, far, 3.0));
+        let keys = random_keyframes(&mut random);
+        let motions: [&dyn RigidMotion; 2] =
+            if round % 4 == 3 { [&keys, &ConstantTwist::REST] } else { [&twists[0], &twists[1]] };
+        let accuracy = [1e-6, 1e-3, 0.1][round % 3];
+        let options = ClearanceOptions::default().with_accuracy(accuracy);
+        let status = check(Moving::new(a, motions[0]), Moving::new(b, motions[1]), Window::UNIT, &options);
+        clear += usize::from(status == ClearanceStatus::Clear);
+    }
+    assert!((10..60).contains(&clear), "{clear}");
+}
+
+/// Planted: a cube passes another one; where it is nearest is known, at the ends of the window, inside and all the time.
+#[test]
+fn planted_minima_are_found_at_ends_and_inside_in_any_unit() {
+    for unit in [1.0, 1e-9, 1e9] {
+        let cube = cuboid(DVec3::splat(0.5 * unit));
+        for (x, v, gap) in [(3.0, -1.0, 1.0), (1.5, 2.0, 0.5), (-4.0, 8.0, 0.0), (1.25, 0.0, 0.25)] {
+            for height in [0.0, 1.75] {
+                let at = |x: f64| DVec3::new(x, height, 0.125) * unit;
+                let moving =
+                    ConstantTwist::REST.with_position(at(x)).with_linear_velocity(DVec3::X * (v * unit));
+                let [a, b] = [Moving::new(&cube, &ConstantTwist::REST), Moving::new(&cube, &moving)];
+                let found = clearance(a, b, Window::UNIT, &ClearanceOptions::default()).unwrap();
+                let across = if height > 1.0 { height - 1.0 } else { 0.0 };
+                let expected = f64::hypot(gap, across) * unit;
+                assert!(found.lower <= expected * (1.0 + 1e-12), "{found:?} {expected}");
+                assert!(found.upper >= expected * (1.0 - 1e-12), "{found:?} {expected}");
+                assert!(found.upper - found.lower <= (1e-6 * found.upper).max(4.0 * found.tolerance));
+            }
+        }
+    }
+}
+
+#[test]
+fn windows_of_no_length_bodies_inside_each_other_and_budgets() {
+    let (large, small) = (cuboid(DVec3::splat(2.0)), cuboid(DVec3::splat(0.25)));
+    let still = ConstantTwist::REST;
+    let options = ClearanceOptions::default();
+    let [a, b] = [Moving::new(&large, &still), Moving::new(&small, &still)];
+    let inside = clearance(a, b, Window::UNIT, &options).unwrap();
+    assert_eq!((inside.lower, inside.upper, inside.status), (0.0, 0.0, ClearanceStatus::Contact));
+    let surfaces = clearance(a, b, Window::UNIT, &options.with_solid(Solid::Surface)).unwrap();
+    assert!((surfaces.upper - 1.75).abs() < 1e-12 && surfaces.status == ClearanceStatus::Clear);
+    let aside = ConstantTwist::REST.with_position(DVec3::X * 3.0);
+    let b = Moving::new(&small, &aside);
+    let instant = Window::try_new(0.5, 0.5).unwrap();
+    let found = clearance(a, b, instant, &options).unwrap();
+    assert!((found.upper - 0.75).abs() < 1e-12 && found.time == 0.5 && found.lower > 0.7499);
+    let turning = ConstantTwist::REST.with_position(DVec3::X * 3.5).with_angular_velocity(DVec3::Z * 40.0);
+    for tests in [0, 1, 10, 100] {
+        let options = options.with_budget(Budget::UNLIMITED.with_node_tests(tests));
+        let some = clearance(a, Moving::new(&small, &turning), Window::UNIT, &options).unwrap();
+        let truth = 1.5 - 0.25 * 2f64.sqrt();
+        assert!(some.lower <= truth + 1e-12 && some.upper >= truth - 1e-12, "{some:?}");
+    }
+    let bad =
+        |accuracy: f64| clearance(a, b, Window::UNIT, &ClearanceOptions::default().with_accuracy(accuracy));
+    assert!(matches!(bad(0.0), Err(QueryError::BadAccuracy { .. })));
+    assert!(matches!(bad(f64::NAN), Err(QueryError::BadAccuracy { .. })));
+    let cut = clearance(
+        a,
+        Moving::new(&small, &aside),
+        Window::UNIT,
+        &ClearanceOptions::default().with_cutoff(0.5),
+    );
+    assert!(cut.is_ok_and(|cut| cut.lower >= 0.5 && cut.status == ClearanceStatus::Clear));
+}
+
+/// A ball is a point with a radius: contact and clearance of spheres and capsules, known in closed form.
+#[test]
+fn radii_are_exact() {
+    let point = MeshTree::new(TriMesh::point(DVec3::ZERO).unwrap());
+    let segment = MeshTree::new(TriMesh::segment(DVec3::ZERO, DVec3::Y * 2.0).unwrap());
+    let falling =
+        ConstantTwist::REST.with_position(DVec3::new(3.0, 1.0, 0.0)).with_linear_velocity(DVec3::X * -4.0);
+    let still = ConstantTwist::REST;
+    let ball = Moving::new(&point, &falling).with_radius(0.5);
+    let capsule = Moving::new(&segment, &still).with_radius(0.25);
+    let answer = time_of_contact(ball, capsule, Window::UNIT, &QueryOptions::default()).unwrap();
+    let contact = answer.contact().expect("they meet");
+    let truth = (3.0 - 0.75) / 4.0;
+    assert!(contact.time_lo <= truth && truth - contact.time_lo < 1e-9, "{contact:?}");
+    assert!((contact.point_a - contact.point_b).length() < 1e-9 && contact.separation < 1e-9);
+    assert!((contact.normal + DVec3::X).length() < 1e-9);
+    let passing = falling.with_position(DVec3::new(2.0, 3.0, 0.0));
+    let ball = Moving::new(&point, &passing).with_radius(0.5);
+    let found = clearance(ball, capsule, Window::UNIT, &ClearanceOptions::default()).unwrap();
+    assert!(found.lower <= 0.25 && 0.25 <= found.upper && found.upper - found.lower < 1e-6, "{found:?}");
+    assert!(
+        (found.point_b - DVec3::Y * 2.25).length() < 1e-3 && (found.point_a - DVec3::Y * 2.5).length() < 1e-3
+    );
+    let bad = Moving::new(&point, &passing).with_radius(-1.0);
+    let refused = time_of_contact(bad, capsule, Window::UNIT, &QueryOptions::default());
+    assert_eq!(refused, Err(QueryError::BadRadius { body: 0, value: -1.0 }));
+}
+
+/// Every span of random flights against samples.
+#[test]
+fn spans_hold_against_dense_sampling() {
+    let bodies = [cuboid(DVec3::new(1.0, 0.5, 0.25)), tree(Surface::wavy_torus(9, 6, 0.35))];
+    let mut random = KnuthRandom(5);
+    let (mut contacts, mut clears) = (0, 0);
+    for round in 0..40 {
+        let (a, b) = (&bodies[round % 2], &bodies[round / 2 % 2]);
+        let twists = [2.5, 0.5].map(|far| random_twist(&mut random, far, 6.0));
+        let keys = random_keyframes(&mut random);
+        let motion: &dyn RigidMotion = if round % 4 == 3 { &keys } else { &twists[0] };
+        let [a, b] = [Moving::new(a, motion), Moving::new(b, &twists[1])];
+        let options = QueryOptions::default().with_solid(Solid::Surface);
+        let resolution = 1e-4;
+        let spans = contact_spans(a, b, Window::UNIT, &options, Some(resolution)).unwrap();
+        assert_eq!((spans[0].from, spans[spans.len() - 1].to), (0.0, 1.0));
+        assert!(spans.windows(2).all(|two| two[0].to == two[1].from && two[0].status != two[1].status));
+        for span in &spans {
+            for i in 0..=20 {
+                let time = (span.from + (span.to - span.from) * f64::from(i) / 20.0).min(span.to);
+                let distance = sampled(&a, &b, time);
+                match span.status {
+                    SpanStatus::Clear => assert!(distance > 0.0, "{span:?} {time}"),
+                    // Nothing clear for longer than the resolution.
+                    SpanStatus::Contact => {
+                        let near = |t: f64| sampled(&a, &b, t.clamp(0.0, 1.0)) <= 2e-10;
+                        let around = (-8..=8).any(|k| near(time + resolution * f64::from(k) / 8.0));
+                        assert!(around, "{span:?} {time} {distance}");
+                    }
+                    SpanStatus::Undecided => panic!("{span:?}"),
+                }
+            }
+            contacts += usize::from(span.status == SpanStatus::Contact);
+            clears += usize::from(span.status == SpanStatus::Clear);
+        }
+    }
+    assert!(contacts > 20 && clears > 40, "{contacts} {clears}");
+}
+
+/// Lifted from a table at a known time, carried along it, and never lifted.
+#[test]
+fn what_holds_at_the_start_is_let_go() {
+    let table = cuboid(DVec3::new(4.0, 4.0, 0.5));
+    let part = cuboid(DVec3::splat(0.5));
+    let still = ConstantTwist::REST;
+    let pose = |x: f64, z: f64| Pose { translation: DVec3::new(x, 0.125, z), ..Pose::IDENTITY };
+    // Slides along the table, is lifted, moved, and set down again.
+    let path = [pose(0.0, 1.0), pose(1.0, 1.0), pose(1.0, 1.5), pose(-1.0, 1.5), pose(-1.0, 0.9)];
+    let keys: Vec<_> = [0.0, 1.0, 2.0, 3.0, 4.0].into_iter().zip(path).collect();
+    let keys = Keyframes::try_new(&keys, Span::Linear).unwrap();
+    let window = Window::try_new(0.0, 4.0).unwrap();
+    let [a, b] = [Moving::new(&part, &keys), Moving::new(&table, &still)];
+    let options = QueryOptions::default().with_start(Start::Leave);
+    let parting = departure(a, b, window, &options).unwrap();
+    let left = parting.left.expect("lifted");
+    assert!(left.lo >= 1.0 - 1e-9 && left.hi <= 1.0 + 1e-8 && left.lo <= left.hi, "{left:?}");
+    let contact = parting.answer.contact().expect("set down");
+    assert!((contact.time_lo - (3.0 + 0.5 / 0.6)).abs() < 1e-8, "{contact:?}");
+    let same = time_of_contact(a, b, window, &options).unwrap();
+    assert_eq!(same.contact().and_then(|contact| contact.left), Some(left));
+    let spans = contact_spans(a, b, window, &QueryOptions::default(), None).unwrap();
+    let statuses: Vec<_> = spans.iter().map(|span| span.status).collect();
+    assert_eq!(statuses, [SpanStatus::Contact, SpanStatus::Clear, SpanStatus::Contact], "{spans:?}");
+    // Never parts: gripped, by a motion that both make.
+    let lifting = ConstantTwist::REST.with_linear_velocity(DVec3::Z).with_angular_velocity(DVec3::Z);
+    let gripped = lifting.with_position(DVec3::Z);
+    let [a, b] = [Moving::new(&part, &gripped), Moving::new(&table, &lifting)];
+    let parting = departure(a, b, Window::UNIT, &options).unwrap();
+    assert!(parting.left.is_none() && parting.start != StartState::Apart);
+    assert_eq!(parting.answer.contact().map(|contact| contact.time_lo), Some(0.0));
+    // Apart from the start.
+    let high = ConstantTwist::REST.with_position(DVec3::Z * 3.0).with_linear_velocity(DVec3::Z * -4.0);
+    let parting = departure(Moving::new(&part, &high), Moving::new(&table, &still), Window::UNIT, &options);
+    let parting = parting.unwrap();
+    assert_eq!(parting.left.map(|left| left.hi), Some(0.0));
+    assert!(
+        matches!(parting.answer, TimeOfContact::Contact(contact) if (contact.time_lo - 0.5).abs() < 1e-9)
+    );
+}
