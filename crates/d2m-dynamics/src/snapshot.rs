@@ -230,8 +230,6 @@ impl ContactState {
             material: Material { restitution: self.restitution, friction: self.friction },
             impulse: self.impulse,
             sliding: self.sliding,
-            room: [0.0; 3],
-            is_solved: false,
         }
     }
 }

@@ -35,7 +35,7 @@ impl Step<'_> {
             self.admit_connected(&mut group, time, seeds, occasion)?;
             group.sort();
             if occasion != Occasion::Start {
-                self.retract(&mut group, (until - time) / (self.end - time), occasion);
+                self.retract(&mut group, (until - time) / (self.end - time));
             }
             self.follow_motions(&group, clock, occasion)?;
             self.solve_islands(&group, clock)
@@ -61,6 +61,7 @@ impl Step<'_> {
         let mut changed: Vec<usize> = Vec::new();
         let mut solved_for = vec![false; self.sim.bodies.len()];
         for part in solved {
+            self.report.residual = self.report.residual.max(part.residual);
             for push in &part.bodies {
                 let body = &mut self.sim.bodies[push.body];
                 body.push(push.impact);
