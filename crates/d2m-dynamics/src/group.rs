@@ -2,7 +2,7 @@
 
 use crate::SimulationOptions;
 use crate::account::{Entry, balance};
-use crate::contact::{ContactPoint, HIT, SolverBody, Span, Start, System, impact, select};
+use crate::contact::{Accuracy, ContactPoint, HIT, SolverBody, Span, Start, System, impact, select};
 use crate::momenta::Momenta;
 use crate::rigid_body::RigidBody;
 use crate::velocity::Velocity;
@@ -11,6 +11,8 @@ use std::borrow::Cow;
 
 /// Residuals below this part of a gap a step are those of a solution.
 const PRECISION: f64 = 1e-5;
+/// Of bodies that move, this part of their speed, too.
+const RELATIVE: f64 = 1.0 / 1024.0;
 /// Solutions with the spin of the flight's middle put right.
 const CORRECTIONS: u32 = 3;
 
@@ -123,7 +125,7 @@ pub(crate) fn solve(
     let rows = select(&island.contacts, span, |body| free[place(body)].velocity);
     let mut contacts: Vec<ContactPoint> = rows.iter().map(|row| island.contacts[row.contact]).collect();
     let targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
-    let precision = PRECISION * options.gap / options.step;
+    let accuracy = Accuracy { precision: PRECISION * options.gap / options.step, relative: RELATIVE };
 
     let pushing: Vec<f64> = targets.iter().map(|target| target.min(0.0)).collect();
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
@@ -133,9 +135,10 @@ pub(crate) fn solve(
     let mut residual = 0.0;
     for correction in 0.. {
         let start = if correction == 0 { Start::Sticking } else { Start::Present };
-        residual = system.solve(&pushing, precision, start);
+        residual = system.solve(&pushing, accuracy, start);
         system.store(&mut contacts);
-        if correction == CORRECTIONS || !put_right(&mut system, &states, &contacts, span, place, precision) {
+        let tolerance = system.tolerance(accuracy);
+        if correction == CORRECTIONS || !put_right(&mut system, &states, &contacts, span, place, tolerance) {
             break;
         }
         system.renew();
@@ -148,7 +151,7 @@ pub(crate) fn solve(
     let mut physical = velocities(&system);
     if targets.iter().any(|&target| target > 0.0) {
         let before = system.doubled_energy(&inertia);
-        system.solve(&targets, precision, Start::Present);
+        system.solve(&targets, accuracy, Start::Present);
         system.store(&mut contacts);
         let gained = 0.5 * (system.doubled_energy(&inertia) - before);
         // What an account may hold, and the energy of the speed that makes a gap in a step.
@@ -326,7 +329,7 @@ fn put_right(
     contacts: &[ContactPoint],
     span: Span,
     place: impl Fn(usize) -> usize,
-    precision: f64,
+    tolerance: f64,
 ) -> bool {
     let mut added = vec![Momenta::default(); states.len()];
     add(contacts, &mut added, place);
@@ -343,5 +346,5 @@ fn put_right(
         body.velocity.angular = spin;
         body.inverse_inertia = state.inverse_inertia_at(state.turned(spin, 0.5 * span.remaining));
     }
-    worst > precision
+    worst > tolerance
 }

@@ -1,6 +1,7 @@
 //! Impacts: restitution and friction where bodies meet faster than they rest.
 
 use super::newton::Start;
+use super::solve::Accuracy;
 use super::{ContactPoint, System};
 use crate::velocity::Velocity;
 use glam::DMat3;
@@ -48,7 +49,8 @@ pub(crate) fn impact(
             };
             let targets: Vec<f64> = (0..contacts.len()).map(target).collect();
             system.begin(&before);
-            system.solve(&targets, PRECISION * fastest, Start::Sticking);
+            let accuracy = Accuracy { precision: PRECISION * fastest, relative: 0.0 };
+            system.solve(&targets, accuracy, Start::Sticking);
             system.doubled_energy(inertia) - energy
         };
         // A body that follows its motion may work: then the others may gain.

@@ -17,4 +17,5 @@ pub(crate) use newton::Start;
 pub use point::Material;
 pub(crate) use point::{ContactPoint, tangents};
 pub(crate) use rows::{HIT, Span, select};
+pub(crate) use solve::Accuracy;
 pub(crate) use system::{SolverBody, System};

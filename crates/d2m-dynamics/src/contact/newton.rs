@@ -14,9 +14,10 @@
 use super::anderson::Anderson;
 use super::factor::{Factor, Square};
 use super::law::{Projected, Slope};
-use super::system::{Block, System};
+use super::solve::Accuracy;
+use super::system::{Block, SolverBody, System};
 use crate::velocity::Velocity;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// Rounds of λ and s at most.
 const MOST_ROUNDS: u32 = 8;
@@ -31,8 +32,10 @@ const HARDER: f64 = 0.05;
 const GAIN: f64 = 5.0;
 /// The softness with which rounding is polished away: that of a rate, divided by r, is what the impulses are off by.
 const POLISH: f64 = 1e-3;
-/// The residual that is aimed at, of the precision.
+/// The residual that is aimed at where bodies rest, of the precision.
 const AIM: f64 = 1e-3;
+/// The part of the aim to which each round's velocities are found.
+const INNER: f64 = 0.25;
 /// The slope along a line, of that at its start, with which a search ends.
 const FLAT: f64 = 0.02;
 
@@ -49,8 +52,9 @@ struct Newton<'s> {
     system: &'s System,
     targets: &'s [f64],
     free: &'s [Velocity],
+    inertia: &'s [DMat3],
     /// Places among the bodies that move; none: the body does not.
-    places: Vec<Option<usize>>,
+    places: &'s [Option<usize>],
     soft: f64,
     center: Vec<[f64; 3]>,
     shift: Vec<f64>,
@@ -59,8 +63,8 @@ struct Newton<'s> {
 }
 
 impl System {
-    /// Solves from the present impulses; the residual. The bodies' velocities follow from the impulses exactly. `precision`: of rates.
-    pub(super) fn solve_direct(&mut self, targets: &[f64], precision: f64, start: Start) -> f64 {
+    /// Solves from the present impulses; the residual. The bodies' velocities follow from the impulses exactly.
+    pub(super) fn solve_direct(&mut self, targets: &[f64], accuracy: Accuracy, start: Start) -> f64 {
         let mut count = 0;
         let mut place = |body: usize| {
             self.is_moved(body).then(|| {
@@ -73,7 +77,10 @@ impl System {
             Some(factor) => factor,
             None => return self.residual(targets),
         };
+        let tolerance = self.tolerance(accuracy);
+        let aim = if tolerance > accuracy.precision { tolerance } else { AIM * accuracy.precision };
         let free = self.free();
+        let inertia: Vec<DMat3> = self.bodies.iter().map(inertia_of).collect();
         let mut best = (self.residual(targets), self.impulses.clone());
         let slides = |block: &Block, of: &System| {
             let [_, t, u] = block.rates(|i| of.bodies[i].velocity);
@@ -94,14 +101,15 @@ impl System {
                 system: self,
                 targets,
                 free: &free,
-                places: places.clone(),
+                inertia: &inertia,
+                places: &places,
                 soft,
                 center,
                 shift,
                 velocity,
                 found,
             };
-            newton.minimize(&mut factor, 0.3 * AIM * precision);
+            newton.minimize(&mut factor, INNER * aim);
             let impulses: Vec<[f64; 3]> = newton.found.iter().map(|found| found.impulse).collect();
             let Newton { shift, velocity, .. } = newton;
             self.set(&free, &impulses);
@@ -109,7 +117,7 @@ impl System {
             if residual < best.0 {
                 best = (residual, impulses.clone());
             }
-            if residual <= AIM * precision {
+            if residual <= aim || (residual <= tolerance && GAIN * residual > last) {
                 break;
             }
             let answer: Vec<f64> = self.blocks.iter().map(|block| slides(block, self)).collect();
@@ -199,7 +207,7 @@ impl Newton<'_> {
             let Some(place) = place else { continue };
             let (body, off) = (&bodies[i], self.velocity[i] - self.free[i]);
             let linear = off.linear / body.inverse_mass;
-            let angular = body.inverse_inertia.inverse() * off.angular;
+            let angular = self.inertia[i] * off.angular;
             gradient[6 * place..6 * place + 6].copy_from_slice(&rows(linear, angular));
         }
         for k in 0..self.system.blocks.len() {
@@ -252,11 +260,11 @@ impl Newton<'_> {
         for (i, place) in self.places.iter().enumerate() {
             let Some(place) = *place else { continue };
             let mut square = [[0.0; 6]; 6];
-            let inertia = bodies[i].inverse_inertia.inverse();
+            let inertia = self.inertia[i];
             for k in 0..3 {
                 square[k][k] = 1.0 / bodies[i].inverse_mass;
                 for l in 0..3 {
-                    square[3 + k][3 + l] = 0.5 * (inertia.col(l)[k] + inertia.col(k)[l]);
+                    square[3 + k][3 + l] = inertia.col(l)[k];
                 }
             }
             factor.add(place, &square);
@@ -333,7 +341,7 @@ impl Newton<'_> {
         for (i, way) in ways.iter().enumerate().filter(|(i, _)| self.places[*i].is_some()) {
             let body = &self.system.bodies[i];
             let off = self.velocity[i] - self.free[i];
-            let inertia = body.inverse_inertia.inverse();
+            let inertia = self.inertia[i];
             a += way.linear.length_squared() / body.inverse_mass + way.angular.dot(inertia * way.angular);
             b += way.linear.dot(off.linear) / body.inverse_mass + way.angular.dot(inertia * off.angular);
         }
@@ -398,6 +406,15 @@ fn root(slope: impl Fn(f64) -> f64, start: f64) -> f64 {
 
 fn rows(linear: DVec3, angular: DVec3) -> [f64; 6] {
     [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z]
+}
+
+/// Of a body that moves; symmetric.
+fn inertia_of(body: &SolverBody) -> DMat3 {
+    if body.inverse_mass == 0.0 {
+        return DMat3::ZERO;
+    }
+    let inertia = body.inverse_inertia.inverse();
+    (inertia + inertia.transpose()) * 0.5
 }
 
 fn square_of([nn, nt, nu, tt, tu, uu]: Slope) -> [[f64; 3]; 3] {

@@ -4,21 +4,14 @@ use super::law::Law;
 use super::system::{Block, SolverBody, System};
 
 impl System {
-    /// Sweeps over all blocks until the residual is no more than `precision`, or has not fallen to three quarters in `STALL` sweeps, so many
-    /// at most; the residual.
-    pub(super) fn sweep_until(&mut self, targets: &[f64], precision: f64, most: u32) -> f64 {
-        let mut residual = f64::INFINITY;
+    /// Sweeps over all blocks until the residual is no more than `tolerance`, so many at most; the residual.
+    pub(super) fn sweep_until(&mut self, targets: &[f64], tolerance: f64, most: u32) -> f64 {
+        let mut residual = self.residual(targets);
         let mut done = 0;
-        while done < most {
-            let before = residual;
-            for _ in 0..STALL.min(most - done) {
-                done += 1;
-                self.sweep(targets);
-            }
+        while residual > tolerance && done < most {
+            (0..BETWEEN).for_each(|_| self.sweep(targets));
+            done += BETWEEN;
             residual = self.residual(targets);
-            if residual <= precision || residual > 0.75 * before {
-                break;
-            }
         }
         residual
     }
@@ -50,8 +43,8 @@ impl System {
     }
 }
 
-/// Sweeps after which the residual is judged: it costs about as much as a sweep.
-const STALL: u32 = 10;
+/// Sweeps after which the residual is judged, which costs about as much as one.
+const BETWEEN: u32 = 6;
 
 /// The impulse along the tangents that stops sliding, or the one of Coulomb's length nearest to it.
 #[inline]

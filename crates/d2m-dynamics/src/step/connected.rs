@@ -126,7 +126,7 @@ impl Step<'_> {
                 let goes_on = match occasion {
                     Occasion::Start | Occasion::Plan { .. } => false,
                     Occasion::Expected if begins => true,
-                    Occasion::Expected | Occasion::Event => {
+                    Occasion::Expected | Occasion::Event | Occasion::Cramped => {
                         body.horizon >= self.end && self.is_balanced(body, time)
                     }
                 };
