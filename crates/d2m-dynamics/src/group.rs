@@ -11,6 +11,8 @@ use std::borrow::Cow;
 
 /// Residuals below this part of a gap a step are those of a solution.
 const PRECISION: f64 = 1e-5;
+/// The part of that which is aimed at.
+const AIM: f64 = 1e-3;
 /// Of bodies that move, this part of their speed, too.
 const RELATIVE: f64 = 1.0 / 1024.0;
 /// Solutions with the spin of the flight's middle put right.
@@ -125,7 +127,8 @@ pub(crate) fn solve(
     let rows = select(&island.contacts, span, |body| free[place(body)].velocity);
     let mut contacts: Vec<ContactPoint> = rows.iter().map(|row| island.contacts[row.contact]).collect();
     let targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
-    let accuracy = Accuracy { precision: PRECISION * options.gap / options.step, relative: RELATIVE };
+    let precision = PRECISION * options.gap / options.step;
+    let accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM };
 
     let pushing: Vec<f64> = targets.iter().map(|target| target.min(0.0)).collect();
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();

@@ -9,7 +9,7 @@ use glam::DMat3;
 /// Rounds of impacts that are passed on at one time.
 const MOST_ROUNDS: u32 = 64;
 /// Rates are solved to this part of the fastest closing speed.
-const PRECISION: f64 = 1e-10;
+const PRECISION: f64 = 1e-13;
 /// Relative increase of the energy that counts as rounding.
 const ENERGY_ROUNDING: f64 = 1e-12;
 /// Solutions by which the scale of the restitution is found.
@@ -49,7 +49,7 @@ pub(crate) fn impact(
             };
             let targets: Vec<f64> = (0..contacts.len()).map(target).collect();
             system.begin(&before);
-            let accuracy = Accuracy { precision: PRECISION * fastest, relative: 0.0 };
+            let accuracy = Accuracy { precision: PRECISION * fastest, relative: 0.0, aim: 1.0 };
             system.solve(&targets, accuracy, Start::Sticking);
             system.doubled_energy(inertia) - energy
         };

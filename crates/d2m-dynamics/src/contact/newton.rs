@@ -22,18 +22,16 @@ use glam::{DMat3, DVec3};
 /// Rounds of λ and s at most.
 const MOST_ROUNDS: u32 = 8;
 /// Newton steps of one round at most.
-const MOST_STEPS: u32 = 24;
-/// The softness r of a row at first, of its scale.
+const MOST_STEPS: u32 = 80;
+/// The softness r of a row at first, of its scale, where masses are alike; a round leaves r/(r + m/M) of what the heaviest body, of mass M,
+/// asks for from the lightest one, of mass m, so no more than [`SHARE`] of m/M.
 const SOFT: f64 = 1e-5;
+const SHARE: f64 = 1e-2;
 /// And at least.
 const LEAST_SOFT: f64 = 1e-11;
 /// It is made smaller by this where a round gains less than [`GAIN`].
 const HARDER: f64 = 0.05;
 const GAIN: f64 = 5.0;
-/// The softness with which rounding is polished away: that of a rate, divided by r, is what the impulses are off by.
-const POLISH: f64 = 1e-3;
-/// The residual that is aimed at where bodies rest, of the precision.
-const AIM: f64 = 1e-3;
 /// The part of the aim to which each round's velocities are found.
 const INNER: f64 = 0.25;
 /// The slope along a line, of that at its start, with which a search ends.
@@ -77,11 +75,11 @@ impl System {
             Some(factor) => factor,
             None => return self.residual(targets),
         };
-        let tolerance = self.tolerance(accuracy);
-        let aim = if tolerance > accuracy.precision { tolerance } else { AIM * accuracy.precision };
         let free = self.free();
         let inertia: Vec<DMat3> = self.bodies.iter().map(inertia_of).collect();
-        let mut best = (self.residual(targets), self.impulses.clone());
+        let begun = (self.residual(targets), self.impulses.clone());
+        let mut best: Option<(f64, Vec<[f64; 3]>)> = None;
+        let mut tolerance = self.tolerance(accuracy);
         let slides = |block: &Block, of: &System| {
             let [_, t, u] = block.rates(|i| of.bodies[i].velocity);
             block.law.friction() * (t * t + u * u).sqrt()
@@ -92,8 +90,8 @@ impl System {
         };
         let mut state = (self.impulses.clone(), shift, self.velocities());
         let mut anderson = Anderson::default();
-        let (mut soft, mut last) = (SOFT, f64::INFINITY);
-        let mut has_polished = false;
+        let mut soft = (SHARE / self.mass_ratio()).clamp(LEAST_SOFT, SOFT);
+        let mut last = f64::INFINITY;
         for _ in 0..MOST_ROUNDS {
             let (center, shift, velocity) = state;
             let found = vec![Projected { impulse: [0.0; 3], slope: None }; self.blocks.len()];
@@ -109,30 +107,28 @@ impl System {
                 velocity,
                 found,
             };
-            newton.minimize(&mut factor, INNER * aim);
+            newton.minimize(&mut factor, INNER * accuracy.aim * accuracy.precision);
             let impulses: Vec<[f64; 3]> = newton.found.iter().map(|found| found.impulse).collect();
             let Newton { shift, velocity, .. } = newton;
             self.set(&free, &impulses);
             let residual = self.residual(targets);
-            if residual < best.0 {
-                best = (residual, impulses.clone());
+            if best.as_ref().is_none_or(|best| residual < best.0) {
+                best = Some((residual, impulses.clone()));
             }
-            if residual <= aim || (residual <= tolerance && GAIN * residual > last) {
+            tolerance = self.tolerance(accuracy);
+            if residual <= accuracy.aim(tolerance) {
                 break;
             }
             let answer: Vec<f64> = self.blocks.iter().map(|block| slides(block, self)).collect();
             let shift = anderson.next(shift, answer);
             if GAIN * residual > last {
-                // Rounding, of which there is less with softer rows, or rows that are too soft.
-                (soft, has_polished) = if residual > last && !has_polished {
-                    (POLISH, true)
-                } else {
-                    ((HARDER * soft).max(LEAST_SOFT), has_polished)
-                };
+                soft = (HARDER * soft).max(LEAST_SOFT);
             }
             last = residual;
             state = (impulses, shift, velocity);
         }
+        // What slips at the start may obey the law, too: it counts only where nothing else does.
+        let best = best.filter(|best| best.0 <= tolerance.max(begun.0)).unwrap_or(begun);
         self.set(&free, &best.1);
         self.factor = Some(factor);
         best.0

@@ -19,6 +19,15 @@ pub(crate) struct Accuracy {
     pub(crate) precision: f64,
     /// The part of the bodies' mean speed that may be left, no more than [`LOOSE`] times the precision.
     pub(crate) relative: f64,
+    /// The part of the precision that is aimed at where bodies rest: what is left of one step is there in the next one.
+    pub(crate) aim: f64,
+}
+
+impl Accuracy {
+    /// What is aimed at where so much may be left.
+    pub(super) fn aim(self, tolerance: f64) -> f64 {
+        if tolerance > self.precision { tolerance } else { self.aim * self.precision }
+    }
 }
 
 impl System {
@@ -29,16 +38,15 @@ impl System {
     /// joints are solved directly. Whichever comes first, where it leaves more than the tolerance the other one is tried, too, and the
     /// better of both is taken.
     pub(crate) fn solve(&mut self, targets: &[f64], accuracy: Accuracy, start: Start) -> f64 {
-        let tolerance = self.tolerance(accuracy);
         if self.is_direct() {
             let residual = self.solve_direct(targets, accuracy, start);
-            if residual <= tolerance {
+            if residual <= self.tolerance(accuracy) {
                 return residual;
             }
-            self.better(residual, |system| system.sweep_until(targets, tolerance, SWEEPS))
+            self.better(residual, |system| system.sweep_until(targets, accuracy, SWEEPS))
         } else {
-            let residual = self.sweep_until(targets, tolerance, SWEEPS);
-            if residual <= tolerance {
+            let residual = self.sweep_until(targets, accuracy, SWEEPS);
+            if residual <= accuracy.aim(self.tolerance(accuracy)) {
                 return residual;
             }
             self.better(residual, |system| system.solve_direct(targets, accuracy, start))
@@ -69,10 +77,15 @@ impl System {
     }
 
     fn is_direct(&self) -> bool {
-        let moved = || self.bodies.iter().filter(|body| body.inverse_mass > 0.0);
-        let masses = moved().map(|body| 1.0 / body.inverse_mass);
+        let moved = self.bodies.iter().filter(|body| body.inverse_mass > 0.0).count();
+        moved <= FEW || self.mass_ratio() > MOST_RATIO || self.is_conforming
+    }
+
+    /// The greatest mass that impulses move, over the least one.
+    pub(super) fn mass_ratio(&self) -> f64 {
+        let inverses = self.bodies.iter().map(|body| body.inverse_mass).filter(|x| *x > 0.0);
         let (least, most) =
-            masses.fold((f64::INFINITY, 0.0f64), |(least, most), m| (least.min(m), most.max(m)));
-        moved().count() <= FEW || most > MOST_RATIO * least || self.is_conforming
+            inverses.fold((f64::INFINITY, 0.0f64), |(least, most), x| (least.min(x), most.max(x)));
+        if most > 0.0 { most / least } else { 1.0 }
     }
 }

@@ -1,14 +1,15 @@
 //! Projected Gauss–Seidel: block after block, each with the velocities that the ones before left.
 
 use super::law::Law;
+use super::solve::Accuracy;
 use super::system::{Block, SolverBody, System};
 
 impl System {
-    /// Sweeps over all blocks until the residual is no more than `tolerance`, so many at most; the residual.
-    pub(super) fn sweep_until(&mut self, targets: &[f64], tolerance: f64, most: u32) -> f64 {
+    /// Sweeps over all blocks until the residual is no more than what may be left, so many at most; the residual.
+    pub(super) fn sweep_until(&mut self, targets: &[f64], accuracy: Accuracy, most: u32) -> f64 {
         let mut residual = self.residual(targets);
         let mut done = 0;
-        while residual > tolerance && done < most {
+        while residual > accuracy.aim(self.tolerance(accuracy)) && done < most {
             (0..BETWEEN).for_each(|_| self.sweep(targets));
             done += BETWEEN;
             residual = self.residual(targets);
