@@ -135,7 +135,8 @@ pub(crate) fn balance(entries: &[Entry], anchored: bool, length: f64) -> Balance
     };
     let gained = gained + added(braked);
     let left = gained + lift - limit;
-    let part = if left > 0.0 && lift > 0.0 && braked == deepest { (1.0 - left / lift).max(LEAST_PART) } else { 1.0 };
+    let part =
+        if left > 0.0 && lift > 0.0 && braked == deepest { (1.0 - left / lift).max(LEAST_PART) } else { 1.0 };
     let braking = towards.into_iter().map(|to| to * braked).collect();
     Balance { braking: Some(braking), part, gained, limit }
 }

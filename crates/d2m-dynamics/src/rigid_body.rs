@@ -311,7 +311,7 @@ impl RigidBody {
         let energy = self.angular_momentum.dot(turn);
         let fastest = (energy * self.moments[1]).max(0.0).sqrt();
         let tumbles = (1.0 - self.moments[0] / self.moments[1]) * fastest;
-        if !(tumbles * left > MOST_TURN) {
+        if tumbles.is_nan() || tumbles * left <= MOST_TURN {
             return end;
         }
         let length = (MOST_TURN / tumbles).max(step / MOST_FLIGHTS);
@@ -388,7 +388,7 @@ fn extreme_eigenvalues(m: DMat3) -> [f64; 2] {
     let square: f64 = rest.to_cols_array().iter().map(|x| x * x).sum();
     let size = (square / 6.0).sqrt();
     // Rounding of the elements of a sphere's.
-    if !(size > 1e-12 * mean) {
+    if size.is_nan() || size <= 1e-12 * mean {
         return [mean, mean];
     }
     let half = (0.5 * (rest * (1.0 / size)).determinant()).clamp(-1.0, 1.0);

@@ -322,6 +322,11 @@ impl Simulation {
         self.bodies[body.index()].center
     }
 
+    /// No point of the body is further from its center of mass.
+    pub fn radius(&self, body: BodyId) -> f64 {
+        self.bodies[body.index()].radius
+    }
+
     /// World position of the center of mass.
     pub fn position(&self, body: BodyId) -> DVec3 {
         self.pose(body).translation

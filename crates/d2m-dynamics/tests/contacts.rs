@@ -231,8 +231,7 @@ fn slow_boxes_without_friction_stay_awake() {
 /// A brick that nothing meets, at three hundred radians a second about no axis of its own.
 #[test]
 fn fast_tops_keep_their_energy() {
-    let mut simulation =
-        Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
+    let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
     let top = Body::new("top", tree("box?x=0.3&y=0.5&z=0.2"));
     let id = simulation.add(&top.with_angular_velocity(DVec3::new(100.0, 250.0, 130.0))).unwrap();
     let properties = simulation.mass_properties(id).unwrap();
@@ -260,7 +259,8 @@ fn heaps_have_the_same_bits_at_any_number_of_threads() {
             simulation.add(&floor()).unwrap();
             let shape = tree("box?x=0.2&y=0.1&z=0.15");
             for k in 0..24 {
-                let place = DVec3::new(0.45 * (k % 3) as f64, 0.3 + 0.35 * (k / 3) as f64, 0.02 * (k % 5) as f64);
+                let place =
+                    DVec3::new(0.45 * (k % 3) as f64, 0.3 + 0.35 * (k / 3) as f64, 0.02 * (k % 5) as f64);
                 simulation.add(&body(k, &shape, 0.0).with_position(place)).unwrap();
             }
             run(&mut simulation, 0.4);

@@ -15,8 +15,8 @@ pub(super) struct Anderson {
 
 impl Anderson {
     /// The next argument, not below zero, after `argument` was answered by `answer`.
-    pub(super) fn next(&mut self, argument: Vec<f64>, answer: Vec<f64>) -> Vec<f64> {
-        let off: Vec<f64> = answer.iter().zip(&argument).map(|(g, s)| g - s).collect();
+    pub(super) fn next(&mut self, argument: &[f64], answer: Vec<f64>) -> Vec<f64> {
+        let off: Vec<f64> = answer.iter().zip(argument).map(|(g, s)| g - s).collect();
         let minus = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x - y).collect::<Vec<f64>>();
         if let Some((old_answer, old_off)) = self.last.replace((answer.clone(), off.clone())) {
             self.steps.push_back((minus(&answer, &old_answer), minus(&off, &old_off)));
@@ -30,7 +30,9 @@ impl Anderson {
                 *next -= weight * step;
             }
         }
-        next.iter_mut().for_each(|s| *s = s.max(0.0));
+        for s in &mut next {
+            *s = s.max(0.0);
+        }
         next
     }
 
@@ -50,7 +52,9 @@ impl Anderson {
             let length = dot(&rest, &rest).sqrt();
             let counts = length > 1e-8 * dot(step, step).sqrt();
             column.push(if counts { length } else { 0.0 });
-            rest.iter_mut().for_each(|r| *r = if counts { *r / length } else { 0.0 });
+            for r in &mut rest {
+                *r = if counts { *r / length } else { 0.0 };
+            }
             basis.push(rest);
             triangle.push(column);
         }
@@ -73,13 +77,12 @@ mod tests {
     /// The fixed point of a linear map of three numbers whose plain iteration goes away from it.
     #[test]
     fn a_linear_map_is_solved_in_as_many_rounds_as_it_has_numbers() {
-        let map = |s: &[f64]| {
-            vec![1.0 + 0.5 * s[1], 2.0 - 1.5 * s[1] + 0.3 * s[2], 0.5 + 0.2 * s[0] - 0.1 * s[2]]
-        };
+        let map =
+            |s: &[f64]| vec![1.0 + 0.5 * s[1], 2.0 - 1.5 * s[1] + 0.3 * s[2], 0.5 + 0.2 * s[0] - 0.1 * s[2]];
         let (mut anderson, mut s) = (Anderson::default(), vec![0.0; 3]);
         for _ in 0..6 {
             let answer = map(&s);
-            s = anderson.next(s, answer);
+            s = anderson.next(&s, answer);
         }
         for (s, answer) in s.iter().zip(map(&s)) {
             assert!((s - answer).abs() < 1e-9, "{s} {answer}");

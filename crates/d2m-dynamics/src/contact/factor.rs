@@ -24,13 +24,16 @@ pub(super) struct Factor {
     rows: Vec<usize>,
     values: Vec<f64>,
     symbolic: SymbolicCholesky<usize>,
-    factor: Vec<f64>,
+    lower: Vec<f64>,
     memory: MemBuffer,
 }
 
 impl core::fmt::Debug for Factor {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.debug_struct("Factor").field("bodies", &self.bodies).field("pairs", &self.pairs.len()).finish()
+        f.debug_struct("Factor")
+            .field("bodies", &self.bodies)
+            .field("pairs", &self.pairs.len())
+            .finish_non_exhaustive()
     }
 }
 
@@ -62,9 +65,9 @@ impl Factor {
             .factorize_numeric_llt_scratch::<f64>(Par::Seq, faer::prelude::default())
             .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
         let memory = MemBuffer::try_new(needed).ok()?;
-        let factor = vec![0.0; symbolic.len_val()];
+        let lower = vec![0.0; symbolic.len_val()];
         let values = vec![0.0; rows.len()];
-        Some(Self { bodies, pairs, starts, columns, rows, values, symbolic, factor, memory })
+        Some(Self { bodies, pairs, starts, columns, rows, values, symbolic, lower, memory })
     }
 
     /// Does it serve for these?
@@ -79,10 +82,10 @@ impl Factor {
 
     /// Adds a symmetric square of one body.
     pub(super) fn add(&mut self, body: usize, square: &Square) {
-        for column in 0..6 {
+        for (column, symmetric) in square.iter().enumerate() {
             let place = self.columns[6 * body + column];
-            for row in column..6 {
-                self.values[place + row - column] += square[row][column];
+            for (own, value) in self.values[place..].iter_mut().zip(&symmetric[column..]) {
+                *own += value;
             }
         }
     }
@@ -92,10 +95,10 @@ impl Factor {
         let (first, second) = (rows.min(columns), rows.max(columns));
         let pairs = &self.pairs[self.starts[first]..self.starts[first + 1]];
         let Ok(place) = pairs.binary_search(&[first, second]) else { return };
-        for column in 0..6 {
-            let start = self.columns[6 * first + column] + 6 - column + 6 * place;
-            for row in 0..6 {
-                let value = if columns == first { square[row][column] } else { square[column][row] };
+        for (row, values) in square.iter().enumerate() {
+            for (column, value) in values.iter().enumerate() {
+                let (row, column) = if columns == first { (row, column) } else { (column, row) };
+                let start = self.columns[6 * first + column] + 6 - column + 6 * place;
                 self.values[start + row] += value;
             }
         }
@@ -108,7 +111,7 @@ impl Factor {
         let matrix = SparseColMatRef::new(pattern, &self.values);
         let stack = MemStack::new(&mut self.memory);
         let done = self.symbolic.factorize_numeric_llt(
-            &mut self.factor,
+            &mut self.lower,
             matrix,
             Side::Lower,
             LltRegularization::default(),
@@ -119,7 +122,7 @@ impl Factor {
         if done.is_err() {
             return false;
         }
-        let factor = LltRef::new(&self.symbolic, &self.factor);
+        let factor = LltRef::new(&self.symbolic, &self.lower);
         let right = MatMut::from_column_major_slice_mut(right, size, 1);
         factor.solve_in_place_with_conj(Conj::No, right, Par::Seq, MemStack::new(&mut self.memory));
         true

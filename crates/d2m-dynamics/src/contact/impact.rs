@@ -45,7 +45,11 @@ pub(crate) fn impact(
         let mut add = |scale: f64| {
             // Contacts that do not close have no part in this round: a target that they have already.
             let target = |k: usize| {
-                if closes(k) { -scale * contacts[k].material.restitution * rates[k] } else { f64::NEG_INFINITY }
+                if closes(k) {
+                    -scale * contacts[k].material.restitution * rates[k]
+                } else {
+                    f64::NEG_INFINITY
+                }
             };
             let targets: Vec<f64> = (0..contacts.len()).map(target).collect();
             system.begin(&before);
@@ -54,10 +58,10 @@ pub(crate) fn impact(
             system.doubled_energy(inertia) - energy
         };
         // A body that follows its motion may work: then the others may gain.
-        if !driven {
-            keep_energy(&mut add, ENERGY_ROUNDING * energy);
-        } else {
+        if driven {
             add(1.0);
+        } else {
+            keep_energy(&mut add, ENERGY_ROUNDING * energy);
         }
         let mut round = totals.clone();
         system.store(&mut round);

@@ -71,10 +71,7 @@ impl System {
             })
         };
         let places: Vec<Option<usize>> = (0..self.bodies.len()).map(&mut place).collect();
-        let mut factor = match self.take_factor(&places, count) {
-            Some(factor) => factor,
-            None => return self.residual(targets),
-        };
+        let Some(mut factor) = self.take_factor(&places, count) else { return self.residual(targets) };
         let free = self.free();
         let inertia: Vec<DMat3> = self.bodies.iter().map(inertia_of).collect();
         let begun = (self.residual(targets), self.impulses.clone());
@@ -120,7 +117,7 @@ impl System {
                 break;
             }
             let answer: Vec<f64> = self.blocks.iter().map(|block| slides(block, self)).collect();
-            let shift = anderson.next(shift, answer);
+            let shift = anderson.next(&shift, answer);
             if GAIN * residual > last {
                 soft = (HARDER * soft).max(LEAST_SOFT);
             }
