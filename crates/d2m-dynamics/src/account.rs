@@ -27,6 +27,10 @@ use glam::{DMat3, DVec3};
 /// Relative rounding of an energy: differences of sums of fewer than 2¹² products, of 2⁻⁵³ each.
 const ROUNDING: f64 = 1.0 / (1u64 << 40) as f64;
 
+/// The part of the room that is made in any case: without it a pair that has lost its separation would never get it back. It lifts
+/// bodies by no more than the gaps that are missing.
+const LEAST_PART: f64 = 0.25;
+
 /// A body of an island whose velocities have been solved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
@@ -131,7 +135,8 @@ pub(crate) fn balance(entries: &[Entry], anchored: bool, length: f64) -> Balance
     };
     let gained = gained + added(braked);
     let left = gained + lift - limit;
-    let part = if left > 0.0 && lift > 0.0 && braked == deepest { (1.0 - left / lift).max(0.0) } else { 1.0 };
+    let part =
+        if left > 0.0 && lift > 0.0 && braked == deepest { (1.0 - left / lift).max(LEAST_PART) } else { 1.0 };
     let braking = towards.into_iter().map(|to| to * braked).collect();
     Balance { braking: Some(braking), part, gained, limit }
 }

@@ -102,12 +102,16 @@ pub enum SimulationError {
         error: MassError,
     },
     /// Two bodies share a point, or are not proven apart, before anything has moved.
-    #[error("bodies {a} and {b} intersect at the start")]
+    #[error("bodies {a} and {b} intersect at the start: by about {depth:.3e}, near {point}")]
     Intersecting {
         /// The first body's name.
         a: String,
         /// The second body's name.
         b: String,
+        /// About the least way, along one of some directions, that frees them of each other.
+        depth: f64,
+        /// A point where they do, world frame.
+        point: DVec3,
     },
     /// The velocity of a body that is not dynamic: it would be ignored, since a kinematic body has it from its motion.
     #[error(

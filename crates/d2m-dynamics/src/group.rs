@@ -2,21 +2,19 @@
 
 use crate::SimulationOptions;
 use crate::account::{Entry, balance};
-use crate::contact::{ContactPoint, HIT, Scope, Solver, SolverBody, Span, Sweeps, impact, select};
+use crate::contact::{Accuracy, ContactPoint, HIT, SolverBody, Span, Start, System, impact, select};
 use crate::momenta::Momenta;
 use crate::rigid_body::RigidBody;
 use crate::velocity::Velocity;
 use glam::DMat3;
 use std::borrow::Cow;
 
-/// Changes of rates in a sweep below this part of a gap a step end the iteration.
+/// Residuals below this part of a gap a step are those of a solution.
 const PRECISION: f64 = 1e-5;
-/// Of an island that is solved again, contacts whose rates differ by less than this part of a gap a step hold as they did.
-const HOLDS: f64 = 1.0 / 16.0;
-/// Sweeps for what need not be exact.
-const RESTORING: u32 = 50;
-/// Relative gain of energy that counts as rounding, and as the turn of inertia in a flight: 2⁻¹³.
-const ENERGY_ROUNDING: f64 = 1.0 / 8192.0;
+/// The part of that which is aimed at.
+const AIM: f64 = 1e-3;
+/// Of bodies that move, this part of their speed, too.
+const RELATIVE: f64 = 1.0 / 1024.0;
 /// Solutions with the spin of the flight's middle put right.
 const CORRECTIONS: u32 = 3;
 
@@ -33,6 +31,8 @@ pub(crate) struct Solved {
     /// Impulses of restitution, of resting contact.
     pub(crate) impacts: Vec<ContactPoint>,
     pub(crate) rests: Vec<ContactPoint>,
+    /// How far the rates are from what the law of contacts asks for.
+    pub(crate) residual: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -128,61 +128,35 @@ pub(crate) fn solve(
     let mut contacts: Vec<ContactPoint> = rows.iter().map(|row| island.contacts[row.contact]).collect();
     let targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
     let precision = PRECISION * options.gap / options.step;
+    let accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM };
 
     let pushing: Vec<f64> = targets.iter().map(|target| target.min(0.0)).collect();
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
     let driven = states.iter().any(|s| !moves(s) && !s.stands_still());
-    let mut solver = Solver::new(free.clone(), &contacts, place);
-    let most = solver.doubled_energy(&inertia) * (1.0 + ENERGY_ROUNDING);
-    solver.warm_start(&contacts);
-    let mut scope = Scope::whole(contacts.len());
-    if contacts.iter().any(|contact| contact.is_solved) {
-        put_right(&mut solver, &states, &contacts, span, place, precision);
-        solver = Solver::new(solver.bodies, &contacts, place);
-        let is_new = contacts.iter().map(|contact| !contact.is_solved).collect();
-        scope = Scope::part(is_new, &solver, HOLDS * options.gap / options.step);
-    }
-    let is_whole = scope.is_whole();
-    let mut turned: Option<Scope> = None;
+    let mut system = System::new(free, &contacts, place);
+    system.warm_start(&contacts);
+    let mut residual = 0.0;
     for correction in 0.. {
-        let scope = turned.as_mut().unwrap_or(&mut scope);
-        let sweeps = Sweeps::Accelerated(u32::MAX);
-        let left = solver.iterate(&mut contacts, &pushing, precision, sweeps, scope);
-        let before: Vec<Velocity> = solver.bodies.iter().map(|body| body.velocity).collect();
-        if correction == CORRECTIONS || !put_right(&mut solver, &states, &contacts, span, place, precision) {
+        let start = if correction == 0 { Start::Sticking } else { Start::Present };
+        residual = system.solve(&pushing, accuracy, start);
+        system.store(&mut contacts);
+        let tolerance = system.tolerance(accuracy);
+        if correction == CORRECTIONS || !put_right(&mut system, &states, &contacts, span, place, tolerance) {
             break;
         }
-        let bodies = solver.bodies;
-        solver = Solver::new(bodies, &contacts, place);
-        if is_whole {
-            // Contacts where the turn counts more than what the iteration has left over.
-            let tolerance = left.clamp(precision, HOLDS * options.gap / options.step);
-            turned = Some(Scope::changed(before, &solver, tolerance));
-        }
-    }
-    // Contacts at rest never add energy; what did is an iteration that was not at its end, as of wedged bodies.
-    if !driven && solver.doubled_energy(&inertia) > most {
-        solver = Solver::new(free, &contacts, place);
-        for contact in &mut contacts {
-            (contact.impulse, contact.sliding, contact.room) = (0.0, [0.0; 2], [0.0; 3]);
-        }
-        scope = Scope::whole(contacts.len());
-        solver.iterate(&mut contacts, &pushing, precision, Sweeps::Plain(u32::MAX), &mut scope);
+        system.renew();
     }
     let mut rests = vec![Momenta::default(); members.len()];
     add(&contacts, &mut rests, place);
     let mut kept = contacts.clone();
     // What restores the gap, or makes room for rotation, moves the bodies in this flight and leaves no momentum.
-    let mut physical: Vec<Velocity> = solver.bodies.iter().map(|body| body.velocity).collect();
+    let velocities = |system: &System| system.bodies.iter().map(|body| body.velocity).collect::<Vec<_>>();
+    let mut physical = velocities(&system);
     if targets.iter().any(|&target| target > 0.0) {
-        let before = solver.doubled_energy(&inertia);
-        if !scope.is_whole() {
-            solver.make_room(&mut contacts);
-            scope.shift(&physical, &solver);
-        }
-        let sweeps = Sweeps::Accelerated(RESTORING);
-        solver.iterate(&mut contacts, &targets, precision, sweeps, &mut scope);
-        let gained = 0.5 * (solver.doubled_energy(&inertia) - before);
+        let before = system.doubled_energy(&inertia);
+        system.solve(&targets, accuracy, Start::Present);
+        system.store(&mut contacts);
+        let gained = 0.5 * (system.doubled_energy(&inertia) - before);
         // What an account may hold, and the energy of the speed that makes a gap in a step.
         let speed = options.gap / options.step;
         let held = |s: &Cow<'_, RigidBody>| {
@@ -194,11 +168,7 @@ pub(crate) fn solve(
             rests.fill(Momenta::default());
             add(&contacts, &mut rests, place);
             kept.clone_from(&contacts);
-            physical = solver.bodies.iter().map(|body| body.velocity).collect();
-        }
-        for (rest, contact) in kept.iter_mut().zip(&contacts) {
-            let [first, second] = [0, 1].map(|k| contact.sliding[k] - rest.sliding[k]);
-            rest.room = [contact.impulse - rest.impulse, first, second];
+            physical = velocities(&system);
         }
     }
     let outcome = |k: usize| Outcome {
@@ -209,7 +179,7 @@ pub(crate) fn solve(
         impact: impacts[k],
         rest: rests[k],
         physical: physical[k],
-        velocity: solver.bodies[k].velocity,
+        velocity: system.bodies[k].velocity,
         lead: states[k].lead.unwrap_or(0.5 * span.remaining),
     };
     let outcomes: Vec<Outcome<'_>> = (0..states.len()).filter(|&k| moves(&states[k])).map(outcome).collect();
@@ -219,7 +189,7 @@ pub(crate) fn solve(
         (false, true) => Anchor::Still,
         (false, false) => Anchor::None,
     };
-    Solved { bodies: settle(&outcomes, anchor, end, span, options), impacts: hits, rests: kept }
+    Solved { bodies: settle(&outcomes, anchor, end, span, options), impacts: hits, rests: kept, residual }
 }
 
 fn moves(state: &RigidBody) -> bool {
@@ -249,8 +219,8 @@ fn impacts_of(
     let start = |s: &Cow<'_, RigidBody>| {
         if moves(s) { body_at(s, s.velocity(), s.inverse_inertia_at(s.orientation)) } else { still(s) }
     };
-    let mut solver = Solver::new(states.iter().map(start).collect(), &hit, place);
-    let contacts = impact(&mut solver, &hit, &inertia, options.resting_speed());
+    let mut system = System::new(states.iter().map(start).collect(), &hit, place);
+    let contacts = impact(&mut system, &hit, &inertia, options.resting_speed());
     add(&contacts, &mut momenta, place);
     Impacts { contacts, momenta }
 }
@@ -357,17 +327,17 @@ fn add(contacts: &[ContactPoint], added: &mut [Momenta], place: impl Fn(usize) -
 
 /// The spins that belong to the angular momenta with the impulses, where the linear ones are off by more than rounding.
 fn put_right(
-    solver: &mut Solver,
+    system: &mut System,
     states: &[Cow<'_, RigidBody>],
     contacts: &[ContactPoint],
     span: Span,
     place: impl Fn(usize) -> usize,
-    precision: f64,
+    tolerance: f64,
 ) -> bool {
     let mut added = vec![Momenta::default(); states.len()];
     add(contacts, &mut added, place);
     let mut worst = 0.0f64;
-    for ((body, state), added) in solver.bodies.iter_mut().zip(states).zip(&added) {
+    for ((body, state), added) in system.bodies.iter_mut().zip(states).zip(&added) {
         if body.inverse_mass == 0.0 {
             continue;
         }
@@ -379,5 +349,5 @@ fn put_right(
         body.velocity.angular = spin;
         body.inverse_inertia = state.inverse_inertia_at(state.turned(spin, 0.5 * span.remaining));
     }
-    worst > precision
+    worst > tolerance
 }

@@ -21,6 +21,7 @@ mod rigid_body;
 mod simulation;
 mod sleep;
 mod snapshot;
+mod start;
 mod step;
 mod velocity;
 

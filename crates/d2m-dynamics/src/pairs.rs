@@ -256,8 +256,6 @@ pub(crate) fn measure(
         material,
         impulse: 0.0,
         sliding: [0.0; 2],
-        room: [0.0; 3],
-        is_solved: false,
     };
     // Where hardly any of the gap is left, what slides across must not close along the true direction either.
     let is_tight = |p: &&Proximity| p.tilt == 0.0 && p.distance < TIGHT * gap && !found.contains(*p);

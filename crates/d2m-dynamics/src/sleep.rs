@@ -10,6 +10,11 @@ const QUIET_TIME: f64 = 0.5;
 /// The part of the gap by which a surface may move in that time.
 const QUIET_WAY: f64 = 0.1;
 
+/// Of the speed of quiet bodies, the part that counts as standing still: what no friction brakes goes on at any other speed.
+const STILL: f64 = 1.0 / 1024.0;
+/// By how much more a body may be faster than it was in its quiet time.
+const GROWTH: f64 = 1.0625;
+
 fn quiet_speed(options: &SimulationOptions) -> f64 {
     QUIET_WAY * options.gap / QUIET_TIME
 }
@@ -22,9 +27,25 @@ impl Simulation {
             return;
         }
         let limit = quiet_speed(&self.options);
-        for body in self.bodies.iter_mut().filter(|body| body.is_dynamic() && !body.asleep) {
-            let slow = body.surface_speed() <= limit && !body.held;
-            body.quiet = if slow { body.quiet + step } else { 0.0 };
+        let mut rubs = vec![false; self.bodies.len()];
+        let is_rubbed = |c: &ContactPoint| c.impulse > 0.0 && c.material.friction > 0.0;
+        for (&(a, b), _) in self.pairs.iter().filter(|(_, pair)| pair.contacts.iter().any(is_rubbed)) {
+            (rubs[a], rubs[b]) = (true, true);
+        }
+        let still = STILL * limit;
+        for (body, rubs) in self.bodies.iter_mut().zip(rubs) {
+            if !body.is_dynamic() || body.asleep {
+                continue;
+            }
+            let speed = body.surface_speed();
+            let slow = speed <= (if rubs { limit } else { still }) && !body.held;
+            // What a force speeds up is not at rest, however slow it is.
+            if slow && speed <= GROWTH * body.slowest + still {
+                body.quiet += step;
+                body.slowest = body.slowest.min(speed);
+            } else {
+                (body.quiet, body.slowest) = (0.0, speed);
+            }
         }
         if !self.bodies.iter().any(|body| body.quiet >= QUIET_TIME && !body.asleep) {
             return;

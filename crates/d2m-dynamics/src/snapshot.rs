@@ -56,6 +56,7 @@ struct BodyState {
     version: u64,
     asleep: bool,
     quiet: f64,
+    slowest: f64,
     gained: f64,
 }
 
@@ -116,6 +117,7 @@ impl Simulation {
             version: body.version,
             asleep: body.asleep,
             quiet: body.quiet,
+            slowest: body.slowest,
             gained: body.gained,
         });
         let pairs = self.pairs.iter().map(|(&(a, b), pair)| PairState {
@@ -170,6 +172,7 @@ impl Simulation {
             body.version = state.version;
             body.asleep = state.asleep;
             body.quiet = state.quiet;
+            body.slowest = state.slowest;
             body.gained = state.gained;
             body.held = false;
         }
@@ -230,8 +233,6 @@ impl ContactState {
             material: Material { restitution: self.restitution, friction: self.friction },
             impulse: self.impulse,
             sliding: self.sliding,
-            room: [0.0; 3],
-            is_solved: false,
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::output::{Output, Stream, note, progress_bar};
 use crate::report::duration;
 use crate::simulation::{Scene, header, read_scene, segment};
-use d2m_dynamics::{Segment, StepError};
+use d2m_dynamics::{BodyId, Segment, StepError};
 use std::time::{Duration, Instant};
 
 /// Steps whose end is within this part of a step of the end of the simulation are the last one: rounding of `end / step`.
@@ -15,6 +15,7 @@ const ROUNDING: f64 = 1e-6;
 pub(crate) fn run(arguments: &SimulateArguments) -> Result<(), Failure> {
     let out = Output::new(&arguments.out)?.spare([arguments.scene.as_path()])?;
     let scene = read_scene(&arguments.scene)?;
+    warn_of_gap(&scene);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.into()).build();
     let pool = pool.map_err(|error| Failure::at("--threads", error))?;
     let name = arguments.scene.display().to_string();
@@ -24,6 +25,23 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<(), Failure> {
     } else {
         note(&format!("simulated in {}", duration(ended.took)));
         Ok(())
+    }
+}
+
+/// The part of a body's radius beyond which a gap is said to be large: then it shows, and closes the body's clearances.
+const LARGE_GAP: f64 = 0.05;
+
+fn warn_of_gap(scene: &Scene) {
+    let gap = scene.simulation.options().gap;
+    let radius = |id: BodyId| scene.simulation.radius(id);
+    let ids = || scene.ids.iter().copied().filter(|&id| scene.simulation.mass_properties(id).is_some());
+    let Some(smallest) = ids().reduce(|a, b| if radius(b) < radius(a) { b } else { a }) else { return };
+    if gap > LARGE_GAP * radius(smallest) {
+        let name = scene.simulation.name(smallest);
+        let part = 100.0 * gap / radius(smallest);
+        note(&format!(
+            "warning: the gap of {gap:?} is {part:.0} % of the radius of body {name}: give a smaller one"
+        ));
     }
 }
 

@@ -89,7 +89,7 @@ fn simulation_options(scene: &Fields<'_>) -> Result<(SimulationOptions, f64), Fa
     let fields = Fields::new(
         format!("{}, simulation", scene.place()),
         value,
-        &["gravity", "step", "end", "gap", "max_events"],
+        &["gravity", "step", "end", "gap", "max_events", "sleep"],
     )?;
     if let Some(gravity) = fields.vector("gravity")? {
         options = options.with_gravity(gravity);
@@ -104,6 +104,10 @@ fn simulation_options(scene: &Fields<'_>) -> Result<(SimulationOptions, f64), Fa
         let fault =
             || fields.fault("max_events", format!("{} should be a whole number below 2^32", short(value)));
         options = options.with_max_events(count.ok_or_else(fault)?);
+    }
+    if let Some(value) = fields.get("sleep") {
+        let fault = || fields.fault("sleep", format!("{} should be true or false", short(value)));
+        options = options.with_sleeping(value.as_bool().ok_or_else(fault)?);
     }
     let end = positive("end", 5.0)?;
     if end / options.step > MOST_STEPS {

@@ -1,27 +1,29 @@
 //! Impacts: restitution and friction where bodies meet faster than they rest.
 
-use super::{ContactPoint, Scope, Solver, Sweeps};
+use super::newton::Start;
+use super::solve::Accuracy;
+use super::{ContactPoint, System};
 use crate::velocity::Velocity;
 use glam::DMat3;
 
 /// Rounds of impacts that are passed on at one time.
 const MOST_ROUNDS: u32 = 64;
-/// Sweeps of one round.
-const MOST_SWEEPS: u32 = 1000;
 /// Rates are solved to this part of the fastest closing speed.
 const PRECISION: f64 = 1e-13;
 /// Relative increase of the energy that counts as rounding.
 const ENERGY_ROUNDING: f64 = 1e-12;
+/// Solutions by which the scale of the restitution is found.
+const MOST_SCALES: u32 = 16;
 
 /// Applies impulses at the contacts that close faster than `resting_speed` until there is none left, and returns the
 /// total impulse on b of each contact.
 ///
 /// Each round takes the contacts that close, and has them separate by Newton's restitution all at once, with Coulomb friction;
 /// contacts that close only because of that wait for the next round (Guendelman et al. 2003), so a row of spheres passes on what
-/// it is hit by. Newton's restitution with friction can add energy (Kane): then the restitution of the round is
-/// reduced until it does not.
+/// it is hit by. Newton's restitution with friction can add energy (Kane): then the round's restitution is reduced by the factor, found
+/// by regula falsi, with which the energy is what it was.
 pub(crate) fn impact(
-    solver: &mut Solver,
+    system: &mut System,
     contacts: &[ContactPoint],
     inertia: &[(f64, DMat3)],
     resting_speed: f64,
@@ -29,42 +31,40 @@ pub(crate) fn impact(
     let cleared = |c: &ContactPoint| ContactPoint { impulse: 0.0, sliding: [0.0; 2], ..*c };
     let mut totals: Vec<ContactPoint> = contacts.iter().map(cleared).collect();
     let still = Velocity::default();
-    let driven = solver.bodies.iter().any(|body| body.inverse_mass == 0.0 && body.velocity != still);
+    let driven = system.bodies.iter().any(|body| body.inverse_mass == 0.0 && body.velocity != still);
     for _ in 0..MOST_ROUNDS {
-        let rates: Vec<f64> = (0..contacts.len()).map(|k| solver.rate(k)).collect();
-        let closing: Vec<usize> = (0..contacts.len())
-            .filter(|&k| rates[k] < -resting_speed && contacts[k].material.restitution > 0.0)
-            .collect();
-        let fastest = closing.iter().map(|&k| -rates[k]).fold(0.0, f64::max);
-        if closing.is_empty() {
+        let rates: Vec<f64> = (0..contacts.len()).map(|k| system.rate(k)).collect();
+        let closes = |k: usize| rates[k] < -resting_speed && contacts[k].material.restitution > 0.0;
+        let fastest = (0..contacts.len()).filter(|&k| closes(k)).map(|k| -rates[k]).fold(0.0, f64::max);
+        if fastest == 0.0 {
             break;
         }
-        let before = solver.bodies.clone();
-        let energy = solver.doubled_energy(inertia);
-        let mut scale = 1.0;
-        let round = loop {
-            let mut round: Vec<ContactPoint> = contacts.iter().map(cleared).collect();
+        let before = system.velocities();
+        let energy = system.doubled_energy(inertia);
+        // What a scale adds to the energy.
+        let mut add = |scale: f64| {
             // Contacts that do not close have no part in this round: a target that they have already.
-            let targets: Vec<f64> = (0..contacts.len())
-                .map(|k| {
-                    if closing.contains(&k) {
-                        -scale * contacts[k].material.restitution * rates[k]
-                    } else {
-                        f64::NEG_INFINITY
-                    }
-                })
-                .collect();
-            let sweeps =
-                if scale > 0.0 { Sweeps::Accelerated(MOST_SWEEPS) } else { Sweeps::Plain(MOST_SWEEPS) };
-            let scope = &mut Scope::whole(round.len()).unlimited();
-            solver.iterate(&mut round, &targets, PRECISION * fastest, sweeps, scope);
-            // A body that follows its motion may work: then the others may gain.
-            if driven || solver.doubled_energy(inertia) <= energy * (1.0 + ENERGY_ROUNDING) || scale == 0.0 {
-                break round;
-            }
-            scale = if scale > 0.1 { scale - 0.125 } else { 0.0 };
-            solver.bodies.clone_from(&before);
+            let target = |k: usize| {
+                if closes(k) {
+                    -scale * contacts[k].material.restitution * rates[k]
+                } else {
+                    f64::NEG_INFINITY
+                }
+            };
+            let targets: Vec<f64> = (0..contacts.len()).map(target).collect();
+            system.begin(&before);
+            let accuracy = Accuracy { precision: PRECISION * fastest, relative: 0.0, aim: 1.0 };
+            system.solve(&targets, accuracy, Start::Sticking);
+            system.doubled_energy(inertia) - energy
         };
+        // A body that follows its motion may work: then the others may gain.
+        if driven {
+            add(1.0);
+        } else {
+            keep_energy(&mut add, ENERGY_ROUNDING * energy);
+        }
+        let mut round = totals.clone();
+        system.store(&mut round);
         for (total, part) in totals.iter_mut().zip(&round) {
             total.impulse += part.impulse;
             total.sliding[0] += part.sliding[0];
@@ -72,4 +72,33 @@ pub(crate) fn impact(
         }
     }
     totals
+}
+
+/// Leaves the solution of the greatest scale up to one that adds no more energy than rounding.
+fn keep_energy(add: &mut impl FnMut(f64) -> f64, rounding: f64) {
+    let mut high = (1.0, add(1.0));
+    if high.1 <= rounding {
+        return;
+    }
+    let mut low = (0.0, add(0.0));
+    if low.1 > 0.0 {
+        return;
+    }
+    for _ in 0..MOST_SCALES {
+        // The energy grows with the square of the restitution: through the sums that are linear in that.
+        let (x, y) = (low.0 * low.0, high.0 * high.0);
+        let scale = ((x * high.1 - y * low.1) / (high.1 - low.1)).max(x).min(y).sqrt();
+        let added = add(scale);
+        if added.abs() <= rounding {
+            return;
+        }
+        if added > 0.0 {
+            high = (scale, added);
+            low.1 *= 0.5;
+        } else {
+            low = (scale, added);
+            high.1 *= 0.5;
+        }
+    }
+    add(low.0);
 }

@@ -1,15 +1,21 @@
 //! Contacts of bodies that are close: rows, their solution, impacts.
 
-mod directions;
+mod anderson;
+mod factor;
 mod impact;
+mod law;
+mod line;
+mod newton;
 mod point;
 mod rows;
-mod scope;
-mod solver;
+mod solve;
+mod sweeps;
+mod system;
 
 pub(crate) use impact::impact;
+pub(crate) use newton::Start;
 pub use point::Material;
 pub(crate) use point::{ContactPoint, tangents};
 pub(crate) use rows::{HIT, Span, select};
-pub(crate) use scope::Scope;
-pub(crate) use solver::{Solver, SolverBody, Sweeps};
+pub(crate) use solve::Accuracy;
+pub(crate) use system::{SolverBody, System};

@@ -40,10 +40,6 @@ pub(crate) struct ContactPoint {
     /// Impulses on b along the normal and the tangents.
     pub(crate) impulse: f64,
     pub(crate) sliding: [f64; 2],
-    /// What is added to these to make room: along the normal and the tangents.
-    pub(crate) room: [f64; 3],
-    /// These impulses are those of a solution at this instant.
-    pub(crate) is_solved: bool,
 }
 
 impl ContactPoint {

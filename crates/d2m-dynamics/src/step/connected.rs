@@ -38,7 +38,7 @@ impl Group {
     }
 
     /// Where the solution begins: the impulses that the members had at this instant, for a part of the time.
-    fn warm(&mut self, retracted: &[ContactPoint], part: f64, occasion: Occasion) {
+    fn warm(&mut self, retracted: &[ContactPoint], part: f64) {
         for known in retracted {
             let key = (known.a, known.b);
             let first = self.contacts.partition_point(|c| (c.a, c.b) < key);
@@ -49,9 +49,6 @@ impl Group {
             if let Some(contact) = of_pair.into_iter().find(is_same) {
                 contact.impulse = part * known.impulse;
                 contact.sliding = known.sliding.map(|x| part * x);
-                // The same flights, with other contacts besides.
-                contact.is_solved = occasion == Occasion::Expected;
-                contact.room = if contact.is_solved { known.room } else { [0.0; 3] };
             }
         }
     }
@@ -64,7 +61,7 @@ impl Group {
 impl Step<'_> {
     /// Takes back the impulses that contacts at rest between the members, or with what impulses do not move, have had at this
     /// instant, and has the solution begin with a part of them.
-    pub(super) fn retract(&mut self, group: &mut Group, part: f64, occasion: Occasion) {
+    pub(super) fn retract(&mut self, group: &mut Group, part: f64) {
         let bodies = &mut self.sim.bodies;
         let moves = |body: &RigidBody| body.is_dynamic() && !body.held;
         let is_inner = |c: &ContactPoint| {
@@ -82,7 +79,7 @@ impl Step<'_> {
                 }
             }
         }
-        group.warm(&inner, part, occasion);
+        group.warm(&inner, part);
     }
 
     /// Adds bodies and all that contacts connect with them.
@@ -129,7 +126,7 @@ impl Step<'_> {
                 let goes_on = match occasion {
                     Occasion::Start | Occasion::Plan { .. } => false,
                     Occasion::Expected if begins => true,
-                    Occasion::Expected | Occasion::Event => {
+                    Occasion::Expected | Occasion::Event | Occasion::Cramped => {
                         body.horizon >= self.end && self.is_balanced(body, time)
                     }
                 };
@@ -208,7 +205,6 @@ impl Step<'_> {
                 let mut point = *point;
                 point.impulse *= part;
                 point.sliding = point.sliding.map(|x| x * part);
-                (point.room, point.is_solved) = ([0.0; 3], false);
                 point
             }));
             for i in [key.0, key.1] {

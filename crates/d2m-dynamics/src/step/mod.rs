@@ -8,7 +8,7 @@ mod hold;
 mod plan;
 mod resolve;
 
-use crate::contact::ContactPoint;
+use crate::contact::{ContactPoint, HIT};
 use crate::rigid_body::RigidBody;
 use crate::{ContactListener, Simulation, StepError, StepReport};
 use event::{Cause, Event};
@@ -28,10 +28,19 @@ enum Occasion {
     Start,
     /// Bodies meet, or flights end.
     Event,
+    /// Bodies meet that have lost some of their separation already: all that contacts connect with them makes room.
+    Cramped,
     /// Flights that have just begun lead to contacts that are solved with them.
     Expected,
     /// Flights that have just begun are to end at `until` at the latest.
     Plan { until: f64 },
+}
+
+impl Occasion {
+    /// Is it something that ends flights?
+    fn is_event(self) -> bool {
+        matches!(self, Self::Event | Self::Cramped)
+    }
 }
 
 /// A step in progress.
@@ -125,7 +134,9 @@ impl<'s> Step<'s> {
             if hold.is_empty() {
                 self.report.events +=
                     go_on.iter().filter(|event| event.cause != Cause::Horizon).count() as u32;
-                self.resolve(event.time, seeds, Occasion::Event)?;
+                let is_cramped = go_on.iter().any(|event| self.is_cramped(event));
+                let occasion = if is_cramped { Occasion::Cramped } else { Occasion::Event };
+                self.resolve(event.time, seeds, occasion)?;
                 self.solve_expected(event.time)?;
             } else {
                 self.hold(event.time, &hold)?;
@@ -148,6 +159,13 @@ impl<'s> Step<'s> {
 
     fn is_current(&self, event: &Event) -> bool {
         (0..2).all(|k| self.sim.bodies[event.bodies[k]].version == event.versions[k])
+    }
+
+    /// Do these bodies meet at less than the distance at which they stopped before?
+    fn is_cramped(&self, event: &Event) -> bool {
+        let key = (event.bodies[0], event.bodies[1]);
+        event.cause == Cause::Contact
+            && self.sim.pairs.get(&key).is_some_and(|pair| pair.nearest.is_some_and(|d| d <= HIT * pair.gap))
     }
 
     /// All events whose brackets overlap the first one's, and the bodies of them.

@@ -28,14 +28,14 @@ impl Step<'_> {
         let mut group = Group::new(self.sim.bodies.len());
         let until = if let Occasion::Plan { until } = occasion { until } else { self.end };
         let clock = Clock { now: time, end: until };
-        let renewed = if occasion == Occasion::Event { seeds.clone() } else { Vec::new() };
+        let renewed = if occasion.is_event() { seeds.clone() } else { Vec::new() };
         let solved = if occasion == Occasion::Event {
             self.solve_nearby(&mut group, seeds, clock, occasion)?
         } else {
             self.admit_connected(&mut group, time, seeds, occasion)?;
             group.sort();
-            if occasion != Occasion::Start {
-                self.retract(&mut group, (until - time) / (self.end - time), occasion);
+            if !matches!(occasion, Occasion::Start | Occasion::Cramped) {
+                self.retract(&mut group, (until - time) / (self.end - time));
             }
             self.follow_motions(&group, clock, occasion)?;
             self.solve_islands(&group, clock)
@@ -61,6 +61,7 @@ impl Step<'_> {
         let mut changed: Vec<usize> = Vec::new();
         let mut solved_for = vec![false; self.sim.bodies.len()];
         for part in solved {
+            self.report.residual = self.report.residual.max(part.residual);
             for push in &part.bodies {
                 let body = &mut self.sim.bodies[push.body];
                 body.push(push.impact);

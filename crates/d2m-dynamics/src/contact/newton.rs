@@ -1,0 +1,415 @@
+//! The exact Coulomb law, solved for the velocities of an island by a proximal Newton method.
+//!
+//! With multipliers λ₀ and shifts s the velocities v minimize the convex function
+//!
+//! ```text
+//! ½ |v − v*|²_M + Σ ½ r |P(y)|²,     y = λ₀ − (J v − b + s e)/r,     λ = P(y)
+//! ```
+//!
+//! (an augmented Lagrangian; P projects on the cone of each contact). Its Hessian M + Jᵀ (∂P/r) J is positive definite and sparse by pairs of
+//! bodies, so Newton's method with an exact line search finds it whatever the masses are. Around it λ₀ ← λ, and s ← μ |u_t| by Anderson's
+//! acceleration: de Saxcé's form of the law. s begins at zero: what can stick sticks, of the several solutions that friction has.
+//! What counts is the residual of the law itself ([`System::residual`]); the best iterate by it is kept.
+
+use super::anderson::Anderson;
+use super::factor::{Factor, Square};
+use super::law::{Projected, Slope};
+use super::solve::Accuracy;
+use super::system::{Block, SolverBody, System};
+use crate::velocity::Velocity;
+use glam::{DMat3, DVec3};
+
+/// Rounds of λ and s at most.
+const MOST_ROUNDS: u32 = 8;
+/// Newton steps of one round at most.
+const MOST_STEPS: u32 = 80;
+/// The softness r of a row at first, of its scale, where masses are alike; a round leaves r/(r + m/M) of what the heaviest body, of mass M,
+/// asks for from the lightest one, of mass m, so no more than [`SHARE`] of m/M.
+const SOFT: f64 = 1e-5;
+const SHARE: f64 = 1e-2;
+/// And at least.
+const LEAST_SOFT: f64 = 1e-11;
+/// It is made smaller by this where a round gains less than [`GAIN`].
+const HARDER: f64 = 0.05;
+const GAIN: f64 = 5.0;
+/// The part of the aim to which each round's velocities are found.
+const INNER: f64 = 0.25;
+/// The slope along a line, of that at its start, with which a search ends.
+const FLAT: f64 = 0.02;
+
+/// Where a solution begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Start {
+    /// All contacts that can stick do.
+    Sticking,
+    /// What slides goes on to slide.
+    Present,
+}
+
+struct Newton<'s> {
+    system: &'s System,
+    targets: &'s [f64],
+    free: &'s [Velocity],
+    inertia: &'s [DMat3],
+    /// Places among the bodies that move; none: the body does not.
+    places: &'s [Option<usize>],
+    soft: f64,
+    center: Vec<[f64; 3]>,
+    shift: Vec<f64>,
+    velocity: Vec<Velocity>,
+    found: Vec<Projected>,
+}
+
+impl System {
+    /// Solves from the present impulses; the residual. The bodies' velocities follow from the impulses exactly.
+    pub(super) fn solve_direct(&mut self, targets: &[f64], accuracy: Accuracy, start: Start) -> f64 {
+        let mut count = 0;
+        let mut place = |body: usize| {
+            self.is_moved(body).then(|| {
+                count += 1;
+                count - 1
+            })
+        };
+        let places: Vec<Option<usize>> = (0..self.bodies.len()).map(&mut place).collect();
+        let Some(mut factor) = self.take_factor(&places, count) else { return self.residual(targets) };
+        let free = self.free();
+        let inertia: Vec<DMat3> = self.bodies.iter().map(inertia_of).collect();
+        let begun = (self.residual(targets), self.impulses.clone());
+        let mut best: Option<(f64, Vec<[f64; 3]>)> = None;
+        let mut tolerance = self.tolerance(accuracy);
+        let slides = |block: &Block, of: &System| {
+            let [_, t, u] = block.rates(|i| of.bodies[i].velocity);
+            block.law.friction() * (t * t + u * u).sqrt()
+        };
+        let shift = match start {
+            Start::Sticking => vec![0.0; self.blocks.len()],
+            Start::Present => self.blocks.iter().map(|block| slides(block, self)).collect(),
+        };
+        let mut state = (self.impulses.clone(), shift, self.velocities());
+        let mut anderson = Anderson::default();
+        let mut soft = (SHARE / self.mass_ratio()).clamp(LEAST_SOFT, SOFT);
+        let mut last = f64::INFINITY;
+        for _ in 0..MOST_ROUNDS {
+            let (center, shift, velocity) = state;
+            let found = vec![Projected { impulse: [0.0; 3], slope: None }; self.blocks.len()];
+            let mut newton = Newton {
+                system: self,
+                targets,
+                free: &free,
+                inertia: &inertia,
+                places: &places,
+                soft,
+                center,
+                shift,
+                velocity,
+                found,
+            };
+            newton.minimize(&mut factor, INNER * accuracy.aim * accuracy.precision);
+            let impulses: Vec<[f64; 3]> = newton.found.iter().map(|found| found.impulse).collect();
+            let Newton { shift, velocity, .. } = newton;
+            self.set(&free, &impulses);
+            let residual = self.residual(targets);
+            if best.as_ref().is_none_or(|best| residual < best.0) {
+                best = Some((residual, impulses.clone()));
+            }
+            tolerance = self.tolerance(accuracy);
+            if residual <= accuracy.aim(tolerance) {
+                break;
+            }
+            let answer: Vec<f64> = self.blocks.iter().map(|block| slides(block, self)).collect();
+            let shift = anderson.next(&shift, answer);
+            if GAIN * residual > last {
+                soft = (HARDER * soft).max(LEAST_SOFT);
+            }
+            last = residual;
+            state = (impulses, shift, velocity);
+        }
+        // What slips at the start may obey the law, too: it counts only where nothing else does.
+        let best = best.filter(|best| best.0 <= tolerance.max(begun.0)).unwrap_or(begun);
+        self.set(&free, &best.1);
+        self.factor = Some(factor);
+        best.0
+    }
+
+    /// The factorization for the pairs of bodies that blocks connect.
+    fn take_factor(&mut self, places: &[Option<usize>], count: usize) -> Option<Factor> {
+        let of = |block: &Block| {
+            let (a, b) = (places[block.a]?, places[block.b]?);
+            (a != b).then_some([a.min(b), a.max(b)])
+        };
+        let mut pairs: Vec<[usize; 2]> = self.blocks.iter().filter_map(of).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        match self.factor.take().filter(|factor| factor.is_for(count, &pairs)) {
+            Some(factor) => Some(factor),
+            None if count > 0 => Factor::try_new(count, pairs),
+            None => None,
+        }
+    }
+}
+
+impl Newton<'_> {
+    /// Newton's method; λ of the last velocities is in `found`.
+    fn minimize(&mut self, factor: &mut Factor, tolerance: f64) {
+        let size = 6 * self.places.iter().flatten().count();
+        let mut least = f64::INFINITY;
+        let mut stalls = 0;
+        for step in 0.. {
+            let slope = self.gradient(size);
+            let off = self.off(&slope);
+            if off <= tolerance || step == MOST_STEPS {
+                return;
+            }
+            // Rounding: what is left gets no less.
+            stalls = if off > 0.5 * least { stalls + 1 } else { 0 };
+            least = least.min(off);
+            if stalls > 4 && off < 1e-6 * self.fastest() {
+                return;
+            }
+            self.assemble(factor);
+            let mut way: Vec<f64> = slope.iter().map(|x| -x).collect();
+            if !factor.solve(&mut way) || way.iter().any(|x| !x.is_finite()) {
+                return;
+            }
+            self.go(&way, &slope);
+        }
+    }
+
+    fn argument(&self, k: usize, rates: [f64; 3]) -> [f64; 3] {
+        let block = &self.system.blocks[k];
+        let (center, soft) = self.center_of(k, block);
+        let above = [rates[0] - self.targets[k] + self.shift[k], rates[1], rates[2]];
+        [0, 1, 2].map(|i| center[i] - above[i] / soft)
+    }
+
+    /// Rows that are soft by themselves are so about zero.
+    fn center_of(&self, k: usize, block: &Block) -> ([f64; 3], f64) {
+        let softness = block.law.softness();
+        if softness > 0.0 { ([0.0; 3], softness) } else { (self.center[k], self.soft * block.scale) }
+    }
+
+    fn counts(&self, k: usize) -> bool {
+        self.system.blocks[k].scale > 0.0 && self.targets[k] > f64::NEG_INFINITY
+    }
+
+    /// The gradient, by body and row, and λ with its slope of each block.
+    fn gradient(&mut self, size: usize) -> Vec<f64> {
+        let mut gradient = vec![0.0; size];
+        let bodies = &self.system.bodies;
+        for (i, place) in self.places.iter().enumerate() {
+            let Some(place) = place else { continue };
+            let (body, off) = (&bodies[i], self.velocity[i] - self.free[i]);
+            let linear = off.linear / body.inverse_mass;
+            let angular = self.inertia[i] * off.angular;
+            gradient[6 * place..6 * place + 6].copy_from_slice(&rows(linear, angular));
+        }
+        for k in 0..self.system.blocks.len() {
+            if !self.counts(k) {
+                self.found[k] = Projected { impulse: [0.0; 3], slope: None };
+                continue;
+            }
+            let block = &self.system.blocks[k];
+            let y = self.argument(k, block.rates(|i| self.velocity[i]));
+            let found = block.law.project_with_slope(y);
+            self.found[k] = found;
+            if found.impulse == [0.0; 3] {
+                continue;
+            }
+            for (line, impulse) in block.lines[..block.law.rows()].iter().zip(found.impulse) {
+                for (body, cross, sign) in [(block.a, line.cross_a, 1.0), (block.b, line.cross_b, -1.0)] {
+                    if let Some(place) = self.places[body] {
+                        let added = rows(line.direction, cross);
+                        for (own, added) in gradient[6 * place..6 * place + 6].iter_mut().zip(added) {
+                            *own += sign * impulse * added;
+                        }
+                    }
+                }
+            }
+        }
+        gradient
+    }
+
+    /// How far the velocities are from those that follow from the impulses.
+    fn off(&self, gradient: &[f64]) -> f64 {
+        let bodies = &self.system.bodies;
+        let of = |(i, place): (usize, &Option<usize>)| {
+            let place = 6 * (*place)?;
+            let linear = DVec3::from_slice(&gradient[place..place + 3]) * bodies[i].inverse_mass;
+            let angular = bodies[i].inverse_inertia * DVec3::from_slice(&gradient[place + 3..place + 6]);
+            Some(linear.length() + angular.length() * self.system.reach[i])
+        };
+        self.places.iter().enumerate().filter_map(of).fold(0.0, f64::max)
+    }
+
+    fn fastest(&self) -> f64 {
+        let speed = |(v, reach): (&Velocity, &f64)| v.surface_speed(*reach);
+        self.velocity.iter().zip(&self.system.reach).map(speed).fold(0.0, f64::max)
+    }
+
+    /// The Hessian.
+    fn assemble(&self, factor: &mut Factor) {
+        factor.clear();
+        let bodies = &self.system.bodies;
+        for (i, place) in self.places.iter().enumerate() {
+            let Some(place) = *place else { continue };
+            let mut square = [[0.0; 6]; 6];
+            let inertia = self.inertia[i];
+            for k in 0..3 {
+                square[k][k] = 1.0 / bodies[i].inverse_mass;
+                for l in 0..3 {
+                    square[3 + k][3 + l] = inertia.col(l)[k];
+                }
+            }
+            factor.add(place, &square);
+        }
+        let of_pair = |x: &Block, y: &Block| (x.a, x.b) == (y.a, y.b);
+        let mut first = 0;
+        for blocks in self.system.blocks.chunk_by(of_pair) {
+            let squares = self.squares(first, blocks);
+            first += blocks.len();
+            let Some([aa, bb, ab]) = squares else { continue };
+            let (a, b) = (self.places[blocks[0].a], self.places[blocks[0].b]);
+            if let Some(a) = a {
+                factor.add(a, &aa);
+            }
+            if let Some(b) = b {
+                factor.add(b, &bb);
+            }
+            if let (Some(a), Some(b)) = (a, b) {
+                factor.add_between(a, b, &ab);
+            }
+        }
+    }
+
+    /// What the blocks of one pair add: for the first body, for the second, and with the rows of the first and the columns of the second.
+    fn squares(&self, first: usize, blocks: &[Block]) -> Option<[Square; 3]> {
+        let mut squares: Option<[Square; 3]> = None;
+        for (k, block) in (first..).zip(blocks) {
+            let Some(slope) = self.found[k].slope.filter(|_| self.counts(k)) else { continue };
+            let [aa, bb, ab] = squares.get_or_insert([[[0.0; 6]; 6]; 3]);
+            let (_, soft) = self.center_of(k, block);
+            let count = block.law.rows();
+            let lines = &block.lines[..count];
+            let weight = square_of(slope);
+            let of = |cross: fn(&super::line::Line) -> DVec3| {
+                let mut columns = [[0.0; 6]; 3];
+                for (column, line) in columns.iter_mut().zip(lines) {
+                    *column = rows(line.direction, cross(line));
+                }
+                columns
+            };
+            let (ga, gb) = (of(|line| line.cross_a), of(|line| line.cross_b));
+            for l in 0..count {
+                let (mut wa, mut wb) = ([0.0; 6], [0.0; 6]);
+                for m in 0..count {
+                    let w = weight[l][m] / soft;
+                    for i in 0..6 {
+                        wa[i] += w * ga[m][i];
+                        wb[i] += w * gb[m][i];
+                    }
+                }
+                for i in 0..6 {
+                    for j in 0..6 {
+                        aa[i][j] += ga[l][i] * wa[j];
+                        bb[i][j] += gb[l][i] * wb[j];
+                        ab[i][j] -= ga[l][i] * wb[j];
+                    }
+                }
+            }
+        }
+        squares
+    }
+
+    /// Goes along the way as far as the function falls.
+    fn go(&mut self, way: &[f64], gradient: &[f64]) {
+        let moved = |place: &Option<usize>| {
+            place.map_or_else(System::zero, |p| Velocity {
+                linear: DVec3::from_slice(&way[6 * p..6 * p + 3]),
+                angular: DVec3::from_slice(&way[6 * p + 3..6 * p + 6]),
+            })
+        };
+        let ways: Vec<Velocity> = self.places.iter().map(moved).collect();
+        // The quadratic part falls by s b + s² a /2.
+        let (mut a, mut b) = (0.0, 0.0);
+        for (i, way) in ways.iter().enumerate().filter(|(i, _)| self.places[*i].is_some()) {
+            let body = &self.system.bodies[i];
+            let off = self.velocity[i] - self.free[i];
+            let inertia = self.inertia[i];
+            a += way.linear.length_squared() / body.inverse_mass + way.angular.dot(inertia * way.angular);
+            b += way.linear.dot(off.linear) / body.inverse_mass + way.angular.dot(inertia * off.angular);
+        }
+        let lines: Vec<(usize, [f64; 3], [f64; 3])> = (0..self.system.blocks.len())
+            .filter(|&k| self.counts(k))
+            .map(|k| {
+                let block = &self.system.blocks[k];
+                (k, block.rates(|i| self.velocity[i]), block.rates(|i| ways[i]))
+            })
+            .collect();
+        let slope = |s: f64| {
+            let mut slope = b + s * a;
+            for (k, rates, added) in &lines {
+                let y = self.argument(*k, [0, 1, 2].map(|i| rates[i] + s * added[i]));
+                let impulse = self.system.blocks[*k].law.project(y);
+                slope -= (0..3).map(|i| impulse[i] * added[i]).sum::<f64>();
+            }
+            slope
+        };
+        let start: f64 = gradient.iter().zip(way).map(|(g, w)| g * w).sum();
+        let s = root(slope, start);
+        for (velocity, way) in self.velocity.iter_mut().zip(&ways) {
+            *velocity = *velocity + *way * s;
+        }
+    }
+}
+
+/// Where an increasing function, `start` (< 0) at zero, is about zero.
+fn root(slope: impl Fn(f64) -> f64, start: f64) -> f64 {
+    let most = FLAT * start.abs();
+    let (mut low, mut high) = ((0.0, start), (1.0, slope(1.0)));
+    for _ in 0..8 {
+        if high.1 >= -most {
+            break;
+        }
+        low = high;
+        high = (2.0 * high.0, slope(2.0 * high.0));
+    }
+    if high.1 <= most {
+        return high.0;
+    }
+    // Regula falsi, in which a value that stays counts half (Illinois).
+    let mut side = 0;
+    for _ in 0..24 {
+        let s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+        let value = slope(s);
+        if value.abs() <= most {
+            return s;
+        }
+        if value > 0.0 {
+            high = (s, value);
+            low.1 *= if side == 1 { 0.5 } else { 1.0 };
+            side = 1;
+        } else {
+            low = (s, value);
+            high.1 *= if side == -1 { 0.5 } else { 1.0 };
+            side = -1;
+        }
+    }
+    low.0
+}
+
+fn rows(linear: DVec3, angular: DVec3) -> [f64; 6] {
+    [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z]
+}
+
+/// Of a body that moves; symmetric.
+fn inertia_of(body: &SolverBody) -> DMat3 {
+    if body.inverse_mass == 0.0 {
+        return DMat3::ZERO;
+    }
+    let inertia = body.inverse_inertia.inverse();
+    (inertia + inertia.transpose()) * 0.5
+}
+
+fn square_of([nn, nt, nu, tt, tu, uu]: Slope) -> [[f64; 3]; 3] {
+    [[nn, nt, nu], [nt, tt, tu], [nu, tu, uu]]
+}

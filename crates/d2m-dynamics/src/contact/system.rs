@@ -1,0 +1,230 @@
+//! The contacts and joints of an island as one system of rows.
+
+use super::ContactPoint;
+use super::factor::Factor;
+use super::law::Law;
+use super::line::Line;
+use crate::velocity::Velocity;
+use glam::{DMat3, DVec3};
+
+/// What the solver needs of a body. A body that impulses cannot move has no inverse masses.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SolverBody {
+    pub(crate) inverse_mass: f64,
+    /// World axes.
+    pub(crate) inverse_inertia: DMat3,
+    pub(crate) velocity: Velocity,
+}
+
+/// One contact (three rows), or one row. `a` and `b` are places in the list of bodies.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Block {
+    pub(super) a: usize,
+    pub(super) b: usize,
+    /// Along the normal and the tangents; one row has only the first.
+    pub(super) lines: [Line; 3],
+    pub(super) law: Law,
+    /// How fast the rates change at most by an impulse of one along a line: what makes a rate of an impulse.
+    pub(super) scale: f64,
+    /// How the rates along the tangents depend on the impulses along them: a symmetric matrix.
+    pub(super) sliding: [f64; 3],
+    /// The inverse of a bound on its eigenvalues: one step for both directions, so that what slides is braked against its
+    /// velocity and not askew.
+    pub(super) step: f64,
+}
+
+impl Block {
+    fn new(contact: &ContactPoint, places: [usize; 2], bodies: &[SolverBody]) -> Self {
+        let [a, b] = places;
+        let arms = [contact.arm_a, contact.arm_b];
+        let line = |direction| Line::new(direction, arms, &bodies[a], &bodies[b]);
+        let [t, u] = contact.tangents;
+        let friction = contact.material.friction;
+        let law = if friction > 0.0 { Law::Cone { friction } } else { Law::PUSH };
+        let lines = [line(contact.normal), line(t), line(u)];
+        let mut block = Self { a, b, lines, law, scale: 0.0, sliding: [0.0; 3], step: 0.0 };
+        block.scale(bodies);
+        block
+    }
+
+    /// The bodies have other inertias.
+    fn renew(&mut self, bodies: &[SolverBody]) {
+        let (a, b) = (&bodies[self.a], &bodies[self.b]);
+        self.lines.iter_mut().for_each(|line| line.renew(a, b));
+        self.scale(bodies);
+    }
+
+    fn scale(&mut self, bodies: &[SolverBody]) {
+        let (a, b) = (&bodies[self.a], &bodies[self.b]);
+        let rows = &self.lines[..self.law.rows()];
+        self.scale = rows.iter().map(|line| line.change(line, a, b)).fold(0.0, f64::max);
+        if self.law.rows() == 3 {
+            let [_, t, u] = &self.lines;
+            let (tt, tu, uu) = (t.change(t, a, b), t.change(u, a, b), u.change(u, a, b));
+            let largest = 0.5 * (tt + uu) + (0.25 * (tt - uu) * (tt - uu) + tu * tu).sqrt();
+            self.sliding = [tt, tu, uu];
+            self.step = if largest > 0.0 { 1.0 / largest } else { 0.0 };
+        }
+    }
+
+    #[inline]
+    pub(super) fn rates(&self, velocity: impl Fn(usize) -> Velocity) -> [f64; 3] {
+        let (a, b) = (velocity(self.a), velocity(self.b));
+        let mut rates = [0.0; 3];
+        for (rate, line) in rates.iter_mut().zip(&self.lines[..self.law.rows()]) {
+            *rate = line.rate(&a, &b);
+        }
+        rates
+    }
+
+    #[inline]
+    fn push(&self, bodies: &mut [SolverBody], impulse: [f64; 3]) {
+        for (line, impulse) in self.lines[..self.law.rows()].iter().zip(impulse) {
+            line.push(bodies, [self.a, self.b], impulse);
+        }
+    }
+}
+
+/// Contacts between bodies: the impulses that they have, and the velocities with these.
+#[derive(Debug)]
+pub(crate) struct System {
+    pub(crate) bodies: Vec<SolverBody>,
+    pub(super) blocks: Vec<Block>,
+    pub(super) impulses: Vec<[f64; 3]>,
+    /// Of each body, the longest arm of its contacts.
+    pub(super) reach: Vec<f64>,
+    /// Kept from solution to solution.
+    pub(super) factor: Option<Factor>,
+    /// More than eight contacts of one pair.
+    pub(super) is_conforming: bool,
+}
+
+/// Contacts of one pair from which on it is conforming: as of a pin in its hole.
+const MANY: usize = 8;
+
+impl System {
+    /// Bodies with the velocities that they have without impulses. `place` finds a body of a contact in the list.
+    pub(crate) fn new(
+        bodies: Vec<SolverBody>,
+        contacts: &[ContactPoint],
+        place: impl Fn(usize) -> usize,
+    ) -> Self {
+        let block = |contact: &ContactPoint| Block::new(contact, [contact.a, contact.b].map(&place), &bodies);
+        let blocks: Vec<Block> = contacts.iter().map(block).collect();
+        let mut reach = vec![0.0f64; bodies.len()];
+        for (contact, block) in contacts.iter().zip(&blocks) {
+            reach[block.a] = reach[block.a].max(contact.arm_a.length());
+            reach[block.b] = reach[block.b].max(contact.arm_b.length());
+        }
+        let is_same = |x: &ContactPoint, y: &ContactPoint| (x.a, x.b) == (y.a, y.b);
+        let is_conforming = contacts.chunk_by(is_same).any(|of_pair| of_pair.len() > MANY);
+        let impulses = vec![[0.0; 3]; blocks.len()];
+        Self { bodies, blocks, impulses, reach, factor: None, is_conforming }
+    }
+
+    /// The bodies have other inertias and velocities, in which the impulses are contained.
+    pub(crate) fn renew(&mut self) {
+        for block in &mut self.blocks {
+            block.renew(&self.bodies);
+        }
+    }
+
+    /// The rate at which the distance of a contact grows.
+    pub(crate) fn rate(&self, contact: usize) -> f64 {
+        self.blocks[contact].rates(|i| self.bodies[i].velocity)[0]
+    }
+
+    /// Begins with impulses: those the contacts hold already.
+    pub(crate) fn warm_start(&mut self, contacts: &[ContactPoint]) {
+        for (k, contact) in contacts.iter().enumerate() {
+            let block = &self.blocks[k];
+            let impulse = block.law.project(contact.impulses());
+            block.push(&mut self.bodies, impulse);
+            self.impulses[k] = impulse;
+        }
+    }
+
+    /// Writes the impulses to the contacts.
+    pub(crate) fn store(&self, contacts: &mut [ContactPoint]) {
+        for (contact, [along, first, second]) in contacts.iter_mut().zip(&self.impulses) {
+            (contact.impulse, contact.sliding) = (*along, [*first, *second]);
+        }
+    }
+
+    /// Begins anew: these velocities, and no impulses.
+    pub(super) fn begin(&mut self, velocities: &[Velocity]) {
+        for (body, velocity) in self.bodies.iter_mut().zip(velocities) {
+            body.velocity = *velocity;
+        }
+        self.impulses.fill([0.0; 3]);
+    }
+
+    pub(super) fn velocities(&self) -> Vec<Velocity> {
+        self.bodies.iter().map(|body| body.velocity).collect()
+    }
+
+    /// The velocities without the impulses.
+    pub(super) fn free(&self) -> Vec<Velocity> {
+        let mut bodies = self.bodies.clone();
+        for (block, impulse) in self.blocks.iter().zip(&self.impulses) {
+            block.push(&mut bodies, impulse.map(|x| -x));
+        }
+        bodies.iter().map(|body| body.velocity).collect()
+    }
+
+    /// Takes these impulses instead.
+    pub(super) fn set(&mut self, free: &[Velocity], impulses: &[[f64; 3]]) {
+        for (body, velocity) in self.bodies.iter_mut().zip(free) {
+            body.velocity = *velocity;
+        }
+        for (block, impulse) in self.blocks.iter().zip(impulses) {
+            block.push(&mut self.bodies, *impulse);
+        }
+        self.impulses.copy_from_slice(impulses);
+    }
+
+    /// How far the impulses are from what the laws ask for, as a rate: the largest natural map
+    ///
+    /// ```text
+    /// d |λ − P(λ − (u − b + s e)/d)|,     s = μ |u_t| (de Saxcé), d: the scale of the block
+    /// ```
+    ///
+    /// which is zero in a solution and nowhere else. The velocities follow from the impulses to rounding.
+    pub(crate) fn residual(&self, targets: &[f64]) -> f64 {
+        let mut worst = 0.0f64;
+        for ((block, impulse), target) in self.blocks.iter().zip(&self.impulses).zip(targets) {
+            if block.scale == 0.0 || *target == f64::NEG_INFINITY {
+                continue;
+            }
+            let mut rates = block.rates(|i| self.bodies[i].velocity);
+            let shift = block.law.friction() * (rates[1] * rates[1] + rates[2] * rates[2]).sqrt();
+            rates[0] += shift - target + block.law.softness() * impulse[0];
+            let nearest = block.law.project([0, 1, 2].map(|i| impulse[i] - rates[i] / block.scale));
+            let off: f64 = (0..3).map(|i| (impulse[i] - nearest[i]) * (impulse[i] - nearest[i])).sum();
+            worst = worst.max(off.sqrt() * block.scale);
+        }
+        worst
+    }
+
+    /// Twice the kinetic energy of the bodies that impulses move.
+    pub(crate) fn doubled_energy(&self, inertia: &[(f64, DMat3)]) -> f64 {
+        self.bodies
+            .iter()
+            .zip(inertia)
+            .map(|(body, (mass, inertia))| {
+                let v = &body.velocity;
+                mass * v.linear.length_squared() + v.angular.dot(*inertia * v.angular)
+            })
+            .sum()
+    }
+
+    /// Do impulses move this body?
+    pub(super) fn is_moved(&self, body: usize) -> bool {
+        self.bodies[body].inverse_mass > 0.0
+    }
+
+    /// No rate: of a body that nothing drives.
+    pub(super) fn zero() -> Velocity {
+        Velocity { linear: DVec3::ZERO, angular: DVec3::ZERO }
+    }
+}

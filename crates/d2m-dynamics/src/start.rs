@@ -1,0 +1,203 @@
+//! Where bodies are when they are added: apart, touching, or in each other.
+
+use crate::broad_phase::{Aabb, meeting};
+use crate::contact::{Accuracy, ContactPoint, SolverBody, Start, System};
+use crate::pairs::{Pair, measure, solid_of};
+use crate::rigid_body::RigidBody;
+use crate::simulation::query_error;
+use crate::velocity::Velocity;
+use crate::{BodyId, Simulation, SimulationError, StepError};
+use d2m_bvh::{DistanceOptions, PairCache, Posed, StartState, distance_within};
+use glam::{DMat3, DVec3};
+
+/// Bodies that touch are moved this far apart before anything flies, of their size or their distance from the origin if that is more:
+/// 2⁻³⁶, of which a query can still tell a half with a tolerance of a sixteenth of it, 2⁻⁴¹.
+const APART: f64 = 1.0 / (1u64 << 36) as f64;
+/// How far a body is moved on trial, of the same, to see where it can part: 2⁻²⁰.
+const TRIAL: f64 = 1.0 / (1u64 << 20) as f64;
+/// Overlaps up to this part of it are the rounding of poses, and count as touching: 2⁻⁴⁰.
+const ROUNDING: f64 = 1.0 / (1u64 << 40) as f64;
+/// Rounds in which bodies that touch are parted: each may push others together.
+const MOST_ROUNDS: u32 = 4;
+
+/// Two bodies that share points, of which one could be moved away.
+struct Touch {
+    pair: (usize, usize),
+    /// Where they touch, with how far apart they are along the normals.
+    contacts: Vec<ContactPoint>,
+}
+
+impl Simulation {
+    /// Bodies added since the last step must not intersect any other. Those that touch are parted by a rounding, from where they move on
+    /// to the gap.
+    pub(crate) fn check_start(&mut self) -> Result<(), StepError> {
+        let first = self.checked;
+        for round in 0.. {
+            let mut touching = Vec::new();
+            for (a, b) in self.near_since(first) {
+                if let Some(touch) = self.check_pair(a, b, round == MOST_ROUNDS)? {
+                    touching.push(touch);
+                }
+            }
+            if touching.is_empty() {
+                break;
+            }
+            self.part(first, &touching);
+        }
+        self.checked = self.bodies.len();
+        if self.recorder.has_begun() {
+            for k in first..self.bodies.len() {
+                self.recorder.change(BodyId(k as u32), self.bodies[k].flight);
+            }
+        } else {
+            let flights = (0..self.bodies.len()).map(|k| (BodyId(k as u32), self.bodies[k].first_flight()));
+            self.recorder.begin(self.time, flights.collect());
+        }
+        Ok(())
+    }
+
+    /// The pairs with a body from `first` on that may be closer than the gap, in the order of that body.
+    fn near_since(&self, first: usize) -> Vec<(usize, usize)> {
+        let mut near = Vec::new();
+        if first < self.bodies.len() {
+            let gap = self.options.gap;
+            let boxes: Vec<Aabb> =
+                self.bodies.iter().map(|body| Aabb::posed(body, &body.pose_at(self.time), gap)).collect();
+            meeting(&boxes, |a, b| {
+                if b >= first && self.meets(a, b) {
+                    near.push((b, a));
+                }
+            });
+            near.sort_unstable();
+        }
+        near.into_iter().map(|(b, a)| (a, b)).collect()
+    }
+
+    /// Pairs that start closer than the gap keep what they have; those that touch are returned, unless this is the `last` look at them.
+    fn check_pair(&mut self, a: usize, b: usize, last: bool) -> Result<Option<Touch>, SimulationError> {
+        let gap = self.options.gap;
+        let (one, two) = (&self.bodies[a], &self.bodies[b]);
+        let options = DistanceOptions::default().with_solid(solid_of(one, two)).with_cutoff(gap);
+        let posed = (one.posed_at(self.time), two.posed_at(self.time));
+        let found = distance_within(posed.0, posed.1, &options, &mut PairCache::new());
+        let found = found.map_err(|error| query_error(one, two, error))?;
+        let Some(found) = found else { return Ok(None) };
+        if found.state == StartState::Apart {
+            // A pair that has been parted goes on to the gap.
+            if found.lower < gap && !self.pairs.contains_key(&(a, b)) {
+                self.pairs.insert((a, b), Box::new(Pair::new(found.lower)));
+            }
+            return Ok(None);
+        }
+        let touch = if last || found.state == StartState::Contained { None } else { self.touch(a, b) };
+        if touch.is_some() {
+            self.pairs.insert((a, b), Box::new(Pair::new(gap)));
+            return Ok(touch);
+        }
+        let (point, depth) = (0.5 * (found.point_a + found.point_b), self.depth(a, b));
+        let (a, b) = (self.bodies[a].name.to_string(), self.bodies[b].name.to_string());
+        Err(SimulationError::Intersecting { a, b, depth, point })
+    }
+
+    /// The distance of two bodies when the second one is moved so; none: not proven apart.
+    fn distance_after(&self, a: usize, b: usize, moved: DVec3) -> Option<f64> {
+        let (one, two) = (&self.bodies[a], &self.bodies[b]);
+        let mut pose = two.pose_at(self.time);
+        pose.translation += moved;
+        let options = DistanceOptions::default().with_solid(solid_of(one, two));
+        let posed = (one.posed_at(self.time), Posed::new(&two.tree, pose));
+        let found = distance_within(posed.0, posed.1, &options, &mut PairCache::new()).ok()??;
+        (found.state == StartState::Apart).then_some(found.lower)
+    }
+
+    /// The contacts of two bodies that touch up to rounding; none: they overlap.
+    fn touch(&self, a: usize, b: usize) -> Option<Touch> {
+        let bodies = [&self.bodies[a], &self.bodies[b]];
+        let trial = TRIAL * size(bodies);
+        // Where it comes furthest away.
+        let away = |way: &DVec3| self.distance_after(a, b, *way * trial).map(|distance| (distance, *way));
+        let (_, way) = ways(bodies).iter().filter_map(away).reduce(|x, y| if y.0 > x.0 { y } else { x })?;
+        let mut moved = bodies[1].clone();
+        moved.flight = moved.flight.with_position(moved.flight.position() + way * trial);
+        let pair = [bodies[0].clone(), moved];
+        let found = measure(&pair, (0, 1), self.time, 2.0 * trial, trial, self.material(a, b)).ok()?;
+        let back = |c: &ContactPoint| {
+            let distance = c.distance - c.normal.dot(way) * trial;
+            let mut contact = ContactPoint { a, b, distance, ..*c };
+            contact.material.friction = 0.0;
+            contact
+        };
+        let contacts: Vec<ContactPoint> = found.contacts.iter().map(back).collect();
+        let deepest = contacts.iter().map(|c| -c.distance).fold(f64::NEG_INFINITY, f64::max);
+        let is_touch = !contacts.is_empty() && deepest <= ROUNDING * size(bodies);
+        is_touch.then_some(Touch { pair: (a, b), contacts })
+    }
+
+    /// About how far the second body would have to be moved to come free, along the best of some directions.
+    fn depth(&self, a: usize, b: usize) -> f64 {
+        let bodies = [&self.bodies[a], &self.bodies[b]];
+        let most = bodies[0].radius + bodies[1].radius;
+        let far = bodies[0].pose_at(self.time).translation.distance(bodies[1].pose_at(self.time).translation);
+        let along = |way: &DVec3| {
+            let (mut low, mut high) = (0.0, 2.0 * most + far);
+            for _ in 0..20 {
+                let middle = 0.5 * (low + high);
+                if self.distance_after(a, b, *way * middle).is_some() {
+                    high = middle;
+                } else {
+                    low = middle;
+                }
+            }
+            high
+        };
+        ways(bodies).iter().map(along).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Moves new bodies by the least that parts those that touch: the solution of contacts, with ways for velocities.
+    fn part(&mut self, first: usize, touching: &[Touch]) {
+        let contacts: Vec<ContactPoint> =
+            touching.iter().flat_map(|touch| touch.contacts.iter().copied()).collect();
+        let body = |(i, body): (usize, &RigidBody)| {
+            let is_free = i >= first && body.is_dynamic();
+            let inverse_mass = if is_free { body.inverse_mass } else { 0.0 };
+            let inverse_inertia =
+                if is_free { body.inverse_inertia_at(body.orientation) } else { DMat3::ZERO };
+            SolverBody { inverse_mass, inverse_inertia, velocity: Velocity::default() }
+        };
+        let bodies = self.bodies.iter().enumerate().map(body).collect();
+        let wanted = |touch: &Touch| APART * size([touch.pair.0, touch.pair.1].map(|i| &self.bodies[i]));
+        let target = |touch: &Touch| {
+            let wanted = wanted(touch);
+            touch.contacts.iter().map(move |c| wanted - c.distance).collect::<Vec<f64>>()
+        };
+        let targets: Vec<f64> = touching.iter().flat_map(target).collect();
+        let precision = touching.iter().map(wanted).fold(f64::INFINITY, f64::min) / 16.0;
+        let mut system = System::new(bodies, &contacts, |body| body);
+        system.solve(&targets, Accuracy { precision, relative: 0.0, aim: 1.0 }, Start::Sticking);
+        for (body, solved) in self.bodies.iter_mut().zip(&system.bodies).skip(first) {
+            if body.is_dynamic() {
+                body.shift(solved.velocity);
+            }
+        }
+    }
+}
+
+/// The radius of the larger body, or how far from the origin they are.
+fn size(bodies: [&RigidBody; 2]) -> f64 {
+    bodies.iter().map(|body| body.radius.max(body.position.length())).fold(0.0, f64::max)
+}
+
+/// Directions in which the second body may come free of the first one: from center to center, the axes, and halfway between them.
+fn ways([a, b]: [&RigidBody; 2]) -> Vec<DVec3> {
+    let mut ways = vec![(b.position - a.position).normalize_or_zero()];
+    let steps = [0.0, 1.0, -1.0];
+    for x in steps {
+        for y in steps {
+            for z in steps {
+                ways.push(DVec3::new(x, y, z).normalize_or_zero());
+            }
+        }
+    }
+    ways.retain(|way| *way != DVec3::ZERO);
+    ways
+}

@@ -1,0 +1,271 @@
+//! Contacts that are solved, not iterated: masses far apart, tall stacks, friction that locks, hits that keep their energy, starts that touch.
+
+use d2m_bvh::{MeshTree, TriMesh};
+use d2m_dynamics::{Body, BodyId, Kind, Mass, Simulation, SimulationOptions};
+use d2m_motion::ConstantTwist;
+use glam::DVec3;
+use std::sync::Arc;
+
+fn tree(shape: &str) -> Arc<MeshTree> {
+    Arc::new(MeshTree::new(d2m_shapes::mesh(shape).unwrap()))
+}
+
+fn cube() -> Arc<MeshTree> {
+    tree("box?x=0.5&y=0.5&z=0.5")
+}
+
+fn floor() -> Body {
+    let shape = tree("box?x=10&y=0.5&z=10");
+    Body::new("floor", shape).with_kind(Kind::Static).with_position(DVec3::Y * -0.5).with_friction(0.5)
+}
+
+fn body(name: usize, tree: &Arc<MeshTree>, y: f64) -> Body {
+    Body::new(name.to_string(), Arc::clone(tree)).with_position(DVec3::Y * y).with_friction(0.5)
+}
+
+fn awake() -> Simulation {
+    Simulation::new(SimulationOptions::default().with_sleeping(false)).unwrap()
+}
+
+/// What a run has given up, the largest residual, and the contact events.
+struct Ran {
+    skipped: f64,
+    residual: f64,
+    events: u32,
+}
+
+fn run(simulation: &mut Simulation, end: f64) -> Ran {
+    let mut ran = Ran { skipped: 0.0, residual: 0.0, events: 0 };
+    while simulation.time() < end - 1e-9 {
+        let report = simulation.step().unwrap();
+        ran.skipped += report.segments.iter().map(|segment| segment.skipped).sum::<f64>();
+        ran.residual = ran.residual.max(report.residual);
+        ran.events += report.events;
+    }
+    ran
+}
+
+fn speed(simulation: &Simulation) -> f64 {
+    let of = |id: BodyId| simulation.linear_velocity(id).length() + simulation.angular_velocity(id).length();
+    simulation.ids().map(of).fold(0.0, f64::max)
+}
+
+/// Boxes 10⁴, 10⁶ and 10⁸ times as heavy as what they stand on, off its middle.
+#[test]
+fn heavy_boxes_rest_on_light_ones() {
+    for ratio in [1e4, 1e6, 1e8] {
+        let mut simulation = awake();
+        let shape = cube();
+        simulation.add(&floor()).unwrap();
+        simulation.add(&body(0, &shape, 0.501).with_mass(Mass::Total(1.0))).unwrap();
+        let heavy = body(1, &shape, 1.502).with_mass(Mass::Total(ratio));
+        let heavy = simulation.add(&heavy.with_position(DVec3::new(0.1, 1.502, 0.05))).unwrap();
+        let ran = run(&mut simulation, 1.0);
+        assert_eq!((ran.skipped, ran.events), (0.0, 0), "{ratio}");
+        assert!(speed(&simulation) < 1e-5, "{ratio}: {}", speed(&simulation));
+        assert!((simulation.position(heavy).y - 1.502).abs() < 1e-6, "{ratio}");
+    }
+}
+
+/// Thirty boxes on each other neither move nor gain energy; the residual says how exactly that is solved.
+#[test]
+fn a_stack_of_thirty_stands() {
+    let mut simulation = awake();
+    let shape = cube();
+    simulation.add(&floor()).unwrap();
+    let ids: Vec<BodyId> =
+        (0..30).map(|k| simulation.add(&body(k, &shape, 0.501 + 1.001 * k as f64)).unwrap()).collect();
+    let ran = run(&mut simulation, 1.0);
+    assert_eq!(ran.skipped, 0.0);
+    // A hundred-thousandth of a gap a step is a micrometer a second.
+    assert!(ran.residual <= 1e-6, "{}", ran.residual);
+    assert!(speed(&simulation) < 1e-6, "{}", speed(&simulation));
+    for (k, &id) in ids.iter().enumerate() {
+        let place = simulation.position(id) - DVec3::Y * (0.501 + 1.001 * k as f64);
+        assert!(place.length() < 1e-7, "{k}: {place}");
+    }
+}
+
+/// A prism whose sides lean by 0.12 to the vertical, narrow below (or above).
+fn wedge(sign: f64) -> Arc<MeshTree> {
+    let half = |y: f64| 0.3 + 0.12 * y * sign;
+    let mut vertices = Vec::new();
+    for z in [-0.5, 0.5] {
+        for (x, y) in [(-half(-0.5), -0.5), (half(-0.5), -0.5), (half(0.5), 0.5), (-half(0.5), 0.5)] {
+            vertices.push(DVec3::new(x, y, z));
+        }
+    }
+    let mut triangles = vec![[0, 3, 2], [0, 2, 1], [4, 5, 6], [4, 6, 7]];
+    for i in 0..4u32 {
+        let j = (i + 1) % 4;
+        triangles.extend([[i, j, j + 4], [i, j + 4, i + 4]]);
+    }
+    Arc::new(MeshTree::new(TriMesh::try_new(vertices, triangles).unwrap()))
+}
+
+/// A stone that is wider below than the jaws on both sides of it are apart above, at an angle of 0.12 with a coefficient of friction of
+/// 0.3: it could fall out, or be held by normal forces as large as friction needs. What can stick sticks: it comes up with the jaws.
+#[test]
+fn a_stone_that_only_friction_holds_is_held() {
+    let mut simulation = awake();
+    let stone = Body::new("stone", wedge(-1.0)).with_friction(0.3).with_position(DVec3::Y * 2.0);
+    let stone = simulation.add(&stone).unwrap();
+    // A gap along the normals.
+    let x = 0.6 + 1e-3 * (1.0f64 + 0.12 * 0.12).sqrt();
+    for side in [-1.0, 1.0] {
+        let up = ConstantTwist::REST
+            .with_position(DVec3::new(x * side, 2.0, 0.0))
+            .with_linear_velocity(DVec3::Y * 0.2);
+        let jaw = Body::new(format!("jaw {side}"), wedge(1.0)).with_friction(0.3);
+        simulation.add(&jaw.with_kind(Kind::Kinematic(Arc::new(up)))).unwrap();
+    }
+    let start = simulation.position(stone).y;
+    assert_eq!(run(&mut simulation, 0.1).skipped, 0.0);
+    let risen = simulation.position(stone).y - start;
+    // It would have fallen by 0.05.
+    assert!(risen > 0.01 && risen <= 0.02, "{risen}");
+}
+
+/// Slides at the rate of its friction: what sticks first is let go where it cannot.
+#[test]
+fn a_box_slides_to_a_stop() {
+    let mut simulation = awake();
+    simulation.add(&floor()).unwrap();
+    let id = simulation.add(&body(0, &cube(), 0.501).with_linear_velocity(DVec3::X * 2.0)).unwrap();
+    assert_eq!(run(&mut simulation, 0.3).skipped, 0.0);
+    let expected = 2.0 * 0.3 - 0.5 * 0.5 * 9.81 * 0.09;
+    assert!((simulation.position(id).x - expected).abs() < 2e-3, "{}", simulation.position(id).x);
+    run(&mut simulation, 1.0);
+    assert!(speed(&simulation) < 1e-6);
+}
+
+/// A ball of triangles between two walls, more than a hundred times: hits off its middle make it spin, but the energy is that of the
+/// start to 1e-9.
+#[test]
+fn elastic_hits_keep_their_energy() {
+    let options = SimulationOptions::default().with_gravity(DVec3::ZERO).with_gap(1e-5);
+    let mut simulation = Simulation::new(options).unwrap();
+    for x in [-0.61, 0.61] {
+        let wall = Body::new(format!("wall {x}"), cube()).with_kind(Kind::Static);
+        simulation.add(&wall.with_position(DVec3::X * x)).unwrap();
+    }
+    let ball = Body::new("ball", tree("icosphere?triangles=320&scale=0.1")).with_restitution(1.0);
+    let ball = simulation.add(&ball.with_linear_velocity(DVec3::X * 50.0)).unwrap();
+    let ran = run(&mut simulation, 0.1);
+    assert!(ran.events > 100, "{}", ran.events);
+    let properties = simulation.mass_properties(ball).unwrap();
+    let spin = simulation.orientation(ball).conjugate() * simulation.angular_velocity(ball);
+    let energy = properties.mass * simulation.linear_velocity(ball).length_squared()
+        + spin.dot(properties.inertia * spin);
+    assert!((energy / (properties.mass * 2500.0) - 1.0).abs() < 1e-9, "{energy}");
+}
+
+/// One in, one out, and the energy with it.
+#[test]
+fn a_cradle_passes_on_one() {
+    let options = SimulationOptions::default().with_gravity(DVec3::ZERO);
+    let mut simulation = Simulation::new(options).unwrap();
+    let shape = cube();
+    let ids: Vec<BodyId> = (0..5)
+        .map(|k| {
+            let x = if k == 0 { -0.5 } else { 1.002 * k as f64 };
+            let v = if k == 0 { DVec3::X } else { DVec3::ZERO };
+            let one = Body::new(k.to_string(), Arc::clone(&shape)).with_restitution(1.0);
+            simulation.add(&one.with_position(DVec3::X * x).with_linear_velocity(v)).unwrap()
+        })
+        .collect();
+    run(&mut simulation, 1.0);
+    for (k, &id) in ids.iter().enumerate() {
+        let expected = if k == 4 { 1.0 } else { 0.0 };
+        assert!((simulation.linear_velocity(id).x - expected).abs() < 1e-6, "{k}");
+    }
+}
+
+/// Boxes that touch are accepted, and part to the gap.
+#[test]
+fn boxes_that_touch_part_to_the_gap() {
+    let mut simulation = awake();
+    let shape = cube();
+    simulation.add(&floor()).unwrap();
+    let ids: Vec<BodyId> =
+        (0..4).map(|k| simulation.add(&body(k, &shape, 0.5 + k as f64)).unwrap()).collect();
+    assert_eq!(run(&mut simulation, 0.5).skipped, 0.0);
+    for (k, &id) in ids.iter().enumerate() {
+        let expected = 0.5 + k as f64 + 1e-3 * (k + 1) as f64;
+        let y = simulation.position(id).y;
+        assert!((y - expected).abs() < 2e-4 * (k + 1) as f64, "{k}: {y} {expected}");
+    }
+    assert!(speed(&simulation) < 1e-3, "{}", speed(&simulation));
+}
+
+/// Those that start closer than the gap stay where they are.
+#[test]
+fn boxes_that_start_a_billionth_apart_rest() {
+    let mut simulation = awake();
+    let shape = cube();
+    simulation.add(&floor()).unwrap();
+    for k in 0..3 {
+        simulation.add(&body(k, &shape, 0.5 + 1e-9 + (1.0 + 1e-9) * k as f64)).unwrap();
+    }
+    let ran = run(&mut simulation, 1.0);
+    assert_eq!((ran.skipped, ran.events), (0.0, 0));
+    assert!(speed(&simulation) < 1e-6);
+}
+
+/// What no friction brakes goes on, however slow; what friction holds sleeps.
+#[test]
+fn slow_boxes_without_friction_stay_awake() {
+    for (friction, sleeps) in [(0.0, false), (1.0, true)] {
+        let options = SimulationOptions::default().with_gravity(DVec3::new(1e-4, -9.81, 0.0));
+        let mut simulation = Simulation::new(options).unwrap();
+        simulation.add(&floor().with_friction(friction)).unwrap();
+        let shape = tree("box?x=0.2&y=0.2&z=0.2");
+        let id = simulation.add(&body(0, &shape, 0.201).with_friction(friction)).unwrap();
+        run(&mut simulation, 4.0);
+        assert_eq!(simulation.is_asleep(id), sleeps);
+        let expected = if sleeps { 0.0 } else { 0.5 * 1e-4 * 16.0 };
+        assert!((simulation.position(id).x - expected).abs() < 2e-5, "{}", simulation.position(id).x);
+    }
+}
+
+/// A brick that nothing meets, at three hundred radians a second about no axis of its own.
+#[test]
+fn fast_tops_keep_their_energy() {
+    let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
+    let top = Body::new("top", tree("box?x=0.3&y=0.5&z=0.2"));
+    let id = simulation.add(&top.with_angular_velocity(DVec3::new(100.0, 250.0, 130.0))).unwrap();
+    let properties = simulation.mass_properties(id).unwrap();
+    let start = DVec3::new(100.0, 250.0, 130.0);
+    let energy = start.dot(properties.inertia * start);
+    let mut worst = 0.0f64;
+    while simulation.time() < 1.0 {
+        for segment in simulation.step().unwrap().segments {
+            for (_, flight) in &segment.changed {
+                let spin = flight.orientation().conjugate() * flight.angular_velocity();
+                worst = worst.max((spin.dot(properties.inertia * spin) / energy - 1.0).abs());
+            }
+        }
+    }
+    assert!(worst < 1e-3, "{worst}");
+}
+
+/// A heap is the same at one and at two threads, to the bit.
+#[test]
+fn heaps_have_the_same_bits_at_any_number_of_threads() {
+    let run_on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut simulation = awake();
+            simulation.add(&floor()).unwrap();
+            let shape = tree("box?x=0.2&y=0.1&z=0.15");
+            for k in 0..24 {
+                let place =
+                    DVec3::new(0.45 * (k % 3) as f64, 0.3 + 0.35 * (k / 3) as f64, 0.02 * (k % 5) as f64);
+                simulation.add(&body(k, &shape, 0.0).with_position(place)).unwrap();
+            }
+            run(&mut simulation, 0.4);
+            simulation.snapshot()
+        })
+    };
+    assert_eq!(run_on(1), run_on(2));
+}
