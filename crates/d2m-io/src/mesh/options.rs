@@ -54,7 +54,7 @@ impl ReadOptions {
     /// use d2m_io::{ReadOptions, Unit};
     /// let cube = d2m_shapes::mesh("box?x=10&y=10&z=10").unwrap();
     /// let small = ReadOptions::new().with_unit(Unit::Millimeter).apply(cube)?;
-    /// assert_eq!(small.vertices()[0].abs().x, 0.005);
+    /// assert_eq!(small.vertices()[0].abs().x, 0.01); // half of the box
     /// # Ok::<(), d2m_io::IoError>(())
     /// ```
     ///
