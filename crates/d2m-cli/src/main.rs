@@ -22,7 +22,6 @@ mod scene;
 mod simulation;
 mod sizes;
 mod trials;
-mod unique_keys;
 mod view;
 
 use arguments::{Arguments, Command};

@@ -5,7 +5,6 @@ use crate::load::{Loaded, load_with};
 use d2m::bvh::MeshTree;
 use d2m_io::ReadOptions;
 use glam::DVec3;
-use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -42,24 +41,5 @@ impl MeshLibrary {
         let tree = Arc::new(self.mesh(mesh, scale)?.into_tree());
         self.trees.insert(key, Arc::clone(&tree));
         Ok(tree)
-    }
-}
-
-/// The value of the key `scale`: one number, or one for each axis; negative ones mirror.
-pub(crate) fn read_scale(value: Option<&Value>) -> Result<DVec3, String> {
-    let Some(value) = value else { return Ok(DVec3::ONE) };
-    let numbers = match value {
-        Value::Number(number) => vec![number.as_f64(); 3],
-        Value::Array(list) => list.iter().map(Value::as_f64).collect(),
-        _ => Vec::new(),
-    };
-    let [Some(x), Some(y), Some(z)] = numbers[..] else {
-        return Err(format!("{value} is neither a number nor a list of three"));
-    };
-    let scale = DVec3::new(x, y, z);
-    if scale.is_finite() && scale.abs().min_element() > 0.0 {
-        Ok(scale)
-    } else {
-        Err(format!("{value} has to be finite and not zero"))
     }
 }

@@ -3,10 +3,10 @@
 use crate::failure::{Failure, parse_json};
 use crate::load::read;
 use crate::mesh_library::MeshLibrary;
-use crate::scene::{SceneBody, place_of};
+use crate::scene::SceneBody;
 use crate::simulation::{Fields, short};
-use crate::unique_keys::UniqueKeys;
 use d2m::bvh::Window;
+use d2m_io::{SceneEntry, UniqueKeys};
 use d2m_robot::{Attached, Obstacle, RobotScene};
 use glam::{DQuat, DVec3};
 use serde_json::Value;
@@ -55,7 +55,7 @@ impl<'a> RobotSceneFile<'a> {
         let mut groups: Vec<[String; 2]> = Vec::new();
         let mut library = MeshLibrary::new(self.path);
         for (index, value) in Self::list(&fields, "bodies")?.iter().enumerate() {
-            let place = format!("{}, {}", self.path.display(), place_of(index, value));
+            let place = format!("{}, {}", self.path.display(), SceneEntry::place(index, value));
             let body = Fields::new(place, value, BODY_KEYS)?;
             let name = add_body(scene, &body, window, &mut library)?;
             if let Some(group) = body.text("group")? {

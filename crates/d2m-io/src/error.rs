@@ -47,12 +47,13 @@ pub enum IoError {
     },
 }
 
-/// A file and a line of it, as far as they are known. It is written with a colon behind it, or as nothing.
+/// A file and a part of it, as far as they are known. It is written with a colon behind it, or as nothing.
 ///
 /// ```
 /// use d2m_io::Place;
-/// assert_eq!(Place { file: Some("cube.obj".into()), line: Some(3) }.to_string(), "cube.obj, line 3: ");
-/// assert_eq!(Place { file: None, line: Some(3) }.to_string(), "line 3: ");
+/// let line = Place { line: Some(3), ..Place::default() };
+/// assert_eq!(line.to_string(), "line 3: ");
+/// assert_eq!(Place { file: Some("cube.obj".into()), ..line }.to_string(), "cube.obj, line 3: ");
 /// assert_eq!(Place::default().to_string(), "");
 /// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -61,16 +62,16 @@ pub struct Place {
     pub file: Option<String>,
     /// The line, from 1; none for binary formats and for what concerns the whole file.
     pub line: Option<usize>,
+    /// The item, such as `body 2, scale`; none where a line says it.
+    pub item: Option<String>,
 }
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (&self.file, self.line) {
-            (Some(file), Some(line)) => write!(f, "{file}, line {line}: "),
-            (Some(file), None) => write!(f, "{file}: "),
-            (None, Some(line)) => write!(f, "line {line}: "),
-            (None, None) => Ok(()),
-        }
+        let line = self.line.map(|line| format!("line {line}"));
+        let parts = [self.file.as_deref(), line.as_deref(), self.item.as_deref()];
+        let known: Vec<&str> = parts.into_iter().flatten().collect();
+        if known.is_empty() { Ok(()) } else { write!(f, "{}: ", known.join(", ")) }
     }
 }
 

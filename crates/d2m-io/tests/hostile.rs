@@ -2,7 +2,7 @@
 
 mod samples;
 
-use d2m_io::{MeshFormat, ReadOptions, parse_mesh};
+use d2m_io::{MeshFormat, ReadOptions, SceneFile, parse_mesh};
 use proptest::prelude::*;
 use samples::{MODEL, archive, dae, gltf, three_mf};
 use std::fmt::Write;
@@ -153,4 +153,43 @@ proptest! {
             }
         }
     }
+
+    #[test]
+    fn damaged_scenes_are_a_scene_or_an_error(
+        edits in prop::collection::vec((any::<usize>(), any::<u8>(), 0..7_u8), 1..5),
+    ) {
+        if let Ok(scene) = SceneFile::parse(&damaged(SCENE, &edits)) {
+            prop_assert!(scene.bodies.iter().all(|body| !body.name.is_empty() && body.scale.is_finite()));
+        }
+        let _ = d2m_io::parse_json::<d2m_motion::AnyMotion>(&damaged(MOTION, &edits));
+    }
+}
+
+const SCENE: &[u8] = br#"{"window": [0, 2], "min_separation": 0.5, "tolerance": 1e-9, "bodies": [
+    {"name": "a", "mesh": "shape:gear", "scale": [1, 2, 3], "motion": {"w": [0, 0, 1]}, "group": "g"},
+    {"name": "b", "mesh": "shape:box", "solid": false}], "ignore": [["a", "g"]]}"#;
+const MOTION: &[u8] = br#"{"chain": [{"x": [1, 0, 0], "joint": "revolute", "axis": [0, 0, 1], "value": {"times": [0, 1, 2], "positions": [0, 1, 0]}}]}"#;
+
+#[test]
+fn scenes_are_refused_with_their_place() {
+    let good = String::from_utf8(SCENE.to_vec()).unwrap();
+    assert!(SceneFile::parse(SCENE).is_ok());
+    for (from, to, expected) in [
+        ("[0, 2]", "[2, 0]", "window: time window [2.0, 0.0]"),
+        ("0.5,", "-1,", "min_separation: -1.0 is not a finite distance"),
+        ("1e-9", "0", "tolerance: 0.0 is not a positive finite distance"),
+        ("\"b\"", "\"a\"", "body 1: the name \"a\" is that of body 0 too"),
+        ("[1, 2, 3]", "[1, 2]", "body 0 (\"a\"), scale: [1,2] is neither a number nor a list of three"),
+        ("\"w\"", "\"z\"", "body 0 (\"a\"), motion: unknown field `z`"),
+        ("[\"a\", \"g\"]", "[\"a\", \"q\"]", "ignore 0: \"q\" is the name of no body and of no group"),
+        ("\"solid\"", "\"kind\"", "body 1 (\"b\"): unknown field `kind`"),
+    ] {
+        assert!(good.contains(from), "{from}");
+        let found = SceneFile::parse(good.replace(from, to).as_bytes()).unwrap_err();
+        assert!(found.to_string().starts_with(expected), "{found}\n{expected}");
+        let named = found.in_file("s.json").to_string();
+        assert!(named.starts_with("s.json, "), "{named}");
+    }
+    let deep = format!("{{\"bodies\": {}", "[".repeat(100_000));
+    assert!(SceneFile::parse(deep.as_bytes()).unwrap_err().to_string().contains("recursion limit"));
 }

@@ -41,11 +41,16 @@ impl<'a> Names<'a> {
                 return Err(Failure::at(place, format!("{name:?} is the name of no body and of no group")));
             }
         }
-        Ok(match (self.bodies.get(a), self.bodies.get(b)) {
+        Ok(self.pair(a, b))
+    }
+
+    /// What two names of the scene stand for.
+    pub(crate) fn pair(&self, a: &str, b: &str) -> Ignored {
+        match (self.bodies.get(a), self.bodies.get(b)) {
             (Some(&a), Some(&b)) => Ignored::Pair(a, b),
-            (Some(&body), None) => Ignored::BodyAndGroup(body, (*b).to_owned()),
-            (None, Some(&body)) => Ignored::BodyAndGroup(body, (*a).to_owned()),
-            (None, None) => Ignored::Groups((*a).to_owned(), (*b).to_owned()),
-        })
+            (Some(&body), None) => Ignored::BodyAndGroup(body, b.to_owned()),
+            (None, Some(&body)) => Ignored::BodyAndGroup(body, a.to_owned()),
+            (None, None) => Ignored::Groups(a.to_owned(), b.to_owned()),
+        }
     }
 }

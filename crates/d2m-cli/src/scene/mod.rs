@@ -5,33 +5,18 @@ mod ignored;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use body::{SceneBody, place_of};
+pub(crate) use body::SceneBody;
 pub(crate) use ignored::{Ignored, Names};
 
 use crate::failure::Failure;
 use crate::load::read;
 use crate::mesh_library::MeshLibrary;
-use crate::unique_keys::UniqueKeys;
+use crate::orientation::warn_of_json;
 use d2m::bvh::{QueryOptions, Window};
 use d2m::{Body, BodyId, Group, World, WorldError};
-use serde::Deserialize;
+use d2m_io::SceneFile;
 use std::collections::BTreeMap;
 use std::path::Path;
-
-/// The keys of a scene file; what is inside of them is checked one by one, so that messages can say where.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SceneForm {
-    #[serde(default)]
-    window: Option<[f64; 2]>,
-    bodies: Vec<UniqueKeys>,
-    #[serde(default)]
-    ignore: Vec<UniqueKeys>,
-    #[serde(default)]
-    min_separation: f64,
-    #[serde(default)]
-    tolerance: Option<f64>,
-}
 
 /// A scene file that was read and checked.
 pub(crate) struct Scene {
@@ -47,37 +32,20 @@ impl Scene {
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
         let place = path.display();
         let bytes = read(path)?;
-        // Twice: first for faults with line and column, which are lost in a value.
-        let form: SceneForm = serde_json::from_slice(&bytes)
-            .map_err(|error| Failure::at(place.to_string(), body::hinted(&error)))?;
-        let [start, end] = form.window.unwrap_or([0.0, 1.0]);
-        let window =
-            Window::try_new(start, end).map_err(|error| Failure::at(format!("{place}, window"), error))?;
-        let wanted = |key: &str, value: f64, good: bool, what: &str| {
-            let reason = || Failure::at(format!("{place}, {key}"), format!("{value:?} is not {what}"));
-            if good { Ok(()) } else { Err(reason()) }
-        };
-        let separation = form.min_separation;
-        let is_separation = separation >= 0.0 && separation.is_finite();
-        wanted("min_separation", separation, is_separation, "a finite distance that is not negative")?;
-        if let Some(tolerance) = form.tolerance {
-            let is_tolerance = tolerance > 0.0 && tolerance.is_finite();
-            wanted("tolerance", tolerance, is_tolerance, "a positive finite distance")?;
+        let file = SceneFile::parse(&bytes).map_err(|error| error.in_file(place.to_string()))?;
+        if let Ok(value) = serde_json::from_slice(&bytes) {
+            warn_of_json(&place.to_string(), &value);
         }
+        let SceneFile { window, bodies: entries, ignore, min_separation, tolerance, .. } = file;
         let mut library = MeshLibrary::new(path);
-        let mut bodies = Vec::with_capacity(form.bodies.len());
-        for (index, UniqueKeys(value)) in form.bodies.into_iter().enumerate() {
-            let body_place = format!("{place}, {}", place_of(index, &value));
-            let body = SceneBody::read(value, &body_place, window, &mut library)?;
-            bodies.push(body);
+        let mut bodies = Vec::with_capacity(entries.len());
+        for (index, entry) in entries.into_iter().enumerate() {
+            let place = format!("{place}, body {index} ({:?})", entry.name);
+            bodies.push(SceneBody::new(entry, &place, window, &mut library)?);
         }
-        check_names(&place.to_string(), &bodies)?;
         let names = Names::new(&bodies);
-        let mut ignored = Vec::with_capacity(form.ignore.len());
-        for (index, UniqueKeys(value)) in form.ignore.into_iter().enumerate() {
-            ignored.push(names.ignored(&format!("{place}, ignore {index}"), &value)?);
-        }
-        Ok(Self { window, bodies, ignored, min_separation: separation, tolerance: form.tolerance })
+        let ignored = ignore.iter().map(|[a, b]| names.pair(a, b)).collect();
+        Ok(Self { window, bodies, ignored, min_separation, tolerance })
     }
 
     /// What stopped a query of the scene's world, with the bodies' names.

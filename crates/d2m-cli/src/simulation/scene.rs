@@ -4,11 +4,11 @@ use super::fields::{Fields, short};
 use crate::failure::Failure;
 use crate::load::read;
 use crate::mesh_library::MeshLibrary;
-use crate::scene::{Ignored, Names, SceneBody, check_names, place_of};
-use crate::unique_keys::UniqueKeys;
+use crate::scene::{Ignored, Names, SceneBody, check_names};
 use d2m::bvh::Window;
 use d2m::motion::AnyMotion;
 use d2m_dynamics::{Body, BodyId, Kind, Mass, MassProperties, Motion, Simulation, SimulationOptions};
+use d2m_io::{SceneEntry, UniqueKeys};
 use glam::{DMat3, DVec3};
 use serde_json::Value;
 use std::path::Path;
@@ -65,7 +65,7 @@ pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
     let mut library = MeshLibrary::new(path);
     let (mut bodies, mut ids) = (Vec::with_capacity(list.len()), Vec::with_capacity(list.len()));
     for (index, value) in list.iter().enumerate() {
-        let place = format!("{}, {}", path.display(), place_of(index, value));
+        let place = format!("{}, {}", path.display(), SceneEntry::place(index, value));
         let fields = Fields::new(place, value, BODY_KEYS)?;
         let body = SceneBody::read(fields.without(DYNAMIC_KEYS), fields.place(), window, &mut library)?;
         let described = describe(&fields, &body)?;

@@ -3,7 +3,7 @@
 use super::{Flight, Holds, Mark, Picture, Span, Up, push_thinned};
 use crate::failure::{Failure, json_fault, parse_json};
 use crate::load::read;
-use crate::mesh_library::{MeshLibrary, read_scale};
+use crate::mesh_library::MeshLibrary;
 use crate::report::short;
 use d2m::bvh::TriMesh;
 use d2m::motion::ConstantTwist;
@@ -126,7 +126,8 @@ pub(crate) fn picture_of_run(path: &Path) -> Result<Picture, Failure> {
         let (number, reach) = if let Some(&known) = meshes.get(&key) {
             known
         } else {
-            let scale = read_scale(scale.as_ref()).map_err(|reason| place(format!("scale: {reason}")))?;
+            let scale =
+                d2m_io::parse_scale(scale.as_ref()).map_err(|reason| place(format!("scale: {reason}")))?;
             let tree = library.mesh(mesh, scale)?;
             let new = (picture.add_mesh(name, tree.mesh()), reach_from(tree.mesh(), body.center));
             meshes.insert(key, new);

@@ -146,7 +146,7 @@ impl Fault {
     }
 
     fn into_error(self) -> IoError {
-        IoError::Content { place: Place { file: None, line: self.line }, reason: self.reason }
+        IoError::Content { place: Place { line: self.line, ..Place::default() }, reason: self.reason }
     }
 }
 

@@ -1,0 +1,131 @@
+//! JSON files: faults name line, column and the word that is there; no key stands twice.
+
+use crate::{IoError, Place, excerpt};
+use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Number, Value};
+
+/// Reads the bytes of a JSON file; a fault names line, column and the word that is there.
+///
+/// ```
+/// let fault = d2m_io::parse_json::<Vec<f64>>(b"[1,\n 1e999]").unwrap_err();
+/// assert_eq!(fault.to_string(), "number out of range at line 2 column 6: \"1e999\"");
+/// ```
+///
+/// # Errors
+/// [`IoError::Content`].
+pub fn parse_json<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, IoError> {
+    serde_json::from_slice(bytes).map_err(|error| {
+        let line = bytes.split(|&byte| byte == b'\n').nth(error.line().saturating_sub(1)).unwrap_or_default();
+        let word = word_at(&String::from_utf8_lossy(line), error.column());
+        IoError::Content { place: Place::default(), reason: format!("{error}{word}") }
+    })
+}
+
+/// What is wrong with one line of a file of JSON lines: for the parser every line is the first, and the column at which it stops is the
+/// end of what is wrong.
+pub fn json_fault(error: &serde_json::Error, line: &str) -> String {
+    let (text, column) = (error.to_string(), error.column());
+    let what = text.split(" at line 1 column ").next().unwrap_or_default();
+    if column == 0 {
+        what.to_owned()
+    } else {
+        format!("{what} (before column {column}){}", word_at(line, column))
+    }
+}
+
+/// The word of a line that a column (from 1, in bytes) is in, for numbers that are none in JSON (NaN) or too large.
+fn word_at(line: &str, column: usize) -> String {
+    let is_delimiter = |c: char| c.is_whitespace() || ",:[]{}\"".contains(c);
+    let mut start = 0;
+    for word in line.split(is_delimiter) {
+        if (start..=start + word.len()).contains(&column.saturating_sub(1)) && !word.is_empty() {
+            return format!(": {}", excerpt(word));
+        }
+        start += word.len() + 1;
+    }
+    String::new()
+}
+
+/// Any JSON value. An object that names a key twice is refused, with the key; the reader adds line and column. (A plain
+/// [`Value`] keeps the last one and says nothing.)
+#[derive(Debug)]
+pub struct UniqueKeys(
+    /// The value.
+    pub Value,
+);
+
+impl<'de> Deserialize<'de> for UniqueKeys {
+    fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<Self, D::Error> {
+        reader.deserialize_any(AnyValue).map(Self)
+    }
+}
+
+struct AnyValue;
+
+impl<'de> Visitor<'de> for AnyValue {
+    type Value = Value;
+
+    fn expecting(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("a JSON value")
+    }
+
+    fn visit_bool<E: Error>(self, value: bool) -> Result<Value, E> {
+        Ok(Value::Bool(value))
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<Value, E> {
+        Ok(Value::Number(value.into()))
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<Value, E> {
+        Ok(Value::Number(value.into()))
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
+        Number::from_f64(value).map(Value::Number).ok_or_else(|| E::custom("number out of range"))
+    }
+
+    fn visit_str<E: Error>(self, value: &str) -> Result<Value, E> {
+        Ok(Value::String(value.to_owned()))
+    }
+
+    fn visit_unit<E: Error>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Value, A::Error> {
+        let mut list = Vec::new();
+        while let Some(UniqueKeys(item)) = items.next_element()? {
+            list.push(item);
+        }
+        Ok(Value::Array(list))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
+        let mut object = Map::new();
+        while let Some(key) = entries.next_key::<String>()? {
+            if object.contains_key(&key) {
+                return Err(A::Error::custom(format_args!("duplicate field `{key}`")));
+            }
+            let UniqueKeys(value) = entries.next_value()?;
+            object.insert(key, value);
+        }
+        Ok(Value::Object(object))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faults_of_json_name_the_word() {
+        let fault = |text: &str| parse_json::<Vec<f64>>(text.as_bytes()).unwrap_err().to_string();
+        assert_eq!(fault("[1, NaN]"), "expected value at line 1 column 5: \"NaN\"");
+        let line = "[1, -Infinity]";
+        let error = serde_json::from_str::<Vec<f64>>(line).unwrap_err();
+        assert_eq!(json_fault(&error, line), "invalid number (before column 6): \"-Infinity\"");
+        assert!(fault("").contains("EOF"), "{}", fault(""));
+        assert!(fault("[\u{e9}\u{e9}").contains("column"), "{}", fault("[\u{e9}\u{e9}"));
+    }
+}
