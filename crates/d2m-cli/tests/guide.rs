@@ -42,10 +42,15 @@ fn every_command_of_the_guide_runs() {
     let mut count = 0;
     for page in pages() {
         for line in commands(&fs::read_to_string(&page).unwrap()) {
-            let inputs = words(&line).into_iter().skip(1).map(|word| match word.as_str() {
-                scene if scene.starts_with("docs/") => root.join(scene).display().to_string(),
-                file if file.ends_with(".html") || file.ends_with(".jsonl") => folder.path(file),
-                _ => word,
+            let inputs = words(&line).into_iter().skip(1).map(|word| {
+                let ending = Path::new(&word).extension().unwrap_or_default().to_owned();
+                if word.starts_with("docs/") {
+                    root.join(word).display().to_string()
+                } else if ending == "html" || ending == "jsonl" {
+                    folder.path(&word)
+                } else {
+                    word
+                }
             });
             let inputs: Vec<String> = inputs.collect();
             let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
@@ -62,7 +67,8 @@ fn every_page_is_in_the_table_of_contents_and_every_link_leads_to_a_page() {
     let pages = pages();
     let names: Vec<String> =
         pages.iter().map(|page| page.file_name().unwrap().to_string_lossy().into_owned()).collect();
-    let summary = fs::read_to_string(&pages[names.iter().position(|name| name == "SUMMARY.md").unwrap()]).unwrap();
+    let summary =
+        fs::read_to_string(&pages[names.iter().position(|name| name == "SUMMARY.md").unwrap()]).unwrap();
     for name in names.iter().filter(|name| *name != "SUMMARY.md") {
         assert!(summary.contains(&format!("({name})")), "{name} is not in SUMMARY.md");
     }
