@@ -17,7 +17,7 @@ enum Kind {
 #[derive(Clone, Copy)]
 struct Pole {
     kind: Kind,
-    pole: f64,
+    place: f64,
     level: f64,
 }
 
@@ -33,10 +33,10 @@ impl Pole {
             // tan(x + π/2) = −1/tan x.
             Kind::Tangent => vec![(1.0 / self.level).atan()],
         };
-        x.into_iter().map(|x| self.pole + x).collect()
+        x.into_iter().map(|x| self.place + x).collect()
     }
     fn at(&self, t: Interval) -> Interval {
-        t - self.pole
+        t - self.place
     }
 }
 
@@ -93,7 +93,7 @@ fn no_zero_is_lost_behind_a_pole_and_none_is_claimed_at_one() {
         let kind = [Kind::Simple, Kind::Double, Kind::Tangent][round % 3];
         let sign = if random.unit() < 0.5 { -1.0 } else { 1.0 };
         let pole = if round % 5 == 0 { 0.0 } else { 4.0 * random.unit() - 2.0 };
-        let mut f = Pole { kind, pole, level: sign * (0.7 + 3.0 * random.unit()) };
+        let mut f = Pole { kind, place: pole, level: sign * (0.7 + 3.0 * random.unit()) };
         let domain = Interval::new(pole - 1.5 * random.unit(), pole + 1.5 * random.unit());
         let near_an_end = |zero: &f64| (zero - domain.lo()).abs().min((zero - domain.hi()).abs()) < 1e-6;
         if f.zeros().iter().any(near_an_end) {
