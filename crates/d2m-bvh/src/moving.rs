@@ -47,7 +47,7 @@ impl<'a, B> Moving<'a, B> {
 
     /// The same with a radius: the body is everything within `radius` of its mesh (and of what a solid mesh holds). A point with a radius is
     /// a sphere, a segment a capsule, a box a rounded box: exact, without a tessellation. Witness points are on the rounded surfaces. The
-    /// reference method ([`paper`](crate::paper)) knows no radius.
+    /// reference method (`d2m-paper`) knows no radius.
     ///
     /// ```
     /// use d2m_bvh::{MeshTree, Moving, QueryOptions, TriMesh, Window, time_of_contact};
