@@ -53,7 +53,7 @@ def calls() -> None:
         "contact": d2m_ccd.ConstantTwist(x=[5, 0, 0], v=[-4, 0, 0]),
     }
     for name, motion in cases.items():
-        rows = np.tile(motion.to_array(), (500, 1))
+        rows = np.tile(motion.to_array(), (200, 1))
         called, alone = [], []
 
         def python() -> None:

@@ -352,8 +352,7 @@ impl Simulation {
         let (force, torque) = (finite(force, "force")?, vec3_or_zero(torque, "torque")?);
         let mut inner = self.lock(py);
         let id = inner.find(body)?;
-        inner.engine.set_force(id, force, torque);
-        Ok(())
+        inner.engine.set_force(id, force, torque).or_raise()
     }
 
     /// Adds an impulse at the center of mass and an angular impulse, world axes.
@@ -372,8 +371,7 @@ impl Simulation {
         let (impulse, angular) = (finite(impulse, "impulse")?, vec3_or_zero(angular, "angular")?);
         let mut inner = self.lock(py);
         let id = inner.find(body)?;
-        inner.engine.apply_impulse(id, impulse, angular);
-        Ok(())
+        inner.engine.apply_impulse(id, impulse, angular).or_raise()
     }
 
     /// Advances by steps until this time and returns the segments flown, the last one included.
