@@ -20,6 +20,14 @@ pub(crate) fn progress_bar(length: usize, of: &str) -> ProgressBar {
     }
 }
 
+/// A number as short as can be read back: in powers of ten where zeros would fill the line.
+pub(crate) fn short(number: f64) -> String {
+    match number.abs() {
+        size if size == 0.0 || (1e-5..1e16).contains(&size) => number.to_string(),
+        _ => format!("{number:e}"),
+    }
+}
+
 /// Writes to standard output.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     print_bytes(text.as_bytes())

@@ -1,6 +1,7 @@
 //! Answers as text, CSV fields and JSON.
 
 use crate::engine::{Answer, Pair};
+use crate::output::short;
 use d2m::bvh::{Clearance, Contact, Departure, Evidence, Solid, StartState, TimeOfContact, Window};
 use d2m::feature::FeaturePair;
 use glam::DVec3;
@@ -56,14 +57,6 @@ pub(crate) fn duration(time: Duration) -> String {
         m if m < 1e3 => format!("{m:.1} µs"),
         m if m < 1e6 => format!("{:.2} ms", m / 1e3),
         m => format!("{:.2} s", m / 1e6),
-    }
-}
-
-/// A number as short as can be read back: in powers of ten where zeros would fill the line.
-pub(crate) fn short(number: f64) -> String {
-    match number.abs() {
-        size if size == 0.0 || (1e-5..1e16).contains(&size) => number.to_string(),
-        _ => format!("{number:e}"),
     }
 }
 

@@ -4,7 +4,7 @@ use crate::arguments::SizeArguments;
 use crate::failure::Failure;
 use crate::load::{Loaded, load_with};
 use crate::output::note;
-use crate::report::short;
+use crate::output::short;
 use d2m::bvh::{TriMesh, Window};
 use d2m::motion::{AnyMotion, RigidMotion};
 use d2m_io::{ReadOptions, Unit};

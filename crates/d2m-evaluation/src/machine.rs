@@ -42,7 +42,7 @@ impl Machine {
 
     /// In names of folders.
     pub(crate) fn slug(&self) -> String {
-        crate::bench::slug(&format!("{} {} cores", self.cpu, self.cores))
+        slug(&format!("{} {} cores", self.cpu, self.cores))
     }
 }
 
@@ -80,4 +80,28 @@ fn extensions() -> Vec<String> {
 #[cfg(not(target_arch = "x86_64"))]
 fn extensions() -> Vec<String> {
     Vec::new()
+}
+
+/// Letters, digits and single dashes.
+pub(crate) fn slug(name: &str) -> String {
+    let mut text = String::new();
+    for c in name.chars() {
+        if c.is_ascii_alphanumeric() || c == '_' || c == '.' {
+            text.push(c.to_ascii_lowercase());
+        } else if !text.ends_with('-') {
+            text.push('-');
+        }
+    }
+    text.trim_matches('-').into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slugs() {
+        assert_eq!(slug("pebble/pebble 1.1 M"), "pebble-pebble-1.1-m");
+        assert_eq!(slug("AMD EPYC (2)"), "amd-epyc-2");
+    }
 }

@@ -10,6 +10,7 @@ mod memory;
 mod report;
 mod statistics;
 mod trials;
+mod written_trials;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -43,7 +44,7 @@ enum Task {
     #[command(hide = true)]
     Counted(bench::CountedOptions),
     /// Writes a file of random trials, 256 by default, by the law of the bench.
-    Trials(trials::Options),
+    Trials(written_trials::Options),
 }
 
 fn main() -> ExitCode {
@@ -53,7 +54,7 @@ fn main() -> ExitCode {
         Task::Report(options) => report::run(&options),
         Task::Counted(options) => bench::run_counted(&options),
         Task::ParryCast(options) => bench::run_stopped(&options),
-        Task::Trials(options) => trials::run(&options),
+        Task::Trials(options) => written_trials::run(&options),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

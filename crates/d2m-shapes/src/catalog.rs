@@ -1,8 +1,8 @@
 //! Every shape that there is, with its parameters.
 
 use crate::extrusion::{self, Prism};
-use crate::shape::Values;
 use crate::surface::Surface;
+use crate::values::Values;
 use crate::{bodies, sphere, thread, tube};
 use glam::DVec3;
 

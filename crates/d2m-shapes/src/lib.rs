@@ -12,6 +12,7 @@ mod surface;
 mod thread;
 mod trigonometry;
 mod tube;
+mod values;
 
 pub use catalog::{COMMON, Parameter, SHAPES, ShapeInfo};
 pub use error::ShapeError;

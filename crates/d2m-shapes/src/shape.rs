@@ -2,6 +2,7 @@
 
 use crate::catalog::{COMMON, Parameter, SHAPES, ShapeInfo};
 use crate::error::ShapeError;
+use crate::values::Values;
 use d2m_bvh::TriMesh;
 use std::fmt;
 use std::str::FromStr;
@@ -54,13 +55,17 @@ impl Shape {
 
     /// The value of a parameter; none if the shape has no such parameter.
     pub fn value(&self, name: &str) -> Option<f64> {
-        let slot = self.slot(name).ok()?;
-        Some(self.given[slot].unwrap_or(self.parameter(slot).default))
+        Some(self.value_in(self.slot(name).ok()?))
+    }
+
+    fn value_in(&self, slot: usize) -> f64 {
+        self.given[slot].unwrap_or(self.parameter(slot).default)
     }
 
     /// Makes the mesh.
     pub fn build(&self) -> TriMesh {
-        let values = Values(self);
+        let names = self.parameters().map(|parameter| parameter.name).enumerate();
+        let values = Values(names.map(|(slot, name)| (name, self.value_in(slot))).collect());
         let surface = (self.info.build)(&values);
         let scale = values.get("scale");
         if scale == 1.0 { surface.into_mesh() } else { surface.scaled(scale).into_mesh() }
@@ -163,19 +168,6 @@ impl fmt::Display for Shape {
 /// [`ShapeError`]: no such shape or parameter, a value that is no number or out of range.
 pub fn mesh(text: &str) -> Result<TriMesh, ShapeError> {
     Ok(text.parse::<Shape>()?.build())
-}
-
-/// The values that builders look up; every name is one of the shape's own.
-pub(crate) struct Values<'a>(&'a Shape);
-
-impl Values<'_> {
-    pub(crate) fn get(&self, name: &str) -> f64 {
-        self.0.value(name).expect("builders ask for parameters of their own shape")
-    }
-
-    pub(crate) fn count(&self, name: &str) -> usize {
-        self.get(name) as usize
-    }
 }
 
 fn join<'a>(names: impl Iterator<Item = &'a str>) -> String {

@@ -2,7 +2,8 @@
 //! circle.
 //!
 //! An arrow is a path (`crate::…`, `super::…`, or the name of a child module in a `use`) outside tests and comments. A
-//! name that a `mod.rs` or `lib.rs` passes on counts as an arrow to the file that it comes from.
+//! name that a `mod.rs` or `lib.rs` passes on counts as an arrow to the file that it comes from, and one that a `mod.rs` defines
+//! as an arrow to the folder. Between a folder's `mod.rs` and the files in it there are no arrows.
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
@@ -10,28 +11,51 @@ use std::path::Path;
 /// In ARCHITECTURE.md, before the list of a crate's modules: one line, from those that need nothing to those that use all.
 const HEADING: &str = "Order of the modules of ";
 
-/// What points in the wrong direction.
+/// Modules of an order that need each other, joined by this, have one place: a trait and the types that it names. Each such group
+/// is an exception that ARCHITECTURE.md gives a reason for.
+const TOGETHER: &str = " + ";
+
+/// Before the circles of files of a crate that stay for a reason, each as one word of modules joined by [`TOGETHER`].
+const CIRCLES: &str = "Circles of files that stay in ";
+
+/// What points in the wrong direction. Every crate of more than one module has an order.
 pub(super) fn check(root: &Path) -> Result<Vec<String>, Box<dyn std::error::Error>> {
     let text =
         fs::read_to_string(root.join("ARCHITECTURE.md")).map_err(|e| format!("ARCHITECTURE.md: {e}"))?;
-    let orders = orders(&text);
+    let (orders, allowed) = (lists(&text, HEADING), lists(&text, CIRCLES));
     let mut findings = Vec::new();
-    if orders.is_empty() {
-        findings.push(format!("ARCHITECTURE.md: no line \"{HEADING}`crate`: `module`, …\""));
-    }
-    for (name, order) in orders {
-        let folder = root.join("crates").join(&name).join("src");
-        findings.extend(Modules::read(&folder)?.judge(&name, &order));
+    let mut folders: Vec<_> =
+        fs::read_dir(root.join("crates"))?.map(|entry| entry.map(|e| e.path())).collect::<Result<_, _>>()?;
+    folders.push(root.join("xtask"));
+    folders.sort();
+    for folder in folders.iter().filter(|folder| folder.join("src").exists()) {
+        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let modules = Modules::read(&folder.join("src"))?;
+        match orders.iter().find(|(crate_name, _)| *crate_name == name) {
+            Some((_, order)) => {
+                let allowed = allowed.iter().find(|(crate_name, _)| *crate_name == name);
+                findings.extend(modules.judge(&name, order, allowed.map_or(&[], |(_, list)| list)));
+            }
+            None if modules.0.len() > 2 => {
+                let order: Vec<String> =
+                    modules.proposed_order().iter().map(|name| format!("`{name}`")).collect();
+                findings.push(format!(
+                    "ARCHITECTURE.md: {name} has no order; one to begin with: {HEADING}`{name}`: {}.",
+                    order.join(", ")
+                ));
+            }
+            None => {}
+        }
     }
     Ok(findings)
 }
 
-/// The crates whose modules are listed, with the list.
-fn orders(text: &str) -> Vec<(String, Vec<String>)> {
+/// The crates whose modules are listed after such words, with the list.
+fn lists(text: &str, heading: &str) -> Vec<(String, Vec<String>)> {
     let in_code =
         |line: &str| -> Vec<String> { line.split('`').skip(1).step_by(2).map(String::from).collect() };
     text.lines()
-        .filter(|line| line.contains(HEADING))
+        .filter(|line| line.starts_with(heading))
         .filter_map(|line| {
             let mut words = in_code(line).into_iter();
             Some((words.next()?, words.collect()))
@@ -50,7 +74,7 @@ impl Modules {
             let mut segments: Vec<String> =
                 relative.iter().map(|part| part.to_string_lossy().into_owned()).collect();
             match segments.last().map(String::as_str) {
-                Some("mod" | "lib") => drop(segments.pop()),
+                Some("mod" | "lib" | "main") => drop(segments.pop()),
                 Some("tests") => continue,
                 _ => {}
             }
@@ -59,7 +83,7 @@ impl Modules {
         Ok(Self(modules))
     }
 
-    fn judge(&self, name: &str, order: &[String]) -> Vec<String> {
+    fn judge(&self, name: &str, order: &[String], allowed: &[String]) -> Vec<String> {
         let arrows = self.arrows();
         let mut findings = Vec::new();
         for module in self.0.keys().filter(|module| place(order, module).is_none() && !self.passes_on(module))
@@ -76,11 +100,37 @@ impl Modules {
                 ));
             }
         }
-        for circle in circles(&arrows) {
+        let stays = |circle: &BTreeSet<Vec<String>>| {
+            let within =
+                |names: &str| circle.iter().all(|m| names.split(TOGETHER).any(|n| n == m.join("::")));
+            allowed.iter().any(|names| within(names))
+        };
+        for circle in circles(&arrows).into_iter().filter(|circle| !stays(circle)) {
             let circle: Vec<String> = circle.iter().map(|module| module.join("::")).collect();
             findings.push(format!("{name}: files that use each other in a circle: {}", circle.join(", ")));
         }
         findings
+    }
+
+    /// The modules right below the root, those first that use the fewest others: without circles an order that holds.
+    fn proposed_order(&self) -> Vec<String> {
+        let mut uses: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        for (from, to) in self.arrows() {
+            let Some(first) = from.first() else { continue };
+            let used = uses.entry(first.clone()).or_default();
+            used.extend(to.iter().filter_map(|to| to.first().cloned()).filter(|to| to != first));
+        }
+        let mut order = Vec::new();
+        while !uses.is_empty() {
+            let least = uses.iter().min_by_key(|(_, used)| used.len()).map(|(name, _)| name.clone());
+            let Some(name) = least else { break };
+            uses.remove(&name);
+            for used in uses.values_mut() {
+                used.remove(&name);
+            }
+            order.push(name);
+        }
+        order
     }
 
     /// A module with children: it may pass names on, and stands above them.
@@ -93,13 +143,14 @@ impl Modules {
         let mut arrows = BTreeMap::new();
         for (module, code) in &self.0 {
             let mut used = BTreeSet::new();
-            // What a folder's root passes on is no arrow of its own: it would close a circle with every child.
-            if !self.passes_on(module) {
-                for path in paths(code) {
-                    used.extend(self.target(module, &path));
-                }
+            for path in paths(code) {
+                used.extend(self.target(module, &path));
             }
-            used.remove(module);
+            // A folder's root and what lies in the folder belong together: one passes on what the other defines.
+            let is_own = |other: &Vec<String>| {
+                other.starts_with(module) || module.starts_with(other) && self.passes_on(other)
+            };
+            used.retain(|other| !is_own(other) && !module.is_empty());
             arrows.insert(module.clone(), used);
         }
         arrows
@@ -127,16 +178,16 @@ impl Modules {
                 None => break,
             }
         }
-        (!self.passes_on(&at) || at.is_empty()).then_some(at).filter(|at| !at.is_empty())
+        (!at.is_empty()).then_some(at)
     }
 }
 
 /// Where a module stands: the place of the longest listed path that it begins with.
 fn place(order: &[String], module: &[String]) -> Option<usize> {
-    let starts =
-        |listed: &&str| module.starts_with(&listed.split("::").map(String::from).collect::<Vec<_>>());
-    let longest = order.iter().map(String::as_str).filter(starts).max_by_key(|listed| listed.len())?;
-    order.iter().position(|listed| listed == longest)
+    let starts = |listed: &str| module.starts_with(&listed.split("::").map(String::from).collect::<Vec<_>>());
+    let listed =
+        order.iter().enumerate().flat_map(|(place, names)| names.split(TOGETHER).map(move |n| (place, n)));
+    listed.filter(|(_, name)| starts(name)).max_by_key(|(_, name)| name.len()).map(|(place, _)| place)
 }
 
 /// The code of a file: without comments, and without what is compiled for tests only.
@@ -260,7 +311,7 @@ mod tests {
     }
 
     fn findings(files: &[(&str, &str)]) -> Vec<String> {
-        modules(files).judge("d2m-x", &["low", "high"].map(String::from))
+        modules(files).judge("d2m-x", &["low", "high"].map(String::from), &[])
     }
 
     const ROOT: (&str, &str) = ("", "mod low;\nmod high;\npub use high::Tower;\n");
@@ -270,7 +321,7 @@ mod tests {
     fn the_order_is_read() {
         let text = "x\nOrder of the modules of `d2m-x`: `low`, `high`, `high::top`.\n";
         let names = ["low", "high", "high::top"].map(String::from).to_vec();
-        assert_eq!(orders(text), [("d2m-x".to_string(), names)]);
+        assert_eq!(lists(text, HEADING), [("d2m-x".to_string(), names)]);
     }
 
     #[test]
@@ -300,6 +351,25 @@ mod tests {
         let text = "//! See crate::high.\n#[cfg(test)]\nuse crate::high::Tower;\n\
             #[cfg(test)]\nmod tests {\n    use crate::high::Tower;\n}\n// crate::high\n";
         assert_eq!(findings(&[ROOT, FOLDER, ("low::ground", text), ("high", "")]), [""; 0]);
+    }
+
+    #[test]
+    fn modules_that_belong_together_have_one_place() {
+        let files = [
+            ("", "mod low;\nmod high;\nmod other;\n"),
+            ("low", "use crate::high::Tower;"),
+            ("high", "use crate::low::Ground;"),
+            ("other", "use crate::low::Ground;"),
+        ];
+        let found = |order: &[&str], allowed: &[&str]| {
+            let [order, allowed] =
+                [order, allowed].map(|l| l.iter().map(ToString::to_string).collect::<Vec<_>>());
+            modules(&files).judge("d2m-x", &order, &allowed)
+        };
+        assert_eq!(found(&["low + high", "other"], &["high + low"]), [""; 0]);
+        assert_eq!(found(&["low + high", "other"], &[]).len(), 1);
+        assert_eq!(found(&["other", "low + high"], &["high + low"]).len(), 1);
+        assert_eq!(found(&["low", "high", "other"], &["high + low"]).len(), 1);
     }
 
     #[test]

@@ -42,6 +42,7 @@ impl SearchCounts {
     }
 
     /// Without what was counted by `earlier`.
+    #[cfg(feature = "rayon")]
     pub(crate) fn without(&self, earlier: &Self) -> Self {
         self.combined(earlier, u64::wrapping_sub)
     }

@@ -3,9 +3,9 @@
 use crate::arguments::DistanceArguments;
 use crate::failure::Failure;
 use crate::outcome::Outcome;
-use crate::output::print_answer;
+use crate::output::{print_answer, short};
 use crate::posed::PosedBodies;
-use crate::report::{duration, microseconds, short, start_word, vector};
+use crate::report::{duration, microseconds, start_word, vector};
 use d2m::bvh::{Distance, Solid, StartState, distance};
 use serde_json::json;
 use std::fmt::Write;

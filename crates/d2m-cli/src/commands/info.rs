@@ -3,8 +3,8 @@
 use crate::arguments::InfoArguments;
 use crate::failure::Failure;
 use crate::load::{Loaded, load};
+use crate::output::short;
 use crate::output::{Output, print};
-use crate::report::short;
 use d2m::bvh::{EnclosingSphere, MeshParts, Validation};
 use d2m::shapes::{COMMON, SHAPES};
 use d2m_io::{Precision, UpAxis, glb_bytes, obj_text, ply_bytes};

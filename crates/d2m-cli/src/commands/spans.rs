@@ -6,7 +6,7 @@ use crate::engine::number;
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::print_answer;
-use crate::report::short;
+use crate::output::short;
 use crate::sizes::sizes_line;
 use d2m::bvh::{ContactSpan, SpanStatus};
 use serde_json::{Value, json};

@@ -1,6 +1,6 @@
 //! Meshes as a page draws them: in single precision about their middle, and coarser where there are very many triangles.
 
-use super::picture::base64;
+use super::base64::base64;
 use d2m::bvh::TriMesh;
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};

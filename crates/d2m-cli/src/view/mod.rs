@@ -1,5 +1,6 @@
 //! One page of HTML that shows bodies in motion, without anything that is fetched; and still pictures.
 
+mod base64;
 mod display_mesh;
 mod flight;
 mod mark;

@@ -4,7 +4,7 @@ use super::{Flight, Holds, Mark, Picture, Span, Up, push_thinned};
 use crate::failure::{Failure, json_fault, parse_json};
 use crate::load::read;
 use crate::mesh_library::MeshLibrary;
-use crate::report::short;
+use crate::output::short;
 use d2m::bvh::TriMesh;
 use d2m::motion::ConstantTwist;
 use glam::{DQuat, DVec3};

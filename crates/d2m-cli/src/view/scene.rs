@@ -2,7 +2,7 @@
 
 use super::{Holds, Mark, Picture, Span, Up, flights_of};
 use crate::failure::Failure;
-use crate::report::short;
+use crate::output::short;
 use crate::scene::Scene;
 use d2m::bvh::{MeshTree, QueryOptions, StartState, TimeOfContact};
 use d2m::motion::AnyMotion;

@@ -1,6 +1,6 @@
 //! Which pairs the bench runs on: ten of embedded shapes, or those that a folder of trials names.
 use super::body::{Body, Pair, write_obj};
-use super::store::slug;
+use crate::machine::slug;
 use crate::trials::{self, Law, Trial};
 use d2m::bvh::TriMesh;
 use std::collections::BTreeMap;

@@ -22,7 +22,7 @@ pub(crate) use catalogue::{export, pair_names};
 pub(crate) use engine::Sabotage;
 pub(crate) use method::Method;
 pub(crate) use row::Row;
-pub(crate) use store::{Store, slug};
+pub(crate) use store::Store;
 
 use crate::TaskResult;
 use catalogue::Entry;

@@ -40,7 +40,7 @@ impl Store {
     }
 
     fn path(&self, pair: &str, speed: f64, method: &str) -> PathBuf {
-        self.folder.join(format!("{}__{speed}__{method}.csv", slug(pair)))
+        self.folder.join(format!("{}__{speed}__{method}.csv", crate::machine::slug(pair)))
     }
 
     /// What an earlier run finished.
@@ -111,31 +111,7 @@ impl Store {
 
 const PAIRS: &str = "pairs.csv";
 
-/// Letters, digits and single dashes.
-pub(crate) fn slug(name: &str) -> String {
-    let mut text = String::new();
-    for c in name.chars() {
-        if c.is_ascii_alphanumeric() || c == '_' || c == '.' {
-            text.push(c.to_ascii_lowercase());
-        } else if !text.ends_with('-') {
-            text.push('-');
-        }
-    }
-    text.trim_matches('-').into()
-}
-
 /// FNV-1a.
 fn hash(text: &str) -> u32 {
     text.bytes().fold(0x811c_9dc5, |h, b| (h ^ u32::from(b)).wrapping_mul(0x0100_0193))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn slugs() {
-        assert_eq!(slug("pebble/pebble 1.1 M"), "pebble-pebble-1.1-m");
-        assert_eq!(slug("AMD EPYC (2)"), "amd-epyc-2");
-    }
 }

@@ -1,5 +1,5 @@
 //! Static distances beside FCL's, if `crates/d2m-evaluation/peers/run_all.py` was run after `cargo xtask bench --only scenes`.
-use super::page::round;
+use super::parts::round;
 use super::text;
 use crate::bench::Store;
 use std::fmt::Write as _;

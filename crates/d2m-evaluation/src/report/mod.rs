@@ -3,6 +3,7 @@ mod collect;
 mod fcl_distances;
 mod figures;
 mod page;
+mod parts;
 mod peers;
 mod series;
 mod simulations;

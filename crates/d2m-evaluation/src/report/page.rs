@@ -1,4 +1,5 @@
 //! docs/results/README.md.
+use super::parts::{figure, round};
 use super::table::{self, Line};
 use super::{fcl_distances, peers, series, simulations, text};
 use crate::bench::{Method, pair_names, sweep};
@@ -86,15 +87,6 @@ const BOXES: [(&str, &str); 4] = [
     ("pairs-separation", "Separation left, by pair (the paper's figures 8 to 11)"),
     ("pairs-time", "Time per query, by pair"),
 ];
-
-/// A figure, if it was drawn.
-pub(super) fn figure(page: &mut String, folder: &Path, file: &str, words: &str) -> Result<(), Error> {
-    if folder.join(format!("{file}.svg")).exists() {
-        let name = folder.file_name().unwrap_or_default().to_string_lossy();
-        writeln!(page, "![{words}]({name}/{file}.svg)\n")?;
-    }
-    Ok(())
-}
 
 /// What a whole run would have and this one has not.
 fn missing(page: &mut String, folder: &Path, lines: &[Line]) -> Result<(), Error> {
@@ -269,14 +261,4 @@ fn both(
     };
     let cells: Vec<String> = of_method.map(cell).collect();
     if cells.is_empty() { "–".into() } else { cells.join(" / ") }
-}
-
-/// Three digits.
-pub(super) fn round(value: f64) -> String {
-    match value {
-        v if v >= 100.0 => format!("{v:.0}"),
-        v if v >= 10.0 => format!("{v:.1}"),
-        v if v >= 0.1 => format!("{v:.2}"),
-        v => format!("{v:.4}"),
-    }
 }

@@ -1,5 +1,5 @@
 //! Peers outside of Rust, if `crates/d2m-evaluation/peers/run_all.py` was run: what their rows in `.bench/peers` come to.
-use super::page::round;
+use super::parts::round;
 use super::text;
 use crate::bench::{Method, Store};
 use crate::judge::Claim;

@@ -1,5 +1,5 @@
 //! The series of a result folder: a figure, a table and, where a power law fits, its exponent for each.
-use super::page::{figure, round};
+use super::parts::{figure, round};
 use super::text;
 use crate::bench::sweep::{self, Point};
 use crate::figure::{Axis, LinePlot, Series};

@@ -1,5 +1,5 @@
 //! Steps of simulations, if `cargo xtask bench dynamics` was run.
-use super::page::{figure, round};
+use super::parts::{figure, round};
 use super::text;
 use crate::bench::Store;
 use std::fmt::Write as _;
