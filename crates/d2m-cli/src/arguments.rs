@@ -528,6 +528,9 @@ pub(crate) struct RobotArguments {
     /// Distance at which bodies count as in contact; they are proven further apart before
     #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true)]
     pub(crate) min_separation: Option<String>,
+    /// Of a free path, how near it comes to a contact: the least distance of all pairs, less the minimum separation
+    #[arg(long)]
+    pub(crate) clearance: bool,
     /// Most seconds of the search; what is not decided by then is "undecided"
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     pub(crate) time_limit: Option<String>,

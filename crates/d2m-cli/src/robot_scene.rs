@@ -14,9 +14,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 const SCENE_KEYS: &[&str] = &["window", "bodies", "ignore", "min_separation", "tolerance"];
-const BODY_KEYS: &[&str] = &["name", "mesh", "scale", "motion", "group", "solid", "pose", "attach"];
+const BODY_KEYS: &[&str] = &["name", "mesh", "scale", "motion", "group", "solid", "radius", "pose", "attach"];
 /// Of a body, those that other scenes do not have.
-const ROBOT_KEYS: &[&str] = &["pose", "attach"];
+const ROBOT_KEYS: &[&str] = &["radius", "pose", "attach"];
 
 /// A scene file that was read, but for its meshes.
 pub(crate) struct RobotSceneFile<'a> {
@@ -114,6 +114,7 @@ fn add_body(
 ) -> Result<String, Failure> {
     let frame = frame(fields)?;
     let link = fields.text("attach")?;
+    let radius = fields.number("radius")?.unwrap_or(0.0);
     let moves = fields.get("motion").is_some_and(|motion| !motion.is_null());
     if let Some(other) = [("attach", link.is_some()), ("pose", frame.is_some())]
         .into_iter()
@@ -127,7 +128,7 @@ fn add_body(
     let (name, tree) = (body.name.clone(), Arc::clone(&body.tree));
     if let Some(link) = link {
         let attached = Attached::new(&name, link, tree, at.position, at.orientation).map_err(fault)?;
-        scene.attach(attached.with_solid(body.solid)).map_err(fault)?;
+        scene.attach(attached.with_solid(body.solid).with_radius(radius)).map_err(fault)?;
         return Ok(name);
     }
     let obstacle = if moves {
@@ -135,7 +136,7 @@ fn add_body(
     } else {
         Obstacle::at_rest(&name, tree, at.position, at.orientation).map_err(fault)?
     };
-    scene.add_obstacle(obstacle.with_solid(body.solid)).map_err(fault)?;
+    scene.add_obstacle(obstacle.with_solid(body.solid).with_radius(radius)).map_err(fault)?;
     Ok(name)
 }
 

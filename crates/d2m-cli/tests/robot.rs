@@ -75,6 +75,52 @@ fn a_path_is_free_or_until_when() {
 }
 
 #[test]
+fn free_paths_say_how_near_they_come() {
+    let Files { robot, path, scene, .. } = &files("robot-clearance");
+    let free = ask(&[robot, "--path", path, "--clearance"]);
+    let [lo, hi] = [0, 1].map(|k| free["clearance"][k].as_f64().unwrap());
+    assert!(0.0 < lo && lo <= hi && hi - lo <= 1e-6 * hi, "{free}");
+    let time = free["clearance_time"].as_f64().unwrap();
+    assert!((1.0..=3.0).contains(&time) && free["a"].is_string() && free["b"].is_string(), "{free}");
+    // A separation is taken off; what asks for more than that is no longer free.
+    let near = (0.5 * lo).to_string();
+    let kept = ask(&[robot, "--path", path, "--clearance", "--min-separation", &near]);
+    let [l, h] = [0, 1].map(|k| kept["clearance"][k].as_f64().unwrap());
+    assert!(l <= hi - 0.5 * lo && lo - 0.5 * lo <= h, "{kept}");
+    let beyond = (hi * (1.0 + 1e-9)).to_string();
+    let met = ask(&[robot, "--path", path, "--clearance", "--min-separation", &beyond]);
+    assert!(met["status"] == "contact" && met["clearance"].is_null(), "{met}");
+    let found = ask(&[robot, "--path", path, "--scene", scene, "--clearance"]);
+    assert!(found["status"] == "contact" && found["clearance"].is_null(), "{found}");
+    assert!(ask(&[robot, "--path", path])["clearance"].is_null());
+    let text = stdout(&d2m(&["robot", robot, "--path", path, "--clearance"]));
+    assert!(text.contains("  clearance   ["), "{text}");
+}
+
+#[test]
+fn bodies_have_radii() {
+    let Files { folder, robot, path, scene } = &files("robot-radius");
+    let until = |arguments: &[&str]| {
+        let found = ask(&[&[robot, "--path", path], arguments].concat());
+        assert_eq!(found["status"], "contact");
+        found["free_until"].as_f64().unwrap()
+    };
+    let round = folder.file(
+        "round.json",
+        &SCENE.replace("\"pose\": {\"x\": [0, 0.8, 0]}", "\"radius\": 0.01, \"pose\": {\"x\": [0, 0.8, 0]}"),
+    );
+    // All other pairs are further apart.
+    let [bare, kept, round] = [
+        until(&["--scene", scene]),
+        until(&["--scene", scene, "--min-separation", "0.01"]),
+        until(&["--scene", &round]),
+    ];
+    assert!((kept - round).abs() < 1e-9 && round < bare - 1e-3, "{bare} {kept} {round}");
+    let bad = folder.file("bad.json", &SCENE.replace("\"attach\"", "\"radius\": -1, \"attach\""));
+    refused(&["robot", robot, "--path", path, "--scene", &bad], &["grasped", "radius -1"]);
+}
+
+#[test]
 fn limits_are_warned_of_and_text_says_what_is_certified() {
     let Files { robot, path, .. } = &files("robot-limits");
     let output = d2m(&["robot", robot, "--path", path, "--exit-status"]);

@@ -52,32 +52,21 @@ impl RobotScene {
     pub(crate) fn check_values(
         &self,
         values: &[JointValue],
-        [start, end]: [f64; 2],
+        times: [f64; 2],
     ) -> Result<PathAnswer, RobotError> {
-        let window = Window::try_new(start, end).map_err(|error| {
-            RobotError::path("points", format!("times from {start:?} to {end:?}: {error}"))
-        })?;
-        let chains = self.robot.chains(values)?;
+        let window = Self::window_of(times)?;
+        let mut plan = self.plan(values)?;
         // Links that never move are where they are; their pairs with each other and with obstacles at rest are known.
         let all_rest = !self.has_rigid_contact
             && !self.parts.iter().any(|part| matches!(part.owner, Owner::Obstacle { is_at_rest: false }));
-        let root = self.robot.rigid_group(self.robot.root());
-        let mut plan = Vec::with_capacity(self.parts.len());
-        for part in &self.parts {
-            if all_rest && part.carrier().is_some_and(|link| self.robot.rigid_group(link) == root) {
-                continue;
-            }
-            let (link, frame) = match &part.owner {
-                Owner::Link { link, frame } => (*link, frame.as_ref()),
-                Owner::Attached { link, frame } => (*link, Some(frame)),
-                Owner::Obstacle { .. } => continue,
-            };
-            let chain = match frame {
-                None => chains[link].clone(),
-                Some(frame) => chains[link].and(frame.clone())?,
-            };
-            plan.push(PlannedMotion { body: part.id, motion: Arc::new(chain) });
+        if all_rest {
+            let root = self.robot.rigid_group(self.robot.root());
+            plan.retain(|planned| {
+                let carrier = self.parts[planned.body.index()].carrier();
+                carrier.is_none_or(|link| self.robot.rigid_group(link) != root)
+            });
         }
+        let end = window.end();
         let first = self.world.first_contact_of(&plan, window).map_err(|error| self.named(error))?;
         let name = |id: BodyId| self.name_of(id).to_owned();
         Ok(match first {
@@ -90,6 +79,31 @@ impl RobotScene {
                 PathAnswer::Undecided { free_until: clear_until, a: name(a), b: name(b) }
             }
         })
+    }
+
+    /// The time of a path.
+    pub(crate) fn window_of([start, end]: [f64; 2]) -> Result<Window, RobotError> {
+        Window::try_new(start, end)
+            .map_err(|error| RobotError::path("points", format!("times from {start:?} to {end:?}: {error}")))
+    }
+
+    /// The motions of all that links carry, themselves and what is attached to them.
+    pub(crate) fn plan(&self, values: &[JointValue]) -> Result<Vec<PlannedMotion>, RobotError> {
+        let chains = self.robot.chains(values)?;
+        let mut plan = Vec::with_capacity(self.parts.len());
+        for part in &self.parts {
+            let (link, frame) = match &part.owner {
+                Owner::Link { link, frame } => (*link, frame.as_ref()),
+                Owner::Attached { link, frame } => (*link, Some(frame)),
+                Owner::Obstacle { .. } => continue,
+            };
+            let chain = match frame {
+                None => chains[link].clone(),
+                Some(frame) => chains[link].and(frame.clone())?,
+            };
+            plan.push(PlannedMotion { body: part.id, motion: Arc::new(chain) });
+        }
+        Ok(plan)
     }
 
     /// The contact of two bodies with radii, from that of their meshes.

@@ -16,6 +16,7 @@ pub struct Obstacle {
     tree: Arc<MeshTree>,
     motion: SharedMotion,
     solid: Option<Solid>,
+    radius: f64,
     is_at_rest: bool,
 }
 
@@ -40,13 +41,26 @@ impl Obstacle {
         tree: Arc<MeshTree>,
         motion: impl RigidMotion + Send + 'static,
     ) -> Self {
-        Self { name: name.into(), tree, motion: Arc::new(motion), solid: None, is_at_rest: false }
+        Self {
+            name: name.into(),
+            tree,
+            motion: Arc::new(motion),
+            solid: None,
+            radius: 0.0,
+            is_at_rest: false,
+        }
     }
 
     /// With this meaning of its mesh, whether it is watertight or not.
     #[must_use]
     pub fn with_solid(self, solid: Solid) -> Self {
         Self { solid: Some(solid), ..self }
+    }
+
+    /// With everything within this distance of its mesh: a point becomes a sphere, a segment a capsule. Finite and not negative.
+    #[must_use]
+    pub fn with_radius(self, radius: f64) -> Self {
+        Self { radius, ..self }
     }
 }
 
@@ -58,6 +72,7 @@ pub struct Attached {
     tree: Arc<MeshTree>,
     frame: Joint,
     solid: Option<Solid>,
+    radius: f64,
 }
 
 impl Attached {
@@ -73,13 +88,19 @@ impl Attached {
         orientation: DQuat,
     ) -> Result<Self, RobotError> {
         let frame = Joint::try_new(position, orientation, JointKind::Fixed)?;
-        Ok(Self { name: name.into(), link: link.into(), tree, frame, solid: None })
+        Ok(Self { name: name.into(), link: link.into(), tree, frame, solid: None, radius: 0.0 })
     }
 
     /// With this meaning of its mesh, whether it is watertight or not.
     #[must_use]
     pub fn with_solid(self, solid: Solid) -> Self {
         Self { solid: Some(solid), ..self }
+    }
+
+    /// With everything within this distance of its mesh: a point becomes a sphere, a segment a capsule. Finite and not negative.
+    #[must_use]
+    pub fn with_radius(self, radius: f64) -> Self {
+        Self { radius, ..self }
     }
 }
 
@@ -115,6 +136,8 @@ pub struct RobotScene {
     pub(crate) world: World,
     /// By the places of the world's bodies.
     pub(crate) parts: Vec<Part>,
+    /// The pairs that are checked, by the places of their parts; also those that never move against each other.
+    pub(crate) pairs: Vec<[usize; 2]>,
     /// Two bodies that never move against each other are not proven apart.
     pub(crate) has_rigid_contact: bool,
 }
@@ -177,6 +200,7 @@ impl RobotScene {
             world: World::new(options),
             robot: Arc::clone(&robot),
             parts: Vec::new(),
+            pairs: Vec::new(),
             has_rigid_contact: false,
         };
         let rest = robot.complete(vec![None; robot.joints.len()])?;
@@ -221,13 +245,14 @@ impl RobotScene {
     /// Adds an obstacle.
     ///
     /// # Errors
-    /// The name of a link or of another body.
+    /// The name of a link or of another body; a radius that is negative or not finite.
     pub fn add_obstacle(&mut self, obstacle: Obstacle) -> Result<(), RobotError> {
-        let Obstacle { name, tree, motion, solid, is_at_rest } = obstacle;
+        let Obstacle { name, tree, motion, solid, radius, is_at_rest } = obstacle;
         self.check_name(&name)?;
+        check_radius(&name, radius)?;
         let solid = solid.unwrap_or_else(|| solid_of(&tree));
         let body = Body::with_shared(tree, motion).with_solid(solid);
-        self.add(&name, Owner::Obstacle { is_at_rest }, Round { body, radius: 0.0 }, |other| {
+        self.add(&name, Owner::Obstacle { is_at_rest }, Round { body, radius }, |other| {
             !matches!(other.owner, Owner::Obstacle { .. })
         });
         Ok(())
@@ -236,10 +261,11 @@ impl RobotScene {
     /// Attaches a body to a link.
     ///
     /// # Errors
-    /// The name of a link or of another body, or a link that the robot does not have.
+    /// The name of a link or of another body, a radius that is negative or not finite, or a link that the robot does not have.
     pub fn attach(&mut self, attached: Attached) -> Result<(), RobotError> {
-        let Attached { name, link: carrier, tree, frame, solid } = attached;
+        let Attached { name, link: carrier, tree, frame, solid, radius } = attached;
         self.check_name(&name)?;
+        check_radius(&name, radius)?;
         let link = self.robot.find_link(&carrier).ok_or_else(|| RobotError::Body {
             name: name.clone(),
             reason: format!("it is attached to {carrier:?}, which is no link of the robot"),
@@ -251,7 +277,7 @@ impl RobotScene {
         self.add(
             &name,
             Owner::Attached { link, frame },
-            Round { body, radius: 0.0 },
+            Round { body, radius },
             |other| !matches!(other.owner, Owner::Link { link: of, .. } if of == link),
         );
         Ok(())
@@ -282,6 +308,7 @@ impl RobotScene {
                 self.ignore_pair(&part, other);
                 continue;
             }
+            self.pairs.push([other, id.index()]);
             let radii = radius + self.parts[other].radius;
             let mut separation = self.world.options().min_separation;
             if radii > 0.0 {
@@ -324,6 +351,7 @@ impl RobotScene {
     }
 
     fn ignore_parts(&mut self, a: usize, b: usize) {
+        self.pairs.retain(|pair| *pair != [a, b] && *pair != [b, a]);
         let [a, b] = [a, b].map(|part| self.parts[part].id);
         self.world.ignore_pair(a, b, true);
     }
@@ -347,4 +375,12 @@ impl RobotScene {
 /// A mesh that bounds a solid is one.
 fn solid_of(tree: &MeshTree) -> Solid {
     if tree.is_watertight() { Solid::Filled } else { Solid::Surface }
+}
+
+fn check_radius(name: &str, radius: f64) -> Result<(), RobotError> {
+    if radius.is_finite() && radius >= 0.0 {
+        return Ok(());
+    }
+    let reason = format!("its radius {radius:?} is not a finite number that is not negative");
+    Err(RobotError::Body { name: name.to_owned(), reason })
 }

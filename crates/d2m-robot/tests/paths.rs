@@ -344,3 +344,44 @@ fn what_never_moves_against_each_other_counts_too() {
         assert!((answer.free_until() - (at + 4.5) / 20.0).abs() < 1e-9, "{answer:?}");
     }
 }
+
+#[test]
+fn clearances_hold_the_least_distance() {
+    // A cart passes a stop at a distance of 0.3 (box) or 0.25 (ball), at half of the way; another post is further away.
+    for (shape, expected) in [("<box size=\"0.2 0.4 0.2\"/>", 0.3), ("<sphere radius=\"0.25\"/>", 0.25)] {
+        let urdf = format!(
+            "<robot name=\"s\"><link name=\"rail\"/>\
+             <link name=\"cart\"><collision><geometry><box size=\"0.1 0.4 0.1\"/></geometry></collision></link>\
+             <link name=\"stop\"><collision><origin xyz=\"1 0.7 0\"/><geometry>{shape}</geometry></collision></link>\
+             <link name=\"post\"><collision><origin xyz=\"1 0 0.9\"/><geometry><box size=\"1 1 1\"/></geometry></collision></link>\
+             <joint name=\"run\" type=\"prismatic\"><parent link=\"rail\"/><child link=\"cart\"/></joint>\
+             <joint name=\"weld\" type=\"fixed\"><parent link=\"rail\"/><child link=\"stop\"/></joint>\
+             <joint name=\"weld2\" type=\"fixed\"><parent link=\"rail\"/><child link=\"post\"/></joint></robot>"
+        );
+        let robot = Arc::new(Robot::parse("slide.urdf", &urdf, &RobotOptions::new()).unwrap());
+        for separation in [0.0, 0.01] {
+            let options = QueryOptions::default().with_min_separation(separation);
+            let mut scene = RobotScene::new(Arc::clone(&robot), None, options).unwrap();
+            assert!(scene.ignore("stop", "post"));
+            let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+            let path = Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(1.0, 2.0)]);
+            let found = scene.clearance(&path).unwrap().unwrap();
+            let truth = expected - separation;
+            // The corners of the boxes are not exact.
+            assert!(found.lower <= truth + 1e-15 && truth <= found.upper + 1e-15, "{found:?} {truth}");
+            assert!(found.upper - found.lower <= 1e-6 * truth, "{found:?}");
+            let mut names = [found.a.as_str(), found.b.as_str()];
+            names.sort_unstable();
+            assert_eq!((names, found.status), (["cart", "stop"], d2m_bvh::ClearanceStatus::Clear));
+            assert!((0.35..=0.65).contains(&found.time), "{found:?}");
+        }
+        // No pair is checked.
+        let mut scene = RobotScene::new(Arc::clone(&robot), None, QueryOptions::default()).unwrap();
+        let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+        let path = Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(1.0, 1.0)]);
+        for (a, b) in [("cart", "stop"), ("cart", "post"), ("stop", "post")] {
+            assert!(scene.ignore(a, b));
+        }
+        assert_eq!(scene.clearance(&path).unwrap(), None);
+    }
+}

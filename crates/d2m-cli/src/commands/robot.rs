@@ -9,7 +9,9 @@ use crate::output::{note, print, short};
 use crate::report::{evidence_sentence, vector};
 use crate::robot_scene::RobotSceneFile;
 use d2m::bvh::{Budget, QueryOptions, Window};
-use d2m_robot::{LimitWarning, PathAnswer, PathContact, Robot, RobotOptions, RobotScene, Srdf, Trajectory};
+use d2m_robot::{
+    LimitWarning, PathAnswer, PathClearance, PathContact, Robot, RobotOptions, RobotScene, Srdf, Trajectory,
+};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::time::Duration;
@@ -53,13 +55,18 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| Failure::at("--threads", error))?;
     let answer = pool.install(|| scene.check_path(&path)).map_err(fault)?;
+    let clearance = if arguments.clearance && answer.is_free() {
+        pool.install(|| scene.clearance(&path)).map_err(fault)?
+    } else {
+        None
+    };
     for text in &notes {
         note(&format!("d2m: {text}"));
     }
     print(&if arguments.json {
-        json(&answer, window, &warnings)
+        json(&answer, window, &warnings, clearance.as_ref())
     } else {
-        text(&answer, window, options.min_separation)
+        text(&answer, window, options.min_separation) + &clearance.as_ref().map_or(String::new(), nearness)
     })?;
     let outcome = match &answer {
         PathAnswer::Free { .. } => Outcome::Separated,
@@ -90,7 +97,12 @@ fn options(arguments: &RobotArguments, file: Option<&RobotSceneFile<'_>>) -> Res
 }
 
 /// The answer for a program.
-fn json(answer: &PathAnswer, window: Window, warnings: &[LimitWarning]) -> String {
+fn json(
+    answer: &PathAnswer,
+    window: Window,
+    warnings: &[LimitWarning],
+    clearance: Option<&PathClearance>,
+) -> String {
     let mut object = json!({
         "status": status(answer),
         "time": Value::Null,
@@ -120,7 +132,19 @@ fn json(answer: &PathAnswer, window: Window, warnings: &[LimitWarning]) -> Strin
         }
         PathAnswer::Free { .. } => {}
     }
+    if let Some(PathClearance { lower, upper, time, a, b, .. }) = clearance {
+        put("a", json!(a));
+        put("b", json!(b));
+        put("clearance", json!([lower, upper]));
+        put("clearance_time", json!(time));
+    }
     format!("{object}\n")
+}
+
+/// How near a free path comes, for a person.
+fn nearness(PathClearance { lower, upper, time, a, b, .. }: &PathClearance) -> String {
+    let [lower, upper, time] = [*lower, *upper, *time].map(short);
+    format!("  clearance   [{lower}, {upper}], {a} \u{2013} {b} at t = {time}\n")
 }
 
 const fn status(answer: &PathAnswer) -> &'static str {
