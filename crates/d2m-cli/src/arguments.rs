@@ -531,6 +531,9 @@ pub(crate) struct RobotArguments {
     /// Of a free path, how near it comes to a contact: the least distance of all pairs, less the minimum separation
     #[arg(long)]
     pub(crate) clearance: bool,
+    /// Prove the answer again by the independent verifier, pair by pair, and say whether it could
+    #[arg(long)]
+    pub(crate) verify: bool,
     /// Most seconds of the search; what is not decided by then is "undecided"
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     pub(crate) time_limit: Option<String>,

@@ -98,6 +98,21 @@ fn free_paths_say_how_near_they_come() {
 }
 
 #[test]
+fn answers_are_proven_again() {
+    let Files { folder, robot, path, scene } = &files("robot-verify");
+    for arguments in [vec![], vec!["--scene", scene]] {
+        let found = ask(&[&[robot, "--path", path, "--verify"], &arguments[..]].concat());
+        assert!(found["verified"] == true && found["why"].is_null(), "{found}");
+    }
+    let round = folder.file("round.json", &SCENE.replace("\"attach\"", "\"radius\": 0.01, \"attach\""));
+    let found = ask(&[robot, "--path", path, "--scene", &round, "--verify"]);
+    assert!(found["verified"] == false && found["why"].as_str().unwrap().contains("radius"), "{found}");
+    assert!(ask(&[robot, "--path", path])["verified"].is_null());
+    let text = stdout(&d2m(&["robot", robot, "--path", path, "--verify"]));
+    assert!(text.contains("  verified    yes"), "{text}");
+}
+
+#[test]
 fn bodies_have_radii() {
     let Files { folder, robot, path, scene } = &files("robot-radius");
     let until = |arguments: &[&str]| {

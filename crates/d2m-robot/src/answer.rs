@@ -34,6 +34,8 @@ pub struct PathContact {
     pub a: String,
     /// The second link or body: B of the contact.
     pub b: String,
+    /// Which bodies of them: numbers in [`PathBodies`](crate::PathBodies).
+    pub bodies: [usize; 2],
     /// When, where and how; in the world's frame.
     pub contact: Contact,
 }

@@ -73,7 +73,8 @@ impl RobotScene {
             FirstContact::Separated => PathAnswer::Free { until: end },
             FirstContact::Contact { a, b, contact, .. } => {
                 let contact = self.on_surfaces(a, b, contact);
-                PathAnswer::Contact(Box::new(PathContact { a: name(a), b: name(b), contact }))
+                let bodies = [a.index(), b.index()];
+                PathAnswer::Contact(Box::new(PathContact { a: name(a), b: name(b), bodies, contact }))
             }
             FirstContact::Undecided { clear_until, a, b, .. } => {
                 PathAnswer::Undecided { free_until: clear_until, a: name(a), b: name(b) }

@@ -10,6 +10,7 @@ pub(crate) mod info;
 pub(crate) mod manual;
 pub(crate) mod proximities;
 pub(crate) mod robot;
+mod robot_proof;
 pub(crate) mod scene;
 pub(crate) mod simulate;
 pub(crate) mod spans;

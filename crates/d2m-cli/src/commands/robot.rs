@@ -1,5 +1,6 @@
 //! `d2m robot`: is a planned path of a robot free of contact?
 
+use super::robot_proof::{Proof, prove};
 use crate::arguments::RobotArguments;
 use crate::engine::number;
 use crate::failure::{Failure, parse_json};
@@ -60,13 +61,24 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     } else {
         None
     };
+    let proof = if arguments.verify {
+        Some(prove(&scene.bodies_along(&path).map_err(fault)?, &answer)?)
+    } else {
+        None
+    };
     for text in &notes {
         note(&format!("d2m: {text}"));
     }
     print(&if arguments.json {
-        json(&answer, window, &warnings, clearance.as_ref())
+        let further = Further { clearance, proof };
+        json(&answer, window, &warnings, &further)
     } else {
-        text(&answer, window, options.min_separation) + &clearance.as_ref().map_or(String::new(), nearness)
+        text(&answer, window, options.min_separation)
+            + &clearance.as_ref().map_or(String::new(), nearness)
+            + &proof.as_ref().map_or(String::new(), |proof| match proof {
+                Proof::Verified => "  verified    yes, by an independent proof\n".to_owned(),
+                Proof::Unverified(why) => format!("  verified    no: {why}\n"),
+            })
     })?;
     let outcome = match &answer {
         PathAnswer::Free { .. } => Outcome::Separated,
@@ -96,12 +108,18 @@ fn options(arguments: &RobotArguments, file: Option<&RobotSceneFile<'_>>) -> Res
     Ok(options)
 }
 
+/// What was asked beside the answer.
+struct Further {
+    clearance: Option<PathClearance>,
+    proof: Option<Proof>,
+}
+
 /// The answer for a program.
 fn json(
     answer: &PathAnswer,
     window: Window,
     warnings: &[LimitWarning],
-    clearance: Option<&PathClearance>,
+    Further { clearance, proof }: &Further,
 ) -> String {
     let mut object = json!({
         "status": status(answer),
@@ -137,6 +155,12 @@ fn json(
         put("b", json!(b));
         put("clearance", json!([lower, upper]));
         put("clearance_time", json!(time));
+    }
+    if let Some(proof) = proof {
+        put("verified", json!(matches!(proof, Proof::Verified)));
+        if let Proof::Unverified(why) = proof {
+            put("why", json!(why));
+        }
     }
     format!("{object}\n")
 }
