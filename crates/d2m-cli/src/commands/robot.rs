@@ -76,7 +76,9 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
         text(&answer, window, options.min_separation)
             + &clearance.as_ref().map_or(String::new(), nearness)
             + &proof.as_ref().map_or(String::new(), |proof| match proof {
-                Proof::Verified => "  verified    yes, by an independent proof\n".to_owned(),
+                Proof::Verified(steps) => {
+                    format!("  verified    yes, by an independent proof of {steps} steps\n")
+                }
                 Proof::Unverified(why) => format!("  verified    no: {why}\n"),
             })
     })?;
@@ -157,9 +159,10 @@ fn json(
         put("clearance_time", json!(time));
     }
     if let Some(proof) = proof {
-        put("verified", json!(matches!(proof, Proof::Verified)));
-        if let Proof::Unverified(why) = proof {
-            put("why", json!(why));
+        put("verified", json!(matches!(proof, Proof::Verified(_))));
+        match proof {
+            Proof::Verified(steps) => put("proof_steps", json!(steps)),
+            Proof::Unverified(why) => put("why", json!(why)),
         }
     }
     format!("{object}\n")
