@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn large_meshes_are_drawn_coarser_and_keep_their_extent() {
-        let mesh = d2m::shapes::mesh("sphere?triangles=300000").unwrap();
+        let mesh = d2m::shapes::mesh("icosphere?triangles=300000").unwrap();
         let shown = DisplayMesh::new(&mesh);
         assert!((10_000..=MOST_TRIANGLES).contains(&shown.triangles.len()), "{}", shown.triangles.len());
         let reach = |points: &mut dyn Iterator<Item = f64>| points.fold(0.0, f64::max);
