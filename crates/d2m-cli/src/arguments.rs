@@ -41,6 +41,8 @@ Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 if some 
 Example:
   d2m spans shape:box shape:box --motion-a 'x=-4,0,0;v=8,0,0'")]
     Spans(SpansArguments),
+    /// Whether an answer of toc --json can be proven again, independently
+    Verify(VerifyArguments),
     /// Many trials of one pair of meshes, from a CSV file to a CSV file
     Batch(BatchArguments),
     /// First contacts of moving points, triangles, edges and spheres, from JSON lines to JSON lines
@@ -139,6 +141,9 @@ pub(crate) struct TocArguments {
     pub(crate) window: String,
     #[command(flatten)]
     pub(crate) query: QueryArguments,
+    /// Prove the answer again by the independent verifier, and say whether it could; not with --clearance or --start leave
+    #[arg(long, conflicts_with = "clearance")]
+    pub(crate) verify: bool,
     /// Answer as one JSON object
     #[arg(long)]
     pub(crate) json: bool,
@@ -185,6 +190,41 @@ pub(crate) struct ClearanceArguments {
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
+The answer is what d2m toc --json printed for the same bodies, motions, window and options. It is proven again from the meshes and the
+motions alone, by interval arithmetic that shares nothing with the search.
+
+Exit codes: 0 verified, 20 refuted, with a time and a distance that show it, 21 not proven, with the reason; 2 bad usage, 3 bad input, also an
+answer about other bodies or one that contradicts itself.
+
+Example:
+  d2m toc shape:gear shape:torus --motion-a 'x=-3,0,0;v=4,0,0' --json > answer.json
+  d2m verify shape:gear shape:torus --motion-a 'x=-3,0,0;v=4,0,0' --answer answer.json")]
+pub(crate) struct VerifyArguments {
+    #[arg(value_name = "A", help = MESH_HELP)]
+    pub(crate) a: String,
+    #[arg(value_name = "B", help = MESH_HELP)]
+    pub(crate) b: String,
+    /// Answer of d2m toc --json; - for standard input
+    #[arg(long, value_name = "ANSWER.json")]
+    pub(crate) answer: String,
+    /// Motion of A; at rest if not given
+    #[arg(long, value_name = "M", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
+    pub(crate) motion_a: String,
+    /// Motion of B; at rest if not given
+    #[arg(long, value_name = "M", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
+    pub(crate) motion_b: String,
+    /// First and last time
+    #[arg(long, value_name = "T0,T1", default_value = "0,1", allow_hyphen_values = true)]
+    pub(crate) window: String,
+    #[command(flatten)]
+    pub(crate) query: QueryArguments,
+    /// Answer as one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
 Trials: 26 numbers a line (a header line is allowed): qA(w,x,y,z), xA, vA, wA, qB(w,x,y,z), xB, vB, wB; time runs over [0, 1]. Or JSON lines
 {\"a\": motion, \"b\": motion, \"window\": [t0, t1]} with motions of any form of d2m toc.
 Results: trial,status,toc,toc_hi,separation,microseconds,normal_x,normal_y,normal_z,point_x,point_y,point_z,feature,
@@ -215,6 +255,9 @@ pub(crate) struct BatchArguments {
     /// Keep the answers of a run that is ended, and go on behind those of an earlier one
     #[arg(long)]
     pub(crate) resume: bool,
+    /// Prove this share of the answers again (1: all); an answer that is refuted ends the command with exit code 20
+    #[arg(long, value_name = "SHARE", num_args = 0..=1, default_missing_value = "1")]
+    pub(crate) verify: Option<String>,
     #[command(flatten)]
     pub(crate) query: QueryArguments,
 }
@@ -484,6 +527,9 @@ pub(crate) struct SceneArguments {
     /// Most seconds of the search, which then runs on one thread; pairs that are not decided by then are "undecided"
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     pub(crate) time_limit: Option<String>,
+    /// With --first: prove the answer again by the independent verifier, pair by pair, and say whether it could
+    #[arg(long, requires = "first")]
+    pub(crate) verify: bool,
     /// Answer as one JSON object
     #[arg(long)]
     pub(crate) json: bool,

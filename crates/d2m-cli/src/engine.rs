@@ -46,6 +46,14 @@ impl Body {
         }
     }
 
+    /// The engine's tree; none with the reference method.
+    pub(crate) const fn tree(&self) -> Option<&MeshTree> {
+        match &self.tree {
+            Tree::Engine(tree) => Some(tree),
+            Tree::Paper(_) => None,
+        }
+    }
+
     fn is_watertight(&self) -> bool {
         match &self.tree {
             Tree::Engine(tree) => tree.is_watertight(),
@@ -99,6 +107,11 @@ impl Pair {
     /// How large the bodies are.
     pub(crate) fn sizes(&self) -> [f64; 2] {
         [size_of(self.a.mesh()), size_of(self.b.mesh())]
+    }
+
+    /// The options of its queries.
+    pub(crate) const fn options(&self) -> &QueryOptions {
+        &self.options
     }
 
     /// Each query on all threads of the machine: for single ones.

@@ -4,6 +4,7 @@
 //! for it 10 contact, 11 separated, 12 undecided.
 #![forbid(unsafe_code)]
 
+mod answer_file;
 mod arguments;
 mod commands;
 mod engine;
@@ -22,6 +23,7 @@ mod scene;
 mod simulation;
 mod sizes;
 mod trials;
+mod verification;
 mod view;
 
 use arguments::{Arguments, Command};
@@ -41,7 +43,8 @@ fn main() -> ExitCode {
         Command::Toc(arguments) => commands::toc::run(arguments),
         Command::Spans(arguments) => commands::spans::run(arguments),
         Command::Clearance(arguments) => commands::clearance::run(arguments),
-        Command::Batch(arguments) => commands::batch::run(arguments).map(Outcome::from),
+        Command::Verify(arguments) => commands::verify::run(arguments),
+        Command::Batch(arguments) => commands::batch::run(arguments),
         Command::Features(arguments) => commands::features::run(arguments).map(Outcome::from),
         Command::Distance(arguments) => commands::distance::run(arguments),
         Command::Collide(arguments) => commands::collide::run(arguments),

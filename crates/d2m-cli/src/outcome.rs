@@ -10,6 +10,10 @@ pub(crate) enum Outcome {
     Contact,
     Separated,
     Undecided,
+    /// A given answer is false.
+    Refuted,
+    /// A given answer could be neither proven nor refuted.
+    NotProven,
 }
 
 impl Outcome {
@@ -25,6 +29,8 @@ impl Outcome {
             Self::Contact => 10,
             Self::Separated => 11,
             Self::Undecided => 12,
+            Self::Refuted => 20,
+            Self::NotProven => 21,
         }
     }
 }

@@ -14,6 +14,7 @@ pub use d2m_verify::*;
 
 use crate::{Contact, Mode, Moving, Pose, QueryOptions, StartState, TimeOfContact, TriMesh, Twist, Window};
 use d2m_bvh::{self as bvh, Evidence};
+use std::sync::Arc;
 
 /// Steps of a proof, if nothing else is said: some seconds.
 pub const DEFAULT_STEPS: u64 = 1 << 22;
@@ -38,7 +39,15 @@ pub const DEFAULT_STEPS: u64 = 1 << 22;
 /// ```
 #[derive(Debug)]
 pub struct Verifier {
-    meshes: [Mesh; 2],
+    meshes: [Arc<Mesh>; 2],
+}
+
+/// The engine's mesh as the verifier keeps it.
+///
+/// # Errors
+/// [`MeshFault`]: a mesh without triangles.
+pub fn mesh(mesh: &TriMesh) -> Result<Mesh, MeshFault> {
+    Mesh::try_new(mesh.vertices(), mesh.triangles())
 }
 
 impl Verifier {
@@ -47,8 +56,12 @@ impl Verifier {
     /// # Errors
     /// [`MeshFault`]: a mesh without triangles.
     pub fn try_new(a: &TriMesh, b: &TriMesh) -> Result<Self, MeshFault> {
-        let mesh = |mesh: &TriMesh| Mesh::try_new(mesh.vertices(), mesh.triangles());
-        Ok(Self { meshes: [mesh(a)?, mesh(b)?] })
+        Ok(Self::new([Arc::new(mesh(a)?), Arc::new(mesh(b)?)]))
+    }
+
+    /// Of meshes that other verifiers use, too.
+    pub const fn new(meshes: [Arc<Mesh>; 2]) -> Self {
+        Self { meshes }
     }
 
     /// The query about bodies of these meshes (those that `bodies` name are not looked at).

@@ -1,19 +1,21 @@
 //! `d2m batch`: many trials of one pair.
 
 use crate::arguments::BatchArguments;
-use crate::engine::{Answer, Pair};
+use crate::engine::{Answer, Pair, number};
 use crate::failure::Failure;
+use crate::outcome::Outcome;
 use crate::output::{Output, note, progress_bar};
 use crate::partial::Partial;
 use crate::report;
 use crate::sizes::load_both;
 use crate::trials::{self, Trial};
+use crate::verification::PairVerifier;
 use rayon::prelude::*;
 use std::path::Path;
 use std::time::Instant;
 
 /// Runs the command.
-pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
     let inputs = [Path::new(&arguments.a), Path::new(&arguments.b), &arguments.trials];
     let out = Output::new(&arguments.out)?.spare(inputs)?;
     if arguments.resume && arguments.trials == Path::new("-") {
@@ -84,7 +86,10 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
         report::duration(elapsed)
     ));
     warn_of_orientations(arguments, &trials);
-    Ok(())
+    match &arguments.verify {
+        Some(share) => prove(share, &pair, &trials[known..], &answers),
+        None => Ok(Outcome::Answered),
+    }
 }
 
 /// Trials that are kept together by `--resume`: some milliseconds to a second of work.
@@ -101,6 +106,27 @@ fn warn_of_orientations(arguments: &BatchArguments, trials: &[Trial]) {
             first.line
         ));
     }
+}
+
+/// Proves a share of the answers again, evenly spread.
+fn prove(share: &str, pair: &Pair, trials: &[Trial], answers: &[Answer]) -> Result<Outcome, Failure> {
+    let share = number("--verify", share, "a share from 0 to 1", |share| (0.0..=1.0).contains(&share))?;
+    let verifier = PairVerifier::new(pair)?;
+    let is_chosen = |index: usize| ((index + 1) as f64 * share).floor() > (index as f64 * share).floor();
+    let (mut verified, mut count, mut outcome) = (0, 0, Outcome::Answered);
+    for (index, (trial, answer)) in trials.iter().zip(answers).enumerate().filter(|(k, _)| is_chosen(*k)) {
+        let proof = verifier.prove([&trial.motion_a, &trial.motion_b], trial.window, &answer.verdict);
+        count += 1;
+        verified += u32::from(proof.is_verified());
+        if !proof.is_verified() {
+            note(&format!("line {} (trial {index}): {}", trial.line, proof.sentence()));
+        }
+        if proof.is_refuted() {
+            outcome = Outcome::Refuted;
+        }
+    }
+    note(&format!("{verified} of {count} answers verified"));
+    Ok(outcome)
 }
 
 /// Counts of the verdicts, median and worst time, largest separation.

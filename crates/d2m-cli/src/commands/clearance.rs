@@ -15,6 +15,9 @@ use std::fmt::Write;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &ClearanceArguments) -> Result<Outcome, Failure> {
+    if arguments.toc.verify {
+        return Err(Failure::at("--verify", "only of d2m toc"));
+    }
     let accuracy = number("--accuracy", &arguments.accuracy, "a positive finite number", |r| r > 0.0)?;
     let toc = &arguments.toc;
     for (option, given) in

@@ -16,4 +16,5 @@ pub(crate) mod simulate;
 pub(crate) mod spans;
 pub(crate) mod toc;
 pub(crate) mod tree;
+pub(crate) mod verify;
 pub(crate) mod view;

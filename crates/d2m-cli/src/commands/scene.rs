@@ -6,8 +6,9 @@ use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::{print_answer, progress_bar, short};
 use crate::report::{feature_field, vector};
-use crate::scene::Scene;
-use d2m::bvh::{Budget, QueryOptions, TimeOfContact, Window};
+use crate::scene::{Scene, SceneBody};
+use crate::verification::{Bodies, Proof, joined};
+use d2m::bvh::{Budget, MeshTree, Moving, QueryOptions, TimeOfContact, Window};
 use d2m::{FirstContact, PairContact, WorldError};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -62,10 +63,13 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
     })?;
     bar.finish_and_clear();
     let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    let proof = if arguments.verify { Some(prove(&scene, &rows)?) } else { None };
     print_answer(&if arguments.json {
-        json(scene.window, &names, &rows)
+        let text = json(scene.window, &names, &rows);
+        proof.map_or(Ok(text.clone()), |proof| proof.put_into(&text))?
     } else {
-        text(scene.window, &names, &rows)
+        let proof = proof.map_or(String::new(), |proof| format!("  verified: {}\n", proof.sentence()));
+        text(scene.window, &names, &rows) + &proof
     })?;
     let outcome = if rows.iter().any(|row| row.answer.contact().is_some()) {
         Outcome::Contact
@@ -75,6 +79,31 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
         Outcome::Undecided
     };
     Ok(outcome.reported(arguments.exit_status))
+}
+
+/// Proves the first contact of all again: each pair that is not in the answer is apart until the first one.
+fn prove(scene: &Scene, rows: &[Row]) -> Result<Proof, Failure> {
+    let moving = scene.bodies.iter().map(|body: &SceneBody| {
+        let tree: &MeshTree = &body.tree;
+        Moving::new(tree, &body.motion).with_solid(body.solid)
+    });
+    let bodies = Bodies::new(moving.collect())?;
+    let options = scene.options(QueryOptions::default());
+    let first = match rows.first().map(|row| &row.answer) {
+        None | Some(TimeOfContact::Separated) => TimeOfContact::Separated,
+        Some(TimeOfContact::Contact(contact)) if contact.time_lo < scene.window.end() => {
+            TimeOfContact::Undecided { clear_until: contact.time_lo }
+        }
+        Some(TimeOfContact::Contact(_)) => TimeOfContact::Separated,
+        Some(undecided) => *undecided,
+    };
+    let proofs = scene.pairs().into_iter().map(|pair| {
+        let [a, b] = pair;
+        let reported = rows.iter().find(|row| row.bodies == [a, b] || row.bodies == [b, a]);
+        let (pair, answer) = reported.map_or((pair, &first), |row| (row.bodies, &row.answer));
+        bodies.prove(pair, scene.window, &options, answer)
+    });
+    Ok(joined(proofs))
 }
 
 /// The answer for a program.

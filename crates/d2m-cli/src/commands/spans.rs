@@ -17,6 +17,9 @@ const RESOLUTION: f64 = 1e-6;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &SpansArguments) -> Result<Outcome, Failure> {
+    if arguments.toc.verify {
+        return Err(Failure::at("--verify", "only of d2m toc"));
+    }
     let toc = &arguments.toc;
     if toc.obj.is_some() {
         return Err(Failure::at("--obj", "d2m spans has no such option"));

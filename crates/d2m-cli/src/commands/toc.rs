@@ -8,6 +8,7 @@ use crate::outcome::Outcome;
 use crate::output::{Output, print_answer};
 use crate::report;
 use crate::sizes::{Travel, load_both, sizes_line, warn_of_turn};
+use crate::verification::PairVerifier;
 use d2m::bvh::{TimeOfContact, TriMesh, Window};
 use d2m::motion::{AnyMotion, RigidMotion};
 use std::fmt::Write;
@@ -50,6 +51,9 @@ pub(super) fn read(arguments: &TocArguments) -> Result<MovingPair, Failure> {
 pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
     let MovingPair { pair, motion_a, motion_b, window, obj, travels } = read(arguments)?;
     let departure = match arguments.start {
+        StartChoice::Leave if arguments.verify => {
+            return Err(Failure::at("--verify", "not with --start leave"));
+        }
         StartChoice::Leave => Some(pair.departure([&motion_a, &motion_b], window)?),
         StartChoice::Report => None,
     };
@@ -80,11 +84,18 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
         }
         scene.write(&text)?;
     }
+    let proof = if arguments.verify {
+        Some(PairVerifier::new(&pair)?.prove([&motion_a, &motion_b], window, &answer.verdict))
+    } else {
+        None
+    };
     let further = report::Further { clearance, departure };
     print_answer(&if arguments.json {
-        report::json(&pair, window, &answer, &further)
+        let text = report::json(&pair, window, &answer, &further);
+        proof.map_or(Ok(text.clone()), |proof| proof.put_into(&text))?
     } else {
-        report::text(&pair, window, &answer, &further) + &sizes_line(pair.sizes(), Some(travels))
+        let proof = proof.map_or(String::new(), |proof| format!("  verified    {}\n", proof.sentence()));
+        report::text(&pair, window, &answer, &further) + &proof + &sizes_line(pair.sizes(), Some(travels))
     })?;
     Ok(Outcome::from(&answer.verdict).reported(arguments.exit_status))
 }

@@ -58,13 +58,38 @@ impl Scene {
         }
     }
 
-    /// The world of the scene; its bodies have the numbers that they have in the file.
-    pub(crate) fn world(&self, options: QueryOptions) -> World {
+    /// The pairs of bodies that are not ignored.
+    pub(crate) fn pairs(&self) -> Vec<[usize; 2]> {
+        let group = |body: usize| self.bodies[body].group.as_deref();
+        let in_groups =
+            |[a, b]: [usize; 2], one: &str, other: &str| group(a) == Some(one) && group(b) == Some(other);
+        let is_ignored = |pair: [usize; 2]| {
+            let [a, b] = pair;
+            self.ignored.iter().any(|ignored| match ignored {
+                Ignored::Pair(p, q) => [*p, *q] == pair || [*q, *p] == pair,
+                Ignored::Groups(one, other) => in_groups(pair, one, other) || in_groups(pair, other, one),
+                Ignored::BodyAndGroup(body, of) => {
+                    (a == *body && group(b) == Some(of)) || (b == *body && group(a) == Some(of))
+                }
+            })
+        };
+        let count = self.bodies.len();
+        let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
+        pairs.filter(|&pair| !is_ignored(pair)).collect()
+    }
+
+    /// The options of its queries.
+    pub(crate) const fn options(&self, options: QueryOptions) -> QueryOptions {
         let mut options = options.with_min_separation(self.min_separation);
         if let Some(tolerance) = self.tolerance {
             options = options.with_tolerance(tolerance);
         }
-        let mut world = World::new(options);
+        options
+    }
+
+    /// The world of the scene; its bodies have the numbers that they have in the file.
+    pub(crate) fn world(&self, options: QueryOptions) -> World {
+        let mut world = World::new(self.options(options));
         let mut groups: BTreeMap<&str, Group> = BTreeMap::new();
         let mut ids: Vec<BodyId> = Vec::with_capacity(self.bodies.len());
         for body in &self.bodies {

@@ -1,0 +1,53 @@
+//! `d2m verify`: an answer of `d2m toc --json` proven again.
+
+use crate::answer_file::read_answer;
+use crate::arguments::VerifyArguments;
+use crate::engine::{Pair, check_size};
+use crate::failure::Failure;
+use crate::motion::{parse_motion, parse_window, require_window};
+use crate::outcome::Outcome;
+use crate::output::print;
+use crate::sizes::load_both;
+use crate::verification::PairVerifier;
+use serde_json::json;
+use std::io::Read;
+
+/// Runs the command.
+pub(crate) fn run(arguments: &VerifyArguments) -> Result<Outcome, Failure> {
+    let window = parse_window(&arguments.window)?;
+    let motion_a = parse_motion("--motion-a", &arguments.motion_a)?;
+    let motion_b = parse_motion("--motion-b", &arguments.motion_b)?;
+    require_window("--motion-a", &motion_a, window)?;
+    require_window("--motion-b", &motion_b, window)?;
+    let (place, bytes) = read(&arguments.answer)?;
+    let [a, b] = load_both(&arguments.a, &arguments.b, &arguments.query.sizes)?;
+    let pair = Pair::new(a, b, &arguments.query)?;
+    check_size("--motion-a", &motion_a, &pair.a)?;
+    check_size("--motion-b", &motion_b, &pair.b)?;
+    let answer = read_answer(place, &bytes, &pair, [&motion_a, &motion_b], window)?;
+    let proof = PairVerifier::new(&pair)?.prove([&motion_a, &motion_b], window, &answer);
+    print(&if arguments.json {
+        let mut object = json!({});
+        proof.put(&mut object);
+        format!("{object}\n")
+    } else {
+        format!("verified    {}\n", proof.sentence())
+    })?;
+    Ok(if proof.is_verified() {
+        Outcome::Answered
+    } else if proof.is_refuted() {
+        Outcome::Refuted
+    } else {
+        Outcome::NotProven
+    })
+}
+
+/// The bytes of the answer, and where they are from.
+fn read(path: &str) -> Result<(&str, Vec<u8>), Failure> {
+    if path != "-" {
+        return Ok((path, std::fs::read(path).map_err(|error| Failure::at(path, error))?));
+    }
+    let mut bytes = Vec::new();
+    std::io::stdin().read_to_end(&mut bytes).map_err(|error| Failure::at("standard input", error))?;
+    Ok(("standard input", bytes))
+}

@@ -1,0 +1,150 @@
+//! Answers proven again by the verifier, which shares nothing with the search.
+
+use crate::engine::Pair;
+use crate::failure::Failure;
+use crate::output::short;
+use d2m::bvh::{MeshTree, Moving, QueryOptions, TimeOfContact, Window};
+use d2m::motion::RigidMotion;
+use d2m::verify::{DEFAULT_STEPS, Mesh, Verdict, Verifier, mesh};
+use serde_json::{Value, json};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// What became of an answer.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Proof(pub(crate) Verdict);
+
+impl Proof {
+    pub(crate) const fn is_verified(&self) -> bool {
+        matches!(self.0, Verdict::Verified { .. })
+    }
+
+    pub(crate) const fn is_refuted(&self) -> bool {
+        matches!(self.0, Verdict::Refuted { .. })
+    }
+
+    /// One sentence for a person.
+    pub(crate) fn sentence(&self) -> String {
+        match self.0 {
+            Verdict::Verified { steps } => format!("yes, by an independent proof of {steps} steps"),
+            Verdict::Refuted { time, triangles: [a, b], distance } => format!(
+                "REFUTED: at t = {} triangle {a} of A and triangle {b} of B are between {} and {} apart",
+                short(time),
+                short(distance.lo()),
+                short(distance.hi())
+            ),
+            Verdict::Unproven { clear_until, reason, pair } => {
+                let place = pair
+                    .map_or(String::new(), |[a, b]| format!(" (triangle {a} of A and triangle {b} of B)"));
+                format!("not proven: {reason}{place}; clear until {}", short(clear_until))
+            }
+        }
+    }
+
+    /// The fields of a JSON answer: `verified`, and `why` or a `counterexample` where it is not.
+    pub(crate) fn put(&self, object: &mut Value) {
+        object["verified"] = json!(self.is_verified());
+        match self.0 {
+            Verdict::Verified { steps } => object["proof_steps"] = json!(steps),
+            Verdict::Refuted { time, triangles, distance } => {
+                object["why"] = json!(self.sentence());
+                let distance = [distance.lo(), distance.hi()];
+                object["counterexample"] =
+                    json!({ "time": time, "distance": distance, "triangles": triangles });
+            }
+            Verdict::Unproven { .. } => object["why"] = json!(self.sentence()),
+        }
+    }
+
+    /// A JSON answer, as it was printed, with the same fields.
+    pub(crate) fn put_into(&self, text: &str) -> Result<String, Failure> {
+        let mut object: Value = serde_json::from_str(text).map_err(|error| Failure::at("answer", error))?;
+        self.put(&mut object);
+        Ok(format!("{object}\n"))
+    }
+}
+
+/// Proves answers about one pair of meshes again.
+pub(crate) struct PairVerifier<'p> {
+    pair: &'p Pair,
+    verifier: Verifier,
+    /// Trees of a pair that was prepared for the reference method.
+    trees: Option<[MeshTree; 2]>,
+}
+
+impl<'p> PairVerifier<'p> {
+    pub(crate) fn new(pair: &'p Pair) -> Result<Self, Failure> {
+        let verifier = Verifier::try_new(pair.a.mesh(), pair.b.mesh());
+        let verifier = verifier.map_err(|error| Failure::at("--verify", error))?;
+        let is_prepared = pair.a.tree().is_some() && pair.b.tree().is_some();
+        let trees = (!is_prepared).then(|| [&pair.a, &pair.b].map(|body| MeshTree::new(body.mesh().clone())));
+        Ok(Self { pair, verifier, trees })
+    }
+
+    pub(crate) fn prove(
+        &self,
+        motions: [&dyn RigidMotion; 2],
+        window: Window,
+        answer: &TimeOfContact,
+    ) -> Proof {
+        let prepared = self.pair.a.tree().zip(self.pair.b.tree());
+        let trees = self.trees.as_ref().map(|[a, b]| [a, b]).or(prepared.map(|(a, b)| [a, b]));
+        let Some(trees) = trees else { unreachable!("trees are built where there are none") };
+        let body = |k: usize| Moving::new(trees[k], motions[k]).with_solid(self.pair.solids[k]);
+        let options = self.pair.options();
+        Proof(self.verifier.time_of_contact(&[body(0), body(1)], window, options, answer, DEFAULT_STEPS))
+    }
+}
+
+/// Many bodies, and what is claimed of each pair of them.
+///
+/// Scenes and robots are proven so: pair by pair.
+pub(crate) struct Bodies<'b> {
+    bodies: Vec<Moving<'b>>,
+    meshes: Vec<Arc<Mesh>>,
+}
+
+impl<'b> Bodies<'b> {
+    pub(crate) fn new(bodies: Vec<Moving<'b>>) -> Result<Self, Failure> {
+        let mut known = HashMap::new();
+        let mut meshes = Vec::with_capacity(bodies.len());
+        for moving in &bodies {
+            // Bodies of one tree share what the verifier keeps of it.
+            let key = std::ptr::from_ref(moving.body);
+            if !known.contains_key(&key) {
+                let built = mesh(moving.body.mesh()).map_err(|error| Failure::at("--verify", error))?;
+                known.insert(key, Arc::new(built));
+            }
+            meshes.push(Arc::clone(&known[&key]));
+        }
+        Ok(Self { bodies, meshes })
+    }
+
+    /// Proves an answer about two of the bodies, by their numbers.
+    pub(crate) fn prove(
+        &self,
+        [a, b]: [usize; 2],
+        window: Window,
+        options: &QueryOptions,
+        answer: &TimeOfContact,
+    ) -> Proof {
+        let verifier = Verifier::new([Arc::clone(&self.meshes[a]), Arc::clone(&self.meshes[b])]);
+        let bodies = [self.bodies[a], self.bodies[b]];
+        Proof(verifier.time_of_contact(&bodies, window, options, answer, DEFAULT_STEPS))
+    }
+}
+
+/// What of several proofs counts: a refutation, else what is not proven, else all steps.
+pub(crate) fn joined(proofs: impl IntoIterator<Item = Proof>) -> Proof {
+    let mut joined = Proof(Verdict::Verified { steps: 0 });
+    for proof in proofs {
+        joined = match (joined.0, proof.0) {
+            (Verdict::Verified { steps }, Verdict::Verified { steps: more }) => {
+                Proof(Verdict::Verified { steps: steps + more })
+            }
+            (Verdict::Verified { .. }, _) | (Verdict::Unproven { .. }, Verdict::Refuted { .. }) => proof,
+            _ => joined,
+        };
+    }
+    joined
+}

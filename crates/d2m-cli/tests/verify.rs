@@ -1,0 +1,147 @@
+//! Answers proven again by the command, and answer files that were edited.
+
+mod shell;
+
+use serde_json::{Value, json};
+use shell::{Folder, d2m, stderr, stdout};
+use std::process::Output;
+
+const BODIES: [&str; 6] = [
+    "shape:gear?triangles=500",
+    "shape:torus?triangles=600",
+    "--motion-a",
+    "x=-4,0.1,0.2;v=4,0,0;w=0,0,1",
+    "--motion-b",
+    "w=0.3,0.2,0.1",
+];
+
+fn run(command: &str, more: &[&str]) -> Output {
+    let mut words = vec![command];
+    words.extend(BODIES);
+    words.extend(more);
+    d2m(&words)
+}
+
+fn answer() -> Value {
+    let out = run("toc", &["--json", "--verify"]);
+    assert_eq!(out.status.code(), Some(0), "{}", stderr(&out));
+    let answer: Value = serde_json::from_str(&stdout(&out)).unwrap();
+    assert_eq!(answer["status"], "contact");
+    assert_eq!(answer["verified"], true, "{answer}");
+    answer
+}
+
+fn code(folder: &Folder, answer: &Value, more: &[&str]) -> (Option<i32>, String) {
+    let path = folder.file("answer.json", &answer.to_string());
+    let out = run("verify", &[&["--answer", &path], more].concat());
+    (out.status.code(), stdout(&out) + &stderr(&out))
+}
+
+/// What `toc --json` says is verified as it is, and each edit is refuted, not proven or refused, never verified.
+#[test]
+fn edited_answers_are_never_verified() {
+    let folder = Folder::new("verify");
+    let answer = answer();
+    assert_eq!(code(&folder, &answer, &[]).0, Some(0));
+    let time = answer["toc"].as_f64().unwrap();
+    let later = |by: f64| {
+        let mut lie = answer.clone();
+        let hi = answer["toc_hi"].as_f64().unwrap() + by;
+        (lie["toc"], lie["time_lo"]) = (json!(time + by), json!(time + by));
+        (lie["toc_hi"], lie["time_hi"], lie["time"]) = (json!(hi), json!(hi), json!([time + by, hi]));
+        lie
+    };
+    for by in [1e-9, 1e-6, 1e-3, 0.1] {
+        let (code, said) = code(&folder, &later(by), &[]);
+        assert!(matches!(code, Some(3 | 20 | 21)), "{by}: {code:?} {said}");
+    }
+    let separated = json!({
+        "status": "separated", "window": answer["window"], "min_separation": answer["min_separation"],
+        "triangles": answer["triangles"], "solids": answer["solids"],
+    });
+    let (refuted, said) = code(&folder, &separated, &["--json"]);
+    assert_eq!(refuted, Some(20), "{said}");
+    let shown: Value = serde_json::from_str(&said).unwrap();
+    assert!(shown["counterexample"]["time"].as_f64().unwrap() > time, "{said}");
+    for (key, value) in [
+        ("separation", json!(answer["separation"].as_f64().unwrap() * 2.0)),
+        ("tolerance", json!(1e-3)),
+        ("triangle_a", json!(answer["triangle_a"].as_u64().unwrap() + 1)),
+        ("triangle_b", json!(1_000_000)),
+        ("toc", json!(0.0)),
+        ("time_lo", json!(-1.0)),
+        ("normal", json!([1.0, 0.0, 0.0])),
+        ("point", json!([1.0, 0.0, 0.0])),
+        ("point_a", json!([1.0, 0.0, 0.0])),
+        ("point_b", json!([1.0, 0.0, 0.0])),
+        ("barycentric_a", json!([1.0, 1.0, -1.0])),
+        ("closing_speed", json!(-4.0)),
+        ("feature", json!("edge_edge:0-1:0-1")),
+        ("status", json!("certain")),
+        ("status", json!("separated")),
+        ("status", json!("undecided")),
+        ("evidence", json!("sure")),
+        ("start", json!("contained")),
+        ("window", json!([0.0, 2.0])),
+        ("min_separation", json!(0.5)),
+        ("triangles", json!([12, 12])),
+        ("solids", json!([false, true])),
+    ] {
+        let mut lie = answer.clone();
+        lie[key] = value;
+        let (code, said) = code(&folder, &lie, &[]);
+        assert!(matches!(code, Some(3 | 20 | 21)), "{key}: {code:?} {said}");
+        assert!(!said.trim().is_empty());
+    }
+    let (code, said) = {
+        let path = folder.file("answer.json", "{ not json");
+        let out = run("verify", &["--answer", &path]);
+        (out.status.code(), stderr(&out))
+    };
+    assert!(code == Some(3) && said.contains("answer.json"), "{said}");
+    let other = d2m(&[
+        "verify",
+        "shape:box",
+        BODIES[1],
+        "--motion-a",
+        BODIES[3],
+        "--answer",
+        &folder.file("a.json", &answer.to_string()),
+    ]);
+    assert_eq!(other.status.code(), Some(3), "{}", stderr(&other));
+}
+
+const SCENE: &str = r#"{"bodies": [
+    {"name": "a", "mesh": "shape:box", "motion": {"x": [-4, 0.1, 0.2], "v": [4, 0, 0]}},
+    {"name": "b", "mesh": "shape:box"},
+    {"name": "c", "mesh": "shape:torus", "motion": {"x": [0, 9, 0]}},
+    {"name": "inside", "mesh": "shape:icosphere", "scale": 0.1, "group": "parts"}],
+    "ignore": [["b", "parts"]]}"#;
+
+/// Scenes are proven pair by pair, ignored pairs left out, and batches for a share of their trials.
+#[test]
+fn scenes_and_batches_are_verified() {
+    let folder = Folder::new("verify-scene");
+    let scene = folder.file("scene.json", SCENE);
+    let out = d2m(&["scene", &scene, "--first", "--json", "--verify"]);
+    let answer: Value = serde_json::from_str(&stdout(&out)).unwrap();
+    assert_eq!(answer["verified"], true, "{answer}");
+    assert_eq!(d2m(&["scene", &scene, "--verify"]).status.code(), Some(2));
+    let row = "1,0,0,0,-3,0.1,0.2,4,0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0\n";
+    let trials = folder.file("trials.csv", &row.repeat(4));
+    for (share, said) in [("1", "4 of 4 answers verified"), ("0.5", "2 of 2 answers verified")] {
+        let results = folder.path("results.csv");
+        let out = d2m(&[
+            "batch",
+            "shape:box",
+            "shape:box",
+            "--trials",
+            &trials,
+            "--out",
+            &results,
+            "--verify",
+            share,
+        ]);
+        assert!(out.status.code() == Some(0) && stderr(&out).contains(said), "{}", stderr(&out));
+    }
+}
