@@ -271,3 +271,18 @@ fn what_holds_at_the_start_is_let_go() {
         matches!(parting.answer, TimeOfContact::Contact(contact) if (contact.time_lo - 0.5).abs() < 1e-9)
     );
 }
+
+/// Faces that slide in one plane cross nowhere, and no vertex stays above the inside of a face: the points that wander prove it.
+#[test]
+fn boxes_with_common_planes_are_followed_through_each_other() {
+    let cube = cuboid(DVec3::ONE);
+    let flying = ConstantTwist::REST.with_position(DVec3::X * -4.0).with_linear_velocity(DVec3::X * 8.0);
+    let [a, b] = [Moving::new(&cube, &ConstantTwist::REST), Moving::new(&cube, &flying)];
+    let budget = Budget::UNLIMITED.with_node_tests(1_000_000);
+    let options = QueryOptions::default().with_budget(budget);
+    let spans = contact_spans(a, b, Window::UNIT, &options, None).unwrap();
+    let statuses: Vec<_> = spans.iter().map(|span| span.status).collect();
+    assert_eq!(statuses, [SpanStatus::Clear, SpanStatus::Contact, SpanStatus::Clear]);
+    // Sides of two: they meet at a distance of two and part at two.
+    assert!((spans[1].from - 0.25).abs() < 2e-6 && (spans[1].to - 0.75).abs() < 2e-6, "{spans:?}");
+}

@@ -37,7 +37,7 @@ pub(crate) fn read_answer(
     let about: About = parse_json(place, bytes)?;
     // Promises that are not judged must not be called verified.
     for key in ["left", "clearance"] {
-        if object.get(key).is_some() {
+        if object.get(key).is_some_and(|value| !value.is_null()) {
             return Err(Failure::at(place, format!("{key}: cannot be verified")));
         }
     }

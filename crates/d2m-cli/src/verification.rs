@@ -8,6 +8,7 @@ use d2m::motion::RigidMotion;
 use d2m::verify::{DEFAULT_STEPS, Mesh, Verdict, Verifier, mesh};
 use serde_json::{Value, json};
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 /// What became of an answer.
@@ -111,11 +112,14 @@ impl<'b> Bodies<'b> {
         for moving in &bodies {
             // Bodies of one tree share what the verifier keeps of it.
             let key = std::ptr::from_ref(moving.body);
-            if !known.contains_key(&key) {
-                let built = mesh(moving.body.mesh()).map_err(|error| Failure::at("--verify", error))?;
-                known.insert(key, Arc::new(built));
-            }
-            meshes.push(Arc::clone(&known[&key]));
+            let kept = match known.entry(key) {
+                Entry::Occupied(kept) => Arc::clone(kept.get()),
+                Entry::Vacant(place) => {
+                    let built = mesh(moving.body.mesh()).map_err(|error| Failure::at("--verify", error))?;
+                    Arc::clone(place.insert(Arc::new(built)))
+                }
+            };
+            meshes.push(kept);
         }
         Ok(Self { bodies, meshes })
     }

@@ -90,11 +90,10 @@ fn prove(scene: &Scene, rows: &[Row]) -> Result<Proof, Failure> {
     let bodies = Bodies::new(moving.collect())?;
     let options = scene.options(QueryOptions::default());
     let first = match rows.first().map(|row| &row.answer) {
-        None | Some(TimeOfContact::Separated) => TimeOfContact::Separated,
         Some(TimeOfContact::Contact(contact)) if contact.time_lo < scene.window.end() => {
             TimeOfContact::Undecided { clear_until: contact.time_lo }
         }
-        Some(TimeOfContact::Contact(_)) => TimeOfContact::Separated,
+        None | Some(TimeOfContact::Separated | TimeOfContact::Contact(_)) => TimeOfContact::Separated,
         Some(undecided) => *undecided,
     };
     let proofs = scene.pairs().into_iter().map(|pair| {
