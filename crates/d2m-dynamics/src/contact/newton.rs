@@ -19,10 +19,22 @@ use super::system::{Block, SolverBody, System};
 use crate::velocity::Velocity;
 use glam::{DMat3, DVec3};
 
-/// Rounds of λ and s at most.
-const MOST_ROUNDS: u32 = 8;
-/// Newton steps of one round at most.
-const MOST_STEPS: u32 = 80;
+/// How much a direct solution may cost.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effort {
+    /// Rounds of λ and s at most.
+    rounds: u32,
+    /// Newton steps of one round at most.
+    steps: u32,
+}
+
+impl Effort {
+    /// Where the direct solution comes first.
+    pub(super) const FULL: Self = Self { rounds: 8, steps: 80 };
+    /// After sweeps that left too much of a crowd: sliding contacts are the method's weak case, and its last digits cost the most.
+    pub(super) const CROWD: Self = Self { rounds: 2, steps: 12 };
+}
+
 /// The softness r of a row at first, of its scale, where masses are alike; a round leaves r/(r + m/M) of what the heaviest body, of mass M,
 /// asks for from the lightest one, of mass m, so no more than [`SHARE`] of m/M.
 const SOFT: f64 = 1e-5;
@@ -62,7 +74,13 @@ struct Newton<'s> {
 
 impl System {
     /// Solves from the present impulses; the residual. The bodies' velocities follow from the impulses exactly.
-    pub(super) fn solve_direct(&mut self, targets: &[f64], accuracy: Accuracy, start: Start) -> f64 {
+    pub(super) fn solve_direct(
+        &mut self,
+        targets: &[f64],
+        accuracy: Accuracy,
+        start: Start,
+        effort: Effort,
+    ) -> f64 {
         let mut count = 0;
         let mut place = |body: usize| {
             self.is_moved(body).then(|| {
@@ -89,7 +107,7 @@ impl System {
         let mut anderson = Anderson::default();
         let mut soft = (SHARE / self.mass_ratio()).clamp(LEAST_SOFT, SOFT);
         let mut last = f64::INFINITY;
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..effort.rounds {
             let (center, shift, velocity) = state;
             let found = vec![Projected { impulse: [0.0; 3], slope: None }; self.blocks.len()];
             let mut newton = Newton {
@@ -104,7 +122,7 @@ impl System {
                 velocity,
                 found,
             };
-            newton.minimize(&mut factor, INNER * accuracy.aim * accuracy.precision);
+            newton.minimize(&mut factor, INNER * accuracy.aim(tolerance), effort.steps);
             let impulses: Vec<[f64; 3]> = newton.found.iter().map(|found| found.impulse).collect();
             let Newton { shift, velocity, .. } = newton;
             self.set(&free, &impulses);
@@ -150,14 +168,14 @@ impl System {
 
 impl Newton<'_> {
     /// Newton's method; λ of the last velocities is in `found`.
-    fn minimize(&mut self, factor: &mut Factor, tolerance: f64) {
+    fn minimize(&mut self, factor: &mut Factor, tolerance: f64, most_steps: u32) {
         let size = 6 * self.places.iter().flatten().count();
         let mut least = f64::INFINITY;
         let mut stalls = 0;
         for step in 0.. {
             let slope = self.gradient(size);
             let off = self.off(&slope);
-            if off <= tolerance || step == MOST_STEPS {
+            if off <= tolerance || step == most_steps {
                 return;
             }
             // Rounding: what is left gets no less.

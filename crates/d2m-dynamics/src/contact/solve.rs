@@ -1,6 +1,6 @@
 //! Which method solves an island.
 
-use super::newton::Start;
+use super::newton::{Effort, Start};
 use super::system::{SolverBody, System};
 
 /// Moved bodies up to which the direct solution comes first.
@@ -39,7 +39,7 @@ impl System {
     /// better of both is taken.
     pub(crate) fn solve(&mut self, targets: &[f64], accuracy: Accuracy, start: Start) -> f64 {
         if self.is_direct() {
-            let residual = self.solve_direct(targets, accuracy, start);
+            let residual = self.solve_direct(targets, accuracy, start, Effort::FULL);
             if residual <= self.tolerance(accuracy) {
                 return residual;
             }
@@ -49,7 +49,7 @@ impl System {
             if residual <= accuracy.aim(self.tolerance(accuracy)) {
                 return residual;
             }
-            self.better(residual, |system| system.solve_direct(targets, accuracy, start))
+            self.better(residual, |system| system.solve_direct(targets, accuracy, start, Effort::CROWD))
         }
     }
 
