@@ -29,10 +29,13 @@ pub struct ClearanceOptions {
     pub parallel: bool,
 }
 
+/// R if none is given: formats and plots show six digits.
+const ACCURACY: f64 = 1e-6;
+
 impl Default for ClearanceOptions {
     fn default() -> Self {
         Self {
-            accuracy: 1e-6,
+            accuracy: ACCURACY,
             tolerance: None,
             solid: Solid::Filled,
             budget: Budget::UNLIMITED,
