@@ -399,9 +399,12 @@ pub(crate) struct SimulateArguments {
     /// Scene, JSON
     #[arg(value_name = "SCENE.json")]
     pub(crate) scene: PathBuf,
-    /// Run, one JSON object a line; - for standard output
+    /// Run, one JSON object a line; packed by gzip if its name ends in .gz; - for standard output
     #[arg(long, value_name = "RUN.jsonl")]
     pub(crate) out: String,
+    /// Only one segment every so much time, for viewing: such a run is small and proves nothing
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    pub(crate) every: Option<String>,
     /// Threads; the run has the same numbers at any number of them
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: u16,

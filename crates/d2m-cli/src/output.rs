@@ -1,6 +1,8 @@
 //! Results to files that are complete or absent, or to standard output.
 
 use crate::failure::Failure;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fs;
 use std::io::{self, ErrorKind, IsTerminal, Write};
@@ -106,16 +108,23 @@ impl Output {
 
     /// Opens the place for results that come bit by bit: what is there already is replaced at once.
     pub(crate) fn stream(&self) -> Result<Stream, Failure> {
-        let (file, name) = match self {
-            Self::Stdout => (None, "standard output".to_owned()),
+        let (sink, name) = match self {
+            Self::Stdout => (Sink::Stdout, "standard output".to_owned()),
             Self::File(path) => {
                 let created = fs::File::create(path);
                 let file = created
                     .map_err(|error| Failure::at(path.display(), format!("cannot be written: {error}")))?;
-                (Some(file), path.display().to_string())
+                let is_packed =
+                    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
+                let sink = if is_packed {
+                    Sink::Packed(Box::new(GzEncoder::new(file, Compression::default())))
+                } else {
+                    Sink::Plain(file)
+                };
+                (sink, path.display().to_string())
             }
         };
-        Ok(Stream { file, name })
+        Ok(Stream { sink, name })
     }
 
     /// As [`Self::write`], for what is no text.
@@ -140,21 +149,29 @@ impl core::fmt::Display for Output {
 /// Results as they come: a run that is ended from outside leaves the whole lines written until then.
 #[derive(Debug)]
 pub(crate) struct Stream {
-    /// None: standard output.
-    file: Option<fs::File>,
+    sink: Sink,
     name: String,
+}
+
+/// Where results go.
+#[derive(Debug)]
+enum Sink {
+    Stdout,
+    Plain(fs::File),
+    /// Gzip, by the file's name. Its end is written when it is dropped.
+    Packed(Box<GzEncoder<fs::File>>),
 }
 
 impl Stream {
     /// Appends whole lines in one piece.
     pub(crate) fn lines(&mut self, lines: &str) -> Result<(), Failure> {
-        match &mut self.file {
-            None => print(lines),
-            Some(file) => {
-                let written = file.write_all(lines.as_bytes());
-                written.map_err(|error| Failure::at(&self.name, format!("cannot be written: {error}")))
-            }
-        }
+        let written = match &mut self.sink {
+            Sink::Stdout => return print(lines),
+            Sink::Plain(file) => file.write_all(lines.as_bytes()),
+            // What was written until then can be unpacked, however the run ends.
+            Sink::Packed(file) => file.write_all(lines.as_bytes()).and_then(|()| file.flush()),
+        };
+        written.map_err(|error| Failure::at(&self.name, format!("cannot be written: {error}")))
     }
 }
 

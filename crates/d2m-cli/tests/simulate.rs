@@ -133,3 +133,39 @@ fn bad_scenes_are_refused_with_their_place() {
         );
     }
 }
+
+#[test]
+fn runs_are_thinned_and_packed() {
+    let folder = Folder::new("thinned");
+    let scene = r#"{"bodies": [
+        {"name": "ground", "mesh": "shape:box?x=1&y=1&z=1", "scale": [5, 1, 5], "kind": "static", "pose": {"x": [0, -1, 0]}},
+        {"name": "falls", "mesh": "shape:box?x=1&y=1&z=1", "scale": 0.25, "pose": {"x": [0, 1, 0]}}],
+        "simulation": {"end": 1.0, "step": 0.02}}"#;
+    let scene = folder.file("scene.json", scene);
+    let (run, packed) = (folder.path("run.jsonl"), folder.path("run.jsonl.gz"));
+    for out in [&run, &packed] {
+        let output = d2m(&["simulate", &scene, "--out", out, "--every", "0.25"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+    let text = std::fs::read_to_string(&run).unwrap();
+    let mut unpacked = String::new();
+    let file = std::fs::File::open(&packed).unwrap();
+    std::io::Read::read_to_string(&mut flate2::read::GzDecoder::new(file), &mut unpacked).unwrap();
+    let lines = |text: &str| -> Vec<serde_json::Value> {
+        text.lines().skip(1).map(|line| serde_json::from_str(line).unwrap()).collect()
+    };
+    let (lines, others) = (lines(&text), lines(&unpacked));
+    assert_eq!((lines.len(), others.len()), (4, 4));
+    for (k, line) in lines.iter().enumerate() {
+        assert_eq!(
+            (line["t0"].as_f64(), line["t1"].as_f64()),
+            (Some(0.25 * k as f64), Some(0.25 * (k + 1) as f64))
+        );
+        assert_eq!((&line["thinned"], line["bodies"].as_array().unwrap().len()), (&true.into(), 2));
+        assert_eq!(line["bodies"], others[k]["bodies"]);
+    }
+    // Free fall for a quarter of a second.
+    let height = lines[1]["bodies"][1]["x"][1].as_f64().unwrap();
+    assert!((height - (1.0 - 0.5 * 9.81 * 0.0625)).abs() < 0.03, "{height}");
+    refused(&["simulate", &scene, "--out", &run, "--every", "0"], &["--every", "positive"]);
+}

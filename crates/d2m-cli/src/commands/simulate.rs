@@ -1,10 +1,11 @@
 //! `d2m simulate`: bodies under forces and contacts, to a run file.
 
 use crate::arguments::SimulateArguments;
+use crate::engine::number;
 use crate::failure::Failure;
 use crate::output::{Output, Stream, note, progress_bar};
 use crate::report::duration;
-use crate::simulation::{Scene, header, read_scene, segment};
+use crate::simulation::{Line, Scene, Thinner, header, read_scene, segment};
 use d2m_dynamics::{BodyId, Segment, StepError};
 use std::time::{Duration, Instant};
 
@@ -14,12 +15,14 @@ const ROUNDING: f64 = 1e-6;
 /// Runs the command.
 pub(crate) fn run(arguments: &SimulateArguments) -> Result<(), Failure> {
     let out = Output::new(&arguments.out)?.spare([arguments.scene.as_path()])?;
+    let every = arguments.every.as_ref().map(|text| number("--every", text, "a positive time", |t| t > 0.0));
+    let thinner = every.transpose()?.map(Thinner::new);
     let scene = read_scene(&arguments.scene)?;
     warn_of_gap(&scene);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.into()).build();
     let pool = pool.map_err(|error| Failure::at("--threads", error))?;
     let name = arguments.scene.display().to_string();
-    let ended = pool.install(|| simulate(scene, &name, &out))?;
+    let ended = pool.install(|| simulate(scene, &name, &out, thinner))?;
     if let Some(error) = ended.early {
         Err(Failure::at(name, format!("{error}; {}", ended.written)))
     } else {
@@ -62,20 +65,41 @@ struct RunFile<'s> {
     stream: Option<Stream>,
     header: String,
     names: &'s [String],
+    /// Writes at even times only.
+    thinner: Option<Thinner>,
     /// The end of the last segment that was written.
     until: Option<f64>,
 }
 
 impl RunFile<'_> {
+    /// The end of the run is written, too.
+    fn finish(&mut self, segments: &[Segment]) -> Result<(), Failure> {
+        self.write(segments, Duration::ZERO)?;
+        match self.thinner.take().and_then(|mut thinner| thinner.finish()) {
+            Some(last) => self.append(&[last], Some(Line::Thinned), 0.0),
+            None => Ok(()),
+        }
+    }
+
     fn write(&mut self, segments: &[Segment], took: Duration) -> Result<(), Failure> {
-        let wall = took.as_secs_f64() / segments.len().max(1) as f64;
+        let Some(thinner) = &mut self.thinner else {
+            return self.append(segments, None, took.as_secs_f64());
+        };
+        let segments = thinner.add(segments);
+        self.append(&segments, Some(Line::Thinned), took.as_secs_f64())
+    }
+
+    /// Appends segments, all as lines of one kind if it is given.
+    fn append(&mut self, segments: &[Segment], kind: Option<Line>, took: f64) -> Result<(), Failure> {
+        let wall = took / segments.len().max(1) as f64;
         let mut text = String::new();
         let mut first = !self.header.is_empty() && !segments.is_empty();
         if first {
             text = core::mem::take(&mut self.header);
         }
         for part in segments {
-            segment(&mut text, part, self.names, first, wall);
+            let line = kind.unwrap_or(if first { Line::First } else { Line::Later });
+            segment(&mut text, part, self.names, line, wall);
             first = false;
         }
         if text.is_empty() {
@@ -105,12 +129,12 @@ impl RunFile<'_> {
     }
 }
 
-fn simulate(mut scene: Scene, name: &str, out: &Output) -> Result<Ended, Failure> {
+fn simulate(mut scene: Scene, name: &str, out: &Output, thinner: Option<Thinner>) -> Result<Ended, Failure> {
     let step = scene.simulation.options().step;
     let steps = (scene.end / step - ROUNDING).ceil().max(1.0);
     let bar = progress_bar(steps as usize, "steps");
     let header = header(name, &scene.names, &scene.simulation, &scene.ids);
-    let mut file = RunFile { out, stream: None, header, names: &scene.names, until: None };
+    let mut file = RunFile { out, stream: None, header, names: &scene.names, thinner, until: None };
     let mut ended = Ended { took: Duration::ZERO, early: None, written: String::new() };
     let (mut events, mut skipped) = (0u64, 0.0);
     for k in 1..=steps as u64 {
@@ -141,7 +165,7 @@ fn simulate(mut scene: Scene, name: &str, out: &Output) -> Result<Ended, Failure
     bar.finish_and_clear();
     let last = scene.simulation.finish();
     skipped += last.iter().map(|s| s.skipped).sum::<f64>();
-    file.write(&last, Duration::ZERO)?;
+    file.finish(&last)?;
     let time = scene.simulation.time();
     let each = ended.took.as_secs_f64() / time.max(f64::MIN_POSITIVE);
     note(&format!(

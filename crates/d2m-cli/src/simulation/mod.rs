@@ -3,7 +3,9 @@
 mod fields;
 mod run_file;
 mod scene;
+mod thinning;
 
 pub(crate) use fields::{Fields, short};
-pub(crate) use run_file::{header, segment};
+pub(crate) use run_file::{Line, header, segment};
 pub(crate) use scene::{Scene, read_scene};
+pub(crate) use thinning::Thinner;

@@ -22,21 +22,35 @@ pub(crate) fn header(scene: &str, names: &[String], simulation: &Simulation, ids
     format!("{}\n", json!({"scene": scene, "bodies": bodies}))
 }
 
-/// Appends the line of a segment; `all`: the first one, which holds all bodies.
-pub(crate) fn segment(out: &mut String, segment: &Segment, names: &[String], all: bool, wall: f64) {
+/// What the line of a segment holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Line {
+    /// All bodies: the first one.
+    First,
+    /// The bodies whose motion changed.
+    Later,
+    /// All bodies, at a time between the segments that were certified: for viewing.
+    Thinned,
+}
+
+/// Appends the line of a segment.
+pub(crate) fn segment(out: &mut String, segment: &Segment, names: &[String], line: Line, wall: f64) {
     let _ = write!(out, "{{\"t0\":{:?},\"t1\":{:?}", segment.start, segment.end);
-    if all {
-        out.push_str(",\"bodies\":[");
-        for (k, (_, flight)) in segment.changed.iter().enumerate() {
-            out.push_str(if k > 0 { "," } else { "" });
-            body(out, flight, segment.start);
-        }
-    } else {
+    if line == Line::Thinned {
+        out.push_str(",\"thinned\":true");
+    }
+    if line == Line::Later {
         out.push_str(",\"changed\":[");
         for (k, (id, flight)) in segment.changed.iter().enumerate() {
             let _ = write!(out, "{}[{},", if k > 0 { "," } else { "" }, id.index());
             body(out, flight, segment.start);
             out.push(']');
+        }
+    } else {
+        out.push_str(",\"bodies\":[");
+        for (k, (_, flight)) in segment.changed.iter().enumerate() {
+            out.push_str(if k > 0 { "," } else { "" });
+            body(out, flight, segment.start);
         }
     }
     out.push_str("],\"contacts\":[");
