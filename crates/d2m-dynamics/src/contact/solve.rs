@@ -5,6 +5,8 @@ use super::system::{SolverBody, System};
 
 /// Moved bodies up to which the direct solution comes first.
 const FEW: usize = 20;
+/// Moved bodies up to which a direct solution may cost what it takes: tall stacks need it, and their factors are small.
+const SOME: usize = 64;
 /// Ratio of masses beyond which sweeps converge too slowly.
 const MOST_RATIO: f64 = 30.0;
 /// Sweeps where they come first, and where they come after the direct solution.
@@ -49,7 +51,8 @@ impl System {
             if residual <= accuracy.aim(self.tolerance(accuracy)) {
                 return residual;
             }
-            self.better(residual, |system| system.solve_direct(targets, accuracy, start, Effort::CROWD))
+            let effort = if self.moved() <= SOME { Effort::FULL } else { Effort::CROWD };
+            self.better(residual, |system| system.solve_direct(targets, accuracy, start, effort))
         }
     }
 
@@ -77,8 +80,11 @@ impl System {
     }
 
     fn is_direct(&self) -> bool {
-        let moved = self.bodies.iter().filter(|body| body.inverse_mass > 0.0).count();
-        moved <= FEW || self.mass_ratio() > MOST_RATIO || self.is_conforming
+        self.moved() <= FEW || self.mass_ratio() > MOST_RATIO || self.is_conforming
+    }
+
+    fn moved(&self) -> usize {
+        self.bodies.iter().filter(|body| body.inverse_mass > 0.0).count()
     }
 
     /// The greatest mass that impulses move, over the least one.

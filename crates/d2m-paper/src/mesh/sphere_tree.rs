@@ -64,7 +64,8 @@ pub(crate) struct OwnedEdge {
 /// ```
 ///
 /// ```
-/// use d2m_bvh::{TriMesh, d2m_paper::SphereTree};
+/// use d2m_bvh::TriMesh;
+/// use d2m_paper::SphereTree;
 /// use glam::DVec3;
 /// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let mesh = TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
