@@ -318,10 +318,9 @@ def test_what_a_user_writes_runs() -> None:
 @pytest.mark.parametrize("checker", ["mypy", "pyright", "stubtest"])
 def test_types(checker: str) -> None:
     pytest.importorskip("mypy" if checker == "stubtest" else checker)
-    package = str(Path(d2m_ccd.__file__).parent)
     commands = {
-        "mypy": ["-m", "mypy", "--strict", "--config-file", str(HERE.parent / "pyproject.toml"), package, "typing_of_a_user.py"],
-        "pyright": ["-m", "pyright", "typing_of_a_user.py"],
+        "mypy": ["-m", "mypy", "--strict", "--config-file", str(HERE.parent / "pyproject.toml"), "typing_of_a_user.py"],
+        "pyright": ["-m", "pyright", "--pythonpath", sys.executable, "typing_of_a_user.py"],
         "stubtest": ["-m", "mypy.stubtest", "d2m_ccd._d2m", "--ignore-disjoint-bases"],
     }
     run = subprocess.run([sys.executable, *commands[checker]], capture_output=True, text=True, cwd=HERE, timeout=500)
