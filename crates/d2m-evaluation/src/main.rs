@@ -90,7 +90,7 @@ mod tests {
     use super::{Arguments, Task, accuracy};
     use clap::Parser;
 
-    /// A gate that is asked for nothing must not pass, and no number makes it panic.
+    /// A gate without a query must not pass, and no number makes it panic.
     #[test]
     fn nothing_to_do_is_no_success() {
         let parse = |line: &str| Arguments::try_parse_from(line.split(' '));

@@ -31,7 +31,7 @@ pub struct SceneFile {
     pub window: Window,
     /// The bodies in the order of the file; no two have the same name.
     pub bodies: Vec<SceneEntry>,
-    /// Pairs of names of bodies or groups that are not looked at. Each name is one of the scene.
+    /// Pairs of names of bodies or groups that are not checked. Each name is one of the scene.
     pub ignore: Vec<[String; 2]>,
     /// Distance at which bodies count as in contact, at least zero.
     pub min_separation: f64,

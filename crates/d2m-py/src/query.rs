@@ -47,7 +47,7 @@ impl MovingPair {
     }
 }
 
-/// Runs a query at once; what is not decided within a few milliseconds is asked again on another thread, where signals end it.
+/// Runs a query at once; what is not decided within a few milliseconds is queried again on another thread, where signals end it.
 ///
 /// Every answer within the first limit is the one that would have been given without it.
 pub(crate) fn run<T: Send>(

@@ -8,7 +8,7 @@ use d2m_bvh::{
     Solid, clearance, distance_within,
 };
 
-/// Times at which the pairs are looked at for the order in which they are searched.
+/// Times at which the pairs' distances are estimated for the order in which they are searched.
 const LOOKS: u32 = 9;
 
 /// The least distance of any checked pair along a path, less the minimum separation.
@@ -126,7 +126,7 @@ impl PathBodies<'_> {
             let options = DistanceOptions::default()
                 .with_solid(Solid::Surface)
                 .with_cutoff((nearest.0 + radii).max(0.0));
-            // What cannot be looked at has its place in the order, and its error from the search.
+            // What cannot be measured has its place in the order, and its error from the search.
             if let Ok(Some(found)) = distance_within(x, y, &options, &mut PairCache::new())
                 && found.upper - radii < nearest.0
             {

@@ -77,7 +77,7 @@ impl Robot {
 
 /// Spans of this part of the path are halved no more.
 const SHORTEST_PART: f64 = 1.0 / (1 << 20) as f64;
-/// Spans that are looked at for one joint: a joint that only grazes its limit needs a few hundred.
+/// Spans that are evaluated for one joint: a joint that only grazes its limit needs a few hundred.
 const MOST_STEPS: usize = 20_000;
 
 struct Beyond {

@@ -249,7 +249,7 @@ impl Robot {
         self.chains(&self.all_values(&path.joint_names, path.joint_values()?)?)
     }
 
-    /// The motion of every link's frame, by the value of every joint (those of fixed joints are not looked at).
+    /// The motion of every link's frame, by the value of every joint (those of fixed joints are ignored).
     pub(crate) fn chains(&self, values: &[JointValue]) -> Result<Vec<Chain>, RobotError> {
         let mut arm = Arm::default();
         let mut place = vec![0; self.links.len()];

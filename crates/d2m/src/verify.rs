@@ -64,7 +64,7 @@ impl Verifier {
         Self { meshes }
     }
 
-    /// The query about bodies of these meshes (those that `bodies` name are not looked at).
+    /// The query about bodies of these meshes (those that `bodies` name are ignored).
     pub fn query<'a>(
         &'a self,
         bodies: &[Moving<'a>; 2],

@@ -1,4 +1,4 @@
-//! `d2m view`: a page of HTML that shows what moves, or a still picture of it.
+//! `d2m view`: a page of HTML that shows moving bodies, or a still image of them.
 
 use crate::arguments::ViewArguments;
 use crate::engine::{Pair, check_size, options_of};
