@@ -332,3 +332,18 @@ fn any_number_of_threads_gives_the_same_bits() {
     assert_eq!(answers[0], answers[1]);
     assert_eq!(answers[0], answers[2]);
 }
+
+/// A world asks about parts of a window: what is in contact at the start of one is never let go.
+#[test]
+fn a_world_lets_no_contact_go() {
+    let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=1&y=1&z=1").unwrap()));
+    let mut world = World::new(QueryOptions::default().with_start(d2m_bvh::Start::Leave));
+    world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+    let lifted = ConstantTwist::REST.with_position(DVec3::Y).with_linear_velocity(DVec3::Y * 4.0);
+    world.add(Body::new(cube, lifted));
+    let FirstContact::Contact { contact, .. } = world.first_contact(Window::UNIT).unwrap() else {
+        panic!("they overlap at the start")
+    };
+    assert_eq!(contact.time_lo, 0.0);
+    assert_eq!(world.contacts(Window::UNIT).unwrap().len(), 1);
+}

@@ -17,7 +17,7 @@ pub use plan::PlannedMotion;
 
 use crate::box_tree::IndexPair;
 use crate::{Body, Group, SharedMotion};
-use d2m_bvh::{Budget, Mode, QueryOptions, Window};
+use d2m_bvh::{Budget, Mode, QueryOptions, Start, Window};
 use d2m_motion::RigidMotion;
 use filter::PairFilter;
 use pair_state::PairState;
@@ -89,12 +89,14 @@ pub struct World {
 
 impl World {
     /// An empty world; `options` hold for every pair, but [`Mode::Exists`] counts as accurate: a world
-    /// promises first contacts. The budget of the options is one for each query of the world, over all pairs.
+    /// promises first contacts. So [`Start::Leave`] counts as [`Start::Report`]: a world asks its pairs about parts of the window, and
+    /// what holds at the start of a part must not be let go. The budget of the options is one for each query of the world, over all pairs.
     pub fn new(options: QueryOptions) -> Self {
         let options = match options.mode {
             Mode::Exists => options.with_mode(Mode::Accurate),
             _ => options,
         };
+        let options = options.with_start(Start::Report);
         Self { options, ..Self::default() }
     }
 
