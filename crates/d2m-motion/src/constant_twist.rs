@@ -32,7 +32,6 @@ const MOST_NORM: f64 = 1e150;
 ///
 /// Source: "Accurate and Efficient Continuous Collision Detection" (D2M), section III and Appendix A.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[doc(alias = "LinearMotion")]
 #[doc(alias = "NonlinearRigidMotion")]
 #[must_use]
 pub struct ConstantTwist {

@@ -51,9 +51,6 @@ pub use joint_points::JointPoints;
 pub use joint_value::JointValue;
 pub use keyframes::{KeyframeSpan, Keyframes, LARGEST_GAP, Span};
 pub use kinematics::Kinematics;
-/// The former name of [`ConstantTwist`], which was misleading: the motion rotates.
-#[doc(hidden)]
-pub type LinearMotion = ConstantTwist;
 pub use pose::{IntervalPose, Pose};
 pub use retimed::Retimed;
 pub use rigid_motion::{RigidMotion, TwistPiece};

@@ -21,15 +21,28 @@ pub use d2m_shapes as shapes;
 pub use d2m_world as world;
 pub use glam;
 
+// One pair of moving bodies.
+#[doc(inline)]
 pub use d2m_bvh::{
-    Budget, Contact, MeshTree, Mode, Moving, PairCache, Posed, Proximity, ProximityOptions, QueryError,
-    QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window, contact_exists, proximities,
-    proximities_with, reduce_proximities, time_of_contact, time_of_contact_with,
+    Budget, CancelFlag, Canceller, Clearance, ClearanceOptions, ClearanceStatus, Contact, ContactSpan,
+    Departure, Evidence, Meter, Mode, Moving, PairCache, QueryError, QueryOptions, Solid, SpanStatus, Start,
+    StartState, TimeOfContact, Window, clearance, clearance_batch, contact_exists, contact_spans, departure,
+    time_of_contact, time_of_contact_batch, time_of_contact_with,
 };
-pub use d2m_bvh::{Distance, collide, distance};
-#[doc(hidden)]
-pub use d2m_motion::LinearMotion;
-pub use d2m_motion::{ConstantTwist, Keyframes, Pose, RigidMotion, ScrewMotion, Twist};
+// Meshes, and one pair at rest.
+#[doc(inline)]
+pub use d2m_bvh::{
+    Distance, MeshError, MeshTree, Posed, Proximity, ProximityOptions, TriMesh, collide, distance,
+    proximities, proximities_with, reduce_proximities,
+};
+// How a body moves.
+#[doc(inline)]
+pub use d2m_motion::{
+    AnyMotion, Arm, Chain, Composed, ConstantTwist, Joint, JointKind, JointPoints, JointValue, Keyframes,
+    MotionError, Pose, Retimed, RigidMotion, ScrewMotion, Span, Spline, Twist,
+};
+// Many bodies.
+#[doc(inline)]
 pub use d2m_world::{
     Body, BodyId, FirstContact, Group, PairContact, PairProximities, PlannedMotion, SharedMotion, World,
     WorldError,
