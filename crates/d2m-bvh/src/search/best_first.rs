@@ -1,6 +1,7 @@
 //! Best first inside one sub-window.
 
 use super::crowd::{Patience, Progress};
+use super::effort::{self, BATCH, FRESH, MEMORY_CHECK, ON_ITS_WAY};
 use super::motion::frame::{Frame, RelativeMotion};
 use super::motion::units::sum_down;
 use super::node_pair::expansion::{KEY_SCALE, NodePairExpander};
@@ -11,7 +12,7 @@ use super::scene::Scene;
 use super::skip::SkipLimits;
 use super::skip::screw_search::screw_clear_until;
 use super::skip::swept_volume::swept_clear_until;
-use super::state::{BATCH, FIRST_SWEEP, Outcome, Search, State, Step, SubWindow, triangle_count};
+use super::state::{Outcome, Search, State, Step, SubWindow, triangle_count};
 use super::triangle_pair::separating_axis::{BackwardCertificate, place_a};
 use super::triangle_pair::widest_gap::widest_normal;
 use crate::Budget;
@@ -20,19 +21,8 @@ use crate::tree::node::{Below, LEAST_SIZE, WIDTH, WideNode};
 use d2m_lanes::{F64x4, Lanes, Task, power_of_two_above};
 use glam::DVec3;
 
-/// Batches between two checks of the queue's length: it grows by less than 2¹⁵ items between them.
-const MEMORY_CHECK: u32 = 128;
-
 /// Least unit of time of a window, for those of no length: nothing moves by more than a rounding in it.
 const LEAST_SPAN: f64 = 1.0 / 1_152_921_504_606_846_976.0; // 2⁻⁶⁰
-
-/// A search that has covered this part of its sub-window is making progress: it gets a node test for each triangle before swept
-/// volumes are compared.
-const ON_ITS_WAY: f64 = 0.0625;
-
-/// The frame is renewed when the time has grown by more than one part in this many: an older one is as right, its
-/// bounds only begin earlier.
-const FRESH: u32 = 128;
 
 /// The search of one sub-window, from these pairs of boxes on, whose keys are zero: all that may meet in it are below
 /// them. None: from the roots.
@@ -162,7 +152,7 @@ impl<'s> Search<'s> {
         now: f64,
         boxes: [u32; 2],
     ) -> Option<f64> {
-        let patient = self.limits.patience * (FIRST_SWEEP + triangle_count(self.scene));
+        let patient = effort::first_sweep_on_its_way(triangle_count(self.scene), self.limits.patience);
         if self.work() < patient && now > ON_ITS_WAY * self.scene.end {
             self.limits.sweep_from = patient;
             return None;
@@ -180,7 +170,7 @@ impl<'s> Search<'s> {
         let direction = turn.transform(near).normalize_or(DVec3::X);
         let limits = SkipLimits {
             least_gain: self.scene.longest.min(self.scene.end - now),
-            most_work: self.work() + FIRST_SWEEP,
+            most_work: effort::most_swept(self.work()),
             budget: self.limits.most_tests.saturating_sub(self.work()),
             stop: self.limits.stop,
             witnesses: self.scratch.last_tested,
@@ -195,8 +185,8 @@ impl<'s> Search<'s> {
         self.scratch.counts.sweeps += 1;
         self.scratch.counts.swept_pairs += skip.work;
         let work = self.work();
-        let from = &mut self.limits.sweep_from;
-        *from = if skip.clear_until.is_some() { work + *from / 4 } else { 4 * work };
+        let due = self.limits.sweep_from;
+        self.limits.sweep_from = effort::next_sweep(work, due, skip.clear_until.is_some());
         skip.clear_until
     }
 }

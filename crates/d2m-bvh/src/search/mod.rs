@@ -3,6 +3,7 @@
 mod best_first;
 mod counts;
 mod crowd;
+mod effort;
 pub(crate) mod motion;
 mod node_pair;
 mod over_time;

@@ -1,35 +1,18 @@
 //! What is done with the pairs that the queue hands out: boxes are expanded, triangles are advanced in time.
 
+use super::effort::{self, AHEAD, BATCH, MOST_STEPS_ALONE};
 use super::motion::frame::Frame;
 use super::queue::Item;
 use super::scene::SceneBody;
-use super::state::{BATCH, Found, SECOND_ORDER_TESTS, Search, State, THIRD_ORDER_TESTS};
+use super::state::{Found, Search, State};
 use super::triangle_pair::closest::closest;
 use super::triangle_pair::separating_axis::{
-    BackwardCertificate, BoundOrder, Evaluation, apart_since, place_a, separating_axis_test,
+    BackwardCertificate, Evaluation, apart_since, place_a, separating_axis_test,
 };
 use crate::Mode;
 use crate::tree::node::WIDTH;
 use d2m_lanes::{Lanes, Task, run};
 use glam::DVec3;
-
-/// A pair that is advanced out of turn is left after so many steps; ordinary contacts take fewer than ten.
-const MOST_STEPS_ALONE: u32 = 64;
-
-/// A pair that is not done after so many steps is bounded to third order, and after so many also along directions that turn with
-/// the bodies.
-const FEW_STEPS: u32 = 16;
-const MANY_STEPS: u32 = 24;
-
-/// A pair of triangles is advanced alone until its time has grown by one part in this many: what it finds early spares
-/// the queue what comes later, and pairs that meet at the same features need one backward certificate each.
-const FOLLOWED: u32 = 16;
-
-/// And by so many steps of the key: some 2e-6 of the window.
-const FOLLOWED_KEYS: u32 = 1024;
-
-/// Nodes are prefetched so many items before they are expanded: trees are larger than the caches near the processor.
-const AHEAD: usize = 2;
 
 impl Search<'_> {
     /// Expands at most [`BATCH`] items. Pairs of triangles first: they may lower the limit. Then all node tests, which
@@ -101,13 +84,7 @@ impl Search<'_> {
             self.scratch.last_tested = triangles;
             let enough = state.limit_offset - frame.offset;
             let looks = self.scratch.counts.triangle_looks;
-            let order = if looks > THIRD_ORDER_TESTS || steps > MANY_STEPS {
-                BoundOrder::Turning
-            } else if looks > SECOND_ORDER_TESTS || steps > FEW_STEPS {
-                BoundOrder::Third
-            } else {
-                BoundOrder::Second
-            };
+            let order = effort::bound_order(looks, steps);
             match separating_axis_test::<L::Doubles>(&frame, [&a, &b], &self.scene.pair, enough, order) {
                 Evaluation::ClearFor(time) => {
                     known = known.max(frame.offset + time);
@@ -115,7 +92,7 @@ impl Search<'_> {
                         return;
                     }
                     let key = (known / state.step) as u32;
-                    if !alone && key > item.key + item.key / FOLLOWED + FOLLOWED_KEYS {
+                    if !alone && key > effort::followed_until(item.key) {
                         if key < state.limit {
                             self.scratch.queue.push(Item { key, ..item });
                         }

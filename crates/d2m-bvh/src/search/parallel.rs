@@ -8,18 +8,12 @@
 //! operation. Otherwise it is searched again. See docs/theory/engine.md, "Several threads".
 
 use super::counts::SearchCounts;
+use super::effort::threads::{FIRST_WORK, windows_a_round};
+use super::effort::{SECOND_ORDER_TESTS, THIRD_ORDER_TESTS};
 use super::scratch::Scratch;
-use super::state::{Ahead, Outcome, SECOND_ORDER_TESTS, Search, Step, SubWindow, THIRD_ORDER_TESTS};
+use super::state::{Ahead, Outcome, Search, Step, SubWindow};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Work of a search, in node tests, before it is worth while to wake other threads.
-const FIRST_WORK: u64 = 1024;
-/// Work of each thread before the results are taken, for sub-windows like those so far: more than it costs to wake it.
-const ROUND_WORK: u64 = 4096;
-/// Sub-windows of each thread before the results are taken: at least, and at most.
-const LEAST_WINDOWS_A_THREAD: u64 = 4;
-const MOST_WINDOWS_A_THREAD: u64 = 512;
 
 /// What the search of one sub-window gave.
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +64,7 @@ impl Search<'_> {
         }
         let mean = ((counts.node_tests + counts.triangle_looks) / counts.windows.max(1)).max(1);
         let until_sweep = self.limits.sweep_from.saturating_sub(self.work()) / mean;
-        let each = (ROUND_WORK / mean).clamp(LEAST_WINDOWS_A_THREAD, MOST_WINDOWS_A_THREAD);
+        let each = windows_a_round(mean);
         let most = (each * threads as u64).min(until_sweep) as usize;
         while windows.len() < most
             && start < self.scene.end

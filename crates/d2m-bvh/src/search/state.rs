@@ -1,6 +1,7 @@
 //! What a search knows: its limits, what it has found, where it is in a sub-window.
 
 use super::counts::SearchCounts;
+use super::effort;
 use super::motion::frame::{Frame, RelativeMotion};
 use super::motion::units::sum_down;
 use super::node_pair::expansion::{KeyRange, NodePairExpander};
@@ -13,28 +14,6 @@ use crate::meter::Stop;
 use crate::{Budget, Mode, QueryOptions};
 use d2m_lanes::InstructionSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Items that a batch may have before it is divided.
-pub(super) const BATCH: usize = 32;
-
-/// Tests of pairs of triangles of one search that use bounds of second order; later ones use those of third order. Ordinary
-/// queries need fewer.
-pub(super) const SECOND_ORDER_TESTS: u64 = 192;
-
-/// Tests from which on directions that turn with the bodies are tried where others last for a short time only: they cost as much as
-/// a few tests.
-pub(super) const THIRD_ORDER_TESTS: u64 = 1024;
-
-/// Node tests, besides one for each [`TRIANGLES_A_TEST`] triangles, before swept volumes are compared for the first time:
-/// ordinary queries end before that, or are well on their way.
-pub(super) const FIRST_SWEEP: u64 = 256;
-
-/// How much longer a search whose level is close to the least distance goes on before it examines swept volumes and crowds, which
-/// hardly ever prove anything then.
-const GRAZING_PATIENCE: u64 = 64;
-
-/// As many triangles are measured for a sweep in the time of one node test.
-const TRIANGLES_A_TEST: u64 = 8;
 
 /// A contact as the search knows it.
 #[derive(Clone, Copy, Debug)]
@@ -153,12 +132,12 @@ impl<'s> Search<'s> {
         scratch.last_tested = [0, 0];
         // What an earlier query left belongs to other motions.
         scratch.found_in = None;
-        let patience = if options.grazing { GRAZING_PATIENCE } else { 1 };
+        let patience = effort::patience(options.grazing);
         let limits = Limits {
             mode: options.mode,
             most_tests: budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS),
             stop: Stop::new(budget),
-            sweep_from: patience * (FIRST_SWEEP + triangle_count(scene) / TRIANGLES_A_TEST),
+            sweep_from: effort::first_sweep(triangle_count(scene), patience),
             patience,
             only_start: false,
         };

@@ -9,6 +9,7 @@
 //! See docs/theory/engine.md, "Time, divided".
 
 use super::best_first::{OneWindow, expander};
+use super::effort::{FEW_SUB_WINDOWS, LAST_TESTS, MOST_PAIRS_OF_SPAN};
 use super::motion::frame::{FAR_ANGLE, PlacedFrame, RelativeMotion};
 use super::node_pair::node_scale::NodeScale;
 use super::node_pair::whole_span::{PlacedPose, SpanFrame};
@@ -26,14 +27,6 @@ const GRID: usize = 2 << HALVINGS;
 /// so that far frames hold, with room for roundings.
 const SPAN: f64 = 8.0;
 const _: () = assert!(0.5 * SPAN * WINDOW_ANGLE < 0.99 * FAR_ANGLE);
-/// Queries of fewer sub-windows are searched one sub-window after the other: most meet within the first few, and a span costs
-/// about as much as it saves then.
-const FEW_SUB_WINDOWS: f64 = 64.0;
-/// More pairs than this are handed on as they are: the search of the parts has a queue for them.
-const MOST_PAIRS: usize = 256;
-/// Tests of a part that is not halved any more, besides half a test for each of its pairs: if they are not enough, the bodies are
-/// near each other in it, and it is searched in any case.
-const LAST_TESTS: usize = 8;
 
 /// Whether the larger box of a pair has at least this radius.
 fn is_large(scene: &Scene<'_>, item: &Item, least: f64) -> bool {
@@ -193,7 +186,7 @@ impl Search<'_> {
             SpanFrame::<L>::new([&start[0], &middle[0], &end[0]], &grid.scales[0], bend),
             SpanFrame::<L>::new([&start[1], &middle[1], &end[1]], &grid.scales[1], bend),
         ];
-        let (most, given) = (pairs.len() + MOST_PAIRS, to_expand.len());
+        let (most, given) = (pairs.len() + MOST_PAIRS_OF_SPAN, to_expand.len());
         let halved = span.to - span.from > 2;
         let most_tests = if halved { usize::MAX } else { given / 2 + LAST_TESTS };
         // First in, first out: what is next is known while a test is under way, and no length of a list is guessed.

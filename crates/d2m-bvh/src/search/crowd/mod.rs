@@ -19,8 +19,11 @@ mod reaches;
 #[cfg(test)]
 mod tests;
 
+use super::effort::{
+    BATCH, CROWD, CROWD_CHECK, CROWD_CHECK_TESTS, CROWD_OF_BATCHES, MOST_HALVINGS, MOST_PLANES, WORK_A_PAIR,
+};
 use super::queue::{Bucket, Item};
-use super::state::{BATCH, Search, State};
+use super::state::{Search, State};
 use crate::meter::Meter;
 use crate::tree::node::WIDTH;
 use d2m_lanes::Lanes;
@@ -30,10 +33,6 @@ use moving::{Moving, PlaneSearch, Separation};
 use paths::Side;
 use reaches::Reaches;
 
-/// As many pairs that wait are a crowd, and as many batches in one window make one: several times as many as in
-/// ordinary queries of a million triangles.
-const CROWD: usize = 1 << 12;
-const CROWD_OF_BATCHES: u32 = 1 << 10;
 /// Most vertices of each body that are compared, for each pair of boxes that waits or was expanded: so it takes no more than
 /// the search itself.
 const VERTICES_A_PAIR: usize = 2;
@@ -44,16 +43,6 @@ const LEAST_DIRECTIONS: u64 = 8;
 const MOST_DIRECTIONS: u64 = 32;
 /// Vertices that are compared along one direction in the time of one node test.
 const VERTICES_A_TEST: u64 = 16;
-/// Batches between two counts of the pairs that wait, or tests of triangle pairs if it takes that many sooner: a pair that
-/// turns fast may need a thousand tests.
-const CROWD_CHECK: u32 = 32;
-const CROWD_CHECK_TESTS: u64 = 1 << 12;
-/// How often the time that is left is halved at most for one plane: after that pairs are as fast one by one.
-const MOST_HALVINGS: u32 = 16;
-/// Node tests that planes for parts of the time may cost, for each pair that waits: less than a few steps of each pair.
-const WORK_A_PAIR: u64 = 16;
-/// Most planes that are tried one after the other before the search goes on.
-const MOST_PLANES: u32 = 64;
 
 /// How far the search of a sub-window has come.
 #[derive(Clone, Copy, Debug)]
