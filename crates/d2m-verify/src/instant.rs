@@ -1,21 +1,56 @@
 //! Where the bodies are at one time, and the gap between two parts of them along a direction.
 use crate::Body;
+use crate::closest::closest;
+use crate::directions::{BoxAxis, Direction, between, faces_and_sides};
 use crate::mesh::finite;
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
+
+/// A part of a body is all that is between these points (or boxes), from its mesh's center in body axes.
+pub(crate) type Part<'p> = &'p [IntervalVec3];
+
+/// A direction along which two parts may be further apart than a distance D.
+///
+/// Where |N| is fixed, N·(x − p) > D|N| says so. Where it changes, D|N| ≤ D(N² + c²)/(2c), which is smooth; c is about |N|.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Separation {
+    pub(crate) direction: Direction,
+    pub(crate) distance: f64,
+    pub(crate) about: f64,
+}
+
+impl Separation {
+    /// D/(2c).
+    pub(crate) fn per_square(&self) -> Interval {
+        if self.distance == 0.0 {
+            return Interval::ZERO;
+        }
+        Interval::point(self.distance) / (Interval::point(self.about) * 2.0)
+    }
+
+    /// What N·(x − p) has to be above of where N is this.
+    fn needed(&self, n: IntervalVec3) -> Interval {
+        match self.direction {
+            Direction::Across(..) => {
+                (n.norm_squared() + Interval::point(self.about).sqr()) * self.per_square()
+            }
+            fixed => fixed.size() * self.distance,
+        }
+    }
+}
 
 /// The second body seen from the first (the *base*) at one time: its point Q (from its mesh's center) is at x = turn·Q + offset from
 /// the base's center, in the base's axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Instant {
     pub(crate) time: f64,
-    pub(crate) turn: IntervalMat3,
-    pub(crate) back: IntervalMat3,
-    pub(crate) offset: IntervalVec3,
-    /// Middles, for guesses.
+    turn: IntervalMat3,
+    back: IntervalMat3,
+    offset: IntervalVec3,
+    /// Middles of these, for guesses.
     pub(crate) turn_guess: DMat3,
-    pub(crate) back_guess: DMat3,
     pub(crate) offset_guess: DVec3,
+    pub(crate) axes: [BoxAxis; 15],
 }
 
 impl Instant {
@@ -24,32 +59,80 @@ impl Instant {
         // Near the bodies, so that their positions lose nothing far from the world's origin.
         let near = bodies[0].motion.pose_and_twist(time).0.translation;
         let origin = if near.is_finite() { near } else { DVec3::ZERO };
-        let [(turn_a, at_a), (turn_b, at_b)] = bodies.map(|body| {
+        let [a, b] = bodies.map(|body| {
             let state = body.motion.enclose_state_about(time, origin).following(body.mesh.center);
-            (
-                around_matrix(state.rotation, state.rotation_radius),
-                around(state.position, state.position_radius),
-            )
+            let at = around(state.position, state.position_radius);
+            around_matrix(state.rotation, state.rotation_radius).zip(at)
         });
-        let (turn_a, turn_b) = (turn_a?, turn_b?);
+        let ((turn_a, at_a), (turn_b, at_b)) = (a?, b?);
         let back_a = turn_a.transpose();
         let turn = back_a.mul_mat(turn_b);
-        let offset = finite(back_a.mul_vec(at_b? - at_a?))?;
-        for row in turn.rows() {
-            let _ = finite(row)?;
+        let offset = finite(back_a.mul_vec(at_b - at_a))?;
+        let [x, y, z] = turn.cols().map(finite);
+        let turn_guess = DMat3::from_cols(x?.mid(), y?.mid(), z?.mid());
+        let (back, offset_guess, axes) = (turn.transpose(), offset.mid(), BoxAxis::all(&turn_guess));
+        Some(Self { time, turn, back, offset, turn_guess, offset_guess, axes })
+    }
+
+    /// A point of the other body, seen from the base.
+    pub(crate) fn seen(&self, q: IntervalVec3) -> IntervalVec3 {
+        self.turn.mul_vec(q) + self.offset
+    }
+
+    /// A point of the base, seen from the other body.
+    pub(crate) fn seen_back(&self, p: IntervalVec3) -> IntervalVec3 {
+        self.back.mul_vec(p - self.offset)
+    }
+
+    pub(crate) fn guess(&self, q: DVec3) -> DVec3 {
+        self.turn_guess * q + self.offset_guess
+    }
+
+    /// N, and N·(x − p) over all points p of the base's part and x of the other's.
+    fn gap(&self, direction: Direction, [base, other]: [Part<'_>; 2]) -> (IntervalVec3, Interval) {
+        let [n, n_other] = direction.at(&self.turn, &self.back);
+        let along = |n: IntervalVec3, part: Part<'_>| part.iter().map(|&p| n.dot(p)).reduce(Interval::hull);
+        let [base, other] = [along(n, base), along(n_other, other)].map(|x| x.unwrap_or(Interval::ENTIRE));
+        (n, n.dot(self.offset) + other - base)
+    }
+
+    /// By how much the gap is certainly above what is needed: what is proven of this time.
+    pub(crate) fn above(&self, separation: &Separation, parts: [Part<'_>; 2]) -> f64 {
+        let (n, gap) = self.gap(separation.direction, parts);
+        (gap - separation.needed(n)).lo()
+    }
+
+    /// Encloses the distance of two triangles: it is at least a gap along a direction, and at most that of two of their points.
+    pub(crate) fn distance(&self, [a, b]: &[[IntervalVec3; 3]; 2]) -> Interval {
+        let placed = b.map(|q| self.seen(q));
+        if cross(a, &placed) {
+            return Interval::ZERO;
         }
-        let turn_guess = DMat3::from_cols_array_2d(&turn.cols().map(|column| column.mid().to_array()));
-        let (back, back_guess) = (turn.transpose(), turn_guess.transpose());
-        Some(Self { time, turn, back, offset, turn_guess, back_guess, offset_guess: offset.mid() })
+        let guess = [a, b].map(|t| t.map(IntervalVec3::mid));
+        let seen = guess[1].map(|q| self.guess(q));
+        let directions = faces_and_sides(&guess).into_iter();
+        let lower = directions.chain(between(&guess, &self.turn_guess, self.offset_guess)).map(|direction| {
+            let points_to_b = direction.guess(&self.turn_guess).dot(seen[0] - guess[0][0]) > 0.0;
+            let (n, gap) = self.gap(if points_to_b { direction } else { direction.reversed() }, [a, b]);
+            // By the length of a direction that may be zero nothing is divided.
+            if gap.lo() > 0.0 {
+                (Interval::point(gap.lo()) / Interval::point(n.norm().hi())).lo()
+            } else {
+                0.0
+            }
+        });
+        let upper = match closest(&guess[0], &seen).weights.map(on_triangle) {
+            [Some(s), Some(t)] => (point(&placed, t) - point(a, s)).norm().hi(),
+            _ => f64::INFINITY,
+        };
+        Interval::try_new(lower.fold(0.0, f64::max).min(upper), upper).unwrap_or(Interval::ENTIRE)
     }
 }
 
 /// The vectors within `radius` of `center`.
 fn around(center: DVec3, radius: f64) -> Option<IntervalVec3> {
-    let side = |x: f64| Interval::around(x, radius);
-    (radius >= 0.0)
-        .then_some(IntervalVec3::new(side(center.x), side(center.y), side(center.z)))
-        .and_then(finite)
+    let [x, y, z] = center.to_array().map(|x| Interval::around(x, radius));
+    if radius >= 0.0 { finite(IntervalVec3::new(x, y, z)) } else { None }
 }
 
 /// The matrices within `radius` (operator norm) of `m`: no entry is further off than that.
@@ -58,133 +141,30 @@ pub(crate) fn around_matrix(m: DMat3, radius: f64) -> Option<IntervalMat3> {
     Some(IntervalMat3::from_cols([x?, y?, z?]))
 }
 
-/// A part of a body: a box, or a triangle.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Part {
-    Box { bounds: IntervalVec3, middle: DVec3, half: DVec3, reach: f64 },
-    Triangle { corners: [IntervalVec3; 3], guess: [DVec3; 3], reach: f64 },
+/// Weights of a point that is certainly on the triangle: moved by a few units in the last place if need be.
+fn on_triangle(weights: DVec2) -> Option<DVec2> {
+    let is_on =
+        |w: &DVec2| w.min_element() >= 0.0 && (Interval::point(w.x) + Interval::point(w.y)).hi() <= 1.0;
+    [weights, weights.max(DVec2::ZERO) * (1.0 - 8.0 * f64::EPSILON)].into_iter().find(is_on)
 }
 
-impl Part {
-    pub(crate) fn boxed(bounds: IntervalVec3) -> Self {
-        Self::Box { bounds, middle: bounds.mid(), half: bounds.rad(), reach: bounds.norm().hi() }
-    }
-
-    pub(crate) fn triangle(corners: [IntervalVec3; 3]) -> Self {
-        let reach = corners.map(|p| p.norm().hi()).into_iter().fold(0.0, f64::max);
-        Self::Triangle { corners, guess: corners.map(IntervalVec3::mid), reach }
-    }
-
-    pub(crate) fn reach(&self) -> f64 {
-        let (Self::Box { reach, .. } | Self::Triangle { reach, .. }) = self;
-        *reach
-    }
-
-    pub(crate) fn bounds(&self) -> IntervalVec3 {
-        match self {
-            Self::Box { bounds, .. } => *bounds,
-            Self::Triangle { corners: [a, b, c], .. } => a.hull(*b).hull(*c),
-        }
-    }
-
-    /// The corners of a triangle.
-    pub(crate) fn corners(&self) -> Option<&[IntervalVec3; 3]> {
-        if let Self::Triangle { corners, .. } = self { Some(corners) } else { None }
-    }
-
-    /// About the corners of a triangle; of a box its middle.
-    pub(crate) fn guess(&self) -> [DVec3; 3] {
-        match self {
-            Self::Box { middle, .. } => [*middle; 3],
-            Self::Triangle { guess, .. } => *guess,
-        }
-    }
-
-    /// n·p of all its points.
-    fn along(&self, n: IntervalVec3) -> Interval {
-        match self {
-            Self::Box { bounds, .. } => n.dot(*bounds),
-            Self::Triangle { corners: [a, b, c], .. } => n.dot(*a).hull(n.dot(*b)).hull(n.dot(*c)),
-        }
-    }
-
-    /// About the least and the greatest n·p.
-    fn guess_along(&self, n: DVec3) -> [f64; 2] {
-        match self {
-            Self::Box { middle, half, .. } => {
-                let (center, wide) = (n.dot(*middle), n.abs().dot(*half));
-                [center - wide, center + wide]
-            }
-            Self::Triangle { guess: [a, b, c], .. } => {
-                let [a, b, c] = [n.dot(*a), n.dot(*b), n.dot(*c)];
-                [a.min(b).min(c), a.max(b).max(c)]
-            }
-        }
-    }
+fn point([a, b, c]: &[IntervalVec3; 3], weights: DVec2) -> IntervalVec3 {
+    *a + (*b - *a) * weights.x + (*c - *a) * weights.y
 }
 
-/// A direction that goes with the bodies; it need not be of length one.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Direction {
-    /// Fixed in the base.
-    Base(DVec3),
-    /// Fixed in the other body.
-    Other(DVec3),
-    /// e × (turn·f): across a direction of either.
-    Across(DVec3, DVec3),
+/// Does a side of one triangle certainly pass through the other one? Five signs of volumes.
+fn cross(a: &[IntervalVec3; 3], b: &[IntervalVec3; 3]) -> bool {
+    let volume = |[u, v, w, x]: [IntervalVec3; 4]| sign((v - u).triple_product(w - u, x - u));
+    let passes = |[p, q]: [IntervalVec3; 2], [a, b, c]: [IntervalVec3; 3]| {
+        let turns = [(a, b), (b, c), (c, a)].map(|(u, v)| volume([p, q, u, v]));
+        volume([a, b, c, p]) * volume([a, b, c, q]) < 0
+            && turns[0] != 0
+            && turns.iter().all(|&t| t == turns[0])
+    };
+    (0..3).any(|k| passes([a[k], a[(k + 1) % 3]], *b) || passes([b[k], b[(k + 1) % 3]], *a))
 }
 
-impl Direction {
-    /// An upper bound of its length.
-    pub(crate) fn size(self) -> Interval {
-        let length = |v: DVec3| IntervalVec3::point(v).norm();
-        match self {
-            Self::Base(n) | Self::Other(n) => length(n),
-            Self::Across(e, f) => length(e) * length(f),
-        }
-    }
-
-    /// In the axes of the base and in those of the other body.
-    pub(crate) fn at(self, now: &Instant) -> [IntervalVec3; 2] {
-        match self {
-            Self::Base(n) => [IntervalVec3::point(n), now.back.mul_point(n)],
-            Self::Other(n) => [now.turn.mul_point(n), IntervalVec3::point(n)],
-            Self::Across(e, f) => {
-                let (e, f) = (IntervalVec3::point(e), IntervalVec3::point(f));
-                [e.cross(now.turn.mul_vec(f)), now.back.mul_vec(e).cross(f)]
-            }
-        }
-    }
-
-    pub(crate) fn guess(self, now: &Instant) -> DVec3 {
-        match self {
-            Self::Base(n) => n,
-            Self::Other(n) => now.turn_guess * n,
-            Self::Across(e, f) => e.cross(now.turn_guess * f),
-        }
-    }
-
-    #[must_use]
-    pub(crate) fn reversed(self) -> Self {
-        match self {
-            Self::Base(n) => Self::Base(-n),
-            Self::Other(n) => Self::Other(-n),
-            Self::Across(e, f) => Self::Across(-e, f),
-        }
-    }
-}
-
-impl Instant {
-    /// A lower bound of N·(x − p) over all points p of the base's part and x of the other's: what is proven of this time.
-    pub(crate) fn gap(&self, [n, n_other]: [IntervalVec3; 2], [base, other]: [&Part; 2]) -> Interval {
-        n.dot(self.offset) + other.along(n_other) - base.along(n)
-    }
-
-    /// About the gaps along n and along −n.
-    pub(crate) fn guess_gaps(&self, n: DVec3, [base, other]: [&Part; 2]) -> [f64; 2] {
-        let apart = n.dot(self.offset_guess);
-        let [low, high] = base.guess_along(n);
-        let [other_low, other_high] = other.guess_along(self.back_guess * n);
-        [apart + other_low - high, low - apart - other_high]
-    }
+/// The proven sign; 0: none.
+pub(crate) fn sign(x: Interval) -> i32 {
+    i32::from(x.certainly_positive()) - i32::from(x.certainly_negative())
 }

@@ -1,20 +1,19 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
-mod attempt;
+mod claim;
+mod closest;
 mod directions;
 mod instant;
-mod meeting;
 mod mesh;
-mod nearest;
 mod prove;
-mod query;
+mod rates;
 mod solid;
-mod span;
+mod surface;
 mod verify;
 
+pub use claim::{Body, Claim, Query, Reason, Solid, TimeSpan, Verdict};
 pub use mesh::{Mesh, MeshFault};
-pub use query::{Body, Claim, Query, Reason, Solid, TimeSpan, Verdict};
 pub use verify::verify;
 
 #[cfg(test)]

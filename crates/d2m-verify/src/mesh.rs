@@ -1,7 +1,6 @@
 //! A mesh and its tree of boxes. The boxes are minima and maxima of doubles: they are exact.
-use crate::instant::Part;
-use crate::solid::Surface;
-use d2m_interval::{Interval, IntervalVec3};
+use crate::surface::Surface;
+use d2m_interval::IntervalVec3;
 use glam::DVec3;
 use std::sync::OnceLock;
 
@@ -29,16 +28,19 @@ pub struct Mesh {
     pub(crate) center: DVec3,
     /// The root is node 0.
     pub(crate) nodes: Vec<Node>,
+    /// The triangles in the order of the leaves.
+    order: Vec<u32>,
     surface: OnceLock<Surface>,
 }
 
-/// A box and what is below it.
+/// A box in body axes and what is below it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
-    pub(crate) part: Part,
-    /// Length of the diagonal; it proves nothing.
-    pub(crate) size: f64,
+    pub(crate) low: DVec3,
+    pub(crate) high: DVec3,
     pub(crate) below: Below,
+    /// Its triangles are those from here on in the order of the leaves, and how many they are.
+    pub(crate) leaves: [u32; 2],
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -65,19 +67,24 @@ impl Mesh {
         if let Some(triangle) = triangles.iter().position(|t| !t.iter().all(exists)) {
             return Err(MeshFault::NoSuchVertex(triangle));
         }
-        let mut mesh = Self {
-            vertices: vertices.to_vec(),
-            triangles: triangles.to_vec(),
-            center: DVec3::ZERO,
-            nodes: Vec::with_capacity(2 * count),
-            surface: OnceLock::new(),
+        let leaf = |(number, corners): (usize, &[u32; 3])| {
+            let [a, b, c] = corners.map(|v| vertices[v as usize]);
+            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+            Node { low, high, below: Below::Triangle(number as u32), leaves: [0, 1] }
         };
-        let mut order: Vec<u32> = (0..count as u32).collect();
-        let (low, high) = mesh.extent(&order);
-        mesh.center = low * 0.5 + high * 0.5;
-        mesh.push_node(&order);
-        mesh.split(0, &mut order);
-        Ok(mesh)
+        let mut leaves: Vec<Node> = triangles.iter().enumerate().map(leaf).collect();
+        let mut nodes = Vec::with_capacity(2 * count);
+        nodes.push(leaves[0]);
+        build(&mut nodes, 0, 0, &mut leaves);
+        let mut order = vec![0; count];
+        for node in &nodes {
+            if let Below::Triangle(triangle) = node.below {
+                order[node.leaves[0] as usize] = triangle;
+            }
+        }
+        let center = nodes[0].low * 0.5 + nodes[0].high * 0.5;
+        let (vertices, triangles) = (vertices.to_vec(), triangles.to_vec());
+        Ok(Self { vertices, triangles, center, nodes, order, surface: OnceLock::new() })
     }
 
     /// How many triangles there are.
@@ -89,54 +96,50 @@ impl Mesh {
         self.surface.get_or_init(|| Surface::new(&self.vertices, &self.triangles))
     }
 
-    /// Corners of a triangle, from the mesh's center.
-    pub(crate) fn corners(&self, triangle: u32) -> [IntervalVec3; 3] {
-        self.triangles[triangle as usize].map(|v| self.relative(self.vertices[v as usize]))
-    }
-
+    /// A point of the mesh, from its center.
     pub(crate) fn relative(&self, p: DVec3) -> IntervalVec3 {
         IntervalVec3::point(p) - IntervalVec3::point(self.center)
     }
 
-    fn extent(&self, part: &[u32]) -> (DVec3, DVec3) {
-        let corners =
-            part.iter().flat_map(|&t| self.triangles[t as usize]).map(|v| self.vertices[v as usize]);
-        corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+    pub(crate) fn bounds(&self, node: &Node) -> IntervalVec3 {
+        self.relative(node.low).hull(self.relative(node.high))
     }
 
-    fn push_node(&mut self, part: &[u32]) {
-        let (low, high) = self.extent(part);
-        let bounds = self.relative(low).hull(self.relative(high));
-        let (part, size) = (Part::boxed(bounds), (high - low).length());
-        self.nodes.push(Node { part, size, below: Below::Nodes(0) });
+    /// The corners of all triangles in a box.
+    pub(crate) fn points(&self, node: &Node) -> impl Iterator<Item = IntervalVec3> {
+        let [first, count] = node.leaves.map(|k| k as usize);
+        let corners = self.order[first..first + count].iter().flat_map(|&t| self.triangles[t as usize]);
+        corners.map(|v| self.relative(self.vertices[v as usize]))
     }
 
-    /// Splits a node's triangles at the median along the longest side of its box.
-    fn split(&mut self, node: usize, part: &mut [u32]) {
-        if let [triangle] = part {
-            self.nodes[node].below = Below::Triangle(*triangle);
-            return;
-        }
-        let (low, high) = self.extent(part);
-        let along = (high * 0.5 - low * 0.5).max_position();
-        let middle = |t: u32| self.triangles[t as usize].map(|v| self.vertices[v as usize][along] / 3.0);
-        let half = part.len() / 2;
-        part.select_nth_unstable_by(half, |&s, &t| {
-            let [s_at, t_at] = [s, t].map(|t| middle(t).iter().sum::<f64>());
-            s_at.total_cmp(&t_at).then(s.cmp(&t))
-        });
-        let (left, right) = part.split_at_mut(half);
-        let first = self.nodes.len();
-        self.nodes[node].below = Below::Nodes(first as u32);
-        self.push_node(left);
-        self.push_node(right);
-        self.split(first, left);
-        self.split(first + 1, right);
+    pub(crate) fn corners(&self, triangle: u32) -> [IntervalVec3; 3] {
+        self.triangles[triangle as usize].map(|v| self.relative(self.vertices[v as usize]))
     }
+}
+
+/// Puts a tree of these leaves, which `start` others are before, at a node: split at the median of their middles, along the longest side
+/// of these, and joined again.
+fn build(nodes: &mut Vec<Node>, at: usize, start: u32, leaves: &mut [Node]) {
+    if let [leaf] = leaves {
+        nodes[at] = Node { leaves: [start, 1], ..*leaf };
+        return;
+    }
+    let middle = |leaf: &Node| leaf.low * 0.5 + leaf.high * 0.5;
+    let any = middle(&leaves[0]);
+    let (low, high) = leaves.iter().map(middle).fold((any, any), |(l, h), p| (l.min(p), h.max(p)));
+    let (along, half) = ((high * 0.5 - low * 0.5).max_position(), leaves.len() / 2);
+    leaves.select_nth_unstable_by(half, |s, t| middle(s)[along].total_cmp(&middle(t)[along]));
+    let (first, count) = (nodes.len(), leaves.len() as u32);
+    let (left, right) = leaves.split_at_mut(half);
+    nodes.extend([left[0], right[0]]);
+    build(nodes, first, start, left);
+    build(nodes, first + 1, start + half as u32, right);
+    let [left, right] = [nodes[first], nodes[first + 1]];
+    let (low, high) = (left.low.min(right.low), left.high.max(right.high));
+    nodes[at] = Node { low, high, below: Below::Nodes(first as u32), leaves: [start, count] };
 }
 
 /// What has finite ends. Enclosures that are empty, unbounded or no numbers prove nothing (an empty one would prove everything).
 pub(crate) fn finite(v: IntervalVec3) -> Option<IntervalVec3> {
-    let is_finite = |i: Interval| i.lo() <= i.hi() && i.lo().is_finite() && i.hi().is_finite();
-    (is_finite(v.x) && is_finite(v.y) && is_finite(v.z)).then_some(v)
+    [v.x, v.y, v.z].iter().all(|i| i.lo() <= i.hi() && i.lo().is_finite() && i.hi().is_finite()).then_some(v)
 }

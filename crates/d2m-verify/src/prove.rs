@@ -1,34 +1,26 @@
 //! Two bodies are further apart than a distance at every time of a span: the recursion.
-use crate::attempt::Attempt;
-use crate::instant::{Instant, Part};
-use crate::mesh::Below;
-use crate::span::{Bounds, Turning};
-use crate::{Body, Reason, TimeSpan, Verdict, meeting};
-use d2m_interval::Interval;
+use crate::directions::{Direction, between, between_hulls, faces_and_sides};
+use crate::instant::{Instant, Part, Separation};
+use crate::mesh::{Below, Node};
+use crate::rates::{Rates, lowest};
+use crate::{Body, Reason, TimeSpan, Verdict};
+use d2m_interval::{Interval, IntervalVec3};
+use glam::DVec3;
 
-/// Steps that were taken and that may be.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Steps {
-    pub(crate) taken: u64,
-    pub(crate) most: u64,
-}
+/// Steps at least that are looked for a counterexample in, after something could not be proven.
+const LATER: u64 = 4096;
+/// So few triangles are taken together, as what is between their corners.
+const FEW: u32 = 8;
+/// So many directions that separated others are tried.
+const KNOWN: usize = 4;
 
-impl Steps {
-    /// Takes one; false: there is none left.
-    pub(crate) fn take(&mut self) -> bool {
-        let is_left = self.taken < self.most;
-        self.taken += u64::from(is_left);
-        is_left
-    }
-}
-
-/// Proves the meshes further apart than `distance` at every time of the span, one smooth piece of both motions after the other. What
-/// contradicts it or is left open is the error.
+/// Proves the meshes further apart than `distance` at every time of the span, one smooth piece of both motions after the other, in as
+/// many steps as are `left`. What contradicts it or is left open is the error.
 pub(crate) fn clear(
     bodies: &[Body<'_>; 2],
     distance: f64,
     span: TimeSpan,
-    steps: &mut Steps,
+    left: &mut u64,
 ) -> Result<(), Verdict> {
     let mut now = span.from;
     loop {
@@ -40,7 +32,7 @@ pub(crate) fn clear(
             }
             end = end.min(until.max(now));
         }
-        Prover::new(*bodies, distance, TimeSpan { from: now, to: end }).run(steps)?;
+        Prover::new(*bodies, distance, TimeSpan { from: now, to: end }).run(left)?;
         if end >= span.to {
             return Ok(());
         }
@@ -48,23 +40,38 @@ pub(crate) fn clear(
     }
 }
 
-/// Steps at least that are looked for a counterexample in, after something could not be proven.
-const LATER: u64 = 4096;
+/// A span with its ends; all pairs share it.
+struct Span {
+    time: TimeSpan,
+    ends: [Option<Instant>; 2],
+    rates: Option<Rates>,
+    /// This span and the next are its halves.
+    halves: Option<usize>,
+}
+
+impl Span {
+    fn new(bodies: &[Body<'_>; 2], time: TimeSpan, ends: &[Option<Instant>; 2]) -> Self {
+        Self { time, ends: *ends, rates: Rates::new(bodies, time), halves: None }
+    }
+
+    /// Is the direction proven to separate the parts all the time? In intervals, from both ends and K L²/2.
+    fn is_proven(&self, separation: &Separation, parts: [Part<'_>; 2]) -> bool {
+        let [Some(start), Some(end)] = &self.ends else { return false };
+        let length = Interval::point(self.time.to) - Interval::point(self.time.from);
+        let bend = match &self.rates {
+            _ if self.time.from == self.time.to => 0.0,
+            Some(rates) => (length.sqr() * 0.5 * rates.curvature(separation, parts)).hi(),
+            None => return false,
+        };
+        lowest([start, end].map(|now| now.above(separation, parts)), bend) > 0.0
+    }
+}
 
 /// A part of the base and a part of the other body, over a span.
 #[derive(Clone, Copy)]
 struct Task {
     nodes: [u32; 2],
     span: usize,
-}
-
-/// A span with its ends; all pairs share it.
-pub(crate) struct Span {
-    pub(crate) time: TimeSpan,
-    pub(crate) ends: [Option<Instant>; 2],
-    pub(crate) bounds: Bounds,
-    /// This span and the next are its halves.
-    halves: Option<usize>,
 }
 
 struct Prover<'q> {
@@ -74,105 +81,177 @@ struct Prover<'q> {
     distance: f64,
     spans: Vec<Span>,
     tasks: Vec<Task>,
-    /// The earliest that could not be proven.
-    open: Option<Open>,
-}
-
-#[derive(Clone, Copy)]
-struct Open {
-    from: f64,
-    reason: Reason,
-    pair: [u32; 2],
+    /// Directions that separated others, the last one first.
+    known: Vec<Direction>,
+    /// Since when something could not be proven, and what.
+    open: Option<(f64, Verdict)>,
 }
 
 impl<'q> Prover<'q> {
     fn new([a, b]: [Body<'q>; 2], distance: f64, time: TimeSpan) -> Self {
-        let seen = [[a, b], [b, a]].map(|bodies| {
-            let bounds = Turning::new(&bodies, time).map_or(Bounds::NONE, |turning| turning.bounds());
-            (bounds, bounds.curvatures(bodies[1].mesh.nodes[0].part.reach(), Interval::ZERO)[0].hi())
+        let bends = [[a, b], [b, a]].map(|bodies| {
+            let other = &bodies[1].mesh.nodes[0];
+            let reach = (other.high - other.low).length();
+            Rates::new(&bodies, time).map_or(f64::INFINITY, |rates| rates.guess_acceleration(reach))
         });
-        let swapped = seen[1].1 < seen[0].1;
+        let swapped = bends[1] < bends[0];
         let bodies = if swapped { [b, a] } else { [a, b] };
-        let ends = [time.from, time.to].map(|t| Instant::new(&bodies, t));
-        let whole = Span { time, ends, bounds: seen[usize::from(swapped)].0, halves: None };
+        let whole = Span::new(&bodies, time, &[time.from, time.to].map(|t| Instant::new(&bodies, t)));
         let tasks = vec![Task { nodes: [0, 0], span: 0 }];
-        Self { bodies, swapped, distance, spans: vec![whole], tasks, open: None }
+        Self { bodies, swapped, distance, spans: vec![whole], tasks, known: Vec::new(), open: None }
     }
 
-    fn run(mut self, steps: &mut Steps) -> Result<(), Verdict> {
-        let mut most = u64::MAX;
+    fn run(mut self, left: &mut u64) -> Result<(), Verdict> {
+        let (all, mut later) = (*left, None);
         while let Some(task) = self.tasks.pop() {
             let from = self.spans[task.span].time.from;
-            if !steps.take() {
-                let left = self.tasks.iter().map(|task| self.spans[task.span].time.from);
-                let clear_until = left.fold(self.open.map_or(from, |open| open.from.min(from)), f64::min);
+            let open = self.open.map(|(since, _)| since);
+            if *left == 0 {
+                let tasks = self.tasks.iter().map(|task| self.spans[task.span].time.from);
+                let clear_until = tasks.fold(open.map_or(from, |since| from.min(since)), f64::min);
                 return Err(Verdict::Unproven { clear_until, reason: Reason::Steps, pair: None });
             }
-            if let Some(open) = self.open {
+            *left -= 1;
+            if let Some(since) = open {
                 // What cannot be proven may be refuted by what comes later, for as much work again.
-                most = most.min(2 * steps.taken + LATER);
-                if from >= open.from && steps.taken > most {
+                let least = *later.get_or_insert(left.saturating_sub(LATER + (all - *left)));
+                if from >= since && *left < least {
                     continue;
                 }
             }
             self.step(task)?;
         }
-        let in_order = |pair| Some(self.in_order(pair));
-        self.open.map_or(Ok(()), |Open { from, reason, pair }| {
-            Err(Verdict::Unproven { clear_until: from, reason, pair: in_order(pair) })
-        })
+        self.open.map_or(Ok(()), |(_, verdict)| Err(verdict))
     }
 
     /// Proves the task, or replaces it by others; an error is a counterexample.
     fn step(&mut self, task: Task) -> Result<(), Verdict> {
-        let nodes = [0, 1].map(|k| &self.bodies[k].mesh.nodes[task.nodes[k] as usize]);
+        let nodes = [0, 1].map(|k| self.bodies[k].mesh.nodes[task.nodes[k] as usize]);
+        let half = nodes.map(|node| (node.high - node.low) * 0.5);
         let span = &self.spans[task.span];
-        if let [Below::Triangle(s), Below::Triangle(t)] = nodes.map(|node| node.below) {
-            let (pair, from) = ([s, t], span.time.from);
-            let [s, t] = meeting::triangles(&self.bodies, pair);
-            let mut attempt = Attempt::new(&self.bodies, span, [&s, &t], self.distance);
-            if attempt.separates_triangles() || attempt.second_try() {
-                return Ok(());
-            }
-            let [first, last] = attempt.clear_ends();
-            let reason = if first && last {
-                if self.halve(task) {
-                    return Ok(());
-                }
-                Reason::TimeResolution
-            } else {
-                self.close_at_an_end(task.span, [&s, &t], pair)?
-            };
-            if self.open.is_none_or(|open| from < open.from) {
-                self.open = Some(Open { from, reason, pair });
-            }
+        if self.boxes_apart(span, &nodes, &half) {
             return Ok(());
         }
-        let parts = nodes.map(|node| &node.part);
-        let mut attempt = Attempt::new(&self.bodies, span, parts, self.distance);
-        let fast = attempt.moves() > nodes[0].size.max(nodes[1].size);
-        if !(attempt.separates_boxes() || (fast && (attempt.second_try() || self.halve(task)))) {
-            self.split(nodes.map(|node| (node.size, node.below)), task);
+        if nodes.iter().all(|node| node.leaves[1] <= FEW) {
+            if let Some(direction) = self.hulls_apart(span, &nodes) {
+                self.known.retain(|known| *known != direction);
+                self.known.insert(0, direction);
+                self.known.truncate(KNOWN);
+                return Ok(());
+            }
+            if let [Below::Triangle(s), Below::Triangle(t)] = nodes.map(|node| node.below) {
+                return self.triangles(task, [s, t]);
+            }
+        }
+        let [size, size_other] = half.map(|half| 2.0 * half.length());
+        let length = span.time.to - span.time.from;
+        let moves = span.rates.as_ref().map_or(f64::INFINITY, |rates| rates.guess_speed(size_other) * length);
+        // Where points move further than the boxes are large, shorter spans say more than smaller boxes.
+        if moves <= size.max(size_other) || !self.halve(task) {
+            let [of_base, of_other] = task.nodes;
+            let halves = match nodes.map(|node| node.below) {
+                [Below::Nodes(first), other] if size >= size_other || matches!(other, Below::Triangle(_)) => {
+                    [[first, of_other], [first + 1, of_other]]
+                }
+                [_, Below::Nodes(first)] => [[of_base, first], [of_base, first + 1]],
+                _ => unreachable!("two triangles are judged before"),
+            };
+            self.tasks.extend(halves.map(|nodes| Task { nodes, ..task }));
         }
         Ok(())
     }
 
-    /// At a time at which nothing separates two triangles they may be proven close: that is the error. Where they are proven neither
-    /// close nor clear, no shorter span decides it.
-    fn close_at_an_end(&self, span: usize, parts: [&Part; 2], pair: [u32; 2]) -> Result<Reason, Verdict> {
-        let ends = self.spans[span].ends;
-        for now in ends.iter().flatten() {
-            let distance = meeting::distance(now, parts);
-            if distance.hi() <= self.distance {
-                return Err(Verdict::Refuted { time: now.time, triangles: self.in_order(pair), distance });
+    /// Tries the best of the fifteen directions of two boxes, as it seems in plain numbers.
+    fn boxes_apart(&self, span: &Span, nodes: &[Node; 2], half: &[DVec3; 2]) -> bool {
+        let [Some(start), Some(end)] = &span.ends else { return false };
+        let middle = [0, 1].map(|k| (nodes[k].low + nodes[k].high) * 0.5 - self.bodies[k].mesh.center);
+        let [between, between_end] = [start, end].map(|now| now.guess(middle[1]) - middle[0]);
+        let (mut widest, mut best) = (0.0, None);
+        for (axis, axis_end) in start.axes.iter().zip(&end.axes) {
+            let gaps = axis.gaps(between, half);
+            let way = usize::from(gaps[1] > gaps[0]);
+            let gap = gaps[way] - self.distance * axis.length;
+            if gap > widest {
+                let gap = gap.min(axis_end.gaps(between_end, half)[way] - self.distance * axis_end.length);
+                if gap > widest {
+                    let direction = if way == 0 { axis.direction } else { axis.direction.reversed() };
+                    let about = 0.5 * (axis.length + axis_end.length);
+                    (widest, best) = (gap, Some(Separation { direction, distance: self.distance, about }));
+                }
             }
         }
-        let is_known = ends.iter().all(Option::is_some);
-        Ok(if is_known { Reason::TooClose } else { Reason::Enclosure })
+        let bounds = |k: usize| [self.bodies[k].mesh.bounds(&nodes[k])];
+        best.is_some_and(|best| span.is_proven(&best, [&bounds(0), &bounds(1)]))
     }
 
-    fn in_order(&self, [s, t]: [u32; 2]) -> [u32; 2] {
-        if self.swapped { [t, s] } else { [s, t] }
+    /// A direction that is proven to separate what is between the corners of few triangles: those that separated others are tried first.
+    fn hulls_apart(&self, span: &Span, nodes: &[Node; 2]) -> Option<Direction> {
+        let [Some(start), Some(end)] = &span.ends else { return None };
+        let points = |k: usize| self.bodies[k].mesh.points(&nodes[k]).collect::<Vec<_>>();
+        let parts = [points(0), points(1)];
+        let [a, b] = parts.each_ref().map(|part| part.iter().map(|p| p.mid()).collect::<Vec<_>>());
+        let proves = |direction: &Direction| self.separates(span, *direction, &parts, [&a, &b]);
+        if let Some(direction) = self.known.iter().find(|&direction| proves(direction)) {
+            return Some(*direction);
+        }
+        let ([p, q, r], [s, t, u]) = (&a[..], &b[..]) else {
+            let seen: Vec<DVec3> = b.iter().map(|q| end.guess(*q)).collect();
+            return Some(between_hulls(&a, &seen)).filter(proves);
+        };
+        let corners = [[*p, *q, *r], [*s, *t, *u]];
+        let near = [start, end].into_iter();
+        let mut near = near.flat_map(|now| between(&corners, &now.turn_guess, now.offset_guess));
+        faces_and_sides(&corners).into_iter().find(proves).or_else(|| near.find(proves))
+    }
+
+    /// Does a direction, or its opposite, separate the parts? In plain numbers first.
+    fn separates(
+        &self,
+        span: &Span,
+        direction: Direction,
+        parts: &[Vec<IntervalVec3>; 2],
+        [a, b]: [&[DVec3]; 2],
+    ) -> bool {
+        let [Some(start), Some(end)] = &span.ends else { return false };
+        let points_to_b = direction.guess(&start.turn_guess).dot(start.guess(b[0]) - a[0]) > 0.0;
+        let direction = if points_to_b { direction } else { direction.reversed() };
+        let mut about = 0.0;
+        let is_apart = [start, end].into_iter().all(|now| {
+            let n = direction.guess(&now.turn_guess);
+            let back = now.turn_guess.transpose() * n;
+            let low = b.iter().map(|q| back.dot(*q)).fold(f64::INFINITY, f64::min);
+            let high = a.iter().map(|p| n.dot(*p)).fold(f64::NEG_INFINITY, f64::max);
+            about += 0.5 * n.length();
+            n.dot(now.offset_guess) + low - high > self.distance * n.length()
+        });
+        let separation = Separation { direction, distance: self.distance, about };
+        is_apart && span.is_proven(&separation, [&parts[0], &parts[1]])
+    }
+
+    /// Two triangles that are not apart over a span are, if they are at its ends, tried over shorter ones. Proven close at one, they are
+    /// the counterexample; neither close nor clear, no shorter span decides it.
+    fn triangles(&mut self, task: Task, [s, t]: [u32; 2]) -> Result<(), Verdict> {
+        let span = &self.spans[task.span];
+        let corners = [(0, s), (1, t)].map(|(k, triangle)| self.bodies[k].mesh.corners(triangle));
+        let triangles = if self.swapped { [t, s] } else { [s, t] };
+        let mut reason = Reason::TimeResolution;
+        for now in &span.ends {
+            let distance = now.as_ref().map_or(Interval::ENTIRE, |now| now.distance(&corners));
+            match now {
+                Some(now) if distance.hi() <= self.distance => {
+                    return Err(Verdict::Refuted { time: now.time, triangles, distance });
+                }
+                None => reason = Reason::Enclosure,
+                Some(_) if distance.lo() <= self.distance => reason = Reason::TooClose,
+                Some(_) => {}
+            }
+        }
+        let from = span.time.from;
+        let is_decided = reason == Reason::TimeResolution && self.halve(task);
+        if !is_decided && self.open.is_none_or(|(since, _)| from < since) {
+            self.open = Some((from, Verdict::Unproven { clear_until: from, reason, pair: Some(triangles) }));
+        }
+        Ok(())
     }
 
     /// Replaces the task by those of the two halves of its span; false where no time is between its ends.
@@ -186,26 +265,12 @@ impl<'q> Prover<'q> {
         if halves.is_none() {
             self.spans[task.span].halves = Some(first);
             let now = Instant::new(&self.bodies, middle);
-            for ([from, to], ends) in [([from, middle], [ends[0], now]), ([middle, to], [now, ends[1]])] {
-                let time = TimeSpan { from, to };
-                let bounds = Turning::new(&self.bodies, time).map_or(Bounds::NONE, |t| t.bounds());
-                self.spans.push(Span { time, ends, bounds, halves: None });
+            for (from, to, ends) in [(from, middle, [ends[0], now]), (middle, to, [now, ends[1]])] {
+                self.spans.push(Span::new(&self.bodies, TimeSpan { from, to }, &ends));
             }
         }
         // The earlier half is proven first.
         self.tasks.extend([first + 1, first].map(|span| Task { span, ..task }));
         true
-    }
-
-    /// Splits the larger box, or the one that is none of a triangle.
-    fn split(&mut self, [(size, below), (size_other, below_other)]: [(f64, Below); 2], task: Task) {
-        let [of_base, of_other] = task.nodes;
-        let halves = match (below, below_other) {
-            (Below::Nodes(first), Below::Triangle(_)) => [[first, of_other], [first + 1, of_other]],
-            (Below::Nodes(first), _) if size >= size_other => [[first, of_other], [first + 1, of_other]],
-            (_, Below::Nodes(first)) => [[of_base, first], [of_base, first + 1]],
-            _ => return,
-        };
-        self.tasks.extend(halves.map(|nodes| Task { nodes, ..task }));
     }
 }

@@ -1,5 +1,5 @@
 //! Planted truths, lies, and motions that enclose nothing.
-use crate::span::lowest;
+use crate::rates::lowest;
 use crate::{Body, Claim, Mesh, Query, Reason, Solid, TimeSpan, Verdict, verify};
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{
@@ -50,17 +50,17 @@ fn the_bound_between_two_ends_holds_and_is_attained() {
     for _ in 0..20_000 {
         let [start, end] = [0; 2].map(|_| random.signed() * 2.0);
         let bend = 4.0 * random.signed().abs();
-        let bound = lowest(start, end, bend);
+        let bound = lowest([start, end], bend);
         let at = |t: f64| start + (end - start) * t - bend * t * (1.0 - t);
         let least = (0..=64).map(|k| at(f64::from(k) / 64.0)).fold(f64::INFINITY, f64::min);
         assert!(bound <= least + 1e-15, "{start} {end} {bend}");
         attained += u32::from(bound > least - 1e-3 * (1.0 + bend));
     }
     assert!(attained > 19_000, "{attained}");
-    assert_eq!(lowest(1e-10, 1e-10, 0.0), 1e-10);
-    assert!(lowest(1e-10, 1e-10, 1e-160) > 0.99e-10);
+    assert_eq!(lowest([1e-10; 2], 0.0), 1e-10);
+    assert!(lowest([1e-10; 2], 1e-160) > 0.99e-10);
     for nonsense in [f64::NAN, f64::INFINITY] {
-        assert!(lowest(1.0, 1.0, nonsense) <= 0.0 && lowest(nonsense, 1.0, 1.0) <= 1.0);
+        assert!(lowest([1.0; 2], nonsense) <= 0.0 && lowest([nonsense, 1.0], 1.0) <= 1.0);
     }
 }
 

@@ -151,6 +151,9 @@ pub enum Reason {
     /// A tolerance larger than what was asked for and what rounding needs would make any answer right.
     #[error("the tolerance of the answer is larger than what was asked for")]
     Tolerance,
+    /// Points, weights, normal, features or speed are not those of the answer's triangles at its time.
+    #[error("points, normal or features of the answer are not those of its triangles at its time")]
+    Witness,
     /// The answer promises nothing.
     #[error("the answer promises nothing")]
     NothingClaimed,
