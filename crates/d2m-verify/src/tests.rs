@@ -1,4 +1,5 @@
 //! Planted truths, lies, and motions that enclose nothing.
+use crate::instant::Instant;
 use crate::rates::lowest;
 use crate::{Body, Claim, Mesh, Query, Reason, Solid, TimeSpan, Verdict, verify};
 use d2m_interval::{Interval, IntervalVec3};
@@ -125,6 +126,77 @@ fn turning_bodies_are_followed() {
     }
 }
 
+/// A bar that turns above a plate, in windows at whose ends it may be clear while it is not between them; and a plate that turns below.
+#[test]
+fn what_is_between_the_ends_is_seen() {
+    let bar = cuboid(DVec3::new(-2.0, -0.1, -0.1), DVec3::new(2.0, 0.1, 0.1));
+    let plate = cuboid(DVec3::new(-9.0, -9.0, -2.0), DVec3::new(9.0, 9.0, 0.0));
+    let height = |angle: f64| 1.5 - 2.0 * angle.sin().abs() - 0.1 * angle.cos().abs();
+    let mut random = KnuthRandom(23);
+    let mut counts = [0; 2];
+    for round in 0..400 {
+        let [s, t] = [0; 2].map(|_| 2.0 * random.signed());
+        let (from, to) = (s.min(t), s.max(t));
+        let distance = [0.0, 0.3][round % 2];
+        let least =
+            (0..=400).map(|k| height(from + (to - from) * f64::from(k) / 400.0)).fold(f64::MAX, f64::min);
+        // Seen from the bar, or from the plate; and the same with a common turn of both.
+        let common = [0.0, 3.0][round / 2 % 2] * DVec3::Y;
+        let turning = ConstantTwist::REST.with_position(DVec3::Z * 1.5);
+        let (turning, below) = (
+            turning.with_angular_velocity(DVec3::Y + common).with_linear_velocity(DVec3::ZERO),
+            ConstantTwist::REST
+                .with_at(DVec3::Z * 1.5)
+                .with_position(DVec3::Z * 1.5)
+                .with_angular_velocity(common),
+        );
+        let bodies = [body(&bar, &turning), body(&plate, &below)];
+        let bodies = if round % 3 == 0 { [bodies[1], bodies[0]] } else { bodies };
+        let claim = Claim::Clear { span: between(from, to), distance };
+        let verdict = verify(&Query { bodies, window: between(from, to) }, &claim, STEPS);
+        assert!(
+            !is_verified(verdict) || least > distance - 1e-9,
+            "{from} {to} {distance}: {least} {verdict:?}"
+        );
+        assert!(
+            is_verified(verdict) || least < distance + 1e-3,
+            "{from} {to} {distance}: {least} {verdict:?}"
+        );
+        counts[usize::from(is_verified(verdict))] += 1;
+    }
+    assert!(counts.iter().all(|&count| count > 20), "{counts:?}");
+}
+
+/// Soups of triangles at rest: what is proven of all of them at once is true of each two, and nearly as sharp.
+#[test]
+fn many_triangles_at_once_are_as_far_apart_as_each_two() {
+    let mut random = KnuthRandom(29);
+    for round in 0..300 {
+        let mut soup = |count: usize, size: f64| {
+            let vertices: Vec<DVec3> = (0..3 * count).map(|_| random.vector() * size).collect();
+            let triangles: Vec<[u32; 3]> = (0..count as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+            Mesh::try_new(&vertices, &triangles).unwrap()
+        };
+        let (a, b) = (soup(1 + round % 20, 1.0), soup(1 + round % 7, 0.5));
+        let at = ConstantTwist::REST.with_position(DVec3::new(1.9, 1.0, 0.3) * (0.5 + random.signed().abs()));
+        let of = |mesh, motion| Body { solid: Solid::Surface, ..body(mesh, motion) };
+        let bodies = [of(&a, &ConstantTwist::REST), of(&b, &at)];
+        let now = Instant::new(&bodies, 0.5).unwrap();
+        let corners =
+            |mesh: &Mesh| (0..mesh.triangle_count() as u32).map(|t| mesh.corners(t)).collect::<Vec<_>>();
+        let pairs = corners(&a).into_iter().flat_map(|s| corners(&b).into_iter().map(move |t| [s, t]));
+        let distance = pairs.map(|pair| now.distance(&pair)).reduce(Interval::min).unwrap();
+        let clear = |distance| {
+            let claim = Claim::Clear { span: between(0.5, 0.5), distance };
+            verify(&Query { bodies, window: between(0.0, 1.0) }, &claim, STEPS)
+        };
+        assert!(!is_verified(clear(distance.hi() * (1.0 + 1e-12))), "{round}: {distance}");
+        if distance.lo() > 1e-6 {
+            assert!(is_verified(clear(distance.lo() * (1.0 - 1e-9))), "{round}: {distance}");
+        }
+    }
+}
+
 /// Sliding with faces in contact at a level, and along an edge, are a step or a few, not millions.
 #[test]
 fn sliding_at_a_constant_gap_is_cheap() {
@@ -204,9 +276,9 @@ fn pieces_are_taken_one_after_the_other() {
     let pose =
         |x: f64| Pose { rotation: DQuat::IDENTITY, translation: DVec3::new(x, 0.1, 0.07), at: DVec3::ZERO };
     for (deepest, meets) in [(1.0 + 1e-9, false), (1.0 - 1e-9, true), (-3.0, true)] {
-        // The second joint is the next number after the first.
-        let times = [0.0, 0.5, 0.5f64.next_up(), 1.0];
-        let frames = times.into_iter().zip([3.0, deepest, deepest, 3.0]).map(|(t, x)| (t, pose(x)));
+        // Clear in the first piece; the third joint is the next number after the second.
+        let times = [0.0, 0.25, 0.5, 0.5f64.next_up(), 1.0];
+        let frames = times.into_iter().zip([3.0, 3.0, deepest, deepest, 3.0]).map(|(t, x)| (t, pose(x)));
         let motion = Keyframes::try_new(&frames.collect::<Vec<_>>(), Span::Screw).unwrap();
         let bodies = [body(&cube, &ConstantTwist::REST), body(&cube, &motion)];
         let verdict = verify(&Query { bodies, window: between(0.0, 1.0) }, &clear_until(1.0), STEPS);
