@@ -131,23 +131,25 @@ fn turning_bodies_are_followed() {
 fn what_is_between_the_ends_is_seen() {
     let bar = cuboid(DVec3::new(-2.0, -0.1, -0.1), DVec3::new(2.0, 0.1, 0.1));
     let plate = cuboid(DVec3::new(-9.0, -9.0, -2.0), DVec3::new(9.0, 9.0, 0.0));
-    let height = |angle: f64| 1.5 - 2.0 * angle.sin().abs() - 0.1 * angle.cos().abs();
+    let height = |above: f64, angle: f64| above - 2.0 * angle.sin().abs() - 0.1 * angle.cos().abs();
     let mut random = KnuthRandom(23);
     let mut counts = [0; 2];
-    for round in 0..400 {
-        let [s, t] = [0; 2].map(|_| 2.0 * random.signed());
+    for round in 0..1500 {
+        let [s, t] = [0; 2].map(|_| 3.2 * random.signed());
         let (from, to) = (s.min(t), s.max(t));
         let distance = [0.0, 0.3][round % 2];
-        let least =
-            (0..=400).map(|k| height(from + (to - from) * f64::from(k) / 400.0)).fold(f64::MAX, f64::min);
+        let above = [1.5, 2.2][round / 4 % 2];
+        let least = (0..=400)
+            .map(|k| height(above, from + (to - from) * f64::from(k) / 400.0))
+            .fold(f64::MAX, f64::min);
         // Seen from the bar, or from the plate; and the same with a common turn of both.
         let common = [0.0, 3.0][round / 2 % 2] * DVec3::Y;
-        let turning = ConstantTwist::REST.with_position(DVec3::Z * 1.5);
+        let turning = ConstantTwist::REST.with_position(DVec3::Z * above);
         let (turning, below) = (
             turning.with_angular_velocity(DVec3::Y + common).with_linear_velocity(DVec3::ZERO),
             ConstantTwist::REST
-                .with_at(DVec3::Z * 1.5)
-                .with_position(DVec3::Z * 1.5)
+                .with_at(DVec3::Z * above)
+                .with_position(DVec3::Z * above)
                 .with_angular_velocity(common),
         );
         let bodies = [body(&bar, &turning), body(&plate, &below)];
