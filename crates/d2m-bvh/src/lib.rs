@@ -1,4 +1,49 @@
 #![doc = include_str!("../README.md")]
+#![doc = include_str!("../picture.svg")]
+//!
+//! ## Start here
+//! Make a [`TriMesh`] of your vertices and triangles, a [`MeshTree`] of the mesh (once), a [`Moving`] of the
+//! tree and a motion (once a query), and ask [`time_of_contact`].
+//!
+//! ## Meshes and trees
+//! - [`TriMesh`], from and to [`MeshArrays`]; [`MAX_COORDINATE`] bounds its numbers. [`Topology`] (with its
+//!   [`Edge`]s) and [`Validation`] say what kind of mesh it is, [`MeshParts`] and [`MeshPart`] which parts
+//!   hold each other.
+//! - [`MeshTree`]: the tree of boxes. [`EnclosingSphere`]: the smallest sphere about points.
+//!
+//! ## Two bodies that move
+//! - [`Moving`]: a body with its motion; [`Window`]: the times in question.
+//! - [`time_of_contact`]: the first contact. [`time_of_contact_with`] keeps a [`PairCache`] from query to
+//!   query, [`time_of_contact_batch`] asks about many pairs, [`time_of_contact_counted`] says what was done.
+//! - [`contact_exists`]: only whether there is one.
+//! - [`clearance()`] and [`clearance_batch`]: how near the bodies come. [`contact_spans`]: when they are in
+//!   contact. [`departure`]: when they part.
+//!
+//! ## Two bodies at rest
+//! - [`Posed`]: a body with its pose.
+//! - [`collide`], [`collide_within`], [`colliding_pairs`], [`try_colliding_pair`]: do they touch, and where?
+//! - [`distance`], [`distance_within`], [`bound_distance`]: how far apart?
+//! - [`proximities`], [`proximities_with`], [`proximities_within`], [`reduce_proximities`]: where are they
+//!   locally closest: the contact manifold.
+//!
+//! ## Answers
+//! - [`TimeOfContact`], with a [`Contact`]: its [`Evidence`], its [`StartState`], [`TimeBracket`].
+//! - [`Clearance`] and [`ClearanceStatus`]; [`ContactSpan`] and [`SpanStatus`]; [`Departure`].
+//! - [`Distance`], [`DistanceBounds`], [`Proximity`].
+//! - [`Answered`] and [`SearchCounts`]: an answer with the work that it took.
+//!
+//! ## Options and budgets
+//! - [`QueryOptions`]: [`Solid`], [`Mode`], [`Start`], tolerance, minimum separation. [`ClearanceOptions`],
+//!   [`DistanceOptions`], [`ProximityOptions`].
+//! - [`Budget`] limits the work, [`Canceller`] and its [`CancelFlag`] end it from another thread, [`Meter`]
+//!   counts it ([`Exhausted`]).
+//! - [`InstructionSet`]: which vector instructions are used; the answers do not depend on it.
+//!
+//! ## Errors
+//! [`QueryError`], [`MeshError`], [`TreeError`], [`TreeFileError`]: bad input, with index and value. Hard
+//! cases are no errors.
+#![doc(html_root_url = "https://docs.rs/d2m-bvh")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
 mod cancel;

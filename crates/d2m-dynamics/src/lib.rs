@@ -1,4 +1,26 @@
 #![doc = include_str!("../README.md")]
+#![doc = include_str!("../picture.svg")]
+//!
+//! ## Start here
+//! Add each [`Body`] to a [`Simulation`] and call [`Simulation::step`].
+//!
+//! ## Bodies
+//! - [`Body`]: a shared tree, its [`Kind`], [`Mass`], [`Material`]; a kinematic one follows a [`Motion`].
+//!   [`BodyId`] is its name.
+//! - [`MassProperties`]: mass, center and inertia of a mesh.
+//!
+//! ## Running
+//! - [`SimulationOptions`]: gravity, step, gap, accuracy.
+//! - [`Simulation`]; [`Snapshot`] is its state, to come back to.
+//!
+//! ## What is reported
+//! - [`StepReport`] of each step, with its [`Segment`]s (flights that are certified) and [`ContactImpulse`]s.
+//! - [`ContactListener`]: hears every impulse when it happens.
+//!
+//! ## Errors
+//! [`SimulationError`] and [`MassError`]: bad input. [`StepError`]: why a simulation cannot go on.
+#![doc(html_root_url = "https://docs.rs/d2m-dynamics")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
 mod account;

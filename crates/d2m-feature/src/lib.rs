@@ -1,4 +1,25 @@
 #![doc = include_str!("../README.md")]
+#![doc = include_str!("../picture.svg")]
+//!
+//! ## Start here
+//! [`PairMotion`] is two bodies of constant twist over a window; its methods answer when a point meets a
+//! triangle, an edge an edge, a sphere a [`Sphere`].
+//!
+//! ## Motions
+//! - [`PairMotion`]: constant twists. [`PlacedTriangle`]: one triangle for many points.
+//! - [`EnclosedPairMotion`]: motions of any kind.
+//! - [`StraightPaths`]: four vertices on straight paths, for meshes that deform.
+//!
+//! ## Options and answers
+//! - [`ContactOptions`]: tolerance, minimum separation, limits.
+//! - [`FirstContact`]: separated, a [`ContactBracket`], or undecided. [`ContactDetails`]: where and how, in
+//!   plain numbers. [`FeaturePair`]: which features.
+//!
+//! ## At rest
+//! - [`triangle_distance()`]: a [`TriangleDistance`] with its witnesses, each on a [`TriangleFeature`].
+//! - [`triangles_intersect`], [`orient2d`], [`orient3d`]: exact.
+#![doc(html_root_url = "https://docs.rs/d2m-feature")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
 mod accurate_cross;

@@ -1,4 +1,25 @@
 #![doc = include_str!("../README.md")]
+#![doc = include_str!("../picture.svg")]
+//!
+//! ## Start here
+//! [`Interval`] is one interval, and every operation is its method; [`interval!`] encloses a decimal that is
+//! written in the code.
+//!
+//! ## Vectors and matrices
+//! With the feature `glam` (on by default): [`IntervalVec3`] is a box of vectors, [`IntervalMat3`] a matrix
+//! of intervals.
+//!
+//! ## Four at a time
+//! [`IntervalX4`] and [`IntervalVec3X4`] have the bits of four single calls.
+//!
+//! ## Comparing
+//! [`Overlap`] says how two intervals lie on the line; the comparisons themselves are methods of
+//! [`Interval`].
+//!
+//! ## Errors
+//! [`IntervalError`]: two numbers that are no interval. [`ParseIntervalError`]: a text that is none.
+#![doc(html_root_url = "https://docs.rs/d2m-interval")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 #![no_std]
 extern crate alloc;

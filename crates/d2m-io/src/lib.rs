@@ -1,4 +1,30 @@
 #![doc = include_str!("../README.md")]
+#![doc = include_str!("../picture.svg")]
+//!
+//! ## Start here
+//! [`read_mesh`] reads a mesh from a file, by its extension.
+//!
+//! ## Meshes in
+//! - [`read_mesh`], [`read_mesh_with`], [`parse_mesh`]: from a file, or from its bytes in a [`MeshFormat`];
+//!   they answer with a [`ReadMesh`].
+//! - [`ReadOptions`]: scale, [`Unit`], [`Merging`] of vertices.
+//! - [`MeshReport`]: what was found: [`Precision`] of the numbers, [`UpAxis`], [`PolygonCounts`].
+//!
+//! ## Meshes out
+//! [`obj_text`], [`ply_bytes`], [`glb_bytes`].
+//!
+//! ## Motions and scenes
+//! - [`read_motion`]: the motion of a JSON file.
+//! - [`SceneFile`] and [`SceneEntry`]: scenes; [`parse_scale`]: their key `scale`.
+//!
+//! ## Files of any kind
+//! [`read_bytes`] and [`read_unsized`]; [`parse_json`] with [`UniqueKeys`], [`json_fault`]; [`excerpt`] for
+//! messages.
+//!
+//! ## Errors
+//! [`IoError`] with its [`Place`] in the file; [`UnknownUnit`].
+#![doc(html_root_url = "https://docs.rs/d2m-io")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
 mod bytes;

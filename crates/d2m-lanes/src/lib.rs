@@ -1,4 +1,24 @@
 #![doc = include_str!("../README.md")]
+#![doc = include_str!("../picture.svg")]
+//!
+//! ## Sums and products without error
+//! [`two_sum`], [`fast_two_sum`], [`two_product`], [`DoubleDouble`].
+//!
+//! ## Exponents and roundings
+//! [`Binary`], [`scaled`], [`power_of_two()`], [`power_of_two_above`], [`power_of_two_below`]; [`UNIT`],
+//! [`UP`].
+//!
+//! ## Registers of the target
+//! [`F64x2`], [`F64x4`], [`Vector`], [`sqrt`].
+//!
+//! ## Registers of the processor (feature `selected`)
+//! - [`run`] and [`run_on`] do a [`Task`] with an [`InstructionSet`].
+//! - [`Lanes`], [`Elementwise`], [`Bytes`], [`Keys`], [`Rows`], [`Portable`]: eight numbers of single
+//!   precision.
+//! - [`Doubles`], [`Quad`], [`QuadVec`], [`Two`]: four and eight doubles.
+//! - [`Matrix`], [`SingleSide`], [`WideSide`]: boxes.
+#![doc(html_root_url = "https://docs.rs/d2m-lanes")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
 #[cfg(any(test, feature = "std"))]
 extern crate std;

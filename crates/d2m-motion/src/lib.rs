@@ -1,4 +1,39 @@
 #![doc = include_str!("../README.md")]
+#![doc = include_str!("../picture.svg")]
+//!
+//! ## Start here
+//! [`RigidMotion`] is what every query asks of a motion. [`ConstantTwist`] is the one that most people use;
+//! [`check_motion()`] finds out which promise a motion of your own breaks, as a [`MotionFault`].
+//!
+//! ## Motions of one body
+//! - [`ConstantTwist`]: constant linear and angular velocity.
+//! - [`ScrewMotion`]: a turn about an axis fixed in space and a slide along it.
+//! - [`Keyframes`]: poses at times, each span ([`KeyframeSpan`]) joined as [`Span`] says; [`LARGEST_GAP`] is
+//!   what counts as rounding between them.
+//! - [`Spline`]: smooth through poses, as smooth as its [`SplineDegree`].
+//! - [`AnyMotion`]: whatever has a JSON form.
+//!
+//! ## Arms
+//! - [`Arm`]: a tree of links; [`Chain`]: one link of it.
+//! - [`Joint`] and [`JointKind`]: how a link hangs on the one before; [`JointValue`] and [`JointPoints`]: its
+//!   angle or length over time.
+//!
+//! ## Motions made of motions
+//! [`Composed`]: a motion inside a moving frame. [`Retimed`]: the same way at another pace.
+//!
+//! ## Poses and velocities
+//! - [`Pose`], [`Twist`], [`BodyTwist`]: plain numbers.
+//! - [`IntervalPose`], [`IntervalTwist`]: sets that hold the true ones.
+//!
+//! ## For a motion of your own
+//! [`Kinematics`], [`CertifiedState`] and [`Ball`] make enclosures tight, [`StateTwist`] is a motion through
+//! the middle of a state, and [`TwistPiece`] says where a motion is a constant twist for a while.
+//! [`CoveredMotion`] holds a motion to the times that it covers.
+//!
+//! ## Errors
+//! [`MotionError`]: a description that was refused. [`OutsideDomain`]: times that a motion does not cover.
+#![doc(html_root_url = "https://docs.rs/d2m-motion")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
 mod any_motion;

@@ -1,4 +1,30 @@
 #![doc = include_str!("../README.md")]
+#![doc = include_str!("../picture.svg")]
+//!
+//! ## Start here
+//! Read a [`Robot`], put it into a [`RobotScene`], and ask [`RobotScene::check_path`] about a [`Trajectory`].
+//!
+//! ## Robots
+//! - [`Robot`] from URDF, where its files are by [`RobotOptions`]; [`JointType`], [`JointLimits`], [`Mimic`]
+//!   say what its joints are.
+//! - [`Srdf`]: pairs that are not checked.
+//!
+//! ## Scenes
+//! [`RobotScene`], with an [`Obstacle`] or a body that is [`Attached`] to a link.
+//!
+//! ## Paths
+//! - [`Trajectory`]: a [`TrajectoryPoint`] at each time, joined by an [`Interpolation`].
+//! - [`EdgeChecker`]: straight edges of a sampling planner. [`PathBodies`]: the bodies of one path, for
+//!   queries of your own.
+//!
+//! ## Answers
+//! - [`PathAnswer`], with a [`PathContact`]; [`PathClearance`]: how near.
+//! - [`LimitWarning`] of a [`LimitKind`]: a joint beyond its limit.
+//!
+//! ## Errors
+//! [`RobotError`]: file, link or joint, and the value found.
+#![doc(html_root_url = "https://docs.rs/d2m-robot")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
 mod answer;

@@ -1,4 +1,18 @@
 #![doc = include_str!("../README.md")]
+#![doc = include_str!("../picture.svg")]
+//!
+//! ## Start here
+//! [`mesh()`] makes a mesh of a text such as `gear?teeth=24`.
+//!
+//! ## Shapes
+//! - [`Shape`]: a shape with its parameters, not yet built.
+//! - [`SHAPES`]: all of them, each a [`ShapeInfo`] with its [`Parameter`]s; [`COMMON`]: the parameters of
+//!   all.
+//!
+//! ## Errors
+//! [`ShapeError`]: no such shape or parameter, or a value out of range.
+#![doc(html_root_url = "https://docs.rs/d2m-shapes")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
 mod bodies;

@@ -1,4 +1,61 @@
 #![doc = include_str!("../README.md")]
+#![doc = include_str!("../picture.svg")]
+//!
+//! ## Start here
+//! Make a [`TriMesh`] of your vertices and triangles, a [`MeshTree`] of the mesh (once), a [`Moving`] of the
+//! tree and a motion (once a query), and ask [`time_of_contact`].
+//!
+//! ## Meshes
+//! [`TriMesh`], [`MeshTree`]; shapes to try with: [`shapes`]; files: [`io`].
+//!
+//! ## Motions
+//! - [`ConstantTwist`], [`ScrewMotion`], [`Keyframes`] (joined by a [`Span`]), [`Spline`], and [`AnyMotion`]
+//!   for what is known at run time only.
+//! - Arms: [`Arm`], [`Chain`], [`Joint`], [`JointKind`], [`JointValue`], [`JointPoints`].
+//! - [`Composed`] and [`Retimed`]: motions made of motions. [`RigidMotion`]: the trait, for one of your own.
+//! - [`Pose`], [`Twist`]: where a body is, and how fast it moves.
+//!
+//! ## Two bodies that move
+//! - [`Moving`]: a body with its motion; [`Window`]: the times in question.
+//! - [`time_of_contact`], [`time_of_contact_with`] (keeps a [`PairCache`]), [`time_of_contact_batch`],
+//!   [`contact_exists`].
+//! - [`clearance()`], [`clearance_batch`]: how near? [`contact_spans`]: when in contact? [`departure`]: when
+//!   do they part?
+//!
+//! ## Two bodies at rest
+//! [`Posed`]: a body with its pose. [`collide`], [`distance`], [`proximities`], [`proximities_with`],
+//! [`reduce_proximities`].
+//!
+//! ## Many bodies
+//! [`World`] of [`Body`]s, each with a [`BodyId`], a [`SharedMotion`] and perhaps a [`Group`];
+//! [`PlannedMotion`] for what a body might do.
+//!
+//! ## Answers
+//! - [`TimeOfContact`] with a [`Contact`]: [`Evidence`], [`StartState`].
+//! - [`Clearance`], [`ClearanceStatus`]; [`ContactSpan`], [`SpanStatus`]; [`Departure`].
+//! - [`Distance`], [`Proximity`].
+//! - Of worlds: [`FirstContact`], [`PairContact`], [`PairProximities`].
+//!
+//! ## Options and budgets
+//! - [`QueryOptions`]: [`Solid`], [`Mode`], [`Start`]; [`ClearanceOptions`], [`ProximityOptions`].
+//! - [`Budget`], [`Meter`], [`Canceller`], [`CancelFlag`].
+//!
+//! ## Errors
+//! [`QueryError`], [`MeshError`], [`MotionError`], [`WorldError`]: bad input, with index and value. Hard
+//! cases are no errors.
+//!
+//! ## Layers
+//! Each is a crate of its own: [`interval`], [`motion`], [`root`], [`feature`], [`bvh`], [`shapes`],
+//! [`world`], with the features of their names [`dynamics`], [`io`], [`paper`], [`robot`], [`verify`], and
+//! [`glam`] for vectors.
+//!
+#![cfg_attr(not(feature = "dynamics"), doc = "[`dynamics`]: ./index.html#features")]
+#![cfg_attr(not(feature = "io"), doc = "[`io`]: ./index.html#features")]
+#![cfg_attr(not(feature = "paper"), doc = "[`paper`]: ./index.html#features")]
+#![cfg_attr(not(feature = "robot"), doc = "[`robot`]: ./index.html#features")]
+#![cfg_attr(not(feature = "verify"), doc = "[`verify`]: ./index.html#features")]
+#![doc(html_root_url = "https://docs.rs/d2m")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "verify")]

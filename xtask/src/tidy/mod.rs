@@ -1,5 +1,6 @@
 //! `cargo xtask tidy`: the structure that the documents promise, held against the tree.
 mod arrows;
+mod front;
 mod guarantees;
 mod literals;
 mod map;
@@ -15,6 +16,7 @@ pub(crate) fn run() -> TaskResult {
     findings.extend(sources::check(&root)?);
     findings.extend(guarantees::check(&root)?);
     findings.extend(literals::check(&root)?);
+    findings.extend(front::check(&root)?);
     findings.extend(crate::mutants::check(&root));
     for finding in &findings {
         eprintln!("tidy: {finding}");
