@@ -31,6 +31,7 @@ const STEPS: &[Step] = &[
     step("lints", &["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"]),
     step("features", &["check", "--locked", "--all-features", "-p=d2m"]),
     step("tests", &["test", "--workspace", "--locked", "--lib", "--bins", "--tests", "--examples"]),
+    step("audit", &["test", "--locked", "-p=d2m", "--features=audit", "--test=audit"]),
     step("doctests", &["test", "--workspace", "--locked", "--doc"]),
     Step {
         name: "documentation",

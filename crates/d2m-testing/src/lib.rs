@@ -8,6 +8,8 @@
 mod opaque;
 mod random;
 #[cfg(feature = "scenes")]
+mod sharp_scene;
+#[cfg(feature = "scenes")]
 mod small_scene;
 mod surface;
 mod torus;
@@ -25,6 +27,8 @@ pub mod planted;
 #[cfg(any(feature = "planted", feature = "scenes"))]
 pub use opaque::{Blurred, CountedStates, Opaque, OpaqueWithState};
 pub use random::{Draw, KnuthRandom, Random};
+#[cfg(feature = "scenes")]
+pub use sharp_scene::{SharpFamily, SharpScene};
 #[cfg(feature = "scenes")]
 pub use small_scene::SmallScene;
 pub use surface::Surface;

@@ -58,11 +58,21 @@ impl Mutant {
         }
         // Some tests are about written forms; without the feature they would not be among those of their target.
         let features = manifest.get("features").and_then(toml::Value::as_table);
-        if features.is_some_and(|all| all.contains_key("serde")) {
-            arguments.extend(["--features", "serde"].map(String::from));
+        let written = features.filter(|all| all.contains_key("serde")).map(|_| "serde".to_string());
+        let required = test.and_then(|test| required_features(&manifest, test.trim_end_matches(".rs")));
+        for feature in written.into_iter().chain(required.unwrap_or_default()) {
+            arguments.extend(["--features".into(), feature]);
         }
         Ok(arguments)
     }
+}
+
+/// The features without which a test of `tests` is left out.
+fn required_features(manifest: &toml::Table, test: &str) -> Option<Vec<String>> {
+    let named = |entry: &&toml::Value| entry.get("name").and_then(toml::Value::as_str) == Some(test);
+    let entry = manifest.get("test")?.as_array()?.iter().find(named)?;
+    let required = entry.get("required-features")?.as_array()?;
+    Some(required.iter().filter_map(|feature| feature.as_str().map(String::from)).collect())
 }
 
 /// The folder that holds `src` and `tests`.
@@ -87,6 +97,10 @@ mod tests {
         assert_eq!(of("crates/d2m-bvh/tests/engine.rs::f"), "-p d2m-bvh --test engine --features serde");
         assert_eq!(of("crates/d2m-bvh/src/search/tests.rs::f"), "-p d2m-bvh --lib --features serde");
         assert_eq!(of("crates/d2m-cli/src/scene/tests.rs::f"), "-p d2m-cli --bin d2m");
+        assert_eq!(
+            of("crates/d2m/tests/audit.rs::f"),
+            "-p d2m --test audit --features serde --features audit"
+        );
         assert_eq!(mutant("crates/d2m-bvh/tests/engine.rs::f").package_folder(), "crates/d2m-bvh");
         assert_eq!(mutant("xtask/src/tidy/map.rs::f").package_folder(), "xtask");
     }

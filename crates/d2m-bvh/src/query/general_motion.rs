@@ -7,10 +7,14 @@
 
 mod joints;
 
+#[cfg(feature = "audit")]
+use super::concluded::{Claimed, conclude_apart, sum_of_distances};
 use super::constant_twist::{ask, scene_of_twists};
 use super::fitted_twist::FittedTwists;
 use super::report::MOST_LEFT;
 use super::true_poses::{Meeting, PlacedTriangles};
+#[cfg(feature = "audit")]
+use crate::audit::Place;
 use crate::covered_pair::CoveredPair;
 use crate::length::length;
 use crate::meter::Meter;
@@ -231,10 +235,17 @@ impl<'a> Advance<'a> {
     /// A span on which both twists are constant, on the closed form.
     fn exact_span(&mut self, motions: [&ConstantTwist; 2], until: f64) -> Result<Step, QueryError> {
         if self.spheres_apart([motions[0], motions[1]], until) {
+            #[cfg(feature = "audit")]
+            self.conclude(Place::Spheres, until, self.tolerance, 0.0);
             return Ok(Step::FreeUntil(until));
         }
         let options = QueryOptions { tolerance: self.options.tolerance, ..self.options_of_span() };
-        Ok(match self.ask(motions, Window::try_new(self.now, until)?, &options)? {
+        let answer = self.ask(motions, Window::try_new(self.now, until)?, &options)?;
+        #[cfg(feature = "audit")]
+        if let Some(until) = answer.free_until(until) {
+            self.conclude(Place::ExactSpan, until, self.tolerance, 0.0);
+        }
+        Ok(match answer {
             TimeOfContact::Separated => Step::FreeUntil(until),
             TimeOfContact::Contact(contact) => Step::Answer(TimeOfContact::Contact(self.with_start(contact))),
             undecided @ TimeOfContact::Undecided { .. } => Step::Answer(undecided),
@@ -276,6 +287,13 @@ impl<'a> Advance<'a> {
         Ok(asked.answer)
     }
 
+    /// Free from now until a time, by so much more than the minimum separation; `beside`: what else entered the sum.
+    #[cfg(feature = "audit")]
+    fn conclude(&self, place: Place, to: f64, above: f64, beside: f64) {
+        let distance = sum_of_distances(self.options.min_separation, above, beside);
+        conclude_apart(place, &self.bodies, Claimed { from: self.now, to, distance });
+    }
+
     fn count(&mut self, work: &SearchCounts) {
         self.meter.spend(work.work());
         self.work = self.work.with(work);
@@ -300,7 +318,14 @@ impl<'a> Advance<'a> {
             options.mode = Mode::Accurate;
         }
         let window = clock.window(self.now, until)?;
-        let contact = match self.ask([&twists[0], &twists[1]], window, &options)? {
+        let answer = self.ask([&twists[0], &twists[1]], window, &options)?;
+        #[cfg(feature = "audit")]
+        if let Some(by_clock) = answer.free_until(f64::INFINITY) {
+            let until =
+                if by_clock < f64::INFINITY { clock.time_down(by_clock, self.now).min(until) } else { until };
+            self.conclude(Place::FittedTwists, until, inner, deviation);
+        }
+        let contact = match answer {
             TimeOfContact::Separated => {
                 self.longest = GROWTH * (until - self.now);
                 self.largest *= GROWTH;

@@ -116,6 +116,12 @@ fn parting(walk: &mut Walk<'_>, first: &Contact) -> Result<(Option<TimeBracket>,
             Next::Within { at, .. } => last = at,
             Next::Apart { last: lo, at } => match clear_of(walk, lo, at)? {
                 Parted::At(hi) => {
+                    #[cfg(feature = "audit")]
+                    {
+                        use super::concluded::{Claimed, conclude_apart};
+                        let claimed = Claimed { from: hi, to: hi, distance: walk.level };
+                        conclude_apart(crate::audit::Place::Departure, &walk.bodies, claimed);
+                    }
                     let left = Some(TimeBracket { lo, hi });
                     let answer = walk.contact_from(hi, end)?;
                     let answer = answer.unwrap_or(TimeOfContact::Undecided { clear_until: hi });

@@ -12,8 +12,11 @@ pub(super) fn of_meshes(
     options: &QueryOptions,
 ) -> Result<Answered<TimeOfContact>, QueryError> {
     let pair = CoveredPair::try_new(bodies, window)?;
-    match scene_of(&pair, options)? {
-        Some(scene) => ask(&scene, options),
-        None => general_motion(pair, options),
-    }
+    let answered = match scene_of(&pair, options)? {
+        Some(scene) => ask(&scene, options)?,
+        None => general_motion(pair, options)?,
+    };
+    #[cfg(feature = "audit")]
+    super::concluded::conclude_answer(&bodies, window, options, &answered.answer);
+    Ok(answered)
 }

@@ -2,6 +2,8 @@
 
 mod batch;
 mod clearance;
+#[cfg(feature = "audit")]
+mod concluded;
 mod constant_twist;
 mod fitted_twist;
 mod general_motion;

@@ -1,8 +1,12 @@
 //! The spans of a window in which two bodies are clear of each other, and those in which they are in contact.
 
+#[cfg(feature = "audit")]
+use super::concluded::{Claimed, conclude_apart};
 use super::general_motion::tolerance_of;
 use super::rounded::Rounded;
 use super::staying_walk::{Next, Walk};
+#[cfg(feature = "audit")]
+use crate::audit::Place;
 use crate::covered_pair::CoveredPair;
 use crate::{Contact, Evidence, Moving, QueryError, QueryOptions, StartState, TimeOfContact, Window};
 use d2m_lanes::power_of_two;
@@ -197,6 +201,11 @@ impl Search<'_> {
         let from = self.now;
         if to <= from && self.walk.window.length() > 0.0 {
             return;
+        }
+        #[cfg(feature = "audit")]
+        if status == SpanStatus::Clear {
+            let claimed = Claimed { from, to, distance: self.walk.options.min_separation };
+            conclude_apart(Place::ClearSpan, &self.walk.bodies, claimed);
         }
         match self.spans.last_mut() {
             Some(last) if last.status == status => last.to = to,

@@ -138,7 +138,15 @@ impl<'a> Walk<'a> {
     }
 
     fn stays(&self, pair: [u32; 2], from: f64, to: f64) -> bool {
-        StraightPair::new(&self.bodies, pair, from, to).stay_within(self.level)
+        let stays = StraightPair::new(&self.bodies, pair, from, to).stay_within(self.level);
+        #[cfg(feature = "audit")]
+        if stays {
+            use super::concluded::{Claimed, conclude_of_triangles};
+            use crate::audit::{Place, Promise};
+            let claimed = Claimed { from, to, distance: self.level };
+            conclude_of_triangles(Place::Staying, Promise::Stays, &self.bodies, pair, claimed);
+        }
+        stays
     }
 
     /// From `last`, at which the bodies are within the level, to where that ends.

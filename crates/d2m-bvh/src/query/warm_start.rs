@@ -78,22 +78,44 @@ fn of_meshes_with(
     cache: &mut PairCache,
 ) -> Result<TimeOfContact, QueryError> {
     let pair = CoveredPair::try_new([a, b], window)?;
-    let Some(scene) = scene_of(&pair, options)? else {
-        return general_motion_with(pair, options, cache);
+    let answer = match scene_of(&pair, options)? {
+        Some(scene) => constant_twists_with(&scene, options, cache)?,
+        None => general_motion_with(pair, options, cache)?,
     };
+    #[cfg(feature = "audit")]
+    super::concluded::conclude_answer(&[a, b], window, options, &answer);
+    Ok(answer)
+}
+
+/// The query of constant twists.
+fn constant_twists_with(
+    scene: &Scene<'_>,
+    options: &QueryOptions,
+    cache: &mut PairCache,
+) -> Result<TimeOfContact, QueryError> {
     if options.budget.is_limited() || options.mode == Mode::Capoeira {
-        return Ok(cache.counted(ask(&scene, options)?));
+        return Ok(cache.counted(ask(scene, options)?));
     }
-    let trajectory = RelativeTrajectory::of(&scene);
-    if stay_apart(&scene, &trajectory, options, cache)? {
+    let trajectory = RelativeTrajectory::of(scene);
+    if stay_apart(scene, &trajectory, options, cache)? {
         return Ok(TimeOfContact::Separated);
     }
-    let answer = cache.counted(ask(&scene, options)?);
-    remember(&answer, window, cache);
+    let answer = cache.counted(ask(scene, options)?);
+    remember(&answer, scene.window, cache);
     if answer == TimeOfContact::Separated {
         cache.found_apart(&trajectory, scene.solids, options.min_separation);
+        #[cfg(feature = "audit")]
+        conclude_room(scene, options.min_separation);
     }
     Ok(answer)
+}
+
+/// What a cache knows of the bodies of a scene.
+#[cfg(feature = "audit")]
+fn conclude_room(scene: &Scene<'_>, room: f64) {
+    use crate::audit::{Part, Place};
+    let window = crate::search::concluded::OffsetSpan::of_query(0.0, scene.units.end_down());
+    scene.conclude_at(Place::Cache, window, [Part::Whole; 2], room / scene.units.length());
 }
 
 /// Does the cache know that the bodies stay apart, or does a search for more separation than the query's prove it now?
@@ -104,6 +126,10 @@ fn stay_apart(
     cache: &mut PairCache,
 ) -> Result<bool, QueryError> {
     let room = cache.room_along(trajectory, scene.solids);
+    #[cfg(feature = "audit")]
+    if let Some(room) = room.filter(|&room| excludes_contact(scene, room)) {
+        conclude_room(scene, room);
+    }
     Ok(room.is_some_and(|room| excludes_contact(scene, room))
         || more_room(scene, trajectory, options, cache)?)
 }
@@ -137,6 +163,8 @@ fn general_motion_with(
         && answer == TimeOfContact::Separated
     {
         cache.found_apart(trajectory, scene.solids, options.min_separation - off);
+        #[cfg(feature = "audit")]
+        conclude_room(scene, options.min_separation - off);
     }
     Ok(answer)
 }
@@ -262,7 +290,15 @@ fn move_to_meet_again(
     let (bodies, window) = (pair.bodies(), pair.window());
     let tolerance = tolerance_of(bodies, options);
     let meeting = Meeting { bodies, window, separation: options.min_separation, tolerance };
-    meeting.found_near(triangles, window.start() + after).map(|time| time - window.start())
+    let found = meeting.found_near(triangles, window.start() + after);
+    #[cfg(feature = "audit")]
+    if let Some(time) = found {
+        use crate::audit::{Place, Promise};
+        let distance = options.min_separation + 0.5 * tolerance;
+        let claimed = super::concluded::Claimed { from: time, to: time, distance };
+        super::concluded::conclude_of_triangles(Place::MeetAgain, Promise::Meets, bodies, triangles, claimed);
+    }
+    found.map(|time| time - window.start())
 }
 
 /// Does a search of this scene find no contact when the bodies are further apart than `room` all the time? A contact
@@ -290,6 +326,8 @@ fn more_room(
     cache.attempted(proven);
     if proven {
         cache.found_apart(trajectory, scene.solids, room);
+        #[cfg(feature = "audit")]
+        conclude_room(scene, room);
     }
     Ok(proven)
 }
@@ -317,6 +355,8 @@ fn meet_again(scene: &Scene<'_>, triangles: [u32; 2], after: f64) -> Option<f64>
         let near = closest::<F64x4>(&placed, &b);
         let distance = near.distance_squared.sqrt();
         if distance <= level || triangles_intersect(&placed, &b) {
+            #[cfg(feature = "audit")]
+            scene.conclude_meeting(time, triangles);
             return Some(time * scene.units.time());
         }
         let normal = near.direction.normalize_or_zero();

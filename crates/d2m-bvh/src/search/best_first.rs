@@ -16,6 +16,8 @@ use super::state::{Outcome, Search, State, Step, SubWindow, triangle_count};
 use super::triangle_pair::separating_axis::{BackwardCertificate, place_a};
 use super::triangle_pair::widest_gap::widest_normal;
 use crate::Budget;
+#[cfg(feature = "audit")]
+use crate::audit::Place;
 use crate::tree::margin::NARROW_UP;
 use crate::tree::node::{Below, LEAST_SIZE, WIDTH, WideNode};
 use d2m_lanes::{F64x4, Lanes, Task, power_of_two_above};
@@ -176,10 +178,14 @@ impl<'s> Search<'s> {
             witnesses: self.scratch.last_tested,
         };
         let mut skip = swept_clear_until(self.scene, now, &limits, direction);
+        #[cfg(feature = "audit")]
+        self.scene.conclude_whole(Place::Sweep, now, skip.clear_until);
         if skip.clear_until.is_none() {
             let swept = skip.work;
             let limits = SkipLimits { budget: limits.budget.saturating_sub(swept), ..limits };
             skip = screw_clear_until(self.scene, now, &limits);
+            #[cfg(feature = "audit")]
+            self.scene.conclude_whole(Place::Screw, now, skip.clear_until);
             skip.work += swept;
         }
         self.scratch.counts.sweeps += 1;

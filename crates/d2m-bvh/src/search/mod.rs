@@ -1,6 +1,8 @@
 //! The search for the first contact of two trees: best first on proven times.
 
 mod best_first;
+#[cfg(feature = "audit")]
+pub(crate) mod concluded;
 mod counts;
 mod crowd;
 mod effort;

@@ -10,6 +10,8 @@ use super::triangle_pair::separating_axis::{
     BackwardCertificate, Evaluation, apart_since, place_a, separating_axis_test,
 };
 use crate::Mode;
+#[cfg(feature = "audit")]
+use crate::audit::Place;
 use crate::tree::node::WIDTH;
 use d2m_lanes::{Lanes, Task, run};
 use glam::DVec3;
@@ -36,6 +38,8 @@ impl Search<'_> {
             }
             if item.next & Item::TRIANGLES == 0 && item.key < state.limit {
                 let expanded = state.expander.expand::<L>(item, &state.node_frames, state.keys());
+                #[cfg(feature = "audit")]
+                state.conclude_rows(self.scene, item, &expanded);
                 let list = fresh[count..].first_chunk_mut().expect("room for eight more");
                 count += L::pack(&expanded, list);
                 tests += 1;
@@ -65,6 +69,8 @@ impl Search<'_> {
             self.scratch.counts.triangle_looks += 1;
             let span = (state.limit_offset - known).next_up();
             if apart_since::<L::Doubles>(&state.behind, [&a, &b], &self.scene.pair, span) {
+                #[cfg(feature = "audit")]
+                state.conclude_pair(self.scene, Place::Backward, [known, state.limit_offset], triangles);
                 return;
             }
         }
@@ -88,6 +94,13 @@ impl Search<'_> {
             match separating_axis_test::<L::Doubles>(&frame, [&a, &b], &self.scene.pair, enough, order) {
                 Evaluation::ClearFor(time) => {
                     known = known.max(frame.offset + time);
+                    #[cfg(feature = "audit")]
+                    state.conclude_pair(
+                        self.scene,
+                        Place::TrianglePair,
+                        [frame.offset, (frame.offset + time).min(state.limit_offset)],
+                        triangles,
+                    );
                     if known >= state.limit_offset {
                         return;
                     }

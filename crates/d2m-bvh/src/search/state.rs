@@ -162,7 +162,10 @@ impl<'s> Search<'s> {
     /// The next sub-window to be searched; `None` when nothing is left.
     pub(super) fn window_from(&self, start: f64) -> Option<SubWindow> {
         let end = self.scene.end;
-        let start = self.scene.spheres_clear_until(start);
+        let from = start;
+        let start = self.scene.spheres_clear_until(from);
+        #[cfg(feature = "audit")]
+        self.scene.conclude_whole(crate::audit::Place::Spheres, from, (start > from).then_some(start));
         // A query of no length has one window.
         if start >= end && end > 0.0 {
             return None;

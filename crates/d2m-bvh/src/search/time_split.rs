@@ -202,7 +202,10 @@ impl Search<'_> {
                 continue;
             }
             let mut rows = [[0; 4]; WIDTH];
-            let count = L::pack(&expander.expand_over_span::<L>(&item, &frames), &mut rows);
+            let expanded = expander.expand_over_span::<L>(&item, &frames);
+            #[cfg(feature = "audit")]
+            scene.conclude_span([grid.time(span.from), grid.time(span.to)], &expander, &item, &expanded);
+            let count = L::pack(&expanded, &mut rows);
             let end = to_expand.len() + count;
             to_expand.extend_from_slice(&rows.map(Item::from_row));
             to_expand.truncate(end);

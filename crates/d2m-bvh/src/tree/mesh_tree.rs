@@ -55,6 +55,14 @@ impl TreeId {
     }
 }
 
+#[cfg(feature = "audit")]
+impl TreeId {
+    /// The number.
+    pub(crate) const fn number(self) -> u64 {
+        self.0
+    }
+}
+
 impl core::fmt::Debug for TreeId {
     /// Without the number, which says nothing about the tree.
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {

@@ -178,6 +178,8 @@ impl<'a> Descent<'a> {
                 TimeOfContact::Separated => {
                     // The search proves more than its separation: at least half a tolerance above it.
                     let lower = (level + 0.5 * tolerance).min(self.distance(best.upper));
+                    #[cfg(feature = "audit")]
+                    self.conclude(&best, lower);
                     return Ok(self.describe(&best, lower, ClearanceStatus::Clear));
                 }
                 TimeOfContact::Undecided { .. } => {
@@ -201,6 +203,19 @@ impl<'a> Descent<'a> {
             }
             best = closer(best, lowest);
         }
+    }
+
+    /// The least distance is enclosed by these two. Of the meshes: the radii are added again, rounded downwards.
+    #[cfg(feature = "audit")]
+    fn conclude(&self, best: &Sample, lower: f64) {
+        use super::concluded::{Claimed, conclude_apart, conclude_of_triangles, sum_of_distances};
+        use crate::audit::{Place, Promise};
+        let Sampler { bodies, window } = &self.sampler;
+        let distance = sum_of_distances(lower, self.rounded.sum(), 0.0);
+        let whole = Claimed { from: window.start(), to: window.end(), distance };
+        conclude_apart(Place::ClearanceBound, bodies, whole);
+        let at = Claimed { from: best.time, to: best.time, distance: best.upper };
+        conclude_of_triangles(Place::ClearanceBound, Promise::Meets, bodies, best.triangles, at);
     }
 
     /// # Errors

@@ -1,6 +1,8 @@
 //! Where time has no more numbers, and where pieces of a motion do not quite meet.
 
 use super::{Advance, FittedSpan, SMALL_PART, Step, rounding_tolerance};
+#[cfg(feature = "audit")]
+use crate::audit::Place;
 use crate::length::length;
 use crate::query::fitted_twist::FittedTwists;
 use crate::query::true_poses::PlacedTriangles;
@@ -44,9 +46,17 @@ impl Advance<'_> {
         options.tolerance = Some(deviation.max(tolerance));
         options.min_separation = (deviation + self.options.min_separation).next_up();
         match self.ask([&twists[0], &twists[1]], clock.window(self.now, until)?, &options)? {
-            TimeOfContact::Separated => Ok(Step::FreeUntil(until)),
+            TimeOfContact::Separated => {
+                #[cfg(feature = "audit")]
+                self.conclude(Place::FittedTwists, until, deviation.max(tolerance), deviation);
+                Ok(Step::FreeUntil(until))
+            }
             TimeOfContact::Undecided { .. } => Ok(undecided),
-            TimeOfContact::Contact(_) if self.sweep_apart(until) => Ok(Step::FreeUntil(until)),
+            TimeOfContact::Contact(_) if self.sweep_apart(until) => {
+                #[cfg(feature = "audit")]
+                self.conclude(Place::SweptBoxes, until, 0.0, 0.0);
+                Ok(Step::FreeUntil(until))
+            }
             // Bodies that hardly move are known too badly, whatever the time.
             TimeOfContact::Contact(_) if !self.sweep_is_known(until) => Ok(undecided),
             TimeOfContact::Contact(contact) => {
@@ -106,7 +116,11 @@ impl Advance<'_> {
         let still = if jump.is_finite() { self.still(jump)? } else { None };
         let Some(Still { answer, tolerance }) = still else { return Ok(Some(undecided)) };
         let contact = match answer {
-            TimeOfContact::Separated => return Ok(None),
+            TimeOfContact::Separated => {
+                #[cfg(feature = "audit")]
+                self.conclude(Place::Joint, self.now, jump, tolerance);
+                return Ok(None);
+            }
             TimeOfContact::Undecided { .. } => return Ok(Some(undecided)),
             TimeOfContact::Contact(contact) => contact,
         };

@@ -24,6 +24,8 @@ use super::effort::{
 };
 use super::queue::{Bucket, Item};
 use super::state::{Search, State};
+#[cfg(feature = "audit")]
+use crate::audit::{Part, Place};
 use crate::meter::Meter;
 use crate::tree::node::WIDTH;
 use d2m_lanes::Lanes;
@@ -153,6 +155,8 @@ impl Search<'_> {
         for first in starts {
             match self.separation(&moving, (first, crowd.level), &crowd, &mut clock) {
                 Separation::Proven { .. } => {
+                    #[cfg(feature = "audit")]
+                    self.conclude_crowd(state.span([known, state.limit_offset]), batch, state.limit);
                     self.scratch.queue.clear();
                     batch.retain(|_| false);
                     return;
@@ -175,6 +179,8 @@ impl Search<'_> {
             let need = crowd.level * n.length();
             // When the time is over, what is left stays.
             let mut over = false;
+            #[cfg(feature = "audit")]
+            let (scene, pair_span) = (self.scene, state.span([known, state.limit_offset]));
             let mut meet = |item: &Item| {
                 over = over || clock.step().is_err();
                 if over {
@@ -182,7 +188,13 @@ impl Search<'_> {
                 }
                 let (high, low) = (a.of(item.boxes[0]), b.of(item.boxes[1]));
                 // Also when something is not a number.
-                !((0..2).all(|end| -low[end] - high[end] > need))
+                let meets = !((0..2).all(|end| -low[end] - high[end] > need));
+                #[cfg(feature = "audit")]
+                if !meets {
+                    let parts = [Part::Boxes(&item.boxes[..1]), Part::Boxes(&item.boxes[1..])];
+                    scene.conclude(Place::Crowd, pair_span, parts);
+                }
+                meets
             };
             self.scratch.queue.retain(&mut meet);
             batch.retain(meet);
@@ -197,6 +209,10 @@ impl Search<'_> {
         let before_planes = self.work();
         let most_work = WORK_A_PAIR * waiting.max(CROWD) as u64;
         let key = self.advance_together::<L>(state, least, (&crowd, most_work), &mut clock);
+        #[cfg(feature = "audit")]
+        if key > least {
+            self.conclude_crowd(state.span([known, f64::from(key) * state.step]), batch, state.limit);
+        }
         let work = self.work();
         patience.rest_until = work + (work - before_planes);
         patience.examined_to = Some(state.limit);

@@ -72,7 +72,7 @@ pub(crate) fn sum_down(a: f64, b: f64) -> f64 {
 }
 
 /// The sum of two numbers, rounded up.
-fn sum_up(a: f64, b: f64) -> f64 {
+pub(crate) fn sum_up(a: f64, b: f64) -> f64 {
     let (sum, rest) = two_sum(a, b);
     if rest > 0.0 { sum.next_up() } else { sum }
 }

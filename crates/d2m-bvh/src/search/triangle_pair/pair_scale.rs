@@ -36,7 +36,7 @@ impl PairScale {
 
     /// The distance down to which pairs are advanced.
     #[inline(always)]
-    pub(super) fn target(&self) -> f64 {
+    pub(in crate::search) fn target(&self) -> f64 {
         self.level + self.slack
     }
 }
