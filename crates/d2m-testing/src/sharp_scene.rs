@@ -16,16 +16,25 @@ pub enum SharpFamily {
     FastTurns,
     /// A body that spins for long beside what it sweeps past, and slowly comes nearer.
     Sweeps,
-    /// A common axis: a worm that turns and climbs in front of another one, hardly apart.
+    /// A common axis: a worm that turns and climbs in front of another one, hardly apart, and a shaft that leaves the middle of its sleeve.
     Screws,
-    /// Two fans whose tips come together at one time.
+    /// Two fans whose tips come together at one time, evenly or by nothing but their acceleration.
     Crowds,
+    /// Cards that pass through those of another deck one after the other: most contacts are over when the next one begins.
+    Decks,
 }
 
 impl SharpFamily {
     /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::Accelerations, Self::TurnRates, Self::FastTurns, Self::Sweeps, Self::Screws, Self::Crowds];
+    pub const ALL: [Self; 7] = [
+        Self::Accelerations,
+        Self::TurnRates,
+        Self::FastTurns,
+        Self::Sweeps,
+        Self::Screws,
+        Self::Crowds,
+        Self::Decks,
+    ];
 }
 
 /// Two bodies with their motions over [0, 1]; surfaces, no solids.
@@ -60,6 +69,7 @@ impl SharpScene {
             SharpFamily::Sweeps => sweeps(&mut random),
             SharpFamily::Screws => screws(&mut random),
             SharpFamily::Crowds => crowds(&mut random),
+            SharpFamily::Decks => decks(&mut random),
         };
         scene.seen_from_anywhere(&mut random);
         scene
@@ -208,7 +218,7 @@ fn sweeps(random: &mut Random) -> SharpScene {
 
 /// A strip along a helix from radius `from` to `to`, in so many turns of a pitch.
 fn worm(from: f64, to: f64, pitch: f64, turns: f64) -> Surface {
-    let steps = 24;
+    let steps = 8;
     let point = |k: u32, radius: f64| {
         let angle = TAU * turns * f64::from(k) / f64::from(steps);
         about_z(angle) * radius + DVec3::Z * (pitch * angle / TAU)
@@ -219,41 +229,94 @@ fn worm(from: f64, to: f64, pitch: f64, turns: f64) -> Surface {
     Surface { name: "worm", vertices, triangles }
 }
 
+/// The sides of a prism about z.
+fn sleeve(sides: u32, radius: f64, low: f64, high: f64) -> Surface {
+    let point = |k: u32, z: f64| about_z(TAU * f64::from(k) / f64::from(sides)) * radius + DVec3::Z * z;
+    let vertices = (0..sides).flat_map(|k| [point(k, low), point(k, high)]).collect();
+    let at = |k: u32| 2 * (k % sides);
+    let triangles =
+        (0..sides).flat_map(|k| [[at(k), at(k + 1), at(k) + 1], [at(k + 1), at(k + 1) + 1, at(k) + 1]]);
+    Surface { name: "sleeve", vertices, triangles: triangles.collect() }
+}
+
 fn screws(random: &mut Random) -> SharpScene {
     let (pitch, turns) = (random.between(0.1, 0.6), random.between(0.5, 2.0));
-    let (inner, outer) = (worm(0.4, 1.0, pitch, turns), worm(0.6, 1.4, pitch, turns));
-    let spin = random.log_between(20.0, 200.0);
+    let (mut inner, mut outer) = (worm(0.4, 1.0, pitch, turns), worm(0.6, 1.4, pitch, turns));
+    let spin = random.log_between(20.0, 80.0);
     // The same pitch, or almost: then the worms come near after a while.
     let climb = spin * pitch / TAU * if random.unit() < 0.6 { 1.0 } else { 1.0 + 1e-3 * random.signed() };
     let lift = pitch * random.between(0.05, 0.5);
     let start = DVec3::Z * (lift - if random.unit() < 0.5 { 0.0 } else { climb * random.unit() });
+    let mut velocity = DVec3::Z * climb;
+    if random.unit() < 0.6 {
+        let (sides, gap) = (6, random.log_between(1e-3, 0.05));
+        inner = inner.with(&sleeve(5, 0.2, 0.0, 0.1));
+        outer = outer.with(&sleeve(sides, (0.2 + gap) / (TAU / 12.0).cos(), -climb - 1.0, climb + 1.0));
+        velocity += about_z(TAU * random.unit()) * (gap * random.between(0.5, 2.5));
+    }
     let turning = ConstantTwist::REST
         .with_position(start)
         .with_angular_velocity(DVec3::Z * spin)
-        .with_linear_velocity(DVec3::Z * climb);
+        .with_linear_velocity(velocity);
     SharpScene::new([inner, outer], &[turning, ConstantTwist::REST], random)
 }
 
 fn crowds(random: &mut Random) -> SharpScene {
     let count = 60 + random.index(60);
-    let fan = |up: f64, random: &mut Random| {
+    let gap = random.log_between(1e-5, 0.2);
+    let fan = |up: f64, spread: f64, random: &mut Random| {
         let mut corners = Vec::new();
         for _ in 0..count {
             let d = random.direction();
             let far = DVec3::new(d.x, d.y, (d.z.abs() + 0.02) * up);
-            // Tips that differ by little.
-            let tip = random.vector() * 1e-6;
+            let tip = random.vector() * spread;
             corners.extend([tip, far, far + random.vector() * 1e-3]);
         }
         Surface::soup(corners)
     };
-    let (lower, upper) = (fan(-1.0, random), fan(1.0, random));
-    let gap = random.log_between(1e-5, 0.2);
-    let closes = gap * random.between(0.0, 1.3);
     let spins = [0, 1].map(|_| random.vector() * [0.0, 0.02, 0.3, 2.0][random.index(4)]);
+    if random.unit() < 0.5 {
+        // Tips that differ by little.
+        let fans = [fan(1.0, 1e-6, random), fan(-1.0, 1e-6, random)];
+        let falling = ConstantTwist::REST
+            .with_position(DVec3::Z * gap)
+            .with_linear_velocity(DVec3::Z * (-gap * random.between(0.0, 1.3)))
+            .with_angular_velocity(spins[0]);
+        let other = ConstantTwist::REST.with_angular_velocity(spins[1]);
+        return SharpScene::new(fans, &[falling, other], random);
+    }
+    // About a point one below: the tips go ahead with those of the other body, which go straight, and bend towards them.
+    let spin = random.log_between(0.05, 0.6);
+    let gap = (1.0 - spin.cos()) * random.between(0.05, 1.2);
+    let spread = gap * random.log_between(1e-3, 0.5);
+    let fans = [fan(1.0, spread, random).map(|p| p + DVec3::Z), fan(-1.0, spread, random)];
+    let turning = ConstantTwist::REST.with_angular_velocity(DVec3::X * spin);
+    let ahead = ConstantTwist::REST
+        .with_position(DVec3::Z * (1.0 - gap - spread))
+        .with_linear_velocity(DVec3::Y * -spin);
+    SharpScene::new(fans, &[turning, ahead], random)
+}
+
+fn decks(random: &mut Random) -> SharpScene {
+    let (count, thick) = (20 + random.index(60), random.log_between(0.02, 1.0));
+    let deck = |random: &mut Random| {
+        let corners = (0..count).flat_map(|_| {
+            let height = thick * random.unit();
+            [0.0, 1.0, 2.0].map(|k| {
+                let corner = about_z(TAU / 3.0 * (k + random.unit())) * random.between(0.2, 1.0);
+                corner + DVec3::Z * (height + 1e-3 * random.signed())
+            })
+        });
+        Surface::soup(corners.collect::<Vec<_>>())
+    };
+    let decks = [deck(random), deck(random)];
+    let speed = random.between(1.0, 4.0);
+    let spins = [0, 1].map(|_| random.vector() * [0.0, 0.05, 1.0][random.index(3)]);
+    let aside = random.vector() * 0.3;
     let falling = ConstantTwist::REST
-        .with_position(DVec3::Z * gap)
-        .with_linear_velocity(DVec3::Z * -closes)
+        .with_position(DVec3::new(aside.x, aside.y, random.between(1.2, 2.0)))
+        .with_linear_velocity(DVec3::new(aside.y, aside.z, -speed))
         .with_angular_velocity(spins[0]);
-    SharpScene::new([upper, lower], &[falling, ConstantTwist::REST.with_angular_velocity(spins[1])], random)
+    let other = ConstantTwist::REST.with_angular_velocity(spins[1]);
+    SharpScene::new(decks, &[falling, other], random)
 }

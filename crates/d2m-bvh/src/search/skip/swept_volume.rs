@@ -12,6 +12,8 @@ use super::swept_body::{Distances, SweptBody, SweptPart};
 use super::{Skip, SkipLimits, later_offset};
 use crate::meter::Meter;
 use crate::search::scene::Scene;
+#[cfg(feature = "audit")]
+use crate::tree::margin::DOWN;
 use crate::tree::margin::{UNIT_F64, UP};
 use crate::tree::node::{Below, WIDTH};
 use glam::DVec3;
@@ -31,6 +33,10 @@ struct Sweep<'a> {
     velocity: DVec3,
     level: f64,
     length: f64,
+    #[cfg(feature = "audit")]
+    scene: &'a Scene<'a>,
+    #[cfg(feature = "audit")]
+    start: f64,
 }
 
 /// Until when the swept volumes of the bodies stay further apart than the level, from `start` on. `direction` may separate
@@ -52,6 +58,10 @@ pub(crate) fn swept_clear_until(
         velocity: scene.b.motion.linear_velocity() - scene.a.motion.linear_velocity(),
         level: scene.pair.level + SWEEP_ERROR * (scene.size + scene.pair.level),
         length: (end - start).next_up(),
+        #[cfg(feature = "audit")]
+        scene,
+        #[cfg(feature = "audit")]
+        start,
     };
     let [a, b] = [0, 1].map(|k| sweep.bodies[k].triangle(limits.witnesses[k]));
     if sweep.clear_for(&a, &b).is_none_or(|until| until < limits.least_gain) {
@@ -80,6 +90,8 @@ impl Sweep<'_> {
             pairs += 1;
             let (part_a, part_b) = (self.bodies[0].part(a), self.bodies[1].part(b));
             let until = self.clear_for(&part_a, &part_b);
+            #[cfg(feature = "audit")]
+            self.conclude([a, b], until.map(|until| until.min(clear)));
             if until.is_some_and(|until| until >= clear) {
                 continue;
             }
@@ -110,6 +122,17 @@ impl Sweep<'_> {
             }
         }
         Earliest { clear: Some(clear), pairs }
+    }
+
+    /// The parts are apart for so long, as far as it matters.
+    #[cfg(feature = "audit")]
+    fn conclude(&self, [a, b]: [u32; 2], clear: Option<f64>) {
+        use crate::audit::{Part, Place};
+        use crate::search::concluded::OffsetSpan;
+        if let Some(to) = clear {
+            let span = OffsetSpan { base: self.start, from: 0.0, to: to * DOWN };
+            self.scene.conclude(Place::Sweep, span, [Part::Boxes(&[a]), Part::Boxes(&[b])]);
+        }
     }
 
     /// For how long the swept volumes of the parts stay further apart than the level, at most the length of the span; none
