@@ -3,6 +3,8 @@
 mod best_first;
 #[cfg(feature = "audit")]
 pub(crate) mod concluded;
+#[cfg(feature = "audit")]
+mod concluded_steps;
 mod counts;
 mod crowd;
 mod effort;
