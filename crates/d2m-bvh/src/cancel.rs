@@ -33,6 +33,14 @@ pub struct Canceller {
 
 /// Says whether a [`Canceller`] has cancelled. Options are plain values that are copied, so a flag is one, too: the number of its
 /// canceller, and where that stands while it has not cancelled.
+///
+/// ```
+/// let canceller = d2m_bvh::Canceller::new();
+/// let flag = canceller.flag();
+/// assert!(!flag.is_cancelled());
+/// canceller.cancel();
+/// assert!(flag.is_cancelled());
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct CancelFlag {
     place: &'static AtomicU64,

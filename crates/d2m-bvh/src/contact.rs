@@ -3,6 +3,20 @@ use d2m_feature::FeaturePair;
 use glam::DVec3;
 
 /// How the bodies stand at the first instant of the window.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Posed, Solid, StartState, distance};
+/// use d2m_motion::Pose;
+/// let at = |x: f64| Posed::new(&tree, Pose { translation: DVec3::X * x, ..Pose::IDENTITY });
+/// assert_eq!(distance(at(0.0), at(2.0), Solid::Filled)?.state, StartState::Apart);
+/// assert_eq!(distance(at(0.0), at(0.5), Solid::Filled)?.state, StartState::Overlapping);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 pub enum StartState {
@@ -34,6 +48,28 @@ pub enum StartState {
 ///
 /// The bracket is about the distance `min_separation` + `tolerance`: bodies that close slowly share a point (or come as
 /// near as `min_separation`) later than `time_hi`, by up to `tolerance` over the closing speed, or never.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Evidence, Moving, QueryOptions, StartState, Window, time_of_contact};
+/// # use d2m_motion::ConstantTwist;
+/// # // Falls by 4 from a height of 2 onto the tip of the other one, which is at height 1: they meet at 0.25.
+/// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
+/// # let [a, b] = [Moving::new(&tree, &falling), Moving::new(&tree, &ConstantTwist::REST)];
+/// let answer = time_of_contact(a, b, Window::UNIT, &QueryOptions::default())?;
+/// let contact = answer.contact().expect("they meet");
+/// assert!(contact.time_lo <= 0.25 && contact.time_hi - contact.time_lo < 1e-9); // in the motions' unit of time
+/// assert!(contact.evidence >= Evidence::Near && contact.start == StartState::Apart);
+/// assert!(0.0 < contact.separation && contact.separation <= 3.3 * contact.tolerance); // in the meshes' unit of length
+/// // In the world: from A to B, on A and on B.
+/// assert!((contact.normal - DVec3::NEG_Z).length() < 1e-9 && (contact.closing_speed - 4.0).abs() < 1e-9);
+/// assert!((contact.point_a - contact.point_b).length() < 1e-9 && (contact.point_b - DVec3::Z).length() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -82,6 +118,11 @@ pub struct Contact {
 }
 
 /// A span of time in which something happens.
+///
+/// ```
+/// let bracket = d2m_bvh::TimeBracket { lo: 0.25, hi: 0.5 };
+/// assert_eq!(<[f64; 2]>::from(bracket), [0.25, 0.5]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "[f64; 2]", into = "[f64; 2]"))]
@@ -137,6 +178,29 @@ impl Contact {
 }
 
 /// Answer of a time-of-contact query. Aliases: time of impact, TOI.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Moving, QueryOptions, TimeOfContact, Window, time_of_contact};
+/// # use d2m_motion::ConstantTwist;
+/// # // Falls by 4 from a height of 2 onto the tip of the other one, which is at height 1: they meet at 0.25.
+/// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
+/// # let [a, b] = [Moving::new(&tree, &falling), Moving::new(&tree, &ConstantTwist::REST)];
+/// match time_of_contact(a, b, Window::UNIT, &QueryOptions::default())? {
+///     TimeOfContact::Separated => panic!("proven free, which would be wrong here"),
+///     TimeOfContact::Contact(contact) => assert!(contact.time_lo <= 0.25 && 0.25 - 1e-9 < contact.time_lo),
+///     TimeOfContact::Undecided { clear_until } => panic!("only with a budget; free until {clear_until}"),
+/// }
+/// // At twice the distance they do not meet in time.
+/// let higher = falling.with_position(DVec3::Z * 6.0);
+/// let far = time_of_contact(Moving::new(&tree, &higher), b, Window::UNIT, &QueryOptions::default())?;
+/// assert!(far.is_separated() && far.contact().is_none());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[doc(alias = "time_of_impact")]
 #[doc(alias = "toi")]
 #[derive(Clone, Copy, Debug, PartialEq)]

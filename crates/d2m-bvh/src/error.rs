@@ -2,6 +2,22 @@ use d2m_motion::OutsideDomain;
 use thiserror::Error;
 
 /// Bad input to a query. No query reports a hard case as an error, and none turns an error into "no contact".
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Moving, QueryError, QueryOptions, Window, time_of_contact};
+/// use d2m_motion::ConstantTwist;
+/// let still = Moving::new(&tree, &ConstantTwist::REST);
+/// let refused = time_of_contact(still, still, Window::UNIT, &QueryOptions::default().with_tolerance(0.0));
+/// assert_eq!(refused, Err(QueryError::BadTolerance { value: 0.0 }));
+/// assert_eq!(refused.unwrap_err().to_string(), "tolerance 0.0 must be finite and positive");
+/// assert_eq!(Window::try_new(1.0, 0.0), Err(QueryError::BadWindow { start: 1.0, end: 0.0 }));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum QueryError {

@@ -2,6 +2,22 @@ use crate::{MeshTree, QueryOptions, Solid};
 use d2m_motion::RigidMotion;
 
 /// A body with its motion.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Moving, Solid};
+/// use d2m_motion::ConstantTwist;
+/// let falling = ConstantTwist::REST.with_linear_velocity(DVec3::Z * -4.0);
+/// let body = Moving::new(&tree, &falling); // borrows both, and may be copied
+/// assert_eq!((body.solid, body.radius), (None, 0.0));
+/// let rounded = body.with_solid(Solid::Surface).with_radius(0.1);
+/// assert_eq!((rounded.solid, rounded.radius), (Some(Solid::Surface), 0.1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub struct Moving<'a, B = MeshTree> {
     /// The body in its own frame.

@@ -2,6 +2,22 @@ use crate::CancelFlag;
 use core::time::Duration;
 
 /// What counts as contact.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Posed, Solid, collide};
+/// // A small tetrahedron inside of another one.
+/// let small = vertices.iter().map(|p| *p * 0.1 + 0.1).collect();
+/// let small = MeshTree::new(TriMesh::try_new(small, faces)?);
+/// let [outer, inner] = [Posed::at_rest(&tree), Posed::at_rest(&small)];
+/// assert!(collide(outer, inner, Solid::Filled)?);
+/// assert!(!collide(outer, inner, Solid::Surface)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 pub enum Solid {
@@ -18,6 +34,26 @@ pub enum Solid {
 }
 
 /// How far a query goes.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Mode, Moving, QueryOptions, Window, time_of_contact};
+/// # use d2m_motion::ConstantTwist;
+/// # // Falls by 4 from a height of 2 onto the tip of the other one, which is at height 1: they meet at 0.25.
+/// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
+/// # let [a, b] = [Moving::new(&tree, &falling), Moving::new(&tree, &ConstantTwist::REST)];
+/// let ask = |mode| time_of_contact(a, b, Window::UNIT, &QueryOptions::default().with_mode(mode));
+/// let accurate = *ask(Mode::Accurate)?.contact().expect("they meet");
+/// assert!(accurate.time_lo <= 0.25 && accurate.time_lo > 0.25 - 1e-9);
+/// let early = *ask(Mode::Capoeira)?.contact().expect("they meet");
+/// assert!(early.time_lo <= 0.25); // proven free until there, too; not how near that is to the contact
+/// assert!(ask(Mode::Exists)?.contact().is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]
@@ -37,6 +73,24 @@ pub enum Mode {
 }
 
 /// What counts of bodies that are in contact at the start of the window.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Moving, QueryOptions, Start, StartState, Window, time_of_contact};
+/// use d2m_motion::ConstantTwist;
+/// // Stands on the tip of the other one, and is lifted.
+/// let lifted = ConstantTwist::REST.with_position(DVec3::Z).with_linear_velocity(DVec3::Z);
+/// let [a, b] = [Moving::new(&tree, &ConstantTwist::REST), Moving::new(&tree, &lifted)];
+/// let options = QueryOptions::default();
+/// let found = time_of_contact(a, b, Window::UNIT, &options)?;
+/// assert!(found.contact().is_some_and(|contact| contact.start != StartState::Apart));
+/// assert!(time_of_contact(a, b, Window::UNIT, &options.with_start(Start::Leave))?.is_separated());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]
@@ -54,6 +108,24 @@ pub enum Start {
 ///
 /// Without limits a query still ends: the hard caps [`Budget::HARD_NODE_TESTS`] on its work and
 /// [`Budget::HARD_QUEUED_PAIRS`] on its memory apply always, and end in `Undecided` too.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Budget, Moving, QueryOptions, TimeOfContact, Window, time_of_contact};
+/// # use d2m_motion::ConstantTwist;
+/// # // Falls by 4 from a height of 2 onto the tip of the other one, which is at height 1: they meet at 0.25.
+/// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
+/// # let [a, b] = [Moving::new(&tree, &falling), Moving::new(&tree, &ConstantTwist::REST)];
+/// let options = QueryOptions::default().with_budget(Budget::UNLIMITED.with_node_tests(1));
+/// let TimeOfContact::Undecided { clear_until } = time_of_contact(a, b, Window::UNIT, &options)?
+///     else { panic!("one step is too few") };
+/// assert!((0.0..=0.25).contains(&clear_until)); // what was proven until then holds
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",

@@ -1,6 +1,15 @@
 //! What can be wrong with the description of a motion.
 
 /// A motion that was refused, with what and where.
+///
+/// ```
+/// use d2m_motion::{ConstantTwist, MotionError};
+/// use glam::{DQuat, DVec3};
+/// let bad = DVec3::new(0.0, f64::NAN, 0.0);
+/// let refused = ConstantTwist::try_new(bad, DQuat::IDENTITY, DVec3::ZERO, DVec3::ZERO).unwrap_err();
+/// assert!(matches!(refused, MotionError::NotFinite { name: "position", index: 1, .. }));
+/// assert_eq!(refused.to_string(), "position[1] is NaN: every component of a motion must be finite");
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MotionError {

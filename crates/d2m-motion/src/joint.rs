@@ -12,6 +12,16 @@ use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
 /// How a joint moves the frame that follows it.
+///
+/// ```
+/// use d2m_motion::{Chain, Joint, JointKind, JointValue, RigidMotion};
+/// use glam::{DQuat, DVec3};
+/// // Shifts by 2 units of length a unit of time.
+/// let shift = JointKind::Prismatic { axis: DVec3::Z, value: JointValue::try_polynomial(vec![0.0, 2.0])? };
+/// let slide = Chain::try_new(vec![Joint::try_new(DVec3::X, DQuat::IDENTITY, shift)?])?;
+/// assert_eq!(slide.pose_and_twist(1.5).0.translation, DVec3::new(1.0, 0.0, 3.0));
+/// # Ok::<(), d2m_motion::MotionError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum JointKind {
@@ -34,6 +44,19 @@ pub enum JointKind {
 }
 
 /// A fixed transform and the joint after it. Cheap to clone: the links of an arm share their joints.
+///
+/// ```
+/// use d2m_motion::{Chain, Joint, JointKind, JointValue, RigidMotion};
+/// use glam::{DQuat, DVec3};
+/// // Turns about z by half a radian a unit of time; the next frame is one unit further out.
+/// let turn = JointKind::Revolute { axis: DVec3::Z, value: JointValue::try_polynomial(vec![0.0, 0.5])? };
+/// let shoulder = Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, turn)?;
+/// let hand = Joint::try_new(DVec3::X, DQuat::IDENTITY, JointKind::Fixed)?;
+/// let arm = Chain::try_new(vec![shoulder, hand])?;
+/// let place = arm.pose_and_twist(2.0).0.translation;
+/// assert!((place - DVec3::new(1f64.cos(), 1f64.sin(), 0.0)).length() < 1e-14);
+/// # Ok::<(), d2m_motion::MotionError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Joint(Arc<JointData>);
 

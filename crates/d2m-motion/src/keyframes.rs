@@ -9,6 +9,18 @@ use d2m_interval::Interval;
 use glam::DVec3;
 
 /// How two neighbouring keyframes are joined.
+///
+/// ```
+/// use d2m_motion::{Keyframes, Pose, RigidMotion, Span};
+/// use glam::DVec3;
+/// // A quarter of a turn about z, while the origin goes from x = 1 to y = 1.
+/// let start = Pose { translation: DVec3::X, ..Pose::IDENTITY };
+/// let end = Pose::from_axis_angle(DVec3::Y, DVec3::Z, std::f64::consts::FRAC_PI_2);
+/// let halfway = |span| Keyframes::try_new(&[(0.0, start), (1.0, end)], span).map(|m| m.pose_and_twist(0.5).0.translation);
+/// assert!((halfway(Span::Linear)?.length() - 0.5f64.sqrt()).abs() < 1e-15); // on the chord
+/// assert!((halfway(Span::Screw)?.length() - 1.0).abs() < 1e-12); // on the arc about the origin
+/// # Ok::<(), d2m_motion::MotionError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Span {

@@ -26,6 +26,38 @@ pub struct TwistPiece {
 /// [`RigidMotion::smooth_until`]. Over an interval with an interior the enclosures hold what is inside and the
 /// one-sided limits at its ends, seen from inside; at a single time, the piece that begins there (at the end of the domain: that
 /// ends there). [`check_motion`](crate::check_motion) holds a motion against all this by samples.
+///
+/// ```
+/// use d2m_interval::{Interval, IntervalVec3};
+/// use d2m_motion::{IntervalPose, IntervalTwist, Pose, RigidMotion, Twist, check_motion};
+/// use glam::DVec3;
+///
+/// /// Swings along x: x = sin t. Three functions of an interval are all that is needed.
+/// struct Swing;
+///
+/// fn along_x(x: Interval) -> IntervalVec3 {
+///     IntervalVec3 { x, ..IntervalVec3::ZERO }
+/// }
+///
+/// impl RigidMotion for Swing {
+///     fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+///         let pose = Pose { translation: DVec3::X * t.sin(), ..Pose::IDENTITY };
+///         (pose, Twist { linear: DVec3::X * t.cos(), ..Twist::ZERO })
+///     }
+///     fn enclose_pose(&self, t: Interval) -> IntervalPose {
+///         IntervalPose { translation: along_x(t.sin()), ..IntervalPose::IDENTITY }
+///     }
+///     fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+///         IntervalTwist { linear: along_x(t.cos()), angular: IntervalVec3::ZERO }
+///     }
+///     fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+///         IntervalTwist { linear: along_x(-t.sin()), angular: IntervalVec3::ZERO }
+///     }
+/// }
+///
+/// assert!(check_motion(&Swing, Interval::new(0.0, 6.0), 100).is_empty()); // no promise was caught broken
+/// assert!(Swing.enclose_pose(Interval::new(1.0, 2.0)).translation.x.contains(1.0)); // at a quarter of a turn
+/// ```
 pub trait RigidMotion: Sync {
     /// Pose and twist at one time, in plain floating point.
     fn pose_and_twist(&self, t: f64) -> (Pose, Twist);

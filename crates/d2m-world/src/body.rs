@@ -3,6 +3,14 @@ use d2m_motion::RigidMotion;
 use std::sync::Arc;
 
 /// A motion that a [`Body`] holds, shared.
+///
+/// ```
+/// use d2m_motion::ConstantTwist;
+/// use d2m_world::SharedMotion;
+/// use std::sync::Arc;
+/// let motion: SharedMotion = Arc::new(ConstantTwist::REST);
+/// assert!(motion.constant_twist().is_some());
+/// ```
 pub type SharedMotion = Arc<dyn RigidMotion + Send + Sync>;
 
 /// A mesh and how it moves: what a [`World`](crate::World) holds. Cheap to clone; bodies may share one tree.
@@ -28,6 +36,24 @@ pub struct Body {
 }
 
 /// Names a group of bodies, for [`World::ignore_groups`](crate::World::ignore_groups): a number that the user chooses.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?)); // edges of length 1
+/// use d2m_bvh::{QueryOptions, Window};
+/// use d2m_motion::ConstantTwist;
+/// use d2m_world::{Body, Group, World};
+/// const STONES: Group = Group(1);
+/// let mut world = World::new(QueryOptions::default());
+/// for _ in 0..2 {
+///     world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST).with_group(STONES));
+/// }
+/// assert_eq!(world.contacts(Window::UNIT)?.len(), 1); // on top of each other
+/// world.ignore_groups(STONES, STONES, true);
+/// assert_eq!(world.contacts(Window::UNIT)?.len(), 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Group(pub u32);
 

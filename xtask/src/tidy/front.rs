@@ -42,13 +42,21 @@ fn judge(source: &str, readme: &str) -> impl Iterator<Item = String> {
     let missing = (!source.contains(picture)).then(|| format!("its page has no picture: {picture}"));
     let is_linked =
         move |name: &String| ["", "()", "!"].iter().any(|end| page.contains(&format!("[`{name}{end}`]")));
-    let unlinked = exports(source).into_iter().filter(move |name| !is_linked(name));
+    let names = exports(source).into_iter().map(|export| export.name);
+    let unlinked = names.filter(move |name| !is_linked(name));
     missing.into_iter().chain(unlinked.map(|name| format!("{name} is exported and not linked from its page")))
 }
 
-/// The names that `pub use` gives out at the root, outside of what is hidden.
-pub(super) fn exports(source: &str) -> Vec<String> {
-    let mut names = Vec::new();
+/// A name that a root gives out, and the crate or module that it comes from.
+#[derive(Debug, PartialEq)]
+pub(super) struct Export {
+    pub(super) source: String,
+    pub(super) name: String,
+}
+
+/// What `pub use` gives out at the root, outside of what is hidden.
+pub(super) fn exports(source: &str) -> Vec<Export> {
+    let mut found = Vec::new();
     let mut is_hidden = false;
     let mut lines = source.lines();
     while let Some(line) = lines.next() {
@@ -60,24 +68,26 @@ pub(super) fn exports(source: &str) -> Vec<String> {
                     text.push_str(more.trim());
                 }
                 if !is_hidden {
-                    names.extend(names_of(text.trim_end_matches(';')));
+                    found.extend(exports_of(text.trim_end_matches(';')));
                 }
                 is_hidden = false;
             }
             None => is_hidden |= line == "#[doc(hidden)]",
         }
     }
-    names
+    found
 }
 
-/// The names at the ends of a tree of paths such as `a::{b, c::d}` or `e as f`.
-fn names_of(tree: &str) -> Vec<String> {
+/// The ends of a tree of paths such as `a::{b, c::d}` or `e as f`.
+fn exports_of(tree: &str) -> Vec<Export> {
     let inside = match (tree.find('{'), tree.rfind('}')) {
         (Some(open), Some(close)) => &tree[open + 1..close],
         _ => tree,
     };
+    let source = tree.split([':', ' ']).next().unwrap_or_default();
     let last = |path: &str| path.rsplit([':', ' ']).next().unwrap_or_default().to_owned();
-    inside.split(',').map(str::trim).filter(|path| !path.is_empty()).map(last).collect()
+    let export = |path| Export { source: source.to_owned(), name: last(path) };
+    inside.split(',').map(str::trim).filter(|path| !path.is_empty()).map(export).collect()
 }
 
 #[cfg(test)]
@@ -89,7 +99,9 @@ mod tests {
     #[test]
     fn exports_are_read() {
         let source = "pub use a::b;\npub use c as d;\npub use e::{\n    F, g::H,\n};\n#[doc(hidden)]\npub use i;\npub use j;";
-        assert_eq!(exports(source), ["b", "d", "F", "H", "j"]);
+        let names: Vec<_> = exports(source).into_iter().map(|export| export.name).collect();
+        assert_eq!(names, ["b", "d", "F", "H", "j"]);
+        assert_eq!(exports("pub use e::{F};"), [Export { source: "e".into(), name: "F".into() }]);
     }
 
     #[test]

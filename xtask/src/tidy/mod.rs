@@ -1,5 +1,6 @@
 //! `cargo xtask tidy`: the structure that the documents promise, held against the tree.
 mod arrows;
+mod examples;
 mod front;
 mod guarantees;
 mod literals;
@@ -17,6 +18,7 @@ pub(crate) fn run() -> TaskResult {
     findings.extend(guarantees::check(&root)?);
     findings.extend(literals::check(&root)?);
     findings.extend(front::check(&root)?);
+    findings.extend(examples::check(&root)?);
     findings.extend(crate::mutants::check(&root));
     for finding in &findings {
         eprintln!("tidy: {finding}");

@@ -6,6 +6,14 @@ use thiserror::Error;
 ///
 /// Indices are 0-based. Degenerate or duplicate triangles are *not* errors: they are kept, they are harmless and
 /// they are counted.
+///
+/// ```
+/// use d2m_bvh::{MeshError, TriMesh};
+/// let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, f64::NAN, 0.0]];
+/// let refused = TriMesh::from_arrays(&vertices, &[[0, 1, 2]]).unwrap_err();
+/// assert!(matches!(refused, MeshError::NonFiniteVertex { vertex: 2, axis: 'y', .. }));
+/// assert_eq!(refused.to_string(), "vertex 2: coordinate y is NaN, not a finite number");
+/// ```
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MeshError {

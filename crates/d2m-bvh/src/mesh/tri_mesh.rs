@@ -105,6 +105,14 @@ impl TriMesh {
 
     /// One point: with a radius ([`Moving::with_radius`](crate::Moving::with_radius)) a sphere.
     ///
+    /// ```
+    /// use d2m_bvh::TriMesh;
+    /// use glam::DVec3;
+    /// let point = TriMesh::point(DVec3::X)?;
+    /// assert_eq!((point.vertex_count(), point.corners(0)), (1, [DVec3::X; 3]));
+    /// # Ok::<(), d2m_bvh::MeshError>(())
+    /// ```
+    ///
     /// # Errors
     /// Those of [`TriMesh::try_new`].
     pub fn point(center: DVec3) -> Result<Self, MeshError> {
@@ -112,6 +120,14 @@ impl TriMesh {
     }
 
     /// The segment between two points: with a radius ([`Moving::with_radius`](crate::Moving::with_radius)) a capsule.
+    ///
+    /// ```
+    /// use d2m_bvh::TriMesh;
+    /// use glam::DVec3;
+    /// let segment = TriMesh::segment(DVec3::ZERO, DVec3::Z)?;
+    /// assert_eq!(segment.vertices(), [DVec3::ZERO, DVec3::Z]);
+    /// # Ok::<(), d2m_bvh::MeshError>(())
+    /// ```
     ///
     /// # Errors
     /// Those of [`TriMesh::try_new`].

@@ -17,6 +17,24 @@ const RESOLUTION: f64 = 1e-6;
 const LEAST_STEP: f64 = power_of_two(-30);
 
 /// How two bodies part, and when they meet after that.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Moving, QueryOptions, StartState, Window, departure};
+/// use d2m_motion::ConstantTwist;
+/// // Overlaps the other one by a half, and is pulled out along x at speed 1.
+/// let pulled = ConstantTwist::REST.with_position(DVec3::X * 0.5).with_linear_velocity(DVec3::X);
+/// let [a, b] = [Moving::new(&tree, &ConstantTwist::REST), Moving::new(&tree, &pulled)];
+/// let parting = departure(a, b, Window::UNIT, &QueryOptions::default())?;
+/// assert_eq!(parting.start, StartState::Overlapping);
+/// let left = parting.left.expect("they part");
+/// assert!(left.lo <= 0.5 + 1e-5 && left.hi >= 0.5 && parting.answer.is_separated());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use = "it is a certificate: what is not read is not known to be safe"]

@@ -15,6 +15,24 @@ use d2m_lanes::power_of_two;
 const RESOLUTION: f64 = 1e-6;
 
 /// What is known of a span of time.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Moving, QueryOptions, SpanStatus, Window, contact_spans};
+/// # use d2m_motion::ConstantTwist;
+/// # // Falls by 4 from a height of 2 onto the tip of the other one, which is at height 1: they meet at 0.25.
+/// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
+/// # let [a, b] = [Moving::new(&tree, &falling), Moving::new(&tree, &ConstantTwist::REST)];
+/// // From the first contact on the bodies are in contact until the window ends.
+/// let spans = contact_spans(a, b, Window::try_new(0.0, 0.4)?, &QueryOptions::default(), Some(1e-3))?;
+/// let [clear, contact] = &spans[..] else { panic!("{spans:?}") };
+/// assert_eq!((clear.status, contact.status), (SpanStatus::Clear, SpanStatus::Contact));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 pub enum SpanStatus {
@@ -28,6 +46,23 @@ pub enum SpanStatus {
 }
 
 /// A closed span of time.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Moving, QueryOptions, SpanStatus, Window, contact_spans};
+/// # use d2m_motion::ConstantTwist;
+/// # // Falls by 4 from a height of 2 onto the tip of the other one, which is at height 1: they meet at 0.25.
+/// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
+/// # let [a, b] = [Moving::new(&tree, &falling), Moving::new(&tree, &ConstantTwist::REST)];
+/// let spans = contact_spans(a, b, Window::try_new(0.0, 0.2)?, &QueryOptions::default(), None)?;
+/// let [span] = &spans[..] else { panic!("{spans:?}") };
+/// assert_eq!((span.from, span.to, span.status), (0.0, 0.2, SpanStatus::Clear));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

@@ -5,6 +5,22 @@ use d2m_motion::OutsideDomain;
 
 /// Names a body of one [`World`](super::World): a place, and how often the place was reused, so the name of a removed body never
 /// means another one.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?)); // edges of length 1
+/// use d2m_bvh::QueryOptions;
+/// use d2m_motion::ConstantTwist;
+/// use d2m_world::{Body, World};
+/// let mut world = World::new(QueryOptions::default());
+/// let first = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+/// world.remove(first);
+/// let second = world.add(Body::new(cube, ConstantTwist::REST));
+/// // The same place, another name.
+/// assert!(first.index() == second.index() && first != second && world.get(first).is_none());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct BodyId {
     pub(super) index: u32,
@@ -19,6 +35,24 @@ impl BodyId {
 }
 
 /// Two bodies, the one with the smaller [`BodyId::index`] first, and what is known of them.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?)); // edges of length 1
+/// use d2m_bvh::{QueryOptions, Window};
+/// use d2m_motion::ConstantTwist;
+/// use d2m_world::{Body, World};
+/// use glam::DVec3;
+/// let mut world = World::new(QueryOptions::default());
+/// let wall = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+/// let coming = ConstantTwist::REST.with_position(DVec3::X * 3.0).with_linear_velocity(DVec3::X * -4.0);
+/// let comer = world.add(Body::new(cube, coming));
+/// let all = world.contacts(Window::UNIT)?;
+/// assert_eq!((all.len(), all[0].a, all[0].b), (1, wall, comer));
+/// assert!(all[0].clear_until() <= 0.5 && all[0].clear_until() > 0.5 - 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PairContact {
@@ -42,6 +76,27 @@ impl PairContact {
 }
 
 /// The first contact in a world.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?)); // edges of length 1
+/// use d2m_bvh::{QueryOptions, Window};
+/// use d2m_motion::ConstantTwist;
+/// use d2m_world::{Body, FirstContact, World};
+/// use glam::DVec3;
+/// let mut world = World::new(QueryOptions::default());
+/// let wall = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+/// let coming = ConstantTwist::REST.with_position(DVec3::X * 3.0).with_linear_velocity(DVec3::X * -4.0);
+/// let comer = world.add(Body::new(cube, coming));
+/// match world.first_contact(Window::UNIT)? {
+///     FirstContact::Separated => panic!("no two bodies meet, which would be wrong here"),
+///     FirstContact::Contact { a, b, contact, .. } => assert!(a == wall && b == comer && contact.time_lo <= 0.5),
+///     FirstContact::Undecided { clear_until, .. } => panic!("only with a budget; free until {clear_until}"),
+/// }
+/// assert_eq!(world.first_contact(Window::try_new(0.0, 0.4)?)?, FirstContact::Separated);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[expect(clippy::large_enum_variant, reason = "one answer at a time, taken apart at once")]
 #[derive(Clone, Debug, PartialEq)]
 #[must_use = "it is a certificate: what is not read is not known to be safe"]
@@ -75,6 +130,22 @@ pub enum FirstContact {
 }
 
 /// The locally closest features of two bodies of a world.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?)); // edges of length 1
+/// use d2m_bvh::{ProximityOptions, QueryOptions};
+/// use d2m_motion::ConstantTwist;
+/// use d2m_world::{Body, World};
+/// use glam::DVec3;
+/// let mut world = World::new(QueryOptions::default());
+/// world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+/// world.add(Body::new(cube, ConstantTwist::REST.with_position(DVec3::Z * 1.001)));
+/// let near = world.proximities(0.0, &ProximityOptions::new(0.01))?; // at time 0, features within 0.01
+/// assert!(near.len() == 1 && near[0].proximities.iter().all(|p| (p.distance - 0.001).abs() < 1e-12));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PairProximities {
@@ -87,6 +158,23 @@ pub struct PairProximities {
 }
 
 /// What stopped a world query: bad input.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?)); // edges of length 1
+/// use d2m_bvh::{QueryOptions, Window};
+/// use d2m_motion::{ConstantTwist, Keyframes, Pose, Span};
+/// use d2m_world::{Body, World, WorldError};
+/// let mut world = World::new(QueryOptions::default());
+/// // Known from 0 to 1 only.
+/// let short = Keyframes::try_new(&[(0.0, Pose::IDENTITY), (1.0, Pose::IDENTITY)], Span::Linear)?;
+/// let body = world.add(Body::new(Arc::clone(&cube), short));
+/// world.add(Body::new(cube, ConstantTwist::REST));
+/// let refused = world.first_contact(Window::try_new(0.0, 2.0)?).unwrap_err();
+/// assert!(matches!(refused, WorldError::OutsideMotion { body: named, .. } if named == body));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WorldError {

@@ -184,6 +184,20 @@ impl World {
     }
 
     /// Whether contacts of these two bodies are ignored (they are not, at first). Nothing happens if one of them was removed.
+    ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?)); // edges of length 1
+    /// use d2m_bvh::{QueryOptions, Window};
+    /// use d2m_motion::ConstantTwist;
+    /// use d2m_world::{Body, FirstContact, World};
+    /// let mut world = World::new(QueryOptions::default());
+    /// let [upper, lower] = [0, 1].map(|_| world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST)));
+    /// world.ignore_pair(upper, lower, true); // a joint connects them
+    /// assert_eq!(world.first_contact(Window::UNIT)?, FirstContact::Separated);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn ignore_pair(&mut self, a: BodyId, b: BodyId, ignored: bool) {
         if !(self.slots.holds(a) && self.slots.holds(b)) {
             return;
@@ -203,6 +217,23 @@ impl World {
     /// The separation at which these two bodies count as in contact, instead of that of the options; `None`: that of the
     /// options again. What is not finite or negative is refused by the next query. Nothing happens if one of the two was
     /// removed.
+    ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?)); // edges of length 1
+    /// use d2m_bvh::{QueryOptions, Window};
+    /// use d2m_motion::ConstantTwist;
+    /// use d2m_world::{Body, FirstContact, World};
+    /// use glam::DVec3;
+    /// let mut world = World::new(QueryOptions::default());
+    /// let a = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+    /// let b = world.add(Body::new(cube, ConstantTwist::REST.with_position(DVec3::X * 1.5))); // 0.5 apart
+    /// assert_eq!(world.first_contact(Window::UNIT)?, FirstContact::Separated);
+    /// world.set_min_separation(a, b, Some(0.6));
+    /// assert!(matches!(world.first_contact(Window::UNIT)?, FirstContact::Contact { .. }));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn set_min_separation(&mut self, a: BodyId, b: BodyId, separation: Option<f64>) {
         if !(self.slots.holds(a) && self.slots.holds(b)) {
             return;

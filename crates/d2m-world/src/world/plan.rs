@@ -6,6 +6,23 @@ use crate::SharedMotion;
 use d2m_bvh::Window;
 
 /// A motion that a body might take.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?)); // edges of length 1
+/// use d2m_bvh::{QueryOptions, Window};
+/// use d2m_motion::ConstantTwist;
+/// use d2m_world::{Body, FirstContact, PlannedMotion, World};
+/// use glam::DVec3;
+/// let mut world = World::new(QueryOptions::default());
+/// world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST.with_position(DVec3::X * 4.0)));
+/// let tool = world.add(Body::new(cube, ConstantTwist::REST));
+/// let short_of_it = Arc::new(ConstantTwist::REST.with_linear_velocity(DVec3::X * 2.0));
+/// let plan = [PlannedMotion { body: tool, motion: short_of_it }];
+/// assert_eq!(world.first_contact_of(&plan, Window::UNIT)?, FirstContact::Separated);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone)]
 pub struct PlannedMotion {
     /// The body, or link of an arm.

@@ -93,6 +93,24 @@ impl World {
     /// proven apart for the whole window are left out. When the budget ran out, pairs that were not searched are reported as
     /// undecided from the time on at which they may meet.
     ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?)); // edges of length 1
+    /// use d2m_bvh::{QueryOptions, Window};
+    /// use d2m_motion::ConstantTwist;
+    /// use d2m_world::{Body, World};
+    /// use glam::DVec3;
+    /// let mut world = World::new(QueryOptions::default());
+    /// world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST.with_linear_velocity(DVec3::X * 8.0)));
+    /// for x in [3.0, 5.0, 50.0] {
+    ///     world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST.with_position(DVec3::X * x)));
+    /// }
+    /// let times: Vec<f64> = world.contacts(Window::UNIT)?.iter().map(|pair| pair.clear_until()).collect();
+    /// assert!(times.len() == 2 && (times[0] - 0.25).abs() < 1e-9 && (times[1] - 0.5).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// Bad input of a pair, with its names; a motion that does not cover the window.
     pub fn contacts(&mut self, window: Window) -> Result<Vec<PairContact>, WorldError> {
@@ -127,6 +145,25 @@ impl World {
     /// The first contact of any two bodies, and all that may be as early.
     ///
     /// Pairs are searched in the order of the times at which their boxes meet, and only up to the best time so far.
+    ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?)); // edges of length 1
+    /// use d2m_bvh::{QueryOptions, Window};
+    /// use d2m_motion::ConstantTwist;
+    /// use d2m_world::{Body, FirstContact, World};
+    /// use glam::DVec3;
+    /// let mut world = World::new(QueryOptions::default());
+    /// let thrown = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST.with_linear_velocity(DVec3::X * 8.0)));
+    /// for x in [5.0, 3.0] {
+    ///     world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST.with_position(DVec3::X * x)));
+    /// }
+    /// let FirstContact::Contact { a, b, contact, .. } = world.first_contact(Window::UNIT)? else { panic!("it hits") };
+    /// assert_eq!((a, b.index()), (thrown, 2)); // the one at 3
+    /// assert!(contact.time_lo <= 0.25 && contact.time_lo > 0.25 - 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// Bad input of a pair, with its names; a motion that does not cover the window.

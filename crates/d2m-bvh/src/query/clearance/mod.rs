@@ -79,6 +79,25 @@ pub fn clearance(
 
 /// [`clearance`] of many pairs of bodies, in order. On all threads of the current rayon pool with the feature `rayon`; each query runs
 /// on one thread, so the answers have the same bits at any number of threads (but for a budget of wall-clock time).
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{ClearanceOptions, Moving, Window, clearance_batch};
+/// # use d2m_motion::ConstantTwist;
+/// # // Falls by 4 from a height of 2 onto the tip of the other one, which is at height 1: they meet at 0.25.
+/// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
+/// # let [a, b] = [Moving::new(&tree, &falling), Moving::new(&tree, &ConstantTwist::REST)];
+/// let window = Window::try_new(0.0, 0.1)?;
+/// let all = clearance_batch(&[(a, b), (b, b)], window, &ClearanceOptions::default());
+/// let [apart, same] = &all[..] else { panic!("one answer a pair") };
+/// assert!(apart.as_ref().is_ok_and(|nearest| nearest.lower > 0.5));
+/// assert!(same.as_ref().is_ok_and(|nearest| nearest.lower == 0.0)); // a body on top of itself
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn clearance_batch(
     pairs: &[(Moving<'_>, Moving<'_>)],
     window: Window,

@@ -84,6 +84,25 @@ impl ClearanceOptions {
 }
 
 /// What is known of a clearance.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Budget, ClearanceOptions, ClearanceStatus, Moving, Window, clearance};
+/// # use d2m_motion::ConstantTwist;
+/// # // Falls by 4 from a height of 2 onto the tip of the other one, which is at height 1: they meet at 0.25.
+/// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
+/// # let [a, b] = [Moving::new(&tree, &falling), Moving::new(&tree, &ConstantTwist::REST)];
+/// let options = ClearanceOptions::default();
+/// assert_eq!(clearance(a, b, Window::UNIT, &options)?.status, ClearanceStatus::Contact);
+/// assert_eq!(clearance(a, b, Window::try_new(0.0, 0.2)?, &options)?.status, ClearanceStatus::Clear);
+/// let none = options.with_budget(Budget::UNLIMITED.with_node_tests(0));
+/// assert_eq!(clearance(a, b, Window::UNIT, &none)?.status, ClearanceStatus::Undecided);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 pub enum ClearanceStatus {
@@ -96,6 +115,25 @@ pub enum ClearanceStatus {
 }
 
 /// The least distance of two bodies over a window of time, enclosed, with its time and points.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{ClearanceOptions, Moving, Window, clearance};
+/// # use d2m_motion::ConstantTwist;
+/// # // Falls by 4 from a height of 2 onto the tip of the other one, which is at height 1: they meet at 0.25.
+/// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
+/// # let [a, b] = [Moving::new(&tree, &falling), Moving::new(&tree, &ConstantTwist::REST)];
+/// // After a tenth of a unit of time the tips are 0.6 apart, and that is the least.
+/// let nearest = clearance(a, b, Window::try_new(0.0, 0.1)?, &ClearanceOptions::default())?;
+/// assert!(nearest.lower <= 0.6 && 0.6 <= nearest.upper && nearest.upper - nearest.lower < 1e-6);
+/// assert!((nearest.time - 0.1).abs() < 1e-6 && (nearest.normal - DVec3::NEG_Z).length() < 1e-6);
+/// assert!((nearest.point_a - nearest.point_b).length() <= nearest.upper + 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

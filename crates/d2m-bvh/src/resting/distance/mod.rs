@@ -20,6 +20,22 @@ use glam::DVec3;
 use search::{Found, Search};
 
 /// The distance of two bodies at rest, enclosed, with witnesses.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Posed, Solid, StartState, distance};
+/// use d2m_motion::Pose;
+/// let above = Posed::new(&tree, Pose { translation: DVec3::Z * 1.5, ..Pose::IDENTITY });
+/// let apart = distance(Posed::at_rest(&tree), above, Solid::Filled)?;
+/// assert!(apart.lower <= apart.value && apart.value <= apart.upper && (apart.value - 0.5).abs() < 1e-12);
+/// assert!((apart.point_a - DVec3::Z).length() < 1e-12 && (apart.normal - DVec3::Z).length() < 1e-12);
+/// assert_eq!(apart.state, StartState::Apart);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Distance {

@@ -38,6 +38,22 @@ use feature_test::FeatureTest;
 use glam::DVec3;
 
 /// Two features of two bodies at rest that are locally closest to each other.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Posed, proximities};
+/// use d2m_motion::Pose;
+/// let above = Posed::new(&tree, Pose { translation: DVec3::Z * 1.01, ..Pose::IDENTITY });
+/// let near = proximities(Posed::at_rest(&tree), above, 0.1)?;
+/// let closest = near.first().expect("the tip is 0.01 below the other body");
+/// assert!((closest.distance - 0.01).abs() < 1e-12 && (closest.normal - DVec3::Z).length() < 1e-9);
+/// assert!((closest.point_a - DVec3::Z).length() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Proximity {
@@ -62,6 +78,11 @@ pub struct Proximity {
 }
 
 /// Options of [`proximities_with`].
+///
+/// ```
+/// let options = d2m_bvh::ProximityOptions::new(0.01).with_cone_slack(0.1);
+/// assert_eq!((options.margin, options.cone_slack), (0.01, 0.1)); // a length; the sine of an angle
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]
