@@ -24,13 +24,19 @@ pub enum StartState {
     /// bodies meet before the next number for a time.
     #[default]
     Apart,
-    /// Within `separation` of each other, which is at most 3.3 tolerances above `min_separation`; disjoint or just
-    /// touching, or too close for rounding to tell from crossing.
+    /// Within `separation` of each other, which is at most 3.3 tolerances above `min_separation`. Where the surfaces are not proven
+    /// apart, this is: the second body, moved by a few roundings along the normal, is proven apart from the first; and for poses that only
+    /// shift the bodies, whose numbers are exact, their insides share no point. The normal is that of the features that touch, where
+    /// they have one.
     Touching,
-    /// The surfaces cross, as the triangles are placed in floating point; [`Evidence::Crossing`] says that this is proven.
+    /// Proven: the insides share a point (of surfaces: they cross), up to the rounding of the poses at the start;
+    /// [`Evidence::Crossing`] says that the motions themselves prove it.
     Overlapping,
     /// The surfaces do not cross and one body lies inside the other (only with `Solid::Filled`).
     Contained,
+    /// The surfaces are not proven apart, no direction is found along which they part, and no point inside of both: a peg that fits its
+    /// hole exactly, say, or an overlap by less than rounding can tell.
+    Undecided,
 }
 
 /// The first contact of two moving bodies A and B: the first time at which their distance is at most

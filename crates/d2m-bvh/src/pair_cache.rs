@@ -86,6 +86,11 @@ impl PairCache {
         answer
     }
 
+    /// Adds work to the sum.
+    pub(crate) const fn spend(&mut self, work: u64) {
+        self.work += work;
+    }
+
     /// Forgets everything.
     pub const fn clear(&mut self) {
         *self = Self::new();

@@ -60,7 +60,7 @@ fn enclosures_are_as_wide_as_the_lengths_that_enter() {
 }
 
 /// A vertex on a vertex, an edge or a face of the other body: exchanged, the bodies are not apart either, and what is proven of one
-/// distance holds for the other. `Touching` and `Overlapping` may be exchanged, as documented.
+/// distance holds for the other. Where one order is judged touching, the other is, too.
 #[test]
 fn exchanged_bodies_differ_by_roundings_only() {
     let mut random = KnuthRandom(78);
@@ -88,6 +88,6 @@ fn exchanged_bodies_differ_by_roundings_only() {
         let meet = |state| matches!(state, StartState::Touching | StartState::Overlapping);
         exchanged += u32::from(found.state != back.state && meet(found.state) && meet(back.state));
     }
-    // Both happen.
-    assert!(same > 3000 && exchanged > 100, "{same} {exchanged}");
+    // Apart or touching up to rounding; whether they touch or overlap hardly ever depends on the order.
+    assert!(same > 5900 && exchanged < 10, "{same} {exchanged}");
 }

@@ -43,6 +43,7 @@ pub(crate) fn start_word(start: StartState) -> &'static str {
         StartState::Touching => "touching",
         StartState::Overlapping => "overlapping",
         StartState::Contained => "contained",
+        StartState::Undecided => "undecided",
     }
 }
 

@@ -84,6 +84,59 @@ pub fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Ordering {
     sum.sign()
 }
 
+/// The exact sign of (Σu × Σv) · Σw, each vector given as a sum of at most sixteen exact parts: a difference of two points that are
+/// themselves sums of doubles – a vertex and a translation, say – loses nothing.
+///
+/// ```
+/// use d2m_feature::triple_product_sign;
+/// use glam::DVec3;
+/// use std::cmp::Ordering;
+///
+/// let tiny = DVec3::Z * 1e-30;
+/// assert_eq!(triple_product_sign(&[DVec3::X], &[DVec3::Y], &[DVec3::Z, tiny, -DVec3::Z]), Ordering::Greater);
+/// assert_eq!(triple_product_sign(&[DVec3::X], &[DVec3::Y], &[DVec3::X, DVec3::Y]), Ordering::Equal);
+/// ```
+///
+/// # Panics
+/// With more than sixteen parts, in debug builds.
+pub fn triple_product_sign(u: &[DVec3], v: &[DVec3], w: &[DVec3]) -> Ordering {
+    let parts = [u, v, w];
+    debug_assert!(parts.iter().all(|list| list.len() <= MOST_PARTS), "at most sixteen parts");
+    let sum = |list: &[DVec3]| list.iter().fold(DVec3::ZERO, |sum, part| sum + *part);
+    let magnitude = |list: &[DVec3]| list.iter().fold(DVec3::ZERO, |sum, part| sum + part.abs());
+    let [a, b, c] = parts.map(sum);
+    let determinant =
+        (a.y * b.z - a.z * b.y) * c.x + (a.z * b.x - a.x * b.z) * c.y + (a.x * b.y - a.y * b.x) * c.z;
+    let [a, b, c] = parts.map(magnitude);
+    let permanent =
+        (a.y * b.z + a.z * b.y) * c.x + (a.z * b.x + a.x * b.z) * c.y + (a.x * b.y + a.y * b.x) * c.z;
+    // A sum of n parts is off by (n − 1)u of the sum of their magnitudes to first order, n ≤ 16; the determinant of the three sums
+    // by 5u of the permanent of their magnitudes, as in `orient3d`, of which the differences are left out: 50u. 64u = 32 EPSILON
+    // covers second-order terms and the rounding of the permanent.
+    let bound = 32.0 * f64::EPSILON * permanent;
+    let size = a.max(b).max(c).max_element();
+    if determinant.abs() > bound && determinant.abs() > FILTER_MINIMUM && size < FILTER_MAXIMUM {
+        return sign(determinant);
+    }
+    let mut exact = ExactSum::new();
+    for p in u {
+        for q in v {
+            for r in w {
+                exact.add([p.y, q.z, r.x], false);
+                exact.add([p.z, q.y, r.x], true);
+                exact.add([p.z, q.x, r.y], false);
+                exact.add([p.x, q.z, r.y], true);
+                exact.add([p.x, q.y, r.z], false);
+                exact.add([p.y, q.x, r.z], true);
+            }
+        }
+    }
+    exact.sign()
+}
+
+/// Parts of a vector in [`triple_product_sign`].
+const MOST_PARTS: usize = 16;
+
 fn sign(value: f64) -> Ordering {
     if value > 0.0 {
         Ordering::Greater
@@ -204,6 +257,21 @@ mod tests {
             prop_assert_eq!(orient3d(points[0], points[1], points[2], points[3]), exact_orient3d(points));
             let flat = [points[0], points[1], points[2]].map(DVec3::truncate);
             prop_assert_eq!(orient2d(flat[0], flat[1], flat[2]), exact_orient2d(flat));
+        }
+
+        #[test]
+        fn signs_of_sums_are_exact(points in prop::array::uniform6(point()), zero in 0_usize..3) {
+            let [u, v, w, x, y, z] = points;
+            let total = |parts: &[DVec3]| -> [RBig; 3] {
+                let sum = |k: usize| parts.iter().map(|p| exact(p[k])).fold(RBig::ZERO, |s, x| s + x);
+                [sum(0), sum(1), sum(2)]
+            };
+            // Sums that cancel are the hard ones.
+            let third = [w, z, [-w, -z, -u][zero]];
+            let [a, b, c] = [total(&[u, x]), total(&[v, y]), total(&third)];
+            let minor = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
+            let expected = (minor(1, 2) * &c[0] + minor(2, 0) * &c[1] + minor(0, 1) * &c[2]).cmp(&RBig::ZERO);
+            prop_assert_eq!(triple_product_sign(&[u, x], &[v, y], &third), expected);
         }
 
         #[test]

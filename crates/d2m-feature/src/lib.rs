@@ -46,7 +46,7 @@ mod units;
 
 pub use contact::{ContactBracket, ContactDetails, FirstContact};
 pub use enclosed_pair::EnclosedPairMotion;
-pub use exact_sign::{orient2d, orient3d};
+pub use exact_sign::{orient2d, orient3d, triple_product_sign};
 pub use feature_pair::FeaturePair;
 pub use options::ContactOptions;
 pub use pair_motion::{PairMotion, PlacedTriangle};

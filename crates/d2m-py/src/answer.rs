@@ -227,7 +227,8 @@ impl Contact {
         self.found.closing_speed
     }
 
-    /// How the bodies stood at the start of the window: "apart", "touching", "overlapping" or "contained".
+    /// How the bodies stood at the start of the window: "apart", "touching", "overlapping", "contained" or
+    /// "undecided" (neither touching nor overlapping is proven).
     #[getter]
     fn start(&self) -> &'static str {
         start_word(self.found.start)
@@ -260,5 +261,6 @@ pub(crate) const fn start_word(start: StartState) -> &'static str {
         StartState::Touching => "touching",
         StartState::Overlapping => "overlapping",
         StartState::Contained => "contained",
+        StartState::Undecided => "undecided",
     }
 }

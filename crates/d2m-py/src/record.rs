@@ -71,6 +71,7 @@ pub(crate) fn write_answer(answer: &TimeOfContact, words: &mut [u64]) {
                 StartState::Touching => 1,
                 StartState::Overlapping => 2,
                 StartState::Contained => 3,
+                StartState::Undecided => 4,
             };
             let (kind, [p, q, r, s]) = features(contact.feature);
             writer.word(u64::from_ne_bytes([1, evidence, start, kind, 0, 0, 0, 0]));

@@ -154,7 +154,7 @@ pub fn claim(
                     let evidence = contact.evidence.max(Evidence::Near);
                     return meeting(contact, options, evidence).ok_or(Reason::NothingClaimed);
                 }
-                StartState::Touching => {}
+                StartState::Touching | StartState::Undecided => {}
             }
             let most = options.min_separation + MOST_LEFT * contact.tolerance;
             if options.mode != Mode::Capoeira && contact.separation > most {

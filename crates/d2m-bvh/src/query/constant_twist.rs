@@ -1,20 +1,13 @@
 //! The first contact of two bodies that move with constant twists.
 
-use super::report::{contact, contained, evidence_at_start};
+use super::report::{contact, contained};
 use crate::covered_pair::CoveredPair;
 use crate::meter::{Exhausted, Meter};
-use crate::resting::collide::crossing_pair_within;
 use crate::resting::containment::{Held, held_vertex};
-use crate::resting::node_pair;
-use crate::search::motion::track::given_relative_position;
 use crate::search::{MovingTree, Outcome, Scene, Scratch, Search};
-use crate::{
-    Answered, MeshTree, Mode, Posed, QueryError, QueryOptions, SearchCounts, Solid, StartState,
-    TimeOfContact, Window,
-};
+use crate::{Answered, MeshTree, Mode, QueryError, QueryOptions, SearchCounts, Solid, TimeOfContact, Window};
 use core::cell::RefCell;
 use d2m_lanes::F64x4;
-use d2m_motion::Pose;
 use glam::DVec3;
 
 thread_local! {
@@ -53,12 +46,12 @@ pub(super) fn scene_of_twists<'a>(
 }
 
 /// Searches.
-pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<Answered<TimeOfContact>, QueryError> {
+pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Answered<TimeOfContact> {
     let mut meter = Meter::new(&options.budget);
     // Decided first: what the budget leaves open at the start would leave everything open.
     let Ok(held) = held_at_start(scene, &mut meter) else {
         let answer = TimeOfContact::Undecided { clear_until: scene.window.start() };
-        return Ok(Answered { answer, work: steps(&meter) });
+        return Answered { answer, work: steps(&meter) };
     };
     let options = &options.with_budget(meter.rest());
     let mut scratch = SCRATCH.take().unwrap_or_else(|| Box::new(Scratch::new()));
@@ -68,10 +61,10 @@ pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Result<Answered<
         search = search.of_start();
     }
     let outcome = search.run();
-    let answer = answer(scene, options, &Searched { outcome, held, scratch: &scratch }, &mut meter);
+    let answer = answer(scene, options, &Searched { outcome, held, scratch: &scratch });
     let work = scratch.counts.with(&steps(&meter));
     SCRATCH.set(Some(scratch));
-    Ok(Answered { answer: answer?, work })
+    Answered { answer, work }
 }
 
 /// Steps beside a search.
@@ -86,13 +79,8 @@ struct Searched<'a> {
     scratch: &'a Scratch,
 }
 
-/// From what a search found to the answer. What is left to decide is done within what the meter leaves.
-fn answer(
-    scene: &Scene<'_>,
-    options: &QueryOptions,
-    searched: &Searched<'_>,
-    meter: &mut Meter,
-) -> Result<TimeOfContact, QueryError> {
+/// From what a search found to the answer.
+fn answer(scene: &Scene<'_>, options: &QueryOptions, searched: &Searched<'_>) -> TimeOfContact {
     let Searched { outcome, held, scratch } = *searched;
     let surfaces_are_apart = match outcome {
         Outcome::Found(found) => !found.is_at_start(),
@@ -102,27 +90,18 @@ fn answer(
     if let Some(held) = held
         && surfaces_are_apart
     {
-        return Ok(TimeOfContact::Contact(contained(scene, &held)));
+        return TimeOfContact::Contact(contained(scene, &held));
     }
-    Ok(match outcome {
+    match outcome {
         Outcome::Separated => TimeOfContact::Separated,
         Outcome::OutOfBudget(until) => TimeOfContact::Undecided { clear_until: scene.units.time_down(until) },
         Outcome::Found(found) => {
             let known = scratch.found_in.filter(|motion| motion.start == found.start);
             let motion = known.unwrap_or_else(|| scene.relative_motion(found.start));
-            let mut contact = contact(scene, &motion, &found, options.mode != Mode::Capoeira);
-            if contact.start == StartState::Touching
-                && let Some(triangles) = crossing_at_start(scene, meter)?
-            {
-                (contact.start, contact.separation) = (StartState::Overlapping, 0.0);
-                let evidence = evidence_at_start(scene, triangles);
-                if evidence >= contact.evidence {
-                    (contact.evidence, contact.time_hi) = (evidence, contact.time_lo);
-                }
-            }
+            let contact = contact(scene, &motion, &found, options.mode != Mode::Capoeira);
             TimeOfContact::Contact(contact)
         }
-    })
+    }
 }
 
 fn check(bodies: [&MeshTree; 2], solids: [Solid; 2], options: &QueryOptions) -> Result<(), QueryError> {
@@ -141,27 +120,6 @@ fn check(bodies: [&MeshTree; 2], solids: [Solid; 2], options: &QueryOptions) -> 
         }
     }
     Ok(())
-}
-
-/// Steps of the search for a pair of triangles that cross at the start: bodies that touch all over their surfaces without
-/// crossing would take as many as they have pairs.
-const CROSSING_STEPS: u64 = 1 << 12;
-
-/// A pair of triangles that cross at the start (up to rounding), if one is found soon. The search stops at the first
-/// pair that is near.
-fn crossing_at_start(scene: &Scene<'_>, meter: &mut Meter) -> Result<Option<[u32; 2]>, QueryError> {
-    // As seen from B's reference point, which may be far from the origin.
-    let apart = given_relative_position(&scene.a.motion, &scene.b.motion).map(|x| x.hi);
-    let apart = DVec3::from_array(apart) * scene.units.length();
-    let [a, b] = [(&scene.a, apart), (&scene.b, DVec3::ZERO)].map(|(body, translation)| {
-        let m = body.given.rebase(scene.window.start());
-        Posed::new(body.tree, Pose { rotation: m.orientation(), translation, at: m.at() })
-    });
-    let at_rest = node_pair::Scene::try_new(a, b)?;
-    let mut some = meter.at_most(CROSSING_STEPS);
-    let pair = crossing_pair_within(&at_rest, &mut some).unwrap_or(None);
-    meter.spend(some.spent());
-    Ok(pair)
 }
 
 /// A part of a body in the other one, if that is solid, at the start; if the surfaces do not touch then.

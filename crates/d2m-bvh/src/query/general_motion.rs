@@ -280,7 +280,7 @@ impl<'a> Advance<'a> {
     ) -> Result<TimeOfContact, QueryError> {
         let [tree_a, tree_b] = self.bodies.map(|moving| moving.body);
         let twists = [MovingTree { tree: tree_a, twist: *a }, MovingTree { tree: tree_b, twist: *b }];
-        let asked = ask(&scene_of_twists(twists, self.solids_of_span(), span, options)?, options)?;
+        let asked = ask(&scene_of_twists(twists, self.solids_of_span(), span, options)?, options);
         self.count(&asked.work);
         // Also a search of nothing costs something.
         self.count(&SearchCounts { node_tests: 1, ..SearchCounts::default() });

@@ -1,5 +1,6 @@
 //! What holds at the start counts no more once the bodies have parted: the first contact after that.
 
+use super::at_start::judged;
 use super::general_motion::tolerance_of;
 use super::meshes::of_meshes;
 use super::rounded::Rounded;
@@ -95,7 +96,7 @@ pub(super) fn of_departing(
 ) -> Result<Answered<Departure>, QueryError> {
     let [a, b] = bodies;
     let at_start = Window::try_new(window.start(), window.start())?;
-    let found = of_meshes([a, b], at_start, options)?;
+    let found = judged(&of_meshes([a, b], at_start, options)?, &bodies, at_start, options)?;
     let work = found.work;
     let first = match found.answer {
         TimeOfContact::Separated => {

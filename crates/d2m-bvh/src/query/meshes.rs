@@ -13,7 +13,7 @@ pub(super) fn of_meshes(
 ) -> Result<Answered<TimeOfContact>, QueryError> {
     let pair = CoveredPair::try_new(bodies, window)?;
     let answered = match scene_of(&pair, options)? {
-        Some(scene) => ask(&scene, options)?,
+        Some(scene) => ask(&scene, options),
         None => general_motion(pair, options)?,
     };
     #[cfg(feature = "audit")]

@@ -1,5 +1,6 @@
 //! The queries of moving bodies: time of contact, existence of a contact, batches, and the data of a contact.
 
+mod at_start;
 mod batch;
 mod clearance;
 #[cfg(feature = "audit")]
@@ -9,7 +10,6 @@ mod fitted_twist;
 mod general_motion;
 mod leave;
 mod meshes;
-mod proven_crossing;
 mod report;
 mod rounded;
 mod spans;

@@ -1,7 +1,7 @@
 //! From what the search found to the answer: witness points, normal, features in the meshes' numbers.
 
-use super::proven_crossing::proven_crossing;
 use crate::resting::containment::Held;
+use crate::resting::proven_crossing::proven_crossing;
 use crate::search::motion::frame::{FRAME_REACH, Frame, RelativeMotion};
 use crate::search::triangle_pair::closest::{Closest, Place, closest};
 use crate::search::triangle_pair::pair_scale::PairScale;
@@ -103,14 +103,6 @@ const BRACKET_EVALUATIONS: u32 = 24;
 struct Meeting {
     offset: f64,
     evidence: Evidence,
-}
-
-/// What the pair of triangles proves about the meeting of the bodies at the start of the window.
-pub(super) fn evidence_at_start(scene: &Scene<'_>, triangles: [u32; 2]) -> Evidence {
-    let motion = scene.relative_motion(0.0);
-    let [a, b] = [scene.a.corners(triangles[0]), scene.b.corners(triangles[1])];
-    let pair = TrianglePair { motion: &motion, a, b };
-    pair.evidence::<F64x4>(scene, &pair.at::<F64x4>(motion.start))
 }
 
 /// Two triangles, vertices relative to the trees' centers in body axes, and how they move.

@@ -74,7 +74,14 @@ impl Rounded {
             return contact;
         }
         let [a, b] = self.radii;
+        // Meshes that are nearer to each other than the radii reach: the insides of what is within those of them overlap.
+        let start = match contact.start {
+            StartState::Apart => StartState::Apart,
+            _ if contact.separation + contact.tolerance < self.sum() => StartState::Overlapping,
+            start => start,
+        };
         Contact {
+            start,
             point_a: contact.point_a + contact.normal * a,
             point_b: contact.point_b - contact.normal * b,
             separation: (contact.separation - self.sum()).max(0.0),

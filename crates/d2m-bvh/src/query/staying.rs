@@ -6,9 +6,9 @@
 //! within a height of a face, above its inside, while it slides along it; two points wander over the triangles from where they are
 //! closest in the beginning to where they are in the end. docs/theory/questions.md, "Staying in contact".
 
-use super::proven_crossing::proven_crossing;
 use crate::Moving;
 use crate::length::length;
+use crate::resting::proven_crossing::proven_crossing;
 use d2m_feature::triangle_distance;
 use d2m_interval::Interval;
 use d2m_lanes::UP;

@@ -3,11 +3,9 @@
 
 use super::meshes::of_meshes;
 use super::staying::StraightPair;
-use crate::resting::collide::some_colliding_pairs;
-use crate::resting::distance::{distance, near_pair};
-use crate::{
-    Budget, Meter, Moving, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window,
-};
+use crate::resting::collide::{is_contained, some_colliding_pairs};
+use crate::resting::distance::near_pair;
+use crate::{Budget, Meter, Moving, Posed, QueryError, QueryOptions, Solid, TimeOfContact, Window};
 
 /// Steps of the search for the closest pair at a time.
 const NEAR_STEPS: u64 = 4096;
@@ -134,7 +132,7 @@ impl<'a> Walk<'a> {
             return false;
         }
         let [a, b] = self.posed(time);
-        distance(a, b, Solid::Filled).is_ok_and(|found| found.state == StartState::Contained)
+        is_contained(a, b).unwrap_or(false)
     }
 
     fn stays(&self, pair: [u32; 2], from: f64, to: f64) -> bool {

@@ -1,5 +1,6 @@
 //! The query for the first contact of two bodies.
 
+use super::at_start::judged;
 use super::leave::of_departing;
 use super::meshes::of_meshes;
 use super::rounded::Rounded;
@@ -62,7 +63,7 @@ pub fn time_of_contact_counted(
             let Answered { answer, work } = of_departing([a, b], window, &options)?;
             Answered { answer: answer.answer, work }
         }
-        Start::Report => of_meshes([a, b], window, &options)?,
+        Start::Report => judged(&of_meshes([a, b], window, &options)?, &[a, b], window, &options)?,
     };
     Ok(Answered { answer: rounded.answer(answer), work })
 }

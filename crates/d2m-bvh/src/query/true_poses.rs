@@ -1,7 +1,7 @@
 //! Two triangles where motions that enclose themselves place them, and what that proves.
 
-use super::proven_crossing::proven_crossing;
 use crate::length::length;
+use crate::resting::proven_crossing::proven_crossing;
 use crate::{Moving, Window};
 use d2m_feature::{TriangleDistance, triangle_distance};
 use d2m_lanes::UP;

@@ -1,5 +1,6 @@
 //! Queries that use what earlier ones left in a cache, and give the same bits as without.
 
+use super::at_start::judged;
 use super::constant_twist::{ask, scene_of, scene_of_twists};
 use super::fitted_twist::FittedTwists;
 use super::general_motion::{general_motion, rounding_tolerance, tolerance_of};
@@ -11,7 +12,9 @@ use crate::search::relative_trajectory::RelativeTrajectory;
 use crate::search::triangle_pair::closest::closest;
 use crate::search::triangle_pair::separating_axis::place_a;
 use crate::search::{MovingTree, Scene};
-use crate::{Mode, Moving, PairCache, QueryError, QueryOptions, Start, TimeOfContact, Window};
+use crate::{
+    Answered, Mode, Moving, PairCache, QueryError, QueryOptions, SearchCounts, Start, TimeOfContact, Window,
+};
 use d2m_feature::triangles_intersect;
 use d2m_interval::Interval;
 use d2m_lanes::{F64x4, UP};
@@ -65,7 +68,14 @@ pub fn time_of_contact_with(
     let options = rounded.options([a.body, b.body], options)?;
     let answer = match options.start {
         Start::Leave => cache.counted(of_departing([a, b], window, &options)?).answer,
-        Start::Report => of_meshes_with([a, b], window, &options, cache)?,
+        Start::Report => {
+            let before = cache.work();
+            let answer = of_meshes_with([a, b], window, &options, cache)?;
+            let work = SearchCounts { node_tests: cache.work() - before, ..SearchCounts::default() };
+            let judged = judged(&Answered { answer, work }, &[a, b], window, &options)?;
+            cache.spend(judged.work.work() - work.work());
+            judged.answer
+        }
     };
     Ok(rounded.answer(answer))
 }
@@ -94,13 +104,13 @@ fn constant_twists_with(
     cache: &mut PairCache,
 ) -> Result<TimeOfContact, QueryError> {
     if options.budget.is_limited() || options.mode == Mode::Capoeira {
-        return Ok(cache.counted(ask(scene, options)?));
+        return Ok(cache.counted(ask(scene, options)));
     }
     let trajectory = RelativeTrajectory::of(scene);
     if stay_apart(scene, &trajectory, options, cache)? {
         return Ok(TimeOfContact::Separated);
     }
-    let answer = cache.counted(ask(scene, options)?);
+    let answer = cache.counted(ask(scene, options));
     remember(&answer, scene.window, cache);
     if answer == TimeOfContact::Separated {
         cache.found_apart(&trajectory, scene.solids, options.min_separation);

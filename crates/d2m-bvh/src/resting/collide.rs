@@ -2,6 +2,7 @@
 
 use super::containment::one_holds_the_other;
 use super::node_pair::{Scene, Step, child, proven_apart};
+use super::proven_crossing::proven_crossing;
 use crate::meter::{Exhausted, Meter};
 use crate::{Budget, Posed, QueryError, Solid};
 use d2m_feature::triangles_intersect;
@@ -120,13 +121,47 @@ pub(crate) fn crossing_pair_within(
     Ok(search(scene, Wanted { most: 1, counts: cross }, meter)?.pairs.first().copied())
 }
 
+/// A pair of triangles that share a point wherever their vertices are within the errors of placing them.
+pub(crate) fn proven_crossing_pair(
+    scene: &Scene<'_>,
+    meter: &mut Meter,
+) -> Result<Option<[u32; 2]>, Exhausted> {
+    Ok(search(scene, Wanted { most: 1, counts: certainly_cross }, meter)?.pairs.first().copied())
+}
+
+/// Pairs of triangles that are not proven further apart than `scene.error`, the first in the order of the trees; those that were found,
+/// too, where the budget runs out.
+pub(crate) fn near_pairs(
+    scene: &Scene<'_>,
+    most: usize,
+    meter: &mut Meter,
+    pairs: &mut Vec<[u32; 2]>,
+) -> Result<(), Exhausted> {
+    let wanted = Wanted { most, counts: may_touch };
+    run(Search { scene, wanted, meter, pairs }).map(|_| ())
+}
+
+/// Are no two triangles closer than `scene.error`? Proven where it says so.
+pub(crate) fn surfaces_are_apart(scene: &Scene<'_>, meter: &mut Meter) -> Result<bool, Exhausted> {
+    Ok(search(scene, Wanted { most: 1, counts: may_touch }, meter)?.pairs.is_empty())
+}
+
+/// Are the surfaces of two bodies apart, and is one of them inside the other?
+///
+/// # Errors
+/// [`QueryError::BadPose`].
+pub(crate) fn is_contained(a: Posed<'_>, b: Posed<'_>) -> Result<bool, QueryError> {
+    let (scene, meter) = (Scene::try_new(a, b)?, &mut Meter::unlimited());
+    // Without a limit there always is an answer.
+    let apart = surfaces_are_apart(&scene, meter).unwrap_or(false);
+    Ok(apart && one_holds_the_other(&scene, meter).is_ok_and(|held| held.is_some()))
+}
+
 /// Some of the pairs that are not proven apart, the first in the order of the trees.
 pub(crate) fn some_colliding_pairs(a: Posed<'_>, b: Posed<'_>, most: usize, steps: u64) -> Vec<[u32; 2]> {
     let Ok(scene) = Scene::try_new(a, b) else { return Vec::new() };
     let mut pairs = Vec::new();
-    let wanted = Wanted { most, counts: may_touch };
-    let meter = &mut Meter::unlimited().at_most(steps);
-    let _ = run(Search { scene: &scene, wanted, meter, pairs: &mut pairs });
+    let _ = near_pairs(&scene, most, &mut Meter::unlimited().at_most(steps), &mut pairs);
     pairs
 }
 
@@ -143,6 +178,11 @@ fn search(scene: &Scene<'_>, wanted: Wanted, meter: &mut Meter) -> Result<Found,
 
 fn may_touch(scene: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     !proven_apart(a, b, scene.error, scene.need)
+}
+
+fn certainly_cross(scene: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
+    // Each vertex is within the error of both bodies together of where it is placed.
+    proven_crossing(a, b, scene.error)
 }
 
 fn cross(_: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {

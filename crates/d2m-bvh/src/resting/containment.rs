@@ -40,13 +40,18 @@ pub(crate) fn held_vertex(
 /// Does one body hold a part of the other? For surfaces whose placed triangles are more than `scene.error` apart: moving
 /// every vertex to its placed position is then a motion without contact, so what is inside stays inside.
 pub(crate) fn one_holds_the_other(scene: &Scene<'_>, meter: &mut Meter) -> Result<Option<Held>, Exhausted> {
-    let to_b = InversePose { rotation: scene.pose.rotation, offset: scene.pose.offset };
-    let sides = [scene.pose.inverse(), to_b];
-    for (by, InversePose { rotation: r, offset }) in sides.into_iter().enumerate() {
-        let place = |p: DVec3| r[0] * p.x + r[1] * p.y + r[2] * p.z + offset;
-        if let Some(vertex) = held_vertex(scene.trees[by], scene.trees[1 - by], place, meter)? {
+    for by in [0, 1] {
+        if let Some(vertex) = held_by(scene, by, meter)? {
             return Ok(Some(Held { by, vertex }));
         }
     }
     Ok(None)
+}
+
+/// A vertex of the other body that this one holds; for surfaces that are apart, as above.
+pub(crate) fn held_by(scene: &Scene<'_>, by: usize, meter: &mut Meter) -> Result<Option<u32>, Exhausted> {
+    let to_b = || InversePose { rotation: scene.pose.rotation, offset: scene.pose.offset };
+    let InversePose { rotation: r, offset } = if by == 0 { scene.pose.inverse() } else { to_b() };
+    let place = |p: DVec3| r[0] * p.x + r[1] * p.y + r[2] * p.z + offset;
+    held_vertex(scene.trees[by], scene.trees[1 - by], place, meter)
 }

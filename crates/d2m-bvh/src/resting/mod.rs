@@ -5,5 +5,7 @@ pub(crate) mod containment;
 pub(crate) mod distance;
 pub(crate) mod node_pair;
 pub(crate) mod parts;
+pub(crate) mod proven_crossing;
 pub(crate) mod proximities;
+pub(crate) mod touching;
 mod winding;

@@ -138,6 +138,7 @@ fn contact_text(contact: &Contact) -> &'static str {
         StartState::Touching => "touching at the start",
         StartState::Overlapping => "overlapping at the start",
         StartState::Contained => "one inside the other at the start",
+        StartState::Undecided => "meeting at the start, touching or overlapping",
     }
 }
 

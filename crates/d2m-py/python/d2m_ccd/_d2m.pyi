@@ -65,7 +65,7 @@ _Solid: TypeAlias = bool | Literal["filled", "surface"] | None
 _Solids: TypeAlias = _Solid | tuple[_Solid, _Solid]
 _Mode: TypeAlias = Literal["accurate", "capoeira"]
 _Status: TypeAlias = Literal["separated", "contact", "undecided"]
-_State: TypeAlias = Literal["apart", "touching", "overlapping", "contained"]
+_State: TypeAlias = Literal["apart", "touching", "overlapping", "contained", "undecided"]
 _Progress: TypeAlias = Callable[[int, int], object] | _Bar | None
 _Doubles: TypeAlias = NDArray[np.float64]
 

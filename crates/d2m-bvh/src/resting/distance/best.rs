@@ -1,5 +1,6 @@
 //! The closest pair of triangles so far.
 
+use crate::resting::node_pair::Scene;
 use crate::tree::margin::UNIT_F64;
 use d2m_feature::TriangleDistance;
 
@@ -16,4 +17,11 @@ pub(super) struct Best {
     pub(super) lower: f64,
     /// Pairs were left out because no lower bound above zero can be proven: some of them may cross.
     pub(super) is_cut_short: bool,
+}
+
+impl Best {
+    /// Are the bodies proven apart?
+    pub(super) fn is_apart(&self, scene: &Scene<'_>) -> bool {
+        self.lower > scene.error
+    }
 }

@@ -10,6 +10,7 @@ mod tests;
 use super::collide::{check_solid, crossing_pair_within};
 use super::containment::one_holds_the_other;
 use super::node_pair::Scene;
+use super::touching::{Meeters, Meeting};
 use crate::meter::{Exhausted, Meter};
 use crate::tree::margin::UNIT_F64;
 use crate::{Budget, PairCache, Posed, QueryError, Solid, StartState};
@@ -49,7 +50,8 @@ pub struct Distance {
     pub point_a: DVec3,
     /// Closest point on the surface of B, world frame, rounded.
     pub point_b: DVec3,
-    /// Unit direction from A to B, world frame, along which they are that far apart; zero when `lower` is zero.
+    /// Unit direction from A to B, world frame: along which they are that far apart; of bodies that touch, along which they part. Zero
+    /// for bodies that are not proven to do either.
     pub normal: DVec3,
     /// Triangle of A that holds `point_a`.
     pub triangle_a: u32,
@@ -59,16 +61,10 @@ pub struct Distance {
     pub barycentric_a: [f64; 3],
     /// Barycentric coordinates of `point_b` in `triangle_b`.
     pub barycentric_b: [f64; 3],
-    /// `Apart`: proven (`lower` > 0). `Touching`: apart by less than can be proven, or just touching; where many thousand
-    /// pairs of triangles touch, a pair that crosses beside them may stay unseen. `Overlapping`:
-    /// the surfaces cross, up to rounding; points and triangles are those of one pair of many that cross, which depends on
-    /// bodies and poses only. `Contained`: the surfaces are apart and one body is inside the other; then
-    /// `value` and `lower` are zero, and points and triangles are those where the surfaces are closest.
-    ///
-    /// Triangles are placed in the frame of B, and those that touch are said to overlap when they share a point as they are
-    /// placed there. So where surfaces meet by no more than roundings, exchanging the bodies may exchange `Touching` and
-    /// `Overlapping`. `Apart` and `Contained` are proven; the bodies exchanged may be reported as `Touching` only where `lower` is no
-    /// more than the width of the enclosure.
+    /// `Apart`: proven (`lower` > 0). `Touching`, `Overlapping`, `Undecided`: as [`StartState`] says; `value` and `lower` are zero, points
+    /// and triangles those of one pair of many that touch or cross, which depends on bodies and poses only. `Contained`: the surfaces are
+    /// apart and one body is inside the other; then `value` and `lower` are zero, and points and triangles are those where the surfaces are
+    /// closest.
     pub state: StartState,
 }
 
@@ -166,11 +162,16 @@ pub fn distance_within(
         found => found,
     };
     let found = crossing(&scene, found, unlimited);
-    let state = match &found {
-        Found::Pair(best) if best.distance.upper == 0.0 => StartState::Overlapping,
-        Found::Pair(best) if best.lower <= scene.error => StartState::Touching,
-        _ if options.solid == Solid::Filled && holds(&scene, unlimited) != Ok(false) => StartState::Contained,
-        _ => StartState::Apart,
+    let meeting = match &found {
+        Found::Pair(best) if !best.is_apart(&scene) => Some(meeting(&[a, b], options.solid, unlimited)?),
+        _ => None,
+    };
+    let state = match &meeting {
+        Some(meeting) => meeting.state(),
+        None if options.solid == Solid::Filled && holds(&scene, unlimited) != Ok(false) => {
+            StartState::Contained
+        }
+        None => StartState::Apart,
     };
     let found = match (found, state) {
         // The bodies meet although their surfaces are far from each other: search again without a limit.
@@ -180,8 +181,9 @@ pub fn distance_within(
         (found, _) => found,
     };
     let Found::Pair(best) = found else { return Ok(None) };
-    cache.remember(best.triangles);
     let answer = describe(&scene, [a, b], &best, state);
+    let answer = meeting.map_or(answer, |meeting| answer.meeting_so(&scene, [a, b], &meeting));
+    cache.remember([answer.triangle_a, answer.triangle_b]);
     Ok((answer.lower <= options.cutoff).then_some(answer))
 }
 
@@ -243,9 +245,8 @@ pub fn bound_distance(
     let first = Some([0, 0]);
     let found = run(Search { scene: &scene, first, limit: f64::INFINITY, meter });
     let found = crossing(&scene, found, meter);
-    let apart = |best: &Best| best.lower > scene.error;
     let is_apart = match &found {
-        Found::Pair(best) | Found::Exhausted(best) if apart(best) && solid == Solid::Filled => {
+        Found::Pair(best) | Found::Exhausted(best) if best.is_apart(&scene) && solid == Solid::Filled => {
             holds(&scene, meter)
         }
         _ => Ok(false),
@@ -256,17 +257,19 @@ pub fn bound_distance(
         // Without a limit there is always a closest pair of triangles.
         Found::Beyond | Found::Unclear => return Err(QueryError::BadPose { body: 0 }),
     };
-    let state = match is_apart {
-        _ if best.distance.upper == 0.0 => StartState::Overlapping,
-        _ if !apart(&best) => StartState::Touching,
-        Ok(true) => StartState::Contained,
+    let meeting = if best.is_apart(&scene) { None } else { Some(meeting(&[a, b], solid, meter)?) };
+    let state = match (&meeting, is_apart) {
+        (Some(meeting), _) => meeting.state(),
+        (None, Ok(true)) => StartState::Contained,
         // Not known to be apart: nothing is said of it but the bounds.
-        Err(Exhausted) => StartState::Touching,
-        Ok(false) => StartState::Apart,
+        (None, Err(Exhausted)) => StartState::Undecided,
+        (None, Ok(false)) => StartState::Apart,
     };
     let answer = describe(&scene, [a, b], &best, state);
+    let answer = meeting.map_or(answer, |meeting| answer.meeting_so(&scene, [a, b], &meeting));
     let Distance { lower, upper, point_a, point_b, triangle_a, triangle_b, .. } = answer;
-    let distance = is_complete.then_some(answer);
+    let is_decided = answer.state != StartState::Undecided || !meter.is_exhausted();
+    let distance = (is_complete && is_decided).then_some(answer);
     Ok(DistanceBounds { lower, upper, point_a, point_b, triangle_a, triangle_b, distance })
 }
 
@@ -288,6 +291,14 @@ pub(crate) fn near_pair(
         Found::Pair(best) | Found::Exhausted(best) => Some(best.triangles),
         Found::Beyond | Found::Unclear => None,
     })
+}
+
+/// How bodies meet that are not proven apart. What is apart by little more than that is still not proven to touch.
+fn meeting<'a>(bodies: &[Posed<'a>; 2], solid: Solid, meter: &mut Meter) -> Result<Meeting<'a>, QueryError> {
+    let meeters =
+        Meeters { bodies: *bodies, solids: [solid; 2], blur: 0.0, patience: MOST_TESTS_BESIDE_A_CROWD };
+    let meeting = meeters.meeting(meter)?;
+    Ok(meeting.unwrap_or(Meeting::Undecided))
 }
 
 /// Does one body hold a part of the other?
@@ -316,6 +327,21 @@ fn crossing(scene: &Scene<'_>, found: Found, meter: &mut Meter) -> Found {
     };
     let distance = triangle_distance(&scene.place(0, a), &scene.place(1, b));
     Found::Pair(Best { distance, triangles: [a, b], lower: 0.0, is_cut_short: false })
+}
+
+impl Distance {
+    /// Of bodies that meet so: the normal, points and triangles where they touch, or triangles that are proven to cross.
+    fn meeting_so(self, scene: &Scene<'_>, bodies: [Posed<'_>; 2], meeting: &Meeting<'_>) -> Self {
+        let (triangles, normal) = match meeting {
+            Meeting::Touching(touch) => (touch.triangles, touch.normal),
+            Meeting::Overlapping(Some(triangles)) => (*triangles, DVec3::ZERO),
+            Meeting::Overlapping(None) | Meeting::Undecided => return self,
+        };
+        let [a, b] = triangles;
+        let distance = triangle_distance(&scene.place(0, a), &scene.place(1, b));
+        let best = Best { distance, triangles, lower: 0.0, is_cut_short: false };
+        Self { normal, upper: self.upper, ..describe(scene, bodies, &best, self.state) }
+    }
 }
 
 fn describe(scene: &Scene<'_>, bodies: [Posed<'_>; 2], best: &Best, state: StartState) -> Distance {

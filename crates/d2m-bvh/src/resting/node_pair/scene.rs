@@ -132,6 +132,24 @@ impl<'a> Scene<'a> {
         })
     }
 
+    /// Of bodies whose vertices may be so far, both together, from where the poses place them.
+    pub(crate) fn try_blurred(a: Posed<'a>, b: Posed<'a>, blur: f64) -> Result<Self, QueryError> {
+        let scene = Self::try_new(a, b)?;
+        let more = blur / scene.unit;
+        Ok(if more > 0.0 { scene.reaching(more) } else { scene })
+    }
+
+    /// The same for vertices that are off by so much more, or pairs that are so much further apart: working units.
+    pub(crate) fn reaching(mut self, more: f64) -> Self {
+        // The sum is rounded once, and the error has room for that.
+        self.error = (self.error + 2.0 * more) * SUM_ROUNDING;
+        self.need = (self.error + self.projection) * SUM_ROUNDING;
+        for (side, tree) in self.sides.iter_mut().zip(self.trees) {
+            side.floor = 2.0 * self.error * (self.unit / tree.unit()) + power_of_two(-60);
+        }
+        self
+    }
+
     /// Is the body one point as far as rounding can tell? Its first triangle then stands for all of them.
     pub(crate) fn is_point_like(&self, body: usize) -> bool {
         self.point_like[body]

@@ -28,9 +28,10 @@ mod tests;
 pub use manifold::reduce_proximities;
 
 use super::node_pair::{Directions, Scene, Step, Wanted, child, proven_apart};
+use super::touching::{Meeters, Meeting};
 use crate::meter::Meter;
 use crate::tree::margin::{UNIT_F64, round_up};
-use crate::{Budget, Posed, QueryError};
+use crate::{Budget, Posed, QueryError, Solid};
 use candidate::{Candidate, without_twins};
 use d2m_feature::FeaturePair;
 use d2m_lanes::{Lanes, Task, run};
@@ -117,6 +118,9 @@ impl ProximityOptions {
 /// contact are all there. Only surfaces count: both sides of a face are outside. Bodies whose radius is below 2⁻⁵¹ of the
 /// scene's size are one point.
 ///
+/// Surfaces that touch are answered as those of the same bodies parted by some roundings along the normal of the contact, with
+/// distances as they were.
+///
 /// The first call for a tree finds the neighbors of its vertices and edges, about 0.1 µs a triangle; the tree and its clones keep
 /// them (they count in [`MeshTree::memory_bytes`](crate::MeshTree::memory_bytes)), so later calls do not pay for them.
 ///
@@ -143,7 +147,7 @@ impl ProximityOptions {
 ///
 /// # Errors
 /// [`QueryError::BadPose`]; [`QueryError::BadMinSeparation`] for a margin that is negative or not finite;
-/// [`QueryError::NotApart`] when the surfaces meet, or are apart by less than rounding can tell.
+/// [`QueryError::NotApart`] when the surfaces cross, or are apart by less than rounding can tell and not found to touch.
 pub fn proximities(a: Posed<'_>, b: Posed<'_>, margin: f64) -> Result<Vec<Proximity>, QueryError> {
     proximities_with(a, b, &ProximityOptions::new(margin))
 }
@@ -219,12 +223,40 @@ pub fn proximities_within(
     let meter = &mut Meter::new(budget);
     match run(Search { scene: &scene, test, limit, meter }) {
         Found::Exhausted => Ok(None),
-        Found::NotApart([triangle_a, triangle_b]) => Err(QueryError::NotApart { triangle_a, triangle_b }),
+        Found::NotApart(triangles) => of_touching([a, b], options, meter, triangles),
         Found::Candidates(found) => {
             let found = without_twins(found, TWIN_ERRORS * scene.error);
             Ok(Some(found.iter().map(|candidate| describe(&scene, [a, b], candidate)).collect()))
         }
     }
+}
+
+/// Node tests of each part of the decision whether bodies touch.
+const PATIENCE: u64 = 1 << 14;
+
+/// The features of bodies that touch: those of the same bodies parted by some roundings, nearer by what they rise along the normals.
+fn of_touching(
+    bodies: [Posed<'_>; 2],
+    options: &ProximityOptions,
+    meter: &mut Meter,
+    [triangle_a, triangle_b]: [u32; 2],
+) -> Result<Option<Vec<Proximity>>, QueryError> {
+    // Surfaces have no inside, and what is in the other body has closest features, too.
+    let meeters = Meeters { bodies, solids: [Solid::Surface; 2], blur: 0.0, patience: PATIENCE };
+    let meeting = meeters.meeting(meter)?;
+    let Some(Meeting::Touching(touch)) = meeting else {
+        return Err(QueryError::NotApart { triangle_a, triangle_b });
+    };
+    let parted = touch.parted_by;
+    let within = ProximityOptions { margin: options.margin + parted, ..*options };
+    let [a, b] = touch.moved;
+    let Some(mut found) = proximities_within(a, b, &within, &meter.rest())? else { return Ok(None) };
+    for proximity in &mut found {
+        let nearer = parted * proximity.normal.dot(touch.normal);
+        proximity.distance = (proximity.distance - nearer).max(0.0);
+    }
+    found.retain(|proximity| proximity.distance <= options.margin);
+    Ok(Some(found))
 }
 
 /// Points of twins are this many errors apart at most: each foot is within 8δ of its feature, on either body, and both

@@ -11,7 +11,7 @@ use glam::DVec3;
 /// over all positions of the vertices.
 ///
 /// Plain arithmetic chooses the edges that are worth the proof: those whose ends seem to be on different sides.
-pub(super) fn proven_crossing(a: &[DVec3; 3], b: &[DVec3; 3], error: f64) -> bool {
+pub(crate) fn proven_crossing(a: &[DVec3; 3], b: &[DVec3; 3], error: f64) -> bool {
     let blur = Interval::new(-error, error);
     let wide = |p: DVec3| IntervalVec3::point(p) + IntervalVec3::new(blur, blur, blur);
     let pierces = |edges: &[DVec3; 3], face: &[DVec3; 3]| {

@@ -1,0 +1,53 @@
+//! Points inside of both of two solids.
+
+use super::super::collide::surfaces_are_apart;
+use super::super::containment::held_by;
+use super::super::node_pair::Scene;
+use super::axis::TouchingPair;
+use crate::meter::{Exhausted, Meter};
+use crate::{MeshTree, Posed, TriMesh};
+use glam::DVec3;
+
+/// Pairs about which points are tried.
+const MOST_PAIRS: usize = 4;
+/// How far from a face a point is tried, in parts of the size of its triangle: a quarter, and 2⁻⁵ and 2⁻¹⁰ for thin overlaps.
+const DEPTHS: [f64; 3] = [0.25, 0.03125, 0.000_976_562_5];
+
+/// Is a point found that is proven to be inside of both solids, further from their surfaces than rounding can tell?
+pub(super) fn share_a_point_inside(
+    (bodies, blur): ([Posed<'_>; 2], f64),
+    scene: &Scene<'_>,
+    pairs: &[TouchingPair],
+    meter: &mut Meter,
+) -> Result<bool, Exhausted> {
+    for placed in points(pairs) {
+        // The point of B's own frame, whatever it is: exact from here on.
+        let point = placed * scene.unit + scene.trees[1].center();
+        let Ok(mesh) = TriMesh::point(point) else { continue };
+        let tree = MeshTree::new(mesh);
+        let point = Posed::new(&tree, bodies[1].pose);
+        if holds(bodies[0], point, blur, meter)? && holds(bodies[1], point, blur, meter)? {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// Under and above faces of some pairs, in working coordinates.
+fn points(pairs: &[TouchingPair]) -> impl Iterator<Item = DVec3> {
+    let step = (pairs.len() / MOST_PAIRS).max(1);
+    pairs.iter().step_by(step).take(MOST_PAIRS).flat_map(|pair| &pair.corners).flat_map(|&[p, q, r]| {
+        let middle = (p + q + r) / 3.0;
+        let size = p.distance(q).max(q.distance(r)).max(r.distance(p));
+        let normal = (q - p).cross(r - p).normalize_or_zero();
+        DEPTHS
+            .into_iter()
+            .flat_map(move |depth| [-depth, depth].map(|depth| middle + normal * (depth * size)))
+    })
+}
+
+/// Is the point proven to be in the solid, and not on its surface?
+fn holds(body: Posed<'_>, point: Posed<'_>, blur: f64, meter: &mut Meter) -> Result<bool, Exhausted> {
+    let Ok(scene) = Scene::try_blurred(body, point, blur) else { return Ok(false) };
+    Ok(surfaces_are_apart(&scene, meter)? && held_by(&scene, 0, meter)?.is_some())
+}

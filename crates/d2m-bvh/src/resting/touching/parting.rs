@@ -1,0 +1,111 @@
+//! The direction along which bodies that touch part, and the proof that they do.
+//!
+//! Nothing is proven by the choice of a direction: the body B, moved along it by a few roundings, is proven apart from A, or the direction is
+//! dropped. Of directions that part the one is wanted that is normal to the features that touch.
+
+use super::axis::{Axis, TouchingPair};
+use crate::nearest_point::Simplex;
+use glam::DVec3;
+
+/// Axes that are told apart, at most.
+const MOST_AXES: usize = 64;
+/// Rounds in which axes are added that a direction has to follow.
+const MOST_ROUNDS: usize = 32;
+/// A direction parts two triangles if it leaves the plane between them by at least this sine.
+pub(super) const LEAST_RISE: f64 = 1e-6;
+/// Axes with blurs up to this factor of the least one are as good.
+const AS_GOOD: f64 = 16.0;
+
+/// Directions from A to B that part all pairs to first order, best first.
+pub(super) fn directions(pairs: &[TouchingPair], need: f64) -> Vec<DVec3> {
+    let common = common_axes(pairs, need);
+    let mut found = Vec::new();
+    if !common.is_empty() {
+        // The middle of the cone of directions normal to planes between all of A and all of B, near the contacts.
+        let middle = common.iter().fold(DVec3::ZERO, |sum, axis| sum + axis.direction);
+        found.extend(middle.try_normalize());
+        found.extend(common.iter().map(|axis| axis.direction));
+        return found;
+    }
+    found.extend(direction_of_several(pairs));
+    found
+}
+
+/// Axes along which no pair overlaps.
+fn common_axes(pairs: &[TouchingPair], need: f64) -> Vec<Axis> {
+    let mut all: Vec<Axis> = Vec::new();
+    // An axis that all share is among those of each.
+    let Some(first) = pairs.iter().min_by_key(|pair| pair.axes.len()) else { return all };
+    let shared = |axis: &Axis| pairs.iter().all(|pair| pair.fits(axis, need));
+    for axis in first.axes.iter().filter(|axis| shared(axis)) {
+        add(&mut all, axis);
+    }
+    // The cone that all share may be narrower than that of one: its rays are across edges of any pair.
+    for pair in pairs {
+        for axis in &pair.axes {
+            if all.len() < MOST_AXES && !all.iter().any(|one| one.is_same(axis)) && shared(axis) {
+                all.push(*axis);
+            }
+        }
+    }
+    let least = all.iter().map(|axis| axis.blur).fold(f64::INFINITY, f64::min);
+    all.retain(|axis| axis.blur <= AS_GOOD * least);
+    all
+}
+
+/// With this axis, or the better one of the two if it is there.
+fn add(all: &mut Vec<Axis>, axis: &Axis) {
+    match all.iter_mut().find(|one| one.is_same(axis)) {
+        Some(one) if axis.blur < one.blur => *one = *axis,
+        Some(_) => {}
+        None => all.push(*axis),
+    }
+}
+
+/// Where no plane parts all: the direction that rises from the plane between each pair, as steeply as possible from the one from which it
+/// rises least.
+fn direction_of_several(pairs: &[TouchingPair]) -> Option<DVec3> {
+    let mut needed: Vec<DVec3> = Vec::new();
+    for pair in pairs {
+        if let Some((only, others)) = pair.axes.split_first()
+            && others.iter().all(|axis| axis.is_same(only))
+        {
+            let known = needed.iter().any(|&n| (n - only.direction).length() < LEAST_RISE);
+            if !known {
+                needed.push(only.direction);
+            }
+        }
+    }
+    if needed.is_empty() {
+        needed.push(pairs.first()?.axes.first()?.direction);
+    }
+    for _ in 0..MOST_ROUNDS {
+        let n = steepest(&needed)?;
+        let rise = |pair: &&TouchingPair| steepest_rise(pair, n);
+        let worst = pairs.iter().min_by(|x, y| rise(x).total_cmp(&rise(y)))?;
+        if rise(&worst) > LEAST_RISE {
+            return Some(n);
+        }
+        let best = worst.axes.iter().max_by(|x, y| x.direction.dot(n).total_cmp(&y.direction.dot(n)))?;
+        needed.push(best.direction);
+    }
+    None
+}
+
+/// How steeply the direction rises from the plane between two triangles that it leaves best: a sine.
+pub(super) fn steepest_rise(pair: &TouchingPair, n: DVec3) -> f64 {
+    pair.axes.iter().map(|axis| axis.direction.dot(n)).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// The unit direction whose least product with some unit directions is greatest: that of the point of their hull that is nearest to the
+/// origin. `None`: that hull holds the origin.
+fn steepest(directions: &[DVec3]) -> Option<DVec3> {
+    let least = |n: DVec3| directions.iter().copied().min_by(|p, q| n.dot(*p).total_cmp(&n.dot(*q)));
+    let mut simplex = Simplex::new(*directions.first()?);
+    for _ in 0..MOST_ROUNDS {
+        let Some(next) = simplex.with(least(simplex.nearest())?) else { break };
+        simplex = next;
+    }
+    let nearest = simplex.nearest();
+    (nearest.length() > LEAST_RISE).then(|| nearest.normalize())
+}
