@@ -332,7 +332,7 @@ fn more_room(
         return Ok(false);
     }
     let wider = options.with_min_separation(room);
-    let proven = cache.counted(ask(&scene.with_options(&wider), &wider)?) == TimeOfContact::Separated;
+    let proven = cache.counted(ask(&scene.with_options(&wider), &wider)) == TimeOfContact::Separated;
     cache.attempted(proven);
     if proven {
         cache.found_apart(trajectory, scene.solids, room);

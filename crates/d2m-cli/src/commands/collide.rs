@@ -6,8 +6,8 @@ use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::print_answer;
 use crate::posed::PosedBodies;
-use crate::report::{duration, microseconds};
-use d2m::bvh::{Solid, collide, try_colliding_pair};
+use crate::report::{duration, microseconds, start_word, vector};
+use d2m::bvh::{Solid, StartState, collide, distance, try_colliding_pair};
 use serde_json::json;
 use std::fmt::Write;
 use std::time::Instant;
@@ -25,8 +25,18 @@ pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
     } else {
         None
     };
+    // How bodies that are not apart meet: decided by the distance, which finds the normal of those that touch.
+    let met = if is_contact {
+        Some(distance(a.posed(), b.posed(), solid).map_err(|error| bodies.failure(error))?)
+    } else {
+        None
+    };
+    let state = met.as_ref().map_or(StartState::Apart, |met| met.state);
+    let normal = met.as_ref().filter(|met| met.state == StartState::Touching).map(|met| met.normal);
     print_answer(&if arguments.posed.json {
         let object = json!({
+            "start": start_word(state),
+            "normal": normal.map(|normal| normal.to_array()),
             "status": if is_contact { "contact" } else { "separated" },
             "triangle_a": triangles.map(|[a, _]| a),
             "triangle_b": triangles.map(|[_, b]| b),
@@ -49,6 +59,12 @@ pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
             (true, None) => {
                 line("contained", "the surfaces are apart and one body is inside the other".to_owned());
             }
+        }
+        if is_contact {
+            line("state", start_word(state).to_owned());
+        }
+        if let Some(normal) = normal {
+            line("normal", format!("{} from A to B", vector(normal)));
         }
         for (label, body) in ["A", "B"].into_iter().zip(&bodies.both) {
             line(label, format!("{} · {} triangles", body.name, body.tree.mesh().triangle_count()));

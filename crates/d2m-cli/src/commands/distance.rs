@@ -41,7 +41,7 @@ fn to_text(bodies: &PosedBodies, solid: Solid, found: &Distance, took: Duration)
     line("certified", format!("[{}, {}]{surfaces}", short(found.lower), short(found.upper)));
     line("point on A", format!("{} · triangle {}", vector(found.point_a), found.triangle_a));
     line("point on B", format!("{} · triangle {}", vector(found.point_b), found.triangle_b));
-    if found.state == StartState::Apart {
+    if matches!(found.state, StartState::Apart | StartState::Touching) {
         line("normal", format!("{} from A to B", vector(found.normal)));
     }
     for (label, body) in ["A", "B"].into_iter().zip(&bodies.both) {
@@ -65,6 +65,7 @@ fn to_json(bodies: &PosedBodies, solid: Solid, found: &Distance, took: Duration)
     let object = json!({
         "status": status,
         "state": start_word(found.state),
+        "start": start_word(found.state),
         "distance": found.value,
         "lower": found.lower,
         "upper": found.upper,
