@@ -17,7 +17,7 @@
 //!
 //! ## At rest
 //! - [`triangle_distance()`]: a [`TriangleDistance`] with its witnesses, each on a [`TriangleFeature`].
-//! - [`triangles_intersect`], [`orient2d`], [`orient3d`]: exact.
+//! - [`triangles_intersect`], [`orient2d`], [`orient3d`], [`triple_product_sign`]: exact.
 #![doc(html_root_url = "https://docs.rs/d2m-feature")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
