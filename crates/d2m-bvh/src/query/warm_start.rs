@@ -89,7 +89,7 @@ fn of_meshes_with(
 ) -> Result<TimeOfContact, QueryError> {
     let pair = CoveredPair::try_new([a, b], window)?;
     let answer = match scene_of(&pair, options)? {
-        Some(scene) => constant_twists_with(&scene, options, cache)?,
+        Some(scene) => constant_twists_with(&scene, options, cache),
         None => general_motion_with(pair, options, cache)?,
     };
     #[cfg(feature = "audit")]
@@ -98,17 +98,13 @@ fn of_meshes_with(
 }
 
 /// The query of constant twists.
-fn constant_twists_with(
-    scene: &Scene<'_>,
-    options: &QueryOptions,
-    cache: &mut PairCache,
-) -> Result<TimeOfContact, QueryError> {
+fn constant_twists_with(scene: &Scene<'_>, options: &QueryOptions, cache: &mut PairCache) -> TimeOfContact {
     if options.budget.is_limited() || options.mode == Mode::Capoeira {
-        return Ok(cache.counted(ask(scene, options)));
+        return cache.counted(ask(scene, options));
     }
     let trajectory = RelativeTrajectory::of(scene);
-    if stay_apart(scene, &trajectory, options, cache)? {
-        return Ok(TimeOfContact::Separated);
+    if stay_apart(scene, &trajectory, options, cache) {
+        return TimeOfContact::Separated;
     }
     let answer = cache.counted(ask(scene, options));
     remember(&answer, scene.window, cache);
@@ -117,7 +113,7 @@ fn constant_twists_with(
         #[cfg(feature = "audit")]
         conclude_room(scene, options.min_separation);
     }
-    Ok(answer)
+    answer
 }
 
 /// What a cache knows of the bodies of a scene.
@@ -134,14 +130,13 @@ fn stay_apart(
     trajectory: &RelativeTrajectory,
     options: &QueryOptions,
     cache: &mut PairCache,
-) -> Result<bool, QueryError> {
+) -> bool {
     let room = cache.room_along(trajectory, scene.solids);
     #[cfg(feature = "audit")]
     if let Some(room) = room.filter(|&room| excludes_contact(scene, room)) {
         conclude_room(scene, room);
     }
-    Ok(room.is_some_and(|room| excludes_contact(scene, room))
-        || more_room(scene, trajectory, options, cache)?)
+    room.is_some_and(|room| excludes_contact(scene, room)) || more_room(scene, trajectory, options, cache)
 }
 
 /// Remembers a contact.
@@ -163,7 +158,7 @@ fn general_motion_with(
     }
     let fitted = WindowFit::try_new(&pair, options);
     if let Some(WindowFit { scene, trajectory, options, .. }) = &fitted
-        && stay_apart(scene, trajectory, options, cache)?
+        && stay_apart(scene, trajectory, options, cache)
     {
         return Ok(TimeOfContact::Separated);
     }
@@ -323,13 +318,13 @@ fn more_room(
     trajectory: &RelativeTrajectory,
     options: &QueryOptions,
     cache: &mut PairCache,
-) -> Result<bool, QueryError> {
+) -> bool {
     let Some(more) = cache.room_to_prove(trajectory, scene.tolerance * scene.units.length()) else {
-        return Ok(false);
+        return false;
     };
     let room = options.min_separation + more;
     if !excludes_contact(scene, room) {
-        return Ok(false);
+        return false;
     }
     let wider = options.with_min_separation(room);
     let proven = cache.counted(ask(&scene.with_options(&wider), &wider)) == TimeOfContact::Separated;
@@ -339,7 +334,7 @@ fn more_room(
         #[cfg(feature = "audit")]
         conclude_room(scene, room);
     }
-    Ok(proven)
+    proven
 }
 
 /// A deviation of more than this part of the bodies' reach leaves no room that is worth a proof.

@@ -64,6 +64,9 @@ pub(crate) struct MovingTree<'a> {
 pub(crate) struct SceneBody<'a> {
     pub(crate) tree: &'a MeshTree,
     pub(crate) motion: LocalMotion,
+    /// The motion as it was given.
+    #[cfg(feature = "audit")]
+    pub(crate) given: ConstantTwist,
     /// One over the unit of length.
     per_length: f64,
 }
@@ -72,7 +75,13 @@ impl<'a> SceneBody<'a> {
     #[inline(always)]
     fn new(tree: &'a MeshTree, given: &ConstantTwist, units: &Units, start: f64) -> Self {
         let motion = LocalMotion::new(given, tree.center(), start, units);
-        Self { tree, motion, per_length: 1.0 / units.length() }
+        Self {
+            tree,
+            motion,
+            #[cfg(feature = "audit")]
+            given: *given,
+            per_length: 1.0 / units.length(),
+        }
     }
 
     /// Corners relative to the tree's center, body axes.
