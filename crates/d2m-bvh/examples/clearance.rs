@@ -61,3 +61,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{} bytes a triangle", tree.memory_bytes() / tree.mesh().triangle_count());
     Ok(())
 }
+
+#[test]
+fn its_answers_are_right() {
+    main().unwrap();
+}

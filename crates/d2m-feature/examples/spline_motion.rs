@@ -89,3 +89,8 @@ fn main() {
         other => panic!("the vertex meets the wall: {other:?}"),
     }
 }
+
+#[test]
+fn its_answers_are_right() {
+    main();
+}

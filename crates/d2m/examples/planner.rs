@@ -68,3 +68,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     assert_eq!((fold, sweep), (FirstContact::Separated, FirstContact::Separated));
     Ok(())
 }
+
+#[test]
+fn its_answers_are_right() {
+    main().unwrap();
+}

@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let tree = |shape: &str| d2m::shapes::mesh(shape).map(|mesh| Arc::new(d2m::MeshTree::new(mesh)));
     let post = tree("box?x=0.05&y=0.05&z=0.5")?;
     scene.add_obstacle(Obstacle::at_rest("post", post, DVec3::new(0.3, 0.6, 0.0), DQuat::IDENTITY)?)?;
-    let part = tree("sphere?radius=0.04&triangles=200")?;
+    let part = tree("icosphere?triangles=200&scale=0.04")?;
     scene.attach(Attached::new("part", "lower", part, DVec3::new(0.56, 0.0, 0.07), DQuat::IDENTITY)?)?;
 
     // As a ROS controller would be given it: positions and velocities at times.
@@ -51,4 +51,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("edges: valid up to {valid:?}");
     assert!(answers[0].is_free() && answers[1].is_free() && !answers[2].is_free());
     Ok(())
+}
+
+#[test]
+fn its_answers_are_right() {
+    main().unwrap();
 }
