@@ -106,29 +106,3 @@ pub use d2m_world::{
     Body, BodyId, FirstContact, Group, PairContact, PairProximities, PlannedMotion, SharedMotion, World,
     WorldError,
 };
-
-/// The example of the repository's README, compiled and run.
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct Readme;
-
-/// The pages of the guide whose examples are compiled and run.
-#[cfg(doctest)]
-mod guide {
-    #[doc = include_str!("../../../docs/guide/certified.md")]
-    struct Certified;
-    #[doc = include_str!("../../../docs/guide/one-pair.md")]
-    struct OnePair;
-    #[doc = include_str!("../../../docs/guide/meshes.md")]
-    struct Meshes;
-    #[doc = include_str!("../../../docs/guide/motions.md")]
-    struct Motions;
-    #[doc = include_str!("../../../docs/guide/tolerances.md")]
-    struct Tolerances;
-    #[doc = include_str!("../../../docs/guide/how-near.md")]
-    struct HowNear;
-    #[doc = include_str!("../../../docs/guide/scenes.md")]
-    struct Scenes;
-    #[doc = include_str!("../../../docs/guide/budgets.md")]
-    struct Budgets;
-}

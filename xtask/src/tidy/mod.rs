@@ -5,6 +5,7 @@ mod front;
 mod guarantees;
 mod literals;
 mod map;
+mod packages;
 mod sources;
 
 use crate::{TaskResult, workspace_root};
@@ -19,6 +20,7 @@ pub(crate) fn run() -> TaskResult {
     findings.extend(literals::check(&root)?);
     findings.extend(front::check(&root)?);
     findings.extend(examples::check(&root)?);
+    findings.extend(packages::check(&root)?);
     findings.extend(crate::mutants::check(&root));
     for finding in &findings {
         eprintln!("tidy: {finding}");
