@@ -145,8 +145,8 @@ pub(crate) struct TocArguments {
     pub(crate) window: String,
     #[command(flatten)]
     pub(crate) query: QueryArguments,
-    /// Prove the answer again by the independent verifier, and say whether it could; not with --clearance or --start leave
-    #[arg(long, conflicts_with = "clearance")]
+    /// Prove the answer again by the independent verifier, and say whether it could
+    #[arg(long)]
     pub(crate) verify: bool,
     /// Answer as one JSON object
     #[arg(long)]
@@ -194,8 +194,8 @@ pub(crate) struct ClearanceArguments {
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
-The answer is what d2m toc --json printed for the same bodies, motions, window and options. It is proven again from the meshes and the
-motions alone, by interval arithmetic that shares nothing with the search.
+The answer is what d2m toc, d2m clearance or d2m spans printed with --json for the same bodies, motions, window and options. It is proven
+again from the meshes and the motions alone, by interval arithmetic that shares nothing with the search.
 
 Exit codes: 0 verified, 20 refuted, with a time and a distance that show it, 21 not proven, with the reason; 2 bad usage, 3 bad input, also an
 answer about other bodies or one that contradicts itself.
@@ -208,7 +208,7 @@ pub(crate) struct VerifyArguments {
     pub(crate) a: String,
     #[arg(value_name = "B", help = MESH_HELP)]
     pub(crate) b: String,
-    /// Answer of d2m toc --json; - for standard input
+    /// Answer of d2m toc, d2m clearance or d2m spans with --json; - for standard input
     #[arg(long, value_name = "ANSWER.json")]
     pub(crate) answer: String,
     /// Motion of A; at rest if not given

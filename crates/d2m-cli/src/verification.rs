@@ -3,9 +3,12 @@
 use crate::engine::Pair;
 use crate::failure::Failure;
 use crate::output::short;
-use d2m::bvh::{MeshTree, Moving, QueryOptions, TimeOfContact, Window};
+use d2m::bvh::{
+    Clearance, ClearanceOptions, Contact, ContactSpan, Departure, MeshTree, Moving, QueryOptions,
+    TimeOfContact, Window,
+};
 use d2m::motion::RigidMotion;
-use d2m::verify::{DEFAULT_STEPS, Mesh, Verdict, Verifier, mesh};
+use d2m::verify::{Claim, DEFAULT_STEPS, Mesh, TimeSpan, Verdict, Verifier, mesh, verify, witness_fault};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -65,9 +68,23 @@ impl Proof {
     }
 }
 
+/// What an answer promises.
+pub(crate) enum Promise {
+    /// Of `d2m toc`.
+    Contact(TimeOfContact),
+    /// Of `d2m toc --start leave`.
+    Departure(Departure),
+    /// Of `d2m toc --clearance`: the ends of the enclosure besides.
+    Apart { lower: f64, upper: f64 },
+    /// Of `d2m clearance`; no accuracy: any width.
+    Clearance { found: Clearance, accuracy: Option<f64> },
+    /// Of `d2m spans`.
+    Spans { spans: Vec<ContactSpan>, resolution: f64 },
+}
+
 /// Proves answers about one pair of meshes again.
 pub(crate) struct PairVerifier<'p> {
-    pair: &'p Pair,
+    pub(crate) pair: &'p Pair,
     verifier: Verifier,
     /// Trees of a pair that was prepared for the reference method.
     trees: Option<[MeshTree; 2]>,
@@ -82,18 +99,44 @@ impl<'p> PairVerifier<'p> {
         Ok(Self { pair, verifier, trees })
     }
 
-    pub(crate) fn prove(
-        &self,
-        motions: [&dyn RigidMotion; 2],
-        window: Window,
-        answer: &TimeOfContact,
-    ) -> Proof {
+    fn bodies<'m>(&'m self, motions: [&'m dyn RigidMotion; 2]) -> [Moving<'m>; 2] {
         let prepared = self.pair.a.tree().zip(self.pair.b.tree());
         let trees = self.trees.as_ref().map(|[a, b]| [a, b]).or(prepared.map(|(a, b)| [a, b]));
         let Some(trees) = trees else { unreachable!("trees are built where there are none") };
-        let body = |k: usize| Moving::new(trees[k], motions[k]).with_solid(self.pair.solids[k]);
-        let options = self.pair.options();
-        Proof(self.verifier.time_of_contact(&[body(0), body(1)], window, options, answer, DEFAULT_STEPS))
+        [0, 1].map(|k| Moving::new(trees[k], motions[k]).with_solid(self.pair.solids[k]))
+    }
+
+    /// The first field of a contact that is not that of its triangles.
+    pub(crate) fn witness_fault(
+        &self,
+        motions: [&dyn RigidMotion; 2],
+        window: Window,
+        contact: &Contact,
+    ) -> Option<&'static str> {
+        witness_fault(&self.bodies(motions), window, self.pair.options(), contact)
+    }
+
+    pub(crate) fn prove(&self, motions: [&dyn RigidMotion; 2], window: Window, answer: &Promise) -> Proof {
+        let (bodies, options, most) = (self.bodies(motions), self.pair.options(), DEFAULT_STEPS);
+        let verifier = &self.verifier;
+        Proof(match answer {
+            Promise::Contact(answer) => verifier.time_of_contact(&bodies, window, options, answer, most),
+            Promise::Departure(answer) => verifier.departure(&bodies, window, options, answer, most),
+            Promise::Clearance { found, accuracy } => {
+                let mut wanted = ClearanceOptions::default().with_accuracy(accuracy.unwrap_or(f64::INFINITY));
+                wanted.tolerance = options.tolerance;
+                verifier.clearance(&bodies, window, &wanted, found, most)
+            }
+            Promise::Spans { spans, resolution } => {
+                verifier.contact_spans(&bodies, window, options, Some(*resolution), spans, most)
+            }
+            Promise::Apart { lower, upper } => {
+                let span = TimeSpan { from: window.start(), to: window.end() };
+                let clear = Claim::Clear { span, distance: lower.next_down() };
+                let within = Claim::Within { span, distance: *upper, triangles: None };
+                verify(&verifier.query(&bodies, window, options), &Claim::All(vec![clear, within]), most)
+            }
+        })
     }
 }
 

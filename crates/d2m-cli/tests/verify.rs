@@ -111,6 +111,45 @@ fn edited_answers_are_never_verified() {
     assert_eq!(other.status.code(), Some(3), "{}", stderr(&other));
 }
 
+/// Answers of other questions: as they are printed they are verified, edited they are not.
+#[test]
+fn answers_of_every_question_are_verified() {
+    let folder = Folder::new("verify-questions");
+    let bodies = |motion: &'static str| ["shape:box", "shape:box", "--motion-a", motion];
+    let (through, past) = ("x=-4,0.1,0.2;v=8,0,0;w=0,0,0.3", "x=-4,0.1,1.5;v=8,0,0;w=0,0,0.3");
+    let (parting, met) = ("x=1,0.1,0.2;v=2,0,0", "x=0.5,0.1,0.2;v=8,0,0");
+    for (words, motion, edits) in [
+        (&["spans"][..], through, &[("spans/0/to", 0.5), ("spans/1/from", 0.3), ("spans/2/from", 0.5)][..]),
+        (
+            &["clearance"],
+            past,
+            &[("clearance/0", 0.6), ("clearance/1", 0.34), ("time", 0.2), ("point_a/0", 3.0)],
+        ),
+        (&["clearance"], through, &[("clearance/0", 0.1), ("time", 0.5)]),
+        (&["toc", "--clearance"], past, &[("clearance/0", 0.6), ("clearance/1", 0.34)]),
+        (&["toc", "--start", "leave"], parting, &[("left/1", 0.0), ("left/0", 0.5)]),
+        (&["toc", "--start", "leave"], met, &[("left/1", 0.001), ("left/1", 2.0)]),
+    ] {
+        let asked = [words, &bodies(motion), &["--json", "--verify"]].concat();
+        let out = d2m(&asked);
+        let answer: Value =
+            serde_json::from_str(&stdout(&out)).unwrap_or_else(|_| panic!("{}", stderr(&out)));
+        assert_eq!(answer["verified"], true, "{words:?} {answer}");
+        let again = |answer: &Value| {
+            let path = folder.file("answer.json", &answer.to_string());
+            let out = d2m(&[&["verify"][..], &bodies(motion), &["--answer", &path]].concat());
+            (out.status.code(), stdout(&out) + &stderr(&out))
+        };
+        assert_eq!(again(&answer).0, Some(0), "{words:?} {}", again(&answer).1);
+        for (place, value) in edits {
+            let mut lie = answer.clone();
+            *lie.pointer_mut(&format!("/{place}")).unwrap() = json!(value);
+            let (code, said) = again(&lie);
+            assert!(matches!(code, Some(3 | 20 | 21)), "{words:?} {place} {value}: {code:?} {said}");
+        }
+    }
+}
+
 const SCENE: &str = r#"{"bodies": [
     {"name": "a", "mesh": "shape:box", "motion": {"x": [-4, 0.1, 0.2], "v": [4, 0, 0]}},
     {"name": "b", "mesh": "shape:box"},

@@ -4,7 +4,8 @@
 use d2m::bvh::{Evidence, StartState};
 use d2m::verify::{Reason, Verdict, Verifier};
 use d2m::{
-    Contact, MeshTree, Mode, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact,
+    Budget, ClearanceOptions, Contact, MeshTree, Mode, Moving, QueryOptions, Solid, SpanStatus,
+    TimeOfContact, TriMesh, Window, clearance, contact_spans, departure, time_of_contact,
 };
 use d2m_testing::{Draw, KnuthRandom, SmallScene, Surface};
 
@@ -99,6 +100,12 @@ fn lies_are_not_verified() {
                 edited("separation", &|lie| lie.separation = separation);
             }
             edited("wide", &|lie| lie.tolerance *= 1e3);
+            let aside = contact.normal.any_orthonormal_vector() * 1e-3;
+            // Where rounding hides the direction of the closest points, nothing is claimed of it.
+            if contact.separation > 1e-3 {
+                edited("normal", &|lie| lie.normal = (lie.normal + aside).normalize());
+            }
+            edited("point", &|lie| lie.point_a += lie.normal * 0.01);
         }
         if apart {
             edited("no such triangle", &|lie| lie.triangle_a = 1 << 20);
@@ -116,5 +123,74 @@ fn lies_are_not_verified() {
             assert!(!is_verified || is_true, "{name}: {}: {lie:?} for {contact:?}", answered.scene.name);
         }
     }
-    assert!(lies > 3000 && refuted > lies / 4, "{lies}, {refuted} refuted");
+    assert!(lies > 3000 && refuted > 1000, "{lies}, {refuted} refuted");
+}
+
+/// Clearances, spans and departures of the same scenes, with radii: proven again; edited they are not.
+#[test]
+fn other_questions_are_proven_again() {
+    let (mut verified, mut all, mut lies) = (0, 0, 0);
+    for index in 0..SCENES / 10 {
+        let answered = Answered::draw(index);
+        let radius = [0.0, 0.03][index as usize % 2];
+        let body = |k: usize| Moving::new(&answered.trees[k], &answered.scene.motions[k]).with_radius(radius);
+        let (bodies, window) = ([body(0), body(1)], answered.window);
+        // Hard scenes stay in contact for long, which takes millions of tests: less is as good here.
+        let budget = Budget::UNLIMITED.with_node_tests(10_000);
+        let options = answered.options.with_mode(Mode::Accurate).with_budget(budget);
+        let verifier = &answered.verifier;
+        let mut judge = |name: &str, is_lie: bool, verdict: Verdict| {
+            let is_verified = matches!(verdict, Verdict::Verified { .. });
+            assert!(!(is_lie && is_verified), "{name}: {}", answered.scene.name);
+            let is_refuted = matches!(verdict, Verdict::Refuted { .. });
+            assert!(is_lie || !is_refuted, "{name}: {} {verdict:?}", answered.scene.name);
+            all += u32::from(!is_lie);
+            lies += u32::from(is_lie);
+            verified += u32::from(is_verified);
+        };
+        let contact = time_of_contact(bodies[0], bodies[1], window, &options).unwrap();
+        judge("contact", false, verifier.time_of_contact(&bodies, window, &options, &contact, STEPS));
+        let wanted = ClearanceOptions::default().with_solid(options.solid).with_budget(budget);
+        let found = clearance(bodies[0], bodies[1], window, &wanted).unwrap();
+        judge("clearance", false, verifier.clearance(&bodies, window, &wanted, &found, STEPS));
+        for part in [1e-3, 1e-2, 0.5] {
+            let (mut high, mut low) = (found, found);
+            high.lower = found.upper + part * (1.0 + found.upper);
+            high.upper = high.lower;
+            low.upper = found.lower - part * found.lower;
+            low.lower = low.lower.min(low.upper);
+            judge("too high", true, verifier.clearance(&bodies, window, &wanted, &high, STEPS));
+            if found.lower > 1e-6 {
+                judge("too low", true, verifier.clearance(&bodies, window, &wanted, &low, STEPS));
+            }
+        }
+        let spans = contact_spans(bodies[0], bodies[1], window, &options, None).unwrap();
+        judge("spans", false, verifier.contact_spans(&bodies, window, &options, None, &spans, STEPS));
+        for k in 1..spans.len() {
+            let mut lie = spans.clone();
+            let (met, clear) = match lie[k].status {
+                SpanStatus::Contact => (lie[k], lie[k - 1]),
+                _ => (lie[k - 1], lie[k]),
+            };
+            let is_long = met.to - met.from > 1e-3 * window.length();
+            if !is_long || (met.status, clear.status) != (SpanStatus::Contact, SpanStatus::Clear) {
+                continue;
+            }
+            let middle = 0.5 * (met.from + met.to);
+            (lie[k - 1].to, lie[k].from) = (middle, middle);
+            judge(
+                "a clear span goes on",
+                true,
+                verifier.contact_spans(&bodies, window, &options, None, &lie, STEPS),
+            );
+        }
+        let parted = departure(bodies[0], bodies[1], window, &options).unwrap();
+        judge("departure", false, verifier.departure(&bodies, window, &options, &parted, STEPS));
+        if let Some(left) = parted.left.filter(|left| left.hi > window.start()) {
+            let mut lie = parted;
+            lie.left.as_mut().unwrap().hi = left.lo;
+            judge("parted too early", true, verifier.departure(&bodies, window, &options, &lie, STEPS));
+        }
+    }
+    assert!(verified >= all - 1 && lies > 500, "{verified} of {all}, {lies} lies");
 }

@@ -37,6 +37,7 @@ const LEAST_STEP: f64 = power_of_two(-30);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 #[must_use = "it is a certificate: what is not read is not known to be safe"]
 pub struct Departure {

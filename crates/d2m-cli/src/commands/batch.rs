@@ -9,7 +9,7 @@ use crate::partial::Partial;
 use crate::report;
 use crate::sizes::load_both;
 use crate::trials::{self, Trial};
-use crate::verification::PairVerifier;
+use crate::verification::{PairVerifier, Promise};
 use rayon::prelude::*;
 use std::path::Path;
 use std::time::Instant;
@@ -115,7 +115,8 @@ fn prove(share: &str, pair: &Pair, trials: &[Trial], answers: &[Answer]) -> Resu
     let is_chosen = |index: usize| ((index + 1) as f64 * share).floor() > (index as f64 * share).floor();
     let (mut verified, mut count, mut outcome) = (0, 0, Outcome::Answered);
     for (index, (trial, answer)) in trials.iter().zip(answers).enumerate().filter(|(k, _)| is_chosen(*k)) {
-        let proof = verifier.prove([&trial.motion_a, &trial.motion_b], trial.window, &answer.verdict);
+        let promise = Promise::Contact(answer.verdict);
+        let proof = verifier.prove([&trial.motion_a, &trial.motion_b], trial.window, &promise);
         count += 1;
         verified += u32::from(proof.is_verified());
         if !proof.is_verified() {

@@ -1,6 +1,6 @@
 //! `d2m clearance`: how near do two moving meshes come?
 
-use super::toc::{MovingPair, read};
+use super::toc::{MovingPair, prove, read, with_proof};
 use crate::arguments::ClearanceArguments;
 use crate::engine::{ClearanceAnswer, Pair, number};
 use crate::failure::Failure;
@@ -9,15 +9,13 @@ use crate::output::print_answer;
 use crate::output::short;
 use crate::report::{body_lines, duration, feature_field, feature_sentence, microseconds, vector};
 use crate::sizes::sizes_line;
+use crate::verification::Promise;
 use d2m::bvh::{ClearanceStatus, Window};
 use serde_json::json;
 use std::fmt::Write;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &ClearanceArguments) -> Result<Outcome, Failure> {
-    if arguments.toc.verify {
-        return Err(Failure::at("--verify", "only of d2m toc"));
-    }
     let accuracy = number("--accuracy", &arguments.accuracy, "a positive finite number", |r| r > 0.0)?;
     let toc = &arguments.toc;
     for (option, given) in
@@ -29,10 +27,12 @@ pub(crate) fn run(arguments: &ClearanceArguments) -> Result<Outcome, Failure> {
     }
     let MovingPair { pair, motion_a, motion_b, window, travels, .. } = read(toc)?;
     let answer = pair.clearance([&motion_a, &motion_b], window, Some(accuracy))?;
+    let promise = Promise::Clearance { found: answer.found, accuracy: Some(accuracy) };
+    let proof = prove(toc, &pair, [&motion_a, &motion_b], window, &[promise])?;
     print_answer(&if toc.json {
-        to_json(&pair, window, &answer)
+        with_proof(toc, to_json(&pair, window, &answer), proof)?
     } else {
-        to_text(&pair, window, &answer) + &sizes_line(pair.sizes(), Some(travels))
+        with_proof(toc, to_text(&pair, window, &answer), proof)? + &sizes_line(pair.sizes(), Some(travels))
     })?;
     Ok(Outcome::from(answer.found.status).reported(toc.exit_status))
 }

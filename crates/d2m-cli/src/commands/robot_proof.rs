@@ -34,9 +34,6 @@ pub(super) fn prove(bodies: &PathBodies<'_>, answer: &PathAnswer) -> Result<Proo
             met.map_or((pair, apart), |found| (found.bodies, TimeOfContact::Contact(found.contact)));
         let names = pair.map(|body| bodies.name(body));
         let moving = pair.map(|body| bodies.moving(body));
-        if moving.iter().any(|body| body.radius > 0.0) {
-            return Ok(unverified(names, "bodies with a radius are not proven again"));
-        }
         let [a, b] = moving.map(|body| body.body.mesh());
         let verifier = Verifier::try_new(a, b).map_err(|error| Failure::at("--verify", error))?;
         match verifier.time_of_contact(&moving, window, bodies.options(), &claimed, left) {

@@ -1,6 +1,6 @@
 //! `d2m spans`: which times of a window are proven clear?
 
-use super::toc::{MovingPair, read};
+use super::toc::{MovingPair, prove, read, with_proof};
 use crate::arguments::SpansArguments;
 use crate::engine::number;
 use crate::failure::Failure;
@@ -8,6 +8,7 @@ use crate::outcome::Outcome;
 use crate::output::print_answer;
 use crate::output::short;
 use crate::sizes::sizes_line;
+use crate::verification::Promise;
 use d2m::bvh::{ContactSpan, SpanStatus};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -17,9 +18,6 @@ const RESOLUTION: f64 = 1e-6;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &SpansArguments) -> Result<Outcome, Failure> {
-    if arguments.toc.verify {
-        return Err(Failure::at("--verify", "only of d2m toc"));
-    }
     let toc = &arguments.toc;
     if toc.obj.is_some() {
         return Err(Failure::at("--obj", "d2m spans has no such option"));
@@ -31,11 +29,14 @@ pub(crate) fn run(arguments: &SpansArguments) -> Result<Outcome, Failure> {
     let resolution = resolution.unwrap_or(RESOLUTION * window.length());
     let spans = pair.spans([&motion_a, &motion_b], window, resolution)?;
     let ends = [window.start(), window.end()];
+    let (text, json) = (to_text(&spans), spans.iter().map(to_json).collect::<Vec<Value>>());
+    let promise = Promise::Spans { spans: spans.clone(), resolution };
+    let proof = prove(toc, &pair, [&motion_a, &motion_b], window, &[promise])?;
     print_answer(&if toc.json {
-        let spans: Vec<Value> = spans.iter().map(to_json).collect();
-        format!("{}\n", json!({ "window": ends, "resolution": resolution, "spans": spans }))
+        let json = json!({ "window": ends, "resolution": resolution, "spans": json });
+        with_proof(toc, format!("{json}\n"), proof)?
     } else {
-        to_text(&spans) + &sizes_line(pair.sizes(), Some(travels))
+        with_proof(toc, text, proof)? + &sizes_line(pair.sizes(), Some(travels))
     })?;
     let has = |status: SpanStatus| spans.iter().any(|span| span.status == status);
     let outcome = match (has(SpanStatus::Contact), has(SpanStatus::Undecided)) {

@@ -8,7 +8,7 @@ use crate::outcome::Outcome;
 use crate::output::{Output, print_answer};
 use crate::report;
 use crate::sizes::{Travel, load_both, sizes_line, warn_of_turn};
-use crate::verification::PairVerifier;
+use crate::verification::{PairVerifier, Promise, Proof, joined};
 use d2m::bvh::{TimeOfContact, TriMesh, Window};
 use d2m::motion::{AnyMotion, RigidMotion};
 use std::fmt::Write;
@@ -51,9 +51,6 @@ pub(super) fn read(arguments: &TocArguments) -> Result<MovingPair, Failure> {
 pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
     let MovingPair { pair, motion_a, motion_b, window, obj, travels } = read(arguments)?;
     let departure = match arguments.start {
-        StartChoice::Leave if arguments.verify => {
-            return Err(Failure::at("--verify", "not with --start leave"));
-        }
         StartChoice::Leave => Some(pair.departure([&motion_a, &motion_b], window)?),
         StartChoice::Report => None,
     };
@@ -64,6 +61,7 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
     warn_of_turn("--motion-a", travels[0]);
     warn_of_turn("--motion-b", travels[1]);
     let departure = departure.map(|(found, _)| found);
+    let mut promises = vec![departure.map_or(Promise::Contact(answer.verdict), Promise::Departure)];
     let clearance = match &answer.verdict {
         TimeOfContact::Separated if arguments.clearance => {
             Some(pair.clearance([&motion_a, &motion_b], window, None)?.found)
@@ -84,20 +82,44 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
         }
         scene.write(&text)?;
     }
-    let proof = if arguments.verify {
-        Some(PairVerifier::new(&pair)?.prove([&motion_a, &motion_b], window, &answer.verdict))
-    } else {
-        None
-    };
+    promises.extend(clearance.map(|found| Promise::Clearance { found, accuracy: None }));
+    let proof = prove(arguments, &pair, [&motion_a, &motion_b], window, &promises)?;
     let further = report::Further { clearance, departure };
     print_answer(&if arguments.json {
-        let text = report::json(&pair, window, &answer, &further);
-        proof.map_or(Ok(text.clone()), |proof| proof.put_into(&text))?
+        with_proof(arguments, report::json(&pair, window, &answer, &further), proof)?
     } else {
-        let proof = proof.map_or(String::new(), |proof| format!("  verified    {}\n", proof.sentence()));
-        report::text(&pair, window, &answer, &further) + &proof + &sizes_line(pair.sizes(), Some(travels))
+        with_proof(arguments, report::text(&pair, window, &answer, &further), proof)?
+            + &sizes_line(pair.sizes(), Some(travels))
     })?;
     Ok(Outcome::from(&answer.verdict).reported(arguments.exit_status))
+}
+
+/// What is promised, proven again if that is wanted.
+pub(super) fn prove(
+    arguments: &TocArguments,
+    pair: &Pair,
+    motions: [&dyn RigidMotion; 2],
+    window: Window,
+    promises: &[Promise],
+) -> Result<Option<Proof>, Failure> {
+    if !arguments.verify {
+        return Ok(None);
+    }
+    let verifier = PairVerifier::new(pair)?;
+    Ok(Some(joined(promises.iter().map(|promise| verifier.prove(motions, window, promise)))))
+}
+
+/// The answer with what became of its proof, as it is printed.
+pub(super) fn with_proof(
+    arguments: &TocArguments,
+    text: String,
+    proof: Option<Proof>,
+) -> Result<String, Failure> {
+    Ok(match proof {
+        None => text,
+        Some(proof) if arguments.json => proof.put_into(&text)?,
+        Some(proof) => format!("{text}  verified    {}\n", proof.sentence()),
+    })
 }
 
 /// Appends the posed mesh and returns its number of vertices.

@@ -1,4 +1,4 @@
-//! `d2m verify`: an answer of `d2m toc --json` proven again.
+//! `d2m verify`: an answer of `d2m toc`, `d2m clearance` or `d2m spans` proven again.
 
 use crate::answer_file::read_answer;
 use crate::arguments::VerifyArguments;
@@ -8,7 +8,7 @@ use crate::motion::{parse_motion, parse_window, require_window};
 use crate::outcome::Outcome;
 use crate::output::print;
 use crate::sizes::load_both;
-use crate::verification::PairVerifier;
+use crate::verification::{PairVerifier, joined};
 use serde_json::json;
 use std::io::Read;
 
@@ -24,8 +24,10 @@ pub(crate) fn run(arguments: &VerifyArguments) -> Result<Outcome, Failure> {
     let pair = Pair::new(a, b, &arguments.query)?;
     check_size("--motion-a", &motion_a, &pair.a)?;
     check_size("--motion-b", &motion_b, &pair.b)?;
-    let answer = read_answer(place, &bytes, &pair, [&motion_a, &motion_b], window)?;
-    let proof = PairVerifier::new(&pair)?.prove([&motion_a, &motion_b], window, &answer);
+    let verifier = PairVerifier::new(&pair)?;
+    let promises = read_answer(place, &bytes, &verifier, [&motion_a, &motion_b], window)?;
+    let proofs = promises.iter().map(|promise| verifier.prove([&motion_a, &motion_b], window, promise));
+    let proof = joined(proofs);
     print(&if arguments.json {
         let mut object = json!({});
         proof.put(&mut object);

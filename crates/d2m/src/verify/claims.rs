@@ -1,0 +1,238 @@
+//! What answers claim.
+
+use super::rounding::Scale;
+use super::witness::{clearance_fault, witness_fault};
+use super::{Claim, Reason, TimeSpan};
+use crate::{Clearance, ClearanceOptions, ContactSpan, Departure, SpanStatus};
+use crate::{Contact, Mode, Moving, QueryOptions, StartState, TimeOfContact, Window};
+use d2m_bvh::{ClearanceStatus, Evidence};
+
+/// The separation that may be left above s, in tolerances.
+const MOST_LEFT: f64 = 3.3;
+/// The resolution of spans as a part of the window, if none is given.
+const RESOLUTION: f64 = 1e-6;
+/// The width of a clearance in tolerances, where that is more than its accuracy.
+const WIDTH: f64 = 4.0;
+
+const fn at(time: f64) -> TimeSpan {
+    TimeSpan { from: time, to: time }
+}
+
+/// What an answer of [`time_of_contact`](crate::time_of_contact) about these bodies claims.
+///
+/// # Errors
+/// The reason why nothing could prove it: [`Reason::Malformed`], [`Reason::Tolerance`], [`Reason::Witness`], [`Reason::Distance`],
+/// [`Reason::NothingClaimed`].
+pub fn claim(
+    bodies: &[Moving<'_>; 2],
+    window: Window,
+    options: &QueryOptions,
+    answer: &TimeOfContact,
+) -> Result<Claim, Reason> {
+    let clear = |to: f64| Claim::Clear {
+        span: TimeSpan { from: window.start(), to },
+        distance: options.min_separation,
+    };
+    match answer {
+        TimeOfContact::Separated => Ok(clear(window.end())),
+        // At its end they may touch, and so they may from the start.
+        TimeOfContact::Undecided { clear_until } if *clear_until == window.start() => {
+            Ok(Claim::All(Vec::new()))
+        }
+        TimeOfContact::Undecided { clear_until } => Ok(clear(*clear_until)),
+        TimeOfContact::Contact(contact) => {
+            let is_span = window.start() <= contact.time_lo
+                && contact.time_lo <= contact.time_hi
+                && contact.time_hi <= window.end();
+            if !(contact.separation >= 0.0 && is_span) {
+                return Err(Reason::Malformed);
+            }
+            let scale = Scale::new(bodies, window, options, contact.time_lo);
+            scale.accept(contact.tolerance)?;
+            if witness_fault(bodies, window, options, contact).is_some() {
+                return Err(Reason::Witness);
+            }
+            if options.mode == Mode::Exists {
+                return meeting(contact, options, contact.evidence).ok_or(Reason::NothingClaimed);
+            }
+            let mut claims = Vec::new();
+            match contact.start {
+                StartState::Apart => claims.push(clear(contact.time_lo)),
+                _ if contact.time_lo != window.start() => return Err(Reason::Malformed),
+                StartState::Overlapping | StartState::Contained if contact.separation != 0.0 => {
+                    return Err(Reason::Malformed);
+                }
+                StartState::Contained => return Ok(Claim::Held { time: contact.time_lo }),
+                // Triangles that cross as they are placed in floating point are near, to say the least.
+                StartState::Overlapping => {
+                    let evidence = contact.evidence.max(Evidence::Near);
+                    return meeting(contact, options, evidence).ok_or(Reason::NothingClaimed);
+                }
+                StartState::Touching | StartState::Undecided => {}
+            }
+            let most = options.min_separation + MOST_LEFT * contact.tolerance;
+            if options.mode != Mode::Capoeira && contact.separation > most {
+                return Err(Reason::Distance);
+            }
+            let off = scale.error_of(contact);
+            // Of rounded bodies that overlap at the start the separation says only that.
+            let radii = bodies[0].radius + bodies[1].radius;
+            let deepest = if contact.separation == 0.0 { 2.0 * radii } else { 0.0 };
+            claims.push(Claim::Apart {
+                time: contact.time_lo,
+                triangles: [contact.triangle_a, contact.triangle_b],
+                least: contact.separation - off - deepest,
+                most: contact.separation + off,
+            });
+            claims.extend(meeting(contact, options, contact.evidence));
+            Ok(Claim::All(claims))
+        }
+    }
+}
+
+fn meeting(contact: &Contact, options: &QueryOptions, evidence: Evidence) -> Option<Claim> {
+    let above = match evidence {
+        Evidence::Crossing => 0.0,
+        Evidence::Near => contact.tolerance,
+        _ => return None,
+    };
+    Some(Claim::Within {
+        span: TimeSpan { from: contact.time_lo, to: contact.time_hi },
+        distance: options.min_separation + above,
+        triangles: Some([contact.triangle_a, contact.triangle_b]),
+    })
+}
+
+/// What an answer of [`departure`](crate::departure) claims. That bodies which never part are in contact all the time is sampled by the engine
+/// and claimed of both ends of the window only.
+///
+/// # Errors
+/// As [`claim`].
+pub fn departure_claim(
+    bodies: &[Moving<'_>; 2],
+    window: Window,
+    options: &QueryOptions,
+    answer: &Departure,
+) -> Result<Claim, Reason> {
+    let scale = Scale::new(bodies, window, options, window.start());
+    let within = |time: f64| Claim::Within {
+        span: at(time),
+        distance: options.min_separation + scale.most,
+        triangles: None,
+    };
+    let mut claims = Vec::new();
+    if answer.start != StartState::Apart {
+        claims.push(within(window.start()));
+    }
+    let Some(left) = answer.left else {
+        claims.push(claim(bodies, window, options, &answer.answer)?);
+        if answer.answer.contact().is_some() {
+            claims.push(within(window.end()));
+        }
+        return Ok(Claim::All(claims));
+    };
+    if !(window.start() <= left.lo && left.lo <= left.hi && left.hi <= window.end()) {
+        return Err(Reason::Malformed);
+    }
+    if answer.start != StartState::Apart {
+        claims.push(within(left.lo));
+        // Further apart than s + δ, with δ at least as it was asked for.
+        claims.push(Claim::Clear { span: at(left.hi), distance: options.min_separation + scale.asked });
+    }
+    let rest = Window::try_new(left.hi, window.end()).map_err(|_| Reason::Malformed)?;
+    claims.push(claim(bodies, rest, options, &answer.answer)?);
+    Ok(Claim::All(claims))
+}
+
+/// What an answer of [`clearance`](crate::clearance) claims: the enclosure, its width, and for bodies that meet that they are apart before.
+///
+/// # Errors
+/// As [`claim`].
+pub fn clearance_claim(
+    bodies: &[Moving<'_>; 2],
+    window: Window,
+    options: &ClearanceOptions,
+    answer: &Clearance,
+) -> Result<Claim, Reason> {
+    let Clearance { lower, upper, time, .. } = *answer;
+    if !(0.0 <= lower && lower <= upper && window.start() <= time && time <= window.end()) {
+        return Err(Reason::Malformed);
+    }
+    let mut query = QueryOptions::default();
+    query.tolerance = options.tolerance;
+    let scale = Scale::new(bodies, window, &query, time);
+    let width = (options.accuracy * upper).max(WIDTH * scale.most);
+    let is_cut = lower >= options.cutoff || answer.status == ClearanceStatus::Undecided;
+    if !is_cut && upper - lower > width {
+        return Err(Reason::Tolerance);
+    }
+    if upper > 0.0 && clearance_fault(bodies, answer, scale.world_error).is_some() {
+        return Err(Reason::Witness);
+    }
+    // The least distance is not below `lower`: above the number before it.
+    let clear =
+        |to: f64, distance: f64| Claim::Clear { span: TimeSpan { from: window.start(), to }, distance };
+    let mut claims = Vec::new();
+    if lower > 0.0 {
+        claims.push(clear(window.end(), lower.next_down()));
+    } else if answer.status == ClearanceStatus::Clear {
+        return Err(Reason::Malformed);
+    } else if upper == 0.0 && time > window.start() {
+        claims.push(clear(time, 0.0));
+    }
+    claims.push(Claim::Within {
+        // An upper end is that of the engine's own roundings. Bodies that meet share a point after the time of contact.
+        span: TimeSpan { from: time, to: if upper > 0.0 { time } else { window.end() } },
+        distance: if upper > 0.0 { upper + scale.error } else { 0.0 },
+        triangles: Some([answer.triangle_a, answer.triangle_b]),
+    });
+    Ok(Claim::All(claims))
+}
+
+/// What an answer of [`contact_spans`](crate::contact_spans) claims: clear spans are clear, and end near the minimum separation where
+/// a contact follows; spans of contact begin and end within the resolution of a time at which the bodies are within s + δ.
+///
+/// # Errors
+/// As [`claim`].
+pub fn spans_claim(
+    bodies: &[Moving<'_>; 2],
+    window: Window,
+    options: &QueryOptions,
+    resolution: Option<f64>,
+    answer: &[ContactSpan],
+) -> Result<Claim, Reason> {
+    let resolution = resolution.unwrap_or(RESOLUTION * window.length());
+    let covers = answer.first().is_some_and(|span| span.from == window.start())
+        && answer.last().is_some_and(|span| span.to == window.end())
+        && answer.windows(2).all(|pair| pair[0].to == pair[1].from && pair[0].from < pair[0].to)
+        && answer.iter().all(|span| span.from <= span.to);
+    if !covers || !(resolution >= 0.0 && resolution.is_finite()) {
+        return Err(Reason::Malformed);
+    }
+    let within = |from: f64, to: f64, tolerances: f64| {
+        let distance = options.min_separation + tolerances * Scale::new(bodies, window, options, to).most;
+        let span = TimeSpan { from: from.max(window.start()), to: to.min(window.end()) };
+        Claim::Within { span, distance, triangles: None }
+    };
+    let mut claims = Vec::new();
+    for (index, span) in answer.iter().enumerate() {
+        match span.status {
+            SpanStatus::Clear => {
+                let time = TimeSpan { from: span.from, to: span.to };
+                claims.push(Claim::Clear { span: time, distance: options.min_separation });
+                if answer.get(index + 1).is_some_and(|next| next.status == SpanStatus::Contact) {
+                    claims.push(within(span.to, span.to, MOST_LEFT));
+                }
+            }
+            SpanStatus::Contact => {
+                for end in [span.from, span.to] {
+                    if end != window.start() && end != window.end() {
+                        claims.push(within(end - resolution, end + resolution, 1.0));
+                    }
+                }
+            }
+            SpanStatus::Undecided => {}
+        }
+    }
+    Ok(Claim::All(claims))
+}

@@ -1,0 +1,72 @@
+//! What the roundings of an answer may be, from the lengths of its scene.
+
+use super::Reason;
+use crate::{Contact, Moving, Pose, QueryOptions, Twist, Window};
+
+/// δ if none is asked for, as a part of the larger body.
+const DEFAULT_TOLERANCE: f64 = 1e-10;
+/// The error γ of a distance of placed triangles, as a part of the lengths of the scene: 2⁻⁴⁴, four times the 128 units of 2⁻⁵³ that the
+/// documentation of [`Contact::tolerance`] names (δ is at least 2γ), for lengths that are summed here in another order.
+const ERROR: f64 = 1.0 / 17_592_186_044_416.0;
+
+/// How large the scene of a query is at a time of it, and how exactly anything can be known of it.
+pub(super) struct Scale {
+    /// δ as it was asked for.
+    pub(super) asked: f64,
+    /// The largest δ that is not a way to be right about anything: what was asked for, what the roundings of the scene's lengths may
+    /// need (2γ), and what the bodies move from one number for a time to the next.
+    pub(super) most: f64,
+    /// γ, and what the enclosures of both poses at that time say of it: how far a distance of two triangles may be off.
+    pub(super) error: f64,
+    /// The same of points in the coordinates of the world.
+    pub(super) world_error: f64,
+}
+
+impl Scale {
+    pub(super) fn new(bodies: &[Moving<'_>; 2], window: Window, options: &QueryOptions, time: f64) -> Self {
+        let sizes = bodies.map(|moving| moving.body.radius() + moving.radius);
+        let states = [window.start(), time].map(|t| bodies.map(|moving| moving.motion.pose_and_twist(t)));
+        let reaches = [0, 1].map(|k| {
+            let (pose, _) = states[0][k];
+            sizes[k] + (bodies[k].body.center() - pose.at).length()
+        });
+        let apart = |[(a, _), (b, _)]: &[(Pose, Twist); 2]| (a.translation - b.translation).length();
+        let speed = |[(_, a), (_, b)]: &[(Pose, Twist); 2]| {
+            let turning = a.angular.length() * reaches[0] + b.angular.length() * reaches[1];
+            (a.linear - b.linear).length() + turning
+        };
+        let travel = speed(&states[0]).max(speed(&states[1])) * window.length();
+        let lengths = reaches[0] + reaches[1] + apart(&states[0]).max(apart(&states[1])) + travel;
+        let lengths = lengths + options.min_separation;
+        let clock = 8.0 * speed(&states[1]) * (time.next_up() - time).max(time - time.next_down());
+        let asked = options.tolerance.unwrap_or(DEFAULT_TOLERANCE * sizes[0].max(sizes[1]));
+        // Distances of bodies with radii are those of their meshes less both.
+        let radii = 8.0 * f64::EPSILON * (bodies[0].radius + bodies[1].radius);
+        let enclosed: f64 = (0..2)
+            .map(|k| {
+                let origin = states[1][0].0.translation;
+                let state = bodies[k].motion.enclose_state_about(time, origin);
+                state.position_radius + state.rotation_radius * reaches[k]
+            })
+            .sum();
+        let error = ERROR * lengths + 2.0 * enclosed;
+        let far = states[1].iter().map(|(pose, _)| pose.translation.length()).fold(0.0, f64::max);
+        Self {
+            asked,
+            most: (asked * (1.0 + f64::EPSILON) + radii).max(2.0 * ERROR * lengths).max(clock),
+            error,
+            world_error: error + ERROR * far,
+        }
+    }
+
+    /// What the separation of a contact may be off by: γ, as it is the distance of two triangles to rounding; and no more than half of δ,
+    /// which is at least 2γ.
+    pub(super) fn error_of(&self, contact: &Contact) -> f64 {
+        self.error.min(0.5 * contact.tolerance)
+    }
+
+    /// Is this a tolerance that an answer may have?
+    pub(super) fn accept(&self, tolerance: f64) -> Result<(), Reason> {
+        if tolerance >= 0.0 && tolerance <= self.most { Ok(()) } else { Err(Reason::Tolerance) }
+    }
+}
