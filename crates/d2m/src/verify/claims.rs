@@ -206,7 +206,7 @@ pub fn spans_claim(
         && answer.last().is_some_and(|span| span.to == window.end())
         && answer.windows(2).all(|pair| pair[0].to == pair[1].from && pair[0].from < pair[0].to)
         && answer.iter().all(|span| span.from <= span.to);
-    if !covers || !(resolution >= 0.0 && resolution.is_finite()) {
+    if !(covers && resolution >= 0.0 && resolution.is_finite()) {
         return Err(Reason::Malformed);
     }
     let within = |from: f64, to: f64, tolerances: f64| {

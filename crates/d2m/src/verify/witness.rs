@@ -11,6 +11,11 @@ const UNITS: f64 = 64.0 * f64::EPSILON;
 /// that is right to six digits of the greatest speed is taken.
 const PART_OF_SPEED: f64 = 1e-6;
 
+/// Is it more than it may be? Of what is no number nothing is known.
+fn is_off(x: f64, most: f64) -> bool {
+    x.is_nan() || x > most
+}
+
 /// The first field of a contact that is not that of its triangles at its time, up to rounding; what it says of bodies that are inside each
 /// other or cross is not compared.
 ///
@@ -56,8 +61,7 @@ pub fn witness_fault(
             return Some(names[1]);
         }
         let on_triangle: DVec3 = (0..3).map(|i| placed[k][i] * weights[k][i]).sum();
-        // Of what is no number nothing is known.
-        if !(points[k].distance(on_triangle + outward[k]) <= off) {
+        if is_off(points[k].distance(on_triangle + outward[k]), off) {
             return Some(names[0]);
         }
     }
@@ -65,7 +69,7 @@ pub fn witness_fault(
         return None;
     }
     let between = (bodies[0].radius + bodies[1].radius) + contact.separation;
-    if !((contact.normal.length() - 1.0).abs() <= UNITS) {
+    if is_off((contact.normal.length() - 1.0).abs(), UNITS) {
         return Some("normal");
     }
     // Triangles that all but touch have no direction of closest points; of rounded bodies that overlap the depth is not stated.
@@ -103,8 +107,7 @@ pub(super) fn clearance_fault(
         let (pose, _) = bodies[k].motion.pose_and_twist(answer.time);
         let placed = mesh.corners(numbers[k] as usize).map(|p| pose.transform_point(p));
         let off = triangle_distance(&[points[k] + inward[k]; 3], &placed).lower;
-        // Of what is no number nothing is known.
-        if !(off <= error) {
+        if is_off(off, error) {
             return Some(names[1]);
         }
     }
