@@ -128,7 +128,8 @@ pub(crate) fn solve(
     let mut contacts: Vec<ContactPoint> = rows.iter().map(|row| island.contacts[row.contact]).collect();
     let targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
     let precision = PRECISION * options.gap / options.step;
-    let accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM };
+    let slow = span.resting_speed.max(options.gap / options.step);
+    let accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM, slow };
 
     let pushing: Vec<f64> = targets.iter().map(|target| target.min(0.0)).collect();
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();

@@ -295,16 +295,39 @@ fn along(p: &Proximity, normals: &[DVec3], most: f64) -> Option<Proximity> {
     ((nearest - p.normal).length() <= most && distance > 0.0).then_some(straight)
 }
 
-/// Takes over the impulses of contacts of the same features.
+/// Takes over the impulses of contacts of the same features; what features that are gone had goes to the nearest contacts, new ones first:
+/// of faces that slide along each other vertices leave and edges cross, but what they press with stays.
 fn remember(contacts: &mut [ContactPoint], old: &[ContactPoint]) {
-    for contact in contacts {
-        if let Some(before) = old.iter().find(|before| before.feature == contact.feature) {
-            let impulse = before.total();
-            contact.impulse = impulse.dot(contact.normal).max(0.0);
-            // The normal has turned a little: without friction what was along it must not push along the tangents.
-            if contact.material.friction > 0.0 {
-                contact.sliding = contact.tangents.map(|t| impulse.dot(t));
+    let mut is_new = vec![true; contacts.len()];
+    let mut gone = Vec::new();
+    for before in old {
+        let is_same = |contact: &ContactPoint| contact.feature == before.feature;
+        match contacts.iter().position(is_same) {
+            Some(place) => {
+                inherit(&mut contacts[place], before.total());
+                is_new[place] = false;
             }
+            None if before.impulse > 0.0 => gone.push(before),
+            None => {}
         }
+    }
+    for before in gone {
+        let far = |k: &usize| (contacts[*k].point - before.point).length_squared();
+        let nearest = |among: &mut dyn Iterator<Item = usize>| among.min_by(|i, j| far(i).total_cmp(&far(j)));
+        let found = nearest(&mut (0..contacts.len()).filter(|&k| is_new[k]))
+            .or_else(|| nearest(&mut (0..contacts.len())));
+        if let Some(place) = found {
+            inherit(&mut contacts[place], before.total());
+            is_new[place] = false;
+        }
+    }
+}
+
+fn inherit(contact: &mut ContactPoint, impulse: DVec3) {
+    contact.impulse += impulse.dot(contact.normal).max(0.0);
+    // The normal has turned a little: without friction what was along it must not push along the tangents.
+    if contact.material.friction > 0.0 {
+        let [t, u] = contact.tangents;
+        contact.sliding = [contact.sliding[0] + impulse.dot(t), contact.sliding[1] + impulse.dot(u)];
     }
 }

@@ -173,7 +173,11 @@ impl Simulation {
         let targets: Vec<f64> = touching.iter().flat_map(target).collect();
         let precision = touching.iter().map(wanted).fold(f64::INFINITY, f64::min) / 16.0;
         let mut system = System::new(bodies, &contacts, |body| body);
-        system.solve(&targets, Accuracy { precision, relative: 0.0, aim: 1.0 }, Start::Sticking);
+        system.solve(
+            &targets,
+            Accuracy { precision, relative: 0.0, aim: 1.0, slow: f64::INFINITY },
+            Start::Sticking,
+        );
         for (body, solved) in self.bodies.iter_mut().zip(&system.bodies).skip(first) {
             if body.is_dynamic() {
                 body.shift(solved.velocity);

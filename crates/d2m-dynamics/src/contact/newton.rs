@@ -26,24 +26,40 @@ pub(super) struct Effort {
     rounds: u32,
     /// Newton steps of one round at most.
     steps: u32,
+    /// The softness of rows at first, of their scale.
+    soft: f64,
 }
 
 impl Effort {
-    /// Where the direct solution comes first.
-    pub(super) const FULL: Self = Self { rounds: 8, steps: 80 };
-    /// After sweeps that left too much of a crowd: sliding contacts are the method's weak case, and its last digits cost the most.
-    pub(super) const CROWD: Self = Self { rounds: 2, steps: 12 };
+    /// As exact as it gets.
+    pub(super) const FULL: Self = Self { rounds: 10, steps: 80, soft: 1e-3 };
+    /// And with rows so hard at first that what can stick does: on soft rows it creeps, which counts as sliding in the next round.
+    pub(super) const STICK: Self = Self { soft: 1e-5, ..Self::FULL };
+    /// After sweeps that left too much: with soft rows three or four steps find a round's velocities also where much slides, and
+    /// the first rounds gain most.
+    pub(super) const SHORT: Self = Self { rounds: 4, steps: 8, soft: 1e-2 };
+
+    fn is_short(self) -> bool {
+        self.rounds < Self::FULL.rounds
+    }
 }
 
-/// The softness r of a row at first, of its scale, where masses are alike; a round leaves r/(r + m/M) of what the heaviest body, of mass M,
-/// asks for from the lightest one, of mass m, so no more than [`SHARE`] of m/M.
-const SOFT: f64 = 1e-5;
+/// Of rows of softness r a round leaves r/(r + m/M) of what the heaviest body, of mass M, asks for from the lightest one, of mass m, so no
+/// more than this part of m/M.
 const SHARE: f64 = 1e-2;
 /// And at least.
 const LEAST_SOFT: f64 = 1e-11;
-/// It is made smaller by this where a round gains less than [`GAIN`].
+/// It is made smaller by this where a round gains less than [`GAIN`], and greater by this where its velocities are not found: many contacts
+/// that slide ask for that, and harder rows only more so.
 const HARDER: f64 = 0.05;
+const SOFTER: f64 = 100.0;
 const GAIN: f64 = 5.0;
+/// But no greater than this.
+const MOST_SOFT: f64 = 1e-2;
+/// Rounds one after the other that gain nothing, after which no other one is tried.
+const MOST_LOSSES: u32 = 3;
+/// Of a crowd, a round that leaves more than this of the one before is the last one.
+const LITTLE: f64 = 0.8;
 /// The part of the aim to which each round's velocities are found.
 const INNER: f64 = 0.25;
 /// The slope along a line, of that at its start, with which a search ends.
@@ -95,6 +111,7 @@ impl System {
         let begun = (self.residual(targets), self.impulses.clone());
         let mut best: Option<(f64, Vec<[f64; 3]>)> = None;
         let mut tolerance = self.tolerance(accuracy);
+        let mut aim = if effort.is_short() { self.enough(accuracy) } else { accuracy.aim(tolerance) };
         let slides = |block: &Block, of: &System| {
             let [_, t, u] = block.rates(|i| of.bodies[i].velocity);
             block.law.friction() * (t * t + u * u).sqrt()
@@ -105,8 +122,8 @@ impl System {
         };
         let mut state = (self.impulses.clone(), shift, self.velocities());
         let mut anderson = Anderson::default();
-        let mut soft = (SHARE / self.mass_ratio()).clamp(LEAST_SOFT, SOFT);
-        let mut last = f64::INFINITY;
+        let mut soft = (SHARE / self.mass_ratio()).clamp(LEAST_SOFT, effort.soft);
+        let (mut last, mut losses) = (f64::INFINITY, 0);
         for _ in 0..effort.rounds {
             let (center, shift, velocity) = state;
             let found = vec![Projected { impulse: [0.0; 3], slope: None }; self.blocks.len()];
@@ -122,21 +139,27 @@ impl System {
                 velocity,
                 found,
             };
-            newton.minimize(&mut factor, INNER * accuracy.aim(tolerance), effort.steps);
+            let is_found = newton.minimize(&mut factor, INNER * aim, effort.steps);
             let impulses: Vec<[f64; 3]> = newton.found.iter().map(|found| found.impulse).collect();
             let Newton { shift, velocity, .. } = newton;
             self.set(&free, &impulses);
             let residual = self.residual(targets);
+            losses += 1;
             if best.as_ref().is_none_or(|best| residual < best.0) {
                 best = Some((residual, impulses.clone()));
+                losses = 0;
             }
             tolerance = self.tolerance(accuracy);
-            if residual <= accuracy.aim(tolerance) {
+            aim = if effort.is_short() { self.enough(accuracy) } else { accuracy.aim(tolerance) };
+            let stops = losses == MOST_LOSSES || effort.is_short() && residual > LITTLE * last;
+            if residual <= aim || stops {
                 break;
             }
             let answer: Vec<f64> = self.blocks.iter().map(|block| slides(block, self)).collect();
             let shift = anderson.next(&shift, answer);
-            if GAIN * residual > last {
+            if !is_found {
+                soft = (SOFTER * soft).min(MOST_SOFT);
+            } else if GAIN * residual > last && !effort.is_short() {
                 soft = (HARDER * soft).max(LEAST_SOFT);
             }
             last = residual;
@@ -167,8 +190,8 @@ impl System {
 }
 
 impl Newton<'_> {
-    /// Newton's method; λ of the last velocities is in `found`.
-    fn minimize(&mut self, factor: &mut Factor, tolerance: f64, most_steps: u32) {
+    /// Newton's method; λ of the last velocities is in `found`. True: they are those of the minimum.
+    fn minimize(&mut self, factor: &mut Factor, tolerance: f64, most_steps: u32) -> bool {
         let size = 6 * self.places.iter().flatten().count();
         let mut least = f64::INFINITY;
         let mut stalls = 0;
@@ -176,21 +199,22 @@ impl Newton<'_> {
             let slope = self.gradient(size);
             let off = self.off(&slope);
             if off <= tolerance || step == most_steps {
-                return;
+                return off <= tolerance;
             }
             // Rounding: what is left gets no less.
             stalls = if off > 0.5 * least { stalls + 1 } else { 0 };
             least = least.min(off);
             if stalls > 4 && off < 1e-6 * self.fastest() {
-                return;
+                return true;
             }
             self.assemble(factor);
             let mut way: Vec<f64> = slope.iter().map(|x| -x).collect();
             if !factor.solve(&mut way) || way.iter().any(|x| !x.is_finite()) {
-                return;
+                break;
             }
             self.go(&way, &slope);
         }
+        false
     }
 
     fn argument(&self, k: usize, rates: [f64; 3]) -> [f64; 3] {

@@ -1,18 +1,31 @@
 //! Which method solves an island.
 
 use super::newton::{Effort, Start};
-use super::system::{SolverBody, System};
+use super::system::{Block, SolverBody, System};
+use crate::velocity::Velocity;
+use glam::DVec3;
 
-/// Moved bodies up to which the direct solution comes first.
+/// Moved bodies up to which they may stick however fast they are.
+const COUPLE: usize = 4;
+/// Moved bodies up to which solutions are exact whatever the bodies do.
 const FEW: usize = 20;
-/// Moved bodies up to which a direct solution may cost what it takes: tall stacks need it, and their factors are small.
+/// And up to which they are where bodies are about to rest: tall stacks need it, and their factors are small.
 const SOME: usize = 64;
 /// Ratio of masses beyond which sweeps converge too slowly.
 const MOST_RATIO: f64 = 30.0;
-/// Sweeps where they come first, and where they come after the direct solution.
+/// Sweeps where they come first, and where they come last.
+const FIRST: u32 = 12;
 const SWEEPS: u32 = 60;
 /// How much more than the precision may be left of bodies that move, at most.
 const LOOSE: f64 = 1024.0;
+/// How much more may be left of a crowd than of few bodies.
+const CROWDED: f64 = 16.0;
+/// The cosine between normals from which on they push from opposite sides: of three that push from all sides of a plane it is −1/2.
+const OPPOSITE: f64 = -0.25;
+/// How much faster than slow what follows a motion may be, to take along what it holds.
+const TAKEN: f64 = 4.0;
+/// The part of the slow speed below which bodies are about to rest.
+const CALM: f64 = 0.25;
 
 /// How exactly the law is to hold.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +36,8 @@ pub(crate) struct Accuracy {
     pub(crate) relative: f64,
     /// The part of the precision that is aimed at where bodies rest: what is left of one step is there in the next one.
     pub(crate) aim: f64,
+    /// What slides slower than this could as well stick.
+    pub(crate) slow: f64,
 }
 
 impl Accuracy {
@@ -36,40 +51,109 @@ impl System {
     /// Finds impulses with which the rates of all contacts obey the law, above the targets; the residual that is left. Begins with the
     /// impulses that there are.
     ///
-    /// Crowds of bodies of about the same mass that slide are what sweeps do well; few bodies, masses far apart, conforming contacts and
-    /// joints are solved directly. Whichever comes first, where it leaves more than the tolerance the other one is tried, too, and the
-    /// better of both is taken.
+    /// Few bodies, and masses far apart, are solved directly and exactly; what could stick so that it does. Of crowds sweeps come first, which cost
+    /// least. What they leave is solved directly with soft rows, which gains most where most slides; of those about to rest exactly. Where
+    /// that leaves more than the tolerance sweeps are tried again, and the best by the residual is taken.
     pub(crate) fn solve(&mut self, targets: &[f64], accuracy: Accuracy, start: Start) -> f64 {
-        if self.is_direct() {
-            let residual = self.solve_direct(targets, accuracy, start, Effort::FULL);
-            if residual <= self.tolerance(accuracy) {
-                return residual;
+        let is_crowd = self.moved() > FEW;
+        let mut residual = self.residual(targets);
+        let (mut start, mut effort) = (start, Effort::STICK);
+        if self.mass_ratio() <= MOST_RATIO {
+            if is_crowd && !self.is_conforming {
+                residual = self.sweep_until(targets, accuracy, FIRST);
             }
-            self.better(residual, |system| system.sweep_until(targets, accuracy, SWEEPS))
-        } else {
-            let residual = self.sweep_until(targets, accuracy, SWEEPS);
-            if residual <= accuracy.aim(self.tolerance(accuracy)) {
-                return residual;
+            let could_stick = start == Start::Sticking && self.could_stick(accuracy);
+            if is_crowd && !could_stick {
+                if residual <= self.enough(accuracy) {
+                    return residual;
+                }
+                let short =
+                    |system: &mut Self| system.solve_direct(targets, accuracy, Start::Present, Effort::SHORT);
+                residual = self.better(residual, 0.0, short);
+                let rests = self.moved() <= SOME && self.is_calm(accuracy);
+                if residual <= self.enough(accuracy) || !rests {
+                    return residual;
+                }
             }
-            let effort = if self.moved() <= SOME { Effort::FULL } else { Effort::CROWD };
-            self.better(residual, |system| system.solve_direct(targets, accuracy, start, effort))
+            if !could_stick {
+                (start, effort) = (Start::Present, Effort::FULL);
+            }
         }
+        // What slips may obey the law as well as what sticks.
+        let tolerance = self.tolerance(accuracy);
+        let full = |system: &mut Self| system.solve_direct(targets, accuracy, start, effort);
+        residual = self.better(residual, tolerance, full);
+        if residual <= self.tolerance(accuracy).max(self.enough(accuracy)) {
+            return residual;
+        }
+        self.better(residual, 0.0, |system| system.sweep_until(targets, accuracy, SWEEPS))
+    }
+
+    /// What need not be solved any better.
+    pub(super) fn enough(&self, accuracy: Accuracy) -> f64 {
+        let tolerance = self.tolerance(accuracy);
+        let is_exact = self.moved() <= FEW || (self.moved() <= SOME && self.is_calm(accuracy));
+        if is_exact { accuracy.aim(tolerance) } else { CROWDED * tolerance }
+    }
+
+    /// Are the bodies about to rest?
+    fn is_calm(&self, accuracy: Accuracy) -> bool {
+        self.mean_speed() <= CALM * accuracy.slow
+    }
+
+    /// Does something slide so slowly that it might as well stick, where bodies are jammed? What follows a motion may take along what it
+    /// does not press on yet, and faster.
+    fn could_stick(&self, accuracy: Accuracy) -> bool {
+        let is_driven = |body: &SolverBody| body.inverse_mass == 0.0 && body.velocity != Velocity::default();
+        let drives = self.moved() <= FEW && self.bodies.iter().any(is_driven);
+        let is_slow = self.moved() <= SOME && self.mean_speed() <= accuracy.slow;
+        if !(drives || is_slow || self.moved() <= COUPLE) {
+            return false;
+        }
+        let (tolerance, most) = (self.tolerance(accuracy), if drives { TAKEN } else { 1.0 } * accuracy.slow);
+        let presses = |impulse: &[f64; 3]| drives || impulse[0] > 0.0;
+        let creeps = |(block, impulse): (&Block, &[f64; 3])| {
+            let [_, t, u] = block.rates(|i| self.bodies[i].velocity);
+            let slides = (t * t + u * u).sqrt();
+            presses(impulse) && block.law.friction() > 0.0 && slides > tolerance && slides <= most
+        };
+        let creep = || self.blocks.iter().zip(&self.impulses).any(creeps);
+        creep() && self.is_jammed(presses)
+    }
+
+    /// Is a body pressed on from opposite sides? Only then can it be held by more than what presses anyway.
+    fn is_jammed(&self, presses: impl Fn(&[f64; 3]) -> bool) -> bool {
+        let mut pressed = vec![Vec::new(); self.bodies.len()];
+        for (block, _) in self.blocks.iter().zip(&self.impulses).filter(|(_, impulse)| presses(impulse)) {
+            let normal = block.lines[0].direction;
+            for (body, normal) in [(block.a, -normal), (block.b, normal)] {
+                if self.is_moved(body) && !pressed[body].contains(&normal) {
+                    pressed[body].push(normal);
+                }
+            }
+        }
+        let opposite = |n: &[DVec3]| n.iter().any(|x| n.iter().any(|y| x.dot(*y) < OPPOSITE));
+        pressed.iter().any(|normals| opposite(normals))
     }
 
     /// What may be left of these bodies at the speeds that they have.
     pub(crate) fn tolerance(&self, accuracy: Accuracy) -> f64 {
+        (accuracy.relative * self.mean_speed()).min(LOOSE * accuracy.precision).max(accuracy.precision)
+    }
+
+    /// Of the moved bodies' surfaces where they touch, in the quadratic mean.
+    fn mean_speed(&self) -> f64 {
         let moved = |(body, _): &(&SolverBody, &f64)| body.inverse_mass > 0.0;
         let square = |(body, reach): (&SolverBody, &f64)| body.velocity.surface_speed(*reach).powi(2);
         let bodies = || self.bodies.iter().zip(&self.reach).filter(moved);
-        let mean = (bodies().map(square).sum::<f64>() / bodies().count().max(1) as f64).sqrt();
-        (accuracy.relative * mean).min(LOOSE * accuracy.precision).max(accuracy.precision)
+        (bodies().map(square).sum::<f64>() / bodies().count().max(1) as f64).sqrt()
     }
 
-    /// Goes on, unless that ends with a larger residual.
-    fn better(&mut self, residual: f64, go_on: impl FnOnce(&mut Self) -> f64) -> f64 {
+    /// Goes on, unless that ends with a residual that is larger, and not within the tolerance either.
+    fn better(&mut self, residual: f64, tolerance: f64, go_on: impl FnOnce(&mut Self) -> f64) -> f64 {
         let (impulses, velocities) = (self.impulses.clone(), self.velocities());
         let other = go_on(self);
-        if other <= residual {
+        if other <= residual.max(tolerance) {
             return other;
         }
         self.impulses = impulses;
@@ -77,10 +161,6 @@ impl System {
             body.velocity = velocity;
         }
         residual
-    }
-
-    fn is_direct(&self) -> bool {
-        self.moved() <= FEW || self.mass_ratio() > MOST_RATIO || self.is_conforming
     }
 
     fn moved(&self) -> usize {

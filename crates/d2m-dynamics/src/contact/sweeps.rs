@@ -9,7 +9,7 @@ impl System {
     pub(super) fn sweep_until(&mut self, targets: &[f64], accuracy: Accuracy, most: u32) -> f64 {
         let mut residual = self.residual(targets);
         let mut done = 0;
-        while residual > accuracy.aim(self.tolerance(accuracy)) && done < most {
+        while residual > self.enough(accuracy) && done < most {
             (0..BETWEEN).for_each(|_| self.sweep(targets));
             done += BETWEEN;
             residual = self.residual(targets);

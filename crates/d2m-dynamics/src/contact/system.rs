@@ -191,19 +191,22 @@ impl System {
     ///
     /// which is zero in a solution and nowhere else. The velocities follow from the impulses to rounding.
     pub(crate) fn residual(&self, targets: &[f64]) -> f64 {
-        let mut worst = 0.0f64;
-        for ((block, impulse), target) in self.blocks.iter().zip(&self.impulses).zip(targets) {
-            if block.scale == 0.0 || *target == f64::NEG_INFINITY {
-                continue;
-            }
-            let mut rates = block.rates(|i| self.bodies[i].velocity);
-            let shift = block.law.friction() * (rates[1] * rates[1] + rates[2] * rates[2]).sqrt();
-            rates[0] += shift - target + block.law.softness() * impulse[0];
-            let nearest = block.law.project([0, 1, 2].map(|i| impulse[i] - rates[i] / block.scale));
-            let off: f64 = (0..3).map(|i| (impulse[i] - nearest[i]) * (impulse[i] - nearest[i])).sum();
-            worst = worst.max(off.sqrt() * block.scale);
+        targets.iter().enumerate().map(|(k, &target)| self.own_residual(k, target)).fold(0.0, f64::max)
+    }
+
+    /// The natural map of one block.
+    #[inline]
+    pub(super) fn own_residual(&self, k: usize, target: f64) -> f64 {
+        let (block, impulse) = (&self.blocks[k], &self.impulses[k]);
+        if block.scale == 0.0 || target == f64::NEG_INFINITY {
+            return 0.0;
         }
-        worst
+        let mut rates = block.rates(|i| self.bodies[i].velocity);
+        let shift = block.law.friction() * (rates[1] * rates[1] + rates[2] * rates[2]).sqrt();
+        rates[0] += shift - target + block.law.softness() * impulse[0];
+        let nearest = block.law.project([0, 1, 2].map(|i| impulse[i] - rates[i] / block.scale));
+        let off: f64 = (0..3).map(|i| (impulse[i] - nearest[i]) * (impulse[i] - nearest[i])).sum();
+        off.sqrt() * block.scale
     }
 
     /// Twice the kinetic energy of the bodies that impulses move.
