@@ -1,6 +1,7 @@
 //! Contacts of bodies that are close: rows, their solution, impacts.
 
 mod anderson;
+mod chosen;
 mod factor;
 mod impact;
 mod law;

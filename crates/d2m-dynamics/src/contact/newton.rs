@@ -47,7 +47,8 @@ impl Effort {
 /// Of rows of softness r a round leaves r/(r + m/M) of what the heaviest body, of mass M, asks for from the lightest one, of mass m, so no
 /// more than this part of m/M.
 const SHARE: f64 = 1e-2;
-/// And at least.
+/// And at least, as a part of that, and in any case.
+const HARDEST: f64 = 1e-4;
 const LEAST_SOFT: f64 = 1e-11;
 /// It is made smaller by this where a round gains less than [`GAIN`], and greater by this where its velocities are not found: many contacts
 /// that slide ask for that, and harder rows only more so.
@@ -123,6 +124,7 @@ impl System {
         let mut state = (self.impulses.clone(), shift, self.velocities());
         let mut anderson = Anderson::default();
         let mut soft = (SHARE / self.mass_ratio()).clamp(LEAST_SOFT, effort.soft);
+        let hardest = (HARDEST * SHARE / self.mass_ratio()).max(LEAST_SOFT);
         let (mut last, mut losses) = (f64::INFINITY, 0);
         for _ in 0..effort.rounds {
             let (center, shift, velocity) = state;
@@ -160,7 +162,7 @@ impl System {
             if !is_found {
                 soft = (SOFTER * soft).min(MOST_SOFT);
             } else if GAIN * residual > last && !effort.is_short() {
-                soft = (HARDER * soft).max(LEAST_SOFT);
+                soft = (HARDER * soft).max(hardest);
             }
             last = residual;
             state = (impulses, shift, velocity);

@@ -18,12 +18,15 @@ const FIRST: u32 = 12;
 const SWEEPS: u32 = 60;
 /// How much more than the precision may be left of bodies that move, at most.
 const LOOSE: f64 = 1024.0;
-/// How much more may be left of a crowd than of few bodies.
+/// How much more may be left of several bodies that move, and of a crowd.
+const SEVERAL: f64 = 4.0;
 const CROWDED: f64 = 16.0;
 /// The cosine between normals from which on they push from opposite sides: of three that push from all sides of a plane it is −1/2.
 const OPPOSITE: f64 = -0.25;
 /// How much faster than slow what follows a motion may be, to take along what it holds.
 const TAKEN: f64 = 4.0;
+/// The part of the slow speed that no solution leaves where there is one.
+pub(super) const GROSS: f64 = 0.25;
 /// The part of the slow speed below which bodies are about to rest.
 const CALM: f64 = 0.25;
 
@@ -55,23 +58,27 @@ impl System {
     /// least. What they leave is solved directly with soft rows, which gains most where most slides; of those about to rest exactly. Where
     /// that leaves more than the tolerance sweeps are tried again, and the best by the residual is taken.
     pub(crate) fn solve(&mut self, targets: &[f64], accuracy: Accuracy, start: Start) -> f64 {
-        let is_crowd = self.moved() > FEW;
-        let mut residual = self.residual(targets);
+        if self.is_conforming
+            && let Some(residual) = self.solve_chosen(targets, accuracy, start)
+        {
+            return residual;
+        }
+        let (moved, mut residual) = (self.moved(), self.residual(targets));
         let (mut start, mut effort) = (start, Effort::STICK);
         if self.mass_ratio() <= MOST_RATIO {
-            if is_crowd && !self.is_conforming {
+            if moved > FEW && !self.is_conforming {
                 residual = self.sweep_until(targets, accuracy, FIRST);
             }
             let could_stick = start == Start::Sticking && self.could_stick(accuracy);
-            if is_crowd && !could_stick {
+            let rests = moved <= SOME && self.is_calm(accuracy);
+            if moved > COUPLE && !rests && !could_stick {
                 if residual <= self.enough(accuracy) {
                     return residual;
                 }
                 let short =
                     |system: &mut Self| system.solve_direct(targets, accuracy, Start::Present, Effort::SHORT);
                 residual = self.better(residual, 0.0, short);
-                let rests = self.moved() <= SOME && self.is_calm(accuracy);
-                if residual <= self.enough(accuracy) || !rests {
+                if residual <= self.enough(accuracy) || moved > FEW {
                     return residual;
                 }
             }
@@ -86,14 +93,25 @@ impl System {
         if residual <= self.tolerance(accuracy).max(self.enough(accuracy)) {
             return residual;
         }
-        self.better(residual, 0.0, |system| system.sweep_until(targets, accuracy, SWEEPS))
+        residual = self.better(residual, 0.0, |system| system.sweep_until(targets, accuracy, SWEEPS));
+        if residual <= GROSS * accuracy.slow {
+            return residual;
+        }
+        // No velocities obey the law, as of a body that is crushed: the nearest ones may be as large as normals are askew. Sweeps bound them.
+        let none = vec![[0.0; 3]; self.blocks.len()];
+        self.set(&self.free(), &none);
+        self.sweep_until(targets, accuracy, SWEEPS)
     }
 
     /// What need not be solved any better.
     pub(super) fn enough(&self, accuracy: Accuracy) -> f64 {
         let tolerance = self.tolerance(accuracy);
-        let is_exact = self.moved() <= FEW || (self.moved() <= SOME && self.is_calm(accuracy));
-        if is_exact { accuracy.aim(tolerance) } else { CROWDED * tolerance }
+        let is_exact = self.moved() <= COUPLE || (self.moved() <= SOME && self.is_calm(accuracy));
+        match self.moved() {
+            _ if is_exact => accuracy.aim(tolerance),
+            moved if moved <= FEW => SEVERAL * tolerance,
+            _ => CROWDED * tolerance,
+        }
     }
 
     /// Are the bodies about to rest?
