@@ -1,5 +1,5 @@
 //! `cargo xtask ci`: every check that must never be red, each with its time.
-use crate::{TaskResult, tidy, workspace_root};
+use crate::{TaskResult, doc, tidy, workspace_root};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -18,11 +18,10 @@ pub(crate) struct Options {
 struct Step {
     name: &'static str,
     arguments: &'static [&'static str],
-    environment: &'static [(&'static str, &'static str)],
 }
 
 const fn step(name: &'static str, arguments: &'static [&'static str]) -> Step {
-    Step { name, arguments, environment: &[] }
+    Step { name, arguments }
 }
 
 /// In order of cost: what fails fast comes first. `features` stands for a check of each library.
@@ -33,11 +32,6 @@ const STEPS: &[Step] = &[
     step("tests", &["test", "--workspace", "--locked", "--lib", "--bins", "--tests", "--examples"]),
     step("audit", &["test", "--locked", "-p=d2m", "--features=audit", "--test=audit"]),
     step("doctests", &["test", "--workspace", "--locked", "--doc"]),
-    Step {
-        name: "documentation",
-        arguments: &["doc", "--workspace", "--no-deps", "--locked"],
-        environment: &[("RUSTDOCFLAGS", "-D warnings")],
-    },
 ];
 
 /// Libraries that have default features. Without them each must still compile, each in a call of its own: in one call cargo
@@ -59,7 +53,7 @@ fn libraries_with_defaults(root: &Path) -> Result<Vec<String>, Box<dyn std::erro
 /// Runs the steps; an error names those that failed.
 pub(crate) fn run(options: &Options) -> TaskResult {
     let wanted = |name: &str| options.only.as_ref().is_none_or(|only| name.contains(only.as_str()));
-    let names = || STEPS.iter().map(|step| step.name).chain(["tidy"]);
+    let names = || STEPS.iter().map(|step| step.name).chain(["documentation", "tidy"]);
     if !names().any(wanted) {
         return Err(format!("no such step: {}", names().collect::<Vec<_>>().join(", ")).into());
     }
@@ -86,13 +80,18 @@ pub(crate) fn run(options: &Options) -> TaskResult {
             let mut ok = true;
             if step.name == "features" {
                 for name in libraries_with_defaults(&workspace_root())? {
-                    ok &= cargo(&["check", "--locked", "--no-default-features", "-p", &name], &[])?;
+                    ok &= cargo(&["check", "--locked", "--no-default-features", "-p", &name])?;
                 }
             }
-            ok &= cargo(step.arguments, step.environment)?;
+            ok &= cargo(step.arguments)?;
             if !note(step.name, ok, begin.elapsed().as_secs_f64()) {
                 break 'steps;
             }
+        }
+        if wanted("documentation") {
+            let begin = Instant::now();
+            let ok = doc::run().map_err(|error| eprintln!("{error}")).is_ok();
+            note("documentation", ok, begin.elapsed().as_secs_f64());
         }
     }
     eprintln!("xtask ci: {:.1} s in total\n{}", start.elapsed().as_secs_f64(), times.join("\n"));
@@ -100,11 +99,9 @@ pub(crate) fn run(options: &Options) -> TaskResult {
 }
 
 /// Calls cargo; does it succeed?
-fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> std::io::Result<bool> {
+fn cargo(arguments: &[&str]) -> std::io::Result<bool> {
     eprintln!("xtask ci: cargo {}", arguments.join(" "));
     let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut command = Command::new(program);
-    let status =
-        command.args(arguments).envs(environment.iter().copied()).current_dir(workspace_root()).status()?;
+    let status = Command::new(program).args(arguments).current_dir(workspace_root()).status()?;
     Ok(status.success())
 }

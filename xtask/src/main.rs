@@ -4,6 +4,7 @@
 //! Only the checks are compiled here, which takes seconds. The tasks of the evaluation are those of `d2m-evaluation`.
 #![forbid(unsafe_code)]
 mod ci;
+mod doc;
 mod forwarded;
 mod lines;
 mod mutants;
@@ -29,6 +30,8 @@ enum Task {
     Ci(ci::Options),
     /// Fails when documents and sources disagree (the map, the guarantees, the table of mutants) or a file breaks a rule.
     Tidy,
+    /// The reference in target/doc; fails on warnings and on front pages whose links lead away from it.
+    Doc,
     /// Lines of product code of each crate, without tests, comments and blank lines.
     Lines(lines::Options),
     /// Deliberate faults in a copy of the sources, each of which a named test must notice; fails if one survives.
@@ -51,6 +54,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().task {
         Task::Ci(options) => ci::run(&options),
         Task::Tidy => tidy::run(),
+        Task::Doc => doc::run(),
         Task::Lines(options) => lines::run(&options),
         Task::Mutants(options) => mutants::run(&options),
         Task::Accuracy(_) | Task::Bench(_) | Task::Report(_) | Task::Trials(_) => return forwarded::run(),

@@ -1,7 +1,7 @@
 //! Front pages: every name that a library's root exports is linked from its page, and the page has a picture.
 //!
-//! The page is README.md with the `//!` lines of `lib.rs`. A link is the name in brackets and backticks, as in [`Pages`]; that it leads
-//! somewhere is what `cargo doc` checks.
+//! The page is README.md with the `//!` lines of `lib.rs`. A link is the name in backticks and brackets; that it leads somewhere is
+//! what `cargo doc` checks.
 use std::fs;
 use std::path::Path;
 

@@ -1,0 +1,56 @@
+//! `cargo xtask doc`: the reference, with all links between the crates of the workspace.
+//!
+//! Pages are written side by side, and rustdoc links to another crate's pages on this machine only where they are there already;
+//! otherwise to docs.rs. So crates whose front pages link there are written a second time.
+use crate::{TaskResult, workspace_root};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A link that left this machine although the page is here.
+const ELSEWHERE: &str = "href=\"https://docs.rs/d2m";
+
+/// Writes the pages; an error when there is a warning, or a link of a crate's front page that leads away.
+pub(crate) fn run() -> TaskResult {
+    let root = workspace_root();
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
+    let mut fronts = Vec::new();
+    for entry in fs::read_dir(root.join("crates"))? {
+        let name = entry?.file_name().to_string_lossy().replace('-', "_");
+        fronts.push(target.join("doc").join(name).join("index.html"));
+    }
+    write(&root)?;
+    for front in leading_away(&fronts)? {
+        // Cargo writes again what is not there: one crate at a time, beside all others.
+        fs::remove_file(front)?;
+        write(&root)?;
+    }
+    match leading_away(&fronts)?.first() {
+        None => Ok(()),
+        Some(page) => {
+            Err(format!("{} links to docs.rs instead of the pages beside it", page.display()).into())
+        }
+    }
+}
+
+/// Writes the pages that are not up to date.
+fn write(root: &Path) -> TaskResult {
+    let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let status = Command::new(program)
+        .args(["doc", "--workspace", "--no-deps", "--locked"])
+        .env("RUSTDOCFLAGS", "-D warnings")
+        .current_dir(root)
+        .status()?;
+    if status.success() { Ok(()) } else { Err("documentation: see above".into()) }
+}
+
+/// The front pages with such a link.
+fn leading_away(fronts: &[PathBuf]) -> std::io::Result<Vec<&PathBuf>> {
+    let mut found = Vec::new();
+    for front in fronts.iter().filter(|front| front.exists()) {
+        if fs::read_to_string(front)?.contains(ELSEWHERE) {
+            found.push(front);
+        }
+    }
+    Ok(found)
+}
