@@ -3,6 +3,21 @@ use d2m_root::Evidence;
 use glam::DVec3;
 
 /// First contact of two moving features over a window of time.
+///
+/// ```
+/// use d2m_feature::{ContactOptions, FirstContact, PairMotion};
+/// use d2m_motion::ConstantTwist;
+/// use glam::DVec3;
+/// // A point falls by 2 from a height of 1.
+/// let falling = ConstantTwist::REST.with_position(DVec3::Z).with_linear_velocity(DVec3::Z * -2.0);
+/// let pair = PairMotion::new(&falling, &ConstantTwist::REST, 0.0, 1.0);
+/// let floor = [DVec3::new(-1.0, -1.0, 0.0), DVec3::X, DVec3::Y];
+/// match pair.point_triangle(DVec3::ZERO, &floor, &ContactOptions::new()) {
+///     FirstContact::Clear => panic!("proven free, which would be wrong here"),
+///     FirstContact::Contact(contact) => assert!(contact.lo <= 0.5 && 0.5 <= contact.hi),
+///     FirstContact::Undecided { clear_until } => panic!("only with a limit; free until {clear_until}"),
+/// }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[must_use = "it is a certificate: what is not read is not known to be safe"]
 pub enum FirstContact {
@@ -23,6 +38,19 @@ pub enum FirstContact {
 /// Promise: no contact in `[t0, lo)`; and, as the evidence says, a true contact at some time of `[lo, hi]`
 /// ([`Evidence::Crossing`]), or a time in it at which the distance is proven to be at most `tolerance` beyond the minimum
 /// separation ([`Evidence::WithinTolerance`]; also for features that touch at the start, with `lo = hi = t0`).
+///
+/// ```
+/// use d2m_feature::{ContactOptions, FirstContact, PairMotion};
+/// use d2m_motion::ConstantTwist;
+/// use glam::DVec3;
+/// // A point falls by 2 from a height of 1.
+/// let falling = ConstantTwist::REST.with_position(DVec3::Z).with_linear_velocity(DVec3::Z * -2.0);
+/// let pair = PairMotion::new(&falling, &ConstantTwist::REST, 0.0, 1.0);
+/// let floor = [DVec3::new(-1.0, -1.0, 0.0), DVec3::X, DVec3::Y];
+/// let FirstContact::Contact(contact) = pair.point_triangle(DVec3::ZERO, &floor, &ContactOptions::new())
+///     else { panic!("it falls onto the triangle") };
+/// assert!(contact.hi - contact.lo < 1e-9 && contact.distance <= contact.tolerance);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactBracket {
     /// No contact before this time of the window.
@@ -40,6 +68,19 @@ pub struct ContactBracket {
 }
 
 /// Where and how two features touch. Plain floating point at one time: it describes, it proves nothing.
+///
+/// ```
+/// use d2m_feature::PairMotion;
+/// use d2m_motion::ConstantTwist;
+/// use glam::DVec3;
+/// // A point falls by 2 from a height of 1.
+/// let falling = ConstantTwist::REST.with_position(DVec3::Z).with_linear_velocity(DVec3::Z * -2.0);
+/// let pair = PairMotion::new(&falling, &ConstantTwist::REST, 0.0, 1.0);
+/// let floor = [DVec3::new(-1.0, -1.0, 0.0), DVec3::X, DVec3::Y];
+/// let details = pair.point_triangle_details(DVec3::ZERO, &floor, 0.25);
+/// assert!((details.point_a - DVec3::Z * 0.5).length() < 1e-15 && details.point_b.length() < 1e-15);
+/// assert!((details.normal - DVec3::NEG_Z).length() < 1e-15 && (details.closing_speed - 2.0).abs() < 1e-15);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactDetails {
     /// The time that it describes (the start of the bracket).

@@ -2,6 +2,12 @@
 ///
 /// Edges are named by their two vertices, the smaller id first. A contact at a vertex or along an edge is reported
 /// as one of the feature pairs that contain it.
+///
+/// ```
+/// use d2m_feature::FeaturePair;
+/// let meeting = FeaturePair::EdgeEdge { edge_a: [3, 7], edge_b: [0, 1] }; // by the ids of their vertices
+/// assert!(matches!(meeting, FeaturePair::EdgeEdge { edge_a: [3, _], .. }));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FeaturePair {

@@ -51,6 +51,22 @@ struct Sides {
 }
 
 /// A triangle of B prepared for many points of A over one window ([`PairMotion::place_triangle`]).
+///
+/// ```
+/// use d2m_feature::{ContactOptions, PairMotion};
+/// use d2m_motion::ConstantTwist;
+/// use glam::DVec3;
+/// // A point falls by 2 from a height of 1.
+/// let falling = ConstantTwist::REST.with_position(DVec3::Z).with_linear_velocity(DVec3::Z * -2.0);
+/// let pair = PairMotion::new(&falling, &ConstantTwist::REST, 0.0, 1.0);
+/// let floor = [DVec3::new(-1.0, -1.0, 0.0), DVec3::X, DVec3::Y];
+/// let placed = pair.place_triangle(&floor);
+/// for x in [0.0, 0.1, 0.2] {
+///     let point = DVec3::X * x;
+///     let options = ContactOptions::new();
+///     assert_eq!(pair.point_placed(point, &placed, &options), pair.point_triangle(point, &floor, &options));
+/// }
+/// ```
 #[derive(Debug, Clone)]
 pub struct PlacedTriangle {
     /// Body frame, as given.

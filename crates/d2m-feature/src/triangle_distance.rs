@@ -42,6 +42,15 @@ const TIGHT: f64 = 5.0 * LOSS;
 const FLOOR: f64 = power_of_two(-500);
 
 /// The part of a triangle that holds a closest point.
+///
+/// ```
+/// use d2m_feature::{TriangleFeature, triangle_distance};
+/// use glam::{DVec3, dvec3};
+/// let floor = [DVec3::ZERO, DVec3::X, DVec3::Y];
+/// let needle = [dvec3(0.25, 0.25, 0.5), dvec3(0.25, 0.25, 1.0), dvec3(0.25, 0.5, 1.0)];
+/// let found = triangle_distance(&floor, &needle);
+/// assert_eq!((found.feature_a, found.feature_b), (TriangleFeature::Face, TriangleFeature::Vertex(0)));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum TriangleFeature {
     /// Vertex 0, 1 or 2.
@@ -53,6 +62,16 @@ pub enum TriangleFeature {
 }
 
 /// The distance of two closed triangles, enclosed, with witnesses.
+///
+/// ```
+/// use d2m_feature::triangle_distance;
+/// use glam::DVec3;
+/// let floor = [DVec3::ZERO, DVec3::X, DVec3::Y];
+/// let lifted = floor.map(|p| p + DVec3::Z * 2.0);
+/// let apart = triangle_distance(&floor, &lifted);
+/// assert!(apart.lower <= 2.0 && 2.0 <= apart.upper && (apart.direction - DVec3::Z).length() < 1e-12);
+/// assert_eq!(triangle_distance(&floor, &floor).upper, 0.0); // they share a point: decided exactly
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct TriangleDistance {

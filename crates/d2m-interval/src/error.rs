@@ -1,4 +1,10 @@
 /// Why a pair of numbers is not an interval.
+///
+/// ```
+/// use d2m_interval::{Interval, IntervalError};
+/// assert_eq!(Interval::try_new(2.0, 1.0), Err(IntervalError::Order { lo: 2.0, hi: 1.0 }));
+/// assert!(matches!(Interval::try_new(f64::NAN, 1.0), Err(IntervalError::Nan { .. })));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IntervalError {
@@ -21,6 +27,12 @@ pub enum IntervalError {
 }
 
 /// Why a text is not an interval.
+///
+/// ```
+/// use d2m_interval::{Interval, ParseIntervalError};
+/// assert_eq!("[2, 1]".parse::<Interval>(), Err(ParseIntervalError::Order));
+/// assert_eq!("one".parse::<Interval>(), Err(ParseIntervalError::Syntax));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ParseIntervalError {

@@ -6,6 +6,15 @@ use crate::{Interval, IntervalVec3};
 use d2m_lanes::{F64x2, UNIT, power_of_two};
 
 /// A 3×3 matrix of intervals.
+///
+/// ```
+/// use d2m_interval::{Interval, IntervalMat3};
+/// use glam::DVec3;
+/// // Every turn about z by 0 to 0.1 radians.
+/// let turns = IntervalMat3::rotation(DVec3::Z, Interval::new(0.0, 0.1));
+/// let tip = turns.mul_point(DVec3::X);
+/// assert!(tip.x.contains(0.05f64.cos()) && tip.y.contains(0.05f64.sin()) && tip.z.contains(0.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IntervalMat3 {
     rows: [IntervalVec3; 3],

@@ -9,6 +9,14 @@ use crate::{
 use d2m_lanes::F64x4;
 
 /// Four boxes of vectors.
+///
+/// ```
+/// use d2m_interval::{IntervalVec3, IntervalVec3X4};
+/// use glam::DVec3;
+/// let four = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE].map(IntervalVec3::point);
+/// let squares = IntervalVec3X4::from_lanes(four).norm_squared();
+/// assert!(squares.lane(0).contains(1.0) && squares.lane(3).contains(3.0));
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct IntervalVec3X4 {
     /// First coordinates.

@@ -5,6 +5,25 @@ use d2m_interval::{Interval, IntervalVec3};
 use glam::DVec3;
 
 /// A promise of [`RigidMotion`] that a motion was caught breaking.
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist, check_motion};
+/// use glam::DVec3;
+/// /// Says that it stands, and moves.
+/// struct Liar;
+/// const TRUTH: ConstantTwist = ConstantTwist::REST;
+/// impl RigidMotion for Liar {
+///     fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+///         (Pose { translation: DVec3::X * t, ..Pose::IDENTITY }, Twist::ZERO)
+///     }
+///     fn enclose_pose(&self, t: Interval) -> IntervalPose { TRUTH.enclose_pose(t) }
+///     fn enclose_twist(&self, t: Interval) -> IntervalTwist { TRUTH.enclose_twist(t) }
+///     fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist { TRUTH.enclose_twist_rate(t) }
+/// }
+/// let faults = check_motion(&Liar, Interval::UNIT, 10);
+/// assert!(faults.iter().any(|fault| fault.what.contains("pose")), "{faults:?}");
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct MotionFault {

@@ -4,6 +4,14 @@ use crate::{IntervalPose, RigidMotion};
 use d2m_interval::Interval;
 
 /// A motion does not cover the times that a query needs.
+///
+/// ```
+/// use d2m_motion::{CoveredMotion, Keyframes, Pose, Span};
+/// let motion = Keyframes::try_new(&[(0.0, Pose::IDENTITY), (1.0, Pose::IDENTITY)], Span::Linear)?;
+/// let outside = CoveredMotion::try_new(&motion, 0.5, 2.0).unwrap_err();
+/// assert_eq!((outside.start, outside.end, outside.to), (0.0, 1.0, 2.0));
+/// # Ok::<(), d2m_motion::MotionError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "the motion covers the times from {start:?} to {end:?}, not the whole window from {from:?} to {to:?}"

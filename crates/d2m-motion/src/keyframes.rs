@@ -16,8 +16,11 @@ use glam::DVec3;
 /// // A quarter of a turn about z, while the origin goes from x = 1 to y = 1.
 /// let start = Pose { translation: DVec3::X, ..Pose::IDENTITY };
 /// let end = Pose::from_axis_angle(DVec3::Y, DVec3::Z, std::f64::consts::FRAC_PI_2);
-/// let halfway = |span| Keyframes::try_new(&[(0.0, start), (1.0, end)], span).map(|m| m.pose_and_twist(0.5).0.translation);
-/// assert!((halfway(Span::Linear)?.length() - 0.5f64.sqrt()).abs() < 1e-15); // on the chord
+/// let halfway = |span| {
+///     let path = Keyframes::try_new(&[(0.0, start), (1.0, end)], span)?;
+///     Ok::<_, d2m_motion::MotionError>(path.pose_and_twist(0.5).0.transform_point(DVec3::ZERO))
+/// };
+/// assert!((halfway(Span::Linear)?.length() - 0.5f64.sqrt()).abs() < 1e-12); // on the chord
 /// assert!((halfway(Span::Screw)?.length() - 1.0).abs() < 1e-12); // on the arc about the origin
 /// # Ok::<(), d2m_motion::MotionError>(())
 /// ```
@@ -37,6 +40,16 @@ pub enum Span {
 }
 
 /// The motion between two neighbouring keyframes.
+///
+/// ```
+/// use d2m_motion::{Keyframes, Pose, Span};
+/// use glam::DVec3;
+/// let at = |x: f64| Pose { translation: DVec3::X * x, ..Pose::IDENTITY };
+/// let path = Keyframes::try_new(&[(0.0, at(0.0)), (1.0, at(2.0)), (3.0, at(0.0))], Span::Linear)?;
+/// let back = path.span_at(2.0).expect("the path covers this time");
+/// assert_eq!((back.start, back.end, back.motion.linear_velocity()), (1.0, 3.0, DVec3::NEG_X));
+/// # Ok::<(), d2m_motion::MotionError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct KeyframeSpan<'a> {

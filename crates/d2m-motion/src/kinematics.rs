@@ -15,6 +15,17 @@ const ANY_ROTATION: f64 = 2.0 + 1e-9;
 /// true position of the body point `at` within `position.radius` of `position.center + position_tail`, and velocity, angular
 /// velocity and their derivatives (world axes) within their balls. Composition of such sets is plain floating
 /// point with a running radius, so that a chain of many joints loses some units in the last place and no more.
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_motion::{ConstantTwist, RigidMotion};
+/// use glam::DVec3;
+/// let flying = ConstantTwist::REST.with_linear_velocity(DVec3::X * 2.0);
+/// let over = flying.enclose_kinematics(Interval::UNIT);
+/// // From x = 0 to x = 2: within 1 of the middle, with the roundings.
+/// assert!((over.position.center - DVec3::X).length() < 1e-12 && over.position.radius >= 1.0);
+/// assert!(over.to_pose().translation.x.contains(1.5));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Kinematics {
     /// Body frame to world frame.

@@ -125,6 +125,16 @@ impl From<DMat4> for Pose {
 }
 
 /// A set of poses that contains the true pose at every time of some interval.
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_motion::{ConstantTwist, RigidMotion};
+/// use glam::DVec3;
+/// let spin = ConstantTwist::REST.with_angular_velocity(DVec3::Z);
+/// // Where the body point (1, 0, 0) is between the times 0 and 1.
+/// let way = spin.enclose_pose(Interval::UNIT).enclose_point(DVec3::X);
+/// assert!(way.x.contains(0.5f64.cos()) && way.y.contains(0.5f64.sin()));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IntervalPose {
     /// Encloses the rotation matrix, body frame to world frame.

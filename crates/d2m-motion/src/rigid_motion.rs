@@ -4,6 +4,16 @@ use d2m_interval::{Interval, IntervalVec3};
 use glam::DVec3;
 
 /// A piece of a motion during which its twist is constant.
+///
+/// ```
+/// use d2m_motion::{Keyframes, Pose, RigidMotion, Span};
+/// use glam::DVec3;
+/// let at = |x: f64| Pose { translation: DVec3::X * x, ..Pose::IDENTITY };
+/// let path = Keyframes::try_new(&[(0.0, at(0.0)), (1.0, at(2.0)), (3.0, at(0.0))], Span::Linear)?;
+/// let piece = path.constant_twist_from(0.5).expect("each span is a constant twist");
+/// assert_eq!((piece.motion.linear_velocity(), piece.until), (DVec3::X * 2.0, Some(1.0)));
+/// # Ok::<(), d2m_motion::MotionError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TwistPiece {
     /// The motion during the piece, with its closed form.

@@ -13,6 +13,18 @@ use glam::{DQuat, DVec3};
 const SMALL_SINE: f64 = 1e-8;
 
 /// How smooth a [`Spline`] is at its poses.
+///
+/// ```
+/// use d2m_motion::{Pose, RigidMotion, Spline, SplineDegree};
+/// use glam::DVec3;
+/// let at = |x: f64| Pose { translation: DVec3::X * x, ..Pose::IDENTITY };
+/// let poses = [(0.0, at(0.0)), (1.0, at(1.0)), (2.0, at(4.0))];
+/// for degree in [SplineDegree::Cubic, SplineDegree::Quintic] {
+///     let path = Spline::try_through(&poses, degree)?;
+///     assert!((path.pose_and_twist(1.0).0.translation - DVec3::X).length() < 1e-12);
+/// }
+/// # Ok::<(), d2m_motion::MotionError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum SplineDegree {

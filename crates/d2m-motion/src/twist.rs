@@ -50,6 +50,15 @@ impl Twist {
 }
 
 /// The velocities of a [`Twist`] expressed in body axes.
+///
+/// ```
+/// use d2m_motion::{Pose, Twist};
+/// use glam::DVec3;
+/// // A body that faces along y moves along y: ahead, seen from itself.
+/// let pose = Pose::from_axis_angle(DVec3::ZERO, DVec3::Z, std::f64::consts::FRAC_PI_2);
+/// let seen = Twist { linear: DVec3::Y, angular: DVec3::ZERO }.to_body_axes(&pose);
+/// assert!((seen.linear - DVec3::X).length() < 1e-15 && seen.angular == DVec3::ZERO);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyTwist {
     /// Velocity of the reference point, body axes, length per unit of time.
@@ -59,6 +68,16 @@ pub struct BodyTwist {
 }
 
 /// A set of twists (or of twist rates) that contains the true one at every time of some interval.
+///
+/// ```
+/// use d2m_interval::{Interval, IntervalVec3};
+/// use d2m_motion::{ConstantTwist, RigidMotion};
+/// use glam::DVec3;
+/// let spin = ConstantTwist::REST.with_angular_velocity(DVec3::Z * 2.0);
+/// let twist = spin.enclose_twist(Interval::UNIT);
+/// // A point at (1, 0, 0) from the reference point moves along y by 2 a unit of time.
+/// assert!(twist.enclose_velocity_of(IntervalVec3::point(DVec3::X)).y.contains(2.0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IntervalTwist {
     /// Encloses the linear part, world axes.

@@ -12,6 +12,21 @@ use d2m_interval::Interval;
 ///
 /// An empty enclosure (`√t` for t < 0) says that the function is not defined there. It proves nothing: [`first_zero`]
 /// takes it for "unknown".
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_root::{Differentiable, FirstZero, IntervalFunction, SearchLimits, first_zero};
+/// /// t² − 2.
+/// struct Square;
+/// impl IntervalFunction for Square {
+///     fn enclose(&mut self, t: Interval) -> Interval { t.sqr() - 2.0 }
+/// }
+/// impl Differentiable for Square {
+///     fn enclose_derivative(&mut self, t: Interval) -> Interval { t * 2.0 }
+/// }
+/// let found = first_zero(&mut Square, Interval::new(0.0, 9.0), SearchLimits::new(1e-12));
+/// assert!(matches!(found, FirstZero::Found { bracket, .. } if bracket.contains(2f64.sqrt())));
+/// ```
 pub trait Differentiable: IntervalFunction {
     /// Encloses f′ over all times of `t`.
     fn enclose_derivative(&mut self, t: Interval) -> Interval;
@@ -59,6 +74,20 @@ pub fn first_zero_of(
 }
 
 /// What is known of the zero in a bracket.
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_root::{FirstZero, SearchLimits, ZeroEvidence, first_zero_of};
+/// let evidence = |shift: f64| {
+///     let f = move |t: Interval| (t - 1.0).sqr() - shift;
+///     match first_zero_of(f, |t| (t - 1.0) * 2.0, Interval::new(0.0, 2.0), SearchLimits::new(1e-9)) {
+///         FirstZero::Found { evidence, .. } => evidence,
+///         other => panic!("{other:?}"),
+///     }
+/// };
+/// assert_eq!(evidence(0.25), ZeroEvidence::Unique); // crosses zero at 0.5
+/// assert_eq!(evidence(0.0), ZeroEvidence::Undecided); // touches it at 1: no sign tells a double root from a near miss
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ZeroEvidence {
@@ -73,6 +102,19 @@ pub enum ZeroEvidence {
 }
 
 /// Answer of [`first_zero`].
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_root::{FirstZero, SearchLimits, first_zero_of};
+/// let domain = Interval::new(0.0, 1.0);
+/// // cos t has no zero in [0, 1]: proven.
+/// assert_eq!(first_zero_of(|t| t.cos(), |t| -t.sin(), domain, SearchLimits::new(1e-9)), FirstZero::None);
+/// // With one evaluation little is proven, and that is said.
+/// let few = SearchLimits::new(1e-9).with_evaluations(1);
+/// let FirstZero::Undecided { clear_until } = first_zero_of(|t| t.sqr() - 0.25, |t| t * 2.0, domain, few)
+///     else { panic!("one evaluation is too few") };
+/// assert!(clear_until <= 0.5);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use = "it is a certificate: what is not read is not known to be safe"]
 pub enum FirstZero {

@@ -4,6 +4,13 @@ use crate::InclusionFunction;
 use d2m_interval::Interval;
 
 /// A real function of time known through enclosures.
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_root::IntervalFunction;
+/// let mut parabola = |t: Interval| t.sqr() - 2.0; // a closure is a function
+/// assert!(parabola.enclose(Interval::new(0.0, 1.0)).contains(-1.5));
+/// ```
 pub trait IntervalFunction {
     /// Encloses f over all times of `t`. An empty result ("not defined") proves nothing: searches take it for unknown.
     fn enclose(&mut self, t: Interval) -> Interval;
@@ -24,6 +31,21 @@ pub trait SecondOrder: IntervalFunction {
 }
 
 /// Γ, the validation of roots: not every root of f is a contact.
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_root::{Gamma, IntervalFunction, RootSearch, SearchLimits, bboi};
+/// /// 1 − t², which counts after t = 2 only.
+/// struct Late;
+/// impl IntervalFunction for Late {
+///     fn enclose(&mut self, t: Interval) -> Interval { 1.0 - t * t }
+/// }
+/// impl Gamma for Late {
+///     fn may_touch(&mut self, t: Interval) -> bool { t.hi() >= 2.0 }
+/// }
+/// // The root at 1 is no contact.
+/// assert_eq!(bboi(&mut Late, Interval::new(0.0, 3.0), SearchLimits::new(1e-6)), RootSearch::None);
+/// ```
 pub trait Gamma {
     /// `false` promises that no time in `t` is a contact; `true` promises nothing.
     fn may_touch(&mut self, t: Interval) -> bool;
@@ -48,6 +70,11 @@ pub enum Settled {
 }
 
 /// Where a search stops.
+///
+/// ```
+/// let limits = d2m_root::SearchLimits::new(1e-9).with_evaluations(1000);
+/// assert_eq!((limits.time_tolerance, limits.evaluations), (1e-9, 1000)); // a time; pieces that may be evaluated
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]
@@ -77,6 +104,21 @@ impl SearchLimits {
 }
 
 /// Answer of [`bboi`](crate::bboi) and [`hrfoi`](crate::hrfoi).
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_root::{Gamma, IntervalFunction, RootSearch, SearchLimits, bboi};
+/// struct Falling;
+/// impl IntervalFunction for Falling {
+///     fn enclose(&mut self, t: Interval) -> Interval { 1.0 - t * t }
+/// }
+/// impl Gamma for Falling {
+///     fn may_touch(&mut self, _: Interval) -> bool { true }
+/// }
+/// let search = |end: f64| bboi(&mut Falling, Interval::new(0.0, end), SearchLimits::new(1e-9));
+/// assert_eq!(search(0.5), RootSearch::None);
+/// assert!(matches!(search(3.0), RootSearch::Bracket(bracket) if bracket.contains(1.0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RootSearch {
     /// No contact in the domain.

@@ -25,6 +25,12 @@ pub struct Parameter {
 }
 
 /// One kind of shape.
+///
+/// ```
+/// let gear = d2m_shapes::SHAPES.iter().find(|shape| shape.name == "gear").expect("there is one");
+/// let teeth = gear.parameters.iter().find(|parameter| parameter.name == "teeth").expect("it has them");
+/// assert!(teeth.integer && teeth.low <= teeth.default && teeth.default <= teeth.high);
+/// ```
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct ShapeInfo {

@@ -3,6 +3,13 @@
 use thiserror::Error;
 
 /// A shape that does not exist or a parameter that it cannot have.
+///
+/// ```
+/// use d2m_shapes::ShapeError;
+/// let refused = d2m_shapes::mesh("gear?tooth=24").unwrap_err();
+/// assert!(matches!(&refused, ShapeError::UnknownParameter { shape: "gear", name, .. } if name == "tooth"));
+/// assert!(refused.to_string().starts_with("shape gear: there is no parameter \"tooth\"; it has "));
+/// ```
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ShapeError {

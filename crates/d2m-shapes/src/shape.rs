@@ -164,6 +164,12 @@ impl fmt::Display for Shape {
 
 /// The mesh of a shape's text form, such as `torus-knot?triangles=70000`.
 ///
+/// ```
+/// let ring = d2m_shapes::mesh("torus?triangles=1000&tube=0.2")?;
+/// assert!(ring.triangle_count() > 900 && ring.triangle_count() < 1100);
+/// # Ok::<(), d2m_shapes::ShapeError>(())
+/// ```
+///
 /// # Errors
 /// [`ShapeError`]: no such shape or parameter, a value that is no number or out of range.
 pub fn mesh(text: &str) -> Result<TriMesh, ShapeError> {

@@ -10,6 +10,11 @@ use d2m_lanes::UNIT;
 use d2m_lanes::power_of_two;
 
 /// `value + slope·s + curvature·s²/2 + jerk·s³/6`.
+///
+/// ```
+/// let cubic = d2m_root::Cubic { value: 1.0, slope: 2.0, curvature: 4.0, jerk: 6.0 };
+/// assert_eq!(cubic.at(1.0), 1.0 + 2.0 + 2.0 + 1.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cubic {
     /// At s = 0.

@@ -47,6 +47,34 @@ pub struct Measurement {
 }
 
 /// A test for contact that can be evaluated piece by piece.
+///
+/// ```
+/// use d2m_root::{FirstRoot, IsolatorOptions, Measurement, Piece, PieceTest, Verdict, isolate};
+/// /// 2 − 3t, which enters the band of numbers up to 0.5 at t = 0.5.
+/// struct Line;
+///
+/// impl PieceTest for Line {
+///     fn too_wide(&self, _half_width: f64) -> bool {
+///         false
+///     }
+///     fn evaluate(&mut self, piece: Piece) -> Verdict {
+///         if 2.0 - 3.0 * piece.hi > 0.5 { Verdict::Clear } else { Verdict::Within { part: piece, certain: false } }
+///     }
+///     fn measure(&mut self, _piece: Piece, at: f64) -> Measurement {
+///         Measurement { distance: 2.0 - 3.0 * at - 0.5, clear_lo: at, clear_hi: at }
+///     }
+///     fn tolerance(&self) -> f64 {
+///         1e-6
+///     }
+///     fn resolution(&self) -> f64 {
+///         1e-9
+///     }
+/// }
+///
+/// let found = isolate(&mut Line, Piece { lo: 0.0, hi: 1.0 }, &IsolatorOptions::new());
+/// let FirstRoot::Found { bracket, .. } = found.root else { panic!("{found:?}") };
+/// assert!(bracket.lo <= 0.5 && bracket.lo > 0.5 - 1e-3);
+/// ```
 pub trait PieceTest {
     /// True if an evaluation of a piece of this half-width would not pay: it is then bisected unevaluated.
     fn too_wide(&self, half_width: f64) -> bool;

@@ -25,6 +25,13 @@ pub(super) const UNDERFLOW: f64 = power_of_two(-1000);
 const SAGITTA: f64 = 1.0 + 8.0 * UNIT;
 
 /// `value + slope·s + curvature·s²/2`.
+///
+/// ```
+/// use d2m_root::Quadratic;
+/// let fall = Quadratic { value: 5.0, slope: 0.0, curvature: -10.0 }; // 5 − 5 s²
+/// assert_eq!((fall.at(0.5), fall.slope_at(0.5)), (3.75, -5.0));
+/// assert!(Quadratic::bound_first_zero(5.0, 0.0, -10.0) <= 1.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quadratic {
     /// At s = 0.
@@ -36,6 +43,14 @@ pub struct Quadratic {
 }
 
 /// The values that count as contact: `[lo, hi]`.
+///
+/// ```
+/// use d2m_root::{Band, Piece, Quadratic};
+/// // 2 − 3s is in [−0.5, 0.5] from 0.5 on.
+/// let line = Quadratic { value: 2.0, slope: -3.0, curvature: 0.0 };
+/// let part = line.clip(Band { lo: -0.5, hi: 0.5 }, Piece { lo: 0.0, hi: 1.0 }).expect("it comes in");
+/// assert!(part.lo <= 0.5 && part.lo > 0.499);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
     /// Lower end.
