@@ -1,6 +1,7 @@
 //! An articulated arm: all of its links at once.
 use crate::error::fault;
-use crate::{Chain, Joint, MotionError};
+use crate::{Chain, Joint, JointValue, MotionError};
+use std::sync::Arc;
 
 /// A tree of links, each carried by a joint of an earlier link or of the world.
 ///
@@ -24,7 +25,7 @@ pub struct Arm {
 
 #[derive(Debug, Clone, PartialEq)]
 struct ArmLink {
-    name: String,
+    name: Arc<str>,
     parent: Option<usize>,
     joint: Joint,
 }
@@ -36,7 +37,7 @@ impl Arm {
     /// A parent that is no link so far.
     pub fn add(
         &mut self,
-        name: impl Into<String>,
+        name: impl Into<Arc<str>>,
         parent: Option<usize>,
         joint: Joint,
     ) -> Result<usize, MotionError> {
@@ -57,6 +58,45 @@ impl Arm {
         &self.links[link].name
     }
 
+    /// The link that carries a link; none: the world.
+    ///
+    /// # Panics
+    /// An index that is no link.
+    pub fn parent(&self, link: usize) -> Option<usize> {
+        self.links[link].parent
+    }
+
+    /// The joints that carry the links, in their order.
+    pub fn joints(&self) -> impl Iterator<Item = &Joint> {
+        self.links.iter().map(|link| &link.joint)
+    }
+
+    /// Gives the joint that carries a link another value; a fixed one stays as it is.
+    ///
+    /// # Panics
+    /// An index that is no link.
+    pub fn set_value(&mut self, link: usize, value: JointValue) {
+        let joint = &mut self.links[link].joint;
+        *joint = joint.with_value(value);
+    }
+
+    /// The last link that carries both, or is one of them; none: the world.
+    ///
+    /// # Panics
+    /// An index that is no link.
+    pub fn last_common(&self, a: usize, b: usize) -> Option<usize> {
+        // A link has a greater index than the one that carries it.
+        let (mut a, mut b) = (Some(a), Some(b));
+        while a != b {
+            if a > b {
+                a = self.parent(a?);
+            } else {
+                b = self.parent(b?);
+            }
+        }
+        a
+    }
+
     /// How many links there are.
     pub fn len(&self) -> usize {
         self.links.len()
@@ -65,6 +105,20 @@ impl Arm {
     /// Are there none?
     pub fn is_empty(&self) -> bool {
         self.links.is_empty()
+    }
+
+    /// The motion of one link.
+    ///
+    /// # Errors
+    /// As [`Arm::links`].
+    ///
+    /// # Panics
+    /// An index that is no link.
+    pub fn link(&self, link: usize) -> Result<Chain, MotionError> {
+        let way = core::iter::successors(Some(link), |&link| self.links[link].parent);
+        let mut joints: Vec<Joint> = way.map(|link| self.links[link].joint.clone()).collect();
+        joints.reverse();
+        Chain::try_new(joints).map_err(|error| error.within(&format!("link {:?}", self.name(link))))
     }
 
     /// The motion of every link, in their order. Links share their joints, so pairs of them are seen from the last common one.
@@ -107,6 +161,11 @@ mod tests {
         for (link, way) in links.iter().zip([&[0][..], &[0, 1], &[0, 1, 2], &[0, 3], &[4]]) {
             let alone = Chain::try_new(way.iter().map(|&k| joints[k].clone()).collect()).unwrap();
             assert_eq!((link, link.domain()), (&alone, alone.domain()));
+            assert_eq!(
+                arm.link(way.len() - 1 + usize::from(way == [0, 3]) * 2 + usize::from(way == [4]) * 4)
+                    .unwrap(),
+                alone
+            );
         }
         assert_eq!((links[2].common_joints(&links[3]), links[2].common_joints(&links[4])), (1, 0));
     }

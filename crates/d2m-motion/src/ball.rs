@@ -149,6 +149,12 @@ pub(crate) fn up(x: f64) -> f64 {
     if x < f64::INFINITY { x } else { f64::INFINITY }
 }
 
+/// Bound of the error of a product of two rotations, computed in doubles, by those of both.
+#[inline]
+pub(crate) fn product_radius(outer: f64, inner: f64) -> f64 {
+    up(outer * (1.0 + inner) + inner + 10.0 * UNIT * (1.0 + outer) * (1.0 + inner))
+}
+
 /// The rounding of a vector in units of `unit`, and what underflow may take; none of zero.
 fn rounding(v: DVec3, unit: f64) -> f64 {
     times_up(unit, length_up(v))

@@ -1,6 +1,7 @@
 //! A motion, and times that it is known to cover.
 
-use crate::{IntervalPose, RigidMotion};
+use crate::ball::{length_up, up};
+use crate::{Ball, IntervalPose, RigidMotion, SpanMotion};
 use d2m_interval::Interval;
 
 /// A motion does not cover the times that a query needs.
@@ -81,6 +82,35 @@ impl<'m> CoveredMotion<'m> {
     pub fn enclose_pose(self) -> IntervalPose {
         self.motion.enclose_pose(self.span)
     }
+
+    /// Pose and velocities, with the pose in `middle`, which is a time of the span; `None` where pieces of the motion meet
+    /// inside the span, or nothing is known.
+    pub fn span_motion(self, middle: f64) -> Option<SpanMotion> {
+        let (span, of) = (self.span, self.motion);
+        if of.smooth_until(span.lo()).is_some_and(|end| end.is_nan() || end < span.hi()) {
+            return None;
+        }
+        let (now, over) = (of.enclose_state(middle), of.enclose_kinematics(span));
+        if now.at != over.at {
+            return None;
+        }
+        // The column norms bound the operator norm together.
+        let turned = over.rotation + now.rotation * -1.0;
+        let [x, y, z] = [turned.x_axis, turned.y_axis, turned.z_axis].map(length_up);
+        let moved = Ball::point(over.position.center) - Ball::point(now.position)
+            + Ball::new(over.position_tail, over.position.radius);
+        let seen = SpanMotion {
+            rotation: now.rotation,
+            rotation_radius: now.rotation_radius,
+            rotation_spread: up(over.rotation_radius + up(x + y + z)).max(now.rotation_radius),
+            position: Ball::new(now.position, now.position_radius),
+            position_spread: moved.bound_length().max(now.position_radius),
+            linear: over.linear,
+            angular: over.angular,
+        };
+        let is_known = seen.rotation_spread + seen.position_spread < f64::INFINITY;
+        is_known.then(|| seen.following(-now.at))
+    }
 }
 
 impl core::fmt::Debug for CoveredMotion<'_> {
@@ -92,7 +122,8 @@ impl core::fmt::Debug for CoveredMotion<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Chain, ConstantTwist, Joint, JointKind, JointValue, Pose, Twist};
+    use crate::{Chain, ConstantTwist, Joint, JointKind, JointPoints, JointValue, Pose, Twist};
+    use d2m_testing::{Draw, KnuthRandom};
     use glam::{DQuat, DVec3};
 
     /// Covers no time at all.
@@ -145,5 +176,64 @@ mod tests {
         assert!(covered.part(1.5, 9.0).is_none());
         let reached = covered.enclose_pose().translation.x;
         assert!(reached.contains(0.0) && reached.contains(1.0) && reached.hi() < 1.0 + 1e-9);
+    }
+
+    /// At samples of the span: where the origin is, how it is turned, and that both lie where the span says.
+    fn check(seen: &SpanMotion, span: Interval, middle: f64, pose: impl Fn(f64) -> Pose) {
+        for k in 0..=20 {
+            let t = (span.lo() + span.width() * f64::from(k) / 20.0).clamp(span.lo(), span.hi());
+            let pose = pose(t);
+            let place = pose.transform_point(DVec3::ZERO);
+            let tiny = 1e-13;
+            let way = seen.linear.center * (t - middle);
+            let off = place - (seen.position.center + way);
+            assert!(off.length() <= seen.position.radius + (t - middle).abs() * seen.linear.radius + tiny);
+            assert!((place - seen.position.center).length() <= seen.position_spread + tiny);
+            for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                let off = pose.transform_vector(axis) - seen.rotation * axis;
+                assert!(off.length() <= seen.rotation_spread + tiny, "{off:?} {seen:?}");
+                if t == middle {
+                    assert!(off.length() <= seen.rotation_radius + tiny && seen.rotation_radius < 1e-12);
+                }
+            }
+            if t == middle {
+                assert!(way.length() == 0.0 && seen.position.radius < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn any_smooth_motion_is_where_its_span_says() {
+        let mut random = KnuthRandom(3);
+        for _ in 0..50 {
+            let at = random.vector();
+            let twist = ConstantTwist::REST
+                .with_position(random.vector())
+                .with_linear_velocity(random.vector())
+                .with_angular_velocity(random.vector())
+                .with_at(at);
+            let value =
+                JointValue::try_polynomial(vec![random.unit(), random.unit(), -random.unit()]).unwrap();
+            let kind = JointKind::Revolute { axis: random.vector(), value };
+            let joint = Joint::try_new(random.vector(), DQuat::IDENTITY, kind).unwrap();
+            let chain = Chain::try_new(vec![joint.clone(), joint]).unwrap();
+            let span = Interval::new(-0.25, 0.75);
+            for motion in [&twist as &dyn RigidMotion, &chain] {
+                let covered = CoveredMotion::try_new(motion, span.lo(), span.hi()).unwrap();
+                let seen = covered.span_motion(0.25).unwrap();
+                check(&seen, span, 0.25, |t| motion.pose_and_twist(t).0);
+            }
+        }
+    }
+
+    #[test]
+    fn where_pieces_meet_nothing_is_known_of_any_motion() {
+        let points = JointPoints::new(vec![0.0, 1.0, 2.0], vec![0.0, 1.0, -1.0]);
+        let kind = JointKind::Prismatic { axis: DVec3::X, value: JointValue::through(points).unwrap() };
+        let chain =
+            Chain::try_new(vec![Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, kind).unwrap()]).unwrap();
+        let covered = |from, to| CoveredMotion::try_new(&chain, from, to).unwrap();
+        assert!(covered(0.5, 1.5).span_motion(1.0).is_none());
+        assert!(covered(0.5, 1.0).span_motion(0.75).is_some());
     }
 }

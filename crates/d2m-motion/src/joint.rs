@@ -1,11 +1,12 @@
 //! One joint of an arm: a fixed transform and what moves after it.
-use crate::ball::{Ball, up};
+use crate::ball::{Ball, product_radius, up};
 use crate::error::{fault, require_finite};
 use crate::joint_value::{Enclosed, JointValue, ValueOverTime};
-use crate::kinematics::{product_radius, two_sums};
+use crate::kinematics::two_sums;
 use crate::rotation::{RotationDd, Spin, exponential_dd, rotate_dd};
 use crate::rounding::UNIT;
 use crate::sin_cos::{LARGEST_ANGLE, sin_cos};
+use crate::span_motion::SpanMotion;
 use crate::{Kinematics, MotionError};
 use d2m_lanes::DoubleDouble;
 use glam::{DMat3, DQuat, DVec3};
@@ -250,6 +251,50 @@ impl Joint {
             return turning.with_rotation(spin, spin_radius);
         }
         turning.with_rotation(turn * spin, product_radius(turn_radius, spin_radius))
+    }
+}
+
+/// A joint over a span of time, on its own.
+impl Joint {
+    /// As [`Joint::placed`] from one time to another, with the middle of the span told from all of it. Of a value that may jump
+    /// inside the span no rate is known.
+    pub(crate) fn over(&self, lo: f64, hi: f64) -> SpanMotion {
+        let data = &*self.0;
+        let place = SpanMotion {
+            rotation: data.turn,
+            rotation_radius: data.turn_radius,
+            rotation_spread: data.turn_radius,
+            position: Ball::point(data.position),
+            ..SpanMotion::REST
+        };
+        let Some(value) = self.value() else { return place };
+        let over: ValueOverTime = value.over(lo, hi);
+        let Enclosed { center, radius } = over.value;
+        let rate = if value.is_continuous(lo, hi) {
+            data.axis_before.times(over.rate.center.hi, up(over.rate.radius + over.rate.center.lo.abs()))
+        } else {
+            Ball::ANY
+        };
+        if matches!(data.kind, JointKind::Prismatic { .. }) {
+            // The second double of the value counts as error.
+            let along = |radius: f64| data.axis_before.times(center.hi, up(radius + center.lo.abs()));
+            let position = place.position + along(over.middle_radius);
+            let position_spread = (place.position + along(radius)).radius;
+            return SpanMotion { position, position_spread, linear: rate, ..place };
+        }
+        let (sin, cos) = sin_cos_of(center);
+        let spin = Spin { omega: data.axis, speed: 1.0, axis: data.axis }.rotation_of(sin, cos);
+        let spin_radius =
+            |radius: f64| if sin.is_finite() { up(radius + 64.0 * UNIT) } else { f64::INFINITY };
+        let (middle, whole) = (spin_radius(over.middle_radius), spin_radius(radius));
+        let (rotation, rotation_radius, rotation_spread) = if data.orientation.is_identity() {
+            (spin, middle, whole)
+        } else {
+            let product = |radius: f64| product_radius(data.turn_radius, radius);
+            (data.turn * spin, product(middle), product(whole))
+        };
+        let angular = rate;
+        SpanMotion { rotation, rotation_radius, rotation_spread, angular, ..place }
     }
 }
 

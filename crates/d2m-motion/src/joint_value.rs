@@ -33,6 +33,17 @@ pub struct JointValue {
     starts: Vec<usize>,
     /// What the pieces pass through, if they were made of that.
     points: Option<Box<JointPoints>>,
+    /// Pieces that are given one by one may miss each other by what counts as rounding.
+    joins: Joins,
+}
+
+/// How pieces meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Joins {
+    /// Exactly: the value is continuous.
+    Exact,
+    /// Within [`LARGEST_JUMP`].
+    Jumps,
 }
 
 /// The second double of a coefficient, and a bound of what is left out then.
@@ -53,6 +64,8 @@ pub(crate) struct Enclosed {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ValueOverTime {
     pub(crate) value: Enclosed,
+    /// Bound of the distance of the value in the middle of the span from the center of `value`.
+    pub(crate) middle_radius: f64,
     pub(crate) rate: Enclosed,
     pub(crate) second: Enclosed,
 }
@@ -92,7 +105,14 @@ impl JointValue {
     pub fn try_polynomial(coefficients: Vec<f64>) -> Result<Self, MotionError> {
         check_coefficients("value", &coefficients)?;
         let starts = vec![0, coefficients.len()];
-        Ok(Self { times: Vec::new(), coefficients, tails: Vec::new(), starts, points: None })
+        Ok(Self {
+            times: Vec::new(),
+            coefficients,
+            tails: Vec::new(),
+            starts,
+            points: None,
+            joins: Joins::Exact,
+        })
     }
 
     /// From `times[i]` to `times[i + 1]` the polynomial `pieces[i]` in `t − times[i]`.
@@ -116,7 +136,8 @@ impl JointValue {
             coefficients.extend_from_slice(piece);
             starts.push(coefficients.len());
         }
-        let value = Self { times, coefficients, tails: Vec::new(), starts, points: None };
+        let joins = if pieces.len() > 1 { Joins::Jumps } else { Joins::Exact };
+        let value = Self { times, coefficients, tails: Vec::new(), starts, points: None, joins };
         for index in 1..pieces.len() {
             let time = value.times[index];
             let (before, after) =
@@ -133,7 +154,7 @@ impl JointValue {
         Ok(value)
     }
 
-    /// From enclosures of the coefficients of each piece.
+    /// From enclosures of the coefficients of each piece, true values of which meet exactly.
     pub(crate) fn from_enclosed(
         times: Vec<f64>,
         pieces: &[Vec<Enclosed>],
@@ -146,7 +167,8 @@ impl JointValue {
             tails.extend(piece.iter().map(|c| Tail { lo: c.center.lo, radius: c.radius }));
             starts.push(coefficients.len());
         }
-        Self { times, coefficients, tails, starts, points: points.map(Box::new) }
+        let points = points.map(Box::new);
+        Self { times, coefficients, tails, starts, points, joins: Joins::Exact }
     }
 
     /// `multiplier` times this value plus `offset`: what a joint follows that mimics another one. What the coefficients'
@@ -167,7 +189,13 @@ impl JointValue {
             let count = self.starts[piece + 1] - self.starts[piece];
             (0..count).map(|index| scale(piece, index)).collect::<Result<Vec<_>, _>>()
         });
-        Ok(Self::from_enclosed(self.times.clone(), &pieces.collect::<Result<Vec<_>, _>>()?, None))
+        let scaled = Self::from_enclosed(self.times.clone(), &pieces.collect::<Result<Vec<_>, _>>()?, None);
+        Ok(Self { joins: self.joins, ..scaled })
+    }
+
+    /// Is the value continuous from `lo` to `hi`, so that it changes by no more than its rates say?
+    pub(crate) fn is_continuous(&self, lo: f64, hi: f64) -> bool {
+        self.joins == Joins::Exact || self.next_time(lo).is_none_or(|time| time >= hi)
     }
 
     fn coefficient(&self, piece: usize, index: usize) -> Enclosed {
@@ -246,8 +274,10 @@ impl JointValue {
         for piece in first + 1..=last {
             let (from, to) = (self.times[piece], if piece == last { hi } else { self.times[piece + 1] });
             let part = self.over_piece(piece, from, to);
+            let value = whole.value.hull(part.value);
             whole = ValueOverTime {
-                value: whole.value.hull(part.value),
+                value,
+                middle_radius: value.radius,
                 rate: whole.rate.hull(part.rate),
                 second: whole.second.hull(part.second),
             };
@@ -278,7 +308,7 @@ impl JointValue {
         taylor(coefficients, tails, s, terms);
         let term = |k: usize| terms.get(k).copied().unwrap_or((DoubleDouble::ZERO, 0.0));
         // Horner on the magnitudes of what lies beyond the k-th derivative's own term: factors k!/(k − d)!.
-        let beyond = |derivative: usize| {
+        let beyond = |derivative: usize, r: f64| {
             if r == 0.0 {
                 return 0.0;
             }
@@ -292,7 +322,7 @@ impl JointValue {
         let part = |derivative: usize, factor: f64| {
             let (b, error) = term(derivative);
             let center = b * factor;
-            let radius = up(error * factor + beyond(derivative));
+            let radius = up(error * factor + beyond(derivative, r));
             let known = center.hi.is_finite() && center.lo.is_finite() && radius < f64::INFINITY;
             if known {
                 Enclosed { center, radius }
@@ -300,7 +330,9 @@ impl JointValue {
                 Enclosed { center: DoubleDouble::ZERO, radius: f64::INFINITY }
             }
         };
-        ValueOverTime { value: part(0, 1.0), rate: part(1, 1.0), second: part(2, 2.0) }
+        let value = part(0, 1.0);
+        let middle_radius = up(term(0).1 + beyond(0, lost.abs())).min(value.radius);
+        ValueOverTime { value, middle_radius, rate: part(1, 1.0), second: part(2, 2.0) }
     }
 }
 

@@ -1,5 +1,5 @@
 //! Pose, twist and twist rate over a span of time, each a middle value with a proven radius.
-use crate::ball::{Ball, length_up, up};
+use crate::ball::{Ball, length_up, product_radius, up};
 use crate::rounding::UNIT;
 use crate::{CertifiedState, IntervalPose, IntervalTwist};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
@@ -248,12 +248,6 @@ impl Kinematics {
         }
         .with_rotation(middle, wide)
     }
-}
-
-/// Bound of the error of a product of two rotations, computed in doubles, by those of both.
-#[inline]
-pub(crate) fn product_radius(outer: f64, inner: f64) -> f64 {
-    up(outer * (1.0 + inner) + inner + 10.0 * UNIT * (1.0 + outer) * (1.0 + inner))
 }
 
 /// Sums, coordinate by coordinate, and what they lose.

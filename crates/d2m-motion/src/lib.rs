@@ -38,6 +38,7 @@
 
 mod any_motion;
 mod arm;
+mod arm_span;
 mod ball;
 mod chain;
 mod check_motion;
@@ -65,6 +66,7 @@ mod serde_any;
 #[cfg(feature = "serde")]
 mod serde_form;
 mod sin_cos;
+mod span_motion;
 mod spline;
 mod state;
 mod text;
@@ -74,6 +76,7 @@ mod two_jets;
 
 pub use any_motion::AnyMotion;
 pub use arm::Arm;
+pub use arm_span::ArmSpan;
 pub use ball::Ball;
 pub use chain::Chain;
 pub use check_motion::{MotionFault, check_motion};
@@ -90,6 +93,7 @@ pub use pose::{IntervalPose, Pose};
 pub use retimed::Retimed;
 pub use rigid_motion::{RigidMotion, TwistPiece};
 pub use screw::ScrewMotion;
+pub use span_motion::SpanMotion;
 pub use spline::{Spline, SplineDegree};
 pub use state::{CertifiedState, StateTwist};
 pub use twist::{BodyTwist, IntervalTwist, Twist};

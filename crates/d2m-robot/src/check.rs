@@ -1,12 +1,13 @@
 //! Checks of paths, and of a planner's edges.
 
 use crate::answer::{PathAnswer, PathContact};
+use crate::broad_phase::BroadPhase;
 use crate::limits::LimitWarning;
 use crate::scene::{Owner, RobotScene};
 use crate::{RobotError, Trajectory};
 use d2m_bvh::{Contact, Window};
-use d2m_motion::{JointPoints, JointValue};
-use d2m_world::{BodyId, FirstContact, PlannedMotion, WorldError};
+use d2m_motion::{Arm, JointPoints, JointValue};
+use d2m_world::{BodyId, FirstContact, PlannedMotion, Threads, WorldError};
 use std::sync::Arc;
 
 impl RobotScene {
@@ -18,7 +19,7 @@ impl RobotScene {
     pub fn check_path(&self, path: &Trajectory) -> Result<PathAnswer, RobotError> {
         let values = self.robot.all_values(&path.joint_names, path.joint_values()?)?;
         let [start, end] = path.times().unwrap_or_default();
-        self.check_values(&values, [start, end])
+        self.check_values(&values, [start, end], Threads::All)
     }
 
     /// Where a path leaves the limits of its joints, which are not enforced.
@@ -53,21 +54,23 @@ impl RobotScene {
         &self,
         values: &[JointValue],
         times: [f64; 2],
+        threads: Threads,
     ) -> Result<PathAnswer, RobotError> {
         let window = Self::window_of(times)?;
-        let mut plan = self.plan(values)?;
-        // Links that never move are where they are; their pairs with each other and with obstacles at rest are known.
-        let all_rest = !self.has_rigid_contact
-            && !self.parts.iter().any(|part| matches!(part.owner, Owner::Obstacle { is_at_rest: false }));
-        if all_rest {
-            let root = self.robot.rigid_group(self.robot.root());
-            plan.retain(|planned| {
-                let carrier = self.parts[planned.body.index()].carrier();
-                carrier.is_none_or(|link| self.robot.rigid_group(link) != root)
-            });
+        let arm = self.robot.arm(values);
+        let candidates = BroadPhase::new(self, &arm).candidates(window)?;
+        if candidates.is_empty() {
+            return Ok(PathAnswer::Free { until: window.end() });
         }
+        let mut is_wanted = vec![false; self.parts.len()];
+        for candidate in &candidates {
+            is_wanted[candidate.a.index()] = true;
+            is_wanted[candidate.b.index()] = true;
+        }
+        let plan = self.plan(&arm, |part| is_wanted[part])?;
         let end = window.end();
-        let first = self.world.first_contact_of(&plan, window).map_err(|error| self.named(error))?;
+        let first = self.world.first_contact_among(&plan, &candidates, window, threads);
+        let first = first.map_err(|error| self.named(error))?;
         let name = |id: BodyId| self.name_of(id).to_owned();
         Ok(match first {
             FirstContact::Separated => PathAnswer::Free { until: end },
@@ -88,19 +91,26 @@ impl RobotScene {
             .map_err(|error| RobotError::path("points", format!("times from {start:?} to {end:?}: {error}")))
     }
 
-    /// The motions of all that links carry, themselves and what is attached to them.
-    pub(crate) fn plan(&self, values: &[JointValue]) -> Result<Vec<PlannedMotion>, RobotError> {
-        let chains = self.robot.chains(values)?;
+    /// The motions of the wanted parts among those that links carry, themselves and what is attached to them.
+    pub(crate) fn plan(
+        &self,
+        arm: &Arm,
+        is_wanted: impl Fn(usize) -> bool,
+    ) -> Result<Vec<PlannedMotion>, RobotError> {
         let mut plan = Vec::with_capacity(self.parts.len());
-        for part in &self.parts {
+        for (place, part) in self.parts.iter().enumerate() {
             let (link, frame) = match &part.owner {
                 Owner::Link { link, frame } => (*link, frame.as_ref()),
                 Owner::Attached { link, frame } => (*link, Some(frame)),
                 Owner::Obstacle { .. } => continue,
             };
+            if !is_wanted(place) {
+                continue;
+            }
+            let chain = arm.link(self.robot.place_in_arm(link))?;
             let chain = match frame {
-                None => chains[link].clone(),
-                Some(frame) => chains[link].and(frame.clone())?,
+                None => chain,
+                Some(frame) => chain.and(frame.clone())?,
             };
             plan.push(PlannedMotion { body: part.id, motion: Arc::new(chain) });
         }
@@ -182,7 +192,7 @@ impl EdgeChecker<'_> {
             let points = JointPoints::new(vec![0.0, 1.0], vec![from[place], to[place]]);
             values[joint] = Some(JointValue::through(points)?);
         }
-        self.scene.check_values(&robot.complete(values)?, [0.0, 1.0])
+        self.scene.check_values(&robot.complete(values)?, [0.0, 1.0], Threads::Own)
     }
     /// Many edges, on all threads (feature `rayon`); the answers in their order, with the bits of [`EdgeChecker::check`].
     ///

@@ -28,6 +28,8 @@
 #![forbid(unsafe_code)]
 
 mod answer;
+mod body_box;
+mod broad_phase;
 mod check;
 mod clearance;
 mod cylinder;
@@ -40,6 +42,7 @@ mod path_bodies;
 mod robot;
 mod scene;
 mod srdf;
+mod swept_box;
 mod trajectory;
 mod urdf;
 mod values;

@@ -23,7 +23,7 @@ impl RobotScene {
         let window = Self::window_of(path.times().unwrap_or_default())?;
         let mut motions: Vec<SharedMotion> =
             self.parts.iter().map(|part| self.world.body(part.id).shared_motion()).collect();
-        for planned in self.plan(&values)? {
+        for planned in self.plan(&self.robot.arm(&values), |_| true)? {
             motions[planned.body.index()] = planned.motion;
         }
         Ok(PathBodies { scene: self, motions, window })

@@ -32,8 +32,10 @@ pub struct Robot {
     file: String,
     pub(crate) links: Vec<Link>,
     pub(crate) joints: Vec<RobotJoint>,
-    /// Links, each after its parent.
-    order: Vec<usize>,
+    /// The links as an arm, each after its parent, with values of zero.
+    arm: Arm,
+    /// Where each link is in the arm.
+    places: Vec<usize>,
     remarks: Vec<String>,
 }
 
@@ -136,7 +138,8 @@ impl Robot {
             .collect::<Result<Vec<_>, _>>()?;
         check_mimics(file, &urdf, &joints)?;
         let (name, file) = (urdf.name, file.to_owned());
-        Ok(Self { name, file, links, joints, order: tree.order, remarks })
+        let (arm, places) = arm_of(&links, &joints, &tree.order)?;
+        Ok(Self { name, file, links, joints, arm, places, remarks })
     }
 
     /// Its name in the file.
@@ -227,7 +230,17 @@ impl Robot {
 
     /// The link whose frame is the world.
     pub(crate) fn root(&self) -> usize {
-        self.order[0]
+        self.links.iter().position(|link| link.joint.is_none()).unwrap_or_default()
+    }
+
+    /// The place in the arm of the last link that carries both, or is one of them; none: the world.
+    pub(crate) fn last_common(&self, a: usize, b: usize) -> Option<usize> {
+        self.arm.last_common(self.places[a], self.places[b])
+    }
+
+    /// The index of a link in the robot's arm.
+    pub(crate) fn place_in_arm(&self, link: usize) -> usize {
+        self.places[link]
     }
 
     /// The last link on the way to this one that a joint moves, or the root: links of the same never move against each other.
@@ -249,26 +262,36 @@ impl Robot {
         self.chains(&self.all_values(&path.joint_names, path.joint_values()?)?)
     }
 
-    /// The motion of every link's frame, by the value of every joint (those of fixed joints are ignored).
-    pub(crate) fn chains(&self, values: &[JointValue]) -> Result<Vec<Chain>, RobotError> {
-        let mut arm = Arm::default();
-        let mut place = vec![0; self.links.len()];
-        for &link in &self.order {
-            let (parent, joint) = match self.links[link].joint {
-                None => (None, Joint::try_new(DVec3::ZERO, glam::DQuat::IDENTITY, JointKind::Fixed)?),
-                Some(joint) => {
-                    let RobotJoint { parent, joint: unmoved, .. } = &self.joints[joint];
-                    (Some(*parent), unmoved.with_value(values[joint].clone()))
-                }
-            };
-            // The root carries its children, but its frame is the world: nothing to compute.
-            let parent =
-                parent.filter(|&parent| self.links[parent].joint.is_some()).map(|parent| place[parent]);
-            place[link] = arm.add(&self.links[link].name, parent, joint)?;
+    /// The links as an arm with these values of all joints (those of fixed joints are ignored).
+    pub(crate) fn arm(&self, values: &[JointValue]) -> Arm {
+        let mut arm = self.arm.clone();
+        for (joint, value) in self.joints.iter().zip(values) {
+            arm.set_value(self.places[joint.child], value.clone());
         }
-        let chains = arm.links()?;
-        Ok(place.into_iter().map(|at| chains[at].clone()).collect())
+        arm
     }
+
+    /// The motion of every link's frame, by the value of every joint.
+    pub(crate) fn chains(&self, values: &[JointValue]) -> Result<Vec<Chain>, RobotError> {
+        let chains = self.arm(values).links()?;
+        Ok(self.places.iter().map(|&place| chains[place].clone()).collect())
+    }
+}
+
+/// The links in an order in which each comes after its parent, and the place of each in it.
+fn arm_of(links: &[Link], joints: &[RobotJoint], order: &[usize]) -> Result<(Arm, Vec<usize>), RobotError> {
+    let mut arm = Arm::default();
+    let mut places = vec![0; links.len()];
+    for &link in order {
+        let (parent, joint) = match links[link].joint {
+            None => (None, Joint::try_new(DVec3::ZERO, glam::DQuat::IDENTITY, JointKind::Fixed)?),
+            Some(joint) => (Some(joints[joint].parent), joints[joint].joint.clone()),
+        };
+        // The root carries its children, but its frame is the world: nothing to compute.
+        let parent = parent.filter(|&parent| links[parent].joint.is_some()).map(|parent| places[parent]);
+        places[link] = arm.add(links[link].name.as_str(), parent, joint)?;
+    }
+    Ok((arm, places))
 }
 
 impl Origin {

@@ -1,10 +1,12 @@
 //! A robot among obstacles, with what it holds.
 
+use crate::body_box::BodyBox;
+use crate::broad_phase::MovingPair;
 use crate::geometry::LinkBody;
 use crate::robot::Robot;
 use crate::{RobotError, Srdf};
 use d2m_bvh::{Budget, MeshTree, QueryOptions, Solid, Window, time_of_contact};
-use d2m_motion::{ConstantTwist, Joint, JointKind, RigidMotion};
+use d2m_motion::{CertifiedState, Chain, ConstantTwist, Joint, JointKind, RigidMotion};
 use d2m_world::{Body, BodyId, SharedMotion, World};
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
@@ -138,8 +140,8 @@ pub struct RobotScene {
     pub(crate) parts: Vec<Part>,
     /// The pairs that are checked, by the places of their parts; also those that never move against each other.
     pub(crate) pairs: Vec<[usize; 2]>,
-    /// Two bodies that never move against each other are not proven apart.
-    pub(crate) has_rigid_contact: bool,
+    /// Those of them that are searched: not the ones that never move against each other and are proven apart.
+    pub(crate) moving_pairs: Vec<MovingPair>,
 }
 
 /// δ of a pair with a sphere or capsule, in radii: that of other pairs, whose length is their larger body's.
@@ -153,6 +155,8 @@ pub(crate) struct Part {
     pub(crate) owner: Owner,
     /// The body is everything within this distance of its mesh.
     pub(crate) radius: f64,
+    /// Of the mesh: in the frame of the link that carries it, or of the world where it is at rest; else its own.
+    pub(crate) body_box: BodyBox,
 }
 
 /// A body with the radius about its mesh.
@@ -201,7 +205,7 @@ impl RobotScene {
             robot: Arc::clone(&robot),
             parts: Vec::new(),
             pairs: Vec::new(),
-            has_rigid_contact: false,
+            moving_pairs: Vec::new(),
         };
         let rest = robot.complete(vec![None; robot.joints.len()])?;
         let chains = robot.chains(&rest)?;
@@ -221,7 +225,7 @@ impl RobotScene {
                 let owner = Owner::Link { link, frame };
                 scene.add(&of.name, owner, Round { body, radius: *radius }, |other| {
                     other.carrier().is_none_or(|carrier| is_checked(link, carrier))
-                });
+                })?;
             }
         }
         Ok(scene)
@@ -254,8 +258,7 @@ impl RobotScene {
         let body = Body::with_shared(tree, motion).with_solid(solid);
         self.add(&name, Owner::Obstacle { is_at_rest }, Round { body, radius }, |other| {
             !matches!(other.owner, Owner::Obstacle { .. })
-        });
-        Ok(())
+        })
     }
 
     /// Attaches a body to a link.
@@ -279,8 +282,7 @@ impl RobotScene {
             Owner::Attached { link, frame },
             Round { body, radius },
             |other| !matches!(other.owner, Owner::Link { link: of, .. } if of == link),
-        );
-        Ok(())
+        )
     }
 
     /// Leaves out a pair of links or bodies, by their names; false if one of the names is unknown.
@@ -299,10 +301,17 @@ impl RobotScene {
     }
 
     /// Adds a body; the pairs with some of those before it are checked.
-    fn add(&mut self, name: &str, owner: Owner, round: Round, is_checked: impl Fn(&Part) -> bool) {
+    fn add(
+        &mut self,
+        name: &str,
+        owner: Owner,
+        round: Round,
+        is_checked: impl Fn(&Part) -> bool,
+    ) -> Result<(), RobotError> {
         let Round { body, radius } = round;
+        let body_box = BodyBox::around(body.tree().mesh().vertices(), &place_of(&owner, &body)?);
         let id = self.world.add(body);
-        let part = Part { id, name: name.to_owned(), owner, radius };
+        let part = Part { id, name: name.to_owned(), owner, radius, body_box };
         for other in 0..self.parts.len() {
             if !is_checked(&self.parts[other]) {
                 self.ignore_pair(&part, other);
@@ -316,15 +325,18 @@ impl RobotScene {
                 separation = (separation + radii.next_up()).next_up();
                 self.world.set_min_separation(self.parts[other].id, id, Some(separation));
             }
-            if self.are_rigid(&part, other) {
-                if self.are_apart([self.parts[other].id, id], separation) {
-                    self.ignore_pair(&part, other);
-                } else {
-                    self.has_rigid_contact = true;
-                }
+            if self.are_rigid(&part, other) && self.are_apart([self.parts[other].id, id], separation) {
+                self.ignore_pair(&part, other);
+                continue;
             }
+            let seen_from = match [self.parts[other].carrier(), part.carrier()] {
+                [Some(a), Some(b)] => self.robot.last_common(a, b),
+                _ => None,
+            };
+            self.moving_pairs.push(MovingPair { parts: [other, id.index()], separation, seen_from });
         }
         self.parts.push(part);
+        Ok(())
     }
 
     /// Does nothing that moves lie between these two?
@@ -352,6 +364,7 @@ impl RobotScene {
 
     fn ignore_parts(&mut self, a: usize, b: usize) {
         self.pairs.retain(|pair| *pair != [a, b] && *pair != [b, a]);
+        self.moving_pairs.retain(|pair| pair.parts != [a, b] && pair.parts != [b, a]);
         let [a, b] = [a, b].map(|part| self.parts[part].id);
         self.world.ignore_pair(a, b, true);
     }
@@ -370,6 +383,19 @@ impl RobotScene {
             format!("{} has this name already", if is_link { "a link of the robot" } else { "another body" });
         Err(RobotError::Body { name: name.to_owned(), reason })
     }
+}
+
+/// How a mesh stands in the frame of what carries it.
+fn place_of(owner: &Owner, body: &Body) -> Result<CertifiedState, RobotError> {
+    Ok(match owner {
+        Owner::Link { frame: Some(frame), .. } | Owner::Attached { frame, .. } => {
+            Chain::try_new(vec![frame.clone()])?.enclose_state(0.0)
+        }
+        Owner::Obstacle { is_at_rest: true } => body.motion().enclose_state(0.0),
+        Owner::Link { frame: None, .. } | Owner::Obstacle { is_at_rest: false } => {
+            ConstantTwist::REST.enclose_state(0.0)
+        }
+    })
 }
 
 /// A mesh that bounds a solid is one.

@@ -28,4 +28,6 @@ mod swept_bounds;
 mod world;
 
 pub use body::{Body, Group, SharedMotion};
-pub use world::{BodyId, FirstContact, PairContact, PairProximities, PlannedMotion, World, WorldError};
+pub use world::{
+    BodyId, Candidate, FirstContact, PairContact, PairProximities, PlannedMotion, Threads, World, WorldError,
+};

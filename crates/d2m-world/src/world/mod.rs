@@ -13,7 +13,7 @@ mod slots;
 mod tests;
 
 pub use answers::{BodyId, FirstContact, PairContact, PairProximities, WorldError};
-pub use plan::PlannedMotion;
+pub use plan::{Candidate, PlannedMotion};
 
 use crate::box_tree::IndexPair;
 use crate::{Body, Group, SharedMotion};
@@ -78,13 +78,24 @@ use std::sync::Arc;
 pub struct World {
     options: QueryOptions,
     slots: Slots,
-    filter: PairFilter,
+    filter: Arc<PairFilter>,
     /// Of pairs that were searched. Never walked through in an order that matters.
     states: HashMap<IndexPair, PairState>,
     schedule: Schedule,
     /// Places of bodies that changed since the schedule was made, and pairs whose rules did.
     changed: Vec<u32>,
     changed_pairs: Vec<IndexPair>,
+    threads: Threads,
+}
+
+/// Which threads answer a question. The answer has the same bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Threads {
+    /// All of the current pool (feature `rayon`), once there are enough pairs.
+    #[default]
+    All,
+    /// The one that asks: where many questions are asked side by side.
+    Own,
 }
 
 impl World {
@@ -129,7 +140,7 @@ impl World {
     /// pairs ([`Self::ignore_pair`], [`Self::set_min_separation`]) is forgotten.
     pub fn remove(&mut self, id: BodyId) -> Option<Body> {
         let body = self.slots.remove(id)?;
-        self.filter.forget(id.index);
+        Arc::make_mut(&mut self.filter).forget(id.index);
         self.states.retain(|pair, _| !pair.contains(&id.index));
         self.changed.push(id.index);
         Some(body)
@@ -202,14 +213,14 @@ impl World {
         if !(self.slots.holds(a) && self.slots.holds(b)) {
             return;
         }
-        if self.filter.set_ignored(a.index, b.index, ignored) && !ignored {
+        if Arc::make_mut(&mut self.filter).set_ignored(a.index, b.index, ignored) && !ignored {
             self.changed_pairs.push([a.index.min(b.index), a.index.max(b.index)]);
         }
     }
 
     /// Whether contacts between a body of one group and a body of the other are ignored; the two groups may be the same.
     pub fn ignore_groups(&mut self, a: Group, b: Group, ignored: bool) {
-        if self.filter.set_groups_ignored(a, b, ignored) && !ignored {
+        if Arc::make_mut(&mut self.filter).set_groups_ignored(a, b, ignored) && !ignored {
             self.schedule.clear();
         }
     }
@@ -238,7 +249,7 @@ impl World {
         if !(self.slots.holds(a) && self.slots.holds(b)) {
             return;
         }
-        self.filter.set_separation(a.index, b.index, separation);
+        Arc::make_mut(&mut self.filter).set_separation(a.index, b.index, separation);
         self.changed_pairs.push([a.index.min(b.index), a.index.max(b.index)]);
     }
 

@@ -1,9 +1,10 @@
 //! A planner's question: would this motion be free of contact?
 
-use super::schedule::Schedule;
-use super::{BodyId, FirstContact, World, WorldError};
+use super::schedule::{MeetingSpan, Schedule};
+use super::{BodyId, FirstContact, Threads, World, WorldError};
 use crate::SharedMotion;
 use d2m_bvh::Window;
+use std::sync::Arc;
 
 /// A motion that a body might take.
 ///
@@ -29,6 +30,19 @@ pub struct PlannedMotion {
     pub body: BodyId,
     /// What it would do.
     pub motion: SharedMotion,
+}
+
+/// A pair that a broad phase has left, and when.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// One of the bodies.
+    pub a: BodyId,
+    /// The other one.
+    pub b: BodyId,
+    /// Known to be apart in the part of the window before this time.
+    pub from: f64,
+    /// Known to be apart in the part of the window after this time.
+    pub until: f64,
 }
 
 impl core::fmt::Debug for PlannedMotion {
@@ -79,10 +93,57 @@ impl World {
         plan: &[PlannedMotion],
         window: Window,
     ) -> Result<FirstContact, WorldError> {
+        let (mut world, planned) = self.planned(plan);
+        let schedule = Schedule::of_some(world.rules(), window, &planned, &self.schedule, &self.changed);
+        world.schedule = schedule.map_err(|uncovered| world.uncovered(uncovered))?;
+        world.first_contact(window)
+    }
+
+    /// As [`World::first_contact_of`] for a caller with a broad phase of its own, say one that knows the joints of an arm: only
+    /// these pairs are queried, each from `from` to `until`. Ignored pairs and separations of pairs hold. The answer is a proof as far
+    /// as the caller's broad phase is one: that all other pairs, and these at other times of the window, are further apart than their
+    /// separation.
+    ///
+    /// # Errors
+    /// Bad input of a pair, with its names; a motion that does not cover the time in which its pair is queried.
+    ///
+    /// # Panics
+    /// If a body was removed, or its name belongs to another world.
+    pub fn first_contact_among(
+        &self,
+        plan: &[PlannedMotion],
+        candidates: &[Candidate],
+        window: Window,
+        threads: Threads,
+    ) -> Result<FirstContact, WorldError> {
+        let (mut world, _) = self.planned(plan);
+        let mut given: Vec<_> = candidates
+            .iter()
+            .map(|&Candidate { a, b, from, until }| {
+                let (start, end) = (from.max(window.start()), until.min(window.end()));
+                let pair = [a.index.min(b.index), a.index.max(b.index)];
+                (pair, MeetingSpan { start, end, clear_after: window.end() })
+            })
+            .collect();
+        given.sort_by_key(|(pair, _)| *pair);
+        given.dedup_by(|(pair, more), (kept, span)| {
+            let is_same = pair == kept;
+            if is_same {
+                (span.start, span.end) = (span.start.min(more.start), span.end.max(more.end));
+            }
+            is_same
+        });
+        world.threads = threads;
+        world.schedule = Schedule::of_given(world.rules(), window, given);
+        world.first_contact(window)
+    }
+
+    /// A copy in which bodies move as planned, and their places.
+    fn planned(&self, plan: &[PlannedMotion]) -> (Self, Vec<u32>) {
         let mut world = Self {
             options: self.options,
             slots: self.slots.clone(),
-            filter: self.filter.clone(),
+            filter: Arc::clone(&self.filter),
             ..Self::default()
         };
         for planned in plan {
@@ -91,8 +152,6 @@ impl World {
         let mut planned = core::mem::take(&mut world.changed);
         planned.sort_unstable();
         planned.dedup();
-        let schedule = Schedule::of_some(world.rules(), window, &planned, &self.schedule, &self.changed);
-        world.schedule = schedule.map_err(|uncovered| world.uncovered(uncovered))?;
-        world.first_contact(window)
+        (world, planned)
     }
 }

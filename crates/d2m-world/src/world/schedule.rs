@@ -54,6 +54,8 @@ pub(super) struct Schedule {
     /// From the start of the span, for bodies with a constant twist.
     spheres: Vec<Option<MovingSphere>>,
     tree: BoxTree,
+    /// Of pairs that a caller's own broad phase has left, ascending: then boxes and spheres are not asked.
+    given: Option<Vec<(IndexPair, MeetingSpan)>>,
     queue: PairQueue,
     /// Entries when stale ones were last dropped.
     fresh: usize,
@@ -284,6 +286,9 @@ impl Schedule {
     /// When a pair may meet; none is a proof that it does not for the rest of the span.
     pub(super) fn meeting_span(&self, rules: Rules<'_>, pair: IndexPair) -> Option<MeetingSpan> {
         let span = self.span?;
+        if let Some(given) = &self.given {
+            return given.binary_search_by_key(&pair, |(pair, _)| *pair).ok().map(|place| given[place].1);
+        }
         let meeting = self.first_meeting(rules, pair)?;
         let sweep = |place: u32| Sweep {
             hull: &self.hulls[place as usize],
@@ -301,8 +306,9 @@ impl Schedule {
 
     /// Adds the pair again, after its separation has changed for instance.
     pub(super) fn push_pair(&mut self, rules: Rules<'_>, pair: IndexPair) {
+        let is_enclosed = |place: u32| (place as usize) < self.hulls.len();
         if self.span.is_some()
-            && pair.iter().all(|&place| (place as usize) < self.hulls.len())
+            && (self.given.is_some() || pair.iter().all(|&place| is_enclosed(place)))
             && let Some(entry) = self.entry(rules, pair)
         {
             self.queue.push(entry);
@@ -348,6 +354,17 @@ impl Schedule {
         pairs.sort_unstable();
         pairs.dedup();
         pairs
+    }
+
+    /// A schedule with these pairs only, ascending, each with when it may meet.
+    pub(super) fn of_given(rules: Rules<'_>, window: Window, given: Vec<(IndexPair, MeetingSpan)>) -> Self {
+        let mut schedule = Self { span: Some(window), from: window.start(), ..Self::default() };
+        let pairs: Vec<IndexPair> = given.iter().map(|(pair, _)| *pair).collect();
+        schedule.given = Some(given);
+        for pair in pairs {
+            schedule.push_pair(rules, pair);
+        }
+        schedule
     }
 
     /// A schedule with the pairs of some bodies only. `earlier` is that of the same bodies, but for these and the `stale`

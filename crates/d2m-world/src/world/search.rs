@@ -5,7 +5,7 @@
 
 use super::pair_state::{Entry, Known, PairState};
 use super::schedule::{MeetingSpan, Prepared, Rules};
-use super::{FirstContact, PairContact, World, WorldError};
+use super::{FirstContact, PairContact, Threads, World, WorldError};
 use crate::box_tree::IndexPair;
 use crate::parallel::{PAIRS, map_in_order};
 use d2m_bvh::{
@@ -349,7 +349,11 @@ impl World {
         // The boxes prove what lies between the start of the query and that of a pair's own window.
         let span_start = self.schedule.from();
         let (slots, rest) = (&self.slots, meter.rest());
-        let replies = map_in_order(&questions, PAIRS, |question| {
+        let least = match self.threads {
+            Threads::All => PAIRS,
+            Threads::Own => usize::MAX,
+        };
+        let replies = map_in_order(&questions, least, |question| {
             let mut cache = question.cache;
             let work_before = cache.work();
             let [Some(a), Some(b)] = question.pair.map(|place| slots.at(place)) else {

@@ -288,3 +288,34 @@ fn progress_counts_the_pairs_that_are_done() {
         assert!(seen.windows(2).all(|pair| pair[0][0] < pair[1][0]), "{seen:?}");
     }
 }
+
+/// Pairs that are given with when they may meet: only these count, each in its time, twice given as once, and the ignored ones not.
+#[test]
+fn given_candidates_are_all_that_is_asked() {
+    let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()));
+    let mut world = World::new(QueryOptions::default());
+    let mut at =
+        |x: f64| world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST.with_position(DVec3::X * x)));
+    let [tool, near, far] = [at(0.0), at(3.0), at(6.0)];
+    // At 8 t: the near one is met at 0.25, and the far one would be at 0.625.
+    let motion = Arc::new(ConstantTwist::REST.with_linear_velocity(DVec3::X * 8.0));
+    let plan = [PlannedMotion { body: tool, motion }];
+    let given = |b: BodyId, from: f64, until: f64| Candidate { a: tool, b, from, until };
+    let ask = |world: &World, candidates: &[Candidate]| {
+        world.first_contact_among(&plan, candidates, Window::UNIT, Threads::Own).unwrap()
+    };
+    let met = |answer: FirstContact, with: BodyId, time: f64| {
+        let FirstContact::Contact { a, b, contact, .. } = answer else { panic!("{answer:?}") };
+        assert_eq!((a, b), (tool, with));
+        assert!(contact.time_lo <= time && contact.time_lo > time - 1e-9, "{contact:?}");
+    };
+    met(ask(&world, &[given(far, 0.5, 0.75), given(near, 0.0, 1.0)]), near, 0.25);
+    met(ask(&world, &[given(far, 0.5, 0.75)]), far, 0.625);
+    assert_eq!(ask(&world, &[given(far, 0.0, 0.6)]), FirstContact::Separated);
+    assert_eq!(ask(&world, &[]), FirstContact::Separated);
+    met(ask(&world, &[given(far, 0.0, 0.1), given(far, 0.6, 0.7), given(far, 0.2, 0.3)]), far, 0.625);
+    world.ignore_pair(near, tool, true);
+    assert_eq!(ask(&world, &[given(near, 0.0, 1.0)]), FirstContact::Separated);
+    world.set_min_separation(far, tool, Some(1.0));
+    met(ask(&world, &[given(far, 0.0, 1.0)]), far, 0.5);
+}
