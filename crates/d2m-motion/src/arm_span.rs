@@ -143,7 +143,7 @@ mod tests {
                 let mut carrier = Some(link);
                 loop {
                     carrier = carrier.and_then(|link| arm.parent(link));
-                    let seen = span.link(link, carrier);
+                    let seen = *span.link(link, carrier);
                     let skipped = carrier.map_or(0, |carrier| chains[carrier].joints().len());
                     let rest = chains[link].without_first(skipped);
                     for k in 0..=16 {

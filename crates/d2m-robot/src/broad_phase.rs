@@ -2,7 +2,7 @@
 
 use crate::RobotError;
 use crate::body_box::BodyBox;
-use crate::scene::{Owner, RobotScene};
+use crate::scene::{MovingPair, Owner, RobotScene};
 use crate::swept_box::{Sweep, SweptBox};
 use d2m_bvh::Window;
 use d2m_motion::{Arm, ArmSpan, CoveredMotion};
@@ -13,17 +13,6 @@ const DEPTH: usize = 6;
 /// A span is halved for a pair whose motion takes less than so many times the room between its boxes: each half takes half
 /// of it. What is further from a proof is left to the search of the pair, whose boxes are smaller.
 const WORTH: f64 = 8.0;
-
-/// A pair that is checked and may move.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct MovingPair {
-    /// Places of its parts.
-    pub(crate) parts: [usize; 2],
-    /// At which it counts as in contact; radii of both are part of it.
-    pub(crate) separation: f64,
-    /// The link of the arm that both are seen from: the last that carries both. None: the world.
-    pub(crate) seen_from: Option<usize>,
-}
 
 /// No number of a box: not made so far.
 const UNMADE: u32 = u32::MAX;

@@ -1,7 +1,6 @@
 //! A robot among obstacles, with what it holds.
 
 use crate::body_box::BodyBox;
-use crate::broad_phase::MovingPair;
 use crate::geometry::LinkBody;
 use crate::robot::Robot;
 use crate::{RobotError, Srdf};
@@ -147,6 +146,17 @@ pub struct RobotScene {
 /// δ of a pair with a sphere or capsule, in radii: that of other pairs, whose length is their larger body's.
 const TOLERANCE: f64 = 1e-10;
 
+/// A pair that is checked and may move.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MovingPair {
+    /// Places of its parts.
+    pub(crate) parts: [usize; 2],
+    /// At which it counts as in contact; radii of both are part of it.
+    pub(crate) separation: f64,
+    /// The link of the arm that both are seen from: the last that carries both. None: the world.
+    pub(crate) seen_from: Option<usize>,
+}
+
 /// A body of the world.
 #[derive(Clone)]
 pub(crate) struct Part {
@@ -190,7 +200,7 @@ impl RobotScene {
     /// The robot alone. The options hold for every pair; a minimum separation in them is kept between all bodies.
     ///
     /// # Errors
-    /// None that a robot which was read can cause.
+    /// A minimum separation that is negative or not finite, a tolerance that is not above zero or not finite.
     #[expect(clippy::needless_pass_by_value, reason = "as its sisters, and as every caller has it")]
     pub fn new(robot: Arc<Robot>, srdf: Option<&Srdf>, options: QueryOptions) -> Result<Self, RobotError> {
         let round =
@@ -200,6 +210,7 @@ impl RobotScene {
             (None, Some(radius)) => options.with_tolerance(TOLERANCE * radius),
             _ => options,
         };
+        check_options(&options)?;
         let mut scene = Self {
             world: World::new(options),
             robot: Arc::clone(&robot),
@@ -401,6 +412,21 @@ fn place_of(owner: &Owner, body: &Body) -> Result<CertifiedState, RobotError> {
 /// A mesh that bounds a solid is one.
 fn solid_of(tree: &MeshTree) -> Solid {
     if tree.is_watertight() { Solid::Filled } else { Solid::Surface }
+}
+
+/// Bodies that are far apart are never queried, so that no query would refuse these.
+fn check_options(options: &QueryOptions) -> Result<(), RobotError> {
+    let separation = options.min_separation;
+    if !(separation.is_finite() && separation >= 0.0) {
+        let reason = format!("{separation:?} is not a finite number that is not negative");
+        return Err(RobotError::path("min_separation", reason));
+    }
+    match options.tolerance {
+        Some(tolerance) if !(tolerance.is_finite() && tolerance > 0.0) => {
+            Err(RobotError::path("tolerance", format!("{tolerance:?} is not a finite number above zero")))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn check_radius(name: &str, radius: f64) -> Result<(), RobotError> {

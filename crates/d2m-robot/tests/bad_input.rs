@@ -249,3 +249,21 @@ fn paths_beyond_limits_are_warned_of() {
     assert!(found[0].to_string().contains("joint \"j\": the position 1.0"), "{}", found[0]);
     assert!(found[1].time == 0.0 && found[1].limit == 2.0 && found[1].value > 4.0);
 }
+
+/// Bodies that are far apart are never queried: what a query would refuse is refused before.
+#[test]
+fn options_that_make_no_sense_are_refused_whatever_the_path() {
+    use d2m_bvh::QueryOptions;
+    let robot = || std::sync::Arc::new(Robot::parse("bare.urdf", BARE, &RobotOptions::new()).unwrap());
+    const BARE: &str = "<robot name=\"bare\"><link name=\"a\"><collision><geometry><sphere radius=\"1\"/></geometry></collision></link></robot>";
+    let message =
+        |options: QueryOptions| RobotScene::new(robot(), None, options).err().map(|error| error.to_string());
+    for value in [-1.0, f64::NAN, f64::INFINITY] {
+        let found = message(QueryOptions::default().with_min_separation(value)).unwrap();
+        assert!(found.starts_with(&format!("min_separation: {value:?}")), "{found}");
+    }
+    for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let found = message(QueryOptions::default().with_tolerance(value)).unwrap();
+        assert!(found.starts_with(&format!("tolerance: {value:?}")), "{found}");
+    }
+}
