@@ -15,6 +15,7 @@
 //!
 //! ## Arms
 //! - [`Arm`]: a tree of links; [`Chain`]: one link of it.
+//! - [`ArmSpan`]: all links over a span of time, as [`SpanMotion`]s.
 //! - [`Joint`] and [`JointKind`]: how a link hangs on the one before; [`JointValue`] and [`JointPoints`]: its
 //!   angle or length over time.
 //!

@@ -8,6 +8,7 @@
 //! - [`Body`]: a shared tree and a [`SharedMotion`], solid or surface, in a [`Group`] or in none. [`BodyId`]
 //!   is its name in the world.
 //! - [`PlannedMotion`]: what a body might do, for [`World::first_contact_of`].
+//! - [`Candidate`]: a pair that another broad phase has left, for [`World::first_contact_among`]; [`Threads`]: which of them answer.
 //!
 //! ## Answers
 //! - [`FirstContact`]: separated, the first contact, or undecided. [`PairContact`]: what is known of one
