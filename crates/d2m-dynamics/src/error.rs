@@ -93,6 +93,18 @@ pub enum SimulationError {
         /// The refused value, as text.
         value: String,
     },
+    /// A joint that cannot be made.
+    #[error("joint of {a} and {b}: {name} {value} cannot be used")]
+    BadJoint {
+        /// The first body's name.
+        a: String,
+        /// The second body's name.
+        b: String,
+        /// Which part of it.
+        name: &'static str,
+        /// The refused value, as text.
+        value: String,
+    },
     /// Mass properties.
     #[error("body {body}: {error}")]
     Mass {

@@ -3,6 +3,7 @@
 use crate::SimulationOptions;
 use crate::account::{Entry, balance};
 use crate::contact::{Accuracy, ContactPoint, HIT, SolverBody, Span, Start, System, impact, select};
+use crate::joined::Joined;
 use crate::momenta::Momenta;
 use crate::rigid_body::RigidBody;
 use crate::velocity::Velocity;
@@ -17,6 +18,9 @@ const AIM: f64 = 1e-3;
 const RELATIVE: f64 = 1.0 / 1024.0;
 /// Solutions with the spin of the flight's middle put right.
 const CORRECTIONS: u32 = 3;
+
+/// And with the ends of jointed bodies' flights put right.
+const JOINT_CORRECTIONS: u32 = 8;
 
 /// The contacts of bodies that impulses connect, bodies by their numbers.
 #[derive(Clone, Debug, Default)]
@@ -91,6 +95,7 @@ pub(crate) fn solve(
     island: &Island,
     clock: Clock,
     options: &SimulationOptions,
+    joints: &[Joined],
 ) -> Solved {
     let mut members: Vec<usize> = island.contacts.iter().flat_map(|c| [c.a, c.b]).collect();
     members.sort_unstable();
@@ -126,14 +131,16 @@ pub(crate) fn solve(
             .collect();
     let rows = select(&island.contacts, span, |body| free[place(body)].velocity);
     let mut contacts: Vec<ContactPoint> = rows.iter().map(|row| island.contacts[row.contact]).collect();
-    let targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
+    let mut targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
     let precision = PRECISION * options.gap / options.step;
     let slow = span.resting_speed.max(options.gap / options.step);
     let accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM, slow };
 
-    let pushing: Vec<f64> = targets.iter().map(|target| target.min(0.0)).collect();
+    let mut pushing: Vec<f64> = rows.iter().map(|row| row.pushing).collect();
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
-    let driven = states.iter().any(|s| !moves(s) && !s.stands_still());
+    // Springs and motors may work; what joints alone do is balanced by the middle of flights, not by accounts.
+    let driven = states.iter().any(|s| !moves(s) && !s.stands_still())
+        || island.contacts.iter().any(|c| c.row.is_some());
     let mut system = System::new(free, &contacts, place);
     system.warm_start(&contacts);
     let mut residual = 0.0;
@@ -142,8 +149,17 @@ pub(crate) fn solve(
         residual = system.solve(&pushing, accuracy, start);
         system.store(&mut contacts);
         let tolerance = system.tolerance(accuracy);
-        if correction == CORRECTIONS || !put_right(&mut system, &states, &contacts, span, place, tolerance) {
+        let is_off = put_right(&mut system, &states, &contacts, span, place, tolerance);
+        let ends = Ends { joints, states: &states, span };
+        let missed = ends.miss(&system, &contacts, place);
+        let most = if missed.is_empty() { CORRECTIONS } else { JOINT_CORRECTIONS };
+        let is_joined = missed.iter().all(|missed| missed.rate.abs() <= precision);
+        if correction == most || !is_off && is_joined {
             break;
+        }
+        for missed in missed {
+            pushing[missed.row] -= missed.rate;
+            targets[missed.row] -= missed.rate;
         }
         system.renew();
     }
@@ -153,7 +169,7 @@ pub(crate) fn solve(
     // What restores the gap, or makes room for rotation, moves the bodies in this flight and leaves no momentum.
     let velocities = |system: &System| system.bodies.iter().map(|body| body.velocity).collect::<Vec<_>>();
     let mut physical = velocities(&system);
-    if targets.iter().any(|&target| target > 0.0) {
+    if targets != pushing {
         let before = system.doubled_energy(&inertia);
         system.solve(&targets, accuracy, Start::Present);
         system.store(&mut contacts);
@@ -301,6 +317,51 @@ fn settle(
     outcomes.iter().zip(&entries).enumerate().map(push).collect()
 }
 
+/// Where the flights of jointed bodies end.
+struct Ends<'s> {
+    joints: &'s [Joined],
+    states: &'s [Cow<'s, RigidBody>],
+    span: Span,
+}
+
+/// By how much the rate of a row is off what leads to the end that its joint asks for.
+struct Missed {
+    row: usize,
+    rate: f64,
+}
+
+impl Ends<'_> {
+    fn miss(
+        &self,
+        system: &System,
+        contacts: &[ContactPoint],
+        place: impl Fn(usize) -> usize,
+    ) -> Vec<Missed> {
+        let tau = self.span.remaining;
+        let mut missed = Vec::new();
+        let mut known: Option<(usize, Vec<f64>)> = None;
+        for (row, contact) in contacts.iter().enumerate() {
+            let Some([number, equation]) = contact.row.and_then(|row| row.equation) else { continue };
+            let joined = &self.joints[number];
+            if known.as_ref().is_none_or(|known| known.0 != number) {
+                let bodies = [contact.a, contact.b].map(&place);
+                let starts = bodies.map(|k| (self.states[k].position, self.states[k].orientation));
+                let ends = bodies.map(|k| {
+                    let (state, v) = (&self.states[k], &system.bodies[k].velocity);
+                    (state.position + v.linear * tau, state.turned(v.angular, tau))
+                });
+                let aims = joined.aims(starts, tau, self.span.step);
+                let off = joined.offs(ends).into_iter().zip(aims).map(|(off, aim)| (off - aim) / tau);
+                known = Some((number, off.collect()));
+            }
+            if let Some((_, rates)) = &known {
+                missed.push(Missed { row, rate: rates[equation] });
+            }
+        }
+        missed
+    }
+}
+
 fn body_at(state: &RigidBody, velocity: Velocity, inverse_inertia: DMat3) -> SolverBody {
     SolverBody { inverse_mass: state.inverse_mass, inverse_inertia, velocity }
 }
@@ -317,12 +378,9 @@ fn world_inertia(state: &RigidBody) -> (f64, DMat3) {
 
 fn add(contacts: &[ContactPoint], added: &mut [Momenta], place: impl Fn(usize) -> usize) {
     for c in contacts {
-        let impulse = c.total();
         let (a, b) = (place(c.a), place(c.b));
-        added[a].linear -= impulse;
-        added[a].angular -= c.arm_a.cross(impulse);
-        added[b].linear += impulse;
-        added[b].angular += c.arm_b.cross(impulse);
+        added[a] = added[a] + -c.momenta(c.arm_a);
+        added[b] = added[b] + c.momenta(c.arm_b);
     }
 }
 

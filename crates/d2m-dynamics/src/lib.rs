@@ -8,6 +8,7 @@
 //! - [`Body`]: a shared tree, its [`Kind`], [`Mass`], [`Material`]; a kinematic one follows a [`Motion`].
 //!   [`BodyId`] is its name.
 //! - [`MassProperties`]: mass, center and inertia of a mesh.
+//! - [`Joint`]: what holds two bodies together, of a [`JointKind`], with a [`Motor`] (and its [`MotorTarget`]) or a [`Spring`].
 //!
 //! ## Running
 //! - [`SimulationOptions`]: gravity, step, gap, accuracy.
@@ -31,6 +32,8 @@ mod contact;
 mod error;
 mod faces;
 mod group;
+mod joined;
+mod joint;
 mod kinematic;
 mod listener;
 mod mass;
@@ -50,6 +53,7 @@ mod velocity;
 pub use body::{Body, BodyId, Kind, Mass, Motion};
 pub use contact::Material;
 pub use error::{MassError, SimulationError, StepError};
+pub use joint::{Joint, JointKind, Motor, MotorTarget, Spring};
 pub use listener::ContactListener;
 pub use mass::MassProperties;
 pub use options::SimulationOptions;

@@ -254,6 +254,7 @@ pub(crate) fn measure(
         arm_b: middle(p) - posed_b.pose.translation,
         point: middle(p),
         material,
+        row: None,
         impulse: 0.0,
         sliding: [0.0; 2],
     };

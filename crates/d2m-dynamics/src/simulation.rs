@@ -3,15 +3,17 @@
 use crate::broad_phase::Neighbors;
 use crate::contact::Material;
 use crate::faces::Faces;
+use crate::joined::Joined;
 use crate::listener::{ContactListener, Nobody};
 use crate::pairs::Pair;
 use crate::record::Recorder;
 use crate::rigid_body::RigidBody;
 use crate::step::Step;
 use crate::{
-    Body, BodyId, ContactImpulse, MassProperties, Segment, SimulationError, SimulationOptions, StepError,
+    Body, BodyId, ContactImpulse, Kind, MassProperties, Segment, SimulationError, SimulationOptions,
+    StepError,
 };
-use d2m_bvh::QueryError;
+use d2m_bvh::{MeshTree, QueryError, TriMesh};
 use d2m_motion::Pose;
 use glam::{DQuat, DVec3};
 use std::collections::{BTreeMap, BTreeSet};
@@ -79,6 +81,9 @@ pub struct Simulation {
     pub(crate) neighbors: Neighbors,
     /// The greatest kinetic energy of all bodies together so far.
     pub(crate) greatest_energy: f64,
+    pub(crate) joints: Vec<Joined>,
+    /// The place of the body that stands for the world, once a joint has asked for it.
+    pub(crate) world: Option<usize>,
     /// Bodies below this number have been checked for intersections.
     pub(crate) checked: usize,
 }
@@ -113,6 +118,8 @@ impl Simulation {
             recorder: Recorder::default(),
             neighbors: Neighbors::default(),
             greatest_energy: 0.0,
+            joints: Vec::new(),
+            world: None,
             checked: 0,
         })
     }
@@ -289,7 +296,7 @@ impl Simulation {
 
     /// How many bodies there are.
     pub fn len(&self) -> usize {
-        self.bodies.len()
+        self.bodies.len() - usize::from(self.world.is_some())
     }
 
     /// All bodies, in the order in which they were added.
@@ -309,12 +316,13 @@ impl Simulation {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn ids(&self) -> impl Iterator<Item = BodyId> + use<> {
-        (0..self.bodies.len() as u32).map(BodyId)
+        let world = self.world;
+        (0..self.bodies.len() as u32).map(BodyId).filter(move |id| Some(id.index()) != world)
     }
 
     /// True if the simulation has no body.
     pub fn is_empty(&self) -> bool {
-        self.bodies.is_empty()
+        self.len() == 0
     }
 
     /// The body's name.
@@ -377,7 +385,23 @@ impl Simulation {
     /// May these two meet, so that the simulation considers them?
     pub(crate) fn meets(&self, a: usize, b: usize) -> bool {
         (self.bodies[a].is_dynamic() || self.bodies[b].is_dynamic())
+            && ![Some(a), Some(b)].contains(&self.world.or(Some(usize::MAX)))
             && !self.ignored.contains(&(a.min(b), a.max(b)))
+    }
+
+    /// The body that stands for the world.
+    pub(crate) fn world(&mut self) -> Result<usize, SimulationError> {
+        if let Some(world) = self.world {
+            return Ok(world);
+        }
+        let corners = vec![DVec3::ZERO, DVec3::X * self.options.gap, DVec3::Y * self.options.gap];
+        let mesh = TriMesh::try_new(corners, vec![[0, 1, 2]]);
+        let wanted = "a length that is not lost";
+        let bad = |_| SimulationError::BadOption { name: "gap", value: self.options.gap, wanted };
+        let tree = Arc::new(MeshTree::new(mesh.map_err(bad)?));
+        let id = self.add(&Body::new("the world", tree).with_kind(Kind::Static))?;
+        self.world = Some(id.index());
+        Ok(id.index())
     }
 
     pub(crate) fn material(&self, a: usize, b: usize) -> Material {

@@ -231,6 +231,7 @@ impl ContactState {
             arm_b: self.arm_b,
             point: self.point,
             material: Material { restitution: self.restitution, friction: self.friction },
+            row: None,
             impulse: self.impulse,
             sliding: self.sliding,
         }

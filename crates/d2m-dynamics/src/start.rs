@@ -46,11 +46,11 @@ impl Simulation {
         }
         self.checked = self.bodies.len();
         if self.recorder.has_begun() {
-            for k in first..self.bodies.len() {
+            for k in (first..self.bodies.len()).filter(|&k| Some(k) != self.world) {
                 self.recorder.change(BodyId(k as u32), self.bodies[k].flight);
             }
         } else {
-            let flights = (0..self.bodies.len()).map(|k| (BodyId(k as u32), self.bodies[k].first_flight()));
+            let flights = self.ids().map(|id| (id, self.bodies[id.index()].first_flight()));
             self.recorder.begin(self.time, flights.collect());
         }
         Ok(())

@@ -1,6 +1,7 @@
 //! Simulations: scene files in, run files out.
 
 mod fields;
+mod joints;
 mod run_file;
 mod scene;
 mod thinning;

@@ -1,6 +1,7 @@
 //! Scene files of simulations.
 
 use super::fields::{Fields, short};
+use super::joints::joints;
 use crate::failure::Failure;
 use crate::load::read;
 use crate::mesh_library::MeshLibrary;
@@ -24,7 +25,7 @@ pub(crate) struct Scene {
 }
 
 const SCENE_KEYS: &[&str] =
-    &["bodies", "ignore", "pairs", "simulation", "window", "min_separation", "tolerance"];
+    &["bodies", "ignore", "pairs", "joints", "simulation", "window", "min_separation", "tolerance"];
 /// Of a body, those that no other scene has.
 const DYNAMIC_KEYS: &[&str] =
     &["kind", "pose", "velocity", "density", "mass", "center", "inertia", "restitution", "friction"];
@@ -76,6 +77,7 @@ pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
     ignore(&scene, &bodies, &ids, &mut simulation)?;
     let names: Vec<String> = bodies.into_iter().map(|body| body.name).collect();
     pairs(&scene, &names, &ids, &mut simulation)?;
+    joints(&scene, &names, &ids, &mut simulation)?;
     Ok(Scene { simulation, names, ids, end })
 }
 

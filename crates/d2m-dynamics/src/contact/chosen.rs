@@ -34,6 +34,7 @@ impl System {
                 reach: core::mem::take(&mut self.reach),
                 factor: self.factor.take(),
                 is_conforming: false,
+                has_joints: self.has_joints,
             };
             part.solve(&of_chosen, accuracy, start);
             for (k, impulse) in places.into_iter().zip(&part.impulses) {

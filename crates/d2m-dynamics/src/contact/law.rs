@@ -8,7 +8,7 @@
 ///
 /// A contact has Coulomb's cone for K and, in de Saxcé's form, the shift s = μ |u_t| of its normal rate; the others have none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Law {
+pub(crate) enum Law {
     /// Along a normal and two tangents: |λ_t| ≤ μ λ_n.
     Cone { friction: f64 },
     /// One row: lo ≤ λ ≤ hi, and the rate yields by `softness` λ.

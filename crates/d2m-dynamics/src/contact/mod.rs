@@ -14,9 +14,10 @@ mod sweeps;
 mod system;
 
 pub(crate) use impact::impact;
+pub(crate) use law::Law;
 pub(crate) use newton::Start;
 pub use point::Material;
-pub(crate) use point::{ContactPoint, tangents};
+pub(crate) use point::{ContactPoint, JointRow, tangents};
 pub(crate) use rows::{HIT, Span, select};
 pub(crate) use solve::Accuracy;
 pub(crate) use system::{SolverBody, System};

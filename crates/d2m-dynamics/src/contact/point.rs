@@ -1,5 +1,7 @@
 //! A contact point with its impulse.
 
+use super::law::Law;
+use crate::momenta::Momenta;
 use crate::velocity::Velocity;
 use d2m_feature::FeaturePair;
 use glam::DVec3;
@@ -12,6 +14,19 @@ pub struct Material {
     pub restitution: f64,
     /// Coulomb's coefficient of friction, not negative.
     pub friction: f64,
+}
+
+/// A row of a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct JointRow {
+    /// Of the turn about the normal, instead of the way along it.
+    pub(crate) is_angular: bool,
+    pub(crate) law: Law,
+    /// The rate that impulses see to, and that of the flight, which also takes back what the joint is off.
+    pub(crate) pushing: f64,
+    pub(crate) target: f64,
+    /// The number of the joint and of its equation, whose rate follows from where the flight ends.
+    pub(crate) equation: Option<[usize; 2]>,
 }
 
 /// A pair of closest features of two bodies, and the impulse between them.
@@ -37,6 +52,8 @@ pub(crate) struct ContactPoint {
     /// Middle of the closest points.
     pub(crate) point: DVec3,
     pub(crate) material: Material,
+    /// None: a contact.
+    pub(crate) row: Option<JointRow>,
     /// Impulses on b along the normal and the tangents.
     pub(crate) impulse: f64,
     pub(crate) sliding: [f64; 2],
@@ -51,6 +68,16 @@ impl ContactPoint {
     /// Along the normal and the tangents.
     pub(crate) fn impulses(&self) -> [f64; 3] {
         [self.impulse, self.sliding[0], self.sliding[1]]
+    }
+
+    /// What the impulse adds to the momenta of b if it acts at this arm.
+    pub(crate) fn momenta(&self, arm: DVec3) -> Momenta {
+        match self.row {
+            Some(row) if row.is_angular => {
+                Momenta { linear: DVec3::ZERO, angular: self.normal * self.impulse }
+            }
+            _ => Momenta::of_impulse(self.total(), arm),
+        }
     }
 
     /// The impulse on b.

@@ -32,6 +32,8 @@ pub(crate) struct Row {
     /// Place in the list of contacts.
     pub(crate) contact: usize,
     pub(crate) target: f64,
+    /// What impulses see to of that.
+    pub(crate) pushing: f64,
 }
 
 /// Contacts that close slower than the resting speed, and those that have been hit. The others are left to fly and to
@@ -46,6 +48,10 @@ pub(crate) struct Row {
 pub(crate) fn select(found: &[ContactPoint], span: Span, velocity: impl Fn(usize) -> Velocity) -> Vec<Row> {
     let mut rows = Vec::new();
     for (k, contact) in found.iter().enumerate() {
+        if let Some(row) = contact.row {
+            rows.push(Row { contact: k, target: row.target, pushing: row.pushing });
+            continue;
+        }
         let closing = -contact.rate(velocity(contact.a), velocity(contact.b));
         let (d, gap, tau) = (contact.distance, contact.gap, span.remaining);
         let bounces = contact.material.restitution > 0.0;
@@ -70,7 +76,7 @@ pub(crate) fn select(found: &[ContactPoint], span: Span, velocity: impl Fn(usize
             let room = curved - (d - KEPT * gap) / tau;
             restore.max(room).clamp(0.0, most)
         };
-        rows.push(Row { contact: k, target });
+        rows.push(Row { contact: k, target, pushing: target.min(0.0) });
     }
     rows
 }

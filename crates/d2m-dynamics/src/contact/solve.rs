@@ -65,7 +65,7 @@ impl System {
         }
         let (moved, mut residual) = (self.moved(), self.residual(targets));
         let (mut start, mut effort) = (start, Effort::STICK);
-        if self.mass_ratio() <= MOST_RATIO {
+        if self.mass_ratio() <= MOST_RATIO && !self.has_joints {
             if moved > FEW && !self.is_conforming {
                 residual = self.sweep_until(targets, accuracy, FIRST);
             }
@@ -106,7 +106,8 @@ impl System {
     /// What need not be solved any better.
     pub(super) fn enough(&self, accuracy: Accuracy) -> f64 {
         let tolerance = self.tolerance(accuracy);
-        let is_exact = self.moved() <= COUPLE || (self.moved() <= SOME && self.is_calm(accuracy));
+        let is_exact =
+            self.has_joints || self.moved() <= COUPLE || (self.moved() <= SOME && self.is_calm(accuracy));
         match self.moved() {
             _ if is_exact => accuracy.aim(tolerance),
             moved if moved <= FEW => SEVERAL * tolerance,

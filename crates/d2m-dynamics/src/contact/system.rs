@@ -42,6 +42,14 @@ impl Block {
         let friction = contact.material.friction;
         let law = if friction > 0.0 { Law::Cone { friction } } else { Law::PUSH };
         let lines = [line(contact.normal), line(t), line(u)];
+        let (lines, law) = match contact.row {
+            Some(row) if row.is_angular => {
+                let n = contact.normal;
+                ([Line::with_crosses(DVec3::ZERO, [n, n], &bodies[a], &bodies[b]); 3], row.law)
+            }
+            Some(row) => (lines, row.law),
+            None => (lines, law),
+        };
         let mut block = Self { a, b, lines, law, scale: 0.0, sliding: [0.0; 3], step: 0.0 };
         block.scale(bodies);
         block
@@ -97,6 +105,7 @@ pub(crate) struct System {
     pub(super) factor: Option<Factor>,
     /// More than eight contacts of one pair.
     pub(super) is_conforming: bool,
+    pub(super) has_joints: bool,
 }
 
 /// Contacts of one pair from which on it is conforming: as of a pin in its hole.
@@ -117,9 +126,12 @@ impl System {
             reach[block.b] = reach[block.b].max(contact.arm_b.length());
         }
         let is_same = |x: &ContactPoint, y: &ContactPoint| (x.a, x.b) == (y.a, y.b);
-        let is_conforming = contacts.chunk_by(is_same).any(|of_pair| of_pair.len() > MANY);
+        let is_conforming = contacts
+            .chunk_by(is_same)
+            .any(|of_pair| of_pair.iter().filter(|c| c.row.is_none()).count() > MANY);
+        let has_joints = contacts.iter().any(|contact| contact.row.is_some());
         let impulses = vec![[0.0; 3]; blocks.len()];
-        Self { bodies, blocks, impulses, reach, factor: None, is_conforming }
+        Self { bodies, blocks, impulses, reach, factor: None, is_conforming, has_joints }
     }
 
     /// The bodies have other inertias and velocities, in which the impulses are contained.

@@ -2,7 +2,7 @@
 
 use super::{Key, Occasion, Step};
 use crate::contact::ContactPoint;
-use crate::momenta::Momenta;
+use crate::joined::Ahead;
 use crate::pairs::{Measured, Pair, measure};
 use crate::rigid_body::RigidBody;
 use crate::simulation::query_error;
@@ -25,6 +25,8 @@ pub(super) struct Group {
     pub(super) contacts: Vec<ContactPoint>,
     /// Pairs whose contacts are among those or that have none, ascending.
     measured: Vec<Key>,
+    /// Joints whose rows are among the contacts, ascending.
+    joints: Vec<usize>,
 }
 
 impl Group {
@@ -71,11 +73,11 @@ impl Step<'_> {
         let (inner, outer): (Vec<_>, Vec<_>) = self.undoable.drain(..).partition(is_inner);
         self.undoable = outer;
         for contact in &inner {
-            let impulse = contact.total();
-            for (i, sign, arm) in [(contact.a, -1.0, contact.arm_a), (contact.b, 1.0, contact.arm_b)] {
+            let parts =
+                [(contact.a, -contact.momenta(contact.arm_a)), (contact.b, contact.momenta(contact.arm_b))];
+            for (i, pushed) in parts {
                 if moves(&bodies[i]) {
-                    let linear = impulse * sign;
-                    bodies[i].retract(Momenta::of_impulse(linear, arm));
+                    bodies[i].retract(pushed);
                 }
             }
         }
@@ -95,6 +97,26 @@ impl Step<'_> {
             wave = self.admit(group, time, &wave, occasion)?;
         }
         Ok(())
+    }
+
+    /// Adds the rows of the joints of some bodies; the bodies that these connect with the group and that are none of it yet.
+    fn admit_joints(&self, group: &mut Group, of: &[usize], time: f64, occasion: Occasion) -> Vec<usize> {
+        let sim = &*self.sim;
+        let end = if let Occasion::Plan { until } = occasion { until } else { self.end };
+        let ahead = Ahead { length: end - time, step: sim.options.step, forces: !occasion.is_event() };
+        let mut next = Vec::new();
+        for (number, joined) in sim.joints.iter().enumerate() {
+            let Err(place) = group.joints.binary_search(&number) else { continue };
+            if !of.iter().any(|&i| joined.has(i)) {
+                continue;
+            }
+            group.joints.insert(place, number);
+            group.contacts.extend(joined.rows(number, &sim.bodies, ahead));
+            let is_new =
+                |i: &usize| !group.is_member[*i] && sim.bodies[*i].is_dynamic() && !sim.bodies[*i].held;
+            next.extend(joined.bodies.into_iter().filter(is_new));
+        }
+        next
     }
 
     /// Adds bodies, moved to `time` and awake, with their contacts; the bodies that these connect with the group and that are
@@ -177,7 +199,7 @@ impl Step<'_> {
         });
         found.extend(known.into_iter().map(|key| (key, None)));
         found.sort_by_key(|(key, _)| *key);
-        let mut next = Vec::new();
+        let mut next = self.admit_joints(group, &wave, time, occasion);
         for (key, answer) in found {
             let answer = match answer {
                 Some(Ok(points)) => Some(points),

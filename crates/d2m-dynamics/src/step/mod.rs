@@ -107,6 +107,10 @@ impl<'s> Step<'s> {
         for &i in &awake {
             self.sim.bodies[i].time = self.start;
         }
+        let sim = &mut *self.sim;
+        for joined in &mut sim.joints {
+            joined.look(&sim.bodies);
+        }
         self.resolve(self.start, awake, Occasion::Start)?;
         self.solve_expected(self.start)?;
         let mut last = (f64::NEG_INFINITY, BTreeMap::<[usize; 2], u32>::new());

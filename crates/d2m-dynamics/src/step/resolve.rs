@@ -29,12 +29,12 @@ impl Step<'_> {
         let until = if let Occasion::Plan { until } = occasion { until } else { self.end };
         let clock = Clock { now: time, end: until };
         let renewed = if occasion.is_event() { seeds.clone() } else { Vec::new() };
-        let solved = if occasion == Occasion::Event {
+        let solved = if occasion == Occasion::Event && self.sim.joints.is_empty() {
             self.solve_nearby(&mut group, seeds, clock, occasion)?
         } else {
             self.admit_connected(&mut group, time, seeds, occasion)?;
             group.sort();
-            if !matches!(occasion, Occasion::Start | Occasion::Cramped) {
+            if matches!(occasion, Occasion::Expected | Occasion::Plan { .. }) {
                 self.retract(&mut group, (until - time) / (self.end - time));
             }
             self.follow_motions(&group, clock, occasion)?;
@@ -116,10 +116,10 @@ impl Step<'_> {
 
     /// Velocities of the members from the contacts between them, and with what nothing moves.
     fn solve_islands(&self, group: &Group, clock: Clock) -> Vec<Solved> {
-        let (bodies, options) = (&self.sim.bodies, &self.sim.options);
+        let (bodies, options, joints) = (&self.sim.bodies, &self.sim.options, &self.sim.joints);
         let settled = |i: usize| group.is_member[i] || !bodies[i].is_dynamic() || bodies[i].held;
         let within = group.contacts.iter().filter(|c| settled(c.a) && settled(c.b)).copied().collect();
-        parallel::map(islands(bodies, within), |island| solve(bodies, &island, clock, options))
+        parallel::map(islands(bodies, within), |island| solve(bodies, &island, clock, options, joints))
     }
 
     /// An event changes the velocities of its bodies, and of those that they then press on: a heap of bodies at rest is not
@@ -195,7 +195,8 @@ impl Step<'_> {
         let is_start =
             occasion == Occasion::Start || (occasion == Occasion::Expected && self.sim.time == self.start);
         if is_start {
-            for contact in solved.rests.iter().filter(|contact| !contact.is_expected) {
+            for contact in solved.rests.iter().filter(|contact| !contact.is_expected && contact.row.is_none())
+            {
                 if let Some(pair) = self.sim.pairs.get_mut(&(contact.a, contact.b))
                     && let Some(kept) = pair.contacts.iter_mut().find(|c| c.feature == contact.feature)
                 {
@@ -210,7 +211,7 @@ impl Step<'_> {
     /// The impulses of the present instant are those of the segment that ends here.
     pub(super) fn report_impulses(&mut self) {
         self.impulses.append(&mut self.undoable);
-        for contact in self.impulses.drain(..) {
+        for contact in self.impulses.drain(..).filter(|contact| contact.row.is_none()) {
             let impulse = contact.total();
             if impulse != DVec3::ZERO {
                 let impulse = ContactImpulse {

@@ -1,0 +1,295 @@
+//! Joints of bodies in a simulation, and their rows.
+
+use crate::contact::{ContactPoint, JointRow, Law, Material, tangents};
+use crate::joint::{Joint, JointKind, MotorTarget};
+use crate::rigid_body::{RigidBody, rotation_vector};
+use crate::{BodyId, SimulationError};
+use d2m_feature::FeaturePair;
+use glam::{DQuat, DVec3};
+
+/// The part of what a joint is off that a step takes back.
+const TAKEN_BACK: f64 = 0.2;
+
+/// A joint between two bodies of the list, the second one perhaps the world.
+#[derive(Clone, Debug)]
+pub(crate) struct Joined {
+    pub(crate) joint: Joint,
+    pub(crate) bodies: [usize; 2],
+    /// From the centers to the point, and the axis, in the axes of the bodies.
+    arms: [DVec3; 2],
+    axes: [DVec3; 2],
+    /// The turn of the second body's axes against those of the first one.
+    turn: DQuat,
+    /// The value at the last look: angles go on beyond half a turn.
+    value: f64,
+}
+
+/// The flight that rows are for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ahead {
+    pub(crate) length: f64,
+    pub(crate) step: f64,
+    /// Do springs and motors act? Not at an event: they have acted for the whole step.
+    pub(crate) forces: bool,
+}
+
+impl Joined {
+    pub(crate) fn try_new(
+        joint: &Joint,
+        places: [usize; 2],
+        bodies: &[RigidBody],
+    ) -> Result<Self, SimulationError> {
+        let [a, b] = places.map(|i| &bodies[i]);
+        let bad = |name: &'static str, value: String| {
+            Err(SimulationError::BadJoint { a: a.name.to_string(), b: b.name.to_string(), name, value })
+        };
+        let axis = joint.axis.normalize_or_zero();
+        if !joint.point.is_finite() {
+            return bad("point", joint.point.to_string());
+        }
+        if !joint.axis.is_finite() || axis == DVec3::ZERO {
+            return bad("axis", joint.axis.to_string());
+        }
+        if places[0] == places[1] || !(a.is_dynamic() || b.is_dynamic()) {
+            return bad("pair", "two bodies, at least one of them dynamic, are asked for".to_owned());
+        }
+        if let Some(limits) = joint.limits.filter(|[lo, hi]| !(lo.is_finite() && hi.is_finite() && lo <= hi))
+        {
+            return bad("limits", format!("{limits:?}"));
+        }
+        let motor = joint.motor.iter().flat_map(|motor| {
+            let (MotorTarget::Velocity(aim) | MotorTarget::Position(aim)) = motor.target;
+            let most = if motor.most == f64::INFINITY { 0.0 } else { motor.most };
+            [
+                ("motor", aim.abs()),
+                ("motor max", most),
+                ("motor stiffness", motor.stiffness),
+                ("motor damping", motor.damping),
+            ]
+        });
+        let spring = joint.spring.iter().flat_map(|spring| {
+            [
+                ("spring stiffness", spring.stiffness),
+                ("spring damping", spring.damping),
+                ("spring rest", spring.rest.abs()),
+            ]
+        });
+        let numbers = motor.chain(spring).chain([("friction", joint.friction)]);
+        for (name, value) in numbers {
+            if !(value.is_finite() && value >= 0.0) {
+                return bad(name, value.to_string());
+            }
+        }
+        let own = |body: &RigidBody, v: DVec3| body.orientation.conjugate() * v;
+        Ok(Self {
+            joint: joint.clone(),
+            bodies: places,
+            arms: [own(a, joint.point - a.position), own(b, joint.point - b.position)],
+            axes: [own(a, axis), own(b, axis)],
+            turn: a.orientation.conjugate() * b.orientation,
+            value: 0.0,
+        })
+    }
+
+    pub(crate) fn has(&self, body: usize) -> bool {
+        self.bodies.contains(&body)
+    }
+
+    /// The value where the bodies are: the angle or the length.
+    pub(crate) fn value(&self, bodies: [&RigidBody; 2]) -> f64 {
+        let poses = bodies.map(|body| (body.position, body.orientation));
+        let [(xa, qa), (xb, qb)] = poses;
+        match self.joint.kind {
+            JointKind::Revolute => {
+                let off = rotation_vector(qb * (qa * self.turn).conjugate());
+                let angle = off.dot(qa * self.axes[0]);
+                let turns = ((self.value - angle) / core::f64::consts::TAU).round();
+                angle + turns * core::f64::consts::TAU
+            }
+            JointKind::Prismatic => {
+                ((xb + qb * self.arms[1]) - (xa + qa * self.arms[0])).dot(qa * self.axes[0])
+            }
+            JointKind::Fixed | JointKind::Spherical => 0.0,
+        }
+    }
+
+    /// Remembers the value, of which angles are known up to full turns.
+    pub(crate) fn look(&mut self, bodies: &[RigidBody]) {
+        self.value = self.value(self.bodies.map(|i| &bodies[i]));
+    }
+
+    /// How far the bodies are from what the joint keeps, along each of its equations, in these poses.
+    pub(crate) fn offs(&self, [(xa, qa), (xb, qb)]: [(DVec3, DQuat); 2]) -> Vec<f64> {
+        let away = (xb + qb * self.arms[1]) - (xa + qa * self.arms[0]);
+        let tilted = match self.joint.kind {
+            JointKind::Revolute => (qa * self.axes[0]).cross(qb * self.axes[1]),
+            JointKind::Spherical => DVec3::ZERO,
+            JointKind::Fixed | JointKind::Prismatic => rotation_vector(qb * (qa * self.turn).conjugate()),
+        };
+        let along = |v: DVec3| move |direction: &DVec3| v.dot(*direction);
+        let (linear, angular) = self.directions(qa);
+        linear.iter().map(along(away)).chain(angular.iter().map(along(tilted))).collect()
+    }
+
+    /// The directions of the equations: of ways, and of turns.
+    fn directions(&self, qa: DQuat) -> (Vec<DVec3>, Vec<DVec3>) {
+        let all = vec![DVec3::X, DVec3::Y, DVec3::Z];
+        let across: Vec<DVec3> = tangents(self.axes[0]).into_iter().map(|t| qa * t).collect();
+        match self.joint.kind {
+            JointKind::Fixed => (all.clone(), all),
+            JointKind::Revolute => (all, across),
+            JointKind::Prismatic => (across, all),
+            JointKind::Spherical => (all, Vec::new()),
+        }
+    }
+
+    /// What the equations may be off at the end of a flight from here.
+    pub(crate) fn aims(&self, poses: [(DVec3, DQuat); 2], length: f64, step: f64) -> Vec<f64> {
+        let left = 1.0 - TAKEN_BACK * (length / step).min(1.0);
+        self.offs(poses).into_iter().map(|off| left * off).collect()
+    }
+
+    /// The rows of the next flight: impulses act where the bodies are. The rates of equations are corrected until the flight's end is where
+    /// it should be ([`Self::aims`]), which makes it the method SHAKE: symplectic, so that energy does not drift.
+    pub(crate) fn rows(&self, number: usize, bodies: &[RigidBody], ahead: Ahead) -> Vec<ContactPoint> {
+        let pair = self.bodies.map(|i| &bodies[i]);
+        let arms = [0, 1].map(|k| pair[k].orientation * self.arms[k]);
+        let points = [0, 1].map(|k| pair[k].position + arms[k]);
+        let axis = pair[0].orientation * self.axes[0];
+        let mut made = Made { joined: self, number, arms, point: points[1], rows: Vec::new() };
+        // Both arms reach to one point, so that impulses make no angular momentum: of a slide that of b.
+        made.arms[0] = arms[0] + (points[1] - points[0]);
+        let equal = Law::Range { lo: f64::NEG_INFINITY, hi: f64::INFINITY, softness: 0.0 };
+        let (linear, angular) = self.directions(pair[0].orientation);
+        for direction in linear {
+            made.add(direction, false, equal, 0.0, 0.0);
+        }
+        for direction in angular {
+            made.add(direction, true, equal, 0.0, 0.0);
+        }
+        let count = made.rows.len();
+        for (slot, row) in made.rows[..count].iter_mut().enumerate() {
+            row.row = row.row.map(|row| JointRow { equation: Some([number, slot]), ..row });
+        }
+        if matches!(self.joint.kind, JointKind::Revolute | JointKind::Prismatic) {
+            self.along(&mut made, axis, self.value(pair), ahead);
+        }
+        made.rows
+    }
+
+    /// Limits, spring, motor and friction of the value.
+    fn along(&self, made: &mut Made<'_>, axis: DVec3, value: f64, ahead: Ahead) {
+        let is_angle = self.joint.kind == JointKind::Revolute;
+        let h = ahead.length;
+        if let Some([lo, hi]) = self.joint.limits {
+            let push = Law::Range { lo: 0.0, hi: f64::INFINITY, softness: 0.0 };
+            for (direction, room) in [(axis, value - lo), (-axis, hi - value)] {
+                let target = if room >= 0.0 { -room / h } else { -TAKEN_BACK * room / ahead.step };
+                made.add(direction, is_angle, push, target.min(0.0), target);
+            }
+        }
+        if !ahead.forces {
+            return;
+        }
+        let soft = |stiffness: f64, damping: f64, off: f64, most: f64| {
+            let softness = 1.0 / (h * (h * stiffness + damping));
+            let law = Law::Range { lo: -most * h, hi: most * h, softness };
+            (law, off * h * stiffness * softness)
+        };
+        if let Some(spring) = self.joint.spring.filter(|spring| spring.stiffness + spring.damping > 0.0) {
+            let (law, rate) = soft(spring.stiffness, spring.damping, spring.rest - value, f64::INFINITY);
+            made.add(axis, is_angle, law, rate, rate);
+        }
+        if let Some(motor) = self.joint.motor {
+            let most = motor.most;
+            let hard = Law::Range { lo: -most * h, hi: most * h, softness: 0.0 };
+            let (law, rate) = match motor.target {
+                MotorTarget::Velocity(rate) => (hard, rate),
+                MotorTarget::Position(place) if motor.stiffness > 0.0 => {
+                    soft(motor.stiffness, motor.damping, place - value, most)
+                }
+                MotorTarget::Position(place) => (hard, TAKEN_BACK * (place - value) / ahead.step),
+            };
+            made.add(axis, is_angle, law, rate, rate);
+        }
+        if self.joint.friction > 0.0 {
+            let most = self.joint.friction * h;
+            made.add(axis, is_angle, Law::Range { lo: -most, hi: most, softness: 0.0 }, 0.0, 0.0);
+        }
+    }
+}
+
+struct Made<'j> {
+    joined: &'j Joined,
+    number: usize,
+    arms: [DVec3; 2],
+    point: DVec3,
+    rows: Vec<ContactPoint>,
+}
+
+impl Made<'_> {
+    fn add(&mut self, direction: DVec3, is_angular: bool, law: Law, pushing: f64, target: f64) {
+        let [a, b] = self.joined.bodies;
+        self.rows.push(ContactPoint {
+            a,
+            b,
+            feature: FeaturePair::VertexFace { vertex: self.rows.len() as u32, face: self.number as u32 },
+            normal: direction,
+            tangents: tangents(direction),
+            distance: 0.0,
+            is_expected: false,
+            gap: 0.0,
+            arm_a: self.arms[0],
+            arm_b: self.arms[1],
+            point: self.point,
+            material: Material { restitution: 0.0, friction: 0.0 },
+            row: Some(JointRow { is_angular, law, pushing, target, equation: None }),
+            impulse: 0.0,
+            sliding: [0.0; 2],
+        });
+    }
+}
+
+impl crate::Simulation {
+    /// Joins two bodies, or one with the world, where they are; the pair is ignored unless the joint says otherwise. The number of the
+    /// joint.
+    ///
+    /// ```
+    /// use d2m_bvh::MeshTree;
+    /// use d2m_dynamics::{Body, Joint, JointKind, Simulation, SimulationOptions};
+    /// use glam::DVec3;
+    /// use std::sync::Arc;
+    /// let bar = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.05&z=0.05")?));
+    /// let mut simulation = Simulation::new(SimulationOptions::default())?;
+    /// let arm = simulation.add(&Body::new("arm", bar))?;
+    /// let pin = Joint::new(JointKind::Revolute, arm, None, DVec3::X * -0.5);
+    /// simulation.add_joint(&pin)?;
+    /// while simulation.time() < 1.0 {
+    ///     simulation.step()?;
+    ///     let end = simulation.pose(arm).transform_point(DVec3::X * -0.5);
+    ///     assert!((end + DVec3::X * 0.5).length() < 1e-4);
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SimulationError::BadJoint`]: numbers that cannot be used, or no body that could move. Nothing changes then.
+    pub fn add_joint(&mut self, joint: &Joint) -> Result<usize, SimulationError> {
+        let b = match joint.b {
+            Some(b) => b.index(),
+            None => self.world()?,
+        };
+        let joined = Joined::try_new(joint, [joint.a.index(), b], &self.bodies)?;
+        if !joint.collide {
+            self.ignore(joint.a, BodyId(b as u32));
+        }
+        self.joints.push(joined);
+        Ok(self.joints.len() - 1)
+    }
+
+    /// The value of a joint: how far b has turned about the axis, or moved along it, against a; zero of other kinds.
+    pub fn joint_value(&self, joint: usize) -> f64 {
+        let joined = &self.joints[joint];
+        joined.value(joined.bodies.map(|i| &self.bodies[i]))
+    }
+}

@@ -1,0 +1,146 @@
+//! Joints between bodies, as they are described to a simulation.
+
+use crate::BodyId;
+use glam::DVec3;
+
+/// What a joint leaves free.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum JointKind {
+    /// Nothing.
+    Fixed,
+    /// To turn about the axis.
+    Revolute,
+    /// To move along the axis.
+    Prismatic,
+    /// To turn about the point.
+    Spherical,
+}
+
+/// What a motor aims at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum MotorTarget {
+    /// A rate of the joint's value.
+    Velocity(f64),
+    /// A value of the joint.
+    Position(f64),
+}
+
+/// Drives the value of a revolute joint (an angle, by a torque) or of a prismatic one (a length, by a force).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Motor {
+    /// What it aims at.
+    pub target: MotorTarget,
+    /// The greatest force or torque. Default: any.
+    pub most: f64,
+    /// Force by what lacks to the position. Zero: as stiff as need be.
+    pub stiffness: f64,
+    /// Force by rate, of a motor with a stiffness.
+    pub damping: f64,
+}
+
+impl Motor {
+    /// As strong and as stiff as need be.
+    #[must_use]
+    pub const fn new(target: MotorTarget) -> Self {
+        Self { target, most: f64::INFINITY, stiffness: 0.0, damping: 0.0 }
+    }
+}
+
+/// A spring at a joint's value: stiffness (rest − value) − damping rate, solved for the end of a step: stable for any stiffness.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Spring {
+    /// Force by length, or torque by angle.
+    pub stiffness: f64,
+    /// Force by rate.
+    pub damping: f64,
+    /// The value at which it is slack.
+    pub rest: f64,
+}
+
+impl Spring {
+    /// With this stiffness and damping, slack at `rest`.
+    #[must_use]
+    pub const fn new(stiffness: f64, damping: f64, rest: f64) -> Self {
+        Self { stiffness, damping, rest }
+    }
+}
+
+/// A joint of two bodies, or of one and the world, to be added by [`Simulation::add_joint`](crate::Simulation::add_joint).
+///
+/// Its value – the angle by which b has turned against a about the axis, or the length by which it has moved along it – is zero where it is
+/// added. Joints hold to rounding in velocities, in the middle of each flight; what the ends of flights are off is taken back by the next
+/// ones. What is certified is what flies, joints or not.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+#[must_use]
+pub struct Joint {
+    /// What it leaves free.
+    pub kind: JointKind,
+    /// The first body.
+    pub a: BodyId,
+    /// The second body; none: the world.
+    pub b: Option<BodyId>,
+    /// World frame, where the bodies are when it is added.
+    pub point: DVec3,
+    /// World frame; of revolute and prismatic joints, of any length but zero.
+    pub axis: DVec3,
+    /// The least and the greatest value.
+    pub limits: Option<[f64; 2]>,
+    /// What drives it.
+    pub motor: Option<Motor>,
+    /// What pulls it back.
+    pub spring: Option<Spring>,
+    /// Force or torque of dry friction at most.
+    pub friction: f64,
+    /// May the two bodies touch? Otherwise they pass through each other.
+    pub collide: bool,
+}
+
+impl Joint {
+    /// A joint of two bodies at a point, along z, with nothing else.
+    pub const fn new(kind: JointKind, a: BodyId, b: Option<BodyId>, point: DVec3) -> Self {
+        let axis = DVec3::Z;
+        let (limits, motor, spring) = (None, None, None);
+        Self { kind, a, b, point, axis, limits, motor, spring, friction: 0.0, collide: false }
+    }
+
+    /// With this axis.
+    pub const fn with_axis(mut self, axis: DVec3) -> Self {
+        self.axis = axis;
+        self
+    }
+
+    /// With these limits of the value.
+    pub const fn with_limits(mut self, limits: [f64; 2]) -> Self {
+        self.limits = Some(limits);
+        self
+    }
+
+    /// Driven by this motor.
+    pub const fn with_motor(mut self, motor: Motor) -> Self {
+        self.motor = Some(motor);
+        self
+    }
+
+    /// With this spring.
+    pub const fn with_spring(mut self, spring: Spring) -> Self {
+        self.spring = Some(spring);
+        self
+    }
+
+    /// With this dry friction.
+    pub const fn with_friction(mut self, friction: f64) -> Self {
+        self.friction = friction;
+        self
+    }
+
+    /// Whose bodies may touch each other, or not.
+    pub const fn with_collide(mut self, collide: bool) -> Self {
+        self.collide = collide;
+        self
+    }
+}

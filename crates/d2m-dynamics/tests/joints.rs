@@ -1,0 +1,169 @@
+//! Joints keep their bodies together, and their energy; limits, motors, springs and friction do what they say.
+
+use d2m_bvh::MeshTree;
+use d2m_dynamics::{
+    Body, BodyId, Joint, JointKind, Motor, MotorTarget, Simulation, SimulationError, SimulationOptions,
+    Spring,
+};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// A bar of ten kilograms and a length of one, along x about this point.
+fn bar(simulation: &mut Simulation, x: f64) -> BodyId {
+    let shape = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.05&z=0.05").unwrap()));
+    simulation.add(&Body::new(format!("bar at {x}"), shape).with_position(DVec3::X * x)).unwrap()
+}
+
+fn end(simulation: &Simulation, body: BodyId, x: f64) -> DVec3 {
+    simulation.pose(body).transform_point(DVec3::X * x)
+}
+
+fn energy(simulation: &Simulation) -> f64 {
+    let of = |id: BodyId| {
+        let mass = simulation.mass_properties(id).unwrap();
+        let spin = simulation.orientation(id).conjugate() * simulation.angular_velocity(id);
+        let kinetic =
+            mass.mass * simulation.linear_velocity(id).length_squared() + spin.dot(mass.inertia * spin);
+        // The velocity is that of the middle of the last flight.
+        let half = 0.5 * simulation.options().step;
+        let height = simulation.position(id).y - simulation.linear_velocity(id).y * half;
+        0.5 * kinetic + mass.mass * 9.81 * height
+    };
+    simulation.ids().map(of).sum()
+}
+
+fn run(simulation: &mut Simulation, until: f64) {
+    while simulation.time() < until - 1e-9 {
+        let report = simulation.step().unwrap();
+        assert!(report.segments.iter().all(|segment| segment.skipped == 0.0));
+    }
+}
+
+fn still() -> SimulationOptions {
+    SimulationOptions::default().with_gravity(DVec3::ZERO)
+}
+
+#[test]
+fn a_double_pendulum_keeps_its_joints_and_its_energy() {
+    let threads = |count: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
+        pool.install(|| {
+            let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+            let (a, b) = (bar(&mut simulation, 0.5), bar(&mut simulation, 1.5));
+            simulation.add_joint(&Joint::new(JointKind::Revolute, a, None, DVec3::ZERO)).unwrap();
+            simulation.add_joint(&Joint::new(JointKind::Revolute, a, Some(b), DVec3::X)).unwrap();
+            assert_eq!(simulation.len(), 2);
+            for _ in 0..500 {
+                let until = simulation.time() + 0.01;
+                run(&mut simulation, until);
+                assert!(end(&simulation, a, -0.5).length() < 1e-6);
+                assert!((end(&simulation, a, 0.5) - end(&simulation, b, -0.5)).length() < 1e-6);
+                // Of 200 J that it swings with; where flights are split their middle is not that of the step.
+                assert!(energy(&simulation).abs() < 1.0, "{}", energy(&simulation));
+            }
+            simulation.snapshot()
+        })
+    };
+    assert_eq!(threads(1), threads(2));
+}
+
+/// Twenty links that hang from one end and swing; spherical and fixed ones.
+#[test]
+fn a_chain_of_twenty_links_holds_together() {
+    for kind in [JointKind::Spherical, JointKind::Fixed] {
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        let links: Vec<BodyId> = (0..20).map(|k| bar(&mut simulation, 0.5 + f64::from(k))).collect();
+        simulation.add_joint(&Joint::new(kind, links[0], None, DVec3::ZERO)).unwrap();
+        for (k, pair) in links.windows(2).enumerate() {
+            let point = DVec3::X * (k + 1) as f64;
+            simulation.add_joint(&Joint::new(kind, pair[0], Some(pair[1]), point)).unwrap();
+        }
+        run(&mut simulation, 1.0);
+        for pair in links.windows(2) {
+            let apart = end(&simulation, pair[0], 0.5) - end(&simulation, pair[1], -0.5);
+            assert!(apart.length() < 1e-5, "{kind:?}: {apart}");
+        }
+        let fallen = -simulation.position(links[19]).y;
+        assert!(if kind == JointKind::Fixed { fallen < 1e-3 } else { fallen > 2.0 }, "{kind:?}: {fallen}");
+    }
+}
+
+#[test]
+fn limits_stop_a_pendulum_and_a_slide() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let arm = bar(&mut simulation, 0.5);
+    // b is the world: it turns against the arm, the other way round.
+    let pin = Joint::new(JointKind::Revolute, arm, None, DVec3::ZERO).with_limits([-1.0, 0.5]);
+    let pin = simulation.add_joint(&pin).unwrap();
+    let slider = bar(&mut simulation, 3.0);
+    let slide = Joint::new(JointKind::Prismatic, slider, None, DVec3::X * 3.0).with_axis(DVec3::Y);
+    let slide = simulation.add_joint(&slide.with_limits([-1.0, 0.25])).unwrap();
+    run(&mut simulation, 2.0);
+    let (angle, way) = (simulation.joint_value(pin), simulation.joint_value(slide));
+    assert!((angle - 0.5).abs() < 1e-6 && (way - 0.25).abs() < 1e-6, "{angle} {way}");
+    let place = simulation.position(slider);
+    assert!((place - DVec3::new(3.0, -0.25, 0.0)).length() < 1e-6, "{place}");
+}
+
+/// A motor reaches its rate, no faster than its torque allows; one with a position goes there; dry friction stops a turn in the time
+/// that its torque takes.
+#[test]
+fn motors_and_friction_act_with_their_torques() {
+    let inertia = |simulation: &Simulation, body| simulation.mass_properties(body).unwrap().inertia.z_axis.z;
+    let spun = |joint: &dyn Fn(Joint) -> Joint, rate: f64, until: f64| {
+        let mut simulation = Simulation::new(still()).unwrap();
+        let body = bar(&mut simulation, 0.0);
+        let inertia = inertia(&simulation, body);
+        simulation.apply_impulse(body, DVec3::ZERO, DVec3::Z * (rate * inertia)).unwrap();
+        let pin = joint(Joint::new(JointKind::Revolute, body, None, DVec3::ZERO));
+        let pin = simulation.add_joint(&pin).unwrap();
+        run(&mut simulation, until);
+        (simulation.angular_velocity(body).z * inertia, inertia, simulation.joint_value(pin))
+    };
+    let mut motor = Motor::new(MotorTarget::Velocity(-2.0));
+    motor.most = 0.5;
+    let (momentum, inertia, _) = spun(&|joint| joint.with_motor(motor), 0.0, 1.0);
+    assert!((momentum - 0.5).abs() < 0.01, "{momentum}");
+    let (momentum, ..) = spun(&|joint| joint.with_motor(motor), 0.0, 2.0 * inertia / 0.5 + 1.0);
+    assert!((momentum - 2.0 * inertia).abs() < 1e-6, "{momentum}");
+    let motor = Motor::new(MotorTarget::Position(0.75));
+    let (_, _, value) = spun(&|joint| joint.with_motor(motor), 0.0, 2.0);
+    assert!((value - 0.75).abs() < 1e-6, "{value}");
+    let (momentum, ..) = spun(&|joint| joint.with_friction(0.3), 2.0 / inertia, 1.0);
+    assert!((momentum - 1.7).abs() < 0.01, "{momentum}");
+    let (momentum, ..) = spun(&|joint| joint.with_friction(4.0), 2.0 / inertia, 1.0);
+    assert!(momentum.abs() < 1e-6, "{momentum}");
+}
+
+/// A weight on a spring comes to rest where the spring carries it.
+#[test]
+fn a_damped_spring_carries_a_weight() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let body = bar(&mut simulation, 0.0);
+    let slide = Joint::new(JointKind::Prismatic, body, None, DVec3::ZERO).with_axis(DVec3::Y);
+    let mass = simulation.mass_properties(body).unwrap().mass;
+    let slide = slide.with_spring(Spring::new(1000.0, 200.0, 0.0));
+    let slide = simulation.add_joint(&slide).unwrap();
+    run(&mut simulation, 5.0);
+    let (found, wanted) = (simulation.joint_value(slide), mass * 9.81 / 1000.0);
+    assert!((found - wanted).abs() < 1e-4, "{found} {wanted}");
+}
+
+#[test]
+fn joints_that_cannot_be_are_refused() {
+    let mut simulation = Simulation::new(still()).unwrap();
+    let body = bar(&mut simulation, 0.0);
+    let good = Joint::new(JointKind::Revolute, body, None, DVec3::ZERO);
+    let bad = [
+        good.clone().with_axis(DVec3::ZERO),
+        good.clone().with_limits([1.0, -1.0]),
+        good.clone().with_friction(f64::NAN),
+        good.clone().with_spring(Spring::new(-1.0, 0.0, 0.0)),
+        Joint::new(JointKind::Fixed, body, Some(body), DVec3::ZERO),
+        Joint::new(JointKind::Fixed, body, None, DVec3::NAN),
+    ];
+    for joint in bad {
+        assert!(matches!(simulation.add_joint(&joint), Err(SimulationError::BadJoint { .. })), "{joint:?}");
+    }
+    assert!(simulation.add_joint(&good).is_ok());
+}
