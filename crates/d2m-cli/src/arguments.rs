@@ -381,7 +381,8 @@ pub(crate) struct FeaturesArguments {
 A scene: {\"bodies\": [{\"name\", \"mesh\", \"scale\", \"kind\": \"dynamic\" | \"kinematic\" | \"static\", \"pose\": {\"x\", \"q\"},
 \"velocity\": {\"v\", \"w\"}, \"motion\", \"density\" or \"mass\", \"center\", \"inertia\", \"restitution\", \"friction\", \"group\",
 \"solid\"}], \"ignore\": [[name or group, name or group]], \"pairs\": [{\"a\", \"b\", \"restitution\", \"friction\"}],
-\"joints\": [{\"kind\", \"a\", \"b\", \"point\", \"axis\", \"limits\", \"motor\", \"spring\", \"friction\", \"collide\"}], \"simulation\": {\"gravity\", \"step\", \"end\", \"gap\", \"max_events\"}}. What is left out: dynamic, at rest at the origin, density 1000, no
+\"joints\": [{\"kind\", \"a\", \"b\", \"point\", \"axis\", \"limits\", \"motor\", \"spring\", \"friction\", \"collide\"}],
+\"simulation\": {\"gravity\", \"step\", \"end\", \"gap\", \"max_events\"}}. What is left out: dynamic, at rest at the origin, density 1000, no
 restitution, no friction; gravity [0, -9.81, 0], step 0.01, end 5, gap (between bodies that rest on each other) 0.001, max_events
 (contact events a step) 128. A kinematic body follows its motion, which has any JSON form of d2m toc; it has no pose and no
 velocity besides. Without a motion it rests in its pose.
