@@ -204,3 +204,44 @@ impl StraightPair {
             && least * least - towards_e - towards_f - loss_e - loss_f - PRODUCTS * most * most >= 0.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use d2m_testing::{Draw, KnuthRandom};
+
+    /// Triangles whose vertices move straight, each its own way: where a certificate says that they stay within a level, samples do.
+    #[test]
+    fn what_stays_within_a_level_is_never_sampled_beyond() {
+        let mut random = KnuthRandom(271);
+        let mut claims = [0; 3];
+        for round in 0..4000 {
+            let half = [0.05, 0.3, 1.0][round % 3];
+            let mut line = |up: f64| Line {
+                place: random.vector() * DVec3::new(1.0, 1.0, 0.1) + DVec3::Z * up,
+                velocity: random.vector(),
+            };
+            let corners = [[(); 3].map(|()| line(0.0)), [(); 3].map(|()| line(0.5))];
+            let pair = StraightPair { corners, half, error: 0.0 };
+            let distance = |s: f64| {
+                let [a, b] = pair.corners.map(|lines| lines.map(|line| line.place + line.velocity * s));
+                triangle_distance(&a, &b)
+            };
+            let ends = distance(-half).upper.max(distance(half).upper);
+            for level in [ends * 1.001, ends * 1.05, ends + 0.5 * half] {
+                let found = [pair.points_wander(level), pair.points_stay(level), pair.vertices_stay(level)];
+                if !found.contains(&true) {
+                    continue;
+                }
+                for (claim, found) in claims.iter_mut().zip(found) {
+                    *claim += u32::from(found);
+                }
+                for k in 0..=40 {
+                    let time = half * (f64::from(k) / 20.0 - 1.0);
+                    assert!(distance(time).lower <= level, "round {round}: {found:?} {level} at {time}");
+                }
+            }
+        }
+        assert!(claims.iter().all(|count| *count > 5), "{claims:?}");
+    }
+}
