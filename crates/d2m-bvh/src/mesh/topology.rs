@@ -8,6 +8,16 @@ use crate::TriMesh;
 const NONE: u32 = u32::MAX;
 
 /// An undirected edge of a mesh: two different positions joined by a side of at least one triangle.
+///
+/// ```
+/// use d2m_bvh::{Topology, TriMesh};
+/// use glam::DVec3;
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+/// let topology = Topology::new(&TriMesh::try_new(corners, vec![[0, 1, 2]])?);
+/// let ends: Vec<_> = topology.edges().iter().map(|edge| edge.vertices).collect();
+/// assert_eq!(ends, [[0, 1], [0, 2], [1, 2]]);
+/// # Ok::<(), d2m_bvh::MeshError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Edge {
     /// The two ends: vertex indices of the mesh (the lowest index at each position), smaller first.

@@ -76,6 +76,20 @@ fn may_collide(scene: &Scene<'_>, solid: Solid, meter: &mut Meter) -> Result<boo
 /// A pair of triangles, one of each body, that is not proven apart; `None` is a proof that the surfaces are disjoint.
 /// Which pair of several it is depends on the bodies and poses only. Says nothing about one body inside the other.
 ///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Posed, try_colliding_pair};
+/// use d2m_motion::Pose;
+/// let above = Posed::new(&tree, Pose { translation: DVec3::Z * 1.5, ..Pose::IDENTITY });
+/// assert_eq!(try_colliding_pair(Posed::at_rest(&tree), above)?, None); // a proof
+/// assert!(try_colliding_pair(Posed::at_rest(&tree), Posed::at_rest(&tree))?.is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`QueryError::BadPose`].
 pub fn try_colliding_pair(a: Posed<'_>, b: Posed<'_>) -> Result<Option<[u32; 2]>, QueryError> {

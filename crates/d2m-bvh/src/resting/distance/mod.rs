@@ -69,6 +69,12 @@ pub struct Distance {
 }
 
 /// Options of [`distance_within`].
+///
+/// ```
+/// use d2m_bvh::{DistanceOptions, Solid};
+/// let options = DistanceOptions::default().with_cutoff(0.5).with_solid(Solid::Surface);
+/// assert_eq!((options.cutoff, options.solid), (0.5, Solid::Surface));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]
@@ -134,6 +140,23 @@ pub fn distance(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<Distance, Qu
 /// As [`distance`], with a largest distance of interest and a warm start. `None` is a proof that the distance is more
 /// than the cutoff.
 ///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{DistanceOptions, PairCache, Posed, distance_within};
+/// use d2m_motion::Pose;
+/// let above = Posed::new(&tree, Pose { translation: DVec3::Z * 1.5, ..Pose::IDENTITY });
+/// let mut cache = PairCache::new(); // keeps the closest triangles for the next query of the pair
+/// let near = DistanceOptions::default().with_cutoff(0.25);
+/// assert_eq!(distance_within(Posed::at_rest(&tree), above, &near, &mut cache)?, None); // it is 0.5
+/// let far = DistanceOptions::default().with_cutoff(1.0);
+/// assert!(distance_within(Posed::at_rest(&tree), above, &far, &mut cache)?.is_some_and(|found| found.upper < 0.51));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// As [`distance`]; also [`QueryError::BadMinSeparation`] when the cutoff is negative or not a number.
 pub fn distance_within(
@@ -188,6 +211,21 @@ pub fn distance_within(
 }
 
 /// What is proven of a distance: all of it, or what a budget allowed.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
+/// use d2m_bvh::{Budget, Posed, Solid, bound_distance};
+/// use d2m_motion::Pose;
+/// let above = Posed::new(&tree, Pose { translation: DVec3::Z * 1.5, ..Pose::IDENTITY });
+/// let budget = Budget::UNLIMITED.with_node_tests(1);
+/// let bounds = bound_distance(Posed::at_rest(&tree), above, Solid::Filled, &budget)?;
+/// assert!(0.0 <= bounds.lower && bounds.lower <= 0.5 && 0.5 <= bounds.upper && bounds.upper.is_finite());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct DistanceBounds {
