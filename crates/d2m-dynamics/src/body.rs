@@ -22,6 +22,22 @@ impl BodyId {
 pub type Motion = Arc<dyn RigidMotion + Send + Sync>;
 
 /// What moves a body.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions};
+/// use d2m_motion::ConstantTwist;
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// // A lift that rises by 1 a second, whatever stands on it.
+/// let rising = Kind::Kinematic(Arc::new(ConstantTwist::REST.with_linear_velocity(DVec3::Y)));
+/// let lift = simulation.add(&Body::new("lift", cube).with_kind(rising))?;
+/// simulation.step()?;
+/// assert!((simulation.position(lift).y - simulation.time()).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone)]
 pub enum Kind {
     /// Forces and contacts.
@@ -43,6 +59,17 @@ impl core::fmt::Debug for Kind {
 }
 
 /// Where the mass of a dynamic body comes from.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// use d2m_dynamics::{Body, Mass, Simulation, SimulationOptions};
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// let stone = simulation.add(&Body::new("stone", cube).with_mass(Mass::Total(12.0)))?; // kilograms, say
+/// assert!((simulation.mass_properties(stone).expect("it is dynamic").mass - 12.0).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Mass {

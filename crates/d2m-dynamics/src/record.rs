@@ -5,6 +5,25 @@ use d2m_motion::ConstantTwist;
 use glam::DVec3;
 
 /// An impulse at a contact.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// simulation.add(&Body::new("floor", Arc::clone(&cube)).with_kind(Kind::Static).with_position(DVec3::Y * -0.5))?;
+/// let falling = simulation.add(&Body::new("falling", cube).with_position(DVec3::Y * 0.6))?;
+/// while simulation.time() < 0.5 {
+///     for contact in simulation.step()?.contacts() {
+///         // On the faces, in the world; the normal from a to b.
+///         assert!(contact.point.y.abs() < 2e-3 && contact.normal.y.abs() > 0.999);
+///     }
+/// }
+/// # let _ = falling;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -25,6 +44,25 @@ pub struct ContactImpulse {
 }
 
 /// A span of time in which every body moves with a constant twist about its center of mass.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// simulation.add(&Body::new("floor", Arc::clone(&cube)).with_kind(Kind::Static).with_position(DVec3::Y * -0.5))?;
+/// let falling = simulation.add(&Body::new("falling", cube).with_position(DVec3::Y * 0.6))?;
+/// let mut ends = 0.0;
+/// for segment in simulation.step()?.segments {
+///     // Flights join, and each is a constant twist that was certified.
+///     assert!(segment.start >= ends && segment.end >= segment.start && segment.skipped == 0.0);
+///     ends = segment.end;
+/// }
+/// # let _ = falling;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Segment {

@@ -20,6 +20,21 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// What happened in a step.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// simulation.add(&Body::new("floor", Arc::clone(&cube)).with_kind(Kind::Static).with_position(DVec3::Y * -0.5))?;
+/// let falling = simulation.add(&Body::new("falling", cube).with_position(DVec3::Y * 0.6))?;
+/// let report = simulation.step()?;
+/// assert!(report.contacts().count() == 0 && report.events == 0); // still in the air
+/// assert!(simulation.position(falling).y < 0.6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct StepReport {

@@ -6,6 +6,12 @@ use std::fmt;
 use thiserror::Error;
 
 /// Bad input: which file, where in it, what is wrong and the value found.
+///
+/// ```
+/// use d2m_io::{IoError, MeshFormat, ReadOptions, parse_mesh};
+/// let fault = parse_mesh(b"v 0 zero 0\n", MeshFormat::Obj, &ReadOptions::new()).unwrap_err();
+/// assert!(matches!(fault, IoError::Content { .. }) && fault.to_string().starts_with("line 1: "), "{fault}");
+/// ```
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum IoError {

@@ -40,6 +40,14 @@ pub struct SceneFile {
 }
 
 /// One body of a scene file.
+///
+/// ```
+/// use d2m_io::SceneFile;
+/// let scene = SceneFile::parse(br#"{"bodies": [{"name": "gear", "mesh": "shape:gear", "scale": 0.1, "group": "fixed"}]}"#)?;
+/// let gear = &scene.bodies[0];
+/// assert_eq!((gear.name.as_str(), gear.scale.y, gear.group.as_deref()), ("gear", 0.1, Some("fixed")));
+/// # Ok::<(), d2m_io::IoError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SceneEntry {

@@ -3,6 +3,31 @@
 use d2m_bvh::Contact;
 
 /// Is a path free of contact, and until when?
+///
+/// ```
+/// # let urdf = r#"<robot name="two">
+/// #   <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+/// #   <link name="arm"><collision><origin xyz="0.5 0 0"/><geometry><box size="0.8 0.1 0.1"/></geometry></collision></link>
+/// #   <link name="wall"><collision><origin xyz="0 0.7 0"/><geometry><box size="0.1 0.1 1"/></geometry></collision></link>
+/// #   <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/>
+/// #     <axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="1"/></joint>
+/// #   <joint name="weld" type="fixed"><parent link="base"/><child link="wall"/></joint>
+/// # </robot>"#;
+/// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+/// # let robot = Robot::parse("two.urdf", urdf, &RobotOptions::new())?;
+/// # let scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+/// # let to = |angle: f64, time: f64| {
+/// #     let points = vec![TrajectoryPoint::new(0.0, vec![0.0]), TrajectoryPoint::new(time, vec![angle])];
+/// #     Trajectory::new(vec!["turn".into()], points)
+/// # };
+/// use d2m_robot::PathAnswer;
+/// match scene.check_path(&to(2.0, 4.0))? {
+///     PathAnswer::Contact(found) => assert!(found.contact.time_lo > 2.5), // into the wall
+///     other => panic!("{other:?}"),
+/// }
+/// assert!(scene.check_path(&to(0.5, 1.0))?.is_free());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[must_use = "it is a certificate: what is not read is not known to be safe"]
 pub enum PathAnswer {
@@ -27,6 +52,29 @@ pub enum PathAnswer {
 }
 
 /// Two links or bodies that meet.
+///
+/// ```
+/// # let urdf = r#"<robot name="two">
+/// #   <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+/// #   <link name="arm"><collision><origin xyz="0.5 0 0"/><geometry><box size="0.8 0.1 0.1"/></geometry></collision></link>
+/// #   <link name="wall"><collision><origin xyz="0 0.7 0"/><geometry><box size="0.1 0.1 1"/></geometry></collision></link>
+/// #   <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/>
+/// #     <axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="1"/></joint>
+/// #   <joint name="weld" type="fixed"><parent link="base"/><child link="wall"/></joint>
+/// # </robot>"#;
+/// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+/// # let robot = Robot::parse("two.urdf", urdf, &RobotOptions::new())?;
+/// # let scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+/// # let to = |angle: f64, time: f64| {
+/// #     let points = vec![TrajectoryPoint::new(0.0, vec![0.0]), TrajectoryPoint::new(time, vec![angle])];
+/// #     Trajectory::new(vec!["turn".into()], points)
+/// # };
+/// let answer = scene.check_path(&to(2.0, 4.0))?;
+/// let found = answer.contact().expect("the arm sweeps into the wall");
+/// assert_eq!([found.a.as_str(), found.b.as_str()], ["arm", "wall"]);
+/// assert_eq!(found.contact.time_lo, answer.free_until());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct PathContact {

@@ -15,6 +15,29 @@ pub enum LimitKind {
 }
 
 /// A joint that a path takes beyond a limit. Limits are not enforced: the path is checked as it is.
+///
+/// ```
+/// # let urdf = r#"<robot name="two">
+/// #   <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+/// #   <link name="arm"><collision><origin xyz="0.5 0 0"/><geometry><box size="0.8 0.1 0.1"/></geometry></collision></link>
+/// #   <link name="wall"><collision><origin xyz="0 0.7 0"/><geometry><box size="0.1 0.1 1"/></geometry></collision></link>
+/// #   <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/>
+/// #     <axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="1"/></joint>
+/// #   <joint name="weld" type="fixed"><parent link="base"/><child link="wall"/></joint>
+/// # </robot>"#;
+/// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+/// # let robot = Robot::parse("two.urdf", urdf, &RobotOptions::new())?;
+/// # let scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+/// # let to = |angle: f64, time: f64| {
+/// #     let points = vec![TrajectoryPoint::new(0.0, vec![0.0]), TrajectoryPoint::new(time, vec![angle])];
+/// #     Trajectory::new(vec!["turn".into()], points)
+/// # };
+/// use d2m_robot::LimitKind;
+/// // Half a radian in a tenth of a second: five a second, where one is allowed.
+/// let warnings = scene.limit_warnings(&to(0.5, 0.1))?;
+/// assert!(warnings.iter().any(|w| w.joint == "turn" && w.kind == LimitKind::Velocity && w.limit == 1.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct LimitWarning {

@@ -60,6 +60,22 @@ pub(crate) struct RobotJoint {
 }
 
 /// How a joint moves.
+///
+/// ```
+/// # let urdf = r#"<robot name="two">
+/// #   <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+/// #   <link name="arm"><collision><origin xyz="0.5 0 0"/><geometry><box size="0.8 0.1 0.1"/></geometry></collision></link>
+/// #   <link name="wall"><collision><origin xyz="0 0.7 0"/><geometry><box size="0.1 0.1 1"/></geometry></collision></link>
+/// #   <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/>
+/// #     <axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="1"/></joint>
+/// #   <joint name="weld" type="fixed"><parent link="base"/><child link="wall"/></joint>
+/// # </robot>"#;
+/// use d2m_robot::{JointType, Robot, RobotOptions};
+/// let robot = Robot::parse("two.urdf", urdf, &RobotOptions::new())?;
+/// let turn = robot.find_joint("turn").expect("the file has it");
+/// assert_eq!((robot.joint_type(turn), robot.limits(turn).velocity), (JointType::Revolute, Some(1.0)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum JointType {

@@ -45,6 +45,26 @@ pub struct Query<'a> {
 }
 
 /// What is claimed of two bodies. An answer claims several such things at once.
+///
+/// ```
+/// # use d2m_motion::ConstantTwist;
+/// # use d2m_verify::{Body, Mesh, Query, TimeSpan};
+/// # use glam::DVec3;
+/// # let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let mesh = Mesh::try_new(&[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z], &faces)?;
+/// # // Falls by 4 from a height of 2 onto the tip of the other one: they meet at 0.25.
+/// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
+/// # let body = |motion| Body { mesh: &mesh, motion, solid: d2m_verify::Solid::Filled, radius: 0.0 };
+/// # let window = TimeSpan { from: 0.0, to: 1.0 };
+/// # let query = Query { bodies: [body(&falling), body(&ConstantTwist::REST)], window };
+/// use d2m_verify::{Claim, Verdict, verify};
+/// // Apart until 0.2; within 0.5 of each other by 0.25.
+/// let clear = Claim::Clear { span: TimeSpan { from: 0.0, to: 0.2 }, distance: 0.0 };
+/// let near = Claim::Within { span: TimeSpan { from: 0.0, to: 0.25 }, distance: 0.5, triangles: None };
+/// let verdict = verify(&query, &Claim::All(vec![clear, near]), 100_000);
+/// assert!(matches!(verdict, Verdict::Verified { .. }), "{verdict:?}");
+/// # Ok::<(), d2m_verify::MeshFault>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Claim {
@@ -85,6 +105,27 @@ pub enum Claim {
 }
 
 /// What became of a claim.
+///
+/// ```
+/// # use d2m_motion::ConstantTwist;
+/// # use d2m_verify::{Body, Mesh, Query, TimeSpan};
+/// # use glam::DVec3;
+/// # let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let mesh = Mesh::try_new(&[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z], &faces)?;
+/// # // Falls by 4 from a height of 2 onto the tip of the other one: they meet at 0.25.
+/// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
+/// # let body = |motion| Body { mesh: &mesh, motion, solid: d2m_verify::Solid::Filled, radius: 0.0 };
+/// # let window = TimeSpan { from: 0.0, to: 1.0 };
+/// # let query = Query { bodies: [body(&falling), body(&ConstantTwist::REST)], window };
+/// use d2m_verify::{Claim, Verdict, verify};
+/// let clear_all_the_time = Claim::Clear { span: window, distance: 0.0 };
+/// match verify(&query, &clear_all_the_time, 100_000) {
+///     Verdict::Verified { steps } => panic!("a lie, proven in {steps} steps"),
+///     Verdict::Refuted { time, distance, .. } => assert!(time >= 0.25 && distance.lo() <= 0.0),
+///     Verdict::Unproven { clear_until, .. } => assert!(clear_until <= 0.25),
+/// }
+/// # Ok::<(), d2m_verify::MeshFault>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub enum Verdict {
@@ -115,6 +156,24 @@ pub enum Verdict {
 }
 
 /// Why a claim was not proven.
+///
+/// ```
+/// # use d2m_motion::ConstantTwist;
+/// # use d2m_verify::{Body, Mesh, Query, TimeSpan};
+/// # use glam::DVec3;
+/// # let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let mesh = Mesh::try_new(&[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z], &faces)?;
+/// # // Falls by 4 from a height of 2 onto the tip of the other one: they meet at 0.25.
+/// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
+/// # let body = |motion| Body { mesh: &mesh, motion, solid: d2m_verify::Solid::Filled, radius: 0.0 };
+/// # let window = TimeSpan { from: 0.0, to: 1.0 };
+/// # let query = Query { bodies: [body(&falling), body(&ConstantTwist::REST)], window };
+/// use d2m_verify::{Claim, Reason, Verdict, verify};
+/// let clear = Claim::Clear { span: TimeSpan { from: 0.0, to: 0.2 }, distance: 0.0 };
+/// let Verdict::Unproven { reason, .. } = verify(&query, &clear, 0) else { panic!("no steps were allowed") };
+/// assert_eq!((reason, reason.to_string().as_str()), (Reason::Steps, "the budget of steps ran out"));
+/// # Ok::<(), d2m_verify::MeshFault>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, thiserror::Error)]
 #[non_exhaustive]
 pub enum Reason {

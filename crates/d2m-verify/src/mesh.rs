@@ -20,6 +20,15 @@ pub enum MeshFault {
 }
 
 /// Triangles in body axes, with a binary tree of boxes along these axes.
+///
+/// ```
+/// use d2m_verify::{Mesh, MeshFault};
+/// use glam::DVec3;
+/// let mesh = Mesh::try_new(&[DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]])?;
+/// assert_eq!(mesh.triangle_count(), 1);
+/// assert!(Mesh::try_new(&[DVec3::ZERO], &[]).is_err());
+/// # Ok::<(), MeshFault>(())
+/// ```
 #[derive(Debug)]
 pub struct Mesh {
     pub(crate) vertices: Vec<DVec3>,

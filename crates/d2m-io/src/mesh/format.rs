@@ -3,6 +3,12 @@
 use std::path::Path;
 
 /// A kind of mesh file.
+///
+/// ```
+/// use d2m_io::MeshFormat;
+/// assert_eq!(MeshFormat::from_path("part.STL"), Some(MeshFormat::Stl));
+/// assert_eq!(MeshFormat::from_path("part.step"), None);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum MeshFormat {

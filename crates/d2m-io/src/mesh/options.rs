@@ -104,6 +104,18 @@ impl Default for ReadOptions {
 }
 
 /// Which vertices at the same place become one.
+///
+/// ```
+/// use d2m_io::{MeshFormat, Merging, ReadOptions, parse_mesh};
+/// // Two triangles that repeat the vertices of the side between them.
+/// let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n";
+/// let vertices = |merging| {
+///     let options = ReadOptions::new().with_merging(merging);
+///     parse_mesh(text, MeshFormat::Obj, &options).map(|read| read.mesh.vertex_count())
+/// };
+/// assert_eq!((vertices(Merging::ByFormat)?, vertices(Merging::Always)?), (6, 4));
+/// # Ok::<(), d2m_io::IoError>(())
+/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Merging {
     /// Those of formats that share no vertices (STL) or split them at seams (glTF), so that the mesh has a topology; elsewhere vertices keep the numbers of the file.

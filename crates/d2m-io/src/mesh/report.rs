@@ -3,6 +3,14 @@
 use super::PolygonCounts;
 
 /// How exactly a file stated a mesh, and what was cut or left out.
+///
+/// ```
+/// use d2m_io::{MeshFormat, Precision, ReadOptions, parse_mesh};
+/// let square = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+/// let report = parse_mesh(square, MeshFormat::Obj, &ReadOptions::new())?.report;
+/// assert_eq!((report.polygons.cut, report.precision, report.up_axis), (1, Precision::Double, None));
+/// # Ok::<(), d2m_io::IoError>(())
+/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
 pub struct MeshReport {
