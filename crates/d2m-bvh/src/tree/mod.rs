@@ -8,6 +8,7 @@ mod fit;
 pub(crate) mod margin;
 mod mesh_tree;
 pub(crate) mod node;
+pub(crate) mod normal_cones;
 mod parts;
 mod placed_bounds;
 mod refine;

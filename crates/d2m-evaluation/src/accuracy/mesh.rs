@@ -1,13 +1,14 @@
-//! The engine on random scenes of a few triangles, against the judge's brute force.
+//! The engine on random scenes of a few triangles; each answer is proven again by the verifier, which shares nothing with it.
 //!
 //! The law of the scenes: half of them are two closed solids, half triangle soups; sizes over three decades, aspect
 //! ratios up to 1e4 (needles, plates); the bodies are aimed at each other; speeds over ten decades, spins up to 300;
 //! one in eight stands still relative to the other, one in eight begins in overlap or inside.
+use super::proofs::{Judgement, STEPS, judgement};
 use super::{Outcome, Task};
-use crate::judge::{BoxTree, Claim, Fault, Judge, cross, place};
 use crate::trials::{Movement, Trial};
 use d2m::bvh::{MeshTree, Moving, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact};
 use d2m::motion::ConstantTwist;
+use d2m::verify::Verifier;
 use d2m_testing::{Surface, Xoshiro256 as Random};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -70,89 +71,45 @@ fn scene(random: &mut Random) -> Scene {
     Scene { shapes, trial, solid }
 }
 
-impl Scene {
-    fn ask(&self) -> Claim {
-        let tree = |s: &Shape| MeshTree::new(s.surface.clone().into_mesh(TriMesh::try_new));
-        let motion = |m: &Movement| {
-            ConstantTwist::try_new(m.position, m.rotation, m.velocity, m.angular_velocity).expect("finite")
-        };
-        let (trees, motions) =
-            (self.shapes.each_ref().map(tree), [motion(&self.trial.a), motion(&self.trial.b)]);
-        let options = QueryOptions::default().with_solid(self.solid);
-        let (a, b) = (Moving::new(&trees[0], &motions[0]), Moving::new(&trees[1], &motions[1]));
-        match time_of_contact(a, b, Window::UNIT, &options).expect("valid input") {
-            TimeOfContact::Separated => Claim::Separated,
-            TimeOfContact::Contact(c) => {
-                Claim::Contact { lo: c.time_lo, hi: c.time_hi, tolerance: c.tolerance }
-            }
-            TimeOfContact::Undecided { clear_until } => Claim::Undecided { clear_until },
-        }
-    }
-}
-
 pub(super) fn run(task: &Task) -> Outcome {
     let judged: Vec<Judged> = (0..task.count).into_par_iter().map(|index| case(task, index)).collect();
     let mut outcome = Outcome { cases: judged.len(), ..Outcome::default() };
-    for Judged { claim, complaint } in judged {
-        outcome.contacts += usize::from(matches!(claim, Claim::Contact { .. }));
-        outcome.undecided += usize::from(matches!(claim, Claim::Undecided { .. }));
-        match complaint {
-            Some(Complaint::FalseNegative(line)) => outcome.false_negatives.push(line),
-            Some(Complaint::FalseAlarm(line)) => outcome.false_alarms.push(line),
-            None => {}
+    for Judged { answer, line, judgement } in judged {
+        outcome.contacts += usize::from(answer.contact().is_some());
+        outcome.undecided += usize::from(matches!(answer, TimeOfContact::Undecided { .. }));
+        match judgement {
+            Judgement::Proven => {}
+            Judgement::Refuted(why) => outcome.false_negatives.push(format!("{line}: {why}")),
+            Judgement::Contradicts(why) => outcome.false_alarms.push(format!("{line}: {why}")),
+            Judgement::Open(reason) => *outcome.unproven.entry(reason).or_default() += 1,
         }
     }
     outcome
 }
 
-/// A claim, and what is wrong with it.
+/// An answer, and what became of its proof.
 struct Judged {
-    claim: Claim,
-    complaint: Option<Complaint>,
-}
-
-/// A line that names the case.
-enum Complaint {
-    FalseNegative(String),
-    FalseAlarm(String),
+    answer: TimeOfContact,
+    /// A line that names the case.
+    line: String,
+    judgement: Judgement,
 }
 
 fn case(task: &Task, index: usize) -> Judged {
     let mut random = Random::new(task.seed.wrapping_mul(0x9e37_79b9).wrapping_add(index as u64));
     let scene = scene(&mut random);
-    let claim = scene.ask();
-    let claim = task.sabotage.map_or(claim, |fault| fault.spoil(claim));
-    let trees = scene.shapes.each_ref().map(|s| BoxTree::build(&s.surface.vertices, &s.surface.triangles));
-    let judge = Judge { a: &trees[0], b: &trees[1], trial: &scene.trial };
-    let line =
-        |words: String| format!("seed {} case {index} ({:?}): {claim:?}: {words}", task.seed, scene.solid);
-    if scene.solid == Solid::Filled && begins_inside(&scene, &trees) {
-        let right = matches!(claim, Claim::Contact { lo: 0.0, .. } | Claim::Undecided { clear_until: 0.0 });
-        let words = || line("one body is inside the other at the start".into());
-        return Judged { claim, complaint: (!right).then(|| Complaint::FalseNegative(words())) };
-    }
-    let complaint = judge.check(&claim, true).err().map(|fault| match fault {
-        Fault::Far { .. } => Complaint::FalseAlarm(line(fault.to_string())),
-        _ => Complaint::FalseNegative(line(fault.to_string())),
-    });
-    Judged { claim, complaint }
-}
-
-/// Surfaces apart and a vertex of one inside the other, by the parity of a ray's crossings.
-fn begins_inside(scene: &Scene, trees: &[BoxTree; 2]) -> bool {
-    let at = [place(&scene.trial.a, 0.0), place(&scene.trial.b, 0.0)];
-    if cross(&trees[0], &trees[1], &at[0], &at[1]) {
-        return false;
-    }
-    let inside = |outer: usize, inner: usize| {
-        let point = at[outer].relative(&at[inner]).apply(scene.shapes[inner].surface.vertices[0]);
-        let far = DVec3::new(0.363_821, 0.581_297, 0.727_941) * 1e4;
-        let shape = &scene.shapes[outer].surface;
-        let hits = shape.triangles.iter().filter(|t| {
-            let corners = t.map(|i| shape.vertices[i as usize]);
-            crate::judge::pierces(point, point + far, &corners)
-        });
-        hits.count() % 2 == 1
+    let tree = |s: &Shape| MeshTree::new(s.surface.clone().into_mesh(TriMesh::try_new));
+    let motion = |m: &Movement| {
+        ConstantTwist::try_new(m.position, m.rotation, m.velocity, m.angular_velocity).expect("finite")
     };
-    inside(0, 1) || inside(1, 0)
+    let (trees, motions) =
+        (scene.shapes.each_ref().map(tree), [motion(&scene.trial.a), motion(&scene.trial.b)]);
+    let options = QueryOptions::default().with_solid(scene.solid);
+    let bodies = [0, 1].map(|k| Moving::new(&trees[k], &motions[k]));
+    let answer = time_of_contact(bodies[0], bodies[1], Window::UNIT, &options).expect("valid input");
+    let answer = task.sabotage.map_or(answer, |fault| fault.spoil_answer(answer, Window::UNIT));
+    let verifier = Verifier::try_new(trees[0].mesh(), trees[1].mesh()).expect("triangles");
+    let verdict = verifier.time_of_contact(&bodies, Window::UNIT, &options, &answer, STEPS);
+    let line = format!("seed {} case {index} ({:?}): {answer:?}", task.seed, scene.solid);
+    Judged { answer, line, judgement: judgement(verdict) }
 }

@@ -4,11 +4,14 @@ mod feature;
 mod hostile;
 mod interval;
 mod mesh;
+mod proofs;
 mod reference;
 mod statics;
 
 use crate::TaskResult;
 use crate::bench::Sabotage;
+use d2m::verify::Reason;
+use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 #[derive(clap::Args)]
@@ -35,6 +38,9 @@ pub(crate) struct Options {
     /// Answers and judges one scene again that a run has kept.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["minutes", "family", "only"])]
     case: Option<std::path::PathBuf>,
+    /// Lies that the verifier is told, in the family of this name: none may be verified.
+    #[arg(long, default_value_t = 2000)]
+    lies: usize,
     /// A deliberate fault, to see it found: `late=1e-6` or `miss`.
     #[arg(long = "break", hide = true)]
     sabotage: Option<Sabotage>,
@@ -50,6 +56,8 @@ pub(crate) struct Outcome {
     pub(crate) undecided: usize,
     /// Cases that a quick first tier left to the slow oracle (features only).
     pub(crate) by_oracle: usize,
+    /// Answers that the verifier neither proved nor refuted, by reason: allowed, counted.
+    pub(crate) unproven: BTreeMap<Reason, usize>,
     /// The largest memory of the process in bytes, where a family counts it.
     pub(crate) peak_memory: Option<u64>,
     /// Contacts missed or late: one line each. None is allowed.
@@ -62,13 +70,14 @@ pub(crate) struct Outcome {
 pub(crate) struct Task {
     pub(crate) count: usize,
     pub(crate) seed: u64,
+    pub(crate) lies: usize,
     pub(crate) sabotage: Option<Sabotage>,
 }
 
 type Family = (&'static str, usize, fn(&Task) -> Outcome);
 
 /// Name, the share of the count that a family takes (one in so many), and itself.
-const FAMILIES: [Family; 12] = [
+const FAMILIES: [Family; 13] = [
     ("feature: rigid vertex/face", 1, feature::rigid_vertex_face),
     ("feature: rigid edge/edge", 1, feature::rigid_edge_edge),
     ("feature: any motion vertex/face", 1, feature::enclosed_vertex_face),
@@ -80,6 +89,7 @@ const FAMILIES: [Family; 12] = [
     ("mesh: hostile scenes and their twins", 10, hostile::run),
     ("mesh: reference method and engine", 20, reference::run),
     ("mesh: collide and distance at rest", 2, statics::run),
+    ("verify: answers proven again, and lies", 10, proofs::run),
     ("mutants: broken answers are noticed", 100, broken_answers::run),
 ];
 
@@ -109,7 +119,7 @@ pub(crate) fn run(options: &Options) -> TaskResult {
             }
             let start = Instant::now();
             let count = options.count.div_ceil(share);
-            let found = family(&Task { count, seed, sabotage: options.sabotage });
+            let found = family(&Task { count, seed, lies: options.lies, sabotage: options.sabotage });
             let slow = if found.by_oracle > 0 {
                 format!(" ({} by the oracle of 192 bits)", found.by_oracle)
             } else {
@@ -125,6 +135,9 @@ pub(crate) fn run(options: &Options) -> TaskResult {
                 found.false_alarms.len(),
                 start.elapsed().as_secs_f64()
             );
+            for (reason, count) in &found.unproven {
+                println!("  {count} neither proven nor refuted: {reason}");
+            }
             for line in found.false_negatives.iter().take(5) {
                 println!("  FALSE NEGATIVE  {line}");
             }

@@ -97,6 +97,19 @@ impl std::str::FromStr for Sabotage {
 }
 
 impl Sabotage {
+    /// The same of a whole answer.
+    pub(crate) fn spoil_answer(self, answer: TimeOfContact, window: Window) -> TimeOfContact {
+        match (self, answer) {
+            (Self::Late(by), TimeOfContact::Contact(mut contact)) => {
+                contact.time_lo = (contact.time_lo + by).min(window.end());
+                contact.time_hi = (contact.time_hi + by).min(window.end());
+                TimeOfContact::Contact(contact)
+            }
+            (Self::Miss, TimeOfContact::Contact(_)) => TimeOfContact::Separated,
+            (_, answer) => answer,
+        }
+    }
+
     pub(crate) fn spoil(self, claim: Claim) -> Claim {
         match (self, claim) {
             (Self::Late(by), Claim::Contact { lo, hi, tolerance }) => {

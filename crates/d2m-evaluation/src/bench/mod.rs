@@ -18,6 +18,7 @@ mod stopped;
 mod store;
 pub(crate) mod sweep;
 
+pub(crate) use body::Body;
 pub(crate) use catalogue::{export, pair_names};
 pub(crate) use engine::Sabotage;
 pub(crate) use method::Method;

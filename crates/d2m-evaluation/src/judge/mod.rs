@@ -5,10 +5,10 @@ mod placement;
 mod separation;
 mod triangle;
 
-pub(crate) use answer::{Claim, Fault, Judge, advance};
+pub(crate) use answer::{Claim, Judge, advance};
 pub(crate) use placement::{Placement, place};
 pub(crate) use separation::{BoxTree, Hint, bound_separation, cross, separation};
-pub(crate) use triangle::{distance, pierces};
+pub(crate) use triangle::distance;
 
 #[cfg(test)]
 mod tests;

@@ -1,3 +1,4 @@
+use super::answer::Fault;
 use super::triangle::{distance, segment_segment};
 use super::*;
 use crate::trials::{Movement, Trial};

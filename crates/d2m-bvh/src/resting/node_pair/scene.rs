@@ -169,6 +169,17 @@ impl<'a> Scene<'a> {
         self.place_point(body, self.trees[body].mesh().vertices()[vertex as usize])
     }
 
+    /// A vector of a body's axes in those of B.
+    pub(crate) fn turn(&self, body: usize, v: DVec3) -> DVec3 {
+        let r = &self.pose.rotation;
+        if body == 1 { v } else { r[0] * v.x + r[1] * v.y + r[2] * v.z }
+    }
+
+    /// Where a sphere of a body is at most, in working coordinates.
+    pub(crate) fn place_sphere(&self, body: usize, center: DVec3, radius: f64) -> (DVec3, f64) {
+        (self.place_point(body, center), radius * self.inverse_unit)
+    }
+
     #[inline(always)]
     fn place_point(&self, body: usize, point: DVec3) -> DVec3 {
         let p = (point - self.trees[body].center()) * self.inverse_unit;

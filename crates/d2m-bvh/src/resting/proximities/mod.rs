@@ -11,7 +11,8 @@
 //!      ____•____
 //! ```
 //!
-//! **Why no pair is lost.** The descent drops a pair of boxes only when they are proven further apart than the margin. A
+//! **Why no pair is lost.** The descent drops a pair of boxes only when they are proven further apart than the margin, or apart and
+//! without a direction from one to the other that cones about the normals of both allow (`facing`). A
 //! vertex or edge is tested by the lowest-numbered triangle that holds it, its *owner*; the owners of two features
 //! within the margin are within the margin themselves, so the descent meets them, and exactly once. All tests are
 //! relaxed by δ, the proven bound on where placed points are (`Scene::error`): a foot may be 8δ outside of its feature,
@@ -20,6 +21,7 @@
 //! of them is kept.
 
 mod candidate;
+mod facing;
 mod feature_test;
 mod manifold;
 #[cfg(test)]
@@ -35,6 +37,7 @@ use crate::{Budget, Posed, QueryError, Solid};
 use candidate::{Candidate, without_twins};
 use d2m_feature::FeaturePair;
 use d2m_lanes::{Lanes, Task, run};
+use facing::Facing;
 use feature_test::FeatureTest;
 use glam::DVec3;
 
@@ -221,7 +224,7 @@ pub fn proximities_within(
     let limit = (options.margin / scene.unit + scene.error) * (1.0 + 4.0 * UNIT_F64);
     let test = FeatureTest::new(&scene, limit, options.cone_slack);
     let meter = &mut Meter::new(budget);
-    match run(Search { scene: &scene, test, limit, meter }) {
+    match run(Search { scene: &scene, test, limit, cone_slack: options.cone_slack, meter }) {
         Found::Exhausted => Ok(None),
         Found::NotApart(triangles) => of_touching([a, b], options, meter, triangles),
         Found::Candidates(found) => {
@@ -301,6 +304,7 @@ struct Search<'a> {
     scene: &'a Scene<'a>,
     test: FeatureTest<'a>,
     limit: f64,
+    cone_slack: f64,
     meter: &'a mut Meter,
 }
 
@@ -309,15 +313,17 @@ impl Task for Search<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Found {
-        let Self { scene, mut test, limit, meter } = self;
+        let Self { scene, mut test, limit, cone_slack, meter } = self;
         let key = round_up(limit);
         let along = scene.direction(-scene.pose.offset);
         let mut stack = Vec::with_capacity(256);
         stack.push([0u32; 2]);
+        let mut facing = Facing::new(scene, cone_slack);
         while let Some(pair) = stack.pop() {
             if meter.step().is_err() {
                 return Found::Exhausted;
             }
+            facing.count();
             match scene.step(pair) {
                 Step::Expand { wide, node } => {
                     let wanted = Wanted { along: &along, enough: key, directions: Directions::Usual };
@@ -325,7 +331,10 @@ impl Task for Search<'_> {
                     for (lane, &bound) in bounds.used().iter().enumerate() {
                         // A bound that is not a number drops nothing.
                         if bound.is_nan() || bound <= key {
-                            stack.push(child(pair, wide, node, lane));
+                            let below = child(pair, wide, node, lane);
+                            if facing.may_be_closest(below, f64::from(bound)) {
+                                stack.push(below);
+                            }
                         }
                     }
                 }

@@ -301,3 +301,37 @@ fn tilts_tell_exact_cones_from_wide_ones() {
     }
     assert!(tilted > 100, "{tilted}");
 }
+
+/// Bodies whose margin is their size: cones of normals drop most pairs of boxes and nothing that is found without them. (Wider normal
+/// cones, by a slack that changes no test, are searched without.)
+#[test]
+fn cones_of_normals_lose_no_pair() {
+    let mut random = KnuthRandom(31);
+    let wavy = |rings: u32, sides: u32, tube: f64| Surface::wavy_torus(rings, sides, tube);
+    let sphere = |count: u32| wavy(count, count / 2, 0.9).map(|p| p.normalize());
+    let open = Surface::soup((0..90).map(|_| random.vector()));
+    let surfaces = [wavy(30, 16, 0.3), wavy(20, 12, 0.45), sphere(24), Surface::cube(0.5), open];
+    let trees = surfaces.map(|surface| MeshTree::new(surface.into_mesh(TriMesh::try_new)));
+    let (mut results, mut fewer) = (0, 0);
+    for round in 0..60 {
+        let (a, b) = (&trees[round % 5], &trees[(round / 5 + round) % 5]);
+        let rotation = glam::DQuat::from_scaled_axis(random.vector() * 2.0);
+        let apart = (a.radius() + b.radius()) * (0.4 + 0.7 * random.signed().abs());
+        let translation = random.vector().normalize() * apart;
+        let bodies = [Posed::at_rest(a), Posed::new(b, Pose { rotation, translation, at: DVec3::ZERO })];
+        let options = ProximityOptions::new(1.5);
+        let all = proximities_with(bodies[0], bodies[1], &options.with_cone_slack(f64::MIN_POSITIVE));
+        let Ok(all) = all else { continue };
+        let found = proximities_with(bodies[0], bodies[1], &options).unwrap();
+        assert_eq!(found, all, "round {round}");
+        results += all.len();
+        let scene = Scene::try_new(bodies[0], bodies[1]).unwrap();
+        let mut facing = facing::Facing::new(&scene, 0.0);
+        let triangles = a.mesh().triangle_count() + b.mesh().triangle_count();
+        (0..triangles).for_each(|_| facing.count());
+        let boxes = |tree: &MeshTree| (0..8 * tree.nodes.len() as u32).collect::<Vec<_>>();
+        let pairs = boxes(a).into_iter().step_by(7).flat_map(|s| boxes(b).into_iter().map(move |t| [s, t]));
+        fewer += pairs.filter(|&pair| !facing.may_be_closest(pair, 0.1)).count();
+    }
+    assert!(results > 500 && fewer > 100_000, "{results} {fewer}");
+}

@@ -4,7 +4,7 @@ use super::*;
 #[test]
 fn broken_answers_to_hostile_scenes_are_noticed() {
     let count = 10 * families::FAMILIES.len();
-    let task = |sabotage| Task { count, seed: 5, sabotage };
+    let task = |sabotage| Task { count, seed: 5, lies: 0, sabotage };
     let right = run(&task(None));
     assert_eq!(right.false_negatives, [""; 0], "{right:?}");
     assert_eq!(right.false_alarms, [""; 0], "{right:?}");
