@@ -33,7 +33,7 @@ impl<'a> Facing<'a> {
     pub(super) fn count(&mut self) {
         self.steps += 1;
         if self.worth == Some(self.steps) {
-            self.cones = Some(self.scene.trees.map(|tree| tree.normal_cones()));
+            self.cones = Some(self.scene.trees.map(crate::MeshTree::normal_cones));
         }
     }
 
