@@ -34,6 +34,8 @@ pub(super) fn judgement(verdict: Verdict) -> Judgement {
             | Reason::TimeResolution
             | Reason::Enclosure
             | Reason::NoMeeting
+            // Of needles the verifier does not enclose a distance as tightly as the engine rounds it.
+            | Reason::Distance
             | Reason::Solid => Judgement::Open(reason),
             _ => Judgement::Contradicts(reason.to_string()),
         },
