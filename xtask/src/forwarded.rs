@@ -13,9 +13,15 @@ pub(crate) struct Forwarded {
 /// The same call, to the evaluation, optimised.
 pub(crate) fn run() -> ExitCode {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let call: Vec<OsString> = std::env::args_os().skip(1).collect();
+    // An engine that reports what it concludes is another program.
+    let audits = call.get(1).is_some_and(|word| word == "audit");
+    let features: &[&str] = if audits { &["--features", "audit"] } else { &[] };
     let status = Command::new(cargo)
-        .args(["run", "--release", "--quiet", "--package", "d2m-evaluation", "--"])
-        .args(std::env::args_os().skip(1))
+        .args(["run", "--release", "--quiet", "--package", "d2m-evaluation"])
+        .args(features)
+        .arg("--")
+        .args(call)
         .status();
     match status {
         Ok(status) => status.code().map_or(ExitCode::FAILURE, |code| ExitCode::from(code as u8)),

@@ -13,6 +13,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Place {
+    /// A box of a tree and a vertex below it.
+    StoredBox,
     /// A pair of boxes is queued with a later key, or not at all.
     NodePair,
     /// A pair of triangles is advanced.
@@ -69,6 +71,7 @@ impl Place {
     /// In words.
     pub const fn name(self) -> &'static str {
         match self {
+            Self::StoredBox => "boxes of trees",
             Self::NodePair => "node pairs",
             Self::TrianglePair => "triangle pairs",
             Self::Backward => "backward certificates",

@@ -28,6 +28,8 @@ mod account;
 mod body;
 mod broad_phase;
 mod clearance;
+#[cfg(feature = "audit")]
+mod concluded;
 mod contact;
 mod error;
 mod faces;

@@ -1,9 +1,13 @@
 //! What is known of pairs of bodies, and the queries about them.
 
 use crate::clearance::{Clearance, approach, bound_along};
+#[cfg(feature = "audit")]
+use crate::concluded::conclude;
 use crate::contact::{ContactPoint, Material, tangents};
 use crate::faces::vertices_of;
 use crate::rigid_body::RigidBody;
+#[cfg(feature = "audit")]
+use d2m_bvh::audit::Place;
 use d2m_bvh::{
     Budget, Contact, DistanceOptions, Moving, PairCache, Posed, Proximity, ProximityOptions, QueryError,
     QueryOptions, Solid, StartState, TimeOfContact, Window, distance_within, proximities_with,
@@ -149,6 +153,13 @@ pub(crate) fn fly(
     pair: &mut Pair,
 ) -> Result<Outcome, QueryError> {
     if is_proven_clear(a, b, window, pair)? {
+        #[cfg(feature = "audit")]
+        conclude(
+            Place::DynamicsClearance,
+            [a, b],
+            [window.start(), window.end()],
+            pair.separation() * (1.0 + SLACK),
+        );
         return Ok(Outcome::Clear);
     }
     let mut separation = pair.separation();

@@ -1,6 +1,8 @@
 //! Queries of bodies at rest: contact, distance, closest features, containment.
 
 pub(crate) mod collide;
+#[cfg(feature = "audit")]
+mod concluded;
 pub(crate) mod containment;
 pub(crate) mod distance;
 pub(crate) mod node_pair;

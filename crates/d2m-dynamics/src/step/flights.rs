@@ -2,11 +2,15 @@
 
 use super::event::{Cause, Event};
 use super::{Key, Step};
+#[cfg(feature = "audit")]
+use crate::concluded::conclude;
 use crate::pairs::{Outcome, Pair, fly};
 use crate::rigid_body::RigidBody;
 use crate::simulation::query_error;
 use crate::{StepError, parallel};
 use d2m_bvh::Window;
+#[cfg(feature = "audit")]
+use d2m_bvh::audit::Place;
 use glam::DVec3;
 use std::cmp::Reverse;
 
@@ -55,7 +59,12 @@ impl Step<'_> {
         keys.retain(|&(a, b)| {
             let (a, b) = (&bodies[a], &bodies[b]);
             let stay_apart = a.stands_still() && b.stands_still();
-            !(stay_apart || are_spheres_apart(a, b, time, end, gap))
+            let spheres_apart = are_spheres_apart(a, b, time, end, gap);
+            #[cfg(feature = "audit")]
+            if spheres_apart {
+                conclude(Place::DynamicsClearance, [a, b], [time, end], gap);
+            }
+            !(stay_apart || spheres_apart)
         });
         let jobs: Vec<(Key, Box<Pair>)> = keys
             .into_iter()
@@ -98,6 +107,23 @@ impl Step<'_> {
             self.heap.push(Reverse(event));
         }
         failed.map_or(Ok(()), |error| Err(error.into()))
+    }
+
+    /// No two bodies that may meet do so on the flights that they have now, until a time to which they fly.
+    #[cfg(feature = "audit")]
+    pub(super) fn conclude_flights(&self, until: f64) {
+        let bodies = &self.sim.bodies;
+        if !d2m_bvh::audit::is_heard() {
+            return;
+        }
+        for (i, j) in (0..bodies.len()).flat_map(|i| (i + 1..bodies.len()).map(move |j| (i, j))) {
+            let (a, b) = (&bodies[i], &bodies[j]);
+            let flies = self.sim.meets(i, j) && !(a.stands_still() && b.stands_still());
+            let from = a.flight.reference_time().max(b.flight.reference_time()).max(self.start);
+            if flies {
+                conclude(Place::Flight, [a, b], [from, until], 0.0);
+            }
+        }
     }
 
     /// The pairs of one of these bodies and any other whose boxes over their flights meet, and that may meet; ascending. The

@@ -123,6 +123,8 @@ impl<'s> Step<'s> {
                 last = (event.time, BTreeMap::new());
             }
             self.report_impulses();
+            #[cfg(feature = "audit")]
+            self.conclude_flights(event.time);
             self.sim.recorder.cut(event.time, self.holding);
             self.sim.time = event.time;
             let held = |i: usize| self.sim.bodies[i].held;
@@ -200,6 +202,8 @@ impl<'s> Step<'s> {
     fn finish(&mut self, time: f64) {
         let gravity = self.sim.options.gravity;
         self.report_impulses();
+        #[cfg(feature = "audit")]
+        self.conclude_flights(time);
         self.sim.recorder.cut(time, self.holding);
         let length = time - self.start;
         for body in self.sim.bodies.iter_mut().filter(|body| RigidBody::is_awake(body)) {

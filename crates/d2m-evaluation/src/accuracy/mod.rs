@@ -1,4 +1,5 @@
 //! `cargo xtask accuracy`: random families against slow oracles. Any false negative fails the run.
+mod audit;
 mod broken_answers;
 mod feature;
 mod hostile;
@@ -16,7 +17,10 @@ use std::time::{Duration, Instant};
 
 #[derive(clap::Args)]
 #[group(skip)]
+#[command(args_conflicts_with_subcommands = true)]
 pub(crate) struct Options {
+    #[command(subcommand)]
+    deeper: Option<Deeper>,
     /// Cases of each family, about; families that are slow take a share of it.
     #[arg(long, default_value_t = 20_000, value_parser = crate::at_least_one)]
     count: usize,
@@ -44,6 +48,13 @@ pub(crate) struct Options {
     /// A deliberate fault, to see it found: `late=1e-6` or `miss`.
     #[arg(long = "break", hide = true)]
     sabotage: Option<Sabotage>,
+}
+
+/// What is judged besides answers.
+#[derive(clap::Subcommand)]
+enum Deeper {
+    /// Every conclusion on the way to an answer, proven again; fails on any that is false.
+    Audit(audit::Options),
 }
 
 /// What a family found.
@@ -95,6 +106,9 @@ const FAMILIES: [Family; 13] = [
 
 /// `cargo xtask accuracy`.
 pub(crate) fn run(options: &Options) -> TaskResult {
+    if let Some(Deeper::Audit(options)) = &options.deeper {
+        return audit::run(options);
+    }
     if let Some(path) = &options.case {
         return hostile::replay(path);
     }

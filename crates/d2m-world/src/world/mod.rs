@@ -1,6 +1,8 @@
 //! Many moving bodies.
 
 mod answers;
+#[cfg(feature = "audit")]
+mod concluded;
 mod filter;
 mod pair_queue;
 mod pair_state;

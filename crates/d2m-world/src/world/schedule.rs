@@ -338,6 +338,12 @@ impl Schedule {
         self.queue.push(entry);
     }
 
+    /// The end of the span that boxes and queue hold for.
+    #[cfg(feature = "audit")]
+    pub(super) fn end(&self) -> Option<f64> {
+        self.span.map(Window::end)
+    }
+
     /// The start of the last window.
     pub(super) const fn from(&self) -> f64 {
         self.from

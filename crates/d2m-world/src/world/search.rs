@@ -8,6 +8,8 @@ use super::schedule::{MeetingSpan, Prepared, Rules};
 use super::{FirstContact, PairContact, Threads, World, WorldError};
 use crate::box_tree::IndexPair;
 use crate::parallel::{PAIRS, map_in_order};
+#[cfg(feature = "audit")]
+use d2m_bvh::audit::Place;
 use d2m_bvh::{
     Contact, Meter, PairCache, QueryError, QueryOptions, StartState, TimeOfContact, Window,
     time_of_contact_with,
@@ -257,6 +259,10 @@ impl World {
         for entry in core::mem::take(&mut finding.kept) {
             self.schedule.push(entry);
         }
+        #[cfg(feature = "audit")]
+        if outcome.is_ok() {
+            self.conclude_left_out();
+        }
         outcome.map(|()| finding)
     }
 
@@ -300,7 +306,17 @@ impl World {
             if rules.filter.ignores(pair, rules.slots.groups(pair)) {
                 continue;
             }
-            let Some(meeting) = self.schedule.meeting_span(rules, pair) else { continue };
+            let Some(meeting) = self.schedule.meeting_span(rules, pair) else {
+                #[cfg(feature = "audit")]
+                if let Some(end) = self.schedule.end() {
+                    self.conclude(Place::BroadPhase, pair, [self.schedule.from(), end]);
+                }
+                continue;
+            };
+            #[cfg(feature = "audit")]
+            if meeting.start > self.schedule.from() {
+                self.conclude(Place::BroadPhase, pair, [self.schedule.from(), meeting.start]);
+            }
             let state = self.states.get(&pair);
             let valid = state.filter(|state| {
                 state.versions == entry.versions
@@ -395,6 +411,10 @@ impl World {
                     Known::Contact(Box::new(contact))
                 }
             };
+            #[cfg(feature = "audit")]
+            if let Known::ClearUntil(until) = known {
+                self.conclude(Place::WorldPair, pair, [span_start, until]);
+            }
             let (versions, separation) = (entry.versions, options.min_separation);
             let state =
                 PairState { versions, separation, from: span_start, known, cache: Box::new(reply.cache) };

@@ -11,7 +11,7 @@ const STEPS: f64 = 64.0;
 const PAIRS: [[usize; 2]; 3] = [[0, 1], [0, 2], [1, 2]];
 
 /// What became of the statements about the boxes of a tree: one for each box and vertex below it, and a line for each that is false.
-pub fn check_boxes(tree: &MeshTree) -> (Tally, Vec<String>) {
+pub(super) fn check(tree: &MeshTree) -> (Tally, Vec<String>) {
     let (mut tally, mut lines) = (Tally::default(), Vec::new());
     let mesh = tree.mesh();
     for stored in stored_boxes(tree) {

@@ -4,9 +4,9 @@
 //! a wrong bound makes some of them false: an audit sees those.
 mod boxes;
 
-pub use boxes::check_boxes;
 pub use d2m_bvh::audit::*;
 
+use crate::MeshTree;
 use d2m_verify::{Body, Claim, Mesh, Query, Reason, Solid, TimeSpan, Verdict, verify};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
@@ -142,6 +142,15 @@ impl Auditor {
             case.counts.clear();
             case.meshes.clear();
         });
+    }
+
+    /// Judges what is promised of the boxes of a tree.
+    pub fn check_boxes(&self, tree: &MeshTree) {
+        let (tally, lines) = boxes::check(tree);
+        let label = CASE.with_borrow(|case| case.label.clone());
+        let mut found = self.findings.lock().unwrap_or_else(PoisonError::into_inner);
+        found.places.entry(Place::StoredBox).or_default().merge(&tally);
+        found.refuted.extend(lines.into_iter().map(|line| format!("{label}: {line}")));
     }
 
     /// What was found so far.

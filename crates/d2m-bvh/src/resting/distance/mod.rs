@@ -203,11 +203,29 @@ pub fn distance_within(
         }
         (found, _) => found,
     };
-    let Found::Pair(best) = found else { return Ok(None) };
+    let Found::Pair(best) = found else {
+        #[cfg(feature = "audit")]
+        conclude([a, b], options.cutoff, None);
+        return Ok(None);
+    };
     let answer = describe(&scene, [a, b], &best, state);
     let answer = meeting.map_or(answer, |meeting| answer.meeting_so(&scene, [a, b], &meeting));
     cache.remember([answer.triangle_a, answer.triangle_b]);
+    #[cfg(feature = "audit")]
+    conclude([a, b], answer.lower.next_down(), Some(&answer));
     Ok((answer.lower <= options.cutoff).then_some(answer))
+}
+
+/// The surfaces are further apart than this; and those of two triangles no further than their distance.
+#[cfg(feature = "audit")]
+fn conclude(bodies: [Posed<'_>; 2], lower: f64, found: Option<&Distance>) {
+    use super::concluded::conclude_at_rest;
+    use crate::audit::{Part, Place, Promise};
+    conclude_at_rest(Place::Resting, Promise::Apart, bodies, [Part::Whole; 2], lower);
+    if let Some(found) = found {
+        let parts = [found.triangle_a, found.triangle_b].map(Part::Triangle);
+        conclude_at_rest(Place::Resting, Promise::Meets, bodies, parts, found.upper);
+    }
 }
 
 /// What is proven of a distance: all of it, or what a budget allowed.

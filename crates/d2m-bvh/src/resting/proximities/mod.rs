@@ -224,7 +224,16 @@ pub fn proximities_within(
     let limit = (options.margin / scene.unit + scene.error) * (1.0 + 4.0 * UNIT_F64);
     let test = FeatureTest::new(&scene, limit, options.cone_slack);
     let meter = &mut Meter::new(budget);
-    match run(Search { scene: &scene, test, limit, cone_slack: options.cone_slack, meter }) {
+    let search = Search {
+        scene: &scene,
+        test,
+        limit,
+        cone_slack: options.cone_slack,
+        meter,
+        #[cfg(feature = "audit")]
+        asked: ([a, b], options.margin),
+    };
+    match run(search) {
         Found::Exhausted => Ok(None),
         Found::NotApart(triangles) => of_touching([a, b], options, meter, triangles),
         Found::Candidates(found) => {
@@ -291,6 +300,15 @@ fn describe(scene: &Scene<'_>, bodies: [Posed<'_>; 2], candidate: &Candidate) ->
     }
 }
 
+/// What is below a pair of boxes is further apart than the margin.
+#[cfg(feature = "audit")]
+fn conclude_dropped((bodies, margin): ([Posed<'_>; 2], f64), [a, b]: [u32; 2]) {
+    use super::concluded::conclude_at_rest;
+    use crate::audit::{Part, Place, Promise};
+    let parts = [Part::Boxes(&[a]), Part::Boxes(&[b])];
+    conclude_at_rest(Place::ProximityDropped, Promise::Apart, bodies, parts, margin);
+}
+
 enum Found {
     Candidates(Vec<Candidate>),
     /// Two triangles that are not proven apart.
@@ -306,6 +324,9 @@ struct Search<'a> {
     limit: f64,
     cone_slack: f64,
     meter: &'a mut Meter,
+    /// The bodies and the margin.
+    #[cfg(feature = "audit")]
+    asked: ([Posed<'a>; 2], f64),
 }
 
 impl Task for Search<'_> {
@@ -313,7 +334,9 @@ impl Task for Search<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Found {
-        let Self { scene, mut test, limit, cone_slack, meter } = self;
+        #[cfg(feature = "audit")]
+        let asked = self.asked;
+        let Self { scene, mut test, limit, cone_slack, meter, .. } = self;
         let key = round_up(limit);
         let along = scene.direction(-scene.pose.offset);
         let mut stack = Vec::with_capacity(256);
@@ -335,6 +358,9 @@ impl Task for Search<'_> {
                             if facing.may_be_closest(below, f64::from(bound)) {
                                 stack.push(below);
                             }
+                        } else {
+                            #[cfg(feature = "audit")]
+                            conclude_dropped(asked, child(pair, wide, node, lane));
                         }
                     }
                 }

@@ -110,10 +110,30 @@ pub(super) fn replay(path: &Path) -> crate::TaskResult {
     }
 }
 
-fn case(task: &Task, index: usize) -> Case {
-    let mut random = Random::new(task.seed.wrapping_mul(0x9e37_79b9).wrapping_add(index as u64));
+/// Asks a scene and its twins, for an audit: with a budget of node tests only, since what judges takes time, too.
+#[cfg(feature = "audit")]
+pub(super) fn ask(case: &super::audit::families::Case<'_>) {
+    const MOST_TESTS: u64 = 1 << 15;
+    let (scene, mut random) = draw(case.seed, case.index as usize);
+    let ask = |scene: &Scene| {
+        let budget = d2m::Budget::UNLIMITED.with_node_tests(MOST_TESTS);
+        let _ = Scene { budget, ..scene.clone() }.query_often(1);
+    };
+    ask(&scene);
+    for _ in 0..TWINS {
+        ask(&twins::twin(&scene, &mut random).0);
+    }
+}
+
+/// A scene, and what its twins are drawn from.
+fn draw(seed: u64, index: usize) -> (Scene, Random) {
+    let mut random = Random::new(seed.wrapping_mul(0x9e37_79b9).wrapping_add(index as u64));
     let family = families::FAMILIES[index % families::FAMILIES.len()].1;
-    let scene = family(&mut random);
+    (family(&mut random), random)
+}
+
+fn case(task: &Task, index: usize) -> Case {
+    let (scene, mut random) = draw(task.seed, index);
     let TimedAnswer { answer, late: beyond } = scene.query_often(1);
     let answer = spoil(task.sabotage, answer, scene.window);
     let mut faults = Vec::new();
