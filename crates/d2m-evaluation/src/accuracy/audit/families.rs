@@ -27,7 +27,7 @@ pub(super) type Family = fn(&Case<'_>);
 /// Each with its name. Cases of a family come one after the other, in turns with those of the others.
 pub(super) const FAMILIES: [(&str, Family); 10] = [
     ("sharp", sharp),
-    ("hostile", hostile::ask),
+    ("hostile", |case| hostile::ask(case.seed, case.index)),
     ("small", small),
     ("modes", modes),
     ("motions", any_motion),

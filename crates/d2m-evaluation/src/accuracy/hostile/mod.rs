@@ -112,9 +112,9 @@ pub(super) fn replay(path: &Path) -> crate::TaskResult {
 
 /// Asks a scene and its twins, for an audit: with a budget of node tests only, since what judges takes time, too.
 #[cfg(feature = "audit")]
-pub(super) fn ask(case: &super::audit::families::Case<'_>) {
+pub(super) fn ask(seed: u64, index: u64) {
     const MOST_TESTS: u64 = 1 << 15;
-    let (scene, mut random) = draw(case.seed, case.index as usize);
+    let (scene, mut random) = draw(seed, index as usize);
     let ask = |scene: &Scene| {
         let budget = d2m::Budget::UNLIMITED.with_node_tests(MOST_TESTS);
         let _ = Scene { budget, ..scene.clone() }.query_often(1);
