@@ -44,6 +44,14 @@ const NEAREST: usize = 16;
 /// Directions nearer than this to an axis of a pair are its normal: 2⁻⁴⁰, an angle.
 const ALONG: f64 = power_of_two(-40);
 
+/// Which pairs of triangles are known of those that are near enough to meet before the bodies have parted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Near {
+    All,
+    /// They are too many, or one of them stands for all of a body.
+    Some,
+}
+
 /// How two bodies meet whose surfaces are not proven apart.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::large_enum_variant, reason = "one at a time, taken apart at once")]
@@ -133,10 +141,13 @@ impl<'a> Meeters<'a> {
         let Ok(wide) = Scene::try_blurred(a, b, self.blur) else { return Ok(Some(Meeting::Undecided)) };
         let wide = wide.reaching(LAST_STEP * scene.need);
         let mut near = Vec::new();
-        self.within(meter, |some| near_pairs(&wide, MOST_PAIRS, some, &mut near))?;
+        let finished = self.within(meter, |some| near_pairs(&wide, MOST_PAIRS, some, &mut near))?.is_some();
         if near.is_empty() {
             return Ok(None);
         }
+        // A body that is a point to rounding is stood for by its first triangle.
+        let is_known = finished && near.len() < MOST_PAIRS && ![0, 1].iter().any(|&k| wide.is_point_like(k));
+        let known = if is_known { Near::All } else { Near::Some };
         let exact = if self.blur > 0.0 { None } else { ExactPlaces::try_new(self.bodies) };
         let oriented = [0, 1].map(|k| self.solids[k] == Solid::Filled && scene.trees[k].oriented);
         let pairs = |sides: Sides| -> Vec<TouchingPair> {
@@ -148,13 +159,13 @@ impl<'a> Meeters<'a> {
         {
             return Ok(Some(Meeting::Overlapping(Some(pair.triangles))));
         }
-        if let Some(touch) = self.parted(scene, &outward, exact.as_ref(), meter)? {
+        if let Some(touch) = self.parted(scene, (&outward, known), exact.as_ref(), meter)? {
             return Ok(Some(Meeting::Touching(touch)));
         }
         // Solids that are inside out part where their faces say the opposite.
         let any = pairs(Sides::Any);
         if oriented != [false; 2]
-            && let Some(touch) = self.parted(scene, &any, exact.as_ref(), meter)?
+            && let Some(touch) = self.parted(scene, (&any, known), exact.as_ref(), meter)?
         {
             return Ok(Some(Meeting::Touching(touch)));
         }
@@ -173,7 +184,7 @@ impl<'a> Meeters<'a> {
     fn parted(
         &self,
         scene: &Scene<'_>,
-        pairs: &[TouchingPair],
+        (pairs, known): (&[TouchingPair], Near),
         exact: Option<&ExactPlaces<'_>>,
         meter: &mut Meter,
     ) -> Result<Option<Touch<'a>>, Exhausted> {
@@ -185,7 +196,11 @@ impl<'a> Meeters<'a> {
             }
             if let Some(exact) = exact {
                 let nearest = nearest_axes(pairs, n);
-                if !pairs.iter().all(|pair| exact.part_along(pair, &nearest, n, rise)) {
+                let is_parted = match known {
+                    Near::All => pairs.iter().all(|pair| exact.part_along(pair, &nearest, n, rise)),
+                    Near::Some => self.may_sign_all(meter) && exact.are_bodies_parted(&nearest, n, rise),
+                };
+                if !is_parted {
                     continue;
                 }
             }
@@ -203,6 +218,16 @@ impl<'a> Meeters<'a> {
             }
         }
         Ok(None)
+    }
+
+    /// Is the patience enough for the exact sign of each vertex? Then it is spent.
+    fn may_sign_all(&self, meter: &mut Meter) -> bool {
+        let vertices: usize = self.bodies.iter().map(|posed| posed.body.mesh().vertex_count()).sum();
+        let is_enough = vertices as u64 <= self.patience && !meter.is_exhausted();
+        if is_enough {
+            meter.spend(vertices as u64);
+        }
+        is_enough
     }
 
     /// B moved away from A, or A the other way: the number is changed that rounds the least. `None`: it rounds by more than this part.

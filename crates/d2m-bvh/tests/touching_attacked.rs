@@ -1,0 +1,73 @@
+//! Bodies that were said to overlap though they touch, or to touch though they overlap: found by an adversary.
+
+use d2m_bvh::{MeshTree, Posed, Solid, StartState, TriMesh, distance};
+use glam::DVec3;
+
+fn tetrahedron(corners: [[f64; 3]; 4]) -> MeshTree {
+    let [a, b, c, d] = corners.map(DVec3::from);
+    let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let is_outward = (b - a).cross(c - a).dot(d - a) > 0.0;
+    let faces = faces.map(|[i, j, k]| if is_outward { [i, j, k] } else { [i, k, j] });
+    MeshTree::new(TriMesh::try_new(vec![a, b, c, d], faces.to_vec()).unwrap())
+}
+
+fn state(a: &MeshTree, b: &MeshTree) -> StartState {
+    distance(Posed::at_rest(a), Posed::at_rest(b), Solid::Filled).unwrap().state
+}
+
+/// Two ridges that cross at the origin at small angles: z = 0 is between them, and only across their edges.
+#[test]
+fn ridges_that_cross_at_small_angles_do_not_overlap() {
+    let below = tetrahedron([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, -1.0], [0.0, 1.0, -1.0]]);
+    for exponent in 10..53 {
+        let slope = 2_f64.powi(-exponent);
+        let ridge =
+            |z: f64| tetrahedron([[-1.0, -slope, z], [1.0, slope, z], [0.0, -1.0, 1.0], [0.0, 1.0, 1.0]]);
+        let found = [state(&below, &ridge(0.0)), state(&ridge(0.0), &below)];
+        assert!(!found.contains(&StartState::Overlapping), "{exponent}: {found:?}");
+        assert!(exponent > 22 || found == [StartState::Touching; 2], "{exponent}: {found:?}");
+        assert_eq!(state(&below, &ridge(-1e-3)), StartState::Overlapping, "{exponent}");
+    }
+}
+
+/// A slab between two heights, `n` by `n` squares on both sides, with the heights of the lower vertices given by their numbers.
+fn slab(n: u32, low: impl Fn(u32, u32) -> f64, high: f64) -> MeshTree {
+    let side = n + 1;
+    let at = |layer: u32, i: u32, j: u32| layer * side * side + i * side + j;
+    let mut vertices = Vec::new();
+    for layer in [0, 1] {
+        for i in 0..side {
+            for j in 0..side {
+                let z = if layer == 0 { low(i, j) } else { high };
+                vertices.push(DVec3::new(f64::from(i) / f64::from(n), f64::from(j) / f64::from(n), z));
+            }
+        }
+    }
+    let mut faces = Vec::new();
+    let mut square = |[a, b, c, d]: [u32; 4]| faces.extend([[a, b, c], [a, c, d]]);
+    for i in 0..n {
+        for j in 0..n {
+            square([at(0, i, j), at(0, i, j + 1), at(0, i + 1, j + 1), at(0, i + 1, j)]);
+            square([at(1, i, j), at(1, i + 1, j), at(1, i + 1, j + 1), at(1, i, j + 1)]);
+        }
+        square([at(0, i, 0), at(0, i + 1, 0), at(1, i + 1, 0), at(1, i, 0)]);
+        square([at(0, i + 1, n), at(0, i, n), at(1, i, n), at(1, i + 1, n)]);
+        square([at(0, 0, i + 1), at(0, 0, i), at(1, 0, i), at(1, 0, i + 1)]);
+        square([at(0, n, i), at(0, n, i + 1), at(1, n, i + 1), at(1, n, i)]);
+    }
+    MeshTree::new(TriMesh::try_new(vertices, faces).unwrap())
+}
+
+/// More pairs of triangles touch than are judged one by one, and one vertex somewhere is an ulp inside of the other body.
+#[test]
+fn crowds_that_touch_hide_no_overlap_by_an_ulp() {
+    for n in [4, 16, 24] {
+        let below = slab(n, |_, _| 0.0, 1.0);
+        assert_eq!(state(&below, &slab(n, |_, _| 1.0, 2.0)), StartState::Touching, "{n}");
+        for inside in [[1, 1], [n / 2, n / 2], [n - 1, n - 1], [1, n - 1], [n / 2, 1]] {
+            let dented = slab(n, |i, j| if [i, j] == inside { 1_f64.next_down() } else { 1.0 }, 2.0);
+            assert_ne!(state(&below, &dented), StartState::Touching, "{n} {inside:?}");
+            assert_ne!(state(&dented, &below), StartState::Touching, "{n} {inside:?}");
+        }
+    }
+}
