@@ -13,6 +13,8 @@ const MOST_LEFT: f64 = 3.3;
 const RESOLUTION: f64 = 1e-6;
 /// The width of a clearance in tolerances, where that is more than its accuracy.
 const WIDTH: f64 = 4.0;
+/// Times of a span of contact that are claimed, at most.
+const MOST_TIMES: u32 = 256;
 
 const fn at(time: f64) -> TimeSpan {
     TimeSpan { from: time, to: time }
@@ -166,7 +168,12 @@ pub fn clearance_claim(
     if !is_cut && upper - lower > width {
         return Err(Reason::Tolerance);
     }
-    if upper > 0.0 && clearance_fault(bodies, answer, scale.world_error).is_some() {
+    // Bodies that meet come as near as tolerances tell, whatever the accuracy of others.
+    if answer.status == ClearanceStatus::Contact && (lower > 0.0 || upper > WIDTH * scale.most) {
+        return Err(Reason::Distance);
+    }
+    let above = WIDTH * scale.most;
+    if upper > 0.0 && clearance_fault(bodies, answer, scale.world_error, above).is_some() {
         return Err(Reason::Witness);
     }
     // The least distance is not below `lower`: above the number before it.
@@ -180,6 +187,14 @@ pub fn clearance_claim(
     } else if upper == 0.0 && time > window.start() {
         claims.push(clear(time, 0.0));
     }
+    if upper == 0.0 {
+        // What they meet at later is not at this time: there they are as near as at a time of contact.
+        claims.push(Claim::Within {
+            span: at(time),
+            distance: MOST_LEFT * scale.most + scale.error,
+            triangles: Some([answer.triangle_a, answer.triangle_b]),
+        });
+    }
     claims.push(Claim::Within {
         // An upper end is that of the engine's own roundings. Bodies that meet share a point after the time of contact.
         span: TimeSpan { from: time, to: if upper > 0.0 { time } else { window.end() } },
@@ -190,7 +205,8 @@ pub fn clearance_claim(
 }
 
 /// What an answer of [`contact_spans`](crate::contact_spans) claims: clear spans are clear, and end near the minimum separation where
-/// a contact follows; spans of contact begin and end within the resolution of a time at which the bodies are within s + δ.
+/// a contact follows; spans of contact begin and end within the resolution of a time at which the bodies are within s + δ, and so do
+/// times within them: everywhere in spans of 256 resolutions and less, and at so many even steps of longer ones.
 ///
 /// # Errors
 /// As [`claim`].
@@ -225,14 +241,20 @@ pub fn spans_claim(
                 }
             }
             SpanStatus::Contact => {
-                for end in [span.from, span.to] {
-                    if end != window.start() && end != window.end() {
-                        claims.push(within(end - resolution, end + resolution, 1.0));
-                    }
-                }
+                let near = |time: f64| within(time - resolution, time + resolution, 1.0);
+                claims.extend(times_of(span, resolution).map(near));
             }
             SpanStatus::Undecided => {}
         }
     }
     Ok(Claim::All(claims))
+}
+
+/// The ends of a span of contact and times between them, no further apart than the resolution or in so many even steps.
+fn times_of(span: &ContactSpan, resolution: f64) -> impl Iterator<Item = f64> {
+    let ContactSpan { from, to, .. } = *span;
+    let length = to - from;
+    // A resolution of zero, or one that leaves no number of steps, is more than that many.
+    let steps = (1..MOST_TIMES).find(|&steps| length <= f64::from(steps) * resolution).unwrap_or(MOST_TIMES);
+    (0..=steps).map(move |k| if k == steps { to } else { from + length * (f64::from(k) / f64::from(steps)) })
 }

@@ -91,11 +91,13 @@ pub fn witness_fault(
     }
 }
 
-/// The same of a clearance: its points are on its triangles at its time, and as far apart as its upper end, up to `error`.
+/// The same of a clearance: its points are on its triangles at its time, and as far apart as its upper end, up to `error`, and up to `above`
+/// where they are less than that.
 pub(super) fn clearance_fault(
     bodies: &[Moving<'_>; 2],
     answer: &Clearance,
     error: f64,
+    above: f64,
 ) -> Option<&'static str> {
     let (numbers, points) = ([answer.triangle_a, answer.triangle_b], [answer.point_a, answer.point_b]);
     let inward = [answer.normal * -bodies[0].radius, answer.normal * bodies[1].radius];
@@ -111,6 +113,7 @@ pub(super) fn clearance_fault(
             return Some(names[1]);
         }
     }
-    let is_attained = points[0].distance(points[1]) <= answer.upper + 2.0 * error;
+    let between = points[0].distance(points[1]);
+    let is_attained = between <= answer.upper + 2.0 * error && answer.upper <= between + 2.0 * error + above;
     if is_attained { None } else { Some("clearance") }
 }
