@@ -16,6 +16,7 @@ mod robot;
 mod simulation;
 mod supervise;
 mod trajectory;
+mod verify;
 mod world;
 
 use pyo3::prelude::*;
@@ -45,6 +46,8 @@ mod _d2m {
     use crate::simulation::{Impulse, Segment, Simulation};
     #[pymodule_export]
     use crate::trajectory::{JointTrajectories, PoseTrajectories};
+    #[pymodule_export]
+    use crate::verify::{Verdict, verify};
     #[pymodule_export]
     use crate::world::{BodyId, FirstContact, PairContact, World};
 }

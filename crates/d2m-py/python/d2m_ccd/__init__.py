@@ -37,6 +37,7 @@ from ._d2m import (
     Spline,
     Tree,
     Undecided,
+    Verdict,
     World,
     batch,
     collide,
@@ -45,6 +46,7 @@ from ._d2m import (
     feature_text,
     proximities,
     time_of_contact,
+    verify,
 )
 from ._errors import InputError
 from ._records import EDGE, EXAMPLE_URDF, PROXIMITY, RESULT, Evidence, FeatureKind, Start, Status
@@ -88,6 +90,7 @@ __all__ = [
     "Status",
     "Tree",
     "Undecided",
+    "Verdict",
     "World",
     "batch",
     "collide",
@@ -96,4 +99,5 @@ __all__ = [
     "feature_text",
     "proximities",
     "time_of_contact",
+    "verify",
 ]

@@ -34,6 +34,7 @@ __all__ = [
     "Spline",
     "Tree",
     "Undecided",
+    "Verdict",
     "World",
     "batch",
     "collide",
@@ -42,6 +43,7 @@ __all__ = [
     "feature_text",
     "proximities",
     "time_of_contact",
+    "verify",
 ]
 
 @type_check_only
@@ -315,6 +317,22 @@ class Distance:
     @property
     def state(self) -> _State: ...
     def __float__(self) -> float: ...
+
+@final
+class Verdict:
+    @property
+    def status(self) -> Literal["verified", "refuted", "unproven"]: ...
+    @property
+    def time(self) -> float | None: ...
+    @property
+    def distance(self) -> tuple[float, float] | None: ...
+    @property
+    def triangles(self) -> tuple[int, int] | None: ...
+    @property
+    def reason(self) -> str | None: ...
+    @property
+    def clear_until(self) -> float | None: ...
+    def __bool__(self) -> bool: ...
 
 @final
 class BodyId:
@@ -602,3 +620,17 @@ def proximities(
     cone_slack: _Float = 0.0,
 ) -> NDArray[np.void]: ...
 def feature_text(kind: int, features: Sequence[int] | NDArray[np.uint32]) -> str: ...
+def verify(
+    a: _MeshLike,
+    b: _MeshLike,
+    answer: Answer,
+    motion_a: _MotionLike = None,
+    motion_b: _MotionLike = None,
+    *,
+    window: _Window = ...,
+    tolerance: _Float | None = None,
+    min_separation: _Float = 0.0,
+    solid: _Solids = None,
+    mode: _Mode = "accurate",
+    steps: int | None = None,
+) -> Verdict: ...
