@@ -10,6 +10,7 @@ mod motion;
 mod options;
 mod pose;
 mod query;
+mod questions;
 mod record;
 mod resting;
 mod robot;
@@ -36,6 +37,8 @@ mod _d2m {
     use crate::pose::Pose;
     #[pymodule_export]
     use crate::query::{contact_exists_py, time_of_contact_py};
+    #[pymodule_export]
+    use crate::questions::{Clearance, clearance_py, spans};
     #[pymodule_export]
     use crate::record::feature_text_py;
     #[pymodule_export]

@@ -319,6 +319,27 @@ class Distance:
     def __float__(self) -> float: ...
 
 @final
+class Clearance:
+    @property
+    def status(self) -> Literal["clear", "contact", "undecided"]: ...
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def point_a(self) -> _Doubles: ...
+    @property
+    def point_b(self) -> _Doubles: ...
+    @property
+    def normal(self) -> _Doubles: ...
+    @property
+    def triangle_a(self) -> int: ...
+    @property
+    def triangle_b(self) -> int: ...
+
+@final
 class Verdict:
     @property
     def status(self) -> Literal["verified", "refuted", "unproven"]: ...
@@ -575,6 +596,33 @@ def contact_exists(
     node_tests: int | None = None,
     time_limit: _Float | None = None,
 ) -> bool | None: ...
+def clearance(
+    a: _MeshLike,
+    b: _MeshLike,
+    motion_a: _MotionLike = None,
+    motion_b: _MotionLike = None,
+    *,
+    window: _Window = ...,
+    accuracy: _Float = 1e-6,
+    tolerance: _Float | None = None,
+    solid: _Solids = None,
+    node_tests: int | None = None,
+    time_limit: _Float | None = None,
+) -> Clearance: ...
+def spans(
+    a: _MeshLike,
+    b: _MeshLike,
+    motion_a: _MotionLike = None,
+    motion_b: _MotionLike = None,
+    *,
+    window: _Window = ...,
+    resolution: _Float | None = None,
+    tolerance: _Float | None = None,
+    min_separation: _Float = 0.0,
+    solid: _Solids = None,
+    node_tests: int | None = None,
+    time_limit: _Float | None = None,
+) -> list[tuple[float, float, Literal["clear", "contact", "undecided"]]]: ...
 def batch(
     a: _MeshLike,
     b: _MeshLike,

@@ -1,0 +1,178 @@
+//! How near two moving bodies come, and when they are clear of each other.
+
+use crate::arrays::vector;
+use crate::options::{QueryKeywords, window};
+use crate::query::{MovingPair, run};
+use d2m::bvh::{Clearance as Found, ClearanceOptions, ClearanceStatus, SpanStatus};
+use d2m::{ContactSpan, QueryOptions, clearance, contact_spans};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+/// The least distance of two bodies over a window: proven bounds, with a time and points that attain the upper one.
+///
+/// >>> import d2m_ccd
+/// >>> box = d2m_ccd.Tree("shape:box?x=0.5&y=0.5&z=0.5")
+/// >>> near = d2m_ccd.clearance(box, box, {"x": [0, 0, 3], "v": [0, 0, -1]})
+/// >>> near.status, near.lower <= 1.0 <= near.upper, round(near.time, 6)
+/// ('clear', True, 1.0)
+#[pyclass(frozen, module = "d2m_ccd")]
+pub(crate) struct Clearance {
+    found: Found,
+}
+
+#[pymethods]
+impl Clearance {
+    /// "clear": apart all the time. "contact": they meet. "undecided": the budget ended; the bounds hold all the same.
+    #[getter]
+    const fn status(&self) -> &'static str {
+        match self.found.status {
+            ClearanceStatus::Clear => "clear",
+            ClearanceStatus::Contact => "contact",
+            ClearanceStatus::Undecided => "undecided",
+        }
+    }
+
+    /// Proven: the distance is at least this at every time of the window.
+    #[getter]
+    const fn lower(&self) -> f64 {
+        self.found.lower
+    }
+
+    /// Proven: at `time` the distance is at most this.
+    #[getter]
+    const fn upper(&self) -> f64 {
+        self.found.upper
+    }
+
+    /// A time at which the distance is at most `upper`.
+    #[getter]
+    const fn time(&self) -> f64 {
+        self.found.time
+    }
+
+    /// The point on A at `time`, world frame.
+    #[getter]
+    fn point_a<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        vector(py, &self.found.point_a.to_array())
+    }
+
+    /// The point on B at `time`, world frame.
+    #[getter]
+    fn point_b<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        vector(py, &self.found.point_b.to_array())
+    }
+
+    /// Unit direction from A to B at `time`, world frame.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        vector(py, &self.found.normal.to_array())
+    }
+
+    /// The triangle of A that holds `point_a`.
+    #[getter]
+    const fn triangle_a(&self) -> u32 {
+        self.found.triangle_a
+    }
+
+    /// The triangle of B that holds `point_b`.
+    #[getter]
+    const fn triangle_b(&self) -> u32 {
+        self.found.triangle_b
+    }
+
+    fn __repr__(&self) -> String {
+        let Found { lower, upper, time, .. } = self.found;
+        format!("Clearance('{}', bounds=[{lower:?}, {upper:?}], time={time:?})", self.status())
+    }
+}
+
+/// How near do two moving bodies come in a window, and when?
+///
+/// Bodies, motions and keywords as of `time_of_contact`; `accuracy`: the bounds are at most this part of the upper one apart (or four
+/// tolerances).
+///
+/// Raises `InputError` as `time_of_contact`, and for an accuracy that is not positive. Returns a `Clearance`.
+///
+/// >>> import d2m_ccd
+/// >>> box = d2m_ccd.Tree("shape:box?x=0.5&y=0.5&z=0.5")
+/// >>> d2m_ccd.clearance(box, box, {"x": [0, 0, 3], "v": [0, 0, -4]}).status
+/// 'contact'
+#[pyfunction(name = "clearance")]
+#[pyo3(signature = (a, b, motion_a=None, motion_b=None, *, window=(0.0, 1.0), accuracy=1e-6, tolerance=None, solid=None, node_tests=None, time_limit=None))]
+#[expect(clippy::too_many_arguments, reason = "keywords")]
+pub(crate) fn clearance_py(
+    py: Python<'_>,
+    a: &Bound<'_, PyAny>,
+    b: &Bound<'_, PyAny>,
+    motion_a: Option<&Bound<'_, PyAny>>,
+    motion_b: Option<&Bound<'_, PyAny>>,
+    window: (f64, f64),
+    accuracy: f64,
+    tolerance: Option<f64>,
+    solid: Option<&Bound<'_, PyAny>>,
+    node_tests: Option<u64>,
+    time_limit: Option<f64>,
+) -> PyResult<Clearance> {
+    let keywords =
+        QueryKeywords { tolerance, min_separation: 0.0, mode: "accurate", node_tests, time_limit };
+    let options = keywords.options()?;
+    let window = self::window(window)?;
+    let pair = MovingPair::new([a, b], [motion_a, motion_b], solid)?;
+    let [a, b] = pair.moving();
+    let ask = |options: &QueryOptions| {
+        let mut wanted = ClearanceOptions::default().with_accuracy(accuracy).with_budget(options.budget);
+        if let Some(tolerance) = options.tolerance {
+            wanted = wanted.with_tolerance(tolerance);
+        }
+        Ok(clearance(a, b, window, &wanted)?)
+    };
+    let found = run(py, &options, ask, |found: &Found| found.status != ClearanceStatus::Undecided)?;
+    Ok(Clearance { found })
+}
+
+/// In which spans of a window are two moving bodies proven clear of each other, and in which in contact?
+///
+/// Bodies, motions and keywords as of `time_of_contact`; `resolution`: a time, by default 1e-6 of the window: clear spans that are shorter may
+/// be within a span of contact.
+///
+/// Returns a list of tuples (from, to, status), joined, in order, over all of the window; status is "clear", "contact" or "undecided".
+///
+/// Raises `InputError` as `time_of_contact`, and for a resolution that is not positive.
+///
+/// >>> import d2m_ccd
+/// >>> box = d2m_ccd.Tree("shape:box?x=0.5&y=0.5&z=0.5")
+/// >>> [status for _, _, status in d2m_ccd.spans(box, box, {"x": [0, 0, 3], "v": [0, 0, -6]})]
+/// ['clear', 'contact', 'clear']
+#[pyfunction]
+#[pyo3(signature = (a, b, motion_a=None, motion_b=None, *, window=(0.0, 1.0), resolution=None, tolerance=None, min_separation=0.0, solid=None, node_tests=None, time_limit=None))]
+#[expect(clippy::too_many_arguments, reason = "keywords")]
+pub(crate) fn spans(
+    py: Python<'_>,
+    a: &Bound<'_, PyAny>,
+    b: &Bound<'_, PyAny>,
+    motion_a: Option<&Bound<'_, PyAny>>,
+    motion_b: Option<&Bound<'_, PyAny>>,
+    window: (f64, f64),
+    resolution: Option<f64>,
+    tolerance: Option<f64>,
+    min_separation: f64,
+    solid: Option<&Bound<'_, PyAny>>,
+    node_tests: Option<u64>,
+    time_limit: Option<f64>,
+) -> PyResult<Vec<(f64, f64, &'static str)>> {
+    let keywords = QueryKeywords { tolerance, min_separation, mode: "accurate", node_tests, time_limit };
+    let options = keywords.options()?;
+    let window = self::window(window)?;
+    let pair = MovingPair::new([a, b], [motion_a, motion_b], solid)?;
+    let [a, b] = pair.moving();
+    let ask = |options: &QueryOptions| Ok(contact_spans(a, b, window, options, resolution)?);
+    let is_decided =
+        |spans: &Vec<ContactSpan>| spans.iter().all(|span| span.status != SpanStatus::Undecided);
+    let found = run(py, &options, ask, is_decided)?;
+    let word = |status| match status {
+        SpanStatus::Clear => "clear",
+        SpanStatus::Contact => "contact",
+        SpanStatus::Undecided => "undecided",
+    };
+    Ok(found.into_iter().map(|span| (span.from, span.to, word(span.status))).collect())
+}
