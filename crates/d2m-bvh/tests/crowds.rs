@@ -20,8 +20,9 @@ fn cone(n: u32, up: f64) -> MeshTree {
     MeshTree::new(Surface::cone(n, 1.0, up).into_mesh(TriMesh::try_new))
 }
 
-/// Bodies that touch at the start: 2¹² steps for each part of the decision whether they do, and few for the search.
-const MOST_AT_THE_START: u64 = (1 << 14) + 2000;
+/// Bodies that touch at the start: 2¹² steps for each part of the decision whether they do, a plane between the whole bodies among them, and few
+/// for the search.
+const MOST_AT_THE_START: u64 = 1 << 15;
 
 /// Slivers from the origin in all directions of a half-space; their ends deviate from it by up to a thousandth.
 fn spikes(random: &mut KnuthRandom, n: u32, up: f64) -> MeshTree {
