@@ -71,3 +71,19 @@ fn crowds_that_touch_hide_no_overlap_by_an_ulp() {
         }
     }
 }
+
+/// Cubes that overlap in all of a face: no triangle of one crosses one of the other, since the other faces lie in common planes.
+#[test]
+fn flush_cubes_that_overlap_by_little_do() {
+    let cube = |x: f64| {
+        let corner = |i: u32| DVec3::new(x + f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let halves = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
+        MeshTree::new(TriMesh::try_new((0..8).map(corner).collect(), halves.collect()).unwrap())
+    };
+    for exponent in [1, 4, 8, 12, 20, 30] {
+        let (a, b) = (cube(0.0), cube(1.0 - 2_f64.powi(-exponent)));
+        assert_eq!([state(&a, &b), state(&b, &a)], [StartState::Overlapping; 2], "2^-{exponent}");
+    }
+    assert_eq!(state(&cube(0.0), &cube(1.0)), StartState::Touching);
+}

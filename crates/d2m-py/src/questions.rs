@@ -113,8 +113,7 @@ pub(crate) fn clearance_py(
     node_tests: Option<u64>,
     time_limit: Option<f64>,
 ) -> PyResult<Clearance> {
-    let keywords =
-        QueryKeywords { tolerance, min_separation: 0.0, mode: "accurate", node_tests, time_limit };
+    let keywords = QueryKeywords { tolerance, min_separation: 0.0, mode: "accurate", node_tests, time_limit };
     let options = keywords.options()?;
     let window = self::window(window)?;
     let pair = MovingPair::new([a, b], [motion_a, motion_b], solid)?;
@@ -166,8 +165,7 @@ pub(crate) fn spans(
     let pair = MovingPair::new([a, b], [motion_a, motion_b], solid)?;
     let [a, b] = pair.moving();
     let ask = |options: &QueryOptions| Ok(contact_spans(a, b, window, options, resolution)?);
-    let is_decided =
-        |spans: &Vec<ContactSpan>| spans.iter().all(|span| span.status != SpanStatus::Undecided);
+    let is_decided = |spans: &Vec<ContactSpan>| spans.iter().all(|span| span.status != SpanStatus::Undecided);
     let found = run(py, &options, ask, is_decided)?;
     let word = |status| match status {
         SpanStatus::Clear => "clear",

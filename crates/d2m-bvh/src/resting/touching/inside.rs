@@ -20,9 +20,9 @@ pub(super) fn share_a_point_inside(
     pairs: &[TouchingPair],
     meter: &mut Meter,
 ) -> Result<bool, Exhausted> {
-    for placed in points(pairs) {
+    let about_faces = points(pairs).map(|placed| placed * scene.unit + scene.trees[1].center());
+    for point in about_faces.chain(middle_of_boxes(&bodies)) {
         // The point of B's own frame, whatever it is: exact from here on.
-        let point = placed * scene.unit + scene.trees[1].center();
         let Ok(mesh) = TriMesh::point(point) else { continue };
         let tree = MeshTree::new(mesh);
         let point = Posed::new(&tree, bodies[1].pose);
@@ -44,6 +44,21 @@ fn points(pairs: &[TouchingPair]) -> impl Iterator<Item = DVec3> {
             .into_iter()
             .flat_map(move |depth| [-depth, depth].map(|depth| middle + normal * (depth * size)))
     })
+}
+
+/// The middle of what the bounding boxes of both share, in B's frame: where boxes overlap by little in all of a face, no point about the
+/// middles of their triangles is inside of both.
+fn middle_of_boxes(bodies: &[Posed<'_>; 2]) -> Option<DVec3> {
+    let [a, b] = bodies.map(|body| body.pose);
+    let back = |p: DVec3| b.rotation.conjugate() * (a.transform_point(p) - b.translation) + b.at;
+    let vertices = |k: usize| bodies[k].body.mesh().vertices().iter();
+    let bounds = |points: &mut dyn Iterator<Item = DVec3>| {
+        points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+    };
+    let (low_a, high_a) = bounds(&mut vertices(0).map(|&p| back(p)));
+    let (low_b, high_b) = bounds(&mut vertices(1).copied());
+    let (low, high) = (low_a.max(low_b), high_a.min(high_b));
+    (low.cmple(high).all() && (high - low).is_finite()).then(|| low * 0.5 + high * 0.5)
 }
 
 /// Is the point proven to be in the solid, and not on its surface?
