@@ -47,6 +47,12 @@ pub(crate) fn start_word(start: StartState) -> &'static str {
     }
 }
 
+/// The same in JSON, whose words are those of the formats: bodies that are not proven to touch, with a direction along which they part, are
+/// `overlapping`, and `start_proven` says whether that is more than a word.
+pub(crate) fn start_in_json(start: StartState) -> &'static str {
+    start_word(if start == StartState::Undecided { StartState::Overlapping } else { start })
+}
+
 /// Microseconds to three digits after the point: clocks have no more.
 pub(crate) fn microseconds(time: Duration) -> f64 {
     time.as_nanos() as f64 / 1e3
@@ -253,7 +259,9 @@ pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer, further: &Furth
     if let Some(departure) = &further.departure {
         put("left", json!(departure.left));
     }
-    put("start", json!(start_word(further.start(&answer.verdict))));
+    let start = further.start(&answer.verdict);
+    put("start", json!(start_in_json(start)));
+    put("start_proven", json!(start != StartState::Undecided));
     match &answer.verdict {
         TimeOfContact::Separated => {}
         TimeOfContact::Undecided { clear_until } => put("toc", json!(clear_until)),

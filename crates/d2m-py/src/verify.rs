@@ -101,7 +101,8 @@ impl From<Found> for Verdict {
 /// >>> answer = d2m_ccd.time_of_contact(box, box, falling)
 /// >>> d2m_ccd.verify(box, box, answer, falling).status
 /// 'verified'
-/// >>> d2m_ccd.verify(box, box, answer, {"x": [0, 0, 2.5], "v": [0, 0, -4], "w": [0, 1, 0]}).status
+/// >>> separated = d2m_ccd.time_of_contact(box, box, {"x": [9, 0, 0]})
+/// >>> d2m_ccd.verify(box, box, separated, falling).status
 /// 'refuted'
 #[pyfunction]
 #[pyo3(signature = (a, b, answer, motion_a=None, motion_b=None, *, window=(0.0, 1.0), tolerance=None, min_separation=0.0, solid=None, mode="accurate", steps=None))]

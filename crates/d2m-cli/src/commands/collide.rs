@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::print_answer;
 use crate::posed::PosedBodies;
-use crate::report::{duration, microseconds, start_word, vector};
+use crate::report::{duration, microseconds, start_in_json, start_word, vector};
 use d2m::bvh::{Solid, StartState, collide, distance, try_colliding_pair};
 use serde_json::json;
 use std::fmt::Write;
@@ -35,7 +35,8 @@ pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
     let normal = met.as_ref().filter(|met| met.state == StartState::Touching).map(|met| met.normal);
     print_answer(&if arguments.posed.json {
         let object = json!({
-            "start": start_word(state),
+            "start": start_in_json(state),
+            "start_proven": state != StartState::Undecided,
             "normal": normal.map(|normal| normal.to_array()),
             "status": if is_contact { "contact" } else { "separated" },
             "triangle_a": triangles.map(|[a, _]| a),

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::{print_answer, short};
 use crate::posed::PosedBodies;
-use crate::report::{duration, microseconds, start_word, vector};
+use crate::report::{duration, microseconds, start_in_json, start_word, vector};
 use d2m::bvh::{Distance, Solid, StartState, distance};
 use serde_json::json;
 use std::fmt::Write;
@@ -64,8 +64,9 @@ fn to_json(bodies: &PosedBodies, solid: Solid, found: &Distance, took: Duration)
     let status = if found.state == StartState::Apart { "separated" } else { "contact" };
     let object = json!({
         "status": status,
-        "state": start_word(found.state),
-        "start": start_word(found.state),
+        "state": start_in_json(found.state),
+        "start": start_in_json(found.state),
+        "start_proven": found.state != StartState::Undecided,
         "distance": found.value,
         "lower": found.lower,
         "upper": found.upper,

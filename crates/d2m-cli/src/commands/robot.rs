@@ -148,7 +148,7 @@ fn json(
             put("point", json!(contact.point_a.to_array()));
             put("normal", json!(contact.normal.to_array()));
             put("evidence", json!(contact.evidence.to_string()));
-            put("start", json!(crate::report::start_word(contact.start)));
+            put("start", json!(crate::report::start_in_json(contact.start)));
         }
         PathAnswer::Free { .. } => {}
     }
