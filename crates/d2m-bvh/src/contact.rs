@@ -35,7 +35,7 @@ pub enum StartState {
     /// The surfaces do not cross and one body lies inside the other (only with `Solid::Filled`).
     Contained,
     /// The surfaces are not proven apart, no direction is found along which they part, and no point inside of both: a peg that fits its
-    /// hole exactly, say, or an overlap by less than rounding can tell.
+    /// hole exactly, say, or an overlap within rounding.
     Undecided,
 }
 

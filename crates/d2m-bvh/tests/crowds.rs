@@ -87,7 +87,7 @@ fn fans_meet_at_their_apexes() {
 }
 
 /// One apex passes above the other: all pairs come near at the same time and none meets. Only the plane between the two
-/// crowds tells, over the whole span.
+/// crowds separates them, over the whole span.
 #[test]
 fn fans_pass_each_other() {
     for n in [400, 1500] {

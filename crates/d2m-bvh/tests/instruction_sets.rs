@@ -7,7 +7,7 @@ use d2m_bvh::{
 };
 use d2m_motion::RigidMotion;
 
-/// Every answer to every scene, as text that tells all bits.
+/// Every answer to every scene, as text that shows all bits.
 fn answers() -> Vec<String> {
     let mut found = vec![];
     for scene in scenes::all() {

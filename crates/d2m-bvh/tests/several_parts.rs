@@ -107,7 +107,7 @@ fn budgets_hold_for_containment() {
     assert_eq!(collide_within(p, q, Solid::Filled, &Budget::UNLIMITED).unwrap(), Some(false));
 }
 
-/// All triangles of a body that is one point as far as rounding can tell.
+/// All triangles of a body that is one point up to rounding.
 #[test]
 fn all_pairs_of_a_body_like_a_point() {
     let p = DVec3::new(-128.0, 256.0, 0.0);

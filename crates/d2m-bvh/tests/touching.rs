@@ -1,4 +1,4 @@
-//! Touching told from overlapping: planted contacts with known normals, exact numbers an ulp apart and an ulp in, twins.
+//! Touching distinguished from overlapping: planted contacts with known normals, exact numbers an ulp apart and an ulp in, twins.
 
 use d2m_bvh::{
     Distance, Evidence, MeshTree, Moving, Posed, Proximity, QueryOptions, Solid, StartState, TriMesh, Window,
@@ -388,7 +388,7 @@ fn solids_inside_out() {
     }
 }
 
-/// What holds at the start of moving bodies: lifted, slid, turned away; with `Start::Leave` the way they begin is told, too.
+/// What holds at the start of moving bodies: lifted, slid, turned away; with `Start::Leave` the way they begin is reported, too.
 #[test]
 fn moving_starts_are_judged() {
     let cube = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5));

@@ -64,7 +64,7 @@ impl Partial {
     }
 }
 
-/// A number that tells inputs apart: the bytes of the files and the options that change answers (FNV-1a).
+/// A number that differs for different inputs: the bytes of the files and the options that change answers (FNV-1a).
 fn fingerprint(arguments: &BatchArguments) -> Result<u64, Failure> {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut add = |bytes: &[u8]| {

@@ -11,7 +11,7 @@ use d2m_bvh::{DistanceOptions, PairCache, Posed, StartState, distance_within};
 use glam::{DMat3, DVec3};
 
 /// Bodies that touch are moved this far apart before anything flies, of their size or their distance from the origin if that is more:
-/// 2⁻³⁶, of which a query can still tell a half with a tolerance of a sixteenth of it, 2⁻⁴¹.
+/// 2⁻³⁶, of which a query still resolves a half with a tolerance of a sixteenth of it, 2⁻⁴¹.
 const APART: f64 = 1.0 / (1u64 << 36) as f64;
 /// How far a body is moved on trial, of the same, to see where it can part: 2⁻²⁰.
 const TRIAL: f64 = 1.0 / (1u64 << 20) as f64;

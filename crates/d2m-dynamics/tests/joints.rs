@@ -69,7 +69,7 @@ fn a_double_pendulum_keeps_its_joints_and_its_energy() {
     assert_eq!(threads(1), threads(2));
 }
 
-/// Twenty links that hang from one end and swing; spherical and fixed ones.
+/// A chain of twenty links, its first one held, that swings; spherical and fixed ones.
 #[test]
 fn a_chain_of_twenty_links_holds_together() {
     for kind in [JointKind::Spherical, JointKind::Fixed] {

@@ -256,7 +256,7 @@ impl Joint {
 
 /// A joint over a span of time, on its own.
 impl Joint {
-    /// As [`Joint::placed`] from one time to another, with the middle of the span told from all of it. Of a value that may jump
+    /// As [`Joint::placed`] from one time to another, with the middle of the span apart from all of it. Of a value that may jump
     /// inside the span no rate is known.
     pub(crate) fn over(&self, lo: f64, hi: f64) -> SpanMotion {
         let data = &*self.0;

@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3};
 
 /// Sides of the prism: it reaches 1/cos(π/96) − 1 = 0.054 % of the radius beyond the cylinder.
 const SIDES: usize = 96;
-/// How much the corners are moved outward beyond that, which is far more than sine, cosine and products round.
-const OUTWARD: f64 = 1.0 + 1e-12;
+/// How much the corners are moved outward beyond that: 2⁻⁴⁰, where sine, cosine and products round by a few 2⁻⁵² each.
+const OUTWARD: f64 = 1.0 + 4096.0 * f64::EPSILON;
 
 /// A prism about z that encloses a cylinder, and how far it reaches beyond it.
 #[derive(Debug)]

@@ -9,8 +9,9 @@ use glam::{DMat3, DVec3};
 const ROUNDINGS: f64 = 32.0 * f64::EPSILON;
 /// Sums and products of non-negative bounds, rounded up: fewer than 32 of them.
 const UP: f64 = 1.0 + 16.0 * f64::EPSILON;
-/// Squares of the sine between two edges that count as parallel: the axis across them adds nothing then.
-const PARALLEL: f64 = 1e-6;
+/// Square of the sine below which the axis across two edges is left out: 2⁻²⁰. One box turned by that angle, 2⁻¹⁰, has an edge
+/// parallel to one of the other, and faces separate such boxes; so the gap that is found is less by 2⁻¹⁰ of the radius at most.
+const LEAST_SINE_SQUARED: f64 = 1.0 / 1_048_576.0;
 
 /// A box over a span of time, in the frame that it is seen from. Its center is at c + τv at the time τ from the middle of the
 /// span, a point of it at R(τ)e from there; what that leaves out is within `blur`.
@@ -117,7 +118,7 @@ impl SweptBox {
         for i in 0..3 {
             for j in 0..3 {
                 let square = 1.0 - between.col(j)[i] * between.col(j)[i];
-                if square < PARALLEL {
+                if square < LEAST_SINE_SQUARED {
                     continue;
                 }
                 let n = self.axes.col(i).cross(other.axes.col(j)) / square.sqrt();
@@ -197,7 +198,7 @@ mod tests {
         }
     }
 
-    /// The largest gap of two boxes along any of the fifteen directions that tell boxes apart: above zero exactly when they are.
+    /// The largest gap of two boxes along any of the fifteen directions that can separate boxes: above zero exactly when they are.
     fn gap(a: &[DVec3], b: &[DVec3]) -> f64 {
         let edges = |of: &[DVec3]| [of[1] - of[0], of[2] - of[0], of[4] - of[0]].map(DVec3::normalize);
         let (ea, eb) = (edges(a), edges(b));
@@ -211,9 +212,9 @@ mod tests {
     }
 
     #[test]
-    fn boxes_that_are_told_apart_are_so_at_all_times() {
+    fn boxes_proven_apart_are_so_at_all_times() {
         let mut random = Random(11);
-        let (mut told, mut missed) = (0, 0);
+        let (mut proven, mut missed) = (0, 0);
         for round in 0..20_000 {
             let (a, b) = (Flying::random(&mut random), Flying::random(&mut random));
             let separation = [0.0, 0.1][round % 2];
@@ -226,7 +227,7 @@ mod tests {
             let least = times.map(|t| gap(&a.placed(t), &b.placed(t))).fold(f64::INFINITY, f64::min);
             // A gap along a direction is not more than the distance.
             if answer == Sweep::Apart {
-                told += 1;
+                proven += 1;
                 assert!(least > 0.0, "round {round}: {least:e}");
                 if separation > 0.0 {
                     // Corners to corners bound the distance from above.
@@ -242,7 +243,7 @@ mod tests {
                 missed += 1;
             }
         }
-        assert!(told > 4000 && missed < told, "{told} {missed}");
+        assert!(proven > 4000 && missed < proven, "{proven} {missed}");
     }
 
     /// The same on the edge: a box that comes as near as the separation at the end of the span, and one that stays a hair away.

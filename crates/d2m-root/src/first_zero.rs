@@ -86,7 +86,7 @@ pub fn first_zero_of(
 ///     }
 /// };
 /// assert_eq!(evidence(0.25), ZeroEvidence::Unique); // crosses zero at 0.5
-/// assert_eq!(evidence(0.0), ZeroEvidence::Undecided); // touches it at 1: no sign tells a double root from a near miss
+/// assert_eq!(evidence(0.0), ZeroEvidence::Undecided); // touches it at 1: signs do not distinguish a double root from a near miss
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]

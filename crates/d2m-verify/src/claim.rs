@@ -204,8 +204,8 @@ pub enum Reason {
     /// No triangles were found to be near.
     #[error("the claimed meeting was not found")]
     NoMeeting,
-    /// A filled surface does not close, or no ray tells inside from outside.
-    #[error("inside and outside of a solid could not be told apart")]
+    /// A filled surface does not close, or no ray distinguishes inside from outside.
+    #[error("inside and outside of a solid could not be distinguished")]
     Solid,
     /// A tolerance larger than what was asked for and what rounding needs would make any answer right.
     #[error("the tolerance of the answer is larger than what was asked for")]

@@ -15,7 +15,7 @@ const RAYS: [DVec3; 4] = [
 ];
 
 /// Does a body hold a part of the other one, at a time at which the surfaces share no point? If neither does, the solids share none until
-/// the surfaces do. `None`: a filled surface does not close, or no ray tells.
+/// the surfaces do. `None`: a filled surface does not close, or no ray decides.
 pub(crate) fn is_held(bodies: &[Body<'_>; 2], now: &Instant) -> Option<bool> {
     let mut found = Some(false);
     for holder in 0..2 {
@@ -39,7 +39,7 @@ pub(crate) fn is_held(bodies: &[Body<'_>; 2], now: &Instant) -> Option<bool> {
     found
 }
 
-/// Is the point (from the mesh's center) in the solid? `None`: the ray does not tell.
+/// Is the point (from the mesh's center) in the solid? `None`: the ray does not decide.
 fn contains(mesh: &Mesh, p: IntervalVec3, ray: DVec3) -> Option<bool> {
     let (mut winding, mut count) = (0, 0);
     let mut stack = vec![0];

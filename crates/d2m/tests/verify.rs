@@ -78,11 +78,11 @@ fn lies_are_not_verified() {
     for index in 0..SCENES {
         let answered = Answered::draw(index);
         let TimeOfContact::Contact(contact) = answered.answer else { continue };
-        let mut told = vec![("separated", TimeOfContact::Separated)];
+        let mut claims = vec![("separated", TimeOfContact::Separated)];
         let mut edited = |name, edit: &dyn Fn(&mut Contact)| {
             let mut lie = contact;
             edit(&mut lie);
-            told.push((name, TimeOfContact::Contact(lie)));
+            claims.push((name, TimeOfContact::Contact(lie)));
         };
         let apart = contact.start == StartState::Apart;
         if apart {
@@ -113,7 +113,7 @@ fn lies_are_not_verified() {
             edited("reversed", &|lie| lie.time_hi = lie.time_lo.next_down());
             edited("before", &|lie| lie.time_lo = answered.window.start() - 1.0);
         }
-        for (name, lie) in told {
+        for (name, lie) in claims {
             let verdict = answered.verdict(&lie);
             lies += 1;
             refuted += u32::from(matches!(verdict, Verdict::Refuted { .. }));

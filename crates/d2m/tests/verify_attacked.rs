@@ -1,4 +1,4 @@
-//! Lies that were proven: found by an adversary. Each is told of an honest answer, which is proven.
+//! Lies that were proven: found by an adversary. Each is an edit of an honest answer, which is proven.
 #![cfg(feature = "verify")]
 
 use d2m::bvh::ClearanceStatus;

@@ -113,7 +113,7 @@ pub fn try_colliding_pair(a: Posed<'_>, b: Posed<'_>) -> Result<Option<[u32; 2]>
 pub fn colliding_pairs(a: Posed<'_>, b: Posed<'_>) -> Result<Vec<[u32; 2]>, QueryError> {
     let scene = Scene::try_new(a, b)?;
     let found = search_all(&scene, Wanted { most: usize::MAX, counts: may_touch });
-    // The first triangle of a body that is one point as far as rounding can tell stands for all.
+    // The first triangle of a body that is one point up to rounding stands for all.
     let all = |body: usize, triangle: u32| match scene.trees[body].mesh().triangle_count() as u32 {
         count if scene.is_point_like(body) => 0..count,
         _ => triangle..triangle + 1,

@@ -4,6 +4,8 @@ use std::collections::VecDeque;
 
 /// Iterates that are looked back on.
 const WINDOW: usize = 6;
+/// A step of which a smaller part is left, without those before, is one of them up to rounding: 2⁻²⁶, the root of what doubles resolve.
+const LEAST_REST: f64 = 1.0 / 67_108_864.0;
 
 /// What is known of a map s → G(s) whose fixed point is sought (Anderson 1965).
 #[derive(Debug, Default)]
@@ -50,7 +52,7 @@ impl Anderson {
                 column.push(part);
             }
             let length = dot(&rest, &rest).sqrt();
-            let counts = length > 1e-8 * dot(step, step).sqrt();
+            let counts = length > LEAST_REST * dot(step, step).sqrt();
             column.push(if counts { length } else { 0.0 });
             for r in &mut rest {
                 *r = if counts { *r / length } else { 0.0 };

@@ -46,6 +46,9 @@ impl System {
 
 /// Sweeps after which the residual is judged, which costs about as much as one.
 const BETWEEN: u32 = 6;
+/// Least part of the product of its diagonal that the determinant of the two tangents has: 2⁻²⁶. The difference of two products
+/// as large as that is rounded by 2⁻⁵² of them, so half of its digits are left.
+const LEAST_DETERMINANT: f64 = 1.0 / 67_108_864.0;
 
 /// The impulse along the tangents that stops sliding, or the one of Coulomb's length nearest to it.
 #[inline]
@@ -75,7 +78,7 @@ fn slide(bodies: &mut [SolverBody], block: &Block, friction: f64, own: &mut [f64
 fn stopping(block: &Block, rates: [f64; 2]) -> Option<[f64; 2]> {
     let [tt, tu, uu] = block.sliding;
     let determinant = tt * uu - tu * tu;
-    (determinant > 1e-9 * tt * uu).then(|| {
+    (determinant > LEAST_DETERMINANT * tt * uu).then(|| {
         [(uu * rates[0] - tu * rates[1]) / determinant, (tt * rates[1] - tu * rates[0]) / determinant]
     })
 }

@@ -42,7 +42,7 @@ pub(crate) struct Options {
     /// Answers and judges one scene again that a run has kept.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["minutes", "family", "only"])]
     case: Option<std::path::PathBuf>,
-    /// Lies that the verifier is told, in the family of this name: none may be verified.
+    /// False claims put to the verifier, in the family of this name: none may be verified.
     #[arg(long, default_value_t = 2000)]
     lies: usize,
     /// A deliberate fault, to see it found: `late=1e-6` or `miss`.

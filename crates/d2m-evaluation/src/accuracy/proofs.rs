@@ -18,7 +18,7 @@ pub(super) enum Judgement {
     Refuted(String),
     /// It contradicts itself, or promises less than it should.
     Contradicts(String),
-    /// The verifier could not tell.
+    /// The verifier could not decide.
     Open(Reason),
 }
 
@@ -130,9 +130,9 @@ fn best_of(mut work: impl FnMut()) -> f64 {
 
 /// Hard small scenes, in every mode and with a minimum separation; and so many lies about them as are wanted.
 fn scenes(task: &Task, outcome: &mut Outcome) {
-    let mut lies = Lies { random: Random::new(task.seed), told: 0, refuted: 0, wanted: task.lies };
+    let mut lies = Lies { random: Random::new(task.seed), tried: 0, refuted: 0, wanted: task.lies };
     let mut index = 0;
-    while index < task.count as u64 || lies.told < lies.wanted {
+    while index < task.count as u64 || lies.tried < lies.wanted {
         let tree =
             |surface: &d2m_testing::Surface| MeshTree::new(surface.clone().into_mesh(TriMesh::try_new));
         let scene = SmallScene::draw(task.seed, index, |surface| tree(surface).is_watertight());
@@ -154,7 +154,7 @@ fn scenes(task: &Task, outcome: &mut Outcome) {
         if let TimeOfContact::Contact(contact) = &answer {
             for (name, lie) in lies.about(contact) {
                 let verdict = verify(&lie);
-                lies.told += 1;
+                lies.tried += 1;
                 lies.refuted += usize::from(matches!(verdict, Verdict::Refuted { .. }));
                 if matches!(verdict, Verdict::Verified { .. }) {
                     outcome
@@ -165,12 +165,12 @@ fn scenes(task: &Task, outcome: &mut Outcome) {
         }
         index += 1;
     }
-    println!("  {} lies told, {} refuted, the others not proven", lies.told, lies.refuted);
+    println!("  {} lies tried, {} refuted, the others not proven", lies.tried, lies.refuted);
 }
 
 struct Lies {
     random: Random,
-    told: usize,
+    tried: usize,
     refuted: usize,
     wanted: usize,
 }
@@ -179,7 +179,7 @@ impl Lies {
     /// What is certainly false of this contact.
     fn about(&mut self, contact: &Contact) -> Vec<(&'static str, TimeOfContact)> {
         let mut lies = Vec::new();
-        if self.told >= self.wanted {
+        if self.tried >= self.wanted {
             return lies;
         }
         let mut edited = |name, edit: &dyn Fn(&mut Contact)| {
@@ -190,7 +190,7 @@ impl Lies {
         if contact.start == StartState::Apart {
             for exponent in [-9, -8, -7, -6, -5, -4, -3] {
                 let later = contact.time_lo + 10f64.powi(exponent) * self.random.range(1.0, 10.0);
-                // As far apart then as the tolerance cannot tell: no lie.
+                // As far apart then as the tolerance does not resolve: no lie.
                 if contact.closing_speed * (later - contact.time_lo) > contact.tolerance {
                     edited("a later time", &|lie| {
                         (lie.time_lo, lie.time_hi) = (later, lie.time_hi.max(later));

@@ -278,7 +278,7 @@ fn crossing(
                 }
                 let mid = lo + step * (f_lo / (f_lo - f_hi));
                 let Ok(f) = signed(mid) else {
-                    // As good as on the root: take the nearest times on either side that tell their signs.
+                    // As good as on the root: take the nearest times on either side where their signs are certain.
                     for part in [1e-9, 1e-6, 1e-3] {
                         let reach = step * part.into();
                         if let (Ok(before), Ok(after)) = (signed(mid - reach), signed(mid + reach))

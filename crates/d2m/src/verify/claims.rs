@@ -168,7 +168,7 @@ pub fn clearance_claim(
     if !is_cut && upper - lower > width {
         return Err(Reason::Tolerance);
     }
-    // Bodies that meet come as near as tolerances tell, whatever the accuracy of others.
+    // Bodies that meet come as near as tolerances resolve, whatever the accuracy of others.
     if answer.status == ClearanceStatus::Contact && (lower > 0.0 || upper > WIDTH * scale.most) {
         return Err(Reason::Distance);
     }

@@ -111,7 +111,7 @@ fn budgets_end_in_bounds_that_hold() {
     assert!(ended > 100 && complete > 100, "{ended} {complete}");
 }
 
-/// Sheets that are closer than rounding can tell, and two triangles that cross beside them: the crowd of pairs that touch does
+/// Sheets that are closer than rounding resolves, and two triangles that cross beside them: the crowd of pairs that touch does
 /// not hide those that cross.
 #[test]
 fn crowds_that_touch_hide_no_crossing() {
@@ -254,7 +254,7 @@ fn crowds_without_a_common_plane_fall_apart() {
         let mut least = f64::INFINITY;
         for p in &a {
             for q in &b {
-                // Along the line of the reported points, and exactly where that does not tell.
+                // Along the line of the reported points, and exactly where that does not decide.
                 if !crate::resting::node_pair::gap_exceeds(found.normal, p, q, least) {
                     least = least.min(triangle_distance(p, q).upper);
                 }

@@ -13,7 +13,7 @@ use glam::DVec3;
 /// Sums and products of up to ten non-negative terms round by 2⁻⁵³ each; 2⁻⁴⁰ covers them all.
 const SUM_ROUNDING: f64 = 1.0 + 1.0 / 1_099_511_627_776.0;
 
-/// A body whose radius is below this part of the size is one point as far as rounding can tell.
+/// A body whose radius is below this part of the size is one point up to rounding.
 const POINT_LIKE: f64 = 4.0 * UNIT_F64;
 
 /// Two bodies at rest, in the frame of B's tree. Working coordinates are divided by a power of two so that all lengths
@@ -66,7 +66,7 @@ pub(crate) struct Direction {
 pub(crate) enum Directions {
     Usual,
     /// Also those across the triangle's longest edge and the longest axis of a box: where slivers lie crosswise, no other
-    /// tells them apart.
+    /// separates them.
     OfEdges,
 }
 
@@ -150,7 +150,7 @@ impl<'a> Scene<'a> {
         self
     }
 
-    /// Is the body one point as far as rounding can tell? Its first triangle then stands for all of them.
+    /// Is the body one point up to rounding? Its first triangle then stands for all of them.
     pub(crate) fn is_point_like(&self, body: usize) -> bool {
         self.point_like[body]
     }

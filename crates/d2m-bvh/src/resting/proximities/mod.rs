@@ -94,7 +94,7 @@ pub struct ProximityOptions {
     /// Features up to this distance are found.
     pub margin: f64,
     /// How far a direction may be outside of a normal cone, as the sine of an angle. Zero, the default: the locally
-    /// closest pairs and what rounding cannot tell from them. A tenth of a radian, say: also the other corners of a
+    /// closest pairs and those that rounding does not distinguish from them. A tenth of a radian, say: also the other corners of a
     /// box that rests on a face and is tilted by less.
     pub cone_slack: f64,
 }
@@ -150,7 +150,7 @@ impl ProximityOptions {
 ///
 /// # Errors
 /// [`QueryError::BadPose`]; [`QueryError::BadMinSeparation`] for a margin that is negative or not finite;
-/// [`QueryError::NotApart`] when the surfaces cross, or are apart by less than rounding can tell and not found to touch.
+/// [`QueryError::NotApart`] when the surfaces cross, or are apart by no more than rounding and not found to touch.
 pub fn proximities(a: Posed<'_>, b: Posed<'_>, margin: f64) -> Result<Vec<Proximity>, QueryError> {
     proximities_with(a, b, &ProximityOptions::new(margin))
 }

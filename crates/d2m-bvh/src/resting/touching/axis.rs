@@ -27,8 +27,9 @@ pub(super) struct Axis {
     pub(super) across: Option<[EdgeOf; 2]>,
 }
 
-/// Axes across edges that are parallel up to this sine are noise.
-const LEAST_SINE: f64 = 1e-7;
+/// Edges with a smaller sine between them have no axis: 2⁻²⁶, the root of what doubles resolve. The axis across edges as long as
+/// their coordinates is off by a rounding divided by the sine, so below this by more than the edges are from being parallel.
+const LEAST_SINE: f64 = power_of_two(-26);
 
 /// Directions nearer to each other than this are one, whatever their blurs: 2⁻⁴⁰.
 const SAME: f64 = power_of_two(-40);
@@ -49,7 +50,7 @@ pub(super) struct TouchingPair {
     pub(super) corners: [[DVec3; 3]; 2],
     /// The axes along which they are apart or touch, up to rounding.
     pub(super) axes: Vec<Axis>,
-    /// Has one of them no area, or are both in one plane, as far as rounding can tell? Then they cross nowhere for certain.
+    /// Has one of them no area, or are both in one plane, up to rounding? Then they cross nowhere for certain.
     pub(super) is_flat: bool,
     spread: f64,
 }

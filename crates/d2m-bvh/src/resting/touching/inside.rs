@@ -13,7 +13,7 @@ const MOST_PAIRS: usize = 4;
 /// How far from a face a point is tried, in parts of the size of its triangle: a quarter, and 2⁻⁵ and 2⁻¹⁰ for thin overlaps.
 const DEPTHS: [f64; 3] = [0.25, 0.03125, 0.000_976_562_5];
 
-/// Is a point found that is proven to be inside of both solids, further from their surfaces than rounding can tell?
+/// Is a point found that is proven to be inside of both solids, further from their surfaces than rounding reaches?
 pub(super) fn share_a_point_inside(
     (bodies, blur): ([Posed<'_>; 2], f64),
     scene: &Scene<'_>,

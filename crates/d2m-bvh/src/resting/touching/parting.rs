@@ -4,15 +4,17 @@
 //! dropped. Of directions that part the one is wanted that is normal to the features that touch.
 
 use super::axis::{Axis, TouchingPair};
+use super::{FIRST_STEP, LAST_STEP};
 use crate::nearest_point::Simplex;
 use glam::DVec3;
 
-/// Axes that are told apart, at most.
+/// Axes kept as different, at most.
 const MOST_AXES: usize = 64;
 /// Rounds in which axes are added that a direction has to follow.
 const MOST_ROUNDS: usize = 32;
-/// A direction parts two triangles if it leaves the plane between them by at least this sine.
-pub(super) const LEAST_RISE: f64 = 1e-6;
+/// A direction parts two triangles if it leaves the plane between them by more than this sine: the first step along it is
+/// [`FIRST_STEP`] divided by the sine, and none is longer than [`LAST_STEP`].
+pub(super) const LEAST_RISE: f64 = FIRST_STEP / LAST_STEP;
 /// Axes with blurs up to this factor of the least one are as good.
 const AS_GOOD: f64 = 16.0;
 
@@ -65,17 +67,15 @@ fn add(all: &mut Vec<Axis>, axis: &Axis) {
 /// Where no plane parts all: the direction that rises from the plane between each pair, as steeply as possible from the one from which it
 /// rises least.
 fn direction_of_several(pairs: &[TouchingPair]) -> Option<DVec3> {
-    let mut needed: Vec<DVec3> = Vec::new();
+    let mut of_one: Vec<Axis> = Vec::new();
     for pair in pairs {
         if let Some((only, others)) = pair.axes.split_first()
             && others.iter().all(|axis| axis.is_same(only))
         {
-            let known = needed.iter().any(|&n| (n - only.direction).length() < LEAST_RISE);
-            if !known {
-                needed.push(only.direction);
-            }
+            add(&mut of_one, only);
         }
     }
+    let mut needed: Vec<DVec3> = of_one.iter().map(|axis| axis.direction).collect();
     if needed.is_empty() {
         needed.push(pairs.first()?.axes.first()?.direction);
     }
