@@ -5,7 +5,7 @@ use crate::faces::Faces;
 use crate::momenta::Momenta;
 use crate::velocity::Velocity;
 use crate::{MassProperties, SimulationError};
-use d2m_bvh::{MeshTree, Posed, Solid};
+use d2m_bvh::{MeshTree, Posed, QueryError, Solid};
 use d2m_interval::Interval;
 use d2m_motion::{ConstantTwist, CoveredMotion, Pose, RigidMotion};
 use glam::{DMat3, DQuat, DVec3};
@@ -409,6 +409,11 @@ impl RigidBody {
         let speed = |body: &Self| if body.version == 0 { body.velocity() } else { body.shown_velocity() };
         let (a, b) = (speed(self), speed(other));
         (a.linear - b.linear).length() + a.angular.length() * self.radius + b.angular.length() * other.radius
+    }
+
+    /// What a query of this body with another one failed by.
+    pub(crate) fn query_error(&self, other: &Self, error: QueryError) -> SimulationError {
+        SimulationError::Query { a: self.name.to_string(), b: other.name.to_string(), error }
     }
 }
 

@@ -13,7 +13,7 @@ use crate::{
     Body, BodyId, ContactImpulse, Kind, MassProperties, Segment, SimulationError, SimulationOptions,
     StepError,
 };
-use d2m_bvh::{MeshTree, QueryError, TriMesh};
+use d2m_bvh::{MeshTree, TriMesh};
 use d2m_motion::Pose;
 use glam::{DQuat, DVec3};
 use std::collections::{BTreeMap, BTreeSet};
@@ -438,8 +438,4 @@ fn wake(body: &mut RigidBody, time: f64) {
         body.time = time;
     }
     body.quiet = 0.0;
-}
-
-pub(crate) fn query_error(a: &RigidBody, b: &RigidBody, error: QueryError) -> SimulationError {
-    SimulationError::Query { a: a.name.to_string(), b: b.name.to_string(), error }
 }

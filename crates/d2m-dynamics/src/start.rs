@@ -4,7 +4,6 @@ use crate::broad_phase::{Aabb, meeting};
 use crate::contact::{Accuracy, ContactPoint, SolverBody, Start, System};
 use crate::pairs::{Pair, measure, solid_of};
 use crate::rigid_body::RigidBody;
-use crate::simulation::query_error;
 use crate::velocity::Velocity;
 use crate::{BodyId, Simulation, SimulationError, StepError};
 use d2m_bvh::{DistanceOptions, PairCache, Posed, StartState, distance_within};
@@ -80,7 +79,7 @@ impl Simulation {
         let options = DistanceOptions::default().with_solid(solid_of(one, two)).with_cutoff(gap);
         let posed = (one.posed_at(self.time), two.posed_at(self.time));
         let found = distance_within(posed.0, posed.1, &options, &mut PairCache::new());
-        let found = found.map_err(|error| query_error(one, two, error))?;
+        let found = found.map_err(|error| one.query_error(two, error))?;
         let Some(found) = found else { return Ok(None) };
         if found.state == StartState::Apart {
             // A pair that has been parted goes on to the gap.

@@ -1,7 +1,8 @@
 //! One joint of an arm: a fixed transform and what moves after it.
 use crate::ball::{Ball, product_radius, up};
+use crate::enclosed::Enclosed;
 use crate::error::{fault, require_finite};
-use crate::joint_value::{Enclosed, JointValue, ValueOverTime};
+use crate::joint_value::{JointValue, ValueOverTime};
 use crate::kinematics::two_sums;
 use crate::rotation::{RotationDd, Spin, exponential_dd, rotate_dd};
 use crate::rounding::UNIT;

@@ -1,10 +1,7 @@
 //! The values of a joint through points at times: straight, cubic and quintic Hermite polynomials.
-use crate::JointValue;
 use crate::MotionError;
-use crate::ball::up;
+use crate::enclosed::Enclosed;
 use crate::error::{TimesFault, fault, find_times_fault};
-use crate::joint_value::{Enclosed, STEP};
-use core::ops::{Add, Mul, Sub};
 use d2m_lanes::DoubleDouble;
 
 /// Spans of time between these have fifth powers that neither under- nor overflow.
@@ -60,8 +57,12 @@ impl JointPoints {
         Self { accelerations: Some(accelerations), ..self }
     }
 
+    pub(crate) fn times(&self) -> &[f64] {
+        &self.times
+    }
+
     /// Each list by its name, its numbers finite and as many as there are times.
-    fn check(&self) -> Result<(), MotionError> {
+    pub(crate) fn check(&self) -> Result<(), MotionError> {
         if let Some(TimesFault { index, reason }) = find_times_fault(&self.times) {
             return Err(fault(format!("value, times[{index}]"), reason));
         }
@@ -95,13 +96,13 @@ impl JointPoints {
     /// c₂ = (3Δ − (2v₀ + v₁)h)/h², c₃ = ((v₀ + v₁)h − 2Δ)/h³. Quintic: c₂ = a₀/2,
     /// c₃ = (20Δ − (8v₁ + 12v₀)h + (a₁ − 3a₀)h²)/2h³, c₄ = ((14v₁ + 16v₀)h − 30Δ + (3a₀ − 2a₁)h²)/2h⁴,
     /// c₅ = (12Δ − 6(v₁ + v₀)h + (a₁ − a₀)h²)/2h⁵.
-    fn coefficients(&self, piece: usize) -> Option<Vec<Enclosed>> {
-        let ends = |list: &[f64]| [list[piece], list[piece + 1]].map(Counted::exact);
+    pub(crate) fn coefficients(&self, piece: usize) -> Option<Vec<Enclosed>> {
+        let ends = |list: &[f64]| [list[piece], list[piece + 1]].map(Enclosed::exact);
         let h = DoubleDouble::from_difference(self.times[piece + 1], self.times[piece]);
         if !(SHORTEST..=LONGEST).contains(&h.hi) {
             return None;
         }
-        let length = Counted { value: h, error: 0.0 };
+        let length = Enclosed { center: h, radius: 0.0 };
         let [start, end] = ends(&self.positions);
         let way = end - start;
         let mut terms = vec![start];
@@ -124,109 +125,14 @@ impl JointPoints {
             }
             (None, _) => terms.push(way.over(h, 1)),
         }
-        terms.into_iter().map(Counted::enclosed).collect()
-    }
-}
-
-impl JointValue {
-    /// Through points: [`JointPoints`] says how.
-    ///
-    /// What is enclosed is the true polynomial through the given doubles, not the one with rounded coefficients: these are pairs
-    /// of doubles, and what their rounding leaves out counts. So the value is continuous, and its velocity too
-    /// where velocities are given.
-    ///
-    /// # Errors
-    /// Fewer than two times, times that are not finite, do not increase, or are less than 1e-50 or more than 1e50 apart, lists of
-    /// different lengths, numbers that are not finite, accelerations without velocities, or numbers so large that a coefficient
-    /// is not finite.
-    pub fn through(points: JointPoints) -> Result<Self, MotionError> {
-        points.check()?;
-        let pieces = (0..points.times.len() - 1)
-            .map(|piece| {
-                let [from, to] = [points.times[piece], points.times[piece + 1]];
-                points.coefficients(piece).ok_or_else(|| {
-                    let reason =
-                        format!("from {from:?} to {to:?} the polynomial's coefficients are no doubles");
-                    fault(format!("value, pieces[{piece}]"), reason)
-                })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        Ok(Self::from_enclosed(points.times.clone(), &pieces, Some(points)))
-    }
-}
-
-/// A pair of doubles and a bound of its error.
-///
-/// Each operation of pairs of doubles is within [`STEP`] of the magnitudes that it adds, or multiplies, away from underflow,
-/// which takes at most the smallest normal number. What overflows has no finite bound.
-#[derive(Clone, Copy)]
-pub(crate) struct Counted {
-    value: DoubleDouble,
-    error: f64,
-}
-
-impl Counted {
-    pub(crate) const fn exact(value: f64) -> Self {
-        Self { value: DoubleDouble::from_f64(value), error: 0.0 }
-    }
-
-    pub(crate) const fn from_enclosed(enclosed: Enclosed) -> Self {
-        Self { value: enclosed.center, error: enclosed.radius }
-    }
-
-    fn magnitude(self) -> f64 {
-        up(self.value.hi.abs())
-    }
-
-    /// Divided by h as often as `times` says; h is exact and not below [`SHORTEST`].
-    fn over(self, h: DoubleDouble, times: u32) -> Self {
-        (0..times).fold(self, |Self { value, error }, _| {
-            let quotient = value / h;
-            let lost = up(error + f64::MIN_POSITIVE) / h.hi + STEP * quotient.hi.abs();
-            Self { value: quotient, error: up(lost) }
-        })
-    }
-
-    pub(crate) fn enclosed(self) -> Option<Enclosed> {
-        let is_known = self.value.hi.is_finite() && self.value.lo.is_finite() && self.error < f64::INFINITY;
-        is_known.then_some(Enclosed { center: self.value, radius: self.error })
-    }
-}
-
-impl Add for Counted {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        let lost = STEP * (self.magnitude() + other.magnitude());
-        Self { value: self.value + other.value, error: up(self.error + other.error + lost) }
-    }
-}
-
-impl Sub for Counted {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self + Self { value: -other.value, ..other }
-    }
-}
-
-impl Mul for Counted {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        let (a, b) = (self.magnitude(), other.magnitude());
-        let lost = up(a * other.error + self.error * (b + other.error)) + STEP * a * b;
-        Self { value: self.value * other.value, error: up(lost) + f64::MIN_POSITIVE }
-    }
-}
-
-impl Mul<f64> for Counted {
-    type Output = Self;
-    fn mul(self, factor: f64) -> Self {
-        self * Self::exact(factor)
+        terms.into_iter().map(Enclosed::if_finite).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::JointValue;
     use d2m_testing::{Draw, Random};
 
     type Dd = DoubleDouble;

@@ -1,10 +1,10 @@
 //! The value of a joint over time: a polynomial, or one polynomial after another.
 use crate::ball::up;
+use crate::enclosed::{Enclosed, STEP};
 use crate::error::{TimesFault, fault, find_times_fault};
-use crate::joint_points::Counted;
 use crate::{JointPoints, MotionError};
 use d2m_interval::Interval;
-use d2m_lanes::{DoubleDouble, power_of_two, two_sum};
+use d2m_lanes::{DoubleDouble, two_sum};
 
 /// Largest jump between two pieces that counts as rounding (radians, or units of length).
 pub(crate) const LARGEST_JUMP: f64 = 1e-9;
@@ -53,13 +53,6 @@ struct Tail {
     radius: f64,
 }
 
-/// A number within `radius` of `center`, with a second double for what the first leaves out.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Enclosed {
-    pub(crate) center: DoubleDouble,
-    pub(crate) radius: f64,
-}
-
 /// Value, first and second derivative over a span of time.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ValueOverTime {
@@ -68,25 +61,6 @@ pub(crate) struct ValueOverTime {
     pub(crate) middle_radius: f64,
     pub(crate) rate: Enclosed,
     pub(crate) second: Enclosed,
-}
-
-impl Enclosed {
-    fn hull(self, other: Self) -> Self {
-        let center = DoubleDouble::from_f64(0.5 * self.center.hi + 0.5 * other.center.hi);
-        let reach = |e: Self| {
-            let apart = e.center - center;
-            up(apart.hi.abs() + e.radius) + 4.0 * f64::EPSILON * apart.hi.abs()
-        };
-        Self { center, radius: up(reach(self).max(reach(other))) }
-    }
-
-    fn to_interval(self) -> Interval {
-        Interval::around(self.center.hi, up(self.radius + self.center.lo.abs()))
-    }
-
-    fn magnitude(self) -> f64 {
-        up(self.center.hi.abs() * (1.0 + f64::EPSILON) + self.radius)
-    }
 }
 
 impl JointValue {
@@ -154,6 +128,31 @@ impl JointValue {
         Ok(value)
     }
 
+    /// Through points: [`JointPoints`] says how.
+    ///
+    /// What is enclosed is the true polynomial through the given doubles, not the one with rounded coefficients: these are pairs
+    /// of doubles, and what their rounding leaves out counts. So the value is continuous, and its velocity too
+    /// where velocities are given.
+    ///
+    /// # Errors
+    /// Fewer than two times, times that are not finite, do not increase, or are less than 1e-50 or more than 1e50 apart, lists of
+    /// different lengths, numbers that are not finite, accelerations without velocities, or numbers so large that a coefficient
+    /// is not finite.
+    pub fn through(points: JointPoints) -> Result<Self, MotionError> {
+        points.check()?;
+        let pieces = (0..points.times().len() - 1)
+            .map(|piece| {
+                let [from, to] = [points.times()[piece], points.times()[piece + 1]];
+                points.coefficients(piece).ok_or_else(|| {
+                    let reason =
+                        format!("from {from:?} to {to:?} the polynomial's coefficients are no doubles");
+                    fault(format!("value, pieces[{piece}]"), reason)
+                })
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        Ok(Self::from_enclosed(points.times().to_vec(), &pieces, Some(points)))
+    }
+
     /// From enclosures of the coefficients of each piece, true values of which meet exactly.
     pub(crate) fn from_enclosed(
         times: Vec<f64>,
@@ -178,9 +177,9 @@ impl JointValue {
     /// A coefficient that is not finite, with piece and index.
     pub fn scaled(&self, multiplier: f64, offset: f64) -> Result<Self, MotionError> {
         let scale = |piece: usize, index: usize| {
-            let scaled = Counted::from_enclosed(self.coefficient(piece, index)) * multiplier;
-            let moved = if index == 0 { scaled + Counted::exact(offset) } else { scaled };
-            moved.enclosed().ok_or_else(|| {
+            let scaled = self.coefficient(piece, index) * multiplier;
+            let moved = if index == 0 { scaled + Enclosed::exact(offset) } else { scaled };
+            moved.if_finite().ok_or_else(|| {
                 let reason = format!("{multiplier:?} times it, plus {offset:?}, is not finite");
                 fault(format!("value, pieces[{piece}][{index}]"), reason)
             })
@@ -341,11 +340,6 @@ impl ValueOverTime {
         self.rate.magnitude()
     }
 }
-
-/// One step of Horner's scheme in pairs of doubles is off by less than this of the magnitudes that it adds.
-///
-/// A product with a double loses at most 2·2⁻¹⁰⁴ and a sum 4·2⁻¹⁰⁶ of the operands; 2⁻¹⁰⁰ leaves a factor of four.
-pub(crate) const STEP: f64 = power_of_two(-100);
 
 /// The coefficients about `s`, each with a bound of its error: repeated division by t − s.
 ///

@@ -47,6 +47,7 @@ mod composed;
 mod constant_twist;
 mod covered_motion;
 mod double_double_trig;
+mod enclosed;
 mod error;
 mod joint;
 mod joint_points;

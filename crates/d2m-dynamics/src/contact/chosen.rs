@@ -1,7 +1,8 @@
 //! Many contacts of one pair, as of a pin in its hole, of which few press: those are solved for, and the others are looked after.
 
+use super::accuracy::Accuracy;
 use super::newton::Start;
-use super::solve::{Accuracy, GROSS};
+use super::solve::GROSS;
 use super::system::{Block, System};
 
 /// Blocks of one pair that are added in a round at most, those that are furthest from their law.

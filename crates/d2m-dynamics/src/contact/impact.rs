@@ -1,7 +1,7 @@
 //! Impacts: restitution and friction where bodies meet faster than they rest.
 
+use super::accuracy::Accuracy;
 use super::newton::Start;
-use super::solve::Accuracy;
 use super::{ContactPoint, System};
 use crate::velocity::Velocity;
 use glam::DMat3;

@@ -1,6 +1,6 @@
 //! Rates of two bodies along one direction, and what impulses along it do.
 
-use super::SolverBody;
+use super::solver_body::SolverBody;
 use crate::velocity::Velocity;
 use glam::DVec3;
 

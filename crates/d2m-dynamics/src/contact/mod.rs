@@ -1,5 +1,6 @@
 //! Contacts of bodies that are close: rows, their solution, impacts.
 
+mod accuracy;
 mod anderson;
 mod chosen;
 mod factor;
@@ -10,14 +11,16 @@ mod newton;
 mod point;
 mod rows;
 mod solve;
+mod solver_body;
 mod sweeps;
 mod system;
 
+pub(crate) use accuracy::Accuracy;
 pub(crate) use impact::impact;
 pub(crate) use law::Law;
 pub(crate) use newton::Start;
 pub use point::Material;
 pub(crate) use point::{ContactPoint, JointRow, tangents};
 pub(crate) use rows::{HIT, Span, select};
-pub(crate) use solve::Accuracy;
-pub(crate) use system::{SolverBody, System};
+pub(crate) use solver_body::SolverBody;
+pub(crate) use system::System;

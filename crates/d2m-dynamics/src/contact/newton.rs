@@ -11,11 +11,12 @@
 //! acceleration: de Saxcé's form of the law. s begins at zero: what can stick sticks, of the several solutions that friction has.
 //! What counts is the residual of the law itself ([`System::residual`]); the best iterate by it is kept.
 
+use super::accuracy::Accuracy;
 use super::anderson::Anderson;
 use super::factor::{Factor, Square};
 use super::law::{Projected, Slope};
-use super::solve::Accuracy;
-use super::system::{Block, SolverBody, System};
+use super::solver_body::SolverBody;
+use super::system::{Block, System};
 use crate::velocity::Velocity;
 use glam::{DMat3, DVec3};
 

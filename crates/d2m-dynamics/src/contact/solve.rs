@@ -1,7 +1,9 @@
 //! Which method solves an island.
 
+use super::accuracy::{Accuracy, LOOSE};
 use super::newton::{Effort, Start};
-use super::system::{Block, SolverBody, System};
+use super::solver_body::SolverBody;
+use super::system::{Block, System};
 use crate::velocity::Velocity;
 use glam::DVec3;
 
@@ -16,8 +18,6 @@ const MOST_RATIO: f64 = 30.0;
 /// Sweeps where they come first, and where they come last.
 const FIRST: u32 = 12;
 const SWEEPS: u32 = 60;
-/// How much more than the precision may be left of bodies that move, at most.
-const LOOSE: f64 = 1024.0;
 /// How much more may be left of several bodies that move, and of a crowd.
 const SEVERAL: f64 = 4.0;
 const CROWDED: f64 = 16.0;
@@ -29,26 +29,6 @@ const TAKEN: f64 = 4.0;
 pub(super) const GROSS: f64 = 0.25;
 /// The part of the slow speed below which bodies are about to rest.
 const CALM: f64 = 0.25;
-
-/// How exactly the law is to hold.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Accuracy {
-    /// Of rates: what is left of bodies at rest.
-    pub(crate) precision: f64,
-    /// The part of the bodies' mean speed that may be left, no more than [`LOOSE`] times the precision.
-    pub(crate) relative: f64,
-    /// The part of the precision that is aimed at where bodies rest: what is left of one step is there in the next one.
-    pub(crate) aim: f64,
-    /// What slides slower than this could as well stick.
-    pub(crate) slow: f64,
-}
-
-impl Accuracy {
-    /// What is aimed at where so much may be left.
-    pub(super) fn aim(self, tolerance: f64) -> f64 {
-        if tolerance > self.precision { tolerance } else { self.aim * self.precision }
-    }
-}
 
 impl System {
     /// Finds impulses with which the rates of all contacts obey the law, above the targets; the residual that is left. Begins with the

@@ -1,8 +1,9 @@
 //! Projected Gauss–Seidel: block after block, each with the velocities that the ones before left.
 
+use super::accuracy::Accuracy;
 use super::law::Law;
-use super::solve::Accuracy;
-use super::system::{Block, SolverBody, System};
+use super::solver_body::SolverBody;
+use super::system::{Block, System};
 
 impl System {
     /// Sweeps over all blocks until the residual is no more than what may be left, so many at most; the residual.

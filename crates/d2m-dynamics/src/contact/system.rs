@@ -4,17 +4,9 @@ use super::ContactPoint;
 use super::factor::Factor;
 use super::law::Law;
 use super::line::Line;
+use super::solver_body::SolverBody;
 use crate::velocity::Velocity;
 use glam::{DMat3, DVec3};
-
-/// What the solver needs of a body. A body that impulses cannot move has no inverse masses.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SolverBody {
-    pub(crate) inverse_mass: f64,
-    /// World axes.
-    pub(crate) inverse_inertia: DMat3,
-    pub(crate) velocity: Velocity,
-}
 
 /// One contact (three rows), or one row. `a` and `b` are places in the list of bodies.
 #[derive(Clone, Copy, Debug)]

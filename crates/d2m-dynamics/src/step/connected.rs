@@ -5,7 +5,6 @@ use crate::contact::ContactPoint;
 use crate::joined::Ahead;
 use crate::pairs::{Measured, Pair, measure};
 use crate::rigid_body::RigidBody;
-use crate::simulation::query_error;
 use crate::{StepError, parallel};
 use d2m_bvh::QueryError;
 
@@ -208,7 +207,7 @@ impl Step<'_> {
                 Some(Err(QueryError::NotApart { .. })) => Some(Measured::default()),
                 Some(Err(error)) => {
                     let (a, b) = (&self.sim.bodies[key.0], &self.sim.bodies[key.1]);
-                    return Err(query_error(a, b, error).into());
+                    return Err(a.query_error(b, error).into());
                 }
             };
             let gap = self.sim.options.gap;

@@ -6,7 +6,6 @@ use super::{Key, Step};
 use crate::concluded::conclude;
 use crate::pairs::{Outcome, Pair, fly};
 use crate::rigid_body::RigidBody;
-use crate::simulation::query_error;
 use crate::{StepError, parallel};
 use d2m_bvh::Window;
 #[cfg(feature = "audit")]
@@ -100,7 +99,7 @@ impl Step<'_> {
                 Ok(Outcome::ClearUntil(until)) if until > time => event(until, until, Cause::Budget),
                 Ok(Outcome::ClearUntil(_) | Outcome::Stuck) => event(time, time, Cause::Stuck),
                 Err(error) => {
-                    failed = failed.or(Some(query_error(a, b, error)));
+                    failed = failed.or(Some(a.query_error(b, error)));
                     continue;
                 }
             };

@@ -33,7 +33,7 @@ impl Body {
 
     /// An embedded shape such as `gear` or `torus-knot?triangles=70000`, scaled like that.
     pub(crate) fn unit_shape(spec: &str) -> Result<TriMesh, Error> {
-        let mesh = super::engine::shape(spec)?;
+        let mesh = super::built::shape(spec)?;
         Self::unit_mesh(mesh.vertices(), mesh.triangles().to_vec())
     }
 
@@ -47,7 +47,7 @@ impl Body {
 
     /// A mesh and the trees of engine and judge.
     pub(crate) fn new(mesh: TriMesh) -> Arc<Self> {
-        Self::with_tree(super::engine::build(mesh))
+        Self::with_tree(super::built::build(mesh))
     }
 
     /// The same where the engine's tree is there already.

@@ -119,7 +119,7 @@ impl Operation {
             Work::Jets => jets(),
             Work::Feature(kind, how) => features(kind, how),
             Work::Build(shape) => {
-                let mesh = super::engine::shape(shape)?;
+                let mesh = super::built::shape(shape)?;
                 twice(&mut || drop(black_box(MeshTree::new(black_box(mesh.clone())))));
             }
             Work::Query { shapes, speed, spin, method } => queries(shapes, (speed, spin), method)?,

@@ -1,8 +1,8 @@
-//! The only place where the bench touches the product: one adapter per query.
+//! The only place where the bench queries the product: one adapter per query.
 use super::body::{Body, Pair};
 use crate::judge::Claim;
 use crate::trials::{Movement, Trial};
-use d2m::bvh::{self, MeshTree, Moving, Posed, QueryOptions, Solid, TimeOfContact, TriMesh, Window};
+use d2m::bvh::{self, Moving, Posed, QueryOptions, Solid, TimeOfContact, Window};
 use d2m::motion::{ConstantTwist, RigidMotion};
 
 type Error = Box<dyn std::error::Error>;
@@ -19,16 +19,6 @@ impl Motions {
             |m: &Movement| ConstantTwist::try_new(m.position, m.rotation, m.velocity, m.angular_velocity);
         Ok(Self { a: motion(&trial.a)?, b: motion(&trial.b)? })
     }
-}
-
-/// An embedded shape by its text form.
-pub(crate) fn shape(text: &str) -> Result<TriMesh, Error> {
-    Ok(d2m::shapes::mesh(text)?)
-}
-
-/// The default engine's tree.
-pub(crate) fn build(mesh: TriMesh) -> MeshTree {
-    MeshTree::new(mesh)
 }
 
 /// Filled solids where both meshes close, surfaces otherwise.

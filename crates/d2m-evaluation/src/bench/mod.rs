@@ -1,6 +1,7 @@
 //! `cargo xtask bench`: the paper's evaluation again, with peers, every answer judged before its time counts.
 mod batch;
 mod body;
+mod built;
 mod catalogue;
 mod check;
 mod clock;

@@ -7,7 +7,7 @@ use super::progress::{self, Part, Progress};
 use super::row::Row;
 use super::setting::Setting;
 use super::store::{KnownPair, Store};
-use super::{Options, sweep};
+use super::{Options, stopped, sweep};
 use crate::TaskResult;
 use crate::judge::Claim;
 use crate::machine::Machine;
@@ -113,7 +113,10 @@ impl Run<'_> {
         let accurate = self.store.load(&entry.name, *speed, Method::Accurate.name());
         let known = self.known(entry, place);
         let setting = Setting { options: self.options, pair, speed: *speed, trials, method, known: &known };
-        let rows = setting.rows(accurate.as_deref(), &mut self.phases)?;
+        let rows = match method {
+            Method::ParryCast => self.phases.time("asked", || stopped::rows(&setting))?,
+            _ => setting.rows(accurate.as_deref(), &mut self.phases)?,
+        };
         self.store.save(&entry.name, *speed, method.name(), &rows)?;
         self.progress.done(seconds);
         self.progress.say(&line(*speed, method, &rows));

@@ -3,7 +3,7 @@ use super::body::Pair;
 use super::clock::Phases;
 use super::method::{Answer, Method, Question, answers};
 use super::row::Row;
-use super::{Options, peers, stopped};
+use super::{Options, peers};
 use crate::judge::{Claim, Judge, place};
 use crate::trials::Trial;
 use rayon::prelude::*;
@@ -33,7 +33,6 @@ pub(super) struct Setting<'a> {
 impl Setting<'_> {
     pub(super) fn rows(&self, accurate: Option<&[Row]>, phases: &mut Phases) -> Result<Vec<Row>, Error> {
         match self.method {
-            Method::ParryCast => return phases.time("asked", || stopped::rows(self)),
             Method::AdvanceParry | Method::ParryDistance if self.triangle_count() > PARRY_TRIANGLES => {
                 return Ok(Vec::new());
             }

@@ -165,7 +165,7 @@ impl Cubic {
     fn clip_far(&self, band: Band, margin: &dyn Fn(f64) -> f64, part: Piece) -> Option<Piece> {
         let Some(unit) = TimeUnit::of(part) else { return Some(part) };
         let margin = |h: f64| margin(h * unit.length());
-        let kept = unit.cubic(self).clip(band, margin, unit.piece(part))?;
+        let kept = self.in_unit(unit).clip(band, margin, unit.piece(part))?;
         Some(unit.restored(kept, part))
     }
 
@@ -207,5 +207,16 @@ impl Cubic {
             reach = part.reach();
         }
         Some(part)
+    }
+
+    /// The same function of the time in another unit.
+    fn in_unit(&self, unit: TimeUnit) -> Self {
+        let unit = unit.length();
+        Self {
+            value: self.value,
+            slope: self.slope * unit,
+            curvature: self.curvature * unit * unit,
+            jerk: self.jerk * unit * unit * unit,
+        }
     }
 }

@@ -180,7 +180,7 @@ impl Quadratic {
     #[inline(never)]
     fn clip_far(&self, band: Band, part: Piece) -> Option<Piece> {
         let Some(unit) = TimeUnit::of(part) else { return Some(part) };
-        let kept = unit.quadratic(self).clip(band, unit.piece(part))?;
+        let kept = self.in_unit(unit).clip(band, unit.piece(part))?;
         Some(unit.restored(kept, part))
     }
 
@@ -282,7 +282,7 @@ impl Quadratic {
     #[inline(never)]
     fn clip_shared_sign_far(&self, other: &Self, margin: f64, part: Piece) -> Option<Piece> {
         let Some(unit) = TimeUnit::of(part) else { return Some(part) };
-        let (f, g) = (unit.quadratic(self), unit.quadratic(other));
+        let (f, g) = (self.in_unit(unit), other.in_unit(unit));
         let kept = f.clip_shared_sign(&g, margin, unit.piece(part))?;
         Some(unit.restored(kept, part))
     }
@@ -341,7 +341,13 @@ impl Quadratic {
     #[inline(never)]
     fn bound_below_far(&self, part: Piece) -> f64 {
         let Some(unit) = TimeUnit::of(part) else { return f64::NAN };
-        unit.quadratic(self).bound_below(unit.piece(part))
+        self.in_unit(unit).bound_below(unit.piece(part))
+    }
+
+    /// The same function of the time in another unit.
+    fn in_unit(&self, unit: TimeUnit) -> Self {
+        let unit = unit.length();
+        Self { value: self.value, slope: self.slope * unit, curvature: self.curvature * unit * unit }
     }
 }
 

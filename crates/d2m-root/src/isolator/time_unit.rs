@@ -1,5 +1,5 @@
 //! Another unit of time, for pieces that reach far from zero.
-use super::{Cubic, Piece, Quadratic};
+use super::Piece;
 use d2m_lanes::power_of_two_below;
 
 /// A power of two: times are divided by it, exactly, so that a piece reaches between 1 and 2.
@@ -19,21 +19,6 @@ impl TimeUnit {
     /// The unit in units of the caller.
     pub(super) fn length(self) -> f64 {
         self.0
-    }
-
-    pub(super) fn quadratic(self, q: &Quadratic) -> Quadratic {
-        let unit = self.0;
-        Quadratic { value: q.value, slope: q.slope * unit, curvature: q.curvature * unit * unit }
-    }
-
-    pub(super) fn cubic(self, cubic: &Cubic) -> Cubic {
-        let unit = self.0;
-        Cubic {
-            value: cubic.value,
-            slope: cubic.slope * unit,
-            curvature: cubic.curvature * unit * unit,
-            jerk: cubic.jerk * unit * unit * unit,
-        }
     }
 
     /// Holds the piece: an end that becomes subnormal moves outward.

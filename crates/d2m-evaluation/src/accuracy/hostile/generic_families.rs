@@ -1,5 +1,5 @@
 //! Families of two random solids that are aimed at each other, in unusual windows, with unusual spins, reference points and sizes.
-use super::families::{about, body, decade, scene};
+use super::made::{about, body, decade, scene};
 use super::scene::Scene;
 use super::shapes::{centered_box, refined, tetrahedron};
 use d2m::Solid;

@@ -6,6 +6,7 @@ mod exact;
 mod families;
 mod generic_families;
 mod guise;
+mod made;
 mod scene;
 mod shapes;
 mod twins;

@@ -189,7 +189,7 @@ impl Sweep<'_> {
         let build = || {
             let mesh = mesh.clone();
             let start = Instant::now();
-            let tree = single.install(|| super::super::engine::build(mesh));
+            let tree = single.install(|| super::super::built::build(mesh));
             (start.elapsed().as_secs_f64(), tree)
         };
         let (mut seconds, tree) = build();

@@ -1,0 +1,24 @@
+//! How exactly contacts are solved.
+
+/// How much more than the precision may be left of bodies that move, at most.
+pub(super) const LOOSE: f64 = 1024.0;
+
+/// How exactly the law is to hold.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Accuracy {
+    /// Of rates: what is left of bodies at rest.
+    pub(crate) precision: f64,
+    /// The part of the bodies' mean speed that may be left, no more than [`LOOSE`] times the precision.
+    pub(crate) relative: f64,
+    /// The part of the precision that is aimed at where bodies rest: what is left of one step is there in the next one.
+    pub(crate) aim: f64,
+    /// What slides slower than this could as well stick.
+    pub(crate) slow: f64,
+}
+
+impl Accuracy {
+    /// What is aimed at where so much may be left.
+    pub(super) fn aim(self, tolerance: f64) -> f64 {
+        if tolerance > self.precision { tolerance } else { self.aim * self.precision }
+    }
+}
