@@ -33,6 +33,8 @@ pub enum Place {
     Spheres,
     /// Fitted twists of motions of any kind are apart by more than they deviate.
     FittedTwists,
+    /// A plane stays between motions of any kind.
+    Plane,
     /// A piece of a motion with a constant twist is searched as it is.
     ExactSpan,
     /// Boxes that the bodies do not leave between two neighboring numbers for times are apart.
@@ -81,6 +83,7 @@ impl Place {
             Self::Crowd => "crowds",
             Self::Spheres => "spheres",
             Self::FittedTwists => "fitted twists",
+            Self::Plane => "planes between any motions",
             Self::ExactSpan => "pieces of constant twist",
             Self::SweptBoxes => "swept boxes",
             Self::Joint => "joints",

@@ -6,6 +6,7 @@
 //! like the square of the span, until D is a small part of the tolerance. docs/theory/motions.md, section 3.
 
 mod joints;
+mod plane;
 
 #[cfg(feature = "audit")]
 use super::concluded::{Claimed, conclude_apart, sum_of_distances};
@@ -27,6 +28,7 @@ use d2m_feature::triangle_distance;
 use d2m_interval::Interval;
 use d2m_motion::{Chain, ConstantTwist, Pose, RigidMotion, Twist};
 use glam::DVec3;
+use plane::PlaneSearch;
 
 /// A span is shortened at most to this part of itself before it is measured again: ten such steps go from any window to
 /// below the resolution of time. It chooses spans and proves nothing.
@@ -112,6 +114,8 @@ struct Advance<'a> {
     largest: f64,
     /// The last span that was fitted.
     last: Option<LastFit>,
+    /// A plane between the bodies.
+    plane: PlaneSearch,
     /// Poses and twists at the time that was queried last.
     poses: Option<(f64, [(Pose, Twist); 2])>,
 }
@@ -173,6 +177,7 @@ impl<'a> Advance<'a> {
             longest: window.length(),
             largest: f64::INFINITY,
             last: None,
+            plane: PlaneSearch::START,
             poses: None,
         }
     }
@@ -194,6 +199,8 @@ impl<'a> Advance<'a> {
                 let ends = [a.until, b.until].into_iter().flatten();
                 let until = ends.fold(self.window.end(), f64::min);
                 self.exact_span([&a.motion, &b.motion], until)?
+            } else if let Some(until) = self.behind_the_plane() {
+                Step::FreeUntil(until)
             } else {
                 self.fitted_span()?
             };
@@ -364,6 +371,7 @@ impl<'a> Advance<'a> {
         if contact.time_lo <= self.now && self.longest <= 0.0 {
             return Ok(undecided);
         }
+        self.seek_plane(&contact);
         Ok(Step::FreeUntil(contact.time_lo.max(self.now)))
     }
 
@@ -398,13 +406,7 @@ impl<'a> Advance<'a> {
 
     /// Fits over a span that begins now and deviates by little enough; `None` when no span does.
     fn fit(&mut self) -> Result<Option<FittedSpan>, QueryError> {
-        let joints = self.bodies.map(|body| body.motion.smooth_until(self.now));
-        // A joint that is not ahead is a fault of the motion: then nothing is known.
-        let behind = |joint: f64| joint.is_nan() || joint <= self.now;
-        if joints.into_iter().flatten().any(behind) && self.now < self.window.end() {
-            return Ok(None);
-        }
-        let end = joints.into_iter().flatten().fold(self.window.end(), f64::min);
+        let Some(end) = self.end_of_piece() else { return Ok(None) };
         let poses = self.poses_at(self.now).map(|(pose, _)| pose);
         for (body, Pose { rotation, translation, .. }) in poses.iter().enumerate() {
             if !(rotation.is_finite() && translation.is_finite()) {
@@ -412,7 +414,7 @@ impl<'a> Advance<'a> {
             }
         }
         let largest = self.largest.min(self.usual_deviation(&poses));
-        let longest = self.longest.min(self.expected_span(largest.max(SMALL_PART * self.tolerance)));
+        let longest = self.expected_span(largest);
         let mut until = (self.now + longest).min(end).max(self.now.next_up().min(end));
         loop {
             self.count(&SearchCounts { node_tests: TESTS_A_FIT, ..SearchCounts::default() });
@@ -468,13 +470,26 @@ impl<'a> Advance<'a> {
         }
     }
 
-    /// About how long a span may be to deviate by so much, if the motions go on as in the last span; longer than any if
-    /// nothing is known. It saves fits of spans that are too long, and proves nothing.
+    /// About how long a span may be to deviate by so much, or by the least that matters, if the motions go on as in the last span;
+    /// the longest one if nothing is known. It saves fits of spans that are too long, and proves nothing.
     fn expected_span(&self, deviation: f64) -> f64 {
-        let Some(LastFit { length, curvature }) = self.last else { return f64::INFINITY };
+        let Some(LastFit { length, curvature }) = self.last else { return self.longest };
+        let deviation = deviation.max(SMALL_PART * self.tolerance);
         let expected = (EXPECTED * deviation / curvature).sqrt();
         // What rounding leaves of a short span says nothing of a long one.
-        if expected.is_nan() || self.longest > MOST_EXPECTED * length { f64::INFINITY } else { expected }
+        let says_nothing = expected.is_nan() || self.longest > MOST_EXPECTED * length;
+        if says_nothing { self.longest } else { self.longest.min(expected) }
+    }
+
+    /// The end of the smooth pieces of both motions that hold the present; `None`: one that is not ahead, which is a fault of the
+    /// motion, so that nothing is known.
+    fn end_of_piece(&self) -> Option<f64> {
+        let joints = self.bodies.map(|body| body.motion.smooth_until(self.now));
+        let behind = |joint: f64| joint.is_nan() || joint <= self.now;
+        if joints.into_iter().flatten().any(behind) && self.now < self.window.end() {
+            return None;
+        }
+        Some(joints.into_iter().flatten().fold(self.window.end(), f64::min))
     }
 
     /// Data of the fitted motions expressed by the true ones: points by their weights, speeds by the true twists. That the

@@ -46,7 +46,7 @@ pub(crate) fn longest(bodies: &[Moving<'_>; 2], window: Interval) -> f64 {
     }
     speed += (twists[0].linear - twists[1].linear).norm().hi();
     let by_acceleration = (2.0 * SLACK * radius / acceleration).sqrt();
-    let by_speed = (0.2 * SLACK * radius * radius / (acceleration * speed)).cbrt();
+    let by_speed = Interval::point(0.2 * SLACK * radius * radius / (acceleration * speed)).cbrt().lo();
     let longest = by_acceleration.min(by_speed);
     if longest > 0.0 { longest } else { f64::INFINITY }
 }

@@ -1,0 +1,266 @@
+//! A plane that stays between two bodies over a long span, whatever they do along it.
+//!
+//! Fitted twists deviate in every direction, so that bodies which slide past each other at a small gap are searched in spans as short
+//! as the root of the gap. Along the direction between them they hardly move: docs/theory/motions.md, section 3, "Plane".
+
+use super::{Advance, EXPECTED, GROWTH};
+#[cfg(feature = "audit")]
+use crate::audit::Place;
+use crate::length::length;
+use crate::{Contact, Moving, SearchCounts};
+use d2m_interval::{Interval, IntervalVec3};
+use d2m_lanes::UP;
+use glam::DVec3;
+
+/// A plane is sought for spans of so many lengths of the last one at first, and of at least [`GROWTH`] of them.
+const AHEAD: f64 = 64.0;
+/// The next span is this part, or this multiple, of one at least and at most.
+const LEAST_PART: f64 = 1.0 / 16.0;
+const MOST_PART: f64 = 16.0;
+/// Node tests that a plane counts for in a budget, besides its vertices.
+const TESTS_A_PLANE: u64 = 128;
+/// Vertices whose supports cost as much as a test of two boxes.
+const VERTICES_A_TEST: usize = 4;
+/// More than the roundings of a support add up to, in parts of the terms that are added: turned directions, products with a vertex
+/// and their sums are fewer than 64 times half a unit in the last place of each.
+const ROUNDINGS: f64 = 32.0 * f64::EPSILON;
+/// Sums of a few numbers below this are finite.
+const MOST: f64 = f64::MAX / 64.0;
+/// Failures are followed by so many times more fitted spans until the next attempt.
+const PATIENCE: u32 = 2;
+
+/// When a plane is sought, and the one that the last span was free by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlaneSearch {
+    /// Direction and length of span.
+    known: Option<(DVec3, f64)>,
+    /// Fitted spans that came near until the next attempt, and between attempts.
+    wait: u32,
+    between: u32,
+}
+
+impl PlaneSearch {
+    pub(super) const START: Self = Self { known: None, wait: 1, between: 1 };
+}
+
+/// How far bodies are apart over a span, along a direction, in units of its length.
+struct Gap {
+    /// More than the least distance that counts as free by so much, for certain.
+    beyond: f64,
+    /// What the motions within the span may add.
+    lost: f64,
+}
+
+impl Gap {
+    const UNKNOWN: Self = Self { beyond: f64::NEG_INFINITY, lost: f64::INFINITY };
+
+    /// About the part of the span, or the multiple of it, over which the gap may close: what is lost goes like its third power.
+    fn part_that_closes(&self) -> f64 {
+        let part = Interval::point(((self.beyond + self.lost) / self.lost).clamp(0.0, f64::MAX));
+        EXPECTED * part.cbrt().mid()
+    }
+}
+
+/// How far a body reaches along a direction, over a span of times m + τ, |τ| ≤ h.
+///
+/// For a body point e from the reference point, f(τ) = n·x + n·Re has f″ = n·a + Q·Re, Q = n × α + (n × ω) × ω. With c and q the middles of
+/// n·a and of Q, f differs by at most ½h²(|n·a − c| + |Q − q||e| + |Q|(r_R + h sup|ω|)|e|) from the parabola with the state in the middle
+/// and the second derivative c + q·R₀e. A parabola is nowhere outside of its three Bernstein coefficients, each of which is linear in e.
+struct Reach {
+    /// The coefficients: a number and a vector in the body frame, about the reference point.
+    controls: [(f64, DVec3); 3],
+    at: DVec3,
+    error: f64,
+}
+
+impl Reach {
+    /// `None` where nothing is known, or numbers are too large for it.
+    fn new(body: &Moving<'_>, n: DVec3, span: Interval, middle: f64, origin: DVec3) -> Option<Self> {
+        let h = (span.hi() - middle).max(middle - span.lo()) * UP;
+        let state = body.motion.enclose_state_about(middle, origin);
+        if state.at != body.motion.pose_and_twist(middle).0.at {
+            return None;
+        }
+        let (twist, rate) = (body.motion.enclose_twist(span), body.motion.enclose_twist_rate(span));
+        let normal = IntervalVec3::point(n);
+        let along = normal.dot(rate.linear);
+        let turned = normal.cross(rate.angular) + normal.cross(twist.angular).cross(twist.angular);
+        let (c, q) = (along.mid(), turned.mid());
+        let reach = (body.body.radius() + length(body.body.center() - state.at)) * UP;
+        let long = length(n) * UP;
+
+        let to_body = state.rotation.transpose();
+        let across = n.cross(state.angular);
+        let (f0, e0) = (n.dot(state.position), to_body * n);
+        let (f1, e1) = (n.dot(state.linear) * h, to_body * across * h);
+        let (f2, e2) = (c * (0.5 * h * h), to_body * q * (0.5 * h * h));
+
+        let spread = state.rotation_radius + h * twist.angular.norm().hi();
+        let now = long * (state.position_radius + reach * state.rotation_radius);
+        let first = long * (state.linear_radius + reach * state.angular_radius)
+            + reach * length(across) * state.rotation_radius;
+        let second = (along - Interval::point(c)).mag()
+            + reach * ((turned - IntervalVec3::point(q)).norm().hi() + turned.norm().hi() * spread);
+        let size = long * (length(state.position) + reach)
+            + h * long * (length(state.linear) + reach * length(state.angular))
+            + 0.5 * h * h * (c.abs() + reach * length(q));
+        let error = now + h * first + 0.5 * h * h * second + ROUNDINGS * size;
+        // Sums and products of fewer than 32 bounds; what underflow takes is less than the smallest normal number.
+        let error = error * (1.0 + 16.0 * f64::EPSILON) + f64::MIN_POSITIVE;
+        // No term is larger than the sum of them, so that nothing below is infinite or no number.
+        (error < MOST && size < MOST).then(|| Self {
+            controls: [(f0 - f1 + f2, e0 - e1 + e2), (f0 - f2, e0 - e2), (f0 + f1 + f2, e0 + e1 + e2)],
+            at: state.at,
+            error,
+        })
+    }
+
+    /// The greatest value of each coefficient over the vertices of a body, with the errors; `sign` −1 for the least one.
+    fn furthest(&self, body: &Moving<'_>, sign: f64) -> [f64; 3] {
+        let mut most = [f64::NEG_INFINITY; 3];
+        for vertex in body.body.mesh().vertices() {
+            let e = *vertex - self.at;
+            for (most, (value, direction)) in most.iter_mut().zip(&self.controls) {
+                *most = most.max(sign * (value + direction.dot(e)));
+            }
+        }
+        most.map(|value| value + self.error)
+    }
+}
+
+impl Advance<'_> {
+    /// Proven free until the end of a span, by the plane that the span before was free by.
+    pub(super) fn behind_the_plane(&mut self) -> Option<f64> {
+        let (n, mut long) = self.plane.known.take()?;
+        let least = GROWTH * self.expected_span(self.largest);
+        while long >= least && !self.meter.is_exhausted() {
+            let until = (self.now + long).min(self.end_of_piece()?);
+            let gap = self.gap_until(n, until)?;
+            let next = gap.part_that_closes().clamp(LEAST_PART, MOST_PART) * (until - self.now);
+            if gap.beyond > 0.0 {
+                #[cfg(feature = "audit")]
+                self.conclude(Place::Plane, until, self.tolerance, 0.0);
+                self.plane = PlaneSearch { known: Some((n, next)), ..PlaneSearch::START };
+                return Some(until);
+            }
+            long = next.min(0.5 * long);
+        }
+        None
+    }
+
+    /// After fitted twists came near: looks for a plane between the bodies, for spans that are longer than the next one of those.
+    pub(super) fn seek_plane(&mut self, contact: &Contact) {
+        let (remaining, span) = (self.window.end() - self.now, self.expected_span(self.largest));
+        if self.plane.wait > 1 {
+            self.plane.wait -= 1;
+        } else if remaining > AHEAD * span {
+            self.plane.between = self.plane.between.saturating_mul(PATIENCE);
+            self.plane.wait = self.plane.between;
+            self.plane.known = self.best_normal(contact).map(|n| (n, AHEAD * span));
+        }
+    }
+
+    /// Of the contact's normal and those of its two triangles, from A to B, the one along which the bodies are furthest apart now.
+    fn best_normal(&mut self, contact: &Contact) -> Option<DVec3> {
+        let poses = self.poses_at(self.now);
+        let triangles = [contact.triangle_a, contact.triangle_b];
+        let faces = [0, 1].map(|k| {
+            let [p, q, r] = self.bodies[k].body.mesh().corners(triangles[k] as usize);
+            let n = poses[k].0.transform_vector((q - p).cross(r - p)).normalize_or_zero();
+            if n.dot(contact.normal) < 0.0 { -n } else { n }
+        });
+        let gap = |n: DVec3| self.gap_along(n, Interval::point(self.now), self.now).beyond;
+        let all = [contact.normal, faces[0], faces[1]];
+        let best = all.into_iter().filter(|n| n.is_finite() && *n != DVec3::ZERO);
+        best.map(|n| (n, gap(n))).max_by(|x, y| x.1.total_cmp(&y.1)).map(|(n, _)| n)
+    }
+
+    /// How far the bodies stay apart along the direction up to a time; `None` where time has no numbers in between.
+    fn gap_until(&mut self, n: DVec3, until: f64) -> Option<Gap> {
+        let middle = self.now + 0.5 * (until - self.now);
+        // What is not a number is not ahead.
+        if !(self.now < middle && middle < until) {
+            return None;
+        }
+        let vertices: usize = self.bodies.iter().map(|body| body.body.mesh().vertex_count()).sum();
+        let node_tests = TESTS_A_PLANE + (vertices / VERTICES_A_TEST) as u64;
+        self.count(&SearchCounts { node_tests, ..SearchCounts::default() });
+        Some(self.gap_along(n, Interval::new(self.now, until), middle))
+    }
+
+    /// How far the bodies are apart at all times of a span, along a direction from A to B.
+    fn gap_along(&self, n: DVec3, span: Interval, middle: f64) -> Gap {
+        let [a, b] = &self.bodies;
+        let origin = b.motion.pose_and_twist(middle).0.translation;
+        let [Some(ahead), Some(behind)] = [a, b].map(|body| Reach::new(body, n, span, middle, origin)) else {
+            return Gap::UNKNOWN;
+        };
+        let (high, low) = (ahead.furthest(a, 1.0), behind.furthest(b, -1.0));
+        // −(high + low), rounded down: the sum is off by half a unit in its last place.
+        let gaps = high.into_iter().zip(low).map(|(high, low)| -(high + low).next_up());
+        // Four roundings at most, of half a unit in the last place each.
+        let level = (self.options.min_separation + self.tolerance) * length(n) * (1.0 + 4.0 * f64::EPSILON);
+        let beyond = (gaps.fold(f64::INFINITY, f64::min) - level).next_down();
+        Gap { beyond, lost: ahead.error + behind.error }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{MeshTree, TriMesh};
+    use d2m_motion::{Chain, Joint, JointKind, JointValue, RigidMotion};
+    use d2m_testing::{Draw, KnuthRandom, Surface};
+    use glam::DQuat;
+
+    fn joint(random: &mut KnuthRandom, turns: bool) -> Joint {
+        let value =
+            JointValue::try_polynomial((0..4).map(|_| 2.0 * random.signed()).collect::<Vec<_>>()).unwrap();
+        let axis = random.vector();
+        let kind =
+            if turns { JointKind::Revolute { axis, value } } else { JointKind::Prismatic { axis, value } };
+        Joint::try_new(random.vector(), DQuat::IDENTITY, kind).unwrap()
+    }
+
+    /// No vertex is ever beyond the greatest coefficient, and what is lost goes like the third power of the span.
+    #[test]
+    fn a_body_stays_within_its_reach() {
+        let mut random = KnuthRandom(17);
+        let tree = MeshTree::new(Surface::cube(0.5).map(|p| p + DVec3::X).into_mesh(TriMesh::try_new));
+        for round in 0..200 {
+            let joints = (0..3).map(|k| joint(&mut random, k != round % 3)).collect();
+            let motion = Chain::try_new(joints).unwrap();
+            let body = Moving::new(&tree, &motion);
+            let (n, middle) = (random.vector(), random.signed());
+            let mut lost = f64::INFINITY;
+            for half in [0.015_625, 0.007_812_5, 0.003_906_25] {
+                let span = Interval::new(middle - half, middle + half);
+                let reach = Reach::new(&body, n, span, middle, DVec3::ONE).unwrap();
+                for sign in [-1.0, 1.0] {
+                    let most = reach.furthest(&body, sign).into_iter().fold(f64::NEG_INFINITY, f64::max);
+                    for k in -8..=8 {
+                        let (pose, _) = motion.pose_and_twist(middle + half * f64::from(k) / 8.0);
+                        for vertex in tree.mesh().vertices() {
+                            let at = sign * n.dot(pose.transform_point(*vertex) - DVec3::ONE);
+                            assert!(at <= most + 1e-13, "{round} {half} {k}: {at} {most}");
+                        }
+                    }
+                }
+                assert!(reach.error < 0.2 * lost, "{round} {half}: {} after {lost}", reach.error);
+                lost = reach.error;
+            }
+        }
+    }
+
+    /// What is known of nothing, or too large, is never apart.
+    #[test]
+    fn what_is_not_a_number_is_unknown() {
+        let tree = MeshTree::new(Surface::cube(0.5).into_mesh(TriMesh::try_new));
+        let flies = d2m_motion::ConstantTwist::REST.with_linear_velocity(DVec3::X * 1e300);
+        let body = Moving::new(&tree, &flies);
+        for n in [DVec3::X, DVec3::X * 1e10, DVec3::splat(f64::NAN)] {
+            assert!(Reach::new(&body, n, Interval::new(0.0, 1e20), 1e10, DVec3::ZERO).is_none());
+        }
+        assert!(Gap::UNKNOWN.beyond < 0.0 && Gap::UNKNOWN.part_that_closes().is_nan());
+    }
+}
