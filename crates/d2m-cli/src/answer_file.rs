@@ -1,6 +1,7 @@
 //! An answer as `d2m toc --json`, `d2m clearance --json` or `d2m spans --json` printed it, read again. What contradicts itself, or is about other bodies, is refused by name: the
 //! verifier judges what an answer promises, so everything else that it says is compared here.
 
+use crate::arguments::StartChoice;
 use crate::engine::Pair;
 use crate::failure::{Failure, parse_json};
 use crate::verification::{PairVerifier, Promise};
@@ -28,15 +29,28 @@ struct About {
     clearance: Option<[f64; 2]>,
 }
 
+/// What the answer has to be about.
+pub(crate) struct Question<'a> {
+    pub(crate) motions: [&'a dyn RigidMotion; 2],
+    pub(crate) window: Window,
+    /// None: as the answer says.
+    pub(crate) start: Option<StartChoice>,
+}
+
 /// Reads an answer of `d2m toc`, `d2m clearance` or `d2m spans` and holds it against the bodies and the window: all that it promises.
 pub(crate) fn read_answer(
     place: &str,
     bytes: &[u8],
     verifier: &PairVerifier<'_>,
-    motions: [&dyn RigidMotion; 2],
-    window: Window,
+    question: &Question<'_>,
 ) -> Result<Vec<Promise>, Failure> {
+    let Question { motions, window, start } = *question;
     let mut object: Value = parse_json(place, bytes)?;
+    let is_leaving = object.get("left").is_some();
+    if start.is_some_and(|start| is_leaving != (start == StartChoice::Leave)) {
+        let found = if is_leaving { "leave" } else { "report" };
+        return Err(Failure::at(place, format!("start: it is an answer to --start {found}")));
+    }
     let file = AnswerFile { place, verifier, pair: verifier.pair, window };
     if let Some(text) = object.get("feature").and_then(Value::as_str) {
         let feature = parse_feature(text).ok_or_else(|| Failure::at(place, format!("feature: {text:?}")))?;

@@ -5,6 +5,7 @@ mod at_rest;
 pub(crate) use at_rest::{CollideArguments, DistanceArguments, PosedArguments, ProximitiesArguments};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use d2m::bvh::Start;
 use std::path::PathBuf;
 
 /// Certified continuous collision detection: when do two moving rigid bodies first touch?
@@ -157,12 +158,35 @@ pub(crate) struct TocArguments {
     /// Also write both meshes, posed at the contact, as an OBJ file
     #[arg(long, value_name = "FILE")]
     pub(crate) obj: Option<String>,
+    #[command(flatten)]
+    pub(crate) further: FurtherArguments,
+}
+
+/// What is asked besides the first contact.
+#[derive(Debug, Clone, Copy, Default, Args)]
+pub(crate) struct FurtherArguments {
     /// Of bodies that stay apart also state how near they come: "clearance": [lo, hi]
     #[arg(long)]
     pub(crate) clearance: bool,
     /// Bodies in contact at the start: report it, or let it go until they are proven apart ("left": [lo, hi]) and find what they meet then
-    #[arg(long, value_enum, default_value_t = StartChoice::Report)]
-    pub(crate) start: StartChoice,
+    /// [default: report]
+    #[arg(long, value_enum)]
+    pub(crate) start: Option<StartChoice>,
+}
+
+impl FurtherArguments {
+    pub(crate) fn leaves(&self) -> bool {
+        self.start == Some(StartChoice::Leave)
+    }
+}
+
+impl From<StartChoice> for Start {
+    fn from(choice: StartChoice) -> Self {
+        match choice {
+            StartChoice::Report => Self::Report,
+            StartChoice::Leave => Self::Leave,
+        }
+    }
 }
 
 /// What counts of bodies that are in contact at the start.
@@ -220,6 +244,9 @@ pub(crate) struct VerifyArguments {
     /// First and last time
     #[arg(long, value_name = "T0,T1", default_value = "0,1", allow_hyphen_values = true)]
     pub(crate) window: String,
+    /// What the answer is of: with leave it has to say when the bodies had parted
+    #[arg(long, value_enum)]
+    pub(crate) start: Option<StartChoice>,
     #[command(flatten)]
     pub(crate) query: QueryArguments,
     /// Answer as one JSON object
@@ -234,7 +261,8 @@ Trials: 26 numbers a line (a header line is allowed): qA(w,x,y,z), xA, vA, wA, q
 Results: trial,status,toc,toc_hi,separation,microseconds,normal_x,normal_y,normal_z,point_x,point_y,point_z,feature,
 triangle_a,triangle_b,evidence,tolerance. toc is the certified start of the time bracket (inf: separated; undecided: the window is
 proven free until then); the point lies on A; evidence is crossing, near or early and tolerance the one that was used, as
-d2m toc --help explains. What an answer does not have is empty.
+d2m toc --help explains. What an answer does not have is empty. With --start leave two columns left_lo,left_hi follow (when the bodies had
+parted; empty where they never did), with --clearance two columns clearance_lo,clearance_hi (of bodies that stay apart).
 
 Exit codes: 0 answered, 2 bad usage, 3 bad input. No results are written unless all trials are answered. With --resume the answers so far stay
 in R.csv.part if the run is ended, and the next run with --resume and the same inputs goes on behind them.
@@ -262,6 +290,8 @@ pub(crate) struct BatchArguments {
     /// Prove this share of the answers again (1: all); an answer that is refuted ends the command with exit code 20
     #[arg(long, value_name = "SHARE", num_args = 0..=1, default_missing_value = "1")]
     pub(crate) verify: Option<String>,
+    #[command(flatten)]
+    pub(crate) further: FurtherArguments,
     #[command(flatten)]
     pub(crate) query: QueryArguments,
 }
@@ -413,10 +443,13 @@ pub(crate) struct SimulateArguments {
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
-A scene: {\"window\": [0, 1], \"bodies\": [{\"name\", \"mesh\", \"scale\", \"motion\", \"group\", \"solid\"}, ...],
-\"ignore\": [[\"arm\", \"base\"], ...], \"min_separation\": 0, \"tolerance\": 1e-10}. A mesh is a file, relative to the scene's folder, or shape:...;
-scale is one number or three; a motion has any JSON form of d2m toc, at rest if left out; solid is whether the mesh is watertight if
-left out, and what is inside a solid body is in contact with it; ignore lists pairs of names of bodies or groups.
+A scene: {\"window\": [0, 1], \"bodies\": [{\"name\", \"mesh\", \"scale\", \"radius\", \"motion\", \"group\", \"solid\"}, ...],
+\"ignore\": [[\"arm\", \"base\"], ...], \"min_separation\": 0, \"tolerance\": 1e-10, \"start\": \"report\" or \"leave\",
+\"pairs\": [{\"a\", \"b\", \"start\", \"min_separation\"}, ...]}. A mesh is a file, relative to the scene's folder, or shape:...;
+scale is one number or three; a body is everything within radius of its mesh; a motion has any JSON form of d2m toc, at rest if left out;
+solid is whether the mesh is watertight if left out, and what is inside a solid body is in contact with it; ignore lists pairs of names
+of bodies or groups; pairs states what two bodies have of their own. With start leave a contact at the start is let go until the bodies
+are proven apart (\"left\": [lo, hi]), and the answer is what they meet then; those that never part are in contact from the start.
 
 The answer lists the first contact of each pair, sorted by time; pairs that are proven apart all the time are left out. With --first the
 search stops at the first contact of all; contacts whose time brackets overlap its bracket are listed too. Before a bracket nothing of
@@ -433,6 +466,9 @@ pub(crate) struct SceneArguments {
     /// Stop at the first contact of all
     #[arg(long)]
     pub(crate) first: bool,
+    /// What counts of bodies that are in contact at the start, instead of what the file says of the scene (pairs may have their own)
+    #[arg(long, value_enum)]
+    pub(crate) start: Option<StartChoice>,
     /// Threads [default: all of the machine]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,

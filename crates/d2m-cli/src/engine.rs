@@ -1,6 +1,6 @@
 //! One prepared pair of bodies for every method.
 
-use crate::arguments::{Method, QueryArguments, SolidArguments};
+use crate::arguments::{FurtherArguments, Method, QueryArguments, SolidArguments};
 use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::output::note;
@@ -8,8 +8,8 @@ use crate::sizes::{size_of, warn_of_sizes};
 use crate::trials::Trial;
 use d2m::bvh::{
     Budget, Clearance, ClearanceOptions, ContactSpan, Departure, MeshTree, Mode, Moving, Posed, QueryError,
-    QueryOptions, Solid, TimeOfContact, Topology, TriMesh, Window, clearance, contact_spans, departure,
-    distance, time_of_contact,
+    QueryOptions, Solid, StartState, TimeOfContact, Topology, TriMesh, Window, clearance, contact_spans,
+    departure, distance, time_of_contact,
 };
 use d2m::motion::{AnyMotion, RigidMotion};
 use d2m::paper::{self, SphereTree};
@@ -82,10 +82,29 @@ pub(crate) struct ClearanceAnswer {
     pub(crate) took: Duration,
 }
 
+/// What was queried besides the first contact.
+#[derive(Debug, Default)]
+pub(crate) struct Further {
+    pub(crate) clearance: Option<Clearance>,
+    pub(crate) departure: Option<Departure>,
+}
+
+impl Further {
+    /// How the bodies stand at the start of the window. What the query does not know begins apart: it would be in contact there.
+    pub(crate) fn start(&self, verdict: &TimeOfContact) -> StartState {
+        match (&self.departure, verdict) {
+            (Some(departure), _) => departure.start,
+            (None, TimeOfContact::Contact(contact)) => contact.start,
+            (None, _) => StartState::Apart,
+        }
+    }
+}
+
 /// An answer with the time that the query alone took.
 pub(crate) struct Answer {
     pub(crate) verdict: TimeOfContact,
     pub(crate) took: Duration,
+    pub(crate) further: Further,
 }
 
 impl Pair {
@@ -120,15 +139,36 @@ impl Pair {
     }
 
     /// The answer of a trial.
-    pub(crate) fn answer_trial(&self, trial: &Trial) -> Result<Answer, Failure> {
+    pub(crate) fn answer_trial(&self, trial: &Trial, wanted: FurtherArguments) -> Result<Answer, Failure> {
         check_size("motion of A", &trial.motion_a, &self.a)?;
         check_size("motion of B", &trial.motion_b, &self.b)?;
-        self.answer(&trial.motion_a, &trial.motion_b, trial.window)
+        self.answer_with([&trial.motion_a, &trial.motion_b], trial.window, wanted)
+    }
+
+    /// The first contact, or that after the bodies have parted, and what else is wanted.
+    pub(crate) fn answer_with(
+        &self,
+        [a, b]: [&AnyMotion; 2],
+        window: Window,
+        wanted: FurtherArguments,
+    ) -> Result<Answer, Failure> {
+        let mut answer = if wanted.leaves() {
+            let (found, took) = self.departure([a, b], window)?;
+            let further = Further { departure: Some(found), clearance: None };
+            Answer { verdict: found.answer, took, further }
+        } else {
+            self.answer(a, b, window)?
+        };
+        // After bodies have parted their least distance over the window is another question.
+        if wanted.clearance && answer.verdict.is_separated() {
+            answer.further.clearance = Some(self.clearance([a, b], window, None)?.found);
+        }
+        Ok(answer)
     }
 
     /// The time of contact in a window. The reference method is called piece by piece where both motions have constant
     /// twists, and the first contact is the answer; the default engine needs no such help.
-    pub(crate) fn answer(&self, a: &AnyMotion, b: &AnyMotion, window: Window) -> Result<Answer, Failure> {
+    fn answer(&self, a: &AnyMotion, b: &AnyMotion, window: Window) -> Result<Answer, Failure> {
         if matches!(self.a.tree, Tree::Engine(_)) {
             return self.answer_smooth([a, b], window);
         }
@@ -138,8 +178,8 @@ impl Pair {
             let pieces = a.constant_twist_from(start).zip(b.constant_twist_from(start));
             let Some((piece_a, piece_b)) = pieces else {
                 let rest = part(start, window.end())?;
-                let Answer { verdict, took: last } = self.answer_smooth([a, b], rest)?;
-                return Ok(Answer { verdict, took: took + last });
+                let answer = self.answer_smooth([a, b], rest)?;
+                return Ok(Answer { took: took + answer.took, ..answer });
             };
             let ends = [piece_a.until, piece_b.until].into_iter().flatten();
             let end = ends.fold(window.end(), f64::min);
@@ -169,7 +209,8 @@ impl Pair {
         accuracy: Option<f64>,
     ) -> Result<ClearanceAnswer, Failure> {
         let [a, b] = self.moving(motions, "clearance")?;
-        let mut options = ClearanceOptions::default().with_budget(self.options.budget).with_parallel(true);
+        let mut options = ClearanceOptions::default().with_budget(self.options.budget);
+        options.parallel = self.options.parallel;
         options.tolerance = self.options.tolerance;
         options.accuracy = accuracy.unwrap_or(options.accuracy);
         let start = Instant::now();
@@ -237,7 +278,7 @@ impl Pair {
         };
         let took = start.elapsed();
         let verdict = verdict.map_err(|error| bad_input(error, [a, b], window))?;
-        Ok(Answer { verdict, took })
+        Ok(Answer { verdict, took, further: Further::default() })
     }
 }
 

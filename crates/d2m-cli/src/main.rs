@@ -22,6 +22,7 @@ mod robot_scene;
 mod scene;
 mod simulation;
 mod sizes;
+mod travel;
 mod trials;
 mod verification;
 mod view;

@@ -30,6 +30,12 @@ pub(crate) fn short(number: f64) -> String {
     }
 }
 
+/// Four digits that count.
+pub(crate) fn digits(number: f64) -> String {
+    let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
+    short(rounded)
+}
+
 /// Writes to standard output.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     print_bytes(text.as_bytes())

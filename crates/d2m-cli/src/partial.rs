@@ -72,7 +72,7 @@ fn fingerprint(arguments: &BatchArguments) -> Result<u64, Failure> {
             hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
         }
     };
-    add(format!("{:?}", arguments.query).as_bytes());
+    add(format!("{:?} {:?}", arguments.query, arguments.further).as_bytes());
     for input in [Path::new(&arguments.a), Path::new(&arguments.b), &arguments.trials] {
         add(input.as_os_str().as_encoded_bytes());
         if input.is_file() {

@@ -1,8 +1,9 @@
 //! Answers as text, CSV fields and JSON.
 
-use crate::engine::{Answer, Pair};
+use crate::arguments::FurtherArguments;
+use crate::engine::{Answer, Further, Pair};
 use crate::output::short;
-use d2m::bvh::{Clearance, Contact, Departure, Evidence, Solid, StartState, TimeOfContact, Window};
+use d2m::bvh::{Contact, Evidence, Solid, StartState, TimeOfContact, Window};
 use d2m::feature::FeaturePair;
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -88,26 +89,9 @@ pub(crate) fn vector(v: DVec3) -> String {
     format!("({x}, {y}, {z})")
 }
 
-/// What was queried besides the first contact.
-#[derive(Debug, Default)]
-pub(crate) struct Further {
-    pub(crate) clearance: Option<Clearance>,
-    pub(crate) departure: Option<Departure>,
-}
-
-impl Further {
-    /// How the bodies stand at the start of the window. What the query does not know begins apart: it would be in contact there.
-    fn start(&self, verdict: &TimeOfContact) -> StartState {
-        match (&self.departure, verdict) {
-            (Some(departure), _) => departure.start,
-            (None, TimeOfContact::Contact(contact)) => contact.start,
-            (None, _) => StartState::Apart,
-        }
-    }
-}
-
 /// The answer for a person.
-pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer, further: &Further) -> String {
+pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
+    let further = &answer.further;
     let mut text = String::new();
     let mut line = |label: &str, value: String| {
         let _ = writeln!(text, "  {label:<12}{value}"); // writing to a string cannot fail
@@ -234,7 +218,8 @@ fn contact_lines(line: &mut dyn FnMut(&str, String), contact: &Contact, pair: &P
 }
 
 /// The answer for a program.
-pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer, further: &Further) -> String {
+pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer) -> String {
+    let further = &answer.further;
     let mut object = json!({
         "status": status(&answer.verdict),
         "microseconds": microseconds(answer.took),
@@ -249,7 +234,8 @@ pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer, further: &Furth
     };
     // The fields of the API under their own names, and the bracket and the feature as in result files.
     if let Ok(Value::Object(fields)) = serde_json::to_value(answer.verdict) {
-        for (key, value) in fields {
+        // When bodies had parted is said below, where it was asked.
+        for (key, value) in fields.into_iter().filter(|(key, _)| key != "left") {
             put(&key, value);
         }
     }
@@ -276,22 +262,29 @@ pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer, further: &Furth
     format!("{object}\n")
 }
 
+/// The columns of every result CSV.
+const CSV_COLUMNS: &str = "trial,status,toc,toc_hi,separation,microseconds,normal_x,normal_y,normal_z,point_x,point_y,point_z,feature,triangle_a,triangle_b,evidence,tolerance";
+
 /// The header of a result CSV.
-pub(crate) const CSV_HEADER: &str = "trial,status,toc,toc_hi,separation,microseconds,normal_x,normal_y,normal_z,point_x,point_y,point_z,feature,triangle_a,triangle_b,evidence,tolerance\n";
+pub(crate) fn csv_header(wanted: FurtherArguments) -> String {
+    let left = if wanted.leaves() { ",left_lo,left_hi" } else { "" };
+    let clearance = if wanted.clearance { ",clearance_lo,clearance_hi" } else { "" };
+    format!("{CSV_COLUMNS}{left}{clearance}\n")
+}
 
 /// One line of a result CSV: numbers with 17 digits; what a verdict does not have is empty.
-pub(crate) fn csv_line(trial: usize, answer: &Answer) -> String {
+pub(crate) fn csv_line(trial: usize, answer: &Answer, wanted: FurtherArguments) -> String {
     let microseconds = microseconds(answer.took);
     let status = status(&answer.verdict);
-    match &answer.verdict {
-        TimeOfContact::Separated => format!("{trial},{status},inf,inf,,{microseconds:.3},,,,,,,,,,,\n"),
+    let mut line = match &answer.verdict {
+        TimeOfContact::Separated => format!("{trial},{status},inf,inf,,{microseconds:.3},,,,,,,,,,,"),
         TimeOfContact::Undecided { clear_until } => {
-            format!("{trial},{status},{clear_until:.16e},inf,,{microseconds:.3},,,,,,,,,,,\n")
+            format!("{trial},{status},{clear_until:.16e},inf,,{microseconds:.3},,,,,,,,,,,")
         }
         TimeOfContact::Contact(contact) => {
             let three = |v: DVec3| format!("{:.16e},{:.16e},{:.16e}", v.x, v.y, v.z);
             format!(
-                "{trial},{status},{:.16e},{:.16e},{:.16e},{microseconds:.3},{},{},{},{},{},{},{:.16e}\n",
+                "{trial},{status},{:.16e},{:.16e},{:.16e},{microseconds:.3},{},{},{},{},{},{},{:.16e}",
                 contact.time_lo,
                 contact.time_hi,
                 contact.separation,
@@ -304,5 +297,17 @@ pub(crate) fn csv_line(trial: usize, answer: &Answer) -> String {
                 contact.tolerance,
             )
         }
+    };
+    let mut put = |bounds: Option<[f64; 2]>| {
+        line += &bounds.map_or_else(|| ",,".to_owned(), |[lo, hi]| format!(",{lo:.16e},{hi:.16e}"));
+    };
+    let Further { clearance, departure } = &answer.further;
+    if wanted.leaves() {
+        put(departure.and_then(|found| found.left).map(Into::into));
     }
+    if wanted.clearance {
+        put(clearance.map(|found| [found.lower, found.upper]));
+    }
+    line.push('\n');
+    line
 }

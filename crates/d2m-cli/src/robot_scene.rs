@@ -16,7 +16,7 @@ use std::sync::Arc;
 const SCENE_KEYS: &[&str] = &["window", "bodies", "ignore", "min_separation", "tolerance"];
 const BODY_KEYS: &[&str] = &["name", "mesh", "scale", "motion", "group", "solid", "radius", "pose", "attach"];
 /// Of a body, those that other scenes do not have.
-const ROBOT_KEYS: &[&str] = &["radius", "pose", "attach"];
+const ROBOT_KEYS: &[&str] = &["pose", "attach"];
 
 /// A scene file that was read, but for its meshes.
 pub(crate) struct RobotSceneFile<'a> {
@@ -114,7 +114,6 @@ fn add_body(
 ) -> Result<String, Failure> {
     let frame = frame(fields)?;
     let link = fields.text("attach")?;
-    let radius = fields.number("radius")?.unwrap_or(0.0);
     let moves = fields.get("motion").is_some_and(|motion| !motion.is_null());
     if let Some(other) = [("attach", link.is_some()), ("pose", frame.is_some())]
         .into_iter()
@@ -125,7 +124,7 @@ fn add_body(
     let body = SceneBody::read(fields.without(ROBOT_KEYS), fields.place(), window, library)?;
     let at = frame.unwrap_or(Frame { position: DVec3::ZERO, orientation: DQuat::IDENTITY });
     let fault = |error: d2m_robot::RobotError| Failure::at(fields.place(), error);
-    let (name, tree) = (body.name.clone(), Arc::clone(&body.tree));
+    let (name, tree, radius) = (body.name.clone(), Arc::clone(&body.tree), body.radius);
     if let Some(link) = link {
         let attached = Attached::new(&name, link, tree, at.position, at.orientation).map_err(fault)?;
         scene.attach(attached.with_solid(body.solid).with_radius(radius)).map_err(fault)?;

@@ -3,13 +3,11 @@
 use crate::arguments::SizeArguments;
 use crate::failure::Failure;
 use crate::load::{Loaded, load_with};
-use crate::output::note;
-use crate::output::short;
-use d2m::bvh::{TriMesh, Window};
-use d2m::motion::{AnyMotion, RigidMotion};
+use crate::output::{digits, note};
+use crate::travel::Travel;
+use d2m::bvh::TriMesh;
 use d2m_io::{ReadOptions, Unit};
 use glam::DVec3;
-use std::f64::consts::TAU;
 
 /// Loads two meshes in the sizes that the options state.
 pub(crate) fn load_both(a: &str, b: &str, sizes: &SizeArguments) -> Result<[Loaded; 2], Failure> {
@@ -69,41 +67,6 @@ pub(crate) fn warn_of_sizes(a: f64, b: f64) {
     }
 }
 
-/// What a motion does in a window, as a person checks it. It is an estimate: nothing else depends on it.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Travel {
-    /// Length of the path of the point that the motion follows.
-    pub(crate) way: f64,
-    /// Sum of all turning, radians.
-    pub(crate) turn: f64,
-}
-
-impl Travel {
-    /// Sums speeds at the middles of equal parts of the window.
-    pub(crate) fn of(motion: &AnyMotion, window: Window) -> Self {
-        const PARTS: u32 = 1024;
-        let part = window.length() / f64::from(PARTS);
-        let (mut way, mut turn) = (0.0, 0.0);
-        for index in 0..PARTS {
-            let (_, twist) = motion.pose_and_twist(window.start() + part * (f64::from(index) + 0.5));
-            way += twist.linear.length() * part;
-            turn += twist.angular.length() * part;
-        }
-        Self { way, turn }
-    }
-}
-
-/// Warns of a body that turns more than once: often degrees were meant.
-pub(crate) fn warn_of_turn(option: &str, travel: Travel) {
-    // The sum rounds; one whole turn is no surprise.
-    if travel.turn > TAU * (1.0 + 1e-9) {
-        note(&format!(
-            "d2m: warning: {option}: the body turns {} times in the window; angles are radians, or degrees with deg behind the number",
-            digits(travel.turn / TAU)
-        ));
-    }
-}
-
 /// The last line of an answer: how large each body is, and how far it goes and turns in the window.
 pub(crate) fn sizes_line(sizes: [f64; 2], travels: Option<[Travel; 2]>) -> String {
     let one = |index: usize| {
@@ -123,15 +86,10 @@ pub(crate) fn sizes_line(sizes: [f64; 2], travels: Option<[Travel; 2]>) -> Strin
     format!("  {:<12}{} · {}\n", "sizes", one(0), one(1))
 }
 
-/// Four digits that count.
-fn digits(number: f64) -> String {
-    let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
-    short(rounded)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use d2m::bvh::Window;
 
     #[test]
     fn scales_are_one_number_or_three() {

@@ -1,6 +1,6 @@
 //! Answers proven again by the verifier, which shares nothing with the search.
 
-use crate::engine::Pair;
+use crate::engine::{Answer, Further, Pair};
 use crate::failure::Failure;
 use crate::output::short;
 use d2m::bvh::{
@@ -80,6 +80,14 @@ pub(crate) enum Promise {
     Clearance { found: Clearance, accuracy: Option<f64> },
     /// Of `d2m spans`.
     Spans { spans: Vec<ContactSpan>, resolution: f64 },
+}
+
+/// All that an answer promises.
+pub(crate) fn promises_of(answer: &Answer) -> Vec<Promise> {
+    let Further { clearance, departure } = answer.further;
+    let contact = departure.map_or(Promise::Contact(answer.verdict), Promise::Departure);
+    let clearance = clearance.map(|found| Promise::Clearance { found, accuracy: None });
+    std::iter::once(contact).chain(clearance).collect()
 }
 
 /// Proves answers about one pair of meshes again.
@@ -178,6 +186,19 @@ impl<'b> Bodies<'b> {
         let verifier = Verifier::new([Arc::clone(&self.meshes[a]), Arc::clone(&self.meshes[b])]);
         let bodies = [self.bodies[a], self.bodies[b]];
         Proof(verifier.time_of_contact(&bodies, window, options, answer, DEFAULT_STEPS))
+    }
+
+    /// The same of what is said of bodies that part.
+    pub(crate) fn prove_departure(
+        &self,
+        [a, b]: [usize; 2],
+        window: Window,
+        options: &QueryOptions,
+        answer: &Departure,
+    ) -> Proof {
+        let verifier = Verifier::new([Arc::clone(&self.meshes[a]), Arc::clone(&self.meshes[b])]);
+        let bodies = [self.bodies[a], self.bodies[b]];
+        Proof(verifier.departure(&bodies, window, options, answer, DEFAULT_STEPS))
     }
 }
 

@@ -113,7 +113,9 @@ fn doubtful_turns_are_warned_of() {
     let trials = folder.file("t.csv", "2,0,0,0,-3,0,0,4,0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0\n");
     let run = d2m(&["batch", CUBE, CUBE, "--trials", &trials, "--out", "-"]);
     assert!(
-        stderr(&run).contains("1 trials have a quaternion that is not of length 1, the first in line 1"),
+        stderr(&run).contains(
+            "1 trials have a quaternion that is not of length 1, which is normalized, the first in line 1"
+        ),
         "{}",
         stderr(&run)
     );

@@ -15,7 +15,7 @@
 //!
 //! ## Motions and scenes
 //! - [`read_motion`]: the motion of a JSON file.
-//! - [`SceneFile`] and [`SceneEntry`]: scenes; [`parse_scale`]: their key `scale`.
+//! - [`SceneFile`], [`SceneEntry`] and [`ScenePair`]: scenes; [`parse_scale`] and [`parse_start`]: keys of them.
 //!
 //! ## Files of any kind
 //! [`read_bytes`] and [`read_unsized`]; [`parse_json`] with [`UniqueKeys`], [`json_fault`]; [`excerpt`] for
@@ -33,6 +33,8 @@ mod json;
 mod mesh;
 mod motion;
 mod scene;
+mod scene_fault;
+mod scene_pair;
 mod text;
 mod write;
 
@@ -45,5 +47,6 @@ pub use mesh::{
 };
 pub use motion::read_motion;
 pub use scene::{SceneEntry, SceneFile, parse_scale};
+pub use scene_pair::{ScenePair, parse_start};
 pub use text::excerpt;
 pub use write::{glb_bytes, obj_text, ply_bytes};

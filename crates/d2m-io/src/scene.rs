@@ -1,12 +1,15 @@
 //! Scene files: bodies with their meshes and motions.
 
-use crate::{IoError, Place, ReadOptions, UniqueKeys, parse_json, read_bytes, read_mesh_with};
-use d2m_bvh::{MeshTree, Window};
+use crate::scene_fault::{check_distance, fault};
+use crate::{
+    IoError, ReadOptions, ScenePair, UniqueKeys, parse_json, parse_start, read_bytes, read_mesh_with,
+};
+use d2m_bvh::{MeshTree, Start, Window};
 use d2m_motion::{AnyMotion, ConstantTwist};
 use glam::DVec3;
 use serde::Deserialize;
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// What a scene file says, checked, with its meshes still as names.
@@ -37,6 +40,10 @@ pub struct SceneFile {
     pub min_separation: f64,
     /// The tolerance, a positive distance, if it is given.
     pub tolerance: Option<f64>,
+    /// What counts of bodies that are in contact at the start.
+    pub start: Start,
+    /// What single pairs have of their own. No two are of the same pair.
+    pub pairs: Vec<ScenePair>,
 }
 
 /// One body of a scene file.
@@ -63,6 +70,8 @@ pub struct SceneEntry {
     pub group: Option<String>,
     /// Does it count as a solid? None: if its mesh is watertight.
     pub solid: Option<bool>,
+    /// The body is everything within this distance of its mesh; finite, not negative, zero if left out.
+    pub radius: f64,
 }
 
 /// The keys of a scene file; what is inside of them is checked one by one, so that messages can say where.
@@ -78,6 +87,10 @@ struct SceneForm {
     min_separation: f64,
     #[serde(default)]
     tolerance: Option<f64>,
+    #[serde(default)]
+    start: Option<Value>,
+    #[serde(default)]
+    pairs: Vec<UniqueKeys>,
 }
 
 /// The keys of a body.
@@ -94,12 +107,8 @@ struct EntryForm {
     group: Option<String>,
     #[serde(default)]
     solid: Option<bool>,
-}
-
-/// A fault at an item of a scene.
-fn fault(item: impl Into<String>, reason: impl std::fmt::Display) -> IoError {
-    let place = Place { item: Some(item.into()), ..Place::default() };
-    IoError::Content { place, reason: reason.to_string() }
+    #[serde(default)]
+    radius: f64,
 }
 
 impl SceneFile {
@@ -124,10 +133,7 @@ impl SceneFile {
         let [start, end] = form.window.unwrap_or([0.0, 1.0]);
         let window = Window::try_new(start, end).map_err(|error| fault("window", error))?;
         let separation = form.min_separation;
-        if !(separation >= 0.0 && separation.is_finite()) {
-            let what = "a finite distance that is not negative";
-            return Err(fault("min_separation", format!("{separation:?} is not {what}")));
-        }
+        check_distance("min_separation", separation)?;
         if let Some(tolerance) =
             form.tolerance.filter(|tolerance| !(*tolerance > 0.0 && tolerance.is_finite()))
         {
@@ -158,7 +164,19 @@ impl SceneFile {
             }
             ignore.push(pair);
         }
-        Ok(Self { window, bodies, ignore, min_separation: separation, tolerance: form.tolerance })
+        let start = parse_start(form.start.as_ref()).map_err(|reason| fault("start", reason))?;
+        let names: BTreeSet<&str> = names.keys().map(String::as_str).collect();
+        let pairs = ScenePair::parse_all(form.pairs, &names)?;
+        let tolerance = form.tolerance;
+        Ok(Self {
+            window,
+            bodies,
+            ignore,
+            min_separation: separation,
+            tolerance,
+            start: start.unwrap_or_default(),
+            pairs,
+        })
     }
 }
 
@@ -189,7 +207,9 @@ impl SceneEntry {
                 serde_json::from_value(value).map_err(|error| fault(format!("{place}, motion"), error))?
             }
         };
-        Ok(Self { name: form.name, mesh: form.mesh, scale, motion, group: form.group, solid: form.solid })
+        check_distance(&format!("{place}, radius"), form.radius)?;
+        let EntryForm { name, mesh, group, solid, radius, .. } = form;
+        Ok(Self { name, mesh, scale, motion, group, solid, radius })
     }
 
     /// Reads the mesh and builds its tree; `folder` is that of the scene file.
@@ -218,7 +238,7 @@ impl SceneEntry {
 
 /// A fault of a scene that may be a simulation.
 fn hinted(text: String) -> String {
-    const OF_SIMULATIONS: [&str; 4] = ["simulation", "kind", "density", "mass"];
+    const OF_SIMULATIONS: [&str; 6] = ["simulation", "kind", "density", "mass", "joints", "velocity"];
     if OF_SIMULATIONS.iter().any(|key| text.contains(&format!("unknown field `{key}`"))) {
         format!("{text}; a simulation is run by d2m simulate SCENE.json --out RUN.jsonl")
     } else {

@@ -25,6 +25,7 @@ pub type SharedMotion = Arc<dyn RigidMotion + Send + Sync>;
 /// assert_eq!(body.tree().mesh().triangle_count(), 12);
 /// assert!(body.motion().constant_twist().is_some());
 /// assert_eq!((body.solid(), body.group()), (Some(Solid::Surface), Some(Group(1))));
+/// assert_eq!(body.with_radius(0.25).radius(), 0.25);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone)]
@@ -33,6 +34,7 @@ pub struct Body {
     motion: SharedMotion,
     solid: Option<Solid>,
     group: Option<Group>,
+    radius: f64,
 }
 
 /// Names a group of bodies, for [`World::ignore_groups`](crate::World::ignore_groups): a number that the user chooses.
@@ -65,7 +67,7 @@ impl Body {
 
     /// A body with this mesh and a motion that others may hold too.
     pub fn with_shared(tree: Arc<MeshTree>, motion: SharedMotion) -> Self {
-        Self { tree, motion, solid: None, group: None }
+        Self { tree, motion, solid: None, group: None, radius: 0.0 }
     }
 
     /// The same body with another motion.
@@ -87,6 +89,14 @@ impl Body {
     #[must_use]
     pub const fn with_group(mut self, group: Group) -> Self {
         self.group = Some(group);
+        self
+    }
+
+    /// The same body with a radius: it is everything within this distance of its mesh, so that a point is a sphere, a segment a capsule
+    /// and a box a rounded box ([`Moving::with_radius`]). What is negative or not finite is refused by the next query of one of its pairs.
+    #[must_use]
+    pub const fn with_radius(mut self, radius: f64) -> Self {
+        self.radius = radius;
         self
     }
 
@@ -115,9 +125,14 @@ impl Body {
         self.group
     }
 
+    /// The distance from its mesh within which everything belongs to the body.
+    pub const fn radius(&self) -> f64 {
+        self.radius
+    }
+
     /// The form that the pair queries take.
     pub fn moving(&self) -> Moving<'_> {
-        Moving { solid: self.solid, ..Moving::new(&self.tree, &*self.motion) }
+        Moving { solid: self.solid, radius: self.radius, ..Moving::new(&self.tree, &*self.motion) }
     }
 
     pub(crate) fn set_motion(&mut self, motion: SharedMotion) {

@@ -40,7 +40,7 @@ impl MovingSphere {
     /// Holds the body where its motion is known, for times since `start`; none if its twist is not constant.
     ///
     /// The reference point of a constant twist moves in a straight line, and every point of the body is within
-    /// |center of the body − reference point| + radius of it.
+    /// |center of the mesh − reference point| + radius of the mesh + radius of the body about its mesh of it.
     pub(crate) fn enclose(body: &Body, start: f64) -> Option<Self> {
         let twist = body.motion().constant_twist()?;
         let since = Interval::point(start) - Interval::point(twist.reference_time());
@@ -48,8 +48,13 @@ impl MovingSphere {
         let off = IntervalVec3::point(body.tree().center()) - twist.at();
         let center = path.mid();
         let rounded = (path - center).norm();
-        let radius = (off.norm() + rounded + Interval::point(body.tree().radius())).hi();
-        radius.is_finite().then_some(Self { center, velocity: twist.linear_velocity(), radius })
+        let reach = Interval::point(body.tree().radius()) + Interval::point(body.radius());
+        let radius = (off.norm() + rounded + reach).hi();
+        (radius.is_finite() && body.radius() >= 0.0).then_some(Self {
+            center,
+            velocity: twist.linear_velocity(),
+            radius,
+        })
     }
 
     /// When the two may come within `separation` first, from `begin` to `end`, times since both spheres begin.

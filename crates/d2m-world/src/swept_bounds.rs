@@ -14,6 +14,7 @@ pub(crate) const SLICES: usize = 16;
 pub(crate) struct CoveredBody<'a> {
     tree: &'a MeshTree,
     motion: CoveredMotion<'a>,
+    radius: f64,
 }
 
 impl<'a> CoveredBody<'a> {
@@ -22,7 +23,8 @@ impl<'a> CoveredBody<'a> {
     /// # Errors
     /// The motion does not cover both.
     pub(crate) fn try_new(body: &'a Body, from: f64, to: f64) -> Result<Self, OutsideDomain> {
-        Ok(Self { tree: body.tree(), motion: CoveredMotion::try_new(body.motion(), from, to)? })
+        let motion = CoveredMotion::try_new(body.motion(), from, to)?;
+        Ok(Self { tree: body.tree(), motion, radius: body.radius() })
     }
 
     fn part(self, from: f64, to: f64) -> Option<Self> {
@@ -44,7 +46,17 @@ impl SweptBox {
     /// Encloses every point of a body at every time of its span.
     pub(crate) fn enclose(body: CoveredBody<'_>) -> Self {
         let bounds: IntervalVec3 = body.tree.enclose_placed(&body.motion.enclose_pose());
-        Self { low: bounds.lo(), high: bounds.hi() }
+        Self { low: bounds.lo(), high: bounds.hi() }.grown(body.radius)
+    }
+
+    /// Holds what is within a radius of the box. A radius that is none (negative, not finite) makes a box that excludes nothing, so
+    /// that the query of a pair refuses it.
+    fn grown(self, radius: f64) -> Self {
+        if radius == 0.0 {
+            return self;
+        }
+        let by = if radius > 0.0 && radius.is_finite() { radius } else { f64::NAN };
+        Self { low: self.low.map(|x| (x - by).next_down()), high: self.high.map(|x| (x + by).next_up()) }
     }
 
     /// Holds both: everything if an end of one is not a number.

@@ -1,7 +1,9 @@
 //! Worlds of bodies with all kinds of motions, filters, removals and changes in any order, against brute force over all
 //! pairs: the same verdicts, brackets that overlap, and the same bits at any number of threads.
 
-use d2m_bvh::{Contact, MeshTree, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact};
+use d2m_bvh::{
+    Contact, MeshTree, QueryOptions, Solid, Start, TimeOfContact, TriMesh, Window, time_of_contact,
+};
 use d2m_motion::{Chain, Joint, JointKind, JointValue, Keyframes, Pose, Span, Spline, SplineDegree};
 use d2m_motion::{ConstantTwist, RigidMotion, ScrewMotion};
 use d2m_testing::{Draw, KnuthRandom, Opaque};
@@ -333,17 +335,96 @@ fn any_number_of_threads_gives_the_same_bits() {
     assert_eq!(answers[0], answers[2]);
 }
 
-/// A world asks about parts of a window: what is in contact at the start of one is never let go.
+/// What is in contact at the start of a window is let go, whatever windows were asked about before, and only where that is said.
 #[test]
-fn a_world_lets_no_contact_go() {
+fn a_world_lets_go_what_is_to_leave() {
     let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=1&y=1&z=1").unwrap()));
-    let mut world = World::new(QueryOptions::default().with_start(d2m_bvh::Start::Leave));
-    world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+    let mut world = World::new(QueryOptions::default().with_start(Start::Leave));
+    let table = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+    // Overlaps the table by 1, has left it at 0.25 and meets the lamp at 2.
     let lifted = ConstantTwist::REST.with_position(DVec3::Y).with_linear_velocity(DVec3::Y * 4.0);
-    world.add(Body::new(cube, lifted));
-    let FirstContact::Contact { contact, .. } = world.first_contact(Window::UNIT).unwrap() else {
-        panic!("they overlap at the start")
-    };
-    assert_eq!(contact.time_lo, 0.0);
-    assert_eq!(world.contacts(Window::UNIT).unwrap().len(), 1);
+    let part = world.add(Body::new(Arc::clone(&cube), lifted));
+    let lamp = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST.with_position(DVec3::Y * 11.0)));
+    assert_eq!(world.first_contact(Window::UNIT).unwrap(), FirstContact::Separated);
+    let whole = Window::try_new(0.0, 3.0).unwrap();
+    for window in [whole, Window::try_new(0.1, 3.0).unwrap(), Window::try_new(1.0, 3.0).unwrap(), whole] {
+        let all = world.contacts(window).unwrap();
+        assert_eq!(all.len(), 1, "{window:?}: {all:?}");
+        let contact = all[0].answer.contact().expect("no budget");
+        assert_eq!((all[0].a, all[0].b), (part, lamp));
+        assert!(contact.time_lo <= 2.0 && contact.time_lo > 2.0 - 1e-9, "{contact:?}");
+        // These two begin apart.
+        let left = contact.left.expect("they are apart");
+        assert_eq!([left.lo, left.hi], [window.start(); 2]);
+        let FirstContact::Contact { a, b, contact, .. } = world.first_contact(window).unwrap() else {
+            panic!("{window:?}")
+        };
+        assert!((a, b) == (part, lamp) && contact.left.is_some());
+    }
+    // Bodies that never part in the window are in contact from its start, whatever a longer window says.
+    for end in [0.2, 1.0, 0.2] {
+        let all = world.contacts(Window::try_new(0.0, end).unwrap()).unwrap();
+        assert_eq!(all.len(), usize::from(end < 0.25), "{end}");
+        let never_left = |pair: &PairContact| pair.answer.contact().is_some_and(|c| c.left.is_none());
+        assert!(all.iter().all(never_left));
+    }
+    world.set_start(part, table, Some(Start::Report));
+    let all = world.contacts(whole).unwrap();
+    assert_eq!((all.len(), all[0].a, all[0].clear_until()), (2, table, 0.0));
+    world.set_start(part, table, None);
+    assert_eq!(world.contacts(whole).unwrap().len(), 1);
+    // It comes back: the contact after the departure, and when they had parted.
+    let thrown = ConstantTwist::REST
+        .with_position(DVec3::new(1.5, 0.0, 0.0))
+        .with_linear_velocity(DVec3::ZERO)
+        .with_angular_velocity(DVec3::Z * core::f64::consts::TAU)
+        .with_at(DVec3::new(3.0, 0.0, 0.0));
+    world.remove(lamp);
+    world.set_motion(part, thrown);
+    let again = world.contacts(Window::UNIT).unwrap();
+    let contact = again[0].answer.contact().expect("no budget");
+    let left = contact.left.expect("they part");
+    assert!(
+        0.0 < left.lo && left.lo <= left.hi && left.hi < contact.time_lo && contact.time_lo < 1.0,
+        "{contact:?}"
+    );
+}
+
+/// Spheres, capsules and rounded boxes at the surfaces that their radii make, against the broad phase as well as in pairs.
+#[test]
+fn radii_count_in_every_question() {
+    let point = Arc::new(MeshTree::new(TriMesh::point(DVec3::ZERO).unwrap()));
+    let rod = Arc::new(MeshTree::new(TriMesh::segment(-DVec3::Y, DVec3::Y).unwrap()));
+    let mut world = World::new(QueryOptions::default().with_tolerance(1e-10));
+    let coming = ConstantTwist::REST.with_position(DVec3::X * 4.0).with_linear_velocity(DVec3::X * -4.0);
+    let ball = world.add(Body::new(Arc::clone(&point), coming).with_radius(0.25));
+    let post = world.add(Body::new(rod, ConstantTwist::REST).with_radius(0.75));
+    // 3 away from the way of the ball: 0.1 more than their radii.
+    let moon = ConstantTwist::REST.with_position(DVec3::new(2.0, 0.0, 3.0));
+    let moon = world.add(Body::new(point, moon).with_radius(2.65));
+    let all = world.contacts(Window::UNIT).unwrap();
+    let pairs: Vec<_> = all.iter().map(|pair| (pair.a, pair.b)).collect();
+    assert_eq!(pairs, [(ball, post)], "{all:?}");
+    let contact = all[0].answer.contact().expect("no budget");
+    assert!(contact.time_lo <= 0.75 && contact.time_lo > 0.75 - 1e-9, "{contact:?}");
+    assert!((contact.point_b - DVec3::X * 0.75).length() < 1e-9, "{contact:?}");
+    world.set_body(moon, world.body(moon).clone().with_radius(2.8));
+    assert!(world.contacts(Window::UNIT).unwrap().iter().any(|pair| (pair.a, pair.b) == (ball, moon)));
+    world.remove(moon);
+    let near = world.proximities(0.5, &d2m_bvh::ProximityOptions::new(1.1)).unwrap();
+    let [only] = &near[0].proximities[..] else { panic!("{near:?}") };
+    assert!((only.distance - 1.0).abs() < 1e-12 && (only.point_a.x - 1.75).abs() < 1e-12, "{only:?}");
+    assert!(world.proximities(0.5, &d2m_bvh::ProximityOptions::new(0.9)).unwrap().is_empty());
+    assert!(world.proximities(0.9, &d2m_bvh::ProximityOptions::new(0.9)).is_err());
+    for bad in [-1.0, f64::NAN, f64::INFINITY] {
+        world.set_body(
+            ball,
+            world
+                .body(ball)
+                .clone()
+                .with_motion(ConstantTwist::REST.with_position(DVec3::X * 1e3))
+                .with_radius(bad),
+        );
+        assert!(world.first_contact(Window::UNIT).is_err(), "{bad}");
+    }
 }

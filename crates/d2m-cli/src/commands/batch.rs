@@ -8,8 +8,10 @@ use crate::output::{Output, note, progress_bar};
 use crate::partial::Partial;
 use crate::report;
 use crate::sizes::load_both;
+use crate::travel::Travel;
 use crate::trials::{self, Trial};
-use crate::verification::{PairVerifier, Promise};
+use crate::verification::{PairVerifier, joined, promises_of};
+use d2m::motion::RigidMotion;
 use rayon::prelude::*;
 use std::path::Path;
 use std::time::Instant;
@@ -24,6 +26,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
             "standard input cannot be read again: name a file with --trials",
         ));
     }
+    let wanted = arguments.further;
     let trials = trials::load(&arguments.trials)?;
     let [a, b] = load_both(&arguments.a, &arguments.b, &arguments.query.sizes)?;
     let pair = Pair::new(a, b, &arguments.query)?;
@@ -36,7 +39,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
     bar.set_position(known as u64);
     let start = Instant::now();
     let answer = |(index, trial): (usize, &Trial)| {
-        let answer = pair.answer_trial(trial);
+        let answer = pair.answer_trial(trial, wanted);
         bar.inc(1);
         let place = || format!("{}, line {} (trial {index})", arguments.trials.display(), trial.line);
         answer.map_err(|failure| Failure::at(place(), failure))
@@ -57,20 +60,22 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
         };
         let found = found?;
         if let Some(partial) = &mut partial {
-            let lines =
-                found.iter().enumerate().map(|(index, answer)| report::csv_line(first + index, answer));
+            let lines = found
+                .iter()
+                .enumerate()
+                .map(|(index, answer)| report::csv_line(first + index, answer, wanted));
             partial.append(&lines.collect::<String>())?;
         }
         answers.extend(found);
     }
     let elapsed = start.elapsed();
     bar.finish_and_clear();
-    let mut text = report::CSV_HEADER.to_owned();
+    let mut text = report::csv_header(wanted);
     if let Some(partial) = &partial {
         text.push_str(partial.lines());
     } else {
         for (trial, answer) in answers.iter().enumerate() {
-            text.push_str(&report::csv_line(trial, answer));
+            text.push_str(&report::csv_line(trial, answer, wanted));
         }
     }
     out.write(&text)?;
@@ -95,17 +100,26 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
 /// Trials that are kept together by `--resume`: some milliseconds to a second of work.
 const PART: usize = 256;
 
-/// One warning for all quaternions that are not of length one.
+/// One warning for all quaternions that are not of length one, and one for all bodies that turn more than once.
 fn warn_of_orientations(arguments: &BatchArguments, trials: &[Trial]) {
-    let mut odd = trials.iter().filter(|trial| trial.has_odd_orientation);
-    if let Some(first) = odd.next() {
-        note(&format!(
-            "d2m: warning: {}: {} trials have a quaternion that is not of length 1, the first in line {}; they are normalized",
-            arguments.trials.display(),
-            1 + odd.count(),
-            first.line
-        ));
-    }
+    let warn = |is_odd: &dyn Fn(&Trial) -> bool, what: &str| {
+        let mut odd = trials.iter().filter(|trial| is_odd(trial));
+        if let Some(first) = odd.next() {
+            note(&format!(
+                "d2m: warning: {}: {} trials have {what}, the first in line {}",
+                arguments.trials.display(),
+                1 + odd.count(),
+                first.line
+            ));
+        }
+    };
+    warn(&|trial| trial.has_odd_orientation, "a quaternion that is not of length 1, which is normalized");
+    let turns = |trial: &Trial| {
+        [&trial.motion_a, &trial.motion_b]
+            .into_iter()
+            .any(|motion| Travel::of(motion, trial.window).turns_far())
+    };
+    warn(&turns, "a body that turns more than once in the window (angles are radians)");
 }
 
 /// Proves a share of the answers again, evenly spread.
@@ -115,8 +129,9 @@ fn prove(share: &str, pair: &Pair, trials: &[Trial], answers: &[Answer]) -> Resu
     let is_chosen = |index: usize| ((index + 1) as f64 * share).floor() > (index as f64 * share).floor();
     let (mut verified, mut count, mut outcome) = (0, 0, Outcome::Answered);
     for (index, (trial, answer)) in trials.iter().zip(answers).enumerate().filter(|(k, _)| is_chosen(*k)) {
-        let promise = Promise::Contact(answer.verdict);
-        let proof = verifier.prove([&trial.motion_a, &trial.motion_b], trial.window, &promise);
+        let motions: [&dyn RigidMotion; 2] = [&trial.motion_a, &trial.motion_b];
+        let promises = promises_of(answer);
+        let proof = joined(promises.iter().map(|promise| verifier.prove(motions, trial.window, promise)));
         count += 1;
         verified += u32::from(proof.is_verified());
         if !proof.is_verified() {

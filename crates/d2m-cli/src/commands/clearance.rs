@@ -1,6 +1,6 @@
 //! `d2m clearance`: how near do two moving meshes come?
 
-use super::toc::{MovingPair, prove, read, with_proof};
+use super::toc::{MovingPair, prove, read, refuse, with_proof};
 use crate::arguments::ClearanceArguments;
 use crate::engine::{ClearanceAnswer, Pair, number};
 use crate::failure::Failure;
@@ -18,12 +18,9 @@ use std::fmt::Write;
 pub(crate) fn run(arguments: &ClearanceArguments) -> Result<Outcome, Failure> {
     let accuracy = number("--accuracy", &arguments.accuracy, "a positive finite number", |r| r > 0.0)?;
     let toc = &arguments.toc;
-    for (option, given) in
-        [("--min-separation", toc.query.min_separation.is_some()), ("--obj", toc.obj.is_some())]
-    {
-        if given {
-            return Err(Failure::at(option, "d2m clearance has no such option"));
-        }
+    refuse(toc, "clearance")?;
+    if toc.query.min_separation.is_some() {
+        return Err(Failure::at("--min-separation", "d2m clearance has no such option"));
     }
     let MovingPair { pair, motion_a, motion_b, window, travels, .. } = read(toc)?;
     let answer = pair.clearance([&motion_a, &motion_b], window, Some(accuracy))?;

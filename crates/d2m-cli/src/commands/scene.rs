@@ -5,11 +5,13 @@ use crate::engine::number;
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::{print_answer, progress_bar, short};
-use crate::report::{feature_field, vector};
+use crate::report::{feature_field, start_in_json, start_word, vector};
 use crate::scene::{Scene, SceneBody};
 use crate::verification::{Bodies, Proof, joined};
-use d2m::bvh::{Budget, MeshTree, Moving, QueryOptions, TimeOfContact, Window};
-use d2m::{FirstContact, PairContact, WorldError};
+use d2m::bvh::{
+    Budget, Contact, QueryOptions, Start, StartState, TimeOfContact, Window, departure, time_of_contact,
+};
+use d2m::{BodyId, FirstContact, PairContact, WorldError};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::time::Duration;
@@ -18,17 +20,44 @@ use std::time::Duration;
 struct Row {
     bodies: [usize; 2],
     answer: TimeOfContact,
+    /// Of a pair whose contact at the start is let go: how it stood at the start.
+    left_from: Option<StartState>,
 }
 
-impl From<PairContact> for Row {
-    fn from(pair: PairContact) -> Self {
-        Self { bodies: [pair.a.index(), pair.b.index()], answer: pair.answer }
+impl Row {
+    fn new(scene: &Scene, bodies: [BodyId; 2], answer: TimeOfContact) -> Self {
+        let bodies = bodies.map(BodyId::index);
+        let options = scene.pair_options(bodies, QueryOptions::default());
+        let left_from = match (&answer, options.start) {
+            (TimeOfContact::Contact(contact), Start::Leave) => Some(match contact.left {
+                None => contact.start,
+                Some(left) if left.hi <= scene.window.start() => StartState::Apart,
+                Some(_) => at_start(scene, bodies, options.with_start(Start::Report)),
+            }),
+            _ => None,
+        };
+        Self { bodies, answer, left_from }
+    }
+}
+
+/// How bodies that part later stand at the start.
+fn at_start(scene: &Scene, bodies: [usize; 2], options: QueryOptions) -> StartState {
+    let [a, b] = bodies.map(|body| scene.bodies[body].moving());
+    let start = scene.window.start();
+    let found = Window::try_new(start, start).ok().map(|now| time_of_contact(a, b, now, &options));
+    match found {
+        Some(Ok(TimeOfContact::Contact(contact))) => contact.start,
+        Some(Ok(TimeOfContact::Separated)) => StartState::Apart,
+        _ => StartState::Undecided,
     }
 }
 
 /// Runs the command.
 pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
-    let scene = Scene::read(&arguments.scene)?;
+    let mut scene = Scene::read(&arguments.scene)?;
+    if let Some(start) = arguments.start {
+        scene = scene.with_start(start.into());
+    }
     let mut options = QueryOptions::default();
     if let Some(text) = &arguments.time_limit {
         let is_time = |seconds: f64| Duration::try_from_secs_f64(seconds).is_ok();
@@ -45,19 +74,20 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
     };
+    let row = |pair: PairContact| Row::new(&scene, [pair.a, pair.b], pair.answer);
     let rows: Vec<Row> = pool.install(|| {
         if !arguments.first {
             let contacts = world.contacts_with_progress(scene.window, &progress).map_err(named)?;
-            return Ok::<_, Failure>(contacts.into_iter().map(Row::from).collect());
+            return Ok::<_, Failure>(contacts.into_iter().map(row).collect());
         }
         Ok(match world.first_contact_with_progress(scene.window, &progress).map_err(named)? {
             FirstContact::Separated => Vec::new(),
             FirstContact::Undecided { clear_until, a, b, .. } => {
-                vec![Row { bodies: [a.index(), b.index()], answer: TimeOfContact::Undecided { clear_until } }]
+                vec![Row::new(&scene, [a, b], TimeOfContact::Undecided { clear_until })]
             }
             FirstContact::Contact { a, b, contact, overlapping, .. } => {
-                let first = Row { bodies: [a.index(), b.index()], answer: TimeOfContact::Contact(contact) };
-                std::iter::once(first).chain(overlapping.into_iter().map(Row::from)).collect()
+                let first = Row::new(&scene, [a, b], TimeOfContact::Contact(contact));
+                std::iter::once(first).chain(overlapping.into_iter().map(row)).collect()
             }
         })
     })?;
@@ -83,12 +113,7 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
 
 /// Proves the first contact of all again: each pair that is not in the answer is apart until the first one.
 fn prove(scene: &Scene, rows: &[Row]) -> Result<Proof, Failure> {
-    let moving = scene.bodies.iter().map(|body: &SceneBody| {
-        let tree: &MeshTree = &body.tree;
-        Moving::new(tree, &body.motion).with_solid(body.solid)
-    });
-    let bodies = Bodies::new(moving.collect())?;
-    let options = scene.options(QueryOptions::default());
+    let bodies = Bodies::new(scene.bodies.iter().map(SceneBody::moving).collect())?;
     let first = match rows.first().map(|row| &row.answer) {
         Some(TimeOfContact::Contact(contact)) if contact.time_lo < scene.window.end() => {
             TimeOfContact::Undecided { clear_until: contact.time_lo }
@@ -96,12 +121,25 @@ fn prove(scene: &Scene, rows: &[Row]) -> Result<Proof, Failure> {
         None | Some(TimeOfContact::Separated | TimeOfContact::Contact(_)) => TimeOfContact::Separated,
         Some(undecided) => *undecided,
     };
-    let proofs = scene.pairs().into_iter().map(|pair| {
+    let mut proofs = Vec::new();
+    for pair in scene.pairs() {
+        let options = scene.pair_options(pair, QueryOptions::default());
         let [a, b] = pair;
         let reported = rows.iter().find(|row| row.bodies == [a, b] || row.bodies == [b, a]);
         let (pair, answer) = reported.map_or((pair, &first), |row| (row.bodies, &row.answer));
-        bodies.prove(pair, scene.window, &options, answer)
-    });
+        if options.start == Start::Report {
+            proofs.push(bodies.prove(pair, scene.window, &options, answer));
+            continue;
+        }
+        // The answer says when bodies have parted only of those that meet again.
+        let [a, b] = pair.map(|body| scene.bodies[body].moving());
+        let mut found =
+            departure(a, b, scene.window, &options).map_err(|error| Failure::at("--verify", error))?;
+        if let Some(row) = reported {
+            found.answer = row.answer;
+        }
+        proofs.push(bodies.prove_departure(pair, scene.window, &options, &found));
+    }
     Ok(joined(proofs))
 }
 
@@ -112,15 +150,19 @@ fn json(window: Window, names: &[&str], rows: &[Row]) -> String {
         .map(|row| {
             let [a, b] = row.bodies.map(|body| names[body]);
             match &row.answer {
-                TimeOfContact::Contact(contact) => json!({
-                    "a": a, "b": b, "status": "contact",
-                    "toc": contact.time_lo, "toc_hi": contact.time_hi,
-                    "separation": contact.separation, "tolerance": contact.tolerance,
-                    "evidence": contact.evidence.to_string(),
-                    "normal": contact.normal.to_array(), "point": contact.point_a.to_array(),
-                    "feature": feature_field(contact.feature),
-                    "triangle_a": contact.triangle_a, "triangle_b": contact.triangle_b,
-                }),
+                TimeOfContact::Contact(contact) => with_start(
+                    row,
+                    contact,
+                    json!({
+                        "a": a, "b": b, "status": "contact",
+                        "toc": contact.time_lo, "toc_hi": contact.time_hi,
+                        "separation": contact.separation, "tolerance": contact.tolerance,
+                        "evidence": contact.evidence.to_string(),
+                        "normal": contact.normal.to_array(), "point": contact.point_a.to_array(),
+                        "feature": feature_field(contact.feature),
+                        "triangle_a": contact.triangle_a, "triangle_b": contact.triangle_b,
+                    }),
+                ),
                 TimeOfContact::Undecided { clear_until } => {
                     json!({ "a": a, "b": b, "status": "undecided", "toc": clear_until })
                 }
@@ -129,6 +171,17 @@ fn json(window: Window, names: &[&str], rows: &[Row]) -> String {
         })
         .collect();
     format!("{}\n", json!({ "window": [window.start(), window.end()], "contacts": contacts }))
+}
+
+/// A contact with how the bodies stood at the start and, where that was let go, when they had parted.
+fn with_start(row: &Row, contact: &Contact, mut object: Value) -> Value {
+    let start = row.left_from.unwrap_or(contact.start);
+    object["start"] = json!(start_in_json(start));
+    object["start_proven"] = json!(start != StartState::Undecided);
+    if row.left_from.is_some() {
+        object["left"] = json!(contact.left);
+    }
+    object
 }
 
 fn pairs(count: usize) -> String {
@@ -153,11 +206,12 @@ fn text(window: Window, names: &[&str], rows: &[Row]) -> String {
         let _ = match &row.answer {
             TimeOfContact::Contact(contact) => writeln!(
                 text,
-                "  t = {:<22} {pair}: {} at {}, {:.2e} apart then",
+                "  t = {:<22} {pair}: {} at {}, {:.2e} apart then{}",
                 short(contact.time_lo),
                 contact.evidence,
                 vector(contact.point_a),
-                contact.separation
+                contact.separation,
+                departure_words(row, contact)
             ),
             TimeOfContact::Undecided { clear_until } => {
                 writeln!(
@@ -170,4 +224,16 @@ fn text(window: Window, names: &[&str], rows: &[Row]) -> String {
         };
     }
     text
+}
+
+/// What became of a contact at the start.
+fn departure_words(row: &Row, contact: &Contact) -> String {
+    match (row.left_from, contact.left) {
+        (None, _) => String::new(),
+        (Some(start), None) => format!("; {} from the start, and never proven apart", start_word(start)),
+        (Some(StartState::Apart), Some(_)) => "; apart at the start".to_owned(),
+        (Some(start), Some(left)) => {
+            format!("; {} at the start, proven apart at {}", start_word(start), short(left.hi))
+        }
+    }
 }

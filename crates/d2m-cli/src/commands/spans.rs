@@ -1,6 +1,6 @@
 //! `d2m spans`: which times of a window are proven clear?
 
-use super::toc::{MovingPair, prove, read, with_proof};
+use super::toc::{MovingPair, prove, read, refuse, with_proof};
 use crate::arguments::SpansArguments;
 use crate::engine::number;
 use crate::failure::Failure;
@@ -19,9 +19,7 @@ const RESOLUTION: f64 = 1e-6;
 /// Runs the command.
 pub(crate) fn run(arguments: &SpansArguments) -> Result<Outcome, Failure> {
     let toc = &arguments.toc;
-    if toc.obj.is_some() {
-        return Err(Failure::at("--obj", "d2m spans has no such option"));
-    }
+    refuse(toc, "spans")?;
     let given = arguments.resolution.as_deref();
     let resolution = given.map(|text| number("--resolution", text, "a positive finite time", |t| t > 0.0));
     let resolution = resolution.transpose()?;

@@ -1,14 +1,15 @@
 //! `d2m toc`: one query.
 
-use crate::arguments::{StartChoice, TocArguments};
-use crate::engine::{Answer, Pair, check_size};
+use crate::arguments::TocArguments;
+use crate::engine::{Pair, check_size};
 use crate::failure::Failure;
 use crate::motion::{parse_motion, parse_window, require_window};
 use crate::outcome::Outcome;
 use crate::output::{Output, print_answer};
 use crate::report;
-use crate::sizes::{Travel, load_both, sizes_line, warn_of_turn};
-use crate::verification::{PairVerifier, Promise, Proof, joined};
+use crate::sizes::{load_both, sizes_line};
+use crate::travel::{Travel, warn_of_turn};
+use crate::verification::{PairVerifier, Promise, Proof, joined, promises_of};
 use d2m::bvh::{TimeOfContact, TriMesh, Window};
 use d2m::motion::{AnyMotion, RigidMotion};
 use std::fmt::Write;
@@ -44,30 +45,15 @@ pub(super) fn read(arguments: &TocArguments) -> Result<MovingPair, Failure> {
     check_size("--motion-a", &motion_a, &pair.a)?;
     check_size("--motion-b", &motion_b, &pair.b)?;
     let travels = [&motion_a, &motion_b].map(|motion| Travel::of(motion, window));
+    warn_of_turn("--motion-a", travels[0]);
+    warn_of_turn("--motion-b", travels[1]);
     Ok(MovingPair { pair, motion_a, motion_b, window, obj, travels })
 }
 
 /// Runs the command.
 pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
     let MovingPair { pair, motion_a, motion_b, window, obj, travels } = read(arguments)?;
-    let departure = match arguments.start {
-        StartChoice::Leave => Some(pair.departure([&motion_a, &motion_b], window)?),
-        StartChoice::Report => None,
-    };
-    let answer = match &departure {
-        Some((found, took)) => Answer { verdict: found.answer, took: *took },
-        None => pair.answer(&motion_a, &motion_b, window)?,
-    };
-    warn_of_turn("--motion-a", travels[0]);
-    warn_of_turn("--motion-b", travels[1]);
-    let departure = departure.map(|(found, _)| found);
-    let mut promises = vec![departure.map_or(Promise::Contact(answer.verdict), Promise::Departure)];
-    let clearance = match &answer.verdict {
-        TimeOfContact::Separated if arguments.clearance => {
-            Some(pair.clearance([&motion_a, &motion_b], window, None)?.found)
-        }
-        _ => None,
-    };
+    let answer = pair.answer_with([&motion_a, &motion_b], window, arguments.further)?;
     if let Some(scene) = obj {
         let time = match &answer.verdict {
             TimeOfContact::Contact(contact) => contact.time_lo,
@@ -82,16 +68,27 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
         }
         scene.write(&text)?;
     }
-    promises.extend(clearance.map(|found| Promise::Clearance { found, accuracy: None }));
-    let proof = prove(arguments, &pair, [&motion_a, &motion_b], window, &promises)?;
-    let further = report::Further { clearance, departure };
+    let proof = prove(arguments, &pair, [&motion_a, &motion_b], window, &promises_of(&answer))?;
     print_answer(&if arguments.json {
-        with_proof(arguments, report::json(&pair, window, &answer, &further), proof)?
+        with_proof(arguments, report::json(&pair, window, &answer), proof)?
     } else {
-        with_proof(arguments, report::text(&pair, window, &answer, &further), proof)?
+        with_proof(arguments, report::text(&pair, window, &answer), proof)?
             + &sizes_line(pair.sizes(), Some(travels))
     })?;
     Ok(Outcome::from(&answer.verdict).reported(arguments.exit_status))
+}
+
+/// Refuses what only `d2m toc` has.
+pub(super) fn refuse(arguments: &TocArguments, command: &str) -> Result<(), Failure> {
+    let given = [
+        ("--obj", arguments.obj.is_some()),
+        ("--start", arguments.further.start.is_some()),
+        ("--clearance", arguments.further.clearance),
+    ];
+    match given.into_iter().find(|(_, given)| *given) {
+        Some((option, _)) => Err(Failure::at(option, format!("d2m {command} has no such option"))),
+        None => Ok(()),
+    }
 }
 
 /// What is promised, proven again if that is wanted.

@@ -1,6 +1,6 @@
 //! `d2m verify`: an answer of `d2m toc`, `d2m clearance` or `d2m spans` proven again.
 
-use crate::answer_file::read_answer;
+use crate::answer_file::{Question, read_answer};
 use crate::arguments::VerifyArguments;
 use crate::engine::{Pair, check_size};
 use crate::failure::Failure;
@@ -25,7 +25,8 @@ pub(crate) fn run(arguments: &VerifyArguments) -> Result<Outcome, Failure> {
     check_size("--motion-a", &motion_a, &pair.a)?;
     check_size("--motion-b", &motion_b, &pair.b)?;
     let verifier = PairVerifier::new(&pair)?;
-    let promises = read_answer(place, &bytes, &verifier, [&motion_a, &motion_b], window)?;
+    let question = Question { motions: [&motion_a, &motion_b], window, start: arguments.start };
+    let promises = read_answer(place, &bytes, &verifier, &question)?;
     let proofs = promises.iter().map(|promise| verifier.prove([&motion_a, &motion_b], window, promise));
     let proof = joined(proofs);
     print(&if arguments.json {

@@ -1,6 +1,6 @@
 //! `d2m view`: a page of HTML that shows moving bodies, or a still image of them.
 
-use crate::arguments::ViewArguments;
+use crate::arguments::{FurtherArguments, ViewArguments};
 use crate::engine::{Pair, check_size, options_of};
 use crate::failure::Failure;
 use crate::motion::{parse_motion, parse_window, require_window};
@@ -82,8 +82,8 @@ fn pair(arguments: &ViewArguments, b: &str) -> Result<Picture, Failure> {
     let pair = Pair::new(a, b, &arguments.query)?.on_all_threads();
     check_size("--motion-a", &motions[0], &pair.a)?;
     check_size("--motion-b", &motions[1], &pair.b)?;
-    let answer = pair.answer(&motions[0], &motions[1], window)?;
-    let text = report::text(&pair, window, &answer, &report::Further::default());
+    let answer = pair.answer_with([&motions[0], &motions[1]], window, FurtherArguments::default())?;
+    let text = report::text(&pair, window, &answer);
     let mut lines = text.lines().map(str::trim);
     let headline = lines.next().unwrap_or_default().to_owned();
     let mut picture = Picture::new(headline, [window.start(), window.end()]);

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::mesh_library::MeshLibrary;
 use crate::motion::require_window;
 use crate::orientation::warn_of_json;
-use d2m::bvh::{MeshTree, Solid, Window};
+use d2m::bvh::{MeshTree, Moving, Solid, Window};
 use d2m::motion::AnyMotion;
 use d2m_io::SceneEntry;
 use serde_json::Value;
@@ -17,6 +17,8 @@ pub(crate) struct SceneBody {
     pub(crate) motion: AnyMotion,
     pub(crate) group: Option<String>,
     pub(crate) solid: Solid,
+    /// The body is everything within this distance of its mesh.
+    pub(crate) radius: f64,
 }
 
 impl SceneBody {
@@ -40,7 +42,7 @@ impl SceneBody {
         window: Window,
         library: &mut MeshLibrary,
     ) -> Result<Self, Failure> {
-        let SceneEntry { name, mesh, scale, motion, group, solid, .. } = entry;
+        let SceneEntry { name, mesh, scale, motion, group, solid, radius, .. } = entry;
         let tree =
             library.tree(&mesh, scale).map_err(|error| Failure::at(format!("{place}, mesh"), error))?;
         // Twice the radius is a bound on the size that spans of keyframes have to meet by.
@@ -57,6 +59,12 @@ impl SceneBody {
             None if !tree.is_watertight() => Solid::Surface,
             Some(true) | None => Solid::Filled,
         };
-        Ok(Self { name, tree, motion, group, solid })
+        Ok(Self { name, tree, motion, group, solid, radius })
+    }
+
+    /// The form that the pair queries take.
+    pub(crate) fn moving(&self) -> Moving<'_> {
+        let tree: &MeshTree = &self.tree;
+        Moving::new(tree, &self.motion).with_solid(self.solid).with_radius(self.radius)
     }
 }

@@ -12,9 +12,10 @@ use crate::failure::Failure;
 use crate::load::read;
 use crate::mesh_library::MeshLibrary;
 use crate::orientation::warn_of_json;
-use d2m::bvh::{QueryOptions, Window};
+use crate::travel::{Travel, warn_of_turn};
+use d2m::bvh::{QueryOptions, Start, Window};
 use d2m::{Body, BodyId, Group, World, WorldError};
-use d2m_io::SceneFile;
+use d2m_io::{SceneFile, ScenePair};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -25,6 +26,8 @@ pub(crate) struct Scene {
     ignored: Vec<Ignored>,
     min_separation: f64,
     tolerance: Option<f64>,
+    start: Start,
+    pairs: BTreeMap<[usize; 2], ScenePair>,
 }
 
 impl Scene {
@@ -36,16 +39,30 @@ impl Scene {
         if let Ok(value) = serde_json::from_slice(&bytes) {
             warn_of_json(&place.to_string(), &value);
         }
-        let SceneFile { window, bodies: entries, ignore, min_separation, tolerance, .. } = file;
+        let SceneFile { window, bodies: entries, ignore, min_separation, tolerance, start, pairs, .. } = file;
         let mut library = MeshLibrary::new(path);
         let mut bodies = Vec::with_capacity(entries.len());
         for (index, entry) in entries.into_iter().enumerate() {
             let place = format!("{place}, body {index} ({:?})", entry.name);
-            bodies.push(SceneBody::new(entry, &place, window, &mut library)?);
+            let body = SceneBody::new(entry, &place, window, &mut library)?;
+            warn_of_turn(&format!("{place}, motion"), Travel::of(&body.motion, window));
+            bodies.push(body);
         }
         let names = Names::new(&bodies);
         let ignored = ignore.iter().map(|[a, b]| names.pair(a, b)).collect();
-        Ok(Self { window, bodies, ignored, min_separation, tolerance })
+        let numbers: BTreeMap<&str, usize> =
+            bodies.iter().enumerate().map(|(index, body)| (body.name.as_str(), index)).collect();
+        let numbered = pairs.into_iter().filter_map(|pair| {
+            let [a, b] = [&pair.a, &pair.b].map(|name| numbers.get(name.as_str()).copied());
+            Some((ascending([a?, b?]), pair))
+        });
+        let pairs = numbered.collect();
+        Ok(Self { window, bodies, ignored, min_separation, tolerance, start, pairs })
+    }
+
+    /// The same with what counts of bodies that are in contact at the start.
+    pub(crate) fn with_start(self, start: Start) -> Self {
+        Self { start, ..self }
     }
 
     /// What stopped a query of the scene's world, with the bodies' names.
@@ -80,9 +97,19 @@ impl Scene {
 
     /// The options of its queries.
     pub(crate) const fn options(&self, options: QueryOptions) -> QueryOptions {
-        let mut options = options.with_min_separation(self.min_separation);
+        let mut options = options.with_min_separation(self.min_separation).with_start(self.start);
         if let Some(tolerance) = self.tolerance {
             options = options.with_tolerance(tolerance);
+        }
+        options
+    }
+
+    /// The options of the queries of a pair.
+    pub(crate) fn pair_options(&self, pair: [usize; 2], options: QueryOptions) -> QueryOptions {
+        let mut options = self.options(options);
+        if let Some(own) = self.pairs.get(&ascending(pair)) {
+            options.min_separation = own.min_separation.unwrap_or(options.min_separation);
+            options.start = own.start.unwrap_or(options.start);
         }
         options
     }
@@ -94,11 +121,16 @@ impl Scene {
         let mut ids: Vec<BodyId> = Vec::with_capacity(self.bodies.len());
         for body in &self.bodies {
             let mut moving = Body::new(body.tree.clone(), body.motion.clone()).with_solid(body.solid);
+            moving = moving.with_radius(body.radius);
             if let Some(name) = &body.group {
                 let next = Group(groups.len() as u32);
                 moving = moving.with_group(*groups.entry(name).or_insert(next));
             }
             ids.push(world.add(moving));
+        }
+        for ([a, b], own) in &self.pairs {
+            world.set_min_separation(ids[*a], ids[*b], own.min_separation);
+            world.set_start(ids[*a], ids[*b], own.start);
         }
         for ignored in &self.ignored {
             match ignored {
@@ -119,6 +151,11 @@ impl Scene {
         }
         world
     }
+}
+
+/// The smaller number first.
+fn ascending([a, b]: [usize; 2]) -> [usize; 2] {
+    [a.min(b), a.max(b)]
 }
 
 /// No two bodies may have the same name.

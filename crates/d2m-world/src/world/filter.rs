@@ -1,15 +1,17 @@
-//! Which pairs are of interest, and how far apart they are to stay.
+//! Which pairs are of interest, how far apart they are to stay, and what counts of those that begin in contact.
 
 use crate::Group;
 use crate::box_tree::IndexPair;
+use d2m_bvh::Start;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Ignored pairs and groups, and separations of single pairs.
+/// Ignored pairs and groups, and what single pairs have of their own.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PairFilter {
     pairs: BTreeSet<IndexPair>,
     groups: BTreeSet<[Group; 2]>,
     separations: BTreeMap<IndexPair, f64>,
+    starts: BTreeMap<IndexPair, Start>,
 }
 
 fn ordered<T: Ord>(a: T, b: T) -> [T; 2] {
@@ -56,6 +58,20 @@ impl PairFilter {
         self.separations.get(&pair).copied().unwrap_or(usual)
     }
 
+    /// Sets what counts of a pair that begins in contact, or nothing of its own.
+    pub(super) fn set_start(&mut self, a: u32, b: u32, start: Option<Start>) {
+        match start {
+            Some(start) => self.starts.insert(ordered(a, b), start),
+            None => self.starts.remove(&ordered(a, b)),
+        };
+    }
+
+    /// What counts of a pair that begins in contact, `usual` if it has nothing of its own.
+    #[inline]
+    pub(super) fn start(&self, pair: IndexPair, usual: Start) -> Start {
+        self.starts.get(&pair).copied().unwrap_or(usual)
+    }
+
     /// The pairs whose own separation is more than `usual`, or no number: boxes that are only `usual` apart do not
     /// prove them apart.
     pub(super) fn wider_than(&self, usual: f64) -> impl Iterator<Item = (IndexPair, f64)> + '_ {
@@ -67,5 +83,6 @@ impl PairFilter {
     pub(super) fn forget(&mut self, body: u32) {
         self.pairs.retain(|pair| !pair.contains(&body));
         self.separations.retain(|pair, _| !pair.contains(&body));
+        self.starts.retain(|pair, _| !pair.contains(&body));
     }
 }

@@ -102,14 +102,13 @@ pub enum Threads {
 
 impl World {
     /// An empty world; `options` hold for every pair, but [`Mode::Exists`] counts as accurate: a world
-    /// promises first contacts. So [`Start::Leave`] counts as [`Start::Report`]: a world asks its pairs about parts of the window, and
-    /// what holds at the start of a part must not be let go. The budget of the options is one for each query of the world, over all pairs.
+    /// promises first contacts. The budget of the options is one for each query of the world, over all pairs. With [`Start::Leave`] what
+    /// holds at the start of a query's window is let go, pair by pair; such pairs are asked anew by each query.
     pub fn new(options: QueryOptions) -> Self {
         let options = match options.mode {
             Mode::Exists => options.with_mode(Mode::Accurate),
             _ => options,
         };
-        let options = options.with_start(Start::Report);
         Self { options, ..Self::default() }
     }
 
@@ -253,6 +252,38 @@ impl World {
         }
         Arc::make_mut(&mut self.filter).set_separation(a.index, b.index, separation);
         self.changed_pairs.push([a.index.min(b.index), a.index.max(b.index)]);
+    }
+
+    /// What counts of these two bodies if they are in contact at the start of a window, instead of what the options say; `None`: what the
+    /// options say. With [`Start::Leave`] the answer of the pair is its first contact after the bodies have parted, with
+    /// [`Contact::left`](d2m_bvh::Contact::left). Nothing happens if one of the two was removed.
+    ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?)); // edges of length 1
+    /// use d2m_bvh::{QueryOptions, Start, Window};
+    /// use d2m_motion::ConstantTwist;
+    /// use d2m_world::{Body, FirstContact, World};
+    /// use glam::DVec3;
+    /// let mut world = World::new(QueryOptions::default());
+    /// let table = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+    /// let lifted = ConstantTwist::REST.with_position(DVec3::Z).with_linear_velocity(DVec3::Z);
+    /// let part = world.add(Body::new(cube, lifted)); // stands on the table
+    /// assert!(matches!(world.first_contact(Window::UNIT)?, FirstContact::Contact { .. }));
+    /// world.set_start(table, part, Some(Start::Leave));
+    /// assert_eq!(world.first_contact(Window::UNIT)?, FirstContact::Separated);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn set_start(&mut self, a: BodyId, b: BodyId, start: Option<Start>) {
+        if !(self.slots.holds(a) && self.slots.holds(b)) {
+            return;
+        }
+        let pair = [a.index.min(b.index), a.index.max(b.index)];
+        Arc::make_mut(&mut self.filter).set_start(a.index, b.index, start);
+        // What was proven of the pair may be about the other question.
+        self.states.remove(&pair);
+        self.changed_pairs.push(pair);
     }
 
     /// How many bodies there are.

@@ -2,10 +2,11 @@
 
 use super::schedule::Uncovered;
 use super::{PairProximities, World, WorldError};
+use crate::Body;
 use crate::box_tree::BoxTree;
 use crate::parallel::{BOXES, PAIRS, map_in_order};
 use crate::swept_bounds::{CoveredBody, SweptBox};
-use d2m_bvh::{Posed, ProximityOptions, proximities_with};
+use d2m_bvh::{Posed, Proximity, ProximityOptions, QueryError, proximities_with};
 
 impl World {
     /// The locally closest features of all pairs at one time, ascending by places: [`d2m_bvh::proximities_with`] of every pair
@@ -49,12 +50,8 @@ impl World {
         pairs.retain(|&pair| !self.filter.ignores(pair, self.slots.groups(pair)));
         pairs.sort_unstable();
         let found = map_in_order(&pairs, PAIRS, |&pair| {
-            let posed = |place: u32| {
-                let body = self.slots.at(place)?;
-                Some(Posed::new(body.tree(), body.motion().pose_and_twist(time).0))
-            };
-            let [Some(a), Some(b)] = pair.map(posed) else { return Ok(Vec::new()) };
-            proximities_with(a, b, options)
+            let [Some(a), Some(b)] = pair.map(|place| self.slots.at(place)) else { return Ok(Vec::new()) };
+            of_pair([a, b], time, options)
         });
         let mut near = Vec::new();
         for (pair, found) in pairs.into_iter().zip(found) {
@@ -66,4 +63,30 @@ impl World {
         }
         Ok(near)
     }
+}
+
+/// The locally closest features of two bodies: those of their meshes, moved to the surfaces that their radii make.
+fn of_pair(bodies: [&Body; 2], time: f64, options: &ProximityOptions) -> Result<Vec<Proximity>, QueryError> {
+    let [a, b] = bodies.map(|body| Posed::new(body.tree(), body.motion().pose_and_twist(time).0));
+    let radii = bodies.map(Body::radius);
+    if let Some(body) = radii.iter().position(|radius| !(radius.is_finite() && *radius >= 0.0)) {
+        return Err(QueryError::BadRadius { body, value: radii[body] });
+    }
+    let both = radii[0] + radii[1];
+    if both == 0.0 {
+        return proximities_with(a, b, options);
+    }
+    let mut wide = *options;
+    wide.margin = (options.margin + both).next_up();
+    let mut found = proximities_with(a, b, &wide)?;
+    for near in &mut found {
+        near.distance -= both;
+        near.point_a += near.normal * radii[0];
+        near.point_b -= near.normal * radii[1];
+    }
+    if let Some(&Proximity { triangle_a, triangle_b, .. }) = found.iter().find(|near| near.distance <= 0.0) {
+        return Err(QueryError::NotApart { triangle_a, triangle_b });
+    }
+    found.retain(|near| near.distance <= options.margin);
+    Ok(found)
 }

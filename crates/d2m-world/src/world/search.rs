@@ -11,8 +11,8 @@ use crate::parallel::{PAIRS, map_in_order};
 #[cfg(feature = "audit")]
 use d2m_bvh::audit::Place;
 use d2m_bvh::{
-    Contact, Meter, PairCache, QueryError, QueryOptions, StartState, TimeOfContact, Window,
-    time_of_contact_with,
+    Contact, Meter, PairCache, QueryError, QueryOptions, Start, StartState, TimeBracket, TimeOfContact,
+    Window, time_of_contact_with,
 };
 use std::collections::HashSet;
 
@@ -35,6 +35,18 @@ struct Question {
     clear_after: f64,
     options: QueryOptions,
     cache: PairCache,
+    kind: Kind,
+}
+
+/// What is asked of a pair.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// Its first contact.
+    Usual,
+    /// The same: it would be let go if it were in contact at the start, but the boxes prove it apart then.
+    BeginsApart,
+    /// Its first contact after it has parted. The answer holds for this window alone and is not kept.
+    Departure,
 }
 
 /// What came of it.
@@ -88,6 +100,14 @@ impl Finding {
             |x: &&(IndexPair, f64), y: &&(IndexPair, f64)| x.1.total_cmp(&y.1).then_with(|| x.0.cmp(&y.0));
         self.undecided.iter().min_by(earlier).copied()
     }
+}
+
+/// The contact of bodies that were apart at that time already, where that is of interest.
+const fn with_start(mut contact: Contact, apart_at: Option<f64>) -> Contact {
+    if let Some(time) = apart_at {
+        contact.left = Some(TimeBracket { lo: time, hi: time });
+    }
+    contact
 }
 
 impl World {
@@ -317,6 +337,12 @@ impl World {
             if meeting.start > self.schedule.from() {
                 self.conclude(Place::BroadPhase, pair, [self.schedule.from(), meeting.start]);
             }
+            let leaves = rules.filter.start(pair, self.options.start) == Start::Leave;
+            if leaves && meeting.start <= window.start() {
+                // Whether and when they part is a question about the whole window.
+                questions.push(self.departure_of(entry, window, separation));
+                continue;
+            }
             let state = self.states.get(&pair);
             let valid = state.filter(|state| {
                 state.versions == entry.versions
@@ -328,7 +354,8 @@ impl World {
                 Some(Known::Contact(contact)) if contact.time_lo >= window.start() => {
                     finding.kept.push(entry);
                     if contact.time_lo <= limit {
-                        finding.contacts.push((pair, **contact));
+                        let begin = window.start();
+                        finding.contacts.push((pair, with_start(**contact, leaves.then_some(begin))));
                     }
                     continue;
                 }
@@ -348,11 +375,27 @@ impl World {
             let (end, clear_until) = if end <= limit { (end, clear_after) } else { (limit, limit) };
             // No window at all: the boxes part before the pair need be queried.
             let Ok(window) = Window::try_new(start, end) else { continue };
-            let options = self.options.with_min_separation(separation);
+            let options = self.options.with_min_separation(separation).with_start(Start::Report);
             let cache = state.map_or_else(PairCache::new, |state| *state.cache);
-            questions.push(Question { pair, entry, window, clear_until, clear_after, options, cache });
+            let kind = if leaves { Kind::BeginsApart } else { Kind::Usual };
+            questions.push(Question { pair, entry, window, clear_until, clear_after, options, cache, kind });
         }
         questions
+    }
+
+    /// The question when a pair parts that may be in contact at the start, and what it meets then.
+    fn departure_of(&self, entry: Entry, window: Window, separation: f64) -> Question {
+        let options = self.options.with_min_separation(separation).with_start(Start::Leave);
+        Question {
+            pair: entry.pair,
+            entry,
+            window,
+            clear_until: window.end(),
+            clear_after: window.end(),
+            options,
+            cache: PairCache::new(),
+            kind: Kind::Departure,
+        }
     }
 
     /// Answers the questions of a round and keeps what is proven.
@@ -383,7 +426,18 @@ impl World {
         for (question, reply) in questions.into_iter().zip(replies) {
             // Also a pair that is answered at once costs something.
             meter.spend(reply.work.max(1));
-            let Question { pair, entry, window, clear_until, clear_after, options, .. } = question;
+            let Question { pair, entry, window, clear_until, clear_after, options, kind, .. } = question;
+            if kind == Kind::Departure && reply.answer.is_ok() {
+                finding.kept.push(entry);
+                match reply.answer {
+                    Ok(TimeOfContact::Contact(contact)) => finding.contacts.push((pair, contact)),
+                    Ok(TimeOfContact::Undecided { clear_until }) => {
+                        finding.undecided.push((pair, clear_until));
+                    }
+                    Ok(TimeOfContact::Separated) | Err(_) => {}
+                }
+                continue;
+            }
             let known = match reply.answer {
                 Err(error) => {
                     let [a, b] = pair.map(|place| self.slots.id(place));
@@ -406,7 +460,8 @@ impl World {
                     if until >= window.start() { Known::ClearUntil(until) } else { Known::Nothing }
                 }
                 Ok(TimeOfContact::Contact(contact)) => {
-                    finding.contacts.push((pair, contact));
+                    let begin = (kind == Kind::BeginsApart).then_some(span_start);
+                    finding.contacts.push((pair, with_start(contact, begin)));
                     finding.kept.push(Entry { time: contact.time_lo, ..entry });
                     Known::Contact(Box::new(contact))
                 }

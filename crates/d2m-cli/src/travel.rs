@@ -1,0 +1,53 @@
+//! How far bodies go and turn.
+
+use crate::output::{digits, note};
+use d2m::bvh::Window;
+use d2m::motion::{AnyMotion, RigidMotion};
+use std::f64::consts::TAU;
+
+/// What a motion does in a window, as a person checks it. It is an estimate: nothing else depends on it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Travel {
+    /// Length of the path of the point that the motion follows.
+    pub(crate) way: f64,
+    /// Sum of all turning, radians.
+    pub(crate) turn: f64,
+}
+
+impl Travel {
+    /// Sums speeds at the middles of equal parts of the window.
+    pub(crate) fn of(motion: &AnyMotion, window: Window) -> Self {
+        const PARTS: u32 = 1024;
+        if let Some(twist) = motion.constant_twist() {
+            let [way, turn] =
+                [twist.linear_velocity(), twist.angular_velocity()].map(|v| v.length() * window.length());
+            return Self { way, turn };
+        }
+        let part = window.length() / f64::from(PARTS);
+        let (mut way, mut turn) = (0.0, 0.0);
+        for index in 0..PARTS {
+            let (_, twist) = motion.pose_and_twist(window.start() + part * (f64::from(index) + 0.5));
+            way += twist.linear.length() * part;
+            turn += twist.angular.length() * part;
+        }
+        Self { way, turn }
+    }
+}
+
+impl Travel {
+    /// Does the body turn more than once? Often degrees were meant.
+    pub(crate) fn turns_far(self) -> bool {
+        // The sum rounds; one whole turn is no surprise.
+        self.turn > TAU * (1.0 + 1e-9)
+    }
+}
+
+/// Warns of a body that turns more than once.
+pub(crate) fn warn_of_turn(place: &str, travel: Travel) {
+    if travel.turns_far() {
+        note(&format!(
+            "d2m: warning: {place}: the body turns {} times in the window; angles are radians, or degrees with deg behind the number",
+            digits(travel.turn / TAU)
+        ));
+    }
+}
