@@ -23,28 +23,37 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// First time of contact of two moving meshes
+    #[command(mut_arg("b", |b| b.required(true)))]
     Toc(TocArguments),
-    /// Least distance of two moving meshes over a window, with its time and points
+    /// Least distance of two moving meshes, or of all bodies of a scene, over a window, with its time and points
     #[command(after_help = "\
 The options and the motions are those of d2m toc. The least distance over the window is proven to lie within [lo, hi], and hi is attained by the
 points at the time that is given; hi - lo is at most max(R * hi, 4 tolerances). Bodies that meet have the clearance [0, 0] and the time of contact.
 A budget or time limit that runs out leaves a wider interval that still holds: undecided.
 
+A scene (.json, as for d2m scene) in place of A and B: the pair of bodies that comes nearest, of all that are not ignored; \"a\" and \"b\" name
+them. With --below D also all pairs that are not proven to stay at least D apart, by their distances (\"pairs\").
+
 Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 clear, 12 undecided.
 
-Example:
-  d2m clearance shape:gear shape:torus --motion-a 'x=-3,0,2.5;v=6,0,0;w=0,0,5'")]
+Examples:
+  d2m clearance shape:gear shape:torus --motion-a 'x=-3,0,2.5;v=6,0,0;w=0,0,5'
+  d2m clearance docs/scenes/robot-arm.json --below 0.1")]
     Clearance(ClearanceArguments),
-    /// Which times of a window are proven clear, and which are in contact
+    /// Which times of a window are proven clear, and which are in contact, of two meshes or of a scene
     #[command(after_help = "\
 The options and the motions are those of d2m toc. The spans are joined, in order, and cover the window. clear: proven further apart than
 --min-separation at every time of the closed span. contact: begins and ends at the window's ends or within the resolution of a time at which the
 bodies are proven within --min-separation plus the tolerance; clear times shorter than the resolution may be inside. undecided: neither is proven.
 
+A scene (.json, as for d2m scene) in place of A and B: the spans in which all pairs are clear, and under \"pairs\" those of each pair that is not
+clear all the time.
+
 Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 if some span is contact, 11 if all is clear, 12 otherwise.
 
-Example:
-  d2m spans shape:box shape:box --motion-a 'x=-4,0,0;v=8,0,0'")]
+Examples:
+  d2m spans shape:box shape:box --motion-a 'x=-4,0,0;v=8,0,0'
+  d2m spans docs/scenes/conveyor.json")]
     Spans(SpansArguments),
     /// Whether an answer of toc --json can be proven again, independently
     Verify(VerifyArguments),
@@ -134,7 +143,7 @@ pub(crate) struct TocArguments {
     #[arg(value_name = "A", help = MESH_HELP)]
     pub(crate) a: String,
     #[arg(value_name = "B", help = MESH_HELP)]
-    pub(crate) b: String,
+    pub(crate) b: Option<String>,
     /// Motion of A; at rest if not given
     #[arg(long, value_name = "M", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
     pub(crate) motion_a: String,
@@ -214,6 +223,9 @@ pub(crate) struct ClearanceArguments {
     /// The enclosure is at most this part of the distance wide (or four tolerances)
     #[arg(long, value_name = "R", default_value = "1e-6", allow_hyphen_values = true)]
     pub(crate) accuracy: String,
+    /// Of a scene: list all pairs that are not proven to stay at least this far apart
+    #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true)]
+    pub(crate) below: Option<String>,
 }
 
 #[derive(Debug, Args)]
@@ -410,11 +422,12 @@ pub(crate) struct FeaturesArguments {
 #[command(after_help = "\
 A scene: {\"bodies\": [{\"name\", \"mesh\", \"scale\", \"kind\": \"dynamic\" | \"kinematic\" | \"static\", \"pose\": {\"x\", \"q\"},
 \"velocity\": {\"v\", \"w\"}, \"motion\", \"density\" or \"mass\", \"center\", \"inertia\", \"restitution\", \"friction\", \"group\",
-\"solid\"}], \"ignore\": [[name or group, name or group]], \"pairs\": [{\"a\", \"b\", \"restitution\", \"friction\"}],
+\"solid\", \"radius\", \"damping\": {\"linear\", \"angular\"}}], \"ignore\": [[name or group, name or group]], \"pairs\": [{\"a\", \"b\", \"restitution\", \"friction\"}],
 \"joints\": [{\"kind\", \"a\", \"b\", \"point\", \"axis\", \"limits\", \"motor\", \"spring\", \"friction\", \"collide\"}],
-\"simulation\": {\"gravity\", \"step\", \"end\", \"gap\", \"max_events\"}}. What is left out: dynamic, at rest at the origin, density 1000, no
+\"simulation\": {\"gravity\", \"step\", \"end\", \"gap\", \"max_events\", \"sleep\", \"threads\"}}. What is left out: dynamic, at rest at the origin, density 1000, no
 restitution, no friction; gravity [0, -9.81, 0], step 0.01, end 5, gap (between bodies that rest on each other) 0.001, max_events
-(contact events a step) 128. A kinematic body follows its motion, which has any JSON form of d2m toc; it has no pose and no
+(contact events a step) 128, sleep true. A body with a radius is everything within that distance of its mesh, whose mass it has or that is
+given; damping is the part of its velocity that a body loses in a unit of time. A kinematic body follows its motion, which has any JSON form of d2m toc; it has no pose and no
 velocity besides. Without a motion it rests in its pose.
 A run: a line with the bodies' masses, then a line for each segment, in which every body flies a constant twist about its
 center of mass: {\"t0\", \"t1\", \"bodies\" or \"changed\", \"contacts\", \"skipped\", \"wall\"}; skipped is the time for which bodies stood
@@ -436,9 +449,9 @@ pub(crate) struct SimulateArguments {
     /// Only one segment every so much time, for viewing: such a run is small and proves nothing
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub(crate) every: Option<String>,
-    /// Threads; the run has the same numbers at any number of them
-    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: u16,
+    /// Threads; the run has the same numbers at any number of them [default: as the scene says, or 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
 }
 
 #[derive(Debug, Args)]

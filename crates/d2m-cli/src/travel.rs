@@ -34,11 +34,14 @@ impl Travel {
     }
 }
 
+/// Turns from which on queries refuse a motion, 2⁴⁰.
+const REFUSED: f64 = 1_099_511_627_776.0;
+
 impl Travel {
     /// Does the body turn more than once? Often degrees were meant.
     pub(crate) fn turns_far(self) -> bool {
-        // The sum rounds; one whole turn is no surprise.
-        self.turn > TAU * (1.0 + 1e-9)
+        // The sum rounds; one whole turn is no surprise. Queries refuse the largest ones.
+        self.turn > TAU * (1.0 + 1e-9) && self.turn < REFUSED
     }
 }
 

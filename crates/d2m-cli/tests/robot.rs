@@ -132,7 +132,7 @@ fn bodies_have_radii() {
     ];
     assert!((kept - round).abs() < 1e-9 && round < bare - 1e-3, "{bare} {kept} {round}");
     let bad = folder.file("bad.json", &SCENE.replace("\"attach\"", "\"radius\": -1, \"attach\""));
-    refused(&["robot", robot, "--path", path, "--scene", &bad], &["grasped", "radius -1"]);
+    refused(&["robot", robot, "--path", path, "--scene", &bad], &["grasped", "radius: -1"]);
 }
 
 #[test]

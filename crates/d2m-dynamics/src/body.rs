@@ -124,6 +124,36 @@ pub struct Body {
     pub friction: f64,
     /// Solid, or only a surface. `None`: solid if the mesh is watertight.
     pub solid: Option<Solid>,
+    /// The body is everything within this distance of its mesh. Its mass does not follow from it: that is the mesh's, or given.
+    pub radius: f64,
+    /// How fast its velocities fade.
+    pub damping: Damping,
+}
+
+/// How fast the velocities of a dynamic body fade besides what contacts do: each by the factor exp(−rate · step) at the start of a step.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// use d2m_dynamics::{Body, Damping, Simulation, SimulationOptions};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
+/// let puck = Body::new("puck", cube).with_linear_velocity(DVec3::X).with_damping(Damping { linear: 2.0, angular: 0.0 });
+/// let puck = simulation.add(&puck)?;
+/// for _ in 0..50 {
+///     simulation.step()?;
+/// }
+/// assert!((simulation.linear_velocity(puck).x - (-1.0_f64).exp()).abs() < 1e-12); // after half a second
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Damping {
+    /// Of the velocity of the center of mass, per unit of time; not negative.
+    pub linear: f64,
+    /// Of the angular momentum, per unit of time; not negative.
+    pub angular: f64,
 }
 
 impl Body {
@@ -141,6 +171,8 @@ impl Body {
             restitution: 0.0,
             friction: 0.0,
             solid: None,
+            radius: 0.0,
+            damping: Damping::default(),
         }
     }
 
@@ -187,5 +219,15 @@ impl Body {
     /// Solid or surface, whatever the mesh says.
     pub fn with_solid(self, solid: Solid) -> Self {
         Self { solid: Some(solid), ..self }
+    }
+
+    /// Everything within this distance of the mesh: a point is a sphere then, a segment a capsule, a box a rounded box.
+    pub fn with_radius(self, radius: f64) -> Self {
+        Self { radius, ..self }
+    }
+
+    /// With velocities that fade.
+    pub fn with_damping(self, damping: Damping) -> Self {
+        Self { damping, ..self }
     }
 }

@@ -15,7 +15,7 @@
 //!
 //! for its acceleration there is Ω × (Ω × r) + (Ω × w) × r + w × (w × D(t)) − 2 w × V. The least of the linear parts over the vertices
 //! of b less the greatest over those of a is a concave function of t, so it is least at an end of the flight. Bodies are in the convex hulls
-//! of their vertices.
+//! of their vertices, or within their radius of these.
 
 use crate::rigid_body::RigidBody;
 use d2m_motion::Pose;
@@ -106,8 +106,8 @@ pub(crate) fn bound_along(
             nearest[0] = nearest[0].min(place);
             nearest[1] = nearest[1].min(place + lever.dot(arm));
         }
-        apart[0] += nearest[0];
-        apart[1] += nearest[1];
+        apart[0] += nearest[0] - body.rounding;
+        apart[1] += nearest[1] - body.rounding;
         acceleration += (turning.length() + w) * turning.length() * body.radius;
     }
     let lost = ROUNDING * sizes(bodies, now, tau) * (1.0 + w * tau);

@@ -5,7 +5,7 @@
 //! Add each [`Body`] to a [`Simulation`] and call [`Simulation::step`].
 //!
 //! ## Bodies
-//! - [`Body`]: a shared tree, its [`Kind`], [`Mass`], [`Material`]; a kinematic one follows a [`Motion`].
+//! - [`Body`]: a shared tree, its [`Kind`], [`Mass`], [`Damping`], [`Material`]; a kinematic one follows a [`Motion`].
 //!   [`BodyId`] is its name.
 //! - [`MassProperties`]: mass, center and inertia of a mesh.
 //! - [`Joint`]: what holds two bodies together, of a [`JointKind`], with a [`Motor`] (and its [`MotorTarget`]) or a [`Spring`].
@@ -52,7 +52,7 @@ mod start;
 mod step;
 mod velocity;
 
-pub use body::{Body, BodyId, Kind, Mass, Motion};
+pub use body::{Body, BodyId, Damping, Kind, Mass, Motion};
 pub use contact::Material;
 pub use error::{MassError, SimulationError, StepError};
 pub use joint::{Joint, JointKind, Motor, MotorTarget, Spring};

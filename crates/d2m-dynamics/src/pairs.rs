@@ -9,8 +9,8 @@ use crate::rigid_body::RigidBody;
 #[cfg(feature = "audit")]
 use d2m_bvh::audit::Place;
 use d2m_bvh::{
-    Budget, Contact, DistanceOptions, Moving, PairCache, Posed, Proximity, ProximityOptions, QueryError,
-    QueryOptions, Solid, StartState, TimeOfContact, Window, distance_within, proximities_with,
+    Budget, Contact, Distance, DistanceOptions, Moving, PairCache, Posed, Proximity, ProximityOptions,
+    QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window, distance_within, proximities_with,
     reduce_proximities, time_of_contact_with,
 };
 use d2m_feature::FeaturePair;
@@ -169,8 +169,8 @@ pub(crate) fn fly(
             .with_min_separation(separation)
             .with_tolerance(SLACK * separation)
             .with_budget(Budget::UNLIMITED.with_node_tests(node_tests));
-        let moving = (Moving::new(&*a.tree, &a.flight), Moving::new(&*b.tree, &b.flight));
-        match time_of_contact_with(moving.0, moving.1, window, &options, &mut pair.cache)? {
+        let [one, two] = [a, b].map(|body| Moving::new(&*body.tree, &body.flight).with_radius(body.rounding));
+        match time_of_contact_with(one, two, window, &options, &mut pair.cache)? {
             TimeOfContact::Separated => return Ok(Outcome::Clear),
             TimeOfContact::Undecided { clear_until } => return Ok(Outcome::ClearUntil(clear_until)),
             TimeOfContact::Contact(contact) => match contact.start {
@@ -208,15 +208,29 @@ fn is_proven_clear(
     if !(will_do || pair.normal.is_none()) {
         return Ok(false);
     }
-    let options = DistanceOptions::default().with_solid(solid_of(a, b));
     let poses = [a, b].map(|body| body.pose_at(now));
-    let posed = [Posed::new(&a.tree, poses[0]), Posed::new(&b.tree, poses[1])];
-    let Some(found) = distance_within(posed[0], posed[1], &options, &mut pair.cache)? else {
+    let Some(found) = distance_of([a, b], poses, f64::INFINITY, &mut pair.cache)? else {
         return Ok(false);
     };
     let known = Clearance { poses, distance: found.lower };
     (pair.clearance, pair.normal) = (Some(known), Some(found.normal));
     Ok(known.bound([a, b], now, length) > needed || spins.into_iter().any(|spin| along(found.normal, spin)))
+}
+
+/// The distance of two bodies in these poses; `None`: it is more than the cutoff.
+pub(crate) fn distance_of(
+    bodies: [&RigidBody; 2],
+    poses: [Pose; 2],
+    cutoff: f64,
+    cache: &mut PairCache,
+) -> Result<Option<Distance>, QueryError> {
+    let [a, b] = bodies;
+    let radii = bodies.map(|body| body.rounding);
+    let cutoff = if radii == [0.0; 2] { cutoff } else { cutoff + (radii[0] + radii[1]).next_up().next_up() };
+    let options = DistanceOptions::default().with_solid(solid_of(a, b)).with_cutoff(cutoff);
+    let posed = [Posed::new(&a.tree, poses[0]), Posed::new(&b.tree, poses[1])];
+    let found = distance_within(posed[0], posed[1], &options, cache)?;
+    Ok(found.map(|found| found.with_radii(radii)))
 }
 
 fn met(contact: &Contact) -> Outcome {
@@ -235,11 +249,19 @@ pub(crate) fn measure(
 ) -> Result<Measured, QueryError> {
     let (a, b) = (&bodies[pair.0], &bodies[pair.1]);
     let (posed_a, posed_b) = (a.posed_at(time), b.posed_at(time));
-    let options = ProximityOptions::new(margin).with_cone_slack(TILT);
-    let wide = proximities_with(posed_a, posed_b, &options)?;
+    let radii = [a.rounding, b.rounding];
+    let options = ProximityOptions::new(margin + (radii[0] + radii[1])).with_cone_slack(TILT);
+    let mut wide = proximities_with(posed_a, posed_b, &options)?;
+    let is_round = radii != [0.0; 2];
+    if is_round {
+        wide = wide.iter().map(|near| near.with_radii(radii)).collect();
+    }
     // In the order of their distances.
     let (apart, normal) = (wide.first().map_or(margin, |p| p.distance), wide.first().map(|p| p.normal));
-    let flatten = |p: &Proximity| flattened(p, [a, b], [&posed_a.pose, &posed_b.pose], gap);
+    // The points of meshes with radii are far apart, so the directions between them are as exact as those of faces.
+    let flatten = |p: &Proximity| {
+        if is_round { None } else { flattened(p, [a, b], [&posed_a.pose, &posed_b.pose], gap) }
+    };
     let exact = wide.iter().filter(|p| p.tilt == 0.0);
     let mut normals: Vec<DVec3> = exact.map(|p| flatten(p).unwrap_or(*p).normal).collect();
     normals.sort_by(|a, b| order(*a, *b));

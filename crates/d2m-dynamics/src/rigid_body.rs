@@ -1,6 +1,6 @@
 //! The state of a body and the constant twist that it flies.
 
-use crate::body::{Body, Kind, Mass};
+use crate::body::{Body, Damping, Kind, Mass};
 use crate::faces::Faces;
 use crate::momenta::Momenta;
 use crate::velocity::Velocity;
@@ -30,6 +30,9 @@ pub(crate) struct RigidBody {
     pub(crate) center: DVec3,
     /// No point of the body is further from the center; rounded up.
     pub(crate) radius: f64,
+    /// The body is everything within this distance of its mesh.
+    pub(crate) rounding: f64,
+    pub(crate) damping: Damping,
     /// Zero for bodies that forces cannot move, as are the other masses.
     pub(crate) mass: f64,
     pub(crate) inverse_mass: f64,
@@ -100,6 +103,12 @@ impl RigidBody {
         if !(body.friction.is_finite() && body.friction >= 0.0) {
             return Err(bad("friction", body.friction.to_string()));
         }
+        let rates = [("linear damping", body.damping.linear), ("angular damping", body.damping.angular)];
+        for (name, value) in [("radius", body.radius)].into_iter().chain(rates) {
+            if !(value.is_finite() && value >= 0.0) {
+                return Err(bad(name, value.to_string()));
+            }
+        }
         let mesh = body.tree.mesh();
         let given = |error| SimulationError::Mass { body: body.name.clone(), error };
         let properties = match (&body.kind, body.mass) {
@@ -121,6 +130,7 @@ impl RigidBody {
         });
         // A difference, three squares, two sums and a root: five roundings of relative size 2⁻⁵³ are fewer than 8ε.
         let radius = farthest.fold(0.0, f64::max) * (1.0 + 8.0 * f64::EPSILON) + f64::MIN_POSITIVE;
+        let radius = if body.radius > 0.0 { (radius + body.radius).next_up() } else { radius };
         let kind = body.kind.clone();
         let (mesh_position, orientation) = match &kind {
             Kind::Kinematic(motion) => {
@@ -150,6 +160,8 @@ impl RigidBody {
             kind,
             center,
             radius,
+            rounding: body.radius,
+            damping: body.damping,
             mass,
             inverse_mass: if dynamic { 1.0 / mass } else { 0.0 },
             inertia,
@@ -227,6 +239,18 @@ impl RigidBody {
 
     pub(crate) fn posed_at(&self, time: f64) -> Posed<'_> {
         Posed::new(&self.tree, self.pose_at(time))
+    }
+
+    /// Velocities fade for so much time.
+    pub(crate) fn damp(&mut self, time: f64) {
+        // The nearest number to the exponential, with the same bits everywhere.
+        let factor = |rate: f64| Interval::point(-rate * time).exp().mid();
+        if self.damping.linear > 0.0 {
+            self.momentum *= factor(self.damping.linear);
+        }
+        if self.damping.angular > 0.0 {
+            self.angular_momentum *= factor(self.damping.angular);
+        }
     }
 
     /// Of gravity and the user.

@@ -2,11 +2,11 @@
 
 use crate::broad_phase::{Aabb, meeting};
 use crate::contact::{Accuracy, ContactPoint, SolverBody, Start, System};
-use crate::pairs::{Pair, measure, solid_of};
+use crate::pairs::{Pair, distance_of, measure};
 use crate::rigid_body::RigidBody;
 use crate::velocity::Velocity;
 use crate::{BodyId, Simulation, SimulationError, StepError};
-use d2m_bvh::{DistanceOptions, PairCache, Posed, StartState, distance_within};
+use d2m_bvh::{PairCache, StartState};
 use glam::{DMat3, DVec3};
 
 /// Bodies that touch are moved this far apart before anything flies, of their size or their distance from the origin if that is more:
@@ -76,12 +76,13 @@ impl Simulation {
     fn check_pair(&mut self, a: usize, b: usize, last: bool) -> Result<Option<Touch>, SimulationError> {
         let gap = self.options.gap;
         let (one, two) = (&self.bodies[a], &self.bodies[b]);
-        let options = DistanceOptions::default().with_solid(solid_of(one, two)).with_cutoff(gap);
-        let posed = (one.posed_at(self.time), two.posed_at(self.time));
-        let found = distance_within(posed.0, posed.1, &options, &mut PairCache::new());
+        let poses = [one, two].map(|body| body.pose_at(self.time));
+        let found = distance_of([one, two], poses, gap, &mut PairCache::new());
         let found = found.map_err(|error| one.query_error(two, error))?;
         let Some(found) = found else { return Ok(None) };
-        if found.state == StartState::Apart {
+        // Of round bodies that touch rounding decides whether they are apart.
+        let rounded = ROUNDING * (one.rounding + two.rounding);
+        if found.state == StartState::Apart && found.lower >= rounded {
             // A pair that has been parted goes on to the gap.
             if found.lower < gap && !self.pairs.contains_key(&(a, b)) {
                 self.pairs.insert((a, b), Box::new(Pair::new(found.lower)));
@@ -103,9 +104,8 @@ impl Simulation {
         let (one, two) = (&self.bodies[a], &self.bodies[b]);
         let mut pose = two.pose_at(self.time);
         pose.translation += moved;
-        let options = DistanceOptions::default().with_solid(solid_of(one, two));
-        let posed = (one.posed_at(self.time), Posed::new(&two.tree, pose));
-        let found = distance_within(posed.0, posed.1, &options, &mut PairCache::new()).ok()??;
+        let poses = [one.pose_at(self.time), pose];
+        let found = distance_of([one, two], poses, f64::INFINITY, &mut PairCache::new()).ok()??;
         (found.state == StartState::Apart).then_some(found.lower)
     }
 

@@ -14,6 +14,9 @@
 //! - [`FirstContact`]: separated, the first contact, or undecided. [`PairContact`]: what is known of one
 //!   pair.
 //! - [`PairProximities`]: where two bodies at rest are locally closest.
+//! - [`PairClearance`]: how near two bodies come ([`World::nearest_pair`], [`World::clearances_below`]); [`PairsOfBodies`] asks the same
+//!   without a world, with [`PairDistance`] and [`PairFault`].
+//! - [`PairSpans`]: when two bodies are clear of each other ([`World::contact_spans`]); [`join_spans`]: when all are.
 //!
 //! ## Errors
 //! [`WorldError`]: bad input, with the names of the bodies.
@@ -24,11 +27,14 @@
 mod body;
 mod box_tree;
 mod moving_sphere;
+mod nearest;
 mod parallel;
 mod swept_bounds;
 mod world;
 
 pub use body::{Body, Group, SharedMotion};
+pub use nearest::{PairDistance, PairFault, PairsOfBodies};
 pub use world::{
-    BodyId, Candidate, FirstContact, PairContact, PairProximities, PlannedMotion, Threads, World, WorldError,
+    BodyId, Candidate, FirstContact, PairClearance, PairContact, PairProximities, PairSpans, PlannedMotion,
+    Threads, World, WorldError, join_spans,
 };

@@ -1,7 +1,7 @@
 //! Axis-aligned boxes that a body never leaves: over a whole time span, and over slices of it.
 
 use crate::Body;
-use d2m_bvh::{MeshTree, Window};
+use d2m_bvh::{MeshTree, Moving, Window};
 use d2m_interval::IntervalVec3;
 use d2m_motion::{CoveredMotion, OutsideDomain};
 use glam::DVec3;
@@ -25,6 +25,15 @@ impl<'a> CoveredBody<'a> {
     pub(crate) fn try_new(body: &'a Body, from: f64, to: f64) -> Result<Self, OutsideDomain> {
         let motion = CoveredMotion::try_new(body.motion(), from, to)?;
         Ok(Self { tree: body.tree(), motion, radius: body.radius() })
+    }
+
+    /// The same of a body in the form of pair queries.
+    ///
+    /// # Errors
+    /// The motion does not cover both.
+    pub(crate) fn of_moving(body: &Moving<'a>, from: f64, to: f64) -> Result<Self, OutsideDomain> {
+        let motion = CoveredMotion::try_new(body.motion, from, to)?;
+        Ok(Self { tree: body.body, motion, radius: body.radius })
     }
 
     fn part(self, from: f64, to: f64) -> Option<Self> {

@@ -103,6 +103,6 @@ pub use d2m_motion::{
 // Many bodies.
 #[doc(inline)]
 pub use d2m_world::{
-    Body, BodyId, FirstContact, Group, PairContact, PairProximities, PlannedMotion, SharedMotion, World,
-    WorldError,
+    Body, BodyId, FirstContact, Group, PairClearance, PairContact, PairProximities, PairSpans, PlannedMotion,
+    SharedMotion, World, WorldError, join_spans,
 };

@@ -75,6 +75,18 @@ pub struct ContactSpan {
     pub status: SpanStatus,
 }
 
+impl ContactSpan {
+    /// A span from one time to another with what is known of it.
+    ///
+    /// ```
+    /// use d2m_bvh::{ContactSpan, SpanStatus};
+    /// assert_eq!(ContactSpan::new(0.0, 0.5, SpanStatus::Clear).to, 0.5);
+    /// ```
+    pub const fn new(from: f64, to: f64, status: SpanStatus) -> Self {
+        Self { from, to, status }
+    }
+}
+
 /// The spans of a window, joined, in order, in which two bodies are clear of each other or in contact.
 ///
 /// Promise: they cover the window. In a clear span the distance is above `min_separation` at every time, ends included, and it ends where

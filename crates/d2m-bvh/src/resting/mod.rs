@@ -9,5 +9,6 @@ pub(crate) mod node_pair;
 pub(crate) mod parts;
 pub(crate) mod proven_crossing;
 pub(crate) mod proximities;
+mod rounded;
 pub(crate) mod touching;
 mod winding;

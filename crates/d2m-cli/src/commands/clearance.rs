@@ -1,8 +1,9 @@
 //! `d2m clearance`: how near do two moving meshes come?
 
+use super::scene_question::{SceneQuestion, is_scene};
 use super::toc::{MovingPair, prove, read, refuse, with_proof};
 use crate::arguments::ClearanceArguments;
-use crate::engine::{ClearanceAnswer, Pair, number};
+use crate::engine::{ClearanceAnswer, MIN_SEPARATION, Pair, number};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::print_answer;
@@ -10,8 +11,9 @@ use crate::output::short;
 use crate::report::{body_lines, duration, feature_field, feature_sentence, microseconds, vector};
 use crate::sizes::sizes_line;
 use crate::verification::Promise;
-use d2m::bvh::{ClearanceStatus, Window};
-use serde_json::json;
+use d2m::bvh::{Clearance, ClearanceOptions, ClearanceStatus, Window};
+use d2m::{BodyId, PairClearance, WorldError};
+use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// Runs the command.
@@ -21,6 +23,12 @@ pub(crate) fn run(arguments: &ClearanceArguments) -> Result<Outcome, Failure> {
     refuse(toc, "clearance")?;
     if toc.query.min_separation.is_some() {
         return Err(Failure::at("--min-separation", "d2m clearance has no such option"));
+    }
+    if is_scene(toc) {
+        return run_scene(arguments, accuracy);
+    }
+    if arguments.below.is_some() {
+        return Err(Failure::at("--below", "it is for scenes: two meshes are one pair"));
     }
     let MovingPair { pair, motion_a, motion_b, window, travels, .. } = read(toc)?;
     let answer = pair.clearance([&motion_a, &motion_b], window, Some(accuracy))?;
@@ -34,13 +42,69 @@ pub(crate) fn run(arguments: &ClearanceArguments) -> Result<Outcome, Failure> {
     Ok(Outcome::from(answer.found.status).reported(toc.exit_status))
 }
 
-fn to_json(pair: &Pair, window: Window, ClearanceAnswer { found, took }: &ClearanceAnswer) -> String {
+/// The nearest pair of a scene, and all that are near.
+fn run_scene(arguments: &ClearanceArguments, accuracy: f64) -> Result<Outcome, Failure> {
+    let toc = &arguments.toc;
+    let below = arguments.below.as_ref().map(|text| number("--below", text, MIN_SEPARATION, |d| d >= 0.0));
+    let below = below.transpose()?;
+    let SceneQuestion { scene, world, options } = SceneQuestion::read(toc)?;
+    let named = |error: WorldError| Failure::at(&toc.a, scene.describe(error));
+    let mut wanted = ClearanceOptions::default().with_accuracy(accuracy).with_budget(options.budget);
+    wanted.tolerance = options.tolerance;
+    let nearest = world.nearest_pair(scene.window, &wanted).map_err(named)?;
+    let near = below.map(|limit| world.clearances_below(limit, scene.window, &wanted).map_err(named));
+    let near = near.transpose()?;
+    let name = |id: BodyId| scene.bodies[id.index()].name.as_str();
+    let object = |found: &PairClearance| {
+        let mut object = fields(&found.clearance);
+        (object["a"], object["b"]) = (json!(name(found.a)), json!(name(found.b)));
+        object
+    };
+    let status = nearest.as_ref().map_or(ClearanceStatus::Clear, |found| found.clearance.status);
+    print_answer(&if toc.json {
+        // Of a scene without pairs nothing comes near.
+        let none = json!({ "status": "clear", "clearance": null, "a": null, "b": null });
+        let mut answer = nearest.as_ref().map_or(none, object);
+        answer["window"] = json!([scene.window.start(), scene.window.end()]);
+        if let (Some(limit), Some(near)) = (below, &near) {
+            answer["below"] = json!(limit);
+            answer["pairs"] = near.iter().map(object).collect();
+        }
+        format!("{answer}\n")
+    } else {
+        let line = |found: &PairClearance| {
+            let Clearance { lower, upper, time, .. } = found.clearance;
+            let [lower, upper, time] = [lower, upper, time].map(short);
+            format!("{} \u{2013} {}: [{lower}, {upper}] at t = {time}\n", name(found.a), name(found.b))
+        };
+        let mut text = match &nearest {
+            None => "CLEARANCE: no pair is of interest\n".to_owned(),
+            Some(found) => {
+                let word = match status {
+                    ClearanceStatus::Clear => "CLEARANCE",
+                    ClearanceStatus::Contact => "CONTACT",
+                    ClearanceStatus::Undecided => "UNDECIDED",
+                };
+                format!("{word} {}", line(found))
+            }
+        };
+        if let (Some(limit), Some(near)) = (below, &near) {
+            let _ = writeln!(text, "  {} of all pairs come within {}", near.len(), short(limit));
+            text.extend(near.iter().map(|found| format!("  {}", line(found))));
+        }
+        text
+    })?;
+    Ok(Outcome::from(status).reported(toc.exit_status))
+}
+
+/// What is stated of every clearance.
+fn fields(found: &Clearance) -> Value {
     let status = match found.status {
         ClearanceStatus::Clear => "clear",
         ClearanceStatus::Contact => "contact",
         ClearanceStatus::Undecided => "undecided",
     };
-    let object = json!({
+    json!({
         "status": status,
         "clearance": [found.lower, found.upper],
         "time": found.time,
@@ -51,10 +115,14 @@ fn to_json(pair: &Pair, window: Window, ClearanceAnswer { found, took }: &Cleara
         "triangle_a": found.triangle_a,
         "triangle_b": found.triangle_b,
         "tolerance": found.tolerance,
-        "window": [window.start(), window.end()],
-        "triangles": [pair.a.mesh().triangle_count(), pair.b.mesh().triangle_count()],
-        "microseconds": microseconds(*took),
-    });
+    })
+}
+
+fn to_json(pair: &Pair, window: Window, ClearanceAnswer { found, took }: &ClearanceAnswer) -> String {
+    let mut object = fields(found);
+    object["window"] = json!([window.start(), window.end()]);
+    object["triangles"] = json!([pair.a.mesh().triangle_count(), pair.b.mesh().triangle_count()]);
+    object["microseconds"] = json!(microseconds(*took));
     format!("{object}\n")
 }
 

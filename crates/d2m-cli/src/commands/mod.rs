@@ -12,6 +12,7 @@ pub(crate) mod proximities;
 pub(crate) mod robot;
 mod robot_proof;
 pub(crate) mod scene;
+mod scene_question;
 pub(crate) mod simulate;
 pub(crate) mod spans;
 pub(crate) mod toc;

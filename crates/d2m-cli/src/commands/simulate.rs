@@ -19,7 +19,8 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<(), Failure> {
     let thinner = every.transpose()?.map(Thinner::new);
     let scene = read_scene(&arguments.scene)?;
     warn_of_gap(&scene);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.into()).build();
+    let threads = arguments.threads.or(scene.threads).unwrap_or(1);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build();
     let pool = pool.map_err(|error| Failure::at("--threads", error))?;
     let name = arguments.scene.display().to_string();
     let ended = pool.install(|| simulate(scene, &name, &out, thinner))?;

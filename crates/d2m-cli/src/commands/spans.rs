@@ -1,7 +1,8 @@
 //! `d2m spans`: which times of a window are proven clear?
 
+use super::scene_question::{SceneQuestion, is_scene};
 use super::toc::{MovingPair, prove, read, refuse, with_proof};
-use crate::arguments::SpansArguments;
+use crate::arguments::{SpansArguments, TocArguments};
 use crate::engine::number;
 use crate::failure::Failure;
 use crate::outcome::Outcome;
@@ -10,6 +11,7 @@ use crate::output::short;
 use crate::sizes::sizes_line;
 use crate::verification::Promise;
 use d2m::bvh::{ContactSpan, SpanStatus};
+use d2m::{BodyId, join_spans};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -23,6 +25,9 @@ pub(crate) fn run(arguments: &SpansArguments) -> Result<Outcome, Failure> {
     let given = arguments.resolution.as_deref();
     let resolution = given.map(|text| number("--resolution", text, "a positive finite time", |t| t > 0.0));
     let resolution = resolution.transpose()?;
+    if is_scene(toc) {
+        return run_scene(toc, resolution);
+    }
     let MovingPair { pair, motion_a, motion_b, window, travels, .. } = read(toc)?;
     let resolution = resolution.unwrap_or(RESOLUTION * window.length());
     let spans = pair.spans([&motion_a, &motion_b], window, resolution)?;
@@ -36,13 +41,44 @@ pub(crate) fn run(arguments: &SpansArguments) -> Result<Outcome, Failure> {
     } else {
         with_proof(toc, text, proof)? + &sizes_line(pair.sizes(), Some(travels))
     })?;
+    Ok(outcome_of(&spans).reported(toc.exit_status))
+}
+
+fn outcome_of(spans: &[ContactSpan]) -> Outcome {
     let has = |status: SpanStatus| spans.iter().any(|span| span.status == status);
-    let outcome = match (has(SpanStatus::Contact), has(SpanStatus::Undecided)) {
+    match (has(SpanStatus::Contact), has(SpanStatus::Undecided)) {
         (true, _) => Outcome::Contact,
         (false, true) => Outcome::Undecided,
         (false, false) => Outcome::Separated,
-    };
-    Ok(outcome.reported(toc.exit_status))
+    }
+}
+
+/// The spans of all pairs of a scene together, and of each that is not clear all the time.
+fn run_scene(toc: &TocArguments, resolution: Option<f64>) -> Result<Outcome, Failure> {
+    let SceneQuestion { scene, world, .. } = SceneQuestion::read(toc)?;
+    let resolution = resolution.unwrap_or(RESOLUTION * scene.window.length());
+    let pairs = world.contact_spans(scene.window, Some(resolution));
+    let pairs = pairs.map_err(|error| Failure::at(&toc.a, scene.describe(error)))?;
+    let all = join_spans(scene.window, &pairs);
+    let name = |id: BodyId| scene.bodies[id.index()].name.as_str();
+    let list = |spans: &[ContactSpan]| spans.iter().map(to_json).collect::<Vec<Value>>();
+    print_answer(&if toc.json {
+        let of_pairs: Vec<Value> = pairs
+            .iter()
+            .map(|pair| json!({ "a": name(pair.a), "b": name(pair.b), "spans": list(&pair.spans) }))
+            .collect();
+        let ends = [scene.window.start(), scene.window.end()];
+        let object =
+            json!({ "window": ends, "resolution": resolution, "spans": list(&all), "pairs": of_pairs });
+        format!("{object}\n")
+    } else {
+        let mut text = to_text(&all);
+        for pair in &pairs {
+            let _ = write!(text, "{} \u{2013} {}: {}", name(pair.a), name(pair.b), to_text(&pair.spans));
+        }
+        text
+    })?;
+    Ok(outcome_of(&all).reported(toc.exit_status))
 }
 
 fn word(status: SpanStatus) -> &'static str {

@@ -33,14 +33,20 @@ pub(super) fn read(arguments: &TocArguments) -> Result<MovingPair, Failure> {
     let motion_b = parse_motion("--motion-b", &arguments.motion_b)?;
     require_window("--motion-a", &motion_a, window)?;
     require_window("--motion-b", &motion_b, window)?;
+    let Some(b) = arguments.b.as_deref() else {
+        return Err(Failure::at(
+            &arguments.a,
+            "a second mesh is missing, or a scene (.json) in place of both",
+        ));
+    };
     let motion_files = [&arguments.motion_a, &arguments.motion_b].map(|motion| motion.strip_prefix('@'));
-    let meshes = [&arguments.a, &arguments.b].map(String::as_str);
+    let meshes = [arguments.a.as_str(), b];
     let inputs = motion_files.into_iter().flatten().chain(meshes).map(Path::new);
     let obj = match &arguments.obj {
         Some(path) => Some(Output::new(path)?.spare(inputs)?),
         None => None,
     };
-    let [a, b] = load_both(&arguments.a, &arguments.b, &arguments.query.sizes)?;
+    let [a, b] = load_both(&arguments.a, b, &arguments.query.sizes)?;
     let pair = Pair::new(a, b, &arguments.query)?.on_all_threads();
     check_size("--motion-a", &motion_a, &pair.a)?;
     check_size("--motion-b", &motion_b, &pair.b)?;

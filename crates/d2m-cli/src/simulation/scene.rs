@@ -8,10 +8,13 @@ use crate::mesh_library::MeshLibrary;
 use crate::scene::{Ignored, Names, SceneBody, check_names};
 use d2m::bvh::Window;
 use d2m::motion::AnyMotion;
-use d2m_dynamics::{Body, BodyId, Kind, Mass, MassProperties, Motion, Simulation, SimulationOptions};
-use d2m_io::{SceneEntry, UniqueKeys};
+use d2m_dynamics::{
+    Body, BodyId, Damping, Kind, Mass, MassProperties, Motion, Simulation, SimulationOptions,
+};
+use d2m_io::{SceneEntry, ScenePair, UniqueKeys, parse_start};
 use glam::{DMat3, DVec3};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -22,13 +25,25 @@ pub(crate) struct Scene {
     pub(crate) names: Vec<String>,
     pub(crate) ids: Vec<BodyId>,
     pub(crate) end: f64,
+    /// On so many threads, if the file says so.
+    pub(crate) threads: Option<u16>,
 }
 
 const SCENE_KEYS: &[&str] =
-    &["bodies", "ignore", "pairs", "joints", "simulation", "window", "min_separation", "tolerance"];
+    &["bodies", "ignore", "pairs", "joints", "simulation", "window", "min_separation", "tolerance", "start"];
 /// Of a body, those that no other scene has.
-const DYNAMIC_KEYS: &[&str] =
-    &["kind", "pose", "velocity", "density", "mass", "center", "inertia", "restitution", "friction"];
+const DYNAMIC_KEYS: &[&str] = &[
+    "kind",
+    "pose",
+    "velocity",
+    "density",
+    "mass",
+    "center",
+    "inertia",
+    "restitution",
+    "friction",
+    "damping",
+];
 const BODY_KEYS: &[&str] = &[
     "name",
     "mesh",
@@ -45,6 +60,8 @@ const BODY_KEYS: &[&str] = &[
     "inertia",
     "restitution",
     "friction",
+    "radius",
+    "damping",
 ];
 
 /// Reads a scene and the meshes it names, relative to its folder.
@@ -53,7 +70,8 @@ pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
     let UniqueKeys(value) =
         serde_json::from_slice(&bytes).map_err(|error| Failure::at(path.display(), error))?;
     let scene = Fields::new(path.display().to_string(), &value, SCENE_KEYS)?;
-    let (options, end) = simulation_options(&scene)?;
+    parse_start(scene.get("start")).map_err(|reason| scene.fault("start", reason))?;
+    let Settings { options, end, threads } = settings(&scene)?;
     let mut simulation = Simulation::new(options).map_err(|error| Failure::at(path.display(), error))?;
     let list = scene.required("bodies")?;
     let Some(list) = list.as_array() else {
@@ -78,20 +96,30 @@ pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
     let names: Vec<String> = bodies.into_iter().map(|body| body.name).collect();
     pairs(&scene, &names, &ids, &mut simulation)?;
     joints(&scene, &names, &ids, &mut simulation)?;
-    Ok(Scene { simulation, names, ids, end })
+    Ok(Scene { simulation, names, ids, end, threads })
 }
+
+/// Threads at most, as for `--threads`.
+const MOST_THREADS: u16 = 1024;
 
 /// Steps of a run at most: as many as doubles count.
 const MOST_STEPS: f64 = 9_007_199_254_740_992.0; // 2⁵³
 
-fn simulation_options(scene: &Fields<'_>) -> Result<(SimulationOptions, f64), Failure> {
+/// What the key `simulation` says.
+struct Settings {
+    options: SimulationOptions,
+    end: f64,
+    threads: Option<u16>,
+}
+
+fn settings(scene: &Fields<'_>) -> Result<Settings, Failure> {
     let mut options = SimulationOptions::default();
     let default = Value::Object(serde_json::Map::new());
     let value = scene.get("simulation").unwrap_or(&default);
     let fields = Fields::new(
         format!("{}, simulation", scene.place()),
         value,
-        &["gravity", "step", "end", "gap", "max_events", "sleep"],
+        &["gravity", "step", "end", "gap", "max_events", "sleep", "threads"],
     )?;
     if let Some(gravity) = fields.vector("gravity")? {
         options = options.with_gravity(gravity);
@@ -111,6 +139,18 @@ fn simulation_options(scene: &Fields<'_>) -> Result<(SimulationOptions, f64), Fa
         let fault = || fields.fault("sleep", format!("{} should be true or false", short(value)));
         options = options.with_sleeping(value.as_bool().ok_or_else(fault)?);
     }
+    let threads = match fields.get("threads") {
+        None => None,
+        Some(value) => {
+            let count = value.as_u64().and_then(|count| u16::try_from(count).ok());
+            let count = count.filter(|count| (1..=MOST_THREADS).contains(count));
+            let fault = || {
+                let wanted = format!("a whole number from 1 to {MOST_THREADS}");
+                fields.fault("threads", format!("{} should be {wanted}", short(value)))
+            };
+            Some(count.ok_or_else(fault)?)
+        }
+    };
     let end = positive("end", 5.0)?;
     if end / options.step > MOST_STEPS {
         let value = options.step;
@@ -118,7 +158,7 @@ fn simulation_options(scene: &Fields<'_>) -> Result<(SimulationOptions, f64), Fa
             fields.fault("step", format!("{value:?} divides the time until {end:?} in too many steps"))
         );
     }
-    Ok((options, end))
+    Ok(Settings { options, end, threads })
 }
 
 /// The pairs that may pass through each other.
@@ -162,28 +202,35 @@ fn pairs(
     let Some(list) = value.as_array() else {
         return Err(scene.fault("pairs", format!("{} should be a list", short(value))));
     };
-    for (index, value) in list.iter().enumerate() {
-        let place = format!("{}, pairs, entry {index}", scene.place());
-        let fields = Fields::new(place, value, &["a", "b", "restitution", "friction"])?;
-        let body = |key: &str| -> Result<BodyId, Failure> {
-            fields.required(key)?;
-            let name = fields.text(key)?.unwrap_or_default();
-            let found = names.iter().position(|other| other == name);
-            found.map(|k| ids[k]).ok_or_else(|| fields.fault(key, format!("no body {name:?}")))
-        };
-        let (a, b) = (body("a")?, body("b")?);
-        let usual = simulation.pair(a, b);
-        let restitution = fields.number("restitution")?.unwrap_or(usual.restitution);
-        let friction = fields.number("friction")?.unwrap_or(usual.friction);
-        let set = simulation.set_pair(a, b, restitution, friction);
-        set.map_err(|error| Failure::at(fields.place(), error))?;
+    let known: BTreeSet<&str> = names.iter().map(String::as_str).collect();
+    let list = list.iter().map(|value| UniqueKeys(value.clone())).collect();
+    let pairs = ScenePair::parse_all(list, &known).map_err(|error| Failure::at(scene.place(), error))?;
+    for (index, pair) in pairs.iter().enumerate() {
+        let number = |name: &String| names.iter().position(|other| other == name);
+        // The names are those of bodies.
+        let (Some(a), Some(b)) = (number(&pair.a), number(&pair.b)) else { continue };
+        let usual = simulation.pair(ids[a], ids[b]);
+        let restitution = pair.restitution.unwrap_or(usual.restitution);
+        let friction = pair.friction.unwrap_or(usual.friction);
+        let place = || format!("{}, pairs, entry {index}", scene.place());
+        let set = simulation.set_pair(ids[a], ids[b], restitution, friction);
+        set.map_err(|error| Failure::at(place(), error))?;
     }
     Ok(())
 }
 
 /// What moves the body, and how.
 fn describe(fields: &Fields<'_>, read: &SceneBody) -> Result<Body, Failure> {
-    let mut body = Body::new(&read.name, Arc::clone(&read.tree)).with_solid(read.solid);
+    let mut body =
+        Body::new(&read.name, Arc::clone(&read.tree)).with_solid(read.solid).with_radius(read.radius);
+    if let Some(damping) = fields.get("damping") {
+        let damping = Fields::new(format!("{}, damping", fields.place()), damping, &["linear", "angular"])?;
+        let rate = |key: &str| match damping.number(key)?.unwrap_or(0.0) {
+            rate if rate >= 0.0 => Ok(rate),
+            rate => Err(damping.fault(key, format!("{rate:?} is negative"))),
+        };
+        body.damping = Damping { linear: rate("linear")?, angular: rate("angular")? };
+    }
     body.kind = kind(fields, &read.motion)?;
     if let Some(pose) = fields.get("pose") {
         let pose = Fields::new(format!("{}, pose", fields.place()), pose, &["x", "q"])?;

@@ -41,9 +41,9 @@ impl Aabb {
     /// Encloses the body in one pose, grown by `margin`.
     pub(crate) fn posed(body: &RigidBody, pose: &Pose, margin: f64) -> Self {
         let lost = PLACED * (pose.translation.length() + body.radius + margin);
-        let reach = DVec3::splat(margin + lost);
+        let reach = DVec3::splat(margin + body.rounding + lost);
         if body.is_dynamic() {
-            let reach = reach + DVec3::splat(body.radius);
+            let reach = DVec3::splat(margin + body.radius + lost);
             return Self { low: pose.translation - reach, high: pose.translation + reach };
         }
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);

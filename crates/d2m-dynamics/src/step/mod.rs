@@ -105,7 +105,9 @@ impl<'s> Step<'s> {
             return Ok(());
         }
         for &i in &awake {
-            self.sim.bodies[i].time = self.start;
+            let body = &mut self.sim.bodies[i];
+            body.time = self.start;
+            body.damp(self.end - self.start);
         }
         let sim = &mut *self.sim;
         for joined in &mut sim.joints {

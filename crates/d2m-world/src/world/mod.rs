@@ -1,6 +1,7 @@
 //! Many moving bodies.
 
 mod answers;
+mod clearance;
 #[cfg(feature = "audit")]
 mod concluded;
 mod filter;
@@ -11,11 +12,14 @@ mod rest;
 mod schedule;
 mod search;
 mod slots;
+mod spans;
 #[cfg(test)]
 mod tests;
 
 pub use answers::{BodyId, FirstContact, PairContact, PairProximities, WorldError};
+pub use clearance::PairClearance;
 pub use plan::{Candidate, PlannedMotion};
+pub use spans::{PairSpans, join_spans};
 
 use crate::box_tree::IndexPair;
 use crate::{Body, Group, SharedMotion};

@@ -139,7 +139,7 @@ impl World {
     }
 
     /// A copy in which bodies move as planned, and their places.
-    fn planned(&self, plan: &[PlannedMotion]) -> (Self, Vec<u32>) {
+    pub(super) fn planned(&self, plan: &[PlannedMotion]) -> (Self, Vec<u32>) {
         let mut world = Self {
             options: self.options,
             slots: self.slots.clone(),

@@ -80,9 +80,7 @@ fn of_pair(bodies: [&Body; 2], time: f64, options: &ProximityOptions) -> Result<
     wide.margin = (options.margin + both).next_up();
     let mut found = proximities_with(a, b, &wide)?;
     for near in &mut found {
-        near.distance -= both;
-        near.point_a += near.normal * radii[0];
-        near.point_b -= near.normal * radii[1];
+        *near = near.with_radii(radii);
     }
     if let Some(&Proximity { triangle_a, triangle_b, .. }) = found.iter().find(|near| near.distance <= 0.0) {
         return Err(QueryError::NotApart { triangle_a, triangle_b });

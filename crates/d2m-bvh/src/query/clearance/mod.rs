@@ -6,6 +6,7 @@
 //! level: what was proven at a higher level holds for a lower one. Where it ends, the level is the lower bound.
 //! docs/theory/questions.md, "Clearance".
 
+mod meeting;
 mod options;
 mod sample;
 
@@ -279,7 +280,8 @@ impl<'a> Descent<'a> {
             .settle(closer(met, self.sampler.pair_at(triangles, contact.time_hi)), |_| self.tolerance);
         let shares = |sample: &Sample| sample.crosses || self.distance(sample.upper) == 0.0;
         let crossing = contact.evidence == Evidence::Crossing && self.rounded.sum() == 0.0;
-        if crossing || shares(&lowest) || shares(best) {
+        let is_met = crossing || shares(&lowest) || shares(best) || self.share_a_point_from(contact);
+        if is_met {
             return self.meeting(contact, &lowest);
         }
         self.describe(&closer(met, lowest), 0.0, ClearanceStatus::Contact)

@@ -1,0 +1,28 @@
+//! Are bodies that come within the tolerance of each other proven to share a point?
+
+use super::Descent;
+use crate::query::at_start::share_a_point;
+use crate::{Contact, Meter};
+
+/// Parts of what is left of the window after a contact, each half of the one before, after which the bodies are looked at: those that go
+/// on into each other are found at the first one, those that part again soon at one of the last.
+const LOOKS: i32 = 16;
+
+impl Descent<'_> {
+    /// Do they at the times of this contact, or at one of a few times later?
+    pub(super) fn share_a_point_from(&self, contact: &Contact) -> bool {
+        if self.rounded.sum() != 0.0 {
+            return false;
+        }
+        let (from, end) = (contact.time_hi, self.sampler.window.end());
+        let later = (0..LOOKS).map(|k| (from + (end - from) * 0.5_f64.powi(k)).min(end));
+        [contact.time_lo, from].into_iter().chain(later).any(|time| self.share_a_point_at(time))
+    }
+
+    fn share_a_point_at(&self, time: f64) -> bool {
+        let bodies = &self.sampler.bodies;
+        let solids = bodies.map(|body| body.solid.unwrap_or(self.options.solid));
+        // Each look has the patience that a start has.
+        share_a_point(bodies, solids, time, &mut Meter::unlimited()).unwrap_or(false)
+    }
+}
