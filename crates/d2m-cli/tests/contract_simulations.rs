@@ -97,7 +97,9 @@ fn velocities_fade() {
     let again = run(&folder, "puck", &scene, &["--threads", "1"]);
     let without_wall = |lines: &[Value]| {
         let mut lines = lines.to_vec();
-        lines.iter_mut().for_each(|line| line["wall"] = json!(0));
+        for line in &mut lines {
+            line["wall"] = json!(0);
+        }
         lines
     };
     assert_eq!(without_wall(&lines), without_wall(&again));

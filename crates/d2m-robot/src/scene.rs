@@ -4,7 +4,7 @@ use crate::body_box::BodyBox;
 use crate::geometry::LinkBody;
 use crate::robot::Robot;
 use crate::{RobotError, Srdf};
-use d2m_bvh::{Budget, MeshTree, QueryOptions, Solid, Window, time_of_contact};
+use d2m_bvh::{Budget, MeshTree, QueryOptions, Solid, Start, Window, time_of_contact};
 use d2m_motion::{CertifiedState, Chain, ConstantTwist, Joint, JointKind, RigidMotion};
 use d2m_world::{Body, BodyId, SharedMotion, World};
 use glam::{DQuat, DVec3};
@@ -211,6 +211,8 @@ impl RobotScene {
             _ => options,
         };
         check_options(&options)?;
+        // A path is free of contact or it is not: what holds at its start is reported.
+        let options = options.with_start(Start::Report);
         let mut scene = Self {
             world: World::new(options),
             robot: Arc::clone(&robot),

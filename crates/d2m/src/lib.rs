@@ -34,7 +34,7 @@
 //! - [`TimeOfContact`] with a [`Contact`]: [`Evidence`], [`StartState`].
 //! - [`Clearance`], [`ClearanceStatus`]; [`ContactSpan`], [`SpanStatus`]; [`Departure`].
 //! - [`Distance`], [`Proximity`].
-//! - Of worlds: [`FirstContact`], [`PairContact`], [`PairProximities`].
+//! - Of worlds: [`FirstContact`], [`PairContact`], [`PairProximities`], [`PairClearance`], [`PairSpans`] with [`join_spans`].
 //!
 //! ## Options and budgets
 //! - [`QueryOptions`]: [`Solid`], [`Mode`], [`Start`]; [`ClearanceOptions`], [`ProximityOptions`].

@@ -8,6 +8,23 @@ use crate::parallel::{PAIRS, map_in_order};
 use d2m_bvh::{ContactSpan, SpanStatus, Start, Window, contact_spans};
 
 /// The spans of two bodies of a world.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?)); // edges of length 1
+/// use d2m_bvh::{QueryOptions, SpanStatus, Window};
+/// use d2m_motion::ConstantTwist;
+/// use d2m_world::{Body, World};
+/// use glam::DVec3;
+/// let mut world = World::new(QueryOptions::default());
+/// let wall = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+/// let passing = ConstantTwist::REST.with_position(DVec3::X * -4.0).with_linear_velocity(DVec3::X * 8.0);
+/// let thrown = world.add(Body::new(cube, passing));
+/// let pairs = world.contact_spans(Window::UNIT, None)?;
+/// assert_eq!((pairs[0].a, pairs[0].b, pairs[0].spans[1].status), (wall, thrown, SpanStatus::Contact));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use = "it is a certificate: what is not read is not known to be safe"]
@@ -107,6 +124,12 @@ impl World {
 }
 
 /// The spans of many pairs as one list: clear where all are, in contact where one is, else undecided. Joined, in order, covering the window.
+///
+/// ```
+/// use d2m_bvh::{SpanStatus, Window};
+/// let nothing_meets = d2m_world::join_spans(Window::UNIT, &[]);
+/// assert_eq!((nothing_meets.len(), nothing_meets[0].status), (1, SpanStatus::Clear));
+/// ```
 pub fn join_spans(window: Window, pairs: &[PairSpans]) -> Vec<ContactSpan> {
     let ends = pairs.iter().flat_map(|pair| &pair.spans).flat_map(|span| [span.from, span.to]);
     let mut times: Vec<f64> = [window.start(), window.end()].into_iter().chain(ends).collect();
@@ -121,9 +144,10 @@ pub fn join_spans(window: Window, pairs: &[PairSpans]) -> Vec<ContactSpan> {
         // Spans of a pair end where the next one begins, so one of them holds all of this.
         let status_of = |pair: &PairSpans| {
             let holding = pair.spans.iter().filter(|of| of.from <= from && to <= of.to);
-            holding.map(|of| of.status).max_by_key(rank).unwrap_or(SpanStatus::Undecided)
+            holding.map(|of| of.status).max_by_key(|status| rank(*status)).unwrap_or(SpanStatus::Undecided)
         };
-        let status = pairs.iter().map(status_of).max_by_key(rank).unwrap_or(SpanStatus::Clear);
+        let status =
+            pairs.iter().map(status_of).max_by_key(|status| rank(*status)).unwrap_or(SpanStatus::Clear);
         match joined.last_mut().filter(|last| last.status == status) {
             Some(last) => last.to = to,
             None => joined.push(ContactSpan::new(from, to, status)),
@@ -133,7 +157,7 @@ pub fn join_spans(window: Window, pairs: &[PairSpans]) -> Vec<ContactSpan> {
 }
 
 /// What counts more where several hold.
-const fn rank(status: &SpanStatus) -> u8 {
+const fn rank(status: SpanStatus) -> u8 {
     match status {
         SpanStatus::Clear => 0,
         SpanStatus::Undecided => 1,
