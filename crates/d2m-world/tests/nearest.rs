@@ -20,7 +20,7 @@ fn world(random: &mut KnuthRandom, count: usize) -> World {
     let mut world = World::new(QueryOptions::default().with_min_separation(0.05));
     for k in 0..count {
         let body = |random: &mut KnuthRandom| {
-            let (place, turn) = (random.vector() * 6.0, DQuat::from_scaled_axis(random.vector() * 2.0));
+            let (place, turn) = (random.vector() * 4.0, DQuat::from_scaled_axis(random.vector() * 2.0));
             let motion = ConstantTwist::try_new(place, turn, random.vector() * 3.0, random.vector() * 2.0);
             Body::new(Arc::clone(&trees[k % 3]), motion.unwrap())
         };
