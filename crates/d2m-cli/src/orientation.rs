@@ -46,3 +46,19 @@ pub(crate) fn warn_of_json(place: &str, value: &Value) {
         _ => {}
     }
 }
+
+/// Is there a `q` in a JSON form whose length is not one?
+pub(crate) fn has_odd_length(value: &Value) -> bool {
+    let is_odd = |q: &Value| {
+        let squares =
+            q.as_array().map(|list| list.iter().filter_map(Value::as_f64).map(|x| x * x).sum::<f64>());
+        squares.is_some_and(|squares| (squares.sqrt() - 1.0).abs() > WRITTEN)
+    };
+    match value {
+        Value::Object(object) => {
+            object.iter().any(|(key, value)| if key == "q" { is_odd(value) } else { has_odd_length(value) })
+        }
+        Value::Array(list) => list.iter().any(has_odd_length),
+        _ => false,
+    }
+}

@@ -6,14 +6,14 @@ use crate::mesh_library::MeshLibrary;
 use crate::scene::SceneBody;
 use crate::simulation::{Fields, short};
 use d2m::bvh::Window;
-use d2m_io::{SceneEntry, UniqueKeys};
+use d2m_io::{SceneEntry, UniqueKeys, parse_start};
 use d2m_robot::{Attached, Obstacle, RobotScene};
 use glam::{DQuat, DVec3};
 use serde_json::Value;
 use std::path::Path;
 use std::sync::Arc;
 
-const SCENE_KEYS: &[&str] = &["window", "bodies", "ignore", "min_separation", "tolerance"];
+const SCENE_KEYS: &[&str] = &["window", "bodies", "ignore", "min_separation", "tolerance", "start", "pairs"];
 const BODY_KEYS: &[&str] = &["name", "mesh", "scale", "motion", "group", "solid", "radius", "pose", "attach"];
 /// Of a body, those that other scenes do not have.
 const ROBOT_KEYS: &[&str] = &["pose", "attach"];
@@ -72,6 +72,37 @@ impl<'a> RobotSceneFile<'a> {
                 for b in members(scene, &groups, b, &place)? {
                     scene.ignore(&a, &b);
                 }
+            }
+        }
+        self.set_starts(&fields, scene)
+    }
+
+    /// Is a contact at the start of some pair let go?
+    pub(crate) fn leaves(&self) -> bool {
+        let is_leave = |value: &Value| value.get("start").is_some_and(|start| start == "leave");
+        is_leave(&self.value)
+            || self.value.get("pairs").and_then(Value::as_array).is_some_and(|all| all.iter().any(is_leave))
+    }
+
+    /// What counts of pairs that are in contact at the start.
+    fn set_starts(&self, fields: &Fields<'_>, scene: &mut RobotScene) -> Result<(), Failure> {
+        let start = parse_start(fields.get("start")).map_err(|reason| fields.fault("start", reason))?;
+        if let Some(start) = start {
+            scene.set_start(None, start);
+        }
+        for (index, value) in Self::list(fields, "pairs")?.iter().enumerate() {
+            let place = format!("{}, pairs, entry {index}", self.path.display());
+            let pair = Fields::new(place, value, &["a", "b", "start"])?;
+            let start = parse_start(pair.get("start")).map_err(|reason| pair.fault("start", reason))?;
+            let [a, b] = ["a", "b"].map(|key| pair.required(key).and_then(|_| pair.text(key)));
+            let (a, b) = (a?.unwrap_or_default(), b?.unwrap_or_default());
+            for (key, name) in [("a", a), ("b", b)] {
+                if !scene.has_name(name) {
+                    return Err(pair.fault(key, format!("{name:?} is the name of no link and of no body")));
+                }
+            }
+            if let Some(start) = start {
+                scene.set_start(Some([a, b]), start);
             }
         }
         Ok(())

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, json_fault};
 use crate::load::read;
 use crate::motion::require_window;
-use crate::orientation::WRITTEN;
+use crate::orientation::{WRITTEN, has_odd_length};
 use d2m::bvh::{MAX_COORDINATE, Window};
 use d2m::motion::{AnyMotion, ConstantTwist};
 use glam::{DQuat, DVec3};
@@ -78,7 +78,8 @@ fn parse_json(text: &str, line: usize) -> Result<Trial, String> {
     let form: TrialForm = serde_json::from_str(text).map_err(|error| json_fault(&error, text))?;
     let [start, end] = form.window;
     let window = Window::try_new(start, end).map_err(|error| format!("window: {error}"))?;
-    let trial = Trial { line, motion_a: form.a, motion_b: form.b, window, has_odd_orientation: false };
+    let has_odd_orientation = serde_json::from_str(text).is_ok_and(|value| has_odd_length(&value));
+    let trial = Trial { line, motion_a: form.a, motion_b: form.b, window, has_odd_orientation };
     for (place, motion) in [("a", &trial.motion_a), ("b", &trial.motion_b)] {
         require_window(place, motion, window).map_err(|failure| failure.to_string())?;
     }

@@ -1,14 +1,15 @@
 //! Any of the motions that have a JSON form.
 use crate::rigid_motion::forward;
-use crate::{Chain, ConstantTwist, Keyframes, MotionError, RigidMotion, ScrewMotion};
+use crate::{Chain, ConstantTwist, Keyframes, MotionError, RigidMotion, ScrewMotion, Spline};
 
-/// A constant twist, keyframes or a chain: what the JSON forms of motions hold (feature `serde`).
+/// A constant twist, keyframes, a spline or a chain: what the JSON forms of motions hold (feature `serde`).
 ///
 /// The JSON forms: `{"x", "q", "v", "w", "at", "t"}`, all optional; `{"times", "poses": [{"x", "q"}, …], "join": "linear" |
-/// "screw"}` or `{"times", "spans": [constant twist, …]}`; `{"chain": [{"x", "q", "joint", "axis", "value"}, …]}` with
+/// "screw"}` or `{"times", "spans": [constant twist, …]}`; `{"times", "poses", "join": "cubic" | "quintic"}` for a [`Spline`], with
+/// `"twists": [{"v", "w"}, …]` of the body origin at the poses where these are not to follow from the neighbors; `{"chain": [{"x", "q", "joint", "axis", "value"}, …]}` with
 /// `joint` one of `fixed`, `revolute`, `prismatic` and `value` a polynomial `[c0, c1, …]`, `{"times", "pieces"}` or
-/// `{"times", "positions", "velocities", "accelerations"}` (see [`JointPoints`](crate::JointPoints)); `"rpy"` may stand for `"q"`. Splines,
-/// compositions and retimed motions have no JSON form; a smooth path of one axis at a time is a chain whose values are splines in pieces.
+/// `{"times", "positions", "velocities", "accelerations"}` (see [`JointPoints`](crate::JointPoints)); `"rpy"` may stand for `"q"`.
+/// Compositions and retimed motions have no JSON form.
 #[cfg_attr(feature = "serde", doc = "```")]
 #[cfg_attr(not(feature = "serde"), doc = "```ignore")]
 /// use d2m_motion::{AnyMotion, RigidMotion};
@@ -28,6 +29,8 @@ pub enum AnyMotion {
     Keyframes(Keyframes),
     /// A link of an articulated arm.
     Chain(Chain),
+    /// A smooth motion through poses.
+    Spline(Spline),
 }
 
 impl AnyMotion {
@@ -36,6 +39,7 @@ impl AnyMotion {
             Self::ConstantTwist(motion) => motion,
             Self::Keyframes(motion) => motion,
             Self::Chain(motion) => motion,
+            Self::Spline(motion) => motion,
         }
     }
 
@@ -72,6 +76,12 @@ impl From<Keyframes> for AnyMotion {
 impl From<Chain> for AnyMotion {
     fn from(motion: Chain) -> Self {
         Self::Chain(motion)
+    }
+}
+
+impl From<Spline> for AnyMotion {
+    fn from(motion: Spline) -> Self {
+        Self::Spline(motion)
     }
 }
 

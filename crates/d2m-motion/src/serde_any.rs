@@ -1,9 +1,10 @@
 //! The serde forms of keyframes, chains and of any of the motions: checked on the way in, faults with their place.
 use crate::error::fault;
 use crate::serde_form::{ConstantTwistForm, identity};
+use crate::spline::Knot;
 use crate::{
     AnyMotion, Chain, ConstantTwist, Joint, JointKind, JointPoints, JointValue, Keyframes, MotionError, Pose,
-    Span,
+    Span, Spline, SplineDegree, Twist,
 };
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
@@ -31,6 +32,8 @@ struct AnyForm {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     join: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    twists: Option<Vec<TwistForm>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     spans: Option<Vec<ConstantTwistForm>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     chain: Option<Vec<JointForm>>,
@@ -43,6 +46,16 @@ struct PoseForm {
     x: [f64; 3],
     #[serde(default = "identity")]
     q: [f64; 4],
+}
+
+/// Velocities at a pose of a spline.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TwistForm {
+    #[serde(default)]
+    v: [f64; 3],
+    #[serde(default)]
+    w: [f64; 3],
 }
 
 #[derive(Serialize, Deserialize)]
@@ -191,8 +204,51 @@ impl TryFrom<Vec<JointForm>> for Chain {
     }
 }
 
+/// The poses of keyframes or of a spline at their times.
+fn posed_at(times: Vec<f64>, poses: Vec<PoseForm>) -> Result<Vec<(f64, Pose)>, MotionError> {
+    if times.len() != poses.len() {
+        return Err(fault("times".into(), format!("{} times for {} poses", times.len(), poses.len())));
+    }
+    let pose = |form: PoseForm| Pose {
+        rotation: quaternion(form.q),
+        translation: DVec3::from_array(form.x),
+        at: DVec3::ZERO,
+    };
+    Ok(times.into_iter().zip(poses.into_iter().map(pose)).collect())
+}
+
+/// The degree of a spline that a word stands for.
+fn degree_of(join: Option<&str>) -> Option<SplineDegree> {
+    match join {
+        Some("cubic") => Some(SplineDegree::Cubic),
+        Some("quintic") => Some(SplineDegree::Quintic),
+        _ => None,
+    }
+}
+
+fn spline(form: AnyForm, degree: SplineDegree) -> Result<Spline, MotionError> {
+    let AnyForm { times, poses, twists, spans, .. } = form;
+    if spans.is_some() {
+        return Err(fault("join".into(), "it belongs to poses, not to spans".into()));
+    }
+    let missing = |key: &str| fault(key.to_owned(), "a spline needs it".into());
+    let times = times.ok_or_else(|| missing("times"))?;
+    let frames = posed_at(times, poses.ok_or_else(|| missing("poses"))?)?;
+    let Some(twists) = twists else { return Spline::try_through(&frames, degree) };
+    if twists.len() != frames.len() {
+        return Err(fault("twists".into(), format!("{} twists for {} poses", twists.len(), frames.len())));
+    }
+    let twist = |form: TwistForm| Twist { linear: form.v.into(), angular: form.w.into() };
+    let frames: Vec<(f64, Pose, Twist)> =
+        frames.into_iter().zip(twists).map(|((time, pose), form)| (time, pose, twist(form))).collect();
+    Spline::try_with_twists(&frames, degree)
+}
+
 fn keyframes(form: AnyForm) -> Result<Keyframes, MotionError> {
-    let AnyForm { times, poses, join, spans, .. } = form;
+    let AnyForm { times, poses, join, spans, twists, .. } = form;
+    if twists.is_some() {
+        return Err(fault("twists".into(), "they belong to splines, with the join cubic or quintic".into()));
+    }
     let Some(times) = times else {
         return Err(fault("times".into(), "keyframes need it".into()));
     };
@@ -214,19 +270,13 @@ fn keyframes(form: AnyForm) -> Result<Keyframes, MotionError> {
                 None | Some("linear") => Span::Linear,
                 Some("screw") => Span::Screw,
                 Some(other) => {
-                    return Err(fault("join".into(), format!("{other:?} is unknown: linear or screw")));
+                    return Err(fault(
+                        "join".into(),
+                        format!("{other:?} is unknown: linear, screw, cubic or quintic"),
+                    ));
                 }
             };
-            if times.len() != poses.len() {
-                let reason = format!("{} times for {} poses", times.len(), poses.len());
-                return Err(fault("times".into(), reason));
-            }
-            let pose = |form: PoseForm| Pose {
-                rotation: quaternion(form.q),
-                translation: DVec3::from_array(form.x),
-                at: DVec3::ZERO,
-            };
-            let frames: Vec<(f64, Pose)> = times.into_iter().zip(poses.into_iter().map(pose)).collect();
+            let frames = posed_at(times, poses)?;
             Keyframes::try_new(&frames, span)
         }
     }
@@ -235,7 +285,7 @@ fn keyframes(form: AnyForm) -> Result<Keyframes, MotionError> {
 impl TryFrom<AnyForm> for AnyMotion {
     type Error = MotionError;
     fn try_from(form: AnyForm) -> Result<Self, MotionError> {
-        let AnyForm { x, q, v, w, at, t, times, poses, join, spans, chain } = &form;
+        let AnyForm { x, q, v, w, at, t, times, poses, join, twists, spans, chain } = &form;
         let twist = [
             ("x", x.is_some()),
             ("q", q.is_some()),
@@ -248,6 +298,7 @@ impl TryFrom<AnyForm> for AnyMotion {
             ("times", times.is_some()),
             ("poses", poses.is_some()),
             ("join", join.is_some()),
+            ("twists", twists.is_some()),
             ("spans", spans.is_some()),
         ];
         let first =
@@ -262,9 +313,10 @@ impl TryFrom<AnyForm> for AnyMotion {
             };
         }
         if frames.is_some() {
-            return match twist {
-                Some(key) => Err(foreign(key, "keyframes")),
-                None => keyframes(form).map(Self::Keyframes),
+            return match (twist, degree_of(join.as_deref())) {
+                (Some(key), _) => Err(foreign(key, "keyframes")),
+                (None, Some(degree)) => spline(form, degree).map(Self::Spline),
+                (None, None) => keyframes(form).map(Self::Keyframes),
             };
         }
         let form = ConstantTwistForm {
@@ -291,6 +343,40 @@ impl Serialize for AnyMotion {
             Self::ConstantTwist(motion) => motion.serialize(serializer),
             Self::Keyframes(motion) => motion.serialize(serializer),
             Self::Chain(motion) => motion.serialize(serializer),
+            Self::Spline(motion) => motion.serialize(serializer),
+        }
+    }
+}
+
+/// Poses and twists of the body origin: the motion to the last bit.
+impl Serialize for Spline {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let pose = |knot: &Knot| {
+            let q = knot.pose.rotation;
+            PoseForm { x: knot.pose.translation.to_array(), q: [q.w, q.x, q.y, q.z] }
+        };
+        let twist =
+            |knot: &Knot| TwistForm { v: knot.twist.linear.to_array(), w: knot.twist.angular.to_array() };
+        let join = match self.degree() {
+            SplineDegree::Cubic => "cubic",
+            SplineDegree::Quintic => "quintic",
+        };
+        AnyForm {
+            times: Some(self.times().to_vec()),
+            poses: Some(self.knots().iter().map(pose).collect()),
+            twists: Some(self.knots().iter().map(twist).collect()),
+            join: Some(join.to_owned()),
+            ..AnyForm::default()
+        }
+        .serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Spline {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        match AnyMotion::deserialize(deserializer)? {
+            AnyMotion::Spline(spline) => Ok(spline),
+            _ => Err(D::Error::custom("expected a spline: \"poses\" with the join cubic or quintic")),
         }
     }
 }

@@ -62,6 +62,25 @@ pub enum SplineDegree {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spline {
     spans: Sequence<Chain>,
+    /// What it goes through, of the body origin: another spline through the same is the same to the last bit.
+    knots: Vec<Knot>,
+    degree: SplineDegree,
+}
+
+/// Where the body origin is at a time of a spline, and how it moves there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Knot {
+    pub(crate) pose: Pose,
+    pub(crate) twist: Twist,
+}
+
+impl Knot {
+    fn of_origin(pose: Pose, twist: Twist) -> Self {
+        let arm = pose.rotation.normalize() * (DVec3::ZERO - pose.at);
+        let linear = twist.velocity_of(arm);
+        let pose = Pose { translation: pose.translation + arm, at: DVec3::ZERO, ..pose };
+        Self { pose, twist: Twist { linear, ..twist } }
+    }
 }
 
 impl Spline {
@@ -126,15 +145,25 @@ impl Spline {
                 }
             }
         }
-        let pieces = keyframes
-            .windows(2)
-            .enumerate()
-            .map(|(i, pair)| {
-                span([pair[0], pair[1]], degree).map_err(|error| error.within(&format!("poses[{}]", i + 1)))
-            })
-            .collect::<Result<_, _>>()?;
-        let times = keyframes.iter().map(|(time, ..)| *time).collect();
-        Ok(Self { spans: Sequence { times, pieces } })
+        let times: Vec<f64> = keyframes.iter().map(|(time, ..)| *time).collect();
+        let knots: Vec<Knot> =
+            keyframes.iter().map(|&(_, pose, twist)| Knot::of_origin(pose, twist)).collect();
+        let piece = |k: usize| {
+            span([times[k], times[k + 1]], [knots[k], knots[k + 1]], degree)
+                .map_err(|error| error.within(&format!("poses[{}]", k + 1)))
+        };
+        let pieces = (0..knots.len() - 1).map(piece).collect::<Result<_, _>>()?;
+        Ok(Self { spans: Sequence { times, pieces }, knots, degree })
+    }
+
+    /// How smooth it is at its poses.
+    pub const fn degree(&self) -> SplineDegree {
+        self.degree
+    }
+
+    #[cfg(feature = "serde")]
+    pub(crate) fn knots(&self) -> &[Knot] {
+        &self.knots
     }
 
     /// The times of the poses.
@@ -178,10 +207,8 @@ fn cumulative(degree: SplineDegree) -> Vec<Vec<f64>> {
     }
 }
 
-fn span(
-    [(t0, start, v0), (t1, end, v1)]: [(f64, Pose, Twist); 2],
-    degree: SplineDegree,
-) -> Result<Chain, MotionError> {
+fn span([t0, t1]: [f64; 2], knots: [Knot; 2], degree: SplineDegree) -> Result<Chain, MotionError> {
+    let [Knot { pose: start, twist: v0 }, Knot { pose: end, twist: v1 }] = knots;
     let h = t1 - t0;
     let (q0, q1) = (start.rotation.normalize(), end.rotation.normalize());
     let curves = cumulative(degree);
@@ -200,11 +227,7 @@ fn span(
         JointValue::try_pieces(vec![t0, t1], vec![coefficients])
     };
     // Positions: control points P0, P0 + v0 h/n (twice for no acceleration), and the same from the end.
-    let from_at = |pose: &Pose, twist: &Twist| {
-        let arm = pose.rotation.normalize() * (DVec3::ZERO - pose.at);
-        (pose.translation + arm, twist.velocity_of(arm))
-    };
-    let ((p0, s0), (p1, s1)) = (from_at(&start, &v0), from_at(&end, &v1));
+    let [(p0, s0), (p1, s1)] = knots.map(|knot| (knot.pose.translation, knot.twist.linear));
     let (first, last) = (s0 * (h / n), s1 * (h / n));
     let steps: Vec<DVec3> = match degree {
         SplineDegree::Cubic => vec![first, p1 - p0 - first - last, last],

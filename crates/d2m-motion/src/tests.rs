@@ -291,3 +291,43 @@ fn poses_at_far_times_are_finite_and_near_ones_exact() {
     let (pose, _) = quarter.pose_and_twist(400_000.0);
     assert!((pose.transform_vector(DVec3::X) - DVec3::X).length() < 1e-10, "{pose:?}");
 }
+
+/// The JSON form of a spline gives the same motion to the last bit, with velocities that follow from the neighbors and with given ones.
+#[cfg(feature = "serde")]
+#[test]
+fn splines_in_json() {
+    use crate::{AnyMotion, Spline, SplineDegree};
+    let text = r#"{"times": [0, 1, 2.5], "join": "JOIN", "poses": [{}, {"x": [1, 0.5, 0], "q": [0.9, 0.1, 0, 0.3]}, {"x": [2, 0, 1]}]TWISTS}"#;
+    let given = r#", "twists": [{}, {"v": [1, 0, 0.25], "w": [0, 0.5, 0]}, {"v": [0, 0, 1]}]"#;
+    for (join, degree) in [("cubic", SplineDegree::Cubic), ("quintic", SplineDegree::Quintic)] {
+        for twists in ["", given] {
+            let text = text.replace("JOIN", join).replace("TWISTS", twists);
+            let read: AnyMotion = serde_json::from_str(&text).unwrap();
+            let AnyMotion::Spline(spline) = &read else { panic!("{read:?}") };
+            assert_eq!((spline.degree(), spline.times()), (degree, &[0.0, 1.0, 2.5][..]));
+            let written = serde_json::to_string(&read).unwrap();
+            assert_eq!(serde_json::from_str::<AnyMotion>(&written).unwrap(), read);
+            assert_eq!(&serde_json::from_str::<Spline>(&written).unwrap(), spline);
+            let (pose, twist) = read.pose_and_twist(1.0);
+            assert!((pose.translation - DVec3::new(1.0, 0.5, 0.0)).length() < 1e-14);
+            if !twists.is_empty() {
+                assert!((twist.linear - DVec3::new(1.0, 0.0, 0.25)).length() < 1e-12, "{twist:?}");
+                assert!((twist.angular - DVec3::new(0.0, 0.5, 0.0)).length() < 1e-12, "{twist:?}");
+            }
+        }
+    }
+    for (from, to, reason) in [
+        ("JOINT", "", ""),
+        ("\"join\": \"JOIN\"", "\"join\": \"bent\"", "\"bent\" is unknown: linear, screw, cubic or quintic"),
+        ("\"join\": \"JOIN\"", "\"join\": \"linear\"", "twists: they belong to splines"),
+        ("\"JOIN\", \"poses\"", "\"cubic\", \"spans\"", "join: it belongs to poses"),
+        ("\"times\": [0, 1, 2.5]", "\"times\": [0, 1]", "2 times for 3 poses"),
+        ("{\"v\": [0, 0, 1]}]", "{}, {}]", "4 twists for 3 poses"),
+        ("\"times\": [0, 1, 2.5]", "\"times\": [0, 3, 2.5]", "times must increase"),
+    ] {
+        let text = text.replace("TWISTS", given).replace(from, to).replace("JOIN", "cubic");
+        let found =
+            serde_json::from_str::<AnyMotion>(&text).err().map_or(String::new(), |error| error.to_string());
+        assert!(found.contains(reason) && found.is_empty() == reason.is_empty(), "{to}: {found}");
+    }
+}

@@ -382,6 +382,22 @@ impl RobotScene {
         self.world.ignore_pair(a, b, true);
     }
 
+    /// What counts of two links or bodies that are in contact at the start of a path, by their names; of all pairs where none are named.
+    /// With [`Start::Leave`] it is let go until they are proven apart: of a part that stands on a table until the robot lifts it. False if
+    /// one of the names is unknown.
+    pub fn set_start(&mut self, names: Option<[&str; 2]>, start: Start) -> bool {
+        let ids = |pair: &[usize; 2]| pair.map(|part| self.parts[part].id);
+        let are_named = |pair: &[usize; 2]| {
+            let [a, b] = pair.map(|part| self.parts[part].name.as_str());
+            names.is_none_or(|names| names == [a, b] || names == [b, a])
+        };
+        let pairs: Vec<[BodyId; 2]> = self.pairs.iter().filter(|pair| are_named(pair)).map(ids).collect();
+        for [a, b] in pairs {
+            self.world.set_start(a, b, Some(start));
+        }
+        names.is_none_or(|names| names.iter().all(|name| self.has_name(name)))
+    }
+
     /// Is this the name of a link or of a body?
     pub fn has_name(&self, name: &str) -> bool {
         self.robot.find_link(name).is_some() || self.parts.iter().any(|part| part.name == name)

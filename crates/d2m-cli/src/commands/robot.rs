@@ -6,14 +6,17 @@ use crate::engine::number;
 use crate::failure::{Failure, parse_json};
 use crate::load::read;
 use crate::outcome::Outcome;
-use crate::output::{note, print, short};
+use crate::output::{digits, note, print, short};
 use crate::report::{evidence_sentence, vector};
 use crate::robot_scene::RobotSceneFile;
+use crate::travel::Travel;
 use d2m::bvh::{Budget, QueryOptions, Window};
 use d2m_robot::{
-    LimitWarning, PathAnswer, PathClearance, PathContact, Robot, RobotOptions, RobotScene, Srdf, Trajectory,
+    JointType, LimitWarning, PathAnswer, PathClearance, PathContact, Robot, RobotOptions, RobotScene, Srdf,
+    Trajectory,
 };
 use serde_json::{Value, json};
+use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::time::Duration;
 
@@ -50,7 +53,11 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     if let Some(file) = &file {
         file.add_to(&mut scene, window)?;
     }
+    if arguments.verify && file.as_ref().is_some_and(RobotSceneFile::leaves) {
+        return Err(Failure::at("--verify", "paths with pairs whose start is leave are not proven again"));
+    }
     let warnings = scene.limit_warnings(&path).map_err(fault)?;
+    notes.extend(far_turns(&path, &scene).map(|text| format!("warning: {place}: {text}")));
     notes.extend(warnings.iter().map(|warning| format!("warning: {place}: {warning}")));
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -88,6 +95,21 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
         PathAnswer::Undecided { .. } => Outcome::Undecided,
     };
     Ok(outcome.reported(arguments.exit_status))
+}
+
+/// Joints that turn more than once on the path.
+fn far_turns<'p>(path: &'p Trajectory, scene: &'p RobotScene) -> impl Iterator<Item = String> + 'p {
+    let turns = |name: &&String| {
+        let joint = scene.robot().find_joint(name);
+        joint.is_some_and(|joint| scene.robot().joint_type(joint) != JointType::Prismatic)
+    };
+    path.joint_names.iter().enumerate().filter(move |(_, name)| turns(name)).filter_map(|(index, name)| {
+        let positions = path.points.iter().filter_map(|point| point.positions.get(index).copied());
+        let way: f64 = positions.clone().zip(positions.skip(1)).map(|(from, to)| (to - from).abs()).sum();
+        let travel = Travel { way: 0.0, turn: way };
+        let words = "times on the path; angles are radians";
+        travel.turns_far().then(|| format!("joint {name:?} turns {} {words}", digits(way / TAU)))
+    })
 }
 
 fn options(arguments: &RobotArguments, file: Option<&RobotSceneFile<'_>>) -> Result<QueryOptions, Failure> {

@@ -1,0 +1,106 @@
+//! Scenes of robots have the keys `start` and `pairs`, and paths are warned of where joints turn far.
+
+mod shell;
+
+use serde_json::Value;
+use shell::{Folder, d2m, refused, stderr, stdout};
+
+const LIFT: &str = r#"<robot name="lift">
+  <link name="rail"/>
+  <link name="hand"><collision><origin xyz="0 0 0.6"/><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="wrist"/>
+  <joint name="up" type="prismatic"><parent link="rail"/><child link="hand"/><axis xyz="0 0 1"/><limit lower="0" upper="9" effort="1" velocity="9"/></joint>
+  <joint name="spin" type="continuous"><parent link="hand"/><child link="wrist"/><axis xyz="0 0 1"/></joint></robot>"#;
+const PATH: &str = r#"{"joint_names": ["up", "spin"], "points": [{"positions": [0, 0], "time_from_start": 0},
+    {"positions": [TOP, TURN], "time_from_start": 2}]}"#;
+/// The part stands on the table, held by the hand above it; there is a ceiling at 2.
+const SCENE: &str = r#"{START "bodies": [
+    {"name": "part", "mesh": "shape:box?x=0.5&y=0.5&z=0.25", "attach": "hand", "pose": {"x": [0, 0, 0.25]}},
+    {"name": "table", "mesh": "shape:box?x=2&y=2&z=0.5", "pose": {"x": [0, 0, -0.5]}},
+    {"name": "ceiling", "mesh": "shape:box?x=2&y=2&z=0.5", "pose": {"x": [0, 0, 2.5]}}]}"#;
+
+#[test]
+fn a_part_leaves_its_table() {
+    let folder = Folder::new("contract-robot");
+    let robot = folder.file("lift.urdf", LIFT);
+    let path =
+        |top: &str, turn: &str| folder.file("path.json", &PATH.replace("TOP", top).replace("TURN", turn));
+    let scene = |start: &str| folder.file("scene.json", &SCENE.replace("START", start));
+    let run = |top: &str, start: &str| {
+        let run = d2m(&["robot", &robot, "--path", &path(top, "1"), "--scene", &scene(start), "--json"]);
+        assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+        serde_json::from_str::<Value>(&stdout(&run)).unwrap()
+    };
+    let plain = run("1", "");
+    assert_eq!((&plain["status"], &plain["time"][0]), (&"contact".into(), &0.0.into()), "{plain}");
+    let leaving = [
+        r#""start": "leave","#,
+        r#""pairs": [{"a": "part", "b": "table", "start": "leave"}],"#,
+        r#""start": "leave", "pairs": [{"a": "ceiling", "b": "hand", "start": "report"}],"#,
+    ];
+    for start in leaving {
+        assert_eq!(run("1", start)["status"], "free", "{start}");
+        // The hand's top is at 0.7: it meets the ceiling at 1.3 of the way.
+        let met = run("2", start);
+        assert_eq!(met["status"], "contact", "{met}");
+        assert!((met["time"][0].as_f64().unwrap() - 1.3).abs() < 1e-6, "{met}");
+        assert!([&met["a"], &met["b"]].contains(&&Value::from("ceiling")), "{met}");
+    }
+    // Only where it is said.
+    let other = run("1", r#""start": "leave", "pairs": [{"a": "table", "b": "part", "start": "report"}],"#);
+    assert_eq!((&other["status"], &other["time"][0]), (&"contact".into(), &0.0.into()), "{other}");
+    for (start, words) in [
+        (r#""start": "go","#, &["scene.json", "start: \"go\" is neither"][..]),
+        (
+            r#""pairs": [{"a": "part", "b": "tabel", "start": "leave"}],"#,
+            &["pairs, entry 0, b", "\"tabel\" is the name of no link"],
+        ),
+        (r#""pairs": [{"a": "part", "start": "leave"}],"#, &["pairs, entry 0", "\"b\" is missing"]),
+        (
+            r#""pairs": [{"a": "part", "b": "table", "min_separation": 1}],"#,
+            &["pairs, entry 0", "unknown key \"min_separation\""],
+        ),
+    ] {
+        refused(&["robot", &robot, "--path", &path("1", "1"), "--scene", &scene(start)], words);
+    }
+    let verified = ["robot", &robot, "--path", &path("1", "1"), "--scene", &scene(leaving[0]), "--verify"];
+    refused(&verified, &["--verify", "not proven again"]);
+    let turned = d2m(&["robot", &robot, "--path", &path("9", "90"), "--scene", &scene(leaving[0])]);
+    assert!(stderr(&turned).contains("joint \"spin\" turns 14.32 times on the path"), "{}", stderr(&turned));
+    assert!(!stderr(&turned).contains("joint \"up\" turns"), "{}", stderr(&turned));
+}
+
+/// Motions of every JSON form, splines among them, wherever a motion is read.
+#[test]
+fn splines_are_motions() {
+    const CUBE: &str = "shape:box?x=0.5&y=0.5&z=0.5";
+    let folder = Folder::new("contract-splines");
+    let spline = r#"{"times": [0, 0.5, 1], "poses": [{"x": [-4, 0, 0]}, {"x": [-2, 0.25, 0]}, {"x": [4, 0, 0]}], "join": "quintic"}"#;
+    let motion = format!("@{}", folder.file("spline.json", spline));
+    let ask = |command: &str, options: &[&str]| -> Value {
+        let pair = [command, CUBE, CUBE, "--motion-a", &motion, "--json"];
+        let run = d2m(&pair.iter().chain(options).copied().collect::<Vec<_>>());
+        assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+        serde_json::from_str(&stdout(&run)).unwrap()
+    };
+    let met = ask("toc", &["--verify"]);
+    assert!(met["status"] == "contact" && met["verified"] == true, "{met}");
+    let time = met["toc"].as_f64().unwrap();
+    assert!(time > 0.5 && time < 1.0, "{met}");
+    assert_eq!(ask("spans", &[])["spans"].as_array().unwrap().len(), 3);
+    let scene = format!(
+        r#"{{"bodies": [{{"name": "a", "mesh": "{CUBE}", "motion": {spline}}}, {{"name": "b", "mesh": "{CUBE}"}}]}}"#
+    );
+    let scene = folder.file("scene.json", &scene);
+    let found = d2m(&["scene", &scene, "--json"]);
+    let found: Value = serde_json::from_str(&stdout(&found)).unwrap();
+    assert!((found["contacts"][0]["toc"].as_f64().unwrap() - time).abs() < 1e-6, "{found}");
+    let trials = folder.file("t.jsonl", &format!("{{\"a\": {spline}, \"b\": {{\"q\": [2, 0, 0, 0]}}}}\n"));
+    let run = d2m(&["batch", CUBE, CUBE, "--trials", &trials, "--out", "-"]);
+    assert!(stdout(&run).contains("contact"), "{}", stdout(&run));
+    assert!(stderr(&run).contains("1 trials have a quaternion that is not of length 1"), "{}", stderr(&run));
+    refused(
+        &["toc", CUBE, CUBE, "--motion-a", &motion, "--window", "0,2"],
+        &["--motion-a", "the motion covers the times from 0.0 to 1.0"],
+    );
+}
