@@ -53,7 +53,7 @@ fn a_part_leaves_its_table() {
         (r#""start": "go","#, &["scene.json", "start: \"go\" is neither"][..]),
         (
             r#""pairs": [{"a": "part", "b": "tabel", "start": "leave"}],"#,
-            &["pairs, entry 0, b", "\"tabel\" is the name of no link"],
+            &["pairs, entry 0: b", "\"tabel\" is the name of no link"],
         ),
         (r#""pairs": [{"a": "part", "start": "leave"}],"#, &["pairs, entry 0", "\"b\" is missing"]),
         (

@@ -246,7 +246,7 @@ fn spline(form: AnyForm, degree: SplineDegree) -> Result<Spline, MotionError> {
 
 fn keyframes(form: AnyForm) -> Result<Keyframes, MotionError> {
     let AnyForm { times, poses, join, spans, twists, .. } = form;
-    if twists.is_some() {
+    if twists.is_some() && matches!(join.as_deref(), None | Some("linear" | "screw")) {
         return Err(fault("twists".into(), "they belong to splines, with the join cubic or quintic".into()));
     }
     let Some(times) = times else {
