@@ -84,6 +84,15 @@ pub enum Claim {
         /// Triangles of A and B that are, if it is known: they are tried first.
         triangles: Option<[u32; 2]>,
     },
+    /// In every part of the span that is as long as `every`, the bodies are at some time at most this far apart.
+    Often {
+        /// When.
+        span: TimeSpan,
+        /// A distance; zero: they share a point.
+        distance: f64,
+        /// A length of time.
+        every: f64,
+    },
     /// A triangle of A and one of B (with the bodies' radii) are that far apart at a time.
     Apart {
         /// When.

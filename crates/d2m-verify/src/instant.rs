@@ -1,9 +1,10 @@
 //! Where the bodies are at one time, and the gap between two parts of them along a direction.
-use crate::Body;
 use crate::closest::closest;
 use crate::directions::{BoxAxis, Direction, between, faces_and_sides};
 use crate::mesh::finite;
+use crate::{Body, TimeSpan};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
+use d2m_motion::CertifiedState;
 use glam::{DMat3, DVec2, DVec3};
 
 /// A part of a body is all that is between these points (or boxes), from its mesh's center in body axes.
@@ -59,8 +60,21 @@ impl Instant {
         // Near the bodies, so that their positions lose nothing far from the world's origin.
         let near = bodies[0].motion.pose_and_twist(time).0.translation;
         let origin = if near.is_finite() { near } else { DVec3::ZERO };
-        let [a, b] = bodies.map(|body| {
-            let state = body.motion.enclose_state_about(time, origin).following(body.mesh.center);
+        let [a, b] =
+            bodies.map(|body| body.motion.enclose_state_about(time, origin).following(body.mesh.center));
+        Self::of_states(time, &a, &b)
+    }
+
+    /// What holds at all times of a span; as wide as the bodies move in it.
+    pub(crate) fn over(bodies: &[Body<'_>; 2], span: TimeSpan) -> Option<Self> {
+        let times = Interval::try_new(span.from, span.to).ok()?;
+        let [a, b] = bodies.map(|body| body.motion.enclose_kinematics(times).following(body.mesh.center));
+        let origin = a.position.center;
+        Self::of_states(span.from, &a.state_about(origin), &b.state_about(origin))
+    }
+
+    fn of_states(time: f64, a: &CertifiedState, b: &CertifiedState) -> Option<Self> {
+        let [a, b] = [a, b].map(|state| {
             let at = around(state.position, state.position_radius);
             around_matrix(state.rotation, state.rotation_radius).zip(at)
         });
@@ -104,8 +118,8 @@ impl Instant {
 
     /// Encloses the distance of two triangles: it is at least a gap along a direction, and at most that of two of their points.
     pub(crate) fn distance(&self, [a, b]: &[[IntervalVec3; 3]; 2]) -> Interval {
-        let placed = b.map(|q| self.seen(q));
-        if cross(a, &placed) {
+        let upper = self.most_distance(&[*a, *b]);
+        if upper == 0.0 {
             return Interval::ZERO;
         }
         let guess = [a, b].map(|t| t.map(IntervalVec3::mid));
@@ -121,11 +135,20 @@ impl Instant {
                 0.0
             }
         });
-        let upper = match closest(&guess[0], &seen).weights.map(on_triangle) {
+        Interval::try_new(lower.fold(0.0, f64::max).min(upper), upper).unwrap_or(Interval::ENTIRE)
+    }
+
+    /// Bounds the distance of two triangles from above; zero where they certainly cross.
+    pub(crate) fn most_distance(&self, [a, b]: &[[IntervalVec3; 3]; 2]) -> f64 {
+        let placed = b.map(|q| self.seen(q));
+        if cross(a, &placed) {
+            return 0.0;
+        }
+        let seen = b.map(|q| self.guess(q.mid()));
+        match closest(&a.map(IntervalVec3::mid), &seen).weights.map(on_triangle) {
             [Some(s), Some(t)] => (point(&placed, t) - point(a, s)).norm().hi(),
             _ => f64::INFINITY,
-        };
-        Interval::try_new(lower.fold(0.0, f64::max).min(upper), upper).unwrap_or(Interval::ENTIRE)
+        }
     }
 }
 

@@ -31,6 +31,9 @@ struct Case<'q> {
     window: TimeSpan,
 }
 
+/// How much longer a meeting is taken to last at first than the one before did at last.
+const AGAIN: f64 = 8.0;
+
 /// Times of a span at which a meeting is looked for first, as parts of it: the end, the start, and between.
 const TIMES: [f64; 5] = [1.0, 0.0, 0.5, 0.25, 0.75];
 
@@ -44,6 +47,9 @@ impl Case<'_> {
             Claim::Clear { span, distance } => self.clear(span, self.of_meshes(span, distance)?, left),
             Claim::Within { span, distance, triangles } => {
                 self.within(span, self.of_meshes(span, distance)?, triangles, left)
+            }
+            Claim::Often { span, distance, every } => {
+                self.often(span, self.of_meshes(span, distance)?, every, left)
             }
             Claim::Apart { time, triangles, least, most } => {
                 let _ = self.of_meshes(TimeSpan { from: time, to: time }, most.max(0.0))?;
@@ -128,15 +134,79 @@ impl Case<'_> {
                 _ => {}
             }
         }
-        // What contradicts that they are apart is a meeting.
-        match self.clear(span, Interval::point(level), left) {
-            Ok(()) => {
+        match self.meeting(span, level, left) {
+            Ok(_) => Ok(()),
+            Err(Verdict::Refuted { .. }) => {
                 let triangles = pair.unwrap_or([0, 0]);
                 let distance = self.distance(span.to, triangles)?;
                 Err(Verdict::Refuted { time: span.to, triangles, distance })
             }
-            Err(Verdict::Refuted { .. }) => Ok(()),
             Err(_) => self.not_proven(Reason::NoMeeting, pair),
         }
     }
+
+    /// What contradicts that the bodies are apart is a meeting. Refuted: they are apart all the time.
+    fn meeting(&self, span: TimeSpan, level: f64, left: &mut u64) -> Proof<Meeting> {
+        match clear(&self.bodies, level, span, left) {
+            Err(Verdict::Refuted { time, triangles, .. }) => Ok(Meeting { time, triangles: Some(triangles) }),
+            Err(open) => Err(open),
+            Ok(()) => match is_held(&self.bodies, &self.instant(span.from)?) {
+                Some(true) => Ok(Meeting { time: span.from, triangles: None }),
+                Some(false) => Err(self.refuted(span.from, [0, 0], Interval::ENTIRE)),
+                None => self.not_proven(Reason::Solid, None),
+            },
+        }
+    }
+
+    /// From one meeting to the next one, no later than `every`; each is taken along as far as it is proven to last.
+    fn often(&self, span: TimeSpan, level: Interval, every: f64, left: &mut u64) -> Proof {
+        let level = level.lo().max(0.0);
+        if !(every >= 0.0 && every < f64::INFINITY) {
+            return self.not_proven(Reason::Malformed, None);
+        }
+        let (mut now, mut step) = (span.from, span.to - span.from);
+        while span.to - now > every {
+            let end = (now + every).next_down().max(now);
+            // As late as may be, so that something is gained.
+            let mut late = [end, now + 0.5 * (end - now), now].into_iter();
+            let found = late.find_map(|from| self.meeting(TimeSpan { from, to: end }, level, left).ok());
+            let Some(meeting) = found else {
+                let reason = if *left == 0 { Reason::Steps } else { Reason::NoMeeting };
+                return self.not_proven(reason, None);
+            };
+            let mut until = meeting.time;
+            step = step.max(every);
+            while until < span.to && step > every && *left > 0 {
+                *left -= 1;
+                let part = TimeSpan { from: until, to: (until + step).min(span.to) };
+                if self.lasts(&meeting, part, level, left) {
+                    (until, step) = (part.to, 2.0 * step);
+                } else {
+                    step *= 0.5;
+                }
+            }
+            step *= AGAIN;
+            if until <= now && end <= now {
+                return self.not_proven(Reason::TimeResolution, meeting.triangles);
+            }
+            now = until.max(now);
+        }
+        Ok(())
+    }
+
+    /// Are the bodies within the distance at every time of a span that begins with the meeting?
+    fn lasts(&self, meeting: &Meeting, span: TimeSpan, level: f64, left: &mut u64) -> bool {
+        let Some(triangles) = meeting.triangles else {
+            // What is inside stays there until the surfaces meet.
+            return clear(&self.bodies, 0.0, span, left).is_ok();
+        };
+        let corners = [0, 1].map(|k| self.bodies[k].mesh.corners(triangles[k]));
+        Instant::over(&self.bodies, span).is_some_and(|over| over.most_distance(&corners) <= level)
+    }
+}
+
+/// A time at which the bodies are proven close, and triangles that are; none: one body holds the other.
+struct Meeting {
+    time: f64,
+    triangles: Option<[u32; 2]>,
 }

@@ -4,8 +4,8 @@
 use d2m::bvh::ClearanceStatus;
 use d2m::verify::{Verdict, Verifier};
 use d2m::{
-    Clearance, ClearanceOptions, ConstantTwist, ContactSpan, MeshTree, Moving, QueryOptions, RigidMotion,
-    SpanStatus, TriMesh, Window, clearance, contact_spans,
+    Clearance, ClearanceOptions, ConstantTwist, ContactSpan, Keyframes, MeshTree, Moving, Pose, QueryOptions,
+    RigidMotion, Span, SpanStatus, TriMesh, Window, clearance, contact_spans,
 };
 use glam::DVec3;
 
@@ -59,10 +59,31 @@ impl Pair<'_> {
     }
 }
 
+/// Bodies that part for a moment, at no round time: a claim that they are in contact all the time.
+#[test]
+fn a_moment_in_which_bodies_are_clear_is_found_in_a_long_span_of_contact() {
+    let tree = tetrahedron();
+    // The tip at x = 1 comes out of the other one's face at x = 0 by 2e-4, and goes in again.
+    let aside = DVec3::new(0.0, -0.1, -0.05);
+    let at = |time: f64, x: f64| (time, Pose { translation: aside + DVec3::X * x, ..Pose::IDENTITY });
+    let (middle, gap) = (0.4987, 2e-4);
+    let ends = [at(0.0, 1.0 + gap - middle), at(middle, 1.0 + gap), at(1.0, gap + middle)];
+    let bounces = Keyframes::try_new(&ends, Span::Linear).unwrap();
+    let pair = Pair { tree: &tree, motion: &bounces };
+    let spans = pair.spans();
+    assert_eq!(spans.len(), 3, "{spans:?}");
+    assert!(spans[1].status == SpanStatus::Clear && pair.is_proven(&spans));
+    let mut all = spans[0];
+    all.to = spans[2].to;
+    assert!(!pair.is_proven(&[all]));
+}
+
 #[test]
 fn spans_of_contact_in_which_bodies_are_clear_are_not_proven() {
     let tree = tetrahedron();
-    let (apart, through) = (along_x(5.0, 1.0), along_x(3.0, -6.0));
+    // To the side, so that no faces stay in one plane.
+    let aside = DVec3::new(3.0, 0.1, 0.05);
+    let (apart, through) = (along_x(5.0, 1.0), along_x(3.0, -6.0).with_position(aside));
     let [apart, through] = [&apart, &through].map(|motion| Pair { tree: &tree, motion });
     let (clear, met) = (apart.spans(), through.spans());
     assert!(apart.is_proven(&clear) && through.is_proven(&met));

@@ -13,8 +13,6 @@ const MOST_LEFT: f64 = 3.3;
 const RESOLUTION: f64 = 1e-6;
 /// The width of a clearance in tolerances, where that is more than its accuracy.
 const WIDTH: f64 = 4.0;
-/// Times of a span of contact that are claimed, at most.
-const MOST_TIMES: u32 = 256;
 
 const fn at(time: f64) -> TimeSpan {
     TimeSpan { from: time, to: time }
@@ -205,8 +203,8 @@ pub fn clearance_claim(
 }
 
 /// What an answer of [`contact_spans`](crate::contact_spans) claims: clear spans are clear, and end near the minimum separation where
-/// a contact follows; spans of contact begin and end within the resolution of a time at which the bodies are within s + δ, and so do
-/// times within them: everywhere in spans of 256 resolutions and less, and at so many even steps of longer ones.
+/// a contact follows; spans of contact begin and end within the resolution of a time at which the bodies are within s + δ, and no part
+/// of them that is as long as the resolution is without one.
 ///
 /// # Errors
 /// As [`claim`].
@@ -242,19 +240,16 @@ pub fn spans_claim(
             }
             SpanStatus::Contact => {
                 let near = |time: f64| within(time - resolution, time + resolution, 1.0);
-                claims.extend(times_of(span, resolution).map(near));
+                claims.extend([near(span.from), near(span.to)]);
+                let scale = Scale::new(bodies, window, options, span.to);
+                claims.push(Claim::Often {
+                    span: TimeSpan { from: span.from, to: span.to },
+                    distance: options.min_separation + scale.most,
+                    every: resolution,
+                });
             }
             SpanStatus::Undecided => {}
         }
     }
     Ok(Claim::All(claims))
-}
-
-/// The ends of a span of contact and times between them, no further apart than the resolution or in so many even steps.
-fn times_of(span: &ContactSpan, resolution: f64) -> impl Iterator<Item = f64> {
-    let ContactSpan { from, to, .. } = *span;
-    let length = to - from;
-    // A resolution of zero, or one that leaves no number of steps, is more than that many.
-    let steps = (1..MOST_TIMES).find(|&steps| length <= f64::from(steps) * resolution).unwrap_or(MOST_TIMES);
-    (0..=steps).map(move |k| if k == steps { to } else { from + length * (f64::from(k) / f64::from(steps)) })
 }

@@ -12,7 +12,7 @@
 //! | … with evidence | within s (`Crossing`) or s + δ (`Near`) at some time of the bracket |
 //! | [`Departure`] | within s + δ at `left.lo`, further apart at `left.hi`, and its answer from there on |
 //! | [`Clearance`] | nowhere below `lower`, at most `upper` at `time`, and no wider than was asked for; bodies that meet are as near at `time` as at a time of contact |
-//! | [`ContactSpan`]s | clear spans are clear; spans of contact are, at their ends and at up to 255 even steps between them, within the resolution of a time within s + δ |
+//! | [`ContactSpan`]s | clear spans are clear; spans of contact begin and end within the resolution of a time within s + δ, and hold one in each part as long as the resolution |
 //!
 //! Bodies with a radius are everything within it of their meshes. Worlds and robots are proven pair by pair, each with a claim of its own.
 //! Points, normals and features certify nothing; [`witness_fault`] compares them with the reported triangles. docs/theory/proofs.md.
