@@ -2,6 +2,7 @@
 use crate::Mesh;
 use d2m_interval::Interval;
 use d2m_motion::RigidMotion;
+use glam::DVec3;
 
 /// What belongs to a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,8 +110,29 @@ pub enum Claim {
         /// When.
         time: f64,
     },
+    /// The insides of the bodies share no more than a layer of this thickness: they share no point, or none as soon as B is moved along
+    /// a direction, by no more than that.
+    Parted {
+        /// When.
+        time: f64,
+        /// A unit direction from A to B, world frame.
+        along: DVec3,
+        /// How far B may be moved.
+        most: f64,
+    },
     /// All of these.
     All(Vec<Claim>),
+}
+
+impl Claim {
+    /// Is a direction of the world part of it?
+    pub(crate) fn has_direction(&self) -> bool {
+        match self {
+            Self::Parted { .. } => true,
+            Self::All(claims) => claims.iter().any(Self::has_direction),
+            _ => false,
+        }
+    }
 }
 
 /// What became of a claim.
@@ -216,6 +238,9 @@ pub enum Reason {
     /// A filled surface does not close, or no ray distinguishes inside from outside.
     #[error("inside and outside of a solid could not be distinguished")]
     Solid,
+    /// Bodies that are said to touch do not part along the normal of the answer.
+    #[error("the bodies were not found to part along the normal of the answer")]
+    NotParted,
     /// A tolerance larger than what was asked for and what rounding needs would make any answer right.
     #[error("the tolerance of the answer is larger than what was asked for")]
     Tolerance,

@@ -22,6 +22,7 @@ mod closest;
 mod directions;
 mod instant;
 mod mesh;
+mod moved;
 mod prove;
 mod rates;
 mod solid;

@@ -1,9 +1,11 @@
 //! Claims, as what the other modules prove.
 use crate::instant::Instant;
+use crate::moved::Moved;
 use crate::prove::clear;
 use crate::solid::is_held;
 use crate::{Body, Claim, Query, Reason, TimeSpan, Verdict};
 use d2m_interval::Interval;
+use glam::DVec3;
 
 /// Proves a claim, or refutes it, or says why it did neither, in at most so many steps (a microsecond each).
 ///
@@ -11,8 +13,8 @@ use d2m_interval::Interval;
 pub fn verify(query: &Query<'_>, claim: &Claim, most_steps: u64) -> Verdict {
     let mut steps = most_steps;
     let verdict = match query.bodies.map(|body| body.motion.chain()) {
-        [Some(a), Some(b)] if a.common_joints(b) > 0 => {
-            // Two links of one arm, seen from the last joint that they share: no distance changes.
+        [Some(a), Some(b)] if a.common_joints(b) > 0 && !claim.has_direction() => {
+            // Two links of one arm, seen from the last joint that they share: no distance changes, but directions do.
             let (a, b) = (a.without_first(a.common_joints(b)), b.without_first(a.common_joints(b)));
             let [of_a, of_b] = query.bodies;
             let bodies = [Body { motion: &a, ..of_a }, Body { motion: &b, ..of_b }];
@@ -36,6 +38,9 @@ const AGAIN: f64 = 8.0;
 
 /// Times of a span at which a meeting is looked for first, as parts of it: the end, the start, and between.
 const TIMES: [f64; 5] = [1.0, 0.0, 0.5, 0.25, 0.75];
+
+/// Parts of a way that bodies are parted by, one after the other: none of it, and then less and less.
+const PARTS: [f64; 5] = [0.0, 1.0, 0.25, 0.0625, 0.015_625];
 
 impl Case<'_> {
     fn not_proven<T>(&self, reason: Reason, pair: Option<[u32; 2]>) -> Proof<T> {
@@ -68,6 +73,7 @@ impl Case<'_> {
                 let is_held = is_held(&self.bodies, &self.instant(time)?);
                 if is_held == Some(true) { Ok(()) } else { self.not_proven(Reason::Solid, None) }
             }
+            Claim::Parted { time, along, most } => self.parted(time, along * most, left),
             Claim::All(ref claims) => claims.iter().try_for_each(|claim| self.judge(claim, left)),
         }
     }
@@ -121,6 +127,20 @@ impl Case<'_> {
             return self.not_proven(Reason::Malformed, Some(triangles));
         }
         Ok(self.instant(time)?.distance(&[0, 1].map(|k| meshes[k].corners(triangles[k]))))
+    }
+
+    /// The bodies share no point, or none when B is moved so, or by a part of it: beyond that there may be something else of A.
+    fn parted(&self, time: f64, by: DVec3, left: &mut u64) -> Proof {
+        let span = TimeSpan { from: time, to: time };
+        let level = self.of_meshes(span, 0.0)?;
+        for part in PARTS {
+            let moved = Moved { motion: self.bodies[1].motion, by: by * part };
+            let bodies = [self.bodies[0], Body { motion: &moved, ..self.bodies[1] }];
+            if (Case { bodies, window: self.window }).clear(span, level, left).is_ok() {
+                return Ok(());
+            }
+        }
+        self.not_proven(Reason::NotParted, None)
     }
 
     /// Somewhere the bodies are proven close; or it is refuted, because they are apart all the time.

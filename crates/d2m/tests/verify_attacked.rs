@@ -4,10 +4,11 @@
 use d2m::bvh::ClearanceStatus;
 use d2m::verify::{Verdict, Verifier};
 use d2m::{
-    Clearance, ClearanceOptions, ConstantTwist, ContactSpan, Keyframes, MeshTree, Moving, Pose, QueryOptions,
-    RigidMotion, Span, SpanStatus, TriMesh, Window, clearance, contact_spans,
+    Arm, Clearance, ClearanceOptions, ConstantTwist, Contact, ContactSpan, Joint, JointKind, JointValue,
+    Keyframes, MeshTree, Moving, Pose, QueryOptions, RigidMotion, Span, SpanStatus, StartState,
+    TimeOfContact, TriMesh, Window, clearance, contact_spans, time_of_contact,
 };
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 const STEPS: u64 = 1 << 20;
 
@@ -126,4 +127,82 @@ fn contact_before_bodies_meet_and_of_bodies_that_never_do_is_not_proven() {
         (lie.time, lie.lower, lie.upper) = (time, 0.0, 0.0);
         assert!(!through.is_clearance(&lie), "{time}");
     }
+}
+
+/// The contact of two such bodies at the start, of which the honest answer is proven, and whether an edited one is.
+fn is_start_proven(
+    tree: &MeshTree,
+    motions: [&dyn RigidMotion; 2],
+    least: f64,
+    edit: impl Fn(&mut Contact),
+) -> (StartState, bool) {
+    let bodies = motions.map(|motion| Moving::new(tree, motion));
+    let options = QueryOptions::default().with_min_separation(least);
+    let verifier = Verifier::try_new(tree.mesh(), tree.mesh()).unwrap();
+    let is_proven = |answer: &TimeOfContact| {
+        let verdict = verifier.time_of_contact(&bodies, Window::UNIT, &options, answer, STEPS);
+        matches!(verdict, Verdict::Verified { .. })
+    };
+    let answer = time_of_contact(bodies[0], bodies[1], Window::UNIT, &options).unwrap();
+    let verdict = verifier.time_of_contact(&bodies, Window::UNIT, &options, &answer, STEPS);
+    assert!(is_proven(&answer), "{answer:?} {verdict:?}");
+    let mut contact = *answer.contact().unwrap();
+    let start = contact.start;
+    edit(&mut contact);
+    (start, is_proven(&TimeOfContact::Contact(contact)))
+}
+
+/// Bodies that overlap by half were proven to touch, along any normal, and bodies 0.1 apart to overlap.
+#[test]
+fn the_word_of_a_start_is_proven() {
+    use StartState::{Overlapping, Touching};
+    let cube = MeshTree::new(d2m::shapes::mesh("box?x=1&y=1&z=1").unwrap());
+    let at = |x: f64| along_x(x, 0.0);
+    let says = |x: f64, least: f64, word: StartState| {
+        is_start_proven(&cube, [&at(0.0), &at(x)], least, |contact| {
+            contact.start = word;
+            if word == Overlapping {
+                contact.separation = 0.0;
+            }
+        })
+    };
+    for (x, least, honest) in
+        [(1.5, 0.0, Overlapping), (1.5, 0.2, Overlapping), (2.0, 0.0, Touching), (2.1, 0.2, Touching)]
+    {
+        assert_eq!(says(x, least, honest), (honest, true), "{x}");
+    }
+    assert_eq!(says(1.5, 0.0, Touching), (Overlapping, false));
+    assert_eq!(says(1.5, 0.2, Touching), (Overlapping, false));
+    assert_eq!(says(2.1, 0.2, Overlapping), (Touching, false));
+    // They do meet, but later.
+    let falling = along_x(2.1, -1.0);
+    let later = is_start_proven(&cube, [&ConstantTwist::REST, &falling], 0.2, |contact| {
+        (contact.start, contact.separation, contact.time_hi) = (Overlapping, 0.0, 0.5);
+    });
+    assert_eq!(later, (Touching, false));
+}
+
+/// The normal is a direction of the world, also where links of one arm are seen from the joint that they share.
+#[test]
+fn links_of_a_turned_arm_part_along_the_normal() {
+    let cube = MeshTree::new(d2m::shapes::mesh("box?x=1&y=1&z=1").unwrap());
+    let slide = |at: f64| JointKind::Prismatic {
+        axis: DVec3::X,
+        value: JointValue::try_polynomial(vec![at, -0.1]).unwrap(),
+    };
+    let turned = DQuat::from_rotation_z(core::f64::consts::FRAC_PI_2);
+    let mut arm = Arm::default();
+    let base = arm.add("base", None, Joint::try_new(DVec3::Y, turned, JointKind::Fixed).unwrap()).unwrap();
+    for (name, at) in [("left", 0.0), ("right", 2.0)] {
+        let joint = Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, slide(at)).unwrap();
+        arm.add(name, Some(base), joint).unwrap();
+    }
+    let links = arm.links().unwrap();
+    let proven = is_start_proven(&cube, [&links[1], &links[2]], 0.0, |contact| {
+        assert!((contact.normal - DVec3::Y).length() < 1e-9, "{}", contact.normal);
+    });
+    assert_eq!(proven, (StartState::Touching, true));
+    let turned_away =
+        is_start_proven(&cube, [&links[1], &links[2]], 0.0, |contact| contact.normal = DVec3::X);
+    assert!(!turned_away.1);
 }

@@ -36,6 +36,7 @@ pub(super) fn judgement(verdict: Verdict) -> Judgement {
             | Reason::NoMeeting
             // Of needles the verifier does not enclose a distance as tightly as the engine rounds it.
             | Reason::Distance
+            | Reason::NotParted
             | Reason::Solid => Judgement::Open(reason),
             _ => Judgement::Contradicts(reason.to_string()),
         },

@@ -14,6 +14,9 @@ const RESOLUTION: f64 = 1e-6;
 /// The width of a clearance in tolerances, where that is more than its accuracy.
 const WIDTH: f64 = 4.0;
 
+/// How far bodies that touch are moved to part, at most, in errors of a distance: the engine moves them by 2⁹ of its own, which are smaller.
+const LAYER: f64 = 1024.0;
+
 const fn at(time: f64) -> TimeSpan {
     TimeSpan { from: time, to: time }
 }
@@ -63,12 +66,19 @@ pub fn claim(
                     return Err(Reason::Malformed);
                 }
                 StartState::Contained => return Ok(Claim::Held { time: contact.time_lo }),
-                // Triangles that cross as they are placed in floating point are near, to say the least.
+                // Triangles that cross as they are placed in floating point are near, to say the least: then, and whatever the separation.
                 StartState::Overlapping => {
-                    let evidence = contact.evidence.max(Evidence::Near);
-                    return meeting(contact, options, evidence).ok_or(Reason::NothingClaimed);
+                    let distance =
+                        if contact.evidence == Evidence::Crossing { 0.0 } else { contact.tolerance };
+                    let triangles = Some([contact.triangle_a, contact.triangle_b]);
+                    return Ok(Claim::Within { span: at(contact.time_lo), distance, triangles });
                 }
-                StartState::Touching | StartState::Undecided => {}
+                StartState::Touching => claims.push(Claim::Parted {
+                    time: contact.time_lo,
+                    along: contact.normal,
+                    most: LAYER * scale.error,
+                }),
+                StartState::Undecided => {}
             }
             let most = options.min_separation + MOST_LEFT * contact.tolerance;
             if options.mode != Mode::Capoeira && contact.separation > most {
