@@ -13,6 +13,7 @@ use d2m::bvh::{
 };
 use d2m::motion::{AnyMotion, RigidMotion};
 use d2m::paper::{self, SphereTree};
+use d2m_io::query_fault;
 use glam::DVec3;
 use std::time::{Duration, Instant};
 
@@ -70,8 +71,6 @@ pub(crate) struct Pair {
     pub(crate) solids: [Solid; 2],
     /// Distance at which the bodies count as touching.
     pub(crate) min_separation: f64,
-    /// The tolerance that the user gave.
-    pub(crate) tolerance: Option<f64>,
     pub(crate) preparation: Duration,
     options: QueryOptions,
 }
@@ -119,8 +118,7 @@ impl Pair {
             choose_solid([(&b.name, b.is_watertight())], arguments.solid)?,
         ];
         warn_of_sizes(size_of(a.mesh()), size_of(b.mesh()));
-        let (tolerance, min_separation) = (options.tolerance, options.min_separation);
-        Ok(Self { a, b, solids, min_separation, tolerance, preparation, options })
+        Ok(Self { a, b, solids, min_separation: options.min_separation, preparation, options })
     }
 
     /// How large the bodies are.
@@ -284,20 +282,7 @@ impl Pair {
 
 /// An error of a query, with the motion that it comes from.
 fn bad_input(error: QueryError, motions: [&dyn RigidMotion; 2], window: Window) -> Failure {
-    match error {
-        QueryError::BadMotion { body } => {
-            let (place, motion) = [("motion of A", motions[0]), ("motion of B", motions[1])][body.min(1)];
-            let (pose, twist) = motion.pose_and_twist(window.start());
-            let triple = |vector: DVec3| format!("{:?}", vector.to_array());
-            let [x, v, w] = [pose.translation, twist.linear, twist.angular].map(triple);
-            let time = window.start();
-            let reason = format!(
-                "x = {x}, v = {v}, w = {w} at the time {time:?}: over the window it is not finite, turns by 2^40 radians, goes too far, or spins so slowly that the speed is lost to underflow; or its rounding exceeds the bodies"
-            );
-            Failure::at(place, reason)
-        }
-        other => Failure::Input(other.to_string()),
-    }
+    Failure::Input(query_fault(&error, motions, window))
 }
 
 fn part(start: f64, end: f64) -> Result<Window, Failure> {

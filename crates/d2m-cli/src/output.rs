@@ -1,6 +1,7 @@
 //! Results to files that are complete or absent, or to standard output.
 
 use crate::failure::Failure;
+pub(crate) use d2m_io::short_number as short;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -19,14 +20,6 @@ pub(crate) fn progress_bar(length: usize, of: &str) -> ProgressBar {
     match ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {of}, {{eta}} left {{msg}}")) {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
-    }
-}
-
-/// A number as short as can be read back: in powers of ten where zeros would fill the line.
-pub(crate) fn short(number: f64) -> String {
-    match number.abs() {
-        size if size == 0.0 || (1e-5..1e16).contains(&size) => number.to_string(),
-        _ => format!("{number:e}"),
     }
 }
 

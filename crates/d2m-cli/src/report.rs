@@ -3,56 +3,16 @@
 use crate::arguments::FurtherArguments;
 use crate::engine::{Answer, Further, Pair};
 use crate::output::short;
-use d2m::bvh::{Contact, Evidence, Solid, StartState, TimeOfContact, Window};
-use d2m::feature::FeaturePair;
+use d2m::bvh::{Solid, StartState, TimeOfContact, Window};
+use d2m_io::{AnswerLines, answer_lines, contact_fields};
+pub(crate) use d2m_io::{
+    evidence_sentence, feature_field, feature_sentence, start_in_json, start_word, vector_words as vector,
+    verdict_word as status,
+};
 use glam::DVec3;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::time::Duration;
-
-/// One word for a verdict.
-pub(crate) fn status(verdict: &TimeOfContact) -> &'static str {
-    match verdict {
-        TimeOfContact::Separated => "separated",
-        TimeOfContact::Contact(_) => "contact",
-        TimeOfContact::Undecided { .. } => "undecided",
-    }
-}
-
-/// A feature pair without commas: `vertex_face:V:F`, `face_vertex:F:V`, `edge_edge:P-Q:R-S`, A's part first.
-pub(crate) fn feature_field(feature: FeaturePair) -> String {
-    match feature {
-        FeaturePair::VertexFace { vertex, face } => format!("vertex_face:{vertex}:{face}"),
-        FeaturePair::FaceVertex { face, vertex } => format!("face_vertex:{face}:{vertex}"),
-        FeaturePair::EdgeEdge { edge_a: [p, q], edge_b: [r, s] } => format!("edge_edge:{p}-{q}:{r}-{s}"),
-    }
-}
-
-pub(crate) fn feature_sentence(feature: FeaturePair) -> String {
-    match feature {
-        FeaturePair::VertexFace { vertex, face } => format!("vertex {vertex} of A against face {face} of B"),
-        FeaturePair::FaceVertex { face, vertex } => format!("face {face} of A against vertex {vertex} of B"),
-        FeaturePair::EdgeEdge { edge_a: [p, q], edge_b: [r, s] } => {
-            format!("edge {p}\u{2013}{q} of A against edge {r}\u{2013}{s} of B")
-        }
-    }
-}
-
-pub(crate) fn start_word(start: StartState) -> &'static str {
-    match start {
-        StartState::Apart => "apart",
-        StartState::Touching => "touching",
-        StartState::Overlapping => "overlapping",
-        StartState::Contained => "contained",
-        StartState::Undecided => "undecided",
-    }
-}
-
-/// The same in JSON, whose words are those of the formats: bodies that are not proven to touch, with a direction along which they part, are
-/// `overlapping`, and `start_proven` says whether that is more than a word.
-pub(crate) fn start_in_json(start: StartState) -> &'static str {
-    start_word(if start == StartState::Undecided { StartState::Overlapping } else { start })
-}
 
 /// Microseconds to three digits after the point: clocks have no more.
 pub(crate) fn microseconds(time: Duration) -> f64 {
@@ -76,19 +36,6 @@ fn count(number: usize) -> String {
     groups.join(" ")
 }
 
-/// With so many digits after the point, or in powers of ten where that would fill the line or show nothing.
-fn fixed(number: f64, digits: usize) -> String {
-    match number.abs() {
-        size if size >= 1e9 || (0.0 < size && size < 1e-5) => format!("{number:.digits$e}"),
-        _ => format!("{number:.digits$}"),
-    }
-}
-
-pub(crate) fn vector(v: DVec3) -> String {
-    let [x, y, z] = v.to_array().map(|number| fixed(number, 9));
-    format!("({x}, {y}, {z})")
-}
-
 /// The answer for a person.
 pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
     let further = &answer.further;
@@ -97,27 +44,11 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
         let _ = writeln!(text, "  {label:<12}{value}"); // writing to a string cannot fail
     };
     let [start, end] = [window.start(), window.end()].map(short);
-    let headline = match &answer.verdict {
-        TimeOfContact::Separated => {
-            line("certified", format!("no contact anywhere from {start} to {end}"));
-            if let Some(found) = &further.clearance {
-                let [lower, upper] = [found.lower, found.upper].map(short);
-                line("clearance", format!("[{lower}, {upper}] at t = {}", short(found.time)));
-            }
-            "SEPARATED".to_owned()
-        }
-        TimeOfContact::Undecided { clear_until } => {
-            line("certified", format!("no contact from {start} until {}", short(*clear_until)));
-            let then =
-                "the budget or the time was used up (or the cap that holds without them); more may decide";
-            line("then", then.to_owned());
-            "UNDECIDED".to_owned()
-        }
-        TimeOfContact::Contact(contact) => {
-            contact_lines(&mut line, contact, pair, window.start());
-            format!("CONTACT at t = {}", short(contact.time_lo))
-        }
-    };
+    let AnswerLines { headline, lines, .. } =
+        answer_lines(&answer.verdict, window, pair.options(), further.clearance.as_ref());
+    for [label, value] in lines {
+        line(&label, value);
+    }
     if let Some(departure) = &further.departure {
         let left = match departure.left {
             Some(left) => format!("in contact at {}, proven apart at {}", short(left.lo), short(left.hi)),
@@ -151,77 +82,10 @@ pub(crate) fn body_lines(line: &mut dyn FnMut(&str, String), pair: &Pair) {
     }
 }
 
-/// What is proven of the meeting itself.
-pub(crate) fn evidence_sentence(contact: &Contact, min_separation: f64) -> String {
-    let distance = short(min_separation);
-    match contact.evidence {
-        Evidence::Crossing => "crossing: the bodies share a point at one of these times".to_owned(),
-        Evidence::Near if min_separation > 0.0 => {
-            format!("near: at one of these times the distance is at most {distance} + tolerance")
-        }
-        Evidence::Near => "near: at one of these times the distance is at most the tolerance".to_owned(),
-        _ => "early: only that nothing meets before is proven; there may be no contact at all".to_owned(),
-    }
-}
-
-fn contact_lines(line: &mut dyn FnMut(&str, String), contact: &Contact, pair: &Pair, window_start: f64) {
-    let width = contact.time_hi - contact.time_lo;
-    line("time", format!("[{}, {}]  width {width:.2e}", short(contact.time_lo), short(contact.time_hi)));
-    match contact.start {
-        StartState::Apart if pair.min_separation > 0.0 => {
-            let distance = short(pair.min_separation);
-            line(
-                "certified",
-                format!("further apart than {distance} before and at the first of these times"),
-            );
-        }
-        StartState::Apart => {
-            line("certified", "no contact before; disjoint at the first of these times".to_owned());
-        }
-        // A later keyframe begins with the bodies within the tolerance of each other.
-        start if contact.time_lo > window_start => {
-            line("certified", format!("no contact before; {} at this time", start_word(start)));
-        }
-        start => line("certified", format!("in contact from the start of the window: {}", start_word(start))),
-    }
-    line("evidence", evidence_sentence(contact, pair.min_separation));
-    // Bodies that overlap from the start have no separation, no normal and no closing speed.
-    let apart = matches!(contact.start, StartState::Apart | StartState::Touching);
-    if apart {
-        let raised = match pair.tolerance {
-            Some(given) if contact.tolerance > given => {
-                format!(" (raised from {given:.2e}: the rounding of these lengths and times allows no less)")
-            }
-            _ => String::new(),
-        };
-        let left =
-            format!("{:.4e} left then, tolerance {:.2e}{raised}", contact.separation, contact.tolerance);
-        line("separation", left);
-        line("normal", format!("{} from A to B", vector(contact.normal)));
-    }
-    for (label, point, triangle, weights) in [
-        ("point on A", contact.point_a, contact.triangle_a, contact.barycentric_a),
-        ("point on B", contact.point_b, contact.triangle_b, contact.barycentric_b),
-    ] {
-        if contact.start == StartState::Contained {
-            continue;
-        }
-        let [p, q, r] = weights;
-        line(label, format!("{} · triangle {triangle} at {p:.6}, {q:.6}, {r:.6}", vector(point)));
-    }
-    if contact.start != StartState::Contained {
-        line("features", feature_sentence(contact.feature));
-    }
-    if apart {
-        line("closing", format!("{} along the normal, per unit of time", fixed(contact.closing_speed, 6)));
-    }
-}
-
 /// The answer for a program.
 pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer) -> String {
     let further = &answer.further;
     let mut object = json!({
-        "status": status(&answer.verdict),
         "microseconds": microseconds(answer.took),
         "window": [window.start(), window.end()],
         "solid": pair.solids == [Solid::Filled; 2],
@@ -232,12 +96,8 @@ pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer) -> String {
     let mut put = |key: &str, value: Value| {
         object[key] = value;
     };
-    // The fields of the API under their own names, and the bracket and the feature as in result files.
-    if let Ok(Value::Object(fields)) = serde_json::to_value(answer.verdict) {
-        // When bodies had parted is said below, where it was asked.
-        for (key, value) in fields.into_iter().filter(|(key, _)| key != "left") {
-            put(&key, value);
-        }
+    for (key, value) in contact_fields(&answer.verdict) {
+        put(&key, value);
     }
     if let Some(clearance) = &further.clearance {
         put("clearance", json!([clearance.lower, clearance.upper]));
@@ -248,17 +108,6 @@ pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer) -> String {
     let start = further.start(&answer.verdict);
     put("start", json!(start_in_json(start)));
     put("start_proven", json!(start != StartState::Undecided));
-    match &answer.verdict {
-        TimeOfContact::Separated => {}
-        TimeOfContact::Undecided { clear_until } => put("toc", json!(clear_until)),
-        TimeOfContact::Contact(contact) => {
-            put("toc", json!(contact.time_lo));
-            put("toc_hi", json!(contact.time_hi));
-            put("time", json!([contact.time_lo, contact.time_hi]));
-            put("point", json!(contact.point_a.to_array()));
-            put("feature", json!(feature_field(contact.feature)));
-        }
-    }
     format!("{object}\n")
 }
 

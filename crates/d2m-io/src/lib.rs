@@ -21,12 +21,20 @@
 //! [`read_bytes`] and [`read_unsized`]; [`parse_json`] with [`UniqueKeys`], [`json_fault`]; [`excerpt`] for
 //! messages.
 //!
+//! ## Answers out
+//! What the command prints and a page shows, in one place:
+//! - JSON: [`contact_fields`], [`clearance_fields`], [`distance_fields`]; [`feature_field`], [`start_in_json`].
+//! - Words: [`verdict_word`], [`start_word`], [`evidence_sentence`], [`feature_sentence`], [`short_number`],
+//!   [`vector_words`]; all lines of an answer: [`answer_lines`], [`AnswerLines`]; of an error: [`query_fault`].
+//! - Times: [`proven_spans`], each a [`ProvenSpan`] of which something [`Holds`].
+//!
 //! ## Errors
 //! [`IoError`] with its [`Place`] in the file; [`UnknownUnit`].
 #![doc(html_root_url = "https://docs.rs/d2m-io")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
+mod answer;
 mod bytes;
 mod error;
 mod json;
@@ -38,6 +46,11 @@ mod scene_pair;
 mod text;
 mod write;
 
+pub use answer::{
+    AnswerLines, Holds, ProvenSpan, answer_lines, clearance_fields, contact_fields, distance_fields,
+    evidence_sentence, feature_field, feature_sentence, proven_spans, query_fault, short_number,
+    start_in_json, start_word, vector_words, verdict_word,
+};
 pub use bytes::{read_bytes, read_unsized};
 pub use error::{IoError, Place};
 pub use json::{UniqueKeys, json_fault, parse_json};

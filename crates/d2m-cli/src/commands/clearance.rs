@@ -8,12 +8,13 @@ use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::print_answer;
 use crate::output::short;
-use crate::report::{body_lines, duration, feature_field, feature_sentence, microseconds, vector};
+use crate::report::{body_lines, duration, feature_sentence, microseconds, vector};
 use crate::sizes::sizes_line;
 use crate::verification::Promise;
 use d2m::bvh::{Clearance, ClearanceOptions, ClearanceStatus, Window};
 use d2m::{BodyId, PairClearance, WorldError};
-use serde_json::{Value, json};
+use d2m_io::clearance_fields;
+use serde_json::json;
 use std::fmt::Write;
 
 /// Runs the command.
@@ -56,7 +57,7 @@ fn run_scene(arguments: &ClearanceArguments, accuracy: f64) -> Result<Outcome, F
     let near = near.transpose()?;
     let name = |id: BodyId| scene.bodies[id.index()].name.as_str();
     let object = |found: &PairClearance| {
-        let mut object = fields(&found.clearance);
+        let mut object = clearance_fields(&found.clearance);
         (object["a"], object["b"]) = (json!(name(found.a)), json!(name(found.b)));
         object
     };
@@ -97,29 +98,8 @@ fn run_scene(arguments: &ClearanceArguments, accuracy: f64) -> Result<Outcome, F
     Ok(Outcome::from(status).reported(toc.exit_status))
 }
 
-/// What is stated of every clearance.
-fn fields(found: &Clearance) -> Value {
-    let status = match found.status {
-        ClearanceStatus::Clear => "clear",
-        ClearanceStatus::Contact => "contact",
-        ClearanceStatus::Undecided => "undecided",
-    };
-    json!({
-        "status": status,
-        "clearance": [found.lower, found.upper],
-        "time": found.time,
-        "point_a": found.point_a.to_array(),
-        "point_b": found.point_b.to_array(),
-        "normal": found.normal.to_array(),
-        "feature": feature_field(found.feature),
-        "triangle_a": found.triangle_a,
-        "triangle_b": found.triangle_b,
-        "tolerance": found.tolerance,
-    })
-}
-
 fn to_json(pair: &Pair, window: Window, ClearanceAnswer { found, took }: &ClearanceAnswer) -> String {
-    let mut object = fields(found);
+    let mut object = clearance_fields(found);
     object["window"] = json!([window.start(), window.end()]);
     object["triangles"] = json!([pair.a.mesh().triangle_count(), pair.b.mesh().triangle_count()]);
     object["microseconds"] = json!(microseconds(*took));

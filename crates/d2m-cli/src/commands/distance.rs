@@ -5,8 +5,9 @@ use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::{print_answer, short};
 use crate::posed::PosedBodies;
-use crate::report::{duration, microseconds, start_in_json, start_word, vector};
+use crate::report::{duration, microseconds, start_word, vector};
 use d2m::bvh::{Distance, Solid, StartState, distance};
+use d2m_io::distance_fields;
 use serde_json::json;
 use std::fmt::Write;
 use std::time::{Duration, Instant};
@@ -61,25 +62,9 @@ pub(super) fn solid_word(solid: Solid) -> &'static str {
 }
 
 fn to_json(bodies: &PosedBodies, solid: Solid, found: &Distance, took: Duration) -> String {
-    let status = if found.state == StartState::Apart { "separated" } else { "contact" };
-    let object = json!({
-        "status": status,
-        "state": start_in_json(found.state),
-        "start": start_in_json(found.state),
-        "start_proven": found.state != StartState::Undecided,
-        "distance": found.value,
-        "lower": found.lower,
-        "upper": found.upper,
-        "normal": found.normal.to_array(),
-        "point_a": found.point_a.to_array(),
-        "point_b": found.point_b.to_array(),
-        "triangle_a": found.triangle_a,
-        "triangle_b": found.triangle_b,
-        "barycentric_a": found.barycentric_a,
-        "barycentric_b": found.barycentric_b,
-        "solid": solid == Solid::Filled,
-        "triangles": bodies.both.each_ref().map(|body| body.tree.mesh().triangle_count()),
-        "microseconds": microseconds(took),
-    });
+    let mut object = distance_fields(found);
+    object["solid"] = json!(solid == Solid::Filled);
+    object["triangles"] = json!(bodies.both.each_ref().map(|body| body.tree.mesh().triangle_count()));
+    object["microseconds"] = json!(microseconds(took));
     format!("{object}\n")
 }

@@ -8,11 +8,11 @@ use crate::output::Output;
 use crate::report;
 use crate::sizes::load_both;
 use crate::view::{
-    DistanceSample, Holds, Mark, Picture, Span, StillSize, Up, flights_of, picture_of_run, picture_of_scene,
-    still,
+    DistanceSample, Mark, Picture, StillSize, Up, flights_of, picture_of_run, picture_of_scene, still,
 };
-use d2m::bvh::{Contact, StartState, TimeOfContact, Window};
+use d2m::bvh::{StartState, TimeOfContact, Window};
 use d2m::motion::AnyMotion;
+use d2m_io::proven_spans;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -103,43 +103,9 @@ fn pair(arguments: &ViewArguments, b: &str) -> Result<Picture, Failure> {
     {
         picture.marks.push(Mark::of_contact(contact, [0, 1], [pair.a.mesh(), pair.b.mesh()]));
     }
-    picture.spans = spans(&answer.verdict, window);
+    picture.spans = proven_spans(&answer.verdict, window);
     picture.curve = distances(&pair, [&motions[0], &motions[1]], window);
     Ok(picture)
-}
-
-/// What the answer proves of the window's times.
-fn spans(answer: &TimeOfContact, window: Window) -> Vec<Span> {
-    let (start, end) = (window.start(), window.end());
-    let clear = |until: f64| Span::new(start, until, Holds::Clear, "proven apart");
-    match answer {
-        TimeOfContact::Separated => vec![clear(end)],
-        TimeOfContact::Undecided { clear_until } => {
-            let rest = Span::new(*clear_until, end, Holds::Undecided, "not decided: the budget ran out");
-            vec![clear(*clear_until), rest]
-        }
-        TimeOfContact::Contact(contact) => {
-            let after = "after the first contact: not examined";
-            let mut spans = vec![
-                Span::new(contact.time_lo, contact.time_hi, Holds::Contact, contact_text(contact)),
-                Span::new(contact.time_hi, end, Holds::Unknown, after),
-            ];
-            if contact.time_lo > start {
-                spans.insert(0, clear(contact.time_lo));
-            }
-            spans
-        }
-    }
-}
-
-fn contact_text(contact: &Contact) -> &'static str {
-    match contact.start {
-        StartState::Apart => "the first contact is in this bracket",
-        StartState::Touching => "touching at the start",
-        StartState::Overlapping => "overlapping at the start",
-        StartState::Contained => "one inside the other at the start",
-        StartState::Undecided => "meeting at the start, touching or overlapping",
-    }
 }
 
 /// Distances at times of the window, as many as a short wait allows.

@@ -1,4 +1,4 @@
-//! Contacts that are marked, and what is proven of spans of time.
+//! Contacts that are marked.
 
 use d2m::bvh::{Contact, TriMesh};
 use glam::DVec3;
@@ -48,42 +48,5 @@ impl Mark {
             mark["triangles"] = json!(corners.map(|triangle| triangle.map(|p| p.to_array())));
         }
         mark
-    }
-}
-
-/// What is proven of a span of time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Holds {
-    /// No two bodies that count are in contact.
-    Clear,
-    /// The contact is within this span.
-    Contact,
-    /// The search could not decide.
-    Undecided,
-    /// Nobody asked.
-    Unknown,
-}
-
-/// A span of time, with what is proven of it in words.
-pub(crate) struct Span {
-    pub(crate) from: f64,
-    pub(crate) to: f64,
-    pub(crate) holds: Holds,
-    pub(crate) text: String,
-}
-
-impl Span {
-    pub(crate) fn new(from: f64, to: f64, holds: Holds, text: &str) -> Self {
-        Self { from, to, holds, text: text.to_owned() }
-    }
-
-    pub(super) fn to_json(&self) -> Value {
-        let status = match self.holds {
-            Holds::Clear => "clear",
-            Holds::Contact => "contact",
-            Holds::Undecided => "undecided",
-            Holds::Unknown => "unknown",
-        };
-        json!({ "from": self.from, "to": self.to, "status": status, "text": self.text })
     }
 }

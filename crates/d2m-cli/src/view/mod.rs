@@ -9,8 +9,9 @@ mod run;
 mod scene;
 mod still;
 
+pub(crate) use d2m_io::{Holds, ProvenSpan as Span};
 pub(crate) use flight::{Flight, flights_of, push_thinned};
-pub(crate) use mark::{Holds, Mark, Span};
+pub(crate) use mark::Mark;
 pub(crate) use picture::{DistanceSample, Picture, Up};
 pub(crate) use run::picture_of_run;
 pub(crate) use scene::picture_of_scene;

@@ -1,0 +1,16 @@
+//! Answers as they are written: in JSON for programs, in words for people.
+
+mod fault;
+mod fields;
+mod lines;
+mod span;
+mod words;
+
+pub use fault::query_fault;
+pub use fields::{clearance_fields, contact_fields, distance_fields};
+pub use lines::{AnswerLines, answer_lines};
+pub use span::{Holds, ProvenSpan, proven_spans};
+pub use words::{
+    evidence_sentence, feature_field, feature_sentence, short_number, start_in_json, start_word,
+    vector_words, verdict_word,
+};

@@ -1,0 +1,99 @@
+//! What an answer proves of spans of time.
+
+use d2m_bvh::{Contact, StartState, TimeOfContact, Window};
+use serde_json::{Value, json};
+
+/// What is proven of a span of time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Holds {
+    /// No two bodies that count are in contact.
+    Clear,
+    /// The contact is within this span.
+    Contact,
+    /// The search could not decide.
+    Undecided,
+    /// Nobody asked.
+    Unknown,
+}
+
+impl Holds {
+    /// As it is written.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Clear => "clear",
+            Self::Contact => "contact",
+            Self::Undecided => "undecided",
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
+/// A span of time, with what is proven of it in words.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct ProvenSpan {
+    /// Its start.
+    pub from: f64,
+    /// Its end.
+    pub to: f64,
+    /// What is proven.
+    pub holds: Holds,
+    /// The same in words.
+    pub text: String,
+}
+
+impl ProvenSpan {
+    /// A span with what is proven of it.
+    pub fn new(from: f64, to: f64, holds: Holds, text: &str) -> Self {
+        Self { from, to, holds, text: text.to_owned() }
+    }
+
+    /// As pages take it.
+    pub fn to_json(&self) -> Value {
+        json!({ "from": self.from, "to": self.to, "status": self.holds.word(), "text": self.text })
+    }
+}
+
+/// What the first contact proves of the times of its window: spans in order, joined, covering it.
+///
+/// ```
+/// use d2m_bvh::{TimeOfContact, Window};
+/// use d2m_io::{Holds, proven_spans};
+/// let spans = proven_spans(&TimeOfContact::Undecided { clear_until: 0.25 }, Window::UNIT);
+/// assert_eq!(spans.iter().map(|span| span.holds).collect::<Vec<_>>(), [Holds::Clear, Holds::Undecided]);
+/// assert_eq!((spans[0].to, spans[1].to), (0.25, 1.0));
+/// ```
+pub fn proven_spans(verdict: &TimeOfContact, window: Window) -> Vec<ProvenSpan> {
+    let (start, end) = (window.start(), window.end());
+    let clear = |until: f64| ProvenSpan::new(start, until, Holds::Clear, "proven apart");
+    match verdict {
+        TimeOfContact::Separated => vec![clear(end)],
+        TimeOfContact::Undecided { clear_until } => {
+            let rest =
+                ProvenSpan::new(*clear_until, end, Holds::Undecided, "not decided: the budget ran out");
+            vec![clear(*clear_until), rest]
+        }
+        TimeOfContact::Contact(contact) => {
+            let after = "after the first contact: not examined";
+            let mut spans = vec![
+                ProvenSpan::new(contact.time_lo, contact.time_hi, Holds::Contact, contact_text(contact)),
+                ProvenSpan::new(contact.time_hi, end, Holds::Unknown, after),
+            ];
+            if contact.time_lo > start {
+                spans.insert(0, clear(contact.time_lo));
+            }
+            spans
+        }
+    }
+}
+
+const fn contact_text(contact: &Contact) -> &'static str {
+    match contact.start {
+        StartState::Apart => "the first contact is in this bracket",
+        StartState::Touching => "touching at the start",
+        StartState::Overlapping => "overlapping at the start",
+        StartState::Contained => "one inside the other at the start",
+        StartState::Undecided => "meeting at the start, touching or overlapping",
+    }
+}
