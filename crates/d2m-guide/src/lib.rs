@@ -26,6 +26,7 @@ pages! {
     Budgets: "docs/guide/budgets.md",
     Verification: "docs/guide/verification.md",
     Python: "docs/guide/python.md",
+    JavaScript: "docs/guide/javascript.md",
     Crates: "docs/guide/crates.md",
     Results: "docs/guide/results.md",
     HowItWorks: "docs/guide/how-it-works.md",

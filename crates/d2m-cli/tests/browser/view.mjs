@@ -1,33 +1,20 @@
 // Opens pages of `d2m view` in a real browser without a window and holds them against what they must show:
 //     npm install playwright-core && node view.mjs D2M [BROWSER [FOLDER]]
 // D2M is the command, BROWSER a Chromium (default /usr/bin/chromium), FOLDER where pictures go (default: the temporary one).
-import { chromium } from "playwright-core";
 import { execFileSync } from "node:child_process";
 import { mkdtempSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import assert from "node:assert/strict";
+import { launch, onScreen, open } from "./open.mjs";
 
 const [command, executablePath = "/usr/bin/chromium", folder = mkdtempSync(join(tmpdir(), "d2m-view-"))] = process.argv.slice(2);
-const flags = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
-const browser = await chromium.launch({ executablePath, args: flags });
-
-async function open(path, { width = 1280, height = 800, hash = "" } = {}) {
-  const page = await browser.newPage({ viewport: { width, height } });
-  const faults = [];
-  page.on("console", (message) => { if (message.type() === "error") faults.push(message.text()); });
-  page.on("pageerror", (error) => faults.push(String(error)));
-  page.on("request", (request) => { if (!request.url().startsWith("file:")) faults.push("fetches " + request.url()); });
-  await page.goto("file://" + path + "#" + hash);
-  await page.waitForFunction(() => window.d2m);
-  const state = () => page.evaluate(() => window.d2m.state());
-  return { page, faults, state };
-}
+const browser = await launch(executablePath);
 
 const pair = join(folder, "pair.html");
 execFileSync(command, ["view", "shape:box?x=1&y=1&z=1", "shape:box?x=1&y=1&z=1", "--out", pair, "--motion-a", "x=-3,0,0;v=4,0,0"]);
 for (const [width, height, theme] of [[1280, 800, "light"], [800, 600, "dark"], [390, 800, "light"], [390, 800, "dark"]]) {
-  const { page, faults, state } = await open(pair, { width, height, hash: "theme=" + theme });
+  const { page, faults, state } = await open(browser, pair, { width, height, hash: "theme=" + theme });
   // It opens at the contact: a quarter of the window. The box has moved by one there.
   let now = await state();
   assert.ok(Math.abs(now.time - 0.25) < 1e-8 && now.span === "contact" && now.marks === 1, JSON.stringify(now));
@@ -51,10 +38,7 @@ for (const [width, height, theme] of [[1280, 800, "light"], [800, 600, "dark"], 
   pictures.push(await page.screenshot());
   assert.ok(!pictures[0].equals(pictures[1]), "cut and ghost change the picture");
   // Nothing leaves the screen or covers the slider.
-  for (const id of ["panel", "tools", "bar"]) {
-    const box = await page.locator("#" + id).boundingBox();
-    assert.ok(box.x >= 0 && box.x + box.width <= width && box.y + box.height <= height, id + JSON.stringify(box));
-  }
+  await onScreen(page, ["panel", "tools", "bar"], { width, height });
   const [tools, bar] = [await page.locator("#tools").boundingBox(), await page.locator("#bar").boundingBox()];
   assert.ok(tools.y + tools.height <= bar.y, "the buttons are above the slider");
   assert.deepEqual(faults, []);

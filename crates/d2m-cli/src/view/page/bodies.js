@@ -2,7 +2,9 @@
 
 const COLORS = [0x3b6fb6, 0xd9822b, 0x4f9d69, 0xb0494f, 0x7a5ea8, 0x3f9aa0, 0xa88a3d, 0x6b7686];
 
+// Numbers as `d2m view` writes them; numbers of the page itself are there already.
 function decode(base64, type) {
+  if (base64 instanceof type) return base64;
   const binary = atob(base64);
   const bytes = new Uint8Array(binary.length);
   for (let i = 0; i < binary.length; i++) bytes[i] = binary.charCodeAt(i);

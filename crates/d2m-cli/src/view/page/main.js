@@ -2,6 +2,7 @@
 
 function fill(data, bodies) {
   const element = (id) => document.getElementById(id);
+  for (const id of ["facts", "legend"]) element(id).replaceChildren();
   element("headline").textContent = data.headline;
   for (const [label, value] of data.facts) {
     const dt = document.createElement("dt"), dd = document.createElement("dd");
@@ -30,8 +31,8 @@ function roundLength(most) {
   return [5, 2, 1].map((k) => k * power).find((length) => length <= most) || power;
 }
 
-function start() {
-  const data = JSON.parse(document.getElementById("data").textContent);
+// Shows data of the form that `d2m view` writes. What it answers can show other data in the same page.
+function start(data) {
   const element = (id) => document.getElementById(id);
   const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
   renderer.localClippingEnabled = true;
@@ -46,14 +47,29 @@ function start() {
   camera.add(light);
   scene.add(camera);
 
-  const { groups, bodies, moveTo } = makeBodies(data, scene);
-  const paths = makePaths(bodies, data.window, scene);
-  const marks = makeMarks(data, bodies, scene);
-  fill(data, bodies);
+  let shown, groups, bodies, moveTo, paths, marks, t0, t1, moments;
+  // Puts the bodies of the data in the place of those that were shown.
+  function put(next) {
+    if (shown) { scene.remove(shown); discard(shown); }
+    data = next;
+    shown = new THREE.Group();
+    scene.add(shown);
+    ({ groups, bodies, moveTo } = makeBodies(data, shown));
+    paths = makePaths(bodies, data.window, shown);
+    marks = makeMarks(data, bodies, shown);
+    [t0, t1] = data.window;
+    moments = [...new Set(data.marks.map((mark) => mark.from))].sort((a, b) => a - b);
+    fill(data, bodies);
+    makeStrip(data, element("strip"));
+    makeCurve(data, element("curve"));
+    makeTicks(moments, data, element("ticks"), jump);
+    element("contact").hidden = moments.length === 0;
+  }
+  let time = 0, playing = false, last = 0, dirty = true, held = [];
+  put(data);
   const narrow = window.matchMedia("(max-width: 640px)").matches;
-  if (narrow) element("panel").open = false;
+  if (narrow && !data.panel_stays) element("panel").open = false;
 
-  const [t0, t1] = data.window;
   const whole = new THREE.Box3(), center = new THREE.Vector3(), corner = new THREE.Vector3();
   for (const body of bodies) {
     for (let k = 0; k <= 32; k++) {
@@ -76,8 +92,6 @@ function start() {
   camera.near = size * 1e-3;
   camera.far = size * 100;
 
-  let time = t0, playing = false, last = 0, dirty = true, held = [];
-  const moments = [...new Set(data.marks.map((mark) => mark.from))].sort((a, b) => a - b);
   const cut = new THREE.Plane();
   function show(t) {
     time = Math.min(Math.max(t, t0), t1);
@@ -128,6 +142,10 @@ function start() {
     renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     renderer.setSize(window.innerWidth, window.innerHeight);
     camera.aspect = window.innerWidth / window.innerHeight;
+    // Beside a panel that stays open the middle is that of what it leaves free.
+    const panel = element("panel").getBoundingClientRect();
+    const covered = data.panel_stays && !narrow ? panel.right : 0;
+    camera.setViewOffset(window.innerWidth, window.innerHeight, -covered / 2, 0, window.innerWidth, window.innerHeight);
     camera.updateProjectionMatrix();
     dirty = true;
   }
@@ -156,18 +174,16 @@ function start() {
     requestAnimationFrame(frame);
   }
 
-  makeStrip(data, element("strip"));
-  makeCurve(data, element("curve"));
-  makeTicks(moments, data, element("ticks"), jump);
   element("play").onclick = play;
   element("time").oninput = () => jump(t0 + (t1 - t0) * element("time").value / 10000);
   for (const id of ["cut", "ghost", "paths", "wire"]) element(id).onclick = () => toggle(id);
   element("theme").onclick = theme;
-  element("contact").hidden = moments.length === 0;
   element("contact").onclick = next;
   window.onresize = resize;
   window.onkeydown = (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
+    // What is being filled in keeps its keys.
+    if (event.target.matches && event.target.matches("select, input:not(#time)")) return;
     const step = (t1 - t0) * (event.shiftKey ? 0.001 : 0.01);
     const keys = {
       " ": play, c: next, x: () => toggle("cut"), g: () => toggle("ghost"), t: () => toggle("paths"), w: () => toggle("wire"),
@@ -185,15 +201,36 @@ function start() {
   look();
   const at = parseFloat(asked.get("t"));
   show(Number.isFinite(at) ? at : data.marks.length === 1 ? data.marks[0].from : t0);
-  // What a test of the page reads.
-  window.d2m = { show, state: () => ({ time, holds: element("holds").textContent, span: spanAt(data, time).status,
-    bodies: bodies.map((body) => body.position.toArray()), marks: held.length }) };
   requestAnimationFrame(frame);
+  return {
+    show,
+    // The time of the first mark, if there is one, else the one that was shown.
+    load(next) {
+      put(next);
+      look();
+      if (!playing) show(data.marks.length === 1 ? data.marks[0].from : time);
+    },
+    // What a test of the page reads.
+    state: () => ({ time, holds: element("holds").textContent, span: spanAt(data, time).status,
+      bodies: bodies.map((body) => body.position.toArray()), marks: held.length }),
+  };
 }
 
-try {
-  start();
-} catch (error) {
-  document.getElementById("notes").textContent += "\nThis page needs WebGL: " + error;
-  throw error;
+// Gives back what the graphics card holds.
+function discard(all) {
+  all.traverse((part) => {
+    if (part.geometry) part.geometry.dispose();
+    if (part.material) part.material.dispose();
+    if (part.isInstancedMesh) part.dispose();
+  });
+}
+
+const written = JSON.parse(document.getElementById("data").textContent);
+if (written) {
+  try {
+    window.d2m = start(written);
+  } catch (error) {
+    document.getElementById("notes").textContent += "\nThis page needs WebGL: " + error;
+    throw error;
+  }
 }

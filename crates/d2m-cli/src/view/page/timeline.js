@@ -6,6 +6,7 @@ function percent(data, t) {
 }
 
 function makeStrip(data, strip) {
+  strip.replaceChildren();
   for (const span of data.spans) {
     const part = document.createElement("span");
     part.className = span.status;
@@ -26,8 +27,9 @@ function spanAt(data, t) {
 
 // Enclosures of the distance at single times, as a band.
 function makeCurve(data, svg) {
+  svg.replaceChildren();
+  svg.toggleAttribute("hidden", !data.curve || data.curve.length < 2);
   if (!data.curve || data.curve.length < 2) return;
-  svg.removeAttribute("hidden");
   svg.setAttribute("viewBox", "0 0 100 100");
   const most = Math.max(...data.curve.map(([, , high]) => high)) || 1;
   const y = (value) => 100 - 96 * value / most;
@@ -48,7 +50,8 @@ function makeCurve(data, svg) {
 
 // One tick for each moment that can be jumped to.
 function makeTicks(moments, data, ticks, jump) {
-  // More than the eye can tell apart say nothing.
+  ticks.replaceChildren();
+  // More than the eye can separate show nothing.
   for (const moment of moments.length > 40 ? [] : moments) {
     const tick = document.createElement("button");
     tick.textContent = "▲";

@@ -1,0 +1,52 @@
+//! Motions and poses, as texts.
+
+use d2m::bvh::{MeshTree, Window};
+use d2m::motion::{AnyMotion, ConstantTwist, CoveredMotion, Pose};
+use d2m_io::parse_json;
+use glam::DVec3;
+
+/// Reads JSON in the forms of the formats, or `x=…;q=…;v=…;w=…` as the command takes it. `place` stands in messages.
+fn read(place: &str, text: &str) -> Result<AnyMotion, String> {
+    if text.trim_start().starts_with(['{', '[']) || text.contains('"') {
+        return parse_json(text.as_bytes()).map_err(|error| format!("{place}: {error}"));
+    }
+    let motion: ConstantTwist = text.parse().map_err(|error| format!("{place}: {error}"))?;
+    Ok(motion.into())
+}
+
+/// A motion that covers the window and, where it has keyframes, fits the size of its body.
+pub(crate) fn read_motion(
+    place: &str,
+    text: &str,
+    window: Window,
+    tree: &MeshTree,
+) -> Result<AnyMotion, String> {
+    let motion = read(place, text)?;
+    if let Err(outside) = CoveredMotion::try_new(&motion, window.start(), window.end()) {
+        return Err(format!("{place}: {outside}"));
+    }
+    if matches!(motion, AnyMotion::Keyframes(_)) {
+        let (low, high) = extent(tree);
+        motion.check_size((high - low).length()).map_err(|error| format!("{place}: {error}"))?;
+    }
+    Ok(motion)
+}
+
+fn extent(tree: &MeshTree) -> (DVec3, DVec3) {
+    let vertices = tree.mesh().vertices();
+    vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
+}
+
+/// The pose of a body at rest: x, q and at.
+pub(crate) fn read_pose(place: &str, text: &str) -> Result<Pose, String> {
+    let AnyMotion::ConstantTwist(motion) = read(place, text)? else {
+        return Err(format!("{place}: a pose has x, q and at, and no course over time"));
+    };
+    for (key, velocity) in [("v", motion.linear_velocity()), ("w", motion.angular_velocity())] {
+        if velocity != DVec3::ZERO {
+            let value = velocity.to_array();
+            return Err(format!("{place}: {key} is {value:?}: a pose has x, q and at, but no velocity"));
+        }
+    }
+    Ok(Pose { rotation: motion.orientation(), translation: motion.position(), at: motion.at() })
+}
