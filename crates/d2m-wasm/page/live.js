@@ -78,6 +78,8 @@ function marksOf(answer, a, b) {
     triangles: [cornersOf(a, answer.triangle_a), cornersOf(b, answer.triangle_b)] }];
 }
 
+const duration = (microseconds) => microseconds < 1e3 ? Math.round(microseconds) + " µs" : (microseconds / 1e3).toFixed(1) + " ms";
+
 function live() {
   const element = (id) => document.getElementById(id), form = element("motion");
   addChoice(form, "shape-a", "A", LIVE.shapes[0]);
@@ -102,7 +104,7 @@ function live() {
       last = { names, motions, answer };
       if (viewer) viewer.load(data); else viewer = start(data);
       element("engine").className = "";
-      element("engine").textContent = "answered in this page in " + (answer.microseconds / 1e3).toFixed(1) + " ms";
+      element("engine").textContent = "first contact searched in this page in " + duration(answer.microseconds);
     } catch (error) {
       element("engine").className = "fault";
       element("engine").textContent = error.message;

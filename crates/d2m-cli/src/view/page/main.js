@@ -70,6 +70,9 @@ function start(data) {
   const narrow = window.matchMedia("(max-width: 640px)").matches;
   if (narrow && !data.panel_stays) element("panel").open = false;
 
+  // Beside a panel that stays open the middle is that of what it leaves free.
+  const covered = () => data.panel_stays && !narrow ? element("panel").getBoundingClientRect().right : 0;
+
   const whole = new THREE.Box3(), center = new THREE.Vector3(), corner = new THREE.Vector3();
   for (const body of bodies) {
     for (let k = 0; k <= 32; k++) {
@@ -88,7 +91,7 @@ function start(data) {
   if (data.marks.length === 1) center.fromArray(data.marks[0].points[0]);
   controls.target.copy(center);
   corner.set(0.6, zUp ? -1 : 0.5, zUp ? 0.5 : 1).normalize();
-  camera.position.copy(center).addScaledVector(corner, size * (narrow ? 3.4 : 2));
+  camera.position.copy(center).addScaledVector(corner, size * (narrow ? 3.4 : covered() > 0.4 * window.innerWidth ? 3 : 2));
   camera.near = size * 1e-3;
   camera.far = size * 100;
 
@@ -142,10 +145,7 @@ function start(data) {
     renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     renderer.setSize(window.innerWidth, window.innerHeight);
     camera.aspect = window.innerWidth / window.innerHeight;
-    // Beside a panel that stays open the middle is that of what it leaves free.
-    const panel = element("panel").getBoundingClientRect();
-    const covered = data.panel_stays && !narrow ? panel.right : 0;
-    camera.setViewOffset(window.innerWidth, window.innerHeight, -covered / 2, 0, window.innerWidth, window.innerHeight);
+    camera.setViewOffset(window.innerWidth, window.innerHeight, -covered() / 2, 0, window.innerWidth, window.innerHeight);
     camera.updateProjectionMatrix();
     dirty = true;
   }
