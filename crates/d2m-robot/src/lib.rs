@@ -32,7 +32,6 @@ mod body_box;
 mod broad_phase;
 mod check;
 mod clearance;
-mod cylinder;
 mod error;
 mod geometry;
 mod limits;
