@@ -37,9 +37,9 @@ const MOTIONS = {
   keyframes: () => {
     const x = start(), end = x.map((c, i) => c + towards(x)[i]);
     return { times: [0, random(0.2, 0.8), 1], poses: [{ x, q: turn() }, { x: vector(1.5), q: turn() }, { x: end, q: turn() }],
-      join: pick(["linear", "screw"]) };
+      join: pick(["linear", "screw", "cubic", "quintic"]) };
   },
-  spline: () => {
+  "arm of polynomials": () => {
     // Cubic pieces that meet with their slopes, and a turn of degree five.
     const along = () => {
       const [a, b, c, d] = [random(1.5, 3), random(-6, 0), random(-2, 2), random(-3, 3)];
