@@ -18,6 +18,12 @@ const AIM: f64 = 1e-3;
 const RELATIVE: f64 = 1.0 / 1024.0;
 /// Solutions with the spin of the flight's middle put right.
 const CORRECTIONS: u32 = 3;
+/// Of crowds, whose solutions are less exact than that.
+const CROWD_CORRECTIONS: u32 = 1;
+/// Bodies of a simulation from which on they are a crowd.
+pub(crate) const CROWD: usize = 64;
+/// Moved bodies of an island from which on it flies to the end of the step however its bodies tumble.
+const MANY: usize = 20;
 
 /// And with the ends of jointed bodies' flights put right.
 const JOINT_CORRECTIONS: u32 = 8;
@@ -111,7 +117,9 @@ pub(crate) fn solve(
 
     // Bodies that are held keep their momenta and the time at which they were held: they have no flight that ends.
     let horizons = states.iter().filter(|s| moves(s)).map(|s| s.horizon_within(clock.end, options.step));
-    let end = horizons.fold(clock.end, f64::min);
+    // Bodies that tumble in a crowd meet others before the energy of their turning counts: it is not divided for one of them.
+    let is_crowd = horizons.clone().count() > MANY;
+    let end = if is_crowd { clock.end } else { horizons.fold(clock.end, f64::min) };
     let span =
         Span { remaining: end - clock.now, step: options.step, resting_speed: options.resting_speed() };
     let prepare = |s: &RigidBody, v: Velocity| {
@@ -134,7 +142,8 @@ pub(crate) fn solve(
     let mut targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
     let precision = PRECISION * options.gap / options.step;
     let slow = span.resting_speed.max(options.gap / options.step);
-    let accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM, slow };
+    let in_crowd = bodies.len() > CROWD;
+    let accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM, slow, in_crowd };
 
     let mut pushing: Vec<f64> = rows.iter().map(|row| row.pushing).collect();
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
@@ -152,7 +161,11 @@ pub(crate) fn solve(
         let is_off = put_right(&mut system, &states, &contacts, span, place, tolerance);
         let ends = Ends { joints, states: &states, span };
         let missed = ends.miss(&system, &contacts, place);
-        let most = if missed.is_empty() { CORRECTIONS } else { JOINT_CORRECTIONS };
+        let most = match (missed.is_empty(), system.is_crowd()) {
+            (true, true) => CROWD_CORRECTIONS,
+            (true, false) => CORRECTIONS,
+            (false, _) => JOINT_CORRECTIONS,
+        };
         let is_joined = missed.iter().all(|missed| missed.rate.abs() <= precision);
         if correction == most || !is_off && is_joined {
             break;

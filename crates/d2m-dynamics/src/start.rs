@@ -174,7 +174,7 @@ impl Simulation {
         let mut system = System::new(bodies, &contacts, |body| body);
         system.solve(
             &targets,
-            Accuracy { precision, relative: 0.0, aim: 1.0, slow: f64::INFINITY },
+            Accuracy { precision, relative: 0.0, aim: 1.0, in_crowd: false, slow: f64::INFINITY },
             Start::Sticking,
         );
         for (body, solved) in self.bodies.iter_mut().zip(&system.bodies).skip(first) {

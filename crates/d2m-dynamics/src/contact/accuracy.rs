@@ -12,6 +12,8 @@ pub(crate) struct Accuracy {
     pub(crate) relative: f64,
     /// The part of the precision that is aimed at where bodies rest: what is left of one step is there in the next one.
     pub(crate) aim: f64,
+    /// Are the bodies some of many? Then sweeps come first also where few of them move.
+    pub(crate) in_crowd: bool,
     /// What slides slower than this could as well stick.
     pub(crate) slow: f64,
 }

@@ -53,8 +53,13 @@ pub(crate) fn impact(
             };
             let targets: Vec<f64> = (0..contacts.len()).map(target).collect();
             system.begin(&before);
-            let accuracy =
-                Accuracy { precision: PRECISION * fastest, relative: 0.0, aim: 1.0, slow: f64::INFINITY };
+            let accuracy = Accuracy {
+                precision: PRECISION * fastest,
+                relative: 0.0,
+                aim: 1.0,
+                in_crowd: false,
+                slow: f64::INFINITY,
+            };
             system.solve(&targets, accuracy, Start::Sticking);
             system.doubled_energy(inertia) - energy
         };

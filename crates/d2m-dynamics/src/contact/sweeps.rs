@@ -5,22 +5,33 @@ use super::law::Law;
 use super::solver_body::SolverBody;
 use super::system::{Block, System};
 
+/// Sweeps go forth and back by turns: what one carries to the top of a pile the next one carries to its ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Order {
+    Forth,
+    Back,
+}
+
 impl System {
     /// Sweeps over all blocks until the residual is no more than what may be left, so many at most; the residual.
     pub(super) fn sweep_until(&mut self, targets: &[f64], accuracy: Accuracy, most: u32) -> f64 {
         let mut residual = self.residual(targets);
         let mut done = 0;
         while residual > self.enough(accuracy) && done < most {
-            (0..BETWEEN).for_each(|_| self.sweep(targets));
+            for k in 0..BETWEEN {
+                self.sweep(targets, if k % 2 == 0 { Order::Forth } else { Order::Back });
+            }
             done += BETWEEN;
             residual = self.residual(targets);
         }
         residual
     }
 
-    fn sweep(&mut self, targets: &[f64]) {
+    fn sweep(&mut self, targets: &[f64], order: Order) {
         let Self { bodies, blocks, impulses, .. } = self;
-        for ((block, own), target) in blocks.iter().zip(impulses).zip(targets) {
+        for k in 0..blocks.len() {
+            let k = if order == Order::Forth { k } else { blocks.len() - 1 - k };
+            let (block, own, target) = (&blocks[k], &mut impulses[k], &targets[k]);
             if block.scale == 0.0 {
                 continue;
             }

@@ -10,9 +10,11 @@ use glam::DVec3;
 const MOST_AT_ONCE: u32 = 3;
 /// And flights of bodies that are planned anew in a whole step: so many, and so many for each body there is. A budget, like the
 /// number of events, which is 128 by default: two bodies each; and for crowds in which all meet, the pair that each of two
-/// neighbours meets, twice. What goes beyond it is left unbalanced in the segments, and in them only.
+/// neighbours meets, twice. Crowds of more bodies than so many have the budget of that many: there is always something that meets, and a
+/// plan for all of a thousand bodies costs as much as a step. What goes beyond it is left unbalanced in the segments, and in them only.
 const MOST_IN_A_STEP: usize = 256;
 const MOST_OF_A_BODY: usize = 4;
+const MOST_BODIES: usize = 64;
 /// The part of the greatest kinetic energy that a flight's early end may leave unbalanced in the segments (the momenta are right in
 /// any case): a thirty-second of the 1/128 that `docs/guarantees.md` promises, for the flights of one step that are cut one after the
 /// other.
@@ -41,11 +43,7 @@ impl Step<'_> {
         if self.replans.at != now {
             (self.replans.at, self.replans.at_once) = (now, 0);
         }
-        if event.cause == Cause::Stuck
-            || self.replans.at_once >= MOST_AT_ONCE
-            || self.replans.all >= MOST_IN_A_STEP + MOST_OF_A_BODY * self.sim.bodies.len()
-            || event.time <= now
-        {
+        if event.cause == Cause::Stuck || self.replans.at_once >= MOST_AT_ONCE || event.time <= now {
             return Ok(false);
         }
         let gravity = self.sim.options.gravity;
@@ -68,6 +66,10 @@ impl Step<'_> {
         }
         let each = most / cuts.iter().filter(|&&cut| cut > 0.0).count() as f64;
         let concerned: Vec<usize> = (0..cuts.len()).filter(|&i| cuts[i] > each).collect();
+        let budget = MOST_IN_A_STEP + MOST_OF_A_BODY * self.sim.bodies.len().min(MOST_BODIES);
+        if self.replans.all + concerned.len() > budget {
+            return Ok(false);
+        }
         let until = self.expected(event, |i| cuts[i] > each);
         if !(until > now && until < self.end) {
             return Ok(false);

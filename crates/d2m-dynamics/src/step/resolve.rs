@@ -2,7 +2,8 @@
 
 use super::connected::Group;
 use super::{Occasion, Step};
-use crate::group::{Clock, Solved, islands, solve};
+use crate::contact::ContactPoint;
+use crate::group::{CROWD, Clock, Solved, islands, solve};
 use crate::rigid_body::RigidBody;
 use crate::velocity::Velocity;
 use crate::{BodyId, ContactImpulse, StepError, parallel};
@@ -14,6 +15,8 @@ const MOST_ROUNDS: u32 = 4;
 /// A solution that leads no point of a body's surface further off than this part of the gap in a step leaves its flight as it is:
 /// a sixty-fourth of [`LEEWAY`], so that all contacts of a body together stay within that.
 const SAME: f64 = 1.0 / 1024.0;
+/// Bodies whose expected contacts are solved, in a crowd, with what they press on and not with all that is connected.
+const FEW: usize = 8;
 /// The part of the gap by which a contact may close in what is left of the step before its body is solved with the others.
 const LEEWAY: f64 = 1.0 / 16.0;
 
@@ -29,7 +32,12 @@ impl Step<'_> {
         let until = if let Occasion::Plan { until } = occasion { until } else { self.end };
         let clock = Clock { now: time, end: until };
         let renewed = if occasion.is_event() { seeds.clone() } else { Vec::new() };
-        let solved = if occasion == Occasion::Event && self.sim.joints.is_empty() {
+        let is_local = match occasion {
+            Occasion::Event => true,
+            Occasion::Expected => self.sim.bodies.len() > CROWD && seeds.len() <= FEW,
+            _ => false,
+        };
+        let solved = if is_local && self.sim.joints.is_empty() {
             self.solve_nearby(&mut group, seeds, clock, occasion)?
         } else {
             self.admit_connected(&mut group, time, seeds, occasion)?;
@@ -122,8 +130,8 @@ impl Step<'_> {
         parallel::map(islands(bodies, within), |island| solve(bodies, &island, clock, options, joints))
     }
 
-    /// An event changes the velocities of its bodies, and of those that they then press on: a heap of bodies at rest is not
-    /// solved again for what happens on top of it.
+    /// An event changes the velocities of its bodies, and of those that they then press on or let go: a heap of bodies at rest is
+    /// not solved again for what happens on top of it. The same holds for contacts that are expected in a crowd.
     fn solve_nearby(
         &mut self,
         group: &mut Group,
@@ -135,6 +143,9 @@ impl Step<'_> {
         for _ in 0..MOST_ROUNDS {
             self.admit(group, clock.now, &wave, occasion)?;
             group.sort();
+            if occasion == Occasion::Expected {
+                self.retract(group, 1.0);
+            }
             self.follow_motions(group, clock, occasion)?;
             let solved = self.solve_islands(group, clock);
             wave = self.pressed(group, &solved, clock);
@@ -151,11 +162,15 @@ impl Step<'_> {
         let rest: Vec<usize> = rest.into_iter().filter(outside).collect();
         self.admit_connected(group, clock.now, rest, occasion)?;
         group.sort();
+        if occasion == Occasion::Expected {
+            self.retract(group, 1.0);
+        }
         self.follow_motions(group, clock, occasion)?;
         Ok(self.solve_islands(group, clock))
     }
 
-    /// The bodies outside of the group that members with these velocities come closer to than contacts allow, ascending.
+    /// The bodies outside of the group that members with these velocities come closer to than contacts allow, or that they were pressed
+    /// by and leave, ascending.
     fn pressed(&self, group: &Group, solved: &[Solved], clock: Clock) -> Vec<usize> {
         let gravity = self.sim.options.gravity;
         let mut velocities = BTreeMap::new();
@@ -176,15 +191,27 @@ impl Step<'_> {
             let body = &self.sim.bodies[i];
             !group.is_member[i] && body.is_dynamic() && !body.held
         };
-        let mut pressed = Vec::new();
-        for contact in group.contacts.iter().filter(|c| outside(c.a) || outside(c.b)) {
-            let (a, b) = (velocity(contact.a), velocity(contact.b));
-            let rate = contact.rate(a, b);
+        let length = clock.end - clock.now;
+        let closes = |contact: &&ContactPoint| {
+            let rate = contact.rate(velocity(contact.a), velocity(contact.b));
             let (distance, gap) = (contact.distance, contact.gap);
-            if distance + rate * (clock.end - clock.now) < distance.min(gap) - LEEWAY * gap {
-                pressed.extend([contact.a, contact.b].into_iter().filter(|&i| outside(i)));
-            }
-        }
+            distance + rate * length < distance.min(gap) - LEEWAY * gap
+        };
+        // What pressed on a member from outside and does so no more.
+        let lets_go = |contact: &&ContactPoint| {
+            let before = [contact.a, contact.b].map(|i| self.sim.bodies[i].present_velocity());
+            let rate = contact.rate(velocity(contact.a), velocity(contact.b));
+            let opens = rate - contact.rate(before[0], before[1]);
+            contact.impulse > 0.0 && opens * length > LEEWAY * contact.gap
+        };
+        let crosses = |c: &&ContactPoint| {
+            let ends = [c.a, c.b];
+            ends.into_iter().any(outside) && ends.into_iter().any(|i| group.is_member[i])
+        };
+        let closing = group.contacts.iter().filter(crosses).filter(closes);
+        let opening = self.undoable.iter().filter(crosses).filter(lets_go);
+        let ends = closing.chain(opening).flat_map(|contact| [contact.a, contact.b]);
+        let mut pressed: Vec<usize> = ends.filter(|&i| outside(i)).collect();
         pressed.sort_unstable();
         pressed.dedup();
         pressed
