@@ -204,9 +204,13 @@ pub fn clearance_claim(
         });
     }
     claims.push(Claim::Within {
-        // An upper end is that of the engine's own roundings. Bodies that meet share a point after the time of contact.
+        // An upper end is that of the engine's own roundings. Bodies that meet are within the tolerance after the time of contact.
         span: TimeSpan { from: time, to: if upper > 0.0 { time } else { window.end() } },
-        distance: if upper > 0.0 { upper + scale.error } else { 0.0 },
+        distance: match answer.status {
+            _ if upper > 0.0 => upper + scale.error,
+            ClearanceStatus::Contact => scale.most,
+            _ => 0.0,
+        },
         triangles: Some([answer.triangle_a, answer.triangle_b]),
     });
     Ok(Claim::All(claims))

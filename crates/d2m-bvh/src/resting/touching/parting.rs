@@ -10,6 +10,9 @@ use glam::DVec3;
 
 /// Axes kept as different, at most.
 const MOST_AXES: usize = 64;
+/// Different axes of which sums are tried, at most, and sums that are.
+const MOST_MIXED: usize = 16;
+const MOST_TRIED: usize = 4;
 /// Rounds in which axes are added that a direction has to follow.
 const MOST_ROUNDS: usize = 32;
 /// A direction parts two triangles if it leaves the plane between them by more than this sine: the first step along it is
@@ -19,18 +22,15 @@ pub(super) const LEAST_RISE: f64 = FIRST_STEP / LAST_STEP;
 const AS_GOOD: f64 = 16.0;
 
 /// Directions from A to B that part all pairs to first order, best first.
-pub(super) fn directions(pairs: &[TouchingPair], need: f64) -> Vec<DVec3> {
+pub(super) fn directions(pairs: &[TouchingPair], need: f64) -> impl Iterator<Item = DVec3> {
     let common = common_axes(pairs, need);
-    let mut found = Vec::new();
-    if !common.is_empty() {
-        // The middle of the cone of directions normal to planes between all of A and all of B, near the contacts.
-        let middle = common.iter().fold(DVec3::ZERO, |sum, axis| sum + axis.direction);
-        found.extend(middle.try_normalize());
-        found.extend(common.iter().map(|axis| axis.direction));
-        return found;
-    }
-    found.extend(direction_of_several(pairs));
-    found
+    // The middle of the cone of directions normal to planes between all of A and all of B, near the contacts.
+    let middle = common.iter().fold(DVec3::ZERO, |sum, axis| sum + axis.direction).try_normalize();
+    let several = common.is_empty();
+    let of_several = several.then(|| direction_of_several(pairs)).flatten();
+    // Sought only where the others were not enough.
+    let mixed = std::iter::once(()).filter(move |()| several).flat_map(|()| mixtures(pairs));
+    middle.into_iter().chain(common.into_iter().map(|axis| axis.direction)).chain(of_several).chain(mixed)
 }
 
 /// Axes along which no pair overlaps.
@@ -90,6 +90,40 @@ fn direction_of_several(pairs: &[TouchingPair]) -> Option<DVec3> {
         needed.push(best.direction);
     }
     None
+}
+
+/// Where a pair may part along one of several axes, the direction that rises steeply from one of each need not be near those that
+/// rise most from the pairs before: sums of up to three axes of the pairs, the steepest first.
+fn mixtures(pairs: &[TouchingPair]) -> Vec<DVec3> {
+    let mut axes: Vec<Axis> = Vec::new();
+    for axis in pairs.iter().flat_map(|pair| &pair.axes) {
+        if axes.len() < MOST_MIXED || axes.iter().any(|one| one.is_same(axis)) {
+            add(&mut axes, axis);
+        }
+    }
+    let mut found: Vec<(f64, DVec3)> = Vec::new();
+    let mut consider = |sum: DVec3| {
+        let Some(n) = sum.try_normalize() else { return };
+        let mut rise = f64::INFINITY;
+        for pair in pairs {
+            rise = rise.min(steepest_rise(pair, n));
+            if rise <= LEAST_RISE {
+                return;
+            }
+        }
+        found.push((rise, n));
+    };
+    let at = |k: usize| axes[k].direction;
+    for i in 0..axes.len() {
+        consider(at(i));
+        for j in 0..i {
+            consider(at(i) + at(j));
+            (0..j).for_each(|k| consider(at(i) + at(j) + at(k)));
+        }
+    }
+    found.sort_by(|x, y| y.0.total_cmp(&x.0));
+    found.truncate(MOST_TRIED);
+    found.into_iter().map(|(_, n)| n).collect()
 }
 
 /// How steeply the direction rises from the plane between two triangles that it leaves best: a sine.
