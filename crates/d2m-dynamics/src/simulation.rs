@@ -224,6 +224,61 @@ impl Simulation {
         Ok(())
     }
 
+    /// Adds an impulse that acts at a point, both in world axes: one at the center of mass with the angular impulse (point − center) ×
+    /// impulse. Wakes the body.
+    ///
+    /// # Errors
+    /// As [`Self::apply_impulse`].
+    ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use d2m_dynamics::{Body, Mass, Simulation, SimulationOptions};
+    /// # use glam::DVec3;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
+    /// let cube = Body::new("cube", cube).with_mass(Mass::Total(1.0));
+    /// let cube = simulation.add(&cube.with_position(DVec3::X * 3.0))?;
+    /// simulation.apply_impulse_at(cube, DVec3::Y, DVec3::new(3.5, 0.0, 0.0))?;
+    /// simulation.step()?;
+    /// // Moments of inertia 1/6.
+    /// assert!((simulation.linear_velocity(cube) - DVec3::Y).length() < 1e-12);
+    /// assert!((simulation.angular_velocity(cube) - DVec3::Z * 3.0).length() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn apply_impulse_at(
+        &mut self,
+        body: BodyId,
+        impulse: DVec3,
+        point: DVec3,
+    ) -> Result<(), SimulationError> {
+        let arm = point - self.position(body);
+        self.apply_impulse(body, impulse, arm.cross(impulse))
+    }
+
+    /// The body is simulated again if it sleeps. It falls asleep again where it stays at rest.
+    ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions};
+    /// # use glam::DVec3;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let mut simulation = Simulation::new(SimulationOptions::default())?;
+    /// # let floor = Body::new("floor", Arc::clone(&cube)).with_kind(Kind::Static);
+    /// # simulation.add(&floor.with_position(DVec3::Y * -1.001))?;
+    /// let resting = simulation.add(&Body::new("resting", cube))?;
+    /// while !simulation.is_asleep(resting) {
+    ///     simulation.step()?;
+    /// }
+    /// simulation.wake(resting);
+    /// assert!(!simulation.is_asleep(resting));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn wake(&mut self, body: BodyId) {
+        wake(&mut self.bodies[body.index()], self.time);
+    }
+
     /// Advances by one step: to the next multiple of [`SimulationOptions::step`].
     ///
     /// # Errors
