@@ -181,7 +181,7 @@ impl Case<'_> {
     /// From one meeting to the next one, no later than `every`; each is taken along as far as it is proven to last.
     fn often(&self, span: TimeSpan, level: Interval, every: f64, left: &mut u64) -> Proof {
         let level = level.lo().max(0.0);
-        if !(every >= 0.0 && every < f64::INFINITY) {
+        if !(0.0..f64::INFINITY).contains(&every) {
             return self.not_proven(Reason::Malformed, None);
         }
         let (mut now, mut step) = (span.from, span.to - span.from);
