@@ -77,7 +77,7 @@ const meshOf = (shape) => { if (!made.has(shape)) made.set(shape, Mesh.shape(sha
 const file = (name, text) => { const path = join(folder, name); writeFileSync(path, text); return path; };
 const moved = (a, b) => ["--motion-a", "@" + file("a.json", JSON.stringify(a)), "--motion-b", "@" + file("b.json", JSON.stringify(b))];
 
-const counts = {}, spent = { here: 0, natively: 0 };
+const counts = {};
 for (let k = 0; k < Number(queries); k++) {
   const [kind, make] = pick(Object.entries(MOTIONS)), shapes = [pick(SHAPES), pick(SHAPES)];
   const motions = [make(), pick(B_MOTIONS)()], [a, b] = shapes.map(meshOf);
@@ -101,11 +101,10 @@ for (let k = 0; k < Number(queries); k++) {
   }
   assert.ok(theirs.answer, `${place}: ${theirs.fault}`);
   same(ours, theirs.answer, place);
-  if (k >= 40 && question === "toc") { spent.here += ours.microseconds; spent.natively += theirs.answer.microseconds; }
   const what = `${question} ${ours.status}`;
   counts[what] = (counts[what] ?? 0) + 1;
 }
-for (const what of ["toc contact", "toc separated", "clearance clear", "distance separated"]) assert.ok(counts[what] > 3, what);
+for (const what of ["toc contact", "toc separated", "clearance clear", "distance separated"]) assert.ok(counts[what] > Number(queries) / 100, `${what}: ${counts[what]} of ${queries} queries`);
 
 // A shape, its arrays and a file of it are the same mesh.
 {
@@ -163,4 +162,3 @@ assert.ok(few.status !== "separated" && engine.shapes().length > 8 && few.spans.
 
 rmSync(folder, { recursive: true });
 console.log(`${queries} queries: ${numbers} numbers have the bits of the native command; ${JSON.stringify(counts)}`);
-console.log(`toc: ${(spent.here / spent.natively).toFixed(2)} times as long as natively (each query once, first call of its kind)`);
