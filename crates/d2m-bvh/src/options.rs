@@ -212,10 +212,11 @@ pub struct QueryOptions {
     /// same bits at any number of threads. Of use for queries of more than about a millisecond with much
     /// rotation (a span is 0.3 radians of both bodies together); those that are shorter do not notice it.
     pub parallel: bool,
-    /// The level is a little below the least distance of the bodies: many pairs pass close to it, and neither planes between crowds of
-    /// them nor swept volumes prove them apart.
+    /// Set where the level is a little below the least distance of the bodies: many pairs pass close to it, and neither planes between
+    /// crowds of them nor swept volumes prove them apart. Triangles of A and of B that are about the closest at the start: most pairs
+    /// that are close are apart along the line between these two.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub(crate) grazing: bool,
+    pub(crate) grazing: Option<[u32; 2]>,
 }
 
 impl QueryOptions {
@@ -228,7 +229,7 @@ impl QueryOptions {
         min_separation: 0.0,
         start: Start::Report,
         parallel: false,
-        grazing: false,
+        grazing: None,
     };
 
     /// With this tolerance δ, a distance.

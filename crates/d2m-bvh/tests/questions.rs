@@ -129,6 +129,71 @@ fn planted_minima_are_found_at_ends_and_inside_in_any_unit() {
     }
 }
 
+/// Windows before, after and around the time at which bodies are closest, and the way there.
+const WINDOWS: [(f64, f64); 6] =
+    [(0.0, 1.0), (0.0, 0.375), (0.375, 1.0), (0.25, 0.5), (0.5, 1.0), (0.0, 0.125)];
+
+fn check_planted(bodies: [Moving<'_>; 2], truth: impl Fn(f64) -> f64, nearest: f64) {
+    for (start, end) in WINDOWS {
+        let window = Window::try_new(start, end).unwrap();
+        let expected = truth(nearest.clamp(start, end));
+        for accuracy in [1e-3, 1e-6, 1e-9] {
+            let options = ClearanceOptions::default().with_accuracy(accuracy);
+            let found = clearance(bodies[0], bodies[1], window, &options).unwrap();
+            assert_eq!(found.status, ClearanceStatus::Clear);
+            assert!(found.lower <= expected * (1.0 + 1e-12), "{start} {end}: {found:?} {expected}");
+            assert!(found.upper >= expected * (1.0 - 1e-12), "{start} {end}: {found:?} {expected}");
+            assert!(found.upper - found.lower <= (accuracy * found.upper).max(4.0 * found.tolerance));
+            assert!((truth(found.time) - expected).abs() <= (accuracy * expected).max(1e-8), "{found:?}");
+        }
+    }
+}
+
+/// Two points on straight lines, and a bar that turns past a point, forwards and backwards in time.
+#[test]
+fn planted_minima_are_found_wherever_the_window_ends() {
+    let nearest = 0.375;
+    let point = MeshTree::new(TriMesh::point(DVec3::ZERO).unwrap());
+    let bar = MeshTree::new(TriMesh::segment(-DVec3::X, DVec3::X).unwrap());
+    for speed in [0.5, 4.0, -512.0] {
+        let from = DVec3::new(-speed * nearest, 0.0, 0.25);
+        let passing = ConstantTwist::REST.with_position(from).with_linear_velocity(DVec3::X * speed);
+        let bodies = [Moving::new(&point, &ConstantTwist::REST), Moving::new(&point, &passing)];
+        check_planted(bodies, |t| (speed * (t - nearest)).hypot(0.25), nearest);
+    }
+    for spin in [0.75, -2.0, 3.0] {
+        let turning = ConstantTwist::REST.with_angular_velocity(DVec3::Z * spin).with_reference_time(nearest);
+        let at = ConstantTwist::REST.with_position(DVec3::X * 1.5);
+        let truth = |t: f64| {
+            let (sin, cos) = (spin * (t - nearest)).sin_cos();
+            if 1.5 * cos.abs() <= 1.0 { 1.5 * sin.abs() } else { (1.5 - cos.abs()).hypot(sin) }
+        };
+        check_planted([Moving::new(&bar, &turning), Moving::new(&point, &at)], truth, nearest);
+    }
+}
+
+/// What a small budget proves is true, and no budget proves less than a smaller one.
+#[test]
+fn small_budgets_give_wide_enclosures_that_hold() {
+    let torus = tree(Surface::wavy_torus(17, 9, 0.35));
+    let passing = ConstantTwist::REST
+        .with_position(DVec3::new(-2.0, 3.25, 0.1))
+        .with_linear_velocity(DVec3::X * 4.0)
+        .with_angular_velocity(DVec3::new(0.5, 1.0, -0.75));
+    let [a, b] = [Moving::new(&torus, &ConstantTwist::REST), Moving::new(&torus, &passing)];
+    let all = clearance(a, b, Window::UNIT, &ClearanceOptions::default()).unwrap();
+    assert_eq!(all.status, ClearanceStatus::Clear);
+    let (mut undecided, mut clear) = (0, 0);
+    for exponent in 0..16 {
+        let budget = Budget::UNLIMITED.with_node_tests(1 << exponent);
+        let some = clearance(a, b, Window::UNIT, &ClearanceOptions::default().with_budget(budget)).unwrap();
+        assert!(0.0 <= some.lower && some.lower <= all.upper && some.upper >= all.lower, "{some:?} {all:?}");
+        undecided += usize::from(some.status == ClearanceStatus::Undecided);
+        clear += usize::from(some.status == ClearanceStatus::Clear);
+    }
+    assert!(undecided > 2 && clear > 2, "{undecided} {clear}");
+}
+
 #[test]
 fn windows_of_no_length_bodies_inside_each_other_and_budgets() {
     let (large, small) = (cuboid(DVec3::splat(2.0)), cuboid(DVec3::splat(0.25)));

@@ -7,6 +7,7 @@ use super::motion::units::sum_down;
 use super::node_pair::expansion::{KEY_SCALE, NodePairExpander};
 use super::node_pair::node_scale::NodeScale;
 use super::node_pair::node_test::NodeFrame;
+use super::parting::Parting;
 use super::queue::{Bucket, Item};
 use super::scene::Scene;
 use super::skip::SkipLimits;
@@ -15,6 +16,7 @@ use super::skip::swept_volume::swept_clear_until;
 use super::state::{Outcome, Search, State, Step, SubWindow, triangle_count};
 use super::triangle_pair::separating_axis::{BackwardCertificate, place_a};
 use super::triangle_pair::widest_gap::widest_normal;
+use super::witness::Witness;
 use crate::Budget;
 #[cfg(feature = "audit")]
 use crate::audit::Place;
@@ -58,6 +60,9 @@ impl<'s> Search<'s> {
         }
         let mut batch = core::mem::replace(&mut self.scratch.batch, Bucket::EMPTY);
         let (mut outcome, mut batches) = (None, 0u32);
+        let parting = state.parting.map(|witness| Parting::new::<L>(self.scene, &state, &witness));
+        let parting =
+            parting.as_ref().map(|parting| parting.over_span::<L>(self.scene, &state.expander.scales));
         let mut patience = Patience::new(self.scratch.counts.triangle_looks, self.limits.patience);
         while let Some(least) = self.scratch.queue.take(&mut batch, BATCH) {
             if least >= state.limit {
@@ -76,7 +81,7 @@ impl<'s> Search<'s> {
             if patience.is_due(batches, self.scratch.counts.triangle_looks) {
                 self.thin_out::<L>(&mut state, progress, &mut batch, &mut patience);
             }
-            self.expand_batch::<L>(&mut state, batch.items());
+            self.expand_batch::<L>(&mut state, batch.items(), parting.as_ref());
         }
         self.scratch.batch = batch;
         outcome.unwrap_or(match state.found {
@@ -112,6 +117,8 @@ impl<'s> Search<'s> {
             frame_key: 0,
             found: None,
             behind: BackwardCertificate { reversed: Frame::NONE, direction: DVec3::ZERO },
+            parting: self.limits.parting.map(|triangles| Witness::new(scene, triangles)),
+            ahead: None,
         }
     }
 
@@ -221,6 +228,9 @@ impl State<'_> {
             NodeFrame::new::<L::Doubles>(&self.frame, &self.expander.scales[1], true, left),
         ];
         self.frame_key = key;
+        if let Some(witness) = self.parting {
+            self.turn_parting(&witness);
+        }
     }
 }
 

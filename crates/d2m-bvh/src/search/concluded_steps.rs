@@ -42,6 +42,17 @@ impl State<'_> {
         }
     }
 
+    /// These pairs of boxes of an expansion are apart over all of the sub-window that matters.
+    pub(super) fn conclude_parted(&self, scene: &Scene<'_>, item: &Item, rows: &Rows, apart: u32) {
+        let used = self.expander.nodes[item.side()][item.node() as usize].used as usize;
+        for lane in (0..used.min(WIDTH)).filter(|lane| apart >> lane & 1 == 1) {
+            let wide = rows.counting + lane as u32;
+            let [a, b] = if rows.counting_is_third { [rows.constant, wide] } else { [wide, rows.constant] };
+            let span = self.span([0.0, self.limit_offset]);
+            scene.conclude(Place::WholeSpan, span, [Part::Boxes(&[a]), Part::Boxes(&[b])]);
+        }
+    }
+
     /// A pair of triangles: pairs that are advanced are a little further apart than others.
     pub(super) fn conclude_pair(&self, scene: &Scene<'_>, place: Place, offsets: [f64; 2], [a, b]: [u32; 2]) {
         let level = if place == Place::Backward { scene.pair.level } else { scene.pair.target() };

@@ -14,6 +14,7 @@ mod over_time;
 mod pairs;
 #[cfg(feature = "rayon")]
 mod parallel;
+mod parting;
 mod queue;
 pub(crate) mod relative_trajectory;
 mod scene;
@@ -26,6 +27,7 @@ mod state;
 mod tests;
 mod time_split;
 pub(crate) mod triangle_pair;
+mod witness;
 
 pub use counts::{Answered, SearchCounts};
 pub(crate) use scene::{MovingTree, Scene};

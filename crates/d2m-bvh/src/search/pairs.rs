@@ -2,6 +2,7 @@
 
 use super::effort::{self, AHEAD, BATCH, MOST_STEPS_ALONE};
 use super::motion::frame::Frame;
+use super::node_pair::expansion::DirectedSpan;
 use super::queue::Item;
 use super::scene::SceneBody;
 use super::state::{Found, Search, State};
@@ -20,7 +21,12 @@ impl Search<'_> {
     /// Expands at most [`BATCH`] items. Pairs of triangles first: they may lower the limit. Then all node tests, which
     /// do not wait for each other, then all that they leave.
     #[inline(always)]
-    pub(super) fn expand_batch<L: Lanes>(&mut self, state: &mut State<'_>, items: &[Item]) {
+    pub(super) fn expand_batch<L: Lanes>(
+        &mut self,
+        state: &mut State<'_>,
+        items: &[Item],
+        parting: Option<&DirectedSpan<'_, L>>,
+    ) {
         for item in &items[..AHEAD.min(items.len())] {
             state.prefetch::<L>(item);
         }
@@ -37,7 +43,13 @@ impl Search<'_> {
                 state.prefetch::<L>(next);
             }
             if item.next & Item::TRIANGLES == 0 && item.key < state.limit {
-                let expanded = state.expander.expand::<L>(item, &state.node_frames, state.keys());
+                let mut expanded = state.expander.expand::<L>(item, &state.node_frames, state.keys());
+                if let Some(span) = parting {
+                    let apart = state.expander.apart_along::<L>(item, span);
+                    expanded.wanted &= !apart;
+                    #[cfg(feature = "audit")]
+                    state.conclude_parted(self.scene, item, &expanded, apart);
+                }
                 #[cfg(feature = "audit")]
                 state.conclude_rows(self.scene, item, &expanded);
                 let list = fresh[count..].first_chunk_mut().expect("room for eight more");
@@ -71,6 +83,20 @@ impl Search<'_> {
             if apart_since::<L::Doubles>(&state.behind, [&a, &b], &self.scene.pair, span) {
                 #[cfg(feature = "audit")]
                 state.conclude_pair(self.scene, Place::Backward, [known, state.limit_offset], triangles);
+                return;
+            }
+        }
+        if let Some(ahead) = &state.ahead {
+            self.scratch.counts.triangle_looks += 1;
+            let span = (state.limit_offset - ahead.reversed.offset).next_up();
+            if apart_since::<L::Doubles>(ahead, [&a, &b], &self.scene.pair, span) {
+                #[cfg(feature = "audit")]
+                state.conclude_pair(
+                    self.scene,
+                    Place::Backward,
+                    [ahead.reversed.offset, state.limit_offset],
+                    triangles,
+                );
                 return;
             }
         }

@@ -1,7 +1,9 @@
 //! Pairs of boxes that are proven apart over a whole span, against certified distances of triangles at many of its times.
 
 use super::motion::frame::FAR_ANGLE;
-use super::node_pair::whole_span::{PlacedPose, SpanFrame, apart_over_span};
+use super::node_pair::whole_span::{
+    PlacedPose, SpanDirection, SpanFrame, apart_along_over_span, apart_over_span,
+};
 use super::scene::Scene;
 use super::triangle_pair::separating_axis::place_a;
 use crate::tree::margin::UNIT_F64;
@@ -9,7 +11,7 @@ use crate::tree::node::{NodeBox, WIDTH};
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
 use d2m_feature::triangle_distance;
 use d2m_lanes::{F64x4, Portable};
-use d2m_motion::ConstantTwist;
+use d2m_motion::{ConstantTwist, RigidMotion};
 use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
 
@@ -23,6 +25,13 @@ struct Span<'a> {
 }
 
 impl Span<'_> {
+    /// Between the centers of the trees in the middle.
+    fn between_centers(&self) -> DVec3 {
+        let [a, b] =
+            [0, 1].map(|k| self.motions[k].pose_and_twist(0.5).0.transform_point(self.trees[k].center()));
+        b - a
+    }
+
     fn scene(&self) -> Scene<'_> {
         let [a, b] = self.trees;
         let options = QueryOptions::default().with_tolerance(LEVEL);
@@ -46,6 +55,22 @@ impl Span<'_> {
         let (wide, other) = (&self.trees[side].nodes, &self.trees[1 - side].nodes);
         let single = NodeBox::new(other, single as u32);
         apart_over_span::<Portable>(&frame, &scales[side], single, &wide[node])
+    }
+
+    /// The same along one direction, world axes.
+    fn proven_along(&self, side: usize, (node, single): (usize, usize), direction: DVec3, bent: f64) -> u32 {
+        let scene = self.scene();
+        let motion = scene.relative_motion(0.5);
+        let scales = scene.node_scales(1.0);
+        let poses =
+            [-0.5, 0.0, 0.5].map(|part| PlacedPose::both::<F64x4>(&motion, part * self.length, &scales));
+        let bend = scene.pair.acceleration * self.length * self.length / 2.0 * bent;
+        let along = SpanDirection::new(direction, &poses[1][side], &scales[side], bend);
+        let ends = [&poses[0][side], &poses[1][side], &poses[2][side]];
+        let frame = SpanFrame::<Portable>::new(ends, &scales[side], 0.0);
+        let (wide, other) = (&self.trees[side].nodes, &self.trees[1 - side].nodes);
+        let single = NodeBox::new(other, single as u32);
+        apart_along_over_span::<Portable>(&frame, &along, &scales[side], single, &wide[node])
     }
 
     /// The least distance of two triangles over the span.
@@ -73,6 +98,7 @@ fn soup(random: &mut KnuthRandom) -> MeshTree {
 fn pairs_that_are_proven_apart_are_apart_all_the_time() {
     let mut random = KnuthRandom(81);
     let (mut proven, mut possible, mut least) = (0, 0, f64::INFINITY);
+    let (mut proven_along, mut least_along) = (0, f64::INFINITY);
     for round in 0..400 {
         let trees = [soup(&mut random), soup(&mut random)];
         let speed = [0.1, 1.0, 5.0][round % 3];
@@ -89,11 +115,19 @@ fn pairs_that_are_proven_apart_are_apart_all_the_time() {
         for side in [0, 1] {
             for lane in 0..WIDTH {
                 let bits = span.proven(side, (1, WIDTH + lane), 1.0);
+                let along = [random.vector(), span.between_centers()]
+                    .map(|direction| span.proven_along(side, (1, WIDTH + lane), direction, 1.0));
+                let along = along[0] | along[1];
                 for other in 0..WIDTH {
                     let wide = trees[side].nodes[1].triangle(other);
                     let single = trees[1 - side].nodes[1].triangle(lane);
                     let distance = span.distance(if side == 0 { [wide, single] } else { [single, wide] });
                     possible += u32::from(distance > LEVEL);
+                    if along >> other & 1 == 1 {
+                        proven_along += 1;
+                        least_along = least_along.min(distance);
+                        assert!(distance >= LEVEL, "round {round}, along, length {length}: {distance}");
+                    }
                     if bits >> other & 1 == 1 {
                         proven += 1;
                         least = least.min(distance);
@@ -104,11 +138,12 @@ fn pairs_that_are_proven_apart_are_apart_all_the_time() {
         }
     }
     assert!(proven > possible / 2 && least < 8.0 * LEVEL, "{proven} of {possible}, {least}");
+    assert!(proven_along > possible / 4 && least_along < 16.0 * LEVEL, "{proven_along}, {least_along}");
 }
 
 /// A triangle on an arm of length one rotates past a wall and is nearest to it in the middle of the span. How far it stays from the
-/// nearest wall that it is proven apart from, with the bend of the gap multiplied by `bent`.
-fn room_of_a_rotation(side: usize, bent: f64) -> f64 {
+/// nearest wall that it is proven apart from by this proof of a span and a side.
+fn room_of_a_rotation(proof: impl Fn(&Span<'_>) -> u32) -> f64 {
     let tree =
         |corners: [DVec3; 3]| MeshTree::new(TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2]]).unwrap());
     let tip = tree([DVec3::X, DVec3::new(0.99, 1e-3, 0.0), DVec3::new(0.99, 0.0, 1e-3)]);
@@ -118,7 +153,7 @@ fn room_of_a_rotation(side: usize, bent: f64) -> f64 {
         let corner = |y: f64, z: f64| DVec3::new(1.0 + distance, y + 5e-4, z + 5e-4);
         let wall = tree([corner(-0.1, -0.05), corner(0.1, -0.05), corner(0.0, 0.05)]);
         let span = Span { trees: [&tip, &wall], motions: [spin, ConstantTwist::REST], length: 1.0 };
-        (span.proven(side, (0, 0), bent) & 1 == 1).then(|| span.distance([0, 0]))
+        (proof(&span) & 1 == 1).then(|| span.distance([0, 0]))
     };
     let (mut near, mut far) = (0.0, 1.0);
     for _ in 0..40 {
@@ -132,9 +167,13 @@ fn room_of_a_rotation(side: usize, bent: f64) -> f64 {
 #[test]
 fn the_bend_of_the_gap_is_needed() {
     for side in [0, 1] {
-        let room = room_of_a_rotation(side, 1.0);
-        assert!((LEVEL..1.1 * LEVEL).contains(&room), "{room}");
-        assert!(room_of_a_rotation(side, 0.9) < LEVEL, "nine tenths of the bend");
+        let room = |bent: f64| room_of_a_rotation(|span| span.proven(side, (0, 0), bent));
+        assert!((LEVEL..1.1 * LEVEL).contains(&room(1.0)), "{}", room(1.0));
+        assert!(room(0.9) < LEVEL, "nine tenths of the bend");
+        // Along a direction that is given the gaps at both ends count for what they are: the same where they are equal.
+        let room = |bent: f64| room_of_a_rotation(|span| span.proven_along(side, (0, 0), DVec3::X, bent));
+        assert!((LEVEL..1.1 * LEVEL).contains(&room(1.0)), "{}", room(1.0));
+        assert!(room(0.9) < LEVEL, "nine tenths of the bend");
     }
 }
 

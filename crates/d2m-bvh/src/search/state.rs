@@ -10,6 +10,7 @@ use super::node_pair::node_test::NodeFrame;
 use super::scene::Scene;
 use super::scratch::Scratch;
 use super::triangle_pair::separating_axis::BackwardCertificate;
+use super::witness::Witness;
 use crate::meter::Stop;
 use crate::{Budget, Mode, QueryOptions};
 use d2m_lanes::InstructionSet;
@@ -103,6 +104,8 @@ pub(super) struct Limits {
     pub(super) sweep_from: u64,
     /// So many times as much work as usual is done before swept volumes or crowds are examined.
     pub(super) patience: u64,
+    /// Triangles whose line is tried of every pair before other directions are.
+    pub(super) parting: Option<[u32; 2]>,
     /// Only whether the bodies meet at the start matters.
     pub(super) only_start: bool,
 }
@@ -123,6 +126,10 @@ pub(super) struct State<'a> {
     pub(super) found: Option<Found>,
     /// The time of what is found; before something is found, of no meaning.
     pub(super) behind: BackwardCertificate,
+    /// Triangles whose line is tried of every pair.
+    pub(super) parting: Option<Witness>,
+    /// That line at the time of the frame: a certificate forwards, so nothing is reversed.
+    pub(super) ahead: Option<BackwardCertificate>,
 }
 
 impl<'s> Search<'s> {
@@ -132,13 +139,14 @@ impl<'s> Search<'s> {
         scratch.last_tested = [0, 0];
         // What an earlier query left belongs to other motions.
         scratch.found_in = None;
-        let patience = effort::patience(options.grazing);
+        let patience = effort::patience(options.grazing.is_some());
         let limits = Limits {
             mode: options.mode,
             most_tests: budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS),
             stop: Stop::new(budget),
             sweep_from: effort::first_sweep(triangle_count(scene), patience),
             patience,
+            parting: options.grazing,
             only_start: false,
         };
         Self {

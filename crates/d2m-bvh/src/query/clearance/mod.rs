@@ -9,6 +9,7 @@
 mod meeting;
 mod options;
 mod sample;
+mod way;
 
 pub use options::{Clearance, ClearanceOptions, ClearanceStatus};
 
@@ -21,6 +22,7 @@ use crate::{
 };
 use d2m_feature::{FeaturePair, TriangleFeature};
 use sample::{Sample, Sampler, closer};
+use way::{Way, WayEnd};
 
 /// Part of the allowed width that the enclosure takes; the rest is for roundings.
 const PART_OF_WIDTH: f64 = 0.9;
@@ -120,7 +122,17 @@ fn limited(budget: &Budget) -> Meter {
     Meter::new(&budget.with_node_tests(most))
 }
 
-/// How wide the enclosure of a way through the window is to be.
+/// What the search is to prove.
+#[derive(Clone, Copy, Debug)]
+struct Level {
+    /// Further apart than this.
+    separation: f64,
+    tolerance: f64,
+    /// Of the enclosure.
+    width: f64,
+}
+
+/// How wide the enclosure of one way through the window is to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Pass {
     Coarse,
@@ -137,10 +149,11 @@ struct Descent<'a> {
     meter: Meter,
     /// The clearance is proven to be at least this.
     proven: f64,
-    /// Further apart than every level of this pass until here.
-    now: f64,
-    /// The first pass goes through the window with a wide enclosure: it finds about where the bodies are closest, at a level that boxes
-    /// prove quickly. The second one is as accurate as wanted.
+    /// What is not proven yet at the level of the pass.
+    ways: Vec<Way>,
+    /// Neither body is inside the other one.
+    is_outside: bool,
+    /// With a budget the first pass is a wide enclosure: then there is one also where the budget does not last for more.
     pass: Pass,
 }
 
@@ -153,6 +166,7 @@ impl<'a> Descent<'a> {
         let rounded = Rounded::try_new([&bodies[0], &bodies[1]])?;
         let query = QueryOptions { tolerance: options.tolerance, ..QueryOptions::DEFAULT };
         let query = rounded.options(bodies.map(|body| body.body), &query)?;
+        let is_limited = options.budget != Budget::UNLIMITED;
         Ok(Self {
             sampler: Sampler { bodies, window },
             options: *options,
@@ -160,8 +174,9 @@ impl<'a> Descent<'a> {
             tolerance: tolerance_of(&bodies, &query),
             meter: limited(&options.budget),
             proven: 0.0,
-            now: window.start(),
-            pass: Pass::Coarse,
+            ways: Vec::new(),
+            is_outside: false,
+            pass: if is_limited { Pass::Coarse } else { Pass::Accurate },
         })
     }
 
@@ -171,57 +186,103 @@ impl<'a> Descent<'a> {
         PART_OF_WIDTH * (self.options.accuracy * distance).max(TOLERANCES * self.tolerance)
     }
 
+    /// The level to be proven when the meshes come within `upper`, and the tolerance of the search.
+    fn level(&self, upper: f64) -> Level {
+        let width = match self.pass {
+            Pass::Coarse => self.width(upper).max(COARSE_WIDTH * self.distance(upper)),
+            Pass::Accurate => self.width(upper),
+        };
+        let separation = (upper - self.rounded.sum() - width).min(self.options.cutoff).max(0.0);
+        let tolerance = if separation > 0.0 { PART_OF_TOLERANCE * width } else { self.tolerance };
+        Level { separation, tolerance, width }
+    }
+
+    /// Everything is to be proven, from a time on both ways.
+    fn begin(&mut self, from: f64) {
+        let window = self.sampler.window;
+        self.ways.clear();
+        let ways = [window.start(), window.end()].map(|to| Way { from, to });
+        self.ways.extend(ways.iter().filter(|way| way.from != way.to));
+        if self.ways.is_empty() {
+            self.ways.push(ways[0]);
+        }
+        self.proven = f64::INFINITY;
+    }
+
     fn run(mut self) -> Result<Clearance, QueryError> {
         // What the query refuses is refused before anything is computed of it.
         self.refuse_bad_input()?;
         let mut best = self.sampler.first(|upper| self.width(upper));
+        let mut least_proven = 0.0;
+        self.begin(best.time);
         loop {
-            let width = match self.pass {
-                Pass::Coarse => self.width(best.upper).max(COARSE_WIDTH * self.distance(best.upper)),
-                Pass::Accurate => self.width(best.upper),
-            };
-            let level = (best.upper - self.rounded.sum() - width).min(self.options.cutoff).max(0.0);
-            let tolerance = if level > 0.0 { PART_OF_TOLERANCE * width } else { self.tolerance };
-            let Some(options) = self.options_at(level, tolerance) else {
-                return Ok(self.describe(&best, self.proven, ClearanceStatus::Undecided));
-            };
-            let window = Window::try_new(self.now, self.sampler.window.end())?;
-            let [a, b] = self.sampler.bodies;
-            let found = of_meshes([a, b], window, &options)?;
-            self.meter.spend(found.work.work() + 1);
-            let contact = match found.answer {
-                TimeOfContact::Separated if self.pass == Pass::Coarse && level < self.options.cutoff => {
-                    (self.pass, self.now) = (Pass::Accurate, self.sampler.window.start());
-                    self.proven = level;
-                    continue;
-                }
-                TimeOfContact::Separated => {
-                    // The search proves more than its separation: at least half a tolerance above it.
-                    let lower = (level + 0.5 * tolerance).min(self.distance(best.upper));
+            let level = self.level(best.upper);
+            if level.separation == 0.0 {
+                return self.near_zero(&best, level);
+            }
+            let Some(way) = self.ways.pop() else {
+                let lower = self.proven.min(self.distance(best.upper));
+                if self.pass == Pass::Accurate || lower >= self.options.cutoff {
                     #[cfg(feature = "audit")]
                     self.conclude(&best, lower);
                     return Ok(self.describe(&best, lower, ClearanceStatus::Clear));
                 }
-                TimeOfContact::Undecided { .. } => {
-                    return Ok(self.describe(&best, self.proven, ClearanceStatus::Undecided));
-                }
-                TimeOfContact::Contact(contact) => contact,
+                (self.pass, least_proven) = (Pass::Accurate, lower);
+                self.begin(best.time);
+                continue;
             };
-            if contact.start == StartState::Contained && contact.time_lo == self.now {
-                return Ok(self.meeting(&contact, &best));
+            let undecided =
+                |this: &Self, best| Ok(this.describe(best, least_proven, ClearanceStatus::Undecided));
+            let Some(options) = self.options_at(level.separation, level.tolerance, Some(best.triangles))
+            else {
+                return undecided(&self, &best);
+            };
+            let found = self.sampler.search(&way, self.is_outside, &options)?;
+            self.meter.spend(found.work.work() + 1);
+            self.is_outside |= found.is_outside;
+            self.proven = self.proven.min(level.separation + 0.5 * level.tolerance);
+            match found.end {
+                WayEnd::Clear => {}
+                WayEnd::Undecided => return undecided(&self, &best),
+                WayEnd::Contained => {
+                    let level = self.level(0.0);
+                    return self.near_zero(&best, level);
+                }
+                WayEnd::Near { triangles, time } => {
+                    let near = self.sampler.pair_at(triangles, time);
+                    let lowest = self.sampler.settle(near, |upper| self.width(upper));
+                    if lowest.upper >= best.upper - LEAST_GAIN * level.width {
+                        // Rounding hides what is left of the width.
+                        self.tolerance = (2.0 * self.tolerance).max(found.tolerance).max(level.width);
+                    }
+                    best = closer(best, lowest);
+                    self.ways.extend(Way { from: time, ..found.way }.from_within(best.time));
+                }
             }
-            if level == 0.0 {
-                return Ok(self.contact(&contact, &best));
+        }
+    }
+
+    /// Bodies that may meet: the first contact decides.
+    fn near_zero(mut self, best: &Sample, level: Level) -> Result<Clearance, QueryError> {
+        let Some(options) = self.options_at(0.0, level.tolerance, None) else {
+            return Ok(self.describe(best, 0.0, ClearanceStatus::Undecided));
+        };
+        let [a, b] = self.sampler.bodies;
+        let found = of_meshes([a, b], self.sampler.window, &options)?;
+        self.meter.spend(found.work.work() + 1);
+        match found.answer {
+            TimeOfContact::Separated => {
+                // The search proves more than its separation: at least half a tolerance above it.
+                let lower = (0.5 * level.tolerance).min(self.distance(best.upper));
+                #[cfg(feature = "audit")]
+                self.conclude(best, lower);
+                Ok(self.describe(best, lower, ClearanceStatus::Clear))
             }
-            let near = self.sampler.pair_at([contact.triangle_a, contact.triangle_b], contact.time_lo);
-            let lowest = self.sampler.settle(near, |upper| self.width(upper));
-            if lowest.upper < best.upper - LEAST_GAIN * width {
-                self.now = contact.time_lo.max(self.now);
-            } else {
-                // Rounding hides what is left of the width.
-                self.tolerance = (2.0 * self.tolerance).max(contact.tolerance).max(width);
+            TimeOfContact::Undecided { .. } => Ok(self.describe(best, 0.0, ClearanceStatus::Undecided)),
+            TimeOfContact::Contact(contact) if contact.start == StartState::Contained => {
+                Ok(self.meeting(&contact, best))
             }
-            best = closer(best, lowest);
+            TimeOfContact::Contact(contact) => Ok(self.contact(&contact, best)),
         }
     }
 
@@ -242,26 +303,26 @@ impl<'a> Descent<'a> {
     /// Those of the query, found by one that has no budget for anything.
     fn refuse_bad_input(&self) -> Result<(), QueryError> {
         let nothing = Budget::UNLIMITED.with_node_tests(0);
-        let options = self.query_options(0.0, 0.0).with_budget(nothing);
+        let options = self.query_options(0.0, 0.0, None).with_budget(nothing);
         let options = QueryOptions { tolerance: self.options.tolerance, ..options };
         let [a, b] = self.sampler.bodies;
         of_meshes([a, b], self.sampler.window, &options).map(|_| ())
     }
 
-    fn query_options(&self, level: f64, tolerance: f64) -> QueryOptions {
+    fn query_options(&self, level: f64, tolerance: f64, grazing: Option<[u32; 2]>) -> QueryOptions {
         let sum = self.rounded.sum();
         let separation = if sum == 0.0 { level } else { (level + sum).next_up() };
         // Points without a radius have no tolerance of their own: rounding gives the least one.
         let tolerance = (tolerance > 0.0).then_some(tolerance);
-        QueryOptions { tolerance, grazing: true, ..QueryOptions::DEFAULT }
+        QueryOptions { tolerance, grazing, ..QueryOptions::DEFAULT }
             .with_min_separation(separation)
             .with_solid(self.options.solid)
             .with_parallel(self.options.parallel)
     }
 
     /// The options of the search at a level; `None` when the budget is used up.
-    fn options_at(&self, level: f64, tolerance: f64) -> Option<QueryOptions> {
-        let options = self.query_options(level, tolerance);
+    fn options_at(&self, level: f64, tolerance: f64, grazing: Option<[u32; 2]>) -> Option<QueryOptions> {
+        let options = self.query_options(level, tolerance, grazing);
         (!self.meter.is_exhausted()).then(|| options.with_budget(self.meter.rest()))
     }
 

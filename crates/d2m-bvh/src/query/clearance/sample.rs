@@ -6,14 +6,15 @@ use crate::{Moving, Posed, Window};
 use d2m_feature::TriangleDistance;
 use glam::DVec3;
 
-/// Times at which a search for a first upper bound looks, besides both ends of the window.
-const FIRST_TIMES: u32 = 7;
-/// Steps of the search for a close pair at each of them: a way down both trees and a few steps aside.
-const FIRST_STEPS: u64 = 32;
+/// Parts of the window at whose ends the centers of the bodies are compared, and steps from the closest of them.
+const FIRST_TIMES: u32 = 8;
+const FIRST_STEPS: u32 = 4;
+/// Steps of the search for a first pair of triangles: a way down both trees and a few steps aside.
+const FIRST_PAIR: u64 = 32;
 /// Steps of the search for the closest pair near a minimum: most are shorter.
-const STEPS: u64 = 4096;
+const STEPS: u64 = 1024;
 /// Alternations between the closest time of a pair and the closest pair of a time.
-const ALTERNATIONS: u32 = 12;
+const ALTERNATIONS: u32 = 24;
 /// Evaluations on the way to a pair's closest time.
 const EVALUATIONS: u32 = 60;
 
@@ -64,30 +65,73 @@ impl Sampler<'_> {
         self.pair_at(found, time)
     }
 
-    /// A first upper bound: the closest of a few times, followed down to a minimum.
+    /// A first upper bound: the closest pair of the time at which the bodies' centers are closest, followed down to a minimum.
     pub(super) fn first(&self, width: impl Fn(f64) -> f64) -> Sample {
-        let (start, length) = (self.window.start(), self.window.length());
-        let mut best = self.closest_at(start, None, FIRST_STEPS);
-        if length > 0.0 {
-            let parts = FIRST_TIMES + 1;
-            for part in 1..=parts {
-                let time = (start + length * (f64::from(part) / f64::from(parts))).min(self.window.end());
-                best = closer(best, self.closest_at(time, Some(best.triangles), FIRST_STEPS));
+        self.settle(self.closest_at(self.time_of_centers(), None, FIRST_PAIR), width)
+    }
+
+    /// About when the centers of the bodies are closest: the closest of a few times, and Gauss and Newton's steps from there.
+    fn time_of_centers(&self) -> f64 {
+        let (start, end) = (self.window.start(), self.window.end());
+        let length = self.window.length();
+        let (mut best, mut least) = (start, f64::INFINITY);
+        for part in 0..=FIRST_TIMES {
+            let time = (start + length * (f64::from(part) / f64::from(FIRST_TIMES))).min(end);
+            let (apart, _) = self.centers(time);
+            if apart.length_squared() < least {
+                (best, least) = (time, apart.length_squared());
             }
         }
-        self.settle(best, width)
+        for _ in 0..FIRST_STEPS {
+            let (apart, speed) = self.centers(best);
+            let time = (best - apart.dot(speed) / speed.length_squared()).clamp(start, end);
+            if time.is_nan() || time == best || self.centers(time).0.length_squared() >= least {
+                break;
+            }
+            (best, least) = (time, self.centers(time).0.length_squared());
+        }
+        best
+    }
+
+    /// The center of A from that of B, and how fast that changes.
+    fn centers(&self, time: f64) -> (DVec3, DVec3) {
+        let [(p, v), (q, w)] = self.bodies.map(|moving| {
+            let (pose, twist) = moving.motion.pose_and_twist(time);
+            let center = pose.transform_point(moving.body.center());
+            (center, twist.velocity_of(center - pose.translation))
+        });
+        (p - q, v - w)
     }
 
     /// Follows a pair to its closest time, then the bodies to the closest pair of that time, until nothing comes closer by a part of the
-    /// width that is wanted of an enclosure.
+    /// width that is wanted of an enclosure. Where pair after pair comes closer the same way, steps are doubled.
     pub(super) fn settle(&self, from: Sample, width: impl Fn(f64) -> f64) -> Sample {
-        let mut best = from;
+        let mut best = closer(from, self.closest_at(from.time, Some(from.triangles), STEPS));
+        let mut last = 0.0;
         for _ in 0..ALTERNATIONS {
+            if best.near.upper == 0.0 {
+                break;
+            }
             let wanted = 0.1 * width(best.upper);
             let lowest = self.closest_time(best, wanted);
-            let next = closer(lowest, self.closest_at(lowest.time, Some(lowest.triangles), STEPS));
-            let done = next.upper >= best.upper - wanted || next.near.upper == 0.0;
-            best = next;
+            let step = lowest.time - best.time;
+            let doubled =
+                if step * last > 0.0 && (2.0 * last).abs() > step.abs() { 2.0 * last } else { step };
+            if step == 0.0 {
+                break;
+            }
+            let (start, end) = (self.window.start(), self.window.end());
+            let far = self.closest_at((best.time + doubled).clamp(start, end), Some(lowest.triangles), STEPS);
+            let is_far = far.upper < best.upper - wanted;
+            let next = if is_far || doubled == step {
+                far
+            } else {
+                self.closest_at(lowest.time, Some(lowest.triangles), STEPS)
+            };
+            let next = closer(lowest, next);
+            last = next.time - best.time;
+            let done = next.upper >= best.upper - wanted;
+            best = closer(best, next);
             if done {
                 break;
             }

@@ -2,7 +2,8 @@
 
 use super::node_scale::NodeScale;
 use super::node_test::Placed;
-use crate::tree::box_pair::{Axis, BoxPair, dot, splat};
+use super::whole_span::Boxes;
+use crate::tree::box_pair::{Axis, BoxPair, dot, load, splat};
 use crate::tree::margin::UNIT_F32;
 use crate::tree::node::WideNode;
 use d2m_lanes::{Elementwise, Lanes, Two};
@@ -78,12 +79,44 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
     let inverse = L::splat(1.0) / pair.square.sqrt();
     let gap = (pair.square - pair.line_reach) * inverse - L::splat(placed.boxed.margin);
     let closing = L::splat(placed.least).max(spread - dot(&rate, &pair.line) * inverse);
-    let best = GapAndRate { gap, closing }.or(best);
+    let mut best = GapAndRate { gap, closing }.or(best);
+    if let Some(parting) = &placed.parting {
+        best = along(wide, placed, parting, &rate, RateBounds { spread, least: L::splat(placed.least) })
+            .or(best);
+    }
 
     // Root of gap − closing·s − acceleration·s²/2: no cancellation.
     let twice = best.gap + best.gap;
     let root = (best.closing * best.closing + L::splat(scale.acceleration) * twice).sqrt();
     twice / (best.closing + root) * L::splat(ENTRY_FACTOR)
+}
+
+/// Along a direction that is given, by the wide body's axes; it may be longer than one by a few roundings.
+#[inline(always)]
+fn along<L: Lanes>(
+    wide: &WideNode,
+    placed: &Placed,
+    direction: &[f32; 3],
+    velocity: &[L; 3],
+    rates: RateBounds<L>,
+) -> GapAndRate<L> {
+    let n: [L; 3] = splat(direction);
+    let (at, boxed) = (splat::<L, 4>(&placed.boxed.center), &placed.boxed);
+    let center = load::<L>(&wide.center);
+    let to = [at[0] - center[0], at[1] - center[1], at[2] - center[2]];
+    let of_lanes = Boxes {
+        half: load::<L>(&wide.half_extent),
+        slabs: load::<L>(&wide.slabs),
+        axes: [load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]), load::<L>(&wide.axes[2])],
+    };
+    let of_single = Boxes {
+        half: splat(&boxed.half),
+        slabs: splat(&boxed.slabs),
+        axes: [splat(&boxed.axes[0]), splat(&boxed.axes[1]), splat(&boxed.axes[2])],
+    };
+    let between = dot(&to, &n);
+    let reach = of_lanes.reach(&n, between) + of_single.reach(&n, between) + L::splat(boxed.margin);
+    GapAndRate::new(&Axis { direction: n, between, reach }, velocity, rates)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::entry_time::entry_times;
 use super::node_scale::NodeScale;
 use super::node_test::{NodeFrame, Placed};
-use super::whole_span::{SpanFrame, apart_over_span};
+use super::whole_span::{SpanDirection, SpanFrame, apart_along_over_span, apart_over_span};
 use crate::search::queue::Item;
 use crate::tree::node::{NodeBox, WIDTH, WideNode};
 use d2m_lanes::{Keys, Lanes, Rows, SingleSide, WideSide};
@@ -32,6 +32,12 @@ pub(crate) struct NodePairExpander<'a> {
     /// Sizes of A's boxes are multiplied by the first, those of B's by the second, before they are compared: between
     /// [`LEAST_SIZE`](crate::tree::node::LEAST_SIZE) and its inverse.
     pub(crate) size_ratios: [f32; 2],
+}
+
+/// The frames of a span, and a direction that is tried of every pair over all of it: where nodes of A, of B, are expanded.
+pub(crate) struct DirectedSpan<'p, L: Lanes> {
+    pub(crate) frames: [SpanFrame<'p, L>; 2],
+    pub(crate) directions: [SpanDirection; 2],
 }
 
 impl NodePairExpander<'_> {
@@ -80,6 +86,21 @@ impl NodePairExpander<'_> {
         let single = NodeBox::new(self.nodes[1 - side], item.boxes[1 - side]);
         let apart = apart_over_span::<L>(&frames[side], &self.scales[side], single, wide);
         self.rows::<L>(item, [0; WIDTH], !apart)
+    }
+
+    /// Bits of the pairs below an item that are apart over the span along the direction.
+    #[inline(always)]
+    pub(crate) fn apart_along<L: Lanes>(&self, item: &Item, span: &DirectedSpan<'_, L>) -> u32 {
+        let side = item.side();
+        let wide = &self.nodes[side][item.node() as usize];
+        let single = NodeBox::new(self.nodes[1 - side], item.boxes[1 - side]);
+        apart_along_over_span::<L>(
+            &span.frames[side],
+            &span.directions[side],
+            &self.scales[side],
+            single,
+            wide,
+        )
     }
 
     /// The pairs below an item, with these keys; `wanted` among the lanes that are used.

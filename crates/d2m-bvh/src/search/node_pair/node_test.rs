@@ -31,6 +31,8 @@ pub(crate) struct NodeFrame {
     least: f32,
     /// The error of speeds that does not depend on the boxes.
     speed_floor: f32,
+    /// A direction, by the wide body's axes, along which pairs are tested besides their own.
+    pub(crate) parting: Option<[f32; 3]>,
 }
 
 impl NodeFrame {
@@ -45,6 +47,7 @@ impl NodeFrame {
         omega_wide: [0.0; 4],
         least: 0.0,
         speed_floor: 0.0,
+        parting: None,
     };
 
     /// `left`: no later time matters, counted from the frame (a hint). `wide_is_b`: nodes of B are expanded against boxes of A; else the other way round.
@@ -83,6 +86,7 @@ impl NodeFrame {
             omega_wide: omega_wide.narrow(),
             least: scale.acceleration * left * HINT + scale.speed_floor,
             speed_floor: scale.speed_floor,
+            parting: None,
         }
     }
 }
@@ -100,6 +104,8 @@ pub(crate) struct Placed {
     pub(super) speed_margin: f32,
     /// Least closing speed that is reckoned with.
     pub(super) least: f32,
+    /// A direction along which it is tested besides the boxes' own.
+    pub(super) parting: Option<[f32; 3]>,
 }
 
 impl Placed {
@@ -144,6 +150,7 @@ impl Placed {
             speed_margin: SPEED_ERROR * (norm(&velocity) + scale.spin[0] * wide.extent + spin_speed)
                 + frame.speed_floor,
             least: frame.least,
+            parting: frame.parting,
             velocity,
         }
     }

@@ -14,7 +14,7 @@ use crate::tree::box_pair::{both, dot, load, opposite, splat};
 use crate::tree::margin::{NARROW_UP, UNIT_F32, UP, error_of, round_up};
 use crate::tree::node::{LEAF, NodeBox, WideNode};
 use crate::tree::slabs::reach;
-use d2m_lanes::{Bytes, Doubles, Elementwise, Lanes, Matrix, Quad, Two};
+use d2m_lanes::{Bytes, Doubles, Elementwise, F64x4, Lanes, Matrix, Quad, Two};
 use glam::DVec3;
 
 /// Factor of the error of gaps: 20u as in the search's own tests, and 12u since the direction at the two ends of a span
@@ -135,16 +135,16 @@ fn carried<L: Lanes>(start: &Matrix, end: &Matrix) -> Carried<L::Two> {
 }
 
 /// A box, or the boxes of a node, by the axes of their body: they are the same at all times.
-struct Boxes<T> {
-    half: [T; 3],
-    slabs: [T; 3],
-    axes: [[T; 3]; 3],
+pub(super) struct Boxes<T> {
+    pub(super) half: [T; 3],
+    pub(super) slabs: [T; 3],
+    pub(super) axes: [[T; 3]; 3],
 }
 
 impl<T: Bytes> Boxes<T> {
     /// How far they reach along a direction, or along the opposite one where `sense` is negative.
     #[inline(always)]
-    fn reach(&self, n: &[T; 3], sense: T) -> T {
+    pub(super) fn reach(&self, n: &[T; 3], sense: T) -> T {
         let cosines = [dot(&self.axes[0], n), dot(&self.axes[1], n), dot(&self.axes[2], n)];
         reach::<_, 3>(&self.half, &self.slabs, &cosines, sense)
     }
@@ -160,20 +160,86 @@ struct Boxed<'f, L: Lanes> {
     margin: L,
 }
 
-impl<L: Lanes> Boxed<'_, L> {
-    /// Bit i is set when along a direction, by the wide body's axes in the middle of the span, the gap of lane i exceeds the
-    /// margin at both ends.
+impl<'f, L: Lanes> Boxed<'f, L> {
     #[inline(always)]
-    fn apart_along(&self, middle: &[L::Two; 3]) -> u32 {
+    fn new(
+        frame: &'f SpanFrame<'f, L>,
+        scale: &NodeScale,
+        NodeBox { node: single, lane }: NodeBox<'_>,
+        wide: &WideNode,
+    ) -> Self {
+        let ratio = scale.ratio;
+        let (from, origin) = (center_of(single, lane, ratio), origin_of(wide));
+        let [start, end] = &frame.ends;
+        let first = start.place::<L::Doubles>(from, origin);
+        let last = end.place::<L::Doubles>(from, origin);
+        let ratio = ratio as f32;
+        let radius = single.radius[lane] * ratio;
+        let size = norm(&first).max(norm(&last)) + wide.extent + radius;
+        let (centers, at) = (both::<L>(&load::<L>(&wide.center)), ends::<L>(&first, &last));
+        let (half, slabs, axes) = (&single.half_extent, &single.slabs, &single.axes);
+        let of_lanes = [load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]), load::<L>(&wide.axes[2])];
+        Self {
+            to: [at[0] - centers[0], at[1] - centers[1], at[2] - centers[2]],
+            wide: Boxes {
+                half: both::<L>(&load::<L>(&wide.half_extent)),
+                slabs: both::<L>(&load::<L>(&wide.slabs)),
+                axes: [both::<L>(&of_lanes[0]), both::<L>(&of_lanes[1]), both::<L>(&of_lanes[2])],
+            },
+            single: Boxes {
+                half: [
+                    L::Two::splat(half[0][lane] * ratio),
+                    L::Two::splat(half[1][lane] * ratio),
+                    L::Two::splat(half[2][lane] * ratio),
+                ],
+                slabs: [
+                    L::Two::splat(opposite(slabs[0][lane])),
+                    L::Two::splat(opposite(slabs[1][lane])),
+                    L::Two::splat(opposite(slabs[2][lane])),
+                ],
+                axes: [axis_of(&axes[0], lane), axis_of(&axes[1], lane), axis_of(&axes[2], lane)],
+            },
+            frame,
+            margin: L::splat(error_of(SPAN_ERROR, size) + frame.need),
+        }
+    }
+
+    /// The gaps at both ends along a direction, by the wide body's axes in the middle of the span.
+    #[inline(always)]
+    fn gaps(&self, middle: &[L::Two; 3]) -> L::Two {
         let n = self.frame.wide.direction(middle);
         let along = dot(&self.to, &n);
         // One sense at both ends: else boxes that change sides would count as apart.
         let sense = L::Two::both(along.first() + along.second());
         let reach =
             self.wide.reach(&n, sense) + self.single.reach(&self.frame.single.direction(middle), sense);
-        let gap = L::Two::flip_sign(along, sense) - reach;
-        self.margin.less_bits(gap.first()) & self.margin.less_bits(gap.second())
+        L::Two::flip_sign(along, sense) - reach
     }
+
+    /// Bit i is set when along a direction, by the wide body's axes in the middle of the span, the gap of lane i exceeds the
+    /// margin at both ends.
+    #[inline(always)]
+    fn apart_along(&self, middle: &[L::Two; 3]) -> u32 {
+        let gaps = self.gaps(middle);
+        self.margin.less_bits(gaps.first()) & self.margin.less_bits(gaps.second())
+    }
+}
+
+/// The center of a box by the axes of its body, in the unit of the other one.
+#[inline(always)]
+fn center_of(single: &WideNode, lane: usize, ratio: f64) -> DVec3 {
+    let (o, c) = (&single.origin, &single.center);
+    DVec3::new(
+        (f64::from(o[0]) + f64::from(c[0][lane])) * ratio,
+        (f64::from(o[1]) + f64::from(c[1][lane])) * ratio,
+        (f64::from(o[2]) + f64::from(c[2][lane])) * ratio,
+    )
+}
+
+#[inline(always)]
+fn origin_of(wide: &WideNode) -> DVec3 {
+    let o = &wide.origin;
+    DVec3::new(f64::from(o[0]), f64::from(o[1]), f64::from(o[2]))
 }
 
 /// The same vector in all lanes of the start, another one in those of the end.
@@ -208,49 +274,14 @@ pub(crate) fn apart_over_span<L: Lanes>(
     single: NodeBox<'_>,
     wide: &WideNode,
 ) -> u32 {
-    let NodeBox { node: single, lane } = single;
-    let (o, c, ratio) = (&single.origin, &single.center, scale.ratio);
-    let from = DVec3::new(
-        (f64::from(o[0]) + f64::from(c[0][lane])) * ratio,
-        (f64::from(o[1]) + f64::from(c[1][lane])) * ratio,
-        (f64::from(o[2]) + f64::from(c[2][lane])) * ratio,
-    );
-    let o = &wide.origin;
-    let origin = DVec3::new(f64::from(o[0]), f64::from(o[1]), f64::from(o[2]));
-    let [start, end] = &frame.ends;
-    let first = start.place::<L::Doubles>(from, origin);
-    let last = end.place::<L::Doubles>(from, origin);
-    let middle = frame.middle.place::<L::Doubles>(from, origin);
-    let ratio = ratio as f32;
-    let radius = single.radius[lane] * ratio;
-    let size = norm(&first).max(norm(&last)) + wide.extent + radius;
-    let margin = error_of(SPAN_ERROR, size) + frame.need;
-
-    let lanes = load::<L>(&wide.center);
-    let (long, middle_long) = (load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]));
-    let wide_half = load::<L>(&wide.half_extent);
-    let (centers, at) = (both::<L>(&lanes), ends::<L>(&first, &last));
-    let (half, slabs, axes) = (&single.half_extent, &single.slabs, &single.axes);
+    let NodeBox { node, lane } = single;
+    let boxed = Boxed::<L>::new(frame, scale, single, wide);
+    let middle = frame.middle.place::<L::Doubles>(center_of(node, lane, scale.ratio), origin_of(wide));
+    let ratio = scale.ratio as f32;
+    let (single, half, axes) = (node, &node.half_extent, &node.axes);
     let own_half = [half[0][lane] * ratio, half[1][lane] * ratio, half[2][lane] * ratio];
-    let boxed = Boxed::<L> {
-        to: [at[0] - centers[0], at[1] - centers[1], at[2] - centers[2]],
-        wide: Boxes {
-            half: both::<L>(&wide_half),
-            slabs: both::<L>(&load::<L>(&wide.slabs)),
-            axes: [both::<L>(&long), both::<L>(&middle_long), both::<L>(&load::<L>(&wide.axes[2]))],
-        },
-        single: Boxes {
-            half: [L::Two::splat(own_half[0]), L::Two::splat(own_half[1]), L::Two::splat(own_half[2])],
-            slabs: [
-                L::Two::splat(opposite(slabs[0][lane])),
-                L::Two::splat(opposite(slabs[1][lane])),
-                L::Two::splat(opposite(slabs[2][lane])),
-            ],
-            axes: [axis_of(&axes[0], lane), axis_of(&axes[1], lane), axis_of(&axes[2], lane)],
-        },
-        frame,
-        margin: L::splat(margin),
-    };
+    let (lanes, wide_half) = (load::<L>(&wide.center), load::<L>(&wide.half_extent));
+    let (long, middle_long) = (load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]));
 
     let at = splat::<L, 4>(&middle);
     let line = [at[0] - lanes[0], at[1] - lanes[1], at[2] - lanes[2]];
@@ -269,4 +300,43 @@ pub(crate) fn apart_over_span<L: Lanes>(
         }
     }
     apart
+}
+
+/// A direction that is tried of all pairs over a span.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SpanDirection {
+    /// By the wide body's axes in the middle of the span; longer than one by a few roundings at most.
+    pub(crate) middle: [f32; 3],
+    /// M S²/2 in the unit of the wide body, rounded up by some roundings.
+    pub(crate) bend: f32,
+}
+
+impl SpanDirection {
+    /// `direction`: world axes. `bend`: M S²/2 in the unit of the scene.
+    pub(crate) fn new(direction: DVec3, middle: &PlacedPose, scale: &NodeScale, bend: f64) -> Self {
+        let own = middle.axes.transposed::<F64x4>().transform(direction).normalize_or_zero();
+        let bend = round_up(bend * scale.inverse_unit * (UP * NARROW_UP * NARROW_UP));
+        Self { middle: own.as_vec3().to_array(), bend }
+    }
+}
+
+/// Bit i is set when box i of a node stays apart from a single box over the span, along one direction.
+///
+/// With g and h the gaps above the level at both ends the gap after the part x of the span is at least (1 − x) g + x h − M S²x(1 − x)/2,
+/// which is nowhere negative where √g + √h ≥ √(M S²/2): what begins close to the level and parts is apart all the time.
+#[inline(always)]
+pub(crate) fn apart_along_over_span<L: Lanes>(
+    frame: &SpanFrame<'_, L>,
+    direction: &SpanDirection,
+    scale: &NodeScale,
+    single: NodeBox<'_>,
+    wide: &WideNode,
+) -> u32 {
+    let boxed = Boxed::<L>::new(frame, scale, single, wide);
+    let gaps = boxed.gaps(&splat(&direction.middle));
+    let (g, h) = (gaps.first() - boxed.margin, gaps.second() - boxed.margin);
+    // Two roots, so that no product of gaps overflows.
+    let (zero, root) = (L::splat(0.0), g.sqrt() * h.sqrt());
+    // Not where a gap is not a number either.
+    zero.less_bits(g) & zero.less_bits(h) & L::splat(direction.bend).less_bits(g + h + (root + root))
 }

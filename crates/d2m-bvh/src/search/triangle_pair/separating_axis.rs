@@ -15,7 +15,7 @@ use glam::DVec3;
 /// Directions that are used are longer than this: lengths and times are about one, and the products of up to four of them and of
 /// gaps of at least 2⁻⁵³ are not lost to underflow.
 const SHORTEST: f64 = 1e-30;
-/// Features closer than so many stopping distances are tested themselves.
+/// Features are tested themselves where they are closer to the level than so many times as far as the stopping distance is from it.
 const FAR_STOPS: f64 = 16.0;
 
 /// What directions that turn leave above the level, in errors of a gap: one for places, three for what rates and accelerations
@@ -101,7 +101,10 @@ pub(crate) fn separating_axis_test<D: Doubles>(
     let placed = Placed::new::<D>(frame, triangles, scale, enough, order);
     let gap = widest_gap::<D>(&placed.a, &placed.b);
     let mut direction = gap.direction;
-    let (apart, far) = (gap.exceeds(scale.level + scale.error), gap.exceeds(FAR_STOPS * scale.stop));
+    let (apart, far) = (
+        gap.exceeds(scale.level + scale.error),
+        gap.exceeds(scale.level + FAR_STOPS * (scale.stop - scale.level)),
+    );
     let (mut best, mut touching) = (0.0, false);
     // One piece of code for the three directions: the widest; a normal, which lasts longer than the line to a corner
     // that comes closer when faces slide along each other; near the end that of the closest features, which attains
