@@ -2,7 +2,9 @@
 use super::body::{Body, Pair};
 use crate::judge::Claim;
 use crate::trials::{Movement, Trial};
-use d2m::bvh::{self, Moving, Posed, QueryOptions, Solid, TimeOfContact, Window};
+use d2m::bvh::{
+    self, Clearance, ClearanceOptions, Moving, Posed, QueryOptions, Solid, TimeOfContact, Window,
+};
 use d2m::motion::{ConstantTwist, RigidMotion};
 
 type Error = Box<dyn std::error::Error>;
@@ -31,6 +33,19 @@ pub(crate) fn solid(pair: &Pair) -> Solid {
 pub(crate) fn time_of_contact(pair: &Pair, motions: &Motions, options: &QueryOptions) -> Claim {
     let (a, b) = (Moving::new(&pair.a.tree, &motions.a), Moving::new(&pair.b.tree, &motions.b));
     claim(bvh::time_of_contact(a, b, Window::UNIT, options))
+}
+
+/// The same as the engine gives it.
+pub(crate) fn answer(pair: &Pair, motions: &Motions, options: &QueryOptions) -> TimeOfContact {
+    let (a, b) = (Moving::new(&pair.a.tree, &motions.a), Moving::new(&pair.b.tree, &motions.b));
+    bvh::time_of_contact(a, b, Window::UNIT, options).expect("trials are valid input")
+}
+
+/// How near the bodies come, with the default accuracy.
+pub(crate) fn clearance(pair: &Pair, motions: &Motions, tolerance: f64) -> Clearance {
+    let (a, b) = (Moving::new(&pair.a.tree, &motions.a), Moving::new(&pair.b.tree, &motions.b));
+    let options = ClearanceOptions::default().with_tolerance(tolerance).with_solid(solid(pair));
+    bvh::clearance(a, b, Window::UNIT, &options).expect("trials are valid input")
 }
 
 /// The reference method's.

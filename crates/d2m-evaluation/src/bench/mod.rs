@@ -4,6 +4,7 @@ mod body;
 mod built;
 mod catalogue;
 mod check;
+mod clearances;
 mod clock;
 mod counted;
 mod dynamics;
@@ -45,6 +46,8 @@ enum Only {
     Scenes,
     /// `d2m batch` with each form of motion, from file to file; a minute.
     Batch,
+    /// How near bodies come that stay apart, against a query that finds only that; on the pairs, a minute.
+    Clearances,
 }
 
 /// What else than queries can be measured.
@@ -65,7 +68,7 @@ pub(crate) struct Options {
     /// Fewer trials, pairs and sweeps: under two minutes.
     #[arg(long)]
     quick: bool,
-    /// Only the pairs, only the series, or, in place of both, scenes or batches.
+    /// Only the pairs, only the series, or, in place of both, scenes, batches or clearances.
     #[arg(long)]
     only: Option<Only>,
     /// Only pairs whose name contains one of these.
@@ -184,6 +187,7 @@ pub(crate) fn run(options: &Options) -> TaskResult {
         (Some(Subject::Dynamics), _) => dynamics::run(extent),
         (None, Some(Only::Scenes)) => scenes::run(options.rounds),
         (None, Some(Only::Batch)) => batch::run(options.rounds),
+        (None, Some(Only::Clearances)) => clearances::run(options),
         (None, _) => run::run(options),
     }
 }

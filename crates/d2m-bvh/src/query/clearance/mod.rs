@@ -1,9 +1,10 @@
 //! The least distance of two moving bodies over a window of time.
 //!
-//! One way through time at a level that sinks. The level is a little below the least distance that is known; the search for a
-//! first contact at that level proves that the bodies stay further apart than the level until a pair of triangles comes within it. That
-//! pair is followed to its closest time, which gives a smaller distance, and the search goes on from where it was, with the new
-//! level: what was proven at a higher level holds for a lower one. Where it ends, the level is the lower bound.
+//! First a time at which the bodies are close is sought, without proof. From there two ways lead through the window, forwards and
+//! backwards, at a level a little below the least distance that is known: the search for a first contact at that level proves
+//! that the bodies stay further apart than the level until a pair of triangles comes within it. That pair is followed to its closest
+//! time, which gives a smaller distance, and the search goes on with what is left, from that time both ways if it is in it, with the new
+//! level: what was proven at a higher level holds for a lower one. Where nothing is left, the level is the lower bound.
 //! docs/theory/questions.md, "Clearance".
 
 mod meeting;
@@ -256,7 +257,7 @@ impl<'a> Descent<'a> {
                         self.tolerance = (2.0 * self.tolerance).max(found.tolerance).max(level.width);
                     }
                     best = closer(best, lowest);
-                    self.ways.extend(Way { from: time, ..found.way }.from_within(best.time));
+                    self.ways.extend(Way { from: time, ..found.way }.divided_at(best.time));
                 }
             }
         }

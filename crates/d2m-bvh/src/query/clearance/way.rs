@@ -44,7 +44,7 @@ pub(super) struct Found {
 
 impl Way {
     /// The same span from a time within it on both ways, where it is within.
-    pub(super) fn from_within(self, time: f64) -> impl Iterator<Item = Self> {
+    pub(super) fn divided_at(self, time: f64) -> impl Iterator<Item = Self> {
         let (low, high) = (self.from.min(self.to), self.from.max(self.to));
         let is_within = low < time && time < high;
         let first = if is_within { Self { from: time, to: self.from } } else { self };
@@ -67,18 +67,13 @@ impl Sampler<'_> {
             Some(_) => *way,
             None => Way { from: way.from.min(way.to), to: way.from.max(way.to) },
         };
-        let (window, answered, sign) = match &reversed {
-            Some([a, b]) => {
-                let window = Window::try_new(-way.from, -way.to)?;
-                let [of_a, of_b] = bodies;
-                let moving = [Moving { motion: a, ..of_a }, Moving { motion: b, ..of_b }];
-                (window, of_meshes(moving, window, options)?, -1.0)
-            }
-            None => {
-                let window = Window::try_new(way.from, way.to)?;
-                (window, of_meshes(bodies, window, options)?, 1.0)
-            }
+        let sign = if reversed.is_some() { -1.0 } else { 1.0 };
+        let window = Window::try_new(sign * way.from, sign * way.to)?;
+        let moving = match &reversed {
+            Some([a, b]) => [Moving { motion: a, ..bodies[0] }, Moving { motion: b, ..bodies[1] }],
+            None => bodies,
         };
+        let answered = of_meshes(moving, window, options)?;
         let begin = window.start();
         let (end, is_outside, tolerance) = match answered.answer {
             TimeOfContact::Separated => (WayEnd::Clear, true, 0.0),
@@ -148,7 +143,7 @@ mod tests {
     #[test]
     fn a_way_is_divided_at_times_inside_only() {
         let ways = |time: f64| -> Vec<[f64; 2]> {
-            Way { from: 3.0, to: 1.0 }.from_within(time).map(|way| [way.from, way.to]).collect()
+            Way { from: 3.0, to: 1.0 }.divided_at(time).map(|way| [way.from, way.to]).collect()
         };
         assert_eq!(ways(2.0), [[2.0, 3.0], [2.0, 1.0]]);
         assert_eq!([ways(1.0), ways(3.0), ways(9.0)], [[[3.0, 1.0]], [[3.0, 1.0]], [[3.0, 1.0]]]);
