@@ -19,7 +19,7 @@ impl Distance {
     /// let (a, b) = (point(0.0)?, point(3.0)?);
     /// let centers = distance(Posed::at_rest(&a), Posed::at_rest(&b), Solid::Surface)?;
     /// let spheres = centers.with_radii([1.0, 0.5]);
-    /// assert!(spheres.lower <= 1.5 && 1.5 <= spheres.upper && spheres.upper - spheres.lower < 1e-14);
+    /// assert!(spheres.lower <= 1.5 && 1.5 <= spheres.upper && spheres.upper - spheres.lower < 1e-12);
     /// assert!((spheres.point_a - DVec3::X).length() < 1e-15 && spheres.state == StartState::Apart);
     /// assert_eq!(centers.with_radii([2.0, 1.5]).state, StartState::Overlapping);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
