@@ -110,6 +110,13 @@ pub enum Claim {
         /// When.
         time: f64,
     },
+    /// The bodies overlap: their insides share a point, or their surfaces pass through each other.
+    Overlapping {
+        /// When.
+        time: f64,
+        /// Triangles of A and B that cross, or about which there is such a point.
+        triangles: [u32; 2],
+    },
     /// The insides of the bodies share no more than a layer of this thickness: they share no point, or none as soon as B is moved along
     /// a direction, by no more than that.
     Parted {
@@ -241,6 +248,9 @@ pub enum Reason {
     /// Bodies that are said to touch do not part along the normal of the answer.
     #[error("the bodies were not found to part along the normal of the answer")]
     NotParted,
+    /// No point was found inside of both bodies that are said to overlap.
+    #[error("the bodies were not found to overlap")]
+    NotOverlapping,
     /// A tolerance larger than what was asked for and what rounding needs would make any answer right.
     #[error("the tolerance of the answer is larger than what was asked for")]
     Tolerance,

@@ -121,6 +121,11 @@ impl Mesh {
         corners.map(|v| self.relative(self.vertices[v as usize]))
     }
 
+    /// About the corners of all triangles, from the center.
+    pub(crate) fn guesses(&self) -> impl Iterator<Item = [DVec3; 3]> {
+        self.triangles.iter().map(|ids| ids.map(|v| self.vertices[v as usize] - self.center))
+    }
+
     pub(crate) fn corners(&self, triangle: u32) -> [IntervalVec3; 3] {
         self.triangles[triangle as usize].map(|v| self.relative(self.vertices[v as usize]))
     }

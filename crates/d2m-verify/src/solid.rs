@@ -39,6 +39,52 @@ pub(crate) fn is_held(bodies: &[Body<'_>; 2], now: &Instant) -> Option<bool> {
     found
 }
 
+/// How far from the middles of triangles points are tried, in parts of their sizes.
+const DEPTHS: [f64; 4] = [0.25, 0.03125, 0.000_976_562_5, 0.000_000_953_674_316_406_25];
+/// Triangles of each body at most that points are tried about.
+const MOST: usize = 64;
+
+/// Do the triangles cross, or is a point found inside of both solids? Looked for in the middle of what the bounding boxes share, and above
+/// and below the middles of these triangles and then of others there.
+pub(crate) fn overlap(bodies: &[Body<'_>; 2], now: &Instant, triangles: [u32; 2]) -> bool {
+    let [base, other] = bodies.map(|body| body.mesh);
+    if now.most_distance(&[base.corners(triangles[0]), other.corners(triangles[1])]) == 0.0 {
+        return true;
+    }
+    if bodies.iter().any(|body| body.solid == Solid::Surface || body.mesh.surface().closes == Closes::No) {
+        return false;
+    }
+    let placed = [
+        base.guesses().collect::<Vec<[DVec3; 3]>>(),
+        other.guesses().map(|corners| corners.map(|q| now.guess(q))).collect(),
+    ];
+    let [(low, high), (low_b, high_b)] = placed.each_ref().map(|all| {
+        all.iter()
+            .flatten()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
+    });
+    let (low, high) = (low.max(low_b), high.min(high_b));
+    let is_there =
+        |[p, q, r]: &[DVec3; 3]| p.min(*q).min(*r).cmple(high).all() && p.max(*q).max(*r).cmpge(low).all();
+    let there = placed.iter().flat_map(|all| {
+        let there: Vec<_> = all.iter().copied().filter(is_there).collect();
+        let step = 1 + there.len() / MOST;
+        there.into_iter().step_by(step)
+    });
+    let first = [0, 1].map(|k| placed[k][triangles[k] as usize]);
+    let about = first.into_iter().chain(there).flat_map(|[p, q, r]| {
+        let size = p.distance(q).max(q.distance(r)).max(r.distance(p));
+        let normal = (q - p).cross(r - p).normalize_or_zero() * size;
+        DEPTHS.into_iter().flat_map(move |depth| [-depth, depth].map(|d| (p + q + r) / 3.0 + normal * d))
+    });
+    let is_in = |mesh, p| RAYS.iter().find_map(|&ray| contains(mesh, p, ray)) == Some(true);
+    [low * 0.5 + high * 0.5]
+        .into_iter()
+        .chain(about)
+        .map(IntervalVec3::point)
+        .any(|p| is_in(base, p) && is_in(other, now.seen_back(p)))
+}
+
 /// Is the point (from the mesh's center) in the solid? `None`: the ray does not decide.
 fn contains(mesh: &Mesh, p: IntervalVec3, ray: DVec3) -> Option<bool> {
     let (mut winding, mut count) = (0, 0);

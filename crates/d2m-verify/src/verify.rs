@@ -2,7 +2,7 @@
 use crate::instant::Instant;
 use crate::moved::Moved;
 use crate::prove::clear;
-use crate::solid::is_held;
+use crate::solid::{is_held, overlap};
 use crate::{Body, Claim, Query, Reason, TimeSpan, Verdict};
 use d2m_interval::Interval;
 use glam::DVec3;
@@ -73,6 +73,7 @@ impl Case<'_> {
                 let is_held = is_held(&self.bodies, &self.instant(time)?);
                 if is_held == Some(true) { Ok(()) } else { self.not_proven(Reason::Solid, None) }
             }
+            Claim::Overlapping { time, triangles } => self.overlapping(time, triangles, left),
             Claim::Parted { time, along, most } => self.parted(time, along * most, left),
             Claim::All(ref claims) => claims.iter().try_for_each(|claim| self.judge(claim, left)),
         }
@@ -127,6 +128,21 @@ impl Case<'_> {
             return self.not_proven(Reason::Malformed, Some(triangles));
         }
         Ok(self.instant(time)?.distance(&[0, 1].map(|k| meshes[k].corners(triangles[k]))))
+    }
+
+    /// Bodies with radii are nearer to each other than these; of others two triangles cross, or a point is inside of both.
+    fn overlapping(&self, time: f64, triangles: [u32; 2], left: &mut u64) -> Proof {
+        let span = TimeSpan { from: time, to: time };
+        let _ = self.of_meshes(span, 0.0)?;
+        let now = self.instant(time)?;
+        let is_deep = self.distance(time, triangles)?.hi() < self.radii().lo();
+        if is_deep || overlap(&self.bodies, &now, triangles) {
+            return Ok(());
+        }
+        match self.meeting(span, 0.0, left) {
+            Ok(Meeting { triangles: Some(others), .. }) if overlap(&self.bodies, &now, others) => Ok(()),
+            _ => self.not_proven(Reason::NotOverlapping, Some(triangles)),
+        }
     }
 
     /// The bodies share no point, or none when B is moved so, or by a part of it: beyond that there may be something else of A.

@@ -171,6 +171,8 @@ fn the_word_of_a_start_is_proven() {
     {
         assert_eq!(says(x, least, honest), (honest, true), "{x}");
     }
+    assert_eq!(says(2.05, 0.2, Overlapping), (Touching, false));
+    assert_eq!(says(2.0, 0.0, Overlapping), (Touching, false));
     assert_eq!(says(1.5, 0.0, Touching), (Overlapping, false));
     assert_eq!(says(1.5, 0.2, Touching), (Overlapping, false));
     assert_eq!(says(2.1, 0.2, Overlapping), (Touching, false));
@@ -205,4 +207,39 @@ fn links_of_a_turned_arm_part_along_the_normal() {
     let turned_away =
         is_start_proven(&cube, [&links[1], &links[2]], 0.0, |contact| contact.normal = DVec3::X);
     assert!(!turned_away.1);
+}
+
+/// Honest words of starts at places where cubes meet by faces, edges and corners, turned and far away, as deep as 2⁻²⁰ and not at all:
+/// a point inside of both is found wherever there is one, and no other word is proven.
+#[test]
+fn cubes_that_overlap_do_not_touch() {
+    use StartState::{Overlapping, Touching};
+    let cube = MeshTree::new(d2m::shapes::mesh("box?x=1&y=1&z=1").unwrap());
+    let turns = [DQuat::IDENTITY, DQuat::from_xyzw(0.5, 0.5, 0.5, 0.5), DQuat::from_rotation_z(0.7)];
+    for (number, turn) in turns.into_iter().enumerate() {
+        for place in 0..27 {
+            let offset = DVec3::from([place % 3, place / 3 % 3, place / 9].map(f64::from));
+            for (deep, honest) in [(0.0, Touching), (1.0 / 1_048_576.0, Overlapping), (0.5, Overlapping)] {
+                if offset.max_element() < 2.0 && deep < 0.5 {
+                    continue;
+                }
+                let far = DVec3::new(16.0, -32.0, 8.0) * number as f64;
+                let at = |p: DVec3| ConstantTwist::REST.with_position(turn * p + far).with_orientation(turn);
+                let moved = offset.map(|x| if x == 2.0 { x - deep } else { x });
+                let motions: [ConstantTwist; 2] = [at(DVec3::ZERO), at(moved)];
+                let lie = if honest == Touching { Overlapping } else { Touching };
+                for (word, is_proven) in [(honest, true), (lie, false)] {
+                    let edited = is_start_proven(&cube, [&motions[0], &motions[1]], 0.0, |contact| {
+                        contact.start = word;
+                        if word == Overlapping {
+                            contact.separation = 0.0;
+                        }
+                    });
+                    if edited.0 != StartState::Undecided {
+                        assert_eq!(edited, (honest, is_proven), "{turn} {moved}");
+                    }
+                }
+            }
+        }
+    }
 }

@@ -66,12 +66,10 @@ pub fn claim(
                     return Err(Reason::Malformed);
                 }
                 StartState::Contained => return Ok(Claim::Held { time: contact.time_lo }),
-                // Triangles that cross as they are placed in floating point are near, to say the least: then, and whatever the separation.
+                // At least one end of them is near, whatever the separation: then, and for surfaces of more triangles than can cross.
                 StartState::Overlapping => {
-                    let distance =
-                        if contact.evidence == Evidence::Crossing { 0.0 } else { contact.tolerance };
-                    let triangles = Some([contact.triangle_a, contact.triangle_b]);
-                    return Ok(Claim::Within { span: at(contact.time_lo), distance, triangles });
+                    let triangles = [contact.triangle_a, contact.triangle_b];
+                    return Ok(Claim::Overlapping { time: contact.time_lo, triangles });
                 }
                 StartState::Touching => claims.push(Claim::Parted {
                     time: contact.time_lo,

@@ -9,6 +9,10 @@ const DEFAULT_TOLERANCE: f64 = 1e-10;
 /// documentation of [`Contact::tolerance`] names (δ is at least 2γ), for lengths that are summed here in another order.
 const ERROR: f64 = 1.0 / 17_592_186_044_416.0;
 
+/// How far a point may be off that is placed by boxes around balls of positions and of rotations, in their radii: a product of two matrices
+/// adds up √3 of the radius in each entry, the entries of a row times a point √3 of its length, and three components √3 of each. (3√3.)
+const BOXES: f64 = 5.196_152_422_706_632;
+
 /// How large the scene of a query is at a time of it, and how exactly anything can be known of it.
 pub(super) struct Scale {
     /// δ as it was asked for.
@@ -42,14 +46,12 @@ impl Scale {
         let asked = options.tolerance.unwrap_or(DEFAULT_TOLERANCE * sizes[0].max(sizes[1]));
         // Distances of bodies with radii are those of their meshes less both.
         let radii = 8.0 * f64::EPSILON * (bodies[0].radius + bodies[1].radius);
-        let enclosed: f64 = (0..2)
-            .map(|k| {
-                let origin = states[1][0].0.translation;
-                let state = bodies[k].motion.enclose_state_about(time, origin);
-                state.position_radius + state.rotation_radius * reaches[k]
-            })
-            .sum();
-        let error = ERROR * lengths + 2.0 * enclosed;
+        let near = reaches[0] + reaches[1] + apart(&states[1]);
+        let enclosed = |body: &Moving<'_>| {
+            let state = body.motion.enclose_state_about(time, states[1][0].0.translation);
+            state.position_radius + state.rotation_radius * near
+        };
+        let error = ERROR * lengths + BOXES * (enclosed(&bodies[0]) + enclosed(&bodies[1]));
         let far = states[1].iter().map(|(pose, _)| pose.translation.length()).fold(0.0, f64::max);
         Self {
             asked,
