@@ -1,7 +1,10 @@
 //! Bodies that were said to overlap though they touch, or to touch though they overlap: found by an adversary.
 
 use d2m_bvh::{MeshTree, Posed, Solid, StartState, TriMesh, distance};
-use glam::DVec3;
+use d2m_motion::Pose;
+use d2m_testing::{Draw, KnuthRandom};
+use glam::{DQuat, DVec3};
+use std::collections::BTreeSet;
 
 fn tetrahedron(corners: [[f64; 3]; 4]) -> MeshTree {
     let [a, b, c, d] = corners.map(DVec3::from);
@@ -86,4 +89,65 @@ fn flush_cubes_that_overlap_by_little_do() {
         assert_eq!([state(&a, &b), state(&b, &a)], [StartState::Overlapping; 2], "2^-{exponent}");
     }
     assert_eq!(state(&cube(0.0), &cube(1.0)), StartState::Touching);
+}
+
+/// Unit cubes of a random walk, joined: the squares between them are left out.
+fn cubes(random: &mut KnuthRandom, from: [i32; 3], steps: u32, scale: f64) -> MeshTree {
+    let mut cells = BTreeSet::from([from]);
+    let mut now = from;
+    for _ in 0..steps {
+        let side = random.index(6);
+        now[side / 2] += if side.is_multiple_of(2) { 1 } else { -1 };
+        cells.insert(now);
+    }
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    for &cell in &cells {
+        for side in 0..6 {
+            let (axis, is_high) = (side / 2, side.is_multiple_of(2));
+            let mut beside = cell;
+            beside[axis] += if is_high { 1 } else { -1 };
+            if cells.contains(&beside) {
+                continue;
+            }
+            let first = vertices.len() as u32;
+            for (u, v) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
+                let mut corner = cell;
+                corner[axis] += i32::from(is_high);
+                corner[(axis + 1) % 3] += u;
+                corner[(axis + 2) % 3] += v;
+                vertices.push(DVec3::from(corner.map(f64::from)) * scale);
+            }
+            let [a, b, c, d] = [0, 1, 2, 3].map(|k| first + k);
+            faces.extend(if is_high { [[a, b, c], [a, c, d]] } else { [[c, b, a], [d, c, a]] });
+        }
+    }
+    MeshTree::new(TriMesh::try_new(vertices, faces).unwrap())
+}
+
+/// Which of two bodies is called A changes nothing but the sign of the normal.
+#[test]
+fn an_exchange_of_the_bodies_turns_the_normal_round() {
+    let mut random = KnuthRandom(11);
+    let mut touches = 0;
+    for _ in 0..300 {
+        let scale = [1.0, 0.1, 1.0 / 3.0][random.index(3)];
+        let place = [0, 1, 2].map(|_| random.index(6) as i32 - 2);
+        let [a, b] = [[0; 3], place].map(|from| cubes(&mut random, from, 6, scale));
+        let rotation = match random.index(3) {
+            0 => DQuat::IDENTITY,
+            1 => DQuat::from_xyzw(0.5, 0.5, 0.5, 0.5),
+            _ => DQuat::from_xyzw(random.unit(), random.unit(), random.unit(), 1.0).normalize(),
+        };
+        let pose = Pose { translation: DVec3::ZERO, rotation, at: DVec3::ZERO };
+        let [a, b] = [&a, &b].map(|tree| Posed::new(tree, pose));
+        for solid in [Solid::Filled, Solid::Surface] {
+            let [found, other] = [distance(a, b, solid).unwrap(), distance(b, a, solid).unwrap()];
+            assert_eq!(found.state, other.state, "{place:?} {rotation}");
+            if found.state == StartState::Touching {
+                touches += 1;
+                assert_eq!(found.normal, -other.normal, "{place:?} {rotation}");
+            }
+        }
+    }
+    assert!(touches > 100, "{touches}");
 }

@@ -26,6 +26,7 @@ use super::node_pair::Scene;
 use crate::meter::{Exhausted, Meter};
 use crate::{Posed, QueryError, Solid, StartState};
 use axis::{Axis, Sides, TouchingPair};
+use core::cmp::Ordering;
 use d2m_lanes::power_of_two;
 use exact::ExactPlaces;
 use glam::DVec3;
@@ -65,6 +66,17 @@ pub(crate) enum Meeting<'a> {
 }
 
 impl Meeting<'_> {
+    /// The same of B and A.
+    fn exchanged(self) -> Self {
+        match self {
+            Self::Touching(Touch { normal, triangles: [a, b], moved: [of_a, of_b], parted_by }) => {
+                Self::Touching(Touch { normal: -normal, triangles: [b, a], moved: [of_b, of_a], parted_by })
+            }
+            Self::Overlapping(triangles) => Self::Overlapping(triangles.map(|[a, b]| [b, a])),
+            Self::Undecided => Self::Undecided,
+        }
+    }
+
     pub(crate) const fn state(&self) -> StartState {
         match self {
             Self::Touching(_) => StartState::Touching,
@@ -99,11 +111,31 @@ pub(crate) struct Meeters<'a> {
 }
 
 impl<'a> Meeters<'a> {
-    /// How they meet. `None`: their surfaces are proven apart by more than this can judge.
+    /// How they meet, whichever of them is named first. `None`: their surfaces are proven apart by more than this can judge.
     ///
     /// # Errors
     /// [`QueryError::BadPose`].
     pub(crate) fn meeting(&self, meter: &mut Meter) -> Result<Option<Meeting<'a>>, QueryError> {
+        let [key, other] = self.bodies.map(order);
+        let is_exchanged = key.iter().zip(&other).map(|(x, y)| x.total_cmp(y)).find(|o| o.is_ne())
+            == Some(Ordering::Greater);
+        let [first, second] =
+            if is_exchanged { [self.exchanged(), *self] } else { [*self, self.exchanged()] };
+        let (mut found, mut is_of_second) = (first.meeting_in_order(meter)?, false);
+        if matches!(found, Some(Meeting::Undecided)) {
+            // Directions and points are tried in the second body's frame: in the other one they may be found.
+            (found, is_of_second) = (second.meeting_in_order(meter)?, true);
+        }
+        Ok(if is_of_second == is_exchanged { found } else { found.map(Meeting::exchanged) })
+    }
+
+    /// B and A.
+    fn exchanged(&self) -> Self {
+        let ([a, b], [of_a, of_b]) = (self.bodies, self.solids);
+        Self { bodies: [b, a], solids: [of_b, of_a], ..*self }
+    }
+
+    fn meeting_in_order(&self, meter: &mut Meter) -> Result<Option<Meeting<'a>>, QueryError> {
         let [a, b] = self.bodies;
         let scene = Scene::try_blurred(a, b, self.blur)?;
         // In units so small that underflow takes a part of all lengths nothing is judged.
@@ -267,6 +299,16 @@ impl<'a> Meeters<'a> {
         }
         Ok(true)
     }
+}
+
+/// What bodies are put into an order by, so that it does not depend on how they are named.
+fn order(posed: Posed<'_>) -> [f64; 12] {
+    let (mesh, pose) = (posed.body.mesh(), posed.pose);
+    let [x, y, z] = pose.translation.to_array();
+    let [i, j, k, w] = pose.rotation.to_array();
+    let [u, v, t] = posed.body.center().to_array();
+    let counts = [mesh.triangle_count(), mesh.vertex_count()].map(|n| n as f64);
+    [counts[0], counts[1], x, y, z, i, j, k, w, u, v, t]
 }
 
 /// Is all of B proven further along a unit direction than all of A?
