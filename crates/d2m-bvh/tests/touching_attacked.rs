@@ -102,7 +102,7 @@ fn cubes(random: &mut KnuthRandom, from: [i32; 3], steps: u32, scale: f64) -> Me
     }
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     for &cell in &cells {
-        for side in 0..6 {
+        for side in 0..6_usize {
             let (axis, is_high) = (side / 2, side.is_multiple_of(2));
             let mut beside = cell;
             beside[axis] += if is_high { 1 } else { -1 };
