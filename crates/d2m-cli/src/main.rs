@@ -18,6 +18,7 @@ mod output;
 mod partial;
 mod posed;
 mod report;
+mod robot_path;
 mod robot_scene;
 mod scene;
 mod simulation;

@@ -193,7 +193,10 @@ fn bad_input_is_one_line_with_its_place() {
     );
     let mesh = ARM.replace("<box size=\"0.2 0.2 0.2\"/>", "<mesh filename=\"package://arm/foot.stl\"/>");
     with_robot(&mesh, &["r.urdf, line 2", "link \"foot\"", "--package arm=DIR"]);
-    with_robot(&ARM.replace("continuous", "planar"), &["r.urdf, line 7", "joint \"elbow\" is planar"]);
+    with_robot(
+        &ARM.replace("continuous", "ball"),
+        &["r.urdf, line 7", "joint \"elbow\" has the unknown type"],
+    );
     refused(&["robot", robot, "--path", path, "--package", "arm"], &["--package", "\"arm\" is not NAME=DIR"]);
     refused(&["robot", robot, "--path", path, "--min-separation", "-1"], &["--min-separation", "-1"]);
     refused(&["robot", "no.urdf", "--path", path], &["no.urdf"]);

@@ -4,7 +4,7 @@ use crate::{IoError, Place, excerpt};
 use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
 
-/// Reads the bytes of a JSON file; a fault names line, column and the word that is there.
+/// Reads the bytes of a JSON file; a fault names line, column and the word that is there. A byte order mark is no part of it.
 ///
 /// ```
 /// let fault = d2m_io::parse_json::<Vec<f64>>(b"[1,\n 1e999]").unwrap_err();
@@ -14,6 +14,7 @@ use serde_json::{Map, Number, Value};
 /// # Errors
 /// [`IoError::Content`].
 pub fn parse_json<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, IoError> {
+    let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
     serde_json::from_slice(bytes).map_err(|error| {
         let line = bytes.split(|&byte| byte == b'\n').nth(error.line().saturating_sub(1)).unwrap_or_default();
         let word = word_at(&String::from_utf8_lossy(line), error.column());

@@ -369,7 +369,7 @@ impl Robot {
     }
 
     /// Where a path leaves the limits of its joints, which are not enforced: a list of dictionaries with "joint", "kind" ("position" or
-    /// "velocity"), "time", "value" and "limit". Arguments as of `check_path`.
+    /// "velocity"), "time", "point" (after which it is), "value" and "limit". Arguments as of `check_path`.
     ///
     /// >>> import d2m_ccd
     /// >>> robot = d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF)
@@ -393,6 +393,7 @@ impl Robot {
             dict.set_item("joint", &found.joint)?;
             dict.set_item("kind", if found.kind == LimitKind::Position { "position" } else { "velocity" })?;
             dict.set_item("time", found.time)?;
+            dict.set_item("point", found.point)?;
             dict.set_item("value", found.value)?;
             dict.set_item("limit", found.limit)?;
             Ok(dict)

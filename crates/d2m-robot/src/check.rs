@@ -28,7 +28,8 @@ impl RobotScene {
     /// As [`RobotScene::check_path`].
     pub fn limit_warnings(&self, path: &Trajectory) -> Result<Vec<LimitWarning>, RobotError> {
         let values = self.robot.all_values(&path.joint_names, path.joint_values()?)?;
-        Ok(self.robot.limit_warnings(&values, path.times().unwrap_or_default()))
+        let points: Vec<f64> = path.points.iter().map(|point| point.time_from_start).collect();
+        Ok(self.robot.limit_warnings(&values, &points))
     }
 
     /// For a planner: checks of straight edges between configurations of these joints. All that edges share is kept.

@@ -47,6 +47,8 @@ pub struct LimitWarning {
     pub kind: LimitKind,
     /// The first time at which it was found beyond (to 2⁻²⁰ of the path).
     pub time: f64,
+    /// The index of the point of the path after which that is, on the way to the next.
+    pub point: usize,
     /// What it is then.
     pub value: f64,
     /// The limit that is nearest.
@@ -55,20 +57,24 @@ pub struct LimitWarning {
 
 impl core::fmt::Display for LimitWarning {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let Self { joint, time, value, limit, .. } = self;
+        let Self { joint, time, point, value, limit, .. } = self;
         let what = match self.kind {
             LimitKind::Position => "position",
             LimitKind::Velocity => "velocity",
         };
         let side = if value < limit { "below" } else { "above" };
-        write!(f, "joint {joint:?}: the {what} {value} at the time {time} is {side} the limit {limit}")
+        write!(
+            f,
+            "joint {joint:?}: the {what} {value:?} at the time {time:?} (from points[{point}] on) is {side} the limit {limit:?}"
+        )
     }
 }
 
 impl Robot {
-    /// Joints that leave their limits between two times, by the values of all joints.
-    pub(crate) fn limit_warnings(&self, values: &[JointValue], [start, end]: [f64; 2]) -> Vec<LimitWarning> {
+    /// Joints that leave their limits along a path through points at these times, by the values of all joints.
+    pub(crate) fn limit_warnings(&self, values: &[JointValue], points: &[f64]) -> Vec<LimitWarning> {
         let mut warnings = Vec::new();
+        let [Some(&start), Some(&end)] = [points.first(), points.last()] else { return warnings };
         for (joint, value) in self.joints.iter().zip(values) {
             let JointLimits { position, velocity } = joint.limits;
             let ranges = [
@@ -90,7 +96,16 @@ impl Robot {
                 let pieces =
                     times.windows(2).find_map(|piece| search.first_beyond(piece[0], piece[1], &mut left));
                 if let Some(Beyond { time, value, limit }) = pieces {
-                    warnings.push(LimitWarning { joint: joint.name.clone(), kind, time, value, limit });
+                    let point = points.partition_point(|&of| of <= time).saturating_sub(1);
+                    let point = point.min(points.len().saturating_sub(2));
+                    warnings.push(LimitWarning {
+                        joint: joint.name.clone(),
+                        kind,
+                        time,
+                        point,
+                        value,
+                        limit,
+                    });
                 }
             }
         }
@@ -146,12 +161,13 @@ impl Search<'_> {
 
     fn at(&self, span: Interval, time: f64) -> Option<Beyond> {
         let value = (self.enclose)(span);
-        if value.hi() < self.lower {
-            Some(Beyond { time, value: value.hi(), limit: self.lower })
+        let limit = if value.hi() < self.lower {
+            self.lower
         } else if value.lo() > self.upper {
-            Some(Beyond { time, value: value.lo(), limit: self.upper })
+            self.upper
         } else {
-            None
-        }
+            return None;
+        };
+        Some(Beyond { time, value: value.mid(), limit })
     }
 }

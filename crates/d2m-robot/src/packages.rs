@@ -3,10 +3,25 @@
 use crate::{RobotError, RobotOptions};
 use std::path::{Path, PathBuf};
 
-/// Reads a text file.
+/// Reads a text file: UTF-8, or UTF-16 that begins with a byte order mark.
 pub(crate) fn read_text(path: &Path) -> Result<String, RobotError> {
-    std::fs::read_to_string(path)
-        .map_err(|source| RobotError::File { file: path.display().to_string(), source })
+    let file = || path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|source| RobotError::File { file: file(), source })?;
+    let fault = |line: usize, reason: String| RobotError::Xml { file: file(), line: line as u32, reason };
+    let wide = |unit: fn([u8; 2]) -> u16| {
+        let units = bytes.chunks_exact(2).map(|pair| unit([pair[0], pair[1]]));
+        String::from_utf16(&units.collect::<Vec<u16>>())
+            .map_err(|_| fault(1, "it begins as UTF-16 but is not: save it as UTF-8".to_owned()))
+    };
+    match bytes[..] {
+        [0xff, 0xfe, ..] => wide(u16::from_le_bytes),
+        [0xfe, 0xff, ..] => wide(u16::from_be_bytes),
+        _ => String::from_utf8(bytes).map_err(|error| {
+            let (before, rest) = error.as_bytes().split_at(error.utf8_error().valid_up_to());
+            let line = before.split(|&byte| byte == b'\n').count();
+            fault(line, format!("the byte {:#04x} is no UTF-8: save it as UTF-8", rest[0]))
+        }),
+    }
 }
 
 /// The path of a file that a URDF names: `package://NAME/rest` (or `model://`), `file://path`, or a path beside the URDF.

@@ -1,18 +1,22 @@
 //! A robot: links joined to a tree, with their collision bodies.
 
 use crate::geometry::{LinkBody, ShapeReader};
+use crate::joints::{JointLimits, JointReader, JointType, Mimic, RobotJoint};
+use crate::link_tree::LinkTree;
 use crate::packages::read_text;
-use crate::urdf::{Origin, Urdf, UrdfJoint, UrdfJointKind};
+use crate::urdf::Urdf;
 use crate::{RobotError, RobotOptions, Trajectory};
 use d2m_motion::{Arm, Chain, Joint, JointKind, JointValue};
 use glam::DVec3;
-use std::collections::HashMap;
+use std::ops::Range;
 use std::path::Path;
 
 /// A robot as a URDF file describes it, with the collision bodies of its links.
 ///
 /// The pose of a child in its parent is T(xyz)·Rz(yaw)·Ry(pitch)·Rx(roll)·J(q), J a turn about or a shift along the normalised
-/// axis; the frame of the root link is the world. All numbers are taken as the doubles that they are read as.
+/// axis; the frame of the root link is the world. All numbers are taken as the doubles that they are read as. A planar joint J about
+/// the axis z has the three numbers `J/x`, `J/y` and `J/theta` (shifts, then a turn), a floating one `J/trans_x`, `J/trans_y` and
+/// `J/trans_z` and no turn, by these names in paths.
 ///
 /// ```
 /// use d2m_robot::{Robot, RobotOptions};
@@ -36,79 +40,17 @@ pub struct Robot {
     arm: Arm,
     /// Where each link is in the arm.
     places: Vec<usize>,
+    /// Where each joint is in the arm.
+    joint_places: Vec<usize>,
     remarks: Vec<String>,
 }
 
 #[derive(Debug, Clone)]
 pub(crate) struct Link {
     pub(crate) name: String,
-    /// The joint that carries it.
-    pub(crate) joint: Option<usize>,
+    /// The joints that carry it, one after the other; none: the root.
+    pub(crate) joints: Range<usize>,
     pub(crate) bodies: Vec<LinkBody>,
-}
-
-#[derive(Debug, Clone)]
-pub(crate) struct RobotJoint {
-    pub(crate) name: String,
-    pub(crate) kind: JointType,
-    pub(crate) parent: usize,
-    pub(crate) child: usize,
-    pub(crate) limits: JointLimits,
-    pub(crate) mimic: Option<Mimic>,
-    /// With a value of zero if it moves.
-    pub(crate) joint: Joint,
-}
-
-/// How a joint moves.
-///
-/// ```
-/// # let urdf = r#"<robot name="two">
-/// #   <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
-/// #   <link name="arm"><collision><origin xyz="0.5 0 0"/><geometry><box size="0.8 0.1 0.1"/></geometry></collision></link>
-/// #   <link name="wall"><collision><origin xyz="0 0.7 0"/><geometry><box size="0.1 0.1 1"/></geometry></collision></link>
-/// #   <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/>
-/// #     <axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="1"/></joint>
-/// #   <joint name="weld" type="fixed"><parent link="base"/><child link="wall"/></joint>
-/// # </robot>"#;
-/// use d2m_robot::{JointType, Robot, RobotOptions};
-/// let robot = Robot::parse("two.urdf", urdf, &RobotOptions::new())?;
-/// let turn = robot.find_joint("turn").expect("the file has it");
-/// assert_eq!((robot.joint_type(turn), robot.limits(turn).velocity), (JointType::Revolute, Some(1.0)));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum JointType {
-    /// Not at all.
-    Fixed,
-    /// It turns within limits.
-    Revolute,
-    /// It turns without limits.
-    Continuous,
-    /// It shifts.
-    Prismatic,
-}
-
-/// Limits of a joint, as far as the file states them.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-#[non_exhaustive]
-pub struct JointLimits {
-    /// Least and greatest position (radians, or units of length).
-    pub position: Option<[f64; 2]>,
-    /// Greatest speed.
-    pub velocity: Option<f64>,
-}
-
-/// The joint that another one follows: `multiplier`·q + `offset`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct Mimic {
-    /// Its index among the robot's joints.
-    pub joint: usize,
-    /// Factor.
-    pub multiplier: f64,
-    /// Added then.
-    pub offset: f64,
 }
 
 impl Robot {
@@ -125,7 +67,7 @@ impl Robot {
     /// From the text of a URDF file; meshes are beside the file of that name.
     ///
     /// # Errors
-    /// What is no URDF, joints that are floating or planar, links that form no tree, joints that mimic in a circle, meshes that
+    /// What is no URDF, links that form no tree, joints that mimic in a circle, meshes that
     /// are missing, packages that nothing resolves, and a robot without any collision geometry: with file, line and name.
     pub fn parse(file: &str, text: &str, options: &RobotOptions) -> Result<Self, RobotError> {
         let urdf = Urdf::parse(file, text)?;
@@ -140,22 +82,22 @@ impl Robot {
         let folder = Path::new(file).parent().unwrap_or(Path::new(""));
         let mut reader = ShapeReader::new(file, folder, options);
         let mut links = Vec::with_capacity(urdf.links.len());
-        for (link, joint) in urdf.links.iter().zip(&tree.carried_by) {
+        for link in &urdf.links {
             let bodies = link.collisions.iter().map(|collision| reader.body(&link.name, collision));
             let bodies = bodies.collect::<Result<_, _>>()?;
-            links.push(Link { name: link.name.clone(), joint: *joint, bodies });
+            links.push(Link { name: link.name.clone(), joints: 0..0, bodies });
         }
-        let remarks = reader.remarks;
-        let joints = urdf
-            .joints
-            .iter()
-            .zip(&tree.ends)
-            .map(|(joint, ends)| read_joint(file, &urdf, joint, *ends))
-            .collect::<Result<Vec<_>, _>>()?;
-        check_mimics(file, &urdf, &joints)?;
+        let mut remarks = reader.remarks;
+        let JointReader { joints, remarks: of_joints, .. } = JointReader::read(file, &urdf, &tree.ends)?;
+        remarks.extend(of_joints);
+        for (index, joint) in joints.iter().enumerate() {
+            let before = links[joint.child].joints.clone();
+            let first = if before.is_empty() { index } else { before.start };
+            links[joint.child].joints = first..index + 1;
+        }
         let (name, file) = (urdf.name, file.to_owned());
-        let (arm, places) = arm_of(&links, &joints, &tree.order)?;
-        Ok(Self { name, file, links, joints, arm, places, remarks })
+        let LinksInArm { arm, places, joint_places } = LinksInArm::new(&links, &joints, &tree.order)?;
+        Ok(Self { name, file, links, joints, arm, places, joint_places, remarks })
     }
 
     /// Its name in the file.
@@ -246,7 +188,7 @@ impl Robot {
 
     /// The link whose frame is the world.
     pub(crate) fn root(&self) -> usize {
-        self.links.iter().position(|link| link.joint.is_none()).unwrap_or_default()
+        self.links.iter().position(|link| link.joints.is_empty()).unwrap_or_default()
     }
 
     /// The place in the arm of the last link that carries both, or is one of them; none: the world.
@@ -263,7 +205,7 @@ impl Robot {
     pub(crate) fn rigid_group(&self, link: usize) -> usize {
         let mut at = link;
         while let Some(joint) =
-            self.links[at].joint.filter(|&joint| self.joints[joint].kind == JointType::Fixed)
+            self.links[at].joints.clone().last().filter(|&joint| self.joints[joint].kind == JointType::Fixed)
         {
             at = self.joints[joint].parent;
         }
@@ -281,8 +223,8 @@ impl Robot {
     /// The links as an arm with these values of all joints (those of fixed joints are ignored).
     pub(crate) fn arm(&self, values: &[JointValue]) -> Arm {
         let mut arm = self.arm.clone();
-        for (joint, value) in self.joints.iter().zip(values) {
-            arm.set_value(self.places[joint.child], value.clone());
+        for (&place, value) in self.joint_places.iter().zip(values) {
+            arm.set_value(place, value.clone());
         }
         arm
     }
@@ -294,160 +236,34 @@ impl Robot {
     }
 }
 
-/// The links in an order in which each comes after its parent, and the place of each in it.
-fn arm_of(links: &[Link], joints: &[RobotJoint], order: &[usize]) -> Result<(Arm, Vec<usize>), RobotError> {
-    let mut arm = Arm::default();
-    let mut places = vec![0; links.len()];
-    for &link in order {
-        let (parent, joint) = match links[link].joint {
-            None => (None, Joint::try_new(DVec3::ZERO, glam::DQuat::IDENTITY, JointKind::Fixed)?),
-            Some(joint) => (Some(joints[joint].parent), joints[joint].joint.clone()),
-        };
-        // The root carries its children, but its frame is the world: nothing to compute.
-        let parent = parent.filter(|&parent| links[parent].joint.is_some()).map(|parent| places[parent]);
-        places[link] = arm.add(links[link].name.as_str(), parent, joint)?;
-    }
-    Ok((arm, places))
+/// The links as an arm, and where links and joints are in it.
+struct LinksInArm {
+    arm: Arm,
+    places: Vec<usize>,
+    joint_places: Vec<usize>,
 }
 
-impl Origin {
-    /// The frame as a joint.
-    pub(crate) fn joint(self, kind: JointKind) -> Result<Joint, RobotError> {
-        Ok(Joint::try_with_rpy(self.xyz, self.rpy.to_array(), kind)?)
-    }
-}
-
-fn read_joint(
-    file: &str,
-    urdf: &Urdf,
-    joint: &UrdfJoint,
-    [parent, child]: [usize; 2],
-) -> Result<RobotJoint, RobotError> {
-    let fault = |reason: String| RobotError::Xml { file: file.to_owned(), line: joint.line, reason };
-    let zero = JointValue::try_constant(0.0)?;
-    let (kind, motion) = match joint.kind {
-        UrdfJointKind::Fixed => (JointType::Fixed, JointKind::Fixed),
-        UrdfJointKind::Revolute => {
-            (JointType::Revolute, JointKind::Revolute { axis: joint.axis, value: zero })
-        }
-        UrdfJointKind::Continuous => {
-            (JointType::Continuous, JointKind::Revolute { axis: joint.axis, value: zero })
-        }
-        UrdfJointKind::Prismatic => {
-            (JointType::Prismatic, JointKind::Prismatic { axis: joint.axis, value: zero })
-        }
-    };
-    let has_position = matches!(kind, JointType::Revolute | JointType::Prismatic);
-    let limits = match joint.limit {
-        None => JointLimits::default(),
-        Some(limit) => JointLimits {
-            position: has_position.then_some([limit.lower, limit.upper]),
-            // A speed of zero or less is no limit that anything could keep.
-            velocity: limit.velocity.filter(|&velocity| velocity > 0.0),
-        },
-    };
-    let mimic = match &joint.mimic {
-        Some(mimic) if kind != JointType::Fixed => {
-            let index = urdf.joints.iter().position(|other| other.name == mimic.joint).ok_or_else(|| {
-                fault(format!("joint {:?} mimics {:?}, which is no joint", joint.name, mimic.joint))
-            })?;
-            Some(Mimic { joint: index, multiplier: mimic.multiplier, offset: mimic.offset })
-        }
-        _ => None,
-    };
-    let name = joint.name.clone();
-    let joint = joint.origin.joint(motion).map_err(|error| fault(format!("joint {name:?}: {error}")))?;
-    Ok(RobotJoint { name, kind, parent, child, limits, mimic, joint })
-}
-
-/// Every joint that mimics gets at one that does not.
-fn check_mimics(file: &str, urdf: &Urdf, joints: &[RobotJoint]) -> Result<(), RobotError> {
-    for (index, joint) in joints.iter().enumerate() {
-        let mut at = index;
-        for _ in 0..=joints.len() {
-            let Some(Mimic { joint: next, .. }) = joints[at].mimic else { break };
-            at = next;
-        }
-        if joints[at].mimic.is_some() {
-            let reason = format!("joint {:?} mimics itself in the end", joint.name);
-            return Err(RobotError::Xml { file: file.to_owned(), line: urdf.joints[index].line, reason });
-        }
-    }
-    Ok(())
-}
-
-/// How the links hang together.
-struct LinkTree {
-    /// Of each joint: parent and child.
-    ends: Vec<[usize; 2]>,
-    /// Of each link.
-    carried_by: Vec<Option<usize>>,
-    order: Vec<usize>,
-}
-
-impl LinkTree {
-    fn new(file: &str, urdf: &Urdf) -> Result<Self, RobotError> {
-        let robot_fault = |reason: String| RobotError::Robot { file: file.to_owned(), reason };
-        let fault = |line: u32, reason: String| RobotError::Xml { file: file.to_owned(), line, reason };
-        if urdf.links.is_empty() {
-            return Err(robot_fault("the robot has no link".to_owned()));
-        }
-        let mut by_name = HashMap::new();
-        for (index, link) in urdf.links.iter().enumerate() {
-            if by_name.insert(link.name.as_str(), index).is_some() {
-                return Err(fault(link.line, format!("a second link has the name {:?}", link.name)));
-            }
-        }
-        let mut joint_names = HashMap::new();
-        let mut carried_by: Vec<Option<usize>> = vec![None; urdf.links.len()];
-        let mut ends = Vec::with_capacity(urdf.joints.len());
-        for (index, joint) in urdf.joints.iter().enumerate() {
-            let name = &joint.name;
-            if joint_names.insert(name.as_str(), index).is_some() {
-                return Err(fault(joint.line, format!("a second joint has the name {name:?}")));
-            }
-            let end = |side: &str, link: &str| {
-                let reason = || format!("joint {name:?}: the {side} {link:?} is no link");
-                by_name.get(link).copied().ok_or_else(|| fault(joint.line, reason()))
+impl LinksInArm {
+    /// In an order of the links in which each comes after its parent.
+    fn new(links: &[Link], joints: &[RobotJoint], order: &[usize]) -> Result<Self, RobotError> {
+        let mut arm = Arm::default();
+        let (mut places, mut joint_places) = (vec![0; links.len()], vec![0; joints.len()]);
+        for &link in order {
+            let Link { name, joints: carried_by, .. } = &links[link];
+            let Some(first) = carried_by.clone().next() else {
+                let still = Joint::try_new(DVec3::ZERO, glam::DQuat::IDENTITY, JointKind::Fixed)?;
+                places[link] = arm.add(name.as_str(), None, still)?;
+                continue;
             };
-            let [parent, child] = [end("parent", &joint.parent)?, end("child", &joint.child)?];
-            if let Some(other) = carried_by[child].replace(index) {
-                let other = &urdf.joints[other].name;
-                let reason = format!("joints {other:?} and {name:?} both carry the link {:?}", joint.child);
-                return Err(fault(joint.line, reason));
+            // The root carries its children, but its frame is the world: nothing to compute.
+            let parent = joints[first].parent;
+            let mut at = (!links[parent].joints.is_empty()).then_some(places[parent]);
+            for joint in carried_by.clone() {
+                joint_places[joint] = arm.add(name.as_str(), at, joints[joint].joint.clone())?;
+                at = Some(joint_places[joint]);
             }
-            ends.push([parent, child]);
+            places[link] = joint_places[carried_by.end - 1];
         }
-        let roots: Vec<usize> = (0..urdf.links.len()).filter(|&link| carried_by[link].is_none()).collect();
-        match roots[..] {
-            [_] => {}
-            [] => {
-                return Err(robot_fault("every link is carried by another one: there is no root".to_owned()));
-            }
-            [first, second, ..] => {
-                let [first, second] = [first, second].map(|link| &urdf.links[link].name);
-                let reason = format!(
-                    "{} links are carried by no joint, {first:?} and {second:?} among them: one root is needed",
-                    roots.len()
-                );
-                return Err(robot_fault(reason));
-            }
-        }
-        let mut children = vec![Vec::new(); urdf.links.len()];
-        for &[parent, child] in &ends {
-            children[parent].push(child);
-        }
-        let mut order = roots;
-        let mut next = 0;
-        while let Some(&link) = order.get(next) {
-            order.extend(&children[link]);
-            next += 1;
-        }
-        if order.len() < urdf.links.len() {
-            let lost = (0..urdf.links.len()).find(|link| !order.contains(link)).unwrap_or_default();
-            let reason = format!("the link {:?} is carried by itself in the end", urdf.links[lost].name);
-            return Err(fault(urdf.links[lost].line, reason));
-        }
-        Ok(Self { ends, carried_by, order })
+        Ok(Self { arm, places, joint_places })
     }
 }

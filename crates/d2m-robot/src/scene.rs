@@ -207,7 +207,7 @@ impl RobotScene {
             robot.links.iter().flat_map(|link| &link.bodies).map(|body| body.radius).filter(|&r| r > 0.0);
         // Of two spheres, which are points with a radius, the usual tolerance would be that of points.
         let options = match (options.tolerance, round.min_by(f64::total_cmp)) {
-            (None, Some(radius)) => options.with_tolerance(TOLERANCE * radius),
+            (None, Some(radius)) => options.with_tolerance((TOLERANCE * radius).max(f64::MIN_POSITIVE)),
             _ => options,
         };
         check_options(&options)?;

@@ -66,6 +66,8 @@ pub(crate) struct UrdfJoint {
     pub(crate) child: String,
     pub(crate) origin: Origin,
     pub(crate) axis: DVec3,
+    /// Does the file state the axis?
+    pub(crate) has_axis: bool,
     pub(crate) limit: Option<UrdfLimit>,
     pub(crate) mimic: Option<UrdfMimic>,
 }
@@ -76,6 +78,8 @@ pub(crate) enum UrdfJointKind {
     Revolute,
     Continuous,
     Prismatic,
+    Planar,
+    Floating,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -96,7 +100,7 @@ impl Urdf {
     pub(crate) fn parse(file: &str, text: &str) -> Result<Self, RobotError> {
         let xml = Xml::parse(file, text)?;
         let root = xml.root("robot")?;
-        for element in root.elements() {
+        for element in root.descendants() {
             if element.namespace().is_some_and(|namespace| namespace.contains("xacro")) {
                 let reason = format!("<xacro:{}>: this is a xacro file; expand it first", element.name());
                 return Err(element.fault(reason));
@@ -109,7 +113,7 @@ impl Urdf {
 }
 
 fn origin(element: Element<'_>) -> Result<Origin, RobotError> {
-    let Some(origin) = element.child("origin") else { return Ok(Origin::default()) };
+    let Some(origin) = element.child("origin")? else { return Ok(Origin::default()) };
     let part = |key| Ok::<_, RobotError>(origin.vector(key)?.unwrap_or(DVec3::ZERO));
     Ok(Origin { xyz: part("xyz")?, rpy: part("rpy")? })
 }
@@ -120,9 +124,15 @@ fn link(element: Element<'_>) -> Result<UrdfLink, RobotError> {
 }
 
 fn collision(element: Element<'_>) -> Result<UrdfCollision, RobotError> {
-    let geometry = element.child("geometry").ok_or_else(|| element.fault("<collision> has no <geometry>"))?;
-    let shape =
-        geometry.elements().next().ok_or_else(|| geometry.fault("<geometry> of <collision> is empty"))?;
+    let geometry =
+        element.child("geometry")?.ok_or_else(|| element.fault("<collision> has no <geometry>"))?;
+    let mut shapes = geometry.elements();
+    let shape = shapes.next().ok_or_else(|| geometry.fault("<geometry> of <collision> is empty"))?;
+    if let Some(second) = shapes.next() {
+        let reason =
+            format!("<{}> is a second shape in one <geometry>: each needs a <collision>", second.name());
+        return Err(second.fault(reason));
+    }
     Ok(UrdfCollision { line: shape.line(), origin: origin(element)?, shape: read_shape(shape)? })
 }
 
@@ -163,10 +173,8 @@ fn joint(element: Element<'_>) -> Result<UrdfJoint, RobotError> {
         "revolute" => UrdfJointKind::Revolute,
         "continuous" => UrdfJointKind::Continuous,
         "prismatic" => UrdfJointKind::Prismatic,
-        other @ ("floating" | "planar") => {
-            let reason = format!("joint {name:?} is {other}: only joints of one number can be checked");
-            return Err(element.fault(reason));
-        }
+        "planar" => UrdfJointKind::Planar,
+        "floating" => UrdfJointKind::Floating,
         other => {
             let reason = format!("joint {name:?} has the unknown type {other:?}");
             return Err(element.fault(reason));
@@ -174,18 +182,16 @@ fn joint(element: Element<'_>) -> Result<UrdfJoint, RobotError> {
     };
     let end = |side: &'static str| {
         let missing = || element.fault(format!("joint {name:?} has no <{side}>"));
-        Ok::<_, RobotError>(element.child(side).ok_or_else(missing)?.needed("link")?.to_owned())
+        Ok::<_, RobotError>(element.child(side)?.ok_or_else(missing)?.needed("link")?.to_owned())
     };
     let (parent, child) = (end("parent")?, end("child")?);
-    let axis = match element.child("axis") {
-        None => DVec3::X,
-        Some(axis) => axis.vector("xyz")?.unwrap_or(DVec3::X),
-    };
-    // A fixed joint has no axis, whatever is written there.
-    if kind != UrdfJointKind::Fixed && axis == DVec3::ZERO {
+    let stated = element.child("axis")?.map(|axis| axis.vector("xyz")).transpose()?.flatten();
+    let (axis, has_axis) = (stated.unwrap_or(DVec3::X), stated.is_some());
+    // Fixed and floating joints have no axis, whatever is written there.
+    if !matches!(kind, UrdfJointKind::Fixed | UrdfJointKind::Floating) && axis == DVec3::ZERO {
         return Err(element.fault(format!("joint {name:?}: the axis 0 0 0 has no direction")));
     }
-    let limit = element.child("limit").map(limit).transpose()?;
+    let limit = element.child("limit")?.map(limit).transpose()?;
     if let Some(UrdfLimit { lower, upper, .. }) = limit
         && lower > upper
         && matches!(kind, UrdfJointKind::Revolute | UrdfJointKind::Prismatic)
@@ -193,9 +199,9 @@ fn joint(element: Element<'_>) -> Result<UrdfJoint, RobotError> {
         let reason = format!("joint {name:?}: the lower limit {lower:?} is above the upper one, {upper:?}");
         return Err(element.fault(reason));
     }
-    let mimic = element.child("mimic").map(mimic).transpose()?;
+    let mimic = element.child("mimic")?.map(mimic).transpose()?;
     let (line, origin) = (element.line(), origin(element)?);
-    Ok(UrdfJoint { name, line, kind, parent, child, origin, axis, limit, mimic })
+    Ok(UrdfJoint { name, line, kind, parent, child, origin, axis, has_axis, limit, mimic })
 }
 
 fn limit(element: Element<'_>) -> Result<UrdfLimit, RobotError> {

@@ -1,7 +1,7 @@
 //! From the joints that a path names to the values of all joints.
 
 use crate::RobotError;
-use crate::robot::{JointType, Mimic, Robot};
+use crate::{JointType, Mimic, Robot};
 use d2m_motion::JointValue;
 
 impl Robot {
@@ -29,7 +29,8 @@ impl Robot {
             return Err(RobotError::path(place(), format!("{name:?} is no joint of the robot ({known})")));
         };
         if self.joints[joint].kind == JointType::Fixed {
-            return Err(RobotError::path(place(), format!("the joint {name:?} is fixed")));
+            let reason = format!("the joint {name:?} is fixed (or planar without the <axis> \"0 0 1\")");
+            return Err(RobotError::path(place(), reason));
         }
         Ok(joint)
     }

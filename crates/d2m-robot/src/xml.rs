@@ -2,7 +2,7 @@
 
 use crate::RobotError;
 use glam::DVec3;
-use roxmltree::{Document, Node};
+use roxmltree::{Document, Error, Node, ParsingOptions};
 
 /// A file that was parsed.
 pub(crate) struct Xml<'a> {
@@ -21,10 +21,15 @@ impl<'a> Xml<'a> {
     pub(crate) fn parse(file: &'a str, text: &'a str) -> Result<Self, RobotError> {
         // A mark of the order of bytes is no part of the text.
         let text = text.trim_start_matches('\u{feff}');
-        let document = Document::parse(text).map_err(|error| RobotError::Xml {
-            file: file.to_owned(),
-            line: error.pos().row,
-            reason: error.to_string(),
+        let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
+        let document = Document::parse_with_options(text, options).map_err(|error| {
+            let hint = match &error {
+                Error::UnknownNamespace(prefix, _) if prefix == "xacro" => {
+                    ": this is a xacro file; expand it first"
+                }
+                _ => "",
+            };
+            RobotError::Xml { file: file.to_owned(), line: error.pos().row, reason: format!("{error}{hint}") }
         })?;
         Ok(Self { file, document })
     }
@@ -65,8 +70,19 @@ impl<'a> Element<'a> {
         self.node.children().filter(Node::is_element).map(move |node| Self { node, ..self })
     }
 
-    pub(crate) fn child(self, name: &'a str) -> Option<Self> {
-        self.children(name).next()
+    /// This element and all inside of it, however deep.
+    pub(crate) fn descendants(self) -> impl Iterator<Item = Self> {
+        self.node.descendants().filter(Node::is_element).map(move |node| Self { node, ..self })
+    }
+
+    /// The element directly inside of this one that has a name, of which there is at most one.
+    pub(crate) fn child(self, name: &'a str) -> Result<Option<Self>, RobotError> {
+        let mut children = self.children(name);
+        let first = children.next();
+        match children.next() {
+            None => Ok(first),
+            Some(second) => Err(second.fault(format!("<{}> has a second <{name}>", self.name()))),
+        }
     }
 
     pub(crate) fn name(self) -> &'a str {

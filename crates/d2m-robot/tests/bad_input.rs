@@ -34,10 +34,9 @@ fn urdf_faults_name_line_and_value() {
         ),
         (robot(BOX, ""), "arm.urdf: 2 links are carried by no joint, \"a\" and \"b\""),
         (
-            robot(BOX, &joint(&format!("type=\"floating\">{ends}"))),
-            "arm.urdf, line 4: joint \"j\" is floating",
+            robot(BOX, &joint(&format!("type=\"floating\">{ends}<mimic joint=\"j\"/>"))),
+            "arm.urdf, line 4: joint \"j\": a joint of more than one number mimics no other",
         ),
-        (robot(BOX, &joint(&format!("type=\"planar\">{ends}"))), "joint \"j\" is planar"),
         (robot(BOX, &joint(&format!("type=\"ball\">{ends}"))), "joint \"j\" has the unknown type \"ball\""),
         (robot(BOX, &joint(&format!(">{ends}"))), "line 4: <joint> has no type"),
         (robot(BOX, &joint("type=\"fixed\"><parent link=\"a\"/>")), "joint \"j\" has no <child>"),

@@ -3,11 +3,11 @@
 use super::robot_proof::{Proof, prove};
 use crate::arguments::RobotArguments;
 use crate::engine::number;
-use crate::failure::{Failure, parse_json};
-use crate::load::read;
+use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::{digits, note, print, short};
 use crate::report::{evidence_sentence, vector};
+use crate::robot_path::read_path;
 use crate::robot_scene::RobotSceneFile;
 use crate::travel::Travel;
 use d2m::bvh::{Budget, QueryOptions, Window};
@@ -23,9 +23,8 @@ use std::time::Duration;
 /// Runs the command.
 pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     let place = arguments.path.display().to_string();
-    let path: Trajectory = parse_json(&place, &read(&arguments.path)?)?;
     // Before the meshes, which take longer.
-    path.joint_values().map_err(|error| Failure::at(&place, error))?;
+    let path = read_path(&arguments.path)?;
     let [start, end] = path.times().unwrap_or_default();
     let window = Window::try_new(start, end).map_err(|error| Failure::at(&place, error))?;
     let file = arguments.scene.as_deref().map(RobotSceneFile::read).transpose()?;
@@ -41,6 +40,8 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     }
     let robot =
         Robot::read(&arguments.robot, &robot_options).map_err(|error| Failure::Input(error.to_string()))?;
+    // Before the scene, which may have to warn: a fault is one line alone.
+    robot.link_motions(&path).map_err(|error| Failure::at(&place, error))?;
     let srdf = arguments.srdf.as_ref().map(Srdf::read).transpose();
     let srdf = srdf.map_err(|error| Failure::Input(error.to_string()))?;
     // Said beside the answer: a fault is one line alone.

@@ -1,0 +1,74 @@
+//! Files of paths: what is no number in them is named by point and joint, not by its column.
+
+use crate::failure::{Failure, parse_json};
+use crate::load::read;
+use crate::simulation::short;
+use d2m_robot::Trajectory;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// Reads a path, which makes sense by itself: what joints a robot has is not known here.
+pub(crate) fn read_path(file: &Path) -> Result<Trajectory, Failure> {
+    let place = file.display().to_string();
+    let bytes = read(file)?;
+    let path: Trajectory = parse_json(&place, &bytes).map_err(|failure| {
+        number_fault(&String::from_utf8_lossy(&bytes)).map_or(failure, |reason| Failure::at(&place, reason))
+    })?;
+    path.joint_values().map_err(|error| Failure::at(&place, error))?;
+    Ok(path)
+}
+
+/// The first of the numbers of a path that is none, with point and joint.
+fn number_fault(text: &str) -> Option<String> {
+    let value: Value = serde_json::from_str(&with_words_quoted(text)).ok()?;
+    let points = value.get("points")?.as_array()?;
+    points.iter().enumerate().find_map(|(index, point)| {
+        let lists = ["positions", "velocities", "accelerations"].iter().find_map(|key| {
+            let list = point.get(key)?.as_array()?;
+            let at = list.iter().position(|number| !number.is_number())?;
+            let joint = value.get("joint_names").and_then(|names| names.get(at)?.as_str());
+            let joint = joint.map_or(String::new(), |name| format!(" (joint {name:?})"));
+            Some(format!("points[{index}], {key}[{at}]: {} is not a finite number{joint}", shown(&list[at])))
+        });
+        lists.or_else(|| {
+            let time = point.get("time_from_start").filter(|time| !time.is_number())?;
+            Some(format!("points[{index}], time_from_start: {} is not a finite number", shown(time)))
+        })
+    })
+}
+
+/// The key of an object that stands for a word which JSON does not have.
+const WORD: &str = "word";
+
+fn shown(value: &Value) -> String {
+    value.get(WORD).and_then(Value::as_str).map_or_else(|| short(value), str::to_owned)
+}
+
+/// The same text with `NaN`, `inf`, `1e999` and their like as objects, so that it can be parsed.
+fn with_words_quoted(text: &str) -> String {
+    let ends = |c: char| c.is_whitespace() || ",:[]{}\"".contains(c);
+    let (mut quoted, mut rest) = (String::new(), text.trim_start_matches('\u{feff}'));
+    while let Some(first) = rest.chars().next() {
+        let length = if first == '"' {
+            let mut is_escaped = false;
+            let end = rest.char_indices().skip(1).find(|&(_, c)| {
+                let is_end = c == '"' && !is_escaped;
+                is_escaped = c == '\\' && !is_escaped;
+                is_end
+            });
+            end.map_or(rest.len(), |(at, _)| at + 1)
+        } else if ends(first) {
+            first.len_utf8()
+        } else {
+            rest.find(ends).unwrap_or(rest.len())
+        };
+        let (word, after) = rest.split_at(length);
+        rest = after;
+        if ends(first) || serde_json::from_str::<Value>(word).is_ok() {
+            quoted.push_str(word);
+        } else {
+            quoted.push_str(&json!({ WORD: word }).to_string());
+        }
+    }
+    quoted
+}
