@@ -5,8 +5,8 @@ use crate::load::read;
 use crate::mesh_library::MeshLibrary;
 use crate::scene::SceneBody;
 use crate::simulation::{Fields, short};
-use d2m::bvh::Window;
-use d2m_io::{SceneEntry, UniqueKeys, parse_start};
+use d2m::bvh::{Start, Window};
+use d2m_io::{SceneEntry, ScenePair, UniqueKeys, parse_start};
 use d2m_robot::{Attached, Obstacle, RobotScene};
 use glam::{DQuat, DVec3};
 use serde_json::Value;
@@ -24,6 +24,7 @@ pub(crate) struct RobotSceneFile<'a> {
     value: Value,
     pub(crate) min_separation: Option<f64>,
     pub(crate) tolerance: Option<f64>,
+    pub(crate) start: Option<Start>,
 }
 
 /// Where a body is, in the world or in the frame of a link.
@@ -46,7 +47,8 @@ impl<'a> RobotSceneFile<'a> {
         if let Some(distance) = tolerance.filter(|&distance| distance <= 0.0) {
             return Err(fields.fault("tolerance", format!("{distance:?} is not above zero")));
         }
-        Ok(Self { path, value, min_separation, tolerance })
+        let start = parse_start(fields.get("start")).map_err(|reason| fields.fault("start", reason))?;
+        Ok(Self { path, value, min_separation, tolerance, start })
     }
 
     /// Adds its bodies to the robot's scene. The motions of obstacles have to cover the path, which lasts for this window.
@@ -74,35 +76,25 @@ impl<'a> RobotSceneFile<'a> {
                 }
             }
         }
-        self.set_starts(&fields, scene)
+        self.set_pairs(&fields, scene)
     }
 
-    /// Is a contact at the start of some pair let go?
-    pub(crate) fn leaves(&self) -> bool {
-        let is_leave = |value: &Value| value.get("start").is_some_and(|start| start == "leave");
-        is_leave(&self.value)
-            || self.value.get("pairs").and_then(Value::as_array).is_some_and(|all| all.iter().any(is_leave))
-    }
-
-    /// What counts of pairs that are in contact at the start.
-    fn set_starts(&self, fields: &Fields<'_>, scene: &mut RobotScene) -> Result<(), Failure> {
-        let start = parse_start(fields.get("start")).map_err(|reason| fields.fault("start", reason))?;
-        if let Some(start) = start {
-            scene.set_start(None, start);
-        }
-        for (index, value) in Self::list(fields, "pairs")?.iter().enumerate() {
-            let place = format!("{}, pairs, entry {index}", self.path.display());
-            let pair = Fields::new(place, value, &["a", "b", "start"])?;
-            let start = parse_start(pair.get("start")).map_err(|reason| pair.fault("start", reason))?;
-            let [a, b] = ["a", "b"].map(|key| pair.required(key).and_then(|_| pair.text(key)));
-            let (a, b) = (a?.unwrap_or_default(), b?.unwrap_or_default());
-            for (key, name) in [("a", a), ("b", b)] {
-                if !scene.has_name(name) {
-                    return Err(pair.fault(key, format!("{name:?} is the name of no link and of no body")));
-                }
-            }
+    /// What single pairs have of their own.
+    fn set_pairs(&self, fields: &Fields<'_>, scene: &mut RobotScene) -> Result<(), Failure> {
+        let entries = Self::list(fields, "pairs")?.iter().cloned().map(UniqueKeys).collect();
+        let in_file = |error: d2m_io::IoError| {
+            Failure::Input(error.in_file(self.path.display().to_string()).to_string())
+        };
+        let bodies = scene.names().map(str::to_owned).collect::<Vec<_>>();
+        let names = bodies.iter().map(String::as_str).collect();
+        for ScenePair { a, b, start, min_separation, .. } in
+            ScenePair::parse_all(entries, &names).map_err(in_file)?
+        {
             if let Some(start) = start {
-                scene.set_start(Some([a, b]), start);
+                scene.set_start([&a, &b], start);
+            }
+            if let Some(distance) = min_separation {
+                scene.set_min_separation([&a, &b], distance).map_err(|error| fields.fault("pairs", error))?;
             }
         }
         Ok(())

@@ -53,18 +53,44 @@ fn a_part_leaves_its_table() {
         (r#""start": "go","#, &["scene.json", "start: \"go\" is neither"][..]),
         (
             r#""pairs": [{"a": "part", "b": "tabel", "start": "leave"}],"#,
-            &["pairs, entry 0: b", "\"tabel\" is the name of no link"],
+            &["pairs, entry 0, b", "\"tabel\" is the name of no body"],
         ),
-        (r#""pairs": [{"a": "part", "start": "leave"}],"#, &["pairs, entry 0", "\"b\" is missing"]),
+        (r#""pairs": [{"a": "part", "start": "leave"}],"#, &["pairs, entry 0", "missing field `b`"]),
         (
-            r#""pairs": [{"a": "part", "b": "table", "min_separation": 1}],"#,
-            &["pairs, entry 0", "unknown key \"min_separation\""],
+            r#""pairs": [{"a": "part", "b": "table", "min_separation": -1}],"#,
+            &["pairs, entry 0", "min_separation", "-1"],
+        ),
+        (
+            r#""pairs": [{"a": "part", "b": "table"}, {"a": "table", "b": "part", "start": "leave"}],"#,
+            &["pairs, entry 1", "entry 0 too"],
         ),
     ] {
         refused(&["robot", &robot, "--path", &path("1", "1"), "--scene", &scene(start)], words);
     }
-    let verified = ["robot", &robot, "--path", &path("1", "1"), "--scene", &scene(leaving[0]), "--verify"];
-    refused(&verified, &["--verify", "not proven again"]);
+    // The hand is kept 0.4 away from the ceiling, the part from the table not at all: that is told, and proven again.
+    let kept = r#""start": "leave", "pairs": [{"a": "ceiling", "b": "hand", "min_separation": 0.4}],"#;
+    let clearance =
+        r#""pairs": [{"a": "ceiling", "b": "hand", "min_separation": 0.4}], "ignore": [["part", "table"]],"#;
+    for (top, start, expected) in
+        [("1", leaving[0], None), ("2", leaving[1], Some(1.3)), ("2", kept, Some(0.9))]
+    {
+        let files = [path(top, "1"), scene(start)];
+        let run = d2m(&["robot", &robot, "--path", &files[0], "--scene", &files[1], "--verify", "--json"]);
+        let found: Value = serde_json::from_str(&stdout(&run)).unwrap();
+        assert!(found["verified"] == true, "{top} {start}: {found}");
+        let time = found["time"][0].as_f64();
+        assert!(
+            time.is_none_or(|time| time < expected.unwrap() && time > expected.unwrap() - 1e-6),
+            "{found}"
+        );
+        assert_eq!(time.is_some(), expected.is_some(), "{found}");
+    }
+    // The hand's top comes to 1.2, 0.8 below the ceiling and so 0.4 above what is kept; it begins 0.5 above the table.
+    let files = [path("0.5", "1"), scene(clearance)];
+    let run = d2m(&["robot", &robot, "--path", &files[0], "--scene", &files[1], "--clearance", "--json"]);
+    let found: Value = serde_json::from_str(&stdout(&run)).unwrap();
+    let upper = found["clearance"][1].as_f64().unwrap();
+    assert!((upper - 0.4).abs() < 1e-6 && found["a"] != found["b"], "{found}");
     let turned = d2m(&["robot", &robot, "--path", &path("9", "90"), "--scene", &scene(leaving[0])]);
     assert!(stderr(&turned).contains("joint \"spin\" turns 14.32 times on the path"), "{}", stderr(&turned));
     assert!(!stderr(&turned).contains("joint \"up\" turns"), "{}", stderr(&turned));

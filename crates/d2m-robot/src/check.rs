@@ -5,7 +5,7 @@ use crate::broad_phase::BroadPhase;
 use crate::limits::LimitWarning;
 use crate::scene::{Owner, RobotScene};
 use crate::{RobotError, Trajectory};
-use d2m_bvh::{Contact, Window};
+use d2m_bvh::Window;
 use d2m_motion::{Arm, JointPoints, JointValue};
 use d2m_world::{BodyId, FirstContact, PlannedMotion, Threads, WorldError};
 use std::sync::Arc;
@@ -76,7 +76,6 @@ impl RobotScene {
         Ok(match first {
             FirstContact::Separated => PathAnswer::Free { until: end },
             FirstContact::Contact { a, b, contact, .. } => {
-                let contact = self.on_surfaces(a, b, contact);
                 let bodies = [a.index(), b.index()];
                 PathAnswer::Contact(Box::new(PathContact { a: name(a), b: name(b), bodies, contact }))
             }
@@ -116,18 +115,6 @@ impl RobotScene {
             plan.push(PlannedMotion { body: part.id, motion: Arc::new(chain) });
         }
         Ok(plan)
-    }
-
-    /// The contact of two bodies with radii, from that of their meshes.
-    fn on_surfaces(&self, a: BodyId, b: BodyId, contact: Contact) -> Contact {
-        let [ra, rb] = [a, b].map(|id| self.parts[id.index()].radius);
-        let mut contact = contact;
-        if ra + rb > 0.0 {
-            contact.point_a += contact.normal * ra;
-            contact.point_b -= contact.normal * rb;
-            contact.separation = (contact.separation - ra - rb).max(0.0);
-        }
-        contact
     }
 
     fn name_of(&self, body: BodyId) -> &str {

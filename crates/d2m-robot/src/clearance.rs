@@ -3,7 +3,7 @@
 use crate::path_bodies::PathBodies;
 use crate::scene::RobotScene;
 use crate::{RobotError, Trajectory};
-use d2m_bvh::{ClearanceOptions, ClearanceStatus, Moving};
+use d2m_bvh::{ClearanceOptions, ClearanceStatus, Meter, Moving};
 use d2m_world::{PairDistance, PairFault, PairsOfBodies};
 
 /// The least distance of any checked pair along a path, less the minimum separation.
@@ -35,21 +35,34 @@ impl RobotScene {
     /// As [`RobotScene::check_path`].
     pub fn clearance(&self, path: &Trajectory) -> Result<Option<PathClearance>, RobotError> {
         let bodies = self.bodies_along(path)?;
-        let least = self.options().min_separation;
         let moving: Vec<Moving<'_>> = (0..bodies.len()).map(|body| bodies.moving(body)).collect();
-        let pairs = PairsOfBodies { bodies: &moving, pairs: bodies.pairs(), window: bodies.window() };
-        let options = bodies.clearance_options().with_budget(self.options().budget);
-        let nearest = pairs.nearest(&options, least).map_err(|fault| bodies.fault(fault))?;
-        Ok(nearest.map(|PairDistance { pair: [a, b], clearance: found }| {
-            // Rounded outward: the subtraction errs by less than one step.
-            let (lower, upper) = if least == 0.0 {
-                (found.lower, found.upper)
-            } else {
-                ((found.lower - least).next_down(), (found.upper - least).next_up())
+        let meter = Meter::new(&self.options().budget);
+        let mut nearest: Option<PathClearance> = None;
+        for (least, pairs) in bodies.pairs_by_separation() {
+            let pairs = PairsOfBodies { bodies: &moving, pairs: &pairs, window: bodies.window() };
+            let options = bodies.clearance_options().with_budget(meter.rest());
+            let found = pairs.nearest(&options, least).map_err(|fault| bodies.fault(fault))?;
+            let found = found.map(|found| bodies.above(found, least));
+            nearest = match (nearest, found) {
+                (Some(one), Some(other)) => Some(one.or_nearer(other)),
+                (one, other) => one.or(other),
             };
-            let [a, b] = [a, b].map(|body| bodies.name(body).to_owned());
-            PathClearance { lower, upper, time: found.time, a, b, status: found.status }
-        }))
+        }
+        Ok(nearest)
+    }
+}
+
+impl PathClearance {
+    /// That of the pairs of both.
+    fn or_nearer(self, other: Self) -> Self {
+        let lower = self.lower.min(other.lower);
+        let is_undecided = [&self, &other].iter().any(|found| found.status == ClearanceStatus::Undecided);
+        let mut found = if other.upper < self.upper { other } else { self };
+        found.lower = lower;
+        if is_undecided {
+            found.status = ClearanceStatus::Undecided;
+        }
+        found
     }
 }
 
@@ -58,6 +71,35 @@ impl PathBodies<'_> {
         let of_pairs = self.options();
         let options = ClearanceOptions::default().with_solid(of_pairs.solid).with_parallel(of_pairs.parallel);
         of_pairs.tolerance.map_or(options, |tolerance| options.with_tolerance(tolerance))
+    }
+
+    /// The pairs that are checked, by the separations that they are to keep.
+    fn pairs_by_separation(&self) -> Vec<(f64, Vec<[usize; 2]>)> {
+        let mut all: Vec<(f64, Vec<[usize; 2]>)> = Vec::new();
+        for &pair in self.pairs() {
+            let least = self.pair_options(pair).min_separation;
+            match all.iter_mut().find(|(other, _)| *other == least) {
+                Some((_, pairs)) => pairs.push(pair),
+                None => all.push((least, vec![pair])),
+            }
+        }
+        all
+    }
+
+    /// A distance above the separation that is to be kept.
+    fn above(
+        &self,
+        PairDistance { pair: [a, b], clearance: found }: PairDistance,
+        least: f64,
+    ) -> PathClearance {
+        // Rounded outward: the subtraction errs by less than one step.
+        let (lower, upper) = if least == 0.0 {
+            (found.lower, found.upper)
+        } else {
+            ((found.lower - least).next_down(), (found.upper - least).next_up())
+        };
+        let [a, b] = [a, b].map(|body| self.name(body).to_owned());
+        PathClearance { lower, upper, time: found.time, a, b, status: found.status }
     }
 
     fn fault(&self, PairFault { pair, error: source }: PairFault) -> RobotError {

@@ -69,8 +69,16 @@ impl PathBodies<'_> {
         self.window
     }
 
-    /// The options of all pairs.
+    /// The options of all pairs that have none of their own.
     pub const fn options(&self) -> &QueryOptions {
         self.scene.options()
+    }
+
+    /// The options of a pair, with its own minimum separation and start if it has them.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    pub fn pair_options(&self, pair: [usize; 2]) -> QueryOptions {
+        self.scene.pair_options(pair)
     }
 }

@@ -143,9 +143,6 @@ pub struct RobotScene {
     pub(crate) moving_pairs: Vec<MovingPair>,
 }
 
-/// δ of a pair with a sphere or capsule, in radii: that of other pairs, whose length is their larger body's.
-const TOLERANCE: f64 = 1e-10;
-
 /// A pair that is checked and may move.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MovingPair {
@@ -167,12 +164,6 @@ pub(crate) struct Part {
     pub(crate) radius: f64,
     /// Of the mesh: in the frame of the link that carries it, or of the world where it is at rest; else its own.
     pub(crate) body_box: BodyBox,
-}
-
-/// A body with the radius about its mesh.
-struct Round {
-    body: Body,
-    radius: f64,
 }
 
 /// What a body belongs to.
@@ -197,22 +188,14 @@ impl Part {
 }
 
 impl RobotScene {
-    /// The robot alone. The options hold for every pair; a minimum separation in them is kept between all bodies.
+    /// The robot alone. The options hold for every pair; a minimum separation in them is kept between all bodies, and their start says
+    /// what counts of those that are in contact at the start of a path.
     ///
     /// # Errors
     /// A minimum separation that is negative or not finite, a tolerance that is not above zero or not finite.
     #[expect(clippy::needless_pass_by_value, reason = "as its sisters, and as every caller has it")]
     pub fn new(robot: Arc<Robot>, srdf: Option<&Srdf>, options: QueryOptions) -> Result<Self, RobotError> {
-        let round =
-            robot.links.iter().flat_map(|link| &link.bodies).map(|body| body.radius).filter(|&r| r > 0.0);
-        // Of two spheres, which are points with a radius, the usual tolerance would be that of points.
-        let options = match (options.tolerance, round.min_by(f64::total_cmp)) {
-            (None, Some(radius)) => options.with_tolerance((TOLERANCE * radius).max(f64::MIN_POSITIVE)),
-            _ => options,
-        };
         check_options(&options)?;
-        // A path is free of contact or it is not: what holds at its start is reported.
-        let options = options.with_start(Start::Report);
         let mut scene = Self {
             world: World::new(options),
             robot: Arc::clone(&robot),
@@ -234,9 +217,9 @@ impl RobotScene {
                     None => chains[link].clone(),
                     Some(frame) => chains[link].and(frame.clone())?,
                 };
-                let body = Body::new(Arc::clone(tree), motion).with_solid(*solid);
+                let body = Body::new(Arc::clone(tree), motion).with_solid(*solid).with_radius(*radius);
                 let owner = Owner::Link { link, frame };
-                scene.add(&of.name, owner, Round { body, radius: *radius }, |other| {
+                scene.add(&of.name, owner, body, |other| {
                     other.carrier().is_none_or(|carrier| is_checked(link, carrier))
                 })?;
             }
@@ -268,8 +251,8 @@ impl RobotScene {
         self.check_name(&name)?;
         check_radius(&name, radius)?;
         let solid = solid.unwrap_or_else(|| solid_of(&tree));
-        let body = Body::with_shared(tree, motion).with_solid(solid);
-        self.add(&name, Owner::Obstacle { is_at_rest }, Round { body, radius }, |other| {
+        let body = Body::with_shared(tree, motion).with_solid(solid).with_radius(radius);
+        self.add(&name, Owner::Obstacle { is_at_rest }, body, |other| {
             !matches!(other.owner, Owner::Obstacle { .. })
         })
     }
@@ -289,11 +272,11 @@ impl RobotScene {
         let solid = solid.unwrap_or_else(|| solid_of(&tree));
         let rest = self.robot.complete(vec![None; self.robot.joints.len()])?;
         let motion = self.robot.chains(&rest)?[link].and(frame.clone())?;
-        let body = Body::new(tree, motion).with_solid(solid);
+        let body = Body::new(tree, motion).with_solid(solid).with_radius(radius);
         self.add(
             &name,
             Owner::Attached { link, frame },
-            Round { body, radius },
+            body,
             |other| !matches!(other.owner, Owner::Link { link: of, .. } if of == link),
         )
     }
@@ -318,84 +301,127 @@ impl RobotScene {
         &mut self,
         name: &str,
         owner: Owner,
-        round: Round,
+        body: Body,
         is_checked: impl Fn(&Part) -> bool,
     ) -> Result<(), RobotError> {
-        let Round { body, radius } = round;
         let body_box = BodyBox::around(body.tree().mesh().vertices(), &place_of(&owner, &body)?);
+        let radius = body.radius();
         let id = self.world.add(body);
-        let part = Part { id, name: name.to_owned(), owner, radius, body_box };
-        for other in 0..self.parts.len() {
-            if !is_checked(&self.parts[other]) {
-                self.ignore_pair(&part, other);
-                continue;
+        let place = id.index();
+        self.parts.push(Part { id, name: name.to_owned(), owner, radius, body_box });
+        for other in 0..place {
+            if is_checked(&self.parts[other]) {
+                self.pairs.push([other, place]);
+                self.search([other, place]);
+            } else {
+                self.ignore_in_world([other, place], true);
             }
-            self.pairs.push([other, id.index()]);
-            let radii = radius + self.parts[other].radius;
-            let mut separation = self.world.options().min_separation;
-            if radii > 0.0 {
-                // Meshes that are further apart than this belong to bodies that are further apart than the separation.
-                separation = (separation + radii.next_up()).next_up();
-                self.world.set_min_separation(self.parts[other].id, id, Some(separation));
-            }
-            if self.are_rigid(&part, other) && self.are_apart([self.parts[other].id, id], separation) {
-                self.ignore_pair(&part, other);
-                continue;
-            }
-            let seen_from = match [self.parts[other].carrier(), part.carrier()] {
-                [Some(a), Some(b)] => self.robot.last_common(a, b),
-                _ => None,
-            };
-            self.moving_pairs.push(MovingPair { parts: [other, id.index()], separation, seen_from });
         }
-        self.parts.push(part);
         Ok(())
     }
 
+    /// Whether a checked pair has to be searched along paths: not if it never moves against each other and is proven apart.
+    fn search(&mut self, pair: [usize; 2]) {
+        self.moving_pairs.retain(|moving| moving.parts != pair);
+        let is_settled = self.are_rigid(pair) && self.are_apart(pair);
+        self.ignore_in_world(pair, is_settled);
+        if is_settled {
+            return;
+        }
+        let [a, b] = pair.map(|part| &self.parts[part]);
+        let radii = a.radius + b.radius;
+        let mut separation = self.pair_options(pair).min_separation;
+        if radii > 0.0 {
+            // Meshes that are further apart than this belong to bodies that are further apart than the separation.
+            separation = (separation + radii.next_up()).next_up();
+        }
+        let seen_from = match [a.carrier(), b.carrier()] {
+            [Some(a), Some(b)] => self.robot.last_common(a, b),
+            _ => None,
+        };
+        self.moving_pairs.push(MovingPair { parts: pair, separation, seen_from });
+    }
+
+    /// The options of a pair of bodies.
+    pub(crate) fn pair_options(&self, pair: [usize; 2]) -> QueryOptions {
+        let [a, b] = pair.map(|part| self.parts[part].id);
+        self.world.pair_options(a, b)
+    }
+
     /// Does nothing that moves lie between these two?
-    fn are_rigid(&self, part: &Part, other: usize) -> bool {
+    fn are_rigid(&self, pair: [usize; 2]) -> bool {
         let group = |part: &Part| match part.owner {
             Owner::Obstacle { is_at_rest: false } => None,
             Owner::Obstacle { is_at_rest: true } => Some(self.robot.rigid_group(self.robot.root())),
             Owner::Link { link, .. } | Owner::Attached { link, .. } => Some(self.robot.rigid_group(link)),
         };
-        group(part).is_some() && group(part) == group(&self.parts[other])
+        let [a, b] = pair.map(|part| group(&self.parts[part]));
+        a.is_some() && a == b
     }
 
     /// Are these two, which never move against each other, proven apart? As the robot stands at rest; the pair query sees them from
     /// their last common joint, after which nothing moves.
-    fn are_apart(&self, pair: [BodyId; 2], separation: f64) -> bool {
-        let [a, b] = pair.map(|id| self.world.body(id).moving());
-        let options = self.world.options().with_min_separation(separation);
+    fn are_apart(&self, pair: [usize; 2]) -> bool {
+        let [a, b] = pair.map(|part| self.world.body(self.parts[part].id).moving());
+        let options = self.pair_options(pair).with_start(Start::Report);
         let now = Window::try_new(0.0, 0.0);
         now.is_ok_and(|now| time_of_contact(a, b, now, &options).is_ok_and(|answer| answer.is_separated()))
     }
 
-    fn ignore_pair(&mut self, part: &Part, other: usize) {
-        self.world.ignore_pair(part.id, self.parts[other].id, true);
+    fn ignore_in_world(&mut self, pair: [usize; 2], ignored: bool) {
+        let [a, b] = pair.map(|part| self.parts[part].id);
+        self.world.ignore_pair(a, b, ignored);
     }
 
     fn ignore_parts(&mut self, a: usize, b: usize) {
         self.pairs.retain(|pair| *pair != [a, b] && *pair != [b, a]);
         self.moving_pairs.retain(|pair| pair.parts != [a, b] && pair.parts != [b, a]);
-        let [a, b] = [a, b].map(|part| self.parts[part].id);
-        self.world.ignore_pair(a, b, true);
+        self.ignore_in_world([a, b], true);
     }
 
-    /// What counts of two links or bodies that are in contact at the start of a path, by their names; of all pairs where none are named.
-    /// With [`Start::Leave`] it is let go until they are proven apart: of a part that stands on a table until the robot lifts it. False if
-    /// one of the names is unknown.
-    pub fn set_start(&mut self, names: Option<[&str; 2]>, start: Start) -> bool {
-        let ids = |pair: &[usize; 2]| pair.map(|part| self.parts[part].id);
-        let are_named = |pair: &[usize; 2]| {
+    /// The checked pairs of two links or bodies.
+    fn pairs_of(&self, names: [&str; 2]) -> Vec<[usize; 2]> {
+        let are_named = |pair: &&[usize; 2]| {
             let [a, b] = pair.map(|part| self.parts[part].name.as_str());
-            names.is_none_or(|names| names == [a, b] || names == [b, a])
+            names == [a, b] || names == [b, a]
         };
-        let pairs: Vec<[BodyId; 2]> = self.pairs.iter().filter(|pair| are_named(pair)).map(ids).collect();
-        for [a, b] in pairs {
+        self.pairs.iter().filter(are_named).copied().collect()
+    }
+
+    fn has_names(&self, names: [&str; 2]) -> bool {
+        names.iter().all(|name| self.has_name(name))
+    }
+
+    /// What counts of two links or bodies that are in contact at the start of a path, by their names, instead of what the options say. With
+    /// [`Start::Leave`] it is let go until they are proven apart: of a part that stands on a table until the robot lifts it. False if one of
+    /// the names is unknown.
+    pub fn set_start(&mut self, names: [&str; 2], start: Start) -> bool {
+        for pair in self.pairs_of(names) {
+            let [a, b] = pair.map(|part| self.parts[part].id);
             self.world.set_start(a, b, Some(start));
         }
-        names.is_none_or(|names| names.iter().all(|name| self.has_name(name)))
+        self.has_names(names)
+    }
+
+    /// The distance at which two links or bodies count as in contact, by their names, instead of that of the options. False if one of the
+    /// names is unknown.
+    ///
+    /// # Errors
+    /// A distance that is negative or not finite.
+    pub fn set_min_separation(&mut self, names: [&str; 2], distance: f64) -> Result<bool, RobotError> {
+        check_separation(distance)?;
+        for pair in self.pairs_of(names) {
+            let [a, b] = pair.map(|part| self.parts[part].id);
+            self.world.set_min_separation(a, b, Some(distance));
+            self.search(pair);
+        }
+        Ok(self.has_names(names))
+    }
+
+    /// The names of links, then those of obstacles and attached bodies.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        let bodies = self.parts.iter().filter(|part| !matches!(part.owner, Owner::Link { .. }));
+        self.robot.links.iter().map(|link| link.name.as_str()).chain(bodies.map(|part| part.name.as_str()))
     }
 
     /// Is this the name of a link or of a body?
@@ -434,17 +460,21 @@ fn solid_of(tree: &MeshTree) -> Solid {
 
 /// Bodies that are far apart are never queried, so that no query would refuse these.
 fn check_options(options: &QueryOptions) -> Result<(), RobotError> {
-    let separation = options.min_separation;
-    if !(separation.is_finite() && separation >= 0.0) {
-        let reason = format!("{separation:?} is not a finite number that is not negative");
-        return Err(RobotError::path("min_separation", reason));
-    }
+    check_separation(options.min_separation)?;
     match options.tolerance {
         Some(tolerance) if !(tolerance.is_finite() && tolerance > 0.0) => {
             Err(RobotError::path("tolerance", format!("{tolerance:?} is not a finite number above zero")))
         }
         _ => Ok(()),
     }
+}
+
+fn check_separation(separation: f64) -> Result<(), RobotError> {
+    if separation.is_finite() && separation >= 0.0 {
+        return Ok(());
+    }
+    let reason = format!("{separation:?} is not a finite number that is not negative");
+    Err(RobotError::path("min_separation", reason))
 }
 
 fn check_radius(name: &str, radius: f64) -> Result<(), RobotError> {

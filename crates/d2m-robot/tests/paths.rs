@@ -283,6 +283,13 @@ fn spheres_and_capsules_are_exact() {
     let scene = RobotScene::new(Arc::new(robot.unwrap()), None, QueryOptions::default()).unwrap();
     let answer = scene.edges(&["run"]).unwrap().check(&[0.0], &[2.0]).unwrap();
     assert!(answer.contact().is_some() && answer.free_until() == 0.0);
+    // Of spheres about points that are apart the insides overlap.
+    let overlapping = slide(sphere, "<sphere radius=\"1.9\"/>");
+    let robot = Robot::parse("slide.urdf", &overlapping, &RobotOptions::new()).unwrap();
+    let scene = RobotScene::new(Arc::new(robot), None, QueryOptions::default()).unwrap();
+    let answer = scene.edges(&["run"]).unwrap().check(&[0.0], &[2.0]).unwrap();
+    let start = answer.contact().map(|found| found.contact.start);
+    assert_eq!(start, Some(d2m_bvh::StartState::Overlapping));
 }
 
 /// Two links that are welded to each other (by way of a third), or a link that never moves and an obstacle, in contact or not: every path

@@ -54,9 +54,6 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     if let Some(file) = &file {
         file.add_to(&mut scene, window)?;
     }
-    if arguments.verify && file.as_ref().is_some_and(RobotSceneFile::leaves) {
-        return Err(Failure::at("--verify", "paths with pairs whose start is leave are not proven again"));
-    }
     let warnings = scene.limit_warnings(&path).map_err(fault)?;
     notes.extend(far_turns(&path, &scene).map(|text| format!("warning: {place}: {text}")));
     notes.extend(warnings.iter().map(|warning| format!("warning: {place}: {warning}")));
@@ -120,6 +117,9 @@ fn options(arguments: &RobotArguments, file: Option<&RobotSceneFile<'_>>) -> Res
     }
     if let Some(tolerance) = file.and_then(|file| file.tolerance) {
         options = options.with_tolerance(tolerance);
+    }
+    if let Some(start) = file.and_then(|file| file.start) {
+        options = options.with_start(start);
     }
     if let Some(text) = &arguments.min_separation {
         let distance = number("--min-separation", text, "a distance that is not negative", |d| d >= 0.0)?;

@@ -2,8 +2,7 @@
 
 use crate::failure::Failure;
 use crate::output::short;
-use d2m::bvh::TimeOfContact;
-use d2m::verify::{DEFAULT_STEPS, Verdict, Verifier};
+use d2m::verify::{DEFAULT_STEPS, PathVerdict, Verdict, verify_path};
 use d2m_robot::{PathAnswer, PathBodies};
 
 /// Was an answer proven again?
@@ -14,44 +13,35 @@ pub(super) enum Proof {
     Unverified(String),
 }
 
-/// Proves an answer pair by pair: the pair that meets as it was found, all others apart until then. The steps are for all pairs.
+/// Proves an answer again, pair by pair.
 pub(super) fn prove(bodies: &PathBodies<'_>, answer: &PathAnswer) -> Result<Proof, Failure> {
-    let window = bodies.window();
-    let until = answer.free_until();
-    let apart = if until < window.end() {
-        TimeOfContact::Undecided { clear_until: until }
-    } else {
-        TimeOfContact::Separated
-    };
-    let found = answer.contact();
-    let mut left = DEFAULT_STEPS;
-    for &pair in bodies.pairs() {
-        let met = found.filter(|found| {
-            let [a, b] = found.bodies;
-            pair == [a, b] || pair == [b, a]
-        });
-        let (pair, claimed) =
-            met.map_or((pair, apart), |found| (found.bodies, TimeOfContact::Contact(found.contact)));
-        let names = pair.map(|body| bodies.name(body));
-        let moving = pair.map(|body| bodies.moving(body));
-        let [a, b] = moving.map(|body| body.body.mesh());
-        let verifier = Verifier::try_new(a, b).map_err(|error| Failure::at("--verify", error))?;
-        match verifier.time_of_contact(&moving, window, bodies.options(), &claimed, left) {
-            Verdict::Verified { steps } => left = left.saturating_sub(steps),
-            Verdict::Refuted { time, distance, .. } => {
-                let [time, lo, hi] = [time, distance.lo(), distance.hi()].map(short);
-                return Ok(unverified(
-                    names,
-                    &format!("REFUTED: at t = {time} they are between {lo} and {hi} apart"),
-                ));
-            }
-            Verdict::Unproven { clear_until, reason, .. } => {
-                let reason = format!("not proven: {reason}; clear until {}", short(clear_until));
-                return Ok(unverified(names, &reason));
-            }
+    let names = |pair: [usize; 2]| pair.map(|body| bodies.name(body));
+    let verdict = verify_path(bodies, answer, DEFAULT_STEPS).map_err(|fault| {
+        let [a, b] = names(fault.pair);
+        Failure::at("--verify", format!("{a:?} and {b:?}: {}", fault.fault))
+    })?;
+    Ok(match verdict {
+        PathVerdict::Verified { steps } => Proof::Verified(steps),
+        PathVerdict::MeetBefore { pair, clear_until } => unverified(
+            names(pair),
+            &format!("let go at the start, they meet again at t = {}", short(clear_until)),
+        ),
+        PathVerdict::Pair { pair, verdict } => unverified(names(pair), &why(&verdict)),
+        other => Proof::Unverified(format!("{other:?}")),
+    })
+}
+
+fn why(verdict: &Verdict) -> String {
+    match verdict {
+        Verdict::Verified { steps } => format!("proven in {steps} steps"),
+        Verdict::Refuted { time, distance, .. } => {
+            let [time, lo, hi] = [*time, distance.lo(), distance.hi()].map(short);
+            format!("REFUTED: at t = {time} they are between {lo} and {hi} apart")
+        }
+        Verdict::Unproven { clear_until, reason, .. } => {
+            format!("not proven: {reason}; clear until {}", short(*clear_until))
         }
     }
-    Ok(Proof::Verified(DEFAULT_STEPS - left))
 }
 
 fn unverified([a, b]: [&str; 2], why: &str) -> Proof {
@@ -61,7 +51,7 @@ fn unverified([a, b]: [&str; 2], why: &str) -> Proof {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use d2m::bvh::QueryOptions;
+    use d2m::bvh::{QueryOptions, Start};
     use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
     use std::sync::Arc;
 
@@ -96,6 +86,40 @@ mod tests {
         for (scene, end, answer) in [(&wide, 0.39, &free), (&plain, 0.8, &free), (&plain, 0.81, &met)] {
             let Proof::Unverified(why) = proof(scene, end, answer) else { panic!("verified: {answer:?}") };
             assert!(why.contains("cart") && why.contains("stop"), "{why}");
+        }
+    }
+
+    /// The cart begins in the stop: what is let go has to leave, and counts again after that.
+    #[test]
+    fn bodies_that_never_leave_are_not_verified_as_free() {
+        let robot = Arc::new(Robot::parse("slide.urdf", SLIDE, &RobotOptions::new()).unwrap());
+        let scene = |start: Start| {
+            let options = QueryOptions::default().with_start(start);
+            RobotScene::new(Arc::clone(&robot), None, options).unwrap()
+        };
+        let path = |ways: &[f64]| {
+            let points = ways.iter().enumerate().map(|(k, &x)| TrajectoryPoint::new(k as f64, vec![x]));
+            Trajectory::new(vec!["run".into()], points.collect())
+        };
+        let leaving = scene(Start::Leave);
+        let mut blind = leaving.clone();
+        assert!(blind.ignore("cart", "stop"));
+        let (out, back, stay) = (path(&[0.45, 0.0]), path(&[0.45, 0.0, 0.45]), path(&[0.45, 0.47]));
+        let proof = |path: &Trajectory, by: &RobotScene| {
+            let answer = by.check_path(path).unwrap();
+            (answer.clone(), prove(&leaving.bodies_along(path).unwrap(), &answer).unwrap())
+        };
+        let is_proven = |proof: &Proof| matches!(proof, Proof::Verified(_));
+        for (path, until) in [(&out, 1.0), (&back, 1.0 + 0.4 / 0.45), (&stay, 0.0)] {
+            let (answer, found) = proof(path, &leaving);
+            assert!((answer.free_until() - until).abs() < 1e-6 && is_proven(&found), "{answer:?}");
+        }
+        // What leaves the pair out says free; only of the path on which it parts and stays away is that true.
+        assert!(is_proven(&proof(&out, &blind).1));
+        for path in [&back, &stay] {
+            let (answer, found) = proof(path, &blind);
+            let Proof::Unverified(why) = found else { panic!("verified: {answer:?}") };
+            assert!(answer.is_free() && why.contains("cart") && why.contains("stop"), "{why}");
         }
     }
 }

@@ -290,6 +290,28 @@ impl World {
         self.changed_pairs.push(pair);
     }
 
+    /// The options of a pair: those of the world, with the minimum separation and the start that the two have of their own.
+    ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?)); // edges of length 1
+    /// use d2m_bvh::QueryOptions;
+    /// use d2m_motion::ConstantTwist;
+    /// use d2m_world::{Body, World};
+    /// let mut world = World::new(QueryOptions::default());
+    /// let [a, b] = [(); 2].map(|()| world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST)));
+    /// world.set_min_separation(a, b, Some(0.5));
+    /// assert_eq!(world.pair_options(b, a).min_separation, 0.5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn pair_options(&self, a: BodyId, b: BodyId) -> QueryOptions {
+        let pair = [a.index.min(b.index), a.index.max(b.index)];
+        let separation = self.filter.separation(pair, self.options.min_separation);
+        let start = self.filter.start(pair, self.options.start);
+        self.options.with_min_separation(separation).with_start(start)
+    }
+
     /// How many bodies there are.
     pub fn len(&self) -> usize {
         self.slots.count()

@@ -16,14 +16,19 @@
 //! | [`Clearance`] | nowhere below `lower`, at most `upper` at `time`, and no wider than was asked for; bodies that meet are as near at `time` as at a time of contact |
 //! | [`ContactSpan`]s | clear spans are clear; spans of contact begin and end within the resolution of a time within s + δ, and hold one in each part as long as the resolution |
 //!
-//! Bodies with a radius are everything within it of their meshes. Worlds and robots are proven pair by pair, each with a claim of its own.
+//! Bodies with a radius are everything within it of their meshes. Worlds are proven pair by pair, each with a claim of its own, and so are
+//! paths of robots (`verify_path`, with the feature `robot`).
 //! Points, normals and features certify nothing; [`witness_fault`] compares them with the reported triangles. docs/theory/proofs.md.
 mod claims;
+#[cfg(feature = "robot")]
+mod path;
 mod rounding;
 mod witness;
 
 pub use claims::{claim, clearance_claim, departure_claim, spans_claim};
 pub use d2m_verify::*;
+#[cfg(feature = "robot")]
+pub use path::{PairFault, PathVerdict, PathVerdictFault, verify_path};
 pub use witness::witness_fault;
 
 use crate::{Clearance, ClearanceOptions, ContactSpan, Departure};
