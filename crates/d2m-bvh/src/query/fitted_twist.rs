@@ -20,6 +20,8 @@ pub(super) struct FittedTwists {
     pub(super) deviation: f64,
     /// The part of it that no shorter span takes away.
     pub(super) floor: f64,
+    /// How much of it goes like the span, not like its square: what the enclosures of velocities at a single time leave open.
+    pub(super) drift: f64,
     /// The lengths that its rounding is about: how far the bodies' points are from the world's origin at most, together.
     pub(super) size: f64,
 }
@@ -122,6 +124,7 @@ fn between(a: &Fit, b: &Fit, half: f64, clock: FittedClock) -> FittedTwists {
         let rate = (fit.angular_rate - kept(fit.state.angular)).bound_length();
         fit.reach * (fit.rotation_radius + half * fit.state.angular_radius + square * rate)
     };
+    let drifts = |fit: &Fit| half * (fit.state.linear_radius + fit.reach * fit.state.angular_radius);
     let still = |fit: &Fit| fit.state.position_radius + fit.reach * fit.rotation_radius;
     let moved = half * (a.state.linear_radius + b.state.linear_radius) + square * along;
     let deviation = a.state.position_radius + b.state.position_radius + moved + turned(a) + turned(b);
@@ -133,6 +136,7 @@ fn between(a: &Fit, b: &Fit, half: f64, clock: FittedClock) -> FittedTwists {
         // What underflow may take is less than the smallest normal number.
         deviation: deviation * UP + f64::MIN_POSITIVE,
         floor: still(a) + still(b),
+        drift: drifts(a) + drifts(b),
         size: 0.0,
     }
 }

@@ -55,6 +55,9 @@ const OVERSHOOT: f64 = 1.25;
 const EXPECTED: f64 = 0.9;
 /// A span says nothing of one that is longer by more than this.
 const MOST_EXPECTED: f64 = 16.0;
+/// Spans at most that are as short as they are because velocities at single times are not known better: the enclosures of such motions are
+/// too wide to come near anything, and after so many the answer is undecided. Velocities that are known to rounding need none.
+const MOST_DRIFTING: u32 = 1 << 16;
 /// Node tests that a fit counts for in a budget.
 const TESTS_A_FIT: u64 = 256;
 
@@ -112,6 +115,8 @@ struct Advance<'a> {
     /// The next span is at most so long and deviates by at most so much.
     longest: f64,
     largest: f64,
+    /// Spans so far whose velocities are enclosed too widely.
+    drifting: u32,
     /// The last span that was fitted.
     last: Option<LastFit>,
     /// A plane between the bodies.
@@ -176,6 +181,7 @@ impl<'a> Advance<'a> {
             now: window.start(),
             longest: window.length(),
             largest: f64::INFINITY,
+            drifting: 0,
             last: None,
             plane: PlaneSearch::START,
             poses: None,
@@ -428,6 +434,10 @@ impl<'a> Advance<'a> {
                 let curvature = (fitted.deviation - fitted.floor) / (length * length);
                 self.last = Some(LastFit { length, curvature });
                 if fitted.deviation <= enough {
+                    self.drifting += u32::from(fitted.drift > 0.5 * fitted.deviation);
+                    if self.drifting > MOST_DRIFTING {
+                        return Ok(None);
+                    }
                     return Ok(Some(FittedSpan { fitted, until, resolution: Resolution::Enough }));
                 }
                 if shortest {
