@@ -2,6 +2,7 @@
 
 use d2m_bvh::{
     MeshTree, Moving, QueryError, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact,
+    time_of_contact_counted,
 };
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Pose, RigidMotion, Span, Twist};
@@ -133,5 +134,48 @@ fn keyframes_in_any_unit_and_over_any_time() {
             let scaled = time_of(unit, time, turn, kind);
             assert!((scaled - usual).abs() < 1e-9, "{unit:e} {time:e} {turn} {kind:?}: {scaled} {usual}");
         }
+    }
+}
+
+/// Knows where it is at single times, and how fast it moves to some width.
+struct Vague(ConstantTwist, f64);
+
+impl RigidMotion for Vague {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        self.0.pose_and_twist(t)
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        self.0.enclose_pose(t)
+    }
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        let (twist, off) = (self.0.enclose_twist(t), Interval::new(-self.1, self.1));
+        let off = IntervalVec3 { x: off, y: off, z: off };
+        IntervalTwist { linear: twist.linear + off, angular: twist.angular + off }
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.enclose_twist(t)
+    }
+}
+
+/// Velocities that are known to a million bodies a window end as undecided soon; those known to a tenth are answered.
+#[test]
+fn vague_velocities_are_undecided_soon() {
+    let tree = tetrahedron(1.0);
+    let falling = ConstantTwist::REST.with_position(DVec3::Z * 3.0).with_linear_velocity(DVec3::Z * -4.0);
+    let rest = Moving::new(&tree, &ConstantTwist::REST);
+    let ask = |width: f64| {
+        let motion = Vague(falling, width);
+        let options = QueryOptions::default();
+        time_of_contact_counted(Moving::new(&tree, &motion), rest, Window::UNIT, &options).unwrap()
+    };
+    for width in [1e-6, 0.1] {
+        let answered = ask(width);
+        let time = answered.answer.contact().map(|contact| contact.time_lo);
+        assert!(time.is_some_and(|time| (time - 0.5).abs() < 1e-9), "{width}: {answered:?}");
+    }
+    for width in [1e6, 1e9] {
+        let answered = ask(width);
+        assert!(matches!(answered.answer, TimeOfContact::Undecided { .. }), "{width}: {answered:?}");
+        assert!(answered.work.node_tests < 1 << 26, "{width}: {answered:?}");
     }
 }

@@ -109,7 +109,7 @@ fn meeting_at<'a>(
 }
 
 /// How far a point of a body may be from where the pose, which is rounded, places it.
-fn deviation(body: &Moving<'_>, pose: &Pose, time: f64, origin: DVec3) -> f64 {
+pub(super) fn deviation(body: &Moving<'_>, pose: &Pose, time: f64, origin: DVec3) -> f64 {
     let state = body.motion.enclose_state_about(time, origin);
     let turn = DMat3::from_quat(pose.rotation.normalize());
     let place = turn * (state.at - pose.at) + (pose.translation - origin);

@@ -27,6 +27,14 @@ pub(super) fn conclude_of_triangles(
     conclude(place, promise, bodies, [Part::Triangle(a), Part::Triangle(b)], claimed);
 }
 
+/// Filled bodies share a point all the time.
+pub(super) fn conclude_overlap(bodies: &[Moving<'_>; 2], Claimed { from, to, distance }: Claimed) {
+    let body =
+        |k: usize| Audited { is_filled: true, ..Audited::new(bodies[k].body, bodies[k].motion, Part::Whole) };
+    let (place, promise) = (Place::Staying, Promise::Stays);
+    report(&Conclusion { place, bodies: [body(0), body(1)], from, to, distance, promise });
+}
+
 fn conclude(
     place: Place,
     promise: Promise,

@@ -1,8 +1,11 @@
 //! Through the times of a contact: from a time at which bodies are within the level to the first one at which they are proven further
 //! apart.
 
+#[cfg(feature = "audit")]
+use super::concluded::{Claimed, conclude_of_triangles, conclude_overlap};
 use super::meshes::of_meshes;
 use super::staying::StraightPair;
+use super::staying_inside::DeepPoint;
 use crate::resting::collide::{is_contained, some_colliding_pairs};
 use crate::resting::distance::near_pair;
 use crate::{Budget, Meter, Moving, Posed, QueryError, QueryOptions, Solid, TimeOfContact, Window};
@@ -16,6 +19,8 @@ const PAIR_STEPS: u64 = 4096;
 const LONG: f64 = 64.0;
 /// Longer by so much are spans after one that was proven.
 const GROWTH: f64 = 4.0;
+/// And shorter by so much those in which a point that is inside of both bodies may come too far.
+const SHORTER: f64 = 0.75;
 /// A search stops at most 3.3 tolerances above the separation: bodies that are further apart than that do not stop it at once.
 const CLEARLY: f64 = 3.0;
 /// Node tests that the work at one time counts for in a budget.
@@ -47,6 +52,8 @@ pub(super) struct Walk<'a> {
     /// The pair that proved the last contact, and how long it was good for.
     pair: Option<[u32; 2]>,
     span: f64,
+    /// The last span was proven by a point inside of both.
+    is_deep: bool,
 }
 
 impl<'a> Walk<'a> {
@@ -68,6 +75,7 @@ impl<'a> Walk<'a> {
             meter: Meter::new(&options.budget.with_node_tests(most)),
             pair: None,
             span: 0.25 * window.length(),
+            is_deep: false,
         }
     }
 
@@ -128,7 +136,7 @@ impl<'a> Walk<'a> {
 
     /// Is a part of one body in the other one, if that is solid?
     fn contains(&self, time: f64) -> bool {
-        if self.bodies.iter().any(|body| body.solid_in(&self.options) == Solid::Surface) {
+        if self.solids().contains(&Solid::Surface) {
             return false;
         }
         let [a, b] = self.posed(time);
@@ -139,7 +147,6 @@ impl<'a> Walk<'a> {
         let stays = StraightPair::new(&self.bodies, pair, from, to).stay_within(self.level);
         #[cfg(feature = "audit")]
         if stays {
-            use super::concluded::{Claimed, conclude_of_triangles};
             use crate::audit::{Place, Promise};
             let claimed = Claimed { from, to, distance: self.level };
             conclude_of_triangles(Place::Staying, Promise::Stays, &self.bodies, pair, claimed);
@@ -219,7 +226,14 @@ impl<'a> Walk<'a> {
             }
         }
         let [a, b] = self.posed(from);
-        for pair in some_colliding_pairs(a, b, PAIRS, PAIR_STEPS) {
+        let pairs = some_colliding_pairs(a, b, PAIRS, PAIR_STEPS);
+        if self.is_deep {
+            best = best.max(self.inside_until(&pairs, from, end));
+            if best >= end || best - from >= LONG * self.resolution {
+                return best;
+            }
+        }
+        for &pair in &pairs {
             self.meter.spend(TESTS_A_TIME);
             if known == Some(pair) {
                 continue;
@@ -229,10 +243,34 @@ impl<'a> Walk<'a> {
                 (best, self.pair) = (until, Some(pair));
             }
             if best >= end {
-                break;
+                return best;
             }
         }
+        if best - from < LONG * self.resolution && !self.is_deep && self.solids() == [Solid::Filled; 2] {
+            best = best.max(self.inside_until(&pairs, from, end));
+        }
+        self.is_deep = best - from >= LONG * self.resolution;
         best
+    }
+
+    fn solids(&self) -> [Solid; 2] {
+        self.bodies.map(|body| body.solid_in(&self.options))
+    }
+
+    /// The same by a point that is inside of both bodies.
+    fn inside_until(&mut self, pairs: &[[u32; 2]], from: f64, end: f64) -> f64 {
+        let Some(point) = DeepPoint::find(&self.bodies, pairs, from, &mut self.meter) else { return from };
+        let mut until = point.guess(&self.bodies).min(end);
+        while until - from >= self.resolution {
+            self.meter.spend(TESTS_A_TIME);
+            if point.stays_until(&self.bodies, until) {
+                #[cfg(feature = "audit")]
+                conclude_overlap(&self.bodies, Claimed { from, to: until, distance: self.level });
+                return until;
+            }
+            until = from + SHORTER * (until - from);
+        }
+        from
     }
 
     /// The same for one pair; `from` itself where not even a part of the resolution is proven.

@@ -48,7 +48,7 @@ fn points(pairs: &[TouchingPair]) -> impl Iterator<Item = DVec3> {
 
 /// The middle of what the bounding boxes of both share, in B's frame: where boxes overlap by little in all of a face, no point about the
 /// middles of their triangles is inside of both.
-fn middle_of_boxes(bodies: &[Posed<'_>; 2]) -> Option<DVec3> {
+pub(crate) fn middle_of_boxes(bodies: &[Posed<'_>; 2]) -> Option<DVec3> {
     let [a, b] = bodies.map(|body| body.pose);
     let back = |p: DVec3| b.rotation.conjugate() * (a.transform_point(p) - b.translation) + b.at;
     let vertices = |k: usize| bodies[k].body.mesh().vertices().iter();
@@ -62,7 +62,12 @@ fn middle_of_boxes(bodies: &[Posed<'_>; 2]) -> Option<DVec3> {
 }
 
 /// Is the point proven to be in the solid, and not on its surface?
-fn holds(body: Posed<'_>, point: Posed<'_>, blur: f64, meter: &mut Meter) -> Result<bool, Exhausted> {
+pub(crate) fn holds(
+    body: Posed<'_>,
+    point: Posed<'_>,
+    blur: f64,
+    meter: &mut Meter,
+) -> Result<bool, Exhausted> {
     let Ok(scene) = Scene::try_blurred(body, point, blur) else { return Ok(false) };
     Ok(surfaces_are_apart(&scene, meter)? && held_by(&scene, 0, meter)?.is_some())
 }

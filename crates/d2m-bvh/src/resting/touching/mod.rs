@@ -15,7 +15,7 @@
 
 mod axis;
 mod exact;
-mod inside;
+pub(crate) mod inside;
 mod parting;
 #[cfg(test)]
 mod tests;

@@ -1,0 +1,92 @@
+//! Spans of contact in which no two triangles cross for long: solids deep inside of each other.
+
+use d2m_bvh::{
+    MeshTree, Moving, Posed, QueryOptions, Solid, SpanStatus, TriMesh, Window, collide, contact_spans,
+};
+use d2m_motion::{Chain, ConstantTwist, Joint, JointKind, JointValue, RigidMotion};
+use d2m_testing::Surface;
+use glam::{DQuat, DVec3};
+
+/// The default resolution of spans, a part of the window.
+const RESOLUTION: f64 = 1e-6;
+
+fn cuboid(half: DVec3) -> MeshTree {
+    MeshTree::new(Surface::cuboid(-half, half).into_mesh(TriMesh::try_new))
+}
+
+/// Along x by a polynomial in time.
+fn along_x(powers: Vec<f64>) -> Chain {
+    let value = JointValue::try_polynomial(powers).unwrap();
+    let kind = JointKind::Prismatic { axis: DVec3::X, value };
+    Chain::try_new(vec![Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, kind).unwrap()]).unwrap()
+}
+
+/// Clear before, in contact between two planted times, clear again.
+fn check(trees: [&MeshTree; 2], motion: &dyn RigidMotion, planted: [f64; 2]) {
+    let rest = ConstantTwist::REST;
+    for bodies in [
+        [Moving::new(trees[0], &rest), Moving::new(trees[1], motion)],
+        [Moving::new(trees[1], motion), Moving::new(trees[0], &rest)],
+    ] {
+        let [a, b] = bodies;
+        let spans = contact_spans(a, b, Window::UNIT, &QueryOptions::default(), None).unwrap();
+        let statuses: Vec<_> = spans.iter().map(|span| span.status).collect();
+        assert_eq!(statuses, [SpanStatus::Clear, SpanStatus::Contact, SpanStatus::Clear], "{spans:?}");
+        for (found, truth) in [spans[1].from, spans[1].to].into_iter().zip(planted) {
+            assert!((found - truth).abs() <= 2.0 * RESOLUTION, "{found} {truth}");
+        }
+    }
+}
+
+/// Sides in common planes: no side of a triangle passes through another one.
+#[test]
+fn flush_boxes_on_any_motion_are_followed_through_each_other() {
+    let cube = cuboid(DVec3::ONE);
+    check([&cube, &cube], &along_x(vec![-3.0, 6.0]), [1.0 / 6.0, 5.0 / 6.0]);
+    // x = −3 + 4t + 2t² is −2 and 2 at (√6 − 2)/2 and (√14 − 2)/2.
+    let ends = [6.0, 14.0].map(|x: f64| (x.sqrt() - 2.0) / 2.0);
+    check([&cube, &cube], &along_x(vec![-3.0, 4.0, 2.0]), ends);
+    // A long box that comes out on the other side.
+    check([&cube, &cuboid(DVec3::new(0.25, 1.0, 1.0))], &along_x(vec![-3.0, 6.0]), [1.75 / 6.0, 4.25 / 6.0]);
+}
+
+/// Wavy rings pass through each other, turned and not: the bodies at rest at many times say the same.
+#[test]
+fn rings_that_pass_through_each_other_are_followed() {
+    let ring = |rings: u32| MeshTree::new(Surface::wavy_torus(rings, 8, 0.3).into_mesh(TriMesh::try_new));
+    let (a, b) = (ring(24), ring(17));
+    let rest = ConstantTwist::REST;
+    for (number, powers) in
+        [vec![-4.0, 8.0], vec![-4.0, 2.0, 6.0], vec![0.3, 0.5, -1.0]].into_iter().enumerate()
+    {
+        let motion = along_x(powers);
+        let spans = contact_spans(
+            Moving::new(&a, &rest),
+            Moving::new(&b, &motion),
+            Window::UNIT,
+            &QueryOptions::default(),
+            None,
+        )
+        .unwrap();
+        for span in &spans {
+            assert!(span.status != SpanStatus::Undecided || span.to - span.from < 1e-3, "{number}: {span:?}");
+            for part in 0..=100 {
+                let time = span.from + (span.to - span.from) * f64::from(part) / 100.0;
+                let posed = Posed::new(&b, motion.pose_and_twist(time).0);
+                let meets = collide(Posed::at_rest(&a), posed, Solid::Filled).unwrap();
+                let is_end = time - span.from < RESOLUTION || span.to - time < RESOLUTION;
+                let expected = span.status == SpanStatus::Contact;
+                assert!(
+                    is_end || span.status == SpanStatus::Undecided || meets == expected,
+                    "{number}: {span:?} {time}"
+                );
+            }
+        }
+        let contact: f64 = spans
+            .iter()
+            .filter(|span| span.status == SpanStatus::Contact)
+            .map(|span| span.to - span.from)
+            .sum();
+        assert!(contact > 0.1, "{number}: {spans:?}");
+    }
+}
