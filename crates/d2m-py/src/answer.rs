@@ -227,6 +227,12 @@ impl Contact {
         self.found.closing_speed
     }
 
+    /// Of a query with `start="leave"`: (lo, hi), when the bodies had parted before; else `None`.
+    #[getter]
+    fn left(&self) -> Option<(f64, f64)> {
+        self.found.left.map(|left| (left.lo, left.hi))
+    }
+
     /// How the bodies stood at the start of the window: "apart", "touching", "overlapping", "contained" or
     /// "undecided" (neither touching nor overlapping is proven).
     #[getter]

@@ -3,7 +3,7 @@
 use crate::arrays::Doubles;
 use crate::fault::{Fault, OrRaise, Value};
 use crate::mesh::tree_argument;
-use crate::options::{QueryKeywords, solids};
+use crate::options::{QueryKeywords, radii, solids};
 use crate::record::{ANSWER_WORDS, write_answer};
 use crate::resting::named;
 use crate::supervise::{Supervision, Watch, pool, supervised};
@@ -62,6 +62,7 @@ struct Batch<'a> {
     trees: [&'a MeshTree; 2],
     motions: [MotionsView<'a>; 2],
     solids: [Solid; 2],
+    radii: [f64; 2],
     windows: WindowsView<'a>,
     options: QueryOptions,
 }
@@ -82,9 +83,9 @@ impl Batch<'_> {
             }
         }
         let [tree_a, tree_b] = self.trees;
-        let [solid_a, solid_b] = self.solids;
-        let a = Moving::new(tree_a, a.motion()).with_solid(solid_a);
-        let b = Moving::new(tree_b, b.motion()).with_solid(solid_b);
+        let ([solid_a, solid_b], [radius_a, radius_b]) = (self.solids, self.radii);
+        let a = Moving::new(tree_a, a.motion()).with_solid(solid_a).with_radius(radius_a);
+        let b = Moving::new(tree_b, b.motion()).with_solid(solid_b).with_radius(radius_b);
         write_answer(&time_of_contact(a, b, window, &self.options)?, words);
         Ok(())
     }
@@ -152,7 +153,7 @@ fn trial_count(counts: [(&str, Option<usize>); 3]) -> Result<usize, Fault> {
 /// >>> [d2m_ccd.Status(status).name for status in results["status"]], results["time_lo"].round(9).tolist()
 /// (['CONTACT', 'CONTACT', 'SEPARATED'], [0.5, 1.0, inf])
 #[pyfunction]
-#[pyo3(signature = (a, b, motions_a=None, motions_b=None, *, window=None, tolerance=None, min_separation=0.0, solid=None, mode="accurate", node_tests=None, time_limit=None, threads=None, progress=None))]
+#[pyo3(signature = (a, b, motions_a=None, motions_b=None, *, window=None, tolerance=None, min_separation=0.0, radius=None, solid=None, start="report", mode="accurate", node_tests=None, time_limit=None, threads=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords")]
 pub(crate) fn batch<'py>(
     py: Python<'py>,
@@ -163,14 +164,17 @@ pub(crate) fn batch<'py>(
     window: Option<&Bound<'py, PyAny>>,
     tolerance: Option<f64>,
     min_separation: f64,
+    radius: Option<&Bound<'py, PyAny>>,
     solid: Option<&Bound<'py, PyAny>>,
+    start: &str,
     mode: &str,
     node_tests: Option<u64>,
     time_limit: Option<f64>,
     threads: Option<usize>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let options = QueryKeywords { tolerance, min_separation, mode, node_tests, time_limit }.options()?;
+    let options =
+        QueryKeywords { tolerance, min_separation, mode, start, node_tests, time_limit }.options()?;
     let trees = [tree_argument(a)?, tree_argument(b)?];
     let solids = solids(solid, [&trees[0], &trees[1]])?;
     let motions = [Motions::new(motions_a, "motions_a")?, Motions::new(motions_b, "motions_b")?];
@@ -184,6 +188,7 @@ pub(crate) fn batch<'py>(
         trees: [&trees[0], &trees[1]],
         motions: [motions[0].view(), motions[1].view()],
         solids,
+        radii: radii(radius)?,
         windows: windows.view(),
         options,
     };

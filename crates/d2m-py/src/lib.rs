@@ -8,16 +8,19 @@ mod files;
 mod mesh;
 mod motion;
 mod options;
+mod path_answer;
 mod pose;
 mod query;
 mod questions;
 mod record;
 mod resting;
 mod robot;
+mod robot_input;
 mod simulation;
 mod supervise;
 mod trajectory;
 mod verify;
+mod witness;
 mod world;
 
 use pyo3::prelude::*;
@@ -34,23 +37,27 @@ mod _d2m {
     #[pymodule_export]
     use crate::motion::{Chain, ConstantTwist, Joint, Keyframes, Motion, Screw, Spline};
     #[pymodule_export]
+    use crate::path_answer::{PathAnswer, PathClearance};
+    #[pymodule_export]
     use crate::pose::Pose;
     #[pymodule_export]
     use crate::query::{contact_exists_py, time_of_contact_py};
     #[pymodule_export]
-    use crate::questions::{Clearance, clearance_py, spans};
+    use crate::questions::{Clearance, Departure, clearance_py, departure_py, spans};
     #[pymodule_export]
     use crate::record::feature_text_py;
     #[pymodule_export]
     use crate::resting::{Distance, collide, distance, proximities};
     #[pymodule_export]
-    use crate::robot::{PathAnswer, Robot};
+    use crate::robot::Robot;
     #[pymodule_export]
     use crate::simulation::{Impulse, Segment, Simulation};
     #[pymodule_export]
     use crate::trajectory::{JointTrajectories, PoseTrajectories};
     #[pymodule_export]
     use crate::verify::{Verdict, verify};
+    #[pymodule_export]
+    use crate::witness::Witness;
     #[pymodule_export]
     use crate::world::{BodyId, FirstContact, PairContact, World};
 }

@@ -1,7 +1,7 @@
 //! Keywords of queries.
 
 use crate::fault::{Fault, OrRaise, Value};
-use d2m::bvh::{Budget, MeshTree, Mode, QueryOptions, Solid, Window};
+use d2m::bvh::{Budget, MeshTree, Mode, QueryOptions, Solid, Start, Window};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
@@ -12,9 +12,13 @@ pub(crate) struct QueryKeywords<'a> {
     pub(crate) tolerance: Option<f64>,
     pub(crate) min_separation: f64,
     pub(crate) mode: &'a str,
+    pub(crate) start: &'a str,
     pub(crate) node_tests: Option<u64>,
     pub(crate) time_limit: Option<f64>,
 }
+
+/// The start of queries that say nothing of it.
+pub(crate) const REPORT: &str = "report";
 
 impl QueryKeywords<'_> {
     /// The options of the query.
@@ -29,12 +33,37 @@ impl QueryKeywords<'_> {
         };
         let mut options = QueryOptions::default()
             .with_mode(mode)
+            .with_start(start(self.start)?)
             .with_min_separation(self.min_separation)
             .with_budget(budget(self.node_tests, self.time_limit).or_raise()?);
         if let Some(tolerance) = self.tolerance {
             options = options.with_tolerance(tolerance);
         }
         Ok(options)
+    }
+}
+
+/// What counts of bodies that are in contact at the start: "report" or "leave".
+pub(crate) fn start(word: &str) -> PyResult<Start> {
+    match word {
+        REPORT => Ok(Start::Report),
+        "leave" => Ok(Start::Leave),
+        other => {
+            let message = format!("start is {other:?}: \"report\" or \"leave\" is expected");
+            Err(Fault::new(message).with_value(Value::Text(other.to_owned())).into())
+        }
+    }
+}
+
+/// One radius for both bodies or a tuple of two; zero where none is given.
+pub(crate) fn radii(any: Option<&Bound<'_, PyAny>>) -> PyResult<[f64; 2]> {
+    let Some(any) = any.filter(|any| !any.is_none()) else { return Ok([0.0; 2]) };
+    match any.cast::<PyTuple>() {
+        Ok(pair) => {
+            let (a, b): (f64, f64) = pair.extract()?;
+            Ok([a, b])
+        }
+        Err(_) => Ok([any.extract::<f64>()?; 2]),
     }
 }
 

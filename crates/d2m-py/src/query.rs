@@ -4,7 +4,7 @@ use crate::answer;
 use crate::fault::{Fault, OrRaise};
 use crate::mesh::tree_argument;
 use crate::motion::{Form, motion_argument};
-use crate::options::{QueryKeywords, solids, window};
+use crate::options::{QueryKeywords, REPORT, radii, solids, window};
 use crate::supervise::{Watch, pool, supervised};
 use d2m::bvh::{
     MeshTree, Moving, PairCache, QueryOptions, Solid, TimeOfContact, Window, contact_exists, time_of_contact,
@@ -21,6 +21,7 @@ pub(crate) struct MovingPair {
     trees: [Arc<MeshTree>; 2],
     motions: [Form; 2],
     solids: [Solid; 2],
+    radii: [f64; 2],
 }
 
 impl MovingPair {
@@ -29,6 +30,7 @@ impl MovingPair {
         bodies: [&Bound<'_, PyAny>; 2],
         motions: [Option<&Bound<'_, PyAny>>; 2],
         solid: Option<&Bound<'_, PyAny>>,
+        radius: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let trees = [tree_argument(bodies[0])?, tree_argument(bodies[1])?];
         let motions = [motion_argument(motions[0], "motion_a")?, motion_argument(motions[1], "motion_b")?];
@@ -36,13 +38,15 @@ impl MovingPair {
             motion.check_size(tree).or_raise()?;
         }
         let solids = solids(solid, [&trees[0], &trees[1]])?;
-        Ok(Self { trees, motions, solids })
+        Ok(Self { trees, motions, solids, radii: radii(radius)? })
     }
 
     /// As queries take them.
     pub(crate) fn moving(&self) -> [Moving<'_>; 2] {
         [0, 1].map(|body| {
-            Moving::new(&*self.trees[body], self.motions[body].motion()).with_solid(self.solids[body])
+            Moving::new(&*self.trees[body], self.motions[body].motion())
+                .with_solid(self.solids[body])
+                .with_radius(self.radii[body])
         })
     }
 }
@@ -78,8 +82,9 @@ pub(crate) fn run<T: Send>(
 ///
 /// `a` and `b` are trees (or what `Tree` takes: then a tree is built for each call); motions are those of `Motion`, `None` for rest.
 /// `window` (t0, t1); `tolerance` δ, a length, by default 1e-10 of the scene's length scale; `min_separation`: the first time at
-/// which the distance is at most this; `solid`: True, False or a tuple of two, by default whether each mesh is watertight;
-/// `mode` "accurate" or "capoeira"; `node_tests` and `time_limit` (seconds) end the search with an `Undecided`; `parallel`: one
+/// which the distance is at most this; `radius`: one or a tuple of two, the bodies are all that is within it of their meshes; `solid`: True, False or a tuple of two, by default whether each mesh is watertight;
+/// `start` "report", or "leave": what is in contact at the start is let go until it is proven apart, and the answer is the first contact
+/// after that, with `left`; `mode` "accurate" or "capoeira"; `node_tests` and `time_limit` (seconds) end the search with an `Undecided`; `parallel`: one
 /// query on all threads, of use for those that take long, with the same bits.
 ///
 /// Returns `Separated`, `Contact` or `Undecided`: never a missed contact, never a late one.
@@ -94,7 +99,7 @@ pub(crate) fn run<T: Send>(
 /// >>> answer.status, abs(answer.time_lo - 0.5) < 1e-9
 /// ('contact', True)
 #[pyfunction(name = "time_of_contact")]
-#[pyo3(signature = (a, b, motion_a=None, motion_b=None, *, window=(0.0, 1.0), tolerance=None, min_separation=0.0, solid=None, mode="accurate", node_tests=None, time_limit=None, parallel=false))]
+#[pyo3(signature = (a, b, motion_a=None, motion_b=None, *, window=(0.0, 1.0), tolerance=None, min_separation=0.0, radius=None, solid=None, start="report", mode="accurate", node_tests=None, time_limit=None, parallel=false))]
 #[expect(clippy::too_many_arguments, reason = "keywords")]
 pub(crate) fn time_of_contact_py<'py>(
     py: Python<'py>,
@@ -105,16 +110,18 @@ pub(crate) fn time_of_contact_py<'py>(
     window: (f64, f64),
     tolerance: Option<f64>,
     min_separation: f64,
+    radius: Option<&Bound<'py, PyAny>>,
     solid: Option<&Bound<'py, PyAny>>,
+    start: &str,
     mode: &str,
     node_tests: Option<u64>,
     time_limit: Option<f64>,
     parallel: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let keywords = QueryKeywords { tolerance, min_separation, mode, node_tests, time_limit };
+    let keywords = QueryKeywords { tolerance, min_separation, mode, start, node_tests, time_limit };
     let options = keywords.options()?.with_parallel(parallel);
     let window = self::window(window)?;
-    let pair = MovingPair::new([a, b], [motion_a, motion_b], solid)?;
+    let pair = MovingPair::new([a, b], [motion_a, motion_b], solid, radius)?;
     let [a, b] = pair.moving();
     let ask = |options: &QueryOptions| Ok(time_of_contact(a, b, window, options)?);
     let is_decided = |answer: &TimeOfContact| !matches!(answer, TimeOfContact::Undecided { .. });
@@ -133,7 +140,7 @@ pub(crate) fn time_of_contact_py<'py>(
 /// >>> d2m_ccd.contact_exists(box, box, {"x": [0, 0, 3], "v": [0, 0, -4]})
 /// True
 #[pyfunction(name = "contact_exists")]
-#[pyo3(signature = (a, b, motion_a=None, motion_b=None, *, window=(0.0, 1.0), tolerance=None, min_separation=0.0, solid=None, node_tests=None, time_limit=None))]
+#[pyo3(signature = (a, b, motion_a=None, motion_b=None, *, window=(0.0, 1.0), tolerance=None, min_separation=0.0, radius=None, solid=None, node_tests=None, time_limit=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords")]
 pub(crate) fn contact_exists_py(
     py: Python<'_>,
@@ -144,14 +151,16 @@ pub(crate) fn contact_exists_py(
     window: (f64, f64),
     tolerance: Option<f64>,
     min_separation: f64,
+    radius: Option<&Bound<'_, PyAny>>,
     solid: Option<&Bound<'_, PyAny>>,
     node_tests: Option<u64>,
     time_limit: Option<f64>,
 ) -> PyResult<Option<bool>> {
-    let mode = "accurate";
-    let options = QueryKeywords { tolerance, min_separation, mode, node_tests, time_limit }.options()?;
+    let (mode, start) = ("accurate", REPORT);
+    let options =
+        QueryKeywords { tolerance, min_separation, mode, start, node_tests, time_limit }.options()?;
     let window: Window = self::window(window)?;
-    let pair = MovingPair::new([a, b], [motion_a, motion_b], solid)?;
+    let pair = MovingPair::new([a, b], [motion_a, motion_b], solid, radius)?;
     let [a, b] = pair.moving();
     let ask = |options: &QueryOptions| Ok(contact_exists(a, b, window, options, &mut PairCache::new())?);
     run(py, &options, ask, Option::is_some)

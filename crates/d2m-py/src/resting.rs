@@ -1,13 +1,13 @@
 //! Queries of bodies at rest.
 
 use crate::answer::start_word;
-use crate::arrays::vector;
 use crate::fault::{Fault, OrRaise};
 use crate::mesh::tree_argument;
 use crate::options::{budget, solids};
 use crate::pose::{list, pose_argument};
 use crate::query::run;
 use crate::record::{PROXIMITY_WORDS, write_proximity};
+use crate::witness::Witness;
 use d2m::bvh::{
     Budget, DistanceOptions, MeshTree, PairCache, Posed, ProximityOptions, QueryError, QueryOptions, Solid,
     collide_within, distance_within, proximities_within,
@@ -44,14 +44,14 @@ impl PosedPair {
     }
 }
 
-/// The distance of two bodies at rest, enclosed, with witnesses.
+/// The distance of two bodies at rest, enclosed, with the points that are nearest (those of `Witness`).
 ///
 /// >>> import d2m_ccd
 /// >>> box = d2m_ccd.Tree("shape:box?x=0.5&y=0.5&z=0.5")
 /// >>> apart = d2m_ccd.distance(box, box, d2m_ccd.Pose(x=[0, 0, 1.25]))
 /// >>> apart.lower <= 0.25 <= apart.upper, apart.state, apart.normal.tolist()
 /// (True, 'apart', [0.0, 0.0, -1.0])
-#[pyclass(frozen, module = "d2m_ccd")]
+#[pyclass(frozen, extends = Witness, module = "d2m_ccd")]
 pub(crate) struct Distance {
     found: d2m::Distance,
 }
@@ -74,36 +74,6 @@ impl Distance {
     #[getter]
     fn upper(&self) -> f64 {
         self.found.upper
-    }
-
-    /// Closest point on the surface of A, world frame, shape (3,).
-    #[getter]
-    fn point_a<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, &self.found.point_a.to_array())
-    }
-
-    /// Closest point on the surface of B, world frame, shape (3,).
-    #[getter]
-    fn point_b<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, &self.found.point_b.to_array())
-    }
-
-    /// Unit direction from A to B, shape (3,); zero when `lower` is zero.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, &self.found.normal.to_array())
-    }
-
-    /// Triangle of A that holds `point_a`.
-    #[getter]
-    fn triangle_a(&self) -> u32 {
-        self.found.triangle_a
-    }
-
-    /// Triangle of B that holds `point_b`.
-    #[getter]
-    fn triangle_b(&self) -> u32 {
-        self.found.triangle_b
     }
 
     /// "apart" (proven), "touching", "overlapping" or "contained" (proven).
@@ -149,7 +119,7 @@ pub(crate) fn distance(
     pose_b: Option<&Bound<'_, PyAny>>,
     solid: Option<&Bound<'_, PyAny>>,
     cutoff: Option<f64>,
-) -> PyResult<Option<Distance>> {
+) -> PyResult<Option<Py<Distance>>> {
     let pair = PosedPair::new([a, b], [pose_a, pose_b])?;
     let mut options = DistanceOptions::default().with_solid(pair.solid(solid)?);
     if let Some(cutoff) = cutoff {
@@ -157,7 +127,10 @@ pub(crate) fn distance(
     }
     let [a, b] = pair.posed();
     let found = py.detach(|| distance_within(a, b, &options, &mut PairCache::new())).or_raise()?;
-    Ok(found.map(|found| Distance { found }))
+    let object = |found: d2m::Distance| {
+        Py::new(py, PyClassInitializer::from(Witness::from(&found)).add_subclass(Distance { found }))
+    };
+    found.map(object).transpose()
 }
 
 /// Do two bodies at rest share a point?

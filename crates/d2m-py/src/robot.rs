@@ -1,22 +1,23 @@
 //! Robot arms.
 
-use crate::answer;
 use crate::arrays::Doubles;
 use crate::fault::{Fault, OrRaise, Value};
 use crate::mesh::tree_argument;
 use crate::motion::motion_argument;
 use crate::options::{QueryKeywords, default_solid, solid};
+use crate::path_answer::{PathAnswer, PathClearance, meeting};
 use crate::pose::pose_argument;
-use crate::record::{EDGE_WORDS, Meeting, write_edge};
+use crate::record::{EDGE_WORDS, write_edge};
 use crate::resting::named;
+use crate::robot_input::{Source, path};
 use crate::supervise::{Supervision, Watch, pool, supervised};
-use d2m::TimeOfContact;
+use crate::verify::{Verdict, in_growing_steps, ran_out};
+use d2m::verify::{PathVerdict, verify_path};
 use d2m_robot::{
-    Attached, Interpolation, LimitKind, Obstacle, PathAnswer as Found, Robot as Arm, RobotError,
-    RobotOptions, RobotScene, Srdf, Trajectory, TrajectoryPoint,
+    Attached, LimitKind, Obstacle, Robot as Arm, RobotError, RobotOptions, RobotScene, Srdf, Trajectory,
 };
 use glam::DVec3;
-use pyo3::exceptions::{PyKeyError, PyTypeError};
+use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::ThreadPool;
@@ -25,81 +26,6 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
-
-impl From<RobotError> for Fault {
-    fn from(error: RobotError) -> Self {
-        let fault = Self::new(error.to_string());
-        match &error {
-            RobotError::Path { place, .. } => match crate::fault::first_index(place) {
-                Some(index) => fault.at(index),
-                None => fault,
-            },
-            RobotError::Xml { line, .. }
-            | RobotError::MeshFile { line, .. }
-            | RobotError::Shape { line, .. } => fault.at(*line as usize),
-            _ => fault,
-        }
-    }
-}
-
-/// What is known of a path or an edge of a `Robot`.
-///
-/// `status` "free": certified, no pair of links or bodies meets. "contact": certified free before `contact.time_lo`, and `a` and `b`
-/// meet by `contact.time_hi`. "undecided": certified free until `free_until`. It has no truth value: ask for its status.
-///
-/// >>> import d2m_ccd
-/// >>> robot = d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF)
-/// >>> robot.check_edge([0.0], [1.0])
-/// PathAnswer('free', free_until=1.0)
-#[pyclass(frozen, get_all, module = "d2m_ccd")]
-pub(crate) struct PathAnswer {
-    /// "free", "contact" or "undecided".
-    status: &'static str,
-    /// The end of what is proven free: a time of the path, or a part of an edge. Planners call it the last valid one.
-    free_until: f64,
-    /// The link or body that meets first, or is undecided first; `None` where the path is free.
-    a: Option<String>,
-    /// The other one.
-    b: Option<String>,
-    /// Their contact, in the world's frame, or `None`.
-    contact: Option<Py<PyAny>>,
-}
-
-#[pymethods]
-impl PathAnswer {
-    fn __bool__(&self) -> PyResult<bool> {
-        let message = "PathAnswer has no truth value: compare its status with \"free\"";
-        Err(PyTypeError::new_err(message))
-    }
-
-    fn __repr__(&self) -> String {
-        match (&self.a, &self.b) {
-            (Some(a), Some(b)) => {
-                format!("PathAnswer('{}', free_until={:?}, a='{a}', b='{b}')", self.status, self.free_until)
-            }
-            _ => format!("PathAnswer('{}', free_until={:?})", self.status, self.free_until),
-        }
-    }
-}
-
-impl PathAnswer {
-    fn of(py: Python<'_>, found: Found) -> PyResult<Self> {
-        let free_until = found.free_until();
-        Ok(match found {
-            Found::Free { .. } => Self { status: "free", free_until, a: None, b: None, contact: None },
-            Found::Contact(found) => Self {
-                status: "contact",
-                free_until,
-                contact: Some(answer::object(py, TimeOfContact::Contact(found.contact))?.unbind()),
-                a: Some(found.a),
-                b: Some(found.b),
-            },
-            Found::Undecided { a, b, .. } => {
-                Self { status: "undecided", free_until, a: Some(a), b: Some(b), contact: None }
-            }
-        })
-    }
-}
 
 /// A robot arm of a URDF file in a scene: is a path free of contact with the scene and with the arm itself, and until when?
 ///
@@ -121,6 +47,7 @@ impl PathAnswer {
 #[pyclass(frozen, module = "d2m_ccd")]
 pub(crate) struct Robot {
     inner: RwLock<Inner>,
+    remarks: Vec<String>,
     pool: Arc<ThreadPool>,
 }
 
@@ -145,6 +72,15 @@ impl Robot {
         T: Send,
     {
         py.detach(|| change(&mut self.inner.write().unwrap_or_else(PoisonError::into_inner))).or_raise()
+    }
+
+    fn path(
+        &self,
+        py: Python<'_>,
+        numbers: [Option<&Bound<'_, PyAny>>; 4],
+        joints: Option<Vec<String>>,
+    ) -> PyResult<Trajectory> {
+        path(numbers, joints.unwrap_or_else(|| moving_joints(self.scene(py).robot())))
     }
 
     fn names(&self, py: Python<'_>) -> Vec<String> {
@@ -172,7 +108,7 @@ impl Robot {
 #[pymethods]
 impl Robot {
     #[new]
-    #[pyo3(signature = (urdf, *, srdf=None, packages=None, tolerance=None, min_separation=0.0, node_tests=None, time_limit=None, threads=None))]
+    #[pyo3(signature = (urdf, *, srdf=None, packages=None, tolerance=None, min_separation=0.0, start="report", node_tests=None, time_limit=None, threads=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords")]
     fn new(
         py: Python<'_>,
@@ -181,12 +117,14 @@ impl Robot {
         packages: Option<HashMap<String, PathBuf>>,
         tolerance: Option<f64>,
         min_separation: f64,
+        start: &str,
         node_tests: Option<u64>,
         time_limit: Option<f64>,
         threads: Option<usize>,
     ) -> PyResult<Self> {
         let mode = "accurate";
-        let options = QueryKeywords { tolerance, min_separation, mode, node_tests, time_limit }.options()?;
+        let options =
+            QueryKeywords { tolerance, min_separation, mode, start, node_tests, time_limit }.options()?;
         let mut read = RobotOptions::new();
         for (name, folder) in packages.unwrap_or_default() {
             read = read.with_package(name, folder);
@@ -203,11 +141,16 @@ impl Robot {
                 Some(Source::File(path)) => Some(Srdf::read(path)?),
                 Some(Source::Text(text)) => Some(Srdf::parse("srdf", &text)?),
             };
-            pool.install(|| RobotScene::new(Arc::new(robot), srdf.as_ref(), options))
+            let mut remarks = robot.remarks().to_vec();
+            remarks.extend(
+                srdf.iter().flat_map(|srdf| srdf.find_unknown_links(|link| robot.find_link(link).is_some())),
+            );
+            let scene = pool.install(|| RobotScene::new(Arc::new(robot), srdf.as_ref(), options));
+            scene.map(|scene| (scene, remarks))
         });
-        let scene = scene.or_raise()?;
+        let (scene, remarks) = scene.or_raise()?;
         let names = scene.robot().link_names().into_iter().map(str::to_owned).collect();
-        Ok(Self { inner: RwLock::new(Inner { scene, names }), pool })
+        Ok(Self { inner: RwLock::new(Inner { scene, names }), remarks, pool })
     }
 
     /// The names of the links.
@@ -245,19 +188,21 @@ impl Robot {
         Ok((lower, upper, limits.velocity.unwrap_or(f64::INFINITY)))
     }
 
-    /// What was noted while the robot was read, such as by how much cylinders were enlarged.
+    /// What was noted while the robot was read: by how much cylinders were enlarged, joints that stay, links that only the SRDF has.
     #[getter]
-    fn remarks(&self, py: Python<'_>) -> Vec<String> {
-        self.scene(py).robot().remarks().to_vec()
+    fn remarks(&self) -> Vec<String> {
+        self.remarks.clone()
     }
 
     /// Adds an obstacle: a tree (or what `Tree` takes) at rest in a pose, or with a motion in the time of paths.
+    /// It is all that is within `radius` of its mesh.
     ///
-    /// Raises `InputError` for a name that is taken.
+    /// Raises `InputError` for a name that is taken and a radius that is none.
     ///
     /// >>> import d2m_ccd
     /// >>> d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF).add_obstacle("box", "shape:box", d2m_ccd.Pose(x=[5, 0, 0]))
-    #[pyo3(signature = (name, tree, pose=None, *, motion=None, solid=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords")]
+    #[pyo3(signature = (name, tree, pose=None, *, motion=None, radius=0.0, solid=None))]
     fn add_obstacle(
         &self,
         py: Python<'_>,
@@ -265,6 +210,7 @@ impl Robot {
         tree: &Bound<'_, PyAny>,
         pose: Option<&Bound<'_, PyAny>>,
         motion: Option<&Bound<'_, PyAny>>,
+        radius: f64,
         solid: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let tree = tree_argument(tree)?;
@@ -291,7 +237,7 @@ impl Robot {
             }
         };
         self.change(py, |inner| {
-            inner.scene.add_obstacle(obstacle.with_solid(solid))?;
+            inner.scene.add_obstacle(obstacle.with_solid(solid).with_radius(radius))?;
             inner.names.push(name);
             Ok(())
         })
@@ -303,7 +249,8 @@ impl Robot {
     ///
     /// >>> import d2m_ccd
     /// >>> d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF).attach("cup", "arm", "shape:box?x=0.01&y=0.01&z=0.01", d2m_ccd.Pose(x=[1, 0, 0]))
-    #[pyo3(signature = (name, link, tree, pose=None, *, solid=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords")]
+    #[pyo3(signature = (name, link, tree, pose=None, *, radius=0.0, solid=None))]
     fn attach(
         &self,
         py: Python<'_>,
@@ -311,6 +258,7 @@ impl Robot {
         link: String,
         tree: &Bound<'_, PyAny>,
         pose: Option<&Bound<'_, PyAny>>,
+        radius: f64,
         solid: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let tree = tree_argument(tree)?;
@@ -322,7 +270,7 @@ impl Robot {
         }
         let attached = Attached::new(name.clone(), link, tree, pose.translation, pose.rotation).or_raise()?;
         self.change(py, |inner| {
-            inner.scene.attach(attached.with_solid(solid))?;
+            inner.scene.attach(attached.with_solid(solid).with_radius(radius))?;
             inner.names.push(name);
             Ok(())
         })
@@ -335,11 +283,102 @@ impl Robot {
     /// >>> import d2m_ccd
     /// >>> d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF).ignore("base", "arm")
     fn ignore(&self, py: Python<'_>, a: &str, b: &str) -> PyResult<()> {
-        if self.change(py, |inner| Ok(inner.scene.ignore(a, b)))? {
-            Ok(())
-        } else {
-            Err(PyKeyError::new_err(format!("{a:?} or {b:?} is not there")))
-        }
+        let is_there = self.change(py, |inner| Ok(inner.scene.ignore(a, b)))?;
+        there(is_there, a, b)
+    }
+
+    /// What counts of two links or bodies that are in contact at the start of a path, "report" or "leave": let go until they are proven apart.
+    ///
+    /// Raises `KeyError` for names that are not there.
+    ///
+    /// >>> import d2m_ccd
+    /// >>> d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF).set_start("base", "arm", "leave")
+    fn set_start(&self, py: Python<'_>, a: &str, b: &str, start: &str) -> PyResult<()> {
+        let start = crate::options::start(start)?;
+        let is_there = self.change(py, |inner| Ok(inner.scene.set_start([a, b], start)))?;
+        there(is_there, a, b)
+    }
+
+    /// The distance at which two links or bodies count as in contact, instead of `min_separation`.
+    ///
+    /// Raises `KeyError` for names that are not there, `InputError` for a distance that is none.
+    ///
+    /// >>> import d2m_ccd
+    /// >>> d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF).set_min_separation("base", "arm", 0.01)
+    fn set_min_separation(&self, py: Python<'_>, a: &str, b: &str, distance: f64) -> PyResult<()> {
+        let is_there = self.change(py, |inner| inner.scene.set_min_separation([a, b], distance))?;
+        there(is_there, a, b)
+    }
+
+    /// How near does a path come to a contact? `None` where no pair is checked. Arguments as of `check_path`.
+    ///
+    /// Raises as `check_path`. Returns a `PathClearance`.
+    ///
+    /// >>> import d2m_ccd
+    /// >>> d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF).clearance([0.0, 1.0], [[0.0], [1.0]]) is None
+    /// True
+    #[pyo3(signature = (times, positions, velocities=None, accelerations=None, *, joints=None))]
+    fn clearance(
+        &self,
+        py: Python<'_>,
+        times: &Bound<'_, PyAny>,
+        positions: &Bound<'_, PyAny>,
+        velocities: Option<&Bound<'_, PyAny>>,
+        accelerations: Option<&Bound<'_, PyAny>>,
+        joints: Option<Vec<String>>,
+    ) -> PyResult<Option<PathClearance>> {
+        let path = self.path(py, [Some(times), Some(positions), velocities, accelerations], joints)?;
+        let found = self.ask(py, &Watch::default(), |scene, _| Ok(scene.clearance(&path)?))?;
+        Ok(found.map(PathClearance::from))
+    }
+
+    /// Proves an answer of `check_path` again, pair by pair, by code that shares no search with the engine; an edge is the path with the times
+    /// 0 and 1. `steps`: an end to the work, by default some seconds; other arguments as of `check_path`.
+    ///
+    /// Raises as `check_path`. Returns a `Verdict`, with the pair of which it is false or was not proven.
+    ///
+    /// >>> import d2m_ccd
+    /// >>> robot = d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF)
+    /// >>> robot.add_obstacle("wall", "shape:box?x=0.05&y=0.05&z=0.5", [1, 0, 0, 0, 0, 0.7, 0])
+    /// >>> free = robot.check_edge([0.0], [1.0])
+    /// >>> robot.verify(free, [0.0, 1.0], [[0.0], [1.0]]).status, robot.verify(free, [0.0, 1.0], [[0.0], [3.0]]).status
+    /// ('verified', 'refuted')
+    #[pyo3(signature = (answer, times, positions, velocities=None, accelerations=None, *, joints=None, steps=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords")]
+    fn verify(
+        &self,
+        py: Python<'_>,
+        answer: &Bound<'_, PathAnswer>,
+        times: &Bound<'_, PyAny>,
+        positions: &Bound<'_, PyAny>,
+        velocities: Option<&Bound<'_, PyAny>>,
+        accelerations: Option<&Bound<'_, PyAny>>,
+        joints: Option<Vec<String>>,
+        steps: Option<u64>,
+    ) -> PyResult<Verdict> {
+        let path = self.path(py, [Some(times), Some(positions), velocities, accelerations], joints)?;
+        let answer = &answer.get().found;
+        self.ask(py, &Watch::default(), |scene, supervision| {
+            let bodies = scene.bodies_along(&path)?;
+            let names = |pair: [usize; 2]| pair.map(|body| bodies.name(body));
+            let prove = |now: u64| {
+                verify_path(&bodies, answer, now).map_err(|fault| {
+                    let [a, b] = names(fault.pair);
+                    Fault::new(format!("{a:?} and {b:?}: {}", fault.fault))
+                })
+            };
+            let more =
+                |found: &PathVerdict| matches!(found, PathVerdict::Pair { verdict, .. } if ran_out(verdict));
+            Ok(match in_growing_steps(steps, supervision, prove, more)? {
+                PathVerdict::Pair { pair, verdict } => Verdict::of(names(pair), verdict),
+                PathVerdict::MeetBefore { pair, clear_until } => {
+                    let reason = "let go at the start, they meet again before".to_owned();
+                    Verdict::unproven(names(pair), reason, clear_until)
+                }
+                PathVerdict::Verified { steps } => d2m::verify::Verdict::Verified { steps }.into(),
+                other => return Err(Fault::new(format!("{other:?}"))),
+            })
+        })
     }
 
     /// Is a path free of contact, until when, and which pair meets first?
@@ -502,43 +541,8 @@ impl Robot {
     }
 }
 
-impl Robot {
-    /// Of times, positions, velocities and accelerations.
-    fn path(
-        &self,
-        py: Python<'_>,
-        [times, positions, velocities, accelerations]: [Option<&Bound<'_, PyAny>>; 4],
-        joints: Option<Vec<String>>,
-    ) -> PyResult<Trajectory> {
-        let joints = joints.unwrap_or_else(|| moving_joints(self.scene(py).robot()));
-        let read = |any: Option<&Bound<'_, PyAny>>, name: &str, shape: &[Option<usize>]| {
-            any.map(|any| Ok::<_, PyErr>(Doubles::new(any, name, shape)?.slice().to_vec())).transpose()
-        };
-        let times = read(times, "times", &[None])?.unwrap_or_default();
-        let shape = [Some(times.len()), Some(joints.len())];
-        let positions = read(positions, "positions", &shape)?.unwrap_or_default();
-        let velocities = read(velocities, "velocities", &shape)?;
-        let accelerations = read(accelerations, "accelerations", &shape)?;
-        let width = joints.len();
-        let row = |all: &[f64], point: usize| all[point * width..(point + 1) * width].to_vec();
-        let point = |(place, &time): (usize, &f64)| {
-            let mut point = TrajectoryPoint::new(time, row(&positions, place));
-            if let Some(velocities) = &velocities {
-                point = point.with_velocities(row(velocities, place));
-            }
-            if let Some(accelerations) = &accelerations {
-                point = point.with_accelerations(row(accelerations, place));
-            }
-            point
-        };
-        let interpolation = match (&velocities, &accelerations) {
-            (_, Some(_)) => Interpolation::Quintic,
-            (Some(_), None) => Interpolation::Cubic,
-            (None, None) => Interpolation::Linear,
-        };
-        let points = times.iter().enumerate().map(point).collect();
-        Ok(Trajectory::new(joints, points).with_interpolation(interpolation))
-    }
+fn there(is_there: bool, a: &str, b: &str) -> PyResult<()> {
+    if is_there { Ok(()) } else { Err(PyKeyError::new_err(format!("{a:?} or {b:?} is not there"))) }
 }
 
 /// Joints that move by a value of their own.
@@ -549,35 +553,4 @@ fn moving_joints(robot: &Arm) -> Vec<String> {
         })
     };
     robot.joint_names().iter().filter(moves).map(|&name| name.to_owned()).collect()
-}
-
-/// What a record of an edge holds.
-fn meeting(found: &Found, places: &HashMap<&str, u32>) -> Meeting {
-    let place = |name: &str| places.get(name).copied();
-    let (answer, a, b) = match found {
-        Found::Free { .. } => (TimeOfContact::Separated, None, None),
-        Found::Contact(found) => (TimeOfContact::Contact(found.contact), place(&found.a), place(&found.b)),
-        Found::Undecided { free_until, a, b, .. } => {
-            (TimeOfContact::Undecided { clear_until: *free_until }, place(a), place(b))
-        }
-    };
-    Meeting { answer, free_until: found.free_until(), bodies: [a, b] }
-}
-
-/// Where a text is.
-enum Source {
-    File(PathBuf),
-    Text(String),
-}
-
-impl Source {
-    /// A text that begins as XML does, or a path.
-    fn new(any: &Bound<'_, PyAny>) -> PyResult<Self> {
-        match any.extract::<String>() {
-            Ok(text) if text.trim_start_matches('\u{feff}').trim_start().starts_with('<') => {
-                Ok(Self::Text(text))
-            }
-            _ => Ok(Self::File(any.extract()?)),
-        }
-    }
 }

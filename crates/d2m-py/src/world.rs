@@ -259,32 +259,35 @@ impl World {
 #[pymethods]
 impl World {
     #[new]
-    #[pyo3(signature = (*, tolerance=None, min_separation=0.0, mode="accurate", node_tests=None, time_limit=None, threads=None))]
+    #[pyo3(signature = (*, tolerance=None, min_separation=0.0, start="report", mode="accurate", node_tests=None, time_limit=None, threads=None))]
     fn new(
         tolerance: Option<f64>,
         min_separation: f64,
+        start: &str,
         mode: &str,
         node_tests: Option<u64>,
         time_limit: Option<f64>,
         threads: Option<usize>,
     ) -> PyResult<Self> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
-        let options = QueryKeywords { tolerance, min_separation, mode, node_tests, time_limit }.options()?;
+        let options =
+            QueryKeywords { tolerance, min_separation, mode, start, node_tests, time_limit }.options()?;
         let world = d2m::World::new(options);
         let inner = Inner { world, names: HashMap::new(), given: HashMap::new() };
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         Ok(Self { number, inner: Mutex::new(inner), pool: pool(threads).or_raise()? })
     }
 
-    /// Adds a body: a tree (or what `Tree` takes), its motion, a name that no other body has, the number of a group, and whether it
-    /// is solid (by default if its mesh is watertight).
+    /// Adds a body: a tree (or what `Tree` takes), its motion, a name that no other body has, the number of a group, the
+    /// radius about its mesh that belongs to it, and whether it is solid (by default if its mesh is watertight).
     ///
     /// Raises `InputError` for a name that is taken.
     ///
     /// >>> import d2m_ccd
     /// >>> d2m_ccd.World().add("shape:box", group=3)
     /// BodyId(0)
-    #[pyo3(signature = (tree, motion=None, *, name=None, group=None, solid=None))]
+    #[pyo3(signature = (tree, motion=None, *, name=None, group=None, radius=0.0, solid=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords")]
     fn add(
         &self,
         py: Python<'_>,
@@ -292,14 +295,20 @@ impl World {
         motion: Option<&Bound<'_, PyAny>>,
         name: Option<String>,
         group: Option<u32>,
+        radius: f64,
         solid: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<BodyId> {
+        if !(radius.is_finite() && radius >= 0.0) {
+            return Err(Fault::new(format!("radius is {radius:?}, a number from 0 on is expected"))
+                .found(radius)
+                .into());
+        }
         let tree = tree_argument(tree)?;
         let usual = default_solid(&tree);
         let solid = solid.map_or(Ok(usual), |any| self::solid(any, usual))?;
         let motion = motion_argument(motion, "motion")?;
         motion.check_size(&tree).or_raise()?;
-        let mut body = Body::with_shared(tree, motion.shared()).with_solid(solid);
+        let mut body = Body::with_shared(tree, motion.shared()).with_solid(solid).with_radius(radius);
         if let Some(group) = group {
             body = body.with_group(Group(group));
         }
@@ -410,6 +419,29 @@ impl World {
         let mut inner = self.lock(py);
         let (a, b) = (self.find(&inner, a)?, self.find(&inner, b)?);
         inner.world.set_min_separation(a, b, separation);
+        Ok(())
+    }
+
+    /// What counts of these two bodies if they are in contact at the start of a window, "report" or "leave"; `None` for what the world says.
+    ///
+    /// >>> import d2m_ccd
+    /// >>> world = d2m_ccd.World()
+    /// >>> table, part = world.add("shape:box"), world.add("shape:box", {"x": [0, 0, 1], "v": [0, 0, 9]})
+    /// >>> world.set_start(table, part, "leave")
+    /// >>> world.first_contact().status
+    /// 'separated'
+    #[pyo3(signature = (a, b, start))]
+    fn set_start(
+        &self,
+        py: Python<'_>,
+        a: &Bound<'_, PyAny>,
+        b: &Bound<'_, PyAny>,
+        start: Option<&str>,
+    ) -> PyResult<()> {
+        let start = start.map(crate::options::start).transpose()?;
+        let mut inner = self.lock(py);
+        let (a, b) = (self.find(&inner, a)?, self.find(&inner, b)?);
+        inner.world.set_start(a, b, start);
         Ok(())
     }
 

@@ -110,3 +110,73 @@ def test_bad_input(robot: d2m_ccd.Robot, tmp_path: Path) -> None:
         d2m_ccd.Robot("<robot name='x'><link name='a'/></robot>")
     with pytest.raises(InputError, match="line"):
         d2m_ccd.Robot("<robot name='x'><link name='a'>")
+
+
+BOX = "<collision><geometry><box size='1 1 1'/></geometry></collision>"
+
+
+def urdf(link: str = BOX, joint: str = "", kind: str = "prismatic") -> str:
+    inside = f"<parent link='world'/><child link='m'/>{joint}"
+    return f"<robot name='r'>\n<link name='world'/>\n<link name='m'>{link}</link>\n<joint name='j' type='{kind}'>{inside}</joint></robot>"
+
+
+def test_real_files_hold(tmp_path: Path) -> None:
+    file = tmp_path / "r.urdf"
+    wall = ("wall", "shape:box?x=0.5&y=5&z=5", d2m_ccd.Pose(x=[3, 0, 0]))
+    for text, expected in [
+        ("\ufeff<?xml version='1.0'?>\r\n<!-- ä -->" + urdf().replace("\n", "\r\n"), 0.5),
+        (urdf(joint="<axis xyz='250 0 0'/>"), 0.5),
+        (urdf(BOX + BOX.replace("<geometry>", "<origin xyz='1 0 0'/><geometry>")), 0.25),
+        (urdf(joint="<axis xyz='0 0 3'/>", kind="planar"), 0.5),
+    ]:
+        file.write_text(text, encoding="utf-8")
+        robot = d2m_ccd.Robot(file)
+        robot.add_obstacle(*wall)
+        joints = ["j/x"] if "planar" in text else ["j"]
+        until = robot.check_path([0.0, 1.0], [[0.0], [4.0]], joints=joints).free_until
+        assert expected - 1e-6 < until <= expected, text
+    file.write_bytes("\ufeff".encode("utf-16-le") + urdf().encode("utf-16-le"))
+    assert d2m_ccd.Robot(file).joint_names == ["j"]
+    srdf = "<robot name='r'><disable_collisions link1='m' link2='hand'/></robot>"
+    assert any("no link \"hand\"" in remark for remark in d2m_ccd.Robot(file, srdf=srdf).remarks)
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        (urdf(BOX.replace("1 1 1", "1 nan 1")), 3, "size of <box>"),
+        (urdf(BOX.replace("</geometry>", "<sphere radius='1'/></geometry>")), 3, "second shape"),
+        (urdf("<collision><geometry><mesh filename='none.stl'/></geometry></collision>"), 3, "none.stl"),
+        (urdf("<collision><geometry><mesh filename='package://arm/x.stl'/></geometry></collision>"), 3, "package arm=DIR"),
+        (urdf(joint="<axis xyz='0 0 0'/>"), 4, "the axis 0 0 0"),
+        (urdf(joint="<mimic joint='k'/>"), 4, "mimics"),
+        (urdf(joint="<mimic joint='j'/>"), 4, "mimics itself"),
+        (urdf().replace("parent link='world'", "parent link='w'"), 4, "\"w\" is no link"),
+        (urdf().replace("<link name='m'>", "<link name='world'>"), 3, "second link"),
+        (urdf().replace("<geometry>", "<xacro:x/><geometry>"), 3, "xacro"),
+        (urdf(""), None, "none of the 2 links has collision geometry"),
+    ],
+)
+def test_bad_files_are_one_line_with_its_place(text: str, line: int | None, words: str, tmp_path: Path) -> None:
+    file = tmp_path / "bad.urdf"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        d2m_ccd.Robot(file)
+    message = str(caught.value)
+    assert "bad.urdf" in message and words in message and "\n" not in message, message
+    assert caught.value.index == line
+
+
+def test_paths_name_point_joint_and_value(robot: d2m_ccd.Robot) -> None:
+    for times, positions, words in [
+        ([0.0, 1.0], [[0.0], [np.nan]], "positions"),
+        ([0.0, np.inf], [[0.0], [1.0]], "times"),
+        ([0.0, -1.0], [[0.0], [1.0]], "points[1], time_from_start"),
+        ([0.0], [[0.0]], "points: 1 of them"),
+        ([], np.zeros((0, 1)), "points: 0 of them"),
+    ]:
+        with pytest.raises(InputError) as caught:
+            robot.check_path(times, positions)
+        assert words in str(caught.value) or "points[1]" in str(caught.value), str(caught.value)
+    warning = robot.limit_warnings([0.0, 1.0, 2.0], [[0.0], [0.5], [3.5]])
+    assert [(found["kind"], found["point"], found["limit"]) for found in warning] == [("position", 1, 3.0), ("velocity", 1, 1.0)]

@@ -15,6 +15,7 @@ __all__ = [
     "Clearance",
     "ConstantTwist",
     "Contact",
+    "Departure",
     "Distance",
     "FirstContact",
     "Impulse",
@@ -25,6 +26,7 @@ __all__ = [
     "Motion",
     "PairContact",
     "PathAnswer",
+    "PathClearance",
     "Pose",
     "PoseTrajectories",
     "Robot",
@@ -36,11 +38,13 @@ __all__ = [
     "Tree",
     "Undecided",
     "Verdict",
+    "Witness",
     "World",
     "batch",
     "clearance",
     "collide",
     "contact_exists",
+    "departure",
     "distance",
     "feature_text",
     "proximities",
@@ -68,6 +72,8 @@ _MotionsLike: TypeAlias = _MotionLike | Sequence[Motion | Mapping[str, Any] | No
 _PoseLike: TypeAlias = Pose | ArrayLike | None
 _Solid: TypeAlias = bool | Literal["filled", "surface"] | None
 _Solids: TypeAlias = _Solid | tuple[_Solid, _Solid]
+_Radii: TypeAlias = _Float | tuple[_Float, _Float] | None
+_Start: TypeAlias = Literal["report", "leave"]
 _Mode: TypeAlias = Literal["accurate", "capoeira"]
 _Status: TypeAlias = Literal["separated", "contact", "undecided"]
 _State: TypeAlias = Literal["apart", "touching", "overlapping", "contained", "undecided"]
@@ -297,16 +303,11 @@ class Contact(Answer):
     @property
     def closing_speed(self) -> float: ...
     @property
+    def left(self) -> tuple[float, float] | None: ...
+    @property
     def start(self) -> _State: ...
 
-@final
-class Distance:
-    @property
-    def value(self) -> float: ...
-    @property
-    def lower(self) -> float: ...
-    @property
-    def upper(self) -> float: ...
+class Witness:
     @property
     def point_a(self) -> _Doubles: ...
     @property
@@ -317,12 +318,21 @@ class Distance:
     def triangle_a(self) -> int: ...
     @property
     def triangle_b(self) -> int: ...
+
+@final
+class Distance(Witness):
+    @property
+    def value(self) -> float: ...
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
     @property
     def state(self) -> _State: ...
     def __float__(self) -> float: ...
 
 @final
-class Clearance:
+class Clearance(Witness):
     @property
     def status(self) -> Literal["clear", "contact", "undecided"]: ...
     @property
@@ -331,16 +341,15 @@ class Clearance:
     def upper(self) -> float: ...
     @property
     def time(self) -> float: ...
+
+@final
+class Departure:
     @property
-    def point_a(self) -> _Doubles: ...
+    def start(self) -> _State: ...
     @property
-    def point_b(self) -> _Doubles: ...
+    def left(self) -> tuple[float, float] | None: ...
     @property
-    def normal(self) -> _Doubles: ...
-    @property
-    def triangle_a(self) -> int: ...
-    @property
-    def triangle_b(self) -> int: ...
+    def answer(self) -> Separated | Contact | Undecided: ...
 
 @final
 class Verdict:
@@ -356,6 +365,10 @@ class Verdict:
     def reason(self) -> str | None: ...
     @property
     def clear_until(self) -> float | None: ...
+    @property
+    def a(self) -> str | None: ...
+    @property
+    def b(self) -> str | None: ...
     def __bool__(self) -> bool: ...
 
 @final
@@ -399,6 +412,7 @@ class World:
         *,
         tolerance: _Float | None = None,
         min_separation: _Float = 0.0,
+        start: _Start = "report",
         mode: _Mode = "accurate",
         node_tests: int | None = None,
         time_limit: _Float | None = None,
@@ -411,6 +425,7 @@ class World:
         *,
         name: str | None = None,
         group: int | None = None,
+        radius: _Float = 0.0,
         solid: _Solid = None,
     ) -> BodyId: ...
     def remove(self, body: BodyId | str) -> None: ...
@@ -418,6 +433,7 @@ class World:
     def ignore_pair(self, a: BodyId | str, b: BodyId | str, ignored: bool = True) -> None: ...
     def ignore_groups(self, a: int, b: int, ignored: bool = True) -> None: ...
     def set_min_separation(self, a: BodyId | str, b: BodyId | str, separation: _Float | None) -> None: ...
+    def set_start(self, a: BodyId | str, b: BodyId | str, start: _Start | None) -> None: ...
     def bodies(self) -> list[BodyId]: ...
     def first_contact(self, window: _Window = ..., *, progress: _Progress = None) -> FirstContact: ...
     def contacts(self, window: _Window = ..., *, progress: _Progress = None) -> list[PairContact]: ...
@@ -446,6 +462,21 @@ class PathAnswer:
     def __bool__(self) -> bool: ...
 
 @final
+class PathClearance:
+    @property
+    def status(self) -> Literal["clear", "contact", "undecided"]: ...
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def a(self) -> str: ...
+    @property
+    def b(self) -> str: ...
+
+@final
 class Robot:
     def __new__(
         cls,
@@ -455,6 +486,7 @@ class Robot:
         packages: Mapping[str, str | os.PathLike[str]] | None = None,
         tolerance: _Float | None = None,
         min_separation: _Float = 0.0,
+        start: _Start = "report",
         node_tests: int | None = None,
         time_limit: _Float | None = None,
         threads: int | None = None,
@@ -469,10 +501,48 @@ class Robot:
     def remarks(self) -> list[str]: ...
     def limits(self, joint: str) -> tuple[float, float, float]: ...
     def add_obstacle(
-        self, name: str, tree: _MeshLike, pose: _PoseLike = None, *, motion: _MotionLike = None, solid: _Solid = None
+        self,
+        name: str,
+        tree: _MeshLike,
+        pose: _PoseLike = None,
+        *,
+        motion: _MotionLike = None,
+        radius: _Float = 0.0,
+        solid: _Solid = None,
     ) -> None: ...
-    def attach(self, name: str, link: str, tree: _MeshLike, pose: _PoseLike = None, *, solid: _Solid = None) -> None: ...
+    def attach(
+        self,
+        name: str,
+        link: str,
+        tree: _MeshLike,
+        pose: _PoseLike = None,
+        *,
+        radius: _Float = 0.0,
+        solid: _Solid = None,
+    ) -> None: ...
     def ignore(self, a: str, b: str) -> None: ...
+    def set_start(self, a: str, b: str, start: _Start) -> None: ...
+    def set_min_separation(self, a: str, b: str, distance: _Float) -> None: ...
+    def clearance(
+        self,
+        times: ArrayLike,
+        positions: ArrayLike,
+        velocities: ArrayLike | None = None,
+        accelerations: ArrayLike | None = None,
+        *,
+        joints: Sequence[str] | None = None,
+    ) -> PathClearance | None: ...
+    def verify(
+        self,
+        answer: PathAnswer,
+        times: ArrayLike,
+        positions: ArrayLike,
+        velocities: ArrayLike | None = None,
+        accelerations: ArrayLike | None = None,
+        *,
+        joints: Sequence[str] | None = None,
+        steps: int | None = None,
+    ) -> Verdict: ...
     def check_path(
         self,
         times: ArrayLike,
@@ -580,7 +650,9 @@ def time_of_contact(
     window: _Window = ...,
     tolerance: _Float | None = None,
     min_separation: _Float = 0.0,
+    radius: _Radii = None,
     solid: _Solids = None,
+    start: _Start = "report",
     mode: _Mode = "accurate",
     node_tests: int | None = None,
     time_limit: _Float | None = None,
@@ -595,10 +667,25 @@ def contact_exists(
     window: _Window = ...,
     tolerance: _Float | None = None,
     min_separation: _Float = 0.0,
+    radius: _Radii = None,
     solid: _Solids = None,
     node_tests: int | None = None,
     time_limit: _Float | None = None,
 ) -> bool | None: ...
+def departure(
+    a: _MeshLike,
+    b: _MeshLike,
+    motion_a: _MotionLike = None,
+    motion_b: _MotionLike = None,
+    *,
+    window: _Window = ...,
+    tolerance: _Float | None = None,
+    min_separation: _Float = 0.0,
+    radius: _Radii = None,
+    solid: _Solids = None,
+    node_tests: int | None = None,
+    time_limit: _Float | None = None,
+) -> Departure: ...
 def clearance(
     a: _MeshLike,
     b: _MeshLike,
@@ -608,6 +695,7 @@ def clearance(
     window: _Window = ...,
     accuracy: _Float = 1e-6,
     tolerance: _Float | None = None,
+    radius: _Radii = None,
     solid: _Solids = None,
     node_tests: int | None = None,
     time_limit: _Float | None = None,
@@ -622,6 +710,7 @@ def spans(
     resolution: _Float | None = None,
     tolerance: _Float | None = None,
     min_separation: _Float = 0.0,
+    radius: _Radii = None,
     solid: _Solids = None,
     node_tests: int | None = None,
     time_limit: _Float | None = None,
@@ -635,7 +724,9 @@ def batch(
     window: _Window | ArrayLike | None = None,
     tolerance: _Float | None = None,
     min_separation: _Float = 0.0,
+    radius: _Radii = None,
     solid: _Solids = None,
+    start: _Start = "report",
     mode: _Mode = "accurate",
     node_tests: int | None = None,
     time_limit: _Float | None = None,
@@ -674,13 +765,14 @@ def feature_text(kind: int, features: Sequence[int] | NDArray[np.uint32]) -> str
 def verify(
     a: _MeshLike,
     b: _MeshLike,
-    answer: Answer,
+    answer: Answer | Departure,
     motion_a: _MotionLike = None,
     motion_b: _MotionLike = None,
     *,
     window: _Window = ...,
     tolerance: _Float | None = None,
     min_separation: _Float = 0.0,
+    radius: _Radii = None,
     solid: _Solids = None,
     mode: _Mode = "accurate",
     steps: int | None = None,

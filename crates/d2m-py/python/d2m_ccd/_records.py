@@ -97,6 +97,7 @@ class Start(enum.IntEnum):
     TOUCHING = 1
     OVERLAPPING = 2
     CONTAINED = 3
+    UNDECIDED = 4
 
 
 class FeatureKind(enum.IntEnum):
