@@ -50,6 +50,34 @@ fn flush_boxes_on_any_motion_are_followed_through_each_other() {
     check([&cube, &cuboid(DVec3::new(0.25, 1.0, 1.0))], &along_x(vec![-3.0, 6.0]), [1.75 / 6.0, 4.25 / 6.0]);
 }
 
+/// Surfaces have no inside: a small closed surface within a large one is clear of it, whichever of them may be filled.
+#[test]
+fn surfaces_inside_of_each_other_are_clear() {
+    let (large, small) = (cuboid(DVec3::ONE), cuboid(DVec3::splat(0.25)));
+    let (rest, motion) = (ConstantTwist::REST, along_x(vec![-3.0, 6.0]));
+    let ends = [0.0, 1.75, 2.25, 3.75, 4.25, 6.0].map(|x: f64| x / 6.0);
+    use SpanStatus::{Clear, Contact};
+    for solids in [[Solid::Surface; 2], [Solid::Surface, Solid::Filled], [Solid::Filled, Solid::Surface]] {
+        let a = Moving::new(&large, &rest).with_solid(solids[0]);
+        let b = Moving::new(&small, &motion).with_solid(solids[1]);
+        for [a, b] in [[a, b], [b, a]] {
+            let spans = contact_spans(a, b, Window::UNIT, &QueryOptions::default(), None).unwrap();
+            let statuses: Vec<_> = spans.iter().map(|span| span.status).collect();
+            // What a filled body holds of a surface is in contact with it; a surface holds nothing.
+            let holds = solids[0] == Solid::Filled;
+            let (expected, times) = if holds {
+                (vec![Clear, Contact, Clear], vec![ends[0], ends[1], ends[4]])
+            } else {
+                (vec![Clear, Contact, Clear, Contact, Clear], ends[..5].to_vec())
+            };
+            assert_eq!(statuses, expected, "{solids:?} {spans:?}");
+            for (span, from) in spans.iter().zip(times) {
+                assert!((span.from - from).abs() <= 2.0 * RESOLUTION, "{solids:?} {spans:?}");
+            }
+        }
+    }
+}
+
 /// Wavy rings pass through each other, turned and not: the bodies at rest at many times say the same.
 #[test]
 fn rings_that_pass_through_each_other_are_followed() {

@@ -174,8 +174,7 @@ impl Case<'_> {
             Ok(_) => Ok(()),
             Err(Verdict::Refuted { .. }) => {
                 let triangles = pair.unwrap_or([0, 0]);
-                let distance = self.distance(span.to, triangles)?;
-                Err(Verdict::Refuted { time: span.to, triangles, distance })
+                Err(self.refuted(span.to, triangles, self.distance(span.to, triangles)?))
             }
             Err(_) => self.not_proven(Reason::NoMeeting, pair),
         }

@@ -27,10 +27,16 @@ pub(super) fn conclude_of_triangles(
     conclude(place, promise, bodies, [Part::Triangle(a), Part::Triangle(b)], claimed);
 }
 
-/// Filled bodies share a point all the time.
-pub(super) fn conclude_overlap(bodies: &[Moving<'_>; 2], Claimed { from, to, distance }: Claimed) {
-    let body =
-        |k: usize| Audited { is_filled: true, ..Audited::new(bodies[k].body, bodies[k].motion, Part::Whole) };
+/// Bodies share a point all the time, of which at least one is filled.
+pub(super) fn conclude_overlap(
+    bodies: &[Moving<'_>; 2],
+    solids: [Solid; 2],
+    Claimed { from, to, distance }: Claimed,
+) {
+    let body = |k: usize| Audited {
+        is_filled: solids[k] == Solid::Filled,
+        ..Audited::new(bodies[k].body, bodies[k].motion, Part::Whole)
+    };
     let (place, promise) = (Place::Staying, Promise::Stays);
     report(&Conclusion { place, bodies: [body(0), body(1)], from, to, distance, promise });
 }

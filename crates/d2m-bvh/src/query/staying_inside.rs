@@ -1,6 +1,6 @@
-//! A point of one solid that is deep inside of the other: how long does it stay there?
+//! A point of one body that is deep inside of the other, which is filled: how long does it stay there?
 //!
-//! A point p that goes with body K is in K and, at a time t₀, in the other solid, further than d from its surface. Seen from that body it
+//! A point p that goes with body K is in K and, at a time t₀, in the other body, further than d from its surface. Seen from that body it
 //! moves with the velocity v_K + ω_K × (p − c_K) − v − ω × (p − c). Ways out of a solid lead through its surface, so that p is in both
 //! bodies until it has come as far as d: for a time of d over its greatest speed. This holds where no two triangles cross for
 //! long, as of teeth that pass through each other, and where none ever do, as of boxes with sides in common planes.
@@ -40,9 +40,11 @@ struct Candidate {
 }
 
 impl DeepPoint {
-    /// The deepest of some points of two filled bodies: corners of these triangles, and the middles of what the bounding boxes share.
+    /// The deepest of some points of one body that are inside of the other, if that is filled: corners of these triangles, and, if both are
+    /// filled, the middles of what the bounding boxes share.
     pub(super) fn find(
         bodies: &[Moving<'_>; 2],
+        solids: [Solid; 2],
         pairs: &[[u32; 2]],
         time: f64,
         meter: &mut Meter,
@@ -56,6 +58,10 @@ impl DeepPoint {
         });
         let mut best: Option<Self> = None;
         for Candidate { body, point, is_corner } in corners(bodies, pairs).into_iter().chain(middles) {
+            // A surface holds nothing, and of itself it has no more than its triangles.
+            if solids[1 - body] == Solid::Surface || !is_corner && solids[body] == Solid::Surface {
+                continue;
+            }
             meter.spend(TESTS_A_POINT);
             // In its body's own frame the point is what it is.
             let Ok(mesh) = TriMesh::point(point) else { continue };
@@ -99,12 +105,14 @@ impl DeepPoint {
     }
 }
 
-/// Corners of some pairs of triangles, each once.
+/// Corners of some pairs of triangles, each once, and one vertex of each part of the bodies: where one holds the other, no triangles are near.
 fn corners(bodies: &[Moving<'_>; 2], pairs: &[[u32; 2]]) -> Vec<Candidate> {
     let mut found = Vec::new();
     for body in [0, 1] {
-        let mesh = bodies[body].body.mesh();
+        let tree = bodies[body].body;
+        let mesh = tree.mesh();
         let mut ids: Vec<u32> = pairs.iter().flat_map(|pair| mesh.triangles()[pair[body] as usize]).collect();
+        ids.extend(tree.component_vertices());
         ids.sort_unstable();
         ids.dedup();
         let step = 1 + ids.len() / MOST;
@@ -125,7 +133,7 @@ mod tests {
     }
 
     fn find(bodies: &[Moving<'_>; 2]) -> Option<DeepPoint> {
-        DeepPoint::find(bodies, &[[0, 0], [5, 7]], 0.0, &mut Meter::unlimited())
+        DeepPoint::find(bodies, [Solid::Filled; 2], &[[0, 0], [5, 7]], 0.0, &mut Meter::unlimited())
     }
 
     /// A small cube in the middle of a large one leaves it after a way of 1, along x or carried around: no sooner than it says.

@@ -136,11 +136,8 @@ impl<'a> Walk<'a> {
 
     /// Is a part of one body in the other one, if that is solid?
     fn contains(&self, time: f64) -> bool {
-        if self.solids().contains(&Solid::Surface) {
-            return false;
-        }
         let [a, b] = self.posed(time);
-        is_contained(a, b).unwrap_or(false)
+        is_contained(a, b, self.solids()).unwrap_or(false)
     }
 
     fn stays(&self, pair: [u32; 2], from: f64, to: f64) -> bool {
@@ -246,10 +243,13 @@ impl<'a> Walk<'a> {
                 return best;
             }
         }
-        if best - from < LONG * self.resolution && !self.is_deep && self.solids() == [Solid::Filled; 2] {
-            best = best.max(self.inside_until(&pairs, from, end));
+        let is_tried = self.is_deep;
+        self.is_deep = false;
+        if best - from < LONG * self.resolution && !is_tried {
+            let inside = self.inside_until(&pairs, from, end);
+            self.is_deep = inside > best && inside - from >= LONG * self.resolution;
+            best = best.max(inside);
         }
-        self.is_deep = best - from >= LONG * self.resolution;
         best
     }
 
@@ -257,15 +257,18 @@ impl<'a> Walk<'a> {
         self.bodies.map(|body| body.solid_in(&self.options))
     }
 
-    /// The same by a point that is inside of both bodies.
+    /// The same by a point of one body that is inside of the other.
     fn inside_until(&mut self, pairs: &[[u32; 2]], from: f64, end: f64) -> f64 {
-        let Some(point) = DeepPoint::find(&self.bodies, pairs, from, &mut self.meter) else { return from };
+        let solids = self.solids();
+        let Some(point) = DeepPoint::find(&self.bodies, solids, pairs, from, &mut self.meter) else {
+            return from;
+        };
         let mut until = point.guess(&self.bodies).min(end);
         while until - from >= self.resolution {
             self.meter.spend(TESTS_A_TIME);
             if point.stays_until(&self.bodies, until) {
                 #[cfg(feature = "audit")]
-                conclude_overlap(&self.bodies, Claimed { from, to: until, distance: self.level });
+                conclude_overlap(&self.bodies, solids, Claimed { from, to: until, distance: self.level });
                 return until;
             }
             until = from + SHORTER * (until - from);

@@ -1,6 +1,6 @@
 //! Do two bodies at rest touch?
 
-use super::containment::one_holds_the_other;
+use super::containment::{held_by, one_holds_the_other};
 use super::node_pair::{Scene, Step, child, proven_apart};
 use super::proven_crossing::proven_crossing;
 use crate::meter::{Exhausted, Meter};
@@ -160,15 +160,21 @@ pub(crate) fn surfaces_are_apart(scene: &Scene<'_>, meter: &mut Meter) -> Result
     Ok(search(scene, Wanted { most: 1, counts: may_touch }, meter)?.pairs.is_empty())
 }
 
-/// Are the surfaces of two bodies apart, and is one of them inside the other?
+/// Are the surfaces of two bodies apart, and does one of them that is filled hold a part of the other?
 ///
 /// # Errors
 /// [`QueryError::BadPose`].
-pub(crate) fn is_contained(a: Posed<'_>, b: Posed<'_>) -> Result<bool, QueryError> {
+pub(crate) fn is_contained(a: Posed<'_>, b: Posed<'_>, solids: [Solid; 2]) -> Result<bool, QueryError> {
+    if solids == [Solid::Surface; 2] {
+        return Ok(false);
+    }
     let (scene, meter) = (Scene::try_new(a, b)?, &mut Meter::unlimited());
     // Without a limit there always is an answer.
     let apart = surfaces_are_apart(&scene, meter).unwrap_or(false);
-    Ok(apart && one_holds_the_other(&scene, meter).is_ok_and(|held| held.is_some()))
+    let mut holds = |by: usize| {
+        solids[by] == Solid::Filled && held_by(&scene, by, meter).is_ok_and(|held| held.is_some())
+    };
+    Ok(apart && (holds(0) || holds(1)))
 }
 
 /// Some of the pairs that are not proven apart, the first in the order of the trees.

@@ -209,7 +209,7 @@ fn line(conclusion: &Conclusion<'_>, verdict: &Verdict) -> String {
     )
 }
 
-/// Times of a span at which two triangles are looked at that stay near: as parts of it.
+/// Times of a span at which triangles, or bodies, are judged that stay near: as parts of it.
 const TIMES: u32 = 8;
 
 /// Proves a conclusion again. That something stays near is judged at a few times of the span only.
@@ -225,7 +225,10 @@ fn judge(
     let body = |k: usize, mesh| Body {
         mesh,
         motion: bodies[k].motion,
-        solid: if promise == Promise::Clear && bodies[k].is_filled { Solid::Filled } else { Solid::Surface },
+        solid: match promise {
+            Promise::Clear | Promise::Stays if bodies[k].is_filled => Solid::Filled,
+            _ => Solid::Surface,
+        },
         radius: 0.0,
     };
     let (both, span) = ([body(0, &a), body(1, &b)], TimeSpan { from, to });
