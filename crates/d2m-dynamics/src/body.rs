@@ -6,15 +6,20 @@ use d2m_motion::RigidMotion;
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
-/// Names a body of one [`Simulation`](crate::Simulation).
+/// Names a body of one [`Simulation`](crate::Simulation). The name of a body that was removed never means another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct BodyId(pub(crate) u32);
+pub struct BodyId {
+    pub(crate) place: u32,
+    /// How many bodies have had the place before.
+    pub(crate) generation: u32,
+}
 
 impl BodyId {
-    /// Bodies are numbered in the order in which they were added, from 0.
+    /// The place of the body: bodies are numbered in the order in which they were added, from 0; one that is added after others were
+    /// removed takes the first place that is free.
     pub const fn index(self) -> usize {
-        self.0 as usize
+        self.place as usize
     }
 }
 
@@ -46,6 +51,8 @@ pub enum Kind {
     Static,
     /// A motion of the mesh frame over the time of the simulation.
     Kinematic(Motion),
+    /// [`Simulation::set_target`](crate::Simulation::set_target), step by step: it stands still where none is set.
+    Driven,
 }
 
 impl core::fmt::Debug for Kind {
@@ -54,6 +61,7 @@ impl core::fmt::Debug for Kind {
             Self::Dynamic => "Dynamic",
             Self::Static => "Static",
             Self::Kinematic(_) => "Kinematic",
+            Self::Driven => "Driven",
         })
     }
 }
@@ -128,6 +136,57 @@ pub struct Body {
     pub radius: f64,
     /// How fast its velocities fade.
     pub damping: Damping,
+    /// Which bodies it may meet. Default: all.
+    pub groups: Groups,
+    /// How fast the surface runs over the body, mesh axes: what touches it is taken along by friction, as by a conveyor belt. At a
+    /// contact only the part along the surface counts. Default zero.
+    pub surface_velocity: DVec3,
+}
+
+/// Groups that a body is in, and those whose bodies it may meet, a bit each: two bodies meet if each is in a group that the other one
+/// meets. Bodies that do not meet pass through each other.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// use d2m_dynamics::{Body, Groups, Kind, Simulation, SimulationOptions};
+/// use glam::DVec3;
+/// const GHOSTS: u32 = 1 << 1;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// let wall = Body::new("wall", Arc::clone(&cube)).with_kind(Kind::Static);
+/// simulation.add(&wall.with_groups(Groups { meets: !GHOSTS, ..Groups::ALL }))?;
+/// let ghost = Body::new("ghost", cube).with_position(DVec3::Y * 2.0);
+/// let ghost = simulation.add(&ghost.with_groups(Groups { member: GHOSTS, ..Groups::ALL }))?;
+/// while simulation.time() < 1.0 {
+///     simulation.step()?;
+/// }
+/// assert!(simulation.position(ghost).y < -2.0); // it fell through
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Groups {
+    /// The groups that the body is in.
+    pub member: u32,
+    /// The groups whose bodies it may meet.
+    pub meets: u32,
+}
+
+impl Groups {
+    /// In all groups, and meets all.
+    pub const ALL: Self = Self { member: u32::MAX, meets: u32::MAX };
+
+    /// May a body of these groups and one of others meet?
+    pub const fn admit(self, other: Self) -> bool {
+        self.member & other.meets != 0 && other.member & self.meets != 0
+    }
+}
+
+impl Default for Groups {
+    fn default() -> Self {
+        Self::ALL
+    }
 }
 
 /// How fast the velocities of a dynamic body fade besides what contacts do: each by the factor exp(−rate · step) at the start of a step.
@@ -173,6 +232,8 @@ impl Body {
             solid: None,
             radius: 0.0,
             damping: Damping::default(),
+            groups: Groups::ALL,
+            surface_velocity: DVec3::ZERO,
         }
     }
 
@@ -229,5 +290,15 @@ impl Body {
     /// With velocities that fade.
     pub fn with_damping(self, damping: Damping) -> Self {
         Self { damping, ..self }
+    }
+
+    /// In these groups, and meeting those of these.
+    pub fn with_groups(self, groups: Groups) -> Self {
+        Self { groups, ..self }
+    }
+
+    /// With a surface that runs so, mesh axes.
+    pub fn with_surface_velocity(self, surface_velocity: DVec3) -> Self {
+        Self { surface_velocity, ..self }
     }
 }

@@ -166,13 +166,21 @@ pub enum SimulationError {
         /// The times of the motion and of the step.
         outside: OutsideDomain,
     },
-    /// A snapshot of another simulation.
-    #[error("the snapshot has {found} bodies, the simulation {expected}")]
+    /// A target that a driven body would have to turn to by so much in a step that its way round is not certain.
+    #[error(
+        "body {body}: the target is too fast: a turn of {turn:?} radians in a step, of which less than 3 can be followed"
+    )]
+    TargetTooFast {
+        /// The body's name.
+        body: String,
+        /// The angle, the short way round.
+        turn: f64,
+    },
+    /// A snapshot with a body that the simulation does not have: it was removed since, or the snapshot is of another simulation.
+    #[error("the snapshot has a body at place {place} that the simulation does not have")]
     Snapshot {
-        /// Bodies of the snapshot.
-        found: usize,
-        /// Bodies of the simulation.
-        expected: usize,
+        /// The place of the body.
+        place: usize,
     },
 }
 

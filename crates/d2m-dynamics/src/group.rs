@@ -149,7 +149,7 @@ pub(crate) fn solve(
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
     // Springs and motors may work; what joints alone do is balanced by the middle of flights, not by accounts.
     let driven = states.iter().any(|s| !moves(s) && !s.stands_still())
-        || island.contacts.iter().any(|c| c.row.is_some());
+        || island.contacts.iter().any(|c| c.row.is_some() || c.running != [0.0; 2]);
     let mut system = System::new(free, &contacts, place);
     system.warm_start(&contacts);
     let mut residual = 0.0;

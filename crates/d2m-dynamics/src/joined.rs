@@ -1,17 +1,18 @@
 //! Joints of bodies in a simulation, and their rows.
 
+use crate::SimulationError;
 use crate::contact::{ContactPoint, JointRow, Law, Material, tangents};
-use crate::joint::{Joint, JointKind, MotorTarget};
+use crate::joint::{Joint, JointKind, Motor, MotorTarget};
 use crate::rigid_body::{RigidBody, rotation_vector};
-use crate::{BodyId, SimulationError};
 use d2m_feature::FeaturePair;
-use glam::{DQuat, DVec3};
+use glam::{BVec3, DQuat, DVec3};
 
 /// The part of what a joint is off that a step takes back.
 const TAKEN_BACK: f64 = 0.2;
 
 /// A joint between two bodies of the list, the second one perhaps the world.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Joined {
     pub(crate) joint: Joint,
     pub(crate) bodies: [usize; 2],
@@ -22,6 +23,8 @@ pub(crate) struct Joined {
     turn: DQuat,
     /// The value at the last look: angles go on beyond half a turn.
     value: f64,
+    /// Was it taken out, or one of its bodies?
+    is_gone: bool,
 }
 
 /// The flight that rows are for.
@@ -80,19 +83,45 @@ impl Joined {
                 return bad(name, value.to_string());
             }
         }
+        let is_locked = matches!(joint.kind, JointKind::Locked { .. });
+        if is_locked && joint.b.is_some() {
+            return bad("second body", "of locks: only the world".to_owned());
+        }
+        let point = if is_locked { a.position } else { joint.point };
         let own = |body: &RigidBody, v: DVec3| body.orientation.conjugate() * v;
         Ok(Self {
             joint: joint.clone(),
             bodies: places,
-            arms: [own(a, joint.point - a.position), own(b, joint.point - b.position)],
+            arms: [own(a, point - a.position), own(b, point - b.position)],
             axes: [own(a, axis), own(b, axis)],
             turn: a.orientation.conjugate() * b.orientation,
             value: 0.0,
+            is_gone: false,
         })
     }
 
     pub(crate) fn has(&self, body: usize) -> bool {
-        self.bodies.contains(&body)
+        !self.is_gone && self.bodies.contains(&body)
+    }
+
+    /// The center of a body is another point of it now: `by` further, in its axes. Locks are those of the new center.
+    pub(crate) fn center_moved(&mut self, body: usize, by: DVec3) {
+        if matches!(self.joint.kind, JointKind::Locked { .. }) {
+            return;
+        }
+        for (arm, place) in self.arms.iter_mut().zip(self.bodies) {
+            if place == body {
+                *arm -= by;
+            }
+        }
+    }
+
+    pub(crate) fn take_out(&mut self) {
+        self.is_gone = true;
+    }
+
+    pub(crate) fn is_gone(&self) -> bool {
+        self.is_gone
     }
 
     /// The value where the bodies are: the angle or the length.
@@ -109,7 +138,7 @@ impl Joined {
             JointKind::Prismatic => {
                 ((xb + qb * self.arms[1]) - (xa + qa * self.arms[0])).dot(qa * self.axes[0])
             }
-            JointKind::Fixed | JointKind::Spherical => 0.0,
+            JointKind::Fixed | JointKind::Spherical | JointKind::Locked { .. } => 0.0,
         }
     }
 
@@ -124,7 +153,9 @@ impl Joined {
         let tilted = match self.joint.kind {
             JointKind::Revolute => (qa * self.axes[0]).cross(qb * self.axes[1]),
             JointKind::Spherical => DVec3::ZERO,
-            JointKind::Fixed | JointKind::Prismatic => rotation_vector(qb * (qa * self.turn).conjugate()),
+            JointKind::Fixed | JointKind::Prismatic | JointKind::Locked { .. } => {
+                rotation_vector(qb * (qa * self.turn).conjugate())
+            }
         };
         let along = |v: DVec3| move |direction: &DVec3| v.dot(*direction);
         let (linear, angular) = self.directions(qa);
@@ -140,7 +171,17 @@ impl Joined {
             JointKind::Revolute => (all, across),
             JointKind::Prismatic => (across, all),
             JointKind::Spherical => (all, Vec::new()),
+            JointKind::Locked { ways, turns } => {
+                let locked = |axes: BVec3| (0..3).filter(|&k| axes.test(k)).map(|k| all[k]).collect();
+                (locked(ways), locked(turns))
+            }
         }
+    }
+
+    /// Turns about a single locked axis: a rate, and no place that it could drift from.
+    fn is_of_a_rate(&self, is_angular: bool) -> bool {
+        let is_one = |turns: BVec3| turns.bitmask().is_power_of_two();
+        matches!(self.joint.kind, JointKind::Locked { turns, .. } if is_angular && is_one(turns))
     }
 
     /// What the equations may be off at the end of a flight from here.
@@ -158,7 +199,12 @@ impl Joined {
         let axis = pair[0].orientation * self.axes[0];
         let mut made = Made { joined: self, number, arms, point: points[1], rows: Vec::new() };
         // Both arms reach to one point, so that impulses make no angular momentum: of a slide that of b.
-        made.arms[0] = arms[0] + (points[1] - points[0]);
+        if matches!(self.joint.kind, JointKind::Locked { .. }) {
+            // The world has no angular momentum to keep: what locks push acts on the center.
+            made.arms[1] = points[0] - pair[1].position;
+        } else {
+            made.arms[0] = arms[0] + (points[1] - points[0]);
+        }
         let equal = Law::Range { lo: f64::NEG_INFINITY, hi: f64::INFINITY, softness: 0.0 };
         let (linear, angular) = self.directions(pair[0].orientation);
         for direction in linear {
@@ -169,7 +215,8 @@ impl Joined {
         }
         let count = made.rows.len();
         for (slot, row) in made.rows[..count].iter_mut().enumerate() {
-            row.row = row.row.map(|row| JointRow { equation: Some([number, slot]), ..row });
+            let equation = |row: &JointRow| (!self.is_of_a_rate(row.is_angular)).then_some([number, slot]);
+            row.row = row.row.map(|row| JointRow { equation: equation(&row), ..row });
         }
         if matches!(self.joint.kind, JointKind::Revolute | JointKind::Prismatic) {
             self.along(&mut made, axis, self.value(pair), ahead);
@@ -243,6 +290,7 @@ impl Made<'_> {
             arm_b: self.arms[1],
             point: self.point,
             material: Material { restitution: 0.0, friction: 0.0 },
+            running: [0.0; 2],
             row: Some(JointRow { is_angular, law, pushing, target, equation: None }),
             impulse: 0.0,
             sliding: [0.0; 2],
@@ -276,15 +324,68 @@ impl crate::Simulation {
     /// [`SimulationError::BadJoint`]: numbers that cannot be used, or no body that could move. Nothing changes then.
     pub fn add_joint(&mut self, joint: &Joint) -> Result<usize, SimulationError> {
         let b = match joint.b {
-            Some(b) => b.index(),
+            Some(b) => self.place(b),
             None => self.world()?,
         };
-        let joined = Joined::try_new(joint, [joint.a.index(), b], &self.bodies)?;
+        let a = self.place(joint.a);
+        let joined = Joined::try_new(joint, [a, b], &self.bodies)?;
         if !joint.collide {
-            self.ignore(joint.a, BodyId(b as u32));
+            self.ignored.insert((a.min(b), a.max(b)));
         }
         self.joints.push(joined);
+        self.drop_known(a);
+        self.drop_known(b);
         Ok(self.joints.len() - 1)
+    }
+
+    /// Takes a joint out; its number never means another one. Its bodies go on passing through each other where they did: at a joint they
+    /// mostly overlap. [`Self::heed`] has them meet again.
+    ///
+    /// # Panics
+    /// If there is no such joint.
+    ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use d2m_dynamics::{Body, Joint, JointKind, Simulation, SimulationOptions};
+    /// # use glam::DVec3;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// let mut simulation = Simulation::new(SimulationOptions::default())?;
+    /// let hung = simulation.add(&Body::new("hung", cube))?;
+    /// let nail = simulation.add_joint(&Joint::new(JointKind::Spherical, hung, None, DVec3::Y))?;
+    /// simulation.step()?;
+    /// assert!(simulation.position(hung).y.abs() < 1e-9);
+    /// simulation.remove_joint(nail);
+    /// simulation.step()?;
+    /// assert!(simulation.position(hung).y < -1e-4 && simulation.joint(nail).is_none());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn remove_joint(&mut self, joint: usize) {
+        self.joints[joint].take_out();
+        self.joints[joint].bodies.into_iter().for_each(|place| self.drop_known(place));
+    }
+
+    /// A joint, if it was not taken out.
+    pub fn joint(&self, joint: usize) -> Option<&Joint> {
+        self.joints.get(joint).filter(|joined| !joined.is_gone).map(|joined| &joined.joint)
+    }
+
+    /// Another motor of a joint, or none: so a robot is driven from step to step. Wakes its bodies.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadJoint`]: numbers that cannot be used. Nothing changes then.
+    ///
+    /// # Panics
+    /// If there is no such joint.
+    pub fn set_motor(&mut self, joint: usize, motor: Option<Motor>) -> Result<(), SimulationError> {
+        let joined = &self.joints[joint];
+        let changed = Joint { motor, ..joined.joint.clone() };
+        Joined::try_new(&changed, joined.bodies, &self.bodies)?;
+        self.joints[joint].joint = changed;
+        for place in self.joints[joint].bodies {
+            self.wake_place(place);
+        }
+        Ok(())
     }
 
     /// The value of a joint: how far b has turned about the axis, or moved along it, against a; zero of other kinds.

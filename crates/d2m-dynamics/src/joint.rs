@@ -1,11 +1,12 @@
 //! Joints between bodies, as they are described to a simulation.
 
 use crate::BodyId;
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 
 /// What a joint leaves free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum JointKind {
     /// Nothing.
     Fixed,
@@ -15,11 +16,20 @@ pub enum JointKind {
     Prismatic,
     /// To turn about the point.
     Spherical,
+    /// All but what is locked: ways of the center of mass along these axes of the world, and turns about them. Of one body, with the world:
+    /// [`Joint::locks`].
+    Locked {
+        /// Ways that it may not go.
+        ways: BVec3,
+        /// Axes that it may not turn about. Of two or three nothing drifts; of one it is the angular velocity that is zero.
+        turns: BVec3,
+    },
 }
 
 /// What a motor aims at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MotorTarget {
     /// A rate of the joint's value.
     Velocity(f64),
@@ -30,10 +40,12 @@ pub enum MotorTarget {
 /// Drives the value of a revolute joint (an angle, by a torque) or of a prismatic one (a length, by a force).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Motor {
     /// What it aims at.
     pub target: MotorTarget,
     /// The greatest force or torque. Default: any.
+    #[cfg_attr(feature = "serde", serde(with = "unbounded"))]
     pub most: f64,
     /// Force by what lacks to the position. Zero: as stiff as need be.
     pub stiffness: f64,
@@ -52,6 +64,7 @@ impl Motor {
 /// A spring at a joint's value: stiffness (rest − value) − damping rate, solved for the end of a step: stable for any stiffness.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spring {
     /// Force by length, or torque by angle.
     pub stiffness: f64,
@@ -77,6 +90,7 @@ impl Spring {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Joint {
     /// What it leaves free.
     pub kind: JointKind,
@@ -106,6 +120,32 @@ impl Joint {
         let axis = DVec3::Z;
         let (limits, motor, spring) = (None, None, None);
         Self { kind, a, b, point, axis, limits, motor, spring, friction: 0.0, collide: false }
+    }
+
+    /// Locks of one body: ways of its center of mass along these axes of the world, and turns about them. What is locked stays as it is when
+    /// they are added.
+    ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use d2m_dynamics::{Body, Joint, Simulation, SimulationOptions};
+    /// # use glam::{BVec3, DVec3};
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// let mut simulation = Simulation::new(SimulationOptions::default())?;
+    /// let thrown = Body::new("thrown", cube).with_linear_velocity(DVec3::new(1.0, 2.0, 3.0));
+    /// let thrown = simulation.add(&thrown)?;
+    /// // In a plane: no way along z, no turn but about z.
+    /// let flat = BVec3::new(false, false, true);
+    /// simulation.add_joint(&Joint::locks(thrown, flat, !flat))?;
+    /// while simulation.time() < 0.5 {
+    ///     simulation.step()?;
+    /// }
+    /// let place = simulation.position(thrown);
+    /// assert!(place.z.abs() < 1e-9 && (place.x - 0.5).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub const fn locks(body: BodyId, ways: BVec3, turns: BVec3) -> Self {
+        Self::new(JointKind::Locked { ways, turns }, body, None, DVec3::ZERO)
     }
 
     /// With this axis.
@@ -142,5 +182,19 @@ impl Joint {
     pub const fn with_collide(mut self, collide: bool) -> Self {
         self.collide = collide;
         self
+    }
+}
+
+/// Numbers of which infinity is one, in formats that have none.
+#[cfg(feature = "serde")]
+mod unbounded {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(value: &f64, to: S) -> Result<S::Ok, S::Error> {
+        value.is_finite().then_some(*value).serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+        Option::<f64>::deserialize(from).map(|value| value.unwrap_or(f64::INFINITY))
     }
 }

@@ -35,6 +35,9 @@ impl RigidBody {
     /// [`StepError::TooFast`] where no flight that is long enough does; a motion that does not cover the step.
     pub(crate) fn follow(&mut self, end: f64, gap: f64) -> Result<(), StepError> {
         let start = self.time;
+        if matches!(self.kind, Kind::Driven) {
+            return self.follow_target(end);
+        }
         let Some(motion) = self.covered_motion(start, end)? else { return Ok(()) };
         let first = self.place_by(motion, start);
         let mut horizon = motion.motion().smooth_until(start).map_or(end, |joint| end.min(joint));
@@ -52,6 +55,22 @@ impl RigidBody {
             horizon = middle;
         }
         Err(StepError::TooFast { body: self.name.to_string(), time: start })
+    }
+
+    /// The flight of a driven body that ends at its target; at rest where it has none.
+    fn follow_target(&mut self, end: f64) -> Result<(), StepError> {
+        let length = end - self.time;
+        let velocity = self.target.map_or_else(Velocity::default, |target| Velocity {
+            linear: (target.position - self.position) / length,
+            angular: rotation_vector(target.orientation * self.orientation.conjugate()) / length,
+        });
+        let fastest = velocity.linear.abs().max_element().max(velocity.angular.abs().max_element());
+        let is_slow = fastest <= crate::Simulation::LARGEST;
+        if !is_slow {
+            return Err(StepError::TooFast { body: self.name.to_string(), time: self.time });
+        }
+        self.fly(velocity, end);
+        Ok(())
     }
 
     /// The motion of a kinematic body over some times; none of other bodies.

@@ -5,7 +5,7 @@
 //! Add each [`Body`] to a [`Simulation`] and call [`Simulation::step`].
 //!
 //! ## Bodies
-//! - [`Body`]: a shared tree, its [`Kind`], [`Mass`], [`Damping`], [`Material`]; a kinematic one follows a [`Motion`].
+//! - [`Body`]: a shared tree, its [`Kind`], [`Mass`], [`Damping`], [`Material`], [`Groups`]; a kinematic one follows a [`Motion`].
 //!   [`BodyId`] is its name.
 //! - [`MassProperties`]: mass, center and inertia of a mesh.
 //! - [`Joint`]: what holds two bodies together, of a [`JointKind`], with a [`Motor`] (and its [`MotorTarget`]) or a [`Spring`].
@@ -16,6 +16,7 @@
 //!
 //! ## What is reported
 //! - [`StepReport`] of each step, with its [`Segment`]s (flights that are certified) and [`ContactImpulse`]s.
+//! - [`TouchEvent`]: who begins to touch, and who does so no more ([`TouchChange`]).
 //! - [`ContactListener`]: hears every impulse when it happens.
 //!
 //! ## Errors
@@ -38,11 +39,15 @@ mod joined;
 mod joint;
 mod kinematic;
 mod listener;
+mod live;
 mod mass;
+mod membership;
 mod momenta;
 mod options;
 mod pairs;
 mod parallel;
+mod pushed;
+mod rebuilt;
 mod record;
 mod rigid_body;
 mod simulation;
@@ -50,15 +55,16 @@ mod sleep;
 mod snapshot;
 mod start;
 mod step;
+mod touches;
 mod velocity;
 
-pub use body::{Body, BodyId, Damping, Kind, Mass, Motion};
+pub use body::{Body, BodyId, Damping, Groups, Kind, Mass, Motion};
 pub use contact::Material;
 pub use error::{MassError, SimulationError, StepError};
 pub use joint::{Joint, JointKind, Motor, MotorTarget, Spring};
 pub use listener::ContactListener;
 pub use mass::MassProperties;
 pub use options::SimulationOptions;
-pub use record::{ContactImpulse, Segment};
+pub use record::{ContactImpulse, Segment, TouchChange, TouchEvent};
 pub use simulation::{Simulation, StepReport};
 pub use snapshot::Snapshot;

@@ -17,6 +17,8 @@ use d2m_feature::FeaturePair;
 use d2m_motion::Pose;
 use glam::DVec3;
 
+/// Features within this many gaps are measured in any case.
+pub(crate) const AROUND: f64 = 1.5;
 /// The part of the gap at which a flight ends.
 const STOP: f64 = 0.5;
 /// Of the distance of a pair that is closer than that, the part at which its next flight ends.
@@ -274,6 +276,7 @@ pub(crate) fn measure(
     let found: Vec<Proximity> = wide.iter().filter_map(straight).collect();
     let found = reduce_proximities(&found, TILT);
     let middle = |p: &Proximity| 0.5 * (p.point_a + p.point_b);
+    let runs = b.surface_velocity_at(posed_b.pose.rotation) - a.surface_velocity_at(posed_a.pose.rotation);
     let contact = |p: &Proximity| ContactPoint {
         a: pair.0,
         b: pair.1,
@@ -287,6 +290,7 @@ pub(crate) fn measure(
         arm_b: middle(p) - posed_b.pose.translation,
         point: middle(p),
         material,
+        running: tangents(p.normal).map(|tangent| tangent.dot(runs)),
         row: None,
         impulse: 0.0,
         sliding: [0.0; 2],

@@ -73,10 +73,68 @@ pub struct Segment {
     /// The bodies whose twist is another one than in the segment before, with their motions from `start` on (all the bodies
     /// in the first segment); the others fly on.
     pub changed: Vec<(BodyId, ConstantTwist)>,
+    /// The bodies that were removed before the segment begins.
+    pub removed: Vec<BodyId>,
     /// Impulses at the end of the segment.
     pub contacts: Vec<ContactImpulse>,
     /// The length of the segment if bodies stand still in it because the events of the step were used up, else zero.
     pub skipped: f64,
+}
+
+/// What has become of two bodies that touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum TouchChange {
+    /// The first impulse between them.
+    Began,
+    /// They are further apart than 1.5 gaps, as the step found that began then, or one of them was removed.
+    Ended,
+}
+
+/// Two bodies begin to touch, or do so no more. What rests and sleeps goes on touching.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions, TouchChange};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// let floor = Body::new("floor", Arc::clone(&cube)).with_kind(Kind::Static).with_restitution(0.5);
+/// let floor = simulation.add(&floor)?;
+/// let ball = simulation.add(&Body::new("ball", cube).with_position(DVec3::Y * 1.2))?;
+/// let mut events = Vec::new();
+/// while simulation.time() < 0.3 {
+///     events.extend(simulation.step()?.touches);
+/// }
+/// // It has bounced once.
+/// let changes: Vec<_> = events.iter().map(|event| event.change).collect();
+/// assert_eq!(changes, [TouchChange::Began, TouchChange::Ended]);
+/// assert!(events.iter().all(|event| (event.a, event.b) == (floor, ball)));
+/// assert!(events[0].time < events[1].time && !simulation.touch(floor, ball));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct TouchEvent {
+    /// The body with the smaller place.
+    pub a: BodyId,
+    /// The other body.
+    pub b: BodyId,
+    /// When.
+    pub time: f64,
+    /// What.
+    pub change: TouchChange,
+}
+
+impl Segment {
+    /// Without length.
+    fn at(time: f64, changed: Vec<(BodyId, ConstantTwist)>) -> Self {
+        let (removed, contacts) = (Vec::new(), Vec::new());
+        Self { start: time, end: time, changed, removed, contacts, skipped: 0.0 }
+    }
 }
 
 /// The segments as they become complete. One is kept back: impulses at the start of a step belong to the segment that ends
@@ -91,10 +149,8 @@ pub(crate) struct Recorder {
 impl Recorder {
     /// Starts with a segment without length that holds the first velocities.
     pub(crate) fn begin(&mut self, time: f64, bodies: Vec<(BodyId, ConstantTwist)>) {
-        let segment =
-            |changed| Segment { start: time, end: time, changed, contacts: Vec::new(), skipped: 0.0 };
-        self.last = Some(segment(bodies));
-        self.open = Some(segment(Vec::new()));
+        self.last = Some(Segment::at(time, bodies));
+        self.open = Some(Segment::at(time, Vec::new()));
     }
 
     pub(crate) fn has_begun(&self) -> bool {
@@ -109,8 +165,7 @@ impl Recorder {
         }
         open.end = time;
         open.skipped = if skipping { time - open.start } else { 0.0 };
-        let next =
-            Segment { start: time, end: time, changed: Vec::new(), contacts: Vec::new(), skipped: 0.0 };
+        let next = Segment::at(time, Vec::new());
         let closed = self.open.replace(next);
         self.done.extend(self.last.take());
         self.last = closed;
@@ -123,6 +178,13 @@ impl Recorder {
             Ok(place) => open.changed[place].1 = flight,
             Err(place) => open.changed.insert(place, (body, flight)),
         }
+    }
+
+    /// A body is gone from the start of the open segment on.
+    pub(crate) fn remove(&mut self, body: BodyId) {
+        let Some(open) = &mut self.open else { return };
+        open.changed.retain(|(id, _)| *id != body);
+        open.removed.push(body);
     }
 
     /// Impulses at the start of the open segment.

@@ -1,6 +1,6 @@
 //! The state of a body and the constant twist that it flies.
 
-use crate::body::{Body, Damping, Kind, Mass};
+use crate::body::{Body, BodyId, Damping, Groups, Kind, Mass};
 use crate::faces::Faces;
 use crate::momenta::Momenta;
 use crate::velocity::Velocity;
@@ -18,9 +18,29 @@ const MOST_TURN: f64 = 1.0 / 16.0;
 /// Flights of one body in a step at most, as long as nothing meets it; a body that turns faster flies longer ones.
 const MOST_FLIGHTS: f64 = 1024.0;
 
+/// What a place in the list of bodies is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    Body,
+    /// What joints with the world are with: nothing meets it.
+    World,
+    /// Its body was removed.
+    Vacant,
+}
+
+/// Where a body is to be: its center and its axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Target {
+    pub(crate) position: DVec3,
+    pub(crate) orientation: DQuat,
+}
+
 /// A body of a simulation. `position` is that of the center of mass.
 #[derive(Clone)]
 pub(crate) struct RigidBody {
+    pub(crate) id: BodyId,
+    pub(crate) role: Role,
     pub(crate) name: Arc<str>,
     pub(crate) tree: Arc<MeshTree>,
     pub(crate) faces: Arc<Faces>,
@@ -33,6 +53,11 @@ pub(crate) struct RigidBody {
     /// The body is everything within this distance of its mesh.
     pub(crate) rounding: f64,
     pub(crate) damping: Damping,
+    pub(crate) groups: Groups,
+    /// Mesh axes.
+    pub(crate) surface_velocity: DVec3,
+    /// Where its mass comes from, when it is dynamic.
+    pub(crate) given: Mass,
     /// Zero for bodies that forces cannot move, as are the other masses.
     pub(crate) mass: f64,
     pub(crate) inverse_mass: f64,
@@ -55,8 +80,12 @@ pub(crate) struct RigidBody {
     /// From `time` on, until `horizon` at most.
     pub(crate) flight: ConstantTwist,
     pub(crate) horizon: f64,
-    /// Changes with every flight.
+    /// Changes with every flight, and with every change from outside.
     pub(crate) version: u64,
+    /// Has it begun a flight since it was added, or changed from outside? Till then its momenta say how fast it is.
+    pub(crate) has_flown: bool,
+    /// Where a driven body is to be at the end of the next step.
+    pub(crate) target: Option<Target>,
     /// Stands still until the end of the step.
     pub(crate) held: bool,
     /// The velocity of the present flight is that of the momenta after the forces of so much time; negative where the
@@ -84,12 +113,14 @@ impl RigidBody {
             ("position", body.position),
             ("velocity", body.linear_velocity),
             ("angular velocity", body.angular_velocity),
+            ("surface velocity", body.surface_velocity),
         ];
         if let Some((name, value)) = vectors.into_iter().find(|(_, v)| !v.is_finite()) {
             return Err(bad(name, value.to_string()));
         }
-        let given = vectors[1..].iter().find(|(_, v)| *v != DVec3::ZERO);
-        if let (Kind::Static | Kind::Kinematic(_), Some(&(name, value))) = (&body.kind, given) {
+        let given = vectors[1..3].iter().find(|(_, v)| *v != DVec3::ZERO);
+        if let (Kind::Static | Kind::Kinematic(_) | Kind::Driven, Some(&(name, value))) = (&body.kind, given)
+        {
             return Err(SimulationError::VelocityWithoutMotion { body: body.name.clone(), name, value });
         }
         let q = body.orientation;
@@ -148,11 +179,11 @@ impl RigidBody {
         let rotation = DMat3::from_quat(orientation);
         let solid =
             body.solid.unwrap_or(if body.tree.is_watertight() { Solid::Filled } else { Solid::Surface });
-        let rest = ConstantTwist::try_new(position, orientation, DVec3::ZERO, DVec3::ZERO)
-            .and_then(|flight| flight.try_with_at(center))
-            .and_then(|flight| flight.try_with_reference_time(time))
-            .map_err(|_| bad("position", position.to_string()))?;
+        let rest =
+            rest(center, position, orientation, time).ok_or_else(|| bad("position", position.to_string()))?;
         let made = Self {
+            id: BodyId { place: 0, generation: 0 },
+            role: Role::Body,
             name: body.name.as_str().into(),
             tree: Arc::clone(&body.tree),
             faces,
@@ -162,6 +193,9 @@ impl RigidBody {
             radius,
             rounding: body.radius,
             damping: body.damping,
+            groups: body.groups,
+            surface_velocity: body.surface_velocity,
+            given: body.mass,
             mass,
             inverse_mass: if dynamic { 1.0 / mass } else { 0.0 },
             inertia,
@@ -179,6 +213,8 @@ impl RigidBody {
             flight: rest,
             horizon: f64::INFINITY,
             version: 0,
+            has_flown: false,
+            target: None,
             held: false,
             lead: None,
             free: false,
@@ -224,12 +260,22 @@ impl RigidBody {
     }
 
     pub(crate) fn is_kinematic(&self) -> bool {
-        matches!(self.kind, Kind::Kinematic(_))
+        matches!(self.kind, Kind::Kinematic(_) | Kind::Driven)
+    }
+
+    /// A driven body that stands still and stays there.
+    fn is_parked(&self) -> bool {
+        matches!(self.kind, Kind::Driven) && self.target.is_none() && self.stands_still()
     }
 
     /// Does it move, or may it be moved, in this step?
     pub(crate) fn is_awake(&self) -> bool {
-        (self.is_dynamic() && !self.asleep) || self.is_kinematic()
+        (self.is_dynamic() && !self.asleep) || (self.is_kinematic() && !self.is_parked())
+    }
+
+    /// How fast the surface runs, world axes.
+    pub(crate) fn surface_velocity_at(&self, orientation: DQuat) -> DVec3 {
+        orientation * self.surface_velocity
     }
 
     /// Where the flight has it at a time.
@@ -397,6 +443,7 @@ impl RigidBody {
             .with_reference_time(self.time);
         self.horizon = horizon;
         self.version += 1;
+        self.has_flown = true;
     }
 
     /// The flight with the velocities as given, for the first line of a run.
@@ -407,7 +454,7 @@ impl RigidBody {
 
     /// The velocity that a user sees: that of the last flight, or the one given before the first.
     pub(crate) fn shown_velocity(&self) -> Velocity {
-        if self.is_dynamic() && self.version == 0 && !self.asleep {
+        if self.is_dynamic() && !self.has_flown && !self.asleep {
             return self.velocity();
         }
         self.present_velocity()
@@ -430,7 +477,7 @@ impl RigidBody {
 
     /// How fast a point of this body and one of another may come together in their present flights.
     pub(crate) fn bound_approach(&self, other: &Self) -> f64 {
-        let speed = |body: &Self| if body.version == 0 { body.velocity() } else { body.shown_velocity() };
+        let speed = |body: &Self| if body.has_flown { body.shown_velocity() } else { body.velocity() };
         let (a, b) = (speed(self), speed(other));
         (a.linear - b.linear).length() + a.angular.length() * self.radius + b.angular.length() * other.radius
     }
@@ -439,6 +486,14 @@ impl RigidBody {
     pub(crate) fn query_error(&self, other: &Self, error: QueryError) -> SimulationError {
         SimulationError::Query { a: self.name.to_string(), b: other.name.to_string(), error }
     }
+}
+
+/// A flight that leads nowhere. None: numbers that are none, or too large.
+pub(crate) fn rest(center: DVec3, position: DVec3, orientation: DQuat, time: f64) -> Option<ConstantTwist> {
+    ConstantTwist::try_new(position, orientation, DVec3::ZERO, DVec3::ZERO)
+        .and_then(|flight| flight.try_with_at(center))
+        .and_then(|flight| flight.try_with_reference_time(time))
+        .ok()
 }
 
 /// Parts of a flight that are left over from the division of a step.

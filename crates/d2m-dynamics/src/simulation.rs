@@ -2,16 +2,15 @@
 
 use crate::broad_phase::Neighbors;
 use crate::contact::Material;
-use crate::faces::Faces;
 use crate::joined::Joined;
 use crate::listener::{ContactListener, Nobody};
 use crate::pairs::Pair;
 use crate::record::Recorder;
-use crate::rigid_body::RigidBody;
+use crate::rigid_body::{RigidBody, Role};
 use crate::step::Step;
 use crate::{
     Body, BodyId, ContactImpulse, Kind, MassProperties, Segment, SimulationError, SimulationOptions,
-    StepError,
+    StepError, TouchEvent,
 };
 use d2m_bvh::{MeshTree, TriMesh};
 use d2m_motion::Pose;
@@ -49,6 +48,8 @@ pub struct StepReport {
     /// natural map d |λ − P(λ − (u − b + μ |u_t| n)/d)| of a contact with the impulse λ, the relative velocity u, the least normal rate b,
     /// the projection P on Coulomb's cone and the change d of u by an impulse of one: zero where the law holds exactly.
     pub residual: f64,
+    /// Bodies that begin to touch, or do so no more, in the order of time.
+    pub touches: Vec<TouchEvent>,
 }
 
 impl StepReport {
@@ -99,8 +100,13 @@ pub struct Simulation {
     pub(crate) joints: Vec<Joined>,
     /// The place of the body that stands for the world, once a joint has asked for it.
     pub(crate) world: Option<usize>,
-    /// Bodies below this number have been checked for intersections.
-    pub(crate) checked: usize,
+    /// Bodies that are to be checked for intersections before anything flies.
+    pub(crate) unchecked: BTreeSet<usize>,
+    /// Of each place that there ever was, how many bodies have left it.
+    pub(crate) generations: Vec<u32>,
+    /// Pairs of bodies that touch, as it is reported, and what is still to be reported of them.
+    pub(crate) touching: BTreeSet<(usize, usize)>,
+    pub(crate) touches: Vec<TouchEvent>,
 }
 
 impl core::fmt::Debug for Simulation {
@@ -135,148 +141,11 @@ impl Simulation {
             greatest_energy: 0.0,
             joints: Vec::new(),
             world: None,
-            checked: 0,
+            unchecked: BTreeSet::new(),
+            generations: Vec::new(),
+            touching: BTreeSet::new(),
+            touches: Vec::new(),
         })
-    }
-
-    /// Adds a body. A body that is added later appears in the segments from the next step on.
-    ///
-    /// # Errors
-    /// Numbers that cannot be used, mass properties that are missing.
-    pub fn add(&mut self, body: &Body) -> Result<BodyId, SimulationError> {
-        let same = self.bodies.iter().find(|other| Arc::ptr_eq(&other.tree, &body.tree));
-        let faces =
-            same.map_or_else(|| Arc::new(Faces::new(body.tree.mesh())), |other| Arc::clone(&other.faces));
-        let body = RigidBody::try_new(body, faces, self.time)?;
-        let id = BodyId(self.bodies.len() as u32);
-        self.bodies.push(body);
-        Ok(id)
-    }
-
-    /// These two bodies may pass through each other.
-    pub fn ignore(&mut self, a: BodyId, b: BodyId) {
-        self.ignored.insert(key(a, b));
-    }
-
-    /// Restitution and friction of one pair, instead of what follows from its bodies.
-    ///
-    /// # Errors
-    /// A restitution outside [0, 1], a friction that is negative or not finite.
-    pub fn set_pair(
-        &mut self,
-        a: BodyId,
-        b: BodyId,
-        restitution: f64,
-        friction: f64,
-    ) -> Result<(), SimulationError> {
-        if !(0.0..=1.0).contains(&restitution) {
-            let (name, value) = ("restitution", restitution);
-            return Err(SimulationError::BadOption { name, value, wanted: "in [0, 1]" });
-        }
-        if !(friction.is_finite() && friction >= 0.0) {
-            let (name, value) = ("friction", friction);
-            return Err(SimulationError::BadOption { name, value, wanted: "not negative" });
-        }
-        self.materials.insert(key(a, b), Material { restitution, friction });
-        Ok(())
-    }
-
-    /// Restitution and friction of a pair: those of [`Self::set_pair`], else the greater restitution and the mean friction of the
-    /// two bodies.
-    ///
-    /// # Panics
-    /// If a body belongs to another simulation, with more bodies.
-    pub fn pair(&self, a: BodyId, b: BodyId) -> Material {
-        self.material(a.index(), b.index())
-    }
-
-    /// A force through the center of mass and a torque, world axes, over the next step; gravity comes on top. Wakes the body.
-    ///
-    /// # Errors
-    /// [`SimulationError::TooLarge`]: a force or torque that is not finite, or that gives a dynamic body a momentum or velocity above
-    /// [`Self::LARGEST`] within a unit of time. Nothing changes then.
-    pub fn set_force(&mut self, body: BodyId, force: DVec3, torque: DVec3) -> Result<(), SimulationError> {
-        let body = &mut self.bodies[body.index()];
-        body.check_momenta(["force", "torque"], [force, torque])?;
-        (body.force, body.torque) = (force, torque);
-        wake(body, self.time);
-        Ok(())
-    }
-
-    /// Adds an impulse at the center of mass and an angular impulse, world axes. Wakes the body.
-    ///
-    /// # Errors
-    /// [`SimulationError::TooLarge`]: an impulse that is not finite, or after which a dynamic body has a momentum or velocity above
-    /// [`Self::LARGEST`]. Nothing changes then.
-    pub fn apply_impulse(
-        &mut self,
-        body: BodyId,
-        impulse: DVec3,
-        angular: DVec3,
-    ) -> Result<(), SimulationError> {
-        let body = &mut self.bodies[body.index()];
-        body.check_momenta(["impulse", "angular impulse"], [impulse, angular])?;
-        if body.is_dynamic() {
-            body.momentum += impulse;
-            body.angular_momentum += angular;
-        }
-        wake(body, self.time);
-        Ok(())
-    }
-
-    /// Adds an impulse that acts at a point, both in world axes: one at the center of mass with the angular impulse (point − center) ×
-    /// impulse. Wakes the body.
-    ///
-    /// # Errors
-    /// As [`Self::apply_impulse`].
-    ///
-    /// ```
-    /// # use d2m_bvh::MeshTree;
-    /// # use d2m_dynamics::{Body, Mass, Simulation, SimulationOptions};
-    /// # use glam::DVec3;
-    /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
-    /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
-    /// let cube = Body::new("cube", cube).with_mass(Mass::Total(1.0));
-    /// let cube = simulation.add(&cube.with_position(DVec3::X * 3.0))?;
-    /// simulation.apply_impulse_at(cube, DVec3::Y, DVec3::new(3.5, 0.0, 0.0))?;
-    /// simulation.step()?;
-    /// // Moments of inertia 1/6.
-    /// assert!((simulation.linear_velocity(cube) - DVec3::Y).length() < 1e-12);
-    /// assert!((simulation.angular_velocity(cube) - DVec3::Z * 3.0).length() < 1e-12);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn apply_impulse_at(
-        &mut self,
-        body: BodyId,
-        impulse: DVec3,
-        point: DVec3,
-    ) -> Result<(), SimulationError> {
-        let arm = point - self.position(body);
-        self.apply_impulse(body, impulse, arm.cross(impulse))
-    }
-
-    /// The body is simulated again if it sleeps. It falls asleep again where it stays at rest.
-    ///
-    /// ```
-    /// # use d2m_bvh::MeshTree;
-    /// # use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions};
-    /// # use glam::DVec3;
-    /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
-    /// # let mut simulation = Simulation::new(SimulationOptions::default())?;
-    /// # let floor = Body::new("floor", Arc::clone(&cube)).with_kind(Kind::Static);
-    /// # simulation.add(&floor.with_position(DVec3::Y * -1.001))?;
-    /// let resting = simulation.add(&Body::new("resting", cube))?;
-    /// while !simulation.is_asleep(resting) {
-    ///     simulation.step()?;
-    /// }
-    /// simulation.wake(resting);
-    /// assert!(!simulation.is_asleep(resting));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn wake(&mut self, body: BodyId) {
-        wake(&mut self.bodies[body.index()], self.time);
     }
 
     /// Advances by one step: to the next multiple of [`SimulationOptions::step`].
@@ -366,10 +235,10 @@ impl Simulation {
 
     /// How many bodies there are.
     pub fn len(&self) -> usize {
-        self.bodies.len() - usize::from(self.world.is_some())
+        self.bodies.iter().filter(|body| body.role == Role::Body).count()
     }
 
-    /// All bodies, in the order in which they were added.
+    /// All bodies, in the order of their places: that in which they were added, as long as none was removed.
     ///
     /// ```
     /// # use d2m_bvh::MeshTree;
@@ -386,8 +255,9 @@ impl Simulation {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn ids(&self) -> impl Iterator<Item = BodyId> + use<> {
-        let world = self.world;
-        (0..self.bodies.len() as u32).map(BodyId).filter(move |id| Some(id.index()) != world)
+        let ids: Vec<BodyId> =
+            self.bodies.iter().filter(|body| body.role == Role::Body).map(|body| body.id).collect();
+        ids.into_iter()
     }
 
     /// True if the simulation has no body.
@@ -397,24 +267,24 @@ impl Simulation {
 
     /// The body's name.
     pub fn name(&self, body: BodyId) -> &str {
-        &self.bodies[body.index()].name
+        &self.bodies[self.place(body)].name
     }
 
     /// Mass properties; `None` of static and kinematic bodies.
     pub fn mass_properties(&self, body: BodyId) -> Option<MassProperties> {
-        let body = &self.bodies[body.index()];
+        let body = &self.bodies[self.place(body)];
         let (mass, center, inertia) = (body.mass, body.center, body.inertia);
         body.is_dynamic().then_some(MassProperties { mass, center, inertia })
     }
 
     /// The point of the mesh frame whose position is reported: the center of mass.
     pub fn center(&self, body: BodyId) -> DVec3 {
-        self.bodies[body.index()].center
+        self.bodies[self.place(body)].center
     }
 
     /// No point of the body is further from its center of mass.
     pub fn radius(&self, body: BodyId) -> f64 {
-        self.bodies[body.index()].radius
+        self.bodies[self.place(body)].radius
     }
 
     /// World position of the center of mass.
@@ -429,47 +299,53 @@ impl Simulation {
 
     /// Pose of the mesh frame; its reference point is the center of mass.
     pub fn pose(&self, body: BodyId) -> Pose {
-        self.bodies[body.index()].pose_at(self.time)
+        self.bodies[self.place(body)].pose_at(self.time)
     }
 
     /// Velocity of the center of mass in the last flight.
     pub fn linear_velocity(&self, body: BodyId) -> DVec3 {
-        self.bodies[body.index()].shown_velocity().linear
+        self.bodies[self.place(body)].shown_velocity().linear
     }
 
     /// Angular velocity in the last flight, world axes.
     pub fn angular_velocity(&self, body: BodyId) -> DVec3 {
-        self.bodies[body.index()].shown_velocity().angular
+        self.bodies[self.place(body)].shown_velocity().angular
     }
 
     /// Angular momentum about the center of mass, world axes.
     pub fn angular_momentum(&self, body: BodyId) -> DVec3 {
-        self.bodies[body.index()].angular_momentum
+        self.bodies[self.place(body)].angular_momentum
     }
 
     /// Does the body sleep?
     pub fn is_asleep(&self, body: BodyId) -> bool {
-        self.bodies[body.index()].asleep
+        self.bodies[self.place(body)].asleep
     }
 
     /// May these two meet, so that the simulation considers them?
     pub(crate) fn meets(&self, a: usize, b: usize) -> bool {
-        (self.bodies[a].is_dynamic() || self.bodies[b].is_dynamic())
-            && ![Some(a), Some(b)].contains(&self.world.or(Some(usize::MAX)))
+        let (one, two) = (&self.bodies[a], &self.bodies[b]);
+        (one.is_dynamic() || two.is_dynamic())
+            && (one.role, two.role) == (Role::Body, Role::Body)
+            && one.groups.admit(two.groups)
             && !self.ignored.contains(&(a.min(b), a.max(b)))
     }
 
-    /// The body that stands for the world.
+    /// The place of the body that stands for the world.
     pub(crate) fn world(&mut self) -> Result<usize, SimulationError> {
+        self.world_at(None)
+    }
+
+    /// As [`Self::world`], at this place if there is none yet, and the place is free.
+    pub(crate) fn world_at(&mut self, place: Option<usize>) -> Result<usize, SimulationError> {
         if let Some(world) = self.world {
             return Ok(world);
         }
-        let corners = vec![DVec3::ZERO, DVec3::X * self.options.gap, DVec3::Y * self.options.gap];
-        let mesh = TriMesh::try_new(corners, vec![[0, 1, 2]]);
         let wanted = "a length that is not lost";
         let bad = |_| SimulationError::BadOption { name: "gap", value: self.options.gap, wanted };
-        let tree = Arc::new(MeshTree::new(mesh.map_err(bad)?));
-        let id = self.add(&Body::new("the world", tree).with_kind(Kind::Static))?;
+        let tree = Arc::new(MeshTree::new(TriMesh::point(DVec3::ZERO).map_err(bad)?));
+        let id = self.add_at(&Body::new("the world", tree).with_kind(Kind::Static), place)?;
+        self.bodies[id.index()].role = Role::World;
         self.world = Some(id.index());
         Ok(id.index())
     }
@@ -481,16 +357,4 @@ impl Simulation {
             friction: 0.5 * (one.friction + two.friction),
         })
     }
-}
-
-fn key(a: BodyId, b: BodyId) -> (usize, usize) {
-    (a.index().min(b.index()), a.index().max(b.index()))
-}
-
-fn wake(body: &mut RigidBody, time: f64) {
-    if body.asleep {
-        body.asleep = false;
-        body.time = time;
-    }
-    body.quiet = 0.0;
 }

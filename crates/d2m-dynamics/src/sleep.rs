@@ -3,7 +3,8 @@
 use crate::contact::ContactPoint;
 use crate::rigid_body::RigidBody;
 use crate::velocity::Velocity;
-use crate::{BodyId, Simulation, SimulationOptions};
+use crate::{Simulation, SimulationOptions};
+use glam::DVec3;
 
 /// How long, in seconds of gravity's scale or plain units of time without gravity.
 const QUIET_TIME: f64 = 0.5;
@@ -63,7 +64,11 @@ impl Simulation {
                 continue;
             }
             let dynamic = |i: usize| self.bodies[i].is_dynamic();
-            let moving = |i: usize| self.bodies[i].is_kinematic() && self.bodies[i].surface_speed() > 0.0;
+            let moving = |i: usize| {
+                let body = &self.bodies[i];
+                let runs = body.surface_velocity != DVec3::ZERO;
+                runs || (body.is_kinematic() && body.surface_speed() > 0.0)
+            };
             if dynamic(a) && dynamic(b) {
                 let (i, j) = (root(&mut parent, a), root(&mut parent, b));
                 parent[i.max(j)] = i.min(j);
@@ -82,7 +87,7 @@ impl Simulation {
             let top = root(&mut parent, i);
             if body.is_dynamic() && !body.asleep && held_up[i] && !awake[top] {
                 sleep(body);
-                self.recorder.change(BodyId(i as u32), body.flight);
+                self.recorder.change(body.id, body.flight);
             }
         }
     }

@@ -1,16 +1,24 @@
 //! The state of a simulation apart from its meshes, to be kept and restored.
 
+use crate::body::{Damping, Groups, Kind};
 use crate::contact::{ContactPoint, Material, tangents};
+use crate::joined::Joined;
 use crate::pairs::Pair;
-use crate::{Simulation, SimulationError, SimulationOptions};
+use crate::rigid_body::{RigidBody, Role, Target};
+use crate::{BodyId, Motion, Simulation, SimulationError, SimulationOptions};
+use d2m_bvh::{MeshTree, Solid};
 use d2m_feature::FeaturePair;
 use d2m_motion::ConstantTwist;
 use glam::{DQuat, DVec3};
+use std::collections::BTreeSet;
+use std::sync::Arc;
 
-/// Everything that changes in a simulation: poses, momenta, flights, impulses of resting contacts, who sleeps.
+/// Everything that changes in a simulation: poses, momenta, flights, impulses of resting contacts, who sleeps and who touches, joints, kinds,
+/// materials, groups, which pairs are ignored.
 ///
-/// Promise: [`Simulation::restore`] followed by the same steps gives the same bits. Meshes, masses and motions are not in
-/// it: it belongs to a simulation with the same bodies. With the feature `serde` it can be written in any format.
+/// Promise: [`Simulation::restore`] followed by the same steps gives the same bits. Meshes and masses are not in it: it belongs to a
+/// simulation that has its bodies, and perhaps others. With the feature `serde` it can be written in any format; motions of kinematic bodies
+/// are not written, those of the simulation go on.
 ///
 /// ```
 /// use d2m_bvh::MeshTree;
@@ -34,15 +42,95 @@ pub struct Snapshot {
     options: SimulationOptions,
     time: f64,
     steps: u64,
-    checked: usize,
     greatest_energy: f64,
+    world: Option<usize>,
+    /// By ascending places.
     bodies: Vec<BodyState>,
     pairs: Vec<PairState>,
+    joints: Vec<Joined>,
+    ignored: Vec<[usize; 2]>,
+    materials: Vec<PairMaterial>,
+    touching: Vec<[usize; 2]>,
+    unchecked: Vec<usize>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct PairMaterial {
+    bodies: [usize; 2],
+    restitution: f64,
+    friction: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+enum KindState {
+    Dynamic,
+    Static,
+    Kinematic,
+    Driven,
+}
+
+/// What is held of a body besides its state; lost when a snapshot is written.
+#[derive(Clone, Default)]
+struct Held(Option<HeldBody>);
+
+/// What proofs about a body are about, and the motion that it follows.
+#[derive(Clone)]
+struct HeldBody {
+    tree: Arc<MeshTree>,
+    center: DVec3,
+    rounding: f64,
+    solid: Solid,
+    motion: Option<Motion>,
+}
+
+/// Snapshots are compared by their states.
+impl PartialEq for Held {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl core::fmt::Debug for Held {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_tuple("Held").field(&self.0.is_some()).finish()
+    }
+}
+
+impl Held {
+    fn of(body: &RigidBody) -> Self {
+        let motion = match &body.kind {
+            Kind::Kinematic(motion) => Some(Arc::clone(motion)),
+            _ => None,
+        };
+        let (tree, center) = (Arc::clone(&body.tree), body.center);
+        Self(Some(HeldBody { tree, center, rounding: body.rounding, solid: body.solid, motion }))
+    }
+
+    /// Is this the body that the state was taken of?
+    fn is_of(&self, body: &RigidBody) -> bool {
+        self.0.as_ref().is_some_and(|held| {
+            Arc::ptr_eq(&held.tree, &body.tree)
+                && (held.center, held.rounding) == (body.center, body.rounding)
+                && held.solid == body.solid
+        })
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct BodyState {
+    id: BodyId,
+    kind: KindState,
+    restitution: f64,
+    friction: f64,
+    damping: Damping,
+    groups: Groups,
+    surface_velocity: DVec3,
+    target: Option<Target>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    held: Held,
     time: f64,
     position: DVec3,
     orientation: DQuat,
@@ -54,6 +142,7 @@ struct BodyState {
     /// None: without end.
     horizon: Option<f64>,
     version: u64,
+    has_flown: bool,
     asleep: bool,
     quiet: f64,
     slowest: f64,
@@ -91,6 +180,7 @@ struct ContactState {
     point: DVec3,
     restitution: f64,
     friction: f64,
+    running: [f64; 2],
     impulse: f64,
     sliding: [f64; 2],
 }
@@ -98,7 +188,140 @@ struct ContactState {
 impl Simulation {
     /// The state between two steps.
     pub fn snapshot(&self) -> Snapshot {
-        let bodies = self.bodies.iter().map(|body| BodyState {
+        let bodies = self.bodies.iter().filter(|body| body.role != Role::Vacant).map(BodyState::of).collect();
+        let pairs = self.pairs.iter().map(|(&(a, b), pair)| PairState {
+            bodies: [a, b],
+            gap: pair.gap,
+            nearest: pair.nearest,
+            reach: pair.reach,
+            contacts: pair.contacts.iter().map(ContactState::of).collect(),
+        });
+        let materials = self.materials.iter().map(|(&(a, b), material)| PairMaterial {
+            bodies: [a, b],
+            restitution: material.restitution,
+            friction: material.friction,
+        });
+        let listed = |pairs: &BTreeSet<(usize, usize)>| pairs.iter().map(|&(a, b)| [a, b]).collect();
+        Snapshot {
+            options: self.options,
+            time: self.time,
+            steps: self.steps,
+            greatest_energy: self.greatest_energy,
+            world: self.world,
+            bodies,
+            pairs: pairs.collect(),
+            joints: self.joints.clone(),
+            ignored: listed(&self.ignored),
+            materials: materials.collect(),
+            touching: listed(&self.touching),
+            unchecked: self.unchecked.iter().copied().collect(),
+        }
+    }
+
+    /// Goes back to a state of this simulation, or of one with the same bodies. Bodies and joints that were added since are gone, joints that
+    /// were taken out are there again; names of bodies that are gone never mean others. Segments begin anew there.
+    ///
+    /// A state of other bodies than the snapshot was taken of, or one that was written and read, is checked for intersections.
+    ///
+    /// # Errors
+    /// A body of the snapshot that was removed since; settings or numbers that cannot be used; bodies that intersect. Nothing changes then.
+    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), SimulationError> {
+        snapshot.options.check()?;
+        let mut next = self.clone();
+        if snapshot.world.is_some() {
+            next.world_at(snapshot.world)?;
+        }
+        let mut is_known = true;
+        for state in &snapshot.bodies {
+            let place = state.id.index();
+            let is_world = snapshot.world == Some(place);
+            let missing = SimulationError::Snapshot { place };
+            let own = next.bodies.get_mut(place).filter(|own| {
+                own.role == if is_world { Role::World } else { Role::Body }
+                    && (is_world || own.id == state.id)
+            });
+            let own = own.ok_or(missing)?;
+            *own = state.restored(own)?;
+            is_known &= is_world || state.held.is_of(own);
+        }
+        let is_kept = |place: usize| {
+            snapshot.bodies.binary_search_by_key(&place, |state: &BodyState| state.id.index()).is_ok()
+        };
+        for place in (0..next.bodies.len()).rev().filter(|&place| !is_kept(place)) {
+            // Free places at the end go with the last one that is cleared.
+            let role = next.bodies.get(place).map_or(Role::Vacant, |body| body.role);
+            if role == Role::Body {
+                next.generations[place] += 1;
+            }
+            if role != Role::Vacant {
+                next.clear_out(place);
+            }
+        }
+        let places = next.bodies.len();
+        let is_whole = |&[a, b]: &[usize; 2]| a < b && is_kept(a) && is_kept(b);
+        let joined = |joint: &&Joined| joint.bodies.iter().any(|&place| place >= places);
+        if let Some(joint) = snapshot.joints.iter().filter(|joint| !joint.is_gone()).find(joined) {
+            return Err(SimulationError::Snapshot { place: joint.bodies[0].max(joint.bodies[1]) });
+        }
+        let taken =
+            |pairs: &[[usize; 2]]| pairs.iter().filter(|p| is_whole(p)).map(|&[a, b]| (a, b)).collect();
+        next.ignored = taken(&snapshot.ignored);
+        next.touching = taken(&snapshot.touching);
+        next.materials = snapshot
+            .materials
+            .iter()
+            .filter(|pair| is_whole(&pair.bodies))
+            .map(|&PairMaterial { bodies: [a, b], restitution, friction }| {
+                ((a, b), Material { restitution, friction })
+            })
+            .collect();
+        next.pairs = snapshot
+            .pairs
+            .iter()
+            .filter(|pair| is_whole(&pair.bodies))
+            .map(|state| {
+                let [a, b] = state.bodies;
+                let mut pair = Pair::new(state.gap);
+                (pair.nearest, pair.reach) = (state.nearest, state.reach);
+                pair.contacts = state.contacts.iter().map(|c| c.restored(a, b, state.gap)).collect();
+                ((a, b), Box::new(pair))
+            })
+            .collect();
+        next.joints.clone_from(&snapshot.joints);
+        next.unchecked = snapshot.unchecked.iter().copied().filter(|&place| is_kept(place)).collect();
+        next.options = snapshot.options;
+        next.world = snapshot.world;
+        (next.time, next.steps) = (snapshot.time, snapshot.steps);
+        next.greatest_energy = snapshot.greatest_energy;
+        next.neighbors = crate::broad_phase::Neighbors::default();
+        next.recorder = crate::record::Recorder::default();
+        next.touches.clear();
+        if !is_known {
+            next.check_all()?;
+        }
+        *self = next;
+        Ok(())
+    }
+}
+
+impl BodyState {
+    fn of(body: &RigidBody) -> Self {
+        let kind = match &body.kind {
+            Kind::Dynamic => KindState::Dynamic,
+            Kind::Static => KindState::Static,
+            Kind::Kinematic(_) => KindState::Kinematic,
+            Kind::Driven => KindState::Driven,
+        };
+        Self {
+            id: body.id,
+            kind,
+            restitution: body.restitution,
+            friction: body.friction,
+            damping: body.damping,
+            groups: body.groups,
+            surface_velocity: body.surface_velocity,
+            target: body.target,
+            held: Held::of(body),
             time: body.time,
             position: body.position,
             orientation: body.orientation,
@@ -115,89 +338,57 @@ impl Simulation {
             },
             horizon: body.horizon.is_finite().then_some(body.horizon),
             version: body.version,
+            has_flown: body.has_flown,
             asleep: body.asleep,
             quiet: body.quiet,
             slowest: body.slowest,
             gained: body.gained,
-        });
-        let pairs = self.pairs.iter().map(|(&(a, b), pair)| PairState {
-            bodies: [a, b],
-            gap: pair.gap,
-            nearest: pair.nearest,
-            reach: pair.reach,
-            contacts: pair.contacts.iter().map(ContactState::of).collect(),
-        });
-        Snapshot {
-            options: self.options,
-            time: self.time,
-            steps: self.steps,
-            checked: self.checked,
-            greatest_energy: self.greatest_energy,
-            bodies: bodies.collect(),
-            pairs: pairs.collect(),
         }
     }
 
-    /// Goes back to a state of this simulation, or of one with the same bodies. Segments begin anew there.
-    ///
-    /// # Errors
-    /// Another number of bodies, settings or numbers that cannot be used.
-    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), SimulationError> {
-        let (found, expected) = (snapshot.bodies.len(), self.bodies.len());
-        if found != expected {
-            return Err(SimulationError::Snapshot { found, expected });
+    /// The body in this state.
+    fn restored(&self, own: &RigidBody) -> Result<RigidBody, SimulationError> {
+        let bad = |name: &'static str, value: String| SimulationError::BadBody {
+            body: own.name.to_string(),
+            name,
+            value,
+        };
+        let motion = self.held.0.as_ref().and_then(|held| held.motion.clone());
+        let kind = match (self.kind, motion, &own.kind) {
+            (KindState::Dynamic, ..) => Kind::Dynamic,
+            (KindState::Static, ..) => Kind::Static,
+            (KindState::Driven, ..) => Kind::Driven,
+            (KindState::Kinematic, Some(motion), _) => Kind::Kinematic(motion),
+            (KindState::Kinematic, None, Kind::Kinematic(motion)) => Kind::Kinematic(Arc::clone(motion)),
+            (KindState::Kinematic, None, _) => return Err(bad("motion", "of a snapshot".to_owned())),
+        };
+        let mut body = own.clone();
+        let is_other = core::mem::discriminant(&kind) != core::mem::discriminant(&own.kind);
+        if is_other {
+            // What a motion of another time would place is placed by the snapshot.
+            let rebuilt = if matches!(kind, Kind::Kinematic(_)) { Kind::Driven } else { kind.clone() };
+            body = own.with_kind(rebuilt, self.time)?;
         }
-        snapshot.options.check()?;
-        let mut bodies = self.bodies.clone();
-        for (body, state) in bodies.iter_mut().zip(&snapshot.bodies) {
-            let flight = &state.flight;
-            let bad = |_| SimulationError::BadBody {
-                body: body.name.to_string(),
-                name: "flight of the snapshot",
-                value: format!("{flight:?}"),
-            };
-            body.flight =
-                ConstantTwist::try_new(flight.position, flight.orientation, flight.linear, flight.angular)
-                    .and_then(|twist| twist.try_with_at(body.center))
-                    .and_then(|twist| twist.try_with_reference_time(flight.time))
-                    .map_err(bad)?;
-            body.time = state.time;
-            body.position = state.position;
-            body.orientation = state.orientation;
-            body.momentum = state.momentum;
-            body.angular_momentum = state.angular_momentum;
-            body.force = state.force;
-            body.torque = state.torque;
-            body.horizon = state.horizon.unwrap_or(f64::INFINITY);
-            body.version = state.version;
-            body.asleep = state.asleep;
-            body.quiet = state.quiet;
-            body.slowest = state.slowest;
-            body.gained = state.gained;
-            body.held = false;
-        }
-        let whole =
-            |pair: &&PairState| pair.bodies.iter().all(|&i| i < expected) && pair.bodies[0] < pair.bodies[1];
-        self.pairs = snapshot
-            .pairs
-            .iter()
-            .filter(whole)
-            .map(|state| {
-                let [a, b] = state.bodies;
-                let mut pair = Pair::new(state.gap);
-                (pair.nearest, pair.reach) = (state.nearest, state.reach);
-                pair.contacts = state.contacts.iter().map(|c| c.restored(a, b, state.gap)).collect();
-                ((a, b), Box::new(pair))
-            })
-            .collect();
-        self.bodies = bodies;
-        self.options = snapshot.options;
-        (self.time, self.steps) = (snapshot.time, snapshot.steps);
-        self.checked = snapshot.checked.min(expected);
-        self.greatest_energy = snapshot.greatest_energy;
-        self.neighbors = crate::broad_phase::Neighbors::default();
-        self.recorder = crate::record::Recorder::default();
-        Ok(())
+        body.kind = kind;
+        let flight = &self.flight;
+        body.flight =
+            ConstantTwist::try_new(flight.position, flight.orientation, flight.linear, flight.angular)
+                .and_then(|twist| twist.try_with_at(body.center))
+                .and_then(|twist| twist.try_with_reference_time(flight.time))
+                .map_err(|_| bad("flight of the snapshot", format!("{flight:?}")))?;
+        (body.restitution, body.friction) = (self.restitution, self.friction);
+        (body.damping, body.groups) = (self.damping, self.groups);
+        (body.surface_velocity, body.target) = (self.surface_velocity, self.target);
+        body.time = self.time;
+        (body.position, body.orientation) = (self.position, self.orientation);
+        (body.momentum, body.angular_momentum) = (self.momentum, self.angular_momentum);
+        (body.force, body.torque) = (self.force, self.torque);
+        body.horizon = self.horizon.unwrap_or(f64::INFINITY);
+        (body.version, body.has_flown) = (self.version, self.has_flown);
+        (body.asleep, body.quiet, body.slowest) = (self.asleep, self.quiet, self.slowest);
+        body.gained = self.gained;
+        (body.held, body.free, body.lead) = (false, false, None);
+        Ok(body)
     }
 }
 
@@ -212,6 +403,7 @@ impl ContactState {
             point: contact.point,
             restitution: contact.material.restitution,
             friction: contact.material.friction,
+            running: contact.running,
             impulse: contact.impulse,
             sliding: contact.sliding,
         }
@@ -231,6 +423,7 @@ impl ContactState {
             arm_b: self.arm_b,
             point: self.point,
             material: Material { restitution: self.restitution, friction: self.friction },
+            running: self.running,
             row: None,
             impulse: self.impulse,
             sliding: self.sliding,

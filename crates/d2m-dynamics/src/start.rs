@@ -4,8 +4,9 @@ use crate::broad_phase::{Aabb, meeting};
 use crate::contact::{Accuracy, ContactPoint, SolverBody, Start, System};
 use crate::pairs::{Pair, distance_of, measure};
 use crate::rigid_body::RigidBody;
+use crate::step::are_spheres_apart;
 use crate::velocity::Velocity;
-use crate::{BodyId, Simulation, SimulationError, StepError};
+use crate::{Simulation, SimulationError, StepError};
 use d2m_bvh::{PairCache, StartState};
 use glam::{DMat3, DVec3};
 
@@ -19,34 +20,43 @@ const ROUNDING: f64 = 1.0 / (1u64 << 40) as f64;
 /// Rounds in which bodies that touch are parted: each may push others together.
 const MOST_ROUNDS: u32 = 4;
 
+/// How two bodies are to each other before anything flies.
+enum Placed {
+    /// Proven apart; by less than the gap, where it is said.
+    Apart(Option<f64>),
+    Touching(Touch),
+}
+
 /// Two bodies that share points, of which one could be moved away.
 struct Touch {
     pair: (usize, usize),
     /// Where they touch, with how far apart they are along the normals.
     contacts: Vec<ContactPoint>,
+    /// A point that they share, about.
+    point: DVec3,
 }
 
 impl Simulation {
-    /// Bodies added since the last step must not intersect any other. Those that touch are parted by a rounding, from where they move on
-    /// to the gap.
+    /// Bodies added, or changed from outside, since the last step must not intersect any other. Those that touch are parted by a rounding,
+    /// from where they move on to the gap.
     pub(crate) fn check_start(&mut self) -> Result<(), StepError> {
-        let first = self.checked;
         for round in 0.. {
             let mut touching = Vec::new();
-            for (a, b) in self.near_since(first) {
-                if let Some(touch) = self.check_pair(a, b, round == MOST_ROUNDS)? {
+            for (a, b) in self.near_unchecked() {
+                let placed = self.placed(a, b)?;
+                if let Some(touch) = self.admit_placed((a, b), placed, round == MOST_ROUNDS)? {
                     touching.push(touch);
                 }
             }
             if touching.is_empty() {
                 break;
             }
-            self.part(first, &touching);
+            self.part(&touching);
         }
-        self.checked = self.bodies.len();
+        let unchecked = core::mem::take(&mut self.unchecked);
         if self.recorder.has_begun() {
-            for k in (first..self.bodies.len()).filter(|&k| Some(k) != self.world) {
-                self.recorder.change(BodyId(k as u32), self.bodies[k].flight);
+            for k in unchecked.into_iter().filter(|&k| Some(k) != self.world) {
+                self.recorder.change(self.bodies[k].id, self.bodies[k].flight);
             }
         } else {
             let flights = self.ids().map(|id| (id, self.bodies[id.index()].first_flight()));
@@ -55,48 +65,107 @@ impl Simulation {
         Ok(())
     }
 
-    /// The pairs with a body from `first` on that may be closer than the gap, in the order of that body.
-    fn near_since(&self, first: usize) -> Vec<(usize, usize)> {
-        let mut near = Vec::new();
-        if first < self.bodies.len() {
-            let gap = self.options.gap;
-            let boxes: Vec<Aabb> =
-                self.bodies.iter().map(|body| Aabb::posed(body, &body.pose_at(self.time), gap)).collect();
-            meeting(&boxes, |a, b| {
-                if b >= first && self.meets(a, b) {
-                    near.push((b, a));
-                }
-            });
-            near.sort_unstable();
+    /// The pairs with a body that is not checked yet and that may be closer than the gap, in the order of the second body.
+    fn near_unchecked(&self) -> Vec<(usize, usize)> {
+        if self.unchecked.is_empty() {
+            return Vec::new();
         }
+        self.near_pairs(|a, b| self.unchecked.contains(&a) || self.unchecked.contains(&b))
+    }
+
+    /// The pairs that meet, are wanted, and may be closer than the gap, in the order of the second body.
+    fn near_pairs(&self, wanted: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
+        let gap = self.options.gap;
+        let boxes: Vec<Aabb> =
+            self.bodies.iter().map(|body| Aabb::posed(body, &body.pose_at(self.time), gap)).collect();
+        let mut near = Vec::new();
+        meeting(&boxes, |a, b| {
+            if wanted(a, b) && self.meets(a, b) {
+                near.push((b, a));
+            }
+        });
+        near.sort_unstable();
         near.into_iter().map(|(b, a)| (a, b)).collect()
     }
 
+    /// Does this body intersect no other? It may touch them.
+    ///
+    /// # Errors
+    /// [`SimulationError::Intersecting`], with the one that it intersects.
+    pub(crate) fn check_place(&self, place: usize) -> Result<(), SimulationError> {
+        let (gap, now) = (self.options.gap, self.time);
+        let body = &self.bodies[place];
+        let own = Aabb::posed(body, &body.pose_at(now), gap);
+        for (other, two) in self.bodies.iter().enumerate().filter(|(other, _)| *other != place) {
+            let is_near = self.meets(place, other)
+                && !are_spheres_apart(body, two, now, now, gap)
+                && own.may_meet(&Aabb::posed(two, &two.pose_at(now), gap));
+            if is_near {
+                self.placed(place.min(other), place.max(other))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Is no pair of checked bodies proven to be anything but apart? What is not checked yet is so by the next step.
+    ///
+    /// # Errors
+    /// [`SimulationError::Intersecting`].
+    pub(crate) fn check_all(&self) -> Result<(), SimulationError> {
+        let is_checked = |a: usize, b: usize| !(self.unchecked.contains(&a) || self.unchecked.contains(&b));
+        self.near_pairs(is_checked).into_iter().try_for_each(|(a, b)| self.placed(a, b).map(|_| ()))
+    }
+
     /// Pairs that start closer than the gap keep what they have; those that touch are returned, unless this is the `last` look at them.
-    fn check_pair(&mut self, a: usize, b: usize, last: bool) -> Result<Option<Touch>, SimulationError> {
+    fn admit_placed(
+        &mut self,
+        (a, b): (usize, usize),
+        placed: Placed,
+        last: bool,
+    ) -> Result<Option<Touch>, SimulationError> {
+        match placed {
+            Placed::Apart(within) => {
+                // A pair that has been parted goes on to the gap.
+                if let Some(distance) = within
+                    && !self.pairs.contains_key(&(a, b))
+                {
+                    self.pairs.insert((a, b), Box::new(Pair::new(distance)));
+                }
+                Ok(None)
+            }
+            Placed::Touching(touch) if last => Err(self.intersecting((a, b), touch.point)),
+            Placed::Touching(touch) => {
+                self.pairs.insert((a, b), Box::new(Pair::new(self.options.gap)));
+                Ok(Some(touch))
+            }
+        }
+    }
+
+    /// How two bodies are to each other.
+    fn placed(&self, a: usize, b: usize) -> Result<Placed, SimulationError> {
         let gap = self.options.gap;
         let (one, two) = (&self.bodies[a], &self.bodies[b]);
         let poses = [one, two].map(|body| body.pose_at(self.time));
         let found = distance_of([one, two], poses, gap, &mut PairCache::new());
         let found = found.map_err(|error| one.query_error(two, error))?;
-        let Some(found) = found else { return Ok(None) };
+        let Some(found) = found else { return Ok(Placed::Apart(None)) };
         // Of round bodies that touch rounding decides whether they are apart.
         let rounded = ROUNDING * (one.rounding + two.rounding);
         if found.state == StartState::Apart && found.lower >= rounded {
-            // A pair that has been parted goes on to the gap.
-            if found.lower < gap && !self.pairs.contains_key(&(a, b)) {
-                self.pairs.insert((a, b), Box::new(Pair::new(found.lower)));
-            }
-            return Ok(None);
+            return Ok(Placed::Apart((found.lower < gap).then_some(found.lower)));
         }
-        let touch = if last || found.state == StartState::Contained { None } else { self.touch(a, b) };
-        if touch.is_some() {
-            self.pairs.insert((a, b), Box::new(Pair::new(gap)));
-            return Ok(touch);
+        let point = 0.5 * (found.point_a + found.point_b);
+        let contacts = if found.state == StartState::Contained { None } else { self.touch_contacts(a, b) };
+        match contacts {
+            Some(contacts) => Ok(Placed::Touching(Touch { pair: (a, b), contacts, point })),
+            None => Err(self.intersecting((a, b), point)),
         }
-        let (point, depth) = (0.5 * (found.point_a + found.point_b), self.depth(a, b));
+    }
+
+    fn intersecting(&self, (a, b): (usize, usize), point: DVec3) -> SimulationError {
+        let depth = self.depth(a, b);
         let (a, b) = (self.bodies[a].name.to_string(), self.bodies[b].name.to_string());
-        Err(SimulationError::Intersecting { a, b, depth, point })
+        SimulationError::Intersecting { a, b, depth, point }
     }
 
     /// The distance of two bodies when the second one is moved so; none: not proven apart.
@@ -110,7 +179,7 @@ impl Simulation {
     }
 
     /// The contacts of two bodies that touch up to rounding; none: they overlap.
-    fn touch(&self, a: usize, b: usize) -> Option<Touch> {
+    fn touch_contacts(&self, a: usize, b: usize) -> Option<Vec<ContactPoint>> {
         let bodies = [&self.bodies[a], &self.bodies[b]];
         let trial = TRIAL * size(bodies);
         // Where it comes furthest away.
@@ -129,7 +198,7 @@ impl Simulation {
         let contacts: Vec<ContactPoint> = found.contacts.iter().map(back).collect();
         let deepest = contacts.iter().map(|c| -c.distance).fold(f64::NEG_INFINITY, f64::max);
         let is_touch = !contacts.is_empty() && deepest <= ROUNDING * size(bodies);
-        is_touch.then_some(Touch { pair: (a, b), contacts })
+        is_touch.then_some(contacts)
     }
 
     /// About how far the second body would have to be moved to come free, along the best of some directions.
@@ -152,12 +221,12 @@ impl Simulation {
         ways(bodies).iter().map(along).fold(f64::INFINITY, f64::min)
     }
 
-    /// Moves new bodies by the least that parts those that touch: the solution of contacts, with ways for velocities.
-    fn part(&mut self, first: usize, touching: &[Touch]) {
+    /// Moves unchecked bodies by the least that parts those that touch: the solution of contacts, with ways for velocities.
+    fn part(&mut self, touching: &[Touch]) {
         let contacts: Vec<ContactPoint> =
             touching.iter().flat_map(|touch| touch.contacts.iter().copied()).collect();
         let body = |(i, body): (usize, &RigidBody)| {
-            let is_free = i >= first && body.is_dynamic();
+            let is_free = self.unchecked.contains(&i) && body.is_dynamic();
             let inverse_mass = if is_free { body.inverse_mass } else { 0.0 };
             let inverse_inertia =
                 if is_free { body.inverse_inertia_at(body.orientation) } else { DMat3::ZERO };
@@ -177,9 +246,10 @@ impl Simulation {
             Accuracy { precision, relative: 0.0, aim: 1.0, in_crowd: false, slow: f64::INFINITY },
             Start::Sticking,
         );
-        for (body, solved) in self.bodies.iter_mut().zip(&system.bodies).skip(first) {
+        for &i in &self.unchecked {
+            let body = &mut self.bodies[i];
             if body.is_dynamic() {
-                body.shift(solved.velocity);
+                body.shift(system.bodies[i].velocity);
             }
         }
     }

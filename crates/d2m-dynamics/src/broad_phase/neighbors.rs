@@ -10,13 +10,15 @@ const GROWN: f64 = 0.125;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Neighbors {
     boxes: Vec<Aabb>,
-    /// Of which flight, until when, and by how much the box is grown.
-    known: Vec<Known>,
+    /// Of which flight, until when, and by how much the box is grown; none: nothing is known of the place.
+    known: Vec<Option<Known>>,
     /// Boxes that hold those; bodies are neighbors if these meet.
     grown: Vec<Aabb>,
     /// Where the neighbors of each body begin in `others`, and where the last ones end.
     starts: Vec<usize>,
     others: Vec<u32>,
+    /// Something has been forgotten since the neighbors were found.
+    is_forgotten: bool,
 }
 
 /// What a box is for: it holds as long as these are the same.
@@ -31,24 +33,35 @@ struct Known {
 impl Neighbors {
     /// Brings boxes and neighbors to the flights to `end`, boxes grown by `margin`.
     pub(crate) fn update(&mut self, bodies: &[RigidBody], end: f64, margin: f64) {
-        let mut is_old = self.boxes.len() != bodies.len();
+        let mut is_old = self.is_forgotten || self.starts.len() != bodies.len() + 1;
+        self.boxes.truncate(bodies.len());
+        self.known.truncate(bodies.len());
         for (i, body) in bodies.iter().enumerate() {
             let known = Known { version: body.version, end: (!body.stands_still()).then_some(end), margin };
-            if self.known.get(i) == Some(&known) {
+            if self.known.get(i) == Some(&Some(known)) {
                 continue;
             }
             let swept = Aabb::swept(body, end, margin);
             if i < self.boxes.len() {
-                (self.boxes[i], self.known[i]) = (swept, known);
+                (self.boxes[i], self.known[i]) = (swept, Some(known));
             } else {
                 self.boxes.push(swept);
-                self.known.push(known);
+                self.known.push(Some(known));
             }
             is_old |= !self.grown.get(i).is_some_and(|grown| grown.holds(&swept));
         }
         if is_old {
             self.find(bodies);
+            self.is_forgotten = false;
         }
+    }
+
+    /// The body of this place is another one now, or another kind of one: neither its box nor its neighbors count any more.
+    pub(crate) fn forget(&mut self, place: usize) {
+        if let Some(known) = self.known.get_mut(place) {
+            *known = None;
+        }
+        self.is_forgotten = true;
     }
 
     /// The neighbors of all bodies.

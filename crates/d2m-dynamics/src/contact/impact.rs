@@ -31,7 +31,8 @@ pub(crate) fn impact(
     let cleared = |c: &ContactPoint| ContactPoint { impulse: 0.0, sliding: [0.0; 2], ..*c };
     let mut totals: Vec<ContactPoint> = contacts.iter().map(cleared).collect();
     let still = Velocity::default();
-    let driven = system.bodies.iter().any(|body| body.inverse_mass == 0.0 && body.velocity != still);
+    let driven = system.bodies.iter().any(|body| body.inverse_mass == 0.0 && body.velocity != still)
+        || contacts.iter().any(|contact| contact.running != [0.0; 2]);
     for _ in 0..MOST_ROUNDS {
         let rates: Vec<f64> = (0..contacts.len()).map(|k| system.rate(k)).collect();
         let closes = |k: usize| rates[k] < -resting_speed && contacts[k].material.restitution > 0.0;

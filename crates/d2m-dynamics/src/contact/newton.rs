@@ -387,7 +387,7 @@ impl Newton<'_> {
             .filter(|&k| self.counts(k))
             .map(|k| {
                 let block = &self.system.blocks[k];
-                (k, block.rates(|i| self.velocity[i]), block.rates(|i| ways[i]))
+                (k, block.rates(|i| self.velocity[i]), block.changes(|i| ways[i]))
             })
             .collect();
         let slope = |s: f64| {

@@ -52,6 +52,8 @@ pub(crate) struct ContactPoint {
     /// Middle of the closest points.
     pub(crate) point: DVec3,
     pub(crate) material: Material,
+    /// By how much the surface of b runs faster over its body than that of a, along the tangents.
+    pub(crate) running: [f64; 2],
     /// None: a contact.
     pub(crate) row: Option<JointRow>,
     /// Impulses on b along the normal and the tangents.

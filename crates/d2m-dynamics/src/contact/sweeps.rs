@@ -66,7 +66,7 @@ const LEAST_DETERMINANT: f64 = 1.0 / 67_108_864.0;
 #[inline]
 fn slide(bodies: &mut [SolverBody], block: &Block, friction: f64, own: &mut [f64; 3]) {
     let (a, b) = (&bodies[block.a].velocity, &bodies[block.b].velocity);
-    let rates = [block.lines[1].rate(a, b), block.lines[2].rate(a, b)];
+    let rates = [0, 1].map(|k| block.lines[k + 1].rate(a, b) + block.running[k]);
     let limit = friction * own[0];
     let length = |x: [f64; 2]| (x[0] * x[0] + x[1] * x[1]).sqrt();
     let stopped = stopping(block, rates).map(|less| [0, 1].map(|k| own[k + 1] - less[k]));

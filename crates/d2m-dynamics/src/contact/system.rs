@@ -23,6 +23,8 @@ pub(super) struct Block {
     /// The inverse of a bound on its eigenvalues: one step for both directions, so that what slides is braked against its
     /// velocity and not askew.
     pub(super) step: f64,
+    /// What surfaces that run add to the rates along the tangents.
+    pub(super) running: [f64; 2],
 }
 
 impl Block {
@@ -42,7 +44,9 @@ impl Block {
             Some(row) => (lines, row.law),
             None => (lines, law),
         };
-        let mut block = Self { a, b, lines, law, scale: 0.0, sliding: [0.0; 3], step: 0.0 };
+        let sliding = [0.0; 3];
+        let running = if law.rows() == 3 { contact.running } else { [0.0; 2] };
+        let mut block = Self { a, b, lines, law, scale: 0.0, sliding, step: 0.0, running };
         block.scale(bodies);
         block
     }
@@ -67,8 +71,16 @@ impl Block {
         }
     }
 
+    /// Those of the surfaces against each other.
     #[inline]
     pub(super) fn rates(&self, velocity: impl Fn(usize) -> Velocity) -> [f64; 3] {
+        let [along, first, second] = self.changes(velocity);
+        [along, first + self.running[0], second + self.running[1]]
+    }
+
+    /// How the rates change with the velocities of the bodies.
+    #[inline]
+    pub(super) fn changes(&self, velocity: impl Fn(usize) -> Velocity) -> [f64; 3] {
         let (a, b) = (velocity(self.a), velocity(self.b));
         let mut rates = [0.0; 3];
         for (rate, line) in rates.iter_mut().zip(&self.lines[..self.law.rows()]) {

@@ -3,13 +3,11 @@
 use super::{Key, Occasion, Step};
 use crate::contact::ContactPoint;
 use crate::joined::Ahead;
-use crate::pairs::{Measured, Pair, measure};
+use crate::pairs::{AROUND, Measured, Pair, measure};
 use crate::rigid_body::RigidBody;
 use crate::{StepError, parallel};
 use d2m_bvh::QueryError;
 
-/// Features within this many gaps are measured in any case.
-pub(super) const AROUND: f64 = 1.5;
 /// And those within this many times the way that two bodies come closer in what is left of the step.
 const APPROACH: f64 = 2.0;
 

@@ -1,10 +1,9 @@
 //! Contacts that flights are certain to lead to are solved before they are met.
 
-use super::connected::AROUND;
 use super::event::{Cause, Event};
 use super::{Key, Occasion, Step};
 use crate::contact::ContactPoint;
-use crate::pairs::measure;
+use crate::pairs::{AROUND, measure};
 use crate::rigid_body::RigidBody;
 use crate::{StepError, parallel};
 use std::collections::BTreeMap;

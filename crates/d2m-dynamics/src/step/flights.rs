@@ -22,7 +22,7 @@ const SPHERES: f64 = 32.0 * f64::EPSILON;
 /// centers alone? No when a number is not finite.
 ///
 /// The centers move with constant velocities, so they come closer by no more than the relative speed times the length.
-fn are_spheres_apart(a: &RigidBody, b: &RigidBody, time: f64, end: f64, gap: f64) -> bool {
+pub(crate) fn are_spheres_apart(a: &RigidBody, b: &RigidBody, time: f64, end: f64, gap: f64) -> bool {
     let centers = [a, b].map(|body| {
         let (start, elapsed) = (body.flight.position(), time - body.flight.reference_time());
         (start, body.flight.linear_velocity() * elapsed, body.flight.linear_velocity())

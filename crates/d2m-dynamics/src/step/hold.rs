@@ -2,9 +2,9 @@
 
 use super::event::Event;
 use super::{Key, Step};
+use crate::StepError;
 use crate::rigid_body::RigidBody;
 use crate::velocity::Velocity;
-use crate::{BodyId, StepError};
 
 impl Step<'_> {
     /// The bodies of these events stand still until the end of the step.
@@ -35,7 +35,7 @@ impl Step<'_> {
                     body.held = true;
                     body.asleep = false;
                     body.fly(Velocity::default(), self.end);
-                    self.sim.recorder.change(BodyId(i as u32), body.flight);
+                    self.sim.recorder.change(body.id, body.flight);
                     changed.push(i);
                     self.holding = true;
                 }

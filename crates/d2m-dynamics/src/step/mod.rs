@@ -13,10 +13,11 @@ use crate::rigid_body::RigidBody;
 use crate::{ContactListener, Simulation, StepError, StepReport};
 use event::{Cause, Event};
 use expect::Expected;
+pub(crate) use flights::are_spheres_apart;
 use glam::DVec3;
 use plan::Replans;
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
 /// Events of one pair at one and the same time, after which it is held.
 const MOST_AT_ONCE: u32 = 8;
@@ -61,6 +62,8 @@ pub(crate) struct Step<'s> {
     /// Impulses of the present instant, and those of contacts that flights could still be planned without.
     impulses: Vec<ContactPoint>,
     undoable: Vec<ContactPoint>,
+    /// Pairs between which impulses have acted.
+    pressed: BTreeSet<Key>,
 }
 
 type Key = (usize, usize);
@@ -85,6 +88,7 @@ impl<'s> Step<'s> {
             expected: Expected::default(),
             impulses: Vec::new(),
             undoable: Vec::new(),
+            pressed: BTreeSet::new(),
         }
     }
 
@@ -95,6 +99,7 @@ impl<'s> Step<'s> {
         self.finish(time);
         outcome?;
         self.report.segments = self.sim.recorder.take();
+        self.report.touches = core::mem::take(&mut self.sim.touches);
         Ok(self.report)
     }
 
@@ -213,8 +218,12 @@ impl<'s> Step<'s> {
             body.time = time;
             body.held = false;
         }
+        self.sim.end_touches(self.start, &self.pressed);
         for body in &mut self.sim.bodies {
             (body.force, body.torque) = (DVec3::ZERO, DVec3::ZERO);
+            if time == self.end {
+                body.target = None;
+            }
         }
         let energy: f64 = self.sim.bodies.iter().map(RigidBody::flight_energy).sum();
         self.sim.greatest_energy = self.sim.greatest_energy.max(energy);

@@ -6,7 +6,7 @@ use crate::contact::ContactPoint;
 use crate::group::{CROWD, Clock, Solved, islands, solve};
 use crate::rigid_body::RigidBody;
 use crate::velocity::Velocity;
-use crate::{BodyId, ContactImpulse, StepError, parallel};
+use crate::{ContactImpulse, StepError, parallel};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -104,7 +104,7 @@ impl Step<'_> {
         }
         changed.sort_unstable();
         for &i in &changed {
-            self.sim.recorder.change(BodyId(i as u32), self.sim.bodies[i].flight);
+            self.sim.recorder.change(self.sim.bodies[i].id, self.sim.bodies[i].flight);
         }
         self.query(time, &changed)
     }
@@ -116,7 +116,7 @@ impl Step<'_> {
             if body.is_kinematic() && (occasion == Occasion::Start || body.horizon <= clock.now) {
                 body.time = clock.now;
                 body.follow(self.end, self.sim.options.gap)?;
-                self.sim.recorder.change(BodyId(i as u32), body.flight);
+                self.sim.recorder.change(body.id, body.flight);
             }
         }
         Ok(())
@@ -242,8 +242,8 @@ impl Step<'_> {
             let impulse = contact.total();
             if impulse != DVec3::ZERO {
                 let impulse = ContactImpulse {
-                    a: BodyId(contact.a as u32),
-                    b: BodyId(contact.b as u32),
+                    a: self.sim.bodies[contact.a].id,
+                    b: self.sim.bodies[contact.b].id,
                     point: contact.point,
                     normal: contact.normal,
                     impulse: -impulse,
@@ -251,6 +251,8 @@ impl Step<'_> {
                 };
                 self.listener.contact(&impulse);
                 self.sim.recorder.contact(impulse);
+                self.pressed.insert((contact.a, contact.b));
+                self.sim.begin_touch((contact.a, contact.b), impulse.time);
             }
         }
     }

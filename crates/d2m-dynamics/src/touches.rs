@@ -1,0 +1,55 @@
+//! Which bodies touch, and since when.
+
+use crate::pairs::AROUND;
+use crate::{BodyId, Simulation, TouchChange, TouchEvent};
+use std::collections::BTreeSet;
+
+impl Simulation {
+    /// Do these two bodies touch, as the last [`TouchEvent`] of them said?
+    ///
+    /// # Panics
+    /// If one of them was removed.
+    pub fn touch(&self, a: BodyId, b: BodyId) -> bool {
+        let (a, b) = (self.place(a), self.place(b));
+        self.touching.contains(&(a.min(b), a.max(b)))
+    }
+
+    fn report_touch(&mut self, (a, b): (usize, usize), time: f64, change: TouchChange) {
+        let [a, b] = [a, b].map(|place| self.bodies[place].id);
+        self.touches.push(TouchEvent { a, b, time, change });
+    }
+
+    /// An impulse has acted between two bodies.
+    pub(crate) fn begin_touch(&mut self, pair: (usize, usize), time: f64) {
+        if self.touching.insert(pair) {
+            self.report_touch(pair, time, TouchChange::Began);
+        }
+    }
+
+    /// At the end of a step that began at a time, in which impulses acted between the pairs `pressed`: pairs without, one of which moves and
+    /// whose bodies were found apart, touch no more.
+    pub(crate) fn end_touches(&mut self, began: f64, pressed: &BTreeSet<(usize, usize)>) {
+        let most = AROUND * self.options.gap;
+        let is_near = |pair: &(usize, usize)| {
+            let nearest = self.pairs.get(pair).and_then(|pair| pair.nearest);
+            nearest.is_some_and(|distance| distance <= most)
+        };
+        let moves = |&(a, b): &(usize, usize)| self.bodies[a].is_awake() || self.bodies[b].is_awake();
+        let ended = |pair: &&(usize, usize)| !pressed.contains(*pair) && moves(pair) && !is_near(pair);
+        let ended: Vec<(usize, usize)> = self.touching.iter().filter(ended).copied().collect();
+        for pair in ended {
+            self.touching.remove(&pair);
+            self.report_touch(pair, began, TouchChange::Ended);
+        }
+    }
+
+    /// A body is about to go.
+    pub(crate) fn end_touches_of(&mut self, place: usize) {
+        let has = |&&(a, b): &&(usize, usize)| a == place || b == place;
+        let ended: Vec<(usize, usize)> = self.touching.iter().filter(has).copied().collect();
+        for pair in ended {
+            self.touching.remove(&pair);
+            self.report_touch(pair, self.time, TouchChange::Ended);
+        }
+    }
+}
