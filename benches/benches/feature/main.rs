@@ -16,6 +16,8 @@ fn main() {
     for (name, kind, method) in [
         ("rigid vertex/face", Kind::PointTriangle, Method::Rigid),
         ("rigid edge/edge", Kind::EdgeEdge, Method::Rigid),
+        ("rigid vertex/face from numbers", Kind::PointTriangle, Method::RigidFromNumbers),
+        ("rigid edge/edge from numbers", Kind::EdgeEdge, Method::RigidFromNumbers),
         ("straight vertex/face", Kind::PointTriangle, Method::Straight),
         ("straight edge/edge", Kind::EdgeEdge, Method::Straight),
     ] {

@@ -27,7 +27,9 @@ pub(crate) struct Prepared {
 pub(crate) enum Method {
     /// Closed-form jets.
     Rigid,
-    /// Straight vertex paths.
+    /// The same with all that it takes from the numbers of a motion and a feature to the answer.
+    RigidFromNumbers,
+    /// Straight vertex paths: nothing is set up before.
     Straight,
     /// Any motion, with a state in plain floating point of its own.
     Enclosed,
@@ -69,6 +71,13 @@ impl Prepared {
         match (method, p.kind) {
             (Method::Rigid, Kind::PointTriangle) => self.pair.point_placed(p.a[0], &self.triangle, options),
             (Method::Rigid, Kind::EdgeEdge) => self.pair.edge_edge(p.a, edge_b, options),
+            (Method::RigidFromNumbers, kind) => {
+                let pair = PairMotion::new(&p.motion_a, &p.motion_b, p.window.0, p.window.1);
+                match kind {
+                    Kind::PointTriangle => pair.point_triangle(p.a[0], &p.b, options),
+                    Kind::EdgeEdge => pair.edge_edge(p.a, edge_b, options),
+                }
+            }
             (Method::Straight, Kind::PointTriangle) => self.straight.point_triangle(options),
             (Method::Straight, Kind::EdgeEdge) => self.straight.edge_edge(options),
             (Method::Enclosed | Method::Opaque, kind) => {
@@ -101,11 +110,15 @@ impl Prepared {
 /// Prints the table.
 pub(crate) fn print(count: usize) {
     let options = ContactOptions::new();
-    println!("mean / p99 / max ns a query, {count} queries a family, setup excluded");
-    println!("{:<22} {:>22} {:>22} {:>22} {:>22}", "", "far", "near", "hit", "graze");
+    println!(
+        "mean / p99 / max ns a query, {count} queries a family; setup excluded but for rigid pairs from numbers"
+    );
+    println!("{:<34} {:>22} {:>22} {:>22} {:>22}", "", "far", "near", "hit", "graze");
     for (name, kind, method) in [
         ("rigid vertex/face", Kind::PointTriangle, Method::Rigid),
         ("rigid edge/edge", Kind::EdgeEdge, Method::Rigid),
+        ("rigid vertex/face from numbers", Kind::PointTriangle, Method::RigidFromNumbers),
+        ("rigid edge/edge from numbers", Kind::EdgeEdge, Method::RigidFromNumbers),
         ("straight vertex/face", Kind::PointTriangle, Method::Straight),
         ("straight edge/edge", Kind::EdgeEdge, Method::Straight),
         ("own state vertex/face", Kind::PointTriangle, Method::Enclosed),
@@ -113,7 +126,7 @@ pub(crate) fn print(count: usize) {
         ("enclosed vertex/face", Kind::PointTriangle, Method::Opaque),
         ("enclosed edge/edge", Kind::EdgeEdge, Method::Opaque),
     ] {
-        print!("{name:<22}");
+        print!("{name:<34}");
         for (_, family) in COLUMNS {
             let queries = queries(kind, family, count, 7);
             for query in &queries {

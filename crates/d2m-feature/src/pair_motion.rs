@@ -10,6 +10,7 @@ use crate::units::Units;
 use d2m_lanes::power_of_two;
 use d2m_motion::{ConstantTwist, RelativeMotion};
 use glam::DVec3;
+use std::sync::OnceLock;
 
 /// Two motions of constant twist over a window `[t0, t1]`, with what all features of the two bodies share.
 ///
@@ -46,8 +47,8 @@ pub struct PairMotion {
 struct Sides {
     /// A seen from B.
     forward: FramedMotion,
-    /// B seen from A.
-    backward: FramedMotion,
+    /// B seen from A, once that is needed.
+    backward: OnceLock<FramedMotion>,
 }
 
 /// A triangle of B prepared for many points of A over one window ([`PairMotion::place_triangle`]).
@@ -107,9 +108,8 @@ impl PairMotion {
         let [a, b] = motions;
         let sides = match (units.try_motion(a, start), units.try_motion(b, start)) {
             (Some(a), Some(b)) if from.is_finite() && to.is_finite() => {
-                let forward = RelativeMotion::new(&a, &b, from, to);
-                let backward = forward.reversed();
-                Some(Sides { forward: FramedMotion::new(forward), backward: FramedMotion::new(backward) })
+                let forward = FramedMotion::new(RelativeMotion::new(&a, &b, from, to));
+                Some(Sides { forward, backward: OnceLock::new() })
             }
             _ => None,
         };
@@ -158,7 +158,7 @@ impl PairMotion {
         let size = largest(&[point]).max(largest(triangle));
         self.answer(size, options, |sides, units, options| {
             let (point, triangle) = (units.point(point), units.points(*triangle));
-            rigid_query::point_triangle(&sides.backward, point, &triangle, options)
+            rigid_query::point_triangle(sides.backward(), point, &triangle, options)
         })
     }
 
@@ -194,7 +194,7 @@ impl PairMotion {
             if sides.forward.motion.speed_b() <= sides.forward.motion.speed_a() {
                 rigid_query::edge_edge(&sides.forward, edge_a, edge_b, options)
             } else {
-                rigid_query::edge_edge(&sides.backward, edge_b, edge_a, options)
+                rigid_query::edge_edge(sides.backward(), edge_b, edge_a, options)
             }
         })
     }
@@ -344,6 +344,11 @@ impl PairMotion {
 }
 
 impl Sides {
+    #[inline]
+    fn backward(&self) -> &FramedMotion {
+        self.backward.get_or_init(|| FramedMotion::new(self.forward.motion.reversed()))
+    }
+
     /// True if features that are too small for the units certainly never come near each other.
     fn never_near(&self, units: &Units, motions: &[ConstantTwist; 2]) -> bool {
         let at = largest(&[units.point(motions[0].at()), units.point(motions[1].at())]);

@@ -140,7 +140,9 @@ fn from_quat(q: DQuat) -> RotationDd {
     let product = |i: usize, j: usize| DoubleDouble::from_product(q[i], q[j]);
     let (xx, yy, zz, ww) = (product(0, 0), product(1, 1), product(2, 2), product(3, 3));
     let norm = xx + yy + zz + ww;
-    let half = |d: DoubleDouble| (d * 2.0).div_accurately(norm);
+    // One quotient for all entries: each errs by less than 2⁻¹⁰⁰.
+    let factor = DoubleDouble::from_f64(2.0).div_accurately(norm);
+    let half = |d: DoubleDouble| d * factor;
     let (xy, xz, yz) = (product(0, 1), product(0, 2), product(1, 2));
     let (wx, wy, wz) = (product(3, 0), product(3, 1), product(3, 2));
     let diagonal = |a: DoubleDouble, b: DoubleDouble| DoubleDouble::ONE - half(a + b);
@@ -165,7 +167,8 @@ pub(crate) fn exponential_dd(omega: DVec3, s: DoubleDouble) -> RotationDd {
         return RotationDd([[one, zero, zero], [zero, one, zero], [zero, zero, one]]);
     }
     let (sin, cos) = sin_cos_double(speed * s);
-    let axis = [omega.x, omega.y, omega.z].map(|w| DoubleDouble::from_f64(w).div_accurately(speed));
+    let inverse = DoubleDouble::ONE.div_accurately(speed);
+    let axis = [omega.x, omega.y, omega.z].map(|w| inverse * w);
     let versine = DoubleDouble::ONE - cos;
     let entry = |i: usize, j: usize| versine * axis[i] * axis[j];
     let [x, y, z] = axis.map(|k| k * sin);

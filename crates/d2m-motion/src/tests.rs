@@ -63,6 +63,22 @@ fn double_double_sine_satisfies_its_identities() {
     }
 }
 
+/// R·Rᵀ = 1 to 2⁻⁹⁴, for quaternions of any length and motions that turn, near their reference time and far from it.
+#[test]
+fn rotations_in_double_double_are_orthogonal() {
+    let mut random = Random(11);
+    for i in 0..2000 {
+        let motion = random_motion(&mut random, [0.1, 3.0, 300.0][i % 3]);
+        let r = motion.rotation_dd(motion.reference_time() + [0.0, 1.0, -40.0][i / 3 % 3] * random.signed());
+        for row in 0..3 {
+            let mut products = r.apply(r.0[row]);
+            products[row] = products[row].sub(DoubleDouble::ONE);
+            let rest = products.map(|sum| sum.hi);
+            assert!(rest.into_iter().all(|x| x.abs() < 2_f64.powi(-94)), "{i}: {rest:?}");
+        }
+    }
+}
+
 #[test]
 fn enclosures_of_a_constant_twist_contain_it() {
     let mut random = Random(3);

@@ -4,21 +4,27 @@ use crate::rounding::{UNIT, UP, length_up};
 use d2m_motion::{ArmPair, EdgeJets, Frame, LeverArm, PathJet, RelativeMotion, Remainder};
 use d2m_root::{Cubic, Piece};
 use glam::DVec3;
+use std::sync::OnceLock;
 
-/// A relative motion with its frame in the middle of the window: the time at which every feature of a pair of bodies
-/// is evaluated first, and most of them last.
+/// A relative motion with its frame in the middle of the window: the time at which every feature of a pair of bodies that comes near is
+/// evaluated first, and most of them last. It is made once one does.
 #[derive(Debug, Clone)]
 pub(crate) struct FramedMotion {
     pub(crate) motion: RelativeMotion,
     middle: f64,
-    frame: Frame,
+    frame: OnceLock<Frame>,
 }
 
 impl FramedMotion {
+    #[inline]
     pub(crate) fn new(motion: RelativeMotion) -> Self {
         let middle = Piece { lo: 0.0, hi: motion.duration() }.mid();
-        let frame = motion.frame(middle);
-        Self { motion, middle, frame }
+        Self { motion, middle, frame: OnceLock::new() }
+    }
+
+    #[inline]
+    fn frame(&self) -> &Frame {
+        self.frame.get_or_init(|| self.motion.frame(self.middle))
     }
 }
 
@@ -133,7 +139,7 @@ impl FeaturePath for RigidPath<'_> {
     fn point(&mut self, piece: Piece, at: f64) -> PathJet {
         let framed = self.motion;
         if self.frame_serves(piece, at) {
-            return framed.frame.point_jet(self.point, self.point_remainder);
+            return framed.frame().point_jet(self.point, self.point_remainder);
         }
         let motion = &framed.motion;
         if motion.is_anchored() {
@@ -170,7 +176,7 @@ impl FeaturePath for RigidPath<'_> {
             super::against([point, frame.direction_jet(self.direction, self.direction_remainder)], of_b)
         };
         if self.frame_serves(piece, at) {
-            return from(&framed.frame);
+            return from(framed.frame());
         }
         let motion = &framed.motion;
         if motion.is_anchored() {
