@@ -141,6 +141,40 @@ pub struct Body {
     /// How fast the surface runs over the body, mesh axes: what touches it is taken along by friction, as by a conveyor belt. At a
     /// contact only the part along the surface counts. Default zero.
     pub surface_velocity: DVec3,
+    /// What it is to others.
+    pub presence: Presence,
+}
+
+/// What a body is to the others.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// # let sheet = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.001&y=2&z=2")?));
+/// use d2m_dynamics::{Body, Kind, Presence, Simulation, SimulationOptions, TouchChange};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
+/// let gate = Body::new("gate", sheet).with_kind(Kind::Static).with_presence(Presence::Sensor);
+/// let gate = simulation.add(&gate)?;
+/// let bullet = Body::new("bullet", cube).with_position(DVec3::X * -5.0).with_linear_velocity(DVec3::X * 1000.0);
+/// let bullet = simulation.add(&bullet)?;
+/// // Through the gate within a single step.
+/// let touches = simulation.step()?.touches;
+/// let changes: Vec<_> = touches.iter().map(|touch| (touch.a, touch.b, touch.change)).collect();
+/// assert_eq!(changes, [(gate, bullet, TouchChange::Began), (gate, bullet, TouchChange::Ended)]);
+/// assert!((touches[0].time - 4.499e-3).abs() < 1e-6 && (touches[1].time - 5.501e-3).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Presence {
+    /// Others meet it.
+    #[default]
+    Solid,
+    /// Others pass through it, and [`StepReport::touches`](crate::StepReport::touches) says when: between an end and the next beginning the two
+    /// are proven clear of each other at every time, however fast they are.
+    Sensor,
 }
 
 /// Groups that a body is in, and those whose bodies it may meet, a bit each: two bodies meet if each is in a group that the other one
@@ -234,6 +268,7 @@ impl Body {
             damping: Damping::default(),
             groups: Groups::ALL,
             surface_velocity: DVec3::ZERO,
+            presence: Presence::Solid,
         }
     }
 
@@ -295,6 +330,11 @@ impl Body {
     /// In these groups, and meeting those of these.
     pub fn with_groups(self, groups: Groups) -> Self {
         Self { groups, ..self }
+    }
+
+    /// With this presence.
+    pub fn with_presence(self, presence: Presence) -> Self {
+        Self { presence, ..self }
     }
 
     /// With a surface that runs so, mesh axes.

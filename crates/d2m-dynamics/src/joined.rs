@@ -144,6 +144,9 @@ impl Joined {
 
     /// Remembers the value, of which angles are known up to full turns.
     pub(crate) fn look(&mut self, bodies: &[RigidBody]) {
+        if self.is_gone {
+            return;
+        }
         self.value = self.value(self.bodies.map(|i| &bodies[i]));
     }
 
@@ -342,7 +345,7 @@ impl crate::Simulation {
     /// mostly overlap. [`Self::heed`] has them meet again.
     ///
     /// # Panics
-    /// If there is no such joint.
+    /// If there is no such joint, or it was taken out.
     ///
     /// ```
     /// # use d2m_bvh::MeshTree;
@@ -361,8 +364,11 @@ impl crate::Simulation {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn remove_joint(&mut self, joint: usize) {
+        let places = self.there(joint).bodies;
         self.joints[joint].take_out();
-        self.joints[joint].bodies.into_iter().for_each(|place| self.drop_known(place));
+        for place in places {
+            self.drop_known(place);
+        }
     }
 
     /// A joint, if it was not taken out.
@@ -376,9 +382,9 @@ impl crate::Simulation {
     /// [`SimulationError::BadJoint`]: numbers that cannot be used. Nothing changes then.
     ///
     /// # Panics
-    /// If there is no such joint.
+    /// If there is no such joint, or it was taken out.
     pub fn set_motor(&mut self, joint: usize, motor: Option<Motor>) -> Result<(), SimulationError> {
-        let joined = &self.joints[joint];
+        let joined = self.there(joint);
         let changed = Joint { motor, ..joined.joint.clone() };
         Joined::try_new(&changed, joined.bodies, &self.bodies)?;
         self.joints[joint].joint = changed;
@@ -388,9 +394,18 @@ impl crate::Simulation {
         Ok(())
     }
 
-    /// The value of a joint: how far b has turned about the axis, or moved along it, against a; zero of other kinds.
-    pub fn joint_value(&self, joint: usize) -> f64 {
+    fn there(&self, joint: usize) -> &Joined {
         let joined = &self.joints[joint];
+        assert!(!joined.is_gone, "joint {joint} was taken out, or one of its bodies");
+        joined
+    }
+
+    /// The value of a joint: how far b has turned about the axis, or moved along it, against a; zero of other kinds.
+    ///
+    /// # Panics
+    /// If there is no such joint, or it was taken out.
+    pub fn joint_value(&self, joint: usize) -> f64 {
+        let joined = self.there(joint);
         joined.value(joined.bodies.map(|i| &self.bodies[i]))
     }
 }

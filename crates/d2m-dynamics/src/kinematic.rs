@@ -59,11 +59,15 @@ impl RigidBody {
 
     /// The flight of a driven body that ends at its target; at rest where it has none.
     fn follow_target(&mut self, end: f64) -> Result<(), StepError> {
+        let Some(target) = self.target else {
+            self.fly(Velocity::default(), f64::INFINITY);
+            return Ok(());
+        };
         let length = end - self.time;
-        let velocity = self.target.map_or_else(Velocity::default, |target| Velocity {
+        let velocity = Velocity {
             linear: (target.position - self.position) / length,
             angular: rotation_vector(target.orientation * self.orientation.conjugate()) / length,
-        });
+        };
         let fastest = velocity.linear.abs().max_element().max(velocity.angular.abs().max_element());
         let is_slow = fastest <= crate::Simulation::LARGEST;
         if !is_slow {

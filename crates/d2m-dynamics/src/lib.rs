@@ -5,14 +5,16 @@
 //! Add each [`Body`] to a [`Simulation`] and call [`Simulation::step`].
 //!
 //! ## Bodies
-//! - [`Body`]: a shared tree, its [`Kind`], [`Mass`], [`Damping`], [`Material`], [`Groups`]; a kinematic one follows a [`Motion`].
+//! - [`Body`]: a shared tree, its [`Kind`], [`Mass`], [`Damping`], [`Material`], [`Groups`], [`Presence`]; a kinematic one follows a [`Motion`].
 //!   [`BodyId`] is its name.
-//! - [`MassProperties`]: mass, center and inertia of a mesh.
+//! - [`Part`]: of a body of several meshes. [`MassProperties`]: mass, center and inertia of a mesh.
 //! - [`Joint`]: what holds two bodies together, of a [`JointKind`], with a [`Motor`] (and its [`MotorTarget`]) or a [`Spring`].
 //!
 //! ## Running
 //! - [`SimulationOptions`]: gravity, step, gap, accuracy.
 //! - [`Simulation`]; [`Snapshot`] is its state, to come back to.
+//!
+//! - [`Frozen`]: questions about the bodies where they are now, as which one a ray meets ([`RayAnswer`], [`RayError`]).
 //!
 //! ## What is reported
 //! - [`StepReport`] of each step, with its [`Segment`]s (flights that are certified) and [`ContactImpulse`]s.
@@ -29,11 +31,13 @@ mod account;
 mod body;
 mod broad_phase;
 mod clearance;
+mod compound;
 #[cfg(feature = "audit")]
 mod concluded;
 mod contact;
 mod error;
 mod faces;
+mod frozen;
 mod group;
 mod joined;
 mod joint;
@@ -58,9 +62,11 @@ mod step;
 mod touches;
 mod velocity;
 
-pub use body::{Body, BodyId, Damping, Groups, Kind, Mass, Motion};
+pub use body::{Body, BodyId, Damping, Groups, Kind, Mass, Motion, Presence};
+pub use compound::Part;
 pub use contact::Material;
 pub use error::{MassError, SimulationError, StepError};
+pub use frozen::{Frozen, RayAnswer, RayError};
 pub use joint::{Joint, JointKind, Motor, MotorTarget, Spring};
 pub use listener::ContactListener;
 pub use mass::MassProperties;

@@ -122,7 +122,9 @@ impl Simulation {
         let options = self.options.with_gravity(gravity);
         options.check()?;
         self.options = options;
-        (0..self.bodies.len()).for_each(|place| self.wake_place(place));
+        for place in 0..self.bodies.len() {
+            self.wake_place(place);
+        }
         Ok(())
     }
 

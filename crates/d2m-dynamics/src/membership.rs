@@ -97,7 +97,7 @@ impl Simulation {
 
     /// Is this body there?
     pub fn contains(&self, body: BodyId) -> bool {
-        self.bodies.get(body.index()).is_some_and(|own| own.role == Role::Body && own.id == body)
+        self.bodies.get(body.index()).is_some_and(|own| own.role.is_named() && own.id == body)
     }
 
     /// The place of a body.

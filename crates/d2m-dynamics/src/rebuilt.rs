@@ -1,7 +1,7 @@
 //! Bodies that are changed from outside, between two steps.
 
 use crate::SimulationError;
-use crate::body::{Body, Kind};
+use crate::body::{Body, Kind, Presence};
 use crate::faces::Faces;
 use crate::rigid_body::{RigidBody, Role, rest};
 use crate::velocity::Velocity;
@@ -51,6 +51,7 @@ impl RigidBody {
             damping: self.damping,
             groups: self.groups,
             surface_velocity: self.surface_velocity,
+            presence: Presence::Solid,
         };
         let made = Self::try_new(&described, Arc::clone(&self.faces), time)?;
         let (force, torque) = if made.is_dynamic() { (self.force, self.torque) } else { Default::default() };

@@ -1,6 +1,6 @@
 //! The state of a body and the constant twist that it flies.
 
-use crate::body::{Body, BodyId, Damping, Groups, Kind, Mass};
+use crate::body::{Body, BodyId, Damping, Groups, Kind, Mass, Presence};
 use crate::faces::Faces;
 use crate::momenta::Momenta;
 use crate::velocity::Velocity;
@@ -22,10 +22,19 @@ const MOST_FLIGHTS: f64 = 1024.0;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
     Body,
+    /// A body that others pass through.
+    Sensor,
     /// What joints with the world are with: nothing meets it.
     World,
     /// Its body was removed.
     Vacant,
+}
+
+impl Role {
+    /// Of a body that a user has added.
+    pub(crate) fn is_named(self) -> bool {
+        matches!(self, Self::Body | Self::Sensor)
+    }
 }
 
 /// Where a body is to be: its center and its axes.
@@ -183,7 +192,7 @@ impl RigidBody {
             rest(center, position, orientation, time).ok_or_else(|| bad("position", position.to_string()))?;
         let made = Self {
             id: BodyId { place: 0, generation: 0 },
-            role: Role::Body,
+            role: if body.presence == Presence::Sensor { Role::Sensor } else { Role::Body },
             name: body.name.as_str().into(),
             tree: Arc::clone(&body.tree),
             faces,

@@ -235,7 +235,7 @@ impl Simulation {
 
     /// How many bodies there are.
     pub fn len(&self) -> usize {
-        self.bodies.iter().filter(|body| body.role == Role::Body).count()
+        self.bodies.iter().filter(|body| body.role.is_named()).count()
     }
 
     /// All bodies, in the order of their places: that in which they were added, as long as none was removed.
@@ -256,7 +256,7 @@ impl Simulation {
     /// ```
     pub fn ids(&self) -> impl Iterator<Item = BodyId> + use<> {
         let ids: Vec<BodyId> =
-            self.bodies.iter().filter(|body| body.role == Role::Body).map(|body| body.id).collect();
+            self.bodies.iter().filter(|body| body.role.is_named()).map(|body| body.id).collect();
         ids.into_iter()
     }
 
@@ -327,8 +327,12 @@ impl Simulation {
         let (one, two) = (&self.bodies[a], &self.bodies[b]);
         (one.is_dynamic() || two.is_dynamic())
             && (one.role, two.role) == (Role::Body, Role::Body)
-            && one.groups.admit(two.groups)
-            && !self.ignored.contains(&(a.min(b), a.max(b)))
+            && self.is_admitted(a, b)
+    }
+
+    /// Do their groups admit these two to each other, and is the pair not ignored?
+    pub(crate) fn is_admitted(&self, a: usize, b: usize) -> bool {
+        self.bodies[a].groups.admit(self.bodies[b].groups) && !self.ignored.contains(&(a.min(b), a.max(b)))
     }
 
     /// The place of the body that stands for the world.

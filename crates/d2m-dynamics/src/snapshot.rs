@@ -237,8 +237,8 @@ impl Simulation {
             let is_world = snapshot.world == Some(place);
             let missing = SimulationError::Snapshot { place };
             let own = next.bodies.get_mut(place).filter(|own| {
-                own.role == if is_world { Role::World } else { Role::Body }
-                    && (is_world || own.id == state.id)
+                let is_same = own.role.is_named() && own.id == state.id;
+                if is_world { own.role == Role::World } else { is_same }
             });
             let own = own.ok_or(missing)?;
             *own = state.restored(own)?;
@@ -250,7 +250,7 @@ impl Simulation {
         for place in (0..next.bodies.len()).rev().filter(|&place| !is_kept(place)) {
             // Free places at the end go with the last one that is cleared.
             let role = next.bodies.get(place).map_or(Role::Vacant, |body| body.role);
-            if role == Role::Body {
+            if role.is_named() {
                 next.generations[place] += 1;
             }
             if role != Role::Vacant {

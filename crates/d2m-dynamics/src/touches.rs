@@ -1,6 +1,7 @@
 //! Which bodies touch, and since when.
 
 use crate::pairs::AROUND;
+use crate::rigid_body::Role;
 use crate::{BodyId, Simulation, TouchChange, TouchEvent};
 use std::collections::BTreeSet;
 
@@ -26,6 +27,13 @@ impl Simulation {
         }
     }
 
+    /// Two bodies are clear of each other.
+    pub(crate) fn end_touch(&mut self, pair: (usize, usize), time: f64) {
+        if self.touching.remove(&pair) {
+            self.report_touch(pair, time, TouchChange::Ended);
+        }
+    }
+
     /// At the end of a step that began at a time, in which impulses acted between the pairs `pressed`: pairs without, one of which moves and
     /// whose bodies were found apart, touch no more.
     pub(crate) fn end_touches(&mut self, began: f64, pressed: &BTreeSet<(usize, usize)>) {
@@ -35,11 +43,13 @@ impl Simulation {
             nearest.is_some_and(|distance| distance <= most)
         };
         let moves = |&(a, b): &(usize, usize)| self.bodies[a].is_awake() || self.bodies[b].is_awake();
-        let ended = |pair: &&(usize, usize)| !pressed.contains(*pair) && moves(pair) && !is_near(pair);
+        let is_solid = |&(a, b): &(usize, usize)| [a, b].iter().all(|&i| self.bodies[i].role == Role::Body);
+        let ended = |pair: &&(usize, usize)| {
+            is_solid(pair) && !pressed.contains(*pair) && moves(pair) && !is_near(pair)
+        };
         let ended: Vec<(usize, usize)> = self.touching.iter().filter(ended).copied().collect();
         for pair in ended {
-            self.touching.remove(&pair);
-            self.report_touch(pair, began, TouchChange::Ended);
+            self.end_touch(pair, began);
         }
     }
 
@@ -48,8 +58,7 @@ impl Simulation {
         let has = |&&(a, b): &&(usize, usize)| a == place || b == place;
         let ended: Vec<(usize, usize)> = self.touching.iter().filter(has).copied().collect();
         for pair in ended {
-            self.touching.remove(&pair);
-            self.report_touch(pair, self.time, TouchChange::Ended);
+            self.end_touch(pair, self.time);
         }
     }
 }

@@ -16,6 +16,7 @@ mod record;
 mod resting;
 mod robot;
 mod robot_input;
+mod segment;
 mod simulation;
 mod supervise;
 mod trajectory;
@@ -51,7 +52,9 @@ mod _d2m {
     #[pymodule_export]
     use crate::robot::Robot;
     #[pymodule_export]
-    use crate::simulation::{Impulse, Segment, Simulation};
+    use crate::segment::{Impulse, Segment};
+    #[pymodule_export]
+    use crate::simulation::Simulation;
     #[pymodule_export]
     use crate::trajectory::{JointTrajectories, PoseTrajectories};
     #[pymodule_export]

@@ -1,18 +1,18 @@
 //! Simulations.
 
-use crate::arrays::{Doubles, rows, small, vector};
+use crate::arrays::{Doubles, rows, small};
 use crate::fault::{Fault, OrRaise, Value};
 use crate::mesh::tree_argument;
-use crate::motion::{ConstantTwist, motion_argument};
+use crate::motion::motion_argument;
 use crate::options::{default_solid, solid};
 use crate::pose::{Pose, pose_argument, vec3_or_zero, wxyz};
+use crate::segment::Segment;
 use crate::supervise::{Watch, pool, supervised};
 use d2m_dynamics::{
-    Body, BodyId, ContactImpulse, Kind, Mass, MassError, MassProperties, Segment as Flown,
-    Simulation as Engine, SimulationError, SimulationOptions, StepError,
+    Body, BodyId, Kind, Mass, MassError, MassProperties, Segment as Flown, Simulation as Engine, SimulationError, SimulationOptions, StepError,
 };
 use glam::{DMat3, DVec3};
-use numpy::{PyArray1, PyArray2};
+use numpy::PyArray2;
 use pyo3::exceptions::{PyKeyError, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
@@ -34,119 +34,6 @@ impl From<SimulationError> for Fault {
 impl From<MassError> for Fault {
     fn from(error: MassError) -> Self {
         Self::new(error.to_string())
-    }
-}
-
-/// A span of time in which every body moves with a constant twist about its center of mass.
-///
-/// >>> import d2m_ccd
-/// >>> simulation = d2m_ccd.Simulation()
-/// >>> body = simulation.add("shape:box")
-/// >>> segments = simulation.advance(0.05)
-/// >>> segments[-1].end, segments[-1].skipped
-/// (0.05, 0.0)
-#[pyclass(frozen, module = "d2m_ccd")]
-pub(crate) struct Segment {
-    flown: Flown,
-}
-
-#[pymethods]
-impl Segment {
-    /// First instant.
-    #[getter]
-    fn start(&self) -> f64 {
-        self.flown.start
-    }
-
-    /// Last instant; the next segment begins here.
-    #[getter]
-    fn end(&self) -> f64 {
-        self.flown.end
-    }
-
-    /// The length of the segment if bodies stand still in it because the events of the step were used up, else zero.
-    #[getter]
-    fn skipped(&self) -> f64 {
-        self.flown.skipped
-    }
-
-    /// Bodies with another twist than in the segment before (all of them in the first one), and their motions from `start` on: a list
-    /// of (index, ConstantTwist).
-    #[getter]
-    fn changed<'py>(&self, py: Python<'py>) -> PyResult<Vec<(usize, Bound<'py, ConstantTwist>)>> {
-        let one = |&(id, twist): &(BodyId, d2m::ConstantTwist)| {
-            Ok((id.index(), Bound::new(py, ConstantTwist::of(twist))?))
-        };
-        self.flown.changed.iter().map(one).collect()
-    }
-
-    /// Impulses at the end of the segment.
-    #[getter]
-    fn contacts(&self) -> Vec<Impulse> {
-        self.flown.contacts.iter().map(|&impulse| Impulse { impulse }).collect()
-    }
-
-    fn __repr__(&self) -> String {
-        let Flown { start, end, changed, contacts, .. } = &self.flown;
-        format!("Segment([{start:?}, {end:?}], {} changed, {} contacts)", changed.len(), contacts.len())
-    }
-}
-
-/// An impulse at a contact.
-///
-/// >>> import d2m_ccd
-/// >>> simulation = d2m_ccd.Simulation()
-/// >>> floor = simulation.add("shape:box?x=0.5&y=0.5&z=0.5", kind="static")
-/// >>> cup = simulation.add("shape:box?x=0.5&y=0.5&z=0.5", pose=d2m_ccd.Pose(x=[0, 1.1, 0]))
-/// >>> impulses = [impulse for segment in simulation.advance(0.3) for impulse in segment.contacts]
-/// >>> impulses[0].a, impulses[0].b, impulses[0].normal.round(9).tolist()
-/// (0, 1, [0.0, 1.0, 0.0])
-#[pyclass(frozen, module = "d2m_ccd")]
-pub(crate) struct Impulse {
-    impulse: ContactImpulse,
-}
-
-#[pymethods]
-impl Impulse {
-    /// Index of the first body.
-    #[getter]
-    fn a(&self) -> usize {
-        self.impulse.a.index()
-    }
-
-    /// Index of the second body.
-    #[getter]
-    fn b(&self) -> usize {
-        self.impulse.b.index()
-    }
-
-    /// When it acts.
-    #[getter]
-    fn time(&self) -> f64 {
-        self.impulse.time
-    }
-
-    /// Middle of the two closest points, world frame, shape (3,).
-    #[getter]
-    fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, &self.impulse.point.to_array())
-    }
-
-    /// Unit normal from a to b, shape (3,).
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, &self.impulse.normal.to_array())
-    }
-
-    /// Impulse on a (its opposite acts on b): mass times speed, world axes, shape (3,).
-    #[getter]
-    fn impulse<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        vector(py, &self.impulse.impulse.to_array())
-    }
-
-    fn __repr__(&self) -> String {
-        let ContactImpulse { a, b, time, impulse, .. } = self.impulse;
-        format!("Impulse({}, {}, time={time:?}, impulse={:?})", a.index(), b.index(), impulse.to_array())
     }
 }
 
@@ -178,7 +65,7 @@ struct Inner {
 
 impl Inner {
     fn id(&self, index: usize) -> PyResult<BodyId> {
-        let id = self.engine.ids().nth(index);
+        let id = self.engine.ids().find(|id| id.index() == index);
         id.ok_or_else(|| PyKeyError::new_err(format!("body {index} is not one of {}", self.engine.len())))
     }
 
@@ -298,11 +185,89 @@ impl Simulation {
             .with_restitution(restitution)
             .with_friction(friction)
             .with_solid(solid);
-        inner.engine.add(&body).or_raise()?;
+        let index = inner.engine.add(&body).or_raise()?.index();
         if let Some(name) = name {
             inner.names.insert(name, index);
         }
         Ok(index)
+    }
+
+    /// Takes a body out; what rested on it is awake. Its index may be given to a body that is added later.
+    ///
+    /// >>> import d2m_ccd
+    /// >>> simulation = d2m_ccd.Simulation()
+    /// >>> simulation.remove(simulation.add("shape:box", name="cup"))
+    /// >>> len(simulation)
+    /// 0
+    fn remove(&self, py: Python<'_>, body: &Bound<'_, PyAny>) -> PyResult<()> {
+        let mut inner = self.lock(py);
+        let id = inner.find(body)?;
+        inner.engine.remove(id);
+        inner.names.retain(|_, index| *index != id.index());
+        Ok(())
+    }
+
+    /// Puts the mesh frame of a body that follows no motion somewhere else; its velocities stay.
+    ///
+    /// Raises `InputError` if it would intersect another one there: nothing changes then.
+    ///
+    /// >>> import d2m_ccd
+    /// >>> simulation = d2m_ccd.Simulation()
+    /// >>> cup = simulation.add("shape:box")
+    /// >>> simulation.set_pose(cup, d2m_ccd.Pose(x=[0, 2, 0]))
+    /// >>> simulation.pose(cup).x.tolist()
+    /// [0.0, 2.0, 0.0]
+    fn set_pose(&self, py: Python<'_>, body: &Bound<'_, PyAny>, pose: &Bound<'_, PyAny>) -> PyResult<()> {
+        let pose = pose_argument(Some(pose), "pose")?;
+        let mut inner = self.lock(py);
+        let id = inner.find(body)?;
+        inner.engine.set_pose(id, pose).or_raise()
+    }
+
+    /// Gives a dynamic body these velocities, of its center of mass and angular, world axes.
+    ///
+    /// >>> import d2m_ccd
+    /// >>> simulation = d2m_ccd.Simulation()
+    /// >>> simulation.set_velocity(simulation.add("shape:box"), [1, 0, 0])
+    #[pyo3(signature = (body, v, w=None))]
+    fn set_velocity(
+        &self,
+        py: Python<'_>,
+        body: &Bound<'_, PyAny>,
+        v: &Bound<'_, PyAny>,
+        w: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let (linear, angular) = (finite(v, "v")?, vec3_or_zero(w, "w")?);
+        let mut inner = self.lock(py);
+        let id = inner.find(body)?;
+        inner.engine.set_velocity(id, linear, angular).or_raise()
+    }
+
+    /// Another gravity from now on.
+    ///
+    /// >>> import d2m_ccd
+    /// >>> d2m_ccd.Simulation().set_gravity([0, -1.62, 0])
+    fn set_gravity(&self, py: Python<'_>, gravity: &Bound<'_, PyAny>) -> PyResult<()> {
+        let gravity = finite(gravity, "gravity")?;
+        self.lock(py).engine.set_gravity(gravity).or_raise()
+    }
+
+    /// Restitution and friction of a body from now on.
+    ///
+    /// >>> import d2m_ccd
+    /// >>> simulation = d2m_ccd.Simulation()
+    /// >>> simulation.set_material(simulation.add("shape:box"), restitution=0.5, friction=0.2)
+    #[pyo3(signature = (body, *, restitution, friction))]
+    fn set_material(
+        &self,
+        py: Python<'_>,
+        body: &Bound<'_, PyAny>,
+        restitution: f64,
+        friction: f64,
+    ) -> PyResult<()> {
+        let mut inner = self.lock(py);
+        let id = inner.find(body)?;
+        inner.engine.set_material(id, restitution, friction).or_raise()
     }
 
     /// These two bodies may pass through each other.

@@ -298,6 +298,31 @@ def test_the_answers_of_a_world_are_those_of_its_pairs(knots: tuple[d2m_ccd.Tree
     assert first.a == world.bodies()[ids.index(first.a)]  # type: ignore[arg-type]
 
 
+def test_a_simulation_is_changed() -> None:
+    simulation = d2m_ccd.Simulation()
+    shelf = simulation.add(BOX, name="shelf", kind="static")
+    cup = simulation.add(BOX, name="cup", pose=d2m_ccd.Pose(x=[0, 1.001, 0]))
+    simulation.advance(1.0)
+    assert abs(simulation.pose(cup).x[1] - 1.001) < 1e-3
+    with pytest.raises(d2m_ccd.InputError, match="intersect"):
+        simulation.set_pose("cup", d2m_ccd.Pose(x=[0, 0.5, 0]))
+    simulation.remove("shelf")
+    with pytest.raises(KeyError):
+        simulation.pose("shelf")
+    with pytest.raises(KeyError):
+        simulation.pose(shelf)
+    segments = simulation.advance(1.1)
+    assert any(segment.removed == [shelf] for segment in segments)
+    assert simulation.velocities()[0, 1] < -0.5
+    simulation.set_gravity([0, 0, 0])
+    simulation.set_velocity(cup, [1, 0, 0])
+    x = simulation.pose(cup).x[0]
+    simulation.advance(2.1)
+    assert abs(simulation.pose(cup).x[0] - x - 1) < 1e-9
+    assert simulation.add(BOX, pose=d2m_ccd.Pose(x=[0, 50, 0])) == shelf
+    assert len(simulation) == 2
+
+
 def test_files(tmp_path: Path) -> None:
     text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
     (tmp_path / "corner.obj").write_text(text)

@@ -1,6 +1,7 @@
 //! The joints of a robot, each of one number.
 
 use crate::RobotError;
+use crate::inertial::JointDynamics;
 use crate::urdf::{Origin, Urdf, UrdfJoint, UrdfJointKind};
 use d2m_motion::{Joint, JointKind, JointValue};
 use glam::DVec3;
@@ -66,6 +67,7 @@ pub(crate) struct RobotJoint {
     pub(crate) child: usize,
     pub(crate) limits: JointLimits,
     pub(crate) mimic: Option<Mimic>,
+    pub(crate) dynamics: JointDynamics,
     /// With a value of zero if it moves.
     pub(crate) joint: Joint,
 }
@@ -128,7 +130,17 @@ impl<'a> JointReader<'a> {
             let motion =
                 core::mem::take(&mut origin).joint(motion).map_err(|error| self.fault(joint, error))?;
             let limits = limits_of(joint, kind, suffix.is_some());
-            self.joints.push(RobotJoint { name, kind, parent, child, limits, mimic: None, joint: motion });
+            let dynamics = joint.dynamics;
+            self.joints.push(RobotJoint {
+                name,
+                kind,
+                parent,
+                child,
+                limits,
+                mimic: None,
+                dynamics,
+                joint: motion,
+            });
         }
         Ok(())
     }

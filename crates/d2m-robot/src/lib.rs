@@ -6,11 +6,14 @@
 //!
 //! ## Robots
 //! - [`Robot`] from URDF, where its files are by [`RobotOptions`]; [`JointType`], [`JointLimits`], [`Mimic`]
-//!   say what its joints are.
+//!   say what its joints are, [`Inertial`] and [`JointDynamics`] how heavy its links are and what brakes it.
 //! - [`Srdf`]: pairs that are not checked.
 //!
 //! ## Scenes
 //! [`RobotScene`], with an [`Obstacle`] or a body that is [`Attached`] to a link.
+//!
+//! ## Simulations
+//! With the feature `dynamics`: [`RobotBodies`], on its [`Base`], become bodies and joints of a simulation, the [`SimulatedRobot`].
 //!
 //! ## Paths
 //! - [`Trajectory`]: a [`TrajectoryPoint`] at each time, joined by an [`Interpolation`].
@@ -23,6 +26,9 @@
 //!
 //! ## Errors
 //! [`RobotError`]: file, link or joint, and the value found.
+#![cfg_attr(not(feature = "dynamics"), doc = "\n[`RobotBodies`]: ./index.html#simulations")]
+#![cfg_attr(not(feature = "dynamics"), doc = "[`Base`]: ./index.html#simulations")]
+#![cfg_attr(not(feature = "dynamics"), doc = "[`SimulatedRobot`]: ./index.html#simulations")]
 #![doc(html_root_url = "https://docs.rs/d2m-robot")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
@@ -34,6 +40,7 @@ mod check;
 mod clearance;
 mod error;
 mod geometry;
+mod inertial;
 mod joints;
 mod limits;
 mod link_tree;
@@ -42,6 +49,8 @@ mod packages;
 mod path_bodies;
 mod robot;
 mod scene;
+#[cfg(feature = "dynamics")]
+mod simulated;
 mod srdf;
 mod swept_box;
 mod trajectory;
@@ -53,11 +62,14 @@ pub use answer::{PathAnswer, PathContact};
 pub use check::EdgeChecker;
 pub use clearance::PathClearance;
 pub use error::RobotError;
+pub use inertial::{Inertial, JointDynamics};
 pub use joints::{JointLimits, JointType, Mimic};
 pub use limits::{LimitKind, LimitWarning};
 pub use options::RobotOptions;
 pub use path_bodies::PathBodies;
 pub use robot::Robot;
 pub use scene::{Attached, Obstacle, RobotScene};
+#[cfg(feature = "dynamics")]
+pub use simulated::{Base, RobotBodies, SimulatedRobot};
 pub use srdf::Srdf;
 pub use trajectory::{Interpolation, Trajectory, TrajectoryPoint};

@@ -1,6 +1,7 @@
 //! A robot: links joined to a tree, with their collision bodies.
 
 use crate::geometry::{LinkBody, ShapeReader};
+use crate::inertial::{Inertial, JointDynamics};
 use crate::joints::{JointLimits, JointReader, JointType, Mimic, RobotJoint};
 use crate::link_tree::LinkTree;
 use crate::packages::read_text;
@@ -51,6 +52,7 @@ pub(crate) struct Link {
     /// The joints that carry it, one after the other; none: the root.
     pub(crate) joints: Range<usize>,
     pub(crate) bodies: Vec<LinkBody>,
+    pub(crate) inertial: Option<Inertial>,
 }
 
 impl Robot {
@@ -85,7 +87,8 @@ impl Robot {
         for link in &urdf.links {
             let bodies = link.collisions.iter().map(|collision| reader.body(&link.name, collision));
             let bodies = bodies.collect::<Result<_, _>>()?;
-            links.push(Link { name: link.name.clone(), joints: 0..0, bodies });
+            let (name, inertial) = (link.name.clone(), link.inertial);
+            links.push(Link { name, joints: 0..0, bodies, inertial });
         }
         let mut remarks = reader.remarks;
         let JointReader { joints, remarks: of_joints, .. } = JointReader::read(file, &urdf, &tree.ends)?;
@@ -153,6 +156,22 @@ impl Robot {
     /// An index that is no joint.
     pub fn mimic(&self, joint: usize) -> Option<Mimic> {
         self.joints[joint].mimic
+    }
+
+    /// What brakes a joint, as the file states it.
+    ///
+    /// # Panics
+    /// An index that is no joint.
+    pub fn dynamics(&self, joint: usize) -> JointDynamics {
+        self.joints[joint].dynamics
+    }
+
+    /// The mass of a link, as far as the file states it.
+    ///
+    /// # Panics
+    /// An index that is no link.
+    pub fn inertial(&self, link: usize) -> Option<Inertial> {
+        self.links[link].inertial
     }
 
     /// Where a joint stays that no path names: at zero, or in the middle of its limits if zero is outside of them.

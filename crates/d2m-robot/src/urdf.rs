@@ -1,8 +1,9 @@
 //! What a URDF file states, as it states it.
 
 use crate::RobotError;
+use crate::inertial::{Inertial, JointDynamics};
 use crate::xml::{Element, Xml};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// The file.
 #[derive(Debug)]
@@ -17,6 +18,7 @@ pub(crate) struct UrdfLink {
     pub(crate) name: String,
     pub(crate) line: u32,
     pub(crate) collisions: Vec<UrdfCollision>,
+    pub(crate) inertial: Option<Inertial>,
 }
 
 /// One `<collision>`.
@@ -69,6 +71,7 @@ pub(crate) struct UrdfJoint {
     /// Does the file state the axis?
     pub(crate) has_axis: bool,
     pub(crate) limit: Option<UrdfLimit>,
+    pub(crate) dynamics: JointDynamics,
     pub(crate) mimic: Option<UrdfMimic>,
 }
 
@@ -120,7 +123,30 @@ fn origin(element: Element<'_>) -> Result<Origin, RobotError> {
 
 fn link(element: Element<'_>) -> Result<UrdfLink, RobotError> {
     let collisions = element.children("collision").map(collision).collect::<Result<_, _>>()?;
-    Ok(UrdfLink { name: element.needed("name")?.to_owned(), line: element.line(), collisions })
+    let inertial = element.child("inertial")?.map(inertial).transpose()?;
+    Ok(UrdfLink { name: element.needed("name")?.to_owned(), line: element.line(), collisions, inertial })
+}
+
+fn inertial(element: Element<'_>) -> Result<Inertial, RobotError> {
+    let Origin { xyz, rpy } = origin(element)?;
+    let mass = element.child("mass")?.map(|mass| mass.number("value")).transpose()?.flatten();
+    let stated = element.child("inertia")?;
+    let part = |key: &str| {
+        let value = stated.map(|inertia| inertia.number(key)).transpose()?.flatten();
+        Ok::<_, RobotError>(value.unwrap_or(0.0))
+    };
+    let (xy, xz, yz) = (part("ixy")?, part("ixz")?, part("iyz")?);
+    let inertia = DMat3::from_cols(
+        DVec3::new(part("ixx")?, xy, xz),
+        DVec3::new(xy, part("iyy")?, yz),
+        DVec3::new(xz, yz, part("izz")?),
+    );
+    Ok(Inertial { mass: mass.unwrap_or(0.0), position: xyz, rpy: rpy.to_array(), inertia })
+}
+
+fn dynamics(element: Element<'_>) -> Result<JointDynamics, RobotError> {
+    let part = |key: &str| Ok::<_, RobotError>(element.number(key)?.unwrap_or(0.0));
+    Ok(JointDynamics { damping: part("damping")?, friction: part("friction")? })
 }
 
 fn collision(element: Element<'_>) -> Result<UrdfCollision, RobotError> {
@@ -199,9 +225,10 @@ fn joint(element: Element<'_>) -> Result<UrdfJoint, RobotError> {
         let reason = format!("joint {name:?}: the lower limit {lower:?} is above the upper one, {upper:?}");
         return Err(element.fault(reason));
     }
+    let dynamics = element.child("dynamics")?.map(dynamics).transpose()?.unwrap_or_default();
     let mimic = element.child("mimic")?.map(mimic).transpose()?;
     let (line, origin) = (element.line(), origin(element)?);
-    Ok(UrdfJoint { name, line, kind, parent, child, origin, axis, has_axis, limit, mimic })
+    Ok(UrdfJoint { name, line, kind, parent, child, origin, axis, has_axis, limit, dynamics, mimic })
 }
 
 fn limit(element: Element<'_>) -> Result<UrdfLimit, RobotError> {

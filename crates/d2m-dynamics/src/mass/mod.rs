@@ -33,6 +33,29 @@ pub struct MassProperties {
 const ASYMMETRY: f64 = 1e-8;
 
 impl MassProperties {
+    /// Those of bodies that are held together, by Steiner's theorem; all in one frame.
+    ///
+    /// ```
+    /// use d2m_dynamics::MassProperties;
+    /// use glam::{DMat3, DVec3};
+    /// let ball = |x: f64| MassProperties::try_new(2.0, DVec3::X * x, DMat3::IDENTITY * 0.1);
+    /// let dumbbell = MassProperties::together(&[ball(-1.0)?, ball(1.0)?]);
+    /// assert_eq!((dumbbell.mass, dumbbell.center), (4.0, DVec3::ZERO));
+    /// assert_eq!(dumbbell.inertia, DMat3::from_diagonal(DVec3::new(0.2, 4.2, 4.2)));
+    /// # Ok::<(), d2m_dynamics::MassError>(())
+    /// ```
+    pub fn together(masses: &[Self]) -> Self {
+        let mass: f64 = masses.iter().map(|own| own.mass).sum();
+        let center = masses.iter().map(|own| own.center * own.mass).sum::<DVec3>() / mass;
+        let about = |own: &Self| {
+            let d = own.center - center;
+            let outer = DMat3::from_cols(d * d.x, d * d.y, d * d.z);
+            own.inertia + (DMat3::from_diagonal(DVec3::splat(d.length_squared())) - outer) * own.mass
+        };
+        let inertia = masses.iter().map(about).fold(DMat3::ZERO, |sum, own| sum + own);
+        Self { mass, center, inertia }
+    }
+
     /// Given numbers, checked.
     ///
     /// # Errors

@@ -7,6 +7,7 @@ mod flights;
 mod hold;
 mod plan;
 mod resolve;
+mod sense;
 
 use crate::contact::{ContactPoint, HIT};
 use crate::rigid_body::RigidBody;
@@ -64,6 +65,8 @@ pub(crate) struct Step<'s> {
     undoable: Vec<ContactPoint>,
     /// Pairs between which impulses have acted.
     pressed: BTreeSet<Key>,
+    /// Until when sensors have looked.
+    sensed: f64,
 }
 
 type Key = (usize, usize);
@@ -89,17 +92,19 @@ impl<'s> Step<'s> {
             impulses: Vec::new(),
             undoable: Vec::new(),
             pressed: BTreeSet::new(),
+            sensed: start,
         }
     }
 
     pub(crate) fn run(mut self) -> Result<StepReport, StepError> {
-        let outcome = self.fly_through();
+        let outcome = self.fly_through().and_then(|()| self.sense(self.end));
         // Also after an error: what was flown until then is certified.
         let time = if outcome.is_ok() { self.end } else { self.sim.time };
         self.finish(time);
         outcome?;
         self.report.segments = self.sim.recorder.take();
         self.report.touches = core::mem::take(&mut self.sim.touches);
+        self.report.touches.sort_by(|one, other| one.time.total_cmp(&other.time));
         Ok(self.report)
     }
 
@@ -132,6 +137,7 @@ impl<'s> Step<'s> {
             self.report_impulses();
             #[cfg(feature = "audit")]
             self.conclude_flights(event.time);
+            self.sense(event.time)?;
             self.sim.recorder.cut(event.time, self.holding);
             self.sim.time = event.time;
             let held = |i: usize| self.sim.bodies[i].held;

@@ -1,0 +1,68 @@
+//! What sensors find.
+
+use super::Step;
+use super::flights::are_spheres_apart;
+use crate::pairs::{distance_of, solid_of};
+use crate::rigid_body::{RigidBody, Role};
+use crate::{StepError, parallel};
+use d2m_bvh::{
+    Budget, ContactSpan, Moving, PairCache, QueryError, QueryOptions, SpanStatus, StartState, Window,
+    contact_spans,
+};
+
+impl Step<'_> {
+    /// Which bodies sensors meet on the flights that all have now, until a time to which they fly: outside of what is reported each pair is
+    /// proven clear at every time.
+    pub(super) fn sense(&mut self, until: f64) -> Result<(), StepError> {
+        let from = core::mem::replace(&mut self.sensed, until);
+        let sim = &*self.sim;
+        let of = |role: Role| (0..sim.bodies.len()).filter(move |&i| sim.bodies[i].role == role);
+        let pairs: Vec<(usize, usize)> = of(Role::Sensor)
+            .flat_map(|sensor| of(Role::Body).map(move |body| (sensor.min(body), sensor.max(body))))
+            .filter(|&(a, b)| sim.is_admitted(a, b))
+            .collect();
+        let Ok(window) = Window::try_new(from, until) else { return Ok(()) };
+        if pairs.is_empty() || window.length() == 0.0 {
+            return Ok(());
+        }
+        let node_tests = sim.options.node_tests;
+        let found = parallel::map(pairs, |pair| {
+            (pair, spans(&sim.bodies[pair.0], &sim.bodies[pair.1], window, node_tests))
+        });
+        for (pair, spans) in found {
+            let (a, b) = (&self.sim.bodies[pair.0], &self.sim.bodies[pair.1]);
+            for span in spans.map_err(|error| a.query_error(b, error))? {
+                if span.status == SpanStatus::Clear {
+                    self.sim.end_touch(pair, span.from);
+                } else {
+                    self.sim.begin_touch(pair, span.from);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// When two bodies are clear of each other in their flights.
+fn spans(
+    a: &RigidBody,
+    b: &RigidBody,
+    window: Window,
+    node_tests: u64,
+) -> Result<Vec<ContactSpan>, QueryError> {
+    let all = |status| Ok(vec![ContactSpan::new(window.start(), window.end(), status)]);
+    if are_spheres_apart(a, b, window.start(), window.end(), 0.0) {
+        return all(SpanStatus::Clear);
+    }
+    if a.stands_still() && b.stands_still() {
+        let poses = [a, b].map(|body| body.pose_at(window.end()));
+        let found = distance_of([a, b], poses, 0.0, &mut PairCache::new())?;
+        let is_apart = found.is_none_or(|found| found.state == StartState::Apart);
+        return all(if is_apart { SpanStatus::Clear } else { SpanStatus::Contact });
+    }
+    let options = QueryOptions::default()
+        .with_solid(solid_of(a, b))
+        .with_budget(Budget::UNLIMITED.with_node_tests(node_tests));
+    let [one, two] = [a, b].map(|body| Moving::new(&*body.tree, &body.flight).with_radius(body.rounding));
+    contact_spans(one, two, window, &options, None)
+}

@@ -1,0 +1,201 @@
+//! Who touches whom, and what bodies can be besides solid: sensors, belts, of several parts, with locked axes; questions about the present.
+
+use d2m_bvh::MeshTree;
+use d2m_dynamics::{
+    Body, BodyId, Joint, Kind, Part, Presence, RayAnswer, Simulation, SimulationOptions, TouchChange,
+};
+use d2m_motion::Pose;
+use glam::{BVec3, DQuat, DVec3};
+use std::sync::Arc;
+
+fn tree(shape: &str) -> Arc<MeshTree> {
+    Arc::new(MeshTree::new(d2m_shapes::mesh(shape).unwrap()))
+}
+
+fn cube() -> Arc<MeshTree> {
+    tree("box?x=0.5&y=0.5&z=0.5")
+}
+
+fn floor() -> Body {
+    let floor = Body::new("floor", tree("box?x=20&y=0.5&z=20")).with_kind(Kind::Static).with_friction(0.5);
+    floor.with_position(DVec3::Y * -0.5)
+}
+
+fn at(x: f64, y: f64, z: f64) -> Pose {
+    Pose::new(DVec3::new(x, y, z), DQuat::IDENTITY)
+}
+
+fn rest(simulation: &mut Simulation, body: BodyId) {
+    while !simulation.is_asleep(body) {
+        simulation.step().unwrap();
+        assert!(simulation.time() < 20.0, "it does not come to rest");
+    }
+}
+
+/// A body that rests has begun to touch once, also while it sleeps; it ends when it is taken away.
+#[test]
+fn touches_begin_and_end_once() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let ground = simulation.add(&floor()).unwrap();
+    let body = simulation.add(&Body::new("cube", cube()).with_position(DVec3::Y)).unwrap();
+    let mut events = Vec::new();
+    while !simulation.is_asleep(body) {
+        events.extend(simulation.step().unwrap().touches);
+    }
+    for _ in 0..10 {
+        events.extend(simulation.step().unwrap().touches);
+    }
+    assert!(
+        matches!(events[..], [event] if event.change == TouchChange::Began && (event.a, event.b) == (ground, body))
+    );
+    assert!(simulation.touch(body, ground));
+    simulation.set_pose(body, at(0.0, 3.0, 0.0)).unwrap();
+    let events: Vec<_> = (0..3).flat_map(|_| simulation.step().unwrap().touches).collect();
+    assert!(matches!(events[..], [event] if event.change == TouchChange::Ended), "{events:?}");
+    rest(&mut simulation, body);
+    simulation.remove(body);
+    let events = simulation.step().unwrap().touches;
+    assert!(
+        matches!(events[..], [event] if event.change == TouchChange::Ended && event.b == body),
+        "{events:?}"
+    );
+}
+
+/// A zone knows who is in it, to the time: also who passes within a step, who rests in it, who was put into it, and who is gone.
+#[test]
+fn sensors_know_who_is_in_them() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    simulation.add(&floor()).unwrap();
+    let zone =
+        Body::new("zone", tree("box?x=1&y=2&z=1")).with_kind(Kind::Static).with_presence(Presence::Sensor);
+    let zone = simulation.add(&zone.with_position(DVec3::Y * 2.0)).unwrap();
+    let small = tree("box?x=0.1&y=0.1&z=0.1");
+    let falling = Body::new("falling", Arc::clone(&small)).with_position(DVec3::Y * 6.0);
+    let falling = simulation.add(&falling).unwrap();
+    let passing = Body::new("passing", small).with_position(DVec3::new(-20.0, 3.0, 0.0));
+    let passing = simulation.add(&passing.with_linear_velocity(DVec3::X * 1500.0)).unwrap();
+    let mut events = Vec::new();
+    while simulation.time() < 2.0 {
+        events.extend(simulation.step().unwrap().touches.into_iter().filter(|touch| touch.a == zone));
+    }
+    let of = |id: BodyId| events.iter().filter(|touch| touch.b == id).collect::<Vec<_>>();
+    let passed = of(passing);
+    assert_eq!(
+        passed.iter().map(|touch| touch.change).collect::<Vec<_>>(),
+        [TouchChange::Began, TouchChange::Ended]
+    );
+    assert!((passed[0].time - 18.9 / 1500.0).abs() < 1e-6 && (passed[1].time - 21.1 / 1500.0).abs() < 1e-6);
+    let fell = of(falling);
+    // Its lower side is at 4 after a fall of 1.9.
+    assert!(fell.len() == 1 && (fell[0].time - (2.0 * 1.9 / 9.81f64).sqrt()).abs() < 0.01, "{fell:?}");
+    assert!(simulation.touch(zone, falling) && !simulation.touch(zone, passing));
+    let before = simulation.snapshot();
+    simulation.set_pose(falling, at(8.0, 3.0, 0.0)).unwrap();
+    simulation.step().unwrap();
+    assert!(!simulation.touch(zone, falling));
+    simulation.restore(&before).unwrap();
+    assert!(simulation.touch(zone, falling));
+    simulation.remove(zone);
+    let touches = simulation.step().unwrap().touches;
+    assert!(touches.iter().any(|touch| touch.a == zone && touch.change == TouchChange::Ended));
+}
+
+/// Rays meet what is there now, not what is ignored by nothing else; the answers are those of the shapes.
+#[test]
+fn rays_meet_what_is_there_now() {
+    let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
+    let near = simulation.add(&Body::new("near", cube()).with_position(DVec3::X * 3.0)).unwrap();
+    let far = simulation.add(&Body::new("far", cube()).with_position(DVec3::X * 6.0)).unwrap();
+    let hit = |simulation: &Simulation, way: DVec3| {
+        simulation.frozen(d2m_bvh::QueryOptions::default()).ray(DVec3::ZERO, way).unwrap()
+    };
+    let is_at = |answer: RayAnswer, id: BodyId, x: f64| {
+        matches!(answer, RayAnswer::Hit { body, lo, hi, normal, .. }
+            if body == id && lo <= x && x <= hi + 1e-9 && hi - lo < 1e-6 && (normal + DVec3::X).length() < 1e-6)
+    };
+    assert!(is_at(hit(&simulation, DVec3::X * 10.0), near, 2.5), "{:?}", hit(&simulation, DVec3::X * 10.0));
+    assert_eq!(hit(&simulation, DVec3::X * 2.0), RayAnswer::Free);
+    assert_eq!(hit(&simulation, DVec3::Y * 100.0), RayAnswer::Free);
+    simulation.set_pose(near, at(3.0, 2.0, 0.0)).unwrap();
+    assert!(is_at(hit(&simulation, DVec3::X * 10.0), far, 5.5));
+    simulation.remove(far);
+    assert_eq!(hit(&simulation, DVec3::X * 10.0), RayAnswer::Free);
+    assert!(simulation.frozen(d2m_bvh::QueryOptions::default()).ray(DVec3::NAN, DVec3::X).is_err());
+}
+
+/// A belt takes along what lies on it, and on an awake island the one beside is not moved.
+#[test]
+fn belts_take_along_what_lies_on_them() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let belt = floor().with_surface_velocity(DVec3::X * 0.5);
+    let belt = simulation.add(&belt).unwrap();
+    let low =
+        simulation.add(&Body::new("low", cube()).with_friction(0.5).with_position(DVec3::Y * 0.501)).unwrap();
+    let high = simulation
+        .add(&Body::new("high", cube()).with_friction(0.5).with_position(DVec3::Y * 1.502))
+        .unwrap();
+    while simulation.time() < 2.0 {
+        let report = simulation.step().unwrap();
+        assert!(report.residual < 1e-3, "{}", report.residual);
+    }
+    for body in [low, high] {
+        assert!((simulation.linear_velocity(body) - DVec3::X * 0.5).length() < 1e-3);
+        assert!(!simulation.is_asleep(body));
+    }
+    simulation.set_surface_velocity(belt, DVec3::ZERO).unwrap();
+    rest(&mut simulation, low);
+}
+
+/// Ways and turns that are locked stay as they are, whatever pushes; the others are free.
+#[test]
+fn locked_axes_stay() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    simulation.add(&floor()).unwrap();
+    let body = Body::new("flat", cube()).with_position(DVec3::Y * 2.0).with_friction(0.5);
+    let body =
+        body.with_angular_velocity(DVec3::new(0.0, 0.0, 2.0)).with_linear_velocity(DVec3::new(1.0, 0.0, 2.0));
+    let flat = simulation.add(&body).unwrap();
+    let hit = simulation
+        .add(&Body::new("hit", cube()).with_position(DVec3::new(3.0, 0.501, 0.3)).with_friction(0.5))
+        .unwrap();
+    let lock = BVec3::new(false, false, true);
+    simulation.add_joint(&Joint::locks(flat, lock, !lock)).unwrap();
+    let single = simulation.add(&Body::new("top", cube()).with_position(DVec3::new(-5.0, 3.0, 0.0))).unwrap();
+    simulation.set_velocity(single, DVec3::ZERO, DVec3::new(3.0, 2.0, 1.0)).unwrap();
+    simulation.add_joint(&Joint::locks(single, BVec3::TRUE, BVec3::new(true, false, false))).unwrap();
+    while simulation.time() < 2.0 {
+        simulation.step().unwrap();
+        let place = simulation.position(flat);
+        let turn = simulation.orientation(flat);
+        assert!(simulation.time() > 0.4 || (place.x - simulation.time()).abs() < 1e-9, "{place}");
+        assert!(place.z.abs() < 1e-7 && turn.x.abs() < 1e-7 && turn.y.abs() < 1e-7, "{place} {turn}");
+        assert!((simulation.position(single) - DVec3::new(-5.0, 3.0, 0.0)).length() < 1e-9);
+        assert!(simulation.angular_velocity(single).x.abs() < 1e-6);
+    }
+    let place = simulation.position(flat);
+    assert!(place.y < 1.3, "{place}");
+    assert!(simulation.angular_velocity(single).y.abs() > 1.0);
+    let _ = hit;
+}
+
+/// A body of several meshes meets others with each of them, and lies where its weight has it.
+#[test]
+fn bodies_of_parts_meet_with_each_of_them() {
+    let (plate, leg) =
+        (d2m_shapes::mesh("box?x=1&y=0.1&z=1").unwrap(), d2m_shapes::mesh("box?x=0.1&y=0.5&z=0.1").unwrap());
+    let legs = [-0.8, 0.8].into_iter().flat_map(|x| [-0.8, 0.8].map(|z| DVec3::new(x, -0.7, z)));
+    let mut parts = vec![Part::new(&plate)];
+    parts.extend(legs.map(|position| Part { position, ..Part::new(&leg) }));
+    let table = Body::of_parts("table", &parts).unwrap().with_friction(0.5).with_position(DVec3::Y * 1.3);
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    simulation.add(&floor()).unwrap();
+    let table = simulation.add_checked(&table).unwrap();
+    // Under the table, beside its legs.
+    let below = Body::new("below", tree("box?x=0.3&y=0.3&z=0.3")).with_position(DVec3::Y * 0.31);
+    let below = simulation.add_checked(&below).unwrap();
+    rest(&mut simulation, table);
+    let bottom = simulation.pose(table).transform_point(DVec3::Y * -1.2);
+    assert!((bottom.y - 1e-3).abs() < 1e-4 && simulation.position(below).y < 0.302, "{bottom}");
+    let mass = simulation.mass_properties(table).unwrap().mass;
+    assert!((mass - 1000.0 * (0.8 + 4.0 * 0.04)).abs() < 1e-9, "{mass}");
+}
