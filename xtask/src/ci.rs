@@ -1,5 +1,5 @@
 //! `cargo xtask ci`: every check that must never be red, each with its time.
-use crate::{TaskResult, doc, tidy, workspace_root};
+use crate::{TaskResult, doc, packages, tidy, workspace_root};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -53,7 +53,7 @@ fn libraries_with_defaults(root: &Path) -> Result<Vec<String>, Box<dyn std::erro
 /// Runs the steps; an error names those that failed.
 pub(crate) fn run(options: &Options) -> TaskResult {
     let wanted = |name: &str| options.only.as_ref().is_none_or(|only| name.contains(only.as_str()));
-    let names = || STEPS.iter().map(|step| step.name).chain(["documentation", "tidy"]);
+    let names = || STEPS.iter().map(|step| step.name).chain(["documentation", "packages", "tidy"]);
     if !names().any(wanted) {
         return Err(format!("no such step: {}", names().collect::<Vec<_>>().join(", ")).into());
     }
@@ -91,7 +91,15 @@ pub(crate) fn run(options: &Options) -> TaskResult {
         if wanted("documentation") {
             let begin = Instant::now();
             let ok = doc::run().map_err(|error| eprintln!("{error}")).is_ok();
-            note("documentation", ok, begin.elapsed().as_secs_f64());
+            if !note("documentation", ok, begin.elapsed().as_secs_f64()) {
+                break 'steps;
+            }
+        }
+        if wanted("packages") {
+            let begin = Instant::now();
+            let made = packages::run(&packages::Options::default());
+            let ok = made.map_err(|error| eprintln!("{error}")).is_ok();
+            note("packages", ok, begin.elapsed().as_secs_f64());
         }
     }
     eprintln!("xtask ci: {:.1} s in total\n{}", start.elapsed().as_secs_f64(), times.join("\n"));

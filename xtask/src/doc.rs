@@ -25,12 +25,41 @@ pub(crate) fn run() -> TaskResult {
         fs::remove_file(front)?;
         write(&root)?;
     }
-    match leading_away(&fronts)?.first() {
-        None => Ok(()),
-        Some(page) => {
-            Err(format!("{} links to docs.rs instead of the pages beside it", page.display()).into())
+    if let Some(page) = leading_away(&fronts)?.first() {
+        return Err(format!("{} links to docs.rs instead of the pages beside it", page.display()).into());
+    }
+    for front in fronts.iter().filter(|front| front.exists()) {
+        for page in pages(front.parent().unwrap_or(front))? {
+            if let Some(name) = literal_link(&fs::read_to_string(&page)?) {
+                return Err(format!("{}: [`{name}`] leads nowhere", page.display()).into());
+            }
         }
     }
+    Ok(())
+}
+
+/// All pages in a folder.
+fn pages(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let (mut found, mut open) = (Vec::new(), vec![folder.to_path_buf()]);
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(folder)? {
+            let path = entry?.path();
+            if path.is_dir() {
+                open.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "html") {
+                found.push(path);
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// What a reader of a page sees in brackets because no page was found for it. A list of names in brackets is no link.
+fn literal_link(page: &str) -> Option<&str> {
+    page.split("[<code>").skip(1).find_map(|rest| {
+        let (name, rest) = rest.split_once("</code>")?;
+        (rest.starts_with(']') && !name.contains('<')).then_some(name)
+    })
 }
 
 /// Writes the pages that are not up to date.
@@ -53,4 +82,16 @@ fn leading_away(fronts: &[PathBuf]) -> std::io::Result<Vec<&PathBuf>> {
         }
     }
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_that_leads_nowhere_is_seen() {
+        assert_eq!(literal_link("see [<code>World</code>] and"), Some("World"));
+        assert_eq!(literal_link("<a href=\"w\"><code>World</code></a>"), None);
+        assert_eq!(literal_link("in [<code>lo</code>, <code>hi</code>]"), None);
+    }
 }

@@ -4,10 +4,12 @@
 //! Only the checks are compiled here, which takes seconds. The tasks of the evaluation are those of `d2m-evaluation`.
 #![forbid(unsafe_code)]
 mod ci;
+mod comparison;
 mod doc;
 mod forwarded;
 mod lines;
 mod mutants;
+mod packages;
 mod tidy;
 
 use clap::{Parser, Subcommand};
@@ -32,8 +34,12 @@ enum Task {
     Tidy,
     /// The reference in target/doc; fails on warnings and on front pages whose links lead away from it.
     Doc,
+    /// The table of docs/guide/migrating.md that sets this library beside others, from its facts and docs/results.
+    Comparison,
     /// Lines of product code of each crate, without tests, comments and blank lines.
     Lines(lines::Options),
+    /// The packages that would be published, made without a network; with --test built and tested without this repository.
+    Packages(packages::Options),
     /// Deliberate faults in a copy of the sources, each of which a named test must notice; fails if one survives.
     Mutants(mutants::Options),
     /// Random families against slow oracles; fails on any contact missed or late.
@@ -55,6 +61,8 @@ fn main() -> ExitCode {
         Task::Ci(options) => ci::run(&options),
         Task::Tidy => tidy::run(),
         Task::Doc => doc::run(),
+        Task::Comparison => comparison::run(),
+        Task::Packages(options) => packages::run(&options),
         Task::Lines(options) => lines::run(&options),
         Task::Mutants(options) => mutants::run(&options),
         Task::Accuracy(_) | Task::Bench(_) | Task::Report(_) | Task::Trials(_) => return forwarded::run(),

@@ -15,8 +15,10 @@ macro_rules! pages {
 
 pages! {
     Readme: "README.md",
+    FiveMinutes: "docs/guide/README.md",
     Certified: "docs/guide/certified.md",
     OnePair: "docs/guide/one-pair.md",
+    View: "docs/guide/view.md",
     Meshes: "docs/guide/meshes.md",
     Motions: "docs/guide/motions.md",
     Tolerances: "docs/guide/tolerances.md",
@@ -29,6 +31,7 @@ pages! {
     JavaScript: "docs/guide/javascript.md",
     Crates: "docs/guide/crates.md",
     Results: "docs/guide/results.md",
+    Troubleshooting: "docs/guide/troubleshooting.md",
     HowItWorks: "docs/guide/how-it-works.md",
     Migrating: "docs/guide/migrating.md",
 }

@@ -3,6 +3,7 @@ mod arrows;
 mod examples;
 mod front;
 mod guarantees;
+mod guide;
 mod literals;
 mod map;
 mod packages;
@@ -21,6 +22,8 @@ pub(crate) fn run() -> TaskResult {
     findings.extend(front::check(&root)?);
     findings.extend(examples::check(&root)?);
     findings.extend(packages::check(&root)?);
+    findings.extend(guide::check(&root)?);
+    findings.extend(crate::comparison::check(&root)?);
     findings.extend(crate::mutants::check(&root));
     for finding in &findings {
         eprintln!("tidy: {finding}");
