@@ -15,7 +15,14 @@ use std::path::PathBuf;
 #[derive(Debug, Parser)]
 #[command(name = "d2m", version, about, propagate_version = true, arg_required_else_help = true)]
 #[command(
-    after_help = "Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 separated, 12 undecided."
+    after_help = "Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 separated, 12 undecided.
+
+Examples:
+  d2m demo
+  d2m toc part.stl shape:gear --motion-a 'x=-3,0,0;v=4,0,0;w=0,0,90deg'
+  d2m view part.stl shape:gear --motion-a 'x=-3,0,0;v=4,0,0;w=0,0,90deg' --out view.html
+
+d2m toc --help explains motions; d2m completions and d2m man are for the shell."
 )]
 pub(crate) struct Arguments {
     /// What to do.
@@ -83,6 +90,11 @@ Examples:
     /// A page of HTML that shows two moving meshes and their contact, or a scene, or a simulation
     View(ViewArguments),
     /// The main job on built-in shapes: six scenes with their commands and answers
+    #[command(after_help = "\
+Exit codes: 0 answered.
+
+Example:
+  d2m demo")]
     Demo,
     /// What a shell needs to complete this command's words
     Completions(CompletionsArguments),
@@ -252,7 +264,11 @@ and motions {\"q\": [w,x,y,z], \"x\": [3], \"v\": [3], \"w\": [3]}; or, for four
 A result: {\"id\", \"status\": \"hit\", \"miss\" or \"undecided\", \"t_lo\", \"t_hi\", \"evidence\": \"crossing\" or \"near\",
 \"tolerance\", \"microseconds\"}: nothing touches before t_lo; evidence and tolerance (of hits) are as d2m toc --help explains.
 
-Exit codes: 0 answered, 2 bad usage, 3 bad input.")]
+Exit codes: 0 answered, 2 bad usage, 3 bad input.
+
+Example:
+  echo '{\"id\": \"1\", \"kind\": \"sphere_sphere\", \"A\": {\"c\": [0,0,0], \"r\": 1}, \"B\": {\"c\": [4,0,0], \"r\": 1}, \"motionA\": {\"v\": [4,0,0]}, \"motionB\": {}, \"t0\": 0, \"t1\": 1}' |
+    d2m features - --out -")]
 pub(crate) struct FeaturesArguments {
     /// Cases, one JSON object a line
     #[arg(value_name = "CASES.jsonl")]

@@ -403,8 +403,22 @@ fn bad_usage_exits_with_2() {
     ] {
         assert_eq!(d2m(arguments).status.code(), Some(2), "{arguments:?}");
     }
-    assert_eq!(d2m(&["--help"]).status.code(), Some(0));
-    assert_eq!(d2m(&["batch", "--help"]).status.code(), Some(0));
+}
+
+/// Every help ends with exit codes and examples, and there is a manual page of every subcommand.
+#[test]
+fn every_help_has_an_example() {
+    let help = |words: &[&str]| stdout(&d2m(&[words, &["--help"]].concat()));
+    let all = help(&[]);
+    let commands = all.split("Commands:").nth(1).unwrap().split("\n\n").next().unwrap().lines();
+    let names: Vec<&str> = commands.filter_map(|line| line.split_whitespace().next()).collect();
+    assert!(names.len() > 15 && all.contains("Examples:"), "{names:?}");
+    for name in names.into_iter().filter(|&name| name != "help") {
+        let text = help(&[name]);
+        assert!(text.contains("Example") && text.contains("Exit codes: 0"), "{name}: {text}");
+        assert!(stdout(&d2m(&["man", name])).contains(".TH"), "{name}");
+    }
+    assert!(stdout(&d2m(&["completions", "bash"])).contains("_d2m()"));
 }
 
 #[test]

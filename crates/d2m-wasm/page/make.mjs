@@ -23,7 +23,7 @@ function filled(page, parts) {
 }
 
 const wasm = readFileSync(join(pkg, "d2m_wasm_bg.wasm")).toString("base64");
-const scripts = ["bodies.js", "marks.js", "timeline.js", "main.js"].map(view);
+const scripts = ["bodies.js", "marks.js", "timeline.js", "frame.js", "main.js"].map(view);
 const facts = '<dl id="facts">';
 writeFileSync(out, filled(view("page.html"), [
   ["<title>d2m view</title>", "<title>d2m in the page</title>"],

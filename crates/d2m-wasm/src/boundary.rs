@@ -9,7 +9,7 @@ use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// First contact of two moving bodies, as `d2m toc --json` answers; the options are `{window, tolerance, min_separation, solid, budget,
-/// clearance}`. Besides, `headline`, `facts` and `spans` state the same in words.
+/// clearance, start}`. Besides, `headline`, `facts` and (unless what is in contact at the start is let go) `spans` state the same in words.
 ///
 /// # Errors
 /// Throws an `Error` with the text that the command prints: bad motions, windows and options.
@@ -23,6 +23,22 @@ pub fn time_of_contact(
 ) -> Result<JsValue, Error> {
     let ask = query::time_of_contact;
     answer([(a, motion_a, "motion of A"), (b, motion_b, "motion of B")], options, ask)
+}
+
+/// The times of a window at which two moving bodies are clear or in contact, as `d2m spans --json` answers; the options are `{window,
+/// tolerance, min_separation, solid, budget, resolution}`.
+///
+/// # Errors
+/// As [`time_of_contact`].
+#[wasm_bindgen(js_name = contactSpans)]
+pub fn contact_spans(
+    a: &Mesh,
+    motion_a: &JsValue,
+    b: &Mesh,
+    motion_b: &JsValue,
+    options: &JsValue,
+) -> Result<JsValue, Error> {
+    answer([(a, motion_a, "motion of A"), (b, motion_b, "motion of B")], options, query::contact_spans)
 }
 
 /// Least distance of two moving bodies over a window, as `d2m clearance --json` answers; the options are `{window, tolerance, solid,

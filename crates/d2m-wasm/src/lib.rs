@@ -9,5 +9,5 @@ mod options;
 mod pose;
 mod query;
 
-pub use boundary::{clearance, distance, shapes, time_of_contact};
+pub use boundary::{clearance, contact_spans, distance, shapes, time_of_contact};
 pub use mesh::Mesh;

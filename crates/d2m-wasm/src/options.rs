@@ -4,6 +4,16 @@ use d2m::bvh::{Budget, MeshTree, QueryOptions, Solid, Window};
 use d2m_io::parse_json;
 use serde::Deserialize;
 
+/// What counts of bodies that are in contact at the start of the window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum StartChoice {
+    /// It is the first contact.
+    Report,
+    /// It is let go until the bodies are proven apart.
+    Leave,
+}
+
 /// The keys have the names and meanings of the command's options and of scene files.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -16,6 +26,9 @@ pub(crate) struct Options {
     budget: Option<u64>,
     pub(crate) clearance: bool,
     pub(crate) accuracy: Option<f64>,
+    pub(crate) start: Option<StartChoice>,
+    /// A time: how short the spans of contact are looked at.
+    pub(crate) resolution: Option<f64>,
 }
 
 impl Options {
@@ -25,6 +38,7 @@ impl Options {
         let limits = [
             ("tolerance", options.tolerance, "a positive finite distance", false),
             ("accuracy", options.accuracy, "a positive finite number", false),
+            ("resolution", options.resolution, "a positive finite time", false),
             ("min_separation", options.min_separation, "a finite distance that is not negative", true),
         ];
         for (key, given, wanted, may_be_zero) in limits {
@@ -78,6 +92,8 @@ impl Options {
             ("budget", self.budget.is_some()),
             ("clearance", self.clearance),
             ("accuracy", self.accuracy.is_some()),
+            ("start", self.start.is_some()),
+            ("resolution", self.resolution.is_some()),
         ];
         match given.into_iter().find(|(key, is_given)| *is_given && useless.contains(key)) {
             Some((key, _)) => Err(format!("{key}: {query} has no such option")),

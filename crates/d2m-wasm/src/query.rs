@@ -1,11 +1,13 @@
 //! The queries, from texts to JSON: everything but the boundary to JavaScript.
 
 use crate::clock::timed;
-use crate::options::Options;
+use crate::options::{Options, StartChoice};
 use crate::pose::{read_motion, read_pose};
-use d2m::bvh::{self, ClearanceOptions, MeshTree, Moving, Posed, Solid, TimeOfContact, Window};
+use d2m::bvh::{self, ClearanceOptions, MeshTree, Moving, Posed, Solid, StartState, TimeOfContact, Window};
 use d2m::motion::{AnyMotion, RigidMotion};
-use d2m_io::{answer_lines, clearance_fields, contact_fields, distance_fields, proven_spans, query_fault};
+use d2m_io::{
+    answer_lines, clearance_fields, contact_fields, distance_fields, proven_spans, query_fault, start_in_json,
+};
 use serde_json::{Value, json};
 
 /// A body as JavaScript gives it: its tree, and its motion or pose as text.
@@ -60,15 +62,25 @@ impl<'s> Pair<'s> {
     }
 }
 
+/// The resolution of spans as a part of the window, as the command has it.
+const RESOLUTION: f64 = 1e-6;
+
 /// As `d2m toc --json` answers, with the words of `d2m view`.
 pub(crate) fn time_of_contact(bodies: [Given<'_>; 2], options: &str) -> Result<Value, String> {
     let options = Options::parse(options)?;
-    options.refuse("timeOfContact", &["accuracy"])?;
+    options.refuse("timeOfContact", &["accuracy", "resolution"])?;
     let pair = Pair::new(bodies, &options)?;
     let query = options.query();
     let [a, b] = pair.moving();
-    let (found, microseconds) = timed(|| bvh::time_of_contact(a, b, pair.window, &query));
-    let verdict = found.map_err(|error| query_fault(&error, pair.motions(), pair.window))?;
+    let is_leaving = options.start == Some(StartChoice::Leave);
+    let (found, microseconds) = timed(|| {
+        if is_leaving {
+            bvh::departure(a, b, pair.window, &query).map(|found| (found.answer, Some(found)))
+        } else {
+            bvh::time_of_contact(a, b, pair.window, &query).map(|answer| (answer, None))
+        }
+    });
+    let (verdict, departure) = found.map_err(|error| query_fault(&error, pair.motions(), pair.window))?;
     let clearance = match verdict {
         TimeOfContact::Separated if options.clearance => Some(pair.clearance(&options)?),
         _ => None,
@@ -84,18 +96,45 @@ pub(crate) fn time_of_contact(bodies: [Given<'_>; 2], options: &str) -> Result<V
     if let Some(found) = &clearance {
         put("clearance", json!([found.lower, found.upper]));
     }
+    if let Some(found) = &departure {
+        put("left", json!(found.left));
+        put("start", json!(start_in_json(found.start)));
+        put("start_proven", json!(found.start != StartState::Undecided));
+    }
     let words = answer_lines(&verdict, pair.window, &query, clearance.as_ref());
     put("headline", json!(words.headline));
     put("facts", json!(words.lines));
-    let spans = proven_spans(&verdict, pair.window);
-    put("spans", spans.iter().map(d2m_io::ProvenSpan::to_json).collect());
+    // What is let go is in contact for some time, which these words do not know.
+    if departure.is_none() {
+        let spans = proven_spans(&verdict, pair.window);
+        put("spans", spans.iter().map(d2m_io::ProvenSpan::to_json).collect());
+    }
     Ok(Value::Object(answer))
+}
+
+/// As `d2m spans --json` answers.
+pub(crate) fn contact_spans(bodies: [Given<'_>; 2], options: &str) -> Result<Value, String> {
+    let options = Options::parse(options)?;
+    options.refuse("contactSpans", &["clearance", "accuracy", "start"])?;
+    let pair = Pair::new(bodies, &options)?;
+    let [a, b] = pair.moving();
+    let resolution = options.resolution.unwrap_or(RESOLUTION * pair.window.length());
+    let (found, microseconds) =
+        timed(|| bvh::contact_spans(a, b, pair.window, &options.query(), Some(resolution)));
+    let spans = found.map_err(|error| query_fault(&error, pair.motions(), pair.window))?;
+    Ok(json!({
+        "window": [pair.window.start(), pair.window.end()],
+        "resolution": resolution,
+        "spans": spans,
+        "triangles": pair.triangles(),
+        "microseconds": microseconds,
+    }))
 }
 
 /// As `d2m clearance --json` answers.
 pub(crate) fn clearance(bodies: [Given<'_>; 2], options: &str) -> Result<Value, String> {
     let options = Options::parse(options)?;
-    options.refuse("clearance", &["min_separation", "clearance"])?;
+    options.refuse("clearance", &["min_separation", "clearance", "start", "resolution"])?;
     let pair = Pair::new(bodies, &options)?;
     let (found, microseconds) = timed(|| pair.clearance(&options));
     let mut answer = clearance_fields(&found?);
@@ -108,7 +147,8 @@ pub(crate) fn clearance(bodies: [Given<'_>; 2], options: &str) -> Result<Value, 
 /// As `d2m distance --json` answers.
 pub(crate) fn distance([a, b]: [Given<'_>; 2], options: &str) -> Result<Value, String> {
     let options = Options::parse(options)?;
-    let of_motions = ["window", "tolerance", "min_separation", "budget", "clearance", "accuracy"];
+    let of_motions =
+        ["window", "tolerance", "min_separation", "budget", "clearance", "accuracy", "start", "resolution"];
     options.refuse("distance", &of_motions)?;
     let poses = [read_pose("pose of A", a.motion)?, read_pose("pose of B", b.motion)?];
     let solids = [options.solid("A", a.tree)?, options.solid("B", b.tree)?];
@@ -120,4 +160,34 @@ pub(crate) fn distance([a, b]: [Given<'_>; 2], options: &str) -> Result<Value, S
     answer["triangles"] = json!([a.tree.mesh().triangle_count(), b.tree.mesh().triangle_count()]);
     answer["microseconds"] = json!(microseconds);
     Ok(answer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cube that lies on another one and is lifted, and one that flies through it, by what a page would write.
+    #[test]
+    fn what_touches_is_let_go_and_spans_are_told() {
+        let tree = MeshTree::new(d2m::shapes::mesh("box?x=1&y=1&z=1").unwrap());
+        let bodies = |motion| [Given { tree: &tree, motion }, Given { tree: &tree, motion: "{}" }];
+        let lifted = bodies(r#"{"x": [0, 2, 0], "v": [0, 1, 0]}"#);
+        let plain = time_of_contact(lifted, "{}").unwrap();
+        assert_eq!((&plain["status"], &plain["toc"]), (&json!("contact"), &json!(0.0)));
+        let leaving = time_of_contact(lifted, r#"{"start": "leave"}"#).unwrap();
+        assert_eq!((&leaving["status"], &leaving["start"]), (&json!("separated"), &json!("touching")));
+        assert!(leaving["left"][1].as_f64().unwrap() < 1e-3 && leaving.get("spans").is_none(), "{leaving}");
+
+        let through = bodies(r#"{"x": [-4, 0, 0], "v": [8, 0, 0]}"#);
+        let spans = contact_spans(through, "{}").unwrap();
+        let status: Vec<&Value> = spans["spans"].as_array().unwrap().iter().map(|s| &s["status"]).collect();
+        assert_eq!(status, ["clear", "contact", "clear"]);
+        assert_eq!(spans["resolution"], json!(1e-6));
+        assert!((spans["spans"][1]["from"].as_f64().unwrap() - 0.25).abs() < 1e-5);
+        for options in [r#"{"start": "leave"}"#, r#"{"resolution": 0}"#] {
+            assert!(contact_spans(through, options).is_err(), "{options}");
+        }
+        assert!(time_of_contact(through, r#"{"start": "go"}"#).is_err());
+        assert!(time_of_contact(through, r#"{"resolution": 1e-3}"#).is_err());
+    }
 }

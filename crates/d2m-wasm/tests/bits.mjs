@@ -81,15 +81,18 @@ const counts = {};
 for (let k = 0; k < Number(queries); k++) {
   const [kind, make] = pick(Object.entries(MOTIONS)), shapes = [pick(SHAPES), pick(SHAPES)];
   const motions = [make(), pick(B_MOTIONS)()], [a, b] = shapes.map(meshOf);
-  const named = shapes.map((shape) => "shape:" + shape), question = k % 5 === 4 ? "clearance" : k % 10 === 3 ? "distance" : "toc";
+  const named = shapes.map((shape) => "shape:" + shape), question = k % 5 === 4 ? "clearance" : k % 10 === 3 ? "distance" : k % 20 === 7 ? "spans" : "toc";
   const place = `query ${k}, ${question} of ${shapes.join(" and ")}, ${kind}`;
   let ours, theirs;
   if (question === "toc") {
-    const options = pick([{}, { clearance: true }, { min_separation: 0.05 }, { solid: false }, { tolerance: 1e-6 }]);
+    const options = pick([{}, { clearance: true }, { min_separation: 0.05 }, { solid: false }, { tolerance: 1e-6 }, { start: "leave" }]);
     const words = { clearance: ["--clearance"], min_separation: ["--min-separation", "0.05"], solid: ["--surface"],
-      tolerance: ["--tolerance", "1e-6"] }[Object.keys(options)[0]] ?? [];
+      tolerance: ["--tolerance", "1e-6"], start: ["--start", "leave"] }[Object.keys(options)[0]] ?? [];
     theirs = native(["toc", ...named, ...moved(...motions), ...words]);
     ours = engine.timeOfContact(a, motions[0], b, motions[1], options);
+  } else if (question === "spans") {
+    theirs = native(["spans", ...named, ...moved(...motions), "--resolution", "0.001"]);
+    ours = engine.contactSpans(a, motions[0], b, motions[1], { resolution: 0.001 });
   } else if (question === "clearance") {
     theirs = native(["clearance", ...named, ...moved(...motions)]);
     ours = engine.clearance(a, motions[0], b, motions[1]);
@@ -101,10 +104,10 @@ for (let k = 0; k < Number(queries); k++) {
   }
   assert.ok(theirs.answer, `${place}: ${theirs.fault}`);
   same(ours, theirs.answer, place);
-  const what = `${question} ${ours.status}`;
+  const what = `${question} ${ours.status ?? "told"}`;
   counts[what] = (counts[what] ?? 0) + 1;
 }
-for (const what of ["toc contact", "toc separated", "clearance clear", "distance separated"]) assert.ok(counts[what] > Number(queries) / 100, `${what}: ${counts[what]} of ${queries} queries`);
+for (const what of ["toc contact", "toc separated", "clearance clear", "distance separated", "spans told"]) assert.ok(counts[what] > Number(queries) / 100, `${what}: ${counts[what]} of ${queries} queries`);
 
 // A shape, its arrays and a file of it are the same mesh.
 {
@@ -142,7 +145,7 @@ const refused = [
   [() => Mesh.shape("cube"), /cube/], [() => Mesh.shape("gear?teeth=-1"), /teeth/], [() => Mesh.shape("icosphere?triangles=20000000"), /memory/],
   [() => Mesh.parse(new Uint8Array([1, 2, 3]), "a.xyz"), /a\.xyz/], [() => Mesh.parse(new TextEncoder().encode("f 1 2 9"), "a.obj"), /a\.obj, line 1/],
   [() => Mesh.parse(new Uint8Array(200), "a.stl"), /a\.stl/], [() => Mesh.parse(new Uint8Array(50), "a.3mf"), /a\.3mf/],
-  ...[{ window: [1, 0] }, { window: [0, 0] }, { tolerance: 0 }, { tolerance: null, budget: -1 }, { min_separation: -1 }, { speed: 1 }, { accuracy: 1 },
+  ...[{ window: [1, 0] }, { window: [0, 0] }, { tolerance: 0 }, { tolerance: null, budget: -1 }, { min_separation: -1 }, { speed: 1 }, { accuracy: 1 }, { start: "go" }, { resolution: 1 },
     7, "x", [1], () => 1].map((options) => [() => engine.timeOfContact(box, {}, box, {}, options), /./]),
   [() => engine.timeOfContact(box, () => 1, box, {}), /motion of A/], [() => engine.timeOfContact(box, { x: [NaN, 0, 0] }, box, {}), /motion of A/],
   [() => engine.timeOfContact(box, "x=1,2", box, {}), /motion of A/], [() => engine.timeOfContact(box, 5, box, {}), /motion of A/],

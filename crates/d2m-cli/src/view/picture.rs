@@ -11,10 +11,11 @@ const THREE: &str = include_str!("../../assets/three/three.min.js");
 const PAGE: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/style.css");
 /// The page's own script, in the order in which its parts use each other.
-const SCRIPT: [&str; 4] = [
+const SCRIPT: [&str; 5] = [
     include_str!("page/bodies.js"),
     include_str!("page/marks.js"),
     include_str!("page/timeline.js"),
+    include_str!("page/frame.js"),
     include_str!("page/main.js"),
 ];
 

@@ -25,12 +25,6 @@ function fill(data, bodies) {
   }
 }
 
-// A length that reads well and is at most `most`: 1, 2 or 5 times a power of ten.
-function roundLength(most) {
-  const power = Math.pow(10, Math.floor(Math.log10(most)));
-  return [5, 2, 1].map((k) => k * power).find((length) => length <= most) || power;
-}
-
 // Shows data of the form that `d2m view` writes. What it answers can show other data in the same page.
 function start(data) {
   const element = (id) => document.getElementById(id);
@@ -63,15 +57,12 @@ function start(data) {
     makeStrip(data, element("strip"));
     makeCurve(data, element("curve"));
     makeTicks(moments, data, element("ticks"), jump);
-    element("contact").hidden = moments.length === 0;
+    for (const id of ["contact", "near"]) element(id).hidden = moments.length === 0;
   }
   let time = 0, playing = false, last = 0, dirty = true, held = [];
   put(data);
-  const narrow = window.matchMedia("(max-width: 640px)").matches;
-  if (narrow && !data.panel_stays) element("panel").open = false;
-
-  // Beside a panel that stays open the middle is that of what it leaves free.
-  const covered = () => data.panel_stays && !narrow ? element("panel").getBoundingClientRect().right : 0;
+  const narrow = () => window.matchMedia("(max-width: 640px)").matches;
+  if (narrow() && !data.panel_stays) element("panel").open = false;
 
   const whole = new THREE.Box3(), center = new THREE.Vector3(), corner = new THREE.Vector3();
   for (const body of bodies) {
@@ -83,15 +74,15 @@ function start(data) {
   }
   whole.getCenter(center);
   const size = Math.max(whole.max.distanceTo(whole.min) / 2, 1e-30);
-  const axes = new THREE.AxesHelper(size * 0.25);
-  axes.position.copy(whole.min);
-  scene.add(axes);
+  const showAxes = makeAxes(element("axes"));
   const controls = new THREE.OrbitControls(camera, renderer.domElement);
   // A single contact is what one wants to see from near.
   if (data.marks.length === 1) center.fromArray(data.marks[0].points[0]);
   controls.target.copy(center);
   corner.set(0.6, zUp ? -1 : 0.5, zUp ? 0.5 : 1).normalize();
-  camera.position.copy(center).addScaledVector(corner, size * (narrow ? 3.4 : covered() > 0.4 * window.innerWidth ? 3 : 2));
+  // So far away that the part of the screen that is free has room for what is seen.
+  const area = freeArea(narrow()), least = Math.min(area.right - area.left, area.bottom - area.top);
+  camera.position.copy(center).addScaledVector(corner, size * Math.min(Math.max(1.5 * window.innerHeight / Math.max(least, 1), 2), 4));
   camera.near = size * 1e-3;
   camera.far = size * 100;
 
@@ -113,6 +104,25 @@ function start(data) {
   function next() {
     const later = moments.find((moment) => moment > time);
     if (moments.length) jump(later === undefined ? moments[0] : later);
+  }
+  // Comes near the contact that is held, or goes back to where everything is seen.
+  let far = null;
+  function near() {
+    if (!held.length && moments.length) next();
+    if (far) {
+      [camera.position, controls.target].forEach((vector, k) => vector.copy(far[k]));
+      far = null;
+    } else if (held.length) {
+      far = [camera.position.clone(), controls.target.clone()];
+      const reach = nearness(held[0], size);
+      corner.subVectors(camera.position, controls.target).normalize();
+      controls.target.fromArray(held[0].points[0]);
+      camera.position.copy(controls.target).addScaledVector(corner, reach);
+    }
+    camera.near = Math.min(size * 1e-3, camera.position.distanceTo(controls.target) * 1e-2);
+    camera.updateProjectionMatrix();
+    element("near").setAttribute("aria-pressed", String(far !== null));
+    dirty = true;
   }
   function aim() {
     // The cut goes through the contact (or the middle of what is seen), across the way one looks.
@@ -145,15 +155,20 @@ function start(data) {
     renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     renderer.setSize(window.innerWidth, window.innerHeight);
     camera.aspect = window.innerWidth / window.innerHeight;
-    camera.setViewOffset(window.innerWidth, window.innerHeight, -covered() / 2, 0, window.innerWidth, window.innerHeight);
+    // What is below the bar and the buttons takes its place from them.
+    document.documentElement.style.setProperty("--bar", element("bar").offsetHeight + "px");
+    document.documentElement.style.setProperty("--tools", element("tools").offsetHeight + "px");
+    const free = freeArea(narrow());
+    const aside = [window.innerWidth - free.left - free.right, window.innerHeight - free.top - free.bottom].map((sum) => sum / 2);
+    camera.setViewOffset(window.innerWidth, window.innerHeight, ...aside, window.innerWidth, window.innerHeight);
     camera.updateProjectionMatrix();
     dirty = true;
   }
-  function measure() {
-    const high = 2 * camera.position.distanceTo(controls.target) * Math.tan(camera.fov * Math.PI / 360);
-    const pixel = high / window.innerHeight, length = roundLength(140 * pixel);
-    element("scale-bar").style.width = length / pixel + "px";
-    element("scale-text").textContent = Number(length.toPrecision(1)).toString();
+  // Where a point of the world is on the screen, in pixels.
+  function onScreen(point) {
+    camera.updateMatrixWorld();
+    corner.fromArray(point).project(camera);
+    return [(corner.x + 1) / 2 * window.innerWidth, (1 - corner.y) / 2 * window.innerHeight];
   }
   function frame(now) {
     if (playing) {
@@ -168,7 +183,8 @@ function start(data) {
       dirty = false;
       if (pressed("cut")) aim();
       marks.update(camera);
-      measure();
+      showScale(camera, controls.target, element("scale-bar"), element("scale-text"));
+      showAxes(camera);
       renderer.render(scene, camera);
     }
     requestAnimationFrame(frame);
@@ -179,14 +195,18 @@ function start(data) {
   for (const id of ["cut", "ghost", "paths", "wire"]) element(id).onclick = () => toggle(id);
   element("theme").onclick = theme;
   element("contact").onclick = next;
+  element("near").onclick = near;
   window.onresize = resize;
+  // The panel opens and closes, and another answer has another curve.
+  const watch = new ResizeObserver(resize);
+  for (const id of ["panel", "tools", "bar"]) watch.observe(element(id));
   window.onkeydown = (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     // What is being filled in keeps its keys.
     if (event.target.matches && event.target.matches("select, input:not(#time)")) return;
     const step = (t1 - t0) * (event.shiftKey ? 0.001 : 0.01);
     const keys = {
-      " ": play, c: next, x: () => toggle("cut"), g: () => toggle("ghost"), t: () => toggle("paths"), w: () => toggle("wire"),
+      " ": play, c: next, n: near, x: () => toggle("cut"), g: () => toggle("ghost"), t: () => toggle("paths"), w: () => toggle("wire"),
       d: theme, ArrowRight: () => jump(time + step), ArrowLeft: () => jump(time - step), Home: () => jump(t0), End: () => jump(t1),
     };
     const action = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
@@ -212,7 +232,7 @@ function start(data) {
     },
     // What a test of the page reads.
     state: () => ({ time, holds: element("holds").textContent, span: spanAt(data, time).status,
-      bodies: bodies.map((body) => body.position.toArray()), marks: held.length }),
+      bodies: bodies.map((body) => body.position.toArray()), marks: held.length, mark: held.length ? onScreen(held[0].points[0]) : null }),
   };
 }
 

@@ -1,6 +1,8 @@
 // Contacts: the pair of triangles, the points on both bodies, and the normal, drawn over everything else.
 
 const MARK_COLOR = 0xe0195a;
+// The triangles of A and of B: neither a color of bodies nor of the other.
+const PAIR_COLORS = [0xffd23f, 0x35e0d0];
 
 function overlay(color, opacity) {
   return new THREE.MeshBasicMaterial({
@@ -28,10 +30,12 @@ function makeMark(mark, bodies) {
     const geometry = new THREE.BufferGeometry();
     const centered = corners.flatMap((p) => p.map((c, i) => c - body.center[i]));
     geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(centered), 3));
-    const face = new THREE.Mesh(geometry, overlay(body.color, 0.85));
-    face.matrixAutoUpdate = false;
-    all.add(face);
-    return { face, body };
+    const face = new THREE.Mesh(geometry, overlay(PAIR_COLORS[k], 0.55));
+    const ring = new THREE.BufferGeometry();
+    ring.setAttribute("position", new THREE.BufferAttribute(new Float32Array(centered.concat(centered.slice(0, 3))), 3));
+    const edge = new THREE.Line(ring, new THREE.LineBasicMaterial({ color: MARK_COLOR, depthTest: false, transparent: true }));
+    for (const part of [face, edge]) { part.matrixAutoUpdate = false; all.add(part); }
+    return { parts: [face, edge], body };
   });
   const one = new THREE.Vector3(1, 1, 1);
   all.traverse((child) => { child.renderOrder = 2; });
@@ -41,9 +45,15 @@ function makeMark(mark, bodies) {
     update(camera, size) {
       for (const dot of points) dot.scale.setScalar(size * camera.position.distanceTo(dot.position));
       if (arrow) arrow.scale.setScalar(size * camera.position.distanceTo(points[0].position));
-      for (const { face, body } of faces) face.matrix.compose(body.position, body.rotation, one);
+      for (const { parts, body } of faces) for (const part of parts) part.matrix.compose(body.position, body.rotation, one);
     },
   };
+}
+
+// From how far a contact is looked at: a few times its triangles, or a part of all that moves.
+function nearness(mark, size) {
+  const lengths = (mark.triangles || []).map(([a, b, c]) => Math.max(...[[a, b], [b, c], [c, a]].map(([p, q]) => Math.hypot(...p.map((x, i) => x - q[i])))));
+  return Math.min(Math.max(6 * Math.max(0, ...lengths), 0.02 * size), 0.5 * size);
 }
 
 // The marks that hold at a time, made when they are first shown. At most 256 at once.

@@ -48,11 +48,30 @@ function makeCurve(data, svg) {
   title.textContent = "distance of the bodies, from 0 to " + most.toPrecision(3);
 }
 
-// One tick for each moment that can be jumped to.
+// More moments than these are lines, not buttons: fingers and eyes cannot separate them.
+const MOST_TICKS = 40;
+
+// What can be jumped to: a tick for each moment, or, for very many, a line of those within a pixel; a click goes to the nearest.
 function makeTicks(moments, data, ticks, jump) {
   ticks.replaceChildren();
-  // More than the eye can separate show nothing.
-  for (const moment of moments.length > 40 ? [] : moments) {
+  ticks.onclick = null;
+  if (moments.length > MOST_TICKS) {
+    const lines = new Set(moments.map((moment) => percent(data, moment).toFixed(1)));
+    for (const place of lines) {
+      const line = document.createElement("i");
+      line.style.left = place + "%";
+      ticks.append(line);
+    }
+    ticks.title = moments.length + " moments; a click jumps to the nearest";
+    ticks.onclick = (event) => {
+      const { left, width } = ticks.getBoundingClientRect(), [t0, t1] = data.window;
+      const t = t0 + (t1 - t0) * (event.clientX - left) / width;
+      jump(moments.reduce((a, b) => Math.abs(a - t) <= Math.abs(b - t) ? a : b));
+    };
+    return;
+  }
+  ticks.title = "";
+  for (const moment of moments) {
     const tick = document.createElement("button");
     tick.textContent = "▲";
     tick.title = "t = " + moment.toPrecision(9);
