@@ -24,6 +24,12 @@ pub struct Meter {
 }
 
 /// The budget ran out, or somebody cancelled.
+///
+/// ```
+/// use d2m_bvh::{Budget, Exhausted, Meter};
+/// let mut meter = Meter::new(&Budget::UNLIMITED.with_node_tests(2));
+/// assert_eq!([meter.step(), meter.step(), meter.step()], [Ok(()), Ok(()), Err(Exhausted)]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exhausted;
 

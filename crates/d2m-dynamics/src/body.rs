@@ -7,6 +7,19 @@ use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
 /// Names a body of one [`Simulation`](crate::Simulation). The name of a body that was removed never means another one.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// use d2m_dynamics::{Body, Simulation, SimulationOptions};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// let first = simulation.add(&Body::new("first", Arc::clone(&cube)))?;
+/// let second = simulation.add(&Body::new("second", cube).with_position(DVec3::X * 3.0))?;
+/// assert_eq!((first.index(), second.index(), simulation.name(second)), (0, 1, "second"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyId {
@@ -24,6 +37,21 @@ impl BodyId {
 }
 
 /// A motion that a kinematic body follows, whatever meets it.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// use d2m_dynamics::{Body, Kind, Motion, Simulation, SimulationOptions};
+/// use d2m_motion::ConstantTwist;
+/// use glam::DVec3;
+/// use std::sync::Arc;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// let turning: Motion = Arc::new(ConstantTwist::REST.with_angular_velocity(DVec3::Y));
+/// let table = simulation.add(&Body::new("turntable", cube).with_kind(Kind::Kinematic(turning)))?;
+/// simulation.step()?;
+/// assert!((simulation.angular_velocity(table) - DVec3::Y).length() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub type Motion = Arc<dyn RigidMotion + Send + Sync>;
 
 /// What moves a body.

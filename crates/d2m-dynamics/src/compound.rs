@@ -6,6 +6,15 @@ use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
 /// A mesh of a body of several ones: where it is in the body, and how heavy.
+///
+/// ```
+/// use d2m_dynamics::Part;
+/// use glam::DVec3;
+/// let brick = d2m_shapes::mesh("box?x=0.5&y=0.05&z=0.05")?;
+/// let heavy = Part { position: DVec3::X, density: 7800.0, ..Part::new(&brick) };
+/// assert_eq!((Part::new(&brick).density, heavy.position), (1000.0, DVec3::X));
+/// # Ok::<(), d2m_shapes::ShapeError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Part<'m> {
     /// Shared with other parts, or not.

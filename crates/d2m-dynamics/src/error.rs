@@ -5,6 +5,14 @@ use d2m_motion::OutsideDomain;
 use glam::{DMat3, DVec3};
 
 /// Why a body has no usable mass properties.
+///
+/// ```
+/// use d2m_dynamics::{MassError, MassProperties};
+/// let sheet = d2m_bvh::TriMesh::try_new(vec![glam::DVec3::ZERO, glam::DVec3::X, glam::DVec3::Y], vec![[0, 1, 2]])?;
+/// let error = MassProperties::try_from_density(&sheet, 1.0).unwrap_err();
+/// assert!(matches!(error, MassError::Open { .. }) && error.to_string().contains("give mass"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MassError {
@@ -70,6 +78,20 @@ pub enum MassError {
 }
 
 /// What is wrong with a body or a setting of a [`Simulation`](crate::Simulation).
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// use d2m_dynamics::{Body, Simulation, SimulationError, SimulationOptions, StepError};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// simulation.add(&Body::new("one", Arc::clone(&cube)))?;
+/// simulation.add(&Body::new("other", cube).with_position(DVec3::Y * 0.9))?;
+/// let Err(StepError::Setup(error)) = simulation.step() else { panic!("they overlap by a tenth") };
+/// assert!(matches!(&error, SimulationError::Intersecting { a, b, .. } if [a, b].map(|name| &**name) == ["one", "other"]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulationError {
@@ -185,6 +207,29 @@ pub enum SimulationError {
 }
 
 /// Why a simulation cannot go on. The segments before it stand.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions, StepError};
+/// use d2m_motion::ConstantTwist;
+/// use glam::DVec3;
+/// // A press comes down on a stone that lies on the ground.
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// simulation.add(&Body::new("ground", Arc::clone(&cube)).with_kind(Kind::Static).with_position(DVec3::Y * -0.502))?;
+/// simulation.add(&Body::new("stone", Arc::clone(&cube)).with_position(DVec3::Y * 0.5))?;
+/// let down = ConstantTwist::REST.with_position(DVec3::Y * 1.55).with_linear_velocity(DVec3::Y * -1.0);
+/// simulation.add(&Body::new("press", cube).with_kind(Kind::Kinematic(Arc::new(down))))?;
+/// let error = loop {
+///     match simulation.step() {
+///         Ok(_) => assert!(simulation.time() < 1.0),
+///         Err(error) => break error,
+///     }
+/// };
+/// assert!(matches!(&error, StepError::Crushed { crushed, .. } if crushed == "stone"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StepError {

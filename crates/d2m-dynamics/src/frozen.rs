@@ -43,6 +43,22 @@ pub struct Frozen {
 }
 
 /// What a ray meets.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, QueryOptions};
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// use d2m_dynamics::{Body, RayAnswer, Simulation, SimulationOptions};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// let wall = simulation.add(&Body::new("wall", cube))?;
+/// let now = simulation.frozen(QueryOptions::default());
+/// // From 2 towards the wall, whose face is at -0.5.
+/// let hit = now.ray(DVec3::X * -2.0, DVec3::X * 4.0)?;
+/// assert!(matches!(hit, RayAnswer::Hit { body, lo, .. } if body == wall && lo <= 1.5 && lo > 1.499));
+/// assert_eq!(now.ray(DVec3::X * -2.0, DVec3::Y)?, RayAnswer::Free);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RayAnswer {
@@ -177,6 +193,15 @@ impl Frozen {
 }
 
 /// A ray that cannot be followed.
+///
+/// ```
+/// use d2m_dynamics::{RayError, Simulation, SimulationOptions};
+/// use glam::DVec3;
+/// let empty = Simulation::new(SimulationOptions::default())?;
+/// let error = empty.frozen(d2m_bvh::QueryOptions::default()).ray(DVec3::ZERO, DVec3::INFINITY).unwrap_err();
+/// assert!(matches!(error, RayError::BadRay { .. }));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RayError {

@@ -4,6 +4,24 @@ use crate::BodyId;
 use glam::{BVec3, DVec3};
 
 /// What a joint leaves free.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.1&y=0.1&z=0.1")?));
+/// use d2m_dynamics::{Body, Joint, JointKind, Simulation, SimulationOptions};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// // A bead on a vertical wire falls, and does not turn.
+/// let bead = simulation.add(&Body::new("bead", cube).with_angular_velocity(DVec3::X))?;
+/// let wire = Joint::new(JointKind::Prismatic, bead, None, DVec3::ZERO).with_axis(DVec3::Y);
+/// simulation.add_joint(&wire)?;
+/// while simulation.time() < 0.5 {
+///     simulation.step()?;
+/// }
+/// assert!(simulation.position(bead).y < -1.0 && simulation.angular_velocity(bead).length() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -27,6 +45,21 @@ pub enum JointKind {
 }
 
 /// What a motor aims at.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.1&y=0.1&z=0.1")?));
+/// use d2m_dynamics::{Body, Joint, JointKind, Motor, MotorTarget, Simulation, SimulationOptions};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// let wheel = simulation.add(&Body::new("wheel", cube))?;
+/// let turning = Motor::new(MotorTarget::Velocity(3.0));
+/// simulation.add_joint(&Joint::new(JointKind::Revolute, wheel, None, DVec3::ZERO).with_motor(turning))?;
+/// simulation.step()?;
+/// assert!((simulation.angular_velocity(wheel).length() - 3.0).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -38,6 +71,26 @@ pub enum MotorTarget {
 }
 
 /// Drives the value of a revolute joint (an angle, by a torque) or of a prismatic one (a length, by a force).
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.1&y=0.1&z=0.1")?));
+/// use d2m_dynamics::{Body, Joint, JointKind, Motor, MotorTarget, Simulation, SimulationOptions};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
+/// let slide = simulation.add(&Body::new("slide", cube))?; // 8 kilograms
+/// let mut weak = Motor::new(MotorTarget::Velocity(100.0));
+/// weak.most = 4.0; // newtons
+/// let rail = Joint::new(JointKind::Prismatic, slide, None, DVec3::ZERO).with_axis(DVec3::X).with_motor(weak);
+/// simulation.add_joint(&rail)?;
+/// while simulation.time() < 1.0 {
+///     simulation.step()?;
+/// }
+/// // It cannot reach its speed: it gives what it has, half a metre per square second.
+/// assert!((simulation.linear_velocity(slide).length() - 0.5 * simulation.time()).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -62,6 +115,25 @@ impl Motor {
 }
 
 /// A spring at a joint's value: stiffness (rest − value) − damping rate, solved for the end of a step: stable for any stiffness.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.1&y=0.1&z=0.1")?));
+/// use d2m_dynamics::{Body, Joint, JointKind, Simulation, SimulationOptions, Spring};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// let load = simulation.add(&Body::new("load", cube))?;
+/// let spring = Spring::new(800.0, 80.0, 0.0);
+/// let guide = Joint::new(JointKind::Prismatic, load, None, DVec3::ZERO).with_axis(DVec3::Y).with_spring(spring);
+/// let guide = simulation.add_joint(&guide)?;
+/// while simulation.time() < 5.0 {
+///     simulation.step()?;
+/// }
+/// // It hangs where the spring carries its weight: 8 kg times 9.81 over 800 newtons a metre.
+/// assert!((simulation.joint_value(guide).abs() - 8.0 * 9.81 / 800.0).abs() < 1e-4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -87,6 +159,23 @@ impl Spring {
 /// Its value – the angle by which b has turned against a about the axis, or the length by which it has moved along it – is zero where it is
 /// added. Joints hold to rounding in velocities, in the middle of each flight; what the ends of flights are off is taken back by the next
 /// ones. What is certified is what flies, joints or not.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let bar = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.05&z=0.05")?));
+/// use d2m_dynamics::{Body, Joint, JointKind, Simulation, SimulationOptions};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// let door = simulation.add(&Body::new("trapdoor", bar))?;
+/// let hinge = Joint::new(JointKind::Revolute, door, None, DVec3::X * -0.5).with_limits([-0.5, 0.5]);
+/// let hinge = simulation.add_joint(&hinge)?;
+/// while simulation.time() < 1.0 {
+///     simulation.step()?;
+/// }
+/// assert!((simulation.joint_value(hinge).abs() - 0.5).abs() < 1e-3); // it has fallen to its limit
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]

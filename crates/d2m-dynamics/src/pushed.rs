@@ -6,6 +6,22 @@ use glam::DVec3;
 impl Simulation {
     /// A force through the center of mass and a torque, world axes, over the next step; gravity comes on top. Wakes the body.
     ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// use d2m_dynamics::{Body, Simulation, SimulationOptions};
+    /// use glam::DVec3;
+    /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
+    /// let body = simulation.add(&Body::new("body", cube))?; // 1000 kilograms
+    /// simulation.set_force(body, DVec3::X * 1000.0, DVec3::ZERO)?; // over the next step
+    /// let step = simulation.options().step;
+    /// simulation.step()?;
+    /// let speed = simulation.linear_velocity(body).x;
+    /// assert!(speed > 0.0 && speed <= 1.001 * step); // force by mass is one
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`SimulationError::TooLarge`]: a force or torque that is not finite, or that gives a dynamic body a momentum or velocity above
     /// [`Self::LARGEST`] within a unit of time. Nothing changes then.
@@ -48,6 +64,19 @@ impl Simulation {
     }
 
     /// Adds an impulse at the center of mass and an angular impulse, world axes. Wakes the body.
+    ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// use d2m_dynamics::{Body, Simulation, SimulationOptions};
+    /// use glam::DVec3;
+    /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
+    /// let body = simulation.add(&Body::new("body", cube))?; // 1000 kilograms
+    /// simulation.apply_impulse(body, DVec3::Y * 500.0, DVec3::ZERO)?;
+    /// assert_eq!(simulation.linear_velocity(body), DVec3::Y * 0.5); // at once
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`SimulationError::TooLarge`]: an impulse that is not finite, or after which a dynamic body has a momentum or velocity above

@@ -82,6 +82,23 @@ pub struct Segment {
 }
 
 /// What has become of two bodies that touch.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions, TouchChange};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// simulation.add(&Body::new("floor", Arc::clone(&cube)).with_kind(Kind::Static).with_position(DVec3::Y * -0.5))?;
+/// simulation.add(&Body::new("falling", cube).with_position(DVec3::Y * 0.6))?;
+/// let mut changes = Vec::new();
+/// while simulation.time() < 0.5 {
+///     changes.extend(simulation.step()?.touches.iter().map(|touch| touch.change));
+/// }
+/// assert_eq!(changes.first(), Some(&TouchChange::Began));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -150,6 +150,19 @@ impl Simulation {
 
     /// Advances by one step: to the next multiple of [`SimulationOptions::step`].
     ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// use d2m_dynamics::{Body, Simulation, SimulationOptions};
+    /// use glam::DVec3;
+    /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
+    /// let body = simulation.add(&Body::new("body", cube))?; // 1000 kilograms
+    /// let report = simulation.step()?;
+    /// assert_eq!((simulation.time(), report.events), (simulation.options().step, 0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`StepError`]; the segments until then are those of [`Self::finish`].
     pub fn step(&mut self) -> Result<StepReport, StepError> {
@@ -194,6 +207,21 @@ impl Simulation {
 
     /// Advances to a time, as one step of whatever length.
     ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// use d2m_dynamics::{Body, Simulation, SimulationOptions};
+    /// use glam::DVec3;
+    /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
+    /// let body = simulation.add(&Body::new("body", cube))?; // 1000 kilograms
+    /// simulation.apply_impulse(body, DVec3::X * 1000.0, DVec3::ZERO)?;
+    /// simulation.step_to(0.02)?;
+    /// assert!((simulation.position(body).x - 0.02).abs() < 1e-12 && simulation.time() == 0.02);
+    /// assert!(simulation.step_to(0.01).is_err(), "time does not go back");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Self::step`]; also an end that is not after the present time. A motion of a kinematic body that does not cover the
     /// whole step is refused before anything moves.
@@ -219,6 +247,20 @@ impl Simulation {
     }
 
     /// The segments that are not reported yet, at the end of a run.
+    ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// use d2m_dynamics::{Body, Simulation, SimulationOptions};
+    /// use glam::DVec3;
+    /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
+    /// let body = simulation.add(&Body::new("body", cube))?; // 1000 kilograms
+    /// let reported = simulation.step()?.segments.len();
+    /// let last = simulation.finish();
+    /// assert!(reported + last.len() >= 1 && last.last().is_some_and(|segment| segment.end == simulation.time()));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn finish(&mut self) -> Vec<Segment> {
         self.recorder.finish()
     }

@@ -223,6 +223,22 @@ impl Simulation {
     ///
     /// A state of other bodies than the snapshot was taken of, or one that was written and read, is checked for intersections.
     ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// use d2m_dynamics::{Body, Simulation, SimulationOptions};
+    /// use glam::DVec3;
+    /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
+    /// let body = simulation.add(&Body::new("body", cube))?; // 1000 kilograms
+    /// let before = simulation.snapshot();
+    /// simulation.apply_impulse(body, DVec3::X * 1000.0, DVec3::ZERO)?;
+    /// simulation.step()?;
+    /// simulation.restore(&before)?;
+    /// assert_eq!((simulation.time(), simulation.position(body)), (0.0, DVec3::ZERO));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// A body of the snapshot that was removed since; settings or numbers that cannot be used; bodies that intersect. Nothing changes then.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), SimulationError> {

@@ -18,6 +18,13 @@ fn below(a: f64, b: f64) -> bool {
 ///                  |---|              ContainedBy
 ///                     |---|           Finishes
 /// ```
+///
+/// ```
+/// use d2m_interval::{Interval, Overlap};
+/// let inner = Interval::new(1.0, 2.0);
+/// assert_eq!(inner.overlap(Interval::new(0.0, 3.0)), Overlap::ContainedBy);
+/// assert_eq!(inner.overlap(Interval::new(2.0, 3.0)), Overlap::Meets);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Overlap {
     /// Both are empty.

@@ -10,6 +10,11 @@ const MOST_BYTES: u64 = 1 << 30;
 
 /// The bytes of a file, of which there must be some.
 ///
+/// ```
+/// let missing = d2m_io::read_bytes(std::path::Path::new("no-such.stl")).unwrap_err();
+/// assert!(missing.to_string().starts_with("no-such.stl: "));
+/// ```
+///
 /// # Errors
 /// [`IoError::File`] with the name of the file: it is absent, a folder, not readable or empty, or a pipe or device that
 /// gives more than 2³⁰ bytes.
@@ -31,6 +36,11 @@ pub fn read_bytes(path: &Path) -> Result<Vec<u8>, IoError> {
 }
 
 /// The bytes of an input that does not know its length, at most 2³⁰ of them.
+///
+/// ```
+/// assert_eq!(d2m_io::read_unsized(&b"from a pipe"[..])?, b"from a pipe");
+/// # Ok::<(), std::io::Error>(())
+/// ```
 ///
 /// # Errors
 /// Those of the input, and [`ErrorKind::FileTooLarge`] for one that gives more.

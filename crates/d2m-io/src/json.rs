@@ -24,6 +24,13 @@ pub fn parse_json<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, IoError> {
 
 /// What is wrong with one line of a file of JSON lines: for the parser every line is the first, and the column at which it stops is the
 /// end of what is wrong.
+///
+/// ```
+/// let line = r#"{"x": NaN}"#;
+/// let error = serde_json::from_str::<serde_json::Value>(line).unwrap_err();
+/// let fault = d2m_io::json_fault(&error, line);
+/// assert!(fault.contains("column") && fault.contains("NaN"));
+/// ```
 pub fn json_fault(error: &serde_json::Error, line: &str) -> String {
     let (text, column) = (error.to_string(), error.column());
     let what = text.split(" at line 1 column ").next().unwrap_or_default();
@@ -49,6 +56,14 @@ fn word_at(line: &str, column: usize) -> String {
 
 /// Any JSON value. An object that names a key twice is refused, with the key; the reader adds line and column. (A plain
 /// [`Value`] keeps the last one and says nothing.)
+///
+/// ```
+/// use d2m_io::UniqueKeys;
+/// let UniqueKeys(value) = serde_json::from_str(r#"{"x": 1, "y": 2}"#)?;
+/// assert_eq!(value["y"], 2);
+/// assert!(serde_json::from_str::<UniqueKeys>(r#"{"x": 1, "x": 2}"#).is_err());
+/// # Ok::<(), serde_json::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct UniqueKeys(
     /// The value.

@@ -63,6 +63,14 @@ pub struct KeyframeSpan<'a> {
 
 /// Part of the body's size plus the distance moved up to which two spans that do not meet count as rounded; and the angle
 /// (radians) up to which their rotations do.
+///
+/// ```
+/// use d2m_motion::{ConstantTwist, Keyframes, LARGEST_GAP};
+/// use glam::DVec3;
+/// let at = |x: f64| ConstantTwist::REST.with_position(DVec3::X * x);
+/// let spans = |gap: f64| Keyframes::try_from_spans(vec![0.0, 1.0, 2.0], vec![at(1.0), at(1.0 + gap)]);
+/// assert!(spans(0.1 * LARGEST_GAP).is_ok() && spans(1e-3).is_err());
+/// ```
 pub const LARGEST_GAP: f64 = 1e-9;
 /// A quaternion product of two unit quaternions rounds by less than this in each component: five roundings in each factor's
 /// normalisation and four products that are added, of numbers whose squares sum to 1.

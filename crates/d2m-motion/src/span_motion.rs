@@ -10,6 +10,22 @@ use glam::{DMat3, DVec3};
 /// `rotation_spread` and `position_spread` of the same middle values, and velocity and angular velocity are in `linear` and
 /// `angular`. The motion is continuous, so that (mean value) at m + τ the origin is at x(m) + τ·v with v in `linear`: what two bodies
 /// share of their ways costs nothing, and what is lost is of second order in the length of the span.
+///
+/// ```
+/// use d2m_motion::{Arm, ArmSpan, Joint, JointKind, JointValue};
+/// use glam::{DQuat, DVec3};
+/// let value = JointValue::try_polynomial(vec![0.0, 2.0])?; // slides by two a unit of time
+/// let mut arm = Arm::default();
+/// let slide = Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, JointKind::Prismatic { axis: DVec3::X, value })?;
+/// let link = arm.add("slide", None, slide)?;
+/// let mut span = ArmSpan::new(&arm);
+/// span.move_to(1.0, 1.5);
+/// let seen = span.link(link, None);
+/// // In the middle of the span, 1.25, it is at 2.5; at the ends half a unit away from there.
+/// assert!((seen.position.center - DVec3::X * 2.5).length() < 1e-15);
+/// assert!(seen.position_spread >= 0.5 && seen.position_spread < 0.5 + 1e-12);
+/// # Ok::<(), d2m_motion::MotionError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct SpanMotion {

@@ -42,6 +42,18 @@ pub struct CertifiedState {
 }
 
 /// A motion of constant twist through the middle of a [`CertifiedState`].
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_motion::{CertifiedState, ConstantTwist, RigidMotion};
+/// use glam::DVec3;
+/// let flying = ConstantTwist::REST.with_linear_velocity(DVec3::X);
+/// let now = Interval::point(2.0);
+/// let state = CertifiedState::from_enclosures(&flying.enclose_pose(now), &flying.enclose_twist(now));
+/// let through = state.to_constant_twist(2.0).expect("it is finite");
+/// assert!((through.motion.position() - DVec3::X * 2.0).length() < 1e-12 && through.motion.reference_time() == 2.0);
+/// assert!(through.rotation_radius < 1e-12);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct StateTwist {

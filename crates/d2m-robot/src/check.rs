@@ -13,6 +13,28 @@ use std::sync::Arc;
 impl RobotScene {
     /// Is a path free of contact, until when, and which pair meets first?
     ///
+    /// ```
+    /// # let urdf = r#"<robot name="slide">
+    /// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="stop"><collision><origin xyz="0.5 0 0.2"/><geometry><box size="0.1 1 1"/></geometry></collision></link>
+    /// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/><limit lower="-1" upper="0.6" velocity="2"/></joint>
+    /// #   <joint name="weld" type="fixed"><parent link="rail"/><child link="stop"/></joint>
+    /// # </robot>"#;
+    /// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+    /// # let robot = Robot::parse("slide.urdf", urdf, &RobotOptions::new())?;
+    /// # let mut scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+    /// # let to = |x: f64| {
+    /// #     let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+    /// #     Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(1.0, x)])
+    /// # };
+    /// // The stop begins at 0.45, and half of the cart is 0.05 long.
+    /// let answer = scene.check_path(&to(0.5))?;
+    /// assert!(answer.free_until() <= 0.8 && answer.free_until() > 0.8 - 1e-8);
+    /// assert!(scene.check_path(&to(0.39))?.is_free());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// A path that makes no sense ([`Trajectory::joint_values`]), joints that the robot does not have, and obstacles whose motions
     /// do not cover the path.
@@ -24,6 +46,27 @@ impl RobotScene {
 
     /// Where a path leaves the limits of its joints, which are not enforced.
     ///
+    /// ```
+    /// # let urdf = r#"<robot name="slide">
+    /// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="stop"><collision><origin xyz="0.5 0 0.2"/><geometry><box size="0.1 1 1"/></geometry></collision></link>
+    /// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/><limit lower="-1" upper="0.6" velocity="2"/></joint>
+    /// #   <joint name="weld" type="fixed"><parent link="rail"/><child link="stop"/></joint>
+    /// # </robot>"#;
+    /// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+    /// # let robot = Robot::parse("slide.urdf", urdf, &RobotOptions::new())?;
+    /// # let mut scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+    /// # let to = |x: f64| {
+    /// #     let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+    /// #     Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(1.0, x)])
+    /// # };
+    /// assert!(scene.limit_warnings(&to(0.5))?.is_empty());
+    /// let beyond = scene.limit_warnings(&to(1.0))?; // 0.6 is allowed
+    /// assert!(beyond[0].joint == "run" && (beyond[0].time - 0.6).abs() < 1e-5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`RobotScene::check_path`].
     pub fn limit_warnings(&self, path: &Trajectory) -> Result<Vec<LimitWarning>, RobotError> {
@@ -33,6 +76,27 @@ impl RobotScene {
     }
 
     /// For a planner: checks of straight edges between configurations of these joints. All that edges share is kept.
+    ///
+    /// ```
+    /// # let urdf = r#"<robot name="slide">
+    /// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="stop"><collision><origin xyz="0.5 0 0.2"/><geometry><box size="0.1 1 1"/></geometry></collision></link>
+    /// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/><limit lower="-1" upper="0.6" velocity="2"/></joint>
+    /// #   <joint name="weld" type="fixed"><parent link="rail"/><child link="stop"/></joint>
+    /// # </robot>"#;
+    /// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+    /// # let robot = Robot::parse("slide.urdf", urdf, &RobotOptions::new())?;
+    /// # let mut scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+    /// # let to = |x: f64| {
+    /// #     let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+    /// #     Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(1.0, x)])
+    /// # };
+    /// let edges = scene.edges(&["run"])?;
+    /// assert!(edges.check(&[-0.5], &[0.3])?.is_free());
+    /// assert!(scene.edges(&["run", "run"]).is_err() && scene.edges(&["walk"]).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// A name that is no joint of the robot that moves, or one named twice.
@@ -183,6 +247,28 @@ impl EdgeChecker<'_> {
         self.scene.check_values(&robot.complete(values)?, [0.0, 1.0], Threads::Own)
     }
     /// Many edges, on all threads (feature `rayon`); the answers in their order, with the bits of [`EdgeChecker::check`].
+    ///
+    /// ```
+    /// # let urdf = r#"<robot name="slide">
+    /// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="stop"><collision><origin xyz="0.5 0 0.2"/><geometry><box size="0.1 1 1"/></geometry></collision></link>
+    /// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/><limit lower="-1" upper="0.6" velocity="2"/></joint>
+    /// #   <joint name="weld" type="fixed"><parent link="rail"/><child link="stop"/></joint>
+    /// # </robot>"#;
+    /// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+    /// # let robot = Robot::parse("slide.urdf", urdf, &RobotOptions::new())?;
+    /// # let mut scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+    /// # let to = |x: f64| {
+    /// #     let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+    /// #     Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(1.0, x)])
+    /// # };
+    /// let edges = scene.edges(&["run"])?;
+    /// let ends = [([0.0], [0.3]), ([0.0], [0.6])];
+    /// let answers = edges.check_all(ends.iter().map(|(from, to)| (&from[..], &to[..])))?;
+    /// assert_eq!(answers.iter().map(|answer| answer.is_free()).collect::<Vec<_>>(), [true, false]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// As [`EdgeChecker::check`], with the index of the edge: the first one that is refused.

@@ -7,6 +7,27 @@ use d2m_bvh::{ClearanceOptions, ClearanceStatus, Meter, Moving};
 use d2m_world::{PairDistance, PairFault, PairsOfBodies};
 
 /// The least distance of any checked pair along a path, less the minimum separation.
+///
+/// ```
+/// # let urdf = r#"<robot name="slide">
+/// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+/// #   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+/// #   <link name="stop"><collision><origin xyz="0.5 0 0.2"/><geometry><box size="0.1 1 1"/></geometry></collision></link>
+/// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/></joint>
+/// #   <joint name="weld" type="fixed"><parent link="rail"/><child link="stop"/></joint>
+/// # </robot>"#;
+/// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+/// # let robot = Robot::parse("slide.urdf", urdf, &RobotOptions::new())?;
+/// # let mut scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+/// # scene.ignore("cart", "rail");
+/// // The cart goes to 0.3; the stop begins at 0.45, and half of the cart is 0.05 long.
+/// let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+/// let path = Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(1.0, 0.3)]);
+/// let nearest = scene.clearance(&path)?.expect("a pair is checked");
+/// assert_eq!([nearest.a.as_str(), nearest.b.as_str()], ["cart", "stop"]);
+/// assert!(nearest.lower <= 0.1 && 0.1 <= nearest.upper && nearest.upper - nearest.lower < 1e-5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct PathClearance {
@@ -30,6 +51,27 @@ impl RobotScene {
     ///
     /// Pair by pair, that of the nearest samples first: the others are only of interest where they come nearer than what is known, so
     /// most of them are one search that proves that they do not. The budget of the options is one for all pairs.
+    ///
+    /// ```
+    /// # let urdf = r#"<robot name="slide">
+    /// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="stop"><collision><origin xyz="0.5 0 0.2"/><geometry><box size="0.1 1 1"/></geometry></collision></link>
+    /// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/><limit lower="-1" upper="0.6" velocity="2"/></joint>
+    /// #   <joint name="weld" type="fixed"><parent link="rail"/><child link="stop"/></joint>
+    /// # </robot>"#;
+    /// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+    /// # let robot = Robot::parse("slide.urdf", urdf, &RobotOptions::new())?;
+    /// # let mut scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+    /// # let to = |x: f64| {
+    /// #     let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+    /// #     Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(1.0, x)])
+    /// # };
+    /// let nearest = scene.clearance(&to(0.3))?.expect("pairs are checked");
+    /// // The cart stays 0.1 above the rail, and ends 0.1 before the stop.
+    /// assert!(nearest.lower <= 0.1 && 0.1 <= nearest.upper && nearest.a == "rail" || nearest.b == "stop");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// As [`RobotScene::check_path`].

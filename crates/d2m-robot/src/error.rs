@@ -5,6 +5,14 @@ use d2m_io::IoError;
 use d2m_motion::MotionError;
 
 /// Bad input: which file, link or joint, where in it, and the value found. One line each.
+///
+/// ```
+/// use d2m_robot::{Robot, RobotError, RobotOptions};
+/// let text = "<robot name=\"r\">\n <link name=\"a\"/>\n <joint name=\"j\" type=\"swings\"><parent link=\"a\"/><child link=\"b\"/></joint>\n</robot>";
+/// let error = Robot::parse("arm.urdf", text, &RobotOptions::new()).unwrap_err();
+/// assert!(matches!(error, RobotError::Xml { line: 3, .. }));
+/// assert!(error.to_string().starts_with("arm.urdf, line 3: "));
+/// ```
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RobotError {

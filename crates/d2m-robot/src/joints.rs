@@ -38,6 +38,19 @@ pub enum JointType {
 }
 
 /// Limits of a joint, as far as the file states them.
+///
+/// ```
+/// # let urdf = r#"<robot name="slide">
+/// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+/// #   <link name="cart"/>
+/// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><limit lower="-1" upper="0.5" velocity="2"/></joint>
+/// # </robot>"#;
+/// use d2m_robot::{Robot, RobotOptions};
+/// let robot = Robot::parse("slide.urdf", urdf, &RobotOptions::new())?;
+/// let limits = robot.limits(robot.find_joint("run").expect("the file has it"));
+/// assert_eq!((limits.position, limits.velocity), (Some([-1.0, 0.5]), Some(2.0)));
+/// # Ok::<(), d2m_robot::RobotError>(())
+/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
 pub struct JointLimits {
@@ -48,6 +61,23 @@ pub struct JointLimits {
 }
 
 /// The joint that another one follows: `multiplier`·q + `offset`.
+///
+/// ```
+/// # let urdf = r#"<robot name="gripper">
+/// #   <link name="palm"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+/// #   <link name="left"/><link name="right"/>
+/// #   <joint name="left" type="prismatic"><parent link="palm"/><child link="left"/><limit lower="0" upper="0.04" velocity="1"/></joint>
+/// #   <joint name="right" type="prismatic"><parent link="palm"/><child link="right"/><limit lower="-0.04" upper="0" velocity="1"/>
+/// #     <mimic joint="left" multiplier="-1"/></joint>
+/// # </robot>"#;
+/// use d2m_robot::{Robot, RobotOptions};
+/// let robot = Robot::parse("gripper.urdf", urdf, &RobotOptions::new())?;
+/// let joint = |name| robot.find_joint(name).expect("the file has it");
+/// let follows = robot.mimic(joint("right")).expect("the right finger follows the left one");
+/// assert_eq!((follows.joint, follows.multiplier, follows.offset), (joint("left"), -1.0, 0.0));
+/// assert_eq!(robot.joint_names(), ["left"]); // a path gives the left finger only
+/// # Ok::<(), d2m_robot::RobotError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Mimic {

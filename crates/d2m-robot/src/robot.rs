@@ -176,6 +176,26 @@ impl Robot {
 
     /// Where a joint stays that no path names: at zero, or in the middle of its limits if zero is outside of them.
     ///
+    /// ```
+    /// # let urdf = r#"<robot name="slide">
+    /// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="stop"><collision><origin xyz="0.5 0 0.2"/><geometry><box size="0.1 1 1"/></geometry></collision></link>
+    /// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/><limit lower="-1" upper="0.6" velocity="2"/></joint>
+    /// #   <joint name="weld" type="fixed"><parent link="rail"/><child link="stop"/></joint>
+    /// # </robot>"#;
+    /// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+    /// # let robot = Robot::parse("slide.urdf", urdf, &RobotOptions::new())?;
+    /// # let mut scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+    /// # let to = |x: f64| {
+    /// #     let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+    /// #     Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(1.0, x)])
+    /// # };
+    /// let robot = scene.robot();
+    /// assert_eq!(robot.rest_position(robot.find_joint("run").expect("the file has it")), 0.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Panics
     /// An index that is no joint.
     pub fn rest_position(&self, joint: usize) -> f64 {
@@ -232,6 +252,28 @@ impl Robot {
     }
 
     /// The motion of every link's frame along a path, in the order of [`Robot::link_names`].
+    ///
+    /// ```
+    /// # let urdf = r#"<robot name="slide">
+    /// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="stop"><collision><origin xyz="0.5 0 0.2"/><geometry><box size="0.1 1 1"/></geometry></collision></link>
+    /// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/><limit lower="-1" upper="0.6" velocity="2"/></joint>
+    /// #   <joint name="weld" type="fixed"><parent link="rail"/><child link="stop"/></joint>
+    /// # </robot>"#;
+    /// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+    /// # let robot = Robot::parse("slide.urdf", urdf, &RobotOptions::new())?;
+    /// # let mut scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+    /// # let to = |x: f64| {
+    /// #     let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+    /// #     Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(1.0, x)])
+    /// # };
+    /// use d2m_motion::RigidMotion;
+    /// let motions = scene.robot().link_motions(&to(0.3))?;
+    /// let cart = &motions[scene.robot().find_link("cart").expect("the file has it")];
+    /// assert!((cart.pose_and_twist(0.5).0.transform_point(glam::DVec3::ZERO).x - 0.15).abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// A path that makes no sense, or names joints that the robot does not have.

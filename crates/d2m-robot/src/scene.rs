@@ -2,108 +2,13 @@
 
 use crate::body_box::BodyBox;
 use crate::geometry::LinkBody;
+use crate::obstacle::{Attached, Obstacle};
 use crate::robot::Robot;
 use crate::{RobotError, Srdf};
 use d2m_bvh::{Budget, MeshTree, QueryOptions, Solid, Start, Window, time_of_contact};
 use d2m_motion::{CertifiedState, Chain, ConstantTwist, Joint, JointKind, RigidMotion};
-use d2m_world::{Body, BodyId, SharedMotion, World};
-use glam::{DQuat, DVec3};
+use d2m_world::{Body, BodyId, World};
 use std::sync::Arc;
-
-/// A body that is no part of the robot: at rest, or with a motion of its own.
-#[derive(Clone)]
-pub struct Obstacle {
-    name: String,
-    tree: Arc<MeshTree>,
-    motion: SharedMotion,
-    solid: Option<Solid>,
-    radius: f64,
-    is_at_rest: bool,
-}
-
-impl Obstacle {
-    /// A mesh at rest: a vertex p is at R(orientation)·p + position, the quaternion divided by its norm.
-    ///
-    /// # Errors
-    /// A number that is not finite, or a quaternion that cannot be normalised.
-    pub fn at_rest(
-        name: impl Into<String>,
-        tree: Arc<MeshTree>,
-        position: DVec3,
-        orientation: DQuat,
-    ) -> Result<Self, RobotError> {
-        let pose = ConstantTwist::try_new(position, orientation, DVec3::ZERO, DVec3::ZERO)?;
-        Ok(Self { is_at_rest: true, ..Self::moving(name, tree, pose) })
-    }
-
-    /// A mesh that moves, in the time of the path.
-    pub fn moving(
-        name: impl Into<String>,
-        tree: Arc<MeshTree>,
-        motion: impl RigidMotion + Send + 'static,
-    ) -> Self {
-        Self {
-            name: name.into(),
-            tree,
-            motion: Arc::new(motion),
-            solid: None,
-            radius: 0.0,
-            is_at_rest: false,
-        }
-    }
-
-    /// With this meaning of its mesh, whether it is watertight or not.
-    #[must_use]
-    pub fn with_solid(self, solid: Solid) -> Self {
-        Self { solid: Some(solid), ..self }
-    }
-
-    /// With everything within this distance of its mesh: a point becomes a sphere, a segment a capsule. Finite and not negative.
-    #[must_use]
-    pub fn with_radius(self, radius: f64) -> Self {
-        Self { radius, ..self }
-    }
-}
-
-/// A body that a link carries: grasped, or a tool.
-#[derive(Clone)]
-pub struct Attached {
-    name: String,
-    link: String,
-    tree: Arc<MeshTree>,
-    frame: Joint,
-    solid: Option<Solid>,
-    radius: f64,
-}
-
-impl Attached {
-    /// A mesh in the frame of a link: a vertex p is at R(orientation)·p + position there.
-    ///
-    /// # Errors
-    /// A number that is not finite, or a quaternion that cannot be normalised.
-    pub fn new(
-        name: impl Into<String>,
-        link: impl Into<String>,
-        tree: Arc<MeshTree>,
-        position: DVec3,
-        orientation: DQuat,
-    ) -> Result<Self, RobotError> {
-        let frame = Joint::try_new(position, orientation, JointKind::Fixed)?;
-        Ok(Self { name: name.into(), link: link.into(), tree, frame, solid: None, radius: 0.0 })
-    }
-
-    /// With this meaning of its mesh, whether it is watertight or not.
-    #[must_use]
-    pub fn with_solid(self, solid: Solid) -> Self {
-        Self { solid: Some(solid), ..self }
-    }
-
-    /// With everything within this distance of its mesh: a point becomes a sphere, a segment a capsule. Finite and not negative.
-    #[must_use]
-    pub fn with_radius(self, radius: f64) -> Self {
-        Self { radius, ..self }
-    }
-}
 
 /// A robot, obstacles and attached bodies: what paths are checked in.
 ///
@@ -244,6 +149,33 @@ impl RobotScene {
 
     /// Adds an obstacle.
     ///
+    /// ```
+    /// # let urdf = r#"<robot name="slide">
+    /// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="stop"><collision><origin xyz="0.5 0 0.2"/><geometry><box size="0.1 1 1"/></geometry></collision></link>
+    /// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/><limit lower="-1" upper="0.6" velocity="2"/></joint>
+    /// #   <joint name="weld" type="fixed"><parent link="rail"/><child link="stop"/></joint>
+    /// # </robot>"#;
+    /// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+    /// # let robot = Robot::parse("slide.urdf", urdf, &RobotOptions::new())?;
+    /// # let mut scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+    /// # let to = |x: f64| {
+    /// #     let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+    /// #     Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(1.0, x)])
+    /// # };
+    /// use d2m_bvh::{MeshTree, TriMesh};
+    /// use d2m_robot::Obstacle;
+    /// use glam::{DQuat, DVec3};
+    /// let wire = TriMesh::segment(DVec3::new(0.2, -1.0, 0.2), DVec3::new(0.2, 1.0, 0.2))?;
+    /// let wire = Obstacle::at_rest("wire", MeshTree::new(wire).into(), DVec3::ZERO, DQuat::IDENTITY)?;
+    /// scene.add_obstacle(wire.clone())?;
+    /// let answer = scene.check_path(&to(0.3))?;
+    /// assert_eq!(answer.contact().expect("the cart meets the wire").b, "wire");
+    /// assert!(scene.add_obstacle(wire).is_err(), "the name is taken");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// The name of a link or of another body; a radius that is negative or not finite.
     pub fn add_obstacle(&mut self, obstacle: Obstacle) -> Result<(), RobotError> {
@@ -258,6 +190,30 @@ impl RobotScene {
     }
 
     /// Attaches a body to a link.
+    ///
+    /// ```
+    /// # let urdf = r#"<robot name="slide">
+    /// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="stop"><collision><origin xyz="0.5 0 0.2"/><geometry><box size="0.1 1 1"/></geometry></collision></link>
+    /// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/><limit lower="-1" upper="0.6" velocity="2"/></joint>
+    /// #   <joint name="weld" type="fixed"><parent link="rail"/><child link="stop"/></joint>
+    /// # </robot>"#;
+    /// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+    /// # let robot = Robot::parse("slide.urdf", urdf, &RobotOptions::new())?;
+    /// # let mut scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+    /// # let to = |x: f64| {
+    /// #     let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+    /// #     Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(1.0, x)])
+    /// # };
+    /// use d2m_bvh::{MeshTree, TriMesh};
+    /// use d2m_robot::Attached;
+    /// use glam::{DQuat, DVec3};
+    /// let pole = TriMesh::segment(DVec3::ZERO, DVec3::X * 0.2)?;
+    /// scene.attach(Attached::new("pole", "cart", MeshTree::new(pole).into(), DVec3::ZERO, DQuat::IDENTITY)?)?;
+    /// assert_eq!(scene.check_path(&to(0.3))?.contact().expect("the pole meets the stop").b, "pole");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// The name of a link or of another body, a radius that is negative or not finite, or a link that the robot does not have.
@@ -282,6 +238,27 @@ impl RobotScene {
     }
 
     /// Leaves out a pair of links or bodies, by their names; false if one of the names is unknown.
+    ///
+    /// ```
+    /// # let urdf = r#"<robot name="slide">
+    /// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="stop"><collision><origin xyz="0.5 0 0.2"/><geometry><box size="0.1 1 1"/></geometry></collision></link>
+    /// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/><limit lower="-1" upper="0.6" velocity="2"/></joint>
+    /// #   <joint name="weld" type="fixed"><parent link="rail"/><child link="stop"/></joint>
+    /// # </robot>"#;
+    /// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+    /// # let robot = Robot::parse("slide.urdf", urdf, &RobotOptions::new())?;
+    /// # let mut scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+    /// # let to = |x: f64| {
+    /// #     let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+    /// #     Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(1.0, x)])
+    /// # };
+    /// assert!(!scene.check_path(&to(0.6))?.is_free());
+    /// assert!(scene.ignore("cart", "stop") && !scene.ignore("cart", "nobody"));
+    /// assert!(scene.check_path(&to(0.6))?.is_free());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn ignore(&mut self, a: &str, b: &str) -> bool {
         let parts = |name: &str| {
             let named = self.parts.iter().enumerate().filter(|(_, part)| part.name == name);
@@ -395,6 +372,31 @@ impl RobotScene {
     /// What counts of two links or bodies that are in contact at the start of a path, by their names, instead of what the options say. With
     /// [`Start::Leave`] it is let go until they are proven apart: of a part that stands on a table until the robot lifts it. False if one of
     /// the names is unknown.
+    ///
+    /// ```
+    /// # let urdf = r#"<robot name="slide">
+    /// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="stop"><collision><origin xyz="0.5 0 0.2"/><geometry><box size="0.1 1 1"/></geometry></collision></link>
+    /// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/><limit lower="-1" upper="0.6" velocity="2"/></joint>
+    /// #   <joint name="weld" type="fixed"><parent link="rail"/><child link="stop"/></joint>
+    /// # </robot>"#;
+    /// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+    /// # let robot = Robot::parse("slide.urdf", urdf, &RobotOptions::new())?;
+    /// # let mut scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+    /// # let to = |x: f64| {
+    /// #     let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+    /// #     Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(1.0, x)])
+    /// # };
+    /// use d2m_bvh::Start;
+    /// // Starts inside of the stop, and drives away from it.
+    /// let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+    /// let away = Trajectory::new(vec!["run".into()], vec![point(0.0, 0.41), point(1.0, -0.5)]);
+    /// assert_eq!(scene.check_path(&away)?.free_until(), 0.0);
+    /// assert!(scene.set_start(["cart", "stop"], Start::Leave));
+    /// assert!(scene.check_path(&away)?.is_free());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn set_start(&mut self, names: [&str; 2], start: Start) -> bool {
         for pair in self.pairs_of(names) {
             let [a, b] = pair.map(|part| self.parts[part].id);
@@ -405,6 +407,27 @@ impl RobotScene {
 
     /// The distance at which two links or bodies count as in contact, by their names, instead of that of the options. False if one of the
     /// names is unknown.
+    ///
+    /// ```
+    /// # let urdf = r#"<robot name="slide">
+    /// #   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="stop"><collision><origin xyz="0.5 0 0.2"/><geometry><box size="0.1 1 1"/></geometry></collision></link>
+    /// #   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/><limit lower="-1" upper="0.6" velocity="2"/></joint>
+    /// #   <joint name="weld" type="fixed"><parent link="rail"/><child link="stop"/></joint>
+    /// # </robot>"#;
+    /// # use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+    /// # let robot = Robot::parse("slide.urdf", urdf, &RobotOptions::new())?;
+    /// # let mut scene = RobotScene::new(robot.into(), None, d2m_bvh::QueryOptions::default())?;
+    /// # let to = |x: f64| {
+    /// #     let point = |time: f64, x: f64| TrajectoryPoint::new(time, vec![x]);
+    /// #     Trajectory::new(vec!["run".into()], vec![point(0.0, 0.0), point(1.0, x)])
+    /// # };
+    /// assert!(scene.set_min_separation(["cart", "stop"], 0.2)?);
+    /// let until = scene.check_path(&to(0.4 - 1e-6))?.free_until(); // 0.2 before it would touch
+    /// assert!(until <= 0.501 && until > 0.499);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// A distance that is negative or not finite.

@@ -68,6 +68,23 @@ pub struct RobotBodies<'r> {
 }
 
 /// Where the parts of a robot are in a simulation.
+///
+/// ```
+/// use d2m_dynamics::{Simulation, SimulationOptions};
+/// use d2m_robot::{Robot, RobotBodies, RobotOptions, SimulatedRobot};
+/// let text = r#"<robot name="slide">
+///   <link name="rail"><collision><geometry><box size="2 0.1 0.1"/></geometry></collision></link>
+///   <link name="cart"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+///   <joint name="run" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 0 0.2"/>
+///     <limit lower="-1" upper="1" effort="10" velocity="1"/></joint>
+/// </robot>"#;
+/// let robot = Robot::parse("slide.urdf", text, &RobotOptions::new())?;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// let slide: SimulatedRobot = RobotBodies::new(&robot).add_to(&mut simulation)?;
+/// assert_eq!((slide.bodies.len(), slide.joints.len()), (2, 1));
+/// assert!(slide.bodies[1].is_some() && slide.joints[0].is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SimulatedRobot {

@@ -4,6 +4,16 @@ use crate::RobotError;
 use d2m_motion::{JointPoints, JointValue};
 
 /// How a path goes from one point to the next.
+///
+/// ```
+/// use d2m_robot::{Interpolation, Trajectory, TrajectoryPoint};
+/// let point = |time: f64, angle: f64| TrajectoryPoint::new(time, vec![angle]).with_velocities(vec![0.0]);
+/// let path = Trajectory::new(vec!["elbow".into()], vec![point(0.0, 0.0), point(1.0, 1.0)]);
+/// assert_eq!(path.interpolation(), Interpolation::Cubic); // velocities are given
+/// let straight = path.clone().with_interpolation(Interpolation::Linear);
+/// // After a quarter of the time a cubic that starts and ends at rest has done 3/16 − 2/64 of the way.
+/// assert_eq!([&path, &straight].map(|path| path.joint_values().unwrap()[0].value(0.25)), [0.15625, 0.25]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]
@@ -40,6 +50,12 @@ pub struct Trajectory {
 }
 
 /// One point of a path. A list of velocities or accelerations that is empty is not given.
+///
+/// ```
+/// use d2m_robot::TrajectoryPoint;
+/// let point = TrajectoryPoint::new(0.5, vec![1.2, -0.3]).with_velocities(vec![0.0, 0.1]);
+/// assert_eq!((point.time_from_start, point.positions.len(), point.accelerations.len()), (0.5, 2, 0));
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]

@@ -25,6 +25,24 @@ impl<F: FnMut(Interval) -> Interval> IntervalFunction for F {
 
 /// A function whose value, slope and second derivative can be enclosed: of class C² over every interval for which the
 /// [range](InclusionFunction::range) of its inclusion function is bounded; over others it may have poles.
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_root::{InclusionFunction, IntervalFunction, SecondOrder};
+/// /// t² − 1.
+/// struct Square;
+/// impl IntervalFunction for Square {
+///     fn enclose(&mut self, t: Interval) -> Interval { t * t - 1.0 }
+/// }
+/// impl SecondOrder for Square {
+///     fn inclusion_function(&mut self, t: Interval) -> InclusionFunction {
+///         let start = Interval::point(t.lo());
+///         InclusionFunction::new(start * start - 1.0, start * 2.0, Interval::point(2.0), t)
+///     }
+/// }
+/// let piece = Interval::new(0.0, 2.0);
+/// assert!(Square.inclusion_function(piece).enclose_at_offset(Interval::point(1.0)).contains(0.0));
+/// ```
 pub trait SecondOrder: IntervalFunction {
     /// θ of f over the piece `t`: see [`InclusionFunction`].
     fn inclusion_function(&mut self, t: Interval) -> InclusionFunction;
@@ -58,6 +76,24 @@ pub trait Gamma {
 }
 
 /// Answer of [`Gamma::settle`].
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_root::{Gamma, IntervalFunction, Settled};
+/// /// t, which is within a thousandth of a contact where it is below that.
+/// struct Approach;
+/// impl IntervalFunction for Approach {
+///     fn enclose(&mut self, t: Interval) -> Interval { t }
+/// }
+/// impl Gamma for Approach {
+///     fn may_touch(&mut self, _t: Interval) -> bool { true }
+///     fn settle(&mut self, t: Interval) -> Settled {
+///         if t.lo() <= 1e-3 { Settled::Near(t.lo()) } else { Settled::Open }
+///     }
+/// }
+/// assert_eq!(Approach.settle(Interval::new(0.0, 1.0)), Settled::Near(0.0));
+/// assert_eq!(Approach.settle(Interval::new(0.5, 1.0)), Settled::Open);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Settled {
     /// No time of the piece is a contact.

@@ -7,6 +7,12 @@ use crate::{bodies, sphere, thread, tube};
 use glam::DVec3;
 
 /// A number that a shape takes.
+///
+/// ```
+/// let shape = d2m_shapes::SHAPES.iter().find(|shape| shape.name == "box").expect("there are boxes");
+/// let x = shape.parameters.iter().find(|parameter| parameter.name == "x").expect("half a size");
+/// assert!(x.low < x.default && x.default < x.high && !x.integer);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Parameter {
@@ -68,6 +74,13 @@ const fn triangles(default: f64, low: f64) -> Parameter {
 }
 
 /// Parameters that every shape has besides its own.
+///
+/// ```
+/// assert!(d2m_shapes::COMMON.iter().any(|parameter| parameter.name == "scale"));
+/// let twice = d2m_shapes::mesh("box?x=1&scale=2")?;
+/// assert_eq!(twice.vertices()[0].x.abs(), 2.0);
+/// # Ok::<(), d2m_shapes::ShapeError>(())
+/// ```
 pub const COMMON: &[Parameter] = &[length("scale", 1.0, 1e-9, 1e9, "all lengths are multiplied by this")];
 
 /// Every shape that there is, in the order of `d2m info --shapes`.

@@ -5,6 +5,27 @@ use d2m_motion::RigidMotion;
 use glam::DVec3;
 
 /// What belongs to a body.
+///
+/// ```
+/// # use d2m_motion::ConstantTwist;
+/// # use d2m_verify::{Claim, Mesh, Query, TimeSpan, Verdict, verify};
+/// # use glam::DVec3;
+/// use d2m_verify::{Body, Solid};
+/// // A small tetrahedron inside a large one: their surfaces are apart, their solids are not.
+/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let large = Mesh::try_new(&corners, &faces)?;
+/// let small = Mesh::try_new(&corners.map(|p| 0.1 * p + DVec3::splat(0.1)), &faces)?;
+/// let clear = |solid: Solid| {
+///     let body = |mesh| Body { mesh, motion: &ConstantTwist::REST, solid, radius: 0.0 };
+///     let window = TimeSpan { from: 0.0, to: 1.0 };
+///     let query = Query { bodies: [body(&large), body(&small)], window };
+///     verify(&query, &Claim::Clear { span: window, distance: 0.0 }, 10_000)
+/// };
+/// assert!(matches!(clear(Solid::Surface), Verdict::Verified { .. }));
+/// assert!(matches!(clear(Solid::Filled), Verdict::Refuted { .. }));
+/// # Ok::<(), d2m_verify::MeshFault>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solid {
     /// What the mesh encloses: points about which its winding number is not zero, or (where faces disagree about the outside) from
@@ -15,6 +36,17 @@ pub enum Solid {
 }
 
 /// A body and its motion.
+///
+/// ```
+/// use d2m_motion::ConstantTwist;
+/// use d2m_verify::{Body, Mesh, Solid};
+/// use glam::DVec3;
+/// let plate = Mesh::try_new(&[DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]])?;
+/// // An open surface, rounded by a tenth.
+/// let body = Body { mesh: &plate, motion: &ConstantTwist::REST, solid: Solid::Surface, radius: 0.1 };
+/// assert_eq!((body.mesh.triangle_count(), body.radius), (1, 0.1));
+/// # Ok::<(), d2m_verify::MeshFault>(())
+/// ```
 #[derive(Clone, Copy)]
 pub struct Body<'a> {
     /// The triangles, in body axes.
@@ -28,6 +60,13 @@ pub struct Body<'a> {
 }
 
 /// A closed span of time.
+///
+/// ```
+/// use d2m_verify::{Claim, TimeSpan};
+/// let first_half = TimeSpan { from: 0.0, to: 0.5 };
+/// let claim = Claim::Clear { span: first_half, distance: 0.0 };
+/// assert!(matches!(claim, Claim::Clear { span, .. } if span == first_half));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeSpan {
     /// First time.
@@ -37,6 +76,22 @@ pub struct TimeSpan {
 }
 
 /// Two bodies in a window of time.
+///
+/// ```
+/// # use d2m_motion::ConstantTwist;
+/// # use d2m_verify::{Body, Claim, Mesh, Query, Solid, TimeSpan, Verdict, verify};
+/// # use glam::DVec3;
+/// # let mesh = Mesh::try_new(&[DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]])?;
+/// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
+/// let body = |motion| Body { mesh: &mesh, motion, solid: Solid::Surface, radius: 0.0 };
+/// let window = TimeSpan { from: 0.0, to: 1.0 };
+/// let query = Query { bodies: [body(&falling), body(&ConstantTwist::REST)], window };
+/// // One query, several claims: a plate falls from a height of 2 with a speed of 4 onto another one.
+/// let clear_until = |to: f64| verify(&query, &Claim::Clear { span: TimeSpan { from: 0.0, to }, distance: 0.0 }, 10_000);
+/// assert!(matches!(clear_until(0.49), Verdict::Verified { .. }));
+/// assert!(!matches!(clear_until(0.51), Verdict::Verified { .. }));
+/// # Ok::<(), d2m_verify::MeshFault>(())
+/// ```
 #[derive(Clone, Copy)]
 pub struct Query<'a> {
     /// A and B.

@@ -5,6 +5,14 @@ use glam::DVec3;
 use std::sync::OnceLock;
 
 /// A mesh that cannot be judged.
+///
+/// ```
+/// use d2m_verify::{Mesh, MeshFault};
+/// use glam::DVec3;
+/// let fault = Mesh::try_new(&[DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 7]]).unwrap_err();
+/// assert_eq!(fault, MeshFault::NoSuchVertex(0));
+/// assert_eq!(fault.to_string(), "triangle 0 has a vertex that does not exist");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshFault {

@@ -10,6 +10,25 @@ use glam::DVec3;
 /// Proves a claim, or refutes it, or says why it did neither, in at most so many steps (a microsecond each).
 ///
 /// `Verified`: the claim is true, if the motions' enclosures are. `Refuted`: it is false. `Unproven` says nothing about it.
+///
+/// ```
+/// use d2m_motion::ConstantTwist;
+/// use d2m_verify::{Body, Claim, Mesh, Query, Solid, TimeSpan, Verdict, verify};
+/// use glam::DVec3;
+/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let mesh = Mesh::try_new(&[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z], &faces)?;
+/// // Falls by 4 from a height of 2 onto the tip of the other one: they meet at 0.25.
+/// let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
+/// let body = |motion| Body { mesh: &mesh, motion, solid: Solid::Filled, radius: 0.0 };
+/// let query = Query { bodies: [body(&falling), body(&ConstantTwist::REST)], window: TimeSpan { from: 0.0, to: 1.0 } };
+/// let clear = |distance: f64, steps: u64| {
+///     verify(&query, &Claim::Clear { span: TimeSpan { from: 0.0, to: 0.24 }, distance }, steps)
+/// };
+/// assert!(matches!(clear(0.0, 10_000), Verdict::Verified { .. }));
+/// assert!(matches!(clear(0.5, 10_000), Verdict::Refuted { .. })); // they come nearer than that
+/// assert!(matches!(clear(0.0, 0), Verdict::Unproven { .. })); // no step: nothing is said
+/// # Ok::<(), d2m_verify::MeshFault>(())
+/// ```
 pub fn verify(query: &Query<'_>, claim: &Claim, most_steps: u64) -> Verdict {
     let mut steps = most_steps;
     let verdict = match query.bodies.map(|body| body.motion.chain()) {

@@ -41,6 +41,20 @@ pub struct PairsOfBodies<'a> {
 }
 
 /// The least distance of one of several pairs.
+///
+/// ```
+/// use d2m_bvh::{ClearanceOptions, MeshTree, Moving, Window};
+/// use d2m_motion::ConstantTwist;
+/// use d2m_world::PairsOfBodies;
+/// use glam::DVec3;
+/// let cube = MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?); // edges of length 1
+/// let places = [0.0, 3.0, 5.0].map(|x| ConstantTwist::REST.with_position(DVec3::X * x));
+/// let bodies = places.each_ref().map(|place| Moving::new(&cube, place));
+/// let pairs = PairsOfBodies { bodies: &bodies, pairs: &[[0, 1], [1, 2]], window: Window::UNIT };
+/// let nearest = pairs.nearest(&ClearanceOptions::default(), 0.0)?.expect("there are pairs");
+/// assert!(nearest.pair == [1, 2] && nearest.clearance.lower <= 1.0 && nearest.clearance.upper >= 1.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairDistance {
     /// The places of its bodies.
@@ -50,6 +64,20 @@ pub struct PairDistance {
 }
 
 /// Bad input of one of several pairs.
+///
+/// ```
+/// use d2m_bvh::{ClearanceOptions, MeshTree, Moving, Window};
+/// use d2m_motion::{ConstantTwist, Keyframes, Pose, Span};
+/// use d2m_world::PairsOfBodies;
+/// let cube = MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?);
+/// let short = Keyframes::try_new(&[(0.0, Pose::IDENTITY), (0.5, Pose::IDENTITY)], Span::Linear)?;
+/// let bodies = [Moving::new(&cube, &ConstantTwist::REST), Moving::new(&cube, &short)];
+/// let pairs = PairsOfBodies { bodies: &bodies, pairs: &[[0, 1]], window: Window::UNIT };
+/// let fault = pairs.nearest(&ClearanceOptions::default(), 0.0).unwrap_err();
+/// assert_eq!(fault.pair, [0, 1]); // the second body does not say where it is after 0.5
+/// assert!(fault.to_string().starts_with("bodies 0 and 1: "));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("bodies {} and {}: {error}", pair[0], pair[1])]
 pub struct PairFault {

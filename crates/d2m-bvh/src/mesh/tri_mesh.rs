@@ -7,9 +7,25 @@ use glam::DVec3;
 ///
 /// A product of five coordinate differences (the largest product that any test forms: area² times a length) stays
 /// below (2e60)⁵ < 1e302, so nothing overflows.
+///
+/// ```
+/// use d2m_bvh::{MAX_COORDINATE, TriMesh};
+/// use glam::DVec3;
+/// let triangle = |size: f64| TriMesh::try_new(vec![DVec3::ZERO, DVec3::X * size, DVec3::Y], vec![[0, 1, 2]]);
+/// assert!(triangle(MAX_COORDINATE).is_ok() && triangle(2.0 * MAX_COORDINATE).is_err());
+/// ```
 pub const MAX_COORDINATE: f64 = 1e60;
 
 /// The lists that a [`TriMesh`] is made of.
+///
+/// ```
+/// use d2m_bvh::{MeshArrays, TriMesh};
+/// use glam::DVec3;
+/// let mesh = TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]])?;
+/// let MeshArrays { vertices, triangles } = mesh.into_arrays(); // nothing is copied
+/// assert_eq!((vertices.len(), triangles), (3, vec![[0, 1, 2]]));
+/// # Ok::<(), d2m_bvh::MeshError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshArrays {
     /// Positions in the body frame.

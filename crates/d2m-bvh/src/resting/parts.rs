@@ -9,6 +9,19 @@ use core::cell::OnceCell;
 use glam::DVec3;
 
 /// One connected part of a surface: triangles that are connected through equal positions of their vertices.
+///
+/// ```
+/// use d2m_bvh::{MeshParts, TriMesh};
+/// use glam::DVec3;
+/// let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3], [4, 5, 6]];
+/// let apart = [5.0, 6.0, 7.0].map(|x| DVec3::new(x, x * x, 0.0));
+/// let mesh = TriMesh::try_new([&corners[..], &apart].concat(), faces)?;
+/// let parts = MeshParts::new(&mesh).parts;
+/// assert_eq!((parts.len(), parts[0].triangles, parts[0].closed, parts[1].closed), (2, 4, true, false));
+/// assert!((parts[0].signed_volume - 1.0 / 6.0).abs() < 1e-15);
+/// # Ok::<(), d2m_bvh::MeshError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

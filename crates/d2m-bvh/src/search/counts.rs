@@ -27,6 +27,21 @@ pub struct Answered<T> {
 }
 
 /// Counts of the work of one query, for profiles: the same on every machine.
+///
+/// ```
+/// # use d2m_bvh::{MeshTree, Moving, QueryOptions, TriMesh, Window, time_of_contact_counted};
+/// # use d2m_motion::ConstantTwist;
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?);
+/// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
+/// # let [a, b] = [Moving::new(&tree, &falling), Moving::new(&tree, &ConstantTwist::REST)];
+/// let ask = || time_of_contact_counted(a, b, Window::UNIT, &QueryOptions::default());
+/// let work = ask()?.work;
+/// assert!(work.windows >= 1 && work.work() >= work.node_tests);
+/// assert_eq!(work, ask()?.work); // the same each time, and on every machine
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SearchCounts {

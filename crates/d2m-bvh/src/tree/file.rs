@@ -38,6 +38,13 @@ const BOX: usize = 80;
 const CHECKSUM: usize = 8;
 
 /// Why bytes are no tree.
+///
+/// ```
+/// use d2m_bvh::{MeshTree, TreeFileError};
+/// let fault = MeshTree::try_from_bytes(b"solid part").unwrap_err();
+/// assert_eq!(fault, TreeFileError::NotATree);
+/// assert!(fault.to_string().contains("does not begin with"));
+/// ```
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum TreeFileError {

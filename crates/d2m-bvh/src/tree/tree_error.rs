@@ -3,6 +3,15 @@
 use thiserror::Error;
 
 /// Why a tree is not one.
+///
+/// ```
+/// use d2m_bvh::{MeshTree, TreeError, TriMesh};
+/// use glam::DVec3;
+/// let tree = MeshTree::new(TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]])?);
+/// let checked: Result<(), TreeError> = tree.validate();
+/// assert_eq!(checked, Ok(())); // as every tree that was built here
+/// # Ok::<(), d2m_bvh::MeshError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum TreeError {

@@ -7,6 +7,23 @@ use d2m_feature::FeaturePair;
 use glam::DVec3;
 
 /// How two bodies touch.
+///
+/// ```
+/// # use d2m_bvh::MeshTree;
+/// # use std::sync::Arc;
+/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// use d2m_dynamics::{Body, Simulation, SimulationOptions};
+/// use glam::DVec3;
+/// let mut simulation = Simulation::new(SimulationOptions::default())?;
+/// let ice = simulation.add(&Body::new("ice", Arc::clone(&cube)).with_friction(0.1))?;
+/// let rubber = Body::new("rubber", cube).with_friction(0.9).with_restitution(0.7).with_position(DVec3::Y * 2.0);
+/// let rubber = simulation.add(&rubber)?;
+/// let pair = simulation.pair(ice, rubber);
+/// assert_eq!((pair.friction, pair.restitution), (0.5, 0.7)); // the mean, and the greater one
+/// simulation.set_pair(ice, rubber, 0.0, 0.2)?; // known better
+/// assert_eq!(simulation.pair(rubber, ice).friction, 0.2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Material {

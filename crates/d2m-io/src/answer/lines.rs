@@ -4,6 +4,13 @@ use super::words::{evidence_sentence, feature_sentence, fixed, short_number, sta
 use d2m_bvh::{Clearance, Contact, QueryOptions, StartState, TimeOfContact, Window};
 
 /// A headline and lines, each with a label. What the command prints and a page shows.
+///
+/// ```
+/// use d2m_bvh::{QueryOptions, TimeOfContact, Window};
+/// let half = TimeOfContact::Undecided { clear_until: 0.5 };
+/// let answer: d2m_io::AnswerLines = d2m_io::answer_lines(&half, Window::UNIT, &QueryOptions::default(), None);
+/// assert!(answer.headline.starts_with("UNDECIDED") && answer.lines.iter().any(|[_, text]| text.contains("0.5")));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct AnswerLines {

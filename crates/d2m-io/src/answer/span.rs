@@ -4,6 +4,11 @@ use d2m_bvh::{Contact, StartState, TimeOfContact, Window};
 use serde_json::{Value, json};
 
 /// What is proven of a span of time.
+///
+/// ```
+/// use d2m_io::Holds;
+/// assert_eq!([Holds::Clear, Holds::Unknown].map(Holds::word), ["clear", "unknown"]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Holds {
@@ -30,6 +35,12 @@ impl Holds {
 }
 
 /// A span of time, with what is proven of it in words.
+///
+/// ```
+/// use d2m_io::{Holds, ProvenSpan};
+/// let span = ProvenSpan::new(0.0, 0.5, Holds::Clear, "no contact");
+/// assert_eq!(span.to_json()["status"], "clear");
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ProvenSpan {

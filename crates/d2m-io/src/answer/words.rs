@@ -76,6 +76,21 @@ pub const fn start_in_json(start: StartState) -> &'static str {
 }
 
 /// What is proven of the meeting itself, in a sentence. `min_separation`: the distance at which the bodies count as touching.
+///
+/// ```
+/// use d2m_bvh::{MeshTree, Moving, QueryOptions, Window, time_of_contact};
+/// use d2m_motion::ConstantTwist;
+/// # use d2m_io::{MeshFormat, ReadOptions, parse_mesh};
+/// # let mesh = parse_mesh(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", MeshFormat::Obj, &ReadOptions::new())?.mesh;
+/// let plate = MeshTree::new(mesh);
+/// let falling: ConstantTwist = "x=0,0,1;v=0,0,-2".parse()?;
+/// let surfaces = QueryOptions::default().with_solid(d2m_bvh::Solid::Surface).with_min_separation(0.1);
+/// let [a, b] = [Moving::new(&plate, &falling), Moving::new(&plate, &ConstantTwist::REST)];
+/// let answer = time_of_contact(a, b, Window::UNIT, &surfaces)?;
+/// let sentence = d2m_io::evidence_sentence(answer.contact().expect("they meet"), 0.1);
+/// assert!(sentence.starts_with("near: ") && sentence.contains("0.1"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn evidence_sentence(contact: &Contact, min_separation: f64) -> String {
     let distance = short_number(min_separation);
     match contact.evidence {

@@ -29,6 +29,14 @@ use glam::DVec3;
 use std::path::Path;
 
 /// A mesh and how it was read.
+///
+/// ```
+/// use d2m_io::{MeshFormat, ReadMesh, ReadOptions, parse_mesh};
+/// let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+/// let ReadMesh { mesh, report } = parse_mesh(text, MeshFormat::Obj, &ReadOptions::new())?;
+/// assert_eq!((mesh.triangle_count(), report.polygons.cut), (2, 1));
+/// # Ok::<(), d2m_io::IoError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadMesh {
     /// The mesh.
@@ -62,6 +70,16 @@ pub fn read_mesh(path: impl AsRef<Path>) -> Result<ReadMesh, IoError> {
 }
 
 /// The mesh of a file, by its extension, in the scale and unit that the options state.
+///
+/// ```
+/// use d2m_io::{ReadOptions, Unit, read_mesh_with};
+/// let file = std::env::temp_dir().join(format!("d2m-io-read-mesh-with-{}.obj", std::process::id()));
+/// std::fs::write(&file, "v 0 0 0\nv 254 0 0\nv 0 127 0\nf 1 2 3\n")?;
+/// let plate = read_mesh_with(&file, &ReadOptions::new().with_unit(Unit::Millimeter))?;
+/// assert_eq!(plate.mesh.vertices()[1].x, 0.254); // metres
+/// # std::fs::remove_file(&file)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`IoError`] with the name of the file, its line or index, and the value found.

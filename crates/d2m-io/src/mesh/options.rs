@@ -173,6 +173,11 @@ impl Unit {
 }
 
 /// A text that is no unit.
+///
+/// ```
+/// let error = "furlong".parse::<d2m_io::Unit>().unwrap_err();
+/// assert!(error.to_string().contains("furlong") && error.to_string().ends_with("mm, cm, m or in"));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{} is not a unit of length: mm, cm, m or in", crate::excerpt(.0))]
 pub struct UnknownUnit(

@@ -29,6 +29,14 @@ const FLATNESS: f64 = 1e-5;
 const MOST_TESTS: u64 = 1 << 30;
 
 /// What was found among the polygons of a file.
+///
+/// ```
+/// use d2m_io::{MeshFormat, ReadOptions, parse_mesh};
+/// let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nf 1 2 3 4\n";
+/// let counts = parse_mesh(text, MeshFormat::Obj, &ReadOptions::new())?.report.polygons;
+/// assert_eq!((counts.cut, counts.bent, counts.crossing), (1, 1, 0)); // one square that is not flat
+/// # Ok::<(), d2m_io::IoError>(())
+/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PolygonCounts {

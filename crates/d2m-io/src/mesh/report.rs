@@ -25,6 +25,14 @@ pub struct MeshReport {
 }
 
 /// An axis that points up.
+///
+/// ```
+/// use d2m_io::{MeshFormat, ReadOptions, parse_mesh};
+/// // An OBJ file does not say what is up.
+/// let report = parse_mesh(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", MeshFormat::Obj, &ReadOptions::new())?.report;
+/// assert_eq!(report.up_axis, None);
+/// # Ok::<(), d2m_io::IoError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum UpAxis {
     /// x
@@ -36,6 +44,13 @@ pub enum UpAxis {
 }
 
 /// How exactly a file states coordinates.
+///
+/// ```
+/// use d2m_io::{MeshFormat, Precision, ReadOptions, parse_mesh};
+/// let text = b"v 0 0 0\nv 0.1 0 0\nv 0 1 0\nf 1 2 3\n";
+/// assert_eq!(parse_mesh(text, MeshFormat::Obj, &ReadOptions::new())?.report.precision, Precision::Double);
+/// # Ok::<(), d2m_io::IoError>(())
+/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Precision {
     /// Doubles, or decimal numbers that are read as the nearest doubles.

@@ -7,6 +7,15 @@ use glam::DVec3;
 ///
 /// A point q of another convex set can only meet the hull if d·q lies in the extent. That is true for *every* d, so
 /// no error in the direction can lose a contact; a poor direction only excludes less.
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_paper::Direction;
+/// use glam::DVec3;
+/// let along = Direction::new(DVec3::X, &[DVec3::ZERO, DVec3::X * 2.0]);
+/// assert!(along.extent.contains(0.0) && along.extent.contains(2.0));
+/// assert!(along.certainly_apart(Interval::new(2.5, 3.0)) && !along.certainly_apart(Interval::new(1.5, 3.0)));
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Direction {
     /// The vector d, the frame of the fixed feature.

@@ -44,6 +44,21 @@ pub fn edge_edge(
 }
 
 /// f and Γ of one pair of edges, as functions of time.
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_motion::ConstantTwist;
+/// use d2m_paper::{EdgePair, PaperOptions, RelativeMotion};
+/// use d2m_root::RootSearch;
+/// use glam::DVec3;
+/// let falling = ConstantTwist::REST.with_position(DVec3::Z).with_linear_velocity(-2.0 * DVec3::Z);
+/// let motion = RelativeMotion::new(&falling, &ConstantTwist::REST);
+/// let frame = motion.frame(Interval::UNIT); // one for all features of the two bodies
+/// let (a, b) = ([-DVec3::X, DVec3::X], [-DVec3::Y, DVec3::Y]);
+/// let mut pair = EdgePair::new(&motion, a, b, &frame, &PaperOptions::DEFAULT);
+/// assert!(pair.try_first_part().is_some_and(|part| part.contains(0.5)));
+/// assert!(matches!(pair.first_contact(Interval::UNIT), RootSearch::Bracket(b) if b.contains(0.5)));
+/// ```
 #[derive(Debug)]
 pub struct EdgePair<'a> {
     motion: &'a RelativeMotion<'a>,

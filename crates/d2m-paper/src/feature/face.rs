@@ -7,6 +7,16 @@ use glam::DVec3;
 ///
 /// The normal n and the in-plane normals of the three sides, each with the extent of the triangle along it. Collapsed
 /// triangles (a segment, a point) get directions across and along what is left of them; every direction is sound.
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_paper::TriangleFace;
+/// use glam::DVec3;
+/// let floor = TriangleFace::new([DVec3::ZERO, DVec3::X, DVec3::Y]);
+/// let face = floor.face();
+/// assert_eq!((face.normal.vector.abs(), face.sides.len()), (DVec3::Z, 3));
+/// assert!(face.normal.certainly_apart(Interval::point(0.1))); // a point above it does not touch it
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleFace {
     vertices: [DVec3; 3],
@@ -32,6 +42,14 @@ impl TriangleFace {
 ///
 /// What is tested is the convex hull of the vertices: a polygon that is not quite flat or not quite convex is replaced
 /// by its hull, never by something smaller.
+///
+/// ```
+/// use d2m_paper::PolygonFace;
+/// use glam::DVec3;
+/// let square = [DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];
+/// assert_eq!(PolygonFace::try_new(&square).expect("four vertices").face().sides.len(), 4);
+/// assert!(PolygonFace::try_new(&square[..2]).is_none());
+/// ```
 #[derive(Clone, Debug)]
 pub struct PolygonFace {
     vertices: Vec<DVec3>,
@@ -57,6 +75,15 @@ impl PolygonFace {
 }
 
 /// A convex, nearly flat feature of the observer, at rest in its frame.
+///
+/// ```
+/// use d2m_paper::{PolygonFace, TriangleFace};
+/// use glam::DVec3;
+/// let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+/// let (triangle, polygon) = (TriangleFace::new(corners), PolygonFace::try_new(&corners).expect("three vertices"));
+/// // The tests take both as this view.
+/// assert_eq!(triangle.face().vertices, polygon.face().vertices);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Face<'a> {
     /// The vertices, in order.

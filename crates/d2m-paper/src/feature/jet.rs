@@ -8,6 +8,16 @@ use glam::DVec3;
 ///
 /// Every linear function d·q of it is an [`InclusionFunction`]: this is how Γ, the plane function and every separating
 /// axis are evaluated without wrapping boxes around the path first.
+///
+/// ```
+/// use d2m_interval::{Interval, IntervalVec3};
+/// use d2m_paper::PointJet;
+/// use glam::DVec3;
+/// // Thrown upwards at 5 under a gravity of 10: it is back at the time 1.
+/// let jet = PointJet::new(Interval::UNIT, [DVec3::ZERO, DVec3::Z * 5.0, DVec3::Z * -10.0].map(IntervalVec3::point));
+/// assert!(jet.enclose(Interval::point(1.0)).z.contains(0.0));
+/// assert!(jet.range_along(DVec3::Z, Interval::point(0.5)).contains(1.25));
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct PointJet {
     span: Interval,

@@ -4,6 +4,12 @@ use d2m_interval::Interval;
 use d2m_root::SearchLimits;
 
 /// Options of the paper's feature tests.
+///
+/// ```
+/// use d2m_paper::PaperOptions;
+/// let options = PaperOptions::DEFAULT.with_tolerance(1e-6).with_evaluations(1000);
+/// assert_eq!((options.tolerance, options.evaluations), (1e-6, 1000));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]

@@ -80,6 +80,21 @@ fn point_face(
 }
 
 /// f and Γ of one point/face pair, as functions of time.
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_motion::ConstantTwist;
+/// use d2m_paper::{PaperOptions, PointFace, RelativeMotion, TriangleFace};
+/// use d2m_root::RootSearch;
+/// use glam::DVec3;
+/// let falling = ConstantTwist::REST.with_position(DVec3::Z).with_linear_velocity(-2.0 * DVec3::Z);
+/// let motion = RelativeMotion::new(&falling, &ConstantTwist::REST);
+/// let floor = TriangleFace::new([-DVec3::X - DVec3::Y, DVec3::X - DVec3::Y, DVec3::Y]);
+/// let jet = motion.frame(Interval::UNIT).jet(DVec3::ZERO);
+/// let mut pair = PointFace::new(&motion, DVec3::ZERO, floor.face(), jet, &PaperOptions::DEFAULT);
+/// assert!(matches!(pair.first_contact(Interval::UNIT), RootSearch::Bracket(b) if b.contains(0.5)));
+/// assert!(pair.evaluated() > 0);
+/// ```
 #[derive(Debug)]
 pub struct PointFace<'a> {
     motion: &'a RelativeMotion<'a>,

@@ -21,6 +21,16 @@ use glam::DVec3;
 ///
 /// Scene recentering: for two motions with constant twist the world positions enter only as x_m(t_ref) − x_o(t_ref),
 /// so a common offset of the scene costs nothing.
+///
+/// ```
+/// use d2m_motion::ConstantTwist;
+/// use d2m_paper::RelativeMotion;
+/// use glam::DVec3;
+/// let (train, platform) = (ConstantTwist::REST.with_linear_velocity(DVec3::X), ConstantTwist::REST);
+/// let seen = RelativeMotion::new(&train, &platform);
+/// assert!(seen.placement(2.0).enclose_point(DVec3::ZERO).x.contains(2.0));
+/// assert!(seen.swapped().placement(2.0).enclose_point(DVec3::ZERO).x.contains(-2.0));
+/// ```
 #[derive(Clone, Copy)]
 pub struct RelativeMotion<'a> {
     mover: &'a dyn RigidMotion,
@@ -248,6 +258,16 @@ fn add(a: IntervalMat3, b: IntervalMat3) -> IntervalMat3 {
 }
 
 /// The relative position of two bodies at one time, up to rounding that it encloses.
+///
+/// ```
+/// use d2m_motion::ConstantTwist;
+/// use d2m_paper::RelativeMotion;
+/// use glam::DVec3;
+/// let turning = ConstantTwist::REST.with_angular_velocity(DVec3::Z);
+/// let placed = RelativeMotion::new(&turning, &ConstantTwist::REST).placement(1.0);
+/// let point = placed.enclose_point(DVec3::X);
+/// assert!((point.x.mid() - 0.5403023).abs() < 1e-6 && (point.y.mid() - 0.841471).abs() < 1e-6);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Placement {
     rotation: IntervalMat3,
@@ -264,6 +284,18 @@ impl Placement {
 
 /// The relative motion over one span: position and velocity at its start, acceleration throughout, each affine in the
 /// body point.
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_motion::ConstantTwist;
+/// use d2m_paper::RelativeMotion;
+/// use glam::DVec3;
+/// let turning = ConstantTwist::REST.with_angular_velocity(DVec3::Z);
+/// let frame = RelativeMotion::new(&turning, &ConstantTwist::REST).frame(Interval::new(0.0, 0.1));
+/// // Every point of the mover costs three products of matrices now.
+/// let [position, velocity, _] = *frame.jet(DVec3::X).derivatives();
+/// assert!(position.x.contains(1.0) && velocity.y.contains(1.0));
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct RelativeFrame {
     span: Interval,

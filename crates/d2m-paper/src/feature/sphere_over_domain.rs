@@ -9,6 +9,18 @@ use glam::DVec3;
 /// All that a body does over one span of time, world axes, positions relative to a scene center.
 ///
 /// Epoch: the start of the span. The enclosures are computed once and shared by all spheres of the body.
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_motion::ConstantTwist;
+/// use d2m_paper::BodyOverDomain;
+/// use glam::DVec3;
+/// let spinning = ConstantTwist::REST.with_angular_velocity(DVec3::Z);
+/// let body = BodyOverDomain::new(&spinning, Interval::new(0.0, 0.5), DVec3::ZERO);
+/// // The path of a body point, and its speed of one.
+/// let jet = body.jet(DVec3::X);
+/// assert!(jet.enclose(Interval::ZERO).x.contains(1.0) && jet.bound_speed() >= 1.0);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct BodyOverDomain {
     span: Interval,
@@ -80,6 +92,19 @@ impl BodyOverDomain {
 ///
 /// `position[0]` = x_{t,0} and `velocity[0]` = ẋ_{t,0} at the start of the span; `position[1]`, `velocity[1]` and
 /// `acceleration` enclose them over all of it.
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_motion::ConstantTwist;
+/// use d2m_paper::{BodyOverDomain, test_sphere_pair};
+/// use glam::DVec3;
+/// let flying = ConstantTwist::REST.with_position(DVec3::X * -4.0).with_linear_velocity(DVec3::X * 4.0);
+/// let over = |motion: &ConstantTwist| BodyOverDomain::new(motion, Interval::UNIT, DVec3::ZERO).sphere(DVec3::ZERO, 1.0);
+/// let (a, b) = (over(&flying), over(&ConstantTwist::REST));
+/// // Balls of radius one, 4 apart, that close by 4: they touch at a half.
+/// let part = test_sphere_pair(&a, &b, 0.0, Interval::UNIT).expect("they meet");
+/// assert!(part.lo() <= 0.5 && part.lo() > 0.4999);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct SphereOverDomain {
     position: [IntervalVec3; 2],

@@ -8,6 +8,17 @@ use d2m_interval::Interval;
 use d2m_motion::{ConstantTwist, RigidMotion};
 
 /// What [`cross_check`] found, of one scene or of several.
+///
+/// ```
+/// use d2m_paper::CrossCheck;
+/// let mut all = CrossCheck::default();
+/// for scene in 0..3 {
+///     let mut one = CrossCheck::default();
+///     (one.scenes, one.contacts) = (1, usize::from(scene > 0));
+///     all.add(one);
+/// }
+/// assert_eq!((all.scenes, all.contacts, all.complaints.is_empty()), (3, 2, true));
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct CrossCheck {
     /// Scenes that were queried.

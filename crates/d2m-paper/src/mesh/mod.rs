@@ -29,6 +29,18 @@ use traverse::Search;
 const DEFAULT_TOLERANCE: f64 = 1e-10;
 
 /// A body with its sphere tree, and how it moves.
+///
+/// ```
+/// use d2m_motion::ConstantTwist;
+/// use d2m_paper::{Moving, SphereTree};
+/// use glam::DVec3;
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = d2m_bvh::TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let tree = SphereTree::new(mesh);
+/// let body = Moving::new(&tree, &ConstantTwist::REST);
+/// assert_eq!(body.body.leaf_count(), 4);
+/// # Ok::<(), d2m_bvh::MeshError>(())
+/// ```
 pub type Moving<'a> = d2m_bvh::Moving<'a, SphereTree>;
 
 /// The first contact of two moving meshes, by the reference method.

@@ -28,6 +28,15 @@ pub struct Cubic {
 }
 
 /// A quadratic in the place of a cubic, over a piece of time.
+///
+/// ```
+/// use d2m_root::Cubic;
+/// let cubic = Cubic { value: 0.0, slope: 1.0, curvature: 0.0, jerk: 24.0 }; // s + 4 s³
+/// let near = cubic.quadratic_near(0.5, 0.1);
+/// // Its times count from the middle of the piece.
+/// let difference = |s: f64| (near.quadratic.at(s - 0.5) - cubic.at(s)).abs();
+/// assert!((0..=8).all(|k| difference(0.4 + 0.025 * f64::from(k)) <= near.left_out + 1e-15));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearbyQuadratic {
     /// About the middle of the piece.

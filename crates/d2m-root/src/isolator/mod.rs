@@ -20,6 +20,20 @@ pub use quadratic::{Band, Quadratic};
 pub use search::{Evidence, FirstRoot, Isolation, isolate};
 
 /// What a test found out about a piece.
+///
+/// ```
+/// use d2m_root::{Piece, Verdict};
+/// /// Of a function that is at least 1 − t.
+/// fn judge(piece: Piece) -> Verdict {
+///     if piece.hi < 1.0 {
+///         Verdict::Clear
+///     } else {
+///         Verdict::Within { part: Piece { lo: piece.lo.max(1.0), ..piece }, certain: false }
+///     }
+/// }
+/// assert_eq!(judge(Piece { lo: 0.0, hi: 0.5 }), Verdict::Clear);
+/// assert!(matches!(judge(Piece { lo: 0.0, hi: 2.0 }), Verdict::Within { part, .. } if part.lo == 1.0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[must_use = "it is a certificate: what is not read is not known to be safe"]
 pub enum Verdict {
@@ -35,6 +49,13 @@ pub enum Verdict {
 }
 
 /// What a test measured at one time.
+///
+/// ```
+/// use d2m_root::Measurement;
+/// // A body at distance 0.3 that comes nearer by at most 2 a unit of time, measured at 0.5: nothing meets for 0.15 around it.
+/// let measured = Measurement { distance: 0.3, clear_lo: 0.5 - 0.15, clear_hi: 0.5 + 0.15 };
+/// assert!(measured.clear_lo < measured.clear_hi, "a part is proven clear");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measurement {
     /// Upper bound of the distance at that time, minus the separation that counts as contact.

@@ -1,6 +1,12 @@
 //! Pieces of time, and the rounding of their ends.
 
 /// A piece of time `[lo, hi]`, lo ≤ hi.
+///
+/// ```
+/// use d2m_root::Piece;
+/// let window = Piece { lo: 0.0, hi: 1.0 };
+/// assert!(window.holds(Piece { lo: 0.25, hi: 0.5 }));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
     /// Start.

@@ -2,6 +2,26 @@
 use super::{IsolatorOptions, Measurement, Piece, PieceTest, Verdict};
 
 /// How a contact is known.
+///
+/// ```
+/// # use d2m_root::{IsolatorOptions, Measurement, Piece, PieceTest, Verdict, isolate};
+/// # struct Line;
+/// # impl PieceTest for Line {
+/// #     fn too_wide(&self, _half_width: f64) -> bool { false }
+/// #     fn evaluate(&mut self, piece: Piece) -> Verdict {
+/// #         if 2.0 - 3.0 * piece.hi > 0.5 { Verdict::Clear } else { Verdict::Within { part: piece, certain: false } }
+/// #     }
+/// #     fn measure(&mut self, _piece: Piece, at: f64) -> Measurement {
+/// #         Measurement { distance: 2.0 - 3.0 * at - 0.5, clear_lo: at, clear_hi: at }
+/// #     }
+/// #     fn tolerance(&self) -> f64 { 1e-6 }
+/// #     fn resolution(&self) -> f64 { 1e-9 }
+/// # }
+/// use d2m_root::{Evidence, FirstRoot};
+/// // A test (here of 2 − 3t against the band up to 0.5) that measures distances and proves no crossing.
+/// let found = isolate(&mut Line, Piece { lo: 0.0, hi: 1.0 }, &IsolatorOptions::new());
+/// assert!(matches!(found.root, FirstRoot::Found { evidence: Evidence::WithinTolerance, distance, .. } if distance <= 1e-6));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Evidence {
@@ -15,6 +35,27 @@ pub enum Evidence {
 }
 
 /// Answer of [`isolate`].
+///
+/// ```
+/// # use d2m_root::{IsolatorOptions, Measurement, Piece, PieceTest, Verdict, isolate};
+/// # struct Line;
+/// # impl PieceTest for Line {
+/// #     fn too_wide(&self, _half_width: f64) -> bool { false }
+/// #     fn evaluate(&mut self, piece: Piece) -> Verdict {
+/// #         if 2.0 - 3.0 * piece.hi > 0.5 { Verdict::Clear } else { Verdict::Within { part: piece, certain: false } }
+/// #     }
+/// #     fn measure(&mut self, _piece: Piece, at: f64) -> Measurement {
+/// #         Measurement { distance: 2.0 - 3.0 * at - 0.5, clear_lo: at, clear_hi: at }
+/// #     }
+/// #     fn tolerance(&self) -> f64 { 1e-6 }
+/// #     fn resolution(&self) -> f64 { 1e-9 }
+/// # }
+/// use d2m_root::FirstRoot;
+/// // 2 − 3t enters the band up to 0.5 at t = 0.5.
+/// let ask = |hi: f64| isolate(&mut Line, Piece { lo: 0.0, hi }, &IsolatorOptions::new()).root;
+/// assert_eq!(ask(0.4), FirstRoot::Clear);
+/// assert!(matches!(ask(1.0), FirstRoot::Found { bracket, .. } if bracket.lo <= 0.5 && bracket.hi >= 0.5 - 1e-6));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[must_use = "it is a certificate: what is not read is not known to be safe"]
 pub enum FirstRoot {
@@ -37,6 +78,26 @@ pub enum FirstRoot {
 }
 
 /// An answer and what it cost.
+///
+/// ```
+/// # use d2m_root::{IsolatorOptions, Measurement, Piece, PieceTest, Verdict, isolate};
+/// # struct Line;
+/// # impl PieceTest for Line {
+/// #     fn too_wide(&self, _half_width: f64) -> bool { false }
+/// #     fn evaluate(&mut self, piece: Piece) -> Verdict {
+/// #         if 2.0 - 3.0 * piece.hi > 0.5 { Verdict::Clear } else { Verdict::Within { part: piece, certain: false } }
+/// #     }
+/// #     fn measure(&mut self, _piece: Piece, at: f64) -> Measurement {
+/// #         Measurement { distance: 2.0 - 3.0 * at - 0.5, clear_lo: at, clear_hi: at }
+/// #     }
+/// #     fn tolerance(&self) -> f64 { 1e-6 }
+/// #     fn resolution(&self) -> f64 { 1e-9 }
+/// # }
+/// use d2m_root::{FirstRoot, Isolation};
+/// // 2 − 3t stays above the band up to 0.5 until 0.5: one evaluation says so of the whole window.
+/// let Isolation { root, evaluations } = isolate(&mut Line, Piece { lo: 0.0, hi: 0.4 }, &IsolatorOptions::new());
+/// assert_eq!((root, evaluations), (FirstRoot::Clear, 1));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Isolation {
     /// The answer.
@@ -96,6 +157,25 @@ impl Rest {
 ///
 /// Promise: if the test's promises hold, there is no contact in `[window.lo, bracket.lo)`, and none at all when the
 /// answer is [`FirstRoot::Clear`]. It ends after at most `max_evaluations` evaluations and measurements.
+///
+/// ```
+/// use d2m_root::{FirstRoot, IsolatorOptions, Measurement, Piece, PieceTest, Verdict, isolate};
+/// /// 2 − 3t, which enters the band of numbers up to 0.5 at t = 0.5.
+/// struct Line;
+/// impl PieceTest for Line {
+///     fn too_wide(&self, _half_width: f64) -> bool { false }
+///     fn evaluate(&mut self, piece: Piece) -> Verdict {
+///         if 2.0 - 3.0 * piece.hi > 0.5 { Verdict::Clear } else { Verdict::Within { part: piece, certain: false } }
+///     }
+///     fn measure(&mut self, _piece: Piece, at: f64) -> Measurement {
+///         Measurement { distance: 2.0 - 3.0 * at - 0.5, clear_lo: at, clear_hi: at }
+///     }
+///     fn tolerance(&self) -> f64 { 1e-6 }
+///     fn resolution(&self) -> f64 { 1e-9 }
+/// }
+/// let found = isolate(&mut Line, Piece { lo: 0.0, hi: 1.0 }, &IsolatorOptions::new());
+/// assert!(matches!(found.root, FirstRoot::Found { bracket, .. } if bracket.lo <= 0.5 && bracket.lo > 0.5 - 1e-3));
+/// ```
 pub fn isolate<T: PieceTest>(test: &mut T, window: Piece, options: &IsolatorOptions) -> Isolation {
     let tolerance = test.tolerance();
     let resolution = test.resolution().max(RESOLVABLE * window.reach());

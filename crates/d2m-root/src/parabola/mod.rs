@@ -18,6 +18,14 @@ use in_units::InUnits;
 ///  0 ┼──────`·x──────`·x────────  x = t − t0
 ///    │     lower        upper first root
 /// ```
+///
+/// ```
+/// use d2m_interval::Interval;
+/// use d2m_root::Parabola;
+/// let falling = Parabola::new(1.0, 0.0, -2.0); // 1 − x²
+/// assert!(falling.enclose(Interval::point(0.5)).contains(0.75));
+/// assert!(falling.first_nonpositive().is_some_and(|zero| zero.contains(1.0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parabola {
     /// p(0).

@@ -85,6 +85,26 @@ impl World {
 
     /// As [`World::nearest_pair`], if these bodies moved so and all others as they do: of the pairs with one of these.
     ///
+    /// ```
+    /// # use d2m_bvh::{MeshTree, QueryOptions, Window};
+    /// # use d2m_motion::ConstantTwist;
+    /// # use d2m_world::{Body, World};
+    /// # use glam::DVec3;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let at = |x: f64, v: f64| ConstantTwist::REST.with_position(DVec3::X * x).with_linear_velocity(DVec3::X * v);
+    /// let mut world = World::new(QueryOptions::default());
+    /// let wall = world.add(Body::new(Arc::clone(&cube), at(0.0, 0.0)));
+    /// let cart = world.add(Body::new(cube, at(-5.0, 2.0)));
+    /// use d2m_bvh::ClearanceOptions;
+    /// use d2m_world::PlannedMotion;
+    /// // Were it faster, it would come within one unit of the wall: nothing changes in the world.
+    /// let plan = [PlannedMotion { body: cart, motion: Arc::new(at(-5.0, 3.0)) }];
+    /// let nearest = world.nearest_pair_of(&plan, Window::UNIT, &ClearanceOptions::default())?.expect("there is a pair");
+    /// assert!((nearest.a, nearest.b) == (wall, cart) && nearest.clearance.lower <= 1.0 && nearest.clearance.upper >= 1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`World::nearest_pair`].
     ///
@@ -104,6 +124,25 @@ impl World {
 
     /// The pairs that are not ignored and come within a distance in a window, by their least distances: all others are proven to be at least
     /// so far apart. The budget of the options is one for each pair.
+    ///
+    /// ```
+    /// # use d2m_bvh::{MeshTree, QueryOptions, Window};
+    /// # use d2m_motion::ConstantTwist;
+    /// # use d2m_world::{Body, World};
+    /// # use glam::DVec3;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let at = |x: f64, v: f64| ConstantTwist::REST.with_position(DVec3::X * x).with_linear_velocity(DVec3::X * v);
+    /// let mut world = World::new(QueryOptions::default());
+    /// let wall = world.add(Body::new(Arc::clone(&cube), at(0.0, 0.0)));
+    /// let cart = world.add(Body::new(cube, at(-5.0, 2.0)));
+    /// use d2m_bvh::ClearanceOptions;
+    /// // It ends two units before the wall.
+    /// let below = |limit: f64| world.clearances_below(limit, Window::UNIT, &ClearanceOptions::default());
+    /// assert!(below(1.9)?.is_empty());
+    /// assert_eq!(below(2.1)?.iter().map(|pair| (pair.a, pair.b)).collect::<Vec<_>>(), [(wall, cart)]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// As [`World::nearest_pair`].

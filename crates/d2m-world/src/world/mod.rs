@@ -95,6 +95,15 @@ pub struct World {
 }
 
 /// Which threads answer a question. The answer has the same bits.
+///
+/// ```
+/// use d2m_bvh::{QueryOptions, Window};
+/// use d2m_world::{FirstContact, Threads, World};
+/// // A planner that asks about many plans at once has its threads busy: each question stays on its own.
+/// let world = World::new(QueryOptions::default());
+/// assert_eq!(world.first_contact_among(&[], &[], Window::UNIT, Threads::Own)?, FirstContact::Separated);
+/// # Ok::<(), d2m_world::WorldError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Threads {
     /// All of the current pool (feature `rayon`), once there are enough pairs.
@@ -143,6 +152,22 @@ impl World {
 
     /// Takes a body out; none if it is not there any more. Its name never means another body; what was said about its
     /// pairs ([`Self::ignore_pair`], [`Self::set_min_separation`]) is forgotten.
+    ///
+    /// ```
+    /// # use d2m_bvh::{MeshTree, QueryOptions, Window};
+    /// # use d2m_motion::ConstantTwist;
+    /// # use d2m_world::{Body, World};
+    /// # use glam::DVec3;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let at = |x: f64, v: f64| ConstantTwist::REST.with_position(DVec3::X * x).with_linear_velocity(DVec3::X * v);
+    /// let mut world = World::new(QueryOptions::default());
+    /// let wall = world.add(Body::new(Arc::clone(&cube), at(0.0, 0.0)));
+    /// let cart = world.add(Body::new(cube, at(-5.0, 2.0)));
+    /// assert!(world.remove(cart).is_some() && world.remove(cart).is_none());
+    /// assert_eq!(world.ids().collect::<Vec<_>>(), [wall]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn remove(&mut self, id: BodyId) -> Option<Body> {
         let body = self.slots.remove(id)?;
         Arc::make_mut(&mut self.filter).forget(id.index);
@@ -178,6 +203,24 @@ impl World {
     }
 
     /// Gives a body another motion.
+    ///
+    /// ```
+    /// # use d2m_bvh::{MeshTree, QueryOptions, Window};
+    /// # use d2m_motion::ConstantTwist;
+    /// # use d2m_world::{Body, World};
+    /// # use glam::DVec3;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let at = |x: f64, v: f64| ConstantTwist::REST.with_position(DVec3::X * x).with_linear_velocity(DVec3::X * v);
+    /// let mut world = World::new(QueryOptions::default());
+    /// let wall = world.add(Body::new(Arc::clone(&cube), at(0.0, 0.0)));
+    /// let cart = world.add(Body::new(cube, at(-5.0, 2.0)));
+    /// use d2m_world::FirstContact;
+    /// assert_eq!(world.first_contact(Window::UNIT)?, FirstContact::Separated);
+    /// world.set_motion(cart, at(-5.0, 8.0));
+    /// assert!(matches!(world.first_contact(Window::UNIT)?, FirstContact::Contact { a, .. } if a == wall));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Panics
     /// If the body was removed, or the name belongs to another world.

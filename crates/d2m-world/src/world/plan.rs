@@ -33,6 +33,25 @@ pub struct PlannedMotion {
 }
 
 /// A pair that a broad phase has left, and when.
+///
+/// ```
+/// use d2m_bvh::{MeshTree, QueryOptions, Window};
+/// use d2m_motion::ConstantTwist;
+/// use d2m_world::{Body, Candidate, FirstContact, PlannedMotion, Threads, World};
+/// use glam::DVec3;
+/// use std::sync::Arc;
+/// let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// let mut world = World::new(QueryOptions::default());
+/// let wall = world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+/// let cart = world.add(Body::new(cube, ConstantTwist::REST.with_position(DVec3::X * -5.0)));
+/// let way = ConstantTwist::REST.with_position(DVec3::X * -5.0).with_linear_velocity(DVec3::X * 8.0);
+/// let plan = [PlannedMotion { body: cart, motion: Arc::new(way) }];
+/// // They can only meet in the second half: the caller has proven it.
+/// let pair = Candidate { a: wall, b: cart, from: 0.25, until: 1.0 };
+/// let first = world.first_contact_among(&plan, &[pair], Window::UNIT, Threads::Own)?;
+/// assert!(matches!(first, FirstContact::Contact { contact, .. } if (contact.time_lo - 0.5).abs() < 1e-9));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {
     /// One of the bodies.

@@ -196,6 +196,24 @@ impl World {
     /// As [`Self::first_contact`]; calls `progress` after each round with the number of pairs that are done, and of all pairs
     /// that the broad phase leaves. Most searches end long before the two are equal.
     ///
+    /// ```
+    /// # use d2m_bvh::{MeshTree, QueryOptions, Window};
+    /// # use d2m_motion::ConstantTwist;
+    /// # use d2m_world::{Body, World};
+    /// # use glam::DVec3;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let at = |x: f64, v: f64| ConstantTwist::REST.with_position(DVec3::X * x).with_linear_velocity(DVec3::X * v);
+    /// let mut world = World::new(QueryOptions::default());
+    /// let wall = world.add(Body::new(Arc::clone(&cube), at(0.0, 0.0)));
+    /// let cart = world.add(Body::new(cube, at(-5.0, 2.0)));
+    /// use std::cell::Cell;
+    /// let calls = Cell::new(0);
+    /// let first = world.first_contact_with_progress(Window::UNIT, &|_done, _of| calls.set(calls.get() + 1))?;
+    /// assert_eq!(first, d2m_world::FirstContact::Separated);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// Bad input of a pair, with its names; a motion that does not cover the window.
     pub fn first_contact_with_progress(

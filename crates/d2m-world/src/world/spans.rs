@@ -79,6 +79,26 @@ impl World {
 
     /// As [`World::contact_spans`], if these bodies moved so and all others as they do: of the pairs with one of these.
     ///
+    /// ```
+    /// # use d2m_bvh::{MeshTree, QueryOptions, Window};
+    /// # use d2m_motion::ConstantTwist;
+    /// # use d2m_world::{Body, World};
+    /// # use glam::DVec3;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let at = |x: f64, v: f64| ConstantTwist::REST.with_position(DVec3::X * x).with_linear_velocity(DVec3::X * v);
+    /// let mut world = World::new(QueryOptions::default());
+    /// let wall = world.add(Body::new(Arc::clone(&cube), at(0.0, 0.0)));
+    /// let cart = world.add(Body::new(cube, at(-5.0, 2.0)));
+    /// use d2m_bvh::SpanStatus;
+    /// use d2m_world::PlannedMotion;
+    /// let plan = [PlannedMotion { body: cart, motion: Arc::new(at(-5.0, 16.0)) }]; // right through
+    /// let pairs = world.contact_spans_of(&plan, Window::UNIT, None)?;
+    /// assert_eq!((pairs[0].a, pairs[0].b), (wall, cart));
+    /// assert!(pairs[0].spans.iter().any(|span| span.status == SpanStatus::Contact));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`World::contact_spans`].
     ///
