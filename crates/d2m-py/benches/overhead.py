@@ -67,6 +67,26 @@ def calls() -> None:
         print(f"{name}: query {min(alone) * 1e6:.2f} µs, from Python {min(called) * 1e6:.2f} µs, added {added * 1e6:.2f} µs")
 
 
+def edges() -> None:
+    """The same of `Robot.check_edge`, against `check_edges` on one thread."""
+    robot = d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF, threads=1)
+    robot.add_obstacle("wall", "shape:box?x=0.05&y=0.05&z=0.5", d2m_ccd.Pose(x=[0, 0.7, 0]))
+    for name, to in {"free edge": 0.3, "edge into a wall": 2.0}.items():
+        start, end = np.zeros(1), np.array([to])
+        starts, ends = np.tile(start, (200, 1)), np.tile(end, (200, 1))
+        called, alone = [], []
+
+        def python() -> None:
+            for _ in range(200):
+                robot.check_edge(start, end)
+
+        for _ in range(100):
+            called.append(best(python, 1) / 200)
+            alone.append(best(lambda: robot.check_edges(starts, ends), 1) / 200)
+        added = min(called) - min(alone)
+        print(f"{name}: query {min(alone) * 1e6:.2f} µs, from Python {min(called) * 1e6:.2f} µs, added {added * 1e6:.2f} µs")
+
+
 def batches(command: str) -> None:
     """A batch from Python against `d2m batch` with the same trials on the same threads, alternating; trees are built before."""
     a, b = d2m_ccd.Tree(SHAPE_A), d2m_ccd.Tree(SHAPE_B)
@@ -103,5 +123,6 @@ def duration(text: str) -> float:
 
 if __name__ == "__main__":
     calls()
+    edges()
     if len(sys.argv) > 1:
         batches(sys.argv[1])

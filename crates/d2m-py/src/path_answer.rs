@@ -1,12 +1,15 @@
 //! Answers about paths and edges of robots.
 
 use crate::answer;
+use crate::fault::Fault;
 use crate::questions::clearance_word;
 use crate::record::Meeting;
 use d2m::TimeOfContact;
-use d2m_robot::PathAnswer as Found;
+use d2m_robot::{LimitKind, LimitWarning, PathAnswer as Found};
 use pyo3::exceptions::PyTypeError;
+use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
 use std::collections::HashMap;
 
 /// What is known of a path or an edge of a `Robot`.
@@ -40,6 +43,27 @@ pub(crate) struct PathAnswer {
 
 #[pymethods]
 impl PathAnswer {
+    /// What `__reduce__` has written.
+    #[staticmethod]
+    fn _from_json(py: Python<'_>, text: &str) -> PyResult<Self> {
+        let found = serde_json::from_str(text).map_err(|error| Fault::new(format!("answer: {error}")))?;
+        Self::of(py, found)
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.found == other.found
+    }
+
+    fn __hash__(&self) -> u64 {
+        crate::pose::hash_of(&[self.free_until])
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let py = slf.py();
+        let text = serde_json::to_string(&slf.get().found).map_err(|error| Fault::new(error.to_string()))?;
+        (slf.get_type().getattr(intern!(py, "_from_json"))?, (text,)).into_pyobject(py)
+    }
+
     fn __bool__(&self) -> PyResult<bool> {
         let message = "PathAnswer has no truth value: compare its status with \"free\"";
         Err(PyTypeError::new_err(message))
@@ -119,4 +143,16 @@ pub(crate) fn meeting(found: &Found, places: &HashMap<&str, u32>) -> Meeting {
         }
     };
     Meeting { answer, free_until: found.free_until(), bodies: [a, b] }
+}
+
+/// A joint beyond its limit, as a dictionary.
+pub(crate) fn limit_warning<'py>(py: Python<'py>, found: &LimitWarning) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("joint", &found.joint)?;
+    dict.set_item("kind", if found.kind == LimitKind::Position { "position" } else { "velocity" })?;
+    dict.set_item("time", found.time)?;
+    dict.set_item("point", found.point)?;
+    dict.set_item("value", found.value)?;
+    dict.set_item("limit", found.limit)?;
+    Ok(dict)
 }

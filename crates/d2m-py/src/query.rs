@@ -51,7 +51,7 @@ impl MovingPair {
     }
 }
 
-/// Runs a query at once; what is not decided within a few milliseconds is queried again on another thread, where signals end it.
+/// Runs a query at once (on the calling thread, with no more threads); what is not decided within a few milliseconds is queried again on another thread, where signals end it.
 ///
 /// Every answer within the first limit is the one that would have been given without it.
 pub(crate) fn run<T: Send>(

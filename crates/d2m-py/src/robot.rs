@@ -2,30 +2,34 @@
 
 use crate::arrays::Doubles;
 use crate::fault::{Fault, OrRaise, Value};
-use crate::mesh::tree_argument;
-use crate::motion::motion_argument;
+use crate::mesh::{Tree, tree_argument};
+use crate::motion::{motion_argument, motion_object};
 use crate::options::{QueryKeywords, default_solid, solid};
-use crate::path_answer::{PathAnswer, PathClearance, meeting};
-use crate::pose::pose_argument;
-use crate::record::{EDGE_WORDS, write_edge};
+use crate::path_answer::{PathAnswer, PathClearance, limit_warning};
+use crate::pose::{Pose, pose_argument};
+use crate::query::run;
+use crate::record::EDGE_WORDS;
 use crate::resting::named;
+use crate::robot_edges::EdgeBatch;
 use crate::robot_input::{Source, path};
+use crate::robot_recipe::{Change, ReadRobot, RobotFiles, RobotKeywords, recipe};
 use crate::supervise::{Supervision, Watch, pool, supervised};
 use crate::verify::{Verdict, in_growing_steps, ran_out};
+use d2m::bvh::{QueryOptions, Solid};
 use d2m::verify::{PathVerdict, verify_path};
 use d2m_robot::{
-    Attached, LimitKind, Obstacle, Robot as Arm, RobotError, RobotOptions, RobotScene, Srdf, Trajectory,
+    Attached, Obstacle, PathAnswer as Found, Robot as Arm, RobotError, RobotOptions, RobotScene, Srdf,
+    Trajectory,
 };
 use glam::DVec3;
 use pyo3::exceptions::PyKeyError;
+use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use rayon::ThreadPool;
-use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError, RwLock};
+use std::sync::{Arc, PoisonError, RwLock};
 
 /// A robot arm of a URDF file in a scene: is a path free of contact with the scene and with the arm itself, and until when?
 ///
@@ -34,7 +38,8 @@ use std::sync::{Arc, Mutex, PoisonError, RwLock};
 /// of their limits where zero is outside; mimic joints follow. Checked are all pairs of links but those that a joint connects, and links and
 /// attached bodies against obstacles. Lengths are those of the URDF (meters), angles radians.
 ///
-/// Raises `InputError` with file, line (its `index`) and value for what cannot be used, and never leaves geometry out.
+/// Raises `InputError` with file, line (its `index`) and value for what cannot be used, and never leaves geometry out. A robot pickles with its
+/// meshes and all that was added: no file is needed where it is read again.
 ///
 /// >>> import d2m_ccd
 /// >>> robot = d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF)
@@ -47,7 +52,9 @@ use std::sync::{Arc, Mutex, PoisonError, RwLock};
 #[pyclass(frozen, module = "d2m_ccd")]
 pub(crate) struct Robot {
     inner: RwLock<Inner>,
+    srdf: Option<Srdf>,
     remarks: Vec<String>,
+    keywords: RobotKeywords,
     pool: Arc<ThreadPool>,
 }
 
@@ -55,6 +62,8 @@ struct Inner {
     scene: RobotScene,
     /// Links, then obstacles and attached bodies in the order in which they came.
     names: Vec<String>,
+    /// What was done to the scene, to be done again when it is read from a pickle.
+    changes: Vec<Change>,
 }
 
 impl Robot {
@@ -66,12 +75,34 @@ impl Robot {
     fn change<T>(
         &self,
         py: Python<'_>,
+        made: Change,
         change: impl FnOnce(&mut Inner) -> Result<T, RobotError> + Send,
     ) -> PyResult<T>
     where
         T: Send,
     {
-        py.detach(|| change(&mut self.inner.write().unwrap_or_else(PoisonError::into_inner))).or_raise()
+        let both = || {
+            let mut inner = self.inner.write().unwrap_or_else(PoisonError::into_inner);
+            let answer = change(&mut inner)?;
+            inner.changes.push(made);
+            Ok::<_, RobotError>(answer)
+        };
+        py.detach(both).or_raise()
+    }
+
+    /// Of texts or files.
+    fn of(py: Python<'_>, files: RobotFiles, keywords: RobotKeywords) -> PyResult<Self> {
+        let RobotKeywords { tolerance, min_separation, ref start, node_tests, time_limit, threads } =
+            keywords;
+        let query =
+            QueryKeywords { tolerance, min_separation, mode: "accurate", start, node_tests, time_limit };
+        let options = query.options()?;
+        let pool = pool(threads).or_raise()?;
+        let read = py.detach(|| pool.install(|| files.read(options)));
+        let ReadRobot { scene, srdf, remarks } = read.or_raise()?;
+        let names = scene.robot().link_names().into_iter().map(str::to_owned).collect();
+        let inner = RwLock::new(Inner { scene, names, changes: Vec::new() });
+        Ok(Self { inner, srdf, remarks, keywords, pool })
     }
 
     fn path(
@@ -87,10 +118,21 @@ impl Robot {
         py.detach(|| self.inner.read().unwrap_or_else(PoisonError::into_inner).names.clone())
     }
 
-    /// Asks on the pool, with a budget that ends when a signal comes.
+    /// Asks on the robot's own pool.
     fn ask<T: Send>(
         &self,
         py: Python<'_>,
+        watch: &Watch<'_>,
+        ask: impl FnOnce(&RobotScene, &Supervision) -> Result<T, Fault> + Send,
+    ) -> PyResult<T> {
+        self.ask_on(py, &self.pool, watch, ask)
+    }
+
+    /// Asks on a pool, with a budget that ends when a signal comes.
+    fn ask_on<T: Send>(
+        &self,
+        py: Python<'_>,
+        pool: &ThreadPool,
         watch: &Watch<'_>,
         ask: impl FnOnce(&RobotScene, &Supervision) -> Result<T, Fault> + Send,
     ) -> PyResult<T> {
@@ -99,7 +141,7 @@ impl Robot {
         supervised(py, watch, |supervision| {
             scene.set_budget(supervision.cancels(&options).budget);
             let scene = &scene;
-            self.pool.install(move || ask(scene, supervision))
+            pool.install(move || ask(scene, supervision))
         })?
         .or_raise()
     }
@@ -122,35 +164,36 @@ impl Robot {
         time_limit: Option<f64>,
         threads: Option<usize>,
     ) -> PyResult<Self> {
-        let mode = "accurate";
-        let options =
-            QueryKeywords { tolerance, min_separation, mode, start, node_tests, time_limit }.options()?;
-        let mut read = RobotOptions::new();
+        let mut options = RobotOptions::new();
         for (name, folder) in packages.unwrap_or_default() {
-            read = read.with_package(name, folder);
+            options = options.with_package(name, folder);
         }
-        let (urdf, srdf) = (Source::new(urdf)?, srdf.map(Source::new).transpose()?);
-        let pool = pool(threads).or_raise()?;
-        let scene = py.detach(|| {
-            let robot = match urdf {
-                Source::File(path) => Arm::read(path, &read)?,
-                Source::Text(text) => Arm::parse("urdf", &text, &read)?,
-            };
-            let srdf = match srdf {
-                None => None,
-                Some(Source::File(path)) => Some(Srdf::read(path)?),
-                Some(Source::Text(text)) => Some(Srdf::parse("srdf", &text)?),
-            };
-            let mut remarks = robot.remarks().to_vec();
-            remarks.extend(
-                srdf.iter().flat_map(|srdf| srdf.find_unknown_links(|link| robot.find_link(link).is_some())),
-            );
-            let scene = pool.install(|| RobotScene::new(Arc::new(robot), srdf.as_ref(), options));
-            scene.map(|scene| (scene, remarks))
-        });
-        let (scene, remarks) = scene.or_raise()?;
-        let names = scene.robot().link_names().into_iter().map(str::to_owned).collect();
-        Ok(Self { inner: RwLock::new(Inner { scene, names }), remarks, pool })
+        let urdf = Source::new(urdf, "urdf")?;
+        let srdf = srdf.map(|srdf| Source::new(srdf, "srdf")).transpose()?;
+        let start = start.to_owned();
+        let keywords = RobotKeywords { tolerance, min_separation, start, node_tests, time_limit, threads };
+        Self::of(py, RobotFiles { urdf, srdf, options }, keywords)
+    }
+
+    /// What `_rebuild.robot` begins with.
+    #[staticmethod]
+    fn _of_pickle(
+        py: Python<'_>,
+        file: String,
+        text: String,
+        meshes: Vec<(String, [f64; 3], Bound<'_, Tree>)>,
+        srdf: Option<(String, String)>,
+        keywords: &Bound<'_, PyDict>,
+    ) -> PyResult<Self> {
+        Self::of(py, RobotFiles::of_pickle([file, text], meshes, srdf), RobotKeywords::of(keywords)?)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let (py, of) = (slf.py(), slf.get());
+        let again = py.import(intern!(py, "d2m_ccd._rebuild"))?.getattr(intern!(py, "robot"))?;
+        let inner = of.inner.read().unwrap_or_else(PoisonError::into_inner);
+        let recipe = recipe(py, inner.scene.robot(), of.srdf.as_ref(), &of.keywords, &inner.changes)?;
+        (again, recipe).into_pyobject(py)
     }
 
     /// The names of the links.
@@ -216,6 +259,17 @@ impl Robot {
         let tree = tree_argument(tree)?;
         let usual = default_solid(&tree);
         let solid = solid.map_or(Ok(usual), |any| self::solid(any, usual))?;
+        let body = Bound::new(py, Tree { tree: Arc::clone(&tree) })?;
+        let motion = motion.map(|motion| motion_object(motion, "motion")).transpose()?;
+        let motion = motion.as_ref();
+        let placed =
+            pose.map(|pose| Ok::<_, PyErr>(Pose { pose: pose_argument(Some(pose), "pose")? })).transpose()?;
+        let made = Change::new(py, "add_obstacle", (&name, body, placed))?;
+        let made = made.with(py, "motion", motion)?.with(py, "radius", radius)?.with(
+            py,
+            "solid",
+            solid_word(solid),
+        )?;
         let obstacle = match (pose, motion) {
             (Some(_), Some(_)) => {
                 return Err(Fault::new("an obstacle has a pose or a motion, not both").into());
@@ -236,7 +290,7 @@ impl Robot {
                 Obstacle::at_rest(name.clone(), tree, position, pose.rotation).or_raise()?
             }
         };
-        self.change(py, |inner| {
+        self.change(py, made, |inner| {
             inner.scene.add_obstacle(obstacle.with_solid(solid).with_radius(radius))?;
             inner.names.push(name);
             Ok(())
@@ -268,8 +322,11 @@ impl Robot {
         if pose.at != DVec3::ZERO {
             return Err(Fault::new("pose: the reference point of an attached body is its origin").into());
         }
+        let body = Bound::new(py, Tree { tree: Arc::clone(&tree) })?;
+        let made = Change::new(py, "attach", (&name, &link, body, Pose { pose }))?;
+        let made = made.with(py, "radius", radius)?.with(py, "solid", solid_word(solid))?;
         let attached = Attached::new(name.clone(), link, tree, pose.translation, pose.rotation).or_raise()?;
-        self.change(py, |inner| {
+        self.change(py, made, |inner| {
             inner.scene.attach(attached.with_solid(solid).with_radius(radius))?;
             inner.names.push(name);
             Ok(())
@@ -283,7 +340,8 @@ impl Robot {
     /// >>> import d2m_ccd
     /// >>> d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF).ignore("base", "arm")
     fn ignore(&self, py: Python<'_>, a: &str, b: &str) -> PyResult<()> {
-        let is_there = self.change(py, |inner| Ok(inner.scene.ignore(a, b)))?;
+        let made = Change::new(py, "ignore", (a, b))?;
+        let is_there = self.change(py, made, |inner| Ok(inner.scene.ignore(a, b)))?;
         there(is_there, a, b)
     }
 
@@ -294,8 +352,9 @@ impl Robot {
     /// >>> import d2m_ccd
     /// >>> d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF).set_start("base", "arm", "leave")
     fn set_start(&self, py: Python<'_>, a: &str, b: &str, start: &str) -> PyResult<()> {
+        let made = Change::new(py, "set_start", (a, b, start))?;
         let start = crate::options::start(start)?;
-        let is_there = self.change(py, |inner| Ok(inner.scene.set_start([a, b], start)))?;
+        let is_there = self.change(py, made, |inner| Ok(inner.scene.set_start([a, b], start)))?;
         there(is_there, a, b)
     }
 
@@ -306,7 +365,8 @@ impl Robot {
     /// >>> import d2m_ccd
     /// >>> d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF).set_min_separation("base", "arm", 0.01)
     fn set_min_separation(&self, py: Python<'_>, a: &str, b: &str, distance: f64) -> PyResult<()> {
-        let is_there = self.change(py, |inner| inner.scene.set_min_separation([a, b], distance))?;
+        let made = Change::new(py, "set_min_separation", (a, b, distance))?;
+        let is_there = self.change(py, made, |inner| inner.scene.set_min_separation([a, b], distance))?;
         there(is_there, a, b)
     }
 
@@ -427,17 +487,7 @@ impl Robot {
         let path = self.path(py, [Some(times), Some(positions), velocities, accelerations], joints)?;
         let scene = self.scene(py);
         let found = py.detach(|| scene.limit_warnings(&path)).or_raise()?;
-        let one = |found: &d2m_robot::LimitWarning| {
-            let dict = PyDict::new(py);
-            dict.set_item("joint", &found.joint)?;
-            dict.set_item("kind", if found.kind == LimitKind::Position { "position" } else { "velocity" })?;
-            dict.set_item("time", found.time)?;
-            dict.set_item("point", found.point)?;
-            dict.set_item("value", found.value)?;
-            dict.set_item("limit", found.limit)?;
-            Ok(dict)
-        };
-        found.iter().map(one).collect()
+        found.iter().map(|found| limit_warning(py, found)).collect()
     }
 
     /// Is the straight edge from one configuration to another free, and how far? Time runs from 0 to 1.
@@ -459,19 +509,25 @@ impl Robot {
     ) -> PyResult<PathAnswer> {
         let (from, to) = (Doubles::new(start, "start", &[None])?, Doubles::new(end, "end", &[None])?);
         let (from, to) = (from.slice(), to.slice());
-        let found = self.ask(py, &Watch::default(), |scene, _| {
-            let names = joints.unwrap_or_else(|| moving_joints(scene.robot()));
-            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let scene = self.scene(py);
+        let ask = |options: &QueryOptions| {
+            let mut scene = scene.clone();
+            scene.set_budget(options.budget);
+            let names = match &joints {
+                Some(names) => names.iter().map(String::as_str).collect(),
+                None => scene.robot().joint_names(),
+            };
             Ok(scene.edges(&names)?.check(from, to)?)
-        })?;
-        PathAnswer::of(py, found)
+        };
+        let is_decided = |answer: &Found| !matches!(answer, Found::Undecided { .. });
+        PathAnswer::of(py, run(py, scene.options(), ask, is_decided)?)
     }
 
     /// Many edges, on all threads: configurations of shape (n, j) twice.
     ///
     /// Returns a structured array with the fields of `d2m_ccd.EDGE`: those of `d2m_ccd.RESULT`, of the first contact, and `free_until` (1 where
     /// the edge is free), `body_a` and `body_b` (places in `body_names`, -1 where there is none). In order, with the same bits at any
-    /// number of threads. `progress` as of `d2m_ccd.batch`.
+    /// number of threads (`threads`, by default those of the robot). `progress` as of `d2m_ccd.batch`.
     ///
     /// Raises `InputError` whose `index` is the first edge that cannot be checked; `KeyboardInterrupt` on Ctrl-C.
     ///
@@ -479,13 +535,15 @@ impl Robot {
     /// >>> robot = d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF)
     /// >>> robot.check_edges(numpy.zeros((3, 1)), [[1.0], [2.0], [3.0]])["free_until"].tolist()
     /// [1.0, 1.0, 1.0]
-    #[pyo3(signature = (start, end, *, joints=None, progress=None))]
+    #[pyo3(signature = (start, end, *, joints=None, threads=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords")]
     fn check_edges<'py>(
         &self,
         py: Python<'py>,
         start: &Bound<'py, PyAny>,
         end: &Bound<'py, PyAny>,
         joints: Option<Vec<String>>,
+        threads: Option<usize>,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let from = Doubles::new(start, "start", &[None, None])?;
@@ -497,7 +555,8 @@ impl Robot {
         let mut words = vec![0u64; shape[0] * EDGE_WORDS];
         let watch = Watch { progress, total: shape[0] };
         let out = &mut words;
-        self.ask(py, &watch, |scene, supervision| {
+        let pool = threads.map_or_else(|| Ok(Arc::clone(&self.pool)), |_| self::pool(threads)).or_raise()?;
+        self.ask_on(py, &pool, &watch, |scene, supervision| {
             let joints = joints.unwrap_or_else(|| moving_joints(scene.robot()));
             if joints.len() != width {
                 let message = format!("{width} numbers a configuration for {} joints", joints.len());
@@ -505,29 +564,7 @@ impl Robot {
             }
             let joints: Vec<&str> = joints.iter().map(String::as_str).collect();
             let edges = scene.edges(&joints)?;
-            let first: Mutex<Option<(usize, Fault)>> = Mutex::new(None);
-            let failed = AtomicUsize::new(usize::MAX);
-            out.par_chunks_mut(EDGE_WORDS).enumerate().for_each(|(edge, words)| {
-                if supervision.is_cancelled() || edge > failed.load(Ordering::Relaxed) {
-                    return;
-                }
-                let at = edge * width..(edge + 1) * width;
-                match edges.check(&from[at.clone()], &to[at]) {
-                    Ok(found) => write_edge(&meeting(&found, &places), words),
-                    Err(error) => {
-                        failed.fetch_min(edge, Ordering::Relaxed);
-                        let mut first = first.lock().unwrap_or_else(PoisonError::into_inner);
-                        if first.as_ref().is_none_or(|(other, _)| edge < *other) {
-                            *first = Some((edge, error.into()));
-                        }
-                    }
-                }
-                supervision.add_done(1);
-            });
-            match first.into_inner().unwrap_or_else(PoisonError::into_inner) {
-                Some((edge, fault)) => Err(fault.within(&format!("edge {edge}")).at(edge)),
-                None => Ok(()),
-            }
+            EdgeBatch { from, to, width, places: &places }.run(&edges, supervision, out)
         })?;
         named(py, words, "EDGE")
     }
@@ -547,10 +584,13 @@ fn there(is_there: bool, a: &str, b: &str) -> PyResult<()> {
 
 /// Joints that move by a value of their own.
 fn moving_joints(robot: &Arm) -> Vec<String> {
-    let moves = |&&name: &&&str| {
-        robot.find_joint(name).is_some_and(|joint| {
-            robot.joint_type(joint) != d2m_robot::JointType::Fixed && robot.mimic(joint).is_none()
-        })
-    };
-    robot.joint_names().iter().filter(moves).map(|&name| name.to_owned()).collect()
+    robot.joint_names().into_iter().map(str::to_owned).collect()
+}
+
+/// As `solid` takes it.
+const fn solid_word(solid: Solid) -> &'static str {
+    match solid {
+        Solid::Filled => "filled",
+        Solid::Surface => "surface",
+    }
 }

@@ -25,15 +25,19 @@ impl From<RobotError> for Fault {
 /// Where a text is.
 pub(crate) enum Source {
     File(PathBuf),
-    Text(String),
+    Text {
+        /// Of the file that it was, for messages and for the meshes beside it.
+        file: String,
+        text: String,
+    },
 }
 
 impl Source {
-    /// A text that begins as XML does, or a path.
-    pub(crate) fn new(any: &Bound<'_, PyAny>) -> PyResult<Self> {
+    /// A text that begins as XML does, which is called `name`, or a path.
+    pub(crate) fn new(any: &Bound<'_, PyAny>, name: &str) -> PyResult<Self> {
         match any.extract::<String>() {
             Ok(text) if text.trim_start_matches('\u{feff}').trim_start().starts_with('<') => {
-                Ok(Self::Text(text))
+                Ok(Self::Text { file: name.to_owned(), text })
             }
             _ => Ok(Self::File(any.extract()?)),
         }

@@ -102,8 +102,50 @@ def test_a_bad_trial_has_its_number_among_all(box: d2m_ccd.Tree) -> None:
     assert caught.value.index == 700 and "trial 700" in str(caught.value)
 
 
+def robot_in_a_scene(tmp_path: Path) -> d2m_ccd.Robot:
+    """With a mesh of a file that is gone when workers read the robot."""
+    (tmp_path / "arm.obj").write_text("v 0 0 0\nv 0.8 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+    box = '<geometry><box size="0.8 0.1 0.1"/></geometry>'
+    text = d2m_ccd.EXAMPLE_URDF.replace(box, '<geometry><mesh filename="arm.obj" scale="1 2 1"/></geometry>')
+    (tmp_path / "two.urdf").write_text(text)
+    robot = d2m_ccd.Robot(tmp_path / "two.urdf", srdf="<robot name='two'/>", min_separation=1e-3)
+    robot.add_obstacle("wall", "shape:box?x=0.05&y=0.05&z=0.5", d2m_ccd.Pose(x=[0, 0.7, 0]))
+    robot.add_obstacle("ball", "shape:box?x=0.1&y=0.1&z=0.1", motion={"x": [0.5, -3, 0], "v": [0, 3, 0]})
+    robot.attach("rod", "arm", "shape:box?x=0.01&y=0.3&z=0.01", d2m_ccd.Pose(x=[0.7, 0, 0]), radius=0.01, solid=False)
+    robot.ignore("base", "wall")
+    robot.set_start("rod", "wall", "leave")
+    robot.set_min_separation("arm", "wall", 0.01)
+    for file in tmp_path.iterdir():
+        file.unlink()
+    return robot
+
+
+def test_edges_of_a_robot(tmp_path: Path) -> None:
+    import d2m_ccd.ray
+    from d2m_ccd.ray import Edges
+
+    robot = robot_in_a_scene(tmp_path)
+    random = np.random.default_rng(27)
+    start, end = random.uniform(-3, 3, (1500, 1)), random.uniform(-3, 3, (1500, 1))
+    here = robot.check_edges(start, end)
+    assert set(here["status"]) == {0, 1}
+    done: list[int] = []
+    results = d2m_ccd.ray.check_edges(robot, start, end, progress=lambda now, total: done.append(now))
+    assert results.tobytes() == here.tobytes() and done[-1] == 1500
+    chunks = (Edges(start[k : k + 100], end[k : k + 100], ["turn"]) for k in range(0, 1500, 100))
+    free = d2m_ccd.ray.stream_edges(robot, chunks, reduce=lambda edges, results: (results["status"] == 0).sum())
+    assert sum(free) == (here["status"] == 0).sum()
+    end[[900, 1200]] = np.nan
+    with pytest.raises(d2m_ccd.InputError, match="edge 900") as caught:
+        d2m_ccd.ray.check_edges(robot, start, end)
+    assert caught.value.index == 900
+    with pytest.raises(d2m_ccd.InputError, match="shape"):
+        d2m_ccd.ray.check_edges(robot, start, end[:5])
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are sent otherwise there")
-def test_a_killed_worker_loses_nothing(knots: tuple[d2m_ccd.Tree, d2m_ccd.Tree]) -> None:
+@pytest.mark.parametrize("what", ["trials", "edges"])
+def test_a_killed_worker_loses_nothing(knots: tuple[d2m_ccd.Tree, d2m_ccd.Tree], what: str, tmp_path: Path) -> None:
     import d2m_ccd.ray
 
     @ray.remote(num_cpus=1)
@@ -112,7 +154,6 @@ def test_a_killed_worker_loses_nothing(knots: tuple[d2m_ccd.Tree, d2m_ccd.Tree])
         return os.getpid()
 
     workers = set(ray.get([pid.remote() for _ in range(4)]))
-    rows = trials(knots, 20_000)
     killed: list[int] = []
 
     def kill(done: int, total: int) -> None:
@@ -121,6 +162,12 @@ def test_a_killed_worker_loses_nothing(knots: tuple[d2m_ccd.Tree, d2m_ccd.Tree])
             for worker in workers:
                 os.kill(worker, signal.SIGKILL)
 
+    if what == "edges":
+        robot, edges = robot_in_a_scene(tmp_path), np.random.default_rng(28).uniform(-3, 3, (2, 8_000, 1))
+        results = d2m_ccd.ray.check_edges(robot, *edges, progress=kill)
+        assert killed and results.tobytes() == robot.check_edges(*edges).tobytes()
+        return
+    rows = trials(knots, 20_000)
     results = d2m_ccd.ray.batch(*knots, *rows, progress=kill)
     assert killed
     assert results.tobytes() == d2m_ccd.batch(*knots, *rows).tobytes()

@@ -52,6 +52,25 @@ def test_batches_of_edges_are_single_edges(robot: d2m_ccd.Robot) -> None:
     assert single.check_edges(start, end).tobytes() == results.tobytes()
 
 
+def test_robots_and_their_answers_come_back_from_pickles(robot: d2m_ccd.Robot, tmp_path: Path) -> None:
+    import copy
+    import pickle
+
+    robot.attach("rod", "arm", "shape:box?x=0.01&y=0.3&z=0.01", d2m_ccd.Pose(x=[0.7, 0, 0]), radius=0.01)
+    robot.set_min_separation("rod", "wall", 0.02)
+    robot.set_start("arm", "wall", "leave")
+    random = np.random.default_rng(32)
+    edges = random.uniform(-3, 3, (2, 100, 1))
+    for again in (pickle.loads(pickle.dumps(robot)), copy.deepcopy(robot)):
+        assert repr(again) == repr(robot) and again.body_names == robot.body_names
+        assert again.check_edges(*edges).tobytes() == robot.check_edges(*edges).tobytes()
+        again.add_obstacle("another", WALL, d2m_ccd.Pose(x=[0.7, 0, 0]))
+        assert "another" not in robot.body_names
+    for end in (0.1, 2.0):
+        answer = robot.check_edge([0.0], [end])
+        assert pickle.loads(pickle.dumps(answer)) == answer and hash(answer) == hash(pickle.loads(pickle.dumps(answer)))
+
+
 def test_paths(robot: d2m_ccd.Robot) -> None:
     linear = robot.check_path([5.0, 9.0], [[0.0], [2.0]])
     assert linear.status == "contact"

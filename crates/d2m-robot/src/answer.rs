@@ -29,6 +29,7 @@ use d2m_bvh::Contact;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[must_use = "it is a certificate: what is not read is not known to be safe"]
 pub enum PathAnswer {
     /// Certified: no pair meets at any time of the path.
@@ -76,6 +77,7 @@ pub enum PathAnswer {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct PathContact {
     /// The first link or body: A of the contact.

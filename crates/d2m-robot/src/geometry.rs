@@ -18,6 +18,15 @@ pub(crate) struct LinkBody {
     pub(crate) radius: f64,
     pub(crate) solid: Solid,
     pub(crate) origin: Origin,
+    /// Of which file, if it is of one.
+    pub(crate) mesh: Option<NamedMesh>,
+}
+
+/// A mesh as the URDF names it.
+#[derive(Debug, Clone)]
+pub(crate) struct NamedMesh {
+    pub(crate) name: String,
+    pub(crate) scale: DVec3,
 }
 
 /// Reads the shapes of links; each mesh file once.
@@ -57,6 +66,10 @@ impl<'a> ShapeReader<'a> {
 
     pub(crate) fn body(&mut self, link: &str, collision: &UrdfCollision) -> Result<LinkBody, RobotError> {
         let UrdfCollision { line, origin, shape } = collision;
+        let mesh = match shape {
+            UrdfShape::Mesh { file, scale } => Some(NamedMesh { name: file.clone(), scale: *scale }),
+            _ => None,
+        };
         let shape = match shape {
             UrdfShape::Mesh { file, scale } => {
                 Ok(Shape { tree: self.mesh(link, *line, file, *scale)?, radius: 0.0 })
@@ -80,16 +93,20 @@ impl<'a> ShapeReader<'a> {
             source,
         })?;
         let solid = if shape.tree.is_watertight() { Solid::Filled } else { Solid::Surface };
-        Ok(LinkBody { tree: shape.tree, radius: shape.radius, solid, origin: *origin })
+        Ok(LinkBody { tree: shape.tree, radius: shape.radius, solid, origin: *origin, mesh })
     }
 
     fn mesh(&mut self, link: &str, line: u32, name: &str, scale: DVec3) -> Result<Arc<MeshTree>, RobotError> {
+        let bits = scale.to_array().map(f64::to_bits);
+        if let Some(tree) = self.options.meshes.get(&(name.to_owned(), bits)) {
+            return Ok(Arc::clone(tree));
+        }
         let path = resolve(name, self.folder, self.options).map_err(|reason| RobotError::Xml {
             file: self.file.to_owned(),
             line,
             reason: format!("link {link:?}: {reason}"),
         })?;
-        let key = (path, scale.to_array().map(f64::to_bits));
+        let key = (path, bits);
         if let Some(tree) = self.meshes.get(&key) {
             return Ok(Arc::clone(tree));
         }

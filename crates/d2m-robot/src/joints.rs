@@ -5,7 +5,7 @@ use crate::inertial::JointDynamics;
 use crate::urdf::{Origin, Urdf, UrdfJoint, UrdfJointKind};
 use d2m_motion::{Joint, JointKind, JointValue};
 use glam::DVec3;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// How a joint moves.
 ///
@@ -113,6 +113,7 @@ impl Origin {
 pub(crate) struct JointReader<'a> {
     file: &'a str,
     pub(crate) joints: Vec<RobotJoint>,
+    names: HashSet<String>,
     /// What has to be said of joints that do not move as the file states.
     pub(crate) remarks: Vec<String>,
 }
@@ -128,7 +129,8 @@ struct Part {
 impl<'a> JointReader<'a> {
     /// All joints, with the links that they join in `ends`.
     pub(crate) fn read(file: &'a str, urdf: &Urdf, ends: &[[usize; 2]]) -> Result<Self, RobotError> {
-        let mut reader = Self { file, joints: Vec::with_capacity(urdf.joints.len()), remarks: Vec::new() };
+        let joints = Vec::with_capacity(urdf.joints.len());
+        let mut reader = Self { file, joints, names: HashSet::new(), remarks: Vec::new() };
         for (joint, &ends) in urdf.joints.iter().zip(ends) {
             reader.add(joint, ends)?;
         }
@@ -153,7 +155,7 @@ impl<'a> JointReader<'a> {
         let mut origin = joint.origin;
         for Part { suffix, kind, motion } in parts {
             let name = suffix.map_or(joint.name.clone(), |suffix| format!("{}/{suffix}", joint.name));
-            if self.joints.iter().any(|other| other.name == name) {
+            if !self.names.insert(name.clone()) {
                 return Err(self.fault(joint, format!("another joint has the name {name:?}")));
             }
             // The first part carries the others.
@@ -235,17 +237,19 @@ impl<'a> JointReader<'a> {
             self.joints[by_name[&of.name]].mimic =
                 Some(Mimic { joint: leader, multiplier: mimic.multiplier, offset: mimic.offset });
         }
+        // Whose chain of leaders is known to end.
+        let mut ends = vec![false; self.joints.len()];
         for of in &urdf.joints {
             let Some(&index) = by_name.get(&of.name) else { continue };
-            let mut at = index;
-            for _ in 0..=self.joints.len() {
-                let Some(Mimic { joint: next, .. }) = self.joints[at].mimic else { break };
+            let (mut at, mut way) = (index, HashSet::new());
+            while let Some(Mimic { joint: next, .. }) = self.joints[at].mimic.filter(|_| !ends[at]) {
+                if !way.insert(at) {
+                    let reason = format!("joint {:?} mimics itself in the end", of.name);
+                    return Err(RobotError::Xml { file: self.file.to_owned(), line: of.line, reason });
+                }
                 at = next;
             }
-            if self.joints[at].mimic.is_some() {
-                let reason = format!("joint {:?} mimics itself in the end", of.name);
-                return Err(RobotError::Xml { file: self.file.to_owned(), line: of.line, reason });
-            }
+            way.into_iter().for_each(|joint| ends[joint] = true);
         }
         Ok(())
     }

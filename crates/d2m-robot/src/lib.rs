@@ -6,7 +6,7 @@
 //!
 //! ## Robots
 //! - [`Robot`] from URDF, where its files are by [`RobotOptions`]; [`JointType`], [`JointLimits`], [`Mimic`]
-//!   say what its joints are, [`Inertial`] and [`JointDynamics`] how heavy its links are and what brakes it.
+//!   say what its joints are, [`Inertial`] and [`JointDynamics`] how heavy its links are and what brakes it, [`RobotMesh`] what files they are of.
 //! - [`Srdf`]: pairs that are not checked.
 //!
 //! ## Scenes
@@ -69,7 +69,7 @@ pub use limits::{LimitKind, LimitWarning};
 pub use obstacle::{Attached, Obstacle};
 pub use options::RobotOptions;
 pub use path_bodies::PathBodies;
-pub use robot::Robot;
+pub use robot::{Robot, RobotMesh};
 pub use scene::RobotScene;
 #[cfg(feature = "dynamics")]
 pub use simulated::{Base, RobotBodies, SimulatedRobot};

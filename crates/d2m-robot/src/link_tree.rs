@@ -71,7 +71,9 @@ impl LinkTree {
             next += 1;
         }
         if order.len() < urdf.links.len() {
-            let lost = (0..urdf.links.len()).find(|link| !order.contains(link)).unwrap_or_default();
+            let mut is_found = vec![false; urdf.links.len()];
+            order.iter().for_each(|&link| is_found[link] = true);
+            let lost = is_found.iter().position(|&found| !found).unwrap_or_default();
             let reason = format!("the link {:?} is carried by itself in the end", urdf.links[lost].name);
             return Err(fault(urdf.links[lost].line, reason));
         }

@@ -1,16 +1,22 @@
 //! A robot: links joined to a tree, with their collision bodies.
 
-use crate::geometry::{LinkBody, ShapeReader};
+use crate::geometry::{LinkBody, NamedMesh, ShapeReader};
 use crate::inertial::{Inertial, JointDynamics};
 use crate::joints::{JointLimits, JointReader, JointType, Mimic, RobotJoint};
 use crate::link_tree::LinkTree;
 use crate::packages::read_text;
 use crate::urdf::Urdf;
 use crate::{RobotError, RobotOptions, Trajectory};
+use d2m_bvh::MeshTree;
 use d2m_motion::{Arm, Chain, Joint, JointKind, JointValue};
 use glam::DVec3;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
+
+/// Links of one robot at most, and collision bodies: all their pairs are kept.
+const MOST_LINKS: usize = 4096;
 
 /// A robot as a URDF file describes it, with the collision bodies of its links.
 ///
@@ -35,8 +41,13 @@ use std::path::Path;
 pub struct Robot {
     name: String,
     file: String,
+    text: Arc<str>,
     pub(crate) links: Vec<Link>,
     pub(crate) joints: Vec<RobotJoint>,
+    link_by_name: HashMap<String, usize>,
+    joint_by_name: HashMap<String, usize>,
+    /// Links that a joint joins, the lesser index first.
+    joined: HashSet<[usize; 2]>,
     /// The links as an arm, each after its parent, with values of zero.
     arm: Arm,
     /// Where each link is in the arm.
@@ -70,7 +81,8 @@ impl Robot {
     ///
     /// # Errors
     /// What is no URDF, links that form no tree, joints that mimic in a circle, meshes that
-    /// are missing, packages that nothing resolves, and a robot without any collision geometry: with file, line and name.
+    /// are missing, packages that nothing resolves, a robot without any collision geometry, and more than 4096 links or collision
+    /// bodies: with file, line and name.
     pub fn parse(file: &str, text: &str, options: &RobotOptions) -> Result<Self, RobotError> {
         let urdf = Urdf::parse(file, text)?;
         let fault = |reason: String| RobotError::Robot { file: file.to_owned(), reason };
@@ -80,6 +92,12 @@ impl Robot {
             return Err(fault(format!(
                 "none of the {count} links has collision geometry: nothing can be checked"
             )));
+        }
+        let bodies = urdf.links.iter().map(|link| link.collisions.len()).sum();
+        for (what, count) in [("links", urdf.links.len()), ("collision bodies", bodies)] {
+            if count > MOST_LINKS {
+                return Err(fault(format!("{count} {what}: a robot has at most {MOST_LINKS}")));
+            }
         }
         let folder = Path::new(file).parent().unwrap_or(Path::new(""));
         let mut reader = ShapeReader::new(file, folder, options);
@@ -98,9 +116,54 @@ impl Robot {
             let first = if before.is_empty() { index } else { before.start };
             links[joint.child].joints = first..index + 1;
         }
-        let (name, file) = (urdf.name, file.to_owned());
         let LinksInArm { arm, places, joint_places } = LinksInArm::new(&links, &joints, &tree.order)?;
-        Ok(Self { name, file, links, joints, arm, places, joint_places, remarks })
+        let places_of = |names: &mut dyn Iterator<Item = &String>| names.cloned().zip(0..).collect();
+        Ok(Self {
+            name: urdf.name,
+            file: file.to_owned(),
+            text: text.into(),
+            link_by_name: places_of(&mut links.iter().map(|link| &link.name)),
+            joint_by_name: places_of(&mut joints.iter().map(|joint| &joint.name)),
+            joined: tree.ends.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect(),
+            links,
+            joints,
+            arm,
+            places,
+            joint_places,
+            remarks,
+        })
+    }
+
+    /// The text of the file: with [`Robot::meshes`] all that is needed to make the same robot on another machine.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The meshes of files that the links have, as the text names them, each name and scale once.
+    ///
+    /// ```
+    /// # use d2m_robot::{Robot, RobotOptions};
+    /// use d2m_bvh::MeshTree;
+    /// use glam::DVec3;
+    /// use std::sync::Arc;
+    /// let text = r#"<robot name="one"><link name="body"><collision><geometry>
+    ///     <mesh filename="package://somewhere/body.stl" scale="2 2 2"/></geometry></collision></link></robot>"#;
+    /// let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=2&y=2&z=2")?));
+    /// let options = RobotOptions::new().with_mesh("package://somewhere/body.stl", DVec3::splat(2.0), tree);
+    /// let robot = Robot::parse("one.urdf", text, &options)?; // no file is read
+    /// let again = robot.meshes().fold(RobotOptions::new(), |options, mesh| {
+    ///     options.with_mesh(mesh.name, mesh.scale, Arc::clone(mesh.tree))
+    /// });
+    /// assert!(Robot::parse(robot.file(), robot.text(), &again).is_ok());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn meshes(&self) -> impl Iterator<Item = RobotMesh<'_>> {
+        let mut seen = HashSet::new();
+        let named = self.links.iter().flat_map(|link| &link.bodies).filter_map(|body| {
+            let NamedMesh { name, scale } = body.mesh.as_ref()?;
+            Some(RobotMesh { name, scale: *scale, tree: &body.tree })
+        });
+        named.filter(move |mesh| seen.insert((mesh.name, mesh.scale.to_array().map(f64::to_bits))))
     }
 
     /// Its name in the file.
@@ -126,12 +189,12 @@ impl Robot {
 
     /// The index of a link.
     pub fn find_link(&self, name: &str) -> Option<usize> {
-        self.links.iter().position(|link| link.name == name)
+        self.link_by_name.get(name).copied()
     }
 
     /// The index of a joint.
     pub fn find_joint(&self, name: &str) -> Option<usize> {
-        self.joints.iter().position(|joint| joint.name == name)
+        self.joint_by_name.get(name).copied()
     }
 
     /// How a joint moves.
@@ -220,9 +283,7 @@ impl Robot {
 
     /// Does a joint join these links directly?
     pub fn is_joined(&self, a: usize, b: usize) -> bool {
-        self.joints
-            .iter()
-            .any(|joint| [joint.parent, joint.child] == [a, b] || [joint.parent, joint.child] == [b, a])
+        self.joined.contains(&[a.min(b), a.max(b)])
     }
 
     /// The link whose frame is the world.
@@ -295,6 +356,18 @@ impl Robot {
         let chains = self.arm(values).links()?;
         Ok(self.places.iter().map(|&place| chains[place].clone()).collect())
     }
+}
+
+/// A mesh of links, as their file names it.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct RobotMesh<'a> {
+    /// The name in the file.
+    pub name: &'a str,
+    /// The scale that stands there.
+    pub scale: DVec3,
+    /// The mesh, scaled.
+    pub tree: &'a Arc<MeshTree>,
 }
 
 /// The links as an arm, and where links and joints are in it.

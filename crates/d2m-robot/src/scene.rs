@@ -41,11 +41,11 @@ pub struct RobotScene {
     pub(crate) robot: Arc<Robot>,
     pub(crate) world: World,
     /// By the places of the world's bodies.
-    pub(crate) parts: Vec<Part>,
+    pub(crate) parts: Arc<Vec<Part>>,
     /// The pairs that are checked, by the places of their parts; also those that never move against each other.
-    pub(crate) pairs: Vec<[usize; 2]>,
+    pub(crate) pairs: Arc<Vec<[usize; 2]>>,
     /// Those of them that are searched: not the ones that never move against each other and are proven apart.
-    pub(crate) moving_pairs: Vec<MovingPair>,
+    pub(crate) moving_pairs: Arc<Vec<MovingPair>>,
 }
 
 /// A pair that is checked and may move.
@@ -104,9 +104,9 @@ impl RobotScene {
         let mut scene = Self {
             world: World::new(options),
             robot: Arc::clone(&robot),
-            parts: Vec::new(),
-            pairs: Vec::new(),
-            moving_pairs: Vec::new(),
+            parts: Arc::default(),
+            pairs: Arc::default(),
+            moving_pairs: Arc::default(),
         };
         let rest = robot.complete(vec![None; robot.joints.len()])?;
         let chains = robot.chains(&rest)?;
@@ -115,7 +115,7 @@ impl RobotScene {
             a != b && !robot.is_joined(a, b) && !srdf.is_some_and(disabled)
         };
         for (link, of) in robot.links.iter().enumerate() {
-            for LinkBody { tree, radius, solid, origin } in &of.bodies {
+            for LinkBody { tree, radius, solid, origin, .. } in &of.bodies {
                 let is_link_frame = *origin == crate::urdf::Origin::default();
                 let frame = if is_link_frame { None } else { Some(origin.joint(JointKind::Fixed)?) };
                 let motion = match &frame {
@@ -285,10 +285,10 @@ impl RobotScene {
         let radius = body.radius();
         let id = self.world.add(body);
         let place = id.index();
-        self.parts.push(Part { id, name: name.to_owned(), owner, radius, body_box });
+        Arc::make_mut(&mut self.parts).push(Part { id, name: name.to_owned(), owner, radius, body_box });
         for other in 0..place {
             if is_checked(&self.parts[other]) {
-                self.pairs.push([other, place]);
+                Arc::make_mut(&mut self.pairs).push([other, place]);
                 self.search([other, place]);
             } else {
                 self.ignore_in_world([other, place], true);
@@ -299,7 +299,6 @@ impl RobotScene {
 
     /// Whether a checked pair has to be searched along paths: not if it never moves against each other and is proven apart.
     fn search(&mut self, pair: [usize; 2]) {
-        self.moving_pairs.retain(|moving| moving.parts != pair);
         let is_settled = self.are_rigid(pair) && self.are_apart(pair);
         self.ignore_in_world(pair, is_settled);
         if is_settled {
@@ -316,7 +315,7 @@ impl RobotScene {
             [Some(a), Some(b)] => self.robot.last_common(a, b),
             _ => None,
         };
-        self.moving_pairs.push(MovingPair { parts: pair, separation, seen_from });
+        Arc::make_mut(&mut self.moving_pairs).push(MovingPair { parts: pair, separation, seen_from });
     }
 
     /// The options of a pair of bodies.
@@ -351,9 +350,13 @@ impl RobotScene {
     }
 
     fn ignore_parts(&mut self, a: usize, b: usize) {
-        self.pairs.retain(|pair| *pair != [a, b] && *pair != [b, a]);
-        self.moving_pairs.retain(|pair| pair.parts != [a, b] && pair.parts != [b, a]);
+        Arc::make_mut(&mut self.pairs).retain(|pair| *pair != [a, b] && *pair != [b, a]);
+        self.stop_searching([a, b]);
         self.ignore_in_world([a, b], true);
+    }
+
+    fn stop_searching(&mut self, [a, b]: [usize; 2]) {
+        Arc::make_mut(&mut self.moving_pairs).retain(|pair| pair.parts != [a, b] && pair.parts != [b, a]);
     }
 
     /// The checked pairs of two links or bodies.
@@ -436,6 +439,7 @@ impl RobotScene {
         for pair in self.pairs_of(names) {
             let [a, b] = pair.map(|part| self.parts[part].id);
             self.world.set_min_separation(a, b, Some(distance));
+            self.stop_searching(pair);
             self.search(pair);
         }
         Ok(self.has_names(names))

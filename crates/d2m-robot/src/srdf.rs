@@ -2,6 +2,7 @@
 
 use crate::RobotError;
 use crate::xml::Xml;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// Pairs of links whose collisions are not checked, as an SRDF file states them.
@@ -15,9 +16,19 @@ use std::path::Path;
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Srdf {
     file: String,
+    text: String,
     disabled: Vec<LinkPair>,
     disabled_links: Vec<LinkName>,
     enabled: Vec<LinkPair>,
+    partners: Partners,
+}
+
+/// The same by links: with whom each is left out, and with whom it is taken in again.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+struct Partners {
+    disabled: HashMap<String, HashSet<String>>,
+    enabled: HashMap<String, HashSet<String>>,
+    left_out: HashSet<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -63,7 +74,22 @@ impl Srdf {
             .map(|element| Ok(LinkName { link: element.needed("link")?.to_owned(), line: element.line() }))
             .collect::<Result<Vec<_>, RobotError>>()?;
         let (disabled, enabled) = (pairs("disable_collisions")?, pairs("enable_collisions")?);
-        Ok(Self { file: file.to_owned(), disabled, disabled_links, enabled })
+        let partners = Partners {
+            disabled: by_link(&disabled),
+            enabled: by_link(&enabled),
+            left_out: disabled_links.iter().map(|of: &LinkName| of.link.clone()).collect(),
+        };
+        Ok(Self { file: file.to_owned(), text: text.to_owned(), disabled, disabled_links, enabled, partners })
+    }
+
+    /// The file that it was read from.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// The text of the file.
+    pub fn text(&self) -> &str {
+        &self.text
     }
 
     /// The pairs that `<disable_collisions>` names, in the order of the file.
@@ -74,13 +100,10 @@ impl Srdf {
     /// Is this pair left out? By `<disable_collisions>`, or by `<disable_default_collisions>` of one of its links, unless
     /// `<enable_collisions>` takes it in again.
     pub fn disables(&self, a: &str, b: &str) -> bool {
-        let names = |pair: &&LinkPair| {
-            let [x, y] = &pair.links;
-            (x == a && y == b) || (x == b && y == a)
-        };
-        let by_link = |of: &LinkName| of.link == a || of.link == b;
-        self.disabled.iter().any(|pair| names(&pair))
-            || (self.disabled_links.iter().any(by_link) && !self.enabled.iter().any(|pair| names(&pair)))
+        let Partners { disabled, enabled, left_out } = &self.partners;
+        let holds =
+            |pairs: &HashMap<String, HashSet<String>>| pairs.get(a).is_some_and(|with| with.contains(b));
+        holds(disabled) || ((left_out.contains(a) || left_out.contains(b)) && !holds(enabled))
     }
 
     /// The first link that is named here and is not among those of the robot, as a warning.
@@ -93,4 +116,14 @@ impl Srdf {
             .map(|(link, line)| format!("{}, line {line}: the robot has no link {link:?}", self.file))
             .collect()
     }
+}
+
+/// Each link of the pairs with its partners, both ways.
+fn by_link(pairs: &[LinkPair]) -> HashMap<String, HashSet<String>> {
+    let mut all: HashMap<String, HashSet<String>> = HashMap::new();
+    for LinkPair { links: [a, b], .. } in pairs {
+        all.entry(a.clone()).or_default().insert(b.clone());
+        all.entry(b.clone()).or_default().insert(a.clone());
+    }
+    all
 }

@@ -4,6 +4,9 @@ use crate::RobotError;
 use crate::{JointType, Mimic, Robot};
 use d2m_motion::JointValue;
 
+/// Characters of a list of names in a message at most.
+const LONGEST_LIST: usize = 500;
+
 impl Robot {
     /// The value of every joint, by their indices: those that are named, those that follow them, and the others at rest.
     ///
@@ -25,7 +28,11 @@ impl Robot {
     pub(crate) fn moving_joint(&self, place: usize, name: &str) -> Result<usize, RobotError> {
         let place = || format!("joint_names[{place}]");
         let Some(joint) = self.find_joint(name) else {
-            let known = self.joint_names().join(", ");
+            let mut known = self.joint_names().join(", ");
+            if let Some((end, _)) = known.char_indices().nth(LONGEST_LIST) {
+                known.truncate(end);
+                known.push('…');
+            }
             return Err(RobotError::path(place(), format!("{name:?} is no joint of the robot ({known})")));
         };
         if self.joints[joint].kind == JointType::Fixed {

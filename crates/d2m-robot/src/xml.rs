@@ -8,6 +8,8 @@ use roxmltree::{Document, Error, Node, ParsingOptions};
 pub(crate) struct Xml<'a> {
     file: &'a str,
     document: Document<'a>,
+    /// Where each line begins, so that no element counts them again.
+    line_starts: Vec<usize>,
 }
 
 /// An element of it.
@@ -15,6 +17,7 @@ pub(crate) struct Xml<'a> {
 pub(crate) struct Element<'a> {
     file: &'a str,
     node: Node<'a, 'a>,
+    line_starts: &'a [usize],
 }
 
 impl<'a> Xml<'a> {
@@ -31,12 +34,15 @@ impl<'a> Xml<'a> {
             };
             RobotError::Xml { file: file.to_owned(), line: error.pos().row, reason: format!("{error}{hint}") }
         })?;
-        Ok(Self { file, document })
+        let breaks = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n');
+        let line_starts = core::iter::once(0).chain(breaks.map(|(at, _)| at + 1)).collect();
+        Ok(Self { file, document, line_starts })
     }
 
     /// The outermost element, which has this name.
     pub(crate) fn root(&'a self, name: &str) -> Result<Element<'a>, RobotError> {
-        let root = Element { file: self.file, node: self.document.root_element() };
+        let root =
+            Element { file: self.file, node: self.document.root_element(), line_starts: &self.line_starts };
         if root.is(name) {
             Ok(root)
         } else {
@@ -51,7 +57,8 @@ impl<'a> Element<'a> {
     }
 
     pub(crate) fn line(self) -> u32 {
-        self.node.document().text_pos_at(self.node.range().start).row
+        let at = self.node.range().start;
+        self.line_starts.partition_point(|&start| start <= at) as u32
     }
 
     pub(crate) fn fault(self, reason: impl Into<String>) -> RobotError {

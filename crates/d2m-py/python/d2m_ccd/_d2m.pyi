@@ -568,6 +568,7 @@ class Robot:
         end: ArrayLike,
         *,
         joints: Sequence[str] | None = None,
+        threads: int | None = None,
         progress: _Progress = None,
     ) -> NDArray[np.void]: ...
 

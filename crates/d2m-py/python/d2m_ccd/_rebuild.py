@@ -21,3 +21,11 @@ def joint(kind: Any, x: Any, q: Any, axis: Any, value: Any) -> _d2m.Joint:
 def pose_trajectories(times: Any, poses: Any, join: Any) -> _d2m.PoseTrajectories:
     """Trajectories of their arguments."""
     return _d2m.PoseTrajectories(times, poses, join=join)
+
+
+def robot(file: Any, text: Any, meshes: Any, srdf: Any, keywords: Any, changes: Any) -> _d2m.Robot:
+    """A robot of its texts and meshes, and of what was added to its scene."""
+    made: _d2m.Robot = _d2m.Robot._of_pickle(file, text, meshes, srdf, keywords)
+    for method, arguments, named in changes:
+        getattr(made, method)(*arguments, **named)
+    return made

@@ -18,6 +18,7 @@ import argparse
 import collections
 import hashlib
 import os
+import pickle
 import sys
 import time
 from collections.abc import Iterable, Iterator
@@ -27,9 +28,9 @@ from typing import Any, Callable, Optional, Union
 import numpy as np
 
 from . import batch as _batch_here
-from ._d2m import Tree
+from ._d2m import Robot, Tree
 from ._errors import InputError
-from ._records import RESULT
+from ._records import EDGE, RESULT
 from ._trials import Trials, read_trials, write_results
 
 try:
@@ -47,37 +48,49 @@ MOST_CHUNK = 65_536
 _MOST_HELD = 4
 
 
-#: Trials, or a function that makes them where they are run.
-Chunk = Union[Trials, Callable[[], Trials]]
+@dataclass(frozen=True)
+class Edges:
+    """Edges of a robot: configurations of shape (n, j) twice, and the names of the j joints (`None`: those of the robot)."""
+
+    start: Any
+    end: Any
+    joints: Any = None
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+
+#: Trials or edges, or a function that makes them where they are run.
+Chunk = Union[Trials, Edges, Callable[[], Any]]
 #: What becomes of the results of a chunk where they are made.
 Reduce = Optional[Callable[[Trials, Any], Any]]
 
 
 @dataclass(frozen=True)
-class _SharedTree:
-    """A tree in the object store, by the hash of its bytes."""
+class _Shared:
+    """A tree or a robot in the object store, by the hash of its bytes."""
 
     key: str
     stored: Any
 
     @classmethod
-    def put(cls, tree: Any) -> _SharedTree:
-        data = (tree if isinstance(tree, Tree) else Tree(tree)).to_bytes()
+    def put(cls, made: Tree | Robot) -> _Shared:
+        data = pickle.dumps(made, protocol=5)
         return cls(hashlib.sha256(data).hexdigest(), ray.put(data))
 
 
-#: The trees that this worker process has read, latest last.
-_TREES: collections.OrderedDict[str, Tree] = collections.OrderedDict()
-_MOST_TREES = 64
+#: The trees and robots that this worker process has read, latest last.
+_READ: collections.OrderedDict[str, Any] = collections.OrderedDict()
+_MOST_READ = 64
 
 
-def _tree(shared: _SharedTree) -> Tree:
-    if shared.key not in _TREES:
-        _TREES[shared.key] = Tree.from_bytes(ray.get(shared.stored))
-        while len(_TREES) > _MOST_TREES:
-            _TREES.popitem(last=False)
-    _TREES.move_to_end(shared.key)
-    return _TREES[shared.key]
+def _read(shared: _Shared) -> Any:
+    if shared.key not in _READ:
+        _READ[shared.key] = pickle.loads(ray.get(shared.stored))
+        while len(_READ) > _MOST_READ:
+            _READ.popitem(last=False)
+    _READ.move_to_end(shared.key)
+    return _READ[shared.key]
 
 
 @dataclass(frozen=True)
@@ -88,12 +101,15 @@ class _Done:
     seconds: float
 
 
-def _run_chunk(a: _SharedTree, b: _SharedTree, chunk: Chunk, options: dict[str, Any], reduce: Reduce) -> _Done:
-    trees = _tree(a), _tree(b)
+def _run_chunk(shared: list[_Shared], chunk: Chunk, options: dict[str, Any], reduce: Reduce) -> _Done:
+    of = [_read(one) for one in shared]
     start = time.perf_counter()
-    trials = chunk() if callable(chunk) else chunk
-    results = _batch_here(*trees, trials.motions_a, trials.motions_b, window=trials.window, threads=1, **options)
-    return _Done(results if reduce is None else reduce(trials, results), time.perf_counter() - start)
+    made = chunk() if callable(chunk) else chunk
+    if isinstance(made, Edges):
+        results = of[0].check_edges(made.start, made.end, joints=made.joints, threads=1, **options)
+    else:
+        results = _batch_here(*of, made.motions_a, made.motions_b, window=made.window, threads=1, **options)
+    return _Done(results if reduce is None else reduce(made, results), time.perf_counter() - start)
 
 
 @dataclass
@@ -110,11 +126,11 @@ class _Sender:
     """Sends chunks out, at most `in_flight` at a time, and gives their results in order."""
 
     def __init__(
-        self, a: Any, b: Any, in_flight: int | None, retries: int, options: dict[str, Any], reduce: Reduce = None
+        self, of: list[Any], in_flight: int | None, retries: int, options: dict[str, Any], reduce: Reduce = None
     ) -> None:
         if not ray.is_initialized():
             ray.init(log_to_driver=False)
-        self._trees = _SharedTree.put(a), _SharedTree.put(b)
+        self._shared = [_Shared.put(one) for one in of]
         # In the store once, too: `reduce` may hold as much as it likes.
         self._options, self._reduce = options, ray.put(reduce)
         resources = ray.cluster_resources()  # type: ignore[no-untyped-call]
@@ -125,7 +141,7 @@ class _Sender:
         self._remote = ray.remote(num_cpus=1, max_retries=retries)(_run_chunk)
 
     def _task(self, chunk: Chunk) -> Any:
-        return self._remote.remote(*self._trees, chunk, self._options, self._reduce)
+        return self._remote.remote(self._shared, chunk, self._options, self._reduce)
 
     def run(self, chunks: Iterable[Chunk]) -> Iterator[_Done]:
         """Results in the order of the chunks; those are taken from the iterator as workers become free."""
@@ -195,7 +211,9 @@ def _moved(error: InputError, first: int) -> InputError:
     """The error of a chunk, with the trial's number among all."""
     if not isinstance(error.index, int):
         return InputError(str(error.args[0]), error.index, error.value)
-    text = str(error.args[0]).replace(f"trial {error.index}:", f"trial {first + error.index}:", 1)
+    text = str(error.args[0])
+    for one in ("trial", "edge"):
+        text = text.replace(f"{one} {error.index}:", f"{one} {first + error.index}:", 1)
     return InputError(text, first + error.index, error.value)
 
 
@@ -216,8 +234,51 @@ def stream(
     `reduce(trials, results)`, if given, is called on the worker, and what it returns is yielded: counts, or a file's name, instead
     of 192 bytes a trial. Other arguments as of `d2m_ccd.batch`. Yields structured arrays with the fields of `d2m_ccd.RESULT` otherwise.
     """
-    for done in _Sender(a, b, in_flight, retries, options, reduce).run(chunks):
+    for done in _Sender([_tree(a), _tree(b)], in_flight, retries, options, reduce).run(chunks):
         yield done.results
+
+
+def stream_edges(
+    robot: Robot,
+    chunks: Iterable[Chunk],
+    *,
+    reduce: Reduce = None,
+    in_flight: int | None = None,
+    retries: int = 5,
+) -> Iterator[Any]:
+    """As `stream`, of chunks of `Edges(start, end, joints)` of a robot, or of functions that make them on the worker.
+
+    The robot travels with its meshes and scene, once a node. Yields structured arrays with the fields of `d2m_ccd.EDGE`, or what
+    `reduce(edges, results)` returns.
+    """
+    for done in _Sender([robot], in_flight, retries, {}, reduce).run(chunks):
+        yield done.results
+
+
+def check_edges(
+    robot: Robot,
+    start: Any,
+    end: Any,
+    *,
+    joints: Any = None,
+    in_flight: int | None = None,
+    retries: int = 5,
+    progress: Any = None,
+) -> Any:
+    """As `Robot.check_edges`, over the cluster that Ray is connected to (the processors of this machine if it is to none).
+
+    The same bits as on one machine, in order; other arguments as of `batch`. Raises `InputError` with the first edge that cannot be checked as
+    `index`.
+    """
+    start, end = np.asarray(start), np.asarray(end)
+    if start.ndim != 2 or start.shape != end.shape:
+        raise InputError(f"start has the shape {start.shape} and end {end.shape}: (n, j) twice is expected", None, None)
+    sender = _Sender([robot], in_flight, retries, {})
+    return _run(sender, _SizedEdges(Edges(start, end, joints), len(start)), progress)[0]
+
+
+def _tree(any: Any) -> Tree:
+    return any if isinstance(any, Tree) else Tree(any)
 
 
 def batch(
@@ -238,7 +299,7 @@ def batch(
     with the first trial that cannot be answered as `index`.
     """
     trials = _all_trials(motions_a, motions_b, window)
-    return _run(_Sender(a, b, in_flight, retries, options), trials, progress)[0]
+    return _run(_Sender([_tree(a), _tree(b)], in_flight, retries, options), trials, progress)[0]
 
 
 def _all_trials(motions_a: Any, motions_b: Any, window: Any) -> _Sized:
@@ -264,9 +325,23 @@ def _is_several(motions: Any) -> bool:
 
 
 @dataclass(frozen=True)
+class _SizedEdges:
+    edges: Edges
+    count: int
+
+    record = EDGE
+
+    def part(self, start: int, end: int) -> Edges:
+        whole = self.edges
+        return Edges(whole.start[start:end], whole.end[start:end], whole.joints)
+
+
+@dataclass(frozen=True)
 class _Sized:
     trials: Trials
     count: int
+
+    record = RESULT
 
     def part(self, start: int, end: int) -> Trials:
         whole = self.trials
@@ -302,12 +377,12 @@ class _Pace:
             self._seconds = seconds if self._seconds == 0.0 else 0.7 * self._seconds + 0.3 * seconds
 
 
-def _run(sender: _Sender, trials: _Sized, progress: Any) -> tuple[Any, Any]:
+def _run(sender: _Sender, trials: _Sized | _SizedEdges, progress: Any) -> tuple[Any, Any]:
     count = trials.count
-    results, microseconds = np.zeros(count, RESULT), np.zeros(count)
+    results, microseconds = np.zeros(count, trials.record), np.zeros(count)
     pace = _Pace(sender.workers, count)
 
-    def chunks() -> Iterator[Trials]:
+    def chunks() -> Iterator[Trials | Edges]:
         start = 0
         while start < count:
             end = start + pace.next()
@@ -373,7 +448,7 @@ def main(arguments: list[str] | None = None) -> int:
             "node_tests": given.budget,
             "solid": solid,
         }
-        sender = _Sender(*trees, None, 5, options)
+        sender = _Sender(list(trees), None, 5, options)
         start = time.perf_counter()
         everything = _all_trials(trials.motions_a, trials.motions_b, trials.window)
         results, microseconds = _run(sender, everything, _bar(len(trials)))

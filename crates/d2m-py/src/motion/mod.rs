@@ -208,6 +208,17 @@ fn object(py: Python<'_>, motion: AnyMotion) -> PyResult<Bound<'_, PyAny>> {
     })
 }
 
+/// The argument of [`motion_argument`] as a `Motion`, which nothing changes and which pickles.
+pub(crate) fn motion_object<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    if any.is_instance_of::<Motion>() {
+        return Ok(any.clone());
+    }
+    match motion_argument(Some(any), name)? {
+        Form::Any(motion) => object(any.py(), (*motion).clone()),
+        form @ Form::Spline(_) => Ok(Bound::new(any.py(), Motion { form })?.into_any()),
+    }
+}
+
 /// A motion argument: a `Motion`, thirteen numbers, a dictionary of the JSON forms, or nothing.
 ///
 /// # Errors

@@ -258,7 +258,9 @@ impl World {
     ) -> Result<Finding, WorldError> {
         self.prepare(window)?;
         let mut finding = Finding::default();
-        let (mut meter, is_limited) = (Meter::new(&self.options.budget), self.options.budget.is_limited());
+        let mut meter = Meter::new(&self.options.budget);
+        // Node tests are spent pair after pair, so that no thread's turn counts. The clock is the same for all.
+        let is_limited = self.options.budget.node_tests.is_some();
         let mut round = match goal {
             _ if is_limited => 1,
             Goal::First => FIRST_ROUND,
