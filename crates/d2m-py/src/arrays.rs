@@ -20,14 +20,30 @@ impl<'py> Doubles<'py> {
     /// # Errors
     /// Another shape; what are no numbers; whole numbers that are no doubles, with index and value.
     pub(crate) fn new(any: &Bound<'py, PyAny>, name: &str, shape: &[Option<usize>]) -> PyResult<Self> {
+        if let Some(array) = Self::ready(any) {
+            require_shape(array.shape(), name, shape)?;
+            return Ok(array);
+        }
         let array = as_array(any, name)?;
-        require_shape(&array, name, shape)?;
+        require_shape(&shape_of(&array)?, name, shape)?;
         Self::of_array(&array, name)
     }
 
     /// As [`Self::new`] with any shape.
     pub(crate) fn of_any_shape(any: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        Self::of_array(&as_array(any, name)?, name)
+        match Self::ready(any) {
+            Some(array) => Ok(array),
+            None => Self::of_array(&as_array(any, name)?, name),
+        }
+    }
+
+    /// What is such an array already, without a call of Python: a query of a few numbers takes less than one.
+    fn ready(any: &Bound<'py, PyAny>) -> Option<Self> {
+        let array = any.cast::<PyArrayDyn<f64>>().ok()?;
+        if !(array.is_c_contiguous() && array.data().is_aligned()) {
+            return None;
+        }
+        Some(Self { array: array.try_readonly().ok()? })
     }
 
     fn of_array(array: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
@@ -120,15 +136,14 @@ fn shape_of(array: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
     array.getattr(intern!(array.py(), "shape"))?.extract()
 }
 
-fn require_shape(array: &Bound<'_, PyAny>, name: &str, wanted: &[Option<usize>]) -> PyResult<()> {
-    let found = shape_of(array)?;
+fn require_shape(found: &[usize], name: &str, wanted: &[Option<usize>]) -> PyResult<()> {
     let fits = found.len() == wanted.len()
         && found.iter().zip(wanted).all(|(&found, wanted)| wanted.is_none_or(|wanted| wanted == found));
     if fits {
         return Ok(());
     }
     let value = Value::Numbers(found.iter().map(|&length| length as f64).collect());
-    let message = format!("{name} has the shape {}, {} is expected", shape_text(&found), wanted_text(wanted));
+    let message = format!("{name} has the shape {}, {} is expected", shape_text(found), wanted_text(wanted));
     Err(Fault::new(message).with_value(value).into())
 }
 
@@ -182,7 +197,7 @@ pub(crate) fn triangles(any: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<[u32
     if !matches!(kind, 'i' | 'u') {
         return Err(wrong_dtype(&dtype, name, "whole numbers"));
     }
-    require_shape(&array, name, &[None, Some(3)])?;
+    require_shape(&shape, name, &[None, Some(3)])?;
     let bad = |place: usize, value: i128| -> PyErr {
         let message =
             format!("triangle {}: vertex index {value} is out of range, it must be in [0, 2^32)", place / 3);

@@ -120,6 +120,14 @@ pub(crate) fn solid(any: &Bound<'_, PyAny>, usual: Solid) -> PyResult<Solid> {
     }
 }
 
+/// As `solid` takes it.
+pub(crate) const fn solid_word(solid: Solid) -> &'static str {
+    match solid {
+        Solid::Filled => "filled",
+        Solid::Surface => "surface",
+    }
+}
+
 /// The window of a pair of numbers.
 pub(crate) fn window((start, end): (f64, f64)) -> PyResult<Window> {
     Window::try_new(start, end).or_raise()

@@ -4,7 +4,7 @@ use crate::arrays::Doubles;
 use crate::fault::{Fault, OrRaise, Value};
 use crate::mesh::{Tree, tree_argument};
 use crate::motion::{motion_argument, motion_object};
-use crate::options::{QueryKeywords, default_solid, solid};
+use crate::options::{QueryKeywords, default_solid, solid, solid_word};
 use crate::path_answer::{PathAnswer, PathClearance, limit_warning};
 use crate::pose::{Pose, pose_argument};
 use crate::query::run;
@@ -15,11 +15,10 @@ use crate::robot_input::{Source, path};
 use crate::robot_recipe::{Change, ReadRobot, RobotFiles, RobotKeywords, recipe};
 use crate::supervise::{Supervision, Watch, pool, supervised};
 use crate::verify::{Verdict, in_growing_steps, ran_out};
-use d2m::bvh::{QueryOptions, Solid};
+use d2m::bvh::QueryOptions;
 use d2m::verify::{PathVerdict, verify_path};
 use d2m_robot::{
-    Attached, Obstacle, PathAnswer as Found, Robot as Arm, RobotError, RobotOptions, RobotScene, Srdf,
-    Trajectory,
+    Attached, Obstacle, PathAnswer as Found, RobotError, RobotOptions, RobotScene, Srdf, Trajectory,
 };
 use glam::DVec3;
 use pyo3::exceptions::PyKeyError;
@@ -59,17 +58,30 @@ pub(crate) struct Robot {
 }
 
 struct Inner {
-    scene: RobotScene,
+    scene: Arc<RobotScene>,
     /// Links, then obstacles and attached bodies in the order in which they came.
     names: Vec<String>,
     /// What was done to the scene, to be done again when it is read from a pickle.
     changes: Vec<Change>,
 }
 
+impl Inner {
+    /// To be changed: queries that go on have another one then.
+    fn scene(&mut self) -> &mut RobotScene {
+        Arc::make_mut(&mut self.scene)
+    }
+}
+
 impl Robot {
     /// The scene as it is; queries go on in it while others change it.
-    fn scene(&self, py: Python<'_>) -> RobotScene {
-        py.detach(|| self.inner.read().unwrap_or_else(PoisonError::into_inner).scene.clone())
+    fn scene(&self, py: Python<'_>) -> Arc<RobotScene> {
+        // A change takes long: whoever changes holds the lock, and not the interpreter's.
+        match self.inner.try_read() {
+            Ok(inner) => Arc::clone(&inner.scene),
+            Err(_) => {
+                py.detach(|| Arc::clone(&self.inner.read().unwrap_or_else(PoisonError::into_inner).scene))
+            }
+        }
     }
 
     fn change<T>(
@@ -101,17 +113,18 @@ impl Robot {
         let read = py.detach(|| pool.install(|| files.read(options)));
         let ReadRobot { scene, srdf, remarks } = read.or_raise()?;
         let names = scene.robot().link_names().into_iter().map(str::to_owned).collect();
-        let inner = RwLock::new(Inner { scene, names, changes: Vec::new() });
+        let inner = RwLock::new(Inner { scene: Arc::new(scene), names, changes: Vec::new() });
         Ok(Self { inner, srdf, remarks, keywords, pool })
     }
 
+    /// Of the moving joints where none are named.
     fn path(
         &self,
         py: Python<'_>,
         numbers: [Option<&Bound<'_, PyAny>>; 4],
         joints: Option<Vec<String>>,
     ) -> PyResult<Trajectory> {
-        path(numbers, joints.unwrap_or_else(|| moving_joints(self.scene(py).robot())))
+        path(numbers, joints.unwrap_or_else(|| self.joint_names(py)))
     }
 
     fn names(&self, py: Python<'_>) -> Vec<String> {
@@ -136,7 +149,7 @@ impl Robot {
         watch: &Watch<'_>,
         ask: impl FnOnce(&RobotScene, &Supervision) -> Result<T, Fault> + Send,
     ) -> PyResult<T> {
-        let mut scene = self.scene(py);
+        let mut scene = (*self.scene(py)).clone();
         let options = *scene.options();
         supervised(py, watch, |supervision| {
             scene.set_budget(supervision.cancels(&options).budget);
@@ -205,7 +218,7 @@ impl Robot {
     /// The names of the joints that move and do not mimic another one: what configurations hold unless `joints` says otherwise.
     #[getter]
     fn joint_names(&self, py: Python<'_>) -> Vec<String> {
-        moving_joints(self.scene(py).robot())
+        self.scene(py).robot().joint_names().into_iter().map(str::to_owned).collect()
     }
 
     /// Links, then obstacles and attached bodies: what `body_a` and `body_b` of `check_edges` number.
@@ -291,7 +304,7 @@ impl Robot {
             }
         };
         self.change(py, made, |inner| {
-            inner.scene.add_obstacle(obstacle.with_solid(solid).with_radius(radius))?;
+            inner.scene().add_obstacle(obstacle.with_solid(solid).with_radius(radius))?;
             inner.names.push(name);
             Ok(())
         })
@@ -327,7 +340,7 @@ impl Robot {
         let made = made.with(py, "radius", radius)?.with(py, "solid", solid_word(solid))?;
         let attached = Attached::new(name.clone(), link, tree, pose.translation, pose.rotation).or_raise()?;
         self.change(py, made, |inner| {
-            inner.scene.attach(attached.with_solid(solid).with_radius(radius))?;
+            inner.scene().attach(attached.with_solid(solid).with_radius(radius))?;
             inner.names.push(name);
             Ok(())
         })
@@ -341,7 +354,7 @@ impl Robot {
     /// >>> d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF).ignore("base", "arm")
     fn ignore(&self, py: Python<'_>, a: &str, b: &str) -> PyResult<()> {
         let made = Change::new(py, "ignore", (a, b))?;
-        let is_there = self.change(py, made, |inner| Ok(inner.scene.ignore(a, b)))?;
+        let is_there = self.change(py, made, |inner| Ok(inner.scene().ignore(a, b)))?;
         there(is_there, a, b)
     }
 
@@ -354,7 +367,7 @@ impl Robot {
     fn set_start(&self, py: Python<'_>, a: &str, b: &str, start: &str) -> PyResult<()> {
         let made = Change::new(py, "set_start", (a, b, start))?;
         let start = crate::options::start(start)?;
-        let is_there = self.change(py, made, |inner| Ok(inner.scene.set_start([a, b], start)))?;
+        let is_there = self.change(py, made, |inner| Ok(inner.scene().set_start([a, b], start)))?;
         there(is_there, a, b)
     }
 
@@ -366,7 +379,7 @@ impl Robot {
     /// >>> d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF).set_min_separation("base", "arm", 0.01)
     fn set_min_separation(&self, py: Python<'_>, a: &str, b: &str, distance: f64) -> PyResult<()> {
         let made = Change::new(py, "set_min_separation", (a, b, distance))?;
-        let is_there = self.change(py, made, |inner| inner.scene.set_min_separation([a, b], distance))?;
+        let is_there = self.change(py, made, |inner| inner.scene().set_min_separation([a, b], distance))?;
         there(is_there, a, b)
     }
 
@@ -511,7 +524,7 @@ impl Robot {
         let (from, to) = (from.slice(), to.slice());
         let scene = self.scene(py);
         let ask = |options: &QueryOptions| {
-            let mut scene = scene.clone();
+            let mut scene = (*scene).clone();
             scene.set_budget(options.budget);
             let names = match &joints {
                 Some(names) => names.iter().map(String::as_str).collect(),
@@ -550,14 +563,14 @@ impl Robot {
         let shape = from.shape().to_vec();
         let to = Doubles::new(end, "end", &[Some(shape[0]), Some(shape[1])])?;
         let (from, to, width) = (from.slice(), to.slice(), shape[1]);
-        let names = self.names(py);
+        let (names, usual) = (self.names(py), self.joint_names(py));
         let places: HashMap<&str, u32> = names.iter().map(String::as_str).zip(0..).collect();
         let mut words = vec![0u64; shape[0] * EDGE_WORDS];
         let watch = Watch { progress, total: shape[0] };
         let out = &mut words;
         let pool = threads.map_or_else(|| Ok(Arc::clone(&self.pool)), |_| self::pool(threads)).or_raise()?;
         self.ask_on(py, &pool, &watch, |scene, supervision| {
-            let joints = joints.unwrap_or_else(|| moving_joints(scene.robot()));
+            let joints = joints.unwrap_or(usual);
             if joints.len() != width {
                 let message = format!("{width} numbers a configuration for {} joints", joints.len());
                 return Err(Fault::new(message).with_value(Value::Whole(width as i128)));
@@ -572,7 +585,7 @@ impl Robot {
     fn __repr__(&self, py: Python<'_>) -> String {
         let scene = self.scene(py);
         let robot = scene.robot();
-        let joints = moving_joints(robot).len();
+        let joints = robot.joint_names().len();
         let plural = if joints == 1 { "" } else { "s" };
         format!("Robot('{}', {} links, {joints} joint{plural})", robot.name(), robot.link_names().len())
     }
@@ -580,17 +593,4 @@ impl Robot {
 
 fn there(is_there: bool, a: &str, b: &str) -> PyResult<()> {
     if is_there { Ok(()) } else { Err(PyKeyError::new_err(format!("{a:?} or {b:?} is not there"))) }
-}
-
-/// Joints that move by a value of their own.
-fn moving_joints(robot: &Arm) -> Vec<String> {
-    robot.joint_names().into_iter().map(str::to_owned).collect()
-}
-
-/// As `solid` takes it.
-const fn solid_word(solid: Solid) -> &'static str {
-    match solid {
-        Solid::Filled => "filled",
-        Solid::Surface => "surface",
-    }
 }

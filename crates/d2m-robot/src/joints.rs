@@ -249,7 +249,9 @@ impl<'a> JointReader<'a> {
                 }
                 at = next;
             }
-            way.into_iter().for_each(|joint| ends[joint] = true);
+            for joint in way {
+                ends[joint] = true;
+            }
         }
         Ok(())
     }

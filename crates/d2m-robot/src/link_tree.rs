@@ -72,7 +72,9 @@ impl LinkTree {
         }
         if order.len() < urdf.links.len() {
             let mut is_found = vec![false; urdf.links.len()];
-            order.iter().for_each(|&link| is_found[link] = true);
+            for &link in &order {
+                is_found[link] = true;
+            }
             let lost = is_found.iter().position(|&found| !found).unwrap_or_default();
             let reason = format!("the link {:?} is carried by itself in the end", urdf.links[lost].name);
             return Err(fault(urdf.links[lost].line, reason));

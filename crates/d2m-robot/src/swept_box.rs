@@ -209,6 +209,7 @@ impl<'a> SeenBoxes<'a> {
 }
 
 /// A direction, and the gap of two boxes along it in the middle of a span.
+#[derive(Clone, Copy)]
 struct Direction {
     along: DVec3,
     gap: f64,
