@@ -78,14 +78,14 @@ fn depths_end_in_a_line() {
 #[test]
 fn counts_beyond_reason_are_refused_with_their_number() {
     let folder = Folder::new("robot-hostile-counts");
-    let links: String = (0..50_000).map(|k| format!("<link name=\"l{k}\"/>")).collect();
-    let joints: String = (0..50_000)
+    let links: Vec<String> = (0..50_000).map(|k| format!("<link name=\"l{k}\"/>")).collect();
+    let joints: Vec<String> = (0..50_000)
         .map(|k| {
             let parent = if k == 0 { "m".to_owned() } else { format!("l{}", k - 1) };
             format!("<joint name=\"j{k}\" type=\"fixed\"><parent link=\"{parent}\"/><child link=\"l{k}\"/></joint>")
         })
         .collect();
-    let many = slide("", CUBE, &format!("{links}{joints}"));
+    let many = slide("", CUBE, &(links.concat() + &joints.concat()));
     refused(
         &words(&arguments(&folder, &many, PATH, &[])),
         &["r.urdf: 50002 links: a robot has at most 4096"],
@@ -97,7 +97,7 @@ fn counts_beyond_reason_are_refused_with_their_number() {
     );
     // As many as may be, in one chain: read and answered.
     let count = 4000;
-    let chain: String = (0..count)
+    let chain: Vec<String> = (0..count)
         .map(|k| {
             let parent = if k == 0 { "m".to_owned() } else { format!("l{}", k - 1) };
             let mimic = if k == 0 { "j".to_owned() } else { format!("j{}", k - 1) };
@@ -107,11 +107,11 @@ fn counts_beyond_reason_are_refused_with_their_number() {
             )
         })
         .collect();
-    assert_eq!(status(&arguments(&folder, &slide("", CUBE, &chain), PATH, &[])), "free");
+    assert_eq!(status(&arguments(&folder, &slide("", CUBE, &chain.concat()), PATH, &[])), "free");
     // Pairs of an SRDF: each is found, however many there are.
     let mut srdf = String::from("<robot>");
     for k in 0..100_000 {
-        let _ = write!(srdf, "<disable_collisions link1=\"m\" link2=\"x{k}\"/>\n");
+        let _ = writeln!(srdf, "<disable_collisions link1=\"m\" link2=\"x{k}\"/>");
     }
     let srdf = srdf + "</robot>";
     assert_eq!(

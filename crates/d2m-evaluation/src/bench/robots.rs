@@ -216,5 +216,5 @@ fn arm() -> Result<Robot, Error> {
 fn srdf() -> String {
     let pairs = (2..LINKS)
         .map(|k| format!("<disable_collisions link1=\"l{}\" link2=\"l{k}\" reason=\"Never\"/>", k - 2));
-    format!("<robot name=\"arm\">{}</robot>", pairs.collect::<String>())
+    format!("<robot name=\"arm\">{}</robot>", pairs.collect::<Vec<_>>().concat())
 }
