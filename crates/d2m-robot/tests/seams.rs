@@ -102,6 +102,11 @@ fn about_the_same(one: &PathAnswer, other: &PathAnswer, scale: f64, within: f64)
     assert!((until * scale - other_until).abs() <= within, "{until:?} times {scale:?}, {other_until:?}");
 }
 
+/// The number of a link by its name.
+fn link(name: &str) -> Option<usize> {
+    name.strip_prefix('l')?.parse().ok()
+}
+
 #[test]
 fn every_door_has_the_same_answer() {
     let mut random = Random(2901);
@@ -161,6 +166,20 @@ fn every_door_has_the_same_answer() {
                 }
             }
             assert!((first - until).abs() < 1e-8, "{first:?} {until:?}");
+            // By kinematics of its own: links that meet are at each other then.
+            if let PathAnswer::Contact(found) = &edge
+                && let Some([a, b]) = [&found.a, &found.b]
+                    .map(|name| link(name))
+                    .into_iter()
+                    .collect::<Option<Vec<_>>>()
+                    .as_deref()
+            {
+                let t = found.contact.time_hi;
+                let q: Vec<f64> = from.iter().zip(to).map(|(a, b)| a + (b - a) * t).collect();
+                let placed = arm.place(&[&[0.0], &q[..]].concat());
+                let gap = placed[*a].gap(&placed[*b]);
+                assert!(gap < options.min_separation + 1e-8, "{gap:e}");
+            }
             if edge.is_free() { free += 1 } else { contacts += 1 }
         }
     }
@@ -203,7 +222,7 @@ fn edges_without_a_way_are_free_or_in_contact_at_once() {
         .map(Result::unwrap);
         match one {
             PathAnswer::Free { until, .. } => {
-                assert!(until == 1.0 && other.free_until() == 9.0 && other.is_free())
+                assert!(until == 1.0 && other.free_until() == 9.0 && other.is_free());
             }
             PathAnswer::Contact(_) => assert!(one.free_until() == 0.0 && other.free_until() == 2.0),
             PathAnswer::Undecided { .. } => panic!("{one:?}"),
@@ -241,7 +260,7 @@ fn many_turns_and_written_numbers() {
         assert!((angle - first).abs() < 1e-15 * begin + 1e-6, "{begin}: {angle} {first}");
     }
     // Half a turn as files write it, onto a pin that a gap of 1e-13 beyond leaves: the answers differ as the numbers do.
-    let written = 3.14159265359;
+    let written: f64 = "3.14159265359".parse().unwrap();
     for (end, sign) in [(written, 1.0), (std::f64::consts::PI, 1.0), (-written, -1.0)] {
         let clear = first - 1e-9;
         assert!(edges.check(&[0.0], &[sign * clear]).unwrap().is_free());
