@@ -549,7 +549,6 @@ impl Robot {
     /// >>> robot.check_edges(numpy.zeros((3, 1)), [[1.0], [2.0], [3.0]])["free_until"].tolist()
     /// [1.0, 1.0, 1.0]
     #[pyo3(signature = (start, end, *, joints=None, threads=None, progress=None))]
-    #[expect(clippy::too_many_arguments, reason = "keywords")]
     fn check_edges<'py>(
         &self,
         py: Python<'py>,
