@@ -12,7 +12,6 @@ mod engine;
 mod method;
 mod peers;
 mod progress;
-mod robots;
 mod row;
 mod run;
 mod scenes;
@@ -56,8 +55,6 @@ enum Only {
 enum Subject {
     /// Steps of simulations: boxes that fall into a pile, a bolt, gears, a sleeping pile, pebbles and knots.
     Dynamics,
-    /// Edges of a planner: an arm of seven joints among five obstacles, or the robot of --robot; with --count so many edges a step.
-    Robots,
 }
 
 #[derive(clap::Args, Clone, Debug)]
@@ -65,12 +62,6 @@ enum Subject {
 pub(crate) struct Options {
     /// Measure this instead of queries.
     subject: Option<Subject>,
-    /// With `robots`: this URDF file instead of the arm that is built in.
-    #[arg(long, requires = "subject")]
-    robot: Option<PathBuf>,
-    /// With `robots`: the SRDF file of --robot.
-    #[arg(long, requires = "robot")]
-    srdf: Option<PathBuf>,
     /// With `dynamics`: 300 and 1000 boxes too.
     #[arg(long, requires = "subject")]
     full: bool,
@@ -194,7 +185,6 @@ pub(crate) fn run(options: &Options) -> TaskResult {
     match (options.subject, options.only) {
         _ if options.check => check::run(options.accept),
         (Some(Subject::Dynamics), _) => dynamics::run(extent),
-        (Some(Subject::Robots), _) => robots::run(options),
         (None, Some(Only::Scenes)) => scenes::run(options.rounds),
         (None, Some(Only::Batch)) => batch::run(options.rounds),
         (None, Some(Only::Clearances)) => clearances::run(options),
