@@ -359,6 +359,18 @@ impl Robot {
 }
 
 /// A mesh of links, as their file names it.
+///
+/// ```
+/// # use d2m_robot::{Robot, RobotOptions};
+/// let tree = std::sync::Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box")?));
+/// let text = r#"<robot name="one"><link name="body"><collision><geometry>
+///     <mesh filename="body.stl" scale="1 2 1"/></geometry></collision></link></robot>"#;
+/// let scale = glam::DVec3::new(1.0, 2.0, 1.0);
+/// let robot = Robot::parse("one.urdf", text, &RobotOptions::new().with_mesh("body.stl", scale, tree))?;
+/// let mesh = robot.meshes().next().expect("the link has one");
+/// assert_eq!((mesh.name, mesh.scale), ("body.stl", scale));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct RobotMesh<'a> {
