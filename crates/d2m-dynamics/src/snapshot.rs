@@ -79,6 +79,7 @@ struct Held(Option<HeldBody>);
 #[derive(Clone)]
 struct HeldBody {
     tree: Arc<MeshTree>,
+    role: Role,
     center: DVec3,
     rounding: f64,
     solid: Solid,
@@ -105,7 +106,8 @@ impl Held {
             _ => None,
         };
         let (tree, center) = (Arc::clone(&body.tree), body.center);
-        Self(Some(HeldBody { tree, center, rounding: body.rounding, solid: body.solid, motion }))
+        let (role, rounding, solid) = (body.role, body.rounding, body.solid);
+        Self(Some(HeldBody { tree, role, center, rounding, solid, motion }))
     }
 
     /// Is this the body that the state was taken of?
@@ -113,7 +115,7 @@ impl Held {
         self.0.as_ref().is_some_and(|held| {
             Arc::ptr_eq(&held.tree, &body.tree)
                 && (held.center, held.rounding) == (body.center, body.rounding)
-                && held.solid == body.solid
+                && (held.role, held.solid) == (body.role, body.solid)
         })
     }
 }

@@ -3,7 +3,7 @@
 
 use d2m_bvh::{MeshTree, Posed, Solid, distance};
 use d2m_dynamics::{
-    Body, BodyId, Groups, Joint, JointKind, Kind, Mass, Motor, MotorTarget, Segment, Simulation,
+    Body, BodyId, Groups, Joint, JointKind, Kind, Mass, Motor, MotorTarget, Presence, Segment, Simulation,
     SimulationError, SimulationOptions, StepError,
 };
 use d2m_motion::{ConstantTwist, Pose, RigidMotion};
@@ -426,6 +426,18 @@ fn snapshots_of_other_bodies_are_checked() {
     };
     let (small, mut large) = (two(0.5), two(1.0));
     assert!(matches!(large.restore(&small.snapshot()), Err(SimulationError::Intersecting { .. })));
+    // Of the same shapes, but in each other, as a sensor may be.
+    let placed = |presence: Presence, shape: &Arc<MeshTree>, x: f64| {
+        let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
+        simulation.add(&Body::new("one", Arc::clone(shape)).with_presence(presence)).unwrap();
+        simulation.add(&Body::new("other", Arc::clone(shape)).with_position(DVec3::X * x)).unwrap();
+        simulation.step().unwrap();
+        simulation
+    };
+    let shape = cube();
+    let overlapping = placed(Presence::Sensor, &shape, 0.5).snapshot();
+    let mut solid = placed(Presence::Solid, &shape, 2.0);
+    assert!(matches!(solid.restore(&overlapping), Err(SimulationError::Intersecting { .. })));
     let same = two(0.5);
     let mut small = small;
     small.restore(&same.snapshot()).unwrap();

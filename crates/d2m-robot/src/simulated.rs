@@ -159,7 +159,7 @@ impl<'r> RobotBodies<'r> {
         for (&first, links) in &groups {
             let is_held = first == root && self.base == Base::Held;
             let Some(body) = self.body(first, links, &poses, is_held)? else { continue };
-            let id = simulation.add(&body).map_err(|error| self.refused(error))?;
+            let id = simulation.add(&body).map_err(|error| self.refused(&error))?;
             for &link in links {
                 added.bodies[link] = Some(id);
             }
@@ -178,7 +178,7 @@ impl<'r> RobotBodies<'r> {
                 added.remarks.push(format!("joint {:?} mimics another one and is free here", joint.name));
             }
             let made = self.joint(index, &poses[joint.child], added)?;
-            added.joints[index] = Some(simulation.add_joint(&made).map_err(|error| self.refused(error))?);
+            added.joints[index] = Some(simulation.add_joint(&made).map_err(|error| self.refused(&error))?);
         }
         for a in 0..robot.links.len() {
             for b in a + 1..robot.links.len() {
@@ -306,7 +306,7 @@ impl<'r> RobotBodies<'r> {
         RobotError::Robot { file: self.robot.file().to_owned(), reason }
     }
 
-    fn refused(&self, error: SimulationError) -> RobotError {
+    fn refused(&self, error: &SimulationError) -> RobotError {
         self.fault(error.to_string())
     }
 }
