@@ -211,6 +211,12 @@ pub(crate) struct SizeArguments {
     /// Unit of the numbers of B
     #[arg(long, value_name = "UNIT")]
     pub(crate) unit_b: Option<String>,
+    /// Radius of A: it is everything within this distance of its mesh (a point with a radius is a sphere, a segment a capsule)
+    #[arg(long, value_name = "R", allow_hyphen_values = true)]
+    pub(crate) radius_a: Option<String>,
+    /// Radius of B
+    #[arg(long, value_name = "R", allow_hyphen_values = true)]
+    pub(crate) radius_b: Option<String>,
 }
 
 /// What counts as a body.

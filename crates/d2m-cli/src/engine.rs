@@ -1,6 +1,6 @@
 //! One prepared pair of bodies for every method.
 
-use crate::arguments::{FurtherArguments, Method, QueryArguments, SolidArguments};
+use crate::arguments::{FurtherArguments, Method, QueryArguments, SizeArguments, SolidArguments};
 use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::output::note;
@@ -69,6 +69,8 @@ pub(crate) struct Pair {
     pub(crate) b: Body,
     /// What counts as contact with each body.
     pub(crate) solids: [Solid; 2],
+    /// Each body is everything within this distance of its mesh.
+    pub(crate) radii: [f64; 2],
     /// Distance at which the bodies count as touching.
     pub(crate) min_separation: f64,
     pub(crate) preparation: Duration,
@@ -110,6 +112,11 @@ impl Pair {
     /// Checks the options and builds the trees.
     pub(crate) fn new(a: Loaded, b: Loaded, arguments: &QueryArguments) -> Result<Self, Failure> {
         let options = options_of(arguments)?;
+        let radii = read_radii(&arguments.sizes)?;
+        if radii != [0.0; 2] && arguments.mode == Method::Paper {
+            let option = if radii[0] > 0.0 { "--radius-a" } else { "--radius-b" };
+            return Err(Failure::at(option, "the reference method has none"));
+        }
         let start = Instant::now();
         let [a, b] = [a, b].map(|body| Body::new(body, arguments.mode));
         let preparation = start.elapsed();
@@ -117,13 +124,14 @@ impl Pair {
             choose_solid([(&a.name, a.is_watertight())], arguments.solid)?,
             choose_solid([(&b.name, b.is_watertight())], arguments.solid)?,
         ];
-        warn_of_sizes(size_of(a.mesh()), size_of(b.mesh()));
-        Ok(Self { a, b, solids, min_separation: options.min_separation, preparation, options })
+        let [size_a, size_b] = sizes_of([&a, &b], radii);
+        warn_of_sizes(size_a, size_b);
+        Ok(Self { a, b, solids, radii, min_separation: options.min_separation, preparation, options })
     }
 
     /// How large the bodies are.
     pub(crate) fn sizes(&self) -> [f64; 2] {
-        [size_of(self.a.mesh()), size_of(self.b.mesh())]
+        sizes_of([&self.a, &self.b], self.radii)
     }
 
     /// The options of its queries.
@@ -196,6 +204,7 @@ impl Pair {
         let [a, b] = motions.map(|motion| motion.pose_and_twist(time).0);
         let solid = if self.solids == [Solid::Filled; 2] { Solid::Filled } else { Solid::Surface };
         let found = distance(Posed::new(tree_a, a), Posed::new(tree_b, b), solid).ok()?;
+        let found = found.with_radii(self.radii);
         Some([found.lower, found.upper.max(found.lower)])
     }
 
@@ -252,7 +261,9 @@ impl Pair {
         let [solid_a, solid_b] = self.solids;
         match (&self.a.tree, &self.b.tree) {
             (Tree::Engine(tree_a), Tree::Engine(tree_b)) if self.options.mode == Mode::Accurate => {
-                Ok([Moving::new(tree_a, a).with_solid(solid_a), Moving::new(tree_b, b).with_solid(solid_b)])
+                let [a, b] = [(tree_a, a, solid_a), (tree_b, b, solid_b)]
+                    .map(|(tree, motion, solid)| Moving::new(tree, motion).with_solid(solid));
+                Ok([a.with_radius(self.radii[0]), b.with_radius(self.radii[1])])
             }
             _ => Err(Failure::at("--mode", format!("only accurate answers the question of {question}"))),
         }
@@ -263,8 +274,8 @@ impl Pair {
         let [solid_a, solid_b] = self.solids;
         let verdict = match (&self.a.tree, &self.b.tree) {
             (Tree::Engine(tree_a), Tree::Engine(tree_b)) => {
-                let a = Moving::new(tree_a, a).with_solid(solid_a);
-                let b = Moving::new(tree_b, b).with_solid(solid_b);
+                let a = Moving::new(tree_a, a).with_solid(solid_a).with_radius(self.radii[0]);
+                let b = Moving::new(tree_b, b).with_solid(solid_b).with_radius(self.radii[1]);
                 time_of_contact(a, b, window, &self.options)
             }
             (Tree::Paper(tree_a), Tree::Paper(tree_b)) => {
@@ -278,6 +289,11 @@ impl Pair {
         let verdict = verdict.map_err(|error| bad_input(error, [a, b], window))?;
         Ok(Answer { verdict, took, further: Further::default() })
     }
+}
+
+/// The diagonals of the boxes around two bodies.
+fn sizes_of(bodies: [&Body; 2], radii: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|k| size_of(bodies[k].mesh()) + 2.0 * radii[k])
 }
 
 /// An error of a query, with the motion that it comes from.
@@ -343,6 +359,15 @@ pub(crate) fn number(
     } else {
         Err(Failure::at(option, format!("{text} is not {wanted}")))
     }
+}
+
+/// The radii that the options state: a body is everything within its radius of its mesh.
+pub(crate) fn read_radii(sizes: &SizeArguments) -> Result<[f64; 2], Failure> {
+    let one = |option: &str, given: &Option<String>| {
+        let wanted = "a finite radius that is not negative";
+        given.as_deref().map_or(Ok(0.0), |text| number(option, text, wanted, |radius| radius >= 0.0))
+    };
+    Ok([one("--radius-a", &sizes.radius_a)?, one("--radius-b", &sizes.radius_b)?])
 }
 
 /// Filled if the bodies (name, and whether it is watertight) all close, unless the user says otherwise.

@@ -1,7 +1,7 @@
 //! Two bodies at rest, as `d2m distance`, `d2m collide` and `d2m proximities` take them.
 
 use crate::arguments::{PosedArguments, SolidArguments};
-use crate::engine::choose_solid;
+use crate::engine::{choose_solid, read_radii};
 use crate::failure::{Failure, parse_json};
 use crate::load::read;
 use crate::motion::file_hint;
@@ -28,12 +28,15 @@ impl Body {
 /// Two bodies, A and B.
 pub(crate) struct PosedBodies {
     pub(crate) both: [Body; 2],
+    /// Each body is everything within this distance of its mesh.
+    pub(crate) radii: [f64; 2],
 }
 
 impl PosedBodies {
     /// Reads poses, then meshes.
     pub(crate) fn new(arguments: &PosedArguments) -> Result<Self, Failure> {
         let poses = [parse_pose("--pose-a", &arguments.pose_a)?, parse_pose("--pose-b", &arguments.pose_b)?];
+        let radii = read_radii(&arguments.sizes)?;
         let [a, b] = load_both(&arguments.a, &arguments.b, &arguments.sizes)?;
         let [pose_a, pose_b] = poses;
         let both = [(a, pose_a), (b, pose_b)].map(|(loaded, pose)| Body {
@@ -41,14 +44,19 @@ impl PosedBodies {
             tree: loaded.into_tree(),
             pose,
         });
-        let [size_a, size_b] = both.each_ref().map(|body| size_of(body.tree.mesh()));
+        let bodies = Self { both, radii };
+        let [size_a, size_b] = bodies.sizes();
         warn_of_sizes(size_a, size_b);
-        Ok(Self { both })
+        Ok(bodies)
     }
 
     /// The last line of a text: how large the bodies are.
     pub(crate) fn sizes_line(&self) -> String {
-        sizes_line(self.both.each_ref().map(|body| size_of(body.tree.mesh())), None)
+        sizes_line(self.sizes(), None)
+    }
+
+    fn sizes(&self) -> [f64; 2] {
+        [0, 1].map(|k| size_of(self.both[k].tree.mesh()) + 2.0 * self.radii[k])
     }
 
     /// What counts as a body.

@@ -86,6 +86,30 @@ pub(crate) fn sizes_line(sizes: [f64; 2], travels: Option<[Travel; 2]>) -> Strin
     format!("  {:<12}{} · {}\n", "sizes", one(0), one(1))
 }
 
+/// The same of many bodies, each with its name, its size, and how far it goes and turns: those that stand out.
+pub(crate) fn scene_sizes_line(bodies: &[(&str, f64, Travel)]) -> String {
+    let most = |of: fn(&(&str, f64, Travel)) -> f64| bodies.iter().max_by(|x, y| of(x).total_cmp(&of(y)));
+    let size = |body: &(&str, f64, Travel)| body.1;
+    let small = bodies.iter().min_by(|x, y| size(x).total_cmp(&size(y)));
+    let (Some(small), Some(large), Some(far), Some(turned)) =
+        (small, most(size), most(|body| body.2.way), most(|body| body.2.turn))
+    else {
+        return String::new();
+    };
+    format!(
+        "  {:<12}from {} ({}) to {} ({}) across · moves up to {} ({}) · turns up to {}° ({})\n",
+        "sizes",
+        digits(small.1),
+        small.0,
+        digits(large.1),
+        large.0,
+        digits(far.2.way),
+        far.0,
+        digits(turned.2.turn.to_degrees()),
+        turned.0,
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

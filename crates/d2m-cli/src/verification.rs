@@ -111,7 +111,8 @@ impl<'p> PairVerifier<'p> {
         let prepared = self.pair.a.tree().zip(self.pair.b.tree());
         let trees = self.trees.as_ref().map(|[a, b]| [a, b]).or(prepared.map(|(a, b)| [a, b]));
         let Some(trees) = trees else { unreachable!("trees are built where there are none") };
-        [0, 1].map(|k| Moving::new(trees[k], motions[k]).with_solid(self.pair.solids[k]))
+        let Pair { solids, radii, .. } = self.pair;
+        [0, 1].map(|k| Moving::new(trees[k], motions[k]).with_solid(solids[k]).with_radius(radii[k]))
     }
 
     /// The first field of a contact that is not that of its triangles.
@@ -186,6 +187,29 @@ impl<'b> Bodies<'b> {
         let verifier = Verifier::new([Arc::clone(&self.meshes[a]), Arc::clone(&self.meshes[b])]);
         let bodies = [self.bodies[a], self.bodies[b]];
         Proof(verifier.time_of_contact(&bodies, window, options, answer, DEFAULT_STEPS))
+    }
+
+    /// The same of how near two of the bodies come.
+    pub(crate) fn prove_clearance(
+        &self,
+        [a, b]: [usize; 2],
+        window: Window,
+        options: &ClearanceOptions,
+        answer: &Clearance,
+    ) -> Proof {
+        let verifier = Verifier::new([Arc::clone(&self.meshes[a]), Arc::clone(&self.meshes[b])]);
+        let bodies = [self.bodies[a], self.bodies[b]];
+        Proof(verifier.clearance(&bodies, window, options, answer, DEFAULT_STEPS))
+    }
+
+    /// Proves that two of the bodies are at least this far apart all the time, however they meet.
+    pub(crate) fn prove_apart(&self, [a, b]: [usize; 2], window: Window, distance: f64) -> Proof {
+        let verifier = Verifier::new([Arc::clone(&self.meshes[a]), Arc::clone(&self.meshes[b])]);
+        let bodies = [self.bodies[a], self.bodies[b]];
+        let span = TimeSpan { from: window.start(), to: window.end() };
+        // The claim is of more than a distance.
+        let claim = Claim::Clear { span, distance: distance.next_down() };
+        Proof(verify(&verifier.query(&bodies, window, &QueryOptions::default()), &claim, DEFAULT_STEPS))
     }
 
     /// The same of what is said of bodies that part.

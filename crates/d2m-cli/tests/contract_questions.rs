@@ -137,3 +137,79 @@ fn the_spans_of_a_scene() {
     let clear = ask(&["spans", &alone, "--json"]);
     assert_eq!(clear["spans"], serde_json::json!([{"from": 0.0, "to": 1.0, "status": "clear"}]));
 }
+
+/// A body with a radius is everything within it of its mesh: what is asked of two meshes is asked of two bodies.
+#[test]
+fn bodies_with_radii() {
+    let radii = ["--radius-a", "0.25", "--radius-b=0.5", "--json"];
+    let with = |first: &[&str]| ask(&[first, &radii[..]].concat());
+    // Cubes of edge 1 whose meshes are 2 apart, and whose bodies are 1.25 apart.
+    let still = with(&["distance", CUBE, CUBE, "--pose-b", "x=3,0,0"]);
+    assert!((number(&still["distance"]) - 1.25).abs() < 1e-12, "{still}");
+    assert!((number(&still["point_a"][0]) - 0.75).abs() < 1e-12, "{still}");
+    let near = with(&["proximities", CUBE, CUBE, "--pose-b", "x=3,0,0", "--margin", "1.3"]);
+    assert!((number(&near["proximities"][0]["distance"]) - 1.25).abs() < 1e-12, "{near}");
+    let far = with(&["proximities", CUBE, CUBE, "--pose-b", "x=3,0,0", "--margin", "1.2"]);
+    assert_eq!(far["found"], 0, "{far}");
+    for (x, status, start) in [("x=1.8,0,0", "separated", "apart"), ("x=1.7,0,0", "contact", "overlapping")] {
+        let collide = with(&["collide", CUBE, CUBE, "--pose-b", x]);
+        assert_eq!((&collide["status"], &collide["start"]), (&status.into(), &start.into()), "{collide}");
+    }
+
+    let closing = ["--motion-a", "x=-3,0,0;v=4,0,0", "--verify"];
+    let toc = with(&[&["toc", CUBE, CUBE][..], &closing].concat());
+    assert!((number(&toc["toc"]) - 0.3125).abs() < 1e-9 && toc["verified"] == true, "{toc}");
+    let folder = Folder::new("radii");
+    let answer = folder.file("toc.json", &toc.to_string());
+    let again = ["verify", CUBE, CUBE, "--motion-a", "x=-3,0,0;v=4,0,0", "--answer", &answer];
+    assert_eq!(d2m(&[&again[..], &radii].concat()).status.code(), Some(0));
+    // Of the meshes alone that is no answer: these are not their points.
+    assert_eq!(d2m(&again).status.code(), Some(3));
+    let spans = with(&[&["spans", CUBE, CUBE, "--resolution=1e-3"][..], &closing].concat());
+    assert!((number(&spans["spans"][0]["to"]) - 0.3125).abs() < 1e-9, "{spans}");
+    let passing = ["clearance", CUBE, CUBE, "--motion-a", "x=-3,2,0;v=6,0,0", "--verify"];
+    let clearance = with(&passing);
+    assert!((number(&clearance["clearance"][1]) - 0.25).abs() < 1e-6, "{clearance}");
+    assert_eq!(clearance["verified"], true, "{clearance}");
+    let text = d2m(&["distance", CUBE, CUBE, "--pose-b", "x=3,0,0", "--radius-a", "0.25"]);
+    assert!(
+        stdout(&text).ends_with("sizes       A is 2.232 across · B is 1.732 across\n"),
+        "{}",
+        stdout(&text)
+    );
+
+    for command in ["toc", "distance"] {
+        refused(&[command, CUBE, CUBE, "--radius-a", "-1"], &["--radius-a", "-1 is not a finite radius"]);
+        refused(&[command, CUBE, CUBE, "--radius-b", "nan"], &["--radius-b", "finite radius"]);
+    }
+    refused(
+        &["toc", CUBE, CUBE, "--radius-b=1", "--mode=paper"],
+        &["--radius-b", "reference method has none"],
+    );
+    let scene = cell(&folder, "cell.json", &[]);
+    refused(&["clearance", &scene, "--radius-a=1"], &["--radius-a", "the scene says this itself"]);
+}
+
+/// The clearances of a scene are proven again pair by pair, and its text ends with what bodies are like.
+#[test]
+fn clearances_of_a_scene_are_verified() {
+    let folder = Folder::new("scene-verified");
+    let apart = cell(&folder, "apart.json", &[("\"x\": [4, 0, 0]", "\"x\": [4, 2, 0]")]);
+    let nearest = ask(&["clearance", &apart, "--verify", "--json"]);
+    assert!(nearest["verified"] == true && number(&nearest["proof_steps"]) >= 4.0, "{nearest}");
+    let below = ask(&["clearance", &apart, "--verify", "--below", "1.75", "--json"]);
+    assert!(below["verified"] == true && below["pairs"].as_array().is_some_and(|p| p.len() > 1), "{below}");
+    let text = d2m(&["clearance", &apart, "--verify"]);
+    let text = stdout(&text);
+    let (body, sizes) = text.trim_end().rsplit_once('\n').unwrap();
+    assert!(body.contains("verified    yes"), "{text}");
+    assert_eq!(
+        sizes,
+        "  sizes       from 1.732 (wall) to 25.48 (floor) across · moves up to 16 (tool) · turns up to 0° (tool)"
+    );
+    for command in ["spans", "scene"] {
+        let run = d2m(&[command, &apart]);
+        assert!(stdout(&run).ends_with(&format!("{sizes}\n")), "{command}: {}", stdout(&run));
+    }
+    refused(&["spans", &apart, "--verify"], &["--verify", "two meshes"]);
+}

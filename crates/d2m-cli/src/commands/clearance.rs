@@ -1,6 +1,6 @@
 //! `d2m clearance`: how near do two moving meshes come?
 
-use super::scene_question::{SceneQuestion, is_scene};
+use super::scene_question::{SceneQuestion, is_scene, sizes_line_of};
 use super::toc::{MovingPair, prove, read, refuse, with_proof};
 use crate::arguments::ClearanceArguments;
 use crate::engine::{ClearanceAnswer, MIN_SEPARATION, Pair, number};
@@ -9,8 +9,9 @@ use crate::outcome::Outcome;
 use crate::output::print_answer;
 use crate::output::short;
 use crate::report::{body_lines, duration, feature_sentence, microseconds, vector};
+use crate::scene::{Scene, SceneBody};
 use crate::sizes::sizes_line;
-use crate::verification::Promise;
+use crate::verification::{Bodies, Promise, Proof, joined};
 use d2m::bvh::{Clearance, ClearanceOptions, ClearanceStatus, Window};
 use d2m::{BodyId, PairClearance, WorldError};
 use d2m_io::clearance_fields;
@@ -61,6 +62,11 @@ fn run_scene(arguments: &ClearanceArguments, accuracy: f64) -> Result<Outcome, F
         (object["a"], object["b"]) = (json!(name(found.a)), json!(name(found.b)));
         object
     };
+    let proof = if toc.verify {
+        Some(prove_scene(&scene, &wanted, nearest.as_ref(), below.zip(near.as_deref()))?)
+    } else {
+        None
+    };
     let status = nearest.as_ref().map_or(ClearanceStatus::Clear, |found| found.clearance.status);
     print_answer(&if toc.json {
         // Of a scene without pairs nothing comes near.
@@ -70,6 +76,9 @@ fn run_scene(arguments: &ClearanceArguments, accuracy: f64) -> Result<Outcome, F
         if let (Some(limit), Some(near)) = (below, &near) {
             answer["below"] = json!(limit);
             answer["pairs"] = near.iter().map(object).collect();
+        }
+        if let Some(proof) = proof {
+            proof.put(&mut answer);
         }
         format!("{answer}\n")
     } else {
@@ -93,9 +102,38 @@ fn run_scene(arguments: &ClearanceArguments, accuracy: f64) -> Result<Outcome, F
             let _ = writeln!(text, "  {} of all pairs come within {}", near.len(), short(limit));
             text.extend(near.iter().map(|found| format!("  {}", line(found))));
         }
-        text
+        if let Some(proof) = proof {
+            let _ = writeln!(text, "  verified    {}", proof.sentence());
+        }
+        text + &sizes_line_of(&scene)
     })?;
     Ok(Outcome::from(status).reported(toc.exit_status))
+}
+
+/// Proves the answer about a scene again: the clearances that it states, and that all other pairs stay at least as far apart as the
+/// nearest one does, and as the limit where one was given.
+fn prove_scene(
+    scene: &Scene,
+    options: &ClearanceOptions,
+    nearest: Option<&PairClearance>,
+    near: Option<(f64, &[PairClearance])>,
+) -> Result<Proof, Failure> {
+    let bodies = Bodies::new(scene.bodies.iter().map(SceneBody::moving).collect())?;
+    let (limit, listed) = near.unwrap_or((0.0, &[]));
+    let least = nearest.map_or(limit, |found| found.clearance.lower);
+    let stated: Vec<&PairClearance> = nearest.into_iter().chain(listed).collect();
+    let of = |found: &PairClearance| [found.a.index(), found.b.index()];
+    let of_stated = stated
+        .iter()
+        .map(|&found| bodies.prove_clearance(of(found), scene.window, options, &found.clearance));
+    let is = |found: &PairClearance, [a, b]: [usize; 2]| of(found) == [a, b] || of(found) == [b, a];
+    let others = scene.pairs().into_iter().filter(|&pair| !listed.iter().any(|found| is(found, pair)));
+    let others = others.filter(|&pair| !nearest.is_some_and(|found| is(found, pair)));
+    // Of bodies that meet nothing follows for the others.
+    let distance = least.max(limit);
+    let others = others.filter(|_| distance > 0.0);
+    let apart = others.map(|pair| bodies.prove_apart(pair, scene.window, distance));
+    Ok(joined(of_stated.chain(apart)))
 }
 
 fn to_json(pair: &Pair, window: Window, ClearanceAnswer { found, took }: &ClearanceAnswer) -> String {

@@ -18,18 +18,24 @@ pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
     let solid = bodies.solid(arguments.solid)?;
     let [a, b] = &bodies.both;
     let start = Instant::now();
-    let is_contact = collide(a.posed(), b.posed(), solid).map_err(|error| bodies.failure(error))?;
+    let rounded = bodies.radii != [0.0; 2];
+    let is_near = rounded || collide(a.posed(), b.posed(), solid).map_err(|error| bodies.failure(error))?;
     let took = start.elapsed();
-    let triangles = if is_contact {
-        try_colliding_pair(a.posed(), b.posed()).map_err(|error| bodies.failure(error))?
+    // How bodies that are not apart meet: decided by the distance, which finds the normal of those that touch. It decides everything of
+    // bodies with radii.
+    let met = if is_near {
+        let found = distance(a.posed(), b.posed(), solid).map_err(|error| bodies.failure(error))?;
+        Some(found.with_radii(bodies.radii)).filter(|met| !rounded || met.state != StartState::Apart)
     } else {
         None
     };
-    // How bodies that are not apart meet: decided by the distance, which finds the normal of those that touch.
-    let met = if is_contact {
-        Some(distance(a.posed(), b.posed(), solid).map_err(|error| bodies.failure(error))?)
-    } else {
-        None
+    let is_contact = met.is_some();
+    let triangles = match &met {
+        Some(met) if rounded => {
+            (met.state != StartState::Contained).then_some([met.triangle_a, met.triangle_b])
+        }
+        Some(_) => try_colliding_pair(a.posed(), b.posed()).map_err(|error| bodies.failure(error))?,
+        None => None,
     };
     let state = met.as_ref().map_or(StartState::Apart, |met| met.state);
     let normal = met.as_ref().filter(|met| met.state == StartState::Touching).map(|met| met.normal);

@@ -20,7 +20,7 @@ pub(crate) fn run(arguments: &DistanceArguments) -> Result<Outcome, Failure> {
     let start = Instant::now();
     let found = distance(a.posed(), b.posed(), solid);
     let took = start.elapsed();
-    let found = found.map_err(|error| bodies.failure(error))?;
+    let found = found.map_err(|error| bodies.failure(error))?.with_radii(bodies.radii);
     print_answer(&if arguments.posed.json {
         to_json(&bodies, solid, &found, took)
     } else {

@@ -36,10 +36,14 @@ pub(crate) fn run(arguments: &ProximitiesArguments) -> Result<Outcome, Failure> 
     };
     let bodies = PosedBodies::new(&arguments.posed)?;
     let [a, b] = &bodies.both;
-    let options = ProximityOptions::new(margin).with_cone_slack(slack);
+    // Rounded bodies are nearer than their meshes.
+    let [radius_a, radius_b] = bodies.radii;
+    let options = ProximityOptions::new((margin + (radius_a + radius_b)).next_up()).with_cone_slack(slack);
     let start = Instant::now();
     let found = match proximities_with(a.posed(), b.posed(), &options) {
         Ok(all) => {
+            let rounded = all.iter().map(|near| near.with_radii(bodies.radii));
+            let all: Vec<Proximity> = rounded.filter(|near| near.distance <= margin).collect();
             let count = all.len();
             let kept = match reduce {
                 Some(angle) => reduce_proximities(&all, angle),

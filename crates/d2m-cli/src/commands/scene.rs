@@ -1,5 +1,6 @@
 //! `d2m scene`: the contacts of many bodies.
 
+use super::scene_question::sizes_line_of;
 use crate::arguments::SceneArguments;
 use crate::engine::number;
 use crate::failure::Failure;
@@ -99,7 +100,7 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
         proof.map_or(Ok(text.clone()), |proof| proof.put_into(&text))?
     } else {
         let proof = proof.map_or(String::new(), |proof| format!("  verified: {}\n", proof.sentence()));
-        text(scene.window, &names, &rows) + &proof
+        text(scene.window, &names, &rows) + &proof + &sizes_line_of(&scene)
     })?;
     let outcome = if rows.iter().any(|row| row.answer.contact().is_some()) {
         Outcome::Contact

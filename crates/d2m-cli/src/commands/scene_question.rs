@@ -3,7 +3,9 @@
 use crate::arguments::{Method, TocArguments};
 use crate::engine::options_of;
 use crate::failure::Failure;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneBody};
+use crate::sizes::{scene_sizes_line, size_of};
+use crate::travel::Travel;
 use d2m::World;
 use d2m::bvh::QueryOptions;
 use std::path::Path;
@@ -38,15 +40,14 @@ impl SceneQuestion {
             ("--scale-b", query.sizes.scale_b.is_some()),
             ("--unit-a", query.sizes.unit_a.is_some()),
             ("--unit-b", query.sizes.unit_b.is_some()),
+            ("--radius-a", query.sizes.radius_a.is_some()),
+            ("--radius-b", query.sizes.radius_b.is_some()),
         ];
         if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
             return Err(Failure::at(option, "the scene says this itself, in its file"));
         }
         if query.mode != Method::Accurate {
             return Err(Failure::at("--mode", "only accurate answers this question of a scene"));
-        }
-        if arguments.verify {
-            return Err(Failure::at("--verify", "it is for two meshes, and for d2m scene --first"));
         }
         let scene = Scene::read(Path::new(&arguments.a))?;
         let world = scene.world(options_of(query)?);
@@ -57,3 +58,14 @@ impl SceneQuestion {
 
 /// The window if none is given.
 const WINDOW: &str = "0,1";
+
+/// The last line of a text about a scene: the smallest and the largest body, and which goes and turns the furthest.
+pub(super) fn sizes_line_of(scene: &Scene) -> String {
+    let size = |body: &SceneBody| size_of(body.tree.mesh()) + 2.0 * body.radius;
+    let named: Vec<(&str, f64, Travel)> = scene
+        .bodies
+        .iter()
+        .map(|body| (body.name.as_str(), size(body), Travel::of(&body.motion, scene.window)))
+        .collect();
+    scene_sizes_line(&named)
+}

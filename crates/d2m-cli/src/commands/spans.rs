@@ -1,6 +1,6 @@
 //! `d2m spans`: which times of a window are proven clear?
 
-use super::scene_question::{SceneQuestion, is_scene};
+use super::scene_question::{SceneQuestion, is_scene, sizes_line_of};
 use super::toc::{MovingPair, prove, read, refuse, with_proof};
 use crate::arguments::{SpansArguments, TocArguments};
 use crate::engine::number;
@@ -55,6 +55,12 @@ fn outcome_of(spans: &[ContactSpan]) -> Outcome {
 
 /// The spans of all pairs of a scene together, and of each that is not clear all the time.
 fn run_scene(toc: &TocArguments, resolution: Option<f64>) -> Result<Outcome, Failure> {
+    if toc.verify {
+        return Err(Failure::at(
+            "--verify",
+            "it proves the spans of two meshes; of a scene d2m clearance and d2m scene --first",
+        ));
+    }
     let SceneQuestion { scene, world, .. } = SceneQuestion::read(toc)?;
     let resolution = resolution.unwrap_or(RESOLUTION * scene.window.length());
     let pairs = world.contact_spans(scene.window, Some(resolution));
@@ -76,7 +82,7 @@ fn run_scene(toc: &TocArguments, resolution: Option<f64>) -> Result<Outcome, Fai
         for pair in &pairs {
             let _ = write!(text, "{} \u{2013} {}: {}", name(pair.a), name(pair.b), to_text(&pair.spans));
         }
-        text
+        text + &sizes_line_of(&scene)
     })?;
     Ok(outcome_of(&all).reported(toc.exit_status))
 }
