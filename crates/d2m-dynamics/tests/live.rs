@@ -257,16 +257,16 @@ fn distances_of_a_body_that_is_gone_prove_nothing() {
         Body::new("bar", shape).with_kind(Kind::Static)
     };
     let thin = simulation.add(&bar(0.1)).unwrap();
-    let ball = Body::new("ball", cube()).with_position(DVec3::X * 1.2).with_linear_velocity(DVec3::X * -1e-3);
+    let ball = Body::new("ball", cube()).with_position(DVec3::X * 0.9).with_linear_velocity(DVec3::X * -1e-3);
     let ball = simulation.add(&ball).unwrap();
     simulation.step().unwrap();
     simulation.remove(thin);
-    let thick = simulation.add_checked(&bar(0.4)).unwrap();
+    let thick = simulation.add_checked(&bar(0.3)).unwrap();
     assert_eq!(thick.index(), thin.index());
-    simulation.apply_impulse(ball, DVec3::X * -20_000.0, DVec3::ZERO).unwrap();
+    simulation.apply_impulse(ball, DVec3::X * -10_000.0, DVec3::ZERO).unwrap();
     for _ in 0..10 {
         simulation.step().unwrap();
-        assert!(simulation.position(ball).x > 0.9, "{}", simulation.position(ball));
+        assert!(simulation.position(ball).x > 0.8, "{}", simulation.position(ball));
     }
 }
 
