@@ -11,6 +11,18 @@ pub(crate) fn both<A: Send, B: Send>(
     (first(), second())
 }
 
+/// Triangles, or vertices, from which on two threads are worth waking: a tree of so many takes two milliseconds.
+const MANY: usize = 4096;
+
+/// As [`both`], side by side where the work is on many triangles.
+pub(crate) fn both_of_many<A: Send, B: Send>(
+    triangles: usize,
+    first: impl FnOnce() -> A + Send,
+    second: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if triangles > MANY { both(first, second) } else { (first(), second()) }
+}
+
 /// `work` of each item, in order: on all threads of the current rayon pool with the feature `rayon`.
 pub(crate) fn map_in_order<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
     #[cfg(feature = "rayon")]
@@ -20,4 +32,9 @@ pub(crate) fn map_in_order<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R
     }
     #[cfg(not(feature = "rayon"))]
     items.iter().map(work).collect()
+}
+
+/// As [`map_in_order`], on several threads where the items are many.
+pub(crate) fn map_of_many<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
+    if items.len() > MANY { map_in_order(items, work) } else { items.iter().map(work).collect() }
 }

@@ -85,7 +85,7 @@ fn a_start_a_little_above_the_tolerance() {
 
 #[test]
 fn an_early_stop_proves_no_contact() {
-    let passing = moving(DVec3::new(-4.0, 0.2, 2.01), DVec3::X * 8.0);
+    let passing = moving(DVec3::new(-4.0, 0.2, 2.001), DVec3::X * 8.0);
     let found = contact(&passing, &options().with_mode(Mode::Capoeira));
     assert_eq!((found.evidence, found.time_hi), (Evidence::Early, found.time_lo));
     let exists = contact(&moving(DVec3::Z * 4.0, DVec3::Z * -8.0), &options().with_mode(Mode::Exists));

@@ -1,7 +1,7 @@
 //! Does a surface close, and into how many parts does it fall? The two questions a solid needs answered, quickly.
 
 use super::disjoint_sets::DisjointSets;
-use super::first_equal::first_at_position;
+use super::first_equal::{are_distinct, first_at_position};
 use crate::{Topology, TriMesh};
 
 /// Answer of both questions.
@@ -15,6 +15,8 @@ pub(crate) struct Closedness {
     pub(crate) repeated: Vec<u32>,
     /// The lowest vertex of each connected part (equal positions connect), ascending.
     pub(crate) components: Vec<u32>,
+    /// No two vertices have equal positions. All else then follows from the triangles alone.
+    pub(crate) distinct: bool,
 }
 
 impl Closedness {
@@ -27,7 +29,13 @@ impl Closedness {
             let topology = Topology::new(mesh);
             (topology.is_watertight(), topology.is_consistently_oriented(), topology.repeated().to_vec())
         };
-        Self { watertight, oriented, repeated, components: components(mesh, first) }
+        let distinct = (0..).zip(&first).all(|(vertex, &first)| vertex == first);
+        Self { watertight, oriented, repeated, components: components(mesh, first), distinct }
+    }
+
+    /// That of a mesh with the same triangles and vertices elsewhere.
+    pub(crate) fn of_moved(self, mesh: &TriMesh) -> Self {
+        if self.distinct && are_distinct(mesh.vertices()) { self } else { Self::of(mesh) }
     }
 }
 

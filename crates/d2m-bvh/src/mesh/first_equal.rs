@@ -8,6 +8,11 @@ pub(super) fn first_at_position(vertices: &[DVec3]) -> Vec<u32> {
     first_equal(vertices, bits)
 }
 
+/// Have no two vertices equal coordinates (−0 = 0)?
+pub(super) fn are_distinct(vertices: &[DVec3]) -> bool {
+    (0..).zip(first_at_position(vertices)).all(|(vertex, first)| vertex == first)
+}
+
 /// For each item the lowest one with the same key: a table of twice the items, searched slot by slot.
 pub(super) fn first_equal<T>(items: &[T], key: impl Fn(&T) -> [u64; 3]) -> Vec<u32> {
     const EMPTY: u32 = u32::MAX;

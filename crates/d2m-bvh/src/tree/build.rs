@@ -1,40 +1,36 @@
-//! Construction from the top: split by count, eight boxes a node.
+//! Construction: parts are split by count from the top, eight to a node, and their boxes are fitted from the leaves upwards.
 //!
-//! Nodes are numbered in the order of a walk from the root, lane by lane. Large parts are built side by side, each
-//! into its own list, and the lists are joined in that order: the tree has the same bits at any number of threads.
+//! Nodes are numbered in the order of a walk from the root, lane by lane; where each of them lies follows from the number of
+//! triangles alone. Large parts are built side by side, each into its own run of the nodes: the tree has the same bits at
+//! any number of threads.
 
-use super::node::{Below, OrientedBox, WIDTH, WideNode};
-use super::split::Splitter;
-use super::surface::{Extent, SizedBox, Surface};
+use super::bottom_up::{Fitting, Lanes, Place, Scratch, Subtree};
+use super::fit::Moments;
+use super::node::{Below, WIDTH, WideNode};
+use super::plan::{Cut, NodeCounts, Plan};
+use super::split::{PartAxes, Splitter};
+use super::surface::{Extent, Surface};
 use crate::TriMesh;
+use crate::parallel::{both, map_of_many};
 use core::sync::atomic::{AtomicUsize, Ordering};
 
 /// Triangles that a tree can number.
 pub(super) const MOST_TRIANGLES: usize = 1 << 29;
 /// Parts of at most this many triangles are built by one thread, and reported when done.
 const GRAIN: usize = 4096;
+/// Parts of at most this many triangles are looked at as a whole, larger ones by a sample.
+const TAKEN: usize = 512;
 
 /// Receives the progress of the construction: triangles done, and all.
 pub(super) type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 struct Builder<'a> {
-    surface: Surface<'a>,
+    surface: &'a Surface<'a>,
+    fitting: Fitting<'a>,
+    counts: NodeCounts,
     total: usize,
     done: AtomicUsize,
     progress: Option<Progress<'a>>,
-}
-
-/// Triangles that become one box.
-struct Part<'o> {
-    order: &'o mut [u32],
-    axes: [[f64; 3]; 3],
-}
-
-/// What is above a node: the origin of the box above, and that box.
-struct Above {
-    boxed: OrientedBox,
-    origin: [f32; 3],
-    parent: u32,
 }
 
 /// The boxes of a tree, and where they lie.
@@ -43,28 +39,50 @@ pub(super) struct Built {
     pub(super) extent: Extent,
 }
 
+/// Triangles that become one box: numbers in the mesh, or places among those that a splitter has taken.
+struct Part<'o> {
+    order: &'o mut [u32],
+    axes: PartAxes,
+}
+
+/// A part on the way to be divided into lanes of a node, and the nodes below it.
+struct Share<'o, 'n> {
+    part: Part<'o>,
+    nodes: &'n mut [WideNode],
+    /// The number of the first of these nodes.
+    first: u32,
+    /// The number of the box that the first of the lanes is.
+    box_number: u32,
+}
+
+/// What the numbers in a part count.
+#[derive(Clone, Copy, PartialEq)]
+enum Numbers {
+    /// Triangles of the mesh.
+    OfMesh,
+    /// Those that the splitter has taken.
+    Taken,
+}
+
 /// Builds the boxes.
 pub(super) fn build(mesh: &TriMesh, progress: Option<Progress<'_>>) -> Built {
     let total = mesh.triangle_count();
     assert!(total <= MOST_TRIANGLES, "more triangles than a tree can number");
     let extent = Extent::of(mesh);
-    let builder =
-        Builder { surface: Surface::new(mesh, &extent), total, done: AtomicUsize::new(0), progress };
+    let surface = Surface::with_sums(mesh, &extent);
+    let counts = NodeCounts::new(total);
+    let places = vec![(); 1 + counts.of(total)];
+    let mut nodes = map_of_many(&places, |()| WideNode::empty([0.0; 3], 0));
     let mut order: Vec<u32> = (0..total as u32).collect();
-    let axes = builder.surface.axes(&order);
-    let mut root = WideNode::empty([0.0; 3], 0);
-    let SizedBox { boxed, size } = builder.surface.enclose(&order, &axes, [0.0; 3]);
-    root.set_box(0, &boxed, if total == 1 { 0.0 } else { size });
-    root.used = 1;
-    let mut nodes = Vec::with_capacity(total / 6 + 2);
-    nodes.push(root);
-    let above = Above { boxed, origin: [0.0; 3], parent: 0 };
-    let below = builder.below(Part { order: &mut order, axes }, &above, &mut nodes, &mut Splitter::default());
-    nodes[0].set_below(0, below);
-    if total <= GRAIN {
-        builder.report(total);
-    }
-    nodes.shrink_to_fit();
+    let mut splitter = Splitter::default();
+    splitter.take(&surface, order.iter().step_by(total.div_ceil(TAKEN)));
+    let axes = splitter.axes();
+    let fitting = Fitting::new(&surface);
+    let builder = Builder { surface: &surface, fitting, counts, total, done: AtomicUsize::new(0), progress };
+    let (root, rest) = nodes.split_at_mut(1);
+    let part = Part { order: &mut order, axes };
+    let subtree = builder.subtree(part, rest, Place { node: 1, parent: 0 });
+    builder.fitting.root(&subtree, &mut root[0]);
     Built { nodes, extent }
 }
 
@@ -76,102 +94,127 @@ impl Builder<'_> {
         }
     }
 
-    /// Splits a part in two, the first with a multiple of `step` triangles.
-    fn split<'o>(&self, part: Part<'o>, step: usize, splitter: &mut Splitter) -> (Part<'o>, Part<'o>) {
-        let Part { order, axes } = part;
-        let half = ((order.len() + step) / (2 * step)).max(1) * step;
-        let [a, b] = splitter.split(&self.surface, order, &axes, half);
-        let (first, second) = order.split_at_mut(half);
-        (Part { order: first, axes: a }, Part { order: second, axes: b })
+    /// What is below a box: a triangle, or the first of these nodes.
+    fn subtree(&self, part: Part<'_>, nodes: &mut [WideNode], place: Place) -> Subtree {
+        let count = part.order.len();
+        if count > GRAIN {
+            let (node, below) = nodes.split_at_mut(1);
+            let share =
+                Share { part, nodes: below, first: place.node + 1, box_number: place.node * WIDTH as u32 };
+            let subtrees = self.divided(&Plan::new(count), Some(0), share);
+            return self.fitting.node_above(subtrees, place, &mut node[0]);
+        }
+        let subtree = self.fitting.subtree(|scratch| self.lane(part, nodes, place, Numbers::OfMesh, scratch));
+        self.report(count);
+        subtree
     }
 
-    /// The up to eight parts of a part.
-    fn divide<'o>(&self, part: Part<'o>, splitter: &mut Splitter) -> Vec<Part<'o>> {
-        if part.order.len() <= WIDTH {
-            let singles = part.order.chunks_mut(1);
-            return singles.map(|order| Part { axes: self.surface.axes(order), order }).collect();
-        }
-        // What a part may hold so that all nodes but the topmost of it are full.
-        let mut full = WIDTH;
-        while full * WIDTH < part.order.len() {
-            full *= WIDTH;
-        }
-        let step = full.min(WIDTH * WIDTH);
-        let mut parts = Vec::with_capacity(WIDTH);
-        parts.push(part);
-        while parts.len() < WIDTH {
-            let count = |i: usize| parts[i].order.len();
-            let largest = (0..parts.len()).max_by_key(|&i| (count(i), usize::MAX - i)).unwrap_or(0);
-            if count(largest) <= full {
-                break;
-            }
-            let (first, second) = self.split(parts.swap_remove(largest), step, splitter);
-            parts.push(first);
-            parts.push(second);
-        }
-        parts
+    /// The lanes of a node that many triangles are below, in order.
+    fn divided(&self, plan: &Plan, cut: Option<u8>, share: Share<'_, '_>) -> Vec<Subtree> {
+        let Some(cut) = plan.cut(cut) else {
+            let place = Place { node: share.first, parent: share.box_number };
+            return vec![self.subtree(share.part, share.nodes, place)];
+        };
+        let scratch = |scratch: &mut Scratch| self.halves(plan, cut, share, Numbers::OfMesh, scratch);
+        let [first, second] = self.fitting.with_scratch(scratch);
+        let (mut subtrees, rest) =
+            both(|| self.divided(plan, cut.after[0], first), || self.divided(plan, cut.after[1], second));
+        subtrees.extend(rest);
+        subtrees
     }
 
-    /// Makes what is below a box: the triangle itself, or a node with up to eight parts, appended to `nodes`.
-    fn below(
+    /// A lane of a node: what is below it, with all nodes there.
+    fn lane(
         &self,
         part: Part<'_>,
-        above: &Above,
-        nodes: &mut Vec<WideNode>,
-        splitter: &mut Splitter,
-    ) -> Below {
-        if let &mut [triangle] = part.order {
-            return Below::Triangle(triangle);
+        nodes: &mut [WideNode],
+        place: Place,
+        mut numbers: Numbers,
+        scratch: &mut Scratch,
+    ) -> (Below, Moments) {
+        let Part { order, axes } = part;
+        if order.len() <= TAKEN && numbers == Numbers::OfMesh && order.len() > WIDTH {
+            scratch.splitter.take(self.surface, order.iter());
+            for (number, slot) in (0..).zip(order.iter_mut()) {
+                *slot = number;
+            }
+            numbers = Numbers::Taken;
         }
-        let is_large = part.order.len() > GRAIN;
-        let parts = self.divide(part, splitter);
-        let origin = [0, 1, 2].map(|k| above.origin[k] + above.boxed.center[k]);
-        let index = nodes.len();
-        let mut node = WideNode::empty(origin, above.parent);
-        node.used = parts.len() as u32;
-        let mut children = Vec::with_capacity(WIDTH);
-        for (lane, part) in parts.into_iter().enumerate() {
-            let SizedBox { boxed, size } = self.surface.enclose(part.order, &part.axes, origin);
-            node.set_box(lane, &boxed, if part.order.len() == 1 { 0.0 } else { size });
-            let parent = (index * WIDTH + lane) as u32;
-            children.push((part, Above { boxed, origin, parent }));
+        let triangle = |number: u32, scratch: &Scratch| match numbers {
+            Numbers::OfMesh => number,
+            Numbers::Taken => scratch.splitter.triangle(number),
+        };
+        if let &mut [number] = order {
+            let triangle = triangle(number, scratch);
+            return self.fitting.triangle(triangle, scratch);
         }
-        nodes.push(node);
-        if is_large {
-            for (lane, (below, mut subtree)) in self.build_in_parallel(children).into_iter().enumerate() {
-                let base = nodes.len();
-                for (i, node) in subtree.iter_mut().enumerate() {
-                    node.shift(base as u32, i == 0);
-                }
-                nodes[index].set_below(lane, below.shifted(base as u32));
-                nodes.append(&mut subtree);
+        let mut lanes = Lanes::new(scratch);
+        let (node, below) = nodes.split_at_mut(1);
+        if order.len() <= WIDTH {
+            for &number in order.iter() {
+                let (below, moments) = self.fitting.triangle(triangle(number, scratch), scratch);
+                lanes.add(below, moments, scratch);
             }
         } else {
-            for (lane, (part, above)) in children.into_iter().enumerate() {
-                let below = self.below(part, &above, nodes, splitter);
-                nodes[index].set_below(lane, below);
-            }
+            let plan = Plan::new(order.len());
+            let box_number = place.node * WIDTH as u32;
+            let share = Share { part: Part { order, axes }, nodes: below, first: place.node + 1, box_number };
+            self.lanes(&plan, Some(0), share, numbers, &mut lanes, scratch);
         }
-        Below::Node(index as u32)
+        let moments = self.fitting.node(&mut lanes, place.parent, &mut node[0], scratch);
+        (Below::Node(place.node), moments)
     }
 
-    /// Builds what is below each box into a list of its own, whose numbers count from zero.
-    fn build_in_parallel(&self, children: Vec<(Part<'_>, Above)>) -> Vec<(Below, Vec<WideNode>)> {
-        let one = |(part, above): (Part<'_>, Above)| {
-            let count = part.order.len();
-            let mut nodes = Vec::with_capacity(count / 6 + 2);
-            let below = self.below(part, &above, &mut nodes, &mut Splitter::default());
-            if count <= GRAIN {
-                self.report(count);
-            }
-            (below, nodes)
-        };
-        #[cfg(feature = "rayon")]
-        {
-            use rayon::iter::{IntoParallelIterator, ParallelIterator};
-            children.into_par_iter().map(one).collect()
+    /// The lanes of a node, one after the other.
+    fn lanes(
+        &self,
+        plan: &Plan,
+        cut: Option<u8>,
+        share: Share<'_, '_>,
+        numbers: Numbers,
+        lanes: &mut Lanes,
+        scratch: &mut Scratch,
+    ) {
+        if let Some(cut) = plan.cut(cut) {
+            let [first, second] = self.halves(plan, cut, share, numbers, scratch);
+            self.lanes(plan, cut.after[0], first, numbers, lanes, scratch);
+            self.lanes(plan, cut.after[1], second, numbers, lanes, scratch);
+        } else {
+            let place = Place { node: share.first, parent: share.box_number };
+            let (below, moments) = self.lane(share.part, share.nodes, place, numbers, scratch);
+            lanes.add(below, moments, scratch);
         }
-        #[cfg(not(feature = "rayon"))]
-        children.into_iter().map(one).collect()
+    }
+
+    /// Cuts a part in two, and the nodes below it.
+    fn halves<'o, 'n>(
+        &self,
+        plan: &Plan,
+        cut: Cut,
+        share: Share<'o, 'n>,
+        numbers: Numbers,
+        scratch: &mut Scratch,
+    ) -> [Share<'o, 'n>; 2] {
+        let Share { part: Part { order, axes }, nodes, first, box_number } = share;
+        let [a, b] = match numbers {
+            Numbers::OfMesh => scratch.splitter.split(self.surface, order, &axes, cut.half),
+            Numbers::Taken => scratch.splitter.split_taken(order, &axes, cut.half),
+        };
+        let (mut lanes, mut below) = (0, 0);
+        plan.for_each_part(cut.after[0], cut.half, &mut |count| {
+            lanes += 1;
+            below += self.counts.of(count);
+        });
+        let (low, high) = order.split_at_mut(cut.half);
+        let (nodes_low, nodes_high) = nodes.split_at_mut(below);
+        [
+            Share { part: Part { order: low, axes: a }, nodes: nodes_low, first, box_number },
+            Share {
+                part: Part { order: high, axes: b },
+                nodes: nodes_high,
+                first: first + below as u32,
+                box_number: box_number + lanes,
+            },
+        ]
     }
 }

@@ -4,6 +4,7 @@ use super::normal_cones::NormalCones;
 use super::surface::Extent;
 use crate::TriMesh;
 use crate::mesh::{Adjacency, Closedness};
+use crate::parallel::both_of_many;
 use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -39,6 +40,8 @@ pub struct MeshTree {
     pub(crate) repeated: Vec<u32>,
     /// One vertex of each connected component.
     pub(crate) components: Vec<u32>,
+    /// No two vertices have equal positions.
+    distinct: bool,
     /// A number that no other tree of the process has; clones share it.
     pub(crate) id: TreeId,
     /// Computed by the first query that needs it; clones share it.
@@ -99,24 +102,20 @@ impl MeshTree {
     }
 
     fn build(mesh: TriMesh, progress: Option<Progress<'_>>) -> Self {
-        let Built { nodes, extent } = build(&mesh, progress);
-        Self::from_nodes(mesh, nodes, &extent)
+        let count = mesh.triangle_count();
+        let (closedness, Built { nodes, extent }) =
+            both_of_many(count, || Closedness::of(&mesh), || build(&mesh, progress));
+        Self::from_parts(mesh, nodes, &extent, closedness)
     }
 
-    /// A tree from its boxes, and what is computed from the mesh alone.
-    pub(super) fn from_nodes(mesh: TriMesh, nodes: Vec<WideNode>, extent: &Extent) -> Self {
-        let closedness = Closedness::of(&mesh);
-        Self::from_parts(mesh, nodes, extent, closedness)
-    }
-
-    /// As [`Self::from_nodes`] when that is at hand.
+    /// A tree from its boxes, and what is known of the mesh.
     pub(super) fn from_parts(
         mesh: TriMesh,
         nodes: Vec<WideNode>,
         extent: &Extent,
         closedness: Closedness,
     ) -> Self {
-        let Closedness { watertight, oriented, repeated, components } = closedness;
+        let Closedness { watertight, oriented, repeated, components, distinct } = closedness;
         let Extent { center, radius, unit } = *extent;
         let id = TreeId::next();
         let (adjacency, cones) = (OnceLock::new(), OnceLock::new());
@@ -130,10 +129,18 @@ impl MeshTree {
             oriented,
             repeated,
             components,
+            distinct,
             id,
             adjacency,
             cones,
         }
+    }
+
+    /// What [`Self::from_parts`] was given.
+    pub(super) fn closedness(&self) -> Closedness {
+        let Self { watertight, oriented, distinct, .. } = *self;
+        let (repeated, components) = (self.repeated.clone(), self.components.clone());
+        Closedness { watertight, oriented, repeated, components, distinct }
     }
 
     /// The mesh.

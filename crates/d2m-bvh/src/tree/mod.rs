@@ -1,20 +1,25 @@
 //! Trees of oriented boxes over a mesh.
 
+mod bottom_up;
 pub(crate) mod box_pair;
 mod build;
 mod enclosures;
 mod file;
 mod fit;
+mod frame;
 pub(crate) mod margin;
 mod mesh_tree;
 pub(crate) mod node;
 pub(crate) mod normal_cones;
 mod parts;
 mod placed_bounds;
+mod plan;
+mod principal;
 mod refine;
 mod refit;
 #[cfg(feature = "serde")]
 mod serde_form;
+mod siblings;
 pub(crate) mod slabs;
 mod split;
 mod surface;

@@ -32,16 +32,6 @@ pub(crate) enum Below {
     Node(u32),
 }
 
-impl Below {
-    /// With `base` added to the number of a node.
-    pub(crate) fn shifted(self, base: u32) -> Self {
-        match self {
-            Self::Triangle(triangle) => Self::Triangle(triangle),
-            Self::Node(node) => Self::Node(node + base),
-        }
-    }
-}
-
 /// Up to eight boxes, lane by lane. 704 bytes, eleven cache lines.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
@@ -88,7 +78,7 @@ impl<'n> NodeBox<'n> {
 
 impl WideNode {
     /// A node without boxes. Unused lanes hold a point box so far away that no test meets it.
-    pub(crate) fn empty(origin: [f32; 3], parent: u32) -> Self {
+    pub(crate) const fn empty(origin: [f32; 3], parent: u32) -> Self {
         let mut node = Self {
             center: [[1e15; WIDTH]; 3],
             axes: [[[0.0; WIDTH]; 3]; 3],
@@ -102,9 +92,9 @@ impl WideNode {
             used: 0,
             parent,
         };
-        for i in 0..3 {
-            node.axes[i][i] = [1.0; WIDTH];
-        }
+        node.axes[0][0] = [1.0; WIDTH];
+        node.axes[1][1] = [1.0; WIDTH];
+        node.axes[2][2] = [1.0; WIDTH];
         node
     }
 
@@ -129,16 +119,6 @@ impl WideNode {
         };
     }
 
-    /// Adds `base` to the numbers of the nodes below, and above unless this node stays below a box outside its list.
-    pub(crate) fn shift(&mut self, base: u32, keeps_parent: bool) {
-        for lane in 0..self.used as usize {
-            self.set_below(lane, self.below(lane).shifted(base));
-        }
-        if !keeps_parent {
-            self.parent += base * WIDTH as u32;
-        }
-    }
-
     /// Sets the box of lane `lane`.
     pub(crate) fn set_box(&mut self, lane: usize, oriented: &OrientedBox, size: f32) {
         for i in 0..3 {
@@ -151,9 +131,15 @@ impl WideNode {
         }
         self.radius[lane] = oriented.radius;
         self.size[lane] = size;
-        let reach: f64 = oriented.center.iter().map(|c| f64::from(c.abs())).sum();
-        let reach = super::margin::round_up(reach + f64::from(oriented.radius));
-        self.extent = self.extent.max(reach);
+        self.reach_lane(lane);
+    }
+
+    /// Raises the extent to that of lane `lane`.
+    #[inline(always)]
+    pub(crate) fn reach_lane(&mut self, lane: usize) {
+        let [x, y, z] = [self.center[0][lane], self.center[1][lane], self.center[2][lane]].map(f32::abs);
+        let reach = f64::from(x) + f64::from(y) + f64::from(z) + f64::from(self.radius[lane]);
+        self.extent = self.extent.max(super::margin::round_up(reach));
     }
 
     /// The box of lane `lane`, read out.

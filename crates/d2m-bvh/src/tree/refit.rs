@@ -1,8 +1,11 @@
 //! New boxes for moved vertices: the same triangles in the same nodes.
 
+use super::bottom_up::{Fitting, Lanes, Place, Scratch, Subtree};
+use super::fit::Moments;
 use super::mesh_tree::MeshTree;
-use super::node::{Below, OrientedBox, WideNode};
-use super::surface::{Extent, SizedBox, Surface};
+use super::node::{Below, WideNode};
+use super::surface::{Extent, Surface};
+use crate::parallel::{both, both_of_many};
 use crate::{MeshError, TriMesh};
 use glam::DVec3;
 
@@ -29,74 +32,98 @@ impl MeshTree {
         let mesh = TriMesh::try_new(vertices, self.mesh.triangles().to_vec())?;
         let extent = Extent::of(&mesh);
         let surface = Surface::new(&mesh, &extent);
-        let mut order = Vec::with_capacity(mesh.triangle_count());
+        let before = self.closedness();
         let mut nodes = core::mem::take(&mut self.nodes);
-        let mut refit = Refit { surface: &surface, nodes: &mut nodes, order: &mut order };
-        let counts = refit.count(0);
-        let root = refit.nodes[0].below(0);
-        let SizedBox { boxed, size } =
-            refit.surface.enclose(refit.order, &refit.surface.axes(refit.order), [0.0; 3]);
-        let mut node = WideNode::empty([0.0; 3], 0);
-        node.used = 1;
-        node.set_box(0, &boxed, if matches!(root, Below::Triangle(_)) { 0.0 } else { size });
-        node.set_below(0, root);
-        refit.nodes[0] = node;
-        if let Below::Node(below) = root {
-            refit.fit(below, 0, &boxed, [0.0; 3], &counts);
-        }
-        *self = Self::from_nodes(mesh, nodes, &extent);
+        let refit = Refit { fitting: Fitting::new(&surface), in_order: is_in_order(&nodes) };
+        let fit = || {
+            let (root, rest) = nodes.split_at_mut(1);
+            let tree = refit.subtree(root[0].below(0), rest, 1);
+            refit.fitting.root(&tree, &mut root[0]);
+        };
+        let (closedness, ()) = both_of_many(mesh.triangle_count(), || before.of_moved(&mesh), fit);
+        *self = Self::from_parts(mesh, nodes, &extent, closedness);
         Ok(())
     }
 }
 
+/// Are the nodes numbered in the order of a walk from the root? Those of a built tree are.
+fn is_in_order(nodes: &[WideNode]) -> bool {
+    let mut next = 1;
+    // Nodes that are met and not yet walked, the next one last.
+    let mut waiting = vec![0];
+    while let Some(index) = waiting.pop() {
+        let node: &WideNode = &nodes[index as usize];
+        if index != 0 && index != next {
+            return false;
+        }
+        next = index + 1;
+        for lane in (0..node.used as usize).rev() {
+            if let Below::Node(child) = node.below(lane) {
+                waiting.push(child);
+            }
+        }
+    }
+    true
+}
+
+/// Nodes below a box that are fitted by one thread.
+const GRAIN: usize = 512;
+
 struct Refit<'a> {
-    surface: &'a Surface<'a>,
-    nodes: &'a mut Vec<WideNode>,
-    /// Triangles in the order of a walk, so that each box has a run of them.
-    order: &'a mut Vec<u32>,
+    fitting: Fitting<'a>,
+    /// Numbered in the order of a walk: what is below a box is a run of nodes.
+    in_order: bool,
 }
 
 impl Refit<'_> {
-    /// Walks the tree and lists the triangles; returns how many there are below each node.
-    fn count(&mut self, root: u32) -> Vec<u32> {
-        let mut counts = vec![0; self.nodes.len()];
-        self.walk(root, &mut counts);
-        counts
+    /// What is below a box: a triangle, or one of these nodes, of which the first has the number `first`.
+    fn subtree(&self, below: Below, nodes: &mut [WideNode], first: u32) -> Subtree {
+        if nodes.len() <= GRAIN || !self.in_order {
+            return self.fitting.subtree(|scratch| self.lane(below, nodes, first, scratch));
+        }
+        let (node, rest) = nodes.split_at_mut(1);
+        let lanes: Vec<Below> = (0..node[0].used as usize).map(|lane| node[0].below(lane)).collect();
+        let place = Place { node: first, parent: node[0].parent };
+        let subtrees = self.side_by_side(&lanes, rest, first + 1);
+        self.fitting.node_above(subtrees, place, &mut node[0])
     }
 
-    fn walk(&mut self, node: u32, counts: &mut [u32]) {
-        let before = self.order.len();
-        for lane in 0..self.nodes[node as usize].used as usize {
-            match self.nodes[node as usize].below(lane) {
-                Below::Triangle(triangle) => self.order.push(triangle),
-                Below::Node(child) => self.walk(child, counts),
-            }
+    /// Lanes of a node, whose nodes are these, in their order.
+    fn side_by_side(&self, lanes: &[Below], nodes: &mut [WideNode], first: u32) -> Vec<Subtree> {
+        if let &[lane] = lanes {
+            return vec![self.subtree(lane, nodes, first)];
         }
-        counts[node as usize] = (self.order.len() - before) as u32;
+        let (low, high) = lanes.split_at(lanes.len() / 2);
+        let begin = high.iter().find_map(|below| match *below {
+            Below::Node(node) => Some(node),
+            Below::Triangle(_) => None,
+        });
+        let begin = begin.unwrap_or(first + nodes.len() as u32);
+        let (nodes_low, nodes_high) = nodes.split_at_mut((begin - first) as usize);
+        let (mut subtrees, rest) =
+            both(|| self.side_by_side(low, nodes_low, first), || self.side_by_side(high, nodes_high, begin));
+        subtrees.extend(rest);
+        subtrees
     }
 
-    /// Fits the boxes of a node whose triangles start at `start`, and all below.
-    fn fit(&mut self, index: u32, start: usize, above: &OrientedBox, from: [f32; 3], counts: &[u32]) {
-        let old = self.nodes[index as usize].clone();
-        let origin = [0, 1, 2].map(|k| from[k] + above.center[k]);
-        let mut node = WideNode::empty(origin, old.parent);
-        node.used = old.used;
-        let mut at = start;
-        for lane in 0..old.used as usize {
-            let below = old.below(lane);
-            let (count, leaf) = match below {
-                Below::Triangle(_) => (1, true),
-                Below::Node(child) => (counts[child as usize] as usize, false),
-            };
-            let part = &self.order[at..at + count];
-            let SizedBox { boxed, size } = self.surface.enclose(part, &self.surface.axes(part), origin);
-            node.set_box(lane, &boxed, if leaf { 0.0 } else { size });
-            node.set_below(lane, below);
-            if let Below::Node(child) = below {
-                self.fit(child, at, &boxed, origin, counts);
-            }
-            at += count;
+    fn lane(
+        &self,
+        below: Below,
+        nodes: &mut [WideNode],
+        first: u32,
+        scratch: &mut Scratch,
+    ) -> (Below, Moments) {
+        let index = match below {
+            Below::Triangle(triangle) => return self.fitting.triangle(triangle, scratch),
+            Below::Node(index) => (index - first) as usize,
+        };
+        let (used, parent) = (nodes[index].used as usize, nodes[index].parent);
+        let mut lanes = Lanes::new(scratch);
+        for lane in 0..used {
+            let (below, moments) = self.lane(nodes[index].below(lane), nodes, first, scratch);
+            lanes.add(below, moments, scratch);
         }
-        self.nodes[index as usize] = node;
+        let moments = self.fitting.node(&mut lanes, parent, &mut nodes[index], scratch);
+        (below, moments)
     }
 }

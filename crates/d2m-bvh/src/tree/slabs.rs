@@ -21,7 +21,7 @@ pub(crate) const MOST: u8 = 126;
 /// Bound on the error of a room in steps: eight roundings of numbers that are at most twice the product they are divided by.
 const ROOM_ERROR: f64 = STEPS as f64 * 64.0 * UNIT_F64;
 /// What is taken off a room before it is rounded down: so much more than its error that boxes of more points pass, too.
-const CUT_SLACK: f64 = 1024.0 * ROOM_ERROR;
+pub(super) const CUT_SLACK: f64 = 1024.0 * ROOM_ERROR;
 
 /// The two slabs of each pair of axes as cuts s in steps: that of the edge (σ, τ) at place (σ < 0) + 2·(τ < 0).
 pub(crate) type Slabs = [[u8; 4]; 3];
@@ -73,12 +73,6 @@ impl EdgeReach {
             let more = half[i] * off(j) + half[j] * off(i);
             self.most(pair).map(|most| f64::from(STEPS) * (2.0 - (most + more) / (half[i] * half[j])))
         })
-    }
-
-    /// Cuts that leave all points.
-    pub(super) fn slabs(&self, half: &[f32; 3], slack: f64) -> Slabs {
-        let whole = |room: f64| if room >= 1.0 { (room - CUT_SLACK).min(f64::from(MOST)) as u8 } else { 0 };
-        self.room(half, slack).map(|rooms| rooms.map(whole))
     }
 
     /// Do the cuts leave all points? Those of a box made from these and other points do.

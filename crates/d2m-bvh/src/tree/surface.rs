@@ -1,11 +1,10 @@
 //! The triangles of a mesh in local coordinates, and boxes around some of them.
 
-use super::fit::{Moments, dot, sub, triangle_axes};
 use super::margin::{UNIT_F64, round_up};
 use super::node::{LEAST_SIZE, OrientedBox};
-use super::refine::Extremes;
-use super::slabs::{EdgeReach, Slabs};
+use super::slabs::EdgeReach;
 use crate::TriMesh;
+use crate::parallel::map_of_many;
 use d2m_lanes::{power_of_two, power_of_two_above};
 use glam::DVec3;
 
@@ -68,19 +67,29 @@ pub(super) fn unit_of(radius: f64) -> f64 {
     power_of_two_above(radius)
 }
 
-/// Triangles that are enough to find the axes of a box.
-const MOST_SAMPLED: usize = 256;
-
 /// A mesh in local coordinates.
 pub(super) struct Surface<'a> {
-    points: Vec<[f64; 3]>,
-    triangles: &'a [[u32; 3]],
+    pub(super) points: Vec<[f64; 3]>,
+    pub(super) triangles: &'a [[u32; 3]],
+    /// Three times the middle of each triangle.
+    pub(super) sums: Vec<[f32; 3]>,
 }
 
 impl<'a> Surface<'a> {
     pub(super) fn new(mesh: &'a TriMesh, extent: &Extent) -> Self {
-        let points = mesh.vertices().iter().map(|&p| extent.local(p)).collect();
-        Self { points, triangles: mesh.triangles() }
+        let points = map_of_many(mesh.vertices(), |&p| extent.local(p));
+        Self { points, triangles: mesh.triangles(), sums: Vec::new() }
+    }
+
+    /// The same with the middles of the triangles.
+    pub(super) fn with_sums(mesh: &'a TriMesh, extent: &Extent) -> Self {
+        let mut surface = Self::new(mesh, extent);
+        let points = &surface.points;
+        surface.sums = map_of_many(mesh.triangles(), |&[i, j, k]| {
+            let [a, b, c] = [points[i as usize], points[j as usize], points[k as usize]];
+            [(a[0] + b[0] + c[0]) as f32, (a[1] + b[1] + c[1]) as f32, (a[2] + b[2] + c[2]) as f32]
+        });
+        surface
     }
 
     #[inline(always)]
@@ -88,78 +97,6 @@ impl<'a> Surface<'a> {
         let [i, j, k] = self.triangles[triangle as usize];
         [self.points[i as usize], self.points[j as usize], self.points[k as usize]]
     }
-
-    /// Orthonormal axes of a part of the surface, the longest extent first.
-    pub(super) fn axes(&self, part: &[u32]) -> [[f64; 3]; 3] {
-        if let &[triangle] = part {
-            return triangle_axes(&self.corners(triangle));
-        }
-        let mut moments = Moments::default();
-        for &triangle in part {
-            moments.add(&self.corners(triangle));
-        }
-        moments.axes()
-    }
-
-    /// What puts a triangle before another one along an axis.
-    #[inline(always)]
-    pub(super) fn along(&self, triangle: u32, axis: [f64; 3]) -> f32 {
-        let [a, b, c] = self.corners(triangle);
-        (dot(a, axis) + dot(b, axis) + dot(c, axis)) as f32
-    }
-
-    /// Axes turned for a smaller box. Of large parts only every few triangles are sampled.
-    fn refined(&self, part: &[u32], axes: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
-        if part.len() == 1 {
-            return *axes;
-        }
-        let mut extremes = Extremes::new(axes);
-        let stride = (part.len() / MOST_SAMPLED).max(1);
-        for &triangle in part.iter().step_by(stride) {
-            for p in &self.corners(triangle) {
-                extremes.add(p);
-            }
-        }
-        extremes.refined()
-    }
-
-    /// The box of a part with about the given axes: center relative to `origin`, outward in real arithmetic.
-    pub(super) fn enclose(&self, part: &[u32], axes: &[[f64; 3]; 3], origin: [f32; 3]) -> SizedBox {
-        let axes = self.refined(part, axes).map(|axis| axis.map(|c| c as f32));
-        let wide = axes.map(|axis| axis.map(f64::from));
-        let from = origin.map(f64::from);
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for &triangle in part {
-            for p in self.corners(triangle) {
-                let p = sub(p, from);
-                for i in 0..3 {
-                    let along = dot(wide[i], p);
-                    low[i] = if along < low[i] { along } else { low[i] };
-                    high[i] = if along > high[i] { along } else { high[i] };
-                }
-            }
-        }
-        // The center may be anything: the extents are measured from what it was rounded to.
-        let middle = [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]));
-        let center: [f32; 3] = [0, 1, 2].map(|k| (0..3).map(|i| wide[i][k] * middle[i]).sum::<f64>() as f32);
-        let about = [0, 1, 2].map(|i| 0.5 * (high[i] - low[i]));
-        let mut reach = Reach::new(origin, center, &axes, about);
-        for &triangle in part {
-            for p in &self.corners(triangle) {
-                reach.add(p);
-            }
-        }
-        let Extents { half_extent, radius } = reach.outward();
-        let slabs = reach.slabs(&half_extent);
-        let boxed = OrientedBox { center, axes, half_extent, slabs, radius };
-        SizedBox { boxed, size: size_of_box(&boxed) }
-    }
-}
-
-/// A box and its size, which decides what is expanded first.
-pub(super) struct SizedBox {
-    pub(super) boxed: OrientedBox,
-    pub(super) size: f32,
 }
 
 /// How far a box reaches from its center, rounded up.
@@ -193,7 +130,7 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    const SLACK: f64 = 8.0 * UNIT_F64;
+    pub(super) const SLACK: f64 = 8.0 * UNIT_F64;
 
     /// `about`: the half extents as far as they are known.
     pub(super) fn new(origin: [f32; 3], center: [f32; 3], axes: &[[f32; 3]; 3], about: [f64; 3]) -> Self {
@@ -228,11 +165,6 @@ impl Reach {
         Self::SLACK * (self.norm + sum(&self.origin) + sum(&self.center))
     }
 
-    /// What can be cut off the edges of the box with half extents that enclose the points.
-    fn slabs(&self, half_extent: &[f32; 3]) -> Slabs {
-        self.edges.slabs(half_extent, self.slack())
-    }
-
     /// Is all of it proven to be in the box and its sphere?
     pub(super) fn is_within(&self, boxed: &OrientedBox) -> bool {
         let Extents { half_extent: half, radius } = self.outward();
@@ -249,4 +181,14 @@ impl Reach {
         let radius = round_up(self.square.sqrt() * (1.0 + 8.0 * UNIT_F64) + slack);
         Extents { half_extent: half, radius }
     }
+}
+
+#[inline(always)]
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }

@@ -3,7 +3,6 @@
 use super::margin::UNIT_F64;
 use super::node::{Below, WIDTH};
 use super::slabs::{PAIRS, STEPS};
-use super::surface::{SizedBox, Surface};
 use super::*;
 use crate::TriMesh;
 use d2m_lanes::two_sum;
@@ -234,15 +233,37 @@ fn moved_surfaces_keep_their_order() {
     // A part of one triangle has its own axes: the box of a leaf is flat.
     let mesh = torus(6, 5, 0.0, |p| p);
     let tree = MeshTree::new(mesh.clone());
-    let extent = super::surface::Extent::of(&mesh);
-    let surface = Surface::new(&mesh, &extent);
-    let SizedBox { boxed, .. } = surface.enclose(&[7], &surface.axes(&[7]), [0.0; 3]);
-    assert!(boxed.half_extent[2] < 1e-6 && boxed.half_extent[0] > 0.05);
+    for node in &tree.nodes {
+        for lane in 0..node.used as usize {
+            let boxed = node.oriented_box(lane);
+            if let Below::Triangle(_) = node.below(lane) {
+                assert!(boxed.half_extent[2] < 1e-6 && boxed.half_extent[0] > 0.05, "{boxed:?}");
+            }
+        }
+    }
     let mut same = tree.clone();
     same.refit(mesh.vertices().to_vec()).unwrap();
     assert_eq!(same.nodes.len(), tree.nodes.len());
     for (x, y) in same.nodes.iter().zip(&tree.nodes) {
         assert_eq!((x.child, x.used, x.parent), (y.child, y.used, y.parent));
+    }
+}
+
+#[test]
+fn vertices_that_come_together_or_part_close_and_open_a_moved_surface() {
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let together: Vec<DVec3> =
+        [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].into_iter().flatten().map(|i| corners[i]).collect();
+    let apart: Vec<DVec3> = (0..).zip(&together).map(|(i, p)| p + DVec3::X * (1e-3 * f64::from(i))).collect();
+    let mut tree = MeshTree::new(d2m_testing::Surface::soup(apart.clone()).into_mesh(TriMesh::try_new));
+    assert!(!tree.is_watertight() && tree.components.len() == 4);
+    for _ in 0..2 {
+        tree.refit(together.clone()).unwrap();
+        assert!(tree.is_watertight() && tree.components.len() == 1);
+        tree.refit(apart.clone()).unwrap();
+        assert!(!tree.is_watertight() && tree.components.len() == 4);
+        tree.refit(apart.iter().map(|p| p * 2.0).collect()).unwrap();
+        assert!(!tree.is_watertight() && tree.components.len() == 4);
     }
 }
 

@@ -211,6 +211,11 @@ impl<R: Registers> Doubles for AvxDoubles<R> {
         out
     }
     #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::wrap(unsafe { _mm256_sqrt_pd(self.0) })
+    }
+    #[inline(always)]
     fn narrow(self) -> [f32; 4] {
         let mut out = [0.0; 4];
         // SAFETY: four floats are writable; no alignment is needed; AVX as above.

@@ -45,6 +45,10 @@ impl Doubles for F64x4 {
         Quad(self.to_array())
     }
     #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self::sqrt(self)
+    }
+    #[inline(always)]
     fn narrow(self) -> [f32; 4] {
         let [a, b, c, d] = self.to_array();
         [a as f32, b as f32, c as f32, d as f32]

@@ -20,6 +20,8 @@ pub trait Doubles: Elementwise<Scalar = f64> + Div<Output = Self> {
     fn load(values: &Quad) -> Self;
     /// To memory.
     fn store(self) -> Quad;
+    /// Correctly rounded square root.
+    fn sqrt(self) -> Self;
     /// Each rounded to `f32`.
     fn narrow(self) -> [f32; 4];
     /// The smallest of the four.
