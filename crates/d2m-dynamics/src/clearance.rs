@@ -24,7 +24,7 @@ use glam::{DMat3, DQuat, DVec3};
 /// Roundings of a bound, relative to the sizes of what it is computed from: a flight's place (a product and a sum) and turn, a placed vertex
 /// (norm of the quaternion, nine products of three, two sums), its velocity, lengths, products and sums, fewer than 128 operations of
 /// relative error 2⁻⁵³ each, doubled.
-const ROUNDING: f64 = 128.0 * f64::EPSILON;
+pub(crate) const ROUNDING: f64 = 128.0 * f64::EPSILON;
 
 /// Vertices of both bodies together up to which all of them are placed: that many cost a tenth of a query.
 const FEW: usize = 64;
@@ -63,7 +63,7 @@ pub(crate) fn approach([a, b]: [&RigidBody; 2]) -> f64 {
 }
 
 /// The lengths that enter a bound.
-fn sizes(bodies: [&RigidBody; 2], now: f64, tau: f64) -> f64 {
+pub(crate) fn sizes(bodies: [&RigidBody; 2], now: f64, tau: f64) -> f64 {
     let size = |body: &RigidBody| {
         let way = (now - body.flight.reference_time()).abs() + tau;
         let speed =

@@ -2,7 +2,8 @@
 
 use crate::SimulationOptions;
 use crate::account::{Entry, balance};
-use crate::contact::{Accuracy, ContactPoint, HIT, SolverBody, Span, Start, System, impact, select};
+use crate::attempt::{Attempt, Clock, Problem, body_at, moves, still};
+use crate::contact::{ContactPoint, HIT, Span, Start, System, add, impact};
 use crate::joined::Joined;
 use crate::momenta::Momenta;
 use crate::rigid_body::RigidBody;
@@ -10,24 +11,8 @@ use crate::velocity::Velocity;
 use glam::DMat3;
 use std::borrow::Cow;
 
-/// Residuals below this part of a gap a step are those of a solution.
-const PRECISION: f64 = 1e-5;
-/// The part of that which is aimed at.
-const AIM: f64 = 1e-3;
-/// Of bodies that move, this part of their speed, too.
-const RELATIVE: f64 = 1.0 / 1024.0;
-/// Solutions with the spin of the flight's middle put right.
-const CORRECTIONS: u32 = 3;
-/// Of crowds, whose solutions are less exact than that.
-const CROWD_CORRECTIONS: u32 = 1;
 /// Bodies of a simulation from which on they are a crowd.
 pub(crate) const CROWD: usize = 64;
-/// Moved bodies of an island from which on it flies to the end of the step however its bodies tumble.
-const MANY: usize = 20;
-
-/// And with the ends of jointed bodies' flights put right.
-const JOINT_CORRECTIONS: u32 = 8;
-
 /// The contacts of bodies that impulses connect, bodies by their numbers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Island {
@@ -87,14 +72,6 @@ pub(crate) fn islands(bodies: &[RigidBody], contacts: Vec<ContactPoint>) -> Vec<
     found
 }
 
-/// When and how long.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Clock {
-    pub(crate) now: f64,
-    /// End of the step.
-    pub(crate) end: f64,
-}
-
 /// Impacts, then the velocities of the flights that begin now. The contacts' impulses are where the iteration begins.
 pub(crate) fn solve(
     bodies: &[RigidBody],
@@ -115,67 +92,20 @@ pub(crate) fn solve(
         }
     }
 
-    // Bodies that are held keep their momenta and the time at which they were held: they have no flight that ends.
-    let horizons = states.iter().filter(|s| moves(s)).map(|s| s.horizon_within(clock.end, options.step));
-    // Bodies that tumble in a crowd meet others before the energy of their turning counts: it is not divided for one of them.
-    let is_crowd = horizons.clone().count() > MANY;
-    let end = if is_crowd { clock.end } else { horizons.fold(clock.end, f64::min) };
-    let span =
-        Span { remaining: end - clock.now, step: options.step, resting_speed: options.resting_speed() };
-    let prepare = |s: &RigidBody, v: Velocity| {
-        let middle = s.turned(v.angular, 0.5 * span.remaining);
-        body_at(s, v, s.inverse_inertia_at(middle))
+    let problem = Problem {
+        members: &members,
+        states: &states,
+        contacts: &island.contacts,
+        options,
+        joints,
+        in_crowd: bodies.len() > CROWD,
     };
-    let free: Vec<SolverBody> =
-        states
-            .iter()
-            .map(|s| {
-                if moves(s) {
-                    prepare(s, s.flight_velocity(span.remaining, options.gravity))
-                } else {
-                    still(s)
-                }
-            })
-            .collect();
-    let rows = select(&island.contacts, span, |body| free[place(body)].velocity);
-    let mut contacts: Vec<ContactPoint> = rows.iter().map(|row| island.contacts[row.contact]).collect();
-    let mut targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
-    let precision = PRECISION * options.gap / options.step;
-    let slow = span.resting_speed.max(options.gap / options.step);
-    let in_crowd = bodies.len() > CROWD;
-    let accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM, slow, in_crowd };
-
-    let mut pushing: Vec<f64> = rows.iter().map(|row| row.pushing).collect();
+    let Attempt { span, end, mut contacts, targets, pushing, mut system, accuracy, residual, .. } =
+        problem.solve(clock);
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
     // Springs and motors may work; what joints alone do is balanced by the middle of flights, not by accounts.
     let driven = states.iter().any(|s| !moves(s) && !s.stands_still())
         || island.contacts.iter().any(|c| c.row.is_some() || c.running != [0.0; 2]);
-    let mut system = System::new(free, &contacts, place);
-    system.warm_start(&contacts);
-    let mut residual = 0.0;
-    for correction in 0.. {
-        let start = if correction == 0 { Start::Sticking } else { Start::Present };
-        residual = system.solve(&pushing, accuracy, start);
-        system.store(&mut contacts);
-        let tolerance = system.tolerance(accuracy);
-        let is_off = put_right(&mut system, &states, &contacts, span, place, tolerance);
-        let ends = Ends { joints, states: &states, span };
-        let missed = ends.miss(&system, &contacts, place);
-        let most = match (missed.is_empty(), system.is_crowd()) {
-            (true, true) => CROWD_CORRECTIONS,
-            (true, false) => CORRECTIONS,
-            (false, _) => JOINT_CORRECTIONS,
-        };
-        let is_joined = missed.iter().all(|missed| missed.rate.abs() <= precision);
-        if correction == most || !is_off && is_joined {
-            break;
-        }
-        for missed in missed {
-            pushing[missed.row] -= missed.rate;
-            targets[missed.row] -= missed.rate;
-        }
-        system.renew();
-    }
     let mut rests = vec![Momenta::default(); members.len()];
     add(&contacts, &mut rests, place);
     let mut kept = contacts.clone();
@@ -220,10 +150,6 @@ pub(crate) fn solve(
         (false, false) => Anchor::None,
     };
     Solved { bodies: settle(&outcomes, anchor, end, span, options), impacts: hits, rests: kept, residual }
-}
-
-fn moves(state: &RigidBody) -> bool {
-    state.is_dynamic() && !state.held
 }
 
 /// Impulses of restitution, and what they add to the momenta of each body.
@@ -330,96 +256,7 @@ fn settle(
     outcomes.iter().zip(&entries).enumerate().map(push).collect()
 }
 
-/// Where the flights of jointed bodies end.
-struct Ends<'s> {
-    joints: &'s [Joined],
-    states: &'s [Cow<'s, RigidBody>],
-    span: Span,
-}
-
-/// By how much the rate of a row is off what leads to the end that its joint asks for.
-struct Missed {
-    row: usize,
-    rate: f64,
-}
-
-impl Ends<'_> {
-    fn miss(
-        &self,
-        system: &System,
-        contacts: &[ContactPoint],
-        place: impl Fn(usize) -> usize,
-    ) -> Vec<Missed> {
-        let tau = self.span.remaining;
-        let mut missed = Vec::new();
-        let mut known: Option<(usize, Vec<f64>)> = None;
-        for (row, contact) in contacts.iter().enumerate() {
-            let Some([number, equation]) = contact.row.and_then(|row| row.equation) else { continue };
-            let joined = &self.joints[number];
-            if known.as_ref().is_none_or(|known| known.0 != number) {
-                let bodies = [contact.a, contact.b].map(&place);
-                let starts = bodies.map(|k| (self.states[k].position, self.states[k].orientation));
-                let ends = bodies.map(|k| {
-                    let (state, v) = (&self.states[k], &system.bodies[k].velocity);
-                    (state.position + v.linear * tau, state.turned(v.angular, tau))
-                });
-                let aims = joined.aims(starts, tau, self.span.step);
-                let off = joined.offs(ends).into_iter().zip(aims).map(|(off, aim)| (off - aim) / tau);
-                known = Some((number, off.collect()));
-            }
-            if let Some((_, rates)) = &known {
-                missed.push(Missed { row, rate: rates[equation] });
-            }
-        }
-        missed
-    }
-}
-
-fn body_at(state: &RigidBody, velocity: Velocity, inverse_inertia: DMat3) -> SolverBody {
-    SolverBody { inverse_mass: state.inverse_mass, inverse_inertia, velocity }
-}
-
-/// A body that impulses do not move.
-fn still(state: &RigidBody) -> SolverBody {
-    SolverBody { inverse_mass: 0.0, inverse_inertia: DMat3::ZERO, velocity: state.present_velocity() }
-}
-
 fn world_inertia(state: &RigidBody) -> (f64, DMat3) {
     let r = DMat3::from_quat(state.orientation);
     (state.mass, r * state.inertia * r.transpose())
-}
-
-fn add(contacts: &[ContactPoint], added: &mut [Momenta], place: impl Fn(usize) -> usize) {
-    for c in contacts {
-        let (a, b) = (place(c.a), place(c.b));
-        added[a] = added[a] + -c.momenta(c.arm_a);
-        added[b] = added[b] + c.momenta(c.arm_b);
-    }
-}
-
-/// The spins that belong to the angular momenta with the impulses, where the linear ones are off by more than rounding.
-fn put_right(
-    system: &mut System,
-    states: &[Cow<'_, RigidBody>],
-    contacts: &[ContactPoint],
-    span: Span,
-    place: impl Fn(usize) -> usize,
-    tolerance: f64,
-) -> bool {
-    let mut added = vec![Momenta::default(); states.len()];
-    add(contacts, &mut added, place);
-    let mut worst = 0.0f64;
-    for ((body, state), added) in system.bodies.iter_mut().zip(states).zip(&added) {
-        if body.inverse_mass == 0.0 {
-            continue;
-        }
-        let middle = state.angular_momentum
-            + state.torque * state.lead.unwrap_or(0.5 * span.remaining)
-            + added.angular;
-        let spin = state.midpoint_spin(middle, span.remaining);
-        worst = worst.max((spin - body.velocity.angular).length() * state.radius);
-        body.velocity.angular = spin;
-        body.inverse_inertia = state.inverse_inertia_at(state.turned(spin, 0.5 * span.remaining));
-    }
-    worst > tolerance
 }

@@ -28,6 +28,7 @@
 #![forbid(unsafe_code)]
 
 mod account;
+mod attempt;
 mod body;
 mod broad_phase;
 mod clearance;
@@ -39,6 +40,7 @@ mod error;
 mod faces;
 mod frozen;
 mod group;
+mod hollow;
 mod joined;
 mod joint;
 mod kinematic;
@@ -47,6 +49,7 @@ mod live;
 mod mass;
 mod membership;
 mod momenta;
+mod nested;
 mod options;
 mod pairs;
 mod parallel;

@@ -5,6 +5,7 @@ use crate::clearance::{Clearance, approach, bound_along};
 use crate::concluded::conclude;
 use crate::contact::{ContactPoint, Material, tangents};
 use crate::faces::vertices_of;
+use crate::nested::{bound_from_centers, is_apart_along_axis};
 use crate::rigid_body::RigidBody;
 #[cfg(feature = "audit")]
 use d2m_bvh::audit::Place;
@@ -50,6 +51,9 @@ const FEW: usize = 32;
 /// The least part of the way.
 const LEAST_REACH: f64 = 1.0 / 64.0;
 
+/// Flights for which a proof that has failed is not tried at most.
+const MOST_WAITING: u32 = 16;
+
 /// The contacts of a pair, and the number of features that they were chosen from.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Measured {
@@ -81,6 +85,28 @@ pub(crate) struct Pair {
     pub(crate) normal: Option<DVec3>,
     /// About how far apart the bodies were when measured last: at least so far, to rounding.
     pub(crate) apart: f64,
+    /// When a proof from an axis is tried.
+    axes: Attempts,
+}
+
+/// What is tried again after as many flights as it has failed in a row.
+#[derive(Clone, Copy, Debug, Default)]
+struct Attempts {
+    failed: u32,
+    wait: u32,
+}
+
+impl Attempts {
+    fn is_due(&mut self) -> bool {
+        let is_due = self.wait == 0;
+        self.wait = self.wait.saturating_sub(1);
+        is_due
+    }
+
+    fn note(&mut self, succeeds: bool) {
+        self.failed = if succeeds { 0 } else { (self.failed + 1).min(MOST_WAITING) };
+        self.wait = self.failed;
+    }
 }
 
 impl Pair {
@@ -95,6 +121,7 @@ impl Pair {
             clearance: None,
             normal: None,
             apart: 0.0,
+            axes: Attempts::default(),
         }
     }
 
@@ -198,12 +225,22 @@ fn is_proven_clear(
     if pair.clearance.is_some_and(|known| known.bound([a, b], now, length) > needed) {
         return Ok(true);
     }
+    if bound_from_centers([a, b], now, length) > needed {
+        return Ok(true);
+    }
     let along = |normal: DVec3, spin: DVec3| {
         bound_along(normal, spin, [a, b], now, length).is_some_and(|bound| bound > needed)
     };
     let spins = [a, b].map(|body| body.flight.angular_velocity());
     if pair.normal.is_some_and(|normal| spins.into_iter().any(|spin| along(normal, spin))) {
         return Ok(true);
+    }
+    if pair.axes.is_due() {
+        let is_clear = is_apart_along_axis([a, b], now, length, needed);
+        pair.axes.note(is_clear);
+        if is_clear {
+            return Ok(true);
+        }
     }
     // Worth the distance where it will do, or where no direction is known.
     let will_do = pair.measured == Some(now) && pair.apart - approach([a, b]) * length > needed;

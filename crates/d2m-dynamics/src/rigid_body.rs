@@ -2,6 +2,7 @@
 
 use crate::body::{Body, BodyId, Damping, Groups, Kind, Mass, Presence};
 use crate::faces::Faces;
+use crate::hollow::cavity;
 use crate::momenta::Momenta;
 use crate::velocity::Velocity;
 use crate::{MassProperties, SimulationError};
@@ -61,6 +62,8 @@ pub(crate) struct RigidBody {
     pub(crate) radius: f64,
     /// The body is everything within this distance of its mesh.
     pub(crate) rounding: f64,
+    /// No point of its mesh is nearer to the center; zero if the center does not lie in a cavity.
+    pub(crate) cavity: f64,
     pub(crate) damping: Damping,
     pub(crate) groups: Groups,
     /// Mesh axes.
@@ -201,6 +204,7 @@ impl RigidBody {
             center,
             radius,
             rounding: body.radius,
+            cavity: cavity(&body.tree, center),
             damping: body.damping,
             groups: body.groups,
             surface_velocity: body.surface_velocity,
@@ -275,6 +279,11 @@ impl RigidBody {
     /// A driven body that stands still and stays there.
     fn is_parked(&self) -> bool {
         matches!(self.kind, Kind::Driven) && self.target.is_none() && self.stands_still()
+    }
+
+    /// Does it follow a motion that leads on?
+    pub(crate) fn is_driven(&self) -> bool {
+        self.is_kinematic() && !self.stands_still()
     }
 
     /// Does it move, or may it be moved, in this step?

@@ -1,7 +1,8 @@
 //! Scenes that need too much: each step ends, says what it skipped, and nothing panics.
 
-use d2m_bvh::{MeshTree, Posed, Solid, StartState, distance};
-use d2m_dynamics::{Body, Kind, Mass, MassProperties, Simulation, SimulationOptions};
+use d2m_bvh::{MeshTree, Posed, Solid, StartState, TriMesh, distance};
+use d2m_dynamics::{Body, Kind, Mass, MassProperties, Simulation, SimulationOptions, StepError};
+use d2m_motion::{ConstantTwist, Keyframes, Pose, Span};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
@@ -205,4 +206,105 @@ fn bodies_that_are_held_end_no_flights_of_others() {
         let skipped = run(&mut simulation, 0.05);
         assert!(skipped > 0.0 || options.max_events > 0);
     }
+}
+
+/// Moves by `way` within a second, and stays there.
+fn pushed(name: &str, shape: &str, from: DVec3, way: DVec3) -> Body {
+    let at = |x: DVec3| Pose { translation: x, ..Pose::IDENTITY };
+    let poses = [(0.0, at(from)), (1.0, at(from + way)), (9.0, at(from + way))];
+    let motion = Arc::new(Keyframes::try_new(&poses, Span::Linear).unwrap());
+    Body::new(name, tree(shape)).with_kind(Kind::Kinematic(motion)).with_friction(0.3)
+}
+
+/// A press comes down on a box. Where it leaves two fifths of a gap in all, which is less than the two gaps that are asked for, the box takes its
+/// place between; where it leaves nothing it crushes the box, no sooner than it must.
+#[test]
+fn a_press_crushes_only_what_has_no_room() {
+    for (left, is_crushed) in [(4e-4, false), (0.0, true)] {
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        simulation.add(&floor(1.0).with_friction(0.3)).unwrap();
+        let half = "box?x=0.3&y=0.3&z=0.3";
+        let cube = simulation.add(&Body::new("cube", tree(half)).with_position(DVec3::Y * 0.301)).unwrap();
+        let press = pushed("press", "box?x=1&y=0.2&z=1", DVec3::Y * 2.2, DVec3::Y * (left - 1.4));
+        simulation.add(&press).unwrap();
+        let (mut skipped, mut error) = (0.0, None);
+        while simulation.time() < 1.5 && error.is_none() {
+            match simulation.step() {
+                Ok(report) => skipped += report.segments.iter().map(|s| s.skipped).sum::<f64>(),
+                Err(found) => error = Some(found),
+            }
+        }
+        assert_eq!(skipped, 0.0);
+        if is_crushed {
+            let Some(StepError::Crushed { pushing, crushed, time }) = error else { panic!("{error:?}") };
+            assert_eq!((pushing.as_str(), crushed.as_str()), ("press", "cube"));
+            assert!(time > 1.0 - 1e-6 && time <= 1.0, "{time}");
+        } else {
+            assert_eq!(error, None);
+            let height = simulation.position(cube).y - 0.3;
+            assert!(height > 0.2 * left && height < 0.8 * left, "{height}");
+        }
+    }
+}
+
+/// A stone that is wider at its foot, by seven degrees, and four plates along its sides that close in to two fifths of a gap each and rise: with
+/// friction of 0.3 it is locked between them, and lifted.
+#[test]
+fn wedges_lift_a_stone_that_friction_holds() {
+    let tilt = 7.0f64.to_radians();
+    // One high: the tangent of seven degrees less.
+    let (wide, narrow) = (0.5, 0.5 - 0.122_784_560_902_904_6);
+    let ring = |half: f64, y: f64| {
+        [[-1.0, 1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]].map(|[x, z]| DVec3::new(half * x, y, half * z))
+    };
+    let vertices = [ring(wide, -0.5), ring(narrow, 0.5)].concat();
+    let faces = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+    let triangles = faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    let stone = Arc::new(MeshTree::new(TriMesh::try_new(vertices, triangles).unwrap()));
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    simulation.add(&floor(1.0).with_friction(0.3)).unwrap();
+    let stone = Body::new("stone", stone).with_position(DVec3::Y * 0.501).with_friction(0.3);
+    let stone = simulation.add(&stone).unwrap();
+    for (name, out) in [("right", DVec3::X), ("left", -DVec3::X), ("front", DVec3::Z), ("back", -DVec3::Z)] {
+        let rotation = DQuat::from_axis_angle(DVec3::Y.cross(out), -tilt);
+        let far = 0.5 * (wide + narrow) + 0.101 / tilt.cos();
+        let at = |away: f64, height: f64| Pose {
+            translation: out * away + DVec3::Y * height,
+            rotation,
+            ..Pose::IDENTITY
+        };
+        let poses = [
+            (0.0, at(far + 0.2, 0.501)),
+            (0.5, at(far - 0.0006, 0.501)),
+            (1.0, at(far - 0.0006, 0.751)),
+            (2.0, at(far - 0.0006, 0.751)),
+        ];
+        let motion = Arc::new(Keyframes::try_new(&poses, Span::Linear).unwrap());
+        let size = if out.x == 0.0 { "box?x=0.25&y=0.3&z=0.1" } else { "box?x=0.1&y=0.3&z=0.25" };
+        simulation
+            .add(&Body::new(name, tree(size)).with_kind(Kind::Kinematic(motion)).with_friction(0.3))
+            .unwrap();
+    }
+    let start = simulation.position(stone).y;
+    assert_eq!(run(&mut simulation, 1.3), 0.0);
+    assert!(simulation.position(stone).y > start + 0.24, "{}", simulation.position(stone));
+}
+
+/// A box falls on two rollers that turn towards each other. Friction draws it in where it hits them, and locks; without friction it would
+/// have a way out, so it is not crushed.
+#[test]
+fn friction_alone_crushes_nothing() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let roller = tree("shaft?triangles=400");
+    for (name, side) in [("left", -1.0), ("right", 1.0)] {
+        let motion = ConstantTwist::REST
+            .with_position(DVec3::new(0.62 * side, 1.0, 0.0))
+            .with_angular_velocity(DVec3::Z * (3.0 * side));
+        let roller = Body::new(name, Arc::clone(&roller)).with_kind(Kind::Kinematic(Arc::new(motion)));
+        simulation.add(&roller.with_friction(0.5)).unwrap();
+    }
+    let cube = Body::new("box", tree("box?x=0.2&y=0.2&z=0.3")).with_position(DVec3::Y * 1.75);
+    let cube = simulation.add(&cube.with_friction(0.5)).unwrap();
+    assert_eq!(run(&mut simulation, 0.6), 0.0);
+    assert!(simulation.position(cube).y > 1.2, "{}", simulation.position(cube));
 }

@@ -6,6 +6,10 @@ use crate::velocity::Velocity;
 use d2m_feature::FeaturePair;
 use glam::DVec3;
 
+/// The part of a distance that a flight leaves if it shares what room there is: more than the part at which it would meet, which is
+/// one half, and 1/16 more.
+const SHARED: f64 = 0.625;
+
 /// How two bodies touch.
 ///
 /// ```
@@ -84,6 +88,11 @@ impl ContactPoint {
         self.normal.dot(b.of_point(self.arm_b) - a.of_point(self.arm_a))
     }
 
+    /// By how much it may close in a flight that shares what room there is, at least.
+    pub(crate) fn shared_room(&self) -> f64 {
+        self.distance - SHARED * self.distance.min(self.gap)
+    }
+
     /// Along the normal and the tangents.
     pub(crate) fn impulses(&self) -> [f64; 3] {
         [self.impulse, self.sliding[0], self.sliding[1]]
@@ -102,6 +111,15 @@ impl ContactPoint {
     /// The impulse on b.
     pub(crate) fn total(&self) -> DVec3 {
         self.normal * self.impulse + self.tangents[0] * self.sliding[0] + self.tangents[1] * self.sliding[1]
+    }
+}
+
+/// Adds what the impulses of contacts do to the momenta of their bodies, each of which `place` finds in the list.
+pub(crate) fn add(contacts: &[ContactPoint], added: &mut [Momenta], place: impl Fn(usize) -> usize) {
+    for c in contacts {
+        let (a, b) = (place(c.a), place(c.b));
+        added[a] = added[a] + -c.momenta(c.arm_a);
+        added[b] = added[b] + c.momenta(c.arm_b);
     }
 }
 

@@ -4,6 +4,15 @@ use super::ContactPoint;
 use crate::velocity::Velocity;
 use glam::DVec3;
 
+/// What distances contacts keep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Room {
+    /// The gap, and what is missing to it comes back.
+    Kept,
+    /// A part of what there is: where bodies are squeezed, all give way.
+    Shared,
+}
+
 /// Times and speeds of a flight that is to be solved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Span {
@@ -13,13 +22,14 @@ pub(crate) struct Span {
     pub(crate) step: f64,
     /// Contacts that close faster may bounce.
     pub(crate) resting_speed: f64,
+    pub(crate) room: Room,
 }
 
 /// Contacts that have been hit: what a flight ends at, plus the slack of its query.
 pub(crate) const HIT: f64 = 0.625;
 /// Contacts that nothing bounces off and that are this near, in gaps, count however fast they close: flights that are braked by an
 /// expected contact end at the gap, and of the vertices of a face that lands flat all or none must be met.
-const NEAR: f64 = 1.5;
+pub(crate) const NEAR: f64 = 1.5;
 /// The part of the gap to which curvature may bring a contact within a flight.
 const KEPT: f64 = 0.45;
 /// The part of the gap that a step restores at most where it is missing.
@@ -44,6 +54,7 @@ pub(crate) struct Row {
 /// ```text
 /// rate ≥ (g − d)/τ + m τ/2                        beyond the gap
 /// rate ≥ max(0, (0.45 g − d)/τ + m τ/2)        within it; and what is missing to the gap, a quarter of it a step
+/// rate ≥ (5/8 min(g, d) − d)/τ + m τ/2         if room is shared
 /// ```
 pub(crate) fn select(found: &[ContactPoint], span: Span, velocity: impl Fn(usize) -> Velocity) -> Vec<Row> {
     let mut rows = Vec::new();
@@ -67,7 +78,9 @@ pub(crate) fn select(found: &[ContactPoint], span: Span, velocity: impl Fn(usize
         let curved = 0.5 * tau * (bend(contact.a, contact.arm_a) + bend(contact.b, contact.arm_b));
         // A gap in a step: in a short rest of one, making room at once would be a jerk.
         let most = gap / span.step;
-        let target = if contact.is_expected {
+        let target = if span.room == Room::Shared {
+            curved - contact.shared_room() / tau
+        } else if contact.is_expected {
             (curved - (d - gap) / tau).min(0.0)
         } else if d > gap {
             (curved - (d - gap) / tau).min(most)

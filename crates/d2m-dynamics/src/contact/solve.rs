@@ -61,9 +61,7 @@ impl System {
             }
             let rests = moved <= SOME && self.is_calm(accuracy);
             if moved > COUPLE && !rests && !could_stick {
-                let swept = (SWEPT * accuracy.slow).min(OF_SPEED * self.mean_speed());
-                let swept = if accuracy.in_crowd && self.is_crowd() { swept } else { 0.0 };
-                if residual <= self.enough(accuracy).max(swept) {
+                if residual <= self.left(accuracy) {
                     return residual;
                 }
                 let short =
@@ -110,6 +108,13 @@ impl System {
         }
     }
 
+    /// What solutions of bodies that move may leave.
+    pub(crate) fn left(&self, accuracy: Accuracy) -> f64 {
+        let swept = (SWEPT * accuracy.slow).min(OF_SPEED * self.mean_speed());
+        let swept = if accuracy.in_crowd && self.is_crowd() { swept } else { 0.0 };
+        self.enough(accuracy).max(swept)
+    }
+
     /// Are the bodies about to rest?
     fn is_calm(&self, accuracy: Accuracy) -> bool {
         self.mean_speed() <= CALM * accuracy.slow
@@ -126,10 +131,16 @@ impl System {
         }
         let (tolerance, most) = (self.tolerance(accuracy), if drives { TAKEN } else { 1.0 } * accuracy.slow);
         let presses = |impulse: &[f64; 3]| drives || impulse[0] > 0.0;
+        // With the impulses of the step before, which may have been others, and without.
+        let free = self.free();
         let creeps = |(block, impulse): (&Block, &[f64; 3])| {
-            let [_, t, u] = block.rates(|i| self.bodies[i].velocity);
-            let slides = (t * t + u * u).sqrt();
-            presses(impulse) && block.law.friction() > 0.0 && slides > tolerance && slides <= most
+            let is_slow = |[_, t, u]: [f64; 3]| {
+                let slides = (t * t + u * u).sqrt();
+                slides > tolerance && slides <= most
+            };
+            let slides =
+                || is_slow(block.rates(|i| self.bodies[i].velocity)) || is_slow(block.rates(|i| free[i]));
+            presses(impulse) && block.law.friction() > 0.0 && slides()
         };
         let creep = || self.blocks.iter().zip(&self.impulses).any(creeps);
         creep() && self.is_jammed(presses)
@@ -156,7 +167,7 @@ impl System {
     }
 
     /// Of the moved bodies' surfaces where they touch, in the quadratic mean.
-    fn mean_speed(&self) -> f64 {
+    pub(crate) fn mean_speed(&self) -> f64 {
         let moved = |(body, _): &(&SolverBody, &f64)| body.inverse_mass > 0.0;
         let square = |(body, reach): (&SolverBody, &f64)| body.velocity.surface_speed(*reach).powi(2);
         let bodies = || self.bodies.iter().zip(&self.reach).filter(moved);

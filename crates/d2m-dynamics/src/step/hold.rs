@@ -12,10 +12,7 @@ impl Step<'_> {
         let mut changed = Vec::new();
         for event in events {
             let [a, b] = event.bodies;
-            let moving = |i: usize| {
-                let body = &self.sim.bodies[i];
-                body.is_kinematic() && body.surface_speed() > 0.0
-            };
+            let moving = |i: usize| self.sim.bodies[i].is_driven();
             let free = |body: &RigidBody| body.is_dynamic() && !body.held;
             let is_free = [a, b].map(|i| free(&self.sim.bodies[i]));
             if let Some((pushing, crushed)) = [(a, b, is_free[1]), (b, a, is_free[0])]
@@ -49,11 +46,23 @@ impl Step<'_> {
         self.query(time, &seeds)
     }
 
+    /// What stands still, and is met by a body that follows its motion, moves again.
+    pub(super) fn release(&mut self, time: f64, seeds: &[usize]) {
+        let gravity = self.sim.options.gravity;
+        for &i in seeds {
+            let body = &mut self.sim.bodies[i];
+            if body.held {
+                body.advance(time, gravity);
+                body.held = false;
+            }
+        }
+        self.holding = self.holding && self.sim.bodies.iter().any(|body| body.held);
+    }
+
     fn crushed(&self, pushing: usize, crushed: usize, time: f64) -> StepError {
         let name = |i: usize| self.sim.bodies[i].name.to_string();
         // Whoever follows its motion against the body that is crushed is the one to name.
-        let drives =
-            |i: &usize| self.sim.bodies[*i].is_kinematic() && self.sim.bodies[*i].surface_speed() > 0.0;
+        let drives = |i: &usize| self.sim.bodies[*i].is_driven();
         let partner = |key: &Key| if key.0 == crushed { key.1 } else { key.0 };
         let near = self
             .sim

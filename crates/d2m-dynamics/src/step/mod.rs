@@ -23,6 +23,9 @@ use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 /// Events of one pair at one and the same time, after which it is held.
 const MOST_AT_ONCE: u32 = 8;
 
+/// Events of bodies that follow their motions, for each that a step has: what stands still in their way would be crushed.
+const DRIVEN: u32 = 16;
+
 /// Why velocities are solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Occasion {
@@ -141,16 +144,20 @@ impl<'s> Step<'s> {
             self.sim.recorder.cut(event.time, self.holding);
             self.sim.time = event.time;
             let held = |i: usize| self.sim.bodies[i].held;
-            let over = self.report.events >= self.sim.options.max_events;
+            let most = self.sim.options.max_events;
+            let over = [most, most.saturating_mul(DRIVEN)].map(|most| self.report.events >= most);
             let (hold, go_on): (Vec<Event>, Vec<Event>) = met.into_iter().partition(|event| {
                 let count = last.1.entry(event.bodies).or_default();
                 *count += 1;
                 // Also flights that end again and again at one time: a step ends, whatever comes.
                 let again = *count > MOST_AT_ONCE;
-                let stops = over || event.cause == Cause::Stuck || event.bodies.into_iter().any(held);
+                let is_driven = event.bodies.into_iter().any(|i| self.sim.bodies[i].is_driven());
+                let over = over[usize::from(is_driven)] || !is_driven && event.bodies.into_iter().any(held);
+                let stops = over || event.cause == Cause::Stuck;
                 again || event.cause != Cause::Horizon && stops
             });
             if hold.is_empty() {
+                self.release(event.time, &seeds);
                 self.report.events +=
                     go_on.iter().filter(|event| event.cause != Cause::Horizon).count() as u32;
                 let is_cramped = go_on.iter().any(|event| self.is_cramped(event));

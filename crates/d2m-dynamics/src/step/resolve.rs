@@ -2,8 +2,9 @@
 
 use super::connected::Group;
 use super::{Occasion, Step};
+use crate::attempt::Clock;
 use crate::contact::ContactPoint;
-use crate::group::{CROWD, Clock, Solved, islands, solve};
+use crate::group::{CROWD, Solved, islands, solve};
 use crate::rigid_body::RigidBody;
 use crate::velocity::Velocity;
 use crate::{ContactImpulse, StepError, parallel};

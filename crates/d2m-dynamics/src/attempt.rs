@@ -1,0 +1,328 @@
+//! Velocities of the flights of one island: until when they can be solved for, and by which targets.
+
+use crate::SimulationOptions;
+use crate::contact::{
+    Accuracy, ContactPoint, Material, NEAR, Room, SolverBody, Span, Start, System, add, select,
+};
+use crate::joined::Joined;
+use crate::momenta::Momenta;
+use crate::rigid_body::RigidBody;
+use crate::velocity::Velocity;
+use glam::DMat3;
+use std::borrow::Cow;
+
+/// Residuals below this part of a gap a step are those of a solution.
+const PRECISION: f64 = 1e-5;
+/// The part of that which is aimed at.
+const AIM: f64 = 1e-3;
+/// Of bodies that move, this part of their speed, too.
+const RELATIVE: f64 = 1.0 / 1024.0;
+/// Solutions with the spin of the flight's middle put right.
+const CORRECTIONS: u32 = 3;
+/// Of crowds, whose solutions are less exact than that.
+const CROWD_CORRECTIONS: u32 = 1;
+/// And with the ends of jointed bodies' flights put right.
+const JOINT_CORRECTIONS: u32 = 8;
+/// Moved bodies of an island from which on it flies to the end of the step however its bodies tumble.
+const MANY: usize = 20;
+/// The part of a gap a step that the ends of flights may be off what joints ask for: what is more is not corrected but diverges, as where the
+/// end of a long chain whips round, and shorter flights are solved for.
+const OFF_JOINT: f64 = 1e-2;
+/// Halvings of such flights.
+const MOST_HALVINGS: u32 = 6;
+/// The part of the rate at which something closes in, and how much more than solutions leave anyway, from which on no velocities obey the law.
+const UNSOLVED: f64 = 1.0 / 8.0;
+/// The part of that rate from which on friction holds what would slip.
+const LOCKED: f64 = 0.5;
+/// The part of the gap at which it does so no longer.
+const LAST: f64 = 1.0 / 64.0;
+/// The part of the bodies' speed that solutions may leave in any case.
+const OF_SPEED: f64 = 1.0 / 16.0;
+const LEFT_OVER: f64 = 2.0;
+/// How much longer than a flight that bodies at rest would survive one is that is tried first, a power of two: what closes in
+/// from one side may be passed on through so many contacts.
+const PASSED_ON: f64 = 64.0;
+const SHORTENED: u32 = 6;
+
+/// When and how long.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Clock {
+    pub(crate) now: f64,
+    /// End of the step.
+    pub(crate) end: f64,
+}
+
+/// How fast contacts close if what impulses move stands still, and how long they share their room then.
+#[derive(Clone, Copy)]
+struct Closing {
+    rate: f64,
+    safe: f64,
+    /// The least of their distances.
+    least: f64,
+}
+
+/// What friction does where it is in the way of what could move without it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Friction {
+    Slips,
+    Locks,
+    /// It has locked for as long as there was room.
+    GivesWay,
+}
+
+/// What velocities are solved for.
+#[derive(Clone, Copy)]
+pub(crate) struct Problem<'s> {
+    /// Body numbers, ascending, and the bodies, with their impacts.
+    pub(crate) members: &'s [usize],
+    pub(crate) states: &'s [Cow<'s, RigidBody>],
+    pub(crate) contacts: &'s [ContactPoint],
+    pub(crate) options: &'s SimulationOptions,
+    pub(crate) joints: &'s [Joined],
+    /// Of many bodies in the simulation.
+    pub(crate) in_crowd: bool,
+}
+
+/// Velocities for flights until `end`.
+pub(crate) struct Attempt {
+    pub(crate) span: Span,
+    pub(crate) end: f64,
+    /// Those that count, with their impulses.
+    pub(crate) contacts: Vec<ContactPoint>,
+    /// Least rates of the contacts, and what impulses see to of that.
+    pub(crate) targets: Vec<f64>,
+    pub(crate) pushing: Vec<f64>,
+    pub(crate) system: System,
+    pub(crate) accuracy: Accuracy,
+    pub(crate) residual: f64,
+    /// How far joints are off what they ask for at the end, as a rate.
+    missed: f64,
+}
+
+impl Problem<'_> {
+    /// Velocities until the end of the step, or until the end of shorter flights: where bodies tumble; where joints are not met at the end of
+    /// longer ones; and where bodies that follow their motions leave the others no velocities with which contacts keep the gap. There all
+    /// contacts may close by a part of their distance, for as long as there are velocities with which none closes by more: then what room is
+    /// left is shared by all, however little it is.
+    pub(crate) fn solve(&self, clock: Clock) -> Attempt {
+        let Clock { now, end } = clock;
+        let moved = || self.states.iter().filter(|s| moves(s));
+        // Bodies that are held keep their momenta and the time at which they were held: they have no flight that ends. Bodies that tumble in a
+        // crowd meet others before the energy of their turning counts: it is not divided for one of them.
+        let longest = moved().map(|s| s.horizon_within(end, self.options.step)).fold(end, f64::min);
+        let mut end = if moved().count() > MANY { end } else { longest };
+        let mut tried = self.attempt(now, end, Room::Kept);
+        for _ in 0..MOST_HALVINGS {
+            if tried.missed <= OFF_JOINT * self.speed() {
+                break;
+            }
+            end = now + 0.5 * (end - now);
+            tried = self.attempt(now, end, Room::Kept);
+        }
+        let Some(Closing { rate, safe, least }) = self.closing() else { return tried };
+        let most = (tried.system.left(tried.accuracy) * LEFT_OVER).max(UNSOLVED * rate);
+        let most = most.max(OF_SPEED * tried.system.mean_speed());
+        if tried.residual <= most {
+            return tried;
+        }
+        let friction = match tried.residual >= LOCKED * rate {
+            true if least < LAST * self.options.gap => Friction::GivesWay,
+            true => Friction::Locks,
+            false => Friction::Slips,
+        };
+        self.squeezed([now, end], safe, most, friction).unwrap_or(tried)
+    }
+
+    /// The longest flights, of some lengths, in which contacts close by no more than the room that they share, and solutions leave no more
+    /// than `most`. If friction allows none, without: it can only hold what room there is. Where all is possible without friction, only what
+    /// that locks shares room, as between wedges, and slips where hardly any is left: it crushes nothing by itself.
+    fn squeezed(&self, [now, end]: [f64; 2], safe: f64, most: f64, friction: Friction) -> Option<Attempt> {
+        let slippery = |c: &ContactPoint| ContactPoint {
+            material: Material { friction: 0.0, ..c.material },
+            impulse: 0.0,
+            sliding: [0.0; 2],
+            ..*c
+        };
+        let contacts: Vec<ContactPoint> = self.contacts.iter().map(slippery).collect();
+        let smooth = Problem { contacts: &contacts, ..*self };
+        let slipping = smooth.attempt(now, end, Room::Kept);
+        let is_possible = slipping.residual <= most;
+        match friction {
+            Friction::Slips if is_possible => return None,
+            Friction::GivesWay if is_possible => return Some(slipping),
+            _ => {}
+        }
+        let lengths = (0..=SHORTENED).map(|k| PASSED_ON * safe / f64::from(1u32 << k));
+        let ends = lengths.map(|length| if length < end - now { now + length } else { end });
+        let ends: Vec<f64> = ends.filter(|&until| until > now).collect();
+        let shared = |problem: &Problem<'_>| {
+            let mut attempts = ends.iter().map(|&until| problem.attempt(now, until, Room::Shared));
+            attempts.find(|attempt| attempt.residual <= most)
+        };
+        shared(self).or_else(|| if is_possible { None } else { shared(&smooth) })
+    }
+
+    /// A gap in a step.
+    fn speed(&self) -> f64 {
+        self.options.gap / self.options.step
+    }
+
+    /// How fast, and for how long, what follows its motion closes in on bodies that stand still. None: nothing does, within the gap or so.
+    fn closing(&self) -> Option<Closing> {
+        let of = |contact: &ContactPoint| {
+            let state = |body: usize| &self.states[self.place(body)];
+            let velocity = |body: usize| {
+                if moves(state(body)) { Velocity::default() } else { state(body).present_velocity() }
+            };
+            let rate = -contact.rate(velocity(contact.a), velocity(contact.b));
+            let is_moved = moves(state(contact.a)) || moves(state(contact.b));
+            let is_near = contact.row.is_none() && contact.distance <= NEAR * contact.gap;
+            let closing = || Closing { rate, safe: contact.shared_room() / rate, least: contact.distance };
+            (is_near && is_moved && rate > 0.0).then(closing)
+        };
+        let worst = |x: Closing, y: Closing| Closing {
+            rate: x.rate.max(y.rate),
+            safe: x.safe.min(y.safe),
+            least: x.least.min(y.least),
+        };
+        self.contacts.iter().filter_map(of).reduce(worst)
+    }
+
+    fn place(&self, body: usize) -> usize {
+        self.members.binary_search(&body).unwrap_or_default()
+    }
+
+    fn attempt(&self, now: f64, end: f64, room: Room) -> Attempt {
+        let (states, options) = (self.states, self.options);
+        let place = |body: usize| self.place(body);
+        let span =
+            Span { remaining: end - now, step: options.step, resting_speed: options.resting_speed(), room };
+        let prepare = |s: &RigidBody, v: Velocity| {
+            let middle = s.turned(v.angular, 0.5 * span.remaining);
+            body_at(s, v, s.inverse_inertia_at(middle))
+        };
+        let start = |s: &Cow<'_, RigidBody>| {
+            if moves(s) { prepare(s, s.flight_velocity(span.remaining, options.gravity)) } else { still(s) }
+        };
+        let free: Vec<SolverBody> = states.iter().map(start).collect();
+        let rows = select(self.contacts, span, |body| free[place(body)].velocity);
+        let mut contacts: Vec<ContactPoint> = rows.iter().map(|row| self.contacts[row.contact]).collect();
+        let mut targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
+        let precision = PRECISION * options.gap / options.step;
+        let slow = span.resting_speed.max(options.gap / options.step);
+        let accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM, slow, in_crowd: self.in_crowd };
+        let mut pushing: Vec<f64> = rows.iter().map(|row| row.pushing).collect();
+        let mut system = System::new(free, &contacts, place);
+        system.warm_start(&contacts);
+        let (mut residual, mut off) = (0.0, 0.0);
+        for correction in 0.. {
+            let start = if correction == 0 { Start::Sticking } else { Start::Present };
+            residual = system.solve(&pushing, accuracy, start);
+            system.store(&mut contacts);
+            let tolerance = system.tolerance(accuracy);
+            let is_off = put_right(&mut system, states, &contacts, span, place, tolerance);
+            let ends = Ends { joints: self.joints, states, span };
+            let missed = ends.miss(&system, &contacts, place);
+            off = missed.iter().map(|missed| missed.rate.abs()).fold(0.0, f64::max);
+            let most = match (missed.is_empty(), system.is_crowd()) {
+                (true, true) => CROWD_CORRECTIONS,
+                (true, false) => CORRECTIONS,
+                (false, _) => JOINT_CORRECTIONS,
+            };
+            if correction == most || !is_off && off <= precision {
+                break;
+            }
+            for missed in missed {
+                pushing[missed.row] -= missed.rate;
+                targets[missed.row] -= missed.rate;
+            }
+            system.renew();
+        }
+        Attempt { span, end, contacts, targets, pushing, system, accuracy, residual, missed: off }
+    }
+}
+
+pub(crate) fn moves(state: &RigidBody) -> bool {
+    state.is_dynamic() && !state.held
+}
+
+pub(crate) fn body_at(state: &RigidBody, velocity: Velocity, inverse_inertia: DMat3) -> SolverBody {
+    SolverBody { inverse_mass: state.inverse_mass, inverse_inertia, velocity }
+}
+
+/// A body that impulses do not move.
+pub(crate) fn still(state: &RigidBody) -> SolverBody {
+    SolverBody { inverse_mass: 0.0, inverse_inertia: DMat3::ZERO, velocity: state.present_velocity() }
+}
+
+/// Where the flights of jointed bodies end.
+struct Ends<'s> {
+    joints: &'s [Joined],
+    states: &'s [Cow<'s, RigidBody>],
+    span: Span,
+}
+
+/// By how much the rate of a row is off what leads to the end that its joint asks for.
+struct Missed {
+    row: usize,
+    rate: f64,
+}
+
+impl Ends<'_> {
+    fn miss(
+        &self,
+        system: &System,
+        contacts: &[ContactPoint],
+        place: impl Fn(usize) -> usize,
+    ) -> Vec<Missed> {
+        let tau = self.span.remaining;
+        let mut missed = Vec::new();
+        let mut known: Option<(usize, Vec<f64>)> = None;
+        for (row, contact) in contacts.iter().enumerate() {
+            let Some([number, equation]) = contact.row.and_then(|row| row.equation) else { continue };
+            let joined = &self.joints[number];
+            if known.as_ref().is_none_or(|known| known.0 != number) {
+                let bodies = [contact.a, contact.b].map(&place);
+                let starts = bodies.map(|k| (self.states[k].position, self.states[k].orientation));
+                let ends = bodies.map(|k| {
+                    let (state, v) = (&self.states[k], &system.bodies[k].velocity);
+                    (state.position + v.linear * tau, state.turned(v.angular, tau))
+                });
+                let aims = joined.aims(starts, tau, self.span.step);
+                let off = joined.offs(ends).into_iter().zip(aims).map(|(off, aim)| (off - aim) / tau);
+                known = Some((number, off.collect()));
+            }
+            if let Some((_, rates)) = &known {
+                missed.push(Missed { row, rate: rates[equation] });
+            }
+        }
+        missed
+    }
+}
+
+/// The spins that belong to the angular momenta with the impulses, where the linear ones are off by more than rounding.
+fn put_right(
+    system: &mut System,
+    states: &[Cow<'_, RigidBody>],
+    contacts: &[ContactPoint],
+    span: Span,
+    place: impl Fn(usize) -> usize,
+    tolerance: f64,
+) -> bool {
+    let mut added = vec![Momenta::default(); states.len()];
+    add(contacts, &mut added, place);
+    let mut worst = 0.0f64;
+    for ((body, state), added) in system.bodies.iter_mut().zip(states).zip(&added) {
+        if body.inverse_mass == 0.0 {
+            continue;
+        }
+        let middle = state.angular_momentum
+            + state.torque * state.lead.unwrap_or(0.5 * span.remaining)
+            + added.angular;
+        let spin = state.midpoint_spin(middle, span.remaining);
+        worst = worst.max((spin - body.velocity.angular).length() * state.radius);
+        body.velocity.angular = spin;
+        body.inverse_inertia = state.inverse_inertia_at(state.turned(spin, 0.5 * span.remaining));
+    }
+    worst > tolerance
+}
