@@ -28,14 +28,28 @@ pub(crate) fn run() -> TaskResult {
     if let Some(page) = leading_away(&fronts)?.first() {
         return Err(format!("{} links to docs.rs instead of the pages beside it", page.display()).into());
     }
-    for front in fronts.iter().filter(|front| front.exists()) {
-        for page in pages(front.parent().unwrap_or(front))? {
+    for front in published(&root, &target)? {
+        for page in pages(&front)? {
             if let Some(name) = literal_link(&fs::read_to_string(&page)?) {
                 return Err(format!("{}: [`{name}`] leads nowhere", page.display()).into());
             }
         }
     }
     Ok(())
+}
+
+/// The folders of the pages of published libraries. (Pages of programs show what a crate of others generates into them, with its links.)
+fn published(root: &Path, target: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(root.join("crates"))? {
+        let folder = entry?.path();
+        let is_published = !fs::read_to_string(folder.join("Cargo.toml"))?.contains("publish = false");
+        if is_published && folder.join("src/lib.rs").exists() {
+            let name = folder.file_name().unwrap_or_default().to_string_lossy().replace('-', "_");
+            found.push(target.join("doc").join(name));
+        }
+    }
+    Ok(found)
 }
 
 /// All pages in a folder.

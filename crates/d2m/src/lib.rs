@@ -47,7 +47,7 @@
 //! ## Layers
 //! Each is a crate of its own: [`interval`], [`motion`], [`root`], [`feature`], [`bvh`], [`shapes`],
 //! [`world`], with the features of their names [`dynamics`], [`io`], [`paper`], [`robot`], [`verify`], and
-//! [`glam`] for vectors.
+//! [`glam`](https://docs.rs/glam) for vectors.
 //!
 #![cfg_attr(not(feature = "dynamics"), doc = "[`dynamics`]: ./index.html#features")]
 #![cfg_attr(not(feature = "io"), doc = "[`io`]: ./index.html#features")]
