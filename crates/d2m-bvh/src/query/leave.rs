@@ -7,7 +7,7 @@ use super::rounded::Rounded;
 use super::staying_walk::{Next, Walk};
 use crate::covered_pair::CoveredPair;
 use crate::{
-    Answered, Contact, Moving, QueryError, QueryOptions, SearchCounts, StartState, TimeBracket,
+    Answered, Contact, Meter, Moving, QueryError, QueryOptions, SearchCounts, StartState, TimeBracket,
     TimeOfContact, Window,
 };
 use d2m_lanes::power_of_two;
@@ -16,6 +16,8 @@ use d2m_lanes::power_of_two;
 const RESOLUTION: f64 = 1e-6;
 /// The first step away from bodies that were just proven apart, as a part of that.
 const LEAST_STEP: f64 = power_of_two(-30);
+/// A search with this part of the tolerance stops within 3.3 times that above the separation: below a level that is passed.
+const FINER: f64 = 0.25;
 
 /// How two bodies part, and when they meet after that.
 ///
@@ -103,6 +105,11 @@ pub(super) fn of_departing(
         TimeOfContact::Separated => {
             let left = Some(TimeBracket { lo: window.start(), hi: window.start() });
             let found = of_meshes([a, b], window, options)?;
+            let work = work.with(&found.work);
+            let found = match stopped_at_start(&found, window, &bodies, options, &work) {
+                Some(finer) => of_meshes([a, b], window, &finer)?,
+                None => Answered { work: SearchCounts::default(), ..found },
+            };
             let answer = with_left(found.answer, left);
             let answer = Departure { start: StartState::Apart, left, answer };
             return Ok(Answered { answer, work: work.with(&found.work) });
@@ -119,6 +126,23 @@ pub(super) fn of_departing(
     let (left, answer) = parting(&mut walk, &first)?;
     let spent = SearchCounts { node_tests: walk.meter.spent(), ..SearchCounts::default() };
     Ok(Answered { answer: Departure { start: first.start, left, answer }, work: work.with(&spent) })
+}
+
+/// The options of another search, with a smaller tolerance, where one stopped at the start of the window although the bodies are proven
+/// further apart than the level there: searches stop up to two tolerances above the separation, whether bodies come or go.
+fn stopped_at_start(
+    found: &Answered<TimeOfContact>,
+    window: Window,
+    bodies: &[Moving<'_>; 2],
+    options: &QueryOptions,
+    work: &SearchCounts,
+) -> Option<QueryOptions> {
+    let contact = found.answer.contact().filter(|contact| contact.time_lo == window.start())?;
+    let tolerance = tolerance_of(bodies, options).max(contact.tolerance);
+    let mut meter = Meter::new(&options.budget);
+    meter.spend(work.work() + 1);
+    let rest = options.with_budget(meter.rest()).with_tolerance(FINER * tolerance);
+    (!meter.is_exhausted()).then_some(rest)
 }
 
 /// When the bodies part that are in this contact at the start, and the answer after that.

@@ -129,6 +129,33 @@ pub enum FirstContact {
     },
 }
 
+impl FirstContact {
+    /// The contact, if two bodies meet.
+    ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?)); // edges of length 1
+    /// use d2m_bvh::{QueryOptions, Window};
+    /// use d2m_motion::ConstantTwist;
+    /// use d2m_world::{Body, World};
+    /// use glam::DVec3;
+    /// let mut world = World::new(QueryOptions::default());
+    /// world.add(Body::new(Arc::clone(&cube), ConstantTwist::REST));
+    /// let coming = ConstantTwist::REST.with_position(DVec3::X * 3.0).with_linear_velocity(DVec3::X * -4.0);
+    /// world.add(Body::new(cube, coming));
+    /// assert!(world.first_contact(Window::UNIT)?.contact().is_some_and(|contact| contact.time_lo <= 0.5));
+    /// assert_eq!(world.first_contact(Window::try_new(0.0, 0.4)?)?.contact(), None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub const fn contact(&self) -> Option<&Contact> {
+        match self {
+            Self::Contact { contact, .. } => Some(contact),
+            Self::Separated | Self::Undecided { .. } => None,
+        }
+    }
+}
+
 /// The locally closest features of two bodies of a world.
 ///
 /// ```
