@@ -55,6 +55,8 @@ enum Only {
 enum Subject {
     /// Steps of simulations: boxes that fall into a pile, a bolt, gears, a sleeping pile, pebbles and knots.
     Dynamics,
+    /// Construction and refit of trees, one thread and two, beside parry's; the first answer for two meshes; a minute.
+    Trees,
 }
 
 #[derive(clap::Args, Clone, Debug)]
@@ -185,6 +187,7 @@ pub(crate) fn run(options: &Options) -> TaskResult {
     match (options.subject, options.only) {
         _ if options.check => check::run(options.accept),
         (Some(Subject::Dynamics), _) => dynamics::run(extent),
+        (Some(Subject::Trees), _) => scenes::trees::run(options.rounds),
         (None, Some(Only::Scenes)) => scenes::run(options.rounds),
         (None, Some(Only::Batch)) => batch::run(options.rounds),
         (None, Some(Only::Clearances)) => clearances::run(options),

@@ -2,6 +2,7 @@
 mod distances;
 mod saved;
 mod threads;
+pub(super) mod trees;
 mod worlds;
 
 use crate::TaskResult;
