@@ -21,17 +21,19 @@ fn commands(page: &str) -> Vec<String> {
     blocks.flat_map(str::lines).filter(|line| line.starts_with("d2m ")).map(str::to_owned).collect()
 }
 
-/// The words of a line, as a shell splits them where only double quotes are used.
+/// The words of a line up to a comment, as a shell splits them where only double quotes are used.
 fn words(line: &str) -> Vec<String> {
     let (mut words, mut word, mut quoted) = (Vec::new(), String::new(), false);
     for letter in line.chars() {
         match letter {
             '"' => quoted = !quoted,
+            '#' if !quoted && word.is_empty() => break,
             ' ' if !quoted => words.push(std::mem::take(&mut word)),
             _ => word.push(letter),
         }
     }
     words.push(word);
+    words.retain(|word| !word.is_empty());
     words
 }
 

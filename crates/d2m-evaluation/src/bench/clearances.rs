@@ -1,6 +1,6 @@
 //! How near bodies come, against the time of a query that finds only that they do not meet: the pairs of the bench, those of their
 //! trials that stay apart. Each answer is held against the judge's distances at many times before its time counts. Beside it stands what
-//! one distance at the closest time costs: no clearance can prove less than that.
+//! one distance at the closest time costs.
 use super::body::Pair;
 use super::engine::{self, Motions};
 use super::{Options, catalogue::Entry};

@@ -12,6 +12,7 @@ mod engine;
 mod method;
 mod peers;
 mod progress;
+mod robots;
 mod row;
 mod run;
 mod scenes;
@@ -57,6 +58,8 @@ enum Subject {
     Dynamics,
     /// Construction and refit of trees, one thread and two, beside parry's; the first answer for two meshes; a minute.
     Trees,
+    /// Edges of a planner: an arm of seven joints among five obstacles, or the robot of --robot; with --count so many edges a step.
+    Robots,
 }
 
 #[derive(clap::Args, Clone, Debug)]
@@ -64,6 +67,12 @@ enum Subject {
 pub(crate) struct Options {
     /// Measure this instead of queries.
     subject: Option<Subject>,
+    /// With `robots`: this URDF file instead of the arm that is built in.
+    #[arg(long, requires = "subject")]
+    robot: Option<PathBuf>,
+    /// With `robots`: the SRDF file of --robot.
+    #[arg(long, requires = "robot")]
+    srdf: Option<PathBuf>,
     /// With `dynamics`: 300 and 1000 boxes too.
     #[arg(long, requires = "subject")]
     full: bool,
@@ -188,6 +197,7 @@ pub(crate) fn run(options: &Options) -> TaskResult {
         _ if options.check => check::run(options.accept),
         (Some(Subject::Dynamics), _) => dynamics::run(extent),
         (Some(Subject::Trees), _) => scenes::trees::run(options.rounds),
+        (Some(Subject::Robots), _) => robots::run(options),
         (None, Some(Only::Scenes)) => scenes::run(options.rounds),
         (None, Some(Only::Batch)) => batch::run(options.rounds),
         (None, Some(Only::Clearances)) => clearances::run(options),
