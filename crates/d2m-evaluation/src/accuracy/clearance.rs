@@ -149,7 +149,7 @@ fn spline(random: &mut Random, away: DVec3) -> Motion {
     let mut turn = random.rotation();
     let poses: Vec<(f64, Pose)> = (0..count)
         .map(|k| {
-            turn = turn * DQuat::from_axis_angle(random.direction(), random.range(0.0, 1.0));
+            turn *= DQuat::from_axis_angle(random.direction(), random.range(0.0, 1.0));
             let translation = away + random.direction() * random.range(0.0, 1.5);
             (k as f64 / (count - 1) as f64, Pose { translation, rotation: turn, at: DVec3::ZERO })
         })
