@@ -9,7 +9,8 @@ use crate::pose::{Pose, pose_argument, vec3_or_zero, wxyz};
 use crate::segment::Segment;
 use crate::supervise::{Watch, pool, supervised};
 use d2m_dynamics::{
-    Body, BodyId, Kind, Mass, MassError, MassProperties, Segment as Flown, Simulation as Engine, SimulationError, SimulationOptions, StepError,
+    Body, BodyId, Kind, Mass, MassError, MassProperties, Segment as Flown, Simulation as Engine,
+    SimulationError, SimulationOptions, StepError,
 };
 use glam::{DMat3, DVec3};
 use numpy::PyArray2;
