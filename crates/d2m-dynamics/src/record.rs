@@ -161,12 +161,15 @@ pub(crate) struct Recorder {
     done: Vec<Segment>,
     last: Option<Segment>,
     open: Option<Segment>,
+    /// Removed while nothing is recorded: the next first segment says so.
+    gone: Vec<BodyId>,
 }
 
 impl Recorder {
     /// Starts with a segment without length that holds the first velocities.
     pub(crate) fn begin(&mut self, time: f64, bodies: Vec<(BodyId, ConstantTwist)>) {
-        self.last = Some(Segment::at(time, bodies));
+        let removed = core::mem::take(&mut self.gone);
+        self.last = Some(Segment { removed, ..Segment::at(time, bodies) });
         self.open = Some(Segment::at(time, Vec::new()));
     }
 
@@ -199,7 +202,10 @@ impl Recorder {
 
     /// A body is gone from the start of the open segment on.
     pub(crate) fn remove(&mut self, body: BodyId) {
-        let Some(open) = &mut self.open else { return };
+        let Some(open) = &mut self.open else {
+            self.gone.push(body);
+            return;
+        };
         open.changed.retain(|(id, _)| *id != body);
         open.removed.push(body);
     }

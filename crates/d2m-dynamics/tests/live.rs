@@ -528,3 +528,19 @@ fn joints_go_with_their_bodies() {
     assert_eq!(simulation.add_joint(&again), Ok(nail + 1));
     simulation.step().unwrap();
 }
+
+/// A body that is removed after the segments were finished is stated by the first one of those that follow.
+#[test]
+fn what_is_removed_between_two_recordings_is_stated() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let falling = simulation.add(&Body::new("falling", cube())).unwrap();
+    let other = simulation.add(&Body::new("other", cube()).with_position(DVec3::X * 3.0)).unwrap();
+    simulation.step().unwrap();
+    assert!(simulation.finish().iter().all(|segment| segment.removed.is_empty()));
+    assert!(simulation.remove(other));
+    let mut segments = simulation.step().unwrap().segments;
+    segments.extend(simulation.finish());
+    assert_eq!(segments[0].removed, [other]);
+    assert!(segments[1..].iter().all(|segment| segment.removed.is_empty()));
+    assert!(segments[0].changed.iter().any(|(id, _)| *id == falling));
+}

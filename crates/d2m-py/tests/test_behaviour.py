@@ -237,6 +237,8 @@ import os, signal, threading, time
 import d2m_ccd, numpy as np
 tree = d2m_ccd.Tree("shape:torus-knot?triangles=1500")
 rows = np.tile([1.0, 0, 0, 0, 3, 0, 0, -3, 0, 0, 9, 0, 0], (3_000_000, 1))
+# What a shell runs in the background ignores interrupts.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 sent = []
 def send():
     time.sleep(0.5)
