@@ -138,7 +138,7 @@ fn the_spans_of_a_scene() {
     assert_eq!(clear["spans"], serde_json::json!([{"from": 0.0, "to": 1.0, "status": "clear"}]));
 }
 
-/// A body with a radius is everything within it of its mesh: what is asked of two meshes is asked of two bodies.
+/// A body with a radius is everything within it of its mesh: each question about two meshes is one about two bodies.
 #[test]
 fn bodies_with_radii() {
     let radii = ["--radius-a", "0.25", "--radius-b=0.5", "--json"];

@@ -9,7 +9,7 @@ use d2m_world::{Body, FirstContact, Group, PlannedMotion, World, WorldError};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// The bodies of a simulation as they are now, at rest in a [`World`], whose queries answer what is asked: which bodies are near
+/// The bodies of a simulation as they are now, at rest in a [`World`], whose queries state which bodies are near
 /// ([`World::proximities`], [`World::clearances_below`]), what something would meet on its way ([`World::first_contact_of`]). What does not meet
 /// in the simulation is ignored there. The simulation goes on without it.
 ///

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 impl Simulation {
     /// Adds a body. A body that is added later appears in the segments from the next step on. That it intersects no other one is checked by
-    /// the next step, so that pairs may yet be ignored; [`Self::add_checked`] looks at once.
+    /// the next step, so that pairs may yet be ignored; [`Self::add_checked`] checks at once.
     ///
     /// # Errors
     /// Numbers that cannot be used, mass properties that are missing. Nothing changes then.

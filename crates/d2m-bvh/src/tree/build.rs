@@ -18,7 +18,7 @@ use core::sync::atomic::{AtomicUsize, Ordering};
 pub(super) const MOST_TRIANGLES: usize = 1 << 29;
 /// Parts of at most this many triangles are built by one thread, and reported when done.
 const GRAIN: usize = 4096;
-/// Parts of at most this many triangles are looked at as a whole, larger ones by a sample.
+/// Of parts of at most this many triangles all are examined, of larger ones a sample.
 const TAKEN: usize = 512;
 
 /// Receives the progress of the construction: triangles done, and all.

@@ -7,7 +7,8 @@ use d2m_lanes::{Doubles, Quad};
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Moments(pub(super) [f64; Moments::LENGTH]);
 
-/// What the area of a triangle (the body has radius one) counts at least: degenerate ones have a place, too.
+/// What the area of a triangle (the body has radius one) counts at least, so that degenerate ones have a place, too. It weights the choice of
+/// directions and cuts only: that boxes hold their triangles does not depend on it.
 pub(super) const LEAST_AREA: f64 = 1e-12;
 
 impl Moments {
