@@ -1,10 +1,8 @@
 //! The table of docs/theory/features.md: mean, p99 and largest time of a query by family, answers judged first.
-use d2m_feature::{
-    ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, PlacedTriangle, StraightPaths,
-};
-use d2m_testing::Opaque;
+use d2m_feature::{ContactOptions, FirstContact, PairMotion, PlacedTriangle, StraightPaths};
 use d2m_testing::Random;
 use d2m_testing::planted::families::{Family, Kind, Planted, plant};
+use d2m_testing::{Opaque, OpaqueWithState};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -15,11 +13,11 @@ pub(crate) const COLUMNS: [(&str, Family); 4] =
 /// A query with its setup done: what is timed is the question alone.
 pub(crate) struct Prepared {
     planted: Planted,
-    pair: PairMotion,
+    pair: PairMotion<'static>,
     triangle: PlacedTriangle,
     straight: StraightPaths,
-    enclosed: EnclosedPairMotion<'static>,
-    opaque: EnclosedPairMotion<'static>,
+    enclosed: PairMotion<'static>,
+    opaque: PairMotion<'static>,
 }
 
 /// Ways to ask.
@@ -43,20 +41,19 @@ pub(crate) fn queries(kind: Kind, family: Family, count: usize, seed: u64) -> Ve
     (0..count)
         .map(|_| {
             let planted = plant(kind, family, &mut random);
-            let pair =
-                PairMotion::new(&planted.motion_a, &planted.motion_b, planted.window.0, planted.window.1);
-            let triangle = pair.place_triangle(&planted.b);
             let (start, end) = planted.straight();
             // A pair borrows its motions; a bench may keep them for good.
-            let keep = |motion| Box::leak(Box::new((motion, Opaque(motion))));
+            let keep = |motion| Box::leak(Box::new((motion, OpaqueWithState(motion), Opaque(motion))));
             let (a, b) = (keep(planted.motion_a), keep(planted.motion_b));
             let (t0, t1) = planted.window;
+            let pair = PairMotion::new(&a.0, &b.0, t0, t1);
+            let triangle = pair.place_triangle(&planted.b);
             Prepared {
                 pair,
                 triangle,
                 straight: StraightPaths::new(start, end),
-                enclosed: EnclosedPairMotion::new(&a.0, &b.0, t0, t1),
-                opaque: EnclosedPairMotion::new(&a.1, &b.1, t0, t1),
+                enclosed: PairMotion::new(&a.1, &b.1, t0, t1),
+                opaque: PairMotion::new(&a.2, &b.2, t0, t1),
                 planted,
             }
         })

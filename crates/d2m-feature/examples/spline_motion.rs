@@ -2,7 +2,7 @@
 //! how to enclose itself, and the certified tests do the rest.
 //!
 //! Run with `cargo run -p d2m-feature --example spline_motion`.
-use d2m_feature::{ContactOptions, EnclosedPairMotion, FirstContact};
+use d2m_feature::{ContactOptions, FirstContact, PairMotion};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
 use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
 use glam::{DQuat, DVec3};
@@ -69,7 +69,7 @@ fn main() {
     let spline = Spline::bezier(control, DVec3::Z, 4.0);
     let wall = ConstantTwist::REST.with_angular_velocity(DVec3::new(0.0, 0.1, 0.0));
     let triangle = [DVec3::new(0.2, -4.0, -4.0), DVec3::new(0.2, 4.0, -4.0), DVec3::new(0.2, 0.0, 6.0)];
-    let pair = EnclosedPairMotion::new(&spline, &wall, 0.0, 1.0);
+    let pair = PairMotion::new(&spline, &wall, 0.0, 1.0);
     let vertex = DVec3::new(0.5, 0.0, 0.0);
     match pair.point_triangle(vertex, &triangle, &ContactOptions::new()) {
         FirstContact::Contact(contact) => {

@@ -1,6 +1,7 @@
 //! Witness points, normal, weights and closing speed at one time, in plain floating point.
 use crate::closest::{self, ClosestPair};
 use crate::contact::ContactDetails;
+use crate::features::Features;
 use crate::path::direction;
 use crate::sphere::Sphere;
 use d2m_motion::{Pose, RigidMotion, Twist};
@@ -35,7 +36,17 @@ struct Shape {
     size: f64,
 }
 
-pub(crate) fn point_triangle(
+/// Where and how features of A and B touch.
+pub(crate) fn of(features: &Features, [a, b]: [&dyn RigidMotion; 2], time: f64) -> ContactDetails {
+    match features {
+        Features::PointTriangle(point, triangle) => point_triangle(a, b, *point, triangle, time),
+        Features::TrianglePoint(triangle, point) => point_triangle(b, a, *point, triangle, time).reversed(),
+        Features::Edges(edge_a, edge_b) => edge_edge(a, b, *edge_a, *edge_b, time),
+        Features::Spheres(sphere_a, sphere_b) => sphere_sphere(a, b, *sphere_a, *sphere_b, time),
+    }
+}
+
+fn point_triangle(
     a: &dyn RigidMotion,
     b: &dyn RigidMotion,
     point: DVec3,
@@ -52,7 +63,7 @@ pub(crate) fn point_triangle(
     finish([on_a, on_b], [p, point_b], &pair, &Shape { normal, size }, time)
 }
 
-pub(crate) fn edge_edge(
+fn edge_edge(
     a: &dyn RigidMotion,
     b: &dyn RigidMotion,
     edge_a: [DVec3; 2],
@@ -69,7 +80,7 @@ pub(crate) fn edge_edge(
     finish([on_a, on_b], [point_a, point_b], &pair, &shape, time)
 }
 
-pub(crate) fn sphere_sphere(
+fn sphere_sphere(
     a: &dyn RigidMotion,
     b: &dyn RigidMotion,
     sphere_a: Sphere,

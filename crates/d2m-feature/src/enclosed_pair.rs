@@ -1,19 +1,15 @@
-//! Two bodies of any C² motion over a window of time: the tests of [`PairMotion`](crate::PairMotion) through what the
-//! motions enclose of themselves.
-use crate::contact::{ContactBracket, ContactDetails, FirstContact};
-use crate::details;
+//! Two bodies of any C² motion over a window: jets of what the motions enclose of themselves, piece by piece.
+use crate::contact::FirstContact;
 use crate::edge_edge::EdgeEdgeTest;
+use crate::features::{Features, largest};
 use crate::motion_in_units::MotionInUnits;
 use crate::options::ContactOptions;
-use crate::pair_motion::largest;
 use crate::path::{EnclosedMotions, EnclosedPath, Extent, FeaturePath};
 use crate::point_triangle::{PointTriangleTest, TrianglePlanes};
 use crate::rigid_query::{Answered, answer_in};
 use crate::rounding::{DOWN, UP, length_up};
-use crate::sphere::Sphere;
 use crate::sphere_sphere::SphereSphereTest;
-use crate::units::Units;
-use d2m_lanes::power_of_two;
+use crate::units::{SMALL, Units};
 use d2m_motion::RigidMotion;
 use d2m_root::Piece;
 use glam::DVec3;
@@ -21,33 +17,21 @@ use glam::DVec3;
 /// Two motions of any kind over a window, with what all features of the two bodies share.
 ///
 /// Every time that a search evaluates costs the states of both motions there ([`RigidMotion::enclose_state`]) and their
-/// twist rates around it. The promises are those of [`PairMotion`](crate::PairMotion), as long as the enclosures keep
-/// theirs. A window over joints ([`RigidMotion::smooth_until`]) is searched piece by piece, all of them with one
-/// budget; outside of the domain of a motion the answer is [`FirstContact::Undecided`]. Two motions of constant twist
-/// are better queried as a `PairMotion`: 1.2 to 2 times as fast, and with extended precision far from the reference point.
-///
-/// ```
-/// use d2m_feature::{ContactOptions, EnclosedPairMotion, FirstContact};
-/// use d2m_motion::ConstantTwist;
-/// use glam::DVec3;
-/// let falling = ConstantTwist::REST.with_position(DVec3::Z).with_linear_velocity(-2.0 * DVec3::Z);
-/// let pair = EnclosedPairMotion::new(&falling, &ConstantTwist::REST, 0.0, 1.0);
-/// let floor = [DVec3::new(-1.0, -1.0, 0.0), DVec3::X, DVec3::Y];
-/// let FirstContact::Contact(contact) = pair.point_triangle(DVec3::ZERO, &floor, &ContactOptions::new()) else {
-///     panic!("the point falls onto the floor");
-/// };
-/// assert!(contact.lo <= 0.5 && 0.5 <= contact.hi && contact.hi - contact.lo < 1e-12);
-/// ```
-pub struct EnclosedPairMotion<'a> {
+/// twist rates around it. A window over joints ([`RigidMotion::smooth_until`]) is searched piece by piece, all of them
+/// with one budget.
+#[derive(Clone)]
+pub(crate) struct EnclosedPair<'a> {
     a: &'a dyn RigidMotion,
     b: &'a dyn RigidMotion,
     start: f64,
     end: f64,
     units: Units,
+    /// From the start of the window; `None` where the motions cannot be expressed in the units.
     first: Option<SmoothPiece<'a>>,
 }
 
 /// Both motions over a part of the window in which both are smooth, seen from either body.
+#[derive(Clone)]
 struct SmoothPiece<'a> {
     /// A seen from B.
     forward: EnclosedMotions<'a>,
@@ -64,37 +48,26 @@ const COST_OF_ENCLOSURES: u32 = 8;
 const WIDE: f64 = 1.0 / 1024.0;
 /// Part of the distance of the bodies that counts as length there: for points, and for features far from their bodies.
 const FAR_AWAY: f64 = 1e-6;
-/// The size of features that are too small for the units of the motion, in these.
-const SMALL: f64 = power_of_two(-200);
 
-impl<'a> EnclosedPairMotion<'a> {
-    /// Motion of body A and of body B over `[t0, t1]`.
-    ///
-    /// # Panics
-    /// If a time is not finite or `t0 > t1`.
-    pub fn new(a: &'a dyn RigidMotion, b: &'a dyn RigidMotion, t0: f64, t1: f64) -> Self {
-        assert!(t0 <= t1 && t0.is_finite() && t1.is_finite(), "window [{t0}, {t1}]");
-        let units = if let (Some(a), Some(b)) = (a.constant_twist(), b.constant_twist()) {
-            Units::of_motions(&[a, b], t0, t1)
-        } else {
-            let middle = Piece { lo: t0, hi: t1 }.mid();
-            Units::of_states(&[a.enclose_state(middle), b.enclose_state(middle)], t0, t1)
-        };
-        let mut pair = Self { a, b, start: t0, end: t1, units, first: None };
-        pair.first = pair.try_piece(t0, &units);
+impl<'a> EnclosedPair<'a> {
+    /// In units of the two motions; both are defined over the window.
+    pub(crate) fn new([a, b]: [&'a dyn RigidMotion; 2], start: f64, end: f64) -> Self {
+        let middle = Piece { lo: start, hi: end }.mid();
+        let units = Units::of_states(&[a.enclose_state(middle), b.enclose_state(middle)], start, end);
+        let mut pair = Self { a, b, start, end, units, first: None };
+        pair.first = pair.try_piece(start, &units);
         pair
     }
 
-    /// Both motions from a time to the first joint of either; `None` if that cannot be expressed in these units, or where a
-    /// motion is not defined.
+    pub(crate) const fn units(&self) -> &Units {
+        &self.units
+    }
+
+    /// Both motions from a time to the first joint of either; `None` if that cannot be expressed in these units.
     fn try_piece(&self, from: f64, units: &Units) -> Option<SmoothPiece<'a>> {
         let mut end = self.end;
         let mut joints = [None; 2];
         for (joint, motion) in joints.iter_mut().zip([self.a, self.b]) {
-            let domain = motion.domain();
-            if !(domain.contains(self.start) && domain.contains(self.end)) {
-                return None;
-            }
             *joint = motion.smooth_until(from);
             match *joint {
                 Some(time) if time > from => end = end.min(time),
@@ -113,81 +86,14 @@ impl<'a> EnclosedPairMotion<'a> {
         })
     }
 
-    /// First contact of a point of A with a triangle of B (body frames).
-    pub fn point_triangle(
-        &self,
-        point: DVec3,
-        triangle: &[DVec3; 3],
-        options: &ContactOptions,
-    ) -> FirstContact {
-        let size = largest(&[point]).max(largest(triangle));
-        self.answer(size, options, &|piece, units, options| {
-            let triangle = units.points(*triangle);
-            point_triangle(&piece.forward, units.point(point), &triangle, options)
-        })
-    }
-
-    /// First contact of a triangle of A with a point of B.
-    pub fn triangle_point(
-        &self,
-        triangle: &[DVec3; 3],
-        point: DVec3,
-        options: &ContactOptions,
-    ) -> FirstContact {
-        let size = largest(&[point]).max(largest(triangle));
-        self.answer(size, options, &|piece, units, options| {
-            let triangle = units.points(*triangle);
-            point_triangle(&piece.backward, units.point(point), &triangle, options)
-        })
-    }
-
-    /// First contact of an edge of A with an edge of B.
-    pub fn edge_edge(
-        &self,
-        edge_a: [DVec3; 2],
-        edge_b: [DVec3; 2],
-        options: &ContactOptions,
-    ) -> FirstContact {
-        let size = largest(&edge_a).max(largest(&edge_b));
-        self.answer(size, options, &|piece, units, options| {
-            let (edge_a, edge_b) = (units.points(edge_a), units.points(edge_b));
-            // Seen from the slower body the bounds are smaller.
-            if piece.forward.turn_b() <= piece.backward.turn_b() {
-                edge_edge(&piece.forward, edge_a, edge_b, options)
-            } else {
-                edge_edge(&piece.backward, edge_b, edge_a, options)
-            }
-        })
-    }
-
-    /// First contact of a solid sphere of A with one of B.
-    pub fn sphere_sphere(
-        &self,
-        sphere_a: impl Into<Sphere>,
-        sphere_b: impl Into<Sphere>,
-        options: &ContactOptions,
-    ) -> FirstContact {
-        let (sphere_a, sphere_b) = (sphere_a.into(), sphere_b.into());
-        let size = largest(&[sphere_a.center, sphere_b.center]).max(sphere_a.radius.max(sphere_b.radius));
-        self.answer(size, options, &|piece, units, options| {
-            let centers = [units.point(sphere_a.center), units.point(sphere_b.center)];
-            let radii = units.length(sphere_a.radius.max(0.0)) + units.length(sphere_b.radius.max(0.0));
-            sphere_sphere(&piece.forward, centers, radii, options)
-        })
-    }
-
-    /// The answer of a query, smooth piece by smooth piece, in units that serve features of this size.
-    fn answer(
-        &self,
-        size: f64,
-        options: &ContactOptions,
-        query: &dyn Fn(&SmoothPiece<'_>, &Units, &ContactOptions) -> Answered,
-    ) -> FirstContact {
-        let size = size.max(options.separation());
+    /// The answer of a query, smooth piece by smooth piece, in units that serve these features.
+    pub(crate) fn first_contact(&self, features: &Features, options: &ContactOptions) -> FirstContact {
+        let size = features.size().max(options.separation());
         let small = !self.units.serve(size) && self.units.dwarf(size);
         let units =
             if self.units.serve(size) || small { self.units } else { self.units.with_length_of(size) };
         let mut in_units = options.in_units(&units).at_cost(COST_OF_ENCLOSURES);
+        let features = features.in_units(&units);
         let mut from = self.start;
         loop {
             let built;
@@ -202,7 +108,7 @@ impl<'a> EnclosedPairMotion<'a> {
                 },
             };
             let answer = if !small {
-                let Answered { contact, evaluations } = query(piece, &units, &in_units);
+                let Answered { contact, evaluations } = piece.first_contact(&features, &in_units);
                 in_units.max_evaluations = in_units.max_evaluations.saturating_sub(evaluations);
                 contact
             } else if piece.never_near() {
@@ -210,50 +116,34 @@ impl<'a> EnclosedPairMotion<'a> {
             } else {
                 return FirstContact::Undecided { clear_until: from };
             };
-            match answer {
-                FirstContact::Clear if piece.end >= self.end => return FirstContact::Clear,
-                FirstContact::Clear => from = piece.end,
-                FirstContact::Undecided { clear_until } => {
-                    return FirstContact::Undecided { clear_until: units.time_down(clear_until).max(from) };
-                }
-                FirstContact::Contact(contact) => {
-                    let lo = units.time_down(contact.lo).max(from);
-                    let hi = units.time_up(contact.hi).min(self.end).max(lo);
-                    let (distance, tolerance) =
-                        (units.length_up(contact.distance), units.length_up(contact.tolerance));
-                    return FirstContact::Contact(ContactBracket { lo, hi, distance, tolerance, ..contact });
-                }
+            match units.answer_back(answer, from, self.end) {
+                FirstContact::Clear if piece.end < self.end => from = piece.end,
+                answer => return answer,
             }
         }
-    }
-
-    /// Where and how a point of A and a triangle of B touch at a time (the `lo` of a bracket).
-    pub fn point_triangle_details(&self, point: DVec3, triangle: &[DVec3; 3], time: f64) -> ContactDetails {
-        details::point_triangle(self.a, self.b, point, triangle, time)
-    }
-
-    /// Where and how a triangle of A and a point of B touch at a time.
-    pub fn triangle_point_details(&self, triangle: &[DVec3; 3], point: DVec3, time: f64) -> ContactDetails {
-        details::point_triangle(self.b, self.a, point, triangle, time).reversed()
-    }
-
-    /// Where and how an edge of A and an edge of B touch at a time.
-    pub fn edge_edge_details(&self, edge_a: [DVec3; 2], edge_b: [DVec3; 2], time: f64) -> ContactDetails {
-        details::edge_edge(self.a, self.b, edge_a, edge_b, time)
-    }
-
-    /// Where and how two spheres touch at a time.
-    pub fn sphere_sphere_details(
-        &self,
-        sphere_a: impl Into<Sphere>,
-        sphere_b: impl Into<Sphere>,
-        time: f64,
-    ) -> ContactDetails {
-        details::sphere_sphere(self.a, self.b, sphere_a.into(), sphere_b.into(), time)
     }
 }
 
 impl SmoothPiece<'_> {
+    fn first_contact(&self, features: &Features, options: &ContactOptions) -> Answered {
+        match features {
+            Features::PointTriangle(point, triangle) => {
+                point_triangle(&self.forward, *point, triangle, options)
+            }
+            Features::TrianglePoint(triangle, point) => {
+                point_triangle(&self.backward, *point, triangle, options)
+            }
+            // Seen from the slower body the bounds are smaller.
+            &Features::Edges(a, b) if self.forward.turn_b() <= self.backward.turn_b() => {
+                edge_edge(&self.forward, a, b, options)
+            }
+            &Features::Edges(a, b) => edge_edge(&self.backward, b, a, options),
+            Features::Spheres(a, b) => {
+                sphere_sphere(&self.forward, [a.center, b.center], a.radius + b.radius, options)
+            }
+        }
+    }
+
     /// True if features that are too small for the units certainly never come near each other.
     fn never_near(&self) -> bool {
         // Each is within √3(size + at) of its reference point, and the separation is at most the size; 2√3 < 4.

@@ -2,12 +2,11 @@
 #![doc = include_str!("../picture.svg")]
 //!
 //! ## Start here
-//! [`PairMotion`] is two bodies of constant twist over a window; its methods answer when a point meets a
-//! triangle, an edge an edge, a sphere a [`Sphere`].
+//! [`PairMotion`] is two moving bodies over a window; its methods answer when a point meets a triangle, an edge an
+//! edge, a sphere a [`Sphere`].
 //!
 //! ## Motions
-//! - [`PairMotion`]: constant twists. [`PlacedTriangle`]: one triangle for many points.
-//! - [`EnclosedPairMotion`]: motions of any kind.
+//! - [`PairMotion`]: motions of any kind, constant twists in closed form. [`PlacedTriangle`]: one triangle for many points.
 //! - [`StraightPaths`]: four vertices on straight paths, for meshes that deform.
 //!
 //! ## Options and answers
@@ -30,6 +29,7 @@ mod edge_edge;
 mod enclosed_pair;
 mod exact_sign;
 mod feature_pair;
+mod features;
 mod motion_in_units;
 mod options;
 mod pair_motion;
@@ -42,10 +42,10 @@ mod sphere_sphere;
 mod straight_path;
 mod triangle_distance;
 mod triangle_intersection;
+mod twist_pair;
 mod units;
 
 pub use contact::{ContactBracket, ContactDetails, FirstContact};
-pub use enclosed_pair::EnclosedPairMotion;
 pub use exact_sign::{orient2d, orient3d, triple_product_sign};
 pub use feature_pair::FeaturePair;
 pub use options::ContactOptions;

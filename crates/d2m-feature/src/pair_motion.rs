@@ -1,21 +1,28 @@
-//! Two bodies of constant twist over a window of time: query here for the first contact of a pair of features.
-use crate::contact::{ContactBracket, ContactDetails, FirstContact};
+//! Two moving bodies over a window of time: query here for the first contact of a pair of features.
+use crate::contact::{ContactDetails, FirstContact};
 use crate::details;
+use crate::enclosed_pair::EnclosedPair;
+use crate::features::{Features, largest};
+use crate::motion_in_units::MotionInUnits;
 use crate::options::ContactOptions;
-use crate::path::FramedMotion;
-use crate::point_triangle::TrianglePlanes;
-use crate::rigid_query;
 use crate::sphere::Sphere;
+use crate::twist_pair::{InUnits, TwistPair};
 use crate::units::Units;
-use d2m_lanes::power_of_two;
-use d2m_motion::{ConstantTwist, RelativeMotion};
+use d2m_motion::RigidMotion;
 use glam::DVec3;
-use std::sync::OnceLock;
+use std::fmt;
 
-/// Two motions of constant twist over a window `[t0, t1]`, with what all features of the two bodies share.
+/// Two motions over a window `[t0, t1]`, with what all features of the two bodies share.
 ///
 /// Every query promises: no contact before the `lo` that it returns, and none at all when it returns
-/// [`FirstContact::Clear`] – in floating point, for every finite input. Geometry is given in body frames.
+/// [`FirstContact::Clear`] – in floating point, for every finite input, as long as the motions keep their promises.
+/// Geometry is given in body frames.
+///
+/// Two constant twists ([`RigidMotion::constant_twist`]) are evaluated in closed form, and with extended precision far from
+/// their reference points. Of other motions each evaluation encloses the states of both ([`RigidMotion::enclose_state`]) and their
+/// twist rates: 1.2 to 2 times as long, 3 to 6 times with nothing but interval enclosures. A window over joints
+/// ([`RigidMotion::smooth_until`]) is searched piece by piece, all of them with one budget; outside of the domain of a motion
+/// the answer is [`FirstContact::Undecided`].
 ///
 /// The numbers of a query are multiplied by powers of two that bring lengths and times near one: answers are the same for
 /// every exact scaling of lengths or times, up to that scaling. Where quantities of one query differ by more than 2²⁰⁰ the
@@ -33,22 +40,22 @@ use std::sync::OnceLock;
 /// };
 /// assert!(contact.lo <= 0.5 && 0.5 <= contact.hi && contact.hi - contact.lo < 1e-12);
 /// ```
-#[derive(Debug, Clone)]
-pub struct PairMotion {
-    motions: [ConstantTwist; 2],
+#[derive(Clone)]
+pub struct PairMotion<'a> {
+    motions: [&'a dyn RigidMotion; 2],
     start: f64,
-    end: f64,
-    units: Units,
-    sides: Option<Sides>,
+    source: Source<'a>,
 }
 
-/// The relative motion seen from either body, in the units of the pair.
-#[derive(Debug, Clone)]
-struct Sides {
-    /// A seen from B.
-    forward: FramedMotion,
-    /// B seen from A, once that is needed.
-    backward: OnceLock<FramedMotion>,
+/// Where jets of features come from.
+#[derive(Clone)]
+enum Source<'a> {
+    /// Closed form.
+    Twists(TwistPair),
+    /// What the motions enclose of themselves.
+    Enclosed(EnclosedPair<'a>),
+    /// A motion is not defined over the window.
+    Outside,
 }
 
 /// A triangle of B prepared for many points of A over one window ([`PairMotion::place_triangle`]).
@@ -73,63 +80,41 @@ pub struct PlacedTriangle {
     /// Body frame, as given.
     vertices: [DVec3; 3],
     size: f64,
-    /// In the units of the pair that placed it, if these serve it.
+    /// In the units of the pair that placed it, if it has a closed form and these serve the triangle.
     placed: Option<InUnits>,
 }
 
-/// A triangle in the units of a pair.
-#[derive(Debug, Clone)]
-struct InUnits {
-    /// Body frame.
-    vertices: [DVec3; 3],
-    /// In the epoch frame.
-    planes: TrianglePlanes,
-}
-
-/// How many times the size of the features the relative motion may reach in their units: beyond it doubles say nothing
-/// about a contact, and products of four lengths would overflow.
-const LARGEST_REACH: f64 = power_of_two(200);
-/// The size of features that are too small for the units of the motion, in these.
-const SMALL: f64 = power_of_two(-200);
-
-impl PairMotion {
+impl<'a> PairMotion<'a> {
     /// Motion of body A and of body B over `[t0, t1]`.
     ///
     /// # Panics
     /// If a time is not finite or `t0 > t1`.
-    pub fn new(a: &ConstantTwist, b: &ConstantTwist, t0: f64, t1: f64) -> Self {
+    pub fn new(a: &'a dyn RigidMotion, b: &'a dyn RigidMotion, t0: f64, t1: f64) -> Self {
         assert!(t0 <= t1 && t0.is_finite() && t1.is_finite(), "window [{t0}, {t1}]");
-        let motions = [*a, *b];
-        Self::in_units(&motions, t0, t1, Units::of_motions(&motions, t0, t1))
-    }
-
-    fn in_units(motions: &[ConstantTwist; 2], start: f64, end: f64, units: Units) -> Self {
-        let (from, to) = (units.time(start), units.time(end));
-        let [a, b] = motions;
-        let sides = match (units.try_motion(a, start), units.try_motion(b, start)) {
-            (Some(a), Some(b)) if from.is_finite() && to.is_finite() => {
-                let forward = FramedMotion::new(RelativeMotion::new(&a, &b, from, to));
-                Some(Sides { forward, backward: OnceLock::new() })
-            }
-            _ => None,
+        let is_defined = [a, b].into_iter().all(|motion| {
+            let domain = motion.domain();
+            domain.contains(t0) && domain.contains(t1)
+        });
+        let source = match (a.constant_twist(), b.constant_twist()) {
+            _ if !is_defined => Source::Outside,
+            (Some(a), Some(b)) => Source::Twists(TwistPair::new([a, b], t0, t1)),
+            _ => Source::Enclosed(EnclosedPair::new([a, b], t0, t1)),
         };
-        Self { motions: *motions, start, end, units, sides }
+        Self { motions: [a, b], start: t0, source }
     }
 
     /// The motions of A and B.
-    pub const fn motions(&self) -> &[ConstantTwist; 2] {
-        &self.motions
+    pub const fn motions(&self) -> [&'a dyn RigidMotion; 2] {
+        self.motions
     }
 
-    /// Prepares a triangle of B (body frame) for [`PairMotion::point_placed`].
+    /// Prepares a triangle of B (body frame) for [`PairMotion::point_placed`]: that saves time between constant twists, and changes
+    /// no answer.
     pub fn place_triangle(&self, triangle: &[DVec3; 3]) -> PlacedTriangle {
         let size = largest(triangle);
-        let placed = match &self.sides {
-            Some(sides) if self.units.serve(size) => {
-                let vertices = self.units.points(*triangle);
-                Some(InUnits { vertices, planes: rigid_query::place(&sides.forward, &vertices) })
-            }
-            _ => None,
+        let placed = match &self.source {
+            Source::Twists(pair) => pair.place(triangle, size),
+            Source::Enclosed(_) | Source::Outside => None,
         };
         PlacedTriangle { vertices: *triangle, size, placed }
     }
@@ -141,11 +126,7 @@ impl PairMotion {
         triangle: &[DVec3; 3],
         options: &ContactOptions,
     ) -> FirstContact {
-        let size = largest(&[point]).max(largest(triangle));
-        self.answer(size, options, |sides, units, options| {
-            let (point, triangle) = (units.point(point), units.points(*triangle));
-            rigid_query::point_triangle(&sides.forward, point, &triangle, options)
-        })
+        self.first_contact(&Features::PointTriangle(point, *triangle), options)
     }
 
     /// First contact of a triangle of A with a point of B.
@@ -155,11 +136,7 @@ impl PairMotion {
         point: DVec3,
         options: &ContactOptions,
     ) -> FirstContact {
-        let size = largest(&[point]).max(largest(triangle));
-        self.answer(size, options, |sides, units, options| {
-            let (point, triangle) = (units.point(point), units.points(*triangle));
-            rigid_query::point_triangle(sides.backward(), point, &triangle, options)
-        })
+        self.first_contact(&Features::TrianglePoint(*triangle, point), options)
     }
 
     /// First contact of a point of A with a triangle of B that this pair has prepared.
@@ -169,13 +146,11 @@ impl PairMotion {
         triangle: &PlacedTriangle,
         options: &ContactOptions,
     ) -> FirstContact {
-        let size = largest(&[point]).max(triangle.size);
-        if let (Some(InUnits { vertices, planes }), Some(sides)) = (&triangle.placed, &self.sides)
-            && self.units.serve(size.max(options.separation()))
+        if let (Source::Twists(pair), Some(placed)) = (&self.source, &triangle.placed)
+            && let size = largest(&[point]).max(triangle.size)
+            && let Some(answer) = pair.point_placed(point, placed, size, options)
         {
-            let units = &self.units;
-            let (point, options) = (units.point(point), options.in_units(units));
-            return self.back(rigid_query::point_placed(&sides.forward, point, vertices, planes, &options));
+            return answer;
         }
         self.point_triangle(point, &triangle.vertices, options)
     }
@@ -187,16 +162,7 @@ impl PairMotion {
         edge_b: [DVec3; 2],
         options: &ContactOptions,
     ) -> FirstContact {
-        let size = largest(&edge_a).max(largest(&edge_b));
-        self.answer(size, options, |sides, units, options| {
-            let (edge_a, edge_b) = (units.points(edge_a), units.points(edge_b));
-            // Seen from the slower body the bounds are smaller (8–16 % fewer evaluations).
-            if sides.forward.motion.speed_b() <= sides.forward.motion.speed_a() {
-                rigid_query::edge_edge(&sides.forward, edge_a, edge_b, options)
-            } else {
-                rigid_query::edge_edge(sides.backward(), edge_b, edge_a, options)
-            }
-        })
+        self.first_contact(&Features::Edges(edge_a, edge_b), options)
     }
 
     /// First contact of a solid sphere of A with one of B.
@@ -206,39 +172,22 @@ impl PairMotion {
         sphere_b: impl Into<Sphere>,
         options: &ContactOptions,
     ) -> FirstContact {
-        let (sphere_a, sphere_b) = (sphere_a.into(), sphere_b.into());
-        let size = largest(&[sphere_a.center, sphere_b.center]).max(sphere_a.radius.max(sphere_b.radius));
-        self.answer(size, options, |sides, units, options| {
-            let centers = [units.point(sphere_a.center), units.point(sphere_b.center)];
-            let radii = units.length(sphere_a.radius.max(0.0)) + units.length(sphere_b.radius.max(0.0));
-            rigid_query::sphere_sphere(&sides.forward, centers, radii, options)
-        })
+        self.first_contact(&Features::Spheres(sphere_a.into(), sphere_b.into()), options)
     }
 
     /// Where and how a point of A and a triangle of B touch at a time (the `lo` of a bracket).
     pub fn point_triangle_details(&self, point: DVec3, triangle: &[DVec3; 3], time: f64) -> ContactDetails {
-        let size = largest(&[point]).max(largest(triangle));
-        self.details(size, time, |[a, b], units, time| {
-            details::point_triangle(a, b, units.point(point), &units.points(*triangle), time)
-        })
+        self.details(&Features::PointTriangle(point, *triangle), time)
     }
 
     /// Where and how a triangle of A and a point of B touch at a time.
     pub fn triangle_point_details(&self, triangle: &[DVec3; 3], point: DVec3, time: f64) -> ContactDetails {
-        let size = largest(&[point]).max(largest(triangle));
-        self.details(size, time, |[a, b], units, time| {
-            let triangle = units.points(*triangle);
-            details::point_triangle(b, a, units.point(point), &triangle, time).reversed()
-        })
+        self.details(&Features::TrianglePoint(*triangle, point), time)
     }
 
     /// Where and how an edge of A and an edge of B touch at a time.
     pub fn edge_edge_details(&self, edge_a: [DVec3; 2], edge_b: [DVec3; 2], time: f64) -> ContactDetails {
-        let size = largest(&edge_a).max(largest(&edge_b));
-        self.details(size, time, |[a, b], units, time| {
-            let (edge_a, edge_b) = (units.points(edge_a), units.points(edge_b));
-            details::edge_edge(a, b, edge_a, edge_b, time)
-        })
+        self.details(&Features::Edges(edge_a, edge_b), time)
     }
 
     /// Where and how two spheres touch at a time.
@@ -248,91 +197,32 @@ impl PairMotion {
         sphere_b: impl Into<Sphere>,
         time: f64,
     ) -> ContactDetails {
-        let (sphere_a, sphere_b) = (sphere_a.into(), sphere_b.into());
-        let size = largest(&[sphere_a.center, sphere_b.center]).max(sphere_a.radius.max(sphere_b.radius));
-        self.details(size, time, |[a, b], units, time| {
-            let sphere = |s: Sphere| Sphere { center: units.point(s.center), radius: units.length(s.radius) };
-            details::sphere_sphere(a, b, sphere(sphere_a), sphere(sphere_b), time)
-        })
+        self.details(&Features::Spheres(sphere_a.into(), sphere_b.into()), time)
     }
 
-    /// The answer of a query in units that serve features of this size.
     #[inline(always)]
-    fn answer(
-        &self,
-        size: f64,
-        options: &ContactOptions,
-        query: impl Fn(&Sides, &Units, &ContactOptions) -> FirstContact,
-    ) -> FirstContact {
-        let size = size.max(options.separation());
-        match &self.sides {
-            Some(sides) if self.units.serve(size) => {
-                self.back(query(sides, &self.units, &options.in_units(&self.units)))
-            }
-            _ => self.answer_in_other_units(size, options, &query),
+    fn first_contact(&self, features: &Features, options: &ContactOptions) -> FirstContact {
+        match &self.source {
+            Source::Twists(pair) => pair.first_contact(features, options),
+            Source::Enclosed(pair) => pair.first_contact(features, options),
+            Source::Outside => FirstContact::Undecided { clear_until: self.start },
         }
     }
 
-    #[cold]
-    fn answer_in_other_units(
-        &self,
-        size: f64,
-        options: &ContactOptions,
-        query: &dyn Fn(&Sides, &Units, &ContactOptions) -> FirstContact,
-    ) -> FirstContact {
-        let undecided = FirstContact::Undecided { clear_until: self.start };
-        if !size.is_finite() {
-            return undecided;
-        }
-        if let Some(sides) = &self.sides
-            && self.units.dwarf(size)
-            && sides.never_near(&self.units, &self.motions)
-        {
-            return FirstContact::Clear;
-        }
-        let other = Self::in_units(&self.motions, self.start, self.end, self.units.with_length_of(size));
-        match &other.sides {
-            // Also NaN is left undecided.
-            Some(sides) if sides.forward.motion.bound_reach(0.0) <= LARGEST_REACH => {
-                other.back(query(sides, &other.units, &options.in_units(&other.units)))
-            }
-            _ => undecided,
-        }
-    }
-
-    /// An answer in the units of the input, its times inside the window.
-    #[inline(always)]
-    fn back(&self, answer: FirstContact) -> FirstContact {
-        let units = &self.units;
-        match answer {
-            FirstContact::Clear => FirstContact::Clear,
-            FirstContact::Undecided { clear_until } => {
-                FirstContact::Undecided { clear_until: units.time_down(clear_until).max(self.start) }
-            }
-            FirstContact::Contact(contact) => {
-                let lo = units.time_down(contact.lo).max(self.start);
-                let hi = units.time_up(contact.hi).min(self.end).max(lo);
-                let (distance, tolerance) =
-                    (units.length_up(contact.distance), units.length_up(contact.tolerance));
-                FirstContact::Contact(ContactBracket { lo, hi, distance, tolerance, ..contact })
-            }
-        }
-    }
-
-    fn details(
-        &self,
-        size: f64,
-        time: f64,
-        describe: impl Fn([&ConstantTwist; 2], &Units, f64) -> ContactDetails,
-    ) -> ContactDetails {
-        let units = if self.units.serve(size) { self.units } else { self.units.with_length_of(size) };
-        let [a, b] = &self.motions;
-        let in_units = (units.try_motion(a, self.start), units.try_motion(b, self.start));
-        let (Some(a), Some(b)) = in_units else {
-            // Nothing better than the numbers as they are.
-            return describe([a, b], &Units::NONE, time);
+    fn details(&self, features: &Features, time: f64) -> ContactDetails {
+        let units = match &self.source {
+            Source::Twists(pair) => *pair.units(),
+            Source::Enclosed(pair) => *pair.units(),
+            Source::Outside => Units::NONE,
         };
-        let there = describe([&a, &b], &units, units.time(time));
+        let size = features.size();
+        let units = if units.serve(size) { units } else { units.with_length_of(size) };
+        let [a, b] = self.motions.map(|motion| MotionInUnits::try_new(motion, &units, self.start, None));
+        let (Some(a), Some(b)) = (a, b) else {
+            // Nothing better than the numbers as they are.
+            return details::of(features, self.motions, time);
+        };
+        let there = details::of(&features.in_units(&units), [&a, &b], units.time(time));
         ContactDetails {
             time,
             point_a: units.point_back(there.point_a),
@@ -343,29 +233,14 @@ impl PairMotion {
     }
 }
 
-impl Sides {
-    #[inline]
-    fn backward(&self) -> &FramedMotion {
-        self.backward.get_or_init(|| FramedMotion::new(self.forward.motion.reversed()))
-    }
-
-    /// True if features that are too small for the units certainly never come near each other.
-    fn never_near(&self, units: &Units, motions: &[ConstantTwist; 2]) -> bool {
-        let at = largest(&[units.point(motions[0].at()), units.point(motions[1].at())]);
-        // Each is within √3(size + at) of its reference point, and the separation is at most the size; 2√3 < 4.
-        self.forward.motion.times_within(4.0 * at + 8.0 * SMALL).is_none()
-    }
-}
-
-/// The largest magnitude of a coordinate.
-#[inline(always)]
-pub(crate) fn largest(points: &[DVec3]) -> f64 {
-    let mut most = 0.0;
-    for p in points {
-        for x in [p.x.abs(), p.y.abs(), p.z.abs()] {
-            // (What is not a number is not counted: it excludes nothing later.)
-            most = if x > most { x } else { most };
+impl fmt::Debug for PairMotion<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut fields = f.debug_struct("PairMotion");
+        match &self.source {
+            Source::Twists(pair) => fields.field("twists", pair).finish(),
+            Source::Enclosed(_) | Source::Outside => {
+                fields.field("start", &self.start).finish_non_exhaustive()
+            }
         }
     }
-    most
 }

@@ -3,6 +3,7 @@
 //! Every test works with products of up to six lengths and speeds; in the units of the input these may under- or overflow
 //! although each number is finite. So all numbers of a query are multiplied by powers of two first, which rounds nothing:
 //! verdicts, brackets relative to the window and feature pairs are the same for every exact scaling of lengths or times.
+use crate::contact::{ContactBracket, FirstContact};
 use d2m_lanes::{power_of_two, scaled};
 use d2m_motion::{CertifiedState, ConstantTwist};
 use glam::DVec3;
@@ -14,6 +15,8 @@ const LARGEST_NORMAL: i32 = 1022;
 /// Exponent of the powers of two between which features may lie, in units of the motion, without new units: 2±²⁰⁰. Products
 /// of four such lengths stay within 2±⁸⁰⁰.
 const EXPONENT_OF_RANGE: i32 = 200;
+/// The size of features that are too small for the units of the motion, in these.
+pub(crate) const SMALL: f64 = power_of_two(-EXPONENT_OF_RANGE);
 
 /// k with |x| in [2ᵏ, 2ᵏ⁺¹); −1023 for subnormal numbers, 1024 for what is not finite, far below all for zero.
 pub(crate) fn exponent(x: f64) -> i32 {
@@ -214,6 +217,24 @@ impl Units {
     pub(crate) fn time_up(&self, t: f64) -> f64 {
         let there = scaled(t, self.time);
         if there.abs() < f64::MIN_POSITIVE && scaled(there, -self.time) < t { there.next_up() } else { there }
+    }
+
+    /// An answer in these units as one in the input's, its times within `[start, end]`.
+    #[inline(always)]
+    pub(crate) fn answer_back(&self, answer: FirstContact, start: f64, end: f64) -> FirstContact {
+        match answer {
+            FirstContact::Clear => FirstContact::Clear,
+            FirstContact::Undecided { clear_until } => {
+                FirstContact::Undecided { clear_until: self.time_down(clear_until).max(start) }
+            }
+            FirstContact::Contact(contact) => {
+                let lo = self.time_down(contact.lo).max(start);
+                let hi = self.time_up(contact.hi).min(end).max(lo);
+                let (distance, tolerance) =
+                    (self.length_up(contact.distance), self.length_up(contact.tolerance));
+                FirstContact::Contact(ContactBracket { lo, hi, distance, tolerance, ..contact })
+            }
+        }
     }
 
     /// A motion in these units; `None` where a number of it overflows.

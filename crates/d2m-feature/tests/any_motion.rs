@@ -1,5 +1,5 @@
 //! Contacts planted on motions that accelerate: never missed, never late, brackets narrow, gaps seen as gaps.
-use d2m_feature::{ContactOptions, EnclosedPairMotion, FirstContact};
+use d2m_feature::{ContactOptions, FirstContact, PairMotion};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
 use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Pose, RigidMotion, Span, Twist};
 use d2m_root::Evidence;
@@ -75,7 +75,7 @@ fn contacts_of_accelerating_motions_are_never_missed_and_never_late() {
             (p, triangle[0] + (triangle[1] - triangle[0]) * u + (triangle[2] - triangle[0]) * v)
         };
         a.path[0] += pose_b.transform_point(theirs) - pose_a.transform_point(mine);
-        let pair = EnclosedPairMotion::new(&a, &b, 0.0, 1.0);
+        let pair = PairMotion::new(&a, &b, 0.0, 1.0);
         let answer = if edges {
             pair.edge_edge([p, q], [triangle[0], triangle[1]], &options)
         } else {
@@ -107,7 +107,7 @@ fn what_is_clear_stays_apart() {
     for _ in 0..1500 {
         let (a, b) = (SpinUp::random(&mut random), SpinUp::random(&mut random));
         let (p, triangle) = (random.vector(), [random.vector(), random.vector(), random.vector()]);
-        let pair = EnclosedPairMotion::new(&a, &b, 0.0, 1.0);
+        let pair = PairMotion::new(&a, &b, 0.0, 1.0);
         let answer = pair.point_triangle(p, &triangle, &options);
         let until = match answer {
             FirstContact::Clear => {
@@ -147,7 +147,7 @@ fn wide_enclosures_are_no_contact() {
     let floor = [DVec3::new(-4.0, -4.0, 0.0), DVec3::new(6.0, -4.0, 0.0), DVec3::new(0.0, 8.0, 0.0)];
     for (width, clear) in [(0.0, true), (1e-12, true), (0.3, true), (0.7, false), (f64::MAX, false)] {
         let wide = Blurred::by(falling, width);
-        let pair = EnclosedPairMotion::new(&wide, &still, 0.0, 1.0);
+        let pair = PairMotion::new(&wide, &still, 0.0, 1.0);
         let answer = pair.point_triangle(DVec3::ZERO, &floor, &ContactOptions::new());
         // A unit above the floor all the time.
         assert!(!matches!(answer, FirstContact::Contact(_)), "{width}: {answer:?}");
@@ -210,21 +210,21 @@ fn twists_that_jump_are_searched_piece_by_piece() {
     // At rest until the joint, then down by two units per unit of time: contact half a unit of time later.
     for joint in [0.125, 0.25, 0.4, 0.5] {
         let motion = Bounce { joint, speeds: [DVec3::ZERO, -2.0 * DVec3::Z] };
-        let pair = EnclosedPairMotion::new(&motion, &still, 0.0, 1.0);
+        let pair = PairMotion::new(&motion, &still, 0.0, 1.0);
         let FirstContact::Contact(contact) = pair.point_triangle(DVec3::ZERO, &floor, &options) else {
             panic!("{joint}")
         };
         assert!(contact.lo <= joint + 0.5 && contact.lo > joint + 0.5 - 1e-9, "{joint}: {contact:?}");
         // Down at first, up from the joint on: contact only if the joint comes late.
         let motion = Bounce { joint, speeds: [-2.0 * DVec3::Z, 3.0 * DVec3::Z] };
-        let pair = EnclosedPairMotion::new(&motion, &still, 0.0, 1.0);
+        let pair = PairMotion::new(&motion, &still, 0.0, 1.0);
         match pair.point_triangle(DVec3::ZERO, &floor, &options) {
             FirstContact::Clear => assert!(joint < 0.5),
             FirstContact::Contact(contact) => assert!(joint == 0.5 && contact.lo <= 0.5, "{contact:?}"),
             other @ FirstContact::Undecided { .. } => panic!("{other:?}"),
         }
         // Nothing is promised outside of the domain.
-        let outside = EnclosedPairMotion::new(&motion, &still, 0.0, 11.0);
+        let outside = PairMotion::new(&motion, &still, 0.0, 11.0);
         let answer = outside.point_triangle(DVec3::ZERO, &floor, &options);
         assert_eq!(answer, FirstContact::Undecided { clear_until: 0.0 });
     }
@@ -245,7 +245,7 @@ fn all_pieces_share_one_budget() {
         let path = Keyframes::try_new(&poses, Span::Linear).unwrap();
         let motion = CountedStates::new(path);
         let options = ContactOptions::new().with_max_evaluations(evaluations);
-        let pair = EnclosedPairMotion::new(&motion, &ConstantTwist::REST, 0.0, 400.0);
+        let pair = PairMotion::new(&motion, &ConstantTwist::REST, 0.0, 400.0);
         let answer = pair.point_triangle(DVec3::X, &tilted, &options);
         (answer, motion.count())
     };
@@ -256,4 +256,45 @@ fn all_pieces_share_one_budget() {
     let FirstContact::Undecided { clear_until } = part else { panic!("{part:?}") };
     assert!(clear_until < 400.0 && 2 * some < all, "{clear_until}: {some} of {all}");
     assert!(clear_until > 1.0 || some > 200, "{clear_until}: {some}");
+}
+
+/// A constant twist that is defined for a while only.
+struct ForAWhile(ConstantTwist);
+
+impl RigidMotion for ForAWhile {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        self.0.pose_and_twist(t)
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        self.0.enclose_pose(t)
+    }
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist(t)
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist_rate(t)
+    }
+    fn domain(&self) -> Interval {
+        Interval::new(0.0, 1.0)
+    }
+    fn constant_twist(&self) -> Option<ConstantTwist> {
+        Some(self.0)
+    }
+}
+
+/// A closed form is no reason to go past the times of a motion.
+#[test]
+fn nothing_is_promised_outside_of_a_domain() {
+    let rising = ForAWhile(ConstantTwist::REST.with_position(DVec3::Z).with_linear_velocity(DVec3::Z));
+    let floor = [DVec3::new(-1.0, -1.0, 0.0), DVec3::X, DVec3::Y];
+    let ask = |end| {
+        let pair = PairMotion::new(&rising, &ConstantTwist::REST, 0.0, end);
+        let placed = pair.place_triangle(&floor);
+        let options = ContactOptions::new();
+        let answer = pair.point_triangle(DVec3::ZERO, &floor, &options);
+        assert_eq!(pair.point_placed(DVec3::ZERO, &placed, &options), answer);
+        answer
+    };
+    assert_eq!(ask(1.0), FirstContact::Clear);
+    assert_eq!(ask(1.5), FirstContact::Undecided { clear_until: 0.0 });
 }

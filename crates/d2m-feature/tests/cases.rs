@@ -1,9 +1,10 @@
 //! Hard cases with high-precision truth (`testdata/cases.jsonl`) and cases at the ends of the range of doubles
 //! (`testdata/extreme_cases.jsonl`, with the times of contact times 2^exponent): none missed, none late, all decided.
 
-use d2m_feature::{ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, Sphere, StraightPaths};
+use d2m_feature::{ContactOptions, FirstContact, PairMotion, Sphere, StraightPaths};
 use d2m_motion::ConstantTwist;
 use d2m_root::Evidence;
+use d2m_testing::OpaqueWithState;
 use dashu_int::IBig;
 use dashu_ratio::RBig;
 use glam::{DQuat, DVec3};
@@ -43,17 +44,12 @@ fn answer(case: &Value, enclosed: bool) -> FirstContact {
     let (a, b) = (motion(&case["motionA"]), motion(&case["motionB"]));
     let (t0, t1) = (case["t0"].as_f64().unwrap(), case["t1"].as_f64().unwrap());
     let sphere = |s: &str| Sphere { center: vector(&case[s]["c"]), radius: case[s]["r"].as_f64().unwrap() };
-    if enclosed {
-        let pair = EnclosedPairMotion::new(&a, &b, t0, t1);
-        return match kind {
-            "point_triangle" => {
-                pair.point_triangle(vector(&case["A"]["p"]), &vectors(&case["B"]["tri"]), &options)
-            }
-            "edge_edge" => pair.edge_edge(vectors(&case["A"]["edge"]), vectors(&case["B"]["edge"]), &options),
-            _ => pair.sphere_sphere(sphere("A"), sphere("B"), &options),
-        };
-    }
-    let pair = PairMotion::new(&a, &b, t0, t1);
+    let hidden = [OpaqueWithState(a), OpaqueWithState(b)];
+    let pair = if enclosed {
+        PairMotion::new(&hidden[0], &hidden[1], t0, t1)
+    } else {
+        PairMotion::new(&a, &b, t0, t1)
+    };
     match kind {
         "point_triangle" => {
             pair.point_triangle(vector(&case["A"]["p"]), &vectors(&case["B"]["tri"]), &options)

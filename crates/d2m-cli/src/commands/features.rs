@@ -62,6 +62,12 @@ struct Moving {
     t1: f64,
 }
 
+impl Moving {
+    fn pair(&self) -> PairMotion<'_> {
+        PairMotion::new(&self.motion_a, &self.motion_b, self.t0, self.t1)
+    }
+}
+
 #[derive(Deserialize)]
 struct Straight {
     t0_points: [DVec3; 4],
@@ -217,14 +223,12 @@ impl Question {
 
     /// The answer and the time from the numbers of the case to it.
     fn answer(&self, options: &ContactOptions) -> (FirstContact, Duration) {
-        let pair =
-            |moving: &Moving| PairMotion::new(&moving.motion_a, &moving.motion_b, moving.t0, moving.t1);
         let sphere = |s: &Sphere| feature::Sphere { center: s.c, radius: s.r };
         let start = Instant::now();
         let answer = match self {
-            Self::PointTriangle { a, b, moving } => pair(moving).point_triangle(a.p, &b.tri, options),
-            Self::EdgeEdge { a, b, moving } => pair(moving).edge_edge(a.edge, b.edge, options),
-            Self::SphereSphere { a, b, moving } => pair(moving).sphere_sphere(sphere(a), sphere(b), options),
+            Self::PointTriangle { a, b, moving } => moving.pair().point_triangle(a.p, &b.tri, options),
+            Self::EdgeEdge { a, b, moving } => moving.pair().edge_edge(a.edge, b.edge, options),
+            Self::SphereSphere { a, b, moving } => moving.pair().sphere_sphere(sphere(a), sphere(b), options),
             Self::PointTriangleLinear(paths) => {
                 StraightPaths::new(paths.t0_points, paths.t1_points).point_triangle(options)
             }

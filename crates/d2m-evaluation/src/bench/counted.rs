@@ -214,12 +214,13 @@ const FAMILIES: [Family; 4] = [Family::Far, Family::Near, Family::Hit, Family::G
 
 fn features(kind: Kind, how: How) {
     let mut random = Random::new(7);
-    let cases: Vec<_> = (0..REPEATS)
-        .flat_map(|_| FAMILIES)
-        .map(|family| {
-            let planted = plant(kind, family, &mut random);
-            let pair =
-                PairMotion::new(&planted.motion_a, &planted.motion_b, planted.window.0, planted.window.1);
+    let planted: Vec<_> =
+        (0..REPEATS).flat_map(|_| FAMILIES).map(|family| plant(kind, family, &mut random)).collect();
+    let cases: Vec<_> = planted
+        .iter()
+        .map(|planted| {
+            let (t0, t1) = planted.window;
+            let pair = PairMotion::new(&planted.motion_a, &planted.motion_b, t0, t1);
             let (start, end) = planted.straight();
             let triangle = pair.place_triangle(&planted.b);
             (pair, triangle, StraightPaths::new(start, end), planted)

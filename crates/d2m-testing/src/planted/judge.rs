@@ -2,9 +2,9 @@
 use super::families::{FAMILIES, Family, Kind, Planted, plant};
 use super::oracle::{Vertices, big, distance, rigid, straight, true_contact};
 use super::quick::{self, QuickVertices};
-use crate::Opaque;
 use crate::Random;
-use d2m_feature::{ContactOptions, EnclosedPairMotion, FirstContact, PairMotion, StraightPaths};
+use crate::{Opaque, OpaqueWithState};
+use d2m_feature::{ContactOptions, FirstContact, PairMotion, StraightPaths};
 
 /// What a run saw.
 #[derive(Debug, Clone, Default)]
@@ -118,8 +118,8 @@ pub fn rigid_family(kind: Kind, family: Family, count: u64, seed: u64) -> Tally 
     tally
 }
 
-/// The same queries through [`EnclosedPairMotion`]: every other one with nothing but the enclosures that a motion must
-/// give.
+/// The same queries of motions that do not say that their twists are constant: every other one with nothing but the enclosures
+/// that a motion must give.
 pub fn enclosed_family(kind: Kind, family: Family, count: u64, seed: u64) -> Tally {
     let mut tally = Tally::default();
     let mut random = Random::new(seed);
@@ -128,10 +128,11 @@ pub fn enclosed_family(kind: Kind, family: Family, count: u64, seed: u64) -> Tal
         let query = plant(kind, family, &mut random);
         let (a, b, (t0, t1)) = (&query.motion_a, &query.motion_b, query.window);
         let (opaque_a, opaque_b) = (Opaque(*a), Opaque(*b));
+        let (state_a, state_b) = (OpaqueWithState(*a), OpaqueWithState(*b));
         let pair = if i % 2 == 0 {
-            EnclosedPairMotion::new(a, b, t0, t1)
+            PairMotion::new(&state_a, &state_b, t0, t1)
         } else {
-            EnclosedPairMotion::new(&opaque_a, &opaque_b, t0, t1)
+            PairMotion::new(&opaque_a, &opaque_b, t0, t1)
         };
         let answer = match kind {
             Kind::PointTriangle => pair.point_triangle(query.a[0], &query.b, &options),
