@@ -55,16 +55,28 @@ pub(crate) fn size_of(mesh: &TriMesh) -> f64 {
     (high - low).length()
 }
 
-/// Warns of bodies of very unlike sizes.
+/// Warns of two bodies of very unlike sizes.
 pub(crate) fn warn_of_sizes(a: f64, b: f64) {
-    let (small, large) = (a.min(b), a.max(b));
-    if small > 0.0 && large > UNLIKELY * small {
-        note(&format!(
-            "d2m: warning: A is {} across and B {}: are both in the same unit? (--unit-a, --scale-a)",
-            digits(a),
-            digits(b)
-        ));
+    if let Some(text) = unlike(("A", a), ("B", b)) {
+        note(&format!("d2m: warning: {text} (--unit-a, --scale-a)"));
     }
+}
+
+/// The same of the smallest and the largest body of a scene file.
+pub(crate) fn warn_of_scene_sizes(place: &str, bodies: &[(&str, f64)]) {
+    let by_size = |x: &&(&str, f64), y: &&(&str, f64)| x.1.total_cmp(&y.1);
+    let ends = bodies.iter().min_by(by_size).zip(bodies.iter().max_by(by_size));
+    if let Some(text) = ends.and_then(|(&small, &large)| unlike(small, large)) {
+        note(&format!("d2m: warning: {place}: {text} (\"scale\")"));
+    }
+}
+
+/// What is to be said of two bodies of which one is probably in another unit, by their names and sizes.
+pub(crate) fn unlike((one, a): (&str, f64), (other, b): (&str, f64)) -> Option<String> {
+    let (small, large) = (a.min(b), a.max(b));
+    (small > 0.0 && large > UNLIKELY * small).then(|| {
+        format!("{one} is {} across and {other} {}: are both in the same unit?", digits(a), digits(b))
+    })
 }
 
 /// The last line of an answer: how large each body is, and how far it goes and turns in the window.

@@ -176,36 +176,50 @@ impl<'b> Bodies<'b> {
         Ok(Self { bodies, meshes })
     }
 
+    fn pair(&self, [a, b]: [usize; 2]) -> (Verifier, [Moving<'b>; 2]) {
+        let verifier = Verifier::new([Arc::clone(&self.meshes[a]), Arc::clone(&self.meshes[b])]);
+        (verifier, [self.bodies[a], self.bodies[b]])
+    }
+
     /// Proves an answer about two of the bodies, by their numbers.
     pub(crate) fn prove(
         &self,
-        [a, b]: [usize; 2],
+        pair: [usize; 2],
         window: Window,
         options: &QueryOptions,
         answer: &TimeOfContact,
     ) -> Proof {
-        let verifier = Verifier::new([Arc::clone(&self.meshes[a]), Arc::clone(&self.meshes[b])]);
-        let bodies = [self.bodies[a], self.bodies[b]];
+        let (verifier, bodies) = self.pair(pair);
         Proof(verifier.time_of_contact(&bodies, window, options, answer, DEFAULT_STEPS))
     }
 
     /// The same of how near two of the bodies come.
     pub(crate) fn prove_clearance(
         &self,
-        [a, b]: [usize; 2],
+        pair: [usize; 2],
         window: Window,
         options: &ClearanceOptions,
         answer: &Clearance,
     ) -> Proof {
-        let verifier = Verifier::new([Arc::clone(&self.meshes[a]), Arc::clone(&self.meshes[b])]);
-        let bodies = [self.bodies[a], self.bodies[b]];
+        let (verifier, bodies) = self.pair(pair);
         Proof(verifier.clearance(&bodies, window, options, answer, DEFAULT_STEPS))
     }
 
+    /// The same of which times of the window are clear.
+    pub(crate) fn prove_spans(
+        &self,
+        pair: [usize; 2],
+        window: Window,
+        options: &QueryOptions,
+        (spans, resolution): (&[ContactSpan], f64),
+    ) -> Proof {
+        let (verifier, bodies) = self.pair(pair);
+        Proof(verifier.contact_spans(&bodies, window, options, Some(resolution), spans, DEFAULT_STEPS))
+    }
+
     /// Proves that two of the bodies are at least this far apart all the time, however they meet.
-    pub(crate) fn prove_apart(&self, [a, b]: [usize; 2], window: Window, distance: f64) -> Proof {
-        let verifier = Verifier::new([Arc::clone(&self.meshes[a]), Arc::clone(&self.meshes[b])]);
-        let bodies = [self.bodies[a], self.bodies[b]];
+    pub(crate) fn prove_apart(&self, pair: [usize; 2], window: Window, distance: f64) -> Proof {
+        let (verifier, bodies) = self.pair(pair);
         let span = TimeSpan { from: window.start(), to: window.end() };
         // The claim is of more than a distance.
         let claim = Claim::Clear { span, distance: distance.next_down() };
@@ -215,13 +229,12 @@ impl<'b> Bodies<'b> {
     /// The same of what is said of bodies that part.
     pub(crate) fn prove_departure(
         &self,
-        [a, b]: [usize; 2],
+        pair: [usize; 2],
         window: Window,
         options: &QueryOptions,
         answer: &Departure,
     ) -> Proof {
-        let verifier = Verifier::new([Arc::clone(&self.meshes[a]), Arc::clone(&self.meshes[b])]);
-        let bodies = [self.bodies[a], self.bodies[b]];
+        let (verifier, bodies) = self.pair(pair);
         Proof(verifier.departure(&bodies, window, options, answer, DEFAULT_STEPS))
     }
 }

@@ -211,5 +211,23 @@ fn clearances_of_a_scene_are_verified() {
         let run = d2m(&[command, &apart]);
         assert!(stdout(&run).ends_with(&format!("{sizes}\n")), "{command}: {}", stdout(&run));
     }
-    refused(&["spans", &apart, "--verify"], &["--verify", "two meshes"]);
+}
+
+/// The spans of all pairs of a scene are proven again, those of pairs that are left out of the answer, too.
+#[test]
+fn spans_of_a_scene_are_verified() {
+    let folder = Folder::new("scene-spans-verified");
+    let through = cell(&folder, "through.json", &[]);
+    let spans = ask(&["spans", &through, "--verify", "--json"]);
+    assert!(spans["pairs"].as_array().is_some_and(|pairs| pairs.len() == 2), "{spans}");
+    let of_pair = number(&spans["proof_steps"]);
+    assert!(spans["verified"] == true && of_pair >= 4.0, "{spans}");
+    // Nothing meets: that no pair does is proven.
+    let edits = [("\"x\": [4, 0, 0]", "\"x\": [4, 2, 0]"), ("\"x\": [0, 1.25, 0]", "\"x\": [0, 9, 0]")];
+    let apart = cell(&folder, "apart.json", &edits);
+    let clear = ask(&["spans", &apart, "--verify", "--json"]);
+    let steps = number(&clear["proof_steps"]);
+    assert!(clear["verified"] == true && clear["pairs"] == serde_json::json!([]) && steps >= 3.0, "{clear}");
+    let text = d2m(&["spans", &apart, "--verify"]);
+    assert!(stdout(&text).contains("verified    yes"), "{}", stdout(&text));
 }

@@ -239,3 +239,47 @@ fn meshes_of_every_kind_and_back() {
         .file("t.dae", "<COLLADA><asset><unit meter=\"0.01\"/><up_axis>Y_UP</up_axis></asset></COLLADA>");
     refused(&["info", &dae], &["t.dae", "the mesh has no triangles"]);
 }
+
+/// A body of a scene that is given in another unit is named, also where it stands beside a robot.
+#[test]
+fn bodies_of_scenes_in_other_units_are_named() {
+    let folder = Folder::new("unlike-sizes");
+    let scene = |name: &str, size: &str| {
+        let body = |name: &str, mesh: &str, x: f64| {
+            format!("{{\"name\": \"{name}\", \"mesh\": \"{mesh}\", \"motion\": {{\"x\": [{x}, 0, 0]}}}}")
+        };
+        let large = body("plate", &format!("shape:box?x={size}&y={size}&z={size}"), 1e4);
+        let bodies = [body("screw", "shape:box?x=0.01&y=0.01&z=0.01", 0.0), body("nut", CUBE, 9.0), large];
+        folder.file(name, &format!("{{\"window\": [0, 1], \"bodies\": [{}]}}", bodies.join(", ")))
+    };
+    let [mixed, alike] = [scene("mixed.json", "300"), scene("alike.json", "0.9")];
+    let words = "screw is 0.03464 across and plate 1039: are both in the same unit? (\"scale\")";
+    for command in ["scene", "clearance", "spans"] {
+        let run = d2m(&[command, &mixed]);
+        let message = stderr(&run);
+        assert!(run.status.success() && message.contains(words), "{command}: {message}");
+        assert_eq!(message.lines().count(), 1, "{command}: {message}");
+        assert!(stderr(&d2m(&[command, &alike])).is_empty(), "{command}");
+    }
+    let robot = folder.file(
+        "post.urdf",
+        r#"<robot name="post"><link name="base"/><link name="post"><collision><geometry><box size="0.1 0.1 1"/></geometry></collision></link>
+           <joint name="turn" type="continuous"><parent link="base"/><child link="post"/><axis xyz="0 0 1"/></joint></robot>"#,
+    );
+    let path = folder.file(
+        "path.json",
+        r#"{"joint_names": ["turn"], "points": [{"positions": [0], "time_from_start": 0}, {"positions": [1], "time_from_start": 1}]}"#,
+    );
+    let around = folder.file(
+        "around.json",
+        r#"{"bodies": [{"name": "box in mm", "mesh": "shape:box?x=100&y=100&z=100", "pose": {"x": [500, 0, 0]}},
+                      {"name": "box in m", "mesh": "shape:box?x=0.1&y=0.1&z=0.1", "pose": {"x": [0.5, 0, 0]}}]}"#,
+    );
+    let run = d2m(&["robot", &robot, "--path", &path, "--scene", &around]);
+    let message = stderr(&run);
+    assert_eq!(message.lines().count(), 1, "{message}");
+    assert!(
+        message.contains("box in mm is 346.4 across and post 1.01: are both in the same unit?"),
+        "{message}"
+    );
+}

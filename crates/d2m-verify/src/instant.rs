@@ -52,6 +52,8 @@ pub(crate) struct Instant {
     pub(crate) turn_guess: DMat3,
     pub(crate) offset_guess: DVec3,
     pub(crate) axes: [BoxAxis; 15],
+    /// Where the bodies are in the world, seen from a point near both.
+    states: [CertifiedState; 2],
 }
 
 impl Instant {
@@ -74,18 +76,18 @@ impl Instant {
     }
 
     fn of_states(time: f64, a: &CertifiedState, b: &CertifiedState) -> Option<Self> {
-        let [a, b] = [a, b].map(|state| {
+        let boxes = [a, b].map(|state| {
             let at = around(state.position, state.position_radius);
             around_matrix(state.rotation, state.rotation_radius).zip(at)
         });
-        let ((turn_a, at_a), (turn_b, at_b)) = (a?, b?);
+        let [(turn_a, at_a), (turn_b, at_b)] = [boxes[0]?, boxes[1]?];
         let back_a = turn_a.transpose();
         let turn = back_a.mul_mat(turn_b);
         let offset = finite(back_a.mul_vec(at_b - at_a))?;
         let [x, y, z] = turn.cols().map(finite);
         let turn_guess = DMat3::from_cols(x?.mid(), y?.mid(), z?.mid());
         let (back, offset_guess, axes) = (turn.transpose(), offset.mid(), BoxAxis::all(&turn_guess));
-        Some(Self { time, turn, back, offset, turn_guess, offset_guess, axes })
+        Some(Self { time, turn, back, offset, turn_guess, offset_guess, axes, states: [*a, *b] })
     }
 
     /// A point of the other body, seen from the base.
@@ -117,39 +119,60 @@ impl Instant {
     }
 
     /// Encloses the distance of two triangles: it is at least a gap along a direction, and at most that of two of their points.
-    pub(crate) fn distance(&self, [a, b]: &[[IntervalVec3; 3]; 2]) -> Interval {
-        let upper = self.most_distance(&[*a, *b]);
+    pub(crate) fn distance(&self, corners: &[[IntervalVec3; 3]; 2]) -> Interval {
+        let upper = self.most_distance(corners);
         if upper == 0.0 {
             return Interval::ZERO;
         }
-        let guess = [a, b].map(|t| t.map(IntervalVec3::mid));
-        let seen = guess[1].map(|q| self.guess(q));
+        let guess = corners.map(|t| t.map(IntervalVec3::mid));
         let directions = faces_and_sides(&guess).into_iter();
-        let lower = directions.chain(between(&guess, &self.turn_guess, self.offset_guess)).map(|direction| {
-            let points_to_b = direction.guess(&self.turn_guess).dot(seen[0] - guess[0][0]) > 0.0;
-            let (n, gap) = self.gap(if points_to_b { direction } else { direction.reversed() }, [a, b]);
+        let directions = directions.chain(between(&guess, &self.turn_guess, self.offset_guess));
+        let placed = [0, 1].map(|k| corners[k].map(|p| self.placed(k, p)));
+        let lower = directions.map(|direction| {
+            // Any vector is a direction, along it or against it.
+            let n = IntervalVec3::point(self.states[0].rotation * direction.guess(&self.turn_guess));
+            let gap = placed[1].map(|b| placed[0].map(|a| n.dot(b.middle - a.middle)));
+            let gap = gap.into_iter().flatten().reduce(Interval::hull).unwrap_or(Interval::ENTIRE);
+            let gap = gap.lo().max(-gap.hi());
             // By the length of a direction that may be zero nothing is divided.
-            if gap.lo() > 0.0 {
-                (Interval::point(gap.lo()) / Interval::point(n.norm().hi())).lo()
-            } else {
-                0.0
-            }
+            if gap > 0.0 { (Interval::point(gap) / Interval::point(n.norm().hi())).lo() } else { 0.0 }
         });
-        Interval::try_new(lower.fold(0.0, f64::max).min(upper), upper).unwrap_or(Interval::ENTIRE)
+        let off = placed.map(|t| t.into_iter().fold(Interval::ZERO, |most, p| most.max(p.off)));
+        let lower = (Interval::point(lower.fold(0.0, f64::max)) - off[0] - off[1]).lo();
+        Interval::try_new(lower.max(0.0).min(upper), upper).unwrap_or(Interval::ENTIRE)
     }
 
     /// Bounds the distance of two triangles from above; zero where they certainly cross.
-    pub(crate) fn most_distance(&self, [a, b]: &[[IntervalVec3; 3]; 2]) -> f64 {
-        let placed = b.map(|q| self.seen(q));
-        if cross(a, &placed) {
+    pub(crate) fn most_distance(&self, corners: &[[IntervalVec3; 3]; 2]) -> f64 {
+        let [a, b] = corners;
+        if cross(a, &b.map(|q| self.seen(q))) {
             return 0.0;
         }
         let seen = b.map(|q| self.guess(q.mid()));
         match closest(&a.map(IntervalVec3::mid), &seen).weights.map(on_triangle) {
-            [Some(s), Some(t)] => (point(&placed, t) - point(a, s)).norm().hi(),
+            [Some(s), Some(t)] => {
+                let [a, b] = [self.placed(0, point(a, s)), self.placed(1, point(b, t))];
+                ((b.middle - a.middle).norm() + a.off + b.off).hi()
+            }
             _ => f64::INFINITY,
         }
     }
+
+    /// A point of one of the bodies in the world. What the enclosures of the poses leave open is a ball about the middles, which is
+    /// less than what is left of it in three products of boxes by up to 3√3.
+    fn placed(&self, body: usize, p: IntervalVec3) -> Placed {
+        let state = &self.states[body];
+        let middle = IntervalMat3::point(state.rotation).mul_vec(p) + IntervalVec3::point(state.position);
+        let off = p.norm() * state.rotation_radius + Interval::point(state.position_radius);
+        Placed { middle, off }
+    }
+}
+
+/// A point is within `off` of one of these.
+#[derive(Clone, Copy)]
+struct Placed {
+    middle: IntervalVec3,
+    off: Interval,
 }
 
 /// The vectors within `radius` of `center`.

@@ -1,11 +1,12 @@
 //! Planted truths, lies, and motions that enclose nothing.
+use crate::closest::closest;
 use crate::instant::Instant;
 use crate::rates::lowest;
 use crate::{Body, Claim, Mesh, Query, Reason, Solid, TimeSpan, Verdict, verify};
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{
-    CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Kinematics, Pose, RigidMotion,
-    Span, Twist,
+    CertifiedState, Chain, ConstantTwist, IntervalPose, IntervalTwist, Joint, JointKind, JointValue,
+    Keyframes, Kinematics, Pose, RigidMotion, Span, Twist,
 };
 use d2m_testing::{Draw, KnuthRandom};
 use glam::{DQuat, DVec3};
@@ -237,6 +238,48 @@ fn triangles_are_as_far_apart_as_they_are() {
     }
     assert_eq!(reason(verify(&query, &apart([12, 8], 0.0, 9.0), STEPS)), Some(Reason::Malformed));
     assert!(!is_verified(verify(&query, &apart([10, 8], f64::NAN, f64::NAN), STEPS)));
+}
+
+/// An arm of eight joints among slanted axes, and a body at rest: what the enclosures of the poses leave open is in the width of a
+/// distance once for either end, not multiplied as boxes of rotations multiply it.
+#[test]
+fn a_distance_is_as_wide_as_the_poses_are_open() {
+    let cube = cube();
+    let mut random = KnuthRandom(7);
+    for _ in 0..50 {
+        let joint = |random: &mut KnuthRandom| {
+            let value = JointValue::try_polynomial(vec![random.signed() * 3.0, random.signed()]).unwrap();
+            let kind = JointKind::Revolute { axis: random.direction(), value };
+            Joint::try_new(random.vector() * 0.3, DQuat::IDENTITY, kind).unwrap()
+        };
+        let arm = Chain::try_new((0..8).map(|_| joint(&mut random)).collect()).unwrap();
+        let at = random.vector() * 3.0;
+        let rest = ConstantTwist::REST.with_position(at);
+        let bodies = [body(&cube, &arm), body(&cube, &rest)];
+        let (pose, _) = arm.pose_and_twist(0.5);
+        let state = arm.enclose_state_about(0.5, pose.translation);
+        let now = Instant::new(&bodies, 0.5).unwrap();
+        let half = 0.75_f64.sqrt(); // of a diagonal
+        let rest = rest.enclose_state_about(0.5, pose.translation);
+        let open = [state, rest].map(|of| of.position_radius + of.rotation_radius * half);
+        // Four times that and more, were it boxes.
+        let most = 2.25 * (open[0] + open[1]) + 32.0 * f64::EPSILON;
+        for pair in [[0, 5], [3, 9], [10, 2], [7, 7]] {
+            let corners = pair.map(|triangle| cube.corners(triangle));
+            let found = now.distance(&corners);
+            let placed =
+                [corners[0].map(|p| pose.transform_point(p.mid())), corners[1].map(|p| p.mid() + at)];
+            let about = closest(&placed[0], &placed[1]).gap.length();
+            assert!((found.mid() - about).abs() < 1e-13, "{found:?} {about}");
+            // The bodies may be anywhere in the balls.
+            let least = state.position_radius + rest.position_radius - 1e-15;
+            assert!(
+                found.hi() - about >= least && about - found.lo() >= least,
+                "{found:?} {about} {least:e}"
+            );
+            assert!(found.width() <= most, "{found:?}: {:e}, not {most:e}", found.width());
+        }
+    }
 }
 
 /// Solids: inside, in a cavity, in an open box, and a surface.

@@ -9,11 +9,12 @@ use crate::output::{digits, note, print, short};
 use crate::report::{evidence_sentence, vector};
 use crate::robot_path::read_path;
 use crate::robot_scene::RobotSceneFile;
+use crate::sizes::{size_of, unlike};
 use crate::travel::Travel;
 use d2m::bvh::{Budget, QueryOptions, Window};
 use d2m_robot::{
-    JointType, LimitWarning, PathAnswer, PathClearance, PathContact, Robot, RobotOptions, RobotScene, Srdf,
-    Trajectory,
+    JointType, LimitWarning, PathAnswer, PathBodies, PathClearance, PathContact, Robot, RobotOptions,
+    RobotScene, Srdf, Trajectory,
 };
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
@@ -55,6 +56,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
         file.add_to(&mut scene, window)?;
     }
     let warnings = scene.limit_warnings(&path).map_err(fault)?;
+    notes.extend(unlike_sizes(&scene.bodies_along(&path).map_err(fault)?, scene.robot()));
     notes.extend(far_turns(&path, &scene).map(|text| format!("warning: {place}: {text}")));
     notes.extend(warnings.iter().map(|warning| format!("warning: {place}: {warning}")));
     let threads = arguments.threads.map_or(0, usize::from);
@@ -93,6 +95,19 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
         PathAnswer::Undecided { .. } => Outcome::Undecided,
     };
     Ok(outcome.reported(arguments.exit_status))
+}
+
+/// Bodies beside the robot that are probably in another unit: very unlike its largest link.
+fn unlike_sizes(bodies: &PathBodies<'_>, robot: &Robot) -> Vec<String> {
+    let size = |body: usize| {
+        let moving = bodies.moving(body);
+        (bodies.name(body), size_of(moving.body.mesh()) + 2.0 * moving.radius)
+    };
+    let (links, others): (Vec<_>, Vec<_>) =
+        (0..bodies.len()).map(size).partition(|(name, _)| robot.find_link(name).is_some());
+    let Some(&largest) = links.iter().max_by(|x, y| x.1.total_cmp(&y.1)) else { return Vec::new() };
+    let texts = others.into_iter().filter_map(|other| unlike(other, largest));
+    texts.map(|text| format!("warning: {text} (\"scale\")")).collect()
 }
 
 /// Joints that turn more than once on the path.

@@ -4,7 +4,7 @@ use crate::arguments::{Method, TocArguments};
 use crate::engine::options_of;
 use crate::failure::Failure;
 use crate::scene::{Scene, SceneBody};
-use crate::sizes::{scene_sizes_line, size_of};
+use crate::sizes::{scene_sizes_line, size_of, warn_of_scene_sizes};
 use crate::travel::Travel;
 use d2m::World;
 use d2m::bvh::QueryOptions;
@@ -50,6 +50,7 @@ impl SceneQuestion {
             return Err(Failure::at("--mode", "only accurate answers this question of a scene"));
         }
         let scene = Scene::read(Path::new(&arguments.a))?;
+        warn_of_sizes_in(&arguments.a, &scene);
         let world = scene.world(options_of(query)?);
         let options = *world.options();
         Ok(Self { scene, world, options })
@@ -59,9 +60,19 @@ impl SceneQuestion {
 /// The window if none is given.
 const WINDOW: &str = "0,1";
 
+/// The diagonal of the box around a body.
+fn size(body: &SceneBody) -> f64 {
+    size_of(body.tree.mesh()) + 2.0 * body.radius
+}
+
+/// Warns where a body of the scene in this file is probably in another unit.
+pub(super) fn warn_of_sizes_in(file: &str, scene: &Scene) {
+    let sizes: Vec<(&str, f64)> = scene.bodies.iter().map(|body| (body.name.as_str(), size(body))).collect();
+    warn_of_scene_sizes(file, &sizes);
+}
+
 /// The last line of a text about a scene: the smallest and the largest body, and which goes and turns the furthest.
 pub(super) fn sizes_line_of(scene: &Scene) -> String {
-    let size = |body: &SceneBody| size_of(body.tree.mesh()) + 2.0 * body.radius;
     let named: Vec<(&str, f64, Travel)> = scene
         .bodies
         .iter()

@@ -8,10 +8,11 @@ use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::print_answer;
 use crate::output::short;
+use crate::scene::{Scene, SceneBody};
 use crate::sizes::sizes_line;
-use crate::verification::Promise;
-use d2m::bvh::{ContactSpan, SpanStatus};
-use d2m::{BodyId, join_spans};
+use crate::verification::{Bodies, Promise, Proof, joined};
+use d2m::bvh::{ContactSpan, QueryOptions, SpanStatus, Start, TimeOfContact};
+use d2m::{BodyId, PairSpans, join_spans};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -55,36 +56,56 @@ fn outcome_of(spans: &[ContactSpan]) -> Outcome {
 
 /// The spans of all pairs of a scene together, and of each that is not clear all the time.
 fn run_scene(toc: &TocArguments, resolution: Option<f64>) -> Result<Outcome, Failure> {
-    if toc.verify {
-        return Err(Failure::at(
-            "--verify",
-            "it proves the spans of two meshes; of a scene d2m clearance and d2m scene --first",
-        ));
-    }
-    let SceneQuestion { scene, world, .. } = SceneQuestion::read(toc)?;
+    let SceneQuestion { scene, world, options } = SceneQuestion::read(toc)?;
     let resolution = resolution.unwrap_or(RESOLUTION * scene.window.length());
     let pairs = world.contact_spans(scene.window, Some(resolution));
     let pairs = pairs.map_err(|error| Failure::at(&toc.a, scene.describe(error)))?;
     let all = join_spans(scene.window, &pairs);
     let name = |id: BodyId| scene.bodies[id.index()].name.as_str();
     let list = |spans: &[ContactSpan]| spans.iter().map(to_json).collect::<Vec<Value>>();
+    let proof = if toc.verify { Some(prove_scene(&scene, options, resolution, &pairs)?) } else { None };
     print_answer(&if toc.json {
         let of_pairs: Vec<Value> = pairs
             .iter()
             .map(|pair| json!({ "a": name(pair.a), "b": name(pair.b), "spans": list(&pair.spans) }))
             .collect();
         let ends = [scene.window.start(), scene.window.end()];
-        let object =
+        let mut object =
             json!({ "window": ends, "resolution": resolution, "spans": list(&all), "pairs": of_pairs });
+        if let Some(proof) = proof {
+            proof.put(&mut object);
+        }
         format!("{object}\n")
     } else {
         let mut text = to_text(&all);
         for pair in &pairs {
             let _ = write!(text, "{} \u{2013} {}: {}", name(pair.a), name(pair.b), to_text(&pair.spans));
         }
+        if let Some(proof) = proof {
+            let _ = writeln!(text, "  verified    {}", proof.sentence());
+        }
         text + &sizes_line_of(&scene)
     })?;
     Ok(outcome_of(&all).reported(toc.exit_status))
+}
+
+/// Proves the spans of all pairs again: those of the answer as they are, and that no other pair ever meets.
+fn prove_scene(
+    scene: &Scene,
+    options: QueryOptions,
+    resolution: f64,
+    found: &[PairSpans],
+) -> Result<Proof, Failure> {
+    let bodies = Bodies::new(scene.bodies.iter().map(SceneBody::moving).collect())?;
+    let of = |pair: &PairSpans| [pair.a.index(), pair.b.index()];
+    let proofs = scene.pairs().into_iter().map(|[a, b]| {
+        let options = scene.pair_options([a, b], options).with_start(Start::Report);
+        match found.iter().find(|pair| of(pair) == [a, b] || of(pair) == [b, a]) {
+            Some(pair) => bodies.prove_spans(of(pair), scene.window, &options, (&pair.spans, resolution)),
+            None => bodies.prove([a, b], scene.window, &options, &TimeOfContact::Separated),
+        }
+    });
+    Ok(joined(proofs))
 }
 
 fn word(status: SpanStatus) -> &'static str {
