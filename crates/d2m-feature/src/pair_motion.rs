@@ -97,7 +97,7 @@ impl<'a> PairMotion<'a> {
         });
         let source = match (a.constant_twist(), b.constant_twist()) {
             _ if !is_defined => Source::Outside,
-            (Some(a), Some(b)) => Source::Twists(TwistPair::new([a, b], t0, t1)),
+            (Some(a), Some(b)) => Source::Twists(TwistPair::new(&[a, b], t0, t1)),
             _ => Source::Enclosed(EnclosedPair::new([a, b], t0, t1)),
         };
         Self { motions: [a, b], start: t0, source }

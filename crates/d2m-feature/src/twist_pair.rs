@@ -46,14 +46,14 @@ const LARGEST_REACH: f64 = power_of_two(200);
 
 impl TwistPair {
     /// In units of these motions over this window.
-    pub(crate) fn new(motions: [ConstantTwist; 2], start: f64, end: f64) -> Self {
-        let units = Units::of_motions(&motions, start, end);
+    pub(crate) fn new(motions: &[ConstantTwist; 2], start: f64, end: f64) -> Self {
+        let units = Units::of_motions(motions, start, end);
         Self::in_units(motions, start, end, units)
     }
 
-    fn in_units(motions: [ConstantTwist; 2], start: f64, end: f64, units: Units) -> Self {
+    fn in_units(motions: &[ConstantTwist; 2], start: f64, end: f64, units: Units) -> Self {
         let (from, to) = (units.time(start), units.time(end));
-        let [a, b] = &motions;
+        let [a, b] = motions;
         let sides = match (units.try_motion(a, start), units.try_motion(b, start)) {
             (Some(a), Some(b)) if from.is_finite() && to.is_finite() => {
                 let forward = FramedMotion::new(RelativeMotion::new(&a, &b, from, to));
@@ -61,7 +61,7 @@ impl TwistPair {
             }
             _ => None,
         };
-        Self { motions, start, end, units, sides }
+        Self { motions: *motions, start, end, units, sides }
     }
 
     pub(crate) const fn units(&self) -> &Units {
@@ -121,7 +121,7 @@ impl TwistPair {
         {
             return FirstContact::Clear;
         }
-        let other = Self::in_units(self.motions, self.start, self.end, self.units.with_length_of(size));
+        let other = Self::in_units(&self.motions, self.start, self.end, self.units.with_length_of(size));
         match &other.sides {
             // Also NaN is left undecided.
             Some(sides) if sides.forward.motion.bound_reach(0.0) <= LARGEST_REACH => {
