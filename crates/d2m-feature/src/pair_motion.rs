@@ -52,8 +52,8 @@ pub struct PairMotion<'a> {
 enum Source<'a> {
     /// Closed form.
     Twists(TwistPair),
-    /// What the motions enclose of themselves.
-    Enclosed(EnclosedPair<'a>),
+    /// What the motions enclose of themselves: larger, and in a box, so that the other one is moved faster.
+    Enclosed(Box<EnclosedPair<'a>>),
     /// A motion is not defined over the window.
     Outside,
 }
@@ -98,7 +98,7 @@ impl<'a> PairMotion<'a> {
         let source = match (a.constant_twist(), b.constant_twist()) {
             _ if !is_defined => Source::Outside,
             (Some(a), Some(b)) => Source::Twists(TwistPair::new(&[a, b], t0, t1)),
-            _ => Source::Enclosed(EnclosedPair::new([a, b], t0, t1)),
+            _ => Source::Enclosed(Box::new(EnclosedPair::new([a, b], t0, t1))),
         };
         Self { motions: [a, b], start: t0, source }
     }

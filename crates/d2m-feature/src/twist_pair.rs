@@ -27,8 +27,8 @@ pub(crate) struct TwistPair {
 struct Sides {
     /// A seen from B.
     forward: FramedMotion,
-    /// B seen from A, once that is needed.
-    backward: OnceLock<FramedMotion>,
+    /// B seen from A, once that is needed; in a box, so that what is moved on the way to a caller is half as large.
+    backward: OnceLock<Box<FramedMotion>>,
 }
 
 /// A triangle of B in the units of a pair.
@@ -46,11 +46,15 @@ const LARGEST_REACH: f64 = power_of_two(200);
 
 impl TwistPair {
     /// In units of these motions over this window.
+    ///
+    /// (Inlined, so that what is built is not moved: it has some thousand bytes.)
+    #[inline(always)]
     pub(crate) fn new(motions: &[ConstantTwist; 2], start: f64, end: f64) -> Self {
         let units = Units::of_motions(motions, start, end);
         Self::in_units(motions, start, end, units)
     }
 
+    #[inline(always)]
     fn in_units(motions: &[ConstantTwist; 2], start: f64, end: f64, units: Units) -> Self {
         let (from, to) = (units.time(start), units.time(end));
         let [a, b] = motions;
@@ -135,7 +139,7 @@ impl TwistPair {
 impl Sides {
     #[inline]
     fn backward(&self) -> &FramedMotion {
-        self.backward.get_or_init(|| FramedMotion::new(self.forward.motion.reversed()))
+        self.backward.get_or_init(|| Box::new(FramedMotion::new(self.forward.motion.reversed())))
     }
 
     #[inline(always)]
