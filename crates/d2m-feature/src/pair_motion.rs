@@ -49,10 +49,14 @@ pub struct PairMotion<'a> {
 
 /// Where jets of features come from.
 #[derive(Clone)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "the usual case is large, and an allocation costs more than its move"
+)]
 enum Source<'a> {
     /// Closed form.
     Twists(TwistPair),
-    /// What the motions enclose of themselves: larger, and in a box, so that the other one is moved faster.
+    /// What the motions enclose of themselves: in a box, because it is larger still.
     Enclosed(Box<EnclosedPair<'a>>),
     /// A motion is not defined over the window.
     Outside,
