@@ -2,14 +2,14 @@
 
 use crate::engine::{Answer, Further, Pair};
 use crate::failure::Failure;
-use crate::output::short;
 use d2m::bvh::{
     Clearance, ClearanceOptions, Contact, ContactSpan, Departure, MeshTree, Moving, QueryOptions,
     TimeOfContact, Window,
 };
 use d2m::motion::RigidMotion;
 use d2m::verify::{Claim, DEFAULT_STEPS, Mesh, TimeSpan, Verdict, Verifier, mesh, verify, witness_fault};
-use serde_json::{Value, json};
+use d2m_io::{joined_verdict, put_verdict, verdict_sentence};
+use serde_json::Value;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::Arc;
@@ -29,35 +29,12 @@ impl Proof {
 
     /// One sentence for a person.
     pub(crate) fn sentence(&self) -> String {
-        match self.0 {
-            Verdict::Verified { steps } => format!("yes, by an independent proof of {steps} steps"),
-            Verdict::Refuted { time, triangles: [a, b], distance } => format!(
-                "REFUTED: at t = {} triangle {a} of A and triangle {b} of B are between {} and {} apart",
-                short(time),
-                short(distance.lo()),
-                short(distance.hi())
-            ),
-            Verdict::Unproven { clear_until, reason, pair } => {
-                let place = pair
-                    .map_or(String::new(), |[a, b]| format!(" (triangle {a} of A and triangle {b} of B)"));
-                format!("not proven: {reason}{place}; clear until {}", short(clear_until))
-            }
-        }
+        verdict_sentence(&self.0)
     }
 
-    /// The fields of a JSON answer: `verified`, and `why` or a `counterexample` where it is not.
+    /// Adds the fields of a JSON answer.
     pub(crate) fn put(&self, object: &mut Value) {
-        object["verified"] = json!(self.is_verified());
-        match self.0 {
-            Verdict::Verified { steps } => object["proof_steps"] = json!(steps),
-            Verdict::Refuted { time, triangles, distance } => {
-                object["why"] = json!(self.sentence());
-                let distance = [distance.lo(), distance.hi()];
-                object["counterexample"] =
-                    json!({ "time": time, "distance": distance, "triangles": triangles });
-            }
-            Verdict::Unproven { .. } => object["why"] = json!(self.sentence()),
-        }
+        put_verdict(&self.0, object);
     }
 
     /// A JSON answer, as it was printed, with the same fields.
@@ -241,15 +218,5 @@ impl<'b> Bodies<'b> {
 
 /// What of several proofs counts: a refutation, else what is not proven, else all steps.
 pub(crate) fn joined(proofs: impl IntoIterator<Item = Proof>) -> Proof {
-    let mut joined = Proof(Verdict::Verified { steps: 0 });
-    for proof in proofs {
-        joined = match (joined.0, proof.0) {
-            (Verdict::Verified { steps }, Verdict::Verified { steps: more }) => {
-                Proof(Verdict::Verified { steps: steps + more })
-            }
-            (Verdict::Verified { .. }, _) | (Verdict::Unproven { .. }, Verdict::Refuted { .. }) => proof,
-            _ => joined,
-        };
-    }
-    joined
+    Proof(joined_verdict(proofs.into_iter().map(|proof| proof.0)))
 }

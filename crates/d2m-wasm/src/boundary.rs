@@ -9,7 +9,7 @@ use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// First contact of two moving bodies, as `d2m toc --json` answers; the options are `{window, tolerance, min_separation, solid, budget,
-/// clearance, start}`. Besides, `headline`, `facts` and (unless what is in contact at the start is let go) `spans` state the same in words.
+/// clearance, start, verify}`. Besides, `headline`, `facts` and (unless what is in contact at the start is let go) `spans` state the same in words.
 ///
 /// # Errors
 /// Throws an `Error` with the text that the command prints: bad motions, windows and options.
@@ -26,7 +26,7 @@ pub fn time_of_contact(
 }
 
 /// The times of a window at which two moving bodies are clear or in contact, as `d2m spans --json` answers; the options are `{window,
-/// tolerance, min_separation, solid, budget, resolution}`.
+/// tolerance, min_separation, solid, budget, resolution, verify}`.
 ///
 /// # Errors
 /// As [`time_of_contact`].
@@ -42,7 +42,7 @@ pub fn contact_spans(
 }
 
 /// Least distance of two moving bodies over a window, as `d2m clearance --json` answers; the options are `{window, tolerance, solid,
-/// budget, accuracy}`.
+/// budget, accuracy, verify}`.
 ///
 /// # Errors
 /// As [`time_of_contact`].

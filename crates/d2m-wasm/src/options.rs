@@ -1,6 +1,6 @@
 //! Options of queries, as a plain object.
 
-use d2m::bvh::{Budget, MeshTree, QueryOptions, Solid, Window};
+use d2m::bvh::{Budget, ClearanceOptions, MeshTree, QueryOptions, Solid, Window};
 use d2m_io::parse_json;
 use serde::Deserialize;
 
@@ -27,7 +27,9 @@ pub(crate) struct Options {
     pub(crate) clearance: bool,
     pub(crate) accuracy: Option<f64>,
     pub(crate) start: Option<StartChoice>,
-    /// A time: how short the spans of contact are looked at.
+    /// Whether the answer is proven again by the verifier.
+    pub(crate) verify: bool,
+    /// A time: no span of contact that is shorter is examined further.
     pub(crate) resolution: Option<f64>,
 }
 
@@ -72,6 +74,13 @@ impl Options {
         options.with_min_separation(self.min_separation.unwrap_or(0.0))
     }
 
+    pub(crate) fn of_clearance(&self) -> ClearanceOptions {
+        let mut options = ClearanceOptions::default().with_budget(self.budget());
+        options.tolerance = self.query().tolerance;
+        options.accuracy = self.accuracy.unwrap_or(options.accuracy);
+        options
+    }
+
     /// What counts as a body: solids where the mesh bounds one, unless the caller wants otherwise.
     pub(crate) fn solid(&self, name: &str, tree: &MeshTree) -> Result<Solid, String> {
         match (self.solid, tree.is_watertight()) {
@@ -83,8 +92,8 @@ impl Options {
         }
     }
 
-    /// Refuses keys that a query has no use for.
-    pub(crate) fn refuse(&self, query: &str, useless: &[&str]) -> Result<(), String> {
+    /// Which of the keys were given that not every query has a use for.
+    fn given(&self) -> impl Iterator<Item = &'static str> {
         let given = [
             ("window", self.window.is_some()),
             ("tolerance", self.tolerance.is_some()),
@@ -93,11 +102,23 @@ impl Options {
             ("clearance", self.clearance),
             ("accuracy", self.accuracy.is_some()),
             ("start", self.start.is_some()),
+            ("verify", self.verify),
             ("resolution", self.resolution.is_some()),
         ];
-        match given.into_iter().find(|(key, is_given)| *is_given && useless.contains(key)) {
-            Some((key, _)) => Err(format!("{key}: {query} has no such option")),
-            None => Ok(()),
-        }
+        given.into_iter().filter(|(_, is_given)| *is_given).map(|(key, _)| key)
     }
+
+    /// Refuses keys that a query has no use for.
+    pub(crate) fn refuse(&self, query: &str, useless: &[&str]) -> Result<(), String> {
+        self.given().find(|key| useless.contains(key)).map_or(Ok(()), |key| Err(no_such(query, key)))
+    }
+
+    /// For bodies at rest.
+    pub(crate) fn refuse_all_but_solid(&self, query: &str) -> Result<(), String> {
+        self.given().next().map_or(Ok(()), |key| Err(no_such(query, key)))
+    }
+}
+
+fn no_such(query: &str, key: &str) -> String {
+    format!("{key}: {query} has no such option")
 }

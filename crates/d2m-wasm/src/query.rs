@@ -3,10 +3,12 @@
 use crate::clock::timed;
 use crate::options::{Options, StartChoice};
 use crate::pose::{read_motion, read_pose};
-use d2m::bvh::{self, ClearanceOptions, MeshTree, Moving, Posed, Solid, StartState, TimeOfContact, Window};
+use d2m::bvh::{self, MeshTree, Moving, Posed, Solid, StartState, TimeOfContact, Window};
 use d2m::motion::{AnyMotion, RigidMotion};
+use d2m::verify::{DEFAULT_STEPS, Verdict, Verifier};
 use d2m_io::{
-    answer_lines, clearance_fields, contact_fields, distance_fields, proven_spans, query_fault, start_in_json,
+    answer_lines, clearance_fields, contact_fields, distance_fields, joined_verdict, proven_spans,
+    put_verdict, query_fault, start_in_json,
 };
 use serde_json::{Value, json};
 
@@ -49,12 +51,24 @@ impl<'s> Pair<'s> {
     }
 
     fn clearance(&self, options: &Options) -> Result<bvh::Clearance, String> {
-        let mut wanted = ClearanceOptions::default().with_budget(options.budget());
-        wanted.tolerance = options.query().tolerance;
-        wanted.accuracy = options.accuracy.unwrap_or(wanted.accuracy);
         let [a, b] = self.moving();
-        bvh::clearance(a, b, self.window, &wanted)
+        bvh::clearance(a, b, self.window, &options.of_clearance())
             .map_err(|error| query_fault(&error, self.motions(), self.window))
+    }
+
+    /// Adds to an answer whether the verifier proves it again, if that is wanted.
+    fn put_proof(
+        &self,
+        options: &Options,
+        answer: &mut Value,
+        prove: impl FnOnce(&Verifier, &[Moving<'_>; 2]) -> Verdict,
+    ) -> Result<(), String> {
+        if options.verify {
+            let [a, b] = self.trees.map(MeshTree::mesh);
+            let verifier = Verifier::try_new(a, b).map_err(|error| format!("verify: {error}"))?;
+            put_verdict(&prove(&verifier, &self.moving()), answer);
+        }
+        Ok(())
     }
 
     fn triangles(&self) -> Value {
@@ -109,7 +123,19 @@ pub(crate) fn time_of_contact(bodies: [Given<'_>; 2], options: &str) -> Result<V
         let spans = proven_spans(&verdict, pair.window);
         put("spans", spans.iter().map(d2m_io::ProvenSpan::to_json).collect());
     }
-    Ok(Value::Object(answer))
+    let mut answer = Value::Object(answer);
+    pair.put_proof(&options, &mut answer, |verifier, bodies| {
+        let window = pair.window;
+        let first = match &departure {
+            Some(found) => verifier.departure(bodies, window, &query, found, DEFAULT_STEPS),
+            None => verifier.time_of_contact(bodies, window, &query, &verdict, DEFAULT_STEPS),
+        };
+        let wanted = options.of_clearance();
+        let nearest =
+            clearance.map(|found| verifier.clearance(bodies, window, &wanted, &found, DEFAULT_STEPS));
+        joined_verdict(std::iter::once(first).chain(nearest))
+    })?;
+    Ok(answer)
 }
 
 /// As `d2m spans --json` answers.
@@ -122,13 +148,17 @@ pub(crate) fn contact_spans(bodies: [Given<'_>; 2], options: &str) -> Result<Val
     let (found, microseconds) =
         timed(|| bvh::contact_spans(a, b, pair.window, &options.query(), Some(resolution)));
     let spans = found.map_err(|error| query_fault(&error, pair.motions(), pair.window))?;
-    Ok(json!({
+    let mut answer = json!({
         "window": [pair.window.start(), pair.window.end()],
         "resolution": resolution,
         "spans": spans,
         "triangles": pair.triangles(),
         "microseconds": microseconds,
-    }))
+    });
+    pair.put_proof(&options, &mut answer, |verifier, bodies| {
+        verifier.contact_spans(bodies, pair.window, &options.query(), Some(resolution), &spans, DEFAULT_STEPS)
+    })?;
+    Ok(answer)
 }
 
 /// As `d2m clearance --json` answers.
@@ -137,19 +167,21 @@ pub(crate) fn clearance(bodies: [Given<'_>; 2], options: &str) -> Result<Value, 
     options.refuse("clearance", &["min_separation", "clearance", "start", "resolution"])?;
     let pair = Pair::new(bodies, &options)?;
     let (found, microseconds) = timed(|| pair.clearance(&options));
-    let mut answer = clearance_fields(&found?);
+    let found = found?;
+    let mut answer = clearance_fields(&found);
     answer["window"] = json!([pair.window.start(), pair.window.end()]);
     answer["triangles"] = pair.triangles();
     answer["microseconds"] = json!(microseconds);
+    pair.put_proof(&options, &mut answer, |verifier, bodies| {
+        verifier.clearance(bodies, pair.window, &options.of_clearance(), &found, DEFAULT_STEPS)
+    })?;
     Ok(answer)
 }
 
 /// As `d2m distance --json` answers.
 pub(crate) fn distance([a, b]: [Given<'_>; 2], options: &str) -> Result<Value, String> {
     let options = Options::parse(options)?;
-    let of_motions =
-        ["window", "tolerance", "min_separation", "budget", "clearance", "accuracy", "start", "resolution"];
-    options.refuse("distance", &of_motions)?;
+    options.refuse_all_but_solid("distance")?;
     let poses = [read_pose("pose of A", a.motion)?, read_pose("pose of B", b.motion)?];
     let solids = [options.solid("A", a.tree)?, options.solid("B", b.tree)?];
     let solid = if solids == [Solid::Filled; 2] { Solid::Filled } else { Solid::Surface };
@@ -165,6 +197,41 @@ pub(crate) fn distance([a, b]: [Given<'_>; 2], options: &str) -> Result<Value, S
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Each question with and without a proof: the same answer, and what became of it.
+    #[test]
+    fn answers_are_proven_again_where_that_is_wanted() {
+        let tree = MeshTree::new(d2m::shapes::mesh("box?x=1&y=1&z=1").unwrap());
+        let given = |motion| Given { tree: &tree, motion };
+        let through = [given(r#"{"x": [-4, 0, 0], "v": [8, 0, 0]}"#), given("{}")];
+        let past = [given(r#"{"x": [-4, 3, 0], "v": [8, 0, 0], "w": [0, 0, 1]}"#), given("{}")];
+        let lifted = [given(r#"{"x": [0, 2, 0], "v": [0, 1, 0]}"#), given("{}")];
+        type Ask = fn([Given<'_>; 2], &str) -> Result<Value, String>;
+        let asked: [(Ask, [Given<'_>; 2], &str); 6] = [
+            (time_of_contact, through, ""),
+            (time_of_contact, past, r#""clearance": true"#),
+            (time_of_contact, lifted, r#""start": "leave""#),
+            (contact_spans, through, r#""resolution": 0.01"#),
+            (clearance, past, ""),
+            (clearance, through, ""),
+        ];
+        for (ask, bodies, options) in asked {
+            let comma = if options.is_empty() { "" } else { ", " };
+            let mut plain = ask(bodies, &format!("{{{options}}}")).unwrap();
+            let mut proven = ask(bodies, &format!(r#"{{{options}{comma}"verify": true}}"#)).unwrap();
+            assert_eq!(proven["verified"], json!(true), "{options}: {proven}");
+            assert!(proven["proof_steps"].as_u64().unwrap() > 0);
+            for (answer, keys) in [
+                (&mut plain, &["microseconds"][..]),
+                (&mut proven, &["microseconds", "verified", "proof_steps"]),
+            ] {
+                for key in keys {
+                    assert!(answer.as_object_mut().unwrap().remove(*key).is_some(), "{key}");
+                }
+            }
+            assert_eq!(plain, proven);
+        }
+    }
 
     /// A cube that lies on another one and is lifted, and one that flies through it, by what a page would write.
     #[test]
@@ -188,6 +255,7 @@ mod tests {
             assert!(contact_spans(through, options).is_err(), "{options}");
         }
         assert!(time_of_contact(through, r#"{"start": "go"}"#).is_err());
+        assert!(distance(through, r#"{"verify": true}"#).unwrap_err().contains("verify"));
         assert!(time_of_contact(through, r#"{"resolution": 1e-3}"#).is_err());
     }
 }
