@@ -5,10 +5,12 @@ mod arm;
 
 use arm::{BoxArm, BoxLink};
 use d2m_bvh::{Budget, Canceller, MeshTree, QueryOptions, Start, TimeOfContact, TriMesh, time_of_contact};
+use d2m_motion::{ConstantTwist, RigidMotion};
 use d2m_robot::{
     Attached, Obstacle, PathAnswer, Robot, RobotOptions, RobotScene, Srdf, Trajectory, TrajectoryPoint,
 };
 use d2m_testing::{Draw, Random};
+use d2m_world::{Body, BodyId, FirstContact, PlannedMotion, SharedMotion, World};
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
@@ -337,4 +339,64 @@ fn the_order_in_which_bodies_come_changes_no_answer() {
         assert!(fewer.free_until() >= one.free_until() - 1e-9);
     }
     assert!(differ > 5, "{differ}");
+}
+
+/// The bodies along a path as those of a world, where they move or are planned to: with the pairs that are checked.
+#[test]
+fn worlds_of_the_same_bodies_have_the_same_answer() {
+    let mut random = Random(2907);
+    let (mut contacts, mut free) = (0, 0);
+    for round in 0..10 {
+        let arm = arm(&mut random, 1.0);
+        let options = QueryOptions::default().with_min_separation([0.0, 0.02][round % 2]);
+        let all = scene(&arm, 1.0, options);
+        for k in 0..8 {
+            let path = path(&[1.0, 3.0], &[draw(&mut random, 1.0), draw(&mut random, [1.0, 3.0][k % 2])]);
+            let along = all.bodies_along(&path).unwrap();
+            let (mut moving, mut planned, mut plan) = (World::new(options), World::new(options), Vec::new());
+            for body in 0..along.len() {
+                let of = along.moving(body);
+                let tree = Arc::new(of.body.clone());
+                let (pose, _) = of.motion.pose_and_twist(1.0);
+                let rest = ConstantTwist::REST.with_position(pose.transform_point(DVec3::ZERO));
+                let rest = rest.with_orientation(pose.rotation);
+                match of.motion.chain().map(|chain| -> SharedMotion { Arc::new(chain.clone()) }) {
+                    None => {
+                        moving.add(Body::new(Arc::clone(&tree), rest));
+                        planned.add(Body::new(tree, rest));
+                    }
+                    Some(motion) => {
+                        moving.add(Body::with_shared(Arc::clone(&tree), Arc::clone(&motion)));
+                        plan.push(PlannedMotion { body: planned.add(Body::new(tree, rest)), motion });
+                    }
+                }
+            }
+            for world in [&mut moving, &mut planned] {
+                let ids: Vec<BodyId> = world.ids().collect();
+                for (a, b) in (0..ids.len()).flat_map(|a| (0..a).map(move |b| (a, b))) {
+                    let is_checked = along.pairs().iter().any(|&pair| pair == [a, b] || pair == [b, a]);
+                    world.ignore_pair(ids[a], ids[b], !is_checked);
+                }
+            }
+            let answer = all.check_path(&path).unwrap();
+            let (pair, until) = told(&answer);
+            for found in
+                [moving.first_contact(along.window()), planned.first_contact_of(&plan, along.window())]
+            {
+                let (other_pair, other_until) = match found.unwrap() {
+                    FirstContact::Separated => (None, 3.0),
+                    FirstContact::Contact { a, b, contact, .. } => {
+                        let mut pair = [a, b].map(|id| along.name(id.index()).to_owned());
+                        pair.sort();
+                        (Some(pair), contact.time_lo)
+                    }
+                    undecided => panic!("{undecided:?}"),
+                };
+                assert_eq!(pair, other_pair);
+                assert!((until - other_until).abs() < 1e-8, "{until} {other_until}");
+            }
+            if answer.is_free() { free += 1 } else { contacts += 1 }
+        }
+    }
+    assert!(contacts > 10 && free > 10, "{contacts} {free}");
 }

@@ -44,9 +44,13 @@ const DEPTHS: [f64; 4] = [0.25, 0.03125, 0.000_976_562_5, 0.000_000_953_674_316_
 /// Triangles of each body at most that points are tried about.
 const MOST: usize = 64;
 
-/// Do the triangles cross, or is a point found inside of both solids? Looked for in the middle of what the bounding boxes share, and above
-/// and below the middles of these triangles and then of others there.
-pub(crate) fn overlap(bodies: &[Body<'_>; 2], now: &Instant, triangles: [u32; 2]) -> bool {
+/// Triangles that are placed in the time of a step, and steps that a point takes.
+const PLACED: usize = 64;
+const TRIED: u64 = 4;
+
+/// Do the triangles cross, or is a point found inside of both solids, at all times that are enclosed? Looked for in the middle of what the
+/// bounding boxes share, and above and below the middles of these triangles and then of others there.
+pub(crate) fn overlap(bodies: &[Body<'_>; 2], now: &Instant, triangles: [u32; 2], left: &mut u64) -> bool {
     let [base, other] = bodies.map(|body| body.mesh);
     if now.most_distance(&[base.corners(triangles[0]), other.corners(triangles[1])]) == 0.0 {
         return true;
@@ -54,6 +58,7 @@ pub(crate) fn overlap(bodies: &[Body<'_>; 2], now: &Instant, triangles: [u32; 2]
     if bodies.iter().any(|body| body.solid == Solid::Surface || body.mesh.surface().closes == Closes::No) {
         return false;
     }
+    *left = left.saturating_sub(((base.triangle_count() + other.triangle_count()) / PLACED) as u64);
     let placed = [
         base.guesses().collect::<Vec<[DVec3; 3]>>(),
         other.guesses().map(|corners| corners.map(|q| now.guess(q))).collect(),
@@ -82,6 +87,10 @@ pub(crate) fn overlap(bodies: &[Body<'_>; 2], now: &Instant, triangles: [u32; 2]
         .into_iter()
         .chain(about)
         .map(IntervalVec3::point)
+        .take_while(|_| {
+            *left = left.saturating_sub(TRIED);
+            *left > 0
+        })
         .any(|p| is_in(base, p) && is_in(other, now.seen_back(p)))
 }
 

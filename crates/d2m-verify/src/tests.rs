@@ -471,3 +471,23 @@ fn numbers_out_of_order_are_malformed() {
     let few = verify(&Query { bodies, window: between(0.0, 1.0) }, &clear_until(1.0), 0);
     assert_eq!(few, Verdict::Unproven { clear_until: 0.0, reason: Reason::Steps, pair: None });
 }
+
+/// A cube goes through another one flush with its sides: no triangles cross, and what lasts is that they overlap.
+#[test]
+fn what_overlaps_without_crossing_triangles_is_proven_to_last() {
+    let cube = cube();
+    let through = ConstantTwist::REST.with_position(DVec3::X * -3.0).with_linear_velocity(DVec3::X * 6.0);
+    let query = |to: f64| Query {
+        bodies: [body(&cube, &through), body(&cube, &ConstantTwist::REST)],
+        window: between(0.0, to),
+    };
+    let often = |from: f64, to: f64| Claim::Often { span: between(from, to), distance: 1e-10, every: 1e-6 };
+    match verify(&query(1.0), &often(1.0 / 3.0, 2.0 / 3.0), STEPS) {
+        Verdict::Verified { steps } => assert!(steps < STEPS / 2, "{steps}"),
+        other => panic!("{other:?}"),
+    }
+    // Nothing lasts after they have parted, nor before they have met.
+    for (from, to) in [(0.33, 0.66), (0.34, 0.67), (0.0, 1.0)] {
+        assert!(!is_verified(verify(&query(1.0), &often(from, to), STEPS)), "{from} {to}");
+    }
+}

@@ -155,11 +155,13 @@ impl Case<'_> {
         let _ = self.of_meshes(span, 0.0)?;
         let now = self.instant(time)?;
         let is_deep = self.distance(time, triangles)?.hi() < self.radii().lo();
-        if is_deep || overlap(&self.bodies, &now, triangles) {
+        if is_deep || overlap(&self.bodies, &now, triangles, left) {
             return Ok(());
         }
         match self.meeting(span, 0.0, left) {
-            Ok(Meeting { triangles: Some(others), .. }) if overlap(&self.bodies, &now, others) => Ok(()),
+            Ok(Meeting { triangles: Some(others), .. }) if overlap(&self.bodies, &now, others, left) => {
+                Ok(())
+            }
             _ => self.not_proven(Reason::NotOverlapping, Some(triangles)),
         }
     }
@@ -255,7 +257,9 @@ impl Case<'_> {
             return clear(&self.bodies, 0.0, span, left).is_ok();
         };
         let corners = [0, 1].map(|k| self.bodies[k].mesh.corners(triangles[k]));
-        Instant::over(&self.bodies, span).is_some_and(|over| over.most_distance(&corners) <= level)
+        Instant::over(&self.bodies, span).is_some_and(|over| {
+            over.most_distance(&corners) <= level || overlap(&self.bodies, &over, triangles, left)
+        })
     }
 }
 

@@ -4,7 +4,7 @@ use super::Options;
 use super::body::Body;
 use super::clock::processor_seconds;
 use crate::TaskResult;
-use crate::judge::{BoxTree, Hint, Placement, separation};
+use crate::judge::{BoxTree, Hint, Placement, cross, separation};
 use d2m::bvh::{MeshTree, QueryOptions, TriMesh};
 use d2m::robot::{
     EdgeChecker, Obstacle, PathAnswer, PathBodies, Robot, RobotOptions, RobotScene, Srdf, Trajectory,
@@ -23,8 +23,9 @@ const WANTED_MICROSECONDS: f64 = 1e3;
 const WANTED_RATE: f64 = 2e3;
 /// Each joint moves by at most so much along an edge, radians or units of length.
 const STEPS: [f64; 4] = [0.1, 0.3, 1.0, 4.0];
-/// Edges of each step that are judged, and times at which each is.
-const JUDGED: usize = 40;
+/// Edges of each step that are judged, and times at which each is: in a few seconds a step, as few pairs are near enough for more than a
+/// test of their largest boxes.
+const JUDGED: usize = 200;
 const SAMPLES: u32 = 24;
 /// By how much distances of rounded poses may be off, in units of length: robots are some of them wide.
 const ROUNDING: f64 = 1e-12;
@@ -136,8 +137,7 @@ fn judge(scene: &RobotScene, edges: &EdgeChecker<'_>, names: &[&str], Drawn(draw
         for sample in 0..=SAMPLES {
             let time = until * f64::from(sample) / f64::from(SAMPLES);
             for &pair in bodies.pairs() {
-                // Of surfaces that cross the judge says zero.
-                if distance(&bodies, &trees, pair, time) <= 0.0 {
+                if is_met(&bodies, &trees, pair, time) {
                     return Err(format!("wrong answer: {pair:?} meet at {time} of {from:?} to {to:?}").into());
                 }
             }
@@ -152,14 +152,23 @@ fn judge(scene: &RobotScene, edges: &EdgeChecker<'_>, names: &[&str], Drawn(draw
     Ok(())
 }
 
+fn place(bodies: &PathBodies<'_>, body: usize, time: f64) -> Placement {
+    let pose = bodies.moving(body).motion.pose_and_twist(time).0;
+    Placement::new(pose.rotation, pose.transform_point(DVec3::ZERO))
+}
+
+/// Do the surfaces share points, by the judge? Of bodies with radii: are they within them?
+fn is_met(bodies: &PathBodies<'_>, trees: &[BoxTree], [a, b]: [usize; 2], time: f64) -> bool {
+    if bodies.moving(a).radius + bodies.moving(b).radius > 0.0 {
+        return distance(bodies, trees, [a, b], time) <= 0.0;
+    }
+    cross(&trees[a], &trees[b], &place(bodies, a, time), &place(bodies, b, time))
+}
+
 /// By the judge: of surfaces, less the radii of the bodies; less than zero where a pair is within them.
-fn distance(bodies: &PathBodies<'_>, trees: &[BoxTree], pair: [usize; 2], time: f64) -> f64 {
-    let place = |body: usize| {
-        let pose = bodies.moving(body).motion.pose_and_twist(time).0;
-        Placement::new(pose.rotation, pose.transform_point(DVec3::ZERO))
-    };
-    let [a, b] = pair;
-    let apart = separation(&trees[a], &trees[b], &place(a), &place(b), &mut Hint::default());
+fn distance(bodies: &PathBodies<'_>, trees: &[BoxTree], [a, b]: [usize; 2], time: f64) -> f64 {
+    let [at_a, at_b] = [a, b].map(|body| place(bodies, body, time));
+    let apart = separation(&trees[a], &trees[b], &at_a, &at_b, &mut Hint::default());
     apart - bodies.moving(a).radius - bodies.moving(b).radius
 }
 
