@@ -7,7 +7,7 @@ use super::meshes::of_meshes;
 use super::staying::StraightPair;
 use super::staying_inside::DeepPoint;
 use crate::resting::collide::{is_contained, some_colliding_pairs};
-use crate::resting::distance::near_pair;
+use crate::resting::distance::{Nearness, near_pair};
 use crate::{Budget, Meter, Moving, Posed, QueryError, QueryOptions, Solid, TimeOfContact, Window};
 
 /// Steps of the search for the closest pair at a time.
@@ -122,7 +122,7 @@ impl<'a> Walk<'a> {
             return true;
         }
         let [a, b] = self.posed(time);
-        let near = near_pair(a, b, self.pair, NEAR_STEPS).ok().flatten();
+        let near = near_pair(a, b, self.pair, Nearness { steps: NEAR_STEPS, slack: 0.0 }).ok().flatten();
         if let Some(pair) = near.filter(|&pair| self.stays(pair, time, time)) {
             self.pair = Some(pair);
             return true;

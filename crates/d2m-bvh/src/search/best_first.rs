@@ -1,7 +1,7 @@
 //! Best first inside one sub-window.
 
 use super::crowd::{Patience, Progress};
-use super::effort::{self, BATCH, FRESH, MEMORY_CHECK, ON_ITS_WAY};
+use super::effort::{self, BATCH, MEMORY_CHECK, ON_ITS_WAY};
 use super::motion::frame::{Frame, RelativeMotion};
 use super::motion::units::sum_down;
 use super::node_pair::expansion::{KEY_SCALE, NodePairExpander};
@@ -75,7 +75,7 @@ impl<'s> Search<'s> {
                 break;
             }
             self.scratch.counts.frames += 1;
-            if batches == 1 || least > state.frame_key + state.frame_key / FRESH {
+            if batches == 1 || least > effort::fresh_until(state.frame_key, state.parting.is_some()) {
                 state.renew_frames::<L>(least);
             }
             if patience.is_due(batches, self.scratch.counts.triangle_looks) {
@@ -95,7 +95,7 @@ impl<'s> Search<'s> {
 
     /// The state of a sub-window of which nothing is searched yet.
     #[inline(always)]
-    fn begin_window(&mut self, window: SubWindow) -> State<'s> {
+    pub(super) fn begin_window(&mut self, window: SubWindow) -> State<'s> {
         let scene = self.scene;
         let length = length_of(window);
         let time_unit = power_of_two_above(length.max(LEAST_SPAN));

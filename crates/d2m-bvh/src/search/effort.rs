@@ -10,7 +10,7 @@
 //! | bounds of third order | after 192 tests of the search, or 16 of the pair | – | [`separating_axis`] |
 //! | directions that turn with the bodies | after 1024 tests of the search, or 24 of the pair | – | `triangle_pair/turning` |
 //! | a pair followed at once | when it is handed out | its time grew by 1/16, or 64 steps when out of turn | `pairs` |
-//! | a fresh frame | the time grew by 1/128 | – | `best_first` |
+//! | a fresh frame | the time grew by 1/128, or by 1/16 when the level is grazed | – | `best_first` |
 //! | swept volumes, then screws | work of 256 and 1/8 test a triangle; 256 and one a triangle when 1/16 of the sub-window is done | after a success at a quarter more, else at four times the work | `skip` |
 //! | planes between crowds | 4096 pairs wait, or 1024 batches | twice as many, and as much other work as it took | `crowd` |
 //! | spans of time, divided | 64 sub-windows | 256 pairs in a span | `time_split` |
@@ -32,7 +32,16 @@ pub(super) const MEMORY_CHECK: u32 = 128;
 
 /// The frame is renewed when the time has grown by more than one part in this many: an older one is as right, its
 /// bounds only begin earlier.
-pub(super) const FRESH: u32 = 128;
+const FRESH: u32 = 128;
+
+/// The same for a search whose level is close to the least distance: it goes away from the time at which the bodies are closest,
+/// so that times grow by many powers of two, and each frame comes with a line between the closest triangles.
+const GRAZING_FRESH: u32 = 16;
+
+/// The key above which a frame at this key is renewed.
+pub(super) const fn fresh_until(key: u32, grazing: bool) -> u32 {
+    key + key / if grazing { GRAZING_FRESH } else { FRESH }
+}
 
 /// Tests of pairs of triangles of one search, and of one pair, that use bounds of second order; later ones use those of third
 /// order. Ordinary queries need fewer.

@@ -44,7 +44,9 @@ impl Search<'_> {
             }
             if item.next & Item::TRIANGLES == 0 && item.key < state.limit {
                 let mut expanded = state.expander.expand::<L>(item, &state.node_frames, state.keys());
-                if let Some(span) = parting {
+                if let Some(span) = parting
+                    && expanded.wanted != 0
+                {
                     let apart = state.expander.apart_along::<L>(item, span);
                     expanded.wanted &= !apart;
                     #[cfg(feature = "audit")]

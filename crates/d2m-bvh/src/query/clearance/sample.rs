@@ -1,7 +1,7 @@
 //! Pairs of triangles at single times: proven upper bounds of a clearance, and the way down to a local minimum.
 
 use crate::query::true_poses::PlacedTriangles;
-use crate::resting::distance::near_pair;
+use crate::resting::distance::{Nearness, near_pair};
 use crate::{Moving, Posed, Window};
 use d2m_feature::TriangleDistance;
 use glam::DVec3;
@@ -9,12 +9,17 @@ use glam::DVec3;
 /// Parts of the window at whose ends the centers of the bodies are compared, and steps from the closest of them.
 const FIRST_TIMES: u32 = 8;
 const FIRST_STEPS: u32 = 4;
-/// Steps of the search for a first pair of triangles: a way down both trees and a few steps aside.
-const FIRST_PAIR: u64 = 32;
-/// Steps of the search for the closest pair near a minimum: most are shorter.
-const STEPS: u64 = 1024;
-/// Alternations between the closest time of a pair and the closest pair of a time.
+/// A first pair of triangles: a way down both trees and a few steps aside.
+const FIRST_PAIR: Nearness = Nearness { steps: 32, slack: 0.0 };
+/// The closest pair at a minimum: most searches are shorter.
+const CLOSEST: Nearness = Nearness { steps: 1024, slack: 0.0 };
+/// A pair on the way down to a minimum: that none is closer by little is most of what a search for the closest one does, and
+/// is of no use before the time is.
+const ON_THE_WAY: Nearness = Nearness { slack: 1.0 / 64.0, ..CLOSEST };
+/// Alternations between the closest time of a pair and a close pair of a time.
 const ALTERNATIONS: u32 = 24;
+/// Descents, each from the closest pair of the time at which the one before ended.
+const DESCENTS: u32 = 8;
 /// Evaluations on the way to a pair's closest time.
 const EVALUATIONS: u32 = 60;
 
@@ -58,10 +63,10 @@ impl Sampler<'_> {
     }
 
     /// A close pair at a time.
-    fn closest_at(&self, time: f64, first: Option<[u32; 2]>, steps: u64) -> Sample {
+    fn closest_at(&self, time: f64, first: Option<[u32; 2]>, wanted: Nearness) -> Sample {
         let [a, b] = self.bodies.map(|moving| Posed::new(moving.body, moving.motion.pose_and_twist(time).0));
         // Poses that a static query refuses have pairs too: any bounds the distance.
-        let found = near_pair(a, b, first, steps).ok().flatten().or(first).unwrap_or([0; 2]);
+        let found = near_pair(a, b, first, wanted).ok().flatten().or(first).unwrap_or([0; 2]);
         self.pair_at(found, time)
     }
 
@@ -103,16 +108,38 @@ impl Sampler<'_> {
         (p - q, v - w)
     }
 
-    /// Follows a pair to its closest time, then the bodies to the closest pair of that time, until nothing comes closer by a part of the
-    /// width that is wanted of an enclosure. Where pair after pair comes closer the same way, steps are doubled.
+    /// Follows a close pair of a time to a minimum, then the bodies to the closest pair of that time, until nothing comes closer by a
+    /// part of the width that is wanted of an enclosure.
     pub(super) fn settle(&self, from: Sample, width: impl Fn(f64) -> f64) -> Sample {
-        let mut best = closer(from, self.closest_at(from.time, Some(from.triangles), STEPS));
+        // Bodies that are closest at an end of the window have their minimum there: what is sought first is what is wanted.
+        let mut is_closest = from.time == self.window.start() || from.time == self.window.end();
+        let wanted = if is_closest { CLOSEST } else { ON_THE_WAY };
+        let mut best = closer(from, self.closest_at(from.time, Some(from.triangles), wanted));
+        for _ in 0..DESCENTS {
+            let lowest = self.descend(best, &width);
+            if is_closest && lowest.time == best.time {
+                break;
+            }
+            let nearest = self.closest_at(lowest.time, Some(lowest.triangles), CLOSEST);
+            let done = nearest.upper >= lowest.upper - wanted_of(&lowest, &width);
+            (best, is_closest) = (closer(lowest, nearest), true);
+            if done {
+                break;
+            }
+        }
+        best
+    }
+
+    /// Follows a pair to its closest time, then the bodies to a close pair of that time, until nothing comes closer by much. Where pair
+    /// after pair comes closer the same way, steps are doubled.
+    fn descend(&self, from: Sample, width: impl Fn(f64) -> f64) -> Sample {
+        let mut best = from;
         let mut last = 0.0;
         for _ in 0..ALTERNATIONS {
             if best.near.upper == 0.0 {
                 break;
             }
-            let wanted = 0.1 * width(best.upper);
+            let wanted = wanted_of(&best, &width);
             let lowest = self.closest_time(best, wanted);
             let step = lowest.time - best.time;
             let doubled =
@@ -121,12 +148,13 @@ impl Sampler<'_> {
                 break;
             }
             let (start, end) = (self.window.start(), self.window.end());
-            let far = self.closest_at((best.time + doubled).clamp(start, end), Some(lowest.triangles), STEPS);
+            let far =
+                self.closest_at((best.time + doubled).clamp(start, end), Some(lowest.triangles), ON_THE_WAY);
             let is_far = far.upper < best.upper - wanted;
             let next = if is_far || doubled == step {
                 far
             } else {
-                self.closest_at(lowest.time, Some(lowest.triangles), STEPS)
+                self.closest_at(lowest.time, Some(lowest.triangles), ON_THE_WAY)
             };
             let next = closer(lowest, next);
             last = next.time - best.time;
@@ -197,6 +225,11 @@ impl Sampler<'_> {
         }
         best
     }
+}
+
+/// What counts as closer: a part of the width that is wanted of an enclosure.
+fn wanted_of(best: &Sample, width: impl Fn(f64) -> f64) -> f64 {
+    0.1 * width(best.upper)
 }
 
 /// The closer one; the first of two that are equal. What is not a number is never closer.

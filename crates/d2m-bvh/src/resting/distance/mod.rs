@@ -179,7 +179,7 @@ pub fn distance_within(
         .within(counts)
         .map(|triangles| [0, 1].map(|k| if scene.is_point_like(k) { 0 } else { triangles[k] }));
     let unlimited = &mut Meter::unlimited();
-    let mut search = |limit: f64| run(Search { scene: &scene, first, limit, meter: unlimited });
+    let mut search = |limit: f64| run(Search { scene: &scene, first, limit, slack: 0.0, meter: unlimited });
     let found = match search(limit) {
         Found::Unclear => search(f64::INFINITY),
         found => found,
@@ -199,7 +199,7 @@ pub fn distance_within(
     let found = match (found, state) {
         // The bodies meet although their surfaces are far from each other: search again without a limit.
         (Found::Beyond, StartState::Contained) => {
-            run(Search { scene: &scene, first, limit: f64::INFINITY, meter: unlimited })
+            run(Search { scene: &scene, first, limit: f64::INFINITY, slack: 0.0, meter: unlimited })
         }
         (found, _) => found,
     };
@@ -299,7 +299,7 @@ pub fn bound_distance(
     let meter = &mut Meter::new(budget);
     // Some pair is compared before the budget counts, so there always is an upper bound.
     let first = Some([0, 0]);
-    let found = run(Search { scene: &scene, first, limit: f64::INFINITY, meter });
+    let found = run(Search { scene: &scene, first, limit: f64::INFINITY, slack: 0.0, meter });
     let found = crossing(&scene, found, meter);
     let is_apart = match &found {
         Found::Pair(best) | Found::Exhausted(best) if best.is_apart(&scene) && solid == Solid::Filled => {
@@ -329,8 +329,16 @@ pub fn bound_distance(
     Ok(DistanceBounds { lower, upper, point_a, point_b, triangle_a, triangle_b, distance })
 }
 
-/// A pair of triangles that are close to each other: the closest pair if so many steps find it. `first`: a pair that is compared
-/// first.
+/// How close a pair is sought.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nearness {
+    /// Steps at most.
+    pub(crate) steps: u64,
+    /// The part of its distance by which another pair may be closer; zero: the closest one is sought.
+    pub(crate) slack: f64,
+}
+
+/// A pair of triangles that are close to each other, as far as the steps suffice. `first`: a pair that is compared first.
 ///
 /// # Errors
 /// [`QueryError::BadPose`].
@@ -338,12 +346,12 @@ pub(crate) fn near_pair(
     a: Posed<'_>,
     b: Posed<'_>,
     first: Option<[u32; 2]>,
-    steps: u64,
+    Nearness { steps, slack }: Nearness,
 ) -> Result<Option<[u32; 2]>, QueryError> {
     let scene = Scene::try_new(a, b)?;
     let first = first.map(|pair| [0, 1].map(|k| if scene.is_point_like(k) { 0 } else { pair[k] }));
     let meter = &mut Meter::unlimited().at_most(steps);
-    Ok(match run(Search { scene: &scene, first, limit: f64::INFINITY, meter }) {
+    Ok(match run(Search { scene: &scene, first, limit: f64::INFINITY, slack, meter }) {
         Found::Pair(best) | Found::Exhausted(best) => Some(best.triangles),
         Found::Beyond | Found::Unclear => None,
     })

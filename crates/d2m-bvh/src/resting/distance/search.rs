@@ -23,7 +23,7 @@ pub(super) enum Found {
     Beyond,
     /// The enclosure of a pair straddles the limit: without a limit there is an answer.
     Unclear,
-    /// The meter ran out: the closest pair so far, with a lower bound over all.
+    /// The meter ran out, or the pair is near enough: the closest pair so far, with a lower bound over all.
     Exhausted(Best),
 }
 
@@ -41,6 +41,9 @@ pub(super) struct Search<'a> {
     pub(super) first: Option<[u32; 2]>,
     /// Pairs beyond this are of no interest, working units.
     pub(super) limit: f64,
+    /// The search also ends when no pair can be closer than the best one by more than this part of its distance: zero where the
+    /// closest pair is wanted.
+    pub(super) slack: f64,
     pub(super) meter: &'a mut Meter,
 }
 
@@ -49,7 +52,7 @@ impl Task for Search<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Found {
-        let Self { scene, first, limit, meter } = self;
+        let Self { scene, first, limit, slack, meter } = self;
         let mut state = State::new(scene, limit, first);
         loop {
             if state.next.is_none() && state.steps >= state.patience {
@@ -59,11 +62,11 @@ impl Task for Search<'_> {
             if item.key > state.closest.upper_key || state.closest.upper == 0.0 {
                 break;
             }
-            if meter.step().is_err() {
-                // A pair of triangles is compared before the search, so that there is a best one.
+            let is_over = meter.step().is_err();
+            if is_over || slack > 0.0 && state.is_near_enough(&item, slack) {
+                // Where a meter has an end, a pair of triangles is compared before the search, so that there is a best one.
                 let Some(best) = state.closest.best else { return Found::Unclear };
-                let least = state.queue.least_key().map_or(item.key, |other| other.min(item.key));
-                return Found::Exhausted(state.closest.finished(best, f64::from(least)));
+                return Found::Exhausted(state.closest.finished(best, f64::from(state.least_key(&item))));
             }
             state.steps += 1;
             if state.waits(&item) {
@@ -119,6 +122,16 @@ impl<'a> State<'a> {
             patience: CROWD,
             hulls: None,
         }
+    }
+
+    /// No pair is closer than this: neither the one that comes next nor those that wait.
+    fn least_key(&self, next: &Item) -> f32 {
+        self.queue.least_key().map_or(next.key, |other| other.min(next.key))
+    }
+
+    /// Is no pair closer than the best one by more than this part?
+    fn is_near_enough(&self, next: &Item, slack: f64) -> bool {
+        self.closest.best.is_some() && f64::from(self.least_key(next)) >= self.closest.upper * (1.0 - slack)
     }
 
     /// Examines a crowd of pairs that wait: drops them where they cannot change what is proven, or begins again with planes

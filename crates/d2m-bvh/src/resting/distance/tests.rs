@@ -290,3 +290,33 @@ fn a_cache_changes_no_bit_of_bodies_that_are_points() {
         assert_eq!(ask(&point, &mut cache), ask(&point, &mut PairCache::new()), "{size:e}");
     }
 }
+
+/// A search for a pair that is near enough ends sooner than one for the closest, and what it leaves is no further apart than it says.
+#[test]
+fn near_enough_is_found_sooner_and_bounds_hold() {
+    let mut random = KnuthRandom(53);
+    let mut steps = [0; 2];
+    for round in 0..60 {
+        let [a, b] = [0.0, 2.5].map(|shift| {
+            soup((0..120).map(|_| {
+                let corner = DVec3::new(random.signed(), random.signed(), random.signed());
+                corner.normalize_or(DVec3::X) + DVec3::X * shift
+            }))
+        });
+        let scene = Scene::try_new(Posed::at_rest(&a), Posed::at_rest(&b)).unwrap();
+        let mut nearest = f64::INFINITY;
+        for (k, slack) in [0.0, 1.0 / 64.0].into_iter().enumerate() {
+            let meter = &mut Meter::unlimited().at_most(1 << 20);
+            let found = run(Search { scene: &scene, first: None, limit: f64::INFINITY, slack, meter });
+            let (Found::Pair(best) | Found::Exhausted(best)) = found else { panic!("{round}: {found:?}") };
+            if k == 0 {
+                nearest = best.distance.upper;
+            }
+            assert!(best.distance.upper * (1.0 - slack) <= nearest, "{round}");
+            let least = nearest * (1.0 - 2.0 * slack) - 2.0 * EXPECTED_WIDTH;
+            assert!(least <= best.lower && best.lower <= nearest, "{round}");
+            steps[k] += meter.spent();
+        }
+    }
+    assert!(steps[1] < steps[0], "{steps:?}");
+}

@@ -20,7 +20,7 @@ mod reaches;
 mod tests;
 
 use super::effort::{
-    BATCH, CROWD, CROWD_CHECK, CROWD_CHECK_TESTS, CROWD_OF_BATCHES, MOST_HALVINGS, MOST_PLANES, WORK_A_PAIR,
+    CROWD, CROWD_CHECK, CROWD_CHECK_TESTS, CROWD_OF_BATCHES, MOST_HALVINGS, MOST_PLANES, WORK_A_PAIR,
 };
 use super::queue::{Bucket, Item};
 use super::state::{Search, State};
@@ -35,9 +35,9 @@ use moving::{Moving, PlaneSearch, Separation};
 use paths::Side;
 use reaches::Reaches;
 
-/// Most vertices of each body that are compared, for each pair of boxes that waits or was expanded: so it takes no more than
-/// the search itself.
-const VERTICES_A_PAIR: usize = 2;
+/// Most vertices of each body that are gathered, for each node test that the search has done: one is placed in about the time of
+/// such a test, so gathering too many takes no more than the search itself did.
+const VERTICES_A_TEST_DONE: u64 = 1;
 /// Most vertices that are compared for one plane, all directions together: less than a millisecond of work.
 const MOST_COMPARED: u64 = 1 << 18;
 /// Directions that are tried for one plane, from each of the two that it begins with: at least, and at most.
@@ -141,9 +141,8 @@ impl Search<'_> {
         if least >= state.limit {
             return;
         }
-        let most = VERTICES_A_PAIR * waiting.max(BATCH * batches as usize);
         let mut clock = Meter::until(self.limits.stop);
-        let Some(crowd) = self.crowd(state, batch.items(), most, &mut clock) else { return };
+        let Some(crowd) = self.crowd(state, batch.items(), &mut clock) else { return };
         let frame = match state.found {
             Some(_) => state.behind.reversed,
             None => state.motion.frame::<L::Doubles>(known),
@@ -304,8 +303,9 @@ impl Search<'_> {
         self.advance::<L>(state, item, true);
     }
 
-    /// The vertices below all pairs that wait; none if they are too many, or the time is over.
-    fn crowd(&self, state: &State<'_>, batch: &[Item], most: usize, clock: &mut Meter) -> Option<Crowd> {
+    /// The vertices below all pairs that wait; none if they are too many for what the search has done so far, or the time is over.
+    fn crowd(&self, state: &State<'_>, batch: &[Item], clock: &mut Meter) -> Option<Crowd> {
+        let most = (VERTICES_A_TEST_DONE * self.work()) as usize;
         let mut bodies = [&self.scene.a, &self.scene.b].map(Group::new);
         for item in self.scratch.queue.items().chain(batch) {
             if item.key < state.limit {

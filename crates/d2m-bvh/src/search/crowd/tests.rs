@@ -2,6 +2,8 @@
 
 use super::super::motion::frame::Frame;
 use super::super::scene::{MovingTree, Scene};
+use super::super::scratch::Scratch;
+use super::super::state::SubWindow;
 use super::*;
 use crate::meter::Stop;
 use crate::{Budget, MeshTree, QueryOptions, TriMesh, Window};
@@ -148,4 +150,24 @@ fn preparations_end_with_the_time() {
     let mut reaches = Reaches::new(&scene, Side::A, &frame, 0.25, DVec3::X);
     assert_eq!(reaches.measure(0, &mut over()), None);
     assert!(reaches.measure(0, &mut Meter::unlimited()).is_some());
+}
+
+/// Vertices are gathered for a plane once the search has done about as much as that costs, not before.
+#[test]
+fn a_crowd_costs_no_more_than_the_search_before() {
+    let mut random = KnuthRandom(41);
+    let vertices: Vec<_> = (0..3000).map(|_| random.vector()).collect();
+    let tree = MeshTree::new(Surface::soup(vertices.clone()).into_mesh(TriMesh::try_new));
+    let (rest, options) = (ConstantTwist::REST, QueryOptions::default());
+    let scene = Scene::try_new(moving(&tree, rest), moving(&tree, rest), Window::UNIT, &options).unwrap();
+    let mut scratch = Scratch::new();
+    let mut search = Search::new(&scene, &options, &mut scratch);
+    let state = search.begin_window(SubWindow { start: 0.0, end: 1.0 });
+    search.scratch.queue.push(state.expander.root());
+    for (work, is_enough) in [(1500, false), (2999, false), (3000, true)] {
+        search.scratch.counts.node_tests = work;
+        let crowd = search.crowd(&state, &[], &mut Meter::unlimited());
+        assert_eq!(crowd.is_some(), is_enough, "{work}");
+        assert!(crowd.is_none_or(|crowd| crowd.points.iter().all(|points| points.len() == vertices.len())));
+    }
 }
