@@ -14,10 +14,12 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum ShapeError {
     /// No shape has this name.
-    #[error("there is no shape {name:?}; shapes are {known}")]
+    #[error("there is no shape {name:?}; {hint}shapes are {known}", hint = .meant.map(|shape| format!("is {shape} meant? ")).unwrap_or_default())]
     UnknownShape {
         /// The name that was given.
         name: String,
+        /// The shape that was probably meant: under another of its names, or misspelled.
+        meant: Option<&'static str>,
         /// All names, comma-separated.
         known: String,
     },

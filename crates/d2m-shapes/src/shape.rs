@@ -24,6 +24,29 @@ pub struct Shape {
     given: Vec<Option<f64>>,
 }
 
+/// Other names under which shapes are looked for.
+const OTHER_NAMES: [(&str, &str); 10] = [
+    ("cube", "box"),
+    ("cuboid", "box"),
+    ("sphere", "icosphere"),
+    ("ball", "icosphere"),
+    ("cylinder", "shaft"),
+    ("ring", "torus"),
+    ("knot", "torus-knot"),
+    ("link", "chain-link"),
+    ("bolt", "screw"),
+    ("plane", "plate"),
+];
+
+/// The shape that somebody who wrote this name probably wants: it is called so elsewhere, or a third of its letters is wrong.
+fn meant(name: &str) -> Option<&'static str> {
+    let other =
+        OTHER_NAMES.iter().find(|(other, _)| other.eq_ignore_ascii_case(name)).map(|&(_, shape)| shape);
+    let mistakes = |shape: &str| strsim::damerau_levenshtein(shape, &name.to_ascii_lowercase());
+    let nearest = || SHAPES.iter().map(|info| info.name).min_by_key(|shape| mistakes(shape));
+    other.or_else(|| nearest().filter(|shape| 3 * mistakes(shape) <= shape.len()))
+}
+
 impl Shape {
     /// The shape of that name with default parameters.
     ///
@@ -32,6 +55,7 @@ impl Shape {
     pub fn new(name: &str) -> Result<Self, ShapeError> {
         let info = SHAPES.iter().find(|info| info.name == name).ok_or_else(|| ShapeError::UnknownShape {
             name: name.to_owned(),
+            meant: meant(name),
             known: join(SHAPES.iter().map(|info| info.name)),
         })?;
         Ok(Self { info, given: vec![None; info.parameters.len() + COMMON.len()] })

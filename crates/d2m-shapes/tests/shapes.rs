@@ -215,7 +215,13 @@ const GOLDEN: [(&str, u64); 6] = [
 fn refusals_say_what_is_wrong() {
     let message = |text: &str| mesh(text).unwrap_err().to_string();
     assert!(message("sfere").starts_with("there is no shape \"sfere\"; shapes are box, tetrahedron, "));
-    assert!(message("").starts_with("there is no shape \"\""));
+    assert!(message("").starts_with("there is no shape \"\"; shapes are "));
+    for (name, meant) in
+        [("cube", "box"), ("Sphere", "icosphere"), ("tours", "torus"), ("GEAR", "gear"), ("nutt", "nut")]
+    {
+        let hint = format!("there is no shape {name:?}; is {meant} meant? shapes are box, ");
+        assert!(message(name).starts_with(&hint), "{}", message(name));
+    }
     assert_eq!(
         message("torus?radius=2"),
         "shape torus: there is no parameter \"radius\"; it has triangles, tube, scale"
