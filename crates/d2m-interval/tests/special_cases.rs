@@ -216,6 +216,16 @@ fn extrema_straddled() {
     assert_eq!(i(-2.0, 3.0).cosh().lo(), 1.0);
     assert_eq!(i(-2.0, 3.0).abs(), i(0.0, 3.0));
     assert_eq!(i(-1.0, 1.0).atan2(i(-1.0, 1.0)), i(-Interval::PI.hi(), Interval::PI.hi()));
+    // One point: on the branch cut, and elsewhere as a corner of what is wider.
+    for zero in [0.0, -0.0] {
+        assert_eq!(i(zero, zero).atan2(i(-1.0, -1.0)), Interval::PI);
+    }
+    for (y, x) in
+        [(0.3, 0.7), (2.0, -0.5), (-0.1, 4.0), (-3.0, -1e-9), (1e-300, 1e200), (5.0, 0.0), (-5.0, 0.0)]
+    {
+        let (point, wider) = (i(y, y).atan2(i(x, x)), i(y, y).atan2(i(x, x.next_up())));
+        assert!(point.is_subset(wider) && (point.lo() == wider.lo() || point.hi() == wider.hi()), "{y} {x}");
+    }
 }
 
 #[test]

@@ -183,6 +183,11 @@ impl Interval {
             return Self::raw(-pi, pi);
         }
         let (x0, x1, y0, y1) = (x.lo(), x.hi(), y.lo(), y.hi());
+        if x0 == x1 && y0 == y1 && y0 != 0.0 {
+            // One point, not on the branch cut: both ends at once.
+            let (lo, hi) = corner(y0, x0);
+            return Self::from_ends(lo, hi);
+        }
         if y0 >= 0.0 {
             // Upper half plane: the angle falls with x; from the right it grows with y, from the left it falls.
             let lo = if y1 == 0.0 && x1 <= 0.0 && x0 < 0.0 {

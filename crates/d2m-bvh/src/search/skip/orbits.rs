@@ -18,6 +18,8 @@ pub(super) const BESIDE: f64 = 0.01;
 const MOST_CUTS: usize = 8;
 /// Pieces that this may give, besides two for each triangle.
 const MORE_PIECES: usize = 1 << 12;
+/// An odd number near 2⁶⁴ over the golden section: its products differ in their high bits where factors differ in low ones.
+const MIX: u64 = 0x9e37_79b9_7f4a_7c15;
 /// Where the steps of φ and those of classes begin: not at zero or at whole leads, where a thread or a plane through the
 /// origin would be divided. Any numbers do.
 const FIRST_LEAD: f64 = 0.123_456;
@@ -101,7 +103,7 @@ struct Orbits<'s> {
     farthest: f64,
     /// One over the step in which the numbers of a class may differ.
     per_step: f64,
-    classes: HashMap<[i64; 8], u32>,
+    classes: HashMap<u64, u32>,
     pieces: Vec<Piece>,
     /// By how much the second and the third vertex of each piece are turned from the first.
     turns: Vec<[f64; 2]>,
@@ -151,11 +153,24 @@ impl Orbits<'_> {
     }
 }
 
-/// What triangles of one class have in common, in whole steps.
-fn key(corners: &[ProjectedVertex; 3], turned: [f64; 2], farthest: f64, per_step: f64) -> [i64; 8] {
+/// What triangles of one class have in common, in whole steps, mixed to one number. Two classes with one number are one class: its slack
+/// is as large as they differ.
+fn key(corners: &[ProjectedVertex; 3], turned: [f64; 2], farthest: f64, per_step: f64) -> u64 {
     let [a, b, c] = corners;
-    [a.rho, b.rho, c.rho, a.phi, b.phi, c.phi, turned[0] * farthest, turned[1] * farthest]
-        .map(|x| (x * per_step + FIRST_STEP).floor() as i64)
+    [a.rho, b.rho, c.rho, a.phi, b.phi, c.phi, turned[0] * farthest, turned[1] * farthest].iter().fold(
+        0,
+        |mixed: u64, x| {
+            let mixed = (mixed ^ whole(x * per_step + FIRST_STEP) as u64).wrapping_mul(MIX);
+            mixed ^ mixed >> 32
+        },
+    )
+}
+
+/// The largest whole number that is not above `x`; the nearest that there is for what is beyond all numbers. On every target without a
+/// call.
+fn whole(x: f64) -> i64 {
+    let towards_zero = x as i64;
+    towards_zero.wrapping_sub(i64::from(towards_zero as f64 > x))
 }
 
 /// An angle between two vertices of a triangle beside the axis, which turns by less than half a turn.
@@ -166,5 +181,60 @@ fn less_than_half_a_turn(by: f64) -> f64 {
         by + 2.0 * PI
     } else {
         by
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::search::scene::Scene;
+    use crate::{MeshTree, QueryOptions, TriMesh, Window};
+    use d2m_motion::ConstantTwist;
+    use d2m_testing::{Draw, KnuthRandom};
+
+    /// Whatever has one key is one class, whose slack is at least as large as its triangles differ when they are moved along the screw.
+    #[test]
+    fn unlike_triangles_of_one_class_are_as_slack_as_they_differ() {
+        let tree = MeshTree::new(TriMesh::point(DVec3::X).unwrap());
+        let climbing =
+            ConstantTwist::REST.with_angular_velocity(DVec3::Z * 4.0).with_linear_velocity(DVec3::Z * 0.8);
+        let bodies = [(&tree, climbing), (&tree, ConstantTwist::REST)];
+        let scene = Scene::new(bodies[0], bodies[1], Window::UNIT, &QueryOptions::default());
+        let screw = Screw::new(&scene, 0.0).unwrap();
+        let mut random = KnuthRandom(61);
+        for round in 0..400 {
+            let mut orbits = Orbits {
+                screw: &screw,
+                farthest: 2.0,
+                per_step: 0.0,
+                classes: HashMap::new(),
+                pieces: Vec::new(),
+                turns: Vec::new(),
+            };
+            let size = [0.3, 1e-3][round % 2];
+            let places = [(); 2].map(|()| {
+                let around = random.signed() * PI;
+                let middle = DVec3::new(around.cos(), around.sin(), 3.0 * random.signed());
+                [(); 3].map(|()| middle + random.vector() * size)
+            });
+            for corners in &places {
+                let piece = Piece::of(corners.map(ProjectedVertex::new), screw.h);
+                orbits.add(piece, corners.map(|p| angle(p.y, p.x)));
+            }
+            assert_eq!(orbits.pieces.len(), 1);
+            let [one, other] = places;
+            let turn = angle(one[0].y, one[0].x) - angle(other[0].y, other[0].x);
+            let apart = (-40..=40).map(|leads| {
+                let lift = screw.h * turn + f64::from(leads) * screw.lead;
+                let moved = other.map(|p| glam::DQuat::from_rotation_z(turn) * p + DVec3::Z * lift);
+                one.iter().zip(moved).map(|(p, q)| (*p - q).length()).fold(0.0, f64::max)
+            });
+            let least = apart.fold(f64::INFINITY, f64::min);
+            assert!(
+                orbits.pieces[0].slack >= least * (1.0 - 1e-12),
+                "{round}: {} {least}",
+                orbits.pieces[0].slack
+            );
+        }
     }
 }
