@@ -34,8 +34,12 @@ const MOST_HALVINGS: u32 = 6;
 const UNSOLVED: f64 = 1.0 / 8.0;
 /// The part of that rate from which on friction holds what would slip.
 const LOCKED: f64 = 0.5;
-/// The part of the gap at which it does so no longer.
+/// The part of the gap at which it does so no longer, and hardly any is left.
 const LAST: f64 = 1.0 / 64.0;
+/// The part of a flight for which contacts with less than that keep some of it.
+const LASTING: f64 = 1.0 / 16.0;
+/// The part of what restores the gap that counts beforehand: where the law is not obeyed, nothing may be restored.
+const RESTORED: f64 = 1.0 / 16.0;
 /// The part of the bodies' speed that solutions may leave in any case.
 const OF_SPEED: f64 = 1.0 / 16.0;
 const LEFT_OVER: f64 = 2.0;
@@ -57,8 +61,6 @@ pub(crate) struct Clock {
 struct Closing {
     rate: f64,
     safe: f64,
-    /// The least of their distances.
-    least: f64,
 }
 
 /// What friction does where it is in the way of what could move without it.
@@ -99,6 +101,42 @@ pub(crate) struct Attempt {
     missed: f64,
 }
 
+impl Attempt {
+    /// Velocities of flights that also restore the gap, or make room for rotation; what kinetic energy that adds. None: there is nothing to
+    /// restore, or no velocities are found that keep what room there is as long as the present ones do, which stay then.
+    pub(crate) fn make_room(&mut self, inertia: &[(f64, DMat3)], gap: f64) -> Option<f64> {
+        if self.targets == self.pushing {
+            return None;
+        }
+        let (begun, before) = (self.system.present(), self.system.doubled_energy(inertia));
+        let could_last = self.lasts(gap, |k| self.restored(k));
+        self.system.solve(&self.targets, self.accuracy, Start::Present);
+        if could_last && !self.lasts(gap, |_| 0.0) {
+            self.system.take_back(begun);
+            return None;
+        }
+        self.system.store(&mut self.contacts);
+        Some(0.5 * (self.system.doubled_energy(inertia) - before))
+    }
+
+    /// The part of what restores the gap at a contact that makes up for what the velocities are off the law.
+    fn restored(&self, contact: usize) -> f64 {
+        RESTORED * (self.targets[contact] - self.pushing[contact])
+    }
+
+    /// Does each contact of which hardly any room is left keep some for a part of the flight that counts, if `added` is added to its rate?
+    /// Velocities that are off the law by little against what bodies do elsewhere may use up the last of the gap in no time, and their next
+    /// ones half of what is left then.
+    pub(crate) fn lasts(&self, gap: f64, added: impl Fn(usize) -> f64) -> bool {
+        let length = LASTING * self.span.remaining;
+        self.contacts.iter().enumerate().all(|(k, contact)| {
+            let is_met = contact.row.is_none() && !contact.is_expected;
+            let is_tight = is_met && contact.distance < LAST * gap;
+            !is_tight || contact.shared_room() + (self.system.rate(k) + added(k)) * length >= 0.0
+        })
+    }
+}
+
 impl Problem<'_> {
     /// Velocities until the end of the step, or until the end of shorter flights: where bodies tumble; where joints are not met at the end of
     /// longer ones; and where bodies that follow their motions leave the others no velocities with which contacts keep the gap. There all
@@ -119,24 +157,36 @@ impl Problem<'_> {
             end = now + 0.5 * (end - now);
             tried = self.attempt(now, end, Room::Kept);
         }
-        let Some(Closing { rate, safe, least }) = self.closing() else { return tried };
-        let most = (tried.system.left(tried.accuracy) * LEFT_OVER).max(UNSOLVED * rate);
-        let most = most.max(OF_SPEED * tried.system.mean_speed());
-        if tried.residual <= most {
+        let most = (tried.system.left(tried.accuracy) * LEFT_OVER).max(OF_SPEED * tried.system.mean_speed());
+        let closing = self.closing();
+        let most = closing.map_or(most, |closing| most.max(UNSOLVED * closing.rate));
+        let is_cramped = !self.lasts(&tried);
+        if !is_cramped && (tried.residual <= most || closing.is_none()) {
             return tried;
         }
-        let friction = match tried.residual >= LOCKED * rate {
-            true if least < LAST * self.options.gap => Friction::GivesWay,
-            true => Friction::Locks,
-            false => Friction::Slips,
+        let friction = match closing {
+            _ if is_cramped => Friction::GivesWay,
+            Some(closing) if tried.residual >= LOCKED * closing.rate => Friction::Locks,
+            _ => Friction::Slips,
         };
-        self.squeezed([now, end], safe, most, friction).unwrap_or(tried)
+        self.squeezed([now, end], closing, most, friction).unwrap_or(tried)
+    }
+
+    /// Do the contacts last, with some of what is still to be added to restore the gap?
+    fn lasts(&self, attempt: &Attempt) -> bool {
+        attempt.lasts(self.options.gap, |k| attempt.restored(k))
     }
 
     /// The longest flights, of some lengths, in which contacts close by no more than the room that they share, and solutions leave no more
     /// than `most`. If friction allows none, without: it can only hold what room there is. Where all is possible without friction, only what
     /// that locks shares room, as between wedges, and slips where hardly any is left: it crushes nothing by itself.
-    fn squeezed(&self, [now, end]: [f64; 2], safe: f64, most: f64, friction: Friction) -> Option<Attempt> {
+    fn squeezed(
+        &self,
+        [now, end]: [f64; 2],
+        closing: Option<Closing>,
+        most: f64,
+        friction: Friction,
+    ) -> Option<Attempt> {
         let slippery = |c: &ContactPoint| ContactPoint {
             material: Material { friction: 0.0, ..c.material },
             impulse: 0.0,
@@ -146,18 +196,20 @@ impl Problem<'_> {
         let contacts: Vec<ContactPoint> = self.contacts.iter().map(slippery).collect();
         let smooth = Problem { contacts: &contacts, ..*self };
         let slipping = smooth.attempt(now, end, Room::Kept);
-        let is_possible = slipping.residual <= most;
+        let obeys = |attempt: &Attempt| attempt.residual <= most && self.lasts(attempt);
+        let is_possible = obeys(&slipping);
         match friction {
             Friction::Slips if is_possible => return None,
             Friction::GivesWay if is_possible => return Some(slipping),
             _ => {}
         }
+        let Closing { safe, .. } = closing?;
         let lengths = (0..=SHORTENED).map(|k| PASSED_ON * safe / f64::from(1u32 << k));
         let ends = lengths.map(|length| if length < end - now { now + length } else { end });
         let ends: Vec<f64> = ends.filter(|&until| until > now).collect();
         let shared = |problem: &Problem<'_>| {
             let mut attempts = ends.iter().map(|&until| problem.attempt(now, until, Room::Shared));
-            attempts.find(|attempt| attempt.residual <= most)
+            attempts.find(obeys)
         };
         shared(self).or_else(|| if is_possible { None } else { shared(&smooth) })
     }
@@ -177,14 +229,10 @@ impl Problem<'_> {
             let rate = -contact.rate(velocity(contact.a), velocity(contact.b));
             let is_moved = moves(state(contact.a)) || moves(state(contact.b));
             let is_near = contact.row.is_none() && contact.distance <= NEAR * contact.gap;
-            let closing = || Closing { rate, safe: contact.shared_room() / rate, least: contact.distance };
+            let closing = || Closing { rate, safe: contact.shared_room() / rate };
             (is_near && is_moved && rate > 0.0).then(closing)
         };
-        let worst = |x: Closing, y: Closing| Closing {
-            rate: x.rate.max(y.rate),
-            safe: x.safe.min(y.safe),
-            least: x.least.min(y.least),
-        };
+        let worst = |x: Closing, y: Closing| Closing { rate: x.rate.max(y.rate), safe: x.safe.min(y.safe) };
         self.contacts.iter().filter_map(of).reduce(worst)
     }
 

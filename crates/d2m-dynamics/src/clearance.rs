@@ -118,21 +118,12 @@ pub(crate) fn bound_along(
 mod tests {
     use super::*;
     use crate::Body;
+    use crate::drawn::{draw, vector};
     use crate::faces::Faces;
     use crate::velocity::Velocity;
     use d2m_bvh::{MeshTree, Posed, Solid, distance};
     use d2m_motion::{ConstantTwist, RigidMotion};
     use std::sync::Arc;
-
-    /// Numbers in [−1, 1).
-    fn draw(state: &mut u64) -> f64 {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(state: &mut u64) -> DVec3 {
-        DVec3::new(draw(state), draw(state), draw(state))
-    }
 
     /// A box of these half sides, at time 1.
     fn flying(size: DVec3, place: DVec3, turn: DQuat, velocity: Velocity) -> RigidBody {

@@ -2,8 +2,8 @@
 
 use crate::SimulationOptions;
 use crate::account::{Entry, balance};
-use crate::attempt::{Attempt, Clock, Problem, body_at, moves, still};
-use crate::contact::{ContactPoint, HIT, Span, Start, System, add, impact};
+use crate::attempt::{Clock, Problem, body_at, moves, still};
+use crate::contact::{ContactPoint, HIT, Span, System, add, impact};
 use crate::joined::Joined;
 use crate::momenta::Momenta;
 use crate::rigid_body::RigidBody;
@@ -100,23 +100,20 @@ pub(crate) fn solve(
         joints,
         in_crowd: bodies.len() > CROWD,
     };
-    let Attempt { span, end, mut contacts, targets, pushing, mut system, accuracy, residual, .. } =
-        problem.solve(clock);
+    let mut attempt = problem.solve(clock);
+    let (end, residual) = (attempt.end, attempt.residual);
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
     // Springs and motors may work; what joints alone do is balanced by the middle of flights, not by accounts.
     let driven = states.iter().any(|s| !moves(s) && !s.stands_still())
         || island.contacts.iter().any(|c| c.row.is_some() || c.running != [0.0; 2]);
     let mut rests = vec![Momenta::default(); members.len()];
-    add(&contacts, &mut rests, place);
-    let mut kept = contacts.clone();
+    add(&attempt.contacts, &mut rests, place);
+    let mut kept = attempt.contacts.clone();
     // What restores the gap, or makes room for rotation, moves the bodies in this flight and leaves no momentum.
     let velocities = |system: &System| system.bodies.iter().map(|body| body.velocity).collect::<Vec<_>>();
-    let mut physical = velocities(&system);
-    if targets != pushing {
-        let before = system.doubled_energy(&inertia);
-        system.solve(&targets, accuracy, Start::Present);
-        system.store(&mut contacts);
-        let gained = 0.5 * (system.doubled_energy(&inertia) - before);
+    let mut physical = velocities(&attempt.system);
+    let span = attempt.span;
+    if let Some(gained) = attempt.make_room(&inertia, options.gap) {
         // What an account may hold, and the energy of the speed that makes a gap in a step.
         let speed = options.gap / options.step;
         let held = |s: &Cow<'_, RigidBody>| {
@@ -126,9 +123,9 @@ pub(crate) fn solve(
         if gained.abs() > most {
             // Then it is made by impulses like others, and the account sees to their energy.
             rests.fill(Momenta::default());
-            add(&contacts, &mut rests, place);
-            kept.clone_from(&contacts);
-            physical = velocities(&system);
+            add(&attempt.contacts, &mut rests, place);
+            kept.clone_from(&attempt.contacts);
+            physical = velocities(&attempt.system);
         }
     }
     let outcome = |k: usize| Outcome {
@@ -139,7 +136,7 @@ pub(crate) fn solve(
         impact: impacts[k],
         rest: rests[k],
         physical: physical[k],
-        velocity: system.bodies[k].velocity,
+        velocity: attempt.system.bodies[k].velocity,
         lead: states[k].lead.unwrap_or(0.5 * span.remaining),
     };
     let outcomes: Vec<Outcome<'_>> = (0..states.len()).filter(|&k| moves(&states[k])).map(outcome).collect();

@@ -36,6 +36,8 @@ mod compound;
 #[cfg(feature = "audit")]
 mod concluded;
 mod contact;
+#[cfg(test)]
+mod drawn;
 mod error;
 mod faces;
 mod frozen;

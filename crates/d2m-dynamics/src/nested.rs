@@ -243,21 +243,12 @@ fn part_within([first, last]: [f64; 2], [low, high]: [f64; 2], unsure: f64) -> O
 mod tests {
     use super::*;
     use crate::Body;
+    use crate::drawn::{draw, vector};
     use crate::faces::Faces;
     use crate::velocity::Velocity;
     use d2m_bvh::{MeshTree, Posed, Solid, distance};
     use glam::DQuat;
     use std::sync::Arc;
-
-    /// Numbers in [−1, 1).
-    fn draw(state: &mut u64) -> f64 {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(state: &mut u64) -> DVec3 {
-        DVec3::new(draw(state), draw(state), draw(state))
-    }
 
     fn shape(name: &str) -> Arc<MeshTree> {
         Arc::new(MeshTree::new(d2m_shapes::mesh(name).unwrap()))

@@ -308,3 +308,24 @@ fn friction_alone_crushes_nothing() {
     assert_eq!(run(&mut simulation, 0.6), 0.0);
     assert!(simulation.position(cube).y > 1.2, "{}", simulation.position(cube));
 }
+
+/// The lower edge of a bar that moves over the floor meets stones from above, where friction with both locks them. Without friction they could
+/// slip out ahead, or below: nothing is crushed, and nothing given up.
+#[test]
+fn stones_slip_out_from_under_an_edge() {
+    for (seed, height, friction) in [(0, 0.17, 0.4), (0, 0.17, 0.6), (1, 0.14, 0.6), (2, 0.14, 0.6)] {
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        simulation.add(&floor(1.0).with_friction(friction)).unwrap();
+        let motion = ConstantTwist::REST
+            .with_position(DVec3::new(0.0, height + 0.1, -0.5))
+            .with_linear_velocity(DVec3::Z);
+        let bar =
+            Body::new("bar", tree("box?x=0.5&y=0.1&z=0.04")).with_kind(Kind::Kinematic(Arc::new(motion)));
+        simulation.add(&bar.with_friction(friction)).unwrap();
+        let stone = tree(&format!("pebble?triangles=100&seed={seed}&scale=0.13"));
+        let stone =
+            Body::new("stone", stone).with_position(DVec3::new(0.0, 0.16, -0.1)).with_friction(friction);
+        simulation.add(&stone).unwrap();
+        assert_eq!(run(&mut simulation, 1.0), 0.0, "{seed}");
+    }
+}

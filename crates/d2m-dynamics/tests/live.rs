@@ -1,6 +1,8 @@
 //! A running simulation is changed from outside: bodies come and go, are put elsewhere, become others. What was proven of them before proves
 //! nothing any more. Each flight is judged by distances at many of its times that share nothing with what the simulation keeps.
 
+mod ground;
+
 use d2m_bvh::{MeshTree, Posed, Solid, distance};
 use d2m_dynamics::{
     Body, BodyId, Groups, Joint, JointKind, Kind, Mass, Motor, MotorTarget, Presence, Segment, Simulation,
@@ -8,32 +10,9 @@ use d2m_dynamics::{
 };
 use d2m_motion::{ConstantTwist, Pose, RigidMotion};
 use glam::{DQuat, DVec3};
+use ground::{at, cube, floor, rest, tree};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-fn tree(shape: &str) -> Arc<MeshTree> {
-    Arc::new(MeshTree::new(d2m_shapes::mesh(shape).unwrap()))
-}
-
-fn cube() -> Arc<MeshTree> {
-    tree("box?x=0.5&y=0.5&z=0.5")
-}
-
-fn floor() -> Body {
-    let floor = Body::new("floor", tree("box?x=20&y=0.5&z=20")).with_kind(Kind::Static).with_friction(0.5);
-    floor.with_position(DVec3::Y * -0.5)
-}
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::new(DVec3::new(x, y, z), DQuat::IDENTITY)
-}
-
-fn rest(simulation: &mut Simulation, body: BodyId) {
-    while !simulation.is_asleep(body) {
-        simulation.step().unwrap();
-        assert!(simulation.time() < 20.0, "it does not come to rest");
-    }
-}
 
 /// Follows the segments of a simulation, and judges them by distances of their own.
 #[derive(Default)]

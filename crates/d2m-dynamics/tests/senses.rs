@@ -1,36 +1,13 @@
 //! Who touches whom, and what bodies can be besides solid: sensors, belts, of several parts, with locked axes; questions about the present.
 
-use d2m_bvh::MeshTree;
+mod ground;
+
 use d2m_dynamics::{
     Body, BodyId, Joint, Kind, Part, Presence, RayAnswer, Simulation, SimulationOptions, TouchChange,
 };
-use d2m_motion::Pose;
-use glam::{BVec3, DQuat, DVec3};
+use glam::{BVec3, DVec3};
+use ground::{at, cube, floor, rest, tree};
 use std::sync::Arc;
-
-fn tree(shape: &str) -> Arc<MeshTree> {
-    Arc::new(MeshTree::new(d2m_shapes::mesh(shape).unwrap()))
-}
-
-fn cube() -> Arc<MeshTree> {
-    tree("box?x=0.5&y=0.5&z=0.5")
-}
-
-fn floor() -> Body {
-    let floor = Body::new("floor", tree("box?x=20&y=0.5&z=20")).with_kind(Kind::Static).with_friction(0.5);
-    floor.with_position(DVec3::Y * -0.5)
-}
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::new(DVec3::new(x, y, z), DQuat::IDENTITY)
-}
-
-fn rest(simulation: &mut Simulation, body: BodyId) {
-    while !simulation.is_asleep(body) {
-        simulation.step().unwrap();
-        assert!(simulation.time() < 20.0, "it does not come to rest");
-    }
-}
 
 /// A body that rests has begun to touch once, also while it sleeps; it ends when it is taken away.
 #[test]

@@ -15,7 +15,7 @@ impl System {
     /// what is left over has no impulse and needs none. The residual is that of all blocks. None: there are always others, or no velocities
     /// obey the law, as of bodies that are crushed, which a choice of blocks would have give way to one side. All is as it was then.
     pub(super) fn solve_chosen(&mut self, targets: &[f64], accuracy: Accuracy, start: Start) -> Option<f64> {
-        let begun = (self.impulses.clone(), self.velocities());
+        let begun = self.present();
         let mut is_chosen: Vec<bool> = self.impulses.iter().map(|impulse| *impulse != [0.0; 3]).collect();
         for round in 0..MOST_ROUNDS {
             let is_new = self.choose(&mut is_chosen, targets, self.enough(accuracy));
@@ -43,10 +43,7 @@ impl System {
             }
             (self.bodies, self.reach, self.factor) = (part.bodies, part.reach, part.factor);
         }
-        self.impulses = begun.0;
-        for (body, velocity) in self.bodies.iter_mut().zip(begun.1) {
-            body.velocity = velocity;
-        }
+        self.take_back(begun);
         None
     }
 

@@ -109,11 +109,7 @@ impl Law {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn draw(state: &mut u64) -> f64 {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
+    use crate::drawn::draw;
 
     /// What is left over lies in the polar cone and is orthogonal to the projection: Moreau's theorem, which says that it is the nearest.
     #[test]

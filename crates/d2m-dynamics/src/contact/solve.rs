@@ -176,15 +176,12 @@ impl System {
 
     /// Goes on, unless that ends with a residual that is larger, and not within the tolerance either.
     fn better(&mut self, residual: f64, tolerance: f64, go_on: impl FnOnce(&mut Self) -> f64) -> f64 {
-        let (impulses, velocities) = (self.impulses.clone(), self.velocities());
+        let begun = self.present();
         let other = go_on(self);
         if other <= residual.max(tolerance) {
             return other;
         }
-        self.impulses = impulses;
-        for (body, velocity) in self.bodies.iter_mut().zip(velocities) {
-            body.velocity = velocity;
-        }
+        self.take_back(begun);
         residual
     }
 

@@ -179,6 +179,19 @@ impl System {
         self.bodies.iter().map(|body| body.velocity).collect()
     }
 
+    /// The impulses and the velocities, to go back to.
+    pub(crate) fn present(&self) -> (Vec<[f64; 3]>, Vec<Velocity>) {
+        (self.impulses.clone(), self.velocities())
+    }
+
+    /// Goes back to them.
+    pub(crate) fn take_back(&mut self, (impulses, velocities): (Vec<[f64; 3]>, Vec<Velocity>)) {
+        self.impulses = impulses;
+        for (body, velocity) in self.bodies.iter_mut().zip(velocities) {
+            body.velocity = velocity;
+        }
+    }
+
     /// The velocities without the impulses.
     pub(super) fn free(&self) -> Vec<Velocity> {
         let mut bodies = self.bodies.clone();
