@@ -12,17 +12,16 @@ const MOST_SELECTED: usize = 1 << 14;
 const SAMPLE: usize = 63;
 const LEAST_HALF: usize = 16;
 
-/// Divides parts by their middles along a dimension; the number of those in the first half, which are not beyond the others.
-fn divide(parts: &mut [(Projection, u32)], dimension: usize, clock: &mut Meter) -> Result<usize, Exhausted> {
-    let middle = |part: &(Projection, u32)| part.0.middle(dimension);
+/// Divides parts by their middles; the number of those in the first half, which are not beyond the others.
+fn divide(parts: &mut [u32], middle: impl Fn(u32) -> f64, clock: &mut Meter) -> Result<usize, Exhausted> {
     if parts.len() > MOST_SELECTED {
         let mut sample: [f64; SAMPLE] =
-            std::array::from_fn(|k| middle(&parts[(2 * k + 1) * parts.len() / (2 * SAMPLE)]));
+            std::array::from_fn(|k| middle(parts[(2 * k + 1) * parts.len() / (2 * SAMPLE)]));
         sample.sort_unstable_by(f64::total_cmp);
         let mut below = 0;
         for k in 0..parts.len() {
             clock.step()?;
-            if middle(&parts[k]) < sample[SAMPLE / 2] {
+            if middle(parts[k]) < sample[SAMPLE / 2] {
                 parts.swap(below, k);
                 below += 1;
             }
@@ -32,7 +31,7 @@ fn divide(parts: &mut [(Projection, u32)], dimension: usize, clock: &mut Meter) 
         }
     }
     let half = parts.len() / 2;
-    parts.select_nth_unstable_by(half, |p, q| middle(p).total_cmp(&middle(q)));
+    parts.select_nth_unstable_by(half, |&p, &q| middle(p).total_cmp(&middle(q)));
     Ok(half)
 }
 
@@ -42,10 +41,12 @@ pub(super) struct Cell {
     pub(super) projection: Projection,
     /// The number of the piece that it is.
     piece: Option<u32>,
-    /// The first of the cells that it is made of.
+    /// The first of the cells that it is made of; of several pieces not yet divided, the place of the first one in their order.
     first_below: u32,
-    /// How many they are; none: not yet divided.
+    /// How many cells they are; none: not yet divided.
     below: u32,
+    /// How many pieces it is made of.
+    count: u32,
 }
 
 /// Of two cells the larger one is expanded: one of several pieces before one that is a piece.
@@ -60,45 +61,51 @@ pub(super) struct CellSize {
 pub(super) struct ProjectionTree {
     pub(super) cells: Vec<Cell>,
     pieces: Vec<Piece>,
+    /// Of the pieces that there were at first, and their order: those of a cell stand side by side.
+    projections: Vec<Projection>,
+    order: Vec<u32>,
     h: f64,
 }
 
 impl ProjectionTree {
     /// Of some pieces, on a screw with φ = z − hθ.
     pub(super) fn try_new(pieces: Vec<Piece>, h: f64, clock: &mut Meter) -> Result<Self, Exhausted> {
-        let mut parts: Vec<(Projection, u32)> = pieces.iter().map(Piece::projection).zip(0..).collect();
-        let mut tree = Self { cells: Vec::with_capacity(4 * parts.len()), pieces, h };
-        if let Some(&(projection, piece)) = parts.first() {
-            tree.cells.push(Cell { projection, piece: Some(piece), first_below: 0, below: 0 });
-            tree.split(0, &mut parts, clock)?;
+        let projections: Vec<Projection> = pieces.iter().map(Piece::projection).collect();
+        let order: Vec<u32> = (0..).take(pieces.len()).collect();
+        let mut tree = Self { cells: Vec::new(), pieces, projections, order, h };
+        if !tree.order.is_empty() {
+            let root = tree.cell(0..tree.order.len(), clock)?;
+            tree.cells.push(root);
         }
         Ok(tree)
     }
 
-    fn split(
-        &mut self,
-        cell: usize,
-        parts: &mut [(Projection, u32)],
-        clock: &mut Meter,
-    ) -> Result<(), Exhausted> {
-        let mut projection = parts[0].0;
-        for part in parts.iter() {
+    /// Of the pieces that stand there in their order.
+    fn cell(&self, places: std::ops::Range<usize>, clock: &mut Meter) -> Result<Cell, Exhausted> {
+        let (first_below, count) = (places.start as u32, places.len() as u32);
+        let parts = &self.order[places];
+        let mut projection = self.projections[parts[0] as usize];
+        for &part in parts {
             clock.step()?;
-            projection = projection.with(&part.0);
+            projection = projection.with(&self.projections[part as usize]);
         }
-        if parts.len() == 1 {
-            self.cells[cell] = Cell { projection, piece: Some(parts[0].1), first_below: 0, below: 0 };
-            return Ok(());
-        }
+        let piece = (count == 1).then_some(parts[0]);
+        Ok(Cell { projection, piece, first_below, below: 0, count })
+    }
+
+    /// Divides a cell of several pieces in two.
+    fn split(&mut self, cell: usize, clock: &mut Meter) -> Result<(), Exhausted> {
+        let Cell { projection, first_below, count, .. } = self.cells[cell];
+        let (start, end) = (first_below as usize, (first_below + count) as usize);
         let extents = projection.extents();
         let dimension = (0..3).max_by(|&i, &j| extents[i].total_cmp(&extents[j])).unwrap_or(0);
-        let half = divide(parts, dimension, clock)?;
-        let first = self.cells.len();
-        self.cells[cell] = Cell { projection, piece: None, first_below: first as u32, below: 2 };
-        self.cells.extend([self.cells[cell]; 2]);
-        let (left, right) = parts.split_at_mut(half);
-        self.split(first, left, clock)?;
-        self.split(first + 1, right, clock)
+        let projections = &self.projections;
+        let middle = |part: u32| projections[part as usize].middle(dimension);
+        let half = start + divide(&mut self.order[start..end], middle, clock)?;
+        let halves = [self.cell(start..half, clock)?, self.cell(half..end, clock)?];
+        (self.cells[cell].first_below, self.cells[cell].below) = (self.cells.len() as u32, 2);
+        self.cells.extend(halves);
+        Ok(())
     }
 
     /// The piece that a cell is.
@@ -114,14 +121,21 @@ impl ProjectionTree {
     }
 
     /// What a cell is made of; nothing when it is as small as cells get.
-    pub(super) fn open(&mut self, cell: usize) -> std::ops::Range<usize> {
+    pub(super) fn open(
+        &mut self,
+        cell: usize,
+        clock: &mut Meter,
+    ) -> Result<std::ops::Range<usize>, Exhausted> {
+        if self.cells[cell].below == 0 && self.cells[cell].count > 1 {
+            self.split(cell, clock)?;
+        }
         let Cell { first_below: first, below: count, .. } = self.cells[cell];
         if count > 0 {
-            return first as usize..(first + count) as usize;
+            return Ok(first as usize..(first + count) as usize);
         }
-        let Some(piece) = self.piece(cell).copied() else { return 0..0 };
+        let Some(piece) = self.piece(cell).copied() else { return Ok(0..0) };
         if piece.divisions == MOST_DIVISIONS {
-            return 0..0;
+            return Ok(0..0);
         }
         let first = self.cells.len();
         (self.cells[cell].first_below, self.cells[cell].below) = (first as u32, 4);
@@ -132,9 +146,10 @@ impl ProjectionTree {
                 piece: Some(number),
                 first_below: 0,
                 below: 0,
+                count: 1,
             });
             self.pieces.push(part);
         }
-        first..first + 4
+        Ok(first..first + 4)
     }
 }

@@ -155,7 +155,9 @@ impl Walk<'_> {
         }
         let (size_a, size_b) = (a.size(cells[0]), b.size(cells[1]));
         let open_a = size_a > size_b;
-        let parts = if open_a { a.open(cells[0]) } else { b.open(cells[1]) };
+        let opened =
+            if open_a { a.open(cells[0], &mut self.clock) } else { b.open(cells[1], &mut self.clock) };
+        let Ok(parts) = opened else { return false };
         if parts.is_empty() {
             self.clear = until;
             return self.clear > self.gain;
