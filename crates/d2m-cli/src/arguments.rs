@@ -390,7 +390,8 @@ against every obstacle, and attached bodies against every link but their own.
 Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 free, 12 undecided.
 
 Example:
-  d2m robot arm.urdf --srdf arm.srdf --path path.json --scene cell.json --package arm_description=../arm_description")]
+  d2m robot arm.urdf --srdf arm.srdf --path path.json --scene cell.json --package arm_description=../arm_description
+  d2m robot arm.urdf --path path.json --view path.html")]
 pub(crate) struct RobotArguments {
     /// Robot, URDF
     #[arg(value_name = "ROBOT.urdf")]
@@ -416,6 +417,9 @@ pub(crate) struct RobotArguments {
     /// Prove the answer again by the independent verifier, pair by pair, and say whether it could
     #[arg(long)]
     pub(crate) verify: bool,
+    /// Page of HTML to write that shows the robot on its path and what is proven of it
+    #[arg(long, value_name = "view.html")]
+    pub(crate) view: Option<String>,
     /// Most seconds of the search; what is not decided by then is "undecided"
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     pub(crate) time_limit: Option<String>,

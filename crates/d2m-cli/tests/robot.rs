@@ -202,3 +202,25 @@ fn bad_input_is_one_line_with_its_place() {
     refused(&["robot", "no.urdf", "--path", path], &["no.urdf"]);
     refused(&["robot", robot, "--path", path, "--srdf", "no.srdf"], &["no.srdf"]);
 }
+
+/// The page of a path shows each body of robot and scene, and calls clear what is proven free.
+#[test]
+fn a_path_can_be_seen() {
+    let Files { folder, robot, path, scene } = &files("robot-view");
+    let page = folder.path("path.html");
+    let found = ask(&[robot, "--path", path, "--scene", scene, "--view", &page]);
+    let html = std::fs::read_to_string(&page).unwrap();
+    let data = html.split("id=\"data\">").nth(1).and_then(|rest| rest.split("</script>").next()).unwrap();
+    let shown: Value = serde_json::from_str(data).unwrap();
+    let names: Vec<&str> =
+        shown["bodies"].as_array().unwrap().iter().map(|body| body["name"].as_str().unwrap()).collect();
+    for name in ["foot", "upper", "lower", "post", "grasped"] {
+        assert!(names.contains(&name), "{name} of {names:?}");
+    }
+    assert_eq!((&shown["up"], &shown["window"]), (&"z".into(), &serde_json::json!([1.0, 3.0])));
+    let clear = shown["spans"].as_array().unwrap().iter().find(|span| span["status"] == "clear").unwrap();
+    assert_eq!((&clear["from"], &clear["to"]), (&serde_json::json!(1.0), &found["free_until"]));
+    assert_eq!(shown["marks"].as_array().unwrap().len(), 1);
+    refused(&["robot", robot, "--path", path, "--view", robot], &["arm.urdf", "would be overwritten"]);
+    refused(&["robot", robot, "--path", path, "--view", "-"], &["--view"]);
+}

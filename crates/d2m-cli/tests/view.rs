@@ -171,3 +171,24 @@ fn scenes_and_simulations_are_viewed() {
     }
     refused(&["view", &run, UNIT_BOX, "--out", "-"], &["alone"]);
 }
+
+/// A point with a radius is a ball, and is seen as one: of a pair and of a scene.
+#[test]
+fn bodies_are_shown_with_their_radius() {
+    let folder = Folder::new("view-radius");
+    let point = folder.file("point.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n");
+    let scene = format!(
+        r#"{{"bodies": [{{"name": "ball", "mesh": {point:?}, "radius": 0.5, "motion": {{"x": [0, 2, 0]}}}},
+            {{"name": "floor", "mesh": "{UNIT_BOX}"}}]}}"#
+    );
+    let scene = folder.file("scene.json", &scene);
+    let triangles = |shown: &serde_json::Value, mesh: usize| {
+        shown["meshes"][mesh]["triangles"].as_str().unwrap().len() / 16
+    };
+    let of_scene = data(&stdout(&d2m(&["view", &scene, "--out", "-"])));
+    assert!(triangles(&of_scene, 0) > 1000 && triangles(&of_scene, 1) == 12);
+    let pair =
+        ["view", &point, UNIT_BOX, "--surface", "--radius-a", "0.5", "--motion-a", "x=0,2,0", "--out", "-"];
+    let of_pair = data(&stdout(&d2m(&pair)));
+    assert_eq!(of_pair["meshes"][0], of_scene["meshes"][0]);
+}

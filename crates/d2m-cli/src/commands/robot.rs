@@ -5,12 +5,13 @@ use crate::arguments::RobotArguments;
 use crate::engine::number;
 use crate::failure::Failure;
 use crate::outcome::Outcome;
-use crate::output::{digits, note, print, short};
+use crate::output::{Output, digits, note, print, short};
 use crate::report::{evidence_sentence, vector};
 use crate::robot_path::read_path;
 use crate::robot_scene::RobotSceneFile;
 use crate::sizes::{size_of, unlike};
 use crate::travel::Travel;
+use crate::view::picture_of_path;
 use d2m::bvh::{Budget, QueryOptions, Window};
 use d2m_robot::{
     JointType, LimitWarning, PathAnswer, PathBodies, PathClearance, PathContact, Robot, RobotOptions,
@@ -19,6 +20,7 @@ use d2m_robot::{
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 use std::fmt::Write;
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// Runs the command.
@@ -28,6 +30,16 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     let path = read_path(&arguments.path)?;
     let [start, end] = path.times().unwrap_or_default();
     let window = Window::try_new(start, end).map_err(|error| Failure::at(&place, error))?;
+    // Before the search, which takes longer.
+    let inputs =
+        [Some(&arguments.robot), Some(&arguments.path), arguments.srdf.as_ref(), arguments.scene.as_ref()];
+    let page = arguments.view.as_ref().map(|page| {
+        if page == "-" {
+            return Err(Failure::at("--view", "standard output has the answer: a file is needed"));
+        }
+        Output::new(page)?.spare(inputs.into_iter().flatten().map(PathBuf::as_path))
+    });
+    let page = page.transpose()?;
     let file = arguments.scene.as_deref().map(RobotSceneFile::read).transpose()?;
     let options = options(arguments, file.as_ref())?;
     let mut robot_options = RobotOptions::new();
@@ -75,6 +87,10 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     };
     for text in &notes {
         note(&format!("d2m: {text}"));
+    }
+    if let Some(page) = page {
+        let bodies = scene.bodies_along(&path).map_err(fault)?;
+        page.write(&picture_of_path(&bodies, window, &answer).to_html())?;
     }
     print(&if arguments.json {
         let further = Further { clearance, proof };

@@ -91,8 +91,9 @@ fn pair(arguments: &ViewArguments, b: &str) -> Result<Picture, Failure> {
         let (label, value) = line.split_once("  ").unwrap_or(("", line));
         picture.add_fact(label, value.trim());
     }
-    for (label, body, motion) in [("A", &pair.a, &motions[0]), ("B", &pair.b, &motions[1])] {
-        let mesh = picture.add_mesh(&body.name, body.mesh());
+    let bodies = [("A", &pair.a, &motions[0]), ("B", &pair.b, &motions[1])];
+    for ((label, body, motion), radius) in bodies.into_iter().zip(pair.radii) {
+        let mesh = picture.add_mesh(&body.name, body.mesh(), radius);
         picture.add_body(&format!("{label}: {}", body.name), mesh, flights_of(motion, window));
     }
     if motions.iter().any(|motion| matches!(motion, AnyMotion::Chain(_))) {

@@ -1,6 +1,7 @@
 //! Meshes as a page draws them: in single precision about their middle, and coarser where there are very many triangles.
 
 use super::base64::base64;
+use super::rounded::{Shell, rounded};
 use d2m::bvh::TriMesh;
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
@@ -18,14 +19,24 @@ pub(crate) struct DisplayMesh {
 }
 
 impl DisplayMesh {
-    pub(crate) fn new(mesh: &TriMesh) -> Self {
-        let used = || mesh.triangles().iter().flatten().map(|&i| mesh.vertices()[i as usize]);
+    /// Everything within `radius` of a mesh.
+    pub(crate) fn new(mesh: &TriMesh, radius: f64) -> Self {
+        if radius > 0.0 {
+            let Shell { vertices, triangles } = rounded(mesh, radius, MOST_TRIANGLES);
+            Self::of(&vertices, triangles)
+        } else {
+            Self::of(mesh.vertices(), mesh.triangles().to_vec())
+        }
+    }
+
+    fn of(corners: &[DVec3], triangles: Vec<[u32; 3]>) -> Self {
+        let used = || triangles.iter().flatten().map(|&i| corners[i as usize]);
         let low = used().fold(DVec3::INFINITY, DVec3::min);
         let high = used().fold(DVec3::NEG_INFINITY, DVec3::max);
         let center = low * 0.5 + high * 0.5;
         // Single precision is enough about the center of the mesh, and all that graphics cards take.
-        let vertices = mesh.vertices().iter().map(|&vertex| (vertex - center).as_vec3()).collect();
-        let mut shown = Self { center, vertices, triangles: mesh.triangles().to_vec() };
+        let vertices = corners.iter().map(|&vertex| (vertex - center).as_vec3()).collect();
+        let mut shown = Self { center, vertices, triangles };
         // A surface crosses about as many cells as the square of their number along an axis.
         let mut cells = (MOST_TRIANGLES as f64 / 2.0).sqrt();
         while shown.triangles.len() > MOST_TRIANGLES {
@@ -81,13 +92,13 @@ mod tests {
     #[test]
     fn large_meshes_are_drawn_coarser_and_keep_their_extent() {
         let mesh = d2m::shapes::mesh("icosphere?triangles=300000").unwrap();
-        let shown = DisplayMesh::new(&mesh);
+        let shown = DisplayMesh::new(&mesh, 0.0);
         assert!((10_000..=MOST_TRIANGLES).contains(&shown.triangles.len()), "{}", shown.triangles.len());
         let reach = |points: &mut dyn Iterator<Item = f64>| points.fold(0.0, f64::max);
         let all = reach(&mut mesh.vertices().iter().map(|p| (*p - shown.center).length()));
         let drawn = reach(&mut shown.vertices.iter().map(|p| f64::from(p.length())));
         assert!(drawn <= all * (1.0 + 1e-6) && drawn > 0.98 * all, "{drawn} of {all}");
         let small = d2m::shapes::mesh("box").unwrap();
-        assert_eq!(DisplayMesh::new(&small).triangles.len(), small.triangle_count());
+        assert_eq!(DisplayMesh::new(&small, 0.0).triangles.len(), small.triangle_count());
     }
 }

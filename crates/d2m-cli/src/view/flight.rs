@@ -1,7 +1,7 @@
 //! Motions as the page takes them: one constant twist after the other.
 
 use d2m::bvh::Window;
-use d2m::motion::{AnyMotion, ConstantTwist, RigidMotion};
+use d2m::motion::{ConstantTwist, RigidMotion};
 
 /// Pieces of equal length that stand for a window of a motion without constant twists (a link of an arm).
 const PIECES: u32 = 2000;
@@ -55,7 +55,7 @@ pub(crate) fn push_thinned(flights: &mut Vec<Flight>, flight: Flight, reach: f64
 }
 
 /// The flights of a motion over a window, to look at: pieces of a smooth motion fly on from where they start.
-pub(crate) fn flights_of(motion: &AnyMotion, window: Window) -> Vec<Flight> {
+pub(crate) fn flights_of(motion: &dyn RigidMotion, window: Window) -> Vec<Flight> {
     let mut flights = Vec::new();
     let mut start = window.start();
     while let Some(piece) = motion.constant_twist_from(start) {

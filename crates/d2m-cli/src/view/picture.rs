@@ -84,8 +84,9 @@ impl Picture {
     }
 
     /// Adds a mesh and returns its number. One of very many triangles is shown coarser, and a note says so.
-    pub(crate) fn add_mesh(&mut self, name: &str, mesh: &TriMesh) -> usize {
-        let shown = DisplayMesh::new(mesh);
+    /// Of a body with a radius everything within it of its mesh is shown.
+    pub(crate) fn add_mesh(&mut self, name: &str, mesh: &TriMesh, radius: f64) -> usize {
+        let shown = DisplayMesh::new(mesh, radius);
         if shown.triangles.len() < mesh.triangle_count() {
             let (few, all) = (shown.triangles.len(), mesh.triangle_count());
             self.notes.push(format!("{name} is drawn with {few} of its {all} triangles; answers are of all"));

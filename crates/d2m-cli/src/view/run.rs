@@ -74,6 +74,8 @@ struct BodyMesh {
     name: String,
     mesh: String,
     scale: Option<Value>,
+    #[serde(default)]
+    radius: f64,
 }
 
 #[derive(Deserialize)]
@@ -117,19 +119,20 @@ pub(crate) fn picture_of_run(path: &Path) -> Result<Picture, Failure> {
     for (body, flights) in header.bodies.iter().zip(flights) {
         let place =
             |reason: String| Failure::at(format!("{}, body {:?}", scene_file.display(), body.name), reason);
-        let BodyMesh { name, mesh, scale } = stated
+        let BodyMesh { name, mesh, scale, radius } = stated
             .bodies
             .iter()
             .find(|stated| stated.name == body.name)
             .ok_or_else(|| place("the run has this body, the scene has not".to_owned()))?;
-        let key = format!("{mesh} {scale:?} {:?}", body.center);
+        let key = format!("{mesh} {scale:?} {radius} {:?}", body.center);
         let (number, reach) = if let Some(&known) = meshes.get(&key) {
             known
         } else {
             let scale =
                 d2m_io::parse_scale(scale.as_ref()).map_err(|reason| place(format!("scale: {reason}")))?;
             let tree = library.mesh(mesh, scale)?;
-            let new = (picture.add_mesh(name, tree.mesh()), reach_from(tree.mesh(), body.center));
+            let reach = reach_from(tree.mesh(), body.center) + radius;
+            let new = (picture.add_mesh(name, tree.mesh(), *radius), reach);
             meshes.insert(key, new);
             new
         };

@@ -29,14 +29,18 @@ pub(crate) fn picture_of_scene(path: &Path, options: QueryOptions) -> Result<Pic
     if scene.bodies.iter().any(|body| is_arm(&body.motion)) {
         picture.up = Up::Z;
     }
-    let mut meshes: Vec<(Arc<MeshTree>, usize)> = Vec::new();
+    let mut meshes: Vec<(Arc<MeshTree>, f64, usize)> = Vec::new();
     for body in &scene.bodies {
-        let known = meshes.iter().find(|(tree, _)| Arc::ptr_eq(tree, &body.tree)).map(|&(_, number)| number);
-        let number = known.unwrap_or_else(|| {
-            let number = picture.add_mesh(&body.name, body.tree.mesh());
-            meshes.push((Arc::clone(&body.tree), number));
-            number
-        });
+        let known =
+            meshes.iter().find(|(tree, radius, _)| Arc::ptr_eq(tree, &body.tree) && *radius == body.radius);
+        let number = match known {
+            Some(&(.., number)) => number,
+            None => {
+                let number = picture.add_mesh(&body.name, body.tree.mesh(), body.radius);
+                meshes.push((Arc::clone(&body.tree), body.radius, number));
+                number
+            }
+        };
         picture.add_body(&body.name, number, flights_of(&body.motion, scene.window));
     }
     for pair in &contacts {
