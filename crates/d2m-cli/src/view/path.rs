@@ -28,13 +28,12 @@ pub(crate) fn picture_of_path(bodies: &PathBodies<'_>, window: Window, answer: &
         let moving = bodies.moving(body);
         let same =
             meshes.iter().find(|(tree, radius, _)| ptr::eq(*tree, moving.body) && *radius == moving.radius);
-        let number = match same {
-            Some(&(.., number)) => number,
-            None => {
-                let number = picture.add_mesh(bodies.name(body), moving.body.mesh(), moving.radius);
-                meshes.push((moving.body, moving.radius, number));
-                number
-            }
+        let number = if let Some(&(.., number)) = same {
+            number
+        } else {
+            let number = picture.add_mesh(bodies.name(body), moving.body.mesh(), moving.radius);
+            meshes.push((moving.body, moving.radius, number));
+            number
         };
         picture.add_body(bodies.name(body), number, shown_flights(&moving, window));
     }

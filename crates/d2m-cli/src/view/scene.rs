@@ -33,13 +33,12 @@ pub(crate) fn picture_of_scene(path: &Path, options: QueryOptions) -> Result<Pic
     for body in &scene.bodies {
         let known =
             meshes.iter().find(|(tree, radius, _)| Arc::ptr_eq(tree, &body.tree) && *radius == body.radius);
-        let number = match known {
-            Some(&(.., number)) => number,
-            None => {
-                let number = picture.add_mesh(&body.name, body.tree.mesh(), body.radius);
-                meshes.push((Arc::clone(&body.tree), body.radius, number));
-                number
-            }
+        let number = if let Some(&(.., number)) = known {
+            number
+        } else {
+            let number = picture.add_mesh(&body.name, body.tree.mesh(), body.radius);
+            meshes.push((Arc::clone(&body.tree), body.radius, number));
+            number
         };
         picture.add_body(&body.name, number, flights_of(&body.motion, scene.window));
     }
