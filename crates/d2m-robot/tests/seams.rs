@@ -5,7 +5,7 @@ mod arm;
 
 use arm::{BoxArm, BoxLink};
 use d2m_bvh::{Budget, Canceller, MeshTree, QueryOptions, Start, TimeOfContact, TriMesh, time_of_contact};
-use d2m_motion::{ConstantTwist, RigidMotion};
+use d2m_motion::ConstantTwist;
 use d2m_robot::{
     Attached, Obstacle, PathAnswer, Robot, RobotOptions, RobotScene, Srdf, Trajectory, TrajectoryPoint,
 };
