@@ -1,8 +1,8 @@
 //! Far times, windows of no length, exact scalings of length and time, steps that a sweep must not overlook.
 
 use d2m_bvh::{
-    MeshTree, Moving, PairCache, Posed, QueryOptions, Solid, StartState, TimeOfContact, TriMesh, Window,
-    distance, time_of_contact, time_of_contact_with,
+    ClearanceOptions, ClearanceStatus, MeshTree, Moving, PairCache, Posed, QueryOptions, Solid, StartState,
+    TimeOfContact, TriMesh, Window, clearance, distance, time_of_contact, time_of_contact_with,
 };
 use d2m_motion::{ConstantTwist, RigidMotion};
 use d2m_testing::{Draw, KnuthRandom, Surface};
@@ -203,4 +203,28 @@ fn exact_scalings_change_nothing() {
         }
         assert_eq!(ask(-300, -250), right, "round {round}: both");
     }
+}
+
+/// Where a number for time is far from the next one, more is left at the time of contact than the tolerance that was asked for, and the clearance
+/// of bodies that meet says so.
+#[test]
+fn a_clearance_on_a_coarse_clock_says_what_is_left() {
+    let tree = torus(12, 8, 0.3);
+    let mut coarse = 0;
+    for k in 0..40 {
+        let start = 1e5;
+        let motion = ConstantTwist::REST
+            .with_position(DVec3::new(0.03 * f64::from(k), 0.1, 5.0))
+            .with_linear_velocity(DVec3::new(10.0, 20.0, -6e3))
+            .with_reference_time(start);
+        let bodies = [Moving::new(&tree, &motion), Moving::new(&tree, &ConstantTwist::REST)];
+        let window = Window::try_new(start, start + 1e-3).unwrap();
+        let found = clearance(bodies[0], bodies[1], window, &ClearanceOptions::default()).unwrap();
+        assert_eq!((found.status, found.upper), (ClearanceStatus::Contact, 0.0), "{k}");
+        let placed = bodies.map(|body| Posed::new(body.body, body.motion.pose_and_twist(found.time).0));
+        let left = distance(placed[0], placed[1], Solid::Filled).unwrap().lower;
+        assert!(left <= 3.3 * found.tolerance, "{k}: {left} {found:?}");
+        coarse += usize::from(left > 1e-9);
+    }
+    assert!(coarse > 10, "{coarse}");
 }

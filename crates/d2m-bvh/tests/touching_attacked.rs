@@ -1,7 +1,10 @@
 //! Bodies that were said to overlap though they touch, or to touch though they overlap: found by an adversary.
 
-use d2m_bvh::{MeshTree, Posed, Solid, StartState, TriMesh, distance};
-use d2m_motion::Pose;
+use d2m_bvh::{
+    Budget, MeshTree, Moving, Posed, QueryOptions, Solid, StartState, TriMesh, Window, distance,
+    time_of_contact,
+};
+use d2m_motion::{ConstantTwist, Pose};
 use d2m_testing::{Draw, KnuthRandom};
 use glam::{DQuat, DVec3};
 use std::collections::BTreeSet;
@@ -150,4 +153,33 @@ fn an_exchange_of_the_bodies_turns_the_normal_round() {
         }
     }
     assert!(touches > 100, "{touches}");
+}
+
+/// A budget that ends while it is not known how bodies stand that begin within the minimum separation: the separation is still that of the
+/// reported triangles, so bodies whose radii leave room between them do not overlap.
+#[test]
+fn a_start_that_a_budget_leaves_undecided_keeps_its_separation() {
+    let [low, high, b] = [[-1.0, 0.0], [1.2, 2.0], [0.2, 1.0]].map(|[from, to]| slab(4, |_, _| from, to));
+    // One body, with room for the other one.
+    let count = low.mesh().vertex_count() as u32;
+    let vertices = [low.mesh().vertices(), high.mesh().vertices()].concat();
+    let above: Vec<[u32; 3]> = high.mesh().triangles().iter().map(|t| t.map(|v| v + count)).collect();
+    let a = MeshTree::new(TriMesh::try_new(vertices, [low.mesh().triangles(), &above].concat()).unwrap());
+    let motion = ConstantTwist::REST;
+    let mut undecided = 0;
+    for (radius, budget) in
+        [0.0, 0.05].into_iter().flat_map(|radius| (1..400).map(move |tests| (radius, tests)))
+    {
+        let [a, b] = [&a, &b].map(|tree| Moving::new(tree, &motion).with_radius(radius));
+        let options = QueryOptions::default()
+            .with_min_separation(0.3)
+            .with_budget(Budget::UNLIMITED.with_node_tests(budget));
+        let found = time_of_contact(a, b, Window::UNIT, &options).unwrap();
+        let Some(contact) = found.contact() else { continue };
+        let apart = (contact.point_a - contact.point_b).length();
+        assert!(apart > 0.09 && (contact.separation - apart).abs() < 1e-9, "{radius} {budget}: {contact:?}");
+        assert_ne!(contact.start, StartState::Overlapping, "{radius} {budget}");
+        undecided += usize::from(contact.start == StartState::Undecided);
+    }
+    assert!(undecided > 0);
 }

@@ -173,9 +173,10 @@ fn vague_velocities_are_undecided_soon() {
         let time = answered.answer.contact().map(|contact| contact.time_lo);
         assert!(time.is_some_and(|time| (time - 0.5).abs() < 1e-9), "{width}: {answered:?}");
     }
-    for width in [1e6, 1e9] {
+    for width in [1e4, 1e6, 1e9] {
         let answered = ask(width);
         assert!(matches!(answered.answer, TimeOfContact::Undecided { .. }), "{width}: {answered:?}");
-        assert!(answered.work.node_tests < 1 << 26, "{width}: {answered:?}");
+        // It shows from a thousand spans, not from all that there may be.
+        assert!(answered.work.node_tests < 1 << 20, "{width}: {answered:?}");
     }
 }

@@ -46,7 +46,8 @@ pub(crate) fn bound_from_centers([a, b]: [&RigidBody; 2], now: f64, tau: f64) ->
 
 /// Are two bodies further apart than `needed` in their flights from `now` on, for a time `tau`, as follows from the axis that one turns about?
 pub(crate) fn is_apart_along_axis([a, b]: [&RigidBody; 2], now: f64, tau: f64, needed: f64) -> bool {
-    let lost = ROUNDING * sizes([a, b], now, tau);
+    // The ends of axes are numbers of the meshes' frames, which may lie far from their centers.
+    let lost = ROUNDING * (sizes([a, b], now, tau) + a.center.length() + b.center.length());
     [[a, b], [b, a]]
         .into_iter()
         .any(|pair| Nested::new(pair, now, tau, needed).is_some_and(|nested| nested.bound() > needed + lost))
@@ -242,12 +243,12 @@ fn part_within([first, last]: [f64; 2], [low, high]: [f64; 2], unsure: f64) -> O
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Body;
     use crate::drawn::{draw, vector};
     use crate::faces::Faces;
     use crate::velocity::Velocity;
-    use d2m_bvh::{MeshTree, Posed, Solid, distance};
-    use glam::DQuat;
+    use crate::{Body, Kind, Mass, MassProperties};
+    use d2m_bvh::{MeshTree, Posed, Solid, TriMesh, distance};
+    use glam::{DMat3, DQuat};
     use std::sync::Arc;
 
     fn shape(name: &str) -> Arc<MeshTree> {
@@ -264,11 +265,12 @@ mod tests {
 
     /// The least distance of the flights at some times, no less than the true one.
     fn least(bodies: [&RigidBody; 2], now: f64, tau: f64) -> f64 {
-        let at = |time: f64| {
-            let [a, b] = bodies.map(|body| Posed::new(&body.tree, body.pose_at(time)));
-            distance(a, b, Solid::Surface).unwrap().upper
-        };
-        (0..=16).map(|k| at(now + tau * f64::from(k) / 16.0)).fold(f64::INFINITY, f64::min)
+        (0..=16).map(|k| least_at(bodies, now + tau * f64::from(k) / 16.0)).fold(f64::INFINITY, f64::min)
+    }
+
+    fn least_at(bodies: [&RigidBody; 2], time: f64) -> f64 {
+        let [a, b] = bodies.map(|body| Posed::new(&body.tree, body.pose_at(time)));
+        distance(a, b, Solid::Surface).unwrap().upper
     }
 
     /// Pins in rings, each of which turns or not, about its axis or almost, askew, off the middle, and on their way: nothing is shown that is
@@ -307,6 +309,37 @@ mod tests {
         // Neither turns; the pin; the ring; both. 40 of each.
         assert_eq!(shown[0], [0; 4]);
         assert!(shown[1..].iter().all(|shown| shown[0] > 13 && shown[1] > 6), "{shown:?}");
+    }
+
+    /// A blade that turns about an axis askew in its mesh, which lies far from the origin of its frame, so that the ends of that axis are
+    /// rounded; it begins where it passes a point closest.
+    #[test]
+    fn the_axis_of_a_mesh_that_lies_far_away_is_no_more_exact_than_its_numbers() {
+        let state = &mut 11;
+        let point = Arc::new(MeshTree::new(TriMesh::point(DVec3::ZERO).unwrap()));
+        let mut shown = 0;
+        for k in 0..100 {
+            let (far, turn) = (vector(state) * [1e5, 1e8][k % 2], vector(state).normalize());
+            let turn = DQuat::from_rotation_arc(DVec3::Z, turn);
+            let corners = [DVec3::new(0.6, 0.0, -1.0), DVec3::new(0.6, 0.0, 1.0), DVec3::X * 2.0];
+            let blade = TriMesh::try_new(corners.map(|corner| far + turn * corner).to_vec(), vec![[0, 1, 2]]);
+            let still =
+                Body::new("", Arc::clone(&point)).with_kind(Kind::Static).with_position(DVec3::X * 0.4);
+            let still = RigidBody::try_new(&still, Arc::new(Faces::new(point.mesh())), 1.0).unwrap();
+            let described = Body::new("", Arc::new(MeshTree::new(blade.unwrap())))
+                .with_mass(Mass::Given(MassProperties { mass: 1.0, center: far, inertia: DMat3::IDENTITY }))
+                .with_position(turn.conjugate() * -far)
+                .with_orientation(turn.conjugate());
+            let faces = Arc::new(Faces::new(described.tree.mesh()));
+            let mut turning = RigidBody::try_new(&described, faces, 1.0).unwrap();
+            turning.fly(Velocity { linear: DVec3::ZERO, angular: DVec3::Z * 9.0 }, f64::INFINITY);
+            let bodies = [&still, &turning];
+            let least = least_at(bodies, 1.0);
+            assert!(!is_apart_along_axis(bodies, 1.0, 1.0, least * (1.0 + 1e-12)), "{k}: {least}");
+            shown += usize::from(is_apart_along_axis(bodies, 1.0, 1.0, 0.99 * least));
+        }
+        // But for axes near to those of the mesh.
+        assert!(shown > 90, "{shown}");
     }
 
     /// Spheres in shells that turn as they like.

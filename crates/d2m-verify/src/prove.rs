@@ -89,14 +89,16 @@ struct Prover<'q> {
 
 impl<'q> Prover<'q> {
     fn new([a, b]: [Body<'q>; 2], distance: f64, time: TimeSpan) -> Self {
-        let bends = [[a, b], [b, a]].map(|bodies| {
-            let other = &bodies[1].mesh.nodes[0];
-            let reach = (other.high - other.low).length();
-            Rates::new(&bodies, time).map_or(f64::INFINITY, |rates| rates.guess_acceleration(reach))
+        let rates = [[a, b], [b, a]].map(|bodies| Rates::new(&bodies, time));
+        let bends = [(&rates[0], b), (&rates[1], a)].map(|(rates, other)| {
+            let Node { low, high, .. } = other.mesh.nodes[0];
+            rates.as_ref().map_or(f64::INFINITY, |rates| rates.guess_acceleration((high - low).length()))
         });
         let swapped = bends[1] < bends[0];
         let bodies = if swapped { [b, a] } else { [a, b] };
-        let whole = Span::new(&bodies, time, &[time.from, time.to].map(|t| Instant::new(&bodies, t)));
+        let start = Instant::new(&bodies, time.from);
+        let end = if time.to == time.from { start } else { Instant::new(&bodies, time.to) };
+        let whole = Span { time, ends: [start, end], rates: rates[usize::from(swapped)], halves: None };
         let tasks = vec![Task { nodes: [0, 0], span: 0 }];
         Self { bodies, swapped, distance, spans: vec![whole], tasks, known: Vec::new(), open: None }
     }

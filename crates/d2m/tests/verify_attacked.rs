@@ -4,11 +4,11 @@
 use d2m::bvh::ClearanceStatus;
 use d2m::verify::{Verdict, Verifier};
 use d2m::{
-    Arm, Clearance, ClearanceOptions, ConstantTwist, Contact, ContactSpan, Joint, JointKind, JointValue,
-    Keyframes, MeshTree, Moving, Pose, QueryOptions, RigidMotion, Span, SpanStatus, StartState,
-    TimeOfContact, TriMesh, Window, clearance, contact_spans, time_of_contact,
+    Arm, Budget, Chain, Clearance, ClearanceOptions, ConstantTwist, Contact, ContactSpan, Joint, JointKind,
+    JointValue, Keyframes, MeshTree, Moving, Pose, QueryOptions, RigidMotion, Span, SpanStatus, StartState,
+    TimeOfContact, TriMesh, Window, clearance, contact_spans, departure, time_of_contact,
 };
-use glam::{DQuat, DVec3};
+use glam::{DAffine3, DQuat, DVec3};
 
 const STEPS: u64 = 1 << 20;
 
@@ -242,4 +242,65 @@ fn cubes_that_overlap_do_not_touch() {
             }
         }
     }
+}
+
+/// A budget that ends a clearance where the bodies meet: they do at that time, which need not be the first one.
+#[test]
+fn a_clearance_that_a_budget_ends_claims_no_first_time() {
+    let (tree, passing) = (tetrahedron(), along_x(-2.0, 4.0));
+    let pair = Pair { tree: &tree, motion: &passing };
+    let [a, b] = pair.bodies().map(|body| body.with_radius(0.1));
+    let mut within = 0;
+    for tests in 0..200 {
+        let options = ClearanceOptions::default().with_budget(Budget::UNLIMITED.with_node_tests(tests));
+        let answer = clearance(a, b, Window::UNIT, &options).unwrap();
+        let verdict = pair.verifier().clearance(&[a, b], Window::UNIT, &options, &answer, STEPS);
+        assert!(!matches!(verdict, Verdict::Refuted { .. }), "{tests}: {answer:?} {verdict:?}");
+        let is_later = answer.upper == 0.0 && answer.time > 0.3;
+        within += usize::from(is_later && answer.status == ClearanceStatus::Undecided);
+    }
+    assert!(within > 0);
+}
+
+/// A link of an arm whose mesh lies far from the origin of its frame: what its enclosures leave open at one time raises the tolerance of
+/// an answer, also of those that do not say it.
+#[test]
+fn a_tolerance_that_enclosures_raise_refutes_no_answer() {
+    // What follows is refuted soon or not at all.
+    const FEW: u64 = 1 << 12;
+    let near = tetrahedron();
+    let mut raised = 0;
+    for (index, far) in [3e2, 1e3, 3e3].into_iter().enumerate() {
+        let tree = near.mesh().clone().transformed(&DAffine3::from_translation(DVec3::X * far)).unwrap();
+        let tree = MeshTree::new(tree);
+        let value = |from: f64, rate: f64| JointValue::try_polynomial(vec![from, rate]).unwrap();
+        let turn = |axis: DVec3, rate: f64| JointKind::Revolute { axis, value: value(0.1, rate) };
+        let part = index as f64 * 0.1;
+        let joint =
+            |at: DVec3, kind: JointKind| Joint::try_new(at, DQuat::from_rotation_y(part), kind).unwrap();
+        let link = Chain::try_new(vec![
+            joint(DVec3::X * 0.1, JointKind::Prismatic { axis: DVec3::Y, value: value(-2.0, 4.0) }),
+            joint(DVec3::ZERO, turn(DVec3::Z, 1.0)),
+            joint(DVec3::ZERO, turn(DVec3::new(1.0, 0.3, 0.2), 1.5)),
+            joint(DVec3::ZERO, turn(DVec3::Y, 0.7)),
+            Joint::try_new(-DVec3::X * far, DQuat::IDENTITY, JointKind::Fixed).unwrap(),
+        ])
+        .unwrap();
+        let bodies = [Moving::new(&near, &ConstantTwist::REST), Moving::new(&tree, &link)];
+        let [a, b] = bodies;
+        let (verifier, options) =
+            (Verifier::try_new(near.mesh(), tree.mesh()).unwrap(), QueryOptions::default());
+        let found = time_of_contact(a, b, Window::UNIT, &options).unwrap();
+        raised += usize::from(found.contact().is_some_and(|contact| contact.tolerance > 3e-10));
+        let spans = contact_spans(a, b, Window::UNIT, &options, None).unwrap();
+        let verdict = verifier.contact_spans(&bodies, Window::UNIT, &options, None, &spans, FEW);
+        assert!(!matches!(verdict, Verdict::Refuted { .. }), "{far}: {spans:?} {verdict:?}");
+        for from in [0.45, 0.5, 0.55] {
+            let window = Window::try_new(from, 1.0).unwrap();
+            let answer = departure(a, b, window, &options).unwrap();
+            let verdict = verifier.departure(&bodies, window, &options, &answer, FEW);
+            assert!(!matches!(verdict, Verdict::Refuted { .. }), "{far} {from}: {answer:?} {verdict:?}");
+        }
+    }
+    assert!(raised > 0);
 }

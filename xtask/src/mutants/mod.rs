@@ -1,5 +1,6 @@
 //! `cargo xtask mutants`: the table of deliberate faults, each of which a named test must notice.
 mod copy;
+mod record;
 mod run;
 mod table;
 mod target;

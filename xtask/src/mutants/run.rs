@@ -1,5 +1,6 @@
 //! Builds each mutant, runs the test that must notice it, and says whether it did.
 use super::copy::Copy;
+use super::record::{Judged, record};
 use super::table::{self, Change, Mutant};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
@@ -17,9 +18,9 @@ type Error = super::Error;
 #[derive(clap::Args)]
 #[group(skip)]
 pub(crate) struct Options {
-    /// Only mutants of which the name, the file or the test contains this.
+    /// Only mutants of which the name, the file or the test contains this, or one of these.
     #[arg(long)]
-    only: Option<String>,
+    only: Vec<String>,
     /// Print the table and do nothing.
     #[arg(long)]
     list: bool,
@@ -37,6 +38,9 @@ enum End {
     Hung,
 }
 
+/// What becomes of a mutant that no test notices.
+const SURVIVES: &str = "SURVIVES";
+
 /// A test that takes this many times as long as with the right code hangs.
 const PATIENCE: u32 = 20;
 /// And at least this long.
@@ -45,7 +49,9 @@ const LEAST: Duration = Duration::from_secs(120);
 /// `cargo xtask mutants`.
 pub(super) fn run(options: &Options, root: &Path) -> Result<(), Error> {
     let all = table::read(root)?;
-    let wanted = |m: &&Mutant| options.only.as_ref().is_none_or(|only| m.row().contains(only.as_str()));
+    let wanted = |m: &&Mutant| {
+        options.only.is_empty() || options.only.iter().any(|only| m.row().contains(only.as_str()))
+    };
     let mutants: Vec<&Mutant> = all.iter().filter(wanted).collect();
     if options.list {
         for mutant in mutants {
@@ -61,10 +67,12 @@ pub(super) fn run(options: &Options, root: &Path) -> Result<(), Error> {
         return Err(findings.join("\n").into());
     }
     let round = Round {
+        source: root,
+        all: &all,
         mutants,
         next: AtomicUsize::new(0),
         times: Mutex::new(BTreeMap::new()),
-        survivors: Mutex::new(Vec::new()),
+        judged: Mutex::new(Vec::new()),
         progress: bar(0),
     };
     round.progress.set_length(round.mutants.len() as u64);
@@ -78,19 +86,23 @@ pub(super) fn run(options: &Options, root: &Path) -> Result<(), Error> {
     });
     round.progress.finish_and_clear();
     results.into_iter().collect::<Result<(), Error>>()?;
-    let survivors = round.survivors.into_inner().unwrap_or_default();
+    let judged = locked(&round.judged);
+    let survivors: Vec<&str> =
+        judged.iter().filter(|one| one.word == SURVIVES).map(|one| &*one.mutant.name).collect();
     println!("{} mutants, {} survive", round.mutants.len(), survivors.len());
     if survivors.is_empty() { Ok(()) } else { Err(format!("survivors: {}", survivors.join("; ")).into()) }
 }
 
 /// The mutants of one run and what became of them, shared by the workers.
 struct Round<'a> {
+    source: &'a Path,
+    all: &'a [Mutant],
     mutants: Vec<&'a Mutant>,
     /// The first mutant that no worker has taken.
     next: AtomicUsize,
     /// How long each test takes with the right code.
     times: Mutex<BTreeMap<&'a str, Duration>>,
-    survivors: Mutex<Vec<&'a str>>,
+    judged: Mutex<Vec<Judged<'a>>>,
     progress: ProgressBar,
 }
 
@@ -102,6 +114,9 @@ impl<'a> Round<'a> {
                 // The other workers end with the mutants that they have.
                 self.next.store(self.mutants.len(), Ordering::Relaxed);
             })?;
+            locked(&self.judged).push(Judged { mutant, word });
+            // At once: a run takes hours, and what it found counts although it ends early.
+            record(self.source, self.all, &locked(&self.judged))?;
             let line = format!("{word:<18} {:<56} {}", mutant.name, mutant.test);
             if self.progress.is_hidden() {
                 println!("{line}");
@@ -139,10 +154,7 @@ impl<'a> Round<'a> {
         Ok(match end.map_err(|e| format!("mutant \"{}\": {e}", mutant.name))? {
             End::Failed => "killed",
             End::Hung => "killed (it hangs)",
-            End::Passed => {
-                locked(&self.survivors).push(&mutant.name);
-                "SURVIVES"
-            }
+            End::Passed => SURVIVES,
         })
     }
 }

@@ -61,7 +61,8 @@ pub(super) fn judge(
             };
             Contact { start: StartState::Overlapping, separation: 0.0, ..found }
         }
-        Meeting::Undecided => Contact { start: StartState::Undecided, separation: 0.0, ..contact },
+        // The separation is still that of the reported triangles.
+        Meeting::Undecided => Contact { start: StartState::Undecided, ..contact },
     })
 }
 

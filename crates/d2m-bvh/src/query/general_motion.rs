@@ -58,6 +58,8 @@ const MOST_EXPECTED: f64 = 16.0;
 /// Spans at most that are as short as they are because velocities at single times are not known better: the enclosures of such motions are
 /// too wide to come near anything, and after so many the answer is undecided. Velocities that are known to rounding need none.
 const MOST_DRIFTING: u32 = 1 << 16;
+/// After so many of them it is estimated how many more there would be.
+const DRIFTING: u32 = 1 << 10;
 /// Node tests that a fit counts for in a budget.
 const TESTS_A_FIT: u64 = 256;
 
@@ -115,8 +117,7 @@ struct Advance<'a> {
     /// The next span is at most so long and deviates by at most so much.
     longest: f64,
     largest: f64,
-    /// Spans so far whose velocities are enclosed too widely.
-    drifting: u32,
+    drifting: Drifting,
     /// The last span that was fitted.
     last: Option<LastFit>,
     /// A plane between the bodies.
@@ -130,6 +131,26 @@ struct Advance<'a> {
 struct LastFit {
     length: f64,
     curvature: f64,
+}
+
+/// Spans so far whose velocities are enclosed too widely.
+struct Drifting {
+    spans: u32,
+    /// When the last ones that were counted together began.
+    since: f64,
+}
+
+impl Drifting {
+    /// Counts a span that begins now. Would there be too many up to the end, as many for as much time as of late?
+    fn is_hopeless(&mut self, now: f64, end: f64) -> bool {
+        self.spans += 1;
+        if !self.spans.is_multiple_of(DRIFTING) {
+            return false;
+        }
+        let more = f64::from(DRIFTING) * ((end - now) / (now - self.since));
+        self.since = now;
+        f64::from(self.spans) + more > f64::from(MOST_DRIFTING)
+    }
 }
 
 /// Fitted twists from now until a time.
@@ -181,7 +202,7 @@ impl<'a> Advance<'a> {
             now: window.start(),
             longest: window.length(),
             largest: f64::INFINITY,
-            drifting: 0,
+            drifting: Drifting { spans: 0, since: window.start() },
             last: None,
             plane: PlaneSearch::START,
             poses: None,
@@ -434,8 +455,8 @@ impl<'a> Advance<'a> {
                 let curvature = (fitted.deviation - fitted.floor) / (length * length);
                 self.last = Some(LastFit { length, curvature });
                 if fitted.deviation <= enough {
-                    self.drifting += u32::from(fitted.drift > 0.5 * fitted.deviation);
-                    if self.drifting > MOST_DRIFTING {
+                    let drifts = fitted.drift > 0.5 * fitted.deviation;
+                    if drifts && self.drifting.is_hopeless(self.now, self.window.end()) {
                         return Ok(None);
                     }
                     return Ok(Some(FittedSpan { fitted, until, resolution: Resolution::Enough }));

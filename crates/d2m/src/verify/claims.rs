@@ -190,7 +190,8 @@ pub fn clearance_claim(
         claims.push(clear(window.end(), lower.next_down()));
     } else if answer.status == ClearanceStatus::Clear {
         return Err(Reason::Malformed);
-    } else if upper == 0.0 && time > window.start() {
+    } else if answer.status == ClearanceStatus::Contact && upper == 0.0 && time > window.start() {
+        // Where the budget ended the search, the time is one at which they meet, not the first one.
         claims.push(clear(time, 0.0));
     }
     if upper == 0.0 {

@@ -55,7 +55,7 @@ impl Scale {
         let far = states[1].iter().map(|(pose, _)| pose.translation.length()).fold(0.0, f64::max);
         Self {
             asked,
-            most: (asked * (1.0 + f64::EPSILON) + radii).max(2.0 * ERROR * lengths).max(clock),
+            most: (asked * (1.0 + f64::EPSILON) + radii).max(2.0 * error).max(clock),
             error,
             world_error: error + ERROR * far,
         }

@@ -363,6 +363,7 @@ impl<'a> Descent<'a> {
             feature: contact.feature,
             triangle_a: contact.triangle_a,
             triangle_b: contact.triangle_b,
+            tolerance: self.tolerance.max(contact.tolerance),
             ..self.describe(best, 0.0, ClearanceStatus::Contact)
         }
     }

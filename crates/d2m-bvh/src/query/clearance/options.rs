@@ -142,9 +142,10 @@ pub struct Clearance {
     /// Proven: at every time of the window the distance is at least this.
     pub lower: f64,
     /// Proven: at `time` the distance is at most this; `point_a` and `point_b` attain it, to rounding. Zero only where the bodies are
-    /// proven to share a point in the window.
+    /// proven to share a point in the window; a time of contact is then the last number before it, with at most 3.3 `tolerance` left.
     pub upper: f64,
-    /// A time of the window at which the distance is at most `upper`; of bodies that meet the time of contact.
+    /// A time of the window at which the distance is at most `upper`; with the status [`Contact`](ClearanceStatus::Contact) the time of
+    /// contact.
     pub time: f64,
     /// The point on A at `time`, world frame.
     pub point_a: DVec3,

@@ -59,7 +59,7 @@ pub(super) fn run(options: &Options) -> TaskResult {
         for (name, family) in &wanted {
             auditor.begin(&format!("--only {name} --seed {} --case {index}", options.seed));
             family(&Case { auditor: &auditor, seed: options.seed, index });
-            if report.add(&auditor.take()) {
+            if report.add(name, &auditor.take()) {
                 break 'cases;
             }
         }

@@ -3,6 +3,7 @@ use super::Options;
 use crate::TaskResult;
 use d2m::audit::{Findings, Tally};
 use indicatif::{ProgressBar, ProgressStyle};
+use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 /// Lines of open conclusions that are shown.
@@ -11,6 +12,7 @@ const MOST_OPEN: usize = 8;
 /// Counts of the whole run.
 pub(super) struct Report {
     all: Findings,
+    families: BTreeMap<&'static str, Tally>,
     begin: Instant,
     claims: u64,
     time: Option<Duration>,
@@ -25,11 +27,13 @@ impl Report {
         let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
         let progress = ProgressBar::new(options.claims).with_style(style);
         let time = options.seconds.map(Duration::from_secs_f64);
-        Self { all: Findings::default(), begin: Instant::now(), claims: options.claims, time, progress }
+        let (all, families) = (Findings::default(), BTreeMap::new());
+        Self { all, families, begin: Instant::now(), claims: options.claims, time, progress }
     }
 
-    /// Adds what one case gave; is it enough?
-    pub(super) fn add(&mut self, found: &Findings) -> bool {
+    /// Adds what one case of a family gave; is it enough?
+    pub(super) fn add(&mut self, family: &'static str, found: &Findings) -> bool {
+        self.families.entry(family).or_default().merge(&found.total());
         for (place, tally) in &found.places {
             self.all.places.entry(*place).or_default().merge(tally);
         }
@@ -49,10 +53,17 @@ impl Report {
     /// A conclusion that is false.
     pub(super) fn finish(self) -> TaskResult {
         self.progress.finish_and_clear();
-        println!(
-            "{:<26} {:>12} {:>10} {:>10} {:>8}  unproven",
-            "place", "reported", "judged", "verified", "refuted"
-        );
+        let head = |first: &str| {
+            println!(
+                "{first:<26} {:>12} {:>10} {:>10} {:>8}  unproven",
+                "reported", "judged", "verified", "refuted"
+            );
+        };
+        head("family");
+        for (family, tally) in &self.families {
+            println!("{}", row(family, tally));
+        }
+        head("place");
         for (place, tally) in &self.all.places {
             println!("{}", row(place.name(), tally));
         }
