@@ -382,3 +382,37 @@ fn boxes_with_common_planes_are_followed_through_each_other() {
     // Sides of two: they meet at a distance of two and part at two.
     assert!((spans[1].from - 0.25).abs() < 2e-6 && (spans[1].to - 0.75).abs() < 2e-6, "{spans:?}");
 }
+
+/// Boxes that slide past each other at a gap that the tolerance does not resolve come near each other and no nearer than that gap, though
+/// they part by some roundings: only what shares points has no distance.
+#[test]
+fn a_gap_below_the_tolerance_is_a_distance() {
+    let cube = cuboid(DVec3::splat(0.5));
+    let aside = DVec3::new(0.3, 1.0, 0.2);
+    for (gap, motion) in [1e-13, 1e-12, 1e-11, 2e-11, 5e-11, 1e-10].into_iter().flat_map(|gap| {
+        let sliding = ConstantTwist::REST
+            .with_position(DVec3::new(-3.0, 1.0 + gap, 0.1))
+            .with_linear_velocity(DVec3::X * 6.0);
+        [(gap, sliding), (gap, ConstantTwist::REST.with_position(aside + DVec3::Y * gap))]
+    }) {
+        let (a, b) = (Moving::new(&cube, &motion), Moving::new(&cube, &ConstantTwist::REST));
+        for (a, b) in [(a, b), (b, a)] {
+            let found = clearance(a, b, Window::UNIT, &ClearanceOptions::default()).unwrap();
+            assert!(found.lower <= gap && 0.99 * gap <= found.upper, "{gap:e}: {found:?}");
+            assert!(found.upper - found.lower <= 4.0 * found.tolerance, "{gap:e}: {found:?}");
+            assert!(
+                (found.point_a.distance(found.point_b) - found.upper).abs() < 1e-12,
+                "{gap:e}: {found:?}"
+            );
+        }
+    }
+    // Flush with each other, resting and sliding by.
+    for motion in [
+        ConstantTwist::REST.with_position(aside),
+        ConstantTwist::REST.with_position(DVec3::new(-3.0, 1.0, 0.1)).with_linear_velocity(DVec3::X * 6.0),
+    ] {
+        let (a, b) = (Moving::new(&cube, &motion), Moving::new(&cube, &ConstantTwist::REST));
+        let found = clearance(a, b, Window::UNIT, &ClearanceOptions::default()).unwrap();
+        assert_eq!([found.lower, found.upper], [0.0; 2], "{found:?}");
+    }
+}

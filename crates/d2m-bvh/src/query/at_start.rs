@@ -69,19 +69,8 @@ pub(super) fn judge(
 /// Node tests of each part of the decision: bodies that touch all over would take as many as they have pairs.
 const PATIENCE: u64 = 1 << 12;
 
-/// Are the bodies proven to share a point at a time?
-pub(super) fn share_a_point(
-    bodies: &[Moving<'_>; 2],
-    solids: [Solid; 2],
-    time: f64,
-    meter: &mut Meter,
-) -> Result<bool, QueryError> {
-    let meeting = meeting_at(bodies, solids, time, meter)?;
-    Ok(matches!(meeting, Some(Meeting::Touching(_) | Meeting::Overlapping(_))))
-}
-
 /// How the bodies meet at a time; `None`: their meshes are apart.
-fn meeting_at<'a>(
+pub(super) fn meeting_at<'a>(
     bodies: &[Moving<'a>; 2],
     solids: [Solid; 2],
     time: f64,

@@ -136,14 +136,16 @@ fn judge(scene: &RobotScene, edges: &EdgeChecker<'_>, names: &[&str], Drawn(draw
         let until = answer.free_until();
         for sample in 0..=SAMPLES {
             let time = until * f64::from(sample) / f64::from(SAMPLES);
+            let places = places(&bodies, time);
             for &pair in bodies.pairs() {
-                if is_met(&bodies, &trees, pair, time) {
+                if is_met(&bodies, &trees, &places, pair) {
                     return Err(format!("wrong answer: {pair:?} meet at {time} of {from:?} to {to:?}").into());
                 }
             }
         }
         if let PathAnswer::Contact(found) = &answer {
-            let distance = distance(&bodies, &trees, found.bodies, found.contact.time_hi);
+            let places = places(&bodies, found.contact.time_hi);
+            let distance = distance(&bodies, &trees, &places, found.bodies);
             if distance > found.contact.tolerance + ROUNDING {
                 return Err(format!("wrong answer: {distance:e} apart, {from:?} to {to:?}").into());
             }
@@ -152,23 +154,23 @@ fn judge(scene: &RobotScene, edges: &EdgeChecker<'_>, names: &[&str], Drawn(draw
     Ok(())
 }
 
-fn place(bodies: &PathBodies<'_>, body: usize, time: f64) -> Placement {
-    let pose = bodies.moving(body).motion.pose_and_twist(time).0;
-    Placement::new(pose.rotation, pose.transform_point(DVec3::ZERO))
+/// Where all bodies are.
+fn places(bodies: &PathBodies<'_>, time: f64) -> Vec<Placement> {
+    let poses = (0..bodies.len()).map(|body| bodies.moving(body).motion.pose_and_twist(time).0);
+    poses.map(|pose| Placement::new(pose.rotation, pose.transform_point(DVec3::ZERO))).collect()
 }
 
 /// Do the surfaces share points, by the judge? Of bodies with radii: are they within them?
-fn is_met(bodies: &PathBodies<'_>, trees: &[BoxTree], [a, b]: [usize; 2], time: f64) -> bool {
+fn is_met(bodies: &PathBodies<'_>, trees: &[BoxTree], places: &[Placement], [a, b]: [usize; 2]) -> bool {
     if bodies.moving(a).radius + bodies.moving(b).radius > 0.0 {
-        return distance(bodies, trees, [a, b], time) <= 0.0;
+        return distance(bodies, trees, places, [a, b]) <= 0.0;
     }
-    cross(&trees[a], &trees[b], &place(bodies, a, time), &place(bodies, b, time))
+    cross(&trees[a], &trees[b], &places[a], &places[b])
 }
 
 /// By the judge: of surfaces, less the radii of the bodies; less than zero where a pair is within them.
-fn distance(bodies: &PathBodies<'_>, trees: &[BoxTree], [a, b]: [usize; 2], time: f64) -> f64 {
-    let [at_a, at_b] = [a, b].map(|body| place(bodies, body, time));
-    let apart = separation(&trees[a], &trees[b], &at_a, &at_b, &mut Hint::default());
+fn distance(bodies: &PathBodies<'_>, trees: &[BoxTree], places: &[Placement], [a, b]: [usize; 2]) -> f64 {
+    let apart = separation(&trees[a], &trees[b], &places[a], &places[b], &mut Hint::default());
     apart - bodies.moving(a).radius - bodies.moving(b).radius
 }
 

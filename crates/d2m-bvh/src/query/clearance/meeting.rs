@@ -1,7 +1,8 @@
 //! Are bodies that come within the tolerance of each other proven to share a point?
 
 use super::Descent;
-use crate::query::at_start::share_a_point;
+use crate::query::at_start::meeting_at;
+use crate::resting::touching::Meeting;
 use crate::{Contact, Meter};
 
 /// Parts of what is left of the window after a contact, each half of the one before, after which the bodies are looked at: those that go
@@ -23,6 +24,13 @@ impl Descent<'_> {
         let bodies = &self.sampler.bodies;
         let solids = bodies.map(|body| body.solid.unwrap_or(self.options.solid));
         // Each look has the patience that a start has.
-        share_a_point(bodies, solids, time, &mut Meter::unlimited()).unwrap_or(false)
+        match meeting_at(bodies, solids, time, &mut Meter::unlimited()) {
+            Ok(Some(Meeting::Overlapping(_))) => true,
+            // Parting says that no more than some roundings are between them. Those are a distance, unless it is that of placing them.
+            Ok(Some(Meeting::Touching(touch))) => {
+                self.sampler.pair_at(touch.triangles, time).is_of_rounding()
+            }
+            _ => false,
+        }
     }
 }

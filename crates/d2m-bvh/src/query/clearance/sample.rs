@@ -38,6 +38,13 @@ pub(super) struct Sample {
     pub(super) crosses: bool,
 }
 
+impl Sample {
+    /// Is the distance no more than what placing the triangles may be off by? Half or more of the bound is that then.
+    pub(super) fn is_of_rounding(&self) -> bool {
+        2.0 * self.near.upper <= self.upper
+    }
+}
+
 /// The bodies and the window of a query.
 #[derive(Clone, Copy)]
 pub(super) struct Sampler<'a> {
