@@ -4,7 +4,7 @@ use super::report::{contact, contained};
 use crate::covered_pair::CoveredPair;
 use crate::meter::{Exhausted, Meter};
 use crate::resting::containment::{Held, held_vertex};
-use crate::search::{MovingTree, Outcome, Scene, Scratch, Search};
+use crate::search::{MovingScene, MovingTree, Outcome, Scratch, Search};
 use crate::{Answered, MeshTree, Mode, QueryError, QueryOptions, SearchCounts, Solid, TimeOfContact, Window};
 use core::cell::RefCell;
 use d2m_lanes::F64x4;
@@ -19,7 +19,7 @@ thread_local! {
 pub(super) fn scene_of<'a>(
     pair: &CoveredPair<'a>,
     options: &QueryOptions,
-) -> Result<Option<Scene<'a>>, QueryError> {
+) -> Result<Option<MovingScene<'a>>, QueryError> {
     let [a, b] = *pair.bodies();
     let solids = [a.solid_in(options), b.solid_in(options)];
     check([a.body, b.body], solids, options)?;
@@ -27,7 +27,7 @@ pub(super) fn scene_of<'a>(
         return Ok(None);
     };
     let (a, b) = (MovingTree { tree: a.body, twist: motion_a }, MovingTree { tree: b.body, twist: motion_b });
-    let mut scene = Scene::try_new(a, b, pair.window(), options)?;
+    let mut scene = MovingScene::try_new(a, b, pair.window(), options)?;
     scene.solids = solids;
     Ok(Some(scene))
 }
@@ -38,15 +38,15 @@ pub(super) fn scene_of_twists<'a>(
     solids: [Solid; 2],
     window: Window,
     options: &QueryOptions,
-) -> Result<Scene<'a>, QueryError> {
+) -> Result<MovingScene<'a>, QueryError> {
     check([a.tree, b.tree], solids, options)?;
-    let mut scene = Scene::try_new(a, b, window, options)?;
+    let mut scene = MovingScene::try_new(a, b, window, options)?;
     scene.solids = solids;
     Ok(scene)
 }
 
 /// Searches.
-pub(super) fn ask(scene: &Scene<'_>, options: &QueryOptions) -> Answered<TimeOfContact> {
+pub(super) fn ask(scene: &MovingScene<'_>, options: &QueryOptions) -> Answered<TimeOfContact> {
     let mut meter = Meter::new(&options.budget);
     // Decided first: what the budget leaves open at the start would leave everything open.
     let Ok(held) = held_at_start(scene, &mut meter) else {
@@ -80,7 +80,7 @@ struct Searched<'a> {
 }
 
 /// From what a search found to the answer.
-fn answer(scene: &Scene<'_>, options: &QueryOptions, searched: &Searched<'_>) -> TimeOfContact {
+fn answer(scene: &MovingScene<'_>, options: &QueryOptions, searched: &Searched<'_>) -> TimeOfContact {
     let Searched { outcome, held, scratch } = *searched;
     let surfaces_are_apart = match outcome {
         Outcome::Found(found) => !found.is_at_start(),
@@ -123,7 +123,7 @@ fn check(bodies: [&MeshTree; 2], solids: [Solid; 2], options: &QueryOptions) -> 
 }
 
 /// A part of a body in the other one, if that is solid, at the start; if the surfaces do not touch then.
-fn held_at_start(scene: &Scene<'_>, meter: &mut Meter) -> Result<Option<Held>, Exhausted> {
+fn held_at_start(scene: &MovingScene<'_>, meter: &mut Meter) -> Result<Option<Held>, Exhausted> {
     let filled = scene.solids.map(|solid| solid == Solid::Filled);
     if filled == [false; 2] || scene.spheres_are_apart_at_start() {
         return Ok(None);

@@ -6,7 +6,7 @@ use crate::search::motion::frame::{FRAME_REACH, Frame, RelativeMotion};
 use crate::search::triangle_pair::closest::{Closest, Place, closest};
 use crate::search::triangle_pair::pair_scale::PairScale;
 use crate::search::triangle_pair::separating_axis::place_a;
-use crate::search::{Found, Scene};
+use crate::search::{Found, MovingScene};
 use crate::{Contact, Evidence, MeshTree, StartState};
 use d2m_feature::{FeaturePair, triangles_intersect};
 use d2m_lanes::{Doubles, F64x4, Lanes, Task, run};
@@ -14,12 +14,17 @@ use glam::DVec3;
 
 /// The contact with all its data, of a scene and its motion over the window of the search; `bracket`: search for a time by
 /// which the tolerance was reached, if that cannot be shown for `time_lo`.
-pub(super) fn contact(scene: &Scene<'_>, motion: &RelativeMotion, found: &Found, bracket: bool) -> Contact {
+pub(super) fn contact(
+    scene: &MovingScene<'_>,
+    motion: &RelativeMotion,
+    found: &Found,
+    bracket: bool,
+) -> Contact {
     run(Report { scene, motion, found, bracket })
 }
 
 struct Report<'r> {
-    scene: &'r Scene<'r>,
+    scene: &'r MovingScene<'r>,
     motion: &'r RelativeMotion,
     found: &'r Found,
     bracket: bool,
@@ -84,7 +89,7 @@ impl Task for Report<'_> {
 pub(super) const MOST_LEFT: f64 = 3.3;
 
 /// Where the resolution of time is coarser than the tolerance, more separation is left: then the tolerance is what is left.
-fn cover_what_is_left(contact: &mut Contact, scene: &Scene<'_>) {
+fn cover_what_is_left(contact: &mut Contact, scene: &MovingScene<'_>) {
     let length = scene.units.length();
     let separation = (scene.pair.level - scene.tolerance) * length;
     let left = contact.separation - separation;
@@ -132,7 +137,7 @@ impl TrianglePair<'_> {
     /// a distance of at most L − γ is one of at most L in real arithmetic, and so is that of placed triangles that
     /// share a point.
     #[inline(always)]
-    fn evidence<D: Doubles>(&self, scene: &Scene<'_>, placed: &PlacedPair) -> Evidence {
+    fn evidence<D: Doubles>(&self, scene: &MovingScene<'_>, placed: &PlacedPair) -> Evidence {
         let PairScale { level, error, .. } = scene.pair;
         let a = place_a::<D>(&placed.frame, &self.a);
         if proven_crossing(&a, &self.b, error) {
@@ -145,7 +150,7 @@ impl TrianglePair<'_> {
     /// An offset by which the triangles were certainly within the level, or had met; `from` when none is found: Newton's
     /// method along the normal, and bisection once the triangles have passed each other.
     #[inline(always)]
-    fn reached_by<D: Doubles>(&self, scene: &Scene<'_>, from: f64, placed: &PlacedPair) -> Meeting {
+    fn reached_by<D: Doubles>(&self, scene: &MovingScene<'_>, from: f64, placed: &PlacedPair) -> Meeting {
         // The closest points are on the triangles up to the error: a true upper bound of the distance. In the middle
         // between that and no distance at all there is as much room on either side as there can be.
         let level = scene.pair.level - scene.pair.error;
@@ -215,7 +220,7 @@ struct Witness {
     meeting: Meeting,
 }
 
-fn describe(scene: &Scene<'_>, motion: &RelativeMotion, time: f64, witness: &Witness) -> Contact {
+fn describe(scene: &MovingScene<'_>, motion: &RelativeMotion, time: f64, witness: &Witness) -> Contact {
     let Witness { placed: PlacedPair { frame, near }, a, b, triangles, separation, start, meeting } = witness;
     let rb = motion.rotation_b(frame.offset);
     let turn = |p: DVec3| rb.transform(p);
@@ -248,7 +253,7 @@ fn describe(scene: &Scene<'_>, motion: &RelativeMotion, time: f64, witness: &Wit
 }
 
 /// The contact of a body inside the other: the vertex that shows it, and the nearest data that mean something.
-pub(super) fn contained(scene: &Scene<'_>, held: &Held) -> Contact {
+pub(super) fn contained(scene: &MovingScene<'_>, held: &Held) -> Contact {
     let (motion, vertex) = (&scene.relative_motion(0.0), held.vertex);
     let start = StartState::Contained;
     let frame = motion.frame::<F64x4>(0.0);
@@ -267,7 +272,7 @@ pub(super) fn contained(scene: &Scene<'_>, held: &Held) -> Contact {
     describe(scene, motion, time, &Witness { placed, a, b, triangles, separation: 0.0, start, meeting })
 }
 
-fn feature(scene: &Scene<'_>, near: &Closest, triangles: [u32; 2]) -> FeaturePair {
+fn feature(scene: &MovingScene<'_>, near: &Closest, triangles: [u32; 2]) -> FeaturePair {
     let a = scene.a.tree.mesh().triangles()[triangles[0] as usize];
     let b = scene.b.tree.mesh().triangles()[triangles[1] as usize];
     let edge = |t: [u32; 3], k: usize| {

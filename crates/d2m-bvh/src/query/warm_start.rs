@@ -11,7 +11,7 @@ use crate::covered_pair::CoveredPair;
 use crate::search::relative_trajectory::RelativeTrajectory;
 use crate::search::triangle_pair::closest::closest;
 use crate::search::triangle_pair::separating_axis::place_a;
-use crate::search::{MovingTree, Scene};
+use crate::search::{MovingScene, MovingTree};
 use crate::{
     Answered, Mode, Moving, PairCache, QueryError, QueryOptions, SearchCounts, Start, TimeOfContact, Window,
 };
@@ -98,7 +98,11 @@ fn of_meshes_with(
 }
 
 /// The query of constant twists.
-fn constant_twists_with(scene: &Scene<'_>, options: &QueryOptions, cache: &mut PairCache) -> TimeOfContact {
+fn constant_twists_with(
+    scene: &MovingScene<'_>,
+    options: &QueryOptions,
+    cache: &mut PairCache,
+) -> TimeOfContact {
     if options.budget.is_limited() || options.mode == Mode::Capoeira {
         return cache.counted(ask(scene, options));
     }
@@ -118,7 +122,7 @@ fn constant_twists_with(scene: &Scene<'_>, options: &QueryOptions, cache: &mut P
 
 /// What a cache knows of the bodies of a scene.
 #[cfg(feature = "audit")]
-fn conclude_room(scene: &Scene<'_>, room: f64) {
+fn conclude_room(scene: &MovingScene<'_>, room: f64) {
     use crate::audit::{Part, Place};
     let window = crate::search::concluded::OffsetSpan::of_query(0.0, scene.units.end_down());
     scene.conclude_at(Place::Cache, window, [Part::Whole; 2], room / scene.units.length());
@@ -126,7 +130,7 @@ fn conclude_room(scene: &Scene<'_>, room: f64) {
 
 /// Does the cache know that the bodies stay apart, or does a search for more separation than the query's prove it now?
 fn stay_apart(
-    scene: &Scene<'_>,
+    scene: &MovingScene<'_>,
     trajectory: &RelativeTrajectory,
     options: &QueryOptions,
     cache: &mut PairCache,
@@ -176,7 +180,7 @@ fn general_motion_with(
 
 /// Twists that follow two motions over a whole window, and what a query of them has to be.
 struct WindowFit<'a> {
-    scene: Scene<'a>,
+    scene: MovingScene<'a>,
     trajectory: RelativeTrajectory,
     /// With the separation that the fitted motions need.
     options: QueryOptions,
@@ -308,13 +312,13 @@ fn move_to_meet_again(
 
 /// Does a search of this scene find no contact when the bodies are further apart than `room` all the time? A contact
 /// ends at the stopping distance, up to the error of one test.
-fn excludes_contact(scene: &Scene<'_>, room: f64) -> bool {
+fn excludes_contact(scene: &MovingScene<'_>, room: f64) -> bool {
     room / scene.units.length() > scene.pair.stop + 2.0 * scene.pair.error
 }
 
 /// Searches with a larger separation than the query's, so that the next queries need no search. True: no contact now.
 fn more_room(
-    scene: &Scene<'_>,
+    scene: &MovingScene<'_>,
     trajectory: &RelativeTrajectory,
     options: &QueryOptions,
     cache: &mut PairCache,
@@ -346,7 +350,7 @@ const STEPS: u32 = 8;
 
 /// A time after the start of the window at which two triangles are certainly within the level of each other; `None` when
 /// a few steps of Newton's method from `after` find none.
-fn meet_again(scene: &Scene<'_>, triangles: [u32; 2], after: f64) -> Option<f64> {
+fn meet_again(scene: &MovingScene<'_>, triangles: [u32; 2], after: f64) -> Option<f64> {
     // The closest points are on the triangles up to the error, and so are the vertices that are shown to cross.
     let level = scene.pair.level - scene.pair.error;
     let target = scene.pair.level - 0.5 * (scene.tolerance + scene.pair.error);

@@ -1,7 +1,7 @@
 //! Do two bodies at rest touch?
 
 use super::containment::{held_by, one_holds_the_other};
-use super::node_pair::{Scene, Step, child, proven_apart};
+use super::node_pair::{RestingScene, Step, child, proven_apart};
 use super::proven_crossing::proven_crossing;
 use crate::meter::{Exhausted, Meter};
 use crate::{Budget, Posed, QueryError, Solid};
@@ -34,7 +34,7 @@ use glam::DVec3;
 #[doc(alias = "intersects")]
 pub fn collide(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<bool, QueryError> {
     check_solid(a, b, solid)?;
-    let scene = Scene::try_new(a, b)?;
+    let scene = RestingScene::try_new(a, b)?;
     // What a budget without limits leaves open is not proven apart.
     Ok(may_collide(&scene, solid, &mut Meter::unlimited()).unwrap_or(true))
 }
@@ -63,11 +63,11 @@ pub fn collide_within(
     budget: &Budget,
 ) -> Result<Option<bool>, QueryError> {
     check_solid(a, b, solid)?;
-    let scene = Scene::try_new(a, b)?;
+    let scene = RestingScene::try_new(a, b)?;
     Ok(may_collide(&scene, solid, &mut Meter::new(budget)).ok())
 }
 
-fn may_collide(scene: &Scene<'_>, solid: Solid, meter: &mut Meter) -> Result<bool, Exhausted> {
+fn may_collide(scene: &RestingScene<'_>, solid: Solid, meter: &mut Meter) -> Result<bool, Exhausted> {
     let found = search(scene, Wanted { most: 1, counts: may_touch }, meter)?;
     Ok(!found.pairs.is_empty()
         || solid == Solid::Filled && !found.boxes_apart && one_holds_the_other(scene, meter)?.is_some())
@@ -93,7 +93,7 @@ fn may_collide(scene: &Scene<'_>, solid: Solid, meter: &mut Meter) -> Result<boo
 /// # Errors
 /// [`QueryError::BadPose`].
 pub fn try_colliding_pair(a: Posed<'_>, b: Posed<'_>) -> Result<Option<[u32; 2]>, QueryError> {
-    let scene = Scene::try_new(a, b)?;
+    let scene = RestingScene::try_new(a, b)?;
     Ok(search_all(&scene, Wanted { most: 1, counts: may_touch }).first().copied())
 }
 
@@ -111,7 +111,7 @@ pub fn try_colliding_pair(a: Posed<'_>, b: Posed<'_>) -> Result<Option<[u32; 2]>
 /// # Errors
 /// [`QueryError::BadPose`].
 pub fn colliding_pairs(a: Posed<'_>, b: Posed<'_>) -> Result<Vec<[u32; 2]>, QueryError> {
-    let scene = Scene::try_new(a, b)?;
+    let scene = RestingScene::try_new(a, b)?;
     let found = search_all(&scene, Wanted { most: usize::MAX, counts: may_touch });
     // The first triangle of a body that is one point up to rounding stands for all.
     let all = |body: usize, triangle: u32| match scene.trees[body].mesh().triangle_count() as u32 {
@@ -129,7 +129,7 @@ pub fn colliding_pairs(a: Posed<'_>, b: Posed<'_>) -> Result<Vec<[u32; 2]>, Quer
 /// The first pair of triangles, in the order of the trees, that cross as they are placed. Which one it is depends on the bodies
 /// and poses only.
 pub(crate) fn crossing_pair_within(
-    scene: &Scene<'_>,
+    scene: &RestingScene<'_>,
     meter: &mut Meter,
 ) -> Result<Option<[u32; 2]>, Exhausted> {
     Ok(search(scene, Wanted { most: 1, counts: cross }, meter)?.pairs.first().copied())
@@ -137,7 +137,7 @@ pub(crate) fn crossing_pair_within(
 
 /// A pair of triangles that share a point wherever their vertices are within the errors of placing them.
 pub(crate) fn proven_crossing_pair(
-    scene: &Scene<'_>,
+    scene: &RestingScene<'_>,
     meter: &mut Meter,
 ) -> Result<Option<[u32; 2]>, Exhausted> {
     Ok(search(scene, Wanted { most: 1, counts: certainly_cross }, meter)?.pairs.first().copied())
@@ -146,7 +146,7 @@ pub(crate) fn proven_crossing_pair(
 /// Pairs of triangles that are not proven further apart than `scene.error`, the first in the order of the trees; those that were found,
 /// too, where the budget runs out.
 pub(crate) fn near_pairs(
-    scene: &Scene<'_>,
+    scene: &RestingScene<'_>,
     most: usize,
     meter: &mut Meter,
     pairs: &mut Vec<[u32; 2]>,
@@ -156,7 +156,7 @@ pub(crate) fn near_pairs(
 }
 
 /// Are no two triangles closer than `scene.error`? Proven where it says so.
-pub(crate) fn surfaces_are_apart(scene: &Scene<'_>, meter: &mut Meter) -> Result<bool, Exhausted> {
+pub(crate) fn surfaces_are_apart(scene: &RestingScene<'_>, meter: &mut Meter) -> Result<bool, Exhausted> {
     Ok(search(scene, Wanted { most: 1, counts: may_touch }, meter)?.pairs.is_empty())
 }
 
@@ -168,7 +168,7 @@ pub(crate) fn is_contained(a: Posed<'_>, b: Posed<'_>, solids: [Solid; 2]) -> Re
     if solids == [Solid::Surface; 2] {
         return Ok(false);
     }
-    let (scene, meter) = (Scene::try_new(a, b)?, &mut Meter::unlimited());
+    let (scene, meter) = (RestingScene::try_new(a, b)?, &mut Meter::unlimited());
     // Without a limit there always is an answer.
     let apart = surfaces_are_apart(&scene, meter).unwrap_or(false);
     let mut holds = |by: usize| {
@@ -179,33 +179,33 @@ pub(crate) fn is_contained(a: Posed<'_>, b: Posed<'_>, solids: [Solid; 2]) -> Re
 
 /// Some of the pairs that are not proven apart, the first in the order of the trees.
 pub(crate) fn some_colliding_pairs(a: Posed<'_>, b: Posed<'_>, most: usize, steps: u64) -> Vec<[u32; 2]> {
-    let Ok(scene) = Scene::try_new(a, b) else { return Vec::new() };
+    let Ok(scene) = RestingScene::try_new(a, b) else { return Vec::new() };
     let mut pairs = Vec::new();
     let _ = near_pairs(&scene, most, &mut Meter::unlimited().at_most(steps), &mut pairs);
     pairs
 }
 
 /// All that is wanted, without a limit on the work.
-fn search_all(scene: &Scene<'_>, wanted: Wanted) -> Vec<[u32; 2]> {
+fn search_all(scene: &RestingScene<'_>, wanted: Wanted) -> Vec<[u32; 2]> {
     search(scene, wanted, &mut Meter::unlimited()).map_or_else(|Exhausted| Vec::new(), |found| found.pairs)
 }
 
-fn search(scene: &Scene<'_>, wanted: Wanted, meter: &mut Meter) -> Result<Found, Exhausted> {
+fn search(scene: &RestingScene<'_>, wanted: Wanted, meter: &mut Meter) -> Result<Found, Exhausted> {
     let mut pairs = Vec::new();
     let boxes_apart = run(Search { scene, wanted, meter, pairs: &mut pairs })?;
     Ok(Found { boxes_apart, pairs })
 }
 
-fn may_touch(scene: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
+fn may_touch(scene: &RestingScene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     !proven_apart(a, b, scene.error, scene.need)
 }
 
-fn certainly_cross(scene: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
+fn certainly_cross(scene: &RestingScene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     // Each vertex is within the error of both bodies together of where it is placed.
     proven_crossing(a, b, scene.error)
 }
 
-fn cross(_: &Scene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
+fn cross(_: &RestingScene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     triangles_intersect(a, b)
 }
 
@@ -223,12 +223,12 @@ struct Wanted {
     /// How many pairs to find before stopping.
     most: usize,
     /// Which pairs of placed triangles are found.
-    counts: fn(&Scene<'_>, &[DVec3; 3], &[DVec3; 3]) -> bool,
+    counts: fn(&RestingScene<'_>, &[DVec3; 3], &[DVec3; 3]) -> bool,
 }
 
 /// Depth first over the pairs of boxes that are not proven apart.
 struct Search<'a> {
-    scene: &'a Scene<'a>,
+    scene: &'a RestingScene<'a>,
     wanted: Wanted,
     meter: &'a mut Meter,
     /// Takes what is found, also where the budget runs out.

@@ -4,7 +4,7 @@
 //! one vertex of each part decides. If no part of either surface is in the other solid, the solids share no point: a
 //! common point would be in a region of one solid whose boundary is in no region of the other, and the other way round.
 
-use super::node_pair::{InversePose, Scene};
+use super::node_pair::{InversePose, RestingScene};
 use super::winding::contains;
 use crate::MeshTree;
 use crate::meter::{Exhausted, Meter};
@@ -39,7 +39,10 @@ pub(crate) fn held_vertex(
 
 /// Does one body hold a part of the other? For surfaces whose placed triangles are more than `scene.error` apart: moving
 /// every vertex to its placed position is then a motion without contact, so what is inside stays inside.
-pub(crate) fn one_holds_the_other(scene: &Scene<'_>, meter: &mut Meter) -> Result<Option<Held>, Exhausted> {
+pub(crate) fn one_holds_the_other(
+    scene: &RestingScene<'_>,
+    meter: &mut Meter,
+) -> Result<Option<Held>, Exhausted> {
     for by in [0, 1] {
         if let Some(vertex) = held_by(scene, by, meter)? {
             return Ok(Some(Held { by, vertex }));
@@ -49,7 +52,11 @@ pub(crate) fn one_holds_the_other(scene: &Scene<'_>, meter: &mut Meter) -> Resul
 }
 
 /// A vertex of the other body that this one holds; for surfaces that are apart, as above.
-pub(crate) fn held_by(scene: &Scene<'_>, by: usize, meter: &mut Meter) -> Result<Option<u32>, Exhausted> {
+pub(crate) fn held_by(
+    scene: &RestingScene<'_>,
+    by: usize,
+    meter: &mut Meter,
+) -> Result<Option<u32>, Exhausted> {
     let to_b = || InversePose { rotation: scene.pose.rotation, offset: scene.pose.offset };
     let InversePose { rotation: r, offset } = if by == 0 { scene.pose.inverse() } else { to_b() };
     let place = |p: DVec3| r[0] * p.x + r[1] * p.y + r[2] * p.z + offset;

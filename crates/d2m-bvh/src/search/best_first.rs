@@ -9,7 +9,7 @@ use super::node_pair::node_scale::NodeScale;
 use super::node_pair::node_test::NodeFrame;
 use super::parting::Parting;
 use super::queue::{Bucket, Item};
-use super::scene::Scene;
+use super::scene::MovingScene;
 use super::skip::SkipLimits;
 use super::skip::screw_search::screw_clear_until;
 use super::skip::swept_volume::swept_clear_until;
@@ -240,7 +240,7 @@ fn time_left(limit: u32, now: u32) -> f32 {
 }
 
 /// The expander of pairs of boxes of two trees.
-pub(super) fn expander<'a>(scene: &Scene<'a>, scales: [NodeScale; 2]) -> NodePairExpander<'a> {
+pub(super) fn expander<'a>(scene: &MovingScene<'a>, scales: [NodeScale; 2]) -> NodePairExpander<'a> {
     let ratio = cube(scales[1].ratio).clamp(LEAST_SIZE.into(), 1.0 / f64::from(LEAST_SIZE)) as f32;
     NodePairExpander { nodes: [&scene.a.tree.nodes, &scene.b.tree.nodes], scales, size_ratios: [ratio, 1.0] }
 }

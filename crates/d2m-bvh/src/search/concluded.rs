@@ -1,7 +1,7 @@
 //! Conclusions of a search, in the bodies' own times and lengths (feature `audit`).
 
 use super::motion::units::{sum_down, sum_up};
-use super::scene::{Scene, SceneBody};
+use super::scene::{MovingScene, SceneBody};
 use crate::audit::{Audited, Conclusion, Part, Place, Promise, is_heard, report};
 
 /// A span of a search: from one offset to another, both counted from a third.
@@ -19,7 +19,7 @@ impl OffsetSpan {
     }
 }
 
-impl Scene<'_> {
+impl MovingScene<'_> {
     /// Parts of the bodies stay further apart than the level.
     pub(crate) fn conclude(&self, place: Place, span: OffsetSpan, parts: [Part<'_>; 2]) {
         self.conclude_at(place, span, parts, self.pair.level);

@@ -3,13 +3,13 @@
 use super::concluded::OffsetSpan;
 use super::node_pair::expansion::NodePairExpander;
 use super::queue::{Bucket, Item};
-use super::scene::Scene;
+use super::scene::MovingScene;
 use super::state::{Search, State};
 use crate::audit::{Part, Place};
 use crate::tree::node::WIDTH;
 use d2m_lanes::Rows;
 
-impl Scene<'_> {
+impl MovingScene<'_> {
     /// The pairs of boxes of an expansion that are not wanted are apart over the span.
     pub(super) fn conclude_span(
         &self,
@@ -31,7 +31,7 @@ impl Scene<'_> {
 impl State<'_> {
     /// Each pair of boxes of an expansion is apart from the time of the frame to that of its key, as far as that matters; those with the
     /// key of the item itself only as that is.
-    pub(super) fn conclude_rows(&self, scene: &Scene<'_>, item: &Item, rows: &Rows) {
+    pub(super) fn conclude_rows(&self, scene: &MovingScene<'_>, item: &Item, rows: &Rows) {
         let used = self.expander.nodes[item.side()][item.node() as usize].used as usize;
         for lane in (0..used.min(WIDTH)).filter(|&lane| rows.keys[lane] > item.key as i32) {
             let key = (rows.keys[lane] as u32).min(self.limit);
@@ -43,7 +43,7 @@ impl State<'_> {
     }
 
     /// These pairs of boxes of an expansion are apart over all of the sub-window that matters.
-    pub(super) fn conclude_parted(&self, scene: &Scene<'_>, item: &Item, rows: &Rows, apart: u32) {
+    pub(super) fn conclude_parted(&self, scene: &MovingScene<'_>, item: &Item, rows: &Rows, apart: u32) {
         let used = self.expander.nodes[item.side()][item.node() as usize].used as usize;
         for lane in (0..used.min(WIDTH)).filter(|lane| apart >> lane & 1 == 1) {
             let wide = rows.counting + lane as u32;
@@ -54,7 +54,13 @@ impl State<'_> {
     }
 
     /// A pair of triangles: pairs that are advanced are a little further apart than others.
-    pub(super) fn conclude_pair(&self, scene: &Scene<'_>, place: Place, offsets: [f64; 2], [a, b]: [u32; 2]) {
+    pub(super) fn conclude_pair(
+        &self,
+        scene: &MovingScene<'_>,
+        place: Place,
+        offsets: [f64; 2],
+        [a, b]: [u32; 2],
+    ) {
         let level = if place == Place::Backward { scene.pair.level } else { scene.pair.target() };
         scene.conclude_at(place, self.span(offsets), [Part::Triangle(a), Part::Triangle(b)], level);
     }

@@ -30,6 +30,6 @@ pub(crate) mod triangle_pair;
 mod witness;
 
 pub use counts::{Answered, SearchCounts};
-pub(crate) use scene::{MovingTree, Scene};
+pub(crate) use scene::{MovingScene, MovingTree};
 pub(crate) use scratch::Scratch;
 pub(crate) use state::{Found, Outcome, Search};

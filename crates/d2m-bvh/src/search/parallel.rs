@@ -142,7 +142,7 @@ impl Search<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::scene::Scene;
+    use super::super::scene::MovingScene;
     use super::*;
     use crate::{Budget, MeshTree, Mode, Moving, QueryOptions, TriMesh, Window, time_of_contact};
     use d2m_motion::ConstantTwist;
@@ -180,7 +180,7 @@ mod tests {
             let options = QueryOptions::default()
                 .with_parallel(true)
                 .with_mode([Mode::Accurate, Mode::Exists, Mode::Capoeira][round / 5 % 3]);
-            let scene = Scene::new((a, motions[0]), (b, motions[1]), Window::UNIT, &options);
+            let scene = MovingScene::new((a, motions[0]), (b, motions[1]), Window::UNIT, &options);
             let mut ask = |options: &QueryOptions, threads: usize| {
                 let mut scratch = Scratch::new();
                 let outcome = pools[threads].install(|| Search::new(&scene, options, &mut scratch).run());

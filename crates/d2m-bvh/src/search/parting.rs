@@ -7,7 +7,7 @@
 use super::node_pair::expansion::DirectedSpan;
 use super::node_pair::node_scale::NodeScale;
 use super::node_pair::whole_span::{PlacedPose, SpanDirection, SpanFrame};
-use super::scene::Scene;
+use super::scene::MovingScene;
 use super::state::State;
 use super::triangle_pair::separating_axis::BackwardCertificate;
 use super::witness::Witness;
@@ -22,7 +22,7 @@ pub(super) struct Parting {
 
 impl Parting {
     #[inline(always)]
-    pub(super) fn new<L: Lanes>(scene: &Scene<'_>, state: &State<'_>, witness: &Witness) -> Self {
+    pub(super) fn new<L: Lanes>(scene: &MovingScene<'_>, state: &State<'_>, witness: &Witness) -> Self {
         let (span, scales) = (state.limit_offset, &state.expander.scales);
         let at = |offset: f64| PlacedPose::both::<L::Doubles>(&state.motion, offset, scales);
         let poses = [at(0.0), at(0.5 * span), at(span)];
@@ -36,7 +36,7 @@ impl Parting {
     #[inline(always)]
     pub(super) fn over_span<L: Lanes>(
         &self,
-        scene: &Scene<'_>,
+        scene: &MovingScene<'_>,
         scales: &[NodeScale; 2],
     ) -> DirectedSpan<'_, L> {
         let [start, middle, end] = &self.poses;

@@ -9,7 +9,7 @@
 use super::motion::rotation::Columns;
 use super::motion::track::given_relative_position;
 use super::motion::units::Units;
-use crate::search::Scene;
+use crate::search::MovingScene;
 use crate::tree::TreeId;
 use crate::tree::margin::UNIT_F64;
 use glam::DVec3;
@@ -42,7 +42,7 @@ pub(crate) struct RelativeTrajectory {
 }
 
 impl RelativeTrajectory {
-    pub(crate) fn of(scene: &Scene<'_>) -> Self {
+    pub(crate) fn of(scene: &MovingScene<'_>) -> Self {
         let (a, b) = (&scene.a, &scene.b);
         let velocity = a.motion.linear_velocity() - b.motion.linear_velocity();
         Self {
@@ -101,8 +101,12 @@ mod tests {
     use glam::DQuat;
 
     fn trajectory(trees: &[MeshTree; 2], motions: &[ConstantTwist; 2], window: Window) -> RelativeTrajectory {
-        let scene =
-            Scene::new((&trees[0], motions[0]), (&trees[1], motions[1]), window, &QueryOptions::default());
+        let scene = MovingScene::new(
+            (&trees[0], motions[0]),
+            (&trees[1], motions[1]),
+            window,
+            &QueryOptions::default(),
+        );
         RelativeTrajectory::of(&scene)
     }
 

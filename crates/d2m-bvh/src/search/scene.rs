@@ -126,7 +126,7 @@ impl<'a> SceneBody<'a> {
 
 /// Two bodies, their motions, and the bounds that hold over the whole query. All in the units of the search.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Scene<'a> {
+pub(crate) struct MovingScene<'a> {
     pub(crate) a: SceneBody<'a>,
     pub(crate) b: SceneBody<'a>,
     /// Reference point of A from that of B.
@@ -150,7 +150,7 @@ pub(crate) struct Scene<'a> {
     pub(crate) spin_speed: f64,
 }
 
-impl<'a> Scene<'a> {
+impl<'a> MovingScene<'a> {
     /// The scene of a query with options that were checked.
     ///
     /// # Errors

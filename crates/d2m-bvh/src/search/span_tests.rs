@@ -4,7 +4,7 @@ use super::motion::frame::FAR_ANGLE;
 use super::node_pair::whole_span::{
     PlacedPose, SpanDirection, SpanFrame, apart_along_over_span, apart_over_span,
 };
-use super::scene::Scene;
+use super::scene::MovingScene;
 use super::triangle_pair::separating_axis::place_a;
 use crate::tree::margin::UNIT_F64;
 use crate::tree::node::{NodeBox, WIDTH};
@@ -32,10 +32,10 @@ impl Span<'_> {
         b - a
     }
 
-    fn scene(&self) -> Scene<'_> {
+    fn scene(&self) -> MovingScene<'_> {
         let [a, b] = self.trees;
         let options = QueryOptions::default().with_tolerance(LEVEL);
-        Scene::new((a, self.motions[0]), (b, self.motions[1]), Window::UNIT, &options)
+        MovingScene::new((a, self.motions[0]), (b, self.motions[1]), Window::UNIT, &options)
     }
 
     /// For each lane of a node whether its box is proven apart from that of the other body, with the bend of the gap

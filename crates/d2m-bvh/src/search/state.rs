@@ -7,7 +7,7 @@ use super::motion::units::sum_down;
 use super::node_pair::expansion::{KeyRange, NodePairExpander};
 use super::node_pair::node_scale::NodeScale;
 use super::node_pair::node_test::NodeFrame;
-use super::scene::Scene;
+use super::scene::MovingScene;
 use super::scratch::Scratch;
 use super::triangle_pair::separating_axis::BackwardCertificate;
 use super::witness::Witness;
@@ -65,7 +65,7 @@ pub(super) struct SubWindow {
 
 /// One search.
 pub(crate) struct Search<'s> {
-    pub(super) scene: &'s Scene<'s>,
+    pub(super) scene: &'s MovingScene<'s>,
     pub(super) scratch: &'s mut Scratch,
     pub(super) limits: Limits,
     /// The vector instructions that it uses.
@@ -133,7 +133,7 @@ pub(super) struct State<'a> {
 }
 
 impl<'s> Search<'s> {
-    pub(crate) fn new(scene: &'s Scene<'s>, options: &QueryOptions, scratch: &'s mut Scratch) -> Self {
+    pub(crate) fn new(scene: &'s MovingScene<'s>, options: &QueryOptions, scratch: &'s mut Scratch) -> Self {
         let budget = &options.budget;
         scratch.counts = SearchCounts::default();
         scratch.last_tested = [0, 0];
@@ -213,6 +213,6 @@ impl State<'_> {
     }
 }
 
-pub(super) fn triangle_count(scene: &Scene<'_>) -> u64 {
+pub(super) fn triangle_count(scene: &MovingScene<'_>) -> u64 {
     (scene.a.tree.mesh.triangle_count() + scene.b.tree.mesh.triangle_count()) as u64
 }

@@ -3,7 +3,7 @@
 use super::node_pair::entry_time::entry_times;
 use super::node_pair::node_scale::NodeScale;
 use super::node_pair::node_test::{NodeFrame, Placed};
-use super::scene::Scene;
+use super::scene::MovingScene;
 use super::scratch::Scratch;
 use super::state::{Outcome, Search};
 use super::triangle_pair::pair_scale::PairScale;
@@ -48,7 +48,7 @@ fn least_ratio(rounds: u32, mutate: impl Fn(&mut NodeScale)) -> f64 {
         let (a, b) = (soup(&mut random), soup(&mut random));
         let (speed, spin) = ([0.3, 3.0, 30.0][round as usize % 3], [0.0, 1.0, 10.0][round as usize / 3 % 3]);
         let motions = [moving(&mut random, 3.0, speed, spin), moving(&mut random, 0.0, speed, spin)];
-        let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
+        let scene = MovingScene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
         let unit = 2f64.powf(scene.longest.log2().ceil());
         let mut scales = scene.node_scales(unit);
         let motion = scene.relative_motion(0.0);
@@ -113,7 +113,7 @@ fn room_at_the_end(triangle: [DVec3; 3], wall: f64, expanded: usize, mutate: imp
     let spin = ConstantTwist::REST.with_angular_velocity(DVec3::Z);
     let options = QueryOptions::default().with_tolerance(1e-7);
     let window = Window::try_new(0.0, 0.3).unwrap();
-    let scene = Scene::new((&a, spin), (&b, ConstantTwist::REST), window, &options);
+    let scene = MovingScene::new((&a, spin), (&b, ConstantTwist::REST), window, &options);
     let motion = scene.relative_motion(0.0);
     let mut scale = scene.node_scales(0.5)[expanded];
     mutate(&mut scale);
@@ -155,7 +155,7 @@ fn room_after_a_test(closing: f64, backwards: Option<DVec3>, mutate: impl Fn(&mu
         .with_linear_velocity(DVec3::X * (-closing * sense));
     let options = QueryOptions::default().with_tolerance(1e-7);
     let window = Window::try_new(0.0, 0.3).unwrap();
-    let scene = Scene::new((&a, spin), (&b, ConstantTwist::REST), window, &options);
+    let scene = MovingScene::new((&a, spin), (&b, ConstantTwist::REST), window, &options);
     let motion = scene.relative_motion(0.0);
     let mut pair = scene.pair;
     mutate(&mut pair);
@@ -214,7 +214,7 @@ fn clear_times_of_triangle_pairs_hold_and_are_sharp() {
         let (a, b) = (soup(&mut random), soup(&mut random));
         let (speed, spin) = ([0.3, 3.0, 30.0][round % 3], [0.0, 1.0, 10.0][round / 3 % 3]);
         let motions = [moving(&mut random, 2.0, speed, spin), moving(&mut random, 0.0, speed, spin)];
-        let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
+        let scene = MovingScene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
         let motion = scene.relative_motion(0.0);
         let (ca, cb) = (scene.a.corners(0), scene.b.corners(0));
         let order = [BoundOrder::Second, BoundOrder::Third][round / 9 % 2];
@@ -251,7 +251,7 @@ fn boxes_called_apart_at_rest_are_apart() {
             let b = MeshTree::new(TriMesh::try_new(vertices, vec![[0, 1, 2]]).unwrap());
             let rest = ConstantTwist::REST;
             let options = QueryOptions::default().with_tolerance(1e-30);
-            let scene = Scene::new((&a, rest), (&b, rest), Window::UNIT, &options);
+            let scene = MovingScene::new((&a, rest), (&b, rest), Window::UNIT, &options);
             let mut scale = scene.node_scales(1.0)[1];
             let motion = scene.relative_motion(0.0);
             let frame = NodeFrame::new::<F64x4>(&motion.frame::<F64x4>(0.0), &scale, true, 1.0);
@@ -283,7 +283,7 @@ fn lines_of_no_length_or_beyond_all_numbers_part_nothing() {
             let (a, b) = (plate(1.0, |p| p), plate(size, |p| DVec3::new(p.z, p.x, p.y)));
             let at_b = ConstantTwist::REST.with_position(DVec3::Y * off * size.max(1.0));
             let options = QueryOptions::default();
-            let scene = Scene::new((&a, ConstantTwist::REST), (&b, at_b), Window::UNIT, &options);
+            let scene = MovingScene::new((&a, ConstantTwist::REST), (&b, at_b), Window::UNIT, &options);
             let frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
             for (side, scale) in scene.node_scales(1.0).iter().enumerate() {
                 let (wide, single) = if side == 0 { (&a, &b) } else { (&b, &a) };
@@ -317,7 +317,7 @@ fn speeds_beyond_all_numbers_prove_nothing() {
             for velocity in [direction * speed, direction * -speed] {
                 let motion = rest.with_position(direction * 1e-2 * speed).with_linear_velocity(velocity);
                 let options = QueryOptions::default();
-                let scene = Scene::new((&small, rest), (&large, motion), Window::UNIT, &options);
+                let scene = MovingScene::new((&small, rest), (&large, motion), Window::UNIT, &options);
                 let frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
                 let scale = &scene.node_scales(1.0)[0];
                 let node_frame = NodeFrame::new::<F64x4>(&frame, scale, false, 1.0);
@@ -339,7 +339,7 @@ fn every_instruction_set_gives_the_same_bits() {
         let motions =
             [moving(&mut random, 3.0, 2.0, 3.0), moving(&mut random, 0.0, 2.0, [0.0, 30.0][round % 2])];
         let options = QueryOptions::default();
-        let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
+        let scene = MovingScene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
         let mut run = |set: InstructionSet| {
             let outcome = Search { instructions: set, ..Search::new(&scene, &options, &mut scratch) }.run();
             let answer = match outcome {
@@ -368,7 +368,7 @@ fn third_order_bounds_hold() {
     for _ in 0..8000 {
         let (a, b) = (soup(&mut random), soup(&mut random));
         let motions = [moving(&mut random, 1.0, 0.1, 3.0), moving(&mut random, 0.0, 0.1, 3.0)];
-        let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
+        let scene = MovingScene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
         let motion = scene.relative_motion(0.0);
         for (s, t) in [(0, 0), (1, 5), (3, 2), (7, 7)] {
             let (ca, cb) = (scene.a.corners(s), scene.b.corners(t));
@@ -392,7 +392,7 @@ fn third_order_bounds_hold() {
 /// A small triangle turns about z, seen from the axis at angle −90°, and the axis moves so that its speed along x is
 /// zero at the start: its position is x = sin s − s, closing only by the third derivative. How far it is from the wall
 /// x = −0.004 at the end of the proven time; at s = 0.3 it is beyond.
-fn room_after_a_third_order_test(mutate: impl Fn(&mut Scene<'_>)) -> f64 {
+fn room_after_a_third_order_test(mutate: impl Fn(&mut MovingScene<'_>)) -> f64 {
     let tree =
         |corners: [DVec3; 3]| MeshTree::new(TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2]]).unwrap());
     let wall = |y: f64, z: f64| DVec3::new(-0.004, y, z);
@@ -401,7 +401,7 @@ fn room_after_a_third_order_test(mutate: impl Fn(&mut Scene<'_>)) -> f64 {
     let turn = ConstantTwist::REST.with_angular_velocity(DVec3::Z).with_linear_velocity(-DVec3::X);
     let options = QueryOptions::default().with_tolerance(1e-7);
     let window = Window::try_new(0.0, 0.3).unwrap();
-    let mut scene = Scene::new((&a, turn), (&b, ConstantTwist::REST), window, &options);
+    let mut scene = MovingScene::new((&a, turn), (&b, ConstantTwist::REST), window, &options);
     let motion = scene.relative_motion(0.0);
     mutate(&mut scene);
     let (ca, cb) = (scene.a.corners(0), scene.b.corners(0));
@@ -423,9 +423,10 @@ fn room_after_a_third_order_test(mutate: impl Fn(&mut Scene<'_>)) -> f64 {
 #[test]
 fn mutants_of_the_third_derivative_die() {
     assert!(room_after_a_third_order_test(|_| ()) >= 1e-7);
-    let smaller = |scene: &mut Scene<'_>| scene.pair.centripetal = scene.pair.centripetal.map(|s| 0.5 * s);
+    let smaller =
+        |scene: &mut MovingScene<'_>| scene.pair.centripetal = scene.pair.centripetal.map(|s| 0.5 * s);
     assert!(room_after_a_third_order_test(smaller) < 1e-7, "half of it");
-    let elsewhere = |scene: &mut Scene<'_>| {
+    let elsewhere = |scene: &mut MovingScene<'_>| {
         scene.pair.arms = [DVec3::new(-0.5, 0.0, 0.0); 2];
     };
     assert!(room_after_a_third_order_test(elsewhere) < 1e-7, "accelerations about another point");

@@ -14,7 +14,7 @@ use super::motion::frame::{FAR_ANGLE, PlacedFrame, RelativeMotion};
 use super::node_pair::node_scale::NodeScale;
 use super::node_pair::whole_span::{PlacedPose, SpanFrame};
 use super::queue::{Item, WaitingSpan, WaitingSpans};
-use super::scene::{Scene, SceneBody, WINDOW_ANGLE};
+use super::scene::{MovingScene, SceneBody, WINDOW_ANGLE};
 use super::state::{Outcome, Search, Step, SubWindow};
 use crate::tree::node::WIDTH;
 use d2m_lanes::{Lanes, Task, run_on};
@@ -29,7 +29,7 @@ const SPAN: f64 = 8.0;
 const _: () = assert!(0.5 * SPAN * WINDOW_ANGLE < 0.99 * FAR_ANGLE);
 
 /// Whether the larger box of a pair has at least this radius.
-fn is_large(scene: &Scene<'_>, item: &Item, least: f64) -> bool {
+fn is_large(scene: &MovingScene<'_>, item: &Item, least: f64) -> bool {
     let radius = |body: &SceneBody<'_>, index: u32| {
         f64::from(body.tree.nodes[index as usize / WIDTH].radius[index as usize % WIDTH]) * body.box_unit()
     };
@@ -64,7 +64,7 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(scene: &Scene<'_>, span: SubWindow) -> Self {
+    fn new(scene: &MovingScene<'_>, span: SubWindow) -> Self {
         let motion = scene.relative_motion(span.start + 0.5 * (span.end - span.start));
         Self { span, motion, scales: scene.node_scales(1.0), poses: [None; GRID + 1] }
     }

@@ -1,7 +1,7 @@
 //! Two triangles that are about the closest, and the line between them.
 
 use super::motion::frame::Frame;
-use super::scene::Scene;
+use super::scene::MovingScene;
 use super::triangle_pair::closest::closest;
 use super::triangle_pair::separating_axis::place_a;
 use d2m_lanes::F64x4;
@@ -16,7 +16,7 @@ pub(super) struct Witness {
 }
 
 impl Witness {
-    pub(super) fn new(scene: &Scene<'_>, [a, b]: [u32; 2]) -> Self {
+    pub(super) fn new(scene: &MovingScene<'_>, [a, b]: [u32; 2]) -> Self {
         Self { a: scene.a.corners(a), b: scene.b.corners(b) }
     }
 

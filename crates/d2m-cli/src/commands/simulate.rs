@@ -5,7 +5,7 @@ use crate::engine::number;
 use crate::failure::Failure;
 use crate::output::{Output, Stream, note, progress_bar};
 use crate::report::duration;
-use crate::simulation::{Line, Scene, Thinner, header, read_scene, segment};
+use crate::simulation::{Line, SimulatedScene, Thinner, header, read_scene, segment};
 use d2m_dynamics::{BodyId, Segment, StepError};
 use std::time::{Duration, Instant};
 
@@ -35,7 +35,7 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<(), Failure> {
 /// The part of a body's radius beyond which a gap is said to be large: then it shows, and closes the body's clearances.
 const LARGE_GAP: f64 = 0.05;
 
-fn warn_of_gap(scene: &Scene) {
+fn warn_of_gap(scene: &SimulatedScene) {
     let gap = scene.simulation.options().gap;
     let radius = |id: BodyId| scene.simulation.radius(id);
     let ids = || scene.ids.iter().copied().filter(|&id| scene.simulation.mass_properties(id).is_some());
@@ -130,7 +130,12 @@ impl RunFile<'_> {
     }
 }
 
-fn simulate(mut scene: Scene, name: &str, out: &Output, thinner: Option<Thinner>) -> Result<Ended, Failure> {
+fn simulate(
+    mut scene: SimulatedScene,
+    name: &str,
+    out: &Output,
+    thinner: Option<Thinner>,
+) -> Result<Ended, Failure> {
     let step = scene.simulation.options().step;
     let steps = (scene.end / step - ROUNDING).ceil().max(1.0);
     let bar = progress_bar(steps as usize, "steps");

@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 /// A scene, ready to run.
 #[derive(Debug)]
-pub(crate) struct Scene {
+pub(crate) struct SimulatedScene {
     pub(crate) simulation: Simulation,
     pub(crate) names: Vec<String>,
     pub(crate) ids: Vec<BodyId>,
@@ -65,7 +65,7 @@ const BODY_KEYS: &[&str] = &[
 ];
 
 /// Reads a scene and the meshes it names, relative to its folder.
-pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
+pub(crate) fn read_scene(path: &Path) -> Result<SimulatedScene, Failure> {
     let bytes = read(path)?;
     let UniqueKeys(value) =
         serde_json::from_slice(&bytes).map_err(|error| Failure::at(path.display(), error))?;
@@ -96,7 +96,7 @@ pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
     let names: Vec<String> = bodies.into_iter().map(|body| body.name).collect();
     pairs(&scene, &names, &ids, &mut simulation)?;
     joints(&scene, &names, &ids, &mut simulation)?;
-    Ok(Scene { simulation, names, ids, end, threads })
+    Ok(SimulatedScene { simulation, names, ids, end, threads })
 }
 
 /// Threads at most, as for `--threads`.

@@ -40,13 +40,13 @@ pub(super) fn shape(random: &mut Random) -> Shape {
 }
 
 /// Two shapes and how they move.
-struct Scene {
+struct RandomScene {
     shapes: [Shape; 2],
     trial: Trial,
     solid: Solid,
 }
 
-fn scene(random: &mut Random) -> Scene {
+fn scene(random: &mut Random) -> RandomScene {
     let shapes = [shape(random), shape(random)];
     let radius = |s: &Shape| s.surface.vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
     let reach = radius(&shapes[0]) + radius(&shapes[1]);
@@ -68,7 +68,7 @@ fn scene(random: &mut Random) -> Scene {
     } else {
         Solid::Surface
     };
-    Scene { shapes, trial, solid }
+    RandomScene { shapes, trial, solid }
 }
 
 pub(super) fn run(task: &Task) -> Outcome {

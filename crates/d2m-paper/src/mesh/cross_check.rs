@@ -77,19 +77,19 @@ pub fn cross_check(
     options: &QueryOptions,
 ) -> CrossCheck {
     let mut report = CrossCheck { scenes: 1, ..CrossCheck::default() };
-    let scene = Scene { trees: meshes.map(SphereTree::new), motions, window, options: *options };
+    let scene = CheckedScene { trees: meshes.map(SphereTree::new), motions, window, options: *options };
     scene.judge(&mut report, name);
     report
 }
 
-struct Scene {
+struct CheckedScene {
     trees: [SphereTree; 2],
     motions: [ConstantTwist; 2],
     window: Window,
     options: QueryOptions,
 }
 
-impl Scene {
+impl CheckedScene {
     fn judge(&self, report: &mut CrossCheck, name: &str) {
         let [a, b]: [Moving<'_>; 2] =
             core::array::from_fn(|i| Moving::new(&self.trees[i], &self.motions[i] as &dyn RigidMotion));
@@ -254,11 +254,11 @@ mod tests {
     use d2m_bvh::Solid;
     use d2m_testing::{SmallScene, Surface};
 
-    fn draw(index: u64) -> (String, Scene) {
+    fn draw(index: u64) -> (String, CheckedScene) {
         let mesh = |surface: &Surface| surface.clone().into_mesh(TriMesh::try_new);
         let drawn = SmallScene::draw(0, index, |surface| SphereTree::new(mesh(surface)).is_watertight());
         let solid = if drawn.filled { Solid::Filled } else { Solid::Surface };
-        let scene = Scene {
+        let scene = CheckedScene {
             trees: drawn.surfaces.each_ref().map(|surface| SphereTree::new(mesh(surface))),
             motions: drawn.motions,
             window: Window::try_new(drawn.window[0], drawn.window[1]).unwrap(),

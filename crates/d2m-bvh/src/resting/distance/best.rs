@@ -1,6 +1,6 @@
 //! The closest pair of triangles so far.
 
-use crate::resting::node_pair::Scene;
+use crate::resting::node_pair::RestingScene;
 use crate::tree::margin::UNIT_F64;
 use d2m_feature::TriangleDistance;
 
@@ -21,7 +21,7 @@ pub(super) struct Best {
 
 impl Best {
     /// Are the bodies proven apart?
-    pub(super) fn is_apart(&self, scene: &Scene<'_>) -> bool {
+    pub(super) fn is_apart(&self, scene: &RestingScene<'_>) -> bool {
         self.lower > scene.error
     }
 }

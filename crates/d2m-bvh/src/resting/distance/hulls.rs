@@ -11,7 +11,7 @@
 use super::best::EXPECTED_WIDTH;
 use crate::meter::{Exhausted, Meter};
 use crate::nearest_point::Simplex;
-use crate::resting::node_pair::Scene;
+use crate::resting::node_pair::RestingScene;
 use crate::tree::margin::UNIT_F64;
 use crate::tree::node::{Below, WIDTH};
 use glam::DVec3;
@@ -57,12 +57,12 @@ pub(super) struct Hulls {
 
 impl Hulls {
     /// Are the bodies small enough for a search of so many steps?
-    pub(super) fn pay_off(scene: &Scene<'_>, steps: u64) -> bool {
+    pub(super) fn pay_off(scene: &RestingScene<'_>, steps: u64) -> bool {
         let triangles: usize = scene.trees.iter().map(|tree| tree.mesh().triangle_count()).sum();
         triangles as u64 <= TRIANGLES_A_STEP * steps
     }
 
-    pub(super) fn new(scene: &Scene<'_>, meter: &mut Meter) -> Result<Self, Exhausted> {
+    pub(super) fn new(scene: &RestingScene<'_>, meter: &mut Meter) -> Result<Self, Exhausted> {
         let bodies = [Vertices::new(scene, 0, meter)?, Vertices::new(scene, 1, meter)?];
         Ok(Self { bodies, projection: scene.projection, projected: 0 })
     }
@@ -131,7 +131,7 @@ enum Visit {
 }
 
 impl Vertices {
-    fn new(scene: &Scene<'_>, body: usize, meter: &mut Meter) -> Result<Self, Exhausted> {
+    fn new(scene: &RestingScene<'_>, body: usize, meter: &mut Meter) -> Result<Self, Exhausted> {
         let nodes = &scene.trees[body].nodes;
         let count = scene.trees[body].mesh().triangle_count();
         let mut points = Vec::with_capacity(2 * count);

@@ -9,7 +9,7 @@ mod tests;
 
 use super::collide::{check_solid, crossing_pair_within};
 use super::containment::one_holds_the_other;
-use super::node_pair::Scene;
+use super::node_pair::RestingScene;
 use super::touching::{Meeters, Meeting};
 use crate::meter::{Exhausted, Meter};
 use crate::tree::margin::UNIT_F64;
@@ -169,7 +169,7 @@ pub fn distance_within(
     if options.cutoff.is_nan() || options.cutoff < 0.0 {
         return Err(QueryError::BadMinSeparation { value: options.cutoff });
     }
-    let scene = Scene::try_new(a, b)?;
+    let scene = RestingScene::try_new(a, b)?;
     let counts = [a.body, b.body].map(|tree| tree.mesh().triangle_count());
     // Placed triangles with an upper bound above this are further apart than the cutoff, unless their enclosure is
     // wider than expected.
@@ -295,7 +295,7 @@ pub fn bound_distance(
     budget: &Budget,
 ) -> Result<DistanceBounds, QueryError> {
     check_solid(a, b, solid)?;
-    let scene = Scene::try_new(a, b)?;
+    let scene = RestingScene::try_new(a, b)?;
     let meter = &mut Meter::new(budget);
     // Some pair is compared before the budget counts, so there always is an upper bound.
     let first = Some([0, 0]);
@@ -348,7 +348,7 @@ pub(crate) fn near_pair(
     first: Option<[u32; 2]>,
     Nearness { steps, slack }: Nearness,
 ) -> Result<Option<[u32; 2]>, QueryError> {
-    let scene = Scene::try_new(a, b)?;
+    let scene = RestingScene::try_new(a, b)?;
     let first = first.map(|pair| [0, 1].map(|k| if scene.is_point_like(k) { 0 } else { pair[k] }));
     let meter = &mut Meter::unlimited().at_most(steps);
     Ok(match run(Search { scene: &scene, first, limit: f64::INFINITY, slack, meter }) {
@@ -366,7 +366,7 @@ fn meeting<'a>(bodies: &[Posed<'a>; 2], solid: Solid, meter: &mut Meter) -> Resu
 }
 
 /// Does one body hold a part of the other?
-fn holds(scene: &Scene<'_>, meter: &mut Meter) -> Result<bool, Exhausted> {
+fn holds(scene: &RestingScene<'_>, meter: &mut Meter) -> Result<bool, Exhausted> {
     Ok(one_holds_the_other(scene, meter)?.is_some())
 }
 
@@ -374,7 +374,7 @@ fn holds(scene: &Scene<'_>, meter: &mut Meter) -> Result<bool, Exhausted> {
 const MOST_TESTS_BESIDE_A_CROWD: u64 = 1 << 16;
 
 /// Where triangles cross, the pair that stands for all that do, whichever of them was met first.
-fn crossing(scene: &Scene<'_>, found: Found, meter: &mut Meter) -> Found {
+fn crossing(scene: &RestingScene<'_>, found: Found, meter: &mut Meter) -> Found {
     let Found::Pair(met) = found else { return found };
     if met.distance.upper > 0.0 {
         if !met.is_cut_short {
@@ -395,7 +395,7 @@ fn crossing(scene: &Scene<'_>, found: Found, meter: &mut Meter) -> Found {
 
 impl Distance {
     /// Of bodies that meet so: the normal, points and triangles where they touch, or triangles that are proven to cross.
-    fn meeting_so(self, scene: &Scene<'_>, bodies: [Posed<'_>; 2], meeting: &Meeting<'_>) -> Self {
+    fn meeting_so(self, scene: &RestingScene<'_>, bodies: [Posed<'_>; 2], meeting: &Meeting<'_>) -> Self {
         let (triangles, normal) = match meeting {
             Meeting::Touching(touch) => (touch.triangles, touch.normal),
             Meeting::Overlapping(Some(triangles)) => (*triangles, DVec3::ZERO),
@@ -408,7 +408,7 @@ impl Distance {
     }
 }
 
-fn describe(scene: &Scene<'_>, bodies: [Posed<'_>; 2], best: &Best, state: StartState) -> Distance {
+fn describe(scene: &RestingScene<'_>, bodies: [Posed<'_>; 2], best: &Best, state: StartState) -> Distance {
     let near = &best.distance;
     let apart = state == StartState::Apart;
     let lower = if apart { (best.lower - scene.error) * (1.0 - 2.0 * UNIT_F64) * scene.unit } else { 0.0 };

@@ -4,7 +4,7 @@ use super::best::{Best, EXPECTED_WIDTH};
 use super::hulls::{Hulls, Measure, Parting};
 use super::queue::{Item, Queue};
 use crate::meter::{Exhausted, Meter};
-use crate::resting::node_pair::{Direction, Directions, Scene, Step, Wanted, child, gap_exceeds};
+use crate::resting::node_pair::{Direction, Directions, RestingScene, Step, Wanted, child, gap_exceeds};
 use crate::tree::margin::{UNIT_F64, round_up};
 use d2m_feature::triangle_distance;
 use d2m_lanes::{Lanes, Task};
@@ -36,7 +36,7 @@ pub(super) enum Found {
 /// long, pairs that a plane proves no closer up to rounding are dropped, so which of many equally close pairs is reported may
 /// depend on the search ([`super::hulls`]).
 pub(super) struct Search<'a> {
-    pub(super) scene: &'a Scene<'a>,
+    pub(super) scene: &'a RestingScene<'a>,
     /// A pair of triangles to compare first.
     pub(super) first: Option<[u32; 2]>,
     /// Pairs beyond this are of no interest, working units.
@@ -108,7 +108,7 @@ struct State<'a> {
 }
 
 impl<'a> State<'a> {
-    fn new(scene: &'a Scene<'a>, limit: f64, first: Option<[u32; 2]>) -> Self {
+    fn new(scene: &'a RestingScene<'a>, limit: f64, first: Option<[u32; 2]>) -> Self {
         let mut closest = Closest::new(scene, limit);
         if let Some(triangles) = first {
             closest.compare(triangles);
@@ -229,7 +229,7 @@ impl<'a> State<'a> {
 
 /// The best pair so far.
 struct Closest<'a> {
-    scene: &'a Scene<'a>,
+    scene: &'a RestingScene<'a>,
     best: Option<Best>,
     /// Upper bound of the best pair, or the limit.
     upper: f64,
@@ -244,7 +244,7 @@ struct Closest<'a> {
 }
 
 impl<'a> Closest<'a> {
-    fn new(scene: &'a Scene<'a>, limit: f64) -> Self {
+    fn new(scene: &'a RestingScene<'a>, limit: f64) -> Self {
         Self {
             scene,
             best: None,

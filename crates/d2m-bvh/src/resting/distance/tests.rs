@@ -154,7 +154,7 @@ fn planes_drop_no_closer_pair() {
         };
         let (a, b) = (body(), body());
         let pose = Pose { translation: random.vector() * 2.5, ..Pose::IDENTITY };
-        let scene = Scene::try_new(Posed::at_rest(&a), Posed::new(&b, pose)).unwrap();
+        let scene = RestingScene::try_new(Posed::at_rest(&a), Posed::new(&b, pose)).unwrap();
         let apart = |[a, b]: [u32; 2]| triangle_distance(&scene.place(0, a), &scene.place(1, b));
         let boxes = |tree: &MeshTree| -> Vec<u32> {
             let lanes = |(k, node): (usize, &crate::tree::node::WideNode)| {
@@ -246,7 +246,7 @@ fn crowds_without_a_common_plane_fall_apart() {
         let (found, tests) = counted(a, b, at_rest);
         assert!(tests <= *most, "{name}: {tests}");
         assert!(found.upper - found.lower < 1e-12 && found.state == StartState::Apart, "{name}: {found:?}");
-        let scene = Scene::try_new(Posed::at_rest(a), Posed::at_rest(b)).unwrap();
+        let scene = RestingScene::try_new(Posed::at_rest(a), Posed::at_rest(b)).unwrap();
         let corners = |body: usize, tree: &MeshTree| -> Vec<[DVec3; 3]> {
             (0..tree.mesh().triangle_count()).map(|k| scene.place(body, k as u32)).collect()
         };
@@ -303,7 +303,7 @@ fn near_enough_is_found_sooner_and_bounds_hold() {
                 corner.normalize_or(DVec3::X) + DVec3::X * shift
             }))
         });
-        let scene = Scene::try_new(Posed::at_rest(&a), Posed::at_rest(&b)).unwrap();
+        let scene = RestingScene::try_new(Posed::at_rest(&a), Posed::at_rest(&b)).unwrap();
         let mut nearest = f64::INFINITY;
         for (k, slack) in [0.0, 1.0 / 64.0].into_iter().enumerate() {
             let meter = &mut Meter::unlimited().at_most(1 << 20);

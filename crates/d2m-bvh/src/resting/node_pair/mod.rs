@@ -12,5 +12,5 @@ pub(crate) mod tests;
 mod triangles;
 
 pub(crate) use relative_pose::{InversePose, RelativePose};
-pub(crate) use scene::{Direction, Directions, Scene, Step, Wanted, child};
+pub(crate) use scene::{Direction, Directions, RestingScene, Step, Wanted, child};
 pub(crate) use triangles::{gap_exceeds, proven_apart};

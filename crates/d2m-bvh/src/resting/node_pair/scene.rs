@@ -19,7 +19,7 @@ const POINT_LIKE: f64 = 4.0 * UNIT_F64;
 /// Two bodies at rest, in the frame of B's tree. Working coordinates are divided by a power of two so that all lengths
 /// are at most one.
 #[derive(Debug)]
-pub(crate) struct Scene<'a> {
+pub(crate) struct RestingScene<'a> {
     pub(crate) trees: [&'a MeshTree; 2],
     pub(crate) pose: RelativePose,
     /// The working unit.
@@ -94,7 +94,7 @@ impl NodeBounds {
     }
 }
 
-impl<'a> Scene<'a> {
+impl<'a> RestingScene<'a> {
     pub(crate) fn try_new(a: Posed<'a>, b: Posed<'a>) -> Result<Self, QueryError> {
         let pose = RelativePose::try_new(a, b)?;
         let trees = [a.body, b.body];

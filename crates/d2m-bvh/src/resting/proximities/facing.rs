@@ -5,7 +5,7 @@
 //! double cone of either box. So the axes are no further from c, and from each other, than the sums of the sines say. For surfaces that
 //! may share a point nothing is dropped: that they do is an answer, too.
 
-use crate::resting::node_pair::Scene;
+use crate::resting::node_pair::RestingScene;
 use crate::tree::normal_cones::{NormalCone, NormalCones};
 use d2m_lanes::power_of_two;
 
@@ -16,7 +16,7 @@ const DIRECTION_ERRORS: f64 = 16.0;
 
 /// Cones of both trees, once a search takes as many steps as it takes to make them.
 pub(super) struct Facing<'a> {
-    scene: &'a Scene<'a>,
+    scene: &'a RestingScene<'a>,
     /// Steps after which it is worth it; never for wider normal cones, which these do not hold.
     worth: Option<u64>,
     steps: u64,
@@ -24,7 +24,7 @@ pub(super) struct Facing<'a> {
 }
 
 impl<'a> Facing<'a> {
-    pub(super) fn new(scene: &'a Scene<'a>, cone_slack: f64) -> Self {
+    pub(super) fn new(scene: &'a RestingScene<'a>, cone_slack: f64) -> Self {
         let has_cones = cone_slack == 0.0 && (0..2).all(|body| !scene.is_point_like(body));
         let triangles: usize = scene.trees.iter().map(|tree| tree.mesh().triangle_count()).sum();
         Self { scene, worth: has_cones.then_some(triangles as u64), steps: 0, cones: None }

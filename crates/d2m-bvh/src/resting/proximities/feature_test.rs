@@ -1,8 +1,8 @@
-//! Distance and normal cones of one pair of features. The slacks are those of the module's notes: δ is `Scene::error`.
+//! Distance and normal cones of one pair of features. The slacks are those of the module's notes: δ is `RestingScene::error`.
 
 use super::candidate::{Candidate, Place};
 use crate::mesh::{Adjacency, NONE};
-use crate::resting::node_pair::Scene;
+use crate::resting::node_pair::RestingScene;
 use crate::tree::margin::UNIT_F64;
 use d2m_feature::FeaturePair;
 use glam::DVec3;
@@ -21,7 +21,7 @@ const DIRECTION_ROUNDING: f64 = 16.0 * UNIT_F64;
 
 /// Tests pairs of features of two bodies and keeps those that are locally closest.
 pub(super) struct FeatureTest<'a> {
-    scene: &'a Scene<'a>,
+    scene: &'a RestingScene<'a>,
     adjacency: [&'a Adjacency; 2],
     limit_squared: f64,
     limit: f64,
@@ -95,7 +95,7 @@ fn side(k: usize, parameter: f64) -> [f64; 3] {
 }
 
 impl<'a> FeatureTest<'a> {
-    pub(super) fn new(scene: &'a Scene<'a>, limit: f64, cone_slack: f64) -> Self {
+    pub(super) fn new(scene: &'a RestingScene<'a>, limit: f64, cone_slack: f64) -> Self {
         Self {
             scene,
             adjacency: scene.trees.map(crate::MeshTree::adjacency),

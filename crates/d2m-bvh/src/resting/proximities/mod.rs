@@ -15,7 +15,7 @@
 //! without a direction from one to the other that cones about the normals of both allow (`facing`). A
 //! vertex or edge is tested by the lowest-numbered triangle that holds it, its *owner*; the owners of two features
 //! within the margin are within the margin themselves, so the descent meets them, and exactly once. All tests are
-//! relaxed by δ, the proven bound on where placed points are (`Scene::error`): a foot may be 8δ outside of its feature,
+//! relaxed by δ, the proven bound on where placed points are (`RestingScene::error`): a foot may be 8δ outside of its feature,
 //! a direction may leave a cone by the angle 8δ/d + 16u, where d is the distance, and the ends of vectors may be off by
 //! 2δ. Twins that the relaxed tests let through on neighbouring features have points within 32δ of each other; one
 //! of them is kept.
@@ -29,7 +29,7 @@ mod tests;
 
 pub use manifold::reduce_proximities;
 
-use super::node_pair::{Directions, Scene, Step, Wanted, child, proven_apart};
+use super::node_pair::{Directions, RestingScene, Step, Wanted, child, proven_apart};
 use super::touching::{Meeters, Meeting};
 use crate::meter::Meter;
 use crate::tree::margin::{UNIT_F64, round_up};
@@ -219,7 +219,7 @@ pub fn proximities_within(
             return Err(QueryError::BadMinSeparation { value });
         }
     }
-    let scene = Scene::try_new(a, b)?;
+    let scene = RestingScene::try_new(a, b)?;
     // Placed points of features within the margin are no further apart than this; 1 + 4u for its own roundings.
     let limit = (options.margin / scene.unit + scene.error) * (1.0 + 4.0 * UNIT_F64);
     let test = FeatureTest::new(&scene, limit, options.cone_slack);
@@ -275,7 +275,7 @@ fn of_touching(
 /// are seen from each other's place.
 const TWIN_ERRORS: f64 = 32.0;
 
-fn describe(scene: &Scene<'_>, bodies: [Posed<'_>; 2], candidate: &Candidate) -> Proximity {
+fn describe(scene: &RestingScene<'_>, bodies: [Posed<'_>; 2], candidate: &Candidate) -> Proximity {
     let poses = bodies.map(|posed| {
         let mut pose = posed.pose;
         pose.rotation = pose.rotation.normalize();
@@ -319,7 +319,7 @@ enum Found {
 
 /// Depth first over the pairs of boxes that are not proven further apart than the limit.
 struct Search<'a> {
-    scene: &'a Scene<'a>,
+    scene: &'a RestingScene<'a>,
     test: FeatureTest<'a>,
     limit: f64,
     cone_slack: f64,

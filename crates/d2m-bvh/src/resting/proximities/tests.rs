@@ -325,7 +325,7 @@ fn cones_of_normals_lose_no_pair() {
         let found = proximities_with(bodies[0], bodies[1], &options).unwrap();
         assert_eq!(found, all, "round {round}");
         results += all.len();
-        let scene = Scene::try_new(bodies[0], bodies[1]).unwrap();
+        let scene = RestingScene::try_new(bodies[0], bodies[1]).unwrap();
         let mut facing = facing::Facing::new(&scene, 0.0);
         let triangles = a.mesh().triangle_count() + b.mesh().triangle_count();
         (0..triangles).for_each(|_| facing.count());

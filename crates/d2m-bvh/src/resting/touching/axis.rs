@@ -4,7 +4,7 @@
 //! that cone is across two edges of the two triangles: the normal of one, or the product of an edge of each (and in one plane, where the
 //! cone holds a line, a normal of that plane or a direction in it across an edge).
 
-use super::super::node_pair::Scene;
+use super::super::node_pair::RestingScene;
 use d2m_lanes::power_of_two;
 use glam::DVec3;
 
@@ -56,7 +56,7 @@ pub(super) struct TouchingPair {
 }
 
 impl TouchingPair {
-    pub(super) fn new(scene: &Scene<'_>, triangles: [u32; 2], need: f64, sides: Sides) -> Self {
+    pub(super) fn new(scene: &RestingScene<'_>, triangles: [u32; 2], need: f64, sides: Sides) -> Self {
         let corners = [scene.place(0, triangles[0]), scene.place(1, triangles[1])];
         let spread = corners.as_flattened().iter().map(|p| p.distance(corners[0][0])).fold(0.0, f64::max);
         let mut pair = Self { triangles, corners, axes: Vec::new(), is_flat: false, spread };

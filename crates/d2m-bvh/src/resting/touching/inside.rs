@@ -2,7 +2,7 @@
 
 use super::super::collide::surfaces_are_apart;
 use super::super::containment::held_by;
-use super::super::node_pair::Scene;
+use super::super::node_pair::RestingScene;
 use super::axis::TouchingPair;
 use crate::meter::{Exhausted, Meter};
 use crate::{MeshTree, Posed, TriMesh};
@@ -16,7 +16,7 @@ const DEPTHS: [f64; 3] = [0.25, 0.03125, 0.000_976_562_5];
 /// Is a point found that is proven to be inside of both solids, further from their surfaces than rounding reaches?
 pub(super) fn share_a_point_inside(
     (bodies, blur): ([Posed<'_>; 2], f64),
-    scene: &Scene<'_>,
+    scene: &RestingScene<'_>,
     pairs: &[TouchingPair],
     meter: &mut Meter,
 ) -> Result<bool, Exhausted> {
@@ -68,6 +68,6 @@ pub(crate) fn holds(
     blur: f64,
     meter: &mut Meter,
 ) -> Result<bool, Exhausted> {
-    let Ok(scene) = Scene::try_blurred(body, point, blur) else { return Ok(false) };
+    let Ok(scene) = RestingScene::try_blurred(body, point, blur) else { return Ok(false) };
     Ok(surfaces_are_apart(&scene, meter)? && held_by(&scene, 0, meter)?.is_some())
 }

@@ -22,7 +22,7 @@ mod tests;
 
 use super::collide::{near_pairs, proven_crossing_pair, surfaces_are_apart};
 use super::containment::held_by;
-use super::node_pair::Scene;
+use super::node_pair::RestingScene;
 use crate::meter::{Exhausted, Meter};
 use crate::{Posed, QueryError, Solid, StartState};
 use axis::{Axis, Sides, TouchingPair};
@@ -137,7 +137,7 @@ impl<'a> Meeters<'a> {
 
     fn meeting_in_order(&self, meter: &mut Meter) -> Result<Option<Meeting<'a>>, QueryError> {
         let [a, b] = self.bodies;
-        let scene = Scene::try_blurred(a, b, self.blur)?;
+        let scene = RestingScene::try_blurred(a, b, self.blur)?;
         // In units so small that underflow takes a part of all lengths nothing is judged.
         if scene.need.is_nan() || scene.need > MOST_ROUNDING {
             return Ok(None);
@@ -164,13 +164,15 @@ impl<'a> Meeters<'a> {
         }
     }
 
-    fn decide(&self, scene: &Scene<'_>, meter: &mut Meter) -> Result<Option<Meeting<'a>>, Exhausted> {
+    fn decide(&self, scene: &RestingScene<'_>, meter: &mut Meter) -> Result<Option<Meeting<'a>>, Exhausted> {
         let crossing = self.within(meter, |some| proven_crossing_pair(scene, some))?;
         if let Some(triangles) = crossing.flatten() {
             return Ok(Some(Meeting::Overlapping(Some(triangles))));
         }
         let [a, b] = self.bodies;
-        let Ok(wide) = Scene::try_blurred(a, b, self.blur) else { return Ok(Some(Meeting::Undecided)) };
+        let Ok(wide) = RestingScene::try_blurred(a, b, self.blur) else {
+            return Ok(Some(Meeting::Undecided));
+        };
         let wide = wide.reaching(LAST_STEP * scene.need);
         let mut near = Vec::new();
         let finished = self.within(meter, |some| near_pairs(&wide, MOST_PAIRS, some, &mut near))?.is_some();
@@ -215,7 +217,7 @@ impl<'a> Meeters<'a> {
     /// The direction along which B is proven to part, if one is found.
     fn parted(
         &self,
-        scene: &Scene<'_>,
+        scene: &RestingScene<'_>,
         (pairs, known): (&[TouchingPair], Near),
         exact: Option<&ExactPlaces<'_>>,
         meter: &mut Meter,
@@ -285,7 +287,7 @@ impl<'a> Meeters<'a> {
 
     /// Are two bodies proven apart, by the boxes of their trees, or by a plane across a direction of B's axes?
     fn are_apart(&self, [a, b]: [Posed<'_>; 2], n: DVec3, meter: &mut Meter) -> Result<bool, Exhausted> {
-        let Ok(scene) = Scene::try_blurred(a, b, self.blur) else { return Ok(false) };
+        let Ok(scene) = RestingScene::try_blurred(a, b, self.blur) else { return Ok(false) };
         match self.within(meter, |some| surfaces_are_apart(&scene, some))? {
             Some(false) => return Ok(false),
             // Thousands of pairs that touch, at one vertex, say: bodies on two sides of a plane hold nothing of each other, either.
@@ -312,7 +314,7 @@ fn order(posed: Posed<'_>) -> [f64; 12] {
 }
 
 /// Is all of B proven further along a unit direction than all of A?
-fn is_a_plane_between(scene: &Scene<'_>, n: DVec3) -> bool {
+fn is_a_plane_between(scene: &RestingScene<'_>, n: DVec3) -> bool {
     let along = |body: usize| {
         let corners = scene.trees[body].mesh().triangles().as_flattened();
         corners.iter().map(move |&vertex| n.dot(scene.place_vertex(body, vertex)))

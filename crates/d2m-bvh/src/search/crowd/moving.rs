@@ -1,7 +1,7 @@
 //! Two sets of points in motion, and planes between them.
 
 use super::super::motion::frame::Frame;
-use super::super::scene::Scene;
+use super::super::scene::MovingScene;
 use super::paths::{BodyPaths, Path, Side};
 use crate::meter::Meter;
 use crate::nearest_point::Simplex;
@@ -52,7 +52,7 @@ pub(super) struct Attempt {
 impl<'f> Moving<'f> {
     /// None: the time is over.
     pub(super) fn new(
-        scene: &Scene<'_>,
+        scene: &MovingScene<'_>,
         points: &[Vec<DVec3>; 2],
         frame: &'f Frame,
         span: f64,

@@ -1,7 +1,7 @@
 //! Paths of single points over a span of time, as lines and what accelerations take from them.
 
 use super::super::motion::frame::Frame;
-use super::super::scene::Scene;
+use super::super::scene::MovingScene;
 use super::super::triangle_pair::separating_axis::place_a;
 use crate::tree::margin::UP;
 use d2m_lanes::F64x4;
@@ -36,7 +36,7 @@ pub(super) struct Path {
 }
 
 impl<'f> BodyPaths<'f> {
-    pub(super) fn new(scene: &Scene<'_>, frame: &'f Frame, side: Side, span: f64) -> Self {
+    pub(super) fn new(scene: &MovingScene<'_>, frame: &'f Frame, side: Side, span: f64) -> Self {
         let [arm_a, arm_b] = scene.pair.arms;
         let (arm, omega) = match side {
             Side::A => (frame.rotation.transform(arm_a), frame.omega_a.to_vec()),

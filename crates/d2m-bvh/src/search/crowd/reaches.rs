@@ -1,7 +1,7 @@
 //! How far what is below boxes reaches along a direction.
 
 use super::super::motion::frame::Frame;
-use super::super::scene::{Scene, SceneBody};
+use super::super::scene::{MovingScene, SceneBody};
 use super::paths::{BodyPaths, Side};
 use crate::meter::Meter;
 use crate::tree::node::{Below, WIDTH};
@@ -18,7 +18,7 @@ pub(super) struct Reaches<'a> {
 }
 
 impl<'a> Reaches<'a> {
-    pub(super) fn new(scene: &'a Scene<'a>, side: Side, frame: &'a Frame, span: f64, n: DVec3) -> Self {
+    pub(super) fn new(scene: &'a MovingScene<'a>, side: Side, frame: &'a Frame, span: f64, n: DVec3) -> Self {
         let (body, along) = match side {
             Side::A => (&scene.a, n),
             Side::B => (&scene.b, -n),

@@ -1,7 +1,7 @@
 //! Planes hold as long as they are said to, and boxes reach as far as what they hold.
 
 use super::super::motion::frame::Frame;
-use super::super::scene::{MovingTree, Scene};
+use super::super::scene::{MovingScene, MovingTree};
 use super::super::scratch::Scratch;
 use super::super::state::SubWindow;
 use super::*;
@@ -23,7 +23,7 @@ const fn moving(tree: &MeshTree, twist: ConstantTwist) -> MovingTree<'_> {
 }
 
 /// All vertices of both bodies.
-fn points(scene: &Scene<'_>) -> [Vec<DVec3>; 2] {
+fn points(scene: &MovingScene<'_>) -> [Vec<DVec3>; 2] {
     [&scene.a, &scene.b].map(|body| {
         let mut group = Group::new(body);
         group.add(0, 100, &mut Meter::unlimited()).unwrap();
@@ -49,7 +49,7 @@ fn what_a_plane_parts_stays_apart() {
         });
         let options = QueryOptions::default().with_tolerance(1e-3);
         let scene =
-            Scene::try_new(moving(&a, motion_a), moving(&b, motion_b), Window::UNIT, &options).unwrap();
+            MovingScene::try_new(moving(&a, motion_a), moving(&b, motion_b), Window::UNIT, &options).unwrap();
         let motion = scene.relative_motion(0.0);
         let frame = motion.frame::<F64x4>(0.0);
         let span = scene.longest * (0.6 + 0.4 * random.signed());
@@ -95,7 +95,7 @@ fn points_bend_by_their_distance_from_the_axis() {
     let turning = ConstantTwist::REST.with_angular_velocity(spin);
     let options = QueryOptions::default();
     for (a, b, side) in [(turning, ConstantTwist::REST, Side::A), (ConstantTwist::REST, turning, Side::B)] {
-        let scene = Scene::new((&body, a), (&body, b), Window::UNIT, &options);
+        let scene = MovingScene::new((&body, a), (&body, b), Window::UNIT, &options);
         let frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
         let paths = super::paths::BodyPaths::new(&scene, &frame, side, 1.0);
         for (corner, expected) in corners.iter().zip([0.0, 0.5, 2.0]) {
@@ -116,7 +116,8 @@ fn boxes_reach_as_far_as_their_vertices() {
             .unwrap();
     let options = QueryOptions::default();
     let scene =
-        Scene::try_new(moving(&a, twist), moving(&b, ConstantTwist::REST), Window::UNIT, &options).unwrap();
+        MovingScene::try_new(moving(&a, twist), moving(&b, ConstantTwist::REST), Window::UNIT, &options)
+            .unwrap();
     let frame: Frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
     for n in [DVec3::X, random.vector().normalize(), random.vector().normalize()] {
         let points = points(&scene);
@@ -140,9 +141,13 @@ fn preparations_end_with_the_time() {
     let vertices: Vec<_> = (0..3000).map(|_| random.vector()).collect();
     let tree = MeshTree::new(Surface::soup(vertices.clone()).into_mesh(TriMesh::try_new));
     let rest = ConstantTwist::REST;
-    let scene =
-        Scene::try_new(moving(&tree, rest), moving(&tree, rest), Window::UNIT, &QueryOptions::default())
-            .unwrap();
+    let scene = MovingScene::try_new(
+        moving(&tree, rest),
+        moving(&tree, rest),
+        Window::UNIT,
+        &QueryOptions::default(),
+    )
+    .unwrap();
     let points = [vertices.clone(), vertices];
     let frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
     let over = || Meter::until(Stop::new(&Budget::UNLIMITED.with_wall_clock(Duration::ZERO)));
@@ -159,7 +164,8 @@ fn a_crowd_costs_no_more_than_the_search_before() {
     let vertices: Vec<_> = (0..3000).map(|_| random.vector()).collect();
     let tree = MeshTree::new(Surface::soup(vertices.clone()).into_mesh(TriMesh::try_new));
     let (rest, options) = (ConstantTwist::REST, QueryOptions::default());
-    let scene = Scene::try_new(moving(&tree, rest), moving(&tree, rest), Window::UNIT, &options).unwrap();
+    let scene =
+        MovingScene::try_new(moving(&tree, rest), moving(&tree, rest), Window::UNIT, &options).unwrap();
     let mut scratch = Scratch::new();
     let mut search = Search::new(&scene, &options, &mut scratch);
     let state = search.begin_window(SubWindow { start: 0.0, end: 1.0 });

@@ -187,7 +187,7 @@ fn less_than_half_a_turn(by: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::search::scene::Scene;
+    use crate::search::scene::MovingScene;
     use crate::{MeshTree, QueryOptions, TriMesh, Window};
     use d2m_motion::ConstantTwist;
     use d2m_testing::{Draw, KnuthRandom};
@@ -199,7 +199,7 @@ mod tests {
         let climbing =
             ConstantTwist::REST.with_angular_velocity(DVec3::Z * 4.0).with_linear_velocity(DVec3::Z * 0.8);
         let bodies = [(&tree, climbing), (&tree, ConstantTwist::REST)];
-        let scene = Scene::new(bodies[0], bodies[1], Window::UNIT, &QueryOptions::default());
+        let scene = MovingScene::new(bodies[0], bodies[1], Window::UNIT, &QueryOptions::default());
         let screw = Screw::new(&scene, 0.0).unwrap();
         let mut random = KnuthRandom(61);
         for round in 0..400 {

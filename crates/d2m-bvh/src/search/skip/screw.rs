@@ -1,6 +1,6 @@
 //! The screw about a common axis that two bodies make as seen from each other.
 
-use crate::search::scene::{Scene, SceneBody};
+use crate::search::scene::{MovingScene, SceneBody};
 use crate::tree::margin::{UNIT_F64, UP};
 use glam::DVec3;
 
@@ -34,7 +34,7 @@ pub(super) struct Screw {
 
 impl Screw {
     /// None unless one body is at rest or both turn about parallel axes, and not alike.
-    pub(super) fn new(scene: &Scene<'_>, start: f64) -> Option<Self> {
+    pub(super) fn new(scene: &MovingScene<'_>, start: f64) -> Option<Self> {
         let (a, b) = (&scene.a, &scene.b);
         let [wa, wb] = [a, b].map(|body| body.motion.angular_velocity());
         let [ka, kb] = [a, b].map(|body| body.motion.turning().axis());
@@ -87,7 +87,7 @@ impl Screw {
     /// Where points of both bodies (from the trees' centers, body axes) are at the start, from the axis, which is the
     /// third coordinate. Heights count from B's reference point if it turns, else from A's; distances from the own axis,
     /// or the other's.
-    pub(super) fn places(&self, scene: &Scene<'_>, start: f64) -> [impl Fn(DVec3) -> DVec3; 2] {
+    pub(super) fn places(&self, scene: &MovingScene<'_>, start: f64) -> [impl Fn(DVec3) -> DVec3; 2] {
         let apart = scene.track.at(start);
         let [spins_a, spins_b] =
             [&scene.a, &scene.b].map(|body| body.motion.angular_velocity() != DVec3::ZERO);

@@ -12,7 +12,7 @@ use super::projection_tree::ProjectionTree;
 use super::screw::Screw;
 use super::{Skip, SkipLimits, later_offset};
 use crate::meter::Meter;
-use crate::search::scene::Scene;
+use crate::search::scene::MovingScene;
 use crate::tree::margin::{UNIT_F64, UP};
 use glam::DVec3;
 
@@ -43,7 +43,7 @@ struct Walk<'s> {
 }
 
 /// Until when the projections of the bodies stay further apart than the level, from `start` on.
-pub(crate) fn screw_clear_until(scene: &Scene<'_>, start: f64, limits: &SkipLimits) -> Skip {
+pub(crate) fn screw_clear_until(scene: &MovingScene<'_>, start: f64, limits: &SkipLimits) -> Skip {
     let nothing = Skip { clear_until: None, work: 0 };
     if triangle_count(scene) > MOST_TRIANGLES {
         return nothing;
@@ -58,12 +58,12 @@ pub(crate) fn screw_clear_until(scene: &Scene<'_>, start: f64, limits: &SkipLimi
     Skip { work: skip.work + in_place.work, ..in_place }
 }
 
-fn triangle_count(scene: &Scene<'_>) -> usize {
+fn triangle_count(scene: &MovingScene<'_>) -> usize {
     scene.a.tree.mesh.triangle_count() + scene.b.tree.mesh.triangle_count()
 }
 
 /// The same with the screw that they make.
-fn clear_along(screw: &Screw, scene: &Scene<'_>, start: f64, limits: &SkipLimits) -> Skip {
+fn clear_along(screw: &Screw, scene: &MovingScene<'_>, start: f64, limits: &SkipLimits) -> Skip {
     let bodies = [&scene.a, &scene.b];
     let length = (scene.end - start).next_up();
     // What the projections cost, in pairs: as many pairs may be tested besides, once they are there.
@@ -283,7 +283,7 @@ mod tests {
                 motion(spins.0, DVec3::new(drift, 0.0, climb), DVec3::X * drift),
                 motion(spins.1, DVec3::ZERO, DVec3::ZERO),
             ];
-            let scene = Scene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
+            let scene = MovingScene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
             let until = Screw::new(&scene, 0.0).and_then(|mut screw| {
                 mutate(&mut screw);
                 clear_along(&screw, &scene, 0.0, &LIMITS).clear_until
@@ -319,7 +319,8 @@ mod tests {
             let lifted = corners.map(|p| turn * p + DVec3::Z * lift);
             let pair = TriMesh::try_new([corners, lifted].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
             let pair = MeshTree::new(pair);
-            let scene = Scene::new((&pair, spin), (&plate, ConstantTwist::REST), Window::UNIT, &options);
+            let scene =
+                MovingScene::new((&pair, spin), (&plate, ConstantTwist::REST), Window::UNIT, &options);
             screw_clear_until(&scene, 0.0, &LIMITS).clear_until
         };
         assert_eq!((until(0.0), until(1e-9), until(4e-9)), (Some(1.0), Some(1.0), None));
@@ -357,7 +358,7 @@ mod tests {
         let screw =
             ConstantTwist::REST.with_angular_velocity(DVec3::Z * 6.0).with_linear_velocity(DVec3::Z * climb);
         let options = QueryOptions::default().with_tolerance(1e-7);
-        let scene = Scene::new((&a, screw), (&b, ConstantTwist::REST), Window::UNIT, &options);
+        let scene = MovingScene::new((&a, screw), (&b, ConstantTwist::REST), Window::UNIT, &options);
         screw_clear_until(&scene, 0.0, &LIMITS).clear_until
     }
 
@@ -402,7 +403,7 @@ mod tests {
         let (a, b) = (ring(500), ring(500));
         let spin = |speed: f64| ConstantTwist::REST.with_angular_velocity(DVec3::Z * speed);
         let far = spin(3.0).with_position(DVec3::Z * 1.5);
-        let scene = Scene::new((&a, far), (&b, spin(0.0)), Window::UNIT, &QueryOptions::default());
+        let scene = MovingScene::new((&a, far), (&b, spin(0.0)), Window::UNIT, &QueryOptions::default());
         let over = Stop::new(&Budget::UNLIMITED.with_wall_clock(std::time::Duration::ZERO));
         for (stop, ends) in [(Stop::NEVER, false), (over, true)] {
             let limits = SkipLimits { stop, ..LIMITS };

@@ -11,7 +11,7 @@
 use super::swept_body::{Distances, SweptBody, SweptPart};
 use super::{Skip, SkipLimits, later_offset};
 use crate::meter::Meter;
-use crate::search::scene::Scene;
+use crate::search::scene::MovingScene;
 #[cfg(feature = "audit")]
 use crate::tree::margin::DOWN;
 use crate::tree::margin::{UNIT_F64, UP};
@@ -34,7 +34,7 @@ struct Sweep<'a> {
     level: f64,
     length: f64,
     #[cfg(feature = "audit")]
-    scene: &'a Scene<'a>,
+    scene: &'a MovingScene<'a>,
     #[cfg(feature = "audit")]
     start: f64,
 }
@@ -42,7 +42,7 @@ struct Sweep<'a> {
 /// Until when the swept volumes of the bodies stay further apart than the level, from `start` on. `direction` may separate
 /// bodies at rest.
 pub(crate) fn swept_clear_until(
-    scene: &Scene<'_>,
+    scene: &MovingScene<'_>,
     start: f64,
     limits: &SkipLimits,
     direction: DVec3,
@@ -217,7 +217,7 @@ mod tests {
     /// The time up to which the sweeps are apart, from 0 in the window [0, 1].
     fn clear(a: (&MeshTree, ConstantTwist), b: (&MeshTree, ConstantTwist), direction: DVec3) -> f64 {
         let options = QueryOptions::default().with_tolerance(1e-10);
-        let scene = Scene::new(a, b, Window::UNIT, &options);
+        let scene = MovingScene::new(a, b, Window::UNIT, &options);
         let limits = SkipLimits {
             least_gain: 0.0,
             most_work: 1 << 20,

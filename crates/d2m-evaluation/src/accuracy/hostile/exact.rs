@@ -3,7 +3,7 @@
 //!
 //! It shares no code with the engine: its own rotation (`d2m_testing::big`), its own crossing of
 //! triangles (signs of volumes), its own winding number (signed crossings of a segment).
-use super::scene::{Body, Scene};
+use super::scene::{Body, HostileScene};
 use d2m::Solid;
 use d2m_testing::big::{self, Big, Big3, abs, cross, dot, sub};
 use glam::DVec3;
@@ -27,7 +27,7 @@ struct Point {
 
 /// Both bodies at one time.
 pub(super) struct Placed<'s> {
-    scene: &'s Scene,
+    scene: &'s HostileScene,
     points: [Vec<Point>; 2],
     /// No rounded coordinate errs by more: half a unit in the last place of the largest.
     error: f64,
@@ -37,7 +37,7 @@ pub(super) struct Placed<'s> {
 type Candidate = ([u32; 3], [u32; 3]);
 
 impl<'s> Placed<'s> {
-    pub(super) fn new(scene: &'s Scene, t: f64) -> Self {
+    pub(super) fn new(scene: &'s HostileScene, t: f64) -> Self {
         let exact = [place(&scene.bodies[0], t), place(&scene.bodies[1], t)];
         let origin = exact[1][0].clone();
         let rounded = |p: &Big3| DVec3::from_array(sub(p, &origin).map(|x| x.to_f64().value()));

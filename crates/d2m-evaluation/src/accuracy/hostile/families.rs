@@ -4,14 +4,14 @@ use super::generic_families::{
     dust, far_reference_points, large_times, one_and_many, spinning_together, windows, windows_without_length,
 };
 use super::made::{about, body, decade, scene};
-use super::scene::Scene;
+use super::scene::HostileScene;
 use super::shapes::{centered_box, extruded, refined, sliver, spikes, stepped_plate, tetrahedron};
 use d2m::Solid;
 use d2m_testing::{Surface, Xoshiro256 as Random};
 use glam::{DQuat, DVec3};
 
 /// A maker of scenes, and the name that a report shows.
-pub(super) type Family = (&'static str, fn(&mut Random) -> Scene);
+pub(super) type Family = (&'static str, fn(&mut Random) -> HostileScene);
 
 pub(super) const FAMILIES: [Family; 17] = [
     ("steps", steps),
@@ -34,7 +34,7 @@ pub(super) const FAMILIES: [Family; 17] = [
 ];
 
 /// A block slides over a plate towards a step that is twice as high as the gap below it.
-fn steps(random: &mut Random) -> Scene {
+fn steps(random: &mut Random) -> HostileScene {
     let step = decade(random, -12.0, -3.0);
     let plate = stepped_plate(step);
     let half = DVec3::new(random.range(0.1, 0.6), random.range(0.1, 0.9), 0.25);
@@ -59,7 +59,7 @@ fn steps(random: &mut Random) -> Scene {
 
 /// A step under a sliding block in meshes of a thousand triangles each, turned anyhow in their own coordinates, with
 /// reference points up to 100 away: long closeness without contact, then a contact.
-fn fine_steps(random: &mut Random) -> Scene {
+fn fine_steps(random: &mut Random) -> HostileScene {
     let step = decade(random, -10.0, -5.0);
     let turn = random.rotation();
     let plate = refined(stepped_plate(step), 3).map(|p| turn * p);
@@ -85,7 +85,7 @@ fn fine_steps(random: &mut Random) -> Scene {
 }
 
 /// Thin plates that pass, slide on, spin beside or cut each other at gaps of 1e-12 … 1e-3.
-fn sheets(random: &mut Random) -> Scene {
+fn sheets(random: &mut Random) -> HostileScene {
     let thickness = decade(random, -9.0, -1.0);
     let gap = decade(random, -12.0, -3.0) * if random.unit() < 0.5 { 1.0 } else { -1.0 };
     let sheet = |w: f64, h: f64| centered_box(DVec3::new(w, h, 0.5 * thickness));
@@ -106,7 +106,7 @@ fn sheets(random: &mut Random) -> Scene {
 }
 
 /// Edges of wedges that cross at an angle of 1e-15 … 1e-3 and come together.
-fn parallel_edges(random: &mut Random) -> Scene {
+fn parallel_edges(random: &mut Random) -> HostileScene {
     let wedge = extruded(&[(0.0, 0.0), (-1.0, -1.0), (1.0, -1.0)], 1.0);
     let angle = decade(random, -15.0, -3.0);
     let aside = random.range(-0.5, 0.5) * if random.unit() < 0.5 { 1.0 } else { angle };
@@ -129,7 +129,7 @@ fn parallel_edges(random: &mut Random) -> Scene {
 
 /// A solid of several closed parts, some of which overlap, are turned inside out or repeated; a probe flies in or starts
 /// inside.
-fn overlapping_parts(random: &mut Random) -> Scene {
+fn overlapping_parts(random: &mut Random) -> HostileScene {
     let mut union = Surface::default();
     // Repeated triangles count once, which could leave nothing of a part that is turned inside out: never both.
     let repeats = random.unit() < 0.4;
@@ -159,7 +159,7 @@ fn overlapping_parts(random: &mut Random) -> Scene {
 }
 
 /// Boxes whose faces, edges or corners coincide at the start, slide on each other or part.
-fn coincident_faces(random: &mut Random) -> Scene {
+fn coincident_faces(random: &mut Random) -> HostileScene {
     let quarter = |random: &mut Random| f64::from((random.bits() % 9) as u32) * 0.25 - 1.0;
     let a = Surface::cube(0.5);
     let b = if random.unit() < 0.3 { a.clone() } else { centered_box(DVec3::new(0.25, 0.5, 1.0)) };
@@ -180,7 +180,7 @@ fn coincident_faces(random: &mut Random) -> Scene {
 }
 
 /// Cones that meet apex to apex, apex to side, or pass closely.
-fn cones(random: &mut Random) -> Scene {
+fn cones(random: &mut Random) -> HostileScene {
     let sides = 3 + random.bits() as u32 % 60;
     let cone = |random: &mut Random| Surface::cone(sides, decade(random, -3.0, 0.0), -1.0);
     let (lower, upper) = (cone(random), cone(random));
@@ -195,7 +195,7 @@ fn cones(random: &mut Random) -> Scene {
 }
 
 /// Needles and blades of aspect up to 1e12 that are aimed at each other.
-fn slivers(random: &mut Random) -> Scene {
+fn slivers(random: &mut Random) -> HostileScene {
     let sliver = |random: &mut Random| {
         let aspect = decade(random, 0.0, 12.0);
         sliver(random, aspect)
@@ -213,7 +213,7 @@ fn slivers(random: &mut Random) -> Scene {
 }
 
 /// Bodies at a small distance that hardly move.
-fn nearly_still(random: &mut Random) -> Scene {
+fn nearly_still(random: &mut Random) -> HostileScene {
     let gap = decade(random, -9.0, -1.0);
     let a = Surface::cube(0.5);
     let b = centered_box(DVec3::new(0.5, 0.3, 0.5));
@@ -227,7 +227,7 @@ fn nearly_still(random: &mut Random) -> Scene {
 }
 
 /// Two plates full of spikes: tips against tips, at gaps of 1e-9 … 1e-1, that slide, turn, part or come together.
-fn crowds(random: &mut Random) -> Scene {
+fn crowds(random: &mut Random) -> HostileScene {
     let side = 2 + random.bits() as u32 % 14;
     let height = decade(random, -2.0, 0.5);
     let crowd = spikes(random, side, height);

@@ -1,13 +1,13 @@
 //! Families of two random solids that are aimed at each other, in unusual windows, with unusual spins, reference points and sizes.
 use super::made::{about, body, decade, scene};
-use super::scene::Scene;
+use super::scene::HostileScene;
 use super::shapes::{centered_box, refined, tetrahedron};
 use d2m::Solid;
 use d2m_testing::{Surface, Xoshiro256 as Random};
 use glam::DVec3;
 
 /// The reference point 1e1 … 1e6 away, along the spin, or across it for bodies that only fly.
-pub(super) fn far_reference_points(random: &mut Random) -> Scene {
+pub(super) fn far_reference_points(random: &mut Random) -> HostileScene {
     let mut scene = generic(random);
     for body in &mut scene.bodies {
         let far = decade(random, 1.0, 6.0);
@@ -19,7 +19,7 @@ pub(super) fn far_reference_points(random: &mut Random) -> Scene {
 }
 
 /// A grain of dust, 2⁻²⁰ … 2⁻⁶⁴ of a block, that flies up to 2²⁴ times the block's size in the window and hits a face on its way.
-pub(super) fn dust(random: &mut Random) -> Scene {
+pub(super) fn dust(random: &mut Random) -> HostileScene {
     let half = DVec3::new(random.range(0.1, 1.0), random.range(0.1, 1.0), random.range(0.1, 1.0));
     let block = refined(centered_box(half), (random.bits() % 3) as u32);
     let size = random.range(-64.0, -20.0).exp2();
@@ -39,7 +39,7 @@ pub(super) fn dust(random: &mut Random) -> Scene {
 }
 
 /// Two random solids that are aimed at each other.
-fn generic(random: &mut Random) -> Scene {
+fn generic(random: &mut Random) -> HostileScene {
     let shape = |random: &mut Random| match random.bits() % 3 {
         0 => tetrahedron(random, 1.0),
         1 => centered_box(DVec3::new(random.range(0.1, 1.0), random.range(0.1, 1.0), random.range(0.1, 1.0))),
@@ -59,7 +59,7 @@ fn generic(random: &mut Random) -> Scene {
 }
 
 /// A window at 1e3 … 1e17, poses given there or at time 0.
-pub(super) fn large_times(random: &mut Random) -> Scene {
+pub(super) fn large_times(random: &mut Random) -> HostileScene {
     let mut scene = generic(random);
     let start = decade(random, 3.0, 17.0) * if random.unit() < 0.5 { 1.0 } else { -1.0 };
     // As long as the clock allows: at least some units in the last place.
@@ -85,7 +85,7 @@ pub(super) fn large_times(random: &mut Random) -> Scene {
 }
 
 /// One instant, at a time at which the bodies may cross.
-pub(super) fn windows_without_length(random: &mut Random) -> Scene {
+pub(super) fn windows_without_length(random: &mut Random) -> HostileScene {
     let mut scene = generic(random);
     let at = random.range(0.3, 0.7);
     scene.window = [at, at];
@@ -94,7 +94,7 @@ pub(super) fn windows_without_length(random: &mut Random) -> Scene {
 }
 
 /// Windows of a few units in the last place, and of 1e3 … 1e9 with little speed or much spin.
-pub(super) fn windows(random: &mut Random) -> Scene {
+pub(super) fn windows(random: &mut Random) -> HostileScene {
     let mut scene = generic(random);
     if random.unit() < 0.5 {
         let at = random.range(0.3, 0.7);
@@ -118,7 +118,7 @@ pub(super) fn windows(random: &mut Random) -> Scene {
 }
 
 /// Bodies that turn alike, fast, and drift towards each other.
-pub(super) fn spinning_together(random: &mut Random) -> Scene {
+pub(super) fn spinning_together(random: &mut Random) -> HostileScene {
     let mut scene = generic(random);
     let spin = random.direction() * decade(random, 0.0, 3.0);
     let other = if random.unit() < 0.5 { spin } else { spin * (1.0 + decade(random, -12.0, -3.0)) };
@@ -129,7 +129,7 @@ pub(super) fn spinning_together(random: &mut Random) -> Scene {
 }
 
 /// Sizes from one triangle to 1e5: a single triangle, or a small solid, and a fine one.
-pub(super) fn one_and_many(random: &mut Random) -> Scene {
+pub(super) fn one_and_many(random: &mut Random) -> HostileScene {
     let mut scene = generic(random);
     // A round of the suite meets the finest meshes a few times: the oracle takes seconds for them.
     let times = match random.unit() {

@@ -1,6 +1,6 @@
 //! How families make bodies and scenes.
 use super::guise::Guise;
-use super::scene::{Body, PATIENT, Scene};
+use super::scene::{Body, HostileScene, PATIENT};
 use d2m::Solid;
 use d2m::motion::ConstantTwist;
 use d2m_testing::{Surface, Xoshiro256 as Random};
@@ -11,8 +11,8 @@ pub(super) fn body(shape: Surface, x: DVec3, v: DVec3, w: DVec3) -> Body {
     Body { vertices: shape.vertices, triangles: shape.triangles, motion, guise: Guise::ConstantTwist }
 }
 
-pub(super) fn scene(a: Body, b: Body, planted: Vec<f64>) -> Scene {
-    Scene {
+pub(super) fn scene(a: Body, b: Body, planted: Vec<f64>) -> HostileScene {
+    HostileScene {
         bodies: [a, b],
         window: [0.0, 1.0],
         solid: Solid::Filled,

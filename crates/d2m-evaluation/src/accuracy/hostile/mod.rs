@@ -18,7 +18,7 @@ use d2m::bvh::Evidence;
 use d2m_testing::Xoshiro256 as Random;
 use exact::Placed;
 use rayon::prelude::*;
-use scene::{Answer, Scene, TimedAnswer};
+use scene::{Answer, HostileScene, TimedAnswer};
 use std::path::Path;
 
 /// Twins of each scene.
@@ -44,9 +44,9 @@ enum Fault {
 /// One scene with its twins.
 struct Case {
     answer: Answer,
-    faults: Vec<(Fault, Scene)>,
+    faults: Vec<(Fault, HostileScene)>,
     /// Scenes whose query ended too late after its budget, while other work had the processor too.
-    late: Vec<Scene>,
+    late: Vec<HostileScene>,
 }
 
 pub(super) fn run(task: &Task) -> Outcome {
@@ -83,7 +83,7 @@ pub(super) fn run(task: &Task) -> Outcome {
 }
 
 /// Writes a failing scene where `cargo xtask accuracy --case FILE` finds it.
-fn keep(scene: &Scene, seed: u64, index: usize) -> String {
+fn keep(scene: &HostileScene, seed: u64, index: usize) -> String {
     let folder = crate::workspace_root().join("target/accuracy");
     let name = format!("hostile-{seed}-{index}.json");
     let written = std::fs::create_dir_all(&folder)
@@ -98,8 +98,8 @@ fn keep(scene: &Scene, seed: u64, index: usize) -> String {
 pub(super) fn replay(path: &Path) -> crate::TaskResult {
     let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
     let value = serde_json::from_str(&text).map_err(|e| format!("{}: {e}", path.display()))?;
-    let scene =
-        Scene::from_json(&value).ok_or_else(|| format!("{}: not a scene of this task", path.display()))?;
+    let scene = HostileScene::from_json(&value)
+        .ok_or_else(|| format!("{}: not a scene of this task", path.display()))?;
     let TimedAnswer { answer, late } = scene.query_often(5);
     println!("{answer:?}");
     if !late.is_zero() {
@@ -116,9 +116,9 @@ pub(super) fn replay(path: &Path) -> crate::TaskResult {
 pub(super) fn ask(seed: u64, index: u64) {
     const MOST_TESTS: u64 = 1 << 15;
     let (scene, mut random) = draw(seed, index as usize);
-    let ask = |scene: &Scene| {
+    let ask = |scene: &HostileScene| {
         let budget = d2m::Budget::UNLIMITED.with_node_tests(MOST_TESTS);
-        let _ = Scene { budget, ..scene.clone() }.query_often(1);
+        let _ = HostileScene { budget, ..scene.clone() }.query_often(1);
     };
     ask(&scene);
     for _ in 0..TWINS {
@@ -127,7 +127,7 @@ pub(super) fn ask(seed: u64, index: u64) {
 }
 
 /// A scene, and what its twins are drawn from.
-fn draw(seed: u64, index: usize) -> (Scene, Random) {
+fn draw(seed: u64, index: usize) -> (HostileScene, Random) {
     let mut random = Random::new(seed.wrapping_mul(0x9e37_79b9).wrapping_add(index as u64));
     let family = families::FAMILIES[index % families::FAMILIES.len()].1;
     (family(&mut random), random)
@@ -229,7 +229,7 @@ fn compare(answer: &Answer, twin: &Answer, change: &twins::Change) -> Option<Fau
 }
 
 /// What is wrong with an answer, by the oracle.
-fn judge(scene: &Scene, answer: &Answer, more: &[f64]) -> Option<Fault> {
+fn judge(scene: &HostileScene, answer: &Answer, more: &[f64]) -> Option<Fault> {
     let [start, end] = scene.window;
     let free = answer.free_until(scene.window);
     let is_free = |t: f64| t < free || matches!(answer, Answer::Separated) && t <= end;

@@ -24,7 +24,7 @@ pub(crate) struct Body {
 
 /// One query.
 #[derive(Clone, Debug)]
-pub(crate) struct Scene {
+pub(crate) struct HostileScene {
     pub(crate) bodies: [Body; 2],
     pub(crate) window: [f64; 2],
     pub(crate) solid: Solid,
@@ -88,7 +88,7 @@ pub(crate) struct TimedAnswer {
     pub(crate) late: Duration,
 }
 
-impl Scene {
+impl HostileScene {
     /// The answer to the query, which is made so often at most; the least delay counts.
     pub(crate) fn query_often(&self, tries: u32) -> TimedAnswer {
         let refused = TimedAnswer { answer: Answer::Refused, late: Duration::ZERO };

@@ -19,7 +19,8 @@ fn broken_answers_to_hostile_scenes_are_noticed() {
 fn a_scene_survives_its_written_form() {
     for (k, (name, family)) in families::FAMILIES.iter().enumerate() {
         let scene = family(&mut Random::new(k as u64));
-        let read = Scene::from_json(&serde_json::from_str(&scene.to_json().to_string()).unwrap()).unwrap();
+        let read =
+            HostileScene::from_json(&serde_json::from_str(&scene.to_json().to_string()).unwrap()).unwrap();
         assert_eq!(format!("{scene:?}"), format!("{read:?}"), "{name}");
         assert_eq!(scene.query_often(1).answer, read.query_often(1).answer, "{name}");
     }

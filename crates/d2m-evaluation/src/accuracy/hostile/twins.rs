@@ -1,6 +1,6 @@
 //! Metamorphic twins: the same physical query in other words. What both say must agree.
 use super::guise::Guise;
-use super::scene::{Body, Scene};
+use super::scene::{Body, HostileScene};
 use d2m::Budget;
 use d2m::motion::ConstantTwist;
 use d2m_testing::Xoshiro256 as Random;
@@ -35,7 +35,7 @@ impl Change {
 }
 
 /// One of the twins, drawn at random.
-pub(crate) fn twin(scene: &Scene, random: &mut Random) -> (Scene, Change) {
+pub(crate) fn twin(scene: &HostileScene, random: &mut Random) -> (HostileScene, Change) {
     let mut out = scene.clone();
     let change = match random.bits() % 19 {
         0 => {
@@ -154,7 +154,7 @@ pub(crate) fn twin(scene: &Scene, random: &mut Random) -> (Scene, Change) {
     (out, change)
 }
 
-fn each(scene: &mut Scene, change: impl Fn(&ConstantTwist) -> ConstantTwist) {
+fn each(scene: &mut HostileScene, change: impl Fn(&ConstantTwist) -> ConstantTwist) {
     for body in &mut scene.bodies {
         body.motion = change(&body.motion);
     }
@@ -165,7 +165,7 @@ fn moved(m: &ConstantTwist, x: DVec3, q: DQuat, v: DVec3, w: DVec3) -> ConstantT
 }
 
 /// All lengths times 2^k; given tolerances too.
-fn length(scene: &mut Scene, k: i32) -> Change {
+fn length(scene: &mut HostileScene, k: i32) -> Change {
     let factor = 2f64.powi(k);
     scene.tolerance = Some(factor * scene.tolerance.unwrap_or(1e-10 * scene.size()));
     scene.min_separation *= factor;
@@ -183,7 +183,7 @@ fn length(scene: &mut Scene, k: i32) -> Change {
 }
 
 /// All times times 2^k.
-fn time(scene: &mut Scene, k: i32) -> Change {
+fn time(scene: &mut HostileScene, k: i32) -> Change {
     let factor = 2f64.powi(k);
     each(scene, |m| {
         m.with_linear_velocity(m.linear_velocity() / factor)
@@ -195,7 +195,7 @@ fn time(scene: &mut Scene, k: i32) -> Change {
 }
 
 /// The motions in other types.
-fn other_type(scene: &mut Scene, random: &mut Random) -> Change {
+fn other_type(scene: &mut HostileScene, random: &mut Random) -> Change {
     let mut guise = || Guise::OTHERS[random.bits() as usize % Guise::OTHERS.len()];
     let (first, second) = (guise(), guise());
     scene.bodies[0].guise = first;
@@ -208,7 +208,7 @@ fn other_type(scene: &mut Scene, random: &mut Random) -> Change {
 }
 
 /// All times later by the same amount.
-fn shifted(scene: &mut Scene, random: &mut Random) -> Change {
+fn shifted(scene: &mut HostileScene, random: &mut Random) -> Change {
     let [start, end] = scene.window;
     let by = (end - start).max(f64::MIN_POSITIVE) * 2f64.powi(random.range(-3.0, 20.0) as i32);
     let is_exact = |t: f64| t + by - by == t && t + by - t == by;
@@ -221,7 +221,7 @@ fn shifted(scene: &mut Scene, random: &mut Random) -> Change {
 }
 
 /// Turned by a right angle: coordinates are exchanged exactly; orientations are quaternions that are not unit.
-fn quarter(scene: &mut Scene, turn: DQuat) {
+fn quarter(scene: &mut HostileScene, turn: DQuat) {
     let unit = turn.normalize();
     let exact = |p: DVec3| {
         let q = unit * p;
@@ -284,7 +284,7 @@ fn subdivide(body: &mut Body, random: &mut Random) {
 }
 
 /// Another reference point of one body: the same motion up to rounding where the body turns, exactly where it does not.
-fn reference_point(scene: &mut Scene, random: &mut Random) -> Change {
+fn reference_point(scene: &mut HostileScene, random: &mut Random) -> Change {
     let far = 10f64.powf(random.range(-1.0, 4.0)) * scene.size();
     let by = random.direction() * far;
     let body = &mut scene.bodies[random.bits() as usize % 2];

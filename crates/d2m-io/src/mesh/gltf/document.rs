@@ -12,7 +12,7 @@ pub(super) struct Document {
     pub(super) extensions_required: Vec<String>,
     pub(super) scene: Option<usize>,
     #[serde(default)]
-    pub(super) scenes: Vec<Scene>,
+    pub(super) scenes: Vec<GltfScene>,
     #[serde(default)]
     pub(super) nodes: Vec<Node>,
     #[serde(default)]
@@ -31,7 +31,7 @@ pub(super) struct Asset {
 }
 
 #[derive(Deserialize)]
-pub(super) struct Scene {
+pub(super) struct GltfScene {
     #[serde(default)]
     pub(super) nodes: Vec<usize>,
 }
