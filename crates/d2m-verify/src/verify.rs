@@ -221,6 +221,7 @@ impl Case<'_> {
             return self.not_proven(Reason::Malformed, None);
         }
         let (mut now, mut step) = (span.from, span.to - span.from);
+        let mut for_points = *left / PART_FOR_POINTS;
         while span.to - now > every {
             let end = (now + every).next_down().max(now);
             // As late as may be, so that something is gained.
@@ -235,7 +236,9 @@ impl Case<'_> {
             while until < span.to && step > every && *left > 0 {
                 *left -= 1;
                 let part = TimeSpan { from: until, to: (until + step).min(span.to) };
-                if self.lasts(&meeting, part, level, left) {
+                let lasts = self.lasts(&meeting, part, level, left)
+                    || self.overlaps_over(&meeting, part, &mut for_points, left);
+                if lasts {
                     (until, step) = (part.to, 2.0 * step);
                 } else {
                     step *= 0.5;
@@ -257,11 +260,23 @@ impl Case<'_> {
             return clear(&self.bodies, 0.0, span, left).is_ok();
         };
         let corners = [0, 1].map(|k| self.bodies[k].mesh.corners(triangles[k]));
-        Instant::over(&self.bodies, span).is_some_and(|over| {
-            over.most_distance(&corners) <= level || overlap(&self.bodies, &over, triangles, left)
-        })
+        Instant::over(&self.bodies, span).is_some_and(|over| over.most_distance(&corners) <= level)
+    }
+
+    /// Is a point found that is inside of both bodies over a span? That takes steps of both.
+    fn overlaps_over(&self, meeting: &Meeting, span: TimeSpan, for_points: &mut u64, left: &mut u64) -> bool {
+        let (Some(triangles), true) = (meeting.triangles, *for_points > 0) else { return false };
+        let before = *for_points;
+        let is_found = Instant::over(&self.bodies, span)
+            .is_some_and(|over| overlap(&self.bodies, &over, triangles, for_points));
+        *left = left.saturating_sub(before - *for_points);
+        is_found
     }
 }
+
+/// Where triangles do not stay together, points inside of both bodies may: this part of the steps goes to finding them, so that the others
+/// suffice for what needs none.
+const PART_FOR_POINTS: u64 = 4;
 
 /// A time at which the bodies are proven close, and triangles that are; none: one body holds the other.
 struct Meeting {
