@@ -100,6 +100,28 @@ impl Simulation {
         self.bodies.get(body.index()).is_some_and(|own| own.role.is_named() && own.id == body)
     }
 
+    /// The place that the next body to be added is given, its [`BodyId::index`]: the first one that is free.
+    ///
+    /// ```
+    /// # use d2m_bvh::MeshTree;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// use d2m_dynamics::{Body, Joint, JointKind, Simulation, SimulationOptions};
+    /// use glam::DVec3;
+    /// let mut simulation = Simulation::new(SimulationOptions::default())?;
+    /// let hung = simulation.add(&Body::new("hung", Arc::clone(&cube)))?;
+    /// assert_eq!(simulation.next_index(), 1);
+    /// // Joints with the world take a place for it.
+    /// simulation.add_joint(&Joint::new(JointKind::Spherical, hung, None, DVec3::Y))?;
+    /// let next = simulation.next_index();
+    /// assert_eq!((next, simulation.add(&Body::new("next", cube))?.index()), (2, 2));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn next_index(&self) -> usize {
+        let vacant = self.bodies.iter().position(|body| body.role == Role::Vacant);
+        vacant.unwrap_or(self.bodies.len())
+    }
+
     /// The place of a body.
     ///
     /// # Panics
@@ -113,10 +135,7 @@ impl Simulation {
     fn settle_in(&mut self, body: RigidBody, wanted: Option<usize>) -> BodyId {
         let is_free = |place: &usize| self.bodies.get(*place).is_none_or(|body| body.role == Role::Vacant);
         let wanted = wanted.filter(|place| *place <= self.bodies.len() && is_free(place));
-        let place = wanted.unwrap_or_else(|| {
-            let vacant = self.bodies.iter().position(|body| body.role == Role::Vacant);
-            vacant.unwrap_or(self.bodies.len())
-        });
+        let place = wanted.unwrap_or_else(|| self.next_index());
         if place == self.generations.len() {
             self.generations.push(0);
         }

@@ -5,6 +5,8 @@ mod arrays;
 mod batch;
 mod fault;
 mod files;
+mod frozen;
+mod joint;
 mod mesh;
 mod motion;
 mod options;
@@ -20,6 +22,8 @@ mod robot_input;
 mod robot_recipe;
 mod segment;
 mod simulation;
+mod simulation_live;
+mod snapshot;
 mod supervise;
 mod trajectory;
 mod verify;
@@ -35,6 +39,10 @@ mod _d2m {
     use crate::answer::{Answer, Contact, Separated, Undecided};
     #[pymodule_export]
     use crate::batch::batch;
+    #[pymodule_export]
+    use crate::frozen::{Frozen, RayAnswer};
+    #[pymodule_export]
+    use crate::joint::{Motor, Spring};
     #[pymodule_export]
     use crate::mesh::{Mesh, Tree};
     #[pymodule_export]
@@ -54,9 +62,11 @@ mod _d2m {
     #[pymodule_export]
     use crate::robot::Robot;
     #[pymodule_export]
-    use crate::segment::{Impulse, Segment};
+    use crate::segment::{Impulse, Segment, TouchEvent};
     #[pymodule_export]
     use crate::simulation::Simulation;
+    #[pymodule_export]
+    use crate::snapshot::Snapshot;
     #[pymodule_export]
     use crate::trajectory::{JointTrajectories, PoseTrajectories};
     #[pymodule_export]

@@ -56,6 +56,13 @@ pub(crate) struct Distance {
     found: d2m::Distance,
 }
 
+impl Distance {
+    /// With its witness.
+    pub(crate) fn new(py: Python<'_>, found: d2m::Distance) -> PyResult<Py<Self>> {
+        Py::new(py, PyClassInitializer::from(Witness::from(&found)).add_subclass(Self { found }))
+    }
+}
+
 #[pymethods]
 impl Distance {
     /// The distance to rounding; 0 if the bodies are not proven apart.
@@ -127,10 +134,7 @@ pub(crate) fn distance(
     }
     let [a, b] = pair.posed();
     let found = py.detach(|| distance_within(a, b, &options, &mut PairCache::new())).or_raise()?;
-    let object = |found: d2m::Distance| {
-        Py::new(py, PyClassInitializer::from(Witness::from(&found)).add_subclass(Distance { found }))
-    };
-    found.map(object).transpose()
+    found.map(|found| Distance::new(py, found)).transpose()
 }
 
 /// Do two bodies at rest share a point?

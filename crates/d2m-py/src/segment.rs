@@ -2,7 +2,7 @@
 
 use crate::arrays::vector;
 use crate::motion::ConstantTwist;
-use d2m_dynamics::{BodyId, ContactImpulse, Segment as Flown};
+use d2m_dynamics::{BodyId, ContactImpulse, Segment as Flown, TouchChange, TouchEvent as Touched};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -122,5 +122,54 @@ impl Impulse {
     fn __repr__(&self) -> String {
         let ContactImpulse { a, b, time, impulse, .. } = self.impulse;
         format!("Impulse({}, {}, time={time:?}, impulse={:?})", a.index(), b.index(), impulse.to_array())
+    }
+}
+
+/// Two bodies begin to touch, or do so no more. What rests and sleeps goes on touching.
+///
+/// >>> import d2m_ccd
+/// >>> simulation = d2m_ccd.Simulation(gravity=[0, 0, 0])
+/// >>> gate = simulation.add("shape:box", kind="static", presence="sensor")
+/// >>> ball = simulation.add("shape:box", pose=d2m_ccd.Pose(x=[-5, 0, 0]), v=[10, 0, 0])
+/// >>> segments = simulation.advance(1.0)
+/// >>> [event.change for event in simulation.touches]
+/// ['began', 'ended']
+#[pyclass(frozen, module = "d2m_ccd")]
+pub(crate) struct TouchEvent {
+    pub(crate) event: Touched,
+}
+
+#[pymethods]
+impl TouchEvent {
+    /// Index of the body with the smaller one.
+    #[getter]
+    fn a(&self) -> usize {
+        self.event.a.index()
+    }
+
+    /// Index of the other body.
+    #[getter]
+    fn b(&self) -> usize {
+        self.event.b.index()
+    }
+
+    /// When.
+    #[getter]
+    fn time(&self) -> f64 {
+        self.event.time
+    }
+
+    /// "began": the first impulse between them, or a sensor may be met. "ended": they are clear of each other, or one of them was removed.
+    #[getter]
+    fn change(&self) -> &'static str {
+        match self.event.change {
+            TouchChange::Ended => "ended",
+            _ => "began",
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        let Touched { a, b, time, .. } = self.event;
+        format!("TouchEvent({}, {}, time={time:?}, change='{}')", a.index(), b.index(), self.change())
     }
 }

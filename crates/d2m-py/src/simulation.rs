@@ -6,11 +6,11 @@ use crate::mesh::tree_argument;
 use crate::motion::motion_argument;
 use crate::options::{default_solid, solid};
 use crate::pose::{Pose, pose_argument, vec3_or_zero, wxyz};
-use crate::segment::Segment;
+use crate::segment::{Segment, TouchEvent};
 use crate::supervise::{Watch, pool, supervised};
 use d2m_dynamics::{
-    Body, BodyId, Kind, Mass, MassError, MassProperties, Segment as Flown, Simulation as Engine,
-    SimulationError, SimulationOptions, StepError,
+    Body, BodyId, Damping, Groups, Kind, Mass, MassError, MassProperties, Presence, Segment as Flown,
+    Simulation as Engine, SimulationError, SimulationOptions, StepError, TouchEvent as Touched,
 };
 use glam::{DMat3, DVec3};
 use numpy::PyArray2;
@@ -26,7 +26,15 @@ impl From<SimulationError> for Fault {
         let fault = Self::new(error.to_string());
         match error {
             SimulationError::BadOption { value, .. } => fault.found(value),
-            SimulationError::BadBody { value, .. } => fault.with_value(Value::Text(value)),
+            SimulationError::BadBody { value, .. } | SimulationError::BadJoint { value, .. } => {
+                fault.with_value(Value::Text(value))
+            }
+            SimulationError::TooLarge { value, .. }
+            | SimulationError::VelocityWithoutMotion { value, .. } => {
+                fault.with_value(Value::Numbers(value.to_array().to_vec()))
+            }
+            SimulationError::TargetTooFast { turn, .. } => fault.found(turn),
+            SimulationError::Snapshot { place } => fault.at(place),
             _ => fault,
         }
     }
@@ -59,36 +67,69 @@ pub(crate) struct Simulation {
     pool: Arc<ThreadPool>,
 }
 
-struct Inner {
-    engine: Engine,
-    names: HashMap<String, usize>,
+/// What changes.
+pub(crate) struct Inner {
+    pub(crate) engine: Engine,
+    pub(crate) names: HashMap<String, usize>,
+    /// Of the last advance.
+    touches: Vec<Touched>,
 }
 
 impl Inner {
-    fn id(&self, index: usize) -> PyResult<BodyId> {
-        let id = self.engine.ids().find(|id| id.index() == index);
-        id.ok_or_else(|| PyKeyError::new_err(format!("body {index} is not one of {}", self.engine.len())))
+    pub(crate) fn find(&self, any: &Bound<'_, PyAny>) -> PyResult<BodyId> {
+        find(any, &self.names, self.engine.ids())
     }
+}
 
-    fn find(&self, any: &Bound<'_, PyAny>) -> PyResult<BodyId> {
-        let index = match any.extract::<String>() {
-            Ok(name) => {
-                let index = self.names.get(&name).copied();
-                index.ok_or_else(|| PyKeyError::new_err(format!("{name:?} is not in this simulation")))?
-            }
-            Err(_) => any.extract()?,
-        };
-        self.id(index)
-    }
+/// The body of a simulation that an index or a name means.
+pub(crate) fn find(
+    any: &Bound<'_, PyAny>,
+    names: &HashMap<String, usize>,
+    ids: impl Iterator<Item = BodyId>,
+) -> PyResult<BodyId> {
+    let index = match any.extract::<String>() {
+        Ok(name) => {
+            let index = names.get(&name).copied();
+            index.ok_or_else(|| PyKeyError::new_err(format!("{name:?} is not in this simulation")))?
+        }
+        Err(_) => any.extract()?,
+    };
+    let mut count = 0;
+    let id = ids.inspect(|_| count += 1).find(|id| id.index() == index);
+    id.ok_or_else(|| PyKeyError::new_err(format!("body {index} is not one of {count}")))
 }
 
 impl Simulation {
-    fn lock(&self, py: Python<'_>) -> MutexGuard<'_, Inner> {
+    pub(crate) fn lock(&self, py: Python<'_>) -> MutexGuard<'_, Inner> {
         self.inner.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Changes something of one body.
+    pub(crate) fn change(
+        &self,
+        body: &Bound<'_, PyAny>,
+        change: impl FnOnce(&mut Engine, BodyId) -> Result<(), SimulationError>,
+    ) -> PyResult<()> {
+        let mut inner = self.lock(body.py());
+        let id = inner.find(body)?;
+        change(&mut inner.engine, id).or_raise()
+    }
+
+    /// Changes something of two bodies.
+    pub(crate) fn change_pair(
+        &self,
+        a: &Bound<'_, PyAny>,
+        b: &Bound<'_, PyAny>,
+        change: impl FnOnce(&mut Engine, BodyId, BodyId) -> Result<(), SimulationError>,
+    ) -> PyResult<()> {
+        let mut inner = self.lock(a.py());
+        let (a, b) = (inner.find(a)?, inner.find(b)?);
+        change(&mut inner.engine, a, b).or_raise()
     }
 }
 
-fn finite(any: &Bound<'_, PyAny>, name: &str) -> PyResult<DVec3> {
+/// Three finite numbers.
+pub(crate) fn finite(any: &Bound<'_, PyAny>, name: &str) -> PyResult<DVec3> {
     Ok(DVec3::from_array(small(any, name)?))
 }
 
@@ -113,22 +154,30 @@ impl Simulation {
             options = options.with_gravity(finite(gravity, "gravity")?);
         }
         let engine = Engine::new(options).or_raise()?;
-        let inner = Mutex::new(Inner { engine, names: HashMap::new() });
+        let inner = Mutex::new(Inner { engine, names: HashMap::new(), touches: Vec::new() });
         Ok(Self { inner, pool: pool(threads).or_raise()? })
     }
 
-    /// Adds a body and returns its index.
+    /// Adds a body and returns its index. That it intersects no other one is checked by the next step, or at once if `checked`.
     ///
-    /// `kind` "dynamic", "static" or "kinematic" (then `motion`, of the mesh frame). `pose` of the mesh frame; `v`, `w`: velocity of
-    /// the center of mass and angular velocity; `density` of the closed mesh, or its `mass`, or `mass`, `center` and `inertia` (3, 3)
-    /// about it; `restitution` and `friction` of its surface; `solid` by default if the mesh is watertight.
+    /// `kind` "dynamic", "static", "kinematic" (then `motion`, of the mesh frame) or "driven" (by `set_target`). `pose` of the mesh frame; `v`,
+    /// `w`: velocity of the center of mass and angular velocity; `density` of the closed mesh, or its `mass`, or `mass`, `center` and `inertia`
+    /// (3, 3) about it; `restitution` and `friction` of its surface; `solid` by default if the mesh is watertight; `radius`: everything within
+    /// that distance. `linear_damping`, `angular_damping`: rates at which velocities fade; `groups`: bits of the groups that it is in, and of
+    /// those that it meets (all); `presence` "solid" or "sensor", which others pass through; `surface_velocity`: of a belt, mesh axes.
     ///
-    /// Raises `InputError` for numbers that cannot be used, a name that is taken, and mass properties that are missing.
+    /// Raises `InputError` for numbers that cannot be used, a name that is taken, mass properties that are missing, and, if `checked`, an
+    /// intersection: nothing changes then.
     ///
     /// >>> import d2m_ccd
-    /// >>> d2m_ccd.Simulation().add("shape:box", name="cup", density=500)
+    /// >>> simulation = d2m_ccd.Simulation()
+    /// >>> simulation.add("shape:box", name="cup", density=500)
     /// 0
-    #[pyo3(signature = (tree, *, name=None, kind="dynamic", pose=None, motion=None, v=None, w=None, density=None, mass=None, center=None, inertia=None, restitution=0.0, friction=0.0, solid=None))]
+    /// >>> simulation.add("shape:box", checked=True)  # doctest: +ELLIPSIS
+    /// Traceback (most recent call last):
+    ///     ...
+    /// d2m_ccd._errors.InputError: bodies cup and 1 intersect at the start: ...
+    #[pyo3(signature = (tree, *, name=None, kind="dynamic", pose=None, motion=None, v=None, w=None, density=None, mass=None, center=None, inertia=None, restitution=0.0, friction=0.0, solid=None, radius=0.0, linear_damping=0.0, angular_damping=0.0, groups=None, presence="solid", surface_velocity=None, checked=false))]
     #[expect(clippy::too_many_arguments, reason = "keywords")]
     fn add(
         &self,
@@ -147,36 +196,25 @@ impl Simulation {
         restitution: f64,
         friction: f64,
         solid: Option<&Bound<'_, PyAny>>,
+        radius: f64,
+        linear_damping: f64,
+        angular_damping: f64,
+        groups: Option<(u32, u32)>,
+        presence: &str,
+        surface_velocity: Option<&Bound<'_, PyAny>>,
+        checked: bool,
     ) -> PyResult<usize> {
         let tree = tree_argument(tree)?;
         let usual = default_solid(&tree);
         let solid = solid.map_or(Ok(usual), |any| self::solid(any, usual))?;
-        let kind = match (kind, motion) {
-            ("dynamic", None) => Kind::Dynamic,
-            ("static", None) => Kind::Static,
-            ("kinematic", Some(motion)) => {
-                let motion = motion_argument(Some(motion), "motion")?;
-                motion.check_size(&tree).or_raise()?;
-                Kind::Kinematic(motion.shared())
-            }
-            ("kinematic", None) => return Err(Fault::new("motion: a kinematic body needs one").into()),
-            ("dynamic" | "static", Some(_)) => {
-                return Err(Fault::new(format!("motion: a {kind} body has none")).into());
-            }
-            _ => {
-                let message =
-                    format!("kind is {kind:?}: \"dynamic\", \"static\" or \"kinematic\" is expected");
-                return Err(Fault::new(message).with_value(Value::Text(kind.to_owned())).into());
-            }
-        };
+        let kind = kind_argument(kind, motion, 2.0 * tree.radius())?;
         let pose = pose_argument(pose, "pose")?;
         let mass = mass_of(density, mass, center, inertia)?;
         let mut inner = self.lock(py);
-        let index = inner.engine.len();
         if let Some(taken) = name.as_ref().filter(|name| inner.names.contains_key(*name)) {
             return Err(Fault::new(format!("name {taken:?} is taken")).into());
         }
-        let body = Body::new(name.clone().unwrap_or_else(|| index.to_string()), tree)
+        let body = Body::new(name.clone().unwrap_or_else(|| inner.engine.next_index().to_string()), tree)
             .with_kind(kind)
             .with_position(pose.transform_point(DVec3::ZERO))
             .with_orientation(pose.rotation)
@@ -185,8 +223,15 @@ impl Simulation {
             .with_mass(mass)
             .with_restitution(restitution)
             .with_friction(friction)
-            .with_solid(solid);
-        let index = inner.engine.add(&body).or_raise()?.index();
+            .with_solid(solid)
+            .with_radius(radius)
+            .with_damping(Damping { linear: linear_damping, angular: angular_damping })
+            .with_groups(groups.map_or(Groups::ALL, |(member, meets)| Groups { member, meets }))
+            .with_presence(presence_argument(presence)?)
+            .with_surface_velocity(vec3_or_zero(surface_velocity, "surface_velocity")?);
+        let engine = &mut inner.engine;
+        let id = if checked { engine.add_checked(&body) } else { engine.add(&body) };
+        let index = id.or_raise()?.index();
         if let Some(name) = name {
             inner.names.insert(name, index);
         }
@@ -206,138 +251,6 @@ impl Simulation {
         inner.engine.remove(id);
         inner.names.retain(|_, index| *index != id.index());
         Ok(())
-    }
-
-    /// Puts the mesh frame of a body that follows no motion somewhere else; its velocities stay.
-    ///
-    /// Raises `InputError` if it would intersect another one there: nothing changes then.
-    ///
-    /// >>> import d2m_ccd
-    /// >>> simulation = d2m_ccd.Simulation()
-    /// >>> cup = simulation.add("shape:box")
-    /// >>> simulation.set_pose(cup, d2m_ccd.Pose(x=[0, 2, 0]))
-    /// >>> simulation.pose(cup).x.tolist()
-    /// [0.0, 2.0, 0.0]
-    fn set_pose(&self, py: Python<'_>, body: &Bound<'_, PyAny>, pose: &Bound<'_, PyAny>) -> PyResult<()> {
-        let pose = pose_argument(Some(pose), "pose")?;
-        let mut inner = self.lock(py);
-        let id = inner.find(body)?;
-        inner.engine.set_pose(id, pose).or_raise()
-    }
-
-    /// Gives a dynamic body these velocities, of its center of mass and angular, world axes.
-    ///
-    /// >>> import d2m_ccd
-    /// >>> simulation = d2m_ccd.Simulation()
-    /// >>> simulation.set_velocity(simulation.add("shape:box"), [1, 0, 0])
-    #[pyo3(signature = (body, v, w=None))]
-    fn set_velocity(
-        &self,
-        py: Python<'_>,
-        body: &Bound<'_, PyAny>,
-        v: &Bound<'_, PyAny>,
-        w: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<()> {
-        let (linear, angular) = (finite(v, "v")?, vec3_or_zero(w, "w")?);
-        let mut inner = self.lock(py);
-        let id = inner.find(body)?;
-        inner.engine.set_velocity(id, linear, angular).or_raise()
-    }
-
-    /// Another gravity from now on.
-    ///
-    /// >>> import d2m_ccd
-    /// >>> d2m_ccd.Simulation().set_gravity([0, -1.62, 0])
-    fn set_gravity(&self, py: Python<'_>, gravity: &Bound<'_, PyAny>) -> PyResult<()> {
-        let gravity = finite(gravity, "gravity")?;
-        self.lock(py).engine.set_gravity(gravity).or_raise()
-    }
-
-    /// Restitution and friction of a body from now on.
-    ///
-    /// >>> import d2m_ccd
-    /// >>> simulation = d2m_ccd.Simulation()
-    /// >>> simulation.set_material(simulation.add("shape:box"), restitution=0.5, friction=0.2)
-    #[pyo3(signature = (body, *, restitution, friction))]
-    fn set_material(
-        &self,
-        py: Python<'_>,
-        body: &Bound<'_, PyAny>,
-        restitution: f64,
-        friction: f64,
-    ) -> PyResult<()> {
-        let mut inner = self.lock(py);
-        let id = inner.find(body)?;
-        inner.engine.set_material(id, restitution, friction).or_raise()
-    }
-
-    /// These two bodies may pass through each other.
-    ///
-    /// >>> import d2m_ccd
-    /// >>> simulation = d2m_ccd.Simulation()
-    /// >>> simulation.ignore(simulation.add("shape:box"), simulation.add("shape:box"))
-    fn ignore(&self, py: Python<'_>, a: &Bound<'_, PyAny>, b: &Bound<'_, PyAny>) -> PyResult<()> {
-        let mut inner = self.lock(py);
-        let (a, b) = (inner.find(a)?, inner.find(b)?);
-        inner.engine.ignore(a, b);
-        Ok(())
-    }
-
-    /// Restitution and friction of one pair, instead of what follows from its bodies.
-    ///
-    /// >>> import d2m_ccd
-    /// >>> simulation = d2m_ccd.Simulation()
-    /// >>> simulation.set_pair(simulation.add("shape:box"), simulation.add("shape:box"), restitution=0.5, friction=0.2)
-    #[pyo3(signature = (a, b, *, restitution, friction))]
-    fn set_pair(
-        &self,
-        py: Python<'_>,
-        a: &Bound<'_, PyAny>,
-        b: &Bound<'_, PyAny>,
-        restitution: f64,
-        friction: f64,
-    ) -> PyResult<()> {
-        let mut inner = self.lock(py);
-        let (a, b) = (inner.find(a)?, inner.find(b)?);
-        inner.engine.set_pair(a, b, restitution, friction).or_raise()
-    }
-
-    /// A force through the center of mass and a torque over the next step, world axes; gravity comes on top.
-    ///
-    /// >>> import d2m_ccd
-    /// >>> simulation = d2m_ccd.Simulation()
-    /// >>> simulation.set_force(simulation.add("shape:box"), [0, 100, 0])
-    #[pyo3(signature = (body, force, torque=None))]
-    fn set_force(
-        &self,
-        py: Python<'_>,
-        body: &Bound<'_, PyAny>,
-        force: &Bound<'_, PyAny>,
-        torque: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<()> {
-        let (force, torque) = (finite(force, "force")?, vec3_or_zero(torque, "torque")?);
-        let mut inner = self.lock(py);
-        let id = inner.find(body)?;
-        inner.engine.set_force(id, force, torque).or_raise()
-    }
-
-    /// Adds an impulse at the center of mass and an angular impulse, world axes.
-    ///
-    /// >>> import d2m_ccd
-    /// >>> simulation = d2m_ccd.Simulation()
-    /// >>> simulation.apply_impulse(simulation.add("shape:box"), [0, 100, 0])
-    #[pyo3(signature = (body, impulse, angular=None))]
-    fn apply_impulse(
-        &self,
-        py: Python<'_>,
-        body: &Bound<'_, PyAny>,
-        impulse: &Bound<'_, PyAny>,
-        angular: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<()> {
-        let (impulse, angular) = (finite(impulse, "impulse")?, vec3_or_zero(angular, "angular")?);
-        let mut inner = self.lock(py);
-        let id = inner.find(body)?;
-        inner.engine.apply_impulse(id, impulse, angular).or_raise()
     }
 
     /// Advances by steps until this time and returns the segments flown, the last one included.
@@ -370,7 +283,8 @@ impl Simulation {
         let total = ((until - time) / step).ceil().max(0.0) as usize;
         let flown = supervised(py, &Watch { progress, total }, |supervision| {
             let mut inner = inner.lock().unwrap_or_else(PoisonError::into_inner);
-            let engine = &mut inner.engine;
+            let Inner { engine, touches, .. } = &mut *inner;
+            touches.clear();
             pool.install(move || -> Result<Vec<Flown>, StepError> {
                 let mut flown = Vec::new();
                 while engine.time() < until && !supervision.is_cancelled() {
@@ -382,6 +296,7 @@ impl Simulation {
                     let report =
                         if rest < (1.0 - 1e-6) * step { engine.step_to(until)? } else { engine.step()? };
                     flown.extend(report.segments);
+                    touches.extend(report.touches);
                     supervision.add_done(1);
                 }
                 flown.extend(engine.finish());
@@ -393,6 +308,20 @@ impl Simulation {
             Err(StepError::Setup(error)) => Err(Fault::from(error).into()),
             Err(error) => Err(PyRuntimeError::new_err(error.to_string())),
         }
+    }
+
+    /// Who began to touch in the last `advance`, and who did so no more: `TouchEvent`s in the order of time. Sensors are among them.
+    ///
+    /// >>> import d2m_ccd
+    /// >>> simulation = d2m_ccd.Simulation()
+    /// >>> floor = simulation.add("shape:box?x=0.5&y=0.5&z=0.5", kind="static")
+    /// >>> cup = simulation.add("shape:box?x=0.5&y=0.5&z=0.5", pose=d2m_ccd.Pose(x=[0, 1.1, 0]))
+    /// >>> segments = simulation.advance(0.3)
+    /// >>> [(event.a, event.b, event.change) for event in simulation.touches], simulation.touch(floor, cup)
+    /// ([(0, 1, 'began')], True)
+    #[getter]
+    fn touches(&self, py: Python<'_>) -> Vec<TouchEvent> {
+        self.lock(py).touches.iter().map(|&event| TouchEvent { event }).collect()
     }
 
     /// The present time.
@@ -451,6 +380,39 @@ impl Simulation {
         let inner = self.lock(py);
         format!("Simulation({} bodies, time={:?})", inner.engine.len(), inner.engine.time())
     }
+}
+
+/// A kind by its word, with the motion of a kinematic body of this diameter.
+pub(crate) fn kind_argument(kind: &str, motion: Option<&Bound<'_, PyAny>>, diameter: f64) -> PyResult<Kind> {
+    match (kind, motion) {
+        ("dynamic", None) => Ok(Kind::Dynamic),
+        ("static", None) => Ok(Kind::Static),
+        ("driven", None) => Ok(Kind::Driven),
+        ("kinematic", Some(motion)) => {
+            let motion = motion_argument(Some(motion), "motion")?;
+            motion.check_diameter(diameter).or_raise()?;
+            Ok(Kind::Kinematic(motion.shared()))
+        }
+        ("kinematic", None) => Err(Fault::new("motion: a kinematic body needs one").into()),
+        ("dynamic" | "static" | "driven", Some(_)) => {
+            Err(Fault::new(format!("motion: a {kind} body has none")).into())
+        }
+        _ => Err(unexpected("kind", kind, "\"dynamic\", \"static\", \"kinematic\" or \"driven\"")),
+    }
+}
+
+fn presence_argument(presence: &str) -> PyResult<Presence> {
+    match presence {
+        "solid" => Ok(Presence::Solid),
+        "sensor" => Ok(Presence::Sensor),
+        _ => Err(unexpected("presence", presence, "\"solid\" or \"sensor\"")),
+    }
+}
+
+/// A word that is none of those that an argument takes.
+pub(crate) fn unexpected(name: &str, word: &str, wanted: &str) -> PyErr {
+    let message = format!("{name} is {word:?}: {wanted} is expected");
+    Fault::new(message).with_value(Value::Text(word.to_owned())).into()
 }
 
 /// What was given of density, mass, center and inertia.

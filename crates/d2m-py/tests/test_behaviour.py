@@ -340,6 +340,7 @@ def test_what_a_user_writes_runs() -> None:
 
     assert isinstance(typing_of_a_user.use(), float)
     assert typing_of_a_user.world().startswith("separated")
+    assert isinstance(typing_of_a_user.simulation(), float)
 
 
 @pytest.mark.parametrize("checker", ["mypy", "pyright", "stubtest"])

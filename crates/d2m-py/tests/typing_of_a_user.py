@@ -30,3 +30,19 @@ def world() -> str:
     first = scene.first_contact((0.0, 2.0), progress=lambda done, total: None)
     near = d2m_ccd.distance("shape:box", "shape:box", np.eye(4), cutoff=1.0)
     return first.status + (near.state if near is not None else "far")
+
+
+def simulation() -> float:
+    running = d2m_ccd.Simulation()
+    gate = running.add("shape:box", kind="driven", presence="sensor", groups=(1, 3))
+    hung = running.add("shape:box", name="hung", surface_velocity=np.zeros(3), checked=True)
+    hinge = running.add_joint("revolute", "hung", limits=(-1, 1), spring=d2m_ccd.Spring(1.0))
+    running.set_motor(hinge, d2m_ccd.Motor(velocity=1, most=2))
+    running.set_target(gate, d2m_ccd.Pose(x=[0.01, 0, 0]))
+    running.advance(0.1)
+    running.restore(d2m_ccd.Snapshot.from_bytes(running.snapshot().to_bytes()))
+    met = running.frozen(node_tests=10**6).ray([0, 5, 0], np.array([0.0, -10, 0]))
+    if TYPE_CHECKING:
+        assert_type(met.body, "int | None")
+        assert_type(running.touches, "list[d2m_ccd.TouchEvent]")
+    return running.joint_value(hinge) + hung

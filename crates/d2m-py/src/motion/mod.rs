@@ -68,12 +68,17 @@ impl Form {
 
     /// Spans of keyframes must meet, to a part of the body's size.
     pub(crate) fn check_size(&self, tree: &MeshTree) -> Result<(), Fault> {
+        // The radius is about the middle of the bounding box: the size is that of its diagonal.
+        self.check_diameter(2.0 * tree.radius())
+    }
+
+    /// The same for a body of this diameter.
+    pub(crate) fn check_diameter(&self, diameter: f64) -> Result<(), Fault> {
         let Self::Any(motion) = self else { return Ok(()) };
         if !matches!(**motion, AnyMotion::Keyframes(_)) {
             return Ok(());
         }
-        // The radius is about the middle of the bounding box: the size is that of its diagonal.
-        Ok(motion.check_size(2.0 * tree.radius())?)
+        Ok(motion.check_size(diameter)?)
     }
 }
 
