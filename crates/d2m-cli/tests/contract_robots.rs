@@ -67,7 +67,7 @@ fn a_part_leaves_its_table() {
     ] {
         refused(&["robot", &robot, "--path", &path("1", "1"), "--scene", &scene(start)], words);
     }
-    // The hand is kept 0.4 away from the ceiling, the part from the table not at all: that is told, and proven again.
+    // The hand is kept 0.4 away from the ceiling, the part from the table not at all: that is stated, and proven again.
     let kept = r#""start": "leave", "pairs": [{"a": "ceiling", "b": "hand", "min_separation": 0.4}],"#;
     let clearance =
         r#""pairs": [{"a": "ceiling", "b": "hand", "min_separation": 0.4}], "ignore": [["part", "table"]],"#;

@@ -49,7 +49,7 @@ impl Case {
         (serde_json::from_str(&stdout(&output)).unwrap(), stderr(&output))
     }
 
-    /// A contact at a time that is known, not told after it.
+    /// A contact at a time that is known, never after it.
     fn meets(&self, urdf: &str, path: &str, scene: &str, expected: f64) {
         let (found, _) = self.ask(urdf, path, scene);
         assert_eq!(found["status"], "contact", "{urdf}: {found}");

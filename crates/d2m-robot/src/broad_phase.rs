@@ -71,7 +71,7 @@ impl<'a> BroadPhase<'a> {
         Ok(pairs.filter_map(candidate).collect())
     }
 
-    /// The open pairs of a depth over a span: those that are not proven apart are looked at in both halves, or left.
+    /// The open pairs of a depth over a span: those that are not proven apart are examined in both halves, or left.
     fn examine(&mut self, [from, to]: [f64; 2], depth: usize) {
         self.span.move_to(from, to);
         self.places.fill(UNMADE);

@@ -340,7 +340,7 @@ mod tests {
     }
 
     /// A rod that turns towards a box sweeps its tip into it: nothing but the turn of the direction sees that, since the centers rest and
-    /// what the proof leaves out of a turn is of second order. Each body turns once, to either side, and each is asked first once.
+    /// what the proof leaves out of a turn is of second order. Each body turns once, to either side, and each is once the first of the pair.
     #[test]
     fn a_tip_that_turns_into_a_box_is_seen() {
         let block = |half: DVec3| BodyBox {

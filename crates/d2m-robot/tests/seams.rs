@@ -89,7 +89,7 @@ fn draw(random: &mut Random, size: f64) -> Vec<f64> {
 }
 
 /// Pair and time.
-fn told(answer: &PathAnswer) -> (Option<[String; 2]>, f64) {
+fn outcome(answer: &PathAnswer) -> (Option<[String; 2]>, f64) {
     let pair = answer.contact().map(|found| {
         let mut pair = [found.a.clone(), found.b.clone()];
         pair.sort();
@@ -99,7 +99,7 @@ fn told(answer: &PathAnswer) -> (Option<[String; 2]>, f64) {
 }
 
 fn about_the_same(one: &PathAnswer, other: &PathAnswer, scale: f64, within: f64) {
-    let ((pair, until), (other_pair, other_until)) = (told(one), told(other));
+    let ((pair, until), (other_pair, other_until)) = (outcome(one), outcome(other));
     assert_eq!(pair, other_pair, "{one:?}\n{other:?}");
     assert!((until * scale - other_until).abs() <= within, "{until:?} times {scale:?}, {other_until:?}");
 }
@@ -144,14 +144,14 @@ fn every_door_has_the_same_answer() {
             assert_eq!(edge, swapped.check(&turned(from), &turned(to)).unwrap());
             // In another time, and through a point of the way that is there twice as a configuration.
             let shifted = all.check_path(&path(&[-3.0, 5.0], &ends)).unwrap();
-            let (pair, until) = told(&edge);
-            let (other_pair, other_until) = told(&shifted);
+            let (pair, until) = outcome(&edge);
+            let (other_pair, other_until) = outcome(&shifted);
             assert_eq!(pair, other_pair);
             assert!((until * 8.0 - 3.0 - other_until).abs() < 1e-7, "{until} {other_until}");
             let middle: Vec<f64> = from.iter().zip(to).map(|(a, b)| 0.5 * a + 0.5 * b).collect();
             let rests = [from.clone(), middle.clone(), middle, to.clone()];
             let halted = all.check_path(&path(&[0.0, 0.5, 1.5, 2.0], &rests)).unwrap();
-            let (other_pair, other_until) = told(&halted);
+            let (other_pair, other_until) = outcome(&halted);
             assert_eq!(pair, other_pair, "{edge:?} {halted:?}");
             let expected = if until > 0.5 { until + 1.0 } else { until };
             assert!((expected - other_until).abs() < 1e-7, "{until} {other_until}");
@@ -335,7 +335,7 @@ fn the_order_in_which_bodies_come_changes_no_answer() {
         let [one, two, fewer] =
             [&one, &other, &before].map(|scene| scene.edges(&NAMES).unwrap().check(&from, &to).unwrap());
         about_the_same(&one, &two, 1.0, 1e-9);
-        differ += usize::from(told(&one) != told(&fewer));
+        differ += usize::from(outcome(&one) != outcome(&fewer));
         assert!(fewer.free_until() >= one.free_until() - 1e-9);
     }
     assert!(differ > 5, "{differ}");
@@ -379,7 +379,7 @@ fn worlds_of_the_same_bodies_have_the_same_answer() {
                 }
             }
             let answer = all.check_path(&path).unwrap();
-            let (pair, until) = told(&answer);
+            let (pair, until) = outcome(&answer);
             for found in
                 [moving.first_contact(along.window()), planned.first_contact_of(&plan, along.window())]
             {

@@ -10,7 +10,7 @@ use std::collections::HashSet;
 
 /// Times at which the pairs' distances are estimated for the order in which they are searched.
 const LOOKS: u32 = 9;
-/// Pairs from which on they are looked at less often: then the looks would take more than the searches.
+/// Pairs from which on distances are estimated at fewer times: the estimates would take more time than the searches then.
 const MANY: usize = 1 << 15;
 const FEWER_LOOKS: u32 = 2;
 

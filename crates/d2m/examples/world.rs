@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("stones {} and {} meet first: free until {:.9}", a.index(), b.index(), contact.time_lo);
     assert!(contact.time_lo > 0.0 && contact.time_hi < 5.0);
 
-    // Only the pairs of the stone that changes are asked again.
+    // Only the pairs of the stone that changes are searched anew.
     let before = world.contacts(window)?;
     let pose = world.body(a).motion().pose_and_twist(contact.time_lo).0;
     world.set_motion(a, ConstantTwist::REST.with_position(pose.translation).with_orientation(pose.rotation));

@@ -59,7 +59,7 @@ pub(crate) struct TocArguments {
     pub(crate) further: FurtherArguments,
 }
 
-/// What is asked besides the first contact.
+/// Questions besides that of the first contact.
 #[derive(Debug, Clone, Copy, Default, Args)]
 pub(crate) struct FurtherArguments {
     /// Of bodies that stay apart also state how near they come: "clearance": [lo, hi]

@@ -1,4 +1,4 @@
-//! The picture of a robot's path.
+//! A robot's path as a page shows it.
 
 use super::{Flight, Holds, Mark, Picture, Span, Up, flights_of, push_thinned};
 use crate::output::short;

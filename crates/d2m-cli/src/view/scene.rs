@@ -1,4 +1,4 @@
-//! The picture of a scene.
+//! A scene as a page shows it.
 
 use super::{Holds, Mark, Picture, Span, Up, flights_of};
 use crate::failure::Failure;

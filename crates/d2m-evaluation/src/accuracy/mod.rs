@@ -78,7 +78,7 @@ pub(crate) struct Outcome {
     pub(crate) false_alarms: Vec<String>,
 }
 
-/// What a family is asked for.
+/// What a run wants of a family.
 pub(crate) struct Task {
     pub(crate) count: usize,
     pub(crate) seed: u64,

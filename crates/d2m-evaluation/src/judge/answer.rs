@@ -74,7 +74,7 @@ const EVEN: i32 = 64;
 /// Conservative advancement: the end of the part of [begin, end] over which steps of distance / speed show the bodies
 /// apart, to a separation of `near`; `end` when that is all of it.
 ///
-/// While the bounding spheres are apart their gap is the distance that counts. `separation` is asked at one time
+/// While the bounding spheres are apart their gap is the distance that counts. `separation` is judged at one time
 /// after the other.
 pub(crate) fn advance(
     trial: &Trial,

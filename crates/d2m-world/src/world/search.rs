@@ -38,7 +38,7 @@ struct Question {
     kind: Kind,
 }
 
-/// What is asked of a pair.
+/// What is to be found of a pair.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     /// Its first contact.

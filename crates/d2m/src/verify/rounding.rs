@@ -3,7 +3,7 @@
 use super::Reason;
 use crate::{Contact, Moving, Pose, QueryOptions, Twist, Window};
 
-/// δ if none is asked for, as a part of the larger body.
+/// δ if none is given, as a part of the larger body.
 const DEFAULT_TOLERANCE: f64 = 1e-10;
 /// The error γ of a distance of placed triangles, as a part of the lengths of the scene: 2⁻⁴⁴, four times the 128 units of 2⁻⁵³ that the
 /// documentation of [`Contact::tolerance`] names (δ is at least 2γ), for lengths that are summed here in another order.
