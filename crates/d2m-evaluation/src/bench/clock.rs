@@ -38,6 +38,16 @@ pub(super) fn processor_seconds() -> Option<f64> {
     parse(&std::fs::read_to_string("/proc/self/stat").ok()?)
 }
 
+/// Processor time of this thread, where the system reports it: finer than that of the process.
+pub(super) fn thread_seconds() -> Option<f64> {
+    first_of(&std::fs::read_to_string("/proc/thread-self/schedstat").ok()?)
+}
+
+/// The first number of proc(5)'s schedstat, in nanoseconds.
+fn first_of(schedstat: &str) -> Option<f64> {
+    Some(schedstat.split_whitespace().next()?.parse::<f64>().ok()? * 1e-9)
+}
+
 /// Fields 14 to 17 of proc(5)'s stat, in hundredths of a second; the second field may hold spaces.
 fn parse(stat: &str) -> Option<f64> {
     let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
@@ -54,6 +64,7 @@ mod tests {
         let stat = "7 (a (b) c) R 1 2 3 4 5 6 7 8 9 10 100 20 30 5 20 0 1";
         assert_eq!(parse(stat), Some(1.55));
         assert_eq!(parse("7 (a) R 1"), None);
+        assert_eq!((first_of("1500000000 7 3\n"), first_of("")), (Some(1.5), None));
     }
 
     #[test]

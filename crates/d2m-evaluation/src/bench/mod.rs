@@ -54,7 +54,8 @@ enum Only {
 /// What else than queries can be measured.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 enum Subject {
-    /// Steps of simulations: boxes that fall into a pile, a bolt, gears, a sleeping pile, pebbles and knots.
+    /// Steps of simulations: boxes that fall into a pile, a bolt, gears, a sleeping pile, pebbles and knots; beside rapier a stack, bins, a
+    /// double pendulum, fast gears, nested dolls, with what is asked of each.
     Dynamics,
     /// Construction and refit of trees, one thread and two, beside parry's; the first answer for two meshes; a minute.
     Trees,
@@ -73,7 +74,10 @@ pub(crate) struct Options {
     /// With `robots`: the SRDF file of --robot.
     #[arg(long, requires = "robot")]
     srdf: Option<PathBuf>,
-    /// With `dynamics`: 300 and 1000 boxes too.
+    /// With `dynamics`: only scenes whose name contains one of these.
+    #[arg(long, value_delimiter = ',', requires = "subject")]
+    scene: Vec<String>,
+    /// With `dynamics`: 300 and 1000 boxes, the bin of 1000 and fast gears on a pin too; minutes.
     #[arg(long, requires = "subject")]
     full: bool,
     /// Fewer trials, pairs and sweeps: under two minutes.
@@ -195,7 +199,7 @@ pub(crate) fn run(options: &Options) -> TaskResult {
     };
     match (options.subject, options.only) {
         _ if options.check => check::run(options.accept),
-        (Some(Subject::Dynamics), _) => dynamics::run(extent),
+        (Some(Subject::Dynamics), _) => dynamics::run(extent, &options.scene),
         (Some(Subject::Trees), _) => scenes::trees::run(options.rounds),
         (Some(Subject::Robots), _) => robots::run(options),
         (None, Some(Only::Scenes)) => scenes::run(options.rounds),

@@ -14,11 +14,11 @@ pub(super) fn mesh(mesh: &TriMesh) -> Mesh {
     Mesh::new(vertices, mesh.triangles().to_vec()).expect("a checked mesh has triangles")
 }
 
-fn vector(v: DVec3) -> Vector {
+pub(super) fn vector(v: DVec3) -> Vector {
     Vector::new(v.x, v.y, v.z)
 }
 
-fn pose(rotation: DQuat, position: DVec3) -> Pose {
+pub(super) fn pose(rotation: DQuat, position: DVec3) -> Pose {
     let q = rotation.normalize();
     Pose::from_parts(vector(position), Rotation::from_xyzw(q.x, q.y, q.z, q.w))
 }

@@ -1,24 +1,42 @@
 //! Runs a scene step by step.
-use super::judge;
-use super::scene::Scene;
+use super::peer::Peer;
+use super::scene::{Error, Scene};
+use super::{judge, table};
+use crate::bench::clock::{processor_seconds, thread_seconds};
+use d2m_dynamics::Segment;
 use std::time::Instant;
 
+/// The last part of a run, by which a scene has settled, in simulated seconds.
+const SETTLED: f64 = 1.0;
+
 /// What a run took, and what was wrong with it.
+#[derive(Default)]
 pub(super) struct Run {
     pub(super) scene: String,
     pub(super) by: &'static str,
+    pub(super) version: &'static str,
     pub(super) threads: usize,
     pub(super) bodies: usize,
     pub(super) triangles: usize,
     /// Of each step.
     pub(super) microseconds: Vec<f64>,
     pub(super) simulated: f64,
+    /// Seconds of the processor, where the system reports them.
+    pub(super) processor: Option<f64>,
+    /// Simulated seconds for each second of the processor at the end of the run.
+    pub(super) settled: Option<f64>,
     pub(super) events: u64,
+    /// Simulated seconds that were given up.
+    pub(super) skipped: f64,
+    /// Pairs of bodies that are not proven apart at the end.
+    pub(super) intersecting: Option<usize>,
+    /// Each bound beside its figure.
+    pub(super) asked: Vec<String>,
     pub(super) fault: String,
 }
 
 impl Run {
-    fn wall(&self) -> f64 {
+    pub(super) fn wall(&self) -> f64 {
         self.microseconds.iter().sum::<f64>() * 1e-6
     }
 
@@ -32,69 +50,112 @@ impl Run {
         self.wall() * 1e6 / self.microseconds.len() as f64
     }
 
-    /// Its line in the table.
-    pub(super) fn line(&self) -> String {
-        let mut sorted = self.microseconds.clone();
-        sorted.sort_by(f64::total_cmp);
-        let (median, worst) = (sorted[sorted.len() / 2], sorted[sorted.len() - 1]);
-        format!(
-            "{},{},{},{},{},{},{:?},{:.6},{:.4},{median:.2},{worst:.2},{},{}",
-            self.scene,
-            self.by,
-            self.threads,
-            self.bodies,
-            self.triangles,
-            self.microseconds.len(),
-            self.simulated,
-            self.wall(),
-            self.real_time(),
-            self.events,
-            self.fault.replace(',', ";")
-        )
+    /// Without times.
+    fn of(scene: &Scene, by: &'static str, version: &'static str, threads: usize) -> Self {
+        let (scene, bodies, triangles) = (scene.name.clone(), scene.ids.len(), scene.triangles);
+        Self { scene, by, version, threads, bodies, triangles, ..Self::default() }
+    }
+
+    /// With the intersections at the end; where the bodies are nowhere, that is the fault.
+    fn counted(mut self, found: Result<usize, String>) -> Self {
+        match found {
+            Ok(count) => self.intersecting = Some(count),
+            Err(error) if self.fault.is_empty() => self.fault = error,
+            Err(_) => {}
+        }
+        self
+    }
+}
+
+/// Times of steps, on the clock and of the processor.
+struct Watch {
+    threads: usize,
+    microseconds: Vec<f64>,
+    processor: Option<f64>,
+    /// Of the last steps, which are settled.
+    last: Option<f64>,
+}
+
+impl Watch {
+    fn new(threads: usize) -> Self {
+        Self { threads, microseconds: Vec::new(), processor: Some(0.0), last: Some(0.0) }
+    }
+
+    fn now(&self) -> Option<f64> {
+        if self.threads == 1 { thread_seconds() } else { processor_seconds() }
+    }
+
+    /// Does a step. `left`: simulated seconds before it until the end.
+    fn time<T>(&mut self, left: f64, step: impl FnOnce() -> T) -> T {
+        let (before, start) = (self.now(), Instant::now());
+        let result = step();
+        self.microseconds.push(start.elapsed().as_secs_f64() * 1e6);
+        let took = self.now().zip(before).map(|(now, before)| now - before);
+        let add = |sum: Option<f64>| sum.zip(took).map(|(sum, took)| sum + took);
+        self.processor = add(self.processor);
+        if left <= SETTLED {
+            self.last = add(self.last);
+        }
+        result
+    }
+
+    fn written(self, run: Run, step: f64) -> Run {
+        let simulated = self.microseconds.len() as f64 * step;
+        let settled = self.last.filter(|&last| last > 0.0).map(|last| simulated.min(SETTLED) / last);
+        Run { simulated, settled, processor: self.processor, microseconds: self.microseconds, ..run }
     }
 }
 
 /// Runs the scene on so many threads, then judges it.
-pub(super) fn run(mut scene: Scene, threads: usize) -> Result<Run, Box<dyn std::error::Error>> {
+pub(super) fn run(mut scene: Scene, threads: usize) -> Result<Run, Error> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    let starts: Vec<_> = scene.ids.iter().map(|&id| scene.simulation.position(id)).collect();
-    let (mut segments, mut microseconds, mut events) = (Vec::new(), Vec::new(), 0);
-    let (mut fault, begin) = (String::new(), scene.before);
-    while scene.simulation.time() < begin + scene.seconds {
-        let counts = scene.simulation.time() >= begin;
-        let start = Instant::now();
-        let report = pool.install(|| scene.simulation.step());
-        let took = start.elapsed().as_secs_f64() * 1e6;
-        match report {
-            Ok(report) => {
-                if counts {
-                    microseconds.push(took);
-                    events += u64::from(report.events);
+    let starts = scene.poses();
+    let mut run = Run::of(&scene, "d2m", table::OWN_VERSION, threads);
+    let (mut segments, mut watch) = (Vec::<Segment>::new(), Watch::new(threads));
+    let end = scene.before + scene.seconds;
+    // The steps run where the pool does, so that the thread's own time is theirs.
+    pool.install(|| {
+        while scene.simulation.time() < end {
+            let now = scene.simulation.time();
+            let (counts, simulation) = (now >= scene.before, &mut scene.simulation);
+            let report = if counts { watch.time(end - now, || simulation.step()) } else { simulation.step() };
+            match report {
+                Ok(report) => {
+                    run.events += if counts { u64::from(report.events) } else { 0 };
+                    segments.extend(report.segments);
                 }
-                segments.extend(report.segments);
-            }
-            Err(error) => {
-                fault = error.to_string();
-                break;
+                Err(error) => {
+                    run.fault = error.to_string();
+                    break;
+                }
             }
         }
-    }
+    });
     segments.extend(scene.simulation.finish());
-    if fault.is_empty() {
-        fault = judge::fault(&scene, &starts, &segments);
+    run.skipped = segments.iter().map(|segment| segment.skipped).sum();
+    if run.fault.is_empty() {
+        run.fault = judge::fault(&scene, &starts, &segments);
     }
-    if microseconds.is_empty() {
-        return Err(format!("{}: {fault}", scene.name).into());
+    if watch.microseconds.is_empty() {
+        return Err(format!("{}: {}", scene.name, run.fault).into());
     }
-    Ok(Run {
-        by: "d2m",
-        threads,
-        bodies: scene.ids.len(),
-        triangles: scene.triangles,
-        simulated: microseconds.len() as f64 * scene.simulation.options().step,
-        microseconds,
-        events,
-        fault,
-        scene: scene.name,
-    })
+    let mut run = watch
+        .written(run, scene.simulation.options().step)
+        .counted(judge::intersecting(&scene, &scene.poses()));
+    if run.fault.is_empty() && run.intersecting != Some(0) {
+        run.fault = "bodies are not proven apart at the end".into();
+    }
+    Ok(run)
+}
+
+/// Runs the scene in rapier, as many steps.
+pub(super) fn run_peer(scene: &Scene) -> Result<Run, Error> {
+    let mut peer = Peer::new(scene)?;
+    let (step, mut watch) = (scene.simulation.options().step, Watch::new(1));
+    for k in 0..(scene.seconds / step).ceil() as usize {
+        watch.time(scene.seconds - k as f64 * step, || peer.step());
+    }
+    let run = watch.written(Run::of(scene, table::PEER, table::PEER_VERSION, 1), step);
+    let fault = peer.fault(scene);
+    Ok(Run { fault, ..run }.counted(judge::intersecting(scene, &peer.poses())))
 }

@@ -1,14 +1,15 @@
-//! The scenes of the bench.
+//! What a scene is, and those that show how the cost of a step grows.
+use super::bound::Bound;
 use d2m::bvh::MeshTree;
-use d2m::motion::ConstantTwist;
-use d2m_dynamics::{Body, BodyId, Kind, Simulation, SimulationOptions};
+use d2m::motion::{ConstantTwist, Pose};
+use d2m_dynamics::{Body, BodyId, Joint, Kind, Simulation, SimulationOptions};
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
-type Error = Box<dyn std::error::Error>;
+pub(super) type Error = Box<dyn std::error::Error>;
 
 /// Steps a second, as in the paper.
-pub(super) const RATE: f64 = 64.0;
+const RATE: f64 = 64.0;
 /// Half a side of the boxes.
 pub(super) const HALF: f64 = 0.5;
 /// Friction of the boxes, their density and that of everything else is water's.
@@ -25,12 +26,23 @@ pub(super) enum Expectation {
     Turned,
     /// All sleep at the end.
     Asleep,
+    /// The first body turns about z at this rate at the end, give or take a tenth of it.
+    Rate(f64),
+    /// All end within this distance of where they started.
+    Stays(f64),
+    /// All end within this distance of the origin.
+    Within(f64),
+    /// Joints hold, as they must in every scene.
+    Held,
 }
 
-/// A simulation and what is known of it.
+/// A simulation and what is known of it: all that another engine needs to run the same.
 pub(super) struct Scene {
     pub(super) name: String,
     pub(super) simulation: Simulation,
+    /// All bodies as they were added, so that the first has the first name.
+    pub(super) bodies: Vec<Body>,
+    pub(super) joints: Vec<Joint>,
     /// Dynamic bodies.
     pub(super) ids: Vec<BodyId>,
     pub(super) triangles: usize,
@@ -38,6 +50,8 @@ pub(super) struct Scene {
     pub(super) before: f64,
     pub(super) seconds: f64,
     pub(super) expectation: Expectation,
+    /// What is asked for.
+    pub(super) bounds: Vec<Bound>,
 }
 
 /// Where `count` bodies start, `pitch` apart in layers that turn, low ones first.
@@ -53,68 +67,115 @@ pub(super) fn places(count: usize, pitch: f64) -> Vec<(DVec3, DQuat)> {
     (0..count).map(place).collect()
 }
 
-fn tree(shape: &str) -> Result<Arc<MeshTree>, Error> {
+pub(super) fn tree(shape: &str) -> Result<Arc<MeshTree>, Error> {
     Ok(Arc::new(MeshTree::new(d2m_shapes::mesh(shape)?)))
 }
 
-fn options() -> SimulationOptions {
+/// Those of the paper.
+pub(super) fn options() -> SimulationOptions {
     SimulationOptions::default().with_step(1.0 / RATE)
 }
 
-fn floor(simulation: &mut Simulation) -> Result<(), Error> {
+fn unit_box() -> Result<Arc<MeshTree>, Error> {
+    tree(&format!("box?x={HALF}&y={HALF}&z={HALF}"))
+}
+
+fn floor() -> Result<Body, Error> {
     let floor = Body::new("floor", tree("box?x=100&y=0.5&z=100")?).with_kind(Kind::Static);
-    simulation.add(&floor.with_position(DVec3::Y * -0.5).with_friction(FRICTION))?;
-    Ok(())
+    Ok(floor.with_position(DVec3::Y * -0.5).with_friction(FRICTION))
 }
 
 impl Scene {
+    /// Without bodies.
+    pub(super) fn new(
+        name: impl Into<String>,
+        options: SimulationOptions,
+        seconds: f64,
+        expectation: Expectation,
+    ) -> Result<Self, Error> {
+        Ok(Self {
+            name: name.into(),
+            simulation: Simulation::new(options)?,
+            bodies: Vec::new(),
+            joints: Vec::new(),
+            ids: Vec::new(),
+            triangles: 0,
+            before: 0.0,
+            seconds,
+            expectation,
+            bounds: Vec::new(),
+        })
+    }
+
+    /// With this body; the triangles that are stated are those of the last dynamic one.
+    pub(super) fn add(&mut self, body: Body) -> Result<BodyId, Error> {
+        let id = self.simulation.add(&body)?;
+        if matches!(body.kind, Kind::Dynamic) {
+            self.ids.push(id);
+            self.triangles = body.tree.mesh().triangles().len();
+        }
+        self.bodies.push(body);
+        Ok(id)
+    }
+
+    /// With this joint.
+    pub(super) fn join(&mut self, joint: Joint) -> Result<(), Error> {
+        self.simulation.add_joint(&joint)?;
+        self.joints.push(joint);
+        Ok(())
+    }
+
+    /// Where the bodies are now.
+    pub(super) fn poses(&self) -> Vec<Pose> {
+        self.simulation.ids().map(|id| self.simulation.pose(id)).collect()
+    }
+
     /// Boxes that fall into a pile.
     pub(super) fn boxes(count: usize) -> Result<Self, Error> {
-        let mut simulation = Simulation::new(options())?;
-        floor(&mut simulation)?;
-        let shape = tree(&format!("box?x={HALF}&y={HALF}&z={HALF}"))?;
-        let mut ids = Vec::new();
+        let mut scene = Self::new(format!("boxes {count}"), options(), 2.0, Expectation::Above(HALF))?;
+        scene.add(floor()?)?;
+        let shape = unit_box()?;
         for (k, (place, turn)) in places(count, 1.4).into_iter().enumerate() {
             let body = Body::new(format!("box {k}"), Arc::clone(&shape)).with_friction(FRICTION);
-            ids.push(simulation.add(&body.with_position(place).with_orientation(turn))?);
+            scene.add(body.with_position(place).with_orientation(turn))?;
         }
-        let (name, triangles) = (format!("boxes {count}"), shape.mesh().triangles().len());
-        let expectation = Expectation::Above(HALF);
-        Ok(Self { name, simulation, ids, triangles, before: 0.0, seconds: 2.0, expectation })
+        Ok(scene)
+    }
+
+    /// Columns of so many boxes on the floor, with this clearance between them.
+    pub(super) fn columns(mut self, count: usize, levels: usize, clearance: f64) -> Result<Self, Error> {
+        self.add(floor()?)?;
+        let shape = unit_box()?;
+        for k in 0..count {
+            let (column, level) = ((k / levels) as f64, (k % levels) as f64);
+            let height = HALF + clearance + (2.0 * HALF + clearance) * level;
+            let body = Body::new(format!("box {k}"), Arc::clone(&shape)).with_friction(FRICTION);
+            self.add(body.with_position(DVec3::new(2.0 * column, height, 0.0)))?;
+        }
+        Ok(self)
     }
 
     /// Columns of four boxes that have gone to sleep.
     pub(super) fn sleeping(count: usize) -> Result<Self, Error> {
-        let mut simulation = Simulation::new(options())?;
-        floor(&mut simulation)?;
-        let shape = tree(&format!("box?x={HALF}&y={HALF}&z={HALF}"))?;
-        let mut ids = Vec::new();
-        for k in 0..count {
-            let (column, level) = ((k / 4) as f64, (k % 4) as f64);
-            let place = DVec3::new(2.0 * column, 0.501 + 1.001 * level, 0.0);
-            let body = Body::new(format!("box {k}"), Arc::clone(&shape)).with_friction(FRICTION);
-            ids.push(simulation.add(&body.with_position(place))?);
-        }
-        let (name, triangles) = (format!("sleeping boxes {count}"), shape.mesh().triangles().len());
-        let expectation = Expectation::Asleep;
-        Ok(Self { name, simulation, ids, triangles, before: 2.0, seconds: 1.0, expectation })
+        let scene = Self::new(format!("sleeping boxes {count}"), options(), 1.0, Expectation::Asleep)?;
+        let clearance = scene.simulation.options().gap;
+        Ok(Self { before: 2.0, ..scene.columns(count, 4, clearance)? })
     }
 
     /// A screw that turns down through its nut.
     pub(super) fn bolt(triangles: usize) -> Result<Self, Error> {
-        let mut simulation = Simulation::new(options().with_gravity(DVec3::Z * -9.81).with_gap(5e-4))?;
+        let options = options().with_gravity(DVec3::Z * -9.81).with_gap(5e-4);
+        let mut scene = Self::new("bolt", options, 1.0, Expectation::Screw)?;
         let nut = tree(&format!("nut?triangles={triangles}&clearance=0.03"))?;
-        let screw = tree(&format!("screw?triangles={triangles}"))?;
-        let triangles = screw.mesh().triangles().len();
-        simulation.add(&Body::new("nut", nut).with_kind(Kind::Static))?;
-        let ids = vec![simulation.add(&Body::new("screw", screw))?];
-        let (name, expectation) = ("bolt".into(), Expectation::Screw);
-        Ok(Self { name, simulation, ids, triangles, before: 0.0, seconds: 1.0, expectation })
+        scene.add(Body::new("nut", nut).with_kind(Kind::Static))?;
+        scene.add(Body::new("screw", tree(&format!("screw?triangles={triangles}"))?))?;
+        Ok(scene)
     }
 
     /// A gear that is driven turns another on a pin; both lie on a plate, axes upwards along z.
     pub(super) fn gears(triangles: usize) -> Result<Self, Error> {
-        let mut simulation = Simulation::new(options().with_gravity(DVec3::Z * -9.81))?;
+        let options = options().with_gravity(DVec3::Z * -9.81);
+        let mut scene = Self::new("gears", options, 2.0, Expectation::Turned)?;
         let shape = tree(&format!("gear?triangles={triangles}&teeth={TEETH}&depth={DEPTH}"))?;
         let (vertices, tip) = (shape.mesh().vertices(), |v: &DVec3| v.truncate().length());
         let outer = vertices.iter().map(tip).fold(0.0, f64::max);
@@ -122,16 +183,15 @@ impl Scene {
         let low = vertices.iter().map(|v| v.z).fold(f64::INFINITY, f64::min);
         let plate = tree("box?x=10&y=10&z=0.5")?;
         let plate = Body::new("plate", plate).with_kind(Kind::Static);
-        simulation.add(&plate.with_position(DVec3::Z * (low - 0.502)))?;
+        scene.add(plate.with_position(DVec3::Z * (low - 0.502)))?;
         let drive = ConstantTwist::REST.with_angular_velocity(DVec3::Z);
         let driven = Body::new("driven", Arc::clone(&shape));
-        simulation.add(&driven.clone().with_kind(Kind::Kinematic(Arc::new(drive))))?;
+        scene.add(driven.with_kind(Kind::Kinematic(Arc::new(drive))))?;
         // The tips reach nearly to the roots, a gap of teeth opposite to a tooth.
         let apart = DVec3::X * (2.0 - 0.6 * DEPTH) * outer;
         let half_a_tooth = DQuat::from_rotation_z(core::f64::consts::PI / f64::from(TEETH));
-        let body =
-            Body::new("turned", Arc::clone(&shape)).with_position(apart).with_orientation(half_a_tooth);
-        let ids = vec![simulation.add(&body)?];
+        let body = Body::new("turned", shape).with_position(apart).with_orientation(half_a_tooth);
+        let turned = scene.add(body)?;
         let thick = 0.9 * bore;
         let pin = tree(&format!(
             "box?x={r}&y={r}&z={h}",
@@ -139,32 +199,29 @@ impl Scene {
             h = -2.0 * low
         ))?;
         let pin = Body::new("pin", pin).with_kind(Kind::Static).with_position(apart);
-        let pin = simulation.add(&pin)?;
-        for other in simulation.ids().filter(|&other| other != pin && !ids.contains(&other)) {
-            simulation.ignore(pin, other);
+        let pin = scene.add(pin)?;
+        for other in scene.simulation.ids().filter(|&other| other != pin && other != turned) {
+            scene.simulation.ignore(pin, other);
         }
-        let (name, triangles) = ("gears".into(), shape.mesh().triangles().len());
-        let expectation = Expectation::Turned;
-        Ok(Self { name, simulation, ids, triangles, before: 0.0, seconds: 2.0, expectation })
+        Ok(scene)
     }
 
     /// Pebbles and knots that fall into a pile.
     pub(super) fn crowd(count: usize, triangles: usize) -> Result<Self, Error> {
-        let mut simulation = Simulation::new(options())?;
-        floor(&mut simulation)?;
+        let name = format!("pebbles and knots {count}");
+        let mut scene = Self::new(name, options(), 2.0, Expectation::Above(0.0))?;
+        scene.add(floor()?)?;
         let shapes = [
             tree(&format!("pebble?triangles={triangles}"))?,
             tree(&format!("torus-knot?triangles={triangles}"))?,
         ];
         let radius = shapes.iter().map(|shape| shape.radius()).fold(0.0, f64::max);
-        let mut ids = Vec::new();
         for (k, (place, turn)) in places(count, 2.2 * radius).into_iter().enumerate() {
             let body = Body::new(format!("body {k}"), Arc::clone(&shapes[k % 2])).with_friction(FRICTION);
-            ids.push(simulation.add(&body.with_position(place).with_orientation(turn))?);
+            scene.add(body.with_position(place).with_orientation(turn))?;
         }
-        let name = format!("pebbles and knots {count}");
-        let expectation = Expectation::Above(0.0);
-        Ok(Self { name, simulation, ids, triangles, before: 0.0, seconds: 2.0, expectation })
+        scene.triangles = triangles;
+        Ok(scene)
     }
 }
 
