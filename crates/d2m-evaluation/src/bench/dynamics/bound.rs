@@ -1,5 +1,14 @@
 //! What is asked of a run, beside what it took.
-use super::measure::Run;
+
+/// What a run took as a whole.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Took {
+    pub(super) simulated: f64,
+    /// Seconds of the processor, where the system reports them.
+    pub(super) processor: Option<f64>,
+    /// Simulated seconds for each second of the processor at the end of the run.
+    pub(super) settled: Option<f64>,
+}
 
 /// A bound of our figures; seconds are those of the processor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,8 +24,8 @@ pub(super) enum Bound {
 }
 
 impl Bound {
-    /// The figure beside what is asked for, and whether it is met; a figure that the system or the peer does not give is not.
-    pub(super) fn judged(self, run: &Run, peer: Option<&Run>) -> String {
+    /// The figure beside what is asked for, and whether it is met; unknown if the system or the peer gives none.
+    pub(super) fn judged(self, run: &Took, peer: Option<&Took>) -> String {
         let (figure, limit, unit, sign) = match self {
             Self::Seconds(limit) => (run.processor, limit, "s of CPU", '≤'),
             Self::SecondsPerSimulated(limit) => {
@@ -40,12 +49,7 @@ mod tests {
 
     #[test]
     fn figures_stand_beside_what_is_asked() {
-        let run = |processor| Run {
-            processor: Some(processor),
-            settled: Some(30.0),
-            simulated: 4.0,
-            ..Run::default()
-        };
+        let run = |processor| Took { simulated: 4.0, processor: Some(processor), settled: Some(30.0) };
         let (ours, theirs) = (run(2.0), run(3.0));
         let words = |bound: Bound| bound.judged(&ours, Some(&theirs));
         assert_eq!(words(Bound::Seconds(2.0)), "2.000 (asked: ≤ 2) s of CPU: met");

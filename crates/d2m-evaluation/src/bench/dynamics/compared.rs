@@ -17,7 +17,8 @@ pub(super) enum Bearing {
     Pin,
 }
 
-/// What falls into a bin: shape, friction, how many in a layer along each way and in all, and by how much they are off the grid at most.
+/// What falls into a bin: how many in a layer along each way and in all, and by how much they are off the grid at
+/// most.
 struct Filling {
     shape: Arc<MeshTree>,
     friction: f64,
@@ -85,7 +86,7 @@ impl Scene {
     /// Unit boxes on each other, twice the gap apart.
     pub(super) fn stack(count: usize) -> Result<Self, Error> {
         let clearance = 2.0 * options().gap;
-        // All of it may close, and a half box would be a fall.
+        // As far as the boxes may sink.
         let expectation = Expectation::Stays(clearance * (count + 1) as f64);
         Self::new(format!("stack of {count}"), options(), 4.0, expectation)?.columns(count, count, clearance)
     }
@@ -131,13 +132,13 @@ impl Scene {
                     let plate = Body::new("plate", Arc::clone(&plate)).with_kind(Kind::Static);
                     scene.add(plate.with_position(place + DVec3::Z * z))?;
                 }
+                scene.bounds = vec![Bound::SecondsPerSimulated(20.0)];
             }
         }
-        scene.bounds = vec![Bound::SecondsPerSimulated(20.0)];
         Ok(scene)
     }
 
-    /// Hollow spheres of 10 000 triangles within each other that spin about different axes; the outermost stands.
+    /// Hollow spheres of 10 000 triangles within each other that spin about different axes; the outermost is static.
     pub(super) fn dolls(count: usize) -> Result<Self, Error> {
         let mut scene =
             Self::new("nested dolls", SimulationOptions::default(), 0.5, Expectation::Within(1.0))?;

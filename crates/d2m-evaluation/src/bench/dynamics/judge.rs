@@ -96,8 +96,8 @@ fn parted(scene: &Scene, starts: &[Pose]) -> Option<String> {
     (most > APART).then(|| format!("the sides of a joint are {most:e} apart"))
 }
 
-/// How many pairs are not proven apart with the bodies at these poses, of those of which one moves freely and that no joint connects.
-/// Our static query judges both engines.
+/// How many pairs are not proven apart with the bodies at these poses, of those of which one moves freely and that no
+/// joint connects. Our static query judges both engines.
 pub(super) fn intersecting(scene: &Scene, poses: &[Pose]) -> Result<usize, String> {
     let ids: Vec<_> = scene.simulation.ids().collect();
     let is_free = |k: usize| matches!(scene.bodies[k].kind, Kind::Dynamic);

@@ -1,10 +1,15 @@
 //! Runs a scene step by step.
-use super::peer::Peer;
+use super::bound::Took;
+use super::judge;
+use super::peer::{self, Peer};
 use super::scene::{Error, Scene};
-use super::{judge, table};
 use crate::bench::clock::{processor_seconds, thread_seconds};
 use d2m_dynamics::Segment;
 use std::time::Instant;
+
+/// Our engine, and the version of all crates of this workspace.
+pub(super) const NAME: &str = "d2m";
+pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// The last part of a run, by which a scene has settled, in simulated seconds.
 const SETTLED: f64 = 1.0;
@@ -20,11 +25,7 @@ pub(super) struct Run {
     pub(super) triangles: usize,
     /// Of each step.
     pub(super) microseconds: Vec<f64>,
-    pub(super) simulated: f64,
-    /// Seconds of the processor, where the system reports them.
-    pub(super) processor: Option<f64>,
-    /// Simulated seconds for each second of the processor at the end of the run.
-    pub(super) settled: Option<f64>,
+    pub(super) took: Took,
     pub(super) events: u64,
     /// Simulated seconds that were given up.
     pub(super) skipped: f64,
@@ -42,7 +43,7 @@ impl Run {
 
     /// Simulated seconds a second.
     pub(super) fn real_time(&self) -> f64 {
-        self.simulated / self.wall()
+        self.took.simulated / self.wall()
     }
 
     /// Of a step, in microseconds.
@@ -102,7 +103,8 @@ impl Watch {
     fn written(self, run: Run, step: f64) -> Run {
         let simulated = self.microseconds.len() as f64 * step;
         let settled = self.last.filter(|&last| last > 0.0).map(|last| simulated.min(SETTLED) / last);
-        Run { simulated, settled, processor: self.processor, microseconds: self.microseconds, ..run }
+        let took = Took { simulated, processor: self.processor, settled };
+        Run { took, microseconds: self.microseconds, ..run }
     }
 }
 
@@ -110,7 +112,7 @@ impl Watch {
 pub(super) fn run(mut scene: Scene, threads: usize) -> Result<Run, Error> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let starts = scene.poses();
-    let mut run = Run::of(&scene, "d2m", table::OWN_VERSION, threads);
+    let mut run = Run::of(&scene, NAME, VERSION, threads);
     let (mut segments, mut watch) = (Vec::<Segment>::new(), Watch::new(threads));
     let end = scene.before + scene.seconds;
     // The steps run where the pool does, so that the thread's own time is theirs.
@@ -155,7 +157,7 @@ pub(super) fn run_peer(scene: &Scene) -> Result<Run, Error> {
     for k in 0..(scene.seconds / step).ceil() as usize {
         watch.time(scene.seconds - k as f64 * step, || peer.step());
     }
-    let run = watch.written(Run::of(scene, table::PEER, table::PEER_VERSION, 1), step);
+    let run = watch.written(Run::of(scene, peer::NAME, peer::VERSION, 1), step);
     let fault = peer.fault(scene);
     Ok(Run { fault, ..run }.counted(judge::intersecting(scene, &peer.poses())))
 }

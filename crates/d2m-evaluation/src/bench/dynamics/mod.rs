@@ -72,8 +72,8 @@ impl Job {
             let mut run = measure::run(scene, threads)?;
             // A wrong run has no times that count.
             if run.fault.is_empty() {
-                let peer = rows.iter().find(|row| row.by == table::PEER);
-                run.asked = bounds.iter().map(|bound| bound.judged(&run, peer)).collect();
+                let peer = rows.iter().find(|row| row.by == peer::NAME).map(|row| &row.took);
+                run.asked = bounds.iter().map(|bound| bound.judged(&run.took, peer)).collect();
             }
             println!("{}", table::line(&run));
             rows.push(run);
@@ -138,7 +138,7 @@ pub(super) fn run(extent: Extent, wanted: &[String]) -> TaskResult {
     }
     println!("table and figure in {}", folder.display());
     // What rapier does wrong is stated and is no failure of ours.
-    let faults = rows.iter().filter(|run| run.by != table::PEER && !run.fault.is_empty()).count();
+    let faults = rows.iter().filter(|run| run.by != peer::NAME && !run.fault.is_empty()).count();
     if faults == 0 { Ok(()) } else { Err(format!("{faults} runs were judged wrong").into()) }
 }
 

@@ -1,4 +1,5 @@
-//! rapier3d-f64 on the same scenes: boxes as its own cuboids, which are its fastest shapes, all else as triangles.
+//! rapier3d-f64 on the same scenes: boxes as its own cuboids, which are its fastest shapes, all else as
+//! triangles.
 use super::scene::{Error, Expectation, Scene};
 use crate::bench::peers::{pose, vector};
 use d2m::bvh::TriMesh;
@@ -11,6 +12,10 @@ use rapier3d_f64::prelude::{
     RigidBodyHandle,
 };
 
+/// This engine, and the version that is linked.
+pub(super) const NAME: &str = "rapier";
+pub(super) const VERSION: &str = rapier3d_f64::VERSION;
+
 /// A scene in rapier.
 pub(super) struct Peer {
     world: PhysicsWorld,
@@ -18,7 +23,8 @@ pub(super) struct Peer {
 }
 
 impl Peer {
-    /// The scene as it starts. Pairs that ours ignores are of bodies that do not move freely, which never meet in rapier.
+    /// The scene as it starts. Pairs that ours ignores are of bodies that do not move freely, which never meet in
+    /// rapier.
     pub(super) fn new(scene: &Scene) -> Result<Self, Error> {
         let (mut world, options) = (PhysicsWorld::new(), scene.simulation.options());
         world.integration_parameters.dt = options.step;

@@ -1,17 +1,12 @@
 //! Table of the runs: a line for the terminal, a row for the file.
-use super::measure::Run;
+use super::measure::{self, Run};
+use super::peer;
 use crate::machine::Machine;
 use crate::statistics::Summary;
 use std::fmt::Write as _;
 
-/// The version of all crates of this workspace.
-pub(super) const OWN_VERSION: &str = env!("CARGO_PKG_VERSION");
-/// The other engine, and the version that was linked.
-pub(super) const PEER: &str = "rapier";
-pub(super) const PEER_VERSION: &str = rapier3d_f64::VERSION;
-
-/// Names of the columns. `settled`: simulated seconds for each second of the processor at the end of a run; `intersecting`: pairs of bodies
-/// that are not proven apart at its end, by our static query.
+/// Names of the columns. `settled`: simulated seconds for each second of the processor at the end of a run;
+/// `intersecting`: pairs of bodies that are not proven apart at its end, by our static query.
 const COLUMNS: [&str; 19] = [
     "scene",
     "by",
@@ -40,7 +35,11 @@ pub(super) fn heading(machine: &Machine) -> String {
     let build = if cfg!(debug_assertions) { "dev build" } else { "release build" };
     let Machine { cpu, cores, commit, .. } = machine;
     format!(
-        "d2m {OWN_VERSION} (commit {commit}, {build}) beside rapier3d-f64 {PEER_VERSION}, on {cpu}, {cores} cores, load {load}"
+        "{} {} (commit {commit}, {build}) beside {} {}, on {cpu}, {cores} cores, load {load}",
+        measure::NAME,
+        measure::VERSION,
+        peer::NAME,
+        peer::VERSION,
     )
 }
 
@@ -51,7 +50,7 @@ pub(super) fn table(rows: &[Run]) -> String {
 
 /// A row, without its end.
 fn row(run: &Run) -> String {
-    let Run { scene, by, version, threads, bodies, triangles, simulated, events, skipped, .. } = run;
+    let Run { scene, by, version, threads, bodies, triangles, events, skipped, .. } = run;
     let time = Summary::of(run.microseconds.iter().copied());
     let (median, worst) = time.map_or((0.0, 0.0), |time| (time.median, time.worst));
     let given = |figure: Option<f64>| figure.map(|x| format!("{x:.4}")).unwrap_or_default();
@@ -63,11 +62,11 @@ fn row(run: &Run) -> String {
         bodies.to_string(),
         triangles.to_string(),
         run.microseconds.len().to_string(),
-        format!("{simulated:?}"),
+        format!("{:?}", run.took.simulated),
         format!("{:.6}", run.wall()),
-        given(run.processor),
+        given(run.took.processor),
         format!("{:.4}", run.real_time()),
-        given(run.settled),
+        given(run.took.settled),
         format!("{median:.2}"),
         format!("{worst:.2}"),
         events.to_string(),
@@ -88,7 +87,7 @@ pub(super) fn line(run: &Run) -> String {
     if let Some(time) = Summary::of(run.microseconds.iter().copied()) {
         let _ = write!(text, "  {:>9.1} µs a step (median), {:>9.1} worst", time.median, time.worst);
     }
-    if let Some(seconds) = run.processor {
+    if let Some(seconds) = run.took.processor {
         let _ = write!(text, "  {seconds:>8.3} s of CPU");
     }
     let _ = write!(text, "  {:>7.2} × real time", run.real_time());
@@ -108,6 +107,7 @@ pub(super) fn line(run: &Run) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::bound::Took;
     use super::*;
 
     /// A value for each column, by its name.
@@ -122,12 +122,11 @@ mod tests {
     fn rows_name_versions_intersections_and_what_is_asked() {
         let run = Run {
             scene: "gears, joint".into(),
-            by: PEER,
-            version: PEER_VERSION,
+            by: peer::NAME,
+            version: peer::VERSION,
             threads: 1,
             microseconds: vec![1e6, 3e6],
-            simulated: 8.0,
-            processor: Some(3.5),
+            took: Took { simulated: 8.0, processor: Some(3.5), settled: None },
             skipped: 0.25,
             intersecting: Some(150),
             asked: vec!["a".into(), "b".into()],
@@ -136,7 +135,7 @@ mod tests {
         let fields = fields(&run);
         for expected in [
             ("scene", "gears; joint"),
-            ("version", PEER_VERSION),
+            ("version", peer::VERSION),
             ("cpu_s", "3.5000"),
             ("real_time", "2.0000"),
             ("settled", ""),
@@ -149,7 +148,7 @@ mod tests {
             assert!(fields.contains(&(expected.0, expected.1.into())), "{expected:?} in {fields:?}");
         }
         let line = line(&run);
-        for part in [PEER_VERSION, "3.500 s of CPU", "150 pairs intersect", "0.25 s skipped", "\n    b"] {
+        for part in [peer::VERSION, "3.500 s of CPU", "150 pairs intersect", "0.25 s skipped", "\n    b"] {
             assert!(line.contains(part), "{part} in {line}");
         }
     }
@@ -159,7 +158,7 @@ mod tests {
     fn versions_are_those_of_the_lock_file() {
         let lock = std::fs::read_to_string(crate::workspace_root().join("Cargo.lock")).unwrap();
         let lock = lock.replace('\r', "");
-        for (name, version) in [("rapier3d-f64", PEER_VERSION), ("d2m-dynamics", OWN_VERSION)] {
+        for (name, version) in [("rapier3d-f64", peer::VERSION), ("d2m-dynamics", measure::VERSION)] {
             assert!(
                 lock.contains(&format!("name = \"{name}\"\nversion = \"{version}\"\n")),
                 "{name} {version}"
