@@ -94,7 +94,7 @@ impl Scene {
     /// Two bars of one meter that swing from where they are level.
     pub(super) fn double_pendulum() -> Result<Self, Error> {
         let options = SimulationOptions::default();
-        let mut scene = Self::new("double pendulum, joints", options, 4.0, Expectation::Held)?;
+        let mut scene = Self::new("double pendulum on joints", options, 4.0, Expectation::Held)?;
         let shape = tree(&format!("box?x={HALF}&y=0.05&z=0.05"))?;
         let mut bar = |x: f64| -> Result<_, Error> {
             scene.add(Body::new(format!("bar at {x}"), Arc::clone(&shape)).with_position(DVec3::X * x))
@@ -110,8 +110,8 @@ impl Scene {
     pub(super) fn fast_gears(bearing: Bearing) -> Result<Self, Error> {
         const RATE: f64 = 200.0;
         let name = match bearing {
-            Bearing::Joint => "gears at 200 rad/s, joint",
-            Bearing::Pin => "gears at 200 rad/s, pin",
+            Bearing::Joint => "gears at 200 rad/s on a joint",
+            Bearing::Pin => "gears at 200 rad/s on a pin",
         };
         let mut scene = Self::new(name, SimulationOptions::default(), 0.5, Expectation::Rate(-RATE))?;
         let shape = tree("gear?teeth=16&triangles=5000")?;

@@ -99,17 +99,17 @@ fn jobs(extent: Extent) -> Vec<Job> {
     jobs.push(Job::new("gears", threads, move || Scene::gears(triangles)));
     jobs.push(Job::new("sleeping boxes", threads, move || Scene::sleeping(most.min(100))));
     jobs.push(Job::new("pebbles and knots", threads, move || Scene::crowd(most.min(50), triangles)));
-    jobs.push(Job::compared("double pendulum, joints", Scene::double_pendulum));
+    jobs.push(Job::compared("double pendulum on joints", Scene::double_pendulum));
     jobs.push(Job::compared("stack of 30", || Scene::stack(30)));
     if extent == Extent::Quick {
         return jobs;
     }
     jobs.push(Job::compared("bin of 100 boxes", || Scene::bin(100, 5)));
     jobs.push(Job::compared("knots 20", || Scene::knots(20)));
-    jobs.push(Job::compared("gears at 200 rad/s, joint", || Scene::fast_gears(Bearing::Joint)));
+    jobs.push(Job::compared("gears at 200 rad/s on a joint", || Scene::fast_gears(Bearing::Joint)));
     jobs.push(Job::compared("nested dolls", || Scene::dolls(6)));
     if extent == Extent::Full {
-        jobs.push(Job::compared("gears at 200 rad/s, pin", || Scene::fast_gears(Bearing::Pin)));
+        jobs.push(Job::compared("gears at 200 rad/s on a pin", || Scene::fast_gears(Bearing::Pin)));
         jobs.push(Job::compared("bin of 1000 boxes", || Scene::bin(1000, 10)));
     }
     jobs
