@@ -390,7 +390,7 @@ fn worlds_of_the_same_bodies_have_the_same_answer() {
                         pair.sort();
                         (Some(pair), contact.time_lo)
                     }
-                    undecided => panic!("{undecided:?}"),
+                    undecided @ FirstContact::Undecided { .. } => panic!("{undecided:?}"),
                 };
                 assert_eq!(pair, other_pair);
                 assert!((until - other_until).abs() < 1e-8, "{until} {other_until}");
