@@ -3,7 +3,7 @@ use d2m_feature::{ContactOptions, FirstContact, PairMotion};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
 use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Pose, RigidMotion, Span, Twist};
 use d2m_root::Evidence;
-use d2m_testing::{Blurred, CountedStates, Draw, Random};
+use d2m_testing::{Blurred, Bounded, CountedStates, Draw, Random};
 use glam::{DQuat, DVec3};
 
 /// A cubic with a turn about a fixed axis by the angle w·t + α·t²/2: C∞, but nothing that the tests know about.
@@ -258,34 +258,11 @@ fn all_pieces_share_one_budget() {
     assert!(clear_until > 1.0 || some > 200, "{clear_until}: {some}");
 }
 
-/// A constant twist that is defined for a while only.
-struct ForAWhile(ConstantTwist);
-
-impl RigidMotion for ForAWhile {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.0.pose_and_twist(t)
-    }
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        self.0.enclose_pose(t)
-    }
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist(t)
-    }
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist_rate(t)
-    }
-    fn domain(&self) -> Interval {
-        Interval::new(0.0, 1.0)
-    }
-    fn constant_twist(&self) -> Option<ConstantTwist> {
-        Some(self.0)
-    }
-}
-
 /// A closed form is no reason to go past the times of a motion.
 #[test]
 fn nothing_is_promised_outside_of_a_domain() {
-    let rising = ForAWhile(ConstantTwist::REST.with_position(DVec3::Z).with_linear_velocity(DVec3::Z));
+    let rising = ConstantTwist::REST.with_position(DVec3::Z).with_linear_velocity(DVec3::Z);
+    let rising = Bounded(rising, Interval::new(0.0, 1.0));
     let floor = [DVec3::new(-1.0, -1.0, 0.0), DVec3::X, DVec3::Y];
     let ask = |end| {
         let pair = PairMotion::new(&rising, &ConstantTwist::REST, 0.0, end);

@@ -25,7 +25,7 @@ pub mod fixed;
 pub mod planted;
 
 #[cfg(any(feature = "planted", feature = "scenes"))]
-pub use opaque::{Blurred, CountedStates, Opaque, OpaqueWithState};
+pub use opaque::{Blurred, Bounded, CountedStates, Opaque, OpaqueWithState};
 pub use random::{Draw, KnuthRandom, Random};
 #[cfg(feature = "scenes")]
 pub use sharp_scene::{SharpFamily, SharpScene};

@@ -1,6 +1,6 @@
 //! Motions that hide what they are.
 use d2m_interval::{Interval, IntervalVec3};
-use d2m_motion::{CertifiedState, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
+use d2m_motion::{CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// What every motion must say of itself but its enclosed pose, as the motion in the first field says it.
@@ -46,6 +46,31 @@ impl<M: RigidMotion> RigidMotion for OpaqueWithState<M> {
     }
     fn enclose_state(&self, t: f64) -> CertifiedState {
         self.0.enclose_state(t)
+    }
+}
+
+/// A constant twist that says so, and of which nothing is known outside of some times.
+#[derive(Debug, Clone, Copy)]
+pub struct Bounded(pub ConstantTwist, pub Interval);
+
+impl RigidMotion for Bounded {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        self.0.pose_and_twist(t)
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        self.0.enclose_pose(t)
+    }
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist(t)
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist_rate(t)
+    }
+    fn domain(&self) -> Interval {
+        self.1
+    }
+    fn constant_twist(&self) -> Option<ConstantTwist> {
+        Some(self.0)
     }
 }
 

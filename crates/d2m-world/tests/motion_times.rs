@@ -6,36 +6,13 @@ use d2m_bvh::{
 };
 use d2m_interval::Interval;
 use d2m_motion::{
-    Chain, ConstantTwist, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Keyframes,
-    OutsideDomain, Pose, Retimed, RigidMotion, Span, Spline, SplineDegree, Twist,
+    Chain, ConstantTwist, Joint, JointKind, JointValue, Keyframes, OutsideDomain, Pose, Retimed, Span,
+    Spline, SplineDegree,
 };
+use d2m_testing::Bounded;
 use d2m_world::{Body, BodyId, FirstContact, PlannedMotion, SharedMotion, World, WorldError};
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
-
-/// A constant twist of which nothing is known outside of some times.
-struct Bounded(ConstantTwist, Interval);
-
-impl RigidMotion for Bounded {
-    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
-        self.0.pose_and_twist(t)
-    }
-    fn enclose_pose(&self, t: Interval) -> IntervalPose {
-        self.0.enclose_pose(t)
-    }
-    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist(t)
-    }
-    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
-        self.0.enclose_twist_rate(t)
-    }
-    fn domain(&self) -> Interval {
-        self.1
-    }
-    fn constant_twist(&self) -> Option<ConstantTwist> {
-        Some(self.0)
-    }
-}
 
 fn cube() -> Arc<MeshTree> {
     Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()))

@@ -43,9 +43,12 @@ pub(super) fn thread_seconds() -> Option<f64> {
     first_of(&std::fs::read_to_string("/proc/thread-self/schedstat").ok()?)
 }
 
+/// In seconds.
+const NANOSECOND: f64 = 1e-9;
+
 /// The first number of proc(5)'s schedstat, in nanoseconds.
 fn first_of(schedstat: &str) -> Option<f64> {
-    Some(schedstat.split_whitespace().next()?.parse::<f64>().ok()? * 1e-9)
+    Some(schedstat.split_whitespace().next()?.parse::<f64>().ok()? * NANOSECOND)
 }
 
 /// Fields 14 to 17 of proc(5)'s stat, in hundredths of a second; the second field may hold spaces.

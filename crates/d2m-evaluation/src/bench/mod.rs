@@ -55,7 +55,7 @@ enum Only {
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 enum Subject {
     /// Steps of simulations: boxes that fall into a pile, a bolt, gears, a sleeping pile, pebbles and knots; beside rapier a stack, bins, a
-    /// double pendulum, fast gears, nested dolls, with what is asked of each.
+    /// double pendulum, fast gears, nested dolls, with the targets of each.
     Dynamics,
     /// Construction and refit of trees, one thread and two, beside parry's; the first answer for two meshes; a minute.
     Trees,

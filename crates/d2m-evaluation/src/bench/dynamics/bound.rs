@@ -1,4 +1,4 @@
-//! What is asked of a run, beside what it took.
+//! Targets of a run, beside what it took.
 
 /// What a run took as a whole.
 #[derive(Clone, Copy, Debug, Default)]
@@ -24,7 +24,7 @@ pub(super) enum Bound {
 }
 
 impl Bound {
-    /// The figure beside what is asked for, and whether it is met; unknown if the system or the peer gives none.
+    /// The figure beside its target, and whether that is met; unknown if the system or the peer gives none.
     pub(super) fn judged(self, run: &Took, peer: Option<&Took>) -> String {
         let (figure, limit, unit, sign) = match self {
             Self::Seconds(limit) => (run.processor, limit, "s of CPU", '≤'),

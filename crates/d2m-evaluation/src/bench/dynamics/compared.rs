@@ -1,4 +1,4 @@
-//! Scenes on which both engines are measured, each with what is asked of ours.
+//! Scenes on which both engines are measured, each with the targets of ours.
 use super::bound::Bound;
 use super::scene::{Error, Expectation, HALF, Scene, options, tree};
 use d2m::bvh::MeshTree;
@@ -91,7 +91,7 @@ impl Scene {
         Self::new(format!("stack of {count}"), options(), 4.0, expectation)?.columns(count, count, clearance)
     }
 
-    /// Two bars of one meter that swing from where they are level.
+    /// Two bars of one meter that fall from where they are level, as a double pendulum.
     pub(super) fn double_pendulum() -> Result<Self, Error> {
         let options = SimulationOptions::default();
         let mut scene = Self::new("double pendulum on joints", options, 4.0, Expectation::Held)?;

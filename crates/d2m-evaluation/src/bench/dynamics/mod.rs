@@ -25,7 +25,7 @@ const FULL: &[usize] = &[10, 30, 100, 300, 1000];
 /// Triangles of the bolt at least. With 2000 its facets and those of the nut interlock, and the screw rests in the nut.
 const BOLT: usize = 5000;
 
-/// The exponent of the cost of a step by the number of boxes that is asked for.
+/// Target of the exponent of the cost of a step by the number of boxes.
 const EXPONENT: f64 = 1.15;
 
 /// Which runs are wanted.

@@ -50,7 +50,7 @@ pub(super) struct Scene {
     pub(super) before: f64,
     pub(super) seconds: f64,
     pub(super) expectation: Expectation,
-    /// What is asked for.
+    /// Targets.
     pub(super) bounds: Vec<Bound>,
 }
 
