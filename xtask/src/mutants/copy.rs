@@ -1,51 +1,40 @@
 //! Copies of the workspace in target/mutants, in which sources may be spoilt.
 use super::Error;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The copy; what is built of it lies beside it.
 pub(super) struct Copy {
-    source: PathBuf,
     pub(super) root: PathBuf,
     pub(super) build: PathBuf,
 }
 
 impl Copy {
-    /// Brings the copy of a worker up to date. A file that is the same already keeps its time, so that cargo need not build
-    /// again.
-    pub(super) fn new(source: &Path, worker: usize) -> Result<Self, Error> {
+    /// Brings the copy of a worker up to date; the files of `texts` get these.
+    pub(super) fn new(source: &Path, worker: usize, texts: &BTreeMap<String, String>) -> Result<Self, Error> {
         let base = source.join(format!("target/mutants/{worker}"));
-        let copy = Self { source: source.into(), root: base.join("workspace"), build: base.join("build") };
+        let copy = Self { root: base.join("workspace"), build: base.join("build") };
         let files = listed(source)?;
         for file in &files {
-            copy.restore(file)?;
+            match texts.get(file) {
+                Some(text) => copy.write(file, text.as_bytes())?,
+                None => copy.write(file, &fs::read(source.join(file))?)?,
+            }
         }
         remove_others(&copy.root, &copy.root, &files)?;
         Ok(copy)
     }
 
-    /// Makes a file what it is in the source again.
-    pub(super) fn restore(&self, file: &str) -> std::io::Result<()> {
-        let (from, to) = (self.source.join(file), self.root.join(file));
-        let wanted = fs::read(from)?;
+    /// Writes a file. One that is the same already keeps its time, so that cargo need not build again.
+    pub(super) fn write(&self, file: &str, wanted: &[u8]) -> std::io::Result<()> {
+        let to = self.root.join(file);
         if fs::read(&to).is_ok_and(|found| found == wanted) {
             return Ok(());
         }
         fs::create_dir_all(to.parent().unwrap_or(&self.root))?;
         fs::write(to, wanted)
-    }
-
-    /// Replaces the only occurrence of `from`.
-    pub(super) fn patch(&self, file: &str, from: &str, to: &str) -> Result<(), Error> {
-        let path = self.root.join(file);
-        let text = fs::read_to_string(&path).map_err(|e| format!("{file}: {e}"))?;
-        let found = text.matches(from).count();
-        if found != 1 {
-            return Err(format!("{file} holds the text {found} times instead of once: {from}").into());
-        }
-        Ok(fs::write(path, text.replace(from, to))?)
     }
 }
 

@@ -1,7 +1,12 @@
 //! `cargo xtask mutants`: the table of deliberate faults, each of which a named test must notice.
+mod build;
 mod copy;
+mod planted;
+mod program;
 mod record;
+mod round;
 mod run;
+mod switch;
 mod table;
 mod target;
 

@@ -1,10 +1,12 @@
 //! What became of the faults when they were made last: `docs/results/mutants.md`.
 use super::Error;
+use super::program::End;
 use super::table::Mutant;
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Where the table is, seen from the root of the workspace.
 const PATH: &str = "docs/results/mutants.md";
@@ -16,10 +18,52 @@ Written by `cargo xtask mutants`; do not edit. A row is what the last run made o
 made since the table is kept. What each of them changes: `xtask/mutants/`.
 ";
 
+/// What became of a mutant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Outcome {
+    Killed,
+    /// A fault that hangs is noticed, too.
+    KilledByHanging,
+    /// The test makes the fault itself, and passes.
+    KilledInTest,
+    Survives,
+    /// A fault of the table, not a kill.
+    DoesNotCompile,
+    /// The test notices nothing: it fails with the right code.
+    FailsAnyway,
+}
+
+impl Outcome {
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Killed => "killed",
+            Self::KilledByHanging => "killed (it hangs)",
+            Self::KilledInTest => "killed in the test",
+            Self::Survives => "SURVIVES",
+            Self::DoesNotCompile => "DOES NOT COMPILE",
+            Self::FailsAnyway => "TEST FAILS ANYWAY",
+        }
+    }
+
+    pub(super) fn is_kill(self) -> bool {
+        matches!(self, Self::Killed | Self::KilledByHanging | Self::KilledInTest)
+    }
+}
+
+impl From<End> for Outcome {
+    fn from(end: End) -> Self {
+        match end {
+            End::Failed => Self::Killed,
+            End::Hung => Self::KilledByHanging,
+            End::Passed => Self::Survives,
+        }
+    }
+}
+
 /// One result.
 pub(super) struct Judged<'a> {
     pub(super) mutant: &'a Mutant,
-    pub(super) word: &'static str,
+    pub(super) outcome: Outcome,
 }
 
 /// What kind of test it is that notices a fault.
@@ -34,31 +78,72 @@ fn kind(test: &str) -> &'static str {
     }
 }
 
-/// Brings the table up to date: rows of these are written anew, those of faults that are gone are dropped.
-pub(super) fn record(root: &Path, all: &[Mutant], judged: &[Judged<'_>]) -> Result<(), Error> {
-    let commit = Command::new("git")
-        .args(["log", "-1", "--format=%h of %cs"])
-        .current_dir(root)
-        .output()
-        .map_err(|e| format!("git: {e}"))?;
-    let commit = String::from_utf8_lossy(&commit.stdout).trim().to_owned();
-    let path = root.join(PATH);
-    let before = fs::read_to_string(&path).unwrap_or_default();
-    let mut rows: BTreeMap<&str, String> = BTreeMap::new();
-    for mutant in all {
-        let start = format!("| {} |", mutant.name);
-        rows.extend(
-            before.lines().find(|row| row.starts_with(&start)).map(|row| (&*mutant.name, row.into())),
-        );
+/// The table as one run writes it.
+pub(super) struct Record<'a> {
+    path: PathBuf,
+    all: &'a [Mutant],
+    /// The commit that the sources of the run are of, and the day on which it began.
+    run: String,
+}
+
+impl<'a> Record<'a> {
+    pub(super) fn new(root: &Path, all: &'a [Mutant]) -> Result<Self, Error> {
+        let commit = Command::new("git")
+            .args(["log", "-1", "--format=%h"])
+            .current_dir(root)
+            .output()
+            .map_err(|e| format!("git: {e}"))?;
+        let commit = String::from_utf8_lossy(&commit.stdout).trim().to_owned();
+        let seconds = SystemTime::now().duration_since(UNIX_EPOCH)?.as_secs();
+        let run = format!("{commit} | {}", date(seconds / 86_400));
+        Ok(Self { path: root.join(PATH), all, run })
     }
-    for Judged { mutant, word } in judged {
-        let row =
-            format!("| {} | {word} | {} | `{}` | {commit} |", mutant.name, kind(&mutant.test), mutant.test);
-        rows.insert(&mutant.name, row);
+
+    /// Brings the table up to date: rows of these are written anew, those of faults that are gone are dropped.
+    pub(super) fn write(&self, judged: &[Judged<'_>]) -> Result<(), Error> {
+        let before = fs::read_to_string(&self.path).unwrap_or_default();
+        let mut rows: BTreeMap<&str, String> = BTreeMap::new();
+        for mutant in self.all {
+            let start = format!("| {} |", mutant.name);
+            rows.extend(
+                before.lines().find(|row| row.starts_with(&start)).map(|row| (&*mutant.name, row.into())),
+            );
+        }
+        for Judged { mutant, outcome } in judged {
+            let (word, kind) = (outcome.word(), kind(&mutant.test));
+            let row = format!("| {} | {word} | {kind} | `{}` | {} |", mutant.name, mutant.test, self.run);
+            rows.insert(&mutant.name, row);
+        }
+        let count = format!("{} of {} faults have a row.", rows.len(), self.all.len());
+        let rows: Vec<String> = rows.into_values().collect();
+        let title = "| fault | result | by | which | at commit | run on |\n|---|---|---|---|---|---|";
+        fs::write(&self.path, format!("{HEAD}\n{count}\n\n{title}\n{}\n", rows.join("\n")))?;
+        Ok(())
     }
-    let count = format!("{} of {} faults have a row.", rows.len(), all.len());
-    let rows: Vec<String> = rows.into_values().collect();
-    let title = "| fault | result | by | which | at commit |\n|---|---|---|---|---|";
-    fs::write(&path, format!("{HEAD}\n{count}\n\n{title}\n{}\n", rows.join("\n")))?;
-    Ok(())
+}
+
+/// The date of a day that is counted from 1970-01-01, in the Gregorian calendar.
+fn date(days: u64) -> String {
+    // Years begin in March here, so that the day of a leap year is the last one of its year.
+    let days = days + 719_468;
+    let (era, of_era) = (days / 146_097, days % 146_097);
+    let year = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
+    let of_year = of_era - (365 * year + year / 4 - year / 100);
+    let from_march = (5 * of_year + 2) / 153;
+    let (day, month) = (of_year - (153 * from_march + 2) / 5 + 1, (from_march + 2) % 12 + 1);
+    format!("{:04}-{month:02}-{day:02}", 400 * era + year + u64::from(month <= 2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::date;
+
+    #[test]
+    fn dates_of_days() {
+        for (days, wanted) in
+            [(0, "1970-01-01"), (59, "1970-03-01"), (11_016, "2000-02-29"), (20_783, "2026-11-26")]
+        {
+            assert_eq!(date(days), wanted);
+        }
+    }
 }

@@ -67,6 +67,15 @@ impl Mutant {
     }
 }
 
+/// The root module of the crate that holds a source file. Files of tests are crates of their own.
+pub(super) fn root_module(root: &Path, file: &str) -> Option<String> {
+    let (folder, inside) = file.split_once("/src/")?;
+    let library = root.join(folder).join("src/lib.rs").exists();
+    let name = if library { "lib.rs" } else { "main.rs" };
+    // A program beside a library is another crate.
+    (inside != "main.rs" || !library).then(|| format!("{folder}/src/{name}"))
+}
+
 /// The features without which a test of `tests` is left out.
 fn required_features(manifest: &toml::Table, test: &str) -> Option<Vec<String>> {
     let named = |entry: &&toml::Value| entry.get("name").and_then(toml::Value::as_str) == Some(test);
@@ -103,5 +112,13 @@ mod tests {
         );
         assert_eq!(mutant("crates/d2m-bvh/tests/engine.rs::f").package_folder(), "crates/d2m-bvh");
         assert_eq!(mutant("xtask/src/tidy/map.rs::f").package_folder(), "xtask");
+    }
+
+    #[test]
+    fn root_modules_of_files() {
+        let of = |file| root_module(&crate::workspace_root(), file);
+        assert_eq!(of("crates/d2m-bvh/src/search/scene.rs").unwrap(), "crates/d2m-bvh/src/lib.rs");
+        assert_eq!(of("crates/d2m-cli/src/scene/mod.rs").unwrap(), "crates/d2m-cli/src/main.rs");
+        assert_eq!(of("crates/d2m-bvh/tests/engine.rs"), None);
     }
 }
