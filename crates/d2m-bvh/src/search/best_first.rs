@@ -139,11 +139,10 @@ impl<'s> Search<'s> {
         if is_full || self.out_of_budget() {
             return Some(Step::Answer(Outcome::OutOfBudget(now())));
         }
-        let is_due = self.work() >= self.limits.sweep_from;
-        if self.ahead.is_some_and(|ahead| is_due || ahead.is_useless()) {
+        if self.gives_up() {
             return Some(Step::Answer(Outcome::OutOfBudget(start)));
         }
-        if !is_due {
+        if !self.is_sweep_due() {
             return None;
         }
         let until = self.sweep(&state.motion, &state.frame, now(), batch.items()[0].boxes)?;

@@ -153,6 +153,19 @@ mod tests {
         MeshTree::new(Surface::wavy_torus(rings, sides, tube).into_mesh(TriMesh::try_new))
     }
 
+    /// Motions of two rings that interlock, spin and drift apart, close to each other for long.
+    fn interlocked(random: &mut KnuthRandom, spin: f64, drift: f64) -> [ConstantTwist; 2] {
+        let upright = DQuat::from_rotation_x(1.57 + 0.2 * random.signed());
+        let drift = random.vector() * drift;
+        let place = DVec3::X * (0.9 + 0.15 * random.signed());
+        let turning = (DVec3::Z + random.vector() * 0.05) * spin;
+        [
+            ConstantTwist::try_new(DVec3::ZERO, DQuat::IDENTITY, drift, turning),
+            ConstantTwist::try_new(place, upright, DVec3::ZERO, DVec3::Y * spin * random.signed()),
+        ]
+        .map(Result::unwrap)
+    }
+
     /// Interlocked rings that spin and drift, close to each other for long: every number of threads gives the outcome
     /// and the counts of one thread, whatever the mode and wherever a budget ends.
     #[test]
@@ -164,19 +177,8 @@ mod tests {
         for round in 0..40 {
             let (a, b) = (&trees[round % 3], &trees[round / 3 % 3]);
             let spin = [10.0, 60.0, 300.0][round % 3];
-            let upright = DQuat::from_rotation_x(1.57 + 0.2 * random.signed());
-            let drift = random.vector() * [0.0, 0.02, 0.2, 0.6][round / 2 % 4];
-            let place = DVec3::X * (0.9 + 0.15 * random.signed());
-            let motions = [
-                ConstantTwist::try_new(
-                    DVec3::ZERO,
-                    DQuat::IDENTITY,
-                    drift,
-                    (DVec3::Z + random.vector() * 0.05) * spin,
-                ),
-                ConstantTwist::try_new(place, upright, DVec3::ZERO, DVec3::Y * spin * random.signed()),
-            ]
-            .map(Result::unwrap);
+            let drift = [0.0, 0.02, 0.2, 0.6][round / 2 % 4];
+            let motions = interlocked(&mut random, spin, drift);
             let options = QueryOptions::default()
                 .with_parallel(true)
                 .with_mode([Mode::Accurate, Mode::Exists, Mode::Capoeira][round / 5 % 3]);
@@ -201,6 +203,27 @@ mod tests {
             }
         }
         assert!(found > 15 && apart > 15 && ended > 15 && helped > 60, "{found} {apart} {ended} {helped}");
+    }
+
+    /// One memory for searches of many and of few triangles by turns: none refers to triangles of the search before it, although
+    /// what other threads search before its turn may come to where swept volumes are due.
+    #[test]
+    fn memory_of_larger_bodies_is_of_no_use() {
+        let mut random = KnuthRandom(31);
+        let trees = [ring(32, 8, 0.3), ring(8, 3, 0.3)];
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let (mut scratch, mut helped) = (Scratch::new(), 0);
+        let options = QueryOptions::default().with_parallel(true);
+        for round in 0..60 {
+            let tree = &trees[round % 2];
+            let [a, b] = interlocked(&mut random, 600.0, 0.02);
+            let scene = MovingScene::new((tree, a), (tree, b), Window::UNIT, &options);
+            let together = pool.install(|| Search::new(&scene, &options, &mut scratch).run());
+            let alone = Search::new(&scene, &options.with_parallel(false), &mut Scratch::new()).run();
+            assert_eq!(format!("{together:?}"), format!("{alone:?}"), "round {round}");
+            helped += usize::from(scratch.counts.work() > FIRST_WORK);
+        }
+        assert!(helped > 20, "{helped}");
     }
 
     /// What a query leaves in the memory of its thread is of no use to the next one, whose contact another thread finds: its

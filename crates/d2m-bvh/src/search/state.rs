@@ -186,6 +186,17 @@ impl<'s> Search<'s> {
         self.scratch.counts.work()
     }
 
+    /// Are swept volumes to be compared now?
+    pub(super) fn is_sweep_due(&self) -> bool {
+        self.work() >= self.limits.sweep_from
+    }
+
+    /// Whether a sub-window that is searched before its turn is left to the search by one thread: there is an earlier answer, or
+    /// swept volumes are due, which begin at what that search has tested last.
+    pub(super) fn gives_up(&self) -> bool {
+        self.ahead.is_some_and(|ahead| self.is_sweep_due() || ahead.is_useless())
+    }
+
     pub(super) fn out_of_budget(&self) -> bool {
         self.work() >= self.limits.most_tests || self.limits.stop.is_due()
     }

@@ -123,10 +123,10 @@ impl Search<'_> {
             if end <= clear_until {
                 continue;
             }
-            if self.out_of_budget() {
+            if self.out_of_budget() || self.gives_up() {
                 return Step::Answer(Outcome::OutOfBudget(start));
             }
-            if self.work() >= self.limits.sweep_from {
+            if self.is_sweep_due() {
                 let PlacedFrame { frame, .. } =
                     grid.motion.far_frame::<L::Doubles>(start - grid.motion.start);
                 let boxes = waiting.pairs[now.pairs.0].boxes;
