@@ -10,14 +10,21 @@ use syn::{Block, ImplItemFn, ItemFn, ReturnType, Signature, TraitItemFn, TypeImp
 pub(super) const VARIABLE: &str = "D2M_FAULT";
 
 /// What the root module of a crate with switches ends with, whether the crate uses the standard library or not.
+/// Spoilt bodies are closures that are not inlined: with the right ones, inlined into each other, they would be many.
 pub(super) fn reader() -> String {
     format!(
         "
+#[inline]
 pub(crate) fn has_fault(number: usize) -> bool {{
     extern crate std as host;
     static MADE: host::sync::LazyLock<Option<usize>> =
         host::sync::LazyLock::new(|| host::env::var(\"{VARIABLE}\").ok()?.parse().ok());
     *MADE == Some(number)
+}}
+#[cold]
+#[inline(never)]
+pub(crate) fn spoilt<T>(body: impl FnOnce() -> T) -> T {{
+    body()
 }}
 "
     )
@@ -57,28 +64,29 @@ impl Switched {
     pub(super) fn new(right: &str, faults: &[Fault<'_>]) -> Self {
         let mut switched = Self { text: String::new(), functions: Vec::new() };
         let mut copied = 0;
-        for body in bodies(right) {
-            let spoilt = |fault: &Fault<'_>| Some((fault.number, spoil(right, &body, fault)?));
+        for Body { place, output } in bodies(right) {
+            let spoilt = |fault: &Fault<'_>| Some((fault.number, spoil(right, &place, fault)?));
             let spoilt: Vec<(usize, String)> = faults.iter().filter_map(spoilt).collect();
             if !spoilt.is_empty() {
-                switched.text.push_str(&right[copied..body.start]);
-                switched.add(&right[body.clone()], &spoilt);
-                copied = body.end;
+                switched.text.push_str(&right[copied..place.start]);
+                switched.add([&right[place.clone()], right[output].trim()], &spoilt);
+                copied = place.end;
             }
         }
         switched.text.push_str(&right[copied..]);
         switched
     }
 
-    fn add(&mut self, right: &str, spoilt: &[(usize, String)]) {
+    fn add(&mut self, [right, output]: [&str; 2], spoilt: &[(usize, String)]) {
         let text = &mut self.text;
         let mut function = Function { place: text.len()..text.len(), spoilt: Vec::new() };
         let mut word = "{ if";
         for (number, body) in spoilt {
-            let _ = write!(text, "{word} crate::has_fault({number}) ");
+            let _ = write!(text, "{word} crate::has_fault({number}) {{ crate::spoilt(move || {output} ");
             let start = text.len();
             text.push_str(body);
             function.spoilt.push(Spoilt { number: *number, place: start..text.len() });
+            text.push_str(") }");
             word = " else if";
         }
         let _ = write!(text, " else {right} }}");
@@ -116,7 +124,7 @@ fn spoil(right: &str, body: &Range<usize>, fault: &Fault<'_>) -> Option<String> 
 }
 
 /// The bodies that can be one branch of two, from the first to the last. What lies inside of one is part of it.
-fn bodies(text: &str) -> Vec<Range<usize>> {
+fn bodies(text: &str) -> Vec<Body> {
     let mut bodies = Bodies(Vec::new());
     if let Ok(file) = syn::parse_file(text) {
         bodies.visit_file(&file);
@@ -124,13 +132,26 @@ fn bodies(text: &str) -> Vec<Range<usize>> {
     bodies.0
 }
 
-struct Bodies(Vec<Range<usize>>);
+/// Where the block of a function lies, and where it says what the function returns.
+struct Body {
+    place: Range<usize>,
+    output: Range<usize>,
+}
+
+struct Bodies(Vec<Body>);
 
 impl Bodies {
     fn add(&mut self, signature: &Signature, body: &Block) {
         if signature.constness.is_none() && !is_opaque(&signature.output) {
             let braces = body.brace_token.span;
-            self.0.push(braces.open().byte_range().start..braces.close().byte_range().end);
+            let place = braces.open().byte_range().start..braces.close().byte_range().end;
+            let clause = signature.generics.where_clause.as_ref();
+            let end = clause.map_or(place.start, |clause| clause.where_token.span.byte_range().start);
+            let output = match &signature.output {
+                ReturnType::Default => end..end,
+                ReturnType::Type(arrow, _) => arrow.spans[0].byte_range().start..end,
+            };
+            self.0.push(Body { place, output });
         }
     }
 }
@@ -180,14 +201,16 @@ mod tests {
     #[test]
     fn a_function_has_both_bodies() {
         let one = switched("fn f(x: f64) -> f64 { x + 1.0 }\n", &[["1.0", "2.0"]]);
-        assert_eq!(one.text, "fn f(x: f64) -> f64 { if crate::has_fault(1) { x + 2.0 } else { x + 1.0 } }\n");
+        let body =
+            "{ if crate::has_fault(1) { crate::spoilt(move || -> f64 { x + 2.0 }) } else { x + 1.0 } }";
+        assert_eq!(one.text, format!("fn f(x: f64) -> f64 {body}\n"));
     }
 
     #[test]
     fn several_faults_of_a_function_are_a_chain() {
         let two = switched("const K: u8 = 1;\nfn f() { a(); b() }", &[["a()", "()"], ["; b()", ""]]);
-        let chain =
-            "{ if crate::has_fault(1) { (); b() } else if crate::has_fault(2) { a() } else { a(); b() } }";
+        let chain = "{ if crate::has_fault(1) { crate::spoilt(move ||  { (); b() }) } \
+            else if crate::has_fault(2) { crate::spoilt(move ||  { a() }) } else { a(); b() } }";
         assert_eq!(two.text, format!("const K: u8 = 1;\nfn f() {chain}"));
         assert_eq!(two.numbers().collect::<Vec<_>>(), [1, 2]);
     }
@@ -197,11 +220,11 @@ mod tests {
         // Places are bytes, not characters.
         let right =
             "/* π */ impl A { fn f(&self) -> u8 { let g = |x| { x + 1 }; const fn h() -> u8 { 2 } g(h()) } }
-            trait B { fn one(&self) -> u8 { 3 } fn two(&self); }
+            trait B { fn one<T>(&self) -> u8 where T: Copy { 3 } fn two(&self); }
             mod c { fn d() -> u8 { 4 } }";
         let all = switched(right, &[["x + 1", "x"], ["{ 2 }", "{ 5 }"], ["{ 3 }", "{ 6 }"], ["4", "7"]]);
         assert_eq!(all.numbers().collect::<Vec<_>>(), [1, 2, 3, 4]);
-        assert!(all.text.contains("fn one(&self) -> u8 { if crate::has_fault(3) { 6 } else { 3 } }"));
+        assert!(all.text.contains("{ crate::spoilt(move || -> u8 { 6 }) } else { 3 }"));
         assert!(all.text.contains("let g = |x| { x }; const fn h() -> u8 { 2 }"));
     }
 
