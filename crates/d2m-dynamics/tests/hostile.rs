@@ -15,15 +15,27 @@ fn floor(scale: f64) -> Body {
     Body::new("floor", shape).with_kind(Kind::Static).with_position(DVec3::NEG_Y * scale)
 }
 
+/// What some steps came to.
+struct Run {
+    skipped: f64,
+    events: u32,
+}
+
 /// Steps until `end`; the skipped time.
 fn run(simulation: &mut Simulation, end: f64) -> f64 {
-    let mut skipped = 0.0;
+    counted(simulation, end).skipped
+}
+
+fn counted(simulation: &mut Simulation, end: f64) -> Run {
+    let mut run = Run { skipped: 0.0, events: 0 };
     while simulation.time() < end {
         let report = simulation.step().unwrap();
         assert!(report.events <= simulation.options().max_events + simulation.len() as u32);
-        skipped += report.segments.iter().map(|s| s.skipped).sum::<f64>();
+        run.events += report.events;
+        run.skipped += report.segments.iter().map(|s| s.skipped).sum::<f64>();
     }
-    skipped + simulation.finish().iter().map(|s| s.skipped).sum::<f64>()
+    run.skipped += simulation.finish().iter().map(|s| s.skipped).sum::<f64>();
+    run
 }
 
 #[test]
@@ -310,9 +322,11 @@ fn friction_alone_crushes_nothing() {
 }
 
 /// The lower edge of a bar that moves over the floor meets stones from above, where friction with both locks them. Without friction they could
-/// slip out ahead, or below: nothing is crushed, and nothing given up.
+/// slip out ahead, or below: nothing is crushed, and nothing given up. What friction locks shares its room for as long as there is some: it
+/// meets about a hundred times, and about four hundred times where velocities are off the law instead.
 #[test]
 fn stones_slip_out_from_under_an_edge() {
+    let mut events = 0;
     for (seed, height, friction) in [(0, 0.17, 0.4), (0, 0.17, 0.6), (1, 0.14, 0.6), (2, 0.14, 0.6)] {
         let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
         simulation.add(&floor(1.0).with_friction(friction)).unwrap();
@@ -326,6 +340,9 @@ fn stones_slip_out_from_under_an_edge() {
         let stone =
             Body::new("stone", stone).with_position(DVec3::new(0.0, 0.16, -0.1)).with_friction(friction);
         simulation.add(&stone).unwrap();
-        assert_eq!(run(&mut simulation, 1.0), 0.0, "{seed}");
+        let run = counted(&mut simulation, 1.0);
+        assert_eq!(run.skipped, 0.0, "{seed}");
+        events += run.events;
     }
+    assert!(events < 200, "{events}");
 }
