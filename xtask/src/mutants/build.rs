@@ -2,14 +2,26 @@
 use super::Error;
 use super::copy::Copy;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What cargo made of a target.
 pub(super) enum Built {
-    Program(PathBuf),
+    Programs(Programs),
     Refused(Refusal),
+}
+
+/// The programs of tests, by the folders of their packages.
+pub(super) struct Programs(BTreeMap<PathBuf, PathBuf>);
+
+impl Programs {
+    /// The program of the package in a folder of the copy.
+    pub(super) fn of(&self, copy: &Copy, folder: &str) -> Result<&Path, Error> {
+        let program = self.0.get(&copy.root.join(folder));
+        Ok(program.ok_or_else(|| format!("cargo names no test program of {folder}"))?)
+    }
 }
 
 /// Why a target does not compile.
@@ -26,11 +38,11 @@ pub(super) struct Place {
     pub(super) bytes: Range<usize>,
 }
 
-/// Builds the target, given as arguments of cargo.
-pub(super) fn build(copy: &Copy, target: &[String]) -> Result<Built, Error> {
+/// Builds the targets that the arguments of cargo name.
+pub(super) fn build(copy: &Copy, targets: &[String]) -> Result<Built, Error> {
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .args(["test", "--locked", "--no-run", "--message-format=json"])
-        .args(target)
+        .args(targets)
         .current_dir(&copy.root)
         .env("CARGO_TARGET_DIR", &copy.build)
         // Most of the time is the compiler's, also where one build serves many faults.
@@ -41,12 +53,14 @@ pub(super) fn build(copy: &Copy, target: &[String]) -> Result<Built, Error> {
     let text = String::from_utf8_lossy(&output.stdout);
     let messages: Vec<Value> = text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect();
     if output.status.success() {
-        let program = messages
+        let tests = messages
             .iter()
             .filter(|m| m["reason"] == "compiler-artifact" && m["profile"]["test"] == true)
-            .filter_map(|m| m["executable"].as_str().map(PathBuf::from))
-            .next_back();
-        return program.map(Built::Program).ok_or_else(|| "cargo names no test program".into());
+            .filter_map(|m| {
+                let folder = Path::new(m["manifest_path"].as_str()?).parent()?;
+                Some((folder.into(), PathBuf::from(m["executable"].as_str()?)))
+            });
+        return Ok(Built::Programs(Programs(tests.collect())));
     }
     let refusal = refusal(&messages);
     if refusal.text.is_empty() {

@@ -1,13 +1,13 @@
 //! The faults that lie in a copy of the sources: many behind switches, or one alone.
 use super::Error;
-use super::build::{Built, Place, build};
+use super::build::{Built, Place, Programs, build};
 use super::copy::Copy;
 use super::switch::{self, Fault, Switched};
 use super::table::{Change, Mutant};
 use super::target::root_module;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A copy of the sources and the faults of a run in it. Each has its number among them.
 pub(super) struct Planted<'a> {
@@ -52,11 +52,11 @@ impl<'a> Planted<'a> {
         self.switched.values().any(|file| file.numbers().any(|one| one == number))
     }
 
-    /// The program of a target with all the switches. Those whose functions do not compile are taken away.
-    pub(super) fn program(&mut self, target: &[String]) -> Result<PathBuf, Error> {
+    /// The programs of targets with all the switches. Those whose functions do not compile are taken away.
+    pub(super) fn programs(&mut self, targets: &[String]) -> Result<Programs, Error> {
         loop {
-            match build(&self.copy, target)? {
-                Built::Program(program) => return Ok(program),
+            match build(&self.copy, targets)? {
+                Built::Programs(programs) => return Ok(programs),
                 Built::Refused(refusal) => {
                     let named = self.named(&refusal.places);
                     if named.is_empty() {
@@ -68,14 +68,14 @@ impl<'a> Planted<'a> {
         }
     }
 
-    /// Builds a target with one fault that has no switch; all that have one stay, but those of the same file.
-    pub(super) fn build_alone(&self, number: usize, target: &[String]) -> Result<Built, Error> {
+    /// Builds targets with one fault that has no switch; all that have one stay, but those of the same file.
+    pub(super) fn build_alone(&self, number: usize, targets: &[String]) -> Result<Built, Error> {
         let Change::Patch { file, from, to } = &self.mutants[number].change else {
             return Err("the test makes the fault itself".into());
         };
         let spoilt = self.right[file].replace(from, to);
         self.write(file, &spoilt)?;
-        let built = build(&self.copy, target);
+        let built = build(&self.copy, targets);
         self.write(file, &self.switched[file].text)?;
         built
     }

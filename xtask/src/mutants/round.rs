@@ -5,6 +5,7 @@ use super::planted::Planted;
 use super::program::{End, run_test};
 use super::record::{Judged, Outcome, Record};
 use super::table::{Change, Mutant};
+use super::target::{Kind, Selection, Target};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -19,9 +20,9 @@ const LEAST: Duration = Duration::from_secs(30);
 /// A test with the right code that takes longer than this is no test.
 const LONGEST: Duration = Duration::from_secs(3600);
 
-/// A target, as arguments of cargo, and the numbers of the mutants that its tests must notice.
+/// Targets that are built at once, as arguments of cargo, and the numbers of the mutants that their tests must notice.
 struct Group {
-    target: Vec<String>,
+    targets: Vec<String>,
     numbers: Vec<usize>,
 }
 
@@ -29,7 +30,7 @@ struct Group {
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Alone<'a> {
     package: &'a str,
-    target: &'a [String],
+    targets: Vec<String>,
     number: usize,
     limit: Duration,
 }
@@ -39,6 +40,10 @@ pub(super) struct Round<'a> {
     source: &'a Path,
     record: Record<'a>,
     mutants: &'a [&'a Mutant],
+    /// Of the mutants.
+    targets: Vec<Target>,
+    /// All of their packages.
+    selection: Selection,
     groups: Vec<Group>,
     /// The first group that no worker has taken.
     next: AtomicUsize,
@@ -52,14 +57,20 @@ impl<'a> Round<'a> {
         record: Record<'a>,
         mutants: &'a [&'a Mutant],
     ) -> Result<Self, Error> {
-        let mut groups: BTreeMap<Vec<String>, Vec<usize>> = BTreeMap::new();
-        for (number, mutant) in mutants.iter().enumerate() {
-            groups.entry(mutant.target(source)?).or_default().push(number);
+        let targets: Result<Vec<Target>, Error> =
+            mutants.iter().map(|mutant| mutant.target(source)).collect();
+        let targets = targets?;
+        let selection = Selection::of(&targets);
+        let mut kinds: BTreeMap<&Kind, Vec<usize>> = BTreeMap::new();
+        for (number, target) in targets.iter().enumerate() {
+            kinds.entry(&target.kind).or_default().push(number);
         }
-        let groups = groups.into_iter().map(|(target, numbers)| Group { target, numbers }).collect();
+        let groups = kinds.into_iter();
+        let groups =
+            groups.map(|(kind, numbers)| Group { targets: selection.arguments(kind), numbers }).collect();
         let progress = bar(mutants.len());
         let (next, judged) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
-        Ok(Self { source, record, mutants, groups, next, judged, progress })
+        Ok(Self { source, record, mutants, targets, selection, groups, next, judged, progress })
     }
 
     /// Judges every mutant with that many workers, each in a copy of its own.
@@ -97,21 +108,22 @@ impl<'a> Round<'a> {
     fn judge_group<'b>(
         &'b self,
         planted: &mut Planted<'_>,
-        group: &'b Group,
+        group: &Group,
         alone: &Mutex<BTreeSet<Alone<'b>>>,
     ) -> Result<(), Error> {
-        self.progress.set_message(format!("builds {}", group.target.join(" ")));
-        let program = planted.program(&group.target)?;
+        self.progress.set_message(format!("builds {}", group.targets.join(" ")));
+        let programs = planted.programs(&group.targets)?;
         let mut limits: BTreeMap<&str, Option<Duration>> = BTreeMap::new();
         for &number in &group.numbers {
             let mutant = self.mutants[number];
             self.progress.set_message(mutant.name.clone());
+            let program = programs.of(&planted.copy, mutant.package_folder())?;
             // The test must pass with the right code first.
             let limit = if let Some(&known) = limits.get(&*mutant.test) {
                 known
             } else {
                 let begin = Instant::now();
-                let end = run_test(&planted.copy, &program, mutant, None, LONGEST)?;
+                let end = run_test(&planted.copy, program, mutant, None, LONGEST)?;
                 let limit = (end == End::Passed).then(|| LEAST.max(begin.elapsed() * PATIENCE));
                 *limits.entry(&mutant.test).or_insert(limit)
             };
@@ -119,11 +131,11 @@ impl<'a> Round<'a> {
                 (_, None) => Outcome::FailsAnyway,
                 (Change::InTest, Some(_)) => Outcome::KilledInTest,
                 (Change::Patch { .. }, Some(limit)) if planted.has_switch(number) => {
-                    run_test(&planted.copy, &program, mutant, Some(number), limit)?.into()
+                    run_test(&planted.copy, program, mutant, Some(number), limit)?.into()
                 }
                 (Change::Patch { .. }, Some(limit)) => {
-                    let (package, target) = (mutant.package(), &*group.target);
-                    locked(alone).insert(Alone { package, target, number, limit });
+                    let (package, targets) = (mutant.package(), self.alone(number));
+                    locked(alone).insert(Alone { package, targets, number, limit });
                     continue;
                 }
             };
@@ -132,11 +144,23 @@ impl<'a> Round<'a> {
         Ok(())
     }
 
+    /// What is built for one mutant: of libraries, whose tests cargo builds all or one package at a time, only its own.
+    fn alone(&self, number: usize) -> Vec<String> {
+        let target = &self.targets[number];
+        match target.kind {
+            Kind::Library => Selection::of([target]).arguments(&target.kind),
+            Kind::Program(_) | Kind::Test(_) => self.selection.arguments(&target.kind),
+        }
+    }
+
     fn judge_alone(&self, planted: &Planted<'_>, one: &Alone<'_>) -> Result<(), Error> {
         let mutant = self.mutants[one.number];
         self.progress.set_message(format!("alone: {}", mutant.name));
-        let outcome = match planted.build_alone(one.number, one.target)? {
-            Built::Program(program) => run_test(&planted.copy, &program, mutant, None, one.limit)?.into(),
+        let outcome = match planted.build_alone(one.number, &one.targets)? {
+            Built::Programs(programs) => {
+                let program = programs.of(&planted.copy, mutant.package_folder())?;
+                run_test(&planted.copy, program, mutant, None, one.limit)?.into()
+            }
             Built::Refused(refusal) => {
                 self.say(&refusal.text);
                 Outcome::DoesNotCompile

@@ -1,6 +1,7 @@
 //! Which package and which target of it a test is built with.
 use super::Error;
 use super::table::{Change, Mutant};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// A test by its file and its name.
@@ -38,32 +39,79 @@ impl Mutant {
         folder(self.test().file)
     }
 
-    /// What cargo builds: the package and the target in which the test lives.
-    pub(super) fn target(&self, root: &Path) -> Result<Vec<String>, Error> {
+    /// The target in which the test lives.
+    pub(super) fn target(&self, root: &Path) -> Result<Target, Error> {
         let file = self.test().file;
         let home = root.join(folder(file));
         let path = home.join("Cargo.toml");
         let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
         let manifest: toml::Table = text.parse()?;
-        let mut arguments = vec!["-p".to_string(), package(file).to_string()];
+        let package = package(file).to_string();
         let test = file.strip_prefix(folder(file)).and_then(|rest| rest.strip_prefix("/tests/"));
-        if let Some(test) = test {
-            arguments.extend(["--test".into(), test.trim_end_matches(".rs").into()]);
+        let test = test.map(|test| test.trim_end_matches(".rs"));
+        let kind = if let Some(test) = test {
+            Kind::Test(test.into())
         } else if home.join("src/lib.rs").exists() {
-            arguments.push("--lib".into());
+            Kind::Library
         } else {
             let named = manifest.get("bin").and_then(|all| all.get(0)).and_then(|first| first.get("name"));
-            let name = named.and_then(toml::Value::as_str).unwrap_or(package(file));
-            arguments.extend(["--bin".into(), name.into()]);
-        }
+            Kind::Program(named.and_then(toml::Value::as_str).unwrap_or(&package).into())
+        };
         // Some tests are about written forms; without the feature they would not be among those of their target.
         let features = manifest.get("features").and_then(toml::Value::as_table);
         let written = features.filter(|all| all.contains_key("serde")).map(|_| "serde".to_string());
-        let required = test.and_then(|test| required_features(&manifest, test.trim_end_matches(".rs")));
-        for feature in written.into_iter().chain(required.unwrap_or_default()) {
-            arguments.extend(["--features".into(), feature]);
+        let required = test.and_then(|test| required_features(&manifest, test)).unwrap_or_default();
+        let named = |feature| format!("{package}/{feature}");
+        let features = written.into_iter().chain(required).map(named).collect();
+        Ok(Target { kind, package, features })
+    }
+}
+
+/// What cargo calls a target, whatever its package.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Kind {
+    Library,
+    Program(String),
+    Test(String),
+}
+
+/// A target, its package, and the features that it is built with.
+#[derive(Clone, Debug)]
+pub(super) struct Target {
+    pub(super) kind: Kind,
+    pub(super) package: String,
+    pub(super) features: BTreeSet<String>,
+}
+
+/// What cargo builds at once: the targets of a kind in some packages. Crates below them are built once for all calls that
+/// choose the same packages and features, as cargo joins the features of what it is given.
+#[derive(Clone, Debug)]
+pub(super) struct Selection {
+    pub(super) packages: BTreeSet<String>,
+    pub(super) features: BTreeSet<String>,
+}
+
+impl Selection {
+    pub(super) fn of<'a>(targets: impl IntoIterator<Item = &'a Target>) -> Self {
+        let mut selection = Self { packages: BTreeSet::new(), features: BTreeSet::new() };
+        for target in targets {
+            selection.packages.insert(target.package.clone());
+            selection.features.extend(target.features.iter().cloned());
         }
-        Ok(arguments)
+        selection
+    }
+
+    /// The arguments with which cargo builds the targets of a kind.
+    pub(super) fn arguments(&self, kind: &Kind) -> Vec<String> {
+        let mut arguments = match kind {
+            Kind::Library => vec!["--lib".into()],
+            Kind::Program(name) => vec!["--bin".into(), name.clone()],
+            Kind::Test(name) => vec!["--test".into(), name.clone()],
+        };
+        for (flag, values) in [("-p", &self.packages), ("--features", &self.features)] {
+            arguments.extend(values.iter().flat_map(|value| [flag.to_string(), value.clone()]));
+        }
+        arguments
     }
 }
 
@@ -102,13 +150,20 @@ mod tests {
     fn targets_of_tests() {
         let root = crate::workspace_root();
         let mutant = |test: &str| Mutant { name: String::new(), change: Change::InTest, test: test.into() };
-        let of = |test| mutant(test).target(&root).unwrap().join(" ");
-        assert_eq!(of("crates/d2m-bvh/tests/engine.rs::f"), "-p d2m-bvh --test engine --features serde");
-        assert_eq!(of("crates/d2m-bvh/src/search/tests.rs::f"), "-p d2m-bvh --lib --features serde");
-        assert_eq!(of("crates/d2m-cli/src/scene/tests.rs::f"), "-p d2m-cli --bin d2m");
+        let target = |test| mutant(test).target(&root).unwrap();
+        let of = |test| {
+            let target = target(test);
+            Selection::of([&target]).arguments(&target.kind).join(" ")
+        };
+        let bvh = "-p d2m-bvh --features d2m-bvh/serde";
+        assert_eq!(of("crates/d2m-bvh/tests/engine.rs::f"), format!("--test engine {bvh}"));
+        assert_eq!(of("crates/d2m-bvh/src/search/tests.rs::f"), format!("--lib {bvh}"));
+        assert_eq!(of("crates/d2m-cli/src/scene/tests.rs::f"), "--bin d2m -p d2m-cli");
+        let [audit, world] = ["crates/d2m/tests/audit.rs::f", "crates/d2m-world/src/world.rs::f"].map(target);
+        let both = "-p d2m -p d2m-world --features d2m/audit --features d2m/serde";
         assert_eq!(
-            of("crates/d2m/tests/audit.rs::f"),
-            "-p d2m --test audit --features serde --features audit"
+            Selection::of([&audit, &world]).arguments(&audit.kind).join(" "),
+            format!("--test audit {both}")
         );
         assert_eq!(mutant("crates/d2m-bvh/tests/engine.rs::f").package_folder(), "crates/d2m-bvh");
         assert_eq!(mutant("xtask/src/tidy/map.rs::f").package_folder(), "xtask");
