@@ -58,6 +58,27 @@ impl IntervalMat3 {
         Self::from_rows([t.x_axis.into(), t.y_axis.into(), t.z_axis.into()])
     }
 
+    /// A box about the matrices whose entries are within `radius` of those of `m`: those of a distance in the operator norm are.
+    ///
+    /// ```
+    /// # use d2m_interval::IntervalMat3;
+    /// # use glam::{DMat3, DVec3};
+    /// let nearly = IntervalMat3::around(DMat3::IDENTITY, 0.1);
+    /// assert!(nearly.mul_point(DVec3::X).contains(DVec3::new(0.95, 0.05, -0.05)) && nearly.mid() == DMat3::IDENTITY);
+    /// ```
+    #[inline]
+    pub fn around(m: DMat3, radius: f64) -> Self {
+        let t = m.transpose();
+        Self::from_rows([t.x_axis, t.y_axis, t.z_axis].map(|row| IntervalVec3::around(row, radius)))
+    }
+
+    /// The middles of the entries.
+    #[inline]
+    pub fn mid(self) -> DMat3 {
+        let [x, y, z] = self.cols().map(IntervalVec3::mid);
+        DMat3::from_cols(x, y, z)
+    }
+
     /// `M v`.
     #[inline]
     pub fn mul_vec(self, v: IntervalVec3) -> IntervalVec3 {

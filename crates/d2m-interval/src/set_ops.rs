@@ -54,6 +54,18 @@ impl Interval {
         self.0.second() < 0.0
     }
 
+    /// The sign of every element: 1 or −1 where it is certain (also of the empty set, by [`Self::certainly_positive`]), else 0.
+    ///
+    /// ```
+    /// # use d2m_interval::Interval;
+    /// let signs = [(1.0, 2.0), (-2.0, -1.0), (0.0, 1.0)].map(|(lo, hi)| Interval::new(lo, hi).certain_sign());
+    /// assert_eq!(signs, [1, -1, 0]);
+    /// ```
+    #[inline]
+    pub fn certain_sign(self) -> i32 {
+        if self.certainly_positive() { 1 } else { -i32::from(self.certainly_negative()) }
+    }
+
     /// The common elements.
     ///
     /// ```

@@ -106,6 +106,19 @@ impl IntervalVec3 {
         Self::new(Interval::point(p.x), Interval::point(p.y), Interval::point(p.z))
     }
 
+    /// A box about the vectors within `radius` of `center`: [`Interval::around`] of each coordinate.
+    ///
+    /// ```
+    /// # use d2m_interval::IntervalVec3;
+    /// # use glam::DVec3;
+    /// assert!(IntervalVec3::around(DVec3::X, 0.1).contains(DVec3::new(1.05, -0.05, 0.05)));
+    /// ```
+    #[inline]
+    pub fn around(center: DVec3, radius: f64) -> Self {
+        let side = |x: f64| Interval::around(x, radius);
+        Self::new(side(center.x), side(center.y), side(center.z))
+    }
+
     /// The smallest box that holds `p` and `q`.
     #[inline]
     pub fn between(p: DVec3, q: DVec3) -> Self {

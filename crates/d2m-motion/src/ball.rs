@@ -63,8 +63,7 @@ impl Ball {
 
     /// A box about the ball.
     pub fn to_box(self) -> IntervalVec3 {
-        let side = |x: f64| Interval::around(x, self.radius);
-        IntervalVec3::new(side(self.center.x), side(self.center.y), side(self.center.z))
+        IntervalVec3::around(self.center, self.radius)
     }
 
     /// Upper bound of the lengths of all its vectors.

@@ -32,9 +32,8 @@ fn seeming_sides(points: &[DVec3; 3], face: &[DVec3; 3]) -> [f64; 3] {
 
 /// Does the edge certainly pass through the triangle?
 fn crosses([p, q]: [IntervalVec3; 2], [a, b, c]: &[IntervalVec3; 3]) -> bool {
-    let sign = |v: Interval| i8::from(v.certainly_positive()) - i8::from(v.certainly_negative());
     let volume = |u: IntervalVec3, v: IntervalVec3, w: IntervalVec3, x: IntervalVec3| {
-        sign((v - u).cross(w - u).dot(x - u))
+        (v - u).cross(w - u).dot(x - u).certain_sign()
     };
     let (below, above) = (volume(*a, *b, *c, p), volume(*a, *b, *c, q));
     if below * above != -1 {

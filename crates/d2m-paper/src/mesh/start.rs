@@ -188,5 +188,5 @@ fn crosses(p: DVec3, q: DVec3, triangle: &[DVec3; 3]) -> Option<i64> {
 }
 
 fn same_sign(a: Interval, b: Interval) -> bool {
-    (a.certainly_positive() && b.certainly_positive()) || (a.certainly_negative() && b.certainly_negative())
+    a.certain_sign() * b.certain_sign() > 0
 }
