@@ -98,3 +98,25 @@ impl<Outer: RigidMotion, Inner: RigidMotion> RigidMotion for Composed<Outer, Inn
         self.outer.enclose_kinematics(t).then(&self.inner.enclose_kinematics(t))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ConstantTwist, Keyframes, Span};
+
+    /// A body that is far away is moved by little: both doubles of its place are kept.
+    #[test]
+    fn what_is_far_away_is_moved_without_loss() {
+        let (far, by) = (DVec3::new(1e6, -3e6, 2e6), DVec3::new(1e-9, 2e-9, -3e-9));
+        let pose = |x: f64| Pose { translation: far + DVec3::splat(x), ..Pose::IDENTITY };
+        let path = Keyframes::try_new(&[(0.0, pose(0.0)), (1.0, pose(0.7))], Span::Linear).unwrap();
+        let moved = Composed::new(ConstantTwist::REST.with_position(by), &path);
+        for k in 0..=64 {
+            let t = f64::from(k) / 64.0;
+            let origin = moved.pose_and_twist(t).0.translation;
+            let [alone, state] = [path.enclose_state_about(t, origin), moved.enclose_state_about(t, origin)];
+            let known = alone.position_radius + state.position_radius;
+            assert!(known < 1e-20 && (state.position - alone.position - by).length() <= known + 1e-23, "{k}");
+        }
+    }
+}

@@ -152,12 +152,9 @@ impl Kinematics {
     #[inline]
     pub(crate) fn then_with<const RATES: bool>(&self, inner: &Self) -> Self {
         let turn = |b: Ball| b.turned(&self.rotation, self.rotation_radius);
-        let arm = inner.position - Ball::point(self.at) + Ball::point(inner.position_tail);
-        let e = turn(arm);
+        let Placed { e, position, position_tail } = self.placed(inner);
         let (relative, spin) = (turn(inner.linear), turn(inner.angular));
         let across = self.angular.cross(e);
-        let (sum, lost) = two_sums(self.position.center, e.center);
-        let tail = self.position_tail + lost;
         let (linear_rate, angular_rate) = if RATES {
             let coriolis = self.angular.cross(relative);
             let still = inner.linear_rate == Ball::ZERO && inner.angular_rate == Ball::ZERO;
@@ -175,8 +172,8 @@ impl Kinematics {
             (Ball::ANY, Ball::ANY)
         };
         let out = Self {
-            position: Ball::new(sum, up(self.position.radius + e.radius + UNIT * length_up(tail))),
-            position_tail: if tail.is_finite() { tail } else { DVec3::ZERO },
+            position,
+            position_tail,
             at: inner.at,
             linear: self.linear + across + relative,
             angular: self.angular + spin,
@@ -190,13 +187,10 @@ impl Kinematics {
     /// As [`Kinematics::then`] for the pose alone: of velocities and accelerations nothing is known.
     #[inline]
     pub(crate) fn then_pose(&self, inner: &Self) -> Self {
-        let arm = inner.position - Ball::point(self.at) + Ball::point(inner.position_tail);
-        let e = arm.turned(&self.rotation, self.rotation_radius);
-        let (sum, lost) = two_sums(self.position.center, e.center);
-        let tail = self.position_tail + lost;
+        let Placed { position, position_tail, .. } = self.placed(inner);
         let out = Self {
-            position: Ball::new(sum, up(self.position.radius + e.radius + UNIT * length_up(tail))),
-            position_tail: if tail.is_finite() { tail } else { DVec3::ZERO },
+            position,
+            position_tail,
             at: inner.at,
             linear: Ball::ANY,
             angular: Ball::ANY,
@@ -205,6 +199,26 @@ impl Kinematics {
             ..*self
         };
         out.turned_by(inner)
+    }
+
+    /// Where the reference point of `inner` is in this frame, from the frame's own and from the origin. What the middle of `inner.position`
+    /// leaves out is turned by itself, so that a body far from the origin loses none of it.
+    #[inline]
+    fn placed(&self, inner: &Self) -> Placed {
+        let turn = |b: Ball| b.turned(&self.rotation, self.rotation_radius);
+        let arm = turn(inner.position - Ball::point(self.at));
+        let rest = turn(Ball::point(inner.position_tail));
+        let (sum, lost) = two_sums(self.position.center, arm.center);
+        let left = self.position_tail + lost;
+        let tail = left + rest.center;
+        // Without a rest the second sum is exact.
+        let summed = if rest == Ball::ZERO { length_up(left) } else { length_up(left) + length_up(tail) };
+        let radius = up(self.position.radius + arm.radius + rest.radius + UNIT * summed);
+        Placed {
+            e: arm + rest,
+            position: Ball::new(sum, radius),
+            position_tail: if tail.is_finite() { tail } else { DVec3::ZERO },
+        }
     }
 
     /// With the product of this rotation and that of `inner`.
@@ -248,6 +262,13 @@ impl Kinematics {
         }
         .with_rotation(middle, wide)
     }
+}
+
+/// A point of a frame, seen from the frame's reference point (world axes) and from the world's origin.
+struct Placed {
+    e: Ball,
+    position: Ball,
+    position_tail: DVec3,
 }
 
 /// Sums, coordinate by coordinate, and what they lose.
