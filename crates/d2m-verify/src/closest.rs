@@ -1,62 +1,41 @@
 //! Closest points of two triangles, in plain floating point: guesses of directions and of witnesses. Nothing here is trusted.
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
-/// Where on a triangle a closest point is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Place {
-    Vertex,
-    /// The side from this corner to the next.
-    Edge(usize),
-    Face,
-}
-
-/// Points of two triangles, as v₀ + s(v₁ − v₀) + t(v₂ − v₀).
+/// A point of either triangle, as parts of its corners, and the way from the first to the second.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Closest {
-    pub(crate) weights: [DVec2; 2],
-    pub(crate) places: [Place; 2],
-    /// From the first to the second.
+    pub(crate) weights: [DVec3; 2],
     pub(crate) gap: DVec3,
 }
 
+/// The nearest of what each two sides and each corner above a face give.
 pub(crate) fn closest(a: &[DVec3; 3], b: &[DVec3; 3]) -> Closest {
-    let of_corners = (0..3).flat_map(|i| {
-        let on_b = above(b, a[i]).map(|(w, p)| ([corner(i), w], [Place::Vertex, Place::Face], p - a[i]));
-        let on_a = above(a, b[i]).map(|(w, p)| ([w, corner(i)], [Place::Face, Place::Vertex], b[i] - p));
-        [on_b, on_a].into_iter().flatten()
+    let corners = (0..3).flat_map(|i| {
+        let on_b = above(b, a[i]).map(|weights| [DVec3::AXES[i], weights]);
+        [on_b, above(a, b[i]).map(|weights| [weights, DVec3::AXES[i]])]
     });
-    let of_sides = (0..9).map(|k| sides(a, b, k / 3, k % 3));
-    let found = of_corners.map(|(weights, places, gap)| Closest { weights, places, gap }).chain(of_sides);
-    let none = Closest { weights: [DVec2::ZERO; 2], places: [Place::Vertex; 2], gap: b[0] - a[0] };
-    found.fold(none, |s, t| if t.gap.length_squared() < s.gap.length_squared() { t } else { s })
-}
-
-fn corner(i: usize) -> DVec2 {
-    [DVec2::ZERO, DVec2::X, DVec2::Y][i]
+    let sides = (0..9).map(|k| sides(a, b, k / 3, k % 3));
+    let point = |[p, q, r]: &[DVec3; 3], weights: DVec3| *p * weights.x + *q * weights.y + *r * weights.z;
+    let found = corners.flatten().chain(sides);
+    let found = found.map(|weights| Closest { weights, gap: point(b, weights[1]) - point(a, weights[0]) });
+    let nearer = |s: Closest, t: Closest| if t.gap.length() < s.gap.length() { t } else { s };
+    found.reduce(nearer).expect("nine pairs of sides")
 }
 
 /// The foot of a point on a triangle's plane, if it is in the triangle.
-fn above(t: &[DVec3; 3], p: DVec3) -> Option<(DVec2, DVec3)> {
-    let (u, v, w) = (t[1] - t[0], t[2] - t[0], p - t[0]);
+fn above([a, b, c]: &[DVec3; 3], p: DVec3) -> Option<DVec3> {
+    let (u, v, w) = (*b - *a, *c - *a, p - *a);
     let n = u.cross(v);
-    let weights = DVec2::new(w.cross(v).dot(n), u.cross(w).dot(n)) / n.length_squared();
-    let inside = weights.x >= 0.0 && weights.y >= 0.0 && weights.x + weights.y <= 1.0;
-    inside.then(|| (weights, t[0] + u * weights.x + v * weights.y))
+    let (s, t) = (w.cross(v).dot(n) / n.length_squared(), u.cross(w).dot(n) / n.length_squared());
+    (s >= 0.0 && t >= 0.0 && s + t <= 1.0).then(|| DVec3::new(1.0 - (s + t), s, t))
 }
 
-/// Closest points of two sides: clamped on one, then on the other.
-fn sides(a: &[DVec3; 3], b: &[DVec3; 3], i: usize, j: usize) -> Closest {
-    let (p, q) = (a[i], b[j]);
-    let (u, v, r) = (a[(i + 1) % 3] - p, b[(j + 1) % 3] - q, a[i] - b[j]);
+/// Closest points of side i of the one and side j of the other: clamped on one, then on the other.
+fn sides(a: &[DVec3; 3], b: &[DVec3; 3], i: usize, j: usize) -> [DVec3; 2] {
+    let (u, v, r) = (a[(i + 1) % 3] - a[i], b[(j + 1) % 3] - b[j], a[i] - b[j]);
     let (uu, vv, uv, ur, vr) = (u.dot(u), v.dot(v), u.dot(v), u.dot(r), v.dot(r));
     let part = |x: f64| if x >= 0.0 { x.min(1.0) } else { 0.0 };
     let t = part((uv * part((uv * vr - ur * vv) / (uu * vv - uv * uv)) + vr) / vv);
     let s = part((uv * t - ur) / uu);
-    let along = |from: usize, x: f64| corner(from) * (1.0 - x) + corner((from + 1) % 3) * x;
-    let place = |from: usize, x: f64| if x > 0.0 && x < 1.0 { Place::Edge(from) } else { Place::Vertex };
-    Closest {
-        weights: [along(i, s), along(j, t)],
-        places: [place(i, s), place(j, t)],
-        gap: q + v * t - p - u * s,
-    }
+    [(i, s), (j, t)].map(|(k, x)| DVec3::AXES[k] * (1.0 - x) + DVec3::AXES[(k + 1) % 3] * x)
 }

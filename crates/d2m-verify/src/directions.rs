@@ -1,6 +1,6 @@
 //! Directions along which two parts may be apart. Whatever is a `DVec3` or an `f64` here is a guess: it proves nothing.
-use crate::closest::{Place, closest};
-use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
+use crate::closest::closest;
+use d2m_interval::{IntervalMat3, IntervalVec3};
 use glam::{DMat3, DVec3};
 
 /// A direction that goes with the bodies; it need not be of length one.
@@ -15,15 +15,6 @@ pub(crate) enum Direction {
 }
 
 impl Direction {
-    /// An upper bound of its length.
-    pub(crate) fn size(self) -> Interval {
-        let length = |v: DVec3| IntervalVec3::point(v).norm();
-        match self {
-            Self::Base(n) | Self::Other(n) => length(n),
-            Self::Across(e, f) => length(e) * length(f),
-        }
-    }
-
     /// In the axes of the base and in those of the other body, which is turned so.
     pub(crate) fn at(self, turn: &IntervalMat3, back: &IntervalMat3) -> [IntervalVec3; 2] {
         match self {
@@ -32,55 +23,33 @@ impl Direction {
             Self::Across(e, f) => [-turn.mul_point(f).cross_point(e), back.mul_point(e).cross_point(f)],
         }
     }
-
-    /// About the same in the axes of the base.
-    pub(crate) fn guess(self, turn: &DMat3) -> DVec3 {
-        match self {
-            Self::Base(n) => n,
-            Self::Other(n) => *turn * n,
-            Self::Across(e, f) => e.cross(*turn * f),
-        }
-    }
-
-    pub(crate) fn reversed(self) -> Self {
-        match self {
-            Self::Base(n) => Self::Base(-n),
-            Self::Other(n) => Self::Other(-n),
-            Self::Across(e, f) => Self::Across(-e, f),
-        }
-    }
 }
 
-/// One of the fifteen directions of two boxes whose sides are along the axes of their bodies.
+/// About a direction at one time: in the axes of the base and in those of the other body.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BoxAxis {
+pub(crate) struct Axis {
     pub(crate) direction: Direction,
+    pub(crate) n: [DVec3; 2],
     pub(crate) length: f64,
-    n: DVec3,
-    /// What half the sides of either box are multiplied by.
-    spread: [DVec3; 2],
 }
 
-const AXES: [DVec3; 3] = [DVec3::X, DVec3::Y, DVec3::Z];
-
-impl BoxAxis {
-    /// All of them, of bodies that are turned so.
-    pub(crate) fn all(turn: &DMat3) -> [Self; 15] {
-        core::array::from_fn(|k| {
-            let direction = match k {
-                0..3 => Direction::Base(AXES[k]),
-                3..6 => Direction::Other(AXES[k - 3]),
-                _ => Direction::Across(AXES[(k - 6) / 3], AXES[(k - 6) % 3]),
-            };
-            let n = direction.guess(turn);
-            Self { direction, n, spread: [n.abs(), (turn.transpose() * n).abs()], length: n.length() }
-        })
+impl Axis {
+    pub(crate) fn new(direction: Direction, turn: &DMat3) -> Self {
+        let n = match direction {
+            Direction::Base(n) => n,
+            Direction::Other(n) => *turn * n,
+            Direction::Across(e, f) => e.cross(*turn * f),
+        };
+        Self { direction, n: [n, turn.transpose() * n], length: n.length() }
     }
 
-    /// About the gaps along it and along its opposite of boxes whose middles are so far apart.
-    pub(crate) fn gaps(&self, between: DVec3, half: &[DVec3; 2]) -> [f64; 2] {
-        let spread = self.spread[0].dot(half[0]) + self.spread[1].dot(half[1]);
-        [self.n.dot(between) - spread, -self.n.dot(between) - spread]
+    /// The fifteen directions of boxes whose sides are along the axes of their bodies.
+    pub(crate) fn of_boxes(turn: &DMat3) -> [Self; 15] {
+        core::array::from_fn(|k| match k {
+            0..3 => Self::new(Direction::Base(DVec3::AXES[k]), turn),
+            3..6 => Self::new(Direction::Other(DVec3::AXES[k - 3]), turn),
+            _ => Self::new(Direction::Across(DVec3::AXES[k / 3 - 2], DVec3::AXES[k % 3]), turn),
+        })
     }
 }
 
@@ -99,14 +68,19 @@ pub(crate) fn faces_and_sides([a, b]: &[[DVec3; 3]; 2]) -> [Direction; 11] {
 /// that a closest point is on, where the other end of the side must not reach beyond.
 pub(crate) fn between([a, b]: &[[DVec3; 3]; 2], turn: &DMat3, offset: DVec3) -> [Direction; 2] {
     let near = closest(a, &b.map(|p| *turn * p + offset));
-    let across = |t: &[DVec3; 3], place: Place, n: DVec3| {
-        let Place::Edge(k) = place else { return n };
-        let side = (t[(k + 1) % 3] - t[k]).normalize_or_zero();
-        (n - side * side.dot(n)).normalize_or_zero()
+    let across = |[p, q, r]: &[DVec3; 3], weights: DVec3, n: DVec3| {
+        // Of a point on a side one weight is zero, of a corner two.
+        let side = match weights.cmpeq(DVec3::ZERO).bitmask() {
+            1 => *r - *q,
+            2 => *p - *r,
+            4 => *q - *p,
+            _ => return n,
+        };
+        n.reject_from_normalized(side.normalize_or_zero()).normalize_or_zero()
     };
     let n = near.gap.normalize_or_zero();
-    let [of_a, of_b] = near.places;
-    [Direction::Base(across(a, of_a, n)), Direction::Other(across(b, of_b, turn.transpose() * n))]
+    let of_other = across(b, near.weights[1], turn.transpose() * n);
+    [Direction::Base(across(a, near.weights[0], n)), Direction::Other(of_other)]
 }
 
 /// Steps of Gilbert's algorithm: more seldom find what these have not.

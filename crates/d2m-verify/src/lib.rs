@@ -17,16 +17,22 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
+// The question.
 mod claim;
+mod mesh;
+mod surface;
+
+// Guesses.
 mod closest;
 mod directions;
+
+// One time, and what is between two of them.
 mod instant;
-mod mesh;
-mod moved;
-mod prove;
 mod rates;
+
+// Proofs: surfaces, solids, claims.
+mod prove;
 mod solid;
-mod surface;
 mod verify;
 
 pub use claim::{Body, Claim, Query, Reason, Solid, TimeSpan, Verdict};

@@ -1,38 +1,43 @@
 //! Two bodies are further apart than a distance at every time of a span: the recursion.
-use crate::directions::{Direction, between, between_hulls, faces_and_sides};
+use crate::directions::{Axis, Direction, between, between_hulls, faces_and_sides};
 use crate::instant::{Instant, Part, Separation};
-use crate::mesh::{Below, Node};
+use crate::mesh::Node;
 use crate::rates::{Rates, lowest};
-use crate::{Body, Reason, TimeSpan, Verdict};
-use d2m_interval::{Interval, IntervalVec3};
+use crate::{Body, Reason, TimeSpan};
+use d2m_interval::Interval;
 use glam::DVec3;
+use std::cell::OnceCell;
 
 /// Steps at least that are looked for a counterexample in, after something could not be proven.
 const LATER: u64 = 4096;
 /// So few triangles are taken together, as what is between their corners.
-const FEW: u32 = 8;
+const FEW: usize = 8;
 /// So many directions that separated others are tried.
 const KNOWN: usize = 4;
 
+/// What keeps bodies from being proven apart.
+#[derive(Clone, Copy)]
+pub(crate) enum Obstacle {
+    /// The meshes are that near at this time: two triangles are, or where none are named, one solid holds a part of the other.
+    Met { time: f64, triangles: Option<[u32; 2]>, distance: Interval },
+    /// No proof was found: the fields are those of [`Verdict::Unproven`](crate::Verdict::Unproven).
+    Open { clear_until: f64, reason: Reason, pair: Option<[u32; 2]> },
+}
+
+pub(crate) type Proof<T = ()> = Result<T, Obstacle>;
+
 /// Proves the meshes further apart than `distance` at every time of the span, one smooth piece of both motions after the other, in as
-/// many steps as are `left`. What contradicts it or is left open is the error.
-pub(crate) fn clear(
-    bodies: &[Body<'_>; 2],
-    distance: f64,
-    span: TimeSpan,
-    left: &mut u64,
-) -> Result<(), Verdict> {
+/// many steps as are `left`.
+pub(crate) fn surfaces_clear(bodies: &[Body<'_>; 2], span: TimeSpan, distance: f64, left: &mut u64) -> Proof {
     let mut now = span.from;
     loop {
-        let mut end = span.to;
-        for until in bodies.map(|body| body.motion.smooth_until(now)).into_iter().flatten() {
-            // A piece that does not advance, or an end that is no number.
-            if now < span.to && (until <= now || until.is_nan()) {
-                return Err(Verdict::Unproven { clear_until: now, reason: Reason::Pieces, pair: None });
-            }
-            end = end.min(until.max(now));
+        // A piece that does not advance, or whose end is no number, ends now.
+        let ends = bodies.iter().filter_map(|body| body.motion.smooth_until(now)).map(|end| end.max(now));
+        let end = ends.fold(span.to, f64::min);
+        if end <= now && now < span.to {
+            return Err(Obstacle::Open { clear_until: now, reason: Reason::Pieces, pair: None });
         }
-        Prover::new(*bodies, distance, TimeSpan { from: now, to: end }).run(left)?;
+        smooth_clear(*bodies, TimeSpan { from: now, to: end }, distance, left)?;
         if end >= span.to {
             return Ok(());
         }
@@ -40,239 +45,218 @@ pub(crate) fn clear(
     }
 }
 
-/// A span with its ends; all pairs share it.
+/// The same of a span in which both motions are smooth.
+fn smooth_clear([a, b]: [Body<'_>; 2], time: TimeSpan, distance: f64, left: &mut u64) -> Proof {
+    let seen = [[a, b], [b, a]].map(|bodies| {
+        let (rates, root) = (Rates::new(&bodies, time), bodies[1].mesh.nodes[0]);
+        (bodies, rates, rates.guess_acceleration((root.high - root.low).length()))
+    });
+    // The base is the body from which the other one accelerates less.
+    let is_swapped = seen[1].2 < seen[0].2;
+    let (bodies, rates, _) = seen[usize::from(is_swapped)];
+    let start = Instant::new(&bodies, time.from);
+    let end = if time.from < time.to { Instant::new(&bodies, time.to) } else { start };
+    let whole = Span { time, ends: [start, end], rates, halves: OnceCell::new() };
+    let mut prover = Prover { bodies, is_swapped, distance, known: Vec::new(), open: None };
+    let (all, mut tasks, mut least) = (*left, vec![Task { pair: [0, 0], span: &whole }], None);
+    while let Some(task) = tasks.pop() {
+        let (from, since) = (task.span.time.from, prover.open.map(|(since, _)| since));
+        if *left == 0 {
+            let others = tasks.iter().map(|task| task.span.time.from).chain(since);
+            let clear_until = others.fold(from, f64::min);
+            return Err(Obstacle::Open { clear_until, reason: Reason::Steps, pair: None });
+        }
+        *left -= 1;
+        // What cannot be proven may be refuted by what comes later, for as much work again.
+        let mut least = || *least.get_or_insert(left.saturating_sub(LATER + (all - *left)));
+        if since.is_none_or(|since| *left >= least() || from < since) {
+            tasks.extend(prover.step(task)?.into_iter().flatten());
+        }
+    }
+    prover.open.map_or(Ok(()), |(_, open)| Err(open))
+}
+
+/// A span with its ends; all pairs share it, and its halves.
 struct Span {
     time: TimeSpan,
-    ends: [Option<Instant>; 2],
-    rates: Option<Rates>,
-    /// This span and the next are its halves.
-    halves: Option<usize>,
+    ends: [Instant; 2],
+    rates: Rates,
+    halves: OnceCell<Box<[Span; 2]>>,
 }
 
 impl Span {
-    fn new(bodies: &[Body<'_>; 2], time: TimeSpan, ends: &[Option<Instant>; 2]) -> Self {
-        Self { time, ends: *ends, rates: Rates::new(bodies, time), halves: None }
+    /// `None` where no number for a time is between its ends.
+    fn halves(&self, bodies: &[Body<'_>; 2]) -> Option<&[Self; 2]> {
+        let TimeSpan { from, to } = self.time;
+        let middle = from + 0.5 * (to - from);
+        let halves = || {
+            let now = Instant::new(bodies, middle);
+            let times = [TimeSpan { from, to: middle }, TimeSpan { from: middle, to }];
+            let ends = [[self.ends[0], now], [now, self.ends[1]]];
+            let rates = times.map(|time| Rates::new(bodies, time));
+            let half =
+                |k: usize| Self { time: times[k], ends: ends[k], rates: rates[k], halves: OnceCell::new() };
+            Box::new([half(0), half(1)])
+        };
+        (from < middle && middle < to).then(|| &**self.halves.get_or_init(halves))
     }
 
-    /// Is the direction proven to separate the parts all the time? In intervals, from both ends and K L²/2.
+    /// Are the parts proven to be apart all the time? In intervals, from both ends and K L²/2.
     fn is_proven(&self, separation: &Separation, parts: [Part<'_>; 2]) -> bool {
-        let [Some(start), Some(end)] = &self.ends else { return false };
-        let length = Interval::point(self.time.to) - Interval::point(self.time.from);
-        let bend = match &self.rates {
-            _ if self.time.from == self.time.to => 0.0,
-            Some(rates) => (length.sqr() * 0.5 * rates.curvature(separation, parts)).hi(),
-            None => return false,
-        };
-        lowest([start, end].map(|now| now.above(separation, parts)), bend) > 0.0
+        let length = Interval::point(self.time.to) - self.time.from;
+        let bend = || (length.sqr() * 0.5 * self.rates.curvature(separation, parts)).hi();
+        let bend = if self.time.from < self.time.to { bend() } else { 0.0 };
+        lowest(self.ends.each_ref().map(|now| now.above(separation, parts)), bend) > 0.0
     }
 }
 
-/// A part of the base and a part of the other body, over a span.
+/// Parts of the base and of the other body, over a span.
 #[derive(Clone, Copy)]
-struct Task {
-    nodes: [u32; 2],
-    span: usize,
+struct Task<'s> {
+    pair: [u32; 2],
+    span: &'s Span,
 }
 
 struct Prover<'q> {
-    /// The base first: the body from which the other one accelerates less.
+    /// The base first.
     bodies: [Body<'q>; 2],
-    swapped: bool,
+    is_swapped: bool,
     distance: f64,
-    spans: Vec<Span>,
-    tasks: Vec<Task>,
     /// Directions that separated others, the last one first.
     known: Vec<Direction>,
     /// Since when something could not be proven, and what.
-    open: Option<(f64, Verdict)>,
+    open: Option<(f64, Obstacle)>,
 }
 
-impl<'q> Prover<'q> {
-    fn new([a, b]: [Body<'q>; 2], distance: f64, time: TimeSpan) -> Self {
-        let rates = [[a, b], [b, a]].map(|bodies| Rates::new(&bodies, time));
-        let bends = [(&rates[0], b), (&rates[1], a)].map(|(rates, other)| {
-            let Node { low, high, .. } = other.mesh.nodes[0];
-            rates.as_ref().map_or(f64::INFINITY, |rates| rates.guess_acceleration((high - low).length()))
-        });
-        let swapped = bends[1] < bends[0];
-        let bodies = if swapped { [b, a] } else { [a, b] };
-        let start = Instant::new(&bodies, time.from);
-        let end = if time.to == time.from { start } else { Instant::new(&bodies, time.to) };
-        let whole = Span { time, ends: [start, end], rates: rates[usize::from(swapped)], halves: None };
-        let tasks = vec![Task { nodes: [0, 0], span: 0 }];
-        Self { bodies, swapped, distance, spans: vec![whole], tasks, known: Vec::new(), open: None }
-    }
-
-    fn run(mut self, left: &mut u64) -> Result<(), Verdict> {
-        let (all, mut later) = (*left, None);
-        while let Some(task) = self.tasks.pop() {
-            let from = self.spans[task.span].time.from;
-            let open = self.open.map(|(since, _)| since);
-            if *left == 0 {
-                let tasks = self.tasks.iter().map(|task| self.spans[task.span].time.from);
-                let clear_until = tasks.fold(open.map_or(from, |since| from.min(since)), f64::min);
-                return Err(Verdict::Unproven { clear_until, reason: Reason::Steps, pair: None });
-            }
-            *left -= 1;
-            if let Some(since) = open {
-                // What cannot be proven may be refuted by what comes later, for as much work again.
-                let least = *later.get_or_insert(left.saturating_sub(LATER + (all - *left)));
-                if from >= since && *left < least {
-                    continue;
-                }
-            }
-            self.step(task)?;
-        }
-        self.open.map_or(Ok(()), |(_, verdict)| Err(verdict))
-    }
-
-    /// Proves the task, or replaces it by others; an error is a counterexample.
-    fn step(&mut self, task: Task) -> Result<(), Verdict> {
-        let nodes = [0, 1].map(|k| self.bodies[k].mesh.nodes[task.nodes[k] as usize]);
+impl Prover<'_> {
+    /// Proves the task, or divides it, the part that is to be proven first last; an error is a counterexample.
+    fn step<'s>(&mut self, task: Task<'s>) -> Proof<Option<[Task<'s>; 2]>> {
+        let Task { pair, span } = task;
+        let nodes = [0, 1].map(|k| &self.bodies[k].mesh.nodes[pair[k] as usize]);
         let half = nodes.map(|node| (node.high - node.low) * 0.5);
-        let span = &self.spans[task.span];
-        if self.boxes_apart(span, &nodes, &half) {
-            return Ok(());
+        if self.boxes_apart(span, nodes, half) {
+            return Ok(None);
         }
-        if nodes.iter().all(|node| node.leaves[1] <= FEW) {
-            if let Some(direction) = self.hulls_apart(span, &nodes) {
-                self.known.retain(|known| *known != direction);
-                self.known.insert(0, direction);
-                self.known.truncate(KNOWN);
-                return Ok(());
-            }
-            if let [Below::Triangle(s), Below::Triangle(t)] = nodes.map(|node| node.below) {
-                return self.triangles(task, [s, t]);
-            }
+        let triangles = [0, 1].map(|k| self.bodies[k].mesh.triangles_of(nodes[k]));
+        if triangles.iter().all(|triangles| triangles.len() <= FEW) && self.hulls_apart(span, triangles) {
+            return Ok(None);
         }
-        let [size, size_other] = half.map(|half| 2.0 * half.length());
-        let length = span.time.to - span.time.from;
-        let moves = span.rates.as_ref().map_or(f64::INFINITY, |rates| rates.guess_speed(size_other) * length);
+        if let [&[s], &[t]] = triangles {
+            return self.triangles(task, [s, t]);
+        }
+        let size = half.map(|half| 2.0 * half.length());
         // Where points move further than the boxes are large, shorter spans say more than smaller boxes.
-        if moves <= size.max(size_other) || !self.halve(task) {
-            let [of_base, of_other] = task.nodes;
-            let halves = match nodes.map(|node| node.below) {
-                [Below::Nodes(first), other] if size >= size_other || matches!(other, Below::Triangle(_)) => {
-                    [[first, of_other], [first + 1, of_other]]
-                }
-                [_, Below::Nodes(first)] => [[of_base, first], [of_base, first + 1]],
-                _ => unreachable!("two triangles are judged before"),
-            };
-            self.tasks.extend(halves.map(|nodes| Task { nodes, ..task }));
+        let moves = span.rates.guess_speed(size[1]) * (span.time.to - span.time.from);
+        if moves > size[0].max(size[1])
+            && let Some(halves) = self.halves(task)
+        {
+            return Ok(Some(halves));
         }
-        Ok(())
+        let larger = usize::from(size[1] > size[0]);
+        let divided = if triangles[larger].len() > 1 { larger } else { 1 - larger };
+        Ok(Some(self.bodies[divided].mesh.below(pair[divided]).map(|node| {
+            let mut pair = pair;
+            pair[divided] = node;
+            Task { pair, span }
+        })))
+    }
+
+    /// The later half of its span first.
+    fn halves<'s>(&self, task: Task<'s>) -> Option<[Task<'s>; 2]> {
+        task.span.halves(&self.bodies).map(|[early, late]| [late, early].map(|span| Task { span, ..task }))
+    }
+
+    /// About how far parts are apart at both ends along an axis or its opposite, and this separation, if it is further than `least`. From a
+    /// point of the one to a point of the other it is `between` at the ends, and `reach` is how far a part goes from there.
+    fn guess(
+        &self,
+        axes: [&Axis; 2],
+        between: [DVec3; 2],
+        reach: impl Fn(usize, DVec3) -> f64,
+        least: f64,
+    ) -> Option<(f64, Separation)> {
+        let sign = axes[0].n[0].dot(between[0]).signum();
+        let gap = |k: usize| {
+            let [n, n_other] = axes[k].n.map(|n| n * sign);
+            n.dot(between[k]) - reach(0, n) - reach(1, -n_other) - self.distance * axes[k].length
+        };
+        let more = |lesser: f64, k: usize| Some(gap(k)).filter(|&gap| gap > least).map(|gap| gap.min(lesser));
+        let gap = [0, 1].into_iter().try_fold(f64::INFINITY, more)?;
+        let (direction, about) = (axes[0].direction, 0.5 * (axes[0].length + axes[1].length));
+        Some((gap, Separation { direction, sign, distance: self.distance, about }))
     }
 
     /// Tries the best of the fifteen directions of two boxes, as it seems in plain numbers.
-    fn boxes_apart(&self, span: &Span, nodes: &[Node; 2], half: &[DVec3; 2]) -> bool {
-        let [Some(start), Some(end)] = &span.ends else { return false };
-        let middle = [0, 1].map(|k| (nodes[k].low + nodes[k].high) * 0.5 - self.bodies[k].mesh.center);
-        let [between, between_end] = [start, end].map(|now| now.guess(middle[1]) - middle[0]);
+    fn boxes_apart(&self, span: &Span, nodes: [&Node; 2], half: [DVec3; 2]) -> bool {
+        let middle = [0, 1].map(|k| nodes[k].low + half[k] - self.bodies[k].mesh.center);
+        let between = span.ends.each_ref().map(|now| now.guess(middle[1]) - middle[0]);
         let (mut widest, mut best) = (0.0, None);
-        for (axis, axis_end) in start.axes.iter().zip(&end.axes) {
-            let gaps = axis.gaps(between, half);
-            let way = usize::from(gaps[1] > gaps[0]);
-            let gap = gaps[way] - self.distance * axis.length;
-            if gap > widest {
-                let gap = gap.min(axis_end.gaps(between_end, half)[way] - self.distance * axis_end.length);
-                if gap > widest {
-                    let direction = if way == 0 { axis.direction } else { axis.direction.reversed() };
-                    let about = 0.5 * (axis.length + axis_end.length);
-                    (widest, best) = (gap, Some(Separation { direction, distance: self.distance, about }));
-                }
+        for (axis, axis_end) in span.ends[0].axes.iter().zip(&span.ends[1].axes) {
+            let reach = |k: usize, n: DVec3| n.abs().dot(half[k]);
+            if let Some((gap, separation)) = self.guess([axis, axis_end], between, reach, widest) {
+                (widest, best) = (gap, Some(separation));
             }
         }
-        let bounds = |k: usize| [self.bodies[k].mesh.bounds(&nodes[k])];
-        best.is_some_and(|best| span.is_proven(&best, [&bounds(0), &bounds(1)]))
+        let bounds = [0, 1].map(|k| [self.bodies[k].mesh.bounds(nodes[k])]);
+        best.is_some_and(|best| span.is_proven(&best, [&bounds[0], &bounds[1]]))
     }
 
-    /// A direction that is proven to separate what is between the corners of few triangles: those that separated others are tried first.
-    fn hulls_apart(&self, span: &Span, nodes: &[Node; 2]) -> Option<Direction> {
-        let [Some(start), Some(end)] = &span.ends else { return None };
-        let points = |k: usize| self.bodies[k].mesh.points(&nodes[k]).collect::<Vec<_>>();
-        let parts = [points(0), points(1)];
-        let [a, b] = parts.each_ref().map(|part| part.iter().map(|p| p.mid()).collect::<Vec<_>>());
-        let proves = |direction: &Direction| self.separates(span, *direction, &parts, [&a, &b]);
-        if let Some(direction) = self.known.iter().find(|&direction| proves(direction)) {
-            return Some(*direction);
-        }
-        let ([p, q, r], [s, t, u]) = (&a[..], &b[..]) else {
-            let seen: Vec<DVec3> = b.iter().map(|q| end.guess(*q)).collect();
-            return Some(between_hulls(&a, &seen)).filter(proves);
-        };
-        let corners = [[*p, *q, *r], [*s, *t, *u]];
-        let near = [start, end].into_iter();
-        let mut near = near.flat_map(|now| between(&corners, &now.turn_guess, now.offset_guess));
-        faces_and_sides(&corners).into_iter().find(proves).or_else(|| near.find(proves))
-    }
-
-    /// Does a direction, or its opposite, separate the parts? In plain numbers first.
-    fn separates(
-        &self,
-        span: &Span,
-        direction: Direction,
-        parts: &[Vec<IntervalVec3>; 2],
-        [a, b]: [&[DVec3]; 2],
-    ) -> bool {
-        let [Some(start), Some(end)] = &span.ends else { return false };
-        let points_to_b = direction.guess(&start.turn_guess).dot(start.guess(b[0]) - a[0]) > 0.0;
-        let direction = if points_to_b { direction } else { direction.reversed() };
-        let mut about = 0.0;
-        let is_apart = [start, end].into_iter().all(|now| {
-            let n = direction.guess(&now.turn_guess);
-            let back = now.turn_guess.transpose() * n;
-            let low = b.iter().map(|q| back.dot(*q)).fold(f64::INFINITY, f64::min);
-            let high = a.iter().map(|p| n.dot(*p)).fold(f64::NEG_INFINITY, f64::max);
-            about += 0.5 * n.length();
-            n.dot(now.offset_guess) + low - high > self.distance * n.length()
+    /// Tries directions between what is between the corners of few triangles: those that separated others first.
+    fn hulls_apart(&mut self, span: &Span, triangles: [&[u32]; 2]) -> bool {
+        let exact = [0, 1].map(|k| {
+            let mesh = self.bodies[k].mesh;
+            triangles[k].iter().flat_map(|&triangle| mesh.corners(triangle)).collect::<Vec<_>>()
         });
-        let separation = Separation { direction, distance: self.distance, about };
-        is_apart && span.is_proven(&separation, [&parts[0], &parts[1]])
+        let points = exact.each_ref().map(|part| part.iter().map(|p| p.mid()).collect::<Vec<_>>());
+        let between_first = span.ends.each_ref().map(|now| now.guess(points[1][0]) - points[0][0]);
+        let reach = |k: usize, n: DVec3| {
+            let along = points[k].iter().map(|p| n.dot(*p));
+            along.fold(f64::NEG_INFINITY, f64::max) - n.dot(points[k][0])
+        };
+        let proves = |direction: &Direction| {
+            let axes = span.ends.each_ref().map(|now| Axis::new(*direction, &now.turn_guess));
+            let guess = self.guess(axes.each_ref(), between_first, reach, 0.0);
+            guess.is_some_and(|(_, separation)| span.is_proven(&separation, [&exact[0], &exact[1]]))
+        };
+        let known = self.known.iter().copied().find(proves);
+        let found = known.or_else(|| match (&points[0][..], &points[1][..]) {
+            (&[p, q, r], &[s, t, u]) => {
+                let corners = [[p, q, r], [s, t, u]];
+                let near = |now: &Instant| between(&corners, &now.turn_guess, now.offset_guess);
+                faces_and_sides(&corners).into_iter().chain(span.ends.iter().flat_map(near)).find(proves)
+            }
+            (a, b) => {
+                let seen: Vec<DVec3> = b.iter().map(|q| span.ends[1].guess(*q)).collect();
+                Some(between_hulls(a, &seen)).filter(proves)
+            }
+        });
+        self.known.retain(|known| Some(*known) != found);
+        self.known.splice(0..0, found);
+        self.known.truncate(KNOWN);
+        found.is_some()
     }
 
     /// Two triangles that are not apart over a span are, if they are at its ends, tried over shorter ones. Proven close at one, they are
     /// the counterexample; neither close nor clear, no shorter span decides it.
-    fn triangles(&mut self, task: Task, [s, t]: [u32; 2]) -> Result<(), Verdict> {
-        let span = &self.spans[task.span];
-        let corners = [(0, s), (1, t)].map(|(k, triangle)| self.bodies[k].mesh.corners(triangle));
-        let triangles = if self.swapped { [t, s] } else { [s, t] };
-        let mut reason = Reason::TimeResolution;
-        for now in &span.ends {
-            let distance = now.as_ref().map_or(Interval::ENTIRE, |now| now.distance(&corners));
-            match now {
-                Some(now) if distance.hi() <= self.distance => {
-                    return Err(Verdict::Refuted { time: now.time, triangles, distance });
-                }
-                None => reason = Reason::Enclosure,
-                Some(_) if distance.lo() <= self.distance => reason = Reason::TooClose,
-                Some(_) => {}
+    fn triangles<'s>(&mut self, task: Task<'s>, mut pair: [u32; 2]) -> Proof<Option<[Task<'s>; 2]>> {
+        let corners = [0, 1].map(|k| self.bodies[k].mesh.corners(pair[k]));
+        if self.is_swapped {
+            pair.reverse();
+        }
+        let (mut reason, clear_until) = (Reason::TimeResolution, task.span.time.from);
+        for now in &task.span.ends {
+            let distance = now.distance(&corners);
+            if distance.hi() <= self.distance {
+                return Err(Obstacle::Met { time: now.time, triangles: Some(pair), distance });
+            }
+            if distance.lo() <= self.distance {
+                reason = if distance.hi() < f64::INFINITY { Reason::TooClose } else { Reason::Enclosure };
             }
         }
-        let from = span.time.from;
-        let is_decided = reason == Reason::TimeResolution && self.halve(task);
-        if !is_decided && self.open.is_none_or(|(since, _)| from < since) {
-            self.open = Some((from, Verdict::Unproven { clear_until: from, reason, pair: Some(triangles) }));
+        let halves = if reason == Reason::TimeResolution { self.halves(task) } else { None };
+        if halves.is_none() && self.open.is_none_or(|(since, _)| clear_until < since) {
+            self.open = Some((clear_until, Obstacle::Open { clear_until, reason, pair: Some(pair) }));
         }
-        Ok(())
-    }
-
-    /// Replaces the task by those of the two halves of its span; false where no time is between its ends.
-    fn halve(&mut self, task: Task) -> bool {
-        let Span { time: TimeSpan { from, to }, ends, halves, .. } = self.spans[task.span];
-        let middle = from + 0.5 * (to - from);
-        if !(from < middle && middle < to) {
-            return false;
-        }
-        let first = halves.unwrap_or(self.spans.len());
-        if halves.is_none() {
-            self.spans[task.span].halves = Some(first);
-            let now = Instant::new(&self.bodies, middle);
-            for (from, to, ends) in [(from, middle, [ends[0], now]), (middle, to, [now, ends[1]])] {
-                self.spans.push(Span::new(&self.bodies, TimeSpan { from, to }, &ends));
-            }
-        }
-        // The earlier half is proven first.
-        self.tasks.extend([first + 1, first].map(|span| Task { span, ..task }));
-        true
+        Ok(halves)
     }
 }

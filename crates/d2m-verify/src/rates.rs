@@ -10,10 +10,10 @@
 //!                                 Ω′ = α_B − α_A − ω_A × ω_B
 //! ```
 use crate::directions::Direction;
-use crate::instant::{Part, Separation, around_matrix};
-use crate::mesh::finite;
+use crate::instant::{Part, Separation, around, kinematics, rotations};
 use crate::{Body, TimeSpan};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
+use d2m_motion::Ball;
 
 /// Enclosures over a span, world axes.
 #[derive(Clone, Copy, Debug)]
@@ -27,22 +27,23 @@ pub(crate) struct Rates {
 }
 
 impl Rates {
-    /// `None` where an enclosure says nothing.
-    pub(crate) fn new(bodies: &[Body<'_>; 2], span: TimeSpan) -> Option<Self> {
-        let time = Interval::try_new(span.from, span.to).ok()?;
-        let [a, b] = bodies.map(|body| body.motion.enclose_kinematics(time).following(body.mesh.center));
+    pub(crate) fn new(bodies: &[Body<'_>; 2], span: TimeSpan) -> Self {
+        let [a, b] = bodies.each_ref().map(|body| kinematics(body, span));
+        let known = |ball: Ball| around(ball.center, ball.radius);
         let tails = IntervalVec3::point(b.position_tail) - IntervalVec3::point(a.position_tail);
-        let ball = |v: d2m_motion::Ball| (v.radius >= 0.0).then(|| v.to_box()).and_then(finite);
-        let d = finite(ball(b.position)? - ball(a.position)? + tails)?;
-        let v = ball(b.linear)? - ball(a.linear)?;
-        let (wa, wb) = (ball(a.angular)?, ball(b.angular)?);
-        let (ra, rb) = (ball(a.angular_rate)?, ball(b.angular_rate)?);
-        let [turn_a, turn_b] = [&a, &b].map(|k| around_matrix(k.rotation, k.rotation_radius));
+        let d = known(b.position) - known(a.position) + tails;
+        let v = known(b.linear) - known(a.linear);
+        let (wa, wb) = (known(a.angular), known(b.angular));
+        let (ra, rb) = (known(a.angular_rate), known(b.angular_rate));
         let inertial = ra.cross(d) + wa.cross(v) * 2.0 - wa.cross(wa.cross(d));
-        let [u, spin] = [finite(v - wa.cross(d))?, finite(wb - wa)?];
-        let u_rate = finite(ball(b.linear_rate)? - ball(a.linear_rate)? - inertial)?;
-        let spin_rate = finite(rb - ra - wa.cross(wb))?;
-        Some(Self { turn: [turn_a?, turn_b?], d, u, u_rate, spin, spin_rate })
+        Self {
+            turn: [a, b].map(|k| rotations(k.rotation, k.rotation_radius)),
+            d,
+            u: v - wa.cross(d),
+            u_rate: known(b.linear_rate) - known(a.linear_rate) - inertial,
+            spin: wb - wa,
+            spin_rate: rb - ra - wa.cross(wb),
+        }
     }
 
     /// About the fastest that a point of the other body moves that is so far from its center.
@@ -58,29 +59,29 @@ impl Rates {
     /// An upper bound of g″ over the span for all points of the parts, g = N·(x − p) − D(N² + c²)/(2c), by its own terms:
     /// N″·y + 2N′·y′ + N·y″ with y = x − p. Not below zero.
     pub(crate) fn curvature(&self, separation: &Separation, parts: [Part<'_>; 2]) -> f64 {
-        let [base, other] = parts.map(|part| part.iter().copied().reduce(IntervalVec3::hull));
-        let (Some(base), Some(other)) = (base, other) else { return f64::INFINITY };
-        let s = self.turn[1].mul_vec(other);
-        let swing = |v: IntervalVec3| self.spin.cross(v);
-        let second = |v: IntervalVec3| self.spin_rate.cross(v) + swing(swing(v));
+        let hull = |part: Part<'_>| part.iter().copied().reduce(IntervalVec3::hull);
+        let [base, other] = parts.map(|part| hull(part).unwrap_or(IntervalVec3::ENTIRE));
+        let s = self.turn[1] * other;
+        let first = |v: IntervalVec3| self.spin.cross(v);
+        let second = |v: IntervalVec3| self.spin_rate.cross(v) + first(first(v));
         let y2 = self.u_rate + second(s);
         let sum = |[n, n1, n2]: [IntervalVec3; 3]| {
-            let y = self.d + s - self.turn[0].mul_vec(base);
-            n2.dot(y) + n1.dot(self.u + swing(s)) * 2.0 + n.dot(y2)
+            let y = self.d + s - self.turn[0] * base;
+            n2.dot(y) + n1.dot(self.u + first(s)) * 2.0 + n.dot(y2)
         };
-        let value = match separation.direction {
-            Direction::Base(n) => self.turn[0].mul_point(n).dot(y2),
+        let (bend, level) = match separation.direction {
+            Direction::Base(n) => ((self.turn[0] * n).dot(y2), Interval::ZERO),
             Direction::Other(n) => {
-                let n = self.turn[1].mul_point(n);
-                sum([n, swing(n), second(n)])
+                let n = self.turn[1] * n;
+                (sum([n, first(n), second(n)]), Interval::ZERO)
             }
             Direction::Across(e, f) => {
-                let (e, f) = (self.turn[0].mul_point(e), self.turn[1].mul_point(f));
-                let [n, n1, n2] = [f, swing(f), second(f)].map(|f| e.cross(f));
-                sum([n, n1, n2]) - (n1.norm_squared() + n.dot(n2)) * separation.per_square() * 2.0
+                let (e, f) = (self.turn[0] * e, self.turn[1] * f);
+                let [n, n1, n2] = [f, first(f), second(f)].map(|f| e.cross(f));
+                (sum([n, n1, n2]), (n1.norm_squared() + n.dot(n2)) * separation.per_square() * 2.0)
             }
         };
-        value.hi().max(0.0)
+        (bend * separation.sign - level).hi().max(0.0)
     }
 }
 
@@ -95,12 +96,10 @@ impl Rates {
 ///      │   ╲ ╲_________╱
 ///      │     ╲________╱  ← lower bound
 /// ```
-pub(crate) fn lowest([start, end]: [f64; 2], bend: f64) -> f64 {
-    if start.is_nan() || end.is_nan() {
-        return f64::NEG_INFINITY;
-    }
-    let (less, more) = (Interval::point(start.min(end)), Interval::point(start.max(end)));
-    let (bend, rise) = (Interval::point(bend), (more - less).lo().max(0.0));
+pub(crate) fn lowest(ends: [f64; 2], bend: f64) -> f64 {
+    let ([start, end], bend) = (ends.map(Interval::point), Interval::point(bend));
+    let (less, more) = (start.min(end), start.max(end));
+    let rise = (more - less).lo().max(0.0);
     if rise >= bend.hi() {
         return less.lo();
     }

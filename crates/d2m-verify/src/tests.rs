@@ -184,7 +184,7 @@ fn many_triangles_at_once_are_as_far_apart_as_each_two() {
         let at = ConstantTwist::REST.with_position(DVec3::new(1.9, 1.0, 0.3) * (0.5 + random.signed().abs()));
         let of = |mesh, motion| Body { solid: Solid::Surface, ..body(mesh, motion) };
         let bodies = [of(&a, &ConstantTwist::REST), of(&b, &at)];
-        let now = Instant::new(&bodies, 0.5).unwrap();
+        let now = Instant::new(&bodies, 0.5);
         let corners =
             |mesh: &Mesh| (0..mesh.triangle_count() as u32).map(|t| mesh.corners(t)).collect::<Vec<_>>();
         let pairs = corners(&a).into_iter().flat_map(|s| corners(&b).into_iter().map(move |t| [s, t]));
@@ -258,7 +258,7 @@ fn a_distance_is_as_wide_as_the_poses_are_open() {
         let bodies = [body(&cube, &arm), body(&cube, &rest)];
         let (pose, _) = arm.pose_and_twist(0.5);
         let state = arm.enclose_state_about(0.5, pose.translation);
-        let now = Instant::new(&bodies, 0.5).unwrap();
+        let now = Instant::new(&bodies, 0.5);
         let half = 0.75_f64.sqrt(); // of a diagonal
         let rest = rest.enclose_state_about(0.5, pose.translation);
         let open = [state, rest].map(|of| of.position_radius + of.rotation_radius * half);

@@ -1,10 +1,10 @@
 //! Claims, as what the other modules prove.
 use crate::instant::Instant;
-use crate::moved::Moved;
-use crate::prove::clear;
-use crate::solid::{is_held, overlap};
+use crate::prove::{Obstacle, Proof, surfaces_clear};
+use crate::solid::{clear, overlap};
 use crate::{Body, Claim, Query, Reason, TimeSpan, Verdict};
 use d2m_interval::Interval;
+use d2m_motion::{Composed, ConstantTwist};
 use glam::DVec3;
 
 /// Proves a claim, or refutes it, or says why it did neither, in at most so many steps (a microsecond each).
@@ -30,26 +30,24 @@ use glam::DVec3;
 /// # Ok::<(), d2m_verify::MeshFault>(())
 /// ```
 pub fn verify(query: &Query<'_>, claim: &Claim, most_steps: u64) -> Verdict {
-    let mut steps = most_steps;
-    let verdict = match query.bodies.map(|body| body.motion.chain()) {
-        [Some(a), Some(b)] if a.common_joints(b) > 0 && !claim.has_direction() => {
-            // Two links of one arm, seen from the last joint that they share: no distance changes, but directions do.
-            let (a, b) = (a.without_first(a.common_joints(b)), b.without_first(a.common_joints(b)));
-            let [of_a, of_b] = query.bodies;
-            let bodies = [Body { motion: &a, ..of_a }, Body { motion: &b, ..of_b }];
-            Case { bodies, window: query.window }.judge(claim, &mut steps)
-        }
-        _ => Case { bodies: query.bodies, window: query.window }.judge(claim, &mut steps),
+    // Two links of one arm, seen from the last joint that they share: no distance changes, but directions do.
+    let links = match query.bodies.map(|body| body.motion.chain()) {
+        [Some(a), Some(b)] => [a, b].map(|link| link.without_first(a.common_joints(b))).to_vec(),
+        _ => Vec::new(),
     };
-    verdict.err().unwrap_or(Verdict::Verified { steps: most_steps - steps })
-}
-
-/// What is not verified.
-type Proof<T = ()> = Result<T, Verdict>;
-
-struct Case<'q> {
-    bodies: [Body<'q>; 2],
-    window: TimeSpan,
+    let mut bodies = query.bodies;
+    bodies.iter_mut().zip(&links).for_each(|(body, link)| body.motion = link);
+    let mut case = Case { query, bodies, left: most_steps };
+    match case.judge(claim) {
+        Ok(()) => Verdict::Verified { steps: most_steps - case.left },
+        // A distance of bodies is that of their meshes less their radii.
+        Err(Obstacle::Met { time, triangles, distance }) => Verdict::Refuted {
+            time,
+            triangles: triangles.unwrap_or_default(),
+            distance: (distance - case.radii()).max(Interval::ZERO),
+        },
+        Err(Obstacle::Open { clear_until, reason, pair }) => Verdict::Unproven { clear_until, reason, pair },
+    }
 }
 
 /// How much longer a meeting is taken to last at first than the one before did at last.
@@ -61,184 +59,171 @@ const TIMES: [f64; 5] = [1.0, 0.0, 0.5, 0.25, 0.75];
 /// Parts of a way that bodies are parted by, one after the other: none of it, and then less and less.
 const PARTS: [f64; 5] = [0.0, 1.0, 0.25, 0.0625, 0.015_625];
 
+/// Where triangles do not stay together, points inside of both bodies may: this part of the steps goes to finding them, so that the others
+/// suffice for what needs none.
+const PART_FOR_POINTS: u64 = 4;
+
+struct Case<'q> {
+    query: &'q Query<'q>,
+    /// As the query's, but for directions of the world.
+    bodies: [Body<'q>; 2],
+    /// Steps.
+    left: u64,
+}
+
+fn at(time: f64) -> TimeSpan {
+    TimeSpan { from: time, to: time }
+}
+
 impl Case<'_> {
-    fn not_proven<T>(&self, reason: Reason, pair: Option<[u32; 2]>) -> Proof<T> {
-        Err(Verdict::Unproven { clear_until: self.window.from, reason, pair })
+    fn judge(&mut self, claim: &Claim) -> Proof {
+        match *claim {
+            Claim::Clear { span, distance } => self.clear(span, distance),
+            Claim::Within { span, distance, triangles } => self.within(span, distance, triangles),
+            Claim::Often { span, distance, every } => self.often(span, distance, every),
+            Claim::Apart { time, triangles, least, most } => self.apart(time, triangles, least, most),
+            Claim::Held { time } => self.held(time),
+            Claim::Overlapping { time, triangles } => self.overlapping(time, triangles),
+            Claim::Parted { time, along, most } => self.parted(time, along * most),
+            Claim::All(ref claims) => claims.iter().try_for_each(|claim| self.judge(claim)),
+        }
     }
 
-    fn judge(&self, claim: &Claim, left: &mut u64) -> Proof {
-        match *claim {
-            Claim::Clear { span, distance } => self.clear(span, self.of_meshes(span, distance)?, left),
-            Claim::Within { span, distance, triangles } => {
-                self.within(span, self.of_meshes(span, distance)?, triangles, left)
-            }
-            Claim::Often { span, distance, every } => {
-                self.often(span, self.of_meshes(span, distance)?, every, left)
-            }
-            Claim::Apart { time, triangles, least, most } => {
-                let _ = self.of_meshes(TimeSpan { from: time, to: time }, most.max(0.0))?;
-                let found = self.distance(time, triangles)?;
-                let [least, most] = [least, most].map(|distance| self.radii() + Interval::point(distance));
-                if found.hi() < least.lo() || found.lo() > most.hi() {
-                    return Err(self.refuted(time, triangles, found));
-                }
-                let is_proven = least.hi() <= found.lo() && found.hi() <= most.lo();
-                if is_proven { Ok(()) } else { self.not_proven(Reason::Distance, Some(triangles)) }
-            }
-            Claim::Held { time } => {
-                let span = TimeSpan { from: time, to: time };
-                let _ = self.of_meshes(span, 0.0)?;
-                clear(&self.bodies, 0.0, span, left)?;
-                let is_held = is_held(&self.bodies, &self.instant(time)?);
-                if is_held == Some(true) { Ok(()) } else { self.not_proven(Reason::Solid, None) }
-            }
-            Claim::Overlapping { time, triangles } => self.overlapping(time, triangles, left),
-            Claim::Parted { time, along, most } => self.parted(time, along * most, left),
-            Claim::All(ref claims) => claims.iter().try_for_each(|claim| self.judge(claim, left)),
-        }
+    fn open<T>(&self, reason: Reason, pair: Option<[u32; 2]>) -> Proof<T> {
+        Err(Obstacle::Open { clear_until: self.query.window.from, reason, pair })
     }
 
     /// What a distance of bodies is between their meshes, if it and the span are such that something can be claimed of them: both motions
     /// are defined in all of the window, and the span is in it.
-    fn of_meshes(&self, span: TimeSpan, distance: f64) -> Proof<Interval> {
-        let TimeSpan { from, to } = self.window;
+    fn level(&self, span: TimeSpan, distance: f64) -> Proof<Interval> {
+        let TimeSpan { from, to } = self.query.window;
         let is_span = from <= span.from && span.from <= span.to && span.to <= to && (to - from).is_finite();
         let lengths = [distance, self.bodies[0].radius, self.bodies[1].radius];
         if !is_span || !lengths.iter().all(|x| (0.0..f64::INFINITY).contains(x)) {
-            return self.not_proven(Reason::Malformed, None);
+            return self.open(Reason::Malformed, None);
         }
-        let domains = self.bodies.map(|body| body.motion.domain());
-        if !domains.iter().all(|domain| domain.contains(from) && domain.contains(to)) {
-            return self.not_proven(Reason::OutsideMotion, None);
+        let is_defined = |body: &Body<'_>| [from, to].iter().all(|&time| body.motion.domain().contains(time));
+        if !self.bodies.iter().all(is_defined) {
+            return self.open(Reason::OutsideMotion, None);
         }
-        Ok(self.radii() + Interval::point(distance))
+        Ok(self.radii() + distance)
     }
 
     fn radii(&self) -> Interval {
-        Interval::point(self.bodies[0].radius) + Interval::point(self.bodies[1].radius)
+        Interval::point(self.bodies[0].radius) + self.bodies[1].radius
     }
 
-    fn instant(&self, time: f64) -> Proof<Instant> {
-        Instant::new(&self.bodies, time).map_or_else(|| self.not_proven(Reason::Enclosure, None), Ok)
-    }
-
-    /// The surfaces are further apart all the time; and at the start no body holds a part of the other, so none ever does.
-    fn clear(&self, span: TimeSpan, level: Interval, left: &mut u64) -> Proof {
-        clear(&self.bodies, level.hi(), span, left).map_err(|verdict| match verdict {
-            Verdict::Refuted { time, triangles, distance } => self.refuted(time, triangles, distance),
-            open => open,
-        })?;
-        match is_held(&self.bodies, &self.instant(span.from)?) {
-            Some(false) => Ok(()),
-            Some(true) => Err(self.refuted(span.from, [0, 0], Interval::ZERO)),
-            None => self.not_proven(Reason::Solid, None),
-        }
-    }
-
-    /// By a distance of meshes, which is that of the bodies less their radii.
-    fn refuted(&self, time: f64, triangles: [u32; 2], distance: Interval) -> Verdict {
-        Verdict::Refuted { time, triangles, distance: (distance - self.radii()).max(Interval::ZERO) }
-    }
-
-    /// Distance of two triangles.
-    fn distance(&self, time: f64, triangles: [u32; 2]) -> Proof<Interval> {
+    /// Encloses the distance of two triangles.
+    fn distance(&self, time: f64, pair: [u32; 2]) -> Proof<Interval> {
         let meshes = self.bodies.map(|body| body.mesh);
-        if (0..2).any(|k| triangles[k] as usize >= meshes[k].triangle_count()) {
-            return self.not_proven(Reason::Malformed, Some(triangles));
+        if (0..2).any(|k| pair[k] as usize >= meshes[k].triangle_count()) {
+            return self.open(Reason::Malformed, Some(pair));
         }
-        Ok(self.instant(time)?.distance(&[0, 1].map(|k| meshes[k].corners(triangles[k]))))
+        let now = Instant::new(&self.bodies, time);
+        let found = now.distance(&[0, 1].map(|k| meshes[k].corners(pair[k])));
+        if found.hi() < f64::INFINITY { Ok(found) } else { self.open(Reason::Enclosure, None) }
     }
 
-    /// Bodies with radii are nearer to each other than these; of others two triangles cross, or a point is inside of both.
-    fn overlapping(&self, time: f64, triangles: [u32; 2], left: &mut u64) -> Proof {
-        let span = TimeSpan { from: time, to: time };
-        let _ = self.of_meshes(span, 0.0)?;
-        let now = self.instant(time)?;
-        let is_deep = self.distance(time, triangles)?.hi() < self.radii().lo();
-        if is_deep || overlap(&self.bodies, &now, triangles, left) {
-            return Ok(());
-        }
-        match self.meeting(span, 0.0, left) {
-            Ok(Meeting { triangles: Some(others), .. }) if overlap(&self.bodies, &now, others, left) => {
-                Ok(())
-            }
-            _ => self.not_proven(Reason::NotOverlapping, Some(triangles)),
-        }
-    }
-
-    /// The bodies share no point, or none when B is moved so, or by a part of it: beyond that there may be something else of A.
-    fn parted(&self, time: f64, by: DVec3, left: &mut u64) -> Proof {
-        let span = TimeSpan { from: time, to: time };
-        let level = self.of_meshes(span, 0.0)?;
-        for part in PARTS {
-            let moved = Moved { motion: self.bodies[1].motion, by: by * part };
-            let bodies = [self.bodies[0], Body { motion: &moved, ..self.bodies[1] }];
-            if (Case { bodies, window: self.window }).clear(span, level, left).is_ok() {
-                return Ok(());
-            }
-        }
-        self.not_proven(Reason::NotParted, None)
+    fn clear(&mut self, span: TimeSpan, distance: f64) -> Proof {
+        let level = self.level(span, distance)?.hi();
+        clear(&self.bodies, span, level, &mut self.left)
     }
 
     /// Somewhere the bodies are proven close; or it is refuted, because they are apart all the time.
-    fn within(&self, span: TimeSpan, level: Interval, pair: Option<[u32; 2]>, left: &mut u64) -> Proof {
+    fn within(&mut self, span: TimeSpan, distance: f64, pair: Option<[u32; 2]>) -> Proof {
         // Not below zero, as no distance is.
-        let level = level.lo().max(0.0);
-        for part in TIMES {
+        let level = self.level(span, distance)?.lo().max(0.0);
+        for (part, pair) in TIMES.into_iter().zip(pair.into_iter().cycle()) {
             let time = (span.from + part * (span.to - span.from)).clamp(span.from, span.to);
-            match pair {
-                Some(pair) if self.distance(time, pair)?.hi() <= level => return Ok(()),
-                _ => {}
+            if self.distance(time, pair)?.hi() <= level {
+                return Ok(());
             }
         }
-        match self.meeting(span, level, left) {
-            Ok(_) => Ok(()),
-            Err(Verdict::Refuted { .. }) => {
-                let triangles = pair.unwrap_or([0, 0]);
-                Err(self.refuted(span.to, triangles, self.distance(span.to, triangles)?))
+        match clear(&self.bodies, span, level, &mut self.left) {
+            Err(Obstacle::Met { .. }) => Ok(()),
+            Err(Obstacle::Open { .. }) => self.open(Reason::NoMeeting, pair),
+            Ok(()) => {
+                let pair = pair.unwrap_or_default();
+                let distance = self.distance(span.to, pair)?;
+                Err(Obstacle::Met { time: span.to, triangles: Some(pair), distance })
             }
-            Err(_) => self.not_proven(Reason::NoMeeting, pair),
         }
     }
 
-    /// What contradicts that the bodies are apart is a meeting. Refuted: they are apart all the time.
-    fn meeting(&self, span: TimeSpan, level: f64, left: &mut u64) -> Proof<Meeting> {
-        match clear(&self.bodies, level, span, left) {
-            Err(Verdict::Refuted { time, triangles, .. }) => Ok(Meeting { time, triangles: Some(triangles) }),
-            Err(open) => Err(open),
-            Ok(()) => match is_held(&self.bodies, &self.instant(span.from)?) {
-                Some(true) => Ok(Meeting { time: span.from, triangles: None }),
-                Some(false) => Err(self.refuted(span.from, [0, 0], Interval::ENTIRE)),
-                None => self.not_proven(Reason::Solid, None),
-            },
+    fn apart(&self, time: f64, pair: [u32; 2], least: f64, most: f64) -> Proof {
+        let _ = self.level(at(time), most.max(0.0))?;
+        let distance = self.distance(time, pair)?;
+        let [least, most] = [least, most].map(|distance| self.radii() + distance);
+        if distance.strictly_precedes(least) || most.strictly_precedes(distance) {
+            return Err(Obstacle::Met { time, triangles: Some(pair), distance });
         }
+        let is_proven = least.precedes(distance) && distance.precedes(most);
+        if is_proven { Ok(()) } else { self.open(Reason::Distance, Some(pair)) }
+    }
+
+    fn held(&mut self, time: f64) -> Proof {
+        let _ = self.level(at(time), 0.0)?;
+        match clear(&self.bodies, at(time), 0.0, &mut self.left) {
+            Err(Obstacle::Met { triangles: None, .. }) => Ok(()),
+            Ok(()) => self.open(Reason::Solid, None),
+            other => other,
+        }
+    }
+
+    /// Bodies with radii are nearer to each other than these; of others two triangles cross, or a point is inside of both.
+    fn overlapping(&mut self, time: f64, pair: [u32; 2]) -> Proof {
+        let _ = self.level(at(time), 0.0)?;
+        if self.distance(time, pair)?.hi() < self.radii().lo() {
+            return Ok(());
+        }
+        let now = Instant::new(&self.bodies, time);
+        let overlaps = |pair: [u32; 2], left: &mut u64| overlap(&self.bodies, &now, pair, left);
+        let is_proven = overlaps(pair, &mut self.left)
+            || match clear(&self.bodies, at(time), 0.0, &mut self.left) {
+                Err(Obstacle::Met { triangles: Some(others), .. }) => overlaps(others, &mut self.left),
+                _ => false,
+            };
+        if is_proven { Ok(()) } else { self.open(Reason::NotOverlapping, Some(pair)) }
+    }
+
+    /// The bodies share no point, or none when B is moved so, or by a part of it: beyond that there may be something else of A.
+    fn parted(&mut self, time: f64, by: DVec3) -> Proof {
+        let level = self.level(at(time), 0.0)?.hi();
+        let [a, b] = self.query.bodies;
+        for part in PARTS.into_iter().filter(|_| by.is_finite()) {
+            let moved = Composed::new(ConstantTwist::REST.with_position(by * part), b.motion);
+            if clear(&[a, Body { motion: &moved, ..b }], at(time), level, &mut self.left).is_ok() {
+                return Ok(());
+            }
+        }
+        self.open(Reason::NotParted, None)
     }
 
     /// From one meeting to the next one, no later than `every`; each is taken along as far as it is proven to last.
-    fn often(&self, span: TimeSpan, level: Interval, every: f64, left: &mut u64) -> Proof {
-        let level = level.lo().max(0.0);
+    fn often(&mut self, span: TimeSpan, distance: f64, every: f64) -> Proof {
+        let level = self.level(span, distance)?.lo().max(0.0);
         if !(0.0..f64::INFINITY).contains(&every) {
-            return self.not_proven(Reason::Malformed, None);
+            return self.open(Reason::Malformed, None);
         }
         let (mut now, mut step) = (span.from, span.to - span.from);
-        let mut for_points = *left / PART_FOR_POINTS;
+        let mut for_points = self.left / PART_FOR_POINTS;
         while span.to - now > every {
             let end = (now + every).next_down().max(now);
             // As late as may be, so that something is gained.
-            let mut late = [end, now + 0.5 * (end - now), now].into_iter();
-            let found = late.find_map(|from| self.meeting(TimeSpan { from, to: end }, level, left).ok());
-            let Some(meeting) = found else {
-                let reason = if *left == 0 { Reason::Steps } else { Reason::NoMeeting };
-                return self.not_proven(reason, None);
+            let mut late =
+                [end, now + 0.5 * (end - now), now].into_iter().map(|from| TimeSpan { from, to: end });
+            let met = late.find_map(|part| match clear(&self.bodies, part, level, &mut self.left) {
+                Err(Obstacle::Met { time, triangles, .. }) => Some((time, triangles)),
+                _ => None,
+            });
+            let Some((mut until, pair)) = met else {
+                return self.open(if self.left == 0 { Reason::Steps } else { Reason::NoMeeting }, None);
             };
-            let mut until = meeting.time;
             step = step.max(every);
-            while until < span.to && step > every && *left > 0 {
-                *left -= 1;
+            while until < span.to && step > every && self.left > 0 {
+                self.left -= 1;
                 let part = TimeSpan { from: until, to: (until + step).min(span.to) };
-                let lasts = self.lasts(&meeting, part, level, left)
-                    || self.overlaps_over(&meeting, part, &mut for_points, left);
-                if lasts {
+                if self.lasts(pair, part, level, &mut for_points) {
                     (until, step) = (part.to, 2.0 * step);
                 } else {
                     step *= 0.5;
@@ -246,40 +231,26 @@ impl Case<'_> {
             }
             step *= AGAIN;
             if until <= now && end <= now {
-                return self.not_proven(Reason::TimeResolution, meeting.triangles);
+                return self.open(Reason::TimeResolution, pair);
             }
             now = until.max(now);
         }
         Ok(())
     }
 
-    /// Are the bodies within the distance at every time of a span that begins with the meeting?
-    fn lasts(&self, meeting: &Meeting, span: TimeSpan, level: f64, left: &mut u64) -> bool {
-        let Some(triangles) = meeting.triangles else {
+    /// Are the bodies within the level at every time of a span, at the begin of which these triangles meet, or one body holds the other?
+    fn lasts(&mut self, pair: Option<[u32; 2]>, span: TimeSpan, level: f64, for_points: &mut u64) -> bool {
+        let Some(pair) = pair else {
             // What is inside stays there until the surfaces meet.
-            return clear(&self.bodies, 0.0, span, left).is_ok();
+            return surfaces_clear(&self.bodies, span, 0.0, &mut self.left).is_ok();
         };
-        let corners = [0, 1].map(|k| self.bodies[k].mesh.corners(triangles[k]));
-        Instant::over(&self.bodies, span).is_some_and(|over| over.most_distance(&corners) <= level)
-    }
-
-    /// Is a point found that is inside of both bodies over a span? That takes steps of both.
-    fn overlaps_over(&self, meeting: &Meeting, span: TimeSpan, for_points: &mut u64, left: &mut u64) -> bool {
-        let (Some(triangles), true) = (meeting.triangles, *for_points > 0) else { return false };
+        let over = Instant::over(&self.bodies, span);
+        if over.most_distance(&[0, 1].map(|k| self.bodies[k].mesh.corners(pair[k]))) <= level {
+            return true;
+        }
         let before = *for_points;
-        let is_found = Instant::over(&self.bodies, span)
-            .is_some_and(|over| overlap(&self.bodies, &over, triangles, for_points));
-        *left = left.saturating_sub(before - *for_points);
+        let is_found = before > 0 && overlap(&self.bodies, &over, pair, for_points);
+        self.left = self.left.saturating_sub(before - *for_points);
         is_found
     }
-}
-
-/// Where triangles do not stay together, points inside of both bodies may: this part of the steps goes to finding them, so that the others
-/// suffice for what needs none.
-const PART_FOR_POINTS: u64 = 4;
-
-/// A time at which the bodies are proven close, and triangles that are; none: one body holds the other.
-struct Meeting {
-    time: f64,
-    triangles: Option<[u32; 2]>,
 }
