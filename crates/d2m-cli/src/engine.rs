@@ -4,7 +4,7 @@ use crate::arguments::{FurtherArguments, Method, QueryArguments, SizeArguments, 
 use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::output::note;
-use crate::sizes::{size_of, warn_of_sizes};
+use crate::unlike_sizes::{size_of, warn_of_sizes};
 use crate::trials::Trial;
 use d2m::bvh::{
     Budget, Clearance, ClearanceOptions, ContactSpan, Departure, MeshTree, Mode, Moving, Posed, QueryError,

@@ -25,6 +25,7 @@ mod simulation;
 mod sizes;
 mod travel;
 mod trials;
+mod unlike_sizes;
 mod verification;
 mod view;
 

@@ -1,11 +1,10 @@
-//! Sizes that people mix up: the scale and unit of the meshes, what is echoed of them, and warnings.
+//! Sizes that people mix up: the scale and unit of the meshes, and what is echoed of them.
 
 use crate::arguments::SizeArguments;
 use crate::failure::Failure;
 use crate::load::{Loaded, load_with};
-use crate::output::{digits, note};
+use crate::output::digits;
 use crate::travel::Travel;
-use d2m::bvh::TriMesh;
 use d2m_io::{ReadOptions, Unit};
 use glam::DVec3;
 
@@ -43,40 +42,6 @@ fn parse_scale(text: &str) -> Result<DVec3, String> {
     } else {
         Err(format!("{text} has to be finite and not zero"))
     }
-}
-
-/// Diagonals of boxes that differ by more than this are probably in two units.
-const UNLIKELY: f64 = 100.0;
-
-/// The diagonal of the box around a mesh.
-pub(crate) fn size_of(mesh: &TriMesh) -> f64 {
-    let low = mesh.vertices().iter().copied().fold(DVec3::INFINITY, DVec3::min);
-    let high = mesh.vertices().iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-    (high - low).length()
-}
-
-/// Warns of two bodies of very unlike sizes.
-pub(crate) fn warn_of_sizes(a: f64, b: f64) {
-    if let Some(text) = unlike(("A", a), ("B", b)) {
-        note(&format!("d2m: warning: {text} (--unit-a, --scale-a)"));
-    }
-}
-
-/// The same of the smallest and the largest body of a scene file.
-pub(crate) fn warn_of_scene_sizes(place: &str, bodies: &[(&str, f64)]) {
-    let by_size = |x: &&(&str, f64), y: &&(&str, f64)| x.1.total_cmp(&y.1);
-    let ends = bodies.iter().min_by(by_size).zip(bodies.iter().max_by(by_size));
-    if let Some(text) = ends.and_then(|(&small, &large)| unlike(small, large)) {
-        note(&format!("d2m: warning: {place}: {text} (\"scale\")"));
-    }
-}
-
-/// What is to be said of two bodies of which one is probably in another unit, by their names and sizes.
-pub(crate) fn unlike((one, a): (&str, f64), (other, b): (&str, f64)) -> Option<String> {
-    let (small, large) = (a.min(b), a.max(b));
-    (small > 0.0 && large > UNLIKELY * small).then(|| {
-        format!("{one} is {} across and {other} {}: are both in the same unit?", digits(a), digits(b))
-    })
 }
 
 /// The last line of an answer: how large each body is, and how far it goes and turns in the window.

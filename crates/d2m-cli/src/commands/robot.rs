@@ -9,7 +9,7 @@ use crate::output::{Output, digits, note, print, short};
 use crate::report::{evidence_sentence, vector};
 use crate::robot_path::read_path;
 use crate::robot_scene::RobotSceneFile;
-use crate::sizes::{size_of, unlike};
+use crate::unlike_sizes::{size_of, unlike};
 use crate::travel::Travel;
 use crate::view::picture_of_path;
 use d2m::bvh::{Budget, QueryOptions, Window};

@@ -1,6 +1,6 @@
 //! `d2m scene`: the contacts of many bodies.
 
-use super::scene_question::{sizes_line_of, warn_of_sizes_in};
+use super::scene_question::sizes_line_of;
 use crate::arguments::SceneArguments;
 use crate::engine::number;
 use crate::failure::Failure;
@@ -56,7 +56,7 @@ fn at_start(scene: &Scene, bodies: [usize; 2], options: QueryOptions) -> StartSt
 /// Runs the command.
 pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
     let mut scene = Scene::read(&arguments.scene)?;
-    warn_of_sizes_in(&arguments.scene.display().to_string(), &scene);
+    scene.warn_of_sizes(&arguments.scene.display().to_string());
     if let Some(start) = arguments.start {
         scene = scene.with_start(start.into());
     }

@@ -3,8 +3,8 @@
 use crate::arguments::{Method, TocArguments};
 use crate::engine::options_of;
 use crate::failure::Failure;
-use crate::scene::{Scene, SceneBody};
-use crate::sizes::{scene_sizes_line, size_of, warn_of_scene_sizes};
+use crate::scene::Scene;
+use crate::sizes::scene_sizes_line;
 use crate::travel::Travel;
 use d2m::World;
 use d2m::bvh::QueryOptions;
@@ -50,7 +50,7 @@ impl SceneQuestion {
             return Err(Failure::at("--mode", "only accurate answers this question of a scene"));
         }
         let scene = Scene::read(Path::new(&arguments.a))?;
-        warn_of_sizes_in(&arguments.a, &scene);
+        scene.warn_of_sizes(&arguments.a);
         let world = scene.world(options_of(query)?);
         let options = *world.options();
         Ok(Self { scene, world, options })
@@ -60,23 +60,12 @@ impl SceneQuestion {
 /// The window if none is given.
 const WINDOW: &str = "0,1";
 
-/// The diagonal of the box around a body.
-fn size(body: &SceneBody) -> f64 {
-    size_of(body.tree.mesh()) + 2.0 * body.radius
-}
-
-/// Warns where a body of the scene in this file is probably in another unit.
-pub(super) fn warn_of_sizes_in(file: &str, scene: &Scene) {
-    let sizes: Vec<(&str, f64)> = scene.bodies.iter().map(|body| (body.name.as_str(), size(body))).collect();
-    warn_of_scene_sizes(file, &sizes);
-}
-
 /// The last line of a text about a scene: the smallest and the largest body, and which goes and turns the furthest.
 pub(super) fn sizes_line_of(scene: &Scene) -> String {
     let named: Vec<(&str, f64, Travel)> = scene
         .bodies
         .iter()
-        .map(|body| (body.name.as_str(), size(body), Travel::of(&body.motion, scene.window)))
+        .map(|body| (body.name.as_str(), body.size(), Travel::of(&body.motion, scene.window)))
         .collect();
     scene_sizes_line(&named)
 }

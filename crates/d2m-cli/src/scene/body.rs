@@ -3,7 +3,8 @@
 use crate::failure::Failure;
 use crate::mesh_library::MeshLibrary;
 use crate::motion::require_window;
-use crate::orientation::warn_of_json;
+use crate::travel::{Travel, warn_of_turn};
+use crate::unlike_sizes::size_of;
 use d2m::bvh::{MeshTree, Moving, Solid, Window};
 use d2m::motion::AnyMotion;
 use d2m_io::SceneEntry;
@@ -29,9 +30,6 @@ impl SceneBody {
         window: Window,
         library: &mut MeshLibrary,
     ) -> Result<Self, Failure> {
-        if let Some(motion) = value.get("motion") {
-            warn_of_json(&format!("{place}, motion"), motion);
-        }
         Self::new(SceneEntry::parse(value, place)?, place, window, library)
     }
 
@@ -50,6 +48,7 @@ impl SceneBody {
             .check_size(2.0 * tree.radius())
             .map_err(|error| Failure::at(format!("{place}, motion"), error))?;
         require_window(&format!("{place}, motion"), &motion, window)?;
+        warn_of_turn(&format!("{place}, motion"), Travel::of(&motion, window));
         let solid = match solid {
             Some(true) if !tree.is_watertight() => {
                 let reason = format!("true, but the mesh {mesh} is not watertight and bounds no solid");
@@ -60,6 +59,16 @@ impl SceneBody {
             Some(true) | None => Solid::Filled,
         };
         Ok(Self { name, tree, motion, group, solid, radius })
+    }
+
+    /// The diagonal of the box around the body.
+    pub(crate) fn size(&self) -> f64 {
+        size_of(self.tree.mesh()) + 2.0 * self.radius
+    }
+
+    /// Its name and size.
+    pub(crate) fn named_size(&self) -> (&str, f64) {
+        (&self.name, self.size())
     }
 
     /// The form that the pair queries take.

@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::load::read;
 use crate::mesh_library::MeshLibrary;
 use crate::orientation::warn_of_json;
-use crate::travel::{Travel, warn_of_turn};
+use crate::unlike_sizes::warn_of_scene_sizes;
 use d2m::bvh::{QueryOptions, Start, Window};
 use d2m::{Body, BodyId, Group, World, WorldError};
 use d2m_io::{SceneFile, ScenePair};
@@ -45,7 +45,6 @@ impl Scene {
         for (index, entry) in entries.into_iter().enumerate() {
             let place = format!("{place}, body {index} ({:?})", entry.name);
             let body = SceneBody::new(entry, &place, window, &mut library)?;
-            warn_of_turn(&format!("{place}, motion"), Travel::of(&body.motion, window));
             bodies.push(body);
         }
         let names = Names::new(&bodies);
@@ -63,6 +62,11 @@ impl Scene {
     /// The same with what counts of bodies that are in contact at the start.
     pub(crate) fn with_start(self, start: Start) -> Self {
         Self { start, ..self }
+    }
+
+    /// Warns where a body is probably in another unit; `file`: where the scene is.
+    pub(crate) fn warn_of_sizes(&self, file: &str) {
+        warn_of_scene_sizes(file, self.bodies.iter().map(SceneBody::named_size));
     }
 
     /// What stopped a query of the scene's world, with the bodies' names.

@@ -5,7 +5,9 @@ use super::joints::joints;
 use crate::failure::Failure;
 use crate::load::read;
 use crate::mesh_library::MeshLibrary;
+use crate::orientation::warn_of_json;
 use crate::scene::{Ignored, Names, SceneBody, check_names};
+use crate::unlike_sizes::warn_of_scene_sizes;
 use d2m::bvh::Window;
 use d2m::motion::AnyMotion;
 use d2m_dynamics::{
@@ -70,6 +72,7 @@ pub(crate) fn read_scene(path: &Path) -> Result<SimulatedScene, Failure> {
     let UniqueKeys(value) =
         serde_json::from_slice(&bytes).map_err(|error| Failure::at(path.display(), error))?;
     let scene = Fields::new(path.display().to_string(), &value, SCENE_KEYS)?;
+    warn_of_json(scene.place(), &value);
     parse_start(scene.get("start")).map_err(|reason| scene.fault("start", reason))?;
     let Settings { options, end, threads } = settings(&scene)?;
     let mut simulation = Simulation::new(options).map_err(|error| Failure::at(path.display(), error))?;
@@ -91,7 +94,8 @@ pub(crate) fn read_scene(path: &Path) -> Result<SimulatedScene, Failure> {
         ids.push(simulation.add(&described).map_err(|error| Failure::at(fields.place(), error))?);
         bodies.push(body);
     }
-    check_names(&path.display().to_string(), &bodies)?;
+    check_names(scene.place(), &bodies)?;
+    warn_of_scene_sizes(scene.place(), bodies.iter().map(SceneBody::named_size));
     ignore(&scene, &bodies, &ids, &mut simulation)?;
     let names: Vec<String> = bodies.into_iter().map(|body| body.name).collect();
     pairs(&scene, &names, &ids, &mut simulation)?;
