@@ -79,7 +79,16 @@ impl Sampler<'_> {
 
     /// A first upper bound: the closest pair of the time at which the bodies' centers are closest, followed down to a minimum.
     pub(super) fn first(&self, width: impl Fn(f64) -> f64) -> Sample {
-        self.settle(self.closest_at(self.time_of_centers(), None, FIRST_PAIR), width)
+        let time = self.time_of_centers();
+        if self.is_an_end(time) {
+            return self.settle_closest(self.closest_at(time, None, CLOSEST), &width);
+        }
+        self.settle(self.closest_at(time, None, FIRST_PAIR), width)
+    }
+
+    /// Bodies that are closest at an end of the window have their minimum there: what is sought there first is what is wanted.
+    fn is_an_end(&self, time: f64) -> bool {
+        time == self.window.start() || time == self.window.end()
     }
 
     /// About when the centers of the bodies are closest: the closest of a few times, and Gauss and Newton's steps from there.
@@ -118,18 +127,32 @@ impl Sampler<'_> {
     /// Follows a close pair of a time to a minimum, then the bodies to the closest pair of that time, until nothing comes closer by a
     /// part of the width that is wanted of an enclosure.
     pub(super) fn settle(&self, from: Sample, width: impl Fn(f64) -> f64) -> Sample {
-        // Bodies that are closest at an end of the window have their minimum there: what is sought first is what is wanted.
-        let mut is_closest = from.time == self.window.start() || from.time == self.window.end();
-        let wanted = if is_closest { CLOSEST } else { ON_THE_WAY };
-        let mut best = closer(from, self.closest_at(from.time, Some(from.triangles), wanted));
+        let at_once = self.is_an_end(from.time);
+        let wanted = if at_once { CLOSEST } else { ON_THE_WAY };
+        let best = closer(from, self.closest_at(from.time, Some(from.triangles), wanted));
+        if at_once {
+            return self.settle_closest(best, &width);
+        }
+        let lowest = self.descend(best, &width);
+        let nearest = self.closest_at(lowest.time, Some(lowest.triangles), CLOSEST);
+        let best = closer(lowest, nearest);
+        if nearest.upper >= lowest.upper - wanted_of(&lowest, &width) {
+            return best;
+        }
+        self.settle_closest(best, &width)
+    }
+
+    /// The same from the closest pair of a time.
+    fn settle_closest(&self, from: Sample, width: impl Fn(f64) -> f64) -> Sample {
+        let mut best = from;
         for _ in 0..DESCENTS {
             let lowest = self.descend(best, &width);
-            if is_closest && lowest.time == best.time {
+            if lowest.time == best.time {
                 break;
             }
             let nearest = self.closest_at(lowest.time, Some(lowest.triangles), CLOSEST);
             let done = nearest.upper >= lowest.upper - wanted_of(&lowest, &width);
-            (best, is_closest) = (closer(lowest, nearest), true);
+            best = closer(lowest, nearest);
             if done {
                 break;
             }
