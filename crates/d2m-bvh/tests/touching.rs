@@ -5,7 +5,7 @@ use d2m_bvh::{
     departure, distance, proximities, time_of_contact,
 };
 use d2m_motion::{ConstantTwist, Pose};
-use d2m_testing::{Draw, KnuthRandom, Surface};
+use d2m_testing::{Draw, KnuthRandom, PlantedTouch, Surface, Touch};
 use glam::{DQuat, DVec3};
 
 fn tree(surface: Surface) -> MeshTree {
@@ -76,39 +76,6 @@ fn a_cube_on_a_table_at_quarter_steps() {
     assert_eq!(right, 6 * 625);
 }
 
-/// A convex body: a box or a tetrahedron, turned and scaled.
-fn convex(random: &mut KnuthRandom) -> Surface {
-    let turn = random.moderate_turn().normalize();
-    let size = random.log_between(0.1, 10.0);
-    if random.unit() < 0.5 {
-        let half = DVec3::new(random.between(0.2, 1.0), random.between(0.2, 1.0), random.between(0.2, 1.0));
-        Surface::cuboid(-half, half).map(|p| turn * p * size)
-    } else {
-        let corners = [
-            DVec3::new(0.0, 0.0, 1.0),
-            DVec3::new(-0.8, -0.5, -0.4),
-            DVec3::new(0.9, -0.5, -0.3),
-            DVec3::new(0.0, 0.9, -0.4),
-        ];
-        let solid = Surface::tetrahedron(corners);
-        let solid = if solid.signed_volume() < 0.0 { solid.inverted() } else { solid };
-        solid.map(|p| turn * p * size)
-    }
-}
-
-/// A random triangle of a surface, outward unit normal, and a point well inside of it.
-fn face(random: &mut KnuthRandom, surface: &Surface) -> (DVec3, DVec3, [DVec3; 3]) {
-    let triangle = surface.triangles[random.index(surface.triangles.len())];
-    let [p, q, r] = triangle.map(|v| surface.vertices[v as usize]);
-    let (s, t) = (random.between(0.2, 0.4), random.between(0.2, 0.4));
-    ((q - p).cross(r - p).normalize(), p + (q - p) * s + (r - p) * t, [p, q, r])
-}
-
-/// Turns one unit vector into another.
-fn turn(from: DVec3, to: DVec3) -> DQuat {
-    DQuat::from_rotation_arc(from, to)
-}
-
 /// Vertex on face, face on face, edge on face, edge across edge, of turned bodies whose numbers are rounded: touching, with the normal that
 /// was planted; pushed in by a millionth of their size they overlap, and pulled apart they are apart.
 #[test]
@@ -116,82 +83,18 @@ fn planted_touches_have_their_normals() {
     let mut random = KnuthRandom(2027);
     let mut counts = [0; 4];
     for round in 0..400 {
-        let (a, b) = (convex(&mut random), convex(&mut random));
-        let (n, point, corners) = face(&mut random, &a);
         let kind = round % 4;
-        // The lowest of B along n touches.
-        let lowest = |turned: &Surface, n: DVec3| {
-            let height = |p: &DVec3| p.dot(n);
-            turned.vertices.iter().copied().min_by(|p, q| height(p).total_cmp(&height(q))).unwrap()
-        };
-        let (turned, normal, at) = match kind {
-            0 => {
-                // Far from flat on the face: a vertex.
-                let toward = random.direction();
-                let turned = b.map(|p| turn(toward, n) * p);
-                (turned.clone(), n, point - lowest(&turned, n))
-            }
-            1 => {
-                let (m, middle, _) = face(&mut random, &b);
-                let q = turn(m, -n);
-                (b.map(|p| q * p), n, point - q * middle)
-            }
-            2 => {
-                // An edge in the plane of the face, its neighbors above.
-                let (m, _, [p, q, _]) = face(&mut random, &b);
-                let edge = (q - p).normalize();
-                let (middle, lean) = ((p + q) * 0.5, DQuat::from_axis_angle(edge, 0.05));
-                let way = turn(m, -n) * lean;
-                let lean = if b.vertices.iter().all(|v| (way * (*v - middle)).dot(n) > -1e-9) {
-                    way
-                } else {
-                    turn(m, -n) * DQuat::from_axis_angle(edge, -0.05)
-                };
-                (b.map(|p| lean * p), n, point - lean * middle)
-            }
-            _ => {
-                // An edge of A across one of B: out of both, in the middle of both pairs of faces.
-                let [p, q, _] = corners;
-                let (_, _, [r, s, _]) = face(&mut random, &b);
-                let center = |surface: &Surface| {
-                    surface.vertices.iter().copied().sum::<DVec3>() / surface.vertices.len() as f64
-                };
-                let out = |surface: &Surface, p: DVec3, q: DVec3| {
-                    let edge = (q - p).normalize();
-                    let out = (p + q) * 0.5 - center(surface);
-                    (edge, (out - edge * out.dot(edge)).normalize())
-                };
-                let ((e, up), (f, down)) = (out(&a, p, q), out(&b, r, s));
-                // B's edge across A's, its outward direction against A's.
-                let align = turn(down, -up);
-                let across = align * f;
-                let wanted = up.cross(e).normalize();
-                let about =
-                    DQuat::from_axis_angle(up, across.cross(wanted).dot(up).atan2(across.dot(wanted)));
-                let way = about * align;
-                ((b.map(|p| way * p)), up, (p + q) * 0.5 - way * ((r + s) * 0.5))
-            }
-        };
-        let placed = |depth: f64| {
-            let shift = at - normal * depth;
-            turned.clone().map(|p| p + shift)
-        };
-        let size = (a.vertices.iter().chain(&turned.vertices)).map(|p| p.length()).fold(0.0, f64::max);
-        let convex_apart = |b: &Surface, slack: f64| {
-            let high = a.vertices.iter().map(|p| normal.dot(*p)).fold(f64::NEG_INFINITY, f64::max);
-            let low = b.vertices.iter().map(|p| normal.dot(*p)).fold(f64::INFINITY, f64::min);
-            low >= high - slack
-        };
-        // Planted only where the plane truly is between both (an inner diagonal has no edge across).
-        if !convex_apart(&placed(0.0), 1e-12 * size) {
+        // Planted only where the plane truly is between both.
+        let Some(PlantedTouch { bodies: [a, b], shift, normal, size }) =
+            PlantedTouch::draw(&mut random, Touch::ALL[kind])
+        else {
             continue;
-        }
+        };
         // Both in a frame that is turned, so that no number is exact.
         let frame = random.moderate_turn().normalize();
         let in_frame = Pose { rotation: frame, ..Pose::IDENTITY };
-        let first = tree(a.clone());
-        let second = tree(turned.clone());
-        let pose = |depth: f64| Pose { translation: frame * (at - normal * depth), ..in_frame };
+        let (first, second) = (tree(a), tree(b));
+        let pose = |depth: f64| Pose { translation: frame * (shift - normal * depth), ..in_frame };
         let posed = |depth: f64| [Posed::new(&first, in_frame), Posed::new(&second, pose(depth))];
         let found = |depth: f64| {
             let [a, b] = posed(depth);

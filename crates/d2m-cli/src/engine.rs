@@ -4,8 +4,8 @@ use crate::arguments::{FurtherArguments, Method, QueryArguments, SizeArguments, 
 use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::output::note;
-use crate::unlike_sizes::{size_of, warn_of_sizes};
 use crate::trials::Trial;
+use crate::unlike_sizes::{size_of, warn_of_sizes};
 use d2m::bvh::{
     Budget, Clearance, ClearanceOptions, ContactSpan, Departure, MeshTree, Mode, Moving, Posed, QueryError,
     QueryOptions, Solid, StartState, TimeOfContact, Topology, TriMesh, Window, clearance, contact_spans,

@@ -6,6 +6,7 @@
 
 #[cfg(any(feature = "planted", feature = "scenes"))]
 mod opaque;
+mod planted_touch;
 mod random;
 #[cfg(feature = "scenes")]
 mod sharp_scene;
@@ -26,6 +27,7 @@ pub mod planted;
 
 #[cfg(any(feature = "planted", feature = "scenes"))]
 pub use opaque::{Blurred, Bounded, CountedStates, Opaque, OpaqueWithState};
+pub use planted_touch::{PlantedTouch, Touch};
 pub use random::{Draw, KnuthRandom, Random};
 #[cfg(feature = "scenes")]
 pub use sharp_scene::{SharpFamily, SharpScene};

@@ -9,8 +9,8 @@ use crate::output::{Output, digits, note, print, short};
 use crate::report::{evidence_sentence, vector};
 use crate::robot_path::read_path;
 use crate::robot_scene::RobotSceneFile;
-use crate::unlike_sizes::{size_of, unlike};
 use crate::travel::Travel;
+use crate::unlike_sizes::{size_of, unlike};
 use crate::view::picture_of_path;
 use d2m::bvh::{Budget, QueryOptions, Window};
 use d2m_robot::{

@@ -9,6 +9,7 @@ mod mesh;
 mod proofs;
 mod reference;
 mod statics;
+mod touching;
 
 use crate::TaskResult;
 use crate::bench::Sabotage;
@@ -89,7 +90,7 @@ pub(crate) struct Task {
 type Family = (&'static str, usize, fn(&Task) -> Outcome);
 
 /// Name, the share of the count that a family takes (one in so many), and itself.
-const FAMILIES: [Family; 14] = [
+const FAMILIES: [Family; 15] = [
     ("feature: rigid vertex/face", 1, feature::rigid_vertex_face),
     ("feature: rigid edge/edge", 1, feature::rigid_edge_edge),
     ("feature: any motion vertex/face", 1, feature::enclosed_vertex_face),
@@ -101,6 +102,7 @@ const FAMILIES: [Family; 14] = [
     ("mesh: hostile scenes and their twins", 10, hostile::run),
     ("mesh: reference method and engine", 20, reference::run),
     ("mesh: collide and distance at rest", 2, statics::run),
+    ("mesh: touching starts, their normals", 10, touching::run),
     ("mesh: clearance and spans, sampled", 2, clearance::run),
     ("verify: answers proven again, and lies", 10, proofs::run),
     ("mutants: broken answers are noticed", 100, broken_answers::run),

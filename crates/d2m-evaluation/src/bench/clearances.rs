@@ -1,6 +1,7 @@
 //! How near bodies come, against the time of a query that finds only that they do not meet: the pairs of the bench, those of their
 //! trials that stay apart. Each answer is held against the judge's distances at many times before its time counts. Beside it stands what
-//! one distance at the closest time costs.
+//! one distance at the closest time costs: that is the floor of any clearance, since the closest pair at that time has to be found and
+//! all others have to be left out, while a query that finds `Separated` most often compares two spheres.
 use super::body::Pair;
 use super::engine::{self, Motions};
 use super::{Options, catalogue::Entry};
@@ -60,11 +61,12 @@ fn pair(options: &Options, entry: &Entry) -> TaskResult {
         };
         let (separated, clearance) = (mean(|cost| cost.separated), mean(|cost| cost.clearance));
         let distance = mean(|cost| cost.distance);
+        let (floor, in_distances) = (distance / separated, clearance / distance);
         let (median, ratio) = (ratios[ratios.len() / 2], clearance / separated);
         println!(
             "{:<20} @{speed:<4} {:>3} trials: separated {separated:>8.1} µs, distance at the closest time \
              {distance:>7.1} µs, clearance {clearance:>9.1} µs, \
-             ratio of the means {ratio:>6.1}, median {median:>6.1} {}",
+             ratio of the means {ratio:>6.1}, median {median:>6.1} {}; floor {floor:>5.1}, in distances {in_distances:>5.1}",
             pair.name,
             costs.len(),
             if ratio <= WANTED { "reached" } else { "MISSED" }
