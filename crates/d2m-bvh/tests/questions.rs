@@ -7,7 +7,7 @@ use d2m_bvh::{
 use d2m_feature::triangle_distance;
 use d2m_motion::{ConstantTwist, Keyframes, Pose, RigidMotion, Span};
 use d2m_testing::{Draw, KnuthRandom, Surface};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 fn tree(surface: Surface) -> MeshTree {
     MeshTree::new(surface.into_mesh(TriMesh::try_new))
@@ -381,6 +381,31 @@ fn boxes_with_common_planes_are_followed_through_each_other() {
     assert_eq!(statuses, [SpanStatus::Clear, SpanStatus::Contact, SpanStatus::Clear]);
     // Sides of two: they meet at a distance of two and part at two.
     assert!((spans[1].from - 0.25).abs() < 2e-6 && (spans[1].to - 0.75).abs() < 2e-6, "{spans:?}");
+}
+
+/// From gaps that no pose resolves to those above the tolerance, with numbers that are exact and with others: what is stated as no distance is
+/// below the errors of placing the bodies.
+#[test]
+fn only_what_placing_hides_is_stated_as_no_distance() {
+    let cube = cuboid(DVec3::splat(0.5));
+    // Both errors of placing, twice, for lengths of less than two; and by how much the turned numbers move the bodies.
+    let (hidden, rounding) = (256.0 * f64::EPSILON, 4.0 * f64::EPSILON);
+    let mut stated = [0; 2];
+    for turn in [DQuat::IDENTITY, DQuat::from_xyzw(0.1, 0.2, 0.3, 0.9).normalize()] {
+        for gap in (9..=17).map(|digits| 10_f64.powi(-digits)) {
+            let height = 1.0 + gap;
+            let sliding =
+                ConstantTwist::try_new(turn * (DVec3::Y * height), turn, turn * (DVec3::X * 0.3), DVec3::ZERO);
+            let resting = ConstantTwist::try_new(DVec3::ZERO, turn, DVec3::ZERO, DVec3::ZERO).unwrap();
+            let (sliding, gap) = (sliding.unwrap(), height - 1.0);
+            let (a, b) = (Moving::new(&cube, &resting), Moving::new(&cube, &sliding));
+            let found = clearance(a, b, Window::UNIT, &ClearanceOptions::default()).unwrap();
+            assert!(found.lower <= gap + rounding, "{gap:e}: {found:?}");
+            assert!(found.upper >= gap - rounding || found.upper == 0.0 && gap <= hidden, "{gap:e}: {found:?}");
+            stated[usize::from(found.upper == 0.0)] += 1;
+        }
+    }
+    assert!(stated[0] > 8 && stated[1] >= 4, "{stated:?}");
 }
 
 /// Boxes that slide past each other at a gap that the tolerance does not resolve come near each other and no nearer than that gap, though

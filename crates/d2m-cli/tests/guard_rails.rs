@@ -122,6 +122,27 @@ fn doubtful_turns_are_warned_of() {
 }
 
 #[test]
+fn scenes_of_simulations_are_warned_of_as_others_are() {
+    let folder = Folder::new("sizes-simulated");
+    let text = r#"{"bodies": [
+        {"name": "large", "mesh": "shape:box", "kind": "kinematic", "motion": {"x": [9, 0, 0], "w": [0, 0, 90]}},
+        {"name": "small", "mesh": "shape:box", "scale": 0.001, "pose": {"q": [0, 0, 0, 1]}},
+        {"name": "other", "mesh": "shape:box", "pose": {"x": [0, 9, 0], "q": [0.5, 0, 0, 0]}}
+    ], "simulation": {"end": 1, "step": 0.5, "gravity": [0, 0, 0]}}"#;
+    let scene = folder.file("s.json", text);
+    let run = d2m(&["simulate", &scene, "--out", &folder.path("s.jsonl")]);
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    for expected in [
+        "s.json: small is 0.002 across and other 2: are both in the same unit? (\"scale\")",
+        "body 0 (\"large\"), motion: the body turns 14.32 times in the window",
+        "s.json: q = 0,0,0,1 is half a turn about z",
+        "s.json: q = [0.5, 0.0, 0.0, 0.0] has the length 0.5",
+    ] {
+        assert!(stderr(&run).contains(expected), "{expected}: {}", stderr(&run));
+    }
+}
+
+#[test]
 fn hints_where_people_trip() {
     let folder = Folder::new("hints");
     let motion = folder.file("m1.json", r#"{"x": [1, 0, 0]}"#);

@@ -42,7 +42,8 @@ const LEAST_GAIN: f64 = 0.25;
 /// `upper − lower` ≤ max(R·`upper`, 4 δ), R the accuracy of the options, δ the tolerance of the answer, unless the status is
 /// [`Undecided`](ClearanceStatus::Undecided) or a cutoff was given. Solids that hold each other have the clearance 0, and so have
 /// bodies that are proven to share a point: then the time is that of the contact. Bodies that come within δ without being proven to share
-/// a point have `lower` = 0 and a small `upper`.
+/// a point have `lower` = 0 and a small `upper`; bodies that touch with no more between them than the roundings of placing them have
+/// [0, 0], too ([`Clearance::upper`] states by how much that may be short).
 ///
 /// ```
 /// use d2m_bvh::{ClearanceOptions, ClearanceStatus, MeshTree, Moving, TriMesh, Window, clearance};
