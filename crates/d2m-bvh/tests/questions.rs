@@ -394,14 +394,21 @@ fn only_what_placing_hides_is_stated_as_no_distance() {
     for turn in [DQuat::IDENTITY, DQuat::from_xyzw(0.1, 0.2, 0.3, 0.9).normalize()] {
         for gap in (9..=17).map(|digits| 10_f64.powi(-digits)) {
             let height = 1.0 + gap;
-            let sliding =
-                ConstantTwist::try_new(turn * (DVec3::Y * height), turn, turn * (DVec3::X * 0.3), DVec3::ZERO);
+            let sliding = ConstantTwist::try_new(
+                turn * (DVec3::Y * height),
+                turn,
+                turn * (DVec3::X * 0.3),
+                DVec3::ZERO,
+            );
             let resting = ConstantTwist::try_new(DVec3::ZERO, turn, DVec3::ZERO, DVec3::ZERO).unwrap();
             let (sliding, gap) = (sliding.unwrap(), height - 1.0);
             let (a, b) = (Moving::new(&cube, &resting), Moving::new(&cube, &sliding));
             let found = clearance(a, b, Window::UNIT, &ClearanceOptions::default()).unwrap();
             assert!(found.lower <= gap + rounding, "{gap:e}: {found:?}");
-            assert!(found.upper >= gap - rounding || found.upper == 0.0 && gap <= hidden, "{gap:e}: {found:?}");
+            assert!(
+                found.upper >= gap - rounding || found.upper == 0.0 && gap <= hidden,
+                "{gap:e}: {found:?}"
+            );
             stated[usize::from(found.upper == 0.0)] += 1;
         }
     }

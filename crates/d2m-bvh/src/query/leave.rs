@@ -4,7 +4,7 @@ use super::at_start::judged;
 use super::general_motion::tolerance_of;
 use super::meshes::of_meshes;
 use super::rounded::Rounded;
-use super::staying_walk::{Next, Walk};
+use super::staying_walk::{FINER, Next, Walk};
 use crate::covered_pair::CoveredPair;
 use crate::{
     Answered, Contact, Meter, Moving, QueryError, QueryOptions, SearchCounts, StartState, TimeBracket,
@@ -16,8 +16,6 @@ use d2m_lanes::power_of_two;
 const RESOLUTION: f64 = 1e-6;
 /// The first step away from bodies that were just proven apart, as a part of that.
 const LEAST_STEP: f64 = power_of_two(-30);
-/// A search with this part of the tolerance stops within 3.3 times that above the separation: below a level that is passed.
-const FINER: f64 = 0.25;
 
 /// How two bodies part, and when they meet after that.
 ///

@@ -136,6 +136,24 @@ pub fn contact_spans(
     Ok(search.spans)
 }
 
+/// What is known of the bodies where a search begins.
+#[derive(Clone, Copy, Debug)]
+enum Beginning {
+    /// Nothing.
+    Anywhere,
+    /// They are proven further apart than the level.
+    Above,
+}
+
+/// What is known of bodies that a search found near each other.
+#[derive(Clone, Copy, Debug)]
+enum Met {
+    /// They are within the level at this time.
+    Within(f64),
+    /// Nothing shows that; how the next search begins.
+    Unknown(Beginning),
+}
+
 struct Search<'a> {
     walk: Walk<'a>,
     tolerance: f64,
@@ -148,8 +166,13 @@ struct Search<'a> {
 impl Search<'_> {
     fn run(&mut self) -> Result<(), QueryError> {
         let end = self.walk.window.end();
+        let mut from = Beginning::Anywhere;
         loop {
-            let Some(answer) = self.walk.contact_from(self.now, end)? else {
+            let found = match from {
+                Beginning::Anywhere => self.walk.contact_from(self.now, end)?,
+                Beginning::Above => self.walk.contact_from_above(self.now, end)?,
+            };
+            let Some(answer) = found else {
                 self.push(end, SpanStatus::Undecided);
                 return Ok(());
             };
@@ -171,12 +194,15 @@ impl Search<'_> {
             // Where rounding raises the tolerance, so it does the level.
             self.walk.level += (contact.tolerance - self.tolerance).max(0.0);
             self.tolerance = self.tolerance.max(contact.tolerance);
-            let Some(mut met) = self.meeting(&contact)? else {
-                if self.now >= end {
-                    return Ok(());
+            let mut met = match self.meeting(&contact, from)? {
+                Met::Within(time) => time,
+                Met::Unknown(_) if self.now >= end => return Ok(()),
+                Met::Unknown(next) => {
+                    from = next;
+                    continue;
                 }
-                continue;
             };
+            from = Beginning::Anywhere;
             loop {
                 let next = self.walk.next(met)?;
                 if let Next::Apart { last, .. } = next {
@@ -211,9 +237,13 @@ impl Search<'_> {
         }
     }
 
-    /// A time at which the bodies are within the level, from where a search found them near; `None` where nothing shows one within the
-    /// resolution: then what is not known is a span of its own.
-    fn meeting(&mut self, contact: &Contact) -> Result<Option<f64>, QueryError> {
+    /// A time at which the bodies are within the level, from where a search found them near; where nothing shows one within the
+    /// resolution, what is not known is a span of its own.
+    ///
+    /// Searches stop up to 3.3 tolerances above the separation: of bodies that part, the next one, from a time at which they are proven further
+    /// apart than the level, must not stop there, or each of them would come no further than the least part of a resolution. Where a search of that
+    /// kind stopped at once, as its tolerance was raised, the time goes on by the resolution.
+    fn meeting(&mut self, contact: &Contact, from: Beginning) -> Result<Met, QueryError> {
         let (end, resolution) = (self.walk.window.end(), self.walk.resolution);
         if contact.evidence > Evidence::Early {
             let met = contact.time_hi;
@@ -222,25 +252,29 @@ impl Search<'_> {
             }
             // The bracket proves it, whether or not a single time does.
             let _ = self.walk.is_within(met);
-            return Ok(Some(met));
+            return Ok(Met::Within(met));
         }
+        let least = match from {
+            Beginning::Anywhere => power_of_two(-30),
+            Beginning::Above => 1.0,
+        };
         for part in [0.0, power_of_two(-30), power_of_two(-20), power_of_two(-10), 0.125, 0.5, 1.0] {
             let later = (contact.time_lo + part * resolution).min(end);
             if self.walk.is_within(later) {
-                return Ok(Some(later));
+                return Ok(Met::Within(later));
             }
-            if part > 0.0 && self.walk.is_apart(later)? {
+            if part >= least && self.walk.is_apart(later)? {
                 // Bodies that part are a little above the level for a while, still near a time of contact.
                 let near = self.within.is_some_and(|within| later - within <= resolution);
                 self.push(later, if near { SpanStatus::Contact } else { SpanStatus::Undecided });
-                return Ok(None);
+                return Ok(Met::Unknown(Beginning::Above));
             }
         }
         self.push(
             (contact.time_lo + resolution).max(contact.time_lo.next_up()).min(end),
             SpanStatus::Undecided,
         );
-        Ok(None)
+        Ok(Met::Unknown(Beginning::Anywhere))
     }
 
     /// The span from where the last one ended; joined with that if nothing else is known of it. None of no length, but in a window of none.

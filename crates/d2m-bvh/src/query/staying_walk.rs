@@ -23,6 +23,8 @@ const GROWTH: f64 = 4.0;
 const SHORTER: f64 = 0.75;
 /// A search stops at most 3.3 tolerances above the separation: bodies that are further apart than that do not stop it at once.
 const CLEARLY: f64 = 3.0;
+/// A search with this part of the tolerance stops within 3.3 times that above the separation: below a level that is passed.
+pub(super) const FINER: f64 = 0.25;
 /// Node tests that the work at one time counts for in a budget.
 const TESTS_A_TIME: u64 = 64;
 
@@ -90,8 +92,31 @@ impl<'a> Walk<'a> {
     /// Those of the query.
     pub(super) fn contact_from(&mut self, from: f64, to: f64) -> Result<Option<TimeOfContact>, QueryError> {
         let Some(options) = self.rest() else { return Ok(None) };
+        self.contact_with(&options, from, to)
+    }
+
+    /// The same where the bodies are proven further apart than the level at `from`: a search that does not stop there.
+    ///
+    /// # Errors
+    /// Those of the query.
+    pub(super) fn contact_from_above(
+        &mut self,
+        from: f64,
+        to: f64,
+    ) -> Result<Option<TimeOfContact>, QueryError> {
+        let Some(options) = self.rest() else { return Ok(None) };
+        let tolerance = FINER * (self.level - options.min_separation);
+        self.contact_with(&options.with_tolerance(tolerance), from, to)
+    }
+
+    fn contact_with(
+        &mut self,
+        options: &QueryOptions,
+        from: f64,
+        to: f64,
+    ) -> Result<Option<TimeOfContact>, QueryError> {
         let [a, b] = self.bodies;
-        let found = of_meshes([a, b], Window::try_new(from, to)?, &options)?;
+        let found = of_meshes([a, b], Window::try_new(from, to)?, options)?;
         self.meter.spend(found.work.work() + 1);
         Ok(Some(found.answer))
     }
