@@ -133,3 +133,27 @@ pub(crate) fn tangents(normal: DVec3) -> [DVec3; 2] {
         DVec3::new(b, sign + normal.y * normal.y * a, -normal.y),
     ]
 }
+
+/// A contact without friction of two bodies whose centers are one apart along y.
+#[cfg(test)]
+pub(super) fn upright([a, b]: [usize; 2]) -> ContactPoint {
+    let normal = DVec3::Y;
+    ContactPoint {
+        a,
+        b,
+        feature: FeaturePair::VertexFace { vertex: 0, face: 0 },
+        normal,
+        tangents: tangents(normal),
+        distance: 0.0,
+        is_expected: false,
+        gap: 1.0,
+        arm_a: normal * 0.5,
+        arm_b: normal * -0.5,
+        point: DVec3::ZERO,
+        material: Material { restitution: 0.0, friction: 0.0 },
+        running: [0.0; 2],
+        row: None,
+        impulse: 0.0,
+        sliding: [0.0; 2],
+    }
+}

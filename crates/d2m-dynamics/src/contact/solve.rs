@@ -3,11 +3,12 @@
 use super::accuracy::{Accuracy, LOOSE};
 use super::newton::{Effort, Start};
 use super::solver_body::SolverBody;
+use super::sweeps::Pace;
 use super::system::{Block, System};
 use crate::velocity::Velocity;
 use glam::DVec3;
 
-/// Moved bodies up to which they may stick however fast they are.
+/// Moved bodies up to which they may stick however fast they are, where they are not some of many.
 const COUPLE: usize = 4;
 /// Moved bodies up to which solutions are exact whatever the bodies do.
 const FEW: usize = 20;
@@ -52,12 +53,14 @@ impl System {
         let (mut start, mut effort) = (start, Effort::STICK);
         if self.mass_ratio() <= MOST_RATIO && !self.has_joints {
             if self.is_crowd() {
-                residual = self.sweep_until(targets, accuracy, FIRST);
+                residual = self.sweep_until(targets, accuracy, Pace::Conjugate, FIRST);
             }
             let could_stick = start == Start::Sticking && self.could_stick(accuracy);
             let is_swept = accuracy.in_crowd && !could_stick && !self.is_crowd() && !self.is_calm(accuracy);
             if is_swept {
-                residual = self.better(residual, 0.0, |system| system.sweep_until(targets, accuracy, FIRST));
+                residual = self.better(residual, 0.0, |system| {
+                    system.sweep_until(targets, accuracy, Pace::Conjugate, FIRST)
+                });
             }
             let rests = moved <= SOME && self.is_calm(accuracy);
             if moved > COUPLE && !rests && !could_stick {
@@ -86,32 +89,35 @@ impl System {
         if residual <= self.tolerance(accuracy).max(self.enough(accuracy)) {
             return residual;
         }
-        residual = self.better(residual, 0.0, |system| system.sweep_until(targets, accuracy, SWEEPS));
+        residual =
+            self.better(residual, 0.0, |system| system.sweep_until(targets, accuracy, Pace::Steady, SWEEPS));
         if residual <= GROSS * accuracy.slow {
             return residual;
         }
         // No velocities obey the law, as of a body that is crushed: the nearest ones may be as large as normals are askew. Sweeps bound them.
         let none = vec![[0.0; 3]; self.blocks.len()];
         self.set(&self.free(), &none);
-        self.sweep_until(targets, accuracy, SWEEPS)
+        self.sweep_until(targets, accuracy, Pace::Steady, SWEEPS)
     }
 
     /// What need not be solved any better.
     pub(super) fn enough(&self, accuracy: Accuracy) -> f64 {
         let tolerance = self.tolerance(accuracy);
-        let is_exact =
-            self.has_joints || self.moved() <= COUPLE || (self.moved() <= SOME && self.is_calm(accuracy));
-        match self.moved() {
-            _ if is_exact => accuracy.aim(tolerance),
-            moved if moved <= FEW => SEVERAL * tolerance,
-            _ => CROWDED * tolerance,
+        let moved = self.moved();
+        let is_exact = self.has_joints || moved <= SOME && self.is_calm(accuracy);
+        if is_exact || moved <= COUPLE && !accuracy.in_crowd {
+            accuracy.aim(tolerance)
+        } else if moved <= FEW && !accuracy.in_crowd {
+            SEVERAL * tolerance
+        } else {
+            CROWDED * tolerance
         }
     }
 
     /// What solutions of bodies that move may leave.
     pub(crate) fn left(&self, accuracy: Accuracy) -> f64 {
         let swept = (SWEPT * accuracy.slow).min(OF_SPEED * self.mean_speed());
-        let swept = if accuracy.in_crowd && self.is_crowd() { swept } else { 0.0 };
+        let swept = if accuracy.in_crowd && !self.is_calm(accuracy) { swept } else { 0.0 };
         self.enough(accuracy).max(swept)
     }
 
@@ -126,7 +132,8 @@ impl System {
         let is_driven = |body: &SolverBody| body.inverse_mass == 0.0 && body.velocity != Velocity::default();
         let drives = self.moved() <= FEW && self.bodies.iter().any(is_driven);
         let is_slow = self.moved() <= SOME && self.mean_speed() <= accuracy.slow;
-        if !(drives || is_slow || self.moved() <= COUPLE) {
+        let is_couple = self.moved() <= COUPLE && !accuracy.in_crowd;
+        if !(drives || is_slow || is_couple) {
             return false;
         }
         let (tolerance, most) = (self.tolerance(accuracy), if drives { TAKEN } else { 1.0 } * accuracy.slow);

@@ -90,7 +90,7 @@ impl Block {
     }
 
     #[inline]
-    fn push(&self, bodies: &mut [SolverBody], impulse: [f64; 3]) {
+    pub(super) fn push(&self, bodies: &mut [SolverBody], impulse: [f64; 3]) {
         for (line, impulse) in self.lines[..self.law.rows()].iter().zip(impulse) {
             line.push(bodies, [self.a, self.b], impulse);
         }
@@ -228,6 +228,12 @@ impl System {
     pub(super) fn own_residual(&self, k: usize, target: f64) -> f64 {
         let (block, impulse) = (&self.blocks[k], &self.impulses[k]);
         if block.scale == 0.0 || target == f64::NEG_INFINITY {
+            return 0.0;
+        }
+        // A contact without an impulse that opens obeys the law however it slides.
+        let velocity = |i: usize| &self.bodies[i].velocity;
+        let along = block.lines[0].rate(velocity(block.a), velocity(block.b));
+        if along >= target && *impulse == [0.0; 3] && matches!(block.law, Law::Cone { .. }) {
             return 0.0;
         }
         let mut rates = block.rates(|i| self.bodies[i].velocity);
