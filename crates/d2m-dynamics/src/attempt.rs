@@ -6,7 +6,7 @@ use crate::contact::{
 };
 use crate::joined::Joined;
 use crate::momenta::Momenta;
-use crate::rigid_body::RigidBody;
+use crate::rigid_body::{RigidBody, Splits};
 use crate::velocity::Velocity;
 use glam::DMat3;
 use std::borrow::Cow;
@@ -147,8 +147,9 @@ impl Problem<'_> {
         let moved = || self.states.iter().filter(|s| moves(s));
         // Bodies that are held keep their momenta and the time at which they were held: they have no flight that ends. Bodies that tumble in a
         // crowd meet others before the energy of their turning counts: it is not divided for one of them.
-        let longest = moved().map(|s| s.horizon_within(end, self.options.step)).fold(end, f64::min);
-        let mut end = if moved().count() > MANY { end } else { longest };
+        let is_whole = self.in_crowd || moved().count() > MANY;
+        let horizon = |s: &Cow<'_, RigidBody>| s.horizon_within(end, self.options.step, Splits::Own);
+        let mut end = if is_whole { end } else { moved().map(horizon).fold(end, f64::min) };
         let mut tried = self.attempt(now, end, Room::Kept);
         for _ in 0..MOST_HALVINGS {
             if tried.missed <= OFF_JOINT * self.speed() {

@@ -19,6 +19,15 @@ const MOST_TURN: f64 = 1.0 / 16.0;
 /// Flights of one body in a step at most, as long as nothing meets it; a body that turns faster flies longer ones.
 const MOST_FLIGHTS: f64 = 1024.0;
 
+/// When flights of bodies that tumble end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Splits {
+    /// After equal parts of what is left.
+    Own,
+    /// At halves, quarters, … of the step, counted from its end: of many bodies at the same times, so that these are few.
+    Common,
+}
+
 /// What a place in the list of bodies is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
@@ -424,7 +433,7 @@ impl RigidBody {
 
     /// How long the next flight may be at most: the step, or what a body that tumbles takes for a small turn. It depends on the energy
     /// alone, which a free body keeps: so all its flights are of one length, as the reversibility of the midpoint rule asks for.
-    pub(crate) fn horizon_within(&self, end: f64, step: f64) -> f64 {
+    pub(crate) fn horizon_within(&self, end: f64, step: f64, splits: Splits) -> f64 {
         let left = end - self.time;
         if !self.is_dynamic() || left <= 0.0 {
             return end;
@@ -437,10 +446,16 @@ impl RigidBody {
             return end;
         }
         let length = (MOST_TURN / tumbles).max(step / MOST_FLIGHTS);
-        // Equal parts of what is left.
-        let parts = (left / length - ROUND).ceil().max(1.0);
-        let horizon = self.time + left / parts;
-        if parts > 1.0 && horizon > self.time && horizon < end { horizon } else { end }
+        let parts = |whole: f64| (whole / length - ROUND).ceil().max(1.0);
+        let horizon = match splits {
+            Splits::Own if parts(left) <= 1.0 => end,
+            Splits::Own => self.time + left / parts(left),
+            Splits::Common => {
+                let part = step / f64::from((parts(step) as u32).next_power_of_two());
+                end - ((left / part - ROUND).ceil() - 1.0) * part
+            }
+        };
+        if horizon > self.time && horizon < end { horizon } else { end }
     }
 
     /// Is somewhere else, by the way that a velocity leads in a unit of time.

@@ -156,3 +156,27 @@ fn whatever_meets_gains_none() {
         assert!(energy.rise <= energy.kinetic / 128.0, "{trial}: {} of {}", energy.rise, energy.kinetic);
     }
 }
+
+/// What two of many bodies do ends no flights of the others: they fall on as they did.
+#[test]
+fn what_two_of_a_crowd_do_leaves_the_others_in_flight() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let cube = tree("box?x=0.5&y=0.5&z=0.5");
+    for k in 0..70 {
+        let place = DVec3::new(f64::from(k % 10), 0.0, f64::from(k / 10)) * 5.0;
+        simulation.add(&Body::new(format!("{k}"), Arc::clone(&cube)).with_position(place)).unwrap();
+    }
+    let thrown = Body::new("thrown", cube).with_position(DVec3::X * 2.1).with_restitution(1.0);
+    simulation.add(&thrown.with_linear_velocity(DVec3::X * 20.0)).unwrap();
+    let (mut met, mut starts, mut segments) = (0, Vec::new(), Vec::new());
+    while simulation.time() < 0.2 {
+        starts.push(simulation.time());
+        let report = simulation.step().unwrap();
+        met += report.events;
+        segments.extend(report.segments);
+    }
+    segments.extend(simulation.finish());
+    let within = segments.iter().filter(|segment| !starts.contains(&segment.start));
+    let changed: Vec<usize> = within.map(|segment| segment.changed.len()).collect();
+    assert!(met > 0 && changed.contains(&2) && changed.iter().all(|&count| count <= 2), "{met} {changed:?}");
+}

@@ -37,7 +37,7 @@ impl Group {
     }
 
     /// Where the solution begins: the impulses that the members had at this instant, for a part of the time.
-    fn warm(&mut self, retracted: &[ContactPoint], part: f64) {
+    pub(super) fn warm(&mut self, retracted: &[ContactPoint], part: f64) {
         for known in retracted {
             let key = (known.a, known.b);
             let first = self.contacts.partition_point(|c| (c.a, c.b) < key);
@@ -59,8 +59,8 @@ impl Group {
 
 impl Step<'_> {
     /// Takes back the impulses that contacts at rest between the members, or with what impulses do not move, have had at this
-    /// instant, and has the solution begin with a part of them.
-    pub(super) fn retract(&mut self, group: &mut Group, part: f64) {
+    /// instant, and has the solution begin with a part of them; the bodies that had some.
+    pub(super) fn retract(&mut self, group: &mut Group, part: f64) -> Vec<usize> {
         let bodies = &mut self.sim.bodies;
         let moves = |body: &RigidBody| body.is_dynamic() && !body.held;
         let is_inner = |c: &ContactPoint| {
@@ -79,6 +79,7 @@ impl Step<'_> {
             }
         }
         group.warm(&inner, part);
+        inner.iter().flat_map(|contact| [contact.a, contact.b]).filter(|&i| moves(&bodies[i])).collect()
     }
 
     /// Adds bodies and all that contacts connect with them.

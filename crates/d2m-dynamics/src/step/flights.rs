@@ -140,6 +140,7 @@ impl Step<'_> {
 mod tests {
     use super::*;
     use crate::faces::Faces;
+    use crate::rigid_body::Splits;
     use crate::{Body, Kind};
     use d2m_bvh::MeshTree;
     use d2m_motion::ConstantTwist;
@@ -161,5 +162,30 @@ mod tests {
         assert!(are_spheres_apart(&sphere(-1.0, 0.9), &sphere(1.0, 0.9), 0.0, 1.0, 0.1));
         assert!(!are_spheres_apart(&sphere(-1.0, 0.9), &sphere(1.0, 0.9), 0.0, 1.0, 0.21));
         assert!(!are_spheres_apart(&sphere(-1.0, f64::NAN), &sphere(1.0, 0.9), 0.0, 1.0, 0.1));
+    }
+
+    /// Of bodies that tumble at different rates the flights end together: the times of each are those of the faster ones, too.
+    #[test]
+    fn flights_of_many_bodies_end_at_common_times() {
+        let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=1&y=0.2&z=0.1").unwrap()));
+        let faces = Arc::new(Faces::new(tree.mesh()));
+        let ends = |spin: f64| {
+            let turning =
+                Body::new("", Arc::clone(&tree)).with_angular_velocity(DVec3::new(spin, spin, spin));
+            let mut body = RigidBody::try_new(&turning, Arc::clone(&faces), 0.0).unwrap();
+            let (mut ends, step) = (Vec::new(), 0.3);
+            while body.time < step {
+                let end = body.horizon_within(step, step, Splits::Common);
+                assert!(end > body.time && end <= step);
+                body.time = end;
+                ends.push(end);
+            }
+            ends
+        };
+        let all: Vec<Vec<f64>> = [0.01, 0.3, 0.7, 1.7, 5.0, 9.0].map(ends).to_vec();
+        assert!(all[0].len() == 1 && all[5].len() > 8, "{all:?}");
+        for pair in all.windows(2) {
+            assert!(pair[0].iter().all(|end| pair[1].contains(end)), "{pair:?}");
+        }
     }
 }

@@ -3,6 +3,7 @@
 use super::event::{Cause, Event};
 use super::{Occasion, Step};
 use crate::StepError;
+use crate::group::CROWD;
 use crate::rigid_body::RigidBody;
 use glam::DVec3;
 
@@ -47,13 +48,18 @@ impl Step<'_> {
             return Ok(false);
         }
         let gravity = self.sim.options.gravity;
-        let cut = |body: &RigidBody| {
+        let is_crowd = self.sim.bodies.len() > CROWD && self.sim.joints.is_empty();
+        let cut = |(i, body): (usize, &RigidBody)| {
+            // In a crowd there is always something that meets: it cuts its own bodies' flights, and the others fly on.
+            if is_crowd && !event.bodies.contains(&i) {
+                return 0.0;
+            }
             if !body.is_dynamic() || body.held || body.asleep || body.horizon <= event.time {
                 return 0.0;
             }
             0.5 * power(body, gravity).abs() * (body.horizon.min(self.end) - event.time)
         };
-        let cuts: Vec<f64> = self.sim.bodies.iter().map(cut).collect();
+        let cuts: Vec<f64> = self.sim.bodies.iter().enumerate().map(cut).collect();
         let sum: f64 = cuts.iter().sum();
         if sum == 0.0 {
             return Ok(false);

@@ -5,7 +5,7 @@ use super::{Occasion, Step};
 use crate::attempt::Clock;
 use crate::contact::ContactPoint;
 use crate::group::{CROWD, Solved, islands, solve};
-use crate::rigid_body::RigidBody;
+use crate::rigid_body::{RigidBody, Splits};
 use crate::velocity::Velocity;
 use crate::{ContactImpulse, StepError, parallel};
 use glam::DVec3;
@@ -47,7 +47,7 @@ impl Step<'_> {
                 self.retract(&mut group, (until - time) / (self.end - time));
             }
             self.follow_motions(&group, clock, occasion)?;
-            self.solve_islands(&group, clock)
+            self.solve_islands(&mut group, clock, Vec::new(), &[])
         };
         if !matches!(occasion, Occasion::Plan { .. } | Occasion::Expected) {
             self.impulses.append(&mut self.undoable);
@@ -87,10 +87,11 @@ impl Step<'_> {
             self.keep(part, occasion);
         }
         let (gravity, step) = (self.sim.options.gravity, self.sim.options.step);
+        let splits = if self.sim.bodies.len() > CROWD { Splits::Common } else { Splits::Own };
         for &i in &group.members {
             let body = &mut self.sim.bodies[i];
             if body.is_dynamic() && !body.held && !solved_for[i] {
-                let horizon = body.horizon_within(until, step);
+                let horizon = body.horizon_within(until, step, splits);
                 let length = horizon - time;
                 let velocity = body.flight_velocity(length, gravity);
                 body.lead = Some(body.lead.unwrap_or(0.5 * length));
@@ -123,12 +124,38 @@ impl Step<'_> {
         Ok(())
     }
 
-    /// Velocities of the members from the contacts between them, and with what nothing moves.
-    fn solve_islands(&self, group: &Group, clock: Clock) -> Vec<Solved> {
+    /// Velocities of the members from the contacts between them, and with what nothing moves. Islands of which no body
+    /// is `renewed` (ascending) are as they were solved before; the others begin with the impulses that were found then.
+    fn solve_islands(
+        &self,
+        group: &mut Group,
+        clock: Clock,
+        before: Vec<Solved>,
+        renewed: &[usize],
+    ) -> Vec<Solved> {
         let (bodies, options, joints) = (&self.sim.bodies, &self.sim.options, &self.sim.joints);
+        for part in &before {
+            group.warm(&part.rests, 1.0);
+        }
         let settled = |i: usize| group.is_member[i] || !bodies[i].is_dynamic() || bodies[i].held;
         let within = group.contacts.iter().filter(|c| settled(c.a) && settled(c.b)).copied().collect();
-        parallel::map(islands(bodies, within), |island| solve(bodies, &island, clock, options, joints))
+        let mut known: BTreeMap<usize, Solved> = BTreeMap::new();
+        for part in before {
+            if let Some(first) = part.bodies.first() {
+                known.insert(first.body, part);
+            }
+        }
+        let islands = islands(bodies, within).into_iter().map(|island| {
+            let ends = || island.contacts.iter().flat_map(|c| [c.a, c.b]);
+            let is_new = ends().any(|i| renewed.binary_search(&i).is_ok());
+            let first = ends().filter(|&i| bodies[i].is_dynamic() && !bodies[i].held).min();
+            let part = first.filter(|_| !is_new).and_then(|first| known.remove(&first));
+            (island, part)
+        });
+        let islands: Vec<_> = islands.collect();
+        parallel::map(islands, |(island, part)| {
+            part.unwrap_or_else(|| solve(bodies, &island, clock, options, joints))
+        })
     }
 
     /// An event changes the velocities of its bodies, and of those that they then press on or let go: a heap of bodies at rest is
@@ -140,15 +167,10 @@ impl Step<'_> {
         clock: Clock,
         occasion: Occasion,
     ) -> Result<Vec<Solved>, StepError> {
-        let mut wave = seeds;
+        let (mut wave, mut solved) = (seeds, Vec::new());
         for _ in 0..MOST_ROUNDS {
             self.admit(group, clock.now, &wave, occasion)?;
-            group.sort();
-            if occasion == Occasion::Expected {
-                self.retract(group, 1.0);
-            }
-            self.follow_motions(group, clock, occasion)?;
-            let solved = self.solve_islands(group, clock);
+            solved = self.solve_admitted(group, clock, occasion, solved, wave)?;
             wave = self.pressed(group, &solved, clock);
             if wave.is_empty() {
                 return Ok(solved);
@@ -162,12 +184,27 @@ impl Step<'_> {
         };
         let rest: Vec<usize> = rest.into_iter().filter(outside).collect();
         self.admit_connected(group, clock.now, rest, occasion)?;
+        let all = group.members.clone();
+        self.solve_admitted(group, clock, occasion, solved, all)
+    }
+
+    /// Solves for the members after these have been admitted.
+    fn solve_admitted(
+        &mut self,
+        group: &mut Group,
+        clock: Clock,
+        occasion: Occasion,
+        before: Vec<Solved>,
+        admitted: Vec<usize>,
+    ) -> Result<Vec<Solved>, StepError> {
         group.sort();
+        let mut renewed = admitted;
         if occasion == Occasion::Expected {
-            self.retract(group, 1.0);
+            renewed.extend(self.retract(group, 1.0));
         }
+        renewed.sort_unstable();
         self.follow_motions(group, clock, occasion)?;
-        Ok(self.solve_islands(group, clock))
+        Ok(self.solve_islands(group, clock, before, &renewed))
     }
 
     /// The bodies outside of the group that members with these velocities come closer to than contacts allow, or that they were pressed
