@@ -109,3 +109,28 @@ fn what_is_beside_the_way_is_not_met() {
         }
     }
 }
+
+/// The same within one piece of eight numbers, faster and faster: no joint of pieces is there that would be examined besides.
+#[test]
+fn what_is_passed_between_two_numbers_of_a_piece_is_met() {
+    let cube = cube();
+    for [begin, next, _] in times() {
+        let u = next - begin;
+        let place = |k: f64| 10.0 * k + 2.0 * k.powi(3);
+        let times = vec![begin, begin + 8.0 * u];
+        let value = JointValue::try_pieces(times, vec![vec![0.0, 10.0 / u, 0.0, 2.0 / (u * u * u)]]).unwrap();
+        let motion = slide(value);
+        let own = Opaque(motion.clone());
+        for motion in [&motion as &(dyn RigidMotion + Send), &own] {
+            for k in [0.0, 1.0, 4.0] {
+                let wall = ConstantTwist::REST.with_position(DVec3::X * (0.5 * (place(k) + place(k + 1.0))));
+                let (a, b) = (Moving::new(&cube, motion), Moving::new(&cube, &wall));
+                let window = Window::try_new(begin, begin + 8.0 * u).unwrap();
+                let answer = time_of_contact(a, b, window, &QueryOptions::default()).unwrap();
+                let TimeOfContact::Contact(contact) = answer else { panic!("{begin}, {k}: {answer:?}") };
+                let (from, to) = (begin + k * u, begin + (k + 1.0) * u);
+                assert!(from <= contact.time_hi && contact.time_lo <= to, "{begin}, {k}: {contact:?}");
+            }
+        }
+    }
+}

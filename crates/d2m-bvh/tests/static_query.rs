@@ -262,3 +262,25 @@ fn bad_input() {
     let options = DistanceOptions::default().with_cutoff(-1.0);
     assert!(distance_within(good, good, &options, &mut PairCache::new()).is_err());
 }
+
+/// Of crowds of triangles that lie on each other the pair that is reported is the same one, whichever is met first.
+#[test]
+fn crowds_report_one_pair_whatever_is_met_first() {
+    let sheets = |count: usize| {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y].repeat(count);
+        MeshTree::new(Surface::soup(corners).into_mesh(TriMesh::try_new))
+    };
+    for count in [2, 40, 300] {
+        let (a, b) = (sheets(count), sheets(count));
+        let (a, b) = (Posed::at_rest(&a), Posed::at_rest(&b));
+        let found = distance(a, b, Solid::Surface).unwrap();
+        let last = count as u32 - 1;
+        for start in [[0, 0], [last, 0], [1, last], [last, last]] {
+            let mut cache = PairCache::new();
+            cache.remember(start);
+            let options = DistanceOptions::default().with_solid(Solid::Surface);
+            let again = distance_within(a, b, &options, &mut cache).unwrap();
+            assert_eq!(again, Some(found), "{count}: {start:?}");
+        }
+    }
+}

@@ -118,26 +118,34 @@ fn a_stack_stands() {
     }
 }
 
-/// What goes to sleep stands still in the segments, too, and is where they have it when it wakes.
+/// What goes to sleep stands still in the segments, too, and is where they have it when it wakes: a ring that has come to rest, and a block that
+/// friction hardly brakes, which creeps until then.
 #[test]
 fn segments_join_where_bodies_sleep_and_wake() {
-    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
     let (block, ring) = (cube(), tree("torus?triangles=400"));
-    simulation.add(&floor().with_friction(0.5)).unwrap();
-    let rests = Body::new("rests", Arc::clone(&ring)).with_position(DVec3::Y * 1.2).with_friction(0.5);
     let turn = DQuat::from_xyzw(0.4, 0.1, 0.05, 1.0);
-    let rests = simulation.add(&rests.with_orientation(turn)).unwrap();
-    let falls = Body::new("falls", Arc::clone(&block)).with_position(DVec3::new(0.3, 150.0, 0.1));
-    simulation.add(&falls.with_friction(0.5)).unwrap();
-    let mut slept = false;
-    let mut segments = Vec::new();
-    while simulation.time() < 6.0 {
-        segments.extend(simulation.step().unwrap().segments);
-        slept |= simulation.is_asleep(rests);
+    let drops = Body::new("rests", Arc::clone(&ring)).with_position(DVec3::Y * 1.2);
+    let creeps = Body::new("rests", Arc::clone(&block)).with_position(DVec3::Y * 0.501);
+    let scenes = [
+        (drops.with_orientation(turn), &ring, 0.5),
+        (creeps.with_linear_velocity(DVec3::X * 1e-4), &block, 1e-12),
+    ];
+    for (rests, shape, friction) in scenes {
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        simulation.add(&floor().with_friction(friction)).unwrap();
+        let rests = simulation.add(&rests.with_friction(friction)).unwrap();
+        let falls = Body::new("falls", Arc::clone(&block)).with_position(DVec3::new(0.3, 150.0, 0.1));
+        simulation.add(&falls.with_friction(0.5)).unwrap();
+        let mut slept = false;
+        let mut segments = Vec::new();
+        while simulation.time() < 6.0 {
+            segments.extend(simulation.step().unwrap().segments);
+            slept |= simulation.is_asleep(rests);
+        }
+        segments.extend(simulation.finish());
+        assert!(slept && !simulation.is_asleep(rests));
+        judge(&segments, &[tree("box?x=10&y=0.5&z=10"), Arc::clone(shape), Arc::clone(&block)]);
     }
-    segments.extend(simulation.finish());
-    assert!(slept && !simulation.is_asleep(rests));
-    judge(&segments, &[tree("box?x=10&y=0.5&z=10"), ring, block]);
 }
 
 /// 100 m a step against a plate of a millimeter.

@@ -164,6 +164,12 @@ fn other_questions_are_proven_again() {
                 judge("too low", true, verifier.clearance(&bodies, window, &wanted, &low, STEPS));
             }
         }
+        // As near as at the start they are said to come at most: true there, and no lower bound over the window.
+        let start = Window::try_new(window.start(), window.start()).unwrap();
+        let there = clearance(bodies[0], bodies[1], start, &wanted).unwrap();
+        if there.lower > found.upper + 1e-3 * (1.0 + found.upper) {
+            judge("nearest at the start", true, verifier.clearance(&bodies, window, &wanted, &there, STEPS));
+        }
         let spans = contact_spans(bodies[0], bodies[1], window, &options, None).unwrap();
         judge("spans", false, verifier.contact_spans(&bodies, window, &options, None, &spans, STEPS));
         for k in 1..spans.len() {

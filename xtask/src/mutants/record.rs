@@ -2,7 +2,7 @@
 use super::Error;
 use super::program::End;
 use super::table::Mutant;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -83,7 +83,8 @@ pub(super) struct Record<'a> {
     path: PathBuf,
     all: &'a [Mutant],
     /// The commit that the sources of the run are of, and the day on which it began.
-    run: String,
+    commit: String,
+    day: String,
 }
 
 impl<'a> Record<'a> {
@@ -95,8 +96,15 @@ impl<'a> Record<'a> {
             .map_err(|e| format!("git: {e}"))?;
         let commit = String::from_utf8_lossy(&commit.stdout).trim().to_owned();
         let seconds = SystemTime::now().duration_since(UNIX_EPOCH)?.as_secs();
-        let run = format!("{commit} | {}", date(seconds / 86_400));
-        Ok(Self { path: root.join(PATH), all, run })
+        Ok(Self { path: root.join(PATH), all, commit, day: date(seconds / 86_400) })
+    }
+
+    /// The names of the faults that have a row of this commit.
+    pub(super) fn known(&self) -> Result<BTreeSet<String>, Error> {
+        let before = fs::read_to_string(&self.path)?;
+        let cells = before.lines().map(|row| row.split(" | ").collect::<Vec<_>>());
+        let of_commit = cells.filter(|cells| cells.iter().rev().nth(1) == Some(&self.commit.as_str()));
+        Ok(of_commit.map(|cells| cells[0].trim_start_matches("| ").to_owned()).collect())
     }
 
     /// Brings the table up to date: rows of these are written anew, those of faults that are gone are dropped.
@@ -111,7 +119,8 @@ impl<'a> Record<'a> {
         }
         for Judged { mutant, outcome } in judged {
             let (word, kind) = (outcome.word(), kind(&mutant.test));
-            let row = format!("| {} | {word} | {kind} | `{}` | {} |", mutant.name, mutant.test, self.run);
+            let (name, test, Self { commit, day, .. }) = (&mutant.name, &mutant.test, self);
+            let row = format!("| {name} | {word} | {kind} | `{test}` | {commit} | {day} |");
             rows.insert(&mutant.name, row);
         }
         let count = format!("{} of {} faults have a row.", rows.len(), self.all.len());

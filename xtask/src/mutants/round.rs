@@ -52,23 +52,26 @@ pub(super) struct Round<'a> {
 }
 
 impl<'a> Round<'a> {
+    /// All of the mutants get their switches; those of which the names are known are not judged.
     pub(super) fn new(
         source: &'a Path,
         record: Record<'a>,
         mutants: &'a [&'a Mutant],
+        known: &BTreeSet<String>,
     ) -> Result<Self, Error> {
         let targets: Result<Vec<Target>, Error> =
             mutants.iter().map(|mutant| mutant.target(source)).collect();
         let targets = targets?;
         let selection = Selection::of(&targets);
         let mut kinds: BTreeMap<&Kind, Vec<usize>> = BTreeMap::new();
-        for (number, target) in targets.iter().enumerate() {
+        let left = |number: &usize| !known.contains(&mutants[*number].name);
+        for number in (0..mutants.len()).filter(left) {
+            let target = &targets[number];
             kinds.entry(&target.kind).or_default().push(number);
         }
-        let groups = kinds.into_iter();
-        let groups =
-            groups.map(|(kind, numbers)| Group { targets: selection.arguments(kind), numbers }).collect();
-        let progress = bar(mutants.len());
+        let group = |(kind, numbers)| Group { targets: selection.arguments(kind), numbers };
+        let groups: Vec<Group> = kinds.into_iter().map(group).collect();
+        let progress = bar(groups.iter().map(|group| group.numbers.len()).sum());
         let (next, judged) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
         Ok(Self { source, record, mutants, targets, selection, groups, next, judged, progress })
     }

@@ -3,6 +3,7 @@ use super::Error;
 use super::record::{Judged, Record};
 use super::round::Round;
 use super::table::{self, Mutant};
+use std::collections::BTreeSet;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
@@ -12,6 +13,9 @@ pub(crate) struct Options {
     /// Only mutants of which the name, the file or the test contains this, or one of these.
     #[arg(long)]
     only: Vec<String>,
+    /// Go on with a run that ended early: leave out those that have a result at this commit.
+    #[arg(long)]
+    rest: bool,
     /// Print the table and do nothing.
     #[arg(long)]
     list: bool,
@@ -41,7 +45,8 @@ pub(super) fn run(options: &Options, root: &Path) -> Result<(), Error> {
         return Err(findings.join("\n").into());
     }
     let record = Record::new(root, &all)?;
-    let judged = Round::new(root, record, &mutants)?.run(options.jobs.get())?;
+    let known = if options.rest { record.known()? } else { BTreeSet::new() };
+    let judged = Round::new(root, record, &mutants, &known)?.run(options.jobs.get())?;
     let left: Vec<&Judged<'_>> = judged.iter().filter(|one| !one.outcome.is_kill()).collect();
     println!("{} mutants, {} of them not killed", judged.len(), left.len());
     if left.is_empty() {

@@ -67,12 +67,12 @@ impl Mutant {
     }
 }
 
-/// What cargo calls a target, whatever its package.
+/// What cargo calls a target, whatever its package. Programs, which need most other crates, are built last.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Kind {
     Library,
-    Program(String),
     Test(String),
+    Program(String),
 }
 
 /// A target, its package, and the features that it is built with.

@@ -223,6 +223,25 @@ mod tests {
         }
     }
 
+    /// Where no number lies within the span and the next piece of the motion begins at its end, in which it rests.
+    #[test]
+    fn spans_without_a_number_inside_are_fitted_in_their_own_piece() {
+        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+        let body = MeshTree::new(TriMesh::try_new(corners, vec![[0, 1, 2]]).unwrap());
+        for begin in [1.0, 1.0f64.next_up(), 3.0] {
+            let times = vec![begin, begin.next_up(), begin.next_up().next_up()];
+            let u = times[1] - times[0];
+            let value = JointValue::try_pieces(times.clone(), vec![vec![0.0, 10.0 / u], vec![10.0]]).unwrap();
+            let kind = JointKind::Prismatic { axis: DVec3::X, value };
+            let joint = Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, kind).unwrap();
+            let (motion, still) = (Chain::try_new(vec![joint]).unwrap(), ConstantTwist::REST);
+            let bodies = [Moving::new(&body, &motion as &dyn RigidMotion), Moving::new(&body, &still)];
+            let fitted = FittedTwists::new(&bodies, Interval::new(times[0], times[1]), DVec3::ZERO).unwrap();
+            assert_eq!(fitted.clock.middle, times[0]);
+            assert!(fitted.twists[0].linear_velocity().x > 9.0 / u, "{:?}", fitted.twists[0]);
+        }
+    }
+
     /// Differences of positions, of the corners of a body that is a thin rod from its origin and of a point at rest: within
     /// the bound at all times of the span, and nearly reached by some.
     #[test]

@@ -160,7 +160,8 @@ fn a_budget_that_ends_says_nothing_of_pairs_behind_one_that_is_known() {
         for motion in [near(0.0, DVec3::X), near(9.0, DVec3::Y), near(18.0, DVec3::Z)].into_iter().flatten() {
             world.add(Body::new(Arc::clone(&ring), motion));
         }
-        let _ = world.first_contact(Window::try_new(0.0, 0.25).unwrap()).unwrap();
+        // Cheap to prove of every pair, so that what is left of the first one uses up the same budget later.
+        let _ = world.first_contact(Window::try_new(0.0, 0.015_625).unwrap()).unwrap();
         for x in [0.0, 0.5] {
             let place = DVec3::new(x, -9.0, 0.0);
             world.add(Body::new(Arc::clone(&ring), ConstantTwist::REST.with_position(place)));

@@ -15,8 +15,6 @@ pub(super) struct Best {
     pub(super) triangles: [u32; 2],
     /// Lower bound over all pairs of placed triangles.
     pub(super) lower: f64,
-    /// Pairs were left out because no lower bound above zero can be proven: some of them may cross.
-    pub(super) is_cut_short: bool,
 }
 
 impl Best {

@@ -7,7 +7,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-use super::collide::{check_solid, crossing_pair_within};
+use super::collide::check_solid;
 use super::containment::one_holds_the_other;
 use super::node_pair::RestingScene;
 use super::touching::{Meeters, Meeting};
@@ -184,7 +184,6 @@ pub fn distance_within(
         Found::Unclear => search(f64::INFINITY),
         found => found,
     };
-    let found = crossing(&scene, found, unlimited);
     let meeting = match &found {
         Found::Pair(best) if !best.is_apart(&scene) => Some(meeting(&[a, b], options.solid, unlimited)?),
         _ => None,
@@ -300,7 +299,6 @@ pub fn bound_distance(
     // Some pair is compared before the budget counts, so there always is an upper bound.
     let first = Some([0, 0]);
     let found = run(Search { scene: &scene, first, limit: f64::INFINITY, slack: 0.0, meter });
-    let found = crossing(&scene, found, meter);
     let is_apart = match &found {
         Found::Pair(best) | Found::Exhausted(best) if best.is_apart(&scene) && solid == Solid::Filled => {
             holds(&scene, meter)
@@ -373,26 +371,6 @@ fn holds(scene: &RestingScene<'_>, meter: &mut Meter) -> Result<bool, Exhausted>
 /// Tests for a crossing beside a crowd of pairs that touch: some milliseconds. More of them, and the bodies count as touching.
 const MOST_TESTS_BESIDE_A_CROWD: u64 = 1 << 16;
 
-/// Where triangles cross, the pair that stands for all that do, whichever of them was met first.
-fn crossing(scene: &RestingScene<'_>, found: Found, meter: &mut Meter) -> Found {
-    let Found::Pair(met) = found else { return found };
-    if met.distance.upper > 0.0 {
-        if !met.is_cut_short {
-            return found;
-        }
-        let mut some = meter.at_most(MOST_TESTS_BESIDE_A_CROWD);
-        let Ok(Some([a, b])) = crossing_pair_within(scene, &mut some) else { return found };
-        let distance = triangle_distance(&scene.place(0, a), &scene.place(1, b));
-        return Found::Pair(Best { distance, triangles: [a, b], lower: 0.0, is_cut_short: false });
-    }
-    let [a, b] = match crossing_pair_within(scene, meter) {
-        Ok(pair) => pair.unwrap_or(met.triangles),
-        Err(Exhausted) => return Found::Exhausted(met),
-    };
-    let distance = triangle_distance(&scene.place(0, a), &scene.place(1, b));
-    Found::Pair(Best { distance, triangles: [a, b], lower: 0.0, is_cut_short: false })
-}
-
 impl Distance {
     /// Of bodies that meet so: the normal, points and triangles where they touch, or triangles that are proven to cross.
     fn meeting_so(self, scene: &RestingScene<'_>, bodies: [Posed<'_>; 2], meeting: &Meeting<'_>) -> Self {
@@ -403,7 +381,7 @@ impl Distance {
         };
         let [a, b] = triangles;
         let distance = triangle_distance(&scene.place(0, a), &scene.place(1, b));
-        let best = Best { distance, triangles, lower: 0.0, is_cut_short: false };
+        let best = Best { distance, triangles, lower: 0.0 };
         Self { normal, upper: self.upper, ..describe(scene, bodies, &best, self.state) }
     }
 }

@@ -138,12 +138,9 @@ impl<'a> State<'a> {
     /// that may part nodes high up.
     fn thin_out(&mut self, meter: &mut Meter) {
         self.patience = 2 * self.steps;
-        match (&mut self.closest.best, self.queue.least_key()) {
-            // No lower bound above zero is proven, whatever the other pairs are.
-            (Some(best), _) if best.distance.upper <= EXPECTED_WIDTH => {
-                self.queue.clear();
-                best.is_cut_short = true;
-            }
+        match (&self.closest.best, self.queue.least_key()) {
+            // No lower bound above zero is proven, whatever the other pairs are. How the bodies meet is found out elsewhere.
+            (Some(best), _) if best.distance.upper <= EXPECTED_WIDTH => self.queue.clear(),
             (Some(_), Some(least))
                 if self.hulls.is_none() && Hulls::pay_off(self.closest.scene, self.steps) =>
             {
@@ -276,7 +273,7 @@ impl<'a> Closest<'a> {
             Some(best) => (distance.upper, triangles) < (best.distance.upper, best.triangles),
         };
         if better {
-            self.best = Some(Best { distance, triangles, lower: 0.0, is_cut_short: false });
+            self.best = Some(Best { distance, triangles, lower: 0.0 });
             self.upper = distance.upper;
             self.upper_key = round_up(distance.upper);
             if distance.lower > 0.0 {
