@@ -5,6 +5,7 @@ use super::node_pair::{RestingScene, Step, child, proven_apart};
 use super::proven_crossing::proven_crossing;
 use crate::meter::{Exhausted, Meter};
 use crate::{Budget, Posed, QueryError, Solid};
+use d2m_feature::triangles_intersect;
 use d2m_lanes::{Lanes, Task, run};
 use glam::DVec3;
 
@@ -125,6 +126,15 @@ pub fn colliding_pairs(a: Posed<'_>, b: Posed<'_>) -> Result<Vec<[u32; 2]>, Quer
     Ok(pairs)
 }
 
+/// The first pair of triangles, in the order of the trees, that cross as they are placed. Which one it is depends on the bodies
+/// and poses only.
+pub(crate) fn crossing_pair_within(
+    scene: &RestingScene<'_>,
+    meter: &mut Meter,
+) -> Result<Option<[u32; 2]>, Exhausted> {
+    Ok(search(scene, Wanted { most: 1, counts: cross }, meter)?.pairs.first().copied())
+}
+
 /// A pair of triangles that share a point wherever their vertices are within the errors of placing them.
 pub(crate) fn proven_crossing_pair(
     scene: &RestingScene<'_>,
@@ -193,6 +203,10 @@ fn may_touch(scene: &RestingScene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
 fn certainly_cross(scene: &RestingScene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     // Each vertex is within the error of both bodies together of where it is placed.
     proven_crossing(a, b, scene.error)
+}
+
+fn cross(_: &RestingScene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
+    triangles_intersect(a, b)
 }
 
 /// Refuses filled bodies that do not close.

@@ -7,7 +7,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-use super::collide::check_solid;
+use super::collide::{check_solid, crossing_pair_within};
 use super::containment::one_holds_the_other;
 use super::node_pair::RestingScene;
 use super::touching::{Meeters, Meeting};
@@ -184,6 +184,7 @@ pub fn distance_within(
         Found::Unclear => search(f64::INFINITY),
         found => found,
     };
+    let found = crossing(&scene, found, unlimited);
     let meeting = match &found {
         Found::Pair(best) if !best.is_apart(&scene) => Some(meeting(&[a, b], options.solid, unlimited)?),
         _ => None,
@@ -299,6 +300,7 @@ pub fn bound_distance(
     // Some pair is compared before the budget counts, so there always is an upper bound.
     let first = Some([0, 0]);
     let found = run(Search { scene: &scene, first, limit: f64::INFINITY, slack: 0.0, meter });
+    let found = crossing(&scene, found, meter);
     let is_apart = match &found {
         Found::Pair(best) | Found::Exhausted(best) if best.is_apart(&scene) && solid == Solid::Filled => {
             holds(&scene, meter)
@@ -370,6 +372,20 @@ fn holds(scene: &RestingScene<'_>, meter: &mut Meter) -> Result<bool, Exhausted>
 
 /// Tests for a crossing beside a crowd of pairs that touch: some milliseconds. More of them, and the bodies count as touching.
 const MOST_TESTS_BESIDE_A_CROWD: u64 = 1 << 16;
+
+/// Where triangles cross, the pair that stands for all that do, whichever of them was met first.
+fn crossing(scene: &RestingScene<'_>, found: Found, meter: &mut Meter) -> Found {
+    let Found::Pair(met) = found else { return found };
+    if met.distance.upper > 0.0 {
+        return found;
+    }
+    let [a, b] = match crossing_pair_within(scene, meter) {
+        Ok(pair) => pair.unwrap_or(met.triangles),
+        Err(Exhausted) => return Found::Exhausted(met),
+    };
+    let distance = triangle_distance(&scene.place(0, a), &scene.place(1, b));
+    Found::Pair(Best { distance, triangles: [a, b], lower: 0.0 })
+}
 
 impl Distance {
     /// Of bodies that meet so: the normal, points and triangles where they touch, or triangles that are proven to cross.
