@@ -117,7 +117,8 @@ impl System {
     /// What solutions of bodies that move may leave.
     pub(crate) fn left(&self, accuracy: Accuracy) -> f64 {
         let swept = (SWEPT * accuracy.slow).min(OF_SPEED * self.mean_speed());
-        let swept = if accuracy.in_crowd && !self.is_calm(accuracy) { swept } else { 0.0 };
+        let may_sweep = accuracy.in_crowd && (self.is_crowd() || !self.is_calm(accuracy));
+        let swept = if may_sweep { swept } else { 0.0 };
         self.enough(accuracy).max(swept)
     }
 
