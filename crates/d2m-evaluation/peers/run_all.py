@@ -1,10 +1,11 @@
-"""Both peers on trials of the bench; `cargo xtask report` shows what they did beside our own answers.
+"""The peers on trials of the bench; `cargo xtask report` shows what they did beside our own answers.
 
 usage: run_all.py [--limit TRIALS] [--seconds S]     (defaults: 64 trials and 20 seconds a pair and speed)
 install: pip install numpy python-fcl ipctk
 
-Run it after `cargo xtask bench` and `cargo xtask bench --only scenes` on the same machine. A peer that is not installed is left out.
-Writes `fcl.csv`, `ipc.csv` and `distance.csv` in `.bench/peers`.
+Run it after `cargo xtask bench` and `cargo xtask bench --only scenes` on the same machine. A peer that is not installed is left out:
+PQP and C2A are programs in `.bench/peers`, built as README.md says. Writes `fcl.csv`, `pqp.csv`, `c2a.csv`, `c2a-near.csv`,
+`ipc.csv` and `distance.csv` there.
 """
 import argparse
 import json
@@ -22,23 +23,60 @@ def cargo(*words):
     subprocess.run(["cargo", "run", "--release", "--quiet", *words], cwd=ROOT, check=True)
 
 
-def run_fcl(out, limit, seconds):
-    import fcl_continuous
-
-    lines = ["pair,speed,trial,advance_toc,advance_microseconds,distance_microseconds,"
-             "continuous_toc,continuous_microseconds"]
+def trials_of_pairs():
+    """Each pair and speed of the bench: its name, the speed, the files of both meshes and of the trials."""
     for pair in PAIRS:
         with tempfile.TemporaryDirectory() as folder:
             cargo("-p", "d2m-evaluation", "--", "trials", "--pair", pair, "--folder", folder)
             for trials in sorted(pathlib.Path(folder).glob("*.csv")):
                 a, b, speed = trials.stem.split("__")
-                models = [pathlib.Path(folder, f"{name}.obj") for name in (a, b)]
-                begin = time.monotonic()
-                for index, row in enumerate(fcl_continuous.rows(*models, trials, limit)):
-                    lines.append(f"{pair},{speed},{index},{fcl_continuous.text(row)}")
-                    if time.monotonic() - begin > seconds:
-                        break
-                print(f"FCL on {pair} at speed {speed}: {index + 1} trials", file=sys.stderr)
+                yield pair, speed, [pathlib.Path(folder, f"{name}.obj") for name in (a, b)], trials
+
+
+def timed(rows, seconds):
+    """Numbered rows, until so many seconds are over."""
+    begin = time.monotonic()
+    for index, row in enumerate(rows):
+        yield index, row
+        if time.monotonic() - begin > seconds:
+            return
+
+
+def run_fcl(out, limit, seconds):
+    import fcl_continuous
+
+    lines = ["pair,speed,trial,advance_toc,advance_microseconds,distance_microseconds,"
+             "continuous_toc,continuous_microseconds"]
+    for pair, speed, models, trials in trials_of_pairs():
+        for index, row in timed(fcl_continuous.rows(*models, trials, limit), seconds):
+            lines.append(f"{pair},{speed},{index},{fcl_continuous.text(row)}")
+        print(f"FCL on {pair} at speed {speed}: {index + 1} trials", file=sys.stderr)
+    out.write_text("\n".join(lines) + "\n")
+
+
+def printed(words):
+    """The rows of a program, as they come."""
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as program:
+        next(program.stdout, None)
+        try:
+            for line in program.stdout:
+                yield line.strip()
+        finally:
+            program.terminate()
+
+
+def run_program(out, name, header, limit, seconds, more=()):
+    """Rows of a program of this name in `.bench/peers`."""
+    program = out.with_name(name)
+    if not program.exists():
+        print(f"left out: there is no {program}", file=sys.stderr)
+        return
+    lines = [header]
+    for pair, speed, models, trials in trials_of_pairs():
+        rows = printed([str(program), *map(str, models), str(trials), str(limit), *more])
+        for index, row in timed(rows, seconds):
+            lines.append(f"{pair},{speed},{row}")
+        print(f"{name} on {pair} at speed {speed}: {index + 1} trials", file=sys.stderr)
     out.write_text("\n".join(lines) + "\n")
 
 
@@ -77,7 +115,13 @@ def main():
     options = parser.parse_args()
     folder = ROOT / ".bench" / "peers"
     folder.mkdir(parents=True, exist_ok=True)
-    for name, run in [("fcl.csv", lambda out: run_fcl(out, options.limit, options.seconds)),
+    limits = options.limit, options.seconds
+    pqp = "pair,speed,trial,advance_toc,advance_microseconds,collide_microseconds,distance_microseconds"
+    c2a = "pair,speed,trial,toc,microseconds,separation"
+    for name, run in [("fcl.csv", lambda out: run_fcl(out, *limits)),
+                      ("pqp.csv", lambda out: run_program(out, "pqp", pqp, *limits)),
+                      ("c2a.csv", lambda out: run_program(out, "c2a", c2a, *limits)),
+                      ("c2a-near.csv", lambda out: run_program(out, "c2a", c2a, *limits, ["1e-9"])),
                       ("ipc.csv", lambda out: run_ipc(out, 2 * options.limit)),
                       ("distance.csv", run_distances)]:
         try:

@@ -19,7 +19,7 @@ cargo xtask bench       # resumable, about 40 minutes, --cap 1 about 20; --quick
 cargo xtask report      # writes this page, the tables (CSV) and the figures (SVG)
 ```
 
-Peers outside of Rust (FCL, IPC Toolkit) are optional: `crates/d2m-evaluation/peers/README.md`.
+Peers outside of Rust (FCL, PQP, C2A, IPC Toolkit) are optional: `crates/d2m-evaluation/peers/README.md`.
 
 **Judged first.** No time counts before its answer is right. An independent judge (plain box trees and triangle
 distances that share no code with the engine) checks every answer: the bodies are disjoint at the reported time and

@@ -60,32 +60,69 @@ impl Found {
     }
 }
 
+/// A row of a peer on a trial of the bench, with our answer to it.
+struct BenchTrial {
+    /// The pair and its speed.
+    on: String,
+    ours: f64,
+    our_microseconds: f64,
+    numbers: Vec<f64>,
+}
+
+impl BenchTrial {
+    /// `pair,speed,trial,` and numbers. None where the store has no right answer of ours.
+    fn of(store: &Store, line: &str) -> Option<Self> {
+        let fields: Vec<&str> = line.split(',').collect();
+        let [pair, speed, trial, numbers @ ..] = &fields[..] else { return None };
+        let numbers = numbers.iter().filter_map(|f| f.parse().ok()).collect();
+        let (speed, trial) = (speed.parse::<f64>().ok()?, trial.parse::<usize>().ok()?);
+        let accurate = store.load(pair, speed, Method::Accurate.name()).unwrap_or_default();
+        let row = accurate.iter().find(|row| row.trial == trial && row.fault.is_empty())?;
+        let ours = if let Claim::Contact { lo, .. } = row.claim { lo } else { f64::INFINITY };
+        Some(Self {
+            on: format!("{pair} at speed {speed}"),
+            ours,
+            our_microseconds: row.microseconds,
+            numbers,
+        })
+    }
+
+    fn note(&self, file: &str, found: &mut BTreeMap<(&str, String), Found>) {
+        let mut note = |peer, toc, ours, clock| {
+            found.entry((peer, self.on.clone())).or_default().note(toc, ours, clock);
+        };
+        let (ours, nan) = (self.ours, f64::NAN);
+        match (file, &self.numbers[..]) {
+            ("fcl.csv", &[toc, clock, distance, continuous, continuous_clock]) => {
+                note("FCL: advancement to 1e-9 over its distance", toc, ours, clock);
+                note("FCL: one distance, mean over the advancement", nan, nan, distance);
+                note("FCL: continuousCollide between the end poses", continuous, ours, continuous_clock);
+                note("d2m accurate", ours, ours, self.our_microseconds);
+            }
+            ("pqp.csv", &[toc, clock, collision, distance]) => {
+                note("PQP: advancement to 1e-9 over its distance", toc, ours, clock);
+                if toc.is_finite() {
+                    note("PQP: one collision at the time of contact", nan, nan, collision);
+                    note("PQP: one distance at the time of contact", nan, nan, distance);
+                }
+            }
+            ("c2a.csv", &[toc, clock, _]) => note("C2A: as it comes, tolerance 1e-4", toc, ours, clock),
+            ("c2a-near.csv", &[toc, clock, _]) => note("C2A: tolerance 1e-9", toc, ours, clock),
+            _ => {}
+        }
+    }
+}
+
 /// Sums up the rows of the peers, against our answers to the same questions in the store.
 pub(super) fn collect(store: &Store, folder: &Path) -> Result<(), Error> {
     let Some(rows) = store.folder.parent().map(|parent| parent.join("peers")) else { return Ok(()) };
     let mut found: BTreeMap<(&str, String), Found> = BTreeMap::new();
-    for line in text(&rows, "fcl.csv").lines().skip(1) {
-        let fields: Vec<&str> = line.split(',').collect();
-        let [pair, speed, trial, numbers @ ..] = &fields[..] else { continue };
-        let n: Vec<f64> = numbers.iter().filter_map(|f| f.parse().ok()).collect();
-        let (&[toc, clock, distance, continuous, continuous_clock], Ok(speed), Ok(trial)) =
-            (&n[..], speed.parse::<f64>(), trial.parse::<usize>())
-        else {
-            continue;
-        };
-        let accurate = store.load(pair, speed, Method::Accurate.name()).unwrap_or_default();
-        let Some(row) = accurate.iter().find(|row| row.trial == trial && row.fault.is_empty()) else {
-            continue;
-        };
-        let ours = if let Claim::Contact { lo, .. } = row.claim { lo } else { f64::INFINITY };
-        let on = format!("{pair} at speed {speed}");
-        let mut note = |peer, toc, ours, clock| {
-            found.entry((peer, on.clone())).or_default().note(toc, ours, clock);
-        };
-        note("FCL: advancement to 1e-9 over its distance", toc, ours, clock);
-        note("FCL: one distance, mean over the advancement", f64::NAN, f64::NAN, distance);
-        note("FCL: continuousCollide between the end poses", continuous, ours, continuous_clock);
-        note("d2m accurate", ours, ours, row.microseconds);
+    for file in ["fcl.csv", "pqp.csv", "c2a.csv", "c2a-near.csv"] {
+        for line in text(&rows, file).lines().skip(1) {
+            if let Some(trial) = BenchTrial::of(store, line) {
+                trial.note(file, &mut found);
+            }
+        }
     }
     for line in text(&rows, "ipc.csv").lines().skip(1) {
         let fields: Vec<&str> = line.split(',').collect();
