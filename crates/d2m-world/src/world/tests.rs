@@ -1,7 +1,7 @@
 use super::*;
 use d2m_bvh::{Budget, MeshTree, TimeOfContact};
 use d2m_motion::{ConstantTwist, Pose};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 fn cube() -> Arc<MeshTree> {
     Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=1&y=1&z=1").unwrap()))
@@ -151,10 +151,13 @@ fn a_budget_that_ends_says_nothing_of_pairs_behind_one_that_is_known() {
     let ring = Arc::new(MeshTree::new(d2m_shapes::mesh("torus?triangles=600").unwrap()));
     let near = |y: f64, spin: DVec3| {
         let still = ConstantTwist::REST.with_position(DVec3::Y * y);
-        [still, flying(DVec3::new(0.3, y, 1.4), DVec3::Z * -1.0).with_angular_velocity(spin)]
+        // Links of a chain: their boxes overlap from the start.
+        let upright = DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2);
+        let link = flying(DVec3::new(0.7, y, 0.0), DVec3::X * -1.0).with_orientation(upright);
+        [still, link.with_angular_velocity(spin)]
     };
     let mut ended = 0;
-    for tests in (0..400).step_by(3) {
+    for tests in (0..6000).step_by(40) {
         let budget = Budget::UNLIMITED.with_node_tests(tests);
         let mut world = World::new(QueryOptions::default().with_budget(budget));
         for motion in [near(0.0, DVec3::X), near(9.0, DVec3::Y), near(18.0, DVec3::Z)].into_iter().flatten() {
