@@ -75,7 +75,6 @@ fn count(operation: &Operation, portable: bool) -> Result<Option<f64>, String> {
         .arg(std::env::current_exe().map_err(|e| e.to_string())?)
         .args(["counted", name])
         .args(portable.then_some("--portable"))
-        .env("RAYON_NUM_THREADS", "1")
         .output()
         .map_err(|e| format!("valgrind: {e}"))?;
     let text = String::from_utf8_lossy(&output.stderr);

@@ -272,6 +272,8 @@ pub(crate) fn run(options: &Options) -> TaskResult {
     if options.portable {
         InstructionSet::Portable.limit();
     }
+    // This thread is the whole pool: what another one does for it would not be counted.
+    rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global()?;
     operation.run()
 }
 
