@@ -407,7 +407,7 @@ mod tests {
         assert!(right.false_negatives.is_empty(), "{:?}", right.false_negatives);
         assert!(right.false_alarms.is_empty(), "{:?}", right.false_alarms);
         let raised = run(&task(Some(Sabotage::Miss)));
-        assert!(raised.false_negatives.len() > 12, "{:?}", raised.false_negatives);
+        assert_eq!(raised.false_negatives.len(), 24, "{:?}", raised.false_negatives);
     }
 
     /// Two cubes, one of which flies through the other one between 0.25 and 0.75.
