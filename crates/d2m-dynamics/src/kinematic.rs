@@ -1,7 +1,7 @@
 //! Bodies that follow a motion, as flights of constant twists that stay close to it.
 
 use crate::body::Kind;
-use crate::rigid_body::{RigidBody, rotation_vector};
+use crate::rigid_body::{LARGEST, RigidBody, rotation_vector};
 use crate::velocity::Velocity;
 use crate::{SimulationError, StepError};
 use d2m_interval::{Interval, IntervalVec3};
@@ -69,7 +69,7 @@ impl RigidBody {
             angular: rotation_vector(target.orientation * self.orientation.conjugate()) / length,
         };
         let fastest = velocity.linear.abs().max_element().max(velocity.angular.abs().max_element());
-        let is_slow = fastest <= crate::Simulation::LARGEST;
+        let is_slow = fastest <= LARGEST;
         if !is_slow {
             return Err(StepError::TooFast { body: self.name.to_string(), time: self.time });
         }

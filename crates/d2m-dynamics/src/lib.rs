@@ -28,6 +28,7 @@
 #![forbid(unsafe_code)]
 
 mod account;
+mod advance;
 mod attempt;
 mod body;
 mod broad_phase;
@@ -45,6 +46,7 @@ mod group;
 mod hollow;
 mod joined;
 mod joint;
+mod joints;
 mod kinematic;
 mod listener;
 mod live;

@@ -12,6 +12,8 @@ use d2m_motion::{ConstantTwist, CoveredMotion, Pose, RigidMotion};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
+/// No momentum, angular momentum or velocity of a body may exceed this: their products are still numbers.
+pub(crate) const LARGEST: f64 = 1e100;
 /// What a tumbling body turns in one flight at most, in radians, times how far its moments of inertia are apart. The midpoint rule is the
 /// geodesic one: reversible, so its energy oscillates and does not drift; the middle of a flight is off the motion of a free top by
 /// h² |ω'|/8 at most, and |ω'| ≤ κ ω² with κ = 1 − I₁/I₃, so the energy by (κ ω h)²/8 of itself: 2⁻¹¹ for a sixteenth.
@@ -250,13 +252,13 @@ impl RigidBody {
     }
 
     /// Two additions to the momenta, linear and angular, by their names: refused if they are not finite, or if the body would have
-    /// momenta or velocities above [`Simulation::LARGEST`](crate::Simulation::LARGEST).
+    /// momenta or velocities above [`Simulation::LARGEST`](LARGEST).
     pub(crate) fn check_momenta(
         &self,
         names: [&'static str; 2],
         [linear, angular]: [DVec3; 2],
     ) -> Result<(), SimulationError> {
-        let is_small = |v: DVec3| v.abs().max_element() <= crate::Simulation::LARGEST;
+        let is_small = |v: DVec3| v.abs().max_element() <= LARGEST;
         // Also what is not a number is refused.
         let refuse = |name: &'static str, value: DVec3| {
             Err(SimulationError::TooLarge { body: self.name.to_string(), name, value })

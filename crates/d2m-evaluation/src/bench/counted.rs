@@ -259,7 +259,7 @@ fn queries(shapes: [&str; 2], (speed, spin): (f64, f64), method: Method) -> Resu
 
 #[derive(clap::Args)]
 #[group(skip)]
-pub(crate) struct Options {
+pub(crate) struct CountedOptions {
     name: String,
     /// Only the instructions that every machine of this kind has.
     #[arg(long)]
@@ -267,7 +267,7 @@ pub(crate) struct Options {
 }
 
 /// The program that callgrind watches: one operation.
-pub(crate) fn run(options: &Options) -> TaskResult {
+pub(crate) fn run(options: &CountedOptions) -> TaskResult {
     let operation = OPERATIONS.iter().find(|o| o.name == options.name).ok_or("no such operation")?;
     if options.portable {
         InstructionSet::Portable.limit();

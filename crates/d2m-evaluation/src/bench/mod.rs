@@ -209,5 +209,5 @@ pub(crate) fn run(options: &Options) -> TaskResult {
     }
 }
 
-pub(crate) use counted::{Options as CountedOptions, run as run_counted};
-pub(crate) use stopped::{Options as StoppedOptions, run as run_stopped};
+pub(crate) use counted::{CountedOptions, run as run_counted};
+pub(crate) use stopped::{StoppedOptions, run as run_stopped};

@@ -16,7 +16,7 @@ type Error = Box<dyn std::error::Error>;
 
 #[derive(clap::Args)]
 #[group(skip)]
-pub(crate) struct Options {
+pub(crate) struct StoppedOptions {
     #[command(flatten)]
     bench: BenchOptions,
     #[arg(long)]
@@ -24,7 +24,7 @@ pub(crate) struct Options {
 }
 
 /// The child: a line `ready`, then a line `time microseconds` per trial until it is ended.
-pub(crate) fn run(options: &Options) -> TaskResult {
+pub(crate) fn run(options: &StoppedOptions) -> TaskResult {
     let entries = options.bench.entries()?;
     let entry = entries.first().ok_or("no pair")?;
     let trials = &entry.trials.iter().find(|t| t.0 == options.speed).ok_or("no such speed")?.1;
