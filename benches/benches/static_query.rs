@@ -1,9 +1,7 @@
 //! Static queries near contact, building and refitting. Each answer is judged before it is timed.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use d2m::bvh::{
-    DistanceOptions, MeshTree, PairCache, Posed, Solid, StartState, collide, distance, distance_within,
-};
+use d2m::bvh::{DistanceOptions, MeshTree, Posed, Solid, StartState, collide, distance, distance_within};
 use d2m::motion::Pose;
 use glam::{DQuat, DVec3};
 use std::hint::black_box;
@@ -45,12 +43,11 @@ fn static_queries(criterion: &mut Criterion) {
             bench.iter(|| distance(black_box(pa), black_box(pb), Solid::Filled).unwrap());
         });
         group.bench_function("distance_warm", |bench| {
-            let mut cache = PairCache::new();
-            cache.remember([found.triangle_a, found.triangle_b]);
-            let options = DistanceOptions::default();
-            let warm = distance_within(pa, pb, &options, &mut cache).unwrap();
+            let first = Some([found.triangle_a, found.triangle_b]);
+            let options = DistanceOptions::default().with_first(first);
+            let warm = distance_within(pa, pb, &options).unwrap();
             assert_eq!(warm, Some(found));
-            bench.iter(|| distance_within(black_box(pa), black_box(pb), &options, &mut cache).unwrap());
+            bench.iter(|| distance_within(black_box(pa), black_box(pb), &options).unwrap());
         });
         let far = Pose { translation: pb.pose.translation * 1.5, ..pb.pose };
         group.bench_function("distance_far", |bench| {

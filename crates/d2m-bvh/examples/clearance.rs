@@ -1,8 +1,7 @@
 //! Static queries on posed bodies: clearance with witnesses, a cutoff, a warm start, colliding triangles, refit.
 
 use d2m_bvh::{
-    DistanceOptions, MeshTree, PairCache, Posed, Solid, TriMesh, collide, colliding_pairs, distance,
-    distance_within,
+    DistanceOptions, MeshTree, Posed, Solid, TriMesh, collide, colliding_pairs, distance, distance_within,
 };
 use d2m_motion::Pose;
 use glam::{DQuat, DVec3};
@@ -38,12 +37,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     assert!((clearance.value - 0.4).abs() < 2e-3);
 
     // A slow slide: each query starts from the last one's triangles, and the answers are the same bits.
-    let mut cache = PairCache::new();
-    let options = DistanceOptions::default().with_cutoff(0.25);
+    let mut options = DistanceOptions::default().with_cutoff(0.25);
     for step in 0..=40 {
         let b = Posed::new(&tree, linked(1.0 + 0.01 * f64::from(step)));
-        match distance_within(a, b, &options, &mut cache)? {
+        match distance_within(a, b, &options)? {
             Some(near) => {
+                options = options.with_first(Some([near.triangle_a, near.triangle_b]));
                 assert_eq!(near, distance(a, b, Solid::Filled)?);
                 println!("shift {:.2}: {:.6} {:?}", 1.0 + 0.01 * f64::from(step), near.value, near.state);
             }

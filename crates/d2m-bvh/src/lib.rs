@@ -20,6 +20,7 @@
 //!   contact. [`departure`]: when they part.
 //!
 //! ## Two bodies at rest
+//! All of this, and meshes and trees, are those of the crate `d2m-mesh`.
 //! - [`Posed`]: a body with its pose.
 //! - [`collide`], [`collide_within`], [`colliding_pairs`], [`try_colliding_pair`]: do they touch, and where?
 //! - [`distance`], [`distance_within`], [`bound_distance`]: how far apart?
@@ -47,53 +48,38 @@
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "audit")]
-pub mod audit;
-mod cancel;
+pub mod audit {
+    //! What the engine concludes on its way, for a listener that proves it again.
+    #[doc(inline)]
+    pub use d2m_mesh::audit::*;
+}
 mod contact;
 mod covered_pair;
-mod enclosing_sphere;
-mod error;
 mod evidence;
-mod length;
-mod mesh;
-mod meter;
 mod moving;
-mod nearest_point;
 mod options;
 mod pair_cache;
-mod parallel;
-mod posed;
 mod query;
-mod resting;
 mod search;
-mod tree;
 mod window;
 
-pub use cancel::{CancelFlag, Canceller};
-pub use contact::{Contact, StartState, TimeBracket, TimeOfContact};
-pub use d2m_lanes::InstructionSet;
-pub use enclosing_sphere::EnclosingSphere;
-pub use error::QueryError;
+pub use contact::{Contact, TimeBracket, TimeOfContact};
+#[doc(inline)]
+pub use d2m_mesh::{
+    Budget, CancelFlag, Canceller, Distance, DistanceBounds, DistanceOptions, Edge, EnclosingSphere,
+    Exhausted, InstructionSet, MAX_COORDINATE, MeshArrays, MeshError, MeshPart, MeshParts, MeshTree, Meter,
+    Posed, Proximity, ProximityOptions, QueryError, Solid, StartState, Topology, TreeError, TreeFileError,
+    TriMesh, Validation, bound_distance, collide, collide_within, colliding_pairs, distance, distance_within,
+    proximities, proximities_with, proximities_within, reduce_proximities, try_colliding_pair,
+};
 pub use evidence::Evidence;
-pub use mesh::{Edge, MAX_COORDINATE, MeshArrays, MeshError, Topology, TriMesh, Validation};
-pub use meter::{Exhausted, Meter};
 pub use moving::Moving;
-pub use options::{Budget, Mode, QueryOptions, Solid, Start};
+pub use options::{Mode, QueryOptions, Start};
 pub use pair_cache::PairCache;
-pub use posed::Posed;
 pub use query::{
     Clearance, ClearanceOptions, ClearanceStatus, ContactSpan, Departure, SpanStatus, clearance,
     clearance_batch, contact_exists, contact_spans, departure, time_of_contact, time_of_contact_batch,
     time_of_contact_counted, time_of_contact_with,
 };
-pub use resting::collide::{collide, collide_within, colliding_pairs, try_colliding_pair};
-pub use resting::distance::{
-    Distance, DistanceBounds, DistanceOptions, bound_distance, distance, distance_within,
-};
-pub use resting::parts::{MeshPart, MeshParts};
-pub use resting::proximities::{
-    Proximity, ProximityOptions, proximities, proximities_with, proximities_within, reduce_proximities,
-};
 pub use search::{Answered, SearchCounts};
-pub use tree::{MeshTree, TreeError, TreeFileError};
 pub use window::Window;

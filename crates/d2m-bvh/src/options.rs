@@ -1,37 +1,4 @@
-use crate::CancelFlag;
-use core::time::Duration;
-
-/// What counts as contact.
-///
-/// ```
-/// # use d2m_bvh::{MeshTree, TriMesh};
-/// # use glam::DVec3;
-/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
-/// use d2m_bvh::{Posed, Solid, collide};
-/// // A small tetrahedron inside of another one.
-/// let small = vertices.iter().map(|p| *p * 0.1 + 0.1).collect();
-/// let small = MeshTree::new(TriMesh::try_new(small, faces)?);
-/// let [outer, inner] = [Posed::at_rest(&tree), Posed::at_rest(&small)];
-/// assert!(collide(outer, inner, Solid::Filled)?);
-/// assert!(!collide(outer, inner, Solid::Surface)?);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
-pub enum Solid {
-    /// The bodies are solid: a body inside the other is in contact. For watertight meshes.
-    ///
-    /// A point is in the solid where the winding number of the surface about it is not zero. So parts that overlap are
-    /// solid where they overlap, a part that is inside out is solid, and a cavity is a part inside another one with
-    /// the opposite orientation; equal triangles with equal orientation count once, with opposite orientation they cancel.
-    /// Where faces disagree about the outside there is no winding number, and the parity of the crossings of a ray decides.
-    #[default]
-    Filled,
-    /// Only the surfaces count: open meshes, polygon soup, hollow shells.
-    Surface,
-}
+use crate::{Budget, Solid};
 
 /// How far a query goes.
 ///
@@ -102,79 +69,6 @@ pub enum Start {
     /// contact after that, with [`Contact::left`](crate::Contact::left). Bodies that never part are in contact from the start. See
     /// [`departure`](crate::departure).
     Leave,
-}
-
-/// Limits on the work of one query. A query that meets one answers `Undecided`.
-///
-/// Without limits a query still ends: the hard caps [`Budget::HARD_NODE_TESTS`] on its work and
-/// [`Budget::HARD_QUEUED_PAIRS`] on its memory apply always, and end in `Undecided` too.
-///
-/// ```
-/// # use d2m_bvh::{MeshTree, TriMesh};
-/// # use glam::DVec3;
-/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
-/// use d2m_bvh::{Budget, Moving, QueryOptions, TimeOfContact, Window, time_of_contact};
-/// # use d2m_motion::ConstantTwist;
-/// # // Falls by 4 from a height of 2 onto the tip of the other one, which is at height 1: they meet at 0.25.
-/// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
-/// # let [a, b] = [Moving::new(&tree, &falling), Moving::new(&tree, &ConstantTwist::REST)];
-/// let options = QueryOptions::default().with_budget(Budget::UNLIMITED.with_node_tests(1));
-/// let TimeOfContact::Undecided { clear_until } = time_of_contact(a, b, Window::UNIT, &options)?
-///     else { panic!("one step is too few") };
-/// assert!((0.0..=0.25).contains(&clear_until)); // what was proven until then holds
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(default, deny_unknown_fields)
-)]
-#[non_exhaustive]
-#[must_use]
-pub struct Budget {
-    /// Most node tests (one node against the children of another, or one step of a triangle pair).
-    pub node_tests: Option<u64>,
-    /// Most time on the clock. Read every few hundred node tests, so a query may exceed it by about 50 µs.
-    pub wall_clock: Option<Duration>,
-    /// Ends the query from another thread; read as often as the clock.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    pub cancel: Option<CancelFlag>,
-}
-
-impl Budget {
-    /// The cap on node tests that holds without any budget: about a minute of work.
-    pub const HARD_NODE_TESTS: u64 = 1 << 30;
-    /// The cap on pairs of boxes that wait in the queue of a search, besides some 2¹⁵ between two checks of it. A
-    /// pair takes 16 bytes; with room that is kept for more, a search stays below 100 MB.
-    pub const HARD_QUEUED_PAIRS: usize = 1 << 20;
-    /// No limit but the hard caps.
-    pub const UNLIMITED: Self = Self { node_tests: None, wall_clock: None, cancel: None };
-
-    /// At most `count` node tests.
-    pub const fn with_node_tests(mut self, count: u64) -> Self {
-        self.node_tests = Some(count);
-        self
-    }
-
-    /// At most `time` on the clock.
-    pub const fn with_wall_clock(mut self, time: Duration) -> Self {
-        self.wall_clock = Some(time);
-        self
-    }
-
-    /// Until somebody cancels.
-    pub const fn with_cancel(mut self, flag: CancelFlag) -> Self {
-        self.cancel = Some(flag);
-        self
-    }
-
-    /// Is there a limit of node tests or of time?
-    pub const fn is_limited(&self) -> bool {
-        self.node_tests.is_some() || self.wall_clock.is_some()
-    }
 }
 
 /// Options of a query.

@@ -1,6 +1,6 @@
 //! How far surfaces are from points and lines of their own axes.
 
-use d2m_bvh::{DistanceOptions, MeshTree, PairCache, Posed, Solid, TriMesh, distance_within};
+use d2m_bvh::{DistanceOptions, MeshTree, Posed, Solid, TriMesh, distance_within};
 use d2m_motion::Pose;
 use glam::DVec3;
 
@@ -14,7 +14,7 @@ pub(crate) fn cavity(tree: &MeshTree, center: DVec3) -> f64 {
 fn lower_bound(a: &MeshTree, b: &MeshTree) -> Option<f64> {
     let options = DistanceOptions::default().with_solid(Solid::Surface);
     let posed = [a, b].map(|tree| Posed::new(tree, Pose::IDENTITY));
-    let found = distance_within(posed[0], posed[1], &options, &mut PairCache::default());
+    let found = distance_within(posed[0], posed[1], &options);
     found.ok().flatten().map(|found| found.lower)
 }
 

@@ -266,9 +266,15 @@ pub(crate) fn distance_of(
     let [a, b] = bodies;
     let radii = bodies.map(|body| body.rounding);
     let cutoff = if radii == [0.0; 2] { cutoff } else { cutoff + (radii[0] + radii[1]).next_up().next_up() };
-    let options = DistanceOptions::default().with_solid(solid_of(a, b)).with_cutoff(cutoff);
+    let options = DistanceOptions::default()
+        .with_solid(solid_of(a, b))
+        .with_cutoff(cutoff)
+        .with_first(cache.triangles());
     let posed = [Posed::new(&a.tree, poses[0]), Posed::new(&b.tree, poses[1])];
-    let found = distance_within(posed[0], posed[1], &options, cache)?;
+    let found = distance_within(posed[0], posed[1], &options)?;
+    if let Some(found) = &found {
+        cache.remember([found.triangle_a, found.triangle_b]);
+    }
     Ok(found.map(|found| found.with_radii(radii)))
 }
 

@@ -16,6 +16,7 @@
 //!
 //! ## At rest
 //! - [`triangle_distance()`]: a [`TriangleDistance`] with its witnesses, each on a [`TriangleFeature`].
+//! - [`proven_crossing`]: of triangles whose vertices are known up to an error.
 //! - [`triangles_intersect`], [`orient2d`], [`orient3d`], [`triple_product_sign`]: exact.
 #![doc(html_root_url = "https://docs.rs/d2m-feature")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -35,6 +36,7 @@ mod options;
 mod pair_motion;
 mod path;
 mod point_triangle;
+mod proven_crossing;
 mod rigid_query;
 mod rounding;
 mod sphere;
@@ -50,6 +52,7 @@ pub use exact_sign::{orient2d, orient3d, triple_product_sign};
 pub use feature_pair::FeaturePair;
 pub use options::ContactOptions;
 pub use pair_motion::{PairMotion, PlacedTriangle};
+pub use proven_crossing::proven_crossing;
 pub use sphere::Sphere;
 pub use straight_path::StraightPaths;
 pub use triangle_distance::{TriangleDistance, TriangleFeature, triangle_distance};

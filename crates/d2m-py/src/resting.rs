@@ -9,7 +9,7 @@ use crate::query::run;
 use crate::record::{PROXIMITY_WORDS, write_proximity};
 use crate::witness::Witness;
 use d2m::bvh::{
-    Budget, DistanceOptions, MeshTree, PairCache, Posed, ProximityOptions, QueryError, QueryOptions, Solid,
+    Budget, DistanceOptions, MeshTree, Posed, ProximityOptions, QueryError, QueryOptions, Solid,
     collide_within, distance_within, proximities_within,
 };
 use numpy::PyArray1;
@@ -133,7 +133,7 @@ pub(crate) fn distance(
         options = options.with_cutoff(cutoff);
     }
     let [a, b] = pair.posed();
-    let found = py.detach(|| distance_within(a, b, &options, &mut PairCache::new())).or_raise()?;
+    let found = py.detach(|| distance_within(a, b, &options)).or_raise()?;
     found.map(|found| Distance::new(py, found)).transpose()
 }
 

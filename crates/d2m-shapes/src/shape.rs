@@ -3,7 +3,7 @@
 use crate::catalog::{COMMON, Parameter, SHAPES, ShapeInfo};
 use crate::error::ShapeError;
 use crate::values::Values;
-use d2m_bvh::TriMesh;
+use d2m_mesh::TriMesh;
 use std::fmt;
 use std::str::FromStr;
 

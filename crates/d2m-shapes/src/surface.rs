@@ -1,6 +1,6 @@
 //! Vertices and triangles while a shape is being built.
 
-use d2m_bvh::TriMesh;
+use d2m_mesh::TriMesh;
 use glam::DVec3;
 
 /// A surface under construction.

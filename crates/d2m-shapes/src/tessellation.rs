@@ -1,7 +1,7 @@
 //! Round bodies as meshes that enclose them or lie within them, and by how much.
 
-use d2m_bvh::{MeshError, TriMesh};
 use d2m_interval::Interval;
+use d2m_mesh::{MeshError, TriMesh};
 use glam::{DVec2, DVec3};
 
 /// How much corners are moved outward or inward beyond what the sides ask for: 2⁻⁴⁰, where sine, cosine and products round by a few
@@ -15,7 +15,7 @@ const ROUNDING: f64 = 4096.0 * f64::EPSILON;
 /// let [around, within] = [Fit::Enclosing, Fit::Inscribed].map(|fit| Tessellation::of_cylinder(1.0, 2.0, 96, fit));
 /// let (around, within) = (around?, within?);
 /// assert!(around.error < 6e-4 && within.error < 6e-4 && around.mesh.triangle_count() == within.mesh.triangle_count());
-/// # Ok::<(), d2m_bvh::MeshError>(())
+/// # Ok::<(), d2m_mesh::MeshError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fit {
@@ -32,7 +32,7 @@ pub enum Fit {
 /// use glam::DVec3;
 /// let cone = Tessellation::of_cone(0.5, 2.0, 64, Fit::Enclosing)?; // its tip at z = 1, its base at z = -1
 /// assert!(cone.mesh.vertices().contains(&DVec3::Z) && cone.error < 0.5 * 1.3e-3);
-/// # Ok::<(), d2m_bvh::MeshError>(())
+/// # Ok::<(), d2m_mesh::MeshError>(())
 /// ```
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -85,7 +85,7 @@ impl Tessellation {
     /// ```
     /// let floor = d2m_shapes::Tessellation::of_half_space(100.0)?;
     /// assert!(floor.error == 0.0 && floor.mesh.vertices().iter().all(|p| p.z <= 0.0));
-    /// # Ok::<(), d2m_bvh::MeshError>(())
+    /// # Ok::<(), d2m_mesh::MeshError>(())
     /// ```
     ///
     /// # Errors
@@ -141,7 +141,7 @@ fn direction(k: usize, sides: usize) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use d2m_bvh::MeshTree;
+    use d2m_mesh::MeshTree;
 
     /// Above zero: the triangles face outward.
     fn six_volumes(mesh: &TriMesh) -> f64 {
@@ -182,7 +182,7 @@ mod tests {
                 let expected = if fit == Fit::Enclosing { 1.0 / cos - 1.0 } else { 1.0 - cos };
                 assert!((prism.error / radius - expected).abs() < 1e-10 && cone.error == prism.error);
                 for mesh in [prism.mesh, cone.mesh] {
-                    assert!(d2m_bvh::Topology::new(&mesh).is_watertight(), "{radius} {sides}");
+                    assert!(d2m_mesh::Topology::new(&mesh).is_watertight(), "{radius} {sides}");
                     assert!(six_volumes(&mesh) > 0.0, "{radius} {sides}");
                 }
             }

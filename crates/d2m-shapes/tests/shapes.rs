@@ -1,7 +1,7 @@
 //! Every shape at several sizes: closed, oriented, of the right genus, of the wanted size, without self-overlap.
 
-use d2m_bvh::{Topology, TriMesh, Validation};
 use d2m_feature::{triangle_distance, triangles_intersect};
+use d2m_mesh::{Topology, TriMesh, Validation};
 use d2m_shapes::{SHAPES, Shape, ShapeError, mesh};
 use glam::{DQuat, DVec3};
 

@@ -3,8 +3,8 @@
 use crate::parallel::{BOXES, PAIRS, map_in_order};
 use crate::swept_bounds::{CoveredBody, SweptBox};
 use d2m_bvh::{
-    Clearance, ClearanceOptions, ClearanceStatus, DistanceOptions, Meter, Moving, PairCache, Posed,
-    QueryError, Solid, Window, clearance, distance_within,
+    Clearance, ClearanceOptions, ClearanceStatus, DistanceOptions, Meter, Moving, Posed, QueryError, Solid,
+    Window, clearance, distance_within,
 };
 use std::collections::HashSet;
 
@@ -180,7 +180,7 @@ impl PairsOfBodies<'_> {
                 .with_solid(Solid::Surface)
                 .with_cutoff((nearest.0 + radii).max(0.0));
             // What cannot be measured has its place in the order, and its error from the search.
-            if let Ok(Some(found)) = distance_within(x, y, &options, &mut PairCache::new())
+            if let Ok(Some(found)) = distance_within(x, y, &options)
                 && found.upper - radii < nearest.0
             {
                 nearest = (found.upper - radii, Some(pair));

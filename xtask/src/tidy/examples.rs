@@ -1,9 +1,9 @@
 //! Examples: every item that a published library gives out by name has one in its documentation, where it is declared.
 //!
 //! That the example runs, and what it asserts, is what the documentation tests check.
-use super::front::{exports, libraries};
+use super::front::{Export, exports, libraries};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The library that nobody but the others needs: its page says so.
 const INTERNAL: &str = "d2m-lanes";
@@ -19,9 +19,7 @@ pub(super) fn check(root: &Path) -> Result<Vec<String>, Box<dyn std::error::Erro
     for library in libraries(root)?.iter().filter(|library| !library.ends_with(INTERNAL)) {
         let page = library.join("src/lib.rs");
         for export in exports(&fs::read_to_string(&page)?) {
-            let of_crate = root.join("crates").join(export.source.replace('_', "-")).join("src");
-            // A module of this library, or another crate of the workspace.
-            let folder = if of_crate.exists() { of_crate } else { library.join("src") };
+            let folder = declaring(root, library, &export)?;
             let mut documents = Vec::new();
             for path in super::sources::files(&folder)? {
                 documents.extend(documents_of(&fs::read_to_string(path)?, &export.name));
@@ -36,6 +34,17 @@ pub(super) fn check(root: &Path) -> Result<Vec<String>, Box<dyn std::error::Erro
     }
     findings.extend(unlisted_programs(root)?);
     Ok(findings)
+}
+
+/// The sources of the library that declares a name: this one, or another crate of the workspace, which may have it from a third.
+fn declaring(root: &Path, library: &Path, export: &Export) -> std::io::Result<PathBuf> {
+    let other = root.join("crates").join(export.source.replace('_', "-"));
+    let page = other.join("src/lib.rs");
+    if !page.exists() {
+        return Ok(library.join("src"));
+    }
+    let further = exports(&fs::read_to_string(page)?).into_iter().find(|further| further.name == export.name);
+    further.map_or_else(|| Ok(other.join("src")), |further| declaring(root, &other, &further))
 }
 
 /// One finding for each program of the facade's examples that its page does not name, or that does not say first what it shows.

@@ -1,14 +1,14 @@
 //! How bodies that are in contact at the start of a window meet there: do they touch, or do they overlap?
 
 use super::true_poses::PlacedTriangles;
-use crate::length::length;
-use crate::resting::touching::{Meeters, Meeting};
 use crate::{
     Answered, Contact, Evidence, Meter, Moving, Posed, QueryError, QueryOptions, Solid, StartState,
     TimeOfContact, Window,
 };
 use d2m_feature::{FeaturePair, TriangleDistance, TriangleFeature};
 use d2m_lanes::UP;
+use d2m_mesh::at_rest::{Meeters, Meeting};
+use d2m_mesh::margin::length;
 use d2m_motion::Pose;
 use glam::{DMat3, DVec3};
 

@@ -1,7 +1,7 @@
 //! Conclusions about moving bodies, whatever their motions (feature `audit`).
 
-use crate::audit::{Audited, Conclusion, Part, Place, Promise, report};
 use crate::{Contact, Mode, Moving, QueryOptions, Solid, StartState, TimeOfContact, Window};
+use d2m_mesh::audit::{Audited, Conclusion, Part, Place, Promise, report};
 
 /// A span of the bodies' own time, and a distance.
 #[derive(Clone, Copy, Debug)]

@@ -2,12 +2,12 @@
 
 use super::report::{contact, contained};
 use crate::covered_pair::CoveredPair;
-use crate::meter::{Exhausted, Meter};
-use crate::resting::containment::{Held, held_vertex};
 use crate::search::{MovingScene, MovingTree, Outcome, Scratch, Search};
 use crate::{Answered, MeshTree, Mode, QueryError, QueryOptions, SearchCounts, Solid, TimeOfContact, Window};
 use core::cell::RefCell;
 use d2m_lanes::F64x4;
+use d2m_mesh::at_rest::{Held, held_vertex};
+use d2m_mesh::{Exhausted, Meter};
 use glam::DVec3;
 
 thread_local! {

@@ -2,10 +2,10 @@
 //!
 //! docs/theory/motions.md, section 3, derives the bound.
 
-use crate::length::length;
 use crate::{Moving, QueryError, Window};
 use d2m_interval::Interval;
 use d2m_lanes::UP;
+use d2m_mesh::margin::length;
 use d2m_motion::{Ball, CertifiedState, ConstantTwist, Kinematics, StateTwist};
 use glam::DVec3;
 

@@ -14,11 +14,7 @@ use super::constant_twist::{ask, scene_of_twists};
 use super::fitted_twist::FittedTwists;
 use super::report::MOST_LEFT;
 use super::true_poses::{Meeting, PlacedTriangles};
-#[cfg(feature = "audit")]
-use crate::audit::Place;
 use crate::covered_pair::CoveredPair;
-use crate::length::length;
-use crate::meter::Meter;
 use crate::search::MovingTree;
 use crate::{
     Answered, Budget, Contact, Evidence, Mode, Moving, QueryError, QueryOptions, SearchCounts, Solid,
@@ -26,6 +22,10 @@ use crate::{
 };
 use d2m_feature::triangle_distance;
 use d2m_interval::Interval;
+use d2m_mesh::Meter;
+#[cfg(feature = "audit")]
+use d2m_mesh::audit::Place;
+use d2m_mesh::margin::length;
 use d2m_motion::{Chain, ConstantTwist, Pose, RigidMotion, Twist};
 use glam::DVec3;
 use plane::PlaneSearch;

@@ -162,7 +162,7 @@ fn parting(walk: &mut Walk<'_>, first: &Contact) -> Result<(Option<TimeBracket>,
                     {
                         use super::concluded::{Claimed, conclude_apart};
                         let claimed = Claimed { from: hi, to: hi, distance: walk.level };
-                        conclude_apart(crate::audit::Place::Departure, &walk.bodies, claimed);
+                        conclude_apart(d2m_mesh::audit::Place::Departure, &walk.bodies, claimed);
                     }
                     let left = Some(TimeBracket { lo, hi });
                     let answer = walk.contact_from(hi, end)?;

@@ -1,15 +1,15 @@
 //! From what the search found to the answer: witness points, normal, features in the meshes' numbers.
 
-use crate::resting::containment::Held;
-use crate::resting::proven_crossing::proven_crossing;
 use crate::search::motion::frame::{FRAME_REACH, Frame, RelativeMotion};
 use crate::search::triangle_pair::closest::{Closest, Place, closest};
 use crate::search::triangle_pair::pair_scale::PairScale;
 use crate::search::triangle_pair::separating_axis::place_a;
 use crate::search::{Found, MovingScene};
 use crate::{Contact, Evidence, MeshTree, StartState};
+use d2m_feature::proven_crossing;
 use d2m_feature::{FeaturePair, triangles_intersect};
 use d2m_lanes::{Doubles, F64x4, Lanes, Task, run};
+use d2m_mesh::at_rest::Held;
 use glam::DVec3;
 
 /// The contact with all its data, of a scene and its motion over the window of the search; `bracket`: search for a time by

@@ -5,11 +5,11 @@ use super::concluded::{Claimed, conclude_apart};
 use super::general_motion::tolerance_of;
 use super::rounded::Rounded;
 use super::staying_walk::{Next, Walk};
-#[cfg(feature = "audit")]
-use crate::audit::Place;
 use crate::covered_pair::CoveredPair;
 use crate::{Contact, Evidence, Moving, QueryError, QueryOptions, StartState, TimeOfContact, Window};
 use d2m_lanes::power_of_two;
+#[cfg(feature = "audit")]
+use d2m_mesh::audit::Place;
 
 /// The resolution as a part of the window, if none is given.
 const RESOLUTION: f64 = 1e-6;

@@ -7,11 +7,11 @@
 //! closest in the beginning to where they are in the end. docs/theory/questions.md, "Staying in contact".
 
 use crate::Moving;
-use crate::length::length;
-use crate::resting::proven_crossing::proven_crossing;
+use d2m_feature::proven_crossing;
 use d2m_feature::triangle_distance;
 use d2m_interval::Interval;
 use d2m_lanes::UP;
+use d2m_mesh::margin::length;
 use glam::DVec3;
 
 /// Placing a corner rounds by less than 16u of the lengths (see [`super::true_poses`]), and its velocity by as much.

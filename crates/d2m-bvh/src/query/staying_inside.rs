@@ -6,11 +6,11 @@
 //! long, as of teeth that pass through each other, and where none ever do, as of boxes with sides in common planes.
 
 use super::at_start::deviation;
-use crate::resting::distance::distance;
-use crate::resting::touching::inside::{holds, middle_of_boxes};
 use crate::{MeshTree, Meter, Moving, Posed, Solid, TriMesh};
 use d2m_interval::Interval;
 use d2m_lanes::UP;
+use d2m_mesh::at_rest::{holds, middle_of_boxes};
+use d2m_mesh::distance;
 use d2m_motion::Ball;
 use glam::DVec3;
 

@@ -6,9 +6,9 @@ use super::concluded::{Claimed, conclude_of_triangles, conclude_overlap};
 use super::meshes::of_meshes;
 use super::staying::StraightPair;
 use super::staying_inside::DeepPoint;
-use crate::resting::collide::{is_contained, some_colliding_pairs};
-use crate::resting::distance::{Nearness, near_pair};
 use crate::{Budget, Meter, Moving, Posed, QueryError, QueryOptions, Solid, TimeOfContact, Window};
+use d2m_mesh::at_rest::{Nearness, near_pair};
+use d2m_mesh::at_rest::{is_contained, some_colliding_pairs};
 
 /// Steps of the search for the closest pair at a time.
 const NEAR_STEPS: u64 = 4096;
@@ -169,7 +169,7 @@ impl<'a> Walk<'a> {
         let stays = StraightPair::new(&self.bodies, pair, from, to).stay_within(self.level);
         #[cfg(feature = "audit")]
         if stays {
-            use crate::audit::{Place, Promise};
+            use d2m_mesh::audit::{Place, Promise};
             let claimed = Claimed { from, to, distance: self.level };
             conclude_of_triangles(Place::Staying, Promise::Stays, &self.bodies, pair, claimed);
         }

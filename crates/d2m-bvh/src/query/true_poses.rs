@@ -1,10 +1,10 @@
 //! Two triangles where motions that enclose themselves place them, and what that proves.
 
-use crate::length::length;
-use crate::resting::proven_crossing::proven_crossing;
 use crate::{Moving, Window};
+use d2m_feature::proven_crossing;
 use d2m_feature::{TriangleDistance, triangle_distance};
 use d2m_lanes::UP;
+use d2m_mesh::margin::length;
 use d2m_motion::{CertifiedState, Twist};
 use glam::DVec3;
 

@@ -123,7 +123,7 @@ fn constant_twists_with(
 /// What a cache knows of the bodies of a scene.
 #[cfg(feature = "audit")]
 fn conclude_room(scene: &MovingScene<'_>, room: f64) {
-    use crate::audit::{Part, Place};
+    use d2m_mesh::audit::{Part, Place};
     let window = crate::search::concluded::OffsetSpan::of_query(0.0, scene.units.end_down());
     scene.conclude_at(Place::Cache, window, [Part::Whole; 2], room / scene.units.length());
 }
@@ -302,7 +302,7 @@ fn move_to_meet_again(
     let found = meeting.found_near(triangles, window.start() + after);
     #[cfg(feature = "audit")]
     if let Some(time) = found {
-        use crate::audit::{Place, Promise};
+        use d2m_mesh::audit::{Place, Promise};
         let distance = options.min_separation + 0.5 * tolerance;
         let claimed = super::concluded::Claimed { from: time, to: time, distance };
         super::concluded::conclude_of_triangles(Place::MeetAgain, Promise::Meets, bodies, triangles, claimed);

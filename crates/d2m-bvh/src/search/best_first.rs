@@ -18,11 +18,11 @@ use super::triangle_pair::separating_axis::{BackwardCertificate, place_a};
 use super::triangle_pair::widest_gap::widest_normal;
 use super::witness::Witness;
 use crate::Budget;
-#[cfg(feature = "audit")]
-use crate::audit::Place;
-use crate::tree::margin::NARROW_UP;
-use crate::tree::node::{Below, LEAST_SIZE, WIDTH, WideNode};
 use d2m_lanes::{F64x4, Lanes, Task, power_of_two_above};
+#[cfg(feature = "audit")]
+use d2m_mesh::audit::Place;
+use d2m_mesh::margin::NARROW_UP;
+use d2m_mesh::node::{Below, LEAST_SIZE, WIDTH, WideNode};
 use glam::DVec3;
 
 /// Least unit of time of a window, for those of no length: nothing moves by more than a rounding in it.
@@ -167,8 +167,8 @@ impl<'s> Search<'s> {
         }
         if self.scratch.counts.triangle_looks == 0 {
             self.scratch.last_tested = [
-                first_triangle(&self.scene.a.tree.nodes, boxes[0]),
-                first_triangle(&self.scene.b.tree.nodes, boxes[1]),
+                first_triangle(self.scene.a.tree.nodes(), boxes[0]),
+                first_triangle(self.scene.b.tree.nodes(), boxes[1]),
             ];
         }
         let [a, b] = self.scratch.last_tested;
@@ -241,7 +241,11 @@ fn time_left(limit: u32, now: u32) -> f32 {
 /// The expander of pairs of boxes of two trees.
 pub(super) fn expander<'a>(scene: &MovingScene<'a>, scales: [NodeScale; 2]) -> NodePairExpander<'a> {
     let ratio = cube(scales[1].ratio).clamp(LEAST_SIZE.into(), 1.0 / f64::from(LEAST_SIZE)) as f32;
-    NodePairExpander { nodes: [&scene.a.tree.nodes, &scene.b.tree.nodes], scales, size_ratios: [ratio, 1.0] }
+    NodePairExpander {
+        nodes: [scene.a.tree.nodes(), scene.b.tree.nodes()],
+        scales,
+        size_ratios: [ratio, 1.0],
+    }
 }
 
 fn cube(x: f64) -> f64 {

@@ -2,7 +2,7 @@
 
 use super::motion::units::{sum_down, sum_up};
 use super::scene::{MovingScene, SceneBody};
-use crate::audit::{Audited, Conclusion, Part, Place, Promise, is_heard, report};
+use d2m_mesh::audit::{Audited, Conclusion, Part, Place, Promise, is_heard, report};
 
 /// A span of a search: from one offset to another, both counted from a third.
 #[derive(Clone, Copy, Debug)]

@@ -5,9 +5,9 @@ use super::node_pair::expansion::NodePairExpander;
 use super::queue::{Bucket, Item};
 use super::scene::MovingScene;
 use super::state::{Search, State};
-use crate::audit::{Part, Place};
-use crate::tree::node::WIDTH;
 use d2m_lanes::Rows;
+use d2m_mesh::audit::{Part, Place};
+use d2m_mesh::node::WIDTH;
 
 impl MovingScene<'_> {
     /// The pairs of boxes of an expansion that are not wanted are apart over the span.

@@ -11,10 +11,10 @@ use super::triangle_pair::separating_axis::{
     BackwardCertificate, Evaluation, apart_since, place_a, separating_axis_test,
 };
 use crate::Mode;
-#[cfg(feature = "audit")]
-use crate::audit::Place;
-use crate::tree::node::WIDTH;
 use d2m_lanes::{Lanes, Task, run};
+#[cfg(feature = "audit")]
+use d2m_mesh::audit::Place;
+use d2m_mesh::node::WIDTH;
 use glam::DVec3;
 
 impl Search<'_> {
@@ -178,7 +178,7 @@ impl Search<'_> {
         triangles: [u32; 2],
     ) -> bool {
         let radius = |body: &SceneBody<'_>, index: u32| {
-            let (node, lane) = (&body.tree.nodes[index as usize / WIDTH], index as usize % WIDTH);
+            let (node, lane) = (&body.tree.nodes()[index as usize / WIDTH], index as usize % WIDTH);
             f64::from(node.radius[lane]) * body.box_unit()
         };
         let size = radius(&self.scene.a, item.boxes[0]) + radius(&self.scene.b, item.boxes[1]);

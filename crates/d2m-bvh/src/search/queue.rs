@@ -4,7 +4,7 @@
 //! handed out (monotone). An item moves to a lower bucket at most 32 times, so the work is bounded by 32 moves an item
 //! whatever the scene does.
 
-use crate::tree::node::LEAF;
+use d2m_mesh::node::LEAF;
 
 /// A pair of boxes and the time until which it is proven apart.
 ///

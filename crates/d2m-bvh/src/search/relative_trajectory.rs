@@ -10,8 +10,8 @@ use super::motion::rotation::Columns;
 use super::motion::track::given_relative_position;
 use super::motion::units::Units;
 use crate::search::MovingScene;
-use crate::tree::TreeId;
-use crate::tree::margin::UNIT_F64;
+use d2m_mesh::margin::UNIT_F64;
+use d2m_mesh::node::TreeId;
 use glam::DVec3;
 
 /// Part of the sizes of both scenes, and of the deviation, that covers all roundings here: positions err by 64·2⁻⁵³ of the size, entries
@@ -46,7 +46,7 @@ impl RelativeTrajectory {
         let (a, b) = (&scene.a, &scene.b);
         let velocity = a.motion.linear_velocity() - b.motion.linear_velocity();
         Self {
-            trees: [a, b].map(|body| body.tree.id),
+            trees: [a, b].map(|body| body.tree.id()),
             units: scene.units,
             length: scene.end,
             apart: DVec3::from_array(given_relative_position(&a.motion, &b.motion).map(|x| x.hi)),

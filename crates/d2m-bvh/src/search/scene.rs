@@ -6,9 +6,9 @@ use super::motion::track::Track;
 use super::motion::units::Units;
 use super::node_pair::node_scale::NodeScale;
 use super::triangle_pair::pair_scale::PairScale;
-use crate::tree::margin::{DOWN, NARROW_UP, UNIT_F64, UP, round_up};
 use crate::{MeshTree, QueryError, QueryOptions, Solid, Window};
 use d2m_lanes::power_of_two;
+use d2m_mesh::margin::{DOWN, NARROW_UP, UNIT_F64, UP, round_up};
 use d2m_motion::ConstantTwist;
 use glam::DVec3;
 
@@ -87,8 +87,8 @@ impl<'a> SceneBody<'a> {
     /// Corners relative to the tree's center, body axes.
     #[inline(always)]
     pub(crate) fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        let [i, j, k] = self.tree.mesh.triangles()[triangle as usize];
-        let vertices = self.tree.mesh.vertices();
+        let [i, j, k] = self.tree.mesh().triangles()[triangle as usize];
+        let vertices = self.tree.mesh().vertices();
         // Written out: a closure mapped over the array is not inlined into code for other instruction sets.
         [self.place(vertices[i as usize]), self.place(vertices[j as usize]), self.place(vertices[k as usize])]
     }
@@ -96,12 +96,12 @@ impl<'a> SceneBody<'a> {
     /// A point of the body, relative to the tree's center.
     #[inline(always)]
     pub(crate) fn place(&self, point: DVec3) -> DVec3 {
-        (point - self.tree.center) * self.per_length
+        (point - self.tree.center()) * self.per_length
     }
 
     /// The unit of the tree's boxes.
     pub(crate) fn box_unit(&self) -> f64 {
-        self.tree.unit * self.per_length
+        self.tree.unit() * self.per_length
     }
 
     /// Bound on the distance of the body's points from the reference point in use, and so from the axis of the spin.

@@ -6,11 +6,11 @@ use super::node_pair::whole_span::{
 };
 use super::scene::MovingScene;
 use super::triangle_pair::separating_axis::place_a;
-use crate::tree::margin::UNIT_F64;
-use crate::tree::node::{NodeBox, WIDTH};
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
 use d2m_feature::triangle_distance;
 use d2m_lanes::{F64x4, Portable};
+use d2m_mesh::margin::UNIT_F64;
+use d2m_mesh::node::{NodeBox, WIDTH};
 use d2m_motion::{ConstantTwist, RigidMotion};
 use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
@@ -52,7 +52,7 @@ impl Span<'_> {
             &scales[side],
             bend,
         );
-        let (wide, other) = (&self.trees[side].nodes, &self.trees[1 - side].nodes);
+        let (wide, other) = (self.trees[side].nodes(), self.trees[1 - side].nodes());
         let single = NodeBox::new(other, single as u32);
         apart_over_span::<Portable>(&frame, &scales[side], single, &wide[node])
     }
@@ -68,7 +68,7 @@ impl Span<'_> {
         let along = SpanDirection::new(direction, &poses[1][side], &scales[side], bend);
         let ends = [&poses[0][side], &poses[1][side], &poses[2][side]];
         let frame = SpanFrame::<Portable>::new(ends, &scales[side], 0.0);
-        let (wide, other) = (&self.trees[side].nodes, &self.trees[1 - side].nodes);
+        let (wide, other) = (self.trees[side].nodes(), self.trees[1 - side].nodes());
         let single = NodeBox::new(other, single as u32);
         apart_along_over_span::<Portable>(&frame, &along, &scales[side], single, &wide[node])
     }
@@ -119,8 +119,8 @@ fn pairs_that_are_proven_apart_are_apart_all_the_time() {
                     .map(|direction| span.proven_along(side, (1, WIDTH + lane), direction, 1.0));
                 let along = along[0] | along[1];
                 for other in 0..WIDTH {
-                    let wide = trees[side].nodes[1].triangle(other);
-                    let single = trees[1 - side].nodes[1].triangle(lane);
+                    let wide = trees[side].nodes()[1].triangle(other);
+                    let single = trees[1 - side].nodes()[1].triangle(lane);
                     let distance = span.distance(if side == 0 { [wide, single] } else { [single, wide] });
                     possible += u32::from(distance > LEVEL);
                     if along >> other & 1 == 1 {

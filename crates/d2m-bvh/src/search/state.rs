@@ -11,9 +11,9 @@ use super::scene::MovingScene;
 use super::scratch::Scratch;
 use super::triangle_pair::separating_axis::BackwardCertificate;
 use super::witness::Witness;
-use crate::meter::Stop;
 use crate::{Budget, Mode, QueryOptions};
 use d2m_lanes::InstructionSet;
+use d2m_mesh::Stop;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A contact as the search knows it.
@@ -173,7 +173,7 @@ impl<'s> Search<'s> {
         let from = start;
         let start = self.scene.spheres_clear_until(from);
         #[cfg(feature = "audit")]
-        self.scene.conclude_whole(crate::audit::Place::Spheres, from, (start > from).then_some(start));
+        self.scene.conclude_whole(d2m_mesh::audit::Place::Spheres, from, (start > from).then_some(start));
         // A query of no length has one window.
         if start >= end && end > 0.0 {
             return None;
@@ -225,5 +225,5 @@ impl State<'_> {
 }
 
 pub(super) fn triangle_count(scene: &MovingScene<'_>) -> u64 {
-    (scene.a.tree.mesh.triangle_count() + scene.b.tree.mesh.triangle_count()) as u64
+    (scene.a.tree.mesh().triangle_count() + scene.b.tree.mesh().triangle_count()) as u64
 }

@@ -10,10 +10,10 @@ use super::triangle_pair::pair_scale::PairScale;
 use super::triangle_pair::separating_axis::{
     BackwardCertificate, BoundOrder, Evaluation, apart_since, place_a, separating_axis_test,
 };
-use crate::tree::node::{NodeBox, WIDTH};
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
 use d2m_feature::triangle_distance;
 use d2m_lanes::{F64x4, InstructionSet, Lanes, Portable};
+use d2m_mesh::node::{NodeBox, WIDTH};
 use d2m_motion::ConstantTwist;
 use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
@@ -60,16 +60,16 @@ fn least_ratio(rounds: u32, mutate: impl Fn(&mut NodeScale)) -> f64 {
             let node_frame = NodeFrame::new::<F64x4>(&frame, scale, side == 1, left);
             // Each triangle's box, and the one around all.
             for index in (0..8).map(|lane| WIDTH + lane).chain([0]) {
-                let single_box = NodeBox::new(&single.nodes, index as u32);
-                let placed = Placed::new::<Portable>(&node_frame, scale, single_box, &wide.nodes[1]);
-                let times = entry_times::<Portable>(&wide.nodes[1], &placed, scale).store();
+                let single_box = NodeBox::new(single.nodes(), index as u32);
+                let placed = Placed::new::<Portable>(&node_frame, scale, single_box, &wide.nodes()[1]);
+                let times = entry_times::<Portable>(&wide.nodes()[1], &placed, scale).store();
                 for (other, &time) in times.iter().enumerate() {
                     if time.is_nan() || time <= 0.0 {
                         continue;
                     }
                     let triangles_of = |tree: &MeshTree, index: usize| -> Vec<u32> {
                         let lanes = if index == 0 { 0..WIDTH } else { index % WIDTH..index % WIDTH + 1 };
-                        lanes.map(|lane| tree.nodes[1].triangle(lane)).collect()
+                        lanes.map(|lane| tree.nodes()[1].triangle(lane)).collect()
                     };
                     let (singles, wides) = (triangles_of(single, index), triangles_of(wide, WIDTH + other));
                     let (of_a, of_b) = if side == 0 { (wides, singles) } else { (singles, wides) };
@@ -119,8 +119,8 @@ fn room_at_the_end(triangle: [DVec3; 3], wall: f64, expanded: usize, mutate: imp
     mutate(&mut scale);
     let frame = NodeFrame::new::<F64x4>(&motion.frame::<F64x4>(0.0), &scale, expanded == 1, 0.6);
     let (wide, single) = if expanded == 1 { (&b, &a) } else { (&a, &b) };
-    let placed = Placed::new::<Portable>(&frame, &scale, NodeBox::new(&single.nodes, 0), &wide.nodes[0]);
-    let time = entry_times::<Portable>(&wide.nodes[0], &placed, &scale).store()[0];
+    let placed = Placed::new::<Portable>(&frame, &scale, NodeBox::new(single.nodes(), 0), &wide.nodes()[0]);
+    let time = entry_times::<Portable>(&wide.nodes()[0], &placed, &scale).store()[0];
     let frame = motion.frame::<F64x4>(0.5 * f64::from(time.min(0.6)));
     let plane = scene.b.corners(0)[0].x;
     place_a::<F64x4>(&frame, &scene.a.corners(0))
@@ -255,11 +255,11 @@ fn boxes_called_apart_at_rest_are_apart() {
             let mut scale = scene.node_scales(1.0)[1];
             let motion = scene.relative_motion(0.0);
             let frame = NodeFrame::new::<F64x4>(&motion.frame::<F64x4>(0.0), &scale, true, 1.0);
-            let full = Placed::new::<Portable>(&frame, &scale, NodeBox::new(&a.nodes, 0), &b.nodes[0]);
+            let full = Placed::new::<Portable>(&frame, &scale, NodeBox::new(a.nodes(), 0), &b.nodes()[0]);
             // What is left of the margin.
             scale.floor -= (1.0 - margin) * full.boxed.margin;
-            let placed = Placed::new::<Portable>(&frame, &scale, NodeBox::new(&a.nodes, 0), &b.nodes[0]);
-            let time = entry_times::<Portable>(&b.nodes[0], &placed, &scale).store()[0];
+            let placed = Placed::new::<Portable>(&frame, &scale, NodeBox::new(a.nodes(), 0), &b.nodes()[0]);
+            let time = entry_times::<Portable>(&b.nodes()[0], &placed, &scale).store()[0];
             wrong += u32::from(time > 0.0);
         }
         wrong
@@ -291,10 +291,10 @@ fn lines_of_no_length_or_beyond_all_numbers_part_nothing() {
                 let placed = Placed::new::<Portable>(
                     &node_frame,
                     scale,
-                    NodeBox::new(&single.nodes, 0),
-                    &wide.nodes[0],
+                    NodeBox::new(single.nodes(), 0),
+                    &wide.nodes()[0],
                 );
-                let time = entry_times::<Portable>(&wide.nodes[0], &placed, scale).store()[0];
+                let time = entry_times::<Portable>(&wide.nodes()[0], &placed, scale).store()[0];
                 assert!(time.is_nan() || time <= 0.0, "size {size:e}, {off} off, expanded {side}: {time:e}");
             }
         }
@@ -321,9 +321,9 @@ fn speeds_beyond_all_numbers_prove_nothing() {
                 let frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
                 let scale = &scene.node_scales(1.0)[0];
                 let node_frame = NodeFrame::new::<F64x4>(&frame, scale, false, 1.0);
-                let single = NodeBox::new(&large.nodes, 0);
-                let placed = Placed::new::<Portable>(&node_frame, scale, single, &small.nodes[0]);
-                let time = entry_times::<Portable>(&small.nodes[0], &placed, scale).store()[0];
+                let single = NodeBox::new(large.nodes(), 0);
+                let placed = Placed::new::<Portable>(&node_frame, scale, single, &small.nodes()[0]);
+                let time = entry_times::<Portable>(&small.nodes()[0], &placed, scale).store()[0];
                 assert!(time.is_nan() || time <= 0.0, "{velocity}: {time:e}");
             }
         }

@@ -16,8 +16,8 @@ use super::node_pair::whole_span::{PlacedPose, SpanFrame};
 use super::queue::{Item, WaitingSpan, WaitingSpans};
 use super::scene::{MovingScene, SceneBody, WINDOW_ANGLE};
 use super::state::{Outcome, Search, Step, SubWindow};
-use crate::tree::node::WIDTH;
 use d2m_lanes::{Lanes, Task, run_on};
+use d2m_mesh::node::WIDTH;
 
 /// A span is halved so often before it is searched.
 const HALVINGS: usize = 4;
@@ -31,7 +31,7 @@ const _: () = assert!(0.5 * SPAN * WINDOW_ANGLE < 0.99 * FAR_ANGLE);
 /// Whether the larger box of a pair has at least this radius.
 fn is_large(scene: &MovingScene<'_>, item: &Item, least: f64) -> bool {
     let radius = |body: &SceneBody<'_>, index: u32| {
-        f64::from(body.tree.nodes[index as usize / WIDTH].radius[index as usize % WIDTH]) * body.box_unit()
+        f64::from(body.tree.nodes()[index as usize / WIDTH].radius[index as usize % WIDTH]) * body.box_unit()
     };
     radius(&scene.a, item.boxes[0]).max(radius(&scene.b, item.boxes[1])) >= least
 }

@@ -2,8 +2,8 @@
 
 use super::Descent;
 use crate::query::at_start::meeting_at;
-use crate::resting::touching::Meeting;
 use crate::{Contact, Meter};
+use d2m_mesh::at_rest::Meeting;
 
 /// Parts of what is left of the window after a contact, each half of the one before, after which the bodies are looked at: those that go
 /// on into each other are found at the first one, those that part again soon at one of the last.

@@ -292,7 +292,7 @@ impl<'a> Descent<'a> {
     #[cfg(feature = "audit")]
     fn conclude(&self, best: &Sample, lower: f64) {
         use super::concluded::{Claimed, conclude_apart, conclude_of_triangles, sum_of_distances};
-        use crate::audit::{Place, Promise};
+        use d2m_mesh::audit::{Place, Promise};
         let Sampler { bodies, window } = &self.sampler;
         let distance = sum_of_distances(lower, self.rounded.sum(), 0.0);
         let whole = Claimed { from: window.start(), to: window.end(), distance };

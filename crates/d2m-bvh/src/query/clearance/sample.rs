@@ -1,9 +1,9 @@
 //! Pairs of triangles at single times: proven upper bounds of a clearance, and the way down to a local minimum.
 
 use crate::query::true_poses::PlacedTriangles;
-use crate::resting::distance::{Nearness, near_pair};
 use crate::{Moving, Posed, Window};
 use d2m_feature::TriangleDistance;
+use d2m_mesh::at_rest::{Nearness, near_pair};
 use glam::DVec3;
 
 /// Parts of the window at whose ends the centers of the bodies are compared, and steps from the closest of them.

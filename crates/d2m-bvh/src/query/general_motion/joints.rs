@@ -1,14 +1,14 @@
 //! Where time has no more numbers, and where pieces of a motion do not quite meet.
 
 use super::{Advance, FittedSpan, SMALL_PART, Step, rounding_tolerance};
-#[cfg(feature = "audit")]
-use crate::audit::Place;
-use crate::length::length;
 use crate::query::fitted_twist::FittedTwists;
 use crate::query::true_poses::PlacedTriangles;
 use crate::{Contact, Evidence, Mode, QueryError, StartState, TimeOfContact};
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_lanes::UP;
+#[cfg(feature = "audit")]
+use d2m_mesh::audit::Place;
+use d2m_mesh::margin::length;
 
 /// Bodies that sweep boxes of at most this times their travel and radius are known well enough for a contact where time has no
 /// more numbers. It decides what is answered there, and proves nothing.

@@ -4,12 +4,12 @@
 //! as the root of the gap. Along the direction between them they hardly move: docs/theory/motions.md, section 3, "Plane".
 
 use super::{Advance, EXPECTED, GROWTH};
-#[cfg(feature = "audit")]
-use crate::audit::Place;
-use crate::length::length;
 use crate::{Contact, Moving, SearchCounts};
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_lanes::UP;
+#[cfg(feature = "audit")]
+use d2m_mesh::audit::Place;
+use d2m_mesh::margin::length;
 use glam::DVec3;
 
 /// A plane is sought for spans of so many lengths of the last one at first, and of at least [`GROWTH`] of them.

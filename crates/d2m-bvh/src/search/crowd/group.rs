@@ -1,8 +1,8 @@
 //! The vertices below some boxes of a body.
 
 use super::super::scene::SceneBody;
-use crate::meter::Meter;
-use crate::tree::node::{Below, WIDTH};
+use d2m_mesh::Meter;
+use d2m_mesh::node::{Below, WIDTH};
 use glam::DVec3;
 
 /// The vertices below some boxes of a body.
@@ -17,8 +17,8 @@ pub(super) struct Group<'a> {
 
 impl<'a> Group<'a> {
     pub(super) fn new(body: &'a SceneBody<'a>) -> Self {
-        let seen = vec![false; WIDTH * body.tree.nodes.len()];
-        let seen_vertices = vec![false; body.tree.mesh.vertices().len()];
+        let seen = vec![false; WIDTH * body.tree.nodes().len()];
+        let seen_vertices = vec![false; body.tree.mesh().vertices().len()];
         Self { body, seen, seen_vertices, points: Vec::new() }
     }
 
@@ -30,17 +30,17 @@ impl<'a> Group<'a> {
                 continue;
             }
             clock.step().ok()?;
-            match self.body.tree.nodes[index / WIDTH].below(index % WIDTH) {
+            match self.body.tree.nodes()[index / WIDTH].below(index % WIDTH) {
                 Below::Triangle(triangle) => {
-                    for vertex in self.body.tree.mesh.triangles()[triangle as usize] {
+                    for vertex in self.body.tree.mesh().triangles()[triangle as usize] {
                         if !core::mem::replace(&mut self.seen_vertices[vertex as usize], true) {
                             self.points
-                                .push(self.body.place(self.body.tree.mesh.vertices()[vertex as usize]));
+                                .push(self.body.place(self.body.tree.mesh().vertices()[vertex as usize]));
                         }
                     }
                 }
                 Below::Node(node) => {
-                    let used = self.body.tree.nodes[node as usize].used as usize;
+                    let used = self.body.tree.nodes()[node as usize].used as usize;
                     stack.extend((0..used.min(WIDTH)).map(|lane| node as usize * WIDTH + lane));
                 }
             }

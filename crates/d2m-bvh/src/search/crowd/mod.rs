@@ -24,11 +24,11 @@ use super::effort::{
 };
 use super::queue::{Bucket, Item};
 use super::state::{Search, State};
-#[cfg(feature = "audit")]
-use crate::audit::{Part, Place};
-use crate::meter::Meter;
-use crate::tree::node::WIDTH;
 use d2m_lanes::Lanes;
+use d2m_mesh::Meter;
+#[cfg(feature = "audit")]
+use d2m_mesh::audit::{Part, Place};
+use d2m_mesh::node::WIDTH;
 use glam::DVec3;
 use group::Group;
 use moving::{Moving, PlaneSearch, Separation};

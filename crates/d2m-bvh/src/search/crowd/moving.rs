@@ -3,8 +3,8 @@
 use super::super::motion::frame::Frame;
 use super::super::scene::MovingScene;
 use super::paths::{BodyPaths, Path, Side};
-use crate::meter::Meter;
-use crate::nearest_point::Simplex;
+use d2m_mesh::Meter;
+use d2m_mesh::Simplex;
 use glam::DVec3;
 
 /// Points of both bodies over a span, in the frame of B at its first end.

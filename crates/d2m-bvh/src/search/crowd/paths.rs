@@ -3,8 +3,8 @@
 use super::super::motion::frame::Frame;
 use super::super::scene::MovingScene;
 use super::super::triangle_pair::separating_axis::place_a;
-use crate::tree::margin::UP;
 use d2m_lanes::F64x4;
+use d2m_mesh::margin::UP;
 use glam::DVec3;
 
 /// One of the two bodies.

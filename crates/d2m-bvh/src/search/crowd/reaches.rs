@@ -3,8 +3,8 @@
 use super::super::motion::frame::Frame;
 use super::super::scene::{MovingScene, SceneBody};
 use super::paths::{BodyPaths, Side};
-use crate::meter::Meter;
-use crate::tree::node::{Below, WIDTH};
+use d2m_mesh::Meter;
+use d2m_mesh::node::{Below, WIDTH};
 use glam::DVec3;
 
 /// How far boxes reach along a direction at both ends of a span: A's along `n`, B's against it.
@@ -23,7 +23,7 @@ impl<'a> Reaches<'a> {
             Side::A => (&scene.a, n),
             Side::B => (&scene.b, -n),
         };
-        let known = vec![[f64::NAN; 2]; WIDTH * body.tree.nodes.len()];
+        let known = vec![[f64::NAN; 2]; WIDTH * body.tree.nodes().len()];
         let paths = BodyPaths::new(scene, frame, side, span);
         Self { body, paths, along, turn: paths.turn(n), known }
     }
@@ -40,14 +40,14 @@ impl<'a> Reaches<'a> {
         }
         clock.step().ok()?;
         let most = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [larger(a, c), larger(b, d)];
-        let reach = match self.body.tree.nodes[index as usize / WIDTH].below(index as usize % WIDTH) {
+        let reach = match self.body.tree.nodes()[index as usize / WIDTH].below(index as usize % WIDTH) {
             Below::Triangle(triangle) => {
                 let corners =
                     self.body.corners(triangle).map(|p| self.paths.of(p).along(self.along, self.turn));
                 corners.into_iter().fold([f64::NEG_INFINITY; 2], most)
             }
             Below::Node(node) => {
-                let used = self.body.tree.nodes[node as usize].used.min(WIDTH as u32);
+                let used = self.body.tree.nodes()[node as usize].used.min(WIDTH as u32);
                 (0..used).try_fold([f64::NEG_INFINITY; 2], |so_far, lane| {
                     Some(most(so_far, self.measure(node * WIDTH as u32 + lane, clock)?))
                 })?

@@ -5,10 +5,10 @@
 //! 10.1111/j.1469-1809.1936.tb02137.x), with boxes for classes. Any direction may be tried, so nothing rests on its accuracy but
 //! that it is no longer than a unit vector.
 
-use crate::tree::box_pair::dot;
-use crate::tree::margin::UNIT_F32;
 use core::ops::{Add, Mul, Sub};
 use d2m_lanes::Lanes;
+use d2m_mesh::margin::UNIT_F32;
+use d2m_mesh::node::dot;
 
 /// Part of the sum of all squared half extents that is added to each of the spreads' principal values: boxes without
 /// thickness have an inverse then, and flat ones count for a little more than their normals, which saves tests

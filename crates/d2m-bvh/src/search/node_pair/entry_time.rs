@@ -3,10 +3,10 @@
 use super::node_scale::NodeScale;
 use super::node_test::Placed;
 use super::whole_span::Boxes;
-use crate::tree::box_pair::{Axis, BoxPair, dot, load, splat};
-use crate::tree::margin::UNIT_F32;
-use crate::tree::node::WideNode;
 use d2m_lanes::{Elementwise, Lanes, Two};
+use d2m_mesh::margin::UNIT_F32;
+use d2m_mesh::node::WideNode;
+use d2m_mesh::node::{Axis, BoxPair, dot, load, splat};
 
 /// What covers the roundings of the entry time and of unit axes.
 pub(crate) const ENTRY_FACTOR: f32 = 1.0 - 32.0 * UNIT_F32 as f32;
@@ -122,8 +122,8 @@ fn along<L: Lanes>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tree::slabs::{PAIRS, STEPS, reach};
     use d2m_lanes::{Bytes, InstructionSet, Portable, Task, run_on};
+    use d2m_mesh::node::{PAIRS, STEPS, reach};
     use d2m_testing::{Draw, KnuthRandom};
 
     /// Bytes chosen by signs, by lanes and by twice as many.

@@ -5,8 +5,8 @@ use super::node_scale::NodeScale;
 use super::node_test::{NodeFrame, Placed};
 use super::whole_span::{SpanDirection, SpanFrame, apart_along_over_span, apart_over_span};
 use crate::search::queue::Item;
-use crate::tree::node::{NodeBox, WIDTH, WideNode};
 use d2m_lanes::{Keys, Lanes, Rows, SingleSide, WideSide};
+use d2m_mesh::node::{NodeBox, WIDTH, WideNode};
 
 /// Keys of a sub-window run from 0 to this for its whole unit of time.
 pub(crate) const KEY_SCALE: f64 = 536_870_912.0; // 2²⁹
@@ -30,7 +30,7 @@ pub(crate) struct NodePairExpander<'a> {
     /// Constants when nodes of A, of B, are expanded.
     pub(crate) scales: [NodeScale; 2],
     /// Sizes of A's boxes are multiplied by the first, those of B's by the second, before they are compared: between
-    /// [`LEAST_SIZE`](crate::tree::node::LEAST_SIZE) and its inverse.
+    /// [`LEAST_SIZE`](d2m_mesh::node::LEAST_SIZE) and its inverse.
     pub(crate) size_ratios: [f32; 2],
 }
 

@@ -2,10 +2,10 @@
 
 use super::node_scale::NodeScale;
 use crate::search::motion::frame::Frame;
-use crate::tree::box_pair::{GAP_ERROR, PlacedBox, opposite};
-use crate::tree::margin::UNIT_F32;
-use crate::tree::node::{NodeBox, WideNode};
 use d2m_lanes::{Doubles, Lanes, Matrix, Quad};
+use d2m_mesh::margin::UNIT_F32;
+use d2m_mesh::node::{GAP_ERROR, PlacedBox, opposite};
+use d2m_mesh::node::{NodeBox, WideNode};
 use glam::DVec3;
 
 /// Factor of the speed's error bound.

@@ -10,11 +10,11 @@
 use super::discriminant::{Spread, discriminant};
 use super::node_scale::NodeScale;
 use crate::search::motion::frame::{PlacedFrame, RelativeMotion};
-use crate::tree::box_pair::{both, dot, load, opposite, splat};
-use crate::tree::margin::{NARROW_UP, UNIT_F32, UP, error_of, round_up};
-use crate::tree::node::{LEAF, NodeBox, WideNode};
-use crate::tree::slabs::reach;
 use d2m_lanes::{Bytes, Doubles, Elementwise, F64x4, Lanes, Matrix, Quad, Two};
+use d2m_mesh::margin::{NARROW_UP, UNIT_F32, UP, error_of, round_up};
+use d2m_mesh::node::reach;
+use d2m_mesh::node::{LEAF, NodeBox, WideNode};
+use d2m_mesh::node::{both, dot, load, opposite, splat};
 use glam::DVec3;
 
 /// Factor of the error of gaps: 20u as in the search's own tests, and 12u since the direction at the two ends of a span

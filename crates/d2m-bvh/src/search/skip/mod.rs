@@ -9,8 +9,8 @@ pub(crate) mod screw_search;
 mod swept_body;
 pub(crate) mod swept_volume;
 
-use crate::meter::Stop;
-use crate::tree::margin::DOWN;
+use d2m_mesh::Stop;
+use d2m_mesh::margin::DOWN;
 
 /// What a skip must give, and what it may cost.
 #[derive(Clone, Copy, Debug)]

@@ -3,8 +3,8 @@
 use super::projection::{Piece, ProjectedVertex, Range, angle};
 use super::projection_tree::ProjectionTree;
 use super::screw::Screw;
-use crate::meter::{Exhausted, Meter};
-use crate::tree::margin::UP;
+use d2m_mesh::margin::UP;
+use d2m_mesh::{Exhausted, Meter};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::f64::consts::PI;

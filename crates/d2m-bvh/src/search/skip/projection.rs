@@ -7,8 +7,8 @@
 //! See docs/theory/engine.md, "Screws".
 
 use super::axis_distance::distance_in_plane;
-use crate::tree::margin::UP;
 use d2m_interval::Interval;
+use d2m_mesh::margin::UP;
 use glam::DVec3;
 
 /// A direction in the plane: F = αρ + βφ.

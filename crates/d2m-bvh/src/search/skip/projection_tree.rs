@@ -1,7 +1,7 @@
 //! A binary tree over the projection of a body.
 
 use super::projection::{Piece, Projection};
-use crate::meter::{Exhausted, Meter};
+use d2m_mesh::{Exhausted, Meter};
 
 /// Times that a triangle may be divided by four.
 const MOST_DIVISIONS: u8 = 7;

@@ -1,7 +1,7 @@
 //! The screw about a common axis that two bodies make as seen from each other.
 
 use crate::search::scene::{MovingScene, SceneBody};
-use crate::tree::margin::{UNIT_F64, UP};
+use d2m_mesh::margin::{UNIT_F64, UP};
 use glam::DVec3;
 
 /// Error of a unit axis as computed, as an angle.

@@ -11,9 +11,9 @@ use super::projection::{Axes, DIRECTIONS, Range};
 use super::projection_tree::ProjectionTree;
 use super::screw::Screw;
 use super::{Skip, SkipLimits, later_offset};
-use crate::meter::Meter;
 use crate::search::scene::MovingScene;
-use crate::tree::margin::{UNIT_F64, UP};
+use d2m_mesh::Meter;
+use d2m_mesh::margin::{UNIT_F64, UP};
 use glam::DVec3;
 
 /// Larger pairs of meshes are not projected: a projection takes about 500 bytes a triangle.
@@ -59,7 +59,7 @@ pub(crate) fn screw_clear_until(scene: &MovingScene<'_>, start: f64, limits: &Sk
 }
 
 fn triangle_count(scene: &MovingScene<'_>) -> usize {
-    scene.a.tree.mesh.triangle_count() + scene.b.tree.mesh.triangle_count()
+    scene.a.tree.mesh().triangle_count() + scene.b.tree.mesh().triangle_count()
 }
 
 /// The same with the screw that they make.
@@ -93,7 +93,7 @@ fn clear_along(screw: &Screw, scene: &MovingScene<'_>, start: f64, limits: &Skip
         return Skip { clear_until: None, work: most - walk.left };
     }
     let whole = [0, 1].map(|body| {
-        let mesh = &bodies[body].tree.mesh;
+        let mesh = &bodies[body].tree.mesh();
         let vertices: Vec<DVec3> =
             mesh.vertices().iter().map(|&p| places[body](bodies[body].place(p))).collect();
         BodyProjections::try_new(screw, &vertices, mesh.triangles(), &mut walk.clock)
@@ -241,11 +241,11 @@ impl Walk<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::meter::Stop;
     use crate::search::motion::local_motion::LocalMotion;
     use crate::search::skip::swept_volume::swept_clear_until;
     use crate::{Budget, MeshTree, QueryOptions, TriMesh, Window};
     use d2m_feature::triangle_distance;
+    use d2m_mesh::Stop;
     use d2m_motion::ConstantTwist;
     use d2m_testing::{Draw, KnuthRandom};
     use glam::DQuat;

@@ -1,10 +1,10 @@
 //! What a part of a body sweeps out while the body turns about its axis, whatever the angle: its points stay on circles.
 
 use super::axis_distance::{distance_in_plane, distance_squared_in_plane};
-use crate::meter::{Exhausted, Meter};
 use crate::search::scene::SceneBody;
-use crate::tree::margin::UNIT_F32;
-use crate::tree::node::{Below, WIDTH};
+use d2m_mesh::margin::UNIT_F32;
+use d2m_mesh::node::{Below, WIDTH};
+use d2m_mesh::{Exhausted, Meter};
 use glam::{DVec2, DVec3};
 
 /// Axes of boxes are rounded to `f32` and orthonormal up to 5.2·2⁻²⁴ (docs/theory/engine.md): a box reaches no further
@@ -101,8 +101,8 @@ impl<'a> SweptBody<'a> {
             clock.step()?;
             Ok(to_axis(self.turn(self.body.place(p)) + self.arm))
         };
-        let places = tree.mesh.vertices().iter().map(place).collect::<Result<Vec<DVec3>, _>>()?;
-        self.annuli = vec![AnnularBound::NONE; tree.nodes.len() * WIDTH];
+        let places = tree.mesh().vertices().iter().map(place).collect::<Result<Vec<DVec3>, _>>()?;
+        self.annuli = vec![AnnularBound::NONE; tree.nodes().len() * WIDTH];
         self.measure_node(0, &places, clock).map(|_| ())
     }
 
@@ -114,11 +114,11 @@ impl<'a> SweptBody<'a> {
     ) -> Result<AnnularBound, Exhausted> {
         let mut all = AnnularBound::NONE;
         let tree = self.body.tree;
-        for lane in 0..tree.nodes[node].used as usize {
+        for lane in 0..tree.nodes()[node].used as usize {
             clock.step()?;
-            let annulus = match tree.nodes[node].below(lane) {
+            let annulus = match tree.nodes()[node].below(lane) {
                 Below::Triangle(triangle) => {
-                    let corners = tree.mesh.triangles()[triangle as usize];
+                    let corners = tree.mesh().triangles()[triangle as usize];
                     AnnularBound::of(&corners.map(|vertex| places[vertex as usize]), self.spins)
                 }
                 Below::Node(below) => self.measure_node(below as usize, places, clock)?,
@@ -147,7 +147,7 @@ impl<'a> SweptBody<'a> {
     }
 
     pub(super) fn part(&self, index: u32) -> SweptPart<'_> {
-        let (node, lane) = (&self.body.tree.nodes[index as usize / WIDTH], index as usize % WIDTH);
+        let (node, lane) = (&self.body.tree.nodes()[index as usize / WIDTH], index as usize % WIDTH);
         let boxed = node.oriented_box(lane);
         let unit = self.body.box_unit();
         let local =

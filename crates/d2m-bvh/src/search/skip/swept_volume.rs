@@ -10,12 +10,12 @@
 
 use super::swept_body::{Distances, SweptBody, SweptPart};
 use super::{Skip, SkipLimits, later_offset};
-use crate::meter::Meter;
 use crate::search::scene::MovingScene;
+use d2m_mesh::Meter;
 #[cfg(feature = "audit")]
-use crate::tree::margin::DOWN;
-use crate::tree::margin::{UNIT_F64, UP};
-use crate::tree::node::{Below, WIDTH};
+use d2m_mesh::margin::DOWN;
+use d2m_mesh::margin::{UNIT_F64, UP};
+use d2m_mesh::node::{Below, WIDTH};
 use glam::DVec3;
 
 /// Factor of the scene's size that covers all roundings here. Lengths below the size come out of fewer than a hundred
@@ -113,7 +113,7 @@ impl Sweep<'_> {
             let below = |part: &SweptPart<'_>| {
                 let Below::Node(node) = part.below else { return 0..0 };
                 let first = node * WIDTH as u32;
-                first..first + part.body.body.tree.nodes[node as usize].used
+                first..first + part.body.body.tree.nodes()[node as usize].used
             };
             if open_a {
                 stack.extend(below(&part_a).map(|child| (child, b)));
@@ -127,8 +127,8 @@ impl Sweep<'_> {
     /// The parts are apart for so long, as far as it matters.
     #[cfg(feature = "audit")]
     fn conclude(&self, [a, b]: [u32; 2], clear: Option<f64>) {
-        use crate::audit::{Part, Place};
         use crate::search::concluded::OffsetSpan;
+        use d2m_mesh::audit::{Part, Place};
         if let Some(to) = clear {
             let span = OffsetSpan { base: self.start, from: 0.0, to: to * DOWN };
             self.scene.conclude(Place::Sweep, span, [Part::Boxes(&[a]), Part::Boxes(&[b])]);
@@ -201,10 +201,10 @@ impl Sweep<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::meter::Stop;
     use crate::search::motion::local_motion::LocalMotion;
     use crate::{MeshTree, QueryOptions, TriMesh, Window};
     use d2m_feature::triangle_distance;
+    use d2m_mesh::Stop;
     use d2m_motion::ConstantTwist;
     use d2m_testing::{Draw, KnuthRandom, Surface};
     use glam::DQuat;

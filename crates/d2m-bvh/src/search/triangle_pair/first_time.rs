@@ -1,8 +1,8 @@
 //! Until when do two sets of vertices stay apart along a direction? First roots of concave bounds, never late.
 
-use crate::tree::margin::{DOWN, UNIT_F64, UP};
 use core::ops::Add;
 use d2m_lanes::Doubles;
+use d2m_mesh::margin::{DOWN, UNIT_F64, UP};
 
 /// What rates are lowered by, so that none is zero and the square of none underflows: a gap that grows less is never late, and the
 /// unit of time is short against what this rate takes.

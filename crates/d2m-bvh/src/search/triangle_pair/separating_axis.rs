@@ -8,8 +8,8 @@ use super::turning::{TurningTriangle, clear_along_turning};
 use super::turning_edges::{CrossingEdges, clear_across_edges};
 use super::widest_gap::{greatest, least, widest_gap, widest_normal};
 use crate::search::motion::frame::Frame;
-use crate::tree::margin::UP;
 use d2m_lanes::{Doubles, F64x4, QuadVec};
+use d2m_mesh::margin::UP;
 use glam::DVec3;
 
 /// Directions that are used are longer than this: lengths and times are about one, and the products of up to four of them and of

@@ -8,7 +8,7 @@
 
 use super::first_time::{PathAlong, first_time_of_paths};
 use super::widest_gap::{greatest, least};
-use crate::tree::margin::UP;
+use d2m_mesh::margin::UP;
 use glam::DVec3;
 
 /// A triangle of a body and how the body moves, in an inertial frame.

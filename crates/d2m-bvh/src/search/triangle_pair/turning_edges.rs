@@ -7,7 +7,7 @@
 
 use super::first_time::{PathAlong, first_time_of_paths};
 use super::turning::TurningTriangle;
-use crate::tree::margin::{UNIT_F64, UP};
+use d2m_mesh::margin::{UNIT_F64, UP};
 use glam::DVec3;
 
 /// Roundings of a triple product, in 2⁻⁵³ of the product of the lengths: the product of two edges errs by 4, the rate of an edge by

@@ -240,7 +240,7 @@ fn at_rest(case: &Case<'_>) {
     if random.unit() < 0.3 {
         options = options.with_cutoff(random.unit());
     }
-    let _ = distance_within(a, b, &options, &mut PairCache::new());
+    let _ = distance_within(a, b, &options);
     let _ = collide(a, b, Solid::Surface);
 }
 

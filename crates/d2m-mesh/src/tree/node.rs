@@ -1,0 +1,182 @@
+//! Layout of the tree in memory. **Everything that walks a tree depends on this file only.**
+//!
+//! A *box* is one lane of a wide node: an oriented box around a part of the surface. Boxes are numbered
+//! `8·node + lane`; box 0 is the root and the only used lane of node 0. A box is either a leaf (one triangle) or has
+//! a wide node of at most eight boxes below it; the boxes below together hold the same triangles.
+//!
+//! Coordinates are *local*: body coordinates minus [`MeshTree::center`](crate::MeshTree::center), divided by the
+//! power of two [`MeshTree::unit`](crate::MeshTree::unit), so the body has a radius in (½, 1].
+//!
+//! Promise, in real arithmetic on the stored numbers: every point p (local) of every triangle of a box has
+//! |axisᵢ·(p − origin − center)| ≤ half_extentᵢ for i = 0, 1, 2 and |p − origin − center| ≤ radius, and is within the
+//! [`slabs`](super::slabs) of the box.
+//! The axes are orthonormal up to their rounding to `f32`: |A·Aᵀ − I| ≤ 5.2·2⁻²⁴ in each entry.
+
+use super::slabs::Slabs;
+
+/// Lanes of a wide node.
+pub const WIDTH: usize = 8;
+
+/// Marks a child that is a triangle; the rest of the bits is its number.
+pub const LEAF: u32 = 1 << 31;
+
+/// The least size of a box with a node below it: stays positive when it is multiplied by itself.
+pub const LEAST_SIZE: f32 = 1e-18;
+
+/// What is below a box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Below {
+    /// A triangle of the mesh, by number.
+    Triangle(u32),
+    /// A wide node, by number.
+    Node(u32),
+}
+
+/// Up to eight boxes, lane by lane. 704 bytes, eleven cache lines.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct WideNode {
+    /// Box centers relative to `origin`, by axis then lane.
+    pub center: [[f32; WIDTH]; 3],
+    /// Box axes: `axes[i][k]` is coordinate k of axis i of each lane.
+    pub axes: [[[f32; WIDTH]; 3]; 3],
+    /// Half extents along the three axes.
+    pub half_extent: [[f32; WIDTH]; 3],
+    /// For each pair of axes the bits of four bytes, see [`Slabs`]; never those of a NaN.
+    pub slabs: [[f32; WIDTH]; 3],
+    /// Radius about the box center.
+    pub radius: [f32; WIDTH],
+    /// What decides which of two boxes is expanded: the larger one. Zero for a leaf, at least [`LEAST_SIZE`] for a node,
+    /// negative for an unused lane.
+    pub size: [f32; WIDTH],
+    /// Leaf flag and triangle number, or node number.
+    pub child: [u32; WIDTH],
+    /// Reference point of the centers, local coordinates.
+    pub origin: [f32; 3],
+    /// At least |center|₁ + radius of every lane.
+    pub extent: f32,
+    /// How many lanes are used: the first ones.
+    pub used: u32,
+    /// The box that this node is below (`8·node + lane`).
+    pub parent: u32,
+}
+
+/// One box of a node.
+#[derive(Clone, Copy, Debug)]
+pub struct NodeBox<'n> {
+    /// The node.
+    pub node: &'n WideNode,
+    /// Which of its boxes.
+    pub lane: usize,
+}
+
+impl<'n> NodeBox<'n> {
+    /// By its number among all boxes of these nodes (`8·node + lane`).
+    #[inline(always)]
+    pub fn new(nodes: &'n [WideNode], index: u32) -> Self {
+        Self { node: &nodes[index as usize / WIDTH], lane: index as usize % WIDTH }
+    }
+}
+
+impl WideNode {
+    /// A node without boxes. Unused lanes hold a point box so far away that no test meets it.
+    pub(crate) const fn empty(origin: [f32; 3], parent: u32) -> Self {
+        let mut node = Self {
+            center: [[1e15; WIDTH]; 3],
+            axes: [[[0.0; WIDTH]; 3]; 3],
+            half_extent: [[0.0; WIDTH]; 3],
+            slabs: [[0.0; WIDTH]; 3],
+            radius: [0.0; WIDTH],
+            size: [-1.0; WIDTH],
+            child: [u32::MAX; WIDTH],
+            origin,
+            extent: 0.0,
+            used: 0,
+            parent,
+        };
+        node.axes[0][0] = [1.0; WIDTH];
+        node.axes[1][1] = [1.0; WIDTH];
+        node.axes[2][2] = [1.0; WIDTH];
+        node
+    }
+
+    /// What is below lane `lane`.
+    #[inline(always)]
+    pub fn below(&self, lane: usize) -> Below {
+        let child = self.child[lane];
+        if child & LEAF != 0 { Below::Triangle(child & !LEAF) } else { Below::Node(child) }
+    }
+
+    /// The triangle of a lane that has no node below it.
+    #[inline(always)]
+    pub fn triangle(&self, lane: usize) -> u32 {
+        self.child[lane] & !LEAF
+    }
+
+    /// Sets what is below lane `lane`.
+    pub(crate) fn set_below(&mut self, lane: usize, below: Below) {
+        self.child[lane] = match below {
+            Below::Triangle(triangle) => triangle | LEAF,
+            Below::Node(node) => node,
+        };
+    }
+
+    /// Sets the box of lane `lane`.
+    pub(crate) fn set_box(&mut self, lane: usize, oriented: &OrientedBox, size: f32) {
+        for i in 0..3 {
+            self.center[i][lane] = oriented.center[i];
+            self.half_extent[i][lane] = oriented.half_extent[i];
+            self.slabs[i][lane] = f32::from_bits(u32::from_le_bytes(oriented.slabs[i]));
+            for k in 0..3 {
+                self.axes[i][k][lane] = oriented.axes[i][k];
+            }
+        }
+        self.radius[lane] = oriented.radius;
+        self.size[lane] = size;
+        self.reach_lane(lane);
+    }
+
+    /// Raises the extent to that of lane `lane`.
+    #[inline(always)]
+    pub(crate) fn reach_lane(&mut self, lane: usize) {
+        let [x, y, z] = [self.center[0][lane], self.center[1][lane], self.center[2][lane]].map(f32::abs);
+        let reach = f64::from(x) + f64::from(y) + f64::from(z) + f64::from(self.radius[lane]);
+        self.extent = self.extent.max(crate::margin::round_up(reach));
+    }
+
+    /// The box of lane `lane`, read out.
+    #[inline(always)]
+    pub fn oriented_box(&self, lane: usize) -> OrientedBox {
+        let (c, h, a, b) = (&self.center, &self.half_extent, &self.axes, &self.slabs);
+        OrientedBox {
+            center: [c[0][lane], c[1][lane], c[2][lane]],
+            axes: [
+                [a[0][0][lane], a[0][1][lane], a[0][2][lane]],
+                [a[1][0][lane], a[1][1][lane], a[1][2][lane]],
+                [a[2][0][lane], a[2][1][lane], a[2][2][lane]],
+            ],
+            half_extent: [h[0][lane], h[1][lane], h[2][lane]],
+            slabs: [
+                b[0][lane].to_bits().to_le_bytes(),
+                b[1][lane].to_bits().to_le_bytes(),
+                b[2][lane].to_bits().to_le_bytes(),
+            ],
+            radius: self.radius[lane],
+        }
+    }
+}
+
+/// One box, with its center relative to the origin of its wide node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OrientedBox {
+    /// Its center.
+    pub center: [f32; 3],
+    /// Its axes: `axes[i][k]` is coordinate k of axis i.
+    pub axes: [[f32; 3]; 3],
+    /// Half extents along them.
+    pub half_extent: [f32; 3],
+    /// The diagonal slabs.
+    pub slabs: Slabs,
+    /// Radius about the center.
+    pub radius: f32,
+}

@@ -1,0 +1,521 @@
+//! The boxes of the up to eight parts of a node, one to a lane: axes, then what encloses in real arithmetic.
+//!
+//! The rounding errors are those that [`Reach`](super::surface::Reach) counts: the same operations in the same order, lane by
+//! lane, so a check of the tree finds the same numbers.
+
+// Lanes are indexed alike in several arrays at once.
+#![allow(clippy::needless_range_loop)]
+
+use super::fit::{Moments, triangle_moments};
+use super::frame::{frames, triangle_axes};
+use super::node::{Below, WIDTH, WideNode};
+use super::principal::principal_axes;
+use super::refine::{Axes, Row, refined};
+use super::slabs::{CUT_SLACK, MOST, PAIRS, STEPS};
+use super::surface::{Reach, size_of_box};
+use crate::margin::{UNIT_F32, UNIT_F64};
+use d2m_lanes::{Doubles, Elementwise, Lanes, Quad, Task, power_of_two};
+
+/// Lanes in one register of doubles.
+const HALF: usize = WIDTH / 2;
+
+/// Added to a number below 2⁵⁰ and taken off again, it leaves the next whole number: neighbours of 3·2⁵¹ are one apart.
+const WHOLE: f64 = 3.0 * power_of_two(51);
+/// What the bytes of a word count.
+const PLACES: [f64; 4] = [1.0, 256.0, 65_536.0, 16_777_216.0];
+/// Raises a positive number by more than rounding to `f32` lowers it, 2⁻²⁴ of it, or 2⁻¹⁵⁰ where it is not normal.
+const UP: f64 = 1.0 + 2.0 * UNIT_F32;
+const LEAST_UP: f64 = power_of_two(-149);
+
+/// Numbers of single precision that are not below these: by at most three steps of rounding above them.
+#[inline(always)]
+fn outward<D: Doubles<Scalar = f64>>(x: D) -> [f32; HALF] {
+    (x * D::splat(UP) + D::splat(LEAST_UP)).narrow()
+}
+
+/// A point of each lane's part, local coordinates.
+#[derive(Clone, Copy)]
+pub(super) struct WideRow([[Quad; 2]; 3]);
+
+/// Memory of one thread for fitting boxes.
+#[derive(Default)]
+pub(super) struct Rows {
+    wide: Vec<WideRow>,
+    narrow: Vec<Row>,
+    /// How many of them are in use.
+    used: usize,
+}
+
+/// What the boxes of a node are fitted to.
+pub(super) struct Siblings<'a> {
+    /// Vertices of the mesh, local coordinates.
+    pub(super) points: &'a [[f64; 3]],
+    /// The vertices of each part; of a triangle its three corners.
+    pub(super) parts: &'a [&'a [u32]],
+    pub(super) below: &'a [Below],
+    /// Of each part. Those of triangles are computed here.
+    pub(super) moments: &'a mut [Moments],
+    /// The origin, or what the moments say.
+    pub(super) origin: Option<[f32; 3]>,
+    pub(super) parent: u32,
+    pub(super) rows: &'a mut Rows,
+    /// Where the boxes go.
+    pub(super) node: &'a mut WideNode,
+}
+
+impl Task for Siblings<'_> {
+    /// The moments of all.
+    type Output = Moments;
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self) -> Moments {
+        self.gather();
+        let is_triangle = self.is_triangle();
+        let mut triangles = [[[0.0; WIDTH]; 3]; 3];
+        if is_triangle != 0 {
+            self.measure_triangles::<L>(is_triangle, &mut triangles);
+        }
+        let mut all = Moments::default();
+        for moments in self.moments.iter() {
+            all.add(moments);
+        }
+        let origin = match self.origin {
+            Some(origin) => origin,
+            None => all.center(),
+        };
+        self.narrow::<L::Doubles>(origin);
+        let all_lanes = (1 << self.parts.len()) - 1;
+        let axes = if is_triangle == all_lanes { triangles } else { self.axes::<L>(is_triangle, &triangles) };
+        let mut boxes = self.boxes::<L>(origin, &axes);
+        boxes.store(self.node, self.below, origin);
+        self.node.parent = self.parent;
+        all
+    }
+}
+
+impl Siblings<'_> {
+    /// The bits of the lanes with a triangle.
+    #[inline(always)]
+    fn is_triangle(&self) -> u32 {
+        let mut bits = 0;
+        for (lane, below) in self.below.iter().enumerate() {
+            bits |= u32::from(matches!(below, Below::Triangle(_))) << lane;
+        }
+        bits
+    }
+
+    /// Puts the points of the parts side by side; short parts and lanes that are not used repeat a point.
+    #[inline(always)]
+    fn gather(&mut self) {
+        let mut count = 0;
+        for part in self.parts {
+            count = if part.len() > count { part.len() } else { count };
+        }
+        let rows = &mut *self.rows;
+        if rows.wide.len() < count {
+            rows.wide.resize(count, WideRow([[Quad([0.0; HALF]); 2]; 3]));
+            rows.narrow.resize(count, [[0.0; WIDTH]; 3]);
+        }
+        rows.used = count;
+        let wide = &mut rows.wide[..count];
+        for lane in 0..WIDTH {
+            let part = if lane < self.parts.len() { self.parts[lane] } else { self.parts[0] };
+            let (half, place) = (lane / HALF, lane % HALF);
+            for (row, &vertex) in wide.iter_mut().zip(part) {
+                let p = &self.points[vertex as usize];
+                row.0[0][half].0[place] = p[0];
+                row.0[1][half].0[place] = p[1];
+                row.0[2][half].0[place] = p[2];
+            }
+            if part.len() == count {
+                continue;
+            }
+            let p = self.points[part[0] as usize];
+            for row in &mut wide[part.len()..] {
+                row.0[0][half].0[place] = p[0];
+                row.0[1][half].0[place] = p[1];
+                row.0[2][half].0[place] = p[2];
+            }
+        }
+    }
+
+    /// The same from the origin, in `f32`.
+    #[inline(always)]
+    fn narrow<D: Doubles<Scalar = f64>>(&mut self, origin: [f32; 3]) {
+        let Rows { wide, narrow, used } = &mut *self.rows;
+        for (narrow, wide) in narrow[..*used].iter_mut().zip(&wide[..*used]) {
+            for k in 0..3 {
+                let from = D::splat(f64::from(origin[k]));
+                for half in 0..2 {
+                    let from_origin = (D::load(&wide.0[k][half]) - from).narrow();
+                    narrow[k][half * HALF..][..HALF].copy_from_slice(&from_origin);
+                }
+            }
+        }
+    }
+
+    /// Moments and axes of triangles, whose corners are the first three rows.
+    #[inline(always)]
+    fn measure_triangles<L: Lanes>(&mut self, is_triangle: u32, axes: &mut [[[f32; WIDTH]; 3]; 3]) {
+        for half in 0..2 {
+            let mut corners = [[<L::Doubles as Elementwise>::splat(0.0); 3]; 3];
+            for i in 0..3 {
+                for k in 0..3 {
+                    corners[i][k] = <L::Doubles as Doubles>::load(&self.rows.wide[i].0[k][half]);
+                }
+            }
+            store_half(&triangle_axes(&corners), half, axes);
+            let moments = triangle_moments(&corners);
+            for place in 0..HALF {
+                let lane = half * HALF + place;
+                if is_triangle >> lane & 1 == 1 {
+                    for k in 0..Moments::LENGTH {
+                        self.moments[lane].0[k] = moments[k].0[place];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Axes of parts of more than one triangle; those of triangles are given.
+    #[inline(always)]
+    fn axes<L: Lanes>(&self, is_triangle: u32, triangles: &[[[f32; WIDTH]; 3]; 3]) -> [[[f32; WIDTH]; 3]; 3] {
+        let mut matrices = [[0.0; WIDTH]; 6];
+        for lane in 0..self.parts.len() {
+            let covariance = self.moments[lane].covariance();
+            for k in 0..6 {
+                matrices[k][lane] = covariance[k];
+            }
+        }
+        let mut matrix = [L::splat(0.0); 6];
+        for k in 0..6 {
+            matrix[k] = L::load(&matrices[k]);
+        }
+        let turned = refined(principal_axes(matrix), &self.rows.narrow[..self.rows.used]);
+        let mut stored = [[[0.0; WIDTH]; 3]; 2];
+        for i in 0..2 {
+            for k in 0..3 {
+                stored[i][k] = turned[i][k].store();
+            }
+        }
+        let mut axes = [[[0.0; WIDTH]; 3]; 3];
+        for half in 0..2 {
+            let mut pair = [[<L::Doubles as Elementwise>::splat(0.0); 3]; 2];
+            for i in 0..2 {
+                for k in 0..3 {
+                    pair[i][k] = <L::Doubles as Doubles>::load(&widened(&stored[i][k], half));
+                }
+            }
+            store_half(&frames(&pair[0], &pair[1]), half, &mut axes);
+        }
+        for i in 0..3 {
+            for k in 0..3 {
+                for lane in 0..WIDTH {
+                    if is_triangle >> lane & 1 == 1 {
+                        axes[i][k][lane] = triangles[i][k][lane];
+                    }
+                }
+            }
+        }
+        axes
+    }
+
+    /// The boxes with these axes.
+    #[inline(always)]
+    fn boxes<L: Lanes>(&self, origin: [f32; 3], axes: &[[[f32; WIDTH]; 3]; 3]) -> Boxes {
+        let (center, about) = middle::<L>(axes, &self.rows.narrow[..self.rows.used]);
+        let mut boxes = Boxes {
+            center,
+            axes: *axes,
+            half_extent: [[0.0; WIDTH]; 3],
+            slabs: [[0.0; WIDTH]; 3],
+            radius: [0.0; WIDTH],
+        };
+        for half in 0..2 {
+            let mut reach = WideReach::<L::Doubles>::new(origin, &boxes, &about, half);
+            for row in &self.rows.wide[..self.rows.used] {
+                let p = &row.0;
+                reach.add(&[
+                    <L::Doubles as Doubles>::load(&p[0][half]),
+                    <L::Doubles as Doubles>::load(&p[1][half]),
+                    <L::Doubles as Doubles>::load(&p[2][half]),
+                ]);
+            }
+            reach.finish(&mut boxes, half);
+        }
+        boxes
+    }
+}
+
+/// One half of eight lanes in twice the digits.
+#[inline(always)]
+fn widened(lanes: &[f32; WIDTH], half: usize) -> Quad {
+    let at = half * HALF;
+    Quad([f64::from(lanes[at]), f64::from(lanes[at + 1]), f64::from(lanes[at + 2]), f64::from(lanes[at + 3])])
+}
+
+/// Stores frames of four lanes in `f32`.
+#[inline(always)]
+fn store_half<D: Doubles>(frames: &[[D; 3]; 3], half: usize, axes: &mut [[[f32; WIDTH]; 3]; 3]) {
+    for i in 0..3 {
+        for k in 0..3 {
+            axes[i][k][half * HALF..][..HALF].copy_from_slice(&frames[i][k].narrow());
+        }
+    }
+}
+
+/// About the middles of the boxes and their half extents. The center may be anything: the extents are measured from it.
+#[inline(always)]
+fn middle<L: Lanes>(axes: &[[[f32; WIDTH]; 3]; 3], rows: &[Row]) -> ([[f32; WIDTH]; 3], [[f32; WIDTH]; 3]) {
+    let mut axis: Axes<L> = [[L::splat(0.0); 3]; 3];
+    for i in 0..3 {
+        for k in 0..3 {
+            axis[i][k] = L::load(&axes[i][k]);
+        }
+    }
+    let mut low = [L::splat(f32::INFINITY); 3];
+    let mut high = [L::splat(f32::NEG_INFINITY); 3];
+    for row in rows {
+        let p = [L::load(&row[0]), L::load(&row[1]), L::load(&row[2])];
+        for i in 0..3 {
+            let along = axis[i][0] * p[0] + axis[i][1] * p[1] + axis[i][2] * p[2];
+            low[i] = along.min(low[i]);
+            high[i] = along.max(high[i]);
+        }
+    }
+    let (mut center, mut about) = ([L::splat(0.0); 3], [[0.0; WIDTH]; 3]);
+    for i in 0..3 {
+        let middle = (low[i] + high[i]) * L::splat(0.5);
+        for k in 0..3 {
+            center[k] = center[k] + axis[i][k] * middle;
+        }
+        about[i] = ((high[i] - low[i]) * L::splat(0.5)).store();
+    }
+    ([center[0].store(), center[1].store(), center[2].store()], about)
+}
+
+static BLANK: WideNode = WideNode::empty([0.0; 3], 0);
+
+/// Eight boxes, lane by lane.
+struct Boxes {
+    center: [[f32; WIDTH]; 3],
+    axes: [[[f32; WIDTH]; 3]; 3],
+    half_extent: [[f32; WIDTH]; 3],
+    /// For each pair of axes four bytes as a number.
+    slabs: [[f64; WIDTH]; 3],
+    radius: [f32; WIDTH],
+}
+
+impl Boxes {
+    /// Makes them the boxes of a node; lanes that are not used are blank.
+    #[inline(always)]
+    fn store(&mut self, node: &mut WideNode, below: &[Below], origin: [f32; 3]) {
+        let used = below.len();
+        let blank = &BLANK;
+        for lane in used..WIDTH {
+            for i in 0..3 {
+                self.center[i][lane] = blank.center[i][lane];
+                self.half_extent[i][lane] = blank.half_extent[i][lane];
+                self.slabs[i][lane] = 0.0;
+                for k in 0..3 {
+                    self.axes[i][k][lane] = blank.axes[i][k][lane];
+                }
+            }
+            self.radius[lane] = blank.radius[lane];
+        }
+        (node.center, node.axes, node.half_extent) = (self.center, self.axes, self.half_extent);
+        (node.radius, node.size, node.child) = (self.radius, blank.size, blank.child);
+        (node.origin, node.extent, node.used) = (origin, 0.0, used as u32);
+        for (pair, slabs) in node.slabs.iter_mut().zip(&self.slabs) {
+            for lane in 0..WIDTH {
+                pair[lane] = f32::from_bits(slabs[lane] as u32);
+            }
+        }
+        for lane in 0..used {
+            node.set_below(lane, below[lane]);
+            node.size[lane] = match below[lane] {
+                Below::Triangle(_) => 0.0,
+                Below::Node(_) => size_of_box(&node.oriented_box(lane)),
+            };
+            node.reach_lane(lane);
+        }
+    }
+}
+
+/// [`Reach`] of four boxes.
+struct WideReach<D> {
+    axes: [[D; 3]; 3],
+    origin: [D; 3],
+    center: [D; 3],
+    about: [D; 3],
+    half: [D; 3],
+    /// For each pair of axes the ranges of xᵢ·aboutⱼ + xⱼ·aboutᵢ and of the difference: lowest, highest.
+    sum: [[D; 2]; 3],
+    difference: [[D; 2]; 3],
+    square: D,
+    norm: D,
+}
+
+impl<D: Doubles<Scalar = f64>> WideReach<D> {
+    #[inline(always)]
+    fn new(origin: [f32; 3], boxes: &Boxes, about: &[[f32; WIDTH]; 3], half: usize) -> Self {
+        let zero = D::splat(0.0);
+        let (low, high) = (D::splat(f64::INFINITY), D::splat(f64::NEG_INFINITY));
+        let mut reach = Self {
+            axes: [[zero; 3]; 3],
+            origin: [zero; 3],
+            center: [zero; 3],
+            about: [zero; 3],
+            half: [zero; 3],
+            sum: [[low, high]; 3],
+            difference: [[low, high]; 3],
+            square: zero,
+            norm: zero,
+        };
+        for k in 0..3 {
+            reach.origin[k] = D::splat(f64::from(origin[k]));
+            reach.center[k] = D::load(&widened(&boxes.center[k], half));
+            reach.about[k] = D::load(&widened(&about[k], half));
+            for i in 0..3 {
+                reach.axes[i][k] = D::load(&widened(&boxes.axes[i][k], half));
+            }
+        }
+        reach
+    }
+
+    #[inline(always)]
+    fn add(&mut self, p: &[D; 3]) {
+        let mut q = [p[0]; 3];
+        for k in 0..3 {
+            q[k] = (p[k] - self.origin[k]) - self.center[k];
+        }
+        let mut along = [p[0]; 3];
+        for i in 0..3 {
+            let axis = &self.axes[i];
+            along[i] = axis[0] * q[0] + axis[1] * q[1] + axis[2] * q[2];
+            self.half[i] = along[i].abs().max(self.half[i]);
+        }
+        for pair in 0..3 {
+            let (i, j) = PAIRS[pair];
+            let (first, second) = (along[i] * self.about[j], along[j] * self.about[i]);
+            let (sum, difference) = (first + second, first - second);
+            self.sum[pair][0] = sum.min(self.sum[pair][0]);
+            self.sum[pair][1] = sum.max(self.sum[pair][1]);
+            self.difference[pair][0] = difference.min(self.difference[pair][0]);
+            self.difference[pair][1] = difference.max(self.difference[pair][1]);
+        }
+        self.square = (q[0] * q[0] + q[1] * q[1] + q[2] * q[2]).max(self.square);
+        self.norm = (p[0].abs() + p[1].abs() + p[2].abs()).max(self.norm);
+    }
+
+    /// Rounds outward and stores.
+    #[inline(always)]
+    fn finish(&self, boxes: &mut Boxes, half: usize) {
+        let (o, c) = (&self.origin, &self.center);
+        let lengths =
+            self.norm + (o[0].abs() + o[1].abs() + o[2].abs()) + (c[0].abs() + c[1].abs() + c[2].abs());
+        let slack = D::splat(Reach::SLACK) * lengths;
+        let at = half * HALF;
+        for i in 0..3 {
+            boxes.half_extent[i][at..][..HALF].copy_from_slice(&outward(self.half[i] + slack));
+        }
+        let radius = self.square.sqrt() * D::splat(1.0 + 8.0 * UNIT_F64) + slack;
+        boxes.radius[at..][..HALF].copy_from_slice(&outward(radius));
+        self.cut(boxes, half, slack);
+    }
+
+    /// What can be cut off the edges, as [`EdgeReach`](super::slabs::EdgeReach) derives it.
+    #[inline(always)]
+    fn cut(&self, boxes: &mut Boxes, half: usize, slack: D) {
+        let zero = D::splat(0.0);
+        let mut h = [slack; 3];
+        let mut off = [slack; 3];
+        for k in 0..3 {
+            h[k] = D::load(&widened(&boxes.half_extent[k], half));
+            off[k] = (h[k] - self.about[k]).abs() + slack;
+        }
+        for pair in 0..3 {
+            let (i, j) = PAIRS[pair];
+            let more = h[i] * off[j] + h[j] * off[i];
+            let product = h[i] * h[j];
+            let most = [
+                self.sum[pair][1],
+                zero - self.difference[pair][0],
+                self.difference[pair][1],
+                zero - self.sum[pair][0],
+            ];
+            let mut bytes = zero;
+            for edge in 0..4 {
+                let room = D::splat(f64::from(STEPS)) * (D::splat(2.0) - (most[edge] + more) / product);
+                let steps = (room - D::splat(CUT_SLACK)).min(D::splat(f64::from(MOST)));
+                // Zero where the room is no number.
+                let steps = D::if_greater(room, D::splat(1.0), steps, zero);
+                // A whole number that is not above it: half a step less, rounded to the next one.
+                let whole = ((steps - D::splat(0.5)) + D::splat(WHOLE)) - D::splat(WHOLE);
+                bytes = bytes + whole * D::splat(PLACES[edge]);
+            }
+            boxes.slabs[pair][half * HALF..][..HALF].copy_from_slice(&bytes.store().0);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{HALF, Rows, Siblings, outward};
+    use crate::tree::fit::Moments;
+    use crate::tree::node::{Below, WIDTH, WideNode};
+    use d2m_lanes::{Doubles, F64x4, InstructionSet, Quad, run_on};
+    use d2m_testing::{Draw, KnuthRandom};
+
+    #[test]
+    fn numbers_are_rounded_outward() {
+        let mut random = KnuthRandom(3);
+        for power in -300..4 {
+            let scale = f64::from(power).exp2();
+            let numbers: [f64; HALF] = [(); HALF].map(|()| (1.0 + random.unit()) * scale);
+            for (x, up) in numbers.into_iter().zip(outward::<F64x4>(F64x4::load(&Quad(numbers)))) {
+                assert!(f64::from(up) >= x && f64::from(up) <= x * (1.0 + 5e-7) + 4e-45, "{x:e} {up:e}");
+            }
+        }
+        assert_eq!(outward::<F64x4>(F64x4::load(&Quad([0.0; HALF]))), [1e-45; HALF]);
+    }
+
+    #[test]
+    fn every_instruction_set_fits_the_same_boxes() {
+        let mut random = KnuthRandom(5);
+        let points: Vec<[f64; 3]> =
+            (0..400).map(|k| (random.vector() * [1.0, 1e-3][k % 2]).to_array()).collect();
+        for used in 1..=WIDTH {
+            // Parts of three to many points, some of them triangles.
+            let counts: Vec<u32> = (0..used as u32).map(|lane| 3 + lane * (lane % 3) * 5).collect();
+            let lists: Vec<Vec<u32>> =
+                counts.iter().map(|&count| (0..count).map(|k| (k * 37 + count) % 400).collect()).collect();
+            let parts: Vec<&[u32]> = lists.iter().map(Vec::as_slice).collect();
+            let below: Vec<Below> = (0..)
+                .zip(&counts)
+                .map(|(lane, &count)| if count == 3 { Below::Triangle(lane) } else { Below::Node(lane) })
+                .collect();
+            let fitted = |set: InstructionSet| {
+                let mut node = WideNode::empty([0.0; 3], 0);
+                let mut moments = vec![Moments([1.0; Moments::LENGTH]); used];
+                let (parts, below, rows) = (&parts[..], &below[..], &mut Rows::default());
+                let siblings = Siblings {
+                    points: &points,
+                    parts,
+                    below,
+                    moments: &mut moments,
+                    origin: None,
+                    parent: 0,
+                    rows,
+                    node: &mut node,
+                };
+                let all = run_on(set, siblings);
+                format!("{node:?} {all:?}")
+            };
+            let portable = fitted(InstructionSet::Portable);
+            for set in InstructionSet::available() {
+                assert!(fitted(set) == portable, "{used} {set:?}");
+            }
+        }
+    }
+}
