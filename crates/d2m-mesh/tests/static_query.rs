@@ -2,11 +2,11 @@
 
 mod exact;
 
+use d2m_feature::triangle_distance;
 use d2m_mesh::{
     DistanceOptions, MeshTree, Posed, QueryError, Solid, StartState, TriMesh, collide, colliding_pairs,
     distance, distance_within, try_colliding_pair,
 };
-use d2m_feature::triangle_distance;
 use d2m_motion::Pose;
 use d2m_testing::{Draw, KnuthRandom, Surface};
 use dashu_ratio::RBig;
