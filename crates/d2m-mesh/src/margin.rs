@@ -18,6 +18,7 @@ pub const DOWN: f64 = 1.0 - 1.0 / 1_099_511_627_776.0;
 pub const NARROW_UP: f64 = 1.0 + 16.0 * UNIT_F32;
 
 /// The least `f32` that is not below `value`.
+#[inline]
 pub fn round_up(value: f64) -> f32 {
     let rounded = value as f32;
     if f64::from(rounded) < value { rounded.next_up() } else { rounded }
@@ -36,6 +37,7 @@ pub fn error_of(factor: f32, size: f32) -> f32 {
 
 /// |v| within 8·2⁻⁵³ of itself, and less than the smallest normal number beside that, in any unit: squares of components that are divided
 /// by the largest one are not lost to underflow, nor do they overflow. Zero only for zero.
+#[inline]
 pub fn length(v: DVec3) -> f64 {
     let largest = v.abs().max_element();
     // What is zero, infinite or no number is its own length.

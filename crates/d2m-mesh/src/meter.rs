@@ -45,6 +45,7 @@ impl Meter {
     }
 
     /// Any number of steps until then.
+    #[inline]
     pub const fn until(stop: Stop) -> Self {
         Self { most: None, spent: 0, stop }
     }
@@ -73,11 +74,13 @@ impl Meter {
     }
 
     /// Counts steps that were taken elsewhere.
+    #[inline]
     pub const fn spend(&mut self, steps: u64) {
         self.spent = self.spent.saturating_add(steps);
     }
 
     /// Steps that were taken.
+    #[inline]
     pub const fn spent(&self) -> u64 {
         self.spent
     }
