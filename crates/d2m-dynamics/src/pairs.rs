@@ -12,10 +12,10 @@ use d2m_bvh::audit::Place;
 use d2m_bvh::{
     Budget, Contact, Distance, DistanceOptions, Moving, PairCache, Posed, Proximity, ProximityOptions,
     QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window, distance_within, proximities_with,
-    reduce_proximities, time_of_contact_with,
+    reduce_proximities, time_of_contact, time_of_contact_with,
 };
 use d2m_feature::FeaturePair;
-use d2m_motion::Pose;
+use d2m_motion::{ConstantTwist, Pose};
 use glam::DVec3;
 
 /// Features within this many gaps are measured in any case.
@@ -276,6 +276,32 @@ pub(crate) fn distance_of(
         cache.remember([found.triangle_a, found.triangle_b]);
     }
     Ok(found.map(|found| found.with_radii(radii)))
+}
+
+/// A point that two bodies share since one of them is solid and holds the other, a mere surface; `None`: they do not. [`distance_of`]
+/// takes such bodies for surfaces. Those are at least `apart` from each other, in which a tolerance has room.
+pub(crate) fn held_at(
+    bodies: [&RigidBody; 2],
+    poses: [Pose; 2],
+    apart: f64,
+) -> Result<Option<DVec3>, QueryError> {
+    if bodies[0].solid == bodies[1].solid {
+        return Ok(None);
+    }
+    let rest = poses.map(|pose| {
+        let rest = ConstantTwist::REST.with_at(pose.at);
+        rest.with_position(pose.translation).with_orientation(pose.rotation)
+    });
+    let options = QueryOptions::default();
+    let options = if apart > 0.0 { options.with_tolerance(SLACK * apart) } else { options };
+    let [a, b] = [0, 1].map(|k| bodies[k].moving_on(&rest[k]));
+    Ok(match time_of_contact(a, b, Window::try_new(0.0, 0.0)?, &options)? {
+        TimeOfContact::Separated => None,
+        TimeOfContact::Undecided { .. } => Some(poses[0].translation),
+        TimeOfContact::Contact(contact) => {
+            (contact.start == StartState::Contained).then_some(contact.point_a)
+        }
+    })
 }
 
 fn met(contact: &Contact) -> Outcome {

@@ -6,7 +6,7 @@ use crate::hollow::cavity;
 use crate::momenta::Momenta;
 use crate::velocity::Velocity;
 use crate::{MassProperties, SimulationError};
-use d2m_bvh::{MeshTree, Posed, QueryError, Solid};
+use d2m_bvh::{MeshTree, Moving, Posed, QueryError, Solid};
 use d2m_interval::Interval;
 use d2m_motion::{ConstantTwist, CoveredMotion, Pose, RigidMotion};
 use glam::{DMat3, DQuat, DVec3};
@@ -316,6 +316,11 @@ impl RigidBody {
         Posed::new(&self.tree, self.pose_at(time))
     }
 
+    /// The body on a motion, solid or a surface as it is.
+    pub(crate) fn moving_on<'a>(&'a self, motion: &'a ConstantTwist) -> Moving<'a> {
+        Moving::new(&*self.tree, motion).with_solid(self.solid).with_radius(self.rounding)
+    }
+
     /// Velocities fade for so much time.
     pub(crate) fn damp(&mut self, time: f64) {
         // The nearest number to the exponential, with the same bits everywhere.
@@ -481,10 +486,15 @@ impl RigidBody {
         self.has_flown = true;
     }
 
-    /// The flight with the velocities as given, for the first line of a run.
-    pub(crate) fn first_flight(&self) -> ConstantTwist {
+    /// Where the body is at a time, with the velocities of its momenta: for the first line of a run, whether or not it has flown before.
+    pub(crate) fn first_flight(&self, time: f64) -> ConstantTwist {
         let velocity = if self.is_dynamic() { self.velocity() } else { Velocity::default() };
-        self.flight.with_linear_velocity(velocity.linear).with_angular_velocity(velocity.angular)
+        self.flight
+            .with_position(self.position)
+            .with_orientation(self.orientation)
+            .with_linear_velocity(velocity.linear)
+            .with_angular_velocity(velocity.angular)
+            .with_reference_time(time)
     }
 
     /// The velocity that a user sees: that of the last flight, or the one given before the first.

@@ -151,14 +151,12 @@ struct BodyState {
     gained: f64,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+/// The velocities of a flight from where the body is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct FlightState {
-    position: DVec3,
-    orientation: DQuat,
     linear: DVec3,
     angular: DVec3,
-    time: f64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -259,7 +257,7 @@ impl Simulation {
                 if is_world { own.role == Role::World } else { is_same }
             });
             let own = own.ok_or(missing)?;
-            *own = state.restored(own)?;
+            *own = state.restored(own, snapshot.time)?;
             is_known &= is_world || state.held.is_of(own);
         }
         let is_kept = |place: usize| {
@@ -348,11 +346,8 @@ impl BodyState {
             force: body.force,
             torque: body.torque,
             flight: FlightState {
-                position: body.flight.position(),
-                orientation: body.flight.orientation(),
                 linear: body.flight.linear_velocity(),
                 angular: body.flight.angular_velocity(),
-                time: body.flight.reference_time(),
             },
             horizon: body.horizon.is_finite().then_some(body.horizon),
             version: body.version,
@@ -365,7 +360,7 @@ impl BodyState {
     }
 
     /// The body in this state.
-    fn restored(&self, own: &RigidBody) -> Result<RigidBody, SimulationError> {
+    fn restored(&self, own: &RigidBody, now: f64) -> Result<RigidBody, SimulationError> {
         let bad = |name: &'static str, value: String| SimulationError::BadBody {
             body: own.name.to_string(),
             name,
@@ -388,12 +383,6 @@ impl BodyState {
             body = own.with_kind(rebuilt, self.time)?;
         }
         body.kind = kind;
-        let flight = &self.flight;
-        body.flight =
-            ConstantTwist::try_new(flight.position, flight.orientation, flight.linear, flight.angular)
-                .and_then(|twist| twist.try_with_at(body.center))
-                .and_then(|twist| twist.try_with_reference_time(flight.time))
-                .map_err(|_| bad("flight of the snapshot", format!("{flight:?}")))?;
         (body.restitution, body.friction) = (self.restitution, self.friction);
         (body.damping, body.groups) = (self.damping, self.groups);
         (body.surface_velocity, body.target) = (self.surface_velocity, self.target);
@@ -404,6 +393,12 @@ impl BodyState {
         body.horizon = self.horizon.unwrap_or(f64::INFINITY);
         (body.version, body.has_flown) = (self.version, self.has_flown);
         (body.asleep, body.quiet, body.slowest) = (self.asleep, self.quiet, self.slowest);
+        // It flies from where it is: what is checked is what the next step begins with. What no step moves stands still.
+        let flight = if body.is_awake() { self.flight } else { FlightState::default() };
+        body.flight = ConstantTwist::try_new(self.position, self.orientation, flight.linear, flight.angular)
+            .and_then(|twist| twist.try_with_at(body.center))
+            .and_then(|twist| twist.try_with_reference_time(now))
+            .map_err(|_| bad("flight of the snapshot", format!("{flight:?}")))?;
         body.gained = self.gained;
         (body.held, body.free, body.lead) = (false, false, None);
         Ok(body)
@@ -446,5 +441,49 @@ impl ContactState {
             impulse: self.impulse,
             sliding: self.sliding,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Body;
+    use d2m_bvh::MeshTree;
+
+    /// Two cubes, three apart, and what a file keeps of them.
+    fn written() -> (Simulation, Snapshot) {
+        let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()));
+        let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
+        for x in [0.0, 3.0] {
+            simulation.add(&Body::new("cube", Arc::clone(&cube)).with_position(DVec3::X * x)).unwrap();
+        }
+        simulation.step().unwrap();
+        let mut snapshot = simulation.snapshot();
+        for state in &mut snapshot.bodies {
+            state.held = Held::default();
+        }
+        (simulation, snapshot)
+    }
+
+    /// What was changed in a file is checked where the next step begins with it.
+    #[test]
+    fn a_place_of_a_file_is_checked() {
+        let (mut simulation, mut snapshot) = written();
+        simulation.restore(&snapshot).unwrap();
+        snapshot.bodies[1].position = DVec3::X * 0.5;
+        assert!(matches!(simulation.restore(&snapshot), Err(SimulationError::Intersecting { .. })));
+    }
+
+    /// What a file says is asleep and fast stands still: nothing would be proven of its flight.
+    #[test]
+    fn what_is_asleep_in_a_file_stands_still() {
+        let (mut simulation, mut snapshot) = written();
+        snapshot.bodies[1].asleep = true;
+        snapshot.bodies[1].flight.linear = DVec3::X * -100.0;
+        simulation.restore(&snapshot).unwrap();
+        for _ in 0..5 {
+            simulation.step().unwrap();
+        }
+        assert_eq!(simulation.position(snapshot.bodies[1].id), DVec3::X * 3.0);
     }
 }

@@ -2,12 +2,12 @@
 
 use crate::broad_phase::{Aabb, meeting};
 use crate::contact::{Accuracy, ContactPoint, SolverBody, Start, System};
-use crate::pairs::{Pair, distance_of, measure};
+use crate::pairs::{Pair, distance_of, held_at, measure};
 use crate::rigid_body::RigidBody;
 use crate::step::are_spheres_apart;
 use crate::velocity::Velocity;
 use crate::{Simulation, SimulationError, StepError};
-use d2m_bvh::{PairCache, StartState};
+use d2m_bvh::{Distance, PairCache, StartState};
 use glam::{DMat3, DVec3};
 
 /// Bodies that touch are moved this far apart before anything flies, of their size or their distance from the origin if that is more:
@@ -59,7 +59,7 @@ impl Simulation {
                 self.recorder.change(self.bodies[k].id, self.bodies[k].flight);
             }
         } else {
-            let flights = self.ids().map(|id| (id, self.bodies[id.index()].first_flight()));
+            let flights = self.ids().map(|id| (id, self.bodies[id.index()].first_flight(self.time)));
             self.recorder.begin(self.time, flights.collect());
         }
         Ok(())
@@ -148,12 +148,17 @@ impl Simulation {
         let poses = [one, two].map(|body| body.pose_at(self.time));
         let found = distance_of([one, two], poses, gap, &mut PairCache::new());
         let found = found.map_err(|error| one.query_error(two, error))?;
-        let Some(found) = found else { return Ok(Placed::Apart(None)) };
         // Of round bodies that touch rounding decides whether they are apart.
         let rounded = ROUNDING * (one.rounding + two.rounding);
-        if found.state == StartState::Apart && found.lower >= rounded {
-            return Ok(Placed::Apart((found.lower < gap).then_some(found.lower)));
-        }
+        let is_apart = |found: &Distance| found.state == StartState::Apart && found.lower >= rounded;
+        let apart = found.as_ref().filter(|found| is_apart(found)).map(|found| found.lower);
+        let Some(found) = found.filter(|_| apart.is_none()) else {
+            let held = held_at([one, two], poses, apart.unwrap_or(gap));
+            return match held.map_err(|error| one.query_error(two, error))? {
+                Some(point) => Err(self.intersecting((a, b), point)),
+                None => Ok(Placed::Apart(apart.filter(|lower| *lower < gap))),
+            };
+        };
         let point = 0.5 * (found.point_a + found.point_b);
         let contacts = if found.state == StartState::Contained { None } else { self.touch_contacts(a, b) };
         match contacts {
@@ -175,7 +180,9 @@ impl Simulation {
         pose.translation += moved;
         let poses = [one.pose_at(self.time), pose];
         let found = distance_of([one, two], poses, f64::INFINITY, &mut PairCache::new()).ok()??;
-        (found.state == StartState::Apart).then_some(found.lower)
+        let is_apart =
+            found.state == StartState::Apart && held_at([one, two], poses, found.lower) == Ok(None);
+        is_apart.then_some(found.lower)
     }
 
     /// The contacts of two bodies that touch up to rounding; none: they overlap.

@@ -523,3 +523,32 @@ fn what_is_removed_between_two_recordings_is_stated() {
     assert!(segments[1..].iter().all(|segment| segment.removed.is_empty()));
     assert!(segments[0].changed.iter().any(|(id, _)| *id == falling));
 }
+
+/// Each recording begins with where the bodies are, however long they have flown before it.
+#[test]
+fn a_recording_begins_where_its_bodies_are() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let turning = ConstantTwist::REST.with_position(DVec3::X * 9.0).with_angular_velocity(DVec3::Z);
+    let wheel = Body::new("wheel", cube()).with_kind(Kind::Kinematic(Arc::new(turning)));
+    let thrown =
+        Body::new("thrown", cube()).with_linear_velocity(DVec3::X).with_angular_velocity(DVec3::Z * 3.0);
+    let ids = [wheel, thrown].map(|body| simulation.add(&body).unwrap());
+    for _ in 0..5 {
+        simulation.step().unwrap();
+    }
+    let snapshot = simulation.snapshot();
+    for restores in [false, true] {
+        simulation.finish();
+        if restores {
+            simulation.restore(&snapshot).unwrap();
+        }
+        let places = ids.map(|id| simulation.pose(id));
+        let segments = simulation.step().unwrap().segments;
+        for (id, place) in ids.into_iter().zip(places) {
+            let stated = segments[0].changed.iter().find(|(changed, _)| *changed == id).unwrap();
+            let pose = stated.1.pose_and_twist(segments[0].start).0;
+            let off = pose.transform_point(DVec3::ONE) - place.transform_point(DVec3::ONE);
+            assert!(off.length() < 1e-14, "{restores}: {off}");
+        }
+    }
+}

@@ -2,10 +2,12 @@
 
 mod ground;
 
+use d2m_bvh::{MeshTree, TriMesh};
 use d2m_dynamics::{
-    Body, BodyId, Joint, Kind, Part, Presence, RayAnswer, Simulation, SimulationOptions, TouchChange,
+    Body, BodyId, Joint, Kind, Mass, MassProperties, Part, Presence, RayAnswer, Simulation, SimulationError,
+    SimulationOptions, TouchChange,
 };
-use glam::{BVec3, DVec3};
+use glam::{BVec3, DMat3, DVec3};
 use ground::{at, cube, floor, rest, tree};
 use std::sync::Arc;
 
@@ -175,4 +177,44 @@ fn bodies_of_parts_meet_with_each_of_them() {
     assert!((bottom.y - 1e-3).abs() < 1e-4 && simulation.position(below).y < 0.302, "{bottom}");
     let mass = simulation.mass_properties(table).unwrap().mass;
     assert!((mass - 1000.0 * (0.8 + 4.0 * 0.04)).abs() < 1e-9, "{mass}");
+}
+
+/// What a solid holds is in it, also a mere surface: it is sensed there, and may not begin there.
+#[test]
+fn surfaces_inside_of_solids_are_in_them() {
+    let sheet = || {
+        let leaf =
+            TriMesh::try_new(vec![DVec3::ZERO, DVec3::X * 0.1, DVec3::Y * 0.1], vec![[0, 1, 2]]).unwrap();
+        let mass = MassProperties::try_new(1.0, DVec3::ZERO, DMat3::IDENTITY).unwrap();
+        Body::new("sheet", Arc::new(MeshTree::new(leaf))).with_mass(Mass::Given(mass))
+    };
+    for speed in [0.0, 1.0] {
+        let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
+        let zone = Body::new("zone", cube()).with_kind(Kind::Static).with_presence(Presence::Sensor);
+        let zone = simulation.add(&zone).unwrap();
+        let sheet = simulation.add(&sheet().with_linear_velocity(DVec3::Z * speed)).unwrap();
+        let mut left = None;
+        while simulation.time() < 0.8 {
+            for touch in simulation.step().unwrap().touches {
+                assert_eq!((touch.a, touch.b), (zone, sheet));
+                left = (touch.change == TouchChange::Ended).then_some(touch.time);
+            }
+            assert!(simulation.touch(zone, sheet) == left.is_none(), "{left:?} at {}", simulation.time());
+        }
+        // It leaves the cube's side at half a unit of time.
+        assert!(
+            left.is_none() == (speed == 0.0) && left.is_none_or(|time| (time - 0.5).abs() < 1e-6),
+            "{left:?}"
+        );
+    }
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    simulation.add(&Body::new("cube", cube())).unwrap();
+    let refused = simulation.add_checked(&sheet());
+    assert!(
+        matches!(refused, Err(SimulationError::Intersecting { depth, .. }) if depth > 0.3),
+        "{refused:?}"
+    );
+    let beside = sheet().with_position(DVec3::X * 0.6);
+    let beside = simulation.add_checked(&beside).unwrap();
+    assert!(simulation.set_pose(beside, at(0.1, 0.1, 0.1)).is_err() || simulation.step().is_err());
 }

@@ -2,12 +2,10 @@
 
 use super::Step;
 use super::flights::are_spheres_apart;
-use crate::pairs::{distance_of, solid_of};
 use crate::rigid_body::{RigidBody, Role};
 use crate::{StepError, parallel};
 use d2m_bvh::{
-    Budget, ContactSpan, Moving, PairCache, QueryError, QueryOptions, SpanStatus, StartState, Window,
-    contact_spans,
+    Budget, ContactSpan, QueryError, QueryOptions, SpanStatus, Window, contact_spans, time_of_contact,
 };
 
 impl Step<'_> {
@@ -54,15 +52,13 @@ fn spans(
     if are_spheres_apart(a, b, window.start(), window.end(), 0.0) {
         return all(SpanStatus::Clear);
     }
+    // What a solid holds is in it, whatever it is itself.
+    let [one, two] = [a, b].map(|body| body.moving_on(&body.flight));
+    let options = QueryOptions::default().with_budget(Budget::UNLIMITED.with_node_tests(node_tests));
     if a.stands_still() && b.stands_still() {
-        let poses = [a, b].map(|body| body.pose_at(window.end()));
-        let found = distance_of([a, b], poses, 0.0, &mut PairCache::new())?;
-        let is_apart = found.is_none_or(|found| found.state == StartState::Apart);
-        return all(if is_apart { SpanStatus::Clear } else { SpanStatus::Contact });
+        let end = Window::try_new(window.end(), window.end())?;
+        let is_clear = time_of_contact(one, two, end, &options)?.is_separated();
+        return all(if is_clear { SpanStatus::Clear } else { SpanStatus::Contact });
     }
-    let options = QueryOptions::default()
-        .with_solid(solid_of(a, b))
-        .with_budget(Budget::UNLIMITED.with_node_tests(node_tests));
-    let [one, two] = [a, b].map(|body| Moving::new(&*body.tree, &body.flight).with_radius(body.rounding));
     contact_spans(one, two, window, &options, None)
 }
