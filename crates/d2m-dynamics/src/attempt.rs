@@ -1,9 +1,7 @@
 //! Velocities of the flights of one island: until when they can be solved for, and by which targets.
 
 use crate::SimulationOptions;
-use crate::contact::{
-    Accuracy, ContactPoint, Material, NEAR, Room, SolverBody, Span, Start, System, add, select,
-};
+use crate::contact::{Accuracy, ContactPoint, NEAR, Room, SolverBody, Span, Start, System, add, select};
 use crate::joined::Joined;
 use crate::momenta::Momenta;
 use crate::rigid_body::{RigidBody, Splits};
@@ -148,7 +146,9 @@ impl Problem<'_> {
         // Bodies that are held keep their momenta and the time at which they were held: they have no flight that ends. Bodies that tumble in a
         // crowd meet others before the energy of their turning counts: it is not divided for one of them.
         let is_whole = self.in_crowd || moved().count() > MANY;
-        let horizon = |s: &Cow<'_, RigidBody>| s.horizon_within(end, self.options.step, Splits::Own);
+        let has_joints = self.contacts.iter().any(|contact| contact.row.is_some());
+        let splits = if has_joints { Splits::Jointed } else { Splits::Own };
+        let horizon = |s: &Cow<'_, RigidBody>| s.horizon_within(end, self.options.step, splits);
         let mut end = if is_whole { end } else { moved().map(horizon).fold(end, f64::min) };
         let mut tried = self.attempt(now, end, Room::Kept);
         for _ in 0..MOST_HALVINGS {
@@ -188,13 +188,7 @@ impl Problem<'_> {
         most: f64,
         friction: Friction,
     ) -> Option<Attempt> {
-        let slippery = |c: &ContactPoint| ContactPoint {
-            material: Material { friction: 0.0, ..c.material },
-            impulse: 0.0,
-            sliding: [0.0; 2],
-            ..*c
-        };
-        let contacts: Vec<ContactPoint> = self.contacts.iter().map(slippery).collect();
+        let contacts: Vec<ContactPoint> = self.contacts.iter().map(ContactPoint::without_friction).collect();
         let smooth = Problem { contacts: &contacts, ..*self };
         let slipping = smooth.attempt(now, end, Room::Kept);
         let obeys = |attempt: &Attempt| attempt.residual <= most && self.lasts(attempt);
@@ -208,11 +202,15 @@ impl Problem<'_> {
         let lengths = (0..=SHORTENED).map(|k| PASSED_ON * safe / f64::from(1u32 << k));
         let ends = lengths.map(|length| if length < end - now { now + length } else { end });
         let ends: Vec<f64> = ends.filter(|&until| until > now).collect();
-        let shared = |problem: &Problem<'_>| {
-            let mut attempts = ends.iter().map(|&until| problem.attempt(now, until, Room::Shared));
-            attempts.find(obeys)
+        let shared = |problem: &Problem<'_>, until: f64| {
+            Some(problem.attempt(now, until, Room::Shared)).filter(|attempt| obeys(attempt))
         };
-        shared(self).or_else(|| if is_possible { None } else { shared(&smooth) })
+        if friction == Friction::GivesWay {
+            // With friction, as long as that has flights no shorter than without.
+            return ends.iter().find_map(|&until| shared(self, until).or_else(|| shared(&smooth, until)));
+        }
+        let longest = |problem: &Problem<'_>| ends.iter().find_map(|&until| shared(problem, until));
+        longest(self).or_else(|| if is_possible { None } else { longest(&smooth) })
     }
 
     /// A gap in a step.

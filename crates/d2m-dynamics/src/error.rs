@@ -233,13 +233,26 @@ pub enum SimulationError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StepError {
-    /// Kinematic bodies crush a dynamic body: there is no free place for it.
+    /// Kinematic bodies crush a dynamic body. That is proven: there are multipliers of the contacts of all that is squeezed, as they were
+    /// measured, whose combination no velocities obey (Farkas), none that would be a thousand times as fast as what closes in.
     #[error("at time {time}: body {pushing} crushes body {crushed}, which cannot give way")]
     Crushed {
-        /// The kinematic body, or the body that is held against it.
+        /// The kinematic body.
         pushing: String,
         /// The dynamic body.
         crushed: String,
+        /// When.
+        time: f64,
+    },
+    /// A kinematic body comes down on a dynamic one, and neither room for that nor a proof that there is none was found.
+    #[error(
+        "at time {time}: body {pushing} corners body {cornered}: neither room for it nor a proof that there is none was found"
+    )]
+    Cornered {
+        /// The kinematic body.
+        pushing: String,
+        /// The body that is held against it.
+        cornered: String,
         /// When.
         time: f64,
     },

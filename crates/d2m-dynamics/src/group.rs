@@ -155,7 +155,8 @@ struct Impacts {
     momenta: Vec<Momenta>,
 }
 
-/// The impacts at the contacts of an island that bounce and have been hit.
+/// The impacts at the contacts of an island that bounce and have been hit, while the equations of its joints hold: what these do to bodies
+/// that bounce keeps energy then, as the rod of a pendulum does.
 fn impacts_of(
     states: &[Cow<'_, RigidBody>],
     island: &Island,
@@ -168,6 +169,8 @@ fn impacts_of(
     if hit.is_empty() {
         return Impacts { contacts: hit, momenta };
     }
+    let equations = island.contacts.iter().filter(|c| c.row.is_some_and(|row| row.equation.is_some()));
+    let hit: Vec<ContactPoint> = hit.into_iter().chain(equations.copied()).collect();
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
     let start = |s: &Cow<'_, RigidBody>| {
         if moves(s) { body_at(s, s.velocity(), s.inverse_inertia_at(s.orientation)) } else { still(s) }

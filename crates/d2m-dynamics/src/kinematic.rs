@@ -5,7 +5,7 @@ use crate::rigid_body::{LARGEST, RigidBody, rotation_vector};
 use crate::velocity::Velocity;
 use crate::{SimulationError, StepError};
 use d2m_interval::{Interval, IntervalVec3};
-use d2m_motion::CoveredMotion;
+use d2m_motion::{CoveredMotion, RigidMotion as _};
 use glam::{DQuat, DVec3};
 
 /// How far the twist of a kinematic flight may lead off the motion between its ends, of the gap.
@@ -55,6 +55,14 @@ impl RigidBody {
             horizon = middle;
         }
         Err(StepError::TooFast { body: self.name.to_string(), time: start })
+    }
+
+    /// Until when what follows its motion may go on as in its present flight: the next joint of the motion.
+    pub(crate) fn goes_on_until(&self, time: f64) -> f64 {
+        match &self.kind {
+            Kind::Kinematic(motion) => motion.smooth_until(time).unwrap_or(f64::INFINITY),
+            _ => self.horizon,
+        }
     }
 
     /// The flight of a driven body that ends at its target; at rest where it has none.

@@ -28,6 +28,8 @@ pub(crate) enum Splits {
     Own,
     /// At halves, quarters, … of the step, counted from its end: of many bodies at the same times, so that these are few.
     Common,
+    /// As [`Self::Own`], by the turn that a body makes in joints.
+    Jointed,
 }
 
 /// What a place in the list of bodies is for.
@@ -439,7 +441,8 @@ impl RigidBody {
     }
 
     /// How long the next flight may be at most: the step, or what a body that tumbles takes for a small turn. It depends on the energy
-    /// alone, which a free body keeps: so all its flights are of one length, as the reversibility of the midpoint rule asks for.
+    /// alone, which a free body keeps: so all its flights are of one length, as the reversibility of the midpoint rule asks for. What joints
+    /// hold keeps no energy of its own: there it is the turn that the body makes, which of a thin bar is much less than it could make.
     pub(crate) fn horizon_within(&self, end: f64, step: f64, splits: Splits) -> f64 {
         let left = end - self.time;
         if !self.is_dynamic() || left <= 0.0 {
@@ -447,7 +450,10 @@ impl RigidBody {
         }
         let turn = self.inverse_inertia_at(self.orientation) * self.angular_momentum;
         let energy = self.angular_momentum.dot(turn);
-        let fastest = (energy * self.moments[1]).max(0.0).sqrt();
+        let fastest = match splits {
+            Splits::Jointed => turn.length(),
+            Splits::Own | Splits::Common => (energy * self.moments[1]).max(0.0).sqrt(),
+        };
         let tumbles = (1.0 - self.moments[0] / self.moments[1]) * fastest;
         if tumbles.is_nan() || tumbles * left <= MOST_TURN {
             return end;
@@ -455,8 +461,8 @@ impl RigidBody {
         let length = (MOST_TURN / tumbles).max(step / MOST_FLIGHTS);
         let parts = |whole: f64| (whole / length - ROUND).ceil().max(1.0);
         let horizon = match splits {
-            Splits::Own if parts(left) <= 1.0 => end,
-            Splits::Own => self.time + left / parts(left),
+            Splits::Own | Splits::Jointed if parts(left) <= 1.0 => end,
+            Splits::Own | Splits::Jointed => self.time + left / parts(left),
             Splits::Common => {
                 let part = step / f64::from((parts(step) as u32).next_power_of_two());
                 end - ((left / part - ROUND).ceil() - 1.0) * part

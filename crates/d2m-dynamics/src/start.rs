@@ -13,6 +13,9 @@ use glam::{DMat3, DVec3};
 /// Bodies that touch are moved this far apart before anything flies, of their size or their distance from the origin if that is more:
 /// 2⁻³⁶, of which a query still resolves a half with a tolerance of a sixteenth of it, 2⁻⁴¹.
 const APART: f64 = 1.0 / (1u64 << 36) as f64;
+/// The part of that from which on bodies count as apart: nearer ones are parted as those that touch are, since no query resolves a half of
+/// what they have.
+const STILL_APART: f64 = 0.5;
 /// How far a body is moved on trial, of the same, to see where it can part: 2⁻²⁰.
 const TRIAL: f64 = 1.0 / (1u64 << 20) as f64;
 /// Overlaps up to this part of it are the rounding of poses, and count as touching: 2⁻⁴⁰.
@@ -152,17 +155,20 @@ impl Simulation {
         let rounded = ROUNDING * (one.rounding + two.rounding);
         let is_apart = |found: &Distance| found.state == StartState::Apart && found.lower >= rounded;
         let apart = found.as_ref().filter(|found| is_apart(found)).map(|found| found.lower);
-        let Some(found) = found.filter(|_| apart.is_none()) else {
-            let held = held_at([one, two], poses, apart.unwrap_or(gap));
-            return match held.map_err(|error| one.query_error(two, error))? {
-                Some(point) => Err(self.intersecting((a, b), point)),
-                None => Ok(Placed::Apart(apart.filter(|lower| *lower < gap))),
-            };
+        let placed_apart = || match held_at([one, two], poses, apart.unwrap_or(gap)) {
+            Ok(Some(point)) => Err(self.intersecting((a, b), point)),
+            Ok(None) => Ok(Placed::Apart(apart.filter(|lower| *lower < gap))),
+            Err(error) => Err(one.query_error(two, error)),
+        };
+        let resolved = STILL_APART * APART * size([one, two]);
+        let Some(found) = found.filter(|_| apart.is_none_or(|lower| lower < resolved)) else {
+            return placed_apart();
         };
         let point = 0.5 * (found.point_a + found.point_b);
         let contacts = if found.state == StartState::Contained { None } else { self.touch_contacts(a, b) };
         match contacts {
             Some(contacts) => Ok(Placed::Touching(Touch { pair: (a, b), contacts, point })),
+            None if apart.is_some() => placed_apart(),
             None => Err(self.intersecting((a, b), point)),
         }
     }

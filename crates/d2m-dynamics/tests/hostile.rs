@@ -263,10 +263,10 @@ fn pushed(name: &str, shape: &str, from: DVec3, way: DVec3) -> Body {
 }
 
 /// A press comes down on a box. Where it leaves two fifths of a gap in all, which is less than the two gaps that are asked for, the box takes its
-/// place between; where it leaves nothing it crushes the box, no sooner than it must.
+/// place between; where it would go a hundredth of a gap too far it crushes the box, no sooner than it must.
 #[test]
 fn a_press_crushes_only_what_has_no_room() {
-    for (left, is_crushed) in [(4e-4, false), (0.0, true)] {
+    for (left, is_crushed) in [(4e-4, false), (-1e-5, true)] {
         let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
         simulation.add(&floor(1.0).with_friction(0.3)).unwrap();
         let half = "box?x=0.3&y=0.3&z=0.3";
@@ -284,13 +284,50 @@ fn a_press_crushes_only_what_has_no_room() {
         if is_crushed {
             let Some(StepError::Crushed { pushing, crushed, time }) = error else { panic!("{error:?}") };
             assert_eq!((pushing.as_str(), crushed.as_str()), ("press", "cube"));
-            assert!(time > 1.0 - 1e-6 && time <= 1.0, "{time}");
+            assert!(time > 1.0 - 1e-5 && time <= 1.0, "{time}");
         } else {
             assert_eq!(error, None);
             let height = simulation.position(cube).y - 0.3;
             assert!(height > 0.2 * left && height < 0.8 * left, "{height}");
         }
     }
+}
+
+/// A press that stops just where a box has no room left: rounding decides, and no proof is found. Nothing is claimed then.
+#[test]
+fn what_rounding_decides_is_not_called_crushed() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    simulation.add(&floor(1.0).with_friction(0.3)).unwrap();
+    let half = "box?x=0.3&y=0.3&z=0.3";
+    simulation.add(&Body::new("cube", tree(half)).with_position(DVec3::Y * 0.301)).unwrap();
+    let press = pushed("press", "box?x=1&y=0.2&z=1", DVec3::Y * 2.2, DVec3::Y * -1.4);
+    simulation.add(&press).unwrap();
+    let error = loop {
+        match simulation.step() {
+            Ok(_) => assert!(simulation.time() < 1.5),
+            Err(error) => break error,
+        }
+    };
+    let StepError::Cornered { pushing, cornered, time } = error else { panic!("{error:?}") };
+    assert_eq!((pushing.as_str(), cornered.as_str()), ("press", "cube"));
+    assert!(time > 1.0 - 1e-9 && time <= 1.0, "{time}");
+}
+
+/// A press stops a thousandth of a gap above three boxes, which lean a little: friction locks them for as long as there is room, and slips then.
+#[test]
+fn boxes_share_what_a_press_leaves() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    simulation.add(&floor(1.0).with_friction(0.5)).unwrap();
+    let cube = tree("box?x=0.5&y=0.5&z=0.5");
+    let boxes = [0.501, 1.502, 2.503].map(|height| {
+        let body = Body::new(format!("at {height}"), Arc::clone(&cube)).with_position(DVec3::Y * height);
+        simulation.add(&body.with_friction(0.5)).unwrap()
+    });
+    let press = pushed("press", "box?x=1.5&y=0.1&z=1.5", DVec3::Y * 3.5, DVec3::Y * (1e-6 - 0.4));
+    simulation.add(&press.with_friction(0.5)).unwrap();
+    assert_eq!(run(&mut simulation, 1.2), 0.0);
+    let top = simulation.position(boxes[2]).y - 2.5;
+    assert!(top > 0.0 && top < 1e-6, "{top}");
 }
 
 /// A stone that is wider at its foot, by seven degrees, and four plates along its sides that close in to two fifths of a gap each and rise: with

@@ -18,18 +18,42 @@ fn end(simulation: &Simulation, body: BodyId, x: f64) -> DVec3 {
     simulation.pose(body).transform_point(DVec3::X * x)
 }
 
+fn kinetic(simulation: &Simulation, id: BodyId) -> f64 {
+    let mass = simulation.mass_properties(id).unwrap();
+    let spin = simulation.orientation(id).conjugate() * simulation.angular_velocity(id);
+    0.5 * (mass.mass * simulation.linear_velocity(id).length_squared() + spin.dot(mass.inertia * spin))
+}
+
 fn energy(simulation: &Simulation) -> f64 {
     let of = |id: BodyId| {
-        let mass = simulation.mass_properties(id).unwrap();
-        let spin = simulation.orientation(id).conjugate() * simulation.angular_velocity(id);
-        let kinetic =
-            mass.mass * simulation.linear_velocity(id).length_squared() + spin.dot(mass.inertia * spin);
         // The velocity is that of the middle of the last flight.
         let half = 0.5 * simulation.options().step;
         let height = simulation.position(id).y - simulation.linear_velocity(id).y * half;
-        0.5 * kinetic + mass.mass * 9.81 * height
+        kinetic(simulation, id) + simulation.mass_properties(id).unwrap().mass * 9.81 * height
     };
     simulation.ids().map(of).sum()
+}
+
+/// A bar on a pin hits another one near its end: joints take part in the impact, so that its energy is passed on.
+#[test]
+fn bars_on_pins_bounce_off_each_other() {
+    let mut simulation = Simulation::new(still()).unwrap();
+    let shape = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.05&z=0.05").unwrap()));
+    let mut bar = |name: &str, y: f64, spin: f64| {
+        let body = Body::new(name, Arc::clone(&shape)).with_position(DVec3::Y * y).with_restitution(1.0);
+        let body = body.with_angular_velocity(DVec3::Z * spin).with_linear_velocity(DVec3::Y * (0.5 * spin));
+        simulation.add(&body).unwrap()
+    };
+    let (first, second) = (bar("first", 0.0, 1.0), bar("second", 0.3, 0.0));
+    for (body, end) in [(first, DVec3::X * -0.5), (second, DVec3::new(-0.5, 0.3, 0.0))] {
+        simulation.add_joint(&Joint::new(JointKind::Revolute, body, None, end).with_axis(DVec3::Z)).unwrap();
+    }
+    let before = kinetic(&simulation, first);
+    run(&mut simulation, 0.4);
+    let after = [first, second].map(|body| kinetic(&simulation, body));
+    assert!(after[1] > 0.1 * before, "{after:?}");
+    // What straight flights of a center on a circle leave.
+    assert!((after[0] + after[1] - before).abs() < 1e-3 * before, "{before} {after:?}");
 }
 
 fn run(simulation: &mut Simulation, until: f64) {

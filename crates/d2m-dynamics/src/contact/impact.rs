@@ -44,10 +44,12 @@ pub(crate) fn impact(
         let energy = system.doubled_energy(inertia);
         // What a scale adds to the energy.
         let mut add = |scale: f64| {
-            // Contacts that do not close have no part in this round: a target that they have already.
+            // Contacts that do not close have no part in this round: a target that they have already. Joints hold meanwhile.
             let target = |k: usize| {
                 if closes(k) {
                     -scale * contacts[k].material.restitution * rates[k]
+                } else if contacts[k].row.is_some() {
+                    0.0
                 } else {
                     f64::NEG_INFINITY
                 }

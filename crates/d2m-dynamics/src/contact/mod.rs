@@ -5,6 +5,7 @@ mod anderson;
 mod chosen;
 mod factor;
 mod impact;
+mod infeasible;
 mod law;
 mod line;
 mod newton;
@@ -17,6 +18,7 @@ mod system;
 
 pub(crate) use accuracy::Accuracy;
 pub(crate) use impact::impact;
+pub(crate) use infeasible::Squeeze;
 pub(crate) use law::Law;
 pub(crate) use newton::Start;
 pub use point::Material;

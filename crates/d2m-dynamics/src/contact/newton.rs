@@ -62,6 +62,9 @@ const MOST_SOFT: f64 = 1e-2;
 const MOST_LOSSES: u32 = 3;
 /// Of a crowd, a round that leaves more than this of the one before is the last one.
 const LITTLE: f64 = 0.8;
+/// The softness of rows, of their scale, where multipliers are to prove that no velocities obey them: what these leave is of this order
+/// against the rates that are asked for, and far above rounding.
+const PRESSED: f64 = 1.0 / (1u64 << 30) as f64;
 /// The part of the aim to which each round's velocities are found.
 const INNER: f64 = 0.25;
 /// The slope along a line, of that at its start, with which a search ends.
@@ -99,14 +102,7 @@ impl System {
         start: Start,
         effort: Effort,
     ) -> f64 {
-        let mut count = 0;
-        let mut place = |body: usize| {
-            self.is_moved(body).then(|| {
-                count += 1;
-                count - 1
-            })
-        };
-        let places: Vec<Option<usize>> = (0..self.bodies.len()).map(&mut place).collect();
+        let (places, count) = self.moved_places();
         let Some(mut factor) = self.take_factor(&places, count) else { return self.residual(targets) };
         let free = self.free();
         let inertia: Vec<DMat3> = self.bodies.iter().map(inertia_of).collect();
@@ -173,6 +169,43 @@ impl System {
         self.set(&free, &best.1);
         self.factor = Some(factor);
         best.0
+    }
+
+    /// Multipliers of frictionless contacts with rows so hard that they hardly yield, of bodies without other impulses: where no velocities obey
+    /// the targets, those that violate them least. None: they are not found.
+    pub(super) fn press_hard(mut self, targets: &[f64], fastest: f64) -> Option<Vec<f64>> {
+        let (places, count) = self.moved_places();
+        let mut factor = self.take_factor(&places, count)?;
+        let free = self.velocities();
+        let inertia: Vec<DMat3> = self.bodies.iter().map(inertia_of).collect();
+        let none = Projected { impulse: [0.0; 3], slope: None };
+        let mut newton = Newton {
+            system: &self,
+            targets,
+            free: &free,
+            inertia: &inertia,
+            places: &places,
+            soft: PRESSED,
+            center: self.impulses.clone(),
+            shift: vec![0.0; self.blocks.len()],
+            velocity: free.clone(),
+            found: vec![none; self.blocks.len()],
+        };
+        newton.minimize(&mut factor, PRESSED * fastest, Effort::FULL.steps);
+        Some(newton.found.iter().map(|found| found.impulse[0]).collect())
+    }
+
+    /// The places of moved bodies among these, and how many there are.
+    fn moved_places(&self) -> (Vec<Option<usize>>, usize) {
+        let mut count = 0;
+        let place = |body: usize| {
+            self.is_moved(body).then(|| {
+                count += 1;
+                count - 1
+            })
+        };
+        let places = (0..self.bodies.len()).map(place).collect();
+        (places, count)
     }
 
     /// The factorization for the pairs of bodies that blocks connect.
@@ -457,4 +490,30 @@ fn inertia_of(body: &SolverBody) -> DMat3 {
 
 fn square_of([nn, nt, nu, tt, tu, uu]: Slope) -> [[f64; 3]; 3] {
     [[nn, nt, nu], [nt, tt, tu], [nu, tu, uu]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ContactPoint;
+    use super::super::point::{Material, upright};
+    use super::*;
+
+    /// What slides does not lift: without the shift by what it slides it would, as fast as friction times that.
+    #[test]
+    fn what_slides_stays_on_the_ground() {
+        let body = |inverse_mass: f64, velocity: DVec3| SolverBody {
+            inverse_mass,
+            inverse_inertia: DMat3::IDENTITY,
+            velocity: Velocity { linear: velocity, angular: DVec3::ZERO },
+        };
+        let bodies = vec![body(0.0, DVec3::ZERO), body(0.5, DVec3::new(3.0, -1.0, 0.0))];
+        let mut contact = ContactPoint { arm_a: DVec3::ZERO, arm_b: DVec3::ZERO, ..upright([0, 1]) };
+        contact.material = Material { friction: 0.3, restitution: 0.0 };
+        let mut system = System::new(bodies, &[contact], |i| i);
+        let accuracy = Accuracy { precision: 1e-9, relative: 0.0, aim: 1.0, in_crowd: false, slow: 1.0 };
+        let residual = system.solve_direct(&[0.0], accuracy, Start::Sticking, Effort::STICK);
+        assert!(residual < 1e-9, "{residual}");
+        let off = system.bodies[1].velocity.linear - DVec3::X * 2.7;
+        assert!(off.length() < 1e-8, "{off}");
+    }
 }

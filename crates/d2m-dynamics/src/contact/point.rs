@@ -93,6 +93,12 @@ impl ContactPoint {
         self.distance - SHARED * self.distance.min(self.gap)
     }
 
+    /// The same contact of bodies that slip, without an impulse.
+    pub(crate) fn without_friction(&self) -> Self {
+        let material = Material { friction: 0.0, ..self.material };
+        Self { material, impulse: 0.0, sliding: [0.0; 2], ..*self }
+    }
+
     /// Along the normal and the tangents.
     pub(crate) fn impulses(&self) -> [f64; 3] {
         [self.impulse, self.sliding[0], self.sliding[1]]

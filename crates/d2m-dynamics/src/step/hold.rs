@@ -3,12 +3,20 @@
 use super::event::Event;
 use super::{Key, Step};
 use crate::StepError;
+use crate::attempt::{body_at, still};
+use crate::contact::{ContactPoint, NEAR, SolverBody, Squeeze};
+use crate::pairs::{AROUND, measure};
 use crate::rigid_body::RigidBody;
 use crate::velocity::Velocity;
+use std::collections::{BTreeMap, BTreeSet};
 
 impl Step<'_> {
-    /// The bodies of these events stand still until the end of the step.
+    /// The bodies of these events stand still until the end of the step, unless it is proven that something crushes one of them.
     pub(super) fn hold(&mut self, time: f64, events: &[Event]) -> Result<(), StepError> {
+        if let Some([pushing, crushed]) = self.proven_crushed(time, events) {
+            let name = |i: usize| self.sim.bodies[i].name.to_string();
+            return Err(StepError::Crushed { pushing: name(pushing), crushed: name(crushed), time });
+        }
         let mut changed = Vec::new();
         for event in events {
             let [a, b] = event.bodies;
@@ -19,10 +27,7 @@ impl Step<'_> {
                 .into_iter()
                 .find_map(|(p, c, free)| (moving(p) && !free).then_some((p, c)))
             {
-                return Err(self.crushed(pushing, crushed, time));
-            }
-            if is_free == [false, false] {
-                return Err(self.crushed(a, b, time));
+                return Err(self.cornered(pushing, crushed, time));
             }
             for (i, free) in [a, b].into_iter().zip(is_free) {
                 if free {
@@ -59,18 +64,69 @@ impl Step<'_> {
         self.holding = self.holding && self.sim.bodies.iter().any(|body| body.held);
     }
 
-    fn crushed(&self, pushing: usize, crushed: usize, time: f64) -> StepError {
+    /// What follows its motion and the body that it presses on, if all that contacts connect with the bodies of these events has no
+    /// velocities with which it keeps apart for as long as that takes to close a gap. A gap is little against the bodies, so that normals
+    /// and arms stay what they are; and what follows its motion goes on as in its present flight, unless its motion has a joint before that.
+    fn proven_crushed(&mut self, time: f64, events: &[Event]) -> Option<[usize; 2]> {
+        if !self.sim.bodies.iter().any(RigidBody::is_driven) {
+            return None;
+        }
+        let contacts = self.connected_contacts(time, events);
+        let mut members: Vec<usize> = contacts.iter().flat_map(|c| [c.a, c.b]).collect();
+        members.sort_unstable();
+        members.dedup();
+        let sim = &*self.sim;
+        let solver_body = |&i: &usize| {
+            let body = &sim.bodies[i];
+            if body.is_dynamic() {
+                body_at(body, Velocity::default(), body.inverse_inertia_at(body.orientation))
+            } else {
+                still(body)
+            }
+        };
+        let bodies: Vec<SolverBody> = members.iter().map(solver_body).collect();
+        let place = |body: usize| members.binary_search(&body).unwrap_or_default();
+        let squeeze = Squeeze { bodies: &bodies, contacts: &contacts, place };
+        let driven = members.iter().map(|&i| &sim.bodies[i]).filter(|body| body.is_driven());
+        let until = driven.map(|body| body.goes_on_until(time)).fold(f64::INFINITY, f64::min);
+        let length = (until - time).min(sim.options.gap / squeeze.closing());
+        let contact = squeeze.prove_infeasible(length)?;
+        let is_driven = |i: usize| sim.bodies[i].is_driven();
+        Some(if is_driven(contact.a) { [contact.a, contact.b] } else { [contact.b, contact.a] })
+    }
+
+    /// The contacts within the gap or so of all that they connect with the bodies of some events, as they are at a time of the flights.
+    fn connected_contacts(&mut self, time: f64, events: &[Event]) -> Vec<ContactPoint> {
+        let mut wave: Vec<usize> = events.iter().flat_map(|event| event.bodies).collect();
+        let (mut seen, mut found) = (BTreeSet::new(), BTreeMap::<Key, Vec<ContactPoint>>::new());
+        while !wave.is_empty() {
+            wave.retain(|&i| self.sim.bodies[i].is_dynamic() && seen.insert(i));
+            let keys = self.partners(&wave);
+            let sim = &*self.sim;
+            let gap = sim.options.gap;
+            wave.clear();
+            for key in keys {
+                if found.contains_key(&key) {
+                    continue;
+                }
+                let material = sim.material(key.0, key.1);
+                // What is too close to be measured is no part of a proof.
+                let measured =
+                    measure(&sim.bodies, key, time, AROUND * gap, gap, material).unwrap_or_default();
+                let mut contacts = measured.contacts;
+                contacts.retain(|contact| contact.distance <= NEAR * gap);
+                if !contacts.is_empty() {
+                    wave.extend([key.0, key.1]);
+                }
+                found.insert(key, contacts);
+            }
+        }
+        found.into_values().flatten().collect()
+    }
+
+    /// Neither a proof that the body is crushed nor room for it.
+    fn cornered(&self, pushing: usize, cornered: usize, time: f64) -> StepError {
         let name = |i: usize| self.sim.bodies[i].name.to_string();
-        // Whoever follows its motion against the body that is crushed is the one to name.
-        let drives = |i: &usize| self.sim.bodies[*i].is_driven();
-        let partner = |key: &Key| if key.0 == crushed { key.1 } else { key.0 };
-        let near = self
-            .sim
-            .pairs
-            .iter()
-            .filter(|(key, pair)| (key.0 == crushed || key.1 == crushed) && pair.nearest.is_some());
-        let driver = near.map(|(key, _)| partner(key)).find(drives);
-        let pushing = driver.unwrap_or(pushing);
-        StepError::Crushed { pushing: name(pushing), crushed: name(crushed), time }
+        StepError::Cornered { pushing: name(pushing), cornered: name(cornered), time }
     }
 }
