@@ -117,16 +117,16 @@ impl<R: Registers> Lanes for Avx<R> {
         }
     }
     #[inline(always)]
-    fn larger(wide: &WideSide<'_>, single: SingleSide) -> [u32; 8] {
+    fn larger(self, wide: WideSide<'_>, single: SingleSide) -> [u32; 8] {
         let mut out = [0; 8];
         // SAFETY: the processor has AVX2 (see the type); 32 bytes are readable and writable, without alignment.
         unsafe {
-            let sizes = _mm256_mul_ps(_mm256_loadu_ps(wide.sizes.as_ptr()), _mm256_set1_ps(wide.ratio));
-            let larger = _mm256_cmp_ps::<_CMP_GT_OQ>(sizes, _mm256_set1_ps(single.size));
+            let larger = _mm256_cmp_ps::<_CMP_GT_OQ>(self.0, _mm256_set1_ps(single.size));
             let children = _mm256_loadu_si256(wide.children.as_ptr().cast());
+            let larger = _mm256_andnot_si256(_mm256_srai_epi32::<31>(children), _mm256_castps_si256(larger));
             let flagged = _mm256_or_si256(children, _mm256_set1_epi32(wide.flag as i32));
             let other = _mm256_set1_epi32(single.tag as i32);
-            let open = _mm256_blendv_epi8(other, flagged, _mm256_castps_si256(larger));
+            let open = _mm256_blendv_epi8(other, flagged, larger);
             _mm256_storeu_si256(out.as_mut_ptr().cast(), open);
         }
         out

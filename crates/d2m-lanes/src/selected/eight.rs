@@ -37,11 +37,7 @@ pub struct Keys {
 /// Eight boxes that are compared with one by their sizes.
 #[derive(Clone, Copy, Debug)]
 pub struct WideSide<'a> {
-    /// Lane by lane.
-    pub sizes: &'a [f32; 8],
-    /// Multiplies the sizes.
-    pub ratio: f32,
-    /// What is below each box.
+    /// What is below each box; with the highest bit set nothing that can be expanded.
     pub children: &'a [u32; 8],
     /// Added to a child.
     pub flag: u32,
@@ -74,8 +70,9 @@ pub trait Lanes: Bytes + Div<Output = Self> {
     /// max(`least`, `base` + the integer part) in each lane, with `least` for what is not a number; and the bits of
     /// the lanes where that is below `limit`. Lanes stay below 2³¹ − `base`.
     fn keys(self, base: i32, least: i32, limit: i32) -> Keys;
-    /// `wide.children | wide.flag` in the lanes where `wide.sizes · wide.ratio > single.size`, else `single.tag`.
-    fn larger(wide: &WideSide<'_>, single: SingleSide) -> [u32; 8];
+    /// `wide.children | wide.flag` in the lanes where the size, `self`, is more than `single.size` and the child's highest bit
+    /// is not set, else `single.tag`.
+    fn larger(self, wide: WideSide<'_>, single: SingleSide) -> [u32; 8];
     /// Writes the wanted rows to the start of the list, in the order of their lanes, and returns how many there are. What
     /// is behind them has no meaning.
     fn pack(rows: &Rows, list: &mut [[u32; 4]; 8]) -> usize;

@@ -96,11 +96,11 @@ impl Lanes for Portable {
         Keys { keys, below }
     }
     #[inline(always)]
-    fn larger(wide: &WideSide<'_>, single: SingleSide) -> [u32; 8] {
-        let WideSide { sizes, ratio, children, flag } = *wide;
-        let mut out = [single.tag; 8];
+    fn larger(self, WideSide { children, flag }: WideSide<'_>, single: SingleSide) -> [u32; 8] {
+        let (sizes, mut out) = (self.store(), [single.tag; 8]);
         for lane in 0..8 {
-            out[lane] = if sizes[lane] * ratio > single.size { children[lane] | flag } else { single.tag };
+            let larger = sizes[lane] > single.size && children[lane] >> 31 == 0;
+            out[lane] = if larger { children[lane] | flag } else { single.tag };
         }
         out
     }

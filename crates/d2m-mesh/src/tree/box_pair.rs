@@ -97,7 +97,7 @@ impl<L: Lanes> BoxPair<L> {
         let at: [L::Two; 3] = splat(&placed.center);
         let to = [at[0] - center[0], at[1] - center[1], at[2] - center[2]];
         let half = load::<L>(&wide.half_extent);
-        let a = [load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]), load::<L>(&wide.axes[2])];
+        let a = wide.wide_axes::<L>();
         let b =
             [splat::<L, 4>(&placed.axes[0]), splat::<L, 4>(&placed.axes[1]), splat::<L, 4>(&placed.axes[2])];
         let k = [L::splat(placed.half[0]), L::splat(placed.half[1]), L::splat(placed.half[2])];

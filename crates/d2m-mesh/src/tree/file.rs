@@ -5,12 +5,12 @@
 //! | bytes | what |
 //! |---|---|
 //! | 8 | `d2mtree` and a zero |
-//! | 4 + 4 | version of the form (1), zero |
+//! | 4 + 4 | version of the form (2), zero |
 //! | 3 × 8 | numbers of vertices, triangles and wide nodes |
 //! | 4 × 8 | center and radius of the body |
 //! | 24 each | vertices |
 //! | 12 each | triangles: three vertex numbers |
-//! | 16 + 80 a box each | wide nodes: origin (three `f32`), number of boxes; then of each box center, three axes, half extents (15 `f32`), what is cut off the edges (12 bytes), radius (`f32`), and the triangle (with the highest bit) or node below it |
+//! | 16 + 68 a box each | wide nodes: origin (three `f32`), number of boxes; then of each box center, two axes, half extents (12 `f32`), what is cut off the edges (12 bytes), radius (`f32`), and the triangle (with the highest bit) or node below it |
 //! | 8 | [`checksum`] of all bytes before |
 
 use super::mesh_tree::MeshTree;
@@ -27,14 +27,14 @@ mod read;
 mod tests;
 
 const MAGIC: [u8; 8] = *b"d2mtree\0";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Bytes of the parts, as in the table above.
 const HEADER: usize = 8 + 4 + 4 + 3 * 8 + 4 * 8;
 const VERTEX: usize = 24;
 const TRIANGLE: usize = 12;
 const NODE: usize = 16;
-const BOX: usize = 80;
+const BOX: usize = 68;
 const CHECKSUM: usize = 8;
 
 /// Why bytes are no tree.
@@ -112,8 +112,9 @@ impl MeshTree {
             }
             bytes.extend(node.used.to_le_bytes());
             for lane in 0..node.used as usize {
-                let OrientedBox { center, axes, half_extent, slabs, radius } = node.oriented_box(lane);
-                for number in center.into_iter().chain(axes.into_iter().flatten()).chain(half_extent) {
+                let OrientedBox { center, axes: [first, second, _], half_extent, slabs, radius } =
+                    node.oriented_box(lane);
+                for number in center.into_iter().chain(first).chain(second).chain(half_extent) {
                     bytes.extend(number.to_le_bytes());
                 }
                 bytes.extend(slabs.as_flattened());

@@ -1,5 +1,6 @@
 //! Orthonormal frames in `f64`, four side by side.
 
+use crate::margin::{UNIT_F32, UNIT_F64};
 use d2m_lanes::{Doubles, Elementwise};
 
 /// A direction whose square is below this is none: the square is about lost to underflow.
@@ -43,9 +44,9 @@ fn unit<D: Doubles<Scalar = f64>>(v: &Vectors<D>) -> Vectors<D> {
     [v[0] * inverse, v[1] * inverse, v[2] * inverse]
 }
 
-/// Orthonormal frames from first directions and second ones; anything where they do not define them.
+/// The first two axes of orthonormal frames from first directions and second ones; anything where they do not define them.
 #[inline(always)]
-pub(super) fn frames<D: Doubles<Scalar = f64>>(first: &Vectors<D>, second: &Vectors<D>) -> [Vectors<D>; 3] {
+pub(super) fn frames<D: Doubles<Scalar = f64>>(first: &Vectors<D>, second: &Vectors<D>) -> [Vectors<D>; 2] {
     let (zero, one) = (D::splat(0.0), D::splat(1.0));
     let any = [one, zero, zero];
     let first = select(dot(first, first), D::splat(LEAST_SQUARE), first, &any);
@@ -59,14 +60,30 @@ pub(super) fn frames<D: Doubles<Scalar = f64>>(first: &Vectors<D>, second: &Vect
     let is_y = D::if_greater(b, c, zero, one - is_x);
     let far = [is_x, is_y, one - is_x - is_y];
     let y = select(is_other, zero, &y, &across(&far, &x));
-    let y = unit(&across(&unit(&y), &x));
-    let z = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
-    [x, y, z]
+    [x, unit(&across(&unit(&y), &x))]
 }
 
-/// Axes of triangles: longest edge, the direction across it, the normal.
+/// What ‖A·Aᵀ − I‖ of a box's axes may be, in the Frobenius norm: so in every entry and in the spectral norm.
+///
+/// First and second axes that are rounded to `f32` are each off by √3/2·u, and their cross product by as much as both and its own
+/// roundings, 2.2u: in all that is at most 9.5u, 1.4u in the mean, and above 5.2u in one of 10⁸ frames.
+pub(super) const MOST_DEVIATION: f64 = 5.2 * UNIT_F32;
+/// What the norm is computed wrong by, at most: its sums err by less than 2⁻⁴⁹.
+pub(super) const DEVIATION_ERROR: f64 = 32.0 * UNIT_F64;
+
+/// ‖A·Aᵀ − I‖ of frames.
 #[inline(always)]
-pub(super) fn triangle_axes<D: Doubles<Scalar = f64>>(corners: &[Vectors<D>; 3]) -> [Vectors<D>; 3] {
+pub(super) fn deviation<D: Doubles<Scalar = f64>>([x, y, z]: &[Vectors<D>; 3]) -> D {
+    let one = D::splat(1.0);
+    let (xx, yy, zz) = (dot(x, x) - one, dot(y, y) - one, dot(z, z) - one);
+    let (xy, xz, yz) = (dot(x, y), dot(x, z), dot(y, z));
+    let mixed = xy * xy + xz * xz + yz * yz;
+    ((xx * xx + yy * yy + zz * zz) + (mixed + mixed)).sqrt()
+}
+
+/// Axes of triangles: longest edge, the direction across it; the third is the normal.
+#[inline(always)]
+pub(super) fn triangle_axes<D: Doubles<Scalar = f64>>(corners: &[Vectors<D>; 3]) -> [Vectors<D>; 2] {
     let [a, b, c] = corners;
     let edges = [sub(b, a), sub(c, b), sub(a, c)];
     let squares = [dot(&edges[0], &edges[0]), dot(&edges[1], &edges[1]), dot(&edges[2], &edges[2])];

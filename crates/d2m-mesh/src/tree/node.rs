@@ -10,9 +10,12 @@
 //! Promise, in real arithmetic on the stored numbers: every point p (local) of every triangle of a box has
 //! |axisᵢ·(p − origin − center)| ≤ half_extentᵢ for i = 0, 1, 2 and |p − origin − center| ≤ radius, and is within the
 //! [`slabs`](super::slabs) of the box.
-//! The axes are orthonormal up to their rounding to `f32`: |A·Aᵀ − I| ≤ 5.2·2⁻²⁴ in each entry.
+//! The third axis is the cross product of the two that are stored, as [`cross`] computes it in `f32`: the same bits wherever it
+//! is needed. The axes are orthonormal up to roundings to `f32`: |A·Aᵀ − I| ≤ 5.2·2⁻²⁴ in each entry.
 
 use super::slabs::Slabs;
+use core::ops::{Mul, Sub};
+use d2m_lanes::Lanes;
 
 /// Lanes of a wide node.
 pub const WIDTH: usize = 8;
@@ -22,6 +25,14 @@ pub const LEAF: u32 = 1 << 31;
 
 /// The least size of a box with a node below it: stays positive when it is multiplied by itself.
 pub const LEAST_SIZE: f32 = 1e-18;
+/// Part of the radius that a box counts as thick at least, in its size.
+const LEAST_THICKNESS: f32 = 1e-3;
+
+/// The cross product, each product and difference rounded: the third axis of a box from the others.
+#[inline(always)]
+pub fn cross<T: Copy + Mul<Output = T> + Sub<Output = T>>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
 
 /// What is below a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,23 +43,20 @@ pub enum Below {
     Node(u32),
 }
 
-/// Up to eight boxes, lane by lane. 704 bytes, eleven cache lines.
+/// Up to eight boxes, lane by lane. 576 bytes, nine cache lines.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct WideNode {
     /// Box centers relative to `origin`, by axis then lane.
     pub center: [[f32; WIDTH]; 3],
-    /// Box axes: `axes[i][k]` is coordinate k of axis i of each lane.
-    pub axes: [[[f32; WIDTH]; 3]; 3],
+    /// The first two axes of each box: `axes[i][k]` is coordinate k of axis i of each lane.
+    pub axes: [[[f32; WIDTH]; 3]; 2],
     /// Half extents along the three axes.
     pub half_extent: [[f32; WIDTH]; 3],
     /// For each pair of axes the bits of four bytes, see [`Slabs`]; never those of a NaN.
     pub slabs: [[f32; WIDTH]; 3],
     /// Radius about the box center.
     pub radius: [f32; WIDTH],
-    /// What decides which of two boxes is expanded: the larger one. Zero for a leaf, at least [`LEAST_SIZE`] for a node,
-    /// negative for an unused lane.
-    pub size: [f32; WIDTH],
     /// Leaf flag and triangle number, or node number.
     pub child: [u32; WIDTH],
     /// Reference point of the centers, local coordinates.
@@ -83,11 +91,10 @@ impl WideNode {
     pub(crate) const fn empty(origin: [f32; 3], parent: u32) -> Self {
         let mut node = Self {
             center: [[1e15; WIDTH]; 3],
-            axes: [[[0.0; WIDTH]; 3]; 3],
+            axes: [[[0.0; WIDTH]; 3]; 2],
             half_extent: [[0.0; WIDTH]; 3],
             slabs: [[0.0; WIDTH]; 3],
             radius: [0.0; WIDTH],
-            size: [-1.0; WIDTH],
             child: [u32::MAX; WIDTH],
             origin,
             extent: 0.0,
@@ -96,7 +103,6 @@ impl WideNode {
         };
         node.axes[0][0] = [1.0; WIDTH];
         node.axes[1][1] = [1.0; WIDTH];
-        node.axes[2][2] = [1.0; WIDTH];
         node
     }
 
@@ -122,17 +128,18 @@ impl WideNode {
     }
 
     /// Sets the box of lane `lane`.
-    pub(crate) fn set_box(&mut self, lane: usize, oriented: &OrientedBox, size: f32) {
+    pub(crate) fn set_box(&mut self, lane: usize, oriented: &OrientedBox) {
         for i in 0..3 {
             self.center[i][lane] = oriented.center[i];
             self.half_extent[i][lane] = oriented.half_extent[i];
             self.slabs[i][lane] = f32::from_bits(u32::from_le_bytes(oriented.slabs[i]));
+        }
+        for i in 0..2 {
             for k in 0..3 {
                 self.axes[i][k][lane] = oriented.axes[i][k];
             }
         }
         self.radius[lane] = oriented.radius;
-        self.size[lane] = size;
         self.reach_lane(lane);
     }
 
@@ -144,17 +151,50 @@ impl WideNode {
         self.extent = self.extent.max(crate::margin::round_up(reach));
     }
 
+    /// All three axes of the boxes.
+    #[inline(always)]
+    pub fn wide_axes<L: Lanes>(&self) -> [[L; 3]; 3] {
+        let a = &self.axes;
+        let first = [L::load(&a[0][0]), L::load(&a[0][1]), L::load(&a[0][2])];
+        let second = [L::load(&a[1][0]), L::load(&a[1][1]), L::load(&a[1][2])];
+        [first, second, cross(&first, &second)]
+    }
+
+    /// All three axes of the box of lane `lane`.
+    #[inline(always)]
+    pub fn axes_of(&self, lane: usize) -> [[f32; 3]; 3] {
+        let a = &self.axes;
+        let first = [a[0][0][lane], a[0][1][lane], a[0][2][lane]];
+        let second = [a[1][0][lane], a[1][1][lane], a[1][2][lane]];
+        [first, second, cross(&first, &second)]
+    }
+
+    /// What decides which of two boxes is expanded: the larger one. Its volume, flat boxes taken a little thicker, so at least
+    /// [`LEAST_SIZE`]; zero for a leaf, which is never the larger one.
+    #[inline(always)]
+    pub fn size(&self, lane: usize) -> f32 {
+        if self.child[lane] & LEAF != 0 {
+            return 0.0;
+        }
+        let (h, least) = (&self.half_extent, LEAST_THICKNESS * self.radius[lane]);
+        (h[0][lane].max(least) * h[1][lane].max(least) * h[2][lane].max(least)).max(LEAST_SIZE)
+    }
+
+    /// The same of all lanes, leaves or not.
+    #[inline(always)]
+    pub fn wide_sizes<L: Lanes>(&self) -> L {
+        let (h, least) = (&self.half_extent, L::splat(LEAST_THICKNESS) * L::load(&self.radius));
+        let [x, y, z] = [L::load(&h[0]).max(least), L::load(&h[1]).max(least), L::load(&h[2]).max(least)];
+        (x * y * z).max(L::splat(LEAST_SIZE))
+    }
+
     /// The box of lane `lane`, read out.
     #[inline(always)]
     pub fn oriented_box(&self, lane: usize) -> OrientedBox {
-        let (c, h, a, b) = (&self.center, &self.half_extent, &self.axes, &self.slabs);
+        let (c, h, b) = (&self.center, &self.half_extent, &self.slabs);
         OrientedBox {
             center: [c[0][lane], c[1][lane], c[2][lane]],
-            axes: [
-                [a[0][0][lane], a[0][1][lane], a[0][2][lane]],
-                [a[1][0][lane], a[1][1][lane], a[1][2][lane]],
-                [a[2][0][lane], a[2][1][lane], a[2][2][lane]],
-            ],
+            axes: self.axes_of(lane),
             half_extent: [h[0][lane], h[1][lane], h[2][lane]],
             slabs: [
                 b[0][lane].to_bits().to_le_bytes(),
@@ -169,11 +209,9 @@ impl WideNode {
 /// One box, with its center relative to the origin of its wide node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrientedBox {
-    /// Its center.
     pub center: [f32; 3],
-    /// Its axes: `axes[i][k]` is coordinate k of axis i.
+    /// The third is the [`cross`] product of the others.
     pub axes: [[f32; 3]; 3],
-    /// Half extents along them.
     pub half_extent: [f32; 3],
     /// The diagonal slabs.
     pub slabs: Slabs,

@@ -2,7 +2,7 @@
 
 use super::mesh_tree::MeshTree;
 use super::node::{Below, OrientedBox, WIDTH, WideNode};
-use super::surface::{Extent, size_of_box, unit_of};
+use super::surface::{Extent, unit_of};
 use super::tree_error::TreeError;
 use super::validate::ClaimedTree;
 use crate::TriMesh;
@@ -16,12 +16,8 @@ use glam::DVec3;
 pub(super) fn node_of_parts(origin: [f32; 3], boxes: impl Iterator<Item = (OrientedBox, Below)>) -> WideNode {
     let mut node = WideNode::empty(origin, 0);
     for (lane, (boxed, below)) in boxes.take(WIDTH).enumerate() {
-        let size = match below {
-            Below::Triangle(_) => 0.0,
-            Below::Node(_) => size_of_box(&boxed),
-        };
         node.used = lane as u32 + 1;
-        node.set_box(lane, &boxed, size);
+        node.set_box(lane, &boxed);
         node.set_below(lane, below);
     }
     node

@@ -2,11 +2,10 @@
 //!
 //! Many JSON libraries change the last place of a floating-point number, and a box that is a little smaller encloses
 //! nothing. So `f32` are written as their bits, integers that every library keeps, and `f64` as
-//! [`ExactNumber`](crate::mesh::ExactNumber). The form that was written before, with plain numbers in `center`, `axes`,
-//! `half_extent`, `radius` and `origin`, is read from self-describing formats where its numbers arrive unchanged.
+//! [`ExactNumber`](crate::mesh::ExactNumber).
 
 use super::mesh_tree::MeshTree;
-use super::node::{Below, LEAF, OrientedBox, WIDTH, WideNode};
+use super::node::{Below, LEAF, OrientedBox, WIDTH, WideNode, cross};
 use super::parts::{node_of_parts, tree_of_parts};
 use super::slabs::Slabs;
 use super::tree_error::TreeError;
@@ -33,8 +32,8 @@ struct NodeForm {
 
 #[derive(Serialize, Deserialize)]
 struct BoxForm {
-    /// Of the center, the three axes, the half extents and the radius.
-    bits: [u32; 16],
+    /// Of the center, the first two axes, the half extents and the radius.
+    bits: [u32; 13],
     slabs: Slabs,
     below: BelowForm,
 }
@@ -55,27 +54,6 @@ impl From<BelowForm> for Below {
     }
 }
 
-/// A node of either form.
-#[derive(Deserialize)]
-struct EitherNode {
-    origin_bits: Option<[u32; 3]>,
-    origin: Option<[f32; 3]>,
-    boxes: Vec<EitherBox>,
-}
-
-#[derive(Deserialize)]
-struct EitherBox {
-    bits: Option<[u32; 16]>,
-    center: Option<[f32; 3]>,
-    axes: Option<[[f32; 3]; 3]>,
-    half_extent: Option<[f32; 3]>,
-    radius: Option<f32>,
-    /// Nothing is cut off where they are left out. They had another name before.
-    #[serde(default, alias = "bevels")]
-    slabs: Slabs,
-    below: BelowForm,
-}
-
 impl Serialize for MeshTree {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let form = TreeForm {
@@ -90,19 +68,7 @@ impl Serialize for MeshTree {
 
 impl<'de> Deserialize<'de> for MeshTree {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        if deserializer.is_human_readable() {
-            let form = TreeForm::<EitherNode>::deserialize(deserializer)?;
-            let mut nodes = Vec::with_capacity(form.nodes.len());
-            for (index, node) in form.nodes.into_iter().enumerate() {
-                nodes.push(node.try_into().map_err(|missing| {
-                    de::Error::custom(format_args!("node {index}: field `{missing}` is missing"))
-                })?);
-            }
-            let TreeForm { mesh, center, radius, .. } = form;
-            TreeForm { mesh, center, radius, nodes }.try_into().map_err(de::Error::custom)
-        } else {
-            TreeForm::<NodeForm>::deserialize(deserializer)?.try_into().map_err(de::Error::custom)
-        }
+        TreeForm::<NodeForm>::deserialize(deserializer)?.try_into().map_err(de::Error::custom)
     }
 }
 
@@ -116,10 +82,8 @@ impl From<&WideNode> for NodeForm {
 
 impl BoxForm {
     fn new(boxed: &OrientedBox, below: Below) -> Self {
-        let OrientedBox { center: c, axes: [a, b, d], half_extent: h, slabs, radius } = *boxed;
-        let numbers = [
-            c[0], c[1], c[2], a[0], a[1], a[2], b[0], b[1], b[2], d[0], d[1], d[2], h[0], h[1], h[2], radius,
-        ];
+        let OrientedBox { center: c, axes: [a, b, _], half_extent: h, slabs, radius } = *boxed;
+        let numbers = [c[0], c[1], c[2], a[0], a[1], a[2], b[0], b[1], b[2], h[0], h[1], h[2], radius];
         let below = match below {
             Below::Triangle(triangle) => BelowForm::Triangle(triangle),
             Below::Node(node) => BelowForm::Node(node),
@@ -130,42 +94,14 @@ impl BoxForm {
     fn boxed(&self) -> OrientedBox {
         let n = self.bits.map(f32::from_bits);
         let three = |at: usize| [n[at], n[at + 1], n[at + 2]];
+        let (first, second) = (three(3), three(6));
         OrientedBox {
             center: three(0),
-            axes: [three(3), three(6), three(9)],
-            half_extent: three(12),
+            axes: [first, second, cross(&first, &second)],
+            half_extent: three(9),
             slabs: self.slabs,
-            radius: n[15],
+            radius: n[12],
         }
-    }
-}
-
-impl TryFrom<EitherNode> for NodeForm {
-    type Error = &'static str;
-
-    fn try_from(node: EitherNode) -> Result<Self, &'static str> {
-        let origin_bits =
-            node.origin_bits.or(node.origin.map(|origin| origin.map(f32::to_bits))).ok_or("origin_bits")?;
-        let boxes = node.boxes.into_iter().map(BoxForm::try_from).collect::<Result<_, _>>()?;
-        Ok(Self { origin_bits, boxes })
-    }
-}
-
-impl TryFrom<EitherBox> for BoxForm {
-    type Error = &'static str;
-
-    fn try_from(form: EitherBox) -> Result<Self, &'static str> {
-        let EitherBox { bits, center, axes, half_extent, radius, slabs, below } = form;
-        if let Some(bits) = bits {
-            return Ok(Self { bits, slabs, below });
-        }
-        let center = center.ok_or("bits")?;
-        let axes = axes.ok_or("axes")?;
-        let half_extent = half_extent.ok_or("half_extent")?;
-        let radius = radius.ok_or("radius")?;
-        let boxed = OrientedBox { center, axes, half_extent, slabs, radius };
-        let form = Self::new(&boxed, Below::Node(0));
-        Ok(Self { below, ..form })
     }
 }
 

@@ -1,6 +1,6 @@
 //! The triangles of a mesh in local coordinates, and boxes around some of them.
 
-use super::node::{LEAST_SIZE, OrientedBox};
+use super::node::OrientedBox;
 use super::slabs::EdgeReach;
 use crate::TriMesh;
 use crate::margin::{UNIT_F64, round_up};
@@ -103,15 +103,6 @@ impl<'a> Surface<'a> {
 struct Extents {
     half_extent: [f32; 3],
     radius: f32,
-}
-
-/// Part of the radius that a box counts as thick at least, in its size.
-const LEAST_THICKNESS: f32 = 1e-3;
-
-/// What decides which box is expanded: its volume, flat boxes taken a little thicker. Not zero.
-pub(super) fn size_of_box(boxed: &OrientedBox) -> f32 {
-    let least = LEAST_THICKNESS * boxed.radius;
-    boxed.half_extent.iter().map(|h| h.max(least)).product::<f32>().max(LEAST_SIZE)
 }
 
 /// How far points reach from the center of a box, along its axes and in all.

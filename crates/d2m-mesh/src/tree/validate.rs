@@ -2,15 +2,15 @@
 
 use super::build::MOST_TRIANGLES;
 use super::enclosures::{Enclosures, TreeCorners};
+use super::frame::{DEVIATION_ERROR, MOST_DEVIATION, deviation};
 use super::mesh_tree::MeshTree;
-use super::node::{Below, LEAST_SIZE, WIDTH, WideNode};
+use super::node::{Below, WIDTH, WideNode};
 use super::slabs::MOST;
 use super::surface::{Extent, unit_of};
 use super::tree_error::TreeError;
 use crate::TriMesh;
-use crate::margin::{UNIT_F32, UNIT_F64};
 use crate::parallel::{both, map_in_order};
-use glam::DVec3;
+use d2m_lanes::{Doubles, F64x4};
 
 /// No length of a node is more, in units of the tree: the body lies in a sphere of radius one, so boxes made around its points have half
 /// extents up to 1 and radii up to √3, origins are within √3 in each sum of coordinates, centers within twice that of them, and what
@@ -124,11 +124,9 @@ fn check_node(index: usize, node: &WideNode) -> Result<(), TreeError> {
         let boxed = node.oriented_box(lane);
         let fine = if lane >= node.used as usize {
             let blank = unused.oriented_box(lane);
-            node.size[lane] < 0.0 && boxed == blank
+            node.child[lane] == unused.child[lane] && boxed == blank
         } else {
             let numbers = boxed.center.iter().chain(&boxed.half_extent).chain([&boxed.radius]);
-            let is_leaf = matches!(node.below(lane), Below::Triangle(_));
-            let size = node.size[lane];
             let center: f64 = boxed.center.iter().map(|c| f64::from(c.abs())).sum();
             numbers.into_iter().all(|x| x.abs() <= MOST_LENGTH)
                 && boxed
@@ -136,8 +134,6 @@ fn check_node(index: usize, node: &WideNode) -> Result<(), TreeError> {
                     .iter()
                     .all(|&h| 0.0 <= h && f64::from(h) <= 1.0001 * f64::from(boxed.radius))
                 && f64::from(node.extent) >= center + f64::from(boxed.radius)
-                && size.is_finite()
-                && (if is_leaf { size == 0.0 } else { size >= LEAST_SIZE })
                 && boxed.slabs.iter().flatten().all(|&steps| steps <= MOST)
                 && is_orthonormal(&boxed.axes)
         };
@@ -148,11 +144,8 @@ fn check_node(index: usize, node: &WideNode) -> Result<(), TreeError> {
     Ok(())
 }
 
-/// ‖A·Aᵀ − I‖ ≤ 5.2·2⁻²⁴ in the Frobenius norm, so in every entry and in the spectral norm. Rounding orthonormal axes
-/// gives at most 2√3·2⁻²⁴; the sum below errs by less than 2⁻⁴⁹.
 fn is_orthonormal(axes: &[[f32; 3]; 3]) -> bool {
-    let axes = axes.map(|a| DVec3::new(f64::from(a[0]), f64::from(a[1]), f64::from(a[2])));
-    let deviation = |i: usize, j: usize| axes[i].dot(axes[j]) - f64::from(u8::from(i == j));
-    let square: f64 = (0..9).map(|k| deviation(k / 3, k % 3).powi(2)).sum();
-    square.sqrt() + 32.0 * UNIT_F64 <= 5.2 * UNIT_F32
+    let frame = axes.map(|axis| axis.map(|x| F64x4::splat(f64::from(x))));
+    let [off, ..] = deviation(&frame).store().0;
+    off + DEVIATION_ERROR <= MOST_DEVIATION
 }

@@ -107,7 +107,7 @@ fn along<L: Lanes>(
     let of_lanes = Boxes {
         half: load::<L>(&wide.half_extent),
         slabs: load::<L>(&wide.slabs),
-        axes: [load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]), load::<L>(&wide.axes[2])],
+        axes: wide.wide_axes::<L>(),
     };
     let of_single = Boxes {
         half: splat(&boxed.half),

@@ -45,7 +45,7 @@ impl NodePairExpander<'_> {
     pub(crate) fn next_of(&self, a: u32, b: u32) -> u32 {
         let (na, nb) = (&self.nodes[0][a as usize / WIDTH], &self.nodes[1][b as usize / WIDTH]);
         let (la, lb) = (a as usize % WIDTH, b as usize % WIDTH);
-        let larger = na.size[la] * self.size_ratios[0] > nb.size[lb] * self.size_ratios[1];
+        let larger = na.size(la) * self.size_ratios[0] > nb.size(lb) * self.size_ratios[1];
         if larger { na.child[la] } else { nb.child[lb] | Item::OF_B }
     }
 
@@ -112,14 +112,10 @@ impl NodePairExpander<'_> {
         let wide = &self.nodes[side][wide_index as usize];
         let NodeBox { node, lane } = NodeBox::new(self.nodes[other], single);
         let flags = [0, Item::OF_B];
-        let size = node.size[lane] * self.size_ratios[other];
-        let tags = L::larger(
-            &WideSide {
-                sizes: &wide.size,
-                ratio: self.size_ratios[side],
-                children: &wide.child,
-                flag: flags[side],
-            },
+        let size = node.size(lane) * self.size_ratios[other];
+        let sizes = wide.wide_sizes::<L>() * L::splat(self.size_ratios[side]);
+        let tags = sizes.larger(
+            WideSide { children: &wide.child, flag: flags[side] },
             SingleSide { size, tag: node.child[lane] | flags[other] },
         );
         Rows {

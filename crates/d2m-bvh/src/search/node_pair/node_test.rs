@@ -130,14 +130,11 @@ impl Placed {
         let ratio = scale.ratio as f32;
         let radius = single.radius[lane] * ratio;
         let (half, slabs) = (&single.half_extent, &single.slabs);
+        let [first, second, third] = &single.axes_of(lane);
         let norm = |v: &[f32; 4]| v[0].abs() + v[1].abs() + v[2].abs();
         let spin_speed = scale.spin[1] * radius;
         let boxed = PlacedBox {
-            axes: [
-                turned::<L>(frame, &single.axes[0], lane),
-                turned::<L>(frame, &single.axes[1], lane),
-                turned::<L>(frame, &single.axes[2], lane),
-            ],
+            axes: [turned::<L>(frame, first), turned::<L>(frame, second), turned::<L>(frame, third)],
             half: [half[0][lane] * ratio, half[1][lane] * ratio, half[2][lane] * ratio],
             slabs: [opposite(slabs[0][lane]), opposite(slabs[1][lane]), opposite(slabs[2][lane])],
             margin: GAP_ERROR * (norm(&center) + wide.extent + radius) + scale.floor,
@@ -156,8 +153,8 @@ impl Placed {
     }
 }
 
-/// A stored axis in the wide body's frame.
+/// An axis of a box in the wide body's frame.
 #[inline(always)]
-fn turned<L: Lanes>(frame: &NodeFrame, axis: &[[f32; 8]; 3], lane: usize) -> [f32; 4] {
-    L::combine(&frame.narrow, axis[0][lane], axis[1][lane], axis[2][lane])
+fn turned<L: Lanes>(frame: &NodeFrame, axis: &[f32; 3]) -> [f32; 4] {
+    L::combine(&frame.narrow, axis[0], axis[1], axis[2])
 }

@@ -120,10 +120,10 @@ impl<'p, L: Lanes> SpanFrame<'p, L> {
         }
     }
 
-    /// A stored axis of the single body by the wide body's axes in the middle.
+    /// An axis of a box of the single body by the wide body's axes in the middle.
     #[inline(always)]
-    fn turned(&self, axis: &[[f32; 8]; 3], lane: usize) -> [f32; 3] {
-        let [x, y, z, _] = L::combine(&self.narrow, axis[0][lane], axis[1][lane], axis[2][lane]);
+    fn turned(&self, axis: &[f32; 3]) -> [f32; 3] {
+        let [x, y, z, _] = L::combine(&self.narrow, axis[0], axis[1], axis[2]);
         [x, y, z]
     }
 }
@@ -177,8 +177,8 @@ impl<'f, L: Lanes> Boxed<'f, L> {
         let radius = single.radius[lane] * ratio;
         let size = norm(&first).max(norm(&last)) + wide.extent + radius;
         let (centers, at) = (both::<L>(&load::<L>(&wide.center)), ends::<L>(&first, &last));
-        let (half, slabs, axes) = (&single.half_extent, &single.slabs, &single.axes);
-        let of_lanes = [load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]), load::<L>(&wide.axes[2])];
+        let (half, slabs, axes) = (&single.half_extent, &single.slabs, single.axes_of(lane));
+        let of_lanes = wide.wide_axes::<L>();
         Self {
             to: [at[0] - centers[0], at[1] - centers[1], at[2] - centers[2]],
             wide: Boxes {
@@ -197,7 +197,7 @@ impl<'f, L: Lanes> Boxed<'f, L> {
                     L::Two::splat(opposite(slabs[1][lane])),
                     L::Two::splat(opposite(slabs[2][lane])),
                 ],
-                axes: [axis_of(&axes[0], lane), axis_of(&axes[1], lane), axis_of(&axes[2], lane)],
+                axes: [splat(&axes[0]), splat(&axes[1]), splat(&axes[2])],
             },
             frame,
             margin: L::splat(error_of(SPAN_ERROR, size) + frame.need),
@@ -252,12 +252,6 @@ fn ends<L: Lanes>(start: &[f32; 4], end: &[f32; 4]) -> [L::Two; 3] {
     ]
 }
 
-/// An axis of one lane in all lanes.
-#[inline(always)]
-fn axis_of<T: Elementwise<Scalar = f32>>(axis: &[[f32; 8]; 3], lane: usize) -> [T; 3] {
-    [T::splat(axis[0][lane]), T::splat(axis[1][lane]), T::splat(axis[2][lane])]
-}
-
 fn norm(v: &[f32; 4]) -> f32 {
     v[0].abs() + v[1].abs() + v[2].abs()
 }
@@ -278,19 +272,19 @@ pub(crate) fn apart_over_span<L: Lanes>(
     let boxed = Boxed::<L>::new(frame, scale, single, wide);
     let middle = frame.middle.place::<L::Doubles>(center_of(node, lane, scale.ratio), origin_of(wide));
     let ratio = scale.ratio as f32;
-    let (single, half, axes) = (node, &node.half_extent, &node.axes);
+    let (single, half, axes) = (node, &node.half_extent, node.axes_of(lane));
     let own_half = [half[0][lane] * ratio, half[1][lane] * ratio, half[2][lane] * ratio];
     let (lanes, wide_half) = (load::<L>(&wide.center), load::<L>(&wide.half_extent));
     let (long, middle_long) = (load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]));
 
     let at = splat::<L, 4>(&middle);
     let line = [at[0] - lanes[0], at[1] - lanes[1], at[2] - lanes[2]];
-    let own = [frame.turned(&axes[0], lane), frame.turned(&axes[1], lane)];
+    let own = [frame.turned(&axes[0]), frame.turned(&axes[1])];
     let spread = Spread::new([&own[0], &own[1]], &own_half).splat();
     let best = discriminant(&Spread::new([&long, &middle_long], &wide_half), &spread, &line);
     // A triangle may be large against the boxes, then spreads say little of it.
     let used = if single.child[lane] & LEAF == 0 { 0 } else { (1 << wide.used) - 1 };
-    let directions = [both::<L>(&best), splat(&frame.turned(&axes[2], lane)), boxed.wide.axes[2]];
+    let directions = [both::<L>(&best), splat(&frame.turned(&axes[2])), boxed.wide.axes[2]];
     let mut apart = 0;
     // A loop, so that the test is compiled once.
     for direction in &directions {

@@ -39,7 +39,7 @@ impl<L: Lanes> Axes<L> {
         let at = splat::<L, 4>(&single.center);
         let to = [at[0] - center[0], at[1] - center[1], at[2] - center[2]];
         let h = load::<L>(&wide.half_extent);
-        let a = [load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]), load::<L>(&wide.axes[2])];
+        let a = wide.wide_axes::<L>();
         let b = [splat::<L, 4>(&single.axes[0]), splat(&single.axes[1]), splat(&single.axes[2])];
         let k = splat::<L, 3>(&single.half);
         let m = L::splat(single.margin);

@@ -8,7 +8,7 @@ use super::axes::Axes;
 use super::placed_box::Placed;
 use crate::margin::UNIT_F32;
 use crate::tree::box_pair::{dot, load, splat};
-use crate::tree::node::WideNode;
+use crate::tree::node::{WideNode, cross};
 use crate::tree::slabs::reach;
 use d2m_lanes::Lanes;
 
@@ -180,9 +180,4 @@ fn shorter<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> [L; 3] {
 #[inline(always)]
 fn minus<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> [L; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-fn cross<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> [L; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

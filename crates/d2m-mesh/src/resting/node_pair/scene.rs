@@ -213,7 +213,7 @@ impl<'a> RestingScene<'a> {
         if self.point_like[body] {
             return Candidate { size: 0.0, below: Below::Triangle(0) };
         }
-        Candidate { size: f64::from(node.size[lane]) * self.volume[body], below: node.below(lane) }
+        Candidate { size: f64::from(node.size(lane)) * self.volume[body], below: node.below(lane) }
     }
 
     #[inline(always)]

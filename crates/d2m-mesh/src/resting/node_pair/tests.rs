@@ -6,7 +6,7 @@ use super::node_test::{lower_bounds, margin_free_gaps};
 use super::placed_box::{Placed, Side};
 use crate::margin::UNIT_F32;
 use crate::tree::box_pair::{BoxPair, PlacedBox};
-use crate::tree::node::{OrientedBox, WideNode};
+use crate::tree::node::{OrientedBox, WideNode, cross};
 use crate::tree::slabs::{MOST, PAIRS, STEPS};
 use d2m_lanes::{InstructionSet, Lanes, Portable, Task, run, run_on};
 use d2m_testing::{Draw, KnuthRandom};
@@ -24,9 +24,10 @@ fn oriented_box(random: &mut KnuthRandom, size: f64, spread: f64) -> OrientedBox
     let axes = rotation(random);
     let narrow = |v: DVec3| [v.x as f32, v.y as f32, v.z as f32];
     let half = random.vector().abs() * size;
+    let (first, second) = (narrow(axes.x_axis), narrow(axes.y_axis));
     OrientedBox {
         center: narrow(random.vector() * spread),
-        axes: [narrow(axes.x_axis), narrow(axes.y_axis), narrow(axes.z_axis)],
+        axes: [first, second, cross(&first, &second)],
         half_extent: narrow(half),
         slabs: [[0; 4]; 3],
         // As a built box: the radius is at least each half extent.
@@ -43,7 +44,7 @@ fn cut_box(random: &mut KnuthRandom, most: f64) -> OrientedBox {
 /// A node at the origin that holds one box.
 fn node_of_one(boxed: &OrientedBox) -> WideNode {
     let mut node = WideNode::empty([0.0; 3], 0);
-    node.set_box(0, boxed, 1.0);
+    node.set_box(0, boxed);
     node.used = 1;
     node
 }
@@ -79,7 +80,7 @@ fn gaps_err_by_less_than_the_margin_and_not_by_much_less() {
         let spread = [1.0, 1e-3, 1e-1][round % 3];
         let boxes: Vec<_> = (0..8).map(|_| oriented_box(&mut random, spread, spread)).collect();
         for (lane, b) in boxes.iter().enumerate() {
-            node.set_box(lane, b, 1.0);
+            node.set_box(lane, b);
         }
         node.used = 8;
         let single = oriented_box(&mut random, spread * [1.0, 30.0][round % 2], spread);
@@ -286,7 +287,7 @@ fn every_kind_of_lanes_gives_the_same_bits() {
         let mut node = WideNode::empty([0.1, 0.2, 0.3], 0);
         node.used = 8;
         for lane in 0..8 {
-            node.set_box(lane, &oriented_box(&mut random, 0.4, 1.0), 1.0);
+            node.set_box(lane, &oriented_box(&mut random, 0.4, 1.0));
         }
         let single = oriented_box(&mut random, 0.5, 1.0);
         let rotation = rotation(&mut random);

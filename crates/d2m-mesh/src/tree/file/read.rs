@@ -2,7 +2,7 @@
 
 use super::{BOX, CHECKSUM, HEADER, MAGIC, NODE, TRIANGLE, TreeFileError, VERTEX};
 use crate::parallel::{both, map_in_order};
-use crate::tree::node::{Below, LEAF, OrientedBox, WIDTH, WideNode};
+use crate::tree::node::{Below, LEAF, OrientedBox, WIDTH, WideNode, cross};
 use crate::tree::parts::node_of_parts;
 use crate::tree::tree_error::TreeError;
 use crate::{MeshError, TriMesh};
@@ -132,9 +132,10 @@ impl Reader<'_> {
         let (words, _) = bytes.as_chunks::<4>();
         let number = |k: usize| f32::from_le_bytes(words[k]);
         let three = |k: usize| [number(k), number(k + 1), number(k + 2)];
-        let (axes, slabs) = ([three(3), three(6), three(9)], [words[15], words[16], words[17]]);
-        let boxed = OrientedBox { center: three(0), axes, half_extent: three(12), slabs, radius: number(18) };
-        let below = u32::from_le_bytes(words[19]);
+        let (first, second) = (three(3), three(6));
+        let (axes, slabs) = ([first, second, cross(&first, &second)], [words[12], words[13], words[14]]);
+        let boxed = OrientedBox { center: three(0), axes, half_extent: three(9), slabs, radius: number(15) };
+        let below = u32::from_le_bytes(words[16]);
         let below = if below & LEAF != 0 { Below::Triangle(below & !LEAF) } else { Below::Node(below) };
         Some((boxed, below))
     }

@@ -36,7 +36,7 @@ fn a_tree_comes_back_bit_for_bit() {
 fn the_form_of_the_bytes_is_as_documented() {
     let mesh = TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap();
     let bytes = MeshTree::new(mesh).to_bytes();
-    assert_eq!(bytes[..16], *b"d2mtree\0\x01\0\0\0\0\0\0\0");
+    assert_eq!(bytes[..16], *b"d2mtree\0\x02\0\0\0\0\0\0\0");
     assert_eq!(
         bytes[16..40],
         [[3u8, 0, 0, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0, 0, 0]].concat()
@@ -60,8 +60,8 @@ fn every_damaged_byte_is_noticed() {
     assert!(MeshTree::try_from_bytes(&[&bytes[..], &[0]].concat()).is_err());
     assert_eq!(MeshTree::try_from_bytes(b"hello").unwrap_err(), TreeFileError::NotATree);
     let mut other = bytes;
-    other[8] = 2;
-    assert_eq!(MeshTree::try_from_bytes(&other).unwrap_err(), TreeFileError::Version { found: 2 });
+    other[8] = 1;
+    assert_eq!(MeshTree::try_from_bytes(&other).unwrap_err(), TreeFileError::Version { found: 1 });
 }
 
 /// With the right checksum: nothing panics, nothing takes memory by what is stated, and what is accepted is valid.
