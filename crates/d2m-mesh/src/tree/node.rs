@@ -10,10 +10,11 @@
 //! Promise, in real arithmetic on the stored numbers: every point p (local) of every triangle of a box has
 //! |axisᵢ·(p − origin − center)| ≤ half_extentᵢ for i = 0, 1, 2 and |p − origin − center| ≤ radius, and is within the
 //! [`slabs`](super::slabs) of the box.
-//! The third axis is the cross product of the two that are stored, as [`cross`] computes it in `f32`: the same bits wherever it
+//! The third axis is the cross product of the two that are stored, each product and difference rounded to `f32`: the same bits wherever it
 //! is needed. The axes are orthonormal up to roundings to `f32`: |A·Aᵀ − I| ≤ 5.2·2⁻²⁴ in each entry.
 
 use super::slabs::Slabs;
+use crate::margin::round_up;
 use core::ops::{Mul, Sub};
 use d2m_lanes::Lanes;
 
@@ -30,7 +31,7 @@ const LEAST_THICKNESS: f32 = 1e-3;
 
 /// The cross product, each product and difference rounded: the third axis of a box from the others.
 #[inline(always)]
-pub fn cross<T: Copy + Mul<Output = T> + Sub<Output = T>>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+pub(crate) fn cross<T: Copy + Mul<Output = T> + Sub<Output = T>>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
@@ -140,15 +141,14 @@ impl WideNode {
             }
         }
         self.radius[lane] = oriented.radius;
-        self.reach_lane(lane);
+        self.extent = self.extent.max(round_up(self.reach_of(lane)));
     }
 
-    /// Raises the extent to that of lane `lane`.
+    /// |center|₁ + radius of lane `lane`, as far as doubles hold the sum.
     #[inline(always)]
-    pub(crate) fn reach_lane(&mut self, lane: usize) {
+    pub(crate) fn reach_of(&self, lane: usize) -> f64 {
         let [x, y, z] = [self.center[0][lane], self.center[1][lane], self.center[2][lane]].map(f32::abs);
-        let reach = f64::from(x) + f64::from(y) + f64::from(z) + f64::from(self.radius[lane]);
-        self.extent = self.extent.max(crate::margin::round_up(reach));
+        f64::from(x) + f64::from(y) + f64::from(z) + f64::from(self.radius[lane])
     }
 
     /// All three axes of the boxes.
@@ -209,9 +209,11 @@ impl WideNode {
 /// One box, with its center relative to the origin of its wide node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrientedBox {
+    /// Its center.
     pub center: [f32; 3],
-    /// The third is the [`cross`] product of the others.
+    /// Its axes: `axes[i][k]` is coordinate k of axis i. The third is the cross product of the others in `f32`.
     pub axes: [[f32; 3]; 3],
+    /// Half extents along them.
     pub half_extent: [f32; 3],
     /// The diagonal slabs.
     pub slabs: Slabs,

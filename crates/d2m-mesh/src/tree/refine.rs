@@ -71,11 +71,17 @@ pub(super) fn refined<L: Lanes>(axes: Axes<L>, rows: &[Row]) -> Axes<L> {
     turned(axes, &mut points[..count])
 }
 
+/// Of so many points every how manyth is enough to find extreme ones; of those then every one, as they are less than twice
+/// [`MOST_SAMPLED`].
+pub(super) const fn stride(points: usize) -> usize {
+    if points < MOST_SAMPLED { 1 } else { points / MOST_SAMPLED }
+}
+
 /// The points that are extreme along the directions.
 #[inline(always)]
 fn extremes<L: Lanes>(axes: &Axes<L>, rows: &[Row], points: &mut [[L; 3]; MOST]) {
     let mut farthest = [L::splat(f32::NEG_INFINITY); 2 * DIRECTIONS.len()];
-    let stride = (rows.len() / MOST_SAMPLED).max(1);
+    let stride = stride(rows.len());
     let mut at = 0;
     while at < rows.len() {
         let q = in_frame(axes, &rows[at]);

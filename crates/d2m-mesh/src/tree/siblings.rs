@@ -10,10 +10,10 @@ use super::fit::{Moments, triangle_moments};
 use super::frame::{DEVIATION_ERROR, MOST_DEVIATION, deviation, frames, triangle_axes};
 use super::node::{Below, WIDTH, WideNode, cross};
 use super::principal::principal_axes;
-use super::refine::{Axes, Row, refined};
+use super::refine::{Axes, Row, refined, stride};
 use super::slabs::{CUT_SLACK, MOST, PAIRS, STEPS};
 use super::surface::Reach;
-use crate::margin::{UNIT_F32, UNIT_F64};
+use crate::margin::{UNIT_F32, UNIT_F64, round_up};
 use d2m_lanes::{Doubles, Elementwise, Lanes, Quad, Task, power_of_two};
 
 /// Lanes in one register of doubles.
@@ -21,6 +21,8 @@ const HALF: usize = WIDTH / 2;
 
 /// Added to a number below 2⁵⁰ and taken off again, it leaves the next whole number: neighbours of 3·2⁵¹ are one apart.
 const WHOLE: f64 = 3.0 * power_of_two(51);
+/// Added to a whole number below 2³², it leaves a number whose lowest bits are those of the whole one.
+const WHOLE_BITS: f64 = power_of_two(52);
 /// What the bytes of a word count.
 const PLACES: [f64; 4] = [1.0, 256.0, 65_536.0, 16_777_216.0];
 /// Raises a positive number by more than rounding to `f32` lowers it, 2⁻²⁴ of it, or 2⁻¹⁵⁰ where it is not normal.
@@ -69,7 +71,12 @@ impl Task for Siblings<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(mut self) -> Moments {
-        self.gather();
+        if let (&[part], &[Below::Node(_)]) = (self.parts, self.below) {
+            return self.fit_one::<L>(part);
+        }
+        let mut lanes: [&[u32]; WIDTH] = [&[]; WIDTH];
+        lanes[..self.parts.len()].copy_from_slice(self.parts);
+        self.gather(&lanes);
         let is_triangle = self.is_triangle();
         let mut triangles = [[[0.0; WIDTH]; 3]; 2];
         if is_triangle != 0 {
@@ -79,21 +86,60 @@ impl Task for Siblings<'_> {
         for moments in self.moments.iter() {
             all.add(moments);
         }
-        let origin = match self.origin {
-            Some(origin) => origin,
-            None => all.center(),
-        };
+        let origin = self.origin_of(&all);
         self.narrow::<L::Doubles>(origin);
         let all_lanes = (1 << self.parts.len()) - 1;
         let axes = if is_triangle == all_lanes { triangles } else { self.axes::<L>(is_triangle, &triangles) };
-        let mut boxes = self.boxes::<L>(origin, &axes);
+        let mut boxes = self.boxes::<L>(origin, &axes, LanesAre::Boxes);
         boxes.store(self.node, self.below, origin);
         self.node.parent = self.parent;
         all
     }
 }
 
+/// What the points in the lanes belong to.
+#[derive(Clone, Copy, PartialEq)]
+enum LanesAre {
+    /// Each lane's to a box of its own.
+    Boxes,
+    /// All to one box.
+    PartsOfOne,
+}
+
 impl Siblings<'_> {
+    fn origin_of(&self, all: &Moments) -> [f32; 3] {
+        match self.origin {
+            Some(origin) => origin,
+            None => all.center(),
+        }
+    }
+
+    /// A node of one box around many points, the topmost one: an eighth of them to a lane, once the axes are known, for which a
+    /// sample is enough. The same bits as with all of them in the first lane: extrema are exact in any order.
+    #[inline(always)]
+    fn fit_one<L: Lanes>(&mut self, part: &[u32]) -> Moments {
+        let all = self.moments[0];
+        let origin = self.origin_of(&all);
+        let sample: Vec<u32> = part.iter().step_by(stride(part.len())).copied().collect();
+        let mut lanes: [&[u32]; WIDTH] = [&[]; WIDTH];
+        lanes[0] = &sample;
+        self.gather(&lanes);
+        self.narrow::<L::Doubles>(origin);
+        let mut axes = self.axes::<L>(0, &[[[0.0; WIDTH]; 3]; 2]);
+        for row in axes.as_flattened_mut() {
+            *row = [row[0]; WIDTH];
+        }
+        for (lane, points) in lanes.iter_mut().zip(part.chunks(part.len().div_ceil(WIDTH))) {
+            *lane = points;
+        }
+        self.gather(&lanes);
+        self.narrow::<L::Doubles>(origin);
+        let mut boxes = self.boxes::<L>(origin, &axes, LanesAre::PartsOfOne);
+        boxes.store(self.node, self.below, origin);
+        self.node.parent = self.parent;
+        all
+    }
+
     /// The bits of the lanes with a triangle.
     #[inline(always)]
     fn is_triangle(&self) -> u32 {
@@ -104,11 +150,11 @@ impl Siblings<'_> {
         bits
     }
 
-    /// Puts the points of the parts side by side; short parts and lanes that are not used repeat a point.
+    /// Puts the points of the lanes side by side; short lanes repeat a point, those without points that of the first lane.
     #[inline(always)]
-    fn gather(&mut self) {
+    fn gather(&mut self, lanes: &[&[u32]; WIDTH]) {
         let mut count = 0;
-        for part in self.parts {
+        for part in lanes {
             count = if part.len() > count { part.len() } else { count };
         }
         let rows = &mut *self.rows;
@@ -119,7 +165,7 @@ impl Siblings<'_> {
         rows.used = count;
         let wide = &mut rows.wide[..count];
         for lane in 0..WIDTH {
-            let part = if lane < self.parts.len() { self.parts[lane] } else { self.parts[0] };
+            let part = lanes[lane];
             let (half, place) = (lane / HALF, lane % HALF);
             for (row, &vertex) in wide.iter_mut().zip(part) {
                 let p = &self.points[vertex as usize];
@@ -130,7 +176,8 @@ impl Siblings<'_> {
             if part.len() == count {
                 continue;
             }
-            let p = self.points[part[0] as usize];
+            let first = if part.is_empty() { lanes[0][0] } else { part[0] };
+            let p = self.points[first as usize];
             for row in &mut wide[part.len()..] {
                 row.0[0][half].0[place] = p[0];
                 row.0[1][half].0[place] = p[1];
@@ -222,9 +269,9 @@ impl Siblings<'_> {
 
     /// The boxes with these axes.
     #[inline(always)]
-    fn boxes<L: Lanes>(&self, origin: [f32; 3], axes: &StoredAxes) -> Boxes {
+    fn boxes<L: Lanes>(&self, origin: [f32; 3], axes: &StoredAxes, lanes: LanesAre) -> Boxes {
         let axes = all_axes::<L>(axes);
-        let (center, about) = middle::<L>(&axes, &self.rows.narrow[..self.rows.used]);
+        let (center, about) = middle::<L>(&axes, &self.rows.narrow[..self.rows.used], lanes);
         let mut boxes = Boxes {
             center,
             axes,
@@ -232,19 +279,36 @@ impl Siblings<'_> {
             slabs: [[0.0; WIDTH]; 3],
             radius: [0.0; WIDTH],
         };
-        for half in 0..2 {
-            let mut reach = WideReach::<L::Doubles>::new(origin, &boxes, &about, half);
-            for row in &self.rows.wide[..self.rows.used] {
-                let p = &row.0;
-                reach.add(&[
-                    <L::Doubles as Doubles>::load(&p[0][half]),
-                    <L::Doubles as Doubles>::load(&p[1][half]),
-                    <L::Doubles as Doubles>::load(&p[2][half]),
-                ]);
-            }
-            reach.finish(&mut boxes, half);
+        let [mut low, mut high] =
+            [self.reach_of::<L>(origin, &boxes, &about, 0), self.reach_of::<L>(origin, &boxes, &about, 1)];
+        if lanes == LanesAre::PartsOfOne {
+            low.join_all(&high);
+            high = low.clone();
         }
+        low.finish(&mut boxes, 0);
+        high.finish(&mut boxes, 1);
         boxes
+    }
+
+    /// How far the points in one half of the lanes reach.
+    #[inline(always)]
+    fn reach_of<L: Lanes>(
+        &self,
+        origin: [f32; 3],
+        boxes: &Boxes,
+        about: &[[f32; WIDTH]; 3],
+        half: usize,
+    ) -> WideReach<L::Doubles> {
+        let mut reach = WideReach::<L::Doubles>::new(origin, boxes, about, half);
+        for row in &self.rows.wide[..self.rows.used] {
+            let p = &row.0;
+            reach.add(&[
+                <L::Doubles as Doubles>::load(&p[0][half]),
+                <L::Doubles as Doubles>::load(&p[1][half]),
+                <L::Doubles as Doubles>::load(&p[2][half]),
+            ]);
+        }
+        reach
     }
 }
 
@@ -300,7 +364,11 @@ fn all_axes<L: Lanes>(stored: &StoredAxes) -> [[[f32; WIDTH]; 3]; 3] {
 
 /// About the middles of the boxes and their half extents. The center may be anything: the extents are measured from it.
 #[inline(always)]
-fn middle<L: Lanes>(axes: &[[[f32; WIDTH]; 3]; 3], rows: &[Row]) -> ([[f32; WIDTH]; 3], [[f32; WIDTH]; 3]) {
+fn middle<L: Lanes>(
+    axes: &[[[f32; WIDTH]; 3]; 3],
+    rows: &[Row],
+    lanes: LanesAre,
+) -> ([[f32; WIDTH]; 3], [[f32; WIDTH]; 3]) {
     let mut axis: Axes<L> = [[L::splat(0.0); 3]; 3];
     for i in 0..3 {
         for k in 0..3 {
@@ -315,6 +383,12 @@ fn middle<L: Lanes>(axes: &[[[f32; WIDTH]; 3]; 3], rows: &[Row]) -> ([[f32; WIDT
             let along = axis[i][0] * p[0] + axis[i][1] * p[1] + axis[i][2] * p[2];
             low[i] = along.min(low[i]);
             high[i] = along.max(high[i]);
+        }
+    }
+    if lanes == LanesAre::PartsOfOne {
+        for i in 0..3 {
+            low[i] = L::splat(low[i].store().into_iter().fold(f32::INFINITY, f32::min));
+            high[i] = L::splat(high[i].store().into_iter().fold(f32::NEG_INFINITY, f32::max));
         }
     }
     let (mut center, mut about) = ([L::splat(0.0); 3], [[0.0; WIDTH]; 3]);
@@ -362,20 +436,24 @@ impl Boxes {
         let [first, second, _] = self.axes;
         (node.center, node.axes, node.half_extent) = (self.center, [first, second], self.half_extent);
         (node.radius, node.child) = (self.radius, blank.child);
-        (node.origin, node.extent, node.used) = (origin, 0.0, used as u32);
+        (node.origin, node.used) = (origin, used as u32);
         for (pair, slabs) in node.slabs.iter_mut().zip(&self.slabs) {
             for lane in 0..WIDTH {
-                pair[lane] = f32::from_bits(slabs[lane] as u32);
+                pair[lane] = f32::from_bits((slabs[lane] + WHOLE_BITS).to_bits() as u32);
             }
         }
+        let mut reach = 0.0;
         for lane in 0..used {
             node.set_below(lane, below[lane]);
-            node.reach_lane(lane);
+            let lane = node.reach_of(lane);
+            reach = if lane > reach { lane } else { reach };
         }
+        node.extent = round_up(reach);
     }
 }
 
 /// [`Reach`] of four boxes.
+#[derive(Clone)]
 struct WideReach<D> {
     axes: [[D; 3]; 3],
     origin: [D; 3],
@@ -439,6 +517,22 @@ impl<D: Doubles<Scalar = f64>> WideReach<D> {
         }
         self.square = (q[0] * q[0] + q[1] * q[1] + q[2] * q[2]).max(self.square);
         self.norm = (p[0].abs() + p[1].abs() + p[2].abs()).max(self.norm);
+    }
+
+    /// In every lane what all lanes of both reach together.
+    #[inline(always)]
+    fn join_all(&mut self, other: &Self) {
+        for k in 0..3 {
+            self.half[k] = D::splat(self.half[k].max(other.half[k]).max_element());
+            for (own, other) in
+                [(&mut self.sum[k], &other.sum[k]), (&mut self.difference[k], &other.difference[k])]
+            {
+                own[0] = D::splat(own[0].min(other[0]).min_element());
+                own[1] = D::splat(own[1].max(other[1]).max_element());
+            }
+        }
+        self.square = D::splat(self.square.max(other.square).max_element());
+        self.norm = D::splat(self.norm.max(other.norm).max_element());
     }
 
     /// Rounds outward and stores.

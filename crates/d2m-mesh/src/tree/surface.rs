@@ -19,29 +19,29 @@ pub(super) struct Extent {
 impl Extent {
     /// Middle of the bounding box of the used vertices, and a bound on the distance from it.
     pub(super) fn of(mesh: &TriMesh) -> Self {
-        let used = || mesh.triangles().iter().flatten().map(|&i| mesh.vertices()[i as usize]);
+        let used = used_vertices(mesh);
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for p in used() {
+        for &p in &used {
             (low, high) = (low.min(p), high.max(p));
         }
         let center = low * 0.5 + high * 0.5;
         // Differences are rounded without a change of order, so the box has the largest.
-        Self::within(mesh, center, (low - center).abs().max((high - center).abs()).max_element())
+        Self::within(&used, center, (low - center).abs().max((high - center).abs()).max_element())
     }
 
     /// The least bound on the distance from a given center.
     pub(super) fn about(mesh: &TriMesh, center: DVec3) -> Self {
-        let used = mesh.triangles().iter().flatten().map(|&i| mesh.vertices()[i as usize] - center);
-        Self::within(mesh, center, used.map(|p| p.abs().max_element()).fold(0.0, f64::max))
+        let used = used_vertices(mesh);
+        let largest = used.iter().map(|&p| (p - center).abs().max_element()).fold(0.0, f64::max);
+        Self::within(&used, center, largest)
     }
 
     /// The same if the largest coordinate of a used vertex from the center is known.
-    fn within(mesh: &TriMesh, center: DVec3, largest: f64) -> Self {
-        let used = mesh.triangles().iter().flatten().map(|&i| mesh.vertices()[i as usize] - center);
+    fn within(used: &[DVec3], center: DVec3, largest: f64) -> Self {
         // In a unit in which no square over- or underflows; one over it is exact.
         let unit = unit_of(largest);
         let inverse = 1.0 / unit;
-        let square = used.map(|p| (p * inverse).length_squared()).fold(0.0, f64::max);
+        let square = used.iter().map(|&p| ((p - center) * inverse).length_squared()).fold(0.0, f64::max);
         // Differences, squares, sum, root: relative error below 6v. Below the normal numbers the product rounds.
         let radius = square.sqrt() * (1.0 + 16.0 * UNIT_F64) * unit;
         let radius = if radius < f64::MIN_POSITIVE && square > 0.0 { f64::MIN_POSITIVE } else { radius };
@@ -54,6 +54,16 @@ impl Extent {
         // One over a power of two is exact.
         ((p - self.center) * (1.0 / self.unit)).to_array()
     }
+}
+
+/// The vertices that triangles use, each once.
+fn used_vertices(mesh: &TriMesh) -> Vec<DVec3> {
+    let mut is_used = vec![false; mesh.vertex_count()];
+    for &vertex in mesh.triangles().as_flattened() {
+        is_used[vertex as usize] = true;
+    }
+    let vertices = mesh.vertices().iter().zip(is_used);
+    vertices.filter_map(|(&vertex, is_used)| is_used.then_some(vertex)).collect()
 }
 
 /// The least unit of a tree: one over it is a number.

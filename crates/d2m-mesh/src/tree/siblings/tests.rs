@@ -2,8 +2,9 @@ use super::{HALF, Rows, Siblings, StoredAxes, all_axes, outward};
 use crate::tree::fit::Moments;
 use crate::tree::frame::{DEVIATION_ERROR, MOST_DEVIATION, deviation};
 use crate::tree::node::{Below, OrientedBox, WIDTH, WideNode};
-use d2m_lanes::{Doubles, Elementwise, F64x4, InstructionSet, Lanes, Quad, Task, run_on};
+use d2m_lanes::{Doubles, F64x4, InstructionSet, Lanes, Quad, Task, run_on};
 use d2m_testing::{Draw, KnuthRandom};
+use glam::DVec3;
 
 #[test]
 fn numbers_are_rounded_outward() {
@@ -142,6 +143,39 @@ fn the_larger_box_is_expanded_and_never_a_triangle() {
                 let tag = if is_larger { node.child[lane] | 1 << 30 } else { 77 };
                 assert_eq!(expanded[lane], tag, "{set:?} {round} {lane}");
             }
+        }
+    }
+}
+
+/// The topmost box has its points in all lanes: the same box as with all of them in one, and points in each lane count.
+#[test]
+fn one_box_around_many_points_is_fitted_in_all_lanes_alike() {
+    let mut random = KnuthRandom(7);
+    for count in [4, 9, 33, 400, 3000] {
+        let points: Vec<[f64; 3]> =
+            (0..count).map(|_| (random.vector() * DVec3::new(1.0, 0.3, 0.2)).to_array()).collect();
+        let part: Vec<u32> = (0..count).collect();
+        let moments = points.iter().fold(Moments::default(), |mut sum, &[x, y, z]| {
+            sum.add(&Moments([1.0, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z]));
+            sum
+        });
+        let fitted = |set: InstructionSet, lanes: usize| {
+            let mut node = WideNode::empty([0.0; 3], 0);
+            let siblings = Siblings {
+                points: &points,
+                parts: &vec![&part[..]; lanes],
+                below: &vec![Below::Node(1); lanes],
+                moments: &mut vec![moments; lanes],
+                origin: Some([0.1, 0.0, 0.0]),
+                parent: 0,
+                rows: &mut Rows::default(),
+                node: &mut node,
+            };
+            run_on(set, siblings);
+            node.oriented_box(0)
+        };
+        for set in InstructionSet::available() {
+            assert_eq!(fitted(set, 1), fitted(InstructionSet::Portable, 2), "{count} {set:?}");
         }
     }
 }
