@@ -17,11 +17,11 @@ static FREE: Mutex<Vec<&'static AtomicU64>> = Mutex::new(Vec::new());
 /// let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let mesh = TriMesh::try_new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
 /// let tree = MeshTree::new(mesh);
-/// let above = Posed::new(&tree, Pose { translation: DVec3::Z * 2.0, ..Pose::IDENTITY });
+/// let raised = Posed::new(&tree, Pose { translation: DVec3::Z * 0.5, ..Pose::IDENTITY });
 /// let canceller = Canceller::new();
 /// let budget = Budget::UNLIMITED.with_cancel(canceller.flag());
-/// let ask = || collide_within(Posed::at_rest(&tree), above, Solid::Filled, &budget);
-/// assert_eq!(ask()?, Some(false));
+/// let ask = || collide_within(Posed::at_rest(&tree), raised, Solid::Filled, &budget);
+/// assert_eq!(ask()?, Some(true));
 /// std::thread::scope(|scope| scope.spawn(|| canceller.cancel()).join()).unwrap();
 /// assert_eq!(ask()?, None); // not decided
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -38,7 +38,7 @@ pub struct Held {
 /// let point = MeshTree::new(TriMesh::point(DVec3::splat(0.125))?);
 /// // Both frames are the world's.
 /// let place = |p: DVec3| p + (point.center() - solid.center());
-/// assert_eq!(held_vertex(&solid, &point, place, &mut Meter::unlimited())?, Some(0));
+/// assert_eq!(held_vertex(&solid, &point, place, &mut Meter::unlimited()), Ok(Some(0)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
