@@ -56,11 +56,15 @@ pub mod audit {
 mod contact;
 mod covered_pair;
 mod evidence;
+mod gap;
 mod moving;
 mod options;
+mod pair;
 mod pair_cache;
 mod query;
-mod search;
+mod skip;
+mod time;
+mod walk;
 mod window;
 
 pub use contact::{Contact, TimeBracket, TimeOfContact};
@@ -81,5 +85,5 @@ pub use query::{
     clearance_batch, contact_exists, contact_spans, departure, time_of_contact, time_of_contact_batch,
     time_of_contact_counted, time_of_contact_with,
 };
-pub use search::{Answered, SearchCounts};
+pub use walk::counts::{Answered, SearchCounts};
 pub use window::Window;

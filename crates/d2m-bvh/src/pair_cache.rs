@@ -1,4 +1,4 @@
-use crate::search::relative_trajectory::RelativeTrajectory;
+use crate::pair::relative_trajectory::RelativeTrajectory;
 use crate::{Answered, Solid};
 
 /// What a query of a pair of bodies leaves for the next one: the triangles that were closest, or met, and for bodies

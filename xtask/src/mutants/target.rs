@@ -157,7 +157,7 @@ mod tests {
         };
         let bvh = "-p d2m-bvh --features d2m-bvh/serde";
         assert_eq!(of("crates/d2m-bvh/tests/engine.rs::f"), format!("--test engine {bvh}"));
-        assert_eq!(of("crates/d2m-bvh/src/search/tests.rs::f"), format!("--lib {bvh}"));
+        assert_eq!(of("crates/d2m-bvh/src/walk/tests.rs::f"), format!("--lib {bvh}"));
         assert_eq!(of("crates/d2m-cli/src/scene/tests.rs::f"), "--bin d2m -p d2m-cli");
         let [audit, world] = ["crates/d2m/tests/audit.rs::f", "crates/d2m-world/src/world.rs::f"].map(target);
         let both = "-p d2m -p d2m-world --features d2m/audit --features d2m/serde";
@@ -172,7 +172,7 @@ mod tests {
     #[test]
     fn root_modules_of_files() {
         let of = |file| root_module(&crate::workspace_root(), file);
-        assert_eq!(of("crates/d2m-bvh/src/search/scene.rs").unwrap(), "crates/d2m-bvh/src/lib.rs");
+        assert_eq!(of("crates/d2m-bvh/src/pair/scene.rs").unwrap(), "crates/d2m-bvh/src/lib.rs");
         assert_eq!(of("crates/d2m-cli/src/scene/mod.rs").unwrap(), "crates/d2m-cli/src/main.rs");
         assert_eq!(of("crates/d2m-bvh/tests/engine.rs"), None);
     }

@@ -2,7 +2,9 @@
 
 use super::report::{contact, contained};
 use crate::covered_pair::CoveredPair;
-use crate::search::{MovingScene, MovingTree, Outcome, Scratch, Search};
+use crate::pair::scene::{MovingScene, MovingTree};
+use crate::walk::scratch::Scratch;
+use crate::walk::state::{Outcome, Search};
 use crate::{Answered, MeshTree, Mode, QueryError, QueryOptions, SearchCounts, Solid, TimeOfContact, Window};
 use core::cell::RefCell;
 use d2m_lanes::F64x4;

@@ -15,7 +15,7 @@ use super::fitted_twist::FittedTwists;
 use super::report::MOST_LEFT;
 use super::true_poses::{Meeting, PlacedTriangles};
 use crate::covered_pair::CoveredPair;
-use crate::search::MovingTree;
+use crate::pair::scene::MovingTree;
 use crate::{
     Answered, Budget, Contact, Evidence, Mode, Moving, QueryError, QueryOptions, SearchCounts, Solid,
     StartState, TimeOfContact, Window,

@@ -1,10 +1,11 @@
 //! From what the search found to the answer: witness points, normal, features in the meshes' numbers.
 
-use crate::search::motion::frame::{FRAME_REACH, Frame, RelativeMotion};
-use crate::search::triangle_pair::closest::{Closest, Place, closest};
-use crate::search::triangle_pair::pair_scale::PairScale;
-use crate::search::triangle_pair::separating_axis::place_a;
-use crate::search::{Found, MovingScene};
+use crate::pair::motion::frame::{FRAME_REACH, Frame, RelativeMotion};
+use crate::pair::scene::MovingScene;
+use crate::pair::triangles::closest::{Closest, Place, closest};
+use crate::pair::triangles::pair_scale::PairScale;
+use crate::pair::triangles::separating_axis::place_a;
+use crate::walk::state::Found;
 use crate::{Contact, Evidence, MeshTree, StartState};
 use d2m_feature::proven_crossing;
 use d2m_feature::{FeaturePair, triangles_intersect};

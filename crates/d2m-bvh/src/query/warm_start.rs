@@ -8,10 +8,10 @@ use super::leave::of_departing;
 use super::rounded::Rounded;
 use super::true_poses::Meeting;
 use crate::covered_pair::CoveredPair;
-use crate::search::relative_trajectory::RelativeTrajectory;
-use crate::search::triangle_pair::closest::closest;
-use crate::search::triangle_pair::separating_axis::place_a;
-use crate::search::{MovingScene, MovingTree};
+use crate::pair::relative_trajectory::RelativeTrajectory;
+use crate::pair::scene::{MovingScene, MovingTree};
+use crate::pair::triangles::closest::closest;
+use crate::pair::triangles::separating_axis::place_a;
 use crate::{
     Answered, Mode, Moving, PairCache, QueryError, QueryOptions, SearchCounts, Start, TimeOfContact, Window,
 };
@@ -124,7 +124,7 @@ fn constant_twists_with(
 #[cfg(feature = "audit")]
 fn conclude_room(scene: &MovingScene<'_>, room: f64) {
     use d2m_mesh::audit::{Part, Place};
-    let window = crate::search::concluded::OffsetSpan::of_query(0.0, scene.units.end_down());
+    let window = crate::pair::concluded::OffsetSpan::of_query(0.0, scene.units.end_down());
     scene.conclude_at(Place::Cache, window, [Part::Whole; 2], room / scene.units.length());
 }
 

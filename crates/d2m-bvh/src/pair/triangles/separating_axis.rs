@@ -1,0 +1,388 @@
+//! Two triangles in motion: until when does a fixed direction keep them apart by more than the level?
+
+use super::closest::{Closest, Place, closest};
+use super::pair_scale::PairScale;
+use super::refined_directions::{middle_direction, refined_directions};
+use super::turning::{TurningTriangle, clear_along_turning};
+use super::turning_edges::{CrossingEdges, clear_across_edges};
+use crate::gap::first_time::{Jets, Lines, first_time, first_time_of_jets};
+use crate::gap::widest_gap::{greatest, least, widest_gap, widest_normal};
+use crate::pair::motion::frame::Frame;
+use d2m_lanes::{Doubles, F64x4, QuadVec};
+use d2m_mesh::margin::UP;
+use glam::DVec3;
+
+/// Directions that are used are longer than this: lengths and times are about one, and the products of up to four of them and of
+/// gaps of at least 2⁻⁵³ are not lost to underflow.
+const SHORTEST: f64 = 1e-30;
+/// Features are tested themselves where they are closer to the level than so many times as far as the stopping distance is from it.
+const FAR_STOPS: f64 = 16.0;
+
+/// What directions that turn leave above the level, in errors of a gap: one for places, three for what rates and accelerations
+/// relative to a body that turns err by in addition.
+const TURNING_ERRORS: f64 = 4.0;
+
+/// Parts of the time that matters: a direction that lasts for less than the first is tried also as it turns with the bodies, and
+/// if the longest is less than the second, so is one in the middle of all.
+const SHORT: f64 = 1.0 / 16.0;
+const VERY_SHORT: f64 = 1.0 / 256.0;
+
+/// Which derivative an evaluation bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum BoundOrder {
+    /// One direction and a bound on the acceleration: enough for most queries.
+    Second,
+    /// Also the normals, and the vertices' own accelerations with a bound on the third derivative: for pairs that stay
+    /// close for long.
+    Third,
+    /// Also directions that turn with a body: for pairs that stay close for longer than that helps.
+    Turning,
+}
+
+/// What one evaluation of a pair gives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Evaluation {
+    /// Apart by more than the level for at least this long after the frame.
+    ClearFor(f64),
+    /// Within the stopping distance at the frame's time.
+    Near {
+        /// The features are further apart than that, yet no direction separates: the triangles cross.
+        crossing: bool,
+        /// Along the shortest line from A to B, not normalised.
+        direction: DVec3,
+    },
+}
+
+/// Which triangle is below the other along a direction.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Low {
+    A,
+    B,
+}
+
+/// The triangles of a pair in the frame of B's tree, and how they move.
+struct Placed {
+    a: [DVec3; 3],
+    b: [DVec3; 3],
+    /// Velocity of the center of A's tree against that of B's.
+    velocity: DVec3,
+    offset: DVec3,
+    omega_a: DVec3,
+    omega_b: DVec3,
+    /// From the reference points to the centers of the trees.
+    arm_a: DVec3,
+    arm_b: DVec3,
+    /// No later time matters, counted from the frame.
+    enough: f64,
+    order: BoundOrder,
+}
+
+/// Vertices of A's triangle (from the tree's center, body axes) moved into B's frame.
+#[inline(always)]
+pub(crate) fn place_a<D: Doubles>(frame: &Frame, triangle: &[DVec3; 3]) -> [DVec3; 3] {
+    let (r, apart) = (&frame.rotation, D::load(&frame.apart));
+    [
+        (r.times::<D>(triangle[0]) + apart).store().to_vec(),
+        (r.times::<D>(triangle[1]) + apart).store().to_vec(),
+        (r.times::<D>(triangle[2]) + apart).store().to_vec(),
+    ]
+}
+
+/// The separating-axis test of a pair at the time of the frame. `triangles`: of A and of B, vertices from the trees' centers,
+/// body axes. `enough`: a longer clear time is of no use.
+#[inline(always)]
+pub(crate) fn separating_axis_test<D: Doubles>(
+    frame: &Frame,
+    triangles: [&[DVec3; 3]; 2],
+    scale: &PairScale,
+    enough: f64,
+    order: BoundOrder,
+) -> Evaluation {
+    let placed = Placed::new::<D>(frame, triangles, scale, enough, order);
+    let gap = widest_gap::<D>(&placed.a, &placed.b);
+    let mut direction = gap.direction;
+    let (apart, far) = (
+        gap.exceeds(scale.level + scale.error),
+        gap.exceeds(scale.level + FAR_STOPS * (scale.stop - scale.level)),
+    );
+    let (mut best, mut touching) = (0.0, false);
+    // One piece of code for the three directions: the widest; a normal, which lasts longer than the line to a corner
+    // that comes closer when faces slide along each other; near the end that of the closest features, which attains
+    // the distance.
+    for attempt in if apart { 0 } else { 2 }..3 {
+        if attempt == 1 {
+            direction = widest_normal(&placed.a, &placed.b);
+        } else if attempt == 2 {
+            let near = closest::<D>(&placed.a, &placed.b);
+            direction = near.direction;
+            touching = near.distance_squared <= scale.stop * scale.stop;
+            if order == BoundOrder::Turning {
+                best = placed.clear_while_edges_turn(&near, scale, best);
+            }
+        }
+        best = placed.clear_for::<D>(direction, scale, scale.target(), best);
+        if order == BoundOrder::Turning && best < SHORT * enough {
+            best = placed.clear_while_turning(direction, scale, best);
+        }
+        let enough_of_it = match order {
+            BoundOrder::Second => best >= enough || far,
+            BoundOrder::Third => best >= enough || far && attempt == 1,
+            BoundOrder::Turning => best >= enough || far && attempt == 1 && best >= SHORT * enough,
+        };
+        if attempt < 2 && enough_of_it {
+            return Evaluation::ClearFor(best);
+        }
+    }
+    if order == BoundOrder::Turning && !touching && best < VERY_SHORT * enough {
+        best = placed.clear_while_turning(middle_direction(&placed.a, &placed.b), scale, best);
+    }
+    if !touching && best == 0.0 {
+        best = placed.clear_along_refined::<D>(scale);
+    }
+    // One of the two ends applies up to rounding.
+    if touching || best == 0.0 {
+        Evaluation::Near { crossing: !touching, direction }
+    } else {
+        Evaluation::ClearFor(best)
+    }
+}
+
+/// From a contact back in time: proofs that pairs are apart before it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BackwardCertificate {
+    /// The frame of the contact with all velocities reversed ([`Frame::reversed`]): a bound on the acceleration holds
+    /// backwards as well as forwards.
+    pub(crate) reversed: Frame,
+    /// The direction of the contact, not normalised, or zero: most pairs that are near it are apart along it too.
+    pub(crate) direction: DVec3,
+}
+
+/// Are the triangles further apart than the level all the time from `span` before the contact up to its time? True
+/// only if that is proven.
+#[inline(always)]
+pub(crate) fn apart_since<D: Doubles>(
+    contact: &BackwardCertificate,
+    triangles: [&[DVec3; 3]; 2],
+    scale: &PairScale,
+    span: f64,
+) -> bool {
+    let placed = Placed::new::<D>(&contact.reversed, triangles, scale, span, BoundOrder::Second);
+    let mut direction = contact.direction;
+    for attempt in 0..2 {
+        if attempt == 1 {
+            direction = widest_gap::<D>(&placed.a, &placed.b).direction;
+        }
+        if placed.clear_for::<D>(direction, scale, scale.level, 0.0) >= span {
+            return true;
+        }
+    }
+    false
+}
+
+impl Placed {
+    #[inline(always)]
+    fn new<D: Doubles>(
+        frame: &Frame,
+        [a, b]: [&[DVec3; 3]; 2],
+        scale: &PairScale,
+        enough: f64,
+        order: BoundOrder,
+    ) -> Self {
+        Self {
+            a: place_a::<D>(frame, a),
+            b: *b,
+            velocity: frame.velocity.to_vec(),
+            offset: frame.apart.to_vec(),
+            omega_a: frame.omega_a.to_vec(),
+            omega_b: frame.omega_b.to_vec(),
+            arm_a: frame.rotation.times::<D>(scale.arms[0]).store().to_vec(),
+            arm_b: scale.arms[1],
+            enough,
+            order,
+        }
+    }
+
+    /// The larger of `known` and the time for which the direction keeps the pair further apart than `level`.
+    #[inline(always)]
+    fn clear_for<D: Doubles>(&self, n: DVec3, scale: &PairScale, level: f64, known: f64) -> f64 {
+        let n = lengthened(n);
+        let a = QuadVec::<D>::new([self.a[0], self.a[1], self.a[2], self.a[2]]);
+        let b = QuadVec::<D>::new([self.b[0], self.b[1], self.b[2], self.b[2]]);
+        let (pa, pb) = (a.dot(n), b.dot(n));
+        let (forward, backward) = (pb.min_element() - pa.max_element(), pa.min_element() - pb.max_element());
+        let a_is_low = forward > backward;
+        let gap = if a_is_low { forward } else { backward };
+        let length = n.length();
+        let need = (level + scale.error) * length;
+        // Not when n is zero or not a number either, nor so short that its square is lost to underflow.
+        let separated = gap > need && length > SHORTEST;
+        if !separated {
+            return known;
+        }
+        let (turn_a, turn_b) = (n.cross(self.omega_a), n.cross(self.omega_b));
+        let drift = n.dot(self.velocity) - turn_a.dot(self.offset);
+        let (ra, rb) = (a.dot(turn_a) + D::splat(drift), b.dot(turn_b));
+        let s = if self.order == BoundOrder::Second {
+            let (of_a, of_b) = (Lines { at: pa, rate: ra }, Lines { at: pb, rate: rb });
+            let (low, high) = if a_is_low { (of_a, of_b) } else { (of_b, of_a) };
+            first_time(low, high, need, scale.acceleration * length)
+        } else {
+            let of_a = Lines { at: three(pa), rate: three(ra) };
+            let of_b = Lines { at: three(pb), rate: three(rb) };
+            self.clear_for_jets(n, scale, need, if a_is_low { Low::A } else { Low::B }, [of_a, of_b])
+        };
+        if s > known { s } else { known }
+    }
+
+    /// The largest time along directions that are made accurate for slivers and for edges that are nearly parallel: needed
+    /// only where the others separate nothing although the features are apart, or where triangles cross.
+    #[cold]
+    #[inline(never)]
+    fn clear_along_refined<D: Doubles>(&self, scale: &PairScale) -> f64 {
+        let mut best = 0.0;
+        for direction in refined_directions(&self.a, &self.b) {
+            best = self.clear_for::<D>(direction, scale, scale.target(), best);
+        }
+        best
+    }
+
+    /// The larger of `known` and the time for which the direction, turned with one of the bodies, keeps the pair further apart than
+    /// the level that pairs are advanced to.
+    #[cold]
+    #[inline(never)]
+    fn clear_while_turning(&self, n: DVec3, scale: &PairScale, known: f64) -> f64 {
+        let n = lengthened(n);
+        let length = n.length();
+        // Not when it is no number either.
+        let is_direction = length > SHORTEST;
+        if !is_direction {
+            return known;
+        }
+        let need = (scale.target() + TURNING_ERRORS * scale.error) * length;
+        let [a, b] = self.turning_triangles();
+        let with_b = clear_along_turning(n, &b, &a, need, self.enough);
+        let with_a = clear_along_turning(n, &a, &b, need, self.enough);
+        with_a.max(with_b).max(known)
+    }
+
+    /// The larger of `known` and the time for which the direction across both edges, where the closest points lie on two, keeps the
+    /// pair further apart than the level that pairs are advanced to.
+    #[cold]
+    #[inline(never)]
+    fn clear_while_edges_turn(&self, near: &Closest, scale: &PairScale, known: f64) -> f64 {
+        let [Place::Edge(i), Place::Edge(j)] = near.places else { return known };
+        let crossing = CrossingEdges { edges: [i, j], points: near.points };
+        let need = scale.target() + TURNING_ERRORS * scale.error;
+        let [a, b] = self.turning_triangles();
+        clear_across_edges(&crossing, &a, &b, need, self.enough).max(known)
+    }
+
+    /// The triangles as they turn with their bodies.
+    fn turning_triangles(&self) -> [TurningTriangle; 2] {
+        let a = TurningTriangle {
+            corners: self.a.map(|corner| corner - self.offset),
+            center: self.offset,
+            velocity: self.velocity,
+            omega: self.omega_a,
+            arm: self.arm_a,
+        };
+        let b = TurningTriangle {
+            corners: self.b,
+            center: DVec3::ZERO,
+            velocity: DVec3::ZERO,
+            omega: self.omega_b,
+            arm: self.arm_b,
+        };
+        [a, b]
+    }
+
+    /// The same with the vertices' own accelerations; positions and rates along `n`, of A and of B, are given, and which
+    /// is below the other.
+    #[inline(never)]
+    fn clear_for_jets(
+        &self,
+        n: DVec3,
+        scale: &PairScale,
+        need: f64,
+        low: Low,
+        [of_a, of_b]: [Lines<[f64; 3]>; 2],
+    ) -> f64 {
+        let (Lines { at: pa, rate: ra }, Lines { at: pb, rate: rb }) = (of_a, of_b);
+        let a_is_low = low == Low::A;
+        let (a, b, length) = (&self.a, &self.b, n.length());
+        let (turn_a, turn_b) = (n.cross(self.omega_a), n.cross(self.omega_b));
+        // |n·(ω × (ω × e))| = |(n × ω)·(ω × e)| ≤ |n × ω||ω||e|, and the same times |ω| for the next derivative.
+        let [bound_a, bound_b] = self.centripetal_along(scale, turn_a, turn_b);
+        let m = (bound_a + bound_b).min(scale.acceleration * length) * UP;
+        let quad = |v: &[f64; 3]| F64x4::new([v[0], v[1], v[2], v[2]]);
+        let (line_a, line_b) =
+            (Lines { at: quad(&pa), rate: quad(&ra) }, Lines { at: quad(&pb), rate: quad(&rb) });
+        let s =
+            if a_is_low { first_time(line_a, line_b, need, m) } else { first_time(line_b, line_a, need, m) };
+        let speed = if a_is_low { least(&rb) - greatest(&ra) } else { least(&ra) - greatest(&rb) };
+        let nearest = if a_is_low {
+            rate_of_least(&pb, &rb) - rate_of_greatest(&pa, &ra)
+        } else {
+            rate_of_least(&pa, &ra) - rate_of_greatest(&pb, &rb)
+        };
+        let is_even = m * s <= PATIENCE * speed.abs() && nearest - speed <= PATIENCE * speed.abs();
+        if s >= self.enough || is_even {
+            return s;
+        }
+        let jerk = (bound_a * self.omega_a.length() + bound_b * self.omega_b.length()) * UP;
+        let bend_a = self.omega_a * self.omega_a.dot(n) - n * self.omega_a.length_squared();
+        let bend_b = self.omega_b * self.omega_b.dot(n) - n * self.omega_b.length_squared();
+        let (arm_a, arm_b) = (self.arm_a - self.offset, self.arm_b);
+        let aa = [bend_a.dot(a[0] + arm_a), bend_a.dot(a[1] + arm_a), bend_a.dot(a[2] + arm_a)];
+        let ab = [bend_b.dot(b[0] + arm_b), bend_b.dot(b[1] + arm_b), bend_b.dot(b[2] + arm_b)];
+        let (of_a, of_b) = (Jets { at: pa, rate: ra, bend: aa }, Jets { at: pb, rate: rb, bend: ab });
+        s.max(if a_is_low {
+            first_time_of_jets(&of_a, &of_b, need, jerk, self.enough)
+        } else {
+            first_time_of_jets(&of_b, &of_a, need, jerk, self.enough)
+        })
+    }
+
+    /// |n × ω||ω|ρ of both bodies.
+    #[inline(always)]
+    fn centripetal_along(&self, scale: &PairScale, turn_a: DVec3, turn_b: DVec3) -> [f64; 2] {
+        let one = |centripetal: f64, turn: DVec3, omega: DVec3| {
+            let square = omega.length_squared();
+            if square > 0.0 { centripetal * (turn.length_squared() / square).sqrt() } else { 0.0 }
+        };
+        [one(scale.centripetal[0], turn_a, self.omega_a), one(scale.centripetal[1], turn_b, self.omega_b)]
+    }
+}
+
+/// The direction, made longer when it is very short; zero stays zero.
+#[inline(always)]
+fn lengthened(n: DVec3) -> DVec3 {
+    let size = n.abs().max_element();
+    if size > SHORTEST || size == 0.0 { n } else { n / size }
+}
+
+/// The first three of four.
+#[inline(always)]
+fn three<D: Doubles>(values: D) -> [f64; 3] {
+    let [x, y, z, _] = values.store().0;
+    [x, y, z]
+}
+
+/// The rate of the vertex that is first along the direction.
+#[inline(always)]
+fn rate_of_least(at: &[f64; 3], rate: &[f64; 3]) -> f64 {
+    let first = usize::from(at[1] < at[0]);
+    if at[2] < at[first] { rate[2] } else { rate[first] }
+}
+
+/// The rate of the vertex that is last along the direction.
+#[inline(always)]
+fn rate_of_greatest(at: &[f64; 3], rate: &[f64; 3]) -> f64 {
+    let last = usize::from(at[1] > at[0]);
+    if at[2] > at[last] { rate[2] } else { rate[last] }
+}
+
+/// The first bound is good enough when the acceleration changes speeds by less than this part of them, and when the nearest
+/// vertices are, up to this part, as fast as the fastest ones: those of a triangle that turns about a tip close a hundred
+/// times faster than the tip.
+const PATIENCE: f64 = 0.1;

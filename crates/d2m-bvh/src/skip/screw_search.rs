@@ -1,0 +1,421 @@
+//! Until when are two bodies apart that turn and slide along a common axis, as a screw in its nut does?
+//!
+//! Seen from B, a point of A with distance ρ from the axis, angle θ and height z moves by θ + wτ and z + vτ. So ρ and
+//! φ = z − hθ, h = v/w, never change: in the plane of (ρ, φ) both bodies are at rest. Where their projections to that plane
+//! are apart, they never meet; heights keep the rest apart for a time. φ is known up to multiples of the lead 2πh.
+//!
+//! See docs/theory/engine.md, "Screws".
+
+use super::orbits::BodyProjections;
+use super::projection::{Axes, DIRECTIONS, Range};
+use super::projection_tree::ProjectionTree;
+use super::screw::Screw;
+use super::{Skip, SkipLimits, later_offset};
+use crate::pair::scene::MovingScene;
+use d2m_mesh::Meter;
+use d2m_mesh::margin::{UNIT_F64, UP};
+use glam::DVec3;
+
+/// Larger pairs of meshes are not projected: a projection takes about 500 bytes a triangle.
+const MOST_TRIANGLES: usize = 1 << 18;
+/// Factor of the scene's size that covers all roundings here. An angle errs by 64·2⁻⁵³ of the size over the distance from the
+/// axis and 8π·2⁻⁵³ of its own, and as much again with each division of a triangle; φ is h times as far off, and is
+/// divided by a steepness of at least h over the distance. Triangles have distances within a factor of 100
+/// ([`BESIDE`](super::orbits::BESIDE)).
+const PROJECTION_ERROR: f64 = 16_384.0 * UNIT_F64;
+/// Most leads that two projections may be shifted by.
+const MOST_LEADS: f64 = 64.0;
+
+/// The search through two trees of projections.
+struct Walk<'s> {
+    screw: &'s Screw,
+    /// What is added to φ of A.
+    shift: f64,
+    /// How many of the directions count: only ρ where angles are not known.
+    directions: usize,
+    level: f64,
+    length: f64,
+    /// The earliest time at which parts may meet; at most `gain` ends the walk.
+    clear: f64,
+    gain: f64,
+    left: u64,
+    clock: Meter,
+}
+
+/// Until when the projections of the bodies stay further apart than the level, from `start` on.
+pub(crate) fn screw_clear_until(scene: &MovingScene<'_>, start: f64, limits: &SkipLimits) -> Skip {
+    let nothing = Skip { clear_until: None, work: 0 };
+    if triangle_count(scene) > MOST_TRIANGLES {
+        return nothing;
+    }
+    let Some(screw) = Screw::new(scene, start) else { return nothing };
+    let skip = clear_along(&screw, scene, start, limits);
+    if skip.clear_until.is_some() || screw.h == 0.0 {
+        return skip;
+    }
+    let limits = SkipLimits { budget: limits.budget.saturating_sub(skip.work), ..*limits };
+    let in_place = clear_along(&screw.turn_in_place(), scene, start, &limits);
+    Skip { work: skip.work + in_place.work, ..in_place }
+}
+
+fn triangle_count(scene: &MovingScene<'_>) -> usize {
+    scene.a.tree.mesh().triangle_count() + scene.b.tree.mesh().triangle_count()
+}
+
+/// The same with the screw that they make.
+fn clear_along(screw: &Screw, scene: &MovingScene<'_>, start: f64, limits: &SkipLimits) -> Skip {
+    let bodies = [&scene.a, &scene.b];
+    let length = (scene.end - start).next_up();
+    // What the projections cost, in pairs: as many pairs may be tested besides, once they are there.
+    let projected = triangle_count(scene) as u64 / 2;
+    if projected >= limits.budget {
+        return Skip { clear_until: None, work: 0 };
+    }
+    let most = (limits.most_work + projected).min(limits.budget - projected);
+    let mut walk = Walk {
+        screw,
+        shift: 0.0,
+        directions: DIRECTIONS.len(),
+        level: scene.pair.level + PROJECTION_ERROR * (scene.size + scene.pair.level),
+        length,
+        clear: length,
+        gain: limits.least_gain,
+        left: most,
+        clock: Meter::until(limits.stop),
+    };
+    let places = screw.places(scene, start);
+    let probe = [0, 1].map(|body| {
+        let corners = bodies[body].corners(limits.witnesses[body]).map(&places[body]);
+        BodyProjections::try_new(screw, &corners, &[[0, 1, 2]], &mut walk.clock)
+    });
+    let [Ok(a), Ok(b)] = probe else { return Skip { clear_until: None, work: 0 } };
+    if !walk.compare([a, b]) {
+        return Skip { clear_until: None, work: most - walk.left };
+    }
+    let whole = [0, 1].map(|body| {
+        let mesh = &bodies[body].tree.mesh();
+        let vertices: Vec<DVec3> =
+            mesh.vertices().iter().map(|&p| places[body](bodies[body].place(p))).collect();
+        BodyProjections::try_new(screw, &vertices, mesh.triangles(), &mut walk.clock)
+    });
+    let [Ok(a), Ok(b)] = whole else { return Skip { clear_until: None, work: projected } };
+    let apart = walk.compare([a, b]);
+    let work = most - walk.left + projected;
+    let clear_until = if apart { later_offset(start, walk.clear, walk.length, scene.end) } else { None };
+    Skip { clear_until, work }
+}
+
+impl Walk<'_> {
+    /// Lowers `clear` to what the bodies' projections (with angles, without) allow; false when the walk is to end.
+    fn compare(&mut self, bodies: [BodyProjections; 2]) -> bool {
+        let [mut a, mut b] = bodies.map(|body| [body.with_angles, body.without_angles]);
+        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let (a, b) = (&mut a[i], &mut b[j]);
+            let (Some(first), Some(second)) = (a.cells.first(), b.cells.first()) else { continue };
+            let (first, second) = (first.projection, second.projection);
+            let angles = i + j == 0;
+            self.directions = if angles { DIRECTIONS.len() } else { 1 };
+            let lead = self.screw.lead;
+            let (phi_a, phi_b) = (first.phi(), second.phi());
+            let leads = if angles && lead > 0.0 {
+                (((phi_b.low - phi_a.high) / lead).floor(), ((phi_b.high - phi_a.low) / lead).ceil())
+            } else {
+                (0.0, 0.0)
+            };
+            let count = leads.1 - leads.0;
+            if count.is_nan() || count > MOST_LEADS {
+                return false;
+            }
+            if angles && lead > 0.0 {
+                // Shifted by more, the whole projections are a lead apart in φ.
+                let rho = 0.5 * first.near.max(second.near);
+                let slack = first.slack + second.slack;
+                let apart = lead / self.screw.steepness(rho);
+                self.clear = self.clear.min(self.clear_while(apart.min(rho) - slack, 0.0));
+            }
+            for k in leads.0 as i64..=leads.1 as i64 {
+                self.shift = k as f64 * lead;
+                if !self.visit([&mut *a, &mut *b], [0, 0]) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    /// Lowers `clear` to what the pair allows; false when the walk is to end.
+    fn visit(&mut self, [a, b]: [&mut ProjectionTree; 2], cells: [usize; 2]) -> bool {
+        if self.left == 0 || self.clock.step().is_err() {
+            return false;
+        }
+        self.left -= 1;
+        let until = self.clear_for([a, b], cells);
+        if until >= self.clear {
+            return true;
+        }
+        let (size_a, size_b) = (a.size(cells[0]), b.size(cells[1]));
+        let open_a = size_a > size_b;
+        let opened =
+            if open_a { a.open(cells[0], &mut self.clock) } else { b.open(cells[1], &mut self.clock) };
+        let Ok(parts) = opened else { return false };
+        if parts.is_empty() {
+            self.clear = until;
+            return self.clear > self.gain;
+        }
+        for part in parts {
+            let pair = if open_a { [part, cells[1]] } else { [cells[0], part] };
+            if !self.visit([a, b], pair) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// For how long the parts stay further apart than the level; at most the length of the span.
+    fn clear_for(&self, trees: [&ProjectionTree; 2], cells: [usize; 2]) -> f64 {
+        let (screw, length) = (self.screw, self.length);
+        let (a, b) = (&trees[0].cells[cells[0]].projection, &trees[1].cells[cells[1]].projection);
+        let mut best: f64 = 0.0;
+        // Heights: the gap changes by the climb.
+        for (gap, rate) in
+            [(b.height.low - a.height.high, -screw.climb), (a.height.low - b.height.high, screw.climb)]
+        {
+            let room = gap - self.level;
+            if room > 0.0 {
+                best = best.max(if -rate * UP * length <= room { length } else { room / (-rate * UP) });
+            }
+        }
+        // Points that are within ℓ of each other, ℓ at most half of ρ there, differ in F by at most |∇F| ℓ, with
+        // |∇F|² = α² + β²(1 + h²/(ρ/2)²): ∇ρ and ∇φ are at right angles.
+        let rho = 0.5 * a.near.max(b.near);
+        if rho <= 0.0 {
+            return best;
+        }
+        let steep = screw.steepness(rho);
+        let mut apart: f64 = 0.0;
+        let slack = a.slack + b.slack;
+        let mut take = |Axes { alpha, beta }: Axes, fa: Range, fb: Range| {
+            let moved = beta * self.shift;
+            let gap = (fb.low - (fa.high + moved)).max((fa.low + moved) - fb.high);
+            let length = (alpha * alpha + beta * beta * steep * steep).sqrt() * UP;
+            let distance = gap / length;
+            if screw.slide == 0.0 {
+                apart = if distance > apart { distance } else { apart };
+            } else {
+                let rate = (beta * screw.slide).abs() * UP / length;
+                best = best.max(self.clear_while(distance.min(rho) - slack, rate));
+            }
+        };
+        for (direction, (fa, fb)) in DIRECTIONS.iter().zip(a.slabs.iter().zip(&b.slabs)).take(self.directions)
+        {
+            take(*direction, *fa, *fb);
+        }
+        let pieces = [0, 1].map(|k| trees[k].piece(cells[k]).filter(|_| self.directions > 1));
+        if let [Some(p), Some(q)] = pieces {
+            for corners in [&p.corners, &q.corners] {
+                for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (&corners[i], &corners[j])) {
+                    let along = Axes { alpha: from.phi - to.phi, beta: to.rho - from.rho };
+                    take(along, p.reach(along), q.reach(along));
+                }
+            }
+        }
+        best.max(self.clear_while(apart.min(rho) - slack, 0.0))
+    }
+
+    /// For how long points that the common screw alone would keep `apart`, less what they approach at a rate, do not come within the
+    /// level.
+    fn clear_while(&self, apart: f64, rate: f64) -> f64 {
+        let room = apart - self.level - self.screw.offset;
+        let drift = (self.screw.drift + rate) * UP;
+        if room.is_nan() || room <= 0.0 {
+            // As long as nothing at all.
+            0.0
+        } else if drift * self.length <= room {
+            self.length
+        } else {
+            room / drift
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pair::motion::local_motion::LocalMotion;
+    use crate::skip::swept_volume::swept_clear_until;
+    use crate::{Budget, MeshTree, QueryOptions, TriMesh, Window};
+    use d2m_feature::triangle_distance;
+    use d2m_mesh::Stop;
+    use d2m_motion::ConstantTwist;
+    use d2m_testing::{Draw, KnuthRandom};
+    use glam::DQuat;
+
+    const LIMITS: SkipLimits = SkipLimits {
+        least_gain: 0.0,
+        most_work: 1 << 13,
+        budget: u64::MAX,
+        stop: Stop::NEVER,
+        witnesses: [0, 0],
+    };
+
+    /// Random triangles, one a body, on random screws about z, some with a drift: the least distance at times called
+    /// clear over the level, and how many were called clear for some time.
+    fn least_ratio(rounds: u32, mutate: impl Fn(&mut Screw)) -> (f64, u32) {
+        let mut random = KnuthRandom(9);
+        let (level, mut least, mut won) = (0.02, f64::INFINITY, 0);
+        let options = QueryOptions::default().with_tolerance(level);
+        for round in 0..rounds {
+            let mut vec = || random.vector();
+            let mut body = |size: f64| {
+                let middle = vec();
+                let corners = vec![middle + vec() * size, middle + vec() * size, middle + vec() * size];
+                MeshTree::new(TriMesh::try_new(corners, vec![[0, 1, 2]]).unwrap())
+            };
+            let (a, b) = (body(0.5), body(0.5));
+            let spins = [(4.0, 0.0), (0.0, -7.0), (5.0, 2.0), (9.0, 8.0)][round as usize % 4];
+            let climb = [0.0, 0.3, 3.0][round as usize / 4 % 3];
+            let drift = [0.0, 0.3][round as usize / 12 % 2];
+            let mut motion = |spin: f64, v: DVec3, x: DVec3| {
+                let turn = DQuat::from_xyzw(vec().x, vec().y, vec().z, 0.7);
+                ConstantTwist::try_new(x, turn, v, DVec3::Z * spin).unwrap()
+            };
+            let motions = [
+                motion(spins.0, DVec3::new(drift, 0.0, climb), DVec3::X * drift),
+                motion(spins.1, DVec3::ZERO, DVec3::ZERO),
+            ];
+            let scene = MovingScene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
+            let until = Screw::new(&scene, 0.0).and_then(|mut screw| {
+                mutate(&mut screw);
+                clear_along(&screw, &scene, 0.0, &LIMITS).clear_until
+            });
+            let until = until.unwrap_or(0.0);
+            won += u32::from(until > 0.0);
+            let world = |tree: &MeshTree, motion: &ConstantTwist, t: f64| {
+                let turn = LocalMotion::unscaled(motion).rotation(t);
+                let x = motion.position() + motion.linear_velocity() * t;
+                tree.mesh().corners(0).map(|p| turn[0] * p.x + turn[1] * p.y + turn[2] * p.z + x)
+            };
+            for k in (0..=100).filter(|_| until > 0.0) {
+                let t = until * f64::from(k) / 100.0;
+                let found = triangle_distance(&world(&a, &motions[0], t), &world(&b, &motions[1], t)).lower;
+                least = least.min(found / level);
+            }
+        }
+        (least, won)
+    }
+
+    /// A triangle, its copy turned by one radian and lifted a little, and a plate above: the copy's own place counts,
+    /// although one projection stands for both.
+    #[test]
+    fn triangles_of_an_orbit_count_where_they_are() {
+        let corners = [DVec3::X, DVec3::new(0.9, 0.1, -0.1), DVec3::new(0.8, 0.0, 0.0)];
+        let turn = DQuat::from_rotation_z(1.0);
+        let plate =
+            [DVec3::new(-2.0, -2.0, 1.02e-7), DVec3::new(2.0, -2.0, 1.02e-7), DVec3::new(0.0, 3.0, 1.02e-7)];
+        let plate = MeshTree::new(TriMesh::try_new(plate.into(), vec![[0, 1, 2]]).unwrap());
+        let options = QueryOptions::default().with_tolerance(1e-7);
+        let spin = ConstantTwist::REST.with_angular_velocity(DVec3::Z * 5.0);
+        let until = |lift: f64| {
+            let lifted = corners.map(|p| turn * p + DVec3::Z * lift);
+            let pair = TriMesh::try_new([corners, lifted].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+            let pair = MeshTree::new(pair);
+            let scene =
+                MovingScene::new((&pair, spin), (&plate, ConstantTwist::REST), Window::UNIT, &options);
+            screw_clear_until(&scene, 0.0, &LIMITS).clear_until
+        };
+        assert_eq!((until(0.0), until(1e-9), until(4e-9)), (Some(1.0), Some(1.0), None));
+    }
+
+    #[test]
+    fn projections_that_are_apart_mean_bodies_that_are_apart() {
+        let (least, won) = least_ratio(2400, |_| ());
+        assert!((1.0..2.0).contains(&least), "{least}");
+        assert!(won > 600, "{won}");
+    }
+
+    #[test]
+    fn mutants_of_the_screw_die() {
+        assert!(least_ratio(2400, |screw| screw.h *= 0.9).0 < 0.99, "another pitch");
+        assert!(least_ratio(2400, |screw| screw.drift = 0.0).0 < 0.99, "no drift");
+        assert!(least_ratio(2400, |screw| screw.climb *= 0.5).0 < 0.99, "half of the climb");
+        let still = |screw: &mut Screw| {
+            *screw = screw.turn_in_place();
+            screw.slide = 0.0;
+        };
+        assert!(least_ratio(2400, still).0 < 0.99, "a turn in place that does not climb");
+    }
+
+    #[test]
+    fn turns_in_place_that_climb_keep_bodies_apart() {
+        let (least, won) = least_ratio(2400, |screw| *screw = screw.turn_in_place());
+        assert!((1.0..2.0).contains(&least), "{least}");
+        assert!(won > 400, "{won}");
+    }
+
+    /// The offset until which the screw alone proves two triangles apart, A spinning at 6 while it climbs.
+    fn clear_until(a: [DVec3; 3], b: [DVec3; 3], climb: f64) -> Option<f64> {
+        let [a, b] = [a, b].map(|t| MeshTree::new(TriMesh::try_new(t.to_vec(), vec![[0, 1, 2]]).unwrap()));
+        let screw =
+            ConstantTwist::REST.with_angular_velocity(DVec3::Z * 6.0).with_linear_velocity(DVec3::Z * climb);
+        let options = QueryOptions::default().with_tolerance(1e-7);
+        let scene = MovingScene::new((&a, screw), (&b, ConstantTwist::REST), Window::UNIT, &options);
+        screw_clear_until(&scene, 0.0, &LIMITS).clear_until
+    }
+
+    /// The end of a shaft has faces that meet in the axis. What turns past its rim, as a thread in a nut does, passes its
+    /// height beside it, or through it.
+    #[test]
+    fn faces_that_meet_in_the_axis_have_angles_beside_it() {
+        let rim = |angle: f64| DVec3::new(angle.cos(), angle.sin(), 0.0);
+        let end = [DVec3::ZERO, rim(0.0), rim(0.5)];
+        let thread = |angle: f64| {
+            [0.9, 0.92, 0.94].map(|rho| rim(angle + rho - 0.9) * rho - DVec3::Z * (1.5 + (rho - 0.92).abs()))
+        };
+        // At the height of the end after half of the time, 3 rad further.
+        assert_eq!(clear_until(thread(0.0), end, 3.0), Some(1.0));
+        assert_eq!(clear_until(thread(1.5), end, 3.0), Some(1.0));
+        let through = clear_until(thread(-2.8), end, 3.0);
+        assert!(through.is_none_or(|until| until < 0.5), "{through:?}");
+    }
+
+    /// A face a thousand leads long, along the wall that it slides on and through one that it meets in the end.
+    #[test]
+    fn faces_longer_than_many_leads_are_turned_in_place() {
+        let face = |rho: f64, z: [f64; 3]| [0, 1, 2].map(|k| DVec3::new(rho, [-0.1, 0.1, 0.0][k], z[k]));
+        let shaft = face(1.0, [-5.0, -5.0, 5.0]);
+        assert_eq!(clear_until(shaft, face(1.2, [-8.0, -8.0, 8.0]), 1e-3), Some(1.0));
+        let above = face(1.0, [5.0005, 5.0005, 6.0]);
+        let until = clear_until(shaft, above, 1e-3);
+        assert!(until.is_some_and(|until| (0.4..=0.5).contains(&until)), "{until:?}");
+    }
+
+    /// An attempt ends when its time has come, wherever it is: at the first reading of the clock, after 64 steps.
+    #[test]
+    fn attempts_end_with_their_time() {
+        let ring = |n: u32| {
+            let vertices = (0..2 * n).map(|k| {
+                let angle = f64::from(k / 2) * 0.01;
+                DVec3::new(angle.cos(), angle.sin(), f64::from(k % 2))
+            });
+            let triangles = (0..2 * n - 2).map(|k| [k, k + 1, k + 2]).collect();
+            MeshTree::new(TriMesh::try_new(vertices.collect(), triangles).unwrap())
+        };
+        let (a, b) = (ring(500), ring(500));
+        let spin = |speed: f64| ConstantTwist::REST.with_angular_velocity(DVec3::Z * speed);
+        let far = spin(3.0).with_position(DVec3::Z * 1.5);
+        let scene = MovingScene::new((&a, far), (&b, spin(0.0)), Window::UNIT, &QueryOptions::default());
+        let over = Stop::new(&Budget::UNLIMITED.with_wall_clock(std::time::Duration::ZERO));
+        for (stop, ends) in [(Stop::NEVER, false), (over, true)] {
+            let limits = SkipLimits { stop, ..LIMITS };
+            let skip = screw_clear_until(&scene, 0.0, &limits);
+            assert_eq!(skip.clear_until.is_none(), ends, "{skip:?}");
+            let skip = swept_clear_until(&scene, 0.0, &limits, DVec3::Y);
+            assert_eq!(skip.clear_until.is_none(), ends, "{skip:?}");
+            let screw = Screw::new(&scene, 0.0).unwrap();
+            let mut clock = Meter::until(stop);
+            let (places, triangles) = (a.mesh().vertices(), a.mesh().triangles());
+            let projected = BodyProjections::try_new(&screw, places, triangles, &mut clock);
+            assert_eq!(projected.is_err(), ends);
+        }
+    }
+}

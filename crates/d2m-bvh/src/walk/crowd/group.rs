@@ -1,0 +1,53 @@
+//! The vertices below some boxes of a body.
+
+use crate::pair::scene::SceneBody;
+use d2m_mesh::Meter;
+use d2m_mesh::node::{Below, WIDTH};
+use glam::DVec3;
+
+/// The vertices below some boxes of a body.
+pub(super) struct Group<'a> {
+    body: &'a SceneBody<'a>,
+    /// Which boxes and which vertices were added.
+    seen: Vec<bool>,
+    seen_vertices: Vec<bool>,
+    /// Relative to the tree's center.
+    pub(super) points: Vec<DVec3>,
+}
+
+impl<'a> Group<'a> {
+    pub(super) fn new(body: &'a SceneBody<'a>) -> Self {
+        let seen = vec![false; WIDTH * body.tree.nodes().len()];
+        let seen_vertices = vec![false; body.tree.mesh().vertices().len()];
+        Self { body, seen, seen_vertices, points: Vec::new() }
+    }
+
+    /// `None`: too many, or the time is over.
+    pub(super) fn add(&mut self, index: u32, most: usize, clock: &mut Meter) -> Option<()> {
+        let mut stack = vec![index as usize];
+        while let Some(index) = stack.pop() {
+            if core::mem::replace(&mut self.seen[index], true) {
+                continue;
+            }
+            clock.step().ok()?;
+            match self.body.tree.nodes()[index / WIDTH].below(index % WIDTH) {
+                Below::Triangle(triangle) => {
+                    for vertex in self.body.tree.mesh().triangles()[triangle as usize] {
+                        if !core::mem::replace(&mut self.seen_vertices[vertex as usize], true) {
+                            self.points
+                                .push(self.body.place(self.body.tree.mesh().vertices()[vertex as usize]));
+                        }
+                    }
+                }
+                Below::Node(node) => {
+                    let used = self.body.tree.nodes()[node as usize].used as usize;
+                    stack.extend((0..used.min(WIDTH)).map(|lane| node as usize * WIDTH + lane));
+                }
+            }
+            if self.points.len() > most {
+                return None;
+            }
+        }
+        Some(())
+    }
+}
