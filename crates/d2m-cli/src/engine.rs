@@ -15,6 +15,7 @@ use d2m::motion::{AnyMotion, RigidMotion};
 use d2m::paper::{self, SphereTree};
 use d2m_io::query_fault;
 use glam::DVec3;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::time::{Duration, Instant};
 
 /// A mesh with its tree and the name that the user gave it.
@@ -345,6 +346,19 @@ pub(crate) fn options_of(arguments: &QueryArguments) -> Result<QueryOptions, Fai
 /// What `--tolerance` and `--min-separation` take.
 pub(crate) const TOLERANCE: &str = "a positive finite distance";
 pub(crate) const MIN_SEPARATION: &str = "a finite distance that is not negative";
+
+/// The threads of `--threads`; 0: one for each processor.
+pub(crate) fn threads(count: usize) -> Result<ThreadPool, Failure> {
+    let pool = ThreadPoolBuilder::new().num_threads(count).build();
+    pool.map_err(|error| Failure::at("--threads", error))
+}
+
+/// The budget of `--time-limit`.
+pub(crate) fn time_limit(text: &str) -> Result<Budget, Failure> {
+    let is_time = |seconds: f64| Duration::try_from_secs_f64(seconds).is_ok();
+    let seconds = number("--time-limit", text, "a number of seconds that is not negative", is_time)?;
+    Ok(Budget::UNLIMITED.with_wall_clock(Duration::from_secs_f64(seconds)))
+}
 
 /// Reads an option's value and checks it.
 pub(crate) fn number(

@@ -8,7 +8,7 @@ use d2m::motion::{AnyMotion, ConstantTwist, CoveredMotion};
 use std::path::Path;
 
 /// Reads `x=…;q=…;v=…;w=…` or `@file.json`; `option` names the place in messages.
-pub(crate) fn parse_motion(option: &str, text: &str) -> Result<AnyMotion, Failure> {
+fn parse_motion(option: &str, text: &str) -> Result<AnyMotion, Failure> {
     let Some(file) = text.strip_prefix('@') else {
         if let Some(hint) = file_hint(text) {
             return Err(Failure::at(option, hint));
@@ -28,6 +28,17 @@ pub(crate) fn parse_motion(option: &str, text: &str) -> Result<AnyMotion, Failur
     Ok(motion)
 }
 
+/// The window and the motions of two bodies, A and B, each of which covers it.
+pub(crate) fn parse_motions(window: &str, motions: [&str; 2]) -> Result<(Window, [AnyMotion; 2]), Failure> {
+    let window = parse_window(window)?;
+    let options = ["--motion-a", "--motion-b"];
+    let motions = [parse_motion(options[0], motions[0])?, parse_motion(options[1], motions[1])?];
+    for (option, motion) in options.into_iter().zip(&motions) {
+        require_window(option, motion, window)?;
+    }
+    Ok((window, motions))
+}
+
 /// What someone means who gives the name of a file without an @.
 pub(crate) fn file_hint(text: &str) -> Option<String> {
     let path = Path::new(text);
@@ -43,7 +54,7 @@ pub(crate) fn require_window(place: &str, motion: &AnyMotion, window: Window) ->
 }
 
 /// Reads `t0,t1`; an empty or reversed window is refused.
-pub(crate) fn parse_window(text: &str) -> Result<Window, Failure> {
+fn parse_window(text: &str) -> Result<Window, Failure> {
     let fault = |reason: String| Failure::at("--window", reason);
     let Some((start, end)) = text.split_once(',') else {
         return Err(fault(format!(

@@ -51,6 +51,13 @@ impl PosedBodies {
         Ok(bodies)
     }
 
+    /// The names of the bodies, with their sizes.
+    pub(crate) fn lines(&self, line: &mut dyn FnMut(&str, String)) {
+        for (label, body) in ["A", "B"].into_iter().zip(&self.both) {
+            line(label, format!("{} · {} triangles", body.name, body.tree.mesh().triangle_count()));
+        }
+    }
+
     /// The last line of a text: how large the bodies are.
     pub(crate) fn sizes_line(&self) -> String {
         sizes_line(self.sizes(), None)

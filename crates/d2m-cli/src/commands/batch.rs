@@ -1,7 +1,7 @@
 //! `d2m batch`: many trials of one pair.
 
 use crate::arguments::BatchArguments;
-use crate::engine::{Answer, Pair, number};
+use crate::engine::{Answer, Pair, number, threads};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::{Output, note, progress_bar};
@@ -44,8 +44,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
         let place = || format!("{}, line {} (trial {index})", arguments.trials.display(), trial.line);
         answer.map_err(|failure| Failure::at(place(), failure))
     };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.into()).build();
-    let pool = pool.map_err(|error| Failure::at("--threads", error))?;
+    let pool = threads(arguments.threads.into())?;
     let mut answers: Vec<Answer> = Vec::with_capacity(trials.len() - known);
     // Without --resume all at once; with it in parts that are kept.
     let part = if arguments.resume { PART } else { trials.len() };

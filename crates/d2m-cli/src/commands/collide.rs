@@ -73,9 +73,7 @@ pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
         if let Some(normal) = normal {
             line("normal", format!("{} from A to B", vector(normal)));
         }
-        for (label, body) in ["A", "B"].into_iter().zip(&bodies.both) {
-            line(label, format!("{} · {} triangles", body.name, body.tree.mesh().triangle_count()));
-        }
+        bodies.lines(&mut line);
         line("query", solid_word(solid).to_owned());
         line("took", duration(took));
         text + &bodies.sizes_line()

@@ -45,9 +45,7 @@ fn to_text(bodies: &PosedBodies, solid: Solid, found: &Distance, took: Duration)
     if matches!(found.state, StartState::Apart | StartState::Touching) {
         line("normal", format!("{} from A to B", vector(found.normal)));
     }
-    for (label, body) in ["A", "B"].into_iter().zip(&bodies.both) {
-        line(label, format!("{} · {} triangles", body.name, body.tree.mesh().triangle_count()));
-    }
+    bodies.lines(&mut line);
     line("query", solid_word(solid).to_owned());
     line("took", duration(took));
     text + &bodies.sizes_line()

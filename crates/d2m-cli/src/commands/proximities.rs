@@ -90,9 +90,7 @@ fn to_text(bodies: &PosedBodies, margin: f64, found: Option<&Found>, took: Durat
     let mut line = |label: &str, value: String| {
         let _ = writeln!(text, "  {label:<12}{value}");
     };
-    for (label, body) in ["A", "B"].into_iter().zip(&bodies.both) {
-        line(label, format!("{} · {} triangles", body.name, body.tree.mesh().triangle_count()));
-    }
+    bodies.lines(&mut line);
     line("took", duration(took));
     text + &bodies.sizes_line()
 }

@@ -2,7 +2,7 @@
 
 use super::robot_proof::{Proof, prove};
 use crate::arguments::RobotArguments;
-use crate::engine::number;
+use crate::engine::{number, threads, time_limit};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::{Output, digits, note, print, short};
@@ -12,7 +12,7 @@ use crate::robot_scene::RobotSceneFile;
 use crate::travel::Travel;
 use crate::unlike_sizes::{size_of, unlike};
 use crate::view::picture_of_path;
-use d2m::bvh::{Budget, QueryOptions, Window};
+use d2m::bvh::{QueryOptions, Window};
 use d2m_robot::{
     JointType, LimitWarning, PathAnswer, PathBodies, PathClearance, PathContact, Robot, RobotOptions,
     RobotScene, Srdf, Trajectory,
@@ -21,7 +21,6 @@ use serde_json::{Value, json};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::PathBuf;
-use std::time::Duration;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
@@ -71,9 +70,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     notes.extend(unlike_sizes(&scene.bodies_along(&path).map_err(fault)?, scene.robot()));
     notes.extend(far_turns(&path, &scene).map(|text| format!("warning: {place}: {text}")));
     notes.extend(warnings.iter().map(|warning| format!("warning: {place}: {warning}")));
-    let threads = arguments.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| Failure::at("--threads", error))?;
+    let pool = threads(arguments.threads.map_or(0, usize::from))?;
     let answer = pool.install(|| scene.check_path(&path)).map_err(fault)?;
     let clearance = if arguments.clearance && answer.is_free() {
         pool.install(|| scene.clearance(&path)).map_err(fault)?
@@ -157,9 +154,7 @@ fn options(arguments: &RobotArguments, file: Option<&RobotSceneFile<'_>>) -> Res
         options = options.with_min_separation(distance);
     }
     if let Some(text) = &arguments.time_limit {
-        let is_time = |seconds: f64| Duration::try_from_secs_f64(seconds).is_ok();
-        let seconds = number("--time-limit", text, "a number of seconds that is not negative", is_time)?;
-        options = options.with_budget(Budget::UNLIMITED.with_wall_clock(Duration::from_secs_f64(seconds)));
+        options = options.with_budget(time_limit(text)?);
     }
     Ok(options)
 }

@@ -2,20 +2,17 @@
 
 use super::scene_question::sizes_line_of;
 use crate::arguments::SceneArguments;
-use crate::engine::number;
+use crate::engine::{threads, time_limit};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::{print_answer, progress_bar, short};
 use crate::report::{feature_field, start_in_json, start_word, vector};
 use crate::scene::{Scene, SceneBody};
 use crate::verification::{Bodies, Proof, joined};
-use d2m::bvh::{
-    Budget, Contact, QueryOptions, Start, StartState, TimeOfContact, Window, departure, time_of_contact,
-};
+use d2m::bvh::{Contact, QueryOptions, Start, StartState, TimeOfContact, Window, departure, time_of_contact};
 use d2m::{BodyId, FirstContact, PairContact, WorldError};
 use serde_json::{Value, json};
 use std::fmt::Write;
-use std::time::Duration;
 
 /// A contact of two bodies by number.
 struct Row {
@@ -62,15 +59,11 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
     }
     let mut options = QueryOptions::default();
     if let Some(text) = &arguments.time_limit {
-        let is_time = |seconds: f64| Duration::try_from_secs_f64(seconds).is_ok();
-        let seconds = number("--time-limit", text, "a number of seconds that is not negative", is_time)?;
-        options = options.with_budget(Budget::UNLIMITED.with_wall_clock(Duration::from_secs_f64(seconds)));
+        options = options.with_budget(time_limit(text)?);
     }
     let mut world = scene.world(options);
     let named = |error: WorldError| Failure::at(arguments.scene.display(), scene.describe(error));
-    let threads = arguments.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| Failure::at("--threads", error))?;
+    let pool = threads(arguments.threads.map_or(0, usize::from))?;
     let bar = progress_bar(0, "pairs");
     let progress = |done: usize, all: usize| {
         bar.set_length(all as u64);

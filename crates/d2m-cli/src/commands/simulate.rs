@@ -1,7 +1,7 @@
 //! `d2m simulate`: bodies under forces and contacts, to a run file.
 
 use crate::arguments::SimulateArguments;
-use crate::engine::number;
+use crate::engine::{number, threads};
 use crate::failure::Failure;
 use crate::output::{Output, Stream, note, progress_bar};
 use crate::report::duration;
@@ -19,9 +19,7 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<(), Failure> {
     let thinner = every.transpose()?.map(Thinner::new);
     let scene = read_scene(&arguments.scene)?;
     warn_of_gap(&scene);
-    let threads = arguments.threads.or(scene.threads).unwrap_or(1);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build();
-    let pool = pool.map_err(|error| Failure::at("--threads", error))?;
+    let pool = threads(arguments.threads.or(scene.threads).unwrap_or(1).into())?;
     let name = arguments.scene.display().to_string();
     let ended = pool.install(|| simulate(scene, &name, &out, thinner))?;
     if let Some(error) = ended.early {

@@ -3,7 +3,7 @@
 use crate::arguments::TocArguments;
 use crate::engine::{Pair, check_size};
 use crate::failure::Failure;
-use crate::motion::{parse_motion, parse_window, require_window};
+use crate::motion::parse_motions;
 use crate::outcome::Outcome;
 use crate::output::{Output, print_answer};
 use crate::report;
@@ -28,11 +28,8 @@ pub(super) struct MovingPair {
 
 /// Reads motions, then meshes.
 pub(super) fn read(arguments: &TocArguments) -> Result<MovingPair, Failure> {
-    let window = parse_window(&arguments.window)?;
-    let motion_a = parse_motion("--motion-a", &arguments.motion_a)?;
-    let motion_b = parse_motion("--motion-b", &arguments.motion_b)?;
-    require_window("--motion-a", &motion_a, window)?;
-    require_window("--motion-b", &motion_b, window)?;
+    let (window, [motion_a, motion_b]) =
+        parse_motions(&arguments.window, [&arguments.motion_a, &arguments.motion_b])?;
     let Some(b) = arguments.b.as_deref() else {
         return Err(Failure::at(
             &arguments.a,

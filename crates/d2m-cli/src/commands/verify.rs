@@ -4,7 +4,7 @@ use crate::answer_file::{Question, read_answer};
 use crate::arguments::VerifyArguments;
 use crate::engine::{Pair, check_size};
 use crate::failure::Failure;
-use crate::motion::{parse_motion, parse_window, require_window};
+use crate::motion::parse_motions;
 use crate::outcome::Outcome;
 use crate::output::print;
 use crate::sizes::load_both;
@@ -14,11 +14,8 @@ use std::io::Read;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &VerifyArguments) -> Result<Outcome, Failure> {
-    let window = parse_window(&arguments.window)?;
-    let motion_a = parse_motion("--motion-a", &arguments.motion_a)?;
-    let motion_b = parse_motion("--motion-b", &arguments.motion_b)?;
-    require_window("--motion-a", &motion_a, window)?;
-    require_window("--motion-b", &motion_b, window)?;
+    let (window, [motion_a, motion_b]) =
+        parse_motions(&arguments.window, [&arguments.motion_a, &arguments.motion_b])?;
     let (place, bytes) = read(&arguments.answer)?;
     let [a, b] = load_both(&arguments.a, &arguments.b, &arguments.query.sizes)?;
     let pair = Pair::new(a, b, &arguments.query)?;

@@ -25,5 +25,6 @@ pub use jet::PointJet;
 pub use options::PaperOptions;
 pub use point_triangle::{PointFace, point_polygon, point_triangle};
 pub use relative_motion::{Placement, RelativeFrame, RelativeMotion};
+pub(crate) use sphere_over_domain::boxes_meet;
 pub use sphere_over_domain::{BodyOverDomain, SphereOverDomain, test_sphere_pair};
 pub use sphere_sphere::sphere_sphere;

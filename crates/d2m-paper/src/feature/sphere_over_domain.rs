@@ -166,7 +166,8 @@ pub fn test_sphere_pair(
     theta.nonpositive_hull(searched)
 }
 
-fn boxes_meet(a: &IntervalVec3, b: &IntervalVec3) -> bool {
+/// Do two boxes share a point?
+pub(crate) fn boxes_meet(a: &IntervalVec3, b: &IntervalVec3) -> bool {
     let meet = |a: Interval, b: Interval| !(a.hi() < b.lo() || b.hi() < a.lo());
     meet(a.x, b.x) && meet(a.y, b.y) && meet(a.z, b.z)
 }

@@ -3,7 +3,7 @@
 use super::budget::{charge, evaluations};
 use super::sphere_tree::{Leaf, OwnedEdge, OwnedVertex, SphereTree};
 use crate::feature::{
-    EdgePair, PaperOptions, PointFace, PointJet, RelativeFrame, RelativeMotion, TriangleFace,
+    EdgePair, PaperOptions, PointFace, PointJet, RelativeFrame, RelativeMotion, TriangleFace, boxes_meet,
 };
 use d2m_bvh::{Exhausted, Meter};
 use d2m_feature::FeaturePair;
@@ -77,11 +77,11 @@ impl LeafPair<'_> {
             let point = tree.vertex(vertex);
             let jet = frame.jet(point);
             let swept = swept_box(&jet);
-            if !meet(&swept, &all) {
+            if !boxes_meet(&swept, &all) {
                 continue;
             }
             for (i, &face) in face_leaf.triangles.iter().enumerate() {
-                if !meet(&swept, &boxes[i]) {
+                if !boxes_meet(&swept, &boxes[i]) {
                     continue;
                 }
                 let plane = faces[i].get_or_insert_with(|| TriangleFace::new(face_tree.corners(face))).face();
@@ -123,13 +123,13 @@ impl LeafPair<'_> {
             meter.step()?;
             let own = ends(tree_a, edge_a);
             let swept = swept_box(&frame.jet(own[0])).hull(swept_box(&frame.jet(own[1])));
-            if !meet(&swept, &all) {
+            if !boxes_meet(&swept, &all) {
                 continue;
             }
             for (i, &OwnedEdge { ends: edge_b, triangle: triangle_b }) in
                 leaf_b.owned_edges.iter().enumerate()
             {
-                if !meet(&swept, &boxes[i]) {
+                if !boxes_meet(&swept, &boxes[i]) {
                     continue;
                 }
                 let mut pair =
@@ -180,9 +180,4 @@ fn hull(points: &[DVec3]) -> Box3 {
 /// All places of the point during the jet's span.
 fn swept_box(jet: &PointJet) -> Box3 {
     jet.enclose(jet.offsets(jet.span()))
-}
-
-pub(super) fn meet(a: &Box3, b: &Box3) -> bool {
-    let meet = |a: Interval, b: Interval| !(a.hi() < b.lo() || b.hi() < a.lo());
-    meet(a.x, b.x) && meet(a.y, b.y) && meet(a.z, b.z)
 }

@@ -1,10 +1,10 @@
 //! Traverse-Tree-Pair, Algorithm 6 of the paper, over a subdivided time domain.
 
 use super::Moving;
-use super::leaf_pair::{Box3, Candidate, LeafPair, TreeLeaf, meet, still_open};
+use super::leaf_pair::{Box3, Candidate, LeafPair, TreeLeaf, still_open};
 use super::sphere_tree::{Leaf, SphereTree};
 use crate::feature::{
-    BodyOverDomain, PaperOptions, PointJet, RelativeMotion, SphereOverDomain, test_sphere_pair,
+    BodyOverDomain, PaperOptions, PointJet, RelativeMotion, SphereOverDomain, boxes_meet, test_sphere_pair,
 };
 use d2m_bvh::{Meter, Mode};
 use d2m_feature::FeaturePair;
@@ -213,11 +213,11 @@ impl<'a> Search<'a> {
         let [of_a, of_b] = &mut self.stretch;
         let all_a = of_a.sweep(self.bodies[0].body, a, span);
         let all_b = of_b.sweep(self.bodies[1].body, b, span);
-        meet(&all_a, &all_b)
+        boxes_meet(&all_a, &all_b)
             && of_a
                 .triangle_boxes
                 .iter()
-                .any(|x| meet(x, &all_b) && of_b.triangle_boxes.iter().any(|y| meet(x, y)))
+                .any(|x| boxes_meet(x, &all_b) && of_b.triangle_boxes.iter().any(|y| boxes_meet(x, y)))
     }
 
     /// Capoeira mode: the start of the overlap of two leaves stands for the contact of their content.
