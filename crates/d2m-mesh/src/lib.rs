@@ -26,8 +26,7 @@
 //!
 //! ## Queries of your own
 //! - [`node`]: the boxes of a tree. [`at_rest`]: questions at an instant. [`margin`]: outward roundings.
-//! - [`Simplex`]: the point of a hull that is nearest to the origin. [`parallel`]: threads, with the same
-//!   bits at any number of them.
+//! - [`Simplex`]: the point of a hull that is nearest to the origin.
 //!
 //! ## Errors
 //! [`QueryError`], [`MeshError`], [`TreeError`], [`TreeFileError`]: bad input, with index and value. Hard
@@ -48,7 +47,7 @@ mod mesh;
 mod meter;
 mod nearest_point;
 pub mod node;
-pub mod parallel;
+mod parallel;
 mod posed;
 mod resting;
 mod solid;

@@ -1,7 +1,10 @@
 //! Work on several threads with answers in the order of the work: the same bits at any number of threads.
 
 /// Both answers: on two threads of the current rayon pool with the feature `rayon`.
-pub fn both<A: Send, B: Send>(first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B + Send) -> (A, B) {
+pub(crate) fn both<A: Send, B: Send>(
+    first: impl FnOnce() -> A + Send,
+    second: impl FnOnce() -> B + Send,
+) -> (A, B) {
     #[cfg(feature = "rayon")]
     return rayon::join(first, second);
     #[cfg(not(feature = "rayon"))]
@@ -12,7 +15,7 @@ pub fn both<A: Send, B: Send>(first: impl FnOnce() -> A + Send, second: impl FnO
 const MANY: usize = 4096;
 
 /// As [`both`], side by side where the work is on many triangles.
-pub fn both_of_many<A: Send, B: Send>(
+pub(crate) fn both_of_many<A: Send, B: Send>(
     triangles: usize,
     first: impl FnOnce() -> A + Send,
     second: impl FnOnce() -> B + Send,
@@ -21,7 +24,7 @@ pub fn both_of_many<A: Send, B: Send>(
 }
 
 /// `work` of each item, in order: on all threads of the current rayon pool with the feature `rayon`.
-pub fn map_in_order<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
+pub(crate) fn map_in_order<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
     #[cfg(feature = "rayon")]
     {
         use rayon::prelude::*;
@@ -32,6 +35,6 @@ pub fn map_in_order<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync
 }
 
 /// As [`map_in_order`], on several threads where the items are many.
-pub fn map_of_many<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
+pub(crate) fn map_of_many<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
     if items.len() > MANY { map_in_order(items, work) } else { items.iter().map(work).collect() }
 }

@@ -9,10 +9,10 @@ use crate::margin::UNIT_F64;
 use d2m_lanes::Bytes;
 
 /// The pairs of axes whose faces meet in edges.
-pub const PAIRS: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
+pub(crate) const PAIRS: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
 
 /// Steps of a stored cut in one half extent.
-pub const STEPS: f32 = 64.0;
+pub(crate) const STEPS: f32 = 64.0;
 
 /// The largest stored cut. Four bytes that are not above it are never the bits of a NaN, so that they can be kept where
 /// numbers are.
@@ -116,4 +116,107 @@ pub(crate) fn reach_both_ways(half: &[f32; 3], slabs: &Slabs, cosines: [f64; 3])
         steps[1] += common * f64::from(cuts[3 - edge]);
     }
     [corner - steps[0] / f64::from(STEPS), corner - steps[1] / f64::from(STEPS)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use d2m_lanes::{Elementwise, InstructionSet, Lanes, Portable, Task, Two, run_on};
+    use d2m_testing::{Draw, KnuthRandom};
+
+    /// Bytes chosen by signs, by lanes and by twice as many.
+    struct Choice([[f32; 8]; 4]);
+
+    impl Task for Choice {
+        type Output = [[u32; 8]; 3];
+
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Self::Output {
+            let [four, x, y, flip] =
+                [L::load(&self.0[0]), L::load(&self.0[1]), L::load(&self.0[2]), L::load(&self.0[3])];
+            let zero = L::splat(0.0);
+            let (two, one) = (L::Two::of(zero, four), L::Two::both(flip));
+            let second = two.byte_of(L::Two::of(x, x), L::Two::of(y, y), one);
+            [four.byte_of(x, y, flip), second.first(), second.second()]
+                .map(|lanes| lanes.store().map(f32::to_bits))
+        }
+    }
+
+    #[test]
+    fn bytes_are_chosen_by_signs_with_every_instruction_set() {
+        let mut random = KnuthRandom(21);
+        for _ in 0..2000 {
+            let mut number = || random.signed() as f32;
+            let signs: [[f32; 8]; 3] = core::array::from_fn(|_| {
+                core::array::from_fn(|k| if k == 3 { -0.0 * number().signum() } else { number() })
+            });
+            let bytes: [[u8; 4]; 8] =
+                core::array::from_fn(|_| core::array::from_fn(|_| ((number() + 1.0) * 63.4) as u8));
+            let four = bytes.map(|b| f32::from_bits(u32::from_le_bytes(b)));
+            let expected: [u32; 8] = core::array::from_fn(|k| {
+                let is_negative =
+                    |v: &[f32; 8]| usize::from(v[k].is_sign_negative() != signs[2][k].is_sign_negative());
+                f32::from(bytes[k][is_negative(&signs[0]) + 2 * is_negative(&signs[1])]).to_bits()
+            });
+            let wanted = [expected, [0; 8], expected];
+            for set in InstructionSet::available() {
+                assert_eq!(run_on(set, Choice([four, signs[0], signs[1], signs[2]])), wanted, "{set:?}");
+            }
+        }
+    }
+
+    /// Points in a box from which all edges are cut off, pushed out until they are on its surface: none is beyond its
+    /// reach, and together they come near it.
+    #[test]
+    fn slabs_reach_as_far_as_their_points() {
+        let mut random = KnuthRandom(22);
+        let mut sharpest = 0.0f32;
+        for _ in 0..300 {
+            let half: [f32; 3] = core::array::from_fn(|_| 10f64.powf(1.5 * random.signed() - 1.5) as f32);
+            let cuts: [[u8; 4]; 3] =
+                core::array::from_fn(|_| core::array::from_fn(|_| ((random.signed() + 1.0) * 63.4) as u8));
+            let room = |q: [f32; 3]| {
+                // The largest number that the point, in half extents, may be multiplied with.
+                let mut most = q.iter().map(|x| 1.0 / x.abs()).fold(f32::INFINITY, f32::min);
+                for (&(i, j), cuts) in PAIRS.iter().zip(&cuts) {
+                    for (place, &cut) in cuts.iter().enumerate() {
+                        let sign = |bit: usize| if place & bit == 0 { 1.0 } else { -1.0 };
+                        let towards = sign(1) * q[i] + sign(2) * q[j];
+                        if towards > 0.0 {
+                            most = most.min((2.0 - f32::from(cut) / STEPS) / towards);
+                        }
+                    }
+                }
+                most
+            };
+            let points: Vec<[f32; 3]> = (0..400)
+                .map(|_| {
+                    let q: [f32; 3] = core::array::from_fn(|_| random.signed() as f32);
+                    let most = room(q);
+                    core::array::from_fn(|k| q[k] * most * half[k])
+                })
+                .collect();
+            let slabs = cuts.map(|cuts| Portable::splat(f32::from_bits(u32::from_le_bytes(cuts))));
+            let along = random.signed() as f32;
+            for _ in 0..20 {
+                let cosines: [f32; 3] = core::array::from_fn(|_| random.signed() as f32);
+                let bound = reach::<_, 3>(
+                    &half.map(Portable::splat),
+                    &slabs,
+                    &cosines.map(Portable::splat),
+                    Portable::splat(along),
+                )
+                .store()[0];
+                let direction = cosines.map(|c| c * along.signum());
+                let farthest = points
+                    .iter()
+                    .map(|p| direction[0] * p[0] + direction[1] * p[1] + direction[2] * p[2])
+                    .fold(f32::NEG_INFINITY, f32::max);
+                let corner: f32 = (0..3).map(|k| half[k] * cosines[k].abs()).sum();
+                assert!(farthest <= bound + 1e-6 * corner, "{farthest} {bound}");
+                sharpest = sharpest.max(farthest / bound);
+            }
+        }
+        assert!(sharpest > 0.999, "{sharpest}");
+    }
 }
