@@ -31,7 +31,6 @@ mod account;
 mod advance;
 mod attempt;
 mod body;
-mod broad_phase;
 mod clearance;
 mod compound;
 #[cfg(feature = "audit")]
@@ -53,6 +52,7 @@ mod live;
 mod mass;
 mod membership;
 mod momenta;
+mod neighbors;
 mod nested;
 mod options;
 mod pairs;

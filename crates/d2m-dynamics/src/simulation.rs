@@ -1,8 +1,8 @@
 //! The simulation: bodies, settings, time.
 
-use crate::broad_phase::Neighbors;
 use crate::contact::Material;
 use crate::joined::Joined;
+use crate::neighbors::Neighbors;
 use crate::pairs::Pair;
 use crate::record::Recorder;
 use crate::rigid_body::{LARGEST, RigidBody, Role};

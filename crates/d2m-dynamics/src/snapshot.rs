@@ -309,7 +309,7 @@ impl Simulation {
         next.world = snapshot.world;
         (next.time, next.steps) = (snapshot.time, snapshot.steps);
         next.greatest_energy = snapshot.greatest_energy;
-        next.neighbors = crate::broad_phase::Neighbors::default();
+        next.neighbors = crate::neighbors::Neighbors::default();
         next.recorder = crate::record::Recorder::default();
         next.touches.clear();
         if !is_known {

@@ -1,13 +1,14 @@
 //! Where bodies are when they are added: apart, touching, or in each other.
 
-use crate::broad_phase::{Aabb, meeting};
 use crate::contact::{Accuracy, ContactPoint, SolverBody, Start, System};
+use crate::neighbors::posed;
 use crate::pairs::{Pair, distance_of, held_at, measure};
 use crate::rigid_body::RigidBody;
 use crate::step::are_spheres_apart;
 use crate::velocity::Velocity;
 use crate::{Simulation, SimulationError, StepError};
 use d2m_bvh::{Distance, PairCache, StartState};
+use d2m_world::{Aabb, BoxTree};
 use glam::{DMat3, DVec3};
 
 /// Bodies that touch are moved this far apart before anything flies, of their size or their distance from the origin if that is more:
@@ -79,10 +80,11 @@ impl Simulation {
     /// The pairs that meet, are wanted, and may be closer than the gap, in the order of the second body.
     fn near_pairs(&self, wanted: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
         let gap = self.options.gap;
-        let boxes: Vec<Aabb> =
-            self.bodies.iter().map(|body| Aabb::posed(body, &body.pose_at(self.time), gap)).collect();
-        let mut near = Vec::new();
-        meeting(&boxes, |a, b| {
+        let boxes: Vec<Aabb> = self.bodies.iter().map(|body| posed(body, self.time, gap)).collect();
+        let (mut tree, mut near) = (BoxTree::default(), Vec::new());
+        tree.fit(&boxes);
+        tree.pairs(&boxes, 0.0, |[a, b]| {
+            let (a, b) = (a as usize, b as usize);
             if wanted(a, b) && self.meets(a, b) {
                 near.push((b, a));
             }
@@ -98,11 +100,11 @@ impl Simulation {
     pub(crate) fn check_place(&self, place: usize) -> Result<(), SimulationError> {
         let (gap, now) = (self.options.gap, self.time);
         let body = &self.bodies[place];
-        let own = Aabb::posed(body, &body.pose_at(now), gap);
+        let own = posed(body, now, gap);
         for (other, two) in self.bodies.iter().enumerate().filter(|(other, _)| *other != place) {
             let is_near = self.meets(place, other)
                 && !are_spheres_apart(body, two, now, now, gap)
-                && own.may_meet(&Aabb::posed(two, &two.pose_at(now), gap));
+                && own.may_meet(&posed(two, now, gap), 0.0);
             if is_near {
                 self.placed(place.min(other), place.max(other))?;
             }

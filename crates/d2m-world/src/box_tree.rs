@@ -1,6 +1,6 @@
-//! The broad phase: a binary tree of axis-aligned boxes over the boxes of the bodies, refitted as long as it is good.
+//! The broad phase of worlds and simulations: a binary tree of axis-aligned boxes over the boxes of bodies, refitted as long as it is good.
 
-use crate::swept_bounds::SweptBox;
+use crate::Aabb;
 
 /// A pair of boxes by their numbers, the smaller first.
 pub(crate) type IndexPair = [u32; 2];
@@ -13,15 +13,37 @@ const WORN: f64 = 1.5;
 /// Comparing two boxes takes about a nanosecond, building a tree so many for each body.
 const BUILD: usize = 128;
 
-/// A complete binary tree. Its boxes hold those of the bodies in a range of `order`; the tree's shape follows from their number.
+/// A tree over the boxes of many bodies: which of them may meet.
+///
+/// It keeps an order of the boxes, not the boxes themselves, so that it is fitted to boxes that move: [`BoxTree::fit`] where all may have,
+/// [`BoxTree::refit`] where some have. Never leaves out a pair that may meet: what is dropped is proven apart along one axis. Empty boxes meet
+/// nothing. For boxes each of which meets a few others all pairs take n log n steps.
+///
+/// ```
+/// use d2m_world::{Aabb, BoxTree};
+/// use glam::DVec3;
+/// let at = |x: f64| Aabb { low: DVec3::X * x, high: DVec3::X * x + DVec3::ONE };
+/// let mut boxes = vec![at(0.0), at(0.5), at(9.0)];
+/// let mut tree = BoxTree::default();
+/// tree.fit(&boxes);
+/// let mut pairs = Vec::new();
+/// tree.pairs(&boxes, 0.0, |pair| pairs.push(pair));
+/// assert_eq!(pairs, [[0, 1]]);
+/// boxes[2] = at(1.25);
+/// tree.refit(&boxes, &[2]);
+/// pairs.clear();
+/// tree.pairs_of(&boxes, 2, 0.0, |pair| pairs.push(pair));
+/// assert_eq!(pairs, [[1, 2]]);
+/// ```
+// A complete binary tree. Its boxes hold those of the bodies in a range of `order`; the tree's shape follows from their number.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct BoxTree {
+pub struct BoxTree {
     /// The bodies, in the order of the leaves.
     order: Vec<u32>,
     /// Where each body is in the order.
     place: Vec<u32>,
     /// Box 1 is the root; 2k and 2k + 1 are below k. The second half are the leaves.
-    bounds: Vec<SweptBox>,
+    bounds: Vec<Aabb>,
     /// Total length of the boxes when the tree was built, against those of the bodies.
     length: f64,
     /// Comparisons that bodies outside of the tree have cost since it was built.
@@ -30,7 +52,7 @@ pub(crate) struct BoxTree {
 
 impl BoxTree {
     /// All boxes may be others than before: keeps the order of the bodies if the tree is still good.
-    pub(crate) fn fit(&mut self, boxes: &[SweptBox]) {
+    pub fn fit(&mut self, boxes: &[Aabb]) {
         if self.order.len() == boxes.len() && !boxes.is_empty() {
             self.refit_all(boxes);
             // What is not a number is no reason to keep the tree.
@@ -42,7 +64,7 @@ impl BoxTree {
     }
 
     /// Some boxes have changed. Bodies that were added are outside of the tree until there are many.
-    pub(crate) fn refit(&mut self, boxes: &[SweptBox], changed: &[u32]) {
+    pub fn refit(&mut self, boxes: &[Aabb], changed: &[u32]) {
         self.outside += changed.len() * (boxes.len() - self.order.len().min(boxes.len()));
         if self.outside > BUILD * boxes.len() {
             self.build(boxes);
@@ -57,14 +79,11 @@ impl BoxTree {
         }
     }
 
-    /// Every pair of boxes that may come within `separation`, each once, in any order. Empty boxes meet nothing. The tree is
-    /// fitted to these boxes.
-    ///
-    /// Never leaves out a pair that meets: what is dropped is proven apart along one axis.
-    pub(crate) fn pairs(&self, boxes: &[SweptBox], separation: f64) -> Vec<IndexPair> {
-        let mut pairs = Vec::new();
+    /// Calls `found` for every pair of boxes that may come within `separation`, each once, the smaller number first, in any order. The tree
+    /// was fitted to these boxes, all of them.
+    pub fn pairs(&self, boxes: &[Aabb], separation: f64, mut found: impl FnMut(IndexPair)) {
         let mut open = Vec::new();
-        let sorted: Vec<SweptBox> = self.order.iter().map(|&body| boxes[body as usize]).collect();
+        let sorted: Vec<Aabb> = self.order.iter().map(|&body| boxes[body as usize]).collect();
         for leaf in self.leaves()..self.bounds.len() {
             let own = self.range(leaf);
             open.push(1);
@@ -82,23 +101,16 @@ impl BoxTree {
                     for j in range.start.max(i + 1)..range.end {
                         let (a, b) = (&sorted[i], &sorted[j]);
                         if a.may_meet(b, separation) && !a.is_empty() && !b.is_empty() {
-                            pairs.push(ordered(self.order[i], self.order[j]));
+                            found(ordered(self.order[i], self.order[j]));
                         }
                     }
                 }
             }
         }
-        pairs
     }
 
     /// The boxes that may come within `separation` of box `i`, each as a pair, in any order.
-    pub(crate) fn pairs_of(
-        &self,
-        boxes: &[SweptBox],
-        i: u32,
-        separation: f64,
-        mut found: impl FnMut(IndexPair),
-    ) {
+    pub fn pairs_of(&self, boxes: &[Aabb], i: u32, separation: f64, mut found: impl FnMut(IndexPair)) {
         let own = &boxes[i as usize];
         if own.is_empty() {
             return;
@@ -139,11 +151,11 @@ impl BoxTree {
         start(k)..start(k + 1)
     }
 
-    fn build(&mut self, boxes: &[SweptBox]) {
+    fn build(&mut self, boxes: &[Aabb]) {
         let leaves = boxes.len().div_ceil(LEAF).next_power_of_two();
         let count = if boxes.is_empty() { 0 } else { 2 * leaves };
         self.order = (0..boxes.len() as u32).collect();
-        self.bounds = vec![SweptBox::EMPTY; count];
+        self.bounds = vec![Aabb::EMPTY; count];
         self.outside = 0;
         let centers: Vec<_> = boxes.iter().map(|swept| swept.low + swept.high).collect();
         for k in 1..self.leaves() {
@@ -170,14 +182,14 @@ impl BoxTree {
         self.length = self.relative_length(boxes);
     }
 
-    fn refit_all(&mut self, boxes: &[SweptBox]) {
+    fn refit_all(&mut self, boxes: &[Aabb]) {
         for k in (1..self.bounds.len()).rev() {
             self.bounds[k] = self.bound(boxes, k);
         }
     }
 
     /// The boxes that hold the body at this place of the order.
-    fn refit_above(&mut self, boxes: &[SweptBox], place: u32) {
+    fn refit_above(&mut self, boxes: &[Aabb], place: u32) {
         // Of the leaves the last one that does not begin behind the place.
         let (mut low, mut high) = (self.leaves(), self.bounds.len());
         while high - low > 1 {
@@ -191,17 +203,17 @@ impl BoxTree {
         }
     }
 
-    fn bound(&self, boxes: &[SweptBox], k: usize) -> SweptBox {
+    fn bound(&self, boxes: &[Aabb], k: usize) -> Aabb {
         if k < self.leaves() {
             return self.bounds[2 * k].joined(&self.bounds[2 * k + 1]);
         }
         let bodies = self.order[self.range(k)].iter();
-        bodies.fold(SweptBox::EMPTY, |bound, &body| bound.joined(&boxes[body as usize]))
+        bodies.fold(Aabb::EMPTY, |bound, &body| bound.joined(&boxes[body as usize]))
     }
 
     /// Total length of the boxes of the tree against those of the bodies.
-    fn relative_length(&self, boxes: &[SweptBox]) -> f64 {
-        let sum = |boxes: &[SweptBox]| -> f64 {
+    fn relative_length(&self, boxes: &[Aabb]) -> f64 {
+        let sum = |boxes: &[Aabb]| -> f64 {
             boxes.iter().filter(|b| !b.is_empty()).map(|b| (b.high - b.low).element_sum()).sum()
         };
         sum(&self.bounds) / sum(boxes)
@@ -218,8 +230,8 @@ mod tests {
     use d2m_testing::{Draw, KnuthRandom};
     use glam::DVec3;
 
-    fn cube(center: DVec3, half: f64) -> SweptBox {
-        SweptBox { low: center - half, high: center + half }
+    fn cube(center: DVec3, half: f64) -> Aabb {
+        Aabb { low: center - half, high: center + half }
     }
 
     fn sorted(mut pairs: Vec<IndexPair>) -> Vec<IndexPair> {
@@ -227,7 +239,13 @@ mod tests {
         pairs
     }
 
-    fn brute_force(boxes: &[SweptBox], separation: f64) -> Vec<IndexPair> {
+    fn all_pairs(tree: &BoxTree, boxes: &[Aabb], separation: f64) -> Vec<IndexPair> {
+        let mut pairs = Vec::new();
+        tree.pairs(boxes, separation, |pair| pairs.push(pair));
+        sorted(pairs)
+    }
+
+    fn brute_force(boxes: &[Aabb], separation: f64) -> Vec<IndexPair> {
         let mut all = Vec::new();
         for i in 0..boxes.len() {
             for j in i + 1..boxes.len() {
@@ -244,15 +262,15 @@ mod tests {
     fn finds_exactly_the_pairs_that_brute_force_finds() {
         let mut random = KnuthRandom(0x9e37_79b9_7f4a_7c15);
         let mut tree = BoxTree::default();
-        let mut boxes: Vec<SweptBox> = Vec::new();
+        let mut boxes: Vec<Aabb> = Vec::new();
         for round in 0..600usize {
             let separation = [0.0, 0.3][round % 2];
             let mut changed = Vec::new();
             let one = |random: &mut KnuthRandom| match random.index(40) {
-                0 => SweptBox::EMPTY,
-                1 => SweptBox { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY },
-                2 => SweptBox { low: DVec3::NAN, high: DVec3::NAN },
-                3 => SweptBox { low: DVec3::ZERO, high: DVec3::new(1.0, f64::NAN, 2.0) },
+                0 => Aabb::EMPTY,
+                1 => Aabb { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY },
+                2 => Aabb { low: DVec3::NAN, high: DVec3::NAN },
+                3 => Aabb { low: DVec3::ZERO, high: DVec3::new(1.0, f64::NAN, 2.0) },
                 _ => cube(random.vector() * 10.0, random.unit() * 1.5 + 0.01),
             };
             for _ in 0..random.index(4) {
@@ -283,7 +301,7 @@ mod tests {
             twice.sort_unstable();
             assert_eq!(sorted(one_by_one), twice, "round {round}");
             if round % 5 < 2 {
-                assert_eq!(sorted(tree.pairs(&boxes, separation)), all, "round {round}");
+                assert_eq!(all_pairs(&tree, &boxes, separation), all, "round {round}");
             }
             if boxes.len() > 150 {
                 boxes.truncate(random.index(150));
@@ -297,10 +315,10 @@ mod tests {
         let boxes = [cube(DVec3::ZERO, 1.0), cube(DVec3::X * 2.0, 1.0), cube(DVec3::X * 50.0, 1.0)];
         let mut tree = BoxTree::default();
         tree.fit(&boxes);
-        assert_eq!(tree.pairs(&boxes, 0.0), [[0, 1]]);
-        assert_eq!(sorted(tree.pairs(&boxes, 46.0)), [[0, 1], [1, 2]]);
-        assert_eq!(tree.pairs(&boxes, 45.9), [[0, 1]]);
+        assert_eq!(all_pairs(&tree, &boxes, 0.0), [[0, 1]]);
+        assert_eq!(all_pairs(&tree, &boxes, 46.0), [[0, 1], [1, 2]]);
+        assert_eq!(all_pairs(&tree, &boxes, 45.9), [[0, 1]]);
         tree.fit(&[]);
-        assert!(tree.pairs(&[], 0.0).is_empty());
+        assert!(all_pairs(&tree, &[], 0.0).is_empty());
     }
 }

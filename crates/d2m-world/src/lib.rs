@@ -18,12 +18,16 @@
 //!   without a world, with [`PairDistance`] and [`PairFault`].
 //! - [`PairSpans`]: when two bodies are clear of each other ([`World::contact_spans`]); [`join_spans`]: when all are.
 //!
+//! ## Broad phase
+//! - [`Aabb`]: a box that is rounded outward; [`BoxTree`]: which of many may meet. Worlds and simulations use them.
+//!
 //! ## Errors
 //! [`WorldError`]: bad input, with the names of the bodies.
 #![doc(html_root_url = "https://docs.rs/d2m-world")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
+mod aabb;
 mod body;
 mod box_tree;
 mod moving_sphere;
@@ -32,7 +36,9 @@ mod parallel;
 mod swept_bounds;
 mod world;
 
+pub use aabb::Aabb;
 pub use body::{Body, Group, SharedMotion};
+pub use box_tree::BoxTree;
 pub use nearest::{PairDistance, PairFault, PairsOfBodies};
 pub use world::{
     BodyId, Candidate, FirstContact, PairClearance, PairContact, PairProximities, PairSpans, PlannedMotion,

@@ -1,7 +1,8 @@
 //! Which of many pairs comes nearest, and which come within a distance.
 
+use crate::Aabb;
 use crate::parallel::{BOXES, PAIRS, map_in_order};
-use crate::swept_bounds::{CoveredBody, SweptBox};
+use crate::swept_bounds::CoveredBody;
 use d2m_bvh::{
     Clearance, ClearanceOptions, ClearanceStatus, DistanceOptions, Meter, Moving, Posed, QueryError, Solid,
     Window, clearance, distance_within,
@@ -141,10 +142,10 @@ impl PairsOfBodies<'_> {
     }
 
     /// What the bodies sweep; none of one whose motion does not cover the window, which the query of a pair refuses.
-    fn boxes(&self) -> Vec<Option<SweptBox>> {
+    fn boxes(&self) -> Vec<Option<Aabb>> {
         let (from, to) = (self.window.start(), self.window.end());
         map_in_order(self.bodies, BOXES, |body| {
-            CoveredBody::of_moving(body, from, to).ok().map(SweptBox::enclose)
+            CoveredBody::of_moving(body, from, to).ok().map(CoveredBody::swept)
         })
     }
 
@@ -198,7 +199,7 @@ impl PairsOfBodies<'_> {
 }
 
 /// Is a pair not proven further apart than that at all times?
-fn may_come_within(boxes: &[Option<SweptBox>], pair: [usize; 2], distance: f64) -> bool {
+fn may_come_within(boxes: &[Option<Aabb>], pair: [usize; 2], distance: f64) -> bool {
     match pair.map(|body| boxes[body].as_ref()) {
         [Some(a), Some(b)] => a.may_meet(b, distance),
         _ => true,

@@ -1,10 +1,8 @@
-//! Axis-aligned boxes that a body never leaves: over a whole time span, and over slices of it.
+//! Boxes that a body never leaves: over a whole time span, and over slices of it.
 
-use crate::Body;
+use crate::{Aabb, Body};
 use d2m_bvh::{MeshTree, Moving, Window};
-use d2m_interval::IntervalVec3;
 use d2m_motion::{CoveredMotion, OutsideDomain};
-use glam::DVec3;
 
 /// Slices of a time span. A pair whose boxes over the whole span overlap is apart in most slices if the bodies move far.
 pub(crate) const SLICES: usize = 16;
@@ -39,65 +37,12 @@ impl<'a> CoveredBody<'a> {
     fn part(self, from: f64, to: f64) -> Option<Self> {
         Some(Self { motion: self.motion.part(from, to)?, ..self })
     }
-}
 
-/// An axis-aligned box, world frame. Every comparison errs on "may meet".
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SweptBox {
-    pub(crate) low: DVec3,
-    pub(crate) high: DVec3,
-}
-
-impl SweptBox {
-    /// The empty box, of a body that was removed.
-    pub(crate) const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
-
-    /// Encloses every point of a body at every time of its span.
-    pub(crate) fn enclose(body: CoveredBody<'_>) -> Self {
-        let bounds: IntervalVec3 = body.tree.enclose_placed(&body.motion.enclose_pose());
-        Self { low: bounds.lo(), high: bounds.hi() }.grown(body.radius)
+    /// Encloses every point of the body at every time of its span. A radius that is none excludes nothing, so that the query of a pair
+    /// refuses it.
+    pub(crate) fn swept(self) -> Aabb {
+        Aabb::enclose(self.tree, &self.motion.enclose_pose(), self.radius)
     }
-
-    /// Holds what is within a radius of the box. A radius that is none (negative, not finite) makes a box that excludes nothing, so
-    /// that the query of a pair refuses it.
-    fn grown(self, radius: f64) -> Self {
-        if radius == 0.0 {
-            return self;
-        }
-        let by = if radius > 0.0 && radius.is_finite() { radius } else { f64::NAN };
-        Self { low: self.low.map(|x| (x - by).next_down()), high: self.high.map(|x| (x + by).next_up()) }
-    }
-
-    /// Holds both: everything if an end of one is not a number.
-    pub(crate) fn joined(&self, other: &Self) -> Self {
-        let is_unordered = |swept: &Self| swept.low.is_nan() || swept.high.is_nan();
-        if is_unordered(self) || is_unordered(other) {
-            return Self { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY };
-        }
-        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
-    }
-
-    /// Is this [`Self::EMPTY`]?
-    pub(crate) fn is_empty(&self) -> bool {
-        self.low.x > self.high.x
-    }
-
-    /// Can a point of one box be within `separation` of one of the other? Along each axis the further end is moved by the
-    /// separation and rounded up, so "no" is proven; an end that is not a number compares false and excludes nothing.
-    #[inline(always)]
-    pub(crate) fn may_meet(&self, other: &Self, separation: f64) -> bool {
-        let apart = |low: f64, high: f64| low > round_up_sum(high, separation);
-        let apart_along = |a: f64, b: f64, c: f64, d: f64| apart(a, d) || apart(c, b);
-        !(apart_along(self.low.x, self.high.x, other.low.x, other.high.x)
-            || apart_along(self.low.y, self.high.y, other.low.y, other.high.y)
-            || apart_along(self.low.z, self.high.z, other.low.z, other.high.z))
-    }
-}
-
-/// A number that is not below the exact sum; x itself when nothing is added.
-#[inline(always)]
-pub(crate) fn round_up_sum(x: f64, separation: f64) -> f64 {
-    if separation == 0.0 { x } else { (x + separation).next_up() }
 }
 
 /// The times at which a span is cut: strictly the span's own ends at both ends.
@@ -126,14 +71,14 @@ impl Slicing {
 
 /// What a body sweeps over the slices of a span, at those times of it that the body is given for.
 #[derive(Clone, Debug)]
-pub(crate) struct SweptSlices(Box<[SweptBox; SLICES]>);
+pub(crate) struct SweptSlices(Box<[Aabb; SLICES]>);
 
 impl SweptSlices {
     pub(crate) fn enclose(body: CoveredBody<'_>, slicing: &Slicing) -> Self {
-        let mut boxes = Box::new([SweptBox::EMPTY; SLICES]);
+        let mut boxes = Box::new([Aabb::EMPTY; SLICES]);
         for (k, swept) in boxes.iter_mut().enumerate() {
             if let Some(part) = body.part(slicing.time(k), slicing.time(k + 1)) {
-                *swept = SweptBox::enclose(part);
+                *swept = part.swept();
             }
         }
         Self(boxes)
@@ -169,13 +114,13 @@ impl SliceRange {
 /// The boxes of one body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sweep<'a> {
-    pub(crate) hull: &'a SweptBox,
+    pub(crate) hull: &'a Aabb,
     pub(crate) slices: Option<&'a SweptSlices>,
 }
 
 impl<'a> Sweep<'a> {
     #[inline(always)]
-    fn at(self, k: usize) -> &'a SweptBox {
+    fn at(self, k: usize) -> &'a Aabb {
         self.slices.map_or(self.hull, |slices| &slices.0[k])
     }
 }

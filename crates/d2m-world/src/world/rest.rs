@@ -2,10 +2,10 @@
 
 use super::schedule::Uncovered;
 use super::{PairProximities, World, WorldError};
-use crate::Body;
 use crate::box_tree::BoxTree;
 use crate::parallel::{BOXES, PAIRS, map_in_order};
-use crate::swept_bounds::{CoveredBody, SweptBox};
+use crate::swept_bounds::CoveredBody;
+use crate::{Aabb, Body};
 use d2m_bvh::{Posed, Proximity, ProximityOptions, QueryError, proximities_with};
 
 impl World {
@@ -39,15 +39,19 @@ impl World {
     ) -> Result<Vec<PairProximities>, WorldError> {
         let places: Vec<u32> = (0..self.slots.places() as u32).collect();
         let boxes = map_in_order(&places, BOXES, |&place| {
-            let Some(body) = self.slots.at(place) else { return Ok(SweptBox::EMPTY) };
+            let Some(body) = self.slots.at(place) else { return Ok(Aabb::EMPTY) };
             let covered = CoveredBody::try_new(body, time, time);
-            covered.map(SweptBox::enclose).map_err(|outside| self.uncovered(Uncovered { place, outside }))
+            covered.map(CoveredBody::swept).map_err(|outside| self.uncovered(Uncovered { place, outside }))
         });
         let boxes = boxes.into_iter().collect::<Result<Vec<_>, _>>()?;
         let mut tree = BoxTree::default();
         tree.fit(&boxes);
-        let mut pairs = tree.pairs(&boxes, options.margin);
-        pairs.retain(|&pair| !self.filter.ignores(pair, self.slots.groups(pair)));
+        let mut pairs = Vec::new();
+        tree.pairs(&boxes, options.margin, |pair| {
+            if !self.filter.ignores(pair, self.slots.groups(pair)) {
+                pairs.push(pair);
+            }
+        });
         pairs.sort_unstable();
         let found = map_in_order(&pairs, PAIRS, |&pair| {
             let [Some(a), Some(b)] = pair.map(|place| self.slots.at(place)) else { return Ok(Vec::new()) };

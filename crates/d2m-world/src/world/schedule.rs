@@ -7,10 +7,11 @@ use super::filter::PairFilter;
 use super::pair_queue::PairQueue;
 use super::pair_state::Entry;
 use super::slots::Slots;
+use crate::Aabb;
 use crate::box_tree::{BoxTree, IndexPair};
 use crate::moving_sphere::{FirstMeeting, MovingSphere};
 use crate::parallel::{BOXES, map_in_order};
-use crate::swept_bounds::{CoveredBody, SliceRange, Slicing, Sweep, SweptBox, SweptSlices};
+use crate::swept_bounds::{CoveredBody, SliceRange, Slicing, Sweep, SweptSlices};
 use d2m_bvh::Window;
 use d2m_motion::OutsideDomain;
 
@@ -49,7 +50,7 @@ pub(super) struct Schedule {
     span: Option<Window>,
     /// The start of the last window: boxes of changed bodies begin there.
     from: f64,
-    hulls: Vec<SweptBox>,
+    hulls: Vec<Aabb>,
     slices: Vec<Slices>,
     /// From the start of the span, for bodies with a constant twist.
     spheres: Vec<Option<MovingSphere>>,
@@ -126,7 +127,7 @@ impl Schedule {
         match kept {
             Some(_) if changed.is_empty() => Ok(Prepared::Kept),
             Some(span) => {
-                self.hulls.resize(rules.slots.places(), SweptBox::EMPTY);
+                self.hulls.resize(rules.slots.places(), Aabb::EMPTY);
                 self.slices.resize(rules.slots.places(), Slices::NotWorthIt);
                 self.spheres.resize(rules.slots.places(), None);
                 self.enclose(rules.slots, span, changed)?;
@@ -142,7 +143,7 @@ impl Schedule {
             None => {
                 self.span = Some(window);
                 let all: Vec<u32> = (0..rules.slots.places() as u32).collect();
-                self.hulls = vec![SweptBox::EMPTY; all.len()];
+                self.hulls = vec![Aabb::EMPTY; all.len()];
                 self.slices = vec![Slices::NotWorthIt; all.len()];
                 self.spheres = vec![None; all.len()];
                 self.enclose(rules.slots, window, &all)?;
@@ -159,7 +160,7 @@ impl Schedule {
         let enclosed = map_in_order(places, BOXES, |&place| {
             let Some(body) = slots.at(place) else { return Ok(None) };
             CoveredBody::try_new(body, from, span.end()).map(|covered| {
-                let hull = SweptBox::enclose(covered);
+                let hull = covered.swept();
                 let is_wide = (hull.high - hull.low).max_element() > FAR * body.tree().radius();
                 let slices = if is_wide { Slices::Unknown } else { Slices::NotWorthIt };
                 Some((hull, slices, MovingSphere::enclose(body, span.start())))
@@ -169,14 +170,15 @@ impl Schedule {
             let at = place as usize;
             let enclosed = enclosed.map_err(|outside| Uncovered { place, outside })?;
             (self.hulls[at], self.slices[at], self.spheres[at]) =
-                enclosed.unwrap_or((SweptBox::EMPTY, Slices::NotWorthIt, None));
+                enclosed.unwrap_or((Aabb::EMPTY, Slices::NotWorthIt, None));
         }
         Ok(())
     }
 
     /// The queue from scratch.
     fn sweep(&mut self, rules: Rules<'_>) {
-        let mut pairs = self.tree.pairs(&self.hulls, rules.separation);
+        let mut pairs = Vec::new();
+        self.tree.pairs(&self.hulls, rules.separation, |pair| pairs.push(pair));
         let own = rules.filter.wider_than(rules.separation);
         let more = own.filter(|&(pair, separation)| self.meets_beyond(pair, rules.separation, separation));
         pairs.extend(more.map(|(pair, _)| pair));
@@ -389,7 +391,7 @@ impl Schedule {
         let mut schedule = Self {
             span: Some(window),
             from: window.start(),
-            hulls: vec![SweptBox::EMPTY; places],
+            hulls: vec![Aabb::EMPTY; places],
             slices: vec![Slices::NotWorthIt; places],
             spheres: vec![None; places],
             ..Self::default()

@@ -1,7 +1,14 @@
 //! The bodies near each body, kept from flight to flight.
 
-use super::{Aabb, meeting};
 use crate::rigid_body::RigidBody;
+use d2m_interval::Interval;
+use d2m_motion::RigidMotion;
+use d2m_world::{Aabb, BoxTree};
+use glam::DVec3;
+
+/// Roundings of a place after a flight (a product and a sum) and of what is added to it, relative to the sizes of its terms: fewer than 10
+/// operations of relative error 2⁻⁵³ each, with more to spare than that.
+const PLACED: f64 = 40.0 * f64::EPSILON;
 
 /// Boxes are grown by this part of their bodies' radius for the lists of neighbors, which hold as long as no body leaves its grown box.
 const GROWN: f64 = 0.125;
@@ -14,11 +21,38 @@ pub(crate) struct Neighbors {
     known: Vec<Option<Known>>,
     /// Boxes that hold those; bodies are neighbors if these meet.
     grown: Vec<Aabb>,
+    tree: BoxTree,
     /// Where the neighbors of each body begin in `others`, and where the last ones end.
     starts: Vec<usize>,
     others: Vec<u32>,
     /// Something has been forgotten since the neighbors were found.
     is_forgotten: bool,
+}
+
+/// Encloses the body at all times of its flight from its state's time to `end`, grown by `margin`.
+///
+/// The center moves on a straight line and no point is further from it than the radius.
+fn swept(body: &RigidBody, end: f64, margin: f64) -> Aabb {
+    if body.stands_still() {
+        return posed(body, end, margin);
+    }
+    let start = body.flight.position();
+    let travel = body.flight.linear_velocity() * (end - body.flight.reference_time());
+    let finish = start + travel;
+    let lost = PLACED * (start.length() + travel.length() + body.radius + margin);
+    let reach = DVec3::splat(body.radius + margin + lost);
+    Aabb { low: start.min(finish) - reach, high: start.max(finish) + reach }
+}
+
+/// Encloses the body at a time of its flight, grown by `margin`.
+pub(crate) fn posed(body: &RigidBody, time: f64, margin: f64) -> Aabb {
+    if body.is_dynamic() {
+        let center = body.pose_at(time).translation;
+        let reach = DVec3::splat(body.radius + margin + PLACED * (center.length() + body.radius + margin));
+        return Aabb { low: center - reach, high: center + reach };
+    }
+    let pose = body.flight.enclose_pose(Interval::point(time));
+    Aabb::enclose(&body.tree, &pose, body.rounding).grown(margin)
 }
 
 /// What a box is for: it holds as long as these are the same.
@@ -41,7 +75,7 @@ impl Neighbors {
             if self.known.get(i) == Some(&Some(known)) {
                 continue;
             }
-            let swept = Aabb::swept(body, end, margin);
+            let swept = swept(body, end, margin);
             if i < self.boxes.len() {
                 (self.boxes[i], self.known[i]) = (swept, Some(known));
             } else {
@@ -73,10 +107,11 @@ impl Neighbors {
             .map(|(b, body)| if body.is_dynamic() { b.grown(GROWN * body.radius) } else { *b });
         self.grown = grown.collect();
         let mut pairs = Vec::new();
+        self.tree.fit(&self.grown);
         // What no force moves meets nothing of its kind.
-        meeting(&self.grown, |a, b| {
-            if bodies[a].is_dynamic() || bodies[b].is_dynamic() {
-                pairs.push([a as u32, b as u32]);
+        self.tree.pairs(&self.grown, 0.0, |pair| {
+            if pair.iter().any(|&place| bodies[place as usize].is_dynamic()) {
+                pairs.push(pair);
             }
         });
         self.starts = vec![0; bodies.len() + 1];
@@ -102,7 +137,7 @@ impl Neighbors {
         for &i in of {
             for &j in &self.others[self.starts[i]..self.starts[i + 1]] {
                 let (a, b) = (i.min(j as usize), i.max(j as usize));
-                if self.boxes[a].may_meet(&self.boxes[b]) && wanted(a, b) {
+                if self.boxes[a].may_meet(&self.boxes[b], 0.0) && wanted(a, b) {
                     pairs.push((a, b));
                 }
             }
