@@ -1,5 +1,7 @@
 //! Proofs that two bodies stay apart in their flights that cost less than a query.
 //!
+//! **From spheres** about their centers, which move with constant velocities: whatever the bodies turn.
+//!
 //! **From a distance.** Let the bodies be at least d apart in poses (x, q). In other poses (x', q') a point is displaced by no more
 //! than |x' − x| + ρ 2 |q' − q|, with the radius ρ about the center x and of the quaternions ±q the nearer to q': the chord to an
 //! angle θ between rotations is 2 sin(θ/2) ≤ 4 sin(θ/4) = 2 |q' − q|. Of the displacements of the centers only the difference counts. From
@@ -18,6 +20,7 @@
 //! of their vertices, or within their radius of these.
 
 use crate::rigid_body::RigidBody;
+use d2m_feature::MovingSphere;
 use d2m_motion::Pose;
 use glam::{DMat3, DQuat, DVec3};
 
@@ -28,6 +31,25 @@ pub(crate) const ROUNDING: f64 = 128.0 * f64::EPSILON;
 
 /// Vertices of both bodies together up to which all of them are placed: that many cost a tenth of a query.
 const FEW: usize = 64;
+
+impl RigidBody {
+    /// Holds the body in its flight, for times since that from which the flight is counted.
+    pub(crate) fn sphere(&self) -> MovingSphere {
+        let (center, velocity) = (self.flight.position(), self.flight.linear_velocity());
+        MovingSphere { center, velocity, radius: self.radius }
+    }
+
+    /// The same, for times since this one.
+    pub(crate) fn sphere_at(&self, time: f64) -> MovingSphere {
+        self.sphere().after(time - self.flight.reference_time())
+    }
+}
+
+/// Are two bodies proven further apart than `gap` in their present flights, from `time` to `end`, by the spheres about their
+/// centers alone? No when a number is not finite.
+pub(crate) fn are_spheres_apart(a: &RigidBody, b: &RigidBody, time: f64, end: f64, gap: f64) -> bool {
+    a.sphere_at(time).stays_apart(&b.sphere_at(time), gap, end - time)
+}
 
 /// Two bodies are at least `distance` apart in these poses.
 #[derive(Clone, Copy, Debug)]

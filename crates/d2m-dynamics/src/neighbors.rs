@@ -4,11 +4,6 @@ use crate::rigid_body::RigidBody;
 use d2m_interval::Interval;
 use d2m_motion::RigidMotion;
 use d2m_world::{Aabb, BoxTree};
-use glam::DVec3;
-
-/// Roundings of a place after a flight (a product and a sum) and of what is added to it, relative to the sizes of its terms: fewer than 10
-/// operations of relative error 2⁻⁵³ each, with more to spare than that.
-const PLACED: f64 = 40.0 * f64::EPSILON;
 
 /// Boxes are grown by this part of their bodies' radius for the lists of neighbors, which hold as long as no body leaves its grown box.
 const GROWN: f64 = 0.125;
@@ -36,23 +31,17 @@ fn swept(body: &RigidBody, end: f64, margin: f64) -> Aabb {
     if body.stands_still() {
         return posed(body, end, margin);
     }
-    let start = body.flight.position();
-    let travel = body.flight.linear_velocity() * (end - body.flight.reference_time());
-    let finish = start + travel;
-    let lost = PLACED * (start.length() + travel.length() + body.radius + margin);
-    let reach = DVec3::splat(body.radius + margin + lost);
-    Aabb { low: start.min(finish) - reach, high: start.max(finish) + reach }
+    Aabb::enclose_sphere(&body.sphere(), end - body.flight.reference_time()).grown(margin)
 }
 
 /// Encloses the body at a time of its flight, grown by `margin`.
 pub(crate) fn posed(body: &RigidBody, time: f64, margin: f64) -> Aabb {
-    if body.is_dynamic() {
-        let center = body.pose_at(time).translation;
-        let reach = DVec3::splat(body.radius + margin + PLACED * (center.length() + body.radius + margin));
-        return Aabb { low: center - reach, high: center + reach };
-    }
-    let pose = body.flight.enclose_pose(Interval::point(time));
-    Aabb::enclose(&body.tree, &pose, body.rounding).grown(margin)
+    let swept = if body.is_dynamic() {
+        Aabb::enclose_sphere(&body.sphere_at(time), 0.0)
+    } else {
+        Aabb::enclose(&body.tree, &body.flight.enclose_pose(Interval::point(time)), body.rounding)
+    };
+    swept.grown(margin)
 }
 
 /// What a box is for: it holds as long as these are the same.

@@ -1,10 +1,10 @@
 //! Where bodies are when they are added: apart, touching, or in each other.
 
+use crate::clearance::are_spheres_apart;
 use crate::contact::{Accuracy, ContactPoint, SolverBody, Start, System};
 use crate::neighbors::posed;
 use crate::pairs::{Pair, distance_of, held_at, measure};
 use crate::rigid_body::RigidBody;
-use crate::step::are_spheres_apart;
 use crate::velocity::Velocity;
 use crate::{Simulation, SimulationError, StepError};
 use d2m_bvh::{Distance, PairCache, StartState};

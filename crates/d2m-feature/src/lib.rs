@@ -9,6 +9,9 @@
 //! - [`PairMotion`]: motions of any kind, constant twists in closed form. [`PlacedTriangle`]: one triangle for many points.
 //! - [`StraightPaths`]: four vertices on straight paths, for meshes that deform.
 //!
+//! ## Spheres about bodies
+//! - [`MovingSphere`]: whether and how long two of them stay apart ([`FirstMeeting`]), for a square root or two.
+//!
 //! ## Options and answers
 //! - [`ContactOptions`]: tolerance, minimum separation, limits.
 //! - [`FirstContact`]: separated, a [`ContactBracket`], or undecided. [`ContactDetails`]: where and how, in
@@ -32,6 +35,7 @@ mod exact_sign;
 mod feature_pair;
 mod features;
 mod motion_in_units;
+mod moving_sphere;
 mod options;
 mod pair_motion;
 mod path;
@@ -50,6 +54,7 @@ mod units;
 pub use contact::{ContactBracket, ContactDetails, FirstContact};
 pub use exact_sign::{orient2d, orient3d, triple_product_sign};
 pub use feature_pair::FeaturePair;
+pub use moving_sphere::{FirstMeeting, MovingSphere};
 pub use options::ContactOptions;
 pub use pair_motion::{PairMotion, PlacedTriangle};
 pub use proven_crossing::proven_crossing;

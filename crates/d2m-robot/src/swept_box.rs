@@ -1,6 +1,7 @@
 //! Boxes that move over a span of time: are two of them apart at all times of it?
 
 use crate::body_box::BodyBox;
+use d2m_feature::MovingSphere;
 use d2m_motion::SpanMotion;
 use glam::{DMat3, DVec3};
 
@@ -69,15 +70,12 @@ impl SweptBox {
     /// what holds at both ends of the span holds between them. The direction is the one of those of the boxes at rest (centers, faces,
     /// pairs of edges) along which most is left.
     pub(crate) fn against(&self, other: &Self, half: f64, separation: f64) -> Sweep {
-        let (d, v) = (other.center - self.center, other.velocity - self.velocity);
-        let blur = (self.blur + other.blur + separation) * UP;
-        let apart = d.length();
         // Spheres first: no direction is needed, and most pairs are far from each other.
-        let closing = half * v.length();
-        let reach = self.radius + other.radius + blur;
-        if (apart - closing) > reach + ROUNDINGS * (apart + closing + reach) {
+        if self.sphere().stays_apart(&other.sphere(), separation, half) {
             return Sweep::Apart;
         }
+        let (d, v) = (other.center - self.center, other.velocity - self.velocity);
+        let blur = (self.blur + other.blur + separation) * UP;
         let seen = SeenBoxes::new(self, other, [d, v], half);
         let mut best = seen.best_face();
         if best.gap > blur && self.is_apart_along(best.along, other, half, blur) {
@@ -94,6 +92,12 @@ impl SweptBox {
         let room = best.gap - separation;
         let taken = best.closing + self.blur + other.blur;
         if room > 0.0 { Sweep::Near { taken: taken / room } } else { Sweep::Meeting }
+    }
+
+    /// Holds the box over the span, as it is at the middle.
+    fn sphere(&self) -> MovingSphere {
+        let radius = (self.radius + self.blur) * UP;
+        MovingSphere { center: self.center, velocity: self.velocity, radius }
     }
 
     /// The proof of [`SweptBox::against`] for one direction, which need not be of length one.

@@ -1,6 +1,7 @@
 //! Axis-aligned boxes that are rounded outward.
 
 use d2m_bvh::MeshTree;
+use d2m_feature::MovingSphere;
 use d2m_motion::IntervalPose;
 use glam::DVec3;
 
@@ -53,6 +54,21 @@ impl Aabb {
             return bounds;
         }
         bounds.grown(if radius > 0.0 && radius.is_finite() { radius } else { f64::NAN })
+    }
+
+    /// Encloses a sphere at all times from that of its center until so much later (or before), which may be a rounded difference of two times.
+    ///
+    /// ```
+    /// use d2m_feature::MovingSphere;
+    /// use d2m_world::Aabb;
+    /// use glam::DVec3;
+    /// let sphere = MovingSphere { center: DVec3::ZERO, velocity: DVec3::X * 8.0, radius: 1.0 };
+    /// let swept = Aabb::enclose_sphere(&sphere, 0.5);
+    /// assert!(swept.holds(&Aabb { low: DVec3::splat(-1.0), high: DVec3::new(5.0, 1.0, 1.0) }) && swept.high.x < 5.01);
+    /// ```
+    pub fn enclose_sphere(sphere: &MovingSphere, elapsed: f64) -> Self {
+        let last = sphere.after(elapsed);
+        Self { low: sphere.center.min(last.center), high: sphere.center.max(last.center) }.grown(last.radius)
     }
 
     /// Holds every point within this distance (which is not negative) of the box, along each axis.

@@ -20,14 +20,13 @@ use crate::{
     Answered, Budget, Contact, Evidence, Mode, Moving, QueryError, QueryOptions, SearchCounts, Solid,
     StartState, TimeOfContact, Window,
 };
-use d2m_feature::triangle_distance;
+use d2m_feature::{MovingSphere, triangle_distance};
 use d2m_interval::Interval;
 use d2m_mesh::Meter;
 #[cfg(feature = "audit")]
 use d2m_mesh::audit::Place;
 use d2m_mesh::margin::length;
 use d2m_motion::{Chain, ConstantTwist, Pose, RigidMotion, Twist};
-use glam::DVec3;
 use plane::PlaneSearch;
 
 /// A span is shortened at most to this part of itself before it is measured again: ten such steps go from any window to
@@ -47,6 +46,8 @@ const PART_OF_EARLY_ROOM: f64 = 0.0625;
 /// Radii of a motion's enclosures at a single time, in units in the last place of the lengths that they are about, that count
 /// as rounding: then the tolerance is raised, as for constant twists. Wider enclosures end as undecided.
 const ROUNDINGS: f64 = 512.0 * f64::EPSILON;
+/// Covers the roundings of a body's reach about its reference point (a difference, a length, two sums) and of a level.
+const REACH_UP: f64 = 1.0 + 16.0 * f64::EPSILON;
 /// Longer by so much are spans after one that was free.
 const GROWTH: f64 = 4.0;
 /// A contact is expected after the gap has closed at the speed it closes with, and searched for this much longer.
@@ -287,23 +288,14 @@ impl<'a> Advance<'a> {
     }
 
     /// Are the spheres about the reference points apart over the span, whatever the bodies' turns? They move straight.
-    ///
-    /// Positions with their proven radii; the few operations after that round by less than 32 units in the last place of the
-    /// lengths that they add, and what underflow takes is less than the smallest normal number.
     fn spheres_apart(&self, motions: [&dyn RigidMotion; 2], until: f64) -> bool {
-        let [a, b] = motions.map(|motion| motion.enclose_state(self.now));
-        let reach = |k: usize, at: DVec3| {
-            let body = self.bodies[k].body;
-            body.radius() + length(body.center() - at)
-        };
-        let reach = reach(0, a.at) + reach(1, b.at);
-        let apart = length(a.position - b.position);
-        let closes = length(a.linear - b.linear) * (until - self.now);
-        let unknown = a.position_radius + b.position_radius;
-        let size = length(a.position) + length(b.position) + closes + reach + unknown;
+        let spheres = [0, 1].map(|k| {
+            let (body, state) = (self.bodies[k].body, motions[k].enclose_state(self.now));
+            let reach = body.radius() + length(body.center() - state.at) + state.position_radius;
+            MovingSphere { center: state.position, velocity: state.linear, radius: reach * REACH_UP }
+        });
         let level = self.options.min_separation + self.tolerance;
-        // What is not a number is not apart.
-        apart - closes > reach + level + unknown + 32.0 * f64::EPSILON * (size + level) + f64::MIN_POSITIVE
+        spheres[0].stays_apart(&spheres[1], level * REACH_UP, until - self.now)
     }
 
     fn ask(

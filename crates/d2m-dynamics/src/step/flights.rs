@@ -2,38 +2,16 @@
 
 use super::event::{Cause, Event};
 use super::{Key, Step};
+use crate::clearance::are_spheres_apart;
 #[cfg(feature = "audit")]
 use crate::concluded::conclude;
 use crate::pairs::{Outcome, Pair, fly};
-use crate::rigid_body::RigidBody;
 use crate::{StepError, parallel};
 use d2m_bvh::Window;
 #[cfg(feature = "audit")]
 use d2m_bvh::audit::Place;
 use glam::DVec3;
 use std::cmp::Reverse;
-
-/// Roundings of the distance of two centers that a sphere test allows for, relative to the sizes of what it is computed
-/// from: places after a flight (a product and a sum), a difference, a length of three squares, and the products and sums
-/// of the test, fewer than 32 operations of relative error 2⁻⁵³ each, doubled.
-const SPHERES: f64 = 32.0 * f64::EPSILON;
-
-/// Are two bodies proven further apart than `gap` in their present flights, from `time` to `end`, by the spheres about their
-/// centers alone? No when a number is not finite.
-///
-/// The centers move with constant velocities, so they come closer by no more than the relative speed times the length.
-pub(crate) fn are_spheres_apart(a: &RigidBody, b: &RigidBody, time: f64, end: f64, gap: f64) -> bool {
-    let centers = [a, b].map(|body| {
-        let (start, elapsed) = (body.flight.position(), time - body.flight.reference_time());
-        (start, body.flight.linear_velocity() * elapsed, body.flight.linear_velocity())
-    });
-    let [(xa, wa, va), (xb, wb, vb)] = centers;
-    let distance = ((xb + wb) - (xa + wa)).length();
-    let closer = (vb - va).length() * (end - time);
-    let speeds = (va.length() + vb.length()) * (end - time);
-    let sizes = xa.length() + xb.length() + wa.length() + wb.length() + speeds + a.radius + b.radius + gap;
-    distance - closer - a.radius - b.radius - gap > SPHERES * sizes
-}
 
 impl Step<'_> {
     /// When do the flights of these bodies end? Every pair with one of them that may meet until the end of the step is
@@ -139,30 +117,11 @@ impl Step<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Body;
     use crate::faces::Faces;
-    use crate::rigid_body::Splits;
-    use crate::{Body, Kind};
+    use crate::rigid_body::{RigidBody, Splits};
     use d2m_bvh::MeshTree;
-    use d2m_motion::ConstantTwist;
     use std::sync::Arc;
-
-    fn sphere(x: f64, radius: f64) -> RigidBody {
-        let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box").unwrap()));
-        let faces = Arc::new(Faces::new(tree.mesh()));
-        let body = RigidBody::try_new(&Body::new("", tree).with_kind(Kind::Static), faces, 0.0).unwrap();
-        RigidBody { radius, flight: ConstantTwist::REST.with_position(DVec3::X * x), ..body }
-    }
-
-    /// The centers are 2⁵³ + 3 apart, which rounds to 2⁵³ + 4; the radii are half a unit more than what is true.
-    #[test]
-    fn spheres_that_overlap_by_less_than_rounding_are_not_apart() {
-        let size = (1u64 << 53) as f64;
-        let (a, b) = (sphere(-1.0, size), sphere(size + 2.0, 3.0));
-        assert!(!are_spheres_apart(&a, &b, 0.0, 1.0, 0.5));
-        assert!(are_spheres_apart(&sphere(-1.0, 0.9), &sphere(1.0, 0.9), 0.0, 1.0, 0.1));
-        assert!(!are_spheres_apart(&sphere(-1.0, 0.9), &sphere(1.0, 0.9), 0.0, 1.0, 0.21));
-        assert!(!are_spheres_apart(&sphere(-1.0, f64::NAN), &sphere(1.0, 0.9), 0.0, 1.0, 0.1));
-    }
 
     /// Of bodies that tumble at different rates the flights end together: the times of each are those of the faster ones, too.
     #[test]

@@ -14,7 +14,6 @@ use crate::rigid_body::RigidBody;
 use crate::{ContactListener, Simulation, StepError, StepReport};
 use event::{Cause, Event};
 use expect::Expected;
-pub(crate) use flights::are_spheres_apart;
 use glam::DVec3;
 use plan::Replans;
 use std::cmp::Reverse;

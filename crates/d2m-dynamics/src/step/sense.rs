@@ -1,7 +1,7 @@
 //! What sensors find.
 
 use super::Step;
-use super::flights::are_spheres_apart;
+use crate::clearance::are_spheres_apart;
 use crate::rigid_body::{RigidBody, Role};
 use crate::{StepError, parallel};
 use d2m_bvh::{

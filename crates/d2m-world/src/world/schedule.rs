@@ -9,10 +9,11 @@ use super::pair_state::Entry;
 use super::slots::Slots;
 use crate::Aabb;
 use crate::box_tree::{BoxTree, IndexPair};
-use crate::moving_sphere::{FirstMeeting, MovingSphere};
+use crate::moving_sphere::sphere_about;
 use crate::parallel::{BOXES, map_in_order};
 use crate::swept_bounds::{CoveredBody, SliceRange, Slicing, Sweep, SweptSlices};
 use d2m_bvh::Window;
+use d2m_feature::{FirstMeeting, MovingSphere};
 use d2m_motion::OutsideDomain;
 
 /// Bodies that change one by one look for their pairs; from this part of all on all pairs are found anew.
@@ -163,7 +164,7 @@ impl Schedule {
                 let hull = covered.swept();
                 let is_wide = (hull.high - hull.low).max_element() > FAR * body.tree().radius();
                 let slices = if is_wide { Slices::Unknown } else { Slices::NotWorthIt };
-                Some((hull, slices, MovingSphere::enclose(body, span.start())))
+                Some((hull, slices, sphere_about(body, span.start())))
             })
         });
         for (&place, enclosed) in places.iter().zip(enclosed) {
