@@ -16,7 +16,7 @@ use glam::DVec3;
 /// let other = Aabb { low: DVec3::X * 1.5, high: DVec3::new(2.0, 1.0, 1.0) };
 /// assert!(!one.may_meet(&other, 0.25) && one.may_meet(&other, 0.5));
 /// assert!(one.joined(&other).holds(&other) && !one.holds(&other));
-/// let unknown = Aabb { low: DVec3::NAN, ..one };
+/// let unknown = Aabb { high: DVec3::NAN, ..one };
 /// assert!(unknown.may_meet(&other, 0.0) && !one.holds(&unknown));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
