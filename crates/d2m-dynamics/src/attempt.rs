@@ -21,6 +21,8 @@ const CORRECTIONS: u32 = 3;
 const CROWD_CORRECTIONS: u32 = 1;
 /// And with the ends of jointed bodies' flights put right.
 const JOINT_CORRECTIONS: u32 = 8;
+/// Ratio of masses up to which jointed bodies are alike.
+const LIKE: f64 = 4.0;
 /// Moved bodies of an island from which on it flies to the end of the step however its bodies tumble.
 const MANY: usize = 20;
 /// The part of a gap a step that the ends of flights may be off what joints ask for: what is more is not corrected but diverges, as where the
@@ -146,8 +148,7 @@ impl Problem<'_> {
         // Bodies that are held keep their momenta and the time at which they were held: they have no flight that ends. Bodies that tumble in a
         // crowd meet others before the energy of their turning counts: it is not divided for one of them.
         let is_whole = self.in_crowd || moved().count() > MANY;
-        let has_joints = self.contacts.iter().any(|contact| contact.row.is_some());
-        let splits = if has_joints { Splits::Jointed } else { Splits::Own };
+        let splits = if self.has_like_joints() { Splits::Jointed } else { Splits::Own };
         let horizon = |s: &Cow<'_, RigidBody>| s.horizon_within(end, self.options.step, splits);
         let mut end = if is_whole { end } else { moved().map(horizon).fold(end, f64::min) };
         let mut tried = self.attempt(now, end, Room::Kept);
@@ -171,6 +172,13 @@ impl Problem<'_> {
             _ => Friction::Slips,
         };
         self.squeezed([now, end], closing, most, friction).unwrap_or(tried)
+    }
+
+    /// Do joints hold bodies of like masses? Light ones between heavy ones are pulled to and fro faster than they turn.
+    fn has_like_joints(&self) -> bool {
+        let masses = || self.states.iter().filter(|s| moves(s)).map(|s| s.mass);
+        let (least, most) = masses().fold((f64::INFINITY, 0.0f64), |(lo, hi), m| (lo.min(m), hi.max(m)));
+        self.contacts.iter().any(|contact| contact.row.is_some()) && most <= LIKE * least
     }
 
     /// Do the contacts last, with some of what is still to be added to restore the gap?
