@@ -1,7 +1,9 @@
 //! Velocities of the flights of one island: until when they can be solved for, and by which targets.
 
 use crate::SimulationOptions;
-use crate::contact::{Accuracy, ContactPoint, NEAR, Room, SolverBody, Span, Start, System, add, select};
+use crate::contact::{
+    Accuracy, Company, ContactPoint, NEAR, Room, SolverBody, Span, Start, System, add, select,
+};
 use crate::joined::Joined;
 use crate::momenta::Momenta;
 use crate::rigid_body::{RigidBody, Splits};
@@ -81,8 +83,7 @@ pub(crate) struct Problem<'s> {
     pub(crate) contacts: &'s [ContactPoint],
     pub(crate) options: &'s SimulationOptions,
     pub(crate) joints: &'s [Joined],
-    /// Of many bodies in the simulation.
-    pub(crate) in_crowd: bool,
+    pub(crate) company: Company,
 }
 
 /// Velocities for flights until `end`.
@@ -147,7 +148,7 @@ impl Problem<'_> {
         let moved = || self.states.iter().filter(|s| moves(s));
         // Bodies that are held keep their momenta and the time at which they were held: they have no flight that ends. Bodies that tumble in a
         // crowd meet others before the energy of their turning counts: it is not divided for one of them.
-        let is_whole = self.in_crowd || moved().count() > MANY;
+        let is_whole = self.company != Company::Few || moved().count() > MANY;
         let splits = if self.has_like_joints() { Splits::Jointed } else { Splits::Own };
         let horizon = |s: &Cow<'_, RigidBody>| s.horizon_within(end, self.options.step, splits);
         let mut end = if is_whole { end } else { moved().map(horizon).fold(end, f64::min) };
@@ -265,9 +266,9 @@ impl Problem<'_> {
         let mut targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
         let precision = PRECISION * options.gap / options.step;
         let slow = span.resting_speed.max(options.gap / options.step);
-        let accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM, slow, in_crowd: self.in_crowd };
+        let accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM, slow, company: self.company };
         let mut pushing: Vec<f64> = rows.iter().map(|row| row.pushing).collect();
-        let mut system = System::new(free, &contacts, place);
+        let mut system = System::new(free, &contacts, place).for_flights(&contacts, &targets, span.remaining);
         system.warm_start(&contacts);
         let (mut residual, mut off) = (0.0, 0.0);
         for correction in 0.. {

@@ -3,7 +3,7 @@
 use crate::SimulationOptions;
 use crate::account::{Entry, balance};
 use crate::attempt::{Clock, Problem, body_at, moves, still};
-use crate::contact::{ContactPoint, HIT, Span, System, add, impact};
+use crate::contact::{Company, ContactPoint, HIT, Span, System, add, impact};
 use crate::joined::Joined;
 use crate::momenta::Momenta;
 use crate::rigid_body::RigidBody;
@@ -79,6 +79,7 @@ pub(crate) fn solve(
     clock: Clock,
     options: &SimulationOptions,
     joints: &[Joined],
+    company: Company,
 ) -> Solved {
     let mut members: Vec<usize> = island.contacts.iter().flat_map(|c| [c.a, c.b]).collect();
     members.sort_unstable();
@@ -92,14 +93,8 @@ pub(crate) fn solve(
         }
     }
 
-    let problem = Problem {
-        members: &members,
-        states: &states,
-        contacts: &island.contacts,
-        options,
-        joints,
-        in_crowd: bodies.len() > CROWD,
-    };
+    let problem =
+        Problem { members: &members, states: &states, contacts: &island.contacts, options, joints, company };
     let mut attempt = problem.solve(clock);
     let (end, residual) = (attempt.end, attempt.residual);
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();

@@ -1,7 +1,7 @@
 //! Where bodies are when they are added: apart, touching, or in each other.
 
 use crate::clearance::are_spheres_apart;
-use crate::contact::{Accuracy, ContactPoint, SolverBody, Start, System};
+use crate::contact::{Accuracy, Company, ContactPoint, SolverBody, Start, System};
 use crate::neighbors::posed;
 use crate::pairs::{Pair, distance_of, held_at, measure};
 use crate::rigid_body::RigidBody;
@@ -258,7 +258,7 @@ impl Simulation {
         let mut system = System::new(bodies, &contacts, |body| body);
         system.solve(
             &targets,
-            Accuracy { precision, relative: 0.0, aim: 1.0, in_crowd: false, slow: f64::INFINITY },
+            Accuracy { precision, relative: 0.0, aim: 1.0, company: Company::Few, slow: f64::INFINITY },
             Start::Sticking,
         );
         for &i in &self.unchecked {

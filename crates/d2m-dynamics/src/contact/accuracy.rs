@@ -12,13 +12,28 @@ pub(crate) struct Accuracy {
     pub(crate) relative: f64,
     /// The part of the precision that is aimed at where bodies rest: what is left of one step is there in the next one.
     pub(crate) aim: f64,
-    /// Are the bodies some of many? Then sweeps come first also where few of them move.
-    pub(crate) in_crowd: bool,
+    pub(crate) company: Company,
     /// What slides slower than this could as well stick.
     pub(crate) slow: f64,
 }
 
+/// What else there is besides the bodies of a system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Company {
+    /// No more than a few bodies.
+    Few,
+    /// Many bodies: sweeps come first also where few of them move.
+    Crowd,
+    /// Many bodies, some of which contacts connect with these, after the step's own solution: what is solved again is solved no more exactly
+    /// than that, but ends no flight.
+    Heap,
+}
+
 impl Accuracy {
+    pub(super) fn in_crowd(self) -> bool {
+        self.company != Company::Few
+    }
+
     /// What is aimed at where so much may be left.
     pub(super) fn aim(self, tolerance: f64) -> f64 {
         if tolerance > self.precision { tolerance } else { self.aim * self.precision }

@@ -32,6 +32,7 @@ impl System {
                 bodies: core::mem::take(&mut self.bodies),
                 blocks: places.iter().map(|&k| self.blocks[k]).collect(),
                 impulses: places.iter().map(|&k| self.impulses[k]).collect(),
+                spares: places.iter().filter_map(|&k| self.spares.get(k).copied()).collect(),
                 reach: core::mem::take(&mut self.reach),
                 factor: self.factor.take(),
                 is_conforming: false,

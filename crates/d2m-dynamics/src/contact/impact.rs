@@ -1,6 +1,6 @@
 //! Impacts: restitution and friction where bodies meet faster than they rest.
 
-use super::accuracy::Accuracy;
+use super::accuracy::{Accuracy, Company};
 use super::newton::Start;
 use super::{ContactPoint, System};
 use crate::velocity::Velocity;
@@ -60,7 +60,7 @@ pub(crate) fn impact(
                 precision: PRECISION * fastest,
                 relative: 0.0,
                 aim: 1.0,
-                in_crowd: false,
+                company: Company::Few,
                 slow: f64::INFINITY,
             };
             system.solve(&targets, accuracy, Start::Sticking);

@@ -16,7 +16,7 @@ mod solver_body;
 mod sweeps;
 mod system;
 
-pub(crate) use accuracy::Accuracy;
+pub(crate) use accuracy::{Accuracy, Company};
 pub(crate) use impact::impact;
 pub(crate) use infeasible::Squeeze;
 pub(crate) use law::Law;

@@ -497,6 +497,7 @@ mod tests {
     use super::super::ContactPoint;
     use super::super::point::{Material, upright};
     use super::*;
+    use crate::contact::Company;
 
     /// What slides does not lift: without the shift by what it slides it would, as fast as friction times that.
     #[test]
@@ -510,7 +511,8 @@ mod tests {
         let mut contact = ContactPoint { arm_a: DVec3::ZERO, arm_b: DVec3::ZERO, ..upright([0, 1]) };
         contact.material = Material { friction: 0.3, restitution: 0.0 };
         let mut system = System::new(bodies, &[contact], |i| i);
-        let accuracy = Accuracy { precision: 1e-9, relative: 0.0, aim: 1.0, in_crowd: false, slow: 1.0 };
+        let accuracy =
+            Accuracy { precision: 1e-9, relative: 0.0, aim: 1.0, company: Company::Few, slow: 1.0 };
         let residual = system.solve_direct(&[0.0], accuracy, Start::Sticking, Effort::STICK);
         assert!(residual < 1e-9, "{residual}");
         let off = system.bodies[1].velocity.linear - DVec3::X * 2.7;

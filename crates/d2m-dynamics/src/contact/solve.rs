@@ -1,6 +1,6 @@
 //! Which method solves an island.
 
-use super::accuracy::{Accuracy, LOOSE};
+use super::accuracy::{Accuracy, Company, LOOSE};
 use super::newton::{Effort, Start};
 use super::solver_body::SolverBody;
 use super::sweeps::Pace;
@@ -56,7 +56,7 @@ impl System {
                 residual = self.sweep_until(targets, accuracy, Pace::Conjugate, FIRST);
             }
             let could_stick = start == Start::Sticking && self.could_stick(accuracy);
-            let is_swept = accuracy.in_crowd && !could_stick && !self.is_crowd() && !self.is_calm(accuracy);
+            let is_swept = accuracy.in_crowd() && !could_stick && !self.is_crowd() && !self.is_calm(accuracy);
             if is_swept {
                 residual = self.better(residual, 0.0, |system| {
                     system.sweep_until(targets, accuracy, Pace::Conjugate, FIRST)
@@ -105,9 +105,9 @@ impl System {
         let tolerance = self.tolerance(accuracy);
         let moved = self.moved();
         let is_exact = self.has_joints || moved <= SOME && self.is_calm(accuracy);
-        if is_exact || moved <= COUPLE && !accuracy.in_crowd {
+        if is_exact || moved <= COUPLE && !accuracy.in_crowd() {
             accuracy.aim(tolerance)
-        } else if moved <= FEW && !accuracy.in_crowd {
+        } else if moved <= FEW && !accuracy.in_crowd() {
             SEVERAL * tolerance
         } else {
             CROWDED * tolerance
@@ -117,14 +117,14 @@ impl System {
     /// What solutions of bodies that move may leave.
     pub(crate) fn left(&self, accuracy: Accuracy) -> f64 {
         let swept = (SWEPT * accuracy.slow).min(OF_SPEED * self.mean_speed());
-        let may_sweep = accuracy.in_crowd && (self.is_crowd() || !self.is_calm(accuracy));
+        let may_sweep = accuracy.in_crowd() && (self.is_crowd() || !self.is_calm(accuracy));
         let swept = if may_sweep { swept } else { 0.0 };
         self.enough(accuracy).max(swept)
     }
 
-    /// Are the bodies about to rest?
+    /// Are the bodies about to rest, all that contacts connect?
     fn is_calm(&self, accuracy: Accuracy) -> bool {
-        self.mean_speed() <= CALM * accuracy.slow
+        accuracy.company != Company::Heap && self.mean_speed() <= CALM * accuracy.slow
     }
 
     /// Does something slide so slowly that it might as well stick, where bodies are jammed? What follows a motion may take along what it
@@ -132,8 +132,9 @@ impl System {
     fn could_stick(&self, accuracy: Accuracy) -> bool {
         let is_driven = |body: &SolverBody| body.inverse_mass == 0.0 && body.velocity != Velocity::default();
         let drives = self.moved() <= FEW && self.bodies.iter().any(is_driven);
-        let is_slow = self.moved() <= SOME && self.mean_speed() <= accuracy.slow;
-        let is_couple = self.moved() <= COUPLE && !accuracy.in_crowd;
+        let is_whole = accuracy.company != Company::Heap;
+        let is_slow = is_whole && self.moved() <= SOME && self.mean_speed() <= accuracy.slow;
+        let is_couple = self.moved() <= COUPLE && !accuracy.in_crowd();
         if !(drives || is_slow || is_couple) {
             return false;
         }

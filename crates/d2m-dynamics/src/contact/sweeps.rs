@@ -1,6 +1,6 @@
 //! Projected Gauss–Seidel: block after block, each with the velocities that the ones before left.
 
-use super::accuracy::Accuracy;
+use super::accuracy::{Accuracy, Company};
 use super::law::Law;
 use super::solver_body::SolverBody;
 use super::system::{Block, System};
@@ -28,7 +28,7 @@ impl System {
         let mut best = (off.most, self.present());
         let mut descent = (pace == Pace::Conjugate).then(|| Descent::new(self));
         let mut done = 0;
-        while !self.is_swept(off, accuracy) && done < most {
+        while !self.is_swept(off, targets, accuracy) && done < most {
             for _ in 0..BETWEEN / 2 {
                 if let Some(descent) = &mut descent {
                     descent.begin(self);
@@ -46,18 +46,20 @@ impl System {
             }
         }
         // What goes on along a way may be further off for a while.
-        if off.most > best.0 && !self.is_swept(off, accuracy) {
+        if off.most > best.0 && !self.is_swept(off, targets, accuracy) {
             self.take_back(best.1);
             return best.0;
         }
         off.most
     }
 
-    /// May so much be left? Of crowds single blocks may be further from their law than all together: what is jammed at one place is
-    /// an event of two bodies.
-    fn is_swept(&self, off: Off, accuracy: Accuracy) -> bool {
+    /// May so much be left? Of crowds single blocks may be further from their law than all together. Where something is solved again nothing
+    /// that is left may end its flight: that event would find all others solved, and sweep no more than this solution.
+    fn is_swept(&self, off: Off, targets: &[f64], accuracy: Accuracy) -> bool {
         let enough = self.enough(accuracy);
-        off.most <= enough || off.most <= self.left(accuracy) && off.mean <= MEAN * enough
+        let may_be_left = || off.most <= self.left(accuracy) && off.mean <= MEAN * enough;
+        let has_room = || accuracy.company != Company::Heap || self.has_room(targets);
+        off.most <= enough || may_be_left() && has_room()
     }
 
     fn off(&self, targets: &[f64]) -> Off {
@@ -208,11 +210,12 @@ fn stopping(block: &Block, rates: [f64; 2]) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::ContactPoint;
     use crate::velocity::Velocity;
     use glam::{DMat3, DVec3};
 
     const ACCURACY: Accuracy =
-        Accuracy { precision: 1e-7, relative: 1.0 / 1024.0, aim: 1e-3, in_crowd: true, slow: 1.0 };
+        Accuracy { precision: 1e-7, relative: 1.0 / 1024.0, aim: 1e-3, company: Company::Crowd, slow: 1.0 };
 
     /// So many bodies of mass one on each other, the lowest one on the ground, which is the last body; all fall at one speed.
     fn column(count: usize, speed: f64) -> System {
@@ -249,11 +252,24 @@ mod tests {
     fn single_blocks_of_crowds_may_be_further_from_their_law() {
         let crowd = column(64, 10.0);
         let enough = crowd.enough(ACCURACY);
-        let swept = |most: f64, mean: f64| crowd.is_swept(Off { most, mean }, ACCURACY);
+        let swept = |most: f64, mean: f64| crowd.is_swept(Off { most, mean }, &[0.0; 64], ACCURACY);
         assert!(swept(enough, enough) && swept(40.0 * enough, 0.2 * enough));
         assert!(!swept(40.0 * enough, 0.3 * enough) && !swept(1.0, 0.0));
-        let alone = Accuracy { in_crowd: false, ..ACCURACY };
-        assert!(!crowd.is_swept(Off { most: 2.0 * enough, mean: 0.0 }, alone));
+        // The lowest contact closes at 10, which ends a flight of this length unless it has that much room.
+        let heap = Accuracy { company: Company::Heap, ..ACCURACY };
+        for (distance, lasts) in [(0.0, false), (1.0, false), (20.0, true)] {
+            let contact = ContactPoint { distance, ..crate::contact::point::upright([64, 0]) };
+            let crowd = column(64, 10.0).for_flights(&[contact], &[0.0], 1.0);
+            let off = Off { most: 40.0 * enough, mean: 0.2 * enough };
+            assert!(crowd.is_swept(off, &[0.0; 64], ACCURACY));
+            assert_eq!(crowd.is_swept(off, &[0.0; 64], heap), lasts, "{distance}");
+            assert!(crowd.is_swept(Off { most: enough, mean: enough }, &[0.0; 64], heap));
+        }
+        let alone = Accuracy { company: Company::Few, ..ACCURACY };
+        assert!(!crowd.is_swept(Off { most: 2.0 * enough, mean: 0.0 }, &[0.0; 64], alone));
+        // Two at rest are solved exactly, unless others are connected with them.
+        let calm = column(2, 0.0);
+        assert!(calm.enough(ACCURACY) < 0.1 * calm.enough(heap));
         let pair = column(2, 10.0);
         assert!(pair.enough(alone) < 0.1 * pair.enough(ACCURACY) && pair.enough(ACCURACY) == enough);
     }

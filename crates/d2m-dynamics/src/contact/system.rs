@@ -103,6 +103,8 @@ pub(crate) struct System {
     pub(crate) bodies: Vec<SolverBody>,
     pub(super) blocks: Vec<Block>,
     pub(super) impulses: Vec<[f64; 3]>,
+    /// How much below their targets the rates of blocks end a flight before its time; empty: no flight follows.
+    pub(super) spares: Vec<f64>,
     /// Of each body, the longest arm of its contacts.
     pub(super) reach: Vec<f64>,
     /// Kept from solution to solution.
@@ -135,7 +137,23 @@ impl System {
             .any(|of_pair| of_pair.iter().filter(|c| c.row.is_none()).count() > MANY);
         let has_joints = contacts.iter().any(|contact| contact.row.is_some());
         let impulses = vec![[0.0; 3]; blocks.len()];
-        Self { bodies, blocks, impulses, reach, factor: None, is_conforming, has_joints }
+        let spares = Vec::new();
+        Self { bodies, blocks, impulses, spares, reach, factor: None, is_conforming, has_joints }
+    }
+
+    /// For flights of this length in which contacts have these least rates: what closes by more than the room that it has ends them.
+    pub(crate) fn for_flights(mut self, contacts: &[ContactPoint], targets: &[f64], length: f64) -> Self {
+        let spare = |(contact, target): (&ContactPoint, &f64)| match contact.row {
+            Some(_) => f64::INFINITY,
+            None => target + contact.shared_room() / length,
+        };
+        self.spares = contacts.iter().zip(targets).map(spare).collect();
+        self
+    }
+
+    /// Is no rate so far below its target that it ends its flight?
+    pub(super) fn has_room(&self, targets: &[f64]) -> bool {
+        self.spares.iter().enumerate().all(|(k, &spare)| targets[k] - self.rate(k) <= spare)
     }
 
     /// The bodies have other inertias and velocities, in which the impulses are contained.

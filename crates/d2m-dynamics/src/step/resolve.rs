@@ -3,7 +3,7 @@
 use super::connected::Group;
 use super::{Occasion, Step};
 use crate::attempt::Clock;
-use crate::contact::ContactPoint;
+use crate::contact::{Company, ContactPoint};
 use crate::group::{CROWD, Solved, islands, solve};
 use crate::rigid_body::{RigidBody, Splits};
 use crate::velocity::Velocity;
@@ -47,7 +47,7 @@ impl Step<'_> {
                 self.retract(&mut group, (until - time) / (self.end - time));
             }
             self.follow_motions(&group, clock, occasion)?;
-            self.solve_islands(&mut group, clock, Vec::new(), &[])
+            self.solve_islands(&mut group, clock, Vec::new(), &[], occasion)
         };
         if !matches!(occasion, Occasion::Plan { .. } | Occasion::Expected) {
             self.impulses.append(&mut self.undoable);
@@ -124,6 +124,15 @@ impl Step<'_> {
         Ok(())
     }
 
+    /// Among what the bodies of a solution are: only what the step's own one leaves is solved again in any case.
+    fn company(&self, occasion: Occasion) -> Company {
+        match occasion {
+            _ if self.sim.bodies.len() <= CROWD => Company::Few,
+            Occasion::Start => Company::Crowd,
+            _ => Company::Heap,
+        }
+    }
+
     /// Velocities of the members from the contacts between them, and with what nothing moves. Islands of which no body
     /// is `renewed` (ascending) are as they were solved before; the others begin with the impulses that were found then.
     fn solve_islands(
@@ -132,8 +141,10 @@ impl Step<'_> {
         clock: Clock,
         before: Vec<Solved>,
         renewed: &[usize],
+        occasion: Occasion,
     ) -> Vec<Solved> {
         let (bodies, options, joints) = (&self.sim.bodies, &self.sim.options, &self.sim.joints);
+        let company = self.company(occasion);
         for part in &before {
             group.warm(&part.rests, 1.0);
         }
@@ -154,7 +165,7 @@ impl Step<'_> {
         });
         let islands: Vec<_> = islands.collect();
         parallel::map(islands, |(island, part)| {
-            part.unwrap_or_else(|| solve(bodies, &island, clock, options, joints))
+            part.unwrap_or_else(|| solve(bodies, &island, clock, options, joints, company))
         })
     }
 
@@ -204,7 +215,7 @@ impl Step<'_> {
         }
         renewed.sort_unstable();
         self.follow_motions(group, clock, occasion)?;
-        Ok(self.solve_islands(group, clock, before, &renewed))
+        Ok(self.solve_islands(group, clock, before, &renewed, occasion))
     }
 
     /// The bodies outside of the group that members with these velocities come closer to than contacts allow, or that they were pressed
