@@ -7,9 +7,9 @@ use crate::output::note;
 use crate::trials::Trial;
 use crate::unlike_sizes::{size_of, warn_of_sizes};
 use d2m::bvh::{
-    Budget, Clearance, ClearanceOptions, ContactSpan, Departure, MeshTree, Mode, Moving, Posed, QueryError,
-    QueryOptions, Solid, StartState, TimeOfContact, Topology, TriMesh, Window, clearance, contact_spans,
-    departure, distance, time_of_contact,
+    Budget, Clearance, ClearanceOptions, ContactSpan, Departure, DistanceOptions, MeshTree, Mode, Moving,
+    Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Topology, TriMesh, Window, clearance,
+    contact_spans, departure, distance_within, time_of_contact,
 };
 use d2m::motion::{AnyMotion, RigidMotion};
 use d2m::paper::{self, SphereTree};
@@ -203,8 +203,8 @@ impl Pair {
     pub(crate) fn distance_at(&self, motions: [&AnyMotion; 2], time: f64) -> Option<[f64; 2]> {
         let (Tree::Engine(tree_a), Tree::Engine(tree_b)) = (&self.a.tree, &self.b.tree) else { return None };
         let [a, b] = motions.map(|motion| motion.pose_and_twist(time).0);
-        let solid = if self.solids == [Solid::Filled; 2] { Solid::Filled } else { Solid::Surface };
-        let found = distance(Posed::new(tree_a, a), Posed::new(tree_b, b), solid).ok()?;
+        let options = DistanceOptions::default().with_solids(self.solids);
+        let found = distance_within(Posed::new(tree_a, a), Posed::new(tree_b, b), &options).ok()??;
         let found = found.with_radii(self.radii);
         Some([found.lower, found.upper.max(found.lower)])
     }

@@ -2,7 +2,8 @@
 
 use crate::{BodyId, Simulation};
 use d2m_bvh::{
-    Contact, Distance, MeshError, MeshTree, Posed, QueryError, QueryOptions, Solid, TriMesh, Window, distance,
+    Contact, Distance, DistanceOptions, MeshError, MeshTree, Posed, QueryError, QueryOptions, Solid, TriMesh,
+    Window, distance_within,
 };
 use d2m_motion::ConstantTwist;
 use d2m_world::{Body, FirstContact, Group, PlannedMotion, World, WorldError};
@@ -172,7 +173,7 @@ impl Frozen {
         })
     }
 
-    /// The distance of two bodies, whether they are ignored or not: [`d2m_bvh::distance`].
+    /// The distance of two bodies, whether they are ignored or not: [`d2m_bvh::distance`]. It is zero where one is filled and holds the other.
     ///
     /// # Errors
     /// A pair that cannot be queried.
@@ -185,10 +186,12 @@ impl Frozen {
             self.world.body(body)
         };
         let bodies = [of(a), of(b)];
-        let is_filled = bodies.iter().all(|body| body.solid() == Some(Solid::Filled));
-        let solid = if is_filled { Solid::Filled } else { Solid::Surface };
+        let solids = bodies.map(|body| body.solid().unwrap_or(Solid::Surface));
         let [one, two] = bodies.map(|body| Posed::new(body.tree(), body.motion().pose_and_twist(0.0).0));
-        Ok(distance(one, two, solid)?.with_radii(bodies.map(Body::radius)))
+        let options = DistanceOptions::default().with_solids(solids);
+        // Without a cutoff there is always a closest pair of triangles.
+        let found = distance_within(one, two, &options)?.ok_or(QueryError::BadPose { body: 0 })?;
+        Ok(found.with_radii(bodies.map(Body::radius)))
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod ground;
 
-use d2m_bvh::{MeshTree, TriMesh};
+use d2m_bvh::{MeshTree, QueryOptions, StartState, TriMesh};
 use d2m_dynamics::{
     Body, BodyId, Joint, Kind, Mass, MassProperties, Part, Presence, RayAnswer, Simulation, SimulationError,
     SimulationOptions, TouchChange,
@@ -193,6 +193,8 @@ fn surfaces_inside_of_solids_are_in_them() {
         let zone = Body::new("zone", cube()).with_kind(Kind::Static).with_presence(Presence::Sensor);
         let zone = simulation.add(&zone).unwrap();
         let sheet = simulation.add(&sheet().with_linear_velocity(DVec3::Z * speed)).unwrap();
+        let between = simulation.frozen(QueryOptions::default()).distance(zone, sheet).unwrap();
+        assert!((between.lower, between.state) == (0.0, StartState::Contained), "{between:?}");
         let mut left = None;
         while simulation.time() < 0.8 {
             for touch in simulation.step().unwrap().touches {

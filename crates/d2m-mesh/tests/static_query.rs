@@ -224,6 +224,13 @@ fn one_inside_the_other() {
         let found = distance(b, a, Solid::Filled).unwrap();
         if !crosses && place.abs().max_element() < 1.0 {
             assert_eq!((found.state, found.value, found.lower), (StartState::Contained, 0.0, 0.0));
+            // What is filled holds what is not, and not the other way round.
+            let as_these = |solids| {
+                let options = DistanceOptions::default().with_solids(solids);
+                distance_within(a, b, &options).unwrap().unwrap()
+            };
+            assert_eq!(as_these([Solid::Filled, Solid::Surface]), distance(a, b, Solid::Filled).unwrap());
+            assert_eq!(as_these([Solid::Surface, Solid::Filled]), distance(a, b, Solid::Surface).unwrap());
         }
         let cutoff = DistanceOptions::default().with_cutoff(1e-12);
         let near = distance_within(a, b, &cutoff).unwrap();

@@ -70,6 +70,7 @@ pub use d2m_feature as feature;
 pub use d2m_interval as interval;
 #[cfg(feature = "io")]
 pub use d2m_io as io;
+pub use d2m_mesh as mesh;
 pub use d2m_motion as motion;
 #[cfg(feature = "paper")]
 pub use d2m_paper as paper;

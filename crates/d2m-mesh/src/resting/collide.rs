@@ -1,6 +1,6 @@
 //! Do two bodies at rest touch?
 
-use super::containment::{held_by, one_holds_the_other};
+use super::containment::one_holds_the_other;
 use super::node_pair::{RestingScene, Step, child, proven_apart};
 use crate::meter::{Exhausted, Meter};
 use crate::{Budget, Posed, QueryError, Solid};
@@ -33,7 +33,7 @@ use glam::DVec3;
 /// [`QueryError::BadPose`], and [`QueryError::NotWatertight`] with [`Solid::Filled`].
 #[doc(alias = "intersects")]
 pub fn collide(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<bool, QueryError> {
-    check_solid(a, b, solid)?;
+    check_solids(a, b, [solid; 2])?;
     let scene = RestingScene::try_new(a, b)?;
     // What a budget without limits leaves open is not proven apart.
     Ok(may_collide(&scene, solid, &mut Meter::unlimited()).unwrap_or(true))
@@ -62,7 +62,7 @@ pub fn collide_within(
     solid: Solid,
     budget: &Budget,
 ) -> Result<Option<bool>, QueryError> {
-    check_solid(a, b, solid)?;
+    check_solids(a, b, [solid; 2])?;
     let scene = RestingScene::try_new(a, b)?;
     Ok(may_collide(&scene, solid, &mut Meter::new(budget)).ok())
 }
@@ -70,7 +70,7 @@ pub fn collide_within(
 fn may_collide(scene: &RestingScene<'_>, solid: Solid, meter: &mut Meter) -> Result<bool, Exhausted> {
     let found = search(scene, Wanted { most: 1, counts: may_touch }, meter)?;
     Ok(!found.pairs.is_empty()
-        || solid == Solid::Filled && !found.boxes_apart && one_holds_the_other(scene, meter)?.is_some())
+        || !found.boxes_apart && one_holds_the_other(scene, [solid; 2], meter)?.is_some())
 }
 
 /// A pair of triangles, one of each body, that is not proven apart; `None` is a proof that the surfaces are disjoint.
@@ -184,10 +184,7 @@ pub fn is_contained(a: Posed<'_>, b: Posed<'_>, solids: [Solid; 2]) -> Result<bo
     let (scene, meter) = (RestingScene::try_new(a, b)?, &mut Meter::unlimited());
     // Without a limit there always is an answer.
     let apart = surfaces_are_apart(&scene, meter).unwrap_or(false);
-    let mut holds = |by: usize| {
-        solids[by] == Solid::Filled && held_by(&scene, by, meter).is_ok_and(|held| held.is_some())
-    };
-    Ok(apart && (holds(0) || holds(1)))
+    Ok(apart && one_holds_the_other(&scene, solids, meter).is_ok_and(|held| held.is_some()))
 }
 
 /// Some of the pairs of triangles that are not proven apart, the first in the order of the trees: `most` of them, or those that are found
@@ -234,8 +231,9 @@ fn cross(_: &RestingScene<'_>, a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
 }
 
 /// Refuses filled bodies that do not close.
-pub(crate) fn check_solid(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<(), QueryError> {
-    match [a, b].iter().position(|posed| solid == Solid::Filled && !posed.body.is_watertight()) {
+pub(crate) fn check_solids(a: Posed<'_>, b: Posed<'_>, solids: [Solid; 2]) -> Result<(), QueryError> {
+    let is_open = |k: usize, posed: Posed<'_>| solids[k] == Solid::Filled && !posed.body.is_watertight();
+    match [a, b].into_iter().enumerate().position(|(k, posed)| is_open(k, posed)) {
         Some(body) => Err(QueryError::NotWatertight { body }),
         None => Ok(()),
     }

@@ -6,8 +6,8 @@
 
 use super::node_pair::{InversePose, RestingScene};
 use super::winding::contains;
-use crate::MeshTree;
 use crate::meter::{Exhausted, Meter};
+use crate::{MeshTree, Solid};
 use glam::DVec3;
 
 /// A part of a body inside the other one.
@@ -60,13 +60,14 @@ pub fn held_vertex(
     Ok(None)
 }
 
-/// Does one body hold a part of the other? For surfaces whose placed triangles are more than `scene.error` apart: moving
+/// Does one body that is filled hold a part of the other? For surfaces whose placed triangles are more than `scene.error` apart: moving
 /// every vertex to its placed position is then a motion without contact, so what is inside stays inside.
 pub(crate) fn one_holds_the_other(
     scene: &RestingScene<'_>,
+    solids: [Solid; 2],
     meter: &mut Meter,
 ) -> Result<Option<Held>, Exhausted> {
-    for by in [0, 1] {
+    for by in [0, 1].into_iter().filter(|&by| solids[by] == Solid::Filled) {
         if let Some(vertex) = held_by(scene, by, meter)? {
             return Ok(Some(Held { by, vertex }));
         }

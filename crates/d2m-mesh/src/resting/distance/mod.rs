@@ -7,7 +7,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-use super::collide::{check_solid, crossing_pair_within};
+use super::collide::{check_solids, crossing_pair_within};
 use super::containment::one_holds_the_other;
 use super::node_pair::RestingScene;
 use super::touching::{Meeters, Meeting};
@@ -73,14 +73,16 @@ pub struct Distance {
 /// ```
 /// use d2m_mesh::{DistanceOptions, Solid};
 /// let options = DistanceOptions::default().with_cutoff(0.5).with_solid(Solid::Surface);
-/// assert_eq!((options.cutoff, options.solid), (0.5, Solid::Surface));
+/// assert_eq!((options.cutoff, options.solids), (0.5, [Solid::Surface; 2]));
+/// // A sheet may be inside of a filled body: then their distance is zero.
+/// assert_eq!(options.with_solids([Solid::Filled, Solid::Surface]).solids[0], Solid::Filled);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]
 pub struct DistanceOptions {
-    /// What the bodies are.
-    pub solid: Solid,
+    /// What A and B are: what a filled one holds has the distance zero of it.
+    pub solids: [Solid; 2],
     /// Distances above this are of no interest, and the search ends when that is proven.
     pub cutoff: f64,
     /// Triangles of A and of B that are compared first, those of the last query of the pair, say: the search is shorter where they are
@@ -90,14 +92,19 @@ pub struct DistanceOptions {
 
 impl Default for DistanceOptions {
     fn default() -> Self {
-        Self { solid: Solid::Filled, cutoff: f64::INFINITY, first: None }
+        Self { solids: [Solid::Filled; 2], cutoff: f64::INFINITY, first: None }
     }
 }
 
 impl DistanceOptions {
-    /// With this meaning of the bodies.
-    pub const fn with_solid(mut self, solid: Solid) -> Self {
-        self.solid = solid;
+    /// With this meaning of both bodies.
+    pub const fn with_solid(self, solid: Solid) -> Self {
+        self.with_solids([solid; 2])
+    }
+
+    /// With this meaning of A and of B.
+    pub const fn with_solids(mut self, solids: [Solid; 2]) -> Self {
+        self.solids = solids;
         self
     }
 
@@ -172,7 +179,7 @@ pub fn distance_within(
     b: Posed<'_>,
     options: &DistanceOptions,
 ) -> Result<Option<Distance>, QueryError> {
-    check_solid(a, b, options.solid)?;
+    check_solids(a, b, options.solids)?;
     if options.cutoff.is_nan() || options.cutoff < 0.0 {
         return Err(QueryError::BadMinSeparation { value: options.cutoff });
     }
@@ -194,14 +201,12 @@ pub fn distance_within(
     };
     let found = crossing(&scene, found, unlimited);
     let meeting = match &found {
-        Found::Pair(best) if !best.is_apart(&scene) => Some(meeting(&[a, b], options.solid, unlimited)?),
+        Found::Pair(best) if !best.is_apart(&scene) => Some(meeting(&[a, b], options.solids, unlimited)?),
         _ => None,
     };
     let state = match &meeting {
         Some(meeting) => meeting.state(),
-        None if options.solid == Solid::Filled && holds(&scene, unlimited) != Ok(false) => {
-            StartState::Contained
-        }
+        None if holds(&scene, options.solids, unlimited) != Ok(false) => StartState::Contained,
         None => StartState::Apart,
     };
     let found = match (found, state) {
@@ -301,7 +306,7 @@ pub fn bound_distance(
     solid: Solid,
     budget: &Budget,
 ) -> Result<DistanceBounds, QueryError> {
-    check_solid(a, b, solid)?;
+    check_solids(a, b, [solid; 2])?;
     let scene = RestingScene::try_new(a, b)?;
     let meter = &mut Meter::new(budget);
     // Some pair is compared before the budget counts, so there always is an upper bound.
@@ -309,8 +314,8 @@ pub fn bound_distance(
     let found = run(Search { scene: &scene, first, limit: f64::INFINITY, slack: 0.0, meter });
     let found = crossing(&scene, found, meter);
     let is_apart = match &found {
-        Found::Pair(best) | Found::Exhausted(best) if best.is_apart(&scene) && solid == Solid::Filled => {
-            holds(&scene, meter)
+        Found::Pair(best) | Found::Exhausted(best) if best.is_apart(&scene) => {
+            holds(&scene, [solid; 2], meter)
         }
         _ => Ok(false),
     };
@@ -320,7 +325,7 @@ pub fn bound_distance(
         // Without a limit there is always a closest pair of triangles.
         Found::Beyond | Found::Unclear => return Err(QueryError::BadPose { body: 0 }),
     };
-    let meeting = if best.is_apart(&scene) { None } else { Some(meeting(&[a, b], solid, meter)?) };
+    let meeting = if best.is_apart(&scene) { None } else { Some(meeting(&[a, b], [solid; 2], meter)?) };
     let state = match (&meeting, is_apart) {
         (Some(meeting), _) => meeting.state(),
         (None, Ok(true)) => StartState::Contained,
@@ -384,16 +389,19 @@ pub fn near_pair(
 }
 
 /// How bodies meet that are not proven apart. What is apart by little more than that is still not proven to touch.
-fn meeting<'a>(bodies: &[Posed<'a>; 2], solid: Solid, meter: &mut Meter) -> Result<Meeting<'a>, QueryError> {
-    let meeters =
-        Meeters { bodies: *bodies, solids: [solid; 2], blur: 0.0, patience: MOST_TESTS_BESIDE_A_CROWD };
+fn meeting<'a>(
+    bodies: &[Posed<'a>; 2],
+    solids: [Solid; 2],
+    meter: &mut Meter,
+) -> Result<Meeting<'a>, QueryError> {
+    let meeters = Meeters { bodies: *bodies, solids, blur: 0.0, patience: MOST_TESTS_BESIDE_A_CROWD };
     let meeting = meeters.meeting(meter)?;
     Ok(meeting.unwrap_or(Meeting::Undecided))
 }
 
-/// Does one body hold a part of the other?
-fn holds(scene: &RestingScene<'_>, meter: &mut Meter) -> Result<bool, Exhausted> {
-    Ok(one_holds_the_other(scene, meter)?.is_some())
+/// Does one body that is filled hold a part of the other?
+fn holds(scene: &RestingScene<'_>, solids: [Solid; 2], meter: &mut Meter) -> Result<bool, Exhausted> {
+    Ok(one_holds_the_other(scene, solids, meter)?.is_some())
 }
 
 /// Tests for a crossing beside a crowd of pairs that touch: some milliseconds. More of them, and the bodies count as touching.
