@@ -5,7 +5,7 @@ use crate::step::Step;
 use crate::{Segment, Simulation, SimulationError, StepError, StepReport};
 
 impl Simulation {
-    /// Advances by one step: to the next multiple of [`SimulationOptions::step`].
+    /// Advances by one step: to the next multiple of [`SimulationOptions::step`](crate::SimulationOptions::step).
     ///
     /// ```
     /// # use d2m_bvh::MeshTree;

@@ -45,7 +45,7 @@
 //! cases are no errors.
 //!
 //! ## Layers
-//! Each is a crate of its own: [`interval`], [`motion`], [`root`], [`feature`], [`bvh`], [`shapes`],
+//! Each is a crate of its own: [`interval`], [`motion`], [`root`], [`feature`], [`mesh`], [`bvh`], [`shapes`],
 //! [`world`], with the features of their names [`dynamics`], [`io`], [`paper`], [`robot`], [`verify`], and
 //! [`glam`](https://docs.rs/glam) for vectors.
 //!
