@@ -330,6 +330,33 @@ fn boxes_share_what_a_press_leaves() {
     assert!(top > 0.0 && top < 1e-6, "{top}");
 }
 
+/// Three columns of three boxes that are turned against each other, and a press that meets no resistance: it crushes one where a ten-thousandth of
+/// a gap is left of all, and no sooner. Where friction locks some boxes with the last of their room, others would have to take all.
+#[test]
+fn a_heap_shares_its_room_to_the_end() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    simulation.add(&floor(1.0).with_friction(0.5)).unwrap();
+    let cube = tree("box?x=0.2&y=0.2&z=0.2");
+    for k in 0..9u8 {
+        let (column, row) = (f64::from(k % 3), f64::from(k / 3));
+        let place = DVec3::new(0.5 * column - 0.6, 0.201 + 0.45 * row, 0.1 * f64::from(k % 2));
+        let turn = DQuat::from_rotation_y(0.2 * f64::from(k));
+        let body =
+            Body::new(format!("box {k}"), Arc::clone(&cube)).with_position(place).with_orientation(turn);
+        simulation.add(&body.with_friction(0.4)).unwrap();
+    }
+    let press = pushed("press", "box?x=1.5&y=0.1&z=1.5", DVec3::Y * 2.0, DVec3::Y * -1.0);
+    simulation.add(&press.with_friction(0.4)).unwrap();
+    let error = loop {
+        if let Err(error) = simulation.step() {
+            break error;
+        }
+    };
+    let StepError::Crushed { time, .. } = error else { panic!("{error:?}") };
+    // The press is on the boxes after 0.7, at a speed of one.
+    assert!(time < 0.7 && 0.7 - time < 1e-4 * simulation.options().gap, "{:e}", 0.7 - time);
+}
+
 /// A stone that is wider at its foot, by seven degrees, and four plates along its sides that close in to two fifths of a gap each and rise: with
 /// friction of 0.3 it is locked between them, and lifted.
 #[test]

@@ -230,7 +230,9 @@ fn one_inside_the_other() {
                 distance_within(a, b, &options).unwrap().unwrap()
             };
             assert_eq!(as_these([Solid::Filled, Solid::Surface]), distance(a, b, Solid::Filled).unwrap());
-            assert_eq!(as_these([Solid::Surface, Solid::Filled]), distance(a, b, Solid::Surface).unwrap());
+            let around = as_these([Solid::Surface, Solid::Filled]);
+            assert_eq!(around, distance(a, b, Solid::Surface).unwrap());
+            assert!(around.state == StartState::Apart && around.lower > 0.0, "{around:?}");
         }
         let cutoff = DistanceOptions::default().with_cutoff(1e-12);
         let near = distance_within(a, b, &cutoff).unwrap();

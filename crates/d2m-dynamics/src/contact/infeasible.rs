@@ -119,7 +119,7 @@ mod tests {
     use super::*;
     use glam::DVec3;
 
-    fn squeezed(rooms: [f64; 2], length: f64) -> bool {
+    fn with_squeeze<T>(rooms: [f64; 2], answer: impl Fn(&Squeeze<'_, fn(usize) -> usize>) -> T) -> T {
         let body = |inverse_mass: f64, rate: f64| SolverBody {
             inverse_mass,
             inverse_inertia: DMat3::IDENTITY * inverse_mass,
@@ -129,7 +129,11 @@ mod tests {
         let bodies = [body(0.0, 0.0), body(0.5, 0.0), body(0.0, -1.0)];
         let contact = |pair: [usize; 2], distance: f64| ContactPoint { distance, ..upright(pair) };
         let contacts = [contact([0, 1], rooms[0]), contact([1, 2], rooms[1])];
-        Squeeze { bodies: &bodies, contacts: &contacts, place: |i| i }.prove_infeasible(length).is_some()
+        answer(&Squeeze { bodies: &bodies, contacts: &contacts, place: |i| i })
+    }
+
+    fn squeezed(rooms: [f64; 2], length: f64) -> bool {
+        with_squeeze(rooms, |squeeze| squeeze.prove_infeasible(length).is_some())
     }
 
     /// A press has used up the room of a stone after as much time as both gaps are wide, however it gives way.
@@ -137,6 +141,10 @@ mod tests {
     fn what_has_no_room_is_proven_to_have_none() {
         assert!(squeezed([1e-6, 3e-6], 5e-6) && squeezed([0.0, 1e-3], 1.001e-3));
         assert!(!squeezed([1e-6, 3e-6], 3.9e-6) && !squeezed([1e-3, 1e-3], 1e-9));
+        // The same multiplier of both contacts moves the stone nowhere: what they prove depends on the distances alone.
+        let proven =
+            |length| with_squeeze([1e-3, 1e-3], |squeeze| squeeze.is_negative(&[1.0; 2], length, 1e3));
+        assert!(proven(2.1e-3) && !proven(1.9e-3));
     }
 
     /// Where a press meets a stone that could slip out, no multipliers are a proof.
