@@ -207,6 +207,7 @@ fn one_inside_the_other() {
     // the body.
     let shell = Surface::cube(1.0).with(&Surface::cube(0.5).inverted());
     let shell = MeshTree::new(shell.into_mesh(TriMesh::try_new));
+    let mut held = 0;
     for round in 0..200 {
         // Also exactly at the middle and on planes of symmetry, where rays meet edges and corners.
         let grid = |x: f64| (x * 4.0).round() * 0.2;
@@ -233,6 +234,7 @@ fn one_inside_the_other() {
             let around = as_these([Solid::Surface, Solid::Filled]);
             assert_eq!(around, distance(a, b, Solid::Surface).unwrap());
             assert!(around.state == StartState::Apart && around.lower > 0.0, "{around:?}");
+            held += 1;
         }
         let cutoff = DistanceOptions::default().with_cutoff(1e-12);
         let near = distance_within(a, b, &cutoff).unwrap();
@@ -244,6 +246,7 @@ fn one_inside_the_other() {
             assert_eq!(hit, depth > 0.5 && depth < 1.0, "{place}");
         }
     }
+    assert!(held > 100, "{held}");
 }
 
 #[test]
