@@ -196,8 +196,8 @@ where
         evaluations += 1;
         let part = match examine(f, piece) {
             Examined::Free => continue,
-            Examined::Unique { part, rising } => {
-                let bracket = narrowed(f, part, rising, limits.time_tolerance);
+            Examined::Unique { part, trend } => {
+                let bracket = narrowed(f, part, trend, limits.time_tolerance);
                 return FirstZero::Found { bracket, evidence: ZeroEvidence::Unique };
             }
             Examined::Perhaps(part) => part,
@@ -225,12 +225,19 @@ where
 /// A piece that shrank below this part of its width is examined again before it is halved.
 const SHRUNK: f64 = 0.5;
 
+/// Which way a strictly monotone function goes.
+#[derive(Clone, Copy, PartialEq)]
+enum Trend {
+    Rising,
+    Falling,
+}
+
 /// What is known of a piece after one examination.
 enum Examined {
     /// No zero.
     Free,
     /// Exactly one zero in the piece, and it lies in the part, where f is strictly monotone.
-    Unique { part: Interval, rising: bool },
+    Unique { part: Interval, trend: Trend },
     /// Every zero of the piece lies in the part.
     Perhaps(Interval),
 }
@@ -274,7 +281,10 @@ fn examine<F: Differentiable + ?Sized>(f: &mut F, piece: Interval) -> Examined {
     // value of which nothing is known "maps" the whole line into itself.
     let defined = piece.is_bounded() && step.is_bounded() && !first.is_entire() && !last.is_entire();
     if opposite(first, last) || (defined && step.is_subset(piece)) {
-        return Examined::Unique { part, rising: slope.certainly_positive() };
+        return Examined::Unique {
+            part,
+            trend: if slope.certainly_positive() { Trend::Rising } else { Trend::Falling },
+        };
     }
     Examined::Perhaps(part)
 }
@@ -333,7 +343,7 @@ const PAYS: f64 = 0.75;
 fn narrowed<F: Differentiable + ?Sized>(
     f: &mut F,
     mut part: Interval,
-    rising: bool,
+    trend: Trend,
     tolerance: f64,
 ) -> Interval {
     for _ in 0..NARROWING_STEPS {
@@ -351,20 +361,20 @@ fn narrowed<F: Differentiable + ?Sized>(
         if part.width() <= tolerance {
             break;
         }
-        let Some(cut) = cut_by_sign(f, part, rising) else { break };
+        let Some(cut) = cut_by_sign(f, part, trend) else { break };
         part = cut;
     }
     part
 }
 
 /// The side of a time inside the part on which the zero lies, for the first such time at which f has a certain sign.
-fn cut_by_sign<F: Differentiable + ?Sized>(f: &mut F, part: Interval, rising: bool) -> Option<Interval> {
+fn cut_by_sign<F: Differentiable + ?Sized>(f: &mut F, part: Interval, trend: Trend) -> Option<Interval> {
     let middle = split_time(part)?;
     let (left, right) = (Interval::new(part.lo(), middle), Interval::new(middle, part.hi()));
     for time in [Some(middle), split_time(left), split_time(right)].into_iter().flatten() {
         let value = value_at(f, time);
         if excludes_zero(value) {
-            return Some(if value.certainly_negative() == rising {
+            return Some(if value.certainly_negative() == (trend == Trend::Rising) {
                 Interval::new(time, part.hi())
             } else {
                 Interval::new(part.lo(), time)

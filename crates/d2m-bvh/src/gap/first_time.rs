@@ -7,8 +7,6 @@ use d2m_mesh::margin::{DOWN, UNIT_F64, UP};
 /// What rates are lowered by, so that none is zero and the square of none underflows: a gap that grows less is never late, and the
 /// unit of time is short against what this rate takes.
 const LEAST_RATE: f64 = 1e-140;
-/// Stands for "at no time": longer than every window, and finite, so that no product with a rate of zero is undefined.
-const NEVER: f64 = 1e300;
 /// The discriminant v² − 2ag errs by at most 2·2⁻⁵³(v² + |2ag|); twice that and some room.
 const DISCRIMINANT_ERROR: f64 = 8.0 * UNIT_F64;
 
@@ -26,12 +24,13 @@ pub(crate) struct Jets {
     pub(crate) bend: [f64; 3],
 }
 
-/// First s ≥ 0 at which min(high + s·rate) − max(low + s·rate) − m s²/2 can be `need`. At s = 0 it is larger.
+/// First s ≥ 0 at which min(high + s·rate) − max(low + s·rate) − m s²/2 can be `need`. At s = 0 it is larger. No time beyond `enough`
+/// matters: what never closes is proven for a little longer.
 #[inline(always)]
-pub(crate) fn first_time<D: Doubles>(low: Lines<D>, high: Lines<D>, need: f64, m: f64) -> f64 {
+pub(crate) fn first_time<D: Doubles>(low: Lines<D>, high: Lines<D>, need: f64, m: f64, enough: f64) -> f64 {
     // Lowest vertex now with the fastest closing rate: never late; exact when one vertex is both.
     let gap = high.at.min_element() - low.at.max_element() - need;
-    let s = root(gap, high.rate.min_element() - low.rate.max_element(), m);
+    let s = root(gap, high.rate.min_element() - low.rate.max_element(), m).unwrap_or(enough);
     // Concave in s: the chord from a proven time to a later one with a positive value is proven too.
     let later = 2.0 * s;
     let (l, h) = (low.at + low.rate * D::splat(later), high.at + high.rate * D::splat(later));
@@ -40,18 +39,12 @@ pub(crate) fn first_time<D: Doubles>(low: Lines<D>, high: Lines<D>, need: f64, m
     s * DOWN
 }
 
-/// Root of g + v s − m s²/2 for g > 0: sums of terms of one sign only.
+/// Root of g + v s − m s²/2 for g > 0, if there is one: sums of terms of one sign only.
 #[inline(always)]
-fn root(g: f64, v: f64, m: f64) -> f64 {
+fn root(g: f64, v: f64, m: f64) -> Option<f64> {
     let v = v - LEAST_RATE;
     let root = (v * v + 2.0 * m * g).sqrt();
-    if v < 0.0 {
-        2.0 * g / (root - v)
-    } else if m > 0.0 {
-        (v + root) / m
-    } else {
-        NEVER
-    }
+    if v < 0.0 { Some(2.0 * g / (root - v)) } else { (m > 0.0).then(|| (v + root) / m) }
 }
 
 /// A time until which every pair of vertices stays further apart than `need`, of which none beyond `enough` matters.
@@ -98,20 +91,24 @@ pub(crate) fn first_time_of_paths<const N: usize>(paths: &[PathAlong; N], enough
     if !paths.iter().map(size).sum::<f64>().is_finite() {
         return 0.0;
     }
-    let first_root = |span: f64| {
-        let mut first = f64::INFINITY;
+    // Up to `most`.
+    let first_root = |span: f64, most: f64| {
+        let mut first = most;
         for path in paths {
             let loss = path.jerk * span * (1.0 / 3.0 * UP);
-            let s = Parabola { gap: path.gap, rate: path.rate, bend: path.bend - loss }.first_root();
-            first = if s < first { s } else { first };
+            let bound = Parabola { gap: path.gap, rate: path.rate, bend: path.bend - loss };
+            match bound.first_root() {
+                Some(s) if s < first => first = s,
+                _ => {}
+            }
         }
         first
     };
-    let mut span = first_root(0.0).min(enough * (UP * UP));
+    let mut span = first_root(0.0, enough * (UP * UP));
     let mut proven = 0.0;
     for _ in 0..3 {
-        let s = first_root(span);
-        proven = s.min(span).max(proven);
+        let s = first_root(span, span);
+        proven = s.max(proven);
         if s >= 0.8 * span {
             break;
         }
@@ -132,9 +129,9 @@ struct Parabola {
 }
 
 impl Parabola {
-    /// The first root for g > 0, never late; infinite when there is none.
+    /// The first root for g > 0, never late; none only if there is none.
     #[inline(always)]
-    fn first_root(&self) -> f64 {
+    fn first_root(&self) -> Option<f64> {
         let (g, a) = (self.gap, self.bend);
         let (v, bent) = (self.rate - LEAST_RATE, 2.0 * a * g);
         // Too large by more than its rounding: the root of a closing pair is early.
@@ -142,6 +139,7 @@ impl Parabola {
         let root = square.max(0.0).sqrt();
         let closing = v < 0.0;
         let (above, below) = (if closing { 2.0 * g } else { v + root }, if closing { root - v } else { -a });
-        if square < 0.0 || !closing && a >= 0.0 { f64::INFINITY } else { above / below }
+        let is_free = square < 0.0 || !closing && a >= 0.0;
+        (!is_free).then(|| above / below)
     }
 }

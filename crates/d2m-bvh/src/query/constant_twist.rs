@@ -5,7 +5,7 @@ use crate::covered_pair::CoveredPair;
 use crate::pair::scene::{MovingScene, MovingTree};
 use crate::walk::scratch::Scratch;
 use crate::walk::state::{Outcome, Search};
-use crate::{Answered, MeshTree, Mode, QueryError, QueryOptions, SearchCounts, Solid, TimeOfContact, Window};
+use crate::{Answered, MeshTree, QueryError, QueryOptions, SearchCounts, Solid, TimeOfContact, Window};
 use core::cell::RefCell;
 use d2m_lanes::F64x4;
 use d2m_mesh::at_rest::{Held, held_vertex};
@@ -100,8 +100,7 @@ fn answer(scene: &MovingScene<'_>, options: &QueryOptions, searched: &Searched<'
         Outcome::Found(found) => {
             let known = scratch.found_in.filter(|motion| motion.start == found.start);
             let motion = known.unwrap_or_else(|| scene.relative_motion(found.start));
-            let contact = contact(scene, &motion, &found, options.mode != Mode::Capoeira);
-            TimeOfContact::Contact(contact)
+            TimeOfContact::Contact(contact(scene, &motion, &found, options.mode))
         }
     }
 }

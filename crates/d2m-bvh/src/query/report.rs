@@ -6,29 +6,29 @@ use crate::pair::triangles::closest::{Closest, Place, closest};
 use crate::pair::triangles::pair_scale::PairScale;
 use crate::pair::triangles::separating_axis::place_a;
 use crate::walk::state::Found;
-use crate::{Contact, Evidence, MeshTree, StartState};
+use crate::{Contact, Evidence, MeshTree, Mode, StartState};
 use d2m_feature::proven_crossing;
 use d2m_feature::{FeaturePair, triangles_intersect};
 use d2m_lanes::{Doubles, F64x4, Lanes, Task, run};
 use d2m_mesh::at_rest::Held;
 use glam::DVec3;
 
-/// The contact with all its data, of a scene and its motion over the window of the search; `bracket`: search for a time by
+/// The contact with all its data, of a scene and its motion over the window of the search: but in Capoeira mode with a time by
 /// which the tolerance was reached, if that cannot be shown for `time_lo`.
 pub(super) fn contact(
     scene: &MovingScene<'_>,
     motion: &RelativeMotion,
     found: &Found,
-    bracket: bool,
+    mode: Mode,
 ) -> Contact {
-    run(Report { scene, motion, found, bracket })
+    run(Report { scene, motion, found, mode })
 }
 
 struct Report<'r> {
     scene: &'r MovingScene<'r>,
     motion: &'r RelativeMotion,
     found: &'r Found,
-    bracket: bool,
+    mode: Mode,
 }
 
 impl Task for Report<'_> {
@@ -36,7 +36,7 @@ impl Task for Report<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Contact {
-        let Self { scene, motion, found, bracket } = self;
+        let Self { scene, motion, found, mode } = self;
         let (a, b) = (scene.a.corners(found.triangles[0]), scene.b.corners(found.triangles[1]));
         let pair = TrianglePair { motion, a, b };
         // What the clock of the caller has no number for is reported at the time before.
@@ -57,7 +57,7 @@ impl Task for Report<'_> {
             pair.evidence::<L::Doubles>(scene, &placed)
         };
         let meeting = match evidence {
-            Evidence::Early if bracket => pair.reached_by::<L::Doubles>(scene, from, &placed),
+            Evidence::Early if mode != Mode::Capoeira => pair.reached_by::<L::Doubles>(scene, from, &placed),
             evidence => Meeting { offset: from, evidence },
         };
         let witness = |placed: PlacedPair| Witness {
@@ -79,7 +79,7 @@ impl Task for Report<'_> {
             let placed = TrianglePair { motion: &motion, a, b }.at::<L::Doubles>(offset);
             describe(scene, &motion, time, &witness(placed))
         };
-        if bracket {
+        if mode != Mode::Capoeira {
             cover_what_is_left(&mut contact, scene);
         }
         contact

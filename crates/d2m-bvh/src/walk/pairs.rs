@@ -17,6 +17,15 @@ use d2m_mesh::audit::Place;
 use d2m_mesh::node::WIDTH;
 use glam::DVec3;
 
+/// When a pair is advanced.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Turn {
+    /// Nothing that waits comes before it.
+    Own,
+    /// Before others that come first, for what it finds early.
+    Ahead,
+}
+
 impl Search<'_> {
     /// Expands at most [`BATCH`] items. Pairs of triangles first: they may lower the limit. Then all node tests, which
     /// do not wait for each other, then all that they leave.
@@ -32,7 +41,7 @@ impl Search<'_> {
         }
         for item in items {
             if item.next & Item::TRIANGLES != 0 && item.key < state.limit {
-                self.advance::<L>(state, *item, false);
+                self.advance::<L>(state, *item, Turn::Own);
             }
         }
         let fresh = &mut self.scratch.fresh;
@@ -65,9 +74,9 @@ impl Search<'_> {
         self.scratch.queue.extend(fresh.map(|row| Item::from_row(*row)));
     }
 
-    /// Advances a pair of triangles until it is past the limit, waits for others (not if `alone`), or is in contact.
+    /// Advances a pair of triangles until it is past the limit, waits for others (if in turn), or is in contact.
     #[inline(always)]
-    pub(super) fn advance<L: Lanes>(&mut self, state: &mut State<'_>, item: Item, alone: bool) {
+    pub(super) fn advance<L: Lanes>(&mut self, state: &mut State<'_>, item: Item, turn: Turn) {
         let triangle = |body: usize| {
             let index = item.boxes[body] as usize;
             state.expander.nodes[body][index / WIDTH].triangle(index % WIDTH)
@@ -106,7 +115,7 @@ impl Search<'_> {
         let mut steps = 0u32;
         loop {
             steps += 1;
-            if alone && steps > MOST_STEPS_ALONE {
+            if turn == Turn::Ahead && steps > MOST_STEPS_ALONE {
                 return;
             }
             if steps.is_multiple_of(256) && self.out_of_budget() {
@@ -133,7 +142,7 @@ impl Search<'_> {
                         return;
                     }
                     let key = (known / state.step) as u32;
-                    if !alone && key > effort::followed_until(item.key) {
+                    if turn == Turn::Own && key > effort::followed_until(item.key) {
                         if key < state.limit {
                             self.scratch.queue.push(Item { key, ..item });
                         }

@@ -225,7 +225,7 @@ impl Placed {
         let s = if self.order == BoundOrder::Second {
             let (of_a, of_b) = (Lines { at: pa, rate: ra }, Lines { at: pb, rate: rb });
             let (low, high) = if a_is_low { (of_a, of_b) } else { (of_b, of_a) };
-            first_time(low, high, need, scale.acceleration * length)
+            first_time(low, high, need, scale.acceleration * length, self.enough)
         } else {
             let of_a = Lines { at: three(pa), rate: three(ra) };
             let of_b = Lines { at: three(pb), rate: three(rb) };
@@ -317,8 +317,8 @@ impl Placed {
         let quad = |v: &[f64; 3]| F64x4::new([v[0], v[1], v[2], v[2]]);
         let (line_a, line_b) =
             (Lines { at: quad(&pa), rate: quad(&ra) }, Lines { at: quad(&pb), rate: quad(&rb) });
-        let s =
-            if a_is_low { first_time(line_a, line_b, need, m) } else { first_time(line_b, line_a, need, m) };
+        let (low, high) = if a_is_low { (line_a, line_b) } else { (line_b, line_a) };
+        let s = first_time(low, high, need, m, self.enough);
         let speed = if a_is_low { least(&rb) - greatest(&ra) } else { least(&ra) - greatest(&rb) };
         let nearest = if a_is_low {
             rate_of_least(&pb, &rb) - rate_of_greatest(&pa, &ra)

@@ -19,7 +19,8 @@ use super::meshes::of_meshes;
 use super::rounded::Rounded;
 use crate::covered_pair::CoveredPair;
 use crate::{
-    Budget, Contact, Evidence, Meter, Moving, QueryError, QueryOptions, StartState, TimeOfContact, Window,
+    Budget, Contact, Evidence, Meter, Moving, QueryError, QueryOptions, Solid, StartState, TimeOfContact,
+    Window,
 };
 use d2m_feature::{FeaturePair, TriangleFeature};
 use sample::{Sample, Sampler, closer};
@@ -153,8 +154,8 @@ struct Descent<'a> {
     proven: f64,
     /// What is not proven yet at the level of the pass.
     ways: Vec<Way>,
-    /// Neither body is inside the other one.
-    is_outside: bool,
+    /// What ways are searched with: surfaces once neither body is known to be inside the other one.
+    searched: [Moving<'a>; 2],
     /// With a budget the first pass is a wide enclosure: then there is one also where the budget does not last for more.
     pass: Pass,
 }
@@ -177,7 +178,7 @@ impl<'a> Descent<'a> {
             meter: limited(&options.budget),
             proven: 0.0,
             ways: Vec::new(),
-            is_outside: false,
+            searched: bodies,
             pass: if is_limited { Pass::Coarse } else { Pass::Accurate },
         })
     }
@@ -239,9 +240,11 @@ impl<'a> Descent<'a> {
             else {
                 return undecided(&self, &best);
             };
-            let found = self.sampler.search(&way, self.is_outside, &options)?;
+            let found = way.search(self.searched, &options)?;
             self.meter.spend(found.work.work() + 1);
-            self.is_outside |= found.is_outside;
+            if found.is_outside {
+                self.searched = self.searched.map(|body| body.with_solid(Solid::Surface));
+            }
             self.proven = self.proven.min(level.separation + 0.5 * level.tolerance);
             match found.end {
                 WayEnd::Clear => {}

@@ -3,9 +3,8 @@
 //! Near the time of the least distance every pair of triangles parts both ways, so a search that begins there is over soon, and one
 //! that comes towards it is not: it approaches a double root.
 
-use super::sample::Sampler;
 use crate::query::meshes::of_meshes;
-use crate::{Moving, QueryError, QueryOptions, SearchCounts, Solid, StartState, TimeOfContact, Window};
+use crate::{Moving, QueryError, QueryOptions, SearchCounts, StartState, TimeOfContact, Window};
 use d2m_motion::ConstantTwist;
 
 /// A span of time that is to be proven, from a time on, later or earlier.
@@ -50,21 +49,18 @@ impl Way {
         let first = if is_within { Self { from: time, to: self.from } } else { self };
         [Some(first), is_within.then_some(Self { from: time, to: self.to })].into_iter().flatten()
     }
-}
 
-impl Sampler<'_> {
-    /// Searches along a way. `is_outside`: neither body is inside the other one at any time at which surfaces are apart.
+    /// Searches along it.
     pub(super) fn search(
         &self,
-        way: &Way,
-        is_outside: bool,
+        bodies: [Moving<'_>; 2],
         options: &QueryOptions,
     ) -> Result<Found, QueryError> {
-        let bodies = self.bodies.map(|body| if is_outside { body.with_solid(Solid::Surface) } else { body });
+        let way = *self;
         let is_backward = way.to < way.from;
         let reversed = if is_backward { reversed(&bodies, way.to, way.from) } else { None };
         let way = match reversed {
-            Some(_) => *way,
+            Some(_) => way,
             None => Way { from: way.from.min(way.to), to: way.from.max(way.to) },
         };
         let sign = if reversed.is_some() { -1.0 } else { 1.0 };

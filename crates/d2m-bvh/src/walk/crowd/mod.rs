@@ -22,6 +22,7 @@ mod tests;
 use crate::walk::effort::{
     CROWD, CROWD_CHECK, CROWD_CHECK_TESTS, CROWD_OF_BATCHES, MOST_HALVINGS, MOST_PLANES, WORK_A_PAIR,
 };
+use crate::walk::pairs::Turn;
 use crate::walk::queue::{Bucket, Item};
 use crate::walk::state::{Search, State};
 use d2m_lanes::Lanes;
@@ -185,9 +186,10 @@ impl Search<'_> {
                 if over {
                     return true;
                 }
-                let (high, low) = (a.of(item.boxes[0]), b.of(item.boxes[1]));
+                let reaches = a.of(item.boxes[0]).zip(b.of(item.boxes[1]));
                 // Also when something is not a number.
-                let meets = !((0..2).all(|end| -low[end] - high[end] > need));
+                let meets =
+                    !reaches.is_some_and(|(high, low)| (0..2).all(|end| -low[end] - high[end] > need));
                 #[cfg(feature = "audit")]
                 if !meets {
                     let parts = [Part::Boxes(&item.boxes[..1]), Part::Boxes(&item.boxes[1..])];
@@ -300,7 +302,7 @@ impl Search<'_> {
                 None => return,
             }
         }
-        self.advance::<L>(state, item, true);
+        self.advance::<L>(state, item, Turn::Ahead);
     }
 
     /// The vertices below all pairs that wait; none if they are too many for what the search has done so far, or the time is over.

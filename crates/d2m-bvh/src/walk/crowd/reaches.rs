@@ -13,8 +13,8 @@ pub(super) struct Reaches<'a> {
     paths: BodyPaths<'a>,
     along: DVec3,
     turn: f64,
-    /// Of each box; not a number where it is not known.
-    known: Vec<[f64; 2]>,
+    /// Of each box that was measured.
+    known: Vec<Option<[f64; 2]>>,
 }
 
 impl<'a> Reaches<'a> {
@@ -23,20 +23,20 @@ impl<'a> Reaches<'a> {
             Side::A => (&scene.a, n),
             Side::B => (&scene.b, -n),
         };
-        let known = vec![[f64::NAN; 2]; WIDTH * body.tree.nodes().len()];
+        let known = vec![None; WIDTH * body.tree.nodes().len()];
         let paths = BodyPaths::new(scene, frame, side, span);
         Self { body, paths, along, turn: paths.turn(n), known }
     }
 
-    pub(super) fn of(&self, index: u32) -> [f64; 2] {
+    /// What [`Self::measure`] found.
+    pub(super) fn of(&self, index: u32) -> Option<[f64; 2]> {
         self.known[index as usize]
     }
 
     /// Measures what is below a box, and below all of its boxes; none: the time is over.
     pub(super) fn measure(&mut self, index: u32, clock: &mut Meter) -> Option<[f64; 2]> {
-        let known = self.known[index as usize];
-        if !known[0].is_nan() {
-            return Some(known);
+        if let known @ Some(_) = self.known[index as usize] {
+            return known;
         }
         clock.step().ok()?;
         let most = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [larger(a, c), larger(b, d)];
@@ -53,7 +53,7 @@ impl<'a> Reaches<'a> {
                 })?
             }
         };
-        self.known[index as usize] = reach;
+        self.known[index as usize] = Some(reach);
         Some(reach)
     }
 }
