@@ -1,5 +1,5 @@
 //! A moving sphere against a sphere that is fixed in B's frame (solid spheres).
-use crate::path::{FeaturePath, along, direction, global, local, widened, without_third};
+use crate::path::{FeaturePath, along, direction, global, local, resolution, widened, without_third};
 use crate::point_triangle::cleared;
 use crate::rounding::{DOWN, PART_OF_WAY, UNIT, length_up};
 use d2m_root::{Measurement, Piece, PieceTest, Quadratic, Verdict};
@@ -36,8 +36,7 @@ impl<P: FeaturePath> PieceTest for SphereSphereTest<P> {
     }
 
     fn resolution(&self) -> f64 {
-        let resolution = self.tolerance / (2.0 * self.path.speed());
-        if resolution.is_nan() { f64::INFINITY } else { resolution }
+        resolution(self.tolerance, self.path.speed())
     }
 
     fn evaluate(&mut self, piece: Piece) -> Verdict {

@@ -6,7 +6,8 @@ mod products;
 use crate::accurate_cross::{Difference, accurate_cross};
 use crate::closest;
 use crate::path::{
-    FeaturePath, HalfEdge, along, around, direction, global, local, padded, widened, without_third,
+    FeaturePath, HalfEdge, along, around, direction, global, local, padded, resolution, widened,
+    without_third,
 };
 use crate::point_triangle::cleared;
 use crate::rounding::{CLOSE, PART_OF_WAY, UNIT, UP, length_up};
@@ -135,8 +136,7 @@ impl<P: FeaturePath> PieceTest for EdgeEdgeTest<P> {
     }
 
     fn resolution(&self) -> f64 {
-        let resolution = self.tolerance / (2.0 * self.speed());
-        if resolution.is_nan() { f64::INFINITY } else { resolution }
+        resolution(self.tolerance, self.speed())
     }
 
     #[inline]

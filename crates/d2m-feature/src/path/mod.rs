@@ -41,6 +41,13 @@ pub(crate) trait FeaturePath {
     fn rounding(&self) -> f64;
 }
 
+/// The width of a piece on which features of this speed move by the tolerance.
+#[inline(always)]
+pub(crate) fn resolution(tolerance: f64, speed: f64) -> f64 {
+    let resolution = tolerance / (2.0 * speed);
+    if resolution.is_nan() { f64::INFINITY } else { resolution }
+}
+
 /// An edge of B as its midpoint and half of the vector between its ends.
 #[derive(Clone, Copy)]
 pub(crate) struct HalfEdge {

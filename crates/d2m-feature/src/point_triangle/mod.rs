@@ -5,8 +5,8 @@ pub(crate) use planes::TrianglePlanes;
 
 use crate::closest;
 use crate::path::{
-    CubicAlong, FeaturePath, along, around, cubic_along, direction, global, local, padded, widened,
-    without_third,
+    CubicAlong, FeaturePath, along, around, cubic_along, direction, global, local, padded, resolution,
+    widened, without_third,
 };
 use crate::rounding::{CLOSE, PART_OF_WAY, UNIT, UP, length_up};
 use d2m_motion::{PathJet, Remainder};
@@ -53,8 +53,7 @@ impl<P: FeaturePath> PieceTest for PointTriangleTest<'_, P> {
     }
 
     fn resolution(&self) -> f64 {
-        let resolution = self.tolerance / (2.0 * self.path.speed());
-        if resolution.is_nan() { f64::INFINITY } else { resolution }
+        resolution(self.tolerance, self.path.speed())
     }
 
     #[inline]

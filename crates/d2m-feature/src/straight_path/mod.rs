@@ -2,6 +2,7 @@
 mod edge_edge;
 mod linear;
 mod point_triangle;
+mod straight_test;
 mod triple_product;
 
 use crate::contact::{ContactBracket, FirstContact};
@@ -11,9 +12,8 @@ use crate::rounding::{UNIT, UP};
 use crate::units::Units;
 use d2m_lanes::power_of_two;
 use d2m_root::Piece;
-use edge_edge::StraightEdgeEdge;
 use glam::DVec3;
-use point_triangle::StraightPointTriangle;
+use straight_test::StraightTest;
 
 /// Four points, each moving from its start (t = 0) to its end (t = 1) at constant velocity: `(1 − t)·start + t·end`.
 ///
@@ -87,12 +87,12 @@ impl StraightPaths {
 
 #[inline(always)]
 fn point_triangle(lines: &Lines, options: &ContactOptions) -> FirstContact {
-    answer_in(&mut StraightPointTriangle::new(lines, options), WINDOW, 0.0, options).contact
+    answer_in(&mut StraightTest::of_point(lines, options), WINDOW, 0.0, options).contact
 }
 
 #[inline(always)]
 fn edge_edge(lines: &Lines, options: &ContactOptions) -> FirstContact {
-    answer_in(&mut StraightEdgeEdge::new(lines, options), WINDOW, 0.0, options).contact
+    answer_in(&mut StraightTest::of_edges(lines, options), WINDOW, 0.0, options).contact
 }
 
 /// A contact's distances in the units of the input.

@@ -3,7 +3,7 @@
 //! **Invariant:** the coefficients are taken as they are, exactly; every rounding made here is counted here. The proofs
 //! of the constants are in `docs/theory/isolator.md`.
 use super::piece::Piece;
-use super::quadratic::{LONGEST_REACH, UNDERFLOW};
+use super::quadratic::{LONGEST_REACH, UNDERFLOW, covers};
 use super::time_unit::TimeUnit;
 use super::{Band, Quadratic};
 use d2m_lanes::UNIT;
@@ -157,16 +157,8 @@ impl Cubic {
     /// ```
     #[inline(always)]
     pub fn clip_beyond(&self, band: Band, allowed: impl Fn(f64) -> f64, part: Piece) -> Option<Piece> {
-        debug_assert!(self.covers(allowed(part.reach()), part));
+        debug_assert!(covers(allowed(part.reach()), self.bound_evaluation(part.reach()), part));
         self.clip_rounds(band, allowed, part)
-    }
-
-    /// The hypotheses of [`Cubic::clip_beyond`]. Where everything is zero nothing underflows; what overflows or is not a
-    /// number cuts nothing.
-    fn covers(&self, allowed: f64, part: Piece) -> bool {
-        let error = self.bound_evaluation(part.reach());
-        let covered = allowed + UNDERFLOW >= error || allowed.is_nan();
-        !error.is_finite() || (part.is_within(LONGEST_REACH) && covered)
     }
 
     #[cold]

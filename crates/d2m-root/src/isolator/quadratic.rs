@@ -24,6 +24,13 @@ pub(super) const UNDERFLOW: f64 = power_of_two(-1000);
 /// Keeps the sagitta above its exact value: more than its four roundings and twice that of the width.
 const SAGITTA: f64 = 1.0 + 8.0 * UNIT;
 
+/// The hypotheses of [`Quadratic::clip_beyond`] and of the cubics' on what is allowed, where evaluations err by at most `error`. Where
+/// everything is zero nothing underflows; what overflows or is not a number cuts nothing.
+pub(super) fn covers(allowed: f64, error: f64, part: Piece) -> bool {
+    let covered = allowed + UNDERFLOW >= error || allowed.is_nan();
+    !error.is_finite() || (part.is_within(LONGEST_REACH) && covered)
+}
+
 /// `value + slope·s + curvature·s²/2`.
 ///
 /// ```
@@ -144,14 +151,6 @@ impl Quadratic {
         EVALUATION * (self.value.abs() + (self.slope.abs() + self.curvature.abs() * h) * h) + UNDERFLOW
     }
 
-    /// The hypotheses of [`Quadratic::clip_beyond`]. Where everything is zero nothing underflows; what overflows or is not
-    /// a number cuts nothing.
-    fn covers(&self, allowed: f64, part: Piece) -> bool {
-        let error = self.bound_evaluation(part.reach());
-        let covered = allowed + UNDERFLOW >= error || allowed.is_nan();
-        !error.is_finite() || (part.is_within(LONGEST_REACH) && covered)
-    }
-
     /// Cuts off both ends of `part` (times relative to s = 0) where the quadratic is certainly outside the band;
     /// `None` if that is all of it.
     ///
@@ -199,7 +198,7 @@ impl Quadratic {
     /// ```
     #[inline(always)]
     pub fn clip_beyond(&self, band: Band, allowed: f64, part: Piece) -> Option<Piece> {
-        debug_assert!(self.covers(allowed, part));
+        debug_assert!(covers(allowed, self.bound_evaluation(part.reach()), part));
         let Piece { lo, hi } = part;
         let band = band.padded(allowed);
         let width = hi - lo;
@@ -248,7 +247,7 @@ impl Quadratic {
     /// ```
     #[inline(always)]
     pub fn clip_shared_sign_beyond(&self, other: &Self, allowed: f64, part: Piece) -> Option<Piece> {
-        debug_assert!(self.covers(allowed, part) && other.covers(allowed, part));
+        debug_assert!([self, other].iter().all(|f| covers(allowed, f.bound_evaluation(part.reach()), part)));
         let Piece { lo, hi } = part;
         let width = hi - lo;
         /// How far both keep a sign that they share at zero. (A function: a closure is a call.)
@@ -318,7 +317,7 @@ impl Quadratic {
     /// ```
     #[inline(always)]
     pub fn exceeds(&self, margin: f64, part: Piece) -> bool {
-        debug_assert!(self.covers(margin, part));
+        debug_assert!(covers(margin, self.bound_evaluation(part.reach()), part));
         self.least(part) > margin
     }
 
