@@ -16,6 +16,7 @@
 //! - [`Lanes`], [`Elementwise`], [`Bytes`], [`Keys`], [`Rows`], [`Portable`]: eight numbers of single
 //!   precision.
 //! - [`Doubles`], [`Quad`], [`QuadVec`], [`Two`]: four and eight doubles.
+//! - [`three`]: vectors of three such.
 //! - [`Matrix`], [`SingleSide`], [`WideSide`]: boxes.
 #![doc(html_root_url = "https://docs.rs/d2m-lanes")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -43,5 +44,5 @@ pub use rounding::{UNIT, UP};
 #[cfg(feature = "selected")]
 pub use selected::{
     Bytes, Doubles, Elementwise, InstructionSet, Keys, Lanes, Matrix, Portable, Quad, QuadVec, Rows,
-    SingleSide, Task, Two, WideSide, run, run_on,
+    SingleSide, Task, Two, WideSide, run, run_on, three,
 };

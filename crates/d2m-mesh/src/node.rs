@@ -28,6 +28,6 @@
 //! ```
 
 pub use crate::tree::TreeId;
-pub use crate::tree::box_pair::{Axis, BoxPair, GAP_ERROR, PlacedBox, both, dot, load, opposite, splat};
+pub use crate::tree::box_pair::{Axis, BoxPair, GAP_ERROR, PlacedBox, opposite};
 pub use crate::tree::node::{Below, LEAF, LEAST_SIZE, NodeBox, OrientedBox, WIDTH, WideNode};
 pub use crate::tree::slabs::{Slabs, reach};

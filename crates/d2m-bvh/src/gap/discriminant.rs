@@ -7,8 +7,8 @@
 
 use core::ops::{Add, Mul, Sub};
 use d2m_lanes::Lanes;
+use d2m_lanes::three::{dot, times};
 use d2m_mesh::margin::UNIT_F32;
-use d2m_mesh::node::dot;
 
 /// Part of the sum of all squared half extents that is added to each of the spreads' principal values: boxes without
 /// thickness have an inverse then, and flat ones count for a little more than their normals, which saves tests
@@ -58,7 +58,7 @@ impl Spread<f32> {
 #[inline(always)]
 pub(crate) fn unit<L: Lanes>(v: &[L; 3]) -> [L; 3] {
     let inverse = L::splat(1.0) / dot(v, v).sqrt();
-    let n = [v[0] * inverse, v[1] * inverse, v[2] * inverse];
+    let n = times(v, inverse);
     let square = dot(&n, &n);
     // The vector itself where its square is not a number: neither is a gap along it.
     let keep = |x: L| L::if_greater(square, L::splat(LONGEST_SQUARE), L::splat(0.0), x);

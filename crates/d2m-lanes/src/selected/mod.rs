@@ -12,6 +12,7 @@ mod portable_doubles;
 mod quad;
 #[cfg(target_arch = "x86_64")]
 mod register;
+pub mod three;
 mod two;
 
 pub use dispatch::{Task, run, run_on};

@@ -4,41 +4,11 @@
 use super::node::WideNode;
 use super::slabs::reach;
 use crate::margin::UNIT_F32;
+use d2m_lanes::three::{beside, both, dot, load, minus, splat};
 use d2m_lanes::{Elementwise, Lanes, Two};
 
 /// Factor of the error bound of a gap; see docs/theory/engine.md.
 pub const GAP_ERROR: f32 = 48.0 * UNIT_F32 as f32;
-
-/// Scalar product of lanes. (No closures and no `array::map` here: they are compiled without the vector instructions
-/// unless they happen to be inlined.)
-#[inline(always)]
-pub fn dot<T: Elementwise>(a: &[T; 3], b: &[T; 3]) -> T {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// The same three values in each lane.
-#[inline(always)]
-pub fn splat<T: Elementwise<Scalar = f32>, const N: usize>(values: &[f32; N]) -> [T; 3] {
-    [T::splat(values[0]), T::splat(values[1]), T::splat(values[2])]
-}
-
-/// A vector in each of eight lanes.
-#[inline(always)]
-pub fn load<L: Lanes>(values: &[[f32; 8]; 3]) -> [L; 3] {
-    [L::load(&values[0]), L::load(&values[1]), L::load(&values[2])]
-}
-
-/// One vector in the first eight lanes, another in the second.
-#[inline(always)]
-fn beside<L: Lanes>(first: &[L; 3], second: &[L; 3]) -> [L::Two; 3] {
-    [L::Two::of(first[0], second[0]), L::Two::of(first[1], second[1]), L::Two::of(first[2], second[2])]
-}
-
-/// The same vector twice.
-#[inline(always)]
-pub fn both<L: Lanes>(half: &[L; 3]) -> [L::Two; 3] {
-    [L::Two::both(half[0]), L::Two::both(half[1]), L::Two::both(half[2])]
-}
 
 /// The four bytes of a box's cuts for the opposites of directions.
 #[inline(always)]
@@ -95,7 +65,7 @@ impl<L: Lanes> BoxPair<L> {
     pub fn new(wide: &WideNode, placed: &PlacedBox) -> Self {
         let center = both::<L>(&load(&wide.center));
         let at: [L::Two; 3] = splat(&placed.center);
-        let to = [at[0] - center[0], at[1] - center[1], at[2] - center[2]];
+        let to = minus(&at, &center);
         let half = load::<L>(&wide.half_extent);
         let a = wide.wide_axes::<L>();
         let b =

@@ -1,5 +1,6 @@
 //! Moments of a piece of surface.
 
+use d2m_lanes::three::{cross, dot, minus};
 use d2m_lanes::{Doubles, Quad};
 
 /// Weight, first moments, and second moments xx, yy, zz, xy, xz, yz of a piece of surface; those of two pieces together are
@@ -48,11 +49,8 @@ impl Moments {
 #[inline(always)]
 pub(super) fn triangle_moments<D: Doubles<Scalar = f64>>(corners: &[[D; 3]; 3]) -> [Quad; Moments::LENGTH] {
     let [a, b, c] = corners;
-    let e = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
-    let f = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
-    let n = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];
-    let square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-    let area = D::splat(0.5) * square.sqrt() + D::splat(LEAST_AREA);
+    let n = cross(&minus(b, a), &minus(c, a));
+    let area = D::splat(0.5) * dot(&n, &n).sqrt() + D::splat(LEAST_AREA);
     let sum = [a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]];
     // ∫ x xᵀ over a triangle = area/12 (Σ p pᵀ + s sᵀ) with s the sum of the vertices.
     let (third, twelfth) = (area * D::splat(1.0 / 3.0), area * D::splat(1.0 / 12.0));

@@ -1,6 +1,7 @@
 //! Orthonormal frames in `f64`, four side by side.
 
 use crate::margin::{UNIT_F32, UNIT_F64};
+use d2m_lanes::three::{dot, minus, times};
 use d2m_lanes::{Doubles, Elementwise};
 
 /// A direction whose square is below this is none: the square is about lost to underflow.
@@ -10,16 +11,6 @@ const LEAST_SINE_SQUARE: f64 = 1e-18;
 
 /// A vector in each lane.
 pub(super) type Vectors<D> = [D; 3];
-
-#[inline(always)]
-fn dot<D: Elementwise>(a: &Vectors<D>, b: &Vectors<D>) -> D {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn sub<D: Elementwise>(a: &Vectors<D>, b: &Vectors<D>) -> Vectors<D> {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
 
 /// `if left > right { yes } else { no }` in each lane.
 #[inline(always)]
@@ -41,7 +32,7 @@ fn across<D: Elementwise>(v: &Vectors<D>, x: &Vectors<D>) -> Vectors<D> {
 #[inline(always)]
 fn unit<D: Doubles<Scalar = f64>>(v: &Vectors<D>) -> Vectors<D> {
     let inverse = D::splat(1.0) / dot(v, v).sqrt();
-    [v[0] * inverse, v[1] * inverse, v[2] * inverse]
+    times(v, inverse)
 }
 
 /// The first two axes of orthonormal frames from first directions and second ones; anything where they do not define them.
@@ -85,7 +76,7 @@ pub(super) fn deviation<D: Doubles<Scalar = f64>>([x, y, z]: &[Vectors<D>; 3]) -
 #[inline(always)]
 pub(super) fn triangle_axes<D: Doubles<Scalar = f64>>(corners: &[Vectors<D>; 3]) -> [Vectors<D>; 2] {
     let [a, b, c] = corners;
-    let edges = [sub(b, a), sub(c, b), sub(a, c)];
+    let edges = [minus(b, a), minus(c, b), minus(a, c)];
     let squares = [dot(&edges[0], &edges[0]), dot(&edges[1], &edges[1]), dot(&edges[2], &edges[2])];
     let first = select(squares[1], squares[0], &edges[1], &edges[0]);
     let second = select(squares[1], squares[0], &edges[2], &edges[1]);

@@ -15,8 +15,8 @@
 
 use super::slabs::Slabs;
 use crate::margin::round_up;
-use core::ops::{Mul, Sub};
 use d2m_lanes::Lanes;
+use d2m_lanes::three::cross;
 
 /// Lanes of a wide node.
 pub const WIDTH: usize = 8;
@@ -28,12 +28,6 @@ pub const LEAF: u32 = 1 << 31;
 pub const LEAST_SIZE: f32 = 1e-18;
 /// Part of the radius that a box counts as thick at least, in its size.
 const LEAST_THICKNESS: f32 = 1e-3;
-
-/// The cross product, each product and difference rounded: the third axis of a box from the others.
-#[inline(always)]
-pub(crate) fn cross<T: Copy + Mul<Output = T> + Sub<Output = T>>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
 
 /// What is below a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,6 +4,7 @@
 //! platform.
 
 use d2m_lanes::Lanes;
+use d2m_lanes::three::{dot, times};
 
 /// Keeps a quotient of two zeros from being no number. Matrices have traces of about one.
 const TINY: f32 = 1e-30;
@@ -21,7 +22,7 @@ pub(super) fn principal_axes<L: Lanes>(m: [L; 6]) -> [[L; 3]; 3] {
     let first = first_axis(m);
     let [u, w] = across(first);
     // The matrix across the first axis, in two dimensions, and its larger eigenvector (cosine, sine).
-    let (mu, mw) = (times(&m, &u), times(&m, &w));
+    let (mu, mw) = (applied(&m, &u), applied(&m, &w));
     let (uu, uw, ww) = (dot(&u, &mu), dot(&u, &mw), dot(&w, &mw));
     let (zero, difference, twice) = (L::splat(0.0), uu - ww, uw + uw);
     let root = (difference * difference + twice * twice).sqrt();
@@ -82,12 +83,7 @@ fn across<L: Lanes>(v: [L; 3]) -> [[L; 3]; 2] {
 }
 
 #[inline(always)]
-fn dot<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn times<L: Lanes>(m: &[L; 6], v: &[L; 3]) -> [L; 3] {
+fn applied<L: Lanes>(m: &[L; 6], v: &[L; 3]) -> [L; 3] {
     let [xx, yy, zz, xy, xz, yz] = *m;
     [dot(&[xx, xy, xz], v), dot(&[xy, yy, yz], v), dot(&[xz, yz, zz], v)]
 }
@@ -96,5 +92,5 @@ fn times<L: Lanes>(m: &[L; 6], v: &[L; 3]) -> [L; 3] {
 #[inline(always)]
 fn unit<L: Lanes>(v: [L; 3]) -> [L; 3] {
     let inverse = L::splat(1.0) / (dot(&v, &v) + L::splat(TINY)).sqrt();
-    [v[0] * inverse, v[1] * inverse, v[2] * inverse]
+    times(&v, inverse)
 }

@@ -5,12 +5,13 @@
 //! [`ExactNumber`](crate::mesh::ExactNumber).
 
 use super::mesh_tree::MeshTree;
-use super::node::{Below, LEAF, OrientedBox, WIDTH, WideNode, cross};
+use super::node::{Below, LEAF, OrientedBox, WIDTH, WideNode};
 use super::parts::{node_of_parts, tree_of_parts};
 use super::slabs::Slabs;
 use super::tree_error::TreeError;
 use crate::TriMesh;
 use crate::mesh::ExactNumber;
+use d2m_lanes::three::cross;
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 

@@ -8,12 +8,13 @@
 
 use super::fit::{Moments, triangle_moments};
 use super::frame::{DEVIATION_ERROR, MOST_DEVIATION, deviation, frames, triangle_axes};
-use super::node::{Below, WIDTH, WideNode, cross};
+use super::node::{Below, WIDTH, WideNode};
 use super::principal::principal_axes;
 use super::refine::{Axes, Row, refined, stride};
 use super::slabs::{CUT_SLACK, MOST, PAIRS, STEPS};
 use super::surface::Reach;
 use crate::margin::{UNIT_F32, UNIT_F64, round_up};
+use d2m_lanes::three::cross;
 use d2m_lanes::{Doubles, Elementwise, Lanes, Quad, Task, power_of_two};
 
 /// Lanes in one register of doubles.

@@ -12,6 +12,7 @@
 use super::principal::principal_axes;
 use super::refine::DIRECTIONS;
 use super::surface::Surface;
+use d2m_lanes::three::{cross, dot, minus};
 use d2m_lanes::{Lanes, Task, run};
 
 /// Directions that are tried: two axes of the part and the diagonals between two, the first of [`DIRECTIONS`].
@@ -163,10 +164,8 @@ fn key(along: f32, number: u32) -> u64 {
 impl Sampled {
     #[inline(always)]
     fn new([a, b, c]: [[f32; 3]; 3], triangle: u32) -> Self {
-        let e = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
-        let f = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
-        let n = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];
-        let area = 0.5 * (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt() + LEAST_AREA;
+        let n = cross(&minus(&b, &a), &minus(&c, &a));
+        let area = 0.5 * dot(&n, &n).sqrt() + LEAST_AREA;
         let sum = [a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]];
         let (third, twelfth) = (area * (1.0 / 3.0), area * (1.0 / 12.0));
         let mut numbers = [0.0; 16];

@@ -5,6 +5,7 @@ use super::slabs::EdgeReach;
 use crate::TriMesh;
 use crate::margin::{UNIT_F64, round_up};
 use crate::parallel::map_of_many;
+use d2m_lanes::three::{dot, minus};
 use d2m_lanes::{power_of_two, power_of_two_above};
 use glam::DVec3;
 
@@ -149,13 +150,13 @@ impl Reach {
     /// Takes a point in local coordinates.
     #[inline(always)]
     pub(super) fn add(&mut self, p: &[f64; 3]) {
-        let q = sub(sub(*p, self.origin), self.center);
-        let along = [dot(self.axes[0], q), dot(self.axes[1], q), dot(self.axes[2], q)];
+        let q = minus(&minus(p, &self.origin), &self.center);
+        let along = [dot(&self.axes[0], &q), dot(&self.axes[1], &q), dot(&self.axes[2], &q)];
         for (half, along) in self.half.iter_mut().zip(along) {
             *half = if along.abs() > *half { along.abs() } else { *half };
         }
         self.edges.add(along);
-        let (square, norm) = (dot(q, q), p[0].abs() + p[1].abs() + p[2].abs());
+        let (square, norm) = (dot(&q, &q), p[0].abs() + p[1].abs() + p[2].abs());
         self.square = if square > self.square { square } else { self.square };
         self.norm = if norm > self.norm { norm } else { self.norm };
     }
@@ -182,14 +183,4 @@ impl Reach {
         let radius = round_up(self.square.sqrt() * (1.0 + 8.0 * UNIT_F64) + slack);
         Extents { half_extent: half, radius }
     }
-}
-
-#[inline(always)]
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }

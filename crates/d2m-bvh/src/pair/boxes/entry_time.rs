@@ -3,10 +3,10 @@
 use super::node_scale::NodeScale;
 use super::node_test::Placed;
 use super::whole_span::Boxes;
+use d2m_lanes::three::{dot, load, minus, splat};
 use d2m_lanes::{Elementwise, Lanes, Two};
 use d2m_mesh::margin::UNIT_F32;
-use d2m_mesh::node::WideNode;
-use d2m_mesh::node::{Axis, BoxPair, dot, load, splat};
+use d2m_mesh::node::{Axis, BoxPair, WideNode};
 
 /// What covers the roundings of the entry time and of unit axes.
 pub(crate) const ENTRY_FACTOR: f32 = 1.0 - 32.0 * UNIT_F32 as f32;
@@ -103,7 +103,7 @@ fn along<L: Lanes>(
     let n: [L; 3] = splat(direction);
     let (at, boxed) = (splat::<L, 4>(&placed.boxed.center), &placed.boxed);
     let center = load::<L>(&wide.center);
-    let to = [at[0] - center[0], at[1] - center[1], at[2] - center[2]];
+    let to = minus(&at, &center);
     let of_lanes = Boxes {
         half: load::<L>(&wide.half_extent),
         slabs: load::<L>(&wide.slabs),

@@ -10,11 +10,10 @@
 use super::node_scale::NodeScale;
 use crate::gap::discriminant::{Spread, discriminant};
 use crate::pair::motion::frame::{PlacedFrame, RelativeMotion};
+use d2m_lanes::three::{both, dot, load, minus, splat};
 use d2m_lanes::{Bytes, Doubles, Elementwise, F64x4, Lanes, Matrix, Quad, Two};
 use d2m_mesh::margin::{NARROW_UP, UNIT_F32, UP, error_of, round_up};
-use d2m_mesh::node::reach;
-use d2m_mesh::node::{LEAF, NodeBox, WideNode};
-use d2m_mesh::node::{both, dot, load, opposite, splat};
+use d2m_mesh::node::{LEAF, NodeBox, WideNode, opposite, reach};
 use glam::DVec3;
 
 /// Factor of the error of gaps: 20u as in the search's own tests, and 12u since the direction at the two ends of a span
@@ -180,7 +179,7 @@ impl<'f, L: Lanes> Boxed<'f, L> {
         let (half, slabs, axes) = (&single.half_extent, &single.slabs, single.axes_of(lane));
         let of_lanes = wide.wide_axes::<L>();
         Self {
-            to: [at[0] - centers[0], at[1] - centers[1], at[2] - centers[2]],
+            to: minus(&at, &centers),
             wide: Boxes {
                 half: both::<L>(&load::<L>(&wide.half_extent)),
                 slabs: both::<L>(&load::<L>(&wide.slabs)),
@@ -278,7 +277,7 @@ pub(crate) fn apart_over_span<L: Lanes>(
     let (long, middle_long) = (load::<L>(&wide.axes[0]), load::<L>(&wide.axes[1]));
 
     let at = splat::<L, 4>(&middle);
-    let line = [at[0] - lanes[0], at[1] - lanes[1], at[2] - lanes[2]];
+    let line = minus(&at, &lanes);
     let own = [frame.turned(&axes[0]), frame.turned(&axes[1])];
     let spread = Spread::new([&own[0], &own[1]], &own_half).splat();
     let best = discriminant(&Spread::new([&long, &middle_long], &wide_half), &spread, &line);

@@ -1,9 +1,9 @@
 //! The boxes of a wide node and a single box along the axes of both.
 
 use super::placed_box::Placed;
-use crate::tree::box_pair::{dot, load, splat};
 use crate::tree::node::WideNode;
 use d2m_lanes::Lanes;
+use d2m_lanes::three::{dot, load, minus, splat};
 
 /// How far a box is beyond another along one axis of either: distance of the centers, as projected, less what both reach
 /// and the margin; not below zero.
@@ -37,7 +37,7 @@ impl<L: Lanes> Axes<L> {
         let center = load::<L>(&wide.center);
         let single = &placed.boxed;
         let at = splat::<L, 4>(&single.center);
-        let to = [at[0] - center[0], at[1] - center[1], at[2] - center[2]];
+        let to = minus(&at, &center);
         let h = load::<L>(&wide.half_extent);
         let a = wide.wide_axes::<L>();
         let b = [splat::<L, 4>(&single.axes[0]), splat(&single.axes[1]), splat(&single.axes[2])];

@@ -7,10 +7,10 @@
 use super::axes::Axes;
 use super::placed_box::Placed;
 use crate::margin::UNIT_F32;
-use crate::tree::box_pair::{dot, load, splat};
-use crate::tree::node::{WideNode, cross};
+use crate::tree::node::WideNode;
 use crate::tree::slabs::reach;
 use d2m_lanes::Lanes;
+use d2m_lanes::three::{cross, dot, load, minus, splat, times};
 
 /// Makes computed unit vectors no longer than one: their lengths err by at most five roundings.
 const SHORTENED: f32 = 1.0 - 8.0 * UNIT_F32 as f32;
@@ -43,11 +43,6 @@ fn inverse_length<L: Lanes>(square: L) -> L {
     L::splat(SHORTENED) / square.max(L::splat(LEAST_SQUARE)).sqrt()
 }
 
-#[inline(always)]
-fn scaled<L: Lanes>(v: &[L; 3], factor: L) -> [L; 3] {
-    [v[0] * factor, v[1] * factor, v[2] * factor]
-}
-
 /// Along the direction that the single box was prepared for.
 #[inline(always)]
 pub(super) fn gap_along<L: Lanes>(wide: &WideNode, placed: &Placed, axes: &Axes<L>) -> L {
@@ -64,32 +59,44 @@ pub(super) fn gap_along<L: Lanes>(wide: &WideNode, placed: &Placed, axes: &Axes<
 /// length. Proves at least that length, usually more: the hull is wider than the box.
 #[inline(always)]
 pub(super) fn gap_along_own<L: Lanes>(wide: &WideNode, placed: &Placed, axes: &Axes<L>, square: L) -> L {
-    let size = scaled(&axes.gaps, inverse_length(square));
-    let p = &axes.between;
-    let n = [L::flip_sign(size[0], p[0]), L::flip_sign(size[1], p[1]), L::flip_sign(size[2], p[2])];
+    let n = shortest(&axes.gaps, &axes.between, square);
     let s = &axes.cosines;
     let other = [
         dot(&n, &[s[0][0], s[1][0], s[2][0]]),
         dot(&n, &[s[0][1], s[1][1], s[2][1]]),
         dot(&n, &[s[0][2], s[1][2], s[2][2]]),
     ];
-    dot(&n, p)
-        - wide_reach(wide, axes, &n, L::splat(1.0))
-        - single_reach_back(placed, axes, &other)
-        - twice_margin(placed)
+    gap_between(wide, placed, axes, dot(&n, &axes.between), [&n, &other])
 }
 
 /// The same in the frame of the single box.
 #[inline(always)]
 pub(super) fn gap_along_other<L: Lanes>(wide: &WideNode, placed: &Placed, axes: &Axes<L>, square: L) -> L {
-    let size = scaled(&axes.other_gaps, inverse_length(square));
-    let p = &axes.other_between;
-    let n = [L::flip_sign(size[0], p[0]), L::flip_sign(size[1], p[1]), L::flip_sign(size[2], p[2])];
+    let n = shortest(&axes.other_gaps, &axes.other_between, square);
     let s = &axes.cosines;
     let own = [dot(&n, &s[0]), dot(&n, &s[1]), dot(&n, &s[2])];
-    dot(&n, p)
-        - wide_reach(wide, axes, &own, L::splat(1.0))
-        - single_reach_back(placed, axes, &n)
+    gap_between(wide, placed, axes, dot(&n, &axes.other_between), [&own, &n])
+}
+
+/// The direction of these gaps along the axes of a box, of which `square` is the sum of the squares.
+#[inline(always)]
+fn shortest<L: Lanes>(gaps: &[L; 3], between: &[L; 3], square: L) -> [L; 3] {
+    let [x, y, z] = times(gaps, inverse_length(square));
+    [L::flip_sign(x, between[0]), L::flip_sign(y, between[1]), L::flip_sign(z, between[2])]
+}
+
+/// Along a direction from the lanes' boxes to the single one: the distance of the centers and the cosines with the axes of both.
+#[inline(always)]
+fn gap_between<L: Lanes>(
+    wide: &WideNode,
+    placed: &Placed,
+    axes: &Axes<L>,
+    centers: L,
+    [own, other]: [&[L; 3]; 2],
+) -> L {
+    centers
+        - wide_reach(wide, axes, own, L::splat(1.0))
+        - single_reach_back(placed, axes, other)
         - twice_margin(placed)
 }
 
@@ -135,7 +142,7 @@ fn gap_towards<L: Lanes>(
     towards: &[L; 3],
 ) -> L {
     let center = load::<L>(&wide.center);
-    let n = scaled(towards, inverse_length(dot(towards, towards)));
+    let n = times(towards, inverse_length(dot(towards, towards)));
     let most = dot(&n, p).max(dot(&n, q)).max(dot(&n, r));
     let cosines = [dot(&n, &axes.own[0]), dot(&n, &axes.own[1]), dot(&n, &axes.own[2])];
     dot(&n, &center) - most - wide_reach(wide, axes, &cosines, L::splat(-1.0)) - twice_margin(placed)
@@ -168,16 +175,11 @@ fn from_triangle<L: Lanes>(p: &[L; 3], q: &[L; 3], r: &[L; 3], point: &[L; 3]) -
 fn from_segment<L: Lanes>(offset: &[L; 3], segment: &[L; 3]) -> [L; 3] {
     let part = dot(offset, segment) / dot(segment, segment).max(L::splat(LEAST_SQUARE));
     let part = part.max(L::splat(0.0)).min(L::splat(1.0));
-    minus(offset, &scaled(segment, part))
+    minus(offset, &times(segment, part))
 }
 
 #[inline(always)]
 fn shorter<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> [L; 3] {
     let (x, y) = (dot(a, a), dot(b, b));
     [L::if_greater(x, y, b[0], a[0]), L::if_greater(x, y, b[1], a[1]), L::if_greater(x, y, b[2], a[2])]
-}
-
-#[inline(always)]
-fn minus<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> [L; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }

@@ -4,11 +4,12 @@ use super::axes::Axes;
 use super::directions::{gap_across_edge, gap_along, gap_along_other, gap_along_own, gap_from_triangle};
 use super::placed_box::Placed;
 use crate::margin::UNIT_F32;
+use crate::tree::box_pair::BoxPair;
 #[cfg(test)]
 use crate::tree::box_pair::PlacedBox;
-use crate::tree::box_pair::{BoxPair, dot};
 use crate::tree::node::WideNode;
 use d2m_lanes::Lanes;
+use d2m_lanes::three::dot;
 
 /// Covers the axes' deviation from orthonormal and the roundings of squares, sums and root: at most 9u.
 const NORM_FACTOR: f32 = 1.0 - 16.0 * UNIT_F32 as f32;

@@ -2,10 +2,11 @@
 
 use super::{BOX, CHECKSUM, HEADER, MAGIC, NODE, TRIANGLE, TreeFileError, VERTEX};
 use crate::parallel::{both, map_in_order};
-use crate::tree::node::{Below, LEAF, OrientedBox, WIDTH, WideNode, cross};
+use crate::tree::node::{Below, LEAF, OrientedBox, WIDTH, WideNode};
 use crate::tree::parts::node_of_parts;
 use crate::tree::tree_error::TreeError;
 use crate::{MeshError, TriMesh};
+use d2m_lanes::three::cross;
 use glam::DVec3;
 
 /// What the bytes state, unchecked but for the mesh.
