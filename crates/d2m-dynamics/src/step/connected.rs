@@ -90,9 +90,9 @@ impl Step<'_> {
         seeds: Vec<usize>,
         occasion: Occasion,
     ) -> Result<(), StepError> {
-        let mut wave = seeds;
-        while !wave.is_empty() {
-            wave = self.admit(group, time, &wave, occasion)?;
+        let mut ring = seeds;
+        while !ring.is_empty() {
+            ring = self.admit(group, time, &ring, occasion)?;
         }
         Ok(())
     }
@@ -123,11 +123,11 @@ impl Step<'_> {
         &mut self,
         group: &mut Group,
         time: f64,
-        wave: &[usize],
+        ring: &[usize],
         occasion: Occasion,
     ) -> Result<Vec<usize>, StepError> {
         let gravity = self.sim.options.gravity;
-        for &i in wave {
+        for &i in ring {
             if core::mem::replace(&mut group.is_member[i], true) {
                 continue;
             }
@@ -162,9 +162,9 @@ impl Step<'_> {
             let follows = body.is_kinematic() && (occasion == Occasion::Start || body.horizon <= time);
             body.is_dynamic() || follows
         };
-        let wave: Vec<usize> = wave.iter().copied().filter(begins).collect();
+        let ring: Vec<usize> = ring.iter().copied().filter(begins).collect();
         let new: Vec<Key> =
-            self.partners(&wave).into_iter().filter(|&key| !group.has_measured(key)).collect();
+            self.partners(&ring).into_iter().filter(|&key| !group.has_measured(key)).collect();
         group.measured.extend(&new);
         group.measured.sort_unstable();
         let sim = &*self.sim;
@@ -197,7 +197,7 @@ impl Step<'_> {
         });
         found.extend(known.into_iter().map(|key| (key, None)));
         found.sort_by_key(|(key, _)| *key);
-        let mut next = self.admit_joints(group, &wave, time, occasion);
+        let mut next = self.admit_joints(group, &ring, time, occasion);
         for (key, answer) in found {
             let answer = match answer {
                 Some(Ok(points)) => Some(points),

@@ -97,14 +97,14 @@ impl Step<'_> {
 
     /// The contacts within the gap or so of all that they connect with the bodies of some events, as they are at a time of the flights.
     fn connected_contacts(&mut self, time: f64, events: &[Event]) -> Vec<ContactPoint> {
-        let mut wave: Vec<usize> = events.iter().flat_map(|event| event.bodies).collect();
+        let mut ring: Vec<usize> = events.iter().flat_map(|event| event.bodies).collect();
         let (mut seen, mut found) = (BTreeSet::new(), BTreeMap::<Key, Vec<ContactPoint>>::new());
-        while !wave.is_empty() {
-            wave.retain(|&i| self.sim.bodies[i].is_dynamic() && seen.insert(i));
-            let keys = self.partners(&wave);
+        while !ring.is_empty() {
+            ring.retain(|&i| self.sim.bodies[i].is_dynamic() && seen.insert(i));
+            let keys = self.partners(&ring);
             let sim = &*self.sim;
             let gap = sim.options.gap;
-            wave.clear();
+            ring.clear();
             for key in keys {
                 if found.contains_key(&key) {
                     continue;
@@ -116,7 +116,7 @@ impl Step<'_> {
                 let mut contacts = measured.contacts;
                 contacts.retain(|contact| contact.distance <= NEAR * gap);
                 if !contacts.is_empty() {
-                    wave.extend([key.0, key.1]);
+                    ring.extend([key.0, key.1]);
                 }
                 found.insert(key, contacts);
             }

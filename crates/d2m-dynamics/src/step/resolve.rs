@@ -178,16 +178,16 @@ impl Step<'_> {
         clock: Clock,
         occasion: Occasion,
     ) -> Result<Vec<Solved>, StepError> {
-        let (mut wave, mut solved) = (seeds, Vec::new());
+        let (mut ring, mut solved) = (seeds, Vec::new());
         for _ in 0..MOST_ROUNDS {
-            self.admit(group, clock.now, &wave, occasion)?;
-            solved = self.solve_admitted(group, clock, occasion, solved, wave)?;
-            wave = self.pressed(group, &solved, clock);
-            if wave.is_empty() {
+            self.admit(group, clock.now, &ring, occasion)?;
+            solved = self.solve_admitted(group, clock, occasion, solved, ring)?;
+            ring = self.pressed(group, &solved, clock);
+            if ring.is_empty() {
                 return Ok(solved);
             }
         }
-        self.admit_connected(group, clock.now, wave, occasion)?;
+        self.admit_connected(group, clock.now, ring, occasion)?;
         let rest: Vec<usize> = group.contacts.iter().flat_map(|c| [c.a, c.b]).collect();
         let outside = |i: &usize| {
             let body = &self.sim.bodies[*i];
