@@ -7,6 +7,7 @@ use crate::contact::{Company, ContactPoint, HIT, Span, System, add, impact};
 use crate::joined::Joined;
 use crate::momenta::Momenta;
 use crate::rigid_body::RigidBody;
+use crate::union::{join, root};
 use crate::velocity::Velocity;
 use glam::DMat3;
 use std::borrow::Cow;
@@ -46,17 +47,9 @@ pub(crate) struct Push {
 /// The islands of some contacts: bodies that impulses move connect, the others do not. In the order of their first contact.
 pub(crate) fn islands(bodies: &[RigidBody], contacts: Vec<ContactPoint>) -> Vec<Island> {
     let mut parent: Vec<usize> = (0..bodies.len()).collect();
-    fn root(parent: &mut [usize], mut i: usize) -> usize {
-        while parent[i] != i {
-            parent[i] = parent[parent[i]];
-            i = parent[i];
-        }
-        i
-    }
     let moves = |i: usize| bodies[i].is_dynamic() && !bodies[i].held;
     for c in contacts.iter().filter(|c| moves(c.a) && moves(c.b)) {
-        let (i, j) = (root(&mut parent, c.a), root(&mut parent, c.b));
-        parent[i.max(j)] = i.min(j);
+        join(&mut parent, c.a, c.b);
     }
     let mut place = vec![usize::MAX; bodies.len()];
     let mut found: Vec<Island> = Vec::new();

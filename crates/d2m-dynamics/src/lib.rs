@@ -67,6 +67,7 @@ mod snapshot;
 mod start;
 mod step;
 mod touches;
+mod union;
 mod velocity;
 
 pub use body::{Body, BodyId, Damping, Groups, Kind, Mass, Motion, Presence};

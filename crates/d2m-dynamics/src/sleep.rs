@@ -2,6 +2,7 @@
 
 use crate::contact::ContactPoint;
 use crate::rigid_body::RigidBody;
+use crate::union::{join, root};
 use crate::velocity::Velocity;
 use crate::{Simulation, SimulationOptions};
 use glam::DVec3;
@@ -70,8 +71,7 @@ impl Simulation {
                 runs || (body.is_kinematic() && body.surface_speed() > 0.0)
             };
             if dynamic(a) && dynamic(b) {
-                let (i, j) = (root(&mut parent, a), root(&mut parent, b));
-                parent[i.max(j)] = i.min(j);
+                join(&mut parent, a, b);
             }
             (held_up[a], held_up[b]) = (true, true);
             restless[a] |= moving(b);
@@ -91,14 +91,6 @@ impl Simulation {
             }
         }
     }
-}
-
-fn root(parent: &mut [usize], mut i: usize) -> usize {
-    while parent[i] != i {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    i
 }
 
 /// No momentum and no motion from now on.

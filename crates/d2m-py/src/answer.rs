@@ -3,8 +3,8 @@
 use crate::arrays::vector;
 use crate::fault::Fault;
 use crate::pose::list;
-use d2m::bvh::{Contact as Found, StartState, TimeOfContact};
-use d2m::feature::FeaturePair;
+use d2m::bvh::{Contact as Found, TimeOfContact};
+use d2m_io::{feature_field, start_word};
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
@@ -103,7 +103,7 @@ fn contact_text(contact: &Found) -> String {
         list(&contact.normal.to_array()),
         list(&contact.point_a.to_array()),
         list(&contact.point_b.to_array()),
-        feature_text(contact.feature),
+        feature_field(contact.feature),
     )
 }
 
@@ -194,7 +194,7 @@ impl Contact {
     /// The features that meet: "vertex_face:V:F", "face_vertex:F:V" or "edge_edge:P-Q:R-S", those of A first.
     #[getter]
     fn feature(&self) -> String {
-        feature_text(self.found.feature)
+        feature_field(self.found.feature)
     }
 
     /// Triangle of A.
@@ -249,24 +249,4 @@ pub(crate) fn object(py: Python<'_>, answer: TimeOfContact) -> PyResult<Bound<'_
         TimeOfContact::Contact(found) => Bound::new(py, base.add_subclass(Contact { found }))?.into_any(),
         TimeOfContact::Undecided { .. } => Bound::new(py, base.add_subclass(Undecided))?.into_any(),
     })
-}
-
-/// The features as text, without commas.
-pub(crate) fn feature_text(feature: FeaturePair) -> String {
-    match feature {
-        FeaturePair::VertexFace { vertex, face } => format!("vertex_face:{vertex}:{face}"),
-        FeaturePair::FaceVertex { face, vertex } => format!("face_vertex:{face}:{vertex}"),
-        FeaturePair::EdgeEdge { edge_a: [p, q], edge_b: [r, s] } => format!("edge_edge:{p}-{q}:{r}-{s}"),
-    }
-}
-
-/// A word for how the bodies stand.
-pub(crate) const fn start_word(start: StartState) -> &'static str {
-    match start {
-        StartState::Apart => "apart",
-        StartState::Touching => "touching",
-        StartState::Overlapping => "overlapping",
-        StartState::Contained => "contained",
-        StartState::Undecided => "undecided",
-    }
 }

@@ -1,6 +1,6 @@
 //! How near two moving bodies come, and when they are clear of each other.
 
-use crate::answer::{self, start_word};
+use crate::answer;
 use crate::options::{QueryKeywords, REPORT, window};
 use crate::query::{MovingPair, run};
 use crate::witness::Witness;
@@ -9,6 +9,7 @@ use d2m::{
     ContactSpan, Departure as FoundDeparture, QueryOptions, TimeOfContact, clearance, contact_spans,
     departure,
 };
+use d2m_io::start_word;
 use pyo3::prelude::*;
 
 /// The least distance of two bodies over a window: proven bounds, with a time and points (those of `Witness`) that attain the upper one.

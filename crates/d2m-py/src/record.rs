@@ -1,9 +1,9 @@
 //! Answers as records of a structured array: words of eight bytes, which `d2m_ccd._records` gives names.
 
-use crate::answer::feature_text;
 use d2m::Proximity;
 use d2m::bvh::{Evidence, StartState, TimeOfContact};
 use d2m::feature::FeaturePair;
+use d2m_io::feature_field;
 use glam::DVec3;
 
 /// Words of an answer about moving bodies.
@@ -130,9 +130,9 @@ pub(crate) fn write_proximity(proximity: &Proximity, words: &mut [u64]) {
 pub(crate) fn feature_text_py(kind: u8, features: [u32; 4]) -> String {
     let [p, q, r, s] = features;
     match kind {
-        1 => feature_text(FeaturePair::VertexFace { vertex: p, face: q }),
-        2 => feature_text(FeaturePair::FaceVertex { face: p, vertex: q }),
-        3 => feature_text(FeaturePair::EdgeEdge { edge_a: [p, q], edge_b: [r, s] }),
+        1 => feature_field(FeaturePair::VertexFace { vertex: p, face: q }),
+        2 => feature_field(FeaturePair::FaceVertex { face: p, vertex: q }),
+        3 => feature_field(FeaturePair::EdgeEdge { edge_a: [p, q], edge_b: [r, s] }),
         _ => String::new(),
     }
 }

@@ -1,6 +1,5 @@
 //! Queries of bodies at rest.
 
-use crate::answer::start_word;
 use crate::fault::{Fault, OrRaise};
 use crate::mesh::tree_argument;
 use crate::options::{budget, solids};
@@ -12,6 +11,7 @@ use d2m::bvh::{
     Budget, DistanceOptions, MeshTree, Posed, ProximityOptions, QueryError, QueryOptions, Solid,
     collide_within, distance_within, proximities_within,
 };
+use d2m_io::start_word;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use std::sync::Arc;

@@ -30,21 +30,14 @@ pub(crate) struct Jets {
 pub(crate) fn first_time<D: Doubles>(low: Lines<D>, high: Lines<D>, need: f64, m: f64, enough: f64) -> f64 {
     // Lowest vertex now with the fastest closing rate: never late; exact when one vertex is both.
     let gap = high.at.min_element() - low.at.max_element() - need;
-    let s = root(gap, high.rate.min_element() - low.rate.max_element(), m).unwrap_or(enough);
+    let rate = high.rate.min_element() - low.rate.max_element();
+    let s = Parabola::new(gap, rate, -m).first_root_bent_down().unwrap_or(enough);
     // Concave in s: the chord from a proven time to a later one with a positive value is proven too.
     let later = 2.0 * s;
     let (l, h) = (low.at + low.rate * D::splat(later), high.at + high.rate * D::splat(later));
     let value = h.min_element() - l.max_element() - need;
     let s = if value - 0.5 * m * later * later > 0.0 { later } else { s };
     s * DOWN
-}
-
-/// Root of g + v s − m s²/2 for g > 0, if there is one: sums of terms of one sign only.
-#[inline(always)]
-fn root(g: f64, v: f64, m: f64) -> Option<f64> {
-    let v = v - LEAST_RATE;
-    let root = (v * v + 2.0 * m * g).sqrt();
-    if v < 0.0 { Some(2.0 * g / (root - v)) } else { (m > 0.0).then(|| (v + root) / m) }
 }
 
 /// A time until which every pair of vertices stays further apart than `need`, of which none beyond `enough` matters.
@@ -96,9 +89,9 @@ pub(crate) fn first_time_of_paths<const N: usize>(paths: &[PathAlong; N], enough
         let mut first = most;
         for path in paths {
             let loss = path.jerk * span * (1.0 / 3.0 * UP);
-            let bound = Parabola { gap: path.gap, rate: path.rate, bend: path.bend - loss };
-            match bound.first_root() {
+            match Parabola::new(path.gap, path.rate, path.bend - loss).first_root() {
                 Some(s) if s < first => first = s,
+                Some(s) if s.is_nan() => return 0.0,
                 _ => {}
             }
         }
@@ -117,29 +110,75 @@ pub(crate) fn first_time_of_paths<const N: usize>(paths: &[PathAlong; N], enough
     proven * DOWN
 }
 
-/// g + v s + a s²/2.
+/// The lemma of this file: a gap that is g > 0 now, changes by v and bends by a at least stays open for as long as g + v s + a s²/2 does.
 #[derive(Clone, Copy)]
 struct Parabola {
     /// g.
     gap: f64,
-    /// v.
+    /// v, less the least rate.
     rate: f64,
     /// a.
     bend: f64,
 }
 
 impl Parabola {
-    /// The first root for g > 0, never late; none only if there is none.
+    #[inline(always)]
+    fn new(gap: f64, rate: f64, bend: f64) -> Self {
+        Self { gap, rate: rate - LEAST_RATE, bend }
+    }
+
+    /// The first root, never late; none only if there is none.
     #[inline(always)]
     fn first_root(&self) -> Option<f64> {
-        let (g, a) = (self.gap, self.bend);
-        let (v, bent) = (self.rate - LEAST_RATE, 2.0 * a * g);
+        let (square, bent) = (self.rate * self.rate, 2.0 * self.bend * self.gap);
         // Too large by more than its rounding: the root of a closing pair is early.
-        let square = (v * v - bent) + DISCRIMINANT_ERROR * (v * v + bent.abs());
-        let root = square.max(0.0).sqrt();
+        self.root_of((square - bent) + DISCRIMINANT_ERROR * (square + bent.abs()))
+    }
+
+    /// The same where a ≤ 0: sums of terms of one sign only.
+    #[inline(always)]
+    fn first_root_bent_down(&self) -> Option<f64> {
+        self.root_of(self.rate * self.rate - 2.0 * self.bend * self.gap)
+    }
+
+    /// The root with this discriminant; not a number where something is none.
+    #[inline(always)]
+    fn root_of(&self, discriminant: f64) -> Option<f64> {
+        let Self { gap: g, rate: v, bend: a } = *self;
+        let root = discriminant.sqrt();
         let closing = v < 0.0;
         let (above, below) = (if closing { 2.0 * g } else { v + root }, if closing { root - v } else { -a });
-        let is_free = square < 0.0 || !closing && a >= 0.0;
+        let is_free = discriminant < 0.0 || v >= 0.0 && a >= 0.0;
         (!is_free).then(|| above / below)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use d2m_lanes::F64x4;
+
+    /// One pair of vertices, by both ways.
+    fn proven([gap, rate, bend, jerk]: [f64; 4]) -> [f64; 2] {
+        let [low, high] = [[0.0; 2], [gap, rate]]
+            .map(|[at, rate]| Lines { at: F64x4::splat(at), rate: F64x4::splat(rate) });
+        let path = PathAlong { gap, rate, bend, jerk };
+        [first_time(low, high, 0.0, -bend, 1.0), first_time_of_paths(&[path], 1.0)]
+    }
+
+    #[test]
+    fn what_never_closes_is_proven_for_all_that_matters_and_what_is_no_number_for_no_time() {
+        for opening in [[1.0, 0.0, 0.0, 0.0], [1.0, 2.0, 0.0, 0.0], [1.0, 1.0, -0.25, 0.0]] {
+            assert!(proven(opening).iter().all(|&time| time >= 1.0), "{opening:?}");
+        }
+        let times = proven([1.0, -1.0, -4.0, 0.0]);
+        assert!(times.iter().all(|&time| time > 0.499 && time <= 0.5), "{times:?}");
+        for place in 0..3 {
+            for (rate, bend) in [(-1.0, -1.0), (-1.0, 0.0), (1.0, -1.0), (1.0, 0.0)] {
+                let mut jet = [1.0, rate, bend, 0.0];
+                jet[place] = f64::NAN;
+                assert!(!proven(jet).iter().any(|&time| time > 0.0), "{jet:?}");
+            }
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Is the surface one whose volume integral counts every point of the solid once?
 
 use crate::MassError;
+use crate::union::{join, root};
 use d2m_bvh::{MeshTree, Posed, Solid, TriMesh, collide};
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
@@ -24,7 +25,7 @@ pub(super) fn check(mesh: &TriMesh) -> Result<(), MassError> {
         })
         .collect();
     let mut balance: HashMap<(u32, u32), i32> = HashMap::new();
-    let mut parent: Vec<u32> = (0..numbers.len() as u32).collect();
+    let mut parent: Vec<usize> = (0..numbers.len()).collect();
     for vertices in mesh.triangles() {
         let c = vertices.map(|v| number[v as usize]);
         if c[0] == c[1] || c[1] == c[2] || c[2] == c[0] {
@@ -33,8 +34,7 @@ pub(super) fn check(mesh: &TriMesh) -> Result<(), MassError> {
         for k in 0..3 {
             let (from, to) = (c[k], c[(k + 1) % 3]);
             *balance.entry((from.min(to), from.max(to))).or_default() += if from < to { 1 } else { -1 };
-            let (i, j) = (root(&mut parent, from), root(&mut parent, to));
-            parent[i.max(j) as usize] = i.min(j);
+            join(&mut parent, from as usize, to as usize);
         }
     }
     if let Some((&(i, j), _)) =
@@ -43,19 +43,11 @@ pub(super) fn check(mesh: &TriMesh) -> Result<(), MassError> {
         let place = |wanted: u32| number.iter().position(|&n| n == wanted).map(|v| mesh.vertices()[v]);
         return Err(MassError::Open { from: place(i).unwrap_or_default(), to: place(j).unwrap_or_default() });
     }
-    let mut parts: BTreeMap<u32, Vec<[u32; 3]>> = BTreeMap::new();
+    let mut parts: BTreeMap<usize, Vec<[u32; 3]>> = BTreeMap::new();
     for vertices in mesh.triangles() {
-        parts.entry(root(&mut parent, number[vertices[0] as usize])).or_default().push(*vertices);
+        parts.entry(root(&mut parent, number[vertices[0] as usize] as usize)).or_default().push(*vertices);
     }
     if parts.len() > 1 { overlaps(mesh, parts.into_values().collect()) } else { Ok(()) }
-}
-
-fn root(parent: &mut [u32], mut i: u32) -> u32 {
-    while parent[i as usize] != i {
-        parent[i as usize] = parent[parent[i as usize] as usize];
-        i = parent[i as usize];
-    }
-    i
 }
 
 struct Part {
