@@ -1,8 +1,12 @@
 //! Arguments of questions about two moving meshes.
 
 use super::{MESH_HELP, QueryArguments};
+use crate::failure::Failure;
+use crate::motion::parse_motions;
 use clap::{Args, ValueEnum};
+use d2m::Window;
 use d2m::bvh::Start;
+use d2m::motion::AnyMotion;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -32,15 +36,8 @@ pub(crate) struct TocArguments {
     pub(crate) a: String,
     #[arg(value_name = "B", help = MESH_HELP)]
     pub(crate) b: Option<String>,
-    /// Motion of A; at rest if not given
-    #[arg(long, value_name = "M", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
-    pub(crate) motion_a: String,
-    /// Motion of B; at rest if not given
-    #[arg(long, value_name = "M", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
-    pub(crate) motion_b: String,
-    /// First and last time
-    #[arg(long, value_name = "T0,T1", default_value = "0,1", allow_hyphen_values = true)]
-    pub(crate) window: String,
+    #[command(flatten)]
+    pub(crate) motions: MotionArguments,
     #[command(flatten)]
     pub(crate) query: QueryArguments,
     /// Prove the answer again by the independent verifier, and say whether it could
@@ -57,6 +54,26 @@ pub(crate) struct TocArguments {
     pub(crate) obj: Option<String>,
     #[command(flatten)]
     pub(crate) further: FurtherArguments,
+}
+
+/// How two bodies move, and when.
+#[derive(Debug, Args)]
+pub(crate) struct MotionArguments {
+    /// Motion of A; at rest if not given
+    #[arg(long, value_name = "M", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
+    pub(crate) motion_a: String,
+    /// Motion of B; at rest if not given
+    #[arg(long, value_name = "M", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
+    pub(crate) motion_b: String,
+    /// First and last time
+    #[arg(long, value_name = "T0,T1", default_value = "0,1", allow_hyphen_values = true)]
+    pub(crate) window: String,
+}
+
+impl MotionArguments {
+    pub(crate) fn parse(&self) -> Result<(Window, [AnyMotion; 2]), Failure> {
+        parse_motions(&self.window, [&self.motion_a, &self.motion_b])
+    }
 }
 
 /// Questions besides that of the first contact.
@@ -135,15 +152,8 @@ pub(crate) struct VerifyArguments {
     /// Answer of d2m toc, d2m clearance or d2m spans with --json; - for standard input
     #[arg(long, value_name = "ANSWER.json")]
     pub(crate) answer: String,
-    /// Motion of A; at rest if not given
-    #[arg(long, value_name = "M", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
-    pub(crate) motion_a: String,
-    /// Motion of B; at rest if not given
-    #[arg(long, value_name = "M", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
-    pub(crate) motion_b: String,
-    /// First and last time
-    #[arg(long, value_name = "T0,T1", default_value = "0,1", allow_hyphen_values = true)]
-    pub(crate) window: String,
+    #[command(flatten)]
+    pub(crate) motions: MotionArguments,
     /// What the answer is of: with leave it has to say when the bodies had parted
     #[arg(long, value_enum)]
     pub(crate) start: Option<StartChoice>,

@@ -29,9 +29,9 @@ impl SceneQuestion {
     pub(super) fn read(arguments: &TocArguments) -> Result<Self, Failure> {
         let query = &arguments.query;
         let given = [
-            ("--motion-a", !arguments.motion_a.is_empty()),
-            ("--motion-b", !arguments.motion_b.is_empty()),
-            ("--window", arguments.window != WINDOW),
+            ("--motion-a", !arguments.motions.motion_a.is_empty()),
+            ("--motion-b", !arguments.motions.motion_b.is_empty()),
+            ("--window", arguments.motions.window != WINDOW),
             ("--tolerance", query.tolerance.is_some()),
             ("--min-separation", query.min_separation.is_some()),
             ("--solid", query.solid.solid),

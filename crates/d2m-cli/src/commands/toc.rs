@@ -1,9 +1,8 @@
 //! `d2m toc`: one query.
 
-use crate::arguments::TocArguments;
+use crate::arguments::{MotionArguments, TocArguments};
 use crate::engine::{Pair, check_size};
 use crate::failure::Failure;
-use crate::motion::parse_motions;
 use crate::outcome::Outcome;
 use crate::output::{Output, print_answer};
 use crate::report;
@@ -28,15 +27,15 @@ pub(super) struct MovingPair {
 
 /// Reads motions, then meshes.
 pub(super) fn read(arguments: &TocArguments) -> Result<MovingPair, Failure> {
-    let (window, [motion_a, motion_b]) =
-        parse_motions(&arguments.window, [&arguments.motion_a, &arguments.motion_b])?;
+    let (window, [motion_a, motion_b]) = arguments.motions.parse()?;
     let Some(b) = arguments.b.as_deref() else {
         return Err(Failure::at(
             &arguments.a,
             "a second mesh is missing, or a scene (.json) in place of both",
         ));
     };
-    let motion_files = [&arguments.motion_a, &arguments.motion_b].map(|motion| motion.strip_prefix('@'));
+    let MotionArguments { motion_a: file_a, motion_b: file_b, .. } = &arguments.motions;
+    let motion_files = [file_a, file_b].map(|motion| motion.strip_prefix('@'));
     let meshes = [arguments.a.as_str(), b];
     let inputs = motion_files.into_iter().flatten().chain(meshes).map(Path::new);
     let obj = match &arguments.obj {

@@ -4,7 +4,6 @@ use crate::answer_file::{Question, read_answer};
 use crate::arguments::VerifyArguments;
 use crate::engine::{Pair, check_size};
 use crate::failure::Failure;
-use crate::motion::parse_motions;
 use crate::outcome::Outcome;
 use crate::output::print;
 use crate::sizes::load_both;
@@ -14,8 +13,7 @@ use std::io::Read;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &VerifyArguments) -> Result<Outcome, Failure> {
-    let (window, [motion_a, motion_b]) =
-        parse_motions(&arguments.window, [&arguments.motion_a, &arguments.motion_b])?;
+    let (window, [motion_a, motion_b]) = arguments.motions.parse()?;
     let (place, bytes) = read(&arguments.answer)?;
     let [a, b] = load_both(&arguments.a, &arguments.b, &arguments.query.sizes)?;
     let pair = Pair::new(a, b, &arguments.query)?;

@@ -3,7 +3,6 @@
 use crate::arguments::{FurtherArguments, ViewArguments};
 use crate::engine::{Pair, check_size, options_of};
 use crate::failure::Failure;
-use crate::motion::parse_motions;
 use crate::output::Output;
 use crate::report;
 use crate::sizes::load_both;
@@ -73,7 +72,7 @@ fn shown_time(arguments: &ViewArguments, picture: &Picture) -> Result<f64, Failu
 
 /// Two moving meshes and their first contact.
 fn pair(arguments: &ViewArguments, b: &str) -> Result<Picture, Failure> {
-    let (window, motions) = parse_motions(&arguments.window, [&arguments.motion_a, &arguments.motion_b])?;
+    let (window, motions) = arguments.motions.parse()?;
     let [a, b] = load_both(&arguments.a, b, &arguments.query.sizes)?;
     let pair = Pair::new(a, b, &arguments.query)?.on_all_threads();
     check_size("--motion-a", &motions[0], &pair.a)?;
