@@ -19,6 +19,8 @@ pub(crate) struct SkipLimits {
     pub(crate) least_gain: f64,
     /// Pairs that may be tested.
     pub(crate) most_work: u64,
+    /// So many more for each triangle that was projected.
+    pub(crate) most_a_triangle: u64,
     /// What is left of the query's budget, in pairs, for all that the attempt does.
     pub(crate) budget: u64,
     /// The attempt fails when this has come.

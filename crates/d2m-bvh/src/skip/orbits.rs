@@ -8,6 +8,7 @@ use d2m_mesh::{Exhausted, Meter};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::f64::consts::PI;
+use std::hash::{BuildHasherDefault, Hasher};
 
 /// Part of the greatest distance from the axis by which triangles of one orbit class may differ.
 const ORBIT_STEP: f64 = 1e-8;
@@ -32,7 +33,8 @@ pub(super) struct BodyProjections {
 }
 
 impl BodyProjections {
-    /// Of triangles, given by the numbers of their vertices. `places`: the vertices, seen from the axis.
+    /// Of triangles, given by the numbers of their vertices. `places`: the vertices, seen from the axis. Only those that the triangles have
+    /// get angles.
     pub(super) fn try_new(
         screw: &Screw,
         places: &[DVec3],
@@ -40,16 +42,16 @@ impl BodyProjections {
         clock: &mut Meter,
     ) -> Result<Self, Exhausted> {
         let farthest = places.iter().map(|p| p.truncate().length_squared()).fold(0.0, f64::max).sqrt();
-        let angle_of = |p: &DVec3| {
-            clock.step()?;
-            Ok(angle(p.y, p.x))
+        let mut angles = vec![None; places.len()];
+        let mut angle_of = |v: u32| {
+            let at = places[v as usize];
+            *angles[v as usize].get_or_insert_with(|| angle(at.y, at.x))
         };
-        let angles = places.iter().map(angle_of).collect::<Result<Vec<f64>, _>>()?;
         let mut orbits = Orbits {
             screw,
             farthest,
             per_step: 1.0 / (ORBIT_STEP * (farthest + screw.lead)),
-            classes: HashMap::new(),
+            classes: HashMap::default(),
             pieces: Vec::new(),
             turns: Vec::new(),
         };
@@ -59,7 +61,7 @@ impl BodyProjections {
             let piece = Piece::of(triangle.map(|v| ProjectedVertex::new(places[v as usize])), screw.h);
             // Near the axis the angle means nothing.
             if is_beside(&piece, screw.h) {
-                orbits.add(piece, triangle.map(|v| angles[v as usize]));
+                orbits.add(piece, triangle.map(&mut angle_of));
             } else if piece.wide {
                 near_axis.push(piece);
             } else {
@@ -93,7 +95,7 @@ impl BodyProjections {
 /// Is a piece so far from the axis that it has angles?
 fn is_beside(piece: &Piece, h: f64) -> bool {
     let far = piece.corners.iter().map(|vertex| vertex.rho).fold(0.0, f64::max);
-    piece.near() >= BESIDE * (far + h.abs())
+    piece.near >= BESIDE * (far + h.abs())
 }
 
 /// One triangle of each orbit class.
@@ -103,7 +105,7 @@ struct Orbits<'s> {
     farthest: f64,
     /// One over the step in which the numbers of a class may differ.
     per_step: f64,
-    classes: HashMap<u64, u32>,
+    classes: HashMap<u64, u32, BuildHasherDefault<Mixed>>,
     pieces: Vec<Piece>,
     /// By how much the second and the third vertex of each piece are turned from the first.
     turns: Vec<[f64; 2]>,
@@ -166,6 +168,26 @@ fn key(corners: &[ProjectedVertex; 3], turned: [f64; 2], farthest: f64, per_step
     )
 }
 
+/// The hash of a number that is mixed already: itself.
+#[derive(Default)]
+struct Mixed(u64);
+
+impl Hasher for Mixed {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(MIX);
+        }
+    }
+
+    fn write_u64(&mut self, mixed: u64) {
+        self.0 = mixed;
+    }
+}
+
 /// The largest whole number that is not above `x`; the nearest that there is for what is beyond all numbers. On every target without a
 /// call.
 fn whole(x: f64) -> i64 {
@@ -207,7 +229,7 @@ mod tests {
                 screw: &screw,
                 farthest: 2.0,
                 per_step: 0.0,
-                classes: HashMap::new(),
+                classes: HashMap::default(),
                 pieces: Vec::new(),
                 turns: Vec::new(),
             };

@@ -10,25 +10,20 @@ use super::axis_distance::distance_in_plane;
 use d2m_interval::Interval;
 use d2m_mesh::margin::UP;
 use glam::DVec3;
+use std::f64::consts::PI;
 
-/// A direction in the plane: F = αρ + βφ.
+/// Some directions in the plane: F = αρ + βφ. Loops over them have no branches: several are done at once.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Axes {
-    pub(super) alpha: f64,
-    pub(super) beta: f64,
+pub(super) struct Directions<const N: usize> {
+    pub(super) alpha: [f64; N],
+    pub(super) beta: [f64; N],
 }
 
 /// Any directions would do: these are in steps of about an eighth of half a turn.
-pub(super) const DIRECTIONS: [Axes; 8] = [
-    Axes { alpha: 1.0, beta: 0.0 },
-    Axes { alpha: 0.92, beta: 0.39 },
-    Axes { alpha: 0.71, beta: 0.71 },
-    Axes { alpha: 0.39, beta: 0.92 },
-    Axes { alpha: 0.0, beta: 1.0 },
-    Axes { alpha: -0.39, beta: 0.92 },
-    Axes { alpha: -0.71, beta: 0.71 },
-    Axes { alpha: -0.92, beta: 0.39 },
-];
+pub(super) const DIRECTIONS: Directions<8> = Directions {
+    alpha: [1.0, 0.92, 0.71, 0.39, 0.0, -0.39, -0.71, -0.92],
+    beta: [0.0, 0.39, 0.71, 0.92, 1.0, 0.92, 0.71, 0.39],
+};
 /// The directions of ρ and of φ.
 const RHO: usize = 0;
 const PHI: usize = 4;
@@ -43,8 +38,6 @@ pub(super) struct Range {
 }
 
 impl Range {
-    const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
-
     pub(super) fn of(v: [f64; 3]) -> Self {
         Self { low: v[0].min(v[1]).min(v[2]), high: v[0].max(v[1]).max(v[2]) }
     }
@@ -59,11 +52,51 @@ impl Range {
     }
 }
 
+/// From the lowest to the highest F along some directions.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slabs<const N: usize> {
+    low: [f64; N],
+    high: [f64; N],
+}
+
+impl<const N: usize> Slabs<N> {
+    const ALL: Self = Self { low: [f64::NEG_INFINITY; N], high: [f64::INFINITY; N] };
+
+    fn get(&self, direction: usize) -> Range {
+        Range { low: self.low[direction], high: self.high[direction] }
+    }
+
+    fn union(&self, other: &Self) -> Self {
+        let mut all = *self;
+        for j in 0..N {
+            all.low[j] = if other.low[j] < all.low[j] { other.low[j] } else { all.low[j] };
+            all.high[j] = if other.high[j] > all.high[j] { other.high[j] } else { all.high[j] };
+        }
+        all
+    }
+}
+
+impl<const N: usize> Directions<N> {
+    /// How far apart two parts are along each direction, as distances, with the first one's φ raised by `shift`; and how much F may change a
+    /// unit of distance. Points that are within ℓ of each other differ in F by at most |∇F| ℓ, with |∇F|² = α² + β² `steep`².
+    pub(super) fn distances(&self, [a, b]: [&Slabs<N>; 2], shift: f64, steep: f64) -> ([f64; N], [f64; N]) {
+        let (mut distances, mut lengths) = ([0.0; N], [0.0; N]);
+        for j in 0..N {
+            let (alpha, beta) = (self.alpha[j], self.beta[j]);
+            let moved = beta * shift;
+            let (above, below) = (b.low[j] - (a.high[j] + moved), (a.low[j] + moved) - b.high[j]);
+            lengths[j] = (alpha * alpha + beta * beta * steep * steep).sqrt() * UP;
+            distances[j] = if above > below { above } else { below } / lengths[j];
+        }
+        (distances, lengths)
+    }
+}
+
 /// Bounds of what a part of a body covers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Projection {
     /// The range of F in each direction.
-    pub(super) slabs: [Range; 8],
+    pub(super) slabs: Slabs<8>,
     pub(super) height: Range,
     /// Least distance from the axis.
     pub(super) near: f64,
@@ -73,13 +106,13 @@ pub(super) struct Projection {
 
 impl Projection {
     /// The range of φ.
-    pub(super) const fn phi(&self) -> Range {
-        self.slabs[PHI]
+    pub(super) fn phi(&self) -> Range {
+        self.slabs.get(PHI)
     }
 
     pub(super) fn with(&self, other: &Self) -> Self {
         Self {
-            slabs: std::array::from_fn(|j| self.slabs[j].union(other.slabs[j])),
+            slabs: self.slabs.union(&other.slabs),
             height: self.height.union(other.height),
             near: self.near.min(other.near),
             slack: self.slack.max(other.slack),
@@ -87,11 +120,11 @@ impl Projection {
     }
 
     pub(super) fn extents(&self) -> [f64; 3] {
-        [self.slabs[RHO].length(), self.slabs[PHI].length(), HEIGHT_WEIGHT * self.height.length()]
+        [self.slabs.get(RHO).length(), self.slabs.get(PHI).length(), HEIGHT_WEIGHT * self.height.length()]
     }
 
     pub(super) fn middle(&self, dimension: usize) -> f64 {
-        let Range { low, high } = [self.slabs[RHO], self.slabs[PHI], self.height][dimension];
+        let Range { low, high } = [self.slabs.get(RHO), self.slabs.get(PHI), self.height][dimension];
         low + high
     }
 }
@@ -128,10 +161,16 @@ pub(super) fn angle(y: f64, x: f64) -> f64 {
     Interval::point(y).atan2(Interval::point(x)).mid()
 }
 
+fn distance_from_axis(corners: &[ProjectedVertex; 3]) -> f64 {
+    distance_in_plane(&corners.map(|corner| corner.at.with_z(0.0)), DVec3::Z)
+}
+
 /// A triangle, or a part of one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
     pub(super) corners: [ProjectedVertex; 3],
+    /// Least distance from the axis.
+    pub(super) near: f64,
     /// What ρ may be below, and φ beside, the interpolation between the corners.
     pub(super) bend_rho: f64,
     pub(super) bend_phi: f64,
@@ -147,39 +186,46 @@ impl Piece {
     /// A triangle of which no angles are known yet, on a screw with φ = z − hθ.
     pub(super) fn of(corners: [ProjectedVertex; 3], h: f64) -> Self {
         let far = corners.iter().map(|vertex| vertex.rho).fold(0.0, f64::max);
-        Self { corners, bend_rho: far, bend_phi: 0.0, shared: None, slack: 0.0, divisions: 0, wide: h != 0.0 }
+        Self {
+            corners,
+            near: distance_from_axis(&corners),
+            bend_rho: far,
+            bend_phi: 0.0,
+            shared: None,
+            slack: 0.0,
+            divisions: 0,
+            wide: h != 0.0,
+        }
     }
 
     pub(super) fn projection(&self) -> Projection {
         let c = &self.corners;
         let heights = Range::of(c.map(|corner| corner.at.z));
-        let mut slabs = [Range::ALL; 8];
-        let near = self.near();
-        slabs[RHO] = Range { low: near, high: c[0].rho.max(c[1].rho).max(c[2].rho) };
-        if !self.wide {
-            for (slab, along) in slabs.iter_mut().zip(DIRECTIONS).skip(1) {
-                *slab = self.reach(along);
-            }
+        let mut slabs = if self.wide { Slabs::ALL } else { self.reach(&DIRECTIONS) };
+        (slabs.low[RHO], slabs.high[RHO]) = (self.near, c[0].rho.max(c[1].rho).max(c[2].rho));
+        Projection { slabs, height: self.shared.unwrap_or(heights), near: self.near, slack: self.slack }
+    }
+
+    /// The range of F along directions.
+    pub(super) fn reach<const N: usize>(&self, along: &Directions<N>) -> Slabs<N> {
+        let mut slabs = Slabs { low: [0.0; N], high: [0.0; N] };
+        let c = &self.corners;
+        for j in 0..N {
+            let (alpha, beta) = (along.alpha[j], along.beta[j]);
+            let [p, q, r] = [0, 1, 2].map(|k: usize| alpha * c[k].rho + beta * c[k].phi);
+            let (low, high) = if p < q { (p, q) } else { (q, p) };
+            let (low, high) = (if r < low { r } else { low }, if r > high { r } else { high });
+            let either = beta.abs() * self.bend_phi;
+            let (below, above) = if alpha > 0.0 { (alpha, 0.0) } else { (0.0, -alpha) };
+            slabs.low[j] = low - (below * self.bend_rho + either) * UP;
+            slabs.high[j] = high + (above * self.bend_rho + either) * UP;
         }
-        Projection { slabs, height: self.shared.unwrap_or(heights), near, slack: self.slack }
-    }
-
-    pub(super) fn near(&self) -> f64 {
-        distance_in_plane(&self.corners.map(|corner| corner.at.with_z(0.0)), DVec3::Z)
-    }
-
-    /// The range of F along a direction.
-    pub(super) fn reach(&self, Axes { alpha, beta }: Axes) -> Range {
-        let Range { low, high } =
-            Range::of(self.corners.map(|corner| alpha * corner.rho + beta * corner.phi));
-        let either = beta.abs() * self.bend_phi;
-        let (below, above) =
-            if alpha > 0.0 { (alpha * self.bend_rho, 0.0) } else { (0.0, -alpha * self.bend_rho) };
-        Range { low: low - (below + either) * UP, high: high + (above + either) * UP }
+        slabs
     }
 
     /// Fills in the bends: half of the bound on the second derivative, 1/ρ and 1/ρ², times the square of a radius that
-    /// holds the corners. ρ is convex: never above.
+    /// holds the corners. ρ is convex: never above. And θ, as its interpolation, is between those of the corners, which are less than half
+    /// a turn apart: what is long and comes near the axis would have no φ of use otherwise.
     pub(super) fn bent(mut self, h: f64) -> Self {
         let corners = self.corners.map(|corner| corner.at);
         let radius = [0, 1, 2]
@@ -189,10 +235,11 @@ impl Piece {
             })
             .into_iter()
             .fold(f64::INFINITY, f64::min);
-        let near = self.near();
+        let near = self.near;
         let far = self.corners.iter().map(|corner| corner.rho).fold(0.0, f64::max);
         self.bend_rho = if near > 0.0 { (0.5 * radius / near).min(far) } else { far };
-        self.bend_phi = if h == 0.0 { 0.0 } else { 0.5 * h.abs() * radius / (near * near) };
+        let bend_theta = (0.5 * radius / (near * near)).min(PI);
+        self.bend_phi = if h == 0.0 { 0.0 } else { h.abs() * bend_theta * UP };
         self
     }
 
@@ -200,7 +247,8 @@ impl Piece {
         let [a, b, c] = self.corners;
         let (p, q, r) = (a.middle(&b, h), b.middle(&c, h), c.middle(&a, h));
         [[a, p, r], [p, b, q], [r, q, c], [p, q, r]].map(|corners| {
-            let part = Self { corners, divisions: self.divisions + 1, ..*self };
+            let near = distance_from_axis(&corners);
+            let part = Self { corners, near, divisions: self.divisions + 1, ..*self };
             if self.wide { part } else { part.bent(h) }
         })
     }

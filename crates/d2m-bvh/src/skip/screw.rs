@@ -30,6 +30,8 @@ pub(super) struct Screw {
     /// the true motion leaves the screw.
     pub(super) offset: f64,
     pub(super) drift: f64,
+    /// What the angle between the axes moves points by, whatever the direction.
+    pub(super) tilted: f64,
 }
 
 impl Screw {
@@ -71,6 +73,7 @@ impl Screw {
             slide: 0.0,
             offset: (apart + tilted) * UP,
             drift: (flat(velocity) + speed_error) * UP,
+            tilted: tilted * UP,
         })
     }
 

@@ -7,13 +7,14 @@
 //! See docs/theory/engine.md, "Screws".
 
 use super::orbits::BodyProjections;
-use super::projection::{Axes, DIRECTIONS, Range};
+use super::projection::{DIRECTIONS, Directions, Piece, Range};
 use super::projection_tree::ProjectionTree;
 use super::screw::Screw;
+use super::swept_body::AnnularBound;
 use super::{Skip, SkipLimits, later_offset};
-use crate::pair::scene::MovingScene;
-use d2m_mesh::Meter;
+use crate::pair::scene::{MovingScene, SceneBody};
 use d2m_mesh::margin::{UNIT_F64, UP};
+use d2m_mesh::{Exhausted, Meter};
 use glam::DVec3;
 
 /// Larger pairs of meshes are not projected: a projection takes about 500 bytes a triangle.
@@ -31,8 +32,8 @@ struct Walk<'s> {
     screw: &'s Screw,
     /// What is added to φ of A.
     shift: f64,
-    /// How many of the directions count: only ρ where angles are not known.
-    directions: usize,
+    /// Whether both bodies' angles are known: else only ρ counts.
+    angles: bool,
     level: f64,
     length: f64,
     /// The earliest time at which parts may meet; at most `gain` ends the walk.
@@ -49,12 +50,13 @@ pub(crate) fn screw_clear_until(scene: &MovingScene<'_>, start: f64, limits: &Sk
         return nothing;
     }
     let Some(screw) = Screw::new(scene, start) else { return nothing };
-    let skip = clear_along(&screw, scene, start, limits);
+    let mut seen = None;
+    let skip = clear_along(&screw, (scene, start), limits, &mut seen);
     if skip.clear_until.is_some() || screw.h == 0.0 {
         return skip;
     }
     let limits = SkipLimits { budget: limits.budget.saturating_sub(skip.work), ..*limits };
-    let in_place = clear_along(&screw.turn_in_place(), scene, start, &limits);
+    let in_place = clear_along(&screw.turn_in_place(), (scene, start), &limits, &mut seen);
     Skip { work: skip.work + in_place.work, ..in_place }
 }
 
@@ -62,20 +64,51 @@ fn triangle_count(scene: &MovingScene<'_>) -> usize {
     scene.a.tree.mesh().triangle_count() + scene.b.tree.mesh().triangle_count()
 }
 
-/// The same with the screw that they make.
-fn clear_along(screw: &Screw, scene: &MovingScene<'_>, start: f64, limits: &SkipLimits) -> Skip {
+/// A body as it is seen from the axis at the start.
+struct Seen {
+    /// Its vertices.
+    places: Vec<DVec3>,
+    /// Where each triangle lies.
+    annuli: Vec<AnnularBound>,
+}
+
+impl Seen {
+    fn try_new(
+        body: &SceneBody<'_>,
+        place: impl Fn(DVec3) -> DVec3,
+        clock: &mut Meter,
+    ) -> Result<Self, Exhausted> {
+        let mesh = body.tree.mesh();
+        let places: Vec<DVec3> = mesh.vertices().iter().map(|&p| place(body.place(p))).collect();
+        let annulus = |triangle: &[u32; 3]| {
+            clock.step()?;
+            Ok(AnnularBound::of(&triangle.map(|v| places[v as usize]), true))
+        };
+        let annuli = mesh.triangles().iter().map(annulus).collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { places, annuli })
+    }
+}
+
+/// The same with the screw that they make. `seen`: both bodies from the axis, filled in when they are needed.
+fn clear_along(
+    screw: &Screw,
+    (scene, start): (&MovingScene<'_>, f64),
+    limits: &SkipLimits,
+    seen: &mut Option<[Seen; 2]>,
+) -> Skip {
     let bodies = [&scene.a, &scene.b];
     let length = (scene.end - start).next_up();
-    // What the projections cost, in pairs: as many pairs may be tested besides, once they are there.
-    let projected = triangle_count(scene) as u64 / 2;
+    // What the projections cost at most, in pairs.
+    let triangles = triangle_count(scene) as u64;
+    let projected = triangles / 2;
     if projected >= limits.budget {
         return Skip { clear_until: None, work: 0 };
     }
-    let most = (limits.most_work + projected).min(limits.budget - projected);
+    let most = limits.most_work.min(limits.budget - projected);
     let mut walk = Walk {
         screw,
         shift: 0.0,
-        directions: DIRECTIONS.len(),
+        angles: true,
         level: scene.pair.level + PROJECTION_ERROR * (scene.size + scene.pair.level),
         length,
         clear: length,
@@ -92,11 +125,22 @@ fn clear_along(screw: &Screw, scene: &MovingScene<'_>, start: f64, limits: &Skip
     if !walk.compare([a, b]) {
         return Skip { clear_until: None, work: most - walk.left };
     }
+    if seen.is_none() {
+        let both = [0, 1].map(|body| Seen::try_new(bodies[body], &places[body], &mut walk.clock));
+        let [Ok(a), Ok(b)] = both else { return Skip { clear_until: None, work: projected } };
+        *seen = Some([a, b]);
+    }
+    let Some(seen) = seen else { return Skip { clear_until: None, work: projected } };
+    let near = walk.near_triangles([&seen[0].annuli, &seen[1].annuli]);
+    let near_count = (near[0].len() + near[1].len()) as u64;
+    let projected = (triangles + near_count) / 4;
+    let more = (limits.most_a_triangle * near_count).min(limits.budget - projected - most);
+    let most = most + more;
+    walk.left += more;
     let whole = [0, 1].map(|body| {
-        let mesh = &bodies[body].tree.mesh();
-        let vertices: Vec<DVec3> =
-            mesh.vertices().iter().map(|&p| places[body](bodies[body].place(p))).collect();
-        BodyProjections::try_new(screw, &vertices, mesh.triangles(), &mut walk.clock)
+        let all = bodies[body].tree.mesh().triangles();
+        let triangles: Vec<[u32; 3]> = near[body].iter().map(|&t| all[t]).collect();
+        BodyProjections::try_new(screw, &seen[body].places, &triangles, &mut walk.clock)
     });
     let [Ok(a), Ok(b)] = whole else { return Skip { clear_until: None, work: projected } };
     let apart = walk.compare([a, b]);
@@ -106,6 +150,38 @@ fn clear_along(screw: &Screw, scene: &MovingScene<'_>, start: f64, limits: &Skip
 }
 
 impl Walk<'_> {
+    /// The triangles of both bodies that something of the other may come near: whose heights, or distances from the axis, do
+    /// not stay apart from those of all the rest. The others lower nothing.
+    fn near_triangles(&self, annuli: [&[AnnularBound]; 2]) -> [Vec<usize>; 2] {
+        let mut near = annuli.map(|all| (0..all.len()).collect::<Vec<usize>>());
+        // The second one's against what is left of the first one's, then the first one's once more.
+        for [one, other] in [[0, 1], [1, 0], [0, 1]] {
+            let rest = near[other].iter().fold(AnnularBound::NONE, |all, &t| all.with(annuli[other][t]));
+            near[one].retain(|&t| {
+                let annulus = annuli[one][t];
+                let [a, b] = if one == 0 { [annulus, rest] } else { [rest, annulus] };
+                let apart = (b.near - a.far).max(a.near - b.far);
+                let heights = [a, b].map(|part| Range { low: part.low, high: part.high });
+                self.clear_while(apart, 0.0).max(self.heights_clear_for(heights)) < self.length
+            });
+        }
+        near
+    }
+
+    /// For how long the heights of the parts stay further apart than the level: the gap changes by the climb, and by what a body's axis is
+    /// tilted against the other one's.
+    fn heights_clear_for(&self, [a, b]: [Range; 2]) -> f64 {
+        let (climb, length) = (self.screw.climb, self.length);
+        let mut best: f64 = 0.0;
+        for (gap, rate) in [(b.low - a.high, -climb), (a.low - b.high, climb)] {
+            let room = gap - self.level - self.screw.tilted;
+            if room > 0.0 {
+                best = best.max(if -rate * UP * length <= room { length } else { room / (-rate * UP) });
+            }
+        }
+        best
+    }
+
     /// Lowers `clear` to what the bodies' projections (with angles, without) allow; false when the walk is to end.
     fn compare(&mut self, bodies: [BodyProjections; 2]) -> bool {
         let [mut a, mut b] = bodies.map(|body| [body.with_angles, body.without_angles]);
@@ -114,7 +190,7 @@ impl Walk<'_> {
             let (Some(first), Some(second)) = (a.cells.first(), b.cells.first()) else { continue };
             let (first, second) = (first.projection, second.projection);
             let angles = i + j == 0;
-            self.directions = if angles { DIRECTIONS.len() } else { 1 };
+            self.angles = angles;
             let lead = self.screw.lead;
             let (phi_a, phi_b) = (first.phi(), second.phi());
             let leads = if angles && lead > 0.0 {
@@ -173,18 +249,9 @@ impl Walk<'_> {
 
     /// For how long the parts stay further apart than the level; at most the length of the span.
     fn clear_for(&self, trees: [&ProjectionTree; 2], cells: [usize; 2]) -> f64 {
-        let (screw, length) = (self.screw, self.length);
+        let screw = self.screw;
         let (a, b) = (&trees[0].cells[cells[0]].projection, &trees[1].cells[cells[1]].projection);
-        let mut best: f64 = 0.0;
-        // Heights: the gap changes by the climb.
-        for (gap, rate) in
-            [(b.height.low - a.height.high, -screw.climb), (a.height.low - b.height.high, screw.climb)]
-        {
-            let room = gap - self.level;
-            if room > 0.0 {
-                best = best.max(if -rate * UP * length <= room { length } else { room / (-rate * UP) });
-            }
-        }
+        let mut best = self.heights_clear_for([a.height, b.height]);
         // Points that are within ℓ of each other, ℓ at most half of ρ there, differ in F by at most |∇F| ℓ, with
         // |∇F|² = α² + β²(1 + h²/(ρ/2)²): ∇ρ and ∇φ are at right angles.
         let rho = 0.5 * a.near.max(b.near);
@@ -192,34 +259,35 @@ impl Walk<'_> {
             return best;
         }
         let steep = screw.steepness(rho);
-        let mut apart: f64 = 0.0;
         let slack = a.slack + b.slack;
-        let mut take = |Axes { alpha, beta }: Axes, fa: Range, fb: Range| {
-            let moved = beta * self.shift;
-            let gap = (fb.low - (fa.high + moved)).max((fa.low + moved) - fb.high);
-            let length = (alpha * alpha + beta * beta * steep * steep).sqrt() * UP;
-            let distance = gap / length;
-            if screw.slide == 0.0 {
+        let mut apart: f64 = 0.0;
+        let mut take = |distance: f64, rate: f64| {
+            if rate == 0.0 {
                 apart = if distance > apart { distance } else { apart };
             } else {
-                let rate = (beta * screw.slide).abs() * UP / length;
                 best = best.max(self.clear_while(distance.min(rho) - slack, rate));
             }
         };
-        for (direction, (fa, fb)) in DIRECTIONS.iter().zip(a.slabs.iter().zip(&b.slabs)).take(self.directions)
-        {
-            take(*direction, *fa, *fb);
+        // What has no angles has no ends along directions other than ρ.
+        let (distances, lengths) = DIRECTIONS.distances([&a.slabs, &b.slabs], self.shift, steep);
+        for (j, distance) in distances.into_iter().enumerate() {
+            take(distance, self.rate(DIRECTIONS.beta[j], lengths[j]));
         }
-        let pieces = [0, 1].map(|k| trees[k].piece(cells[k]).filter(|_| self.directions > 1));
+        let pieces = [0, 1].map(|k| trees[k].piece(cells[k]).filter(|_| self.angles));
         if let [Some(p), Some(q)] = pieces {
-            for corners in [&p.corners, &q.corners] {
-                for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (&corners[i], &corners[j])) {
-                    let along = Axes { alpha: from.phi - to.phi, beta: to.rho - from.rho };
-                    take(along, p.reach(along), q.reach(along));
-                }
+            let along = across_sides([p, q]);
+            let slabs = [&p.reach(&along), &q.reach(&along)];
+            let (distances, lengths) = along.distances(slabs, self.shift, steep);
+            for (j, distance) in distances.into_iter().enumerate() {
+                take(distance, self.rate(along.beta[j], lengths[j]));
             }
         }
         best.max(self.clear_while(apart.min(rho) - slack, 0.0))
+    }
+
+    /// How fast the distance along a direction changes when the climb is left out of h.
+    fn rate(&self, beta: f64, length: f64) -> f64 {
+        (beta * self.screw.slide).abs() * UP / length
     }
 
     /// For how long points that the common screw alone would keep `apart`, less what they approach at a rate, do not come within the
@@ -238,6 +306,18 @@ impl Walk<'_> {
     }
 }
 
+/// Across the sides of both projections.
+fn across_sides(pieces: [&Piece; 2]) -> Directions<6> {
+    let mut along = Directions { alpha: [0.0; 6], beta: [0.0; 6] };
+    for (k, piece) in pieces.into_iter().enumerate() {
+        for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+            let (from, to) = (&piece.corners[i], &piece.corners[j]);
+            (along.alpha[3 * k + i], along.beta[3 * k + i]) = (from.phi - to.phi, to.rho - from.rho);
+        }
+    }
+    along
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -249,10 +329,12 @@ mod tests {
     use d2m_motion::ConstantTwist;
     use d2m_testing::{Draw, KnuthRandom};
     use glam::DQuat;
+    use std::f64::consts::PI;
 
     const LIMITS: SkipLimits = SkipLimits {
         least_gain: 0.0,
         most_work: 1 << 13,
+        most_a_triangle: 0,
         budget: u64::MAX,
         stop: Stop::NEVER,
         witnesses: [0, 0],
@@ -286,7 +368,7 @@ mod tests {
             let scene = MovingScene::new((&a, motions[0]), (&b, motions[1]), Window::UNIT, &options);
             let until = Screw::new(&scene, 0.0).and_then(|mut screw| {
                 mutate(&mut screw);
-                clear_along(&screw, &scene, 0.0, &LIMITS).clear_until
+                clear_along(&screw, (&scene, 0.0), &LIMITS, &mut None).clear_until
             });
             let until = until.unwrap_or(0.0);
             won += u32::from(until > 0.0);
@@ -376,6 +458,68 @@ mod tests {
         assert_eq!(clear_until(thread(1.5), end, 3.0), Some(1.0));
         let through = clear_until(thread(-2.8), end, 3.0);
         assert!(through.is_none_or(|until| until < 0.5), "{through:?}");
+    }
+
+    /// A face that comes within a fiftieth of its length to the axis: its angles are between those of its corners.
+    #[test]
+    fn faces_that_pass_close_to_the_axis_have_angles() {
+        let rim = |angle: f64| DVec3::new(angle.cos(), angle.sin(), 0.0);
+        let end = [DVec3::X * 0.02, rim(0.0), rim(0.5)];
+        let thread = |angle: f64| {
+            [0.9, 0.92, 0.94].map(|rho| rim(angle + rho - 0.9) * rho - DVec3::Z * (1.5 + (rho - 0.92).abs()))
+        };
+        assert_eq!(clear_until(thread(0.0), end, 3.0), Some(1.0));
+        let through = clear_until(thread(-2.8), end, 3.0);
+        assert!(through.is_none_or(|until| until < 0.5), "{through:?}");
+    }
+
+    /// Two plates that turn about axes tilted against each other by half a millionth, a tenth of a millionth apart at the start: half a
+    /// turn later the one's rim is nine tenths of a millionth below the other one's.
+    #[test]
+    fn heights_change_where_axes_are_tilted() {
+        let plate = |z: f64| {
+            let corners = [(-2.0, -2.0), (2.0, -2.0), (0.0, 3.0)].map(|(x, y)| DVec3::new(x, y, z));
+            MeshTree::new(TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2]]).unwrap())
+        };
+        let (below, above) = (plate(0.0), plate(1e-7));
+        let options = QueryOptions::default().with_tolerance(1e-10);
+        let until = |tilt: f64| {
+            let spin = |rate: f64, tilt: f64| {
+                ConstantTwist::REST.with_angular_velocity(DVec3::new(tilt, 0.0, 1.0).normalize() * rate)
+            };
+            let bodies = [(&below, spin(9.6, 0.0)), (&above, spin(3.2, tilt))];
+            let scene = MovingScene::new(bodies[0], bodies[1], Window::UNIT, &options);
+            screw_clear_until(&scene, 0.0, &LIMITS).clear_until
+        };
+        assert_eq!((until(0.0), until(1e-9), until(-5e-7)), (Some(1.0), Some(1.0), None));
+    }
+
+    /// A ring that turns about a post, and is wide: only its inner rim is near the post, and only that is projected.
+    #[test]
+    fn what_is_never_near_is_not_projected() {
+        let ring = |around: u32, radii: &[f64], z: [f64; 2]| {
+            let rows = radii.len() as u32;
+            let vertices = (0..around * rows).map(|k| {
+                let (angle, row) = (f64::from(k % around) * 2.0 * PI / f64::from(around), k / around);
+                let height = if row % 2 == 0 { z[0] } else { z[1] };
+                DVec3::new(angle.cos(), angle.sin(), 0.0) * radii[row as usize] + DVec3::Z * height
+            });
+            let triangles = (0..around * (rows - 1)).flat_map(|k| {
+                let next = k / around * around + (k + 1) % around;
+                [[k, next, k + around], [next, next + around, k + around]]
+            });
+            MeshTree::new(TriMesh::try_new(vertices.collect(), triangles.collect()).unwrap())
+        };
+        let post = ring(24, &[1.0, 1.0], [-3.0, 3.0]);
+        let wide = ring(64, &[1.01, 1.2, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0], [0.0, 0.1]);
+        let triangles = (post.mesh().triangle_count() + wide.mesh().triangle_count()) as u64;
+        let options = QueryOptions::default();
+        let climb = ConstantTwist::REST.with_linear_velocity(DVec3::Z * 1e-3);
+        let turn = climb.with_angular_velocity(DVec3::Z * 5.0);
+        let scene = MovingScene::new((&wide, turn), (&post, ConstantTwist::REST), Window::UNIT, &options);
+        let skip = screw_clear_until(&scene, 0.0, &LIMITS);
+        assert_eq!(skip.clear_until, Some(1.0));
+        assert!(skip.work < triangles / 4 + triangles / 16, "{skip:?}, {triangles} triangles");
     }
 
     /// A face a thousand leads long, along the wall that it slides on and through one that it meets in the end.

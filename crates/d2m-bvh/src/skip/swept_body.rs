@@ -23,9 +23,10 @@ pub(super) struct AnnularBound {
 }
 
 impl AnnularBound {
-    const NONE: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, near: f64::INFINITY, far: 0.0 };
+    pub(super) const NONE: Self =
+        Self { low: f64::INFINITY, high: f64::NEG_INFINITY, near: f64::INFINITY, far: 0.0 };
 
-    fn with(self, other: Self) -> Self {
+    pub(super) fn with(self, other: Self) -> Self {
         Self {
             low: self.low.min(other.low),
             high: self.high.max(other.high),
@@ -36,7 +37,7 @@ impl AnnularBound {
 
     /// Of a triangle, corners from a point of the axis, which is the third coordinate. The least distance from the axis
     /// counts for bodies that spin only.
-    fn of(corners: &[DVec3; 3], spins: bool) -> Self {
+    pub(super) fn of(corners: &[DVec3; 3], spins: bool) -> Self {
         let [low, high] = [f64::min, f64::max].map(|f| f(f(corners[0].z, corners[1].z), corners[2].z));
         let flat = corners.map(DVec3::truncate);
         let squares = flat.map(DVec2::length_squared);

@@ -221,6 +221,7 @@ mod tests {
         let limits = SkipLimits {
             least_gain: 0.0,
             most_work: 1 << 20,
+            most_a_triangle: 0,
             budget: u64::MAX,
             stop: Stop::NEVER,
             witnesses: [0, 0],

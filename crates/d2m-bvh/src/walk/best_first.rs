@@ -179,6 +179,7 @@ impl<'s> Search<'s> {
         let limits = SkipLimits {
             least_gain: self.scene.longest.min(self.scene.end - now),
             most_work: effort::most_swept(self.work()),
+            most_a_triangle: 0,
             budget: self.limits.most_tests.saturating_sub(self.work()),
             stop: self.limits.stop,
             witnesses: self.scratch.last_tested,
@@ -188,7 +189,12 @@ impl<'s> Search<'s> {
         self.scene.conclude_whole(Place::Sweep, now, skip.clear_until);
         if skip.clear_until.is_none() {
             let swept = skip.work;
-            let limits = SkipLimits { budget: limits.budget.saturating_sub(swept), ..limits };
+            let limits = SkipLimits {
+                most_work: effort::most_screw_pairs(self.work()),
+                most_a_triangle: effort::SCREW_PAIRS_A_TRIANGLE,
+                budget: limits.budget.saturating_sub(swept),
+                ..limits
+            };
             skip = screw_clear_until(self.scene, now, &limits);
             #[cfg(feature = "audit")]
             self.scene.conclude_whole(Place::Screw, now, skip.clear_until);

@@ -12,6 +12,7 @@
 //! | a pair followed at once | when it is handed out | its time grew by 1/16, or 64 steps when out of turn | `pairs` |
 //! | a fresh frame | the time grew by 1/128, or by 1/16 when the level is grazed | – | `best_first` |
 //! | swept volumes, then screws | work of 256 and 1/8 test a triangle; 256 and one a triangle when 1/16 of the sub-window is done | after a success at a quarter more, else at four times the work | `skip` |
+//! | pairs of parts along a screw | – | a quarter of the work, and three for each triangle that may be near the other body | `skip` |
 //! | planes between crowds | 4096 pairs wait, or 1024 batches | twice as many, and as much other work as it took | `crowd` |
 //! | spans of time, divided | 64 sub-windows | 256 pairs in a span | `time_split` |
 //! | several threads | 1024 node tests | each round 4096 tests a thread | `parallel` |
@@ -114,6 +115,17 @@ pub(crate) const fn first_sweep_on_its_way(triangles: u64, patience: u64) -> u64
 /// What a comparison of swept volumes may cost after so much work: as much again.
 pub(crate) const fn most_swept(work: u64) -> u64 {
     work + FIRST_SWEEP
+}
+
+/// Node tests in the time of one comparison of two parts along a screw.
+const TESTS_A_SCREW_PAIR: u64 = 4;
+
+/// Pairs of parts that may be compared along a screw for each triangle that was projected: about as much time as the projections took.
+pub(crate) const SCREW_PAIRS_A_TRIANGLE: u64 = 3;
+
+/// The same for comparisons along a screw, in pairs of parts.
+pub(crate) const fn most_screw_pairs(work: u64) -> u64 {
+    most_swept(work) / TESTS_A_SCREW_PAIR
 }
 
 /// The work at which swept volumes are compared again, after a comparison that was due at `due` and ended at `work`.
