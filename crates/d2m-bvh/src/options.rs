@@ -1,5 +1,8 @@
 use crate::{Budget, Solid};
 
+/// δ as a part of the larger body's radius, if none is given.
+pub(crate) const DEFAULT_TOLERANCE: f64 = 1e-10;
+
 /// How far a query goes.
 ///
 /// ```

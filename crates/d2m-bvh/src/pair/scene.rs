@@ -1,5 +1,6 @@
 //! Constants of one query.
 
+use crate::options::DEFAULT_TOLERANCE;
 use crate::pair::boxes::node_scale::NodeScale;
 use crate::pair::motion::frame::RelativeMotion;
 use crate::pair::motion::local_motion::LocalMotion;
@@ -35,8 +36,6 @@ const PAIR_ERROR: f64 = 1.0 / 281_474_976_710_656.0; // 2⁻⁴⁸
 const LEAST_SIZE: f64 = 1.0 / 18_446_744_073_709_551_616.0; // 2⁻⁶⁴
 /// δ is at least so many errors of a gap: one on either side of it.
 const LEAST_TOLERANCE_ERRORS: f64 = 2.0;
-/// δ as a part of the larger body's radius, if none is given.
-const DEFAULT_TOLERANCE: f64 = 1e-10;
 /// Part of δ that pairs are advanced to above the level. Large against roundings, small against δ.
 const SLACK: f64 = 1.0 / 64.0;
 /// Most rotation, both bodies together, inside one sub-window: frames hold for 0.35 radians.

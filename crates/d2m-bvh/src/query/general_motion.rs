@@ -7,20 +7,22 @@
 
 mod joints;
 mod plane;
+mod span_length;
+mod true_contact;
 
 #[cfg(feature = "audit")]
 use super::concluded::{Claimed, conclude_apart, sum_of_distances};
 use super::constant_twist::{ask, scene_of_twists};
 use super::fitted_twist::FittedTwists;
-use super::report::MOST_LEFT;
-use super::true_poses::{Meeting, PlacedTriangles};
+use super::true_poses::Meeting;
 use crate::covered_pair::CoveredPair;
+use crate::options::DEFAULT_TOLERANCE;
 use crate::pair::scene::MovingTree;
 use crate::{
     Answered, Budget, Contact, Evidence, Mode, Moving, QueryError, QueryOptions, SearchCounts, Solid,
-    StartState, TimeOfContact, Window,
+    TimeOfContact, Window,
 };
-use d2m_feature::{MovingSphere, triangle_distance};
+use d2m_feature::MovingSphere;
 use d2m_interval::Interval;
 use d2m_mesh::Meter;
 #[cfg(feature = "audit")]
@@ -28,18 +30,15 @@ use d2m_mesh::audit::Place;
 use d2m_mesh::margin::length;
 use d2m_motion::{Chain, ConstantTwist, Pose, RigidMotion, Twist};
 use plane::PlaneSearch;
+use span_length::{Drifting, LastFit, Shortfall};
 
 /// A span is shortened at most to this part of itself before it is measured again: ten such steps go from any window to
 /// below the resolution of time. It chooses spans and proves nothing.
 const LEAST_PART: f64 = 1.0 / 1024.0;
 
-/// δ as a part of the larger body's radius, if none is given: that of constant twists.
-const DEFAULT_TOLERANCE: f64 = 1e-10;
 /// The deviation is a small part of the tolerance when it is at most this part: the search is given a tolerance
 /// that is smaller by twice the deviation, so for at least three quarters.
 const SMALL_PART: f64 = 0.125;
-/// Part of the room between the bodies that a deviation may take.
-const PART_OF_ROOM: f64 = 0.25;
 /// The same of what an early stop leaves above the minimum separation. That is at most the boxes of two triangles and the deviation,
 /// so at most 16/15 of the boxes.
 const PART_OF_EARLY_ROOM: f64 = 0.0625;
@@ -50,17 +49,8 @@ const ROUNDINGS: f64 = 512.0 * f64::EPSILON;
 const REACH_UP: f64 = 1.0 + 16.0 * f64::EPSILON;
 /// Longer by so much are spans after one that was free.
 const GROWTH: f64 = 4.0;
-/// A contact is expected after the gap has closed at the speed it closes with, and searched for this much longer.
-const OVERSHOOT: f64 = 1.25;
 /// A span is expected to deviate by this part of what it may.
 const EXPECTED: f64 = 0.9;
-/// A span says nothing of one that is longer by more than this.
-const MOST_EXPECTED: f64 = 16.0;
-/// Spans at most that are as short as they are because velocities at single times are not known better: the enclosures of such motions are
-/// too wide to come near anything, and after so many the answer is undecided. Velocities that are known to rounding need none.
-const MOST_DRIFTING: u32 = 1 << 16;
-/// After so many of them it is estimated how many more there would be.
-const DRIFTING: u32 = 1 << 10;
 /// Node tests that a fit counts for in a budget.
 const TESTS_A_FIT: u64 = 256;
 
@@ -127,33 +117,6 @@ struct Advance<'a> {
     poses: Option<(f64, [(Pose, Twist); 2])>,
 }
 
-/// What the next fit goes by: the length of a span, and its deviation less the floor over the square of that.
-#[derive(Clone, Copy)]
-struct LastFit {
-    length: f64,
-    curvature: f64,
-}
-
-/// Spans so far whose velocities are enclosed too widely.
-struct Drifting {
-    spans: u32,
-    /// When the last ones that were counted together began.
-    since: f64,
-}
-
-impl Drifting {
-    /// Counts a span that begins now. Would there be too many up to the end, as many for as much time as of late?
-    fn is_hopeless(&mut self, now: f64, end: f64) -> bool {
-        self.spans += 1;
-        if !self.spans.is_multiple_of(DRIFTING) {
-            return false;
-        }
-        let more = f64::from(DRIFTING) * ((end - now) / (now - self.since));
-        self.since = now;
-        f64::from(self.spans) + more > f64::from(MOST_DRIFTING)
-    }
-}
-
 /// Fitted twists from now until a time.
 struct FittedSpan {
     fitted: FittedTwists,
@@ -168,17 +131,6 @@ enum Resolution {
     Enough,
     /// They deviate by more, but no number lies between the ends of the span.
     OfTime,
-}
-
-/// A span in which fitted twists came near although they deviate by more than the tolerance allows.
-struct Shortfall {
-    /// Of the fitted twists.
-    deviation: f64,
-    /// The part of it that no shorter span takes away.
-    floor: f64,
-    tolerance: f64,
-    /// The end of the span.
-    until: f64,
 }
 
 /// How a span ended.
@@ -394,35 +346,6 @@ impl<'a> Advance<'a> {
         Ok(Step::FreeUntil(contact.time_lo.max(self.now)))
     }
 
-    /// How long the next span may be, and how far it may deviate, after the fitted twists came near.
-    fn shorten(&mut self, contact: &Contact, shortfall: &Shortfall) {
-        let Shortfall { deviation, floor, tolerance, until } = *shortfall;
-        let room = self.room_at(contact);
-        let wanted = if room > GROWTH * tolerance { room * PART_OF_ROOM } else { 0.0 };
-        let least = SMALL_PART * tolerance;
-        self.largest = wanted.max(least).min(0.5 * deviation);
-        let span = until - self.now;
-        // Enclosures that are this wide at single times get no better.
-        let hopeless = floor > 0.5 * self.largest.max(least) && deviation <= 2.0 * floor;
-        let closes = if contact.closing_speed > 0.0 {
-            OVERSHOOT * (room.max(0.0) + tolerance) / contact.closing_speed
-        } else {
-            span
-        };
-        self.longest = if hopeless { 0.0 } else { span.min(closes) };
-    }
-
-    /// About how far apart the two triangles of a contact are in truth, less the wanted separation.
-    fn room_at(&mut self, contact: &Contact) -> f64 {
-        let poses = self.poses_at(contact.time_lo);
-        let corners = |k: usize, triangle: u32| {
-            let pose = poses[k].0;
-            self.bodies[k].body.mesh().corners(triangle as usize).map(|p| pose.transform_point(p))
-        };
-        let apart = triangle_distance(&corners(0, contact.triangle_a), &corners(1, contact.triangle_b));
-        apart.upper - self.options.min_separation
-    }
-
     /// Fits over a span that begins now and deviates by little enough; `None` when no span does.
     fn fit(&mut self) -> Result<Option<FittedSpan>, QueryError> {
         let Some(end) = self.end_of_piece() else { return Ok(None) };
@@ -471,16 +394,6 @@ impl<'a> Advance<'a> {
         }
     }
 
-    /// A deviation that is little against the bodies, or against the room between the spheres about them.
-    fn usual_deviation(&self, poses: &[Pose; 2]) -> f64 {
-        let [a, b] = [0, 1].map(|k| {
-            let body = self.bodies[k].body;
-            (poses[k].transform_point(body.center()), body.radius())
-        });
-        let room = (a.0 - b.0).length() - a.1 - b.1;
-        PART_OF_ROOM * room.max(a.1.min(b.1)).max(SMALL_PART * a.1.max(b.1))
-    }
-
     /// Poses and twists at a time; the last ones are kept, since a span begins where the one before came near.
     fn poses_at(&mut self, time: f64) -> [(Pose, Twist); 2] {
         match self.poses {
@@ -491,17 +404,6 @@ impl<'a> Advance<'a> {
                 poses
             }
         }
-    }
-
-    /// About how long a span may be to deviate by so much, or by the least that matters, if the motions go on as in the last span;
-    /// the longest one if nothing is known. It saves fits of spans that are too long, and proves nothing.
-    fn expected_span(&self, deviation: f64) -> f64 {
-        let Some(LastFit { length, curvature }) = self.last else { return self.longest };
-        let deviation = deviation.max(SMALL_PART * self.tolerance);
-        let expected = (EXPECTED * deviation / curvature).sqrt();
-        // What rounding leaves of a short span says nothing of a long one.
-        let says_nothing = expected.is_nan() || self.longest > MOST_EXPECTED * length;
-        if says_nothing { self.longest } else { self.longest.min(expected) }
     }
 
     /// The end of the smooth pieces of both motions that hold the present; `None`: one that is not ahead, which is a fault of the
@@ -515,62 +417,9 @@ impl<'a> Advance<'a> {
         Some(joints.into_iter().flatten().fold(self.window.end(), f64::min))
     }
 
-    /// Data of the fitted motions expressed by the true ones: points by their weights, speeds by the true twists. That the
-    /// fitted motions' features cross says of the true ones only that they are near, unless those cross as well.
-    fn true_contact(&mut self, contact: Contact) -> Contact {
-        let poses = self.poses_at(contact.time_lo);
-        let at = |k: usize, triangle: u32, weights: [f64; 3]| {
-            let (pose, twist) = poses[k];
-            let corners = self.bodies[k].body.mesh().corners(triangle as usize);
-            let point = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
-            let place = pose.transform_point(point);
-            (place, twist.velocity_of(place - pose.translation))
-        };
-        let (point_a, speed_a) = at(0, contact.triangle_a, contact.barycentric_a);
-        let (point_b, speed_b) = at(1, contact.triangle_b, contact.barycentric_b);
-        let inside = contact.start == StartState::Contained;
-        let evidence = match contact.evidence {
-            Evidence::Crossing if !inside && !self.crosses(&contact) => Evidence::Near,
-            evidence => evidence,
-        };
-        let closing_speed = (speed_a - speed_b).dot(contact.normal);
-        let contact = self.with_start(Contact { evidence, point_a, point_b, closing_speed, ..contact });
-        self.with_what_is_left(contact)
-    }
-
-    /// Proof that the two triangles of a contact share a point at the end of its bracket.
-    fn crosses(&self, contact: &Contact) -> bool {
-        let triangles = [contact.triangle_a, contact.triangle_b];
-        PlacedTriangles::new(&self.bodies, triangles, contact.time_hi).certainly_cross()
-    }
-
     fn meeting(&self) -> Meeting<'_> {
         let Self { bodies, window, tolerance, options, .. } = self;
         Meeting { bodies, window: *window, separation: options.min_separation, tolerance: *tolerance }
-    }
-
-    /// The separation of the reported triangles where the true motions have them. Where numbers for time are too far apart for the
-    /// tolerance, more is left at `time_lo` than the search left on its own clock: then the tolerance is what is left there, as
-    /// for constant twists. A larger one takes no promise back.
-    fn with_what_is_left(&self, contact: Contact) -> Contact {
-        if !matches!(contact.start, StartState::Apart | StartState::Touching) {
-            return contact;
-        }
-        let triangles = [contact.triangle_a, contact.triangle_b];
-        let separation = PlacedTriangles::new(&self.bodies, triangles, contact.time_lo).distance().upper;
-        if separation.is_nan() {
-            return contact;
-        }
-        let left = separation - self.options.min_separation;
-        let covered = left <= MOST_LEFT * contact.tolerance;
-        let keeps = covered || contact.start != StartState::Apart || self.options.mode == Mode::Capoeira;
-        Contact { separation, tolerance: if keeps { contact.tolerance } else { left }, ..contact }
-    }
-
-    /// How the bodies stood at the start of the whole window, not of a span.
-    fn with_start(&self, contact: Contact) -> Contact {
-        let start = if self.now == self.window.start() { contact.start } else { StartState::Apart };
-        Contact { start, ..contact }
     }
 }
 

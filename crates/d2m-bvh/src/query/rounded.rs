@@ -4,11 +4,9 @@
 //! further than s + r_A + r_B apart, so the separation of the query carries the radii, and the witness points move along
 //! the normal.
 
+use crate::options::DEFAULT_TOLERANCE;
 use crate::{Contact, MeshTree, Moving, QueryError, QueryOptions, StartState, TimeOfContact};
 use d2m_lanes::UP;
-
-/// δ as a part of the larger body's radius, if none is given.
-const DEFAULT_TOLERANCE: f64 = 1e-10;
 
 /// The radii of two bodies.
 #[derive(Clone, Copy, Debug)]
