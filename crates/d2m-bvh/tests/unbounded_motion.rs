@@ -1,8 +1,8 @@
 //! A motion whose enclosures bound no speed: sound, useless, and never a reason to say "contact" or "clear".
 
 use d2m_bvh::{
-    MeshTree, Moving, QueryError, QueryOptions, Solid, TimeOfContact, TriMesh, Window, time_of_contact,
-    time_of_contact_counted,
+    ClearanceOptions, ClearanceStatus, MeshTree, Moving, QueryError, QueryOptions, Solid, TimeOfContact,
+    TriMesh, Window, clearance, time_of_contact, time_of_contact_counted,
 };
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Pose, RigidMotion, Span, Twist};
@@ -41,6 +41,57 @@ fn undecided_from_the_start() {
     let (a, b) = (Moving::new(&tree, &away), Moving::new(&tree, &ConstantTwist::REST));
     let answer = time_of_contact(a, b, Window::UNIT, &QueryOptions::default()).unwrap();
     assert_eq!(answer, TimeOfContact::Undecided { clear_until: 0.0 });
+}
+
+/// Knows its pose, and its velocity, to a half-infinite interval on one axis.
+struct OneSided(ConstantTwist, [bool; 2]);
+
+impl RigidMotion for OneSided {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        self.0.pose_and_twist(t)
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        let pose = self.0.enclose_pose(t);
+        let x = if self.1[0] { at_least(pose.translation.x) } else { pose.translation.x };
+        IntervalPose { translation: IntervalVec3 { x, ..pose.translation }, ..pose }
+    }
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        let twist = self.0.enclose_twist(t);
+        let x = if self.1[1] { at_least(twist.linear.x) } else { twist.linear.x };
+        IntervalTwist { linear: IntervalVec3 { x, ..twist.linear }, ..twist }
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist_rate(t)
+    }
+}
+
+fn at_least(x: Interval) -> Interval {
+    Interval::new(x.lo(), f64::INFINITY)
+}
+
+/// What is known of a distance is the answer, however little it is: the tolerance is not blamed.
+#[test]
+fn a_clearance_of_which_nothing_is_known_is_undecided() {
+    let tree = tetrahedron(1.0);
+    for place in [5.0, 0.5] {
+        let twist = ConstantTwist::REST.with_position(DVec3::X * place);
+        for unknown in [[true, false], [false, true], [true; 2]] {
+            let motion = OneSided(twist, unknown);
+            let (a, b) = (Moving::new(&tree, &motion), Moving::new(&tree, &ConstantTwist::REST));
+            for window in [Window::UNIT, Window::try_new(0.5, 0.5).unwrap()] {
+                for (one, other) in [(a, b), (b, a)] {
+                    let found = clearance(one, other, window, &ClearanceOptions::default()).unwrap();
+                    let least = (place - 1.0).max(0.0);
+                    assert!(found.lower <= least && least <= found.upper, "{place} {unknown:?}: {found:?}");
+                    let is_known = found.upper < f64::INFINITY && found.status == ClearanceStatus::Clear;
+                    assert!(
+                        is_known || found.status != ClearanceStatus::Clear,
+                        "{place} {unknown:?}: {found:?}"
+                    );
+                }
+            }
+        }
+    }
 }
 
 /// An angular velocity whose square underflows turns the body all the same when the window is long enough.

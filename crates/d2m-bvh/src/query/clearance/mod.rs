@@ -189,15 +189,16 @@ impl<'a> Descent<'a> {
         PART_OF_WIDTH * (self.options.accuracy * distance).max(TOLERANCES * self.tolerance)
     }
 
-    /// The level to be proven when the meshes come within `upper`, and the tolerance of the search.
-    fn level(&self, upper: f64) -> Level {
+    /// The level to be proven when the meshes come within `upper`, and the tolerance of the search; none where enclosures of the motions
+    /// know so little that neither is a number.
+    fn level(&self, upper: f64) -> Option<Level> {
         let width = match self.pass {
             Pass::Coarse => self.width(upper).max(COARSE_WIDTH * self.distance(upper)),
             Pass::Accurate => self.width(upper),
         };
         let separation = (upper - self.rounded.sum() - width).min(self.options.cutoff).max(0.0);
         let tolerance = if separation > 0.0 { PART_OF_TOLERANCE * width } else { self.tolerance };
-        Level { separation, tolerance, width }
+        width.is_finite().then_some(Level { separation, tolerance, width })
     }
 
     /// Everything is to be proven, from a time on both ways.
@@ -219,9 +220,11 @@ impl<'a> Descent<'a> {
         let mut least_proven = 0.0;
         self.begin(best.time);
         loop {
-            let level = self.level(best.upper);
+            let Some(level) = self.level(best.upper) else {
+                return self.unbounded(&best);
+            };
             if level.separation == 0.0 {
-                return self.near_zero(&best, level);
+                return self.near_zero(&best);
             }
             let Some(way) = self.ways.pop() else {
                 let lower = self.proven.min(self.distance(best.upper));
@@ -249,10 +252,9 @@ impl<'a> Descent<'a> {
             match found.end {
                 WayEnd::Clear => {}
                 WayEnd::Undecided => return undecided(&self, &best),
-                WayEnd::Contained => {
-                    let level = self.level(0.0);
-                    return self.near_zero(&best, level);
-                }
+                WayEnd::Contained => return self.near_zero(&best),
+                // Around there nothing is known of the motions.
+                WayEnd::Near { .. } if found.tolerance == f64::INFINITY => return undecided(&self, &best),
                 WayEnd::Near { triangles, time } => {
                     let near = self.sampler.pair_at(triangles, time);
                     let lowest = self.sampler.settle(near, |upper| self.width(upper));
@@ -267,9 +269,16 @@ impl<'a> Descent<'a> {
         }
     }
 
+    /// No upper bound is known: what can be proven is that the bodies stay apart.
+    fn unbounded(self, best: &Sample) -> Result<Clearance, QueryError> {
+        let found = self.near_zero(best)?;
+        let is_wide = found.status == ClearanceStatus::Clear;
+        Ok(if is_wide { Clearance { status: ClearanceStatus::Undecided, ..found } } else { found })
+    }
+
     /// Bodies that may meet: the first contact decides.
-    fn near_zero(mut self, best: &Sample, level: Level) -> Result<Clearance, QueryError> {
-        let Some(options) = self.options_at(0.0, level.tolerance, None) else {
+    fn near_zero(mut self, best: &Sample) -> Result<Clearance, QueryError> {
+        let Some(options) = self.options_at(0.0, self.tolerance, None) else {
             return Ok(self.describe(best, 0.0, ClearanceStatus::Undecided));
         };
         let [a, b] = self.sampler.bodies;
@@ -278,7 +287,7 @@ impl<'a> Descent<'a> {
         match found.answer {
             TimeOfContact::Separated => {
                 // The search proves more than its separation: at least half a tolerance above it.
-                let lower = (0.5 * level.tolerance).min(self.distance(best.upper));
+                let lower = (0.5 * self.tolerance).min(self.distance(best.upper));
                 #[cfg(feature = "audit")]
                 self.conclude(best, lower);
                 Ok(self.describe(best, lower, ClearanceStatus::Clear))
